@@ -1,0 +1,152 @@
+//! The two traits that a camera implements.
+
+use super::{FrameStart, LineFormat, LineStart};
+use core::fmt;
+
+/// The error of the hardware below, stated once for all traits of a source.
+pub trait ErrorType {
+    /// What the bus, the DMA or the file says when it fails.
+    type Error: fmt::Debug;
+}
+
+impl<T: ErrorType + ?Sized> ErrorType for &mut T {
+    type Error = T::Error;
+}
+
+/// Why a source gave no line.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum CameraError<E> {
+    /// The hardware failed; its own error is inside.
+    Hardware(E),
+    /// The caller's buffer is shorter than a line.
+    BufferTooShort {
+        /// Bytes that would have been enough.
+        needed: usize,
+    },
+    /// A line was asked for before a frame was started, or after its last line.
+    NoLineLeft,
+}
+
+impl<E> CameraError<E> {
+    /// The same error with what the hardware said put into another type: for sources that stand on other sources.
+    pub fn map_hardware<F>(self, inside: impl FnOnce(E) -> F) -> CameraError<F> {
+        match self {
+            Self::Hardware(e) => CameraError::Hardware(inside(e)),
+            Self::BufferTooShort { needed } => CameraError::BufferTooShort { needed },
+            Self::NoLineLeft => CameraError::NoLineLeft,
+        }
+    }
+}
+
+impl<E: fmt::Display> fmt::Display for CameraError<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Hardware(e) => write!(f, "{e}"),
+            Self::BufferTooShort { needed } => write!(f, "the line buffer must hold {needed} bytes"),
+            Self::NoLineLeft => f.write_str("no line is left in this frame"),
+        }
+    }
+}
+
+impl<E: fmt::Display + fmt::Debug> core::error::Error for CameraError<E> {}
+
+/// One camera, line by line.
+///
+/// The caller starts a frame and takes its lines in order, top to bottom, each into its own buffer. Between two calls
+/// the hardware goes on: an implementation over DMA fills the next line while the caller works on this one.
+///
+/// ```text
+///              start_frame    next_line    next_line          next_line    start_frame
+/// caller     ──┐          ┌┐            ┌┐            ┌─ ... ┐            ┌┐
+///              └──────────┘└────────────┘└────────────┘      └────────────┘└──────────
+///               waits for    copies row 0  copies row 1        row h - 1     waits for
+///               frame sync                                                   frame sync
+/// sensor     ──┬──────────┬─────────────┬─────────────┬─ ... ┬─────────────┬──────────
+///   blanking   │ exposure │ row 0       │ row 1       │      │ row h - 1   │ blanking
+///              └──────────┴─────────────┴─────────────┴─ ... ┴─────────────┴──────────
+///                         ^ timestamp_us of the frame
+///                         ^ row 0's     ^ row 1's timestamp_us
+/// ```
+///
+/// Contract:
+/// * [`format`](Self::format) does not change between two frames unless the caller asks the driver for it.
+/// * [`start_frame`](Self::start_frame) may be called at any time; lines not taken from the frame before are dropped.
+/// * [`next_line`](Self::next_line) blocks until the line is whole. It fills the first
+///   [`LineFormat::line_bytes`] bytes of the buffer and leaves the rest. On an error the buffer's content means nothing.
+/// * After the last line, `next_line` is [`CameraError::NoLineLeft`] until a frame is started.
+/// * After an error the caller may start the next frame.
+pub trait LineSource: ErrorType {
+    /// The shape of the frames.
+    fn format(&self) -> LineFormat;
+
+    /// Waits for the start of the next frame.
+    fn start_frame(&mut self) -> Result<FrameStart, CameraError<Self::Error>>;
+
+    /// Takes the next line.
+    fn next_line(&mut self, line: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>>;
+}
+
+impl<T: LineSource + ?Sized> LineSource for &mut T {
+    fn format(&self) -> LineFormat {
+        (**self).format()
+    }
+
+    fn start_frame(&mut self) -> Result<FrameStart, CameraError<Self::Error>> {
+        (**self).start_frame()
+    }
+
+    fn next_line(&mut self, line: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
+        (**self).next_line(line)
+    }
+}
+
+/// Two cameras whose rows are aligned: a point seen in row v of the left image is seen in row v of the right one, at
+/// or left of its column.
+///
+/// ```text
+///            start_frame      next_lines       next_lines
+/// left    ──┬──────────┬────────────────┬────────────────┬─ ...
+///           │ exposure │ row 0          │ row 1          │
+/// right   ──┴┬─────────┴┬───────────────┴┬───────────────┴┬─ ...
+///            │ exposure │ row 0          │ row 1          │
+///            └──────────┴────────────────┴────────────────┴─ ...
+///           |<->| row skew: at most max_row_skew_us
+/// ```
+///
+/// The contract of [`LineSource`] holds for the pair: both lines are of one row, or there is an error.
+pub trait StereoSource: ErrorType {
+    /// The shape of both frames.
+    fn format(&self) -> LineFormat;
+
+    /// The bound on the row skew: how many microseconds may lie between the read-outs of one row by the two cameras.
+    ///
+    /// A point that moves across the image at s px/s can be displaced by this time times s between the two images,
+    /// which is an error of its disparity; 0 for global-shutter cameras on one trigger, and for files.
+    fn max_row_skew_us(&self) -> u32;
+
+    /// Waits for the start of the next pair of frames.
+    fn start_frame(&mut self) -> Result<FrameStart, CameraError<Self::Error>>;
+
+    /// Takes the next row of both cameras.
+    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>>;
+}
+
+impl<T: StereoSource + ?Sized> StereoSource for &mut T {
+    fn format(&self) -> LineFormat {
+        (**self).format()
+    }
+
+    fn max_row_skew_us(&self) -> u32 {
+        (**self).max_row_skew_us()
+    }
+
+    fn start_frame(&mut self) -> Result<FrameStart, CameraError<Self::Error>> {
+        (**self).start_frame()
+    }
+
+    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
+        (**self).next_lines(left, right)
+    }
+}

@@ -1,0 +1,13 @@
+//! Real-valued functions that `core` does not have: the one file that names `libm`.
+
+/// The nearest integer, halves away from zero.
+#[inline]
+pub(crate) fn round(x: f32) -> f32 {
+    libm::roundf(x)
+}
+
+/// The angle in radians whose tangent is `x`.
+#[inline]
+pub(crate) fn atan(x: f32) -> f32 {
+    libm::atanf(x)
+}

@@ -1,0 +1,183 @@
+//! The words of the crate: what a number means and in which unit is in its type.
+
+use core::fmt;
+
+/// A disparity `d = u - u' >= 0` in pixels, as fixed point with [`Disparity::FRACTION_BITS`] fractional bits.
+///
+/// One value, [`Disparity::NONE`], means "no answer"; why there is none is in the pixel's [`PixelFlags`].
+///
+/// ```
+/// use stereopsis::units::Disparity;
+/// let d = Disparity::from_pixels(12);
+/// assert_eq!(d.to_f32(), Some(12.0));
+/// assert_eq!(Disparity::from_raw(12 * 32 + 8).to_f32(), Some(12.25));
+/// assert!(Disparity::NONE.to_f32().is_none());
+/// ```
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(transparent)]
+pub struct Disparity(u16);
+
+impl Disparity {
+    /// Bits after the binary point: the step is 1/32 px.
+    pub const FRACTION_BITS: u32 = 5;
+    /// Steps per pixel.
+    pub const ONE: u16 = 1 << Self::FRACTION_BITS;
+    /// No answer.
+    pub const NONE: Self = Self(u16::MAX);
+    /// The largest disparity that can be said: just under 2048 px.
+    pub const MAX: Self = Self(u16::MAX - 1);
+    /// The largest whole disparity, px.
+    pub const MAX_PIXELS: u16 = Self::MAX.0 >> Self::FRACTION_BITS;
+
+    /// A disparity of whole pixels; more than [`Self::MAX_PIXELS`] gives [`Self::MAX`].
+    pub const fn from_pixels(pixels: u16) -> Self {
+        if pixels > Self::MAX_PIXELS { Self::MAX } else { Self(pixels << Self::FRACTION_BITS) }
+    }
+
+    /// A disparity from its steps of 1/32 px; `u16::MAX` is [`Self::NONE`].
+    pub const fn from_raw(steps: u16) -> Self {
+        Self(steps)
+    }
+
+    /// The steps of 1/32 px; `u16::MAX` for [`Self::NONE`].
+    pub const fn raw(self) -> u16 {
+        self.0
+    }
+
+    /// Whether there is an answer.
+    pub const fn is_some(self) -> bool {
+        self.0 != Self::NONE.0
+    }
+
+    /// Whether there is no answer.
+    pub const fn is_none(self) -> bool {
+        !self.is_some()
+    }
+
+    /// The disparity in px, exactly; `None` when there is no answer.
+    pub fn to_f32(self) -> Option<f32> {
+        self.is_some().then(|| f32::from(self.0) / f32::from(Self::ONE))
+    }
+
+    /// The distance to another answer in steps of 1/32 px; `None` when one of the two is no answer.
+    pub const fn distance(self, other: Self) -> Option<u16> {
+        if self.is_some() && other.is_some() { Some(self.0.abs_diff(other.0)) } else { None }
+    }
+}
+
+impl Default for Disparity {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+impl fmt::Display for Disparity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.to_f32() {
+            Some(pixels) => write!(f, "{pixels} px"),
+            None => f.write_str("none"),
+        }
+    }
+}
+
+/// Why a pixel has no answer, and what is to be known about one that has: one byte, a bit for each reason.
+///
+/// A pixel without an answer has at least one bit set. [`PixelFlags::CEILING`] can stand on a pixel with an answer,
+/// when the checks let such answers through.
+#[derive(Clone, Copy, PartialEq, Eq, Default, Debug, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(transparent)]
+pub struct PixelFlags(u8);
+
+impl PixelFlags {
+    /// Nothing to say.
+    pub const CLEAR: Self = Self(0);
+    /// No candidate lies inside the right image, or the pixel is outside the valid area.
+    pub const OUTSIDE: Self = Self(1);
+    /// The winner is the largest disparity searched: the surface may be nearer than the range can tell.
+    pub const CEILING: Self = Self(1 << 1);
+    /// Too few pixels of the window have a gradient.
+    pub const UNTEXTURED: Self = Self(1 << 2);
+    /// Another disparity matches nearly as well.
+    pub const AMBIGUOUS: Self = Self(1 << 3);
+    /// The right image's pixel found a better partner elsewhere: occluded or mismatched.
+    pub const MISMATCH: Self = Self(1 << 4);
+    /// Part of a patch of similar disparities that is too small to be believed.
+    pub const SPECKLE: Self = Self(1 << 5);
+
+    /// Every flag with its name, in order of the bits.
+    pub const NAMES: [(Self, &'static str); 6] = [
+        (Self::OUTSIDE, "outside"),
+        (Self::CEILING, "ceiling"),
+        (Self::UNTEXTURED, "untextured"),
+        (Self::AMBIGUOUS, "ambiguous"),
+        (Self::MISMATCH, "mismatch"),
+        (Self::SPECKLE, "speckle"),
+    ];
+
+    /// The byte, for storage.
+    pub const fn bits(self) -> u8 {
+        self.0
+    }
+
+    /// From a stored byte; bits without a name are kept.
+    pub const fn from_bits(bits: u8) -> Self {
+        Self(bits)
+    }
+
+    /// Whether all bits of `other` are set.
+    pub const fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+
+    /// Both sets of bits.
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// `self` if `condition`, else nothing; branch-free where the compiler can.
+    pub const fn when(self, condition: bool) -> Self {
+        Self(self.0 * condition as u8)
+    }
+
+    /// Whether no bit is set.
+    pub const fn is_clear(self) -> bool {
+        self.0 == 0
+    }
+}
+
+/// Depth along the optical axis in whole millimetres, for cores without a floating-point unit; 0 is "none".
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Debug, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(transparent)]
+pub struct Millimetres(pub u16);
+
+impl Millimetres {
+    /// No depth: no answer, at or behind infinity, or beyond [`Self::MAX`].
+    pub const NONE: Self = Self(0);
+    /// The farthest depth that can be said: 65.535 m.
+    pub const MAX: Self = Self(u16::MAX);
+
+    /// Whether there is a depth.
+    pub const fn is_some(self) -> bool {
+        self.0 != 0
+    }
+
+    /// The same depth in metres; `None` for [`Self::NONE`].
+    pub fn to_metres(self) -> Option<Metres> {
+        self.is_some().then(|| Metres(f32::from(self.0) / 1000.0))
+    }
+}
+
+/// A length in metres.
+#[derive(Clone, Copy, PartialEq, PartialOrd, Default, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(transparent)]
+pub struct Metres(pub f32);
+
+/// A length in the image, in pixels.
+#[derive(Clone, Copy, PartialEq, PartialOrd, Default, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(transparent)]
+pub struct Px(pub f32);

@@ -136,6 +136,11 @@ impl PixelFlags {
         Self(self.0 | other.0)
     }
 
+    /// Whether any bit of `other` is set.
+    pub const fn intersects(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
     /// `self` if `condition`, else nothing; branch-free where the compiler can.
     pub const fn when(self, condition: bool) -> Self {
         Self(self.0 * condition as u8)

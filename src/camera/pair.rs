@@ -61,7 +61,9 @@ impl<L: fmt::Display, R: fmt::Display> fmt::Display for PairError<L, R> {
                 "the left frame is {}x{} and the right {}x{}; both must be of one size and pixel format",
                 left.width, left.height, right.width, right.height
             ),
-            Self::Sequence { left, right } => write!(f, "frame {left} of the left camera meets frame {right} of the right"),
+            Self::Sequence { left, right } => {
+                write!(f, "frame {left} of the left camera meets frame {right} of the right")
+            }
             Self::Rows { left, right } => write!(f, "row {left} of the left camera meets row {right} of the right"),
             Self::RowSkew { skew_us } => write!(f, "the cameras' rows are {skew_us} us apart"),
         }

@@ -111,10 +111,22 @@ impl RectifiedRig {
     pub fn q(&self) -> Matrix4<f32> {
         let per_baseline = 1.0 / self.baseline_m;
         Matrix4::new(
-            1.0, 0.0, 0.0, -self.cx, //
-            0.0, 1.0, 0.0, -self.cy, //
-            0.0, 0.0, 0.0, self.focal_px, //
-            0.0, 0.0, per_baseline, self.disparity_offset_px() * per_baseline,
+            1.0,
+            0.0,
+            0.0,
+            -self.cx, //
+            0.0,
+            1.0,
+            0.0,
+            -self.cy, //
+            0.0,
+            0.0,
+            0.0,
+            self.focal_px, //
+            0.0,
+            0.0,
+            per_baseline,
+            self.disparity_offset_px() * per_baseline,
         )
     }
 

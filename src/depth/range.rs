@@ -1,0 +1,44 @@
+//! What a rig and a search range can tell.
+
+use super::DepthScale;
+use crate::matching::Config;
+use crate::units::{Disparity, Metres};
+
+/// The depths that a search range covers.
+#[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct DepthRange {
+    /// Depth at the largest disparity that is no ceiling, `min_disparity + disparities - 2`.
+    pub nearest: Metres,
+    /// Standard deviation there.
+    pub sigma_nearest: Metres,
+    /// Depth at the smallest disparity searched, or at one px of parallax where that lies at or behind infinity: beyond,
+    /// an error of a pixel cannot be told from infinity.
+    pub farthest: Metres,
+    /// Standard deviation there.
+    pub sigma_farthest: Metres,
+}
+
+impl DepthScale {
+    /// The depths that a search covers, with the error of an answer that is uncertain by `sigma_px`. `None` when the
+    /// whole search lies at or behind infinity.
+    pub fn range(&self, config: &Config, sigma_px: f32) -> Option<DepthRange> {
+        let last = config.min_disparity.saturating_add(config.disparities).saturating_sub(2);
+        let (nearest, sigma_nearest) = self.depth_and_sigma(f32::from(last), sigma_px)?;
+        let one_px_of_parallax = 1.0 - self.rig().disparity_offset_px();
+        let first = f32::from(config.min_disparity).max(one_px_of_parallax).min(f32::from(last));
+        let (farthest, sigma_farthest) = self.depth_and_sigma(first, sigma_px)?;
+        Some(DepthRange { nearest, sigma_nearest, farthest, sigma_farthest })
+    }
+
+    fn depth_and_sigma(&self, disparity_px: f32, sigma_px: f32) -> Option<(Metres, Metres)> {
+        let z = self.rig().depth_m(disparity_px)?;
+        let per_px = z * z / (self.rig().focal_px() * self.rig().baseline_m());
+        Some((Metres(z), Metres(per_px * sigma_px)))
+    }
+}
+
+/// The largest disparity that a search can answer with, for tables.
+pub(super) fn largest(config: &Config) -> Disparity {
+    Disparity::from_pixels(config.min_disparity.saturating_add(config.disparities))
+}

@@ -1,0 +1,112 @@
+//! One disparity as a depth.
+
+use crate::geometry::RectifiedRig;
+use crate::math::round;
+use crate::units::{Disparity, Metres, Millimetres};
+use core::fmt;
+use nalgebra::Point3;
+
+/// Depths for one rig, `Z = f b / (d + doffs)`.
+///
+/// ```
+/// use stereopsis::{depth::DepthScale, geometry::RectifiedRig, units::{Disparity, Metres, Millimetres}};
+/// let rig = RectifiedRig::new(500.0, 0.1, 160.0, 120.0)?;
+/// let scale = DepthScale::new(&rig)?;
+/// let d = Disparity::from_pixels(25);
+/// assert_eq!(scale.millimetres(d), Millimetres(2000));
+/// assert_eq!(scale.metres(d), Some(Metres(2.0)));
+/// // A quarter of a pixel at 2 m: 4 / (500 * 0.1) * 0.25
+/// assert_eq!(scale.sigma(d, 0.25), Some(Metres(0.02)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct DepthScale {
+    rig: RectifiedRig,
+    /// Millimetres times steps of disparity: `f b` in these units.
+    millimetre_steps: u32,
+    /// `doffs` in steps of disparity.
+    offset_steps: i32,
+}
+
+/// Why a rig has no integer depths.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum DepthError {
+    /// Focal length times baseline is over 134 000 px m.
+    TooLarge,
+    /// Focal length times baseline is under 0.0000156 px m: every depth would round to nothing.
+    TooSmall,
+    /// The offset between the principal points is over 30 000 px.
+    Offset,
+}
+
+impl fmt::Display for DepthError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::TooLarge => "focal length times baseline must be under 134000 px m",
+            Self::TooSmall => "focal length times baseline must be over 0.0000156 px m",
+            Self::Offset => "the principal points must be under 30000 px apart",
+        })
+    }
+}
+
+impl core::error::Error for DepthError {}
+
+impl DepthScale {
+    /// The scale of a rig.
+    pub fn new(rig: &RectifiedRig) -> Result<Self, DepthError> {
+        let steps = f32::from(Disparity::ONE);
+        let millimetre_steps = round(rig.focal_px() * rig.baseline_m() * 1000.0 * steps);
+        let offset_steps = round(rig.disparity_offset_px() * steps);
+        if millimetre_steps < 1.0 {
+            return Err(DepthError::TooSmall);
+        }
+        // The largest f32 under 2^32.
+        if millimetre_steps > 4_294_967_040.0 {
+            return Err(DepthError::TooLarge);
+        }
+        if !(-960_000.0..=960_000.0).contains(&offset_steps) {
+            return Err(DepthError::Offset);
+        }
+        Ok(Self { rig: *rig, millimetre_steps: millimetre_steps as u32, offset_steps: offset_steps as i32 })
+    }
+
+    /// The rig.
+    pub fn rig(&self) -> &RectifiedRig {
+        &self.rig
+    }
+
+    /// Depth to the nearest millimetre, in integers: one division. [`Millimetres::NONE`] for no answer, at or behind
+    /// infinity, nearer than half a millimetre or beyond 65.535 m.
+    ///
+    /// The offset `doffs` is rounded to 1/32 px, which moves the depth by at most `Z^2 / (f b) / 64`.
+    pub fn millimetres(&self, disparity: Disparity) -> Millimetres {
+        let shift = i32::from(disparity.raw()) + self.offset_steps;
+        if disparity.is_none() || shift <= 0 {
+            return Millimetres::NONE;
+        }
+        let shift = shift as u32;
+        let whole = self.millimetre_steps / shift;
+        let rest = self.millimetre_steps % shift;
+        let rounded = whole + u32::from(rest >= shift - rest);
+        u16::try_from(rounded).map_or(Millimetres::NONE, Millimetres)
+    }
+
+    /// Depth in metres; `None` for no answer and at or behind infinity.
+    pub fn metres(&self, disparity: Disparity) -> Option<Metres> {
+        self.rig.depth_m(disparity.to_f32()?).map(Metres)
+    }
+
+    /// Standard deviation of the depth of a disparity that is uncertain by `sigma_px`:
+    /// `sigma_Z = Z^2 / (f b) sigma_d`, the first-order propagation of Z's equation.
+    pub fn sigma(&self, disparity: Disparity, sigma_px: f32) -> Option<Metres> {
+        let Metres(z) = self.metres(disparity)?;
+        Some(Metres(z * z / (self.rig.focal_px() * self.rig.baseline_m()) * sigma_px))
+    }
+
+    /// The point in the left camera's frame, metres, that column `u` and row `v` show.
+    pub fn point(&self, u: u16, v: u16, disparity: Disparity) -> Option<Point3<f32>> {
+        self.rig.reproject(f32::from(u), f32::from(v), disparity.to_f32()?)
+    }
+}

@@ -1,0 +1,62 @@
+//! Depths looked up instead of divided for: cores without a divider (Cortex-M0+) take some 60 instructions a division.
+
+use super::DepthScale;
+use super::range::largest;
+use crate::matching::Config;
+use crate::units::{Disparity, Millimetres};
+use core::fmt;
+use heapless::Vec;
+
+/// The depth of every disparity of a search range, in `2 N` bytes: [`DepthScale::millimetres`] without a division.
+///
+/// `N` is at least `32 disparities + 1`, the steps from the smallest disparity to the largest.
+///
+/// ```
+/// use stereopsis::{depth::{DepthScale, DepthTable}, geometry::RectifiedRig, matching::Config, units::Disparity};
+/// let scale = DepthScale::new(&RectifiedRig::new(100.0, 0.05, 48.0, 32.0)?)?;
+/// let table = DepthTable::<513>::new(&scale, &Config::new(96, 64, 16))?;
+/// let d = Disparity::from_raw(100);
+/// assert_eq!(table.millimetres(d), scale.millimetres(d));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct DepthTable<const N: usize> {
+    first: u16,
+    depths: Vec<Millimetres, N>,
+}
+
+/// The table is too small for the search range.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct TableError {
+    /// Entries that would have been enough.
+    pub needed: usize,
+}
+
+impl fmt::Display for TableError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the table must hold {} depths", self.needed)
+    }
+}
+
+impl core::error::Error for TableError {}
+
+impl<const N: usize> DepthTable<N> {
+    /// The depths of all disparities that a search can answer with.
+    pub fn new(scale: &DepthScale, config: &Config) -> Result<Self, TableError> {
+        let first = Disparity::from_pixels(config.min_disparity).raw();
+        let last = largest(config).raw();
+        let mut depths = Vec::new();
+        for raw in first..=last {
+            let depth = scale.millimetres(Disparity::from_raw(raw));
+            depths.push(depth).map_err(|_| TableError { needed: usize::from(last - first) + 1 })?;
+        }
+        Ok(Self { first, depths })
+    }
+
+    /// The depth of an answer; [`Millimetres::NONE`] for no answer and for disparities outside the search.
+    pub fn millimetres(&self, disparity: Disparity) -> Millimetres {
+        let place = usize::from(disparity.raw().wrapping_sub(self.first));
+        self.depths.get(place).copied().unwrap_or(Millimetres::NONE)
+    }
+}

@@ -1,0 +1,117 @@
+//! The census transform: each pixel as the signs of its differences to its neighbours (Zabih & Woodfill 1994).
+//!
+//! A bit is 1 where the neighbour is darker than the centre. A code does not change when brightness or contrast of the
+//! whole neighbourhood does, and the Hamming distance of two codes counts the neighbours that disagree.
+//!
+//! ```text
+//!        plus4             ring8             full24
+//!    . . 0 . .         0 . 1 . 2         0  1  2  3  4
+//!    . . . . .         . . . . .         5  6  7  8  9
+//!    1 . x . 2         3 . x . 4        10 11  x 12 13
+//!    . . . . .         . . . . .        14 15 16 17 18
+//!    . . 3 . .         5 . 6 . 7        19 20 21 22 23
+//! ```
+//!
+//! The numbers are the bits of the code. Columns outside the line are the nearest one inside it; rows outside the image
+//! are the caller's to repeat ([`LineWindow`](super::LineWindow) does).
+
+use core::ops::{BitOrAssign, Shl};
+
+/// Columns to each side that a code looks at.
+const REACH: usize = 2;
+
+/// A neighbour: row of the window (0 to 4, the centre's is 2) and column (0 to 4, likewise).
+type Neighbour = (usize, usize);
+
+const PLUS4: [Neighbour; 4] = [(0, 2), (2, 0), (2, 4), (4, 2)];
+
+const RING8: [Neighbour; 8] = [(0, 0), (0, 2), (0, 4), (2, 0), (2, 4), (4, 0), (4, 2), (4, 4)];
+
+const FULL24: [Neighbour; 24] = {
+    let mut all = [(0, 0); 24];
+    let mut i = 0;
+    while i < 24 {
+        let place = if i < 12 { i } else { i + 1 };
+        all[i] = (place / 5, place % 5);
+        i += 1;
+    }
+    all
+};
+
+/// Four bits a pixel: up, left, right and down at distance 2. `rows` are the five rows around the centre row; every
+/// code of `out` is written for which all of them have a pixel.
+pub fn census_plus4(rows: &[&[u8]; 5], out: &mut [u8]) {
+    census(rows, &PLUS4, out);
+}
+
+/// Eight bits a pixel: the corners and edge centres of the 5x5 square. As [`census_plus4`].
+pub fn census_ring8(rows: &[&[u8]; 5], out: &mut [u8]) {
+    census(rows, &RING8, out);
+}
+
+/// Twenty-four bits a pixel: the whole 5x5 square. As [`census_plus4`].
+pub fn census_full24(rows: &[&[u8]; 5], out: &mut [u32]) {
+    census(rows, &FULL24, out);
+}
+
+#[inline(always)]
+fn census<C>(rows: &[&[u8]; 5], neighbours: &[Neighbour], out: &mut [C])
+where
+    C: Copy + From<bool> + BitOrAssign + Shl<u32, Output = C>,
+{
+    let width = rows.iter().fold(out.len(), |w, row| w.min(row.len()));
+    let Some(out) = out.get_mut(..width) else { return };
+    let centre = rows[2];
+    out.fill(C::from(false));
+    // The inner columns bit by bit: each pass is one comparison a pixel, without a branch, on whole registers.
+    let inner = width.saturating_sub(2 * REACH);
+    for (bit, &(row, column)) in (0u32..).zip(neighbours) {
+        let beside = rows.get(row).and_then(|r| r.get(column..)).unwrap_or(&[]);
+        let codes = out.iter_mut().skip(REACH).take(inner);
+        for ((code, n), c) in codes.zip(beside).zip(centre.iter().skip(REACH)) {
+            *code |= C::from(n < c) << bit;
+        }
+    }
+    // The two columns at each side pixel by pixel.
+    let right = width.saturating_sub(REACH).max(REACH.min(width));
+    for x in (0..REACH.min(width)).chain(right..width) {
+        let pixel = |row: usize, column: usize| {
+            let x = (x + column).saturating_sub(REACH).min(width - 1);
+            rows.get(row).and_then(|r| r.get(x)).copied().unwrap_or(0)
+        };
+        let mut code = C::from(false);
+        for (bit, &(row, column)) in (0u32..).zip(neighbours) {
+            code |= C::from(pixel(row, column) < pixel(2, REACH)) << bit;
+        }
+        if let Some(out) = out.get_mut(x) {
+            *out = code;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bright_point_is_brighter_than_all_and_all_are_darker() {
+        let (dark, bright) = ([10; 5], [10, 10, 90, 10, 10]);
+        let rows = [&dark[..], &dark, &bright, &dark, &dark];
+        let (mut plus, mut ring, mut full) = ([0; 5], [0; 5], [0; 5]);
+        census_plus4(&rows, &mut plus);
+        census_ring8(&rows, &mut ring);
+        census_full24(&rows, &mut full);
+        assert_eq!(plus, [0, 0, 0b1111, 0, 0]);
+        assert_eq!(ring, [0, 0, 0xff, 0, 0]);
+        assert_eq!(full, [0, 0, 0xff_ffff, 0, 0]);
+    }
+
+    #[test]
+    fn a_ramp_sets_the_left_bits_and_its_ends_repeat() {
+        let ramp = [1, 2, 3, 4, 5, 6];
+        let mut codes = [0; 6];
+        census_plus4(&[&ramp; 5], &mut codes);
+        // Bit 1 is the left neighbour; at column 0 it is the pixel itself, which is not darker.
+        assert_eq!(codes, [0, 0b10, 0b10, 0b10, 0b10, 0b10]);
+    }
+}

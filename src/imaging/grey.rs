@@ -1,0 +1,113 @@
+//! Any pixel format as 8-bit grey.
+
+use crate::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineSource, LineStart, PixelFormat};
+
+/// A line source whose lines are [`PixelFormat::Grey8`], over one that gives another format.
+///
+/// `RAW` is the size of the buffer for one raw line, bytes. Samples of more than 8 bits lose their low bits; colour
+/// becomes luma with the weights of ITU-R BT.601, `(4899 R + 9617 G + 1868 B + 2^13) / 2^14`.
+#[derive(Debug)]
+pub struct GreyLines<S, const RAW: usize> {
+    source: S,
+    raw: [u8; RAW],
+}
+
+impl<S: LineSource, const RAW: usize> GreyLines<S, RAW> {
+    /// Wraps a source; refused when its lines are longer than `RAW` bytes.
+    pub fn new(source: S) -> Result<Self, CameraError<S::Error>> {
+        let needed = source.format().line_bytes();
+        if needed > RAW {
+            return Err(CameraError::BufferTooShort { needed });
+        }
+        Ok(Self { source, raw: [0; RAW] })
+    }
+
+    /// Gives the source back.
+    pub fn release(self) -> S {
+        self.source
+    }
+}
+
+impl<S: LineSource, const RAW: usize> ErrorType for GreyLines<S, RAW> {
+    type Error = S::Error;
+}
+
+impl<S: LineSource, const RAW: usize> LineSource for GreyLines<S, RAW> {
+    fn format(&self) -> LineFormat {
+        LineFormat { pixel: PixelFormat::Grey8, ..self.source.format() }
+    }
+
+    fn start_frame(&mut self) -> Result<FrameStart, CameraError<S::Error>> {
+        self.source.start_frame()
+    }
+
+    fn next_line(&mut self, line: &mut [u8]) -> Result<LineStart, CameraError<S::Error>> {
+        let format = self.source.format();
+        let needed = usize::from(format.width);
+        let too_short = CameraError::BufferTooShort { needed };
+        let Some(line) = line.get_mut(..needed) else { return Err(too_short) };
+        if format.pixel == PixelFormat::Grey8 {
+            return self.source.next_line(line);
+        }
+        let start = self.source.next_line(&mut self.raw)?;
+        to_grey(format.pixel, &self.raw, line);
+        Ok(start)
+    }
+}
+
+/// One line of raw pixels as grey, as many as both have.
+fn to_grey(pixel: PixelFormat, raw: &[u8], out: &mut [u8]) {
+    match pixel {
+        PixelFormat::Grey8 => out.iter_mut().zip(raw).for_each(|(o, &r)| *o = r),
+        PixelFormat::Grey16 { bits } => {
+            let shift = shift(bits);
+            for (o, r) in out.iter_mut().zip(raw.as_chunks().0) {
+                *o = top(*r, shift);
+            }
+        }
+        PixelFormat::Rgb8 => {
+            for (o, &rgb) in out.iter_mut().zip(raw.as_chunks().0) {
+                *o = luma(rgb);
+            }
+        }
+        PixelFormat::Rgb16 { bits } => {
+            let shift = shift(bits);
+            for (o, &[r0, r1, g0, g1, b0, b1]) in out.iter_mut().zip(raw.as_chunks().0) {
+                *o = luma([top([r0, r1], shift), top([g0, g1], shift), top([b0, b1], shift)]);
+            }
+        }
+    }
+}
+
+fn shift(bits: u8) -> u32 {
+    u32::from(bits.clamp(8, 16)) - 8
+}
+
+/// The top eight of the significant bits; a sample that uses more than it said saturates.
+fn top(sample: [u8; 2], shift: u32) -> u8 {
+    (u16::from_le_bytes(sample) >> shift).min(255) as u8
+}
+
+fn luma([r, g, b]: [u8; 3]) -> u8 {
+    ((4899 * u32::from(r) + 9617 * u32::from(g) + 1868 * u32::from(b) + (1 << 13)) >> 14) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn white_stays_white_and_green_is_brightest() {
+        assert_eq!(luma([255, 255, 255]), 255);
+        assert_eq!(luma([255, 0, 0]), 76);
+        assert_eq!(luma([0, 255, 0]), 150);
+        assert_eq!(luma([0, 0, 255]), 29);
+    }
+
+    #[test]
+    fn ten_bits_lose_two() {
+        let mut out = [0; 2];
+        to_grey(PixelFormat::Grey16 { bits: 10 }, &[0xff, 0x03, 0x04, 0x00], &mut out);
+        assert_eq!(out, [255, 1]);
+    }
+}

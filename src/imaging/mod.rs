@@ -1,0 +1,17 @@
+//! Lines of pixels: held in windows, brought to grey, turned into census codes.
+//!
+//! In: lines from a camera. Out: census rows.
+//!
+//! 1. [`GreyLines`]: any pixel format as 8-bit grey lines.
+//! 2. [`LineWindow`]: the last five lines, as the five rows around a centre.
+//! 3. [`census_plus4`], [`census_ring8`], [`census_full24`]: the codes of one row.
+//!
+//! Borders: a row or column outside the image is the nearest one inside it, everywhere in this module.
+
+mod census;
+mod grey;
+mod window;
+
+pub use census::{census_full24, census_plus4, census_ring8};
+pub use grey::GreyLines;
+pub use window::LineWindow;

@@ -1,0 +1,37 @@
+//! Depth from two cameras, on a microcontroller: `no_std`, no allocation, line by line.
+//!
+//! Lines of pixels go in, rows of disparity and depth come out a few lines later. The modules stand in the order in
+//! which data moves; each uses only what stands above it.
+//!
+//! ```text
+//! units math     words: Disparity, Millimetres, PixelFlags; the one file that names libm
+//! geometry       pure maths on fixed-size nalgebra types, no pixels
+//! camera         traits for where lines come from; two cameras as one stereo source
+//! imaging        lines, line windows, pixel formats, census
+//! matching       census rows -> disparity row: costs, winner, checks, sub-pixel, speckle
+//! depth          disparity -> metres with its uncertainty, points
+//! pipeline       the live path, row by row
+//!
+//! camera -lines-> imaging -census rows-> matching -disparity row-> depth
+//!        '------------------------ pipeline ---------------------'
+//! ```
+//!
+//! A way in: [`pipeline::Pipeline`] is what firmware holds, [`camera::StereoSource`] is what it implements,
+//! [`matching::Row`] is what it gets, [`depth::DepthScale`] is what turns that into millimetres.
+#![no_std]
+
+pub mod units;
+
+mod math;
+
+pub mod geometry;
+
+pub mod camera;
+
+pub mod imaging;
+
+pub mod matching;
+
+pub mod depth;
+
+pub mod pipeline;

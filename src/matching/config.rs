@@ -1,0 +1,181 @@
+//! What a matcher is asked to do, checked once before the first line.
+
+use crate::units::Disparity;
+use core::fmt;
+
+/// Frame size, search range and checks of a matcher.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Config {
+    /// Pixels in a line: 1 up to the matcher's capacity.
+    pub width: u16,
+    /// Lines in a frame, at least 1.
+    pub height: u16,
+    /// How many whole disparities are searched: [`Config::FEWEST_DISPARITIES`] up to the matcher's capacity.
+    pub disparities: u16,
+    /// The smallest disparity searched, px. The search covers `min_disparity .. min_disparity + disparities`.
+    pub min_disparity: u16,
+    /// Which answers are refused.
+    pub checks: Checks,
+}
+
+impl Config {
+    /// The shortest search range.
+    pub const FEWEST_DISPARITIES: u16 = 16;
+    /// The longest search range of any matcher.
+    pub const MOST_DISPARITIES: u16 = 256;
+
+    /// A search from disparity 0 with the default checks.
+    pub const fn new(width: u16, height: u16, disparities: u16) -> Self {
+        Self { width, height, disparities, min_disparity: 0, checks: Checks::DEFAULT }
+    }
+
+    /// Whether a matcher for lines up to `width` and ranges up to `disparities` can do this.
+    pub(crate) fn check(&self, width: usize, disparities: usize) -> Result<(), ConfigError> {
+        if self.width == 0 || usize::from(self.width) > width {
+            return Err(ConfigError::Width { given: self.width, most: width });
+        }
+        if self.height == 0 {
+            return Err(ConfigError::Height);
+        }
+        if self.disparities < Self::FEWEST_DISPARITIES || usize::from(self.disparities) > disparities {
+            return Err(ConfigError::Disparities { given: self.disparities, most: disparities });
+        }
+        if u32::from(self.min_disparity) + u32::from(self.disparities) > u32::from(Disparity::MAX_PIXELS) + 1 {
+            return Err(ConfigError::MinDisparity { most: Disparity::MAX_PIXELS + 1 - self.disparities });
+        }
+        if self.checks.uniqueness_percent.is_some_and(|p| p > 99) {
+            return Err(ConfigError::Uniqueness);
+        }
+        if self.checks.smoothing_radius > Checks::MOST_SMOOTHING {
+            return Err(ConfigError::Smoothing);
+        }
+        Ok(())
+    }
+}
+
+/// Which answers are refused, and how strictly.
+///
+/// Three operating points are ready made: [`Checks::DENSE`] answers wherever there is a candidate,
+/// [`Checks::DEFAULT`] drops what the other image or the neighbourhood contradicts, [`Checks::STRICT`] keeps what is
+/// well supported.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Checks {
+    /// Left-right check: an answer stays when the winner that the right image's pixel keeps is at most this many px
+    /// from it. `None`: not checked.
+    pub left_right_px: Option<u8>,
+    /// Uniqueness: an answer stays when every other disparity costs more than the winner by over this share of its
+    /// own cost, percent, 0 to 99; 0 refuses exact ties only. Neighbours one px beside the winner do not count.
+    /// `None`: not checked, and the kernel saves the pass.
+    pub uniqueness_percent: Option<u8>,
+    /// Texture: a pixel counts as textured when its left and right neighbour differ by this many grey levels.
+    pub texture_gradient: u8,
+    /// Texture: an answer stays when its window holds this many textured pixels. 0: not checked.
+    pub texture_pixels: u8,
+    /// Whether a winner at the largest disparity searched is refused: the surface may be nearer.
+    pub refuse_ceiling: bool,
+    /// Answers are averaged along the line with up to this many pairs of neighbours, left and right alike, that lie
+    /// within 1 px of them; 0 to [`Checks::MOST_SMOOTHING`], 0 for none.
+    pub smoothing_radius: u8,
+    /// Speckle: patches of fewer pixels are dropped. 0: none is.
+    pub speckle_pixels: u16,
+    /// Speckle: two neighbours belong to one patch when they differ by at most this.
+    pub speckle_range: Disparity,
+}
+
+impl Checks {
+    /// The widest smoothing along the line.
+    pub const MOST_SMOOTHING: u8 = 8;
+
+    /// Every pixel with a candidate gets an answer.
+    pub const DENSE: Self = Self {
+        left_right_px: None,
+        uniqueness_percent: None,
+        texture_gradient: 0,
+        texture_pixels: 0,
+        refuse_ceiling: false,
+        smoothing_radius: 4,
+        speckle_pixels: 0,
+        speckle_range: Disparity::from_pixels(1),
+    };
+
+    /// Most answers, few of them wrong.
+    pub const DEFAULT: Self = Self {
+        left_right_px: Some(1),
+        uniqueness_percent: None,
+        texture_gradient: 1,
+        texture_pixels: 3,
+        refuse_ceiling: true,
+        smoothing_radius: 4,
+        speckle_pixels: 40,
+        speckle_range: Disparity::from_pixels(1),
+    };
+
+    /// Sure answers: fewer, and wrong only rarely.
+    pub const STRICT: Self = Self {
+        left_right_px: Some(1),
+        uniqueness_percent: Some(5),
+        texture_gradient: 2,
+        texture_pixels: 4,
+        refuse_ceiling: true,
+        smoothing_radius: 4,
+        speckle_pixels: 100,
+        speckle_range: Disparity::from_pixels(1),
+    };
+}
+
+impl Default for Checks {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// Why a matcher cannot do what it is asked.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum ConfigError {
+    /// The width is 0 or over the capacity.
+    Width {
+        /// What was asked.
+        given: u16,
+        /// The capacity.
+        most: usize,
+    },
+    /// The height is 0.
+    Height,
+    /// The number of disparities is under [`Config::FEWEST_DISPARITIES`] or over the capacity.
+    Disparities {
+        /// What was asked.
+        given: u16,
+        /// The capacity.
+        most: usize,
+    },
+    /// The search range ends beyond what [`Disparity`] can say.
+    MinDisparity {
+        /// The largest `min_disparity` for this number of disparities.
+        most: u16,
+    },
+    /// The uniqueness is over 99 percent.
+    Uniqueness,
+    /// The smoothing radius is over [`Checks::MOST_SMOOTHING`].
+    Smoothing,
+}
+
+impl fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Width { given, most } => write!(f, "width {given}: 1 to {most} pixels"),
+            Self::Height => f.write_str("height 0: at least 1 line"),
+            Self::Disparities { given, most } => {
+                write!(f, "disparities {given}: {} to {most}", Config::FEWEST_DISPARITIES)
+            }
+            Self::MinDisparity { most } => write!(f, "min_disparity: at most {most} with these disparities"),
+            Self::Uniqueness => f.write_str("uniqueness: 0 to 99 percent"),
+            Self::Smoothing => write!(f, "smoothing radius: at most {}", Checks::MOST_SMOOTHING),
+        }
+    }
+}
+
+impl core::error::Error for ConfigError {}

@@ -1,0 +1,37 @@
+//! The portable kernel compiled for AVX2, and unrolled for the usual numbers of disparities.
+#![allow(unsafe_code)]
+
+use super::{RowWork, Select, Winner, portable};
+use crate::matching::scheme::Scheme;
+
+cpufeatures::new!(avx2, "avx2");
+
+/// Proof that the processor has AVX2: only [`Avx2::detect`] makes one.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Avx2(());
+
+impl Avx2 {
+    pub(super) fn detect() -> Option<Self> {
+        avx2::get().then_some(Self(()))
+    }
+
+    #[inline]
+    pub(super) fn row<S: Scheme>(self, work: RowWork<'_, S>, select: Option<Select>, found: impl FnMut(usize, Winner)) {
+        // SAFETY: `self` is the proof that the processor has the one feature that the function is compiled for.
+        unsafe { row::<S>(work, select, found) }
+    }
+}
+
+#[target_feature(enable = "avx2")]
+fn row<S: Scheme>(work: RowWork<'_, S>, select: Option<Select>, found: impl FnMut(usize, Winner)) {
+    use portable::row_in_groups;
+    match work.stride {
+        32 => row_in_groups::<S, 32, 32>(work, select, found),
+        64 => row_in_groups::<S, 32, 64>(work, select, found),
+        128 => row_in_groups::<S, 32, 128>(work, select, found),
+        256 => row_in_groups::<S, 32, 256>(work, select, found),
+        stride if stride % 32 == 0 => row_in_groups::<S, 32, 0>(work, select, found),
+        _ => row_in_groups::<S, 16, 0>(work, select, found),
+    }
+}

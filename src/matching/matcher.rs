@@ -1,0 +1,253 @@
+//! The memory of a block matcher and its stages, in running order.
+
+use super::consistency::Consistency;
+use super::kernels::{Kernel, Lane};
+use super::row::{HISTORY, Row};
+use super::scheme::{Codes, Scheme};
+use super::speckle::{BAND, LOOK_AHEAD, WIDEST};
+use super::stages::Stages;
+use super::texture::Texture;
+use super::{Config, ConfigError};
+use crate::units::{Disparity, PixelFlags};
+use core::fmt;
+
+/// Bytes of matcher state beside the arrays: counters, the configuration, padding.
+const FIXED_BYTES: usize = 64;
+
+/// Disparities for lines up to `W` pixels and `D` disparities, in memory of its own and of fixed size.
+///
+/// Lines go in by fives, rows come out [`Matcher::DELAY`] lines after the one at their centre.
+/// [`Pipeline`](crate::pipeline::Pipeline) feeds it from a camera.
+///
+/// `D` is a multiple of 16, at most 256, and `W` at least `D`; another choice does not compile.
+pub struct Matcher<S: Scheme, const W: usize, const D: usize> {
+    left: S::Codes<W>,
+    right: S::Codes<W>,
+    columns: [[u8; D]; W],
+    sums: [S::Sum; D],
+    masked: [S::Sum; D],
+    enter: [[u8; W]; 2],
+    leave: [[u8; W]; 2],
+    texture: [u16; W],
+    textured: [u8; W],
+    left_winners: [u8; W],
+    right_winners: [u8; W],
+    right_costs: [u16; W],
+    answers: [Disparity; W],
+    band: [[Disparity; W]; BAND],
+    band_flags: [[PixelFlags; W]; BAND],
+    nodes: [[u16; W]; BAND],
+    finished: [[Disparity; W]; HISTORY],
+    config: Config,
+    kernel: Option<Kernel>,
+    /// Lines taken, counting on below the image.
+    taken: usize,
+}
+
+/// Bytes of a [`Matcher`] for lines of `width` and `disparities`, rounded up to what it can be made for.
+///
+/// ```
+/// use stereopsis::matching::{Block, Fast, Matcher, state_bytes};
+/// assert!(size_of::<Matcher<Block, 320, 64>>() <= state_bytes::<Block>(320, 64));
+/// assert!(state_bytes::<Block>(320, 64) <= 43_000);
+/// assert!(state_bytes::<Fast>(320, 64) <= 43_000);
+/// ```
+pub const fn state_bytes<S: Scheme>(width: usize, disparities: usize) -> usize {
+    let lanes = disparities.next_multiple_of(16);
+    let width = if width < lanes { lanes } else { width };
+    let codes = 2 * S::Codes::<1>::ROWS;
+    let per_column = codes + lanes + 2 * 2 + 2 + 1 + 1 + 1 + 2 + 2 + (2 + 1 + 2) * BAND + 2 * HISTORY;
+    width * per_column + 2 * lanes * size_of::<S::Sum>() + FIXED_BYTES
+}
+
+/// Why a matcher took no line.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum MatchError {
+    /// The matcher was not configured.
+    NotStarted,
+    /// All lines of the frame, and the flush after them, were taken.
+    FrameDone,
+    /// A line is shorter than the width configured.
+    LineTooShort {
+        /// Pixels that would have been enough.
+        needed: usize,
+    },
+}
+
+impl fmt::Display for MatchError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotStarted => f.write_str("the matcher was not started"),
+            Self::FrameDone => f.write_str("the frame has no more lines"),
+            Self::LineTooShort { needed } => write!(f, "a line must have {needed} pixels"),
+        }
+    }
+}
+
+impl core::error::Error for MatchError {}
+
+impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
+    /// How many lines after the one at its centre a row comes out: the window's lower half and the speckle filter's
+    /// look-ahead.
+    pub const DELAY: usize = S::RADIUS_Y + LOOK_AHEAD;
+
+    const CHECKED: () = {
+        assert!(D.is_multiple_of(16) && D >= 16 && D <= 256, "D must be a multiple of 16, from 16 to 256");
+        assert!(W >= D, "W must be at least D");
+        assert!(W <= WIDEST, "W must be at most 6553");
+        assert!(S::BITS * (2 * S::RADIUS_Y + 1) <= u8::MAX as usize, "a column's sum must fit a byte");
+        assert!(size_of::<Self>() <= state_bytes::<S>(W, D), "state_bytes must cover the state");
+    };
+
+    /// A matcher that waits for [`Self::start`].
+    pub const fn new() -> Self {
+        const { Self::CHECKED };
+        Self {
+            left: S::Codes::<W>::EMPTY,
+            right: S::Codes::<W>::EMPTY,
+            columns: [[0; D]; W],
+            sums: [S::Sum::ZERO; D],
+            masked: [S::Sum::ZERO; D],
+            enter: [[0; W]; 2],
+            leave: [[0; W]; 2],
+            texture: [0; W],
+            textured: [0; W],
+            left_winners: [0; W],
+            right_winners: [0; W],
+            right_costs: [0; W],
+            answers: [Disparity::NONE; W],
+            band: [[Disparity::NONE; W]; BAND],
+            band_flags: [[PixelFlags::CLEAR; W]; BAND],
+            nodes: [[0; W]; BAND],
+            finished: [[Disparity::NONE; W]; HISTORY],
+            config: Config::new(0, 0, 0),
+            kernel: None,
+            taken: 0,
+        }
+    }
+
+    /// Checks what is asked for and gets ready for the first frame, with the fastest kernel of this processor unless
+    /// [`Self::set_kernel`] chose one.
+    pub fn start(&mut self, config: &Config) -> Result<(), ConfigError> {
+        config.check(W, D)?;
+        self.config = *config;
+        self.kernel.get_or_insert_with(Kernel::detect);
+        self.begin_frame();
+        Ok(())
+    }
+
+    /// Chooses the kernel; every kernel gives the same bits.
+    pub fn set_kernel(&mut self, kernel: Kernel) {
+        self.kernel = Some(kernel);
+    }
+
+    /// The kernel in use; `Portable` before the start.
+    pub fn kernel(&self) -> Kernel {
+        self.kernel.unwrap_or(Kernel::Portable)
+    }
+
+    /// What was asked for.
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// Forgets the frame before.
+    pub fn begin_frame(&mut self) {
+        self.taken = 0;
+        self.columns.as_flattened_mut().fill(0);
+        self.texture.fill(0);
+        self.textured.fill(0);
+    }
+
+    /// Takes the next row of the image, as the five lines around it in both cameras.
+    pub fn push(&mut self, left: &[&[u8]; 5], right: &[&[u8]; 5]) -> Result<(), MatchError> {
+        self.step(Some((left, right)))
+    }
+
+    /// Goes on below the image's last row, until the last results are out.
+    pub fn flush(&mut self) -> Result<(), MatchError> {
+        self.step(None)
+    }
+
+    /// The row that the last line brought out, if it did.
+    pub fn row(&self) -> Option<Row<'_>> {
+        let width = usize::from(self.config.width);
+        let index = self.taken.checked_sub(Self::DELAY + 1)?;
+        let flags = self.band_flags.as_flattened().get((index % BAND) * width..).and_then(|f| f.get(..width))?;
+        Some(Row {
+            index,
+            width,
+            height: usize::from(self.config.height),
+            flags,
+            finished: self.finished.as_flattened(),
+            band: self.band.as_flattened(),
+            sigma_px: S::SIGMA_PX,
+        })
+    }
+
+    fn step(&mut self, lines: Option<(&[&[u8]; 5], &[&[u8]; 5])>) -> Result<(), MatchError> {
+        let kernel = self.kernel.ok_or(MatchError::NotStarted)?;
+        let height = usize::from(self.config.height);
+        let y = self.taken;
+        if y >= height + Self::DELAY || lines.is_some() != (y < height) {
+            return Err(MatchError::FrameDone);
+        }
+        let needed = usize::from(self.config.width);
+        if lines.is_some_and(|(l, r)| l.iter().chain(r).any(|line| line.len() < needed)) {
+            return Err(MatchError::LineTooShort { needed });
+        }
+        self.taken += 1;
+        let mut stages = self.stages(kernel);
+        if let Some((left, right)) = lines {
+            stages.take_census(y, left, right);
+        }
+        stages.texture.push::<S>(lines.map(|(left, _)| left[2].get(..needed).unwrap_or(&[])), &stages.config.checks);
+        stages.match_row(y);
+        if let Some(judged) = y.checked_sub(Self::DELAY) {
+            stages.judge_row(judged);
+        }
+        Ok(())
+    }
+
+    /// The memory as slices of the frame's real size: what follows is compiled once for each scheme.
+    fn stages(&mut self, kernel: Kernel) -> Stages<'_, S, S::Codes<W>> {
+        let width = usize::from(self.config.width).min(W);
+        let stride = usize::from(self.config.disparities).next_multiple_of(16).min(D);
+        fn first<T>(slice: &mut [T], count: usize) -> &mut [T] {
+            slice.get_mut(..count).unwrap_or_default()
+        }
+        Stages {
+            width,
+            stride,
+            kernel,
+            config: &self.config,
+            left: &mut self.left,
+            right: &mut self.right,
+            columns: first(self.columns.as_flattened_mut(), width * stride),
+            sums: first(&mut self.sums, stride),
+            masked: first(&mut self.masked, stride),
+            enter: first(self.enter.as_flattened_mut(), width + stride),
+            leave: first(self.leave.as_flattened_mut(), width + stride),
+            texture: Texture { history: first(&mut self.texture, width), counts: first(&mut self.textured, width) },
+            consistency: Consistency {
+                left: first(&mut self.left_winners, width),
+                right: first(&mut self.right_winners, width),
+                right_cost: first(&mut self.right_costs, width),
+                min_disparity: usize::from(self.config.min_disparity),
+            },
+            answers: first(&mut self.answers, width),
+            band: first(self.band.as_flattened_mut(), width * BAND),
+            flags: first(self.band_flags.as_flattened_mut(), width * BAND),
+            nodes: first(self.nodes.as_flattened_mut(), width * BAND),
+            finished: first(self.finished.as_flattened_mut(), width * HISTORY),
+        }
+    }
+}
+
+impl<S: Scheme, const W: usize, const D: usize> Default for Matcher<S, W, D> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,32 @@
+//! Census rows in, disparity rows out, line by line in memory of width x disparities.
+//!
+//! One row through the stages, in running order:
+//!
+//! 1. [`scheme`](Scheme): which census and which window, [`Fast`] or [`Block`].
+//! 2. `kernels`: matching cost into column sums, sliding window sums, the winner of every pixel. The only stage whose
+//!    work grows with the number of disparities, behind one seam ([`Kernel`]).
+//! 3. `subpixel`: the winner between whole pixels.
+//! 4. `texture`, `consistency`: whether the window has texture, whether the right image agrees.
+//! 5. `smooth`: the answers averaged along the line.
+//! 6. `speckle`: small patches dropped, in a band of five rows.
+//! 7. [`Row`]: what came out, with the uncertainty of each answer.
+//!
+//! [`Matcher`] owns the memory and runs the stages. [`Config`] says what is searched and which answers are refused.
+
+mod config;
+mod consistency;
+mod kernels;
+mod matcher;
+mod row;
+mod scheme;
+mod smooth;
+mod speckle;
+mod stages;
+mod subpixel;
+mod texture;
+
+pub use config::{Checks, Config, ConfigError};
+pub use kernels::Kernel;
+pub use matcher::{MatchError, Matcher, state_bytes};
+pub use row::Row;
+pub use scheme::{Block, Fast, Scheme};

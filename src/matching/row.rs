@@ -1,0 +1,76 @@
+//! One row of results.
+
+use super::speckle::BAND;
+use crate::units::{Disparity, PixelFlags};
+
+/// Pixels on each side that the uncertainty looks at: the reach of the matching window.
+const REACH: usize = 4;
+/// Finished rows that are kept: the row itself and those that the uncertainty looks back at.
+pub(super) const HISTORY: usize = REACH + 1;
+
+/// A row of disparities, with why a pixel has none and how sure the others are.
+#[derive(Clone, Copy)]
+pub struct Row<'a> {
+    pub(super) index: usize,
+    pub(super) width: usize,
+    pub(super) height: usize,
+    pub(super) flags: &'a [PixelFlags],
+    /// `HISTORY` finished rows, row `y` in slot `y % HISTORY`.
+    pub(super) finished: &'a [Disparity],
+    /// `BAND` rows before the speckle filter, row `y` in slot `y % BAND`: this row and those below.
+    pub(super) band: &'a [Disparity],
+    pub(super) sigma_px: f32,
+}
+
+impl<'a> Row<'a> {
+    /// The row in the image, from 0.
+    pub fn index(&self) -> u16 {
+        self.index as u16
+    }
+
+    /// A disparity for each column.
+    pub fn disparities(&self) -> &'a [Disparity] {
+        slot(self.finished, self.index % HISTORY, self.width)
+    }
+
+    /// The flags of each column.
+    pub fn flags(&self) -> &'a [PixelFlags] {
+        self.flags
+    }
+
+    /// Standard deviation of the answer at column `x`, px; `None` where there is no answer.
+    ///
+    /// Away from depth edges it is the method's own ([`Scheme::SIGMA_PX`](super::Scheme::SIGMA_PX)). Near an edge the
+    /// window sees two surfaces and may answer with either one's disparity, so the answers up to four pixels left,
+    /// right, above and below are looked at: three sigma reach to the farthest of them,
+    /// `sigma = max(SIGMA_PX, spread / 3)`.
+    ///
+    /// The work, 16 look-ups, is done when asked for.
+    pub fn sigma_px(&self, x: usize) -> Option<f32> {
+        let centre = self.disparities().get(x).copied().filter(|d| d.is_some())?;
+        let here = slot(self.band, self.index % BAND, self.width);
+        let mut spread = 0;
+        let mut look = |row: &[Disparity], x: usize| {
+            let neighbour = row.get(x).copied().unwrap_or_default();
+            spread = spread.max(centre.distance(neighbour).unwrap_or(0));
+        };
+        for k in 1..=REACH {
+            look(here, x.wrapping_sub(k));
+            look(here, x + k);
+            if let Some(y) = self.index.checked_sub(k) {
+                look(slot(self.finished, y % HISTORY, self.width), x);
+            }
+            let y = self.index + k;
+            if y < self.height {
+                look(slot(self.band, y % BAND, self.width), x);
+            }
+        }
+        let spread_px = f32::from(spread) / f32::from(Disparity::ONE);
+        Some(self.sigma_px.max(spread_px / 3.0))
+    }
+}
+
+/// Row `index` of rows of `width`.
+pub(super) fn slot(rows: &[Disparity], index: usize, width: usize) -> &[Disparity] {
+    rows.get(index * width..).and_then(|r| r.get(..width)).unwrap_or(&[])
+}

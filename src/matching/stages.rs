@@ -1,0 +1,203 @@
+//! One row through the stages, over slices: compiled once for each scheme, whatever the capacities.
+
+use super::config::{Checks, Config};
+use super::consistency::Consistency;
+use super::kernels::{Kernel, RowCodes, RowWork, Select, Winner};
+use super::row::{HISTORY, slot};
+use super::scheme::{Codes, Scheme};
+use super::speckle::{BAND, Speckle};
+use super::texture::Texture;
+use super::{smooth::smooth, subpixel::refine};
+use crate::units::{Disparity, PixelFlags};
+
+/// The matcher's memory, cut to the frame's size.
+pub(super) struct Stages<'a, S: Scheme, C> {
+    pub width: usize,
+    pub stride: usize,
+    pub kernel: Kernel,
+    pub config: &'a Config,
+    pub left: &'a mut C,
+    pub right: &'a mut C,
+    pub columns: &'a mut [u8],
+    pub sums: &'a mut [S::Sum],
+    pub masked: &'a mut [S::Sum],
+    pub enter: &'a mut [u8],
+    pub leave: &'a mut [u8],
+    pub texture: Texture<'a>,
+    pub consistency: Consistency<'a>,
+    /// The row's answers before they are smoothed.
+    pub answers: &'a mut [Disparity],
+    pub band: &'a mut [Disparity],
+    pub flags: &'a mut [PixelFlags],
+    pub nodes: &'a mut [u16],
+    pub finished: &'a mut [Disparity],
+}
+
+impl<S: Scheme, C: Codes> Stages<'_, S, C> {
+    /// The census codes of row `y` in both images.
+    pub(super) fn take_census(&mut self, y: usize, left: &[&[u8]; 5], right: &[&[u8]; 5]) {
+        let width = self.width;
+        S::census(left, self.left.row_mut(y).get_mut(..width).unwrap_or_default());
+        S::census(right, self.right.row_mut(y).get_mut(..width).unwrap_or_default());
+    }
+
+    /// Moves the window down to where row `bottom` is its lowest, and answers for the row at its centre.
+    pub(super) fn match_row(&mut self, bottom: usize) {
+        let height = usize::from(self.config.height);
+        if bottom >= height + S::RADIUS_Y {
+            return;
+        }
+        let row = bottom.checked_sub(S::RADIUS_Y);
+        if row.is_some() {
+            self.consistency.begin();
+        }
+        self.select_winners(bottom, bottom < height, row);
+        if let Some(row) = row {
+            self.refuse(row);
+            let radius = usize::from(self.config.checks.smoothing_radius);
+            smooth(self.answers, radius, slot_mut(self.band, row % BAND, self.width));
+            if self.config.checks.speckle_pixels > 0 {
+                self.speckle().push(row);
+            }
+        }
+    }
+
+    /// Runs the kernel and turns its winners into answers and flags; without a `row`, costs are only gathered.
+    fn select_winners(&mut self, bottom: usize, enters: bool, row: Option<usize>) {
+        let (width, config) = (self.width, self.config);
+        let min_disparity = usize::from(config.min_disparity);
+        let leaves = bottom.checked_sub(2 * S::RADIUS_Y + 1);
+        let enter = enters.then(|| {
+            reverse(cut(self.right.row(bottom), width), min_disparity, self.enter);
+            RowCodes { left: cut(self.left.row(bottom), width), right: self.enter }
+        });
+        let leave = leaves.map(|y| {
+            reverse(cut(self.right.row(y), width), min_disparity, self.leave);
+            RowCodes { left: cut(self.left.row(y), width), right: self.leave }
+        });
+        let select = row.map(|_| Select {
+            disparities: usize::from(config.disparities),
+            min_disparity,
+            second: config.checks.uniqueness_percent.is_some(),
+        });
+        let work = RowWork {
+            width,
+            stride: self.stride,
+            enter,
+            leave,
+            columns: self.columns,
+            sums: self.sums,
+            masked: self.masked,
+        };
+        let row_flags = row.map_or(&mut [][..], |row| slot_mut(self.flags, row % BAND, width));
+        let mut textured = self.texture.window::<S>();
+        let (answers, consistency) = (&mut *self.answers, &mut self.consistency);
+        self.kernel.row::<S>(work, select, |x, winner| {
+            let few = textured.next(x) < u16::from(config.checks.texture_pixels);
+            consistency.offer(x, &winner);
+            if let (Some(answer), Some(flags)) = (answers.get_mut(x), row_flags.get_mut(x)) {
+                *answer = refine(&winner, min_disparity);
+                *flags = first_flags(&winner, config, few);
+            }
+        });
+    }
+
+    /// Takes the answers away that the checks contradict.
+    fn refuse(&mut self, row: usize) {
+        let checks = &self.config.checks;
+        let refused_ceiling = PixelFlags::CEILING.when(checks.refuse_ceiling);
+        let refused = PixelFlags::OUTSIDE
+            .union(PixelFlags::UNTEXTURED)
+            .union(PixelFlags::AMBIGUOUS)
+            .union(PixelFlags::MISMATCH)
+            .union(refused_ceiling);
+        let flags = slot_mut(self.flags, row % BAND, self.width);
+        for (x, (answer, flags)) in self.answers.iter_mut().zip(flags).enumerate() {
+            let mismatch = match checks.left_right_px {
+                Some(tolerance) => self.consistency.mismatch(x, tolerance),
+                None => PixelFlags::CLEAR,
+            };
+            // Where there is no candidate there is no winner to check.
+            let mismatch = mismatch.when(!flags.contains(PixelFlags::OUTSIDE));
+            *flags = flags.union(mismatch);
+            *answer = if flags.intersects(refused) { Disparity::NONE } else { *answer };
+        }
+    }
+
+    /// Decides which answers of a row are part of a patch that is large enough. The row is finished with that.
+    pub(super) fn judge_row(&mut self, row: usize) {
+        let pixels = self.config.checks.speckle_pixels;
+        let width = self.width;
+        let mut speckle =
+            Speckle { disparities: self.band, nodes: self.nodes, width, range: self.config.checks.speckle_range.raw() };
+        let answers = slot(speckle.disparities, row % BAND, width);
+        let flags = slot_mut(self.flags, row % BAND, width);
+        let finished = slot_mut(self.finished, row % HISTORY, width);
+        for (finished, answer) in finished.iter_mut().zip(answers) {
+            *finished = *answer;
+        }
+        if pixels == 0 {
+            return;
+        }
+        let mut before = (Disparity::NONE, PixelFlags::CLEAR);
+        for (x, ((&answer, flags), finished)) in answers.iter().zip(flags).zip(finished).enumerate() {
+            // A pixel joined to the one before is of its patch.
+            let small = match before {
+                (left, small) if speckle.joins(left, answer) => small,
+                _ if answer.is_some() => speckle.is_small(x, row, pixels),
+                _ => PixelFlags::CLEAR,
+            };
+            *flags = flags.union(small);
+            *finished = if small.is_clear() { answer } else { Disparity::NONE };
+            before = (answer, small);
+        }
+    }
+
+    fn speckle(&mut self) -> Speckle<'_> {
+        Speckle {
+            disparities: self.band,
+            nodes: self.nodes,
+            width: self.width,
+            range: self.config.checks.speckle_range.raw(),
+        }
+    }
+}
+
+/// What is known of a winner by itself.
+#[inline(always)]
+fn first_flags(winner: &Winner, config: &Config, few_textured: bool) -> PixelFlags {
+    if winner.candidates == 0 {
+        return PixelFlags::OUTSIDE;
+    }
+    let ceiling = PixelFlags::CEILING.when(winner.disparity + 1 == usize::from(config.disparities));
+    let ambiguous = PixelFlags::AMBIGUOUS.when(is_ambiguous(winner, &config.checks));
+    ceiling.union(ambiguous).union(PixelFlags::UNTEXTURED.when(few_textured))
+}
+
+#[inline(always)]
+fn is_ambiguous(winner: &Winner, checks: &Checks) -> bool {
+    match (checks.uniqueness_percent, winner.second) {
+        (Some(percent), Some(second)) => {
+            u32::from(second) * (100 - u32::from(percent.min(99))) <= u32::from(winner.cost) * 100
+        }
+        _ => false,
+    }
+}
+
+/// A right row as the kernels read it: from right to left, moved by the smallest disparity, its first code repeated.
+fn reverse(codes: &[u8], min_disparity: usize, out: &mut [u8]) {
+    let inside = codes.len().saturating_sub(min_disparity);
+    let (reversed, repeated) = out.split_at_mut_checked(inside).unwrap_or_default();
+    for (out, code) in reversed.iter_mut().zip(codes.iter().take(inside).rev()) {
+        *out = *code;
+    }
+    repeated.fill(codes.first().copied().unwrap_or(0));
+}
+
+fn cut(row: &[u8], width: usize) -> &[u8] {
+    row.get(..width).unwrap_or(&[])
+}
+
+fn slot_mut<T>(rows: &mut [T], index: usize, width: usize) -> &mut [T] {
+    rows.get_mut(index * width..).and_then(|r| r.get_mut(..width)).unwrap_or_default()
+}

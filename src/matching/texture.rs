@@ -1,0 +1,79 @@
+//! How many pixels of a window have texture.
+//!
+//! A pixel has texture when its left and right neighbour differ by a few grey levels: along the line, because only
+//! there does texture tell disparities apart. One bit a pixel is kept, 16 rows of them in a word a column.
+
+use super::config::Checks;
+use super::scheme::Scheme;
+
+/// Rows of texture bits: bit `k` of a column's word is the row `k` before the newest.
+pub(super) struct Texture<'a> {
+    /// One word for each column.
+    pub history: &'a mut [u16],
+    /// Textured pixels of each column in the window's rows.
+    pub counts: &'a mut [u8],
+}
+
+impl Texture<'_> {
+    /// Moves one row on; `line` is the new row, or `None` below the image.
+    pub(super) fn push<S: Scheme>(&mut self, line: Option<&[u8]>, checks: &Checks) {
+        for (word, count) in self.history.iter_mut().zip(self.counts.iter_mut()) {
+            *count -= (*word >> (2 * S::RADIUS_Y)) as u8 & 1;
+            *word <<= 1;
+        }
+        let Some(line) = line else { return };
+        let mark = |word: &mut u16, count: &mut u8, left: u8, right: u8| {
+            let textured = u8::from(left.abs_diff(right) >= checks.texture_gradient);
+            *word |= u16::from(textured);
+            *count += textured;
+        };
+        let beside = line.iter().zip(line.iter().skip(2));
+        let inner = self.history.iter_mut().zip(self.counts.iter_mut()).skip(1);
+        for ((word, count), (&left, &right)) in inner.zip(beside) {
+            mark(word, count, left, right);
+        }
+        // At the two ends the pixel itself stands for the neighbour outside.
+        let last = line.len().saturating_sub(1);
+        let ends = [(0, 0, 1.min(last)), (last, last.saturating_sub(1), last)];
+        // A line of one pixel has one end.
+        for &(x, left, right) in ends.iter().take(line.len().min(2)) {
+            let pixels = line.get(left).zip(line.get(right));
+            let place = self.history.get_mut(x).zip(self.counts.get_mut(x));
+            if let (Some((&left, &right)), Some((word, count))) = (pixels, place) {
+                mark(word, count, left, right);
+            }
+        }
+    }
+
+    /// Counts over the window, column by column.
+    pub(super) fn window<S: Scheme>(&self) -> Window<'_> {
+        let mut window = Window { counts: self.counts, radius: S::RADIUS_X, count: 0 };
+        for x in 0..S::RADIUS_X {
+            window.count += window.column(x);
+        }
+        window
+    }
+}
+
+/// The number of textured pixels in a window that moves along the line.
+pub(super) struct Window<'a> {
+    counts: &'a [u8],
+    radius: usize,
+    count: u16,
+}
+
+impl Window<'_> {
+    /// The count of the window around column `x`; columns are asked for in order, from 0.
+    #[inline(always)]
+    pub(super) fn next(&mut self, x: usize) -> u16 {
+        self.count += self.column(x + self.radius);
+        // Left of the image the place wraps, and nothing is there.
+        self.count -= self.column(x.wrapping_sub(self.radius + 1));
+        self.count
+    }
+
+    #[inline(always)]
+    fn column(&self, x: usize) -> u16 {
+        self.counts.get(x).map_or(0, |&count| u16::from(count))
+    }
+}

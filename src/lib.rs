@@ -35,3 +35,7 @@ pub mod matching;
 pub mod depth;
 
 pub mod pipeline;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

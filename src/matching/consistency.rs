@@ -25,18 +25,18 @@ impl Consistency<'_> {
         self.right_cost.fill(u16::MAX);
     }
 
-    /// Notes the winner of left column `x` and offers it to its partner. The first of equal costs stays.
+    /// Notes the winners of the left columns from `x` on and offers each to its partner. The first of equal costs stays.
     #[inline(always)]
-    pub(super) fn offer(&mut self, x: usize, winner: &Winner) {
-        let disparity = winner.disparity as u8;
-        if let Some(left) = self.left.get_mut(x) {
-            *left = disparity;
-        }
-        let partner = x.wrapping_sub(self.min_disparity + winner.disparity);
-        if let (Some(cost), Some(kept)) = (self.right_cost.get_mut(partner), self.right.get_mut(partner)) {
-            let better = winner.candidates > 0 && winner.cost < *cost;
-            *cost = if better { winner.cost } else { *cost };
-            *kept = if better { disparity } else { *kept };
+    pub(super) fn offer(&mut self, x: usize, winners: &[Winner]) {
+        let left = self.left.get_mut(x..).unwrap_or_default();
+        for ((x, left), winner) in (x..).zip(left).zip(winners) {
+            *left = winner.disparity as u8;
+            let partner = x.wrapping_sub(self.min_disparity + usize::from(winner.disparity));
+            if let (Some(cost), Some(kept)) = (self.right_cost.get_mut(partner), self.right.get_mut(partner)) {
+                let better = winner.candidates > 0 && winner.cost < *cost;
+                *cost = if better { winner.cost } else { *cost };
+                *kept = if better { *left } else { *kept };
+            }
         }
     }
 

@@ -11,6 +11,9 @@ use super::{Config, ConfigError};
 use crate::units::{Disparity, PixelFlags};
 use core::fmt;
 
+/// The five lines around a row.
+type Around<'a> = [&'a [u8]; 5];
+
 /// Bytes of matcher state beside the arrays: counters, the configuration, padding.
 const FIXED_BYTES: usize = 64;
 
@@ -162,8 +165,8 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     }
 
     /// Takes the next row of the image, as the five lines around it in both cameras.
-    pub fn push(&mut self, left: &[&[u8]; 5], right: &[&[u8]; 5]) -> Result<(), MatchError> {
-        self.step(Some((left, right)))
+    pub fn push(&mut self, left: &Around<'_>, right: &Around<'_>) -> Result<(), MatchError> {
+        self.step(Some([left, right]))
     }
 
     /// Goes on below the image's last row, until the last results are out.
@@ -187,7 +190,7 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
         })
     }
 
-    fn step(&mut self, lines: Option<(&[&[u8]; 5], &[&[u8]; 5])>) -> Result<(), MatchError> {
+    fn step(&mut self, lines: Option<[&Around<'_>; 2]>) -> Result<(), MatchError> {
         let kernel = self.kernel.ok_or(MatchError::NotStarted)?;
         let height = usize::from(self.config.height);
         let y = self.taken;
@@ -195,15 +198,15 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             return Err(MatchError::FrameDone);
         }
         let needed = usize::from(self.config.width);
-        if lines.is_some_and(|(l, r)| l.iter().chain(r).any(|line| line.len() < needed)) {
+        if lines.is_some_and(|[l, r]| l.iter().chain(r).any(|line| line.len() < needed)) {
             return Err(MatchError::LineTooShort { needed });
         }
         self.taken += 1;
         let mut stages = self.stages(kernel);
-        if let Some((left, right)) = lines {
+        if let Some([left, right]) = lines {
             stages.take_census(y, left, right);
         }
-        stages.texture.push::<S>(lines.map(|(left, _)| left[2].get(..needed).unwrap_or(&[])), &stages.config.checks);
+        stages.texture.push::<S>(lines.map(|[left, _]| left[2].get(..needed).unwrap_or(&[])), &stages.config.checks);
         stages.match_row(y);
         if let Some(judged) = y.checked_sub(Self::DELAY) {
             stages.judge_row(judged);

@@ -33,19 +33,18 @@ fn averages(around: &[Disparity], radius: usize) -> [Disparity; LANES] {
         chunk.map_or([u16::MAX; LANES], |chunk| chunk.map(Disparity::raw))
     };
     let centre = lanes(radius);
-    let mut sums = [0i16; LANES];
-    let mut counts = [1i16; LANES];
+    let mut sums = [0; LANES];
+    let mut counts = [1; LANES];
     for k in 1..=radius {
         let (left, right) = (lanes(radius - k), lanes(radius + k));
         for i in 0..LANES {
-            // All ones where the pair counts: a choice without a branch.
-            let near = 0 - i16::from(is_near(left[i], centre[i]) & is_near(right[i], centre[i]));
-            let off = left[i].wrapping_sub(centre[i]).wrapping_add(right[i].wrapping_sub(centre[i])) as i16;
-            sums[i] += off & near;
-            counts[i] += 2 & near;
+            let (sum, count) = pair(left[i], centre[i], right[i]);
+            sums[i] += sum;
+            counts[i] += count;
         }
     }
-    core::array::from_fn(|i| moved(centre[i], sums[i], counts[i]))
+    let reciprocals = counts.map(reciprocal);
+    core::array::from_fn(|i| moved(centre[i], sums[i], counts[i], reciprocals[i]))
 }
 
 /// The average of the pixel at column `x`.
@@ -54,41 +53,49 @@ fn average(row: &[Disparity], x: usize, radius: usize) -> Disparity {
     let centre = at(x);
     let (mut sum, mut count) = (0, 1);
     for k in 1..=radius {
-        let (left, right) = (at(x.wrapping_sub(k)), at(x + k));
-        if is_near(left, centre) && is_near(right, centre) {
-            sum += left.wrapping_sub(centre).wrapping_add(right.wrapping_sub(centre)) as i16;
-            count += 2;
-        }
+        let (change, pixels) = pair(at(x.wrapping_sub(k)), centre, at(x + k));
+        sum += change;
+        count += pixels;
     }
-    moved(centre, sum, count)
+    moved(centre, sum, count, reciprocal(count))
 }
 
-/// Whether a neighbour is an answer within 1 px of the centre.
+/// What a pair of neighbours adds to the sum of differences and to the count of pixels: nothing unless both are answers
+/// within 1 px of the centre.
 #[inline(always)]
-fn is_near(neighbour: u16, centre: u16) -> bool {
-    (neighbour != Disparity::NONE.raw()) & (neighbour.abs_diff(centre) <= Disparity::ONE)
+fn pair(left: u16, centre: u16, right: u16) -> (i16, i16) {
+    let is_near = |d: u16| (d != Disparity::NONE.raw()) & (d.abs_diff(centre) <= Disparity::ONE);
+    // All ones where the pair counts: a choice without a branch.
+    let near = 0 - i16::from(is_near(left) & is_near(right));
+    let change = left.wrapping_sub(centre).wrapping_add(right.wrapping_sub(centre)) as i16;
+    (change & near, 2 & near)
 }
 
 /// The centre moved by `sum / count`, rounded half away from zero so that no side is preferred. No answer stays none.
 #[inline(always)]
-fn moved(centre: u16, sum: i16, count: i16) -> Disparity {
+fn moved(centre: u16, sum: i16, count: i16, reciprocal: u16) -> Disparity {
     // floor((2 |sum| + count) / (2 count)) by a multiplication. |sum| is at most 8 pairs of 2 x 32 steps and count at
     // most 17, and for such numbers the product with the rounded-up reciprocal has the same floor.
-    let reciprocal = RECIPROCALS.get(usize::from(count.unsigned_abs() / 2)).copied().unwrap_or(0);
-    let steps = ((2 * u32::from(sum.unsigned_abs()) + u32::from(count.unsigned_abs())) * reciprocal) >> 16;
-    let change = if sum < 0 { -(steps as i32) } else { steps as i32 };
-    if centre == Disparity::NONE.raw() {
-        return Disparity::NONE;
-    }
-    Disparity::from_raw((i32::from(centre) + change).clamp(0, i32::from(Disparity::MAX.raw())) as u16)
+    let doubled = 2 * sum.unsigned_abs() + count.unsigned_abs();
+    let steps = ((u32::from(doubled) * u32::from(reciprocal)) >> 16) as u16;
+    let negative = (sum >> 15) as u16;
+    // The average lies between the answers that it is made of: no overflow either way.
+    let average = centre.wrapping_add((steps ^ negative).wrapping_sub(negative));
+    let none = 0u16.wrapping_sub(u16::from(centre == Disparity::NONE.raw()));
+    Disparity::from_raw(average | none)
 }
 
-/// `2^16 / (2 count)`, rounded up, at `count / 2` for the odd counts 1 to 17.
-const RECIPROCALS: [u32; 9] = {
-    let mut table = [0; 9];
+/// `2^16 / (2 count)`, rounded up, for the odd counts 1 to 17.
+#[inline(always)]
+fn reciprocal(count: i16) -> u16 {
+    RECIPROCALS[usize::from(count as u16 / 2) % RECIPROCALS.len()]
+}
+
+const RECIPROCALS: [u16; 16] = {
+    let mut table = [0; 16];
     let mut i = 0;
     while i < 9 {
-        table[i] = (1 << 16) / (2 * (2 * i as u32 + 1)) + 1;
+        table[i] = ((1 << 16) / (2 * (2 * i as u32 + 1)) + 1) as u16;
         i += 1;
     }
     table
@@ -122,7 +129,10 @@ mod tests {
         for count in (1..=17i32).step_by(2) {
             for sum in -64 * 8..=64 * 8i32 {
                 let exact = (2 * sum.abs() + count) / (2 * count) * sum.signum();
-                assert_eq!(moved(1000, sum as i16, count as i16).raw(), (1000 + exact) as u16);
+                assert_eq!(
+                    moved(1000, sum as i16, count as i16, reciprocal(count as i16)).raw(),
+                    (1000 + exact) as u16
+                );
             }
         }
     }

@@ -8,6 +8,7 @@
 //! patch. A place is never in an older row than the pixel that refers to it, so nothing points at a row that has left
 //! the band, and a patch that goes on keeps the size of its rows that have left.
 
+use super::row::slot;
 use crate::units::{Disparity, PixelFlags};
 
 /// Rows that must follow before a row is judged.
@@ -58,42 +59,40 @@ impl Speckle<'_> {
     /// Runs of similar answers along the row: the last pixel of each is the root of all.
     fn join_along(&mut self, y: usize) {
         let start = self.place(0, y);
-        let Some(row) = self.disparities.get(start..start + self.width) else { return };
         let Some(nodes) = self.nodes.get_mut(start..start + self.width) else { return };
-        let mut end = 0;
-        let mut size = 0;
+        // From the end, so that the end of a run is known when its pixels are written.
+        let (mut end, mut size) = (start, 0);
         let mut next = Disparity::NONE;
-        for (x, &disparity) in row.iter().enumerate().rev() {
-            let joined = similar(disparity, next, self.range);
-            end = if joined { end } else { x };
-            size = if joined { size + 1 } else { 1 };
+        for (x, &answer) in slot(self.disparities, y % BAND, self.width).iter().enumerate().rev() {
+            if !similar(answer, next, self.range) {
+                finish_run(nodes, end - start, size);
+                end = start + x;
+                size = 0;
+            }
+            size += 1;
             if let Some(node) = nodes.get_mut(x) {
-                *node = (start + end) as u16;
+                *node = end as u16;
             }
-            if let Some(node) = nodes.get_mut(end) {
-                *node = ROOT | size;
-            }
-            next = disparity;
+            next = answer;
         }
+        finish_run(nodes, end - start, size);
     }
 
     /// Joins the row's patches to those above.
     fn join_above(&mut self, y: usize) {
         let (here, above) = (self.place(0, y), self.place(0, y - 1));
+        let rows = slot(self.disparities, y % BAND, self.width).iter();
+        let mut joined_before = false;
         let mut before = (Disparity::NONE, Disparity::NONE);
-        for x in 0..self.width {
-            let at = |place: usize| self.disparities.get(place).copied().unwrap_or_default();
-            let (disparity, up) = (at(here + x), at(above + x));
-            if similar(disparity, up, self.range) {
-                // Where both rows go on as they were joined one column before, they are joined already.
-                let known = similar(before.0, before.1, self.range)
-                    && similar(before.0, disparity, self.range)
-                    && similar(before.1, up, self.range);
-                if !known {
-                    self.join(above + x, here + x);
-                }
+        for (x, (&answer, &up)) in rows.zip(slot(self.disparities, (y - 1) % BAND, self.width)).enumerate() {
+            let joined = similar(answer, up, self.range);
+            // Where both rows go on from a column that was joined, they are joined already.
+            let known = joined_before && similar(before.0, answer, self.range) && similar(before.1, up, self.range);
+            if joined && !known {
+                self.join(above + x, here + x);
             }
-            before = (disparity, up);
+            joined_before = joined;
+            before = (answer, up);
         }
     }
 
@@ -132,6 +131,15 @@ impl Speckle<'_> {
             place = usize::from(grandparent);
         }
         place
+    }
+}
+
+/// Makes the end of a run the root of its pixels.
+fn finish_run(nodes: &mut [u16], end: usize, size: u16) {
+    if let Some(node) = nodes.get_mut(end)
+        && size > 0
+    {
+        *node = ROOT | size;
     }
 }
 

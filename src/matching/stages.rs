@@ -90,15 +90,15 @@ impl<S: Scheme, C: Codes> Stages<'_, S, C> {
             masked: self.masked,
         };
         let row_flags = row.map_or(&mut [][..], |row| slot_mut(self.flags, row % BAND, width));
-        let mut textured = self.texture.window::<S>();
         let (answers, consistency) = (&mut *self.answers, &mut self.consistency);
-        self.kernel.row::<S>(work, select, |x, winner| {
-            let few = textured.next(x) < u16::from(config.checks.texture_pixels);
-            consistency.offer(x, &winner);
-            if let (Some(answer), Some(flags)) = (answers.get_mut(x), row_flags.get_mut(x)) {
-                *answer = refine(&winner, min_disparity);
-                *flags = first_flags(&winner, config, few);
+        self.kernel.row::<S>(work, select, |x, winners| {
+            let answers = answers.get_mut(x..).unwrap_or_default();
+            let flags = row_flags.get_mut(x..).unwrap_or_default();
+            for ((winner, answer), flags) in winners.iter().zip(answers).zip(flags) {
+                *answer = refine(winner, min_disparity);
+                *flags = first_flags(winner, config);
             }
+            consistency.offer(x, winners);
         });
     }
 
@@ -112,14 +112,16 @@ impl<S: Scheme, C: Codes> Stages<'_, S, C> {
             .union(PixelFlags::MISMATCH)
             .union(refused_ceiling);
         let flags = slot_mut(self.flags, row % BAND, self.width);
+        if checks.texture_pixels > 0 {
+            self.texture.mark::<S>(u16::from(checks.texture_pixels), flags);
+        }
         for (x, (answer, flags)) in self.answers.iter_mut().zip(flags).enumerate() {
             let mismatch = match checks.left_right_px {
                 Some(tolerance) => self.consistency.mismatch(x, tolerance),
                 None => PixelFlags::CLEAR,
             };
             // Where there is no candidate there is no winner to check.
-            let mismatch = mismatch.when(!flags.contains(PixelFlags::OUTSIDE));
-            *flags = flags.union(mismatch);
+            *flags = if flags.contains(PixelFlags::OUTSIDE) { PixelFlags::OUTSIDE } else { flags.union(mismatch) };
             *answer = if flags.intersects(refused) { Disparity::NONE } else { *answer };
         }
     }
@@ -165,30 +167,34 @@ impl<S: Scheme, C: Codes> Stages<'_, S, C> {
 
 /// What is known of a winner by itself.
 #[inline(always)]
-fn first_flags(winner: &Winner, config: &Config, few_textured: bool) -> PixelFlags {
+fn first_flags(winner: &Winner, config: &Config) -> PixelFlags {
     if winner.candidates == 0 {
         return PixelFlags::OUTSIDE;
     }
-    let ceiling = PixelFlags::CEILING.when(winner.disparity + 1 == usize::from(config.disparities));
+    let ceiling = PixelFlags::CEILING.when(winner.disparity + 1 == config.disparities);
     let ambiguous = PixelFlags::AMBIGUOUS.when(is_ambiguous(winner, &config.checks));
-    ceiling.union(ambiguous).union(PixelFlags::UNTEXTURED.when(few_textured))
+    ceiling.union(ambiguous)
 }
 
 #[inline(always)]
 fn is_ambiguous(winner: &Winner, checks: &Checks) -> bool {
-    match (checks.uniqueness_percent, winner.second) {
-        (Some(percent), Some(second)) => {
-            u32::from(second) * (100 - u32::from(percent.min(99))) <= u32::from(winner.cost) * 100
-        }
-        _ => false,
-    }
+    checks.uniqueness_percent.is_some_and(|percent| {
+        let share = 100 - u32::from(percent.min(99));
+        winner.second < u16::MAX && u32::from(winner.second) * share <= u32::from(winner.cost) * 100
+    })
 }
 
 /// A right row as the kernels read it: from right to left, moved by the smallest disparity, its first code repeated.
 fn reverse(codes: &[u8], min_disparity: usize, out: &mut [u8]) {
-    let inside = codes.len().saturating_sub(min_disparity);
-    let (reversed, repeated) = out.split_at_mut_checked(inside).unwrap_or_default();
-    for (out, code) in reversed.iter_mut().zip(codes.iter().take(inside).rev()) {
+    let inside = codes.get(..codes.len().saturating_sub(min_disparity)).unwrap_or(&[]);
+    let (reversed, repeated) = out.split_at_mut_checked(inside.len()).unwrap_or_default();
+    // Eight codes are turned around as one word.
+    let (last, words) = inside.as_rchunks::<8>();
+    let (out_words, out_last) = reversed.as_chunks_mut::<8>();
+    for (out, word) in out_words.iter_mut().zip(words.iter().rev()) {
+        *out = u64::from_le_bytes(*word).to_be_bytes();
+    }
+    for (out, code) in out_last.iter_mut().zip(last.iter().rev()) {
         *out = *code;
     }
     repeated.fill(codes.first().copied().unwrap_or(0));

@@ -14,7 +14,7 @@ use crate::units::Disparity;
 
 /// The disparity of a winner whose search began at `min_disparity` px, rounded to the nearest step.
 pub(super) fn refine(winner: &Winner, min_disparity: usize) -> Disparity {
-    let whole = (min_disparity + winner.disparity) as i32 * i32::from(Disparity::ONE);
+    let whole = (min_disparity as i32 + i32::from(winner.disparity)) * i32::from(Disparity::ONE);
     let (below, above) = winner.beside;
     let a = u32::from(below.saturating_sub(winner.cost));
     let b = u32::from(above.saturating_sub(winner.cost));
@@ -32,7 +32,7 @@ mod tests {
     use super::*;
 
     fn refined(below: u16, cost: u16, above: u16) -> u16 {
-        refine(&Winner { candidates: 64, disparity: 10, cost, beside: (below, above), second: None }, 0).raw()
+        refine(&Winner { candidates: 64, disparity: 10, cost, beside: (below, above), second: u16::MAX }, 0).raw()
     }
 
     #[test]

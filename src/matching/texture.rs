@@ -5,6 +5,7 @@
 
 use super::config::Checks;
 use super::scheme::Scheme;
+use crate::units::PixelFlags;
 
 /// Rows of texture bits: bit `k` of a column's word is the row `k` before the newest.
 pub(super) struct Texture<'a> {
@@ -45,35 +46,15 @@ impl Texture<'_> {
         }
     }
 
-    /// Counts over the window, column by column.
-    pub(super) fn window<S: Scheme>(&self) -> Window<'_> {
-        let mut window = Window { counts: self.counts, radius: S::RADIUS_X, count: 0 };
-        for x in 0..S::RADIUS_X {
-            window.count += window.column(x);
+    /// Flags the pixels of the window's centre row whose window has fewer than `pixels` textured ones.
+    pub(super) fn mark<S: Scheme>(&self, pixels: u16, flags: &mut [PixelFlags]) {
+        // Columns outside the image have no texture; left of it the place wraps.
+        let column = |x: usize| self.counts.get(x).map_or(0, |&count| u16::from(count));
+        let mut count: u16 = (0..S::RADIUS_X).map(column).sum();
+        for (x, flags) in flags.iter_mut().enumerate() {
+            count += column(x + S::RADIUS_X);
+            count -= column(x.wrapping_sub(S::RADIUS_X + 1));
+            *flags = flags.union(PixelFlags::UNTEXTURED.when(count < pixels));
         }
-        window
-    }
-}
-
-/// The number of textured pixels in a window that moves along the line.
-pub(super) struct Window<'a> {
-    counts: &'a [u8],
-    radius: usize,
-    count: u16,
-}
-
-impl Window<'_> {
-    /// The count of the window around column `x`; columns are asked for in order, from 0.
-    #[inline(always)]
-    pub(super) fn next(&mut self, x: usize) -> u16 {
-        self.count += self.column(x + self.radius);
-        // Left of the image the place wraps, and nothing is there.
-        self.count -= self.column(x.wrapping_sub(self.radius + 1));
-        self.count
-    }
-
-    #[inline(always)]
-    fn column(&self, x: usize) -> u16 {
-        self.counts.get(x).map_or(0, |&count| u16::from(count))
     }
 }

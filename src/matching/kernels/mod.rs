@@ -53,10 +53,15 @@ impl Kernel {
         }
     }
 
-    /// Moves the window to the next row; `found` gets the winners in order of the columns, unless the row is only
-    /// gathered (`select` is `None`).
+    /// Moves the window to the next row; `found` gets the winners in order of the columns, some at a time with
+    /// the column of the first, unless the row is only gathered (`select` is `None`).
     #[inline]
-    pub(super) fn row<S: Scheme>(self, work: RowWork<'_, S>, select: Option<Select>, found: impl FnMut(usize, Winner)) {
+    pub(super) fn row<S: Scheme>(
+        self,
+        work: RowWork<'_, S>,
+        select: Option<Select>,
+        found: impl FnMut(usize, &[Winner]),
+    ) {
         match self {
             Self::Portable => portable::row::<S>(work, select, found),
             #[cfg(target_arch = "x86_64")]
@@ -113,17 +118,17 @@ impl Select {
 }
 
 /// The best disparity of a pixel.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 pub(super) struct Winner {
     /// Candidates that were compared; 0: there is no winner, and nothing below means anything.
-    pub candidates: usize,
+    pub candidates: u16,
     /// Disparity over the smallest one searched: the smallest with the least cost.
-    pub disparity: usize,
+    pub disparity: u16,
     /// Its cost.
     pub cost: u16,
     /// Costs of the disparities one below and one above; where one is no candidate, both are `cost`.
     pub beside: (u16, u16),
-    /// Least cost of the candidates that are over one px beside the winner; `None` where there is none or it was
-    /// not asked for.
-    pub second: Option<u16>,
+    /// Least cost of the candidates that are over one px beside the winner; `u16::MAX` where there is none or it
+    /// was not asked for.
+    pub second: u16,
 }

@@ -15,12 +15,15 @@ use super::lane::{Lane, STEP};
 use super::{RowCodes, RowWork, Select, Winner};
 use crate::matching::scheme::Scheme;
 
+/// Winners handed on at a time.
+const BATCH: usize = 32;
+
 /// A column outside the image adds nothing.
 static NO_COLUMN: [u8; 256] = [0; 256];
 
 /// [`super::Kernel::row`] for the compilation's own target.
 #[inline(always)]
-pub(super) fn row<S: Scheme>(work: RowWork<'_, S>, select: Option<Select>, found: impl FnMut(usize, Winner)) {
+pub(super) fn row<S: Scheme>(work: RowWork<'_, S>, select: Option<Select>, found: impl FnMut(usize, &[Winner])) {
     row_in_groups::<S, STEP, 0>(work, select, found);
 }
 
@@ -30,12 +33,13 @@ pub(super) fn row<S: Scheme>(work: RowWork<'_, S>, select: Option<Select>, found
 pub(super) fn row_in_groups<S: Scheme, const N: usize, const STRIDE: usize>(
     work: RowWork<'_, S>,
     select: Option<Select>,
-    mut found: impl FnMut(usize, Winner),
+    mut found: impl FnMut(usize, &[Winner]),
 ) {
     let RowWork { width, stride, enter, leave, columns, sums, masked } = work;
     let stride = if STRIDE > 0 { STRIDE } else { stride };
     let (Some(sums), Some(masked)) = (sums.get_mut(..stride), masked.get_mut(..stride)) else { return };
     let none = NO_COLUMN.get(..stride).unwrap_or(&[]);
+    let mut batch = [Winner::default(); BATCH];
     sums.fill(S::Sum::ZERO);
     for right in 0..width + S::RADIUS_X {
         if let Some(column) = columns.get_mut(right * stride..).and_then(|c| c.get_mut(..stride)) {
@@ -57,7 +61,13 @@ pub(super) fn row_in_groups<S: Scheme, const N: usize, const STRIDE: usize>(
         let candidates = select.candidates(x);
         let mask = S::Sum::MASKS.get(256 - candidates.min(256)..).and_then(|m| m.get(..stride)).unwrap_or(&[]);
         let least = slide::<S::Sum, N>(sums, enters, leaves, mask, masked);
-        found(x, winner::<S::Sum, N>(least, candidates, select.second, masked));
+        let place = x % BATCH;
+        if let Some(slot) = batch.get_mut(place) {
+            *slot = winner::<S::Sum, N>(least, candidates, select.second, masked);
+        }
+        if place + 1 == BATCH || x + 1 == width {
+            found(x - place, batch.get(..=place).unwrap_or(&[]));
+        }
     }
 }
 
@@ -151,13 +161,13 @@ fn winner<L: Lane, const N: usize>(least: L, candidates: usize, second: bool, ma
     } else {
         (cost, cost)
     };
-    let second = if second { best_of_the_rest::<L, N>(disparity, masked) } else { None };
-    Winner { candidates, disparity, cost, beside, second }
+    let second = if second { best_of_the_rest::<L, N>(disparity, masked) } else { u16::MAX };
+    Winner { candidates: candidates as u16, disparity: disparity as u16, cost, beside, second }
 }
 
 /// The least cost of the lanes over one px beside the winner. Their three lanes are overwritten.
 #[inline(always)]
-fn best_of_the_rest<L: Lane, const N: usize>(disparity: usize, masked: &mut [L]) -> Option<u16> {
+fn best_of_the_rest<L: Lane, const N: usize>(disparity: usize, masked: &mut [L]) -> u16 {
     for lane in masked.iter_mut().skip(disparity.saturating_sub(1)).take(if disparity > 0 { 3 } else { 2 }) {
         *lane = L::MAX;
     }
@@ -168,5 +178,5 @@ fn best_of_the_rest<L: Lane, const N: usize>(disparity: usize, masked: &mut [L])
         }
     }
     let least = minimum(&least);
-    (least < L::MAX).then(|| least.get())
+    if least < L::MAX { least.get() } else { u16::MAX }
 }

@@ -17,14 +17,19 @@ impl Avx2 {
     }
 
     #[inline]
-    pub(super) fn row<S: Scheme>(self, work: RowWork<'_, S>, select: Option<Select>, found: impl FnMut(usize, Winner)) {
+    pub(super) fn row<S: Scheme>(
+        self,
+        work: RowWork<'_, S>,
+        select: Option<Select>,
+        found: impl FnMut(usize, &[Winner]),
+    ) {
         // SAFETY: `self` is the proof that the processor has the one feature that the function is compiled for.
         unsafe { row::<S>(work, select, found) }
     }
 }
 
 #[target_feature(enable = "avx2")]
-fn row<S: Scheme>(work: RowWork<'_, S>, select: Option<Select>, found: impl FnMut(usize, Winner)) {
+fn row<S: Scheme>(work: RowWork<'_, S>, select: Option<Select>, found: impl FnMut(usize, &[Winner])) {
     use portable::row_in_groups;
     match work.stride {
         32 => row_in_groups::<S, 32, 32>(work, select, found),

@@ -31,9 +31,13 @@ impl Avx2 {
 #[target_feature(enable = "avx2")]
 fn row<S: Scheme>(work: RowWork<'_, S>, select: Option<Select>, found: impl FnMut(usize, &[Winner])) {
     use portable::row_in_groups;
+    // Two registers of lanes at a time measured best: 64 bytes, 32 words.
+    let bytes = size_of::<S::Sum>() == 1;
     match work.stride {
         32 => row_in_groups::<S, 32, 32>(work, select, found),
+        64 if bytes => row_in_groups::<S, 64, 64>(work, select, found),
         64 => row_in_groups::<S, 32, 64>(work, select, found),
+        128 if bytes => row_in_groups::<S, 64, 128>(work, select, found),
         128 => row_in_groups::<S, 32, 128>(work, select, found),
         256 => row_in_groups::<S, 32, 256>(work, select, found),
         stride if stride % 32 == 0 => row_in_groups::<S, 32, 0>(work, select, found),

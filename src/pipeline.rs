@@ -87,7 +87,7 @@ impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
     /// Row y comes out when line y + `LATENCY` is in.
     pub const LATENCY: usize = Self::CENSUS_REACH + Matcher::<S, W, D>::DELAY;
 
-    /// A pipeline that waits for [`Self::start`].
+    /// A pipeline that waits for [`Self::start`]. Every byte of it is zero: a static of it takes RAM and no flash.
     pub const fn new() -> Self {
         Self { left: LineWindow::new(), right: LineWindow::new(), matcher: Matcher::new(), taken: 0, height: 0 }
     }

@@ -30,6 +30,24 @@ impl Config {
         Self { width, height, disparities, min_disparity: 0, checks: Checks::DEFAULT }
     }
 
+    /// All zero: a matcher that was not started, which so takes no place in flash when it is a static.
+    pub(crate) const UNSET: Self = Self {
+        width: 0,
+        height: 0,
+        disparities: 0,
+        min_disparity: 0,
+        checks: Checks {
+            left_right_px: None,
+            uniqueness_percent: None,
+            texture_gradient: 0,
+            texture_pixels: 0,
+            refuse_ceiling: false,
+            smoothing_radius: 0,
+            speckle_pixels: 0,
+            speckle_range: Disparity::ZERO,
+        },
+    };
+
     /// Whether a matcher for lines up to `width` and ranges up to `disparities` can do this.
     pub(crate) fn check(&self, width: usize, disparities: usize) -> Result<(), ConfigError> {
         if self.width == 0 || usize::from(self.width) > width {
@@ -49,6 +67,9 @@ impl Config {
         }
         if self.checks.smoothing_radius > Checks::MOST_SMOOTHING {
             return Err(ConfigError::Smoothing);
+        }
+        if self.checks.speckle_pixels > Checks::MOST_SPECKLE {
+            return Err(ConfigError::Speckle);
         }
         Ok(())
     }
@@ -78,7 +99,7 @@ pub struct Checks {
     /// Answers are averaged along the line with up to this many pairs of neighbours, left and right alike, that lie
     /// within 1 px of them; 0 to [`Checks::MOST_SMOOTHING`], 0 for none.
     pub smoothing_radius: u8,
-    /// Speckle: patches of fewer pixels are dropped. 0: none is.
+    /// Speckle: patches of fewer pixels are dropped; 0 to [`Checks::MOST_SPECKLE`], 0: none is.
     pub speckle_pixels: u16,
     /// Speckle: two neighbours belong to one patch when they differ by at most this.
     pub speckle_range: Disparity,
@@ -87,6 +108,9 @@ pub struct Checks {
 impl Checks {
     /// The widest smoothing along the line.
     pub const MOST_SMOOTHING: u8 = 8;
+
+    /// The largest patch that the speckle filter can be asked to drop all smaller ones than: sizes are counted this far.
+    pub const MOST_SPECKLE: u16 = (1 << 15) - 1;
 
     /// Every pixel with a candidate gets an answer.
     pub const DENSE: Self = Self {
@@ -161,6 +185,8 @@ pub enum ConfigError {
     Uniqueness,
     /// The smoothing radius is over [`Checks::MOST_SMOOTHING`].
     Smoothing,
+    /// The speckle size is over [`Checks::MOST_SPECKLE`].
+    Speckle,
 }
 
 impl fmt::Display for ConfigError {
@@ -173,6 +199,7 @@ impl fmt::Display for ConfigError {
             }
             Self::MinDisparity { most } => write!(f, "min_disparity: at most {most} with these disparities"),
             Self::Uniqueness => f.write_str("uniqueness: 0 to 99 percent"),
+            Self::Speckle => write!(f, "speckle: patches of at most {} pixels", Checks::MOST_SPECKLE),
             Self::Smoothing => write!(f, "smoothing radius: at most {}", Checks::MOST_SMOOTHING),
         }
     }

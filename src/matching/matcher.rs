@@ -3,16 +3,13 @@
 use super::consistency::Consistency;
 use super::kernels::{Kernel, Lane};
 use super::row::{HISTORY, Row};
-use super::scheme::{Codes, Scheme};
+use super::scheme::{Around, Codes, Scheme};
 use super::speckle::{BAND, LOOK_AHEAD, WIDEST};
 use super::stages::Stages;
 use super::texture::Texture;
 use super::{Config, ConfigError};
 use crate::units::{Disparity, PixelFlags};
 use core::fmt;
-
-/// The five lines around a row.
-type Around<'a> = [&'a [u8]; 5];
 
 /// Bytes of matcher state beside the arrays: counters, the configuration, padding.
 const FIXED_BYTES: usize = 64;
@@ -42,7 +39,8 @@ pub struct Matcher<S: Scheme, const W: usize, const D: usize> {
     nodes: [[u16; W]; BAND],
     finished: [[Disparity; W]; HISTORY],
     config: Config,
-    kernel: Option<Kernel>,
+    kernel: Kernel,
+    kernel_chosen: bool,
     /// Lines taken, counting on below the image.
     taken: usize,
 }
@@ -100,11 +98,12 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
         assert!(D.is_multiple_of(16) && D >= 16 && D <= 256, "D must be a multiple of 16, from 16 to 256");
         assert!(W >= D, "W must be at least D");
         assert!(W <= WIDEST, "W must be at most 6553");
+        assert!(S::Codes::<W>::ROWS == 2 * S::RADIUS_Y + 2, "the codes must hold the window and one row");
         assert!(S::BITS * (2 * S::RADIUS_Y + 1) <= u8::MAX as usize, "a column's sum must fit a byte");
         assert!(size_of::<Self>() <= state_bytes::<S>(W, D), "state_bytes must cover the state");
     };
 
-    /// A matcher that waits for [`Self::start`].
+    /// A matcher that waits for [`Self::start`]. Every byte of it is zero: a static of it takes RAM and no flash.
     pub const fn new() -> Self {
         const { Self::CHECKED };
         Self {
@@ -120,13 +119,14 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             left_winners: [0; W],
             right_winners: [0; W],
             right_costs: [0; W],
-            answers: [Disparity::NONE; W],
-            band: [[Disparity::NONE; W]; BAND],
+            answers: [Disparity::ZERO; W],
+            band: [[Disparity::ZERO; W]; BAND],
             band_flags: [[PixelFlags::CLEAR; W]; BAND],
             nodes: [[0; W]; BAND],
-            finished: [[Disparity::NONE; W]; HISTORY],
-            config: Config::new(0, 0, 0),
-            kernel: None,
+            finished: [[Disparity::ZERO; W]; HISTORY],
+            config: Config::UNSET,
+            kernel: Kernel::Portable,
+            kernel_chosen: false,
             taken: 0,
         }
     }
@@ -136,19 +136,22 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     pub fn start(&mut self, config: &Config) -> Result<(), ConfigError> {
         config.check(W, D)?;
         self.config = *config;
-        self.kernel.get_or_insert_with(Kernel::detect);
+        if !self.kernel_chosen {
+            self.set_kernel(Kernel::detect());
+        }
         self.begin_frame();
         Ok(())
     }
 
     /// Chooses the kernel; every kernel gives the same bits.
     pub fn set_kernel(&mut self, kernel: Kernel) {
-        self.kernel = Some(kernel);
+        self.kernel = kernel;
+        self.kernel_chosen = true;
     }
 
     /// The kernel in use; `Portable` before the start.
     pub fn kernel(&self) -> Kernel {
-        self.kernel.unwrap_or(Kernel::Portable)
+        self.kernel
     }
 
     /// What was asked for.
@@ -165,7 +168,7 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     }
 
     /// Takes the next row of the image, as the five lines around it in both cameras.
-    pub fn push(&mut self, left: &Around<'_>, right: &Around<'_>) -> Result<(), MatchError> {
+    pub fn push(&mut self, left: &[&[u8]; 5], right: &[&[u8]; 5]) -> Result<(), MatchError> {
         self.step(Some([left, right]))
     }
 
@@ -191,8 +194,10 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     }
 
     fn step(&mut self, lines: Option<[&Around<'_>; 2]>) -> Result<(), MatchError> {
-        let kernel = self.kernel.ok_or(MatchError::NotStarted)?;
         let height = usize::from(self.config.height);
+        if height == 0 {
+            return Err(MatchError::NotStarted);
+        }
         let y = self.taken;
         if y >= height + Self::DELAY || lines.is_some() != (y < height) {
             return Err(MatchError::FrameDone);
@@ -202,20 +207,12 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             return Err(MatchError::LineTooShort { needed });
         }
         self.taken += 1;
-        let mut stages = self.stages(kernel);
-        if let Some([left, right]) = lines {
-            stages.take_census(y, left, right);
-        }
-        stages.texture.push::<S>(lines.map(|[left, _]| left[2].get(..needed).unwrap_or(&[])), &stages.config.checks);
-        stages.match_row(y);
-        if let Some(judged) = y.checked_sub(Self::DELAY) {
-            stages.judge_row(judged);
-        }
+        S::step(self.stages(), y, lines);
         Ok(())
     }
 
     /// The memory as slices of the frame's real size: what follows is compiled once for each scheme.
-    fn stages(&mut self, kernel: Kernel) -> Stages<'_, S, S::Codes<W>> {
+    fn stages(&mut self) -> Stages<'_, S> {
         let width = usize::from(self.config.width).min(W);
         let stride = usize::from(self.config.disparities).next_multiple_of(16).min(D);
         fn first<T>(slice: &mut [T], count: usize) -> &mut [T] {
@@ -224,10 +221,10 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
         Stages {
             width,
             stride,
-            kernel,
+            kernel: self.kernel,
             config: &self.config,
-            left: &mut self.left,
-            right: &mut self.right,
+            left: first(self.left.flat(), width * S::Codes::<W>::ROWS),
+            right: first(self.right.flat(), width * S::Codes::<W>::ROWS),
             columns: first(self.columns.as_flattened_mut(), width * stride),
             sums: first(&mut self.sums, stride),
             masked: first(&mut self.masked, stride),

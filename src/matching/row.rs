@@ -71,6 +71,6 @@ impl<'a> Row<'a> {
 }
 
 /// Row `index` of rows of `width`.
-pub(super) fn slot(rows: &[Disparity], index: usize, width: usize) -> &[Disparity] {
+pub(super) fn slot<T>(rows: &[T], index: usize, width: usize) -> &[T] {
     rows.get(index * width..).and_then(|r| r.get(..width)).unwrap_or(&[])
 }

@@ -1,6 +1,7 @@
 //! What a method is made of: its census, its window and the lanes that its sums fit in.
 
 use super::kernels::Lane;
+use super::stages::Stages;
 use crate::imaging::{census_plus4, census_ring8};
 
 /// A block matching method. The crate's own types implement it: [`Fast`] and [`Block`].
@@ -11,47 +12,49 @@ pub trait Scheme: Lines + Sized + 'static {
     const RADIUS_Y: usize;
     /// Bits of a census code.
     const BITS: usize;
-    /// Standard deviation of an answer away from depth edges, px. Measured on rendered scenes, where three of it hold
-    /// 99 % of the answers.
+    /// Standard deviation of an answer away from depth edges, px: so that on rendered scenes, with sensor noise of up to
+    /// two grey levels, three of it hold 99 % of the answers.
     const SIGMA_PX: f32;
     /// The method's name, as the programs spell it.
     const NAME: &'static str;
 }
 
 /// The parts of a method that only the matcher sees: its lanes, its storage and its arithmetic.
-pub trait Lines {
+pub trait Lines: Sized {
     /// Holds the sum of a whole window.
     type Sum: Lane;
     /// The census rows of one camera: those under the window and the one that leaves it.
     type Codes<const W: usize>: Codes;
     /// The census row at the centre of five rows.
-    fn census(rows: &[&[u8]; 5], out: &mut [u8]);
+    fn census(rows: &Around<'_>, out: &mut [u8]);
     /// How many bits of two codes differ.
     fn hamming(a: u8, b: u8) -> u8;
+    /// [`Stages::step`]. Each method says so for itself, so that its stages are compiled with this crate, once, and
+    /// not with every crate that chooses a capacity.
+    fn step(stages: Stages<'_, Self>, y: usize, lines: Option<[&Around<'_>; 2]>)
+    where
+        Self: Scheme;
 }
 
-/// A ring of census rows, one code a byte.
+/// The five lines around a row.
+pub type Around<'a> = [&'a [u8]; 5];
+
+/// Census rows, one code a byte.
 pub trait Codes {
     /// All codes 0.
     const EMPTY: Self;
     /// How many rows it holds.
     const ROWS: usize;
-    /// Row `y`, in slot `y % ROWS`.
-    fn row(&self, y: usize) -> &[u8];
-    /// Row `y` to write.
-    fn row_mut(&mut self, y: usize) -> &mut [u8];
+    /// All of them, one after the other.
+    fn flat(&mut self) -> &mut [u8];
 }
 
 impl<const W: usize, const N: usize> Codes for [[u8; W]; N] {
     const EMPTY: Self = [[0; W]; N];
     const ROWS: usize = N;
 
-    fn row(&self, y: usize) -> &[u8] {
-        self.get(y % N).map_or(&[], |row| row)
-    }
-
-    fn row_mut(&mut self, y: usize) -> &mut [u8] {
-        self.get_mut(y % N).map_or(&mut [], |row| row)
+    fn flat(&mut self) -> &mut [u8] {
+        self.as_flattened_mut()
     }
 }
 
@@ -71,7 +74,7 @@ impl Lines for Fast {
     type Sum = u8;
     type Codes<const W: usize> = [[u8; W]; 8];
 
-    fn census(rows: &[&[u8]; 5], out: &mut [u8]) {
+    fn census(rows: &Around<'_>, out: &mut [u8]) {
         census_plus4(rows, out);
     }
 
@@ -81,6 +84,10 @@ impl Lines for Fast {
         let x = a ^ b;
         let pairs = x - ((x >> 1) & 0b0101);
         (pairs & 0b0011) + (pairs >> 2)
+    }
+
+    fn step(stages: Stages<'_, Self>, y: usize, lines: Option<[&Around<'_>; 2]>) {
+        stages.step(y, lines);
     }
 }
 
@@ -92,7 +99,7 @@ impl Scheme for Block {
     const RADIUS_X: usize = 4;
     const RADIUS_Y: usize = 4;
     const BITS: usize = 8;
-    const SIGMA_PX: f32 = 0.12;
+    const SIGMA_PX: f32 = 0.15;
     const NAME: &'static str = "block";
 }
 
@@ -100,12 +107,16 @@ impl Lines for Block {
     type Sum = i16;
     type Codes<const W: usize> = [[u8; W]; 10];
 
-    fn census(rows: &[&[u8]; 5], out: &mut [u8]) {
+    fn census(rows: &Around<'_>, out: &mut [u8]) {
         census_ring8(rows, out);
     }
 
     #[inline(always)]
     fn hamming(a: u8, b: u8) -> u8 {
         (a ^ b).count_ones() as u8
+    }
+
+    fn step(stages: Stages<'_, Self>, y: usize, lines: Option<[&Around<'_>; 2]>) {
+        stages.step(y, lines);
     }
 }

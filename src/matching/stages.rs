@@ -4,45 +4,55 @@ use super::config::{Checks, Config};
 use super::consistency::Consistency;
 use super::kernels::{Kernel, RowCodes, RowWork, Select, Winner};
 use super::row::{HISTORY, slot};
-use super::scheme::{Codes, Scheme};
-use super::speckle::{BAND, Speckle};
+use super::scheme::{Around, Scheme};
+use super::speckle::{BAND, LOOK_AHEAD, Speckle};
 use super::texture::Texture;
 use super::{smooth::smooth, subpixel::refine};
 use crate::units::{Disparity, PixelFlags};
 
 /// The matcher's memory, cut to the frame's size.
-pub(super) struct Stages<'a, S: Scheme, C> {
-    pub width: usize,
-    pub stride: usize,
-    pub kernel: Kernel,
-    pub config: &'a Config,
-    pub left: &'a mut C,
-    pub right: &'a mut C,
-    pub columns: &'a mut [u8],
-    pub sums: &'a mut [S::Sum],
-    pub masked: &'a mut [S::Sum],
-    pub enter: &'a mut [u8],
-    pub leave: &'a mut [u8],
-    pub texture: Texture<'a>,
-    pub consistency: Consistency<'a>,
+pub struct Stages<'a, S: Scheme> {
+    pub(super) width: usize,
+    pub(super) stride: usize,
+    pub(super) kernel: Kernel,
+    pub(super) config: &'a Config,
+    pub(super) left: &'a mut [u8],
+    pub(super) right: &'a mut [u8],
+    pub(super) columns: &'a mut [u8],
+    pub(super) sums: &'a mut [S::Sum],
+    pub(super) masked: &'a mut [S::Sum],
+    pub(super) enter: &'a mut [u8],
+    pub(super) leave: &'a mut [u8],
+    pub(super) texture: Texture<'a>,
+    pub(super) consistency: Consistency<'a>,
     /// The row's answers before they are smoothed.
-    pub answers: &'a mut [Disparity],
-    pub band: &'a mut [Disparity],
-    pub flags: &'a mut [PixelFlags],
-    pub nodes: &'a mut [u16],
-    pub finished: &'a mut [Disparity],
+    pub(super) answers: &'a mut [Disparity],
+    pub(super) band: &'a mut [Disparity],
+    pub(super) flags: &'a mut [PixelFlags],
+    pub(super) nodes: &'a mut [u16],
+    pub(super) finished: &'a mut [Disparity],
 }
 
-impl<S: Scheme, C: Codes> Stages<'_, S, C> {
-    /// The census codes of row `y` in both images.
-    pub(super) fn take_census(&mut self, y: usize, left: &[&[u8]; 5], right: &[&[u8]; 5]) {
-        let width = self.width;
-        S::census(left, self.left.row_mut(y).get_mut(..width).unwrap_or_default());
-        S::census(right, self.right.row_mut(y).get_mut(..width).unwrap_or_default());
+impl<S: Scheme> Stages<'_, S> {
+    /// Census rows that are held: those under the window and the one that leaves it, row `y` in slot `y % CODES`.
+    const CODES: usize = 2 * S::RADIUS_Y + 2;
+
+    /// Takes row `y` of both images (`None` below the last one) and finishes the row that is due with it.
+    pub(super) fn step(mut self, y: usize, lines: Option<[&Around<'_>; 2]>) {
+        if let Some([left, right]) = lines {
+            S::census(left, slot_mut(self.left, y % Self::CODES, self.width));
+            S::census(right, slot_mut(self.right, y % Self::CODES, self.width));
+        }
+        let line = lines.and_then(|[left, _]| left[2].get(..self.width));
+        self.texture.push::<S>(line, &self.config.checks);
+        self.match_row(y);
+        if let Some(row) = y.checked_sub(S::RADIUS_Y + LOOK_AHEAD) {
+            self.judge_row(row);
+        }
     }
 
     /// Moves the window down to where row `bottom` is its lowest, and answers for the row at its centre.
-    pub(super) fn match_row(&mut self, bottom: usize) {
+    fn match_row(&mut self, bottom: usize) {
         let height = usize::from(self.config.height);
         if bottom >= height + S::RADIUS_Y {
             return;
@@ -68,12 +78,12 @@ impl<S: Scheme, C: Codes> Stages<'_, S, C> {
         let min_disparity = usize::from(config.min_disparity);
         let leaves = bottom.checked_sub(2 * S::RADIUS_Y + 1);
         let enter = enters.then(|| {
-            reverse(cut(self.right.row(bottom), width), min_disparity, self.enter);
-            RowCodes { left: cut(self.left.row(bottom), width), right: self.enter }
+            reverse(slot(self.right, bottom % Self::CODES, width), min_disparity, self.enter);
+            RowCodes { left: slot(self.left, bottom % Self::CODES, width), right: self.enter }
         });
         let leave = leaves.map(|y| {
-            reverse(cut(self.right.row(y), width), min_disparity, self.leave);
-            RowCodes { left: cut(self.left.row(y), width), right: self.leave }
+            reverse(slot(self.right, y % Self::CODES, width), min_disparity, self.leave);
+            RowCodes { left: slot(self.left, y % Self::CODES, width), right: self.leave }
         });
         let select = row.map(|_| Select {
             disparities: usize::from(config.disparities),
@@ -127,7 +137,7 @@ impl<S: Scheme, C: Codes> Stages<'_, S, C> {
     }
 
     /// Decides which answers of a row are part of a patch that is large enough. The row is finished with that.
-    pub(super) fn judge_row(&mut self, row: usize) {
+    fn judge_row(&mut self, row: usize) {
         let pixels = self.config.checks.speckle_pixels;
         let width = self.width;
         let mut speckle =
@@ -198,10 +208,6 @@ fn reverse(codes: &[u8], min_disparity: usize, out: &mut [u8]) {
         *out = *code;
     }
     repeated.fill(codes.first().copied().unwrap_or(0));
-}
-
-fn cut(row: &[u8], width: usize) -> &[u8] {
-    row.get(..width).unwrap_or(&[])
 }
 
 fn slot_mut<T>(rows: &mut [T], index: usize, width: usize) -> &mut [T] {

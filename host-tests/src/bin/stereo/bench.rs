@@ -1,0 +1,36 @@
+//! `stereo bench`: how long the matching of a frame takes.
+
+use crate::cli::BenchArgs;
+use crate::failure::Failure;
+use crate::input::{self, Pair};
+use crate::print;
+use serde::Serialize;
+use stereopsis_host::run::{MemoryPair, time_frames};
+
+/// What is printed. Names are a contract with programs that read them.
+#[derive(Serialize)]
+struct Times {
+    frame_ms: Vec<f64>,
+    kernel: &'static str,
+    width: u16,
+    height: u16,
+    disparities: u16,
+    state_bytes: usize,
+}
+
+pub fn run(args: &BenchArgs) -> Result<(), Failure> {
+    let mut pair = Pair::open(&args.pair)?;
+    let config = input::config(&args.range, args.way.filter.checks, pair.width, pair.height)?;
+    // Files and the conversion to grey are left out of the times.
+    let mut camera = MemoryPair::record(&mut pair.camera)?;
+    let (frame_ms, kernel) = time_frames(args.way.method, &config, &mut camera, usize::from(args.repeat))?;
+    let times = Times {
+        frame_ms,
+        kernel: kernel.name(),
+        width: config.width,
+        height: config.height,
+        disparities: config.disparities,
+        state_bytes: args.way.method.state_bytes(config.width, config.disparities),
+    };
+    print(&(serde_json::to_string(&times)? + "\n"))
+}

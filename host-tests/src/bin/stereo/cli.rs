@@ -1,0 +1,189 @@
+//! The command line: options, their limits, help.
+
+use crate::failure::Failure;
+use clap::error::{Error, ErrorKind};
+use clap::{Args, Parser, Subcommand};
+use std::ffi::OsString;
+use std::path::PathBuf;
+use stereopsis::matching::{Checks, Config};
+use stereopsis::units::Disparity;
+use stereopsis_host::run::Method;
+
+const EXAMPLES: &str = "Examples:
+  stereo demo --out demo-out
+  stereo match --left left.png --right right.png --disparities 64 --calib calib.txt --out out/scene
+  stereo bench --left left.png --right right.png --disparities 64 --method fast
+
+The images are a rectified pair: PNG, JPEG, PGM/PPM or TIFF, 8 or 16 bit, grey or colour, up to 4096 x 4096.";
+
+const MATCH_EXAMPLE: &str = "Example:
+  stereo match --left left.png --right right.png --disparities 64 --calib calib.txt --out out/scene
+
+Written into the folder: disparity.pfm (px, infinity where there is no answer), disparity.png (16 bit, px x 256, 0 where \
+there is none), disparity_colour.png (near is bright), flags.png (a byte a pixel: 1 outside, 2 ceiling, 4 untextured, \
+8 ambiguous, 16 mismatch, 32 speckle), summary.json and report.html; with --calib also depth.pfm (metres), depth.png \
+(16 bit, millimetres) and cloud.ply. The files appear together when all of them are complete.";
+
+const BENCH_EXAMPLE: &str = "Example:
+  stereo bench --left left.png --right right.png --disparities 64 --method fast --repeat 9
+
+Printed is one JSON object: frame_ms (a time for each frame, after one that is left out; files and start-up left out, one \
+thread), kernel, width, height, disparities, state_bytes.";
+
+#[derive(Debug, Parser)]
+#[command(name = "stereo", version, about = "Depth from two images, by the code that runs on the microcontroller")]
+#[command(after_help = EXAMPLES, arg_required_else_help = false)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Match a built-in ray-traced scene and compare the answers with its true depth
+    Demo(DemoArgs),
+    /// Match a rectified pair of images: disparity, depth, a point cloud and a report
+    #[command(after_help = MATCH_EXAMPLE)]
+    Match(MatchArgs),
+    /// Time the matching of a rectified pair of images
+    #[command(after_help = BENCH_EXAMPLE)]
+    Bench(BenchArgs),
+}
+
+#[derive(Debug, Args)]
+pub struct DemoArgs {
+    /// Folder for the results; made when it is missing
+    #[arg(long, value_name = "DIR", default_value = "demo-out")]
+    pub out: PathBuf,
+    #[command(flatten)]
+    pub way: WayArgs,
+}
+
+#[derive(Debug, Args)]
+pub struct MatchArgs {
+    #[command(flatten)]
+    pub pair: PairArgs,
+    #[command(flatten)]
+    pub range: RangeArgs,
+    #[command(flatten)]
+    pub way: WayArgs,
+    /// Calibration of the pair, for depths: a Middlebury or KITTI calib.txt
+    #[arg(long, value_name = "FILE")]
+    pub calib: Option<PathBuf>,
+    /// Folder for the results; made when it is missing
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct BenchArgs {
+    #[command(flatten)]
+    pub pair: PairArgs,
+    #[command(flatten)]
+    pub range: RangeArgs,
+    #[command(flatten)]
+    pub way: WayArgs,
+    /// How many frames are timed, 1 to 10000
+    #[arg(long, value_name = "K", default_value_t = 5, value_parser = repeat, allow_negative_numbers = true)]
+    pub repeat: u16,
+}
+
+#[derive(Debug, Args)]
+pub struct PairArgs {
+    /// The left image
+    #[arg(long, value_name = "FILE")]
+    pub left: PathBuf,
+    /// The right image
+    #[arg(long, value_name = "FILE")]
+    pub right: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct RangeArgs {
+    /// How many whole disparities are searched: 16 to 256, at most the images' width
+    #[arg(long, value_name = "N", value_parser = disparities, allow_negative_numbers = true)]
+    pub disparities: u16,
+    /// The smallest disparity searched, px
+    #[arg(long, value_name = "M", default_value_t = 0, value_parser = min_disparity, allow_negative_numbers = true)]
+    pub min_disparity: u16,
+}
+
+#[derive(Debug, Args)]
+pub struct WayArgs {
+    /// fast (4-bit census, 9x7 window) or block (8-bit census, 9x9 window)
+    #[arg(long, value_name = "METHOD", default_value = "block", value_parser = method)]
+    pub method: Method,
+    /// dense (an answer wherever there is a candidate), default, or strict (sure answers only)
+    #[arg(long, value_name = "FILTER", default_value = "default", value_parser = filter)]
+    pub filter: Filter,
+}
+
+/// A named set of checks.
+#[derive(Clone, Copy, Debug)]
+pub struct Filter {
+    pub name: &'static str,
+    pub checks: Checks,
+}
+
+fn filter(text: &str) -> Result<Filter, &'static str> {
+    let all = [("dense", Checks::DENSE), ("default", Checks::DEFAULT), ("strict", Checks::STRICT)];
+    let found = all.into_iter().find(|(name, _)| *name == text);
+    found.map(|(name, checks)| Filter { name, checks }).ok_or("the filters are dense, default and strict")
+}
+
+fn method(text: &str) -> Result<Method, String> {
+    text.parse().map_err(|unknown| match text {
+        "sgm-lean" | "sgm" | "sgm-edge" => format!("semi-global matching is not in this build; {unknown}"),
+        _ => format!("{unknown}"),
+    })
+}
+
+fn disparities(text: &str) -> Result<u16, String> {
+    whole(text, Config::FEWEST_DISPARITIES, Config::MOST_DISPARITIES)
+}
+
+fn min_disparity(text: &str) -> Result<u16, String> {
+    whole(text, 0, Disparity::MAX_PIXELS + 1 - Config::FEWEST_DISPARITIES)
+}
+
+fn repeat(text: &str) -> Result<u16, String> {
+    whole(text, 1, 10_000)
+}
+
+fn whole(text: &str, least: u16, most: u16) -> Result<u16, String> {
+    let value = text.parse().ok().filter(|value| (least..=most).contains(value));
+    value.ok_or_else(|| format!("a whole number from {least} to {most} is needed"))
+}
+
+/// Why there is no command to run.
+#[derive(Debug)]
+pub enum Stop {
+    /// Help or the version was asked for: what to print.
+    Help(String),
+    /// The command line is wrong.
+    Usage(Failure),
+}
+
+/// Reads the command line.
+pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, Stop> {
+    Cli::try_parse_from(args).map(|cli| cli.command).map_err(|error| match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => Stop::Help(error.render().to_string()),
+        _ => Stop::Usage(Failure::new(usage_line(&error))),
+    })
+}
+
+/// clap's message, which has several paragraphs, as one line: the first one and the tips.
+fn usage_line(error: &Error) -> String {
+    let text = error.render().to_string();
+    let first = text.lines().map(str::trim).take_while(|line| !line.is_empty());
+    let mut line = first.collect::<Vec<_>>().join(" ");
+    for tip in text.lines().filter_map(|line| line.trim().strip_prefix("tip: ")) {
+        line = line + "; " + tip;
+    }
+    match error.kind() {
+        ErrorKind::InvalidSubcommand => line += "; the commands are demo, match and bench",
+        ErrorKind::MissingRequiredArgument | ErrorKind::UnknownArgument => line += "; see --help",
+        _ => {}
+    }
+    line.strip_prefix("error: ").map_or(line.clone(), str::to_owned)
+}

@@ -1,0 +1,64 @@
+//! The images and the search, checked against each other before any work.
+
+use crate::cli::{PairArgs, RangeArgs};
+use crate::failure::Failure;
+use image::RgbImage;
+use stereopsis::camera::{CameraPair, LineSource};
+use stereopsis::imaging::GreyLines;
+use stereopsis::matching::{Checks, Config};
+use stereopsis::units::Disparity;
+use stereopsis_host::mock::MockCamera;
+
+/// Bytes of the longest raw line: RGB with 16 bits.
+const RAW: usize = MockCamera::MOST_PIXELS as usize * 6;
+
+/// A camera on a file, as 8-bit grey.
+type Grey = GreyLines<MockCamera, RAW>;
+
+/// Two files as a stereo source, with their pictures for display.
+pub struct Pair {
+    pub camera: CameraPair<Grey, Grey>,
+    pub left: RgbImage,
+    pub right: RgbImage,
+    pub width: u16,
+    pub height: u16,
+    /// What is to be known about the files.
+    pub notes: Vec<String>,
+}
+
+impl Pair {
+    pub fn open(args: &PairArgs) -> Result<Self, Failure> {
+        let (left, right) = MockCamera::open_pair(&args.left, &args.right)?;
+        let alpha = |camera: &MockCamera, path: &std::path::Path| {
+            camera.had_alpha().then(|| format!("{}: the alpha channel is dropped", path.display()))
+        };
+        let notes = [alpha(&left, &args.left), alpha(&right, &args.right)].into_iter().flatten().collect();
+        let (width, height) = (left.format().width, left.format().height);
+        let pictures = (left.picture(), right.picture());
+        let camera = CameraPair::new(GreyLines::new(left)?, GreyLines::new(right)?, 0)?;
+        Ok(Self { camera, left: pictures.0, right: pictures.1, width, height, notes })
+    }
+}
+
+/// The search in images of that size, or which option does not fit them.
+pub fn config(range: &RangeArgs, checks: Checks, width: u16, height: u16) -> Result<Config, Failure> {
+    let RangeArgs { disparities, min_disparity } = *range;
+    if width < Config::FEWEST_DISPARITIES {
+        let least = Config::FEWEST_DISPARITIES;
+        return Err(Failure::new(format!("--left: the images are {width} pixels wide; at least {least} are needed")));
+    }
+    if disparities > width {
+        return Err(Failure::new(format!(
+            "--disparities {disparities}: the images are {width} pixels wide; give {} to {width}",
+            Config::FEWEST_DISPARITIES
+        )));
+    }
+    let most = width.min(Disparity::MAX_PIXELS + 1) - disparities;
+    if min_disparity > most {
+        return Err(Failure::new(format!(
+            "--min-disparity {min_disparity}: with --disparities {disparities} in images {width} pixels wide, at most \
+             {most} is possible"
+        )));
+    }
+    Ok(Config { width, height, disparities, min_disparity, checks })
+}

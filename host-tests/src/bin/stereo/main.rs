@@ -1,0 +1,49 @@
+//! `stereo`: depth from two images by the code that runs on the microcontroller.
+//!
+//! * `cli`: what is asked for. `failure`: what is said when it cannot be done.
+//! * `input`: the images and the search, checked against each other. `progress`: how far it is.
+//! * `matching`, `bench`, `demo`: the commands. `files`: the results as files.
+
+mod bench;
+mod cli;
+mod demo;
+mod failure;
+mod files;
+mod input;
+mod matching;
+mod progress;
+
+use cli::Command;
+use failure::{Failure, one_line};
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match start() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            // When standard error is closed, too, there is nobody left to tell.
+            let _ = writeln!(io::stderr(), "stereo: {}", one_line(&failure.to_string()));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn start() -> Result<(), Failure> {
+    match cli::parse(std::env::args_os()) {
+        Ok(Command::Demo(args)) => demo::run(&args),
+        Ok(Command::Match(args)) => matching::run(&args),
+        Ok(Command::Bench(args)) => bench::run(&args),
+        Err(cli::Stop::Help(text)) => print(&text),
+        Err(cli::Stop::Usage(failure)) => Err(failure),
+    }
+}
+
+/// Writes to standard output. A reader that closed its end has what it wanted.
+fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(Failure::new(format!("standard output: {e}"))),
+        _ => Ok(()),
+    }
+}

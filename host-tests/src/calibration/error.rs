@@ -1,0 +1,138 @@
+//! Why a calibration file is none.
+
+use std::io;
+use std::path::PathBuf;
+
+/// Why a file gives no rectified rig: one line that names the file, the key or the line, and what would be right.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {fault}", path.display())]
+pub struct CalibrationError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong in it.
+    pub fault: Fault,
+}
+
+/// What is wrong in a calibration file.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Fault {
+    /// The operating system refused to open or read the file.
+    #[error("cannot be read ({0}); give a Middlebury or KITTI calib.txt")]
+    Read(io::Error),
+    /// Not UTF-8, longer than a calibration can be, or not a file.
+    #[error("is no text file of at most {} bytes; give a Middlebury or KITTI calib.txt", super::MOST_BYTES)]
+    NotText,
+    /// The file has no byte or only white space.
+    #[error("the file is empty; give a Middlebury or KITTI calib.txt")]
+    Empty,
+    /// The content is of no format that is read.
+    #[error("is neither a Middlebury calib.txt (cam0=[...]) nor a KITTI one (P0: and P1:, or two lines of 12 numbers)")]
+    Unknown,
+    /// A key that is needed is not there.
+    #[error("{0} is missing; {1} is needed")]
+    Missing(String, &'static str),
+    /// A key stands there twice.
+    #[error("line {line}: {key} is given a second time; once is right")]
+    Twice {
+        /// The key.
+        key: String,
+        /// The second line with it, from 1.
+        line: usize,
+    },
+    /// What should be a number cannot be read as one.
+    #[error("line {line}: {key}: '{found}' is not a number")]
+    NotANumber {
+        /// The key.
+        key: String,
+        /// The line, from 1.
+        line: usize,
+        /// What stands there.
+        found: String,
+    },
+    /// A number is infinite, not a number, or beyond single precision.
+    #[error("line {line}: {key}: '{found}' is not finite; finite numbers are needed")]
+    NotFinite {
+        /// The key.
+        key: String,
+        /// The line, from 1.
+        line: usize,
+        /// What stands there.
+        found: String,
+    },
+    /// A matrix has too few or too many numbers.
+    #[error("line {line}: {key} has {found} numbers; {needed} are needed")]
+    Count {
+        /// The key.
+        key: String,
+        /// The line, from 1.
+        line: usize,
+        /// How many stand there.
+        found: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// A whole number is zero, negative, fractional or too large.
+    #[error("line {line}: {key}: '{found}' must be a whole number from 1 to 65535")]
+    NotASize {
+        /// The key.
+        key: String,
+        /// The line, from 1.
+        line: usize,
+        /// What stands there.
+        found: String,
+    },
+    /// The focal length is zero or negative.
+    #[error("{key}: the focal length is {focal_px} px; it must be greater than zero")]
+    FocalLength {
+        /// The camera's key.
+        key: String,
+        /// What stands there, px.
+        focal_px: f64,
+    },
+    /// A camera's two focal lengths differ, or the two cameras' do.
+    #[error("{keys}: the focal lengths {0} px and {1} px differ; rectified cameras have one", focal_px.0, focal_px.1)]
+    FocalLengths {
+        /// The cameras' keys.
+        keys: String,
+        /// The two, px.
+        focal_px: (f64, f64),
+    },
+    /// The rows of the two cameras are not aligned.
+    #[error("{keys}: the principal points are on the rows {0} and {1}; rectified cameras share the row", rows.0, rows.1)]
+    Rows {
+        /// The cameras' keys.
+        keys: String,
+        /// The two, px.
+        rows: (f64, f64),
+    },
+    /// The baseline is zero or negative.
+    #[error("{key}: the baseline is {baseline_m} m; it must be greater than zero, with the right camera on the right")]
+    Baseline {
+        /// Where it comes from.
+        key: String,
+        /// What stands there or follows, m.
+        baseline_m: f64,
+    },
+    /// `doffs` contradicts the principal points.
+    #[error("doffs: {doffs} px contradicts the principal points of cam0 and cam1, which are {between} px apart")]
+    Offset {
+        /// What `doffs` says, px.
+        doffs: f64,
+        /// cx of cam1 less cx of cam0, px.
+        between: f64,
+    },
+    /// The rig is refused by the core.
+    #[error("{0}")]
+    Rig(stereopsis::geometry::RigError),
+    /// The images are not of the calibrated size.
+    #[error("{which} says {calibrated}, but the images have {image} pixels; the calibration of these images is needed")]
+    Size {
+        /// `width` or `height`.
+        which: &'static str,
+        /// The file's.
+        calibrated: u16,
+        /// The images'.
+        image: u16,
+    },
+}

@@ -1,0 +1,83 @@
+//! KITTI's `calib.txt`: projection matrices of rectified cameras, lengths in pixels and metres.
+//!
+//! `P = K [I | t]`, row by row: `f 0 cx f*tx; 0 f cy ..; 0 0 1 ..`. The baseline of two cameras is
+//! `(P_right[3] - P_left[3]) / -f`.
+
+use super::{Calibration, Fault, Intrinsics, numbers, rig};
+use std::path::{Path, PathBuf};
+
+/// The grey cameras' folders; every other path means the colour cameras.
+const GREY_FOLDERS: [&str; 4] = ["image_0", "image_1", "image_00", "image_01"];
+const FORM: &str = "a line of 12 numbers of the rectified camera";
+
+/// A projection matrix: its label, the line's number from 1, and its numbers.
+struct Matrix<'a> {
+    label: &'a str,
+    line: usize,
+    numbers: &'a str,
+}
+
+/// Whether the file has labelled projection matrices, or two bare lines of numbers at least.
+pub(super) fn is_one(text: &str) -> bool {
+    labelled(text).next().is_some() || bare(text).is_some()
+}
+
+/// `P0: ...` or `P_rect_00: ...`; other labels (Tr, R_rect, ...) say nothing about a rectified pair.
+fn labelled(text: &str) -> impl Iterator<Item = (usize, Matrix<'_>)> {
+    text.lines().zip(1..).filter_map(|(content, line)| {
+        let (label, numbers) = content.split_once(':')?;
+        let label = label.trim();
+        let camera = label.strip_prefix("P_rect_").or_else(|| label.strip_prefix('P'))?.parse().ok()?;
+        Some((camera, Matrix { label, line, numbers }))
+    })
+}
+
+/// Two lines of numbers without labels: left, then right.
+fn bare(text: &str) -> Option<[Matrix<'_>; 2]> {
+    let mut lines = text.lines().zip(1..).filter(|(content, _)| !content.trim().is_empty());
+    let (left, right) = (lines.next()?, lines.next()?);
+    let starts_with_number =
+        |content: &str| content.split_ascii_whitespace().next().is_some_and(|word| word.parse::<f64>().is_ok());
+    let only_two = lines.next().is_none();
+    (only_two && starts_with_number(left.0) && starts_with_number(right.0)).then_some([
+        Matrix { label: "left", line: left.1, numbers: left.0 },
+        Matrix { label: "right", line: right.1, numbers: right.0 },
+    ])
+}
+
+pub(super) fn read(text: &str, left_image: &Path) -> Result<Calibration, Fault> {
+    let [left, right] = match bare(text) {
+        Some(pair) => pair,
+        None => choose(text, left_image)?,
+    };
+    let p: [f64; 12] = numbers(left.label, left.line, left.numbers)?;
+    let q: [f64; 12] = numbers(right.label, right.line, right.numbers)?;
+    let camera = |key, p: &[f64; 12]| Intrinsics { key, fx: p[0], fy: p[5], cx: p[2], cy: p[6] };
+    let keys = format!("{} and {}", left.label, right.label);
+    Ok(Calibration {
+        path: PathBuf::new(),
+        format: "KITTI",
+        // A focal length of 0 is refused by its name before the quotient counts.
+        rig: rig(camera(left.label, &p), camera(right.label, &q), &keys, (q[3] - p[3]) / -p[0])?,
+        width: None,
+        height: None,
+        disparities: None,
+    })
+}
+
+/// The matrices of the pair that the left image belongs to: the colour cameras 2 and 3 where the file has them, unless
+/// the path names a grey camera.
+fn choose<'a>(text: &'a str, left_image: &Path) -> Result<[Matrix<'a>; 2], Fault> {
+    let grey = left_image.components().any(|part| GREY_FOLDERS.iter().any(|folder| part.as_os_str() == *folder));
+    let has_colour = labelled(text).any(|(camera, _)| camera == 2 || camera == 3);
+    let (left, right) = if grey || !has_colour { (0, 1) } else { (2, 3) };
+    let find = |wanted: usize| {
+        let mut found = labelled(text).filter(|(camera, _)| *camera == wanted).map(|(_, matrix)| matrix);
+        match (found.next(), found.next()) {
+            (_, Some(second)) => Err(Fault::Twice { key: second.label.into(), line: second.line }),
+            (Some(first), None) => Ok(first),
+            (None, None) => Err(Fault::Missing(format!("P{wanted}"), FORM)),
+        }
+    };
+    Ok([find(left)?, find(right)?])
+}

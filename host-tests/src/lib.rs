@@ -1,0 +1,22 @@
+//! The host harness of `stereopsis`: the same `no_std` core behind mock cameras.
+//!
+//! In running order:
+//!
+//! * [`mock`]: a camera that reads image files.
+//! * [`scene`]: a ray-traced scene as a camera, with its true depth, disparity and occlusion.
+//! * [`calibration`]: rectified rigs from Middlebury's and KITTI's files.
+//! * [`run`]: a stereo source through the core's pipeline into whole maps.
+//! * [`twin`]: each stage again, naively, to hold the core to.
+//! * [`map`], [`pfm`], [`ply`], [`colour`], [`output`], [`report`]: results as files.
+
+pub mod calibration;
+pub mod colour;
+pub mod map;
+pub mod mock;
+pub mod output;
+pub mod pfm;
+pub mod ply;
+pub mod report;
+pub mod run;
+pub mod scene;
+pub mod twin;

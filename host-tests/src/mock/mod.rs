@@ -1,0 +1,143 @@
+//! A camera that reads image files: what the hardware is on a board, a file is on the desktop.
+//!
+//! In: PNG, JPEG, PGM/PPM or TIFF, told apart by content, with 8 or 16 bits a sample, grey or colour, up to
+//! 4096 x 4096. Out: lines in the file's own pixel format, frame after frame without an end.
+//!
+//! * Alpha is dropped: a camera has none. The samples stay as they are, they are not multiplied by it.
+//! * A file with 16 bits a sample may hold the 10 or 12 bits of a sensor. The camera's significant bits are those of
+//!   the largest sample, 8 at least; a pair opened by [`MockCamera::open_pair`] shares the larger of both.
+//! * An orientation that a JPEG's metadata asks for is ignored: lines come as the sensor gave them.
+
+mod decode;
+mod error;
+mod integrity;
+
+pub use error::MockError;
+
+use decode::Picture;
+use image::{DynamicImage, Rgb, RgbImage};
+use std::convert::Infallible;
+use std::path::Path;
+use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineSource, LineStart, PixelFormat};
+
+/// A camera that plays one image file as an endless video.
+///
+/// Every frame is the same picture; the sequence number counts them, from 0. The camera's clock stands at 0: two
+/// cameras on files have no row skew.
+#[derive(Clone, Debug)]
+pub struct MockCamera {
+    format: LineFormat,
+    bytes: Vec<u8>,
+    had_alpha: bool,
+    frames: u32,
+    // The next row to hand out; the height when none is left.
+    row: u16,
+}
+
+impl MockCamera {
+    /// The most columns and the most rows of an image.
+    pub const MOST_PIXELS: u16 = 4096;
+
+    /// A camera on the image file at `path`.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, MockError> {
+        Ok(Self::play(decode::read(path.as_ref())?))
+    }
+
+    /// Two cameras on the files of a pair: of one size, and with one number of significant bits, so that equal
+    /// brightness stays equal.
+    pub fn open_pair(left: impl AsRef<Path>, right: impl AsRef<Path>) -> Result<(Self, Self), MockError> {
+        let (mut l, mut r) = (Self::open(&left)?, Self::open(&right)?);
+        let (left_size, right_size) = ((l.format.width, l.format.height), (r.format.width, r.format.height));
+        if left_size != right_size {
+            let (left, right) = (left.as_ref().into(), right.as_ref().into());
+            return Err(MockError::Sizes { left, left_size, right, right_size });
+        }
+        if let (Some(a), Some(b)) = (bits(l.format.pixel), bits(r.format.pixel)) {
+            let both = a.max(b);
+            l.format.pixel = with_bits(l.format.pixel, both);
+            r.format.pixel = with_bits(r.format.pixel, both);
+        }
+        Ok((l, r))
+    }
+
+    /// A camera on an image in memory; `None` when its samples are floating-point or a side is 0 or over
+    /// [`Self::MOST_PIXELS`].
+    pub fn from_image(image: DynamicImage) -> Option<Self> {
+        let sides = 1..=u32::from(Self::MOST_PIXELS);
+        if !sides.contains(&image.width()) || !sides.contains(&image.height()) {
+            return None;
+        }
+        decode::lines(image).map(Self::play)
+    }
+
+    fn play(picture: Picture) -> Self {
+        let Picture { format, bytes, had_alpha } = picture;
+        Self { format, bytes, had_alpha, frames: 0, row: format.height }
+    }
+
+    /// Whether the file had an alpha channel, which was dropped.
+    pub fn had_alpha(&self) -> bool {
+        self.had_alpha
+    }
+
+    /// The picture with 8 bits a channel, for display: 16-bit samples lose their low significant bits.
+    pub fn picture(&self) -> RgbImage {
+        let size = self.format.pixel.bytes_per_pixel();
+        let deep = |at: &[u8], bits: u8| (u16::from_le_bytes([at[0], at[1]]) >> (bits - 8)).min(255) as u8;
+        RgbImage::from_fn(u32::from(self.format.width), u32::from(self.format.height), |x, y| {
+            let first = (y as usize * usize::from(self.format.width) + x as usize) * size;
+            let at = &self.bytes[first..first + size];
+            match self.format.pixel {
+                PixelFormat::Grey16 { bits } => Rgb([deep(at, bits); 3]),
+                PixelFormat::Rgb8 => Rgb([at[0], at[1], at[2]]),
+                PixelFormat::Rgb16 { bits } => Rgb([deep(at, bits), deep(&at[2..], bits), deep(&at[4..], bits)]),
+                _ => Rgb([at[0]; 3]),
+            }
+        })
+    }
+}
+
+/// The significant bits of a 16-bit format.
+fn bits(pixel: PixelFormat) -> Option<u8> {
+    match pixel {
+        PixelFormat::Grey16 { bits } | PixelFormat::Rgb16 { bits } => Some(bits),
+        _ => None,
+    }
+}
+
+fn with_bits(pixel: PixelFormat, bits: u8) -> PixelFormat {
+    match pixel {
+        PixelFormat::Grey16 { .. } => PixelFormat::Grey16 { bits },
+        PixelFormat::Rgb16 { .. } => PixelFormat::Rgb16 { bits },
+        other => other,
+    }
+}
+
+impl ErrorType for MockCamera {
+    type Error = Infallible;
+}
+
+impl LineSource for MockCamera {
+    fn format(&self) -> LineFormat {
+        self.format
+    }
+
+    fn start_frame(&mut self) -> Result<FrameStart, CameraError<Infallible>> {
+        let sequence = self.frames;
+        self.frames = self.frames.wrapping_add(1);
+        self.row = 0;
+        Ok(FrameStart { sequence, ..FrameStart::default() })
+    }
+
+    fn next_line(&mut self, line: &mut [u8]) -> Result<LineStart, CameraError<Infallible>> {
+        let needed = self.format.line_bytes();
+        if self.row >= self.format.height {
+            return Err(CameraError::NoLineLeft);
+        }
+        let Some(target) = line.get_mut(..needed) else { return Err(CameraError::BufferTooShort { needed }) };
+        let row = self.row;
+        target.copy_from_slice(&self.bytes[usize::from(row) * needed..][..needed]);
+        self.row += 1;
+        Ok(LineStart { row, timestamp_us: 0 })
+    }
+}

@@ -1,0 +1,177 @@
+//! Result files that appear together or not at all.
+//!
+//! Files are written into a hidden folder inside the target and renamed when the last one is complete and on the disk.
+//! Whatever fails before that leaves the target as it was: files of an earlier run stay, folders made for this run go.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// Why results could not be written: one line that names the place and what would be right.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum OutputError {
+    /// The target exists and is no folder.
+    #[error("{}: is not a folder; name a folder for the results", path.display())]
+    NotAFolder {
+        /// The target.
+        path: PathBuf,
+    },
+    /// The target cannot be made or written to.
+    #[error("{}: cannot be written to ({source}); name a folder that can", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// What the operating system says.
+        source: io::Error,
+    },
+    /// A result could not be written; none was kept.
+    #[error("{}: cannot be written ({source}); nothing was kept, make room or name another folder", path.display())]
+    File {
+        /// The file that was asked for.
+        path: PathBuf,
+        /// What the operating system or the encoder says.
+        source: io::Error,
+    },
+}
+
+/// Results on their way into a folder. Dropped without [`Staging::commit`], it leaves nothing behind.
+#[derive(Debug)]
+pub struct Staging {
+    // In order of dropping: the files first, then the folders made for them.
+    files: TempDir,
+    target: PathBuf,
+    names: Vec<String>,
+    made: MadeFolders,
+}
+
+impl Staging {
+    /// Makes the target folder, with its parents, where it is missing, and checks that files can be made in it.
+    pub fn new(target: &Path) -> Result<Self, OutputError> {
+        let made = MadeFolders::up_to(target)?;
+        let files = tempfile::Builder::new()
+            .prefix(".stereo-unfinished-")
+            .tempdir_in(target)
+            .map_err(|e| OutputError::Folder { path: target.into(), source: plain(e) })?;
+        Ok(Self { files, target: target.into(), names: Vec::new(), made })
+    }
+
+    /// Whether results could be written into `target`; leaves nothing behind. For asking before long work.
+    pub fn probe(target: &Path) -> Result<(), OutputError> {
+        Self::new(target).map(drop)
+    }
+
+    /// Writes one file and waits until the disk has it. `content` is given a buffered writer.
+    pub fn write(
+        &mut self,
+        name: &str,
+        content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), OutputError> {
+        let failed = |source| OutputError::File { path: self.target.join(name), source };
+        let mut out = BufWriter::new(File::create(self.files.path().join(name)).map_err(failed)?);
+        content(&mut out).map_err(failed)?;
+        // A disk that fills up may say so as late as here.
+        let file = out.into_inner().map_err(|e| failed(e.into_error()))?;
+        file.sync_all().map_err(failed)?;
+        self.names.push(name.to_owned());
+        Ok(())
+    }
+
+    /// Moves all files to their places. `stale` are names that an earlier run may have written and this one did not:
+    /// they go, so that the folder holds one run's results.
+    pub fn commit(self, stale: &[&str]) -> Result<(), OutputError> {
+        let mut moves = Moves { done: Vec::new() };
+        let old = self.files.path().join("old");
+        fs::create_dir(&old).map_err(|source| OutputError::Folder { path: self.target.clone(), source })?;
+        let gone = stale.iter().copied().filter(|name| !self.names.iter().any(|n| n == name));
+        for name in self.names.iter().map(String::as_str).chain(gone) {
+            let place = self.target.join(name);
+            let failed = |source| OutputError::File { path: place.clone(), source };
+            match fs::symlink_metadata(&place) {
+                Ok(found) if found.is_dir() => return Err(failed(io::Error::from(io::ErrorKind::IsADirectory))),
+                Ok(_) => moves.rename(&place, &old.join(name)).map_err(failed)?,
+                Err(_) => {}
+            }
+            if self.names.iter().any(|n| n == name) {
+                moves.rename(&self.files.path().join(name), &place).map_err(failed)?;
+            }
+        }
+        moves.done.clear();
+        self.made.keep();
+        Ok(())
+    }
+}
+
+/// Renames that are taken back when dropped.
+struct Moves {
+    done: Vec<(PathBuf, PathBuf)>,
+}
+
+impl Moves {
+    fn rename(&mut self, from: &Path, to: &Path) -> io::Result<()> {
+        fs::rename(from, to)?;
+        self.done.push((from.into(), to.into()));
+        Ok(())
+    }
+}
+
+impl Drop for Moves {
+    fn drop(&mut self) {
+        for (from, to) in self.done.drain(..).rev() {
+            // Nothing more can be done about a failure while a failure is being handled.
+            let _ = fs::rename(to, from);
+        }
+    }
+}
+
+/// Folders that were made for the results, removed when dropped as long as they are empty.
+#[derive(Debug)]
+struct MadeFolders {
+    outermost_first: Vec<PathBuf>,
+}
+
+impl MadeFolders {
+    fn up_to(target: &Path) -> Result<Self, OutputError> {
+        let mut made = Self { outermost_first: Vec::new() };
+        let missing: Vec<&Path> = target
+            .ancestors()
+            .take_while(|folder| !folder.as_os_str().is_empty() && fs::symlink_metadata(folder).is_err())
+            .collect();
+        for folder in missing.into_iter().rev() {
+            match fs::create_dir(folder) {
+                Ok(()) => made.outermost_first.push(folder.into()),
+                // Made by another program meanwhile, or the path goes through '..'.
+                Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
+                Err(source) => return Err(OutputError::Folder { path: target.into(), source }),
+            }
+        }
+        match fs::metadata(target) {
+            Ok(found) if found.is_dir() => Ok(made),
+            Ok(_) => Err(OutputError::NotAFolder { path: target.into() }),
+            Err(source) => Err(OutputError::Folder { path: target.into(), source }),
+        }
+    }
+
+    fn keep(mut self) {
+        self.outermost_first.clear();
+    }
+}
+
+impl Drop for MadeFolders {
+    fn drop(&mut self) {
+        for folder in self.outermost_first.drain(..).rev() {
+            // Not empty: somebody else put something there, and it stays.
+            let _ = fs::remove_dir(folder);
+        }
+    }
+}
+
+/// The operating system's error without the path that `tempfile` adds.
+fn plain(error: io::Error) -> io::Error {
+    error
+        .get_ref()
+        .and_then(|e| e.source()?.downcast_ref::<io::Error>())
+        .and_then(io::Error::raw_os_error)
+        .map_or_else(|| io::Error::from(error.kind()), io::Error::from_raw_os_error)
+}

@@ -1,0 +1,200 @@
+//! One run on one page: `report.html` holds its pictures and asks for nothing from anywhere.
+//!
+//! In: the pictures, the map and the [`Summary`] of a run, for a rendered scene its truth and the [`Accuracy`]. Out:
+//! HTML that reads on a phone and on paper, in light and dark.
+
+mod accuracy;
+mod page;
+mod summary;
+mod svg;
+
+pub use accuracy::Accuracy;
+pub use summary::{Depth, Spread, Summary};
+
+use crate::colour::{ColourScale, FLAG_COLOURS, NO_ANSWER, error_picture, first_reason, flags_picture};
+use crate::map::DisparityMap;
+use crate::scene::Truth;
+use image::RgbImage;
+use page::{Kind, caption, escape, figure, table};
+use std::io::{self, Write};
+use stereopsis::geometry::RectifiedRig;
+use stereopsis::units::PixelFlags;
+
+/// What the page shows.
+#[derive(Clone, Copy, Debug)]
+pub struct Report<'a> {
+    /// What the left image is called.
+    pub left_name: &'a str,
+    /// What the right image is called.
+    pub right_name: &'a str,
+    /// The left image.
+    pub left: &'a RgbImage,
+    /// The right image.
+    pub right: &'a RgbImage,
+    /// The results.
+    pub map: &'a DisparityMap,
+    /// The figures.
+    pub summary: &'a Summary,
+    /// The rig, when there is a calibration: disparities are given in metres too.
+    pub rig: Option<&'a RectifiedRig>,
+    /// The truth, when it is known.
+    pub truth: Option<&'a Truth>,
+}
+
+/// Errors are shown from minus to plus this, px.
+pub const ERROR_LIMIT_PX: f32 = 3.0;
+
+/// What each flag says, in the order of [`PixelFlags::NAMES`].
+const MEANINGS: [&str; 6] = [
+    "no candidate lies inside the right image",
+    "the largest disparity searched won: the surface may be nearer",
+    "too little texture in the window",
+    "another disparity matches nearly as well",
+    "the right image disagrees: occluded or mismatched",
+    "part of a patch too small to be believed",
+];
+
+impl Report<'_> {
+    /// Writes the page.
+    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        let s = self.summary;
+        let title = format!("{} and {}", self.left_name, self.right_name);
+        writeln!(
+            out,
+            "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
+             <title>Stereo: {0}</title><style>\n{1}</style></head><body>\n<h1>Stereo: {0}</h1>\n\
+             <p class=\"quiet\">{2} &#215; {3} px, disparities {4} to {5}, method {6}, filter {7}, kernel {8}</p>",
+            escape(&title),
+            include_str!("style.css"),
+            s.width,
+            s.height,
+            s.min_disparity,
+            s.min_disparity + s.disparities - 1,
+            s.method,
+            s.filter,
+            s.kernel,
+        )?;
+        writeln!(out, "<ul class=\"headline\">{}</ul>", self.headline())?;
+        writeln!(out, "<div class=\"figures\">")?;
+        self.pictures(out)?;
+        writeln!(out, "</div>\n<h2>Disparities</h2><figure>")?;
+        out.write_all(svg::histogram(self.map, s.min_disparity, s.disparities).as_bytes())?;
+        writeln!(out, "</figure>\n<h2>Figures</h2><figure>{}</figure>", table(&self.figures()))?;
+        writeln!(out, "</body></html>")
+    }
+
+    /// The few figures that come first; HTML.
+    fn headline(&self) -> String {
+        let s = self.summary;
+        let mut items = vec![
+            (percent(s.density), "of the pixels answered"),
+            (format!("{:.1} ms", s.time_ms), "for the frame, one thread"),
+            (format!("{:.1} KB", s.state_bytes as f64 / 1000.0), "of matcher state"),
+            (s.latency_lines.to_string(), "lines of delay"),
+        ];
+        if let Some(a) = s.accuracy {
+            items.insert(1, (percent(a.bad2), "of the answers over 2 px off"));
+            items.insert(2, (format!("{:.3} px", a.rms_good_px), "RMS error of the others"));
+        }
+        items.iter().map(|(value, what)| format!("<li><b>{value}</b>{what}</li>")).collect()
+    }
+
+    fn pictures(&self, out: &mut dyn Write) -> io::Result<()> {
+        let colours = ColourScale::of(self.map);
+        let mut show = |title: &str, kind, picture: &RgbImage, below: &str| {
+            out.write_all(figure(title, kind, picture, below)?.as_bytes())
+        };
+        show("Left image", Kind::Photograph, self.left, &caption(self.left_name))?;
+        show("Right image", Kind::Photograph, self.right, &caption(self.right_name))?;
+        let note =
+            "Near is bright; black: no answer. The colours run from the 2nd to the 98th percentile of the answers.";
+        let disparity = colours.picture(self.map.width, &self.map.pixels());
+        let bar = svg::disparity_bar("disparity", &colours, self.rig);
+        show("Disparity", Kind::Map, &disparity, &(bar + &caption(note)))?;
+        if let Some(truth) = self.truth {
+            let picture = colours.picture(truth.width, &Accuracy::true_disparity_px(truth));
+            let bar = svg::disparity_bar("truth", &colours, self.rig);
+            show("True disparity", Kind::Map, &picture, &(bar + &caption("The same colours as the answers.")))?;
+        }
+        show("Why pixels have no answer", Kind::Map, &flags_picture(self.map, self.left), &self.legend())?;
+        if let Some(truth) = self.truth {
+            let errors = Accuracy::errors_px(self.map, truth);
+            let picture = error_picture(truth.width, &errors, ERROR_LIMIT_PX);
+            let note = "Answer minus truth: blue is too far, orange too near, white is right; black: no answer.";
+            show("Error", Kind::Map, &picture, &(svg::error_bar("error", ERROR_LIMIT_PX) + &caption(note)))?;
+        }
+        Ok(())
+    }
+
+    /// What the colours of the flags mean, with the share of the pixels that each one has; HTML.
+    fn legend(&self) -> String {
+        let mut counts = [0usize; PixelFlags::NAMES.len()];
+        let mut unnamed = 0usize;
+        for pixel in 0..self.map.disparity.len() {
+            match first_reason(self.map, pixel) {
+                Some(reason) => counts[reason] += 1,
+                None => unnamed += usize::from(self.map.disparity[pixel].is_none()),
+            }
+        }
+        let share = |count: usize| percent(count as f64 / self.map.disparity.len().max(1) as f64);
+        let row = |[r, g, b]: [u8; 3], text: String, count| {
+            let swatch = format!("<span class=\"swatch\" style=\"background:#{r:02x}{g:02x}{b:02x}\"></span>");
+            format!("<tr><th>{swatch}{text}</th><td>{}</td></tr>\n", share(count))
+        };
+        let mut rows = row([0xb0; 3], "answered: the left image, pale".into(), self.map.answers());
+        for (i, (_, name)) in PixelFlags::NAMES.iter().enumerate() {
+            rows += &row(FLAG_COLOURS[i].0, format!("{name}: {}", MEANINGS[i]), counts[i]);
+        }
+        if unnamed > 0 {
+            rows += &row(NO_ANSWER.0, "no reason given".into(), unnamed);
+        }
+        format!("<table>{rows}</table>{}", caption("A pixel with several reasons has the colour of the first."))
+    }
+
+    /// All figures, with names.
+    fn figures(&self) -> Vec<(String, String)> {
+        let s = self.summary;
+        let mut rows: Vec<(String, String)> = Vec::new();
+        let mut add = |name: &str, value: String| rows.push((name.into(), value));
+        let metres = |value: Option<f32>| value.map_or("-".to_owned(), |z| format!("{} m", svg::three_digits(z)));
+        add("Answers", format!("{} of {} ({})", s.answers, self.map.disparity.len(), percent(s.density)));
+        if let Some(d) = s.disparity_px {
+            add("Disparity, least / median / largest", format!("{:.2} / {:.2} / {:.2} px", d.min, d.median, d.max));
+        }
+        for (flag, name) in PixelFlags::NAMES {
+            add(&format!("Pixels with the flag '{name}'"), self.map.flagged(flag).to_string());
+        }
+        add("Matcher state", format!("{} bytes", s.state_bytes));
+        add("Delay", format!("{} lines", s.latency_lines));
+        add("Time", format!("{:.2} ms", s.time_ms));
+        if let Some(d) = &s.depth {
+            add("Focal length", format!("{:.2} px", d.focal_px));
+            add("Baseline", format!("{:.1} mm", d.baseline_m * 1000.0));
+            add("Offset of the principal points", format!("{:.2} px", d.doffs_px));
+            add("Nearest depth that the range can tell", metres(d.nearest_m));
+            add("Its standard deviation", metres(d.sigma_nearest_m));
+            add("Farthest depth that the range can tell", metres(d.farthest_m));
+            add("Its standard deviation", metres(d.sigma_farthest_m));
+            if let Some(found) = d.found_m {
+                let [least, middle, most] = [found.min, found.median, found.max].map(|z| metres(Some(z)));
+                add("Depth found, least / median / largest", format!("{least} / {middle} / {most}"));
+            }
+        }
+        if let Some(a) = s.accuracy {
+            add("Pixels that both cameras see", a.seen_by_both.to_string());
+            add("Of these answered", percent(a.density));
+            add("Of these answers over 2 px off", percent(a.bad2));
+            add("RMS error of the others", format!("{:.3} px", a.rms_good_px));
+            add("True depth within 3 sigma", percent(a.within_3_sigma));
+            let (m, share) = (a.median_depth_error_m * 1000.0, percent(a.median_depth_error_relative));
+            add("Median depth error", format!("{m:.1} mm ({share})"));
+            add("Answers at pixels that only the left camera sees", a.answers_where_occluded.to_string());
+        }
+        rows
+    }
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}

@@ -1,0 +1,137 @@
+//! The figures of a run, for `summary.json` and the report.
+
+use super::Accuracy;
+use crate::map::{DisparityMap, quantile};
+use crate::run::{Method, Outcome};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use stereopsis::depth::DepthScale;
+use stereopsis::matching::Config;
+use stereopsis::units::PixelFlags;
+
+/// What a run was asked for and what came out. Field names are those of `summary.json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// The method's name.
+    pub method: &'static str,
+    /// The name of the set of checks.
+    pub filter: &'static str,
+    /// The kernel's name.
+    pub kernel: &'static str,
+    /// Pixels in a row.
+    pub width: u16,
+    /// Rows.
+    pub height: u16,
+    /// How many whole disparities were searched.
+    pub disparities: u16,
+    /// The smallest of them, px.
+    pub min_disparity: u16,
+    /// Share of the pixels with an answer, 0 to 1.
+    pub density: f64,
+    /// Pixels with an answer.
+    pub answers: usize,
+    /// Pixels with each flag, by its name. A pixel may have several.
+    pub flags: BTreeMap<&'static str, usize>,
+    /// The answers' disparities; absent when there is none.
+    pub disparity_px: Option<Spread>,
+    /// Bytes that the matcher's state takes for this width and range.
+    pub state_bytes: usize,
+    /// How many lines after its own a row came out.
+    pub latency_lines: usize,
+    /// The whole frame with its uncertainties, files left out, milliseconds.
+    pub time_ms: f64,
+    /// Depths, when there is a calibration.
+    pub depth: Option<Depth>,
+    /// How right the answers are, when the truth is known.
+    pub accuracy: Option<Accuracy>,
+}
+
+/// Least, middle and largest value.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+pub struct Spread {
+    /// The least.
+    pub min: f32,
+    /// Half of the values are smaller.
+    pub median: f32,
+    /// The largest.
+    pub max: f32,
+}
+
+impl Spread {
+    /// Of values in ascending order; `None` of nothing.
+    pub fn of(sorted: &[f32]) -> Option<Self> {
+        Some(Self { min: quantile(sorted, 0.0)?, median: quantile(sorted, 0.5)?, max: quantile(sorted, 1.0)? })
+    }
+}
+
+/// What the rig and the range can tell, and the depths that were found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Depth {
+    /// Focal length, px.
+    pub focal_px: f32,
+    /// Baseline, m.
+    pub baseline_m: f32,
+    /// What is added to a disparity before it divides, px.
+    pub doffs_px: f32,
+    /// Depth at the largest disparity that is answered, m. With the three fields below absent when the whole range lies
+    /// at or behind infinity.
+    pub nearest_m: Option<f32>,
+    /// Standard deviation there, m.
+    pub sigma_nearest_m: Option<f32>,
+    /// Depth at the smallest disparity searched, or at 1 px of parallax, m.
+    pub farthest_m: Option<f32>,
+    /// Standard deviation there, m.
+    pub sigma_farthest_m: Option<f32>,
+    /// The depths found, m; absent when there is none.
+    pub found_m: Option<Spread>,
+}
+
+impl Depth {
+    fn of(scale: &DepthScale, config: &Config, method: Method, map: &DisparityMap) -> Self {
+        let range = scale.range(config, method.sigma_px());
+        let mut depths: Vec<f32> = map.depth_m(scale).into_iter().filter(|z| z.is_finite()).collect();
+        depths.sort_by(f32::total_cmp);
+        Self {
+            focal_px: scale.rig().focal_px(),
+            baseline_m: scale.rig().baseline_m(),
+            doffs_px: scale.rig().disparity_offset_px(),
+            nearest_m: range.map(|r| r.nearest.0),
+            sigma_nearest_m: range.map(|r| r.sigma_nearest.0),
+            farthest_m: range.map(|r| r.farthest.0),
+            sigma_farthest_m: range.map(|r| r.sigma_farthest.0),
+            found_m: Spread::of(&depths),
+        }
+    }
+}
+
+impl Summary {
+    /// The figures of `outcome`.
+    pub fn new(
+        method: Method,
+        filter: &'static str,
+        config: &Config,
+        outcome: &Outcome,
+        scale: Option<&DepthScale>,
+        accuracy: Option<Accuracy>,
+    ) -> Self {
+        let map = &outcome.map;
+        Self {
+            method: method.name(),
+            filter,
+            kernel: outcome.kernel.name(),
+            width: config.width,
+            height: config.height,
+            disparities: config.disparities,
+            min_disparity: config.min_disparity,
+            density: map.density(),
+            answers: map.answers(),
+            flags: PixelFlags::NAMES.into_iter().map(|(flag, name)| (name, map.flagged(flag))).collect(),
+            disparity_px: Spread::of(&map.sorted()),
+            state_bytes: method.state_bytes(config.width, config.disparities),
+            latency_lines: method.latency_lines(),
+            time_ms: outcome.time_ms,
+            depth: scale.map(|scale| Depth::of(scale, config, method, map)),
+            accuracy,
+        }
+    }
+}

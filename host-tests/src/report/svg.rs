@@ -1,0 +1,111 @@
+//! Drawings of the report that are lines and text: they scale with the page and follow its colours.
+
+use crate::colour::{ColourScale, diverging, viridis};
+use crate::map::DisparityMap;
+use image::Rgb;
+use std::fmt::Write;
+use stereopsis::geometry::RectifiedRig;
+
+/// The colours of disparities with numbers: px above, metres below where there is a rig. `id` names the drawing in the
+/// page.
+pub(super) fn disparity_bar(id: &str, scale: &ColourScale, rig: Option<&RectifiedRig>) -> String {
+    let at = |t: f32| scale.far_px + t * (scale.near_px - scale.far_px);
+    let metres =
+        |rig: &RectifiedRig, px| rig.depth_m(px).map_or("\u{221e}".to_owned(), |z| format!("{} m", three_digits(z)));
+    bar(id, viridis, |t| format!("{:.1} px", at(t)), rig.map(|rig| move |t| metres(rig, at(t))))
+}
+
+/// The colours of errors from `-limit` to `+limit`, px.
+pub(super) fn error_bar(id: &str, limit: f32) -> String {
+    let above = |t: f32| format!("{:.1} px", (2.0 * t - 1.0) * limit);
+    bar(id, |t| diverging(2.0 * t - 1.0), above, None::<fn(f32) -> String>)
+}
+
+fn bar(
+    id: &str,
+    colour: impl Fn(f32) -> Rgb<u8>,
+    above: impl Fn(f32) -> String,
+    below: Option<impl Fn(f32) -> String>,
+) -> String {
+    let height = if below.is_some() { 66 } else { 46 };
+    let mut svg = format!(
+        "<svg viewBox=\"0 0 460 {height}\" role=\"img\" aria-label=\"Colours and their values\"><defs>\
+         <linearGradient id=\"{id}\">"
+    );
+    for step in 0..=16 {
+        let t = step as f32 / 16.0;
+        let [r, g, b] = colour(t).0;
+        let _ = write!(svg, "<stop offset=\"{t}\" stop-color=\"#{r:02x}{g:02x}{b:02x}\"/>");
+    }
+    let _ = write!(
+        svg,
+        "</linearGradient></defs><rect x=\"30\" y=\"20\" width=\"400\" height=\"20\" fill=\"url(#{id})\" rx=\"2\"/>"
+    );
+    for step in 0..=4 {
+        let t = step as f32 / 4.0;
+        let x = 30.0 + 400.0 * t;
+        text(&mut svg, x, 14.0, &above(t));
+        if let Some(below) = &below {
+            text(&mut svg, x, 58.0, &below(t));
+        }
+    }
+    svg.push_str("</svg>");
+    svg
+}
+
+/// How many answers have which disparity, over the whole search range.
+pub(super) fn histogram(map: &DisparityMap, min_disparity: u16, disparities: u16) -> String {
+    const BINS: usize = 64;
+    let bins = BINS.min(usize::from(disparities));
+    let (first, range) = (f32::from(min_disparity), f32::from(disparities));
+    let mut counts = vec![0usize; bins];
+    for px in map.disparity.iter().filter_map(|d| d.to_f32()) {
+        let at = ((px - first) / range * bins as f32).max(0.0) as usize;
+        counts[at.min(bins - 1)] += 1;
+    }
+    let highest = counts.iter().copied().max().unwrap_or(0).max(1);
+    let mut svg =
+        "<svg class=\"wide\" viewBox=\"0 0 640 200\" role=\"img\" aria-label=\"Histogram of the disparities\">"
+            .to_owned();
+    let step = 580.0 / bins as f32;
+    for (i, &count) in counts.iter().enumerate() {
+        let height = 150.0 * count as f32 / highest as f32;
+        let _ = write!(
+            svg,
+            "<rect class=\"column\" x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{height:.1}\"><title>{:.1} px: {count} \
+             pixels</title></rect>",
+            30.0 + step * i as f32,
+            170.0 - height,
+            step * 0.9,
+            first + range * (i as f32 + 0.5) / bins as f32,
+        );
+    }
+    svg.push_str("<line class=\"axis\" x1=\"30\" y1=\"170.5\" x2=\"610\" y2=\"170.5\"/>");
+    for tick in 0..=4 {
+        let t = tick as f32 / 4.0;
+        text(&mut svg, 30.0 + 580.0 * t, 190.0, &format!("{:.0} px", first + t * range));
+    }
+    let share = 100.0 * highest as f64 / map.answers().max(1) as f64;
+    let _ = write!(svg, "<text x=\"30\" y=\"12\">highest column: {share:.1} % of the answers</text></svg>");
+    svg
+}
+
+fn text(svg: &mut String, x: f32, y: f32, content: &str) {
+    let _ = write!(svg, "<text x=\"{x:.0}\" y=\"{y:.0}\" text-anchor=\"middle\">{content}</text>");
+}
+
+/// A length with three digits that count.
+pub(super) fn three_digits(value: f32) -> String {
+    let before_point = value.abs().max(1e-3).log10().floor() as i32 + 1;
+    format!("{value:.*}", (3 - before_point).clamp(0, 5) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::three_digits;
+
+    #[test]
+    fn lengths_have_three_digits() {
+        assert_eq!([0.01234, 0.5, 1.0, 12.34, 1234.5].map(three_digits), ["0.0123", "0.500", "1.00", "12.3", "1234"]);
+    }
+}

@@ -1,0 +1,71 @@
+//! Pictures in memory as a camera.
+
+use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource};
+
+/// Two pictures in memory as a stereo source: nothing but copying a line stands between the caller and the matcher.
+#[derive(Clone, Debug)]
+pub struct MemoryPair {
+    format: LineFormat,
+    left: Vec<u8>,
+    right: Vec<u8>,
+    frames: u32,
+    row: u16,
+}
+
+impl MemoryPair {
+    /// The next frame of `source`, to be played again and again.
+    pub fn record<C: StereoSource>(source: &mut C) -> Result<Self, CameraError<C::Error>> {
+        let format = source.format();
+        let (line, lines) = (format.line_bytes(), usize::from(format.height));
+        let (mut left, mut right) = (vec![0; line * lines], vec![0; line * lines]);
+        source.start_frame()?;
+        for (left, right) in left.chunks_exact_mut(line.max(1)).zip(right.chunks_exact_mut(line.max(1))) {
+            source.next_lines(left, right)?;
+        }
+        Ok(Self { format, left, right, frames: 0, row: format.height })
+    }
+
+    /// Two grey pictures with `width` pixels in a row; `None` when they are not the same whole number of rows, or one
+    /// of the sides is 0 or over 65535.
+    pub fn new(width: u16, left: Vec<u8>, right: Vec<u8>) -> Option<Self> {
+        let rows = left.len().checked_div(usize::from(width))?;
+        let height = u16::try_from(rows).ok().filter(|&height| height > 0)?;
+        let whole = left.len() == rows * usize::from(width) && right.len() == left.len();
+        let format = LineFormat { width, height, pixel: PixelFormat::Grey8 };
+        whole.then_some(Self { format, left, right, frames: 0, row: height })
+    }
+}
+
+impl ErrorType for MemoryPair {
+    type Error = std::convert::Infallible;
+}
+
+impl StereoSource for MemoryPair {
+    fn format(&self) -> LineFormat {
+        self.format
+    }
+
+    fn max_row_skew_us(&self) -> u32 {
+        0
+    }
+
+    fn start_frame(&mut self) -> Result<FrameStart, CameraError<Self::Error>> {
+        let sequence = self.frames;
+        self.frames = self.frames.wrapping_add(1);
+        self.row = 0;
+        Ok(FrameStart { sequence, ..FrameStart::default() })
+    }
+
+    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
+        let needed = self.format.line_bytes();
+        if self.row >= self.format.height {
+            return Err(CameraError::NoLineLeft);
+        }
+        let too_short = CameraError::BufferTooShort { needed };
+        let first = usize::from(self.row) * needed;
+        left.get_mut(..needed).ok_or(too_short)?.copy_from_slice(&self.left[first..first + needed]);
+        right.get_mut(..needed).ok_or(too_short)?.copy_from_slice(&self.right[first..first + needed]);
+        self.row += 1;
+        Ok(LineStart { row: self.row - 1, timestamp_us: 0 })
+    }
+}

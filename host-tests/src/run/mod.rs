@@ -1,0 +1,141 @@
+//! A stereo source through the core's pipeline, as firmware does it: the state lives in a `static`.
+//!
+//! In: any [`StereoSource`] of 8-bit grey lines. Out: a whole [`DisparityMap`], or the times of frames.
+//!
+//! * [`Method`]: the methods of this build.
+//! * [`run`]: one frame into a map. [`time_frames`]: several, timed.
+//! * [`MemoryPair`]: a stereo source over two pictures in memory.
+
+mod memory;
+mod method;
+
+pub use memory::MemoryPair;
+pub use method::{Method, UnknownMethod};
+
+use crate::map::DisparityMap;
+use std::fmt;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+use stereopsis::camera::StereoSource;
+use stereopsis::matching::{Block, Config, ConfigError, Fast, Kernel, Row, Scheme};
+use stereopsis::pipeline::{Pipeline, PipelineError};
+
+/// Pixels in a line that the pipelines here have room for.
+pub const MOST_WIDTH: usize = 4096;
+/// Disparities that the pipelines here have room for.
+pub const MOST_DISPARITIES: usize = 256;
+
+type Host<S> = Pipeline<S, MOST_WIDTH, MOST_DISPARITIES>;
+
+// One of each, as in firmware: over a megabyte each, which no thread's stack has to hold.
+static FAST: Mutex<Host<Fast>> = Mutex::new(Pipeline::new());
+static BLOCK: Mutex<Host<Block>> = Mutex::new(Pipeline::new());
+
+/// A pipeline that panicked while it was held is as good as new after `start`.
+fn hold<S: Scheme>(pipeline: &'static Mutex<Host<S>>) -> MutexGuard<'static, Host<S>> {
+    pipeline.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Why a frame gave no map.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RunError<E: fmt::Debug + fmt::Display> {
+    /// The pipeline cannot do what is asked.
+    #[error("{0}")]
+    Config(ConfigError),
+    /// The camera failed, or the pipeline while it ran.
+    #[error("{0}")]
+    Pipeline(PipelineError<E>),
+}
+
+impl<E: fmt::Debug + fmt::Display> From<PipelineError<E>> for RunError<E> {
+    fn from(e: PipelineError<E>) -> Self {
+        Self::Pipeline(e)
+    }
+}
+
+/// What came of one frame.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The results.
+    pub map: DisparityMap,
+    /// What they were computed with.
+    pub kernel: Kernel,
+    /// From asking the camera for the frame to its last row, with the uncertainties, milliseconds.
+    pub time_ms: f64,
+}
+
+/// One frame of `camera` into a map; `progress` is told how many rows are out after each.
+pub fn run<C: StereoSource<Error: fmt::Display>>(
+    method: Method,
+    config: &Config,
+    camera: &mut C,
+    mut progress: impl FnMut(u16),
+) -> Result<Outcome, RunError<C::Error>> {
+    let width = usize::from(config.width);
+    let mut map = DisparityMap::new(width, usize::from(config.height));
+    let mut keep = |row: Row<'_>| {
+        let first = usize::from(row.index()) * width;
+        map.disparity[first..first + width].copy_from_slice(row.disparities());
+        map.flags[first..first + width].copy_from_slice(row.flags());
+        for (x, sigma) in map.sigma_px[first..first + width].iter_mut().enumerate() {
+            *sigma = row.sigma_px(x).unwrap_or(f32::NAN);
+        }
+        progress(row.index() + 1);
+    };
+    fn frame<S: Scheme, C: StereoSource<Error: fmt::Display>>(
+        pipeline: &mut Host<S>,
+        config: &Config,
+        camera: &mut C,
+        keep: &mut dyn FnMut(Row<'_>),
+    ) -> Result<(Kernel, f64), RunError<C::Error>> {
+        pipeline.start(config).map_err(RunError::Config)?;
+        let start = Instant::now();
+        pipeline.begin_frame(camera)?;
+        while let Some(row) = pipeline.next_row(camera)? {
+            keep(row);
+        }
+        Ok((pipeline.kernel(), start.elapsed().as_secs_f64() * 1e3))
+    }
+    let (kernel, time_ms) = match method {
+        Method::Fast => frame(&mut *hold(&FAST), config, camera, &mut keep)?,
+        Method::Block => frame(&mut *hold(&BLOCK), config, camera, &mut keep)?,
+    };
+    Ok(Outcome { map, kernel, time_ms })
+}
+
+/// The times of `frames` frames in milliseconds, after one that is left out, and the kernel that they ran on.
+///
+/// A frame's time is that of everything between asking the camera for it and its last row: with a [`MemoryPair`] that
+/// is copying the lines, census, matching and all checks.
+pub fn time_frames<C: StereoSource<Error: fmt::Display>>(
+    method: Method,
+    config: &Config,
+    camera: &mut C,
+    frames: usize,
+) -> Result<(Vec<f64>, Kernel), RunError<C::Error>> {
+    fn time<S: Scheme, C: StereoSource<Error: fmt::Display>>(
+        pipeline: &mut Host<S>,
+        config: &Config,
+        camera: &mut C,
+        frames: usize,
+    ) -> Result<(Vec<f64>, Kernel), RunError<C::Error>> {
+        pipeline.start(config).map_err(RunError::Config)?;
+        let mut times_ms = Vec::with_capacity(frames);
+        for frame in 0..=frames {
+            let start = Instant::now();
+            pipeline.begin_frame(camera)?;
+            while let Some(row) = pipeline.next_row(camera)? {
+                std::hint::black_box(row.disparities());
+            }
+            if frame > 0 {
+                times_ms.push(start.elapsed().as_secs_f64() * 1e3);
+            }
+        }
+        Ok((times_ms, pipeline.kernel()))
+    }
+    match method {
+        Method::Fast => time(&mut *hold(&FAST), config, camera, frames),
+        Method::Block => time(&mut *hold(&BLOCK), config, camera, frames),
+    }
+}

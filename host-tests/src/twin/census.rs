@@ -1,0 +1,45 @@
+//! Census by its definition: for every pixel, a bit for every neighbour that is darker than it.
+
+use super::Picture;
+
+/// Up, left, right, down at a distance of 2: (dy, dx), the least significant bit first.
+pub const PLUS4: [(isize, isize); 4] = [(-2, 0), (0, -2), (0, 2), (2, 0)];
+
+/// The ring of eight at a distance of 2.
+pub const RING8: [(isize, isize); 8] = [(-2, -2), (-2, 0), (-2, 2), (0, -2), (0, 2), (2, -2), (2, 0), (2, 2)];
+
+/// All of the 5 x 5 neighbourhood, in reading order, without its middle.
+pub const FULL24: [(isize, isize); 24] = {
+    let mut neighbours = [(0, 0); 24];
+    let mut i = 0;
+    while i < 24 {
+        let place = (i + (i >= 12) as usize) as isize;
+        neighbours[i] = (place / 5 - 2, place % 5 - 2);
+        i += 1;
+    }
+    neighbours
+};
+
+/// The census of the pixel (x, y): bit i is set when the i-th neighbour is darker. Neighbours outside of the picture
+/// are the nearest pixel inside.
+pub fn census_at(picture: &Picture<'_>, neighbours: &[(isize, isize)], x: usize, y: usize) -> u32 {
+    let centre = picture.at(x as isize, y as isize);
+    let mut word = 0;
+    for (bit, &(dy, dx)) in neighbours.iter().enumerate() {
+        if picture.at(x as isize + dx, y as isize + dy) < centre {
+            word |= 1 << bit;
+        }
+    }
+    word
+}
+
+/// The census of every pixel, row by row.
+pub fn census(picture: &Picture<'_>, neighbours: &[(isize, isize)]) -> Vec<u32> {
+    let mut words = Vec::with_capacity(picture.width * picture.height);
+    for y in 0..picture.height {
+        for x in 0..picture.width {
+            words.push(census_at(picture, neighbours, x, y));
+        }
+    }
+    words
+}

@@ -1,0 +1,110 @@
+//! Every stage of the dense path again, in its plainest form, over whole pictures: what the core is held to, bit by bit.
+//!
+//! In: two pictures, a configuration. Out: [`Answers`]. In running order:
+//!
+//! * [`census`](mod@census): darker neighbours as bits.
+//! * [`cost`]: bits that differ, per disparity, and their sum over the window.
+//! * `select`: the cheapest disparity, its fraction, the checks.
+//! * `filter`: smoothing along the row, the speckle filter, the deviation.
+//!
+//! Nothing here is shared with the core but its words: [`Config`], [`Disparity`], [`PixelFlags`].
+
+pub mod census;
+pub mod cost;
+
+mod filter;
+mod select;
+
+use image::GrayImage;
+use stereopsis::matching::Config;
+use stereopsis::units::{Disparity, PixelFlags};
+
+/// What tells one matching method from another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scheme {
+    /// The census: (dy, dx) of each bit.
+    pub neighbours: &'static [(isize, isize)],
+    /// The window reaches this many columns to each side.
+    pub radius_x: usize,
+    /// The window reaches this many rows up and down.
+    pub radius_y: usize,
+    /// The least deviation of an answer, px.
+    pub sigma_px: f32,
+}
+
+impl Scheme {
+    /// The twin of [`stereopsis::matching::Fast`]: 4-bit census, 9 x 7 window.
+    pub const FAST: Self = Self { neighbours: &census::PLUS4, radius_x: 4, radius_y: 3, sigma_px: 0.15 };
+    /// The twin of [`stereopsis::matching::Block`]: 8-bit census, 9 x 9 window.
+    pub const BLOCK: Self = Self { neighbours: &census::RING8, radius_x: 4, radius_y: 4, sigma_px: 0.15 };
+}
+
+/// An 8-bit picture whose edge goes on for ever outside of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Picture<'a> {
+    width: usize,
+    height: usize,
+    pixels: &'a [u8],
+}
+
+impl<'a> Picture<'a> {
+    /// The picture as the twin sees it.
+    ///
+    /// # Panics
+    ///
+    /// When it has no pixel.
+    pub fn new(image: &'a GrayImage) -> Self {
+        assert!(image.width() > 0 && image.height() > 0, "a picture has at least one pixel");
+        Self { width: image.width() as usize, height: image.height() as usize, pixels: image.as_raw() }
+    }
+
+    /// The pixel (x, y), or the nearest one inside.
+    pub fn at(&self, x: isize, y: isize) -> u8 {
+        let x = x.clamp(0, self.width as isize - 1) as usize;
+        let y = y.clamp(0, self.height as isize - 1) as usize;
+        self.pixels[y * self.width + x]
+    }
+}
+
+/// What the matcher says about every pixel, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answers {
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// The disparities.
+    pub disparity: Vec<Disparity>,
+    /// The flags.
+    pub flags: Vec<PixelFlags>,
+    /// The deviation of every answer, px.
+    pub sigma_px: Vec<Option<f32>>,
+}
+
+/// Matches a pair of pictures.
+///
+/// # Panics
+///
+/// When the pictures are not of the configuration's size.
+pub fn match_pair(scheme: &Scheme, config: &Config, left: &GrayImage, right: &GrayImage) -> Answers {
+    let size = (u32::from(config.width), u32::from(config.height));
+    assert_eq!((left.dimensions(), right.dimensions()), (size, size), "the pictures have the configuration's size");
+    let (left, right) = (Picture::new(left), Picture::new(right));
+    let sums = cost::window_sums(scheme, &cost::costs(scheme, config, &left, &right));
+    let mut map = Answers {
+        width: left.width,
+        height: left.height,
+        disparity: Vec::new(),
+        flags: Vec::new(),
+        sigma_px: Vec::new(),
+    };
+    for y in 0..left.height {
+        let (answers, flags) = select::select_row(scheme, config, &left, &sums, y);
+        map.disparity.extend(filter::smooth_row(&answers, config.checks.smoothing_radius));
+        map.flags.extend(flags);
+    }
+    let before = map.disparity.clone();
+    let mut map = filter::drop_speckles(&config.checks, map);
+    map.sigma_px = filter::sigmas(scheme, config, &before, &map.disparity);
+    map
+}

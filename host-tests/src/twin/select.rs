@@ -1,0 +1,129 @@
+//! Which disparity wins at a pixel, and what is to be said about it.
+
+use super::cost::Volume;
+use super::{Picture, Scheme};
+use stereopsis::matching::{Checks, Config};
+use stereopsis::units::{Disparity, PixelFlags};
+
+/// The best candidate of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Winner {
+    /// Disparity less the smallest one searched, px.
+    d: usize,
+    /// Its cost.
+    cost: u16,
+}
+
+/// The answers and flags of row `y`, before smoothing and the speckle filter.
+pub(super) fn select_row(
+    scheme: &Scheme,
+    config: &Config,
+    left: &Picture<'_>,
+    sums: &Volume,
+    y: usize,
+) -> (Vec<Disparity>, Vec<PixelFlags>) {
+    let smallest = usize::from(config.min_disparity);
+    let checks = &config.checks;
+    // Candidates are the disparities whose partner lies inside the right picture.
+    let candidates = |x: usize| {
+        let most = if x >= smallest { (x - smallest + 1).min(sums.disparities) } else { 0 };
+        &sums.at(x, y)[..most]
+    };
+    let winners: Vec<Option<Winner>> = (0..sums.width).map(|x| winner(candidates(x))).collect();
+    let held = held_by_right_columns(&winners, smallest);
+
+    let mut disparities = vec![Disparity::NONE; sums.width];
+    let mut flags = vec![PixelFlags::CLEAR; sums.width];
+    for x in 0..sums.width {
+        let Some(best) = winners[x] else {
+            flags[x] = PixelFlags::OUTSIDE;
+            continue;
+        };
+        let mut refused = false;
+        let mut say = |flag: PixelFlags, refuses: bool| {
+            flags[x] = flags[x].union(flag);
+            refused |= refuses;
+        };
+        if best.d + 1 == sums.disparities {
+            say(PixelFlags::CEILING, checks.refuse_ceiling);
+        }
+        if checks.uniqueness_percent.is_some_and(|percent| ambiguous(candidates(x), best, percent)) {
+            say(PixelFlags::AMBIGUOUS, true);
+        }
+        if untextured(scheme, checks, left, x, y) {
+            say(PixelFlags::UNTEXTURED, true);
+        }
+        if let Some(most) = checks.left_right_px {
+            let kept = held[x - smallest - best.d].expect("this pixel has offered itself");
+            if kept.d.abs_diff(best.d) > usize::from(most) {
+                say(PixelFlags::MISMATCH, true);
+            }
+        }
+        if !refused {
+            let steps = (smallest + best.d) as i32 * 32 + fraction(candidates(x), best);
+            disparities[x] = Disparity::from_raw(steps as u16);
+        }
+    }
+    (disparities, flags)
+}
+
+/// The cheapest candidate; the smallest disparity among equals.
+fn winner(candidates: &[u16]) -> Option<Winner> {
+    let cost = *candidates.iter().min()?;
+    let d = candidates.iter().position(|&c| c == cost)?;
+    Some(Winner { d, cost })
+}
+
+/// What every right column holds after the left pixels, in order, have offered their winners: the cheapest offer, the
+/// first among equals.
+fn held_by_right_columns(winners: &[Option<Winner>], smallest: usize) -> Vec<Option<Winner>> {
+    let mut held: Vec<Option<Winner>> = vec![None; winners.len()];
+    for (x, winner) in winners.iter().enumerate() {
+        if let Some(offer) = winner {
+            let holder = &mut held[x - smallest - offer.d];
+            if holder.is_none_or(|h| offer.cost < h.cost) {
+                *holder = Some(*offer);
+            }
+        }
+    }
+    held
+}
+
+/// Steps of 1/32 px from the winner to the tip of the two equally steep lines through its cost and its neighbours'.
+fn fraction(candidates: &[u16], best: Winner) -> i32 {
+    if best.d == 0 || best.d + 1 >= candidates.len() {
+        return 0;
+    }
+    let before = i32::from(candidates[best.d - 1]) - i32::from(best.cost);
+    let after = i32::from(candidates[best.d + 1]) - i32::from(best.cost);
+    let steepest = before.max(after);
+    if steepest == 0 {
+        return 0;
+    }
+    let magnitude = ((before - after).abs() * 16 + steepest / 2) / steepest;
+    if before > after { magnitude } else { -magnitude }
+}
+
+/// Whether a candidate more than 1 px from the winner costs no more than the winner and the margin allow.
+fn ambiguous(candidates: &[u16], best: Winner, percent: u8) -> bool {
+    let others = candidates.iter().enumerate().filter(|&(d, _)| d.abs_diff(best.d) > 1);
+    let second = others.map(|(_, &cost)| u32::from(cost)).min();
+    second.is_some_and(|second| second * (100 - u32::from(percent)) <= u32::from(best.cost) * 100)
+}
+
+/// Whether too few pixels of the window have a gradient along the row.
+fn untextured(scheme: &Scheme, checks: &Checks, left: &Picture<'_>, x: usize, y: usize) -> bool {
+    if checks.texture_pixels == 0 {
+        return false;
+    }
+    let mut textured = 0;
+    for row in y.saturating_sub(scheme.radius_y)..left.height.min(y + scheme.radius_y + 1) {
+        for column in x.saturating_sub(scheme.radius_x)..left.width.min(x + scheme.radius_x + 1) {
+            let (row, column) = (row as isize, column as isize);
+            if left.at(column + 1, row).abs_diff(left.at(column - 1, row)) >= checks.texture_gradient {
+                textured += 1;
+            }
+        }
+    }
+    textured < u32::from(checks.texture_pixels)
+}

@@ -1,0 +1,10 @@
+//! The program `stereo` as its users run it: what it writes, and what it says when it cannot.
+
+#[path = "cli/output.rs"]
+mod output;
+#[path = "cli/refused.rs"]
+mod refused;
+#[path = "cli/results.rs"]
+mod results;
+#[path = "cli/support.rs"]
+mod support;

@@ -1,0 +1,104 @@
+//! Results appear together or not at all.
+
+use super::support::{Bench, HEIGHT, WIDTH, calibration, names, program, text};
+use std::process::{Command, Stdio};
+
+const PLAIN: [&str; 6] =
+    ["disparity.pfm", "disparity.png", "disparity_colour.png", "flags.png", "report.html", "summary.json"];
+
+#[test]
+fn a_folder_is_made_with_its_parents_and_holds_the_results_alone() {
+    let bench = Bench::new();
+    let out = bench.path("new/deep/out");
+    bench.matched(&[("--out", &out.display().to_string())]);
+    assert_eq!(names(&out), PLAIN);
+}
+
+#[test]
+fn the_results_replace_those_of_an_earlier_run_and_nothing_else() {
+    let bench = Bench::new();
+    let calib = bench.put("calib.txt", calibration(WIDTH, HEIGHT).as_bytes()).display().to_string();
+    bench.matched(&[("--calib", &calib)]);
+    bench.put("out/notes.txt", b"mine");
+    let out = bench.path("out");
+    assert_eq!(names(&out).len(), PLAIN.len() + 4);
+    // Depths of another run beside these disparities would mislead.
+    bench.matched(&[]);
+    let mut expected: Vec<&str> = PLAIN.to_vec();
+    expected.insert(4, "notes.txt");
+    assert_eq!(names(&out), expected);
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_named() {
+    let bench = Bench::new();
+    let file = bench.put("file", b"content").display().to_string();
+    bench.refused(&bench.arguments(&[("--out", &file)]), &file);
+    let below = format!("{file}/below/it");
+    bench.refused(&bench.arguments(&[("--out", &below)]), &below);
+    // Kernel file systems refuse new files even to the superuser.
+    for place in ["/proc/stereo-results", "/proc"] {
+        bench.refused(&bench.arguments(&[("--out", place)]), place);
+    }
+    bench.refused(&["demo", "--out", &file], &file);
+    std::fs::create_dir_all(bench.path("taken/flags.png")).expect("a folder in the way");
+    let taken = bench.path("taken").display().to_string();
+    bench.refused(&bench.arguments(&[("--out", &taken)]), "flags.png");
+    // The pair's own folder holds pictures with the names of the demo's.
+    bench.refused(&["demo", "--out", &bench.path("").display().to_string()], "left.png");
+}
+
+/// Runs `match` where no file may grow beyond `blocks` of 512 bytes or more: to the program a disk that fills up.
+#[cfg(unix)]
+fn matched_on_a_full_disk(bench: &Bench, blocks: u32) -> std::process::Output {
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"")]);
+    shell.arg(program().get_program()).args(bench.arguments(&[]));
+    shell.output().expect("a shell")
+}
+
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_nothing_behind() {
+    let bench = Bench::new();
+    let before = bench.everything();
+    for blocks in [0, 1, 8, 30] {
+        let run = matched_on_a_full_disk(&bench, blocks);
+        bench.is_refusal(&run, &bench.path("out").display().to_string(), &format!("{blocks} blocks"));
+        assert!(before == bench.everything(), "{blocks} blocks: something is left");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_an_earlier_run_as_it_was() {
+    let bench = Bench::new();
+    bench.matched(&[("--method", "fast"), ("--filter", "dense")]);
+    let before = bench.everything();
+    let run = matched_on_a_full_disk(&bench, 8);
+    bench.is_refusal(&run, "out", "8 blocks");
+    assert!(before == bench.everything());
+}
+
+#[test]
+fn a_reader_that_closes_early_is_no_error() {
+    let bench = Bench::new();
+    let mut arguments = bench.arguments(&[]);
+    arguments[0] = "bench".into();
+    let out = arguments.iter().position(|a| a == "--out").expect("an option");
+    arguments.drain(out..out + 2);
+    let mut child =
+        program().args(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
+    drop(child.stdout.take());
+    let run = child.wait_with_output().expect("it ends");
+    assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_output_that_takes_nothing_is_an_error() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("Linux has it");
+    let run = program().arg("--help").stdout(full).output().expect("it starts");
+    assert_eq!(run.status.code(), Some(1));
+    assert!(text(&run.stderr).starts_with("stereo: standard output: "), "{}", text(&run.stderr));
+}

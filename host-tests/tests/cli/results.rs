@@ -1,0 +1,200 @@
+//! The files of the contract, decoded and compared with what the library says in this process.
+
+use super::support::{Bench, FAR, HEIGHT, NEAR, WIDTH, calibration, encode, names, pair, stereo, text};
+use image::{DynamicImage, ImageFormat};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use stereopsis::depth::DepthScale;
+use stereopsis::geometry::RectifiedRig;
+use stereopsis::matching::{Checks, Config};
+use stereopsis::units::PixelFlags;
+use stereopsis_host::map::DisparityMap;
+use stereopsis_host::pfm::{self, FloatMap};
+use stereopsis_host::run::{MemoryPair, Method, run};
+
+/// What the library says of the pair.
+fn in_process(method: Method, checks: Checks) -> DisparityMap {
+    let (left, right) = pair();
+    let mut camera = MemoryPair::new(WIDTH as u16, left.into_raw(), right.into_raw()).expect("one size");
+    let config = Config { checks, ..Config::new(WIDTH as u16, HEIGHT as u16, 32) };
+    run(method, &config, &mut camera, |_| {}).expect("a source that cannot fail").map
+}
+
+fn float_map(path: &Path) -> FloatMap {
+    let file = fs::read(path).expect("a result");
+    assert!(file.starts_with(b"Pf\n96 48\n-1.0\n"), "{}", path.display());
+    pfm::read(&mut file.as_slice()).expect("a float map")
+}
+
+fn picture(path: &Path) -> DynamicImage {
+    image::open(path).expect("a picture")
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_slice(&fs::read(path).expect("a result")).expect("JSON")
+}
+
+#[test]
+fn the_files_hold_what_the_library_says() {
+    let bench = Bench::new();
+    let out = bench.path("out");
+    for (method, name) in [(Method::Fast, "fast"), (Method::Block, "block")] {
+        for (filter, checks) in [("dense", Checks::DENSE), ("default", Checks::DEFAULT), ("strict", Checks::STRICT)] {
+            bench.matched(&[("--method", name), ("--filter", filter)]);
+            let map = in_process(method, checks);
+            assert_eq!(float_map(&out.join("disparity.pfm")).values, map.pixels(), "{name} {filter}");
+
+            let DynamicImage::ImageLuma16(samples) = picture(&out.join("disparity.png")) else { panic!("16-bit grey") };
+            for (sample, px) in samples.iter().zip(map.pixels()) {
+                let expected = if px.is_finite() { (px * 256.0).clamp(1.0, 65535.0) } else { 0.0 };
+                assert_eq!(f32::from(*sample), expected);
+            }
+            let DynamicImage::ImageLuma8(flags) = picture(&out.join("flags.png")) else { panic!("8-bit grey") };
+            assert!(flags.iter().zip(&map.flags).all(|(byte, flags)| *byte == flags.bits()));
+            let DynamicImage::ImageRgb8(colours) = picture(&out.join("disparity_colour.png")) else { panic!("colour") };
+            assert!(colours.pixels().zip(&map.disparity).all(|(c, d)| (c.0 == [0; 3]) == d.is_none()));
+
+            let summary = json(&out.join("summary.json"));
+            assert_eq!((summary["method"].as_str(), summary["filter"].as_str()), (Some(name), Some(filter)));
+            assert_eq!(summary["answers"], map.answers());
+            assert_eq!(summary["flags"]["mismatch"], map.flagged(PixelFlags::MISMATCH));
+            assert_eq!(summary["state_bytes"], method.state_bytes(WIDTH as u16, 32));
+            assert_eq!(summary["latency_lines"], method.latency_lines());
+            assert_eq!(
+                [&summary["width"], &summary["height"], &summary["disparities"]],
+                [WIDTH, HEIGHT, 32].map(Value::from).each_ref()
+            );
+            assert!(summary["depth"].is_null() && summary["time_ms"].as_f64().is_some_and(|ms| ms > 0.0));
+        }
+    }
+}
+
+#[test]
+fn the_answers_are_those_of_the_pictures() {
+    let bench = Bench::new();
+    bench.matched(&[]);
+    let map = float_map(&bench.path("out/disparity.pfm"));
+    let at = |x: usize, y: usize| map.values[y * WIDTH as usize + x];
+    assert!((at(55, 24) - NEAR as f32).abs() < 0.5, "{}", at(55, 24));
+    // The row from the top, not from the bottom: the square is lower than row 4.
+    assert!((at(55, 4) - FAR as f32).abs() < 0.5, "{}", at(55, 4));
+    assert_eq!(at(2, 4), f32::INFINITY, "no candidate lies inside the right image");
+}
+
+#[test]
+fn a_calibration_adds_depth_in_metres_and_millimetres_and_a_cloud() {
+    let bench = Bench::new();
+    let calib = bench.put("calib.txt", calibration(WIDTH, HEIGHT).as_bytes()).display().to_string();
+    bench.matched(&[("--calib", &calib)]);
+    let out = bench.path("out");
+    let rig = RectifiedRig::with_offset(100.0, 0.2, 47.5, 23.5, 48.5).expect("a rig");
+    let scale = DepthScale::new(&rig).expect("in range");
+    let map = in_process(Method::Block, Checks::DEFAULT);
+    let depth = float_map(&out.join("depth.pfm"));
+    assert_eq!(depth.values, map.depth_m(&scale));
+    let DynamicImage::ImageLuma16(millimetres) = picture(&out.join("depth.png")) else { panic!("16-bit grey") };
+    for ((mm, m), d) in millimetres.iter().zip(&depth.values).zip(&map.disparity) {
+        assert_eq!(*mm, scale.millimetres(*d).0);
+        assert!(if m.is_finite() { (f32::from(*mm) - m * 1000.0).abs() <= 1.0 } else { *mm == 0 }, "{mm} mm, {m} m");
+    }
+    let cloud = fs::read(out.join("cloud.ply")).expect("a cloud");
+    let body = cloud.windows(11).position(|w| w == b"end_header\n").expect("a header") + 11;
+    let header = text(&cloud[..body]);
+    assert!(header.starts_with("ply\nformat binary_little_endian 1.0\n"), "{header}");
+    assert!(header.contains(&format!("element vertex {}\n", map.answers())), "{header}");
+    assert_eq!(cloud.len() - body, map.answers() * 15);
+    let first = depth.values.iter().find(|z| z.is_finite()).expect("an answer");
+    assert_eq!(cloud[body + 8..body + 12], first.to_le_bytes(), "Z of the first point");
+    let summary = json(&out.join("summary.json"));
+    assert_eq!(summary["depth"]["baseline_m"].as_f64().map(|b| b as f32), Some(0.2));
+    assert!(summary["depth"]["nearest_m"].as_f64() < summary["depth"]["farthest_m"].as_f64());
+}
+
+#[test]
+fn every_image_format_gives_the_same_answers() {
+    let bench = Bench::new();
+    bench.matched(&[]);
+    let expected = float_map(&bench.path("out/disparity.pfm"));
+    let (left, right) = pair();
+    let colour = DynamicImage::from(right.clone()).into_rgb16();
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    DynamicImage::from(colour).write_to(&mut bytes, ImageFormat::Tiff).expect("16-bit colour TIFF");
+    let r = bench.put("right.tiff", bytes.get_ref()).display().to_string();
+    let l = bench.put("left.pgm", &encode(&left, ImageFormat::Pnm)).display().to_string();
+    bench.matched(&[("--left", &l), ("--right", &r)]);
+    assert_eq!(float_map(&bench.path("out/disparity.pfm")), expected);
+}
+
+#[test]
+fn the_report_asks_for_nothing_and_escapes_names() {
+    let bench = Bench::new();
+    let odd = bench.put("a<b>&c.png", &encode(&pair().0, ImageFormat::Png)).display().to_string();
+    bench.matched(&[("--left", &odd)]);
+    let report = fs::read_to_string(bench.path("out/report.html")).expect("UTF-8");
+    assert!(report.contains("a&lt;b&gt;&amp;c.png") && !report.contains("<b>&c"));
+    assert_eq!(report.matches("src=\"data:image/png;base64,").count(), report.matches("<img").count());
+    for outside in ["http:", "https:", "<script", "<link", "url(//", "@import"] {
+        assert!(!report.contains(outside), "{outside}");
+    }
+    assert!(report.ends_with("</body></html>\n"));
+}
+
+#[test]
+fn bench_prints_one_json_object() {
+    let bench = Bench::new();
+    let (left, right) = (bench.path("left.png"), bench.path("right.png"));
+    let (left, right) = (left.to_str().expect("UTF-8"), right.to_str().expect("UTF-8"));
+    for (method, name) in [(Method::Fast, "fast"), (Method::Block, "block")] {
+        let fixed =
+            ["bench", "--left", left, "--right", right, "--disparities", "32", "--repeat", "3", "--method", name];
+        let run = stereo(fixed);
+        assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
+        let printed: Value = serde_json::from_slice(&run.stdout).expect("one JSON object");
+        let keys: Vec<&String> = printed.as_object().expect("an object").keys().collect();
+        assert_eq!(keys, ["disparities", "frame_ms", "height", "kernel", "state_bytes", "width"]);
+        assert_eq!(printed["state_bytes"], method.state_bytes(WIDTH as u16, 32));
+        let times = printed["frame_ms"].as_array().expect("a list");
+        assert!(times.len() == 3 && times.iter().all(|t| t.as_f64().is_some_and(|ms| ms > 0.0)), "{times:?}");
+    }
+}
+
+#[test]
+fn the_demo_writes_the_truth_beside_the_answers() {
+    let bench = Bench::new();
+    let out = bench.path("demo");
+    let arguments = ["demo", "--out", out.to_str().expect("UTF-8")];
+    let run = stereo(arguments);
+    assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
+    let expected = [
+        "cloud.ply",
+        "depth.pfm",
+        "depth.png",
+        "disparity.pfm",
+        "disparity.png",
+        "disparity_colour.png",
+        "error.pfm",
+        "error.png",
+        "flags.png",
+        "left.png",
+        "report.html",
+        "right.png",
+        "summary.json",
+        "true_depth.pfm",
+        "true_disparity.pfm",
+    ];
+    assert_eq!(names(&out), expected);
+    let read =
+        |name: &str| pfm::read(&mut fs::read(out.join(name)).expect("a result").as_slice()).expect("a float map");
+    let (answer, truth, error) = (read("disparity.pfm"), read("true_disparity.pfm"), read("error.pfm"));
+    for ((a, t), e) in answer.values.iter().zip(&truth.values).zip(&error.values) {
+        assert!(if a.is_finite() && t.is_finite() { a - t == *e } else { *e == f32::INFINITY }, "{a} {t} {e}");
+    }
+    let accuracy = &json(&out.join("summary.json"))["accuracy"];
+    assert!(accuracy["density"].as_f64().is_some_and(|share| share > 0.9), "{accuracy}");
+    assert!(accuracy["bad2"].as_f64().is_some_and(|share| share < 0.02), "{accuracy}");
+    assert!(accuracy["within_3_sigma"].as_f64().is_some_and(|share| share > 0.98), "{accuracy}");
+    assert!(text(&run.stdout).contains("within 3 sigma_Z"));
+    // Its own pictures may be replaced.
+    assert!(stereo(arguments).status.success());
+}

@@ -1,0 +1,78 @@
+//! README.md holds: its commands work word for word in a fresh clone, and its figures are those of this tree.
+
+#[path = "readme/commands.rs"]
+mod commands;
+#[path = "readme/generated.rs"]
+mod generated;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The repository's root.
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("host-tests stands below the root")
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+/// `cargo xtask readme` runs this one with `STEREOPSIS_README=write`: then the parts are written instead.
+#[test]
+fn generated_parts_are_those_of_this_tree() {
+    let path = root().join("README.md");
+    let readme = read(&path);
+    let current = generated::splice(&readme).unwrap_or_else(|e| panic!("README.md: {e}"));
+    let picture = generated::picture();
+    let picture_path = root().join(generated::PICTURE);
+    if std::env::var("STEREOPSIS_README").as_deref() == Ok("write") {
+        fs::create_dir_all(picture_path.parent().expect("a folder")).expect("the picture's folder");
+        fs::write(&picture_path, generated::as_png(&picture)).expect("the picture");
+        fs::write(&path, current).expect("README.md");
+        return;
+    }
+    let differs = readme.lines().zip(current.lines()).find(|(old, new)| old != new);
+    assert!(readme == current, "README.md is not current, run `cargo xtask readme`: {differs:?}");
+    let stored = image::open(&picture_path).unwrap_or_else(|e| panic!("{}: {e}", generated::PICTURE)).into_rgb8();
+    assert!(stored == picture, "{} is not current, run `cargo xtask readme`", generated::PICTURE);
+    let bytes = fs::metadata(&picture_path).expect("the picture").len();
+    assert!(bytes < 150_000, "{} has {bytes} bytes", generated::PICTURE);
+}
+
+/// What is committed is cloned as a user would, and every `sh` block of its README is run there.
+#[test]
+fn commands_work_in_a_fresh_clone() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let clone = folder.path().join(commands::CLONE);
+    let mut git = Command::new("git");
+    git.args(["clone", "--quiet"]).arg(root()).arg(&clone);
+    let status = git.status().expect("git is needed: the repository is cloned");
+    assert!(status.success(), "git clone: {status}");
+    let readme = read(&clone.join("README.md"));
+
+    let blocks = commands::blocks(&readme);
+    for block in &blocks {
+        run(block, &clone);
+    }
+    let all = blocks.concat();
+    assert!(all.contains(" demo ") && all.contains(" match "), "README.md runs neither demo nor match:\n{all}");
+
+    let outs: Vec<PathBuf> = commands::out_folders(&all).iter().map(|out| clone.join(out)).collect();
+    let promised = commands::promised_files(&readme);
+    assert!(promised.len() > 5, "README.md names few files: {promised:?}");
+    let there = |name: &String| clone.join(name).is_file() || outs.iter().any(|out| out.join(name).is_file());
+    let missing: Vec<_> = promised.iter().filter(|name| !there(name)).collect();
+    assert!(missing.is_empty(), "README.md names files that its commands do not write: {missing:?}");
+}
+
+/// Runs a block's lines in one shell, which ends at the first that fails.
+fn run(block: &str, clone: &Path) {
+    // The build products go where this test's own are: the dependencies are built once.
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("the target folder");
+    let mut shell = Command::new("sh");
+    shell.args(["-e", "-x", "-c", block]).current_dir(clone).env("CARGO_TARGET_DIR", target);
+    let output = shell.output().expect("sh");
+    let told = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "a block of README.md failed, {}:\n{block}\n{told}", output.status);
+}

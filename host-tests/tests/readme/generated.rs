@@ -1,0 +1,164 @@
+//! The parts of README.md that are made from the code: tables of state and accuracy; and its picture.
+//!
+//! A table stands between `<!-- generated: NAME -->` and `<!-- end: NAME -->`, each on a line of its own.
+
+use image::codecs::png::{CompressionType, FilterType as PngFilter, PngEncoder};
+use image::imageops::{FilterType, replace, resize};
+use image::{DynamicImage, RgbImage};
+use std::sync::LazyLock;
+use stereopsis::depth::DepthScale;
+use stereopsis::matching::{Block, Checks, Config, Fast, Scheme, state_bytes};
+use stereopsis::pipeline::Pipeline;
+use stereopsis_host::colour::ColourScale;
+use stereopsis_host::map::DisparityMap;
+use stereopsis_host::report::Accuracy;
+use stereopsis_host::run::{MemoryPair, Method, run};
+use stereopsis_host::scene::{Scene, Truth};
+
+/// Where the picture stands in the repository.
+pub const PICTURE: &str = ".github/demo.png";
+
+/// Columns of each half of the picture.
+const HALF_COLUMNS: u32 = 320;
+
+/// A part's name and what makes it.
+type Part = (&'static str, fn() -> String);
+
+/// The parts of README.md.
+const PARTS: [Part; 2] = [("state", state_table), ("accuracy", accuracy_table)];
+
+/// README.md with every part made anew; an error names what is missing or not closed.
+pub fn splice(readme: &str) -> Result<String, String> {
+    if !readme.contains(&format!("]({PICTURE})")) {
+        return Err(format!("it does not show {PICTURE}"));
+    }
+    splice_parts(readme, &PARTS)
+}
+
+fn splice_parts(readme: &str, parts: &[Part]) -> Result<String, String> {
+    let mut text = readme.to_owned();
+    for (name, make) in parts {
+        let (begin, end) = (format!("<!-- generated: {name} -->\n"), format!("<!-- end: {name} -->"));
+        let first = text.find(&begin).ok_or_else(|| format!("there is no line {}", begin.trim()))? + begin.len();
+        let length = text[first..].find(&end).ok_or_else(|| format!("there is no line {end}"))?;
+        text.replace_range(first..first + length, &format!("\n{}\n", make()));
+    }
+    match text.matches("<!-- generated: ").count() {
+        n if n == parts.len() => Ok(text),
+        n => Err(format!("{n} generated parts, of which {} are known", parts.len())),
+    }
+}
+
+/// Memory and delay of both methods in four sizes.
+fn state_table() -> String {
+    fn row<S: Scheme, const W: usize, const D: usize>() -> String {
+        let (state, whole) = (state_bytes::<S>(W, D), size_of::<Pipeline<S, W, D>>());
+        format!("| `{}` | {W} | {D} | {state} | {whole} | {} |\n", S::NAME, Pipeline::<S, W, D>::LATENCY)
+    }
+    let mut table = "| method | pixels in a line | disparities | matcher, bytes | pipeline, bytes | delay, lines |\n\
+                     | --- | ---: | ---: | ---: | ---: | ---: |\n"
+        .to_owned();
+    table +=
+        &[row::<Fast, 160, 32>(), row::<Fast, 320, 64>(), row::<Fast, 640, 64>(), row::<Fast, 640, 128>()].concat();
+    table +=
+        &[row::<Block, 160, 32>(), row::<Block, 320, 64>(), row::<Block, 640, 64>(), row::<Block, 640, 128>()].concat();
+    table
+}
+
+/// The built-in scene, rendered once.
+struct Demo {
+    scene: Scene,
+    camera: MemoryPair,
+    left: RgbImage,
+    truth: Truth,
+}
+
+static DEMO: LazyLock<Demo> = LazyLock::new(|| {
+    let scene = Scene::demo();
+    let (left, right) = scene.render();
+    let truth = scene.truth();
+    let camera = MemoryPair::new(scene.width(), left.to_vec(), right.to_vec()).expect("two pictures of one size");
+    Demo { scene, camera, left: DynamicImage::ImageLuma8(left).into_rgb8(), truth }
+});
+
+impl Demo {
+    fn match_with(&self, method: Method, checks: Checks) -> DisparityMap {
+        let config =
+            Config { checks, ..Config::new(self.scene.width(), self.scene.height(), self.scene.disparities()) };
+        run(method, &config, &mut self.camera.clone(), |_| ()).expect("a frame").map
+    }
+}
+
+/// Figures of both methods with the three filters on the built-in scene.
+fn accuracy_table() -> String {
+    let scale = DepthScale::new(&DEMO.scene.rig()).expect("the scene's rig");
+    let filters = [("dense", Checks::DENSE), ("default", Checks::DEFAULT), ("strict", Checks::STRICT)];
+    let mut table =
+        "| method | filter | answered | bad2 of the answers | missed | RMS of the good | within 3 sigma |\n\
+                     | --- | --- | ---: | ---: | ---: | ---: | ---: |\n"
+            .to_owned();
+    for method in Method::ALL {
+        for (filter, checks) in filters {
+            let a = Accuracy::of(&DEMO.match_with(method, checks), &DEMO.truth, &scale);
+            let missed = 1.0 - a.density * (1.0 - a.bad2);
+            let percent = |share: f64| format!("{:.2} %", 100.0 * share);
+            table += &format!(
+                "| `{method}` | `{filter}` | {} | {} | {} | {:.3} px | {} |\n",
+                percent(a.density),
+                percent(a.bad2),
+                percent(missed),
+                a.rms_good_px,
+                percent(a.within_3_sigma)
+            );
+        }
+    }
+    table
+}
+
+/// The left image beside its disparity in colours, as `stereo demo` writes them, made smaller.
+pub fn picture() -> RgbImage {
+    let map = DEMO.match_with(Method::Block, Checks::DEFAULT);
+    let colours = ColourScale::of(&map).picture(map.width, &map.pixels());
+    let rows = HALF_COLUMNS * map.height as u32 / map.width as u32;
+    let mut both = RgbImage::new(2 * HALF_COLUMNS, rows);
+    replace(&mut both, &resize(&DEMO.left, HALF_COLUMNS, rows, FilterType::Triangle), 0, 0);
+    // An average of two colours would be the colour of another disparity.
+    replace(&mut both, &resize(&colours, HALF_COLUMNS, rows, FilterType::Nearest), i64::from(HALF_COLUMNS), 0);
+    both
+}
+
+/// The picture as a file.
+pub fn as_png(picture: &RgbImage) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, PngFilter::Adaptive);
+    picture.write_with_encoder(encoder).expect("a PNG in memory");
+    bytes
+}
+
+/// The splicing, on small texts.
+mod on_a_small_readme {
+    use super::*;
+
+    const PARTS: [Part; 2] = [("one", || "| 1 |\n".into()), ("two", || "| 2 |\n".into())];
+
+    #[test]
+    fn parts_must_be_there_and_closed() {
+        let error = |readme| splice_parts(readme, &PARTS).unwrap_err();
+        assert_eq!(error(""), "there is no line <!-- generated: one -->");
+        assert_eq!(error("<!-- generated: one -->\n"), "there is no line <!-- end: one -->");
+        assert_eq!(splice("").unwrap_err(), format!("it does not show {PICTURE}"));
+    }
+
+    #[test]
+    fn what_stands_between_the_marks_is_replaced() {
+        let part = |name: &str| format!("<!-- generated: {name} -->\nold\n<!-- end: {name} -->\n");
+        let readme = format!("before\n{}{}after\n", part("two"), part("one"));
+        let made = splice_parts(&readme, &PARTS).expect("all parts are there");
+        let expected = "before\n<!-- generated: two -->\n\n| 2 |\n\n<!-- end: two -->\n\
+                        <!-- generated: one -->\n\n| 1 |\n\n<!-- end: one -->\nafter\n";
+        assert_eq!(made, expected);
+        assert_eq!(splice_parts(&made, &PARTS), Ok(made));
+        let unknown = format!("{readme}<!-- generated: other -->\n");
+        assert_eq!(splice_parts(&unknown, &PARTS).unwrap_err(), "3 generated parts, of which 2 are known");
+    }
+}

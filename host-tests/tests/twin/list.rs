@@ -1,0 +1,240 @@
+//! All sizes, ranges, pictures and checks.
+
+use super::{Any, Method, W, compare, pipeline};
+use image::GrayImage;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use std::collections::BTreeSet;
+use stereopsis::matching::{Block, Checks, Config, Fast};
+use stereopsis::units::{Disparity, PixelFlags};
+use stereopsis_host::scene::pattern::Pattern;
+use stereopsis_host::scene::{Random, Scene};
+
+/// The values of the deterministic list: every one of each is used.
+fn widths() -> Vec<u16> {
+    let awkward =
+        [47, 48, 49, 63, 64, 65, 79, 100, 127, 128, 129, 255, 256, 257, 319, 320, 321, 639, 640, 641, 699, 700, 704];
+    (1..=40).chain(awkward).collect()
+}
+
+fn heights() -> Vec<u16> {
+    (1..=20).chain([23, 31, 32, 33, 40, 59, 60]).collect()
+}
+
+const DISPARITIES: [u16; 13] = [16, 17, 31, 32, 33, 48, 63, 64, 100, 127, 128, 255, 256];
+const MIN_DISPARITIES: [u16; 7] = [0, 0, 1, 7, 40, 0, 705];
+
+const PATTERNS: [Pattern; 31] = [
+    Pattern::Noise,
+    Pattern::Constant(0),
+    Pattern::Shifted { most: 20, noise_grey: 0.0 },
+    Pattern::Constant(127),
+    Pattern::Columns(1),
+    Pattern::Shifted { most: 9, noise_grey: 3.0 },
+    Pattern::Columns(2),
+    Pattern::Columns(5),
+    Pattern::Shifted { most: 60, noise_grey: 8.0 },
+    Pattern::Columns(16),
+    Pattern::Rows(1),
+    Pattern::Saturated,
+    Pattern::Rows(3),
+    Pattern::Shifted { most: 14, noise_grey: 20.0 },
+    Pattern::Diagonals(1),
+    Pattern::Diagonals(3),
+    Pattern::Shifted { most: 255, noise_grey: 0.0 },
+    Pattern::Diagonals(8),
+    Pattern::Checkerboard(1),
+    Pattern::HalfBlank,
+    Pattern::Checkerboard(2),
+    Pattern::Checkerboard(7),
+    Pattern::Shifted { most: 3, noise_grey: 1.0 },
+    Pattern::Ramp(1),
+    Pattern::Ramp(4),
+    Pattern::FewLevels(2),
+    Pattern::Ramp(37),
+    Pattern::Shifted { most: 31, noise_grey: 2.0 },
+    Pattern::FewLevels(3),
+    Pattern::Constant(255),
+    Pattern::Shifted { most: 100, noise_grey: 1.0 },
+];
+
+/// Checks chosen by chance, the extremes among them.
+fn random_checks(random: &mut Random) -> Checks {
+    Checks {
+        left_right_px: *random.pick(&[None, Some(0), Some(1), Some(2), Some(9), Some(255)]),
+        uniqueness_percent: *random.pick(&[None, Some(0), Some(1), Some(5), Some(15), Some(60), Some(99)]),
+        texture_gradient: *random.pick(&[0, 1, 2, 10, 80, 255]),
+        texture_pixels: *random.pick(&[0, 1, 3, 20, 63, 81, 255]),
+        refuse_ceiling: random.below(2) == 1,
+        smoothing_radius: random.below(usize::from(Checks::MOST_SMOOTHING) + 1) as u8,
+        speckle_pixels: *random.pick(&[0, 1, 2, 5, 40, 100, 1000, Checks::MOST_SPECKLE]),
+        speckle_range: Disparity::from_raw(*random.pick(&[0, 1, 31, 32, 64, 1000])),
+    }
+}
+
+/// The deterministic list: every width with `rounds` choices of the rest.
+fn list(rounds: usize) -> Vec<(Config, Pattern, u64)> {
+    let (widths, heights) = (widths(), heights());
+    let mut random = Random::new(2011);
+    let mut cases = Vec::new();
+    for i in 0..rounds * widths.len() {
+        // The lists' lengths have no common factor with the steps, so all values of each come up in turn.
+        let width = widths[i % widths.len()];
+        let height = heights[i * 5 % heights.len()];
+        let checks = match i % 5 {
+            0 => Checks::DENSE,
+            1 => Checks::DEFAULT,
+            2 => Checks::STRICT,
+            _ => random_checks(&mut random),
+        };
+        let config = Config {
+            min_disparity: MIN_DISPARITIES[i * 3 % MIN_DISPARITIES.len()],
+            checks,
+            ..Config::new(width, height, DISPARITIES[i * 4 % DISPARITIES.len()])
+        };
+        cases.push((config, PATTERNS[i * 2 % PATTERNS.len()], random.bits()));
+    }
+    cases
+}
+
+fn run_list<S: Method>() {
+    let cases = list(4);
+    let mut pipeline = pipeline::<S>();
+    let (mut answers, mut flags) = (0, PixelFlags::CLEAR);
+    for (config, pattern, seed) in &cases {
+        let pair = pattern.pair(u32::from(config.width), u32::from(config.height), *seed);
+        let map = compare(&mut pipeline, config, &pair).unwrap_or_else(|e| panic!("{pattern:?}: {e}"));
+        answers += map.disparity.iter().filter(|d| d.is_some()).count();
+        flags = map.flags.iter().fold(flags, |all, f| all.union(*f));
+    }
+    // The list says something: there are answers, fractions of all kinds of flags, and every value was used.
+    assert!(answers > 100_000, "{answers} answers");
+    assert!(PixelFlags::NAMES.iter().all(|(flag, _)| flags.contains(*flag)), "flags seen: {flags:?}");
+    let used = |value: fn(&Config) -> u16| cases.iter().map(|(c, ..)| value(c)).collect::<BTreeSet<_>>();
+    assert_eq!(used(|c| c.width), widths().into_iter().collect());
+    assert_eq!(used(|c| c.height), heights().into_iter().collect());
+    assert_eq!(used(|c| c.disparities), DISPARITIES.into_iter().collect());
+    assert_eq!(used(|c| c.min_disparity), MIN_DISPARITIES.into_iter().collect());
+    assert!(PATTERNS.iter().all(|p| cases.iter().any(|(_, q, _)| p == q)));
+}
+
+#[test]
+fn fast_equals_its_twin_at_all_sizes_ranges_and_pictures() {
+    run_list::<Fast>();
+}
+
+#[test]
+fn block_equals_its_twin_at_all_sizes_ranges_and_pictures() {
+    run_list::<Block>();
+}
+
+/// Every picture with each of the ready-made checks, at a size that has all kinds of borders.
+fn every_pattern<S: Method>() {
+    let mut pipeline = pipeline::<S>();
+    for (i, pattern) in PATTERNS.into_iter().enumerate() {
+        let pair = pattern.pair(71, 22, i as u64);
+        for checks in [Checks::DENSE, Checks::DEFAULT, Checks::STRICT] {
+            let config = Config { checks, ..Config::new(71, 22, 32) };
+            compare(&mut pipeline, &config, &pair).unwrap_or_else(|e| panic!("{pattern:?}: {e}"));
+        }
+    }
+}
+
+#[test]
+fn every_pattern_with_every_preset() {
+    every_pattern::<Fast>();
+    every_pattern::<Block>();
+}
+
+fn rendered<S: Method>(pipeline: &mut Any<S>, scene: &Scene, pair: &(GrayImage, GrayImage)) {
+    for checks in [Checks::DENSE, Checks::DEFAULT, Checks::STRICT] {
+        for min_disparity in [0, 5] {
+            let config =
+                Config { checks, min_disparity, ..Config::new(scene.width(), scene.height(), scene.disparities()) };
+            let map = compare(pipeline, &config, pair).unwrap_or_else(|e| panic!("{e}"));
+            let answers = map.disparity.iter().filter(|d| d.is_some()).count();
+            assert!(answers * 3 > map.disparity.len(), "{answers} answers");
+        }
+    }
+}
+
+#[test]
+fn a_rendered_scene_equals_the_twin() {
+    let scene = Scene::small(200, 150);
+    let pair = scene.render();
+    rendered::<Fast>(&mut pipeline(), &scene, &pair);
+    rendered::<Block>(&mut pipeline(), &scene, &pair);
+}
+
+/// One patch over the whole picture, against thresholds around its size and around the powers of two.
+fn whole_patch<S: Method>() {
+    let mut pipeline = pipeline::<S>();
+    let same = Pattern::Shifted { most: 0, noise_grey: 0.0 }.pair(W as u32, 60, 1);
+    for speckle_pixels in [255, 256, 32_766, Checks::MOST_SPECKLE] {
+        let checks = Checks { speckle_pixels, ..Checks::DENSE };
+        let config = Config { checks, ..Config::new(W as u16, 60, 16) };
+        compare(&mut pipeline, &config, &same).unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+#[test]
+fn patches_of_any_size_are_counted() {
+    whole_patch::<Fast>();
+    whole_patch::<Block>();
+}
+
+prop_compose! {
+    fn any_checks()(
+        left_right_px in proptest::option::of(0u8..6),
+        uniqueness_percent in proptest::option::of(0u8..100),
+        texture_gradient in 0u8..60,
+        texture_pixels in 0u8..90,
+        refuse_ceiling: bool,
+        smoothing_radius in 0..=Checks::MOST_SMOOTHING,
+        speckle_pixels in 0u16..300,
+        speckle_range in (0u16..200).prop_map(Disparity::from_raw),
+    ) -> Checks {
+        Checks {
+            left_right_px, uniqueness_percent, texture_gradient, texture_pixels, refuse_ceiling, smoothing_radius,
+            speckle_pixels, speckle_range,
+        }
+    }
+}
+
+prop_compose! {
+    fn any_config()(
+        width in 1u16..=300, height in 1u16..=60, disparities in 16u16..=256, min_disparity in 0u16..60,
+        checks in any_checks(),
+    ) -> Config {
+        Config { width, height, disparities, min_disparity, checks }
+    }
+}
+
+fn any_pattern() -> impl Strategy<Value = Pattern> {
+    prop_oneof![
+        2 => (0usize..80, 0.0..12.0).prop_map(|(most, noise_grey)| Pattern::Shifted { most, noise_grey }),
+        1 => proptest::sample::select(&PATTERNS[..]),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 60,
+        rng_seed: RngSeed::Fixed(4),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn any_combination_equals_the_twin(config in any_config(), pattern in any_pattern(), seed: u64) {
+        let pair = pattern.pair(u32::from(config.width), u32::from(config.height), seed);
+        for compared in [
+            compare::<Fast>(&mut pipeline(), &config, &pair),
+            compare::<Block>(&mut pipeline(), &config, &pair),
+        ] {
+            if let Err(e) = compared {
+                prop_assert!(false, "{pattern:?}: {e}");
+            }
+        }
+    }
+}

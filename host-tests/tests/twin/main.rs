@@ -1,0 +1,108 @@
+//! The pipeline against its naive twin: every disparity, flag and deviation, to the bit, for every kernel.
+//!
+//! * `list`: all sizes, ranges, pictures and checks, and any combination of them.
+//! * `frames`: one frame after the other, faults and changes in between.
+
+mod frames;
+mod list;
+
+use image::GrayImage;
+use stereopsis::camera::StereoSource;
+use stereopsis::matching::{Block, Config, Fast, Kernel, Scheme};
+use stereopsis::pipeline::{Pipeline, PipelineError};
+use stereopsis_host::scene::SceneCamera;
+use stereopsis_host::scene::pattern::Pattern;
+use stereopsis_host::twin::cost::{costs, window_sums, window_sums_plain};
+use stereopsis_host::twin::{self, Answers, Picture, match_pair};
+
+/// The capacity of all pipelines here.
+const W: usize = 704;
+const D: usize = 256;
+type Any<S> = Pipeline<S, W, D>;
+
+/// A method of the core with the twin's description of it.
+trait Method: Scheme {
+    const TWIN: twin::Scheme;
+}
+
+impl Method for Fast {
+    const TWIN: twin::Scheme = twin::Scheme::FAST;
+}
+
+impl Method for Block {
+    const TWIN: twin::Scheme = twin::Scheme::BLOCK;
+}
+
+/// All rows of the camera's next frame.
+fn rows<S: Scheme, C: StereoSource>(pipeline: &mut Any<S>, camera: &mut C) -> Result<Answers, PipelineError<C::Error>> {
+    let format = camera.format();
+    let (width, height) = (usize::from(format.width), usize::from(format.height));
+    let mut map = Answers { width, height, disparity: Vec::new(), flags: Vec::new(), sigma_px: Vec::new() };
+    pipeline.begin_frame(camera)?;
+    let mut due = 0;
+    while let Some(row) = pipeline.next_row(camera)? {
+        assert_eq!(row.index(), due, "rows come in order");
+        due += 1;
+        map.disparity.extend_from_slice(row.disparities());
+        map.flags.extend_from_slice(row.flags());
+        map.sigma_px.extend((0..width).map(|x| row.sigma_px(x)));
+        assert_eq!(row.sigma_px(width), None, "there is no pixel beside the image");
+    }
+    assert_eq!(due, format.height, "every row comes out");
+    Ok(map)
+}
+
+/// Where two maps differ first, in words; `None` where they are equal.
+fn difference(core: &Answers, twin: &Answers) -> Option<String> {
+    assert_eq!((core.width, core.height), (twin.width, twin.height));
+    assert_eq!(core.disparity.len(), twin.disparity.len());
+    let bits = |sigma: Option<f32>| sigma.map(f32::to_bits);
+    let at = (0..core.disparity.len()).find(|&i| {
+        core.disparity[i] != twin.disparity[i]
+            || core.flags[i] != twin.flags[i]
+            || bits(core.sigma_px[i]) != bits(twin.sigma_px[i])
+    })?;
+    let pixel = |map: &Answers| {
+        format!("raw {} flags {:#08b} sigma {:?}", map.disparity[at].raw(), map.flags[at].bits(), map.sigma_px[at])
+    };
+    let (x, y) = (at % core.width, at / core.width);
+    Some(format!("column {x}, row {y}: the core says {}, the twin {}", pixel(core), pixel(twin)))
+}
+
+/// Runs the pair through the pipeline with every kernel and compares with the twin, whose answers are returned.
+fn compare<S: Method>(
+    pipeline: &mut Any<S>,
+    config: &Config,
+    pair: &(GrayImage, GrayImage),
+) -> Result<Answers, String> {
+    let expected = match_pair(&S::TWIN, config, &pair.0, &pair.1);
+    for kernel in Kernel::available() {
+        pipeline.set_kernel(kernel);
+        pipeline.start(config).map_err(|e| format!("{config:?}: {e}"))?;
+        assert_eq!(pipeline.kernel(), kernel);
+        let mut camera = SceneCamera::new(pair.0.clone(), pair.1.clone());
+        let map = rows(pipeline, &mut camera).map_err(|e| format!("{config:?}: {e}"))?;
+        if let Some(where_first) = difference(&map, &expected) {
+            return Err(format!("{} with kernel {}: {where_first}; {config:?}", S::NAME, kernel.name()));
+        }
+    }
+    Ok(expected)
+}
+
+fn pipeline<S: Scheme>() -> Box<Any<S>> {
+    Box::new(Pipeline::new())
+}
+
+#[test]
+fn the_twins_window_sums_are_the_plain_ones() {
+    let (left, right) = Pattern::Noise.pair(23, 17, 3);
+    for scheme in [twin::Scheme::FAST, twin::Scheme::BLOCK] {
+        for (config, left, right) in [
+            (Config::new(23, 17, 20), &left, &right),
+            (Config::new(3, 2, 16), &Pattern::Noise.pair(3, 2, 4).0, &Pattern::Noise.pair(3, 2, 5).1),
+        ] {
+            let costs = costs(&scheme, &config, &Picture::new(left), &Picture::new(right));
+            assert_eq!(window_sums(&scheme, &costs), window_sums_plain(&scheme, &costs));
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! Named, timed steps and the commands in them.
+
+use std::ffi::OsStr;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+/// What went wrong, in one line.
+#[derive(Debug)]
+pub struct Failure(String);
+
+impl Failure {
+    /// A failure with this line.
+    pub fn new(line: impl Into<String>) -> Self {
+        Self(line.into())
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// A chore's outcome.
+pub type Outcome<T = ()> = Result<T, Failure>;
+
+/// Runs steps one after another, says which and how long each took, and ends at the first failure.
+#[derive(Default)]
+pub struct Steps {
+    taken: Vec<(String, f64)>,
+}
+
+impl Steps {
+    /// Runs a step.
+    pub fn step<T>(&mut self, name: &str, work: impl FnOnce() -> Outcome<T>) -> Outcome<T> {
+        println!("\n==> {name}");
+        let start = Instant::now();
+        let done = work();
+        let seconds = start.elapsed().as_secs_f64();
+        match done {
+            Ok(value) => {
+                println!("<== {name}: {seconds:.1} s");
+                self.taken.push((name.to_owned(), seconds));
+                Ok(value)
+            }
+            Err(Failure(line)) => Err(Failure(format!("step \"{name}\" failed after {seconds:.1} s: {line}"))),
+        }
+    }
+
+    /// Prints every step with its time.
+    pub fn summary(&self) {
+        println!();
+        for (name, seconds) in &self.taken {
+            println!("{seconds:7.1} s  {name}");
+        }
+        println!("{:7.1} s  in all", self.taken.iter().map(|(_, seconds)| seconds).sum::<f64>());
+    }
+}
+
+/// The repository's root.
+pub fn root() -> &'static Path {
+    // The manifest's folder is host-tests/xtask.
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap_or(Path::new("."))
+}
+
+/// The folder of build products: cargo's own variable, else `target` at the root.
+pub fn target_dir() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
+}
+
+/// A command at the repository's root.
+pub fn command(program: impl AsRef<OsStr>, arguments: &[&str]) -> Command {
+    let mut command = Command::new(program);
+    command.args(arguments).current_dir(root()).stdin(Stdio::null());
+    command
+}
+
+/// Cargo at the repository's root.
+pub fn cargo(arguments: &[&str]) -> Command {
+    command("cargo", arguments)
+}
+
+/// Runs a command, its output passed through.
+pub fn run(command: &mut Command) -> Outcome {
+    println!("$ {}", words(command));
+    let status = command.status().map_err(|e| Failure(format!("{}: {e}", words(command))))?;
+    if status.success() { Ok(()) } else { Err(Failure(format!("{}: {status}", words(command)))) }
+}
+
+/// Runs a command quietly; what it printed.
+pub fn output_of(command: &mut Command) -> Outcome<String> {
+    let output = command.output().map_err(|e| Failure(format!("{}: {e}", words(command))))?;
+    if !output.status.success() {
+        let told = String::from_utf8_lossy(&output.stderr);
+        let last = told.lines().last().unwrap_or_default();
+        return Err(Failure(format!("{}: {}: {last}", words(command), output.status)));
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// A command's words, as typed.
+fn words(command: &Command) -> String {
+    let words = std::iter::once(command.get_program()).chain(command.get_args());
+    words.map(OsStr::to_string_lossy).collect::<Vec<_>>().join(" ")
+}

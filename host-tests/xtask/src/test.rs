@@ -1,0 +1,89 @@
+//! `cargo xtask test`: every check of the repository, one step after another.
+
+use crate::firmware;
+use crate::setup::{self, TARGETS};
+use crate::steps::{Failure, Outcome, Steps, cargo, command, run as run_command, target_dir};
+use std::path::PathBuf;
+
+/// The feature that builds the tests on real stereo pairs.
+const REAL_DATA: &str = "stereopsis-host/real-data";
+/// What is printed when they are not run, so that nobody takes them for passed.
+const NOT_RUN: &str = "real data: NOT RUN, set STEREO_DATA to the folder that holds stereo/";
+
+/// Runs all steps.
+pub fn run() -> Outcome {
+    let data = real_data()?;
+    if data.is_none() {
+        println!("{NOT_RUN}");
+    }
+    let mut steps = Steps::default();
+    steps.step("set up", setup::run_all)?;
+    steps.step("format", format)?;
+    steps.step("clippy", clippy)?;
+    steps.step("tests", || tests(data.is_some()))?;
+    steps.step("documentation", documentation)?;
+    steps.step("cross builds", cross_builds)?;
+    let version = setup::rust_version()?;
+    steps.step(&format!("stated rust-version {version}"), || rust_version(&version))?;
+    steps.step("firmware", firmware::run)?;
+    steps.summary();
+    if data.is_none() {
+        println!("{NOT_RUN}");
+    }
+    Ok(())
+}
+
+/// The folder of real stereo pairs: has to be there in CI, and where it is named.
+fn real_data() -> Outcome<Option<PathBuf>> {
+    let in_ci = std::env::var("CI").is_ok_and(|ci| !matches!(ci.as_str(), "" | "0" | "false"));
+    let Some(folder) = std::env::var_os("STEREO_DATA").map(PathBuf::from) else {
+        let needed = || Failure::new("CI is set and STEREO_DATA is not: it names the folder that holds stereo/");
+        return if in_ci { Err(needed()) } else { Ok(None) };
+    };
+    if !folder.join("stereo").is_dir() {
+        return Err(Failure::new(format!("STEREO_DATA: {} has no folder stereo/", folder.display())));
+    }
+    Ok(Some(folder))
+}
+
+fn format() -> Outcome {
+    run_cargo("fmt --all --check")?;
+    run_command(&mut firmware::cargo("fmt --check"))
+}
+
+fn clippy() -> Outcome {
+    run_cargo(&format!("clippy --locked --workspace --all-targets --features {REAL_DATA} -- -D warnings"))?;
+    run_cargo("clippy --locked -p stereopsis --features defmt -- -D warnings")?;
+    run_command(&mut firmware::cargo("clippy --locked --release -- -D warnings"))
+}
+
+fn tests(with_real_data: bool) -> Outcome {
+    let features = if with_real_data { format!(" --features {REAL_DATA}") } else { String::new() };
+    run_cargo(&format!("test --locked --workspace{features}"))
+}
+
+fn documentation() -> Outcome {
+    let mut docs = cargo(&["doc", "--locked", "--workspace", "--no-deps"]);
+    run_command(docs.env("RUSTDOCFLAGS", "-D warnings"))
+}
+
+fn cross_builds() -> Outcome {
+    for features in [[].as_slice(), &["--features", "defmt"]] {
+        let mut build = cargo(&["build", "--locked", "--release", "-p", "stereopsis"]);
+        build.args(features).args(TARGETS.iter().flat_map(|target| ["--target", target]));
+        run_command(build.env("RUSTFLAGS", "-D warnings"))?;
+    }
+    Ok(())
+}
+
+/// The oldest compiler that the packages say they build with, in earnest.
+fn rust_version(version: &str) -> Outcome {
+    let mut check = command("rustup", &["run", version, "cargo", "check", "--locked"]);
+    check.args(["-p", "stereopsis", "-p", "stereopsis-host"]);
+    // Two compilers that take turns in one folder lock each other out and tidy away each other's products.
+    run_command(check.env("CARGO_TARGET_DIR", target_dir().join("rust-version")))
+}
+
+fn run_cargo(words: &str) -> Outcome {
+    run_command(&mut cargo(&words.split_whitespace().collect::<Vec<_>>()))
+}

@@ -13,8 +13,10 @@ pub trait Lane: Copy + Ord + 'static {
     const MASKS: &'static [Self; 512];
     /// A column's sum.
     fn widen(column: u8) -> Self;
-    /// A lane's number, 0 to 255.
-    fn index(lane: usize) -> Self;
+    /// The numbers of the lanes, 0 to 255.
+    const INDICES: &'static [Self; 256];
+    /// [`Self::MAX`] where the two are not equal, else nothing.
+    fn differs(self, other: Self) -> Self;
     /// Sum modulo the lane's size.
     fn add(self, other: Self) -> Self;
     /// Difference modulo the lane's size.
@@ -45,9 +47,19 @@ macro_rules! lane {
                 column as $lane
             }
 
+            const INDICES: &'static [Self; 256] = &{
+                let mut indices = [0; 256];
+                let mut i = 0;
+                while i < 256 {
+                    indices[i] = i as $lane;
+                    i += 1;
+                }
+                indices
+            };
+
             #[inline(always)]
-            fn index(lane: usize) -> Self {
-                lane as $lane
+            fn differs(self, other: Self) -> Self {
+                if self != other { Self::MAX } else { 0 }
             }
 
             #[inline(always)]

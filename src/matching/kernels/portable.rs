@@ -147,10 +147,9 @@ fn minimum<L: Lane, const N: usize>(lanes: &[L; N]) -> L {
 #[inline(always)]
 fn winner<L: Lane, const N: usize>(least: L, candidates: usize, second: bool, masked: &mut [L]) -> Winner {
     let mut first = [L::MAX; N];
-    for (group, &lanes) in masked.as_chunks::<N>().0.iter().enumerate() {
+    for (&lanes, &indices) in masked.as_chunks::<N>().0.iter().zip(L::INDICES.as_chunks::<N>().0) {
         for i in 0..N {
-            let place = if lanes[i] == least { L::index(group * N + i) } else { L::MAX };
-            first[i] = first[i].min(place);
+            first[i] = first[i].min(indices[i].or(lanes[i].differs(least)));
         }
     }
     let disparity = usize::from(minimum(&first).get());

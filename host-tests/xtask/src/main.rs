@@ -3,8 +3,8 @@
 //! * `test` sets up what it needs and runs everything: the one test command.
 //! * `readme` writes the generated parts of README.md anew, or checks them.
 //!
-//! [`steps`] runs named steps, [`setup`] gets tools, [`test`] is the list of steps, [`firmware`] and [`readme`] are two
-//! of them.
+//! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`firmware`] and [`readme`] are
+//! two of them.
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

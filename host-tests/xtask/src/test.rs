@@ -63,8 +63,12 @@ fn tests(with_real_data: bool) -> Outcome {
 }
 
 fn documentation() -> Outcome {
-    let mut docs = cargo(&["doc", "--locked", "--workspace", "--no-deps"]);
-    run_command(docs.env("RUSTDOCFLAGS", "-D warnings"))
+    // The core's private items too: its comments link to them. Then what a user reads, in the same place.
+    for words in ["-p stereopsis --document-private-items", "--workspace"] {
+        let mut docs = cargo(&["doc", "--locked", "--no-deps"]);
+        run_command(docs.args(words.split_whitespace()).env("RUSTDOCFLAGS", "-D warnings"))?;
+    }
+    Ok(())
 }
 
 fn cross_builds() -> Outcome {

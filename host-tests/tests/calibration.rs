@@ -2,7 +2,8 @@
 
 use std::fs;
 use std::path::Path;
-use stereopsis_host::calibration::{Calibration, CalibrationError, Fault};
+use stereopsis::geometry::RectifiedRig;
+use stereopsis_host::calibration::{Calibration, CalibrationError, Fault, write_middlebury};
 
 const MIDDLEBURY: &str = "cam0=[999.421 0 294.182; 0 999.421 252.932; 0 0 1]
 cam1=[999.421 0 326.96; 0 999.421 252.932; 0 0 1]
@@ -138,4 +139,15 @@ fn cameras_that_are_no_rectified_pair_are_refused() {
     let bare = swapped.join("\n").replace("P0: ", "").replace("P1: ", "");
     assert!(matches!(fault(bare), Fault::Baseline { .. }), "the right camera stands first");
     assert!(matches!(fault(KITTI.replace("7.2e+02", "0")), Fault::FocalLength { .. }));
+}
+
+#[test]
+fn what_is_written_reads_back() {
+    let rig = RectifiedRig::with_offset(511.3, 0.0812, 319.5, 239.5, 331.25).expect("a rig");
+    let read = open_for(write_middlebury(&rig, 640, 480, 64), "left.png").expect("the format of its reader");
+    near(read.rig.focal_px(), rig.focal_px());
+    near(read.rig.baseline_m(), rig.baseline_m());
+    near(read.rig.disparity_offset_px(), rig.disparity_offset_px());
+    assert_eq!(read.rig.principal_point(), rig.principal_point());
+    assert_eq!((read.width, read.height, read.disparities), (Some(640), Some(480), Some(64)));
 }

@@ -167,6 +167,7 @@ fn the_demo_writes_the_truth_beside_the_answers() {
     let run = stereo(arguments);
     assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
     let expected = [
+        "calib.txt",
         "cloud.ply",
         "depth.pfm",
         "depth.png",

@@ -162,9 +162,7 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     /// Forgets the frame before.
     pub fn begin_frame(&mut self) {
         self.taken = 0;
-        self.columns.as_flattened_mut().fill(0);
-        self.texture.fill(0);
-        self.textured.fill(0);
+        self.stages().begin();
     }
 
     /// Takes the next row of the image, as the five lines around it in both cameras.

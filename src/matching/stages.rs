@@ -37,6 +37,12 @@ impl<S: Scheme> Stages<'_, S> {
     /// Census rows that are held: those under the window and the one that leaves it, row `y` in slot `y % CODES`.
     const CODES: usize = 2 * S::RADIUS_Y + 2;
 
+    /// Forgets the frame before.
+    pub(super) fn begin(self) {
+        self.columns.fill(0);
+        self.texture.clear();
+    }
+
     /// Takes row `y` of both images (`None` below the last one) and finishes the row that is due with it.
     pub(super) fn step(mut self, y: usize, lines: Option<[&Around<'_>; 2]>) {
         if let Some([left, right]) = lines {

@@ -16,6 +16,12 @@ pub(super) struct Texture<'a> {
 }
 
 impl Texture<'_> {
+    /// Forgets all rows.
+    pub(super) fn clear(self) {
+        self.history.fill(0);
+        self.counts.fill(0);
+    }
+
     /// Moves one row on; `line` is the new row, or `None` below the image.
     pub(super) fn push<S: Scheme>(&mut self, line: Option<&[u8]>, checks: &Checks) {
         for (word, count) in self.history.iter_mut().zip(self.counts.iter_mut()) {

@@ -41,15 +41,15 @@ pub(super) fn row_in_groups<S: Scheme, const N: usize, const STRIDE: usize>(
     let none = NO_COLUMN.get(..stride).unwrap_or(&[]);
     let mut batch = [Winner::default(); BATCH];
     sums.fill(S::Sum::ZERO);
-    for right in 0..width + S::RADIUS_X {
-        if let Some(column) = columns.get_mut(right * stride..).and_then(|c| c.get_mut(..stride)) {
-            update_column::<S, N>(
-                column,
-                candidates(enter, right, width, stride),
-                candidates(leave, right, width, stride),
-            );
+    // Columns first, then windows: a processor that looks ahead finds more independent work in two short loops than in
+    // a long one.
+    for x in 0..width {
+        if let Some(column) = columns.get_mut(x * stride..).and_then(|c| c.get_mut(..stride)) {
+            update_column::<S, N>(column, candidates(enter, x, width, stride), candidates(leave, x, width, stride));
         }
-        let Some(select) = select else { continue };
+    }
+    let Some(select) = select else { return };
+    for right in 0..width + S::RADIUS_X {
         let column = |x: usize| columns.get(x * stride..).and_then(|c| c.get(..stride)).unwrap_or(none);
         let enters = if right < width { column(right) } else { none };
         let leaves = if right > 2 * S::RADIUS_X { column(right - 2 * S::RADIUS_X - 1) } else { none };

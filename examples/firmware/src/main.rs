@@ -22,7 +22,8 @@ static PIPELINE: ConstStaticCell<BoardPipeline> = ConstStaticCell::new(BoardPipe
 
 #[entry]
 fn main() -> ! {
-    let pipeline = PIPELINE.take();
+    // Only the first call gets it; there is no second one.
+    let Some(pipeline) = PIPELINE.try_take() else { end(debug::EXIT_FAILURE) };
     let mut camera = BoardCamera::new();
     match Report::take_frame(pipeline, &mut camera) {
         Ok(report) => {

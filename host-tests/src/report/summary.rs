@@ -38,7 +38,7 @@ pub struct Summary {
     pub state_bytes: usize,
     /// How many lines after its own a row came out.
     pub latency_lines: usize,
-    /// The whole frame with its uncertainties, files left out, milliseconds.
+    /// The pipeline's time for the frame, files and uncertainties left out, milliseconds.
     pub time_ms: f64,
     /// Depths, when there is a calibration.
     pub depth: Option<Depth>,

@@ -7,17 +7,6 @@ use core::convert::Infallible;
 use core::ops::Range;
 use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource};
 
-/// Pixels in a line.
-pub const WIDTH: u16 = 160;
-/// Lines in a frame.
-pub const HEIGHT: u16 = 120;
-/// The disparity of the board, px.
-pub const BOARD_DISPARITY: u16 = 20;
-/// Where the left camera sees the board, columns.
-pub const BOARD_COLUMNS: Range<i32> = 60..110;
-/// Where both cameras see the board, rows.
-pub const BOARD_ROWS: Range<i32> = 30..80;
-
 /// Fractional bits of a position in a texture: disparities of the floor are multiples of 1/16 px.
 const FRACTION_BITS: i32 = 4;
 /// Microseconds from frame to frame.
@@ -25,22 +14,71 @@ const FRAME_US: u64 = 33_333;
 /// Microseconds from line to line.
 const LINE_US: u64 = 250;
 
-/// The disparity of the floor in row `v`, 1/16 px: 4 px at the top and near 12 px at the bottom.
-pub const fn floor_disparity(v: i32) -> i32 {
-    (4 << FRACTION_BITS) + v
-}
-
 /// The two cameras.
-#[derive(Default)]
-pub struct BoardCamera {
+pub struct SceneCamera {
+    scene: Scene,
     frames: u32,
     next_row: Option<u16>,
 }
 
-impl BoardCamera {
+/// What the cameras look at, as large as their pictures: the board is an eighth of the width away.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Scene {
+    /// Pixels in a line.
+    pub width: u16,
+    /// Lines in a frame.
+    pub height: u16,
+}
+
+impl Scene {
+    /// The disparity of the board, px.
+    pub const fn board_disparity(self) -> u16 {
+        self.width / 8
+    }
+
+    /// Where the left camera sees the board, columns.
+    pub const fn board_columns(self) -> Range<i32> {
+        let width = self.width as i32;
+        width * 3 / 8..width * 11 / 16
+    }
+
+    /// Where both cameras see the board, rows.
+    pub const fn board_rows(self) -> Range<i32> {
+        let height = self.height as i32;
+        height / 4..height * 2 / 3
+    }
+
+    /// The disparity of the floor in row `v`, 1/16 px: a fortieth of the width at the top, under three at the bottom.
+    pub const fn floor_disparity(self, v: i32) -> i32 {
+        let (width, height) = (self.width as u32, if self.height == 0 { 1 } else { self.height as u32 });
+        (width * 16 / 40 + v as u32 * (width * 3 / 4) / height) as i32
+    }
+
+    /// Whether the left camera's pixel is the board's.
+    pub fn on_board(self, u: i32, v: i32) -> bool {
+        self.board_columns().contains(&u) && self.board_rows().contains(&v)
+    }
+
+    /// What the left camera sees at column `u`, row `v`: textures are fixed to its columns.
+    fn left_pixel(self, u: i32, v: i32) -> u8 {
+        texture(u << FRACTION_BITS, v, if self.on_board(u, v) { BOARD } else { FLOOR })
+    }
+
+    /// What the right camera sees: the board's pixel if it hides the floor there, else the floor's.
+    fn right_pixel(self, u: i32, v: i32, floor_disparity: i32) -> u8 {
+        let on_board_at = u + i32::from(self.board_disparity());
+        if self.on_board(on_board_at, v) {
+            texture(on_board_at << FRACTION_BITS, v, BOARD)
+        } else {
+            texture((u << FRACTION_BITS) + floor_disparity, v, FLOOR)
+        }
+    }
+}
+
+impl SceneCamera {
     /// Cameras that have not begun a frame yet.
-    pub const fn new() -> Self {
-        Self { frames: 0, next_row: None }
+    pub const fn new(scene: Scene) -> Self {
+        Self { scene, frames: 0, next_row: None }
     }
 
     /// When the frame that was started last began, microseconds.
@@ -49,13 +87,13 @@ impl BoardCamera {
     }
 }
 
-impl ErrorType for BoardCamera {
+impl ErrorType for SceneCamera {
     type Error = Infallible;
 }
 
-impl StereoSource for BoardCamera {
+impl StereoSource for SceneCamera {
     fn format(&self) -> LineFormat {
-        LineFormat { width: WIDTH, height: HEIGHT, pixel: PixelFormat::Grey8 }
+        LineFormat { width: self.scene.width, height: self.scene.height, pixel: PixelFormat::Grey8 }
     }
 
     fn max_row_skew_us(&self) -> u32 {
@@ -69,39 +107,20 @@ impl StereoSource for BoardCamera {
     }
 
     fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Infallible>> {
-        let row = self.next_row.filter(|&row| row < HEIGHT).ok_or(CameraError::NoLineLeft)?;
-        let needed = usize::from(WIDTH);
+        let row = self.next_row.filter(|&row| row < self.scene.height).ok_or(CameraError::NoLineLeft)?;
+        let needed = usize::from(self.scene.width);
         let (Some(left), Some(right)) = (left.get_mut(..needed), right.get_mut(..needed)) else {
             return Err(CameraError::BufferTooShort { needed });
         };
         let v = i32::from(row);
+        let floor = self.scene.floor_disparity(v);
         for ((u, l), r) in (0..).zip(left).zip(right) {
-            *l = noisy(left_pixel(u, v), u, v, 1);
-            *r = noisy(right_pixel(u, v), u, v, 2);
+            *l = noisy(self.scene.left_pixel(u, v), u, v, 1);
+            *r = noisy(self.scene.right_pixel(u, v, floor), u, v, 2);
         }
         self.next_row = Some(row + 1);
         Ok(LineStart { row, timestamp_us: self.frame_us() + u64::from(row) * LINE_US })
     }
-}
-
-/// What the left camera sees at column `u`, row `v`: textures are fixed to its columns.
-fn left_pixel(u: i32, v: i32) -> u8 {
-    if on_board(u, v) { texture(u << FRACTION_BITS, v, BOARD) } else { texture(u << FRACTION_BITS, v, FLOOR) }
-}
-
-/// What the right camera sees: the board's pixel if it hides the floor there, else the floor's.
-fn right_pixel(u: i32, v: i32) -> u8 {
-    let on_board_at = u + i32::from(BOARD_DISPARITY);
-    if on_board(on_board_at, v) {
-        texture(on_board_at << FRACTION_BITS, v, BOARD)
-    } else {
-        texture((u << FRACTION_BITS) + floor_disparity(v), v, FLOOR)
-    }
-}
-
-/// Whether the left camera's pixel is the board's.
-fn on_board(u: i32, v: i32) -> bool {
-    BOARD_COLUMNS.contains(&u) && BOARD_ROWS.contains(&v)
 }
 
 /// Seeds of the two surfaces' textures.

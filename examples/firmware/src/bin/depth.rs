@@ -1,0 +1,104 @@
+//! Rows in, depth rows out: the pipeline stands in a `static`, a camera gives lines, rows of disparity come out.
+//!
+//! `cargo run --release` runs it in QEMU. It takes `left.pgm` and `right.pgm` from the working directory, or the built-in
+//! scene when neither is there, writes `rows.bin` and `log.defmt`, and prints figures. The exit status is 0 when the
+//! frame came through. `cargo xtask firmware` runs it on any pictures and compares every bit with the host.
+#![no_std]
+#![no_main]
+
+use static_cell::ConstStaticCell;
+use stereopsis::camera::{FrameStart, StereoSource};
+use stereopsis::matching::{Config, ConfigError, Row};
+use stereopsis::pipeline::PipelineError;
+use stereopsis_firmware::camera::files::FileError;
+use stereopsis_firmware::camera::scene::Scene;
+use stereopsis_firmware::camera::{Camera, timed::Timed};
+use stereopsis_firmware::choice::{BOARD, BoardPipeline, DISPARITIES, HEIGHT, METHOD, WIDTH};
+use stereopsis_firmware::console::Console;
+use stereopsis_firmware::host::HostError;
+use stereopsis_firmware::rows::Rows;
+use stereopsis_firmware::{clock, log, runtime, stack};
+
+/// All the memory that the matcher takes, at an address fixed by the linker.
+static PIPELINE: ConstStaticCell<BoardPipeline> = ConstStaticCell::new(BoardPipeline::new());
+
+#[runtime::entry]
+fn main() -> ! {
+    stack::paint();
+    clock::start();
+    log::start();
+    // Only the first call gets it; there is no second one.
+    let Some(pipeline) = PIPELINE.try_take() else { runtime::end(false) };
+    let done = run(pipeline);
+    if let Err(failure) = &done {
+        defmt::error!("{}", failure);
+        Console::open().text("error: log.defmt says why\n");
+    }
+    runtime::end(done.is_ok())
+}
+
+/// Why there is no frame.
+#[derive(defmt::Format)]
+enum Failure {
+    /// The camera could not be opened.
+    Camera(FileError),
+    /// The pipeline cannot do what is asked.
+    Config(ConfigError),
+    /// The frame broke off.
+    Frame(PipelineError<FileError>),
+    /// The host did not take the rows.
+    Rows(HostError),
+}
+
+/// One frame, and what it took.
+fn run(pipeline: &mut BoardPipeline) -> Result<(), Failure> {
+    let mut camera = Timed::new(Camera::open(Scene { width: WIDTH, height: HEIGHT }).map_err(Failure::Camera)?);
+    let format = camera.format();
+    defmt::info!("{=str} on {=str}: {=u16}x{=u16}", METHOD, BOARD.core, format.width, format.height);
+    pipeline.start(&Config::new(format.width, format.height, DISPARITIES)).map_err(Failure::Config)?;
+    let mut rows = Rows::create().map_err(Failure::Rows)?;
+    let calibration = clock::calibrate();
+    let ticks = frame(pipeline, &mut camera, &mut rows)?;
+    defmt::info!("{=u16} rows, crc32 {=u32:08x}", rows.count(), rows.crc32());
+
+    let mut console = Console::open();
+    console.figure("width", format.width.into());
+    console.figure("height", format.height.into());
+    console.figure("disparities", DISPARITIES.into());
+    console.figure("rows", rows.count().into());
+    console.figure("crc32", rows.crc32().into());
+    console.figure("ticks", ticks - camera.ticks());
+    console.figure("camera_ticks", camera.ticks());
+    console.figure("calibration_ticks", calibration.into());
+    console.figure("pipeline_bytes", size_of::<BoardPipeline>() as u64);
+    console.figure("stack_bytes", stack::used() as u64);
+    Ok(())
+}
+
+/// All rows of a frame into the file; the ticks that the pipeline took for them, the camera's among them.
+fn frame(pipeline: &mut BoardPipeline, camera: &mut Timed<Camera>, rows: &mut Rows) -> Result<u64, Failure> {
+    let start = clock::now();
+    begin(pipeline, camera)?;
+    let mut ticks = u64::from(clock::since(start));
+    loop {
+        let start = clock::now();
+        let row = next(pipeline, camera)?;
+        ticks += u64::from(clock::since(start));
+        match row {
+            Some(row) => rows.write(&row).map_err(Failure::Rows)?,
+            None => return Ok(ticks),
+        }
+    }
+}
+
+// Not inlined: what these two become is the dense path, and its size is told from the rest of the program's.
+
+#[inline(never)]
+fn begin(pipeline: &mut BoardPipeline, camera: &mut Timed<Camera>) -> Result<FrameStart, Failure> {
+    pipeline.begin_frame(camera).map_err(Failure::Frame)
+}
+
+#[inline(never)]
+fn next<'p>(pipeline: &'p mut BoardPipeline, camera: &mut Timed<Camera>) -> Result<Option<Row<'p>>, Failure> {
+    pipeline.next_row(camera).map_err(Failure::Frame)
+}

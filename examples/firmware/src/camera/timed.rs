@@ -1,0 +1,53 @@
+//! A camera whose own time is measured, so that it can be taken off a frame's.
+
+use crate::clock;
+use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, StereoSource};
+
+/// A camera, and the ticks that it took to give its lines.
+pub struct Timed<C> {
+    camera: C,
+    ticks: u64,
+}
+
+impl<C> Timed<C> {
+    /// A camera that has taken no time yet.
+    pub const fn new(camera: C) -> Self {
+        Self { camera, ticks: 0 }
+    }
+
+    /// The ticks of all its calls so far.
+    pub const fn ticks(&self) -> u64 {
+        self.ticks
+    }
+}
+
+impl<C: ErrorType> ErrorType for Timed<C> {
+    type Error = C::Error;
+}
+
+impl<C: StereoSource> StereoSource for Timed<C> {
+    fn format(&self) -> LineFormat {
+        self.camera.format()
+    }
+
+    fn max_row_skew_us(&self) -> u32 {
+        self.camera.max_row_skew_us()
+    }
+
+    // Not inlined, so that the camera's code is not counted as the pipeline's.
+    #[inline(never)]
+    fn start_frame(&mut self) -> Result<FrameStart, CameraError<C::Error>> {
+        let start = clock::now();
+        let frame = self.camera.start_frame();
+        self.ticks += u64::from(clock::since(start));
+        frame
+    }
+
+    #[inline(never)]
+    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<C::Error>> {
+        let start = clock::now();
+        let line = self.camera.next_lines(left, right);
+        self.ticks += u64::from(clock::since(start));
+        line
+    }
+}

@@ -1,0 +1,27 @@
+//! What the programs of this firmware share. A program stands in `src/bin`; `depth` is the first.
+//!
+//! * [`choice`]: the method, the sizes and the board, chosen when it is built; [`board`] is the list of boards.
+//! * [`camera`]: where lines come from: the built-in scene, or two files on the host.
+//! * [`rows`]: rows of disparity to a file on the host, with their checksum. [`console`]: figures as text.
+//! * [`host`]: files on the host.
+//! * [`clock`]: instructions counted; [`stack`]: the stack measured.
+//! * [`log`]: defmt through semihosting. [`runtime`]: start and end of a program, and no panic.
+//!
+//! Files, text and log go to the host by semihosting, which works under QEMU and with a debugger. In a product these
+//! modules are the drivers, and what is left is the pipeline in a static and a loop over its rows.
+#![no_std]
+
+pub mod board;
+pub mod camera;
+pub mod clock;
+pub mod console;
+pub mod host;
+pub mod log;
+pub mod rows;
+pub mod runtime;
+pub mod stack;
+
+/// The method, the sizes and the board: `build.rs` writes this from the environment.
+pub mod choice {
+    include!(concat!(env!("OUT_DIR"), "/choice.rs"));
+}

@@ -7,10 +7,11 @@
 //! * [`calibration`]: rectified rigs from Middlebury's and KITTI's files.
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
 //! * [`twin`]: each stage again, naively, to hold the core to.
-//! * [`map`], [`pfm`], [`ply`], [`colour`], [`output`], [`report`]: results as files.
+//! * [`map`], [`pfm`], [`ply`], [`colour`], [`output`], [`report`]: results as files. [`command_line`]: errors in one line.
 
 pub mod calibration;
 pub mod colour;
+pub mod command_line;
 pub mod map;
 pub mod mock;
 pub mod output;

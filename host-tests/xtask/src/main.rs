@@ -1,13 +1,16 @@
 //! `cargo xtask`: the chores of the repository.
 //!
 //! * `test` sets up what it needs and runs everything: the one test command.
+//! * `firmware` runs the firmware example in QEMU, on one core or on all.
 //! * `readme` writes the generated parts of README.md anew, or checks them.
 //!
-//! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`firmware`] and [`readme`] are
-//! two of them.
+//! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`] and [`readme`]
+//! are two of them.
 
+use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
+use stereopsis_host::command_line::{one_line, usage_line};
 
 mod firmware;
 mod readme;
@@ -27,6 +30,8 @@ struct Arguments {
 enum Chore {
     /// Sets up what the tests need and runs all of them; STEREO_DATA names the folder of real stereo pairs.
     Test,
+    /// Runs the firmware example in QEMU and holds it to the host, bit for bit.
+    Firmware(firmware::Arguments),
     /// Writes the generated parts of README.md anew.
     Readme {
         /// Writes nothing; fails when a part differs from what would be written.
@@ -36,14 +41,23 @@ enum Chore {
 }
 
 fn main() -> ExitCode {
-    let done = match Arguments::parse().chore {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(help) if matches!(help.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => help.exit(),
+        Err(error) => {
+            eprintln!("error: {}", one_line(&usage_line(&error, "the chores are test, firmware and readme")));
+            return ExitCode::FAILURE;
+        }
+    };
+    let done = match arguments.chore {
         Chore::Test => test::run(),
+        Chore::Firmware(arguments) => firmware::run(&arguments),
         Chore::Readme { check } => readme::run(check),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("error: {failure}");
+            eprintln!("error: {}", one_line(&failure.to_string()));
             ExitCode::FAILURE
         }
     }

@@ -4,35 +4,69 @@ use crate::steps::{Failure, Outcome, command, output_of, root, run};
 use std::fs;
 
 /// The targets that the core is built for.
-pub const TARGETS: [&str; 5] = [
+pub const TARGETS: [&str; 6] = [
     "thumbv6m-none-eabi",
+    "thumbv7m-none-eabi",
     "thumbv7em-none-eabihf",
     "thumbv8m.main-none-eabihf",
     "riscv32imac-unknown-none-elf",
     "aarch64-unknown-none",
 ];
 
-/// The emulator of the firmware's board, and the package that has it.
-pub const QEMU: &str = "qemu-system-arm";
+/// An emulator, and the packages that have it: one or the other, as the distribution's version goes.
+struct Qemu {
+    program: &'static str,
+    packages: &'static [&'static str],
+}
+
+const ARM: Qemu = Qemu { program: "qemu-system-arm", packages: &["qemu-system-arm"] };
+const RISCV: Qemu = Qemu { program: "qemu-system-riscv32", packages: &["qemu-system-misc", "qemu-system-riscv"] };
+
+/// The emulator of a target's boards.
+fn emulator(target: &str) -> &'static Qemu {
+    if target.starts_with("riscv") { &RISCV } else { &ARM }
+}
+
+/// The name of the emulator of a target's boards.
+pub fn qemu_of(target: &str) -> &'static str {
+    emulator(target).program
+}
 
 /// Adds the targets, components and toolchain that are missing, then QEMU.
 pub fn run_all() -> Outcome {
-    rustup_parts()?;
+    targets(&TARGETS)?;
+    components()?;
     toolchain(&rust_version()?)?;
-    qemu()
+    qemu(&ARM)?;
+    qemu(&RISCV)
 }
 
-/// Targets of the cross builds; rustfmt and clippy.
-fn rustup_parts() -> Outcome {
-    let installed = |kind: &str| {
-        output_of(&mut command("rustup", &[kind, "list", "--installed"]))
-            .map_err(|e| Failure::new(format!("{e}; install rustup: the tests need targets that it adds")))
-    };
-    let targets = installed("target")?;
-    let missing: Vec<_> = TARGETS.into_iter().filter(|target| !targets.lines().any(|line| line == *target)).collect();
-    if !missing.is_empty() {
-        run(&mut command("rustup", &[&["target", "add"], missing.as_slice()].concat()))?;
+/// What firmware for these targets needs.
+pub fn firmware(of: &[&str]) -> Outcome {
+    targets(of)?;
+    of.iter().try_for_each(|target| qemu(emulator(target)))
+}
+
+/// What rustup has installed of a kind.
+fn installed(kind: &str) -> Outcome<String> {
+    output_of(&mut command("rustup", &[kind, "list", "--installed"]))
+        .map_err(|e| Failure::new(format!("{e}; install rustup: it adds the targets that are built for")))
+}
+
+/// Adds the targets that are missing.
+fn targets(needed: &[&str]) -> Outcome {
+    let there = installed("target")?;
+    let mut missing: Vec<_> =
+        needed.iter().copied().filter(|target| !there.lines().any(|line| line == *target)).collect();
+    missing.dedup();
+    if missing.is_empty() {
+        return Ok(());
     }
+    run(&mut command("rustup", &[&["target", "add"], missing.as_slice()].concat()))
+}
+
+/// Adds rustfmt and clippy.
+fn components() -> Outcome {
     let components = installed("component")?;
     for component in ["rustfmt", "clippy"] {
         if !components.lines().any(|line| line.starts_with(component)) {
@@ -60,21 +94,24 @@ pub fn rust_version() -> Outcome<String> {
     Ok(if version.matches('.').count() == 1 { format!("{version}.0") } else { version.to_owned() })
 }
 
-/// QEMU for the firmware, by apt-get where that is possible.
-fn qemu() -> Outcome {
-    if output_of(&mut command(QEMU, &["--version"])).is_ok() {
+/// An emulator, by apt-get where that is possible.
+fn qemu(Qemu { program, packages }: &Qemu) -> Outcome {
+    let is_there = || output_of(&mut command(program, &["--version"])).is_ok();
+    if is_there() {
         return Ok(());
     }
-    let advice =
-        || Failure::new(format!("{QEMU} is not installed: install it (Debian, Ubuntu: apt-get install {QEMU})"));
     let is_root = output_of(&mut command("id", &["-u"])).is_ok_and(|id| id.trim() == "0");
-    for arguments in [["update"].as_slice(), &["install", "-y", "--no-install-recommends", QEMU]] {
-        let mut words = vec!["env", "DEBIAN_FRONTEND=noninteractive", "apt-get"];
-        words.extend(arguments);
-        if !is_root {
-            words.splice(0..0, ["sudo", "-n"]);
-        }
-        run(&mut command(words[0], &words[1..])).map_err(|_| advice())?;
+    let apt = |arguments: &[&str]| {
+        let sudo = if is_root { [].as_slice() } else { &["sudo", "-n"] };
+        let words = [sudo, &["env", "DEBIAN_FRONTEND=noninteractive", "apt-get"], arguments].concat();
+        run(&mut command(words[0], &words[1..]))
+    };
+    // What fails here is told below, in one line.
+    let updated = apt(&["update"]).is_ok();
+    let install = |package: &&str| apt(&["install", "-y", "--no-install-recommends", package]).is_ok() && is_there();
+    if updated && packages.iter().any(install) {
+        return Ok(());
     }
-    output_of(&mut command(QEMU, &["--version"])).map(drop).map_err(|_| advice())
+    let names = packages.join(" or ");
+    Err(Failure::new(format!("{program} is not installed: install it (Debian, Ubuntu: apt-get install {names})")))
 }

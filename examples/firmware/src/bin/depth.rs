@@ -25,6 +25,8 @@ static PIPELINE: ConstStaticCell<BoardPipeline> = ConstStaticCell::new(BoardPipe
 #[runtime::entry]
 fn main() -> ! {
     stack::paint();
+    #[cfg(feature = "panics")]
+    core::hint::black_box([1u8; 2][core::hint::black_box(2)]);
     clock::start();
     log::start();
     // Only the first call gets it; there is no second one.

@@ -1,13 +1,17 @@
 //! The command line: options, their limits, help.
 
 use crate::failure::Failure;
-use clap::error::{Error, ErrorKind};
+use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use stereopsis::matching::{Checks, Config};
 use stereopsis::units::Disparity;
+use stereopsis_host::command_line::usage_line;
 use stereopsis_host::run::Method;
+
+/// What is told to one who names another command.
+const COMMANDS: &str = "the commands are demo, match and bench";
 
 const EXAMPLES: &str = "Examples:
   stereo demo --out demo-out
@@ -168,22 +172,6 @@ pub enum Stop {
 pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, Stop> {
     Cli::try_parse_from(args).map(|cli| cli.command).map_err(|error| match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => Stop::Help(error.render().to_string()),
-        _ => Stop::Usage(Failure::new(usage_line(&error))),
+        _ => Stop::Usage(Failure::new(usage_line(&error, COMMANDS))),
     })
-}
-
-/// clap's message, which has several paragraphs, as one line: the first one and the tips.
-fn usage_line(error: &Error) -> String {
-    let text = error.render().to_string();
-    let first = text.lines().map(str::trim).take_while(|line| !line.is_empty());
-    let mut line = first.collect::<Vec<_>>().join(" ");
-    for tip in text.lines().filter_map(|line| line.trim().strip_prefix("tip: ")) {
-        line = line + "; " + tip;
-    }
-    match error.kind() {
-        ErrorKind::InvalidSubcommand => line += "; the commands are demo, match and bench",
-        ErrorKind::MissingRequiredArgument | ErrorKind::UnknownArgument => line += "; see --help",
-        _ => {}
-    }
-    line.strip_prefix("error: ").map_or(line.clone(), str::to_owned)
 }

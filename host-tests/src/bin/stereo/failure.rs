@@ -25,8 +25,3 @@ impl<E: std::error::Error> From<E> for Failure {
         Self(error.to_string())
     }
 }
-
-/// The text with line ends and other control characters, which a file's name may hold, written out.
-pub fn one_line(text: &str) -> String {
-    text.chars().flat_map(|c| if c.is_control() { c.escape_default().collect() } else { vec![c] }).collect()
-}

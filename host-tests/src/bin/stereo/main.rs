@@ -14,9 +14,10 @@ mod matching;
 mod progress;
 
 use cli::Command;
-use failure::{Failure, one_line};
+use failure::Failure;
 use std::io::{self, Write};
 use std::process::ExitCode;
+use stereopsis_host::command_line::one_line;
 
 fn main() -> ExitCode {
     match start() {

@@ -1,7 +1,7 @@
 //! `stereo match`: a rectified pair into a folder of results.
 
 use crate::cli::MatchArgs;
-use crate::failure::{Failure, one_line};
+use crate::failure::Failure;
 use crate::input::{self, Pair};
 use crate::progress::Progress;
 use crate::{files, print};
@@ -9,6 +9,7 @@ use std::fmt::Write;
 use std::path::Path;
 use stereopsis::depth::DepthScale;
 use stereopsis_host::calibration::Calibration;
+use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
 use stereopsis_host::report::{Report, Summary};
 use stereopsis_host::run;

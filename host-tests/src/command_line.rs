@@ -1,0 +1,25 @@
+//! What programs say on standard error when they cannot do what is asked: one line.
+
+use clap::error::{Error, ErrorKind};
+
+/// clap's message, which has several paragraphs, as one line: the first one and the tips. `commands` is what is told to
+/// one who names another command.
+pub fn usage_line(error: &Error, commands: &str) -> String {
+    let text = error.render().to_string();
+    let first = text.lines().map(str::trim).take_while(|line| !line.is_empty());
+    let mut line = first.collect::<Vec<_>>().join(" ");
+    for tip in text.lines().filter_map(|line| line.trim().strip_prefix("tip: ")) {
+        line = line + "; " + tip;
+    }
+    match error.kind() {
+        ErrorKind::InvalidSubcommand => line = line + "; " + commands,
+        ErrorKind::MissingRequiredArgument | ErrorKind::UnknownArgument => line += "; see --help",
+        _ => {}
+    }
+    line.strip_prefix("error: ").map_or(line.clone(), str::to_owned)
+}
+
+/// The text with line ends and other control characters, which a file's name may hold, written out.
+pub fn one_line(text: &str) -> String {
+    text.chars().flat_map(|c| if c.is_control() { c.escape_default().collect() } else { vec![c] }).collect()
+}

@@ -1,0 +1,177 @@
+//! `cargo xtask firmware --all`: every core, method and size, two at a time.
+
+use super::board::{self, Board, M0};
+use super::checksums::{self, Checksum};
+use super::frame::{self, Frame, MOST_STACK};
+use super::pictures::Pictures;
+use super::program::{Built, Program};
+use super::scene::Scene;
+use super::tables;
+use crate::setup;
+use crate::steps::{Failure, Outcome, root};
+use std::collections::VecDeque;
+use std::fs;
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use stereopsis_host::run::Method;
+
+/// Width, height and disparities that everything is measured at.
+const SIZES: [(u16, u16, u16); 2] = [(160, 120, 32), (320, 240, 64)];
+/// What fits the smallest board.
+const SMALLEST: [(u16, u16, u16); 1] = [(96, 64, 16)];
+/// The size at which the instructions over different pictures are compared.
+const SPREAD_WIDTH: u16 = 160;
+/// The most that they may differ, of their mean.
+const MOST_SPREAD: f64 = 0.05;
+/// Programs that are worked on at a time: while one is built another one runs.
+const WORKERS: usize = 2;
+
+/// What came of one program.
+pub struct Result {
+    /// The built-in scene.
+    pub frame: Frame,
+    /// Instructions over different pictures, by their names, the built-in scene's among them; or none.
+    pub spread: Vec<(&'static str, u64)>,
+    /// Checksums on real pictures.
+    pub checksums: Vec<Checksum>,
+}
+
+/// Runs all of it and prints it; writes the tables into README.md, or compares them.
+pub fn run(check: bool) -> Outcome {
+    setup::firmware(&board::ALL.map(|board| board.target))?;
+    let real = checksums::pairs()?;
+    let jobs = programs()?;
+    let results = work(jobs, |program| one(program, &real))?;
+    let part = tables::part(&results)?;
+    println!("{part}");
+    for result in &results {
+        held(result)?;
+    }
+    tables::into_readme(&part, check)?;
+    if real.is_empty() {
+        println!("checksums on real pairs: NOT RUN, set STEREO_DATA to the folder that holds stereo/");
+        return Ok(());
+    }
+    checksums::compare(&results, &real)
+}
+
+/// What is built, in the order of the tables.
+fn programs() -> Outcome<Vec<Program>> {
+    let sizes = |board: Board| if board == M0 { SMALLEST.as_slice() } else { SIZES.as_slice() };
+    let all = board::ALL.into_iter().flat_map(|board| {
+        Method::ALL.into_iter().flat_map(move |method| sizes(board).iter().map(move |&size| (board, method, size)))
+    });
+    all.map(|(board, method, (width, height, disparities))| Program::new(board, method, width, height, disparities))
+        .collect()
+}
+
+/// One program, on all the pictures of its size.
+fn one(program: Program, real: &[(String, Pictures)]) -> Outcome<Result> {
+    let built = program.build()?;
+    let scene = Pictures::of_scene(Scene { width: program.width, height: program.height })?;
+    let frame = frame::run(&built, &scene, true)?;
+    println!("{}", frame.told());
+    let mut spread = Vec::new();
+    if program.width == SPREAD_WIDTH {
+        spread = spread_over(&built, real)?;
+        spread.push(("scene", frame.instructions));
+    }
+    let checksums = if program.board == M0 { Vec::new() } else { checksums::on_core(&built, real)? };
+    Ok(Result { frame, spread, checksums })
+}
+
+/// Instructions of a frame of nothing, of noise, of stripes and of a real picture where there is one.
+fn spread_over(built: &Built, real: &[(String, Pictures)]) -> Outcome<Vec<(&'static str, u64)>> {
+    let (width, height) = (built.program.width, built.program.height);
+    // A well-mixed byte for each pixel, another one in each camera.
+    let noise = |u: u32, v: u32, right: bool| {
+        let mut h = u.wrapping_mul(0x9E37_79B1) ^ v.wrapping_mul(0x85EB_CA77) ^ u32::from(right);
+        h = (h ^ (h >> 15)).wrapping_mul(0x2C1B_3C6D);
+        (h >> 24) as u8
+    };
+    let mut pictures = vec![
+        ("blank", Pictures::drawn(width, height, |_, _, _| 128)),
+        ("noise", Pictures::drawn(width, height, noise)),
+        (
+            "stripes",
+            Pictures::drawn(width, height, |u, _, right| if (u + u32::from(right)) & 4 == 0 { 40 } else { 215 }),
+        ),
+    ];
+    if let Some((_, pair)) = real.first() {
+        pictures.push(("real", pair.scaled(width, height)?));
+    }
+    let count = |(name, pictures): (_, Pictures)| Ok((name, frame::run(built, &pictures, false)?.instructions));
+    pictures.into_iter().map(count).collect()
+}
+
+/// How far instructions lie apart, of their mean.
+pub fn spread(counts: &[(&str, u64)]) -> f64 {
+    let counts = counts.iter().map(|&(_, count)| count as f64);
+    let (least, most) = counts.clone().fold((f64::MAX, f64::MIN), |(l, m), c| (l.min(c), m.max(c)));
+    let mean = counts.clone().sum::<f64>() / counts.count().max(1) as f64;
+    (most - least) / mean
+}
+
+/// What is promised of every program.
+fn held(result: &Result) -> Outcome {
+    let Result { frame, spread: counts, .. } = result;
+    let failed = |what: String| Err(Failure::new(format!("{}: {what}", frame.program)));
+    if !counts.is_empty() && spread(counts) > MOST_SPREAD {
+        let (found, most) = (100.0 * spread(counts), 100.0 * MOST_SPREAD);
+        return failed(format!("instructions over the pictures {counts:?} differ by {found:.1} %, {most} % at most"));
+    }
+    let beside = frame.sizes.static_ram.saturating_sub(frame.pipeline);
+    if beside > budget("the camera")? {
+        return failed(format!("{beside} bytes of RAM beside the pipeline are more than the comment of memory.x says"));
+    }
+    if budget("the stack")? != MOST_STACK {
+        return failed(format!("memory.x does not leave {MOST_STACK} bytes to the stack"));
+    }
+    Ok(())
+}
+
+/// The number of memory.x that stands before what it is for.
+fn budget(what: &str) -> Outcome<u64> {
+    let text = fs::read_to_string(root().join("memory.x")).map_err(|e| Failure::new(format!("memory.x: {e}")))?;
+    let mut lines = text.lines().filter(|line| line.contains(what));
+    let number = lines.find_map(|line| line.split_whitespace().find_map(|word| word.parse().ok()));
+    number.ok_or_else(|| Failure::new(format!("memory.x has no number for {what}")))
+}
+
+/// The work on all jobs by several threads; what came of them in their order, or the first failure.
+fn work<J: Send, R: Send>(jobs: Vec<J>, work: impl Fn(J) -> Outcome<R> + Sync) -> Outcome<Vec<R>> {
+    let queue: Mutex<VecDeque<_>> = Mutex::new(jobs.into_iter().enumerate().collect());
+    let done = Mutex::new(Vec::new());
+    let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
+    let worker = || {
+        while let Some((at, job)) = next() {
+            let result = work(job);
+            if result.is_err() {
+                queue.lock().unwrap_or_else(PoisonError::into_inner).clear();
+            }
+            done.lock().unwrap_or_else(PoisonError::into_inner).push((at, result));
+        }
+    };
+    thread::scope(|scope| (0..WORKERS).for_each(|_| drop(scope.spawn(worker))));
+    let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
+    done.sort_by_key(|(at, _)| *at);
+    done.into_iter().map(|(_, result)| result).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spread_is_of_the_mean() {
+        assert_eq!(spread(&[("a", 90), ("b", 100), ("c", 110)]), 0.2);
+        assert_eq!(spread(&[("a", 7)]), 0.0);
+    }
+
+    #[test]
+    fn jobs_keep_their_order_and_failures_come_through() {
+        assert_eq!(work((0..9).collect(), |n| Ok(n * n)).expect("squares"), [0, 1, 4, 9, 16, 25, 36, 49, 64]);
+        let failed = work((0..9).collect(), |n| if n == 4 { Err(Failure::new("four")) } else { Ok(n) });
+        assert_eq!(failed.expect_err("a failure").to_string(), "four");
+    }
+}

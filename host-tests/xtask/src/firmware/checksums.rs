@@ -1,0 +1,85 @@
+//! Real pictures: the same checksum on every core, on the host, and from every other build of the library.
+
+use super::all::Result;
+use super::frame;
+use super::pictures::Pictures;
+use super::program::{Built, Program};
+use crate::steps::{Failure, Outcome};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use stereopsis_host::run::Method;
+
+/// Pairs of the folder of real pictures.
+const PAIRS: [&str; 3] = ["cones", "venus", "mb2014q_Motorcycle"];
+
+/// A build of the library that is no firmware of this example: its name, and what gives CRC-32 over disparity (two
+/// bytes, low one first) and flags of every pixel, for a left and a right PGM file, a method and disparities.
+type Other = (&'static str, fn(&Path, &Path, Method, u16) -> Outcome<u32>);
+
+/// These builds have to say what the cores say.
+const OTHERS: [Other; 0] = [];
+
+/// One core's checksum on one pair.
+pub struct Checksum {
+    pair: String,
+    crc32: u32,
+}
+
+/// The real pairs by name; none without STEREO_DATA.
+pub fn pairs() -> Outcome<Vec<(String, Pictures)>> {
+    let Some(data) = std::env::var_os("STEREO_DATA").map(PathBuf::from) else { return Ok(Vec::new()) };
+    let open = |name: &str| {
+        let folder = data.join("stereo").join(name);
+        Ok((name.to_owned(), Pictures::open(&folder.join("left.png"), &folder.join("right.png"))?))
+    };
+    PAIRS.into_iter().map(open).collect()
+}
+
+/// A program on all pairs, scaled to its size. Every run is compared with the host's.
+pub fn on_core(built: &Built, pairs: &[(String, Pictures)]) -> Outcome<Vec<Checksum>> {
+    let Program { width, height, .. } = built.program;
+    let one = |(name, pair): &(String, Pictures)| {
+        let frame = frame::run(built, &pair.scaled(width, height)?, false)?;
+        Ok(Checksum { pair: name.clone(), crc32: frame.crc32 })
+    };
+    pairs.iter().map(one).collect()
+}
+
+/// Prints the checksums, a column for each core and each other build, and fails when a row has two different ones.
+pub fn compare(results: &[Result], pairs: &[(String, Pictures)]) -> Outcome {
+    let mut rows: BTreeMap<_, Vec<(&str, u32)>> = BTreeMap::new();
+    for result in results {
+        let Program { board, method, width, height, disparities, .. } = result.frame.program;
+        for Checksum { pair, crc32 } in &result.checksums {
+            let row = rows.entry((pair, method.name(), width, height, disparities)).or_default();
+            row.push((board.core, *crc32));
+        }
+    }
+    for ((pair, method, width, height, disparities), row) in &mut rows {
+        let of = pairs.iter().find(|(name, _)| name == *pair).map(|(_, pictures)| pictures.scaled(*width, *height));
+        let pictures = of.ok_or_else(|| Failure::new(format!("{pair}: no such pair")))??;
+        let folder = tempfile::tempdir().map_err(|e| Failure::new(e.to_string()))?;
+        pictures.write(folder.path())?;
+        let method: Method = method.parse().map_err(|e| Failure::new(format!("{e}")))?;
+        for (name, crc) in OTHERS {
+            let [left, right] = ["left.pgm", "right.pgm"].map(|name| folder.path().join(name));
+            row.push((name, crc(&left, &right, method, *disparities)?));
+        }
+    }
+    let columns: Vec<&str> = rows.values().next().into_iter().flatten().map(|(name, _)| *name).collect();
+    println!("CRC-32 of disparities and flags, equal to the host's:\n");
+    println!("| pair | method | pixels | disparities | {} |", columns.join(" | "));
+    println!("| --- | --- | --- | ---: |{}", " --- |".repeat(columns.len()));
+    for ((pair, method, width, height, disparities), row) in &rows {
+        let cells: String = row.iter().map(|(_, crc32)| format!(" `{crc32:08x}` |")).collect();
+        println!("| {pair} | `{method}` | {width}x{height} | {disparities} |{cells}");
+    }
+    println!();
+    let differs = |row: &[(&str, u32)]| row.windows(2).any(|two| two[0].1 != two[1].1);
+    match rows.iter().find(|(_, row)| differs(row)) {
+        Some(((pair, method, ..), row)) => {
+            Err(Failure::new(format!("{pair}, {method}: the checksums differ: {row:x?}")))
+        }
+        None => Ok(()),
+    }
+}

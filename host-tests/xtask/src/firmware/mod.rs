@@ -1,0 +1,70 @@
+//! `cargo xtask firmware`: the firmware example, built, run in QEMU and compared with the host.
+//!
+//! * [`arguments`]: what is asked for. [`program`]: one build of the example. [`elf`]: what is in it.
+//! * [`pictures`]: what the emulated cameras see. [`emulate`]: QEMU. [`log`]: the firmware's log as text.
+//! * [`frame`]: one frame on one core, held to the host. [`summary`]: the files that are written of it.
+//! * [`all`]: every core, method and size; [`tables`] of it for README.md; [`checksums`] on real pictures.
+//! * [`panics`]: a firmware that can panic does not link.
+
+mod all;
+mod arguments;
+mod checksums;
+mod elf;
+mod emulate;
+mod frame;
+mod log;
+mod panics;
+mod pictures;
+mod program;
+mod summary;
+mod tables;
+
+#[path = "../../../../examples/firmware/src/board.rs"]
+mod board;
+#[path = "../../../../examples/firmware/src/camera/scene.rs"]
+#[allow(dead_code)]
+mod scene;
+
+pub use arguments::Arguments;
+pub use panics::check as check_panics;
+pub use program::cargo;
+
+use crate::setup;
+use crate::steps::{Failure, Outcome};
+use arguments::One;
+use pictures::Pictures;
+use program::Program;
+use stereopsis_host::output::Staging;
+
+/// Does what the command line asks for.
+pub fn run(arguments: &Arguments) -> Outcome {
+    match arguments.one()? {
+        Some(one) => run_one(&one),
+        None => all::run(arguments.check),
+    }
+}
+
+/// Every core, method and size, compared with README.md.
+pub fn check_all() -> Outcome {
+    all::run(true)
+}
+
+/// One frame on one core into a folder.
+fn run_one(one: &One) -> Outcome {
+    let (pictures, is_scene) = match &one.pair {
+        Some((left, right)) => (Pictures::open(left, right)?, false),
+        None => (Pictures::of_scene(one.scene())?, true),
+    };
+    let program = Program::new(one.board, one.method, pictures.width, pictures.height, one.disparities)?;
+    Staging::probe(&one.out).map_err(|e| Failure::new(format!("--out: {e}")))?;
+    setup::firmware(&[one.board.target])?;
+    let built = program.build()?;
+    let frame = frame::run(&built, &pictures, is_scene)?;
+    for line in &frame.log {
+        println!("{line}");
+    }
+    summary::write(&one.out, &frame)?;
+    println!("{}", frame.told());
+    println!("results are in {}, equal to the host's to the bit", one.out.display());
+    Ok(())
+}

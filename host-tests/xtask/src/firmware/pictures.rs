@@ -1,0 +1,96 @@
+//! What the emulated cameras see: two grey pictures.
+
+use super::scene::{Scene, SceneCamera};
+use crate::steps::{Failure, Outcome};
+use image::GrayImage;
+use image::imageops::{FilterType, resize};
+use std::fmt;
+use std::io::Write;
+use std::path::Path;
+use stereopsis::camera::{CameraPair, StereoSource};
+use stereopsis::imaging::GreyLines;
+use stereopsis_host::mock::MockCamera;
+use stereopsis_host::run::MemoryPair;
+
+/// Bytes of the longest raw line: RGB with 16 bits.
+const RAW: usize = MockCamera::MOST_PIXELS as usize * 6;
+
+/// A pair of pictures of one size, 8-bit grey.
+#[derive(Clone)]
+pub struct Pictures {
+    /// Pixels in a line.
+    pub width: u16,
+    /// Lines.
+    pub height: u16,
+    left: Vec<u8>,
+    right: Vec<u8>,
+}
+
+impl Pictures {
+    /// Two image files, made grey as `stereo match` does it.
+    pub fn open(left: &Path, right: &Path) -> Outcome<Self> {
+        let (left, right) = MockCamera::open_pair(left, right).map_err(|e| Failure::new(e.to_string()))?;
+        let grey = |camera| GreyLines::<_, RAW>::new(camera).map_err(|e| Failure::new(e.to_string()));
+        let mut pair = CameraPair::new(grey(left)?, grey(right)?, 0).map_err(|e| Failure::new(e.to_string()))?;
+        Self::record(&mut pair)
+    }
+
+    /// The built-in scene.
+    pub fn of_scene(scene: Scene) -> Outcome<Self> {
+        Self::record(&mut SceneCamera::new(scene))
+    }
+
+    /// Every pixel from its row and column in the left camera and in the right one.
+    pub fn drawn(width: u16, height: u16, pixel: impl Fn(u32, u32, bool) -> u8) -> Self {
+        let at = |right: bool| {
+            let rows = (0..u32::from(height)).flat_map(|v| (0..u32::from(width)).map(move |u| (u, v)));
+            rows.map(|(u, v)| pixel(u, v, right)).collect()
+        };
+        Self { width, height, left: at(false), right: at(true) }
+    }
+
+    /// The same pictures in another size.
+    pub fn scaled(&self, width: u16, height: u16) -> Outcome<Self> {
+        let scale = |pixels: &[u8]| {
+            let picture = GrayImage::from_raw(self.width.into(), self.height.into(), pixels.to_vec())?;
+            Some(resize(&picture, width.into(), height.into(), FilterType::Triangle).into_raw())
+        };
+        let both = scale(&self.left).zip(scale(&self.right));
+        let (left, right) = both.ok_or_else(|| Failure::new("a picture has too few pixels"))?;
+        Ok(Self { width, height, left, right })
+    }
+
+    /// A frame of a camera with 8-bit grey lines.
+    fn record<C: StereoSource<Error: fmt::Display>>(camera: &mut C) -> Outcome<Self> {
+        let failed = |e| Failure::new(format!("camera: {e}"));
+        let format = camera.format();
+        let pixels = usize::from(format.width) * usize::from(format.height);
+        let (mut left, mut right) = (vec![0; pixels], vec![0; pixels]);
+        camera.start_frame().map_err(failed)?;
+        let lines = usize::from(format.width).max(1);
+        for (left, right) in left.chunks_mut(lines).zip(right.chunks_mut(lines)) {
+            camera.next_lines(left, right).map_err(failed)?;
+        }
+        Ok(Self { width: format.width, height: format.height, left, right })
+    }
+
+    /// The pictures as a camera of the host.
+    pub fn camera(&self) -> Outcome<MemoryPair> {
+        let camera = MemoryPair::new(self.width, self.left.clone(), self.right.clone());
+        camera.ok_or_else(|| Failure::new("the pictures are empty"))
+    }
+
+    /// Writes `left.pgm` and `right.pgm`, which the firmware's camera reads.
+    pub fn write(&self, folder: &Path) -> Outcome {
+        for (name, pixels) in [("left.pgm", &self.left), ("right.pgm", &self.right)] {
+            let path = folder.join(name);
+            let write = || {
+                let mut file = std::fs::File::create(&path)?;
+                write!(file, "P5\n{} {}\n255\n", self.width, self.height)?;
+                file.write_all(pixels)
+            };
+            write().map_err(|e| Failure::new(format!("{}: {e}", path.display())))?;
+        }
+        Ok(())
+    }
+}

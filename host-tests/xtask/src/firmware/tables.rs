@@ -1,0 +1,128 @@
+//! The part of README.md that is made of the firmware's figures.
+
+use super::all::{Result, spread};
+use crate::steps::{Failure, Outcome, command, output_of, root};
+use std::fs;
+
+/// The lines around the part.
+const BEGIN: &str = "<!-- generated: firmware -->\n";
+const END: &str = "<!-- end: firmware -->";
+
+/// How far a figure may lie from README.md's: another folder moves a constant, another compiler makes other code.
+const WITHIN: f64 = 0.01;
+const WITHIN_OF_ANOTHER_COMPILER: f64 = 0.15;
+
+/// The names of the pictures in the table, in its order. Real pictures are not everybody's and not in it.
+const PICTURES: [&str; 4] = ["blank", "noise", "stripes", "scene"];
+
+/// The whole part.
+pub fn part(results: &[Result]) -> Outcome<String> {
+    let compiler = output_of(&mut command("rustc", &["--version"]))?;
+    let version = compiler.split_whitespace().nth(1).unwrap_or_default();
+    Ok(format!("{}\nCompiler: rustc {version}.\n\n{}", figures(results), spreads(results)))
+}
+
+/// A line for each program.
+fn figures(results: &[Result]) -> String {
+    let mut table =
+        "| core | method | pixels | disparities | instructions | for an evaluation | static RAM | stack | flash | \
+                     of it dense path | panic symbols |\n\
+                     | --- | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n"
+            .to_owned();
+    for Result { frame, .. } in results {
+        let (program, sizes) = (&frame.program, &frame.sizes);
+        table += &format!(
+            "| {} | `{}` | {}x{} | {} | {} | {:.2} | {} | {} | {} | {} | {} |\n",
+            program.board.core,
+            program.method,
+            program.width,
+            program.height,
+            program.disparities,
+            frame.instructions,
+            frame.per_evaluation(),
+            sizes.static_ram,
+            frame.stack,
+            sizes.flash(),
+            sizes.dense_flash,
+            sizes.panics
+        );
+    }
+    table
+}
+
+/// A line for each program that saw different pictures.
+fn spreads(results: &[Result]) -> String {
+    let mut table = format!("| core | method | {} | spread, % |\n| --- | --- |", PICTURES.join(" | "));
+    table += &" ---: |".repeat(PICTURES.len() + 1);
+    table += "\n";
+    for result in results.iter().filter(|result| !result.spread.is_empty()) {
+        let program = &result.frame.program;
+        let shown: Vec<_> = result.spread.iter().copied().filter(|(name, _)| PICTURES.contains(name)).collect();
+        let counts: String = shown.iter().map(|(_, count)| format!(" {count} |")).collect();
+        table +=
+            &format!("| {} | `{}` |{counts} {:.2} |\n", program.board.core, program.method, 100.0 * spread(&shown));
+    }
+    table
+}
+
+/// Writes the part into README.md, or only compares.
+pub fn into_readme(part: &str, check: bool) -> Outcome {
+    let path = root().join("README.md");
+    let failed = |what: String| Failure::new(format!("README.md: {what}"));
+    let readme = fs::read_to_string(&path).map_err(|e| failed(e.to_string()))?;
+    let first = readme.find(BEGIN).ok_or_else(|| failed(format!("there is no line {}", BEGIN.trim())))? + BEGIN.len();
+    let length = readme[first..].find(END).ok_or_else(|| failed(format!("there is no line {END}")))?;
+    let old = &readme[first..first + length];
+    if check {
+        return match difference(old, part) {
+            Some(what) => Err(failed(format!("{what}; run `cargo xtask firmware --all`"))),
+            None => Ok(()),
+        };
+    }
+    let new = format!("{}\n{part}\n{}", &readme[..first], &readme[first + length..]);
+    fs::write(&path, new).map_err(|e| failed(e.to_string()))
+}
+
+/// How two parts differ, if they do: in words, or in figures by more than they may.
+fn difference(old: &str, new: &str) -> Option<String> {
+    let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+    let compiler = |text: &str| text.lines().find(|line| line.starts_with("Compiler: ")).map(str::to_owned);
+    let within = if compiler(old) == compiler(new) { WITHIN } else { WITHIN_OF_ANOTHER_COMPILER };
+    let lines = |text: &str| {
+        let lines = text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with("Compiler: "));
+        lines.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let (old, new) = (lines(old), lines(new));
+    if old.len() != new.len() {
+        return Some(format!("the firmware's tables have {} lines where {} are due", old.len(), new.len()));
+    }
+    let is_near = |a: &str, b: &str| match (a.parse::<f64>(), b.parse::<f64>()) {
+        // Shares of a percent and small counts may differ by a little in themselves.
+        (Ok(a), Ok(b)) => (a - b).abs() <= within * a.abs().max(b.abs()) || (a - b).abs() <= 0.5 && a.fract() != 0.0,
+        _ => a == b,
+    };
+    old.iter().zip(&new).find_map(|(a, b)| {
+        let (x, y) = (words(a), words(b));
+        let same = x.len() == y.len() && x.iter().zip(&y).all(|(x, y)| is_near(x, y));
+        (!same).then(|| format!("\"{a}\" should read \"{b}\""))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_may_differ_a_little_and_words_not() {
+        let old = "| core | n |\n| m4 | 1000 |\n\nCompiler: rustc 1.0.\n";
+        assert_eq!(difference(old, old), None);
+        assert_eq!(difference(old, &old.replace("1000", "1009")), None);
+        assert!(difference(old, &old.replace("1000", "1020")).is_some());
+        assert!(difference(old, &old.replace("m4", "m7")).is_some());
+        assert!(difference(old, &old.replace("| m4 | 1000 |\n", "")).is_some());
+        let other = old.replace("1.0", "1.1");
+        assert_eq!(difference(old, &other.replace("1000", "1100")), None);
+        assert!(difference(old, &other.replace("1000", "1300")).is_some());
+        assert!(difference("| m4 | 0 |\n", "| m4 | 1 |\n").is_some());
+    }
+}

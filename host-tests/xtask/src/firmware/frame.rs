@@ -10,7 +10,7 @@ use std::fs;
 use stereopsis::matching::Config;
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::map::DisparityMap;
-use stereopsis_host::run;
+use stereopsis_host::run::{self, Method};
 
 /// The most stack that a run may take, bytes.
 pub const MOST_STACK: u64 = 2048;
@@ -55,7 +55,7 @@ pub fn run(built: &Built, pictures: &Pictures, is_scene: bool) -> Outcome<Frame>
     let log = log::read(built, folder.path())?;
     let rows = fs::read(folder.path().join("rows.bin")).map_err(|e| failed(format!("rows.bin: {e}")))?;
 
-    let map = host(&program, pictures)?;
+    let map = host(program.method, program.disparities, pictures)?;
     if let Some(what) = difference(&map, &rows) {
         return Err(failed(what));
     }
@@ -104,10 +104,20 @@ impl Frame {
 }
 
 /// The host's own run on the same pictures.
-fn host(program: &Program, pictures: &Pictures) -> Outcome<DisparityMap> {
-    let config = Config::new(pictures.width, pictures.height, program.disparities);
-    let outcome = run::run(program.method, &config, &mut pictures.camera()?, |_| ());
-    outcome.map(|outcome| outcome.map).map_err(|e| Failure::new(format!("{program} on the host: {e}")))
+fn host(method: Method, disparities: u16, pictures: &Pictures) -> Outcome<DisparityMap> {
+    let config = Config::new(pictures.width, pictures.height, disparities);
+    let outcome = run::run(method, &config, &mut pictures.camera()?, |_| ());
+    outcome.map(|outcome| outcome.map).map_err(|e| Failure::new(format!("{method} on the host: {e}")))
+}
+
+/// The checksum of the host's own run.
+pub fn host_crc32(method: Method, disparities: u16, pictures: &Pictures) -> Outcome<u32> {
+    let map = host(method, disparities, pictures)?;
+    let pixels = map.disparity.iter().zip(&map.flags).flat_map(|(disparity, flags)| {
+        let [low, high] = disparity.raw().to_le_bytes();
+        [low, high, flags.bits()]
+    });
+    Ok(crc32fast::hash(&pixels.collect::<Vec<u8>>()))
 }
 
 /// The firmware's lines of a name and a number.

@@ -14,10 +14,11 @@ use stereopsis_firmware::camera::files::FileError;
 use stereopsis_firmware::camera::scene::Scene;
 use stereopsis_firmware::camera::{Camera, timed::Timed};
 use stereopsis_firmware::choice::{BOARD, BoardPipeline, DISPARITIES, HEIGHT, METHOD, WIDTH};
+use stereopsis_firmware::clock::Clock;
 use stereopsis_firmware::console::Console;
 use stereopsis_firmware::host::HostError;
 use stereopsis_firmware::rows::Rows;
-use stereopsis_firmware::{clock, log, runtime, stack};
+use stereopsis_firmware::{log, runtime, stack};
 
 /// All the memory that the matcher takes, at an address fixed by the linker.
 static PIPELINE: ConstStaticCell<BoardPipeline> = ConstStaticCell::new(BoardPipeline::new());
@@ -27,7 +28,6 @@ fn main() -> ! {
     stack::paint();
     #[cfg(feature = "panics")]
     core::hint::black_box([1u8; 2][core::hint::black_box(2)]);
-    clock::start();
     log::start();
     // Only the first call gets it; there is no second one.
     let Some(pipeline) = PIPELINE.try_take() else { runtime::end(false) };
@@ -54,13 +54,15 @@ enum Failure {
 
 /// One frame, and what it took.
 fn run(pipeline: &mut BoardPipeline) -> Result<(), Failure> {
-    let mut camera = Timed::new(Camera::open(Scene { width: WIDTH, height: HEIGHT }).map_err(Failure::Camera)?);
+    let clock = Clock::start();
+    let camera = Camera::open(Scene { width: WIDTH, height: HEIGHT }).map_err(Failure::Camera)?;
+    let mut camera = Timed::new(camera, &clock);
     let format = camera.format();
     defmt::info!("{=str} on {=str}: {=u16}x{=u16}", METHOD, BOARD.core, format.width, format.height);
     pipeline.start(&Config::new(format.width, format.height, DISPARITIES)).map_err(Failure::Config)?;
     let mut rows = Rows::create().map_err(Failure::Rows)?;
-    let calibration = clock::calibrate();
-    let ticks = frame(pipeline, &mut camera, &mut rows)?;
+    let calibration = clock.calibrate();
+    let ticks = frame(pipeline, &clock, &mut camera, &mut rows)?;
     defmt::info!("{=u16} rows, crc32 {=u32:08x}", rows.count(), rows.crc32());
 
     let mut console = Console::open();
@@ -71,21 +73,26 @@ fn run(pipeline: &mut BoardPipeline) -> Result<(), Failure> {
     console.figure("crc32", rows.crc32().into());
     console.figure("ticks", ticks - camera.ticks());
     console.figure("camera_ticks", camera.ticks());
-    console.figure("calibration_ticks", calibration.into());
+    console.figure("calibration_ticks", calibration);
     console.figure("pipeline_bytes", size_of::<BoardPipeline>() as u64);
     console.figure("stack_bytes", stack::used() as u64);
     Ok(())
 }
 
 /// All rows of a frame into the file; the ticks that the pipeline took for them, the camera's among them.
-fn frame(pipeline: &mut BoardPipeline, camera: &mut Timed<Camera>, rows: &mut Rows) -> Result<u64, Failure> {
-    let start = clock::now();
+fn frame(
+    pipeline: &mut BoardPipeline,
+    clock: &Clock,
+    camera: &mut Timed<'_, Camera>,
+    rows: &mut Rows,
+) -> Result<u64, Failure> {
+    let start = clock.now();
     begin(pipeline, camera)?;
-    let mut ticks = u64::from(clock::since(start));
+    let mut ticks = clock.now() - start;
     loop {
-        let start = clock::now();
+        let start = clock.now();
         let row = next(pipeline, camera)?;
-        ticks += u64::from(clock::since(start));
+        ticks += clock.now() - start;
         match row {
             Some(row) => rows.write(&row).map_err(Failure::Rows)?,
             None => return Ok(ticks),
@@ -96,11 +103,11 @@ fn frame(pipeline: &mut BoardPipeline, camera: &mut Timed<Camera>, rows: &mut Ro
 // Not inlined: what these two become is the dense path, and its size is told from the rest of the program's.
 
 #[inline(never)]
-fn begin(pipeline: &mut BoardPipeline, camera: &mut Timed<Camera>) -> Result<FrameStart, Failure> {
+fn begin(pipeline: &mut BoardPipeline, camera: &mut Timed<'_, Camera>) -> Result<FrameStart, Failure> {
     pipeline.begin_frame(camera).map_err(Failure::Frame)
 }
 
 #[inline(never)]
-fn next<'p>(pipeline: &'p mut BoardPipeline, camera: &mut Timed<Camera>) -> Result<Option<Row<'p>>, Failure> {
+fn next<'p>(pipeline: &'p mut BoardPipeline, camera: &mut Timed<'_, Camera>) -> Result<Option<Row<'p>>, Failure> {
     pipeline.next_row(camera).map_err(Failure::Frame)
 }

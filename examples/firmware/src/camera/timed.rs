@@ -1,18 +1,19 @@
 //! A camera whose own time is measured, so that it can be taken off a frame's.
 
-use crate::clock;
+use crate::clock::Clock;
 use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, StereoSource};
 
 /// A camera, and the ticks that it took to give its lines.
-pub struct Timed<C> {
+pub struct Timed<'a, C> {
     camera: C,
+    clock: &'a Clock,
     ticks: u64,
 }
 
-impl<C> Timed<C> {
+impl<'a, C> Timed<'a, C> {
     /// A camera that has taken no time yet.
-    pub const fn new(camera: C) -> Self {
-        Self { camera, ticks: 0 }
+    pub const fn new(camera: C, clock: &'a Clock) -> Self {
+        Self { camera, clock, ticks: 0 }
     }
 
     /// The ticks of all its calls so far.
@@ -21,11 +22,11 @@ impl<C> Timed<C> {
     }
 }
 
-impl<C: ErrorType> ErrorType for Timed<C> {
+impl<C: ErrorType> ErrorType for Timed<'_, C> {
     type Error = C::Error;
 }
 
-impl<C: StereoSource> StereoSource for Timed<C> {
+impl<C: StereoSource> StereoSource for Timed<'_, C> {
     fn format(&self) -> LineFormat {
         self.camera.format()
     }
@@ -37,17 +38,17 @@ impl<C: StereoSource> StereoSource for Timed<C> {
     // Not inlined, so that the camera's code is not counted as the pipeline's.
     #[inline(never)]
     fn start_frame(&mut self) -> Result<FrameStart, CameraError<C::Error>> {
-        let start = clock::now();
+        let start = self.clock.now();
         let frame = self.camera.start_frame();
-        self.ticks += u64::from(clock::since(start));
+        self.ticks += self.clock.now() - start;
         frame
     }
 
     #[inline(never)]
     fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<C::Error>> {
-        let start = clock::now();
+        let start = self.clock.now();
         let line = self.camera.next_lines(left, right);
-        self.ticks += u64::from(clock::since(start));
+        self.ticks += self.clock.now() - start;
         line
     }
 }

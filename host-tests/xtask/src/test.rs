@@ -25,7 +25,6 @@ pub fn run() -> Outcome {
     steps.step("cross builds", cross_builds)?;
     let version = setup::rust_version()?;
     steps.step(&format!("stated rust-version {version}"), || rust_version(&version))?;
-    steps.step("a firmware that can panic", firmware::check_panics)?;
     steps.step("firmware", firmware::check_all)?;
     steps.summary();
     if data.is_none() {

@@ -6,7 +6,7 @@ use super::frame::{self, Frame, MOST_STACK};
 use super::pictures::Pictures;
 use super::program::{Built, Program};
 use super::scene::Scene;
-use super::tables;
+use super::{refusals, tables};
 use crate::setup;
 use crate::steps::{Failure, Outcome, root};
 use std::collections::VecDeque;
@@ -40,6 +40,7 @@ pub struct Result {
 pub fn run(check: bool) -> Outcome {
     setup::firmware(&board::ALL.map(|board| board.target))?;
     let real = checksums::pairs()?;
+    refusals::check()?;
     let jobs = programs()?;
     let results = work(jobs, |program| one(program, &real))?;
     let part = tables::part(&results)?;

@@ -4,7 +4,7 @@
 //! * [`pictures`]: what the emulated cameras see. [`emulate`]: QEMU. [`log`]: the firmware's log as text.
 //! * [`frame`]: one frame on one core, held to the host. [`summary`]: the files that are written of it.
 //! * [`all`]: every core, method and size; [`tables`] of it for README.md; [`checksums`] on real pictures.
-//! * [`panics`]: a firmware that can panic does not link.
+//! * [`refusals`]: a panic does not link, and a bad file is named.
 
 mod all;
 mod arguments;
@@ -13,9 +13,10 @@ mod elf;
 mod emulate;
 mod frame;
 mod log;
-mod panics;
+
 mod pictures;
 mod program;
+mod refusals;
 mod summary;
 mod tables;
 
@@ -26,7 +27,6 @@ mod board;
 mod scene;
 
 pub use arguments::Arguments;
-pub use panics::check as check_panics;
 pub use program::cargo;
 
 use crate::setup;

@@ -35,12 +35,17 @@ REGION_ALIAS(\"REGION_HEAP\", RAM);
 REGION_ALIAS(\"REGION_STACK\", RAM);
 ";
 
+/// A stack that is too small for the pipeline does not link.
+const STACK: &str =
+    "ASSERT(_stack_start - __euninit >= 2048, \"ERROR: less than 2048 bytes of RAM are left to the stack\");\n";
+
 fn main() -> Result<(), Box<dyn Error>> {
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set")?);
     let board = board()?;
     fs::write(out.join("choice.rs"), choice(&board)?)?;
     fs::copy(MEMORY, out.join("memory.x"))?;
     fs::write(out.join("regions.x"), RISCV_REGIONS)?;
+    fs::write(out.join("stack.x"), STACK)?;
     println!("cargo:rustc-link-search={}", out.display());
     println!("cargo:rerun-if-changed={MEMORY}");
     println!("cargo:rerun-if-changed=build.rs");
@@ -62,6 +67,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     link("-Tlink.x");
     link("-Tdefmt.x");
+    link("-Tstack.x");
     // The vector table's and the sections' alignment is the script's business, not the page size's.
     link("--nmagic");
     Ok(())

@@ -1,6 +1,6 @@
 //! The boards: which core, which memories, which clock. A board of yours is one more entry.
 //!
-//! `build.rs` tells the linker the addresses, [`clock`](crate::clock) counts with the clock, and the task runner of the
+//! `build.rs` tells the linker the addresses, `src/clock.rs` counts with the clock, and the task runner of the
 //! repository starts QEMU with the machine's name.
 
 /// An emulated board.
@@ -16,7 +16,7 @@ pub struct Board {
     pub flash: (u32, u32),
     /// Where the data is kept, and how many bytes there are.
     pub ram: (u32, u32),
-    /// Ticks of the counter in a second of the processor's 10^9 instructions, see [`clock`](crate::clock).
+    /// Ticks of the counter in a second of the processor's 10^9 instructions, see `src/clock.rs`.
     pub ticks_per_second: u32,
 }
 

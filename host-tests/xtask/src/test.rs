@@ -54,7 +54,11 @@ fn format() -> Outcome {
 fn clippy() -> Outcome {
     run_cargo(&format!("clippy --locked --workspace --all-targets --features {REAL_DATA} -- -D warnings"))?;
     run_cargo("clippy --locked -p stereopsis --features defmt -- -D warnings")?;
-    run_command(&mut firmware::cargo("clippy --locked --release -- -D warnings"))
+    // The two kinds of cores have code of their own.
+    for target in ["thumbv7em-none-eabihf", "riscv32imac-unknown-none-elf"] {
+        run_command(&mut firmware::cargo(&format!("clippy --locked --release --target {target} -- -D warnings")))?;
+    }
+    Ok(())
 }
 
 fn tests(with_real_data: bool) -> Outcome {
@@ -68,7 +72,7 @@ fn documentation() -> Outcome {
         let mut docs = cargo(&["doc", "--locked", "--no-deps"]);
         run_command(docs.args(words.split_whitespace()).env("RUSTDOCFLAGS", "-D warnings"))?;
     }
-    Ok(())
+    run_command(firmware::cargo("doc --locked --no-deps").env("RUSTDOCFLAGS", "-D warnings"))
 }
 
 fn cross_builds() -> Outcome {

@@ -13,7 +13,6 @@ mod elf;
 mod emulate;
 mod frame;
 mod log;
-
 mod pictures;
 mod program;
 mod refusals;
@@ -23,7 +22,6 @@ mod tables;
 #[path = "../../../../examples/firmware/src/board.rs"]
 mod board;
 #[path = "../../../../examples/firmware/src/camera/scene.rs"]
-#[allow(dead_code)]
 mod scene;
 
 pub use arguments::Arguments;

@@ -111,8 +111,8 @@ impl Status {
         }
     }
 
-    /// Every status.
-    pub const ALL: [Self; 30] = [
+    /// Every status, for the way back from a number.
+    const ALL: [Self; 30] = [
         Self::Ok,
         Self::NoRowYet,
         Self::FrameDone,

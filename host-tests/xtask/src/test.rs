@@ -1,5 +1,6 @@
 //! `cargo xtask test`: every check of the repository, one step after another.
 
+use crate::c;
 use crate::firmware;
 use crate::setup::{self, TARGETS};
 use crate::steps::{Failure, Outcome, Steps, cargo, command, run as run_command, target_dir};
@@ -26,6 +27,7 @@ pub fn run() -> Outcome {
     let version = setup::rust_version()?;
     steps.step(&format!("stated rust-version {version}"), || rust_version(&version))?;
     steps.step("firmware", firmware::run)?;
+    steps.step("C interface", c::run)?;
     steps.summary();
     if data.is_none() {
         println!("{NOT_RUN}");

@@ -42,6 +42,16 @@ impl<S: Scheme, const W: usize, const D: usize> Instance<S, W, D> {
         align_of::<State<S, W, D>>()
     }
 
+    /// The longest line, pixels.
+    pub const fn max_width() -> usize {
+        W
+    }
+
+    /// The most disparities.
+    pub const fn max_disparities() -> usize {
+        D
+    }
+
     /// How many lines after its own a row comes out.
     pub const fn latency() -> usize {
         Pipeline::<S, W, D>::LATENCY

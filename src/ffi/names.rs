@@ -57,13 +57,13 @@ macro_rules! instantiate_c_api {
             /// The longest line that this library was built for, in pixels.
             #[unsafe(no_mangle)]
             pub extern "C" fn stereopsis_max_width() -> usize {
-                $width
+                StereopsisInstance::max_width()
             }
 
             /// The most disparities that this library was built for.
             #[unsafe(no_mangle)]
             pub extern "C" fn stereopsis_max_disparities() -> usize {
-                $disparities
+                StereopsisInstance::max_disparities()
             }
 
             /// Row y comes out when line y + `stereopsis_latency()` goes in; the last rows come by `stereopsis_flush`.

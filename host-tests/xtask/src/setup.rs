@@ -1,4 +1,4 @@
-//! Gets the tools that the tests need: targets and components by rustup, QEMU by apt-get.
+//! Gets the tools that the tests need: targets and components by rustup, QEMU and what C needs by apt-get.
 
 use crate::steps::{Failure, Outcome, command, output_of, root, run};
 use std::fs;
@@ -15,11 +15,24 @@ pub const TARGETS: [&str; 5] = [
 /// The emulator of the firmware's board, and the package that has it.
 pub const QEMU: &str = "qemu-system-arm";
 
-/// Adds the targets, components and toolchain that are missing, then QEMU.
+/// Programs that have to run, and the packages that have them.
+const PROGRAMS: [(&str, &str); 6] = [
+    (QEMU, QEMU),
+    ("arm-none-eabi-gcc", "gcc-arm-none-eabi"),
+    ("cmake", "cmake"),
+    ("make", "make"),
+    ("gcc", "gcc"),
+    ("g++", "g++"),
+];
+
+/// The package with the C library of bare Arm boards, which is no program.
+const ARM_LIBRARY: &str = "libnewlib-arm-none-eabi";
+
+/// Adds the targets, components and toolchain that are missing, then the packages.
 pub fn run_all() -> Outcome {
     rustup_parts()?;
     toolchain(&rust_version()?)?;
-    qemu()
+    packages()
 }
 
 /// Targets of the cross builds; rustfmt and clippy.
@@ -60,15 +73,17 @@ pub fn rust_version() -> Outcome<String> {
     Ok(if version.matches('.').count() == 1 { format!("{version}.0") } else { version.to_owned() })
 }
 
-/// QEMU for the firmware, by apt-get where that is possible.
-fn qemu() -> Outcome {
-    if output_of(&mut command(QEMU, &["--version"])).is_ok() {
+/// The packages that are missing, by apt-get where that is possible.
+fn packages() -> Outcome {
+    let wanted = missing_packages();
+    if wanted.is_empty() {
         return Ok(());
     }
-    let advice =
-        || Failure::new(format!("{QEMU} is not installed: install it (Debian, Ubuntu: apt-get install {QEMU})"));
+    let list = wanted.join(" ");
+    let advice = || Failure::new(format!("not installed: {list}: install it (Debian, Ubuntu: apt-get install {list})"));
     let is_root = output_of(&mut command("id", &["-u"])).is_ok_and(|id| id.trim() == "0");
-    for arguments in [["update"].as_slice(), &["install", "-y", "--no-install-recommends", QEMU]] {
+    let install = [&["install", "-y", "--no-install-recommends"], wanted.as_slice()].concat();
+    for arguments in [["update"].as_slice(), &install] {
         let mut words = vec!["env", "DEBIAN_FRONTEND=noninteractive", "apt-get"];
         words.extend(arguments);
         if !is_root {
@@ -76,5 +91,17 @@ fn qemu() -> Outcome {
         }
         run(&mut command(words[0], &words[1..])).map_err(|_| advice())?;
     }
-    output_of(&mut command(QEMU, &["--version"])).map(drop).map_err(|_| advice())
+    if missing_packages().is_empty() { Ok(()) } else { Err(advice()) }
+}
+
+/// Packages whose programs or files are not there.
+fn missing_packages() -> Vec<&'static str> {
+    let runs = |program: &str| output_of(&mut command(program, &["--version"])).is_ok();
+    let mut missing: Vec<_> = PROGRAMS.into_iter().filter(|(p, _)| !runs(p)).map(|(_, package)| package).collect();
+    // The compiler says the path of a file that it has, and the mere name of one that it has not.
+    let library = output_of(&mut command("arm-none-eabi-gcc", &["-print-file-name=libc.a"]));
+    if !library.is_ok_and(|path| path.contains('/')) {
+        missing.push(ARM_LIBRARY);
+    }
+    missing
 }

@@ -175,7 +175,8 @@ fn panicking_library() -> Outcome {
     // The profile that checks its own arithmetic panics where the check fails.
     let choices = ["-DSTEREOPSIS_PROFILE=checked", "-DCMAKE_TOOLCHAIN_FILE=board/m4.cmake"].map(str::to_owned);
     configure("examples/c-firmware", &build, &choices, "-Werror")?;
-    let built = command("cmake", &["--build"]).arg(&build).output();
+    // The linker's own words, not their translation.
+    let built = command("cmake", &["--build"]).arg(&build).env("LC_ALL", "C").output();
     let built = built.map_err(|e| Failure::new(format!("cmake --build: {e}")))?;
     let told = String::from_utf8_lossy(&built.stderr).into_owned();
     match told.lines().find(|line| line.contains("undefined reference to `the_stereopsis_library_can_panic'")) {

@@ -11,9 +11,10 @@
 //! matching       census rows -> disparity row: costs, winner, checks, sub-pixel, speckle
 //! depth          disparity -> metres with its uncertainty, points
 //! pipeline       the live path, row by row
+//! ffi            the same for C, with the feature `ffi`
 //!
 //! camera -lines-> imaging -census rows-> matching -disparity row-> depth
-//!        '------------------------ pipeline ---------------------'
+//!        '------------------------ pipeline ---------------------' -> ffi
 //! ```
 //!
 //! A way in: [`pipeline::Pipeline`] is what firmware holds, [`camera::StereoSource`] is what it implements,
@@ -35,6 +36,9 @@ pub mod matching;
 pub mod depth;
 
 pub mod pipeline;
+
+#[cfg(feature = "ffi")]
+pub mod ffi;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

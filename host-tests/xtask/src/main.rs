@@ -3,19 +3,26 @@
 //! * `test` sets up what it needs and runs everything: the one test command.
 //! * `firmware` runs the firmware example in QEMU, on one core or on all.
 //! * `readme` writes the generated parts of README.md anew, or checks them.
+//! * `c` tests the C interface alone, one step of `test`.
+//! * `header` writes the header of the C interface anew, or checks it.
 //!
-//! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`] and [`readme`]
-//! are two of them.
+//! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`], [`c`] and
+//! [`readme`] are three of them.
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 use stereopsis_host::command_line::{one_line, usage_line};
 
+mod c;
 mod firmware;
+mod header;
+mod packages;
+mod pictures;
 mod readme;
 mod setup;
 mod steps;
+mod symbols;
 mod test;
 
 /// The chores of the repository.
@@ -38,6 +45,14 @@ enum Chore {
         #[arg(long)]
         check: bool,
     },
+    /// Tests the C interface alone: header, sanitizers, two boards in QEMU.
+    C,
+    /// Writes the header of the C interface anew.
+    Header {
+        /// Writes nothing; fails when the header differs from what would be written.
+        #[arg(long)]
+        check: bool,
+    },
 }
 
 fn main() -> ExitCode {
@@ -45,7 +60,10 @@ fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(help) if matches!(help.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => help.exit(),
         Err(error) => {
-            eprintln!("error: {}", one_line(&usage_line(&error, "the chores are test, firmware and readme")));
+            eprintln!(
+                "error: {}",
+                one_line(&usage_line(&error, "the chores are test, firmware, c, header and readme"))
+            );
             return ExitCode::FAILURE;
         }
     };
@@ -53,6 +71,8 @@ fn main() -> ExitCode {
         Chore::Test => test::run(),
         Chore::Firmware(arguments) => firmware::run(&arguments),
         Chore::Readme { check } => readme::run(check),
+        Chore::C => c::run(),
+        Chore::Header { check } => header::run(check),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

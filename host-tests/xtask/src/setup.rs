@@ -1,5 +1,6 @@
-//! Gets the tools that the tests need: targets and components by rustup, QEMU by apt-get.
+//! Gets the tools that the tests need: targets and components by rustup, QEMU and what C needs by apt-get.
 
+use crate::packages;
 use crate::steps::{Failure, Outcome, command, output_of, root, run};
 use std::fs;
 
@@ -13,38 +14,27 @@ pub const TARGETS: [&str; 6] = [
     "aarch64-unknown-none",
 ];
 
-/// An emulator, and the packages that have it: one or the other, as the distribution's version goes.
-struct Qemu {
-    program: &'static str,
-    packages: &'static [&'static str],
-}
-
-const ARM: Qemu = Qemu { program: "qemu-system-arm", packages: &["qemu-system-arm"] };
-const RISCV: Qemu = Qemu { program: "qemu-system-riscv32", packages: &["qemu-system-misc", "qemu-system-riscv"] };
+/// The emulators of the boards.
+pub const QEMU_ARM: &str = "qemu-system-arm";
+const QEMU_RISCV: &str = "qemu-system-riscv32";
 
 /// The emulator of a target's boards.
-fn emulator(target: &str) -> &'static Qemu {
-    if target.starts_with("riscv") { &RISCV } else { &ARM }
-}
-
-/// The name of the emulator of a target's boards.
 pub fn qemu_of(target: &str) -> &'static str {
-    emulator(target).program
+    if target.starts_with("riscv") { QEMU_RISCV } else { QEMU_ARM }
 }
 
-/// Adds the targets, components and toolchain that are missing, then QEMU.
+/// Adds the targets, components and toolchain that are missing, then the packages.
 pub fn run_all() -> Outcome {
     targets(&TARGETS)?;
     components()?;
     toolchain(&rust_version()?)?;
-    qemu(&ARM)?;
-    qemu(&RISCV)
+    packages::install(&[QEMU_ARM, QEMU_RISCV, "arm-none-eabi-gcc", "cmake", "make", "gcc", "g++"])
 }
 
 /// What firmware for these targets needs.
 pub fn firmware(of: &[&str]) -> Outcome {
     targets(of)?;
-    of.iter().try_for_each(|target| qemu(emulator(target)))
+    of.iter().try_for_each(|target| packages::install(&[qemu_of(target)]))
 }
 
 /// What rustup has installed of a kind.
@@ -92,26 +82,4 @@ pub fn rust_version() -> Outcome<String> {
     let stated = manifest.lines().find_map(|line| line.strip_prefix("rust-version = "));
     let version = stated.ok_or_else(|| Failure::new("Cargo.toml states no rust-version"))?.trim().trim_matches('"');
     Ok(if version.matches('.').count() == 1 { format!("{version}.0") } else { version.to_owned() })
-}
-
-/// An emulator, by apt-get where that is possible.
-fn qemu(Qemu { program, packages }: &Qemu) -> Outcome {
-    let is_there = || output_of(&mut command(program, &["--version"])).is_ok();
-    if is_there() {
-        return Ok(());
-    }
-    let is_root = output_of(&mut command("id", &["-u"])).is_ok_and(|id| id.trim() == "0");
-    let apt = |arguments: &[&str]| {
-        let sudo = if is_root { [].as_slice() } else { &["sudo", "-n"] };
-        let words = [sudo, &["env", "DEBIAN_FRONTEND=noninteractive", "apt-get"], arguments].concat();
-        run(&mut command(words[0], &words[1..]))
-    };
-    // What fails here is told below, in one line.
-    let updated = apt(&["update"]).is_ok();
-    let install = |package: &&str| apt(&["install", "-y", "--no-install-recommends", package]).is_ok() && is_there();
-    if updated && packages.iter().any(install) {
-        return Ok(());
-    }
-    let names = packages.join(" or ");
-    Err(Failure::new(format!("{program} is not installed: install it (Debian, Ubuntu: apt-get install {names})")))
 }

@@ -2,9 +2,10 @@
 
 use std::ffi::OsStr;
 use std::fmt;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// What went wrong, in one line.
 #[derive(Debug)]
@@ -98,6 +99,34 @@ pub fn output_of(command: &mut Command) -> Outcome<String> {
         return Err(Failure(format!("{}: {}: {last}", words(command), output.status)));
     }
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// Runs a program that prints little and may hang; what it printed, if it ended well within `limit`.
+pub fn output_within(command: &mut Command, limit: Duration) -> Outcome<String> {
+    let failed = |e: std::io::Error, command: &Command| Failure(format!("{}: {e}", words(command)));
+    let spawned = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let mut child = spawned.map_err(|e| failed(e, command))?;
+    let start = Instant::now();
+    // The text is far shorter than a pipe holds, so it can be read once the program is done.
+    let status = loop {
+        match child.try_wait().map_err(|e| failed(e, command))? {
+            Some(status) => break status,
+            None if start.elapsed() < limit => std::thread::sleep(Duration::from_millis(5)),
+            None => {
+                child.kill().and_then(|()| child.wait()).map_err(|e| failed(e, command))?;
+                return Err(Failure(format!("{} did not end within {} s", words(command), limit.as_secs())));
+            }
+        }
+    };
+    let (mut printed, mut told) = (String::new(), String::new());
+    if let (Some(mut out), Some(mut err)) = (child.stdout.take(), child.stderr.take()) {
+        let read = out.read_to_string(&mut printed).and_then(|_| err.read_to_string(&mut told));
+        read.map_err(|e| failed(e, command))?;
+    }
+    if status.success() {
+        return Ok(printed);
+    }
+    Err(Failure(format!("{}: {status}: {} {}", words(command), printed.trim(), told.trim())))
 }
 
 /// A command's words, as typed.

@@ -1,5 +1,6 @@
 //! `cargo xtask test`: every check of the repository, one step after another.
 
+use crate::c;
 use crate::firmware;
 use crate::setup::{self, TARGETS};
 use crate::steps::{Failure, Outcome, Steps, cargo, command, run as run_command, target_dir};
@@ -26,6 +27,7 @@ pub fn run() -> Outcome {
     let version = setup::rust_version()?;
     steps.step(&format!("stated rust-version {version}"), || rust_version(&version))?;
     steps.step("firmware", firmware::check_all)?;
+    steps.step("C interface", c::run)?;
     steps.summary();
     if data.is_none() {
         println!("{NOT_RUN}");
@@ -48,17 +50,18 @@ fn real_data() -> Outcome<Option<PathBuf>> {
 
 fn format() -> Outcome {
     run_cargo("fmt --all --check")?;
-    run_command(&mut firmware::cargo("fmt --check"))
+    run_command(&mut firmware::cargo("fmt --check"))?;
+    run_command(&mut c::cargo("fmt --check"))
 }
 
 fn clippy() -> Outcome {
     run_cargo(&format!("clippy --locked --workspace --all-targets --features {REAL_DATA} -- -D warnings"))?;
-    run_cargo("clippy --locked -p stereopsis --features defmt -- -D warnings")?;
+    run_cargo("clippy --locked -p stereopsis --features defmt,ffi -- -D warnings")?;
     // The two kinds of cores have code of their own.
     for target in ["thumbv7em-none-eabihf", "riscv32imac-unknown-none-elf"] {
         run_command(&mut firmware::cargo(&format!("clippy --locked --release --target {target} -- -D warnings")))?;
     }
-    Ok(())
+    run_command(&mut c::cargo("clippy --locked --release --target thumbv7em-none-eabihf -- -D warnings"))
 }
 
 fn tests(with_real_data: bool) -> Outcome {
@@ -68,7 +71,7 @@ fn tests(with_real_data: bool) -> Outcome {
 
 fn documentation() -> Outcome {
     // The core's private items too: its comments link to them. Then what a user reads, in the same place.
-    for words in ["-p stereopsis --document-private-items", "--workspace"] {
+    for words in ["-p stereopsis --features ffi --document-private-items", "--workspace"] {
         let mut docs = cargo(&["doc", "--locked", "--no-deps"]);
         run_command(docs.args(words.split_whitespace()).env("RUSTDOCFLAGS", "-D warnings"))?;
     }
@@ -76,7 +79,7 @@ fn documentation() -> Outcome {
 }
 
 fn cross_builds() -> Outcome {
-    for features in [[].as_slice(), &["--features", "defmt"]] {
+    for features in [[].as_slice(), &["--features", "defmt,ffi"]] {
         let mut build = cargo(&["build", "--locked", "--release", "-p", "stereopsis"]);
         build.args(features).args(TARGETS.iter().flat_map(|target| ["--target", target]));
         run_command(build.env("RUSTFLAGS", "-D warnings"))?;
@@ -87,7 +90,7 @@ fn cross_builds() -> Outcome {
 /// The oldest compiler that the packages say they build with, in earnest.
 fn rust_version(version: &str) -> Outcome {
     let mut check = command("rustup", &["run", version, "cargo", "check", "--locked"]);
-    check.args(["-p", "stereopsis", "-p", "stereopsis-host"]);
+    check.args(["-p", "stereopsis", "-p", "stereopsis-host", "--features", "stereopsis/ffi"]);
     // Two compilers that take turns in one folder lock each other out and tidy away each other's products.
     run_command(check.env("CARGO_TARGET_DIR", target_dir().join("rust-version")))
 }

@@ -1,0 +1,45 @@
+//! Takes the method and the sizes from three variables, which a build system sets, and writes the one line that makes the
+//! functions.
+
+use std::path::PathBuf;
+use std::{env, fs};
+
+/// What the library is built for when nothing is said.
+const DEFAULTS: [(&str, &str); 3] =
+    [("STEREOPSIS_METHOD", "block"), ("STEREOPSIS_WIDTH", "320"), ("STEREOPSIS_DISPARITIES", "64")];
+
+/// Methods as users spell them, and as the crate does.
+const METHODS: [(&str, &str); 2] = [("block", "Block"), ("fast", "Fast")];
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    if let Err(line) = write() {
+        println!("cargo::error={line}");
+    }
+}
+
+fn write() -> Result<(), String> {
+    let [method, width, disparities] = DEFAULTS.map(|(name, default)| {
+        println!("cargo::rerun-if-env-changed={name}");
+        env::var(name).ok().filter(|value| !value.is_empty()).unwrap_or_else(|| default.to_owned())
+    });
+    let known = METHODS.map(|(name, _)| name).join(", ");
+    let method = METHODS
+        .iter()
+        .find(|(name, _)| *name == method)
+        .map(|(_, method)| method)
+        .ok_or_else(|| format!("STEREOPSIS_METHOD is \"{method}\", known are: {known}"))?;
+    let number = |at: usize, value: &str| {
+        value.parse::<usize>().map_err(|_| format!("{} is \"{value}\", not a number", DEFAULTS[at].0))
+    };
+    let (width, disparities) = (number(1, &width)?, number(2, &disparities)?);
+    if !disparities.is_multiple_of(16) || !(16..=256).contains(&disparities) {
+        return Err(format!("STEREOPSIS_DISPARITIES is {disparities}: it must be a multiple of 16, from 16 to 256"));
+    }
+    if width < disparities || width > 6553 {
+        return Err(format!("STEREOPSIS_WIDTH is {width}: it must be {disparities} (the disparities) to 6553"));
+    }
+    let line = format!("stereopsis::instantiate_c_api!({method}, width = {width}, disparities = {disparities});\n");
+    let folder = env::var_os("OUT_DIR").map(PathBuf::from).ok_or("OUT_DIR is not set")?;
+    fs::write(folder.join("instance.rs"), line).map_err(|e| format!("instance.rs: {e}"))
+}

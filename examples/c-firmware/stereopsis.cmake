@@ -1,0 +1,64 @@
+# Builds libstereopsis.a with cargo and gives the target stereopsis::stereopsis to link.
+#
+#   set(STEREOPSIS_METHOD block)
+#   set(STEREOPSIS_WIDTH 320)
+#   set(STEREOPSIS_DISPARITIES 64)
+#   set(STEREOPSIS_RUST_TARGET thumbv7em-none-eabihf)
+#   include(path/to/stereopsis.cmake)
+#   target_link_libraries(firmware PRIVATE stereopsis::stereopsis)
+#
+# Who links it finds stereopsis.h, and the macros STEREOPSIS_WIDTH, STEREOPSIS_DISPARITIES and STEREOPSIS_BYTES: the
+# memory of a matcher is STEREOPSIS_BYTES(STEREOPSIS_WIDTH, STEREOPSIS_DISPARITIES) bytes.
+
+set(STEREOPSIS_METHOD block CACHE STRING "How lines are matched: block or fast")
+set(STEREOPSIS_WIDTH 320 CACHE STRING "Pixels of the longest line, at least the disparities")
+set(STEREOPSIS_DISPARITIES 64 CACHE STRING "Disparities of the longest search, a multiple of 16")
+set(STEREOPSIS_RUST_TARGET "" CACHE STRING "Rust's name of the target; empty is this machine")
+set(STEREOPSIS_PROFILE release CACHE STRING "Cargo's profile: release, or checked under sanitizers")
+set(STEREOPSIS_TARGET_DIR "${CMAKE_CURRENT_BINARY_DIR}/stereopsis-target" CACHE PATH "Cargo's folder of build products")
+
+if(CMAKE_CROSSCOMPILING AND STEREOPSIS_RUST_TARGET STREQUAL "")
+  message(FATAL_ERROR "STEREOPSIS_RUST_TARGET must name Rust's target, such as thumbv7em-none-eabihf")
+endif()
+find_program(STEREOPSIS_CARGO cargo REQUIRED)
+
+set(STEREOPSIS_CARGO_TARGET "")
+if(NOT STEREOPSIS_RUST_TARGET STREQUAL "")
+  set(STEREOPSIS_CARGO_TARGET --target ${STEREOPSIS_RUST_TARGET})
+endif()
+set(STEREOPSIS_LIBRARY "${CMAKE_CURRENT_BINARY_DIR}/libstereopsis.a")
+
+# Cargo knows best what has changed, so it is always asked. Its folder may be shared by several configurations; the copy
+# is this one's own.
+add_custom_target(stereopsis_library
+  COMMAND ${CMAKE_COMMAND} -E env
+    STEREOPSIS_METHOD=${STEREOPSIS_METHOD}
+    STEREOPSIS_WIDTH=${STEREOPSIS_WIDTH}
+    STEREOPSIS_DISPARITIES=${STEREOPSIS_DISPARITIES}
+    ${STEREOPSIS_CARGO} build --locked --quiet --profile ${STEREOPSIS_PROFILE}
+    --manifest-path ${CMAKE_CURRENT_LIST_DIR}/library/Cargo.toml
+    --target-dir ${STEREOPSIS_TARGET_DIR} ${STEREOPSIS_CARGO_TARGET}
+  COMMAND ${CMAKE_COMMAND} -E copy_if_different
+    ${STEREOPSIS_TARGET_DIR}/${STEREOPSIS_RUST_TARGET}/${STEREOPSIS_PROFILE}/libstereopsis.a ${STEREOPSIS_LIBRARY}
+  BYPRODUCTS ${STEREOPSIS_LIBRARY}
+  COMMENT "libstereopsis.a: ${STEREOPSIS_METHOD}, ${STEREOPSIS_WIDTH} px, ${STEREOPSIS_DISPARITIES} disparities"
+  VERBATIM)
+
+string(TOUPPER "${STEREOPSIS_METHOD}" STEREOPSIS_METHOD_MACRO)
+string(REPLACE "-" "_" STEREOPSIS_METHOD_MACRO "${STEREOPSIS_METHOD_MACRO}")
+add_library(stereopsis::stereopsis STATIC IMPORTED GLOBAL)
+add_dependencies(stereopsis::stereopsis stereopsis_library)
+set_target_properties(stereopsis::stereopsis PROPERTIES
+  IMPORTED_LOCATION ${STEREOPSIS_LIBRARY}
+  INTERFACE_INCLUDE_DIRECTORIES ${CMAKE_CURRENT_LIST_DIR}/../../src/ffi
+  INTERFACE_COMPILE_DEFINITIONS
+    "STEREOPSIS_WIDTH=${STEREOPSIS_WIDTH};STEREOPSIS_DISPARITIES=${STEREOPSIS_DISPARITIES};STEREOPSIS_BYTES=STEREOPSIS_${STEREOPSIS_METHOD_MACRO}_BYTES")
+
+if(STEREOPSIS_RUST_TARGET MATCHES "-none")
+  # The library's panic handler cannot be linked: what nobody calls has to be dropped.
+  set_property(TARGET stereopsis::stereopsis PROPERTY INTERFACE_LINK_OPTIONS -Wl,--gc-sections)
+else()
+  # What Rust's std stands on.
+  find_package(Threads REQUIRED)
+  set_property(TARGET stereopsis::stereopsis PROPERTY INTERFACE_LINK_LIBRARIES Threads::Threads ${CMAKE_DL_LIBS} m)
+endif()

@@ -1,0 +1,207 @@
+//! The C interface, called from Rust: the pipeline's rows, and a status for every misuse of memory.
+//!
+//! `ffi/misuse.c` goes through every status from C, under sanitizers (`cargo xtask c`).
+#![allow(unsafe_code, reason = "functions with a C ABI are called as C calls them")]
+
+use std::ffi::{CStr, c_void};
+use std::ptr::{null, null_mut};
+use stereopsis::ffi::{Config, Handle, Rig, Row, STEREOPSIS_ALIGN, STEREOPSIS_PRESET_DEFAULT, Status, state_bytes};
+use stereopsis::matching::{self, Block};
+use stereopsis::pipeline::Pipeline;
+use stereopsis_host::scene::pattern::Pattern;
+
+const WIDTH: usize = 96;
+const DISPARITIES: usize = 32;
+stereopsis::instantiate_c_api!(Block, width = WIDTH, disparities = DISPARITIES);
+use stereopsis_c::*;
+
+/// Memory that is aligned as the header says, with one word more than needed, and holds anything but zeros.
+fn memory() -> Vec<u64> {
+    vec![0xA5A5_A5A5_A5A5_A5A5; stereopsis_size().div_ceil(8) + 1]
+}
+
+/// `stereopsis_init` on a part of `memory`: the status and the handle.
+fn init(memory: &mut [u64], offset: usize, length: usize) -> (Status, *mut Handle) {
+    assert!(offset + length <= size_of_val(memory), "the part is inside");
+    let mut handle = null_mut();
+    // SAFETY: the part's bytes are inside of the memory, which outlives the handle in these tests.
+    let status = unsafe {
+        let part = memory.as_mut_ptr().cast::<u8>().add(offset).cast::<c_void>();
+        stereopsis_init(part, length, &raw mut handle)
+    };
+    (status, handle)
+}
+
+/// A configuration of the default preset.
+fn config(width: u16, height: u16, disparities: u16) -> Config {
+    let mut config = Config {
+        width: 0,
+        height: 0,
+        disparities: 0,
+        min_disparity: 0,
+        left_right_px: 0,
+        uniqueness_percent: 0,
+        texture_gradient: 0,
+        texture_pixels: 0,
+        refuse_ceiling: 0,
+        smoothing_radius: 0,
+        speckle_pixels: 0,
+        speckle_range: 0,
+    };
+    // SAFETY: the pointer is to a configuration.
+    let status =
+        unsafe { stereopsis_config_default(width, height, disparities, STEREOPSIS_PRESET_DEFAULT, &raw mut config) };
+    assert_eq!(status, Status::Ok);
+    config
+}
+
+const NO_ROW: Row = Row { index: 0, width: 0, disparities: null(), flags: null() };
+
+#[test]
+fn rows_are_those_of_the_pipeline() {
+    for (width, height) in [(96, 30), (37, 1), (1, 9), (50, 12)] {
+        let (left, right) = Pattern::Shifted { most: 12, noise_grey: 4.0 }.pair(width.into(), height.into(), 5);
+        let lines = |picture: &image::GrayImage| -> Vec<Vec<u8>> {
+            picture.as_raw().chunks(usize::from(width)).map(<[u8]>::to_vec).collect()
+        };
+        let (left, right) = (lines(&left), lines(&right));
+
+        let mut pipeline = Box::new(Pipeline::<Block, WIDTH, DISPARITIES>::new());
+        pipeline.start(&matching::Config::new(width, height, 32)).expect("the configuration is valid");
+        pipeline.begin().expect("it is started");
+        let mut expected = Vec::new();
+        let mut keep = |row: matching::Row<'_>| {
+            let sigma: Vec<f32> = (0..width.into()).map(|x| row.sigma_px(x).unwrap_or(f32::INFINITY)).collect();
+            let raw: Vec<u16> = row.disparities().iter().map(|d| d.raw()).collect();
+            let flags: Vec<u8> = row.flags().iter().map(|f| f.bits()).collect();
+            expected.push((row.index(), raw, flags, sigma));
+        };
+        for (left, right) in left.iter().zip(&right) {
+            pipeline.push(left, right).expect("a line").map(&mut keep);
+        }
+        while let Some(row) = pipeline.flush().expect("all lines are in") {
+            keep(row);
+        }
+
+        let mut memory = memory();
+        let (status, handle) = init(&mut memory, 0, stereopsis_size());
+        assert_eq!(status, Status::Ok);
+        let config = config(width, height, 32);
+        let mut found = Vec::new();
+        // SAFETY: the handle is from `init`, lines have their length, and rows are read before the next call.
+        unsafe {
+            assert_eq!(stereopsis_start(handle, &raw const config), Status::Ok);
+            assert_eq!(stereopsis_begin_frame(handle), Status::Ok);
+            let mut row = NO_ROW;
+            let mut lines = left.iter().zip(&right);
+            let mut taken = 0;
+            loop {
+                let status = match lines.next() {
+                    Some((l, r)) => stereopsis_push(handle, l.as_ptr(), r.as_ptr(), l.len(), &raw mut row),
+                    None => stereopsis_flush(handle, &raw mut row),
+                };
+                taken += 1;
+                match status {
+                    Status::Ok => {}
+                    Status::NoRowYet => {
+                        assert!(taken <= stereopsis_latency() && row == NO_ROW);
+                        continue;
+                    }
+                    Status::FrameDone => break,
+                    wrong => panic!("{wrong:?}"),
+                }
+                let mut sigma = vec![0.0; width.into()];
+                assert_eq!(stereopsis_sigma_px(handle, sigma.as_mut_ptr(), sigma.len()), Status::Ok);
+                let disparities = std::slice::from_raw_parts(row.disparities, row.width.into()).to_vec();
+                let flags = std::slice::from_raw_parts(row.flags, row.width.into()).to_vec();
+                found.push((row.index, disparities, flags, sigma));
+            }
+            assert_eq!(stereopsis_deinit(handle), Status::Ok);
+        }
+        assert_eq!(found.len(), usize::from(height));
+        assert!(found == expected, "{width}x{height}");
+    }
+}
+
+#[test]
+fn memory_that_will_not_do_is_refused_and_left_alone() {
+    let size = stereopsis_size();
+    let mut memory = memory();
+    let before = memory.clone();
+    let mut handle = null_mut();
+    // SAFETY: null pointers are answered; the memory is not read.
+    unsafe {
+        assert_eq!(stereopsis_init(null_mut(), size, &raw mut handle), Status::Null);
+        assert_eq!(stereopsis_init(memory.as_mut_ptr().cast(), size, null_mut()), Status::Null);
+    }
+    for length in [0, 1, size - 1] {
+        assert_eq!(init(&mut memory, 0, length), (Status::MemoryTooShort, null_mut()));
+    }
+    for offset in 1..stereopsis_align() {
+        assert_eq!(init(&mut memory, offset, size), (Status::Misaligned, null_mut()));
+    }
+    assert!(memory == before);
+}
+
+#[test]
+fn memory_holds_one_matcher_until_it_is_given_up() {
+    let size = stereopsis_size();
+    let mut memory = memory();
+    let end = *memory.last().expect("a word");
+    let (status, handle) = init(&mut memory, 0, size);
+    assert_eq!(status, Status::Ok);
+    assert_eq!(init(&mut memory, 0, size), (Status::AlreadyInitialised, null_mut()));
+    // A copy at another address is no matcher.
+    let mut copy = memory.clone();
+    // SAFETY: the handles are memory of a matcher's size.
+    unsafe {
+        assert_eq!(stereopsis_begin_frame(copy.as_mut_ptr().cast()), Status::NotInitialised);
+        assert_eq!(stereopsis_begin_frame(handle), Status::NotStarted);
+        assert_eq!(stereopsis_deinit(handle), Status::Ok);
+        assert_eq!(stereopsis_deinit(handle), Status::NotInitialised);
+        assert_eq!(stereopsis_deinit(null_mut()), Status::Null);
+    }
+    let (status, handle) = init(&mut memory, 0, size);
+    assert_eq!(status, Status::Ok);
+    // SAFETY: the handle is from `init`.
+    assert_eq!(unsafe { stereopsis_deinit(handle) }, Status::Ok);
+    assert_eq!(memory.last(), Some(&end), "nothing is written behind the size");
+}
+
+#[test]
+fn every_status_of_the_header_has_a_text() {
+    let header = include_str!("../../src/ffi/stereopsis.h");
+    let codes: Vec<i32> = header
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("STEREOPSIS_STATUS_")?.strip_suffix(',')?.split_once(" = "))
+        .map(|(_, code)| code.parse().expect("a number"))
+        .collect();
+    assert!(codes.len() > 20, "the header's statuses were not found");
+    // SAFETY: the texts are constants that end in a zero.
+    let text = |code| unsafe { CStr::from_ptr(stereopsis_status_text(code)) };
+    let unknown = text(i32::MAX);
+    assert_eq!(text(i32::MIN), unknown);
+    for &code in &codes {
+        assert_ne!(text(code), unknown, "{code}");
+        assert!(codes.iter().filter(|&&other| text(other) == text(code)).count() == 1, "{code}: {:?}", text(code));
+    }
+}
+
+#[test]
+fn sizes_are_as_stated() {
+    assert_eq!(stereopsis_max_width(), WIDTH);
+    assert_eq!(stereopsis_max_disparities(), DISPARITIES);
+    assert_eq!(stereopsis_latency(), Pipeline::<Block, WIDTH, DISPARITIES>::LATENCY);
+    assert!(stereopsis_size() <= state_bytes::<Block>(WIDTH, DISPARITIES));
+    assert!(STEREOPSIS_ALIGN.is_multiple_of(stereopsis_align()));
+}
+
+#[test]
+fn depths_are_the_scales() {
+    let rig = Rig { focal_px: 500.0, baseline_m: 0.1, cx: 160.0, cy: 120.0, cx_right: 160.0 };
+    let disparities = [25 * 32, 50 * 32, 0, u16::MAX];
+    let mut millimetres = [1; 4];
+    // SAFETY: both arrays have the length that is said.
+    let status = unsafe { stereopsis_millimetres(&raw const rig, disparities.as_ptr(), millimetres.as_mut_ptr(), 4) };
+    assert_eq!((status, millimetres), (Status::Ok, [2000, 1000, 0, 0]));
+}

@@ -1,0 +1,252 @@
+/* Every misuse of the C interface has its status, and leaves everything else as it was. Ends with the number of failures;
+   built with the address and undefined-behaviour sanitizers, as C and as C++. */
+#include "stereopsis.h"
+#include "stereopsis.h" /* twice: the guard holds */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define EXPECT(call, status) expect(__LINE__, #call, (call), STEREOPSIS_STATUS_##status)
+#define CHECK(condition) check(__LINE__, #condition, (condition))
+
+enum { WIDTH = 40, HEIGHT = 4, GUARD = 64 };
+static int failures;
+
+static void check(int line, const char *what, int holds) {
+    if (holds) return;
+    printf("misuse.c:%d: %s does not hold\n", line, what);
+    failures++;
+}
+
+static void expect(int line, const char *call, int32_t found, int32_t expected) {
+    if (found == expected) return;
+    printf("misuse.c:%d: %s is %d (%s), expected %d (%s)\n", line, call, (int)found, stereopsis_status_text(found),
+           (int)expected, stereopsis_status_text(expected));
+    failures++;
+}
+
+/* Memory with guards around it, of just the size that is needed, filled with anything but zeros. */
+typedef struct {
+    unsigned char *all, *memory;
+    size_t size;
+} guarded;
+
+static guarded take(void) {
+    guarded g;
+    g.size = stereopsis_size();
+    g.all = (unsigned char *)malloc(g.size + 2 * GUARD);
+    if (g.all == NULL) exit(100);
+    memset(g.all, 0xA5, g.size + 2 * GUARD);
+    g.memory = g.all + GUARD;
+    return g;
+}
+
+static void release(guarded g) {
+    for (size_t i = 0; i < GUARD; i++) CHECK(g.all[i] == 0xA5 && g.memory[g.size + i] == 0xA5);
+    free(g.all);
+}
+
+static stereopsis_config config(void) {
+    stereopsis_config c;
+    EXPECT(stereopsis_config_default(WIDTH, HEIGHT, 32, STEREOPSIS_PRESET_DEFAULT, &c), OK);
+    return c;
+}
+
+static void constants(void) {
+    CHECK(stereopsis_abi() == STEREOPSIS_ABI);
+    CHECK(strchr(stereopsis_version(), '.') != NULL);
+    CHECK(stereopsis_align() <= STEREOPSIS_ALIGN && STEREOPSIS_ALIGN % stereopsis_align() == 0);
+    CHECK(stereopsis_size() <= STEREOPSIS_BYTES(STEREOPSIS_WIDTH, STEREOPSIS_DISPARITIES));
+    CHECK(stereopsis_size() + 256 > STEREOPSIS_BYTES(STEREOPSIS_WIDTH, STEREOPSIS_DISPARITIES));
+    CHECK(stereopsis_max_width() == STEREOPSIS_WIDTH && stereopsis_max_disparities() == STEREOPSIS_DISPARITIES);
+    CHECK(strcmp(stereopsis_status_text(STEREOPSIS_STATUS_NULL), "a pointer is null") == 0);
+    CHECK(strcmp(stereopsis_status_text(INT32_MIN), "no status of this library") == 0);
+}
+
+static void memory(void) {
+    guarded g = take();
+    size_t align = stereopsis_align();
+    stereopsis *s;
+    EXPECT(stereopsis_init(g.memory, g.size, NULL), NULL);
+    s = (stereopsis *)(void *)g.memory;
+    EXPECT(stereopsis_init(NULL, g.size, &s), NULL);
+    CHECK(s == NULL);
+    for (size_t off = 1; off < align; off++) EXPECT(stereopsis_init(g.memory + off, g.size, &s), MISALIGNED);
+    EXPECT(stereopsis_init(g.memory, 0, &s), MEMORY_TOO_SHORT);
+    EXPECT(stereopsis_init(g.memory, g.size - 1, &s), MEMORY_TOO_SHORT);
+    EXPECT(stereopsis_init(g.memory, g.size, (stereopsis **)(void *)(g.memory + align)), OVERLAP);
+    for (size_t i = 0; i < g.size; i++) CHECK(g.memory[i] == 0xA5);
+
+    EXPECT(stereopsis_begin_frame((stereopsis *)(void *)g.memory), NOT_INITIALISED);
+    EXPECT(stereopsis_init(g.memory, g.size, &s), OK);
+    CHECK((unsigned char *)s == g.memory);
+    stereopsis *again = s;
+    EXPECT(stereopsis_init(g.memory, g.size, &again), ALREADY_INITIALISED);
+    CHECK(again == NULL);
+
+    /* A copy somewhere else is no matcher. */
+    guarded copy = take();
+    memcpy(copy.memory, g.memory, g.size);
+    EXPECT(stereopsis_begin_frame((stereopsis *)(void *)copy.memory), NOT_INITIALISED);
+    release(copy);
+
+    EXPECT(stereopsis_deinit(NULL), NULL);
+    EXPECT(stereopsis_deinit((stereopsis *)(void *)(g.memory + 1)), MISALIGNED);
+    EXPECT(stereopsis_deinit(s), OK);
+    EXPECT(stereopsis_deinit(s), NOT_INITIALISED);
+    EXPECT(stereopsis_init(g.memory, g.size, &s), OK);
+    EXPECT(stereopsis_deinit(s), OK);
+    release(g);
+}
+
+/* One field of a configuration that is refused. */
+#define REFUSED(field, value, status)                 \
+    do {                                              \
+        stereopsis_config wrong = config();           \
+        wrong.field = (value);                        \
+        EXPECT(stereopsis_start(s, &wrong), status);  \
+        EXPECT(stereopsis_begin_frame(s), NOT_STARTED); \
+    } while (0)
+
+static void configurations(void) {
+    guarded g = take();
+    stereopsis *s;
+    stereopsis_config c;
+    EXPECT(stereopsis_config_default(1, 1, 16, STEREOPSIS_PRESET_STRICT, NULL), NULL);
+    EXPECT(stereopsis_config_default(1, 1, 16, -1, &c), PRESET);
+    EXPECT(stereopsis_config_default(1, 1, 16, 3, &c), PRESET);
+    EXPECT(stereopsis_init(g.memory, g.size, &s), OK);
+    c = config();
+    EXPECT(stereopsis_start(NULL, &c), NULL);
+    EXPECT(stereopsis_start(s, NULL), NULL);
+    REFUSED(width, 0, WIDTH);
+    REFUSED(width, STEREOPSIS_WIDTH + 1, WIDTH);
+    REFUSED(height, 0, HEIGHT);
+    REFUSED(disparities, 15, DISPARITIES);
+    REFUSED(disparities, STEREOPSIS_DISPARITIES + 1, DISPARITIES);
+    REFUSED(min_disparity, 2047, MIN_DISPARITY);
+    REFUSED(left_right_px, 256, LEFT_RIGHT);
+    REFUSED(left_right_px, -2, LEFT_RIGHT);
+    REFUSED(uniqueness_percent, 100, UNIQUENESS);
+    REFUSED(uniqueness_percent, -2, UNIQUENESS);
+    REFUSED(smoothing_radius, 9, SMOOTHING);
+    REFUSED(speckle_pixels, 32768, SPECKLE);
+    for (int32_t preset = STEREOPSIS_PRESET_DENSE; preset <= STEREOPSIS_PRESET_STRICT; preset++) {
+        EXPECT(stereopsis_config_default(WIDTH, HEIGHT, 32, preset, &c), OK);
+        EXPECT(stereopsis_start(s, &c), OK);
+    }
+    EXPECT(stereopsis_deinit(s), OK);
+    release(g);
+}
+
+static void lines(void) {
+    guarded g = take();
+    stereopsis *s;
+    stereopsis_config c = config();
+    stereopsis_row row, untouched;
+    uint8_t line[WIDTH];
+    float sigma[WIDTH];
+    for (size_t i = 0; i < WIDTH; i++) line[i] = (uint8_t)(i * 37 % 251);
+    memset(&row, 0x5A, sizeof row);
+    untouched = row;
+    EXPECT(stereopsis_init(g.memory, g.size, &s), OK);
+    EXPECT(stereopsis_begin_frame(NULL), NULL);
+    EXPECT(stereopsis_begin_frame(s), NOT_STARTED);
+    EXPECT(stereopsis_push(s, line, line, WIDTH, &row), NOT_STARTED);
+    EXPECT(stereopsis_flush(s, &row), NOT_STARTED);
+    EXPECT(stereopsis_sigma_px(s, sigma, WIDTH), NO_ROW_YET);
+    EXPECT(stereopsis_start(s, &c), OK);
+    EXPECT(stereopsis_push(s, line, line, WIDTH, &row), NOT_BEGUN);
+    EXPECT(stereopsis_flush(s, &row), NOT_BEGUN);
+
+    for (int frame = 0; frame < 2; frame++) {
+        EXPECT(stereopsis_begin_frame(s), OK);
+        row = untouched;
+        EXPECT(stereopsis_push(NULL, line, line, WIDTH, &row), NULL);
+        EXPECT(stereopsis_push(s, NULL, line, WIDTH, &row), NULL);
+        EXPECT(stereopsis_push(s, line, NULL, WIDTH, &row), NULL);
+        EXPECT(stereopsis_push(s, line, line, WIDTH, NULL), NULL);
+        EXPECT(stereopsis_push(s, line, line, 0, &row), LINE_LENGTH);
+        EXPECT(stereopsis_push(s, line, line, WIDTH - 1, &row), LINE_LENGTH);
+        EXPECT(stereopsis_push(s, line, line, SIZE_MAX, &row), LINE_LENGTH);
+        EXPECT(stereopsis_push(s, g.memory, line, WIDTH, &row), OVERLAP);
+        EXPECT(stereopsis_push(s, line, g.memory + g.size - 1, WIDTH, &row), OVERLAP);
+        EXPECT(stereopsis_push(s, line, line, WIDTH, (stereopsis_row *)(void *)g.memory), OVERLAP);
+        EXPECT(stereopsis_flush(s, &row), LINES_MISSING);
+        CHECK(memcmp(&row, &untouched, sizeof row) == 0);
+        for (int y = 0; y < HEIGHT; y++) {
+            EXPECT(stereopsis_push(s, line, line, WIDTH, &row), NO_ROW_YET);
+            CHECK(row.width == 0 && row.disparities == NULL && row.flags == NULL);
+        }
+        EXPECT(stereopsis_push(s, line, line, WIDTH, &row), NO_LINE_LEFT);
+        EXPECT(stereopsis_flush(NULL, &row), NULL);
+        EXPECT(stereopsis_flush(s, NULL), NULL);
+        EXPECT(stereopsis_flush(s, (stereopsis_row *)(void *)g.memory), OVERLAP);
+        for (uint16_t y = 0; y < HEIGHT; y++) {
+            EXPECT(stereopsis_flush(s, &row), OK);
+            CHECK(row.index == y && row.width == WIDTH);
+            CHECK((const unsigned char *)row.flags > g.memory && (const unsigned char *)row.flags < g.memory + g.size);
+            /* Both cameras see the same: what has an answer is infinitely far, what has none says why. */
+            for (uint16_t x = 0; x < WIDTH; x++)
+                CHECK(row.disparities[x] == 0 || (row.disparities[x] == STEREOPSIS_NONE && row.flags[x] != 0));
+            EXPECT(stereopsis_sigma_px(s, sigma, WIDTH), OK);
+            for (uint16_t x = 0; x < WIDTH; x++) CHECK((sigma[x] < 1e9f) == (row.disparities[x] != STEREOPSIS_NONE));
+        }
+        EXPECT(stereopsis_sigma_px(NULL, sigma, WIDTH), NULL);
+        EXPECT(stereopsis_sigma_px(s, NULL, WIDTH), NULL);
+        EXPECT(stereopsis_sigma_px(s, sigma, WIDTH - 1), LINE_LENGTH);
+        EXPECT(stereopsis_sigma_px(s, (float *)(void *)((char *)sigma + 1), WIDTH - 1), MISALIGNED);
+        EXPECT(stereopsis_sigma_px(s, (float *)(void *)g.memory, WIDTH), OVERLAP);
+        EXPECT(stereopsis_flush(s, &row), FRAME_DONE);
+        CHECK(row.width == 0 && row.disparities == NULL);
+        EXPECT(stereopsis_flush(s, &row), FRAME_DONE);
+    }
+    EXPECT(stereopsis_deinit(s), OK);
+    EXPECT(stereopsis_push(s, line, line, WIDTH, &row), NOT_INITIALISED);
+    EXPECT(stereopsis_flush(s, &row), NOT_INITIALISED);
+    EXPECT(stereopsis_sigma_px(s, sigma, WIDTH), NOT_INITIALISED);
+    EXPECT(stereopsis_start(s, &c), NOT_INITIALISED);
+    release(g);
+}
+
+static void depths(void) {
+    stereopsis_rig rig, wrong;
+    uint16_t words[3] = {25 * STEREOPSIS_STEPS_PER_PX, STEREOPSIS_NONE, 0}, depth[3];
+    volatile float zero = 0.0f;
+    rig.focal_px = 500.0f;
+    rig.baseline_m = 0.1f;
+    rig.cx = rig.cx_right = 160.0f;
+    rig.cy = 120.0f;
+    EXPECT(stereopsis_millimetres(&rig, words, depth, 3), OK);
+    CHECK(depth[0] == 2000 && depth[1] == 0 && depth[2] == 0);
+    EXPECT(stereopsis_millimetres(NULL, words, depth, 3), NULL);
+    EXPECT(stereopsis_millimetres(&rig, NULL, depth, 3), NULL);
+    EXPECT(stereopsis_millimetres(&rig, words, NULL, 3), NULL);
+    EXPECT(stereopsis_millimetres(&rig, (uint16_t *)(void *)((char *)words + 1), depth, 2), MISALIGNED);
+    EXPECT(stereopsis_millimetres(&rig, words, (uint16_t *)(void *)((char *)depth + 1), 2), MISALIGNED);
+    EXPECT(stereopsis_millimetres(&rig, words, depth, SIZE_MAX), TOO_MANY);
+#define WRONG(field, value, status)                                     \
+    wrong = rig;                                                        \
+    wrong.field = (value);                                              \
+    EXPECT(stereopsis_millimetres(&wrong, words, depth, 3), status)
+    WRONG(focal_px, zero / zero, RIG_NOT_FINITE);
+    WRONG(focal_px, 0.0f, RIG_FOCAL_LENGTH);
+    WRONG(baseline_m, -0.1f, RIG_BASELINE);
+    WRONG(baseline_m, 1e6f, RIG_TOO_LARGE);
+    WRONG(baseline_m, 1e-9f, RIG_TOO_SMALL);
+    WRONG(cx_right, 40000.0f, RIG_OFFSET);
+    CHECK(depth[0] == 2000);
+    EXPECT(stereopsis_millimetres(&rig, words, words, 3), OK); /* in place */
+    CHECK(words[0] == 2000 && words[1] == 0 && words[2] == 0);
+    EXPECT(stereopsis_millimetres(&rig, words, depth, 0), OK);
+}
+
+int main(void) {
+    constants();
+    memory();
+    configurations();
+    lines();
+    depths();
+    printf("%d failures\n", failures);
+    return failures > 0;
+}

@@ -1,0 +1,60 @@
+//! Programs from the distribution's packages, by apt-get where that is possible.
+
+use crate::steps::{Failure, Outcome, command, output_of, run};
+
+/// The packages that have a program: one or the other, as the distribution's version goes.
+fn packages_with(program: &str) -> Vec<&str> {
+    match program {
+        "qemu-system-riscv32" => vec!["qemu-system-misc", "qemu-system-riscv"],
+        "arm-none-eabi-gcc" => vec!["gcc-arm-none-eabi"],
+        same => vec![same],
+    }
+}
+
+/// The C library of bare Arm boards: no program, and of no use without the compiler.
+const ARM_LIBRARY: &str = "libnewlib-arm-none-eabi";
+
+/// Installs those of the programs that are not there.
+pub fn install(programs: &[&str]) -> Outcome {
+    let missing: Vec<_> = programs.iter().copied().filter(|program| !is_there(program)).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    // What fails here is told below, in one line.
+    let updated = apt(&["update"]).is_ok();
+    let install = |package: &str| apt(&["install", "-y", "--no-install-recommends", package]).is_ok();
+    for program in missing {
+        let found = updated && packages_with(program).into_iter().any(|package| install(package) && runs(program));
+        if found && (is_there(program) || install(ARM_LIBRARY) && is_there(program)) {
+            continue;
+        }
+        let mut names = packages_with(program).join(" or ");
+        if program == "arm-none-eabi-gcc" {
+            names = format!("{names} {ARM_LIBRARY}");
+        }
+        let advice = format!("{program} is not installed: install it (Debian, Ubuntu: apt-get install {names})");
+        return Err(Failure::new(advice));
+    }
+    Ok(())
+}
+
+fn apt(arguments: &[&str]) -> Outcome {
+    let is_root = output_of(&mut command("id", &["-u"])).is_ok_and(|id| id.trim() == "0");
+    let sudo = if is_root { [].as_slice() } else { &["sudo", "-n"] };
+    let words = [sudo, &["env", "DEBIAN_FRONTEND=noninteractive", "apt-get"], arguments].concat();
+    run(&mut command(words[0], &words[1..]))
+}
+
+fn runs(program: &str) -> bool {
+    output_of(&mut command(program, &["--version"])).is_ok()
+}
+
+/// Whether a program runs, and has the library that it needs.
+fn is_there(program: &str) -> bool {
+    // The compiler says the path of a file that it has, and the mere name of one that it has not.
+    let has_library = || {
+        let path = output_of(&mut command(program, &["-print-file-name=libc.a"]));
+        path.is_ok_and(|path| path.contains('/'))
+    };
+    runs(program) && (program != "arm-none-eabi-gcc" || has_library())
+}

@@ -1,0 +1,128 @@
+//! What a pipeline is asked to do, as C says it.
+#![allow(unsafe_code)]
+
+use super::Status;
+use super::instance::either;
+use crate::matching::{self, Checks, ConfigError};
+use crate::units::Disparity;
+
+/// `stereopsis_config_default`: an answer wherever there is a candidate.
+pub const STEREOPSIS_PRESET_DENSE: i32 = 0;
+/// `stereopsis_config_default`: drops what the other image or the neighbourhood contradicts.
+pub const STEREOPSIS_PRESET_DEFAULT: i32 = 1;
+/// `stereopsis_config_default`: drops what is ambiguous or has little texture as well.
+pub const STEREOPSIS_PRESET_STRICT: i32 = 2;
+
+/// In `left_right_px` and `uniqueness_percent` of a configuration: not checked.
+pub const STEREOPSIS_NOT_CHECKED: i16 = -1;
+
+/// Frame size, search range and checks. `stereopsis_config_default` fills it, fields may be changed after that.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(C)]
+pub struct Config {
+    /// Pixels in a line: 1 to `stereopsis_max_width()`.
+    pub width: u16,
+    /// Lines in a frame, at least 1.
+    pub height: u16,
+    /// How many whole disparities are searched: 16 to `stereopsis_max_disparities()`.
+    pub disparities: u16,
+    /// The smallest disparity searched, px.
+    pub min_disparity: u16,
+    /// Left-right check: the largest difference of the two answers, 0 to 255 px, or `STEREOPSIS_NOT_CHECKED`.
+    pub left_right_px: i16,
+    /// Uniqueness: by how much the second best has to cost more, 0 to 99 percent, or `STEREOPSIS_NOT_CHECKED`.
+    pub uniqueness_percent: i16,
+    /// Texture: a pixel counts when its neighbours left and right differ by this many grey levels.
+    pub texture_gradient: u8,
+    /// Texture: how many such pixels the window of an answer holds at least; 0 is not checked.
+    pub texture_pixels: u8,
+    /// Whether a winner at the largest disparity searched is refused; 0 is no.
+    pub refuse_ceiling: u8,
+    /// Answers are averaged along the line with this many pairs of neighbours, 0 to 8.
+    pub smoothing_radius: u8,
+    /// Speckle: patches of fewer pixels are dropped, 0 to 32767; 0 is none.
+    pub speckle_pixels: u16,
+    /// Speckle: neighbours belong to one patch when they differ by at most this, in 1/32 px.
+    pub speckle_range: u16,
+}
+
+impl Config {
+    /// A search from disparity 0 with the checks of a preset.
+    pub(super) fn preset(width: u16, height: u16, disparities: u16, preset: i32) -> Result<Self, Status> {
+        let checks = match preset {
+            STEREOPSIS_PRESET_DENSE => Checks::DENSE,
+            STEREOPSIS_PRESET_DEFAULT => Checks::DEFAULT,
+            STEREOPSIS_PRESET_STRICT => Checks::STRICT,
+            _ => return Err(Status::Preset),
+        };
+        let or_not = |limit: Option<u8>| limit.map_or(STEREOPSIS_NOT_CHECKED, i16::from);
+        Ok(Self {
+            width,
+            height,
+            disparities,
+            min_disparity: 0,
+            left_right_px: or_not(checks.left_right_px),
+            uniqueness_percent: or_not(checks.uniqueness_percent),
+            texture_gradient: checks.texture_gradient,
+            texture_pixels: checks.texture_pixels,
+            refuse_ceiling: checks.refuse_ceiling.into(),
+            smoothing_radius: checks.smoothing_radius,
+            speckle_pixels: checks.speckle_pixels,
+            speckle_range: checks.speckle_range.raw(),
+        })
+    }
+
+    /// The same in the crate's own types, which check the rest.
+    pub(super) fn checked(&self) -> Result<matching::Config, Status> {
+        let limit = |value: i16, wrong: Status| match value {
+            STEREOPSIS_NOT_CHECKED => Ok(None),
+            value => u8::try_from(value).map(Some).map_err(|_| wrong),
+        };
+        Ok(matching::Config {
+            width: self.width,
+            height: self.height,
+            disparities: self.disparities,
+            min_disparity: self.min_disparity,
+            checks: Checks {
+                left_right_px: limit(self.left_right_px, Status::LeftRight)?,
+                uniqueness_percent: limit(self.uniqueness_percent, Status::Uniqueness)?,
+                texture_gradient: self.texture_gradient,
+                texture_pixels: self.texture_pixels,
+                refuse_ceiling: self.refuse_ceiling != 0,
+                smoothing_radius: self.smoothing_radius,
+                speckle_pixels: self.speckle_pixels,
+                speckle_range: Disparity::from_raw(self.speckle_range),
+            },
+        })
+    }
+}
+
+impl From<ConfigError> for Status {
+    fn from(e: ConfigError) -> Self {
+        match e {
+            ConfigError::Width { .. } => Self::Width,
+            ConfigError::Height => Self::Height,
+            ConfigError::Disparities { .. } => Self::Disparities,
+            ConfigError::MinDisparity { .. } => Self::MinDisparity,
+            ConfigError::Uniqueness => Self::Uniqueness,
+            ConfigError::Smoothing => Self::Smoothing,
+            ConfigError::Speckle => Self::Speckle,
+        }
+    }
+}
+
+/// Fills a configuration: `stereopsis_config_default`.
+///
+/// # Safety
+///
+/// `config` is null or points to a configuration's bytes.
+pub unsafe fn config_default(width: u16, height: u16, disparities: u16, preset: i32, config: *mut Config) -> Status {
+    if config.is_null() {
+        return Status::Null;
+    }
+    either(Config::preset(width, height, disparities, preset).map(|preset| {
+        // SAFETY: the caller's promise; no alignment is asked for.
+        unsafe { config.write_unaligned(preset) };
+        Status::Ok
+    }))
+}

@@ -1,0 +1,52 @@
+//! The pipeline for C: functions with a C ABI over memory that the caller owns.
+//!
+//! A program in C gives memory, a configuration and lines, and gets rows. A small Rust package, a `staticlib`, says once
+//! for which method and sizes, and so makes the functions of `stereopsis.h`:
+//!
+//! ```
+//! stereopsis::instantiate_c_api!(Block, width = 320, disparities = 64);
+//! # fn main() { assert!(stereopsis_c::stereopsis_size() > 40_000); }
+//! ```
+//!
+//! `examples/c-firmware` is such a package with a program in C. In running order:
+//!
+//! * [`Config`], [`Row`], [`Rig`] and the constants: what crosses the border, laid out as C has it.
+//! * [`Status`]: what every call answers.
+//! * [`Instance`]: the functions for one method and one capacity; [`Handle`] is what C holds.
+//! * [`instantiate_c_api`](crate::instantiate_c_api): their names in C, from which `cargo xtask header` makes
+//!   `stereopsis.h` beside this file.
+//!
+//! The contract:
+//!
+//! * Memory is the caller's. Nothing is allocated, nothing is kept of a caller's pointer but the memory that was given to
+//!   `stereopsis_init`. Lines are copied.
+//! * Every call checks its pointers for null, and those into arrays of words for alignment; the memory carries a mark
+//!   with its own address, so that memory that was not initialised, was moved or was given up is noticed. What is wrong
+//!   is answered by a status, and nothing has changed then.
+//! * Numbers that choose something come as integers and are checked: no number is taken for an enum.
+//! * A call does not panic. On a bare-metal target the program that links the library proves it: see the example's
+//!   panic handler.
+//! * One call at a time for one handle. Handles share nothing: two of them may be used by two threads.
+//! * What cannot be checked is up to the caller: a pointer that is neither null nor misaligned points to as many bytes
+//!   as its function says.
+
+mod config;
+mod instance;
+mod names;
+mod rig;
+mod row;
+mod state;
+mod status;
+
+pub use config::{
+    Config, STEREOPSIS_NOT_CHECKED, STEREOPSIS_PRESET_DEFAULT, STEREOPSIS_PRESET_DENSE, STEREOPSIS_PRESET_STRICT,
+    config_default,
+};
+pub use instance::Instance;
+pub use rig::{Rig, millimetres};
+pub use row::{
+    Row, STEREOPSIS_FLAG_AMBIGUOUS, STEREOPSIS_FLAG_CEILING, STEREOPSIS_FLAG_MISMATCH, STEREOPSIS_FLAG_OUTSIDE,
+    STEREOPSIS_FLAG_SPECKLE, STEREOPSIS_FLAG_UNTEXTURED, STEREOPSIS_NONE, STEREOPSIS_STEPS_PER_PX,
+};
+pub use state::{Handle, STEREOPSIS_ALIGN, state_bytes};
+pub use status::{STEREOPSIS_ABI, Status, status_text, version_text};

@@ -1,0 +1,82 @@
+//! The rig that makes depths of disparities, as C has it.
+#![allow(unsafe_code)]
+
+use super::Status;
+use crate::depth::{DepthError, DepthScale};
+use crate::geometry::{RectifiedRig, RigError};
+use crate::units::Disparity;
+
+/// Two cameras after rectification: rows are aligned, both have one focal length.
+#[derive(Clone, Copy, PartialEq, Debug)]
+#[repr(C)]
+pub struct Rig {
+    /// Focal length, px.
+    pub focal_px: f32,
+    /// Distance between the optical centres, m.
+    pub baseline_m: f32,
+    /// Principal point of the left camera, column, px.
+    pub cx: f32,
+    /// Principal point of both cameras, row, px.
+    pub cy: f32,
+    /// Principal point of the right camera, column, px.
+    pub cx_right: f32,
+}
+
+impl Rig {
+    /// Depths for this rig.
+    pub(super) fn scale(&self) -> Result<DepthScale, Status> {
+        let rig = RectifiedRig::with_offset(self.focal_px, self.baseline_m, self.cx, self.cy, self.cx_right)?;
+        Ok(DepthScale::new(&rig)?)
+    }
+}
+
+impl From<RigError> for Status {
+    fn from(e: RigError) -> Self {
+        match e {
+            RigError::NotFinite => Self::RigNotFinite,
+            RigError::FocalLength => Self::RigFocalLength,
+            RigError::Baseline => Self::RigBaseline,
+        }
+    }
+}
+
+impl From<DepthError> for Status {
+    fn from(e: DepthError) -> Self {
+        match e {
+            DepthError::TooLarge => Self::RigTooLarge,
+            DepthError::TooSmall => Self::RigTooSmall,
+            DepthError::Offset => Self::RigOffset,
+        }
+    }
+}
+
+/// Depths of disparities: `stereopsis_millimetres`.
+///
+/// # Safety
+///
+/// `rig` is null or points to a rig; `disparities` and `millimetres` are null or point to `count` words each.
+pub unsafe fn millimetres(rig: *const Rig, disparities: *const u16, millimetres: *mut u16, count: usize) -> Status {
+    if rig.is_null() || disparities.is_null() || millimetres.is_null() {
+        return Status::Null;
+    }
+    if !disparities.is_aligned() || !millimetres.is_aligned() {
+        return Status::Misaligned;
+    }
+    if count > isize::MAX as usize / size_of::<u16>() {
+        return Status::TooMany;
+    }
+    // SAFETY: the caller's promise; no alignment is asked for, and every bit pattern is a rig.
+    let rig = unsafe { rig.read_unaligned() };
+    let scale = match rig.scale() {
+        Ok(scale) => scale,
+        Err(status) => return status,
+    };
+    for i in 0..count {
+        // SAFETY: the caller's promise. No slices are made: both may be one array.
+        unsafe {
+            let disparity = Disparity::from_raw(disparities.add(i).read());
+            millimetres.add(i).write(scale.millimetres(disparity).0);
+        }
+    }
+    Status::Ok
+}

@@ -1,0 +1,66 @@
+//! A row of results, as C has it.
+
+use crate::matching;
+use crate::units::{Disparity, PixelFlags};
+
+/// The disparity that means "no answer".
+pub const STEREOPSIS_NONE: u16 = 0xFFFF;
+/// Steps of a disparity in one pixel.
+pub const STEREOPSIS_STEPS_PER_PX: u16 = 32;
+
+/// No candidate lies inside the right image.
+pub const STEREOPSIS_FLAG_OUTSIDE: u8 = 1;
+/// The winner is the largest disparity searched: the surface may be nearer.
+pub const STEREOPSIS_FLAG_CEILING: u8 = 2;
+/// Too few pixels of the window have a gradient.
+pub const STEREOPSIS_FLAG_UNTEXTURED: u8 = 4;
+/// Another disparity matches nearly as well.
+pub const STEREOPSIS_FLAG_AMBIGUOUS: u8 = 8;
+/// The right image's pixel found a better partner elsewhere.
+pub const STEREOPSIS_FLAG_MISMATCH: u8 = 16;
+/// Part of a patch that is too small to be believed.
+pub const STEREOPSIS_FLAG_SPECKLE: u8 = 32;
+
+/// The constants are literals, so that the header has them; these are what they say.
+const _: () = {
+    assert!(STEREOPSIS_NONE == Disparity::NONE.raw());
+    assert!(STEREOPSIS_STEPS_PER_PX == Disparity::ONE);
+    assert!(STEREOPSIS_FLAG_OUTSIDE == PixelFlags::OUTSIDE.bits());
+    assert!(STEREOPSIS_FLAG_CEILING == PixelFlags::CEILING.bits());
+    assert!(STEREOPSIS_FLAG_UNTEXTURED == PixelFlags::UNTEXTURED.bits());
+    assert!(STEREOPSIS_FLAG_AMBIGUOUS == PixelFlags::AMBIGUOUS.bits());
+    assert!(STEREOPSIS_FLAG_MISMATCH == PixelFlags::MISMATCH.bits());
+    assert!(STEREOPSIS_FLAG_SPECKLE == PixelFlags::SPECKLE.bits());
+};
+
+/// A row of results. The arrays stand in the matcher's memory and hold until the next call with its handle.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(C)]
+pub struct Row {
+    /// The row in the image, from 0.
+    pub index: u16,
+    /// Pixels in the row: the length of both arrays.
+    pub width: u16,
+    /// A disparity for each column in 1/32 px, `STEREOPSIS_NONE` for no answer.
+    pub disparities: *const u16,
+    /// The `STEREOPSIS_FLAG_` bits of each column: why there is no answer.
+    pub flags: *const u8,
+}
+
+impl Row {
+    /// No row.
+    pub(super) const NONE: Self = Self { index: 0, width: 0, disparities: core::ptr::null(), flags: core::ptr::null() };
+}
+
+impl From<matching::Row<'_>> for Row {
+    fn from(row: matching::Row<'_>) -> Self {
+        let (disparities, flags) = (row.disparities(), row.flags());
+        Self {
+            index: row.index(),
+            // A row is as wide as the configuration says, in 16 bits.
+            width: disparities.len().min(flags.len()) as u16,
+            disparities: disparities.as_ptr().cast(),
+            flags: flags.as_ptr().cast(),
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! The memory behind a handle: whether it is one, and what it holds.
+#![allow(unsafe_code)]
+
+use super::Status;
+use crate::matching::{self, Scheme};
+use crate::pipeline::Pipeline;
+use core::ffi::c_void;
+
+/// Every matcher's memory may be aligned to this many bytes: `uint64_t` will do.
+pub const STEREOPSIS_ALIGN: usize = 8;
+
+/// A matcher in memory that the caller gave.
+pub struct Handle {
+    _opaque: [u8; 0],
+}
+
+/// What stands in the memory.
+#[repr(C)]
+pub(super) struct State<S: Scheme, const W: usize, const D: usize> {
+    /// [`MARK`] and the state's own address: memory that was moved or never initialised does not have it.
+    mark: usize,
+    pub(super) pipeline: Pipeline<S, W, D>,
+}
+
+/// Bits that memory is unlikely to hold by chance.
+const MARK: usize = 0x57E2_E0D5;
+
+/// Bytes of lines and counters beside the matcher, at most.
+const FIXED_BYTES: usize = 128;
+
+/// Bytes of memory that a matcher takes on any target, at most: what the macros of `stereopsis.h` say.
+///
+/// `disparities` is a multiple of 16, and `width` at least as large.
+pub const fn state_bytes<S: Scheme>(width: usize, disparities: usize) -> usize {
+    // Five lines of two cameras.
+    matching::state_bytes::<S>(width, disparities) + 2 * 5 * width + FIXED_BYTES
+}
+
+impl<S: Scheme, const W: usize, const D: usize> State<S, W, D> {
+    const CHECKED: () = {
+        assert!(align_of::<Self>() <= STEREOPSIS_ALIGN, "STEREOPSIS_ALIGN must be enough");
+        assert!(size_of::<Self>() <= state_bytes::<S>(W, D), "state_bytes must cover the state");
+    };
+
+    fn mark_of(state: *const Self) -> usize {
+        MARK ^ state.addr()
+    }
+
+    /// Makes a matcher in the caller's memory, which holds none yet.
+    ///
+    /// # Safety
+    ///
+    /// `memory` is null or points to `length` bytes that nothing else uses until the matcher is given up.
+    pub(super) unsafe fn init(memory: *mut c_void, length: usize) -> Result<*mut Handle, Status> {
+        const { Self::CHECKED };
+        let state = memory.cast::<Self>();
+        if state.is_null() {
+            return Err(Status::Null);
+        }
+        if !state.is_aligned() {
+            return Err(Status::Misaligned);
+        }
+        if length < size_of::<Self>() {
+            return Err(Status::MemoryTooShort);
+        }
+        // SAFETY: the state is aligned and inside of the caller's bytes. What it holds was written by C, or by nobody: a
+        // volatile read takes it as the machine has it, and every bit pattern is an integer.
+        let mark = unsafe { (&raw const (*state).mark).read_volatile() };
+        if mark == Self::mark_of(state) {
+            return Err(Status::AlreadyInitialised);
+        }
+        // SAFETY: as before; nothing refers to these bytes yet. The constant is all zero: the bytes are set in place and
+        // no copy stands on the stack.
+        unsafe {
+            (&raw mut (*state).pipeline).write(const { Pipeline::new() });
+            (&raw mut (*state).mark).write_volatile(Self::mark_of(state));
+        }
+        Ok(state.cast())
+    }
+
+    /// The matcher behind a handle.
+    ///
+    /// # Safety
+    ///
+    /// `handle` is null or points to as many bytes as a state has, and for `'a` nothing else uses them.
+    pub(super) unsafe fn open<'a>(handle: *mut Handle) -> Result<&'a mut Self, Status> {
+        let state = handle.cast::<Self>();
+        if state.is_null() {
+            return Err(Status::Null);
+        }
+        if !state.is_aligned() {
+            return Err(Status::Misaligned);
+        }
+        // SAFETY: the state is aligned and its bytes are there; every bit pattern is an integer.
+        let mark = unsafe { (&raw const (*state).mark).read_volatile() };
+        if mark != Self::mark_of(state) {
+            return Err(Status::NotInitialised);
+        }
+        // SAFETY: the mark says that `init` has made a state at this very address, and nothing else uses it.
+        Ok(unsafe { &mut *state })
+    }
+
+    /// Gives the memory up.
+    pub(super) fn deinit(&mut self) {
+        // SAFETY: a reference is aligned and its bytes are there. The write is volatile as the reads are: nothing here
+        // looks at the mark again, and it has to go all the same.
+        unsafe { (&raw mut self.mark).write_volatile(0) };
+    }
+
+    /// Whether `count` values at `data` share bytes with the state.
+    pub(super) fn overlaps<T>(&self, data: *const T, count: usize) -> bool {
+        share_bytes((&raw const *self).cast(), size_of::<Self>(), data.cast(), count.saturating_mul(size_of::<T>()))
+    }
+}
+
+/// Whether two runs of bytes share any.
+pub(super) fn share_bytes(a: *const c_void, a_length: usize, b: *const c_void, b_length: usize) -> bool {
+    let (a, b) = (a.addr(), b.addr());
+    a < b.saturating_add(b_length) && b < a.saturating_add(a_length)
+}

@@ -1,0 +1,182 @@
+//! What a call answers, in a number and in words.
+
+use crate::matching::MatchError;
+use crate::pipeline::PushError;
+use core::ffi::CStr;
+
+/// The version of this interface. It changes when a program that was compiled with another header would go wrong.
+pub const STEREOPSIS_ABI: u32 = 1;
+
+/// What a call answers: below 0 it is an error, and nothing has changed.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(i32)]
+#[non_exhaustive]
+pub enum Status {
+    /// Done. Where the call gives a row, there is one.
+    Ok = 0,
+    /// The line was taken; the first row comes some lines later.
+    NoRowYet = 1,
+    /// All rows of the frame are out.
+    FrameDone = 2,
+    /// A pointer is null.
+    Null = -1,
+    /// A pointer is not aligned as what it points to has to be.
+    Misaligned = -2,
+    /// The memory is shorter than `stereopsis_size()`.
+    MemoryTooShort = -3,
+    /// The memory holds a matcher already: `stereopsis_deinit` gives it up.
+    AlreadyInitialised = -4,
+    /// The handle's memory holds no matcher of this library.
+    NotInitialised = -5,
+    /// An argument points into the matcher's memory.
+    Overlap = -6,
+    /// More elements than an address space holds.
+    TooMany = -7,
+    /// `stereopsis_start` has to come first.
+    NotStarted = -8,
+    /// `stereopsis_begin_frame` has to come first.
+    NotBegun = -9,
+    /// The length is not the width that the matcher was started for.
+    LineLength = -10,
+    /// All lines of the frame are in: flush, or begin the next one.
+    NoLineLeft = -11,
+    /// Lines of the frame are missing: push them before flushing.
+    LinesMissing = -12,
+    /// The preset is none of the `STEREOPSIS_PRESET_` numbers.
+    Preset = -13,
+    /// Configuration: the width is 0 or over `stereopsis_max_width()`.
+    Width = -14,
+    /// Configuration: the height is 0.
+    Height = -15,
+    /// Configuration: the disparities are under 16 or over `stereopsis_max_disparities()`.
+    Disparities = -16,
+    /// Configuration: the search ends beyond 2047 px.
+    MinDisparity = -17,
+    /// Configuration: the left-right check is neither 0 to 255 px nor `STEREOPSIS_NOT_CHECKED`.
+    LeftRight = -18,
+    /// Configuration: the uniqueness is neither 0 to 99 percent nor `STEREOPSIS_NOT_CHECKED`.
+    Uniqueness = -19,
+    /// Configuration: the smoothing radius is over 8.
+    Smoothing = -20,
+    /// Configuration: the speckle size is over 32767 pixels.
+    Speckle = -21,
+    /// Rig: a number is infinite or not a number.
+    RigNotFinite = -22,
+    /// Rig: the focal length is not over 0.
+    RigFocalLength = -23,
+    /// Rig: the baseline is not over 0.
+    RigBaseline = -24,
+    /// Rig: focal length times baseline is over 134000 px m.
+    RigTooLarge = -25,
+    /// Rig: focal length times baseline is under 0.0000156 px m.
+    RigTooSmall = -26,
+    /// Rig: the principal points are over 30000 px apart.
+    RigOffset = -27,
+}
+
+impl Status {
+    /// What it says, in one line without an end.
+    pub const fn text(self) -> &'static CStr {
+        match self {
+            Self::Ok => c"done",
+            Self::NoRowYet => c"the first row comes some lines later",
+            Self::FrameDone => c"all rows of the frame are out",
+            Self::Null => c"a pointer is null",
+            Self::Misaligned => c"a pointer is misaligned",
+            Self::MemoryTooShort => c"the memory is too short: stereopsis_size() bytes are needed",
+            Self::AlreadyInitialised => c"the memory holds a matcher already",
+            Self::NotInitialised => c"the memory holds no matcher of this library",
+            Self::Overlap => c"an argument points into the matcher's memory",
+            Self::TooMany => c"there are too many elements",
+            Self::NotStarted => c"the matcher was not started",
+            Self::NotBegun => c"no frame was begun",
+            Self::LineLength => c"a line must have the width that the matcher was started for",
+            Self::NoLineLeft => c"all lines of the frame are in",
+            Self::LinesMissing => c"lines of the frame are missing",
+            Self::Preset => c"there is no such preset",
+            Self::Width => c"the width must be 1 to stereopsis_max_width()",
+            Self::Height => c"the height must be at least 1",
+            Self::Disparities => c"the disparities must be 16 to stereopsis_max_disparities()",
+            Self::MinDisparity => c"the search must end at 2047 px",
+            Self::LeftRight => c"the left-right check must be 0 to 255 px, or -1",
+            Self::Uniqueness => c"the uniqueness must be 0 to 99 percent, or -1",
+            Self::Smoothing => c"the smoothing radius must be at most 8",
+            Self::Speckle => c"the speckle size must be at most 32767 pixels",
+            Self::RigNotFinite => c"a number of the rig is not finite",
+            Self::RigFocalLength => c"the focal length must be greater than zero",
+            Self::RigBaseline => c"the baseline must be greater than zero",
+            Self::RigTooLarge => c"focal length times baseline must be under 134000 px m",
+            Self::RigTooSmall => c"focal length times baseline must be over 0.0000156 px m",
+            Self::RigOffset => c"the principal points must be under 30000 px apart",
+        }
+    }
+
+    /// Every status, for the way back from a number.
+    const ALL: [Self; 30] = [
+        Self::Ok,
+        Self::NoRowYet,
+        Self::FrameDone,
+        Self::Null,
+        Self::Misaligned,
+        Self::MemoryTooShort,
+        Self::AlreadyInitialised,
+        Self::NotInitialised,
+        Self::Overlap,
+        Self::TooMany,
+        Self::NotStarted,
+        Self::NotBegun,
+        Self::LineLength,
+        Self::NoLineLeft,
+        Self::LinesMissing,
+        Self::Preset,
+        Self::Width,
+        Self::Height,
+        Self::Disparities,
+        Self::MinDisparity,
+        Self::LeftRight,
+        Self::Uniqueness,
+        Self::Smoothing,
+        Self::Speckle,
+        Self::RigNotFinite,
+        Self::RigFocalLength,
+        Self::RigBaseline,
+        Self::RigTooLarge,
+        Self::RigTooSmall,
+        Self::RigOffset,
+    ];
+}
+
+/// What a number says that may be a status.
+pub fn status_text(code: i32) -> &'static CStr {
+    Status::ALL.into_iter().find(|status| *status as i32 == code).map_or(c"no status of this library", Status::text)
+}
+
+/// The version of the library.
+pub const fn version_text() -> &'static CStr {
+    match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
+        Ok(text) => text,
+        Err(_) => c"",
+    }
+}
+
+impl From<PushError> for Status {
+    fn from(e: PushError) -> Self {
+        match e {
+            PushError::NotBegun => Self::NotBegun,
+            PushError::LineLength { .. } => Self::LineLength,
+            PushError::NoLineLeft => Self::NoLineLeft,
+            PushError::LinesMissing { .. } => Self::LinesMissing,
+            PushError::Matcher(e) => e.into(),
+        }
+    }
+}
+
+impl From<MatchError> for Status {
+    fn from(e: MatchError) -> Self {
+        match e {
+            MatchError::NotStarted => Self::NotStarted,
+            MatchError::FrameDone => Self::NoLineLeft,
+            MatchError::LineTooShort { .. } => Self::LineLength,
+        }
+    }
+}

@@ -1,0 +1,478 @@
+/* Depth from two cameras, line by line: the functions of libstereopsis.a.
+
+   The caller gives memory, a configuration and lines, and gets rows of disparities. Nothing is allocated, nothing is
+   kept of a caller's pointer but the memory given to stereopsis_init. Every function answers with a status; below 0 it
+   is an error and nothing has changed.
+
+     static uint64_t memory[STEREOPSIS_BLOCK_BYTES(320, 64) / 8 + 1];
+     stereopsis *matcher;
+     stereopsis_config config;
+     stereopsis_row row;
+     stereopsis_init(memory, sizeof memory, &matcher);
+     stereopsis_config_default(320, 240, 64, STEREOPSIS_PRESET_DEFAULT, &config);
+     stereopsis_start(matcher, &config);
+     stereopsis_begin_frame(matcher);
+     for each line: stereopsis_push(matcher, left, right, 320, &row);
+     until STEREOPSIS_STATUS_FRAME_DONE: stereopsis_flush(matcher, &row);
+
+   One call at a time for one handle. Pointers are checked for null, alignment and overlap; what cannot be checked is the
+   caller's promise: a pointer points to as many elements as the function says. */
+
+#ifndef STEREOPSIS_H
+#define STEREOPSIS_H
+
+/* Made by `cargo xtask header`. */
+
+#include <stddef.h>
+#include <stdint.h>
+
+/**
+ * Bytes that are enough for a matcher of method fast, on any target. `disparities` is a multiple of 16, and
+ * `width` at least as large, as the library was built with.
+ */
+#define STEREOPSIS_FAST_BYTES(width, disparities) \
+  ((size_t)192 + (size_t)74 * (width) + (size_t)2 * (disparities) + \
+   (size_t)1 * (width) * (disparities))
+
+/**
+ * Bytes that are enough for a matcher of method block, on any target. `disparities` is a multiple of 16, and
+ * `width` at least as large, as the library was built with.
+ */
+#define STEREOPSIS_BLOCK_BYTES(width, disparities) \
+  ((size_t)192 + (size_t)78 * (width) + (size_t)4 * (disparities) + \
+   (size_t)1 * (width) * (disparities))
+
+
+/**
+ * The version of this interface. It changes when a program that was compiled with another header would go wrong.
+ */
+#define STEREOPSIS_ABI 1
+
+/**
+ * Every matcher's memory may be aligned to this many bytes: `uint64_t` will do.
+ */
+#define STEREOPSIS_ALIGN 8
+
+/**
+ * `stereopsis_config_default`: an answer wherever there is a candidate.
+ */
+#define STEREOPSIS_PRESET_DENSE 0
+
+/**
+ * `stereopsis_config_default`: drops what the other image or the neighbourhood contradicts.
+ */
+#define STEREOPSIS_PRESET_DEFAULT 1
+
+/**
+ * `stereopsis_config_default`: drops what is ambiguous or has little texture as well.
+ */
+#define STEREOPSIS_PRESET_STRICT 2
+
+/**
+ * In `left_right_px` and `uniqueness_percent` of a configuration: not checked.
+ */
+#define STEREOPSIS_NOT_CHECKED -1
+
+/**
+ * The disparity that means "no answer".
+ */
+#define STEREOPSIS_NONE 65535
+
+/**
+ * Steps of a disparity in one pixel.
+ */
+#define STEREOPSIS_STEPS_PER_PX 32
+
+/**
+ * No candidate lies inside the right image.
+ */
+#define STEREOPSIS_FLAG_OUTSIDE 1
+
+/**
+ * The winner is the largest disparity searched: the surface may be nearer.
+ */
+#define STEREOPSIS_FLAG_CEILING 2
+
+/**
+ * Too few pixels of the window have a gradient.
+ */
+#define STEREOPSIS_FLAG_UNTEXTURED 4
+
+/**
+ * Another disparity matches nearly as well.
+ */
+#define STEREOPSIS_FLAG_AMBIGUOUS 8
+
+/**
+ * The right image's pixel found a better partner elsewhere.
+ */
+#define STEREOPSIS_FLAG_MISMATCH 16
+
+/**
+ * Part of a patch that is too small to be believed.
+ */
+#define STEREOPSIS_FLAG_SPECKLE 32
+
+/**
+ * What a call answers: below 0 it is an error, and nothing has changed.
+ */
+enum stereopsis_status
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * Done. Where the call gives a row, there is one.
+   */
+  STEREOPSIS_STATUS_OK = 0,
+  /**
+   * The line was taken; the first row comes some lines later.
+   */
+  STEREOPSIS_STATUS_NO_ROW_YET = 1,
+  /**
+   * All rows of the frame are out.
+   */
+  STEREOPSIS_STATUS_FRAME_DONE = 2,
+  /**
+   * A pointer is null.
+   */
+  STEREOPSIS_STATUS_NULL = -1,
+  /**
+   * A pointer is not aligned as what it points to has to be.
+   */
+  STEREOPSIS_STATUS_MISALIGNED = -2,
+  /**
+   * The memory is shorter than `stereopsis_size()`.
+   */
+  STEREOPSIS_STATUS_MEMORY_TOO_SHORT = -3,
+  /**
+   * The memory holds a matcher already: `stereopsis_deinit` gives it up.
+   */
+  STEREOPSIS_STATUS_ALREADY_INITIALISED = -4,
+  /**
+   * The handle's memory holds no matcher of this library.
+   */
+  STEREOPSIS_STATUS_NOT_INITIALISED = -5,
+  /**
+   * An argument points into the matcher's memory.
+   */
+  STEREOPSIS_STATUS_OVERLAP = -6,
+  /**
+   * More elements than an address space holds.
+   */
+  STEREOPSIS_STATUS_TOO_MANY = -7,
+  /**
+   * `stereopsis_start` has to come first.
+   */
+  STEREOPSIS_STATUS_NOT_STARTED = -8,
+  /**
+   * `stereopsis_begin_frame` has to come first.
+   */
+  STEREOPSIS_STATUS_NOT_BEGUN = -9,
+  /**
+   * The length is not the width that the matcher was started for.
+   */
+  STEREOPSIS_STATUS_LINE_LENGTH = -10,
+  /**
+   * All lines of the frame are in: flush, or begin the next one.
+   */
+  STEREOPSIS_STATUS_NO_LINE_LEFT = -11,
+  /**
+   * Lines of the frame are missing: push them before flushing.
+   */
+  STEREOPSIS_STATUS_LINES_MISSING = -12,
+  /**
+   * The preset is none of the `STEREOPSIS_PRESET_` numbers.
+   */
+  STEREOPSIS_STATUS_PRESET = -13,
+  /**
+   * Configuration: the width is 0 or over `stereopsis_max_width()`.
+   */
+  STEREOPSIS_STATUS_WIDTH = -14,
+  /**
+   * Configuration: the height is 0.
+   */
+  STEREOPSIS_STATUS_HEIGHT = -15,
+  /**
+   * Configuration: the disparities are under 16 or over `stereopsis_max_disparities()`.
+   */
+  STEREOPSIS_STATUS_DISPARITIES = -16,
+  /**
+   * Configuration: the search ends beyond 2047 px.
+   */
+  STEREOPSIS_STATUS_MIN_DISPARITY = -17,
+  /**
+   * Configuration: the left-right check is neither 0 to 255 px nor `STEREOPSIS_NOT_CHECKED`.
+   */
+  STEREOPSIS_STATUS_LEFT_RIGHT = -18,
+  /**
+   * Configuration: the uniqueness is neither 0 to 99 percent nor `STEREOPSIS_NOT_CHECKED`.
+   */
+  STEREOPSIS_STATUS_UNIQUENESS = -19,
+  /**
+   * Configuration: the smoothing radius is over 8.
+   */
+  STEREOPSIS_STATUS_SMOOTHING = -20,
+  /**
+   * Configuration: the speckle size is over 32767 pixels.
+   */
+  STEREOPSIS_STATUS_SPECKLE = -21,
+  /**
+   * Rig: a number is infinite or not a number.
+   */
+  STEREOPSIS_STATUS_RIG_NOT_FINITE = -22,
+  /**
+   * Rig: the focal length is not over 0.
+   */
+  STEREOPSIS_STATUS_RIG_FOCAL_LENGTH = -23,
+  /**
+   * Rig: the baseline is not over 0.
+   */
+  STEREOPSIS_STATUS_RIG_BASELINE = -24,
+  /**
+   * Rig: focal length times baseline is over 134000 px m.
+   */
+  STEREOPSIS_STATUS_RIG_TOO_LARGE = -25,
+  /**
+   * Rig: focal length times baseline is under 0.0000156 px m.
+   */
+  STEREOPSIS_STATUS_RIG_TOO_SMALL = -26,
+  /**
+   * Rig: the principal points are over 30000 px apart.
+   */
+  STEREOPSIS_STATUS_RIG_OFFSET = -27,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum stereopsis_status stereopsis_status;
+#else
+typedef int32_t stereopsis_status;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * A matcher in memory that the caller gave.
+ */
+typedef struct stereopsis stereopsis;
+
+/**
+ * Frame size, search range and checks. `stereopsis_config_default` fills it, fields may be changed after that.
+ */
+typedef struct stereopsis_config {
+  /**
+   * Pixels in a line: 1 to `stereopsis_max_width()`.
+   */
+  uint16_t width;
+  /**
+   * Lines in a frame, at least 1.
+   */
+  uint16_t height;
+  /**
+   * How many whole disparities are searched: 16 to `stereopsis_max_disparities()`.
+   */
+  uint16_t disparities;
+  /**
+   * The smallest disparity searched, px.
+   */
+  uint16_t min_disparity;
+  /**
+   * Left-right check: the largest difference of the two answers, 0 to 255 px, or `STEREOPSIS_NOT_CHECKED`.
+   */
+  int16_t left_right_px;
+  /**
+   * Uniqueness: by how much the second best has to cost more, 0 to 99 percent, or `STEREOPSIS_NOT_CHECKED`.
+   */
+  int16_t uniqueness_percent;
+  /**
+   * Texture: a pixel counts when its neighbours left and right differ by this many grey levels.
+   */
+  uint8_t texture_gradient;
+  /**
+   * Texture: how many such pixels the window of an answer holds at least; 0 is not checked.
+   */
+  uint8_t texture_pixels;
+  /**
+   * Whether a winner at the largest disparity searched is refused; 0 is no.
+   */
+  uint8_t refuse_ceiling;
+  /**
+   * Answers are averaged along the line with this many pairs of neighbours, 0 to 8.
+   */
+  uint8_t smoothing_radius;
+  /**
+   * Speckle: patches of fewer pixels are dropped, 0 to 32767; 0 is none.
+   */
+  uint16_t speckle_pixels;
+  /**
+   * Speckle: neighbours belong to one patch when they differ by at most this, in 1/32 px.
+   */
+  uint16_t speckle_range;
+} stereopsis_config;
+
+/**
+ * A row of results. The arrays stand in the matcher's memory and hold until the next call with its handle.
+ */
+typedef struct stereopsis_row {
+  /**
+   * The row in the image, from 0.
+   */
+  uint16_t index;
+  /**
+   * Pixels in the row: the length of both arrays.
+   */
+  uint16_t width;
+  /**
+   * A disparity for each column in 1/32 px, `STEREOPSIS_NONE` for no answer.
+   */
+  const uint16_t *disparities;
+  /**
+   * The `STEREOPSIS_FLAG_` bits of each column: why there is no answer.
+   */
+  const uint8_t *flags;
+} stereopsis_row;
+
+/**
+ * Two cameras after rectification: rows are aligned, both have one focal length.
+ */
+typedef struct stereopsis_rig {
+  /**
+   * Focal length, px.
+   */
+  float focal_px;
+  /**
+   * Distance between the optical centres, m.
+   */
+  float baseline_m;
+  /**
+   * Principal point of the left camera, column, px.
+   */
+  float cx;
+  /**
+   * Principal point of both cameras, row, px.
+   */
+  float cy;
+  /**
+   * Principal point of the right camera, column, px.
+   */
+  float cx_right;
+} stereopsis_rig;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+/**
+ * The library's interface: a program that was compiled with another `STEREOPSIS_ABI` must not go on.
+ */
+uint32_t stereopsis_abi(void);
+
+/**
+ * The library's version, such as "1.2.3".
+ */
+const char *stereopsis_version(void);
+
+/**
+ * What a status says, in a line without an end; there is a text for every number.
+ */
+const char *stereopsis_status_text(int32_t status);
+
+/**
+ * Bytes of memory that a matcher takes.
+ */
+size_t stereopsis_size(void);
+
+/**
+ * What the memory's address has to be a multiple of; `STEREOPSIS_ALIGN` at most.
+ */
+size_t stereopsis_align(void);
+
+/**
+ * The longest line that this library was built for, in pixels.
+ */
+size_t stereopsis_max_width(void);
+
+/**
+ * The most disparities that this library was built for.
+ */
+size_t stereopsis_max_disparities(void);
+
+/**
+ * Row y comes out when line y + `stereopsis_latency()` goes in; the last rows come by `stereopsis_flush`.
+ */
+size_t stereopsis_latency(void);
+
+/**
+ * Makes a matcher in the caller's memory of `length` bytes, and gives the handle for all other calls; a
+ * null handle on an error, unless `handle` itself is what is wrong.
+ *
+ * The memory needs no content, and is the matcher's alone until `stereopsis_deinit`. Memory that still
+ * holds a matcher, such as RAM that a warm start does not clear, is refused as already initialised.
+ */
+stereopsis_status stereopsis_init(void *memory, size_t length, struct stereopsis **handle);
+
+/**
+ * Ends a matcher; the memory is the caller's again. The handle is the memory's address.
+ */
+stereopsis_status stereopsis_deinit(struct stereopsis *handle);
+
+/**
+ * Fills a configuration: frames of `width` x `height` pixels, a search over `disparities` from 0, and the
+ * checks of a `STEREOPSIS_PRESET_`. Sizes are checked by `stereopsis_start`.
+ */
+stereopsis_status stereopsis_config_default(uint16_t width,
+                                            uint16_t height,
+                                            uint16_t disparities,
+                                            int32_t preset,
+                                            struct stereopsis_config *config);
+
+/**
+ * Checks a configuration, which is copied, and gets ready for the first frame. It can be called again, for
+ * another configuration; a frame that is under way is lost.
+ */
+stereopsis_status stereopsis_start(struct stereopsis *handle, const struct stereopsis_config *config);
+
+/**
+ * Begins a frame and forgets the one before.
+ */
+stereopsis_status stereopsis_begin_frame(struct stereopsis *handle);
+
+/**
+ * Takes the next line of both cameras, 8-bit grey, `length` bytes each: the configuration's width. The
+ * lines are copied; both may be one array.
+ *
+ * `STEREOPSIS_STATUS_OK` with a row, or `STEREOPSIS_STATUS_NO_ROW_YET` with an empty one for the first
+ * lines of a frame. On an error the row is left as it is.
+ */
+stereopsis_status stereopsis_push(struct stereopsis *handle,
+                                  const uint8_t *left,
+                                  const uint8_t *right,
+                                  size_t length,
+                                  struct stereopsis_row *row);
+
+/**
+ * Gives the next row when all lines are in: `STEREOPSIS_STATUS_OK` with a row, or
+ * `STEREOPSIS_STATUS_FRAME_DONE` with an empty one when all are out.
+ */
+stereopsis_status stereopsis_flush(struct stereopsis *handle, struct stereopsis_row *row);
+
+/**
+ * Standard deviations of the row that came out last, in px, for `count` columns: all of the row. Infinite
+ * where there is no answer. Before a frame's first row it is `STEREOPSIS_STATUS_NO_ROW_YET`, and nothing is
+ * written.
+ */
+stereopsis_status stereopsis_sigma_px(struct stereopsis *handle, float *sigma_px, size_t count);
+
+/**
+ * Depths of `count` disparities to the nearest millimetre, 0 for none: no answer, at infinity, or beyond
+ * 65.535 m. Both may be one array.
+ */
+stereopsis_status stereopsis_millimetres(const struct stereopsis_rig *rig,
+                                         const uint16_t *disparities,
+                                         uint16_t *millimetres,
+                                         size_t count);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* STEREOPSIS_H */

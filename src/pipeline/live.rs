@@ -1,0 +1,219 @@
+//! The pipeline: line windows and a matcher in one block of memory.
+
+use super::{PipelineError, PushError};
+use crate::camera::{FrameStart, LineFormat, PixelFormat, StereoSource};
+use crate::imaging::LineWindow;
+use crate::matching::{Config, ConfigError, Kernel, MatchError, Matcher, Row, Scheme};
+
+/// Rows of disparities from a stereo source, in memory of its own and of fixed size: it fits a `static`.
+///
+/// The row that comes out is [`Pipeline::LATENCY`] lines behind the line that goes in; the last rows come when the
+/// frame's lines are over.
+///
+/// Lines come in one of two ways. With [`Self::begin_frame`] and [`Self::next_row`] the pipeline takes them from a
+/// camera when it needs them. With [`Self::begin`], [`Self::push`] and [`Self::flush`] the caller brings them, from an
+/// interrupt's buffer or from C. Both give the same rows.
+#[doc = "```"]
+#[doc = "use stereopsis::{matching::{Block, Config}, pipeline::Pipeline};"]
+#[doc = "static PIPELINE: Pipeline<Block, 320, 64> = Pipeline::new();"]
+#[doc = "assert!(size_of_val(&PIPELINE) < 46_000);"]
+#[doc = "assert_eq!(Pipeline::<Block, 320, 64>::LATENCY, 10);"]
+#[doc = "```"]
+pub struct Pipeline<S: Scheme, const W: usize, const D: usize> {
+    left: LineWindow<W>,
+    right: LineWindow<W>,
+    matcher: Matcher<S, W, D>,
+    /// Rows whose five lines went into the matcher.
+    taken: usize,
+    height: usize,
+}
+
+impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
+    /// Lines below a census code that it looks at.
+    const CENSUS_REACH: usize = 2;
+
+    /// Row y comes out when line y + `LATENCY` is in.
+    pub const LATENCY: usize = Self::CENSUS_REACH + Matcher::<S, W, D>::DELAY;
+
+    /// A pipeline that waits for [`Self::start`]. Every byte of it is zero: a static of it takes RAM and no flash.
+    pub const fn new() -> Self {
+        Self { left: LineWindow::new(), right: LineWindow::new(), matcher: Matcher::new(), taken: 0, height: 0 }
+    }
+
+    /// Checks the configuration and gets ready for the first frame.
+    pub fn start(&mut self, config: &Config) -> Result<(), ConfigError> {
+        self.matcher.start(config)?;
+        self.height = usize::from(config.height);
+        self.stop();
+        Ok(())
+    }
+
+    /// Chooses the kernel; every kernel gives the same bits.
+    pub fn set_kernel(&mut self, kernel: Kernel) {
+        self.matcher.set_kernel(kernel);
+    }
+
+    /// The kernel in use.
+    pub fn kernel(&self) -> Kernel {
+        self.matcher.kernel()
+    }
+
+    /// Waits for the camera's next frame and forgets the one before.
+    pub fn begin_frame<C: StereoSource>(&mut self, camera: &mut C) -> Result<FrameStart, PipelineError<C::Error>> {
+        self.stop();
+        let config = *self.matcher.config();
+        let needed = LineFormat { width: config.width, height: config.height, pixel: PixelFormat::Grey8 };
+        let given = camera.format();
+        if self.height == 0 {
+            return Err(MatchError::NotStarted.into());
+        }
+        if given != needed {
+            return Err(PipelineError::Format { camera: given, needed });
+        }
+        let start = camera.start_frame()?;
+        self.begin()?;
+        Ok(start)
+    }
+
+    /// The next row of disparities, taking as many lines from the camera as it needs; `None` when all rows of the
+    /// frame are out. After an error the frame is over.
+    pub fn next_row<C: StereoSource>(&mut self, camera: &mut C) -> Result<Option<Row<'_>>, PipelineError<C::Error>> {
+        match self.advance(|pipeline| pipeline.take_lines(camera)) {
+            Ok(is_out) => Ok(self.row().filter(|_| is_out)),
+            Err(e) => {
+                self.stop();
+                Err(e)
+            }
+        }
+    }
+
+    /// Begins a frame whose lines the caller brings, and forgets the one before.
+    pub fn begin(&mut self) -> Result<(), MatchError> {
+        self.stop();
+        if self.height == 0 {
+            return Err(MatchError::NotStarted);
+        }
+        let width = usize::from(self.matcher.config().width);
+        self.left.begin(width);
+        self.right.begin(width);
+        self.matcher.begin_frame();
+        self.taken = 0;
+        Ok(())
+    }
+
+    /// Takes the next line of both cameras, which is copied, and gives the row that it brings out: `None` for the first
+    /// [`Self::LATENCY`] lines. When all lines are in, [`Self::flush`] gives the other rows.
+    ///
+    /// A line has exactly the width that the pipeline was started for. After an error nothing has changed: the right
+    /// line may follow.
+    pub fn push(&mut self, left: &[u8], right: &[u8]) -> Result<Option<Row<'_>>, PushError> {
+        self.begun()?;
+        if self.left.count() >= self.height {
+            return Err(PushError::NoLineLeft);
+        }
+        let needed = usize::from(self.matcher.config().width);
+        if left.len() != needed || right.len() != needed {
+            return Err(PushError::LineLength { needed });
+        }
+        for (window, line) in [(&mut self.left, left), (&mut self.right, right)] {
+            for (to, &from) in window.next_line().iter_mut().zip(line) {
+                *to = from;
+            }
+            window.accept();
+        }
+        // The image's last line completes up to three rows; `flush` takes all but the first of them.
+        if self.lines_needed() <= self.left.count() {
+            self.step()?;
+        }
+        Ok(self.matcher.row())
+    }
+
+    /// The next row below those that the lines brought out; `None` when all rows of the frame are out.
+    pub fn flush(&mut self) -> Result<Option<Row<'_>>, PushError> {
+        self.begun()?;
+        let missing = self.height.saturating_sub(self.left.count());
+        if missing > 0 {
+            return Err(PushError::LinesMissing { missing });
+        }
+        let is_out = self.advance::<PushError>(|_| Ok(()))?;
+        Ok(self.row().filter(|_| is_out))
+    }
+
+    /// The row that came out last, until the next line goes in; `None` before the first of a frame.
+    pub fn row(&self) -> Option<Row<'_>> {
+        self.matcher.row()
+    }
+
+    /// What the pipeline was started for; all zero before.
+    pub fn config(&self) -> &Config {
+        self.matcher.config()
+    }
+
+    /// Takes rows through the matcher until one comes out, each after `lines` took what it needs; false when all rows of
+    /// the frame are out.
+    fn advance<E: From<MatchError>>(&mut self, mut lines: impl FnMut(&mut Self) -> Result<(), E>) -> Result<bool, E> {
+        // Every step takes one row, and the first row is out after `DELAY` of them.
+        for _ in 0..=Matcher::<S, W, D>::DELAY {
+            if self.taken >= self.height + Matcher::<S, W, D>::DELAY {
+                return Ok(false);
+            }
+            lines(self)?;
+            self.step()?;
+            if self.taken > Matcher::<S, W, D>::DELAY {
+                break;
+            }
+        }
+        Ok(true)
+    }
+
+    /// Takes the lines up to two below the next row.
+    fn take_lines<C: StereoSource>(&mut self, camera: &mut C) -> Result<(), PipelineError<C::Error>> {
+        for due in self.left.count()..self.lines_needed() {
+            let start = camera.next_lines(self.left.next_line(), self.right.next_line())?;
+            if usize::from(start.row) != due {
+                return Err(PipelineError::RowOrder { expected: due as u16, given: start.row });
+            }
+            self.left.accept();
+            self.right.accept();
+        }
+        Ok(())
+    }
+
+    /// Takes the next row through the matcher.
+    fn step(&mut self) -> Result<(), MatchError> {
+        if self.taken < self.height {
+            self.matcher.push(&self.left.around(self.taken), &self.right.around(self.taken))?;
+        } else {
+            self.matcher.flush()?;
+        }
+        self.taken += 1;
+        Ok(())
+    }
+
+    /// Lines that have to be in before the next row can be taken.
+    fn lines_needed(&self) -> usize {
+        self.taken.saturating_add(Self::CENSUS_REACH + 1).min(self.height)
+    }
+
+    /// Whether a frame was begun by [`Self::begin`], and not stopped.
+    fn begun(&self) -> Result<(), PushError> {
+        if self.height == 0 {
+            Err(MatchError::NotStarted.into())
+        } else if self.taken == usize::MAX {
+            Err(PushError::NotBegun)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// No rows until the next frame.
+    fn stop(&mut self) {
+        self.taken = usize::MAX;
+    }
+}
+
+impl<S: Scheme, const W: usize, const D: usize> Default for Pipeline<S, W, D> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

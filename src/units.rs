@@ -23,6 +23,8 @@ impl Disparity {
     pub const FRACTION_BITS: u32 = 5;
     /// Steps per pixel.
     pub const ONE: u16 = 1 << Self::FRACTION_BITS;
+    /// One pixel.
+    pub const ONE_PIXEL: Self = Self(Self::ONE);
     /// Infinitely far, for cameras with parallel axes.
     pub const ZERO: Self = Self(0);
     /// No answer.

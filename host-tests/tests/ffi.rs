@@ -44,9 +44,10 @@ fn config(width: u16, height: u16, disparities: u16) -> Config {
         texture_gradient: 0,
         texture_pixels: 0,
         refuse_ceiling: 0,
+        refuse_flat: 0,
         smoothing_radius: 0,
+        surface_step: 0,
         speckle_pixels: 0,
-        speckle_range: 0,
     };
     // SAFETY: the pointer is to a configuration.
     let status =

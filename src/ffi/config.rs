@@ -38,12 +38,14 @@ pub struct Config {
     pub texture_pixels: u8,
     /// Whether a winner at the largest disparity searched is refused; 0 is no.
     pub refuse_ceiling: u8,
-    /// Answers are averaged along the line with this many pairs of neighbours, 0 to 8.
+    /// Whether a winner is refused that costs as much as both its neighbours; 0 is no.
+    pub refuse_flat: u8,
+    /// Answers are averaged along the line with this many pairs of neighbours of their surface, 0 to 8.
     pub smoothing_radius: u8,
-    /// Speckle: patches of fewer pixels are dropped, 0 to 32767; 0 is none.
+    /// Neighbours are of one surface when they differ by at most this, in 1/32 px, 0 to 32.
+    pub surface_step: u16,
+    /// Speckle: answers with fewer of their surface on a cross around them are dropped; 0 is none.
     pub speckle_pixels: u16,
-    /// Speckle: neighbours belong to one patch when they differ by at most this, in 1/32 px.
-    pub speckle_range: u16,
 }
 
 impl Config {
@@ -66,9 +68,10 @@ impl Config {
             texture_gradient: checks.texture_gradient,
             texture_pixels: checks.texture_pixels,
             refuse_ceiling: checks.refuse_ceiling.into(),
+            refuse_flat: checks.refuse_flat.into(),
             smoothing_radius: checks.smoothing_radius,
+            surface_step: checks.surface_step.raw(),
             speckle_pixels: checks.speckle_pixels,
-            speckle_range: checks.speckle_range.raw(),
         })
     }
 
@@ -89,9 +92,10 @@ impl Config {
                 texture_gradient: self.texture_gradient,
                 texture_pixels: self.texture_pixels,
                 refuse_ceiling: self.refuse_ceiling != 0,
+                refuse_flat: self.refuse_flat != 0,
                 smoothing_radius: self.smoothing_radius,
+                surface_step: Disparity::from_raw(self.surface_step),
                 speckle_pixels: self.speckle_pixels,
-                speckle_range: Disparity::from_raw(self.speckle_range),
             },
         })
     }
@@ -106,7 +110,7 @@ impl From<ConfigError> for Status {
             ConfigError::MinDisparity { .. } => Self::MinDisparity,
             ConfigError::Uniqueness => Self::Uniqueness,
             ConfigError::Smoothing => Self::Smoothing,
-            ConfigError::Speckle => Self::Speckle,
+            ConfigError::SurfaceStep => Self::SurfaceStep,
         }
     }
 }

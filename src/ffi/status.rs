@@ -50,7 +50,7 @@ pub enum Status {
     Height = -15,
     /// Configuration: the disparities are under 16 or over `stereopsis_max_disparities()`.
     Disparities = -16,
-    /// Configuration: the search ends beyond 2047 px.
+    /// Configuration: the search ends beyond 2046 px.
     MinDisparity = -17,
     /// Configuration: the left-right check is neither 0 to 255 px nor `STEREOPSIS_NOT_CHECKED`.
     LeftRight = -18,
@@ -58,8 +58,8 @@ pub enum Status {
     Uniqueness = -19,
     /// Configuration: the smoothing radius is over 8.
     Smoothing = -20,
-    /// Configuration: the speckle size is over 32767 pixels.
-    Speckle = -21,
+    /// Configuration: the step of a surface is over 32.
+    SurfaceStep = -21,
     /// Rig: a number is infinite or not a number.
     RigNotFinite = -22,
     /// Rig: the focal length is not over 0.
@@ -97,11 +97,11 @@ impl Status {
             Self::Width => c"the width must be 1 to stereopsis_max_width()",
             Self::Height => c"the height must be at least 1",
             Self::Disparities => c"the disparities must be 16 to stereopsis_max_disparities()",
-            Self::MinDisparity => c"the search must end at 2047 px",
+            Self::MinDisparity => c"the search must end at 2046 px",
             Self::LeftRight => c"the left-right check must be 0 to 255 px, or -1",
             Self::Uniqueness => c"the uniqueness must be 0 to 99 percent, or -1",
             Self::Smoothing => c"the smoothing radius must be at most 8",
-            Self::Speckle => c"the speckle size must be at most 32767 pixels",
+            Self::SurfaceStep => c"the step of a surface must be at most 32",
             Self::RigNotFinite => c"a number of the rig is not finite",
             Self::RigFocalLength => c"the focal length must be greater than zero",
             Self::RigBaseline => c"the baseline must be greater than zero",
@@ -136,7 +136,7 @@ impl Status {
         Self::LeftRight,
         Self::Uniqueness,
         Self::Smoothing,
-        Self::Speckle,
+        Self::SurfaceStep,
         Self::RigNotFinite,
         Self::RigFocalLength,
         Self::RigBaseline,

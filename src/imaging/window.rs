@@ -15,17 +15,23 @@
 /// // Row 0 with the rows above it repeated from row 0, and the two below.
 /// assert_eq!(window.around(0).map(|row| row[0]), [10, 10, 10, 20, 30]);
 /// ```
+/// Each line begins where a word may stand: those who look at it can take four pixels at a time.
 #[derive(Debug)]
 pub struct LineWindow<const W: usize> {
-    lines: [[u8; W]; 5],
+    lines: [Line<W>; 5],
     width: usize,
     count: usize,
 }
 
+/// One line, in whole words.
+#[derive(Debug)]
+#[repr(C, align(4))]
+struct Line<const W: usize>([u8; W]);
+
 impl<const W: usize> LineWindow<W> {
     /// An empty window.
     pub const fn new() -> Self {
-        Self { lines: [[0; W]; 5], width: 0, count: 0 }
+        Self { lines: [const { Line([0; W]) }; 5], width: 0, count: 0 }
     }
 
     /// Forgets all lines; the next ones have `width` pixels (at most the capacity).
@@ -38,7 +44,7 @@ impl<const W: usize> LineWindow<W> {
     pub fn next_line(&mut self) -> &mut [u8] {
         let width = self.width;
         match self.lines.get_mut(self.count % 5) {
-            Some(line) => line.get_mut(..width).unwrap_or_default(),
+            Some(Line(line)) => line.get_mut(..width).unwrap_or_default(),
             None => &mut [],
         }
     }
@@ -59,7 +65,7 @@ impl<const W: usize> LineWindow<W> {
         let newest = self.count.saturating_sub(1);
         core::array::from_fn(|i| {
             let row = (centre + i).saturating_sub(2).min(newest);
-            self.lines.get(row % 5).and_then(|line| line.get(..self.width)).unwrap_or(&[])
+            self.lines.get(row % 5).and_then(|Line(line)| line.get(..self.width)).unwrap_or(&[])
         })
     }
 }

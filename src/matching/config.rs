@@ -25,6 +25,9 @@ impl Config {
     /// The longest search range of any matcher.
     pub const MOST_DISPARITIES: u16 = 256;
 
+    /// Where every search ends, px: its largest disparity lies below, so that no answer is near [`Disparity::NONE`].
+    pub const END: u16 = Disparity::MAX_PIXELS;
+
     /// A search from disparity 0 with the default checks.
     pub const fn new(width: u16, height: u16, disparities: u16) -> Self {
         Self { width, height, disparities, min_disparity: 0, checks: Checks::DEFAULT }
@@ -39,12 +42,13 @@ impl Config {
         checks: Checks {
             left_right_px: None,
             uniqueness_percent: None,
+            refuse_flat: false,
             texture_gradient: 0,
             texture_pixels: 0,
             refuse_ceiling: false,
             smoothing_radius: 0,
             speckle_pixels: 0,
-            speckle_range: Disparity::ZERO,
+            surface_step: Disparity::ZERO,
         },
     };
 
@@ -59,8 +63,8 @@ impl Config {
         if self.disparities < Self::FEWEST_DISPARITIES || usize::from(self.disparities) > disparities {
             return Err(ConfigError::Disparities { given: self.disparities, most: disparities });
         }
-        if u32::from(self.min_disparity) + u32::from(self.disparities) > u32::from(Disparity::MAX_PIXELS) + 1 {
-            return Err(ConfigError::MinDisparity { most: Disparity::MAX_PIXELS + 1 - self.disparities });
+        if u32::from(self.min_disparity) + u32::from(self.disparities) > u32::from(Self::END) {
+            return Err(ConfigError::MinDisparity { most: Self::END - self.disparities });
         }
         if self.checks.uniqueness_percent.is_some_and(|p| p > 99) {
             return Err(ConfigError::Uniqueness);
@@ -68,8 +72,8 @@ impl Config {
         if self.checks.smoothing_radius > Checks::MOST_SMOOTHING {
             return Err(ConfigError::Smoothing);
         }
-        if self.checks.speckle_pixels > Checks::MOST_SPECKLE {
-            return Err(ConfigError::Speckle);
+        if self.checks.surface_step.raw() > Disparity::ONE {
+            return Err(ConfigError::SurfaceStep);
         }
         Ok(())
     }
@@ -90,62 +94,66 @@ pub struct Checks {
     /// own cost, percent, 0 to 99; 0 refuses exact ties only. Neighbours one px beside the winner do not count.
     /// `None`: not checked, and the kernel saves the pass.
     pub uniqueness_percent: Option<u8>,
+    /// Flat: an answer stays when it costs less than a neighbour one px below or above.
+    pub refuse_flat: bool,
     /// Texture: a pixel counts as textured when its left and right neighbour differ by this many grey levels.
     pub texture_gradient: u8,
-    /// Texture: an answer stays when its window holds this many textured pixels. 0: not checked.
+    /// Texture: an answer stays when its window holds this many textured pixels. 0: not checked, and the pass
+    /// is saved.
     pub texture_pixels: u8,
     /// Whether a winner at the largest disparity searched is refused: the surface may be nearer.
     pub refuse_ceiling: bool,
-    /// Answers are averaged along the line with up to this many pairs of neighbours, left and right alike, that lie
-    /// within 1 px of them; 0 to [`Checks::MOST_SMOOTHING`], 0 for none.
+    /// Two neighbours are of one surface when they differ by at most this; up to 1 px.
+    pub surface_step: Disparity,
+    /// Answers are averaged along the line with up to this many pairs of neighbours, left and right alike, of their
+    /// surface; 0 to [`Checks::MOST_SMOOTHING`], 0 for none.
     pub smoothing_radius: u8,
-    /// Speckle: patches of fewer pixels are dropped; 0 to [`Checks::MOST_SPECKLE`], 0: none is.
+    /// Speckle: answers are dropped that have fewer of their surface, themselves included, on a cross: in their column,
+    /// down to four rows below, and along the rows of these. 0: none is.
     pub speckle_pixels: u16,
-    /// Speckle: two neighbours belong to one patch when they differ by at most this.
-    pub speckle_range: Disparity,
 }
 
 impl Checks {
     /// The widest smoothing along the line.
     pub const MOST_SMOOTHING: u8 = 8;
 
-    /// The largest patch that the speckle filter can be asked to drop all smaller ones than: sizes are counted this far.
-    pub const MOST_SPECKLE: u16 = (1 << 15) - 1;
-
     /// Every pixel with a candidate gets an answer.
     pub const DENSE: Self = Self {
         left_right_px: None,
         uniqueness_percent: None,
+        refuse_flat: false,
         texture_gradient: 0,
         texture_pixels: 0,
         refuse_ceiling: false,
         smoothing_radius: 4,
         speckle_pixels: 0,
-        speckle_range: Disparity::from_pixels(1),
+        surface_step: Disparity::ONE_PIXEL,
     };
 
     /// Most answers, few of them wrong.
     pub const DEFAULT: Self = Self {
         left_right_px: Some(1),
         uniqueness_percent: None,
-        texture_gradient: 1,
-        texture_pixels: 3,
+        refuse_flat: true,
+        texture_gradient: 0,
+        texture_pixels: 0,
         refuse_ceiling: true,
         smoothing_radius: 4,
-        speckle_pixels: 40,
-        speckle_range: Disparity::from_pixels(1),
+        speckle_pixels: 24,
+        surface_step: Disparity::ONE_PIXEL,
     };
 
     /// Sure answers: fewer, and wrong only rarely.
     pub const STRICT: Self = Self {
         left_right_px: Some(1),
         uniqueness_percent: Some(5),
+        refuse_flat: true,
         texture_gradient: 2,
         texture_pixels: 4,
         refuse_ceiling: true,
         smoothing_radius: 4,
-        speckle_pixels: 100,
-        speckle_range: Disparity::from_pixels(1),
+        speckle_pixels: 60,
+        surface_step: Disparity::ONE_PIXEL,
     };
 }
 
@@ -185,8 +193,8 @@ pub enum ConfigError {
     Uniqueness,
     /// The smoothing radius is over [`Checks::MOST_SMOOTHING`].
     Smoothing,
-    /// The speckle size is over [`Checks::MOST_SPECKLE`].
-    Speckle,
+    /// The step of a surface is over 1 px.
+    SurfaceStep,
 }
 
 impl fmt::Display for ConfigError {
@@ -199,7 +207,7 @@ impl fmt::Display for ConfigError {
             }
             Self::MinDisparity { most } => write!(f, "min_disparity: at most {most} with these disparities"),
             Self::Uniqueness => f.write_str("uniqueness: 0 to 99 percent"),
-            Self::Speckle => write!(f, "speckle: patches of at most {} pixels", Checks::MOST_SPECKLE),
+            Self::SurfaceStep => f.write_str("surface step: at most 1 px"),
             Self::Smoothing => write!(f, "smoothing radius: at most {}", Checks::MOST_SMOOTHING),
         }
     }

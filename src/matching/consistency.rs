@@ -6,15 +6,15 @@
 
 use super::kernels::Winner;
 use crate::units::PixelFlags;
+use core::slice;
 
 /// One row's winners, seen from both sides. All slices have the row's width.
 pub(super) struct Consistency<'a> {
     /// Winner of each left column, over the smallest disparity.
     pub left: &'a mut [u8],
-    /// Winner that each right column keeps, over the smallest disparity.
-    pub right: &'a mut [u8],
-    /// Its cost; `u16::MAX` while nobody offered.
-    pub right_cost: &'a mut [u16],
+    /// What each right column keeps: the cost above 8 bits of the winner, over the smallest disparity; all ones while
+    /// nobody offered.
+    pub right: &'a mut [u32],
     /// The smallest disparity, px.
     pub min_disparity: usize,
 }
@@ -22,30 +22,44 @@ pub(super) struct Consistency<'a> {
 impl Consistency<'_> {
     /// Forgets the row before.
     pub(super) fn begin(&mut self) {
-        self.right_cost.fill(u16::MAX);
+        self.right.fill(u32::MAX);
     }
 
-    /// Notes the winners of the left columns from `x` on and offers each to its partner. The first of equal costs stays.
-    #[inline(always)]
-    pub(super) fn offer(&mut self, x: usize, winners: &[Winner]) {
-        let left = self.left.get_mut(x..).unwrap_or_default();
-        for ((x, left), winner) in (x..).zip(left).zip(winners) {
-            *left = winner.disparity as u8;
-            let partner = x.wrapping_sub(self.min_disparity + usize::from(winner.disparity));
-            if let (Some(cost), Some(kept)) = (self.right_cost.get_mut(partner), self.right.get_mut(partner)) {
-                let better = winner.candidates > 0 && winner.cost < *cost;
-                *cost = if better { winner.cost } else { *cost };
-                *kept = if better { *left } else { *kept };
-            }
-        }
+    /// Takes the row's winners, from the first column on.
+    pub(super) fn offers(&mut self) -> Offers<'_> {
+        // Where a column's candidates begin, counted modulo the size of a place.
+        Offers { left: self.left.iter_mut(), right: self.right, place: 0usize.wrapping_sub(self.min_disparity) }
     }
 
-    /// Whether the partner of left column `x` keeps something else than `x`'s winner, by over `tolerance` px.
+    /// Whether the partner of left column `x`, whose winner is `disparity`, keeps something else by over `tolerance` px.
     #[inline(always)]
-    pub(super) fn mismatch(&self, x: usize, tolerance: u8) -> PixelFlags {
-        let disparity = self.left.get(x).copied().unwrap_or(0);
+    pub(super) fn mismatch(&self, x: usize, disparity: u8, tolerance: u8) -> PixelFlags {
         let partner = x.wrapping_sub(self.min_disparity + usize::from(disparity));
-        let kept = self.right.get(partner).copied().unwrap_or(disparity);
+        let kept = self.right.get(partner).map_or(disparity, |&kept| kept as u8);
         PixelFlags::MISMATCH.when(kept.abs_diff(disparity) > tolerance)
+    }
+}
+
+/// A row's winners, one after the other.
+pub(super) struct Offers<'a> {
+    left: slice::IterMut<'a, u8>,
+    right: &'a mut [u32],
+    place: usize,
+}
+
+impl Offers<'_> {
+    /// Notes the winner of the next column and offers it to its partner. The first of equal costs stays.
+    #[inline(always)]
+    pub(super) fn next(&mut self, winner: &Winner) {
+        if let Some(left) = self.left.next() {
+            *left = winner.disparity() as u8;
+        }
+        // A pixel without candidates lies left of the smallest disparity: it has no partner.
+        let partner = self.place.wrapping_sub(winner.disparity() as usize);
+        if let Some(kept) = self.right.get_mut(partner) {
+            // Of one partner, those who come later are farther away: their disparity is larger.
+            *kept = (*kept).min(winner.key());
+        }
+        self.place = self.place.wrapping_add(1);
     }
 }

@@ -1,15 +1,16 @@
 //! The memory of a block matcher and its stages, in running order.
 
 use super::consistency::Consistency;
-use super::kernels::{Kernel, Lane};
+use super::kernels::{Aligned, Columns, Kernel, OUTSIDE, STEP, Scratch};
 use super::row::{HISTORY, Row};
 use super::scheme::{Around, Codes, Scheme};
-use super::speckle::{BAND, LOOK_AHEAD, WIDEST};
+use super::speckle::{BAND, LOOK_AHEAD};
 use super::stages::Stages;
 use super::texture::Texture;
 use super::{Config, ConfigError};
 use crate::units::{Disparity, PixelFlags};
 use core::fmt;
+use core::marker::PhantomData;
 
 /// Bytes of matcher state beside the arrays: counters, the configuration, padding.
 const FIXED_BYTES: usize = 64;
@@ -21,22 +22,18 @@ const FIXED_BYTES: usize = 64;
 ///
 /// `D` is a multiple of 16, at most 256, and `W` at least `D`; another choice does not compile.
 pub struct Matcher<S: Scheme, const W: usize, const D: usize> {
-    left: S::Codes<W>,
-    right: S::Codes<W>,
-    columns: [[u8; D]; W],
-    sums: [S::Sum; D],
-    masked: [S::Sum; D],
-    enter: [[u8; W]; 2],
-    leave: [[u8; W]; 2],
+    left: Aligned<S::Codes<W>>,
+    right: Aligned<S::Codes<W>>,
+    columns: Columns<W, D>,
+    scratch: Scratch<W, D>,
     texture: [u16; W],
     textured: [u8; W],
     left_winners: [u8; W],
-    right_winners: [u8; W],
-    right_costs: [u16; W],
-    answers: [Disparity; W],
+    right_winners: [u32; W],
     band: [[Disparity; W]; BAND],
     band_flags: [[PixelFlags; W]; BAND],
-    nodes: [[u16; W]; BAND],
+    support: [[u16; W]; BAND],
+    history: [u8; W],
     finished: [[Disparity; W]; HISTORY],
     config: Config,
     kernel: Kernel,
@@ -54,11 +51,11 @@ pub struct Matcher<S: Scheme, const W: usize, const D: usize> {
 /// assert!(state_bytes::<Fast>(320, 64) <= 43_000);
 /// ```
 pub const fn state_bytes<S: Scheme>(width: usize, disparities: usize) -> usize {
-    let lanes = disparities.next_multiple_of(16);
+    let lanes = disparities.next_multiple_of(STEP);
     let width = if width < lanes { lanes } else { width };
     let codes = 2 * S::Codes::<1>::ROWS;
-    let per_column = codes + lanes + 2 * 2 + 2 + 1 + 1 + 1 + 2 + 2 + (2 + 1 + 2) * BAND + 2 * HISTORY;
-    width * per_column + 2 * lanes * size_of::<S::Sum>() + FIXED_BYTES
+    let per_column = codes + lanes + 2 + 2 + 1 + 1 + 4 + 1 + (2 + 1 + 2) * BAND + 2 * HISTORY;
+    width * per_column + (12 + OUTSIDE) * lanes + FIXED_BYTES
 }
 
 /// Why a matcher took no line.
@@ -97,7 +94,7 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     const CHECKED: () = {
         assert!(D.is_multiple_of(16) && D >= 16 && D <= 256, "D must be a multiple of 16, from 16 to 256");
         assert!(W >= D, "W must be at least D");
-        assert!(W <= WIDEST, "W must be at most 6553");
+        assert!(W <= u16::MAX as usize, "W must be at most 65535");
         assert!(S::Codes::<W>::ROWS == 2 * S::RADIUS_Y + 2, "the codes must hold the window and one row");
         assert!(S::BITS * (2 * S::RADIUS_Y + 1) <= u8::MAX as usize, "a column's sum must fit a byte");
         assert!(size_of::<Self>() <= state_bytes::<S>(W, D), "state_bytes must cover the state");
@@ -107,25 +104,21 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     pub const fn new() -> Self {
         const { Self::CHECKED };
         Self {
-            left: S::Codes::<W>::EMPTY,
-            right: S::Codes::<W>::EMPTY,
-            columns: [[0; D]; W],
-            sums: [S::Sum::ZERO; D],
-            masked: [S::Sum::ZERO; D],
-            enter: [[0; W]; 2],
-            leave: [[0; W]; 2],
+            left: Aligned(S::Codes::<W>::EMPTY),
+            right: Aligned(S::Codes::<W>::EMPTY),
+            columns: Columns::ZERO,
+            scratch: Scratch::ZERO,
             texture: [0; W],
             textured: [0; W],
             left_winners: [0; W],
             right_winners: [0; W],
-            right_costs: [0; W],
-            answers: [Disparity::ZERO; W],
             band: [[Disparity::ZERO; W]; BAND],
             band_flags: [[PixelFlags::CLEAR; W]; BAND],
-            nodes: [[0; W]; BAND],
+            support: [[0; W]; BAND],
+            history: [0; W],
             finished: [[Disparity::ZERO; W]; HISTORY],
             config: Config::UNSET,
-            kernel: Kernel::Portable,
+            kernel: Kernel::FIRST,
             kernel_chosen: false,
             taken: 0,
         }
@@ -149,7 +142,7 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
         self.kernel_chosen = true;
     }
 
-    /// The kernel in use; `Portable` before the start.
+    /// The kernel in use, once started.
     pub fn kernel(&self) -> Kernel {
         self.kernel
     }
@@ -217,28 +210,25 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             slice.get_mut(..count).unwrap_or_default()
         }
         Stages {
+            scheme: PhantomData,
             width,
             stride,
             kernel: self.kernel,
             config: &self.config,
-            left: first(self.left.flat(), width * S::Codes::<W>::ROWS),
-            right: first(self.right.flat(), width * S::Codes::<W>::ROWS),
-            columns: first(self.columns.as_flattened_mut(), width * stride),
-            sums: first(&mut self.sums, stride),
-            masked: first(&mut self.masked, stride),
-            enter: first(self.enter.as_flattened_mut(), width + stride),
-            leave: first(self.leave.as_flattened_mut(), width + stride),
+            left: first(self.left.0.flat(), width * S::Codes::<W>::ROWS),
+            right: first(self.right.0.flat(), width * S::Codes::<W>::ROWS),
+            columns: first(self.columns.flat(), (OUTSIDE + width) * stride),
+            scratch: self.scratch.words(),
             texture: Texture { history: first(&mut self.texture, width), counts: first(&mut self.textured, width) },
             consistency: Consistency {
                 left: first(&mut self.left_winners, width),
                 right: first(&mut self.right_winners, width),
-                right_cost: first(&mut self.right_costs, width),
                 min_disparity: usize::from(self.config.min_disparity),
             },
-            answers: first(&mut self.answers, width),
             band: first(self.band.as_flattened_mut(), width * BAND),
             flags: first(self.band_flags.as_flattened_mut(), width * BAND),
-            nodes: first(self.nodes.as_flattened_mut(), width * BAND),
+            support: first(self.support.as_flattened_mut(), width * BAND),
+            history: first(&mut self.history, width),
             finished: first(self.finished.as_flattened_mut(), width * HISTORY),
         }
     }

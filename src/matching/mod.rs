@@ -7,8 +7,8 @@
 //!    work grows with the number of disparities, behind one seam ([`Kernel`]).
 //! 3. `subpixel`: the winner between whole pixels.
 //! 4. `texture`, `consistency`: whether the window has texture, whether the right image agrees.
-//! 5. `smooth`: the answers averaged along the line.
-//! 6. `speckle`: small patches dropped, in a band of five rows.
+//! 5. `surface`: the answers averaged along the row, within their surface.
+//! 6. `speckle`: answers dropped that too few others support, in a band of five rows.
 //! 7. [`Row`]: what came out, with the uncertainty of each answer.
 //!
 //! [`Matcher`] owns the memory and runs the stages. [`Config`] says what is searched and which answers are refused.
@@ -19,10 +19,10 @@ mod kernels;
 mod matcher;
 mod row;
 mod scheme;
-mod smooth;
 mod speckle;
 mod stages;
 mod subpixel;
+mod surface;
 mod texture;
 
 pub use config::{Checks, Config, ConfigError};

@@ -1,6 +1,9 @@
 //! What a method is made of: its census, its window and the lanes that its sums fit in.
 
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 use super::kernels::Lane;
+#[cfg(not(stereopsis_vectors))]
+use super::kernels::codes;
 use super::stages::Stages;
 use crate::imaging::{census_plus4, census_ring8};
 
@@ -21,14 +24,22 @@ pub trait Scheme: Lines + Sized + 'static {
 
 /// The parts of a method that only the matcher sees: its lanes, its storage and its arithmetic.
 pub trait Lines: Sized {
-    /// Holds the sum of a whole window.
+    /// Holds the sum of a whole window, in vectors.
+    #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
     type Sum: Lane;
     /// The census rows of one camera: those under the window and the one that leaves it.
     type Codes<const W: usize>: Codes;
     /// The census row at the centre of five rows.
     fn census(rows: &Around<'_>, out: &mut [u8]);
+    /// The codes of four pixels, from the words around them: rows, and columns two to the left, here, two to the right.
+    #[cfg(not(stereopsis_vectors))]
+    fn codes(around: &[[u32; 3]; 3]) -> u32;
     /// How many bits of two codes differ.
+    #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
     fn hamming(a: u8, b: u8) -> u8;
+    /// How many bits are set in each byte of two words together, of the bits that a code has.
+    #[cfg(not(stereopsis_vectors))]
+    fn bits_of_two(a: u32, b: u32) -> u32;
     /// [`Stages::step`]. Each method says so for itself, so that its stages are compiled with this crate, once, and
     /// not with every crate that chooses a capacity.
     fn step(stages: Stages<'_, Self>, y: usize, lines: Option<[&Around<'_>; 2]>)
@@ -58,6 +69,12 @@ impl<const W: usize, const N: usize> Codes for [[u8; W]; N] {
     }
 }
 
+/// The neighbours of [`census_plus4`] and [`census_ring8`] in order of their bits, two rows and columns to a step.
+#[cfg(not(stereopsis_vectors))]
+const PLUS4: [(usize, usize); 4] = [(0, 1), (1, 0), (1, 2), (2, 1)];
+#[cfg(not(stereopsis_vectors))]
+const RING8: [(usize, usize); 8] = [(0, 0), (0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1), (2, 2)];
+
 /// Method `fast`: a 4-bit census (up, down, left, right at distance 2) summed over 9x7 pixels. Every sum fits a byte.
 #[derive(Clone, Copy, Debug)]
 pub struct Fast;
@@ -71,6 +88,7 @@ impl Scheme for Fast {
 }
 
 impl Lines for Fast {
+    #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
     type Sum = u8;
     type Codes<const W: usize> = [[u8; W]; 8];
 
@@ -78,12 +96,29 @@ impl Lines for Fast {
         census_plus4(rows, out);
     }
 
+    #[cfg(not(stereopsis_vectors))]
+    #[inline(always)]
+    fn codes(around: &[[u32; 3]; 3]) -> u32 {
+        codes(around, &PLUS4)
+    }
+
+    #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
     #[inline(always)]
     fn hamming(a: u8, b: u8) -> u8 {
         // Four bits need half of a byte's bit count: pairs, then the two pairs.
         let x = a ^ b;
         let pairs = x - ((x >> 1) & 0b0101);
         (pairs & 0b0011) + (pairs >> 2)
+    }
+
+    #[cfg(not(stereopsis_vectors))]
+    #[inline(always)]
+    fn bits_of_two(a: u32, b: u32) -> u32 {
+        // The two times four bits fill a byte.
+        let bits = (a & 0x0f0f_0f0f) | (b & 0x0f0f_0f0f) << 4;
+        let pairs = bits - (bits >> 1 & 0x5555_5555);
+        let fours = (pairs & 0x3333_3333) + (pairs >> 2 & 0x3333_3333);
+        (fours + (fours >> 4)) & 0x0f0f_0f0f
     }
 
     fn step(stages: Stages<'_, Self>, y: usize, lines: Option<[&Around<'_>; 2]>) {
@@ -104,16 +139,42 @@ impl Scheme for Block {
 }
 
 impl Lines for Block {
-    type Sum = i16;
+    #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+    type Sum = u16;
     type Codes<const W: usize> = [[u8; W]; 10];
 
     fn census(rows: &Around<'_>, out: &mut [u8]) {
         census_ring8(rows, out);
     }
 
+    #[cfg(not(stereopsis_vectors))]
+    #[inline(always)]
+    fn codes(around: &[[u32; 3]; 3]) -> u32 {
+        codes(around, &RING8)
+    }
+
+    #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
     #[inline(always)]
     fn hamming(a: u8, b: u8) -> u8 {
-        (a ^ b).count_ones() as u8
+        let x = a ^ b;
+        if cfg!(stereopsis_vectors) {
+            // Vectors that have no bit count.
+            let pairs = x - ((x >> 1) & 0x55);
+            let fours = (pairs & 0x33) + ((pairs >> 2) & 0x33);
+            (fours + (fours >> 4)) & 0x0f
+        } else {
+            x.count_ones() as u8
+        }
+    }
+
+    #[cfg(not(stereopsis_vectors))]
+    #[inline(always)]
+    fn bits_of_two(a: u32, b: u32) -> u32 {
+        let pairs = |bits: u32| bits - (bits >> 1 & 0x5555_5555);
+        let fours = |pairs: u32| (pairs & 0x3333_3333) + (pairs >> 2 & 0x3333_3333);
+        // Up to eight in four bits, up to sixteen in a byte.
+        let fours = fours(pairs(a)) + fours(pairs(b));
+        (fours & 0x0f0f_0f0f) + (fours >> 4 & 0x0f0f_0f0f)
     }
 
     fn step(stages: Stages<'_, Self>, y: usize, lines: Option<[&Around<'_>; 2]>) {

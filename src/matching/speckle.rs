@@ -1,12 +1,13 @@
-//! Small patches dropped, in a band of five rows.
+//! Answers dropped that too few others support, in a band of five rows.
 //!
-//! A patch is a set of answers joined through their four neighbours, each step within a range. Its size is counted as
-//! rows come in (a union-find over the band), and a row is judged when [`LOOK_AHEAD`] more rows have come: what is
-//! counted is the patch as far as it shows in all rows down to there.
+//! An answer's support is counted along a cross (after Zhang, Lu & Lafruit 2009): from it straight up and down as far
+//! as the answers are of one surface, and from each of these along its row as far as that surface goes. Upwards every
+//! row counts, downwards the [`LOOK_AHEAD`] rows that have come when the row is judged. For a small patch that is its
+//! size or little less; counting a patch exactly (a union-find over the band) refuses the same answers to within a few
+//! in a hundred, but its work depends on the picture. This one's does not.
 //!
-//! Every pixel has one word: at the root of its patch the patch's size, elsewhere the place of another pixel of the
-//! patch. A place is never in an older row than the pixel that refers to it, so nothing points at a row that has left
-//! the band, and a patch that goes on keeps the size of its rows that have left.
+//! Each row adds its surfaces' lengths to the support of the row above where the two are of one surface, so that the
+//! support of an answer is what the lowest row has that goes on from it.
 
 use super::row::slot;
 use crate::units::{Disparity, PixelFlags};
@@ -15,137 +16,76 @@ use crate::units::{Disparity, PixelFlags};
 pub(super) const LOOK_AHEAD: usize = 4;
 /// Rows of the band: a ring, row `y` in slot `y % BAND`.
 pub(super) const BAND: usize = LOOK_AHEAD + 1;
-/// The widest line whose places fit beside [`ROOT`].
-pub(super) const WIDEST: usize = ROOT as usize / BAND;
 
-/// Marks a root; the other bits are its patch's size, or the largest number they hold.
-const ROOT: u16 = 1 << 15;
+/// How many rows further down a surface goes on, by the last four bits of a column's history: their leading ones.
+const ROWS_ON: [u8; 1 << LOOK_AHEAD] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 3, 4];
 
-/// The band of rows. All slices are `BAND` rows of `width`.
-pub(super) struct Speckle<'a> {
-    pub disparities: &'a [Disparity],
-    pub nodes: &'a mut [u16],
-    pub width: usize,
-    /// Two neighbours differ by at most this, in steps of [`Disparity`].
-    pub range: u16,
-}
-
-impl Speckle<'_> {
-    /// Takes row `y`, whose disparities are in the band.
-    pub(super) fn push(&mut self, y: usize) {
-        self.join_along(y);
-        if y > 0 {
-            self.join_above(y);
-        }
+/// Adds what row `y` has to the support from above. `support` holds the lengths of its surfaces in its own slot; each
+/// column's `history` gets a bit, whether it goes on from the row above.
+pub(super) fn count(y: usize, band: &[Disparity], support: &mut [u16], history: &mut [u8], step: Disparity) {
+    let width = history.len();
+    if y == 0 {
+        history.fill(0);
+        return;
     }
-
-    /// Whether the patch of the answered pixel (`x`, `y`), as far as it is known, has fewer than `pixels`.
-    pub(super) fn is_small(&mut self, x: usize, y: usize, pixels: u16) -> PixelFlags {
-        let root = self.root(self.place(x, y));
-        let size = self.nodes.get(root).map_or(ROOT, |n| n & !ROOT);
-        PixelFlags::SPECKLE.when(size < pixels)
-    }
-
-    /// Whether two neighbours are of one patch.
-    #[inline(always)]
-    pub(super) fn joins(&self, a: Disparity, b: Disparity) -> bool {
-        similar(a, b, self.range)
-    }
-
-    fn place(&self, x: usize, y: usize) -> usize {
-        (y % BAND) * self.width + x
-    }
-
-    /// Runs of similar answers along the row: the last pixel of each is the root of all.
-    fn join_along(&mut self, y: usize) {
-        let start = self.place(0, y);
-        let Some(nodes) = self.nodes.get_mut(start..start + self.width) else { return };
-        // From the end, so that the end of a run is known when its pixels are written.
-        let (mut end, mut size) = (start, 0);
-        let mut next = Disparity::NONE;
-        for (x, &answer) in slot(self.disparities, y % BAND, self.width).iter().enumerate().rev() {
-            if !similar(answer, next, self.range) {
-                finish_run(nodes, end - start, size);
-                end = start + x;
-                size = 0;
-            }
-            size += 1;
-            if let Some(node) = nodes.get_mut(x) {
-                *node = end as u16;
-            }
-            next = answer;
-        }
-        finish_run(nodes, end - start, size);
-    }
-
-    /// Joins the row's patches to those above.
-    fn join_above(&mut self, y: usize) {
-        let (here, above) = (self.place(0, y), self.place(0, y - 1));
-        let rows = slot(self.disparities, y % BAND, self.width).iter();
-        let mut joined_before = false;
-        let mut before = (Disparity::NONE, Disparity::NONE);
-        for (x, (&answer, &up)) in rows.zip(slot(self.disparities, (y - 1) % BAND, self.width)).enumerate() {
-            let joined = similar(answer, up, self.range);
-            // Where both rows go on from a column that was joined, they are joined already.
-            let known = joined_before & similar(before.0, answer, self.range) & similar(before.1, up, self.range);
-            if joined & !known {
-                self.join(above + x, here + x);
-            }
-            joined_before = joined;
-            before = (answer, up);
-        }
-    }
-
-    /// Joins the patch of an older pixel to that of one in the newest row, whose root is in the newest row.
-    fn join(&mut self, older: usize, newest: usize) {
-        let (a, b) = (self.root(older), self.root(newest));
-        if a == b {
-            return;
-        }
-        let size = self.nodes.get(a).map_or(0, |n| n & !ROOT);
-        if let Some(root) = self.nodes.get_mut(b) {
-            *root = ROOT | ((*root & !ROOT) + size).min(ROOT - 1);
-        }
-        if let Some(node) = self.nodes.get_mut(a) {
-            *node = b as u16;
-        }
-    }
-
-    /// The root of a pixel's patch. Each step halves the path for those who come after.
-    fn root(&mut self, place: usize) -> usize {
-        let mut place = place;
-        // A path has no loop, so it is shorter than the band has pixels.
-        for _ in 0..self.nodes.len() {
-            let node = self.nodes.get(place).copied().unwrap_or(ROOT);
-            if node & ROOT != 0 {
-                break;
-            }
-            let parent = usize::from(node);
-            let grandparent = self.nodes.get(parent).copied().unwrap_or(ROOT);
-            if grandparent & ROOT != 0 {
-                return parent;
-            }
-            if let Some(node) = self.nodes.get_mut(place) {
-                *node = grandparent;
-            }
-            place = usize::from(grandparent);
-        }
-        place
+    let (here, above) = (slot(band, y % BAND, width), slot(band, (y - 1) % BAND, width));
+    let Some((support, before)) = two_slots(support, y % BAND, (y - 1) % BAND, width) else { return };
+    let step = u32::from(step.raw());
+    let rows = here.iter().zip(above).zip(support.iter_mut().zip(before)).zip(history);
+    for (((here, above), (support, before)), history) in rows {
+        let change = u32::from(here.raw()).wrapping_sub(u32::from(above.raw()));
+        let joined = change.wrapping_add(step) <= 2 * step;
+        *support = support.saturating_add(*before & 0u16.wrapping_sub(u16::from(joined)));
+        *history = *history << 1 | u8::from(joined);
     }
 }
 
-/// Makes the end of a run the root of its pixels.
-fn finish_run(nodes: &mut [u16], end: usize, size: u16) {
-    if let Some(node) = nodes.get_mut(end)
-        && size > 0
-    {
-        *node = ROOT | size;
+/// A row below the image: no surface goes on.
+pub(super) fn end(history: &mut [u8]) {
+    for history in history {
+        *history <<= 1;
     }
 }
 
-/// Whether two neighbours are of one patch: both answers, within `range`.
-#[inline(always)]
-fn similar(a: Disparity, b: Disparity, range: u16) -> bool {
-    // Without a branch: pictures decide nothing about the work.
-    a.is_some() & b.is_some() & (a.raw().abs_diff(b.raw()) <= range)
+/// Judges row `y`, after the rows that it waits for: drops the answers with less support than `pixels`.
+pub(super) fn judge(
+    y: usize,
+    pixels: u16,
+    support: &[u16],
+    history: &[u8],
+    flags: &mut [PixelFlags],
+    finished: &mut [Disparity],
+) {
+    let width = history.len();
+    // Where the row is that each history ends in.
+    let rows = ROWS_ON.map(|rows| (y + usize::from(rows)) % BAND * width);
+    for (x, ((flags, answer), history)) in flags.iter_mut().zip(finished).zip(history).enumerate() {
+        let row = rows[usize::from(*history) % rows.len()];
+        let count = support.get(row + x).copied().unwrap_or(u16::MAX);
+        let refused = count < pixels;
+        // What has no answer is no speckle.
+        *flags = flags.union(PixelFlags::SPECKLE.when(refused & answer.is_some()));
+        *answer = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(refused)));
+    }
+}
+
+/// Two slots of a ring, the first to write.
+fn two_slots(rows: &mut [u16], write: usize, read: usize, width: usize) -> Option<(&mut [u16], &[u16])> {
+    let (low, high) = rows.split_at_mut_checked(write.max(read) * width)?;
+    let low = low.get_mut(write.min(read) * width..)?.get_mut(..width)?;
+    let high = high.get_mut(..width)?;
+    Some(if write < read { (low, high) } else { (high, low) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_history_says_how_many_rows_go_on() {
+        for (history, rows) in ROWS_ON.iter().enumerate() {
+            // Bit 3 is the row below the judged one.
+            assert_eq!(u32::from(*rows), (history as u8 | 0xf0).leading_ones() - 4);
+        }
+    }
 }

@@ -13,26 +13,25 @@ use super::kernels::Winner;
 use crate::units::Disparity;
 
 /// The disparity of a winner whose search began at `min_disparity` px, rounded to the nearest step.
+#[inline(always)]
 pub(super) fn refine(winner: &Winner, min_disparity: usize) -> Disparity {
-    let whole = (min_disparity as i32 + i32::from(winner.disparity)) * i32::from(Disparity::ONE);
-    let (below, above) = winner.beside;
-    let a = u32::from(below.saturating_sub(winner.cost));
-    let b = u32::from(above.saturating_sub(winner.cost));
+    let whole = (min_disparity as u32 + winner.disparity()) * u32::from(Disparity::ONE);
+    let (a, b) = winner.rises();
     let steepest = a.max(b);
     let half = u32::from(Disparity::ONE / 2);
     // A steepest rise of 0 is a flat minimum: no fraction. `max(1)` keeps the division defined.
-    let fraction = ((a.abs_diff(b) * half + steepest / 2) / steepest.max(1)) as i32;
-    let towards = if a < b { -1 } else { 1 };
-    let steps = whole + towards * fraction;
-    Disparity::from_raw(steps.clamp(0, i32::from(Disparity::MAX.raw())) as u16)
+    let fraction = (a.abs_diff(b) * half + steepest / 2) / steepest.max(1);
+    // The fraction is 0 at the smallest disparity, which has nothing below.
+    let steps = if a < b { whole.wrapping_sub(fraction) } else { whole.wrapping_add(fraction) };
+    Disparity::from_raw(steps as u16)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn refined(below: u16, cost: u16, above: u16) -> u16 {
-        refine(&Winner { candidates: 64, disparity: 10, cost, beside: (below, above), second: u16::MAX }, 0).raw()
+    fn refined(below: u32, cost: u32, above: u32) -> u16 {
+        refine(&Winner::new(cost, 10, (below, above), u32::MAX), 0).raw()
     }
 
     #[test]

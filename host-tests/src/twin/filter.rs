@@ -1,91 +1,74 @@
 //! What happens to answers after they are chosen: smoothing along the row, the speckle filter, the deviation.
 
 use super::{Answers, Scheme};
+use std::ops::Range;
 use stereopsis::matching::{Checks, Config};
 use stereopsis::units::{Disparity, PixelFlags};
 
 /// Rows below a row that the speckle filter and the deviation look at.
 const LOOK_AHEAD: usize = 4;
 
-/// Averages every answer with pairs of neighbours, as far left as right, that lie within 1 px of it.
-pub(super) fn smooth_row(row: &[Disparity], radius: u8) -> Vec<Disparity> {
-    let mut smooth = row.to_vec();
-    for (x, answer) in row.iter().enumerate().filter(|(_, a)| a.is_some()) {
-        let difference = |other: Disparity| {
-            let steps = i32::from(other.raw()) - i32::from(answer.raw());
-            (other.is_some() && steps.abs() <= 32).then_some(steps)
-        };
-        let (mut sum, mut count) = (0, 1);
-        for k in 1..=usize::from(radius) {
-            if x < k || x + k >= row.len() {
-                break;
-            }
-            if let (Some(left), Some(right)) = (difference(row[x - k]), difference(row[x + k])) {
-                sum += left + right;
-                count += 2;
-            }
-        }
-        let mean = (f64::from(sum) / f64::from(count)).round() as i32; // `round` takes halves away from zero.
-        smooth[x] = Disparity::from_raw((i32::from(answer.raw()) + mean) as u16);
-    }
-    smooth
+/// Whether two answers are of one surface.
+fn of_one_surface(checks: &Checks, a: Disparity, b: Disparity) -> bool {
+    a.distance(b).is_some_and(|steps| steps <= checks.surface_step.raw())
 }
 
-/// The rows after the speckle filter. Each row is judged by what is known when it leaves: the rows up to four below it.
-pub(super) fn drop_speckles(checks: &Checks, mut map: Answers) -> Answers {
-    if checks.speckle_pixels == 0 {
-        return map;
+/// The answers of the surface around an answer, along its row: from the first to the one behind the last.
+fn surface(checks: &Checks, row: &[Disparity], x: usize) -> Range<usize> {
+    let (mut first, mut end) = (x, x + 1);
+    while first > 0 && of_one_surface(checks, row[first - 1], row[first]) {
+        first -= 1;
     }
+    while end < row.len() && of_one_surface(checks, row[end - 1], row[end]) {
+        end += 1;
+    }
+    first..end
+}
+
+/// Every answer of a row: averaged with pairs of neighbours, as far left as right, of its surface; and how many answers
+/// that surface has.
+pub(super) fn smooth_row(checks: &Checks, row: &[Disparity]) -> (Vec<Disparity>, Vec<usize>) {
+    let (mut smooth, mut lengths) = (row.to_vec(), vec![0; row.len()]);
+    for x in (0..row.len()).filter(|&x| row[x].is_some()) {
+        let surface = surface(checks, row, x);
+        lengths[x] = surface.len();
+        let reach = usize::from(checks.smoothing_radius).min(x - surface.start).min(surface.end - 1 - x);
+        let around = &row[x - reach..=x + reach];
+        let mean = around.iter().map(|d| f64::from(d.raw())).sum::<f64>() / around.len() as f64;
+        smooth[x] = Disparity::from_raw(mean.round() as u16);
+    }
+    (smooth, lengths)
+}
+
+/// The rows after the speckle filter. `lengths` is that of each answer's surface along its row. An answer needs support:
+/// the lengths in its column, as far up as the surface goes, and as far down but for at most four rows.
+pub(super) fn drop_speckles(checks: &Checks, lengths: &[usize], mut map: Answers) -> Answers {
     let before = map.disparity.clone();
-    let alike = |a: Disparity, b: Disparity| a.distance(b).is_some_and(|steps| steps <= checks.speckle_range.raw());
-    for y in 0..map.height {
-        let known = &before[..map.height.min(y + LOOK_AHEAD + 1) * map.width];
-        let mut seen = vec![false; known.len()];
-        for start in y * map.width..(y + 1) * map.width {
-            if seen[start] || known[start].is_none() {
-                continue;
+    let goes_on = |above: usize| {
+        let below = above + map.width;
+        below < before.len() && of_one_surface(checks, before[above], before[below])
+    };
+    for i in (0..before.len()).filter(|&i| before[i].is_some()) {
+        let mut support = lengths[i];
+        let mut up = i;
+        while up >= map.width && goes_on(up - map.width) {
+            up -= map.width;
+            support += lengths[up];
+        }
+        let mut down = i;
+        for _ in 0..LOOK_AHEAD {
+            if !goes_on(down) {
+                break;
             }
-            let patch = flood(known, map.width, &mut seen, start, alike);
-            if patch.len() < usize::from(checks.speckle_pixels) {
-                for i in patch.into_iter().filter(|i| i / map.width == y) {
-                    map.disparity[i] = Disparity::NONE;
-                    map.flags[i] = map.flags[i].union(PixelFlags::SPECKLE);
-                }
-            }
+            down += map.width;
+            support += lengths[down];
+        }
+        if support < usize::from(checks.speckle_pixels) {
+            map.disparity[i] = Disparity::NONE;
+            map.flags[i] = map.flags[i].union(PixelFlags::SPECKLE);
         }
     }
     map
-}
-
-/// The places that are reached from `start` by steps up, down, left and right between answers that are alike.
-fn flood(
-    known: &[Disparity],
-    width: usize,
-    seen: &mut [bool],
-    start: usize,
-    alike: impl Fn(Disparity, Disparity) -> bool,
-) -> Vec<usize> {
-    let mut patch = vec![start];
-    seen[start] = true;
-    let mut next = 0;
-    while next < patch.len() {
-        let here = patch[next];
-        next += 1;
-        let x = here % width;
-        let neighbours = [
-            (x > 0).then(|| here - 1),
-            (x + 1 < width).then(|| here + 1),
-            here.checked_sub(width),
-            (here + width < known.len()).then(|| here + width),
-        ];
-        for there in neighbours.into_iter().flatten() {
-            if !seen[there] && alike(known[here], known[there]) {
-                seen[there] = true;
-                patch.push(there);
-            }
-        }
-    }
-    patch
 }
 
 /// The deviation of every answer, px: a third of the greatest difference to an answer within four pixels along the row

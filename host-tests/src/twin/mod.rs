@@ -98,13 +98,16 @@ pub fn match_pair(scheme: &Scheme, config: &Config, left: &GrayImage, right: &Gr
         flags: Vec::new(),
         sigma_px: Vec::new(),
     };
+    let mut lengths = Vec::new();
     for y in 0..left.height {
         let (answers, flags) = select::select_row(scheme, config, &left, &sums, y);
-        map.disparity.extend(filter::smooth_row(&answers, config.checks.smoothing_radius));
+        let (smooth, row_lengths) = filter::smooth_row(&config.checks, &answers);
+        map.disparity.extend(smooth);
+        lengths.extend(row_lengths);
         map.flags.extend(flags);
     }
     let before = map.disparity.clone();
-    let mut map = filter::drop_speckles(&config.checks, map);
+    let mut map = filter::drop_speckles(&config.checks, &lengths, map);
     map.sigma_px = filter::sigmas(scheme, config, &before, &map.disparity);
     map
 }

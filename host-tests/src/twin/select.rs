@@ -50,7 +50,7 @@ pub(super) fn select_row(
         if checks.uniqueness_percent.is_some_and(|percent| ambiguous(candidates(x), best, percent)) {
             say(PixelFlags::AMBIGUOUS, true);
         }
-        if untextured(scheme, checks, left, x, y) {
+        if untextured(scheme, checks, left, x, y) || checks.refuse_flat && flat(candidates(x), best) {
             say(PixelFlags::UNTEXTURED, true);
         }
         if let Some(most) = checks.left_right_px {
@@ -109,6 +109,12 @@ fn ambiguous(candidates: &[u16], best: Winner, percent: u8) -> bool {
     let others = candidates.iter().enumerate().filter(|&(d, _)| d.abs_diff(best.d) > 1);
     let second = others.map(|(_, &cost)| u32::from(cost)).min();
     second.is_some_and(|second| second * (100 - u32::from(percent)) <= u32::from(best.cost) * 100)
+}
+
+/// Whether the candidates beside the winner, as far as there are any, cost no more than the winner.
+fn flat(candidates: &[u16], best: Winner) -> bool {
+    let beside = best.d.saturating_sub(1)..candidates.len().min(best.d + 2);
+    candidates[beside].iter().all(|&cost| cost == best.cost)
 }
 
 /// Whether too few pixels of the window have a gradient along the row.

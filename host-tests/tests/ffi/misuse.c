@@ -130,7 +130,7 @@ static void configurations(void) {
     REFUSED(uniqueness_percent, 100, UNIQUENESS);
     REFUSED(uniqueness_percent, -2, UNIQUENESS);
     REFUSED(smoothing_radius, 9, SMOOTHING);
-    REFUSED(speckle_pixels, 32768, SPECKLE);
+    REFUSED(surface_step, 33, SURFACE_STEP);
     for (int32_t preset = STEREOPSIS_PRESET_DENSE; preset <= STEREOPSIS_PRESET_STRICT; preset++) {
         EXPECT(stereopsis_config_default(WIDTH, HEIGHT, 32, preset, &c), OK);
         EXPECT(stereopsis_start(s, &c), OK);

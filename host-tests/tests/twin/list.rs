@@ -63,12 +63,13 @@ fn random_checks(random: &mut Random) -> Checks {
     Checks {
         left_right_px: *random.pick(&[None, Some(0), Some(1), Some(2), Some(9), Some(255)]),
         uniqueness_percent: *random.pick(&[None, Some(0), Some(1), Some(5), Some(15), Some(60), Some(99)]),
+        refuse_flat: random.below(2) == 1,
         texture_gradient: *random.pick(&[0, 1, 2, 10, 80, 255]),
         texture_pixels: *random.pick(&[0, 1, 3, 20, 63, 81, 255]),
         refuse_ceiling: random.below(2) == 1,
         smoothing_radius: random.below(usize::from(Checks::MOST_SMOOTHING) + 1) as u8,
-        speckle_pixels: *random.pick(&[0, 1, 2, 5, 40, 100, 1000, Checks::MOST_SPECKLE]),
-        speckle_range: Disparity::from_raw(*random.pick(&[0, 1, 31, 32, 64, 1000])),
+        speckle_pixels: *random.pick(&[0, 1, 2, 5, 40, 100, 1000, u16::MAX]),
+        surface_step: Disparity::from_raw(*random.pick(&[0, 1, 2, 16, 31, 32])),
     }
 }
 
@@ -170,7 +171,7 @@ fn a_rendered_scene_equals_the_twin() {
 fn whole_patch<S: Method>() {
     let mut pipeline = pipeline::<S>();
     let same = Pattern::Shifted { most: 0, noise_grey: 0.0 }.pair(W as u32, 60, 1);
-    for speckle_pixels in [255, 256, 32_766, Checks::MOST_SPECKLE] {
+    for speckle_pixels in [255, 256, 32_767, 65_534, u16::MAX] {
         let checks = Checks { speckle_pixels, ..Checks::DENSE };
         let config = Config { checks, ..Config::new(W as u16, 60, 16) };
         compare(&mut pipeline, &config, &same).unwrap_or_else(|e| panic!("{e}"));
@@ -187,16 +188,17 @@ prop_compose! {
     fn any_checks()(
         left_right_px in proptest::option::of(0u8..6),
         uniqueness_percent in proptest::option::of(0u8..100),
+        refuse_flat: bool,
         texture_gradient in 0u8..60,
         texture_pixels in 0u8..90,
         refuse_ceiling: bool,
         smoothing_radius in 0..=Checks::MOST_SMOOTHING,
         speckle_pixels in 0u16..300,
-        speckle_range in (0u16..200).prop_map(Disparity::from_raw),
+        surface_step in (0u16..=32).prop_map(Disparity::from_raw),
     ) -> Checks {
         Checks {
-            left_right_px, uniqueness_percent, texture_gradient, texture_pixels, refuse_ceiling, smoothing_radius,
-            speckle_pixels, speckle_range,
+            left_right_px, uniqueness_percent, refuse_flat, texture_gradient, texture_pixels, refuse_ceiling, smoothing_radius,
+            speckle_pixels, surface_step,
         }
     }
 }

@@ -1,36 +1,40 @@
 //! The integers that window sums are made of.
 
-/// Disparities are worked on in whole groups of this many lanes.
-pub const STEP: usize = 16;
+use super::scratch::{bytes_mut, halves_mut};
 
-/// An unsigned value in a lane. `i16` is used over `u16` because x86-64's baseline has a minimum for it.
+/// A window's sum in a vector's lane, above as many bits as [`Lane::NUMBER_BITS`] for the lane's own number: where there
+/// are some, one comparison finds the least sum and its place.
 pub trait Lane: Copy + Ord + 'static {
-    /// Nothing.
-    const ZERO: Self;
-    /// More than any sum: the cost of a lane that is no candidate.
+    /// Bits below the sum.
+    const NUMBER_BITS: u32;
+    /// The largest number that [`Lane::INDICES`] has.
+    const NUMBERS: Self;
+    /// More than any sum with its number: what a lane counts that is no candidate.
     const MAX: Self;
     /// 256 lanes of zero, then 256 of [`Self::MAX`]: a slice of it masks the lanes from any one on.
     const MASKS: &'static [Self; 512];
-    /// A column's sum.
-    fn widen(column: u8) -> Self;
-    /// The numbers of the lanes, 0 to 255.
+    /// The numbers 0 to 255, each as far as a lane holds it: with its own number in a lane that has one, with all of
+    /// it in one that has none.
     const INDICES: &'static [Self; 256];
+    /// Words as lanes.
+    fn of_words(words: &mut [u32]) -> &mut [Self];
+    /// The sum with a column's sum added and another's taken off.
+    fn moved(self, enters: u8, leaves: u8) -> Self;
     /// [`Self::MAX`] where the two are not equal, else nothing.
     fn differs(self, other: Self) -> Self;
-    /// Sum modulo the lane's size.
-    fn add(self, other: Self) -> Self;
-    /// Difference modulo the lane's size.
-    fn sub(self, other: Self) -> Self;
     /// Bitwise or.
     fn or(self, other: Self) -> Self;
-    /// The value.
-    fn get(self) -> u16;
+    /// The sum.
+    fn cost(self) -> u32;
+    /// The number.
+    fn number(self) -> u32;
 }
 
 macro_rules! lane {
-    ($lane:ty) => {
+    ($lane:ty, $bits:literal, $of_words:expr) => {
         impl Lane for $lane {
-            const ZERO: Self = 0;
+            const NUMBER_BITS: u32 = $bits;
+            const NUMBERS: Self = if $bits > 0 { (1 << $bits) - 1 } else { Self::MAX };
             const MAX: Self = <$lane>::MAX;
             const MASKS: &'static [Self; 512] = &{
                 let mut masks = [0; 512];
@@ -41,35 +45,30 @@ macro_rules! lane {
                 }
                 masks
             };
-
-            #[inline(always)]
-            fn widen(column: u8) -> Self {
-                column as $lane
-            }
-
             const INDICES: &'static [Self; 256] = &{
                 let mut indices = [0; 256];
                 let mut i = 0;
                 while i < 256 {
-                    indices[i] = i as $lane;
+                    indices[i] = i as $lane & Self::NUMBERS;
                     i += 1;
                 }
                 indices
             };
 
             #[inline(always)]
+            fn of_words(words: &mut [u32]) -> &mut [Self] {
+                $of_words(words)
+            }
+
+            #[inline(always)]
+            fn moved(self, enters: u8, leaves: u8) -> Self {
+                let change = (enters as $lane).wrapping_sub(leaves as $lane);
+                self.wrapping_add(change << $bits)
+            }
+
+            #[inline(always)]
             fn differs(self, other: Self) -> Self {
                 if self != other { Self::MAX } else { 0 }
-            }
-
-            #[inline(always)]
-            fn add(self, other: Self) -> Self {
-                self.wrapping_add(other)
-            }
-
-            #[inline(always)]
-            fn sub(self, other: Self) -> Self {
-                self.wrapping_sub(other)
             }
 
             #[inline(always)]
@@ -78,12 +77,17 @@ macro_rules! lane {
             }
 
             #[inline(always)]
-            fn get(self) -> u16 {
-                self as u16
+            fn cost(self) -> u32 {
+                u32::from(self >> $bits)
+            }
+
+            #[inline(always)]
+            fn number(self) -> u32 {
+                u32::from(self) & ((1 << $bits) - 1)
             }
         }
     };
 }
 
-lane!(u8);
-lane!(i16);
+lane!(u8, 0, bytes_mut);
+lane!(u16, 6, halves_mut);

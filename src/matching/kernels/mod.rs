@@ -2,100 +2,151 @@
 //!
 //! In: the census rows that enter and leave the window. Out: a [`Winner`] for every pixel of the row.
 //!
-//! * `portable`: safe Rust over fixed lanes, which the compiler turns into what the target has. The reference.
+//! * `words`: plain 32-bit words, for cores without vectors.
+//! * `lanes`: safe Rust over fixed lanes, which the compiler turns into the vectors that the target has.
 //! * `x86`: the same code compiled for AVX2, chosen when the processor has it.
+//!
+//! A 32-bit core gets `words` alone, unless it is compiled with `--cfg stereopsis_vectors`, which says that its vectors
+//! are on (Helium on a Cortex-M55: `-C target-cpu=cortex-m55`); then it gets `lanes` alone. Larger processors have both.
 //!
 //! Every kernel gives the same bits. A new one is a variant of [`Kernel`] and an arm in [`Kernel::row`].
 
+#[cfg(not(stereopsis_vectors))]
+mod census;
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 mod lane;
-mod portable;
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+mod lanes;
+mod scratch;
+#[cfg(not(stereopsis_vectors))]
+mod words;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 pub use lane::Lane;
+pub(super) use scratch::halves_mut;
+pub use scratch::{Aligned, Columns, Scratch};
 
-use super::scheme::Scheme;
+#[cfg(not(stereopsis_vectors))]
+pub(super) use census::codes;
+
+use super::scheme::{Around, Scheme};
+
+/// Disparities are worked on in whole groups of this many.
+pub const STEP: usize = 16;
 
 /// Which implementation does the work.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Kernel {
-    /// Safe Rust for the compilation's own target.
-    Portable,
+    /// Plain 32-bit words.
+    #[cfg(not(stereopsis_vectors))]
+    Words,
+    /// Vectors of the compilation's own target.
+    #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+    Lanes,
     /// 256-bit vectors of x86-64.
     #[cfg(target_arch = "x86_64")]
     Avx2(x86::Avx2),
 }
 
 impl Kernel {
+    /// A kernel that every processor runs, and whose bytes are zero.
+    #[cfg(not(stereopsis_vectors))]
+    pub(super) const FIRST: Self = Self::Words;
+    #[cfg(stereopsis_vectors)]
+    pub(super) const FIRST: Self = Self::Lanes;
+
     /// The fastest that this processor runs.
     pub fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
         if let Some(avx2) = x86::Avx2::detect() {
             return Self::Avx2(avx2);
         }
-        Self::Portable
+        #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+        return Self::Lanes;
+        #[cfg(not(any(target_pointer_width = "64", stereopsis_vectors)))]
+        return Self::Words;
     }
 
     /// All that this processor runs.
     pub fn available() -> impl Iterator<Item = Self> {
         let best = Self::detect();
-        core::iter::once(Self::Portable).chain((best != Self::Portable).then_some(best))
+        let others = [
+            #[cfg(not(stereopsis_vectors))]
+            Self::Words,
+            #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+            Self::Lanes,
+        ];
+        others.into_iter().filter(move |&kernel| kernel != best).chain([best])
     }
 
     /// Its name in reports.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Portable => "portable",
+            #[cfg(not(stereopsis_vectors))]
+            Self::Words => "words",
+            #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+            Self::Lanes => "lanes",
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(_) => "avx2",
         }
     }
 
-    /// Moves the window to the next row; `found` gets the winners in order of the columns, some at a time with
-    /// the column of the first, unless the row is only gathered (`select` is `None`).
+    /// The census row of five lines.
     #[inline]
-    pub(super) fn row<S: Scheme>(
-        self,
-        work: RowWork<'_, S>,
-        select: Option<Select>,
-        found: impl FnMut(usize, &[Winner]),
-    ) {
+    pub(super) fn census<S: Scheme>(self, rows: &Around<'_>, out: &mut [u8]) {
+        #[cfg(not(stereopsis_vectors))]
+        if self == Self::Words && census::census::<S>(rows, out) {
+            return;
+        }
+        S::census(rows, out);
+    }
+
+    /// Moves the window to the next row; `found` gets the winners in order of the columns, some at a time,
+    /// unless the row is only gathered (`select` is `None`).
+    #[inline]
+    pub(super) fn row<S: Scheme>(self, work: RowWork<'_>, select: Option<Select>, found: impl FnMut(&[Winner])) {
         match self {
-            Self::Portable => portable::row::<S>(work, select, found),
+            #[cfg(not(stereopsis_vectors))]
+            Self::Words => words::row::<S>(work, select, found),
+            #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+            Self::Lanes => lanes::row::<S>(work, select, found),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(avx2) => avx2.row::<S>(work, select, found),
         }
     }
 }
 
-/// The census codes of one row in both images.
+/// The census codes of one row in both images, `width` of them each.
 #[derive(Clone, Copy)]
 pub(super) struct RowCodes<'a> {
-    /// The left image's, `width` of them.
     pub left: &'a [u8],
-    /// The right image's from right to left, moved by the smallest disparity, and its first column's repeated at the
-    /// end: the candidates of column x begin at `width - 1 - x` and follow in order of disparity.
     pub right: &'a [u8],
 }
 
 /// What a kernel works on.
-pub(super) struct RowWork<'a, S: Scheme> {
+///
+/// Candidate `d` of column `x` is the right image's column `x - min_disparity - d`. Where that lies left of the image,
+/// kernels gather the cost against its first column and do not select it.
+pub(super) struct RowWork<'a> {
     /// Pixels in the row.
     pub width: usize,
-    /// Lanes of a column: the disparities, rounded up to whole [`lane::STEP`]s.
+    /// Candidates of a column: the disparities, rounded up to whole [`STEP`]s.
     pub stride: usize,
+    /// The smallest disparity, px.
+    pub min_disparity: usize,
     /// The row that enters the window below, while there is one.
     pub enter: Option<RowCodes<'a>>,
     /// The row that leaves it above, once there is one.
     pub leave: Option<RowCodes<'a>>,
-    /// Matching costs summed over the window's height: `stride` sums for each column.
+    /// Matching costs summed over the window's height, where a word may stand: `stride` sums for each of [`OUTSIDE`]
+    /// columns that stay zero and for each of the image's.
     pub columns: &'a mut [u8],
-    /// Costs summed over the window: `stride` lanes, room to work in.
-    pub sums: &'a mut [S::Sum],
-    /// The same with lanes that are no candidates raised: `stride` lanes, room to work in.
-    pub masked: &'a mut [S::Sum],
+    /// Room to work in.
+    pub scratch: &'a mut [u32],
 }
 
 /// How winners are selected.
@@ -120,15 +171,66 @@ impl Select {
 /// The best disparity of a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 pub(super) struct Winner {
-    /// Candidates that were compared; 0: there is no winner, and nothing below means anything.
-    pub candidates: u16,
-    /// Disparity over the smallest one searched: the smallest with the least cost.
-    pub disparity: u16,
-    /// Its cost.
-    pub cost: u16,
-    /// Costs of the disparities one below and one above; where one is no candidate, both are `cost`.
-    pub beside: (u16, u16),
-    /// Least cost of the candidates that are over one px beside the winner; `u16::MAX` where there is none or it
+    /// The cost above 8 bits of the disparity.
+    key: u32,
+    /// The cost below in the low half, that above in the high one.
+    beside: u32,
+    /// Least cost of the candidates that are over one px beside the winner; `u32::MAX` where there is none or it
     /// was not asked for.
-    pub second: u16,
+    pub second: u32,
 }
+
+impl Winner {
+    /// A winner over the smallest disparity, and the costs one below and one above. Where one of these is no candidate,
+    /// it stands for the other; where none is, for the winner.
+    #[inline(always)]
+    pub fn new(cost: u32, disparity: u32, beside: (u32, u32), second: u32) -> Self {
+        Self { key: cost << 8 | disparity, beside: beside.0 | beside.1 << 16, second }
+    }
+
+    /// Its cost above 8 bits of [`Self::disparity`].
+    #[inline(always)]
+    pub fn key(&self) -> u32 {
+        self.key
+    }
+
+    /// Disparity over the smallest one searched: of those with the least cost the smallest. Means nothing in columns
+    /// without a candidate, as all the rest.
+    #[inline(always)]
+    pub fn disparity(&self) -> u32 {
+        self.key & 0xff
+    }
+
+    /// Its cost.
+    #[inline(always)]
+    pub fn cost(&self) -> u32 {
+        self.key >> 8
+    }
+
+    /// How much more the disparities one below and one above cost.
+    #[inline(always)]
+    pub fn rises(&self) -> (u32, u32) {
+        // The winner costs least: nothing wraps.
+        ((self.beside & 0xffff).wrapping_sub(self.cost()), (self.beside >> 16).wrapping_sub(self.cost()))
+    }
+}
+
+/// The costs beside a winner, for [`Winner::new`].
+#[inline(always)]
+fn beside(disparity: usize, candidates: usize, cost: impl Fn(usize) -> u32, least: u32) -> (u32, u32) {
+    let (has_below, has_above) = (disparity > 0, disparity + 1 < candidates);
+    if has_below & has_above {
+        return (cost(disparity - 1), cost(disparity + 1));
+    }
+    let one = if has_below {
+        cost(disparity - 1)
+    } else if has_above {
+        cost(1)
+    } else {
+        least
+    };
+    (one, one)
+}
+
+/// Columns of zero sums before the image's first, to stand for those outside.
+pub const OUTSIDE: usize = 5;

@@ -6,7 +6,6 @@ use clap::{Args, Parser, Subcommand};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use stereopsis::matching::{Checks, Config};
-use stereopsis::units::Disparity;
 use stereopsis_host::command_line::usage_line;
 use stereopsis_host::run::Method;
 
@@ -147,7 +146,7 @@ fn disparities(text: &str) -> Result<u16, String> {
 }
 
 fn min_disparity(text: &str) -> Result<u16, String> {
-    whole(text, 0, Disparity::MAX_PIXELS + 1 - Config::FEWEST_DISPARITIES)
+    whole(text, 0, Config::END - Config::FEWEST_DISPARITIES)
 }
 
 fn repeat(text: &str) -> Result<u16, String> {

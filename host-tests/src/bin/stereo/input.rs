@@ -6,7 +6,6 @@ use image::RgbImage;
 use stereopsis::camera::{CameraPair, LineSource};
 use stereopsis::imaging::GreyLines;
 use stereopsis::matching::{Checks, Config};
-use stereopsis::units::Disparity;
 use stereopsis_host::mock::MockCamera;
 
 /// Bytes of the longest raw line: RGB with 16 bits.
@@ -53,7 +52,7 @@ pub fn config(range: &RangeArgs, checks: Checks, width: u16, height: u16) -> Res
             Config::FEWEST_DISPARITIES
         )));
     }
-    let most = width.min(Disparity::MAX_PIXELS + 1) - disparities;
+    let most = width.min(Config::END) - disparities;
     if min_disparity > most {
         return Err(Failure::new(format!(
             "--min-disparity {min_disparity}: with --disparities {disparities} in images {width} pixels wide, at most \

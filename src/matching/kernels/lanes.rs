@@ -1,0 +1,253 @@
+//! The kernel in vectors. Lanes run over the disparities of one pixel: `N` of them in an array of fixed size, which
+//! the compiler keeps in the target's vector registers.
+//!
+//! A pixel's work, `d` over all lanes:
+//!
+//! ```text
+//! column x + r:  column[d] += hamming(enter.left, enter.right[d]) - hamming(leave.left, leave.right[d])
+//! window x:      sum[d]    += column[x + r][d] - column[x - r - 1][d]
+//! winner x:      least of sum[d] | mask[d], and the first lane that holds it
+//! ```
+//!
+//! The work is the same for every picture: no branch depends on a pixel.
+
+use super::lane::Lane;
+use super::scratch::bytes_mut;
+use super::{OUTSIDE, RowCodes, RowWork, STEP, Select, Winner, beside};
+use crate::matching::scheme::Scheme;
+
+/// Winners handed on at a time.
+const BATCH: usize = 32;
+
+/// [`super::Kernel::row`] for the compilation's own target.
+#[inline(always)]
+pub(in crate::matching) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select>, found: impl FnMut(&[Winner])) {
+    row_in_groups::<S, STEP, 0>(work, select, found);
+}
+
+/// A row whose lanes are worked on in groups of `N`. `STRIDE` is the number of lanes where it is known when the crate
+/// is compiled, which lets the compiler unroll the groups and keep them in registers; 0 where it is not.
+#[inline(always)]
+pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE: usize>(
+    work: RowWork<'_>,
+    select: Option<Select>,
+    mut found: impl FnMut(&[Winner]),
+) {
+    const { assert!(S::RADIUS_X < OUTSIDE) };
+    let RowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
+    let stride = if STRIDE > 0 { STRIDE } else { stride };
+    let Some((sums, codes)) = scratch.split_at_mut_checked(stride / 2) else { return };
+    let Some(sums) = S::Sum::of_words(sums).get_mut(..stride) else { return };
+    let codes = bytes_mut(codes);
+    let Some((new, old)) = codes.split_at_mut_checked(codes.len() / 2) else { return };
+    let enter = enter.map(|row| reversed(row, min_disparity, width + stride, new));
+    let leave = leave.map(|row| reversed(row, min_disparity, width + stride, old));
+    // Columns first, then windows: a processor that looks ahead finds more independent work in two short loops than in
+    // a long one.
+    if let Some(inside) = columns.get_mut(OUTSIDE * stride..) {
+        update_columns::<S, N>(width, stride, enter, leave, inside);
+    }
+    let Some(select) = select else { return };
+
+    for (sum, &start) in sums.iter_mut().zip(S::Sum::INDICES) {
+        *sum = if S::Sum::NUMBER_BITS > 0 { start } else { S::Sum::INDICES[0] };
+    }
+    let (outside, inside) = columns.split_at_checked(OUTSIDE * stride).unwrap_or_default();
+    let mut entering = inside.chunks_exact(stride).chain(outside.chunks_exact(stride));
+    let none = outside.get(..stride).unwrap_or(&[]);
+    for _ in 0..S::RADIUS_X {
+        slide::<S::Sum, N>(sums, entering.next().unwrap_or(none), none);
+    }
+    let leaving = columns.chunks_exact(stride).skip(OUTSIDE - 1 - S::RADIUS_X);
+    let mut batch = [Winner::default(); BATCH];
+    for ((x, leaves), enters) in (0..width).zip(leaving).zip(entering) {
+        let candidates = select.candidates(x);
+        let mask = S::Sum::MASKS.get(256 - candidates.min(256)..).and_then(|m| m.get(..stride)).unwrap_or(&[]);
+        let best = slide_to_least::<S::Sum, N>(sums, enters, leaves, mask);
+        let place = x % BATCH;
+        if let Some(slot) = batch.get_mut(place) {
+            *slot = winner::<S::Sum, N>(best, candidates, select.second, mask, sums);
+        }
+        if place + 1 == BATCH || x + 1 == width {
+            found(batch.get(..=place).unwrap_or(&[]));
+        }
+    }
+}
+
+/// The code of every column with the codes that it is compared with: those of column x begin at `width - 1 - x`.
+#[inline(always)]
+fn pixels(row: RowCodes<'_>, width: usize, stride: usize) -> impl Iterator<Item = (&u8, &[u8])> {
+    let right = row.right.get(..width + stride - 1).unwrap_or(&[]);
+    row.left.iter().zip(right.windows(stride).rev())
+}
+
+/// Moves the sums of all columns one row down.
+#[inline(always)]
+fn update_columns<S: Scheme, const N: usize>(
+    width: usize,
+    stride: usize,
+    enter: Option<RowCodes<'_>>,
+    leave: Option<RowCodes<'_>>,
+    columns: &mut [u8],
+) {
+    let columns = columns.chunks_exact_mut(stride);
+    // Groups are taken and put as values, so that the compiler need not ask whether the slices overlap.
+    match (enter.map(|row| pixels(row, width, stride)), leave.map(|row| pixels(row, width, stride))) {
+        (Some(enter), Some(leave)) => {
+            for (column, ((&new_code, new), (&old_code, old))) in columns.zip(enter.zip(leave)) {
+                let codes = new.as_chunks::<N>().0.iter().zip(old.as_chunks::<N>().0);
+                for (sums, (&new, &old)) in column.as_chunks_mut::<N>().0.iter_mut().zip(codes) {
+                    let mut group = *sums;
+                    for i in 0..N {
+                        let (more, less) = (S::hamming(new_code, new[i]), S::hamming(old_code, old[i]));
+                        group[i] = group[i].wrapping_add(more).wrapping_sub(less);
+                    }
+                    *sums = group;
+                }
+            }
+        }
+        (Some(enter), None) => {
+            for (column, (&code, candidates)) in columns.zip(enter) {
+                for (sums, &new) in column.as_chunks_mut::<N>().0.iter_mut().zip(candidates.as_chunks::<N>().0) {
+                    let mut group = *sums;
+                    for i in 0..N {
+                        group[i] = group[i].wrapping_add(S::hamming(code, new[i]));
+                    }
+                    *sums = group;
+                }
+            }
+        }
+        (None, Some(leave)) => {
+            for (column, (&code, candidates)) in columns.zip(leave) {
+                for (sums, &old) in column.as_chunks_mut::<N>().0.iter_mut().zip(candidates.as_chunks::<N>().0) {
+                    let mut group = *sums;
+                    for i in 0..N {
+                        group[i] = group[i].wrapping_sub(S::hamming(code, old[i]));
+                    }
+                    *sums = group;
+                }
+            }
+        }
+        (None, None) => {}
+    }
+}
+
+/// The row with its right codes turned around: the candidates of column x are `stride` of them from `width - 1 - x` on,
+/// in order of disparity. The first code is repeated to fill `room`.
+#[inline(always)]
+fn reversed<'a>(row: RowCodes<'a>, min_disparity: usize, room: usize, out: &'a mut [u8]) -> RowCodes<'a> {
+    let out = out.get_mut(..room).unwrap_or_default();
+    let inside = row.right.get(..row.right.len().saturating_sub(min_disparity)).unwrap_or(&[]);
+    let (reversed, repeated) = out.split_at_mut_checked(inside.len()).unwrap_or_default();
+    // Eight codes are turned around as one word.
+    let (last, words) = inside.as_rchunks::<8>();
+    let (out_words, out_last) = reversed.as_chunks_mut::<8>();
+    for (out, word) in out_words.iter_mut().zip(words.iter().rev()) {
+        *out = u64::from_le_bytes(*word).to_be_bytes();
+    }
+    for (out, code) in out_last.iter_mut().zip(last.iter().rev()) {
+        *out = *code;
+    }
+    repeated.fill(row.right.first().copied().unwrap_or(0));
+    RowCodes { left: row.left, right: out }
+}
+
+/// Moves the window sums one column on.
+#[inline(always)]
+fn slide<L: Lane, const N: usize>(sums: &mut [L], enters: &[u8], leaves: &[u8]) {
+    let columns = enters.as_chunks::<N>().0.iter().zip(leaves.as_chunks::<N>().0);
+    for (sums, (&enters, &leaves)) in sums.as_chunks_mut::<N>().0.iter_mut().zip(columns) {
+        let mut group = *sums;
+        for i in 0..N {
+            group[i] = group[i].moved(enters[i], leaves[i]);
+        }
+        *sums = group;
+    }
+}
+
+/// [`slide`], then the least cost and the first candidate that has it.
+#[inline(always)]
+fn slide_to_least<L: Lane, const N: usize>(sums: &mut [L], enters: &[u8], leaves: &[u8], mask: &[L]) -> (u32, usize) {
+    let room = if L::NUMBER_BITS > 0 { 1 << L::NUMBER_BITS } else { 256 };
+    let mut best = (u32::MAX, 0);
+    let columns = enters.chunks(room).zip(leaves.chunks(room));
+    for (n, ((sums, mask), (enters, leaves))) in sums.chunks_mut(room).zip(mask.chunks(room)).zip(columns).enumerate() {
+        let mut least = [L::MAX; N];
+        let columns = enters.as_chunks::<N>().0.iter().zip(leaves.as_chunks::<N>().0);
+        let lanes = sums.as_chunks_mut::<N>().0.iter_mut().zip(mask.as_chunks::<N>().0);
+        for ((sums, &mask), (&enters, &leaves)) in lanes.zip(columns) {
+            let mut group = *sums;
+            for i in 0..N {
+                group[i] = group[i].moved(enters[i], leaves[i]);
+                least[i] = least[i].min(group[i].or(mask[i]));
+            }
+            *sums = group;
+        }
+        let least = minimum(&least);
+        if L::NUMBER_BITS > 0 {
+            if least.cost() < best.0 {
+                best = (least.cost(), n * room + least.number() as usize);
+            }
+        } else {
+            best = (least.cost(), first::<L, N>(least, sums, mask));
+        }
+    }
+    best
+}
+
+/// The first candidate with the least sum, where lanes have no numbers.
+#[inline(always)]
+fn first<L: Lane, const N: usize>(least: L, sums: &[L], mask: &[L]) -> usize {
+    let mut first = [L::MAX; N];
+    let lanes = sums.as_chunks::<N>().0.iter().zip(mask.as_chunks::<N>().0);
+    for ((&lanes, &mask), &indices) in lanes.zip(L::INDICES.as_chunks::<N>().0) {
+        for i in 0..N {
+            first[i] = first[i].min(indices[i].or(lanes[i].or(mask[i]).differs(least)));
+        }
+    }
+    minimum(&first).cost() as usize
+}
+
+/// The least of all lanes.
+#[inline(always)]
+fn minimum<L: Lane, const N: usize>(lanes: &[L; N]) -> L {
+    lanes.iter().fold(L::MAX, |least, &lane| least.min(lane))
+}
+
+/// The best candidate with the costs beside it.
+#[inline(always)]
+fn winner<L: Lane, const N: usize>(
+    (cost, disparity): (u32, usize),
+    candidates: usize,
+    second: bool,
+    mask: &[L],
+    sums: &mut [L],
+) -> Winner {
+    let at = |candidate: usize| sums.get(candidate).map_or(0, |sum| sum.cost());
+    let beside = beside(disparity, candidates, at, cost);
+    let second = if second { best_of_the_rest::<L, N>(disparity, mask, sums) } else { u32::MAX };
+    Winner::new(cost, disparity as u32, beside, second)
+}
+
+/// The least cost of the candidates over one px beside the winner; `u32::MAX` where there is none.
+#[inline(always)]
+fn best_of_the_rest<L: Lane, const N: usize>(disparity: usize, mask: &[L], sums: &mut [L]) -> u32 {
+    // The winner and those beside it are raised while the others are looked at.
+    let first = disparity.saturating_sub(1);
+    let nearest = first..sums.len().min(disparity + 2);
+    let mut kept = [L::MAX; 3];
+    for (kept, sum) in kept.iter_mut().zip(sums.get_mut(nearest.clone()).unwrap_or_default()) {
+        *kept = core::mem::replace(sum, L::MAX);
+    }
+    let mut least = [L::MAX; N];
+    for (&lanes, &mask) in sums.as_chunks::<N>().0.iter().zip(mask.as_chunks::<N>().0) {
+        for i in 0..N {
+            least[i] = least[i].min(lanes[i].or(mask[i]));
+        }
+    }
+    for (kept, sum) in kept.iter().zip(sums.get_mut(nearest).unwrap_or_default()) {
+        *sum = *kept;
+    }
+    let least = minimum(&least);
+    if least < L::MAX { least.cost() } else { u32::MAX }
+}

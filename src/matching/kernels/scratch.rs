@@ -1,0 +1,74 @@
+//! Room to work in, for every kernel and every kind of lane.
+#![allow(unsafe_code)]
+
+use super::OUTSIDE;
+
+/// What a kernel works with while a row lasts. No kernel finds anything in it from the row before.
+///
+/// `2 W + 12 D` bytes: room for window sums of all disparities beside the codes of the right image's rows, in
+/// the order in which the kernel reads them.
+#[repr(C, align(8))]
+pub struct Scratch<const W: usize, const D: usize> {
+    sums: [[u32; D]; 3],
+    codes: [u16; W],
+}
+
+impl<const W: usize, const D: usize> Scratch<W, D> {
+    /// All zero.
+    pub const ZERO: Self = Self { sums: [[0; D]; 3], codes: [0; W] };
+
+    /// All of it as words.
+    pub fn words(&mut self) -> &mut [u32] {
+        let words = (size_of_val(&self.sums) + size_of_val(&self.codes)) / size_of::<u32>();
+        // SAFETY: the two fields are integers without a gap between them (`repr(C)`, the first a multiple of four bytes),
+        // any of whose values is a word, and `words` does not reach beyond the second one.
+        unsafe { core::slice::from_raw_parts_mut(core::ptr::from_mut(self).cast(), words) }
+    }
+}
+
+/// Sums of `W` columns with `D` disparities each, after [`OUTSIDE`] more that stay zero.
+#[repr(C, align(8))]
+pub struct Columns<const W: usize, const D: usize> {
+    outside: [[u8; D]; OUTSIDE],
+    inside: [[u8; D]; W],
+}
+
+impl<const W: usize, const D: usize> Columns<W, D> {
+    /// All zero.
+    pub const ZERO: Self = Self { outside: [[0; D]; OUTSIDE], inside: [[0; D]; W] };
+
+    /// All of it, one column after the other.
+    pub fn flat(&mut self) -> &mut [u8] {
+        let bytes = size_of_val(&self.outside) + size_of_val(&self.inside);
+        // SAFETY: the two fields are bytes without a gap between them (`repr(C)`), `bytes` of them in all.
+        unsafe { core::slice::from_raw_parts_mut(core::ptr::from_mut(self).cast(), bytes) }
+    }
+}
+
+/// Bytes where words of them can be read and written.
+#[repr(C, align(8))]
+pub struct Aligned<T>(pub T);
+
+/// Bytes as words, as far as they are whole ones at a word's place; all of them if the slice begins at such a place.
+pub(super) fn words_mut(bytes: &mut [u8]) -> &mut [u32] {
+    // SAFETY: every value of four bytes is a word and the other way round.
+    unsafe { bytes.align_to_mut().1 }
+}
+
+/// Words as bytes, in the order of memory.
+pub(super) fn bytes_mut(words: &mut [u32]) -> &mut [u8] {
+    // SAFETY: every value of a word is four bytes and the other way round.
+    unsafe { words.align_to_mut().1 }
+}
+
+/// Words as half-words, in the order of memory.
+pub(in crate::matching) fn halves_mut(words: &mut [u32]) -> &mut [u16] {
+    // SAFETY: every value of a word is two half-words and the other way round.
+    unsafe { words.align_to_mut().1 }
+}
+
+/// [`words_mut`], to read.
+pub(super) fn words_of(bytes: &[u8]) -> &[u32] {
+    // SAFETY: every value of four bytes is a word.
+    unsafe { bytes.align_to().1 }
+}

@@ -1,0 +1,308 @@
+//! The kernel in 32-bit words, for cores without vectors: four candidates' costs in the bytes of a word, two
+//! candidates' window sums in its halves. Safe Rust; the arithmetic is that of plain words.
+//!
+//! ```text
+//! right codes    one word for each column, of its code and those of the three columns left of it: the candidates
+//!                4k .. 4k + 3 of column x are the word of column x - 4k
+//! column x + r   four sums a word. Both rows are counted at once: the bits in which the entering codes differ, and those
+//!                in which the leaving ones are equal, so that the sum never goes below zero; then the constant is taken off
+//! window x       two sums a word: the even candidates' and the odd ones'. A sum stands above the candidate's number,
+//!                so that one comparison finds the least sum, and of equal ones the first
+//! ```
+//!
+//! The work is the same for every picture: no branch depends on a pixel.
+
+use super::scratch::words_mut;
+use super::{OUTSIDE, RowCodes, RowWork, Select, Winner, beside};
+use crate::matching::scheme::Scheme;
+
+/// Winners handed on at a time.
+const BATCH: usize = 16;
+
+/// The low byte of each half.
+const LOW: u32 = 0x00ff_00ff;
+/// The highest bit of each half, which no key has.
+const TOP: u32 = 0x8000_8000;
+/// One in every byte.
+const BYTES: u32 = 0x0101_0101;
+
+/// A key is a sum above this many bits of its word's number.
+const NUMBER_BITS: u32 = 5;
+/// Words whose numbers tell them apart: 128 candidates.
+const GROUP: usize = 1 << NUMBER_BITS;
+
+/// The even and the odd candidates' keys of four words of columns.
+type Keys = [[u32; 2]; 4];
+
+/// [`super::Kernel::row`] in words.
+#[inline(always)]
+pub(in crate::matching) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select>, mut found: impl FnMut(&[Winner])) {
+    const { assert!(S::BITS * (2 * S::RADIUS_X + 1) * (2 * S::RADIUS_Y + 1) < 1 << (15 - NUMBER_BITS)) };
+    const { assert!(S::RADIUS_X < OUTSIDE) };
+    let RowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
+    let groups = stride / 16;
+    let Some((sums, codes)) = scratch.split_at_mut_checked(stride / 2) else { return };
+    let columns = words_mut(columns).as_chunks_mut::<4>().0;
+    if let Some(inside) = columns.get_mut(OUTSIDE * groups..) {
+        update_columns::<S>(width, groups, min_disparity, [enter, leave], codes, inside);
+    }
+    let Some(select) = select else { return };
+
+    let sums = sums.as_chunks_mut::<2>().0.as_chunks_mut::<4>().0;
+    number(sums);
+    let (outside, inside) = columns.split_at_checked(OUTSIDE * groups).unwrap_or_default();
+    let mut entering = inside.chunks_exact(groups).chain(outside.chunks_exact(groups));
+    let none = outside.get(..groups).unwrap_or(&[]);
+    for _ in 0..S::RADIUS_X {
+        slide(sums, entering.next().unwrap_or(none), none);
+    }
+    let leaving = columns.chunks_exact(groups).skip(OUTSIDE - 1 - S::RADIUS_X);
+    let mut batch = [Winner::default(); BATCH];
+    for ((x, leaves), enters) in (0..width).zip(leaving).zip(entering) {
+        let candidates = select.candidates(x);
+        let best = if candidates == stride && groups <= GROUP / 4 {
+            best_of(slide_to_least(sums, enters, leaves), 0)
+        } else {
+            slide_to_best(sums, enters, leaves, candidates)
+        };
+        let place = x % BATCH;
+        if let Some(slot) = batch.get_mut(place) {
+            *slot = winner(best, candidates, select.second, sums);
+        }
+        if place + 1 == BATCH || x + 1 == width {
+            found(batch.get(..=place).unwrap_or(&[]));
+        }
+    }
+}
+
+/// Moves the sums of all columns one row down.
+#[inline(always)]
+fn update_columns<S: Scheme>(
+    width: usize,
+    groups: usize,
+    min_disparity: usize,
+    [enter, leave]: [Option<RowCodes<'_>>; 2],
+    codes: &mut [u32],
+    columns: &mut [[u32; 4]],
+) {
+    // A row that is not there is one whose codes are all zero, in both images.
+    let Some(any) = enter.or(leave) else { return };
+    let nothing = RowCodes { left: any.left, right: &[] };
+    let bytes = |row: Option<RowCodes<'_>>| if row.is_some() { BYTES } else { 0 };
+    let (new_bytes, old_bytes) = (bytes(enter), bytes(leave));
+    let (enter, leave) = (enter.unwrap_or(nothing), leave.unwrap_or(nothing));
+    // As many columns at a time as there is room for their words in two rows.
+    let Some((new, old)) = codes.split_at_mut_checked(codes.len() / 2) else { return };
+    let stride = 16 * groups;
+    let block = new.len().saturating_sub(stride).max(1);
+    for first in (0..width).step_by(block) {
+        let begin = first.wrapping_sub(min_disparity + stride - 4);
+        spread(enter.right, begin, new);
+        spread(leave.right, begin, old);
+        let end = width.min(first + block);
+        for group in 0..groups {
+            // Left of here no window has one of these candidates.
+            let x = first.max((16 * group + min_disparity).saturating_sub(S::RADIUS_X));
+            let place = stride - 16 * (group + 1) + x - first;
+            let words = new.get(place..).unwrap_or(&[]).windows(16).zip(old.get(place..).unwrap_or(&[]).windows(16));
+            let codes = enter.left.get(x..end).unwrap_or(&[]).iter().zip(leave.left.get(x..end).unwrap_or(&[]));
+            let columns = columns.get_mut(x * groups + group..).unwrap_or_default().iter_mut().step_by(groups);
+            for (sums, ((new, old), (&new_code, &old_code))) in columns.zip(words.zip(codes)) {
+                let (Some(new), Some(old)) = (new.first_chunk::<16>(), old.first_chunk::<16>()) else { return };
+                let (new_code, old_code) = (u32::from(new_code) * new_bytes, !(u32::from(old_code) * old_bytes));
+                for k in 0..4 {
+                    let changed = S::bits_of_two(new_code ^ new[12 - 4 * k], old_code ^ old[12 - 4 * k]);
+                    sums[k] = sums[k].wrapping_add(changed).wrapping_sub(S::BITS as u32 * BYTES);
+                }
+            }
+        }
+    }
+}
+
+/// Writes the words of the columns from `begin` on, which may lie left of the image: there the first code is repeated.
+#[inline(always)]
+fn spread(codes: &[u8], begin: usize, words: &mut [u32]) {
+    let Some(&first) = codes.first() else {
+        words.fill(0);
+        return;
+    };
+    let before = (begin as isize).min(0).unsigned_abs().min(words.len());
+    let (outside, inside) = words.split_at_mut_checked(before).unwrap_or_default();
+    outside.fill(u32::from(first) * BYTES);
+    let begin = (begin as isize).max(0) as usize;
+    let mut word = 0;
+    for k in (1..4).rev() {
+        let code = codes.get(begin.saturating_sub(k)).copied().unwrap_or(0);
+        word = word << 8 | u32::from(code);
+    }
+    for (out, &code) in inside.iter_mut().zip(codes.get(begin..).unwrap_or(&[])) {
+        word = word << 8 | u32::from(code);
+        *out = word;
+    }
+}
+
+/// No sums, and every word's number.
+#[inline(always)]
+fn number(sums: &mut [Keys]) {
+    for (n, pair) in sums.as_flattened_mut().iter_mut().enumerate() {
+        *pair = [(n % GROUP) as u32 * 0x0001_0001; 2];
+    }
+}
+
+/// Adds a column that enters the window to the sums and takes one that leaves it.
+#[inline(always)]
+fn moved(sums: &mut [u32; 2], enters: u32, leaves: u32) {
+    // Differences of whole words, borrows and all: what one half borrows from the next is gone once the sums are whole
+    // again, for no sum is below zero.
+    let even = (enters & LOW).wrapping_sub(leaves & LOW);
+    let odd = enters.wrapping_sub(leaves).wrapping_sub(even) as i32;
+    sums[0] = sums[0].wrapping_add(even << NUMBER_BITS);
+    sums[1] = sums[1].wrapping_add((odd >> (8 - NUMBER_BITS)) as u32);
+}
+
+#[inline(never)]
+fn slide(sums: &mut [Keys], enters: &[[u32; 4]], leaves: &[[u32; 4]]) {
+    for (sums, (enters, leaves)) in sums.iter_mut().zip(enters.iter().zip(leaves)) {
+        for i in 0..4 {
+            moved(&mut sums[i], enters[i], leaves[i]);
+        }
+    }
+}
+
+/// The least keys of the even and of the odd candidates, over [`TOP`].
+type Least = [u32; 2];
+
+/// More than any key.
+const MOST: Least = [u32::MAX; 2];
+
+/// The lesser of two pairs of keys, the first and the result over [`TOP`].
+#[inline(always)]
+fn lesser(least: u32, keys: u32) -> u32 {
+    let above = least.wrapping_sub(keys);
+    let over = above & TOP;
+    // All bits below the top one where the key is less.
+    least - (above & (over - (over >> 15)))
+}
+
+/// A cost and the first candidate that has it.
+type Best = (u32, usize);
+
+/// The best of 128 candidates from `first` on.
+#[inline(always)]
+fn best_of(least: Least, first: usize) -> Best {
+    let key = |half: u32, i: u32| (half & 0x7fff) << 2 | i;
+    let low = key(least[0], 0).min(key(least[1], 1));
+    let best = low.min(key(least[0] >> 16, 2).min(key(least[1] >> 16, 3)));
+    (best >> (NUMBER_BITS + 2), first + (best & 127) as usize)
+}
+
+/// [`slide`] and the least keys of up to 128 candidates.
+#[inline(always)]
+fn slide_to_least(sums: &mut [Keys], enters: &[[u32; 4]], leaves: &[[u32; 4]]) -> Least {
+    let mut least = MOST;
+    for (sums, (enters, leaves)) in sums.iter_mut().zip(enters.iter().zip(leaves)) {
+        for i in 0..4 {
+            moved(&mut sums[i], enters[i], leaves[i]);
+            least = [lesser(least[0], sums[i][0]), lesser(least[1], sums[i][1])];
+        }
+    }
+    least
+}
+
+/// [`slide`] and the best of the first `candidates`.
+#[inline(never)]
+fn slide_to_best(sums: &mut [Keys], enters: &[[u32; 4]], leaves: &[[u32; 4]], candidates: usize) -> Best {
+    let whole = candidates / 16;
+    let (part, rest) = sums.split_at_mut_checked(whole).unwrap_or_default();
+    let (enters, enters_rest) = enters.split_at_checked(whole).unwrap_or_default();
+    let (leaves, leaves_rest) = leaves.split_at_checked(whole).unwrap_or_default();
+    let mut best = (u32::MAX, 0);
+    let parts = part.chunks_mut(GROUP / 4).zip(enters.chunks(GROUP / 4).zip(leaves.chunks(GROUP / 4)));
+    for (n, (sums, (enters, leaves))) in parts.enumerate() {
+        best = better(best, best_of(slide_to_least(sums, enters, leaves), n * 4 * GROUP));
+    }
+    if rest.is_empty() {
+        return best;
+    }
+    slide(rest, enters_rest, leaves_rest);
+    better(best, best_of_group(rest, candidates % 16, whole * 16 / 128 * 128))
+}
+
+/// The best of the first candidates of a group.
+#[inline(always)]
+fn best_of_group(sums: &[Keys], candidates: usize, first: usize) -> Best {
+    let mut least = MOST;
+    let mut left = candidates;
+    for keys in sums.first().into_iter().flatten() {
+        let mask = MASKS[left.min(4)];
+        least = [lesser(least[0], keys[0] | mask[0]), lesser(least[1], keys[1] | mask[1])];
+        left = left.saturating_sub(4);
+    }
+    best_of(least, first)
+}
+
+/// The better of two, the first if they cost the same.
+#[inline(always)]
+fn better(first: Best, second: Best) -> Best {
+    if second.0 < first.0 { second } else { first }
+}
+
+/// What is laid over the keys of a word of which the first none to four are candidates.
+const MASKS: [[u32; 2]; 5] = {
+    let none = 0x7fff;
+    let (low, high) = (none, none << 16);
+    [[low | high, low | high], [high, low | high], [high, high], [0, high], [0, 0]]
+};
+
+/// Where the sum of a candidate is: its word and the shift down to it.
+#[inline(always)]
+fn place(candidate: usize) -> ([usize; 3], u32) {
+    ([candidate / 16, candidate / 4 % 4, candidate % 2], (candidate as u32 & 2) * 8)
+}
+
+/// The cost of a candidate.
+#[inline(always)]
+fn cost(sums: &[Keys], candidate: usize) -> u32 {
+    let ([group, pair, parity], shift) = place(candidate);
+    let word = sums.get(group).map_or(0, |keys| keys[pair][parity]);
+    (word >> shift & 0x7fff) >> NUMBER_BITS
+}
+
+/// The best candidate with the costs beside it.
+#[inline(always)]
+fn winner((least, disparity): Best, candidates: usize, second: bool, sums: &mut [Keys]) -> Winner {
+    let beside = beside(disparity, candidates, |candidate| cost(sums, candidate), least);
+    let second = if second { best_of_the_rest(disparity, candidates, sums) } else { u32::MAX };
+    Winner::new(least, disparity as u32, beside, second)
+}
+
+/// The least cost of the candidates over one px beside the winner; `u32::MAX` where there is none.
+#[inline(never)]
+fn best_of_the_rest(disparity: usize, candidates: usize, sums: &mut [Keys]) -> u32 {
+    let nearest = disparity.saturating_sub(1)..disparity + 2;
+    let mut kept = [0; 3];
+    let raised = |candidate: usize| place(candidate);
+    for (kept, candidate) in kept.iter_mut().zip(nearest.clone()) {
+        let ([group, pair, parity], shift) = raised(candidate);
+        if let Some(keys) = sums.get_mut(group) {
+            let word = &mut keys[pair][parity];
+            *kept = *word & 0x7fff << shift;
+            *word |= 0x7fff << shift;
+        }
+    }
+    let whole = candidates / 16;
+    let mut best = (u32::MAX, 0);
+    for group in sums.iter().take(whole) {
+        best = better(best, best_of_group(core::slice::from_ref(group), 16, 0));
+    }
+    let least = better(best, best_of_group(sums.get(whole..).unwrap_or(&[]), candidates % 16, 0)).0;
+    for (kept, candidate) in kept.iter().zip(nearest) {
+        let ([group, pair, parity], shift) = raised(candidate);
+        if let Some(keys) = sums.get_mut(group) {
+            let word = &mut keys[pair][parity];
+            *word = *word & !(0x7fff << shift) | kept;
+        }
+    }
+    // No sum reaches the number that stands for none.
+    if least < 0x7fff >> NUMBER_BITS { least } else { u32::MAX }
+}

@@ -31,7 +31,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_FAST_BYTES(width, disparities) \
-  ((size_t)192 + (size_t)74 * (width) + (size_t)2 * (disparities) + \
+  ((size_t)192 + (size_t)72 * (width) + (size_t)17 * (disparities) + \
    (size_t)1 * (width) * (disparities))
 
 /**
@@ -39,7 +39,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_BLOCK_BYTES(width, disparities) \
-  ((size_t)192 + (size_t)78 * (width) + (size_t)4 * (disparities) + \
+  ((size_t)192 + (size_t)76 * (width) + (size_t)17 * (disparities) + \
    (size_t)1 * (width) * (disparities))
 
 
@@ -198,7 +198,7 @@ enum stereopsis_status
    */
   STEREOPSIS_STATUS_DISPARITIES = -16,
   /**
-   * Configuration: the search ends beyond 2047 px.
+   * Configuration: the search ends beyond 2046 px.
    */
   STEREOPSIS_STATUS_MIN_DISPARITY = -17,
   /**
@@ -214,9 +214,9 @@ enum stereopsis_status
    */
   STEREOPSIS_STATUS_SMOOTHING = -20,
   /**
-   * Configuration: the speckle size is over 32767 pixels.
+   * Configuration: the step of a surface is over 32.
    */
-  STEREOPSIS_STATUS_SPECKLE = -21,
+  STEREOPSIS_STATUS_SURFACE_STEP = -21,
   /**
    * Rig: a number is infinite or not a number.
    */
@@ -296,17 +296,21 @@ typedef struct stereopsis_config {
    */
   uint8_t refuse_ceiling;
   /**
-   * Answers are averaged along the line with this many pairs of neighbours, 0 to 8.
+   * Whether a winner is refused that costs as much as both its neighbours; 0 is no.
+   */
+  uint8_t refuse_flat;
+  /**
+   * Answers are averaged along the line with this many pairs of neighbours of their surface, 0 to 8.
    */
   uint8_t smoothing_radius;
   /**
-   * Speckle: patches of fewer pixels are dropped, 0 to 32767; 0 is none.
+   * Neighbours are of one surface when they differ by at most this, in 1/32 px, 0 to 32.
+   */
+  uint16_t surface_step;
+  /**
+   * Speckle: answers with fewer of their surface on a cross around them are dropped; 0 is none.
    */
   uint16_t speckle_pixels;
-  /**
-   * Speckle: neighbours belong to one patch when they differ by at most this, in 1/32 px.
-   */
-  uint16_t speckle_range;
 } stereopsis_config;
 
 /**

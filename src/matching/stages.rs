@@ -153,7 +153,9 @@ impl<S: Scheme> Stages<'_, S> {
         let width = self.width;
         let flags = slot_mut(self.flags, row % BAND, width);
         let finished = slot_mut(self.finished, row % HISTORY, width);
-        finished.copy_from_slice(slot(self.band, row % BAND, width));
+        for (finished, answer) in finished.iter_mut().zip(slot(self.band, row % BAND, width)) {
+            *finished = *answer;
+        }
         speckle::judge(row, self.config.checks.speckle_pixels, self.support, self.history, flags, finished);
     }
 }

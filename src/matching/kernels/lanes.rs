@@ -35,7 +35,8 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
 ) {
     const { assert!(S::RADIUS_X < OUTSIDE) };
     let RowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
-    let stride = if STRIDE > 0 { STRIDE } else { stride };
+    // At least one group, for the compiler to see that no column is empty.
+    let stride = if STRIDE > 0 { STRIDE } else { stride.max(STEP) };
     let Some((sums, codes)) = scratch.split_at_mut_checked(stride / 2) else { return };
     let Some(sums) = S::Sum::of_words(sums).get_mut(..stride) else { return };
     let codes = bytes_mut(codes);

@@ -56,6 +56,7 @@ pub(super) fn words_mut(bytes: &mut [u8]) -> &mut [u32] {
 }
 
 /// Words as bytes, in the order of memory.
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 pub(super) fn bytes_mut(words: &mut [u32]) -> &mut [u8] {
     // SAFETY: every value of a word is four bytes and the other way round.
     unsafe { words.align_to_mut().1 }

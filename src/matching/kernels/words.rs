@@ -40,7 +40,8 @@ pub(in crate::matching) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Sele
     const { assert!(S::BITS * (2 * S::RADIUS_X + 1) * (2 * S::RADIUS_Y + 1) < 1 << (15 - NUMBER_BITS)) };
     const { assert!(S::RADIUS_X < OUTSIDE) };
     let RowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
-    let groups = stride / 16;
+    // At least one, for the compiler to see that no column is empty.
+    let groups = (stride / 16).max(1);
     let Some((sums, codes)) = scratch.split_at_mut_checked(stride / 2) else { return };
     let columns = words_mut(columns).as_chunks_mut::<4>().0;
     if let Some(inside) = columns.get_mut(OUTSIDE * groups..) {

@@ -13,6 +13,8 @@
 
 #[cfg(not(stereopsis_vectors))]
 mod census;
+#[cfg(not(stereopsis_vectors))]
+mod keys;
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 mod lane;
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]

@@ -54,27 +54,40 @@ pub fn census_full24(rows: &[&[u8]; 5], out: &mut [u32]) {
     census(rows, &FULL24, out);
 }
 
+/// Columns worked on at a time, as lanes.
+const LANES: usize = 16;
+
 #[inline(always)]
-fn census<C>(rows: &[&[u8]; 5], neighbours: &[Neighbour], out: &mut [C])
+fn census<C, const BITS: usize>(rows: &[&[u8]; 5], neighbours: &[Neighbour; BITS], out: &mut [C])
 where
     C: Copy + From<bool> + BitOrAssign + Shl<u32, Output = C>,
 {
     let width = rows.iter().fold(out.len(), |w, row| w.min(row.len()));
     let Some(out) = out.get_mut(..width) else { return };
-    let centre = rows[2];
-    out.fill(C::from(false));
-    // The inner columns bit by bit: each pass is one comparison a pixel, without a branch, on whole registers.
     let inner = width.saturating_sub(2 * REACH);
-    for (bit, &(row, column)) in (0u32..).zip(neighbours) {
-        let beside = rows.get(row).and_then(|r| r.get(column..)).unwrap_or(&[]);
-        let codes = out.iter_mut().skip(REACH).take(inner);
-        for ((code, n), c) in codes.zip(beside).zip(centre.iter().skip(REACH)) {
-            *code |= C::from(n < c) << bit;
+    // The inner columns in groups, all bits of a group at once: comparisons without a branch, on whole registers. The
+    // last group is moved back to end with the line.
+    let begins = (0..inner / LANES).map(|group| group * LANES).chain(inner.checked_sub(LANES));
+    for begin in begins {
+        let group = |row: usize, column: usize| {
+            let pixels = rows.get(row).and_then(|r| r.get(begin + column..)).and_then(|r| r.first_chunk::<LANES>());
+            pixels.copied().unwrap_or([0; LANES])
+        };
+        let centre = group(2, REACH);
+        let mut codes = [C::from(false); LANES];
+        for (bit, &(row, column)) in (0u32..).zip(neighbours) {
+            let beside = group(row, column);
+            for i in 0..LANES {
+                codes[i] |= C::from(beside[i] < centre[i]) << bit;
+            }
+        }
+        if let Some(out) = out.get_mut(begin + REACH..).and_then(|out| out.first_chunk_mut::<LANES>()) {
+            *out = codes;
         }
     }
-    // The two columns at each side pixel by pixel.
-    let right = width.saturating_sub(REACH).max(REACH.min(width));
-    for x in (0..REACH.min(width)).chain(right..width) {
+    // The two columns at each side pixel by pixel, and all of a line that is shorter than a group.
+    let grouped = if inner < LANES { REACH..REACH } else { REACH..width - REACH };
+    for x in (0..grouped.start.min(width)).chain(grouped.end.min(width)..width) {
         let pixel = |row: usize, column: usize| {
             let x = (x + column).saturating_sub(REACH).min(width - 1);
             rows.get(row).and_then(|r| r.get(x)).copied().unwrap_or(0)

@@ -36,7 +36,8 @@ impl Consistency<'_> {
     pub(super) fn mismatch(&self, x: usize, disparity: u8, tolerance: u8) -> PixelFlags {
         let partner = x.wrapping_sub(self.min_disparity + usize::from(disparity));
         let kept = self.right.get(partner).map_or(disparity, |&kept| kept as u8);
-        PixelFlags::MISMATCH.when(kept.abs_diff(disparity) > tolerance)
+        let apart = u32::from(kept).wrapping_sub(u32::from(disparity)).wrapping_add(u32::from(tolerance));
+        PixelFlags::MISMATCH.when(apart > 2 * u32::from(tolerance))
     }
 }
 

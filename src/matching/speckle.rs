@@ -47,25 +47,28 @@ pub(super) fn end(history: &mut [u8]) {
     }
 }
 
-/// Judges row `y`, after the rows that it waits for: drops the answers with less support than `pixels`.
+/// Judges row `y`, after the rows that it waits for: what is finished are the `answers` without those that have less
+/// support than `pixels`.
 pub(super) fn judge(
     y: usize,
     pixels: u16,
     support: &[u16],
     history: &[u8],
+    answers: &[Disparity],
     flags: &mut [PixelFlags],
     finished: &mut [Disparity],
 ) {
     let width = history.len();
     // Where the row is that each history ends in.
     let rows = ROWS_ON.map(|rows| (y + usize::from(rows)) % BAND * width);
-    for (x, ((flags, answer), history)) in flags.iter_mut().zip(finished).zip(history).enumerate() {
+    let pixels_of_row = finished.iter_mut().zip(answers).zip(flags).zip(history);
+    for (x, (((finished, answer), flags), history)) in pixels_of_row.enumerate() {
         let row = rows[usize::from(*history) % rows.len()];
         let count = support.get(row + x).copied().unwrap_or(u16::MAX);
         let refused = count < pixels;
         // What has no answer is no speckle.
         *flags = flags.union(PixelFlags::SPECKLE.when(refused & answer.is_some()));
-        *answer = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(refused)));
+        *finished = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(refused)));
     }
 }
 

@@ -104,12 +104,12 @@ impl<S: Scheme> Stages<'_, S> {
         };
         let place = row.unwrap_or(0) % BAND;
         let (answers, row_flags) = (slot_mut(self.band, place, width), slot_mut(self.flags, place, width));
-        let mut pixels = answers.iter_mut().zip(row_flags).enumerate();
+        let mut pixels = answers.iter_mut().zip(row_flags);
         let mut offers = self.consistency.offers();
         self.kernel.row::<S>(work, select, |winners| {
-            for (winner, (x, (answer, flags))) in winners.iter().zip(&mut pixels) {
+            for (winner, (answer, flags)) in winners.iter().zip(&mut pixels) {
                 *answer = refine(winner, min_disparity);
-                *flags = if x < min_disparity { PixelFlags::OUTSIDE } else { first_flags(winner, config) };
+                *flags = first_flags(winner, config);
                 offers.next(winner);
             }
         });
@@ -136,11 +136,13 @@ impl<S: Scheme> Stages<'_, S> {
         if checks.texture_pixels > 0 {
             self.texture.mark::<S>(u16::from(checks.texture_pixels), flags);
         }
+        // Where there is no candidate there is no winner to check.
+        for flags in flags.iter_mut().take(usize::from(self.config.min_disparity)) {
+            *flags = PixelFlags::OUTSIDE;
+        }
         let pixels = answers.iter_mut().zip(flags).zip(lengths.iter_mut().zip(sums));
         for ((x, ((answer, flags), (length, sum))), left) in pixels.enumerate().zip(self.consistency.left.iter()) {
-            let found = flags.union(self.consistency.mismatch(x, *left, tolerance));
-            // Where there is no candidate there is no winner to check.
-            *flags = if flags.contains(PixelFlags::OUTSIDE) { PixelFlags::OUTSIDE } else { found };
+            *flags = flags.union(self.consistency.mismatch(x, *left, tolerance));
             let refused = 0u16.wrapping_sub(u16::from(flags.intersects(refused)));
             *answer = Disparity::from_raw(answer.raw() | refused);
             (*length, *sum) = runs.next(*answer);
@@ -153,10 +155,8 @@ impl<S: Scheme> Stages<'_, S> {
         let width = self.width;
         let flags = slot_mut(self.flags, row % BAND, width);
         let finished = slot_mut(self.finished, row % HISTORY, width);
-        for (finished, answer) in finished.iter_mut().zip(slot(self.band, row % BAND, width)) {
-            *finished = *answer;
-        }
-        speckle::judge(row, self.config.checks.speckle_pixels, self.support, self.history, flags, finished);
+        let answers = slot(self.band, row % BAND, width);
+        speckle::judge(row, self.config.checks.speckle_pixels, self.support, self.history, answers, flags, finished);
     }
 }
 

@@ -22,7 +22,11 @@ const BATCH: usize = 32;
 /// [`super::Kernel::row`] for the compilation's own target.
 #[inline(always)]
 pub(in crate::matching) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select>, found: impl FnMut(&[Winner])) {
-    row_in_groups::<S, STEP, 0>(work, select, found);
+    match work.stride {
+        32 => row_in_groups::<S, STEP, 32>(work, select, found),
+        64 => row_in_groups::<S, STEP, 64>(work, select, found),
+        _ => row_in_groups::<S, STEP, 0>(work, select, found),
+    }
 }
 
 /// A row whose lanes are worked on in groups of `N`. `STRIDE` is the number of lanes where it is known when the crate

@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     fn refined(below: u32, cost: u32, above: u32) -> u16 {
-        refine(&Winner::new(cost, 10, (below, above), u32::MAX), 0).raw()
+        refine(&Winner::new(cost, 10, (below, above)), 0).raw()
     }
 
     #[test]

@@ -13,7 +13,7 @@
 
 use super::lane::Lane;
 use super::scratch::bytes_mut;
-use super::{OUTSIDE, RowCodes, RowWork, STEP, Select, Winner, beside};
+use super::{OUTSIDE, RowCodes, RowWork, STEP, Select, Winner, beside_at_the_end};
 use crate::matching::scheme::Scheme;
 
 /// Winners handed on at a time.
@@ -64,18 +64,20 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
         slide::<S::Sum, N>(sums, entering.next().unwrap_or(none), none);
     }
     let leaving = columns.chunks_exact(stride).skip(OUTSIDE - 1 - S::RADIUS_X);
+    let mut pairs = (0..width).zip(leaving).zip(entering);
     let mut batch = [Winner::default(); BATCH];
-    for ((x, leaves), enters) in (0..width).zip(leaving).zip(entering) {
-        let candidates = select.candidates(x);
-        let mask = S::Sum::MASKS.get(256 - candidates.min(256)..).and_then(|m| m.get(..stride)).unwrap_or(&[]);
-        let best = slide_to_least::<S::Sum, N>(sums, enters, leaves, mask);
-        let place = x % BATCH;
-        if let Some(slot) = batch.get_mut(place) {
-            *slot = winner::<S::Sum, N>(best, candidates, select.second, mask, sums);
+    for _ in 0..width.div_ceil(BATCH) {
+        let mut count = 0;
+        for (slot, ((x, leaves), enters)) in batch.iter_mut().zip(&mut pairs) {
+            let candidates = select.candidates(x);
+            let mask = S::Sum::MASKS.get(256 - candidates.min(256)..).and_then(|m| m.get(..stride)).unwrap_or(&[]);
+            *slot = winner::<S::Sum>(slide_to_least::<S::Sum, N>(sums, enters, leaves, mask), candidates, sums);
+            if select.second {
+                slot.second = best_of_the_rest::<S::Sum, N>(slot.disparity() as usize, mask, sums);
+            }
+            count += 1;
         }
-        if place + 1 == BATCH || x + 1 == width {
-            found(batch.get(..=place).unwrap_or(&[]));
-        }
+        found(batch.get(..count).unwrap_or(&[]));
     }
 }
 
@@ -221,17 +223,14 @@ fn minimum<L: Lane, const N: usize>(lanes: &[L; N]) -> L {
 
 /// The best candidate with the costs beside it.
 #[inline(always)]
-fn winner<L: Lane, const N: usize>(
-    (cost, disparity): (u32, usize),
-    candidates: usize,
-    second: bool,
-    mask: &[L],
-    sums: &mut [L],
-) -> Winner {
+fn winner<L: Lane>((cost, disparity): (u32, usize), candidates: usize, sums: &[L]) -> Winner {
     let at = |candidate: usize| sums.get(candidate).map_or(0, |sum| sum.cost());
-    let beside = beside(disparity, candidates, at, cost);
-    let second = if second { best_of_the_rest::<L, N>(disparity, mask, sums) } else { u32::MAX };
-    Winner::new(cost, disparity as u32, beside, second)
+    let beside = if disparity > 0 && disparity + 1 < candidates {
+        (at(disparity - 1), at(disparity + 1))
+    } else {
+        beside_at_the_end(disparity, candidates, at, cost)
+    };
+    Winner::new(cost, disparity as u32, beside)
 }
 
 /// The least cost of the candidates over one px beside the winner; `u32::MAX` where there is none.

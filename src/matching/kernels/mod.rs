@@ -184,10 +184,10 @@ pub(super) struct Winner {
 
 impl Winner {
     /// A winner over the smallest disparity, and the costs one below and one above. Where one of these is no candidate,
-    /// it stands for the other; where none is, for the winner.
+    /// the other stands for it; where none is, the winner does.
     #[inline(always)]
-    pub fn new(cost: u32, disparity: u32, beside: (u32, u32), second: u32) -> Self {
-        Self { key: cost << 8 | disparity, beside: beside.0 | beside.1 << 16, second }
+    pub fn new(cost: u32, disparity: u32, beside: (u32, u32)) -> Self {
+        Self { key: cost << 8 | disparity, beside: beside.0 | beside.1 << 16, second: u32::MAX }
     }
 
     /// Its cost above 8 bits of [`Self::disparity`].
@@ -217,16 +217,12 @@ impl Winner {
     }
 }
 
-/// The costs beside a winner, for [`Winner::new`].
-#[inline(always)]
-fn beside(disparity: usize, candidates: usize, cost: impl Fn(usize) -> u32, least: u32) -> (u32, u32) {
-    let (has_below, has_above) = (disparity > 0, disparity + 1 < candidates);
-    if has_below & has_above {
-        return (cost(disparity - 1), cost(disparity + 1));
-    }
-    let one = if has_below {
+/// The costs beside a winner that lacks a candidate on one side or both, for [`Winner::new`].
+#[inline(never)]
+fn beside_at_the_end(disparity: usize, candidates: usize, cost: impl Fn(usize) -> u32, least: u32) -> (u32, u32) {
+    let one = if disparity > 0 {
         cost(disparity - 1)
-    } else if has_above {
+    } else if candidates > 1 {
         cost(1)
     } else {
         least

@@ -12,11 +12,9 @@
 //!
 //! The work is the same for every picture: no branch depends on a pixel.
 
-use super::keys::{
-    Best, GROUP, Keys, NUMBER_BITS, best_of, best_of_group, better, cost, number, place, slide, slide_to_least,
-};
+use super::keys::{Best, GROUP, Keys, NUMBER_BITS};
 use super::scratch::words_mut;
-use super::{OUTSIDE, RowCodes, RowWork, Select, Winner, beside};
+use super::{OUTSIDE, RowCodes, RowWork, Select, Winner, beside_at_the_end};
 use crate::matching::scheme::Scheme;
 
 /// Winners handed on at a time.
@@ -40,31 +38,66 @@ pub(in crate::matching) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Sele
     }
     let Some(select) = select else { return };
 
-    let sums = sums.as_chunks_mut::<2>().0.as_chunks_mut::<4>().0;
-    number(sums);
+    let Some(mut keys) = Keys::new(sums, groups) else { return };
     let (outside, inside) = columns.split_at_checked(OUTSIDE * groups).unwrap_or_default();
     let mut entering = inside.chunks_exact(groups).chain(outside.chunks_exact(groups));
     let none = outside.get(..groups).unwrap_or(&[]);
     for _ in 0..S::RADIUS_X {
-        slide(sums, entering.next().unwrap_or(none), none);
+        keys.slide(entering.next().unwrap_or(none), none);
     }
     let leaving = columns.chunks_exact(groups).skip(OUTSIDE - 1 - S::RADIUS_X);
+    let mut pairs = (0..width).zip(leaving).zip(entering);
     let mut batch = [Winner::default(); BATCH];
-    for ((x, leaves), enters) in (0..width).zip(leaving).zip(entering) {
-        let candidates = select.candidates(x);
-        let best = if candidates == stride && groups <= GROUP / 4 {
-            best_of(slide_to_least(sums, enters, leaves), 0)
-        } else {
-            slide_to_best(sums, enters, leaves, candidates)
-        };
-        let place = x % BATCH;
-        if let Some(slot) = batch.get_mut(place) {
-            *slot = winner(best, candidates, select.second, sums);
+    for _ in 0..width.div_ceil(BATCH) {
+        let mut count = 0;
+        for (slot, ((x, leaves), enters)) in batch.iter_mut().zip(&mut pairs) {
+            let candidates = select.candidates(x);
+            *slot = if candidates == stride && groups <= GROUP / 4 {
+                winner(keys.slide_to_best(enters, leaves), candidates, &keys)
+            } else {
+                keys.slide(enters, leaves);
+                winner(keys.best(candidates), candidates, &keys)
+            };
+            if select.second {
+                slot.second = best_of_the_rest(slot.disparity() as usize, candidates, &mut keys);
+            }
+            count += 1;
         }
-        if place + 1 == BATCH || x + 1 == width {
-            found(batch.get(..=place).unwrap_or(&[]));
+        found(batch.get(..count).unwrap_or(&[]));
+    }
+}
+
+/// The best candidate with the costs beside it.
+#[inline(always)]
+fn winner((cost, disparity): Best, candidates: usize, keys: &Keys<'_>) -> Winner {
+    let beside = if disparity > 0 && disparity + 1 < candidates {
+        keys.beside(disparity)
+    } else {
+        beside_at_the_end(disparity, candidates, |candidate| keys.cost(candidate), cost)
+    };
+    Winner::new(cost, disparity as u32, beside)
+}
+
+/// The least cost of the candidates over one px beside the winner; `u32::MAX` where there is none.
+#[inline(never)]
+fn best_of_the_rest(disparity: usize, candidates: usize, keys: &mut Keys<'_>) -> u32 {
+    // The winner and those beside it are raised while the others are looked at.
+    let nearest = disparity.saturating_sub(1)..disparity + 2;
+    let mut kept = [0; 3];
+    for (kept, candidate) in kept.iter_mut().zip(nearest.clone()) {
+        if let Some((word, key)) = keys.place(candidate) {
+            *kept = *word & key;
+            *word |= key;
         }
     }
+    let (least, _) = keys.best(candidates);
+    for (kept, candidate) in kept.iter().zip(nearest) {
+        if let Some((word, key)) = keys.place(candidate) {
+            *word = *word & !key | kept;
+        }
+    }
+    // No sum reaches what stands for none.
+    if least < 0x7fff >> NUMBER_BITS { least } else { u32::MAX }
 }
 
 /// Moves the sums of all columns one row down.
@@ -131,62 +164,4 @@ fn spread(codes: &[u8], begin: usize, words: &mut [u32]) {
         word = word << 8 | u32::from(code);
         *out = word;
     }
-}
-
-/// [`slide`] and the best of the first `candidates`.
-#[inline(never)]
-fn slide_to_best(sums: &mut [Keys], enters: &[[u32; 4]], leaves: &[[u32; 4]], candidates: usize) -> Best {
-    let whole = candidates / 16;
-    let (part, rest) = sums.split_at_mut_checked(whole).unwrap_or_default();
-    let (enters, enters_rest) = enters.split_at_checked(whole).unwrap_or_default();
-    let (leaves, leaves_rest) = leaves.split_at_checked(whole).unwrap_or_default();
-    let mut best = (u32::MAX, 0);
-    let parts = part.chunks_mut(GROUP / 4).zip(enters.chunks(GROUP / 4).zip(leaves.chunks(GROUP / 4)));
-    for (n, (sums, (enters, leaves))) in parts.enumerate() {
-        best = better(best, best_of(slide_to_least(sums, enters, leaves), n * 4 * GROUP));
-    }
-    if rest.is_empty() {
-        return best;
-    }
-    slide(rest, enters_rest, leaves_rest);
-    better(best, best_of_group(rest, candidates % 16, whole * 16 / 128 * 128))
-}
-
-/// The best candidate with the costs beside it.
-#[inline(always)]
-fn winner((least, disparity): Best, candidates: usize, second: bool, sums: &mut [Keys]) -> Winner {
-    let beside = beside(disparity, candidates, |candidate| cost(sums, candidate), least);
-    let second = if second { best_of_the_rest(disparity, candidates, sums) } else { u32::MAX };
-    Winner::new(least, disparity as u32, beside, second)
-}
-
-/// The least cost of the candidates over one px beside the winner; `u32::MAX` where there is none.
-#[inline(never)]
-fn best_of_the_rest(disparity: usize, candidates: usize, sums: &mut [Keys]) -> u32 {
-    let nearest = disparity.saturating_sub(1)..disparity + 2;
-    let mut kept = [0; 3];
-    let raised = |candidate: usize| place(candidate);
-    for (kept, candidate) in kept.iter_mut().zip(nearest.clone()) {
-        let ([group, pair, parity], shift) = raised(candidate);
-        if let Some(keys) = sums.get_mut(group) {
-            let word = &mut keys[pair][parity];
-            *kept = *word & 0x7fff << shift;
-            *word |= 0x7fff << shift;
-        }
-    }
-    let whole = candidates / 16;
-    let mut best = (u32::MAX, 0);
-    for group in sums.iter().take(whole) {
-        best = better(best, best_of_group(core::slice::from_ref(group), 16, 0));
-    }
-    let least = better(best, best_of_group(sums.get(whole..).unwrap_or(&[]), candidates % 16, 0)).0;
-    for (kept, candidate) in kept.iter().zip(nearest) {
-        let ([group, pair, parity], shift) = raised(candidate);
-        if let Some(keys) = sums.get_mut(group) {
-            let word = &mut keys[pair][parity];
-            *word = *word & !(0x7fff << shift) | kept;
-        }
-    }
-    // No sum reaches the number that stands for none.
-    if least < 0x7fff >> NUMBER_BITS { least } else { u32::MAX }
 }

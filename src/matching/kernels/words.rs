@@ -110,7 +110,8 @@ fn update_columns<S: Scheme>(
     codes: &mut [u32],
     columns: &mut [[u32; 4]],
 ) {
-    // A row that is not there is one whose codes are all zero, in both images.
+    // A row that is not there has all codes equal: zero in both images, or with its left codes inverted, all ones in the
+    // right one.
     let Some(any) = enter.or(leave) else { return };
     let nothing = RowCodes { left: any.left, right: &[] };
     let bytes = |row: Option<RowCodes<'_>>| if row.is_some() { BYTES } else { 0 };
@@ -122,8 +123,8 @@ fn update_columns<S: Scheme>(
     let block = new.len().saturating_sub(stride).max(1);
     for first in (0..width).step_by(block) {
         let begin = first.wrapping_sub(min_disparity + stride - 4);
-        spread(enter.right, begin, new);
-        spread(leave.right, begin, old);
+        spread(enter.right, begin, 0, new);
+        spread(leave.right, begin, u32::MAX, old);
         let end = width.min(first + block);
         for group in 0..groups {
             // Left of here no window has one of these candidates.
@@ -134,7 +135,7 @@ fn update_columns<S: Scheme>(
             let columns = columns.get_mut(x * groups + group..).unwrap_or_default().iter_mut().step_by(groups);
             for (sums, ((new, old), (&new_code, &old_code))) in columns.zip(words.zip(codes)) {
                 let (Some(new), Some(old)) = (new.first_chunk::<16>(), old.first_chunk::<16>()) else { return };
-                let (new_code, old_code) = (u32::from(new_code) * new_bytes, !(u32::from(old_code) * old_bytes));
+                let (new_code, old_code) = (u32::from(new_code) * new_bytes, u32::from(!old_code) * old_bytes);
                 for k in 0..4 {
                     let changed = S::bits_of_two(new_code ^ new[12 - 4 * k], old_code ^ old[12 - 4 * k]);
                     sums[k] = sums[k].wrapping_add(changed).wrapping_sub(S::BITS as u32 * BYTES);
@@ -144,11 +145,12 @@ fn update_columns<S: Scheme>(
     }
 }
 
-/// Writes the words of the columns from `begin` on, which may lie left of the image: there the first code is repeated.
+/// Writes the words of the columns from `begin` on, which may lie left of the image: there the first code is
+/// repeated. Without codes every word is `without`.
 #[inline(always)]
-fn spread(codes: &[u8], begin: usize, words: &mut [u32]) {
+fn spread(codes: &[u8], begin: usize, without: u32, words: &mut [u32]) {
     let Some(&first) = codes.first() else {
-        words.fill(0);
+        words.fill(without);
         return;
     };
     let before = (begin as isize).min(0).unsigned_abs().min(words.len());

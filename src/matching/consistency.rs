@@ -6,7 +6,6 @@
 
 use super::kernels::Winner;
 use crate::units::PixelFlags;
-use core::slice;
 
 /// One row's winners, seen from both sides. All slices have the row's width.
 pub(super) struct Consistency<'a> {
@@ -25,10 +24,21 @@ impl Consistency<'_> {
         self.right.fill(u32::MAX);
     }
 
-    /// Takes the row's winners, from the first column on.
-    pub(super) fn offers(&mut self) -> Offers<'_> {
-        // Where a column's candidates begin, counted modulo the size of a place.
-        Offers { left: self.left.iter_mut(), right: self.right, place: 0usize.wrapping_sub(self.min_disparity) }
+    /// Notes the winners of the columns from `first` on and offers them to their partners. The first of equal costs
+    /// stays.
+    #[inline(never)]
+    pub(super) fn offer(&mut self, first: usize, winners: &[Winner]) {
+        let left = self.left.get_mut(first..).unwrap_or_default();
+        // Where a column's candidates begin; left of the smallest disparity it wraps, and there is no partner.
+        let mut place = first.wrapping_sub(self.min_disparity);
+        for (left, winner) in left.iter_mut().zip(winners) {
+            *left = winner.disparity() as u8;
+            if let Some(kept) = self.right.get_mut(place.wrapping_sub(winner.disparity() as usize)) {
+                // Of one partner, those who come later are farther away: their disparity is larger.
+                *kept = (*kept).min(winner.key());
+            }
+            place = place.wrapping_add(1);
+        }
     }
 
     /// Whether the partner of left column `x`, whose winner is `disparity`, keeps something else by over `tolerance` px.
@@ -38,29 +48,5 @@ impl Consistency<'_> {
         let kept = self.right.get(partner).map_or(disparity, |&kept| kept as u8);
         let apart = u32::from(kept).wrapping_sub(u32::from(disparity)).wrapping_add(u32::from(tolerance));
         PixelFlags::MISMATCH.when(apart > 2 * u32::from(tolerance))
-    }
-}
-
-/// A row's winners, one after the other.
-pub(super) struct Offers<'a> {
-    left: slice::IterMut<'a, u8>,
-    right: &'a mut [u32],
-    place: usize,
-}
-
-impl Offers<'_> {
-    /// Notes the winner of the next column and offers it to its partner. The first of equal costs stays.
-    #[inline(always)]
-    pub(super) fn next(&mut self, winner: &Winner) {
-        if let Some(left) = self.left.next() {
-            *left = winner.disparity() as u8;
-        }
-        // A pixel without candidates lies left of the smallest disparity: it has no partner.
-        let partner = self.place.wrapping_sub(winner.disparity() as usize);
-        if let Some(kept) = self.right.get_mut(partner) {
-            // Of one partner, those who come later are farther away: their disparity is larger.
-            *kept = (*kept).min(winner.key());
-        }
-        self.place = self.place.wrapping_add(1);
     }
 }

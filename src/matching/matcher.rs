@@ -55,7 +55,7 @@ pub const fn state_bytes<S: Scheme>(width: usize, disparities: usize) -> usize {
     let width = if width < lanes { lanes } else { width };
     let codes = 2 * S::Codes::<1>::ROWS;
     let per_column = codes + lanes + 2 + 2 + 1 + 1 + 4 + 1 + (2 + 1 + 2) * BAND + 2 * HISTORY;
-    width * per_column + (12 + OUTSIDE) * lanes + FIXED_BYTES
+    width * per_column + (4 + 2 * OUTSIDE) * lanes + FIXED_BYTES
 }
 
 /// Why a matcher took no line.
@@ -217,7 +217,7 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             config: &self.config,
             left: first(self.left.0.flat(), width * S::Codes::<W>::ROWS),
             right: first(self.right.0.flat(), width * S::Codes::<W>::ROWS),
-            columns: first(self.columns.flat(), (OUTSIDE + width) * stride),
+            columns: first(self.columns.flat(), (width + 2 * OUTSIDE) * stride),
             scratch: self.scratch.words(),
             texture: Texture { history: first(&mut self.texture, width), counts: first(&mut self.textured, width) },
             consistency: Consistency {

@@ -15,6 +15,10 @@ pub trait Scheme: Lines + Sized + 'static {
     const RADIUS_Y: usize;
     /// Bits of a census code.
     const BITS: usize;
+    /// Bits of a column's sum.
+    const COLUMN_BITS: usize;
+    /// Bits of a window's sum.
+    const WINDOW_BITS: usize;
     /// Standard deviation of an answer away from depth edges, px: so that on rendered scenes, with sensor noise of up to
     /// two grey levels, three of it hold 99 % of the answers.
     const SIGMA_PX: f32;
@@ -83,6 +87,8 @@ impl Scheme for Fast {
     const RADIUS_X: usize = 4;
     const RADIUS_Y: usize = 3;
     const BITS: usize = 4;
+    const COLUMN_BITS: usize = 5;
+    const WINDOW_BITS: usize = 8;
     const SIGMA_PX: f32 = 0.15;
     const NAME: &'static str = "fast";
 }
@@ -134,6 +140,8 @@ impl Scheme for Block {
     const RADIUS_X: usize = 4;
     const RADIUS_Y: usize = 4;
     const BITS: usize = 8;
+    const COLUMN_BITS: usize = 7;
+    const WINDOW_BITS: usize = 10;
     const SIGMA_PX: f32 = 0.15;
     const NAME: &'static str = "block";
 }

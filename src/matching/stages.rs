@@ -1,6 +1,6 @@
 //! One row through the stages, over slices: compiled once for each scheme, whatever the capacities.
 
-use super::config::{Checks, Config};
+use super::config::Config;
 use super::consistency::Consistency;
 use super::kernels::{Kernel, RowCodes, RowWork, Select, Winner, halves_mut};
 use super::row::{HISTORY, slot};
@@ -104,14 +104,19 @@ impl<S: Scheme> Stages<'_, S> {
         };
         let place = row.unwrap_or(0) % BAND;
         let (answers, row_flags) = (slot_mut(self.band, place, width), slot_mut(self.flags, place, width));
-        let mut pixels = answers.iter_mut().zip(row_flags);
-        let mut offers = self.consistency.offers();
+        let rules = Rules::new(config);
+        let mut first = 0;
         self.kernel.row::<S>(work, select, |winners| {
-            for (winner, (answer, flags)) in winners.iter().zip(&mut pixels) {
-                *answer = refine(winner, min_disparity);
-                *flags = first_flags(winner, config);
-                offers.next(winner);
+            let place = first..first + winners.len();
+            first = place.end;
+            let (Some(answers), Some(flags)) = (answers.get_mut(place.clone()), row_flags.get_mut(place.clone())) else {
+                return;
+            };
+            rules.answer(winners, answers, flags);
+            if let Some(percent) = config.checks.uniqueness_percent {
+                mark_ambiguous(winners, percent, flags);
             }
+            self.consistency.offer(place.start, winners);
         });
     }
 
@@ -160,21 +165,41 @@ impl<S: Scheme> Stages<'_, S> {
     }
 }
 
-/// What is known of a winner by itself.
-#[inline(always)]
-fn first_flags(winner: &Winner, config: &Config) -> PixelFlags {
-    let flat = PixelFlags::UNTEXTURED.when((winner.rises() == (0, 0)) & config.checks.refuse_flat);
-    let ceiling = PixelFlags::CEILING.when(winner.disparity() + 1 == u32::from(config.disparities));
-    let ambiguous = PixelFlags::AMBIGUOUS.when(is_ambiguous(winner, &config.checks));
-    flat.union(ceiling).union(ambiguous)
+/// How winners become answers.
+struct Rules {
+    min_disparity: u32,
+    ceiling: u32,
+    flat: PixelFlags,
 }
 
-#[inline(always)]
-fn is_ambiguous(winner: &Winner, checks: &Checks) -> bool {
-    checks.uniqueness_percent.is_some_and(|percent| {
-        let share = 100 - u32::from(percent.min(99));
-        winner.second < u32::MAX && winner.second * share <= winner.cost() * 100
-    })
+impl Rules {
+    fn new(config: &Config) -> Self {
+        Self {
+            min_disparity: u32::from(config.min_disparity),
+            ceiling: u32::from(config.disparities) - 1,
+            flat: PixelFlags::UNTEXTURED.when(config.checks.refuse_flat),
+        }
+    }
+
+    /// The answers of some pixels, and what is known of the winners by themselves.
+    #[inline(never)]
+    fn answer(&self, winners: &[Winner], answers: &mut [Disparity], flags: &mut [PixelFlags]) {
+        for (winner, (answer, flags)) in winners.iter().zip(answers.iter_mut().zip(flags)) {
+            *answer = refine(winner, self.min_disparity);
+            let flat = self.flat.when(winner.rises() == (0, 0));
+            *flags = flat.union(PixelFlags::CEILING.when(winner.disparity() == self.ceiling));
+        }
+    }
+}
+
+/// Flags the pixels whose second best costs at most `percent` more of its own cost.
+#[inline(never)]
+fn mark_ambiguous(winners: &[Winner], percent: u8, flags: &mut [PixelFlags]) {
+    let share = 100 - u32::from(percent.min(99));
+    for (winner, flags) in winners.iter().zip(flags) {
+        let ambiguous = winner.second < u32::MAX && winner.second * share <= winner.cost() * 100;
+        *flags = flags.union(PixelFlags::AMBIGUOUS.when(ambiguous));
+    }
 }
 
 fn slot_mut<T>(rows: &mut [T], index: usize, width: usize) -> &mut [T] {

@@ -22,9 +22,11 @@ const BATCH: usize = 32;
 /// [`super::Kernel::row`] for the compilation's own target.
 #[inline(always)]
 pub(in crate::matching) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select>, found: impl FnMut(&[Winner])) {
+    // Knowing the number pays where a group of sums takes several registers.
+    let wide = size_of::<S::Sum>() > 1 || !cfg!(stereopsis_vectors);
     match work.stride {
-        32 => row_in_groups::<S, STEP, 32>(work, select, found),
-        64 => row_in_groups::<S, STEP, 64>(work, select, found),
+        32 if wide => row_in_groups::<S, STEP, 32>(work, select, found),
+        64 if wide => row_in_groups::<S, STEP, 64>(work, select, found),
         _ => row_in_groups::<S, STEP, 0>(work, select, found),
     }
 }
@@ -57,9 +59,8 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
     for (sum, &start) in sums.iter_mut().zip(S::Sum::INDICES) {
         *sum = if S::Sum::NUMBER_BITS > 0 { start } else { S::Sum::INDICES[0] };
     }
-    let (outside, inside) = columns.split_at_checked(OUTSIDE * stride).unwrap_or_default();
-    let mut entering = inside.chunks_exact(stride).chain(outside.chunks_exact(stride));
-    let none = outside.get(..stride).unwrap_or(&[]);
+    let mut entering = columns.chunks_exact(stride).skip(OUTSIDE);
+    let none = columns.get(..stride).unwrap_or(&[]);
     for _ in 0..S::RADIUS_X {
         slide::<S::Sum, N>(sums, entering.next().unwrap_or(none), none);
     }
@@ -71,7 +72,8 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
         for (slot, ((x, leaves), enters)) in batch.iter_mut().zip(&mut pairs) {
             let candidates = select.candidates(x);
             let mask = S::Sum::MASKS.get(256 - candidates.min(256)..).and_then(|m| m.get(..stride)).unwrap_or(&[]);
-            *slot = winner::<S::Sum>(slide_to_least::<S::Sum, N>(sums, enters, leaves, mask), candidates, sums);
+            let (cost, disparity) = slide_to_least::<S::Sum, N>(sums, enters, leaves, mask);
+            slot.set(cost, disparity as u32, beside::<S::Sum>(cost, disparity, candidates, sums));
             if select.second {
                 slot.second = best_of_the_rest::<S::Sum, N>(slot.disparity() as usize, mask, sums);
             }
@@ -221,16 +223,15 @@ fn minimum<L: Lane, const N: usize>(lanes: &[L; N]) -> L {
     lanes.iter().fold(L::MAX, |least, &lane| least.min(lane))
 }
 
-/// The best candidate with the costs beside it.
+/// The costs beside the winner.
 #[inline(always)]
-fn winner<L: Lane>((cost, disparity): (u32, usize), candidates: usize, sums: &[L]) -> Winner {
+fn beside<L: Lane>(cost: u32, disparity: usize, candidates: usize, sums: &[L]) -> (u32, u32) {
     let at = |candidate: usize| sums.get(candidate).map_or(0, |sum| sum.cost());
-    let beside = if disparity > 0 && disparity + 1 < candidates {
+    if disparity > 0 && disparity + 1 < candidates {
         (at(disparity - 1), at(disparity + 1))
     } else {
         beside_at_the_end(disparity, candidates, at, cost)
-    };
-    Winner::new(cost, disparity as u32, beside)
+    }
 }
 
 /// The least cost of the candidates over one px beside the winner; `u32::MAX` where there is none.

@@ -2,11 +2,11 @@
 //!
 //! In: the census rows that enter and leave the window. Out: a [`Winner`] for every pixel of the row.
 //!
-//! * `words`: plain 32-bit words, for cores without vectors.
+//! * `planes`: bit planes in plain 32-bit words, for cores without vectors.
 //! * `lanes`: safe Rust over fixed lanes, which the compiler turns into the vectors that the target has.
 //! * `x86`: the same code compiled for AVX2, chosen when the processor has it.
 //!
-//! A 32-bit core gets `words` alone, unless it is compiled with `--cfg stereopsis_vectors`, which says that its vectors
+//! A 32-bit core gets `planes` alone, unless it is compiled with `--cfg stereopsis_vectors`, which says that its vectors
 //! are on (Helium on a Cortex-M55: `-C target-cpu=cortex-m55`); then it gets `lanes` alone. Larger processors have both.
 //!
 //! Every kernel gives the same bits. A new one is a variant of [`Kernel`] and an arm in [`Kernel::row`].
@@ -14,14 +14,14 @@
 #[cfg(not(stereopsis_vectors))]
 mod census;
 #[cfg(not(stereopsis_vectors))]
-mod keys;
+mod plane;
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 mod lane;
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 mod lanes;
 mod scratch;
 #[cfg(not(stereopsis_vectors))]
-mod words;
+mod planes;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
@@ -43,9 +43,9 @@ pub const STEP: usize = 16;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Kernel {
-    /// Plain 32-bit words.
+    /// Bit planes in 32-bit words.
     #[cfg(not(stereopsis_vectors))]
-    Words,
+    Planes,
     /// Vectors of the compilation's own target.
     #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
     Lanes,
@@ -57,7 +57,7 @@ pub enum Kernel {
 impl Kernel {
     /// A kernel that every processor runs, and whose bytes are zero.
     #[cfg(not(stereopsis_vectors))]
-    pub(super) const FIRST: Self = Self::Words;
+    pub(super) const FIRST: Self = Self::Planes;
     #[cfg(stereopsis_vectors)]
     pub(super) const FIRST: Self = Self::Lanes;
 
@@ -70,7 +70,7 @@ impl Kernel {
         #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
         return Self::Lanes;
         #[cfg(not(any(target_pointer_width = "64", stereopsis_vectors)))]
-        return Self::Words;
+        return Self::Planes;
     }
 
     /// All that this processor runs.
@@ -78,7 +78,7 @@ impl Kernel {
         let best = Self::detect();
         let others = [
             #[cfg(not(stereopsis_vectors))]
-            Self::Words,
+            Self::Planes,
             #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
             Self::Lanes,
         ];
@@ -89,7 +89,7 @@ impl Kernel {
     pub const fn name(self) -> &'static str {
         match self {
             #[cfg(not(stereopsis_vectors))]
-            Self::Words => "words",
+            Self::Planes => "planes",
             #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
             Self::Lanes => "lanes",
             #[cfg(target_arch = "x86_64")]
@@ -101,7 +101,7 @@ impl Kernel {
     #[inline]
     pub(super) fn census<S: Scheme>(self, rows: &Around<'_>, out: &mut [u8]) {
         #[cfg(not(stereopsis_vectors))]
-        if self == Self::Words && census::census::<S>(rows, out) {
+        if self == Self::Planes && census::census::<S>(rows, out) {
             return;
         }
         S::census(rows, out);
@@ -113,7 +113,7 @@ impl Kernel {
     pub(super) fn row<S: Scheme>(self, work: RowWork<'_>, select: Option<Select>, found: impl FnMut(&[Winner])) {
         match self {
             #[cfg(not(stereopsis_vectors))]
-            Self::Words => words::row::<S>(work, select, found),
+            Self::Planes => planes::row::<S>(work, select, found),
             #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
             Self::Lanes => lanes::row::<S>(work, select, found),
             #[cfg(target_arch = "x86_64")]
@@ -144,8 +144,8 @@ pub(super) struct RowWork<'a> {
     pub enter: Option<RowCodes<'a>>,
     /// The row that leaves it above, once there is one.
     pub leave: Option<RowCodes<'a>>,
-    /// Matching costs summed over the window's height, where a word may stand: `stride` sums for each of [`OUTSIDE`]
-    /// columns that stay zero and for each of the image's.
+    /// Matching costs summed over the window's height, where a word may stand: `stride` bytes for each of the
+    /// image's columns, and for each of [`OUTSIDE`] columns before and after that stay zero.
     pub columns: &'a mut [u8],
     /// Room to work in.
     pub scratch: &'a mut [u32],
@@ -177,17 +177,18 @@ pub(super) struct Winner {
     key: u32,
     /// The cost below in the low half, that above in the high one.
     beside: u32,
-    /// Least cost of the candidates that are over one px beside the winner; `u32::MAX` where there is none or it
-    /// was not asked for.
+    /// Least cost of the candidates that are over one px beside the winner; `u32::MAX` where there is none. Not set where
+    /// it was not asked for.
     pub second: u32,
 }
 
 impl Winner {
-    /// A winner over the smallest disparity, and the costs one below and one above. Where one of these is no candidate,
-    /// the other stands for it; where none is, the winner does.
+    /// Becomes a winner over the smallest disparity, with the costs one below and one above. Where one of these is no
+    /// candidate, the other stands for it; where none is, the winner does. [`Self::second`] stays.
     #[inline(always)]
-    pub fn new(cost: u32, disparity: u32, beside: (u32, u32)) -> Self {
-        Self { key: cost << 8 | disparity, beside: beside.0 | beside.1 << 16, second: u32::MAX }
+    pub fn set(&mut self, cost: u32, disparity: u32, beside: (u32, u32)) {
+        self.key = cost << 8 | disparity;
+        self.beside = beside.0 | beside.1 << 16;
     }
 
     /// Its cost above 8 bits of [`Self::disparity`].
@@ -230,5 +231,5 @@ fn beside_at_the_end(disparity: usize, candidates: usize, cost: impl Fn(usize) -
     (one, one)
 }
 
-/// Columns of zero sums before the image's first, to stand for those outside.
+/// Columns of zero sums before the image's first and after its last, to stand for those outside.
 pub const OUTSIDE: usize = 5;

@@ -5,17 +5,17 @@ use super::OUTSIDE;
 
 /// What a kernel works with while a row lasts. No kernel finds anything in it from the row before.
 ///
-/// `2 W + 12 D` bytes: room for window sums of all disparities beside the codes of the right image's rows, in
+/// `2 W + 4 D` bytes: room for window sums of all disparities beside the codes of the right image's rows, in
 /// the order in which the kernel reads them.
 #[repr(C, align(8))]
 pub struct Scratch<const W: usize, const D: usize> {
-    sums: [[u32; D]; 3],
+    sums: [u32; D],
     codes: [u16; W],
 }
 
 impl<const W: usize, const D: usize> Scratch<W, D> {
     /// All zero.
-    pub const ZERO: Self = Self { sums: [[0; D]; 3], codes: [0; W] };
+    pub const ZERO: Self = Self { sums: [0; D], codes: [0; W] };
 
     /// All of it as words.
     pub fn words(&mut self) -> &mut [u32] {
@@ -26,21 +26,22 @@ impl<const W: usize, const D: usize> Scratch<W, D> {
     }
 }
 
-/// Sums of `W` columns with `D` disparities each, after [`OUTSIDE`] more that stay zero.
+/// Sums of `W` columns with `D` disparities each, with [`OUTSIDE`] more before them and after that stay zero.
 #[repr(C, align(8))]
 pub struct Columns<const W: usize, const D: usize> {
-    outside: [[u8; D]; OUTSIDE],
+    before: [[u8; D]; OUTSIDE],
     inside: [[u8; D]; W],
+    after: [[u8; D]; OUTSIDE],
 }
 
 impl<const W: usize, const D: usize> Columns<W, D> {
     /// All zero.
-    pub const ZERO: Self = Self { outside: [[0; D]; OUTSIDE], inside: [[0; D]; W] };
+    pub const ZERO: Self = Self { before: [[0; D]; OUTSIDE], inside: [[0; D]; W], after: [[0; D]; OUTSIDE] };
 
     /// All of it, one column after the other.
     pub fn flat(&mut self) -> &mut [u8] {
-        let bytes = size_of_val(&self.outside) + size_of_val(&self.inside);
-        // SAFETY: the two fields are bytes without a gap between them (`repr(C)`), `bytes` of them in all.
+        let bytes = size_of_val(&self.before) + size_of_val(&self.inside) + size_of_val(&self.after);
+        // SAFETY: the fields are bytes without a gap between them (`repr(C)`), `bytes` of them in all.
         unsafe { core::slice::from_raw_parts_mut(core::ptr::from_mut(self).cast(), bytes) }
     }
 }

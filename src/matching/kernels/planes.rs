@@ -1,0 +1,417 @@
+//! The kernel in bit planes, for cores without vectors: 32 candidates are the bits of a word, and a number of each of them
+//! is as many words as it has bits. Additions are chains of full adders, bit by bit; comparisons go from the highest plane
+//! down. Safe Rust; the arithmetic is that of plain words.
+//!
+//! ```text
+//! right codes    one word for each bit of the code: bit d is that of the column d to the left
+//! column x + r   += bits in which the entering codes differ, and those in which the leaving ones are equal; the number of
+//!                bits is taken off again
+//! window x       the complement of the sum, so that the best candidate has the highest number
+//! winner x       of all candidates those with the highest bit set, if any, of these those with the next: what is left
+//!                are the best, and the lowest bit is the first of them
+//! ```
+//!
+//! The work is the same for every picture, but for an instruction or two.
+
+use super::plane::{Plane, add_pair, of_bit};
+use super::{OUTSIDE, RowCodes, RowWork, Select, Winner};
+use crate::matching::scheme::Scheme;
+
+/// Winners handed on at a time.
+const BATCH: usize = 16;
+
+/// Planes of a column's sums: a place for each eighth of its bytes.
+const COLUMN: usize = 8;
+/// Bits from one of three sums in a word to the next.
+const FIELD: u32 = 11;
+/// The most groups that there are: of half-words, 256 candidates.
+const MOST_GROUPS: usize = 16;
+/// One of three sums in a word.
+const COST: u32 = (1 << WINDOW) - 1;
+/// Planes of a window's sum.
+const WINDOW: usize = 10;
+
+/// [`super::Kernel::row`] in planes.
+#[inline(always)]
+pub(in crate::matching) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select>, found: impl FnMut(&[Winner])) {
+    // Where a half-word of candidates is left over, half-words are taken.
+    if work.stride == 32 {
+        row_of::<S, u32, 1>(work, select, found);
+    } else if work.stride == 64 {
+        row_of::<S, u32, 2>(work, select, found);
+    } else if work.stride.is_multiple_of(32) {
+        row_of::<S, u32, 0>(work, select, found);
+    } else {
+        row_of::<S, u16, 0>(work, select, found);
+    }
+}
+
+type Column<P> = [P; COLUMN];
+type Window<P> = [P; WINDOW];
+
+#[inline(always)]
+fn row_of<S: Scheme, P: Plane, const GROUPS: usize>(work: RowWork<'_>, select: Option<Select>, mut found: impl FnMut(&[Winner])) {
+    let RowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
+    // At least one, for the compiler to see that no column is empty.
+    let groups = if GROUPS > 0 { GROUPS } else { (stride / P::CANDIDATES).max(1) };
+    let columns = P::of_bytes(columns).as_chunks_mut::<COLUMN>().0;
+    let scratch = P::of_words(scratch);
+    if let Some(inside) = columns.get_mut(OUTSIDE * groups..) {
+        update_columns::<S, P, GROUPS>(width, groups, min_disparity, [enter, leave], scratch, inside);
+    }
+    let Some(select) = select else { return };
+
+    let Some(windows) = scratch.as_chunks_mut::<WINDOW>().0.get_mut(..groups) else { return };
+    windows.fill([P::ALL; WINDOW]);
+    // Left of here no pixel has a candidate.
+    let begin = select.min_disparity.min(width);
+    let mut batch = [Winner::default(); BATCH];
+    for first in (0..begin).step_by(BATCH) {
+        found(batch.get(..BATCH.min(begin - first)).unwrap_or(&[]));
+    }
+    for column in columns.chunks_exact(groups).skip(OUTSIDE + begin - S::RADIUS_X).take(2 * S::RADIUS_X) {
+        slide::<S, P>(windows, column, columns);
+    }
+    let from = |column: usize| columns.get((OUTSIDE + begin + column) * groups..).unwrap_or(&[]).chunks(BATCH * groups);
+    let (entering, leaving) = (from(S::RADIUS_X), from(0usize.wrapping_sub(S::RADIUS_X + 1)));
+    let mut windows = Windows { windows, groups, candidates: 0, second: select.second };
+    for (first, (entering, leaving)) in (begin..width).step_by(BATCH).zip(entering.zip(leaving)) {
+        let batch = batch.get_mut(..BATCH.min(width - first)).unwrap_or_default();
+        if GROUPS > 0 {
+            windows.winners::<S, GROUPS>(entering, leaving, select.disparities, batch);
+        } else {
+            windows.winners_of_many::<S>(entering, leaving, select.disparities, batch);
+        }
+        found(batch);
+    }
+}
+
+/// The windows of one pixel, for all groups of candidates.
+struct Windows<'a, P> {
+    windows: &'a mut [Window<P>],
+    groups: usize,
+    /// How many candidates the pixel before has inside the right image.
+    candidates: usize,
+    /// Whether second bests are wanted.
+    second: bool,
+}
+
+impl<P: Plane> Windows<'_, P> {
+    /// The winners of the next pixels among so many `disparities`, with the columns that enter and leave at each.
+    #[inline(never)]
+    fn winners<S: Scheme, const GROUPS: usize>(
+        &mut self,
+        entering: &[Column<P>],
+        leaving: &[Column<P>],
+        disparities: usize,
+        out: &mut [Winner],
+    ) {
+        let of = |candidates: usize| -> [P; GROUPS] {
+            core::array::from_fn(|group| P::first(candidates.saturating_sub(group * P::CANDIDATES)))
+        };
+        let (mut candidates, all) = (of(self.candidates), of(disparities));
+        let Some(windows) = self.windows.first_chunk_mut::<GROUPS>() else { return };
+        let columns = entering.as_chunks::<GROUPS>().0.iter().zip(leaving.as_chunks::<GROUPS>().0);
+        for (slot, (enters, leaves)) in out.iter_mut().zip(columns) {
+            let mut one_more = P::one(0);
+            for group in 0..GROUPS {
+                slide_one::<S, P>(&mut windows[group], &enters[group], &leaves[group]);
+                let before = candidates[group];
+                candidates[group] = (before.doubled() | one_more) & all[group];
+                one_more = before.highest();
+            }
+            let best = best::<S, P, GROUPS>(windows, candidates);
+            // The first group with one of them.
+            let group = best.iter().position(|&best| best != P::NONE).unwrap_or(0);
+            let lane = best[group].lowest();
+            winner::<S, P>(windows, group, lane, candidates[group], slot);
+            let disparity = group * P::CANDIDATES + lane;
+            if GROUPS > 1 {
+                let last = lane + 1 == P::CANDIDATES;
+                let above = if last { candidates[(group + 1) % GROUPS] } else { candidates[group] & !P::one(0) };
+                let is_above = above != P::NONE && (!last || group + 1 < GROUPS);
+                look_beyond::<S, P>(windows, disparity, is_above, slot);
+            }
+            if self.second {
+                slot.second = best_of_the_rest::<S, P>(windows, disparity, &candidates);
+            }
+        }
+        self.candidates = disparities.min(self.candidates + out.len());
+    }
+
+    /// [`Self::winners`] among any number of candidates.
+    #[inline(never)]
+    fn winners_of_many<S: Scheme>(
+        &mut self,
+        entering: &[Column<P>],
+        leaving: &[Column<P>],
+        disparities: usize,
+        out: &mut [Winner],
+    ) {
+        let groups = self.groups.max(1);
+        for (slot, (enters, leaves)) in out.iter_mut().zip(entering.chunks_exact(groups).zip(leaving.chunks_exact(groups))) {
+            self.candidates = disparities.min(self.candidates + 1);
+            let among = |group: usize| P::first(self.candidates.saturating_sub(group * P::CANDIDATES));
+            let mut least = (u32::MAX, 0, 0);
+            for (group, (window, (enters, leaves))) in self.windows.iter_mut().zip(enters.iter().zip(leaves)).enumerate() {
+                slide_one::<S, P>(window, enters, leaves);
+                let [best] = best::<S, P, 1>(core::array::from_ref(window), [among(group)]);
+                let cost = cost_of::<S, P>(window, best);
+                if cost < least.0 {
+                    least = (cost, group, best.lowest());
+                }
+            }
+            let (_, group, lane) = least;
+            winner::<S, P>(self.windows, group, lane, among(group), slot);
+            let disparity = group * P::CANDIDATES + lane;
+            look_beyond::<S, P>(self.windows, disparity, disparity + 1 < self.candidates, slot);
+            if self.second {
+                let candidates: [P; MOST_GROUPS] = core::array::from_fn(among);
+                slot.second = best_of_the_rest::<S, P>(self.windows, disparity, &candidates);
+            }
+        }
+    }
+}
+
+/// The winner in a lane of a group that has the `candidates`.
+#[inline(always)]
+fn winner<S: Scheme, P: Plane>(windows: &[Window<P>], group: usize, lane: usize, candidates: P, out: &mut Winner) {
+    let Some(window) = windows.get(group) else { return };
+    let costs = three::<S, P>(window, lane.max(1) - 1);
+    let disparity = (group * P::CANDIDATES + lane) as u32;
+    let is_above = candidates.bits() >> (lane % 32) > 1;
+    if lane > 0 && is_above {
+        out.set(costs >> FIELD & COST, disparity, (costs & COST, costs >> (2 * FIELD)));
+    } else {
+        winner_at_an_end(costs, disparity, lane, is_above, out);
+    }
+}
+
+/// Takes the cost of a winner's neighbour from the group before or after, if it is there.
+#[inline(always)]
+fn look_beyond<S: Scheme, P: Plane>(windows: &[Window<P>], disparity: usize, is_above: bool, winner: &mut Winner) {
+    let lane = disparity % P::CANDIDATES;
+    if lane == 0 && disparity > 0 {
+        let below = cost::<S, P>(windows, disparity - 1);
+        winner.set(winner.cost(), disparity as u32, (below, if is_above { winner.beside >> 16 } else { below }));
+    } else if lane + 1 == P::CANDIDATES && is_above {
+        let above = cost::<S, P>(windows, disparity + 1);
+        winner.set(winner.cost(), disparity as u32, (winner.beside & 0xffff, above));
+    }
+}
+
+/// The cost of a candidate.
+#[inline(never)]
+fn cost<S: Scheme, P: Plane>(windows: &[Window<P>], disparity: usize) -> u32 {
+    let lane = P::one(disparity % P::CANDIDATES);
+    windows.get(disparity / P::CANDIDATES).map_or(0, |window| cost_of::<S, P>(window, lane))
+}
+
+/// The least cost of the candidates over one px beside the winner; `u32::MAX` where there is none.
+#[inline(never)]
+fn best_of_the_rest<S: Scheme, P: Plane>(windows: &[Window<P>], disparity: usize, candidates: &[P]) -> u32 {
+    let mut least = u32::MAX;
+    for (group, (window, &candidates)) in windows.iter().zip(candidates).enumerate() {
+        let before = |candidate: usize| P::first(candidate.saturating_sub(group * P::CANDIDATES));
+        let nearest = before(disparity + 2) & !before(disparity.saturating_sub(1));
+        let others = candidates & !nearest;
+        if others != P::NONE {
+            let [best] = best::<S, P, 1>(core::array::from_ref(window), [others]);
+            least = least.min(cost_of::<S, P>(window, best));
+        }
+    }
+    least
+}
+
+/// A winner of which the word lacks the candidate below, or that above, or both.
+#[inline(never)]
+fn winner_at_an_end(costs: u32, disparity: u32, lane: usize, is_above: bool, out: &mut Winner) {
+    let [first, second] = [costs & COST, costs >> FIELD & COST];
+    let (here, beside) = if lane > 0 { (second, first) } else { (first, if is_above { second } else { first }) };
+    out.set(here, disparity, (beside, beside));
+}
+
+/// Moves windows one column on.
+#[inline(never)]
+fn slide<S: Scheme, P: Plane>(windows: &mut [Window<P>], enters: &[Column<P>], leaves: &[Column<P>]) {
+    for (window, (enters, leaves)) in windows.iter_mut().zip(enters.iter().zip(leaves)) {
+        slide_one::<S, P>(window, enters, leaves);
+    }
+}
+
+#[inline(always)]
+fn slide_one<S: Scheme, P: Plane>(window: &mut Window<P>, enters: &Column<P>, leaves: &Column<P>) {
+    // The window is a complement: what leaves is added. The difference is a number with a sign, of one plane more.
+    let (mut borrow, mut carry) = (P::NONE, P::NONE);
+    for i in 0..S::WINDOW_BITS {
+        let difference = if i < S::COLUMN_BITS {
+            let (enters, leaves) = (enters[i], leaves[i]);
+            let differ = enters ^ leaves;
+            let difference = differ ^ borrow;
+            borrow = borrow ^ (differ & (borrow ^ enters));
+            difference
+        } else {
+            borrow
+        };
+        let half = window[i] ^ difference;
+        let up = difference ^ (half & (difference ^ carry));
+        window[i] = half ^ carry;
+        carry = up;
+    }
+}
+
+/// Those of the `candidates` that have the least sum.
+#[inline(always)]
+fn best<S: Scheme, P: Plane, const GROUPS: usize>(windows: &[Window<P>; GROUPS], candidates: [P; GROUPS]) -> [P; GROUPS] {
+    let mut best = candidates;
+    for i in (0..S::WINDOW_BITS).rev() {
+        let better: [P; GROUPS] = core::array::from_fn(|group| best[group] & windows[group][i]);
+        if better.iter().fold(P::NONE, |any, &better| any | better) != P::NONE {
+            best = better;
+        }
+    }
+    best
+}
+
+/// The sum that all of the `candidates` have.
+#[inline(always)]
+fn cost_of<S: Scheme, P: Plane>(window: &Window<P>, candidates: P) -> u32 {
+    let mut cost = 0;
+    for i in (0..S::WINDOW_BITS).rev() {
+        cost = cost << 1 | u32::from(window[i] & candidates == P::NONE);
+    }
+    cost
+}
+
+/// The sums of three candidates in a word, from the `first` on.
+#[inline(always)]
+fn three<S: Scheme, P: Plane>(window: &Window<P>, first: usize) -> u32 {
+    const { assert!(S::WINDOW_BITS < FIELD as usize) };
+    const APART: u32 = 1 | 1 << (FIELD - 1) | 1 << (2 * FIELD - 2);
+    const LOWEST: u32 = 1 | 1 << FIELD | 1 << (2 * FIELD);
+    let mut fields = 0;
+    for i in (0..S::WINDOW_BITS).rev() {
+        // The three bits, each to its field.
+        let bits = window[i].bits() >> (first % 32) & 7;
+        fields = fields << 1 | (bits * APART & LOWEST);
+    }
+    // The windows are complements.
+    let sum = (1 << S::WINDOW_BITS) - 1;
+    fields ^ (sum | sum << FIELD | sum << (2 * FIELD))
+}
+
+/// Moves the sums of all columns one row down.
+#[inline(never)]
+fn update_columns<S: Scheme, P: Plane, const GROUPS: usize>(
+    width: usize,
+    groups: usize,
+    min_disparity: usize,
+    [enter, leave]: [Option<RowCodes<'_>>; 2],
+    room: &mut [P],
+    columns: &mut [Column<P>],
+) {
+    // A row that is not there has codes that are all zero, in both images.
+    let Some(any) = enter.or(leave) else { return };
+    let present = |row: Option<RowCodes<'_>>| if row.is_some() { u32::MAX } else { 0 };
+    let (new_present, old_present) = (present(enter), present(leave));
+    let (enter, leave) = (enter.unwrap_or(any), leave.unwrap_or(any));
+    let Some(words) = room.as_chunks_mut::<2>().0.as_chunks_mut::<8>().0.get_mut(..groups) else { return };
+    let first = |row: RowCodes<'_>, present: u32| u32::from(row.right.first().copied().unwrap_or(0)) & present;
+    let (new_first, old_first) = (first(enter, new_present), first(leave, old_present));
+    for words in words.iter_mut() {
+        for i in 0..S::BITS {
+            words[i] = [of_bit(new_first, i), of_bit(old_first, i)];
+        }
+    }
+    // One group's words are in registers, as far as there are some.
+    let mut here = words.first().copied().unwrap_or([[P::NONE; 2]; 8]);
+    // Left of `begin` no window has a candidate; from there to the first column's partner there are few columns.
+    let begin = min_disparity.saturating_sub(S::RADIUS_X);
+    let repeated = [[new_first as u8; OUTSIDE], [old_first as u8; OUTSIDE]];
+    let few = (begin..min_disparity, &repeated[0][..], &repeated[1][..]);
+    for (place, new_right, old_right) in [few, (min_disparity..width, enter.right, leave.right)] {
+        let columns = columns.get_mut(place.start * groups..).unwrap_or_default().chunks_exact_mut(groups);
+        let new = enter.left.get(place.clone()).unwrap_or(&[]).iter().zip(new_right);
+        let old = leave.left.get(place).unwrap_or(&[]).iter().zip(old_right);
+        for (column, ((&new_left, &new_right), (&old_left, &old_right))) in columns.zip(new.zip(old)) {
+            let (new_left, new_right) = (u32::from(new_left) & new_present, u32::from(new_right) & new_present);
+            let (old_left, old_right) = (u32::from(!old_left) | !old_present, u32::from(old_right) & old_present);
+            if GROUPS == 1 {
+                let Some(sums) = column.first_mut() else { return };
+                update::<S, P>(sums, &mut here, [new_left, old_left], |i| {
+                    [P::lowest_of(new_right >> i), P::lowest_of(old_right >> i)]
+                });
+                continue;
+            }
+            // From the last group on, each takes over the last bit of the one before.
+            let mut groups = words.iter_mut().zip(column).rev().peekable();
+            while let Some((words, sums)) = groups.next() {
+                if let Some((before, _)) = groups.peek() {
+                    update::<S, P>(sums, words, [new_left, old_left], |i| before[i].map(P::highest));
+                } else {
+                    update::<S, P>(sums, words, [new_left, old_left], |i| {
+                        [P::lowest_of(new_right >> i), P::lowest_of(old_right >> i)]
+                    });
+                }
+            }
+        }
+    }
+}
+
+/// Moves the words of both rows one column on and counts them into the sums.
+#[inline(always)]
+fn update<S: Scheme, P: Plane>(
+    sums: &mut Column<P>,
+    words: &mut [[P; 2]; 8],
+    left: [u32; 2],
+    enters: impl Fn(usize) -> [P; 2],
+) {
+    let mut here = *sums;
+    count_into::<S, P>(&mut here, |i| {
+        let [new, old] = &mut words[i];
+        let [new_bit, old_bit] = enters(i);
+        (*new, *old) = (new.doubled() | new_bit, old.doubled() | old_bit);
+        (*new ^ of_bit(left[0], i), *old ^ of_bit(left[1], i))
+    });
+    for i in 0..S::COLUMN_BITS {
+        sums[i] = here[i];
+    }
+}
+
+/// Adds `2 BITS` bits for every candidate, two by two, and takes `BITS` off.
+#[inline(always)]
+fn count_into<S: Scheme, P: Plane>(sums: &mut Column<P>, mut bits: impl FnMut(usize) -> (P, P)) {
+    let levels = S::BITS.ilog2() as usize;
+    // Carries that wait for another of their weight.
+    let mut waiting = [P::NONE; 4];
+    for i in 0..S::BITS {
+        let mut pair = bits(i);
+        for level in 0..levels {
+            let carry = add_pair(&mut sums[level], pair.0, pair.1);
+            if i >> level & 1 == 0 {
+                waiting[level] = carry;
+                break;
+            }
+            pair = (waiting[level], carry);
+        }
+        if i + 1 == S::BITS {
+            // The two carries left, and one taken off.
+            let mut over = add_pair(&mut sums[levels], pair.0, pair.1);
+            let digit = sums[levels];
+            sums[levels] = !digit;
+            let below = !(over | digit);
+            over = !(over ^ digit);
+            for (n, sum) in sums.iter_mut().enumerate().take(S::COLUMN_BITS).skip(levels + 1) {
+                let before = *sum;
+                if n == levels + 1 {
+                    *sum = before ^ over;
+                    over = before & over;
+                } else {
+                    let half = before ^ below;
+                    *sum = half ^ over;
+                    over = below ^ (half & (below ^ over));
+                }
+            }
+        }
+    }
+}

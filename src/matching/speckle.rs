@@ -22,6 +22,7 @@ const ROWS_ON: [u8; 1 << LOOK_AHEAD] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2
 
 /// Adds what row `y` has to the support from above. `support` holds the lengths of its surfaces in its own slot; each
 /// column's `history` gets a bit, whether it goes on from the row above.
+#[inline(never)]
 pub(super) fn count(y: usize, band: &[Disparity], support: &mut [u16], history: &mut [u8], step: Disparity) {
     let width = history.len();
     if y == 0 {
@@ -49,6 +50,7 @@ pub(super) fn end(history: &mut [u8]) {
 
 /// Judges row `y`, after the rows that it waits for: what is finished are the `answers` without those that have less
 /// support than `pixels`.
+#[inline(never)]
 pub(super) fn judge(
     y: usize,
     pixels: u16,

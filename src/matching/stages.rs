@@ -121,6 +121,7 @@ impl<S: Scheme> Stages<'_, S> {
     }
 
     /// Takes the answers away that the checks contradict, and averages what is left along the row.
+    #[inline(never)]
     fn refuse(&mut self, row: usize) {
         let checks = &self.config.checks;
         let refused_ceiling = PixelFlags::CEILING.when(checks.refuse_ceiling);

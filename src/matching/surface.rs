@@ -41,6 +41,7 @@ impl Runs {
 
 /// The pass back: makes every answer of a row the average of up to `radius` pairs around it, and every length that of the
 /// whole surface along the row. `sums[x]` is the sum of all answers left of `x`, `lengths` and `sums` are of [`Runs`].
+#[inline(never)]
 pub(super) fn average(answers: &mut [Disparity], lengths: &mut [u16], sums: &[u16], radius: u8) {
     let (mut whole, mut goes_on) = (0, false);
     for ((x, answer), length) in answers.iter_mut().enumerate().zip(lengths).rev() {

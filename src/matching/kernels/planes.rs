@@ -16,6 +16,7 @@
 use super::plane::{Plane, add_pair, of_bit};
 use super::{OUTSIDE, RowCodes, RowWork, Select, Winner};
 use crate::matching::scheme::Scheme;
+use core::sync::atomic::{Ordering, compiler_fence};
 
 /// Winners handed on at a time.
 const BATCH: usize = 16;
@@ -69,7 +70,7 @@ fn row_of<S: Scheme, P: Plane, const GROUPS: usize>(work: RowWork<'_>, select: O
     for first in (0..begin).step_by(BATCH) {
         found(batch.get(..BATCH.min(begin - first)).unwrap_or(&[]));
     }
-    for column in columns.chunks_exact(groups).skip(OUTSIDE + begin - S::RADIUS_X).take(2 * S::RADIUS_X) {
+    for column in columns.chunks_exact(groups).take(OUTSIDE + begin + S::RADIUS_X).skip(OUTSIDE + begin.saturating_sub(S::RADIUS_X)) {
         slide::<S, P>(windows, column, columns);
     }
     let from = |column: usize| columns.get((OUTSIDE + begin + column) * groups..).unwrap_or(&[]).chunks(BATCH * groups);
@@ -283,17 +284,18 @@ fn cost_of<S: Scheme, P: Plane>(window: &Window<P>, candidates: P) -> u32 {
     cost
 }
 
-/// The sums of three candidates in a word, from the `first` on.
+/// The sums of three candidates in a word, from the `first` on: a field for each.
 #[inline(always)]
 fn three<S: Scheme, P: Plane>(window: &Window<P>, first: usize) -> u32 {
-    const { assert!(S::WINDOW_BITS < FIELD as usize) };
-    const APART: u32 = 1 | 1 << (FIELD - 1) | 1 << (2 * FIELD - 2);
-    const LOWEST: u32 = 1 | 1 << FIELD | 1 << (2 * FIELD);
+    const { assert!(S::WINDOW_BITS < FIELD as usize && S::WINDOW_BITS.is_multiple_of(2)) };
+    // Two planes at a time, half a sum apart. The product has their bits three times, each time in place for one field.
+    let half = S::WINDOW_BITS / 2;
+    let lowest = (1 | 1 << half) * (1 | 1 << FIELD | 1 << (2 * FIELD));
     let mut fields = 0;
-    for i in (0..S::WINDOW_BITS).rev() {
-        // The three bits, each to its field.
-        let bits = window[i].bits() >> (first % 32) & 7;
-        fields = fields << 1 | (bits * APART & LOWEST);
+    for i in (0..half).rev() {
+        let bits = |i: usize| window[i].bits() >> (first % 32) & 7;
+        let two = bits(i) | bits(i + half) << half;
+        fields = fields << 1 | (two * (1 | 1 << (FIELD - 1) | 1 << (2 * FIELD - 2)) & lowest);
     }
     // The windows are complements.
     let sum = (1 << S::WINDOW_BITS) - 1;
@@ -385,6 +387,10 @@ fn count_into<S: Scheme, P: Plane>(sums: &mut Column<P>, mut bits: impl FnMut(us
     // Carries that wait for another of their weight.
     let mut waiting = [P::NONE; 4];
     for i in 0..S::BITS {
+        // Half of it at a time: the compiler for ARM otherwise keeps all bits for later, in more than its registers.
+        if cfg!(target_arch = "arm") && i == S::BITS / 2 {
+            compiler_fence(Ordering::SeqCst);
+        }
         let mut pair = bits(i);
         for level in 0..levels {
             let carry = add_pair(&mut sums[level], pair.0, pair.1);

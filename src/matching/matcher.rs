@@ -4,7 +4,7 @@ use super::consistency::Consistency;
 use super::kernels::{Aligned, Columns, Kernel, OUTSIDE, STEP, Scratch};
 use super::row::{HISTORY, Row};
 use super::scheme::{Around, Codes, Scheme};
-use super::speckle::{BAND, LOOK_AHEAD};
+use super::speckle::{BAND, LOOK_AHEAD, Support};
 use super::stages::Stages;
 use super::texture::Texture;
 use super::{Config, ConfigError};
@@ -32,7 +32,8 @@ pub struct Matcher<S: Scheme, const W: usize, const D: usize> {
     right_winners: [u32; W],
     band: [[Disparity; W]; BAND],
     band_flags: [[PixelFlags; W]; BAND],
-    support: [[u16; W]; BAND],
+    lengths: [u16; W],
+    support: [u16; W],
     history: [u8; W],
     finished: [[Disparity; W]; HISTORY],
     config: Config,
@@ -54,7 +55,7 @@ pub const fn state_bytes<S: Scheme>(width: usize, disparities: usize) -> usize {
     let lanes = disparities.next_multiple_of(STEP);
     let width = if width < lanes { lanes } else { width };
     let codes = 2 * S::Codes::<1>::ROWS;
-    let per_column = codes + lanes + 2 + 2 + 1 + 1 + 4 + 1 + (2 + 1 + 2) * BAND + 2 * HISTORY;
+    let per_column = codes + lanes + 2 + 2 + 1 + 1 + 4 + 2 + 2 + 1 + (2 + 1) * BAND + 2 * HISTORY;
     width * per_column + (4 + 2 * OUTSIDE) * lanes + FIXED_BYTES
 }
 
@@ -114,7 +115,8 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             right_winners: [0; W],
             band: [[Disparity::ZERO; W]; BAND],
             band_flags: [[PixelFlags::CLEAR; W]; BAND],
-            support: [[0; W]; BAND],
+            lengths: [0; W],
+            support: [0; W],
             history: [0; W],
             finished: [[Disparity::ZERO; W]; HISTORY],
             config: Config::UNSET,
@@ -227,8 +229,11 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             },
             band: first(self.band.as_flattened_mut(), width * BAND),
             flags: first(self.band_flags.as_flattened_mut(), width * BAND),
-            support: first(self.support.as_flattened_mut(), width * BAND),
-            history: first(&mut self.history, width),
+            support: Support {
+                lengths: first(&mut self.lengths, width),
+                counts: first(&mut self.support, width),
+                history: first(&mut self.history, width),
+            },
             finished: first(self.finished.as_flattened_mut(), width * HISTORY),
         }
     }

@@ -5,7 +5,7 @@ use super::consistency::Consistency;
 use super::kernels::{Kernel, RowCodes, RowWork, Select, Winner, halves_mut};
 use super::row::{HISTORY, slot};
 use super::scheme::{Around, Scheme};
-use super::speckle::{self, BAND, LOOK_AHEAD};
+use super::speckle::{BAND, LOOK_AHEAD, Support};
 use super::subpixel::refine;
 use super::surface::{self, Runs};
 use super::texture::Texture;
@@ -27,9 +27,7 @@ pub struct Stages<'a, S: Scheme> {
     pub(super) consistency: Consistency<'a>,
     pub(super) band: &'a mut [Disparity],
     pub(super) flags: &'a mut [PixelFlags],
-    /// Lengths of surfaces along the row, then support: rows as in the band.
-    pub(super) support: &'a mut [u16],
-    pub(super) history: &'a mut [u8],
+    pub(super) support: Support<'a>,
     pub(super) finished: &'a mut [Disparity],
 }
 
@@ -41,6 +39,7 @@ impl<S: Scheme> Stages<'_, S> {
     pub(super) fn begin(self) {
         self.columns.fill(0);
         self.texture.clear();
+        self.support.begin(self.band);
     }
 
     /// Takes row `y` of both images (`None` below the last one) and finishes the row that is due with it.
@@ -54,27 +53,31 @@ impl<S: Scheme> Stages<'_, S> {
             self.texture.push::<S>(line, &self.config.checks);
         }
         self.match_row(y);
-        if let Some(row) = y.checked_sub(S::RADIUS_Y + LOOK_AHEAD) {
-            self.judge_row(row);
-        }
     }
 
-    /// Moves the window down to where row `bottom` is its lowest, and answers for the row at its centre.
+    /// Moves the window down to where row `bottom` is its lowest, answers for the row at its centre, and judges the one that
+    /// waited for it.
     fn match_row(&mut self, bottom: usize) {
         let height = usize::from(self.config.height);
-        if bottom >= height + S::RADIUS_Y {
-            speckle::end(self.history);
-            return;
-        }
         let row = bottom.checked_sub(S::RADIUS_Y);
-        if row.is_some() {
-            self.consistency.begin();
+        if bottom < height + S::RADIUS_Y {
+            if row.is_some() {
+                self.consistency.begin();
+            }
+            self.select_winners(bottom, bottom < height, row);
         }
-        self.select_winners(bottom, bottom < height, row);
-        if let Some(row) = row {
+        let Some(row) = row else { return };
+        if row < height {
             self.refuse(row);
-            speckle::count(row, self.band, self.support, self.history, self.config.checks.surface_step);
+        } else {
+            // No surface goes on below the image.
+            slot_mut(self.band, row % BAND, self.width).fill(Disparity::NONE);
         }
+        let checks = &self.config.checks;
+        let judged = row + BAND - LOOK_AHEAD;
+        let flags = slot_mut(self.flags, judged % BAND, self.width);
+        let finished = slot_mut(self.finished, judged % HISTORY, self.width);
+        self.support.count(row, self.band, checks.surface_step, checks.speckle_pixels, flags, finished);
     }
 
     /// Runs the kernel and turns its winners into answers and flags; without a `row`, costs are only gathered.
@@ -134,7 +137,7 @@ impl<S: Scheme> Stages<'_, S> {
         let tolerance = checks.left_right_px.unwrap_or(u8::MAX);
         let (flags, answers) =
             (slot_mut(self.flags, row % BAND, self.width), slot_mut(self.band, row % BAND, self.width));
-        let lengths = slot_mut(self.support, row % BAND, self.width);
+        let lengths = &mut *self.support.lengths;
         // The kernel is done with its room.
         let Some((none, sums)) = halves_mut(self.scratch).split_first_mut() else { return };
         *none = 0;
@@ -154,15 +157,6 @@ impl<S: Scheme> Stages<'_, S> {
             (*length, *sum) = runs.next(*answer);
         }
         surface::average(answers, lengths, halves_mut(self.scratch), checks.smoothing_radius);
-    }
-
-    /// Decides which answers of a row have enough support. The row is finished with that.
-    fn judge_row(&mut self, row: usize) {
-        let width = self.width;
-        let flags = slot_mut(self.flags, row % BAND, width);
-        let finished = slot_mut(self.finished, row % HISTORY, width);
-        let answers = slot(self.band, row % BAND, width);
-        speckle::judge(row, self.config.checks.speckle_pixels, self.support, self.history, answers, flags, finished);
     }
 }
 

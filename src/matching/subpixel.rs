@@ -17,15 +17,12 @@ use crate::units::Disparity;
 pub(super) fn refine(winner: &Winner, min_disparity: u32) -> Disparity {
     let whole = (min_disparity + winner.disparity()) * u32::from(Disparity::ONE);
     let (a, b) = winner.rises();
-    // Without a branch: all ones where a < b, nothing where not.
-    let difference = a.wrapping_sub(b) as i32;
-    let below = (difference >> 31) as u32;
-    let steepest = a.wrapping_sub(difference as u32 & below);
+    let steepest = a.max(b);
     let half = u32::from(Disparity::ONE / 2);
     // A steepest rise of 0 is a flat minimum: no fraction. `max(1)` keeps the division defined.
-    let fraction = (difference.unsigned_abs() * half + steepest / 2) / steepest.max(1);
+    let fraction = (a.abs_diff(b) * half + steepest / 2) / steepest.max(1);
     // The fraction is 0 at the smallest disparity, which has nothing below.
-    let steps = whole.wrapping_add((fraction ^ below).wrapping_sub(below));
+    let steps = if a < b { whole.wrapping_sub(fraction) } else { whole.wrapping_add(fraction) };
     Disparity::from_raw(steps as u16)
 }
 

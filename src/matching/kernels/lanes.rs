@@ -59,27 +59,48 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
     for (sum, &start) in sums.iter_mut().zip(S::Sum::INDICES) {
         *sum = if S::Sum::NUMBER_BITS > 0 { start } else { S::Sum::INDICES[0] };
     }
-    let mut entering = columns.chunks_exact(stride).skip(OUTSIDE);
-    let none = columns.get(..stride).unwrap_or(&[]);
-    for _ in 0..S::RADIUS_X {
-        slide::<S::Sum, N>(sums, entering.next().unwrap_or(none), none);
-    }
-    let leaving = columns.chunks_exact(stride).skip(OUTSIDE - 1 - S::RADIUS_X);
-    let mut pairs = (0..width).zip(leaving).zip(entering);
+    // Left of here no pixel has a candidate.
+    let begin = min_disparity.min(width);
     let mut batch = [Winner::default(); BATCH];
-    for _ in 0..width.div_ceil(BATCH) {
-        let mut count = 0;
-        for (slot, ((x, leaves), enters)) in batch.iter_mut().zip(&mut pairs) {
-            let candidates = select.candidates(x);
-            let mask = S::Sum::MASKS.get(256 - candidates.min(256)..).and_then(|m| m.get(..stride)).unwrap_or(&[]);
-            let (cost, disparity) = slide_to_least::<S::Sum, N>(sums, enters, leaves, mask);
-            slot.set(cost, disparity as u32, beside::<S::Sum>(cost, disparity, candidates, sums));
-            if select.second {
-                slot.second = best_of_the_rest::<S::Sum, N>(slot.disparity() as usize, mask, sums);
-            }
-            count += 1;
+    for first in (0..begin).step_by(BATCH) {
+        found(batch.get(..BATCH.min(begin - first)).unwrap_or(&[]));
+    }
+    let before = OUTSIDE + begin.saturating_sub(S::RADIUS_X);
+    for column in columns.chunks_exact(stride).take(OUTSIDE + begin + S::RADIUS_X).skip(before) {
+        slide::<S::Sum, N>(sums, column, columns);
+    }
+    let from = |column: usize| columns.get((OUTSIDE + begin + column) * stride..).unwrap_or(&[]).chunks(BATCH * stride);
+    let columns = from(S::RADIUS_X).zip(from(0usize.wrapping_sub(S::RADIUS_X + 1)));
+    for (first, (entering, leaving)) in (begin..width).step_by(BATCH).zip(columns) {
+        let batch = batch.get_mut(..BATCH.min(width - first)).unwrap_or_default();
+        let columns = entering.chunks_exact(stride).zip(leaving.chunks_exact(stride));
+        // The first pixels have fewer candidates than there are lanes.
+        if select.candidates(first) == stride {
+            winners::<S, N, false>(first, select, columns, sums, batch);
+        } else {
+            winners::<S, N, true>(first, select, columns, sums, batch);
         }
-        found(batch.get(..count).unwrap_or(&[]));
+        found(batch);
+    }
+}
+
+/// The winners of the pixels from `first` on, with the columns that enter and leave at each.
+#[inline(always)]
+fn winners<'a, S: Scheme, const N: usize, const MASKED: bool>(
+    first: usize,
+    select: Select,
+    columns: impl Iterator<Item = (&'a [u8], &'a [u8])>,
+    sums: &mut [S::Sum],
+    out: &mut [Winner],
+) {
+    for ((x, slot), (enters, leaves)) in (first..).zip(out).zip(columns) {
+        let candidates = if MASKED { select.candidates(x) } else { sums.len() };
+        let mask = S::Sum::MASKS.get(256 - candidates.min(256)..).and_then(|m| m.get(..sums.len())).unwrap_or(&[]);
+        let (cost, disparity) = slide_to_least::<S::Sum, N, MASKED>(sums, enters, leaves, mask);
+        slot.set(cost, disparity as u32, beside::<S::Sum>(cost, disparity, candidates, sums));
+        if select.second {
+            slot.second = best_of_the_rest::<S::Sum, N>(disparity, mask, sums);
+        }
     }
 }
 
@@ -176,7 +197,12 @@ fn slide<L: Lane, const N: usize>(sums: &mut [L], enters: &[u8], leaves: &[u8]) 
 
 /// [`slide`], then the least cost and the first candidate that has it.
 #[inline(always)]
-fn slide_to_least<L: Lane, const N: usize>(sums: &mut [L], enters: &[u8], leaves: &[u8], mask: &[L]) -> (u32, usize) {
+fn slide_to_least<L: Lane, const N: usize, const MASKED: bool>(
+    sums: &mut [L],
+    enters: &[u8],
+    leaves: &[u8],
+    mask: &[L],
+) -> (u32, usize) {
     let room = if L::NUMBER_BITS > 0 { 1 << L::NUMBER_BITS } else { 256 };
     let mut best = (u32::MAX, 0);
     let columns = enters.chunks(room).zip(leaves.chunks(room));
@@ -188,7 +214,7 @@ fn slide_to_least<L: Lane, const N: usize>(sums: &mut [L], enters: &[u8], leaves
             let mut group = *sums;
             for i in 0..N {
                 group[i] = group[i].moved(enters[i], leaves[i]);
-                least[i] = least[i].min(group[i].or(mask[i]));
+                least[i] = least[i].min(if MASKED { group[i].or(mask[i]) } else { group[i] });
             }
             *sums = group;
         }
@@ -198,7 +224,7 @@ fn slide_to_least<L: Lane, const N: usize>(sums: &mut [L], enters: &[u8], leaves
                 best = (least.cost(), n * room + least.number() as usize);
             }
         } else {
-            best = (least.cost(), first::<L, N>(least, sums, mask));
+            best = (least.cost(), first::<L, N, MASKED>(least, sums, mask));
         }
     }
     best
@@ -206,12 +232,13 @@ fn slide_to_least<L: Lane, const N: usize>(sums: &mut [L], enters: &[u8], leaves
 
 /// The first candidate with the least sum, where lanes have no numbers.
 #[inline(always)]
-fn first<L: Lane, const N: usize>(least: L, sums: &[L], mask: &[L]) -> usize {
+fn first<L: Lane, const N: usize, const MASKED: bool>(least: L, sums: &[L], mask: &[L]) -> usize {
     let mut first = [L::MAX; N];
     let lanes = sums.as_chunks::<N>().0.iter().zip(mask.as_chunks::<N>().0);
     for ((&lanes, &mask), &indices) in lanes.zip(L::INDICES.as_chunks::<N>().0) {
         for i in 0..N {
-            first[i] = first[i].min(indices[i].or(lanes[i].or(mask[i]).differs(least)));
+            let lane = if MASKED { lanes[i].or(mask[i]) } else { lanes[i] };
+            first[i] = first[i].min(indices[i].or(lane.differs(least)));
         }
     }
     minimum(&first).cost() as usize

@@ -27,12 +27,18 @@ pub(super) fn census<S: Scheme>(rows: &Around<'_>, out: &mut [u8]) -> bool {
     let mut before = lines.map(|line| line.first().map_or(0, |first| (first & 0xff) * 0x0101_0101));
     let mut centre = lines.map(|line| line.first().copied().unwrap_or(0));
     let last = lines.map(|line| line.last().map_or(0, |last| (last >> 24) * 0x0101_0101));
-    let following = above.iter().zip(here).zip(below).skip(1).map(|((a, h), b)| [*a, *h, *b]);
-    for (out, after) in out.iter_mut().zip(following.chain([last])) {
+    let mut next = |after: Three| {
         let places = |i: usize| [centre[i] << 16 | before[i] >> 16, centre[i], centre[i] >> 16 | after[i] << 16];
-        *out = S::codes(&[places(0), places(1), places(2)]);
+        let codes = S::codes(&[places(0), places(1), places(2)]);
         (before, centre) = (centre, after);
+        codes
+    };
+    let Some((out_last, out)) = out.split_last_mut() else { return true };
+    let [above, here, below] = lines.map(|line| line.get(1..).unwrap_or(&[]));
+    for (out, ((&above, &here), &below)) in out.iter_mut().zip(above.iter().zip(here).zip(below)) {
+        *out = next([above, here, below]);
     }
+    *out_last = next(last);
     true
 }
 

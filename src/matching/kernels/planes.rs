@@ -111,7 +111,9 @@ impl<P: Plane> Windows<'_, P> {
             core::array::from_fn(|group| P::first(candidates.saturating_sub(group * P::CANDIDATES)))
         };
         let (mut candidates, all) = (of(self.candidates), of(disparities));
-        let Some(windows) = self.windows.first_chunk_mut::<GROUPS>() else { return };
+        // In registers, as far as there are some.
+        let Some(kept) = self.windows.first_chunk_mut::<GROUPS>() else { return };
+        let mut windows = *kept;
         let columns = entering.as_chunks::<GROUPS>().0.iter().zip(leaving.as_chunks::<GROUPS>().0);
         for (slot, (enters, leaves)) in out.iter_mut().zip(columns) {
             let mut one_more = P::one(0);
@@ -121,22 +123,24 @@ impl<P: Plane> Windows<'_, P> {
                 candidates[group] = (before.doubled() | one_more) & all[group];
                 one_more = before.highest();
             }
-            let best = best::<S, P, GROUPS>(windows, candidates);
+            let best = best::<S, P, GROUPS>(&windows, candidates);
             // The first group with one of them.
             let group = best.iter().position(|&best| best != P::NONE).unwrap_or(0);
             let lane = best[group].lowest();
-            winner::<S, P>(windows, group, lane, candidates[group], slot);
+            winner::<S, P>(&windows, group, lane, candidates[group], slot);
             let disparity = group * P::CANDIDATES + lane;
             if GROUPS > 1 {
                 let last = lane + 1 == P::CANDIDATES;
                 let above = if last { candidates[(group + 1) % GROUPS] } else { candidates[group] & !P::one(0) };
                 let is_above = above != P::NONE && (!last || group + 1 < GROUPS);
-                look_beyond::<S, P>(windows, disparity, is_above, slot);
+                look_beyond::<S, P>(&windows, disparity, is_above, slot);
             }
             if self.second {
-                slot.second = best_of_the_rest::<S, P>(windows, disparity, &candidates);
+                let windows = windows;
+                slot.second = best_of_the_rest::<S, P>(&windows, disparity, &candidates);
             }
         }
+        *kept = windows;
         self.candidates = disparities.min(self.candidates + out.len());
     }
 

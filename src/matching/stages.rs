@@ -45,8 +45,11 @@ impl<S: Scheme> Stages<'_, S> {
     /// Takes row `y` of both images (`None` below the last one) and finishes the row that is due with it.
     pub(super) fn step(mut self, y: usize, lines: Option<[&Around<'_>; 2]>) {
         if let Some([left, right]) = lines {
-            self.kernel.census::<S>(left, slot_mut(self.left, y % Self::CODES, self.width));
-            self.kernel.census::<S>(right, slot_mut(self.right, y % Self::CODES, self.width));
+            let place = y % Self::CODES;
+            let (codes, of_right) = (slot_mut(self.left, place, self.width), slot_mut(self.right, place, self.width));
+            self.kernel.census::<S>(left, codes);
+            self.kernel.census::<S>(right, of_right);
+            self.kernel.prepare::<S>(codes, of_right, usize::from(self.config.min_disparity));
         }
         if self.config.checks.texture_pixels > 0 {
             let line = lines.and_then(|[left, _]| left[2].get(..self.width));

@@ -107,6 +107,16 @@ impl Kernel {
         S::census(rows, out);
     }
 
+    /// Brings the census rows of both images into the form in which [`Self::row`] takes them, once for each row.
+    #[inline]
+    pub(super) fn prepare<S: Scheme>(self, left: &mut [u8], right: &mut [u8], min_disparity: usize) {
+        #[cfg(not(stereopsis_vectors))]
+        if self == Self::Planes {
+            planes::prepare(left, right, min_disparity, planes::first_column::<S>(min_disparity));
+        }
+        let _ = (left, right, min_disparity);
+    }
+
     /// Moves the window to the next row; `found` gets the winners in order of the columns, some at a time,
     /// unless the row is only gathered (`select` is `None`).
     #[inline]

@@ -27,8 +27,8 @@ pub trait Plane:
     fn doubled(self) -> Self;
     /// The last candidate's bit for the first.
     fn highest(self) -> Self;
-    /// The lowest bit, for the first candidate.
-    fn lowest_of(word: u32) -> Self;
+    /// The low bits.
+    fn of_signed(word: i32) -> Self;
     /// Place of the lowest bit; the last if there is none.
     fn lowest(self) -> usize;
     /// In a word.
@@ -78,8 +78,8 @@ macro_rules! plane {
             }
 
             #[inline(always)]
-            fn lowest_of(word: u32) -> Self {
-                (word & 1) as Self
+            fn of_signed(word: i32) -> Self {
+                word as Self
             }
 
             #[inline(always)]
@@ -102,6 +102,12 @@ plane!(u16, halves_mut, |bytes| halves_mut(words_mut(bytes)));
 #[inline(always)]
 pub(super) fn of_bit<P: Plane>(word: u32, i: usize) -> P {
     P::all_if(word >> i & 1 != 0)
+}
+
+/// Bit `i` of a word for the first candidate, bit `i + 1` for all others.
+#[inline(always)]
+pub(super) fn two_bits<P: Plane>(word: u32, i: usize) -> P {
+    P::of_signed((word << (30 - i)) as i32 >> 30)
 }
 
 /// Adds two bits to a third, whose place is the sum's; what is carried.

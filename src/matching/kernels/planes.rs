@@ -13,9 +13,10 @@
 //!
 //! The work is the same for every picture, but for an instruction or two.
 
-use super::plane::{Plane, add_pair, of_bit};
+use super::plane::{Plane, add_pair, of_bit, two_bits};
 use super::{OUTSIDE, RowCodes, RowWork, Select, Winner};
 use crate::matching::scheme::Scheme;
+use core::cell::Cell;
 use core::sync::atomic::{Ordering, compiler_fence};
 
 /// Winners handed on at a time.
@@ -306,78 +307,117 @@ fn three<S: Scheme, P: Plane>(window: &Window<P>, first: usize) -> u32 {
     fields ^ (sum | sum << FIELD | sum << (2 * FIELD))
 }
 
+/// The codes of a column in the row that enters, in the low half, and in the one that leaves, as [`prepare`] leaves them:
+/// two bits for each of the code's.
+type Codes = u32;
+
+/// Where the bits of [`Codes`] begin.
+const NEW: usize = 0;
+const OLD: usize = 16;
+
+/// Makes of the codes of a row what the columns are moved with: for each bit whether it is another one than in the column
+/// before, and whether it is another one than in the partner of the first candidate. The two stand side by side, those of
+/// the code's first four bits in place of the left code, the others in place of the right one.
+#[inline(never)]
+pub(in crate::matching) fn prepare<'a>(left: &'a mut [u8], right: &'a mut [u8], min_disparity: usize, begin: usize) {
+    let first = right.first().copied().unwrap_or(0);
+    let left = Cell::from_mut(left).as_slice_of_cells();
+    let right = Cell::from_mut(right).as_slice_of_cells();
+    let from = |codes: &'a [Cell<u8>], x: usize| codes.get(x..).unwrap_or(&[]);
+    let put = |left: &Cell<u8>, right: &Cell<u8>, partner: u8, before: u8| {
+        let pairs = interleaved(left.get() ^ partner, left.get() ^ before);
+        let [low, high, ..] = pairs.to_le_bytes();
+        left.set(low);
+        right.set(high);
+    };
+    // From the last column on: what stands left of a column is still a code when it is needed.
+    let columns = |x: usize| from(left, x).iter().zip(from(right, x)).zip(from(left, x.wrapping_sub(1)));
+    let inside = min_disparity.max(begin + 1);
+    for (((left, right), before), partner) in columns(inside).zip(from(right, inside - min_disparity)).rev() {
+        put(left, right, partner.get(), before.get());
+    }
+    for ((left, right), before) in columns(begin + 1).take(inside - begin - 1).rev() {
+        put(left, right, first, before.get());
+    }
+    if let (Some(left), Some(right)) = (left.get(begin), right.get(begin)) {
+        put(left, right, first, left.get());
+    }
+}
+
+/// The bits of the first byte at the even places of a half-word, those of the second at the odd ones.
+#[inline(always)]
+fn interleaved(even: u8, odd: u8) -> u32 {
+    let mut bytes = u32::from(even) | u32::from(odd) << 16;
+    for (by, mask) in [(4, 0x0f0f_0f0f), (2, 0x3333_3333), (1, 0x5555_5555)] {
+        bytes = (bytes | bytes << by) & mask;
+    }
+    bytes | bytes >> 15
+}
+
+/// The first column that a window with a candidate has.
+pub(in crate::matching) fn first_column<S: Scheme>(min_disparity: usize) -> usize {
+    min_disparity.saturating_sub(S::RADIUS_X)
+}
+
 /// Moves the sums of all columns one row down.
 #[inline(never)]
-fn update_columns<S: Scheme, P: Plane, const GROUPS: usize>(
+fn update_columns<'a, S: Scheme, P: Plane, const GROUPS: usize>(
     width: usize,
     groups: usize,
     min_disparity: usize,
-    [enter, leave]: [Option<RowCodes<'_>>; 2],
+    [enter, leave]: [Option<RowCodes<'a>>; 2],
     room: &mut [P],
     columns: &mut [Column<P>],
 ) {
-    // A row that is not there has codes that are all zero, in both images.
+    // A row that is not there has no bit that is another one. Of the row that leaves the bits that are equal are counted.
     let Some(any) = enter.or(leave) else { return };
-    let present = |row: Option<RowCodes<'_>>| if row.is_some() { u32::MAX } else { 0 };
-    let (new_present, old_present) = (present(enter), present(leave));
+    let present = if enter.is_some() { 0xffff } else { 0 } | if leave.is_some() { 0xffff_0000 } else { 0 };
     let (enter, leave) = (enter.unwrap_or(any), leave.unwrap_or(any));
+    // In a box: the compiler otherwise takes the bits apart again.
+    let equal = core::hint::black_box(0x5555_0000);
+    let codes = |bytes: [u8; 4]| u32::from_le_bytes(bytes) & present ^ equal;
+
+    let begin = first_column::<S>(min_disparity);
+    let row = |row: RowCodes<'a>| (row.left.get(begin..width).unwrap_or(&[]), row.right.get(begin..width).unwrap_or(&[]));
+    let (new, old) = (row(enter), row(leave));
+    let all = || new.0.iter().zip(new.1).zip(old.0.iter().zip(old.1)).map(|((&a, &b), (&c, &d))| codes([a, b, c, d]));
+    let Some(first) = all().next() else { return };
     let Some(words) = room.as_chunks_mut::<2>().0.as_chunks_mut::<8>().0.get_mut(..groups) else { return };
-    let first = |row: RowCodes<'_>, present: u32| u32::from(row.right.first().copied().unwrap_or(0)) & present;
-    let (new_first, old_first) = (first(enter, new_present), first(leave, old_present));
-    for words in words.iter_mut() {
-        for i in 0..S::BITS {
-            words[i] = [of_bit(new_first, i), of_bit(old_first, i)];
-        }
-    }
+    // The first column has one partner for all candidates.
+    let start = core::array::from_fn(|i| [of_bit(first, NEW + 2 * i), of_bit(first, OLD + 2 * i)]);
+    words.fill(start);
     // One group's words are in registers, as far as there are some.
-    let mut here = words.first().copied().unwrap_or([[P::NONE; 2]; 8]);
-    // Left of `begin` no window has a candidate; from there to the first column's partner there are few columns.
-    let begin = min_disparity.saturating_sub(S::RADIUS_X);
-    let repeated = [[new_first as u8; OUTSIDE], [old_first as u8; OUTSIDE]];
-    let few = (begin..min_disparity, &repeated[0][..], &repeated[1][..]);
-    for (place, new_right, old_right) in [few, (min_disparity..width, enter.right, leave.right)] {
-        let columns = columns.get_mut(place.start * groups..).unwrap_or_default().chunks_exact_mut(groups);
-        let new = enter.left.get(place.clone()).unwrap_or(&[]).iter().zip(new_right);
-        let old = leave.left.get(place).unwrap_or(&[]).iter().zip(old_right);
-        for (column, ((&new_left, &new_right), (&old_left, &old_right))) in columns.zip(new.zip(old)) {
-            let (new_left, new_right) = (u32::from(new_left) & new_present, u32::from(new_right) & new_present);
-            let (old_left, old_right) = (u32::from(!old_left) | !old_present, u32::from(old_right) & old_present);
-            if GROUPS == 1 {
-                let Some(sums) = column.first_mut() else { return };
-                update::<S, P>(sums, &mut here, [new_left, old_left], |i| {
-                    [P::lowest_of(new_right >> i), P::lowest_of(old_right >> i)]
+    let mut here = start;
+    let columns = columns.get_mut(begin * groups..).unwrap_or_default().chunks_exact_mut(groups);
+    for (column, codes) in columns.zip(all()) {
+        if GROUPS == 1 {
+            let Some(sums) = column.first_mut() else { return };
+            update::<S, P>(sums, &mut here, |i, word| word.doubled() ^ two_bits(codes, i));
+            continue;
+        }
+        // From the last group on, each takes over the last bit of the one before.
+        let mut groups = words.iter_mut().zip(column).rev().peekable();
+        while let Some((words, sums)) = groups.next() {
+            if let Some((before, _)) = groups.peek() {
+                update::<S, P>(sums, words, |i, word| {
+                    let before = before[i % 16 / 2][i / 16];
+                    (word.doubled() | before.highest()) ^ of_bit(codes, i + 1)
                 });
-                continue;
-            }
-            // From the last group on, each takes over the last bit of the one before.
-            let mut groups = words.iter_mut().zip(column).rev().peekable();
-            while let Some((words, sums)) = groups.next() {
-                if let Some((before, _)) = groups.peek() {
-                    update::<S, P>(sums, words, [new_left, old_left], |i| before[i].map(P::highest));
-                } else {
-                    update::<S, P>(sums, words, [new_left, old_left], |i| {
-                        [P::lowest_of(new_right >> i), P::lowest_of(old_right >> i)]
-                    });
-                }
+            } else {
+                update::<S, P>(sums, words, |i, word| word.doubled() ^ two_bits(codes, i));
             }
         }
     }
 }
 
-/// Moves the words of both rows one column on and counts them into the sums.
+/// Moves the words of both rows one column on and counts them into the sums. `moved` gets a word's place in [`Codes`].
 #[inline(always)]
-fn update<S: Scheme, P: Plane>(
-    sums: &mut Column<P>,
-    words: &mut [[P; 2]; 8],
-    left: [u32; 2],
-    enters: impl Fn(usize) -> [P; 2],
-) {
+fn update<S: Scheme, P: Plane>(sums: &mut Column<P>, words: &mut [[P; 2]; 8], moved: impl Fn(usize, P) -> P) {
     let mut here = *sums;
     count_into::<S, P>(&mut here, |i| {
         let [new, old] = &mut words[i];
-        let [new_bit, old_bit] = enters(i);
-        (*new, *old) = (new.doubled() | new_bit, old.doubled() | old_bit);
-        (*new ^ of_bit(left[0], i), *old ^ of_bit(left[1], i))
+        (*new, *old) = (moved(NEW + 2 * i, *new), moved(OLD + 2 * i, *old));
+        (*new, *old)
     });
     for i in 0..S::COLUMN_BITS {
         sums[i] = here[i];

@@ -387,12 +387,16 @@ fn update_columns<'a, S: Scheme, P: Plane, const GROUPS: usize>(
     let start = core::array::from_fn(|i| [of_bit(first, NEW + 2 * i), of_bit(first, OLD + 2 * i)]);
     words.fill(start);
     // One group's words are in registers, as far as there are some.
-    let mut here = start;
+    let mut here = start.map(|words| words.map(P::doubled));
     let columns = columns.get_mut(begin * groups..).unwrap_or_default().chunks_exact_mut(groups);
     for (column, codes) in columns.zip(all()) {
         if GROUPS == 1 {
             let Some(sums) = column.first_mut() else { return };
-            update::<S, P>(sums, &mut here, |i, word| word.doubled() ^ two_bits(codes, i));
+            update::<S, P>(sums, &mut here, |i, doubled| {
+                let word = *doubled ^ two_bits::<P>(codes, i);
+                *doubled = word.doubled();
+                word
+            });
             continue;
         }
         // From the last group on, each takes over the last bit of the one before.
@@ -401,10 +405,14 @@ fn update_columns<'a, S: Scheme, P: Plane, const GROUPS: usize>(
             if let Some((before, _)) = groups.peek() {
                 update::<S, P>(sums, words, |i, word| {
                     let before = before[i % 16 / 2][i / 16];
-                    (word.doubled() | before.highest()) ^ of_bit(codes, i + 1)
+                    *word = (word.doubled() | before.highest()) ^ of_bit(codes, i + 1);
+                    *word
                 });
             } else {
-                update::<S, P>(sums, words, |i, word| word.doubled() ^ two_bits(codes, i));
+                update::<S, P>(sums, words, |i, word| {
+                    *word = word.doubled() ^ two_bits::<P>(codes, i);
+                    *word
+                });
             }
         }
     }
@@ -412,12 +420,11 @@ fn update_columns<'a, S: Scheme, P: Plane, const GROUPS: usize>(
 
 /// Moves the words of both rows one column on and counts them into the sums. `moved` gets a word's place in [`Codes`].
 #[inline(always)]
-fn update<S: Scheme, P: Plane>(sums: &mut Column<P>, words: &mut [[P; 2]; 8], moved: impl Fn(usize, P) -> P) {
+fn update<S: Scheme, P: Plane>(sums: &mut Column<P>, words: &mut [[P; 2]; 8], moved: impl Fn(usize, &mut P) -> P) {
     let mut here = *sums;
     count_into::<S, P>(&mut here, |i| {
         let [new, old] = &mut words[i];
-        (*new, *old) = (moved(NEW + 2 * i, *new), moved(OLD + 2 * i, *old));
-        (*new, *old)
+        (moved(NEW + 2 * i, new), moved(OLD + 2 * i, old))
     });
     for i in 0..S::COLUMN_BITS {
         sums[i] = here[i];

@@ -65,7 +65,8 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
     for first in (0..begin).step_by(BATCH) {
         found(batch.get(..BATCH.min(begin - first)).unwrap_or(&[]));
     }
-    let before = OUTSIDE + begin.saturating_sub(S::RADIUS_X);
+    // The column that leaves at the first pixel is among them.
+    let before = OUTSIDE + begin.saturating_sub(S::RADIUS_X + 1);
     for column in columns.chunks_exact(stride).take(OUTSIDE + begin + S::RADIUS_X).skip(before) {
         slide::<S::Sum, N>(sums, column, columns);
     }

@@ -307,11 +307,8 @@ fn three<S: Scheme, P: Plane>(window: &Window<P>, first: usize) -> u32 {
     fields ^ (sum | sum << FIELD | sum << (2 * FIELD))
 }
 
-/// The codes of a column in the row that enters, in the low half, and in the one that leaves, as [`prepare`] leaves them:
-/// two bits for each of the code's.
-type Codes = u32;
-
-/// Where the bits of [`Codes`] begin.
+/// Where the bits of the row that enters begin in a column's word, and those of the row that leaves: two for each bit of
+/// the code, as [`prepare`] leaves them.
 const NEW: usize = 0;
 const OLD: usize = 16;
 
@@ -418,7 +415,8 @@ fn update_columns<'a, S: Scheme, P: Plane, const GROUPS: usize>(
     }
 }
 
-/// Moves the words of both rows one column on and counts them into the sums. `moved` gets a word's place in [`Codes`].
+/// Moves the words of both rows one column on and counts them into the sums. `moved` gets a word's place among [`NEW`] and
+/// [`OLD`].
 #[inline(always)]
 fn update<S: Scheme, P: Plane>(sums: &mut Column<P>, words: &mut [[P; 2]; 8], moved: impl Fn(usize, &mut P) -> P) {
     let mut here = *sums;

@@ -74,10 +74,3 @@ pub(super) fn words_of(bytes: &[u8]) -> &[u32] {
     // SAFETY: every value of four bytes is a word.
     unsafe { bytes.align_to().1 }
 }
-
-/// Words as half-words, in the order of memory, to read.
-#[cfg(not(stereopsis_vectors))]
-pub(super) fn halves_of(words: &[u32]) -> &[u16] {
-    // SAFETY: every value of a word is two half-words.
-    unsafe { words.align_to().1 }
-}

@@ -52,6 +52,10 @@ fn commands_work_in_a_fresh_clone() {
     let readme = read(&clone.join("README.md"));
 
     let blocks = commands::blocks(&readme);
+    for program in commands::programs(&blocks.concat()) {
+        let missing = "is not installed; `cargo xtask test` installs it";
+        assert!(is_installed(program), "README.md runs {program}, which {missing}");
+    }
     for block in &blocks {
         run(block, &clone);
     }
@@ -64,6 +68,12 @@ fn commands_work_in_a_fresh_clone() {
     let there = |name: &String| clone.join(name).is_file() || outs.iter().any(|out| out.join(name).is_file());
     let missing: Vec<_> = promised.iter().filter(|name| !there(name)).collect();
     assert!(missing.is_empty(), "README.md names files that its commands do not write: {missing:?}");
+}
+
+/// Whether the shell finds a program.
+fn is_installed(program: &str) -> bool {
+    let found = Command::new("sh").args(["-c", "command -v \"$0\"", program]).output().expect("sh");
+    found.status.success()
 }
 
 /// Runs a block's lines in one shell, which ends at the first that fails.

@@ -101,13 +101,13 @@ impl PixelFlags {
     pub const OUTSIDE: Self = Self(1);
     /// The winner is the largest disparity searched: the surface may be nearer than the range can tell.
     pub const CEILING: Self = Self(1 << 1);
-    /// Too few pixels of the window have a gradient.
+    /// The winner costs as much as both its neighbours, or too few pixels of the window have a gradient.
     pub const UNTEXTURED: Self = Self(1 << 2);
     /// Another disparity matches nearly as well.
     pub const AMBIGUOUS: Self = Self(1 << 3);
     /// The right image's pixel found a better partner elsewhere: occluded or mismatched.
     pub const MISMATCH: Self = Self(1 << 4);
-    /// Part of a patch of similar disparities that is too small to be believed.
+    /// Too few answers around it are of its surface.
     pub const SPECKLE: Self = Self(1 << 5);
 
     /// Every flag with its name, in order of the bits.

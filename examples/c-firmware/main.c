@@ -1,8 +1,7 @@
-/* Depth rows from a pair of 8-bit PGM pictures, line by line: one program for a board and for a desktop.
+/* Depth rows from a pair of 8-bit PGM pictures, line by line, without malloc: for a board and for a desktop.
 
    Usage: depth [LEFT.pgm RIGHT.pgm]; without arguments, as on a board, left.pgm and right.pgm in the current folder.
-   Prints the CRC-32 of all disparities and flags. The exit status is 0 when the frame came through. In a product the
-   lines come from the cameras' DMA instead. No C library function that allocates is used. */
+   Prints the CRC-32 of all disparities and flags. In a product the lines come from the cameras' DMA instead. */
 #define _POSIX_C_SOURCE 200809L
 #include "stereopsis.h"
 #include <fcntl.h>
@@ -24,22 +23,23 @@ static void say(int file, const char *text) {
 }
 
 static void fail(const char *what, const char *why) {
-    const char *parts[] = {what, ": ", why, "\n"};
-    for (int i = 0; i < 4; i++) say(STDERR_FILENO, parts[i]);
+    say(STDERR_FILENO, what), say(STDERR_FILENO, ": "), say(STDERR_FILENO, why), say(STDERR_FILENO, "\n");
     _exit(EXIT_FAILURE);
 }
 
 static void take(const char *name, int file, void *bytes, size_t length) {
-    if (read(file, bytes, length) != (ssize_t)length) fail(name, "the picture ends early");
+    ssize_t taken = read(file, bytes, length);
+    if (taken != (ssize_t)length) fail(name, taken < 0 ? "cannot be read" : "the picture ends early");
 }
 
-/* The next number of a PGM's head; 0 for anything else, such as a comment. */
+/* The next number of a PGM's head, 65535 for all from 65530 on; 0 for anything else, such as a comment. */
 static uint16_t number(const char *name, int file) {
     uint32_t value = 0;
-    char c = ' ';
-    while (c == ' ' || c == '\n') take(name, file, &c, 1);
-    for (; c >= '0' && c <= '9' && value <= 6553; take(name, file, &c, 1)) value = value * 10 + (uint32_t)(c - '0');
-    return value <= UINT16_MAX ? (uint16_t)value : 0;
+    uint8_t c = ' ';
+    while (c <= ' ') take(name, file, &c, 1);
+    for (; c >= '0' && c <= '9'; take(name, file, &c, 1))
+        value = value < 6553 ? value * 10 + (uint32_t)(c - '0') : UINT16_MAX;
+    return c <= ' ' ? (uint16_t)value : 0;
 }
 
 static int open_pgm(const char *name, uint16_t *width, uint16_t *height) {
@@ -48,9 +48,9 @@ static int open_pgm(const char *name, uint16_t *width, uint16_t *height) {
     if (file < 0) fail(name, "cannot be opened");
     take(name, file, magic, sizeof magic);
     if (magic[0] != 'P' || magic[1] != '5') fail(name, "is not a binary PGM");
-    *width = number(name, file);
-    *height = number(name, file);
-    if (number(name, file) != 255) fail(name, "is not of 8 bits, or has a comment in its head");
+    *width = number(name, file), *height = *width != 0 ? number(name, file) : 0;
+    if (*height == 0) fail(name, "has no size, or a comment in its head");
+    if (number(name, file) != 255) fail(name, "is not of 8 bits");
     if (*width > STEREOPSIS_WIDTH) fail(name, "is wider than the library was built for");
     return file;
 }

@@ -52,6 +52,11 @@ fn commands_work_in_a_fresh_clone() {
     let readme = read(&clone.join("README.md"));
 
     let blocks = commands::blocks(&readme);
+    for program in commands::programs(&blocks.concat()) {
+        let missing = "is not installed; `cargo xtask test` installs it";
+        assert!(is_installed(program), "README.md runs {program}, which {missing}");
+    }
+    assert!(read(&clone.join(".cargo/config.toml")).contains("run --locked --quiet --release "), "see run()");
     for block in &blocks {
         run(block, &clone);
     }
@@ -66,9 +71,16 @@ fn commands_work_in_a_fresh_clone() {
     assert!(missing.is_empty(), "README.md names files that its commands do not write: {missing:?}");
 }
 
+/// Whether the shell finds a program.
+fn is_installed(program: &str) -> bool {
+    let found = Command::new("sh").args(["-c", "command -v \"$0\"", program]).output().expect("sh");
+    found.status.success()
+}
+
 /// Runs a block's lines in one shell, which ends at the first that fails.
 fn run(block: &str, clone: &Path) {
-    // The build products go where this test's own are: the dependencies are built once.
+    // The build products go where this test's own are: the dependencies are built once. The clone's packages take the
+    // places of this tree's, so its commands are all of the release profile, of which no test is.
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("the target folder");
     let mut shell = Command::new("sh");
     shell.args(["-e", "-x", "-c", block]).current_dir(clone).env("CARGO_TARGET_DIR", target);

@@ -44,7 +44,7 @@ pub struct Config {
     pub smoothing_radius: u8,
     /// Neighbours are of one surface when they differ by at most this, in 1/32 px, 0 to 32.
     pub surface_step: u16,
-    /// Speckle: answers with fewer of their surface on a cross around them are dropped; 0 is none.
+    /// Speckle: answers with fewer of their surface on a cross around them are dropped; with 0 none is.
     pub speckle_pixels: u16,
 }
 

@@ -12,13 +12,13 @@ pub const STEREOPSIS_STEPS_PER_PX: u16 = 32;
 pub const STEREOPSIS_FLAG_OUTSIDE: u8 = 1;
 /// The winner is the largest disparity searched: the surface may be nearer.
 pub const STEREOPSIS_FLAG_CEILING: u8 = 2;
-/// Too few pixels of the window have a gradient.
+/// The winner costs as much as both its neighbours, or too few pixels of the window have a gradient.
 pub const STEREOPSIS_FLAG_UNTEXTURED: u8 = 4;
 /// Another disparity matches nearly as well.
 pub const STEREOPSIS_FLAG_AMBIGUOUS: u8 = 8;
 /// The right image's pixel found a better partner elsewhere.
 pub const STEREOPSIS_FLAG_MISMATCH: u8 = 16;
-/// Part of a patch that is too small to be believed.
+/// Too few answers around it are of its surface.
 pub const STEREOPSIS_FLAG_SPECKLE: u8 = 32;
 
 /// The constants are literals, so that the header has them; these are what they say.

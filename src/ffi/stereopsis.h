@@ -94,7 +94,7 @@
 #define STEREOPSIS_FLAG_CEILING 2
 
 /**
- * Too few pixels of the window have a gradient.
+ * The winner costs as much as both its neighbours, or too few pixels of the window have a gradient.
  */
 #define STEREOPSIS_FLAG_UNTEXTURED 4
 
@@ -109,7 +109,7 @@
 #define STEREOPSIS_FLAG_MISMATCH 16
 
 /**
- * Part of a patch that is too small to be believed.
+ * Too few answers around it are of its surface.
  */
 #define STEREOPSIS_FLAG_SPECKLE 32
 
@@ -308,7 +308,7 @@ typedef struct stereopsis_config {
    */
   uint16_t surface_step;
   /**
-   * Speckle: answers with fewer of their surface on a cross around them are dropped; 0 is none.
+   * Speckle: answers with fewer of their surface on a cross around them are dropped; with 0 none is.
    */
   uint16_t speckle_pixels;
 } stereopsis_config;

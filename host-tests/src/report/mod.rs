@@ -48,10 +48,10 @@ pub const ERROR_LIMIT_PX: f32 = 3.0;
 const MEANINGS: [&str; 6] = [
     "no candidate lies inside the right image",
     "the largest disparity searched won: the surface may be nearer",
-    "too little texture in the window",
+    "its neighbours cost the same, or too little texture in the window",
     "another disparity matches nearly as well",
     "the right image disagrees: occluded or mismatched",
-    "part of a patch too small to be believed",
+    "too few answers around it are of its surface",
 ];
 
 impl Report<'_> {

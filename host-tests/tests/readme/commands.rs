@@ -28,6 +28,14 @@ fn is_run(line: &str) -> bool {
     !into_clone && !line.starts_with("git clone ") && !line.starts_with("cargo xtask test")
 }
 
+/// The programs that the lines of a block begin with, each once.
+pub fn programs(commands: &str) -> Vec<&str> {
+    let mut programs: Vec<_> = commands.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    programs.sort();
+    programs.dedup();
+    programs
+}
+
 /// The folders after `--out`.
 pub fn out_folders(commands: &str) -> Vec<&str> {
     let words: Vec<_> = commands.split_whitespace().collect();
@@ -66,6 +74,7 @@ mod on_a_small_readme {
     fn what_is_run() {
         assert_eq!(blocks(README), ["cargo run -- demo --out demo\n"]);
         assert_eq!(out_folders(&blocks(README).concat()), ["demo"]);
+        assert_eq!(programs("cargo run -- demo\ncmake --build out\n\ncargo xtask c\n"), ["cargo", "cmake"]);
     }
 
     #[test]

@@ -167,8 +167,8 @@ fn a_rendered_scene_equals_the_twin() {
     rendered::<Block>(&mut pipeline(), &scene, &pair);
 }
 
-/// One patch over the whole picture, against thresholds around its size and around the powers of two.
-fn whole_patch<S: Method>() {
+/// One surface over the whole picture, against thresholds around its size and around the powers of two.
+fn whole_surface<S: Method>() {
     let mut pipeline = pipeline::<S>();
     let same = Pattern::Shifted { most: 0, noise_grey: 0.0 }.pair(W as u32, 60, 1);
     for speckle_pixels in [255, 256, 32_767, 65_534, u16::MAX] {
@@ -179,9 +179,9 @@ fn whole_patch<S: Method>() {
 }
 
 #[test]
-fn patches_of_any_size_are_counted() {
-    whole_patch::<Fast>();
-    whole_patch::<Block>();
+fn surfaces_of_any_size_are_counted() {
+    whole_surface::<Fast>();
+    whole_surface::<Block>();
 }
 
 prop_compose! {

@@ -4,16 +4,18 @@
 //! Everything is built by CMake, as a user's project is. The desktop's programs run under the address and
 //! undefined-behaviour sanitizers, with a library that checks its own arithmetic and pointers.
 
+use crate::elf::Sizes;
+use crate::firmware::scene::Scene;
+use crate::header;
+use crate::pictures::Pictures;
 use crate::setup::QEMU_ARM;
-use crate::steps::{Failure, Outcome, command, output_of, output_within, root, run as run_command, target_dir};
-use crate::{header, pictures, symbols};
+use crate::steps::{Failure, Outcome, command, ended_within, output_within, root, run as run_command, target_dir};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 use stereopsis_host::run::Method;
-use stereopsis_host::scene::Scene;
 
 /// Where a program in C runs.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -68,14 +70,12 @@ pub fn run() -> Outcome {
     header::run(true)?;
     misuse()?;
     panicking_library()?;
-    let folder = tempfile::tempdir().map_err(|e| Failure::new(format!("a temporary folder: {e}")))?;
-    let (left, right) = (folder.path().join("left.pgm"), folder.path().join("right.pgm"));
     for (width, height, disparities) in FRAMES {
-        pictures::write(&Scene::small(width, height), &left, &right)?;
+        let pictures = Pictures::of_scene(Scene { width, height })?;
         for method in Method::ALL {
-            let expected = pictures::crc(&left, &right, method, disparities)?;
+            let expected = pictures.crc32(method, disparities)?;
             for core in Core::ALL {
-                let found = crc(core, &left, &right, method.name(), disparities)?;
+                let found = crc32(core, &pictures, method, disparities)?;
                 let what = format!("{method}, {width}x{height}, {disparities} disparities, {}", core.name());
                 if found != expected {
                     let line = format!("{what}: crc32 {found:08x}, the host's pipeline has {expected:08x}");
@@ -85,35 +85,29 @@ pub fn run() -> Outcome {
             }
         }
     }
-    refused(folder.path())
+    refused()
 }
 
-/// The CRC-32 of all disparities and flags that the example in C finds in a pair of 8-bit PGM pictures.
+/// The CRC-32 of all disparities and flags that the example in C finds in a pair of pictures.
 ///
 /// A board's program is looked through for panics and allocations as well.
-pub fn crc(core: Core, left: &Path, right: &Path, method: &str, disparities: u16) -> Outcome<u32> {
-    let width = pictures::width(left)?.max(disparities);
-    let program = program(core, method, width, disparities)?;
+pub fn crc32(core: Core, pictures: &Pictures, method: Method, disparities: u16) -> Outcome<u32> {
+    let program = program(core, method, pictures.width.max(disparities), disparities)?;
     let mut run = command(&program, &[]);
-    // A board reads the current folder's left.pgm and right.pgm.
-    let folder = tempfile::tempdir().map_err(|e| Failure::new(format!("a temporary folder: {e}")))?;
     if let Some(machine) = core.machine() {
         run = command(QEMU_ARM, &["-machine", machine, "-nographic", "-semihosting-config", "enable=on,target=native"]);
-        run.arg("-kernel").arg(&program).current_dir(folder.path());
-        for (picture, name) in [(left, "left.pgm"), (right, "right.pgm")] {
-            let copied = fs::copy(picture, folder.path().join(name));
-            copied.map_err(|e| Failure::new(format!("{}: {e}", picture.display())))?;
-        }
-    } else {
-        run.args([left, right]);
+        run.arg("-kernel").arg(&program);
     }
-    let printed = output_within(&mut run, LIMIT)?;
+    // It reads the current folder's left.pgm and right.pgm.
+    let folder = temporary_folder()?;
+    pictures.write(folder.path())?;
+    let printed = output_within(run.current_dir(folder.path()), LIMIT)?;
     let crc = printed.trim().strip_prefix("crc32 ").and_then(|digits| u32::from_str_radix(digits, 16).ok());
     crc.ok_or_else(|| Failure::new(format!("{}: no crc32 in \"{}\"", program.display(), printed.trim())))
 }
 
 /// The example, built for a core and a capacity: once in a run.
-fn program(core: Core, method: &str, width: u16, disparities: u16) -> Outcome<PathBuf> {
+fn program(core: Core, method: Method, width: u16, disparities: u16) -> Outcome<PathBuf> {
     static BUILT: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
     let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
     let build = folder().join(format!("{}-{method}-{width}x{disparities}", core.name()));
@@ -132,7 +126,8 @@ fn program(core: Core, method: &str, width: u16, disparities: u16) -> Outcome<Pa
     } else {
         choices.push(format!("-DCMAKE_TOOLCHAIN_FILE=board/{}.cmake", core.name()));
         cmake("examples/c-firmware", &build, &choices, "-Werror")?;
-        symbols::check(&program)?;
+        let checked = Sizes::of(&program).and_then(|sizes| sizes.without_panics());
+        checked.map_err(|e| Failure::new(format!("{}: {e}", program.display())))?;
     }
     built.push(program.clone());
     Ok(program)
@@ -152,6 +147,10 @@ fn configure(source: &str, build: &Path, choices: &[String], flags: &str) -> Out
     let cargo = format!("-DSTEREOPSIS_TARGET_DIR={}", folder().join("cargo").display());
     let mut configure = command("cmake", &["-S", source, cargo.as_str(), "-B"]);
     run_command(configure.arg(build).args(choices).env("CFLAGS", flags).env("CXXFLAGS", flags))
+}
+
+fn temporary_folder() -> Outcome<tempfile::TempDir> {
+    tempfile::tempdir().map_err(|e| Failure::new(format!("a temporary folder: {e}")))
 }
 
 /// Where all of it is built.
@@ -186,34 +185,44 @@ fn panicking_library() -> Outcome {
     Ok(())
 }
 
+/// A left picture that the example refuses, beside a right one of 16 pixels in 2 lines, and what it says.
+const BAD: [(&[u8], &str); 9] = [
+    (b"", "bad.pgm: the picture ends early"),
+    (b"P2 16 2 255\n", "bad.pgm: is not a binary PGM"),
+    (b"P5\n# 16 pixels\n16 2 255\n", "bad.pgm: has no size, or a comment in its head"),
+    (b"P5 16x 2 255\n", "bad.pgm: has no size, or a comment in its head"),
+    (b"P5 16 0 255\n", "bad.pgm: has no size, or a comment in its head"),
+    (b"P5 16 2 65535\n", "bad.pgm: is not of 8 bits"),
+    (b"P5 161 2 255\n", "bad.pgm: is wider than the library was built for"),
+    (b"P5 16 99999 255\n", "right.pgm: is not of the left picture's size"),
+    (b"P5 16 2 255\n0123456789012345678901234567890", "bad.pgm: the picture ends early"),
+];
+
 /// What the example and its build refuse, in a line that names what is wrong.
-fn refused(pictures: &Path) -> Outcome {
-    let (width, height, disparities) = FRAMES[0];
-    let program = program(Core::Host, Method::Block.name(), width, disparities)?;
-    let (left, right) = (pictures.join("left.pgm"), pictures.join("right.pgm"));
-    let wide = pictures.join("wide.pgm");
-    pictures::write(&Scene::small(width + 1, height), &wide, &pictures.join("unused.pgm"))?;
-    pictures::write(&Scene::small(width, height), &left, &right)?;
-    let cut = pictures.join("cut.pgm");
-    let bytes = fs::read(&left).map_err(|e| Failure::new(format!("{}: {e}", left.display())))?;
-    fs::write(&cut, &bytes[..bytes.len() - 1]).map_err(|e| Failure::new(format!("{}: {e}", cut.display())))?;
-    let missing = pictures.join("missing.pgm");
-    for (arguments, expected) in [
-        (vec![&missing, &right], "missing.pgm: cannot be opened"),
-        (vec![&wide, &right], "wide.pgm: is wider than the library was built for"),
-        (vec![&left, &cut], "cut.pgm: the picture ends early"),
-        (vec![&program, &right], "depth: is not a binary PGM"),
-        (vec![&left], "usage: depth [LEFT.pgm RIGHT.pgm]"),
-    ] {
-        let mut run = command(&program, &[]);
-        let told = match output_of(run.args(arguments)) {
-            Ok(printed) => printed,
-            Err(failure) => failure.to_string(),
-        };
-        if !told.contains(expected) {
-            return Err(Failure::new(format!("the example says \"{told}\", expected \"{expected}\"")));
+fn refused() -> Outcome {
+    let (width, _, disparities) = FRAMES[0];
+    let program = program(Core::Host, Method::Block, width, disparities)?;
+    let folder = temporary_folder()?;
+    let write = |name: &str, bytes: &[u8]| {
+        fs::write(folder.path().join(name), bytes).map_err(|e| Failure::new(format!("{name}: {e}")))
+    };
+    let says = |arguments: &[&str], expected: &str| {
+        let mut run = command(&program, arguments);
+        let told = ended_within(run.current_dir(folder.path()), LIMIT)?;
+        if told.status.success() || told.told.trim() != expected || !told.printed.is_empty() {
+            let line = format!("the example ends with {} and says \"{}\"", told.status, told.told.trim());
+            return Err(Failure::new(format!("{line}, expected \"{expected}\"")));
         }
+        Ok(())
+    };
+    write("right.pgm", &[b"P5 16 2 255\n".as_slice(), &[0; 32]].concat())?;
+    for (bytes, expected) in BAD {
+        write("bad.pgm", bytes)?;
+        says(&["bad.pgm", "right.pgm"], expected)?;
     }
+    says(&["missing.pgm", "right.pgm"], "missing.pgm: cannot be opened")?;
+    says(&[".", "right.pgm"], ".: cannot be read")?;
+    says(&["right.pgm"], "usage: depth [LEFT.pgm RIGHT.pgm]")?;
     for (name, value, expected) in [
         ("STEREOPSIS_METHOD", "sobel", "STEREOPSIS_METHOD is \"sobel\", known are: block, fast"),
         ("STEREOPSIS_DISPARITIES", "40", "STEREOPSIS_DISPARITIES is 40: it must be a multiple of 16"),

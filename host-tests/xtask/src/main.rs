@@ -15,6 +15,7 @@ use std::process::ExitCode;
 use stereopsis_host::command_line::{one_line, usage_line};
 
 mod c;
+mod elf;
 mod firmware;
 mod header;
 mod packages;
@@ -22,7 +23,6 @@ mod pictures;
 mod readme;
 mod setup;
 mod steps;
-mod symbols;
 mod test;
 
 /// The chores of the repository.

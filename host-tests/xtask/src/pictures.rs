@@ -1,61 +1,115 @@
-//! Pairs of PGM pictures, and what the host's pipeline finds in them.
+//! Pairs of grey pictures that firmware is given, and what the host's own pipeline finds in them.
 
+use crate::firmware::scene::{Scene, SceneCamera};
 use crate::steps::{Failure, Outcome};
-use std::fmt::Display;
-use std::fs;
+use image::GrayImage;
+use image::imageops::{FilterType, resize};
+use std::fmt;
+use std::io::Write;
 use std::path::Path;
-use stereopsis::camera::{LineFormat, LineSource, PixelFormat};
+use stereopsis::camera::{CameraPair, StereoSource};
+use stereopsis::imaging::GreyLines;
 use stereopsis::matching::Config;
+use stereopsis_host::map::DisparityMap;
 use stereopsis_host::mock::MockCamera;
 use stereopsis_host::run::{MemoryPair, Method, run};
-use stereopsis_host::scene::Scene;
 
-fn wrong(path: &Path) -> impl Fn(&dyn Display) -> Failure {
-    move |what| Failure::new(format!("{}: {what}", path.display()))
+/// Bytes of the longest raw line: RGB with 16 bits.
+const RAW: usize = MockCamera::MOST_PIXELS as usize * 6;
+
+/// A pair of pictures of one size, 8-bit grey.
+#[derive(Clone)]
+pub struct Pictures {
+    /// Pixels in a line.
+    pub width: u16,
+    /// Lines.
+    pub height: u16,
+    left: Vec<u8>,
+    right: Vec<u8>,
 }
 
-/// Writes what the two cameras of a scene see.
-pub fn write(scene: &Scene, left: &Path, right: &Path) -> Outcome {
-    let (left_picture, right_picture) = scene.render();
-    for (path, picture) in [(left, left_picture), (right, right_picture)] {
-        let mut bytes = format!("P5\n{} {}\n255\n", picture.width(), picture.height()).into_bytes();
-        bytes.extend_from_slice(picture.as_raw());
-        fs::write(path, bytes).map_err(|e| wrong(path)(&e))?;
+impl Pictures {
+    /// Two image files, made grey as `stereo match` does it.
+    pub fn open(left: &Path, right: &Path) -> Outcome<Self> {
+        let (left, right) = MockCamera::open_pair(left, right).map_err(|e| Failure::new(e.to_string()))?;
+        let grey = |camera| GreyLines::<_, RAW>::new(camera).map_err(|e| Failure::new(e.to_string()));
+        let mut pair = CameraPair::new(grey(left)?, grey(right)?, 0).map_err(|e| Failure::new(e.to_string()))?;
+        Self::record(&mut pair)
     }
-    Ok(())
+
+    /// The built-in scene.
+    pub fn of_scene(scene: Scene) -> Outcome<Self> {
+        Self::record(&mut SceneCamera::new(scene))
+    }
+
+    /// Every pixel from its row and column in the left camera and in the right one.
+    pub fn drawn(width: u16, height: u16, pixel: impl Fn(u32, u32, bool) -> u8) -> Self {
+        let at = |right: bool| {
+            let rows = (0..u32::from(height)).flat_map(|v| (0..u32::from(width)).map(move |u| (u, v)));
+            rows.map(|(u, v)| pixel(u, v, right)).collect()
+        };
+        Self { width, height, left: at(false), right: at(true) }
+    }
+
+    /// The same pictures in another size.
+    pub fn scaled(&self, width: u16, height: u16) -> Outcome<Self> {
+        let scale = |pixels: &[u8]| {
+            let picture = GrayImage::from_raw(self.width.into(), self.height.into(), pixels.to_vec())?;
+            Some(resize(&picture, width.into(), height.into(), FilterType::Triangle).into_raw())
+        };
+        let both = scale(&self.left).zip(scale(&self.right));
+        let (left, right) = both.ok_or_else(|| Failure::new("a picture has too few pixels"))?;
+        Ok(Self { width, height, left, right })
+    }
+
+    /// A frame of a camera with 8-bit grey lines.
+    fn record<C: StereoSource<Error: fmt::Display>>(camera: &mut C) -> Outcome<Self> {
+        let failed = |e| Failure::new(format!("camera: {e}"));
+        let format = camera.format();
+        let pixels = usize::from(format.width) * usize::from(format.height);
+        let (mut left, mut right) = (vec![0; pixels], vec![0; pixels]);
+        camera.start_frame().map_err(failed)?;
+        let lines = usize::from(format.width).max(1);
+        for (left, right) in left.chunks_mut(lines).zip(right.chunks_mut(lines)) {
+            camera.next_lines(left, right).map_err(failed)?;
+        }
+        Ok(Self { width: format.width, height: format.height, left, right })
+    }
+
+    /// What the host's pipeline finds in them.
+    pub fn matched(&self, method: Method, disparities: u16) -> Outcome<DisparityMap> {
+        let camera = MemoryPair::new(self.width, self.left.clone(), self.right.clone());
+        let mut camera = camera.ok_or_else(|| Failure::new("the pictures are empty"))?;
+        let outcome = run(method, &Config::new(self.width, self.height, disparities), &mut camera, |_| ());
+        outcome.map(|outcome| outcome.map).map_err(|e| Failure::new(format!("{method} on the host: {e}")))
+    }
+
+    /// The checksum of what the host's pipeline finds in them, see [`crc32`].
+    pub fn crc32(&self, method: Method, disparities: u16) -> Outcome<u32> {
+        self.matched(method, disparities).map(|map| crc32(&map))
+    }
+
+    /// Writes `left.pgm` and `right.pgm`, which firmware reads.
+    pub fn write(&self, folder: &Path) -> Outcome {
+        for (name, pixels) in [("left.pgm", &self.left), ("right.pgm", &self.right)] {
+            let path = folder.join(name);
+            let write = || {
+                let mut file = std::fs::File::create(&path)?;
+                write!(file, "P5\n{} {}\n255\n", self.width, self.height)?;
+                file.write_all(pixels)
+            };
+            write().map_err(|e| Failure::new(format!("{}: {e}", path.display())))?;
+        }
+        Ok(())
+    }
 }
 
-/// Pixels in a line of a picture.
-pub fn width(path: &Path) -> Outcome<u16> {
-    read(path).map(|(format, _)| format.width)
-}
-
-/// The CRC-32 of all disparities and flags, as the example in C works it out, from the host's pipeline.
-pub fn crc(left: &Path, right: &Path, method: Method, disparities: u16) -> Outcome<u32> {
-    let ((format, left_bytes), (_, right_bytes)) = (read(left)?, read(right)?);
-    let pair = MemoryPair::new(format.width, left_bytes, right_bytes);
-    let mut camera = pair.ok_or_else(|| wrong(right)(&"is not of the left picture's size"))?;
-    let config = Config::new(format.width, format.height, disparities);
-    let map = run(method, &config, &mut camera, |_| ()).map_err(|e| wrong(left)(&e))?.map;
+/// CRC-32 over disparity (two bytes, low one first) and flags of every pixel, as the examples work it out.
+fn crc32(map: &DisparityMap) -> u32 {
     let mut crc = crc32fast::Hasher::new();
     for (disparity, flags) in map.disparity.iter().zip(&map.flags) {
-        crc.update(&disparity.raw().to_le_bytes());
-        crc.update(&[flags.bits()]);
+        let [low, high] = disparity.raw().to_le_bytes();
+        crc.update(&[low, high, flags.bits()]);
     }
-    Ok(crc.finalize())
-}
-
-/// An 8-bit grey picture's format and bytes.
-fn read(path: &Path) -> Outcome<(LineFormat, Vec<u8>)> {
-    let mut camera = MockCamera::open(path).map_err(|e| Failure::new(e.to_string()))?;
-    let format = camera.format();
-    if format.pixel != PixelFormat::Grey8 {
-        return Err(wrong(path)(&"is not an 8-bit grey picture"));
-    }
-    let mut bytes = vec![0; format.line_bytes() * usize::from(format.height)];
-    camera.start_frame().map_err(|e| wrong(path)(&e))?;
-    for line in bytes.chunks_exact_mut(format.line_bytes()) {
-        camera.next_line(line).map_err(|e| wrong(path)(&e))?;
-    }
-    Ok((format, bytes))
+    crc.finalize()
 }

@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::fmt;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 /// What went wrong, in one line.
@@ -101,8 +101,18 @@ pub fn output_of(command: &mut Command) -> Outcome<String> {
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Runs a program that prints little and may hang; what it printed, if it ended well within `limit`.
-pub fn output_within(command: &mut Command, limit: Duration) -> Outcome<String> {
+/// What came of a program that has ended.
+pub struct Ended {
+    /// How it ended.
+    pub status: ExitStatus,
+    /// What it wrote on standard output.
+    pub printed: String,
+    /// What it wrote on standard error.
+    pub told: String,
+}
+
+/// Runs a program that prints little and may hang; fails when it does not end within `limit`.
+pub fn ended_within(command: &mut Command, limit: Duration) -> Outcome<Ended> {
     let failed = |e: std::io::Error, command: &Command| Failure(format!("{}: {e}", words(command)));
     let spawned = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
     let mut child = spawned.map_err(|e| failed(e, command))?;
@@ -123,6 +133,12 @@ pub fn output_within(command: &mut Command, limit: Duration) -> Outcome<String> 
         let read = out.read_to_string(&mut printed).and_then(|_| err.read_to_string(&mut told));
         read.map_err(|e| failed(e, command))?;
     }
+    Ok(Ended { status, printed, told })
+}
+
+/// What a program printed that prints little and may hang, if it ended well within `limit`.
+pub fn output_within(command: &mut Command, limit: Duration) -> Outcome<String> {
+    let Ended { status, printed, told } = ended_within(command, limit)?;
     if status.success() {
         return Ok(printed);
     }

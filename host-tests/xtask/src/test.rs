@@ -90,7 +90,7 @@ fn cross_builds() -> Outcome {
 /// The oldest compiler that the packages say they build with, in earnest.
 fn rust_version(version: &str) -> Outcome {
     let mut check = command("rustup", &["run", version, "cargo", "check", "--locked"]);
-    check.args(["-p", "stereopsis", "-p", "stereopsis-host", "--features", "stereopsis/ffi"]);
+    check.args(["-p", "stereopsis", "-p", "stereopsis-host", "--features", "stereopsis/defmt,stereopsis/ffi"]);
     // Two compilers that take turns in one folder lock each other out and tidy away each other's products.
     run_command(check.env("CARGO_TARGET_DIR", target_dir().join("rust-version")))
 }

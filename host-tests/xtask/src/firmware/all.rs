@@ -3,10 +3,10 @@
 use super::board::{self, Board, M0};
 use super::checksums::{self, Checksum};
 use super::frame::{self, Frame, MOST_STACK};
-use super::pictures::Pictures;
 use super::program::{Built, Program};
 use super::scene::Scene;
 use super::{refusals, tables};
+use crate::pictures::Pictures;
 use crate::setup;
 use crate::steps::{Failure, Outcome, root};
 use std::collections::VecDeque;

@@ -1,28 +1,20 @@
-//! Real pictures: the same checksum on every core, on the host, and from every other build of the library.
+//! Real pictures: the same checksum on every core, on the host, and from the example in C.
 
 use super::all::Result;
 use super::frame;
-use super::pictures::Pictures;
 use super::program::{Built, Program};
 use crate::c;
+use crate::pictures::Pictures;
 use crate::steps::{Failure, Outcome};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use stereopsis_host::run::Method;
 
 /// Pairs of the folder of real pictures.
 const PAIRS: [&str; 3] = ["cones", "venus", "mb2014q_Motorcycle"];
 
-/// A build of the library that is no firmware of this example: its name, and what gives CRC-32 over disparity (two
-/// bytes, low one first) and flags of every pixel, for a left and a right PGM file, a method and disparities.
-type Other = (&'static str, fn(&Path, &Path, Method, u16) -> Outcome<u32>);
-
-/// These builds have to say what the cores say.
-const OTHERS: [Other; 3] = [
-    ("C, host", |left, right, method, disparities| c::crc(c::Core::Host, left, right, method.name(), disparities)),
-    ("C, m4", |left, right, method, disparities| c::crc(c::Core::M4, left, right, method.name(), disparities)),
-    ("C, m7", |left, right, method, disparities| c::crc(c::Core::M7, left, right, method.name(), disparities)),
-];
+/// The example in C has to say what the cores say.
+const IN_C: [(&str, c::Core); 3] = [("C, host", c::Core::Host), ("C, m4", c::Core::M4), ("C, m7", c::Core::M7)];
 
 /// One core's checksum on one pair.
 pub struct Checksum {
@@ -50,7 +42,7 @@ pub fn on_core(built: &Built, pairs: &[(String, Pictures)]) -> Outcome<Vec<Check
     pairs.iter().map(one).collect()
 }
 
-/// Prints the checksums, a column for each core, the host and each other build, and fails when a row has two different ones.
+/// Prints the checksums, a column for each core, the host and the example in C, and fails when a row has two.
 pub fn compare(results: &[Result], pairs: &[(String, Pictures)]) -> Outcome {
     let mut rows: BTreeMap<_, Vec<(&str, u32)>> = BTreeMap::new();
     for result in results {
@@ -63,13 +55,10 @@ pub fn compare(results: &[Result], pairs: &[(String, Pictures)]) -> Outcome {
     for ((pair, method, width, height, disparities), row) in &mut rows {
         let of = pairs.iter().find(|(name, _)| name == *pair).map(|(_, pictures)| pictures.scaled(*width, *height));
         let pictures = of.ok_or_else(|| Failure::new(format!("{pair}: no such pair")))??;
-        let folder = tempfile::tempdir().map_err(|e| Failure::new(e.to_string()))?;
-        pictures.write(folder.path())?;
         let method: Method = method.parse().map_err(|e| Failure::new(format!("{e}")))?;
-        row.push(("host", frame::host_crc32(method, *disparities, &pictures)?));
-        for (name, crc) in OTHERS {
-            let [left, right] = ["left.pgm", "right.pgm"].map(|name| folder.path().join(name));
-            row.push((name, crc(&left, &right, method, *disparities)?));
+        row.push(("host", pictures.crc32(method, *disparities)?));
+        for (name, core) in IN_C {
+            row.push((name, c::crc32(core, &pictures, method, *disparities)?));
         }
     }
     let columns: Vec<&str> = rows.values().next().into_iter().flatten().map(|(name, _)| *name).collect();

@@ -3,11 +3,10 @@
 use super::board::Board;
 use super::program::Built;
 use crate::setup;
-use crate::steps::{Failure, Outcome, command};
-use std::io::Read;
+use crate::steps::{Ended, Failure, Outcome, command, ended_within};
 use std::path::Path;
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::Command;
+use std::time::Duration;
 
 /// How long a small frame may take: a second is usual, a firmware that hangs never ends.
 const LIMIT: Duration = Duration::from_secs(120);
@@ -29,37 +28,13 @@ fn qemu(board: Board) -> Command {
 /// Runs a program in `folder`, where its files are and go; what it prints.
 pub fn run(built: &Built, folder: &Path) -> Outcome<String> {
     let program = &built.program;
-    let failed = |what: String| Failure::new(format!("{program} in QEMU: {what}"));
-    let mut child = qemu(program.board)
-        .arg(&built.elf)
-        .current_dir(folder)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .map_err(|e| failed(e.to_string()))?;
     let limit = LIMIT + Duration::from_secs(program.evaluations() / SLOWEST);
-    let start = Instant::now();
-    // The text is far shorter than a pipe holds, so it can be read once the program is done.
-    let status = loop {
-        match child.try_wait().map_err(|e| failed(e.to_string()))? {
-            Some(status) => break status,
-            None if start.elapsed() < limit => std::thread::sleep(Duration::from_millis(5)),
-            None => {
-                // It may have ended just now.
-                let _ = child.kill();
-                let _ = child.wait();
-                return Err(failed(format!("it did not end within {} s", limit.as_secs())));
-            }
-        }
-    };
-    let (mut printed, mut told) = (String::new(), String::new());
-    let read = |from: Option<&mut dyn Read>, text: &mut String| from.map_or(Ok(0), |from| from.read_to_string(text));
-    read(child.stdout.as_mut().map(|out| out as _), &mut printed).map_err(|e| failed(e.to_string()))?;
-    read(child.stderr.as_mut().map(|err| err as _), &mut told).map_err(|e| failed(e.to_string()))?;
-    if !status.success() {
-        let lines = super::log::read(built, folder).unwrap_or_default();
-        let last = lines.last().map_or(told.trim(), String::as_str);
-        return Err(failed(format!("{status}: {last}")));
+    let mut qemu = qemu(program.board);
+    let Ended { status, printed, told } = ended_within(qemu.arg(&built.elf).current_dir(folder), limit)?;
+    if status.success() {
+        return Ok(printed);
     }
-    Ok(printed)
+    let lines = super::log::read(built, folder).unwrap_or_default();
+    let last = lines.last().map_or(told.trim(), String::as_str);
+    Err(Failure::new(format!("{program} in QEMU: {status}: {last}")))
 }

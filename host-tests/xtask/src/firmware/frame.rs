@@ -1,16 +1,14 @@
 //! One frame on one core, measured, and held to the host's own run.
 
-use super::elf::Sizes;
-use super::pictures::Pictures;
 use super::program::{Built, Program};
 use super::{emulate, log};
+use crate::elf::Sizes;
+use crate::pictures::Pictures;
 use crate::steps::{Failure, Outcome};
 use std::collections::HashMap;
 use std::fs;
-use stereopsis::matching::Config;
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::map::DisparityMap;
-use stereopsis_host::run::{self, Method};
 
 /// The most stack that a run may take, bytes.
 pub const MOST_STACK: u64 = 2048;
@@ -55,7 +53,7 @@ pub fn run(built: &Built, pictures: &Pictures, is_scene: bool) -> Outcome<Frame>
     let log = log::read(built, folder.path())?;
     let rows = fs::read(folder.path().join("rows.bin")).map_err(|e| failed(format!("rows.bin: {e}")))?;
 
-    let map = host(program.method, program.disparities, pictures)?;
+    let map = pictures.matched(program.method, program.disparities)?;
     if let Some(what) = difference(&map, &rows) {
         return Err(failed(what));
     }
@@ -73,10 +71,7 @@ pub fn run(built: &Built, pictures: &Pictures, is_scene: bool) -> Outcome<Frame>
         return Err(failed(format!("{stack} bytes of stack are in use, at most {MOST_STACK} may be")));
     }
     let sizes = Sizes::of(&built.elf)?;
-    if sizes.panics + sizes.allocations > 0 {
-        let (panics, allocations) = (sizes.panics, sizes.allocations);
-        return Err(failed(format!("it has {panics} symbols of panics and {allocations} of an allocator")));
-    }
+    sizes.without_panics()?;
     let (instructions, pipeline) = (instructions(figure("ticks")?).round() as u64, figure("pipeline_bytes")?);
     Ok(Frame { program, map, instructions, stack, pipeline, sizes, crc32, log })
 }
@@ -101,23 +96,6 @@ impl Frame {
             self.crc32
         )
     }
-}
-
-/// The host's own run on the same pictures.
-fn host(method: Method, disparities: u16, pictures: &Pictures) -> Outcome<DisparityMap> {
-    let config = Config::new(pictures.width, pictures.height, disparities);
-    let outcome = run::run(method, &config, &mut pictures.camera()?, |_| ());
-    outcome.map(|outcome| outcome.map).map_err(|e| Failure::new(format!("{method} on the host: {e}")))
-}
-
-/// The checksum of the host's own run.
-pub fn host_crc32(method: Method, disparities: u16, pictures: &Pictures) -> Outcome<u32> {
-    let map = host(method, disparities, pictures)?;
-    let pixels = map.disparity.iter().zip(&map.flags).flat_map(|(disparity, flags)| {
-        let [low, high] = disparity.raw().to_le_bytes();
-        [low, high, flags.bits()]
-    });
-    Ok(crc32fast::hash(&pixels.collect::<Vec<u8>>()))
 }
 
 /// The firmware's lines of a name and a number.

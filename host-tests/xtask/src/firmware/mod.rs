@@ -1,7 +1,7 @@
 //! `cargo xtask firmware`: the firmware example, built, run in QEMU and compared with the host.
 //!
-//! * [`arguments`]: what is asked for. [`program`]: one build of the example. [`elf`]: what is in it.
-//! * [`pictures`]: what the emulated cameras see. [`emulate`]: QEMU. [`log`]: the firmware's log as text.
+//! * [`arguments`]: what is asked for. [`program`]: one build of the example. [`emulate`]: QEMU. [`log`]: the firmware's log as
+//!   text.
 //! * [`frame`]: one frame on one core, held to the host. [`summary`]: the files that are written of it.
 //! * [`all`]: every core, method and size; [`tables`] of it for README.md; [`checksums`] on real pictures.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
@@ -9,11 +9,9 @@
 mod all;
 mod arguments;
 mod checksums;
-mod elf;
 mod emulate;
 mod frame;
 mod log;
-mod pictures;
 mod program;
 mod refusals;
 mod summary;
@@ -22,15 +20,15 @@ mod tables;
 #[path = "../../../../examples/firmware/src/board.rs"]
 mod board;
 #[path = "../../../../examples/firmware/src/camera/scene.rs"]
-mod scene;
+pub mod scene;
 
 pub use arguments::Arguments;
 pub use program::cargo;
 
+use crate::pictures::Pictures;
 use crate::setup;
 use crate::steps::{Failure, Outcome};
 use arguments::One;
-use pictures::Pictures;
 use program::Program;
 use stereopsis_host::output::Staging;
 

@@ -44,7 +44,7 @@ fn figures(results: &[Result]) -> String {
             frame.stack,
             sizes.flash(),
             sizes.dense_flash,
-            sizes.panics
+            sizes.panics.len()
         );
     }
     table

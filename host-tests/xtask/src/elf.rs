@@ -1,4 +1,4 @@
-//! What is in a linked firmware: bytes of flash and RAM, and whose they are.
+//! What is in a linked firmware, of Rust or of C: bytes of flash and RAM, whose they are, and what must not be there.
 
 use crate::steps::{Failure, Outcome};
 use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SectionIndex, SectionKind};
@@ -19,14 +19,14 @@ pub struct Sizes {
     pub flash_sections: BTreeMap<String, u64>,
     /// Bytes of flash that the dense path takes, see [`is_dense`].
     pub dense_flash: u64,
-    /// Symbols of the machinery of panics.
-    pub panics: usize,
-    /// Symbols of an allocator.
-    pub allocations: usize,
+    /// Names of the machinery of panics.
+    pub panics: Vec<String>,
+    /// Names of an allocator.
+    pub allocations: Vec<String>,
 }
 
 impl Sizes {
-    /// Reads a linked file.
+    /// Reads a linked file; fails when it holds nothing of the library, or does not say so.
     pub fn of(path: &Path) -> Outcome<Self> {
         let failed = |what: String| Failure::new(format!("{}: {what}", path.display()));
         let bytes = fs::read(path).map_err(|e| failed(e.to_string()))?;
@@ -49,7 +49,7 @@ impl Sizes {
         }
         // One piece of code may have several names.
         let mut pieces: HashMap<u64, (u64, bool)> = HashMap::new();
-        let (mut panics, mut allocations) = (0, 0);
+        let (mut panics, mut allocations) = (Vec::new(), Vec::new());
         for symbol in file.symbols() {
             let Some(index) = symbol.section_index() else { continue };
             let name = symbol.name().map_err(|e| failed(e.to_string()))?;
@@ -57,13 +57,30 @@ impl Sizes {
             if !kept.contains(&index) || name.is_empty() || name.starts_with('$') {
                 continue;
             }
-            panics += usize::from(is_panic(&name));
-            allocations += usize::from(is_allocation(&name));
             let piece = pieces.entry(symbol.address()).or_default();
             *piece = (piece.0.max(symbol.size()), piece.1 || is_dense(&name));
+            if is_panic(&name) {
+                panics.push(name);
+            } else if is_allocation(&name) {
+                allocations.push(name);
+            }
         }
         let dense_flash = pieces.values().filter(|(_, dense)| *dense).map(|(size, _)| size).sum();
+        // A program without symbols would pass for one without panics.
+        if dense_flash == 0 {
+            return Err(failed("it has no symbols of the library".into()));
+        }
         Ok(Self { static_ram, flash_sections, dense_flash, panics, allocations })
+    }
+
+    /// Fails when there is anything of a panic or of an allocator.
+    pub fn without_panics(&self) -> Outcome {
+        let found = [self.panics.as_slice(), &self.allocations].concat();
+        if found.is_empty() {
+            Ok(())
+        } else {
+            Err(Failure::new(format!("it panics or allocates: {}", found.join(", "))))
+        }
     }
 
     /// Bytes of flash in all.
@@ -102,7 +119,7 @@ fn is_builtin(name: &str) -> bool {
 
 /// Whether a symbol is of the machinery of panics.
 fn is_panic(name: &str) -> bool {
-    ["panic", "rust_begin_unwind", "unwrap_failed", "expect_failed", "slice_error_fail", "index_len_fail"]
+    ["panic", "begin_unwind", "unwrap_failed", "expect_failed", "slice_error_fail", "index_len_fail"]
         .iter()
         .any(|part| name.contains(part))
 }
@@ -110,10 +127,12 @@ fn is_panic(name: &str) -> bool {
 /// Whether a symbol is of an allocator.
 fn is_allocation(name: &str) -> bool {
     let parts = ["__rust_alloc", "__rust_realloc", "__rust_dealloc", "__rg_", "__rdl_", "handle_alloc_error"];
-    let names = ["malloc", "calloc", "realloc", "free", "_sbrk", "sbrk"];
+    // A C library has them with a struct of its own too: `_malloc_r`.
+    let names = ["malloc", "calloc", "realloc", "free", "sbrk"];
+    let c_name = name.trim_start_matches('_').trim_end_matches("_r");
     name.trim_start_matches(['<', '&']).starts_with("alloc::")
         || parts.iter().any(|part| name.contains(part))
-        || names.contains(&name)
+        || names.contains(&c_name)
 }
 
 #[cfg(test)]
@@ -135,6 +154,7 @@ mod tests {
         assert!(is_panic("core::panicking::panic_bounds_check") && is_panic("__rustc::rust_begin_unwind"));
         assert!(is_panic("core::option::expect_failed") && !is_panic("stereopsis::pipeline"));
         assert!(is_allocation("__rustc::__rust_alloc") && is_allocation("alloc::raw_vec::grow"));
-        assert!(is_allocation("malloc") && !is_allocation("stereopsis::free_list"));
+        assert!(is_allocation("malloc") && !is_allocation("stereopsis::free_list") && !is_allocation("freeze"));
+        assert!(["_malloc_r", "_free_r", "__sbrk", "_sbrk_r", "free"].iter().all(|name| is_allocation(name)));
     }
 }

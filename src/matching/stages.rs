@@ -115,7 +115,8 @@ impl<S: Scheme> Stages<'_, S> {
         self.kernel.row::<S>(work, select, |winners| {
             let place = first..first + winners.len();
             first = place.end;
-            let (Some(answers), Some(flags)) = (answers.get_mut(place.clone()), row_flags.get_mut(place.clone())) else {
+            let (Some(answers), Some(flags)) = (answers.get_mut(place.clone()), row_flags.get_mut(place.clone()))
+            else {
                 return;
             };
             rules.answer(winners, answers, flags);

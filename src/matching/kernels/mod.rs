@@ -11,17 +11,13 @@
 //!
 //! Every kernel gives the same bits. A new one is a variant of [`Kernel`] and an arm in [`Kernel::row`].
 
-#[cfg(not(stereopsis_vectors))]
-mod census;
-#[cfg(not(stereopsis_vectors))]
-mod plane;
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 mod lane;
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 mod lanes;
-mod scratch;
 #[cfg(not(stereopsis_vectors))]
 mod planes;
+mod scratch;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
@@ -31,7 +27,7 @@ pub(super) use scratch::halves_mut;
 pub use scratch::{Aligned, Columns, Scratch};
 
 #[cfg(not(stereopsis_vectors))]
-pub(super) use census::codes;
+pub(super) use planes::codes;
 
 use super::scheme::{Around, Scheme};
 
@@ -101,7 +97,7 @@ impl Kernel {
     #[inline]
     pub(super) fn census<S: Scheme>(self, rows: &Around<'_>, out: &mut [u8]) {
         #[cfg(not(stereopsis_vectors))]
-        if self == Self::Planes && census::census::<S>(rows, out) {
+        if self == Self::Planes && planes::census::<S>(rows, out) {
             return;
         }
         S::census(rows, out);
@@ -112,7 +108,7 @@ impl Kernel {
     pub(super) fn prepare<S: Scheme>(self, left: &mut [u8], right: &mut [u8], min_disparity: usize) {
         #[cfg(not(stereopsis_vectors))]
         if self == Self::Planes {
-            planes::prepare(left, right, min_disparity, planes::first_column::<S>(min_disparity));
+            planes::prepare::<S>(left, right, min_disparity);
         }
         let _ = (left, right, min_disparity);
     }

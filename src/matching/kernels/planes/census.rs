@@ -4,7 +4,7 @@
 //! bit: `n + 255 - c + 1 >= 256`. Averages of bytes need no room beside them, `(a | b) - ((a ^ b) >> 1)` (Warren 2012,
 //! 2-5).
 
-use super::scratch::{words_mut, words_of};
+use crate::matching::kernels::scratch::{words_mut, words_of};
 use crate::matching::scheme::{Around, Scheme};
 
 /// The highest bit of every byte.
@@ -15,7 +15,7 @@ type Three = [u32; 3];
 
 /// The census row of five lines, if all of them and the codes lie in whole words; `false` if not.
 #[inline(never)]
-pub(super) fn census<S: Scheme>(rows: &Around<'_>, out: &mut [u8]) -> bool {
+pub(in crate::matching::kernels) fn census<S: Scheme>(rows: &Around<'_>, out: &mut [u8]) -> bool {
     let width = out.len();
     let line = |row: usize| rows.get(row).and_then(|r| r.get(..width)).map_or(&[][..], words_of);
     let (above, here, below, out) = (line(0), line(2), line(4), words_mut(out));

@@ -1,6 +1,6 @@
 //! Words whose bits are candidates.
 
-use super::scratch::{halves_mut, words_mut};
+use crate::matching::kernels::scratch::{halves_mut, words_mut};
 use core::ops::{BitAnd, BitOr, BitXor, Not};
 
 /// One bit of a number for each of several candidates, the first candidate's lowest.

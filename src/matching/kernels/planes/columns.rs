@@ -163,25 +163,27 @@ fn count_into<S: Scheme, P: Plane>(sums: &mut Column<P>, mut bits: impl FnMut(us
             pair = (waiting[level], carry);
         }
         if i + 1 == S::BITS {
-            add_two_but_one::<P>(&mut sums[levels..S::COLUMN_BITS], pair);
+            add_two_but_one::<S, P>(sums, levels, pair);
         }
     }
 }
 
-/// Adds two bits and takes one off, in a number's planes from theirs on.
+/// Adds two bits to a number's plane `place` and takes one off it.
 #[inline(always)]
-fn add_two_but_one<P: Plane>(planes: &mut [P], (a, b): (P, P)) {
-    let [lowest, higher @ ..] = planes else { return };
-    let over = add_pair(lowest, a, b);
-    let digit = *lowest;
-    *lowest = !digit;
-    // One carried, or one borrowed: as a number with a sign that is one where both are, all ones where nothing was.
+fn add_two_but_one<S: Scheme, P: Plane>(sums: &mut Column<P>, place: usize, (a, b): (P, P)) {
+    let over = add_pair(&mut sums[place], a, b);
+    let digit = sums[place];
+    sums[place] = !digit;
+    // One carried, or one borrowed: a number with a sign, which is one where both are, all ones where nothing was.
     let mut carry = !(over ^ digit);
     let sign = !(over | digit);
-    let [next, higher @ ..] = higher else { return };
-    (*next, carry) = (*next ^ carry, *next & carry);
-    for plane in higher {
-        let half = *plane ^ sign;
-        (*plane, carry) = (half ^ carry, sign ^ (half & (sign ^ carry)));
+    for i in place + 1..S::COLUMN_BITS {
+        let before = sums[i];
+        if i == place + 1 {
+            (sums[i], carry) = (before ^ carry, before & carry);
+        } else {
+            let half = before ^ sign;
+            (sums[i], carry) = (half ^ carry, sign ^ (half & (sign ^ carry)));
+        }
     }
 }

@@ -163,27 +163,23 @@ fn count_into<S: Scheme, P: Plane>(sums: &mut Column<P>, mut bits: impl FnMut(us
             pair = (waiting[level], carry);
         }
         if i + 1 == S::BITS {
-            add_two_but_one::<S, P>(sums, levels, pair);
-        }
-    }
-}
-
-/// Adds two bits to a number's plane `place` and takes one off it.
-#[inline(always)]
-fn add_two_but_one<S: Scheme, P: Plane>(sums: &mut Column<P>, place: usize, (a, b): (P, P)) {
-    let over = add_pair(&mut sums[place], a, b);
-    let digit = sums[place];
-    sums[place] = !digit;
-    // One carried, or one borrowed: a number with a sign, which is one where both are, all ones where nothing was.
-    let mut carry = !(over ^ digit);
-    let sign = !(over | digit);
-    for i in place + 1..S::COLUMN_BITS {
-        let before = sums[i];
-        if i == place + 1 {
-            (sums[i], carry) = (before ^ carry, before & carry);
-        } else {
-            let half = before ^ sign;
-            (sums[i], carry) = (half ^ carry, sign ^ (half & (sign ^ carry)));
+            // The two carries left, and one taken off.
+            let mut over = add_pair(&mut sums[levels], pair.0, pair.1);
+            let digit = sums[levels];
+            sums[levels] = !digit;
+            let below = !(over | digit);
+            over = !(over ^ digit);
+            for (n, sum) in sums.iter_mut().enumerate().take(S::COLUMN_BITS).skip(levels + 1) {
+                let before = *sum;
+                if n == levels + 1 {
+                    *sum = before ^ over;
+                    over = before & over;
+                } else {
+                    let half = before ^ below;
+                    *sum = half ^ over;
+                    over = below ^ (half & (below ^ over));
+                }
+            }
         }
     }
 }

@@ -137,8 +137,8 @@ fn move_on<S: Scheme, P: Plane>(sums: &mut Column<P>, words: &mut [[P; 2]; 8], m
         let [new, old] = &mut words[i];
         (moved(NEW + 2 * i, new), moved(OLD + 2 * i, old))
     });
-    for i in 0..S::COLUMN_BITS {
-        sums[i] = here[i];
+    for (sum, here) in sums.iter_mut().zip(here).take(S::COLUMN_BITS) {
+        *sum = here;
     }
 }
 

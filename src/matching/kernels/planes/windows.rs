@@ -239,12 +239,13 @@ fn three<S: Scheme, P: Plane>(window: &Window<P>, first: usize) -> u32 {
     const { assert!(S::WINDOW_BITS < FIELD as usize && S::WINDOW_BITS.is_multiple_of(2)) };
     // Two planes at a time, half a sum apart. The product has their bits three times, each time in place for one field.
     let half = S::WINDOW_BITS / 2;
+    let apart = 1 | 1 << (FIELD - 1) | 1 << (2 * FIELD - 2);
     let lowest = (1 | 1 << half) * (1 | 1 << FIELD | 1 << (2 * FIELD));
     let mut fields = 0;
     for i in (0..half).rev() {
         let bits = |i: usize| window[i].bits() >> (first % 32) & 7;
         let two = bits(i) | bits(i + half) << half;
-        fields = fields << 1 | (two * (1 | 1 << (FIELD - 1) | 1 << (2 * FIELD - 2)) & lowest);
+        fields = fields << 1 | ((two * apart) & lowest);
     }
     // The windows are complements.
     let sum = (1 << S::WINDOW_BITS) - 1;

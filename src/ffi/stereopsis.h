@@ -31,7 +31,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_FAST_BYTES(width, disparities) \
-  ((size_t)192 + (size_t)72 * (width) + (size_t)17 * (disparities) + \
+  ((size_t)192 + (size_t)66 * (width) + (size_t)14 * (disparities) + \
    (size_t)1 * (width) * (disparities))
 
 /**
@@ -39,7 +39,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_BLOCK_BYTES(width, disparities) \
-  ((size_t)192 + (size_t)76 * (width) + (size_t)17 * (disparities) + \
+  ((size_t)192 + (size_t)70 * (width) + (size_t)14 * (disparities) + \
    (size_t)1 * (width) * (disparities))
 
 

@@ -207,7 +207,7 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     /// The memory as slices of the frame's real size: what follows is compiled once for each scheme.
     fn stages(&mut self) -> Stages<'_, S> {
         let width = usize::from(self.config.width).min(W);
-        let stride = usize::from(self.config.disparities).next_multiple_of(16).min(D);
+        let stride = self.kernel.candidates(usize::from(self.config.disparities), D);
         fn first<T>(slice: &mut [T], count: usize) -> &mut [T] {
             slice.get_mut(..count).unwrap_or_default()
         }

@@ -112,7 +112,7 @@ impl<S: Scheme> Stages<'_, S> {
         let (answers, row_flags) = (slot_mut(self.band, place, width), slot_mut(self.flags, place, width));
         let rules = Rules::new(config);
         let mut first = 0;
-        self.kernel.row::<S>(work, select, |winners| {
+        self.kernel.row::<S>(work, select, &mut |winners| {
             let place = first..first + winners.len();
             first = place.end;
             let (Some(answers), Some(flags)) = (answers.get_mut(place.clone()), row_flags.get_mut(place.clone()))

@@ -1,11 +1,12 @@
 //! All sizes, ranges, pictures and checks.
 
-use super::{Any, Method, W, compare, pipeline};
+use super::{Any, HALVES, Method, W, compare, pipeline};
 use image::GrayImage;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::collections::BTreeSet;
 use stereopsis::matching::{Block, Checks, Config, Fast};
+use stereopsis::pipeline::Pipeline;
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::scene::pattern::Pattern;
 use stereopsis_host::scene::{Random, Scene};
@@ -101,10 +102,14 @@ fn list(rounds: usize) -> Vec<(Config, Pattern, u64)> {
 fn run_list<S: Method>() {
     let cases = list(4);
     let mut pipeline = pipeline::<S>();
+    let mut of_halves = Box::new(Pipeline::<S, W, HALVES>::new());
     let (mut answers, mut flags) = (0, PixelFlags::CLEAR);
     for (config, pattern, seed) in &cases {
         let pair = pattern.pair(u32::from(config.width), u32::from(config.height), *seed);
         let map = compare(&mut pipeline, config, &pair).unwrap_or_else(|e| panic!("{pattern:?}: {e}"));
+        if usize::from(config.disparities) <= HALVES {
+            compare(&mut of_halves, config, &pair).unwrap_or_else(|e| panic!("capacity {HALVES}: {pattern:?}: {e}"));
+        }
         answers += map.disparity.iter().filter(|d| d.is_some()).count();
         flags = map.flags.iter().fold(flags, |all, f| all.union(*f));
     }
@@ -231,8 +236,8 @@ proptest! {
     fn any_combination_equals_the_twin(config in any_config(), pattern in any_pattern(), seed: u64) {
         let pair = pattern.pair(u32::from(config.width), u32::from(config.height), seed);
         for compared in [
-            compare::<Fast>(&mut pipeline(), &config, &pair),
-            compare::<Block>(&mut pipeline(), &config, &pair),
+            compare::<Fast, _>(&mut pipeline(), &config, &pair),
+            compare::<Block, _>(&mut pipeline(), &config, &pair),
         ] {
             if let Err(e) = compared {
                 prop_assert!(false, "{pattern:?}: {e}");

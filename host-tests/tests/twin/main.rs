@@ -15,9 +15,11 @@ use stereopsis_host::scene::pattern::Pattern;
 use stereopsis_host::twin::cost::{costs, window_sums, window_sums_plain};
 use stereopsis_host::twin::{self, Answers, Picture, match_pair};
 
-/// The capacity of all pipelines here.
+/// The capacity of the pipelines here.
 const W: usize = 704;
 const D: usize = 256;
+/// Another number of disparities, no multiple of 32: candidates come in half-words.
+const HALVES: usize = 240;
 type Any<S> = Pipeline<S, W, D>;
 
 /// A method of the core with the twin's description of it.
@@ -34,7 +36,10 @@ impl Method for Block {
 }
 
 /// All rows of the camera's next frame.
-fn rows<S: Scheme, C: StereoSource>(pipeline: &mut Any<S>, camera: &mut C) -> Result<Answers, PipelineError<C::Error>> {
+fn rows<S: Scheme, C: StereoSource, const D: usize>(
+    pipeline: &mut Pipeline<S, W, D>,
+    camera: &mut C,
+) -> Result<Answers, PipelineError<C::Error>> {
     let format = camera.format();
     let (width, height) = (usize::from(format.width), usize::from(format.height));
     let mut map = Answers { width, height, disparity: Vec::new(), flags: Vec::new(), sigma_px: Vec::new() };
@@ -70,8 +75,8 @@ fn difference(core: &Answers, twin: &Answers) -> Option<String> {
 }
 
 /// Runs the pair through the pipeline with every kernel and compares with the twin, whose answers are returned.
-fn compare<S: Method>(
-    pipeline: &mut Any<S>,
+fn compare<S: Method, const D: usize>(
+    pipeline: &mut Pipeline<S, W, D>,
     config: &Config,
     pair: &(GrayImage, GrayImage),
 ) -> Result<Answers, String> {

@@ -57,10 +57,12 @@ fn format() -> Outcome {
 fn clippy() -> Outcome {
     run_cargo(&format!("clippy --locked --workspace --all-targets --features {REAL_DATA} -- -D warnings"))?;
     run_cargo("clippy --locked -p stereopsis --features defmt,ffi -- -D warnings")?;
-    // The two kinds of cores have code of their own.
+    // The kinds of cores have code of their own.
     for target in ["thumbv7em-none-eabihf", "riscv32imac-unknown-none-elf"] {
         run_command(&mut firmware::cargo(&format!("clippy --locked --release --target {target} -- -D warnings")))?;
     }
+    let mut vectors = firmware::cargo("clippy --locked --release --target thumbv8m.main-none-eabihf -- -D warnings");
+    run_command(vectors.env("RUSTFLAGS", firmware::VECTORS))?;
     run_command(&mut c::cargo("clippy --locked --release --target thumbv7em-none-eabihf -- -D warnings"))
 }
 

@@ -13,7 +13,7 @@
 
 use super::lane::Lane;
 use super::scratch::bytes_mut;
-use super::{OUTSIDE, RowCodes, RowWork, STEP, Select, Winner, beside_at_the_end};
+use super::{Found, OUTSIDE, RowCodes, RowWork, STEP, Select, Winner, beside_at_the_end};
 use crate::matching::scheme::Scheme;
 
 /// Winners handed on at a time.
@@ -21,7 +21,7 @@ const BATCH: usize = 32;
 
 /// [`super::Kernel::row`] for the compilation's own target.
 #[inline(always)]
-pub(in crate::matching) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select>, found: impl FnMut(&[Winner])) {
+pub(in crate::matching) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select>, found: Found<'_>) {
     // Knowing the number pays where a group of sums takes several registers.
     let wide = size_of::<S::Sum>() > 1 || !cfg!(stereopsis_vectors);
     match work.stride {
@@ -37,7 +37,7 @@ pub(in crate::matching) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Sele
 pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE: usize>(
     work: RowWork<'_>,
     select: Option<Select>,
-    mut found: impl FnMut(&[Winner]),
+    found: Found<'_>,
 ) {
     const { assert!(S::RADIUS_X < OUTSIDE) };
     let RowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
@@ -70,13 +70,16 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
     for column in columns.chunks_exact(stride).take(OUTSIDE + begin + S::RADIUS_X).skip(before) {
         slide::<S::Sum, N>(sums, column, columns);
     }
-    let from = |column: usize| columns.get((OUTSIDE + begin + column) * stride..).unwrap_or(&[]).chunks(BATCH * stride);
-    let columns = from(S::RADIUS_X).zip(from(0usize.wrapping_sub(S::RADIUS_X + 1)));
+    // At least one, for the compiler to see that it is not zero.
+    let size = (BATCH * stride).max(1);
+    let from = |column: usize| columns.get(column * stride..).unwrap_or(&[]).chunks(size);
+    let columns = from(OUTSIDE + begin + S::RADIUS_X).zip(from(OUTSIDE + begin - S::RADIUS_X - 1));
     for (first, (entering, leaving)) in (begin..width).step_by(BATCH).zip(columns) {
         let batch = batch.get_mut(..BATCH.min(width - first)).unwrap_or_default();
         let columns = entering.chunks_exact(stride).zip(leaving.chunks_exact(stride));
-        // The first pixels have fewer candidates than there are lanes.
-        if select.candidates(first) == stride {
+        // The first pixels have fewer candidates than there are lanes. Without a mask is another code of the same size,
+        // which is spared where sums are wide and their number is an unusual one.
+        if (STRIDE > 0 || size_of::<S::Sum>() == 1) && select.candidates(first) == stride {
             winners::<S, N, false>(first, select, columns, sums, batch);
         } else {
             winners::<S, N, true>(first, select, columns, sums, batch);
@@ -165,7 +168,8 @@ fn update_columns<S: Scheme, const N: usize>(
 
 /// The row with its right codes turned around: the candidates of column x are `stride` of them from `width - 1 - x` on,
 /// in order of disparity. The first code is repeated to fill `room`.
-#[inline(always)]
+#[cfg_attr(stereopsis_vectors, inline(never))]
+#[cfg_attr(not(stereopsis_vectors), inline(always))]
 fn reversed<'a>(row: RowCodes<'a>, min_disparity: usize, room: usize, out: &'a mut [u8]) -> RowCodes<'a> {
     let out = out.get_mut(..room).unwrap_or_default();
     let inside = row.right.get(..row.right.len().saturating_sub(min_disparity)).unwrap_or(&[]);
@@ -263,7 +267,8 @@ fn beside<L: Lane>(cost: u32, disparity: usize, candidates: usize, sums: &[L]) -
 }
 
 /// The least cost of the candidates over one px beside the winner; `u32::MAX` where there is none.
-#[inline(always)]
+#[cfg_attr(stereopsis_vectors, inline(never))]
+#[cfg_attr(not(stereopsis_vectors), inline(always))]
 fn best_of_the_rest<L: Lane, const N: usize>(disparity: usize, mask: &[L], sums: &mut [L]) -> u32 {
     // The winner and those beside it are raised while the others are looked at.
     let first = disparity.saturating_sub(1);

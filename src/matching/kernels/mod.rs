@@ -93,12 +93,24 @@ impl Kernel {
         }
     }
 
+    /// The candidates of a column that it works on for so many `disparities`, of which there is room for `most`, in whole
+    /// [`STEP`]s.
+    #[inline]
+    pub(super) fn candidates(self, disparities: usize, most: usize) -> usize {
+        #[cfg(not(stereopsis_vectors))]
+        if self == Self::Planes && most.is_multiple_of(32) {
+            // Whole words.
+            return disparities.next_multiple_of(32).min(most);
+        }
+        disparities.next_multiple_of(STEP).min(most)
+    }
+
     /// The census row of five lines.
     #[inline]
     pub(super) fn census<S: Scheme>(self, rows: &Around<'_>, out: &mut [u8]) {
         #[cfg(not(stereopsis_vectors))]
-        if self == Self::Planes && planes::census::<S>(rows, out) {
-            return;
+        if self == Self::Planes {
+            return planes::census::<S>(rows, out);
         }
         S::census(rows, out);
     }
@@ -116,7 +128,7 @@ impl Kernel {
     /// Moves the window to the next row; `found` gets the winners in order of the columns, some at a time,
     /// unless the row is only gathered (`select` is `None`).
     #[inline]
-    pub(super) fn row<S: Scheme>(self, work: RowWork<'_>, select: Option<Select>, found: impl FnMut(&[Winner])) {
+    pub(super) fn row<S: Scheme>(self, work: RowWork<'_>, select: Option<Select>, found: Found<'_>) {
         match self {
             #[cfg(not(stereopsis_vectors))]
             Self::Planes => planes::row::<S>(work, select, found),
@@ -127,6 +139,9 @@ impl Kernel {
         }
     }
 }
+
+/// Takes winners in order of the columns, some at a time. It is called, not compiled into every kernel.
+pub(super) type Found<'a> = &'a mut dyn FnMut(&[Winner]);
 
 /// The census codes of one row in both images, `width` of them each.
 #[derive(Clone, Copy)]
@@ -142,7 +157,7 @@ pub(super) struct RowCodes<'a> {
 pub(super) struct RowWork<'a> {
     /// Pixels in the row.
     pub width: usize,
-    /// Candidates of a column: the disparities, rounded up to whole [`STEP`]s.
+    /// Candidates of a column: [`Kernel::candidates`].
     pub stride: usize,
     /// The smallest disparity, px.
     pub min_disparity: usize,

@@ -51,6 +51,7 @@ impl<const W: usize, const D: usize> Columns<W, D> {
 pub struct Aligned<T>(pub T);
 
 /// Bytes as words, as far as they are whole ones at a word's place; all of them if the slice begins at such a place.
+#[cfg(not(stereopsis_vectors))]
 pub(super) fn words_mut(bytes: &mut [u8]) -> &mut [u32] {
     // SAFETY: every value of four bytes is a word and the other way round.
     unsafe { bytes.align_to_mut().1 }
@@ -70,6 +71,7 @@ pub(in crate::matching) fn halves_mut(words: &mut [u32]) -> &mut [u16] {
 }
 
 /// [`words_mut`], to read.
+#[cfg(not(stereopsis_vectors))]
 pub(super) fn words_of(bytes: &[u8]) -> &[u32] {
     // SAFETY: every value of four bytes is a word.
     unsafe { bytes.align_to().1 }

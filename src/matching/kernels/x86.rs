@@ -1,7 +1,7 @@
 //! The kernel in lanes compiled for AVX2, and unrolled for the usual numbers of disparities.
 #![allow(unsafe_code)]
 
-use super::{RowWork, Select, Winner, lanes};
+use super::{Found, RowWork, Select, lanes};
 use crate::matching::scheme::Scheme;
 
 cpufeatures::new!(avx2, "avx2");
@@ -17,14 +17,14 @@ impl Avx2 {
     }
 
     #[inline]
-    pub(super) fn row<S: Scheme>(self, work: RowWork<'_>, select: Option<Select>, found: impl FnMut(&[Winner])) {
+    pub(super) fn row<S: Scheme>(self, work: RowWork<'_>, select: Option<Select>, found: Found<'_>) {
         // SAFETY: `self` is the proof that the processor has the one feature that the function is compiled for.
         unsafe { row::<S>(work, select, found) }
     }
 }
 
 #[target_feature(enable = "avx2")]
-fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select>, found: impl FnMut(&[Winner])) {
+fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select>, found: Found<'_>) {
     use lanes::row_in_groups;
     // Two registers of lanes at a time measured best: 64 bytes, 32 words.
     let bytes = size_of::<S::Sum>() == 1;

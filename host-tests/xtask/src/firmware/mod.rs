@@ -23,7 +23,7 @@ mod board;
 pub mod scene;
 
 pub use arguments::Arguments;
-pub use program::cargo;
+pub use program::{VECTORS, cargo};
 
 use crate::pictures::Pictures;
 use crate::setup;

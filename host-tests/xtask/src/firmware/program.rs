@@ -15,7 +15,7 @@ const BUDGET: usize = 64 * 1024;
 const BESIDE: usize = 3072;
 
 /// Flags for the core with vector instructions: they, and the kernel that is made for them.
-const VECTORS: &str = "-C target-cpu=cortex-m55 --cfg stereopsis_vectors";
+pub const VECTORS: &str = "-C target-cpu=cortex-m55 --cfg stereopsis_vectors";
 
 /// What is built.
 #[derive(Clone, Copy, Debug)]

@@ -13,17 +13,45 @@ const TOP: u32 = 0x8080_8080;
 /// The word of a line in three places: two columns to the left, here, two to the right.
 type Three = [u32; 3];
 
-/// The census row of five lines, if all of them and the codes lie in whole words; `false` if not.
+/// The census row of five lines.
 #[inline(never)]
-pub(in crate::matching::kernels) fn census<S: Scheme>(rows: &Around<'_>, out: &mut [u8]) -> bool {
+pub(in crate::matching::kernels) fn census<S: Scheme>(rows: &Around<'_>, out: &mut [u8]) {
     let width = out.len();
-    let line = |row: usize| rows.get(row).and_then(|r| r.get(..width)).map_or(&[][..], words_of);
-    let (above, here, below, out) = (line(0), line(2), line(4), words_mut(out));
-    if [above, here, below].iter().any(|words| words.len() * 4 != width) || out.len() * 4 != width {
-        return false;
+    let lines = [0, 2, 4].map(|row: usize| rows.get(row).and_then(|r| r.get(..width)).unwrap_or(&[]));
+    let in_words = |bytes: &[u8]| words_of(bytes).len() * 4 == width;
+    if in_words(out) && lines.into_iter().all(in_words) {
+        census_of_words::<S>(lines.map(words_of), words_mut(out));
+    } else {
+        census_of_bytes::<S>(lines, out);
     }
+}
+
+/// The census row of lines that are not all in whole words, as those whose width is no multiple of four.
+#[inline(never)]
+fn census_of_bytes<S: Scheme>(lines: [&[u8]; 3], out: &mut [u8]) {
+    for (x, out) in (0..).step_by(4).zip(out.chunks_mut(4)) {
+        let codes = S::codes(&lines.map(|line| [0, 2, 4].map(|place| word(line, x + place))));
+        for (out, code) in out.iter_mut().zip(codes.to_le_bytes()) {
+            *out = code;
+        }
+    }
+}
+
+/// The pixels from two left of `x` to one right of it; outside the line the nearest inside it.
+#[inline(never)]
+fn word(line: &[u8], x: usize) -> u32 {
+    if let Some(&inside) = x.checked_sub(2).and_then(|x| line.get(x..)).and_then(|line| line.first_chunk()) {
+        return u32::from_le_bytes(inside);
+    }
+    let last = line.len().saturating_sub(1);
+    let pixel = |x: usize| line.get(x.saturating_sub(2).min(last)).copied().unwrap_or(0);
+    (x..x + 4).fold(0, |word, x| word >> 8 | u32::from(pixel(x)) << 24)
+}
+
+/// The census row of lines in whole words.
+#[inline(always)]
+fn census_of_words<S: Scheme>(lines: [&[u32]; 3], out: &mut [u32]) {
     // Columns outside the line are the nearest inside it.
-    let lines = [above, here, below];
     let mut before = lines.map(|line| line.first().map_or(0, |first| (first & 0xff) * 0x0101_0101));
     let mut centre = lines.map(|line| line.first().copied().unwrap_or(0));
     let last = lines.map(|line| line.last().map_or(0, |last| (last >> 24) * 0x0101_0101));
@@ -33,13 +61,12 @@ pub(in crate::matching::kernels) fn census<S: Scheme>(rows: &Around<'_>, out: &m
         (before, centre) = (centre, after);
         codes
     };
-    let Some((out_last, out)) = out.split_last_mut() else { return true };
+    let Some((out_last, out)) = out.split_last_mut() else { return };
     let [above, here, below] = lines.map(|line| line.get(1..).unwrap_or(&[]));
     for (out, ((&above, &here), &below)) in out.iter_mut().zip(above.iter().zip(here).zip(below)) {
         *out = next([above, here, below]);
     }
     *out_last = next(last);
-    true
 }
 
 /// The codes of four pixels, bit `i` from the neighbour `neighbours[i]`: its row and column among `around`.

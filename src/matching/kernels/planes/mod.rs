@@ -14,7 +14,7 @@ mod columns;
 mod plane;
 mod windows;
 
-use super::{OUTSIDE, RowWork, Select, Winner};
+use super::{Found, OUTSIDE, RowWork, Select, Winner};
 use crate::matching::scheme::Scheme;
 use plane::Plane;
 use windows::{WINDOW, Windows};
@@ -31,23 +31,22 @@ type Column<P> = [P; 8];
 
 /// [`super::Kernel::row`] in planes.
 #[inline(always)]
-pub(super) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select>, found: impl FnMut(&[Winner])) {
-    // The usual numbers of candidates, whole words of them, and whole half-words.
+pub(super) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select>, found: Found<'_>) {
+    // The usual numbers of candidates, more of them, and those that are no whole words. With the capacity known when a
+    // firmware is linked, what it cannot ask for is left out.
     match work.stride {
+        16 => row_of::<S, u16, 1>(work, select, found),
         32 => row_of::<S, u32, 1>(work, select, found),
         64 => row_of::<S, u32, 2>(work, select, found),
-        stride if stride.is_multiple_of(32) => row_of::<S, u32, 0>(work, select, found),
-        _ => row_of::<S, u16, 0>(work, select, found),
+        stride if !stride.is_multiple_of(32) => row_of::<S, u16, 0>(work, select, found),
+        stride if stride > 64 => row_of::<S, u32, 0>(work, select, found),
+        _ => {}
     }
 }
 
 /// A row whose candidates are `GROUPS` words of them; 0 where the number is not known when the crate is compiled.
 #[inline(always)]
-fn row_of<S: Scheme, P: Plane, const GROUPS: usize>(
-    work: RowWork<'_>,
-    select: Option<Select>,
-    mut found: impl FnMut(&[Winner]),
-) {
+fn row_of<S: Scheme, P: Plane, const GROUPS: usize>(work: RowWork<'_>, select: Option<Select>, found: Found<'_>) {
     let RowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
     // At least one, for the compiler to see that no column is empty.
     let groups = if GROUPS > 0 { GROUPS } else { (stride / P::CANDIDATES).max(1) };
@@ -71,7 +70,8 @@ fn row_of<S: Scheme, P: Plane, const GROUPS: usize>(
     for column in columns.chunks_exact(groups).take(OUTSIDE + after).skip(OUTSIDE + before) {
         windows.slide::<S>(column, columns);
     }
-    let from = |column: usize| columns.get(column * groups..).unwrap_or(&[]).chunks(BATCH * groups);
+    let size = (BATCH * groups).max(1);
+    let from = |column: usize| columns.get(column * groups..).unwrap_or(&[]).chunks(size);
     let (entering, leaving) = (from(OUTSIDE + after), from(OUTSIDE + begin - S::RADIUS_X - 1));
     for (first, (entering, leaving)) in (begin..width).step_by(BATCH).zip(entering.zip(leaving)) {
         let batch = batch.get_mut(..BATCH.min(width - first)).unwrap_or_default();

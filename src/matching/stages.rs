@@ -96,7 +96,6 @@ impl<S: Scheme> Stages<'_, S> {
         let leave = leaves.map(codes);
         let select = row.map(|_| Select {
             disparities: usize::from(config.disparities),
-            min_disparity,
             second: config.checks.uniqueness_percent.is_some(),
         });
         let work = RowWork {

@@ -13,7 +13,7 @@
 
 use super::lane::Lane;
 use super::scratch::bytes_mut;
-use super::{Found, OUTSIDE, RowCodes, RowWork, STEP, Select, Winner, beside_at_the_end};
+use super::{Found, OUTSIDE, RowCodes, RowWork, STEP, Select, Winner};
 use crate::matching::scheme::Scheme;
 
 /// Winners handed on at a time.
@@ -79,16 +79,17 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
         let columns = entering.chunks_exact(stride).zip(leaving.chunks_exact(stride));
         // The first pixels have fewer candidates than there are lanes. Without a mask is another code of the same size,
         // which is spared where sums are wide and their number is an unusual one.
-        if (STRIDE > 0 || size_of::<S::Sum>() == 1) && select.candidates(first) == stride {
-            winners::<S, N, false>(first, select, columns, sums, batch);
+        if (STRIDE > 0 || size_of::<S::Sum>() == 1) && candidates(first - min_disparity, select) == stride {
+            winners::<S, N, false>(first - min_disparity, select, columns, sums, batch);
         } else {
-            winners::<S, N, true>(first, select, columns, sums, batch);
+            winners::<S, N, true>(first - min_disparity, select, columns, sums, batch);
         }
         found(batch);
     }
 }
 
-/// The winners of the pixels from `first` on, with the columns that enter and leave at each.
+/// The winners of pixels, the first of which is `first` right of the smallest disparity, with the columns that enter and
+/// leave at each.
 #[inline(always)]
 fn winners<'a, S: Scheme, const N: usize, const MASKED: bool>(
     first: usize,
@@ -98,7 +99,7 @@ fn winners<'a, S: Scheme, const N: usize, const MASKED: bool>(
     out: &mut [Winner],
 ) {
     for ((x, slot), (enters, leaves)) in (first..).zip(out).zip(columns) {
-        let candidates = if MASKED { select.candidates(x) } else { sums.len() };
+        let candidates = if MASKED { candidates(x, select) } else { sums.len() };
         let mask = S::Sum::MASKS.get(256 - candidates.min(256)..).and_then(|m| m.get(..sums.len())).unwrap_or(&[]);
         let (cost, disparity) = slide_to_least::<S::Sum, N, MASKED>(sums, enters, leaves, mask);
         slot.set(cost, disparity as u32, beside::<S::Sum>(cost, disparity, candidates, sums));
@@ -106,6 +107,12 @@ fn winners<'a, S: Scheme, const N: usize, const MASKED: bool>(
             slot.second = best_of_the_rest::<S::Sum, N>(disparity, mask, sums);
         }
     }
+}
+
+/// How many candidates a pixel so far right of the smallest disparity has inside the right image.
+#[inline(always)]
+fn candidates(x: usize, select: Select) -> usize {
+    (x + 1).min(select.disparities)
 }
 
 /// The code of every column with the codes that it is compared with: those of column x begin at `width - 1 - x`.
@@ -264,6 +271,19 @@ fn beside<L: Lane>(cost: u32, disparity: usize, candidates: usize, sums: &[L]) -
     } else {
         beside_at_the_end(disparity, candidates, at, cost)
     }
+}
+
+/// The costs beside a winner that lacks a candidate on one side or both, for [`Winner::set`].
+#[inline(never)]
+fn beside_at_the_end(disparity: usize, candidates: usize, cost: impl Fn(usize) -> u32, least: u32) -> (u32, u32) {
+    let one = if disparity > 0 {
+        cost(disparity - 1)
+    } else if candidates > 1 {
+        cost(1)
+    } else {
+        least
+    };
+    (one, one)
 }
 
 /// The least cost of the candidates over one px beside the winner; `u32::MAX` where there is none.

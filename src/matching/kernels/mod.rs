@@ -177,18 +177,8 @@ pub(super) struct RowWork<'a> {
 pub(super) struct Select {
     /// Disparities searched.
     pub disparities: usize,
-    /// The smallest one, px: columns left of it have no candidate.
-    pub min_disparity: usize,
     /// Whether [`Winner::second`] is wanted.
     pub second: bool,
-}
-
-impl Select {
-    /// How many candidates column `x` has inside the right image.
-    #[inline(always)]
-    fn candidates(self, x: usize) -> usize {
-        (x + 1).saturating_sub(self.min_disparity).min(self.disparities)
-    }
 }
 
 /// The best disparity of a pixel.
@@ -237,19 +227,6 @@ impl Winner {
         // The winner costs least: nothing wraps.
         ((self.beside & 0xffff).wrapping_sub(self.cost()), (self.beside >> 16).wrapping_sub(self.cost()))
     }
-}
-
-/// The costs beside a winner that lacks a candidate on one side or both, for [`Winner::new`].
-#[inline(never)]
-fn beside_at_the_end(disparity: usize, candidates: usize, cost: impl Fn(usize) -> u32, least: u32) -> (u32, u32) {
-    let one = if disparity > 0 {
-        cost(disparity - 1)
-    } else if candidates > 1 {
-        cost(1)
-    } else {
-        least
-    };
-    (one, one)
 }
 
 /// Columns of zero sums before the image's first and after its last, to stand for those outside.

@@ -132,13 +132,20 @@ impl<'a, P: Plane> Windows<'a, P> {
 fn winner<S: Scheme, P: Plane>(windows: &[Window<P>], group: usize, lane: usize, candidates: P, out: &mut Winner) {
     let Some(window) = windows.get(group) else { return };
     let costs = three::<S, P>(window, lane.max(1) - 1);
-    let disparity = (group * P::CANDIDATES + lane) as u32;
+    // The lane above is a candidate too.
     let is_above = candidates.bits() >> (lane % 32) > 1;
-    if lane > 0 && is_above {
-        out.set(costs >> FIELD & COST, disparity, (costs & COST, costs >> (2 * FIELD)));
-    } else {
-        winner_at_an_end(costs, disparity, lane, is_above, out);
-    }
+    let costs = if lane > 0 && is_above { costs } else { at_an_end(costs, lane, is_above) };
+    let disparity = (group * P::CANDIDATES + lane) as u32;
+    out.set(costs >> FIELD & COST, disparity, (costs & COST, costs >> (2 * FIELD)));
+}
+
+/// The sums around a winner of which the word lacks the candidate below, or that above, or both: of a word's first two or
+/// last three.
+#[inline(always)]
+fn at_an_end(costs: u32, lane: usize, is_above: bool) -> u32 {
+    let [first, second] = [costs & COST, costs >> FIELD & COST];
+    let (here, beside) = if lane > 0 { (second, first) } else { (first, if is_above { second } else { first }) };
+    beside | here << FIELD | beside << (2 * FIELD)
 }
 
 /// Takes the cost of a winner's neighbour from the group before or after, if it is there.
@@ -175,14 +182,6 @@ fn best_of_the_rest<S: Scheme, P: Plane>(windows: &[Window<P>], disparity: usize
         }
     }
     least
-}
-
-/// A winner of which the word lacks the candidate below, or that above, or both.
-#[inline(never)]
-fn winner_at_an_end(costs: u32, disparity: u32, lane: usize, is_above: bool, out: &mut Winner) {
-    let [first, second] = [costs & COST, costs >> FIELD & COST];
-    let (here, beside) = if lane > 0 { (second, first) } else { (first, if is_above { second } else { first }) };
-    out.set(here, disparity, (beside, beside));
 }
 
 /// Moves a group one column on.

@@ -99,10 +99,10 @@ impl Kernel {
     pub(super) fn candidates(self, disparities: usize, most: usize) -> usize {
         #[cfg(not(stereopsis_vectors))]
         if self == Self::Planes && most.is_multiple_of(32) {
-            // Whole words.
-            return disparities.next_multiple_of(32).min(most);
+            // Whole words, in a form that lets the compiler see it: a firmware is linked without what cannot be asked for.
+            return disparities.next_multiple_of(32).min(most) & !31;
         }
-        disparities.next_multiple_of(STEP).min(most)
+        disparities.next_multiple_of(STEP).min(most) & !(STEP - 1)
     }
 
     /// The census row of five lines.

@@ -98,8 +98,9 @@ pub(super) fn update<'a, S: Scheme, P: Plane, const GROUPS: usize>(
     words.fill(start);
     // One group's words are in registers, as far as there are some.
     let mut here = start.map(|words| words.map(P::doubled));
-    let columns = columns.get_mut(begin * groups..).unwrap_or_default().chunks_exact_mut(groups);
-    for (column, codes) in columns.zip(all()) {
+    let mut columns = columns.get_mut(begin * groups..).unwrap_or_default().chunks_exact_mut(groups);
+    for codes in all() {
+        let Some(column) = columns.next() else { return };
         if GROUPS == 1 {
             let Some(sums) = column.first_mut() else { return };
             move_on::<S, P>(sums, &mut here, |i, doubled| {

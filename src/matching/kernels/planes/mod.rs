@@ -32,13 +32,12 @@ type Column<P> = [P; 8];
 /// [`super::Kernel::row`] in planes.
 #[inline(always)]
 pub(super) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select>, found: Found<'_>) {
-    // The usual numbers of candidates, more of them, and those that are no whole words. With the capacity known when a
-    // firmware is linked, what it cannot ask for is left out.
+    // The usual numbers of candidates, then any number of words of them, or of half-words.
     match work.stride {
         16 => row_of::<S, u16, 1>(work, select, found),
         32 => row_of::<S, u32, 1>(work, select, found),
         64 => row_of::<S, u32, 2>(work, select, found),
-        stride if !stride.is_multiple_of(32) => row_of::<S, u16, 0>(work, select, found),
+        stride if !stride.is_multiple_of(32) && stride > 32 => row_of::<S, u16, 0>(work, select, found),
         stride if stride > 64 => row_of::<S, u32, 0>(work, select, found),
         _ => {}
     }
@@ -72,8 +71,9 @@ fn row_of<S: Scheme, P: Plane, const GROUPS: usize>(work: RowWork<'_>, select: O
     }
     let size = (BATCH * groups).max(1);
     let from = |column: usize| columns.get(column * groups..).unwrap_or(&[]).chunks(size);
-    let (entering, leaving) = (from(OUTSIDE + after), from(OUTSIDE + begin - S::RADIUS_X - 1));
-    for (first, (entering, leaving)) in (begin..width).step_by(BATCH).zip(entering.zip(leaving)) {
+    let (mut entering, mut leaving) = (from(OUTSIDE + after), from(OUTSIDE + begin - S::RADIUS_X - 1));
+    for first in (begin..width).step_by(BATCH) {
+        let (Some(entering), Some(leaving)) = (entering.next(), leaving.next()) else { return };
         let batch = batch.get_mut(..BATCH.min(width - first)).unwrap_or_default();
         if GROUPS > 0 {
             windows.winners::<S, GROUPS>(entering, leaving, batch);

@@ -100,9 +100,9 @@ impl<'a, P: Plane> Windows<'a, P> {
         out: &mut [Winner],
     ) {
         let groups = self.groups.len().max(1);
-        for (slot, (enters, leaves)) in
-            out.iter_mut().zip(entering.chunks_exact(groups).zip(leaving.chunks_exact(groups)))
-        {
+        let (mut entering, mut leaving) = (entering.chunks_exact(groups), leaving.chunks_exact(groups));
+        for slot in out {
+            let (Some(enters), Some(leaves)) = (entering.next(), leaving.next()) else { return };
             self.candidates = self.select.disparities.min(self.candidates + 1);
             let among = |group: usize| P::first(self.candidates.saturating_sub(group * P::CANDIDATES));
             let mut least = (u32::MAX, 0, 0);

@@ -12,8 +12,6 @@
 //! Every kernel gives the same bits. A new one is a variant of [`Kernel`] and an arm in [`Kernel::row`].
 
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-mod lane;
-#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 mod lanes;
 #[cfg(not(stereopsis_vectors))]
 mod planes;
@@ -22,7 +20,7 @@ mod scratch;
 mod x86;
 
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-pub use lane::Lane;
+pub use lanes::Lane;
 pub(super) use scratch::halves_mut;
 pub use scratch::{Aligned, Columns, Scratch};
 

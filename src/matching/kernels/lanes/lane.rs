@@ -1,6 +1,6 @@
 //! The integers that window sums are made of.
 
-use super::scratch::{bytes_mut, halves_mut};
+use crate::matching::kernels::scratch::{bytes_mut, halves_mut};
 
 /// A window's sum in a vector's lane, above as many bits as [`Lane::NUMBER_BITS`] for the lane's own number: where there
 /// are some, one comparison finds the least sum and its place.

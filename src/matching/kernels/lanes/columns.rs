@@ -1,0 +1,83 @@
+//! The costs of a row, added to the columns under the window.
+
+use crate::matching::kernels::RowCodes;
+use crate::matching::scheme::Scheme;
+
+/// The code of every column with the codes that it is compared with: those of column x begin at `width - 1 - x`.
+#[inline(always)]
+fn pixels(row: RowCodes<'_>, width: usize, stride: usize) -> impl Iterator<Item = (&u8, &[u8])> {
+    let right = row.right.get(..width + stride - 1).unwrap_or(&[]);
+    row.left.iter().zip(right.windows(stride).rev())
+}
+
+/// Moves the sums of all columns one row down.
+#[inline(always)]
+pub(super) fn update<S: Scheme, const N: usize>(
+    width: usize,
+    stride: usize,
+    enter: Option<RowCodes<'_>>,
+    leave: Option<RowCodes<'_>>,
+    columns: &mut [u8],
+) {
+    let columns = columns.chunks_exact_mut(stride);
+    // Groups are taken and put as values, so that the compiler need not ask whether the slices overlap.
+    match (enter.map(|row| pixels(row, width, stride)), leave.map(|row| pixels(row, width, stride))) {
+        (Some(enter), Some(leave)) => {
+            for (column, ((&new_code, new), (&old_code, old))) in columns.zip(enter.zip(leave)) {
+                let codes = new.as_chunks::<N>().0.iter().zip(old.as_chunks::<N>().0);
+                for (sums, (&new, &old)) in column.as_chunks_mut::<N>().0.iter_mut().zip(codes) {
+                    let mut group = *sums;
+                    for i in 0..N {
+                        let (more, less) = (S::hamming(new_code, new[i]), S::hamming(old_code, old[i]));
+                        group[i] = group[i].wrapping_add(more).wrapping_sub(less);
+                    }
+                    *sums = group;
+                }
+            }
+        }
+        (Some(enter), None) => {
+            for (column, (&code, candidates)) in columns.zip(enter) {
+                for (sums, &new) in column.as_chunks_mut::<N>().0.iter_mut().zip(candidates.as_chunks::<N>().0) {
+                    let mut group = *sums;
+                    for i in 0..N {
+                        group[i] = group[i].wrapping_add(S::hamming(code, new[i]));
+                    }
+                    *sums = group;
+                }
+            }
+        }
+        (None, Some(leave)) => {
+            for (column, (&code, candidates)) in columns.zip(leave) {
+                for (sums, &old) in column.as_chunks_mut::<N>().0.iter_mut().zip(candidates.as_chunks::<N>().0) {
+                    let mut group = *sums;
+                    for i in 0..N {
+                        group[i] = group[i].wrapping_sub(S::hamming(code, old[i]));
+                    }
+                    *sums = group;
+                }
+            }
+        }
+        (None, None) => {}
+    }
+}
+
+/// The row with its right codes turned around: the candidates of column x are `stride` of them from `width - 1 - x` on,
+/// in order of disparity. The first code is repeated to fill `room`.
+#[cfg_attr(stereopsis_vectors, inline(never))]
+#[cfg_attr(not(stereopsis_vectors), inline(always))]
+pub(super) fn reversed<'a>(row: RowCodes<'a>, min_disparity: usize, room: usize, out: &'a mut [u8]) -> RowCodes<'a> {
+    let out = out.get_mut(..room).unwrap_or_default();
+    let inside = row.right.get(..row.right.len().saturating_sub(min_disparity)).unwrap_or(&[]);
+    let (reversed, repeated) = out.split_at_mut_checked(inside.len()).unwrap_or_default();
+    // Eight codes are turned around as one word.
+    let (last, words) = inside.as_rchunks::<8>();
+    let (out_words, out_last) = reversed.as_chunks_mut::<8>();
+    for (out, word) in out_words.iter_mut().zip(words.iter().rev()) {
+        *out = u64::from_le_bytes(*word).to_be_bytes();
+    }
+    for (out, code) in out_last.iter_mut().zip(last.iter().rev()) {
+        *out = *code;
+    }
+    repeated.fill(row.right.first().copied().unwrap_or(0));
+    RowCodes { left: row.left, right: out }
+}

@@ -38,6 +38,8 @@ pub struct Matcher<S: Scheme, const W: usize, const D: usize> {
     finished: [[Disparity; W]; HISTORY],
     config: Config,
     kernel: Kernel,
+    /// The kernel of the next frame, once one is chosen.
+    next_kernel: Kernel,
     kernel_chosen: bool,
     /// Lines taken, counting on below the image.
     taken: usize,
@@ -121,6 +123,7 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             finished: [[Disparity::ZERO; W]; HISTORY],
             config: Config::UNSET,
             kernel: Kernel::FIRST,
+            next_kernel: Kernel::FIRST,
             kernel_chosen: false,
             taken: 0,
         }
@@ -138,9 +141,10 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
         Ok(())
     }
 
-    /// Chooses the kernel; every kernel gives the same bits.
+    /// Chooses the kernel from the next frame on: within a frame kernels keep their own form of what they have seen.
+    /// Every kernel gives the same bits.
     pub fn set_kernel(&mut self, kernel: Kernel) {
-        self.kernel = kernel;
+        self.next_kernel = kernel;
         self.kernel_chosen = true;
     }
 
@@ -157,6 +161,7 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     /// Forgets the frame before.
     pub fn begin_frame(&mut self) {
         self.taken = 0;
+        self.kernel = self.next_kernel;
         self.stages().begin();
     }
 

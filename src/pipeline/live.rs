@@ -48,7 +48,7 @@ impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
         Ok(())
     }
 
-    /// Chooses the kernel; every kernel gives the same bits.
+    /// Chooses the kernel from the next frame on; every kernel gives the same bits.
     pub fn set_kernel(&mut self, kernel: Kernel) {
         self.matcher.set_kernel(kernel);
     }

@@ -2,7 +2,7 @@
 
 use super::{Any, Method, difference, pipeline, rows};
 use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, StereoSource};
-use stereopsis::matching::{Block, Checks, Config, Fast, MatchError};
+use stereopsis::matching::{Block, Checks, Config, Fast, Kernel, MatchError};
 use stereopsis::pipeline::PipelineError;
 use stereopsis_host::scene::SceneCamera;
 use stereopsis_host::scene::pattern::Pattern;
@@ -130,6 +130,31 @@ fn a_frame_or_a_size_may_change_at_any_row() {
         for _ in 0..rows_taken {
             pipeline.next_row(&mut camera).expect("the camera works");
         }
+    }
+}
+
+#[test]
+fn a_kernel_chosen_within_a_frame_waits_for_the_next() {
+    let (left, right) = LIVE.pair(90, 25, 12);
+    let config = Config::new(90, 25, 32);
+    let expected = match_pair(&Block::TWIN, &config, &left, &right);
+    let kernels: Vec<_> = Kernel::available().collect();
+    let mut pipeline = pipeline::<Block>();
+    for (&first, &then) in kernels.iter().flat_map(|first| kernels.iter().map(move |then| (first, then))) {
+        pipeline.set_kernel(first);
+        pipeline.start(&config).expect("a good configuration");
+        let mut source = SceneCamera::new(left.clone(), right.clone());
+        pipeline.begin_frame(&mut source).expect("a frame");
+        let mut disparity = Vec::new();
+        while let Some(row) = pipeline.next_row(&mut source).expect("no fault") {
+            disparity.extend_from_slice(row.disparities());
+            pipeline.set_kernel(then);
+        }
+        assert_eq!(pipeline.kernel(), first);
+        assert_eq!(disparity, expected.disparity, "{} and then {}", first.name(), then.name());
+        let map = rows(&mut pipeline, &mut source).expect("a second frame");
+        assert_eq!(pipeline.kernel(), then);
+        assert_eq!(difference(&map, &expected), None);
     }
 }
 

@@ -45,7 +45,7 @@ pub struct Config {
     /// Neighbours are of one surface when they differ by at most this, in 1/32 px, 0 to 32.
     pub surface_step: u16,
     /// Speckle: answers with fewer of their surface on a cross around them are dropped; with 0 none is.
-    pub speckle_pixels: u16,
+    pub speckle_pixels: u8,
 }
 
 impl Config {

@@ -110,7 +110,7 @@ pub struct Checks {
     pub smoothing_radius: u8,
     /// Speckle: answers are dropped that have fewer of their surface, themselves included, on a cross: in their column,
     /// down to four rows below, and along the rows of these. 0: none is.
-    pub speckle_pixels: u16,
+    pub speckle_pixels: u8,
 }
 
 impl Checks {

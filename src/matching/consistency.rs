@@ -7,46 +7,31 @@
 use super::kernels::Winner;
 use crate::units::PixelFlags;
 
-/// One row's winners, seen from both sides. All slices have the row's width.
-pub(super) struct Consistency<'a> {
-    /// Winner of each left column, over the smallest disparity.
-    pub left: &'a mut [u8],
-    /// What each right column keeps: the cost above 8 bits of the winner, over the smallest disparity; all ones while
-    /// nobody offered.
-    pub right: &'a mut [u32],
-    /// The smallest disparity, px.
-    pub min_disparity: usize,
-}
+/// What each right column keeps: the cost above 8 bits of the winner, over the smallest disparity; all ones while nobody
+/// offered.
+pub(super) struct Consistency<'a>(pub &'a mut [u16]);
 
 impl Consistency<'_> {
-    /// Forgets the row before.
-    pub(super) fn begin(&mut self) {
-        self.right.fill(u32::MAX);
-    }
-
-    /// Notes the winners of the columns from `first` on and offers them to their partners. The first of equal costs
-    /// stays.
+    /// Forgets the row before, and offers every winner of this one to its partner. The first of equal costs stays.
+    /// `winners` are those of the columns that have a candidate: the first one's is the first right column.
     #[inline(never)]
-    pub(super) fn offer(&mut self, first: usize, winners: &[Winner]) {
-        let left = self.left.get_mut(first..).unwrap_or_default();
-        // Where a column's candidates begin; left of the smallest disparity it wraps, and there is no partner.
-        let mut place = first.wrapping_sub(self.min_disparity);
-        for (left, winner) in left.iter_mut().zip(winners) {
-            *left = winner.disparity() as u8;
-            if let Some(kept) = self.right.get_mut(place.wrapping_sub(winner.disparity() as usize)) {
+    pub(super) fn offer(&mut self, winners: &[Winner]) {
+        self.0.fill(u16::MAX);
+        for (x, winner) in winners.iter().enumerate() {
+            if let Some(kept) = self.0.get_mut(x.wrapping_sub(winner.disparity() as usize)) {
                 // Of one partner, those who come later are farther away: their disparity is larger.
                 *kept = (*kept).min(winner.key());
             }
-            place = place.wrapping_add(1);
         }
     }
 
-    /// Whether the partner of left column `x`, whose winner is `disparity`, keeps something else by over `tolerance` px.
+    /// Whether the partner of a winner, that of the `x`-th column with a candidate, keeps something else by over
+    /// `tolerance` px.
     #[inline(always)]
-    pub(super) fn mismatch(&self, x: usize, disparity: u8, tolerance: u8) -> PixelFlags {
-        let partner = x.wrapping_sub(self.min_disparity + usize::from(disparity));
-        let kept = self.right.get(partner).map_or(disparity, |&kept| kept as u8);
-        let apart = u32::from(kept).wrapping_sub(u32::from(disparity)).wrapping_add(u32::from(tolerance));
+    pub(super) fn mismatch(&self, x: usize, winner: Winner, tolerance: u8) -> PixelFlags {
+        let disparity = winner.disparity();
+        let kept = self.0.get(x.wrapping_sub(disparity as usize)).map_or(disparity, |&kept| u32::from(kept & 0xff));
+        let apart = kept.wrapping_sub(disparity).wrapping_add(u32::from(tolerance));
         PixelFlags::MISMATCH.when(apart > 2 * u32::from(tolerance))
     }
 }

@@ -1,7 +1,7 @@
 //! The memory of a block matcher and its stages, in running order.
 
 use super::consistency::Consistency;
-use super::kernels::{Aligned, Columns, Kernel, OUTSIDE, STEP, Scratch};
+use super::kernels::{Aligned, Columns, Kernel, OUTSIDE, STEP, Scratch, Winner};
 use super::row::{HISTORY, Row};
 use super::scheme::{Around, Codes, Scheme};
 use super::speckle::{BAND, LOOK_AHEAD, Support};
@@ -22,19 +22,17 @@ const FIXED_BYTES: usize = 64;
 ///
 /// `D` is a multiple of 16, at most 256, and `W` at least `D`; another choice does not compile.
 pub struct Matcher<S: Scheme, const W: usize, const D: usize> {
-    left: Aligned<S::Codes<W>>,
-    right: Aligned<S::Codes<W>>,
+    codes: Aligned<S::Codes<W>>,
     columns: Columns<W, D>,
     scratch: Scratch<W, D>,
     texture: [u16; W],
     textured: [u8; W],
-    left_winners: [u8; W],
-    right_winners: [u32; W],
+    winners: [Winner; W],
+    right_winners: [u16; W],
     band: [[Disparity; W]; BAND],
     band_flags: [[PixelFlags; W]; BAND],
     lengths: [u16; W],
     support: [u16; W],
-    history: [u8; W],
     finished: [[Disparity; W]; HISTORY],
     config: Config,
     kernel: Kernel,
@@ -57,8 +55,8 @@ pub const fn state_bytes<S: Scheme>(width: usize, disparities: usize) -> usize {
     let lanes = disparities.next_multiple_of(STEP);
     let width = if width < lanes { lanes } else { width };
     let codes = 2 * S::Codes::<1>::ROWS;
-    let per_column = codes + lanes + 2 + 2 + 1 + 1 + 4 + 2 + 2 + 1 + (2 + 1) * BAND + 2 * HISTORY;
-    width * per_column + (4 + 2 * OUTSIDE) * lanes + FIXED_BYTES
+    let per_column = codes + lanes + 2 + 2 + 1 + 4 + 2 + 2 + 2 + (2 + 1) * BAND + 2 * HISTORY;
+    width * per_column + (3 + 2 * OUTSIDE) * lanes + FIXED_BYTES
 }
 
 /// Why a matcher took no line.
@@ -99,7 +97,10 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
         assert!(W >= D, "W must be at least D");
         assert!(W <= u16::MAX as usize, "W must be at most 65535");
         assert!(S::Codes::<W>::ROWS == 2 * S::RADIUS_Y + 2, "the codes must hold the window and one row");
-        assert!(S::BITS * (2 * S::RADIUS_Y + 1) <= u8::MAX as usize, "a column's sum must fit a byte");
+        let column = S::BITS * (2 * S::RADIUS_Y + 1);
+        assert!(column < 1 << S::COLUMN_BITS && S::COLUMN_BITS <= 8, "a column's sum must fit its bits, and a byte");
+        let window = (column >> S::COLUMN_SHIFT) * (2 * S::RADIUS_X + 1);
+        assert!(window < u8::MAX as usize, "a window's sum must fit a byte, and be no 255");
         assert!(size_of::<Self>() <= state_bytes::<S>(W, D), "state_bytes must cover the state");
     };
 
@@ -107,19 +108,17 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     pub const fn new() -> Self {
         const { Self::CHECKED };
         Self {
-            left: Aligned(S::Codes::<W>::EMPTY),
-            right: Aligned(S::Codes::<W>::EMPTY),
+            codes: Aligned(S::Codes::<W>::EMPTY),
             columns: Columns::ZERO,
             scratch: Scratch::ZERO,
             texture: [0; W],
             textured: [0; W],
-            left_winners: [0; W],
+            winners: [Winner::NONE; W],
             right_winners: [0; W],
             band: [[Disparity::ZERO; W]; BAND],
             band_flags: [[PixelFlags::CLEAR; W]; BAND],
             lengths: [0; W],
             support: [0; W],
-            history: [0; W],
             finished: [[Disparity::ZERO; W]; HISTORY],
             config: Config::UNSET,
             kernel: Kernel::FIRST,
@@ -222,23 +221,15 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             stride,
             kernel: self.kernel,
             config: &self.config,
-            left: first(self.left.0.flat(), width * S::Codes::<W>::ROWS),
-            right: first(self.right.0.flat(), width * S::Codes::<W>::ROWS),
+            codes: first(self.codes.0.flat(), 2 * width * S::Codes::<W>::ROWS),
             columns: first(self.columns.flat(), (width + 2 * OUTSIDE) * stride),
             scratch: self.scratch.words(),
             texture: Texture { history: first(&mut self.texture, width), counts: first(&mut self.textured, width) },
-            consistency: Consistency {
-                left: first(&mut self.left_winners, width),
-                right: first(&mut self.right_winners, width),
-                min_disparity: usize::from(self.config.min_disparity),
-            },
+            winners: first(&mut self.winners, width),
+            consistency: Consistency(first(&mut self.right_winners, width)),
             band: first(self.band.as_flattened_mut(), width * BAND),
             flags: first(self.band_flags.as_flattened_mut(), width * BAND),
-            support: Support {
-                lengths: first(&mut self.lengths, width),
-                counts: first(&mut self.support, width),
-                history: first(&mut self.history, width),
-            },
+            support: Support { lengths: first(&mut self.lengths, width), kept: first(&mut self.support, width) },
             finished: first(self.finished.as_flattened_mut(), width * HISTORY),
         }
     }

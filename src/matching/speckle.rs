@@ -8,7 +8,7 @@
 //!
 //! Each row adds its surfaces' lengths to the support of the row above where the two are of one surface. Support only
 //! grows downwards: where it is enough, it is enough for all rows above that the surface goes on from. Two bits a row say
-//! all that is to be kept of those.
+//! all that is to be kept of those, in one word with the support so far.
 
 use super::row::slot;
 use crate::units::{Disparity, PixelFlags};
@@ -22,19 +22,20 @@ pub(super) const BAND: usize = LOOK_AHEAD + 1;
 pub(super) struct Support<'a> {
     /// Of the newest row: how many answers its surfaces have along it.
     pub lengths: &'a mut [u16],
-    /// Of the row before: the support counted so far.
-    pub counts: &'a mut [u16],
-    /// Low half: whether the last four rows go on from those above them, the newest row lowest. High half: whether the last
-    /// four rows have enough.
-    pub history: &'a mut [u8],
+    /// From the lowest bit up: whether each of the last four rows goes on from the one above it, the newest row first;
+    /// whether each of them has enough; the support counted so far, as far as a byte holds it.
+    pub kept: &'a mut [u16],
 }
+
+/// Bits of rows that go on, and then of rows that have enough.
+const ROWS: usize = LOOK_AHEAD;
 
 impl Support<'_> {
     /// Forgets the frame before. `band` is the ring of rows.
     pub(super) fn begin(self, band: &mut [Disparity]) {
-        self.history.fill(0);
+        self.kept.fill(0);
         // The row above the first one.
-        let above = (BAND - 1) * self.history.len();
+        let above = (BAND - 1) * self.kept.len();
         band.get_mut(above..).unwrap_or_default().fill(Disparity::NONE);
     }
 
@@ -47,30 +48,32 @@ impl Support<'_> {
         y: usize,
         band: &[Disparity],
         step: Disparity,
-        pixels: u16,
+        pixels: u8,
         flags: &mut [PixelFlags],
         finished: &mut [Disparity],
     ) {
-        let width = self.history.len();
+        let width = self.kept.len();
         let row = |y: usize| slot(band, y % BAND, width);
         let (here, above, judged) = (row(y), row(y + BAND - 1), row(y + BAND - LOOK_AHEAD));
         let step = u32::from(step.raw());
-        let kept = self.counts.iter_mut().zip(self.history.iter_mut());
-        let rows = here.iter().zip(above).zip(self.lengths.iter().zip(kept));
+        let pixels = u32::from(pixels);
+        let rows = here.iter().zip(above).zip(self.lengths.iter().zip(self.kept.iter_mut()));
         let out = judged.iter().zip(flags).zip(finished);
-        for (((here, above), (length, (count, history))), ((answer, flags), finished)) in rows.zip(out) {
+        for (((here, above), (length, kept)), ((answer, flags), finished)) in rows.zip(out) {
             let change = u32::from(here.raw()).wrapping_sub(u32::from(above.raw()));
-            let joined = change.wrapping_add(step) <= 2 * step;
-            *count = length.saturating_add(*count & 0u16.wrapping_sub(u16::from(joined)));
-            let joined_rows = (*history << 1 | u8::from(joined)) & 0xf;
+            let joined = u32::from(change.wrapping_add(step) <= 2 * step);
+            let before = u32::from(*kept);
+            let count = (u32::from(*length) + (before >> (2 * ROWS) & 0u32.wrapping_sub(joined))).min(0xff);
+            // Each bit stands for the row before now; the highest of both halves goes.
+            let mut rows = (before << 1 & 0b1_1110_1110) | joined;
             // This row, and those above as far as they are joined.
-            let reached = joined_rows ^ (joined_rows + 1);
-            let enough = (*history >> 3 & 0x1e) | reached & 0u8.wrapping_sub(u8::from(*count >= pixels));
-            *history = enough << 4 | joined_rows;
-            let refused = enough & 1 << LOOK_AHEAD == 0;
-            // What has no answer is no speckle.
-            *flags = flags.union(PixelFlags::SPECKLE.when(refused & answer.is_some()));
+            let reached = rows ^ (rows + 1);
+            rows |= reached << ROWS & 0u32.wrapping_sub(u32::from(count >= pixels));
+            *kept = (count << (2 * ROWS) | rows & 0xff) as u16;
+            let refused = rows & 1 << (ROWS + LOOK_AHEAD) == 0;
             *finished = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(refused)));
+            // What has no answer is no speckle.
+            *flags = flags.union(PixelFlags::SPECKLE.when(finished != answer));
         }
     }
 }

@@ -2,12 +2,12 @@
 
 use super::config::Config;
 use super::consistency::Consistency;
-use super::kernels::{Kernel, RowCodes, RowWork, Select, Winner, halves_mut};
+use super::kernels::{Kernel, RowWork, Select, Unique, Winner, halves_mut};
 use super::row::{HISTORY, slot};
 use super::scheme::{Around, Scheme};
 use super::speckle::{BAND, LOOK_AHEAD, Support};
 use super::subpixel::refine;
-use super::surface::{self, Runs};
+use super::surface;
 use super::texture::Texture;
 use crate::units::{Disparity, PixelFlags};
 use core::marker::PhantomData;
@@ -19,11 +19,11 @@ pub struct Stages<'a, S: Scheme> {
     pub(super) stride: usize,
     pub(super) kernel: Kernel,
     pub(super) config: &'a Config,
-    pub(super) left: &'a mut [u8],
-    pub(super) right: &'a mut [u8],
+    pub(super) codes: &'a mut [u8],
     pub(super) columns: &'a mut [u8],
     pub(super) scratch: &'a mut [u32],
     pub(super) texture: Texture<'a>,
+    pub(super) winners: &'a mut [Winner],
     pub(super) consistency: Consistency<'a>,
     pub(super) band: &'a mut [Disparity],
     pub(super) flags: &'a mut [PixelFlags],
@@ -45,11 +45,8 @@ impl<S: Scheme> Stages<'_, S> {
     /// Takes row `y` of both images (`None` below the last one) and finishes the row that is due with it.
     pub(super) fn step(mut self, y: usize, lines: Option<[&Around<'_>; 2]>) {
         if let Some([left, right]) = lines {
-            let place = y % Self::CODES;
-            let (codes, of_right) = (slot_mut(self.left, place, self.width), slot_mut(self.right, place, self.width));
-            self.kernel.census::<S>(left, codes);
-            self.kernel.census::<S>(right, of_right);
-            self.kernel.prepare::<S>(codes, of_right, usize::from(self.config.min_disparity));
+            let row = slot_mut(self.codes, y % Self::CODES, 2 * self.width);
+            self.kernel.codes::<S>([left, right], usize::from(self.config.min_disparity), self.scratch, row);
         }
         if self.config.checks.texture_pixels > 0 {
             let line = lines.and_then(|[left, _]| left[2].get(..self.width));
@@ -64,14 +61,11 @@ impl<S: Scheme> Stages<'_, S> {
         let height = usize::from(self.config.height);
         let row = bottom.checked_sub(S::RADIUS_Y);
         if bottom < height + S::RADIUS_Y {
-            if row.is_some() {
-                self.consistency.begin();
-            }
             self.select_winners(bottom, bottom < height, row);
         }
         let Some(row) = row else { return };
         if row < height {
-            self.refuse(row);
+            self.answer(row);
         } else {
             // No surface goes on below the image.
             slot_mut(self.band, row % BAND, self.width).fill(Disparity::NONE);
@@ -83,52 +77,35 @@ impl<S: Scheme> Stages<'_, S> {
         self.support.count(row, self.band, checks.surface_step, checks.speckle_pixels, flags, finished);
     }
 
-    /// Runs the kernel and turns its winners into answers and flags; without a `row`, costs are only gathered.
+    /// Moves the window; without a `row`, costs are only gathered.
     fn select_winners(&mut self, bottom: usize, enters: bool, row: Option<usize>) {
         let (width, config) = (self.width, self.config);
-        let min_disparity = usize::from(config.min_disparity);
         let leaves = bottom.checked_sub(2 * S::RADIUS_Y + 1);
-        let codes = |y: usize| RowCodes {
-            left: slot(self.left, y % Self::CODES, width),
-            right: slot(self.right, y % Self::CODES, width),
-        };
-        let enter = enters.then(|| codes(bottom));
-        let leave = leaves.map(codes);
-        let select = row.map(|_| Select {
-            disparities: usize::from(config.disparities),
-            second: config.checks.uniqueness_percent.is_some(),
-        });
+        let codes = |y: usize| slot(self.codes, y % Self::CODES, 2 * width);
         let work = RowWork {
             width,
             stride: self.stride,
-            min_disparity,
-            enter,
-            leave,
+            min_disparity: usize::from(config.min_disparity),
+            enter: enters.then(|| codes(bottom)),
+            leave: leaves.map(codes),
             columns: self.columns,
             scratch: self.scratch,
         };
-        let place = row.unwrap_or(0) % BAND;
-        let (answers, row_flags) = (slot_mut(self.band, place, width), slot_mut(self.flags, place, width));
-        let rules = Rules::new(config);
-        let mut first = 0;
-        self.kernel.row::<S>(work, select, &mut |winners| {
-            let place = first..first + winners.len();
-            first = place.end;
-            let (Some(answers), Some(flags)) = (answers.get_mut(place.clone()), row_flags.get_mut(place.clone()))
-            else {
-                return;
-            };
-            rules.answer(winners, answers, flags);
-            if let Some(percent) = config.checks.uniqueness_percent {
-                mark_ambiguous(winners, percent, flags);
+        let flags = slot_mut(self.flags, row.unwrap_or(0) % BAND, width);
+        let select = row.map(|_| {
+            flags.fill(PixelFlags::CLEAR);
+            Select {
+                disparities: usize::from(config.disparities),
+                winners: self.winners,
+                unique: Unique::new(config.checks.uniqueness_percent, flags),
             }
-            self.consistency.offer(place.start, winners);
         });
+        self.kernel.row::<S>(work, select);
     }
 
-    /// Takes the answers away that the checks contradict, and averages what is left along the row.
+    /// Turns winners into answers, but for those that the checks contradict, and averages them along the row.
     #[inline(never)]
-    fn refuse(&mut self, row: usize) {
+    fn answer(&mut self, row: usize) {
         let checks = &self.config.checks;
         let refused_ceiling = PixelFlags::CEILING.when(checks.refuse_ceiling);
         let refused = PixelFlags::OUTSIDE
@@ -136,67 +113,35 @@ impl<S: Scheme> Stages<'_, S> {
             .union(PixelFlags::AMBIGUOUS)
             .union(PixelFlags::MISMATCH)
             .union(refused_ceiling);
+        let refused_flat = PixelFlags::UNTEXTURED.when(checks.refuse_flat);
         // Where nothing is checked, nothing is over the tolerance.
         let tolerance = checks.left_right_px.unwrap_or(u8::MAX);
+        let min_disparity = u32::from(self.config.min_disparity);
+        let ceiling = u32::from(self.config.disparities) - 1;
         let (flags, answers) =
             (slot_mut(self.flags, row % BAND, self.width), slot_mut(self.band, row % BAND, self.width));
-        let lengths = &mut *self.support.lengths;
-        // The kernel is done with its room.
-        let Some((none, sums)) = halves_mut(self.scratch).split_first_mut() else { return };
-        *none = 0;
-        let mut runs = Runs::new(checks.surface_step);
         if checks.texture_pixels > 0 {
             self.texture.mark::<S>(u16::from(checks.texture_pixels), flags);
         }
-        // Where there is no candidate there is no winner to check.
-        for flags in flags.iter_mut().take(usize::from(self.config.min_disparity)) {
-            *flags = PixelFlags::OUTSIDE;
+        let outside = usize::from(self.config.min_disparity).min(self.width);
+        let winners = self.winners.get(outside..).unwrap_or_default();
+        self.consistency.offer(winners);
+        let (left_out, inside) = flags.split_at_mut_checked(outside).unwrap_or_default();
+        left_out.fill(PixelFlags::OUTSIDE);
+        let (left_out, inside) = (answers.get_mut(..outside).unwrap_or_default(), inside.iter_mut());
+        left_out.fill(Disparity::NONE);
+        let answered = answers.get_mut(outside..).unwrap_or_default();
+        for (x, ((answer, flags), &winner)) in answered.iter_mut().zip(inside).zip(winners).enumerate() {
+            let said = flags
+                .union(self.consistency.mismatch(x, winner, tolerance))
+                .union(refused_flat.when(winner.rises() == (0, 0)))
+                .union(PixelFlags::CEILING.when(winner.disparity() == ceiling));
+            let none = 0u16.wrapping_sub(u16::from(said.intersects(refused)));
+            *answer = Disparity::from_raw(refine(winner, min_disparity).raw() | none);
+            *flags = said;
         }
-        let pixels = answers.iter_mut().zip(flags).zip(lengths.iter_mut().zip(sums));
-        for ((x, ((answer, flags), (length, sum))), left) in pixels.enumerate().zip(self.consistency.left.iter()) {
-            *flags = flags.union(self.consistency.mismatch(x, *left, tolerance));
-            let refused = 0u16.wrapping_sub(u16::from(flags.intersects(refused)));
-            *answer = Disparity::from_raw(answer.raw() | refused);
-            (*length, *sum) = runs.next(*answer);
-        }
-        surface::average(answers, lengths, halves_mut(self.scratch), checks.smoothing_radius);
-    }
-}
-
-/// How winners become answers.
-struct Rules {
-    min_disparity: u32,
-    ceiling: u32,
-    flat: PixelFlags,
-}
-
-impl Rules {
-    fn new(config: &Config) -> Self {
-        Self {
-            min_disparity: u32::from(config.min_disparity),
-            ceiling: u32::from(config.disparities) - 1,
-            flat: PixelFlags::UNTEXTURED.when(config.checks.refuse_flat),
-        }
-    }
-
-    /// The answers of some pixels, and what is known of the winners by themselves.
-    #[inline(never)]
-    fn answer(&self, winners: &[Winner], answers: &mut [Disparity], flags: &mut [PixelFlags]) {
-        for (winner, (answer, flags)) in winners.iter().zip(answers.iter_mut().zip(flags)) {
-            *answer = refine(winner, self.min_disparity);
-            let flat = self.flat.when(winner.rises() == (0, 0));
-            *flags = flat.union(PixelFlags::CEILING.when(winner.disparity() == self.ceiling));
-        }
-    }
-}
-
-/// Flags the pixels whose second best costs at most `percent` more of its own cost.
-#[inline(never)]
-fn mark_ambiguous(winners: &[Winner], percent: u8, flags: &mut [PixelFlags]) {
-    let share = 100 - u32::from(percent.min(99));
-    for (winner, flags) in winners.iter().zip(flags) {
-        let ambiguous = winner.second < u32::MAX && winner.second * share <= winner.cost() * 100;
-        *flags = flags.union(PixelFlags::AMBIGUOUS.when(ambiguous));
+        // The kernel is done with its room.
+        surface::average(answers, self.support.lengths, halves_mut(self.scratch), checks);
     }
 }
 

@@ -14,7 +14,7 @@ use crate::units::Disparity;
 
 /// The disparity of a winner whose search began at `min_disparity` px, rounded to the nearest step.
 #[inline(always)]
-pub(super) fn refine(winner: &Winner, min_disparity: u32) -> Disparity {
+pub(super) fn refine(winner: Winner, min_disparity: u32) -> Disparity {
     let whole = (min_disparity + winner.disparity()) * u32::from(Disparity::ONE);
     let (a, b) = winner.rises();
     let steepest = a.max(b);
@@ -30,10 +30,8 @@ pub(super) fn refine(winner: &Winner, min_disparity: u32) -> Disparity {
 mod tests {
     use super::*;
 
-    fn refined(below: u32, cost: u32, above: u32) -> u16 {
-        let mut winner = Winner::default();
-        winner.set(cost, 10, (below, above));
-        refine(&winner, 0).raw()
+    fn refined(below: u8, cost: u8, above: u8) -> u16 {
+        refine(Winner::new(cost, 10, (below, above)), 0).raw()
     }
 
     #[test]

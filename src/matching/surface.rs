@@ -10,44 +10,42 @@
 use super::config::Checks;
 use crate::units::Disparity;
 
-/// The pass to the right.
-pub(super) struct Runs {
-    step: u32,
-    before: i32,
-    length: u16,
-    sum: u16,
+/// Makes every answer of a row the average of up to [`Checks::smoothing_radius`] pairs around it, and gives for each how
+/// many its surface has along the row. `sums` is room for one number more than there are answers.
+pub(super) fn average(answers: &mut [Disparity], lengths: &mut [u16], sums: &mut [u16], checks: &Checks) {
+    count(answers, lengths, sums, checks.surface_step);
+    average_counted(answers, lengths, sums, checks.smoothing_radius);
 }
 
-impl Runs {
-    /// Before the first answer of a row.
-    pub(super) fn new(step: Disparity) -> Self {
-        // No answer is near what stands before the row.
-        Self { step: u32::from(step.raw()), before: i32::MIN / 2, length: 0, sum: 0 }
-    }
-
-    /// Takes the next answer: the length of its surface up to it, and the sum of all raw disparities up to it, modulo
-    /// 2^16.
-    #[inline(always)]
-    pub(super) fn next(&mut self, answer: Disparity) -> (u16, u16) {
-        let here = i32::from(answer.raw());
-        // No branch: pictures decide nothing about the work. `NONE` is far from every answer (Config::check).
-        let joined = ((here - self.before) as u32).wrapping_add(self.step) <= 2 * self.step;
-        self.length = (self.length & 0u16.wrapping_sub(u16::from(joined))) + 1;
-        self.sum = self.sum.wrapping_add(answer.raw());
-        self.before = here;
-        (self.length, self.sum)
-    }
-}
-
-/// The pass back: makes every answer of a row the average of up to `radius` pairs around it, and every length that of the
-/// whole surface along the row. `sums[x]` is the sum of all answers left of `x`, `lengths` and `sums` are of [`Runs`].
+/// The pass to the right: for every answer how many of its surface there are up to it, and the sum of all raw disparities
+/// left of it, modulo 2^16.
 #[inline(never)]
-pub(super) fn average(answers: &mut [Disparity], lengths: &mut [u16], sums: &[u16], radius: u8) {
-    let (mut whole, mut goes_on) = (0, false);
+fn count(answers: &[Disparity], lengths: &mut [u16], sums: &mut [u16], step: Disparity) {
+    let step = u32::from(step.raw());
+    // No answer is near what stands before the row.
+    let (mut before, mut length, mut sum) = (u32::MAX / 2, 0u16, 0u16);
+    let Some((none, sums)) = sums.split_first_mut() else { return };
+    *none = sum;
+    for (answer, (length_here, sum_here)) in answers.iter().zip(lengths.iter_mut().zip(sums)) {
+        let here = u32::from(answer.raw());
+        // No branch: pictures decide nothing about the work. `NONE` is far from every answer (Config::check).
+        let joined = here.wrapping_sub(before).wrapping_add(step) <= 2 * step;
+        length = (length & 0u16.wrapping_sub(u16::from(joined))) + 1;
+        sum = sum.wrapping_add(answer.raw());
+        before = here;
+        (*length_here, *sum_here) = (length, sum);
+    }
+}
+
+/// The pass back.
+#[inline(never)]
+fn average_counted(answers: &mut [Disparity], lengths: &mut [u16], sums: &[u16], radius: u8) {
+    // The first of the next surface has the length 1.
+    let (mut whole, mut next) = (0, 1);
     for ((x, answer), length) in answers.iter_mut().enumerate().zip(lengths).rev() {
         let here = u32::from(*length);
-        whole = if goes_on { whole } else { here };
-        goes_on = here > 1;
+        whole = if next > 1 { whole } else { here };
+        next = here;
         let reach = (here - 1).min(whole.wrapping_sub(here)).min(u32::from(radius)) as usize;
         let to = |x: usize| sums.get(x).copied().unwrap_or(0);
         let sum = to(x + reach + 1).wrapping_sub(to(x.wrapping_sub(reach)));
@@ -86,12 +84,10 @@ mod tests {
     fn averages(row: &[u16]) -> (Vec9<u16>, Vec9<u16>) {
         let mut answers = [Disparity::NONE; 9];
         let (mut lengths, mut sums) = ([0; 9], [0; 10]);
-        let mut runs = Runs::new(Disparity::ONE_PIXEL);
-        for (x, &raw) in row.iter().enumerate() {
-            answers[x] = Disparity::from_raw(raw);
-            (lengths[x], sums[x + 1]) = runs.next(answers[x]);
+        for (answer, &raw) in answers.iter_mut().zip(row) {
+            *answer = Disparity::from_raw(raw);
         }
-        average(&mut answers[..row.len()], &mut lengths[..row.len()], &sums, 4);
+        average(&mut answers[..row.len()], &mut lengths[..row.len()], &mut sums, &Checks::DEFAULT);
         (answers.map(Disparity::raw), lengths)
     }
 

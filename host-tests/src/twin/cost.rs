@@ -48,8 +48,8 @@ pub fn costs(scheme: &Scheme, config: &Config, left: &Picture<'_>, right: &Pictu
     volume
 }
 
-/// The sum over the part of the window that lies inside the picture: first along columns, then along rows, which is the
-/// sum over the window since the window is a rectangle.
+/// The sum over the part of the window that lies inside the picture: first along columns, of which only whole units count,
+/// then along rows.
 pub fn window_sums(scheme: &Scheme, costs: &Volume) -> Volume {
     let (width, height) = (costs.width, costs.height);
     let mut columns = Volume::filled(width, height, costs.disparities);
@@ -57,6 +57,9 @@ pub fn window_sums(scheme: &Scheme, costs: &Volume) -> Volume {
         for x in 0..width {
             for row in y.saturating_sub(scheme.radius_y)..height.min(y + scheme.radius_y + 1) {
                 add(columns.at_mut(x, y), costs.at(x, row));
+            }
+            for sum in columns.at_mut(x, y) {
+                *sum /= scheme.unit;
             }
         }
     }
@@ -83,12 +86,11 @@ pub fn window_sums_plain(scheme: &Scheme, costs: &Volume) -> Volume {
     let (radius_x, radius_y) = (scheme.radius_x as isize, scheme.radius_y as isize);
     let mut sums = Volume::filled(costs.width, costs.height, costs.disparities);
     for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
-        for (dy, dx) in (-radius_y..=radius_y).flat_map(|dy| (-radius_x..=radius_x).map(move |dx| (dy, dx))) {
-            let (row, column) = (y + dy, x + dx);
-            if (0..height).contains(&row) && (0..width).contains(&column) {
-                for d in 0..costs.disparities {
-                    sums.at_mut(x as usize, y as usize)[d] += costs.at(column as usize, row as usize)[d];
-                }
+        for column in (x - radius_x..=x + radius_x).filter(|column| (0..width).contains(column)) {
+            for d in 0..costs.disparities {
+                let rows = (y - radius_y..=y + radius_y).filter(|row| (0..height).contains(row));
+                let bits: u16 = rows.map(|row| costs.at(column as usize, row as usize)[d]).sum();
+                sums.at_mut(x as usize, y as usize)[d] += bits / scheme.unit;
             }
         }
     }

@@ -28,15 +28,18 @@ pub struct Scheme {
     pub radius_x: usize,
     /// The window reaches this many rows up and down.
     pub radius_y: usize,
+    /// The unit of a window's sum, in bits that differ: a column has as many as go into its own sum.
+    pub unit: u16,
     /// The least deviation of an answer, px.
     pub sigma_px: f32,
 }
 
 impl Scheme {
     /// The twin of [`stereopsis::matching::Fast`]: 4-bit census, 9 x 7 window.
-    pub const FAST: Self = Self { neighbours: &census::PLUS4, radius_x: 4, radius_y: 3, sigma_px: 0.15 };
-    /// The twin of [`stereopsis::matching::Block`]: 8-bit census, 9 x 9 window.
-    pub const BLOCK: Self = Self { neighbours: &census::RING8, radius_x: 4, radius_y: 4, sigma_px: 0.15 };
+    pub const FAST: Self = Self { neighbours: &census::PLUS4, radius_x: 4, radius_y: 3, unit: 1, sigma_px: 0.15 };
+    /// The twin of [`stereopsis::matching::Block`]: 8-bit census, 9 x 9 window, in
+    /// quarters.
+    pub const BLOCK: Self = Self { neighbours: &census::RING8, radius_x: 4, radius_y: 4, unit: 4, sigma_px: 0.15 };
 }
 
 /// An 8-bit picture whose edge goes on for ever outside of it.

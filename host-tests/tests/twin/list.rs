@@ -69,7 +69,7 @@ fn random_checks(random: &mut Random) -> Checks {
         texture_pixels: *random.pick(&[0, 1, 3, 20, 63, 81, 255]),
         refuse_ceiling: random.below(2) == 1,
         smoothing_radius: random.below(usize::from(Checks::MOST_SMOOTHING) + 1) as u8,
-        speckle_pixels: *random.pick(&[0, 1, 2, 5, 40, 100, 1000, u16::MAX]),
+        speckle_pixels: *random.pick(&[0, 1, 2, 5, 40, 100, 254, u8::MAX]),
         surface_step: Disparity::from_raw(*random.pick(&[0, 1, 2, 16, 31, 32])),
     }
 }
@@ -176,7 +176,7 @@ fn a_rendered_scene_equals_the_twin() {
 fn whole_surface<S: Method>() {
     let mut pipeline = pipeline::<S>();
     let same = Pattern::Shifted { most: 0, noise_grey: 0.0 }.pair(W as u32, 60, 1);
-    for speckle_pixels in [255, 256, 32_767, 65_534, u16::MAX] {
+    for speckle_pixels in [127, 128, 129, 254, 255] {
         let checks = Checks { speckle_pixels, ..Checks::DENSE };
         let config = Config { checks, ..Config::new(W as u16, 60, 16) };
         compare(&mut pipeline, &config, &same).unwrap_or_else(|e| panic!("{e}"));
@@ -198,7 +198,7 @@ prop_compose! {
         texture_pixels in 0u8..90,
         refuse_ceiling: bool,
         smoothing_radius in 0..=Checks::MOST_SMOOTHING,
-        speckle_pixels in 0u16..300,
+        speckle_pixels: u8,
         surface_step in (0u16..=32).prop_map(Disparity::from_raw),
     ) -> Checks {
         Checks {

@@ -19,8 +19,6 @@ mod scratch;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-pub use lanes::Lane;
 pub(super) use scratch::halves_mut;
 pub use scratch::{Aligned, Columns, Scratch};
 
@@ -28,6 +26,7 @@ pub use scratch::{Aligned, Columns, Scratch};
 pub(super) use planes::codes;
 
 use super::scheme::{Around, Scheme};
+use crate::units::PixelFlags;
 
 /// Disparities are worked on in whole groups of this many.
 pub const STEP: usize = 16;
@@ -103,49 +102,37 @@ impl Kernel {
         disparities.next_multiple_of(STEP).min(most) & !(STEP - 1)
     }
 
-    /// The census row of five lines.
+    /// The census row of five lines in both images, in the form in which [`Self::row`] takes it: two bytes a pixel.
     #[inline]
-    pub(super) fn census<S: Scheme>(self, rows: &Around<'_>, out: &mut [u8]) {
+    pub(super) fn codes<S: Scheme>(
+        self,
+        [left, right]: [&Around<'_>; 2],
+        min_disparity: usize,
+        scratch: &mut [u32],
+        out: &mut [u8],
+    ) {
         #[cfg(not(stereopsis_vectors))]
         if self == Self::Planes {
-            return planes::census::<S>(rows, out);
+            return planes::codes_of::<S>([left, right], min_disparity, scratch, out);
         }
-        S::census(rows, out);
+        let _ = (min_disparity, scratch);
+        let (of_left, of_right) = out.split_at_mut_checked(out.len() / 2).unwrap_or_default();
+        S::census(left, of_left);
+        S::census(right, of_right);
     }
 
-    /// Brings the census rows of both images into the form in which [`Self::row`] takes them, once for each row.
+    /// Moves the window to the next row and selects its winners, unless the row is only gathered (`select` is `None`).
     #[inline]
-    pub(super) fn prepare<S: Scheme>(self, left: &mut [u8], right: &mut [u8], min_disparity: usize) {
-        #[cfg(not(stereopsis_vectors))]
-        if self == Self::Planes {
-            planes::prepare::<S>(left, right, min_disparity);
-        }
-        let _ = (left, right, min_disparity);
-    }
-
-    /// Moves the window to the next row; `found` gets the winners in order of the columns, some at a time,
-    /// unless the row is only gathered (`select` is `None`).
-    #[inline]
-    pub(super) fn row<S: Scheme>(self, work: RowWork<'_>, select: Option<Select>, found: Found<'_>) {
+    pub(super) fn row<S: Scheme>(self, work: RowWork<'_>, select: Option<Select<'_>>) {
         match self {
             #[cfg(not(stereopsis_vectors))]
-            Self::Planes => planes::row::<S>(work, select, found),
+            Self::Planes => planes::row::<S>(work, select),
             #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-            Self::Lanes => lanes::row::<S>(work, select, found),
+            Self::Lanes => lanes::row::<S>(work, select),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2(avx2) => avx2.row::<S>(work, select, found),
+            Self::Avx2(avx2) => avx2.row::<S>(work, select),
         }
     }
-}
-
-/// Takes winners in order of the columns, some at a time. It is called, not compiled into every kernel.
-pub(super) type Found<'a> = &'a mut dyn FnMut(&[Winner]);
-
-/// The census codes of one row in both images, `width` of them each.
-#[derive(Clone, Copy)]
-pub(super) struct RowCodes<'a> {
-    pub left: &'a [u8],
-    pub right: &'a [u8],
 }
 
 /// What a kernel works on.
@@ -159,10 +146,10 @@ pub(super) struct RowWork<'a> {
     pub stride: usize,
     /// The smallest disparity, px.
     pub min_disparity: usize,
-    /// The row that enters the window below, while there is one.
-    pub enter: Option<RowCodes<'a>>,
+    /// The row of [`Kernel::codes`] that enters the window below, while there is one.
+    pub enter: Option<&'a [u8]>,
     /// The row that leaves it above, once there is one.
-    pub leave: Option<RowCodes<'a>>,
+    pub leave: Option<&'a [u8]>,
     /// Matching costs summed over the window's height, where a word may stand: `stride` bytes for each of the
     /// image's columns, and for each of [`OUTSIDE`] columns before and after that stay zero.
     pub columns: &'a mut [u8],
@@ -170,60 +157,101 @@ pub(super) struct RowWork<'a> {
     pub scratch: &'a mut [u32],
 }
 
-/// How winners are selected.
-#[derive(Clone, Copy)]
-pub(super) struct Select {
+/// What is selected, and where to.
+pub(super) struct Select<'a> {
     /// Disparities searched.
     pub disparities: usize,
-    /// Whether [`Winner::second`] is wanted.
-    pub second: bool,
+    /// The best disparity of each pixel.
+    pub winners: &'a mut [Winner],
+    /// What is asked of the others.
+    pub unique: Unique<'a>,
 }
 
-/// The best disparity of a pixel.
-#[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
-pub(super) struct Winner {
-    /// The cost above 8 bits of the disparity.
-    key: u32,
-    /// The cost below in the low half, that above in the high one.
-    beside: u32,
-    /// Least cost of the candidates that are over one px beside the winner; `u32::MAX` where there is none. Not set where
-    /// it was not asked for.
-    pub second: u32,
+/// The flags of pixels whose second best is too near: [`Checks::uniqueness_percent`](super::Checks::uniqueness_percent).
+pub(super) struct Unique<'a> {
+    percent: u8,
+    flags: &'a mut [PixelFlags],
 }
+
+impl<'a> Unique<'a> {
+    /// Flags the pixels of a row, none of them where no `percent` is asked for.
+    pub fn new(percent: Option<u8>, flags: &'a mut [PixelFlags]) -> Self {
+        match percent {
+            Some(percent) => Self { percent, flags },
+            None => Self { percent: 0, flags: &mut [] },
+        }
+    }
+
+    /// Flags the pixels from column `begin` on, one after the other: it is given the winner, and what finds the least cost
+    /// of the candidates over one px beside it, `u8::MAX` where there is none, which is asked where it is wanted.
+    #[inline(always)]
+    pub fn from_column(self, begin: usize) -> impl FnMut(Winner, &mut dyn FnMut() -> u8) {
+        let share = 100 - u32::from(self.percent.min(99));
+        let mut flags = self.flags.get_mut(begin..).unwrap_or_default().iter_mut();
+        move |winner, second| {
+            if let Some(flags) = flags.next() {
+                let second = second();
+                let ambiguous = second < u8::MAX && u32::from(second) * share <= winner.cost() * 100;
+                *flags = flags.union(PixelFlags::AMBIGUOUS.when(ambiguous));
+            }
+        }
+    }
+}
+
+/// The best disparity of a pixel, in a word: from the lowest byte up the cost below it, its own, the cost above it, and
+/// the disparity.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Winner(u32);
 
 impl Winner {
-    /// Becomes a winner over the smallest disparity, with the costs one below and one above. Where one of these is no
-    /// candidate, the other stands for it; where none is, the winner does. [`Self::second`] stays.
+    /// Where there is no candidate.
+    pub const NONE: Self = Self(0);
+
+    /// A winner over the smallest disparity, with the costs one below and one above. Where one of these is no candidate,
+    /// the other stands for it; where none is, the winner does.
     #[inline(always)]
-    pub fn set(&mut self, cost: u32, disparity: u32, beside: (u32, u32)) {
-        self.key = cost << 8 | disparity;
-        self.beside = beside.0 | beside.1 << 16;
+    pub fn new(cost: u8, disparity: u8, (below, above): (u8, u8)) -> Self {
+        Self(u32::from_le_bytes([below, cost, above, disparity]))
     }
 
-    /// Its cost above 8 bits of [`Self::disparity`].
+    /// The costs one below and one above.
+    #[cfg(not(stereopsis_vectors))]
     #[inline(always)]
-    pub fn key(&self) -> u32 {
-        self.key
+    pub fn beside(self) -> (u8, u8) {
+        (self.0 as u8, (self.0 >> 16) as u8)
     }
 
-    /// Disparity over the smallest one searched: of those with the least cost the smallest. Means nothing in columns
+    /// The same winner with other costs beside it.
+    #[cfg(not(stereopsis_vectors))]
+    #[inline(always)]
+    pub fn with_beside(self, beside: (u8, u8)) -> Self {
+        Self::new(self.cost() as u8, self.disparity() as u8, beside)
+    }
+
+    /// Its disparity over the smallest one searched: of those with the least cost the smallest. Means nothing in columns
     /// without a candidate, as all the rest.
     #[inline(always)]
-    pub fn disparity(&self) -> u32 {
-        self.key & 0xff
+    pub fn disparity(self) -> u32 {
+        self.0 >> 24
     }
 
     /// Its cost.
     #[inline(always)]
-    pub fn cost(&self) -> u32 {
-        self.key >> 8
+    pub fn cost(self) -> u32 {
+        self.0 >> 8 & 0xff
+    }
+
+    /// Its cost above 8 bits of [`Self::disparity`].
+    #[inline(always)]
+    pub fn key(self) -> u16 {
+        (self.0 & 0xff00 | self.0 >> 24) as u16
     }
 
     /// How much more the disparities one below and one above cost.
     #[inline(always)]
-    pub fn rises(&self) -> (u32, u32) {
+    pub fn rises(self) -> (u32, u32) {
         // The winner costs least: nothing wraps.
-        ((self.beside & 0xffff).wrapping_sub(self.cost()), (self.beside >> 16).wrapping_sub(self.cost()))
+        ((self.0 & 0xff).wrapping_sub(self.cost()), (self.0 >> 16 & 0xff).wrapping_sub(self.cost()))
     }
 }
 

@@ -5,23 +5,24 @@ use super::OUTSIDE;
 
 /// What a kernel works with while a row lasts. No kernel finds anything in it from the row before.
 ///
-/// `2 W + 4 D` bytes: room for window sums of all disparities beside the codes of the right image's rows, in
-/// the order in which the kernel reads them.
+/// `2 W + 3 D` bytes: room for window sums of all disparities beside the codes of the right image's rows, in the order in
+/// which the kernel reads them, each with as many before as there are disparities.
 #[repr(C, align(8))]
 pub struct Scratch<const W: usize, const D: usize> {
-    sums: [u32; D],
+    sums: [u8; D],
+    before: [u16; D],
     codes: [u16; W],
 }
 
 impl<const W: usize, const D: usize> Scratch<W, D> {
     /// All zero.
-    pub const ZERO: Self = Self { sums: [0; D], codes: [0; W] };
+    pub const ZERO: Self = Self { sums: [0; D], before: [0; D], codes: [0; W] };
 
     /// All of it as words.
     pub fn words(&mut self) -> &mut [u32] {
-        let words = (size_of_val(&self.sums) + size_of_val(&self.codes)) / size_of::<u32>();
-        // SAFETY: the two fields are integers without a gap between them (`repr(C)`, the first a multiple of four bytes),
-        // any of whose values is a word, and `words` does not reach beyond the second one.
+        let words = (size_of_val(&self.sums) + size_of_val(&self.before) + size_of_val(&self.codes)) / size_of::<u32>();
+        // SAFETY: the fields are integers without a gap between them (`repr(C)`, the first a whole number of half-words),
+        // any of whose values is a word, and `words` does not reach beyond the last one.
         unsafe { core::slice::from_raw_parts_mut(core::ptr::from_mut(self).cast(), words) }
     }
 }
@@ -58,7 +59,6 @@ pub(super) fn words_mut(bytes: &mut [u8]) -> &mut [u32] {
 }
 
 /// Words as bytes, in the order of memory.
-#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 pub(super) fn bytes_mut(words: &mut [u32]) -> &mut [u8] {
     // SAFETY: every value of a word is four bytes and the other way round.
     unsafe { words.align_to_mut().1 }
@@ -68,6 +68,20 @@ pub(super) fn bytes_mut(words: &mut [u32]) -> &mut [u8] {
 pub(in crate::matching) fn halves_mut(words: &mut [u32]) -> &mut [u16] {
     // SAFETY: every value of a word is two half-words and the other way round.
     unsafe { words.align_to_mut().1 }
+}
+
+/// Bytes as half-words, as far as they are whole ones at a half-word's place.
+#[cfg(not(stereopsis_vectors))]
+pub(super) fn halves_of_mut(bytes: &mut [u8]) -> &mut [u16] {
+    // SAFETY: every value of two bytes is a half-word and the other way round.
+    unsafe { bytes.align_to_mut().1 }
+}
+
+/// [`halves_of_mut`], to read.
+#[cfg(not(stereopsis_vectors))]
+pub(super) fn halves_of(bytes: &[u8]) -> &[u16] {
+    // SAFETY: every value of two bytes is a half-word.
+    unsafe { bytes.align_to().1 }
 }
 
 /// [`words_mut`], to read.

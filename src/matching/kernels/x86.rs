@@ -1,7 +1,7 @@
 //! The kernel in lanes compiled for AVX2, and unrolled for the usual numbers of disparities.
 #![allow(unsafe_code)]
 
-use super::{Found, RowWork, Select, lanes};
+use super::{RowWork, Select, lanes};
 use crate::matching::scheme::Scheme;
 
 cpufeatures::new!(avx2, "avx2");
@@ -17,25 +17,22 @@ impl Avx2 {
     }
 
     #[inline]
-    pub(super) fn row<S: Scheme>(self, work: RowWork<'_>, select: Option<Select>, found: Found<'_>) {
+    pub(super) fn row<S: Scheme>(self, work: RowWork<'_>, select: Option<Select<'_>>) {
         // SAFETY: `self` is the proof that the processor has the one feature that the function is compiled for.
-        unsafe { row::<S>(work, select, found) }
+        unsafe { row::<S>(work, select) }
     }
 }
 
 #[target_feature(enable = "avx2")]
-fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select>, found: Found<'_>) {
+fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select<'_>>) {
     use lanes::row_in_groups;
-    // Two registers of lanes at a time measured best: 64 bytes, 32 words.
-    let bytes = size_of::<S::Sum>() == 1;
+    // Two registers of lanes at a time measured best.
     match work.stride {
-        32 => row_in_groups::<S, 32, 32>(work, select, found),
-        64 if bytes => row_in_groups::<S, 64, 64>(work, select, found),
-        64 => row_in_groups::<S, 32, 64>(work, select, found),
-        128 if bytes => row_in_groups::<S, 64, 128>(work, select, found),
-        128 => row_in_groups::<S, 32, 128>(work, select, found),
-        256 => row_in_groups::<S, 32, 256>(work, select, found),
-        stride if stride % 32 == 0 => row_in_groups::<S, 32, 0>(work, select, found),
-        _ => row_in_groups::<S, 16, 0>(work, select, found),
+        32 => row_in_groups::<S, 32, 32>(work, select),
+        64 => row_in_groups::<S, 64, 64>(work, select),
+        128 => row_in_groups::<S, 64, 128>(work, select),
+        256 => row_in_groups::<S, 64, 256>(work, select),
+        stride if stride % 32 == 0 => row_in_groups::<S, 32, 0>(work, select),
+        _ => row_in_groups::<S, 16, 0>(work, select),
     }
 }

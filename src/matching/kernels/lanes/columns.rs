@@ -1,7 +1,13 @@
 //! The costs of a row, added to the columns under the window.
 
-use crate::matching::kernels::RowCodes;
 use crate::matching::scheme::Scheme;
+
+/// The codes of a row in both images.
+#[derive(Clone, Copy)]
+pub(super) struct RowCodes<'a> {
+    left: &'a [u8],
+    right: &'a [u8],
+}
 
 /// The code of every column with the codes that it is compared with: those of column x begin at `width - 1 - x`.
 #[inline(always)]
@@ -65,9 +71,10 @@ pub(super) fn update<S: Scheme, const N: usize>(
 /// in order of disparity. The first code is repeated to fill `room`.
 #[cfg_attr(stereopsis_vectors, inline(never))]
 #[cfg_attr(not(stereopsis_vectors), inline(always))]
-pub(super) fn reversed<'a>(row: RowCodes<'a>, min_disparity: usize, room: usize, out: &'a mut [u8]) -> RowCodes<'a> {
+pub(super) fn reversed<'a>(codes: &'a [u8], min_disparity: usize, room: usize, out: &'a mut [u8]) -> RowCodes<'a> {
+    let (left, right) = codes.split_at_checked(codes.len() / 2).unwrap_or_default();
     let out = out.get_mut(..room).unwrap_or_default();
-    let inside = row.right.get(..row.right.len().saturating_sub(min_disparity)).unwrap_or(&[]);
+    let inside = right.get(..right.len().saturating_sub(min_disparity)).unwrap_or(&[]);
     let (reversed, repeated) = out.split_at_mut_checked(inside.len()).unwrap_or_default();
     // Eight codes are turned around as one word.
     let (last, words) = inside.as_rchunks::<8>();
@@ -78,6 +85,6 @@ pub(super) fn reversed<'a>(row: RowCodes<'a>, min_disparity: usize, room: usize,
     for (out, code) in out_last.iter_mut().zip(last.iter().rev()) {
         *out = *code;
     }
-    repeated.fill(row.right.first().copied().unwrap_or(0));
-    RowCodes { left: row.left, right: out }
+    repeated.fill(right.first().copied().unwrap_or(0));
+    RowCodes { left, right: out }
 }

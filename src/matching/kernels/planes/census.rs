@@ -15,7 +15,7 @@ type Three = [u32; 3];
 
 /// The census row of five lines.
 #[inline(never)]
-pub(in crate::matching::kernels) fn census<S: Scheme>(rows: &Around<'_>, out: &mut [u8]) {
+pub(super) fn census<S: Scheme>(rows: &Around<'_>, out: &mut [u8]) {
     let width = out.len();
     let lines = [0, 2, 4].map(|row: usize| rows.get(row).and_then(|r| r.get(..width)).unwrap_or(&[]));
     let in_words = |bytes: &[u8]| words_of(bytes).len() * 4 == width;

@@ -9,58 +9,48 @@
 
 use super::Column;
 use super::plane::{Plane, add_pair, of_bit, two_bits};
-use crate::matching::kernels::RowCodes;
 use crate::matching::scheme::Scheme;
-use core::cell::Cell;
 use core::sync::atomic::{Ordering, compiler_fence};
 
 /// Where the bits of the row that enters begin in a column's word, and those of the row that leaves: two for each bit of
-/// the code, as [`prepare`] leaves them.
+/// the code, as [`prepare`] gives them.
 const NEW: usize = 0;
 const OLD: usize = 16;
 
-/// Makes of the codes of a row what the columns are moved with: for each bit whether it is another one than in the column
-/// before, and whether it is another one than in the partner of the first candidate. The two stand side by side, those of
-/// the code's first four bits in place of the left code, the others in place of the right one.
+/// Makes of the codes of a row what the columns are moved with, a half-word a pixel: for each bit of the left code whether it
+/// is another one than in the column before, and beside it whether it is another one than in the partner of the first
+/// candidate.
 #[inline(never)]
-pub(in crate::matching::kernels) fn prepare<'a, S: Scheme>(
-    left: &'a mut [u8],
-    right: &'a mut [u8],
-    min_disparity: usize,
-) {
+pub(super) fn prepare<S: Scheme>(left: &[u8], right: &[u8], min_disparity: usize, out: &mut [u16]) {
     let begin = first_column::<S>(min_disparity);
-    let first = right.first().copied().unwrap_or(0);
-    let left = Cell::from_mut(left).as_slice_of_cells();
-    let right = Cell::from_mut(right).as_slice_of_cells();
-    let from = |codes: &'a [Cell<u8>], x: usize| codes.get(x..).unwrap_or(&[]);
-    let put = |left: &Cell<u8>, right: &Cell<u8>, partner: u8, before: u8| {
-        let pairs = interleaved(left.get() ^ partner, left.get() ^ before);
-        let [low, high, ..] = pairs.to_le_bytes();
-        left.set(low);
-        right.set(high);
+    let codes = left.get(begin..).unwrap_or(&[]);
+    let out = out.get_mut(begin..).unwrap_or_default();
+    let mut before = codes.first().copied().unwrap_or(0);
+    let mut changes = |code: u8, partner: u8| {
+        let changes = interleaved(code ^ partner, code ^ before);
+        before = code;
+        changes
     };
-    // From the last column on: what stands left of a column is still a code when it is needed.
-    let columns = |x: usize| from(left, x).iter().zip(from(right, x)).zip(from(left, x.wrapping_sub(1)));
-    let inside = min_disparity.max(begin + 1);
-    for (((left, right), before), partner) in columns(inside).zip(from(right, inside - min_disparity)).rev() {
-        put(left, right, partner.get(), before.get());
+    // As long as there is no partner the first right column stands for it.
+    let waiting = min_disparity - begin;
+    let first = right.first().copied().unwrap_or(0);
+    for (out, &code) in out.iter_mut().zip(codes).take(waiting) {
+        *out = changes(code, first);
     }
-    for ((left, right), before) in columns(begin + 1).take(inside - begin - 1).rev() {
-        put(left, right, first, before.get());
-    }
-    if let (Some(left), Some(right)) = (left.get(begin), right.get(begin)) {
-        put(left, right, first, left.get());
+    let inside = (out.get_mut(waiting..).unwrap_or_default(), codes.get(waiting..).unwrap_or(&[]));
+    for ((out, &code), &partner) in inside.0.iter_mut().zip(inside.1).zip(right) {
+        *out = changes(code, partner);
     }
 }
 
 /// The bits of the first byte at the even places of a half-word, those of the second at the odd ones.
 #[inline(always)]
-fn interleaved(even: u8, odd: u8) -> u32 {
+fn interleaved(even: u8, odd: u8) -> u16 {
     let mut bytes = u32::from(even) | u32::from(odd) << 16;
     for (by, mask) in [(4, 0x0f0f_0f0f), (2, 0x3333_3333), (1, 0x5555_5555)] {
         bytes = (bytes | bytes << by) & mask;
     }
-    bytes | bytes >> 15
+    (bytes | bytes >> 15) as u16
 }
 
 /// The first column that a window with a candidate has.
@@ -71,10 +61,9 @@ fn first_column<S: Scheme>(min_disparity: usize) -> usize {
 /// Moves the sums of all columns one row down.
 #[inline(never)]
 pub(super) fn update<'a, S: Scheme, P: Plane, const GROUPS: usize>(
-    width: usize,
     groups: usize,
     min_disparity: usize,
-    [enter, leave]: [Option<RowCodes<'a>>; 2],
+    [enter, leave]: [Option<&'a [u16]>; 2],
     room: &mut [P],
     columns: &mut [Column<P>],
 ) {
@@ -84,13 +73,11 @@ pub(super) fn update<'a, S: Scheme, P: Plane, const GROUPS: usize>(
     let (enter, leave) = (enter.unwrap_or(any), leave.unwrap_or(any));
     // In a box: the compiler otherwise takes the bits apart again.
     let equal = core::hint::black_box(0x5555_0000);
-    let codes = |bytes: [u8; 4]| u32::from_le_bytes(bytes) & present ^ equal;
+    let codes = |enter: u16, leave: u16| (u32::from(enter) | u32::from(leave) << 16) & present ^ equal;
 
     let begin = first_column::<S>(min_disparity);
-    let row =
-        |row: RowCodes<'a>| (row.left.get(begin..width).unwrap_or(&[]), row.right.get(begin..width).unwrap_or(&[]));
-    let (new, old) = (row(enter), row(leave));
-    let all = || new.0.iter().zip(new.1).zip(old.0.iter().zip(old.1)).map(|((&a, &b), (&c, &d))| codes([a, b, c, d]));
+    let from = |row: &'a [u16]| row.get(begin..).unwrap_or(&[]);
+    let all = || from(enter).iter().zip(from(leave)).map(|(&enter, &leave)| codes(enter, leave));
     let Some(first) = all().next() else { return };
     let Some(words) = room.as_chunks_mut::<2>().0.as_chunks_mut::<8>().0.get_mut(..groups) else { return };
     // The first column has one partner for all candidates.

@@ -3,7 +3,7 @@
 //! down. Safe Rust; the arithmetic is that of plain words.
 //!
 //! * `census`: four pixels of a row at a time.
-//! * `columns`: the bits in which codes differ, counted into the columns under the window.
+//! * `columns`: what changes from code to code; the bits in which codes differ, counted into the columns under the window.
 //! * `windows`: columns into windows, windows into winners.
 //! * `plane`: the word itself.
 //!
@@ -14,72 +14,80 @@ mod columns;
 mod plane;
 mod windows;
 
-use super::{Found, OUTSIDE, RowWork, Select, Winner};
-use crate::matching::scheme::Scheme;
+use super::scratch::{bytes_mut, halves_of, halves_of_mut};
+use super::{OUTSIDE, RowWork, Select, Winner};
+use crate::matching::scheme::{Around, Scheme};
 use plane::Plane;
 use windows::{WINDOW, Windows};
 
-pub(super) use census::census;
 pub(in crate::matching) use census::codes;
-pub(super) use columns::prepare;
-
-/// Winners handed on at a time.
-const BATCH: usize = 16;
 
 /// The sums of a column, lowest plane first: a place for each eighth of its bytes, of which the last are free.
 type Column<P> = [P; 8];
 
+/// [`super::Kernel::codes`] for planes.
+#[inline]
+pub(super) fn codes_of<S: Scheme>(
+    [left, right]: [&Around<'_>; 2],
+    min_disparity: usize,
+    scratch: &mut [u32],
+    out: &mut [u8],
+) {
+    let width = out.len() / 2;
+    // Both begin where a word may stand.
+    let mut codes =
+        bytes_mut(scratch).chunks_mut(width.next_multiple_of(4).max(1)).filter_map(|row| row.get_mut(..width));
+    let (Some(of_left), Some(of_right)) = (codes.next(), codes.next()) else { return };
+    census::census::<S>(left, of_left);
+    census::census::<S>(right, of_right);
+    columns::prepare::<S>(of_left, of_right, min_disparity, halves_of_mut(out));
+}
+
 /// [`super::Kernel::row`] in planes.
 #[inline(always)]
-pub(super) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select>, found: Found<'_>) {
+pub(super) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select<'_>>) {
     // The usual numbers of candidates, then any number of words of them, or of half-words.
     match work.stride {
-        16 => row_of::<S, u16, 1>(work, select, found),
-        32 => row_of::<S, u32, 1>(work, select, found),
-        64 => row_of::<S, u32, 2>(work, select, found),
-        stride if !stride.is_multiple_of(32) && stride > 32 => row_of::<S, u16, 0>(work, select, found),
-        stride if stride > 64 => row_of::<S, u32, 0>(work, select, found),
+        16 => row_of::<S, u16, 1>(work, select),
+        32 => row_of::<S, u32, 1>(work, select),
+        64 => row_of::<S, u32, 2>(work, select),
+        stride if !stride.is_multiple_of(32) && stride > 32 => row_of::<S, u16, 0>(work, select),
+        stride if stride > 64 => row_of::<S, u32, 0>(work, select),
         _ => {}
     }
 }
 
 /// A row whose candidates are `GROUPS` words of them; 0 where the number is not known when the crate is compiled.
 #[inline(always)]
-fn row_of<S: Scheme, P: Plane, const GROUPS: usize>(work: RowWork<'_>, select: Option<Select>, found: Found<'_>) {
+fn row_of<S: Scheme, P: Plane, const GROUPS: usize>(work: RowWork<'_>, select: Option<Select<'_>>) {
     let RowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
     // At least one, for the compiler to see that no column is empty.
     let groups = if GROUPS > 0 { GROUPS } else { (stride / P::CANDIDATES).max(1) };
     let columns = P::of_bytes(columns).as_chunks_mut::<8>().0;
     let scratch = P::of_words(scratch);
     if let Some(inside) = columns.get_mut(OUTSIDE * groups..) {
-        columns::update::<S, P, GROUPS>(width, groups, min_disparity, [enter, leave], scratch, inside);
+        let rows = [enter, leave].map(|row| row.map(halves_of));
+        columns::update::<S, P, GROUPS>(groups, min_disparity, rows, scratch, inside);
     }
-    let Some(select) = select else { return };
+    let Some(Select { disparities, winners, unique }) = select else { return };
 
     // Left of here no pixel has a candidate.
     let begin = min_disparity.min(width);
-    let mut batch = [Winner::default(); BATCH];
-    for first in (0..begin).step_by(BATCH) {
-        found(batch.get(..BATCH.min(begin - first)).unwrap_or(&[]));
-    }
+    let Some((outside, winners)) = winners.split_at_mut_checked(begin) else { return };
+    outside.fill(Winner::NONE);
+    let judge = unique.from_column(begin);
     let Some(windows) = scratch.as_chunks_mut::<WINDOW>().0.get_mut(..groups) else { return };
-    let mut windows = Windows::new(windows, select);
+    let mut windows = Windows::new(windows, disparities);
     // What is farther to the left is no candidate's: its sums are zero.
     let (before, after) = (begin.saturating_sub(S::RADIUS_X), begin + S::RADIUS_X);
     for column in columns.chunks_exact(groups).take(OUTSIDE + after).skip(OUTSIDE + before) {
         windows.slide::<S>(column, columns);
     }
-    let size = (BATCH * groups).max(1);
-    let from = |column: usize| columns.get(column * groups..).unwrap_or(&[]).chunks(size);
-    let (mut entering, mut leaving) = (from(OUTSIDE + after), from(OUTSIDE + begin - S::RADIUS_X - 1));
-    for first in (begin..width).step_by(BATCH) {
-        let (Some(entering), Some(leaving)) = (entering.next(), leaving.next()) else { return };
-        let batch = batch.get_mut(..BATCH.min(width - first)).unwrap_or_default();
-        if GROUPS > 0 {
-            windows.winners::<S, GROUPS>(entering, leaving, batch);
-        } else {
-            windows.winners_of_many::<S>(entering, leaving, batch);
-        }
-        found(batch);
+    let from = |column: usize| columns.get(column * groups..).unwrap_or(&[]);
+    let (entering, leaving) = (from(OUTSIDE + after), from(OUTSIDE + begin - S::RADIUS_X - 1));
+    if GROUPS > 0 {
+        windows.winners::<S, GROUPS>(entering, leaving, winners, judge);
+    } else {
+        windows.winners_of_many::<S>(entering, leaving, winners, judge);
     }
 }

@@ -69,8 +69,9 @@ where
     // last group is moved back to end with the line.
     let begins = (0..inner / LANES).map(|group| group * LANES).chain(inner.checked_sub(LANES));
     for begin in begins {
+        let around = rows.map(|row| row.get(begin..).and_then(|row| row.first_chunk()).unwrap_or(&[0; LANES + 2 * REACH]));
         let group = |row: usize, column: usize| {
-            let pixels = rows.get(row).and_then(|r| r.get(begin + column..)).and_then(|r| r.first_chunk::<LANES>());
+            let pixels = around.get(row).and_then(|row| row.get(column..)).and_then(|row| row.first_chunk::<LANES>());
             pixels.copied().unwrap_or([0; LANES])
         };
         let centre = group(2, REACH);

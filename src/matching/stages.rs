@@ -141,7 +141,7 @@ impl<S: Scheme> Stages<'_, S> {
             *flags = said;
         }
         // The kernel is done with its room.
-        surface::average(answers, self.support.lengths, halves_mut(self.scratch), checks);
+        surface::average(self.kernel, answers, self.support.lengths, halves_mut(self.scratch), checks);
     }
 }
 

@@ -121,6 +121,26 @@ impl Kernel {
         S::census(right, of_right);
     }
 
+    /// Whether it works in vectors.
+    #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+    pub(super) fn has_vectors(self) -> bool {
+        #[cfg(not(stereopsis_vectors))]
+        return self != Self::Planes;
+        #[cfg(stereopsis_vectors)]
+        true
+    }
+
+    /// Does something with its vectors, if it is inlined.
+    #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+    #[inline(always)]
+    pub(super) fn in_vectors(self, work: impl FnOnce()) {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(avx2) => avx2.run(work),
+            _ => work(),
+        }
+    }
+
     /// Moves the window to the next row and selects its winners, unless the row is only gathered (`select` is `None`).
     #[inline]
     pub(super) fn row<S: Scheme>(self, work: RowWork<'_>, select: Option<Select<'_>>) {

@@ -16,11 +16,23 @@ impl Avx2 {
         avx2::get().then_some(Self(()))
     }
 
+    /// Does something that is compiled for AVX2 as far as it is inlined.
+    #[inline(always)]
+    pub(super) fn run(self, work: impl FnOnce()) {
+        // SAFETY: `self` is the proof that the processor has the one feature that the function is compiled for.
+        unsafe { run(work) }
+    }
+
     #[inline]
     pub(super) fn row<S: Scheme>(self, work: RowWork<'_>, select: Option<Select<'_>>) {
         // SAFETY: `self` is the proof that the processor has the one feature that the function is compiled for.
         unsafe { row::<S>(work, select) }
     }
+}
+
+#[target_feature(enable = "avx2")]
+fn run(work: impl FnOnce()) {
+    work();
 }
 
 #[target_feature(enable = "avx2")]

@@ -9,17 +9,15 @@ pub(super) struct RowCodes<'a> {
     right: &'a [u8],
 }
 
-/// The code of every column with the codes that it is compared with: those of column x begin at `width - 1 - x`.
+/// The code of every column with the codes that it is compared with, the farthest first.
 #[inline(always)]
-fn pixels(row: RowCodes<'_>, width: usize, stride: usize) -> impl Iterator<Item = (&u8, &[u8])> {
-    let right = row.right.get(..width + stride - 1).unwrap_or(&[]);
-    row.left.iter().zip(right.windows(stride).rev())
+fn pixels(row: RowCodes<'_>, stride: usize) -> impl Iterator<Item = (&u8, &[u8])> {
+    row.left.iter().zip(row.right.windows(stride))
 }
 
 /// Moves the sums of all columns one row down.
 #[inline(always)]
 pub(super) fn update<S: Scheme, const N: usize>(
-    width: usize,
     stride: usize,
     enter: Option<RowCodes<'_>>,
     leave: Option<RowCodes<'_>>,
@@ -27,7 +25,7 @@ pub(super) fn update<S: Scheme, const N: usize>(
 ) {
     let columns = columns.chunks_exact_mut(stride);
     // Groups are taken and put as values, so that the compiler need not ask whether the slices overlap.
-    match (enter.map(|row| pixels(row, width, stride)), leave.map(|row| pixels(row, width, stride))) {
+    match (enter.map(|row| pixels(row, stride)), leave.map(|row| pixels(row, stride))) {
         (Some(enter), Some(leave)) => {
             for (column, ((&new_code, new), (&old_code, old))) in columns.zip(enter.zip(leave)) {
                 let codes = new.as_chunks::<N>().0.iter().zip(old.as_chunks::<N>().0);
@@ -67,24 +65,21 @@ pub(super) fn update<S: Scheme, const N: usize>(
     }
 }
 
-/// The row with its right codes turned around: the candidates of column x are `stride` of them from `width - 1 - x` on,
-/// in order of disparity. The first code is repeated to fill `room`.
+/// The row with more before its right codes: column x is compared with `stride` of them from x on. The first code is
+/// repeated for those that lie left of the image.
 #[cfg_attr(stereopsis_vectors, inline(never))]
 #[cfg_attr(not(stereopsis_vectors), inline(always))]
-pub(super) fn reversed<'a>(codes: &'a [u8], min_disparity: usize, room: usize, out: &'a mut [u8]) -> RowCodes<'a> {
+pub(super) fn with_more_before<'a>(
+    codes: &'a [u8],
+    min_disparity: usize,
+    stride: usize,
+    out: &'a mut [u8],
+) -> RowCodes<'a> {
     let (left, right) = codes.split_at_checked(codes.len() / 2).unwrap_or_default();
-    let out = out.get_mut(..room).unwrap_or_default();
-    let inside = right.get(..right.len().saturating_sub(min_disparity)).unwrap_or(&[]);
-    let (reversed, repeated) = out.split_at_mut_checked(inside.len()).unwrap_or_default();
-    // Eight codes are turned around as one word.
-    let (last, words) = inside.as_rchunks::<8>();
-    let (out_words, out_last) = reversed.as_chunks_mut::<8>();
-    for (out, word) in out_words.iter_mut().zip(words.iter().rev()) {
-        *out = u64::from_le_bytes(*word).to_be_bytes();
-    }
-    for (out, code) in out_last.iter_mut().zip(last.iter().rev()) {
-        *out = *code;
-    }
-    repeated.fill(right.first().copied().unwrap_or(0));
+    let out = out.get_mut(..left.len() + stride - 1).unwrap_or_default();
+    let outside = out.len().min(stride - 1 + min_disparity);
+    let (before, inside) = out.split_at_mut_checked(outside).unwrap_or_default();
+    before.fill(right.first().copied().unwrap_or(0));
+    inside.copy_from_slice(right.get(..inside.len()).unwrap_or(&[]));
     RowCodes { left, right: out }
 }

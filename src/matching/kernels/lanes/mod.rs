@@ -1,12 +1,13 @@
-//! The kernel in vectors. Lanes run over the disparities of one pixel: `N` of them in an array of fixed size, which
-//! the compiler keeps in the target's vector registers.
+//! The kernel in vectors. Lanes run over the disparities of one pixel, `N` of them in an array of fixed size, which the
+//! compiler keeps in the target's vector registers. The largest disparity has the first lane: so a pixel's candidates stand
+//! in memory as they do in the right image.
 //!
 //! A pixel's work, `d` over all lanes:
 //!
 //! ```text
 //! column x + r:  column[d] += hamming(enter.left, enter.right[d]) - hamming(leave.left, leave.right[d])
 //! window x:      sum[d]    += digits(column[x + r][d]) - digits(column[x - r - 1][d])
-//! winner x:      least of sum[d] | mask[d], and the first lane that holds it
+//! winner x:      least of sum[d] | mask[d], and the last lane that holds it
 //! ```
 //!
 //! The work is the same for every picture: no branch depends on a pixel.
@@ -17,27 +18,27 @@ use super::scratch::bytes_mut;
 use super::{OUTSIDE, RowWork, STEP, Select, Winner};
 use crate::matching::scheme::Scheme;
 
-/// 256 lanes of zero, then 256 of ones: a slice of it masks the lanes from any one on.
+/// 256 lanes of ones, then 256 of zero: a slice of it masks the lanes before any one.
 const MASKS: &[u8; 512] = &{
     let mut masks = [0; 512];
-    let mut i = 256;
-    while i < 512 {
+    let mut i = 0;
+    while i < 256 {
         masks[i] = u8::MAX;
         i += 1;
     }
     masks
 };
 
-/// The numbers of all lanes.
-const NUMBERS: &[u8; 256] = &{
-    let mut numbers = [0; 256];
+/// The disparities of so many lanes.
+const fn disparities<const STRIDE: usize>() -> [u8; STRIDE] {
+    let mut disparities = [0; STRIDE];
     let mut i = 0;
-    while i < 256 {
-        numbers[i] = i as u8;
+    while i < STRIDE {
+        disparities[i] = (STRIDE - 1 - i) as u8;
         i += 1;
     }
-    numbers
-};
+    disparities
+}
 
 /// [`super::Kernel::row`] for the compilation's own target.
 #[inline(always)]
@@ -62,12 +63,12 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
     let stride = if STRIDE > 0 { STRIDE } else { stride.max(STEP) };
     let Some((sums, codes)) = bytes_mut(scratch).split_at_mut_checked(stride) else { return };
     let Some((new, old)) = codes.split_at_mut_checked(codes.len() / 2) else { return };
-    let enter = enter.map(|row| columns::reversed(row, min_disparity, width + stride, new));
-    let leave = leave.map(|row| columns::reversed(row, min_disparity, width + stride, old));
+    let enter = enter.map(|row| columns::with_more_before(row, min_disparity, stride, new));
+    let leave = leave.map(|row| columns::with_more_before(row, min_disparity, stride, old));
     // Columns first, then windows: a processor that looks ahead finds more independent work in two short loops than in
     // a long one.
     if let Some(inside) = columns.get_mut(OUTSIDE * stride..) {
-        columns::update::<S, N>(width, stride, enter, leave, inside);
+        columns::update::<S, N>(stride, enter, leave, inside);
     }
     let Some(Select { disparities, winners, unique }) = select else { return };
 
@@ -89,12 +90,12 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
     let (with_few, with_all) = winners.split_at_mut_checked(few).unwrap_or_default();
     for ((x, winner), (enters, leaves)) in with_few.iter_mut().enumerate().zip(&mut columns) {
         let candidates = (x + 1).min(disparities);
-        let mask = MASKS.get(256 - candidates.min(256)..).and_then(|m| m.get(..stride)).unwrap_or(&[]);
+        let mask = MASKS.get(256 - (stride - candidates)..).and_then(|m| m.get(..stride)).unwrap_or(&[]);
         *winner = slide_to_winner::<S, N, STRIDE, true>(sums, enters, leaves, candidates, mask);
         judge(*winner, &mut || best_of_the_rest::<N>(winner.disparity() as usize, mask, sums));
     }
     for (winner, (enters, leaves)) in with_all.iter_mut().zip(columns) {
-        let mask = MASKS.get(..stride).unwrap_or(&[]);
+        let mask = MASKS.get(256..256 + stride).unwrap_or(&[]);
         *winner = slide_to_winner::<S, N, STRIDE, false>(sums, enters, leaves, stride, mask);
         judge(*winner, &mut || best_of_the_rest::<N>(winner.disparity() as usize, mask, sums));
     }
@@ -140,35 +141,35 @@ fn slide_to_winner<S: Scheme, const N: usize, const STRIDE: usize, const MASKED:
         *sums = group;
     }
     let least = minimum(&least);
-    let disparity = first::<STRIDE>(least, sums);
-    let at = |candidate: usize| sums.get(candidate).copied().unwrap_or(0);
+    let disparity = nearest_with::<STRIDE>(least, sums);
+    let lane = (sums.len() - 1).wrapping_sub(disparity);
+    let at = |lane: usize| sums.get(lane).copied().unwrap_or(0);
     let beside = if disparity > 0 && disparity + 1 < candidates {
-        (at(disparity - 1), at(disparity + 1))
+        (at(lane + 1), at(lane.wrapping_sub(1)))
     } else {
         beside_at_the_end(disparity, candidates, least, sums)
     };
     Winner::new(least, disparity as u8, beside)
 }
 
-/// The first candidate with the least sum: the first of all lanes that have it, since masked ones come later.
+/// The smallest disparity with the least sum. Masked lanes may have it too, but are of larger ones.
 // Helium: of groups of lanes beside other work the compiler makes single ones, of a function of its own one vector loop.
 #[cfg_attr(stereopsis_vectors, inline(never))]
 #[cfg_attr(not(stereopsis_vectors), inline(always))]
-fn first<const STRIDE: usize>(least: u8, sums: &[u8]) -> usize {
-    if STRIDE > 0 {
-        sums.first_chunk::<STRIDE>().map_or(0, |sums| first_of(least, sums))
-    } else {
-        first_of(least, sums)
+fn nearest_with<const STRIDE: usize>(least: u8, sums: &[u8]) -> usize {
+    match sums.first_chunk::<STRIDE>() {
+        Some(sums) if STRIDE > 0 => nearest_among(least, sums, const { &disparities::<STRIDE>() }),
+        _ => nearest_among(least, sums, const { &disparities::<256>() }.get(256 - sums.len()..).unwrap_or(&[])),
     }
 }
 
 #[inline(always)]
-fn first_of(least: u8, sums: &[u8]) -> usize {
-    let mut first = u8::MAX;
-    for (&sum, &number) in sums.iter().zip(NUMBERS) {
-        first = first.min(if sum == least { number } else { u8::MAX });
+fn nearest_among(least: u8, sums: &[u8], disparities: &[u8]) -> usize {
+    let mut nearest = u8::MAX;
+    for (&sum, &disparity) in sums.iter().zip(disparities) {
+        nearest = nearest.min(if sum == least { disparity } else { u8::MAX });
     }
-    usize::from(first)
+    usize::from(nearest)
 }
 
 /// The least of all lanes.
@@ -180,10 +181,11 @@ fn minimum<const N: usize>(lanes: &[u8; N]) -> u8 {
 /// The costs beside a winner that lacks a candidate on one side or both, for [`Winner::new`].
 #[inline(never)]
 fn beside_at_the_end(disparity: usize, candidates: usize, least: u8, sums: &[u8]) -> (u8, u8) {
+    let of = |disparity: usize| (sums.len() - 1).checked_sub(disparity).and_then(|lane| sums.get(lane));
     let one = if disparity > 0 {
-        sums.get(disparity - 1)
+        of(disparity - 1)
     } else if candidates > 1 {
-        sums.get(1)
+        of(1)
     } else {
         None
     };
@@ -196,8 +198,8 @@ fn beside_at_the_end(disparity: usize, candidates: usize, least: u8, sums: &[u8]
 #[cfg_attr(not(stereopsis_vectors), inline(always))]
 fn best_of_the_rest<const N: usize>(disparity: usize, mask: &[u8], sums: &mut [u8]) -> u8 {
     // The winner and those beside it are raised while the others are looked at.
-    let first = disparity.saturating_sub(1);
-    let nearest = first..sums.len().min(disparity + 2);
+    let lane = (sums.len() - 1).saturating_sub(disparity);
+    let nearest = lane.saturating_sub(1)..sums.len().min(lane + 2);
     let mut kept = [u8::MAX; 3];
     for (kept, sum) in kept.iter_mut().zip(sums.get_mut(nearest.clone()).unwrap_or_default()) {
         *kept = core::mem::replace(sum, u8::MAX);

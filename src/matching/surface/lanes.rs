@@ -1,0 +1,102 @@
+//! Pixels side by side: pair by pair, as far as both are still of the surface.
+
+use super::{RECIPROCALS, ROOM, of_one};
+use crate::matching::config::Checks;
+use crate::units::Disparity;
+
+/// Pixels worked on at a time.
+pub(super) const LANES: usize = if cfg!(stereopsis_vectors) { 8 } else { 16 };
+/// How far the answers around a pixel reach, to each side.
+const REACH: usize = ROOM / 2;
+
+/// By how much the reciprocals of 3, 5, 7 and so on differ from the one before, the first from 0; modulo 2^16.
+const CHANGES: [u16; REACH] = {
+    let mut changes = [RECIPROCALS[1] as u16; REACH];
+    let mut reach = 2;
+    while reach <= REACH {
+        changes[reach - 1] = (RECIPROCALS[reach] as u16).wrapping_sub(RECIPROCALS[reach - 1] as u16);
+        reach += 1;
+    }
+    changes
+};
+
+/// [`super::average`] of at least [`LANES`] answers.
+#[inline(always)]
+pub(super) fn average(answers: &mut [Disparity], lengths: &mut [u16], room: &mut [u16], checks: &Checks) {
+    let width = answers.len();
+    let step = checks.surface_step;
+    // The answers as they were, with none outside.
+    let Some(before) = room.get_mut(..width + ROOM) else { return };
+    before.fill(Disparity::NONE.raw());
+    for (before, answer) in before.iter_mut().skip(REACH).zip(answers.iter()) {
+        *before = answer.raw();
+    }
+    count(before.get(REACH..REACH + width).unwrap_or(&[]), lengths, step);
+    // The last group is moved back to end with the row.
+    let begins = (0..width / LANES).map(|group| group * LANES).chain(width.checked_sub(LANES));
+    for begin in begins {
+        let around = before.get(begin..).and_then(|b| b.first_chunk::<{ LANES + ROOM }>());
+        let out = answers.get_mut(begin..).and_then(|a| a.first_chunk_mut::<LANES>());
+        if let (Some(around), Some(out)) = (around, out) {
+            const USUAL: usize = Checks::DEFAULT.smoothing_radius as usize;
+            let averages = match usize::from(checks.smoothing_radius) {
+                USUAL => averaged::<USUAL>(around, step, USUAL),
+                radius => averaged::<0>(around, step, radius),
+            };
+            *out = averages.map(Disparity::from_raw);
+        }
+    }
+}
+
+/// The averages of the answers in the middle. `RADIUS` is the radius where it is known when the crate is compiled, which
+/// lets the compiler unroll the pairs; 0 where it is not.
+#[inline(always)]
+fn averaged<const RADIUS: usize>(around: &[u16; LANES + ROOM], step: Disparity, radius: usize) -> [u16; LANES] {
+    let at = |place: usize| around.get(place..).and_then(|a| a.first_chunk::<LANES>()).copied().unwrap_or([0; LANES]);
+    let centre = at(REACH);
+    let (mut left, mut right) = (centre, centre);
+    // All ones as long as the pair belongs to the surface.
+    let mut joined = [u16::MAX; LANES];
+    let (mut sum, mut reciprocal) = ([0u16; LANES], [0u16; LANES]);
+    for reach in 1..=if RADIUS > 0 { RADIUS } else { REACH } {
+        if RADIUS == 0 && reach > radius {
+            break;
+        }
+        let (new_left, new_right) = (at(REACH - reach), at(REACH + reach));
+        let change = CHANGES[reach - 1];
+        for i in 0..LANES {
+            let goes_on = of_one(left[i], new_left[i], step) & of_one(right[i], new_right[i], step);
+            joined[i] &= 0u16.wrapping_sub(u16::from(goes_on));
+            let pair = new_left[i].wrapping_add(new_right[i]).wrapping_sub(centre[i].wrapping_mul(2));
+            sum[i] = sum[i].wrapping_add(joined[i] & pair);
+            reciprocal[i] = reciprocal[i].wrapping_add(joined[i] & change);
+        }
+        (left, right) = (new_left, new_right);
+    }
+    let mut out = centre;
+    for i in 0..LANES {
+        let steps = (i32::from(sum[i] as i16) * i32::from(reciprocal[i] as i16) + (1 << 15)) >> 16;
+        out[i] = centre[i].wrapping_add(steps as u16);
+    }
+    out
+}
+
+/// For every answer how many its surface has.
+#[inline(never)]
+fn count(answers: &[u16], lengths: &mut [u16], step: Disparity) {
+    let Some((&(mut before), _)) = answers.split_first() else { return };
+    let mut length = 0u16;
+    for (&here, out) in answers.iter().zip(lengths.iter_mut()) {
+        let joined = of_one(here, before, step);
+        length = (length & 0u16.wrapping_sub(u16::from(joined))) + 1;
+        before = here;
+        *out = length;
+    }
+    // The first of the next surface has the length 1.
+    let (mut whole, mut next) = (0, 1);
+    for length in lengths.iter_mut().rev() {
+        whole = if next > 1 { whole } else { *length };
+        next = *length;
+        *length = whole;
+    }
+}

@@ -69,7 +69,8 @@ where
     // last group is moved back to end with the line.
     let begins = (0..inner / LANES).map(|group| group * LANES).chain(inner.checked_sub(LANES));
     for begin in begins {
-        let around = rows.map(|row| row.get(begin..).and_then(|row| row.first_chunk()).unwrap_or(&[0; LANES + 2 * REACH]));
+        let around =
+            rows.map(|row| row.get(begin..).and_then(|row| row.first_chunk()).unwrap_or(&[0; LANES + 2 * REACH]));
         let group = |row: usize, column: usize| {
             let pixels = around.get(row).and_then(|row| row.get(column..)).and_then(|row| row.first_chunk::<LANES>());
             pixels.copied().unwrap_or([0; LANES])

@@ -1,6 +1,5 @@
 //! The memory of a block matcher and its stages, in running order.
 
-use super::consistency::Consistency;
 use super::kernels::{Aligned, Columns, Kernel, OUTSIDE, STEP, Scratch, Winner};
 use super::row::{HISTORY, Row};
 use super::scheme::{Around, Codes, Scheme};
@@ -226,7 +225,7 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             scratch: self.scratch.words(),
             texture: Texture { history: first(&mut self.texture, width), counts: first(&mut self.textured, width) },
             winners: first(&mut self.winners, width),
-            consistency: Consistency(first(&mut self.right_winners, width)),
+            right: first(&mut self.right_winners, width),
             band: first(self.band.as_flattened_mut(), width * BAND),
             flags: first(self.band_flags.as_flattened_mut(), width * BAND),
             support: Support { lengths: first(&mut self.lengths, width), kept: first(&mut self.support, width) },

@@ -13,15 +13,16 @@
 //!
 //! [`Matcher`] owns the memory and runs the stages. [`Config`] says what is searched and which answers are refused.
 
+mod answers;
 mod config;
-mod consistency;
+
 mod kernels;
 mod matcher;
 mod row;
 mod scheme;
 mod speckle;
 mod stages;
-mod subpixel;
+
 mod surface;
 mod texture;
 

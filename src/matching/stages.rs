@@ -1,12 +1,11 @@
 //! One row through the stages, over slices: compiled once for each scheme, whatever the capacities.
 
+use super::answers::{self, Winners};
 use super::config::Config;
-use super::consistency::Consistency;
 use super::kernels::{Kernel, RowWork, Select, Unique, Winner, halves_mut};
 use super::row::{HISTORY, slot};
 use super::scheme::{Around, Scheme};
 use super::speckle::{BAND, LOOK_AHEAD, Support};
-use super::subpixel::refine;
 use super::surface;
 use super::texture::Texture;
 use crate::units::{Disparity, PixelFlags};
@@ -24,7 +23,7 @@ pub struct Stages<'a, S: Scheme> {
     pub(super) scratch: &'a mut [u32],
     pub(super) texture: Texture<'a>,
     pub(super) winners: &'a mut [Winner],
-    pub(super) consistency: Consistency<'a>,
+    pub(super) right: &'a mut [u16],
     pub(super) band: &'a mut [Disparity],
     pub(super) flags: &'a mut [PixelFlags],
     pub(super) support: Support<'a>,
@@ -104,43 +103,16 @@ impl<S: Scheme> Stages<'_, S> {
     }
 
     /// Turns winners into answers, but for those that the checks contradict, and averages them along the row.
-    #[inline(never)]
     fn answer(&mut self, row: usize) {
         let checks = &self.config.checks;
-        let refused_ceiling = PixelFlags::CEILING.when(checks.refuse_ceiling);
-        let refused = PixelFlags::OUTSIDE
-            .union(PixelFlags::UNTEXTURED)
-            .union(PixelFlags::AMBIGUOUS)
-            .union(PixelFlags::MISMATCH)
-            .union(refused_ceiling);
-        let refused_flat = PixelFlags::UNTEXTURED.when(checks.refuse_flat);
-        // Where nothing is checked, nothing is over the tolerance.
-        let tolerance = checks.left_right_px.unwrap_or(u8::MAX);
-        let min_disparity = u32::from(self.config.min_disparity);
-        let ceiling = u32::from(self.config.disparities) - 1;
         let (flags, answers) =
             (slot_mut(self.flags, row % BAND, self.width), slot_mut(self.band, row % BAND, self.width));
         if checks.texture_pixels > 0 {
             self.texture.mark::<S>(u16::from(checks.texture_pixels), flags);
         }
-        let outside = usize::from(self.config.min_disparity).min(self.width);
-        let winners = self.winners.get(outside..).unwrap_or_default();
-        self.consistency.offer(winners);
-        let (left_out, inside) = flags.split_at_mut_checked(outside).unwrap_or_default();
-        left_out.fill(PixelFlags::OUTSIDE);
-        let (left_out, inside) = (answers.get_mut(..outside).unwrap_or_default(), inside.iter_mut());
-        left_out.fill(Disparity::NONE);
-        let answered = answers.get_mut(outside..).unwrap_or_default();
-        for (x, ((answer, flags), &winner)) in answered.iter_mut().zip(inside).zip(winners).enumerate() {
-            let said = flags
-                .union(self.consistency.mismatch(x, winner, tolerance))
-                .union(refused_flat.when(winner.rises() == (0, 0)))
-                .union(PixelFlags::CEILING.when(winner.disparity() == ceiling));
-            let none = 0u16.wrapping_sub(u16::from(said.intersects(refused)));
-            *answer = Disparity::from_raw(refine(winner, min_disparity).raw() | none);
-            *flags = said;
-        }
         // The kernel is done with its room.
+        let winners = Winners { winners: self.winners, right: self.right, room: self.scratch };
+        answers::answer(self.kernel, self.config, winners, answers, flags);
         surface::average(self.kernel, answers, self.support.lengths, halves_mut(self.scratch), checks);
     }
 }

@@ -19,6 +19,8 @@ mod scratch;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+pub(super) use scratch::bytes_mut;
 pub(super) use scratch::halves_mut;
 pub use scratch::{Aligned, Columns, Scratch};
 
@@ -181,7 +183,8 @@ pub(super) struct RowWork<'a> {
 pub(super) struct Select<'a> {
     /// Disparities searched.
     pub disparities: usize,
-    /// The best disparity of each pixel.
+    /// The best disparity of each pixel; left of the smallest disparity they mean nothing. Kernels in vectors leave them as
+    /// [`WinnerRows`].
     pub winners: &'a mut [Winner],
     /// What is asked of the others.
     pub unique: Unique<'a>,
@@ -202,16 +205,16 @@ impl<'a> Unique<'a> {
         }
     }
 
-    /// Flags the pixels from column `begin` on, one after the other: it is given the winner, and what finds the least cost
+    /// Flags the pixels from column `begin` on, one after the other: it is given the winner's cost, and what finds the least cost
     /// of the candidates over one px beside it, `u8::MAX` where there is none, which is asked where it is wanted.
     #[inline(always)]
-    pub fn from_column(self, begin: usize) -> impl FnMut(Winner, &mut dyn FnMut() -> u8) {
+    pub fn from_column(self, begin: usize) -> impl FnMut(u8, &mut dyn FnMut() -> u8) {
         let share = 100 - u32::from(self.percent.min(99));
         let mut flags = self.flags.get_mut(begin..).unwrap_or_default().iter_mut();
-        move |winner, second| {
+        move |cost, second| {
             if let Some(flags) = flags.next() {
                 let second = second();
-                let ambiguous = second < u8::MAX && u32::from(second) * share <= winner.cost() * 100;
+                let ambiguous = second < u8::MAX && u32::from(second) * share <= u32::from(cost) * 100;
                 *flags = flags.union(PixelFlags::AMBIGUOUS.when(ambiguous));
             }
         }
@@ -221,6 +224,7 @@ impl<'a> Unique<'a> {
 /// The best disparity of a pixel, in a word: from the lowest byte up the cost below it, its own, the cost above it, and
 /// the disparity.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(transparent)]
 pub struct Winner(u32);
 
 impl Winner {
@@ -245,7 +249,7 @@ impl Winner {
     #[cfg(not(stereopsis_vectors))]
     #[inline(always)]
     pub fn with_beside(self, beside: (u8, u8)) -> Self {
-        Self::new(self.cost() as u8, self.disparity() as u8, beside)
+        Self::new(self.cost(), self.disparity() as u8, beside)
     }
 
     /// Its disparity over the smallest one searched: of those with the least cost the smallest. Means nothing in columns
@@ -257,8 +261,8 @@ impl Winner {
 
     /// Its cost.
     #[inline(always)]
-    pub fn cost(self) -> u32 {
-        self.0 >> 8 & 0xff
+    pub fn cost(self) -> u8 {
+        (self.0 >> 8) as u8
     }
 
     /// Its cost above 8 bits of [`Self::disparity`].
@@ -271,7 +275,29 @@ impl Winner {
     #[inline(always)]
     pub fn rises(self) -> (u32, u32) {
         // The winner costs least: nothing wraps.
-        ((self.0 & 0xff).wrapping_sub(self.cost()), (self.0 >> 16 & 0xff).wrapping_sub(self.cost()))
+        let cost = u32::from(self.cost());
+        ((self.0 & 0xff).wrapping_sub(cost), (self.0 >> 16 & 0xff).wrapping_sub(cost))
+    }
+}
+
+/// Winners as the kernels in vectors leave them: a row of bytes for each part, one after the other in the same memory.
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+pub(super) struct WinnerRows<'a> {
+    pub below: &'a mut [u8],
+    pub costs: &'a mut [u8],
+    pub above: &'a mut [u8],
+    pub disparities: &'a mut [u8],
+}
+
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+impl<'a> WinnerRows<'a> {
+    /// The rows from column `begin` on.
+    pub fn of(winners: &'a mut [Winner], begin: usize) -> Self {
+        let width = winners.len().max(1);
+        let mut rows =
+            scratch::bytes_of(winners).chunks_exact_mut(width).map(|row| row.get_mut(begin..).unwrap_or_default());
+        let mut row = || rows.next().unwrap_or_default();
+        Self { below: row(), costs: row(), above: row(), disparities: row() }
     }
 }
 

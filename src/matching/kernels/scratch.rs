@@ -2,6 +2,8 @@
 #![allow(unsafe_code)]
 
 use super::OUTSIDE;
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+use super::Winner;
 
 /// What a kernel works with while a row lasts. No kernel finds anything in it from the row before.
 ///
@@ -58,8 +60,15 @@ pub(super) fn words_mut(bytes: &mut [u8]) -> &mut [u32] {
     unsafe { bytes.align_to_mut().1 }
 }
 
+/// Winners as bytes, four for each.
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+pub(super) fn bytes_of(winners: &mut [Winner]) -> &mut [u8] {
+    // SAFETY: a winner is a word (`repr(transparent)`), every value of which is four bytes and the other way round.
+    unsafe { winners.align_to_mut().1 }
+}
+
 /// Words as bytes, in the order of memory.
-pub(super) fn bytes_mut(words: &mut [u32]) -> &mut [u8] {
+pub(in crate::matching) fn bytes_mut(words: &mut [u32]) -> &mut [u8] {
     // SAFETY: every value of a word is four bytes and the other way round.
     unsafe { words.align_to_mut().1 }
 }

@@ -20,7 +20,13 @@ use crate::units::Disparity;
 
 /// Makes every answer of a row the average of up to [`Checks::smoothing_radius`] pairs around it, and gives for each how
 /// many its surface has along the row. `room` has [`ROOM`] numbers more than there are answers.
-pub(super) fn average(kernel: Kernel, answers: &mut [Disparity], lengths: &mut [u16], room: &mut [u16], checks: &Checks) {
+pub(super) fn average(
+    kernel: Kernel,
+    answers: &mut [Disparity],
+    lengths: &mut [u16],
+    room: &mut [u16],
+    checks: &Checks,
+) {
     #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
     if kernel.has_vectors() && answers.len() >= lanes::LANES {
         return kernel.in_vectors(

@@ -76,10 +76,11 @@ pub(super) fn with_more_before<'a>(
     out: &'a mut [u8],
 ) -> RowCodes<'a> {
     let (left, right) = codes.split_at_checked(codes.len() / 2).unwrap_or_default();
-    let out = out.get_mut(..left.len() + stride - 1).unwrap_or_default();
-    let outside = out.len().min(stride - 1 + min_disparity);
+    // One more than is wanted, so that words are copied to words' places.
+    let out = out.get_mut(..left.len() + stride).unwrap_or_default();
+    let outside = out.len().min(stride + min_disparity);
     let (before, inside) = out.split_at_mut_checked(outside).unwrap_or_default();
     before.fill(right.first().copied().unwrap_or(0));
     inside.copy_from_slice(right.get(..inside.len()).unwrap_or(&[]));
-    RowCodes { left, right: out }
+    RowCodes { left, right: out.get(1..).unwrap_or(&[]) }
 }

@@ -15,7 +15,7 @@
 mod columns;
 
 use super::scratch::bytes_mut;
-use super::{OUTSIDE, RowWork, STEP, Select, Winner};
+use super::{OUTSIDE, RowWork, STEP, Select, WinnerRows};
 use crate::matching::scheme::Scheme;
 
 /// 256 lanes of ones, then 256 of zero: a slice of it masks the lanes before any one.
@@ -74,8 +74,13 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
 
     // Left of here no pixel has a candidate.
     let begin = min_disparity.min(width);
-    let Some((outside, winners)) = winners.split_at_mut_checked(begin) else { return };
-    outside.fill(Winner::NONE);
+    let WinnerRows { below, costs, above, disparities: found } = WinnerRows::of(winners, begin);
+    let mut winners =
+        below.iter_mut().zip(costs).zip(above.iter_mut().zip(found)).map(|((below, cost), (above, disparity))| {
+            move |winner: Found| {
+                (*below, *cost, *above, *disparity) = (winner.beside.0, winner.cost, winner.beside.1, winner.disparity);
+            }
+        });
     let mut judge = unique.from_column(begin);
     sums.fill(0);
     // The column that leaves at the first pixel is among them.
@@ -86,19 +91,29 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
     let from = |column: usize| columns.get(column * stride..).unwrap_or(&[]).chunks_exact(stride);
     let mut columns = from(OUTSIDE + begin + S::RADIUS_X).zip(from(OUTSIDE + begin - S::RADIUS_X - 1));
     // The first pixels have fewer candidates than there are lanes; where there are more lanes than candidates, all have.
-    let few = if disparities < stride { winners.len() } else { winners.len().min(stride - 1) };
-    let (with_few, with_all) = winners.split_at_mut_checked(few).unwrap_or_default();
-    for ((x, winner), (enters, leaves)) in with_few.iter_mut().enumerate().zip(&mut columns) {
+    let few = if disparities < stride { width } else { stride - 1 };
+    for (x, (enters, leaves)) in columns.by_ref().take(few).enumerate() {
+        let Some(mut put) = winners.next() else { return };
         let candidates = (x + 1).min(disparities);
         let mask = MASKS.get(256 - (stride - candidates)..).and_then(|m| m.get(..stride)).unwrap_or(&[]);
-        *winner = slide_to_winner::<S, N, STRIDE, true>(sums, enters, leaves, candidates, mask);
-        judge(*winner, &mut || best_of_the_rest::<N>(winner.disparity() as usize, mask, sums));
+        let winner = slide_to_winner::<S, N, STRIDE, true>(sums, enters, leaves, candidates, mask);
+        put(winner);
+        judge(winner.cost, &mut || best_of_the_rest::<N>(usize::from(winner.disparity), mask, sums));
     }
-    for (winner, (enters, leaves)) in with_all.iter_mut().zip(columns) {
-        let mask = MASKS.get(256..256 + stride).unwrap_or(&[]);
-        *winner = slide_to_winner::<S, N, STRIDE, false>(sums, enters, leaves, stride, mask);
-        judge(*winner, &mut || best_of_the_rest::<N>(winner.disparity() as usize, mask, sums));
+    let mask = MASKS.get(256..256 + stride).unwrap_or(&[]);
+    for (mut put, (enters, leaves)) in winners.zip(columns) {
+        let winner = slide_to_winner::<S, N, STRIDE, false>(sums, enters, leaves, stride, mask);
+        put(winner);
+        judge(winner.cost, &mut || best_of_the_rest::<N>(usize::from(winner.disparity), mask, sums));
     }
+}
+
+/// The parts of a [`super::Winner`].
+#[derive(Clone, Copy)]
+struct Found {
+    disparity: u8,
+    cost: u8,
+    beside: (u8, u8),
 }
 
 /// Moves the window sums one column on.
@@ -129,7 +144,7 @@ fn slide_to_winner<S: Scheme, const N: usize, const STRIDE: usize, const MASKED:
     leaves: &[u8],
     candidates: usize,
     mask: &[u8],
-) -> Winner {
+) -> Found {
     let mut least = [u8::MAX; N];
     let columns = enters.as_chunks::<N>().0.iter().zip(leaves.as_chunks::<N>().0);
     let lanes = sums.as_chunks_mut::<N>().0.iter_mut().zip(mask.as_chunks::<N>().0);
@@ -149,7 +164,7 @@ fn slide_to_winner<S: Scheme, const N: usize, const STRIDE: usize, const MASKED:
     } else {
         beside_at_the_end(disparity, candidates, least, sums)
     };
-    Winner::new(least, disparity as u8, beside)
+    Found { disparity: disparity as u8, cost: least, beside }
 }
 
 /// The smallest disparity with the least sum. Masked lanes may have it too, but are of larger ones.
@@ -178,7 +193,7 @@ fn minimum<const N: usize>(lanes: &[u8; N]) -> u8 {
     lanes.iter().fold(u8::MAX, |least, &lane| least.min(lane))
 }
 
-/// The costs beside a winner that lacks a candidate on one side or both, for [`Winner::new`].
+/// The costs beside a winner that lacks a candidate on one side or both, for [`super::Winner::new`].
 #[inline(never)]
 fn beside_at_the_end(disparity: usize, candidates: usize, least: u8, sums: &[u8]) -> (u8, u8) {
     let of = |disparity: usize| (sums.len() - 1).checked_sub(disparity).and_then(|lane| sums.get(lane));

@@ -15,7 +15,7 @@ mod plane;
 mod windows;
 
 use super::scratch::{bytes_mut, halves_of, halves_of_mut};
-use super::{OUTSIDE, RowWork, Select, Winner};
+use super::{OUTSIDE, RowWork, Select};
 use crate::matching::scheme::{Around, Scheme};
 use plane::Plane;
 use windows::{WINDOW, Windows};
@@ -73,8 +73,7 @@ fn row_of<S: Scheme, P: Plane, const GROUPS: usize>(work: RowWork<'_>, select: O
 
     // Left of here no pixel has a candidate.
     let begin = min_disparity.min(width);
-    let Some((outside, winners)) = winners.split_at_mut_checked(begin) else { return };
-    outside.fill(Winner::NONE);
+    let winners = winners.get_mut(begin..).unwrap_or_default();
     let judge = unique.from_column(begin);
     let Some(windows) = scratch.as_chunks_mut::<WINDOW>().0.get_mut(..groups) else { return };
     let mut windows = Windows::new(windows, disparities);

@@ -47,7 +47,7 @@ impl<'a, P: Plane> Windows<'a, P> {
         entering: &[Column<P>],
         leaving: &[Column<P>],
         winners: &mut [Winner],
-        mut judge: impl FnMut(Winner, &mut dyn FnMut() -> u8),
+        mut judge: impl FnMut(u8, &mut dyn FnMut() -> u8),
     ) {
         let of = |candidates: usize| -> [P; GROUPS] {
             core::array::from_fn(|group| P::first(candidates.saturating_sub(group * P::CANDIDATES)))
@@ -76,7 +76,7 @@ impl<'a, P: Plane> Windows<'a, P> {
                 let is_above = above != P::NONE && (!last || group + 1 < GROUPS);
                 look_beyond(&windows, disparity, is_above, winner);
             }
-            judge(*winner, &mut || {
+            judge(winner.cost(), &mut || {
                 let windows = windows;
                 best_of_the_rest(&windows, disparity, &candidates)
             });
@@ -90,7 +90,7 @@ impl<'a, P: Plane> Windows<'a, P> {
         entering: &[Column<P>],
         leaving: &[Column<P>],
         winners: &mut [Winner],
-        mut judge: impl FnMut(Winner, &mut dyn FnMut() -> u8),
+        mut judge: impl FnMut(u8, &mut dyn FnMut() -> u8),
     ) {
         let groups = self.groups.len().max(1);
         let (mut entering, mut leaving) = (entering.chunks_exact(groups), leaving.chunks_exact(groups));
@@ -112,7 +112,7 @@ impl<'a, P: Plane> Windows<'a, P> {
             *winner = winner_of(self.groups, group, lane, among(group));
             let disparity = group * P::CANDIDATES + lane;
             look_beyond(self.groups, disparity, disparity + 1 < candidates, winner);
-            judge(*winner, &mut || {
+            judge(winner.cost(), &mut || {
                 let candidates: [P; MOST_GROUPS] = core::array::from_fn(among);
                 best_of_the_rest(self.groups, disparity, &candidates)
             });

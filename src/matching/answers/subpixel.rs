@@ -9,7 +9,7 @@
 //! On a rendered slanted plane the parabola's error was half again as large, for both windows, and its answers crowded
 //! to whole pixels.
 
-use super::kernels::Winner;
+use crate::matching::kernels::Winner;
 use crate::units::Disparity;
 
 /// The disparity of a winner whose search began at `min_disparity` px, rounded to the nearest step.

@@ -8,13 +8,13 @@
 
 use crate::units::PixelFlags;
 
-/// Offers every winner to its partner, each by its cost above 8 bits of its disparity. The first of equal costs stays. The
-/// first winner is that of the first column that has a candidate, whose partner is the first right column.
+/// Offers every winner to its partner, each by its cost above 8 bits of its disparity, and that disparity. The first of equal
+/// costs stays. The first winner is that of the first column that has a candidate, whose partner is the first right column.
 #[inline(always)]
-pub(super) fn offer(keys: impl Iterator<Item = u16>, right: &mut [u16]) {
+pub(super) fn offer(winners: impl Iterator<Item = (u16, u8)>, right: &mut [u16]) {
     right.fill(u16::MAX);
-    for (x, key) in keys.enumerate() {
-        if let Some(kept) = right.get_mut(x.wrapping_sub(usize::from(key & 0xff))) {
+    for (x, (key, disparity)) in winners.enumerate() {
+        if let Some(kept) = right.get_mut(x.wrapping_sub(usize::from(disparity))) {
             // Of one partner, those who come later are farther away: their disparity is larger.
             *kept = (*kept).min(key);
         }
@@ -30,5 +30,5 @@ pub(super) fn kept(x: usize, disparity: u8, right: &[u16]) -> u8 {
 /// Whether a winner's partner keeps something else by over `tolerance` px.
 #[inline(always)]
 pub(super) fn mismatch(disparity: u8, kept: u8, tolerance: u8) -> PixelFlags {
-    PixelFlags::MISMATCH.when(disparity.abs_diff(kept) > tolerance)
+    PixelFlags::MISMATCH.when(disparity.max(kept) - disparity.min(kept) > tolerance)
 }

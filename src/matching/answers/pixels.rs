@@ -7,7 +7,7 @@ use crate::units::{Disparity, PixelFlags};
 /// [`consistency::offer`] of all winners.
 #[inline(never)]
 pub(super) fn offer(winners: &[Winner], right: &mut [u16]) {
-    consistency::offer(winners.iter().map(|winner| winner.key()), right);
+    consistency::offer(winners.iter().map(|winner| (winner.key(), winner.disparity() as u8)), right);
 }
 
 /// The answers and flags of the columns that have a candidate.

@@ -1,9 +1,7 @@
 //! Room to work in, for every kernel and every kind of lane.
 #![allow(unsafe_code)]
 
-use super::OUTSIDE;
-#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-use super::Winner;
+use super::{OUTSIDE, Winner};
 
 /// What a kernel works with while a row lasts. No kernel finds anything in it from the row before.
 ///
@@ -64,6 +62,12 @@ pub(super) fn words_mut(bytes: &mut [u8]) -> &mut [u32] {
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 pub(super) fn bytes_of(winners: &mut [Winner]) -> &mut [u8] {
     // SAFETY: a winner is a word (`repr(transparent)`), every value of which is four bytes and the other way round.
+    unsafe { winners.align_to_mut().1 }
+}
+
+/// Winners as half-words, two for each: memory whose winners are done with.
+pub(in crate::matching) fn halves_of_winners(winners: &mut [Winner]) -> &mut [u16] {
+    // SAFETY: a winner is a word (`repr(transparent)`), every value of which is two half-words and the other way round.
     unsafe { winners.align_to_mut().1 }
 }
 

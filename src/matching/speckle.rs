@@ -11,6 +11,7 @@
 //! all that is to be kept of those, in one word with the support so far.
 
 use super::row::slot;
+use super::surface::of_one;
 use crate::units::{Disparity, PixelFlags};
 
 /// Rows that must follow before a row is judged.
@@ -29,6 +30,12 @@ pub(super) struct Support<'a> {
 
 /// Bits of rows that go on, and then of rows that have enough.
 const ROWS: usize = LOOK_AHEAD;
+
+/// What the numbers are worked on in: where there are vectors, half-words, of which they hold more.
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+type Word = u16;
+#[cfg(not(any(target_pointer_width = "64", stereopsis_vectors)))]
+type Word = u32;
 
 impl Support<'_> {
     /// Forgets the frame before. `band` is the ring of rows.
@@ -55,20 +62,19 @@ impl Support<'_> {
         let width = self.kept.len();
         let row = |y: usize| slot(band, y % BAND, width);
         let (here, above, judged) = (row(y), row(y + BAND - 1), row(y + BAND - LOOK_AHEAD));
-        let step = u32::from(step.raw());
-        let pixels = u32::from(pixels);
+        let pixels = Word::from(pixels);
         let rows = here.iter().zip(above).zip(self.lengths.iter().zip(self.kept.iter_mut()));
         let out = judged.iter().zip(flags).zip(finished);
-        for (((here, above), (length, kept)), ((answer, flags), finished)) in rows.zip(out) {
-            let change = u32::from(here.raw()).wrapping_sub(u32::from(above.raw()));
-            let joined = u32::from(change.wrapping_add(step) <= 2 * step);
-            let before = u32::from(*kept);
-            let count = (u32::from(*length) + (before >> (2 * ROWS) & 0u32.wrapping_sub(joined))).min(0xff);
+        for (((here, above), (&length, kept)), ((answer, flags), finished)) in rows.zip(out) {
+            let joined = Word::from(of_one(here.raw(), above.raw(), step));
+            let before = Word::from(*kept);
+            let support = before >> (2 * ROWS) & Word::MIN.wrapping_sub(joined);
+            let count = Word::from(length).saturating_add(support).min(0xff);
             // Each bit stands for the row before now; the highest of both halves goes.
             let mut rows = (before << 1 & 0b1_1110_1110) | joined;
             // This row, and those above as far as they are joined.
             let reached = rows ^ (rows + 1);
-            rows |= reached << ROWS & 0u32.wrapping_sub(u32::from(count >= pixels));
+            rows |= reached << ROWS & Word::MIN.wrapping_sub(Word::from(count >= pixels));
             *kept = (count << (2 * ROWS) | rows & 0xff) as u16;
             let refused = rows & 1 << (ROWS + LOOK_AHEAD) == 0;
             *finished = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(refused)));

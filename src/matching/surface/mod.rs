@@ -44,8 +44,14 @@ pub(super) fn average(kernel: Kernel, answers: &mut [Disparity], lengths: &mut [
 
 /// Whether two answers are of one surface; `NONE`s are, and are far from every answer (Config::check).
 #[inline(always)]
-fn of_one(a: u16, b: u16, step: Disparity) -> bool {
-    a.abs_diff(b) <= step.raw()
+pub(super) fn of_one(a: u16, b: u16, step: Disparity) -> bool {
+    if cfg!(any(target_pointer_width = "64", stereopsis_vectors)) {
+        // Half-words stay half-words.
+        a.abs_diff(b) <= step.raw()
+    } else {
+        let step = u32::from(step.raw());
+        u32::from(a).wrapping_sub(u32::from(b)).wrapping_add(step) <= 2 * step
+    }
 }
 
 /// `2^16 / (2 reach + 1)`, rounded.

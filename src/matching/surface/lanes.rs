@@ -21,13 +21,18 @@ pub(super) fn average(answers: &mut [Disparity], lengths: &mut [u16], room: Room
     }
     let from = |place: usize| before.get(place..).unwrap_or(&[]);
     count(from(REACH), lengths, step);
+    if checks.smoothing_radius == 0 {
+        return;
+    }
     let [reaches, sums] = room.small;
-    reaches.fill(0);
-    sums.fill(0);
     for distance in 1..=usize::from(checks.smoothing_radius).min(REACH) {
         let left = [from(REACH + 1 - distance), from(REACH - distance)];
         let right = [from(REACH - 1 + distance), from(REACH + distance)];
-        add_pairs(distance as u16, left, from(REACH), right, step, reaches, sums);
+        if distance == 1 {
+            add_pairs::<true>(1, left, from(REACH), right, step, reaches, sums);
+        } else {
+            add_pairs::<false>(distance as u16, left, from(REACH), right, step, reaches, sums);
+        }
     }
     divide(answers, reaches, sums);
 }
@@ -63,10 +68,11 @@ fn divide(answers: &mut [Disparity], reaches: &mut [u16], sums: &[u16]) {
 }
 
 /// Adds what the pair at a `distance` differs by from the centre, and one to the reach, where all pairs before are of the
-/// surface and this one is. Of the sides the answers one nearer, and those at the distance.
+/// surface and this one is; the `FIRST` finds nothing to add to. Of the sides the answers one nearer, and those at the
+/// distance.
 #[cfg_attr(stereopsis_vectors, inline(never))]
 #[cfg_attr(not(stereopsis_vectors), inline(always))]
-fn add_pairs(
+fn add_pairs<const FIRST: bool>(
     distance: u16,
     left: [&[u16]; 2],
     centre: &[u16],
@@ -78,6 +84,7 @@ fn add_pairs(
     let left = left[0].iter().zip(left[1]);
     let right = right[0].iter().zip(right[1]);
     for (((reach, sum), centre), (left, right)) in reaches.iter_mut().zip(sums).zip(centre).zip(left.zip(right)) {
+        (*reach, *sum) = if FIRST { (0, 0) } else { (*reach, *sum) };
         let goes_on = of_one(*left.0, *left.1, step) & of_one(*right.0, *right.1, step) & (*reach + 1 == distance);
         let differences = left.1.wrapping_add(*right.1).wrapping_sub(centre.wrapping_mul(2));
         *reach = if goes_on { distance } else { *reach };

@@ -5,8 +5,8 @@
 //! 1. [`scheme`](Scheme): which census and which window, [`Fast`] or [`Block`].
 //! 2. `kernels`: matching cost into column sums, sliding window sums, the winner of every pixel. The only stage whose
 //!    work grows with the number of disparities, behind one seam ([`Kernel`]).
-//! 3. `subpixel`: the winner between whole pixels.
-//! 4. `texture`, `consistency`: whether the window has texture, whether the right image agrees.
+//! 3. `texture`: whether the window has texture.
+//! 4. `answers`: whether the right image agrees, the winner between whole pixels, what refuses it.
 //! 5. `surface`: the answers averaged along the row, within their surface.
 //! 6. `speckle`: answers dropped that too few others support, in a band of five rows.
 //! 7. [`Row`]: what came out, with the uncertainty of each answer.
@@ -15,14 +15,12 @@
 
 mod answers;
 mod config;
-
 mod kernels;
 mod matcher;
 mod row;
 mod scheme;
 mod speckle;
 mod stages;
-
 mod surface;
 mod texture;
 

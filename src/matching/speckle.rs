@@ -50,6 +50,7 @@ impl Support<'_> {
     /// its answers without those that have less support than `pixels`. In the first rows of a frame there is none yet;
     /// what is written then is not looked at.
     #[inline(never)]
+    #[allow(clippy::unnecessary_cast, reason = "a word is a half-word on some cores only")]
     pub(super) fn count(
         &mut self,
         y: usize,

@@ -208,7 +208,7 @@ impl<'a> Unique<'a> {
     /// Flags the pixels from column `begin` on, one after the other: it is given the winner's cost, and what finds the least cost
     /// of the candidates over one px beside it, `u8::MAX` where there is none, which is asked where it is wanted.
     #[inline(always)]
-    pub fn from_column(self, begin: usize) -> impl FnMut(u8, &mut dyn FnMut() -> u8) {
+    pub fn starting_at(self, begin: usize) -> impl FnMut(u8, &mut dyn FnMut() -> u8) {
         let share = 100 - u32::from(self.percent.min(99));
         let mut flags = self.flags.get_mut(begin..).unwrap_or_default().iter_mut();
         move |cost, second| {

@@ -81,7 +81,7 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
                 (*below, *cost, *above, *disparity) = (winner.beside.0, winner.cost, winner.beside.1, winner.disparity);
             }
         });
-    let mut judge = unique.from_column(begin);
+    let mut judge = unique.starting_at(begin);
     sums.fill(0);
     // The column that leaves at the first pixel is among them.
     let before = OUTSIDE + begin.saturating_sub(S::RADIUS_X + 1);

@@ -74,7 +74,7 @@ fn row_of<S: Scheme, P: Plane, const GROUPS: usize>(work: RowWork<'_>, select: O
     // Left of here no pixel has a candidate.
     let begin = min_disparity.min(width);
     let winners = winners.get_mut(begin..).unwrap_or_default();
-    let judge = unique.from_column(begin);
+    let judge = unique.starting_at(begin);
     let Some(windows) = scratch.as_chunks_mut::<WINDOW>().0.get_mut(..groups) else { return };
     let mut windows = Windows::new(windows, disparities);
     // What is farther to the left is no candidate's: its sums are zero.

@@ -182,7 +182,7 @@ fn best_of_the_rest<P: Plane>(windows: &[Window<P>], disparity: usize, candidate
 fn slide<S: Scheme, P: Plane>(window: &mut Window<P>, enters: &Column<P>, leaves: &Column<P>) {
     // The window is a complement: what leaves is added. The difference is a number with a sign, of one plane more.
     let (mut borrow, mut carry) = (P::NONE, P::NONE);
-    for i in 0..WINDOW {
+    for (i, sum) in window.iter_mut().enumerate() {
         let digit = i + S::COLUMN_SHIFT;
         let difference = if digit < S::COLUMN_BITS {
             let (enters, leaves) = (enters[digit], leaves[digit]);
@@ -193,9 +193,9 @@ fn slide<S: Scheme, P: Plane>(window: &mut Window<P>, enters: &Column<P>, leaves
         } else {
             borrow
         };
-        let half = window[i] ^ difference;
+        let half = *sum ^ difference;
         let up = difference ^ (half & (difference ^ carry));
-        window[i] = half ^ carry;
+        *sum = half ^ carry;
         carry = up;
     }
 }

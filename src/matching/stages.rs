@@ -2,7 +2,7 @@
 
 use super::answers::{self, Winners};
 use super::config::Config;
-use super::kernels::{Kernel, RowWork, Select, Unique, Winner, halves_mut, halves_of};
+use super::kernels::{Kernel, RowWork, Select, Unique, Winner, halves_mut};
 use super::row::{HISTORY, slot};
 use super::scheme::{Around, Scheme};
 use super::speckle::{BAND, LOOK_AHEAD, Support};
@@ -113,10 +113,7 @@ impl<S: Scheme> Stages<'_, S> {
         // The kernel is done with its room.
         let winners = Winners { winners: self.winners, right: self.right, room: self.scratch };
         answers::answer(self.kernel, self.config, winners, answers, flags);
-        // So are the winners done with theirs.
-        let (reaches, sums) = halves_of(self.winners).split_at_mut_checked(self.width).unwrap_or_default();
-        let room = surface::Room { small: [reaches, sums], large: halves_mut(self.scratch) };
-        surface::average(self.kernel, answers, self.support.lengths, room, checks);
+        surface::average(self.kernel, answers, self.support.lengths, halves_mut(self.scratch), checks);
     }
 }
 

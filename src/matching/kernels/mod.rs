@@ -21,8 +21,8 @@ mod x86;
 
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 pub(super) use scratch::bytes_mut;
+pub(super) use scratch::halves_mut;
 pub use scratch::{Aligned, Columns, Scratch};
-pub(super) use scratch::{halves_mut, halves_of_winners as halves_of};
 
 #[cfg(not(stereopsis_vectors))]
 pub(super) use planes::codes;

@@ -65,12 +65,6 @@ pub(super) fn bytes_of(winners: &mut [Winner]) -> &mut [u8] {
     unsafe { winners.align_to_mut().1 }
 }
 
-/// Winners as half-words, two for each: memory whose winners are done with.
-pub(in crate::matching) fn halves_of_winners(winners: &mut [Winner]) -> &mut [u16] {
-    // SAFETY: a winner is a word (`repr(transparent)`), every value of which is two half-words and the other way round.
-    unsafe { winners.align_to_mut().1 }
-}
-
 /// Words as bytes, in the order of memory.
 pub(in crate::matching) fn bytes_mut(words: &mut [u32]) -> &mut [u8] {
     // SAFETY: every value of a word is four bytes and the other way round.

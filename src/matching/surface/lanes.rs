@@ -1,41 +1,13 @@
-//! Pixels side by side, in loops that the compiler turns into vectors: pair by pair, as far as both are still of the
-//! surface.
+//! Pixels side by side: pair by pair, as far as both are still of the surface.
 
-use super::{MORE, RECIPROCALS, Room, of_one};
+use super::{RECIPROCALS, ROOM, of_one};
 use crate::matching::config::Checks;
 use crate::units::Disparity;
 
+/// Pixels worked on at a time.
+pub(super) const LANES: usize = if cfg!(stereopsis_vectors) { 8 } else { 16 };
 /// How far the answers around a pixel reach, to each side.
-const REACH: usize = MORE / 2;
-
-/// [`super::average`].
-#[inline(always)]
-pub(super) fn average(answers: &mut [Disparity], lengths: &mut [u16], room: Room<'_>, checks: &Checks) {
-    let width = answers.len();
-    let step = checks.surface_step;
-    // The answers as they were, with none outside.
-    let Some(before) = room.large.get_mut(..width + MORE) else { return };
-    before.fill(Disparity::NONE.raw());
-    for (before, answer) in before.iter_mut().skip(REACH).zip(answers.iter()) {
-        *before = answer.raw();
-    }
-    let from = |place: usize| before.get(place..).unwrap_or(&[]);
-    count(from(REACH), lengths, step);
-    if checks.smoothing_radius == 0 {
-        return;
-    }
-    let [reaches, sums] = room.small;
-    for distance in 1..=usize::from(checks.smoothing_radius).min(REACH) {
-        let left = [from(REACH + 1 - distance), from(REACH - distance)];
-        let right = [from(REACH - 1 + distance), from(REACH + distance)];
-        if distance == 1 {
-            add_pairs::<true>(1, left, from(REACH), right, step, reaches, sums);
-        } else {
-            add_pairs::<false>(distance as u16, left, from(REACH), right, step, reaches, sums);
-        }
-    }
-    divide(answers, reaches, sums);
-}
+const REACH: usize = ROOM / 2;
 
 /// By how much the reciprocals of 3, 5, 7 and so on differ from the one before, the first from 0; modulo 2^16.
 const CHANGES: [u16; REACH] = {
@@ -48,48 +20,65 @@ const CHANGES: [u16; REACH] = {
     changes
 };
 
-/// Adds to every answer what it differs by from the average.
-#[cfg_attr(stereopsis_vectors, inline(never))]
-#[cfg_attr(not(stereopsis_vectors), inline(always))]
-fn divide(answers: &mut [Disparity], reaches: &mut [u16], sums: &[u16]) {
-    // The reciprocals in a loop of their own, with nothing in it that is no half-word. Of an answer alone the sum is
-    // nothing, and so its reciprocal may be.
-    for reach in reaches.iter_mut() {
-        let mut reciprocal = 0u16;
-        for (distance, &change) in (1..).zip(&CHANGES) {
-            reciprocal = reciprocal.wrapping_add(change & 0u16.wrapping_sub(u16::from(*reach >= distance)));
-        }
-        *reach = reciprocal;
+/// [`super::average`] of at least [`LANES`] answers.
+#[inline(always)]
+pub(super) fn average(answers: &mut [Disparity], lengths: &mut [u16], room: &mut [u16], checks: &Checks) {
+    let width = answers.len();
+    let step = checks.surface_step;
+    // The answers as they were, with none outside.
+    let Some(before) = room.get_mut(..width + ROOM) else { return };
+    before.fill(Disparity::NONE.raw());
+    for (before, answer) in before.iter_mut().skip(REACH).zip(answers.iter()) {
+        *before = answer.raw();
     }
-    for (answer, (&reciprocal, &sum)) in answers.iter_mut().zip(reaches.iter().zip(sums)) {
-        let steps = (i32::from(sum as i16) * i32::from(reciprocal as i16) + (1 << 15)) >> 16;
-        *answer = Disparity::from_raw(answer.raw().wrapping_add(steps as u16));
+    count(before.get(REACH..REACH + width).unwrap_or(&[]), lengths, step);
+    // The last group is moved back to end with the row.
+    let begins = (0..width / LANES).map(|group| group * LANES).chain(width.checked_sub(LANES));
+    for begin in begins {
+        let around = before.get(begin..).and_then(|b| b.first_chunk::<{ LANES + ROOM }>());
+        let out = answers.get_mut(begin..).and_then(|a| a.first_chunk_mut::<LANES>());
+        if let (Some(around), Some(out)) = (around, out) {
+            const USUAL: usize = Checks::DEFAULT.smoothing_radius as usize;
+            let averages = match usize::from(checks.smoothing_radius) {
+                USUAL => averaged::<USUAL>(around, step, USUAL),
+                radius => averaged::<0>(around, step, radius),
+            };
+            *out = averages.map(Disparity::from_raw);
+        }
     }
 }
 
-/// Adds what the pair at a `distance` differs by from the centre, and one to the reach, where all pairs before are of the
-/// surface and this one is; the `FIRST` finds nothing to add to. Of the sides the answers one nearer, and those at the
-/// distance.
-#[cfg_attr(stereopsis_vectors, inline(never))]
-#[cfg_attr(not(stereopsis_vectors), inline(always))]
-fn add_pairs<const FIRST: bool>(
-    distance: u16,
-    left: [&[u16]; 2],
-    centre: &[u16],
-    right: [&[u16]; 2],
-    step: Disparity,
-    reaches: &mut [u16],
-    sums: &mut [u16],
-) {
-    let left = left[0].iter().zip(left[1]);
-    let right = right[0].iter().zip(right[1]);
-    for (((reach, sum), centre), (left, right)) in reaches.iter_mut().zip(sums).zip(centre).zip(left.zip(right)) {
-        (*reach, *sum) = if FIRST { (0, 0) } else { (*reach, *sum) };
-        let goes_on = of_one(*left.0, *left.1, step) & of_one(*right.0, *right.1, step) & (*reach + 1 == distance);
-        let differences = left.1.wrapping_add(*right.1).wrapping_sub(centre.wrapping_mul(2));
-        *reach = if goes_on { distance } else { *reach };
-        *sum = if goes_on { sum.wrapping_add(differences) } else { *sum };
+/// The averages of the answers in the middle. `RADIUS` is the radius where it is known when the crate is compiled, which
+/// lets the compiler unroll the pairs; 0 where it is not.
+#[inline(always)]
+fn averaged<const RADIUS: usize>(around: &[u16; LANES + ROOM], step: Disparity, radius: usize) -> [u16; LANES] {
+    let at = |place: usize| around.get(place..).and_then(|a| a.first_chunk::<LANES>()).copied().unwrap_or([0; LANES]);
+    let centre = at(REACH);
+    let (mut left, mut right) = (centre, centre);
+    // All ones as long as the pair belongs to the surface.
+    let mut joined = [u16::MAX; LANES];
+    let (mut sum, mut reciprocal) = ([0u16; LANES], [0u16; LANES]);
+    for reach in 1..=if RADIUS > 0 { RADIUS } else { REACH } {
+        if RADIUS == 0 && reach > radius {
+            break;
+        }
+        let (new_left, new_right) = (at(REACH - reach), at(REACH + reach));
+        let change = CHANGES[reach - 1];
+        for i in 0..LANES {
+            let goes_on = of_one(left[i], new_left[i], step) & of_one(right[i], new_right[i], step);
+            joined[i] &= 0u16.wrapping_sub(u16::from(goes_on));
+            let pair = new_left[i].wrapping_add(new_right[i]).wrapping_sub(centre[i].wrapping_mul(2));
+            sum[i] = sum[i].wrapping_add(joined[i] & pair);
+            reciprocal[i] = reciprocal[i].wrapping_add(joined[i] & change);
+        }
+        (left, right) = (new_left, new_right);
     }
+    let mut out = centre;
+    for i in 0..LANES {
+        let steps = (i32::from(sum[i] as i16) * i32::from(reciprocal[i] as i16) + (1 << 15)) >> 16;
+        out[i] = centre[i].wrapping_add(steps as u16);
+    }
+    out
 }
 
 /// For every answer how many its surface has.

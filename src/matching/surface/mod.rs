@@ -18,29 +18,29 @@ use super::config::Checks;
 use super::kernels::Kernel;
 use crate::units::Disparity;
 
-/// Room for two numbers an answer, and for one and [`MORE`].
-pub(super) struct Room<'a> {
-    pub small: [&'a mut [u16]; 2],
-    pub large: &'a mut [u16],
-}
-
-/// What [`Room::large`] has beside one number for each answer.
-const MORE: usize = 2 * Checks::MOST_SMOOTHING as usize;
-
 /// Makes every answer of a row the average of up to [`Checks::smoothing_radius`] pairs around it, and gives for each how
-/// many its surface has along the row.
-pub(super) fn average(kernel: Kernel, answers: &mut [Disparity], lengths: &mut [u16], room: Room<'_>, checks: &Checks) {
+/// many its surface has along the row. `room` has [`ROOM`] numbers more than there are answers.
+pub(super) fn average(
+    kernel: Kernel,
+    answers: &mut [Disparity],
+    lengths: &mut [u16],
+    room: &mut [u16],
+    checks: &Checks,
+) {
     #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-    if kernel.has_vectors() {
+    if kernel.has_vectors() && answers.len() >= lanes::LANES {
         return kernel.in_vectors(
             #[inline(always)]
             || lanes::average(answers, lengths, room, checks),
         );
     }
     let _ = kernel;
-    runs::count(answers, lengths, room.large, checks.surface_step);
-    runs::average(answers, lengths, room.large, checks.smoothing_radius);
+    runs::count(answers, lengths, room, checks.surface_step);
+    runs::average(answers, lengths, room, checks.smoothing_radius);
 }
+
+/// Numbers that are wanted beside one for each answer.
+const ROOM: usize = 2 * Checks::MOST_SMOOTHING as usize;
 
 /// Whether two answers are of one surface; `NONE`s are, and are far from every answer (Config::check).
 #[inline(always)]
@@ -72,12 +72,11 @@ mod tests {
 
     fn averages(row: &[u16]) -> (Vec9<u16>, Vec9<u16>) {
         let mut answers = [Disparity::NONE; 9];
-        let (mut lengths, mut small, mut large) = ([0; 9], [[0; 9]; 2], [0; 9 + MORE]);
+        let (mut lengths, mut room) = ([0; 9], [0; 9 + ROOM]);
         for (answer, &raw) in answers.iter_mut().zip(row) {
             *answer = Disparity::from_raw(raw);
         }
-        let room = Room { small: small.each_mut().map(|small| &mut small[..row.len()]), large: &mut large };
-        average(Kernel::FIRST, &mut answers[..row.len()], &mut lengths[..row.len()], room, &Checks::DEFAULT);
+        average(Kernel::FIRST, &mut answers[..row.len()], &mut lengths[..row.len()], &mut room, &Checks::DEFAULT);
         (answers.map(Disparity::raw), lengths)
     }
 

@@ -44,18 +44,20 @@ const fn disparities<const STRIDE: usize>() -> [u8; STRIDE] {
 #[inline(always)]
 pub(in crate::matching) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select<'_>>) {
     match work.stride {
-        32 => row_in_groups::<S, STEP, 32>(work, select),
-        64 => row_in_groups::<S, STEP, 64>(work, select),
-        _ => row_in_groups::<S, STEP, 0>(work, select),
+        32 => row_in_groups::<S, STEP, 32>(work, select, nearest_with::<32>),
+        64 => row_in_groups::<S, STEP, 64>(work, select, nearest_with::<64>),
+        _ => row_in_groups::<S, STEP, 0>(work, select, nearest_with::<0>),
     }
 }
 
 /// A row whose lanes are worked on in groups of `N`. `STRIDE` is the number of lanes where it is known when the crate
-/// is compiled, which lets the compiler unroll the groups and keep them in registers; 0 where it is not.
+/// is compiled, which lets the compiler unroll the groups and keep them in registers; 0 where it is not. `nearest` is
+/// [`nearest_with`] or does the same.
 #[inline(always)]
 pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE: usize>(
     work: RowWork<'_>,
     select: Option<Select<'_>>,
+    nearest: impl Fn(u8, &[u8]) -> usize,
 ) {
     const { assert!(S::RADIUS_X < OUTSIDE) };
     let RowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
@@ -96,13 +98,13 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
         let Some(mut put) = winners.next() else { return };
         let candidates = (x + 1).min(disparities);
         let mask = MASKS.get(256 - (stride - candidates)..).and_then(|m| m.get(..stride)).unwrap_or(&[]);
-        let winner = slide_to_winner::<S, N, STRIDE, true>(sums, enters, leaves, candidates, mask);
+        let winner = slide_to_winner::<S, N, true>(sums, enters, leaves, candidates, mask, &nearest);
         put(winner);
         judge(winner.cost, &mut || best_of_the_rest::<N>(usize::from(winner.disparity), mask, sums));
     }
     let mask = MASKS.get(256..256 + stride).unwrap_or(&[]);
     for (mut put, (enters, leaves)) in winners.zip(columns) {
-        let winner = slide_to_winner::<S, N, STRIDE, false>(sums, enters, leaves, stride, mask);
+        let winner = slide_to_winner::<S, N, false>(sums, enters, leaves, stride, mask, &nearest);
         put(winner);
         judge(winner.cost, &mut || best_of_the_rest::<N>(usize::from(winner.disparity), mask, sums));
     }
@@ -138,12 +140,13 @@ fn moved<S: Scheme, const N: usize>(sums: &[u8; N], enters: &[u8; N], leaves: &[
 
 /// [`slide`], then the first candidate that has the least sum.
 #[inline(always)]
-fn slide_to_winner<S: Scheme, const N: usize, const STRIDE: usize, const MASKED: bool>(
+fn slide_to_winner<S: Scheme, const N: usize, const MASKED: bool>(
     sums: &mut [u8],
     enters: &[u8],
     leaves: &[u8],
     candidates: usize,
     mask: &[u8],
+    nearest: impl Fn(u8, &[u8]) -> usize,
 ) -> Found {
     let mut least = [u8::MAX; N];
     let columns = enters.as_chunks::<N>().0.iter().zip(leaves.as_chunks::<N>().0);
@@ -156,7 +159,7 @@ fn slide_to_winner<S: Scheme, const N: usize, const STRIDE: usize, const MASKED:
         *sums = group;
     }
     let least = minimum(&least);
-    let disparity = nearest_with::<STRIDE>(least, sums);
+    let disparity = nearest(least, sums);
     let lane = (sums.len() - 1).wrapping_sub(disparity);
     let at = |lane: usize| sums.get(lane).copied().unwrap_or(0);
     let beside = if disparity > 0 && disparity + 1 < candidates {
@@ -171,7 +174,7 @@ fn slide_to_winner<S: Scheme, const N: usize, const STRIDE: usize, const MASKED:
 // Helium: of groups of lanes beside other work the compiler makes single ones, of a function of its own one vector loop.
 #[cfg_attr(stereopsis_vectors, inline(never))]
 #[cfg_attr(not(stereopsis_vectors), inline(always))]
-fn nearest_with<const STRIDE: usize>(least: u8, sums: &[u8]) -> usize {
+pub(in crate::matching) fn nearest_with<const STRIDE: usize>(least: u8, sums: &[u8]) -> usize {
     match sums.first_chunk::<STRIDE>() {
         Some(sums) if STRIDE > 0 => nearest_among(least, sums, const { &disparities::<STRIDE>() }),
         _ => nearest_among(least, sums, const { &disparities::<256>() }.get(256 - sums.len()..).unwrap_or(&[])),

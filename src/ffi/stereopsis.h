@@ -31,7 +31,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_FAST_BYTES(width, disparities) \
-  ((size_t)192 + (size_t)66 * (width) + (size_t)14 * (disparities) + \
+  ((size_t)192 + (size_t)66 * (width) + (size_t)13 * (disparities) + \
    (size_t)1 * (width) * (disparities))
 
 /**
@@ -39,7 +39,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_BLOCK_BYTES(width, disparities) \
-  ((size_t)192 + (size_t)70 * (width) + (size_t)14 * (disparities) + \
+  ((size_t)192 + (size_t)70 * (width) + (size_t)13 * (disparities) + \
    (size_t)1 * (width) * (disparities))
 
 
@@ -310,7 +310,7 @@ typedef struct stereopsis_config {
   /**
    * Speckle: answers with fewer of their surface on a cross around them are dropped; with 0 none is.
    */
-  uint16_t speckle_pixels;
+  uint8_t speckle_pixels;
 } stereopsis_config;
 
 /**

@@ -77,6 +77,7 @@ impl<S: Scheme> Stages<'_, S> {
     }
 
     /// Moves the window; without a `row`, costs are only gathered.
+    #[inline(always)]
     fn select_winners(&mut self, bottom: usize, enters: bool, row: Option<usize>) {
         let (width, config) = (self.width, self.config);
         let leaves = bottom.checked_sub(2 * S::RADIUS_Y + 1);

@@ -144,7 +144,10 @@ impl Kernel {
     }
 
     /// Moves the window to the next row and selects its winners, unless the row is only gathered (`select` is `None`).
-    #[inline]
+    // Where there is one kernel it is inlined, so that the compiler sees which numbers of candidates can be asked for, and
+    // a firmware is linked without the code for others.
+    #[cfg_attr(any(target_pointer_width = "64", stereopsis_vectors), inline)]
+    #[cfg_attr(not(any(target_pointer_width = "64", stereopsis_vectors)), inline(always))]
     pub(super) fn row<S: Scheme>(self, work: RowWork<'_>, select: Option<Select<'_>>) {
         match self {
             #[cfg(not(stereopsis_vectors))]
@@ -233,6 +236,7 @@ impl Winner {
 
     /// A winner over the smallest disparity, with the costs one below and one above. Where one of these is no candidate,
     /// the other stands for it; where none is, the winner does.
+    #[cfg(not(stereopsis_vectors))]
     #[inline(always)]
     pub fn new(cost: u8, disparity: u8, (below, above): (u8, u8)) -> Self {
         Self(u32::from_le_bytes([below, cost, above, disparity]))

@@ -81,6 +81,8 @@ pub(super) fn with_more_before<'a>(
     let outside = out.len().min(stride + min_disparity);
     let (before, inside) = out.split_at_mut_checked(outside).unwrap_or_default();
     before.fill(right.first().copied().unwrap_or(0));
-    inside.copy_from_slice(right.get(..inside.len()).unwrap_or(&[]));
+    for (inside, code) in inside.iter_mut().zip(right) {
+        *inside = *code;
+    }
     RowCodes { left, right: out.get(1..).unwrap_or(&[]) }
 }

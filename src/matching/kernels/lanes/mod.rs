@@ -165,7 +165,9 @@ fn slide_to_winner<S: Scheme, const N: usize, const MASKED: bool>(
     let beside = if disparity > 0 && disparity + 1 < candidates {
         (at(lane + 1), at(lane.wrapping_sub(1)))
     } else {
-        beside_at_the_end(disparity, candidates, least, sums)
+        // At an end the one beside it that there is; beside an only candidate, itself.
+        let one = at(if disparity > 0 { lane + 1 } else { lane.wrapping_sub(usize::from(candidates > 1)) });
+        (one, one)
     };
     Found { disparity: disparity as u8, cost: least, beside }
 }
@@ -194,21 +196,6 @@ fn nearest_among(least: u8, sums: &[u8], disparities: &[u8]) -> usize {
 #[inline(always)]
 fn minimum<const N: usize>(lanes: &[u8; N]) -> u8 {
     lanes.iter().fold(u8::MAX, |least, &lane| least.min(lane))
-}
-
-/// The costs beside a winner that lacks a candidate on one side or both, for [`super::Winner::new`].
-#[inline(never)]
-fn beside_at_the_end(disparity: usize, candidates: usize, least: u8, sums: &[u8]) -> (u8, u8) {
-    let of = |disparity: usize| (sums.len() - 1).checked_sub(disparity).and_then(|lane| sums.get(lane));
-    let one = if disparity > 0 {
-        of(disparity - 1)
-    } else if candidates > 1 {
-        of(1)
-    } else {
-        None
-    };
-    let one = one.copied().unwrap_or(least);
-    (one, one)
 }
 
 /// The least cost of the candidates over one px beside the winner; `u8::MAX` where there is none.

@@ -64,6 +64,9 @@ where
 {
     let width = rows.iter().fold(out.len(), |w, row| w.min(row.len()));
     let Some(out) = out.get_mut(..width) else { return };
+    // All of one length, which is asked about once.
+    let [Some(a), Some(b), Some(c), Some(d), Some(e)] = rows.map(|row| row.get(..width)) else { return };
+    let rows = [a, b, c, d, e];
     let inner = width.saturating_sub(2 * REACH);
     // The inner columns in groups, all bits of a group at once: comparisons without a branch, on whole registers. The
     // last group is moved back to end with the line.

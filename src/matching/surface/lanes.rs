@@ -58,7 +58,7 @@ fn averaged<const RADIUS: usize>(around: &[u16; LANES + ROOM], step: Disparity, 
     // All ones as long as the pair belongs to the surface.
     let mut joined = [u16::MAX; LANES];
     let (mut sum, mut reciprocal) = ([0u16; LANES], [0u16; LANES]);
-    for reach in 1..=if RADIUS > 0 { RADIUS } else { REACH } {
+    for reach in 1..if RADIUS > 0 { RADIUS } else { REACH } + 1 {
         if RADIUS == 0 && reach > radius {
             break;
         }

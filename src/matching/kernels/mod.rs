@@ -208,6 +208,12 @@ impl<'a> Unique<'a> {
         }
     }
 
+    /// Whether any pixel is flagged.
+    #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+    pub fn is_asked(&self) -> bool {
+        !self.flags.is_empty()
+    }
+
     /// Flags the pixels from column `begin` on, one after the other: it is given the winner's cost, and what finds the least cost
     /// of the candidates over one px beside it, `u8::MAX` where there is none, which is asked where it is wanted.
     #[inline(always)]

@@ -83,6 +83,7 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
                 (*below, *cost, *above, *disparity) = (winner.beside.0, winner.cost, winner.beside.1, winner.disparity);
             }
         });
+    let judged = unique.is_asked();
     let mut judge = unique.starting_at(begin);
     sums.fill(0);
     // The column that leaves at the first pixel is among them.
@@ -103,8 +104,17 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
         judge(winner.cost, &mut || best_of_the_rest::<N>(usize::from(winner.disparity), mask, sums));
     }
     let mask = MASKS.get(256..256 + stride).unwrap_or(&[]);
+    let next = |enters: &[u8], leaves: &[u8], sums: &mut [u8]| {
+        slide_to_winner::<S, N, false>(sums, enters, leaves, stride, mask, &nearest)
+    };
+    if !judged {
+        for (mut put, (enters, leaves)) in winners.zip(columns) {
+            put(next(enters, leaves, sums));
+        }
+        return;
+    }
     for (mut put, (enters, leaves)) in winners.zip(columns) {
-        let winner = slide_to_winner::<S, N, false>(sums, enters, leaves, stride, mask, &nearest);
+        let winner = next(enters, leaves, sums);
         put(winner);
         judge(winner.cost, &mut || best_of_the_rest::<N>(usize::from(winner.disparity), mask, sums));
     }

@@ -11,12 +11,12 @@ use crate::units::PixelFlags;
 /// Offers every winner to its partner, each by its cost above 8 bits of its disparity, and that disparity. The first of equal
 /// costs stays. The first winner is that of the first column that has a candidate, whose partner is the first right column.
 #[inline(always)]
-pub(super) fn offer(winners: impl Iterator<Item = (u16, u8)>, right: &mut [u16]) {
+pub(super) fn offer(winners: impl Iterator<Item = (u32, u8)>, right: &mut [u16]) {
     right.fill(u16::MAX);
     for (x, (key, disparity)) in winners.enumerate() {
         if let Some(kept) = right.get_mut(x.wrapping_sub(usize::from(disparity))) {
             // Of one partner, those who come later are farther away: their disparity is larger.
-            *kept = (*kept).min(key);
+            *kept = key.min(u32::from(*kept)) as u16;
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::units::{Disparity, PixelFlags};
 #[inline(never)]
 pub(super) fn keep(winners: &WinnerRows<'_>, right: &mut [u16], kept: &mut [u8]) {
     let (costs, disparities) = (&*winners.costs, &*winners.disparities);
-    let keys = costs.iter().zip(disparities).map(|(&cost, &d)| (u16::from(cost) << 8 | u16::from(d), d));
+    let keys = costs.iter().zip(disparities).map(|(&cost, &d)| (u32::from(cost) << 8 | u32::from(d), d));
     consistency::offer(keys, right);
     for (x, (kept, &disparity)) in kept.iter_mut().zip(disparities).enumerate() {
         *kept = consistency::kept(x, disparity, right);

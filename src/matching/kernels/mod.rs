@@ -277,8 +277,8 @@ impl Winner {
 
     /// Its cost above 8 bits of [`Self::disparity`].
     #[inline(always)]
-    pub fn key(self) -> u16 {
-        (self.0 & 0xff00 | self.0 >> 24) as u16
+    pub fn key(self) -> u32 {
+        self.0 & 0xff00 | self.0 >> 24
     }
 
     /// How much more the disparities one below and one above cost.

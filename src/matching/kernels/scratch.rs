@@ -1,7 +1,9 @@
 //! Room to work in, for every kernel and every kind of lane.
 #![allow(unsafe_code)]
 
-use super::{OUTSIDE, Winner};
+use super::OUTSIDE;
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+use super::Winner;
 
 /// What a kernel works with while a row lasts. No kernel finds anything in it from the row before.
 ///

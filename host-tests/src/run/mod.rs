@@ -2,7 +2,7 @@
 //!
 //! In: any [`StereoSource`] of 8-bit grey lines. Out: a whole [`DisparityMap`], or the times of frames.
 //!
-//! * [`Method`]: the methods of this build.
+//! * [`Method`]: the methods of this build. [`Way`]: a method on a kernel.
 //! * [`run`]: one frame into a map. [`time_frames`]: several, timed.
 //! * [`MemoryPair`]: a stereo source over two pictures in memory.
 
@@ -66,9 +66,32 @@ pub struct Outcome {
     pub time_ms: f64,
 }
 
+/// What matches, and on what.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Way {
+    /// The method.
+    pub method: Method,
+    /// The kernel; `None` is the fastest that this processor runs.
+    pub kernel: Option<Kernel>,
+}
+
+impl From<Method> for Way {
+    fn from(method: Method) -> Self {
+        Self { method, kernel: None }
+    }
+}
+
+impl Way {
+    fn start<S: Scheme>(self, pipeline: &mut Host<S>, config: &Config) -> Result<(), ConfigError> {
+        // The pipeline may have run on another one before.
+        pipeline.set_kernel(self.kernel.unwrap_or_else(Kernel::detect));
+        pipeline.start(config)
+    }
+}
+
 /// One frame of `camera` into a map; `progress` is told how many rows are out after each.
 pub fn run<C: StereoSource<Error: fmt::Display>>(
-    method: Method,
+    way: impl Into<Way>,
     config: &Config,
     camera: &mut C,
     mut progress: impl FnMut(u16),
@@ -84,13 +107,15 @@ pub fn run<C: StereoSource<Error: fmt::Display>>(
         }
         progress(row.index() + 1);
     };
+    let way = way.into();
     fn frame<S: Scheme, C: StereoSource<Error: fmt::Display>>(
+        way: Way,
         pipeline: &mut Host<S>,
         config: &Config,
         camera: &mut C,
         keep: &mut dyn FnMut(Row<'_>),
     ) -> Result<(Kernel, f64), RunError<C::Error>> {
-        pipeline.start(config).map_err(RunError::Config)?;
+        way.start(pipeline, config).map_err(RunError::Config)?;
         pipeline.begin_frame(camera)?;
         let mut time = Duration::ZERO;
         loop {
@@ -103,9 +128,9 @@ pub fn run<C: StereoSource<Error: fmt::Display>>(
             }
         }
     }
-    let (kernel, time_ms) = match method {
-        Method::Fast => frame(&mut *hold(&FAST), config, camera, &mut keep)?,
-        Method::Block => frame(&mut *hold(&BLOCK), config, camera, &mut keep)?,
+    let (kernel, time_ms) = match way.method {
+        Method::Fast => frame(way, &mut *hold(&FAST), config, camera, &mut keep)?,
+        Method::Block => frame(way, &mut *hold(&BLOCK), config, camera, &mut keep)?,
     };
     Ok(Outcome { map, kernel, time_ms })
 }
@@ -115,18 +140,20 @@ pub fn run<C: StereoSource<Error: fmt::Display>>(
 /// A frame's time is that of everything between asking the camera for it and its last row: with a [`MemoryPair`] that
 /// is copying the lines, census, matching and all checks.
 pub fn time_frames<C: StereoSource<Error: fmt::Display>>(
-    method: Method,
+    way: impl Into<Way>,
     config: &Config,
     camera: &mut C,
     frames: usize,
 ) -> Result<(Vec<f64>, Kernel), RunError<C::Error>> {
+    let way = way.into();
     fn time<S: Scheme, C: StereoSource<Error: fmt::Display>>(
+        way: Way,
         pipeline: &mut Host<S>,
         config: &Config,
         camera: &mut C,
         frames: usize,
     ) -> Result<(Vec<f64>, Kernel), RunError<C::Error>> {
-        pipeline.start(config).map_err(RunError::Config)?;
+        way.start(pipeline, config).map_err(RunError::Config)?;
         let mut times_ms = Vec::with_capacity(frames);
         for frame in 0..=frames {
             let start = Instant::now();
@@ -140,8 +167,8 @@ pub fn time_frames<C: StereoSource<Error: fmt::Display>>(
         }
         Ok((times_ms, pipeline.kernel()))
     }
-    match method {
-        Method::Fast => time(&mut *hold(&FAST), config, camera, frames),
-        Method::Block => time(&mut *hold(&BLOCK), config, camera, frames),
+    match way.method {
+        Method::Fast => time(way, &mut *hold(&FAST), config, camera, frames),
+        Method::Block => time(way, &mut *hold(&BLOCK), config, camera, frames),
     }
 }

@@ -1,6 +1,6 @@
 //! What cannot be done ends with status 1, one line that names the culprit, and nothing left behind.
 
-use super::support::{Bench, HEIGHT, WIDTH, calibration, encode, pair, stereo, text};
+use super::support::{Bench, HEIGHT, WIDTH, calibration, encode, pair, program, stereo, text};
 use image::{GrayImage, ImageFormat};
 
 const FORMATS: [(ImageFormat, &str); 4] =
@@ -66,6 +66,9 @@ fn bad_options() {
         bench.refused(&bench.arguments(&[("--method", method)]), "not in this build; the methods of this build are");
     }
     bench.refused(&bench.arguments(&[("--filter", "soft")]), "dense, default and strict");
+    bench.refused(&bench.arguments(&[("--kernel", "abacus")]), "--kernel");
+    let run = program().args(bench.arguments(&[])).env("STEREO_KERNEL", "abacus").output().expect("the program starts");
+    bench.is_refusal(&run, "STEREO_KERNEL", "a kernel in the environment");
     bench.refused(&bench.arguments(&[("--colour", "red")]), "--colour");
     for option in ["--left", "--right", "--disparities", "--out"] {
         let mut arguments = bench.arguments(&[]);

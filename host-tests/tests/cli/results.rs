@@ -1,13 +1,13 @@
 //! The files of the contract, decoded and compared with what the library says in this process.
 
-use super::support::{Bench, FAR, HEIGHT, NEAR, WIDTH, calibration, encode, names, pair, stereo, text};
+use super::support::{Bench, FAR, HEIGHT, NEAR, WIDTH, calibration, encode, names, pair, program, stereo, text};
 use image::{DynamicImage, ImageFormat};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::RectifiedRig;
-use stereopsis::matching::{Checks, Config};
+use stereopsis::matching::{Checks, Config, Kernel};
 use stereopsis::units::PixelFlags;
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::pfm::{self, FloatMap};
@@ -33,6 +33,27 @@ fn picture(path: &Path) -> DynamicImage {
 
 fn json(path: &Path) -> Value {
     serde_json::from_slice(&fs::read(path).expect("a result")).expect("JSON")
+}
+
+#[test]
+fn every_kernel_writes_the_same() {
+    let bench = Bench::new();
+    let out = bench.path("out");
+    for method in ["fast", "block"] {
+        bench.matched(&[("--method", method)]);
+        let [expected, flags] = ["disparity.pfm", "flags.png"].map(|file| fs::read(out.join(file)).expect("a result"));
+        for kernel in Kernel::available().map(Kernel::name) {
+            let by_option = stereo(bench.arguments(&[("--method", method), ("--kernel", kernel)]));
+            let by_variable =
+                program().args(bench.arguments(&[("--method", method)])).env("STEREO_KERNEL", kernel).output();
+            for run in [by_option, by_variable.expect("the program starts")] {
+                assert!(run.status.success(), "{kernel}: {}", text(&run.stderr));
+                assert_eq!(json(&out.join("summary.json"))["kernel"], kernel);
+                assert!(fs::read(out.join("disparity.pfm")).expect("a result") == expected, "{method} on {kernel}");
+                assert!(fs::read(out.join("flags.png")).expect("a result") == flags, "{method} on {kernel}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -13,9 +13,11 @@ pub const HEIGHT: u32 = 48;
 pub const FAR: u32 = 5;
 pub const NEAR: u32 = 12;
 
-/// The built program.
+/// The built program, without what the caller's environment asks of it.
 pub fn program() -> Command {
-    Command::new(env!("CARGO_BIN_EXE_stereo"))
+    let mut program = Command::new(env!("CARGO_BIN_EXE_stereo"));
+    program.env_remove("STEREO_KERNEL");
+    program
 }
 
 /// Runs the program to its end.

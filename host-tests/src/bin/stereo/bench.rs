@@ -23,7 +23,7 @@ pub fn run(args: &BenchArgs) -> Result<(), Failure> {
     let config = input::config(&args.range, args.way.filter.checks, pair.width, pair.height)?;
     // Files and the conversion to grey are left out of the times.
     let mut camera = MemoryPair::record(&mut pair.camera)?;
-    let (frame_ms, kernel) = time_frames(args.way.method, &config, &mut camera, usize::from(args.repeat))?;
+    let (frame_ms, kernel) = time_frames(args.way.way(), &config, &mut camera, usize::from(args.repeat))?;
     let times = Times {
         frame_ms,
         kernel: kernel.name(),

@@ -5,9 +5,9 @@ use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
 use std::ffi::OsString;
 use std::path::PathBuf;
-use stereopsis::matching::{Checks, Config};
+use stereopsis::matching::{Checks, Config, Kernel};
 use stereopsis_host::command_line::usage_line;
-use stereopsis_host::run::Method;
+use stereopsis_host::run::{Method, Way};
 
 /// What is told to one who names another command.
 const COMMANDS: &str = "the commands are demo, match and bench";
@@ -119,6 +119,16 @@ pub struct WayArgs {
     /// dense (an answer wherever there is a candidate), default, or strict (sure answers only)
     #[arg(long, value_name = "FILTER", default_value = "default", value_parser = filter)]
     pub filter: Filter,
+    /// The kernel that does the work, by default the fastest of this processor; all give the same bits
+    #[arg(long, value_name = "KERNEL", env = "STEREO_KERNEL", value_parser = kernel)]
+    pub kernel: Option<Kernel>,
+}
+
+impl WayArgs {
+    /// The method on the kernel.
+    pub fn way(&self) -> Way {
+        Way { method: self.method, kernel: self.kernel }
+    }
 }
 
 /// A named set of checks.
@@ -132,6 +142,13 @@ fn filter(text: &str) -> Result<Filter, &'static str> {
     let all = [("dense", Checks::DENSE), ("default", Checks::DEFAULT), ("strict", Checks::STRICT)];
     let found = all.into_iter().find(|(name, _)| *name == text);
     found.map(|(name, checks)| Filter { name, checks }).ok_or("the filters are dense, default and strict")
+}
+
+fn kernel(text: &str) -> Result<Kernel, String> {
+    Kernel::available().find(|kernel| kernel.name() == text).ok_or_else(|| {
+        let names: Vec<_> = Kernel::available().map(Kernel::name).collect();
+        format!("this processor's are {}; STEREO_KERNEL names one too", names.join(", "))
+    })
 }
 
 fn method(text: &str) -> Result<Method, String> {

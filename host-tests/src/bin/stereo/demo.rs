@@ -30,7 +30,7 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
     let config = input::config(&range, args.way.filter.checks, scene.width(), scene.height())?;
     let no_pair = || Failure::new("the scene's two pictures differ in size");
     let mut camera = MemoryPair::new(config.width, left.to_vec(), right.to_vec()).ok_or_else(no_pair)?;
-    let outcome = run::run(args.way.method, &config, &mut camera, |_| {})?;
+    let outcome = run::run(args.way.way(), &config, &mut camera, |_| {})?;
     let scale = DepthScale::new(&scene.rig())?;
 
     let accuracy = Accuracy::of(&outcome.map, &truth, &scale);

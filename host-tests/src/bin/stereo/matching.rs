@@ -22,7 +22,7 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     Staging::probe(&args.out)?;
 
     let progress = Progress::over(&config);
-    let outcome = run::run(args.way.method, &config, &mut pair.camera, |rows| progress.rows(rows))?;
+    let outcome = run::run(args.way.way(), &config, &mut pair.camera, |rows| progress.rows(rows))?;
     drop(progress);
 
     let summary = Summary::new(args.way.method, args.way.filter.name, &config, &outcome, scale.as_ref(), None);

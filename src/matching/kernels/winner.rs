@@ -1,0 +1,133 @@
+//! What a kernel gives for each pixel.
+
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+use super::scratch::bytes_of;
+use crate::units::PixelFlags;
+
+/// What is selected, and where to.
+pub(in crate::matching) struct Select<'a> {
+    /// Disparities searched.
+    pub disparities: usize,
+    /// The best disparity of each pixel; left of the smallest disparity they mean nothing. Kernels in vectors leave them as
+    /// [`WinnerRows`].
+    pub winners: &'a mut [Winner],
+    /// What is asked of the others.
+    pub unique: Unique<'a>,
+}
+
+/// The flags of pixels whose second best is too near: [`Checks::uniqueness_percent`](crate::matching::Checks::uniqueness_percent).
+pub(in crate::matching) struct Unique<'a> {
+    percent: u8,
+    flags: &'a mut [PixelFlags],
+}
+
+impl<'a> Unique<'a> {
+    /// Flags the pixels of a row, none of them where no `percent` is asked for.
+    pub fn new(percent: Option<u8>, flags: &'a mut [PixelFlags]) -> Self {
+        match percent {
+            Some(percent) => Self { percent, flags },
+            None => Self { percent: 0, flags: &mut [] },
+        }
+    }
+
+    /// Whether any pixel is flagged.
+    #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+    pub fn is_asked(&self) -> bool {
+        !self.flags.is_empty()
+    }
+
+    /// Flags the pixels from column `begin` on, one after the other: it is given the winner's cost, and what finds the least cost
+    /// of the candidates over one px beside it, `u8::MAX` where there is none, which is asked where it is wanted.
+    #[inline(always)]
+    pub fn starting_at(self, begin: usize) -> impl FnMut(u8, &mut dyn FnMut() -> u8) {
+        let share = 100 - u32::from(self.percent.min(99));
+        let mut flags = self.flags.get_mut(begin..).unwrap_or_default().iter_mut();
+        move |cost, second| {
+            if let Some(flags) = flags.next() {
+                let second = second();
+                let ambiguous = second < u8::MAX && u32::from(second) * share <= u32::from(cost) * 100;
+                *flags = flags.union(PixelFlags::AMBIGUOUS.when(ambiguous));
+            }
+        }
+    }
+}
+
+/// The best disparity of a pixel, in a word: from the lowest byte up the cost below it, its own, the cost above it, and
+/// the disparity.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(transparent)]
+pub struct Winner(u32);
+
+impl Winner {
+    /// Where there is no candidate.
+    pub const NONE: Self = Self(0);
+
+    /// A winner over the smallest disparity, with the costs one below and one above. Where one of these is no candidate,
+    /// the other stands for it; where none is, the winner does.
+    #[cfg(not(stereopsis_vectors))]
+    #[inline(always)]
+    pub fn new(cost: u8, disparity: u8, (below, above): (u8, u8)) -> Self {
+        Self(u32::from_le_bytes([below, cost, above, disparity]))
+    }
+
+    /// The costs one below and one above.
+    #[cfg(not(stereopsis_vectors))]
+    #[inline(always)]
+    pub fn beside(self) -> (u8, u8) {
+        (self.0 as u8, (self.0 >> 16) as u8)
+    }
+
+    /// The same winner with other costs beside it.
+    #[cfg(not(stereopsis_vectors))]
+    #[inline(always)]
+    pub fn with_beside(self, beside: (u8, u8)) -> Self {
+        Self::new(self.cost(), self.disparity() as u8, beside)
+    }
+
+    /// Its disparity over the smallest one searched: of those with the least cost the smallest. Means nothing in columns
+    /// without a candidate, as all the rest.
+    #[inline(always)]
+    pub fn disparity(self) -> u32 {
+        self.0 >> 24
+    }
+
+    /// Its cost.
+    #[inline(always)]
+    pub fn cost(self) -> u8 {
+        (self.0 >> 8) as u8
+    }
+
+    /// Its cost above 8 bits of [`Self::disparity`].
+    #[inline(always)]
+    pub fn key(self) -> u32 {
+        self.0 & 0xff00 | self.0 >> 24
+    }
+
+    /// How much more the disparities one below and one above cost.
+    #[inline(always)]
+    pub fn rises(self) -> (u32, u32) {
+        // The winner costs least: nothing wraps.
+        let cost = u32::from(self.cost());
+        ((self.0 & 0xff).wrapping_sub(cost), (self.0 >> 16 & 0xff).wrapping_sub(cost))
+    }
+}
+
+/// Winners as the kernels in vectors leave them: a row of bytes for each part, one after the other in the same memory.
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+pub(in crate::matching) struct WinnerRows<'a> {
+    pub below: &'a mut [u8],
+    pub costs: &'a mut [u8],
+    pub above: &'a mut [u8],
+    pub disparities: &'a mut [u8],
+}
+
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+impl<'a> WinnerRows<'a> {
+    /// The rows from column `begin` on.
+    pub fn of(winners: &'a mut [Winner], begin: usize) -> Self {
+        let width = winners.len().max(1);
+        let mut rows = bytes_of(winners).chunks_exact_mut(width).map(|row| row.get_mut(begin..).unwrap_or_default());
+        let mut row = || rows.next().unwrap_or_default();
+        Self { below: row(), costs: row(), above: row(), disparities: row() }
+    }
+}

@@ -6,14 +6,15 @@
 //! * `c` tests the C interface alone, one step of `test`.
 //! * `header` writes the header of the C interface anew, or checks it.
 //!
-//! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`], [`c`] and
-//! [`readme`] are three of them.
+//! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`], [`c`],
+//! [`arm64`] and [`readme`] are four of them.
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 use stereopsis_host::command_line::{one_line, usage_line};
 
+mod arm64;
 mod c;
 mod elf;
 mod firmware;

@@ -6,13 +6,21 @@ use crate::steps::{Failure, Outcome, command, output_of, run};
 fn packages_with(program: &str) -> Vec<&str> {
     match program {
         "qemu-system-riscv32" => vec!["qemu-system-misc", "qemu-system-riscv"],
+        "qemu-aarch64" => vec!["qemu-user"],
         "arm-none-eabi-gcc" => vec!["gcc-arm-none-eabi"],
+        "aarch64-linux-gnu-gcc" => vec!["gcc-aarch64-linux-gnu"],
         same => vec![same],
     }
 }
 
-/// The C library of bare Arm boards: no program, and of no use without the compiler.
-const ARM_LIBRARY: &str = "libnewlib-arm-none-eabi";
+/// The C library that a cross compiler needs: no program, and of no use without the compiler.
+fn library_of(program: &str) -> Option<&'static str> {
+    match program {
+        "arm-none-eabi-gcc" => Some("libnewlib-arm-none-eabi"),
+        "aarch64-linux-gnu-gcc" => Some("libc6-dev-arm64-cross"),
+        _ => None,
+    }
+}
 
 /// Installs those of the programs that are not there.
 pub fn install(programs: &[&str]) -> Outcome {
@@ -25,12 +33,13 @@ pub fn install(programs: &[&str]) -> Outcome {
     let install = |package: &str| apt(&["install", "-y", "--no-install-recommends", package]).is_ok();
     for program in missing {
         let found = updated && packages_with(program).into_iter().any(|package| install(package) && runs(program));
-        if found && (is_there(program) || install(ARM_LIBRARY) && is_there(program)) {
+        let library = library_of(program);
+        if found && (is_there(program) || library.is_some_and(install) && is_there(program)) {
             continue;
         }
         let mut names = packages_with(program).join(" or ");
-        if program == "arm-none-eabi-gcc" {
-            names = format!("{names} {ARM_LIBRARY}");
+        if let Some(library) = library {
+            names = format!("{names} {library}");
         }
         let advice = format!("{program} is not installed: install it (Debian, Ubuntu: apt-get install {names})");
         return Err(Failure::new(advice));
@@ -56,5 +65,5 @@ fn is_there(program: &str) -> bool {
         let path = output_of(&mut command(program, &["-print-file-name=libc.a"]));
         path.is_ok_and(|path| path.contains('/'))
     };
-    runs(program) && (program != "arm-none-eabi-gcc" || has_library())
+    runs(program) && (library_of(program).is_none() || has_library())
 }

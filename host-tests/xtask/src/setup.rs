@@ -1,5 +1,6 @@
 //! Gets the tools that the tests need: targets and components by rustup, QEMU and what C needs by apt-get.
 
+use crate::arm64;
 use crate::packages;
 use crate::steps::{Failure, Outcome, command, output_of, root, run};
 use std::fs;
@@ -28,7 +29,12 @@ pub fn run_all() -> Outcome {
     targets(&TARGETS)?;
     components()?;
     toolchain(&rust_version()?)?;
-    packages::install(&[QEMU_ARM, QEMU_RISCV, "arm-none-eabi-gcc", "cmake", "make", "gcc", "g++"])
+    packages::install(&[QEMU_ARM, QEMU_RISCV, "arm-none-eabi-gcc", "cmake", "make", "gcc", "g++"])?;
+    if arm64::IS_HOST {
+        return Ok(());
+    }
+    targets(&[arm64::TARGET])?;
+    packages::install(&arm64::PROGRAMS)
 }
 
 /// What firmware for these targets needs.

@@ -1,5 +1,6 @@
 //! `cargo xtask test`: every check of the repository, one step after another.
 
+use crate::arm64;
 use crate::c;
 use crate::firmware;
 use crate::setup::{self, TARGETS};
@@ -22,6 +23,9 @@ pub fn run() -> Outcome {
     steps.step("format", format)?;
     steps.step("clippy", clippy)?;
     steps.step("tests", || tests(data.is_some()))?;
+    if !arm64::IS_HOST {
+        steps.step("64-bit Arm", arm64::run)?;
+    }
     steps.step("documentation", documentation)?;
     steps.step("cross builds", cross_builds)?;
     let version = setup::rust_version()?;

@@ -1,6 +1,7 @@
 //! Whole maps: what the core says row by row, kept for files and figures.
 
 use stereopsis::depth::DepthScale;
+use stereopsis::matching::Row;
 use stereopsis::units::{Disparity, PixelFlags};
 
 /// A disparity for each pixel of the left image, row by row, with its flags and its uncertainty.
@@ -29,6 +30,28 @@ impl DisparityMap {
             flags: vec![PixelFlags::CLEAR; pixels],
             sigma_px: vec![f32::NAN; pixels],
         }
+    }
+
+    /// Keeps what the core says of row `y`.
+    ///
+    /// # Panics
+    ///
+    /// When the map has no such row.
+    pub fn put(&mut self, y: usize, row: Row<'_>) {
+        let places = y * self.width..(y + 1) * self.width;
+        self.disparity[places.clone()].copy_from_slice(row.disparities());
+        self.flags[places.clone()].copy_from_slice(row.flags());
+        for (x, sigma) in self.sigma_px[places].iter_mut().enumerate() {
+            *sigma = row.sigma_px(x).unwrap_or(f32::NAN);
+        }
+    }
+
+    /// Goes on with the rows of another map of the same width.
+    pub fn append(&mut self, rows: Self) {
+        self.height += rows.height;
+        self.disparity.extend(rows.disparity);
+        self.flags.extend(rows.flags);
+        self.sigma_px.extend(rows.sigma_px);
     }
 
     /// The disparities in px; `f32::INFINITY` where there is no answer.

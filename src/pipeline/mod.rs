@@ -5,6 +5,10 @@
 //!
 //! * [`Pipeline`]: the memory and the order of the stages.
 //! * [`PipelineError`], [`PushError`]: why there is no row, when lines are pulled and when they are pushed.
+//!
+//! Two cores share a frame as two pipelines, a band of rows each, and every row is bit-equal to that of one: a band sees
+//! [`Pipeline::LATENCY`] lines more than it gives rows below, and above as many and one more for each answer that the
+//! speckle filter asks for ([`Checks::speckle_pixels`](crate::matching::Checks::speckle_pixels)).
 
 mod error;
 mod live;

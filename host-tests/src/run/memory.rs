@@ -1,5 +1,6 @@
 //! Pictures in memory as a camera.
 
+use std::ops::Range;
 use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource};
 
 /// Two pictures in memory as a stereo source: nothing but copying a line stands between the caller and the matcher.
@@ -33,6 +34,19 @@ impl MemoryPair {
         let whole = left.len() == rows * usize::from(width) && right.len() == left.len();
         let format = LineFormat { width, height, pixel: PixelFormat::Grey8 };
         whole.then_some(Self { format, left, right, frames: 0, row: height })
+    }
+
+    /// Some rows of both pictures.
+    ///
+    /// # Panics
+    ///
+    /// When there are no such rows.
+    pub fn rows(&self, rows: Range<usize>) -> Self {
+        let line = self.format.line_bytes();
+        let bytes = rows.start * line..rows.end * line;
+        let format = LineFormat { height: rows.len() as u16, ..self.format };
+        let (left, right) = (self.left[bytes.clone()].to_vec(), self.right[bytes].to_vec());
+        Self { format, left, right, frames: 0, row: format.height }
     }
 }
 

@@ -2,16 +2,19 @@
 //!
 //! In: any [`StereoSource`] of 8-bit grey lines. Out: a whole [`DisparityMap`], or the times of frames.
 //!
-//! * [`Method`]: the methods of this build. [`Way`]: a method on a kernel.
+//! * [`Method`]: the methods of this build. [`Way`]: a method, on a kernel, in so many threads.
 //! * [`run`]: one frame into a map. [`time_frames`]: several, timed.
+//! * `bands`: a frame in bands, one thread each.
 //! * [`MemoryPair`]: a stereo source over two pictures in memory.
 
+mod bands;
 mod memory;
 mod method;
 
 pub use memory::MemoryPair;
 pub use method::{Method, UnknownMethod};
 
+use self::bands::Bands;
 use crate::map::DisparityMap;
 use std::fmt;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -73,11 +76,13 @@ pub struct Way {
     pub method: Method,
     /// The kernel; `None` is the fastest that this processor runs.
     pub kernel: Option<Kernel>,
+    /// Threads, each with a band of the frame.
+    pub threads: u16,
 }
 
 impl From<Method> for Way {
     fn from(method: Method) -> Self {
-        Self { method, kernel: None }
+        Self { method, kernel: None, threads: 1 }
     }
 }
 
@@ -96,43 +101,45 @@ pub fn run<C: StereoSource<Error: fmt::Display>>(
     camera: &mut C,
     mut progress: impl FnMut(u16),
 ) -> Result<Outcome, RunError<C::Error>> {
-    let width = usize::from(config.width);
-    let mut map = DisparityMap::new(width, usize::from(config.height));
+    let way = way.into();
+    if way.threads > 1 {
+        let pair = MemoryPair::record(camera).map_err(PipelineError::from)?;
+        let outcome = Bands::new(way, config, &pair).run().map_err(RunError::Config)?;
+        progress(config.height);
+        return Ok(outcome);
+    }
+    let mut map = DisparityMap::new(usize::from(config.width), usize::from(config.height));
     let mut keep = |row: Row<'_>| {
-        let first = usize::from(row.index()) * width;
-        map.disparity[first..first + width].copy_from_slice(row.disparities());
-        map.flags[first..first + width].copy_from_slice(row.flags());
-        for (x, sigma) in map.sigma_px[first..first + width].iter_mut().enumerate() {
-            *sigma = row.sigma_px(x).unwrap_or(f32::NAN);
-        }
+        map.put(usize::from(row.index()), row);
         progress(row.index() + 1);
     };
-    let way = way.into();
-    fn frame<S: Scheme, C: StereoSource<Error: fmt::Display>>(
-        way: Way,
-        pipeline: &mut Host<S>,
-        config: &Config,
-        camera: &mut C,
-        keep: &mut dyn FnMut(Row<'_>),
-    ) -> Result<(Kernel, f64), RunError<C::Error>> {
-        way.start(pipeline, config).map_err(RunError::Config)?;
-        pipeline.begin_frame(camera)?;
-        let mut time = Duration::ZERO;
-        loop {
-            let start = Instant::now();
-            let row = pipeline.next_row(camera)?;
-            time += start.elapsed();
-            match row {
-                Some(row) => keep(row),
-                None => return Ok((pipeline.kernel(), time.as_secs_f64() * 1e3)),
-            }
-        }
-    }
     let (kernel, time_ms) = match way.method {
-        Method::Fast => frame(way, &mut *hold(&FAST), config, camera, &mut keep)?,
-        Method::Block => frame(way, &mut *hold(&BLOCK), config, camera, &mut keep)?,
+        Method::Fast => frame(way, &mut hold(&FAST), config, camera, &mut keep)?,
+        Method::Block => frame(way, &mut hold(&BLOCK), config, camera, &mut keep)?,
     };
     Ok(Outcome { map, kernel, time_ms })
+}
+
+/// One frame through a pipeline: the kernel that did it, and its time in milliseconds without that of `keep`.
+fn frame<S: Scheme, C: StereoSource<Error: fmt::Display>>(
+    way: Way,
+    pipeline: &mut Host<S>,
+    config: &Config,
+    camera: &mut C,
+    keep: &mut dyn FnMut(Row<'_>),
+) -> Result<(Kernel, f64), RunError<C::Error>> {
+    way.start(pipeline, config).map_err(RunError::Config)?;
+    pipeline.begin_frame(camera)?;
+    let mut time = Duration::ZERO;
+    loop {
+        let start = Instant::now();
+        let row = pipeline.next_row(camera)?;
+        time += start.elapsed();
+        match row {
+            Some(row) => keep(row),
+            None => return Ok((pipeline.kernel(), time.as_secs_f64() * 1e3)),
+        }
+    }
 }
 
 /// The times of `frames` frames in milliseconds, after one that is left out, and the kernel that they ran on.
@@ -146,6 +153,10 @@ pub fn time_frames<C: StereoSource<Error: fmt::Display>>(
     frames: usize,
 ) -> Result<(Vec<f64>, Kernel), RunError<C::Error>> {
     let way = way.into();
+    if way.threads > 1 {
+        let pair = MemoryPair::record(camera).map_err(PipelineError::from)?;
+        return Bands::new(way, config, &pair).time(frames).map_err(RunError::Config);
+    }
     fn time<S: Scheme, C: StereoSource<Error: fmt::Display>>(
         way: Way,
         pipeline: &mut Host<S>,

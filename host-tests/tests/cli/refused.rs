@@ -66,6 +66,9 @@ fn bad_options() {
         bench.refused(&bench.arguments(&[("--method", method)]), "not in this build; the methods of this build are");
     }
     bench.refused(&bench.arguments(&[("--filter", "soft")]), "dense, default and strict");
+    for threads in ["0", "65", "-1", "two", ""] {
+        bench.refused(&bench.arguments(&[("--threads", threads)]), "--threads");
+    }
     bench.refused(&bench.arguments(&[("--kernel", "abacus")]), "--kernel");
     let run = program().args(bench.arguments(&[])).env("STEREO_KERNEL", "abacus").output().expect("the program starts");
     bench.is_refusal(&run, "STEREO_KERNEL", "a kernel in the environment");

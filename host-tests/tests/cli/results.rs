@@ -36,12 +36,16 @@ fn json(path: &Path) -> Value {
 }
 
 #[test]
-fn every_kernel_writes_the_same() {
+fn every_kernel_and_number_of_threads_writes_the_same() {
     let bench = Bench::new();
     let out = bench.path("out");
     for method in ["fast", "block"] {
         bench.matched(&[("--method", method)]);
         let [expected, flags] = ["disparity.pfm", "flags.png"].map(|file| fs::read(out.join(file)).expect("a result"));
+        let bands = stereo(bench.arguments(&[("--method", method), ("--threads", "3")]));
+        assert!(bands.status.success(), "{}", text(&bands.stderr));
+        assert!(fs::read(out.join("disparity.pfm")).expect("a result") == expected, "{method} in three threads");
+        assert!(fs::read(out.join("flags.png")).expect("a result") == flags, "{method} in three threads");
         for kernel in Kernel::available().map(Kernel::name) {
             let by_option = stereo(bench.arguments(&[("--method", method), ("--kernel", kernel)]));
             let by_variable =

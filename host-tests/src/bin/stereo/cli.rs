@@ -122,12 +122,15 @@ pub struct WayArgs {
     /// The kernel that does the work, by default the fastest of this processor; all give the same bits
     #[arg(long, value_name = "KERNEL", env = "STEREO_KERNEL", value_parser = kernel)]
     pub kernel: Option<Kernel>,
+    /// How many threads share a frame, 1 to 64, each a band of rows; the bits are the same
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = threads, allow_negative_numbers = true)]
+    pub threads: u16,
 }
 
 impl WayArgs {
-    /// The method on the kernel.
+    /// The method, on the kernel, in the threads.
     pub fn way(&self) -> Way {
-        Way { method: self.method, kernel: self.kernel }
+        Way { method: self.method, kernel: self.kernel, threads: self.threads }
     }
 }
 
@@ -160,6 +163,10 @@ fn method(text: &str) -> Result<Method, String> {
 
 fn disparities(text: &str) -> Result<u16, String> {
     whole(text, Config::FEWEST_DISPARITIES, Config::MOST_DISPARITIES)
+}
+
+fn threads(text: &str) -> Result<u16, String> {
+    whole(text, 1, 64)
 }
 
 fn min_disparity(text: &str) -> Result<u16, String> {

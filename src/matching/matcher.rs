@@ -5,6 +5,7 @@ use super::row::{HISTORY, Row};
 use super::scheme::{Around, Codes, Scheme};
 use super::speckle::{BAND, LOOK_AHEAD, Support};
 use super::stages::Stages;
+use super::surface::ROOM;
 use super::texture::Texture;
 use super::{Config, ConfigError};
 use crate::units::{Disparity, PixelFlags};
@@ -100,6 +101,7 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
         assert!(column < 1 << S::COLUMN_BITS && S::COLUMN_BITS <= 8, "a column's sum must fit its bits, and a byte");
         let window = (column >> S::COLUMN_SHIFT) * (2 * S::RADIUS_X + 1);
         assert!(window < u8::MAX as usize, "a window's sum must fit a byte, and be no 255");
+        assert!(3 * D >= 2 * ROOM + size_of::<u32>(), "the scratch must hold a row of answers and what is around it");
         assert!(size_of::<Self>() <= state_bytes::<S>(W, D), "state_bytes must cover the state");
     };
 

@@ -1,9 +1,8 @@
 //! What a method is made of: its census, its window and how much of a column's sum a window's is made of.
 //!
 //! Every window's sum fits a byte. Where the bits under a window are more than that, the lowest digits of its columns'
-//! sums are left out: `block` adds quarters of them, rounded down. On real pairs it so misses a quarter of a percent more
-//! pixels than with whole sums, and answers wrongly less often; the windows take half the registers of a vector, and two
-//! of ten bit planes less.
+//! sums are left out: `block` adds quarters of them, rounded down. On real pairs that hardly shows, while the windows take
+//! half the registers of a vector, and two of ten bit planes less.
 
 #[cfg(not(stereopsis_vectors))]
 use super::kernels::codes;

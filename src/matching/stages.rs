@@ -77,6 +77,7 @@ impl<S: Scheme> Stages<'_, S> {
     }
 
     /// Moves the window; without a `row`, costs are only gathered.
+    // For the reason that [`Kernel::row`] is inlined.
     #[inline(always)]
     fn select_winners(&mut self, bottom: usize, enters: bool, row: Option<usize>) {
         let (width, config) = (self.width, self.config);

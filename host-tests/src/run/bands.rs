@@ -7,7 +7,7 @@
 //! * above, as many again, for windows and for the uncertainty, which looks back at finished rows; and one for each answer
 //!   that the speckle filter asks for, since a surface that goes on through so many rows has them.
 //!
-//! The lines that are worked on twice are the price: 33 above and below with `block` and the default checks.
+//! The lines that are worked on twice are the price: 34 above and 10 below with `block` and the default checks.
 
 use super::{Host, MemoryPair, Method, Outcome, RunError, Way, frame};
 use crate::map::DisparityMap;

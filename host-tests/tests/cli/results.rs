@@ -170,10 +170,11 @@ fn bench_prints_one_json_object() {
     let bench = Bench::new();
     let (left, right) = (bench.path("left.png"), bench.path("right.png"));
     let (left, right) = (left.to_str().expect("UTF-8"), right.to_str().expect("UTF-8"));
-    for (method, name) in [(Method::Fast, "fast"), (Method::Block, "block")] {
-        let fixed =
-            ["bench", "--left", left, "--right", right, "--disparities", "32", "--repeat", "3", "--method", name];
-        let run = stereo(fixed);
+    for (method, name, threads) in
+        [(Method::Fast, "fast", "1"), (Method::Block, "block", "1"), (Method::Block, "block", "3")]
+    {
+        let fixed = ["bench", "--left", left, "--right", right, "--disparities", "32", "--repeat", "3"];
+        let run = stereo(fixed.into_iter().chain(["--method", name, "--threads", threads]));
         assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
         let printed: Value = serde_json::from_slice(&run.stdout).expect("one JSON object");
         let keys: Vec<&String> = printed.as_object().expect("an object").keys().collect();

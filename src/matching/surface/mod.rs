@@ -19,7 +19,7 @@ use super::kernels::Kernel;
 use crate::units::Disparity;
 
 /// Makes every answer of a row the average of up to [`Checks::smoothing_radius`] pairs around it, and gives for each how
-/// many its surface has along the row. `room` has 16 numbers more than there are answers.
+/// many its surface has along the row. `room` has [`ROOM`] numbers more than there are answers.
 pub(super) fn average(
     kernel: Kernel,
     answers: &mut [Disparity],
@@ -39,9 +39,8 @@ pub(super) fn average(
     runs::average(answers, lengths, room, checks.smoothing_radius);
 }
 
-/// Numbers that the lanes want beside one for each answer; the runs want one.
-#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-const ROOM: usize = 2 * Checks::MOST_SMOOTHING as usize;
+/// Numbers that are wanted beside one for each answer: by the lanes, the runs want one.
+pub(super) const ROOM: usize = 2 * Checks::MOST_SMOOTHING as usize;
 
 /// Whether two answers are of one surface; `NONE`s are, and are far from every answer (Config::check).
 #[inline(always)]
@@ -73,7 +72,7 @@ mod tests {
 
     fn averages(row: &[u16]) -> (Vec9<u16>, Vec9<u16>) {
         let mut answers = [Disparity::NONE; 9];
-        let (mut lengths, mut room) = ([0; 9], [0; 9 + 16]);
+        let (mut lengths, mut room) = ([0; 9], [0; 9 + ROOM]);
         for (answer, &raw) in answers.iter_mut().zip(row) {
             *answer = Disparity::from_raw(raw);
         }

@@ -10,7 +10,7 @@
 //! winner x:      least of sum[d] | mask[d], and the last lane that holds it
 //! ```
 //!
-//! The work is the same for every picture: no branch depends on a pixel.
+//! The work is the same for every picture, but for a few instructions where a winner is at an end of the search.
 
 mod columns;
 
@@ -107,6 +107,7 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
     let next = |enters: &[u8], leaves: &[u8], sums: &mut [u8]| {
         slide_to_winner::<S, N, false>(sums, enters, leaves, stride, mask, &nearest)
     };
+    // A loop of its own: most rows are not judged, and the other one keeps what judges them in registers.
     if !judged {
         for (mut put, (enters, leaves)) in winners.zip(columns) {
             put(next(enters, leaves, sums));
@@ -148,7 +149,7 @@ fn moved<S: Scheme, const N: usize>(sums: &[u8; N], enters: &[u8; N], leaves: &[
     group
 }
 
-/// [`slide`], then the first candidate that has the least sum.
+/// [`slide`], then the smallest disparity that has the least sum.
 #[inline(always)]
 fn slide_to_winner<S: Scheme, const N: usize, const MASKED: bool>(
     sums: &mut [u8],

@@ -48,6 +48,11 @@ fn config(width: u16, height: u16, disparities: u16) -> Config {
         smoothing_radius: 0,
         surface_step: 0,
         speckle_pixels: 0,
+        gradient: 0,
+        cost: 0,
+        step: 0,
+        jump: [0; 3],
+        edges: [0; 2],
     };
     // SAFETY: the pointer is to a configuration.
     let status =

@@ -3,7 +3,7 @@
 
 use super::Status;
 use super::instance::either;
-use crate::matching::{self, Checks, ConfigError};
+use crate::matching::{self, Checks, ConfigError, Penalties};
 use crate::units::Disparity;
 
 /// `stereopsis_config_default`: an answer wherever there is a candidate.
@@ -46,6 +46,17 @@ pub struct Config {
     pub surface_step: u16,
     /// Speckle: answers with fewer of their surface on a cross around them are dropped; with 0 none is.
     pub speckle_pixels: u8,
+    /// Methods along paths: gradients are cut off at this many eighths of a grey level per pixel, 1 to 14.
+    pub gradient: u8,
+    /// Methods along paths: a pixel's cost is cut off at this, at least 1.
+    pub cost: u8,
+    /// Methods along paths: what a change of the disparity by one px costs, at least 1.
+    pub step: u8,
+    /// Methods along paths: what a larger change costs where the brightness changes little, more, and much; each at least
+    /// `step`. `cost + step + jump` is at most 127 and `3 cost + 2 jump` at most 254.
+    pub jump: [u8; 3],
+    /// Methods along paths: the changes of brightness, in grey levels, at which it is more, and much.
+    pub edges: [u8; 2],
 }
 
 impl Config {
@@ -57,6 +68,7 @@ impl Config {
             STEREOPSIS_PRESET_STRICT => Checks::STRICT,
             _ => return Err(Status::Preset),
         };
+        let Penalties { gradient, cost, step, jump, edges } = Penalties::DEFAULT;
         let or_not = |limit: Option<u8>| limit.map_or(STEREOPSIS_NOT_CHECKED, i16::from);
         Ok(Self {
             width,
@@ -72,6 +84,11 @@ impl Config {
             smoothing_radius: checks.smoothing_radius,
             surface_step: checks.surface_step.raw(),
             speckle_pixels: checks.speckle_pixels,
+            gradient,
+            cost,
+            step,
+            jump,
+            edges,
         })
     }
 
@@ -97,6 +114,13 @@ impl Config {
                 surface_step: Disparity::from_raw(self.surface_step),
                 speckle_pixels: self.speckle_pixels,
             },
+            penalties: Penalties {
+                gradient: self.gradient,
+                cost: self.cost,
+                step: self.step,
+                jump: self.jump,
+                edges: self.edges,
+            },
         })
     }
 }
@@ -111,6 +135,8 @@ impl From<ConfigError> for Status {
             ConfigError::Uniqueness => Self::Uniqueness,
             ConfigError::Smoothing => Self::Smoothing,
             ConfigError::SurfaceStep => Self::SurfaceStep,
+            ConfigError::Gradient => Self::Gradient,
+            ConfigError::Penalties => Self::Penalties,
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::pipeline::PushError;
 use core::ffi::CStr;
 
 /// The version of this interface. It changes when a program that was compiled with another header would go wrong.
-pub const STEREOPSIS_ABI: u32 = 1;
+pub const STEREOPSIS_ABI: u32 = 2;
 
 /// What a call answers: below 0 it is an error, and nothing has changed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -72,6 +72,10 @@ pub enum Status {
     RigTooSmall = -26,
     /// Rig: the principal points are over 30000 px apart.
     RigOffset = -27,
+    /// Configuration: the range of gradients is 0 or over 14.
+    Gradient = -28,
+    /// Configuration: the penalties are not in order, or too large together.
+    Penalties = -29,
 }
 
 impl Status {
@@ -108,11 +112,13 @@ impl Status {
             Self::RigTooLarge => c"focal length times baseline must be under 134000 px m",
             Self::RigTooSmall => c"focal length times baseline must be over 0.0000156 px m",
             Self::RigOffset => c"the principal points must be under 30000 px apart",
+            Self::Gradient => c"the range of gradients must be 1 to 14",
+            Self::Penalties => c"the penalties must be in order, and their sums within bytes",
         }
     }
 
     /// Every status, for the way back from a number.
-    const ALL: [Self; 30] = [
+    const ALL: [Self; 32] = [
         Self::Ok,
         Self::NoRowYet,
         Self::FrameDone,
@@ -143,6 +149,8 @@ impl Status {
         Self::RigTooLarge,
         Self::RigTooSmall,
         Self::RigOffset,
+        Self::Gradient,
+        Self::Penalties,
     ];
 }
 

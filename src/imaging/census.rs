@@ -10,6 +10,13 @@
 //!    1 . x . 2         3 . x . 4        10 11  x 12 13
 //!    . . . . .         . . . . .        14 15 16 17 18
 //!    . . 3 . .         5 . 6 . 7        19 20 21 22 23
+//!
+//!              wide8
+//!    0 . . . 1 . . . 2
+//!    . . . . . . . . .
+//!    . . 3 . x . 4 . .
+//!    . . . . . . . . .
+//!    5 . . . 6 . . . 7
 //! ```
 //!
 //! The numbers are the bits of the code. Columns outside the line are the nearest one inside it; rows outside the image
@@ -17,10 +24,7 @@
 
 use core::ops::{BitOrAssign, Shl};
 
-/// Columns to each side that a code looks at.
-const REACH: usize = 2;
-
-/// A neighbour: row of the window (0 to 4, the centre's is 2) and column (0 to 4, likewise).
+/// A neighbour: row of the window (0 to 4, the centre's is 2) and column (likewise, or 0 to 8 where the centre's is 4).
 type Neighbour = (usize, usize);
 
 const PLUS4: [Neighbour; 4] = [(0, 2), (2, 0), (2, 4), (4, 2)];
@@ -38,47 +42,59 @@ const FULL24: [Neighbour; 24] = {
     all
 };
 
+const WIDE8: [Neighbour; 8] = [(0, 0), (0, 4), (0, 8), (2, 2), (2, 6), (4, 0), (4, 4), (4, 8)];
+
 /// Four bits a pixel: up, left, right and down at distance 2. `rows` are the five rows around the centre row; every
-/// code of `out` is written for which all of them have a pixel.
+/// code of `out` is written for which all of them have a pixel. A line ends where the shortest of them does.
 pub fn census_plus4(rows: &[&[u8]; 5], out: &mut [u8]) {
-    census(rows, &PLUS4, out);
+    census::<_, 4, NARROW>(rows, &PLUS4, out);
 }
 
 /// Eight bits a pixel: the corners and edge centres of the 5x5 square. As [`census_plus4`].
 pub fn census_ring8(rows: &[&[u8]; 5], out: &mut [u8]) {
-    census(rows, &RING8, out);
+    census::<_, 8, NARROW>(rows, &RING8, out);
+}
+
+/// Eight bits a pixel: corners and edge centres of 9x5 pixels, and along the line at distance 2. As [`census_plus4`].
+pub fn census_wide8(rows: &[&[u8]; 5], out: &mut [u8]) {
+    census::<_, 8, WIDE>(rows, &WIDE8, out);
 }
 
 /// Twenty-four bits a pixel: the whole 5x5 square. As [`census_plus4`].
 pub fn census_full24(rows: &[&[u8]; 5], out: &mut [u32]) {
-    census(rows, &FULL24, out);
+    census::<_, 24, NARROW>(rows, &FULL24, out);
 }
 
 /// Columns worked on at a time, as lanes.
 const LANES: usize = 16;
+/// Columns that so many codes look at.
+const NARROW: usize = LANES + 2 * 2;
+const WIDE: usize = LANES + 2 * 4;
 
 #[inline(always)]
-fn census<C, const BITS: usize>(rows: &[&[u8]; 5], neighbours: &[Neighbour; BITS], out: &mut [C])
+fn census<C, const BITS: usize, const AROUND: usize>(rows: &[&[u8]; 5], neighbours: &[Neighbour; BITS], out: &mut [C])
 where
     C: Copy + From<bool> + BitOrAssign + Shl<u32, Output = C>,
 {
-    let width = rows.iter().fold(out.len(), |w, row| w.min(row.len()));
-    let Some(out) = out.get_mut(..width) else { return };
+    // Columns to each side that a code looks at.
+    let reach = (AROUND - LANES) / 2;
+    let width = rows.iter().fold(usize::MAX, |w, row| w.min(row.len()));
+    let count = out.len().min(width);
+    let Some(out) = out.get_mut(..count) else { return };
     // All of one length, which is asked about once.
     let [Some(a), Some(b), Some(c), Some(d), Some(e)] = rows.map(|row| row.get(..width)) else { return };
     let rows = [a, b, c, d, e];
-    let inner = width.saturating_sub(2 * REACH);
+    let inner = count.min(width.saturating_sub(reach)).saturating_sub(reach);
     // The inner columns in groups, all bits of a group at once: comparisons without a branch, on whole registers. The
     // last group is moved back to end with the line.
     let begins = (0..inner / LANES).map(|group| group * LANES).chain(inner.checked_sub(LANES));
     for begin in begins {
-        let around =
-            rows.map(|row| row.get(begin..).and_then(|row| row.first_chunk()).unwrap_or(&[0; LANES + 2 * REACH]));
+        let around = rows.map(|row| row.get(begin..).and_then(|row| row.first_chunk()).unwrap_or(&[0; AROUND]));
         let group = |row: usize, column: usize| {
             let pixels = around.get(row).and_then(|row| row.get(column..)).and_then(|row| row.first_chunk::<LANES>());
             pixels.copied().unwrap_or([0; LANES])
         };
-        let centre = group(2, REACH);
+        let centre = group(2, reach);
         let mut codes = [C::from(false); LANES];
         for (bit, &(row, column)) in (0u32..).zip(neighbours) {
             let beside = group(row, column);
@@ -86,20 +102,20 @@ where
                 codes[i] |= C::from(beside[i] < centre[i]) << bit;
             }
         }
-        if let Some(out) = out.get_mut(begin + REACH..).and_then(|out| out.first_chunk_mut::<LANES>()) {
+        if let Some(out) = out.get_mut(begin + reach..).and_then(|out| out.first_chunk_mut::<LANES>()) {
             *out = codes;
         }
     }
-    // The two columns at each side pixel by pixel, and all of a line that is shorter than a group.
-    let grouped = if inner < LANES { REACH..REACH } else { REACH..width - REACH };
-    for x in (0..grouped.start.min(width)).chain(grouped.end.min(width)..width) {
+    // The columns at each side pixel by pixel, and all of a line that is shorter than a group.
+    let grouped = if inner < LANES { reach..reach } else { reach..reach + inner };
+    for x in (0..grouped.start.min(count)).chain(grouped.end.min(count)..count) {
         let pixel = |row: usize, column: usize| {
-            let x = (x + column).saturating_sub(REACH).min(width - 1);
+            let x = (x + column).saturating_sub(reach).min(width - 1);
             rows.get(row).and_then(|r| r.get(x)).copied().unwrap_or(0)
         };
         let mut code = C::from(false);
         for (bit, &(row, column)) in (0u32..).zip(neighbours) {
-            code |= C::from(pixel(row, column) < pixel(2, REACH)) << bit;
+            code |= C::from(pixel(row, column) < pixel(2, reach)) << bit;
         }
         if let Some(out) = out.get_mut(x) {
             *out = code;

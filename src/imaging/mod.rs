@@ -4,14 +4,17 @@
 //!
 //! 1. [`GreyLines`]: any pixel format as 8-bit grey lines.
 //! 2. [`LineWindow`]: the last five lines, as the five rows around a centre.
-//! 3. [`census_plus4`], [`census_ring8`], [`census_full24`]: the codes of one row.
+//! 3. [`census_plus4`], [`census_ring8`], [`census_wide8`], [`census_full24`]: the codes of one row. [`gradients`]: how its
+//!    brightness changes along the line and across it.
 //!
 //! Borders: a row or column outside the image is the nearest one inside it, everywhere in this module.
 
 mod census;
+mod gradient;
 mod grey;
 mod window;
 
-pub use census::{census_full24, census_plus4, census_ring8};
+pub use census::{census_full24, census_plus4, census_ring8, census_wide8};
+pub use gradient::gradients;
 pub use grey::GreyLines;
 pub use window::LineWindow;

@@ -1,5 +1,6 @@
 //! What a matcher is asked to do, checked once before the first line.
 
+use super::penalties::Penalties;
 use crate::units::Disparity;
 use core::fmt;
 
@@ -17,6 +18,8 @@ pub struct Config {
     pub min_disparity: u16,
     /// Which answers are refused.
     pub checks: Checks,
+    /// What the methods along paths take changes to be worth.
+    pub penalties: Penalties,
 }
 
 impl Config {
@@ -30,7 +33,7 @@ impl Config {
 
     /// A search from disparity 0 with the default checks.
     pub const fn new(width: u16, height: u16, disparities: u16) -> Self {
-        Self { width, height, disparities, min_disparity: 0, checks: Checks::DEFAULT }
+        Self { width, height, disparities, min_disparity: 0, checks: Checks::DEFAULT, penalties: Penalties::DEFAULT }
     }
 
     /// All zero: a matcher that was not started, which so takes no place in flash when it is a static.
@@ -50,6 +53,7 @@ impl Config {
             speckle_pixels: 0,
             surface_step: Disparity::ZERO,
         },
+        penalties: Penalties::UNSET,
     };
 
     /// Whether a matcher for lines up to `width` and ranges up to `disparities` can do this.
@@ -75,7 +79,7 @@ impl Config {
         if self.checks.surface_step.raw() > Disparity::ONE {
             return Err(ConfigError::SurfaceStep);
         }
-        Ok(())
+        self.penalties.check()
     }
 }
 
@@ -195,6 +199,10 @@ pub enum ConfigError {
     Smoothing,
     /// The step of a surface is over 1 px.
     SurfaceStep,
+    /// The range of gradients is 0 or over [`Penalties::MOST_GRADIENT`].
+    Gradient,
+    /// The penalties are not in order, or a sum of them is over its byte.
+    Penalties,
 }
 
 impl fmt::Display for ConfigError {
@@ -208,6 +216,10 @@ impl fmt::Display for ConfigError {
             Self::MinDisparity { most } => write!(f, "min_disparity: at most {most} with these disparities"),
             Self::Uniqueness => f.write_str("uniqueness: 0 to 99 percent"),
             Self::SurfaceStep => f.write_str("surface step: at most 1 px"),
+            Self::Gradient => write!(f, "gradient: 1 to {}", Penalties::MOST_GRADIENT),
+            Self::Penalties => f.write_str(
+                "penalties: 1 <= cost, 1 <= step <= jump, edges in order, cost + step + jump <= 127, 3 cost + 2 jump < 255",
+            ),
             Self::Smoothing => write!(f, "smoothing radius: at most {}", Checks::MOST_SMOOTHING),
         }
     }

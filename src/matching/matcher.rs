@@ -1,8 +1,9 @@
 //! The memory of a block matcher and its stages, in running order.
 
-use super::kernels::{Aligned, Columns, Kernel, OUTSIDE, STEP, Scratch, Winner};
+use super::kernels::{Kernel, STEP};
+use super::memory::{Bytes, Memory, Parts, first};
 use super::row::{HISTORY, Row};
-use super::scheme::{Around, Codes, Scheme};
+use super::scheme::{Around, Scheme};
 use super::speckle::{BAND, LOOK_AHEAD, Support};
 use super::stages::Stages;
 use super::surface::ROOM;
@@ -22,16 +23,11 @@ const FIXED_BYTES: usize = 64;
 ///
 /// `D` is a multiple of 16, at most 256, and `W` at least `D`; another choice does not compile.
 pub struct Matcher<S: Scheme, const W: usize, const D: usize> {
-    codes: Aligned<S::Codes<W>>,
-    columns: Columns<W, D>,
-    scratch: Scratch<W, D>,
+    memory: S::Memory<W, D>,
     texture: [u16; W],
     textured: [u8; W],
-    winners: [Winner; W],
-    right_winners: [u16; W],
     band: [[Disparity; W]; BAND],
     band_flags: [[PixelFlags; W]; BAND],
-    lengths: [u16; W],
     support: [u16; W],
     finished: [[Disparity; W]; HISTORY],
     config: Config,
@@ -54,9 +50,9 @@ pub struct Matcher<S: Scheme, const W: usize, const D: usize> {
 pub const fn state_bytes<S: Scheme>(width: usize, disparities: usize) -> usize {
     let lanes = disparities.next_multiple_of(STEP);
     let width = if width < lanes { lanes } else { width };
-    let codes = 2 * S::Codes::<1>::ROWS;
-    let per_column = codes + lanes + 2 + 2 + 1 + 4 + 2 + 2 + 2 + (2 + 1) * BAND + 2 * HISTORY;
-    width * per_column + (3 + 2 * OUTSIDE) * lanes + FIXED_BYTES
+    let Bytes { per_pixel, per_candidate, per_disparity } = S::BYTES;
+    let per_column = per_pixel + per_candidate * lanes + 2 + 1 + 2 + (2 + 1) * BAND + 2 * HISTORY;
+    width * per_column + per_disparity * lanes + FIXED_BYTES
 }
 
 /// Why a matcher took no line.
@@ -96,11 +92,6 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
         assert!(D.is_multiple_of(16) && D >= 16 && D <= 256, "D must be a multiple of 16, from 16 to 256");
         assert!(W >= D, "W must be at least D");
         assert!(W <= u16::MAX as usize, "W must be at most 65535");
-        assert!(S::Codes::<W>::ROWS == 2 * S::RADIUS_Y + 2, "the codes must hold the window and one row");
-        let column = S::BITS * (2 * S::RADIUS_Y + 1);
-        assert!(column < 1 << S::COLUMN_BITS && S::COLUMN_BITS <= 8, "a column's sum must fit its bits, and a byte");
-        let window = (column >> S::COLUMN_SHIFT) * (2 * S::RADIUS_X + 1);
-        assert!(window < u8::MAX as usize, "a window's sum must fit a byte, and be no 255");
         assert!(3 * D >= 2 * ROOM + size_of::<u32>(), "the scratch must hold a row of answers and what is around it");
         assert!(size_of::<Self>() <= state_bytes::<S>(W, D), "state_bytes must cover the state");
     };
@@ -109,16 +100,11 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     pub const fn new() -> Self {
         const { Self::CHECKED };
         Self {
-            codes: Aligned(S::Codes::<W>::EMPTY),
-            columns: Columns::ZERO,
-            scratch: Scratch::ZERO,
+            memory: S::Memory::EMPTY,
             texture: [0; W],
             textured: [0; W],
-            winners: [Winner::NONE; W],
-            right_winners: [0; W],
             band: [[Disparity::ZERO; W]; BAND],
             band_flags: [[PixelFlags::CLEAR; W]; BAND],
-            lengths: [0; W],
             support: [0; W],
             finished: [[Disparity::ZERO; W]; HISTORY],
             config: Config::UNSET,
@@ -213,24 +199,22 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     fn stages(&mut self) -> Stages<'_, S> {
         let width = usize::from(self.config.width).min(W);
         let stride = self.kernel.candidates(usize::from(self.config.disparities), D);
-        fn first<T>(slice: &mut [T], count: usize) -> &mut [T] {
-            slice.get_mut(..count).unwrap_or_default()
-        }
+        let Parts { codes, columns, winners, right, lengths, scratch } = self.memory.parts(width, stride);
         Stages {
             scheme: PhantomData,
             width,
             stride,
             kernel: self.kernel,
             config: &self.config,
-            codes: first(self.codes.0.flat(), 2 * width * S::Codes::<W>::ROWS),
-            columns: first(self.columns.flat(), (width + 2 * OUTSIDE) * stride),
-            scratch: self.scratch.words(),
+            codes,
+            columns,
+            scratch,
             texture: Texture { history: first(&mut self.texture, width), counts: first(&mut self.textured, width) },
-            winners: first(&mut self.winners, width),
-            right: first(&mut self.right_winners, width),
+            winners,
+            right,
             band: first(self.band.as_flattened_mut(), width * BAND),
             flags: first(self.band_flags.as_flattened_mut(), width * BAND),
-            support: Support { lengths: first(&mut self.lengths, width), kept: first(&mut self.support, width) },
+            support: Support { lengths, kept: first(&mut self.support, width) },
             finished: first(self.finished.as_flattened_mut(), width * HISTORY),
         }
     }

@@ -2,8 +2,8 @@
 
 use super::answers::{self, Winners};
 use super::config::Config;
-use super::kernels::{Kernel, RowWork, Select, Unique, Winner, halves_mut};
-use super::row::{HISTORY, slot};
+use super::kernels::{Kernel, Winner, halves_mut};
+use super::row::HISTORY;
 use super::scheme::{Around, Scheme};
 use super::speckle::{BAND, LOOK_AHEAD, Support};
 use super::surface;
@@ -31,9 +31,6 @@ pub struct Stages<'a, S: Scheme> {
 }
 
 impl<S: Scheme> Stages<'_, S> {
-    /// Census rows that are held: those under the window and the one that leaves it, row `y` in slot `y % CODES`.
-    const CODES: usize = 2 * S::RADIUS_Y + 2;
-
     /// Forgets the frame before.
     pub(super) fn begin(self) {
         self.columns.fill(0);
@@ -44,24 +41,20 @@ impl<S: Scheme> Stages<'_, S> {
     /// Takes row `y` of both images (`None` below the last one) and finishes the row that is due with it.
     pub(super) fn step(mut self, y: usize, lines: Option<[&Around<'_>; 2]>) {
         if let Some([left, right]) = lines {
-            let row = slot_mut(self.codes, y % Self::CODES, 2 * self.width);
-            self.kernel.codes::<S>([left, right], usize::from(self.config.min_disparity), self.scratch, row);
+            S::enter(&mut self, y, [left, right]);
         }
         if self.config.checks.texture_pixels > 0 {
             let line = lines.and_then(|[left, _]| left[2].get(..self.width));
             self.texture.push::<S>(line, &self.config.checks);
         }
-        self.match_row(y);
+        self.match_row(y, lines);
     }
 
-    /// Moves the window down to where row `bottom` is its lowest, answers for the row at its centre, and judges the one that
-    /// waited for it.
-    fn match_row(&mut self, bottom: usize) {
+    /// Adds row `bottom`, answers for the row that has its costs with it, and judges the one that waited for that.
+    fn match_row(&mut self, bottom: usize, lines: Option<[&Around<'_>; 2]>) {
         let height = usize::from(self.config.height);
         let row = bottom.checked_sub(S::RADIUS_Y);
-        if bottom < height + S::RADIUS_Y {
-            self.select_winners(bottom, bottom < height, row);
-        }
+        S::select(self, bottom, lines, row.filter(|&row| row < height));
         let Some(row) = row else { return };
         if row < height {
             self.answer(row);
@@ -74,34 +67,6 @@ impl<S: Scheme> Stages<'_, S> {
         let flags = slot_mut(self.flags, judged % BAND, self.width);
         let finished = slot_mut(self.finished, judged % HISTORY, self.width);
         self.support.count(row, self.band, checks.surface_step, checks.speckle_pixels, flags, finished);
-    }
-
-    /// Moves the window; without a `row`, costs are only gathered.
-    // For the reason that [`Kernel::row`] is inlined.
-    #[inline(always)]
-    fn select_winners(&mut self, bottom: usize, enters: bool, row: Option<usize>) {
-        let (width, config) = (self.width, self.config);
-        let leaves = bottom.checked_sub(2 * S::RADIUS_Y + 1);
-        let codes = |y: usize| slot(self.codes, y % Self::CODES, 2 * width);
-        let work = RowWork {
-            width,
-            stride: self.stride,
-            min_disparity: usize::from(config.min_disparity),
-            enter: enters.then(|| codes(bottom)),
-            leave: leaves.map(codes),
-            columns: self.columns,
-            scratch: self.scratch,
-        };
-        let flags = slot_mut(self.flags, row.unwrap_or(0) % BAND, width);
-        let select = row.map(|_| {
-            flags.fill(PixelFlags::CLEAR);
-            Select {
-                disparities: usize::from(config.disparities),
-                winners: self.winners,
-                unique: Unique::new(config.checks.uniqueness_percent, flags),
-            }
-        });
-        self.kernel.row::<S>(work, select);
     }
 
     /// Turns winners into answers, but for those that the checks contradict, and averages them along the row.
@@ -119,6 +84,6 @@ impl<S: Scheme> Stages<'_, S> {
     }
 }
 
-fn slot_mut<T>(rows: &mut [T], index: usize, width: usize) -> &mut [T] {
+pub(super) fn slot_mut<T>(rows: &mut [T], index: usize, width: usize) -> &mut [T] {
     rows.get_mut(index * width..).and_then(|r| r.get_mut(..width)).unwrap_or_default()
 }

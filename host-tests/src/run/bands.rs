@@ -3,19 +3,20 @@
 //! Every row is bit-equal to that of one pipeline over the whole frame, because each band sees more lines than it gives
 //! rows:
 //!
-//! * below, as many as a row waits for: [`Method::latency_lines`];
+//! * below, as many as a row waits for: [`Method::latency_lines`](super::Method::latency_lines);
 //! * above, as many again, for windows and for the uncertainty, which looks back at finished rows; and one for each answer
 //!   that the speckle filter asks for, since a surface that goes on through so many rows has them.
 //!
 //! The lines that are worked on twice are the price: 34 above and 10 below with `block` and the default checks.
 
-use super::{Host, MemoryPair, Method, Outcome, RunError, Way, frame};
+use super::method::with_scheme;
+use super::{Host, MemoryPair, Outcome, RunError, Way, frame};
 use crate::map::DisparityMap;
 use std::ops::Range;
 use std::sync::Barrier;
 use std::thread::{Builder, scope};
 use std::time::Instant;
-use stereopsis::matching::{Block, Config, ConfigError, Fast, Kernel, Row, Scheme};
+use stereopsis::matching::{Config, ConfigError, Kernel, Row, Scheme};
 
 /// A thread's stack: it holds a pipeline.
 const STACK: usize = 16 << 20;
@@ -112,10 +113,8 @@ impl Bands {
         let (way, config, work) = (self.way, &self.config, &work);
         scope(|scope| {
             let threads = self.parts.iter_mut().map(|(band, pair)| {
-                let in_thread = move || match way.method {
-                    Method::Fast => with_pipeline::<Fast, T>(way, config, band, pair, work),
-                    Method::Block => with_pipeline::<Block, T>(way, config, band, pair, work),
-                };
+                let in_thread =
+                    move || with_scheme!(way.method, S => with_pipeline::<S, T>(way, config, band, pair, work));
                 Builder::new().stack_size(STACK).spawn_scoped(scope, in_thread).expect("a thread")
             });
             let threads: Vec<_> = threads.collect();
@@ -145,6 +144,7 @@ fn with_pipeline<S: Scheme, T>(
 
 #[cfg(test)]
 mod tests {
+    use super::super::Method;
     use super::*;
 
     #[test]

@@ -3,51 +3,68 @@
 use super::Host;
 use std::fmt;
 use std::str::FromStr;
-use stereopsis::matching::{Block, Fast, Scheme, state_bytes};
+use stereopsis::matching::{Scheme, state_bytes};
 
 /// A matching method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Method {
-    /// [`Fast`]: 4-bit census, 9x7 window.
+    /// [`Fast`](stereopsis::matching::Fast): 4-bit census, 9x7 window.
     Fast,
-    /// [`Block`]: 8-bit census, 9x9 window.
+    /// [`Block`](stereopsis::matching::Block): 8-bit census, 9x9 window.
     Block,
+    /// [`SgmLean`](stereopsis::matching::SgmLean): gradients, brightness and census along paths.
+    SgmLean,
+    /// [`Sgm`](stereopsis::matching::Sgm): the same, compared between pixels too.
+    Sgm,
 }
+
+/// Does something with the core's type of a method, by the name it is given.
+macro_rules! with_scheme {
+    ($method:expr, $scheme:ident => $work:expr) => {
+        match $method {
+            $crate::run::Method::Fast => {
+                type $scheme = stereopsis::matching::Fast;
+                $work
+            }
+            $crate::run::Method::Block => {
+                type $scheme = stereopsis::matching::Block;
+                $work
+            }
+            $crate::run::Method::SgmLean => {
+                type $scheme = stereopsis::matching::SgmLean;
+                $work
+            }
+            $crate::run::Method::Sgm => {
+                type $scheme = stereopsis::matching::Sgm;
+                $work
+            }
+        }
+    };
+}
+pub(super) use with_scheme;
 
 impl Method {
     /// The methods of this build.
-    pub const ALL: [Self; 2] = [Self::Fast, Self::Block];
+    pub const ALL: [Self; 4] = [Self::Fast, Self::Block, Self::SgmLean, Self::Sgm];
 
     /// The name on the command line and in files.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Fast => Fast::NAME,
-            Self::Block => Block::NAME,
-        }
+        with_scheme!(self, S => S::NAME)
     }
 
     /// Bytes of state that firmware holds for lines of `width` and that many disparities.
     pub const fn state_bytes(self, width: u16, disparities: u16) -> usize {
-        match self {
-            Self::Fast => state_bytes::<Fast>(width as usize, disparities as usize),
-            Self::Block => state_bytes::<Block>(width as usize, disparities as usize),
-        }
+        with_scheme!(self, S => state_bytes::<S>(width as usize, disparities as usize))
     }
 
     /// How many lines after its own a row of disparities comes out.
     pub const fn latency_lines(self) -> usize {
-        match self {
-            Self::Fast => Host::<Fast>::LATENCY,
-            Self::Block => Host::<Block>::LATENCY,
-        }
+        with_scheme!(self, S => Host::<S>::LATENCY)
     }
 
     /// Standard deviation of an answer away from depth edges, px.
     pub const fn sigma_px(self) -> f32 {
-        match self {
-            Self::Fast => Fast::SIGMA_PX,
-            Self::Block => Block::SIGMA_PX,
-        }
+        with_scheme!(self, S => S::SIGMA_PX)
     }
 }
 
@@ -59,7 +76,7 @@ impl fmt::Display for Method {
 
 /// The name is of no method of this build.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
-#[error("the methods of this build are fast and block")]
+#[error("the methods of this build are fast, block, sgm-lean and sgm")]
 pub struct UnknownMethod;
 
 impl FromStr for Method {

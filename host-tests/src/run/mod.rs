@@ -15,12 +15,13 @@ pub use memory::MemoryPair;
 pub use method::{Method, UnknownMethod};
 
 use self::bands::Bands;
+use self::method::with_scheme;
 use crate::map::DisparityMap;
 use std::fmt;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use stereopsis::camera::StereoSource;
-use stereopsis::matching::{Block, Config, ConfigError, Fast, Kernel, Row, Scheme};
+use stereopsis::matching::{Block, Config, ConfigError, Fast, Kernel, Row, Scheme, Sgm, SgmLean};
 use stereopsis::pipeline::{Pipeline, PipelineError};
 
 /// Pixels in a line that the pipelines here have room for.
@@ -30,13 +31,28 @@ pub const MOST_DISPARITIES: usize = 256;
 
 type Host<S> = Pipeline<S, MOST_WIDTH, MOST_DISPARITIES>;
 
-// One of each, as in firmware: over a megabyte each, which no thread's stack has to hold.
-static FAST: Mutex<Host<Fast>> = Mutex::new(Pipeline::new());
-static BLOCK: Mutex<Host<Block>> = Mutex::new(Pipeline::new());
+/// A method whose pipeline lives in a static, as in firmware: over a megabyte each, which no thread's stack has to hold.
+trait Held: Scheme {
+    /// The pipeline.
+    fn pipeline() -> &'static Mutex<Host<Self>>;
+}
+
+macro_rules! held {
+    ($($method:ty),*) => {
+        $(impl Held for $method {
+            fn pipeline() -> &'static Mutex<Host<Self>> {
+                static PIPELINE: Mutex<Host<$method>> = Mutex::new(Pipeline::new());
+                &PIPELINE
+            }
+        })*
+    };
+}
+
+held!(Fast, Block, SgmLean, Sgm);
 
 /// A pipeline that panicked while it was held is as good as new after `start`.
-fn hold<S: Scheme>(pipeline: &'static Mutex<Host<S>>) -> MutexGuard<'static, Host<S>> {
-    pipeline.lock().unwrap_or_else(PoisonError::into_inner)
+fn hold<S: Held>() -> MutexGuard<'static, Host<S>> {
+    S::pipeline().lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Why a frame gave no map.
@@ -113,10 +129,7 @@ pub fn run<C: StereoSource<Error: fmt::Display>>(
         map.put(usize::from(row.index()), row);
         progress(row.index() + 1);
     };
-    let (kernel, time_ms) = match way.method {
-        Method::Fast => frame(way, &mut hold(&FAST), config, camera, &mut keep)?,
-        Method::Block => frame(way, &mut hold(&BLOCK), config, camera, &mut keep)?,
-    };
+    let (kernel, time_ms) = with_scheme!(way.method, S => frame(way, &mut *hold::<S>(), config, camera, &mut keep)?);
     Ok(Outcome { map, kernel, time_ms })
 }
 
@@ -178,8 +191,5 @@ pub fn time_frames<C: StereoSource<Error: fmt::Display>>(
         }
         Ok((times_ms, pipeline.kernel()))
     }
-    match way.method {
-        Method::Fast => time(way, &mut *hold(&FAST), config, camera, frames),
-        Method::Block => time(way, &mut *hold(&BLOCK), config, camera, frames),
-    }
+    with_scheme!(way.method, S => time(way, &mut *hold::<S>(), config, camera, frames))
 }

@@ -8,6 +8,9 @@ pub const PLUS4: [(isize, isize); 4] = [(-2, 0), (0, -2), (0, 2), (2, 0)];
 /// The ring of eight at a distance of 2.
 pub const RING8: [(isize, isize); 8] = [(-2, -2), (-2, 0), (-2, 2), (0, -2), (0, 2), (2, -2), (2, 0), (2, 2)];
 
+/// Eight, wide along the row.
+pub const WIDE8: [(isize, isize); 8] = [(-2, -4), (-2, 0), (-2, 4), (0, -2), (0, 2), (2, -4), (2, 0), (2, 4)];
+
 /// All of the 5 x 5 neighbourhood, in reading order, without its middle.
 pub const FULL24: [(isize, isize); 24] = {
     let mut neighbours = [(0, 0); 24];

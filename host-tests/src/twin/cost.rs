@@ -14,7 +14,7 @@ pub struct Volume {
 }
 
 impl Volume {
-    fn filled(width: usize, height: usize, disparities: usize) -> Self {
+    pub(super) fn filled(width: usize, height: usize, disparities: usize) -> Self {
         Self { width, height, disparities, values: vec![0; width * height * disparities] }
     }
 
@@ -24,7 +24,7 @@ impl Volume {
         &self.values[start..start + self.disparities]
     }
 
-    fn at_mut(&mut self, x: usize, y: usize) -> &mut [u16] {
+    pub(super) fn at_mut(&mut self, x: usize, y: usize) -> &mut [u16] {
         let start = (y * self.width + x) * self.disparities;
         &mut self.values[start..start + self.disparities]
     }
@@ -32,8 +32,8 @@ impl Volume {
 
 /// How many census bits differ between (x, y) on the left and (x - m - d, y) on the right; left of the right picture's
 /// edge, its first column stands in.
-pub fn costs(scheme: &Scheme, config: &Config, left: &Picture<'_>, right: &Picture<'_>) -> Volume {
-    let (left_words, right_words) = (census(left, scheme.neighbours), census(right, scheme.neighbours));
+pub fn costs(neighbours: &[(isize, isize)], config: &Config, left: &Picture<'_>, right: &Picture<'_>) -> Volume {
+    let (left_words, right_words) = (census(left, neighbours), census(right, neighbours));
     let smallest = usize::from(config.min_disparity);
     let mut volume = Volume::filled(left.width, left.height, usize::from(config.disparities));
     for y in 0..left.height {
@@ -50,7 +50,7 @@ pub fn costs(scheme: &Scheme, config: &Config, left: &Picture<'_>, right: &Pictu
 
 /// The sum over the part of the window that lies inside the picture: first along columns, of which only whole units count,
 /// then along rows.
-pub fn window_sums(scheme: &Scheme, costs: &Volume) -> Volume {
+pub fn window_sums(scheme: &Scheme, unit: u16, costs: &Volume) -> Volume {
     let (width, height) = (costs.width, costs.height);
     let mut columns = Volume::filled(width, height, costs.disparities);
     for y in 0..height {
@@ -59,7 +59,7 @@ pub fn window_sums(scheme: &Scheme, costs: &Volume) -> Volume {
                 add(columns.at_mut(x, y), costs.at(x, row));
             }
             for sum in columns.at_mut(x, y) {
-                *sum /= scheme.unit;
+                *sum /= unit;
             }
         }
     }
@@ -81,7 +81,7 @@ fn add(sum: &mut [u16], values: &[u16]) {
 }
 
 /// The same sums by the definition, one window after the other: slow, to hold [`window_sums`] to.
-pub fn window_sums_plain(scheme: &Scheme, costs: &Volume) -> Volume {
+pub fn window_sums_plain(scheme: &Scheme, unit: u16, costs: &Volume) -> Volume {
     let (width, height) = (costs.width as isize, costs.height as isize);
     let (radius_x, radius_y) = (scheme.radius_x as isize, scheme.radius_y as isize);
     let mut sums = Volume::filled(costs.width, costs.height, costs.disparities);
@@ -90,7 +90,7 @@ pub fn window_sums_plain(scheme: &Scheme, costs: &Volume) -> Volume {
             for d in 0..costs.disparities {
                 let rows = (y - radius_y..=y + radius_y).filter(|row| (0..height).contains(row));
                 let bits: u16 = rows.map(|row| costs.at(column as usize, row as usize)[d]).sum();
-                sums.at_mut(x as usize, y as usize)[d] += bits / scheme.unit;
+                sums.at_mut(x as usize, y as usize)[d] += bits / unit;
             }
         }
     }

@@ -3,7 +3,8 @@
 //! In: two pictures, a configuration. Out: [`Answers`]. In running order:
 //!
 //! * [`census`](mod@census): darker neighbours as bits.
-//! * [`cost`]: bits that differ, per disparity, and their sum over the window.
+//! * [`cost`]: bits that differ, per disparity, and their sum over the window. [`paths`]: differences of pixels, and their
+//!   sum along paths.
 //! * `select`: the cheapest disparity, its fraction, the checks.
 //! * `filter`: smoothing along the row, the speckle filter, the deviation.
 //!
@@ -11,6 +12,7 @@
 
 pub mod census;
 pub mod cost;
+pub mod paths;
 
 mod filter;
 mod select;
@@ -22,24 +24,52 @@ use stereopsis::units::{Disparity, PixelFlags};
 /// What tells one matching method from another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scheme {
-    /// The census: (dy, dx) of each bit.
-    pub neighbours: &'static [(isize, isize)],
-    /// The window reaches this many columns to each side.
+    /// Where its costs come from.
+    pub cost: Cost,
+    /// An answer rests on this many columns to each side, which texture is counted in.
     pub radius_x: usize,
-    /// The window reaches this many rows up and down.
+    /// And on this many rows up and down.
     pub radius_y: usize,
-    /// The unit of a window's sum, in bits that differ: a column has as many as go into its own sum.
-    pub unit: u16,
     /// The least deviation of an answer, px.
     pub sigma_px: f32,
 }
 
+/// Where costs come from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cost {
+    /// Census bits that differ, summed over the columns and rows that the scheme reaches.
+    Window {
+        /// The census: (dy, dx) of each bit.
+        neighbours: &'static [(isize, isize)],
+        /// The unit of a window's sum, in bits that differ: a column has as many as go into its own sum.
+        unit: u16,
+    },
+    /// Differences of pixels, summed along paths.
+    Paths {
+        /// Whether pixels are compared with what lies between pixels.
+        between_pixels: bool,
+        /// Whether the two paths from above give a message each.
+        two_from_above: bool,
+    },
+}
+
 impl Scheme {
     /// The twin of [`stereopsis::matching::Fast`]: 4-bit census, 9 x 7 window.
-    pub const FAST: Self = Self { neighbours: &census::PLUS4, radius_x: 4, radius_y: 3, unit: 1, sigma_px: 0.15 };
+    pub const FAST: Self =
+        Self { cost: Cost::Window { neighbours: &census::PLUS4, unit: 1 }, radius_x: 4, radius_y: 3, sigma_px: 0.15 };
     /// The twin of [`stereopsis::matching::Block`]: 8-bit census, 9 x 9 window, in
     /// quarters.
-    pub const BLOCK: Self = Self { neighbours: &census::RING8, radius_x: 4, radius_y: 4, unit: 4, sigma_px: 0.15 };
+    pub const BLOCK: Self =
+        Self { cost: Cost::Window { neighbours: &census::RING8, unit: 4 }, radius_x: 4, radius_y: 4, sigma_px: 0.15 };
+    /// The twin of [`stereopsis::matching::Sgm`].
+    pub const SGM: Self = Self {
+        cost: Cost::Paths { between_pixels: true, two_from_above: true },
+        radius_x: 4,
+        radius_y: 1,
+        sigma_px: 0.15,
+    };
+    /// The twin of [`stereopsis::matching::SgmLean`].
+    pub const SGM_LEAN: Self = Self { cost: Cost::Paths { between_pixels: false, two_from_above: false }, ..Self::SGM };
 }
 
 /// An 8-bit picture whose edge goes on for ever outside of it.
@@ -93,7 +123,14 @@ pub fn match_pair(scheme: &Scheme, config: &Config, left: &GrayImage, right: &Gr
     let size = (u32::from(config.width), u32::from(config.height));
     assert_eq!((left.dimensions(), right.dimensions()), (size, size), "the pictures have the configuration's size");
     let (left, right) = (Picture::new(left), Picture::new(right));
-    let sums = cost::window_sums(scheme, &cost::costs(scheme, config, &left, &right));
+    let sums = match scheme.cost {
+        Cost::Window { neighbours, unit } => {
+            cost::window_sums(scheme, unit, &cost::costs(neighbours, config, &left, &right))
+        }
+        Cost::Paths { between_pixels, two_from_above } => {
+            paths::path_sums(config, &paths::costs(between_pixels, config, &left, &right), two_from_above, &left)
+        }
+    };
     let mut map = Answers {
         width: left.width,
         height: left.height,

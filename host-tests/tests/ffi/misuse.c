@@ -131,6 +131,12 @@ static void configurations(void) {
     REFUSED(uniqueness_percent, -2, UNIQUENESS);
     REFUSED(smoothing_radius, 9, SMOOTHING);
     REFUSED(surface_step, 33, SURFACE_STEP);
+    REFUSED(gradient, 0, GRADIENT);
+    REFUSED(gradient, 15, GRADIENT);
+    REFUSED(cost, 0, PENALTIES);
+    REFUSED(step, 27, PENALTIES);
+    REFUSED(jump[0], 96, PENALTIES);
+    REFUSED(edges[0], 21, PENALTIES);
     for (int32_t preset = STEREOPSIS_PRESET_DENSE; preset <= STEREOPSIS_PRESET_STRICT; preset++) {
         EXPECT(stereopsis_config_default(WIDTH, HEIGHT, 32, preset, &c), OK);
         EXPECT(stereopsis_start(s, &c), OK);

@@ -5,7 +5,7 @@ use image::GrayImage;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::collections::BTreeSet;
-use stereopsis::matching::{Block, Checks, Config, Fast};
+use stereopsis::matching::{Block, Checks, Config, Fast, Penalties, Sgm, SgmLean};
 use stereopsis::pipeline::Pipeline;
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::scene::pattern::Pattern;
@@ -74,6 +74,20 @@ fn random_checks(random: &mut Random) -> Checks {
     }
 }
 
+/// Penalties chosen by chance, of those that there can be.
+fn random_penalties(random: &mut Random) -> Penalties {
+    let cost = 1 + random.below(40) as u8;
+    let step = 1 + random.below(usize::from((126 - cost) / 2)) as u8;
+    // Cost + step + jump at most 127, three costs and two jumps at most 254.
+    let most = (127 - cost - step).min((254 - 3 * cost) / 2).max(step);
+    let step = step.min(most);
+    let mut jump = || step + random.below(usize::from(most - step) + 1) as u8;
+    let jump = [jump(), jump(), jump()];
+    let edge = random.below(256) as u8;
+    let edges = [edge, edge.saturating_add(random.below(60) as u8)];
+    Penalties { gradient: 1 + random.below(usize::from(Penalties::MOST_GRADIENT)) as u8, cost, step, jump, edges }
+}
+
 /// The deterministic list: every width with `rounds` choices of the rest.
 fn list(rounds: usize) -> Vec<(Config, Pattern, u64)> {
     let (widths, heights) = (widths(), heights());
@@ -89,9 +103,11 @@ fn list(rounds: usize) -> Vec<(Config, Pattern, u64)> {
             2 => Checks::STRICT,
             _ => random_checks(&mut random),
         };
+        let penalties = if i % 3 == 0 { Penalties::DEFAULT } else { random_penalties(&mut random) };
         let config = Config {
             min_disparity: MIN_DISPARITIES[i * 3 % MIN_DISPARITIES.len()],
             checks,
+            penalties,
             ..Config::new(width, height, DISPARITIES[i * 4 % DISPARITIES.len()])
         };
         cases.push((config, PATTERNS[i * 2 % PATTERNS.len()], random.bits()));
@@ -134,6 +150,16 @@ fn block_equals_its_twin_at_all_sizes_ranges_and_pictures() {
     run_list::<Block>();
 }
 
+#[test]
+fn sgm_lean_equals_its_twin_at_all_sizes_ranges_and_pictures() {
+    run_list::<SgmLean>();
+}
+
+#[test]
+fn sgm_equals_its_twin_at_all_sizes_ranges_and_pictures() {
+    run_list::<Sgm>();
+}
+
 /// Every picture with each of the ready-made checks, at a size that has all kinds of borders.
 fn every_pattern<S: Method>() {
     let mut pipeline = pipeline::<S>();
@@ -150,6 +176,8 @@ fn every_pattern<S: Method>() {
 fn every_pattern_with_every_preset() {
     every_pattern::<Fast>();
     every_pattern::<Block>();
+    every_pattern::<SgmLean>();
+    every_pattern::<Sgm>();
 }
 
 fn rendered<S: Method>(pipeline: &mut Any<S>, scene: &Scene, pair: &(GrayImage, GrayImage)) {
@@ -170,6 +198,8 @@ fn a_rendered_scene_equals_the_twin() {
     let pair = scene.render();
     rendered::<Fast>(&mut pipeline(), &scene, &pair);
     rendered::<Block>(&mut pipeline(), &scene, &pair);
+    rendered::<SgmLean>(&mut pipeline(), &scene, &pair);
+    rendered::<Sgm>(&mut pipeline(), &scene, &pair);
 }
 
 /// One surface over the whole picture, against thresholds around its size and around the powers of two.
@@ -187,6 +217,8 @@ fn whole_surface<S: Method>() {
 fn surfaces_of_any_size_are_counted() {
     whole_surface::<Fast>();
     whole_surface::<Block>();
+    whole_surface::<SgmLean>();
+    whole_surface::<Sgm>();
 }
 
 prop_compose! {
@@ -211,9 +243,10 @@ prop_compose! {
 prop_compose! {
     fn any_config()(
         width in 1u16..=300, height in 1u16..=60, disparities in 16u16..=256, min_disparity in 0u16..60,
-        checks in any_checks(),
+        checks in any_checks(), seed: u64,
     ) -> Config {
-        Config { width, height, disparities, min_disparity, checks }
+        let penalties = random_penalties(&mut Random::new(seed));
+        Config { width, height, disparities, min_disparity, checks, penalties }
     }
 }
 
@@ -238,6 +271,8 @@ proptest! {
         for compared in [
             compare::<Fast, _>(&mut pipeline(), &config, &pair),
             compare::<Block, _>(&mut pipeline(), &config, &pair),
+            compare::<SgmLean, _>(&mut pipeline(), &config, &pair),
+            compare::<Sgm, _>(&mut pipeline(), &config, &pair),
         ] {
             if let Err(e) = compared {
                 prop_assert!(false, "{pattern:?}: {e}");

@@ -8,7 +8,7 @@ mod list;
 
 use image::GrayImage;
 use stereopsis::camera::StereoSource;
-use stereopsis::matching::{Block, Config, Fast, Kernel, Scheme};
+use stereopsis::matching::{Block, Config, Fast, Kernel, Scheme, Sgm, SgmLean};
 use stereopsis::pipeline::{Pipeline, PipelineError};
 use stereopsis_host::scene::SceneCamera;
 use stereopsis_host::scene::pattern::Pattern;
@@ -33,6 +33,14 @@ impl Method for Fast {
 
 impl Method for Block {
     const TWIN: twin::Scheme = twin::Scheme::BLOCK;
+}
+
+impl Method for Sgm {
+    const TWIN: twin::Scheme = twin::Scheme::SGM;
+}
+
+impl Method for SgmLean {
+    const TWIN: twin::Scheme = twin::Scheme::SGM_LEAN;
 }
 
 /// All rows of the camera's next frame.
@@ -102,12 +110,13 @@ fn pipeline<S: Scheme>() -> Box<Any<S>> {
 fn the_twins_window_sums_are_the_plain_ones() {
     let (left, right) = Pattern::Noise.pair(23, 17, 3);
     for scheme in [twin::Scheme::FAST, twin::Scheme::BLOCK] {
+        let twin::Cost::Window { neighbours, unit } = scheme.cost else { panic!("a window") };
         for (config, left, right) in [
             (Config::new(23, 17, 20), &left, &right),
             (Config::new(3, 2, 16), &Pattern::Noise.pair(3, 2, 4).0, &Pattern::Noise.pair(3, 2, 5).1),
         ] {
-            let costs = costs(&scheme, &config, &Picture::new(left), &Picture::new(right));
-            assert_eq!(window_sums(&scheme, &costs), window_sums_plain(&scheme, &costs));
+            let costs = costs(neighbours, &config, &Picture::new(left), &Picture::new(right));
+            assert_eq!(window_sums(&scheme, unit, &costs), window_sums_plain(&scheme, unit, &costs));
         }
     }
 }

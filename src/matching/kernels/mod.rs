@@ -14,6 +14,7 @@
 
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 mod lanes;
+mod paths;
 #[cfg(not(stereopsis_vectors))]
 mod planes;
 mod scratch;
@@ -21,10 +22,9 @@ mod winner;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-pub(super) use scratch::bytes_mut;
-pub(super) use scratch::halves_mut;
-pub use scratch::{Aligned, Columns, Scratch};
+pub(super) use paths::{Guide, PathWork};
+pub use scratch::{Aligned, Columns, Room, Scratch};
+pub(super) use scratch::{bytes_mut, halves_mut, winners_mut};
 pub use winner::Winner;
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 pub(super) use winner::WinnerRows;
@@ -33,7 +33,9 @@ pub(super) use winner::{Select, Unique};
 #[cfg(not(stereopsis_vectors))]
 pub(super) use planes::codes;
 
-use super::scheme::{Around, Scheme};
+use super::paths::Along;
+use super::scheme::Around;
+use super::window::Windowed;
 
 /// Disparities are worked on in whole groups of this many.
 pub const STEP: usize = 16;
@@ -111,7 +113,7 @@ impl Kernel {
 
     /// The census row of five lines in both images, in the form in which [`Self::row`] takes it: two bytes a pixel.
     #[inline]
-    pub(super) fn codes<S: Scheme>(
+    pub(super) fn codes<S: Windowed>(
         self,
         [left, right]: [&Around<'_>; 2],
         min_disparity: usize,
@@ -153,7 +155,7 @@ impl Kernel {
     // a firmware is linked without the code for others.
     #[cfg_attr(any(target_pointer_width = "64", stereopsis_vectors), inline)]
     #[cfg_attr(not(any(target_pointer_width = "64", stereopsis_vectors)), inline(always))]
-    pub(super) fn row<S: Scheme>(self, work: RowWork<'_>, select: Option<Select<'_>>) {
+    pub(super) fn row<S: Windowed>(self, work: RowWork<'_>, select: Option<Select<'_>>) {
         match self {
             #[cfg(not(stereopsis_vectors))]
             Self::Planes => planes::row::<S>(work, select),
@@ -162,6 +164,83 @@ impl Kernel {
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(avx2) => avx2.row::<S>(work, select),
         }
+    }
+}
+
+/// 256 lanes of ones, then 256 of zero: a slice of it masks the lanes before any one.
+const MASKS: &[u8; 512] = &{
+    let mut masks = [0; 512];
+    let mut i = 0;
+    while i < 256 {
+        masks[i] = u8::MAX;
+        i += 1;
+    }
+    masks
+};
+
+impl Kernel {
+    /// Adds a row of both images to the costs of a method along paths; the first of a frame takes their place.
+    #[inline(always)]
+    pub(super) fn enter<S: Along>(
+        self,
+        work: &mut PathWork<'_>,
+        lines: [&Around<'_>; 2],
+        is_first: bool,
+        room: &mut [u8],
+    ) {
+        match self {
+            #[cfg(not(stereopsis_vectors))]
+            Self::Planes => paths::enter::<paths::Word, S>(work, lines, is_first, room),
+            #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+            Self::Lanes => paths::enter::<paths::Vector, S>(work, lines, is_first, room),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(avx2) => avx2.run(
+                #[inline(always)]
+                || match work.stride % 32 {
+                    0 => paths::enter::<paths::Wide, S>(work, lines, is_first, room),
+                    _ => paths::enter::<paths::Vector, S>(work, lines, is_first, room),
+                },
+            ),
+        }
+    }
+
+    /// Selects the winners of the row whose costs there are, along paths.
+    #[inline(always)]
+    pub(super) fn select<S: Along>(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+        match self {
+            #[cfg(not(stereopsis_vectors))]
+            Self::Planes => match work.stride {
+                32 => paths::select::<paths::Word, S, 8, true>(work, guide, select),
+                64 => paths::select::<paths::Word, S, 16, true>(work, guide, select),
+                _ => paths::select::<paths::Word, S, 64, false>(work, guide, select),
+            },
+            #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+            Self::Lanes => vectors::<S>(work, guide, select),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(avx2) => avx2.run(
+                #[inline(always)]
+                || match work.stride {
+                    32 => paths::select::<paths::Wide, S, 1, true>(work, guide, select),
+                    64 => paths::select::<paths::Wide, S, 2, true>(work, guide, select),
+                    128 => paths::select::<paths::Wide, S, 4, true>(work, guide, select),
+                    256 => paths::select::<paths::Wide, S, 8, true>(work, guide, select),
+                    stride if stride % 32 == 0 => paths::select::<paths::Wide, S, 8, false>(work, guide, select),
+                    _ => vectors::<S>(work, guide, select),
+                },
+            ),
+        }
+    }
+}
+
+/// [`Kernel::select`] in vectors of the compilation's own target.
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+#[inline(always)]
+fn vectors<S: Along>(work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+    match work.stride {
+        32 => paths::select::<paths::Vector, S, 2, true>(work, guide, select),
+        64 => paths::select::<paths::Vector, S, 4, true>(work, guide, select),
+        128 => paths::select::<paths::Vector, S, 8, true>(work, guide, select),
+        _ => paths::select::<paths::Vector, S, 16, false>(work, guide, select),
     }
 }
 

@@ -2,7 +2,6 @@
 #![allow(unsafe_code)]
 
 use super::OUTSIDE;
-#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 use super::Winner;
 
 /// What a kernel works with while a row lasts. No kernel finds anything in it from the row before.
@@ -49,6 +48,34 @@ impl<const W: usize, const D: usize> Columns<W, D> {
     }
 }
 
+/// What a method along paths works with while a row lasts: its features, then its winners.
+#[repr(C, align(8))]
+pub struct Room<const W: usize, const D: usize> {
+    pixels: [[u8; W]; Room::<0, 0>::PER_PIXEL],
+    disparities: [[u8; D]; Room::<0, 0>::PER_DISPARITY],
+}
+
+impl Room<0, 0> {
+    /// Bytes a pixel: three features of the left row, and of the right row four and two ranges.
+    pub const PER_PIXEL: usize = 3 + 4 + 2 * 2;
+    /// Bytes a disparity: what the right features have before them.
+    pub const PER_DISPARITY: usize = 4 + 2 * 2;
+}
+
+impl<const W: usize, const D: usize> Room<W, D> {
+    /// All zero.
+    pub const ZERO: Self =
+        Self { pixels: [[0; W]; Room::<0, 0>::PER_PIXEL], disparities: [[0; D]; Room::<0, 0>::PER_DISPARITY] };
+
+    /// All of it as words, but for the last bytes if they are not a whole one.
+    pub fn words(&mut self) -> &mut [u32] {
+        let words = (size_of_val(&self.pixels) + size_of_val(&self.disparities)) / size_of::<u32>();
+        // SAFETY: the fields are bytes without a gap between them (`repr(C)`), any four of which are a word, the first
+        // stands where a word may, and `words` does not reach beyond the last one.
+        unsafe { core::slice::from_raw_parts_mut(core::ptr::from_mut(self).cast(), words) }
+    }
+}
+
 /// Bytes where words of them can be read and written.
 #[repr(C, align(8))]
 pub struct Aligned<T>(pub T);
@@ -65,6 +92,12 @@ pub(super) fn words_mut(bytes: &mut [u8]) -> &mut [u32] {
 pub(super) fn bytes_of(winners: &mut [Winner]) -> &mut [u8] {
     // SAFETY: a winner is a word (`repr(transparent)`), every value of which is four bytes and the other way round.
     unsafe { winners.align_to_mut().1 }
+}
+
+/// Words as winners.
+pub(in crate::matching) fn winners_mut(words: &mut [u32]) -> &mut [Winner] {
+    // SAFETY: a winner is a word (`repr(transparent)`), every value of which is one.
+    unsafe { words.align_to_mut().1 }
 }
 
 /// Words as bytes, in the order of memory.

@@ -17,16 +17,36 @@ pub(in crate::matching) struct Select<'a> {
 
 /// The flags of pixels whose second best is too near: [`Checks::uniqueness_percent`](crate::matching::Checks::uniqueness_percent).
 pub(in crate::matching) struct Unique<'a> {
-    percent: u8,
+    share: Share,
     flags: &'a mut [PixelFlags],
+}
+
+/// The share of the second best cost, percent, that a winner's has to stay below.
+#[derive(Clone, Copy)]
+struct Share(u32);
+
+impl Share {
+    /// Whether the winner costs too much.
+    #[inline(always)]
+    fn is_ambiguous(self, cost: u8, second: u8) -> bool {
+        second < u8::MAX && u32::from(second) * self.0 <= u32::from(cost) * 100
+    }
 }
 
 impl<'a> Unique<'a> {
     /// Flags the pixels of a row, none of them where no `percent` is asked for.
     pub fn new(percent: Option<u8>, flags: &'a mut [PixelFlags]) -> Self {
         match percent {
-            Some(percent) => Self { percent, flags },
-            None => Self { percent: 0, flags: &mut [] },
+            Some(percent) => Self { share: Share(100 - u32::from(percent.min(99))), flags },
+            None => Self { share: Share(100), flags: &mut [] },
+        }
+    }
+
+    /// Flags the pixel in column `x`: see [`Self::starting_at`].
+    #[inline(always)]
+    pub fn judge(&mut self, x: usize, cost: u8, second: impl FnOnce() -> u8) {
+        if let Some(flags) = self.flags.get_mut(x) {
+            *flags = flags.union(PixelFlags::AMBIGUOUS.when(self.share.is_ambiguous(cost, second())));
         }
     }
 
@@ -40,16 +60,23 @@ impl<'a> Unique<'a> {
     /// of the candidates over one px beside it, `u8::MAX` where there is none, which is asked where it is wanted.
     #[inline(always)]
     pub fn starting_at(self, begin: usize) -> impl FnMut(u8, &mut dyn FnMut() -> u8) {
-        let share = 100 - u32::from(self.percent.min(99));
+        let share = self.share;
         let mut flags = self.flags.get_mut(begin..).unwrap_or_default().iter_mut();
         move |cost, second| {
             if let Some(flags) = flags.next() {
                 let second = second();
-                let ambiguous = second < u8::MAX && u32::from(second) * share <= u32::from(cost) * 100;
-                *flags = flags.union(PixelFlags::AMBIGUOUS.when(ambiguous));
+                *flags = flags.union(PixelFlags::AMBIGUOUS.when(share.is_ambiguous(cost, second)));
             }
         }
     }
+}
+
+/// The parts of a [`Winner`].
+#[derive(Clone, Copy)]
+pub(in crate::matching) struct Found {
+    pub disparity: u8,
+    pub cost: u8,
+    pub beside: (u8, u8),
 }
 
 /// The best disparity of a pixel, in a word: from the lowest byte up the cost below it, its own, the cost above it, and

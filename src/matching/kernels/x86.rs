@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::{RowWork, Select, lanes};
-use crate::matching::scheme::Scheme;
+use crate::matching::window::Windowed;
 use core::arch::x86_64::{_mm256_cmpeq_epi8, _mm256_loadu_si256, _mm256_movemask_epi8, _mm256_set1_epi8};
 
 cpufeatures::new!(avx2, "avx2");
@@ -25,7 +25,7 @@ impl Avx2 {
     }
 
     #[inline]
-    pub(super) fn row<S: Scheme>(self, work: RowWork<'_>, select: Option<Select<'_>>) {
+    pub(super) fn row<S: Windowed>(self, work: RowWork<'_>, select: Option<Select<'_>>) {
         // SAFETY: `self` is the proof that the processor has the one feature that the function is compiled for.
         unsafe { row::<S>(work, select) }
     }
@@ -37,7 +37,7 @@ fn run(work: impl FnOnce()) {
 }
 
 #[target_feature(enable = "avx2")]
-fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select<'_>>) {
+fn row<S: Windowed>(work: RowWork<'_>, select: Option<Select<'_>>) {
     use lanes::row_in_groups;
     // Two registers of lanes at a time measured best; and masks up to 64 lanes, with more of them the numbers. (A closure
     // has the features of what it is in.)

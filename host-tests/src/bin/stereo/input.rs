@@ -59,5 +59,5 @@ pub fn config(range: &RangeArgs, checks: Checks, width: u16, height: u16) -> Res
              {most} is possible"
         )));
     }
-    Ok(Config { width, height, disparities, min_disparity, checks })
+    Ok(Config { min_disparity, checks, ..Config::new(width, height, disparities) })
 }

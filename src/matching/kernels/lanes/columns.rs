@@ -1,6 +1,6 @@
 //! The costs of a row, added to the columns under the window.
 
-use crate::matching::scheme::Scheme;
+use crate::matching::window::Windowed;
 
 /// The codes of a row in both images.
 #[derive(Clone, Copy)]
@@ -17,7 +17,7 @@ fn pixels(row: RowCodes<'_>, stride: usize) -> impl Iterator<Item = (&u8, &[u8])
 
 /// Moves the sums of all columns one row down.
 #[inline(always)]
-pub(super) fn update<S: Scheme, const N: usize>(
+pub(super) fn update<S: Windowed, const N: usize>(
     stride: usize,
     enter: Option<RowCodes<'_>>,
     leave: Option<RowCodes<'_>>,

@@ -15,19 +15,9 @@
 mod columns;
 
 use super::scratch::bytes_mut;
-use super::{OUTSIDE, RowWork, STEP, Select, WinnerRows};
-use crate::matching::scheme::Scheme;
-
-/// 256 lanes of ones, then 256 of zero: a slice of it masks the lanes before any one.
-const MASKS: &[u8; 512] = &{
-    let mut masks = [0; 512];
-    let mut i = 0;
-    while i < 256 {
-        masks[i] = u8::MAX;
-        i += 1;
-    }
-    masks
-};
+use super::winner::Found;
+use super::{MASKS, OUTSIDE, RowWork, STEP, Select, WinnerRows};
+use crate::matching::window::Windowed;
 
 /// The disparities of so many lanes.
 const fn disparities<const STRIDE: usize>() -> [u8; STRIDE] {
@@ -42,7 +32,7 @@ const fn disparities<const STRIDE: usize>() -> [u8; STRIDE] {
 
 /// [`super::Kernel::row`] for the compilation's own target.
 #[inline(always)]
-pub(in crate::matching) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select<'_>>) {
+pub(in crate::matching) fn row<S: Windowed>(work: RowWork<'_>, select: Option<Select<'_>>) {
     match work.stride {
         32 => row_in_groups::<S, STEP, 32>(work, select, nearest_with::<32>),
         64 => row_in_groups::<S, STEP, 64>(work, select, nearest_with::<64>),
@@ -54,7 +44,7 @@ pub(in crate::matching) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Sele
 /// is compiled, which lets the compiler unroll the groups and keep them in registers; 0 where it is not. `nearest` is
 /// [`nearest_with`] or does the same.
 #[inline(always)]
-pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE: usize>(
+pub(in crate::matching) fn row_in_groups<S: Windowed, const N: usize, const STRIDE: usize>(
     work: RowWork<'_>,
     select: Option<Select<'_>>,
     nearest: impl Fn(u8, &[u8]) -> usize,
@@ -121,17 +111,9 @@ pub(in crate::matching) fn row_in_groups<S: Scheme, const N: usize, const STRIDE
     }
 }
 
-/// The parts of a [`super::Winner`].
-#[derive(Clone, Copy)]
-struct Found {
-    disparity: u8,
-    cost: u8,
-    beside: (u8, u8),
-}
-
 /// Moves the window sums one column on.
 #[inline(always)]
-fn slide<S: Scheme, const N: usize>(sums: &mut [u8], enters: &[u8], leaves: &[u8]) {
+fn slide<S: Windowed, const N: usize>(sums: &mut [u8], enters: &[u8], leaves: &[u8]) {
     let columns = enters.as_chunks::<N>().0.iter().zip(leaves.as_chunks::<N>().0);
     for (sums, (enters, leaves)) in sums.as_chunks_mut::<N>().0.iter_mut().zip(columns) {
         *sums = moved::<S, N>(sums, enters, leaves);
@@ -140,7 +122,7 @@ fn slide<S: Scheme, const N: usize>(sums: &mut [u8], enters: &[u8], leaves: &[u8
 
 /// A group of sums, one column on.
 #[inline(always)]
-fn moved<S: Scheme, const N: usize>(sums: &[u8; N], enters: &[u8; N], leaves: &[u8; N]) -> [u8; N] {
+fn moved<S: Windowed, const N: usize>(sums: &[u8; N], enters: &[u8; N], leaves: &[u8; N]) -> [u8; N] {
     let mut group = *sums;
     for i in 0..N {
         let digits = |column: u8| column >> S::COLUMN_SHIFT;
@@ -151,7 +133,7 @@ fn moved<S: Scheme, const N: usize>(sums: &[u8; N], enters: &[u8; N], leaves: &[
 
 /// [`slide`], then the smallest disparity that has the least sum.
 #[inline(always)]
-fn slide_to_winner<S: Scheme, const N: usize, const MASKED: bool>(
+fn slide_to_winner<S: Windowed, const N: usize, const MASKED: bool>(
     sums: &mut [u8],
     enters: &[u8],
     leaves: &[u8],

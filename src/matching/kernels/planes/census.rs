@@ -5,7 +5,8 @@
 //! 2-5).
 
 use crate::matching::kernels::scratch::{words_mut, words_of};
-use crate::matching::scheme::{Around, Scheme};
+use crate::matching::scheme::Around;
+use crate::matching::window::Windowed;
 
 /// The highest bit of every byte.
 const TOP: u32 = 0x8080_8080;
@@ -15,7 +16,7 @@ type Three = [u32; 3];
 
 /// The census row of five lines.
 #[inline(never)]
-pub(super) fn census<S: Scheme>(rows: &Around<'_>, out: &mut [u8]) {
+pub(super) fn census<S: Windowed>(rows: &Around<'_>, out: &mut [u8]) {
     let width = out.len();
     let lines = [0, 2, 4].map(|row: usize| rows.get(row).and_then(|r| r.get(..width)).unwrap_or(&[]));
     let in_words = |bytes: &[u8]| words_of(bytes).len() * 4 == width;
@@ -28,7 +29,7 @@ pub(super) fn census<S: Scheme>(rows: &Around<'_>, out: &mut [u8]) {
 
 /// The census row of lines that are not all in whole words, as those whose width is no multiple of four.
 #[inline(never)]
-fn census_of_bytes<S: Scheme>(lines: [&[u8]; 3], out: &mut [u8]) {
+fn census_of_bytes<S: Windowed>(lines: [&[u8]; 3], out: &mut [u8]) {
     for (x, out) in (0..).step_by(4).zip(out.chunks_mut(4)) {
         let codes = S::codes(&lines.map(|line| [0, 2, 4].map(|place| word(line, x + place))));
         for (out, code) in out.iter_mut().zip(codes.to_le_bytes()) {
@@ -50,7 +51,7 @@ fn word(line: &[u8], x: usize) -> u32 {
 
 /// The census row of lines in whole words.
 #[inline(always)]
-fn census_of_words<S: Scheme>(lines: [&[u32]; 3], out: &mut [u32]) {
+fn census_of_words<S: Windowed>(lines: [&[u32]; 3], out: &mut [u32]) {
     // Columns outside the line are the nearest inside it.
     let mut before = lines.map(|line| line.first().map_or(0, |first| (first & 0xff) * 0x0101_0101));
     let mut centre = lines.map(|line| line.first().copied().unwrap_or(0));

@@ -9,7 +9,7 @@
 
 use super::Column;
 use super::plane::{Plane, add_pair, of_bit, two_bits};
-use crate::matching::scheme::Scheme;
+use crate::matching::window::Windowed;
 use core::sync::atomic::{Ordering, compiler_fence};
 
 /// Where the bits of the row that enters begin in a column's word, and those of the row that leaves: two for each bit of
@@ -21,7 +21,7 @@ const OLD: usize = 16;
 /// is another one than in the column before, and beside it whether it is another one than in the partner of the first
 /// candidate.
 #[inline(never)]
-pub(super) fn prepare<S: Scheme>(left: &[u8], right: &[u8], min_disparity: usize, out: &mut [u16]) {
+pub(super) fn prepare<S: Windowed>(left: &[u8], right: &[u8], min_disparity: usize, out: &mut [u16]) {
     let begin = first_column::<S>(min_disparity);
     let codes = left.get(begin..).unwrap_or(&[]);
     let out = out.get_mut(begin..).unwrap_or_default();
@@ -54,13 +54,13 @@ fn interleaved(even: u8, odd: u8) -> u16 {
 }
 
 /// The first column that a window with a candidate has.
-fn first_column<S: Scheme>(min_disparity: usize) -> usize {
+fn first_column<S: Windowed>(min_disparity: usize) -> usize {
     min_disparity.saturating_sub(S::RADIUS_X)
 }
 
 /// Moves the sums of all columns one row down.
 #[inline(never)]
-pub(super) fn update<'a, S: Scheme, P: Plane, const GROUPS: usize>(
+pub(super) fn update<'a, S: Windowed, P: Plane, const GROUPS: usize>(
     groups: usize,
     min_disparity: usize,
     [enter, leave]: [Option<&'a [u16]>; 2],
@@ -119,7 +119,7 @@ pub(super) fn update<'a, S: Scheme, P: Plane, const GROUPS: usize>(
 /// Moves the words of both rows one column on and counts them into the sums. `moved` gets a word's place among [`NEW`] and
 /// [`OLD`].
 #[inline(always)]
-fn move_on<S: Scheme, P: Plane>(sums: &mut Column<P>, words: &mut [[P; 2]; 8], moved: impl Fn(usize, &mut P) -> P) {
+fn move_on<S: Windowed, P: Plane>(sums: &mut Column<P>, words: &mut [[P; 2]; 8], moved: impl Fn(usize, &mut P) -> P) {
     let mut here = *sums;
     count_into::<S, P>(&mut here, |i| {
         let [new, old] = &mut words[i];
@@ -132,7 +132,7 @@ fn move_on<S: Scheme, P: Plane>(sums: &mut Column<P>, words: &mut [[P; 2]; 8], m
 
 /// Adds `2 BITS` bits for every candidate, two by two, and takes `BITS` off.
 #[inline(always)]
-fn count_into<S: Scheme, P: Plane>(sums: &mut Column<P>, mut bits: impl FnMut(usize) -> (P, P)) {
+fn count_into<S: Windowed, P: Plane>(sums: &mut Column<P>, mut bits: impl FnMut(usize) -> (P, P)) {
     let levels = S::BITS.ilog2() as usize;
     // Carries that wait for another of their weight.
     let mut waiting = [P::NONE; 4];

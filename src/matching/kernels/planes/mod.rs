@@ -16,7 +16,8 @@ mod windows;
 
 use super::scratch::{bytes_mut, halves_of, halves_of_mut};
 use super::{OUTSIDE, RowWork, Select};
-use crate::matching::scheme::{Around, Scheme};
+use crate::matching::scheme::Around;
+use crate::matching::window::Windowed;
 use plane::Plane;
 use windows::{WINDOW, Windows};
 
@@ -27,7 +28,7 @@ type Column<P> = [P; 8];
 
 /// [`super::Kernel::codes`] for planes.
 #[inline]
-pub(super) fn codes_of<S: Scheme>(
+pub(super) fn codes_of<S: Windowed>(
     [left, right]: [&Around<'_>; 2],
     min_disparity: usize,
     scratch: &mut [u32],
@@ -45,7 +46,7 @@ pub(super) fn codes_of<S: Scheme>(
 
 /// [`super::Kernel::row`] in planes.
 #[inline(always)]
-pub(super) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select<'_>>) {
+pub(super) fn row<S: Windowed>(work: RowWork<'_>, select: Option<Select<'_>>) {
     // The usual numbers of candidates, then any number of words of them, or of half-words.
     match work.stride {
         16 => row_of::<S, u16, 1>(work, select),
@@ -59,7 +60,7 @@ pub(super) fn row<S: Scheme>(work: RowWork<'_>, select: Option<Select<'_>>) {
 
 /// A row whose candidates are `GROUPS` words of them; 0 where the number is not known when the crate is compiled.
 #[inline(always)]
-fn row_of<S: Scheme, P: Plane, const GROUPS: usize>(work: RowWork<'_>, select: Option<Select<'_>>) {
+fn row_of<S: Windowed, P: Plane, const GROUPS: usize>(work: RowWork<'_>, select: Option<Select<'_>>) {
     let RowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
     // At least one, for the compiler to see that no column is empty.
     let groups = if GROUPS > 0 { GROUPS } else { (stride / P::CANDIDATES).max(1) };

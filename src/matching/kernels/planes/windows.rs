@@ -9,7 +9,7 @@
 use super::Column;
 use super::plane::Plane;
 use crate::matching::kernels::Winner;
-use crate::matching::scheme::Scheme;
+use crate::matching::window::Windowed;
 
 /// Planes of a window's sum.
 pub(super) const WINDOW: usize = 8;
@@ -34,7 +34,7 @@ impl<'a, P: Plane> Windows<'a, P> {
 
     /// Moves the window one column on.
     #[inline(never)]
-    pub(super) fn slide<S: Scheme>(&mut self, enters: &[Column<P>], leaves: &[Column<P>]) {
+    pub(super) fn slide<S: Windowed>(&mut self, enters: &[Column<P>], leaves: &[Column<P>]) {
         for (window, (enters, leaves)) in self.groups.iter_mut().zip(enters.iter().zip(leaves)) {
             slide::<S, P>(window, enters, leaves);
         }
@@ -42,7 +42,7 @@ impl<'a, P: Plane> Windows<'a, P> {
 
     /// The winners of the pixels from the first that has a candidate, with the columns that enter and leave at each.
     #[inline(never)]
-    pub(super) fn winners<S: Scheme, const GROUPS: usize>(
+    pub(super) fn winners<S: Windowed, const GROUPS: usize>(
         self,
         entering: &[Column<P>],
         leaving: &[Column<P>],
@@ -85,7 +85,7 @@ impl<'a, P: Plane> Windows<'a, P> {
 
     /// [`Self::winners`] of any number of groups.
     #[inline(never)]
-    pub(super) fn winners_of_many<S: Scheme>(
+    pub(super) fn winners_of_many<S: Windowed>(
         self,
         entering: &[Column<P>],
         leaving: &[Column<P>],
@@ -179,7 +179,7 @@ fn best_of_the_rest<P: Plane>(windows: &[Window<P>], disparity: usize, candidate
 
 /// Moves a group one column on.
 #[inline(always)]
-fn slide<S: Scheme, P: Plane>(window: &mut Window<P>, enters: &Column<P>, leaves: &Column<P>) {
+fn slide<S: Windowed, P: Plane>(window: &mut Window<P>, enters: &Column<P>, leaves: &Column<P>) {
     // The window is a complement: what leaves is added. The difference is a number with a sign, of one plane more.
     let (mut borrow, mut carry) = (P::NONE, P::NONE);
     for (i, sum) in window.iter_mut().enumerate() {

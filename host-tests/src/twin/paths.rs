@@ -1,0 +1,193 @@
+//! The cost of every disparity at every pixel, and its sum along paths.
+
+use super::Picture;
+use super::census::{WIDE8, census};
+use super::cost::Volume;
+use stereopsis::matching::{Config, Penalties};
+
+/// A number for every pixel of a picture, whose edge goes on for ever outside of it.
+struct Numbers {
+    width: usize,
+    height: usize,
+    values: Vec<i32>,
+}
+
+impl Numbers {
+    fn of(picture: &Picture<'_>, number: impl Fn(isize, isize) -> i32) -> Self {
+        let (width, height) = (picture.width, picture.height);
+        let places = (0..height as isize).flat_map(|y| (0..width as isize).map(move |x| (x, y)));
+        Self { width, height, values: places.map(|(x, y)| number(x, y)).collect() }
+    }
+
+    fn at(&self, x: isize, y: isize) -> i32 {
+        let x = x.clamp(0, self.width as isize - 1) as usize;
+        let y = y.clamp(0, self.height as isize - 1) as usize;
+        self.values[y * self.width + x]
+    }
+
+    /// The range of a number and of those halfway to its neighbours in the row.
+    fn range(&self, x: isize, y: isize) -> (i32, i32) {
+        let here = self.at(x, y);
+        let halfway = [(self.at(x - 1, y) + here) / 2, (here + self.at(x + 1, y)) / 2];
+        (here.min(halfway[0]).min(halfway[1]), here.max(halfway[0]).max(halfway[1]))
+    }
+}
+
+/// What a picture's pixels look like.
+struct Looks {
+    along: Numbers,
+    across: Numbers,
+    brightness: Numbers,
+    census: Vec<u32>,
+}
+
+impl Looks {
+    fn of(picture: &Picture<'_>, penalties: &Penalties) -> Self {
+        let at = |x, y| i32::from(picture.at(x, y));
+        let most = i32::from(penalties.gradient);
+        let cut = |gradient: i32| gradient.clamp(-most, most) + most;
+        let along = |x, y| {
+            let difference = |y| at(x + 1, y) - at(x - 1, y);
+            cut(difference(y - 1) + 2 * difference(y) + difference(y + 1))
+        };
+        let across = |x, y| {
+            let difference = |x| at(x, y + 1) - at(x, y - 1);
+            cut(difference(x - 1) + 2 * difference(x) + difference(x + 1))
+        };
+        Self {
+            along: Numbers::of(picture, along),
+            across: Numbers::of(picture, across),
+            brightness: Numbers::of(picture, |x, y| at(x, y) / 2),
+            census: census(picture, &WIDE8),
+        }
+    }
+}
+
+/// How far two numbers are apart, where each may lie between its pixel and those beside it (Birchfield & Tomasi 1998).
+fn apart_between(left: &Numbers, x: isize, right: &Numbers, other_x: isize, y: isize) -> i32 {
+    let distance = |number: i32, (least, greatest): (i32, i32)| (number - greatest).max(least - number).max(0);
+    let there = distance(left.at(x, y), right.range(other_x, y));
+    let back = distance(right.at(other_x, y), left.range(x, y));
+    there.min(back)
+}
+
+/// How little (x, y) on the left looks like (x - m - d, y) on the right; left of the right picture's edge, its first column
+/// stands in.
+pub fn costs(between_pixels: bool, config: &Config, left: &Picture<'_>, right: &Picture<'_>) -> Volume {
+    let penalties = &config.penalties;
+    let (left, right) = (Looks::of(left, penalties), Looks::of(right, penalties));
+    let (width, height) = (left.along.width, left.along.height);
+    let mut volume = Volume::filled(width, height, usize::from(config.disparities));
+    for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+        for (d, cost) in volume.at_mut(x, y).iter_mut().enumerate() {
+            let other = x.saturating_sub(usize::from(config.min_disparity) + d);
+            let apart = |a: &Numbers, b: &Numbers| {
+                let (x, other, y) = (x as isize, other as isize, y as isize);
+                if between_pixels { apart_between(a, x, b, other, y) } else { (a.at(x, y) - b.at(other, y)).abs() }
+            };
+            let across = left.across.at(x as isize, y as isize) - right.across.at(other as isize, y as isize);
+            let bits = (left.census[y * width + x] ^ right.census[y * width + other]).count_ones() as i32;
+            let sum = 2 * apart(&left.along, &right.along)
+                + across.abs()
+                + apart(&left.brightness, &right.brightness) / 4
+                + bits;
+            *cost = sum.min(i32::from(penalties.cost)) as u16;
+        }
+    }
+    volume
+}
+
+/// What a path says to the pixel it goes to: what each disparity costs there.
+fn message(penalties: &Penalties, path: &[u16], jump: u16) -> Vec<u16> {
+    let least = *path.iter().min().expect("a disparity");
+    let at = |d: usize| {
+        let beside = [d.checked_sub(1), Some(d + 1)].into_iter().flatten().filter_map(|d| path.get(d));
+        let step = beside.map(|&cost| cost + u16::from(penalties.step)).min().expect("two disparities");
+        path[d].min(step).min(least + jump) - least
+    };
+    (0..path.len()).map(at).collect()
+}
+
+fn add(a: &[u16], b: &[u16]) -> Vec<u16> {
+    a.iter().zip(b).map(|(a, b)| a + b).collect()
+}
+
+fn average(a: &[u16], b: &[u16]) -> Vec<u16> {
+    a.iter().zip(b).map(|(a, b)| (a + b) / 2).collect()
+}
+
+/// The costs of each row with those of the rows above and of the one below, each as much as all that come before it.
+fn averaged_down(costs: &Volume) -> Volume {
+    let mut averaged = costs.clone();
+    let mut sum: Vec<Vec<u16>> = (0..costs.width).map(|x| costs.at(x, 0).to_vec()).collect();
+    for y in 0..costs.height {
+        for (x, sum) in sum.iter_mut().enumerate() {
+            if y + 1 < costs.height {
+                *sum = add(sum, costs.at(x, y + 1)).iter().map(|twice| twice.div_ceil(2)).collect();
+            }
+            averaged.at_mut(x, y).copy_from_slice(sum);
+        }
+    }
+    averaged
+}
+
+/// The sums of three paths into every pixel, none over 255.
+pub fn path_sums(config: &Config, costs: &Volume, two_from_above: bool, left: &Picture<'_>) -> Volume {
+    let penalties = &config.penalties;
+    let costs = averaged_down(costs);
+    let (width, height) = (costs.width, costs.height);
+    let jump = |(x, y): (usize, usize), (from_x, from_y): (usize, usize)| {
+        let bright = |x: usize, y: usize| left.at(x as isize, y as isize);
+        let change = bright(x, y).abs_diff(bright(from_x, from_y));
+        let [little, more, much] = penalties.jump.map(u16::from);
+        if change < penalties.edges[0] {
+            little
+        } else if change < penalties.edges[1] {
+            more
+        } else {
+            much
+        }
+    };
+    let mut sums = costs.clone();
+    let mut above: Vec<Vec<u16>> = Vec::new();
+    for y in 0..height {
+        let along = |columns: &mut dyn Iterator<Item = usize>| {
+            let mut paths = vec![Vec::new(); width];
+            let mut from: Option<usize> = None;
+            for x in columns {
+                paths[x] = match from {
+                    Some(from) => add(costs.at(x, y), &message(penalties, &paths[from], jump((x, y), (from, y)))),
+                    None => costs.at(x, y).to_vec(),
+                };
+                from = Some(x);
+            }
+            paths
+        };
+        let from_left = along(&mut (0..width));
+        let from_right = along(&mut (0..width).rev());
+        let from_above = |x: usize| {
+            if y == 0 {
+                return vec![0; costs.disparities];
+            }
+            if !two_from_above {
+                let path = average(&above[x.saturating_sub(2)], &above[(x + 2).min(width - 1)]);
+                return message(penalties, &path, jump((x, y), (x, y - 1)));
+            }
+            let beside = [x.checked_sub(2), Some(x + 2).filter(|&x| x < width)];
+            let messages = beside.map(|from| Some(message(penalties, &above[from?], jump((x, y), (from?, y - 1)))));
+            match messages {
+                [Some(a), Some(b)] => average(&a, &b),
+                [Some(one), None] | [None, Some(one)] => one,
+                [None, None] => vec![0; costs.disparities],
+            }
+        };
+        above = (0..width).map(|x| add(costs.at(x, y), &from_above(x))).collect();
+        for x in 0..width {
+            let sum = add(&add(&from_left[x], &from_right[x]), &above[x]);
+            for (to, sum) in sums.at_mut(x, y).iter_mut().zip(sum) {
+                *to = sum.min(255);
+            }
+        }
+    }
+    sums
+}

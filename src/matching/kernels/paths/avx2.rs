@@ -1,0 +1,182 @@
+//! AVX2 registers. Only the code that is compiled for AVX2, behind its proof, makes one.
+#![allow(unsafe_code)]
+
+use super::group::Group;
+use core::arch::x86_64::*;
+
+/// 32 bytes in a register.
+#[derive(Clone, Copy)]
+#[repr(transparent)]
+pub(in crate::matching) struct Wide(__m256i);
+
+/// Calls of intrinsics.
+macro_rules! safely {
+    ($work:expr) => {
+        // SAFETY: only code that runs behind the proof that the processor has AVX2 is given groups of this kind; the pointers are to arrays of a register's size, without alignment.
+        unsafe { $work }
+    };
+}
+
+impl Group for Wide {
+    const LANES: usize = 32;
+    const PUTS_ROWS: bool = true;
+    type Cell = [u8; 32];
+    type Bytes = [u8; 32];
+
+    #[inline(always)]
+    fn cells(bytes: &[u8]) -> &[Self::Cell] {
+        bytes.as_chunks().0
+    }
+
+    #[inline(always)]
+    fn cells_mut(bytes: &mut [u8]) -> &mut [Self::Cell] {
+        bytes.as_chunks_mut().0
+    }
+
+    #[inline(always)]
+    fn groups(bytes: &[u8]) -> &[Self::Bytes] {
+        bytes.as_chunks().0
+    }
+
+    #[inline(always)]
+    fn of_bytes(bytes: Self::Bytes) -> Self {
+        Self::of(bytes)
+    }
+
+    #[inline(always)]
+    fn of(cell: Self::Cell) -> Self {
+        safely!(Self(_mm256_loadu_si256(cell.as_ptr().cast())))
+    }
+
+    #[inline(always)]
+    fn cell(self) -> Self::Cell {
+        let mut cell = [0; 32];
+        safely!(_mm256_storeu_si256(cell.as_mut_ptr().cast(), self.0));
+        cell
+    }
+
+    #[inline(always)]
+    fn splat(number: u8) -> Self {
+        safely!(Self(_mm256_set1_epi8(number as i8)))
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        safely!(Self(_mm256_add_epi8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn minus(self, other: Self) -> Self {
+        safely!(Self(_mm256_sub_epi8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn plus_saturating(self, other: Self) -> Self {
+        safely!(Self(_mm256_adds_epu8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn minus_saturating(self, other: Self) -> Self {
+        safely!(Self(_mm256_subs_epu8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        safely!(Self(_mm256_min_epu8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        safely!(Self(_mm256_max_epu8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn average_up(self, other: Self) -> Self {
+        safely!(Self(_mm256_avg_epu8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        safely!(Self(_mm256_or_si256(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn apart(self, other: Self) -> Self {
+        self.minus_saturating(other).or(other.minus_saturating(self))
+    }
+
+    #[inline(always)]
+    fn average_down(self, other: Self) -> Self {
+        safely!(Self(_mm256_and_si256(_mm256_srli_epi16(_mm256_add_epi8(self.0, other.0), 1), _mm256_set1_epi8(0x7f))))
+    }
+
+    #[inline(always)]
+    fn quarter(self) -> Self {
+        safely!(Self(_mm256_and_si256(_mm256_srli_epi16(self.0, 2), _mm256_set1_epi8(0x3f))))
+    }
+
+    #[inline(always)]
+    fn bits_apart(self, other: Self) -> Self {
+        safely!({
+            // The bits of a nibble, looked up.
+            let bits = _mm256_setr_epi8(
+                0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4, 0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4,
+            );
+            let nibble = _mm256_set1_epi8(0x0f);
+            let apart = _mm256_xor_si256(self.0, other.0);
+            let low = _mm256_shuffle_epi8(bits, _mm256_and_si256(apart, nibble));
+            let high = _mm256_shuffle_epi8(bits, _mm256_and_si256(_mm256_srli_epi16(apart, 4), nibble));
+            Self(_mm256_add_epi8(low, high))
+        })
+    }
+
+    #[inline(always)]
+    fn after(self, before: Self) -> Self {
+        safely!(Self(_mm256_alignr_epi8(self.0, _mm256_permute2x128_si256(before.0, self.0, 0x21), 15)))
+    }
+
+    #[inline(always)]
+    fn before(self, next: Self) -> Self {
+        safely!(Self(_mm256_alignr_epi8(_mm256_permute2x128_si256(self.0, next.0, 0x21), self.0, 1)))
+    }
+
+    #[inline(always)]
+    fn least(self) -> u8 {
+        safely!({
+            let half = _mm_min_epu8(_mm256_castsi256_si128(self.0), _mm256_extracti128_si256(self.0, 1));
+            // The lesser byte of each half-word, of which one instruction finds the least.
+            let halves = _mm_min_epu8(half, _mm_srli_epi16(half, 8));
+            _mm_cvtsi128_si32(_mm_minpos_epu16(halves)) as u8
+        })
+    }
+
+    #[inline(always)]
+    fn last_least(cells: &[Self]) -> (u8, usize) {
+        let all = cells.iter().fold(Self::splat(u8::MAX), |all, &cell| all.min(cell));
+        let least = all.least();
+        let wanted = Self::splat(least);
+        let mut place = 0;
+        for (first, cell) in (0..).step_by(Self::LANES).zip(cells) {
+            let equal = safely!(_mm256_movemask_epi8(_mm256_cmpeq_epi8(cell.0, wanted.0))) as u32;
+            let last = (first + 31usize).wrapping_sub(equal.leading_zeros() as usize);
+            place = if equal != 0 { last } else { place };
+        }
+        (least, place)
+    }
+
+    #[inline(always)]
+    fn lane(cells: &[Self], lane: usize) -> u8 {
+        cells.get(lane / 32).map_or(0, |cell| cell.cell().get(lane % 32).copied().unwrap_or(0))
+    }
+
+    #[inline(always)]
+    fn raise(cells: &mut [Self], lane: usize) {
+        if let Some(cell) = cells.get_mut(lane / 32) {
+            let mut bytes = cell.cell();
+            if let Some(byte) = bytes.get_mut(lane % 32) {
+                *byte = u8::MAX;
+            }
+            *cell = Self::of(bytes);
+        }
+    }
+}

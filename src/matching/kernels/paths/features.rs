@@ -1,0 +1,129 @@
+//! What a pixel's cost compares, of a row of both images:
+//!
+//! * the gradients along the line and across it, cut off;
+//! * the brightness, halved;
+//! * a census of eight neighbours, wide along the line.
+
+use super::PathWork;
+use crate::imaging::{census_wide8, gradients};
+use crate::matching::paths::Along;
+use crate::matching::scheme::Around;
+
+/// Rows of numbers, a byte a pixel.
+pub(super) struct Features<'a> {
+    /// Of the left image, by column.
+    pub left: Looks<'a>,
+    /// Of the right image: column `x` is compared with `stride` of them from `x` on. The first column is repeated for those
+    /// that lie left of the image.
+    pub right: Looks<'a>,
+    /// The least and the greatest of a right column's gradient along the line and of those halfway to its neighbours; and of
+    /// its brightness. Empty where nothing is compared between pixels.
+    pub gradients: [&'a [u8]; 2],
+    pub brightness: [&'a [u8]; 2],
+}
+
+/// What pixels look like.
+pub(super) struct Looks<'a> {
+    pub along: &'a [u8],
+    pub across: &'a [u8],
+    pub census: &'a [u8],
+    pub brightness: &'a [u8],
+}
+
+/// The features of a row, in `room`.
+#[inline(always)]
+pub(super) fn of<'a, S: Along>(
+    work: &PathWork<'_>,
+    lines: [&Around<'a>; 2],
+    room: &'a mut [u8],
+) -> Option<Features<'a>> {
+    let (width, gradient) = (work.width, work.penalties.gradient);
+    let [left, right] = lines.map(|lines| lines.map(|line| line.get(..width).unwrap_or(&[])));
+    let (of_left, of_right) = room.split_at_mut_checked(3 * width)?;
+    let [along, across, census] = rows(of_left, width);
+    looks(&left, gradient, [&mut *along, &mut *across, &mut *census]);
+    let of_left = Looks { along, across, census, brightness: left[2] };
+
+    // One more than is compared, for the numbers halfway to the last.
+    let count = width + work.stride;
+    let [along, across, census, brightness, ranges @ ..]: [_; 8] = rows(of_right, count);
+    let outside = count.min(work.stride - 1 + work.min_disparity);
+    looks(
+        &right,
+        gradient,
+        [&mut *along, &mut *across, &mut *census].map(|row| row.get_mut(outside..).unwrap_or_default()),
+    );
+    for (to, from) in brightness.iter_mut().skip(outside).zip(right[2]) {
+        *to = from >> 1;
+    }
+    // The first column on its own, with the next one: the row may begin behind it.
+    let mut first = [[0; 2]; 3];
+    looks(&right, gradient, first.each_mut().map(|first| first.get_mut(..width.min(2)).unwrap_or_default()));
+    let [first_along, first_across, first_census] = first;
+    let first_brightness = [0, 1].map(|x| right[2].get(x).map_or(0, |pixel| pixel >> 1));
+    for (row, [first, _]) in [
+        (&mut *along, first_along),
+        (&mut *across, first_across),
+        (&mut *census, first_census),
+        (&mut *brightness, first_brightness),
+    ] {
+        repeat(row, first, outside);
+        // Behind the last column it goes on.
+        let last = row.get(outside + width - 1).copied().unwrap_or(0);
+        row.get_mut(outside + width..).unwrap_or_default().fill(last);
+    }
+    let [a, b, c, d] = ranges;
+    if S::BETWEEN_PIXELS {
+        for (row, least, greatest, [first, next]) in
+            [(&*along, &mut *a, &mut *b, first_along), (&*brightness, &mut *c, &mut *d, first_brightness)]
+        {
+            range(row, least, greatest);
+            let range = between(first, first, if width > 1 { next } else { first });
+            repeat(least, range.0, outside);
+            repeat(greatest, range.1, outside);
+        }
+    }
+    let right = Looks { along, across, census, brightness };
+    Some(Features { left: of_left, right, gradients: [a, b], brightness: [c, d] })
+}
+
+/// Rows of so many bytes; what there is no room for is empty.
+#[inline(always)]
+fn rows<const N: usize>(room: &mut [u8], length: usize) -> [&mut [u8]; N] {
+    let mut rows = room.chunks_exact_mut(length.max(1));
+    core::array::from_fn(|_| rows.next().unwrap_or_default())
+}
+
+/// The features of as many columns as there is a place for.
+#[inline(always)]
+fn looks(lines: &Around<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
+    gradients(&[lines[1], lines[2], lines[3]], gradient, along, across);
+    census_wide8(lines, census);
+}
+
+/// Repeats the first column before the image.
+#[inline(always)]
+fn repeat(row: &mut [u8], first: u8, outside: usize) {
+    row.get_mut(..outside).unwrap_or_default().fill(first);
+}
+
+/// The least and the greatest of each number and those halfway to its neighbours, rounded down, of all but the two at the
+/// ends.
+#[inline(always)]
+fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
+    let inner = least.iter_mut().zip(greatest.iter_mut()).skip(1);
+    let next = numbers.iter().skip(2);
+    for ((least, greatest), ((&before, &here), &next)) in
+        inner.zip(numbers.iter().zip(numbers.iter().skip(1)).zip(next))
+    {
+        (*least, *greatest) = between(before, here, next);
+    }
+}
+
+/// The range of one number.
+#[inline(always)]
+pub(super) fn between(before: u8, here: u8, next: u8) -> (u8, u8) {
+    // Seven bits each.
+    let (a, b) = (before.wrapping_add(here) >> 1, here.wrapping_add(next) >> 1);
+    (here.min(a).min(b), here.max(a).max(b))
+}

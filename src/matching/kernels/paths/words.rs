@@ -1,0 +1,225 @@
+//! Four bytes in a 32-bit word.
+//!
+//! The lanes have a spare bit at the top of each. It is set before a subtraction and tells then whether the lane is
+//! not smaller: masks and minima are made of that, in seven operations where the Arm DSP instructions take two
+//! (`--cfg stereopsis_dsp`: Cortex-M4, M7, and M33 with its extension).
+
+use super::group::Group;
+use crate::matching::kernels::scratch::{words_mut, words_of};
+
+/// The top bit of each lane.
+const TOP: u32 = 0x8080_8080;
+/// A one in each lane.
+const ONE: u32 = 0x0101_0101;
+
+/// Four bytes, the first lane lowest.
+#[derive(Clone, Copy)]
+#[repr(transparent)]
+pub(in crate::matching) struct Word(u32);
+
+/// All but the top bit of each lane in which `a` is not less than `b`.
+#[cfg(not(stereopsis_dsp))]
+#[inline(always)]
+fn not_less(a: u32, b: u32) -> u32 {
+    let top = ((a | TOP) - b) & TOP;
+    top - (top >> 7)
+}
+
+impl Group for Word {
+    const LANES: usize = 4;
+    const PUTS_ROWS: bool = false;
+    type Cell = u32;
+    type Bytes = [u8; 4];
+
+    #[inline(always)]
+    fn cells(bytes: &[u8]) -> &[u32] {
+        words_of(bytes)
+    }
+
+    #[inline(always)]
+    fn cells_mut(bytes: &mut [u8]) -> &mut [u32] {
+        words_mut(bytes)
+    }
+
+    #[inline(always)]
+    fn groups(bytes: &[u8]) -> &[[u8; 4]] {
+        bytes.as_chunks().0
+    }
+
+    #[inline(always)]
+    fn of(cell: u32) -> Self {
+        Self(cell)
+    }
+
+    #[inline(always)]
+    fn of_bytes(bytes: [u8; 4]) -> Self {
+        Self(u32::from_le_bytes(bytes))
+    }
+
+    #[inline(always)]
+    fn cell(self) -> u32 {
+        self.0
+    }
+
+    #[inline(always)]
+    fn splat(number: u8) -> Self {
+        Self(u32::from(number) * ONE)
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        Self(self.0.wrapping_add(other.0))
+    }
+
+    #[inline(always)]
+    fn minus(self, other: Self) -> Self {
+        Self(self.0.wrapping_sub(other.0))
+    }
+
+    #[inline(always)]
+    fn plus_saturating(self, other: Self) -> Self {
+        #[cfg(stereopsis_dsp)]
+        return Self(super::dsp::uqadd8(self.0, other.0));
+        #[cfg(not(stereopsis_dsp))]
+        {
+            let sum = (self.0 & !TOP) + other.0;
+            let over = self.0 & sum & TOP;
+            Self((sum | self.0 & TOP) | (over >> 7) * 0xff)
+        }
+    }
+
+    #[inline(always)]
+    fn minus_saturating(self, other: Self) -> Self {
+        #[cfg(stereopsis_dsp)]
+        return Self(super::dsp::uqsub8(self.0, other.0));
+        #[cfg(not(stereopsis_dsp))]
+        Self(((self.0 | TOP) - other.0) & not_less(self.0, other.0))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        #[cfg(stereopsis_dsp)]
+        return Self(super::dsp::min8(self.0, other.0));
+        #[cfg(not(stereopsis_dsp))]
+        Self(self.0 ^ (self.0 ^ other.0) & not_less(self.0, other.0))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        #[cfg(stereopsis_dsp)]
+        return Self(super::dsp::max8(self.0, other.0));
+        #[cfg(not(stereopsis_dsp))]
+        Self(other.0 ^ (self.0 ^ other.0) & not_less(self.0, other.0))
+    }
+
+    #[inline(always)]
+    fn apart(self, other: Self) -> Self {
+        #[cfg(stereopsis_dsp)]
+        return self.minus_saturating(other).or(other.minus_saturating(self));
+        #[cfg(not(stereopsis_dsp))]
+        {
+            let least = self.min(other);
+            Self((self.0 ^ other.0 ^ least.0) - least.0)
+        }
+    }
+
+    #[inline(always)]
+    fn average_up(self, other: Self) -> Self {
+        Self((self.0 + other.0 + ONE) >> 1 & !TOP)
+    }
+
+    #[inline(always)]
+    fn average_down(self, other: Self) -> Self {
+        Self((self.0 + other.0) >> 1 & !TOP)
+    }
+
+    #[inline(always)]
+    fn quarter(self) -> Self {
+        Self(self.0 >> 2 & 0x3f * ONE)
+    }
+
+    #[inline(always)]
+    fn bits_apart(self, other: Self) -> Self {
+        let bits = self.0 ^ other.0;
+        let pairs = bits - (bits >> 1 & 0x55 * ONE);
+        let fours = (pairs & 0x33 * ONE) + (pairs >> 2 & 0x33 * ONE);
+        Self((fours + (fours >> 4)) & 0x0f * ONE)
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    #[inline(always)]
+    fn after(self, before: Self) -> Self {
+        Self(self.0 << 8 | before.0 >> 24)
+    }
+
+    #[inline(always)]
+    fn before(self, next: Self) -> Self {
+        Self(self.0 >> 8 | next.0 << 24)
+    }
+
+    #[inline(always)]
+    fn least(self) -> u8 {
+        let two = self.min(Self(self.0 >> 16));
+        two.min(Self(two.0 >> 8)).0 as u8
+    }
+
+    #[inline(always)]
+    fn last_least(cells: &[Self]) -> (u8, usize) {
+        // Of equal ones the later is taken.
+        #[cfg(stereopsis_dsp)]
+        let keys = {
+            let (mut least, mut places) = (u32::MAX, 0u32);
+            let mut place = 0u32;
+            for cell in cells {
+                (least, places) = super::dsp::not_more(cell.0, least, place, places);
+                place = place.wrapping_add(ONE);
+            }
+            // The cost above the lane, counted from the last one.
+            let key = |lane: u32| {
+                let (cost, place) = (least >> (8 * lane) & 0xff, places >> (8 * lane) & 0xff);
+                cost << 16 | (0xffff - (4 * place + lane))
+            };
+            [key(0), key(1), key(2), key(3)]
+        };
+        #[cfg(not(stereopsis_dsp))]
+        let keys = {
+            // Half-words with a spare bit: the cost above seven bits of the place, counted down.
+            const HALVES: u32 = 0x8000_8000;
+            let mut least = [0x7fff_7fffu32; 2];
+            let mut place = 0x007f_007fu32;
+            for cell in cells {
+                for (least, costs) in least.iter_mut().zip([(cell.0 & 0x00ff_00ff) << 7, cell.0 >> 1 & 0x7f80_7f80]) {
+                    let key = costs | place;
+                    let top = ((*least | HALVES) - key) & HALVES;
+                    *least ^= (*least ^ key) & (top - (top >> 15));
+                }
+                place -= 0x0001_0001;
+            }
+            let key = |half: u32, lane: u32| {
+                let (cost, place) = (half >> 7, 127 - (half & 0x7f));
+                cost << 16 | (0xffff - (4 * place + lane))
+            };
+            let [even, odd] = least;
+            [key(even & 0xffff, 0), key(odd & 0xffff, 1), key(even >> 16, 2), key(odd >> 16, 3)]
+        };
+        let [a, b, c, d] = keys;
+        let key = a.min(b).min(c.min(d));
+        ((key >> 16) as u8, 0xffff - (key & 0xffff) as usize)
+    }
+
+    #[inline(always)]
+    fn lane(cells: &[Self], lane: usize) -> u8 {
+        cells.get(lane / 4).map_or(0, |cell| (cell.0 >> (8 * (lane % 4))) as u8)
+    }
+
+    #[inline(always)]
+    fn raise(cells: &mut [Self], lane: usize) {
+        if let Some(cell) = cells.get_mut(lane / 4) {
+            cell.0 |= 0xff << (8 * (lane % 4));
+        }
+    }
+}

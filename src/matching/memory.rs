@@ -1,0 +1,75 @@
+//! What a method keeps from row to row, and room to work in.
+
+use super::kernels::{Aligned, Columns, OUTSIDE, Scratch, Winner};
+
+/// How much memory a method takes: multiples of the width, of width x disparities, and of the disparities.
+pub struct Bytes {
+    pub per_pixel: usize,
+    pub per_candidate: usize,
+    pub per_disparity: usize,
+}
+
+/// The memory of a method, all zero when it is [`Memory::EMPTY`].
+pub trait Memory {
+    const EMPTY: Self;
+    /// All of it, cut to a frame's width and candidates.
+    fn parts(&mut self, width: usize, stride: usize) -> Parts<'_>;
+}
+
+/// The memory of a method as slices.
+pub struct Parts<'a> {
+    /// What the rows that are still wanted look like.
+    pub codes: &'a mut [u8],
+    /// What is summed for every candidate of every column, where a word may stand.
+    pub columns: &'a mut [u8],
+    /// Of each column its winner, what the right one keeps, and how long its surface is along the row; empty where these
+    /// share the `scratch`.
+    pub winners: &'a mut [Winner],
+    pub right: &'a mut [u16],
+    pub lengths: &'a mut [u16],
+    /// Room to work in.
+    pub scratch: &'a mut [u32],
+}
+
+/// The memory of a window over `ROWS` rows of codes, with the one that leaves it.
+pub struct WindowMemory<const ROWS: usize, const W: usize, const D: usize> {
+    codes: Aligned<[[[u8; 2]; W]; ROWS]>,
+    columns: Columns<W, D>,
+    scratch: Scratch<W, D>,
+    winners: [Winner; W],
+    right: [u16; W],
+    lengths: [u16; W],
+}
+
+impl<const ROWS: usize> WindowMemory<ROWS, 0, 0> {
+    /// Two bytes a code; the scratch's codes, the winner, what the right column keeps and the length.
+    pub const BYTES: Bytes =
+        Bytes { per_pixel: 2 * ROWS + 2 + 4 + 2 + 2, per_candidate: 1, per_disparity: 3 + 2 * OUTSIDE };
+}
+
+impl<const ROWS: usize, const W: usize, const D: usize> Memory for WindowMemory<ROWS, W, D> {
+    const EMPTY: Self = Self {
+        codes: Aligned([[[0; 2]; W]; ROWS]),
+        columns: Columns::ZERO,
+        scratch: Scratch::ZERO,
+        winners: [Winner::NONE; W],
+        right: [0; W],
+        lengths: [0; W],
+    };
+
+    fn parts(&mut self, width: usize, stride: usize) -> Parts<'_> {
+        Parts {
+            codes: first(self.codes.0.as_flattened_mut().as_flattened_mut(), 2 * width * ROWS),
+            columns: first(self.columns.flat(), (width + 2 * OUTSIDE) * stride),
+            winners: first(&mut self.winners, width),
+            right: first(&mut self.right, width),
+            lengths: first(&mut self.lengths, width),
+            scratch: self.scratch.words(),
+        }
+    }
+}
+
+/// The first `count` of a slice.
+pub fn first<T>(slice: &mut [T], count: usize) -> &mut [T] {
+    slice.get_mut(..count).unwrap_or_default()
+}

@@ -1,0 +1,156 @@
+//! The two methods whose costs are sums along paths: semi-global matching (Hirschmüller 2008) on lines as they come.
+//!
+//! A row's costs are averaged with those of the rows above it and of the one below, each half as much as the next; then
+//! paths bring together what the pixels of a surface have in common: from the left, from the right, and from above. No
+//! frame is kept, and no path comes from below: that path measured least, and it would take the frame.
+
+use super::kernels::{Aligned, Guide, PathWork, Room, Select, Unique, bytes_mut, halves_mut, winners_mut};
+use super::memory::{Bytes, Memory, Parts, first};
+use super::row::slot;
+use super::scheme::{Around, Lines, Scheme};
+use super::speckle::BAND;
+use super::stages::{Stages, slot_mut};
+use crate::units::PixelFlags;
+
+/// A method along paths.
+pub trait Along: Scheme {
+    /// Whether gradients and brightness are compared between pixels too (Birchfield & Tomasi 1998), or just at them.
+    const BETWEEN_PIXELS: bool;
+    /// Whether the two paths that come from above give a message each, or one for their average.
+    const TWO_FROM_ABOVE: bool;
+}
+
+/// Method `sgm`: gradients, brightness and a wide census, compared between pixels, along three paths.
+#[derive(Clone, Copy, Debug)]
+pub struct Sgm;
+
+/// Method `sgm-lean`: as [`Sgm`], compared at pixels only and with one message from above: four fifths of the work.
+#[derive(Clone, Copy, Debug)]
+pub struct SgmLean;
+
+impl Along for Sgm {
+    const BETWEEN_PIXELS: bool = true;
+    const TWO_FROM_ABOVE: bool = true;
+}
+
+impl Along for SgmLean {
+    const BETWEEN_PIXELS: bool = false;
+    const TWO_FROM_ABOVE: bool = false;
+}
+
+/// [`Scheme`] and [`Lines`] of a method along paths.
+macro_rules! along_paths {
+    ($method:ty, $name:literal) => {
+        impl Scheme for $method {
+            const RADIUS_X: usize = 4;
+            const RADIUS_Y: usize = 1;
+            const SIGMA_PX: f32 = 0.15;
+            const NAME: &'static str = $name;
+        }
+
+        impl Lines for $method {
+            type Memory<const W: usize, const D: usize> = PathMemory<W, D>;
+            const BYTES: Bytes = PathMemory::BYTES;
+
+            #[inline(always)]
+            fn enter(_: &mut Stages<'_, Self>, _: usize, _: [&Around<'_>; 2]) {}
+
+            // For the reason that `Kernel::row` is inlined.
+            #[inline(always)]
+            fn select(
+                stages: &mut Stages<'_, Self>,
+                bottom: usize,
+                lines: Option<[&Around<'_>; 2]>,
+                row: Option<usize>,
+            ) {
+                stages.select_along(bottom, lines, row);
+            }
+
+            fn step(stages: Stages<'_, Self>, y: usize, lines: Option<[&Around<'_>; 2]>) {
+                stages.step(y, lines);
+            }
+        }
+    };
+}
+
+along_paths!(Sgm, "sgm");
+along_paths!(SgmLean, "sgm-lean");
+
+/// The memory of a method along paths.
+pub struct PathMemory<const W: usize, const D: usize> {
+    /// The left image's last two rows, row `y` in slot `y % 2`.
+    guides: [[u8; W]; 2],
+    /// Costs, paths from above, sums.
+    volumes: Aligned<[[[u8; D]; W]; 3]>,
+    /// Room for the features of a row; when they are done with, for its winners.
+    room: Room<W, D>,
+}
+
+impl PathMemory<0, 0> {
+    pub const BYTES: Bytes =
+        Bytes { per_pixel: 2 + Room::<0, 0>::PER_PIXEL, per_candidate: 3, per_disparity: Room::<0, 0>::PER_DISPARITY };
+}
+
+impl<const W: usize, const D: usize> Memory for PathMemory<W, D> {
+    const EMPTY: Self = Self { guides: [[0; W]; 2], volumes: Aligned([[[0; D]; W]; 3]), room: Room::ZERO };
+
+    fn parts(&mut self, width: usize, stride: usize) -> Parts<'_> {
+        Parts {
+            codes: first(self.guides.as_flattened_mut(), 2 * width),
+            columns: first(self.volumes.0.as_flattened_mut().as_flattened_mut(), 3 * width * stride),
+            winners: &mut [],
+            right: &mut [],
+            lengths: &mut [],
+            scratch: self.room.words(),
+        }
+    }
+}
+
+impl<'a, S: Along> Stages<'a, S> {
+    /// Adds row `bottom` to the costs of the row above it, and selects the winners of that one.
+    #[inline(always)]
+    fn select_along(&mut self, bottom: usize, lines: Option<[&Around<'_>; 2]>, row: Option<usize>) {
+        let (width, stride, config) = (self.width, self.stride, self.config);
+        let (costs, rest) = self.columns.split_at_mut_checked(width * stride).unwrap_or_default();
+        let (top, sums) = rest.split_at_mut_checked(width * stride).unwrap_or_default();
+        let mut work = PathWork {
+            width,
+            stride,
+            disparities: usize::from(config.disparities),
+            min_disparity: usize::from(config.min_disparity),
+            penalties: &config.penalties,
+            costs,
+            top,
+            sums,
+        };
+        if let Some(lines) = lines {
+            self.kernel.enter::<S>(&mut work, lines, bottom == 0, bytes_mut(self.scratch));
+        }
+        // The features are done with.
+        let room = core::mem::take(&mut self.scratch);
+        let (winners, room) = room.split_at_mut_checked(width).unwrap_or_default();
+        let (right, room) = room.split_at_mut_checked(width.div_ceil(2)).unwrap_or_default();
+        let (lengths, room) = room.split_at_mut_checked(width.div_ceil(2)).unwrap_or_default();
+        self.winners = winners_mut(winners);
+        self.right = first(halves_mut(right), width);
+        self.support.lengths = first(halves_mut(lengths), width);
+        self.scratch = room;
+        if let Some(row) = row {
+            let flags = slot_mut(self.flags, row % BAND, width);
+            flags.fill(PixelFlags::CLEAR);
+            let guide = |y: usize| slot(self.codes, y % 2, width);
+            let guide = Guide { here: guide(row), above: row.checked_sub(1).map(guide) };
+            let select = Select {
+                disparities: work.disparities,
+                winners: self.winners,
+                unique: Unique::new(config.checks.uniqueness_percent, flags),
+            };
+            self.kernel.select::<S>(work, guide, select);
+        }
+        if let Some([left, _]) = lines {
+            for (kept, pixel) in slot_mut(self.codes, bottom % 2, width).iter_mut().zip(left[2]) {
+                *kept = *pixel;
+            }
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! What semi-global matching takes a pixel's cost and a step of the disparity to be worth.
+
+use super::config::ConfigError;
+
+/// The numbers of the methods along paths, [`Sgm`](super::Sgm) and [`SgmLean`](super::SgmLean); the block methods do not
+/// look at them. The default is what measured best on real pairs.
+///
+/// A path's cost at a pixel and disparity is the pixel's own cost and the least of its predecessor's costs: at the same
+/// disparity for nothing, at the next one for `step`, at any other for one of `jump` (Hirschmüller 2008).
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Penalties {
+    /// A pixel's gradients are cut off at this many units to each side, 1 to [`Self::MOST_GRADIENT`]. The unit is an
+    /// eighth of a grey level per pixel: a gradient is that of Sobel's operator.
+    pub gradient: u8,
+    /// A pixel's cost is cut off at this.
+    pub cost: u8,
+    /// What a change of the disparity by one px costs.
+    pub step: u8,
+    /// What any larger change costs: where the left image's brightness changes little, more, and much.
+    pub jump: [u8; 3],
+    /// The changes of brightness, in grey levels, at which it is more, and much.
+    pub edges: [u8; 2],
+}
+
+impl Penalties {
+    /// The widest range of gradients: a pixel's cost stays within seven bits.
+    pub const MOST_GRADIENT: u8 = 14;
+
+    /// What measured best.
+    pub const DEFAULT: Self = Self { gradient: 7, cost: 16, step: 16, jump: [88, 44, 26], edges: [8, 20] };
+
+    /// All zero: of a matcher that was not started.
+    pub(super) const UNSET: Self = Self { gradient: 0, cost: 0, step: 0, jump: [0; 3], edges: [0; 2] };
+
+    /// Whether all sums stay within their bytes.
+    pub(super) const fn check(&self) -> Result<(), ConfigError> {
+        let Self { gradient, cost, step, jump: [little, more, much], edges } = *self;
+        let most = if little > more { little } else { more };
+        let most = if most > much { most } else { much };
+        let least = if little < more { little } else { more };
+        let least = if least < much { least } else { much };
+        if gradient < 1 || gradient > Self::MOST_GRADIENT {
+            return Err(ConfigError::Gradient);
+        }
+        if cost < 1 || step < 1 || step > least || edges[0] > edges[1] {
+            return Err(ConfigError::Penalties);
+        }
+        // A path's cost and the step from it take seven bits; and where three paths agree least, their sum is still
+        // under 255, so that a winner's cost is none that was cut off.
+        let (cost, step, jump) = (cost as u16, step as u16, most as u16);
+        if cost + step + jump > 127 || cost + 2 * (cost + jump) >= 255 {
+            return Err(ConfigError::Penalties);
+        }
+        Ok(())
+    }
+
+    /// What a jump costs between two pixels of the left image.
+    #[inline(always)]
+    pub(super) fn jump_between(&self, a: u8, b: u8) -> u8 {
+        let change = a.abs_diff(b);
+        let [little, more, much] = self.jump;
+        let not_little = if change < self.edges[1] { more } else { much };
+        if change < self.edges[0] { little } else { not_little }
+    }
+}
+
+impl Default for Penalties {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+const _: () = assert!(Penalties::DEFAULT.check().is_ok(), "the default is a good choice");

@@ -3,32 +3,60 @@
 /// Sobel's gradients of a row along the line and across it, in eighths of a grey level per pixel, cut off at `most` (up to
 /// 127) to each side, plus `most`: 0 to 2 `most`.
 ///
-/// `rows` are the rows above, here and below; every number is written for which all of them have a pixel. A line ends where
+/// `rows` are the rows above, here and below; those numbers are written for which all of them have a pixel and
+/// both places. A line ends where
 /// the shortest of them does, and columns outside it are the nearest inside.
 pub fn gradients(rows: &[&[u8]; 3], most: u8, along: &mut [u8], across: &mut [u8]) {
     let most = i16::from(most.min(127));
     let width = rows.iter().fold(usize::MAX, |w, row| w.min(row.len()));
-    let [Some(above), Some(here), Some(below)] = rows.map(|row| row.get(..width)) else { return };
-    let cut = |gradient: i16| (gradient.clamp(-most, most) + most) as u8;
-    let both = |above: [u8; 3], here: [u8; 3], below: [u8; 3]| {
-        let [a, b, c] = [above, here, below].map(|row| row.map(i16::from));
-        let along = (a[2] - a[0]) + 2 * (b[2] - b[0]) + (c[2] - c[0]);
-        let across = (c[0] - a[0]) + 2 * (c[1] - a[1]) + (c[2] - a[2]);
-        (cut(along), cut(across))
-    };
-    let inner = along.iter_mut().zip(across.iter_mut()).skip(1);
-    let lines = above.windows(3).zip(here.windows(3)).zip(below.windows(3));
-    for ((along, across), ((above, here), below)) in inner.zip(lines) {
-        let three = |row: &[u8]| row.first_chunk().copied().unwrap_or([0; 3]);
-        (*along, *across) = both(three(above), three(here), three(below));
-    }
+    let count = along.len().min(across.len()).min(width);
+    let (Some(along), Some(across)) = (along.get_mut(..count), across.get_mut(..count)) else { return };
     let last = width.saturating_sub(1);
-    for x in [0, last] {
-        let three = |row: &[u8]| [x.saturating_sub(1), x, (x + 1).min(last)].map(|x| row.get(x).copied().unwrap_or(0));
-        if let Some((along, across)) = along.get_mut(x).zip(across.get_mut(x)).filter(|_| x < width) {
-            (*along, *across) = both(three(above), three(here), three(below));
+    let inner = count.min(last).saturating_sub(1);
+    // The inner columns in groups; the last group is moved back to end with the line.
+    let begins = (0..inner / LANES).map(|group| group * LANES).chain(inner.checked_sub(LANES));
+    for begin in begins {
+        let around = rows.map(|row| row.get(begin..).and_then(|row| row.first_chunk()).unwrap_or(&[0; AROUND]));
+        let (to_along, to_across) = (along.get_mut(begin + 1..), across.get_mut(begin + 1..));
+        let to_along = to_along.and_then(|to| to.first_chunk_mut::<LANES>());
+        if let (Some(to_along), Some(to_across)) = (to_along, to_across.and_then(|to| to.first_chunk_mut::<LANES>())) {
+            (*to_along, *to_across) = group::<LANES, AROUND>(around, most);
         }
     }
+    // The columns at the ends one by one, and all of a line that is shorter than a group.
+    let grouped = if inner < LANES { 1 } else { 1 + inner };
+    for x in (0..count.min(1)).chain(grouped.min(count)..count) {
+        let three = |row: &[u8]| [x.saturating_sub(1), x, (x + 1).min(last)].map(|x| row.get(x).copied().unwrap_or(0));
+        let around = rows.map(three);
+        if let Some((along, across)) = along.get_mut(x).zip(across.get_mut(x)) {
+            let ([one], [other]) = group::<1, 3>(around.each_ref(), most);
+            (*along, *across) = (one, other);
+        }
+    }
+}
+
+/// Columns worked on at a time, as lanes.
+const LANES: usize = 16;
+/// Columns that so many gradients look at.
+const AROUND: usize = LANES + 2;
+
+/// The gradients of `N` columns, of which `M` = `N + 2` are given.
+#[inline(always)]
+fn group<const N: usize, const M: usize>(around: [&[u8; M]; 3], most: i16) -> ([u8; N], [u8; N]) {
+    const { assert!(M == N + 2) };
+    let (mut sums, mut differences) = ([0i16; M], [0i16; M]);
+    for i in 0..M {
+        let [above, here, below] = around.map(|row| i16::from(row[i]));
+        sums[i] = above + 2 * here + below;
+        differences[i] = below - above;
+    }
+    let (mut along, mut across) = ([0; N], [0; N]);
+    let cut = |gradient: i16| (gradient.clamp(-most, most) + most) as u8;
+    for i in 0..N {
+        along[i] = cut(sums[i + 2] - sums[i]);
+        across[i] = cut(differences[i] + 2 * differences[i + 1] + differences[i + 2]);
+    }
+    (along, across)
 }
 
 #[cfg(test)]
@@ -49,8 +77,8 @@ mod tests {
     fn only_what_has_a_place_is_written() {
         let (mut along, mut across) = ([99; 4], [99; 2]);
         gradients(&[&[1, 2, 4], &[1, 2, 4], &[1, 2, 4]], 100, &mut along, &mut across);
-        assert_eq!((along, across), ([104, 112, 108, 99], [100, 100]));
+        assert_eq!((along, across), ([104, 112, 99, 99], [100, 100]));
         gradients(&[&[], &[1], &[1]], 100, &mut along, &mut across);
-        assert_eq!(along[0], 104);
+        assert_eq!((along[0], across[0]), (104, 100));
     }
 }

@@ -14,10 +14,8 @@ use crate::units::PixelFlags;
 
 /// A method along paths.
 pub trait Along: Scheme {
-    /// Whether gradients and brightness are compared between pixels too (Birchfield & Tomasi 1998), or just at them.
+    /// Whether gradients are compared between pixels too (Birchfield & Tomasi 1998), or just at them.
     const BETWEEN_PIXELS: bool;
-    /// Whether the two paths that come from above give a message each, or one for their average.
-    const TWO_FROM_ABOVE: bool;
 }
 
 /// Method `sgm`: gradients, brightness and a wide census, compared between pixels, along three paths.
@@ -30,12 +28,10 @@ pub struct SgmLean;
 
 impl Along for Sgm {
     const BETWEEN_PIXELS: bool = true;
-    const TWO_FROM_ABOVE: bool = true;
 }
 
 impl Along for SgmLean {
     const BETWEEN_PIXELS: bool = false;
-    const TWO_FROM_ABOVE: bool = false;
 }
 
 /// [`Scheme`] and [`Lines`] of a method along paths.
@@ -145,7 +141,7 @@ impl<'a, S: Along> Stages<'a, S> {
                 winners: self.winners,
                 unique: Unique::new(config.checks.uniqueness_percent, flags),
             };
-            self.kernel.select::<S>(work, guide, select);
+            self.kernel.select(work, guide, select);
         }
         if let Some([left, _]) = lines {
             for (kept, pixel) in slot_mut(self.codes, bottom % 2, width).iter_mut().zip(left[2]) {

@@ -46,10 +46,8 @@ pub enum Cost {
     },
     /// Differences of pixels, summed along paths.
     Paths {
-        /// Whether pixels are compared with what lies between pixels.
+        /// Whether gradients are compared with what lies between pixels.
         between_pixels: bool,
-        /// Whether the two paths from above give a message each.
-        two_from_above: bool,
     },
 }
 
@@ -62,14 +60,9 @@ impl Scheme {
     pub const BLOCK: Self =
         Self { cost: Cost::Window { neighbours: &census::RING8, unit: 4 }, radius_x: 4, radius_y: 4, sigma_px: 0.15 };
     /// The twin of [`stereopsis::matching::Sgm`].
-    pub const SGM: Self = Self {
-        cost: Cost::Paths { between_pixels: true, two_from_above: true },
-        radius_x: 4,
-        radius_y: 1,
-        sigma_px: 0.15,
-    };
+    pub const SGM: Self = Self { cost: Cost::Paths { between_pixels: true }, radius_x: 4, radius_y: 1, sigma_px: 0.15 };
     /// The twin of [`stereopsis::matching::SgmLean`].
-    pub const SGM_LEAN: Self = Self { cost: Cost::Paths { between_pixels: false, two_from_above: false }, ..Self::SGM };
+    pub const SGM_LEAN: Self = Self { cost: Cost::Paths { between_pixels: false }, ..Self::SGM };
 }
 
 /// An 8-bit picture whose edge goes on for ever outside of it.
@@ -127,8 +120,8 @@ pub fn match_pair(scheme: &Scheme, config: &Config, left: &GrayImage, right: &Gr
         Cost::Window { neighbours, unit } => {
             cost::window_sums(scheme, unit, &cost::costs(neighbours, config, &left, &right))
         }
-        Cost::Paths { between_pixels, two_from_above } => {
-            paths::path_sums(config, &paths::costs(between_pixels, config, &left, &right), two_from_above, &left)
+        Cost::Paths { between_pixels } => {
+            paths::path_sums(config, &paths::costs(between_pixels, config, &left, &right), &left)
         }
     };
     let mut map = Answers {

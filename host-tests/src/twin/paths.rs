@@ -81,16 +81,16 @@ pub fn costs(between_pixels: bool, config: &Config, left: &Picture<'_>, right: &
     for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
         for (d, cost) in volume.at_mut(x, y).iter_mut().enumerate() {
             let other = x.saturating_sub(usize::from(config.min_disparity) + d);
-            let apart = |a: &Numbers, b: &Numbers| {
-                let (x, other, y) = (x as isize, other as isize, y as isize);
-                if between_pixels { apart_between(a, x, b, other, y) } else { (a.at(x, y) - b.at(other, y)).abs() }
+            let (here, there, row) = (x as isize, other as isize, y as isize);
+            let apart = |a: &Numbers, b: &Numbers| (a.at(here, row) - b.at(there, row)).abs();
+            let along = if between_pixels {
+                apart_between(&left.along, here, &right.along, there, row)
+            } else {
+                apart(&left.along, &right.along)
             };
-            let across = left.across.at(x as isize, y as isize) - right.across.at(other as isize, y as isize);
             let bits = (left.census[y * width + x] ^ right.census[y * width + other]).count_ones() as i32;
-            let sum = 2 * apart(&left.along, &right.along)
-                + across.abs()
-                + apart(&left.brightness, &right.brightness) / 4
-                + bits;
+            let rest = apart(&left.across, &right.across) + apart(&left.brightness, &right.brightness) / 4 + bits;
+            let sum = 2 * along + rest;
             *cost = sum.min(i32::from(penalties.cost)) as u16;
         }
     }
@@ -132,7 +132,7 @@ fn averaged_down(costs: &Volume) -> Volume {
 }
 
 /// The sums of three paths into every pixel, none over 255.
-pub fn path_sums(config: &Config, costs: &Volume, two_from_above: bool, left: &Picture<'_>) -> Volume {
+pub fn path_sums(config: &Config, costs: &Volume, left: &Picture<'_>) -> Volume {
     let penalties = &config.penalties;
     let costs = averaged_down(costs);
     let (width, height) = (costs.width, costs.height);
@@ -169,17 +169,8 @@ pub fn path_sums(config: &Config, costs: &Volume, two_from_above: bool, left: &P
             if y == 0 {
                 return vec![0; costs.disparities];
             }
-            if !two_from_above {
-                let path = average(&above[x.saturating_sub(2)], &above[(x + 2).min(width - 1)]);
-                return message(penalties, &path, jump((x, y), (x, y - 1)));
-            }
-            let beside = [x.checked_sub(2), Some(x + 2).filter(|&x| x < width)];
-            let messages = beside.map(|from| Some(message(penalties, &above[from?], jump((x, y), (from?, y - 1)))));
-            match messages {
-                [Some(a), Some(b)] => average(&a, &b),
-                [Some(one), None] | [None, Some(one)] => one,
-                [None, None] => vec![0; costs.disparities],
-            }
+            let path = average(&above[x.saturating_sub(2)], &above[(x + 2).min(width - 1)]);
+            message(penalties, &path, jump((x, y), (x, y - 1)))
         };
         above = (0..width).map(|x| add(costs.at(x, y), &from_above(x))).collect();
         for x in 0..width {

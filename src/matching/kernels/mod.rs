@@ -33,7 +33,6 @@ pub(super) use winner::{Select, Unique};
 #[cfg(not(stereopsis_vectors))]
 pub(super) use planes::codes;
 
-use super::paths::Along;
 use super::scheme::Around;
 use super::window::Windowed;
 
@@ -177,72 +176,6 @@ const MASKS: &[u8; 512] = &{
     }
     masks
 };
-
-impl Kernel {
-    /// Adds a row of both images to the costs of a method along paths; the first of a frame takes their place.
-    #[inline(always)]
-    pub(super) fn enter<S: Along>(
-        self,
-        work: &mut PathWork<'_>,
-        lines: [&Around<'_>; 2],
-        is_first: bool,
-        room: &mut [u8],
-    ) {
-        match self {
-            #[cfg(not(stereopsis_vectors))]
-            Self::Planes => paths::enter::<paths::Word, S>(work, lines, is_first, room),
-            #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-            Self::Lanes => paths::enter::<paths::Vector, S>(work, lines, is_first, room),
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2(avx2) => avx2.run(
-                #[inline(always)]
-                || match work.stride % 32 {
-                    0 => paths::enter::<paths::Wide, S>(work, lines, is_first, room),
-                    _ => paths::enter::<paths::Vector, S>(work, lines, is_first, room),
-                },
-            ),
-        }
-    }
-
-    /// Selects the winners of the row whose costs there are, along paths.
-    #[inline(always)]
-    pub(super) fn select<S: Along>(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
-        match self {
-            #[cfg(not(stereopsis_vectors))]
-            Self::Planes => match work.stride {
-                32 => paths::select::<paths::Word, S, 8, true>(work, guide, select),
-                64 => paths::select::<paths::Word, S, 16, true>(work, guide, select),
-                _ => paths::select::<paths::Word, S, 64, false>(work, guide, select),
-            },
-            #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-            Self::Lanes => vectors::<S>(work, guide, select),
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2(avx2) => avx2.run(
-                #[inline(always)]
-                || match work.stride {
-                    32 => paths::select::<paths::Wide, S, 1, true>(work, guide, select),
-                    64 => paths::select::<paths::Wide, S, 2, true>(work, guide, select),
-                    128 => paths::select::<paths::Wide, S, 4, true>(work, guide, select),
-                    256 => paths::select::<paths::Wide, S, 8, true>(work, guide, select),
-                    stride if stride % 32 == 0 => paths::select::<paths::Wide, S, 8, false>(work, guide, select),
-                    _ => vectors::<S>(work, guide, select),
-                },
-            ),
-        }
-    }
-}
-
-/// [`Kernel::select`] in vectors of the compilation's own target.
-#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-#[inline(always)]
-fn vectors<S: Along>(work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
-    match work.stride {
-        32 => paths::select::<paths::Vector, S, 2, true>(work, guide, select),
-        64 => paths::select::<paths::Vector, S, 4, true>(work, guide, select),
-        128 => paths::select::<paths::Vector, S, 8, true>(work, guide, select),
-        _ => paths::select::<paths::Vector, S, 16, false>(work, guide, select),
-    }
-}
 
 /// What a kernel works on.
 ///

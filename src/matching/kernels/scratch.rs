@@ -56,10 +56,11 @@ pub struct Room<const W: usize, const D: usize> {
 }
 
 impl Room<0, 0> {
-    /// Bytes a pixel: three features of the left row, and of the right row four and two ranges.
-    pub const PER_PIXEL: usize = 3 + 4 + 2 * 2;
+    /// Bytes a pixel: three features of the left row, four of the right one and the ends of a range; or the winner, what the
+    /// right column keeps, the length of its surface, and two to work on answers.
+    pub const PER_PIXEL: usize = if 3 + 4 + 2 > 4 + 2 + 2 + 2 { 3 + 4 + 2 } else { 4 + 2 + 2 + 2 };
     /// Bytes a disparity: what the right features have before them.
-    pub const PER_DISPARITY: usize = 4 + 2 * 2;
+    pub const PER_DISPARITY: usize = 4 + 2;
 }
 
 impl<const W: usize, const D: usize> Room<W, D> {

@@ -156,7 +156,7 @@ fn kernel(text: &str) -> Result<Kernel, String> {
 
 fn method(text: &str) -> Result<Method, String> {
     text.parse().map_err(|unknown| match text {
-        "sgm-lean" | "sgm" | "sgm-edge" => format!("semi-global matching is not in this build; {unknown}"),
+        "sgm-edge" => format!("sgm-edge is not in this build; {unknown}"),
         _ => format!("{unknown}"),
     })
 }

@@ -145,14 +145,18 @@ impl<const N: usize> Group for Array<N> {
     }
 
     #[inline(always)]
-    fn least(self) -> u8 {
-        self.0.iter().fold(u8::MAX, |least, &lane| least.min(lane))
+    fn least(self) -> Self {
+        Self::splat(self.0.iter().fold(u8::MAX, |least, &lane| least.min(lane)))
     }
 
     #[inline(always)]
     fn last_least(cells: &[Self]) -> (u8, usize) {
-        let all = cells.iter().fold(Self::splat(u8::MAX), |all, &cell| all.min(cell));
-        let least = all.least();
+        let all = cells.iter().fold(
+            Self::splat(u8::MAX),
+            #[inline(always)]
+            |all, &cell| all.min(cell),
+        );
+        let least = all.least().0[0];
         let mut place = 0;
         for (first, cell) in (0..).step_by(N).zip(cells) {
             for (lane, &number) in (first..).zip(&cell.0) {

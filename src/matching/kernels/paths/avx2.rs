@@ -141,24 +141,35 @@ impl Group for Wide {
     }
 
     #[inline(always)]
-    fn least(self) -> u8 {
+    fn least(self) -> Self {
         safely!({
             let half = _mm_min_epu8(_mm256_castsi256_si128(self.0), _mm256_extracti128_si256(self.0, 1));
             // The lesser byte of each half-word, of which one instruction finds the least.
             let halves = _mm_min_epu8(half, _mm_srli_epi16(half, 8));
-            _mm_cvtsi128_si32(_mm_minpos_epu16(halves)) as u8
+            Self(_mm256_broadcastb_epi8(_mm_minpos_epu16(halves)))
         })
     }
 
     #[inline(always)]
     fn last_least(cells: &[Self]) -> (u8, usize) {
-        let all = cells.iter().fold(Self::splat(u8::MAX), |all, &cell| all.min(cell));
-        let least = all.least();
-        let wanted = Self::splat(least);
+        let all = cells.iter().fold(
+            Self::splat(u8::MAX),
+            #[inline(always)]
+            |all, &cell| all.min(cell),
+        );
+        let wanted = all.least();
+        let least = Self::lane(&[wanted], 0);
+        // A bit for each lane that has it, of 64 at a time.
         let mut place = 0;
-        for (first, cell) in (0..).step_by(Self::LANES).zip(cells) {
-            let equal = safely!(_mm256_movemask_epi8(_mm256_cmpeq_epi8(cell.0, wanted.0))) as u32;
-            let last = (first + 31usize).wrapping_sub(equal.leading_zeros() as usize);
+        for (first, cells) in (0..).step_by(64).zip(cells.chunks(2)) {
+            let equal = cells.iter().rev().fold(
+                0u64,
+                #[inline(always)]
+                |bits, cell| {
+                    bits << 32 | u64::from(safely!(_mm256_movemask_epi8(_mm256_cmpeq_epi8(cell.0, wanted.0))) as u32)
+                },
+            );
+            let last = (first | 63usize) - (equal | 1).leading_zeros() as usize;
             place = if equal != 0 { last } else { place };
         }
         (least, place)
@@ -166,17 +177,18 @@ impl Group for Wide {
 
     #[inline(always)]
     fn lane(cells: &[Self], lane: usize) -> u8 {
-        cells.get(lane / 32).map_or(0, |cell| cell.cell().get(lane % 32).copied().unwrap_or(0))
+        // SAFETY: registers are bytes, and as many of them are looked at as there are.
+        let bytes = unsafe { core::slice::from_raw_parts(cells.as_ptr().cast(), size_of_val(cells)) };
+        bytes.get(lane).copied().unwrap_or(0)
     }
 
     #[inline(always)]
     fn raise(cells: &mut [Self], lane: usize) {
-        if let Some(cell) = cells.get_mut(lane / 32) {
-            let mut bytes = cell.cell();
-            if let Some(byte) = bytes.get_mut(lane % 32) {
-                *byte = u8::MAX;
-            }
-            *cell = Self::of(bytes);
+        // SAFETY: as above; any byte is good.
+        let bytes: &mut [u8] =
+            unsafe { core::slice::from_raw_parts_mut(cells.as_mut_ptr().cast(), size_of_val(cells)) };
+        if let Some(byte) = bytes.get_mut(lane) {
+            *byte = u8::MAX;
         }
     }
 }

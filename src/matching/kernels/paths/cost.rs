@@ -1,51 +1,83 @@
 //! A row's costs, averaged into those of the rows above.
 
-use super::PathWork;
 use super::features::{Features, between};
 use super::group::Group;
+use super::{PathWork, stride};
 use crate::matching::paths::Along;
 
 /// Adds a row; the first of a frame takes the costs' place.
 #[inline(always)]
-pub(super) fn enter<G: Group, S: Along>(work: &mut PathWork<'_>, features: &Features<'_>, is_first: bool) {
-    let Features { left, right, gradients, brightness } = features;
-    let width = work.width;
+pub(super) fn enter<G: Group, S: Along, const CELLS: usize, const ALL: bool>(
+    work: &mut PathWork<'_>,
+    features: &Features<'_>,
+    is_first: bool,
+) {
+    let Features { left, right, ranges: [least, greatest] } = *features;
     let most = G::splat(work.penalties.cost);
-    let columns = work.costs.chunks_exact_mut(work.stride);
-    for (x, column) in columns.take(width).enumerate() {
-        let at = |row: &[u8], x: usize| row.get(x.min(width - 1)).copied().unwrap_or(0);
-        let look = |row: &[u8]| at(row, x);
-        let along = Number::<G>::new(at(left.along, x.saturating_sub(1)), look(left.along), at(left.along, x + 1));
-        let line = left.brightness;
-        let bright = Number::new(at(line, x.saturating_sub(1)) >> 1, look(line) >> 1, at(line, x + 1) >> 1);
-        let (across, census) = (G::splat(look(left.across)), G::splat(look(left.census)));
-        let cells = G::cells_mut(column).iter_mut();
-        let plain = groups::<G>(right.along, x).zip(groups::<G>(right.brightness, x));
-        let plain = plain.zip(groups::<G>(right.across, x).zip(groups::<G>(right.census, x)));
-        let put = |cell: &mut G::Cell, of_along: G, of_brightness: G, of_across: G, of_census: G| {
-            let rest = across.apart(of_across).plus(of_brightness.quarter()).plus(census.bits_apart(of_census));
-            let cost = of_along.plus(of_along).plus(rest).min(most);
-            *cell = if is_first { cost } else { G::of(*cell).average_up(cost) }.cell();
+    let stride = stride::<G, CELLS, ALL>(work);
+    let columns = G::cells_mut(work.costs).chunks_exact_mut(stride / G::LANES);
+    let candidates = right.along.windows(stride).zip(right.brightness.windows(stride));
+    let candidates = candidates.zip(right.across.windows(stride).zip(right.census.windows(stride)));
+    let ranges = least.windows(stride).zip(greatest.windows(stride));
+    let pixels = left.brightness.iter().zip(left.across.iter().zip(left.census));
+    let mut along = left.along.iter().copied();
+    let (mut before, mut here) = (left.along.first().copied().unwrap_or(0), along.next().unwrap_or(0));
+    for (((column, candidates), range), (&brightness, (&across, &census))) in
+        columns.zip(candidates).zip(ranges).zip(pixels)
+    {
+        let next = along.next().unwrap_or(here);
+        let number = Number::<G>::new(before, here, next);
+        (before, here) = (here, next);
+        let rest = Rest {
+            brightness: G::splat(brightness >> 1),
+            across: G::splat(across),
+            census: G::splat(census),
+            most,
+            is_first,
         };
+        let ((along, brightness), (across, census)) = candidates;
+        let others = groups::<G>(brightness).zip(groups::<G>(across).zip(groups::<G>(census)));
+        let others = groups::<G>(along).zip(others);
         if S::BETWEEN_PIXELS {
-            let of_along = groups::<G>(gradients[0], x).zip(groups::<G>(gradients[1], x));
-            let of_brightness = groups::<G>(brightness[0], x).zip(groups::<G>(brightness[1], x));
-            let ranges = of_along.zip(of_brightness);
-            for (cell, (((a, b), (across, census)), (of_along, of_brightness))) in cells.zip(plain.zip(ranges)) {
-                put(cell, along.apart_between(a, of_along), bright.apart_between(b, of_brightness), across, census);
+            let ranges = groups::<G>(range.0).zip(groups::<G>(range.1));
+            for (cell, ((along, others), range)) in column.iter_mut().zip(others.zip(ranges)) {
+                rest.put(cell, number.apart_between(along, range), others);
             }
         } else {
-            for (cell, ((a, b), (across, census))) in cells.zip(plain) {
-                put(cell, along.number.apart(a), bright.number.apart(b), across, census);
+            for (cell, (along, others)) in column.iter_mut().zip(others) {
+                rest.put(cell, number.number.apart(along), others);
             }
         }
     }
 }
 
-/// The groups of a row from column `x` on.
+/// A pixel of the left image, but for what is compared between pixels.
+struct Rest<G> {
+    brightness: G,
+    across: G,
+    census: G,
+    most: G,
+    is_first: bool,
+}
+
+impl<G: Group> Rest<G> {
+    /// Averages the cost of some candidates into what there is of the rows above, or puts it in its place.
+    #[inline(always)]
+    fn put(&self, cell: &mut G::Cell, along: G, (of_brightness, (of_across, of_census)): (G, (G, G))) {
+        let brightness = self.brightness.apart(of_brightness);
+        let rest = self.across.apart(of_across).plus(brightness.quarter()).plus(self.census.bits_apart(of_census));
+        let cost = along.plus(along).plus(rest).min(self.most);
+        *cell = if self.is_first { cost } else { G::of(*cell).average_up(cost) }.cell();
+    }
+}
+
+/// The groups of a pixel's candidates.
 #[inline(always)]
-fn groups<'a, G: Group + 'a>(row: &'a [u8], x: usize) -> impl Iterator<Item = G> + 'a {
-    G::groups(row.get(x..).unwrap_or(&[])).iter().map(|&bytes| G::of_bytes(bytes))
+fn groups<G: Group>(candidates: &[u8]) -> impl Iterator<Item = G> {
+    G::groups(candidates).iter().map(
+        #[inline(always)]
+        |&bytes| G::of_bytes(bytes),
+    )
 }
 
 /// A number of the left image, in all lanes, with the range of those halfway to its neighbours.

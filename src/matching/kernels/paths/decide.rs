@@ -1,7 +1,7 @@
 //! The path from the right, and the winners, in one pass to the left.
 
 use super::group::Group;
-use super::{Guide, Path, PathWork, Steps, cells, mask, stride};
+use super::{Guide, Path, PathWork, Steps, mask, split_last, stride};
 use crate::matching::kernels::winner::{Found, Unique};
 
 /// Adds the path from the right to the other two and selects the winner of every pixel that has a candidate.
@@ -13,32 +13,38 @@ pub(super) fn decide<G: Group, const CELLS: usize, const ALL: bool>(
     mut put: impl FnMut(usize, Found),
 ) {
     let stride = stride::<G, CELLS, ALL>(work);
-    let (width, penalties) = (work.width, work.penalties);
+    let (width, count, penalties) = (work.width, stride / G::LANES, work.penalties);
     let steps = Steps::<G, CELLS, ALL>::new(work);
-    let bright = |x: usize| guide.here.get(x).copied().unwrap_or(0);
-    let mut left = Path::<G, CELLS, ALL>::of(cells::<G>(work.costs, width - 1, stride));
-    let mut total = left;
+    let volume = |bytes| G::cells(bytes).get(..width * count).unwrap_or(&[]);
+    let (mut costs, mut sums) = (volume(work.costs), volume(work.sums));
+    let mut left = Path::<G, CELLS, ALL>::of(split_last::<_, CELLS, ALL>(costs, count).map_or(&[], |(_, last)| last));
+    let mut before = 0;
     for x in (work.min_disparity..width).rev() {
-        let costs = cells::<G>(work.costs, x, stride);
+        let Some((rest, column)) = split_last::<_, CELLS, ALL>(costs, count) else { return };
+        costs = rest;
+        let here = guide.here.get(x).copied().unwrap_or(0);
         if x + 1 < width {
-            left.step(&steps, penalties.jump_between(bright(x), bright(x + 1)), costs);
+            left = left.step(&steps, penalties.jump_between(here, before), column);
         }
+        before = here;
         steps.close(&mut left);
-        let sums = cells::<G>(work.sums, x, stride);
-        for (total, (&sum, &left)) in total.cells_mut().iter_mut().zip(sums.iter().zip(left.cells())) {
-            *total = G::of(sum).plus_saturating(left);
+        let Some((rest, column)) = split_last::<_, CELLS, ALL>(sums, count) else { return };
+        sums = rest;
+        let mut total = left;
+        for (total, &sum) in total.0.iter_mut().zip(column) {
+            *total = G::of(sum).plus_saturating(*total);
         }
         // The first pixels have fewer candidates than there are lanes.
-        let candidates = work.disparities.min(x - work.min_disparity + 1);
+        let candidates = work.disparities.min(x + 1 - work.min_disparity);
         let masked = candidates < stride;
         if masked {
-            for (total, &mask) in total.cells_mut().iter_mut().zip(G::groups(mask(stride, candidates))) {
+            for (total, &mask) in total.0.iter_mut().zip(G::groups(mask(stride, candidates))) {
                 *total = total.or(G::of_bytes(mask));
             }
         }
-        let (cost, lane) = G::last_least(total.cells());
+        let (cost, lane) = G::last_least(total.cells(count));
         let disparity = (stride - 1).wrapping_sub(lane);
-        let at = |lane: usize| G::lane(total.cells(), lane);
+        let at = |lane: usize| G::lane(&total.0, lane);
         let beside = if disparity > 0 && disparity + 1 < candidates {
             (at(lane + 1), at(lane.wrapping_sub(1)))
         } else {
@@ -47,11 +53,16 @@ pub(super) fn decide<G: Group, const CELLS: usize, const ALL: bool>(
             (one, one)
         };
         put(x, Found { disparity: disparity as u8, cost, beside });
-        unique.judge(x, cost, || {
-            for lane in [lane.wrapping_sub(1), lane, lane + 1] {
-                G::raise(total.cells_mut(), lane);
-            }
-            G::last_least(total.cells()).0
-        });
+        unique.judge(
+            x,
+            cost,
+            #[inline(always)]
+            || {
+                for lane in [lane.wrapping_sub(1), lane, lane + 1] {
+                    G::raise(&mut total.0, lane);
+                }
+                G::last_least(total.cells(count)).0
+            },
+        );
     }
 }

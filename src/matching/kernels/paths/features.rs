@@ -10,19 +10,20 @@ use crate::matching::paths::Along;
 use crate::matching::scheme::Around;
 
 /// Rows of numbers, a byte a pixel.
+#[derive(Clone, Copy)]
 pub(super) struct Features<'a> {
     /// Of the left image, by column.
     pub left: Looks<'a>,
     /// Of the right image: column `x` is compared with `stride` of them from `x` on. The first column is repeated for those
     /// that lie left of the image.
     pub right: Looks<'a>,
-    /// The least and the greatest of a right column's gradient along the line and of those halfway to its neighbours; and of
-    /// its brightness. Empty where nothing is compared between pixels.
-    pub gradients: [&'a [u8]; 2],
-    pub brightness: [&'a [u8]; 2],
+    /// The least and the greatest of a right column's gradient along the line and of those halfway to its neighbours; of no
+    /// meaning where nothing is compared between pixels.
+    pub ranges: [&'a [u8]; 2],
 }
 
 /// What pixels look like.
+#[derive(Clone, Copy)]
 pub(super) struct Looks<'a> {
     pub along: &'a [u8],
     pub across: &'a [u8],
@@ -46,7 +47,7 @@ pub(super) fn of<'a, S: Along>(
 
     // One more than is compared, for the numbers halfway to the last.
     let count = width + work.stride;
-    let [along, across, census, brightness, ranges @ ..]: [_; 8] = rows(of_right, count);
+    let [along, across, census, brightness, least, greatest]: [_; 6] = rows(of_right, count);
     let outside = count.min(work.stride - 1 + work.min_disparity);
     looks(
         &right,
@@ -72,19 +73,15 @@ pub(super) fn of<'a, S: Along>(
         let last = row.get(outside + width - 1).copied().unwrap_or(0);
         row.get_mut(outside + width..).unwrap_or_default().fill(last);
     }
-    let [a, b, c, d] = ranges;
     if S::BETWEEN_PIXELS {
-        for (row, least, greatest, [first, next]) in
-            [(&*along, &mut *a, &mut *b, first_along), (&*brightness, &mut *c, &mut *d, first_brightness)]
-        {
-            range(row, least, greatest);
-            let range = between(first, first, if width > 1 { next } else { first });
-            repeat(least, range.0, outside);
-            repeat(greatest, range.1, outside);
-        }
+        range(along, least, greatest);
+        let [first, next] = first_along;
+        let range = between(first, first, if width > 1 { next } else { first });
+        repeat(least, range.0, outside);
+        repeat(greatest, range.1, outside);
     }
     let right = Looks { along, across, census, brightness };
-    Some(Features { left: of_left, right, gradients: [a, b], brightness: [c, d] })
+    Some(Features { left: of_left, right, ranges: [least, greatest] })
 }
 
 /// Rows of so many bytes; what there is no room for is empty.

@@ -50,8 +50,8 @@ pub(in crate::matching) trait Group: Copy + 'static {
     fn after(self, before: Self) -> Self;
     /// Each lane's number in the lane before it; the last one's is the first of `next`.
     fn before(self, next: Self) -> Self;
-    /// The least number.
-    fn least(self) -> u8;
+    /// The least number, in all lanes.
+    fn least(self) -> Self;
 
     /// The least number of eight bits of all cells, and the last lane that has it.
     fn last_least(cells: &[Self]) -> (u8, usize);

@@ -16,6 +16,7 @@
 //!
 //! * `features`: what a pixel's cost compares, of a row of both images.
 //! * `cost`, `gather`, `decide`: the passes.
+//! * `dispatch`: which groups of bytes they are called with.
 //! * `group`: what they are written for. `words`, with `dsp`: four bytes in a word; `sse2`, `avx2`, `neon`: registers of
 //!   larger processors; `arrays`: what the compiler makes of an array elsewhere.
 //!
@@ -23,6 +24,7 @@
 
 mod cost;
 mod decide;
+mod dispatch;
 mod features;
 mod gather;
 mod group;
@@ -43,11 +45,11 @@ mod sse2;
 #[cfg(not(stereopsis_vectors))]
 mod words;
 
-use super::winner::Select;
 #[cfg(not(stereopsis_vectors))]
 use super::winner::Winner;
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 use super::winner::WinnerRows;
+use super::winner::Select;
 use super::{MASKS, STEP};
 use crate::matching::paths::Along;
 use crate::matching::penalties::Penalties;
@@ -55,19 +57,19 @@ use crate::matching::scheme::Around;
 use group::Group;
 
 #[cfg(target_arch = "x86_64")]
-pub(in crate::matching) use avx2::Wide;
+use avx2::Wide;
 #[cfg(target_arch = "aarch64")]
-pub(in crate::matching) use neon::Vector;
+use neon::Vector;
 #[cfg(target_arch = "x86_64")]
-pub(in crate::matching) use sse2::Vector;
+use sse2::Vector;
 #[cfg(not(stereopsis_vectors))]
-pub(in crate::matching) use words::Word;
+use words::Word;
 /// Vectors of the compilation's own target.
 #[cfg(all(
     any(target_pointer_width = "64", stereopsis_vectors),
     not(any(target_arch = "x86_64", target_arch = "aarch64"))
 ))]
-pub(in crate::matching) type Vector = arrays::Array<16>;
+type Vector = arrays::Array<16>;
 
 /// What the passes work on.
 ///
@@ -100,46 +102,55 @@ pub(in crate::matching) struct Guide<'a> {
 
 /// Adds a row of both images to the costs; the first of a frame takes their place.
 #[inline(always)]
-pub(in crate::matching) fn enter<G: Group, S: Along>(
+fn enter<G: Group, S: Along, const CELLS: usize, const ALL: bool>(
     work: &mut PathWork<'_>,
     lines: [&Around<'_>; 2],
     is_first: bool,
     room: &mut [u8],
 ) {
     if let Some(features) = features::of::<S>(work, lines, room) {
-        cost::enter::<G, S>(work, &features, is_first);
+        cost::enter::<G, S, CELLS, ALL>(work, &features, is_first);
     }
 }
 
 /// Selects the winners of the row whose costs there are.
 #[inline(always)]
-pub(in crate::matching) fn select<G: Group, S: Along, const CELLS: usize, const ALL: bool>(
-    mut work: PathWork<'_>,
-    guide: Guide<'_>,
-    select: Select<'_>,
-) {
-    gather::gather::<G, S, CELLS, ALL>(&mut work, guide);
+fn select<G: Group, const CELLS: usize, const ALL: bool>(mut work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+    gather::gather::<G, CELLS, ALL>(&mut work, guide);
     let Select { winners, unique, .. } = select;
     if G::PUTS_ROWS {
         #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
         {
-            let begin = work.min_disparity;
-            let WinnerRows { below, costs, above, disparities } = WinnerRows::of(winners, begin.min(work.width));
-            decide::decide::<G, CELLS, ALL>(&work, guide, unique, |x, found| {
-                let x = x - begin;
-                let places = (below.get_mut(x), costs.get_mut(x), above.get_mut(x), disparities.get_mut(x));
-                if let (Some(below), Some(cost), Some(above), Some(disparity)) = places {
-                    (*below, *cost, *above, *disparity) = (found.beside.0, found.cost, found.beside.1, found.disparity);
-                }
-            });
+            let begin = work.min_disparity.min(work.width);
+            let WinnerRows { below, costs, above, disparities } = WinnerRows::of(winners, begin);
+            decide::decide::<G, CELLS, ALL>(
+                &work,
+                guide,
+                unique,
+                #[inline(always)]
+                |x, found| {
+                    let x = x - begin;
+                    let places = (below.get_mut(x), costs.get_mut(x), above.get_mut(x), disparities.get_mut(x));
+                    if let (Some(below), Some(cost), Some(above), Some(disparity)) = places {
+                        (*below, *cost, *above, *disparity) =
+                            (found.beside.0, found.cost, found.beside.1, found.disparity);
+                    }
+                },
+            );
         }
     } else {
         #[cfg(not(stereopsis_vectors))]
-        decide::decide::<G, CELLS, ALL>(&work, guide, unique, |x, found| {
-            if let Some(winner) = winners.get_mut(x) {
-                *winner = Winner::new(found.cost, found.disparity, found.beside);
-            }
-        });
+        decide::decide::<G, CELLS, ALL>(
+            &work,
+            guide,
+            unique,
+            #[inline(always)]
+            |x, found| {
+                if let Some(winner) = winners.get_mut(x) {
+                    *winner = Winner::new(found.cost, found.disparity, found.beside);
+                }
+            },
+        );
     }
 }
 
@@ -149,102 +160,93 @@ fn stride<G: Group, const CELLS: usize, const ALL: bool>(work: &PathWork<'_>) ->
     if ALL { CELLS * G::LANES } else { work.stride.max(STEP) }
 }
 
-/// Column `x` of a volume.
+/// The first column of a volume, and the rest.
 #[inline(always)]
-fn cells<G: Group>(volume: &[u8], x: usize, stride: usize) -> &[G::Cell] {
-    let volume = G::cells(volume);
-    let count = stride / G::LANES;
-    volume.get(x * count..).and_then(|cells| cells.get(..count)).unwrap_or(&[])
+fn split_first<C, const CELLS: usize, const ALL: bool>(volume: &[C], count: usize) -> Option<(&[C], &[C])> {
+    if ALL {
+        let (column, rest) = volume.split_first_chunk::<CELLS>()?;
+        Some((column, rest))
+    } else {
+        volume.split_at_checked(count)
+    }
 }
 
 /// The same, to write.
 #[inline(always)]
-fn cells_mut<G: Group>(volume: &mut [u8], x: usize, stride: usize) -> &mut [G::Cell] {
-    let volume = G::cells_mut(volume);
-    let count = stride / G::LANES;
-    volume.get_mut(x * count..).and_then(|cells| cells.get_mut(..count)).unwrap_or_default()
+fn split_first_mut<C, const CELLS: usize, const ALL: bool>(
+    volume: &mut [C],
+    count: usize,
+) -> Option<(&mut [C], &mut [C])> {
+    if ALL {
+        let (column, rest) = volume.split_first_chunk_mut::<CELLS>()?;
+        Some((column, rest))
+    } else {
+        volume.split_at_mut_checked(count)
+    }
+}
+
+/// The last column of a volume, after the rest.
+#[inline(always)]
+fn split_last<C, const CELLS: usize, const ALL: bool>(volume: &[C], count: usize) -> Option<(&[C], &[C])> {
+    if ALL {
+        let (rest, column) = volume.split_last_chunk::<CELLS>()?;
+        Some((rest, column))
+    } else {
+        volume.split_at_checked(volume.len().checked_sub(count)?)
+    }
 }
 
 /// A path at a pixel: its costs, of `CELLS` cells, all of them in use if `ALL`.
 #[derive(Clone, Copy)]
-struct Path<G, const CELLS: usize, const ALL: bool> {
-    cells: [G; CELLS],
-    count: usize,
-}
+struct Path<G, const CELLS: usize, const ALL: bool>([G; CELLS]);
 
 impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
-    /// What stands at column `x` of a volume.
-    #[inline(always)]
-    fn at(volume: &[u8], x: usize, stride: usize) -> Self {
-        Self::of(cells::<G>(volume, x, stride))
-    }
-
     /// What stands in memory.
     #[inline(always)]
     fn of(cells: &[G::Cell]) -> Self {
-        let mut path = Self { cells: [G::splat(0); CELLS], count: cells.len().min(CELLS) };
-        for (to, &from) in path.cells_mut().iter_mut().zip(cells) {
+        let mut path = Self([G::splat(0); CELLS]);
+        for (to, &from) in path.0.iter_mut().zip(cells) {
             *to = G::of(from);
         }
         path
     }
 
+    /// Those in use.
     #[inline(always)]
-    fn cells(&self) -> &[G] {
-        if ALL { &self.cells } else { self.cells.get(..self.count).unwrap_or(&[]) }
+    fn cells(&self, count: usize) -> &[G] {
+        if ALL { &self.0 } else { self.0.get(..count).unwrap_or(&[]) }
     }
 
+    /// The average with another one, rounded down.
     #[inline(always)]
-    fn cells_mut(&mut self) -> &mut [G] {
-        if ALL { &mut self.cells } else { self.cells.get_mut(..self.count).unwrap_or_default() }
-    }
-
-    /// The average of two, rounded down.
-    #[inline(always)]
-    fn average(mut self, other: &Self) -> Self {
-        for (cell, &other) in self.cells_mut().iter_mut().zip(other.cells()) {
-            *cell = cell.average_down(other);
+    fn average(mut self, other: &[G::Cell]) -> Self {
+        for (cell, &other) in self.0.iter_mut().zip(other) {
+            *cell = cell.average_down(G::of(other));
         }
-        self
-    }
-
-    /// With the costs of a pixel.
-    #[inline(always)]
-    fn plus(mut self, costs: &[G::Cell]) -> Self {
-        for (cell, &cost) in self.cells_mut().iter_mut().zip(costs) {
-            *cell = cell.plus(G::of(cost));
-        }
-        self
-    }
-
-    /// What it says to a pixel: [`Self::step`] without costs.
-    #[inline(always)]
-    fn message(mut self, steps: &Steps<G, CELLS, ALL>, jump: u8) -> Self {
-        self.replace(steps, jump, |_, message| message);
         self
     }
 
     /// Goes on to a pixel that has these costs.
     #[inline(always)]
-    fn step(&mut self, steps: &Steps<G, CELLS, ALL>, jump: u8, costs: &[G::Cell]) {
-        self.replace(steps, jump, |i, message| costs.get(i).map_or(message, |&cost| message.plus(G::of(cost))));
-    }
-
-    /// Puts in each cell's place what `each` makes of its message.
-    #[inline(always)]
-    fn replace(&mut self, steps: &Steps<G, CELLS, ALL>, jump: u8, each: impl Fn(usize, G) -> G) {
-        let least = self.cells().iter().fold(steps.far, |least, &cell| least.min(cell)).least();
-        let (jump, least) = (G::splat(least + jump), G::splat(least));
-        let (mut before, mut here) = (steps.far, self.cells().first().copied().unwrap_or(steps.far));
-        for i in 0..self.cells().len() {
-            let next = self.cells().get(i + 1).copied().unwrap_or(steps.far);
+    fn step(mut self, steps: &Steps<G, CELLS, ALL>, jump: u8, costs: &[G::Cell]) -> Self {
+        let least = self.cells(costs.len()).iter().fold(
+            steps.far,
+            #[inline(always)]
+            |least, &cell| least.min(cell),
+        );
+        let least = least.least();
+        let jump = least.plus(G::splat(jump));
+        let (mut before, mut here) = (steps.far, self.0.first().copied().unwrap_or(steps.far));
+        for (i, &cost) in costs.iter().enumerate().take(CELLS) {
+            let next = if i + 1 < costs.len() { self.0.get(i + 1).copied().unwrap_or(steps.far) } else { steps.far };
             let beside = here.after(before).min(here.before(next)).plus(steps.step);
             let message = here.min(beside).min(jump).minus(least);
-            if let Some(cell) = self.cells_mut().get_mut(i) {
-                *cell = each(i, message);
+            if let Some(cell) = self.0.get_mut(i) {
+                *cell = message.plus(G::of(cost));
             }
             (before, here) = (here, next);
         }
+        self
     }
 }
 
@@ -263,17 +265,17 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Steps<G, CELLS, ALL> {
         // No path costs more: `Penalties::check`.
         let far = 127u8.saturating_sub(work.penalties.step);
         let stride = stride::<G, CELLS, ALL>(work);
-        let beyond = (work.disparities < stride).then(|| {
-            let mut beyond = Path { cells: [G::splat(0); CELLS], count: CELLS.min(stride / G::LANES) };
+        let beyond = if work.disparities < stride {
+            let mut beyond = Path([G::splat(0); CELLS]);
             let mut numbers = [0; 256];
-            if let Some(numbers) = numbers.get_mut(..stride - work.disparities) {
-                numbers.fill(far);
-            }
-            for (cell, &numbers) in beyond.cells_mut().iter_mut().zip(G::groups(&numbers)) {
+            numbers.get_mut(..stride - work.disparities).unwrap_or_default().fill(far);
+            for (cell, &numbers) in beyond.0.iter_mut().zip(G::groups(&numbers)) {
                 *cell = G::of_bytes(numbers);
             }
-            beyond
-        });
+            Some(beyond)
+        } else {
+            None
+        };
         Self { far: G::splat(far), step: G::splat(work.penalties.step), beyond }
     }
 
@@ -281,7 +283,7 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Steps<G, CELLS, ALL> {
     #[inline(always)]
     fn close(&self, path: &mut Path<G, CELLS, ALL>) {
         if let Some(beyond) = &self.beyond {
-            for (cell, &beyond) in path.cells_mut().iter_mut().zip(beyond.cells()) {
+            for (cell, &beyond) in path.0.iter_mut().zip(&beyond.0) {
                 *cell = cell.max(beyond);
             }
         }

@@ -131,15 +131,19 @@ impl Group for Vector {
     }
 
     #[inline(always)]
-    fn least(self) -> u8 {
-        safely!(vminvq_u8(self.0))
+    fn least(self) -> Self {
+        safely!(Self(vdupq_n_u8(vminvq_u8(self.0))))
     }
 
     #[inline(always)]
     fn last_least(cells: &[Self]) -> (u8, usize) {
-        let all = cells.iter().fold(Self::splat(u8::MAX), |all, &cell| all.min(cell));
-        let least = all.least();
-        let wanted = Self::splat(least);
+        let all = cells.iter().fold(
+            Self::splat(u8::MAX),
+            #[inline(always)]
+            |all, &cell| all.min(cell),
+        );
+        let wanted = all.least();
+        let least = Self::lane(&[wanted], 0);
         let mut place = 0;
         for (first, cell) in (0..).step_by(Self::LANES).zip(cells) {
             // Four bits for each lane that has it.
@@ -155,17 +159,18 @@ impl Group for Vector {
 
     #[inline(always)]
     fn lane(cells: &[Self], lane: usize) -> u8 {
-        cells.get(lane / 16).map_or(0, |cell| cell.cell().get(lane % 16).copied().unwrap_or(0))
+        // SAFETY: registers are bytes, and as many of them are looked at as there are.
+        let bytes = unsafe { core::slice::from_raw_parts(cells.as_ptr().cast(), size_of_val(cells)) };
+        bytes.get(lane).copied().unwrap_or(0)
     }
 
     #[inline(always)]
     fn raise(cells: &mut [Self], lane: usize) {
-        if let Some(cell) = cells.get_mut(lane / 16) {
-            let mut bytes = cell.cell();
-            if let Some(byte) = bytes.get_mut(lane % 16) {
-                *byte = u8::MAX;
-            }
-            *cell = Self::of(bytes);
+        // SAFETY: as above; any byte is good.
+        let bytes: &mut [u8] =
+            unsafe { core::slice::from_raw_parts_mut(cells.as_mut_ptr().cast(), size_of_val(cells)) };
+        if let Some(byte) = bytes.get_mut(lane) {
+            *byte = u8::MAX;
         }
     }
 }

@@ -138,24 +138,38 @@ impl Group for Vector {
     }
 
     #[inline(always)]
-    fn least(self) -> u8 {
+    fn least(self) -> Self {
         safely!({
             let eight = _mm_min_epu8(self.0, _mm_srli_si128(self.0, 8));
             let four = _mm_min_epu8(eight, _mm_srli_si128(eight, 4));
             let two = _mm_min_epu8(four, _mm_srli_epi32(four, 16));
-            _mm_cvtsi128_si32(_mm_min_epu8(two, _mm_srli_epi16(two, 8))) as u8
+            let one = _mm_min_epu8(two, _mm_srli_epi16(two, 8));
+            // Its first byte: of the first half-word, of the first two, of all.
+            let one = _mm_unpacklo_epi8(one, one);
+            Self(_mm_shuffle_epi32(_mm_shufflelo_epi16(one, 0), 0))
         })
     }
 
     #[inline(always)]
     fn last_least(cells: &[Self]) -> (u8, usize) {
-        let all = cells.iter().fold(Self::splat(u8::MAX), |all, &cell| all.min(cell));
-        let least = all.least();
-        let wanted = Self::splat(least);
+        let all = cells.iter().fold(
+            Self::splat(u8::MAX),
+            #[inline(always)]
+            |all, &cell| all.min(cell),
+        );
+        let wanted = all.least();
+        let least = Self::lane(&[wanted], 0);
+        // A bit for each lane that has it, of 64 at a time.
         let mut place = 0;
-        for (first, cell) in (0..).step_by(Self::LANES).zip(cells) {
-            let equal = safely!(_mm_movemask_epi8(_mm_cmpeq_epi8(cell.0, wanted.0))) as u32;
-            let last = (first + 31usize).wrapping_sub(equal.leading_zeros() as usize);
+        for (first, cells) in (0..).step_by(64).zip(cells.chunks(4)) {
+            let equal = cells.iter().rev().fold(
+                0u64,
+                #[inline(always)]
+                |bits, cell| {
+                    bits << 16 | u64::from(safely!(_mm_movemask_epi8(_mm_cmpeq_epi8(cell.0, wanted.0))) as u32)
+                },
+            );
+            let last = (first | 63usize) - (equal | 1).leading_zeros() as usize;
             place = if equal != 0 { last } else { place };
         }
         (least, place)
@@ -163,17 +177,18 @@ impl Group for Vector {
 
     #[inline(always)]
     fn lane(cells: &[Self], lane: usize) -> u8 {
-        cells.get(lane / 16).map_or(0, |cell| cell.cell().get(lane % 16).copied().unwrap_or(0))
+        // SAFETY: registers are bytes, and as many of them are looked at as there are.
+        let bytes = unsafe { core::slice::from_raw_parts(cells.as_ptr().cast(), size_of_val(cells)) };
+        bytes.get(lane).copied().unwrap_or(0)
     }
 
     #[inline(always)]
     fn raise(cells: &mut [Self], lane: usize) {
-        if let Some(cell) = cells.get_mut(lane / 16) {
-            let mut bytes = cell.cell();
-            if let Some(byte) = bytes.get_mut(lane % 16) {
-                *byte = u8::MAX;
-            }
-            *cell = Self::of(bytes);
+        // SAFETY: as above; any byte is good.
+        let bytes: &mut [u8] =
+            unsafe { core::slice::from_raw_parts_mut(cells.as_mut_ptr().cast(), size_of_val(cells)) };
+        if let Some(byte) = bytes.get_mut(lane) {
+            *byte = u8::MAX;
         }
     }
 }

@@ -162,9 +162,9 @@ impl Group for Word {
     }
 
     #[inline(always)]
-    fn least(self) -> u8 {
+    fn least(self) -> Self {
         let two = self.min(Self(self.0 >> 16));
-        two.min(Self(two.0 >> 8)).0 as u8
+        Self::splat(two.min(Self(two.0 >> 8)).0 as u8)
     }
 
     #[inline(always)]

@@ -1,0 +1,83 @@
+//! Which groups of bytes a kernel works on, and how many of them are a column: known when the crate is compiled for the
+//! usual numbers of disparities, which lets the compiler unroll them and keep them in registers.
+
+use super::super::{Kernel, Select};
+use super::{Guide, PathWork};
+use crate::matching::paths::Along;
+use crate::matching::scheme::Around;
+
+/// Calls a pass with the groups, how many of them there is room for in a column, and whether all of it is used.
+macro_rules! in_words {
+    ($work:ident, $pass:ident, [$($scheme:ident)?], $($argument:expr),*) => {
+        match $work.stride {
+            32 => super::$pass::<super::Word, $($scheme,)? 8, true>($work, $($argument),*),
+            64 => super::$pass::<super::Word, $($scheme,)? 16, true>($work, $($argument),*),
+            _ => super::$pass::<super::Word, $($scheme,)? 64, false>($work, $($argument),*),
+        }
+    };
+}
+
+/// The same in vectors of the compilation's own target.
+macro_rules! in_vectors {
+    ($work:ident, $pass:ident, [$($scheme:ident)?], $($argument:expr),*) => {
+        match $work.stride {
+            32 => super::$pass::<super::Vector, $($scheme,)? 2, true>($work, $($argument),*),
+            64 => super::$pass::<super::Vector, $($scheme,)? 4, true>($work, $($argument),*),
+            128 => super::$pass::<super::Vector, $($scheme,)? 8, true>($work, $($argument),*),
+            _ => super::$pass::<super::Vector, $($scheme,)? 16, false>($work, $($argument),*),
+        }
+    };
+}
+
+/// The same in registers of AVX2.
+macro_rules! in_wide {
+    ($work:ident, $pass:ident, [$($scheme:ident)?], $($argument:expr),*) => {
+        match $work.stride {
+            32 => super::$pass::<super::Wide, $($scheme,)? 1, true>($work, $($argument),*),
+            64 => super::$pass::<super::Wide, $($scheme,)? 2, true>($work, $($argument),*),
+            128 => super::$pass::<super::Wide, $($scheme,)? 4, true>($work, $($argument),*),
+            stride if stride % 32 == 0 => super::$pass::<super::Wide, $($scheme,)? 8, false>($work, $($argument),*),
+            _ => super::$pass::<super::Vector, $($scheme,)? 16, false>($work, $($argument),*),
+        }
+    };
+}
+
+impl Kernel {
+    /// Adds a row of both images to the costs of a method along paths; the first of a frame takes their place.
+    #[inline(always)]
+    pub(in crate::matching) fn enter<S: Along>(
+        self,
+        work: &mut PathWork<'_>,
+        lines: [&Around<'_>; 2],
+        is_first: bool,
+        room: &mut [u8],
+    ) {
+        match self {
+            #[cfg(not(stereopsis_vectors))]
+            Self::Planes => in_words!(work, enter, [S], lines, is_first, room),
+            #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+            Self::Lanes => in_vectors!(work, enter, [S], lines, is_first, room),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(avx2) => avx2.run(
+                #[inline(always)]
+                || in_wide!(work, enter, [S], lines, is_first, room),
+            ),
+        }
+    }
+
+    /// Selects the winners of the row whose costs there are, along paths.
+    #[inline(always)]
+    pub(in crate::matching) fn select(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+        match self {
+            #[cfg(not(stereopsis_vectors))]
+            Self::Planes => in_words!(work, select, [], guide, select),
+            #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+            Self::Lanes => in_vectors!(work, select, [], guide, select),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(avx2) => avx2.run(
+                #[inline(always)]
+                || in_wide!(work, select, [], guide, select),
+            ),
+        }
+    }
+}

@@ -8,15 +8,19 @@
 //! 3. `texture`: whether the window has texture.
 //! 4. `answers`: whether the right image agrees, the winner between whole pixels, what refuses it.
 //! 5. `surface`: the answers averaged along the row, within their surface.
-//! 6. `speckle`: answers dropped that too few others support, in a band of five rows.
-//! 7. [`Row`]: what came out, with the uncertainty of each answer.
+//! 6. `median`: if asked for, the middle one of the answers around each.
+//! 7. `speckle`: answers dropped that too few others support, in a band of five rows.
+//! 8. `fill`: if asked for, small gaps along the row closed.
+//! 9. [`Row`]: what came out, with the uncertainty of each answer.
 //!
 //! [`Matcher`] owns the memory and runs the stages. [`Config`] says what is searched and which answers are refused.
 
 mod answers;
 mod config;
+mod fill;
 mod kernels;
 mod matcher;
+mod median;
 mod row;
 mod scheme;
 mod speckle;

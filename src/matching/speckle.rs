@@ -46,9 +46,9 @@ impl Support<'_> {
         band.get_mut(above..).unwrap_or_default().fill(Disparity::NONE);
     }
 
-    /// Counts row `y` of the `band`, and judges the row that waited for it, [`LOOK_AHEAD`] above: what is finished are
-    /// its answers without those that have less support than `pixels`. In the first rows of a frame there is none yet;
-    /// what is written then is not looked at.
+    /// Counts row `y` of the `band`, and judges the row that waited for it, [`LOOK_AHEAD`] above: of its answers in
+    /// `finished`, those go that have less support than `pixels`. In the first rows of a frame there is none yet; what is
+    /// written then is not looked at.
     #[inline(never)]
     #[allow(clippy::unnecessary_cast, reason = "a word is a half-word on some cores only")]
     pub(super) fn count(
@@ -62,11 +62,11 @@ impl Support<'_> {
     ) {
         let width = self.kept.len();
         let row = |y: usize| slot(band, y % BAND, width);
-        let (here, above, judged) = (row(y), row(y + BAND - 1), row(y + BAND - LOOK_AHEAD));
+        let (here, above) = (row(y), row(y + BAND - 1));
         let pixels = Word::from(pixels);
         let rows = here.iter().zip(above).zip(self.lengths.iter().zip(self.kept.iter_mut()));
-        let out = judged.iter().zip(flags).zip(finished);
-        for (((here, above), (&length, kept)), ((answer, flags), finished)) in rows.zip(out) {
+        let out = flags.iter_mut().zip(finished);
+        for (((here, above), (&length, kept)), (flags, finished)) in rows.zip(out) {
             let joined = Word::from(of_one(here.raw(), above.raw(), step));
             let before = Word::from(*kept);
             let support = before >> (2 * ROWS) & Word::MIN.wrapping_sub(joined);
@@ -78,9 +78,10 @@ impl Support<'_> {
             rows |= reached << ROWS & Word::MIN.wrapping_sub(Word::from(count >= pixels));
             *kept = (count << (2 * ROWS) | rows & 0xff) as u16;
             let refused = rows & 1 << (ROWS + LOOK_AHEAD) == 0;
+            let answer = *finished;
             *finished = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(refused)));
             // What has no answer is no speckle.
-            *flags = flags.union(PixelFlags::SPECKLE.when(finished != answer));
+            *flags = flags.union(PixelFlags::SPECKLE.when(*finished != answer));
         }
     }
 }

@@ -2,7 +2,9 @@
 
 use super::answers::{self, Winners};
 use super::config::Config;
+use super::fill;
 use super::kernels::{Kernel, RowWork, Select, Unique, Winner, halves_mut};
+use super::median;
 use super::row::{HISTORY, slot};
 use super::scheme::{Around, Scheme};
 use super::speckle::{BAND, LOOK_AHEAD, Support};
@@ -59,6 +61,9 @@ impl<S: Scheme> Stages<'_, S> {
     fn match_row(&mut self, bottom: usize) {
         let height = usize::from(self.config.height);
         let row = bottom.checked_sub(S::RADIUS_Y);
+        if let Some(row) = row {
+            self.prepare(row);
+        }
         if bottom < height + S::RADIUS_Y {
             self.select_winners(bottom, bottom < height, row);
         }
@@ -74,6 +79,27 @@ impl<S: Scheme> Stages<'_, S> {
         let flags = slot_mut(self.flags, judged % BAND, self.width);
         let finished = slot_mut(self.finished, judged % HISTORY, self.width);
         self.support.count(row, self.band, checks.surface_step, checks.speckle_pixels, flags, finished);
+        if checks.fill_pixels > 0 {
+            fill::fill(finished, flags, checks.fill_pixels);
+        }
+    }
+
+    /// Makes room for `row`: the row that came out last goes into the history as it was judged, and of the one to be
+    /// judged next come the answers, for which the band must still hold the row above it.
+    fn prepare(&mut self, row: usize) {
+        let checks = &self.config.checks;
+        if checks.fill_pixels > 0 {
+            let (flags, out) = (slot(self.flags, row % BAND, self.width), row % HISTORY);
+            fill::take_back(slot_mut(self.finished, out, self.width), flags);
+        }
+        let judged = row + BAND - LOOK_AHEAD;
+        let of_band = |row: usize| slot(self.band, row % BAND, self.width);
+        let finished = slot_mut(self.finished, judged % HISTORY, self.width);
+        if checks.median {
+            median::median(self.kernel, [row, judged, judged + 1].map(of_band), finished);
+        } else {
+            finished.iter_mut().zip(of_band(judged)).for_each(|(finished, answer)| *finished = *answer);
+        }
     }
 
     /// Moves the window; without a `row`, costs are only gathered.

@@ -48,13 +48,14 @@ fn of_columns(columns: [[i32; 3]; 3]) -> Disparity {
     let centre = columns[1][1];
     // 1 for no answer.
     let none = |raw: i32| (raw + 1) >> 16;
-    // No comparison: some cores would branch on it.
+    // No choice of one or the other: some cores would branch on it.
     let differences = columns.map(|column| column.map(|raw| (raw - centre) * (1 - none(raw))));
     let median = middle_of_nine(differences, |a, b| {
-        let over = (a - b).max(0);
-        (a - over, b + over)
+        let less = a.min(b);
+        // The other one, without another comparison.
+        (less, a ^ b ^ less)
     });
-    Disparity::from_raw((centre + median | -none(centre)) as u16)
+    Disparity::from_raw(((centre + median) | -none(centre)) as u16)
 }
 
 /// The middle one of nine, which `order` puts into their order two at a time.

@@ -78,14 +78,18 @@ impl<S: Scheme> Stages<'_, S> {
         let judged = row + BAND - LOOK_AHEAD;
         let flags = slot_mut(self.flags, judged % BAND, self.width);
         let finished = slot_mut(self.finished, judged % HISTORY, self.width);
-        self.support.count(row, self.band, checks.surface_step, checks.speckle_pixels, flags, finished);
+        if checks.median {
+            self.support.count_in_place(row, self.band, checks, flags, finished);
+        } else {
+            self.support.count(row, self.band, checks, flags, finished);
+        }
         if checks.fill_pixels > 0 {
             fill::fill(finished, flags, checks.fill_pixels);
         }
     }
 
-    /// Makes room for `row`: the row that came out last goes into the history as it was judged, and of the one to be
-    /// judged next come the answers, for which the band must still hold the row above it.
+    /// Makes room for `row`: the row that came out last goes into the history as it was judged, and the medians are made
+    /// of the one to be judged next, for which the band must still hold the row above it.
     fn prepare(&mut self, row: usize) {
         let checks = &self.config.checks;
         if checks.fill_pixels > 0 {
@@ -94,11 +98,9 @@ impl<S: Scheme> Stages<'_, S> {
         }
         let judged = row + BAND - LOOK_AHEAD;
         let of_band = |row: usize| slot(self.band, row % BAND, self.width);
-        let finished = slot_mut(self.finished, judged % HISTORY, self.width);
         if checks.median {
+            let finished = slot_mut(self.finished, judged % HISTORY, self.width);
             median::median(self.kernel, [row, judged, judged + 1].map(of_band), finished);
-        } else {
-            finished.iter_mut().zip(of_band(judged)).for_each(|(finished, answer)| *finished = *answer);
         }
     }
 

@@ -196,7 +196,7 @@ fn filtered<S: Method>() {
             }
         }
     }
-    assert!(filled > 1000 && moved > 1000, "{filled} filled, {moved} moved");
+    assert!(filled > 100 && moved > 1000, "{filled} filled, {moved} moved");
 }
 
 #[test]

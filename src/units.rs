@@ -88,7 +88,8 @@ impl fmt::Display for Disparity {
 /// Why a pixel has no answer, and what is to be known about one that has: one byte, a bit for each reason.
 ///
 /// A pixel without an answer has at least one bit set. [`PixelFlags::CEILING`] can stand on a pixel with an answer,
-/// when the checks let such answers through.
+/// when the checks let such answers through. [`PixelFlags::FILLED`] stands on pixels with an answer alone, beside the
+/// bits that say why they had none of their own.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(transparent)]
@@ -109,15 +110,18 @@ impl PixelFlags {
     pub const MISMATCH: Self = Self(1 << 4);
     /// Too few answers around it are of its surface.
     pub const SPECKLE: Self = Self(1 << 5);
+    /// The answer is not the pixel's own but the farther one of those on both sides of a small gap in the row.
+    pub const FILLED: Self = Self(1 << 6);
 
     /// Every flag with its name, in order of the bits.
-    pub const NAMES: [(Self, &'static str); 6] = [
+    pub const NAMES: [(Self, &'static str); 7] = [
         (Self::OUTSIDE, "outside"),
         (Self::CEILING, "ceiling"),
         (Self::UNTEXTURED, "untextured"),
         (Self::AMBIGUOUS, "ambiguous"),
         (Self::MISMATCH, "mismatch"),
         (Self::SPECKLE, "speckle"),
+        (Self::FILLED, "filled"),
     ];
 
     /// The byte, for storage.
@@ -138,6 +142,11 @@ impl PixelFlags {
     /// Both sets of bits.
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
+    }
+
+    /// The bits without those of `other`.
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
     }
 
     /// Whether any bit of `other` is set.

@@ -1,7 +1,7 @@
 //! Colours that the colour blind can tell apart, for pictures of results.
 //!
 //! * [`viridis`]: brightness grows along it, so that it reads in grey as well; far is dark violet, near bright yellow.
-//! * [`FLAG_COLOURS`]: Okabe and Ito's palette, one colour for each reason without an answer.
+//! * [`FLAG_COLOURS`]: Okabe and Ito's palette, one colour for each reason without an answer of the pixel's own.
 //! * [`diverging`]: blue over white to orange, for errors with a sign.
 
 use image::{GrayImage, Rgb, RgbImage};
@@ -29,14 +29,15 @@ const VIRIDIS: [[u8; 3]; 9] = [
 const DIVERGING: [[u8; 3]; 3] = [[0x00, 0x72, 0xb2], [0xf7, 0xf7, 0xf7], [0xd5, 0x5e, 0x00]];
 
 /// The colour of each reason, in the order of [`PixelFlags::NAMES`]: Okabe and Ito's sky blue, yellow, bluish green,
-/// orange, blue and reddish purple.
-pub const FLAG_COLOURS: [Rgb<u8>; 6] = [
+/// orange, blue, reddish purple and vermillion.
+pub const FLAG_COLOURS: [Rgb<u8>; 7] = [
     Rgb([0x56, 0xb4, 0xe9]),
     Rgb([0xf0, 0xe4, 0x42]),
     Rgb([0x00, 0x9e, 0x73]),
     Rgb([0xe6, 0x9f, 0x00]),
     Rgb([0x00, 0x72, 0xb2]),
     Rgb([0xcc, 0x79, 0xa7]),
+    Rgb([0xd5, 0x5e, 0x00]),
 ];
 
 /// The colour at `t`, 0 (far, dark) to 1 (near, bright).
@@ -98,16 +99,16 @@ impl ColourScale {
     }
 }
 
-/// The first reason without an answer, as an index into [`PixelFlags::NAMES`]; `None` for an answered pixel.
+/// The first reason without an answer, or that the answer was filled in, as an index into [`PixelFlags::NAMES`]; `None`
+/// for a pixel with an answer of its own.
 pub fn first_reason(map: &DisparityMap, pixel: usize) -> Option<usize> {
-    if map.disparity[pixel].is_some() {
-        return None;
-    }
-    PixelFlags::NAMES.iter().position(|(flag, _)| map.flags[pixel].contains(*flag))
+    let answered = map.disparity[pixel].is_some();
+    let says = |flag: PixelFlags| map.flags[pixel].contains(flag) && (!answered || flag == PixelFlags::FILLED);
+    PixelFlags::NAMES.iter().position(|(flag, _)| says(*flag))
 }
 
-/// Why pixels have no answer: the first reason's colour over the left image, which stays grey and pale where there are
-/// answers.
+/// Why pixels have no answer, or which were filled in: the first reason's colour over the left image, which stays grey
+/// and pale where there are answers.
 pub fn flags_picture(map: &DisparityMap, left: &RgbImage) -> RgbImage {
     picture(
         map.width,

@@ -6,7 +6,7 @@
 use std::ffi::{CStr, c_void};
 use std::ptr::{null, null_mut};
 use stereopsis::ffi::{Config, Handle, Rig, Row, STEREOPSIS_ALIGN, STEREOPSIS_PRESET_DEFAULT, Status, state_bytes};
-use stereopsis::matching::{self, Block};
+use stereopsis::matching::{self, Block, Checks};
 use stereopsis::pipeline::Pipeline;
 use stereopsis_host::scene::pattern::Pattern;
 
@@ -46,6 +46,7 @@ fn config(width: u16, height: u16, disparities: u16) -> Config {
         refuse_ceiling: 0,
         refuse_flat: 0,
         smoothing_radius: 0,
+        median: 0,
         surface_step: 0,
         speckle_pixels: 0,
         gradient: 0,
@@ -53,6 +54,7 @@ fn config(width: u16, height: u16, disparities: u16) -> Config {
         step: 0,
         jump: [0; 3],
         edges: [0; 2],
+        fill_pixels: 0,
     };
     // SAFETY: the pointer is to a configuration.
     let status =
@@ -73,7 +75,9 @@ fn rows_are_those_of_the_pipeline() {
         let (left, right) = (lines(&left), lines(&right));
 
         let mut pipeline = Box::new(Pipeline::<Block, WIDTH, DISPARITIES>::new());
-        pipeline.start(&matching::Config::new(width, height, 32)).expect("the configuration is valid");
+        let checks = Checks { median: true, fill_pixels: 3, ..Checks::DEFAULT };
+        let asked = matching::Config { checks, ..matching::Config::new(width, height, 32) };
+        pipeline.start(&asked).expect("the configuration is valid");
         pipeline.begin().expect("it is started");
         let mut expected = Vec::new();
         let mut keep = |row: matching::Row<'_>| {
@@ -92,7 +96,7 @@ fn rows_are_those_of_the_pipeline() {
         let mut memory = memory();
         let (status, handle) = init(&mut memory, 0, stereopsis_size());
         assert_eq!(status, Status::Ok);
-        let config = config(width, height, 32);
+        let config = Config { median: 1, fill_pixels: 3, ..config(width, height, 32) };
         let mut found = Vec::new();
         // SAFETY: the handle is from `init`, lines have their length, and rows are read before the next call.
         unsafe {

@@ -24,11 +24,14 @@ fn assert_same(one: &DisparityMap, bands: &DisparityMap, what: &str) {
 fn bands_give_the_same_rows() {
     // The filter that counts farthest, on surfaces of one answer a row.
     let narrow = Checks { speckle_pixels: u8::MAX, surface_step: Disparity::ZERO, ..Checks::DEFAULT };
+    // What looks at other rows and pixels, with and without what looks farther.
+    let median = Checks { median: true, ..Checks::DENSE };
+    let filled = Checks { median: true, fill_pixels: 16, ..Checks::STRICT };
     for (width, height) in [(160, 240), (96, 61), (64, 3), (48, 1)] {
         let (left, right) = Scene::small(width, height).render();
         let pair = MemoryPair::new(width, left.into_raw(), right.into_raw()).expect("one size");
         for method in Method::ALL {
-            for checks in [Checks::DENSE, Checks::DEFAULT, Checks::STRICT, narrow] {
+            for checks in [Checks::DENSE, Checks::DEFAULT, Checks::STRICT, narrow, median, filled] {
                 let config = Config { checks, ..Config::new(width, height, 32) };
                 let one = map(method, &config, &pair, 1);
                 for threads in [2, 3, 4, 7] {

@@ -42,6 +42,8 @@ pub struct Config {
     pub refuse_flat: u8,
     /// Answers are averaged along the line with this many pairs of neighbours of their surface, 0 to 8.
     pub smoothing_radius: u8,
+    /// Whether every answer becomes the middle one of those in 3 x 3 pixels around it; 0 is no.
+    pub median: u8,
     /// Neighbours are of one surface when they differ by at most this, in 1/32 px, 0 to 32.
     pub surface_step: u16,
     /// Speckle: answers with fewer of their surface on a cross around them are dropped; with 0 none is.
@@ -57,6 +59,9 @@ pub struct Config {
     pub jump: [u8; 3],
     /// Methods along paths: the changes of brightness, in grey levels, at which it is more, and much.
     pub edges: [u8; 2],
+    /// Fill: gaps along the row of at most this many pixels, between two answers, get the farther of the two and
+    /// `STEREOPSIS_FLAG_FILLED`; with 0 none does.
+    pub fill_pixels: u8,
 }
 
 impl Config {
@@ -82,6 +87,7 @@ impl Config {
             refuse_ceiling: checks.refuse_ceiling.into(),
             refuse_flat: checks.refuse_flat.into(),
             smoothing_radius: checks.smoothing_radius,
+            median: checks.median.into(),
             surface_step: checks.surface_step.raw(),
             speckle_pixels: checks.speckle_pixels,
             gradient,
@@ -89,6 +95,7 @@ impl Config {
             step,
             jump,
             edges,
+            fill_pixels: checks.fill_pixels,
         })
     }
 
@@ -113,6 +120,8 @@ impl Config {
                 smoothing_radius: self.smoothing_radius,
                 surface_step: Disparity::from_raw(self.surface_step),
                 speckle_pixels: self.speckle_pixels,
+                median: self.median != 0,
+                fill_pixels: self.fill_pixels,
             },
             penalties: Penalties {
                 gradient: self.gradient,

@@ -20,6 +20,8 @@ pub const STEREOPSIS_FLAG_AMBIGUOUS: u8 = 8;
 pub const STEREOPSIS_FLAG_MISMATCH: u8 = 16;
 /// Too few answers around it are of its surface.
 pub const STEREOPSIS_FLAG_SPECKLE: u8 = 32;
+/// The answer is not the pixel's own but the farther one of those on both sides of a small gap in the row.
+pub const STEREOPSIS_FLAG_FILLED: u8 = 64;
 
 /// The constants are literals, so that the header has them; these are what they say.
 const _: () = {
@@ -31,6 +33,7 @@ const _: () = {
     assert!(STEREOPSIS_FLAG_AMBIGUOUS == PixelFlags::AMBIGUOUS.bits());
     assert!(STEREOPSIS_FLAG_MISMATCH == PixelFlags::MISMATCH.bits());
     assert!(STEREOPSIS_FLAG_SPECKLE == PixelFlags::SPECKLE.bits());
+    assert!(STEREOPSIS_FLAG_FILLED == PixelFlags::FILLED.bits());
 };
 
 /// A row of results. The arrays stand in the matcher's memory and hold until the next call with its handle.
@@ -43,7 +46,7 @@ pub struct Row {
     pub width: u16,
     /// A disparity for each column in 1/32 px, `STEREOPSIS_NONE` for no answer.
     pub disparities: *const u16,
-    /// The `STEREOPSIS_FLAG_` bits of each column: why there is no answer.
+    /// The `STEREOPSIS_FLAG_` bits of each column: why there is no answer, or none of its own.
     pub flags: *const u8,
 }
 

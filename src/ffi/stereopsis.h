@@ -46,7 +46,7 @@
 /**
  * The version of this interface. It changes when a program that was compiled with another header would go wrong.
  */
-#define STEREOPSIS_ABI 1
+#define STEREOPSIS_ABI 2
 
 /**
  * Every matcher's memory may be aligned to this many bytes: `uint64_t` will do.
@@ -112,6 +112,11 @@
  * Too few answers around it are of its surface.
  */
 #define STEREOPSIS_FLAG_SPECKLE 32
+
+/**
+ * The answer is not the pixel's own but the farther one of those on both sides of a small gap in the row.
+ */
+#define STEREOPSIS_FLAG_FILLED 64
 
 /**
  * What a call answers: below 0 it is an error, and nothing has changed.
@@ -304,6 +309,10 @@ typedef struct stereopsis_config {
    */
   uint8_t smoothing_radius;
   /**
+   * Whether every answer becomes the middle one of those in 3 x 3 pixels around it; 0 is no.
+   */
+  uint8_t median;
+  /**
    * Neighbours are of one surface when they differ by at most this, in 1/32 px, 0 to 32.
    */
   uint16_t surface_step;
@@ -311,6 +320,11 @@ typedef struct stereopsis_config {
    * Speckle: answers with fewer of their surface on a cross around them are dropped; with 0 none is.
    */
   uint8_t speckle_pixels;
+  /**
+   * Fill: gaps along the row of at most this many pixels, between two answers, get the farther of the two and
+   * `STEREOPSIS_FLAG_FILLED`; with 0 none does.
+   */
+  uint8_t fill_pixels;
 } stereopsis_config;
 
 /**
@@ -330,7 +344,7 @@ typedef struct stereopsis_row {
    */
   const uint16_t *disparities;
   /**
-   * The `STEREOPSIS_FLAG_` bits of each column: why there is no answer.
+   * The `STEREOPSIS_FLAG_` bits of each column: why there is no answer, or none of its own.
    */
   const uint8_t *flags;
 } stereopsis_row;

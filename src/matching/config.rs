@@ -52,6 +52,8 @@ impl Config {
             smoothing_radius: 0,
             speckle_pixels: 0,
             surface_step: Disparity::ZERO,
+            median: false,
+            fill_pixels: 0,
         },
         penalties: Penalties::UNSET,
     };
@@ -115,6 +117,11 @@ pub struct Checks {
     /// Speckle: answers are dropped that have fewer of their surface, themselves included, on a cross: in their column,
     /// down to four rows below, and along the rows of these. 0: none is.
     pub speckle_pixels: u8,
+    /// Median: every answer becomes the middle one of those in 3 x 3 pixels around it.
+    pub median: bool,
+    /// Fill: gaps along the row of at most this many pixels, between two answers, get the farther of the two, and
+    /// [`PixelFlags::FILLED`](crate::units::PixelFlags::FILLED). 0: none is.
+    pub fill_pixels: u8,
 }
 
 impl Checks {
@@ -132,6 +139,8 @@ impl Checks {
         smoothing_radius: 4,
         speckle_pixels: 0,
         surface_step: Disparity::ONE_PIXEL,
+        median: false,
+        fill_pixels: 0,
     };
 
     /// Most answers, few of them wrong.
@@ -145,6 +154,8 @@ impl Checks {
         smoothing_radius: 4,
         speckle_pixels: 24,
         surface_step: Disparity::ONE_PIXEL,
+        median: false,
+        fill_pixels: 0,
     };
 
     /// Sure answers: fewer, and wrong only rarely.
@@ -158,6 +169,8 @@ impl Checks {
         smoothing_radius: 4,
         speckle_pixels: 60,
         surface_step: Disparity::ONE_PIXEL,
+        median: false,
+        fill_pixels: 0,
     };
 }
 

@@ -1,22 +1,27 @@
-//! Census rows in, disparity rows out, line by line in memory of width x disparities.
+//! Lines of two cameras in, disparity rows out, line by line in memory of width x disparities.
 //!
 //! One row through the stages, in running order:
 //!
-//! 1. [`scheme`](Scheme): which census and which window, [`Fast`] or [`Block`].
-//! 2. `kernels`: matching cost into column sums, sliding window sums, the winner of every pixel. The only stage whose
-//!    work grows with the number of disparities, behind one seam ([`Kernel`]).
+//! 1. [`scheme`](Scheme): what a method is. `window`: [`Fast`] and [`Block`], census codes compared over a window.
+//!    `paths`: [`Sgm`] and [`SgmLean`], gradients, brightness and a census compared along paths, by [`Penalties`].
+//! 2. `kernels`: the cost of every candidate, its sum, the winner of every pixel. The only stage whose work grows with the
+//!    number of disparities, behind one seam ([`Kernel`]).
 //! 3. `texture`: whether the window has texture.
 //! 4. `answers`: whether the right image agrees, the winner between whole pixels, what refuses it.
 //! 5. `surface`: the answers averaged along the row, within their surface.
-//! 6. `speckle`: answers dropped that too few others support, in a band of five rows.
-//! 7. [`Row`]: what came out, with the uncertainty of each answer.
+//! 6. `median`: if asked for, the middle one of the answers around each.
+//! 7. `speckle`: answers dropped that too few others support, in a band of five rows.
+//! 8. `fill`: if asked for, small gaps along the row closed.
+//! 9. [`Row`]: what came out, with the uncertainty of each answer.
 //!
-//! [`Matcher`] owns the memory and runs the stages. [`Config`] says what is searched and which answers are refused.
+//! [`Matcher`] owns the `memory` and runs the `stages`. [`Config`] says what is searched and which answers are refused.
 
 mod answers;
 mod config;
+mod fill;
 mod kernels;
 mod matcher;
+mod median;
 mod memory;
 mod paths;
 mod penalties;

@@ -3,6 +3,9 @@
 use super::speckle::BAND;
 use crate::units::{Disparity, PixelFlags};
 
+/// The least standard deviation of an answer that was filled in, px.
+const FILLED_SIGMA_PX: f32 = 1.0;
+
 /// Pixels on each side that the uncertainty looks at: the reach of the matching window.
 const REACH: usize = 4;
 /// Finished rows that are kept: the row itself and those that the uncertainty looks back at.
@@ -15,9 +18,9 @@ pub struct Row<'a> {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) flags: &'a [PixelFlags],
-    /// `HISTORY` finished rows, row `y` in slot `y % HISTORY`.
+    /// `HISTORY` finished rows, row `y` in slot `y % HISTORY`; of these only the row itself has its gaps filled.
     pub(super) finished: &'a [Disparity],
-    /// `BAND` rows before the speckle filter, row `y` in slot `y % BAND`: this row and those below.
+    /// `BAND` rows before median and speckle filter, row `y` in slot `y % BAND`: this row and those below.
     pub(super) band: &'a [Disparity],
     pub(super) sigma_px: f32,
 }
@@ -43,13 +46,18 @@ impl<'a> Row<'a> {
     /// Away from depth edges it is the method's own ([`Scheme::SIGMA_PX`](super::Scheme::SIGMA_PX)). Near an edge the
     /// window sees two surfaces and may answer with either one's disparity, so the answers up to four pixels left,
     /// right, above and below are looked at: three sigma reach to the farthest of them,
-    /// `sigma = max(SIGMA_PX, spread / 3)`.
+    /// `sigma = max(SIGMA_PX, spread / 3)`. Those above are as they came out, but for what was filled; the others are as
+    /// they were before the median and the speckle filter.
     ///
-    /// The work, 16 look-ups, is done when asked for.
+    /// A filled answer ([`PixelFlags::FILLED`]) is a guess: its sigma is at least 1 px, and three of it reach the
+    /// answers on both sides of its gap as well.
+    ///
+    /// The work, 16 look-ups and a look at each pixel of the gap, is done when asked for.
     pub fn sigma_px(&self, x: usize) -> Option<f32> {
         let centre = self.disparities().get(x).copied().filter(|d| d.is_some())?;
         let here = slot(self.band, self.index % BAND, self.width);
         let mut spread = 0;
+        let mut least_px = self.sigma_px;
         let mut look = |row: &[Disparity], x: usize| {
             let neighbour = row.get(x).copied().unwrap_or_default();
             spread = spread.max(centre.distance(neighbour).unwrap_or(0));
@@ -65,8 +73,14 @@ impl<'a> Row<'a> {
                 look(slot(self.band, y % BAND, self.width), x);
             }
         }
+        let filled = |x: &usize| self.flags.get(*x).is_some_and(|flags| flags.contains(PixelFlags::FILLED));
+        if filled(&x) {
+            least_px = least_px.max(FILLED_SIGMA_PX);
+            let sides = [(0..x).rev().find(|x| !filled(x)), (x..self.width).find(|x| !filled(x))];
+            sides.into_iter().flatten().for_each(|side| look(self.disparities(), side));
+        }
         let spread_px = f32::from(spread) / f32::from(Disparity::ONE);
-        Some(self.sigma_px.max(spread_px / 3.0))
+        Some(least_px.max(spread_px / 3.0))
     }
 }
 

@@ -10,6 +10,7 @@
 //! grows downwards: where it is enough, it is enough for all rows above that the surface goes on from. Two bits a row say
 //! all that is to be kept of those, in one word with the support so far.
 
+use super::config::Checks;
 use super::row::slot;
 use super::surface::of_one;
 use crate::units::{Disparity, PixelFlags};
@@ -47,26 +48,51 @@ impl Support<'_> {
     }
 
     /// Counts row `y` of the `band`, and judges the row that waited for it, [`LOOK_AHEAD`] above: what is finished are
-    /// its answers without those that have less support than `pixels`. In the first rows of a frame there is none yet;
-    /// what is written then is not looked at.
+    /// its answers without those that have less support than the checks ask for. In the first rows of a frame there is
+    /// none yet; what is written then is not looked at.
     #[inline(never)]
-    #[allow(clippy::unnecessary_cast, reason = "a word is a half-word on some cores only")]
     pub(super) fn count(
         &mut self,
         y: usize,
         band: &[Disparity],
-        step: Disparity,
-        pixels: u8,
+        checks: &Checks,
         flags: &mut [PixelFlags],
         finished: &mut [Disparity],
     ) {
+        let judged = slot(band, (y + BAND - LOOK_AHEAD) % BAND, self.kept.len());
+        let out = judged.iter().zip(flags).zip(finished);
+        self.judge(y, band, checks, out.map(|((answer, flags), finished)| (*answer, flags, finished)));
+    }
+
+    /// The same where the answers to be judged are in `finished` already.
+    #[inline(never)]
+    pub(super) fn count_in_place(
+        &mut self,
+        y: usize,
+        band: &[Disparity],
+        checks: &Checks,
+        flags: &mut [PixelFlags],
+        finished: &mut [Disparity],
+    ) {
+        let out = flags.iter_mut().zip(finished);
+        self.judge(y, band, checks, out.map(|(flags, finished)| (*finished, flags, finished)));
+    }
+
+    #[inline(always)]
+    #[allow(clippy::unnecessary_cast, reason = "a word is a half-word on some cores only")]
+    fn judge<'a>(
+        &mut self,
+        y: usize,
+        band: &[Disparity],
+        checks: &Checks,
+        out: impl Iterator<Item = (Disparity, &'a mut PixelFlags, &'a mut Disparity)>,
+    ) {
         let width = self.kept.len();
         let row = |y: usize| slot(band, y % BAND, width);
-        let (here, above, judged) = (row(y), row(y + BAND - 1), row(y + BAND - LOOK_AHEAD));
-        let pixels = Word::from(pixels);
+        let (here, above) = (row(y), row(y + BAND - 1));
+        let (step, pixels) = (checks.surface_step, Word::from(checks.speckle_pixels));
         let rows = here.iter().zip(above).zip(self.lengths.iter().zip(self.kept.iter_mut()));
-        let out = judged.iter().zip(flags).zip(finished);
-        for (((here, above), (&length, kept)), ((answer, flags), finished)) in rows.zip(out) {
+        for (((here, above), (&length, kept)), (answer, flags, finished)) in rows.zip(out) {
             let joined = Word::from(of_one(here.raw(), above.raw(), step));
             let before = Word::from(*kept);
             let support = before >> (2 * ROWS) & Word::MIN.wrapping_sub(joined);
@@ -80,7 +106,7 @@ impl Support<'_> {
             let refused = rows & 1 << (ROWS + LOOK_AHEAD) == 0;
             *finished = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(refused)));
             // What has no answer is no speckle.
-            *flags = flags.union(PixelFlags::SPECKLE.when(finished != answer));
+            *flags = flags.union(PixelFlags::SPECKLE.when(*finished != answer));
         }
     }
 }

@@ -2,8 +2,10 @@
 
 use super::answers::{self, Winners};
 use super::config::Config;
+use super::fill;
 use super::kernels::{Kernel, Winner, halves_mut};
-use super::row::HISTORY;
+use super::median;
+use super::row::{HISTORY, slot};
 use super::scheme::{Around, Scheme};
 use super::speckle::{BAND, LOOK_AHEAD, Support};
 use super::surface;
@@ -54,6 +56,9 @@ impl<S: Scheme> Stages<'_, S> {
     fn match_row(&mut self, bottom: usize, lines: Option<[&Around<'_>; 2]>) {
         let height = usize::from(self.config.height);
         let row = bottom.checked_sub(S::RADIUS_Y);
+        if let Some(row) = row {
+            self.prepare(row);
+        }
         S::select(self, bottom, lines, row.filter(|&row| row < height));
         let Some(row) = row else { return };
         if row < height {
@@ -66,7 +71,30 @@ impl<S: Scheme> Stages<'_, S> {
         let judged = row + BAND - LOOK_AHEAD;
         let flags = slot_mut(self.flags, judged % BAND, self.width);
         let finished = slot_mut(self.finished, judged % HISTORY, self.width);
-        self.support.count(row, self.band, checks.surface_step, checks.speckle_pixels, flags, finished);
+        if checks.median {
+            self.support.count_in_place(row, self.band, checks, flags, finished);
+        } else {
+            self.support.count(row, self.band, checks, flags, finished);
+        }
+        if checks.fill_pixels > 0 {
+            fill::fill(finished, flags, checks.fill_pixels);
+        }
+    }
+
+    /// Makes room for `row`: the row that came out last goes into the history as it was judged, and the medians are made
+    /// of the one to be judged next, for which the band must still hold the row above it.
+    fn prepare(&mut self, row: usize) {
+        let checks = &self.config.checks;
+        if checks.fill_pixels > 0 {
+            let (flags, out) = (slot(self.flags, row % BAND, self.width), row % HISTORY);
+            fill::take_back(slot_mut(self.finished, out, self.width), flags);
+        }
+        let judged = row + BAND - LOOK_AHEAD;
+        let of_band = |row: usize| slot(self.band, row % BAND, self.width);
+        if checks.median {
+            let finished = slot_mut(self.finished, judged % HISTORY, self.width);
+            median::median(self.kernel, [row, judged, judged + 1].map(of_band), finished);
+        }
     }
 
     /// Turns winners into answers, but for those that the checks contradict, and averages them along the row.

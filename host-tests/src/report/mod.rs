@@ -45,13 +45,14 @@ pub struct Report<'a> {
 pub const ERROR_LIMIT_PX: f32 = 3.0;
 
 /// What each flag says, in the order of [`PixelFlags::NAMES`].
-const MEANINGS: [&str; 6] = [
+const MEANINGS: [&str; 7] = [
     "no candidate lies inside the right image",
     "the largest disparity searched won: the surface may be nearer",
     "its neighbours cost the same, or too little texture in the window",
     "another disparity matches nearly as well",
     "the right image disagrees: occluded or mismatched",
     "too few answers around it are of its surface",
+    "answered with the farther one of the answers on both sides of a small gap",
 ];
 
 impl Report<'_> {
@@ -130,11 +131,12 @@ impl Report<'_> {
     /// What the colours of the flags mean, with the share of the pixels that each one has; HTML.
     fn legend(&self) -> String {
         let mut counts = [0usize; PixelFlags::NAMES.len()];
-        let mut unnamed = 0usize;
+        let (mut answered, mut unnamed) = (0usize, 0usize);
         for pixel in 0..self.map.disparity.len() {
             match first_reason(self.map, pixel) {
                 Some(reason) => counts[reason] += 1,
-                None => unnamed += usize::from(self.map.disparity[pixel].is_none()),
+                None if self.map.disparity[pixel].is_some() => answered += 1,
+                None => unnamed += 1,
             }
         }
         let share = |count: usize| percent(count as f64 / self.map.disparity.len().max(1) as f64);
@@ -142,7 +144,7 @@ impl Report<'_> {
             let swatch = format!("<span class=\"swatch\" style=\"background:#{r:02x}{g:02x}{b:02x}\"></span>");
             format!("<tr><th>{swatch}{text}</th><td>{}</td></tr>\n", share(count))
         };
-        let mut rows = row([0xb0; 3], "answered: the left image, pale".into(), self.map.answers());
+        let mut rows = row([0xb0; 3], "answered: the left image, pale".into(), answered);
         for (i, (_, name)) in PixelFlags::NAMES.iter().enumerate() {
             rows += &row(FLAG_COLOURS[i].0, format!("{name}: {}", MEANINGS[i]), counts[i]);
         }

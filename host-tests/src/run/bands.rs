@@ -4,8 +4,9 @@
 //! rows:
 //!
 //! * below, as many as a row waits for: [`Method::latency_lines`](super::Method::latency_lines);
-//! * above, as many again, for windows and for the uncertainty, which looks back at finished rows; and one for each answer
-//!   that the speckle filter asks for, since a surface that goes on through so many rows has them.
+//! * above, as many again, for windows and for the uncertainty, which looks back at finished rows; one for the median,
+//!   which looks at the row above; and one for each answer that the speckle filter asks for, since a surface that goes on
+//!   through so many rows has them.
 //!
 //! The lines that are worked on twice are the price: 34 above and 10 below with `block` and the default checks.
 
@@ -33,7 +34,7 @@ fn bands(way: Way, config: &Config) -> Vec<Band> {
     let height = usize::from(config.height);
     let count = usize::from(way.threads).clamp(1, height);
     let below = way.method.latency_lines();
-    let above = below + usize::from(config.checks.speckle_pixels);
+    let above = below + usize::from(config.checks.median) + usize::from(config.checks.speckle_pixels);
     let band = |band: usize| {
         let rows = band * height / count..(band + 1) * height / count;
         let lines = rows.start.saturating_sub(above)..height.min(rows.end + below);

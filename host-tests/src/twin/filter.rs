@@ -1,4 +1,5 @@
-//! What happens to answers after they are chosen: smoothing along the row, the speckle filter, the deviation.
+//! What happens to answers after they are chosen: smoothing along the row, the median, the speckle filter, filling, the
+//! deviation.
 
 use super::{Answers, Scheme};
 use std::ops::Range;
@@ -40,10 +41,29 @@ pub(super) fn smooth_row(checks: &Checks, row: &[Disparity]) -> (Vec<Disparity>,
     (smooth, lengths)
 }
 
-/// The rows after the speckle filter. `lengths` is that of each answer's surface along its row. An answer needs support:
+/// The fifth of nine answers around each, in order of size; what is none, or outside, counts as the one in the middle.
+pub(super) fn medians(width: usize, before: &[Disparity]) -> Vec<Disparity> {
+    let height = before.len() / width;
+    let median = |i: usize| {
+        let (x, y) = (i % width, i / width);
+        let mut nine = Vec::new();
+        for (row, column) in [y.wrapping_sub(1), y, y + 1]
+            .into_iter()
+            .flat_map(|row| [x.wrapping_sub(1), x, x + 1].map(|column| (row, column)))
+        {
+            let inside = row < height && column < width;
+            let neighbour = if inside { before[row * width + column] } else { Disparity::NONE };
+            nine.push(if neighbour.is_some() { neighbour.raw() } else { before[i].raw() });
+        }
+        nine.sort_unstable();
+        Disparity::from_raw(nine[4])
+    };
+    (0..before.len()).map(|i| if before[i].is_some() { median(i) } else { Disparity::NONE }).collect()
+}
+
+/// The rows after the speckle filter, which judges by the answers `before` the median. `lengths` is that of each answer's surface along its row. An answer needs support:
 /// the lengths in its column, as far up as the surface goes, and as far down but for at most four rows.
-pub(super) fn drop_speckles(checks: &Checks, lengths: &[usize], mut map: Answers) -> Answers {
-    let before = map.disparity.clone();
+pub(super) fn drop_speckles(checks: &Checks, before: &[Disparity], lengths: &[usize], mut map: Answers) -> Answers {
     let goes_on = |above: usize| {
         let below = above + map.width;
         below < before.len() && of_one_surface(checks, before[above], before[below])
@@ -71,17 +91,50 @@ pub(super) fn drop_speckles(checks: &Checks, lengths: &[usize], mut map: Answers
     map
 }
 
+/// The answers to the left and to the right of a pixel that has none, along its row, when both exist and no more than
+/// `most` pixels lie between them.
+fn sides(row: &[Disparity], x: usize, most: u8) -> Option<[Disparity; 2]> {
+    let left = (0..x).rev().find(|&x| row[x].is_some())?;
+    let right = (x + 1..row.len()).find(|&x| row[x].is_some())?;
+    (right - left - 1 <= usize::from(most)).then(|| [row[left], row[right]])
+}
+
+/// The map with small gaps along its rows filled.
+pub(super) fn fill_gaps(checks: &Checks, mut map: Answers) -> Answers {
+    let before = map.disparity.clone();
+    for i in (0..before.len()).filter(|&i| before[i].is_none()) {
+        let start = i / map.width * map.width;
+        if let Some([left, right]) = sides(&before[start..start + map.width], i - start, checks.fill_pixels) {
+            map.disparity[i] = Disparity::from_raw(left.raw().min(right.raw()));
+            map.flags[i] = map.flags[i].union(PixelFlags::FILLED);
+        }
+    }
+    map
+}
+
 /// The deviation of every answer, px: a third of the greatest difference to an answer within four pixels along the row
-/// and the column, and never less than the scheme's own.
-pub(super) fn sigmas(scheme: &Scheme, config: &Config, before: &[Disparity], after: &[Disparity]) -> Vec<Option<f32>> {
+/// and the column, and never less than the scheme's own. The answers are those `before` median and speckle filter, in
+/// rows above those `after`. A filled pixel of the `map` looks at both sides of its gap as well, and has at least 1 px.
+pub(super) fn sigmas(
+    scheme: &Scheme,
+    config: &Config,
+    before: &[Disparity],
+    after: &[Disparity],
+    map: &Answers,
+) -> Vec<Option<f32>> {
     let (width, height) = (usize::from(config.width), usize::from(config.height));
     let mut sigmas = vec![None; after.len()];
     for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
-        let here = after[y * width + x];
+        let here = map.disparity[y * width + x];
         if here.is_none() {
             continue;
         }
-        let mut neighbours = Vec::new();
+        let (mut neighbours, mut least_px) = (Vec::new(), scheme.sigma_px);
+        if after[y * width + x].is_none() {
+            let row = &after[y * width..(y + 1) * width];
+            neighbours.extend(sides(row, x, config.checks.fill_pixels).expect("it was filled from there"));
+            least_px = least_px.max(1.0);
+        }
         for k in 1..=LOOK_AHEAD {
             if x >= k {
                 neighbours.push(before[y * width + x - k]);
@@ -98,7 +151,7 @@ pub(super) fn sigmas(scheme: &Scheme, config: &Config, before: &[Disparity], aft
             }
         }
         let spread = neighbours.into_iter().filter_map(|n| here.distance(n)).max().unwrap_or(0);
-        sigmas[y * width + x] = Some(scheme.sigma_px.max(f32::from(spread) / 32.0 / 3.0));
+        sigmas[y * width + x] = Some(least_px.max(f32::from(spread) / 32.0 / 3.0));
     }
     sigmas
 }

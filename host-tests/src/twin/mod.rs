@@ -6,7 +6,7 @@
 //! * [`cost`]: bits that differ, per disparity, and their sum over the window. [`paths`]: differences of pixels, and their
 //!   sum along paths.
 //! * `select`: the cheapest disparity, its fraction, the checks.
-//! * `filter`: smoothing along the row, the speckle filter, the deviation.
+//! * `filter`: smoothing along the row, the median, the speckle filter, filling, the deviation.
 //!
 //! Nothing here is shared with the core but its words: [`Config`], [`Disparity`], [`PixelFlags`].
 
@@ -140,7 +140,12 @@ pub fn match_pair(scheme: &Scheme, config: &Config, left: &GrayImage, right: &Gr
         map.flags.extend(flags);
     }
     let before = map.disparity.clone();
-    let mut map = filter::drop_speckles(&config.checks, &lengths, map);
-    map.sigma_px = filter::sigmas(scheme, config, &before, &map.disparity);
+    if config.checks.median {
+        map.disparity = filter::medians(map.width, &before);
+    }
+    let map = filter::drop_speckles(&config.checks, &before, &lengths, map);
+    let after = map.disparity.clone();
+    let mut map = filter::fill_gaps(&config.checks, map);
+    map.sigma_px = filter::sigmas(scheme, config, &before, &after, &map);
     map
 }

@@ -10,6 +10,7 @@ use stereopsis::pipeline::Pipeline;
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::scene::pattern::Pattern;
 use stereopsis_host::scene::{Random, Scene};
+use stereopsis_host::twin::match_pair;
 
 /// The values of the deterministic list: every one of each is used.
 fn widths() -> Vec<u16> {
@@ -71,6 +72,8 @@ fn random_checks(random: &mut Random) -> Checks {
         smoothing_radius: random.below(usize::from(Checks::MOST_SMOOTHING) + 1) as u8,
         speckle_pixels: *random.pick(&[0, 1, 2, 5, 40, 100, 254, u8::MAX]),
         surface_step: Disparity::from_raw(*random.pick(&[0, 1, 2, 16, 31, 32])),
+        median: random.below(2) == 1,
+        fill_pixels: *random.pick(&[0, 1, 2, 3, 16, 40, u8::MAX]),
     }
 }
 
@@ -159,13 +162,15 @@ fn sgm_lean_equals_its_twin_at_all_sizes_ranges_and_pictures() {
 fn sgm_equals_its_twin_at_all_sizes_ranges_and_pictures() {
     run_list::<Sgm>();
 }
+/// Checks of which every stage does something.
+const ALL_STAGES: Checks = Checks { median: true, fill_pixels: 16, ..Checks::STRICT };
 
 /// Every picture with each of the ready-made checks, at a size that has all kinds of borders.
 fn every_pattern<S: Method>() {
     let mut pipeline = pipeline::<S>();
     for (i, pattern) in PATTERNS.into_iter().enumerate() {
         let pair = pattern.pair(71, 22, i as u64);
-        for checks in [Checks::DENSE, Checks::DEFAULT, Checks::STRICT] {
+        for checks in [Checks::DENSE, Checks::DEFAULT, Checks::STRICT, ALL_STAGES] {
             let config = Config { checks, ..Config::new(71, 22, 32) };
             compare(&mut pipeline, &config, &pair).unwrap_or_else(|e| panic!("{pattern:?}: {e}"));
         }
@@ -181,7 +186,7 @@ fn every_pattern_with_every_preset() {
 }
 
 fn rendered<S: Method>(pipeline: &mut Any<S>, scene: &Scene, pair: &(GrayImage, GrayImage)) {
-    for checks in [Checks::DENSE, Checks::DEFAULT, Checks::STRICT] {
+    for checks in [Checks::DENSE, Checks::DEFAULT, Checks::STRICT, ALL_STAGES] {
         for min_disparity in [0, 5] {
             let config =
                 Config { checks, min_disparity, ..Config::new(scene.width(), scene.height(), scene.disparities()) };
@@ -200,6 +205,35 @@ fn a_rendered_scene_equals_the_twin() {
     rendered::<Block>(&mut pipeline(), &scene, &pair);
     rendered::<SgmLean>(&mut pipeline(), &scene, &pair);
     rendered::<Sgm>(&mut pipeline(), &scene, &pair);
+}
+
+/// The median and the filling at every width around that of a group of lanes, and every height around that of the
+/// band; gaps of all lengths around those that are filled.
+fn filtered<S: Method>() {
+    let mut pipeline = pipeline::<S>();
+    // Such that gaps are many and short.
+    let gaps = Checks { uniqueness_percent: Some(20), speckle_pixels: 4, ..Checks::DEFAULT };
+    let (mut filled, mut moved) = (0, 0);
+    for (width, height) in (1..=40).flat_map(|width| [1, 2, 3, 5, 6, 9].map(|height| (width, height))) {
+        let pair = Pattern::Shifted { most: 9, noise_grey: 9.0 }.pair(width, height, u64::from(width));
+        let config = |checks| Config { checks, ..Config::new(width as u16, height as u16, 16) };
+        let plain = match_pair(&S::TWIN, &config(gaps), &pair.0, &pair.1);
+        for (median, fill_pixels) in [(true, 0), (false, 1), (true, 2), (false, 5), (true, u8::MAX)] {
+            let checks = Checks { median, fill_pixels, ..gaps };
+            let map = compare(&mut pipeline, &config(checks), &pair).unwrap_or_else(|e| panic!("{e}"));
+            for (i, (flags, disparity)) in map.flags.iter().zip(&map.disparity).enumerate() {
+                filled += usize::from(flags.contains(PixelFlags::FILLED));
+                moved += usize::from(plain.disparity[i].is_some() && *disparity != plain.disparity[i]);
+            }
+        }
+    }
+    assert!(filled > 100 && moved > 1000, "{filled} filled, {moved} moved");
+}
+
+#[test]
+fn median_and_filling_equal_the_twins_at_all_borders() {
+    filtered::<Fast>();
+    filtered::<Block>();
 }
 
 /// One surface over the whole picture, against thresholds around its size and around the powers of two.
@@ -232,10 +266,12 @@ prop_compose! {
         smoothing_radius in 0..=Checks::MOST_SMOOTHING,
         speckle_pixels: u8,
         surface_step in (0u16..=32).prop_map(Disparity::from_raw),
+        median: bool,
+        fill_pixels: u8,
     ) -> Checks {
         Checks {
             left_right_px, uniqueness_percent, refuse_flat, texture_gradient, texture_pixels, refuse_ceiling, smoothing_radius,
-            speckle_pixels, surface_step,
+            speckle_pixels, surface_step, median, fill_pixels,
         }
     }
 }

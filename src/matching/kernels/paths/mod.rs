@@ -45,11 +45,11 @@ mod sse2;
 #[cfg(not(stereopsis_vectors))]
 mod words;
 
+use super::winner::Select;
 #[cfg(not(stereopsis_vectors))]
 use super::winner::Winner;
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 use super::winner::WinnerRows;
-use super::winner::Select;
 use super::{MASKS, STEP};
 use crate::matching::paths::Along;
 use crate::matching::penalties::Penalties;

@@ -1,6 +1,6 @@
 //! One build of the firmware example: for a board, a method, a line's length and a number of disparities.
 
-use super::board::{Board, M55};
+use super::board::Board;
 use crate::steps::{Failure, Outcome, command, root, target_dir};
 use std::fs;
 use std::path::PathBuf;
@@ -16,6 +16,21 @@ const BESIDE: usize = 3072;
 
 /// Flags for the core with vector instructions: they, and the kernel that is made for them.
 pub const VECTORS: &str = "-C target-cpu=cortex-m55 --cfg stereopsis_vectors";
+
+/// Flags for the cores with the instructions on four bytes, which a Cortex-M4 and an M7 always have.
+pub const DSP: &str = "--cfg stereopsis_dsp";
+/// The same for a Cortex-M33, which may lack them.
+pub const DSP_OF_M33: &str = "-C target-cpu=cortex-m33 --cfg stereopsis_dsp";
+
+/// The flags that tell the crate what a core has.
+fn flags(board: Board) -> &'static str {
+    match board.core {
+        "m4" | "m7" => DSP,
+        "m33" => DSP_OF_M33,
+        "m55" => VECTORS,
+        _ => "",
+    }
+}
 
 /// What is built.
 #[derive(Clone, Copy, Debug)]
@@ -104,7 +119,7 @@ impl Program {
         }
         cargo.env("STEREO_MEMORY", if self.all_memory { "board" } else { "budget" });
         // Flags of the caller's would count in the figures.
-        cargo.env_remove("CARGO_ENCODED_RUSTFLAGS").env("RUSTFLAGS", if self.board == M55 { VECTORS } else { "" });
+        cargo.env_remove("CARGO_ENCODED_RUSTFLAGS").env("RUSTFLAGS", flags(self.board));
         cargo
     }
 

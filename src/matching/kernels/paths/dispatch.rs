@@ -6,15 +6,41 @@ use super::{Guide, PathWork};
 use crate::matching::paths::Along;
 use crate::matching::scheme::Around;
 
-/// Calls a pass with the groups, how many of them there is room for in a column, and whether all of it is used.
+/// Calls a pass with the groups, how many of them there is room for in a column, and whether all of it is used. Words: each
+/// a function of its own, so that a firmware is linked without those for numbers of disparities that cannot be asked for.
 macro_rules! in_words {
     ($work:ident, $pass:ident, [$($scheme:ident)?], $($argument:expr),*) => {
         match $work.stride {
-            32 => super::$pass::<super::Word, $($scheme,)? 8, true>($work, $($argument),*),
-            64 => super::$pass::<super::Word, $($scheme,)? 16, true>($work, $($argument),*),
-            _ => super::$pass::<super::Word, $($scheme,)? 64, false>($work, $($argument),*),
+            32 => words::$pass::<$($scheme,)? 8, true>($work, $($argument),*),
+            64 => words::$pass::<$($scheme,)? 16, true>($work, $($argument),*),
+            _ => words::$pass::<$($scheme,)? 64, false>($work, $($argument),*),
         }
     };
+}
+
+#[cfg(not(stereopsis_vectors))]
+mod words {
+    use super::super::{Guide, PathWork, Word};
+    use super::{Along, Around, Select};
+
+    #[inline(never)]
+    pub(super) fn enter<S: Along, const CELLS: usize, const ALL: bool>(
+        work: &mut PathWork<'_>,
+        lines: [&Around<'_>; 2],
+        is_first: bool,
+        room: &mut [u8],
+    ) {
+        super::super::enter::<Word, S, CELLS, ALL>(work, lines, is_first, room);
+    }
+
+    #[inline(never)]
+    pub(super) fn select<const CELLS: usize, const ALL: bool>(
+        work: PathWork<'_>,
+        guide: Guide<'_>,
+        select: Select<'_>,
+    ) {
+        super::super::select::<Word, CELLS, ALL>(work, guide, select);
+    }
 }
 
 /// The same in vectors of the compilation's own target.

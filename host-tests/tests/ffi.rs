@@ -51,7 +51,7 @@ fn config(width: u16, height: u16, disparities: u16) -> Config {
         speckle_pixels: 0,
         gradient: 0,
         cost: 0,
-        step: 0,
+        step: [0; 2],
         jump: [0; 3],
         edges: [0; 2],
         fill_pixels: 0,

@@ -52,10 +52,11 @@ pub struct Config {
     pub gradient: u8,
     /// Methods along paths: a pixel's cost is cut off at this, at least 1.
     pub cost: u8,
-    /// Methods along paths: what a change of the disparity by one px costs, at least 1.
-    pub step: u8,
+    /// Methods along paths: what a change of the disparity by one px costs where the brightness changes little, and more;
+    /// at least 1, and the second at most the first.
+    pub step: [u8; 2],
     /// Methods along paths: what a larger change costs where the brightness changes little, more, and much; each at least
-    /// `step`. `cost + step + jump` is at most 127 and `3 cost + 2 jump` at most 254.
+    /// the first step. `cost + step + jump` is at most 127 and `3 cost + 2 jump` at most 254.
     pub jump: [u8; 3],
     /// Methods along paths: the changes of brightness, in grey levels, at which it is more, and much.
     pub edges: [u8; 2],

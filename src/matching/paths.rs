@@ -14,7 +14,8 @@ use crate::units::PixelFlags;
 
 /// A method along paths.
 pub trait Along: Scheme {
-    /// Whether gradients are compared between pixels too (Birchfield & Tomasi 1998), or just at them.
+    /// Whether a pixel's gradient is compared with all between a candidate and halfway to those beside it (one of the two
+    /// halves of Birchfield & Tomasi 1998), or just with the candidate's.
     const BETWEEN_PIXELS: bool;
 }
 
@@ -120,7 +121,7 @@ impl<'a, S: Along> Stages<'a, S> {
             sums,
         };
         if let Some(lines) = lines {
-            self.kernel.enter::<S>(&mut work, lines, bottom == 0, bytes_mut(self.scratch));
+            self.kernel.enter::<S>(&mut work, lines, bytes_mut(self.scratch));
         }
         // The features are done with.
         let room = core::mem::take(&mut self.scratch);

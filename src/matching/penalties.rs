@@ -6,7 +6,7 @@ use super::config::ConfigError;
 /// look at them. The default is what measured best on real pairs.
 ///
 /// A path's cost at a pixel and disparity is the pixel's own cost and the least of its predecessor's costs: at the same
-/// disparity for nothing, at the next one for `step`, at any other for one of `jump` (Hirschmüller 2008).
+/// disparity for nothing, at the next one for a `step`, at any other for a `jump` (Hirschmüller 2008).
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Penalties {
@@ -15,9 +15,9 @@ pub struct Penalties {
     pub gradient: u8,
     /// A pixel's cost is cut off at this.
     pub cost: u8,
-    /// What a change of the disparity by one px costs.
-    pub step: u8,
-    /// What any larger change costs: where the left image's brightness changes little, more, and much.
+    /// What a change of the disparity by one px costs: where the left image's brightness changes little, and more.
+    pub step: [u8; 2],
+    /// What any larger change costs: where the brightness changes little, more, and much.
     pub jump: [u8; 3],
     /// The changes of brightness, in grey levels, at which it is more, and much.
     pub edges: [u8; 2],
@@ -28,14 +28,14 @@ impl Penalties {
     pub const MOST_GRADIENT: u8 = 14;
 
     /// What measured best.
-    pub const DEFAULT: Self = Self { gradient: 7, cost: 16, step: 16, jump: [88, 44, 26], edges: [8, 20] };
+    pub const DEFAULT: Self = Self { gradient: 7, cost: 16, step: [18, 9], jump: [88, 44, 26], edges: [8, 20] };
 
     /// All zero: of a matcher that was not started.
-    pub(super) const UNSET: Self = Self { gradient: 0, cost: 0, step: 0, jump: [0; 3], edges: [0; 2] };
+    pub(super) const UNSET: Self = Self { gradient: 0, cost: 0, step: [0; 2], jump: [0; 3], edges: [0; 2] };
 
     /// Whether all sums stay within their bytes.
     pub(super) const fn check(&self) -> Result<(), ConfigError> {
-        let Self { gradient, cost, step, jump: [little, more, much], edges } = *self;
+        let Self { gradient, cost, step: [step, small_step], jump: [little, more, much], edges } = *self;
         let most = if little > more { little } else { more };
         let most = if most > much { most } else { much };
         let least = if little < more { little } else { more };
@@ -43,7 +43,7 @@ impl Penalties {
         if gradient < 1 || gradient > Self::MOST_GRADIENT {
             return Err(ConfigError::Gradient);
         }
-        if cost < 1 || step < 1 || step > least || edges[0] > edges[1] {
+        if cost < 1 || small_step < 1 || small_step > step || step > least || edges[0] > edges[1] {
             return Err(ConfigError::Penalties);
         }
         // A path's cost and the step from it take seven bits; and where three paths agree least, their sum is still
@@ -55,14 +55,25 @@ impl Penalties {
         Ok(())
     }
 
-    /// What a jump costs between two pixels of the left image.
+    /// What a step and a jump cost between two pixels of the left image.
     #[inline(always)]
-    pub(super) fn jump_between(&self, a: u8, b: u8) -> u8 {
+    pub(super) fn between(&self, a: u8, b: u8) -> Change {
         let change = a.abs_diff(b);
         let [little, more, much] = self.jump;
         let not_little = if change < self.edges[1] { more } else { much };
-        if change < self.edges[0] { little } else { not_little }
+        if change < self.edges[0] {
+            Change { step: self.step[0], jump: little }
+        } else {
+            Change { step: self.step[1], jump: not_little }
+        }
     }
+}
+
+/// What changes of the disparity cost between two pixels.
+#[derive(Clone, Copy)]
+pub(super) struct Change {
+    pub step: u8,
+    pub jump: u8,
 }
 
 impl Default for Penalties {

@@ -46,7 +46,7 @@ pub enum Cost {
     },
     /// Differences of pixels, summed along paths.
     Paths {
-        /// Whether gradients are compared with what lies between pixels.
+        /// Whether a gradient is compared with all between a candidate and halfway to those beside it.
         between_pixels: bool,
     },
 }

@@ -63,12 +63,10 @@ impl Looks {
     }
 }
 
-/// How far two numbers are apart, where each may lie between its pixel and those beside it (Birchfield & Tomasi 1998).
+/// How far a number is from those between another one and halfway to that one's neighbours.
 fn apart_between(left: &Numbers, x: isize, right: &Numbers, other_x: isize, y: isize) -> i32 {
-    let distance = |number: i32, (least, greatest): (i32, i32)| (number - greatest).max(least - number).max(0);
-    let there = distance(left.at(x, y), right.range(other_x, y));
-    let back = distance(right.at(other_x, y), left.range(x, y));
-    there.min(back)
+    let (least, greatest) = right.range(other_x, y);
+    (left.at(x, y) - greatest).max(least - left.at(x, y)).max(0)
 }
 
 /// How little (x, y) on the left looks like (x - m - d, y) on the right; left of the right picture's edge, its first column
@@ -98,12 +96,12 @@ pub fn costs(between_pixels: bool, config: &Config, left: &Picture<'_>, right: &
 }
 
 /// What a path says to the pixel it goes to: what each disparity costs there.
-fn message(penalties: &Penalties, path: &[u16], jump: u16) -> Vec<u16> {
+fn message(path: &[u16], (step, jump): (u16, u16)) -> Vec<u16> {
     let least = *path.iter().min().expect("a disparity");
     let at = |d: usize| {
         let beside = [d.checked_sub(1), Some(d + 1)].into_iter().flatten().filter_map(|d| path.get(d));
-        let step = beside.map(|&cost| cost + u16::from(penalties.step)).min().expect("two disparities");
-        path[d].min(step).min(least + jump) - least
+        let beside = beside.map(|&cost| cost + step).min().expect("two disparities");
+        path[d].min(beside).min(least + jump) - least
     };
     (0..path.len()).map(at).collect()
 }
@@ -116,18 +114,22 @@ fn average(a: &[u16], b: &[u16]) -> Vec<u16> {
     a.iter().zip(b).map(|(a, b)| (a + b) / 2).collect()
 }
 
-/// The costs of each row with those of the rows above and of the one below, each as much as all that come before it.
+/// The costs of each row with those of the rows above and of the one below, each as much as all that come before it;
+/// before the first there is nothing.
 fn averaged_down(costs: &Volume) -> Volume {
     let mut averaged = costs.clone();
-    let mut sum: Vec<Vec<u16>> = (0..costs.width).map(|x| costs.at(x, 0).to_vec()).collect();
-    for y in 0..costs.height {
-        for (x, sum) in sum.iter_mut().enumerate() {
-            if y + 1 < costs.height {
-                *sum = add(sum, costs.at(x, y + 1)).iter().map(|twice| twice.div_ceil(2)).collect();
+    let mut sums = vec![vec![0; costs.disparities]; costs.width];
+    let mut add_row = |y: usize| {
+        for (x, sum) in sums.iter_mut().enumerate() {
+            if y < costs.height {
+                *sum = add(sum, costs.at(x, y)).iter().map(|twice| twice.div_ceil(2)).collect();
             }
-            averaged.at_mut(x, y).copy_from_slice(sum);
+            if y > 0 {
+                averaged.at_mut(x, y - 1).copy_from_slice(sum);
+            }
         }
-    }
+    };
+    (0..=costs.height).for_each(&mut add_row);
     averaged
 }
 
@@ -136,16 +138,17 @@ pub fn path_sums(config: &Config, costs: &Volume, left: &Picture<'_>) -> Volume 
     let penalties = &config.penalties;
     let costs = averaged_down(costs);
     let (width, height) = (costs.width, costs.height);
-    let jump = |(x, y): (usize, usize), (from_x, from_y): (usize, usize)| {
+    let change = |(x, y): (usize, usize), (from_x, from_y): (usize, usize)| {
         let bright = |x: usize, y: usize| left.at(x as isize, y as isize);
         let change = bright(x, y).abs_diff(bright(from_x, from_y));
         let [little, more, much] = penalties.jump.map(u16::from);
+        let [step, small_step] = penalties.step.map(u16::from);
         if change < penalties.edges[0] {
-            little
+            (step, little)
         } else if change < penalties.edges[1] {
-            more
+            (small_step, more)
         } else {
-            much
+            (small_step, much)
         }
     };
     let mut sums = costs.clone();
@@ -156,7 +159,7 @@ pub fn path_sums(config: &Config, costs: &Volume, left: &Picture<'_>) -> Volume 
             let mut from: Option<usize> = None;
             for x in columns {
                 paths[x] = match from {
-                    Some(from) => add(costs.at(x, y), &message(penalties, &paths[from], jump((x, y), (from, y)))),
+                    Some(from) => add(costs.at(x, y), &message(&paths[from], change((x, y), (from, y)))),
                     None => costs.at(x, y).to_vec(),
                 };
                 from = Some(x);
@@ -170,7 +173,7 @@ pub fn path_sums(config: &Config, costs: &Volume, left: &Picture<'_>) -> Volume 
                 return vec![0; costs.disparities];
             }
             let path = average(&above[x.saturating_sub(2)], &above[(x + 2).min(width - 1)]);
-            message(penalties, &path, jump((x, y), (x, y - 1)))
+            message(&path, change((x, y), (x, y - 1)))
         };
         above = (0..width).map(|x| add(costs.at(x, y), &from_above(x))).collect();
         for x in 0..width {

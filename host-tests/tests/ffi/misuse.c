@@ -134,7 +134,8 @@ static void configurations(void) {
     REFUSED(gradient, 0, GRADIENT);
     REFUSED(gradient, 15, GRADIENT);
     REFUSED(cost, 0, PENALTIES);
-    REFUSED(step, 27, PENALTIES);
+    REFUSED(step[0], 27, PENALTIES);
+    REFUSED(step[1], 19, PENALTIES);
     REFUSED(jump[0], 96, PENALTIES);
     REFUSED(edges[0], 21, PENALTIES);
     for (int32_t preset = STEREOPSIS_PRESET_DENSE; preset <= STEREOPSIS_PRESET_STRICT; preset++) {

@@ -86,6 +86,7 @@ fn random_penalties(random: &mut Random) -> Penalties {
     let step = step.min(most);
     let mut jump = || step + random.below(usize::from(most - step) + 1) as u8;
     let jump = [jump(), jump(), jump()];
+    let step = [step, 1 + random.below(usize::from(step)) as u8];
     let edge = random.below(256) as u8;
     let edges = [edge, edge.saturating_add(random.below(60) as u8)];
     Penalties { gradient: 1 + random.below(usize::from(Penalties::MOST_GRADIENT)) as u8, cost, step, jump, edges }

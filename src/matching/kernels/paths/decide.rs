@@ -24,7 +24,7 @@ pub(super) fn decide<G: Group, const CELLS: usize, const ALL: bool>(
         costs = rest;
         let here = guide.here.get(x).copied().unwrap_or(0);
         if x + 1 < width {
-            left = left.step(&steps, penalties.jump_between(here, before), column);
+            left = left.step(&steps, penalties.between(here, before), column);
         }
         before = here;
         steps.close(&mut left);

@@ -27,10 +27,9 @@ mod words {
     pub(super) fn enter<S: Along, const CELLS: usize, const ALL: bool>(
         work: &mut PathWork<'_>,
         lines: [&Around<'_>; 2],
-        is_first: bool,
         room: &mut [u8],
     ) {
-        super::super::enter::<Word, S, CELLS, ALL>(work, lines, is_first, room);
+        super::super::enter::<Word, S, CELLS, ALL>(work, lines, room);
     }
 
     #[inline(never)]
@@ -69,24 +68,23 @@ macro_rules! in_wide {
 }
 
 impl Kernel {
-    /// Adds a row of both images to the costs of a method along paths; the first of a frame takes their place.
+    /// Adds a row of both images to the costs of a method along paths.
     #[inline(always)]
     pub(in crate::matching) fn enter<S: Along>(
         self,
         work: &mut PathWork<'_>,
         lines: [&Around<'_>; 2],
-        is_first: bool,
         room: &mut [u8],
     ) {
         match self {
             #[cfg(not(stereopsis_vectors))]
-            Self::Planes => in_words!(work, enter, [S], lines, is_first, room),
+            Self::Planes => in_words!(work, enter, [S], lines, room),
             #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-            Self::Lanes => in_vectors!(work, enter, [S], lines, is_first, room),
+            Self::Lanes => in_vectors!(work, enter, [S], lines, room),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(avx2) => avx2.run(
                 #[inline(always)]
-                || in_wide!(work, enter, [S], lines, is_first, room),
+                || in_wide!(work, enter, [S], lines, room),
             ),
         }
     }

@@ -119,7 +119,7 @@ fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
 
 /// The range of one number.
 #[inline(always)]
-pub(super) fn between(before: u8, here: u8, next: u8) -> (u8, u8) {
+fn between(before: u8, here: u8, next: u8) -> (u8, u8) {
     // Seven bits each.
     let (a, b) = (before.wrapping_add(here) >> 1, here.wrapping_add(next) >> 1);
     (here.min(a).min(b), here.max(a).max(b))

@@ -24,7 +24,7 @@ pub(super) fn gather<G: Group, const CELLS: usize, const ALL: bool>(work: &mut P
         let Some((column, rest)) = split_first::<_, CELLS, ALL>(costs, count) else { return };
         costs = rest;
         if x > 0 {
-            right = right.step(&steps, penalties.jump_between(here, before), column);
+            right = right.step(&steps, penalties.between(here, before), column);
         }
         before = here;
         steps.close(&mut right);
@@ -38,7 +38,7 @@ pub(super) fn gather<G: Group, const CELLS: usize, const ALL: bool>(work: &mut P
             };
             let between = passed[0].average(ahead);
             passed = [passed[1], Path::of(above)];
-            top = between.step(&steps, penalties.jump_between(here, there), column);
+            top = between.step(&steps, penalties.between(here, there), column);
         }
         steps.close(&mut top);
         let kept = split_first_mut::<_, CELLS, ALL>(tops, count);

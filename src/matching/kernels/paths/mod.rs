@@ -52,7 +52,7 @@ use super::winner::Winner;
 use super::winner::WinnerRows;
 use super::{MASKS, STEP};
 use crate::matching::paths::Along;
-use crate::matching::penalties::Penalties;
+use crate::matching::penalties::{Change, Penalties};
 use crate::matching::scheme::Around;
 use group::Group;
 
@@ -100,16 +100,15 @@ pub(in crate::matching) struct Guide<'a> {
     pub above: Option<&'a [u8]>,
 }
 
-/// Adds a row of both images to the costs; the first of a frame takes their place.
+/// Adds a row of both images to the costs.
 #[inline(always)]
 fn enter<G: Group, S: Along, const CELLS: usize, const ALL: bool>(
     work: &mut PathWork<'_>,
     lines: [&Around<'_>; 2],
-    is_first: bool,
     room: &mut [u8],
 ) {
     if let Some(features) = features::of::<S>(work, lines, room) {
-        cost::enter::<G, S, CELLS, ALL>(work, &features, is_first);
+        cost::enter::<G, S, CELLS, ALL>(work, &features);
     }
 }
 
@@ -228,18 +227,18 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
 
     /// Goes on to a pixel that has these costs.
     #[inline(always)]
-    fn step(mut self, steps: &Steps<G, CELLS, ALL>, jump: u8, costs: &[G::Cell]) -> Self {
+    fn step(mut self, steps: &Steps<G, CELLS, ALL>, change: Change, costs: &[G::Cell]) -> Self {
         let least = self.cells(costs.len()).iter().fold(
             steps.far,
             #[inline(always)]
             |least, &cell| least.min(cell),
         );
         let least = least.least();
-        let jump = least.plus(G::splat(jump));
+        let (step, jump) = (G::splat(change.step), least.plus(G::splat(change.jump)));
         let (mut before, mut here) = (steps.far, self.0.first().copied().unwrap_or(steps.far));
         for (i, &cost) in costs.iter().enumerate().take(CELLS) {
             let next = if i + 1 < costs.len() { self.0.get(i + 1).copied().unwrap_or(steps.far) } else { steps.far };
-            let beside = here.after(before).min(here.before(next)).plus(steps.step);
+            let beside = here.after(before).min(here.before(next)).plus(step);
             let message = here.min(beside).min(jump).minus(least);
             if let Some(cell) = self.0.get_mut(i) {
                 *cell = message.plus(G::of(cost));
@@ -254,7 +253,6 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
 struct Steps<G, const CELLS: usize, const ALL: bool> {
     /// A cost so high that no path comes from there: beside the search's ends.
     far: G,
-    step: G,
     /// The same where lanes are beyond the search, and 0 where they are not, if there are such lanes.
     beyond: Option<Path<G, CELLS, ALL>>,
 }
@@ -263,7 +261,7 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Steps<G, CELLS, ALL> {
     #[inline(always)]
     fn new(work: &PathWork<'_>) -> Self {
         // No path costs more: `Penalties::check`.
-        let far = 127u8.saturating_sub(work.penalties.step);
+        let far = 127u8.saturating_sub(work.penalties.step[0]);
         let stride = stride::<G, CELLS, ALL>(work);
         let beyond = if work.disparities < stride {
             let mut beyond = Path([G::splat(0); CELLS]);
@@ -276,7 +274,7 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Steps<G, CELLS, ALL> {
         } else {
             None
         };
-        Self { far: G::splat(far), step: G::splat(work.penalties.step), beyond }
+        Self { far: G::splat(far), beyond }
     }
 
     /// Closes a path's lanes that are beyond the search.

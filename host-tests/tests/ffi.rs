@@ -55,6 +55,7 @@ fn config(width: u16, height: u16, disparities: u16) -> Config {
         jump: [0; 3],
         edges: [0; 2],
         fill_pixels: 0,
+        fill_step: 0,
     };
     // SAFETY: the pointer is to a configuration.
     let status =

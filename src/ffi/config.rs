@@ -63,6 +63,8 @@ pub struct Config {
     /// Fill: gaps along the row of at most this many pixels, between two answers, get the farther of the two and
     /// `STEREOPSIS_FLAG_FILLED`; with 0 none does.
     pub fill_pixels: u8,
+    /// Fill: by how much the two answers may differ, in 1/32 px; 65535 for any two.
+    pub fill_step: u16,
 }
 
 impl Config {
@@ -97,6 +99,7 @@ impl Config {
             jump,
             edges,
             fill_pixels: checks.fill_pixels,
+            fill_step: checks.fill_step.raw(),
         })
     }
 
@@ -123,6 +126,7 @@ impl Config {
                 speckle_pixels: self.speckle_pixels,
                 median: self.median != 0,
                 fill_pixels: self.fill_pixels,
+                fill_step: Disparity::from_raw(self.fill_step),
             },
             penalties: Penalties {
                 gradient: self.gradient,

@@ -54,6 +54,7 @@ impl Config {
             surface_step: Disparity::ZERO,
             median: false,
             fill_pixels: 0,
+            fill_step: Disparity::ZERO,
         },
         penalties: Penalties::UNSET,
     };
@@ -97,7 +98,7 @@ pub struct Checks {
     /// from it. `None`: not checked.
     pub left_right_px: Option<u8>,
     /// Uniqueness: an answer stays when every other disparity costs more than the winner by over this share of its
-    /// own cost, percent, 0 to 99; 0 refuses exact ties only. Neighbours one px beside the winner do not count.
+    /// own cost, percent, 0 to 99; 0 refuses exact ties only. Those up to two px beside the winner do not count.
     /// `None`: not checked, and the kernel saves the pass.
     pub uniqueness_percent: Option<u8>,
     /// Flat: an answer stays when it costs less than a neighbour one px below or above.
@@ -122,6 +123,8 @@ pub struct Checks {
     /// Fill: gaps along the row of at most this many pixels, between two answers, get the farther of the two, and
     /// [`PixelFlags::FILLED`](crate::units::PixelFlags::FILLED). 0: none is.
     pub fill_pixels: u8,
+    /// Fill: by how much the two answers beside a gap may differ: [`Disparity::NONE`] for any two.
+    pub fill_step: Disparity,
 }
 
 impl Checks {
@@ -141,6 +144,7 @@ impl Checks {
         surface_step: Disparity::ONE_PIXEL,
         median: false,
         fill_pixels: 0,
+        fill_step: Disparity::ONE_PIXEL,
     };
 
     /// Most answers, few of them wrong.
@@ -156,6 +160,7 @@ impl Checks {
         surface_step: Disparity::ONE_PIXEL,
         median: false,
         fill_pixels: 0,
+        fill_step: Disparity::ONE_PIXEL,
     };
 
     /// Sure answers: fewer, and wrong only rarely.
@@ -171,6 +176,7 @@ impl Checks {
         surface_step: Disparity::ONE_PIXEL,
         median: false,
         fill_pixels: 0,
+        fill_step: Disparity::ONE_PIXEL,
     };
 }
 

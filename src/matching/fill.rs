@@ -11,9 +11,9 @@
 
 use crate::units::{Disparity, PixelFlags};
 
-/// Fills the gaps of up to `most` pixels.
+/// Fills the gaps of up to `most` pixels whose sides differ by up to `step`.
 #[inline(never)]
-pub(super) fn fill(answers: &mut [Disparity], flags: &mut [PixelFlags], most: u8) {
+pub(super) fn fill(answers: &mut [Disparity], flags: &mut [PixelFlags], most: u8, step: Disparity) {
     // To the right: what is in a gap gets the answer on its left, as far as the gap may reach, and the flag.
     let (mut left, mut length) = (u32::from(Disparity::NONE.raw()), 0u32);
     for (answer, flags) in answers.iter_mut().zip(flags.iter_mut()) {
@@ -30,7 +30,8 @@ pub(super) fn fill(answers: &mut [Disparity], flags: &mut [PixelFlags], most: u8
     for (answer, flags) in answers.iter_mut().zip(flags).rev() {
         let here = u32::from(answer.raw());
         let gap = if_filled(*flags);
-        refused = (refused | if_none(here)) & gap;
+        let apart = here.abs_diff(right);
+        refused = (refused | if_none(here) | if_more(apart, u32::from(step.raw()))) & gap;
         right ^= (right ^ here) & !gap;
         let lesser = right ^ (right ^ here) & if_more(right, here);
         *answer = Disparity::from_raw((lesser | refused) as u16);
@@ -77,7 +78,7 @@ mod tests {
         let mut answers = row.map(Disparity::from_raw);
         let mut flags = row.map(|raw| PixelFlags::MISMATCH.when(raw == NONE));
         let before = flags;
-        fill(&mut answers, &mut flags, 2);
+        fill(&mut answers, &mut flags, 2, Disparity::NONE);
         assert_eq!(answers.map(Disparity::raw), [NONE, 320, 64, 64, 64, 64, 96, NONE, NONE, NONE, 96, NONE]);
         for (x, (after, before)) in flags.into_iter().zip(before).enumerate() {
             assert_eq!(after, before.union(PixelFlags::FILLED.when([2, 3, 5].contains(&x))), "{x}");

@@ -77,7 +77,7 @@ impl<S: Scheme> Stages<'_, S> {
             self.support.count(row, self.band, checks, flags, finished);
         }
         if checks.fill_pixels > 0 {
-            fill::fill(finished, flags, checks.fill_pixels);
+            fill::fill(finished, flags, checks.fill_pixels, checks.fill_step);
         }
     }
 

@@ -92,11 +92,13 @@ pub(super) fn drop_speckles(checks: &Checks, before: &[Disparity], lengths: &[us
 }
 
 /// The answers to the left and to the right of a pixel that has none, along its row, when both exist and no more than
-/// `most` pixels lie between them.
-fn sides(row: &[Disparity], x: usize, most: u8) -> Option<[Disparity; 2]> {
+/// as many pixels lie between them as are filled, and they differ by no more than they may.
+fn sides(checks: &Checks, row: &[Disparity], x: usize) -> Option<[Disparity; 2]> {
     let left = (0..x).rev().find(|&x| row[x].is_some())?;
     let right = (x + 1..row.len()).find(|&x| row[x].is_some())?;
-    (right - left - 1 <= usize::from(most)).then(|| [row[left], row[right]])
+    let fits = right - left - 1 <= usize::from(checks.fill_pixels);
+    let agree = row[left].raw().abs_diff(row[right].raw()) <= checks.fill_step.raw();
+    (fits && agree).then(|| [row[left], row[right]])
 }
 
 /// The map with small gaps along its rows filled.
@@ -104,7 +106,7 @@ pub(super) fn fill_gaps(checks: &Checks, mut map: Answers) -> Answers {
     let before = map.disparity.clone();
     for i in (0..before.len()).filter(|&i| before[i].is_none()) {
         let start = i / map.width * map.width;
-        if let Some([left, right]) = sides(&before[start..start + map.width], i - start, checks.fill_pixels) {
+        if let Some([left, right]) = sides(checks, &before[start..start + map.width], i - start) {
             map.disparity[i] = Disparity::from_raw(left.raw().min(right.raw()));
             map.flags[i] = map.flags[i].union(PixelFlags::FILLED);
         }
@@ -132,7 +134,7 @@ pub(super) fn sigmas(
         let (mut neighbours, mut least_px) = (Vec::new(), scheme.sigma_px);
         if after[y * width + x].is_none() {
             let row = &after[y * width..(y + 1) * width];
-            neighbours.extend(sides(row, x, config.checks.fill_pixels).expect("it was filled from there"));
+            neighbours.extend(sides(&config.checks, row, x).expect("it was filled from there"));
             least_px = least_px.max(1.0);
         }
         for k in 1..=LOOK_AHEAD {

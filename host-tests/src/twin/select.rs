@@ -104,10 +104,10 @@ fn fraction(candidates: &[u16], best: Winner) -> i32 {
     if before > after { magnitude } else { -magnitude }
 }
 
-/// Whether a candidate more than 1 px from the winner costs no more than the winner and the margin allow. What is cut off
+/// Whether a candidate more than 2 px from the winner costs no more than the winner and the margin allow. What is cut off
 /// at 255 may cost any more.
 fn ambiguous(candidates: &[u16], best: Winner, percent: u8) -> bool {
-    let others = candidates.iter().enumerate().filter(|&(d, _)| d.abs_diff(best.d) > 1);
+    let others = candidates.iter().enumerate().filter(|&(d, _)| d.abs_diff(best.d) > 2);
     let second = others.map(|(_, &cost)| u32::from(cost)).filter(|&cost| cost < 255).min();
     second.is_some_and(|second| second * (100 - u32::from(percent)) <= u32::from(best.cost) * 100)
 }

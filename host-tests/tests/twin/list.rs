@@ -74,6 +74,7 @@ fn random_checks(random: &mut Random) -> Checks {
         surface_step: Disparity::from_raw(*random.pick(&[0, 1, 2, 16, 31, 32])),
         median: random.below(2) == 1,
         fill_pixels: *random.pick(&[0, 1, 2, 3, 16, 40, u8::MAX]),
+        fill_step: Disparity::from_raw(*random.pick(&[0, 1, 32, 100, u16::MAX])),
     }
 }
 
@@ -164,7 +165,7 @@ fn sgm_equals_its_twin_at_all_sizes_ranges_and_pictures() {
     run_list::<Sgm>();
 }
 /// Checks of which every stage does something.
-const ALL_STAGES: Checks = Checks { median: true, fill_pixels: 16, ..Checks::STRICT };
+const ALL_STAGES: Checks = Checks { median: true, fill_pixels: 16, fill_step: Disparity::NONE, ..Checks::STRICT };
 
 /// Every picture with each of the ready-made checks, at a size that has all kinds of borders.
 fn every_pattern<S: Method>() {
@@ -220,7 +221,8 @@ fn filtered<S: Method>() {
         let config = |checks| Config { checks, ..Config::new(width as u16, height as u16, 16) };
         let plain = match_pair(&S::TWIN, &config(gaps), &pair.0, &pair.1);
         for (median, fill_pixels) in [(true, 0), (false, 1), (true, 2), (false, 5), (true, u8::MAX)] {
-            let checks = Checks { median, fill_pixels, ..gaps };
+            let fill_step = if fill_pixels > 1 { Disparity::NONE } else { Disparity::ONE_PIXEL };
+            let checks = Checks { median, fill_pixels, fill_step, ..gaps };
             let map = compare(&mut pipeline, &config(checks), &pair).unwrap_or_else(|e| panic!("{e}"));
             for (i, (flags, disparity)) in map.flags.iter().zip(&map.disparity).enumerate() {
                 filled += usize::from(flags.contains(PixelFlags::FILLED));
@@ -269,10 +271,11 @@ prop_compose! {
         surface_step in (0u16..=32).prop_map(Disparity::from_raw),
         median: bool,
         fill_pixels: u8,
+        fill_step in any::<u16>().prop_map(Disparity::from_raw),
     ) -> Checks {
         Checks {
             left_right_px, uniqueness_percent, refuse_flat, texture_gradient, texture_pixels, refuse_ceiling, smoothing_radius,
-            speckle_pixels, surface_step, median, fill_pixels,
+            speckle_pixels, surface_step, median, fill_pixels, fill_step,
         }
     }
 }

@@ -166,6 +166,9 @@ impl Kernel {
     }
 }
 
+/// How near a disparity may be to the winner and still be of it: what costs little there does not make it ambiguous.
+const BESIDE: usize = 2;
+
 /// 256 lanes of ones, then 256 of zero: a slice of it masks the lanes before any one.
 const MASKS: &[u8; 512] = &{
     let mut masks = [0; 512];

@@ -57,7 +57,7 @@ impl<'a> Unique<'a> {
     }
 
     /// Flags the pixels from column `begin` on, one after the other: it is given the winner's cost, and what finds the least cost
-    /// of the candidates over one px beside it, `u8::MAX` where there is none, which is asked where it is wanted.
+    /// of the candidates over two px beside it, `u8::MAX` where there is none, which is asked where it is wanted.
     #[inline(always)]
     pub fn starting_at(self, begin: usize) -> impl FnMut(u8, &mut dyn FnMut() -> u8) {
         let share = self.share;

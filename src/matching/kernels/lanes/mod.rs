@@ -16,7 +16,7 @@ mod columns;
 
 use super::scratch::bytes_mut;
 use super::winner::Found;
-use super::{MASKS, OUTSIDE, RowWork, STEP, Select, WinnerRows};
+use super::{BESIDE, MASKS, OUTSIDE, RowWork, STEP, Select, WinnerRows};
 use crate::matching::window::Windowed;
 
 /// The disparities of so many lanes.
@@ -191,14 +191,14 @@ fn minimum<const N: usize>(lanes: &[u8; N]) -> u8 {
     lanes.iter().fold(u8::MAX, |least, &lane| least.min(lane))
 }
 
-/// The least cost of the candidates over one px beside the winner; `u8::MAX` where there is none.
+/// The least cost of the candidates over [`BESIDE`] px beside the winner; `u8::MAX` where there is none.
 #[cfg_attr(stereopsis_vectors, inline(never))]
 #[cfg_attr(not(stereopsis_vectors), inline(always))]
 fn best_of_the_rest<const N: usize>(disparity: usize, mask: &[u8], sums: &mut [u8]) -> u8 {
     // The winner and those beside it are raised while the others are looked at.
     let lane = (sums.len() - 1).saturating_sub(disparity);
-    let nearest = lane.saturating_sub(1)..sums.len().min(lane + 2);
-    let mut kept = [u8::MAX; 3];
+    let nearest = lane.saturating_sub(BESIDE)..sums.len().min(lane + BESIDE + 1);
+    let mut kept = [u8::MAX; 2 * BESIDE + 1];
     for (kept, sum) in kept.iter_mut().zip(sums.get_mut(nearest.clone()).unwrap_or_default()) {
         *kept = core::mem::replace(sum, u8::MAX);
     }

@@ -1,6 +1,7 @@
 //! The path from the right, and the winners, in one pass to the left.
 
 use super::group::Group;
+use crate::matching::kernels::BESIDE;
 use super::{Guide, Path, PathWork, Steps, mask, split_last, stride};
 use crate::matching::kernels::winner::{Found, Unique};
 
@@ -58,7 +59,7 @@ pub(super) fn decide<G: Group, const CELLS: usize, const ALL: bool>(
             cost,
             #[inline(always)]
             || {
-                for lane in [lane.wrapping_sub(1), lane, lane + 1] {
+                for lane in lane.saturating_sub(BESIDE)..lane + BESIDE + 1 {
                     G::raise(&mut total.0, lane);
                 }
                 G::last_least(total.cells(count)).0

@@ -4,7 +4,7 @@ use super::group::Group;
 use super::{Guide, Path, PathWork, Steps, split_first, split_first_mut, stride};
 
 /// How many columns to each side the path from above comes from.
-const BESIDE: usize = 2;
+const COLUMNS_OFF: usize = 2;
 
 /// Moves the path from above down to the row and the path from the left through it, and adds the two up.
 #[inline(always)]
@@ -15,7 +15,7 @@ pub(super) fn gather<G: Group, const CELLS: usize, const ALL: bool>(work: &mut P
     let (mut costs, tops, mut sums) = (G::cells(work.costs), G::cells_mut(work.top), G::cells_mut(work.sums));
     let Some((first, _)) = split_first::<_, CELLS, ALL>(tops, count) else { return };
     // What stood above columns that are overwritten already: two before, one before. Before the first there is the first.
-    let mut passed = [Path::<G, CELLS, ALL>::of(first); BESIDE];
+    let mut passed = [Path::<G, CELLS, ALL>::of(first); COLUMNS_OFF];
     let mut right = Path::of(split_first::<_, CELLS, ALL>(costs, count).map_or(&[], |(first, _)| first));
     let mut before = 0;
     // In the first row nothing is above.
@@ -31,7 +31,7 @@ pub(super) fn gather<G: Group, const CELLS: usize, const ALL: bool>(work: &mut P
         let Some((_, tops)) = tops.split_at_mut_checked(x * count) else { return };
         let mut top = Path::of(column);
         if guide.above.is_some() {
-            let ahead = tops.get(BESIDE.min(width - 1 - x) * count..);
+            let ahead = tops.get(COLUMNS_OFF.min(width - 1 - x) * count..);
             let ahead = ahead.and_then(|ahead| split_first::<_, CELLS, ALL>(ahead, count));
             let (Some((above, _)), Some((ahead, _))) = (split_first::<_, CELLS, ALL>(tops, count), ahead) else {
                 return;

@@ -8,7 +8,7 @@
 
 use super::Column;
 use super::plane::Plane;
-use crate::matching::kernels::Winner;
+use crate::matching::kernels::{BESIDE, Winner};
 use crate::matching::window::Windowed;
 
 /// Planes of a window's sum.
@@ -161,13 +161,13 @@ fn cost<P: Plane>(windows: &[Window<P>], disparity: usize) -> u8 {
     windows.get(disparity / P::CANDIDATES).map_or(0, |window| cost_of(window, lane))
 }
 
-/// The least cost of the candidates over one px beside the winner; `u8::MAX` where there is none.
+/// The least cost of the candidates over [`BESIDE`] px beside the winner; `u8::MAX` where there is none.
 #[inline(never)]
 fn best_of_the_rest<P: Plane>(windows: &[Window<P>], disparity: usize, candidates: &[P]) -> u8 {
     let mut least = u8::MAX;
     for (group, (window, &candidates)) in windows.iter().zip(candidates).enumerate() {
         let before = |candidate: usize| P::first(candidate.saturating_sub(group * P::CANDIDATES));
-        let nearest = before(disparity + 2) & !before(disparity.saturating_sub(1));
+        let nearest = before(disparity + BESIDE + 1) & !before(disparity.saturating_sub(BESIDE));
         let others = candidates & !nearest;
         if others != P::NONE {
             let [best] = best(core::array::from_ref(window), [others]);

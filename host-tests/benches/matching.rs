@@ -3,7 +3,7 @@
 use criterion::{BenchmarkId, Criterion, Throughput};
 use std::process::ExitCode;
 use stereopsis::camera::StereoSource;
-use stereopsis::matching::{Block, Config, Fast, Scheme};
+use stereopsis::matching::{Block, Config, Fast, Scheme, Sgm, SgmLean};
 use stereopsis::pipeline::Pipeline;
 use stereopsis_host::run::MemoryPair;
 use stereopsis_host::scene::Scene;
@@ -44,7 +44,10 @@ fn main() -> ExitCode {
     let mut criterion = Criterion::default().configure_from_args();
     let (left, right) = Scene::small(WIDTH, HEIGHT).render();
     let Some(mut camera) = MemoryPair::new(WIDTH, left.into_raw(), right.into_raw()) else { return ExitCode::FAILURE };
-    let done = method::<Fast>(&mut criterion, &mut camera).and_then(|()| method::<Block>(&mut criterion, &mut camera));
+    let done = method::<Fast>(&mut criterion, &mut camera)
+        .and_then(|()| method::<Block>(&mut criterion, &mut camera))
+        .and_then(|()| method::<SgmLean>(&mut criterion, &mut camera))
+        .and_then(|()| method::<Sgm>(&mut criterion, &mut camera));
     criterion.final_summary();
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -5,7 +5,7 @@
 use image::GrayImage;
 use std::sync::OnceLock;
 use stereopsis::depth::DepthScale;
-use stereopsis::matching::{Block, Checks, Config, Fast, Scheme};
+use stereopsis::matching::{Block, Checks, Config, Fast, Scheme, Sgm, SgmLean};
 use stereopsis::pipeline::Pipeline;
 use stereopsis::units::PixelFlags;
 use stereopsis_host::scene::{Scene, SceneCamera, Truth};
@@ -148,10 +148,16 @@ fn block_is_accurate_to_a_fraction_of_a_pixel() {
     sub_pixel::<Block>(0.06, 0.01, 1.1);
 }
 
+#[test]
+fn sgm_is_accurate_to_a_fraction_of_a_pixel() {
+    sub_pixel::<SgmLean>(0.06, 0.01, 1.1);
+    sub_pixel::<Sgm>(0.06, 0.01, 1.1);
+}
+
 /// Bounds in percent: answers within three sigma in depth, answers over 2 px off, visible points without a right answer.
 fn demo<S: Scheme>(within_bound: f64, bad2_bound: f64, missed_bound: f64) {
     let (scene, pair) = demo_pair();
-    let found = find::<S>(scene, pair, Checks::DEFAULT);
+    let found = find::<S>(scene, pair, S::DEFAULT);
     let within = |sigmas: f32| {
         percent(found.depth_errors_in_sigma.iter().filter(|e| **e <= sigmas).count(), found.depth_errors_in_sigma.len())
     };
@@ -191,6 +197,12 @@ fn fast_is_within_three_sigma_of_the_true_depth() {
 #[test]
 fn block_is_within_three_sigma_of_the_true_depth() {
     demo::<Block>(99.0, 0.8, 6.0);
+}
+
+#[test]
+fn sgm_is_within_three_sigma_of_the_true_depth() {
+    demo::<SgmLean>(99.0, 0.7, 6.0);
+    demo::<Sgm>(99.0, 0.7, 6.0);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Lines that the caller pushes give the rows that lines pulled from a camera give, and every misuse has its error.
 
 use image::GrayImage;
-use stereopsis::matching::{Block, Checks, Config, Fast, MatchError, Row, Scheme};
+use stereopsis::matching::{Block, Checks, Config, Fast, MatchError, Row, Scheme, Sgm, SgmLean};
 use stereopsis::pipeline::{Pipeline, PushError};
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::scene::SceneCamera;
@@ -91,6 +91,7 @@ fn pushed_rows_are_the_pulled_rows_at_every_height() {
     for height in (1..=24).chain([41]) {
         compare::<Fast>(37, height, Checks::STRICT);
         compare::<Block>(37, height, Checks::DEFAULT);
+        compare::<Sgm>(37, height, Checks::DEFAULT);
     }
 }
 
@@ -99,6 +100,7 @@ fn pushed_rows_are_the_pulled_rows_at_every_width() {
     for width in (1..=20).chain([31, 32, 33, 95, 96]) {
         compare::<Fast>(width, 15, Checks::DEFAULT);
         compare::<Block>(width, 15, Checks::DENSE);
+        compare::<SgmLean>(width, 15, Checks::DENSE);
     }
 }
 

@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use stereopsis::camera::CameraPair;
 use stereopsis::imaging::GreyLines;
-use stereopsis::matching::Config;
+use stereopsis::matching::{Config, Filter};
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::mock::MockCamera;
 use stereopsis_host::run::{MOST_WIDTH, Method, run};
@@ -70,14 +70,15 @@ impl Scene {
     }
 
     /// The scene's two files through the same chain as in the program `stereo`.
-    fn match_with(&self, method: Method) -> DisparityMap {
+    fn match_with(&self, method: Method, filter: Filter) -> DisparityMap {
         let (left, right) =
             MockCamera::open_pair(self.folder.join("left.png"), self.folder.join("right.png")).expect("two images");
         let left = GreyLines::<_, RAW_BYTES>::new(left).expect("a format with a brightness");
         let right = GreyLines::<_, RAW_BYTES>::new(right).expect("a format with a brightness");
         let mut camera = CameraPair::new(left, right, 0).expect("one size");
         let format = stereopsis::camera::StereoSource::format(&camera);
-        let config = Config::new(format.width, format.height, self.disparities);
+        let checks = method.checks(filter);
+        let config = Config { checks, ..Config::new(format.width, format.height, self.disparities) };
         run(method, &config, &mut camera, |_| ()).expect("a frame").map
     }
 
@@ -100,15 +101,20 @@ impl Scene {
 
 /// The mean over all scenes, printed under a table of them.
 fn mean_over_scenes(method: Method) -> Score {
+    mean_with(method, Filter::Default)
+}
+
+fn mean_with(method: Method, filter: Filter) -> Score {
     let scenes: Vec<_> = scenes().into_iter().map(Scene::read).collect();
-    let mut table = format!("{:24}{:>9}{:>9}{:>9}\n", method.name(), "density", "bad2 %", "missed %");
+    let mut table =
+        format!("{:24}{:>9}{:>9}{:>9}\n", format!("{method}, {}", filter.name()), "density", "bad2 %", "missed %");
     let mut row = |name: &str, s: Score| {
         writeln!(table, "{name:24}{:9.3}{:9.2}{:9.2}", s.density, 100.0 * s.bad2, 100.0 * s.missed)
             .expect("to a string");
     };
     let mut mean = Score::default();
     for scene in &scenes {
-        let score = scene.score(&scene.match_with(method));
+        let score = scene.score(&scene.match_with(method, filter));
         row(&scene.folder.file_name().unwrap_or_default().to_string_lossy(), score);
         mean.density += score.density / scenes.len() as f64;
         mean.bad2 += score.bad2 / scenes.len() as f64;
@@ -129,4 +135,22 @@ fn block_on_real_pairs() {
 fn fast_on_real_pairs() {
     let mean = mean_over_scenes(Method::Fast);
     assert!(mean.missed <= 0.138, "missed {}", mean.missed);
+}
+
+#[test]
+fn sgm_lean_on_real_pairs() {
+    let mean = mean_over_scenes(Method::SgmLean);
+    assert!(mean.missed <= 0.038 && mean.bad2 <= 0.025, "missed {}, bad2 {}", mean.missed, mean.bad2);
+}
+
+#[test]
+fn sgm_on_real_pairs() {
+    let mean = mean_over_scenes(Method::Sgm);
+    assert!(mean.missed <= 0.036 && mean.bad2 <= 0.025, "missed {}, bad2 {}", mean.missed, mean.bad2);
+}
+
+#[test]
+fn strict_answers_of_sgm_are_sure() {
+    let mean = mean_with(Method::Sgm, Filter::Strict);
+    assert!(mean.density >= 0.95 && mean.bad2 <= 0.014, "density {}, bad2 {}", mean.density, mean.bad2);
 }

@@ -3,7 +3,7 @@
 
 use super::Status;
 use super::instance::either;
-use crate::matching::{self, Checks, ConfigError, Penalties};
+use crate::matching::{self, Checks, ConfigError, Filter, Penalties, Scheme};
 use crate::units::Disparity;
 
 /// `stereopsis_config_default`: an answer wherever there is a candidate.
@@ -69,13 +69,14 @@ pub struct Config {
 
 impl Config {
     /// A search from disparity 0 with the checks of a preset.
-    pub(super) fn preset(width: u16, height: u16, disparities: u16, preset: i32) -> Result<Self, Status> {
-        let checks = match preset {
-            STEREOPSIS_PRESET_DENSE => Checks::DENSE,
-            STEREOPSIS_PRESET_DEFAULT => Checks::DEFAULT,
-            STEREOPSIS_PRESET_STRICT => Checks::STRICT,
+    pub(super) fn preset<S: Scheme>(width: u16, height: u16, disparities: u16, preset: i32) -> Result<Self, Status> {
+        let filter = match preset {
+            STEREOPSIS_PRESET_DENSE => Filter::Dense,
+            STEREOPSIS_PRESET_DEFAULT => Filter::Default,
+            STEREOPSIS_PRESET_STRICT => Filter::Strict,
             _ => return Err(Status::Preset),
         };
+        let checks = filter.checks::<S>();
         let Penalties { gradient, cost, step, jump, edges } = Penalties::DEFAULT;
         let or_not = |limit: Option<u8>| limit.map_or(STEREOPSIS_NOT_CHECKED, i16::from);
         Ok(Self {
@@ -160,11 +161,17 @@ impl From<ConfigError> for Status {
 /// # Safety
 ///
 /// `config` is null or points to a configuration's bytes.
-pub unsafe fn config_default(width: u16, height: u16, disparities: u16, preset: i32, config: *mut Config) -> Status {
+pub unsafe fn config_default<S: Scheme>(
+    width: u16,
+    height: u16,
+    disparities: u16,
+    preset: i32,
+    config: *mut Config,
+) -> Status {
     if config.is_null() {
         return Status::Null;
     }
-    either(Config::preset(width, height, disparities, preset).map(|preset| {
+    either(Config::preset::<S>(width, height, disparities, preset).map(|preset| {
         // SAFETY: the caller's promise; no alignment is asked for.
         unsafe { config.write_unaligned(preset) };
         Status::Ok

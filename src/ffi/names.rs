@@ -105,7 +105,9 @@ macro_rules! instantiate_c_api {
                 config: *mut Config,
             ) -> Status {
                 // SAFETY: as above.
-                unsafe { $crate::ffi::config_default(width, height, disparities, preset, config) }
+                unsafe {
+                    $crate::ffi::config_default::<$crate::matching::$method>(width, height, disparities, preset, config)
+                }
             }
 
             /// Checks a configuration, which is copied, and gets ready for the first frame. It can be called again, for

@@ -1,6 +1,7 @@
 //! What a matcher is asked to do, checked once before the first line.
 
 use super::penalties::Penalties;
+use super::scheme::Scheme;
 use crate::units::Disparity;
 use core::fmt;
 
@@ -31,9 +32,14 @@ impl Config {
     /// Where every search ends, px: its largest disparity lies below, so that no answer is near [`Disparity::NONE`].
     pub const END: u16 = Disparity::MAX_PIXELS;
 
-    /// A search from disparity 0 with the default checks.
+    /// A search from disparity 0 with the default checks of the block methods.
     pub const fn new(width: u16, height: u16, disparities: u16) -> Self {
         Self { width, height, disparities, min_disparity: 0, checks: Checks::DEFAULT, penalties: Penalties::DEFAULT }
+    }
+
+    /// The same search with the checks of an operating point of a method.
+    pub const fn with_filter<S: Scheme>(self, filter: Filter) -> Self {
+        Self { checks: filter.checks::<S>(), ..self }
     }
 
     /// All zero: a matcher that was not started, which so takes no place in flash when it is a static.
@@ -86,11 +92,46 @@ impl Config {
     }
 }
 
+/// An operating point: how many answers, and how sure. What it is made of depends on the method.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Filter {
+    /// Every pixel with a candidate gets an answer.
+    Dense,
+    /// Most answers, few of them wrong.
+    Default,
+    /// Sure answers: fewer, and wrong only rarely.
+    Strict,
+}
+
+impl Filter {
+    /// All of them, from the most answers to the surest.
+    pub const ALL: [Self; 3] = [Self::Dense, Self::Default, Self::Strict];
+
+    /// The name, as the programs spell it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Dense => "dense",
+            Self::Default => "default",
+            Self::Strict => "strict",
+        }
+    }
+
+    /// What it is for a method.
+    pub const fn checks<S: Scheme>(self) -> Checks {
+        match self {
+            Self::Dense => Checks::DENSE,
+            Self::Default => S::DEFAULT,
+            Self::Strict => S::STRICT,
+        }
+    }
+}
+
 /// Which answers are refused, and how strictly.
 ///
-/// Three operating points are ready made: [`Checks::DENSE`] answers wherever there is a candidate,
-/// [`Checks::DEFAULT`] drops what the other image or the neighbourhood contradicts, [`Checks::STRICT`] keeps what is
-/// well supported.
+/// Three operating points are ready made, those of the block methods here: [`Checks::DENSE`] answers wherever there is a
+/// candidate, [`Checks::DEFAULT`] drops what the other image or the neighbourhood contradicts, [`Checks::STRICT`] keeps what
+/// is well supported. [`Filter::checks`] has them for every method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Checks {

@@ -33,7 +33,7 @@ mod surface;
 mod texture;
 mod window;
 
-pub use config::{Checks, Config, ConfigError};
+pub use config::{Checks, Config, ConfigError, Filter};
 pub use kernels::Kernel;
 pub use matcher::{MatchError, Matcher, state_bytes};
 pub use paths::{Sgm, SgmLean};

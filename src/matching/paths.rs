@@ -4,6 +4,7 @@
 //! paths bring together what the pixels of a surface have in common: from the left, from the right, and from above. No
 //! frame is kept, and no path comes from below: that path measured least, and it would take the frame.
 
+use super::config::Checks;
 use super::kernels::{Aligned, Guide, PathWork, Room, Select, Unique, bytes_mut, halves_mut, winners_mut};
 use super::memory::{Bytes, Memory, Parts, first};
 use super::row::slot;
@@ -42,6 +43,8 @@ macro_rules! along_paths {
             const RADIUS_X: usize = 4;
             const RADIUS_Y: usize = 1;
             const SIGMA_PX: f32 = 0.15;
+            const DEFAULT: Checks = DEFAULT;
+            const STRICT: Checks = STRICT;
             const NAME: &'static str = $name;
         }
 
@@ -69,6 +72,12 @@ macro_rules! along_paths {
         }
     };
 }
+
+/// Costs along paths leave small gaps inside of surfaces, which are filled.
+const DEFAULT: Checks = Checks { speckle_pixels: 20, fill_pixels: 16, ..Checks::DEFAULT };
+/// They are least sure where another disparity costs little more; texture says less than that, for paths bridge what has none.
+const STRICT: Checks =
+    Checks { uniqueness_percent: Some(30), speckle_pixels: 20, median: true, fill_pixels: 8, ..Checks::DEFAULT };
 
 along_paths!(Sgm, "sgm");
 along_paths!(SgmLean, "sgm-lean");

@@ -1,5 +1,8 @@
 //! What a matching method is made of.
 
+use super::config::Checks;
+#[cfg(doc)]
+use super::config::Filter;
 use super::memory::{Bytes, Memory};
 use super::stages::Stages;
 
@@ -13,6 +16,10 @@ pub trait Scheme: Lines + Sized + 'static {
     /// Standard deviation of an answer away from depth edges, px: so that on rendered scenes, with sensor noise of up to
     /// two grey levels, three of it hold 99 % of the answers.
     const SIGMA_PX: f32;
+    /// The checks of [`Filter::Default`].
+    const DEFAULT: Checks = Checks::DEFAULT;
+    /// The checks of [`Filter::Strict`].
+    const STRICT: Checks = Checks::STRICT;
     /// The method's name, as the programs spell it.
     const NAME: &'static str;
 }

@@ -3,7 +3,7 @@
 use super::Host;
 use std::fmt;
 use std::str::FromStr;
-use stereopsis::matching::{Scheme, state_bytes};
+use stereopsis::matching::{Checks, Filter, Scheme, state_bytes};
 
 /// A matching method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -55,6 +55,11 @@ impl Method {
     /// Bytes of state that firmware holds for lines of `width` and that many disparities.
     pub const fn state_bytes(self, width: u16, disparities: u16) -> usize {
         with_scheme!(self, S => state_bytes::<S>(width as usize, disparities as usize))
+    }
+
+    /// The checks of an operating point.
+    pub const fn checks(self, filter: Filter) -> Checks {
+        with_scheme!(self, S => filter.checks::<S>())
     }
 
     /// How many lines after its own a row of disparities comes out.

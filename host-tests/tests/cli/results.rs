@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::RectifiedRig;
-use stereopsis::matching::{Checks, Config, Kernel};
+use stereopsis::matching::{Checks, Config, Filter, Kernel};
 use stereopsis::units::PixelFlags;
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::pfm::{self, FloatMap};
@@ -64,8 +64,9 @@ fn every_kernel_and_number_of_threads_writes_the_same() {
 fn the_files_hold_what_the_library_says() {
     let bench = Bench::new();
     let out = bench.path("out");
-    for (method, name) in [(Method::Fast, "fast"), (Method::Block, "block")] {
-        for (filter, checks) in [("dense", Checks::DENSE), ("default", Checks::DEFAULT), ("strict", Checks::STRICT)] {
+    for method in Method::ALL {
+        for filter in Filter::ALL {
+            let (name, filter, checks) = (method.name(), filter.name(), method.checks(filter));
             bench.matched(&[("--method", name), ("--filter", filter)]);
             let map = in_process(method, checks);
             assert_eq!(float_map(&out.join("disparity.pfm")).values, map.pixels(), "{name} {filter}");
@@ -170,9 +171,12 @@ fn bench_prints_one_json_object() {
     let bench = Bench::new();
     let (left, right) = (bench.path("left.png"), bench.path("right.png"));
     let (left, right) = (left.to_str().expect("UTF-8"), right.to_str().expect("UTF-8"));
-    for (method, name, threads) in
-        [(Method::Fast, "fast", "1"), (Method::Block, "block", "1"), (Method::Block, "block", "3")]
-    {
+    for (method, name, threads) in [
+        (Method::Fast, "fast", "1"),
+        (Method::Block, "block", "1"),
+        (Method::Block, "block", "3"),
+        (Method::Sgm, "sgm", "2"),
+    ] {
         let fixed = ["bench", "--left", left, "--right", right, "--disparities", "32", "--repeat", "3"];
         let run = stereo(fixed.into_iter().chain(["--method", name, "--threads", threads]));
         assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));

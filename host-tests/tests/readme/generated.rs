@@ -7,7 +7,7 @@ use image::imageops::{FilterType, replace, resize};
 use image::{DynamicImage, RgbImage};
 use std::sync::LazyLock;
 use stereopsis::depth::DepthScale;
-use stereopsis::matching::{Block, Checks, Config, Fast, Scheme, state_bytes};
+use stereopsis::matching::{Block, Config, Fast, Filter, Scheme, Sgm, SgmLean, state_bytes};
 use stereopsis::pipeline::Pipeline;
 use stereopsis_host::colour::ColourScale;
 use stereopsis_host::map::DisparityMap;
@@ -54,20 +54,19 @@ fn splice_parts(readme: &str, parts: &[Part]) -> Result<String, String> {
     }
 }
 
-/// Memory and delay of both methods in four sizes.
+/// Memory and delay of all methods in four sizes.
 fn state_table() -> String {
     fn row<S: Scheme, const W: usize, const D: usize>() -> String {
         let (state, whole) = (state_bytes::<S>(W, D), size_of::<Pipeline<S, W, D>>());
         format!("| `{}` | {W} | {D} | {state} | {whole} | {} |\n", S::NAME, Pipeline::<S, W, D>::LATENCY)
     }
-    let mut table = "| method | pixels in a line | disparities | matcher, bytes | pipeline, bytes | delay, lines |\n\
+    let table = "| method | pixels in a line | disparities | matcher, bytes | pipeline, bytes | delay, lines |\n\
                      | --- | ---: | ---: | ---: | ---: | ---: |\n"
         .to_owned();
-    table +=
-        &[row::<Fast, 160, 32>(), row::<Fast, 320, 64>(), row::<Fast, 640, 64>(), row::<Fast, 640, 128>()].concat();
-    table +=
-        &[row::<Block, 160, 32>(), row::<Block, 320, 64>(), row::<Block, 640, 64>(), row::<Block, 640, 128>()].concat();
-    table
+    fn rows<S: Scheme>() -> String {
+        [row::<S, 160, 32>(), row::<S, 320, 64>(), row::<S, 640, 64>(), row::<S, 640, 128>()].concat()
+    }
+    table + &[rows::<Fast>(), rows::<Block>(), rows::<SgmLean>(), rows::<Sgm>()].concat()
 }
 
 /// The built-in scene, rendered once.
@@ -87,24 +86,25 @@ static DEMO: LazyLock<Demo> = LazyLock::new(|| {
 });
 
 impl Demo {
-    fn match_with(&self, method: Method, checks: Checks) -> DisparityMap {
+    fn match_with(&self, method: Method, filter: Filter) -> DisparityMap {
+        let checks = method.checks(filter);
         let config =
             Config { checks, ..Config::new(self.scene.width(), self.scene.height(), self.scene.disparities()) };
         run(method, &config, &mut self.camera.clone(), |_| ()).expect("a frame").map
     }
 }
 
-/// Figures of both methods with the three filters on the built-in scene.
+/// Figures of all methods with the three filters on the built-in scene.
 fn accuracy_table() -> String {
     let scale = DepthScale::new(&DEMO.scene.rig()).expect("the scene's rig");
-    let filters = [("dense", Checks::DENSE), ("default", Checks::DEFAULT), ("strict", Checks::STRICT)];
     let mut table =
         "| method | filter | answered | bad2 of the answers | missed | RMS of the good | within 3 sigma |\n\
                      | --- | --- | ---: | ---: | ---: | ---: | ---: |\n"
             .to_owned();
     for method in Method::ALL {
-        for (filter, checks) in filters {
-            let a = Accuracy::of(&DEMO.match_with(method, checks), &DEMO.truth, &scale);
+        for filter in Filter::ALL {
+            let a = Accuracy::of(&DEMO.match_with(method, filter), &DEMO.truth, &scale);
+            let filter = filter.name();
             let missed = 1.0 - a.density * (1.0 - a.bad2);
             let percent = |share: f64| format!("{:.2} %", 100.0 * share);
             table += &format!(
@@ -122,7 +122,7 @@ fn accuracy_table() -> String {
 
 /// The left image beside its disparity in colours, as `stereo demo` writes them, made smaller.
 pub fn picture() -> RgbImage {
-    let map = DEMO.match_with(Method::Block, Checks::DEFAULT);
+    let map = DEMO.match_with(Method::Block, Filter::Default);
     let colours = ColourScale::of(&map).picture(map.width, &map.pixels());
     let rows = HALF_COLUMNS * map.height as u32 / map.width as u32;
     let mut both = RgbImage::new(2 * HALF_COLUMNS, rows);

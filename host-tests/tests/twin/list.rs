@@ -237,6 +237,7 @@ fn filtered<S: Method>() {
 fn median_and_filling_equal_the_twins_at_all_borders() {
     filtered::<Fast>();
     filtered::<Block>();
+    filtered::<Sgm>();
 }
 
 /// One surface over the whole picture, against thresholds around its size and around the powers of two.

@@ -9,7 +9,7 @@ use cbindgen::{Builder, Config, DocumentationLength, DocumentationStyle, Languag
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use std::fs;
 use stereopsis::ffi::state_bytes;
-use stereopsis::matching::{Block, Fast, Scheme};
+use stereopsis::matching::{Block, Fast, Scheme, Sgm, SgmLean};
 
 /// The header, from the repository's root.
 const HEADER: &str = "src/ffi/stereopsis.h";
@@ -86,7 +86,13 @@ fn config() -> Outcome<Config> {
         autogen_warning: Some("/* Made by `cargo xtask header`. */".to_owned()),
         no_includes: true,
         sys_includes: vec!["stddef.h".to_owned(), "stdint.h".to_owned()],
-        after_includes: Some(format!("\n{}\n{}", bytes_macro::<Fast>()?, bytes_macro::<Block>()?)),
+        after_includes: Some(format!(
+            "\n{}\n{}\n{}\n{}",
+            bytes_macro::<Fast>()?,
+            bytes_macro::<Block>()?,
+            bytes_macro::<SgmLean>()?,
+            bytes_macro::<Sgm>()?
+        )),
         usize_is_size_t: true,
         style: Style::Both,
         documentation_style: DocumentationStyle::Doxy,

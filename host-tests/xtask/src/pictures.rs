@@ -9,7 +9,7 @@ use std::io::Write;
 use std::path::Path;
 use stereopsis::camera::{CameraPair, StereoSource};
 use stereopsis::imaging::GreyLines;
-use stereopsis::matching::Config;
+use stereopsis::matching::{Config, Filter};
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::mock::MockCamera;
 use stereopsis_host::run::{MemoryPair, Method, run};
@@ -80,7 +80,9 @@ impl Pictures {
     pub fn matched(&self, method: Method, disparities: u16) -> Outcome<DisparityMap> {
         let camera = MemoryPair::new(self.width, self.left.clone(), self.right.clone());
         let mut camera = camera.ok_or_else(|| Failure::new("the pictures are empty"))?;
-        let outcome = run(method, &Config::new(self.width, self.height, disparities), &mut camera, |_| ());
+        let checks = method.checks(Filter::Default);
+        let config = Config { checks, ..Config::new(self.width, self.height, disparities) };
+        let outcome = run(method, &config, &mut camera, |_| ());
         outcome.map(|outcome| outcome.map).map_err(|e| Failure::new(format!("{method} on the host: {e}")))
     }
 

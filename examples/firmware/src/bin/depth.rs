@@ -8,12 +8,12 @@
 
 use static_cell::ConstStaticCell;
 use stereopsis::camera::{FrameStart, StereoSource};
-use stereopsis::matching::{Config, ConfigError, Row};
+use stereopsis::matching::{Config, ConfigError, Filter, Row};
 use stereopsis::pipeline::PipelineError;
 use stereopsis_firmware::camera::files::FileError;
 use stereopsis_firmware::camera::scene::Scene;
 use stereopsis_firmware::camera::{Camera, timed::Timed};
-use stereopsis_firmware::choice::{BOARD, BoardPipeline, DISPARITIES, HEIGHT, METHOD, WIDTH};
+use stereopsis_firmware::choice::{BOARD, BoardPipeline, DISPARITIES, HEIGHT, METHOD, Method, WIDTH};
 use stereopsis_firmware::clock::Clock;
 use stereopsis_firmware::console::Console;
 use stereopsis_firmware::host::HostError;
@@ -59,7 +59,8 @@ fn run(pipeline: &mut BoardPipeline) -> Result<(), Failure> {
     let mut camera = Timed::new(camera, &clock);
     let format = camera.format();
     defmt::info!("{=str} on {=str}: {=u16}x{=u16}", METHOD, BOARD.core, format.width, format.height);
-    pipeline.start(&Config::new(format.width, format.height, DISPARITIES)).map_err(Failure::Config)?;
+    let config = Config::new(format.width, format.height, DISPARITIES).with_filter::<Method>(Filter::Default);
+    pipeline.start(&config).map_err(Failure::Config)?;
     let mut rows = Rows::create().map_err(Failure::Rows)?;
     let calibration = clock.calibrate();
     let ticks = frame(pipeline, &clock, &mut camera, &mut rows)?;

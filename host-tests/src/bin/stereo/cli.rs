@@ -5,7 +5,7 @@ use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
 use std::ffi::OsString;
 use std::path::PathBuf;
-use stereopsis::matching::{Checks, Config, Kernel};
+use stereopsis::matching::{Checks, Config, Filter, Kernel};
 use stereopsis_host::command_line::usage_line;
 use stereopsis_host::run::{Method, Way};
 
@@ -132,19 +132,15 @@ impl WayArgs {
     pub fn way(&self) -> Way {
         Way { method: self.method, kernel: self.kernel, threads: self.threads }
     }
-}
 
-/// A named set of checks.
-#[derive(Clone, Copy, Debug)]
-pub struct Filter {
-    pub name: &'static str,
-    pub checks: Checks,
+    /// The checks of the filter, for the method.
+    pub fn checks(&self) -> Checks {
+        self.method.checks(self.filter)
+    }
 }
 
 fn filter(text: &str) -> Result<Filter, &'static str> {
-    let all = [("dense", Checks::DENSE), ("default", Checks::DEFAULT), ("strict", Checks::STRICT)];
-    let found = all.into_iter().find(|(name, _)| *name == text);
-    found.map(|(name, checks)| Filter { name, checks }).ok_or("the filters are dense, default and strict")
+    Filter::ALL.into_iter().find(|filter| filter.name() == text).ok_or("the filters are dense, default and strict")
 }
 
 fn kernel(text: &str) -> Result<Kernel, String> {

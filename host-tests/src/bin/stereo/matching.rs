@@ -17,7 +17,7 @@ use stereopsis_host::run;
 pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let calibration = args.calib.as_ref().map(|path| Calibration::open(path, &args.pair.left)).transpose()?;
     let mut pair = Pair::open(&args.pair)?;
-    let config = input::config(&args.range, args.way.filter.checks, pair.width, pair.height)?;
+    let config = input::config(&args.range, args.way.checks(), pair.width, pair.height)?;
     let scale = calibration.as_ref().map(|c| scale(c, pair.width, pair.height)).transpose()?;
     Staging::probe(&args.out)?;
 
@@ -25,7 +25,7 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let outcome = run::run(args.way.way(), &config, &mut pair.camera, |rows| progress.rows(rows))?;
     drop(progress);
 
-    let summary = Summary::new(args.way.method, args.way.filter.name, &config, &outcome, scale.as_ref(), None);
+    let summary = Summary::new(args.way.method, args.way.filter.name(), &config, &outcome, scale.as_ref(), None);
     let report = Report {
         left_name: &name(&args.pair.left),
         right_name: &name(&args.pair.right),

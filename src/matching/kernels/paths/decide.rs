@@ -1,8 +1,8 @@
 //! The path from the right, and the winners, in one pass to the left.
 
 use super::group::Group;
-use crate::matching::kernels::BESIDE;
 use super::{Guide, Path, PathWork, Steps, mask, split_last, stride};
+use crate::matching::kernels::BESIDE;
 use crate::matching::kernels::winner::{Found, Unique};
 
 /// Adds the path from the right to the other two and selects the winner of every pixel that has a candidate.

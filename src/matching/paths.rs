@@ -43,6 +43,7 @@ macro_rules! along_paths {
             const RADIUS_X: usize = 4;
             const RADIUS_Y: usize = 1;
             const SIGMA_PX: f32 = 0.15;
+            const STEP: u8 = STEP;
             const DEFAULT: Checks = DEFAULT;
             const STRICT: Checks = STRICT;
             const NAME: &'static str = $name;
@@ -73,8 +74,10 @@ macro_rules! along_paths {
     };
 }
 
+/// What measured best.
+const STEP: u8 = 12;
 /// Costs along paths leave small gaps inside of surfaces, which are filled.
-const DEFAULT: Checks = Checks { speckle_pixels: 20, fill_pixels: 16, ..Checks::DEFAULT };
+const DEFAULT: Checks = Checks { smoothing_radius: 8, speckle_pixels: 20, fill_pixels: 16, ..Checks::DEFAULT };
 /// They are least sure where another disparity costs little more; texture says less than that, for paths bridge what has none.
 const STRICT: Checks =
     Checks { uniqueness_percent: Some(30), speckle_pixels: 20, median: true, fill_pixels: 8, ..Checks::DEFAULT };

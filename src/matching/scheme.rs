@@ -16,6 +16,9 @@ pub trait Scheme: Lines + Sized + 'static {
     /// Standard deviation of an answer away from depth edges, px: so that on rendered scenes, with sensor noise of up to
     /// two grey levels, three of it hold 99 % of the answers.
     const SIGMA_PX: f32;
+    /// How much more a disparity one px beside the winner's costs for that alone, on a slanted surface: what is left of the
+    /// rise tells where between pixels it lies.
+    const STEP: u8 = 0;
     /// The checks of [`Filter::Default`].
     const DEFAULT: Checks = Checks::DEFAULT;
     /// The checks of [`Filter::Strict`].

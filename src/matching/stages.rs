@@ -107,7 +107,7 @@ impl<S: Scheme> Stages<'_, S> {
         }
         // The kernel is done with its room.
         let winners = Winners { winners: self.winners, right: self.right, room: self.scratch };
-        answers::answer(self.kernel, self.config, winners, answers, flags);
+        answers::answer::<S>(self.kernel, self.config, winners, answers, flags);
         surface::average(self.kernel, answers, self.support.lengths, halves_mut(self.scratch), checks);
     }
 }

@@ -30,6 +30,8 @@ pub struct Scheme {
     pub radius_x: usize,
     /// And on this many rows up and down.
     pub radius_y: usize,
+    /// How much a disparity beside the winner costs for that alone.
+    pub step: i32,
     /// The least deviation of an answer, px.
     pub sigma_px: f32,
 }
@@ -53,14 +55,25 @@ pub enum Cost {
 
 impl Scheme {
     /// The twin of [`stereopsis::matching::Fast`]: 4-bit census, 9 x 7 window.
-    pub const FAST: Self =
-        Self { cost: Cost::Window { neighbours: &census::PLUS4, unit: 1 }, radius_x: 4, radius_y: 3, sigma_px: 0.15 };
+    pub const FAST: Self = Self {
+        cost: Cost::Window { neighbours: &census::PLUS4, unit: 1 },
+        radius_x: 4,
+        radius_y: 3,
+        step: 0,
+        sigma_px: 0.15,
+    };
     /// The twin of [`stereopsis::matching::Block`]: 8-bit census, 9 x 9 window, in
     /// quarters.
-    pub const BLOCK: Self =
-        Self { cost: Cost::Window { neighbours: &census::RING8, unit: 4 }, radius_x: 4, radius_y: 4, sigma_px: 0.15 };
+    pub const BLOCK: Self = Self {
+        cost: Cost::Window { neighbours: &census::RING8, unit: 4 },
+        radius_x: 4,
+        radius_y: 4,
+        step: 0,
+        sigma_px: 0.15,
+    };
     /// The twin of [`stereopsis::matching::Sgm`].
-    pub const SGM: Self = Self { cost: Cost::Paths { between_pixels: true }, radius_x: 4, radius_y: 1, sigma_px: 0.15 };
+    pub const SGM: Self =
+        Self { cost: Cost::Paths { between_pixels: true }, radius_x: 4, radius_y: 1, step: 12, sigma_px: 0.15 };
     /// The twin of [`stereopsis::matching::SgmLean`].
     pub const SGM_LEAN: Self = Self { cost: Cost::Paths { between_pixels: false }, ..Self::SGM };
 }

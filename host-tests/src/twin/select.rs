@@ -60,7 +60,7 @@ pub(super) fn select_row(
             }
         }
         if !refused {
-            let steps = (smallest + best.d) as i32 * 32 + fraction(candidates(x), best);
+            let steps = (smallest + best.d) as i32 * 32 + fraction(scheme, candidates(x), best);
             disparities[x] = Disparity::from_raw(steps as u16);
         }
     }
@@ -90,13 +90,13 @@ fn held_by_right_columns(winners: &[Option<Winner>], smallest: usize) -> Vec<Opt
 }
 
 /// Steps of 1/32 px from the winner to the tip of the two equally steep lines through its cost and its neighbours'.
-fn fraction(candidates: &[u16], best: Winner) -> i32 {
+fn fraction(scheme: &Scheme, candidates: &[u16], best: Winner) -> i32 {
     if best.d == 0 || best.d + 1 >= candidates.len() {
         return 0;
     }
     let before = i32::from(candidates[best.d - 1]) - i32::from(best.cost);
     let after = i32::from(candidates[best.d + 1]) - i32::from(best.cost);
-    let steepest = before.max(after);
+    let steepest = (before.max(after) - scheme.step).max((before - after).abs());
     if steepest == 0 {
         return 0;
     }

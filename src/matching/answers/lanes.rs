@@ -29,7 +29,7 @@ pub(super) fn answer(
     let [below, costs, above, disparities] = [&*winners.below, &*winners.costs, &*winners.above, &*winners.disparities];
     let sides = below.iter().zip(costs).zip(above);
     for (fraction, ((&below, &cost), &above)) in fractions.iter_mut().zip(sides) {
-        *fraction = signed_fraction(below - cost, above - cost);
+        *fraction = signed_fraction(below - cost, above - cost, rules.step);
     }
     // Two byte loops: one with all of these rows has more of them than there are registers.
     let partners = disparities.iter().zip(kept);
@@ -50,9 +50,9 @@ pub(super) fn answer(
 
 /// The fraction of [`super::subpixel::refine`] with its sign, from the rises below and above: a division bit by bit.
 #[inline(always)]
-fn signed_fraction(below: u8, above: u8) -> u8 {
+fn signed_fraction(below: u8, above: u8, step: u8) -> u8 {
     const { assert!(Disparity::ONE == 32, "half a pixel is four bits and the one for all of it") };
-    let steepest = below.max(above).max(1);
+    let steepest = below.max(above).saturating_sub(step).max(below.abs_diff(above)).max(1);
     // The rest is less than what it is divided by, and so is twice the rest less it.
     let mut rest = below.abs_diff(above);
     let all = rest >= steepest;
@@ -77,8 +77,11 @@ mod tests {
     #[test]
     fn all_rises_give_the_fraction_of_the_other_form() {
         for (below, above) in (0..=252).flat_map(|below| (0..=252).map(move |above| (below, above))) {
-            let refined = refine(Winner::new(0, 10, (below, above)), 0).raw();
-            assert_eq!(320 + i32::from(signed_fraction(below, above) as i8), i32::from(refined), "{below} {above}");
+            for step in [0, 1, 24, 200] {
+                let refined = refine(Winner::new(0, 10, (below, above)), 0, u32::from(step)).raw();
+                let fraction = i32::from(signed_fraction(below, above, step) as i8);
+                assert_eq!(320 + fraction, i32::from(refined), "{below} {above} {step}");
+            }
         }
     }
 }

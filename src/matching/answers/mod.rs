@@ -19,6 +19,7 @@ use super::config::Config;
 use super::kernels::{Kernel, Winner};
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 use super::kernels::{WinnerRows, bytes_mut};
+use super::scheme::Scheme;
 use crate::units::{Disparity, PixelFlags};
 
 /// A row between the kernel and its answers. All slices but the room have the row's width.
@@ -36,6 +37,8 @@ struct Rules {
     min_disparity: u16,
     /// The last candidate.
     ceiling: u8,
+    /// How much more a disparity one px beside costs for that alone: [`Scheme::STEP`].
+    step: u8,
     /// How far from the disparity that the partner keeps, px.
     tolerance: u8,
     /// The flag of winners that are flat.
@@ -46,7 +49,7 @@ struct Rules {
 
 /// Makes answers of the winners, none of those that the checks contradict, and tells why: of `flags` those stay that are
 /// said already.
-pub(super) fn answer(
+pub(super) fn answer<S: Scheme>(
     kernel: Kernel,
     config: &Config,
     row: Winners<'_>,
@@ -56,6 +59,7 @@ pub(super) fn answer(
     let checks = &config.checks;
     let rules = Rules {
         min_disparity: config.min_disparity,
+        step: S::STEP,
         ceiling: (config.disparities - 1) as u8,
         // Where nothing is checked, nothing is over the tolerance.
         tolerance: checks.left_right_px.unwrap_or(u8::MAX),

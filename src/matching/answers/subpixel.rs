@@ -6,18 +6,22 @@
 //!
 //! `f = (a - b) / (2 max(a, b))`
 //!
+//! Along paths a disparity beside the winner costs a step more wherever a surface is slanted, which would pull answers to whole
+//! pixels: so much of the steeper rise is not counted ([`Scheme::STEP`](crate::matching::Scheme::STEP)).
+//!
 //! On a rendered slanted plane the parabola's error was half again as large, for both windows, and its answers crowded
 //! to whole pixels.
 
 use crate::matching::kernels::Winner;
 use crate::units::Disparity;
 
-/// The disparity of a winner whose search began at `min_disparity` px, rounded to the nearest step.
+/// The disparity of a winner whose search began at `min_disparity` px, rounded to the nearest 1/32 px; `step` of the steeper
+/// rise is not counted.
 #[inline(always)]
-pub(super) fn refine(winner: Winner, min_disparity: u32) -> Disparity {
+pub(super) fn refine(winner: Winner, min_disparity: u32, step: u32) -> Disparity {
     let whole = (min_disparity + winner.disparity()) * u32::from(Disparity::ONE);
     let (a, b) = winner.rises();
-    let steepest = a.max(b);
+    let steepest = a.max(b).saturating_sub(step).max(a.abs_diff(b));
     let half = u32::from(Disparity::ONE / 2);
     // A steepest rise of 0 is a flat minimum: no fraction. `max(1)` keeps the division defined.
     let fraction = (a.abs_diff(b) * half + steepest / 2) / steepest.max(1);
@@ -31,7 +35,7 @@ mod tests {
     use super::*;
 
     fn refined(below: u8, cost: u8, above: u8) -> u16 {
-        refine(Winner::new(cost, 10, (below, above)), 0).raw()
+        refine(Winner::new(cost, 10, (below, above)), 0, 0).raw()
     }
 
     #[test]

@@ -42,6 +42,22 @@
   ((size_t)192 + (size_t)70 * (width) + (size_t)13 * (disparities) + \
    (size_t)1 * (width) * (disparities))
 
+/**
+ * Bytes that are enough for a matcher of method sgm-lean, on any target. `disparities` is a multiple of 16, and
+ * `width` at least as large, as the library was built with.
+ */
+#define STEREOPSIS_SGM_LEAN_BYTES(width, disparities) \
+  ((size_t)192 + (size_t)52 * (width) + (size_t)6 * (disparities) + \
+   (size_t)3 * (width) * (disparities))
+
+/**
+ * Bytes that are enough for a matcher of method sgm, on any target. `disparities` is a multiple of 16, and
+ * `width` at least as large, as the library was built with.
+ */
+#define STEREOPSIS_SGM_BYTES(width, disparities) \
+  ((size_t)192 + (size_t)52 * (width) + (size_t)6 * (disparities) + \
+   (size_t)3 * (width) * (disparities))
+
 
 /**
  * The version of this interface. It changes when a program that was compiled with another header would go wrong.
@@ -246,6 +262,14 @@ enum stereopsis_status
    * Rig: the principal points are over 30000 px apart.
    */
   STEREOPSIS_STATUS_RIG_OFFSET = -27,
+  /**
+   * Configuration: the range of gradients is 0 or over 14.
+   */
+  STEREOPSIS_STATUS_GRADIENT = -28,
+  /**
+   * Configuration: the penalties are not in order, or too large together.
+   */
+  STEREOPSIS_STATUS_PENALTIES = -29,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -321,10 +345,36 @@ typedef struct stereopsis_config {
    */
   uint8_t speckle_pixels;
   /**
+   * Methods along paths: gradients are cut off at this many eighths of a grey level per pixel, 1 to 14.
+   */
+  uint8_t gradient;
+  /**
+   * Methods along paths: a pixel's cost is cut off at this, at least 1.
+   */
+  uint8_t cost;
+  /**
+   * Methods along paths: what a change of the disparity by one px costs where the brightness changes little, and more;
+   * at least 1, and the second at most the first.
+   */
+  uint8_t step[2];
+  /**
+   * Methods along paths: what a larger change costs where the brightness changes little, more, and much; each at least
+   * the first step. `cost + step + jump` is at most 127 and `3 cost + 2 jump` at most 254.
+   */
+  uint8_t jump[3];
+  /**
+   * Methods along paths: the changes of brightness, in grey levels, at which it is more, and much.
+   */
+  uint8_t edges[2];
+  /**
    * Fill: gaps along the row of at most this many pixels, between two answers, get the farther of the two and
    * `STEREOPSIS_FLAG_FILLED`; with 0 none does.
    */
   uint8_t fill_pixels;
+  /**
+   * Fill: by how much the two answers may differ, in 1/32 px; 65535 for any two.
+   */
+  uint16_t fill_step;
 } stereopsis_config;
 
 /**

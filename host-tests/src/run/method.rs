@@ -62,6 +62,12 @@ impl Method {
         with_scheme!(self, S => filter.checks::<S>())
     }
 
+    /// Whether a frame in bands is that of one pipeline to the bit: a window reaches so far and no farther, a path reaches from
+    /// the frame's first row.
+    pub const fn is_exact_in_bands(self) -> bool {
+        matches!(self, Self::Fast | Self::Block)
+    }
+
     /// How many lines after its own a row of disparities comes out.
     pub const fn latency_lines(self) -> usize {
         with_scheme!(self, S => Host::<S>::LATENCY)

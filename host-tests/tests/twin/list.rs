@@ -2,8 +2,6 @@
 
 use super::{Any, HALVES, Method, W, compare, pipeline};
 use image::GrayImage;
-use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use std::collections::BTreeSet;
 use stereopsis::matching::{Block, Checks, Config, Fast, Penalties, Sgm, SgmLean};
 use stereopsis::pipeline::Pipeline;
@@ -26,7 +24,7 @@ fn heights() -> Vec<u16> {
 const DISPARITIES: [u16; 13] = [16, 17, 31, 32, 33, 48, 63, 64, 100, 127, 128, 255, 256];
 const MIN_DISPARITIES: [u16; 7] = [0, 0, 1, 7, 40, 0, 705];
 
-const PATTERNS: [Pattern; 31] = [
+pub(super) const PATTERNS: [Pattern; 31] = [
     Pattern::Noise,
     Pattern::Constant(0),
     Pattern::Shifted { most: 20, noise_grey: 0.0 },
@@ -79,7 +77,7 @@ fn random_checks(random: &mut Random) -> Checks {
 }
 
 /// Penalties chosen by chance, of those that there can be.
-fn random_penalties(random: &mut Random) -> Penalties {
+pub(super) fn random_penalties(random: &mut Random) -> Penalties {
     let cost = 1 + random.below(40) as u8;
     let step = 1 + random.below(usize::from((126 - cost) / 2)) as u8;
     // Cost + step + jump at most 127, three costs and two jumps at most 254.
@@ -257,67 +255,4 @@ fn surfaces_of_any_size_are_counted() {
     whole_surface::<Block>();
     whole_surface::<SgmLean>();
     whole_surface::<Sgm>();
-}
-
-prop_compose! {
-    fn any_checks()(
-        left_right_px in proptest::option::of(0u8..6),
-        uniqueness_percent in proptest::option::of(0u8..100),
-        refuse_flat: bool,
-        texture_gradient in 0u8..60,
-        texture_pixels in 0u8..90,
-        refuse_ceiling: bool,
-        smoothing_radius in 0..=Checks::MOST_SMOOTHING,
-        speckle_pixels: u8,
-        surface_step in (0u16..=32).prop_map(Disparity::from_raw),
-        median: bool,
-        fill_pixels: u8,
-        fill_step in any::<u16>().prop_map(Disparity::from_raw),
-    ) -> Checks {
-        Checks {
-            left_right_px, uniqueness_percent, refuse_flat, texture_gradient, texture_pixels, refuse_ceiling, smoothing_radius,
-            speckle_pixels, surface_step, median, fill_pixels, fill_step,
-        }
-    }
-}
-
-prop_compose! {
-    fn any_config()(
-        width in 1u16..=300, height in 1u16..=60, disparities in 16u16..=256, min_disparity in 0u16..60,
-        checks in any_checks(), seed: u64,
-    ) -> Config {
-        let penalties = random_penalties(&mut Random::new(seed));
-        Config { width, height, disparities, min_disparity, checks, penalties }
-    }
-}
-
-fn any_pattern() -> impl Strategy<Value = Pattern> {
-    prop_oneof![
-        2 => (0usize..80, 0.0..12.0).prop_map(|(most, noise_grey)| Pattern::Shifted { most, noise_grey }),
-        1 => proptest::sample::select(&PATTERNS[..]),
-    ]
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 60,
-        rng_seed: RngSeed::Fixed(4),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
-
-    #[test]
-    fn any_combination_equals_the_twin(config in any_config(), pattern in any_pattern(), seed: u64) {
-        let pair = pattern.pair(u32::from(config.width), u32::from(config.height), seed);
-        for compared in [
-            compare::<Fast, _>(&mut pipeline(), &config, &pair),
-            compare::<Block, _>(&mut pipeline(), &config, &pair),
-            compare::<SgmLean, _>(&mut pipeline(), &config, &pair),
-            compare::<Sgm, _>(&mut pipeline(), &config, &pair),
-        ] {
-            if let Err(e) = compared {
-                prop_assert!(false, "{pattern:?}: {e}");
-            }
-        }
-    }
 }

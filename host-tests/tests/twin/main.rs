@@ -1,8 +1,9 @@
 //! The pipeline against its naive twin: every disparity, flag and deviation, to the bit, for every kernel.
 //!
-//! * `list`: all sizes, ranges, pictures and checks, and any combination of them.
+//! * `list`: all sizes, ranges, pictures and checks. `any`: any combination of them.
 //! * `frames`: one frame after the other, faults and changes in between.
 
+mod any;
 mod frames;
 mod list;
 

@@ -122,7 +122,7 @@ pub struct WayArgs {
     /// The kernel that does the work, by default the fastest of this processor; all give the same bits
     #[arg(long, value_name = "KERNEL", env = "STEREO_KERNEL", value_parser = kernel)]
     pub kernel: Option<Kernel>,
-    /// How many threads share a frame, 1 to 64, each a band of rows; the bits are the same
+    /// How many threads share a frame, 1 to 64, each a band of rows; fast and block give the same bits
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = threads, allow_negative_numbers = true)]
     pub threads: u16,
 }

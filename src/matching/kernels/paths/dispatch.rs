@@ -8,6 +8,7 @@ use crate::matching::scheme::Around;
 
 /// Calls a pass with the groups, how many of them there is room for in a column, and whether all of it is used. Words: each
 /// a function of its own, so that a firmware is linked without those for numbers of disparities that cannot be asked for.
+#[cfg(not(stereopsis_vectors))]
 macro_rules! in_words {
     ($work:ident, $pass:ident, [$($scheme:ident)?], $($argument:expr),*) => {
         match $work.stride {
@@ -43,6 +44,7 @@ mod words {
 }
 
 /// The same in vectors of the compilation's own target.
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 macro_rules! in_vectors {
     ($work:ident, $pass:ident, [$($scheme:ident)?], $($argument:expr),*) => {
         match $work.stride {
@@ -55,6 +57,7 @@ macro_rules! in_vectors {
 }
 
 /// The same in registers of AVX2.
+#[cfg(target_arch = "x86_64")]
 macro_rules! in_wide {
     ($work:ident, $pass:ident, [$($scheme:ident)?], $($argument:expr),*) => {
         match $work.stride {

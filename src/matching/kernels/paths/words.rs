@@ -84,7 +84,7 @@ impl Group for Word {
         {
             let sum = (self.0 & !TOP) + other.0;
             let over = self.0 & sum & TOP;
-            Self((sum | self.0 & TOP) | (over >> 7) * 0xff)
+            Self(sum | (self.0 & TOP) | ((over >> 7) * 0xff))
         }
     }
 
@@ -135,15 +135,15 @@ impl Group for Word {
 
     #[inline(always)]
     fn quarter(self) -> Self {
-        Self(self.0 >> 2 & 0x3f * ONE)
+        Self((self.0 >> 2) & 0x3f3f_3f3f)
     }
 
     #[inline(always)]
     fn bits_apart(self, other: Self) -> Self {
         let bits = self.0 ^ other.0;
-        let pairs = bits - (bits >> 1 & 0x55 * ONE);
-        let fours = (pairs & 0x33 * ONE) + (pairs >> 2 & 0x33 * ONE);
-        Self((fours + (fours >> 4)) & 0x0f * ONE)
+        let pairs = bits - ((bits >> 1) & 0x5555_5555);
+        let fours = (pairs & 0x3333_3333) + ((pairs >> 2) & 0x3333_3333);
+        Self((fours + (fours >> 4)) & 0x0f0f_0f0f)
     }
 
     #[inline(always)]

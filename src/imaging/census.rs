@@ -65,8 +65,8 @@ pub fn census_full24(rows: &[&[u8]; 5], out: &mut [u32]) {
     census::<_, 24, NARROW>(rows, &FULL24, out);
 }
 
-/// Columns worked on at a time, as lanes.
-const LANES: usize = 16;
+/// Columns worked on at a time: as lanes, or as many as a loop is unrolled for.
+const LANES: usize = if cfg!(any(target_pointer_width = "64", stereopsis_vectors)) { 16 } else { 4 };
 /// Columns that so many codes look at.
 const NARROW: usize = LANES + 2 * 2;
 const WIDE: usize = LANES + 2 * 4;

@@ -35,8 +35,8 @@ pub fn gradients(rows: &[&[u8]; 3], most: u8, along: &mut [u8], across: &mut [u8
     }
 }
 
-/// Columns worked on at a time, as lanes.
-const LANES: usize = 16;
+/// Columns worked on at a time: as lanes, or as many as a loop is unrolled for.
+const LANES: usize = if cfg!(any(target_pointer_width = "64", stereopsis_vectors)) { 16 } else { 4 };
 /// Columns that so many gradients look at.
 const AROUND: usize = LANES + 2;
 

@@ -2,6 +2,7 @@
 
 use super::{Rules, consistency};
 use crate::matching::kernels::WinnerRows;
+use crate::matching::scheme::Scheme;
 use crate::units::{Disparity, PixelFlags};
 
 /// [`consistency::offer`] of all winners, then the disparity that each one's partner keeps.
@@ -18,7 +19,7 @@ pub(super) fn keep(winners: &WinnerRows<'_>, right: &mut [u16], kept: &mut [u8])
 /// The answers and flags of the columns that have a candidate. `fractions` is room for a byte a pixel.
 #[cfg_attr(stereopsis_vectors, inline(never))]
 #[cfg_attr(not(stereopsis_vectors), inline(always))]
-pub(super) fn answer(
+pub(super) fn answer<S: Scheme>(
     winners: &WinnerRows<'_>,
     kept: &[u8],
     rules: &Rules,
@@ -29,7 +30,7 @@ pub(super) fn answer(
     let [below, costs, above, disparities] = [&*winners.below, &*winners.costs, &*winners.above, &*winners.disparities];
     let sides = below.iter().zip(costs).zip(above);
     for (fraction, ((&below, &cost), &above)) in fractions.iter_mut().zip(sides) {
-        *fraction = signed_fraction(below - cost, above - cost, rules.step);
+        *fraction = signed_fraction(below - cost, above - cost, S::STEP);
     }
     // Two byte loops: one with all of these rows has more of them than there are registers.
     let partners = disparities.iter().zip(kept);

@@ -37,8 +37,6 @@ struct Rules {
     min_disparity: u16,
     /// The last candidate.
     ceiling: u8,
-    /// How much more a disparity one px beside costs for that alone: [`Scheme::STEP`].
-    step: u8,
     /// How far from the disparity that the partner keeps, px.
     tolerance: u8,
     /// The flag of winners that are flat.
@@ -59,7 +57,6 @@ pub(super) fn answer<S: Scheme>(
     let checks = &config.checks;
     let rules = Rules {
         min_disparity: config.min_disparity,
-        step: S::STEP,
         ceiling: (config.disparities - 1) as u8,
         // Where nothing is checked, nothing is over the tolerance.
         tolerance: checks.left_right_px.unwrap_or(u8::MAX),
@@ -84,11 +81,11 @@ pub(super) fn answer<S: Scheme>(
         lanes::keep(&winners, right, kept);
         return kernel.in_vectors(
             #[inline(always)]
-            || lanes::answer(&winners, kept, &rules, fractions, answers, flags),
+            || lanes::answer::<S>(&winners, kept, &rules, fractions, answers, flags),
         );
     }
     let _ = (kernel, room);
     let winners = winners.get(begin..).unwrap_or(&[]);
     pixels::offer(winners, right);
-    pixels::answer(winners, right, &rules, answers, flags);
+    pixels::answer::<S>(winners, right, &rules, answers, flags);
 }

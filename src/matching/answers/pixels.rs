@@ -2,6 +2,7 @@
 
 use super::{Rules, consistency, subpixel};
 use crate::matching::kernels::Winner;
+use crate::matching::scheme::Scheme;
 use crate::units::{Disparity, PixelFlags};
 
 /// [`consistency::offer`] of all winners.
@@ -12,7 +13,7 @@ pub(super) fn offer(winners: &[Winner], right: &mut [u16]) {
 
 /// The answers and flags of the columns that have a candidate.
 #[inline(never)]
-pub(super) fn answer(
+pub(super) fn answer<S: Scheme>(
     winners: &[Winner],
     right: &[u16],
     rules: &Rules,
@@ -27,7 +28,7 @@ pub(super) fn answer(
             .union(rules.flat.when(winner.rises() == (0, 0)))
             .union(PixelFlags::CEILING.when(disparity == rules.ceiling));
         let none = 0u16.wrapping_sub(u16::from(said.intersects(rules.refused)));
-        *answer = Disparity::from_raw(subpixel::refine(winner, min_disparity, u32::from(rules.step)).raw() | none);
+        *answer = Disparity::from_raw(subpixel::refine(winner, min_disparity, u32::from(S::STEP)).raw() | none);
         *flags = said;
     }
 }

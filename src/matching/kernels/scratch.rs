@@ -82,7 +82,6 @@ impl<const W: usize, const D: usize> Room<W, D> {
 pub struct Aligned<T>(pub T);
 
 /// Bytes as words, as far as they are whole ones at a word's place; all of them if the slice begins at such a place.
-#[cfg(not(stereopsis_vectors))]
 pub(super) fn words_mut(bytes: &mut [u8]) -> &mut [u32] {
     // SAFETY: every value of four bytes is a word and the other way round.
     unsafe { bytes.align_to_mut().1 }
@@ -128,7 +127,6 @@ pub(super) fn halves_of(bytes: &[u8]) -> &[u16] {
 }
 
 /// [`words_mut`], to read.
-#[cfg(not(stereopsis_vectors))]
 pub(super) fn words_of(bytes: &[u8]) -> &[u32] {
     // SAFETY: every value of four bytes is a word.
     unsafe { bytes.align_to().1 }

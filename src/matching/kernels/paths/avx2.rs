@@ -19,7 +19,6 @@ macro_rules! safely {
 
 impl Group for Wide {
     const LANES: usize = 32;
-    const PUTS_ROWS: bool = true;
     type Cell = [u8; 32];
     type Bytes = [u8; 32];
 

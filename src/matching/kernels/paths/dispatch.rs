@@ -8,10 +8,11 @@ use crate::matching::scheme::Around;
 
 /// Calls a pass with the groups, how many of them there is room for in a column, and whether all of it is used. Words: each
 /// a function of its own, so that a firmware is linked without those for numbers of disparities that cannot be asked for.
-#[cfg(not(stereopsis_vectors))]
 macro_rules! in_words {
-    ($work:ident, $pass:ident, [$($scheme:ident)?], $($argument:expr),*) => {
+    ($work:ident, $pass:ident, [$($scheme:tt)?], $($argument:expr),*) => {
         match $work.stride {
+            0 => (),
+            16 => words::$pass::<$($scheme,)? 4, true>($work, $($argument),*),
             32 => words::$pass::<$($scheme,)? 8, true>($work, $($argument),*),
             64 => words::$pass::<$($scheme,)? 16, true>($work, $($argument),*),
             _ => words::$pass::<$($scheme,)? 64, false>($work, $($argument),*),
@@ -19,7 +20,6 @@ macro_rules! in_words {
     };
 }
 
-#[cfg(not(stereopsis_vectors))]
 mod words {
     use super::super::{Guide, PathWork, Word};
     use super::{Along, Around, Select};
@@ -34,19 +34,19 @@ mod words {
     }
 
     #[inline(never)]
-    pub(super) fn select<const CELLS: usize, const ALL: bool>(
+    pub(super) fn select<const ROWS: bool, const CELLS: usize, const ALL: bool>(
         work: PathWork<'_>,
         guide: Guide<'_>,
         select: Select<'_>,
     ) {
-        super::super::select::<Word, CELLS, ALL>(work, guide, select);
+        super::super::select::<Word, ROWS, CELLS, ALL>(work, guide, select);
     }
 }
 
 /// The same in vectors of the compilation's own target.
-#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+#[cfg(target_pointer_width = "64")]
 macro_rules! in_vectors {
-    ($work:ident, $pass:ident, [$($scheme:ident)?], $($argument:expr),*) => {
+    ($work:ident, $pass:ident, [$($scheme:tt)?], $($argument:expr),*) => {
         match $work.stride {
             32 => super::$pass::<super::Vector, $($scheme,)? 2, true>($work, $($argument),*),
             64 => super::$pass::<super::Vector, $($scheme,)? 4, true>($work, $($argument),*),
@@ -59,7 +59,7 @@ macro_rules! in_vectors {
 /// The same in registers of AVX2.
 #[cfg(target_arch = "x86_64")]
 macro_rules! in_wide {
-    ($work:ident, $pass:ident, [$($scheme:ident)?], $($argument:expr),*) => {
+    ($work:ident, $pass:ident, [$($scheme:tt)?], $($argument:expr),*) => {
         match $work.stride {
             32 => super::$pass::<super::Wide, $($scheme,)? 1, true>($work, $($argument),*),
             64 => super::$pass::<super::Wide, $($scheme,)? 2, true>($work, $($argument),*),
@@ -82,7 +82,9 @@ impl Kernel {
         match self {
             #[cfg(not(stereopsis_vectors))]
             Self::Planes => in_words!(work, enter, [S], lines, room),
-            #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+            #[cfg(stereopsis_vectors)]
+            Self::Lanes => in_words!(work, enter, [S], lines, room),
+            #[cfg(target_pointer_width = "64")]
             Self::Lanes => in_vectors!(work, enter, [S], lines, room),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(avx2) => avx2.run(
@@ -97,13 +99,15 @@ impl Kernel {
     pub(in crate::matching) fn select(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
         match self {
             #[cfg(not(stereopsis_vectors))]
-            Self::Planes => in_words!(work, select, [], guide, select),
-            #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-            Self::Lanes => in_vectors!(work, select, [], guide, select),
+            Self::Planes => in_words!(work, select, [false], guide, select),
+            #[cfg(stereopsis_vectors)]
+            Self::Lanes => in_words!(work, select, [true], guide, select),
+            #[cfg(target_pointer_width = "64")]
+            Self::Lanes => in_vectors!(work, select, [true], guide, select),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(avx2) => avx2.run(
                 #[inline(always)]
-                || in_wide!(work, select, [], guide, select),
+                || in_wide!(work, select, [true], guide, select),
             ),
         }
     }

@@ -5,8 +5,6 @@
 pub(in crate::matching) trait Group: Copy + 'static {
     /// Bytes in a group.
     const LANES: usize;
-    /// Whether winners are put in a row for each of their parts, as the kernels in vectors have them.
-    const PUTS_ROWS: bool;
     /// A group in memory, where a word may stand if it is one.
     type Cell: Copy + 'static;
     /// A group anywhere in memory.

@@ -18,7 +18,7 @@
 //! * `cost`, `gather`, `decide`: the passes.
 //! * `dispatch`: which groups of bytes they are called with.
 //! * `group`: what they are written for. `words`, with `dsp`: four bytes in a word; `sse2`, `avx2`, `neon`: registers of
-//!   larger processors; `arrays`: what the compiler makes of an array elsewhere.
+//!   larger processors.
 //!
 //! The work is the same for every picture, but for some instructions where a winner is at an end of the search.
 
@@ -29,20 +29,14 @@ mod features;
 mod gather;
 mod group;
 
-#[cfg(all(
-    any(target_pointer_width = "64", stereopsis_vectors),
-    not(any(target_arch = "x86_64", target_arch = "aarch64"))
-))]
-mod arrays;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
-#[cfg(stereopsis_dsp)]
+#[cfg(any(stereopsis_dsp, stereopsis_vectors))]
 mod dsp;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
-#[cfg(not(stereopsis_vectors))]
 mod words;
 
 use super::winner::Select;
@@ -62,14 +56,10 @@ use avx2::Wide;
 use neon::Vector;
 #[cfg(target_arch = "x86_64")]
 use sse2::Vector;
-#[cfg(not(stereopsis_vectors))]
 use words::Word;
-/// Vectors of the compilation's own target.
-#[cfg(all(
-    any(target_pointer_width = "64", stereopsis_vectors),
-    not(any(target_arch = "x86_64", target_arch = "aarch64"))
-))]
-type Vector = arrays::Array<16>;
+/// The target's own vectors, as far as they are used here.
+#[cfg(all(target_pointer_width = "64", not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
+use words::Word as Vector;
 
 /// What the passes work on.
 ///
@@ -112,12 +102,17 @@ fn enter<G: Group, S: Along, const CELLS: usize, const ALL: bool>(
     }
 }
 
-/// Selects the winners of the row whose costs there are.
+/// Selects the winners of the row whose costs there are, and puts them in `ROWS` for each of their parts as kernels in
+/// vectors have them, or one by one.
 #[inline(always)]
-fn select<G: Group, const CELLS: usize, const ALL: bool>(mut work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+fn select<G: Group, const ROWS: bool, const CELLS: usize, const ALL: bool>(
+    mut work: PathWork<'_>,
+    guide: Guide<'_>,
+    select: Select<'_>,
+) {
     gather::gather::<G, CELLS, ALL>(&mut work, guide);
     let Select { winners, unique, .. } = select;
-    if G::PUTS_ROWS {
+    if ROWS {
         #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
         {
             let begin = work.min_disparity.min(work.width);

@@ -19,7 +19,6 @@ macro_rules! safely {
 
 impl Group for Vector {
     const LANES: usize = 16;
-    const PUTS_ROWS: bool = true;
     type Cell = [u8; 16];
     type Bytes = [u8; 16];
 

@@ -2,7 +2,7 @@
 //!
 //! The lanes have a spare bit at the top of each. It is set before a subtraction and tells then whether the lane is
 //! not smaller: masks and minima are made of that, in seven operations where the Arm DSP instructions take two
-//! (`--cfg stereopsis_dsp`: Cortex-M4, M7, and M33 with its extension).
+//! (`--cfg stereopsis_dsp`: Cortex-M4, M7, and M33 with its extension; M55).
 
 use super::group::Group;
 use crate::matching::kernels::scratch::{words_mut, words_of};
@@ -18,7 +18,7 @@ const ONE: u32 = 0x0101_0101;
 pub(in crate::matching) struct Word(u32);
 
 /// All but the top bit of each lane in which `a` is not less than `b`.
-#[cfg(not(stereopsis_dsp))]
+#[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
 #[inline(always)]
 fn not_less(a: u32, b: u32) -> u32 {
     let top = ((a | TOP) - b) & TOP;
@@ -27,7 +27,6 @@ fn not_less(a: u32, b: u32) -> u32 {
 
 impl Group for Word {
     const LANES: usize = 4;
-    const PUTS_ROWS: bool = false;
     type Cell = u32;
     type Bytes = [u8; 4];
 
@@ -78,9 +77,9 @@ impl Group for Word {
 
     #[inline(always)]
     fn plus_saturating(self, other: Self) -> Self {
-        #[cfg(stereopsis_dsp)]
+        #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
         return Self(super::dsp::uqadd8(self.0, other.0));
-        #[cfg(not(stereopsis_dsp))]
+        #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
         {
             let sum = (self.0 & !TOP) + other.0;
             let over = self.0 & sum & TOP;
@@ -90,33 +89,33 @@ impl Group for Word {
 
     #[inline(always)]
     fn minus_saturating(self, other: Self) -> Self {
-        #[cfg(stereopsis_dsp)]
+        #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
         return Self(super::dsp::uqsub8(self.0, other.0));
-        #[cfg(not(stereopsis_dsp))]
+        #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
         Self(((self.0 | TOP) - other.0) & not_less(self.0, other.0))
     }
 
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        #[cfg(stereopsis_dsp)]
+        #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
         return Self(super::dsp::min8(self.0, other.0));
-        #[cfg(not(stereopsis_dsp))]
+        #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
         Self(self.0 ^ (self.0 ^ other.0) & not_less(self.0, other.0))
     }
 
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        #[cfg(stereopsis_dsp)]
+        #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
         return Self(super::dsp::max8(self.0, other.0));
-        #[cfg(not(stereopsis_dsp))]
+        #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
         Self(other.0 ^ (self.0 ^ other.0) & not_less(self.0, other.0))
     }
 
     #[inline(always)]
     fn apart(self, other: Self) -> Self {
-        #[cfg(stereopsis_dsp)]
+        #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
         return self.minus_saturating(other).or(other.minus_saturating(self));
-        #[cfg(not(stereopsis_dsp))]
+        #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
         {
             let least = self.min(other);
             Self((self.0 ^ other.0 ^ least.0) - least.0)
@@ -170,7 +169,7 @@ impl Group for Word {
     #[inline(always)]
     fn last_least(cells: &[Self]) -> (u8, usize) {
         // Of equal ones the later is taken.
-        #[cfg(stereopsis_dsp)]
+        #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
         let keys = {
             let (mut least, mut places) = (u32::MAX, 0u32);
             let mut place = 0u32;
@@ -185,7 +184,7 @@ impl Group for Word {
             };
             [key(0), key(1), key(2), key(3)]
         };
-        #[cfg(not(stereopsis_dsp))]
+        #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
         let keys = {
             // Half-words with a spare bit: the cost above seven bits of the place, counted down.
             const HALVES: u32 = 0x8000_8000;

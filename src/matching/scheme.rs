@@ -6,8 +6,8 @@ use super::config::Filter;
 use super::memory::{Bytes, Memory};
 use super::stages::Stages;
 
-/// A matching method. The crate's own types implement it: [`Fast`], [`Block`], [`Sgm`](super::Sgm) and
-/// [`SgmLean`](super::SgmLean).
+/// A matching method. The crate's own types implement it: [`Fast`](super::Fast), [`Block`](super::Block),
+/// [`SgmLean`](super::SgmLean) and [`Sgm`](super::Sgm).
 pub trait Scheme: Lines + Sized + 'static {
     /// What an answer rests on reaches this many columns to each side: there texture is counted.
     const RADIUS_X: usize;

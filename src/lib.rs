@@ -7,14 +7,14 @@
 //! units math     words: Disparity, Millimetres, PixelFlags; the one file that names libm
 //! geometry       pure maths on fixed-size nalgebra types, no pixels
 //! camera         traits for where lines come from; two cameras as one stereo source
-//! imaging        lines, line windows, pixel formats, census
-//! matching       census rows -> disparity row: costs, winner, checks, sub-pixel, speckle
+//! imaging        lines, line windows, pixel formats, census, gradients
+//! matching       lines -> disparity row: census, costs, winner, checks, sub-pixel, speckle
 //! depth          disparity -> metres with its uncertainty, points
 //! pipeline       the live path, row by row
 //! ffi            the same for C, with the feature `ffi`
 //!
-//! camera -lines-> imaging -census rows-> matching -disparity row-> depth
-//!        '------------------------ pipeline ---------------------' -> ffi
+//! camera -lines-> imaging -line windows-> matching -disparity row-> depth
+//!        '------------------------ pipeline -----------------------' -> ffi
 //! ```
 //!
 //! A way in: [`pipeline::Pipeline`] is what firmware holds, [`camera::StereoSource`] is what it implements,

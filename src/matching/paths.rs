@@ -20,11 +20,11 @@ pub trait Along: Scheme {
     const BETWEEN_PIXELS: bool;
 }
 
-/// Method `sgm`: gradients, brightness and a wide census, compared between pixels, along three paths.
+/// Method `sgm`: gradients, brightness and a wide census along three paths; gradients are compared between pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Sgm;
 
-/// Method `sgm-lean`: as [`Sgm`], compared at pixels only and with one message from above: four fifths of the work.
+/// Method `sgm-lean`: as [`Sgm`], with gradients compared at pixels only.
 #[derive(Clone, Copy, Debug)]
 pub struct SgmLean;
 

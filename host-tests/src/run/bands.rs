@@ -9,7 +9,7 @@
 //!   through so many rows has them.
 //!
 //! Along paths ([`Method::is_exact_in_bands`](super::Method::is_exact_in_bands) says no) a band's first rows lack what a path
-//! from above has gathered farther up: of real pairs in four bands 0.5 % of the pixels have another answer, by over 1 px or none.
+//! from above has gathered farther up: `tests/threads.rs` measures how many answers that changes.
 //!
 //! The lines that are worked on twice are the price: 34 above and 10 below with `block` and the default checks.
 

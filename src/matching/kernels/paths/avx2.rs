@@ -12,7 +12,8 @@ pub(in crate::matching) struct Wide(__m256i);
 /// Calls of intrinsics.
 macro_rules! safely {
     ($work:expr) => {
-        // SAFETY: only code that runs behind the proof that the processor has AVX2 is given groups of this kind; the pointers are to arrays of a register's size, without alignment.
+        // SAFETY: only code that runs behind the proof that the processor has AVX2 is given groups of this kind; the
+        // pointers are to arrays of a register's size, without alignment.
         unsafe { $work }
     };
 }

@@ -133,7 +133,7 @@ impl<'a, S: Along> Stages<'a, S> {
             sums,
         };
         if let Some(lines) = lines {
-            self.kernel.enter::<S>(&mut work, lines, bytes_mut(self.scratch));
+            self.kernel.enter::<S>(&mut work, bottom == 0, lines, bytes_mut(self.scratch));
         }
         // The features are done with.
         let room = core::mem::take(&mut self.scratch);

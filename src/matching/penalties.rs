@@ -58,14 +58,25 @@ impl Penalties {
     /// What a step and a jump cost between two pixels of the left image.
     #[inline(always)]
     pub(super) fn between(&self, a: u8, b: u8) -> Change {
+        self.changes()[self.grade(a, b)]
+    }
+
+    /// Whether the brightness changes little (0), more (1) or much (2) between two pixels of the left image.
+    #[inline(always)]
+    pub(super) fn grade(&self, a: u8, b: u8) -> usize {
         let change = a.abs_diff(b);
-        let [little, more, much] = self.jump;
-        let not_little = if change < self.edges[1] { more } else { much };
-        if change < self.edges[0] {
-            Change { step: self.step[0], jump: little }
-        } else {
-            Change { step: self.step[1], jump: not_little }
-        }
+        if change < self.edges[0] { 0 } else { 1 + usize::from(change >= self.edges[1]) }
+    }
+
+    /// What a step and a jump cost there.
+    #[inline(always)]
+    pub(super) fn changes(&self) -> [Change; 3] {
+        let Self { step: [step, small_step], jump: [little, more, much], .. } = *self;
+        [
+            Change { step, jump: little },
+            Change { step: small_step, jump: more },
+            Change { step: small_step, jump: much },
+        ]
     }
 }
 

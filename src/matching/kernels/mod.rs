@@ -170,6 +170,7 @@ impl Kernel {
 const BESIDE: usize = 2;
 
 /// 256 lanes of ones, then 256 of zero: a slice of it masks the lanes before any one.
+#[cfg(not(stereopsis_dsp))]
 const MASKS: &[u8; 512] = &{
     let mut masks = [0; 512];
     let mut i = 0;

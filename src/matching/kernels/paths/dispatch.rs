@@ -2,56 +2,64 @@
 //! usual numbers of disparities, which lets the compiler unroll them and keep them in registers.
 
 use super::super::{Kernel, Select};
+#[cfg(target_arch = "x86_64")]
+use super::groups::Wide;
+#[cfg(target_pointer_width = "64")]
+use super::groups::{Groups, Vector};
 use super::{Guide, PathWork};
 use crate::matching::paths::Along;
 use crate::matching::scheme::Around;
 
+/// Words of so many bytes' candidates.
+#[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
+type Words<const CELLS: usize, const ALL: bool> = super::groups::Groups<super::groups::Word, CELLS, ALL>;
+/// The same; that all of them are in use does not help there.
+#[cfg(any(stereopsis_dsp, stereopsis_vectors))]
+type Words<const CELLS: usize, const ALL: bool> = super::dsp::Words<CELLS, ALL>;
+
 /// Calls a pass with the groups, how many of them there is room for in a column, and whether all of it is used. Words: each
 /// a function of its own, so that a firmware is linked without those for numbers of disparities that cannot be asked for.
 macro_rules! in_words {
-    ($work:ident, $pass:ident, [$($scheme:tt)?], $($argument:expr),*) => {
+    ($work:ident, $pass:ident, [$($more:tt)?], $($argument:expr),*) => {
         match $work.stride {
             0 => (),
-            16 => words::$pass::<$($scheme,)? 4, true>($work, $($argument),*),
-            32 => words::$pass::<$($scheme,)? 8, true>($work, $($argument),*),
-            64 => words::$pass::<$($scheme,)? 16, true>($work, $($argument),*),
-            _ => words::$pass::<$($scheme,)? 64, false>($work, $($argument),*),
+            16 => words::$pass::<Words<4, true>, $($more)?>($work, $($argument),*),
+            32 => words::$pass::<Words<8, true>, $($more)?>($work, $($argument),*),
+            64 => words::$pass::<Words<16, true>, $($more)?>($work, $($argument),*),
+            _ => words::$pass::<Words<64, false>, $($more)?>($work, $($argument),*),
         }
     };
 }
 
 mod words {
-    use super::super::{Guide, PathWork, Word};
+    use super::super::{Guide, Passes, PathWork};
     use super::{Along, Around, Select};
 
     #[inline(never)]
-    pub(super) fn enter<S: Along, const CELLS: usize, const ALL: bool>(
+    pub(super) fn enter<P: Passes, S: Along>(
         work: &mut PathWork<'_>,
+        is_first: bool,
         lines: [&Around<'_>; 2],
         room: &mut [u8],
     ) {
-        super::super::enter::<Word, S, CELLS, ALL>(work, lines, room);
+        super::super::enter::<P, S>(work, is_first, lines, room);
     }
 
     #[inline(never)]
-    pub(super) fn select<const ROWS: bool, const CELLS: usize, const ALL: bool>(
-        work: PathWork<'_>,
-        guide: Guide<'_>,
-        select: Select<'_>,
-    ) {
-        super::super::select::<Word, ROWS, CELLS, ALL>(work, guide, select);
+    pub(super) fn select<P: Passes, const ROWS: bool>(work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+        super::super::select::<P, ROWS>(work, guide, select);
     }
 }
 
 /// The same in vectors of the compilation's own target.
 #[cfg(target_pointer_width = "64")]
 macro_rules! in_vectors {
-    ($work:ident, $pass:ident, [$($scheme:tt)?], $($argument:expr),*) => {
+    ($work:ident, $pass:ident, [$($more:tt)?], $($argument:expr),*) => {
         match $work.stride {
-            32 => super::$pass::<super::Vector, $($scheme,)? 2, true>($work, $($argument),*),
-            64 => super::$pass::<super::Vector, $($scheme,)? 4, true>($work, $($argument),*),
-            128 => super::$pass::<super::Vector, $($scheme,)? 8, true>($work, $($argument),*),
-            _ => super::$pass::<super::Vector, $($scheme,)? 16, false>($work, $($argument),*),
+            32 => super::$pass::<Groups<Vector, 2, true>, $($more)?>($work, $($argument),*),
+            64 => super::$pass::<Groups<Vector, 4, true>, $($more)?>($work, $($argument),*),
+            128 => super::$pass::<Groups<Vector, 8, true>, $($more)?>($work, $($argument),*),
+            _ => super::$pass::<Groups<Vector, 16, false>, $($more)?>($work, $($argument),*),
         }
     };
 }
@@ -59,37 +67,38 @@ macro_rules! in_vectors {
 /// The same in registers of AVX2.
 #[cfg(target_arch = "x86_64")]
 macro_rules! in_wide {
-    ($work:ident, $pass:ident, [$($scheme:tt)?], $($argument:expr),*) => {
+    ($work:ident, $pass:ident, [$($more:tt)?], $($argument:expr),*) => {
         match $work.stride {
-            32 => super::$pass::<super::Wide, $($scheme,)? 1, true>($work, $($argument),*),
-            64 => super::$pass::<super::Wide, $($scheme,)? 2, true>($work, $($argument),*),
-            128 => super::$pass::<super::Wide, $($scheme,)? 4, true>($work, $($argument),*),
-            stride if stride % 32 == 0 => super::$pass::<super::Wide, $($scheme,)? 8, false>($work, $($argument),*),
-            _ => super::$pass::<super::Vector, $($scheme,)? 16, false>($work, $($argument),*),
+            32 => super::$pass::<Groups<Wide, 1, true>, $($more)?>($work, $($argument),*),
+            64 => super::$pass::<Groups<Wide, 2, true>, $($more)?>($work, $($argument),*),
+            128 => super::$pass::<Groups<Wide, 4, true>, $($more)?>($work, $($argument),*),
+            stride if stride % 32 == 0 => super::$pass::<Groups<Wide, 8, false>, $($more)?>($work, $($argument),*),
+            _ => super::$pass::<Groups<Vector, 16, false>, $($more)?>($work, $($argument),*),
         }
     };
 }
 
 impl Kernel {
-    /// Adds a row of both images to the costs of a method along paths.
+    /// Adds a row of both images to the costs of a method along paths, the first row of a frame to none.
     #[inline(always)]
     pub(in crate::matching) fn enter<S: Along>(
         self,
         work: &mut PathWork<'_>,
+        is_first: bool,
         lines: [&Around<'_>; 2],
         room: &mut [u8],
     ) {
         match self {
             #[cfg(not(stereopsis_vectors))]
-            Self::Planes => in_words!(work, enter, [S], lines, room),
+            Self::Planes => in_words!(work, enter, [S], is_first, lines, room),
             #[cfg(stereopsis_vectors)]
-            Self::Lanes => in_words!(work, enter, [S], lines, room),
+            Self::Lanes => in_words!(work, enter, [S], is_first, lines, room),
             #[cfg(target_pointer_width = "64")]
-            Self::Lanes => in_vectors!(work, enter, [S], lines, room),
+            Self::Lanes => in_vectors!(work, enter, [S], is_first, lines, room),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(avx2) => avx2.run(
                 #[inline(always)]
-                || in_wide!(work, enter, [S], lines, room),
+                || in_wide!(work, enter, [S], is_first, lines, room),
             ),
         }
     }

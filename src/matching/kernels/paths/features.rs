@@ -5,6 +5,9 @@
 //! * a census of eight neighbours, wide along the line.
 
 use super::PathWork;
+#[cfg(any(stereopsis_dsp, stereopsis_vectors))]
+use super::dsp::{between, halve, looks, range};
+#[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
 use crate::imaging::{census_wide8, gradients};
 use crate::matching::paths::Along;
 use crate::matching::scheme::Around;
@@ -14,15 +17,15 @@ use crate::matching::scheme::Around;
 pub(super) struct Features<'a> {
     /// Of the left image, by column.
     pub left: Looks<'a>,
-    /// Of the right image: column `x` is compared with `stride` of them from `x` on. The first column is repeated for those
-    /// that lie left of the image.
-    pub right: Looks<'a>,
-    /// The least and the greatest of a right column's gradient along the line and of those halfway to its neighbours; of no
-    /// meaning where nothing is compared between pixels.
-    pub ranges: [&'a [u8]; 2],
+    /// Of the right image, `count` bytes for each one after the other: along the line, across it, census, brightness halved,
+    /// and the least and the greatest of a column's gradient along the line and of those halfway to its neighbours (of no
+    /// meaning where nothing is compared between pixels; doubled in `dsp`). Column `x` is compared with `stride` of them from
+    /// `x` on. The first column is repeated for those that lie left of the image.
+    pub right: &'a [u8],
+    pub count: usize,
 }
 
-/// What pixels look like.
+/// What the left pixels look like.
 #[derive(Clone, Copy)]
 pub(super) struct Looks<'a> {
     pub along: &'a [u8],
@@ -47,6 +50,7 @@ pub(super) fn of<'a, S: Along>(
 
     // One more than is compared, for the numbers halfway to the last.
     let count = width + work.stride;
+    let of_right = of_right.get_mut(..6 * count)?;
     let [along, across, census, brightness, least, greatest]: [_; 6] = rows(of_right, count);
     let outside = count.min(work.stride - 1 + work.min_disparity);
     looks(
@@ -54,9 +58,7 @@ pub(super) fn of<'a, S: Along>(
         gradient,
         [&mut *along, &mut *across, &mut *census].map(|row| row.get_mut(outside..).unwrap_or_default()),
     );
-    for (to, from) in brightness.iter_mut().skip(outside).zip(right[2]) {
-        *to = from >> 1;
-    }
+    halve(right[2], brightness.get_mut(outside..).unwrap_or_default());
     // The first column on its own, with the next one: the row may begin behind it.
     let mut first = [[0; 2]; 3];
     looks(&right, gradient, first.each_mut().map(|first| first.get_mut(..width.min(2)).unwrap_or_default()));
@@ -80,8 +82,7 @@ pub(super) fn of<'a, S: Along>(
         repeat(least, range.0, outside);
         repeat(greatest, range.1, outside);
     }
-    let right = Looks { along, across, census, brightness };
-    Some(Features { left: of_left, right, ranges: [least, greatest] })
+    Some(Features { left: of_left, right: of_right, count })
 }
 
 /// Rows of so many bytes; what there is no room for is empty.
@@ -92,10 +93,20 @@ fn rows<const N: usize>(room: &mut [u8], length: usize) -> [&mut [u8]; N] {
 }
 
 /// The features of as many columns as there is a place for.
+#[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
 #[inline(always)]
 fn looks(lines: &Around<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
     gradients(&[lines[1], lines[2], lines[3]], gradient, along, across);
     census_wide8(lines, census);
+}
+
+/// Half of each number.
+#[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
+#[inline(always)]
+fn halve(numbers: &[u8], halves: &mut [u8]) {
+    for (to, from) in halves.iter_mut().zip(numbers) {
+        *to = from >> 1;
+    }
 }
 
 /// Repeats the first column before the image.
@@ -106,6 +117,7 @@ fn repeat(row: &mut [u8], first: u8, outside: usize) {
 
 /// The least and the greatest of each number and those halfway to its neighbours, rounded down, of all but the two at the
 /// ends.
+#[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
 #[inline(always)]
 fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
     let inner = least.iter_mut().zip(greatest.iter_mut()).skip(1);
@@ -118,6 +130,7 @@ fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
 }
 
 /// The range of one number.
+#[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
 #[inline(always)]
 fn between(before: u8, here: u8, next: u8) -> (u8, u8) {
     // Seven bits each.

@@ -1,11 +1,11 @@
 //! The costs along paths, and their winners: semi-global matching (Hirschmüller 2008) on lines as they come, with three
 //! paths into a pixel, from the left, from the right and from above (the average of the two beside it, two columns off).
 //!
-//! Written once for groups of bytes, whose lanes run over the disparities of one pixel; the largest disparity has the first
-//! lane, so that a pixel's candidates stand in memory as they do in the right image. A row takes three passes:
+//! A pixel's candidates are bytes side by side; the largest disparity comes first, so that they stand in memory as they do
+//! in the right image. A row takes three passes:
 //!
 //! ```text
-//! cost   (all columns):      a[d] = average(a[d], pixel cost[d])                                      with row y + 1
+//! enter  (all columns):      a[d] = average(a[d], pixel cost[d])                                      with row y + 1
 //! gather (left to right):    t[d] = a[d] + message(t of row y - 1)[d],  r[d] = a[d] + message(r)[d],  q[d] = r[d] + t[d]
 //! decide (right to left):    l[d] = a[d] + message(l)[d],  s[d] = q[d] + l[d],  winner: the least s[d]
 //!
@@ -15,51 +15,29 @@
 //! Everything fits bytes: see [`Penalties`]. Kept from row to row are a, t and the room for q.
 //!
 //! * `features`: what a pixel's cost compares, of a row of both images.
-//! * `cost`, `gather`, `decide`: the passes.
-//! * `dispatch`: which groups of bytes they are called with.
-//! * `group`: what they are written for. `words`, with `dsp`: four bytes in a word; `sse2`, `avx2`, `neon`: registers of
-//!   larger processors.
+//! * `groups`: the passes, for vectors and for plain words.
+//! * `dsp`: the passes for cores with Arm's instructions on four bytes.
+//! * `dispatch`: which of them a kernel calls.
 //!
 //! The work is the same for every picture, but for some instructions where a winner is at an end of the search.
 
-mod cost;
-mod decide;
 mod dispatch;
-mod features;
-mod gather;
-mod group;
-
-#[cfg(target_arch = "x86_64")]
-mod avx2;
 #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
 mod dsp;
-#[cfg(target_arch = "aarch64")]
-mod neon;
-#[cfg(target_arch = "x86_64")]
-mod sse2;
-mod words;
+mod features;
+#[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
+mod groups;
 
 use super::winner::Select;
 #[cfg(not(stereopsis_vectors))]
 use super::winner::Winner;
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 use super::winner::WinnerRows;
-use super::{MASKS, STEP};
+use super::winner::{Found, Unique};
 use crate::matching::paths::Along;
-use crate::matching::penalties::{Change, Penalties};
+use crate::matching::penalties::Penalties;
 use crate::matching::scheme::Around;
-use group::Group;
-
-#[cfg(target_arch = "x86_64")]
-use avx2::Wide;
-#[cfg(target_arch = "aarch64")]
-use neon::Vector;
-#[cfg(target_arch = "x86_64")]
-use sse2::Vector;
-use words::Word;
-/// The target's own vectors, as far as they are used here.
-#[cfg(all(target_pointer_width = "64", not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
-use words::Word as Vector;
+use features::Features;
 
 /// What the passes work on.
 ///
@@ -90,35 +68,45 @@ pub(in crate::matching) struct Guide<'a> {
     pub above: Option<&'a [u8]>,
 }
 
-/// Adds a row of both images to the costs.
+/// How many columns to each side the path from above comes from.
+const COLUMNS_OFF: usize = 2;
+
+/// The passes of a row. What they keep from row to row they keep in a form of their own.
+trait Passes {
+    /// Makes the costs those of no row.
+    fn clear(work: &mut PathWork<'_>);
+    /// Averages a row into the costs.
+    fn enter<S: Along>(work: &mut PathWork<'_>, features: &Features<'_>);
+    /// Moves the path from above down to the row and the path from the left through it, and adds the two up.
+    fn gather(work: &mut PathWork<'_>, guide: Guide<'_>);
+    /// Adds the path from the right to the other two and selects the winner of every pixel that has a candidate.
+    fn decide(work: &mut PathWork<'_>, guide: Guide<'_>, unique: Unique<'_>, put: impl FnMut(usize, Found));
+}
+
+/// Adds a row of both images to the costs; the first row of a frame to none.
 #[inline(always)]
-fn enter<G: Group, S: Along, const CELLS: usize, const ALL: bool>(
-    work: &mut PathWork<'_>,
-    lines: [&Around<'_>; 2],
-    room: &mut [u8],
-) {
+fn enter<P: Passes, S: Along>(work: &mut PathWork<'_>, is_first: bool, lines: [&Around<'_>; 2], room: &mut [u8]) {
+    if is_first {
+        P::clear(work);
+    }
     if let Some(features) = features::of::<S>(work, lines, room) {
-        cost::enter::<G, S, CELLS, ALL>(work, &features);
+        P::enter::<S>(work, &features);
     }
 }
 
 /// Selects the winners of the row whose costs there are, and puts them in `ROWS` for each of their parts as kernels in
 /// vectors have them, or one by one.
 #[inline(always)]
-fn select<G: Group, const ROWS: bool, const CELLS: usize, const ALL: bool>(
-    mut work: PathWork<'_>,
-    guide: Guide<'_>,
-    select: Select<'_>,
-) {
-    gather::gather::<G, CELLS, ALL>(&mut work, guide);
+fn select<P: Passes, const ROWS: bool>(mut work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+    P::gather(&mut work, guide);
     let Select { winners, unique, .. } = select;
     if ROWS {
         #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
         {
             let begin = work.min_disparity.min(work.width);
             let WinnerRows { below, costs, above, disparities } = WinnerRows::of(winners, begin);
-            decide::decide::<G, CELLS, ALL>(
-                &work,
+            P::decide(
+                &mut work,
                 guide,
                 unique,
                 #[inline(always)]
@@ -134,8 +122,8 @@ fn select<G: Group, const ROWS: bool, const CELLS: usize, const ALL: bool>(
         }
     } else {
         #[cfg(not(stereopsis_vectors))]
-        decide::decide::<G, CELLS, ALL>(
-            &work,
+        P::decide(
+            &mut work,
             guide,
             unique,
             #[inline(always)]
@@ -146,146 +134,4 @@ fn select<G: Group, const ROWS: bool, const CELLS: usize, const ALL: bool>(
             },
         );
     }
-}
-
-/// Lanes of a column, known to the compiler if `ALL` the cells of a path are in use.
-#[inline(always)]
-fn stride<G: Group, const CELLS: usize, const ALL: bool>(work: &PathWork<'_>) -> usize {
-    if ALL { CELLS * G::LANES } else { work.stride.max(STEP) }
-}
-
-/// The first column of a volume, and the rest.
-#[inline(always)]
-fn split_first<C, const CELLS: usize, const ALL: bool>(volume: &[C], count: usize) -> Option<(&[C], &[C])> {
-    if ALL {
-        let (column, rest) = volume.split_first_chunk::<CELLS>()?;
-        Some((column, rest))
-    } else {
-        volume.split_at_checked(count)
-    }
-}
-
-/// The same, to write.
-#[inline(always)]
-fn split_first_mut<C, const CELLS: usize, const ALL: bool>(
-    volume: &mut [C],
-    count: usize,
-) -> Option<(&mut [C], &mut [C])> {
-    if ALL {
-        let (column, rest) = volume.split_first_chunk_mut::<CELLS>()?;
-        Some((column, rest))
-    } else {
-        volume.split_at_mut_checked(count)
-    }
-}
-
-/// The last column of a volume, after the rest.
-#[inline(always)]
-fn split_last<C, const CELLS: usize, const ALL: bool>(volume: &[C], count: usize) -> Option<(&[C], &[C])> {
-    if ALL {
-        let (rest, column) = volume.split_last_chunk::<CELLS>()?;
-        Some((rest, column))
-    } else {
-        volume.split_at_checked(volume.len().checked_sub(count)?)
-    }
-}
-
-/// A path at a pixel: its costs, of `CELLS` cells, all of them in use if `ALL`.
-#[derive(Clone, Copy)]
-struct Path<G, const CELLS: usize, const ALL: bool>([G; CELLS]);
-
-impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
-    /// What stands in memory.
-    #[inline(always)]
-    fn of(cells: &[G::Cell]) -> Self {
-        let mut path = Self([G::splat(0); CELLS]);
-        for (to, &from) in path.0.iter_mut().zip(cells) {
-            *to = G::of(from);
-        }
-        path
-    }
-
-    /// Those in use.
-    #[inline(always)]
-    fn cells(&self, count: usize) -> &[G] {
-        if ALL { &self.0 } else { self.0.get(..count).unwrap_or(&[]) }
-    }
-
-    /// The average with another one, rounded down.
-    #[inline(always)]
-    fn average(mut self, other: &[G::Cell]) -> Self {
-        for (cell, &other) in self.0.iter_mut().zip(other) {
-            *cell = cell.average_down(G::of(other));
-        }
-        self
-    }
-
-    /// Goes on to a pixel that has these costs.
-    #[inline(always)]
-    fn step(mut self, steps: &Steps<G, CELLS, ALL>, change: Change, costs: &[G::Cell]) -> Self {
-        let least = self.cells(costs.len()).iter().fold(
-            steps.far,
-            #[inline(always)]
-            |least, &cell| least.min(cell),
-        );
-        let least = least.least();
-        let (step, jump) = (G::splat(change.step), least.plus(G::splat(change.jump)));
-        let (mut before, mut here) = (steps.far, self.0.first().copied().unwrap_or(steps.far));
-        for (i, &cost) in costs.iter().enumerate().take(CELLS) {
-            let next = if i + 1 < costs.len() { self.0.get(i + 1).copied().unwrap_or(steps.far) } else { steps.far };
-            let beside = here.after(before).min(here.before(next)).plus(step);
-            let message = here.min(beside).min(jump).minus(least);
-            if let Some(cell) = self.0.get_mut(i) {
-                *cell = message.plus(G::of(cost));
-            }
-            (before, here) = (here, next);
-        }
-        self
-    }
-}
-
-/// What every step of a path needs.
-struct Steps<G, const CELLS: usize, const ALL: bool> {
-    /// A cost so high that no path comes from there: beside the search's ends.
-    far: G,
-    /// The same where lanes are beyond the search, and 0 where they are not, if there are such lanes.
-    beyond: Option<Path<G, CELLS, ALL>>,
-}
-
-impl<G: Group, const CELLS: usize, const ALL: bool> Steps<G, CELLS, ALL> {
-    #[inline(always)]
-    fn new(work: &PathWork<'_>) -> Self {
-        // No path costs more: `Penalties::check`.
-        let far = 127u8.saturating_sub(work.penalties.step[0]);
-        let stride = stride::<G, CELLS, ALL>(work);
-        let beyond = if work.disparities < stride {
-            let mut beyond = Path([G::splat(0); CELLS]);
-            let mut numbers = [0; 256];
-            numbers.get_mut(..stride - work.disparities).unwrap_or_default().fill(far);
-            for (cell, &numbers) in beyond.0.iter_mut().zip(G::groups(&numbers)) {
-                *cell = G::of_bytes(numbers);
-            }
-            Some(beyond)
-        } else {
-            None
-        };
-        Self { far: G::splat(far), beyond }
-    }
-
-    /// Closes a path's lanes that are beyond the search.
-    #[inline(always)]
-    fn close(&self, path: &mut Path<G, CELLS, ALL>) {
-        if let Some(beyond) = &self.beyond {
-            for (cell, &beyond) in path.0.iter_mut().zip(&beyond.0) {
-                *cell = cell.max(beyond);
-            }
-        }
-    }
-}
-
-/// Masks the lanes of a column but the last `candidates`.
-#[inline(always)]
-fn mask(stride: usize, candidates: usize) -> &'static [u8] {
-    let masked = stride.saturating_sub(candidates);
-    MASKS.get(256usize.saturating_sub(masked)..).and_then(|mask| mask.get(..stride)).unwrap_or(&[])
 }

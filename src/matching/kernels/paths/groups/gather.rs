@@ -1,10 +1,7 @@
 //! The path from above and the path from the left, in one pass to the right.
 
 use super::group::Group;
-use super::{Guide, Path, PathWork, Steps, split_first, split_first_mut, stride};
-
-/// How many columns to each side the path from above comes from.
-const COLUMNS_OFF: usize = 2;
+use super::{COLUMNS_OFF, Guide, Path, PathWork, Steps, split_first, split_first_mut, stride};
 
 /// Moves the path from above down to the row and the path from the left through it, and adds the two up.
 #[inline(always)]

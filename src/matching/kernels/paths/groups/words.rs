@@ -1,8 +1,8 @@
 //! Four bytes in a 32-bit word.
 //!
 //! The lanes have a spare bit at the top of each. It is set before a subtraction and tells then whether the lane is
-//! not smaller: masks and minima are made of that, in seven operations where the Arm DSP instructions take two
-//! (`--cfg stereopsis_dsp`: Cortex-M4, M7, and M33 with its extension; M55).
+//! not smaller: masks and minima are made of that, in seven operations. (Arm's instructions on four bytes take two: see
+//! `dsp`.)
 
 use super::group::Group;
 use crate::matching::kernels::scratch::{words_mut, words_of};
@@ -18,7 +18,6 @@ const ONE: u32 = 0x0101_0101;
 pub(in crate::matching) struct Word(u32);
 
 /// All but the top bit of each lane in which `a` is not less than `b`.
-#[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
 #[inline(always)]
 fn not_less(a: u32, b: u32) -> u32 {
     let top = ((a | TOP) - b) & TOP;
@@ -77,49 +76,30 @@ impl Group for Word {
 
     #[inline(always)]
     fn plus_saturating(self, other: Self) -> Self {
-        #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
-        return Self(super::dsp::uqadd8(self.0, other.0));
-        #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
-        {
-            let sum = (self.0 & !TOP) + other.0;
-            let over = self.0 & sum & TOP;
-            Self(sum | (self.0 & TOP) | ((over >> 7) * 0xff))
-        }
+        let sum = (self.0 & !TOP) + other.0;
+        let over = self.0 & sum & TOP;
+        Self(sum | (self.0 & TOP) | ((over >> 7) * 0xff))
     }
 
     #[inline(always)]
     fn minus_saturating(self, other: Self) -> Self {
-        #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
-        return Self(super::dsp::uqsub8(self.0, other.0));
-        #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
         Self(((self.0 | TOP) - other.0) & not_less(self.0, other.0))
     }
 
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
-        return Self(super::dsp::min8(self.0, other.0));
-        #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
         Self(self.0 ^ (self.0 ^ other.0) & not_less(self.0, other.0))
     }
 
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
-        return Self(super::dsp::max8(self.0, other.0));
-        #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
         Self(other.0 ^ (self.0 ^ other.0) & not_less(self.0, other.0))
     }
 
     #[inline(always)]
     fn apart(self, other: Self) -> Self {
-        #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
-        return self.minus_saturating(other).or(other.minus_saturating(self));
-        #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
-        {
-            let least = self.min(other);
-            Self((self.0 ^ other.0 ^ least.0) - least.0)
-        }
+        let least = self.min(other);
+        Self((self.0 ^ other.0 ^ least.0) - least.0)
     }
 
     #[inline(always)]
@@ -169,22 +149,6 @@ impl Group for Word {
     #[inline(always)]
     fn last_least(cells: &[Self]) -> (u8, usize) {
         // Of equal ones the later is taken.
-        #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
-        let keys = {
-            let (mut least, mut places) = (u32::MAX, 0u32);
-            let mut place = 0u32;
-            for cell in cells {
-                (least, places) = super::dsp::not_more(cell.0, least, place, places);
-                place = place.wrapping_add(ONE);
-            }
-            // The cost above the lane, counted from the last one.
-            let key = |lane: u32| {
-                let (cost, place) = (least >> (8 * lane) & 0xff, places >> (8 * lane) & 0xff);
-                cost << 16 | (0xffff - (4 * place + lane))
-            };
-            [key(0), key(1), key(2), key(3)]
-        };
-        #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
         let keys = {
             // Half-words with a spare bit: the cost above seven bits of the place, counted down.
             const HALVES: u32 = 0x8000_8000;

@@ -1,6 +1,6 @@
 //! A row's costs, averaged into those of the rows above.
 
-use super::features::Features;
+use super::super::features::Features;
 use super::group::Group;
 use super::{PathWork, stride};
 use crate::matching::paths::Along;
@@ -11,12 +11,15 @@ pub(super) fn enter<G: Group, S: Along, const CELLS: usize, const ALL: bool>(
     work: &mut PathWork<'_>,
     features: &Features<'_>,
 ) {
-    let Features { left, right, ranges: [least, greatest] } = *features;
+    let Features { left, right, count } = *features;
+    let mut rows = right.chunks_exact(count.max(1));
+    let [alongs, acrosses, censuses, brightnesses, least, greatest] =
+        core::array::from_fn(|_| rows.next().unwrap_or(&[]));
     let most = G::splat(work.penalties.cost);
     let stride = stride::<G, CELLS, ALL>(work);
     let columns = G::cells_mut(work.costs).chunks_exact_mut(stride / G::LANES);
-    let candidates = right.along.windows(stride).zip(right.brightness.windows(stride));
-    let candidates = candidates.zip(right.across.windows(stride).zip(right.census.windows(stride)));
+    let candidates = alongs.windows(stride).zip(brightnesses.windows(stride));
+    let candidates = candidates.zip(acrosses.windows(stride).zip(censuses.windows(stride)));
     let ranges = least.windows(stride).zip(greatest.windows(stride));
     let pixels = left.brightness.iter().zip(left.across.iter().zip(left.census));
     let pixels = left.along.iter().zip(pixels);

@@ -8,7 +8,7 @@ use crate::matching::kernels::winner::{Found, Unique};
 /// Adds the path from the right to the other two and selects the winner of every pixel that has a candidate.
 #[inline(always)]
 pub(super) fn decide<G: Group, const CELLS: usize, const ALL: bool>(
-    work: &PathWork<'_>,
+    work: &mut PathWork<'_>,
     guide: Guide<'_>,
     mut unique: Unique<'_>,
     mut put: impl FnMut(usize, Found),

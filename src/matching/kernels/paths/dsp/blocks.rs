@@ -1,0 +1,359 @@
+//! The loops over a pixel's words. Each works on four words at a time, for a column has whole [`STEP`](super::super::STEP)s
+//! of bytes. The instructions of a word are counted with each; the loop adds half of one.
+#![allow(unsafe_code)]
+
+use core::arch::asm;
+
+/// A path's costs at a pixel, with a word before and after that no path comes from.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub(super) struct Padded<const WORDS: usize> {
+    before: u32,
+    words: [u32; WORDS],
+    after: u32,
+}
+
+impl<const WORDS: usize> Padded<WORDS> {
+    /// As many words of no cost.
+    pub fn new(words: usize, far: u32) -> Self {
+        let mut path = Self { before: far, words: [far; WORDS], after: far };
+        path.words.get_mut(..words).unwrap_or_default().fill(0);
+        path
+    }
+}
+
+/// What a path pays on its way into a pixel, four times in a word.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub(super) struct Step {
+    /// One disparity up or down.
+    pub step: u32,
+    /// Any further.
+    pub jump: u32,
+    /// That and the most that a pixel's cost may be.
+    pub most: u32,
+}
+
+/// Four times the lines of a word, and around again until `n` is 0.
+macro_rules! four_words {
+    ($($line:literal)*) => {
+        concat!("2:\n", $($line, "\n",)* $($line, "\n",)* $($line, "\n",)* $($line, "\n",)* "subs {n}, {n}, #1\n", "bne 2b")
+    };
+}
+
+/// The least of a word's four bytes, in all of them: half a word off, then a byte.
+macro_rules! least_of_four {
+    () => {
+        "ror {a}, {least}, #16
+         usub8 {b}, {least}, {a}
+         sel {least}, {a}, {least}
+         ror {a}, {least}, #8
+         usub8 {b}, {least}, {a}
+         sel {least}, {a}, {least}"
+    };
+}
+
+/// Takes a path into a pixel that has the agreements `costs`: to `next`, from `path`, whose least cost is `least`. The new
+/// least cost is returned. Both are the same in all bytes. The path's costs and the numbers in `from` are the `sums`, 255 at
+/// the most.
+///
+/// 18 instructions: with m the least that it costs to come from beside, j the least cost and a jump, the cost is
+/// `most - agreement - (j - m, at least 0)`, one subtraction for the minimum and for taking the least off.
+///
+/// # Safety
+/// `fours` times four words, `WORDS` at the most and one at least, can be read from `costs` and `from`,
+/// and written to `sums`.
+#[inline(always)]
+pub(super) unsafe fn step_along<const WORDS: usize>(
+    path: &Padded<WORDS>,
+    least: u32,
+    step: &Step,
+    costs: *const u32,
+    next: &mut Padded<WORDS>,
+    [from, sums]: [*mut u32; 2],
+    fours: usize,
+) -> u32 {
+    let mut least = least;
+    // SAFETY: as the function's; the paths have a word more to each side.
+    unsafe {
+        asm!(
+            "ldr {jump}, [{step}, #4]",
+            "ldr {most}, [{step}, #8]",
+            "ldr {step}, [{step}]",
+            "add {jump}, {jump}, {least}",
+            "mvn {least}, #0",
+            four_words!(
+                "ldr {a}, [{path}, #-1]"
+                "ldr {b}, [{path}, #1]"
+                "usub8 {c}, {a}, {b}"
+                "sel {a}, {b}, {a}"
+                "add {a}, {a}, {step}"
+                "ldr {c}, [{path}], #4"
+                "usub8 {b}, {a}, {c}"
+                "sel {a}, {c}, {a}"
+                "uqsub8 {a}, {jump}, {a}"
+                "ldr {c}, [{costs}], #4"
+                "usub8 {c}, {most}, {c}"
+                "sub {a}, {c}, {a}"
+                "ldr {b}, [{from}], #4"
+                "str {a}, [{next}], #4"
+                "uqadd8 {b}, {b}, {a}"
+                "str {b}, [{sums}], #4"
+                "usub8 {b}, {least}, {a}"
+                "sel {least}, {a}, {least}"
+            ),
+            least_of_four!(),
+            path = inout(reg) path.words.as_ptr() => _,
+            next = inout(reg) next.words.as_mut_ptr() => _,
+            costs = inout(reg) costs => _,
+            from = inout(reg) from => _,
+            sums = inout(reg) sums => _,
+            n = inout(reg) fours => _,
+            step = inout(reg) step => _,
+            jump = out(reg) _,
+            most = out(reg) _,
+            least = inout(reg) least,
+            a = out(reg) _, b = out(reg) _, c = out(reg) _,
+            options(nostack),
+        );
+    }
+    least
+}
+
+/// The same for the path from above, which goes to `kept`. 13 instructions.
+///
+/// # Safety
+/// As much can be read from `costs` and written to `kept`.
+#[inline(always)]
+pub(super) unsafe fn step_down<const WORDS: usize>(
+    path: &Padded<WORDS>,
+    least: u32,
+    step: &Step,
+    costs: *const u32,
+    kept: *mut u32,
+    fours: usize,
+) {
+    // SAFETY: as for `step_along`.
+    unsafe {
+        asm!(
+            "ldr {jump}, [{step}, #4]",
+            "ldr {most}, [{step}, #8]",
+            "ldr {step}, [{step}]",
+            "add {jump}, {jump}, {least}",
+            four_words!(
+                "ldr {a}, [{path}, #-1]"
+                "ldr {b}, [{path}, #1]"
+                "usub8 {c}, {a}, {b}"
+                "sel {a}, {b}, {a}"
+                "add {a}, {a}, {step}"
+                "ldr {c}, [{path}], #4"
+                "usub8 {b}, {a}, {c}"
+                "sel {a}, {c}, {a}"
+                "uqsub8 {a}, {jump}, {a}"
+                "ldr {c}, [{costs}], #4"
+                "usub8 {c}, {most}, {c}"
+                "sub {a}, {c}, {a}"
+                "str {a}, [{kept}], #4"
+            ),
+            path = inout(reg) path.words.as_ptr() => _,
+            costs = inout(reg) costs => _,
+            kept = inout(reg) kept => _,
+            n = inout(reg) fours => _,
+            step = inout(reg) step => _,
+            jump = out(reg) _,
+            most = out(reg) _,
+            least = in(reg) least,
+            a = out(reg) _, b = out(reg) _, c = out(reg) _,
+            options(nostack),
+        );
+    }
+}
+
+/// The average of two columns, rounded down, in `between`, and its least cost in all bytes. The first of them was `passed`;
+/// what is there gives its place to `here`. 8 instructions.
+///
+/// # Safety
+/// `fours` times four words, `WORDS` at the most and one at least, can be read from `here` and `ahead`.
+#[inline(always)]
+pub(super) unsafe fn average<const WORDS: usize>(
+    passed: &mut [u32; WORDS],
+    here: *const u32,
+    ahead: *const u32,
+    between: &mut Padded<WORDS>,
+    fours: usize,
+) -> u32 {
+    let mut least = u32::MAX;
+    // SAFETY: as the function's; `passed` and `between` have `WORDS`.
+    unsafe {
+        asm!(
+            four_words!(
+                "ldr {a}, [{passed}]"
+                "ldr {b}, [{ahead}], #4"
+                "uhadd8 {a}, {a}, {b}"
+                "ldr {b}, [{here}], #4"
+                "str {b}, [{passed}], #4"
+                "str {a}, [{between}], #4"
+                "usub8 {b}, {least}, {a}"
+                "sel {least}, {a}, {least}"
+            ),
+            least_of_four!(),
+            passed = inout(reg) passed.as_mut_ptr() => _,
+            here = inout(reg) here => _,
+            ahead = inout(reg) ahead => _,
+            between = inout(reg) between.words.as_mut_ptr() => _,
+            n = inout(reg) fours => _,
+            least = inout(reg) least,
+            a = out(reg) _, b = out(reg) _,
+            options(nostack),
+        );
+    }
+    least
+}
+
+/// The least of a column's sums and the last byte that has it. 5 instructions.
+///
+/// The loop finds the least of each byte of a word and the word where it is, of equal ones the last. Then the least of the
+/// four goes to all bytes, and the greatest place of those that have it.
+///
+/// # Safety
+/// `fours` times four words, 64 at the most and one at least, can be read from `sums`.
+#[inline(always)]
+pub(super) unsafe fn least(sums: *const u32, fours: usize) -> (u8, usize) {
+    let (least, place): (u32, u32);
+    // SAFETY: as the function's.
+    unsafe {
+        asm!(
+            "mvn {least}, #0",
+            "mov {place}, #0",
+            four_words!(
+                "ldr {a}, [{sums}], #4"
+                "usub8 {b}, {least}, {a}"
+                "sel {least}, {a}, {least}"
+                "sel {places}, {place}, {places}"
+                "add {place}, {place}, #0x01010101"
+            ),
+            "mov {place}, {least}",
+            least_of_four!(),
+            "add {places}, {lanes}, {places}, lsl #2",
+            "usub8 {a}, {least}, {place}",
+            "mov {b}, #0",
+            "sel {places}, {places}, {b}",
+            "ror {a}, {places}, #16",
+            "usub8 {b}, {places}, {a}",
+            "sel {places}, {places}, {a}",
+            "ror {a}, {places}, #8",
+            "usub8 {b}, {places}, {a}",
+            "sel {places}, {places}, {a}",
+            sums = inout(reg) sums => _,
+            n = inout(reg) fours => _,
+            lanes = in(reg) 0x0302_0100,
+            least = out(reg) least,
+            places = out(reg) place,
+            place = out(reg) _,
+            a = out(reg) _, b = out(reg) _,
+            options(nostack, readonly),
+        );
+    }
+    (least as u8, (place & 0xff) as usize)
+}
+
+/// A pixel of the left image, but for its gradient along the line, four times in a word each; and the most that its cost
+/// may be.
+pub(super) struct Rest {
+    pub across: u32,
+    pub census: u32,
+    pub brightness: u32,
+    pub most: u32,
+}
+
+/// A cost's loop, in which the lines at the beginning put the share of the gradient along the line in `a`.
+///
+/// The rest are 24 instructions: how far apart two numbers are is the greater of their two differences, the other of which
+/// is 0; the bits of a byte are counted by twos, fours and eights; masks are such as an instruction holds.
+macro_rules! cost {
+    ($costs:ident, $rows:ident, $count:ident, $along:ident, $rest:ident, $($line:literal)*) => {
+        asm!(
+            four_words!(
+                $($line)*
+                "ldr {b}, [{t}, {count}, lsl #1]"
+                "uqsub8 {t}, {b}, {brightness}"
+                "uqsub8 {b}, {brightness}, {b}"
+                "orr {b}, {b}, {t}"
+                "and {b}, {b}, #0xfcfcfcfc"
+                "add {a}, {a}, {b}, lsr #2"
+                "ldr {b}, [{rows}, {count}]"
+                "uqsub8 {t}, {b}, {across}"
+                "uqsub8 {b}, {across}, {b}"
+                "add {a}, {a}, {t}"
+                "add {a}, {a}, {b}"
+                "ldr {b}, [{rows}, {count}, lsl #1]"
+                "eor {b}, {b}, {census}"
+                "and {t}, {b}, #0xaaaaaaaa"
+                "sub {b}, {b}, {t}, lsr #1"
+                "and {t}, {b}, #0xcccccccc"
+                "and {b}, {b}, #0x33333333"
+                "add {b}, {b}, {t}, lsr #2"
+                "add {b}, {b}, {b}, lsr #4"
+                "and {b}, {b}, #0x0f0f0f0f"
+                "add {a}, {a}, {b}"
+                "uqsub8 {a}, {most}, {a}"
+                "ldr {b}, [{costs}]"
+                "uhadd8 {a}, {a}, {b}"
+                "str {a}, [{costs}], #4"
+                "add {rows}, {rows}, #4"
+            ),
+            costs = inout(reg) $costs.as_mut_ptr() => _,
+            rows = inout(reg) $rows.as_ptr() => _,
+            n = inout(reg) $costs.len() / 4 => _,
+            count = in(reg) $count,
+            along = in(reg) $along,
+            across = in(reg) $rest.across,
+            census = in(reg) $rest.census,
+            brightness = in(reg) $rest.brightness,
+            most = in(reg) $rest.most,
+            a = out(reg) _, b = out(reg) _, t = out(reg) _,
+            options(nostack),
+        )
+    };
+}
+
+/// Averages a pixel's agreements into `costs`, in which its gradient `along` the line is compared with all between the right
+/// ones and halfway to their neighbours: how far it is from `least` to `greatest`. `rows` begins with the first candidate in
+/// the features' rows, so many bytes to a row. Those numbers are doubled.
+#[inline(always)]
+pub(super) fn between_pixels(costs: &mut [u32], rows: &[u8], count: usize, along: u32, rest: &Rest) {
+    if costs.len() < 4 || rows.len() < 5 * count + 4 * costs.len() {
+        return;
+    }
+    // SAFETY: `costs.len() / 4` times four words are read from six rows, the last of which begins after five of them, and
+    // read from `costs` and written to it.
+    unsafe {
+        cost!(costs, rows, count, along, rest,
+            "add {t}, {rows}, {count}"
+            "ldr {a}, [{rows}, {count}, lsl #2]"
+            "ldr {b}, [{t}, {count}, lsl #2]"
+            "uqsub8 {a}, {a}, {along}"
+            "uqsub8 {b}, {along}, {b}"
+            "orr {a}, {a}, {b}"
+        );
+    }
+}
+
+/// The same with the right ones themselves.
+#[inline(always)]
+pub(super) fn at_pixels(costs: &mut [u32], rows: &[u8], count: usize, along: u32, rest: &Rest) {
+    if costs.len() < 4 || rows.len() < 5 * count + 4 * costs.len() {
+        return;
+    }
+    // SAFETY: as for `between_pixels`.
+    unsafe {
+        cost!(costs, rows, count, along, rest,
+            "add {t}, {rows}, {count}"
+            "ldr {b}, [{rows}]"
+            "uqsub8 {a}, {b}, {along}"
+            "uqsub8 {b}, {along}, {b}"
+            "orr {a}, {a}, {b}"
+            "lsl {a}, {a}, #1"
+        );
+    }
+}

@@ -1,0 +1,122 @@
+//! The passes on cores with Arm's instructions on four bytes (`--cfg stereopsis_dsp`: Cortex-M4, M7, and M33 with its
+//! extension; M55): the same numbers as [`Groups`](super::Groups) of words has, in fewer instructions.
+//!
+//! * A path stays in memory, between two words that no path comes from: what stands beside a disparity is the same word one
+//!   byte off. A path's two pixels take turns in two places.
+//! * Of a cost there is the agreement, the most that it may be less what it is: a saturating subtraction cuts it off, and the
+//!   halving addition, which rounds down, rounds the cost up.
+//! * Lanes beyond the search agree so little that no path from there is the least.
+//!
+//! * `rows`: the paths.
+//! * `winners`: the least of their sums.
+//! * `blocks`: the loops over a pixel's words, in assembler.
+//! * `features`: what is compared, four pixels at a time.
+//! * `instructions`: the instructions that the compiler has no names for.
+
+mod blocks;
+mod features;
+mod instructions;
+mod rows;
+mod winners;
+
+use super::features::Features;
+use super::{Guide, Passes, PathWork};
+use crate::matching::kernels::STEP;
+use crate::matching::kernels::scratch::words_mut;
+use crate::matching::kernels::winner::{Found, Unique};
+use crate::matching::paths::Along;
+use crate::matching::penalties::Penalties;
+use blocks::{Rest, Step};
+use rows::Way;
+
+pub(super) use features::{between, halve, looks, range};
+
+/// The passes over columns of up to `WORDS` words, all of them in use if `ALL`: then the compiler knows how many.
+pub(super) struct Words<const WORDS: usize, const ALL: bool>;
+
+impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
+    #[inline(always)]
+    fn clear(work: &mut PathWork<'_>) {
+        work.costs.fill(work.penalties.cost);
+    }
+
+    #[inline(always)]
+    fn enter<S: Along>(work: &mut PathWork<'_>, features: &Features<'_>) {
+        let Features { left, right, count } = *features;
+        let stride = stride::<WORDS, ALL>(work);
+        let beyond = stride.saturating_sub(work.disparities);
+        let most = splat(work.penalties.cost);
+        let pixels = left.brightness.iter().zip(left.across.iter().zip(left.census));
+        let pixels = left.along.iter().zip(pixels).enumerate();
+        for (column, (x, (&along, (&brightness, (&across, &census))))) in
+            words_mut(work.costs).chunks_exact_mut(stride / 4).zip(pixels)
+        {
+            let rest = Rest { across: splat(across), census: splat(census), brightness: splat(brightness >> 1), most };
+            let candidates = right.get(x..).unwrap_or(&[]);
+            if S::BETWEEN_PIXELS {
+                blocks::between_pixels(column, candidates, count, splat(2 * along), &rest);
+            } else {
+                blocks::at_pixels(column, candidates, count, splat(along), &rest);
+            }
+        }
+        if beyond > 0 {
+            let least = beyond_search(work.penalties);
+            for column in work.costs.chunks_exact_mut(stride) {
+                column.get_mut(..beyond).unwrap_or_default().fill(least);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn gather(work: &mut PathWork<'_>, guide: Guide<'_>) {
+        rows::down::<WORDS, ALL>(work, guide);
+        rows::along::<WORDS, ALL>(work, guide.here, Way::Right);
+    }
+
+    #[inline(always)]
+    fn decide(work: &mut PathWork<'_>, guide: Guide<'_>, unique: Unique<'_>, put: impl FnMut(usize, Found)) {
+        rows::along::<WORDS, ALL>(work, guide.here, Way::Left);
+        winners::select(work, stride::<WORDS, ALL>(work), unique, put);
+    }
+}
+
+/// Bytes of a column.
+#[inline(always)]
+fn stride<const WORDS: usize, const ALL: bool>(work: &PathWork<'_>) -> usize {
+    if ALL { 4 * WORDS } else { work.stride.clamp(STEP, 4 * WORDS) }
+}
+
+/// A byte four times.
+#[inline(always)]
+fn splat(number: u8) -> u32 {
+    u32::from(number) * 0x0101_0101
+}
+
+/// A cost from which no path comes: a step from there costs no less than a jump.
+fn far(penalties: &Penalties) -> u8 {
+    127u8.saturating_sub(penalties.step[0])
+}
+
+/// An agreement so small that a path's cost there is no less than that.
+fn beyond_search(penalties: &Penalties) -> u8 {
+    penalties.cost.wrapping_sub(far(penalties))
+}
+
+/// What a path pays between pixels, by the change of the brightness.
+struct Steps([Step; 3]);
+
+impl Steps {
+    #[inline(always)]
+    fn new(penalties: &Penalties) -> Self {
+        Self(penalties.changes().map(|change| Step {
+            step: splat(change.step),
+            jump: splat(change.jump),
+            most: splat(penalties.cost.wrapping_add(change.jump)),
+        }))
+    }
+
+    #[inline(always)]
+    fn between(&self, penalties: &Penalties, a: u8, b: u8) -> &Step {
+        &self.0[penalties.grade(a, b)]
+    }
+}

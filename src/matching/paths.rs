@@ -5,7 +5,7 @@
 //! frame is kept, and no path comes from below: that path measured least, and it would take the frame.
 
 use super::config::Checks;
-use super::kernels::{Aligned, Guide, PathWork, Room, Select, Unique, bytes_mut, halves_mut, winners_mut};
+use super::kernels::{COLUMNS_OFF, Guide, PathWork, Room, Select, Unique, Volumes, bytes_mut, halves_mut, winners_mut};
 use super::memory::{Bytes, Memory, Parts, first};
 use super::row::slot;
 use super::scheme::{Around, Lines, Scheme};
@@ -89,24 +89,26 @@ along_paths!(SgmLean, "sgm-lean");
 pub struct PathMemory<const W: usize, const D: usize> {
     /// The left image's last two rows, row `y` in slot `y % 2`.
     guides: [[u8; W]; 2],
-    /// Costs, paths from above, sums.
-    volumes: Aligned<[[[u8; D]; W]; 3]>,
+    volumes: Volumes<W, D>,
     /// Room for the features of a row; when they are done with, for its winners.
     room: Room<W, D>,
 }
 
 impl PathMemory<0, 0> {
-    pub const BYTES: Bytes =
-        Bytes { per_pixel: 2 + Room::<0, 0>::PER_PIXEL, per_candidate: 3, per_disparity: Room::<0, 0>::PER_DISPARITY };
+    pub const BYTES: Bytes = Bytes {
+        per_pixel: 2 + Room::<0, 0>::PER_PIXEL,
+        per_candidate: 3,
+        per_disparity: COLUMNS_OFF + Room::<0, 0>::PER_DISPARITY,
+    };
 }
 
 impl<const W: usize, const D: usize> Memory for PathMemory<W, D> {
-    const EMPTY: Self = Self { guides: [[0; W]; 2], volumes: Aligned([[[0; D]; W]; 3]), room: Room::ZERO };
+    const EMPTY: Self = Self { guides: [[0; W]; 2], volumes: Volumes::ZERO, room: Room::ZERO };
 
     fn parts(&mut self, width: usize, stride: usize) -> Parts<'_> {
         Parts {
             codes: first(self.guides.as_flattened_mut(), 2 * width),
-            columns: first(self.volumes.0.as_flattened_mut().as_flattened_mut(), 3 * width * stride),
+            columns: first(self.volumes.flat(), (3 * width + COLUMNS_OFF) * stride),
             winners: &mut [],
             right: &mut [],
             lengths: &mut [],
@@ -121,7 +123,7 @@ impl<'a, S: Along> Stages<'a, S> {
     fn select_along(&mut self, bottom: usize, lines: Option<[&Around<'_>; 2]>, row: Option<usize>) {
         let (width, stride, config) = (self.width, self.stride, self.config);
         let (costs, rest) = self.columns.split_at_mut_checked(width * stride).unwrap_or_default();
-        let (top, sums) = rest.split_at_mut_checked(width * stride).unwrap_or_default();
+        let (top, sums) = rest.split_at_mut_checked((width + COLUMNS_OFF) * stride).unwrap_or_default();
         let mut work = PathWork {
             width,
             stride,
@@ -148,7 +150,12 @@ impl<'a, S: Along> Stages<'a, S> {
             let flags = slot_mut(self.flags, row % BAND, width);
             flags.fill(PixelFlags::CLEAR);
             let guide = |y: usize| slot(self.codes, y % 2, width);
-            let guide = Guide { here: guide(row), above: row.checked_sub(1).map(guide) };
+            let guide = Guide {
+                here: guide(row),
+                above: row.checked_sub(1).map(guide),
+                #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
+                row,
+            };
             let select = Select {
                 disparities: work.disparities,
                 winners: self.winners,

@@ -22,8 +22,8 @@ mod winner;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-pub(super) use paths::{Guide, PathWork};
-pub use scratch::{Aligned, Columns, Room, Scratch};
+pub(super) use paths::{COLUMNS_OFF, Guide, PathWork};
+pub use scratch::{Aligned, Columns, Room, Scratch, Volumes};
 pub(super) use scratch::{bytes_mut, halves_mut, winners_mut};
 pub use winner::Winner;
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]

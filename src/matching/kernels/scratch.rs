@@ -1,8 +1,8 @@
 //! Room to work in, for every kernel and every kind of lane.
 #![allow(unsafe_code)]
 
-use super::OUTSIDE;
 use super::Winner;
+use super::{COLUMNS_OFF, OUTSIDE};
 
 /// What a kernel works with while a row lasts. No kernel finds anything in it from the row before.
 ///
@@ -44,6 +44,26 @@ impl<const W: usize, const D: usize> Columns<W, D> {
     pub fn flat(&mut self) -> &mut [u8] {
         let bytes = size_of_val(&self.before) + size_of_val(&self.inside) + size_of_val(&self.after);
         // SAFETY: the fields are bytes without a gap between them (`repr(C)`), `bytes` of them in all.
+        unsafe { core::slice::from_raw_parts_mut(core::ptr::from_mut(self).cast(), bytes) }
+    }
+}
+
+/// The costs, the paths from above and the sums of `W` columns with `D` disparities each, and [`COLUMNS_OFF`] columns more
+/// for the paths.
+#[repr(C, align(8))]
+pub struct Volumes<const W: usize, const D: usize> {
+    columns: [[[u8; D]; W]; 3],
+    more: [[u8; D]; COLUMNS_OFF],
+}
+
+impl<const W: usize, const D: usize> Volumes<W, D> {
+    /// All zero.
+    pub const ZERO: Self = Self { columns: [[[0; D]; W]; 3], more: [[0; D]; COLUMNS_OFF] };
+
+    /// All of it, one column after the other.
+    pub fn flat(&mut self) -> &mut [u8] {
+        let bytes = size_of_val(&self.columns) + size_of_val(&self.more);
+        // SAFETY: as for [`Columns::flat`].
         unsafe { core::slice::from_raw_parts_mut(core::ptr::from_mut(self).cast(), bytes) }
     }
 }

@@ -53,7 +53,8 @@ pub(in crate::matching) struct PathWork<'a> {
     /// The smallest disparity, px.
     pub min_disparity: usize,
     pub penalties: &'a Penalties,
-    /// Costs, paths from above, and sums of two paths: each `stride` bytes for each column, where a word may stand.
+    /// Costs, paths from above, and sums of paths: each `stride` bytes for each column, where a word may stand. The paths from
+    /// above have [`COLUMNS_OFF`] columns more.
     pub costs: &'a mut [u8],
     pub top: &'a mut [u8],
     pub sums: &'a mut [u8],
@@ -66,10 +67,13 @@ pub(in crate::matching) struct Guide<'a> {
     pub here: &'a [u8],
     /// The row above, if there is one.
     pub above: Option<&'a [u8]>,
+    /// Its number.
+    #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
+    pub row: usize,
 }
 
 /// How many columns to each side the path from above comes from.
-const COLUMNS_OFF: usize = 2;
+pub(in crate::matching) const COLUMNS_OFF: usize = 2;
 
 /// The passes of a row. What they keep from row to row they keep in a form of their own.
 trait Passes {

@@ -4,36 +4,6 @@
 
 use core::arch::asm;
 
-/// A path's costs at a pixel, with a word before and after that no path comes from.
-#[derive(Clone, Copy)]
-#[repr(C)]
-pub(super) struct Padded<const WORDS: usize> {
-    before: u32,
-    words: [u32; WORDS],
-    after: u32,
-}
-
-impl<const WORDS: usize> Padded<WORDS> {
-    /// As many words of no cost.
-    pub fn new(words: usize, far: u32) -> Self {
-        let mut path = Self { before: far, words: [far; WORDS], after: far };
-        path.words.get_mut(..words).unwrap_or_default().fill(0);
-        path
-    }
-}
-
-/// What a path pays on its way into a pixel, four times in a word.
-#[derive(Clone, Copy)]
-#[repr(C)]
-pub(super) struct Step {
-    /// One disparity up or down.
-    pub step: u32,
-    /// Any further.
-    pub jump: u32,
-    /// That and the most that a pixel's cost may be.
-    pub most: u32,
-}
-
 /// Four times the lines of a word, and around again until `n` is 0.
 macro_rules! four_words {
     ($($line:literal)*) => {
@@ -51,163 +21,6 @@ macro_rules! least_of_four {
          usub8 {b}, {least}, {a}
          sel {least}, {a}, {least}"
     };
-}
-
-/// Takes a path into a pixel that has the agreements `costs`: to `next`, from `path`, whose least cost is `least`. The new
-/// least cost is returned. Both are the same in all bytes. The path's costs and the numbers in `from` are the `sums`, 255 at
-/// the most.
-///
-/// 18 instructions: with m the least that it costs to come from beside, j the least cost and a jump, the cost is
-/// `most - agreement - (j - m, at least 0)`, one subtraction for the minimum and for taking the least off.
-///
-/// # Safety
-/// `fours` times four words, `WORDS` at the most and one at least, can be read from `costs` and `from`,
-/// and written to `sums`.
-#[inline(always)]
-pub(super) unsafe fn step_along<const WORDS: usize>(
-    path: &Padded<WORDS>,
-    least: u32,
-    step: &Step,
-    costs: *const u32,
-    next: &mut Padded<WORDS>,
-    [from, sums]: [*mut u32; 2],
-    fours: usize,
-) -> u32 {
-    let mut least = least;
-    // SAFETY: as the function's; the paths have a word more to each side.
-    unsafe {
-        asm!(
-            "ldr {jump}, [{step}, #4]",
-            "ldr {most}, [{step}, #8]",
-            "ldr {step}, [{step}]",
-            "add {jump}, {jump}, {least}",
-            "mvn {least}, #0",
-            four_words!(
-                "ldr {a}, [{path}, #-1]"
-                "ldr {b}, [{path}, #1]"
-                "usub8 {c}, {a}, {b}"
-                "sel {a}, {b}, {a}"
-                "add {a}, {a}, {step}"
-                "ldr {c}, [{path}], #4"
-                "usub8 {b}, {a}, {c}"
-                "sel {a}, {c}, {a}"
-                "uqsub8 {a}, {jump}, {a}"
-                "ldr {c}, [{costs}], #4"
-                "usub8 {c}, {most}, {c}"
-                "sub {a}, {c}, {a}"
-                "ldr {b}, [{from}], #4"
-                "str {a}, [{next}], #4"
-                "uqadd8 {b}, {b}, {a}"
-                "str {b}, [{sums}], #4"
-                "usub8 {b}, {least}, {a}"
-                "sel {least}, {a}, {least}"
-            ),
-            least_of_four!(),
-            path = inout(reg) path.words.as_ptr() => _,
-            next = inout(reg) next.words.as_mut_ptr() => _,
-            costs = inout(reg) costs => _,
-            from = inout(reg) from => _,
-            sums = inout(reg) sums => _,
-            n = inout(reg) fours => _,
-            step = inout(reg) step => _,
-            jump = out(reg) _,
-            most = out(reg) _,
-            least = inout(reg) least,
-            a = out(reg) _, b = out(reg) _, c = out(reg) _,
-            options(nostack),
-        );
-    }
-    least
-}
-
-/// The same for the path from above, which goes to `kept`. 13 instructions.
-///
-/// # Safety
-/// As much can be read from `costs` and written to `kept`.
-#[inline(always)]
-pub(super) unsafe fn step_down<const WORDS: usize>(
-    path: &Padded<WORDS>,
-    least: u32,
-    step: &Step,
-    costs: *const u32,
-    kept: *mut u32,
-    fours: usize,
-) {
-    // SAFETY: as for `step_along`.
-    unsafe {
-        asm!(
-            "ldr {jump}, [{step}, #4]",
-            "ldr {most}, [{step}, #8]",
-            "ldr {step}, [{step}]",
-            "add {jump}, {jump}, {least}",
-            four_words!(
-                "ldr {a}, [{path}, #-1]"
-                "ldr {b}, [{path}, #1]"
-                "usub8 {c}, {a}, {b}"
-                "sel {a}, {b}, {a}"
-                "add {a}, {a}, {step}"
-                "ldr {c}, [{path}], #4"
-                "usub8 {b}, {a}, {c}"
-                "sel {a}, {c}, {a}"
-                "uqsub8 {a}, {jump}, {a}"
-                "ldr {c}, [{costs}], #4"
-                "usub8 {c}, {most}, {c}"
-                "sub {a}, {c}, {a}"
-                "str {a}, [{kept}], #4"
-            ),
-            path = inout(reg) path.words.as_ptr() => _,
-            costs = inout(reg) costs => _,
-            kept = inout(reg) kept => _,
-            n = inout(reg) fours => _,
-            step = inout(reg) step => _,
-            jump = out(reg) _,
-            most = out(reg) _,
-            least = in(reg) least,
-            a = out(reg) _, b = out(reg) _, c = out(reg) _,
-            options(nostack),
-        );
-    }
-}
-
-/// The average of two columns, rounded down, in `between`, and its least cost in all bytes. The first of them was `passed`;
-/// what is there gives its place to `here`. 8 instructions.
-///
-/// # Safety
-/// `fours` times four words, `WORDS` at the most and one at least, can be read from `here` and `ahead`.
-#[inline(always)]
-pub(super) unsafe fn average<const WORDS: usize>(
-    passed: &mut [u32; WORDS],
-    here: *const u32,
-    ahead: *const u32,
-    between: &mut Padded<WORDS>,
-    fours: usize,
-) -> u32 {
-    let mut least = u32::MAX;
-    // SAFETY: as the function's; `passed` and `between` have `WORDS`.
-    unsafe {
-        asm!(
-            four_words!(
-                "ldr {a}, [{passed}]"
-                "ldr {b}, [{ahead}], #4"
-                "uhadd8 {a}, {a}, {b}"
-                "ldr {b}, [{here}], #4"
-                "str {b}, [{passed}], #4"
-                "str {a}, [{between}], #4"
-                "usub8 {b}, {least}, {a}"
-                "sel {least}, {a}, {least}"
-            ),
-            least_of_four!(),
-            passed = inout(reg) passed.as_mut_ptr() => _,
-            here = inout(reg) here => _,
-            ahead = inout(reg) ahead => _,
-            between = inout(reg) between.words.as_mut_ptr() => _,
-            n = inout(reg) fours => _,
-            least = inout(reg) least,
-            a = out(reg) _, b = out(reg) _,
-            options(nostack),
-        );
-    }
-    least
 }
 
 /// The least of a column's sums and the last byte that has it. 5 instructions.
@@ -275,18 +88,13 @@ macro_rules! cost {
         asm!(
             four_words!(
                 $($line)*
-                "ldr {b}, [{t}, {count}, lsl #1]"
+                "ldr {b}, [{rows}, {count}, lsl #1]"
                 "uqsub8 {t}, {b}, {brightness}"
                 "uqsub8 {b}, {brightness}, {b}"
                 "orr {b}, {b}, {t}"
                 "and {b}, {b}, #0xfcfcfcfc"
                 "add {a}, {a}, {b}, lsr #2"
                 "ldr {b}, [{rows}, {count}]"
-                "uqsub8 {t}, {b}, {across}"
-                "uqsub8 {b}, {across}, {b}"
-                "add {a}, {a}, {t}"
-                "add {a}, {a}, {b}"
-                "ldr {b}, [{rows}, {count}, lsl #1]"
                 "eor {b}, {b}, {census}"
                 "and {t}, {b}, #0xaaaaaaaa"
                 "sub {b}, {b}, {t}, lsr #1"
@@ -296,14 +104,18 @@ macro_rules! cost {
                 "add {b}, {b}, {b}, lsr #4"
                 "and {b}, {b}, #0x0f0f0f0f"
                 "add {a}, {a}, {b}"
+                "ldr {b}, [{rows}], #4"
+                "uqsub8 {t}, {b}, {across}"
+                "uqsub8 {b}, {across}, {b}"
+                "add {a}, {a}, {t}"
+                "add {a}, {a}, {b}"
                 "uqsub8 {a}, {most}, {a}"
                 "ldr {b}, [{costs}]"
                 "uhadd8 {a}, {a}, {b}"
                 "str {a}, [{costs}], #4"
-                "add {rows}, {rows}, #4"
             ),
             costs = inout(reg) $costs.as_mut_ptr() => _,
-            rows = inout(reg) $rows.as_ptr() => _,
+            rows = inout(reg) $rows.as_ptr().wrapping_add($count) => _,
             n = inout(reg) $costs.len() / 4 => _,
             count = in(reg) $count,
             along = in(reg) $along,
@@ -330,8 +142,8 @@ pub(super) fn between_pixels(costs: &mut [u32], rows: &[u8], count: usize, along
     unsafe {
         cost!(costs, rows, count, along, rest,
             "add {t}, {rows}, {count}"
-            "ldr {a}, [{rows}, {count}, lsl #2]"
-            "ldr {b}, [{t}, {count}, lsl #2]"
+            "ldr {a}, [{t}, {count}, lsl #1]"
+            "ldr {b}, [{rows}, {count}, lsl #2]"
             "uqsub8 {a}, {a}, {along}"
             "uqsub8 {b}, {along}, {b}"
             "orr {a}, {a}, {b}"
@@ -348,8 +160,8 @@ pub(super) fn at_pixels(costs: &mut [u32], rows: &[u8], count: usize, along: u32
     // SAFETY: as for `between_pixels`.
     unsafe {
         cost!(costs, rows, count, along, rest,
-            "add {t}, {rows}, {count}"
-            "ldr {b}, [{rows}]"
+            "sub {t}, {rows}, {count}"
+            "ldr {b}, [{t}]"
             "uqsub8 {a}, {b}, {along}"
             "uqsub8 {b}, {along}, {b}"
             "orr {a}, {a}, {b}"

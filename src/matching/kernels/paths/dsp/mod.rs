@@ -7,9 +7,9 @@
 //!   halving addition, which rounds down, rounds the cost up.
 //! * Lanes beyond the search agree so little that no path from there is the least.
 //!
-//! * `rows`: the paths.
-//! * `winners`: the least of their sums.
-//! * `blocks`: the loops over a pixel's words, in assembler.
+//! * `rows`: the paths, in assembler.
+//! * `blocks`: the other loops over a pixel's words, in assembler.
+//! * `winners`: the least of the paths' sums.
 //! * `features`: what is compared, four pixels at a time.
 //! * `instructions`: the instructions that the compiler has no names for.
 
@@ -26,7 +26,7 @@ use crate::matching::kernels::scratch::words_mut;
 use crate::matching::kernels::winner::{Found, Unique};
 use crate::matching::paths::Along;
 use crate::matching::penalties::Penalties;
-use blocks::{Rest, Step};
+use blocks::Rest;
 use rows::Way;
 
 pub(super) use features::{between, halve, looks, range};
@@ -70,12 +70,12 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
     #[inline(always)]
     fn gather(work: &mut PathWork<'_>, guide: Guide<'_>) {
         rows::down::<WORDS, ALL>(work, guide);
-        rows::along::<WORDS, ALL>(work, guide.here, Way::Right);
+        rows::along::<WORDS, ALL>(work, guide, Way::Right);
     }
 
     #[inline(always)]
     fn decide(work: &mut PathWork<'_>, guide: Guide<'_>, unique: Unique<'_>, put: impl FnMut(usize, Found)) {
-        rows::along::<WORDS, ALL>(work, guide.here, Way::Left);
+        rows::along::<WORDS, ALL>(work, guide, Way::Left);
         winners::select(work, stride::<WORDS, ALL>(work), unique, put);
     }
 }
@@ -100,23 +100,4 @@ fn far(penalties: &Penalties) -> u8 {
 /// An agreement so small that a path's cost there is no less than that.
 fn beyond_search(penalties: &Penalties) -> u8 {
     penalties.cost.wrapping_sub(far(penalties))
-}
-
-/// What a path pays between pixels, by the change of the brightness.
-struct Steps([Step; 3]);
-
-impl Steps {
-    #[inline(always)]
-    fn new(penalties: &Penalties) -> Self {
-        Self(penalties.changes().map(|change| Step {
-            step: splat(change.step),
-            jump: splat(change.jump),
-            most: splat(penalties.cost.wrapping_add(change.jump)),
-        }))
-    }
-
-    #[inline(always)]
-    fn between(&self, penalties: &Penalties, a: u8, b: u8) -> &Step {
-        &self.0[penalties.grade(a, b)]
-    }
 }

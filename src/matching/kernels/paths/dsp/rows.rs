@@ -1,10 +1,16 @@
-//! The paths through a row.
+//! The paths through a row: two functions in assembler, for between two loops over a pixel's words the compiler has more to
+//! hold than there are registers.
+//!
+//! With m the least that it costs to come from beside, and j the least cost and a jump, a path's cost at a pixel is
+//! `most - agreement - (j - m, at least 0)`: one saturating subtraction does for the minimum of m and j and for taking the
+//! least off. The least is found on the way, of each byte of a word first.
 #![allow(unsafe_code)]
 
 use super::super::{COLUMNS_OFF, Guide, PathWork};
-use super::blocks::{self, Padded};
-use super::{Steps, far, splat, stride};
+use super::{far, splat, stride};
 use crate::matching::kernels::scratch::{words_mut, words_of};
+use crate::matching::penalties::Penalties;
+use core::arch::naked_asm;
 
 /// Where a path along the row goes.
 pub(super) enum Way {
@@ -12,81 +18,344 @@ pub(super) enum Way {
     Right,
 }
 
-/// Whether there are all columns that the loops go through.
+/// A path's costs at a pixel, with a word before and after that no path comes from.
+#[derive(Clone, Copy)]
+#[repr(C)]
+struct Padded<const WORDS: usize> {
+    before: u32,
+    words: [u32; WORDS],
+    after: u32,
+}
+
+impl<const WORDS: usize> Padded<WORDS> {
+    /// As many words of no cost.
+    fn new(words: usize, penalties: &Penalties) -> Self {
+        let far = splat(far(penalties));
+        let mut path = Self { before: far, words: [far; WORDS], after: far };
+        path.words.get_mut(..words).unwrap_or_default().fill(0);
+        path
+    }
+}
+
+/// What a path pays between two pixels, by the change of the left image's brightness.
+#[repr(C)]
+struct Steps {
+    /// From which changes on the second step is taken, and the third.
+    edges: [u32; 2],
+    steps: [Step; 3],
+}
+
+/// What a path pays on its way into a pixel, four times in a word.
+#[repr(C)]
+struct Step {
+    /// One disparity up or down.
+    step: u32,
+    /// Any further.
+    jump: u32,
+    /// That and the most that a pixel's cost may be.
+    most: u32,
+}
+
+impl Steps {
+    fn new(penalties: &Penalties) -> Self {
+        let steps = penalties.changes().map(|change| Step {
+            step: splat(change.step),
+            jump: splat(change.jump),
+            most: splat(penalties.cost.wrapping_add(change.jump)),
+        });
+        Self { edges: penalties.edges.map(u32::from), steps }
+    }
+}
+
+/// What both functions go by, at these places of the frame in `lr`.
+#[repr(C)]
+struct Frame {
+    /// 0: the pixel's place in the line, and 4: how far it is to the next.
+    pixel: *const u8,
+    on: isize,
+    /// 8: how far it is to the pixel that the path comes from. Along the row the first comes from itself.
+    from: isize,
+    /// 12, 16: a path before and after, which take turns; or the average and nothing.
+    paths: [*mut u32; 2],
+    /// 20: bytes from a column's end to the next column's beginning.
+    gap: isize,
+    /// 24: columns to go.
+    columns: usize,
+    /// 28: a column's words, in fours.
+    fours: usize,
+    /// 32
+    steps: *const Steps,
+    /// 36, 40: the first and the last column of the row above, 44: bytes to that on the other side of the pixel.
+    above: [*mut u32; 2],
+    other: isize,
+    /// 48: how far it is, along the row, after the first pixel.
+    then: isize,
+}
+
+/// Four times the lines of a word, and around again until `r5` is 0.
+macro_rules! four_words {
+    ($label:literal, $($line:literal)*) => {
+        concat!(
+            $label, ":\n", $($line, "\n",)* $($line, "\n",)* $($line, "\n",)* $($line, "\n",)*
+            "subs r5, r5, #1\n", "bne ", $label, "b"
+        )
+    };
+}
+
+/// The least of four bytes in `r9`, in all of them: half a word off, then a byte. 6 instructions.
+macro_rules! least_of_four {
+    () => {
+        "ror r10, r9, #16
+         usub8 r11, r9, r10
+         sel r9, r10, r9
+         ror r10, r9, #8
+         usub8 r11, r9, r10
+         sel r9, r10, r9"
+    };
+}
+
+/// Goes on to the next pixel, and puts what it costs to come into this one in `r6` to `r8`: step, jump from the least cost,
+/// most. 16 instructions.
+macro_rules! choose_step {
+    () => {
+        "ldrd r12, r6, [lr]
+         ldr r11, [lr, #8]
+         ldrb r10, [r12]
+         ldrb r11, [r12, r11]
+         add r12, r12, r6
+         str r12, [lr]
+         ldr r6, [lr, #32]
+         usad8 r10, r10, r11
+         ldrd r11, r12, [r6], #8
+         cmp r10, r11
+         it hs
+         addhs r6, r6, #12
+         cmp r10, r12
+         it hs
+         addhs r6, r6, #12
+         ldm r6, {{r6, r7, r8}}
+         add r7, r7, r9"
+    };
+}
+
+/// Takes a path along a row with agreements `costs`: what is in `from` and the path's cost are the `sums`, 255 at the most.
+/// 18 instructions a word and 39 a pixel.
+///
+/// # Safety
+/// The frame's columns, `fours` times four words each, can be read from `costs` and `from` on, and written from `sums` on;
+/// a pixel for each from its place on; and the paths have a word more before and after.
+#[unsafe(naked)]
+unsafe extern "C" fn go_along(frame: *mut Frame, costs: *const u32, from: *const u32, sums: *mut u32) {
+    // r0 path, r1 its next pixel, r2 costs, r3 from, r4 sums
+    naked_asm!(
+        "push {{r4-r11, lr}}",
+        "mov lr, r0",
+        "mov r4, r3",
+        "mov r3, r2",
+        "mov r2, r1",
+        "mov r9, #0",
+        "1:",
+        choose_step!(),
+        "ldrd r0, r1, [lr, #12]",
+        "strd r1, r0, [lr, #12]",
+        "ldr r5, [lr, #28]",
+        "mvn r9, #0",
+        four_words!(
+            "2",
+            "ldr r10, [r0, #-1]"
+            "ldr r11, [r0, #1]"
+            "usub8 r12, r10, r11"
+            "sel r10, r11, r10"
+            "add r10, r10, r6"
+            "ldr r12, [r0], #4"
+            "usub8 r11, r10, r12"
+            "sel r10, r12, r10"
+            "uqsub8 r10, r7, r10"
+            "ldr r12, [r2], #4"
+            "usub8 r12, r8, r12"
+            "sub r10, r12, r10"
+            "ldr r11, [r3], #4"
+            "str r10, [r1], #4"
+            "uqadd8 r11, r11, r10"
+            "str r11, [r4], #4"
+            "usub8 r11, r9, r10"
+            "sel r9, r10, r9"
+        ),
+        least_of_four!(),
+        "ldr r10, [lr, #48]",
+        "str r10, [lr, #8]",
+        "ldrd r10, r11, [lr, #20]",
+        "add r2, r2, r10",
+        "add r3, r3, r10",
+        "add r4, r4, r10",
+        "subs r11, r11, #1",
+        "str r11, [lr, #24]",
+        "bne 1b",
+        "pop {{r4-r11, pc}}",
+    )
+}
+
+/// Takes the path from above into a row with agreements `costs`, from the average of two columns, rounded down, or from
+/// nothing if there are none. `kept` begins with what was one of the two. 19 instructions a word and 52 a pixel.
+///
+/// # Safety
+/// As for [`go_along`]; and the frame's columns of the row above can be read.
+#[unsafe(naked)]
+unsafe extern "C" fn go_down(frame: *mut Frame, costs: *const u32, kept: *mut u32) {
+    // r0 average, r2 costs, r3 kept
+    naked_asm!(
+        "push {{r4-r11, lr}}",
+        "mov lr, r0",
+        "mov r3, r2",
+        "mov r2, r1",
+        "1:",
+        "mov r9, #0",
+        "ldrd r10, r11, [lr, #36]",
+        "cmp r10, #0",
+        "beq 3f",
+        // The columns on both sides, or the nearest that there is.
+        "ldr r1, [lr, #44]",
+        "add r1, r3, r1",
+        "mov r0, r3",
+        "cmp r0, r10",
+        "it lo",
+        "movlo r0, r10",
+        "cmp r0, r11",
+        "it hi",
+        "movhi r0, r11",
+        "cmp r1, r10",
+        "it lo",
+        "movlo r1, r10",
+        "cmp r1, r11",
+        "it hi",
+        "movhi r1, r11",
+        "ldr r12, [lr, #12]",
+        "ldr r5, [lr, #28]",
+        "mvn r9, #0",
+        four_words!(
+            "2",
+            "ldr r10, [r0], #4"
+            "ldr r11, [r1], #4"
+            "uhadd8 r10, r10, r11"
+            "str r10, [r12], #4"
+            "usub8 r11, r9, r10"
+            "sel r9, r10, r9"
+        ),
+        least_of_four!(),
+        "3:",
+        choose_step!(),
+        "ldr r0, [lr, #12]",
+        "ldr r5, [lr, #28]",
+        four_words!(
+            "4",
+            "ldr r10, [r0, #-1]"
+            "ldr r11, [r0, #1]"
+            "usub8 r12, r10, r11"
+            "sel r10, r11, r10"
+            "add r10, r10, r6"
+            "ldr r12, [r0], #4"
+            "usub8 r11, r10, r12"
+            "sel r10, r12, r10"
+            "uqsub8 r10, r7, r10"
+            "ldr r12, [r2], #4"
+            "usub8 r12, r8, r12"
+            "sub r10, r12, r10"
+            "str r10, [r3], #4"
+        ),
+        "ldrd r10, r11, [lr, #20]",
+        "add r2, r2, r10",
+        "add r3, r3, r10",
+        "subs r11, r11, #1",
+        "str r11, [lr, #24]",
+        "bne 1b",
+        "pop {{r4-r11, pc}}",
+    )
+}
+
+/// Whether there are all columns that the paths go through.
 fn is_whole(work: &PathWork<'_>, stride: usize) -> bool {
-    let volumes = [&work.costs, &work.top, &work.sums];
-    volumes.iter().all(|volume| volume.len() >= work.width * stride)
+    let bytes = work.width * stride;
+    work.costs.len() >= bytes && work.sums.len() >= bytes && work.top.len() >= bytes + COLUMNS_OFF * stride
 }
 
 /// Moves the path from above down to the row.
+///
+/// It takes no room of its own: the paths of an odd row stand two columns further to the right than those of an even row.
+/// So each goes where one of the two was that it comes from, if odd rows are taken from right to left.
 #[inline(always)]
 pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>, guide: Guide<'_>) {
     let (width, stride) = (work.width, stride::<WORDS, ALL>(work));
-    let (count, fours) = (stride / 4, stride / 16);
-    if !is_whole(work, stride) {
+    // In the first row nothing is above.
+    let line = guide.above.unwrap_or(guide.here);
+    if !is_whole(work, stride) || width == 0 || guide.here.len() < width || line.len() < width {
         return;
     }
     let steps = Steps::new(work.penalties);
-    let (mut costs, tops) = (words_of(work.costs).as_ptr(), words_mut(work.top));
-    // What stood above columns that are overwritten already: of even and odd ones the last. Before the first there is
-    // the first.
-    let mut passed = [[0; WORDS]; COLUMNS_OFF];
-    for passed in &mut passed {
-        for (to, from) in passed.iter_mut().zip(tops.iter().take(count)) {
-            *to = *from;
-        }
-    }
-    let mut top = tops.as_mut_ptr();
-    let mut between = Padded::<WORDS>::new(count, splat(far(work.penalties)));
-    // In the first row nothing is above.
-    let line = guide.above.unwrap_or(guide.here);
-    for (x, (&here, &above)) in guide.here.iter().zip(line).take(width).enumerate() {
-        // SAFETY: column `x` and those up to `COLUMNS_OFF` after it are in the volumes, and a column has `4 * fours` words,
-        // `WORDS` at the most.
-        unsafe {
-            let mut least = 0;
-            if guide.above.is_some() {
-                let ahead = top.add(COLUMNS_OFF.min(width - 1 - x) * count);
-                least = blocks::average(&mut passed[x % COLUMNS_OFF], top, ahead, &mut between, fours);
-            }
-            let step = steps.between(work.penalties, here, above);
-            blocks::step_down(&between, least, step, costs, top, fours);
-            (costs, top) = (costs.add(count), top.add(count));
-        }
-    }
+    let mut between = Padded::<WORDS>::new(stride / 4, work.penalties);
+    let top = words_mut(work.top).as_mut_ptr();
+    let costs = words_of(work.costs).as_ptr();
+    let is_odd = guide.row % 2 != 0;
+    let last = width - 1;
+    let column = |x: usize| top.wrapping_add(x * stride / 4);
+    let (pixel, on, gap) = if is_odd { (last, -1, -2) } else { (0, 1, 0) };
+    let (costs, kept) = if is_odd { (costs.wrapping_add(last * stride / 4), column(width + 1)) } else { (costs, top) };
+    let above = if is_odd { [top, column(last)] } else { [column(COLUMNS_OFF), column(width + 1)] };
+    let (here, column_bytes) = (guide.here.as_ptr(), stride as isize);
+    let mut frame = Frame {
+        pixel: here.wrapping_add(pixel),
+        on,
+        from: (line.as_ptr() as isize).wrapping_sub(here as isize),
+        paths: [between.words.as_mut_ptr(), core::ptr::null_mut()],
+        gap: gap * column_bytes,
+        columns: width,
+        fours: stride / 16,
+        steps: &steps,
+        above: if guide.above.is_some() { above } else { [core::ptr::null_mut(); 2] },
+        other: on * 2 * COLUMNS_OFF as isize * column_bytes,
+        then: 0,
+    };
+    // SAFETY: `width` columns are in the volume of the costs and two more in that of the paths; so many pixels are in both
+    // lines; and a column has `4 * fours` words, `WORDS` at the most, as the average has room for.
+    unsafe { go_down(&raw mut frame, costs, kept) };
 }
 
 /// Takes a path along the row, and adds it to the path from above, or the second one to both.
 #[inline(always)]
-pub(super) fn along<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>, line: &[u8], way: Way) {
+pub(super) fn along<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>, guide: Guide<'_>, way: Way) {
     let (width, stride) = (work.width, stride::<WORDS, ALL>(work));
-    let (count, fours) = (stride / 4, stride / 16);
-    if !is_whole(work, stride) || line.len() < width {
+    if !is_whole(work, stride) || width <= work.min_disparity || guide.here.len() < width {
         return;
     }
     let steps = Steps::new(work.penalties);
-    let mut paths = [Padded::<WORDS>::new(count, splat(far(work.penalties))); 2];
-    let [mut here, mut next] = paths.each_mut();
+    let mut paths = [Padded::<WORDS>::new(stride / 4, work.penalties); 2];
+    let shift = if guide.row % 2 != 0 { COLUMNS_OFF } else { 0 };
+    let top = words_of(work.top).as_ptr().wrapping_add(shift * stride / 4);
     let (costs, sums) = (words_of(work.costs).as_ptr(), words_mut(work.sums).as_mut_ptr());
     let from = match way {
-        Way::Right => words_mut(work.top).as_mut_ptr(),
-        Way::Left => sums,
+        Way::Right => top,
+        Way::Left => sums.cast_const(),
     };
-    let (mut least, mut before) = (0, None);
-    let pixels = line.iter().take(width).enumerate();
-    let go_on = |(x, &pixel): (usize, &u8)| {
-        let step = steps.between(work.penalties, pixel, before.unwrap_or(pixel));
-        let off = x * count;
-        // SAFETY: column `x` is in the volumes, and has `4 * fours` words, `WORDS` at the most.
-        least = unsafe {
-            let sums = [from.add(off), sums.add(off)];
-            blocks::step_along(here, least, step, costs.add(off), next, sums, fours)
-        };
-        before = Some(pixel);
-        core::mem::swap(&mut here, &mut next);
+    let (x, on, gap, columns) = match way {
+        Way::Right => (0, 1, 0, width),
+        Way::Left => (width - 1, -1, -2, width - work.min_disparity),
     };
-    match way {
-        Way::Right => pixels.for_each(go_on),
-        Way::Left => pixels.skip(work.min_disparity).rev().for_each(go_on),
+    let mut frame = Frame {
+        pixel: guide.here.as_ptr().wrapping_add(x),
+        on,
+        from: 0,
+        paths: paths.each_mut().map(|path| path.words.as_mut_ptr()),
+        gap: gap * stride as isize,
+        columns,
+        fours: stride / 16,
+        steps: &steps,
+        above: [core::ptr::null_mut(); 2],
+        other: 0,
+        then: -on,
+    };
+    let first = x * stride / 4;
+    // SAFETY: `columns` columns from column `x` on are in the volumes, and so many pixels in the line; and a column has
+    // `4 * fours` words, `WORDS` at the most, as the paths have room for.
+    unsafe {
+        go_along(&raw mut frame, costs.wrapping_add(first), from.wrapping_add(first), sums.wrapping_add(first));
     }
 }

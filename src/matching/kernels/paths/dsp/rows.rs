@@ -10,7 +10,7 @@ use super::super::{COLUMNS_OFF, Guide, PathWork};
 use super::{far, splat, stride};
 use crate::matching::kernels::scratch::{words_mut, words_of};
 use crate::matching::penalties::Penalties;
-use core::arch::naked_asm;
+use core::arch::asm;
 
 /// Where a path along the row goes.
 pub(super) enum Way {
@@ -144,55 +144,56 @@ macro_rules! choose_step {
 /// # Safety
 /// The frame's columns, `fours` times four words each, can be read from `costs` and `from` on, and written from `sums` on;
 /// a pixel for each from its place on; and the paths have a word more before and after.
-#[unsafe(naked)]
-unsafe extern "C" fn go_along(frame: *mut Frame, costs: *const u32, from: *const u32, sums: *mut u32) {
-    // r0 path, r1 its next pixel, r2 costs, r3 from, r4 sums
-    naked_asm!(
-        "push {{r4-r11, lr}}",
-        "mov lr, r0",
-        "mov r4, r3",
-        "mov r3, r2",
-        "mov r2, r1",
-        "mov r9, #0",
-        "1:",
-        choose_step!(),
-        "ldrd r0, r1, [lr, #12]",
-        "strd r1, r0, [lr, #12]",
-        "ldr r5, [lr, #28]",
-        "mvn r9, #0",
-        four_words!(
-            "2",
-            "ldr r10, [r0, #-1]"
-            "ldr r11, [r0, #1]"
-            "usub8 r12, r10, r11"
-            "sel r10, r11, r10"
-            "add r10, r10, r6"
-            "ldr r12, [r0], #4"
-            "usub8 r11, r10, r12"
-            "sel r10, r12, r10"
-            "uqsub8 r10, r7, r10"
-            "ldr r12, [r2], #4"
-            "usub8 r12, r8, r12"
-            "sub r10, r12, r10"
-            "ldr r11, [r3], #4"
-            "str r10, [r1], #4"
-            "uqadd8 r11, r11, r10"
-            "str r11, [r4], #4"
-            "usub8 r11, r9, r10"
-            "sel r9, r10, r9"
-        ),
-        least_of_four!(),
-        "ldr r10, [lr, #48]",
-        "str r10, [lr, #8]",
-        "ldrd r10, r11, [lr, #20]",
-        "add r2, r2, r10",
-        "add r3, r3, r10",
-        "add r4, r4, r10",
-        "subs r11, r11, #1",
-        "str r11, [lr, #24]",
-        "bne 1b",
-        "pop {{r4-r11, pc}}",
-    )
+#[inline(never)]
+unsafe fn go_along(frame: *mut Frame, costs: *const u32, from: *const u32, sums: *mut u32) {
+    // SAFETY: as the function's. `r6` and `r7`, which are the compiler's, are put back.
+    unsafe {
+        asm!(
+            // r0 path, r1 its next pixel, r2 costs, r3 from, r4 sums
+            "push {{r6, r7}}",
+            "mov r9, #0",
+            "1:",
+            choose_step!(),
+            "ldrd r0, r1, [lr, #12]",
+            "strd r1, r0, [lr, #12]",
+            "ldr r5, [lr, #28]",
+            "mvn r9, #0",
+            four_words!(
+                "2",
+                "ldr r10, [r0, #-1]"
+                "ldr r11, [r0, #1]"
+                "usub8 r12, r10, r11"
+                "sel r10, r11, r10"
+                "add r10, r10, r6"
+                "ldr r12, [r0], #4"
+                "usub8 r11, r10, r12"
+                "sel r10, r12, r10"
+                "uqsub8 r10, r7, r10"
+                "ldr r12, [r2], #4"
+                "usub8 r12, r8, r12"
+                "sub r10, r12, r10"
+                "ldr r11, [r3], #4"
+                "str r10, [r1], #4"
+                "uqadd8 r11, r11, r10"
+                "str r11, [r4], #4"
+                "usub8 r11, r9, r10"
+                "sel r9, r10, r9"
+            ),
+            least_of_four!(),
+            "ldr r10, [lr, #48]",
+            "str r10, [lr, #8]",
+            "ldrd r10, r11, [lr, #20]",
+            "add r2, r2, r10",
+            "add r3, r3, r10",
+            "add r4, r4, r10",
+            "subs r11, r11, #1",
+            "str r11, [lr, #24]",
+            "bne 1b",
+            "pop {{r6, r7}}",
+            inout("r2") costs => _, inout("r3") from => _, inout("r4") sums => _, inout("lr") frame => _,
+            out("r0") _, out("r1") _, out("r5") _, out("r8") _, out("r9") _, out("r10") _, out("r11") _, out("r12") _,
+        );
+    }
 }
 
 /// Takes the path from above into a row with agreements `costs`, from the average of two columns, rounded down, or from
@@ -200,76 +201,78 @@ unsafe extern "C" fn go_along(frame: *mut Frame, costs: *const u32, from: *const
 ///
 /// # Safety
 /// As for [`go_along`]; and the frame's columns of the row above can be read.
-#[unsafe(naked)]
-unsafe extern "C" fn go_down(frame: *mut Frame, costs: *const u32, kept: *mut u32) {
-    // r0 average, r2 costs, r3 kept
-    naked_asm!(
-        "push {{r4-r11, lr}}",
-        "mov lr, r0",
-        "mov r3, r2",
-        "mov r2, r1",
-        "1:",
-        "mov r9, #0",
-        "ldrd r10, r11, [lr, #36]",
-        "cmp r10, #0",
-        "beq 3f",
-        // The columns on both sides, or the nearest that there is.
-        "ldr r1, [lr, #44]",
-        "add r1, r3, r1",
-        "mov r0, r3",
-        "cmp r0, r10",
-        "it lo",
-        "movlo r0, r10",
-        "cmp r0, r11",
-        "it hi",
-        "movhi r0, r11",
-        "cmp r1, r10",
-        "it lo",
-        "movlo r1, r10",
-        "cmp r1, r11",
-        "it hi",
-        "movhi r1, r11",
-        "ldr r12, [lr, #12]",
-        "ldr r5, [lr, #28]",
-        "mvn r9, #0",
-        four_words!(
-            "2",
-            "ldr r10, [r0], #4"
-            "ldr r11, [r1], #4"
-            "uhadd8 r10, r10, r11"
-            "str r10, [r12], #4"
-            "usub8 r11, r9, r10"
-            "sel r9, r10, r9"
-        ),
-        least_of_four!(),
-        "3:",
-        choose_step!(),
-        "ldr r0, [lr, #12]",
-        "ldr r5, [lr, #28]",
-        four_words!(
-            "4",
-            "ldr r10, [r0, #-1]"
-            "ldr r11, [r0, #1]"
-            "usub8 r12, r10, r11"
-            "sel r10, r11, r10"
-            "add r10, r10, r6"
-            "ldr r12, [r0], #4"
-            "usub8 r11, r10, r12"
-            "sel r10, r12, r10"
-            "uqsub8 r10, r7, r10"
-            "ldr r12, [r2], #4"
-            "usub8 r12, r8, r12"
-            "sub r10, r12, r10"
-            "str r10, [r3], #4"
-        ),
-        "ldrd r10, r11, [lr, #20]",
-        "add r2, r2, r10",
-        "add r3, r3, r10",
-        "subs r11, r11, #1",
-        "str r11, [lr, #24]",
-        "bne 1b",
-        "pop {{r4-r11, pc}}",
-    )
+#[inline(never)]
+unsafe fn go_down(frame: *mut Frame, costs: *const u32, kept: *mut u32) {
+    // SAFETY: as for `go_along`.
+    unsafe {
+        asm!(
+            // r0 average, r2 costs, r3 kept
+            "push {{r6, r7}}",
+            "1:",
+            "mov r9, #0",
+            "ldrd r10, r11, [lr, #36]",
+            "cmp r10, #0",
+            "beq 3f",
+            // The columns on both sides, or the nearest that there is.
+            "ldr r1, [lr, #44]",
+            "add r1, r3, r1",
+            "mov r0, r3",
+            "cmp r0, r10",
+            "it lo",
+            "movlo r0, r10",
+            "cmp r0, r11",
+            "it hi",
+            "movhi r0, r11",
+            "cmp r1, r10",
+            "it lo",
+            "movlo r1, r10",
+            "cmp r1, r11",
+            "it hi",
+            "movhi r1, r11",
+            "ldr r12, [lr, #12]",
+            "ldr r5, [lr, #28]",
+            "mvn r9, #0",
+            four_words!(
+                "2",
+                "ldr r10, [r0], #4"
+                "ldr r11, [r1], #4"
+                "uhadd8 r10, r10, r11"
+                "str r10, [r12], #4"
+                "usub8 r11, r9, r10"
+                "sel r9, r10, r9"
+            ),
+            least_of_four!(),
+            "3:",
+            choose_step!(),
+            "ldr r0, [lr, #12]",
+            "ldr r5, [lr, #28]",
+            four_words!(
+                "4",
+                "ldr r10, [r0, #-1]"
+                "ldr r11, [r0, #1]"
+                "usub8 r12, r10, r11"
+                "sel r10, r11, r10"
+                "add r10, r10, r6"
+                "ldr r12, [r0], #4"
+                "usub8 r11, r10, r12"
+                "sel r10, r12, r10"
+                "uqsub8 r10, r7, r10"
+                "ldr r12, [r2], #4"
+                "usub8 r12, r8, r12"
+                "sub r10, r12, r10"
+                "str r10, [r3], #4"
+            ),
+            "ldrd r10, r11, [lr, #20]",
+            "add r2, r2, r10",
+            "add r3, r3, r10",
+            "subs r11, r11, #1",
+            "str r11, [lr, #24]",
+            "bne 1b",
+            "pop {{r6, r7}}",
+            inout("r2") costs => _, inout("r3") kept => _, inout("lr") frame => _,
+            out("r0") _, out("r1") _, out("r5") _, out("r8") _, out("r9") _, out("r10") _, out("r11") _, out("r12") _,
+        );
+    }
 }
 
 /// Whether there are all columns that the paths go through.
@@ -294,7 +297,7 @@ pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>,
     let mut between = Padded::<WORDS>::new(stride / 4, work.penalties);
     let top = words_mut(work.top).as_mut_ptr();
     let costs = words_of(work.costs).as_ptr();
-    let is_odd = guide.row % 2 != 0;
+    let is_odd = !guide.row.is_multiple_of(2);
     let last = width - 1;
     let column = |x: usize| top.wrapping_add(x * stride / 4);
     let (pixel, on, gap) = if is_odd { (last, -1, -2) } else { (0, 1, 0) };
@@ -328,7 +331,7 @@ pub(super) fn along<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>
     }
     let steps = Steps::new(work.penalties);
     let mut paths = [Padded::<WORDS>::new(stride / 4, work.penalties); 2];
-    let shift = if guide.row % 2 != 0 { COLUMNS_OFF } else { 0 };
+    let shift = if !guide.row.is_multiple_of(2) { COLUMNS_OFF } else { 0 };
     let top = words_of(work.top).as_ptr().wrapping_add(shift * stride / 4);
     let (costs, sums) = (words_of(work.costs).as_ptr(), words_mut(work.sums).as_mut_ptr());
     let from = match way {

@@ -35,7 +35,9 @@ pub(super) struct Looks<'a> {
 }
 
 /// The features of a row, in `room`.
-#[inline(always)]
+// In vectors they are compiled with the kernel's instructions; in words once for all numbers of disparities.
+#[cfg_attr(target_pointer_width = "64", inline(always))]
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 pub(super) fn of<'a, S: Along>(
     work: &PathWork<'_>,
     lines: [&Around<'a>; 2],

@@ -21,22 +21,12 @@ pub(in super::super) fn looks(lines: &Around<'_>, gradient: u8, [along, across, 
     let count = along.len().min(across.len()).min(census.len());
     // The groups of four that see nothing outside the line and have all places.
     let groups = (width.saturating_sub(NEAR - COLUMNS) / COLUMNS).min(count.saturating_sub(REACH) / COLUMNS);
-    for group in 0..groups {
-        let x = group * COLUMNS;
-        // SAFETY: `NEAR` columns from `x` on are in the lines, four from `x + REACH` on in the places.
-        unsafe {
-            let code = codes([lines[0], lines[2], lines[4]].map(|line| line.as_ptr().add(x)));
-            census.as_mut_ptr().add(x + REACH).cast::<u32>().write_unaligned(code);
-        }
-    }
-    for group in 0..groups {
-        let x = group * COLUMNS;
-        // SAFETY: as above.
-        unsafe {
-            let (one, other) = gradients([lines[1], lines[2], lines[3]].map(|line| line.as_ptr().add(x)), gradient);
-            along.as_mut_ptr().add(x + REACH).cast::<u32>().write_unaligned(one);
-            across.as_mut_ptr().add(x + REACH).cast::<u32>().write_unaligned(other);
-        }
+    let [above2, above, here, below, below2] = lines.map(<[u8]>::as_ptr);
+    // SAFETY: what `groups` groups see from the first column on is in the lines, and from `REACH` on they have places.
+    unsafe {
+        let place = |row: &mut [u8]| row.as_mut_ptr().wrapping_add(REACH).cast();
+        codes([above2, here, below2], place(census), groups);
+        gradients([above, here, below], gradient, [place(along), place(across)], groups);
     }
     let after = REACH + groups * COLUMNS;
     for x in core::iter::once(0).chain((after..count.min(width)).step_by(COLUMNS)) {
@@ -50,10 +40,13 @@ pub(in super::super) fn looks(lines: &Around<'_>, gradient: u8, [along, across, 
                 inside.copied().unwrap_or_else(outside)
             })
         });
-        let near = near.each_ref().map(|near| near.as_flattened().as_ptr());
-        // SAFETY: there are `NEAR` columns.
-        let (code, (one, other)) =
-            unsafe { (codes([near[0], near[2], near[4]]), gradients([near[1], near[2], near[3]], gradient)) };
+        let [above2, above, here, below, below2] = near.each_ref().map(|near| near.as_flattened().as_ptr());
+        let [mut code, mut one, mut other] = [0; 3];
+        // SAFETY: a group sees `NEAR` columns.
+        unsafe {
+            codes([above2, here, below2], &raw mut code, 1);
+            gradients([above, here, below], gradient, [&raw mut one, &raw mut other], 1);
+        }
         for (row, word) in [(&mut *along, one), (&mut *across, other), (&mut *census, code)] {
             put(row.get_mut(x..).unwrap_or_default(), word);
         }
@@ -69,36 +62,51 @@ fn put(row: &mut [u8], word: u32) {
     }
 }
 
-/// The codes of four pixels, from the rows two above, here, and two below.
+/// The codes of groups of four pixels, from the rows two above, here, and two below: each group sees [`NEAR`] columns of a
+/// row, which are four further with each.
 ///
 /// # Safety
-/// [`NEAR`] columns can be read in each row.
-#[inline(always)]
-unsafe fn codes(near: [*const u8; 3]) -> u32 {
-    // SAFETY: the last columns that are read are those from 8 on.
-    let word = |row: usize, column: usize| unsafe { near[row].add(column).cast::<u32>().read_unaligned() };
-    let here = word(1, REACH);
-    let mut codes = 0;
-    for (bit, (row, column)) in [(0, 0), (0, 4), (0, 8), (1, 2), (1, 6), (2, 0), (2, 4), (2, 8)].into_iter().enumerate()
-    {
-        codes |= bits_where_less(word(row, column), here, splat(1 << bit));
+/// They can be read, and the codes written.
+#[inline(never)]
+unsafe fn codes(near: [*const u8; 3], out: *mut u32, groups: usize) {
+    for group in 0..groups {
+        // SAFETY: the last columns that are read are those from 8 on.
+        let word = |row: usize, column: usize| unsafe {
+            near[row].add(COLUMNS * group + column).cast::<u32>().read_unaligned()
+        };
+        let here = word(1, REACH);
+        let mut codes = 0;
+        for (bit, (row, column)) in
+            [(0, 0), (0, 4), (0, 8), (1, 2), (1, 6), (2, 0), (2, 4), (2, 8)].into_iter().enumerate()
+        {
+            codes |= bits_where_less(word(row, column), here, splat(1 << bit));
+        }
+        // SAFETY: as the function's.
+        unsafe { out.add(group).write_unaligned(codes) };
     }
-    codes
 }
 
-/// The gradients of four pixels along the line and across it, from the rows above, here, and below.
+/// The gradients along the line and across it, likewise, from the rows above, here, and below.
 ///
 /// # Safety
 /// As for [`codes`].
-#[inline(always)]
-unsafe fn gradients(near: [*const u8; 3], most: u8) -> (u32, u32) {
-    // SAFETY: the last columns that are read are those from 5 on.
-    let word = |row: usize, column: usize| unsafe { near[row].add(column).cast::<u32>().read_unaligned() };
+#[inline(never)]
+unsafe fn gradients(near: [*const u8; 3], most: u8, [along, across]: [*mut u32; 2], groups: usize) {
     // Sobel's sums: the middle one twice.
     let sum = |a: u32, b: u32, c: u32| [even(a) + 2 * even(b) + even(c), odd(a) + 2 * odd(b) + odd(c)];
-    let along = |column: usize| sum(word(0, column), word(1, column), word(2, column));
-    let across = |row: usize| sum(word(row, REACH - 1), word(row, REACH), word(row, REACH + 1));
-    (cut(along(REACH + 1), along(REACH - 1), most), cut(across(2), across(0), most))
+    for group in 0..groups {
+        // SAFETY: the last columns that are read are those from 5 on.
+        let word = |row: usize, column: usize| unsafe {
+            near[row].add(COLUMNS * group + column).cast::<u32>().read_unaligned()
+        };
+        let sides = |column: usize| sum(word(0, column), word(1, column), word(2, column));
+        let ends = |row: usize| sum(word(row, REACH - 1), word(row, REACH), word(row, REACH + 1));
+        // SAFETY: as the function's.
+        unsafe {
+            along.add(group).write_unaligned(cut(sides(REACH + 1), sides(REACH - 1), most));
+            across.add(group).write_unaligned(cut(ends(2), ends(0), most));
+        }
+    }
 }
 
 #[inline(always)]

@@ -18,7 +18,7 @@
 //! * `cost`, `gather`, `decide`: the passes.
 //! * `dispatch`: which groups of bytes they are called with.
 //! * `group`: what they are written for. `words`, with `dsp`: four bytes in a word; `sse2`, `avx2`, `neon`: registers of
-//!   larger processors.
+//!   larger processors, with what they have alike from `registers`.
 //!
 //! The work is the same for every picture, but for some instructions where a winner is at an end of the search.
 
@@ -35,6 +35,8 @@ mod avx2;
 mod dsp;
 #[cfg(target_arch = "aarch64")]
 mod neon;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod registers;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
 mod words;

@@ -15,6 +15,10 @@ macro_rules! in_words {
             16 => words::$pass::<$($scheme,)? 4, true>($work, $($argument),*),
             32 => words::$pass::<$($scheme,)? 8, true>($work, $($argument),*),
             64 => words::$pass::<$($scheme,)? 16, true>($work, $($argument),*),
+            128 => words::$pass::<$($scheme,)? 32, true>($work, $($argument),*),
+            // Room for as few as will do: a path's costs stand on the stack, several times.
+            ..64 => words::$pass::<$($scheme,)? 16, false>($work, $($argument),*),
+            ..128 => words::$pass::<$($scheme,)? 32, false>($work, $($argument),*),
             _ => words::$pass::<$($scheme,)? 64, false>($work, $($argument),*),
         }
     };

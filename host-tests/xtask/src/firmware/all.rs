@@ -48,7 +48,7 @@ pub fn run(check: bool) -> Outcome {
     for result in &results {
         held(result)?;
     }
-    tables::into_readme(&part, check)?;
+    tables::into_readme(&tables::FIRMWARE, &part, check)?;
     if real.is_empty() {
         println!("checksums on real pairs: NOT RUN, set STEREO_DATA to the folder that holds stereo/");
         return Ok(());

@@ -15,7 +15,7 @@ mod log;
 mod program;
 mod refusals;
 mod summary;
-mod tables;
+pub mod tables;
 
 #[path = "../../../../examples/firmware/src/board.rs"]
 mod board;

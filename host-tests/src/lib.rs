@@ -5,6 +5,7 @@
 //! * [`mock`]: a camera that reads image files.
 //! * [`scene`]: a ray-traced scene as a camera, with its true depth, disparity and occlusion.
 //! * [`calibration`]: rectified rigs from Middlebury's and KITTI's files.
+//! * [`real`]: real pairs with a known truth, also altered, and scores on them.
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
 //! * [`twin`]: each stage again, naively, to hold the core to.
 //! * [`map`], [`pfm`], [`ply`], [`colour`], [`output`], [`report`]: results as files. [`command_line`]: errors in one line.
@@ -17,6 +18,7 @@ pub mod mock;
 pub mod output;
 pub mod pfm;
 pub mod ply;
+pub mod real;
 pub mod report;
 pub mod run;
 pub mod scene;

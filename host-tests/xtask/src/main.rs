@@ -2,22 +2,26 @@
 //!
 //! * `test` sets up what it needs and runs everything: the one test command.
 //! * `firmware` runs the firmware example in QEMU, on one core or on all.
+//! * `growth` measures how the cost grows with the work.
+//! * `altered` measures how right the methods are on altered real images, beside OpenCV.
 //! * `readme` writes the generated parts of README.md anew, or checks them.
 //! * `c` tests the C interface alone, one step of `test`.
 //! * `header` writes the header of the C interface anew, or checks it.
 //!
-//! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`], [`c`],
-//! [`arm64`] and [`readme`] are four of them.
+//! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`],
+//! [`growth`], [`c`], [`arm64`] and [`readme`] are five of them. [`altered`] needs data that not everybody has.
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 use stereopsis_host::command_line::{one_line, usage_line};
 
+mod altered;
 mod arm64;
 mod c;
 mod elf;
 mod firmware;
+mod growth;
 mod header;
 mod packages;
 mod pictures;
@@ -40,6 +44,10 @@ enum Chore {
     Test,
     /// Runs the firmware example in QEMU and holds it to the host, bit for bit.
     Firmware(firmware::Arguments),
+    /// Measures what an evaluation costs while the work grows: instructions on two cores, or times on this machine.
+    Growth(growth::Arguments),
+    /// Measures how right the methods are on real pairs with noise and unequal cameras, beside OpenCV.
+    Altered(altered::Arguments),
     /// Writes the generated parts of README.md anew.
     Readme {
         /// Writes nothing; fails when a part differs from what would be written.
@@ -63,7 +71,7 @@ fn main() -> ExitCode {
         Err(error) => {
             eprintln!(
                 "error: {}",
-                one_line(&usage_line(&error, "the chores are test, firmware, c, header and readme"))
+                one_line(&usage_line(&error, "the chores are test, firmware, growth, altered, c, header and readme"))
             );
             return ExitCode::FAILURE;
         }
@@ -71,6 +79,8 @@ fn main() -> ExitCode {
     let done = match arguments.chore {
         Chore::Test => test::run(),
         Chore::Firmware(arguments) => firmware::run(&arguments),
+        Chore::Growth(arguments) => growth::run(&arguments),
+        Chore::Altered(arguments) => altered::run(&arguments),
         Chore::Readme { check } => readme::run(check),
         Chore::C => c::run(),
         Chore::Header { check } => header::run(check),

@@ -5,14 +5,11 @@ use super::checksums::{self, Checksum};
 use super::frame::{self, Frame, MOST_STACK};
 use super::program::{Built, Program};
 use super::scene::Scene;
-use super::{refusals, tables};
+use super::{parallel, refusals, tables};
 use crate::pictures::Pictures;
 use crate::setup;
 use crate::steps::{Failure, Outcome, root};
-use std::collections::VecDeque;
 use std::fs;
-use std::sync::{Mutex, PoisonError};
-use std::thread;
 use stereopsis_host::run::Method;
 
 /// Width, height and disparities that everything is measured at.
@@ -23,8 +20,6 @@ const SMALLEST: [(u16, u16, u16); 1] = [(96, 64, 16)];
 const SPREAD_WIDTH: u16 = 160;
 /// The most that they may differ, of their mean.
 const MOST_SPREAD: f64 = 0.05;
-/// Programs that are worked on at a time: while one is built another one runs.
-const WORKERS: usize = 2;
 
 /// What came of one program.
 pub struct Result {
@@ -42,13 +37,13 @@ pub fn run(check: bool) -> Outcome {
     let real = checksums::pairs()?;
     refusals::check()?;
     let jobs = programs()?;
-    let results = work(jobs, |program| one(program, &real))?;
+    let results = parallel::work(jobs, |program| one(program, &real))?;
     let part = tables::part(&results)?;
     println!("{part}");
     for result in &results {
         held(result)?;
     }
-    tables::into_readme(&part, check)?;
+    tables::into_readme(&tables::FIRMWARE, &part, check)?;
     if real.is_empty() {
         println!("checksums on real pairs: NOT RUN, set STEREO_DATA to the folder that holds stereo/");
         return Ok(());
@@ -139,26 +134,6 @@ fn budget(what: &str) -> Outcome<u64> {
     number.ok_or_else(|| Failure::new(format!("memory.x has no number for {what}")))
 }
 
-/// The work on all jobs by several threads; what came of them in their order, or the first failure.
-fn work<J: Send, R: Send>(jobs: Vec<J>, work: impl Fn(J) -> Outcome<R> + Sync) -> Outcome<Vec<R>> {
-    let queue: Mutex<VecDeque<_>> = Mutex::new(jobs.into_iter().enumerate().collect());
-    let done = Mutex::new(Vec::new());
-    let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
-    let worker = || {
-        while let Some((at, job)) = next() {
-            let result = work(job);
-            if result.is_err() {
-                queue.lock().unwrap_or_else(PoisonError::into_inner).clear();
-            }
-            done.lock().unwrap_or_else(PoisonError::into_inner).push((at, result));
-        }
-    };
-    thread::scope(|scope| (0..WORKERS).for_each(|_| drop(scope.spawn(worker))));
-    let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
-    done.sort_by_key(|(at, _)| *at);
-    done.into_iter().map(|(_, result)| result).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -167,12 +142,5 @@ mod tests {
     fn spread_is_of_the_mean() {
         assert_eq!(spread(&[("a", 90), ("b", 100), ("c", 110)]), 0.2);
         assert_eq!(spread(&[("a", 7)]), 0.0);
-    }
-
-    #[test]
-    fn jobs_keep_their_order_and_failures_come_through() {
-        assert_eq!(work((0..9).collect(), |n| Ok(n * n)).expect("squares"), [0, 1, 4, 9, 16, 25, 36, 49, 64]);
-        let failed = work((0..9).collect(), |n| if n == 4 { Err(Failure::new("four")) } else { Ok(n) });
-        assert_eq!(failed.expect_err("a failure").to_string(), "four");
     }
 }

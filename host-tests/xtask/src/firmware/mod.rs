@@ -3,22 +3,23 @@
 //! * [`arguments`]: what is asked for. [`program`]: one build of the example. [`emulate`]: QEMU. [`log`]: the firmware's log as
 //!   text.
 //! * [`frame`]: one frame on one core, held to the host. [`summary`]: the files that are written of it.
-//! * [`all`]: every core, method and size; [`tables`] of it for README.md; [`checksums`] on real pictures.
+//! * [`all`]: every core, method and size; [`tables`] of it for README.md, [`parallel`] work; [`checksums`] on real pictures.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
 
 mod all;
 mod arguments;
 mod checksums;
 mod emulate;
-mod frame;
+pub mod frame;
 mod log;
-mod program;
+pub mod parallel;
+pub mod program;
 mod refusals;
 mod summary;
-mod tables;
+pub mod tables;
 
 #[path = "../../../../examples/firmware/src/board.rs"]
-mod board;
+pub mod board;
 #[path = "../../../../examples/firmware/src/camera/scene.rs"]
 pub mod scene;
 

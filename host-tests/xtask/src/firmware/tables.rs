@@ -1,12 +1,20 @@
-//! The part of README.md that is made of the firmware's figures.
+//! The parts of README.md that are made of the firmware's figures.
 
 use super::all::{Result, spread};
 use crate::steps::{Failure, Outcome, command, output_of, root};
 use std::fs;
+use std::ops::Range;
+use std::path::PathBuf;
 
-/// The lines around the part.
-const BEGIN: &str = "<!-- generated: firmware -->\n";
-const END: &str = "<!-- end: firmware -->";
+/// A part of README.md, between lines that name it.
+pub struct Part {
+    pub name: &'static str,
+    /// What writes it.
+    pub command: &'static str,
+}
+
+/// That of `cargo xtask firmware --all`.
+pub const FIRMWARE: Part = Part { name: "firmware", command: "cargo xtask firmware --all" };
 
 /// How far a figure may lie from README.md's: another folder moves a constant, another compiler makes other code.
 const WITHIN: f64 = 0.01;
@@ -17,9 +25,14 @@ const PICTURES: [&str; 4] = ["blank", "noise", "stripes", "scene"];
 
 /// The whole part.
 pub fn part(results: &[Result]) -> Outcome<String> {
+    Ok(format!("{}\n{}", with_compiler(&figures(results))?, spreads(results)))
+}
+
+/// A table with a line below it that says what compiled the programs.
+pub fn with_compiler(table: &str) -> Outcome<String> {
     let compiler = output_of(&mut command("rustc", &["--version"]))?;
     let version = compiler.split_whitespace().nth(1).unwrap_or_default();
-    Ok(format!("{}\nCompiler: rustc {version}.\n\n{}", figures(results), spreads(results)))
+    Ok(format!("{table}\nCompiler: rustc {version}.\n"))
 }
 
 /// A line for each program.
@@ -65,22 +78,40 @@ fn spreads(results: &[Result]) -> String {
     table
 }
 
-/// Writes the part into README.md, or only compares.
-pub fn into_readme(part: &str, check: bool) -> Outcome {
-    let path = root().join("README.md");
-    let failed = |what: String| Failure::new(format!("README.md: {what}"));
-    let readme = fs::read_to_string(&path).map_err(|e| failed(e.to_string()))?;
-    let first = readme.find(BEGIN).ok_or_else(|| failed(format!("there is no line {}", BEGIN.trim())))? + BEGIN.len();
-    let length = readme[first..].find(END).ok_or_else(|| failed(format!("there is no line {END}")))?;
-    let old = &readme[first..first + length];
-    if check {
-        return match difference(old, part) {
-            Some(what) => Err(failed(format!("{what}; run `cargo xtask firmware --all`"))),
-            None => Ok(()),
-        };
+/// Writes a part's text into README.md, or only compares.
+pub fn into_readme(part: &Part, text: &str, check: bool) -> Outcome {
+    if !check {
+        return splice(part, text);
     }
-    let new = format!("{}\n{part}\n{}", &readme[..first], &readme[first + length..]);
-    fs::write(&path, new).map_err(|e| failed(e.to_string()))
+    let (readme, place) = part.find()?;
+    match difference(&readme[place], text) {
+        Some(what) => Err(Failure::new(format!("README.md: {what}; run `{}`", part.command))),
+        None => Ok(()),
+    }
+}
+
+/// Writes a part's text into README.md.
+pub fn splice(part: &Part, text: &str) -> Outcome {
+    let (mut readme, place) = part.find()?;
+    readme.replace_range(place, &format!("\n{text}\n"));
+    fs::write(readme_path(), readme).map_err(|e| Failure::new(format!("README.md: {e}")))
+}
+
+fn readme_path() -> PathBuf {
+    root().join("README.md")
+}
+
+impl Part {
+    /// README.md, and where the part stands in it.
+    fn find(&self) -> Outcome<(String, Range<usize>)> {
+        let failed = |what: String| Failure::new(format!("README.md: {what}"));
+        let (begin, end) = (format!("<!-- generated: {} -->\n", self.name), format!("<!-- end: {} -->", self.name));
+        let readme = fs::read_to_string(readme_path()).map_err(|e| failed(e.to_string()))?;
+        let missing = |line: &str| failed(format!("there is no line {}", line.trim()));
+        let first = readme.find(&begin).ok_or_else(|| missing(&begin))? + begin.len();
+        let length = readme[first..].find(&end).ok_or_else(|| missing(&end))?;
+        Ok((readme, first..first + length))
+    }
 }
 
 /// How two parts differ, if they do: in words, or in figures by more than they may.
@@ -94,7 +125,7 @@ fn difference(old: &str, new: &str) -> Option<String> {
     };
     let (old, new) = (lines(old), lines(new));
     if old.len() != new.len() {
-        return Some(format!("the firmware's tables have {} lines where {} are due", old.len(), new.len()));
+        return Some(format!("the tables have {} lines where {} are due", old.len(), new.len()));
     }
     let is_near = |a: &str, b: &str| match (a.parse::<f64>(), b.parse::<f64>()) {
         // Shares of a percent and small counts may differ by a little in themselves.

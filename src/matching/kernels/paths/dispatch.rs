@@ -26,6 +26,10 @@ macro_rules! in_words {
             16 => words::$pass::<Words<4, true>, $($more)?>($work, $($argument),*),
             32 => words::$pass::<Words<8, true>, $($more)?>($work, $($argument),*),
             64 => words::$pass::<Words<16, true>, $($more)?>($work, $($argument),*),
+            128 => words::$pass::<Words<32, true>, $($more)?>($work, $($argument),*),
+            // Room for as few as will do: a path's costs stand on the stack, several times.
+            ..64 => words::$pass::<Words<16, false>, $($more)?>($work, $($argument),*),
+            ..128 => words::$pass::<Words<32, false>, $($more)?>($work, $($argument),*),
             _ => words::$pass::<Words<64, false>, $($more)?>($work, $($argument),*),
         }
     };

@@ -2,6 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::group::Group;
+use super::registers::register;
 use core::arch::x86_64::*;
 
 /// 32 bytes in a register.
@@ -19,29 +20,7 @@ macro_rules! safely {
 }
 
 impl Group for Wide {
-    const LANES: usize = 32;
-    type Cell = [u8; 32];
-    type Bytes = [u8; 32];
-
-    #[inline(always)]
-    fn cells(bytes: &[u8]) -> &[Self::Cell] {
-        bytes.as_chunks().0
-    }
-
-    #[inline(always)]
-    fn cells_mut(bytes: &mut [u8]) -> &mut [Self::Cell] {
-        bytes.as_chunks_mut().0
-    }
-
-    #[inline(always)]
-    fn groups(bytes: &[u8]) -> &[Self::Bytes] {
-        bytes.as_chunks().0
-    }
-
-    #[inline(always)]
-    fn of_bytes(bytes: Self::Bytes) -> Self {
-        Self::of(bytes)
-    }
+    register!(32);
 
     #[inline(always)]
     fn of(cell: Self::Cell) -> Self {
@@ -149,16 +128,12 @@ impl Group for Wide {
             Self(_mm256_broadcastb_epi8(_mm_minpos_epu16(halves)))
         })
     }
+}
 
+impl Wide {
+    /// The last lane that has a number, which one has: see [`register`].
     #[inline(always)]
-    fn last_least(cells: &[Self]) -> (u8, usize) {
-        let all = cells.iter().fold(
-            Self::splat(u8::MAX),
-            #[inline(always)]
-            |all, &cell| all.min(cell),
-        );
-        let wanted = all.least();
-        let least = Self::lane(&[wanted], 0);
+    fn last_lane_of(cells: &[Self], number: Self) -> usize {
         // A bit for each lane that has it, of 64 at a time.
         let mut place = 0;
         for (first, cells) in (0..).step_by(64).zip(cells.chunks(2)) {
@@ -166,29 +141,12 @@ impl Group for Wide {
                 0u64,
                 #[inline(always)]
                 |bits, cell| {
-                    bits << 32 | u64::from(safely!(_mm256_movemask_epi8(_mm256_cmpeq_epi8(cell.0, wanted.0))) as u32)
+                    bits << 32 | u64::from(safely!(_mm256_movemask_epi8(_mm256_cmpeq_epi8(cell.0, number.0))) as u32)
                 },
             );
             let last = (first | 63usize) - (equal | 1).leading_zeros() as usize;
             place = if equal != 0 { last } else { place };
         }
-        (least, place)
-    }
-
-    #[inline(always)]
-    fn lane(cells: &[Self], lane: usize) -> u8 {
-        // SAFETY: registers are bytes, and as many of them are looked at as there are.
-        let bytes = unsafe { core::slice::from_raw_parts(cells.as_ptr().cast(), size_of_val(cells)) };
-        bytes.get(lane).copied().unwrap_or(0)
-    }
-
-    #[inline(always)]
-    fn raise(cells: &mut [Self], lane: usize) {
-        // SAFETY: as above; any byte is good.
-        let bytes: &mut [u8] =
-            unsafe { core::slice::from_raw_parts_mut(cells.as_mut_ptr().cast(), size_of_val(cells)) };
-        if let Some(byte) = bytes.get_mut(lane) {
-            *byte = u8::MAX;
-        }
+        place
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! * `cost`, `gather`, `decide`: the passes.
 //! * `group`: what they are written for. `words`: four bytes in a word; `sse2`, `avx2`, `neon`: registers of larger
-//!   processors.
+//!   processors, with what they have alike from `registers`.
 
 mod cost;
 mod decide;
@@ -13,6 +13,8 @@ mod group;
 mod avx2;
 #[cfg(target_arch = "aarch64")]
 mod neon;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod registers;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
 mod words;

@@ -2,6 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::group::Group;
+use super::registers::register;
 use core::arch::aarch64::*;
 
 /// 16 bytes in a register.
@@ -18,29 +19,7 @@ macro_rules! safely {
 }
 
 impl Group for Vector {
-    const LANES: usize = 16;
-    type Cell = [u8; 16];
-    type Bytes = [u8; 16];
-
-    #[inline(always)]
-    fn cells(bytes: &[u8]) -> &[Self::Cell] {
-        bytes.as_chunks().0
-    }
-
-    #[inline(always)]
-    fn cells_mut(bytes: &mut [u8]) -> &mut [Self::Cell] {
-        bytes.as_chunks_mut().0
-    }
-
-    #[inline(always)]
-    fn groups(bytes: &[u8]) -> &[Self::Bytes] {
-        bytes.as_chunks().0
-    }
-
-    #[inline(always)]
-    fn of_bytes(bytes: Self::Bytes) -> Self {
-        Self::of(bytes)
-    }
+    register!(16);
 
     #[inline(always)]
     fn of(cell: Self::Cell) -> Self {
@@ -133,43 +112,22 @@ impl Group for Vector {
     fn least(self) -> Self {
         safely!(Self(vdupq_n_u8(vminvq_u8(self.0))))
     }
+}
 
+impl Vector {
+    /// The last lane that has a number, which one has: see [`register`].
     #[inline(always)]
-    fn last_least(cells: &[Self]) -> (u8, usize) {
-        let all = cells.iter().fold(
-            Self::splat(u8::MAX),
-            #[inline(always)]
-            |all, &cell| all.min(cell),
-        );
-        let wanted = all.least();
-        let least = Self::lane(&[wanted], 0);
+    fn last_lane_of(cells: &[Self], number: Self) -> usize {
         let mut place = 0;
         for (first, cell) in (0..).step_by(Self::LANES).zip(cells) {
             // Four bits for each lane that has it.
             let equal = safely!({
-                let lanes = vreinterpretq_u16_u8(vceqq_u8(cell.0, wanted.0));
+                let lanes = vreinterpretq_u16_u8(vceqq_u8(cell.0, number.0));
                 vget_lane_u64(vreinterpret_u64_u8(vshrn_n_u16(lanes, 4)), 0)
             });
             let last = (first + 15usize).wrapping_sub(equal.leading_zeros() as usize / 4);
             place = if equal != 0 { last } else { place };
         }
-        (least, place)
-    }
-
-    #[inline(always)]
-    fn lane(cells: &[Self], lane: usize) -> u8 {
-        // SAFETY: registers are bytes, and as many of them are looked at as there are.
-        let bytes = unsafe { core::slice::from_raw_parts(cells.as_ptr().cast(), size_of_val(cells)) };
-        bytes.get(lane).copied().unwrap_or(0)
-    }
-
-    #[inline(always)]
-    fn raise(cells: &mut [Self], lane: usize) {
-        // SAFETY: as above; any byte is good.
-        let bytes: &mut [u8] =
-            unsafe { core::slice::from_raw_parts_mut(cells.as_mut_ptr().cast(), size_of_val(cells)) };
-        if let Some(byte) = bytes.get_mut(lane) {
-            *byte = u8::MAX;
-        }
+        place
     }
 }

@@ -2,6 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::group::Group;
+use super::registers::register;
 use core::arch::x86_64::*;
 
 /// 16 bytes in a register.
@@ -18,29 +19,7 @@ macro_rules! safely {
 }
 
 impl Group for Vector {
-    const LANES: usize = 16;
-    type Cell = [u8; 16];
-    type Bytes = [u8; 16];
-
-    #[inline(always)]
-    fn cells(bytes: &[u8]) -> &[Self::Cell] {
-        bytes.as_chunks().0
-    }
-
-    #[inline(always)]
-    fn cells_mut(bytes: &mut [u8]) -> &mut [Self::Cell] {
-        bytes.as_chunks_mut().0
-    }
-
-    #[inline(always)]
-    fn groups(bytes: &[u8]) -> &[Self::Bytes] {
-        bytes.as_chunks().0
-    }
-
-    #[inline(always)]
-    fn of_bytes(bytes: Self::Bytes) -> Self {
-        Self::of(bytes)
-    }
+    register!(16);
 
     #[inline(always)]
     fn of(cell: Self::Cell) -> Self {
@@ -148,16 +127,12 @@ impl Group for Vector {
             Self(_mm_shuffle_epi32(_mm_shufflelo_epi16(one, 0), 0))
         })
     }
+}
 
+impl Vector {
+    /// The last lane that has a number, which one has: see [`register`].
     #[inline(always)]
-    fn last_least(cells: &[Self]) -> (u8, usize) {
-        let all = cells.iter().fold(
-            Self::splat(u8::MAX),
-            #[inline(always)]
-            |all, &cell| all.min(cell),
-        );
-        let wanted = all.least();
-        let least = Self::lane(&[wanted], 0);
+    fn last_lane_of(cells: &[Self], number: Self) -> usize {
         // A bit for each lane that has it, of 64 at a time.
         let mut place = 0;
         for (first, cells) in (0..).step_by(64).zip(cells.chunks(4)) {
@@ -165,29 +140,12 @@ impl Group for Vector {
                 0u64,
                 #[inline(always)]
                 |bits, cell| {
-                    bits << 16 | u64::from(safely!(_mm_movemask_epi8(_mm_cmpeq_epi8(cell.0, wanted.0))) as u32)
+                    bits << 16 | u64::from(safely!(_mm_movemask_epi8(_mm_cmpeq_epi8(cell.0, number.0))) as u32)
                 },
             );
             let last = (first | 63usize) - (equal | 1).leading_zeros() as usize;
             place = if equal != 0 { last } else { place };
         }
-        (least, place)
-    }
-
-    #[inline(always)]
-    fn lane(cells: &[Self], lane: usize) -> u8 {
-        // SAFETY: registers are bytes, and as many of them are looked at as there are.
-        let bytes = unsafe { core::slice::from_raw_parts(cells.as_ptr().cast(), size_of_val(cells)) };
-        bytes.get(lane).copied().unwrap_or(0)
-    }
-
-    #[inline(always)]
-    fn raise(cells: &mut [Self], lane: usize) {
-        // SAFETY: as above; any byte is good.
-        let bytes: &mut [u8] =
-            unsafe { core::slice::from_raw_parts_mut(cells.as_mut_ptr().cast(), size_of_val(cells)) };
-        if let Some(byte) = bytes.get_mut(lane) {
-            *byte = u8::MAX;
-        }
+        place
     }
 }

@@ -1,0 +1,66 @@
+//! Instructions on emulated cores: a program for each number of disparities, with frames of all sizes.
+
+use super::sizes::{Column, Series, Size, series};
+use super::table;
+use crate::firmware::board::{Board, M4, M55};
+use crate::firmware::frame::{self, Frame};
+use crate::firmware::program::{Built, Program};
+use crate::firmware::scene::Scene;
+use crate::firmware::{parallel, tables};
+use crate::pictures::Pictures;
+use crate::setup;
+use crate::steps::Outcome;
+use stereopsis_host::run::Method;
+
+/// A core that works in words and one that works in vectors.
+const CORES: [Board; 2] = [M4, M55];
+
+/// Sizes, an odd width and numbers of disparities that are no power of two among them.
+const WIDTHS: [u16; 5] = [80, 160, 319, 320, 640];
+const HEIGHTS: [u16; 4] = [30, 60, 120, 240];
+const DISPARITIES: [u16; 7] = [16, 32, 48, 64, 96, 128, 256];
+
+/// How many times as much an evaluation may cost as at a smaller size: lines that are no whole words long cost more, and
+/// numbers of disparities that paths are not unrolled for.
+const MOST: f64 = 1.35;
+/// The same where the disparities are no multiple of 32: kernels that keep 32 of them in a word work in halves then.
+const MOST_IN_HALVES: f64 = 2.0;
+
+/// The part of README.md.
+const PART: tables::Part = tables::Part { name: "growth", command: "cargo xtask growth" };
+
+/// Measures all of it and prints it; writes the table into README.md, or compares it.
+pub fn run(check: bool) -> Outcome {
+    setup::firmware(&CORES.map(|board| board.target))?;
+    let series = series(&WIDTHS, &HEIGHTS, &DISPARITIES);
+    let jobs: Vec<_> = CORES.into_iter().flat_map(|board| Method::ALL.map(|method| (board, method))).collect();
+    let columns = parallel::work(jobs, |(board, method)| column(board, method, &series))?;
+    let text = table::text(&series, &columns);
+    println!("{text}");
+    table::held(&series, &columns, |size| if size.disparities.is_multiple_of(32) { MOST } else { MOST_IN_HALVES })?;
+    tables::into_readme(&PART, &tables::with_compiler(&text)?, check)
+}
+
+/// The instructions of one method on one core, for each evaluation, at all sizes.
+fn column(board: Board, method: Method, series: &[Series]) -> Outcome<Column> {
+    let sizes: Vec<Size> = series.iter().flat_map(|(_, sizes)| sizes.iter().copied()).collect();
+    let (widest, highest) = (WIDTHS[WIDTHS.len() - 1], HEIGHTS[HEIGHTS.len() - 1]);
+    let mut costs = vec![0.0; sizes.len()];
+    for disparities in DISPARITIES {
+        let built = Program::new(board, method, widest, highest, disparities)?.build()?;
+        let mut stack = 0;
+        for (cost, &size) in costs.iter_mut().zip(&sizes).filter(|(_, size)| size.disparities == disparities) {
+            let frame = frame_of(&built, size)?;
+            *cost = frame.instructions as f64 / size.evaluations() as f64;
+            stack = frame.stack;
+        }
+        println!("{} `{method}` with {disparities} disparities is measured, {stack} bytes of stack", board.core);
+    }
+    Ok(Column { on: board.core.to_owned(), method, costs })
+}
+
+/// A frame of the built-in scene, in any size, through a pipeline with room for the largest.
+fn frame_of(built: &Built, size: Size) -> Outcome<Frame> {
+    let scene = Pictures::of_scene(Scene { width: size.width, height: size.height })?;
+    frame::with_any_stack(built, &scene, false)
+}

@@ -77,8 +77,7 @@ impl Scene {
         let right = GreyLines::<_, RAW_BYTES>::new(right).expect("a format with a brightness");
         let mut camera = CameraPair::new(left, right, 0).expect("one size");
         let format = stereopsis::camera::StereoSource::format(&camera);
-        let checks = method.checks(filter);
-        let config = Config { checks, ..Config::new(format.width, format.height, self.disparities) };
+        let config = method.with_filter(filter, Config::new(format.width, format.height, self.disparities));
         run(method, &config, &mut camera, |_| ()).expect("a frame").map
     }
 
@@ -150,7 +149,15 @@ fn sgm_on_real_pairs() {
 }
 
 #[test]
+fn sgm_edge_on_real_pairs() {
+    let mean = mean_over_scenes(Method::SgmEdge);
+    assert!(mean.missed <= 0.033 && mean.bad2 <= 0.022, "missed {}, bad2 {}", mean.missed, mean.bad2);
+}
+
+#[test]
 fn strict_answers_of_sgm_are_sure() {
     let mean = mean_with(Method::Sgm, Filter::Strict);
     assert!(mean.density >= 0.95 && mean.bad2 <= 0.014, "density {}, bad2 {}", mean.density, mean.bad2);
+    let mean = mean_with(Method::SgmEdge, Filter::Strict);
+    assert!(mean.density >= 0.955 && mean.bad2 <= 0.012, "density {}, bad2 {}", mean.density, mean.bad2);
 }

@@ -2,7 +2,7 @@
 //! usual numbers of disparities, which lets the compiler unroll them and keep them in registers.
 
 use super::super::{Kernel, Select};
-use super::{Guide, PathWork};
+use super::{EdgeWork, Guide, PathWork};
 use crate::matching::paths::Along;
 use crate::matching::scheme::Around;
 
@@ -21,7 +21,7 @@ macro_rules! in_words {
 }
 
 mod words {
-    use super::super::{Guide, PathWork, Word};
+    use super::super::{EdgeWork, Guide, PathWork, Word};
     use super::{Along, Around, Select};
 
     #[inline(never)]
@@ -31,6 +31,11 @@ mod words {
         room: &mut [u8],
     ) {
         super::super::enter::<Word, S, CELLS, ALL>(work, lines, room);
+    }
+
+    #[inline(never)]
+    pub(super) fn within_edges<const CELLS: usize, const ALL: bool>(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+        super::super::within_edges::<Word, CELLS, ALL>(work, edges);
     }
 
     #[inline(never)]
@@ -90,6 +95,24 @@ impl Kernel {
             Self::Avx2(avx2) => avx2.run(
                 #[inline(always)]
                 || in_wide!(work, enter, [S], lines, room),
+            ),
+        }
+    }
+
+    /// Averages the costs of a row with those around it, within edges.
+    #[inline(always)]
+    pub(in crate::matching) fn within_edges(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+        match self {
+            #[cfg(not(stereopsis_vectors))]
+            Self::Planes => in_words!(work, within_edges, [], edges),
+            #[cfg(stereopsis_vectors)]
+            Self::Lanes => in_words!(work, within_edges, [], edges),
+            #[cfg(target_pointer_width = "64")]
+            Self::Lanes => in_vectors!(work, within_edges, [], edges),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(avx2) => avx2.run(
+                #[inline(always)]
+                || in_wide!(work, within_edges, [], edges),
             ),
         }
     }

@@ -2,20 +2,21 @@
 //! paths into a pixel, from the left, from the right and from above (the average of the two beside it, two columns off).
 //!
 //! Written once for groups of bytes, whose lanes run over the disparities of one pixel; the largest disparity has the first
-//! lane, so that a pixel's candidates stand in memory as they do in the right image. A row takes three passes:
+//! lane, so that a pixel's candidates stand in memory as they do in the right image. A row takes three passes, or four:
 //!
 //! ```text
 //! cost   (all columns):      a[d] = average(a[d], pixel cost[d])                                      with row y + 1
+//!   within edges (if so):    a[d] = average of the column's pixel costs around row y                  with row y + 2
 //! gather (left to right):    t[d] = a[d] + message(t of row y - 1)[d],  r[d] = a[d] + message(r)[d],  q[d] = r[d] + t[d]
 //! decide (right to left):    l[d] = a[d] + message(l)[d],  s[d] = q[d] + l[d],  winner: the least s[d]
 //!
 //! message(p)[d] = min(p[d], p[d - 1] + step, p[d + 1] + step, least p + jump) - least p
 //! ```
 //!
-//! Everything fits bytes: see [`Penalties`]. Kept from row to row are a, t and the room for q.
+//! Everything fits bytes: see [`Penalties`]. Kept from row to row are a, t and the room for q; within edges, two more.
 //!
 //! * `features`: what a pixel's cost compares, of a row of both images.
-//! * `cost`, `gather`, `decide`: the passes.
+//! * `cost`, `edges`, `gather`, `decide`: the passes.
 //! * `dispatch`: which groups of bytes they are called with.
 //! * `group`: what they are written for. `words`, with `dsp`: four bytes in a word; `sse2`, `avx2`, `neon`: registers of
 //!   larger processors.
@@ -25,6 +26,7 @@
 mod cost;
 mod decide;
 mod dispatch;
+mod edges;
 mod features;
 mod gather;
 mod group;
@@ -48,7 +50,10 @@ use super::{MASKS, STEP};
 use crate::matching::paths::Along;
 use crate::matching::penalties::{Change, Penalties};
 use crate::matching::scheme::Around;
+use edges::within_edges;
 use group::Group;
+
+pub(in crate::matching) use edges::EdgeWork;
 
 #[cfg(target_arch = "x86_64")]
 use avx2::Wide;

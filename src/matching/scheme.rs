@@ -25,6 +25,12 @@ pub trait Scheme: Lines + Sized + 'static {
     /// The checks of [`Filter::Strict`].
     const STRICT: Checks = Checks::STRICT;
     /// What changes of the disparity are worth; of no meaning to the block methods.
+    ///
+    /// ```
+    /// use stereopsis::matching::{Config, Filter, Scheme, SgmEdge};
+    /// let config = Config::new(320, 240, 64).with_filter::<SgmEdge>(Filter::Default);
+    /// assert_eq!(config.penalties, SgmEdge::PENALTIES);
+    /// ```
     const PENALTIES: Penalties = Penalties::DEFAULT;
     /// The method's name, as the programs spell it.
     const NAME: &'static str;

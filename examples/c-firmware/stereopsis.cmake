@@ -10,7 +10,7 @@
 # Who links it finds stereopsis.h, and the macros STEREOPSIS_WIDTH, STEREOPSIS_DISPARITIES and STEREOPSIS_BYTES: the
 # memory of a matcher is STEREOPSIS_BYTES(STEREOPSIS_WIDTH, STEREOPSIS_DISPARITIES) bytes.
 
-set(STEREOPSIS_METHOD block CACHE STRING "How lines are matched: block or fast")
+set(STEREOPSIS_METHOD block CACHE STRING "How lines are matched: block, fast, sgm-lean, sgm or sgm-edge")
 set(STEREOPSIS_WIDTH 320 CACHE STRING "Pixels of the longest line, at least the disparities")
 set(STEREOPSIS_DISPARITIES 64 CACHE STRING "Disparities of the longest search, a multiple of 16")
 set(STEREOPSIS_RUST_TARGET "" CACHE STRING "Rust's name of the target; empty is this machine")

@@ -2,7 +2,7 @@
 //!
 //! | variable | what it chooses | default |
 //! | --- | --- | --- |
-//! | `STEREO_METHOD` | `fast`, `block`, `sgm-lean` or `sgm` | `block` |
+//! | `STEREO_METHOD` | `fast`, `block`, `sgm-lean`, `sgm` or `sgm-edge` | `block` |
 //! | `STEREO_WIDTH`, `STEREO_HEIGHT` | pixels in a line at most; with the height, the size of the built-in scene | 160, 120 |
 //! | `STEREO_DISPARITIES` | disparities that are searched, 16 to 256 | 32 |
 //! | `STEREO_CORE` | the board's core, where the target leaves a choice | the target's first |
@@ -23,11 +23,12 @@ const MEMORY: &str = "../../memory.x";
 const BUDGET: u32 = 64 * 1024;
 
 /// The methods and their types.
-const METHODS: [(&str, &str); 4] = [
+const METHODS: [(&str, &str); 5] = [
     ("fast", "stereopsis::matching::Fast"),
     ("block", "stereopsis::matching::Block"),
     ("sgm-lean", "stereopsis::matching::SgmLean"),
     ("sgm", "stereopsis::matching::Sgm"),
+    ("sgm-edge", "stereopsis::matching::SgmEdge"),
 ];
 
 /// The names that riscv-rt's linker script uses for the two memories.

@@ -1,9 +1,9 @@
-//! The two methods on a rendered scene of 320x240 with 64 disparities: `cargo bench -p stereopsis-host`.
+//! All methods on a rendered scene of 320x240 with 64 disparities: `cargo bench -p stereopsis-host`.
 
 use criterion::{BenchmarkId, Criterion, Throughput};
 use std::process::ExitCode;
 use stereopsis::camera::StereoSource;
-use stereopsis::matching::{Block, Config, Fast, Scheme, Sgm, SgmLean};
+use stereopsis::matching::{Block, Config, Fast, Scheme, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::Pipeline;
 use stereopsis_host::run::MemoryPair;
 use stereopsis_host::scene::Scene;
@@ -47,7 +47,8 @@ fn main() -> ExitCode {
     let done = method::<Fast>(&mut criterion, &mut camera)
         .and_then(|()| method::<Block>(&mut criterion, &mut camera))
         .and_then(|()| method::<SgmLean>(&mut criterion, &mut camera))
-        .and_then(|()| method::<Sgm>(&mut criterion, &mut camera));
+        .and_then(|()| method::<Sgm>(&mut criterion, &mut camera))
+        .and_then(|()| method::<SgmEdge>(&mut criterion, &mut camera));
     criterion.final_summary();
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -5,7 +5,7 @@
 use image::GrayImage;
 use std::sync::OnceLock;
 use stereopsis::depth::DepthScale;
-use stereopsis::matching::{Block, Checks, Config, Fast, Scheme, Sgm, SgmLean};
+use stereopsis::matching::{Block, Checks, Config, Fast, Scheme, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::Pipeline;
 use stereopsis::units::PixelFlags;
 use stereopsis_host::scene::{Scene, SceneCamera, Truth};
@@ -43,7 +43,8 @@ fn demo_pair() -> &'static (Scene, Pair) {
 }
 
 fn find<S: Scheme>(scene: &Scene, pair: &Pair, checks: Checks) -> Found {
-    let config = Config { checks, ..Config::new(scene.width(), scene.height(), scene.disparities()) };
+    let search = Config::new(scene.width(), scene.height(), scene.disparities());
+    let config = Config { checks, penalties: S::PENALTIES, ..search };
     let mut pipeline = Box::new(Pipeline::<S, 640, 64>::new());
     pipeline.start(&config).expect("the scene fits");
     let mut camera = SceneCamera::new(pair.0.clone(), pair.1.clone());
@@ -152,6 +153,7 @@ fn block_is_accurate_to_a_fraction_of_a_pixel() {
 fn sgm_is_accurate_to_a_fraction_of_a_pixel() {
     sub_pixel::<SgmLean>(0.085, 0.01, 1.1);
     sub_pixel::<Sgm>(0.075, 0.01, 1.1);
+    sub_pixel::<SgmEdge>(0.07, 0.01, 1.1);
 }
 
 /// Bounds in percent: answers within three sigma in depth, answers over 2 px off, visible points without a right answer.
@@ -203,6 +205,7 @@ fn block_is_within_three_sigma_of_the_true_depth() {
 fn sgm_is_within_three_sigma_of_the_true_depth() {
     demo::<SgmLean>(99.0, 0.7, 6.0);
     demo::<Sgm>(99.0, 0.7, 6.0);
+    demo::<SgmEdge>(99.0, 0.7, 6.0);
 }
 
 #[test]

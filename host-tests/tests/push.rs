@@ -1,7 +1,7 @@
 //! Lines that the caller pushes give the rows that lines pulled from a camera give, and every misuse has its error.
 
 use image::GrayImage;
-use stereopsis::matching::{Block, Checks, Config, Fast, MatchError, Row, Scheme, Sgm, SgmLean};
+use stereopsis::matching::{Block, Checks, Config, Fast, MatchError, Row, Scheme, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::{Pipeline, PushError};
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::scene::SceneCamera;
@@ -92,6 +92,7 @@ fn pushed_rows_are_the_pulled_rows_at_every_height() {
         compare::<Fast>(37, height, Checks::STRICT);
         compare::<Block>(37, height, Checks::DEFAULT);
         compare::<Sgm>(37, height, Checks::DEFAULT);
+        compare::<SgmEdge>(37, height, Checks::STRICT);
     }
 }
 

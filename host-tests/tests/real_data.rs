@@ -19,8 +19,7 @@ static SCENES: LazyLock<Vec<RealScene>> = LazyLock::new(|| {
 fn match_with(scene: &RealScene, method: Method, filter: Filter) -> DisparityMap {
     let (width, height) = (scene.left.width() as u16, scene.left.height() as u16);
     let camera = MemoryPair::new(width, scene.left.to_vec(), scene.right.to_vec());
-    let checks = method.checks(filter);
-    let config = Config { checks, ..Config::new(width, height, scene.disparities) };
+    let config = method.with_filter(filter, Config::new(width, height, scene.disparities));
     run(method, &config, &mut camera.expect("two images of one size"), |_| ()).expect("a frame").map
 }
 
@@ -75,7 +74,15 @@ fn sgm_on_real_pairs() {
 }
 
 #[test]
+fn sgm_edge_on_real_pairs() {
+    let mean = mean_over_scenes(Method::SgmEdge);
+    assert!(mean.missed <= 0.033 && mean.bad2 <= 0.022, "missed {}, bad2 {}", mean.missed, mean.bad2);
+}
+
+#[test]
 fn strict_answers_of_sgm_are_sure() {
     let mean = mean_with(Method::Sgm, Filter::Strict);
     assert!(mean.density >= 0.95 && mean.bad2 <= 0.014, "density {}, bad2 {}", mean.density, mean.bad2);
+    let mean = mean_with(Method::SgmEdge, Filter::Strict);
+    assert!(mean.density >= 0.955 && mean.bad2 <= 0.012, "density {}, bad2 {}", mean.density, mean.bad2);
 }

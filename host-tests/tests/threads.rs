@@ -26,7 +26,7 @@ fn bands_differ_little_along_paths() {
     let (left, right) = Scene::small(200, 240).render();
     let pair = MemoryPair::new(200, left.into_raw(), right.into_raw()).expect("one size");
     for method in Method::ALL.into_iter().filter(|method| !method.is_exact_in_bands()) {
-        let config = Config { checks: method.checks(Filter::Default), ..Config::new(200, 240, 32) };
+        let config = method.with_filter(Filter::Default, Config::new(200, 240, 32));
         let (one, bands) = (map(method, &config, &pair, 1), map(method, &config, &pair, 4));
         let differ = |(a, b): (&Disparity, &Disparity)| match a.distance(*b) {
             Some(steps) => steps > Disparity::ONE,

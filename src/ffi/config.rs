@@ -68,7 +68,7 @@ pub struct Config {
 }
 
 impl Config {
-    /// A search from disparity 0 with the checks of a preset.
+    /// A search from disparity 0 with the checks of a preset and the penalties of the method.
     pub(super) fn preset<S: Scheme>(width: u16, height: u16, disparities: u16, preset: i32) -> Result<Self, Status> {
         let filter = match preset {
             STEREOPSIS_PRESET_DENSE => Filter::Dense,
@@ -77,7 +77,7 @@ impl Config {
             _ => return Err(Status::Preset),
         };
         let checks = filter.checks::<S>();
-        let Penalties { gradient, cost, step, jump, edges } = Penalties::DEFAULT;
+        let Penalties { gradient, cost, step, jump, edges } = S::PENALTIES;
         let or_not = |limit: Option<u8>| limit.map_or(STEREOPSIS_NOT_CHECKED, i16::from);
         Ok(Self {
             width,

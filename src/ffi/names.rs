@@ -94,8 +94,8 @@ macro_rules! instantiate_c_api {
                 unsafe { StereopsisInstance::deinit(handle) }
             }
 
-            /// Fills a configuration: frames of `width` x `height` pixels, a search over `disparities` from 0, and the
-            /// checks of a `STEREOPSIS_PRESET_`. Sizes are checked by `stereopsis_start`.
+            /// Fills a configuration: frames of `width` x `height` pixels, a search over `disparities` from 0, the checks
+            /// of a `STEREOPSIS_PRESET_`, and the method's penalties. Sizes are checked by `stereopsis_start`.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_config_default(
                 width: u16,

@@ -58,6 +58,14 @@
   ((size_t)192 + (size_t)52 * (width) + (size_t)6 * (disparities) + \
    (size_t)3 * (width) * (disparities))
 
+/**
+ * Bytes that are enough for a matcher of method sgm-edge, on any target. `disparities` is a multiple of 16, and
+ * `width` at least as large, as the library was built with.
+ */
+#define STEREOPSIS_SGM_EDGE_BYTES(width, disparities) \
+  ((size_t)192 + (size_t)53 * (width) + (size_t)6 * (disparities) + \
+   (size_t)5 * (width) * (disparities))
+
 
 /**
  * The version of this interface. It changes when a program that was compiled with another header would go wrong.
@@ -484,8 +492,8 @@ stereopsis_status stereopsis_init(void *memory, size_t length, struct stereopsis
 stereopsis_status stereopsis_deinit(struct stereopsis *handle);
 
 /**
- * Fills a configuration: frames of `width` x `height` pixels, a search over `disparities` from 0, and the
- * checks of a `STEREOPSIS_PRESET_`. Sizes are checked by `stereopsis_start`.
+ * Fills a configuration: frames of `width` x `height` pixels, a search over `disparities` from 0, the checks
+ * of a `STEREOPSIS_PRESET_`, and the method's penalties. Sizes are checked by `stereopsis_start`.
  */
 stereopsis_status stereopsis_config_default(uint16_t width,
                                             uint16_t height,

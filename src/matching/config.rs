@@ -32,14 +32,15 @@ impl Config {
     /// Where every search ends, px: its largest disparity lies below, so that no answer is near [`Disparity::NONE`].
     pub const END: u16 = Disparity::MAX_PIXELS;
 
-    /// A search from disparity 0 with the default checks of the block methods.
+    /// A search from disparity 0 with the default checks of the block methods and the penalties of
+    /// [`Sgm`](super::Sgm): [`Self::with_filter`] has those of a method.
     pub const fn new(width: u16, height: u16, disparities: u16) -> Self {
         Self { width, height, disparities, min_disparity: 0, checks: Checks::DEFAULT, penalties: Penalties::DEFAULT }
     }
 
-    /// The same search with the checks of an operating point of a method.
+    /// The same search with the checks of an operating point of a method, and its penalties.
     pub const fn with_filter<S: Scheme>(self, filter: Filter) -> Self {
-        Self { checks: filter.checks::<S>(), ..self }
+        Self { checks: filter.checks::<S>(), penalties: S::PENALTIES, ..self }
     }
 
     /// All zero: a matcher that was not started, which so takes no place in flash when it is a static.

@@ -3,7 +3,8 @@
 //! One row through the stages, in running order:
 //!
 //! 1. [`scheme`](Scheme): what a method is. `window`: [`Fast`] and [`Block`], census codes compared over a window.
-//!    `paths`: [`Sgm`] and [`SgmLean`], gradients, brightness and a census compared along paths, by [`Penalties`].
+//!    `paths`: [`Sgm`], [`SgmLean`] and [`SgmEdge`], gradients, brightness and a census compared along paths, by
+//!    [`Penalties`].
 //! 2. `kernels`: the cost of every candidate, its sum, the winner of every pixel. The only stage whose work grows with the
 //!    number of disparities, behind one seam ([`Kernel`]).
 //! 3. `texture`: whether the window has texture.
@@ -36,7 +37,7 @@ mod window;
 pub use config::{Checks, Config, ConfigError, Filter};
 pub use kernels::Kernel;
 pub use matcher::{MatchError, Matcher, state_bytes};
-pub use paths::{Sgm, SgmLean};
+pub use paths::{Sgm, SgmEdge, SgmLean};
 pub use penalties::Penalties;
 pub use row::Row;
 pub use scheme::Scheme;

@@ -1,12 +1,16 @@
-//! The two methods whose costs are sums along paths: semi-global matching (Hirschmüller 2008) on lines as they come.
+//! The methods whose costs are sums along paths: semi-global matching (Hirschmüller 2008) on lines as they come.
 //!
-//! A row's costs are averaged with those of the rows above it and of the one below, each half as much as the next; then
-//! paths bring together what the pixels of a surface have in common: from the left, from the right, and from above. No
+//! A row's costs are averaged with those of the rows above it and of the one below, each half as much as the next; or, at the
+//! price of two more bytes for every pixel and disparity, with those above and of the two below as far as no edge of the
+//! left image is crossed. Then paths bring together what the pixels of a surface have in common: from the left, from the right, and from above. No
 //! frame is kept, and no path comes from below: that path measured least, and it would take the frame.
 
 use super::config::Checks;
-use super::kernels::{COLUMNS_OFF, Guide, PathWork, Room, Select, Unique, Volumes, bytes_mut, halves_mut, winners_mut};
+use super::kernels::{
+    COLUMNS_OFF, EdgeWork, Guide, PathWork, Room, Select, Unique, Volumes, bytes_mut, halves_mut, winners_mut,
+};
 use super::memory::{Bytes, Memory, Parts, first};
+use super::penalties::Penalties;
 use super::row::slot;
 use super::scheme::{Around, Lines, Scheme};
 use super::speckle::BAND;
@@ -18,6 +22,13 @@ pub trait Along: Scheme {
     /// Whether a pixel's gradient is compared with all between a candidate and halfway to those beside it (one of the two
     /// halves of Birchfield & Tomasi 1998), or just with the candidate's.
     const BETWEEN_PIXELS: bool;
+    /// Whether a row's costs are averaged with those around it within edges: where brightness changes
+    /// [much](Penalties::edges) down a column, another surface may begin.
+    const WITHIN_EDGES: bool;
+    /// Rows below that a row's costs are averaged with.
+    const ROWS_BELOW: usize = if Self::WITHIN_EDGES { 2 } else { 1 };
+    /// Bytes that are kept for every candidate.
+    const VOLUMES: usize = if Self::WITHIN_EDGES { 5 } else { 3 };
 }
 
 /// Method `sgm`: gradients, brightness and a wide census along three paths; gradients are compared between pixels.
@@ -28,30 +39,45 @@ pub struct Sgm;
 #[derive(Clone, Copy, Debug)]
 pub struct SgmLean;
 
+/// Method `sgm-edge`: as [`Sgm`], with costs averaged down the columns as far as no edge is crossed.
+#[derive(Clone, Copy, Debug)]
+pub struct SgmEdge;
+
 impl Along for Sgm {
     const BETWEEN_PIXELS: bool = true;
+    const WITHIN_EDGES: bool = false;
 }
 
 impl Along for SgmLean {
     const BETWEEN_PIXELS: bool = false;
+    const WITHIN_EDGES: bool = false;
+}
+
+impl Along for SgmEdge {
+    const BETWEEN_PIXELS: bool = true;
+    const WITHIN_EDGES: bool = true;
 }
 
 /// [`Scheme`] and [`Lines`] of a method along paths.
 macro_rules! along_paths {
-    ($method:ty, $name:literal) => {
+    ($method:ty, $name:literal, $penalties:expr) => {
+        const _: () = assert!($penalties.check().is_ok(), "the default is a good choice");
+
         impl Scheme for $method {
             const RADIUS_X: usize = 4;
-            const RADIUS_Y: usize = 1;
+            const RADIUS_Y: usize = <Self as Along>::ROWS_BELOW;
             const SIGMA_PX: f32 = 0.15;
             const STEP: u8 = STEP;
             const DEFAULT: Checks = DEFAULT;
             const STRICT: Checks = STRICT;
+            const PENALTIES: Penalties = $penalties;
             const NAME: &'static str = $name;
         }
 
         impl Lines for $method {
-            type Memory<const W: usize, const D: usize> = PathMemory<W, D>;
-            const BYTES: Bytes = PathMemory::BYTES;
+            type Memory<const W: usize, const D: usize> =
+                PathMemory<{ guides::<$method>() }, { <$method as Along>::VOLUMES }, W, D>;
+            const BYTES: Bytes = PathMemory::<{ guides::<$method>() }, { <$method as Along>::VOLUMES }, 0, 0>::BYTES;
 
             #[inline(always)]
             fn enter(_: &mut Stages<'_, Self>, _: usize, _: [&Around<'_>; 2]) {}
@@ -74,6 +100,11 @@ macro_rules! along_paths {
     };
 }
 
+/// Rows of the left image that are held: the one whose winners are due, the one above it and those below that are in.
+const fn guides<S: Along>() -> usize {
+    S::ROWS_BELOW + 1
+}
+
 /// What measured best.
 const STEP: u8 = 12;
 /// Costs along paths leave small gaps inside of surfaces, which are filled.
@@ -81,34 +112,40 @@ const DEFAULT: Checks = Checks { smoothing_radius: 8, speckle_pixels: 20, fill_p
 /// They are least sure where another disparity costs little more; texture says less than that, for paths bridge what has none.
 const STRICT: Checks =
     Checks { uniqueness_percent: Some(30), speckle_pixels: 20, median: true, fill_pixels: 8, ..Checks::DEFAULT };
+/// Costs of more rows are surer, so that smaller jumps will do.
+const WITHIN_EDGES: Penalties = Penalties { jump: [80, 40, 20], ..Penalties::DEFAULT };
 
-along_paths!(Sgm, "sgm");
-along_paths!(SgmLean, "sgm-lean");
+along_paths!(Sgm, "sgm", Penalties::DEFAULT);
+along_paths!(SgmLean, "sgm-lean", Penalties::DEFAULT);
+along_paths!(SgmEdge, "sgm-edge", WITHIN_EDGES);
 
 /// The memory of a method along paths.
-pub struct PathMemory<const W: usize, const D: usize> {
-    /// The left image's last two rows, row `y` in slot `y % 2`.
-    guides: [[u8; W]; 2],
-    volumes: Volumes<W, D>,
+pub struct PathMemory<const GUIDES: usize, const VOLUMES: usize, const W: usize, const D: usize> {
+    /// The left image's last rows, row `y` in slot `y % GUIDES`.
+    guides: [[u8; W]; GUIDES],
+    /// Costs, paths from above, sums; within edges also the average of the rows above and the costs of the row below.
+    volumes: Volumes<VOLUMES, W, D>,
     /// Room for the features of a row; when they are done with, for its winners.
     room: Room<W, D>,
 }
 
-impl PathMemory<0, 0> {
+impl<const GUIDES: usize, const VOLUMES: usize> PathMemory<GUIDES, VOLUMES, 0, 0> {
     pub const BYTES: Bytes = Bytes {
-        per_pixel: 2 + Room::<0, 0>::PER_PIXEL,
-        per_candidate: 3,
+        per_pixel: GUIDES + Room::<0, 0>::PER_PIXEL,
+        per_candidate: VOLUMES,
         per_disparity: COLUMNS_OFF + Room::<0, 0>::PER_DISPARITY,
     };
 }
 
-impl<const W: usize, const D: usize> Memory for PathMemory<W, D> {
-    const EMPTY: Self = Self { guides: [[0; W]; 2], volumes: Volumes::ZERO, room: Room::ZERO };
+impl<const GUIDES: usize, const VOLUMES: usize, const W: usize, const D: usize> Memory
+    for PathMemory<GUIDES, VOLUMES, W, D>
+{
+    const EMPTY: Self = Self { guides: [[0; W]; GUIDES], volumes: Volumes::ZERO, room: Room::ZERO };
 
     fn parts(&mut self, width: usize, stride: usize) -> Parts<'_> {
         Parts {
-            codes: first(self.guides.as_flattened_mut(), 2 * width),
-            columns: first(self.volumes.flat(), (3 * width + COLUMNS_OFF) * stride),
+            codes: first(self.guides.as_flattened_mut(), GUIDES * width),
+            columns: first(self.volumes.flat(), (VOLUMES * width + COLUMNS_OFF) * stride),
             winners: &mut [],
             right: &mut [],
             lengths: &mut [],
@@ -123,7 +160,8 @@ impl<'a, S: Along> Stages<'a, S> {
     fn select_along(&mut self, bottom: usize, lines: Option<[&Around<'_>; 2]>, row: Option<usize>) {
         let (width, stride, config) = (self.width, self.stride, self.config);
         let (costs, rest) = self.columns.split_at_mut_checked(width * stride).unwrap_or_default();
-        let (top, sums) = rest.split_at_mut_checked((width + COLUMNS_OFF) * stride).unwrap_or_default();
+        let (top, rest) = rest.split_at_mut_checked((width + COLUMNS_OFF) * stride).unwrap_or_default();
+        let (sums, rest) = rest.split_at_mut_checked(width * stride).unwrap_or_default();
         let mut work = PathWork {
             width,
             stride,
@@ -137,6 +175,14 @@ impl<'a, S: Along> Stages<'a, S> {
         if let Some(lines) = lines {
             self.kernel.enter::<S>(&mut work, bottom == 0, lines, bytes_mut(self.scratch));
         }
+        let guide = |y: usize| slot(self.codes, y % guides::<S>(), width);
+        if S::WITHIN_EDGES {
+            let (above, below) = rest.split_at_mut_checked(width * stride).unwrap_or_default();
+            let inside = |y: &usize| *y < usize::from(config.height);
+            let [here, next] = [2, 1].map(|up| bottom.checked_sub(up).filter(inside).map(guide));
+            let guides = [here, next, lines.map(|[left, _]| left[2])];
+            self.kernel.within_edges(&mut work, EdgeWork { guides, above, below });
+        }
         // The features are done with.
         let room = core::mem::take(&mut self.scratch);
         let (winners, room) = room.split_at_mut_checked(width).unwrap_or_default();
@@ -149,7 +195,6 @@ impl<'a, S: Along> Stages<'a, S> {
         if let Some(row) = row {
             let flags = slot_mut(self.flags, row % BAND, width);
             flags.fill(PixelFlags::CLEAR);
-            let guide = |y: usize| slot(self.codes, y % 2, width);
             let guide = Guide {
                 here: guide(row),
                 above: row.checked_sub(1).map(guide),
@@ -164,7 +209,7 @@ impl<'a, S: Along> Stages<'a, S> {
             self.kernel.select(work, guide, select);
         }
         if let Some([left, _]) = lines {
-            for (kept, pixel) in slot_mut(self.codes, bottom % 2, width).iter_mut().zip(left[2]) {
+            for (kept, pixel) in slot_mut(self.codes, bottom % guides::<S>(), width).iter_mut().zip(left[2]) {
                 *kept = *pixel;
             }
         }

@@ -2,8 +2,9 @@
 
 use super::config::ConfigError;
 
-/// The numbers of the methods along paths, [`Sgm`](super::Sgm) and [`SgmLean`](super::SgmLean); the block methods do not
-/// look at them. The default is what measured best on real pairs.
+/// The numbers of the methods along paths, [`Sgm`](super::Sgm), [`SgmLean`](super::SgmLean) and
+/// [`SgmEdge`](super::SgmEdge); the block methods do not look at them. Each method's own,
+/// [`Scheme::PENALTIES`](super::Scheme::PENALTIES), are what measured best on real pairs.
 ///
 /// A path's cost at a pixel and disparity is the pixel's own cost and the least of its predecessor's costs: at the same
 /// disparity for nothing, at the next one for a `step`, at any other for a `jump` (Hirschmüller 2008).
@@ -19,7 +20,8 @@ pub struct Penalties {
     pub step: [u8; 2],
     /// What any larger change costs: where the brightness changes little, more, and much.
     pub jump: [u8; 3],
-    /// The changes of brightness, in grey levels, at which it is more, and much.
+    /// The changes of brightness, in grey levels, at which it is more, and much. Down a column, much is what
+    /// [`SgmEdge`](super::SgmEdge) averages no costs across.
     pub edges: [u8; 2],
 }
 
@@ -27,7 +29,7 @@ impl Penalties {
     /// The widest range of gradients: a pixel's cost stays within seven bits.
     pub const MOST_GRADIENT: u8 = 14;
 
-    /// What measured best.
+    /// What measured best with [`Sgm`](super::Sgm) and [`SgmLean`](super::SgmLean).
     pub const DEFAULT: Self = Self { gradient: 7, cost: 16, step: [18, 9], jump: [88, 44, 26], edges: [8, 20] };
 
     /// All zero: of a matcher that was not started.
@@ -56,19 +58,15 @@ impl Penalties {
     }
 
     /// What a step and a jump cost between two pixels of the left image.
+    #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
     #[inline(always)]
     pub(super) fn between(&self, a: u8, b: u8) -> Change {
-        self.changes()[self.grade(a, b)]
-    }
-
-    /// Whether the brightness changes little (0), more (1) or much (2) between two pixels of the left image.
-    #[inline(always)]
-    pub(super) fn grade(&self, a: u8, b: u8) -> usize {
         let change = a.abs_diff(b);
-        if change < self.edges[0] { 0 } else { 1 + usize::from(change >= self.edges[1]) }
+        let grade = if change < self.edges[0] { 0 } else { 1 + usize::from(change >= self.edges[1]) };
+        self.changes()[grade]
     }
 
-    /// What a step and a jump cost there.
+    /// What a step and a jump cost where the left image's brightness changes little, more and much.
     #[inline(always)]
     pub(super) fn changes(&self) -> [Change; 3] {
         let Self { step: [step, small_step], jump: [little, more, much], .. } = *self;
@@ -92,5 +90,3 @@ impl Default for Penalties {
         Self::DEFAULT
     }
 }
-
-const _: () = assert!(Penalties::DEFAULT.check().is_ok(), "the default is a good choice");

@@ -4,10 +4,11 @@ use super::config::Checks;
 #[cfg(doc)]
 use super::config::Filter;
 use super::memory::{Bytes, Memory};
+use super::penalties::Penalties;
 use super::stages::Stages;
 
 /// A matching method. The crate's own types implement it: [`Fast`](super::Fast), [`Block`](super::Block),
-/// [`SgmLean`](super::SgmLean) and [`Sgm`](super::Sgm).
+/// [`SgmLean`](super::SgmLean), [`Sgm`](super::Sgm) and [`SgmEdge`](super::SgmEdge).
 pub trait Scheme: Lines + Sized + 'static {
     /// What an answer rests on reaches this many columns to each side: there texture is counted.
     const RADIUS_X: usize;
@@ -23,6 +24,14 @@ pub trait Scheme: Lines + Sized + 'static {
     const DEFAULT: Checks = Checks::DEFAULT;
     /// The checks of [`Filter::Strict`].
     const STRICT: Checks = Checks::STRICT;
+    /// What changes of the disparity are worth; of no meaning to the block methods.
+    ///
+    /// ```
+    /// use stereopsis::matching::{Config, Filter, Scheme, SgmEdge};
+    /// let config = Config::new(320, 240, 64).with_filter::<SgmEdge>(Filter::Default);
+    /// assert_eq!(config.penalties, SgmEdge::PENALTIES);
+    /// ```
+    const PENALTIES: Penalties = Penalties::DEFAULT;
     /// The method's name, as the programs spell it.
     const NAME: &'static str;
 }

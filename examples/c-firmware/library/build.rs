@@ -9,7 +9,8 @@ const DEFAULTS: [(&str, &str); 3] =
     [("STEREOPSIS_METHOD", "block"), ("STEREOPSIS_WIDTH", "320"), ("STEREOPSIS_DISPARITIES", "64")];
 
 /// Methods as users spell them, and as the crate does.
-const METHODS: [(&str, &str); 4] = [("fast", "Fast"), ("block", "Block"), ("sgm-lean", "SgmLean"), ("sgm", "Sgm")];
+const METHODS: [(&str, &str); 5] =
+    [("fast", "Fast"), ("block", "Block"), ("sgm-lean", "SgmLean"), ("sgm", "Sgm"), ("sgm-edge", "SgmEdge")];
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

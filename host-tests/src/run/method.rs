@@ -3,7 +3,7 @@
 use super::Host;
 use std::fmt;
 use std::str::FromStr;
-use stereopsis::matching::{Checks, Filter, Scheme, state_bytes};
+use stereopsis::matching::{Config, Filter, Scheme, state_bytes};
 
 /// A matching method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -16,6 +16,8 @@ pub enum Method {
     SgmLean,
     /// [`Sgm`](stereopsis::matching::Sgm): the same, compared between pixels too.
     Sgm,
+    /// [`SgmEdge`](stereopsis::matching::SgmEdge): the same, averaged down the columns within edges.
+    SgmEdge,
 }
 
 /// Does something with the core's type of a method, by the name it is given.
@@ -38,6 +40,10 @@ macro_rules! with_scheme {
                 type $scheme = stereopsis::matching::Sgm;
                 $work
             }
+            $crate::run::Method::SgmEdge => {
+                type $scheme = stereopsis::matching::SgmEdge;
+                $work
+            }
         }
     };
 }
@@ -45,7 +51,7 @@ pub(super) use with_scheme;
 
 impl Method {
     /// The methods of this build.
-    pub const ALL: [Self; 4] = [Self::Fast, Self::Block, Self::SgmLean, Self::Sgm];
+    pub const ALL: [Self; 5] = [Self::Fast, Self::Block, Self::SgmLean, Self::Sgm, Self::SgmEdge];
 
     /// The name on the command line and in files.
     pub const fn name(self) -> &'static str {
@@ -57,9 +63,9 @@ impl Method {
         with_scheme!(self, S => state_bytes::<S>(width as usize, disparities as usize))
     }
 
-    /// The checks of an operating point.
-    pub const fn checks(self, filter: Filter) -> Checks {
-        with_scheme!(self, S => filter.checks::<S>())
+    /// A search with the checks of an operating point of the method, and with its penalties.
+    pub const fn with_filter(self, filter: Filter, search: Config) -> Config {
+        with_scheme!(self, S => search.with_filter::<S>(filter))
     }
 
     /// Whether a frame in bands is that of one pipeline to the bit: a window reaches so far and no farther, a path reaches from
@@ -87,7 +93,7 @@ impl fmt::Display for Method {
 
 /// The name is of no method of this build.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
-#[error("the methods of this build are fast, block, sgm-lean and sgm")]
+#[error("the methods of this build are fast, block, sgm-lean, sgm and sgm-edge")]
 pub struct UnknownMethod;
 
 impl FromStr for Method {

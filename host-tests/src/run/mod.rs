@@ -21,7 +21,7 @@ use std::fmt;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use stereopsis::camera::StereoSource;
-use stereopsis::matching::{Block, Config, ConfigError, Fast, Kernel, Row, Scheme, Sgm, SgmLean};
+use stereopsis::matching::{Block, Config, ConfigError, Fast, Kernel, Row, Scheme, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::{Pipeline, PipelineError};
 
 /// Pixels in a line that the pipelines here have room for.
@@ -48,7 +48,7 @@ macro_rules! held {
     };
 }
 
-held!(Fast, Block, SgmLean, Sgm);
+held!(Fast, Block, SgmLean, Sgm, SgmEdge);
 
 /// A pipeline that panicked while it was held is as good as new after `start`.
 fn hold<S: Held>() -> MutexGuard<'static, Host<S>> {

@@ -50,6 +50,8 @@ pub enum Cost {
     Paths {
         /// Whether a gradient is compared with all between a candidate and halfway to those beside it.
         between_pixels: bool,
+        /// Whether costs are averaged down the columns within edges, or wherever they are.
+        within_edges: bool,
     },
 }
 
@@ -72,10 +74,18 @@ impl Scheme {
         sigma_px: 0.15,
     };
     /// The twin of [`stereopsis::matching::Sgm`].
-    pub const SGM: Self =
-        Self { cost: Cost::Paths { between_pixels: true }, radius_x: 4, radius_y: 1, step: 12, sigma_px: 0.15 };
+    pub const SGM: Self = Self {
+        cost: Cost::Paths { between_pixels: true, within_edges: false },
+        radius_x: 4,
+        radius_y: 1,
+        step: 12,
+        sigma_px: 0.15,
+    };
     /// The twin of [`stereopsis::matching::SgmLean`].
-    pub const SGM_LEAN: Self = Self { cost: Cost::Paths { between_pixels: false }, ..Self::SGM };
+    pub const SGM_LEAN: Self = Self { cost: Cost::Paths { between_pixels: false, within_edges: false }, ..Self::SGM };
+    /// The twin of [`stereopsis::matching::SgmEdge`].
+    pub const SGM_EDGE: Self =
+        Self { cost: Cost::Paths { between_pixels: true, within_edges: true }, radius_y: 2, ..Self::SGM };
 }
 
 /// An 8-bit picture whose edge goes on for ever outside of it.
@@ -133,8 +143,14 @@ pub fn match_pair(scheme: &Scheme, config: &Config, left: &GrayImage, right: &Gr
         Cost::Window { neighbours, unit } => {
             cost::window_sums(scheme, unit, &cost::costs(neighbours, config, &left, &right))
         }
-        Cost::Paths { between_pixels } => {
-            paths::path_sums(config, &paths::costs(between_pixels, config, &left, &right), &left)
+        Cost::Paths { between_pixels, within_edges } => {
+            let costs = paths::costs(between_pixels, config, &left, &right);
+            let costs = if within_edges {
+                paths::averaged_within_edges(config, &costs, &left)
+            } else {
+                paths::averaged_down(&costs)
+            };
+            paths::path_sums(config, &costs, &left)
         }
     };
     let mut map = Answers {

@@ -116,7 +116,7 @@ fn average(a: &[u16], b: &[u16]) -> Vec<u16> {
 
 /// The costs of each row with those of the rows above and of the one below, each as much as all that come before it;
 /// before the first there is nothing.
-fn averaged_down(costs: &Volume) -> Volume {
+pub fn averaged_down(costs: &Volume) -> Volume {
     let mut averaged = costs.clone();
     let mut sums = vec![vec![0; costs.disparities]; costs.width];
     let mut add_row = |y: usize| {
@@ -133,10 +133,35 @@ fn averaged_down(costs: &Volume) -> Volume {
     averaged
 }
 
+/// The costs of each pixel with those of its column as far as the brightness does not change much from row to row: half of
+/// the row's and those above, each as much as all above it, and half of two rows below.
+pub fn averaged_within_edges(config: &Config, costs: &Volume, left: &Picture<'_>) -> Volume {
+    let rounded_up = |a: &[u16], b: &[u16]| -> Vec<u16> { add(a, b).iter().map(|twice| twice.div_ceil(2)).collect() };
+    let mut averaged = costs.clone();
+    for x in 0..costs.width {
+        let bright = |y: usize| left.at(x as isize, y as isize);
+        let goes_on_below =
+            |y: usize| y + 1 < costs.height && bright(y).abs_diff(bright(y + 1)) < config.penalties.edges[1];
+        let mut above: Option<Vec<u16>> = None;
+        for y in 0..costs.height {
+            let row = costs.at(x, y);
+            let with_above = above.map_or_else(|| row.to_vec(), |above| rounded_up(&above, row));
+            let below = match (y..y + 2).take_while(|&y| goes_on_below(y)).count() {
+                0 => None,
+                1 => Some(costs.at(x, y + 1).to_vec()),
+                _ => Some(rounded_up(costs.at(x, y + 1), costs.at(x, y + 2))),
+            };
+            let all = below.map_or_else(|| with_above.clone(), |below| rounded_up(&with_above, &below));
+            averaged.at_mut(x, y).copy_from_slice(&all);
+            above = goes_on_below(y).then_some(with_above);
+        }
+    }
+    averaged
+}
+
 /// The sums of three paths into every pixel, none over 255.
 pub fn path_sums(config: &Config, costs: &Volume, left: &Picture<'_>) -> Volume {
     let penalties = &config.penalties;
-    let costs = averaged_down(costs);
     let (width, height) = (costs.width, costs.height);
     let change = |(x, y): (usize, usize), (from_x, from_y): (usize, usize)| {
         let bright = |x: usize, y: usize| left.at(x as isize, y as isize);

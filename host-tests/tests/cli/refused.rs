@@ -62,7 +62,7 @@ fn bad_options() {
     for method in ["best", "", "FAST"] {
         bench.refused(&bench.arguments(&[("--method", method)]), "--method");
     }
-    bench.refused(&bench.arguments(&[("--method", "sgm-edge")]), "not in this build; the methods of this build are");
+    bench.refused(&bench.arguments(&[("--method", "sgm-full")]), "fast, block, sgm-lean, sgm and sgm-edge");
     bench.refused(&bench.arguments(&[("--filter", "soft")]), "dense, default and strict");
     for threads in ["0", "65", "-1", "two", ""] {
         bench.refused(&bench.arguments(&[("--threads", threads)]), "--threads");

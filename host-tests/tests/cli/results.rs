@@ -7,17 +7,17 @@ use std::fs;
 use std::path::Path;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::RectifiedRig;
-use stereopsis::matching::{Checks, Config, Filter, Kernel};
+use stereopsis::matching::{Config, Filter, Kernel};
 use stereopsis::units::PixelFlags;
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::pfm::{self, FloatMap};
 use stereopsis_host::run::{MemoryPair, Method, run};
 
 /// What the library says of the pair.
-fn in_process(method: Method, checks: Checks) -> DisparityMap {
+fn in_process(method: Method, filter: Filter) -> DisparityMap {
     let (left, right) = pair();
     let mut camera = MemoryPair::new(WIDTH as u16, left.into_raw(), right.into_raw()).expect("one size");
-    let config = Config { checks, ..Config::new(WIDTH as u16, HEIGHT as u16, 32) };
+    let config = method.with_filter(filter, Config::new(WIDTH as u16, HEIGHT as u16, 32));
     run(method, &config, &mut camera, |_| {}).expect("a source that cannot fail").map
 }
 
@@ -66,9 +66,9 @@ fn the_files_hold_what_the_library_says() {
     let out = bench.path("out");
     for method in Method::ALL {
         for filter in Filter::ALL {
-            let (name, filter, checks) = (method.name(), filter.name(), method.checks(filter));
+            let map = in_process(method, filter);
+            let (name, filter) = (method.name(), filter.name());
             bench.matched(&[("--method", name), ("--filter", filter)]);
-            let map = in_process(method, checks);
             assert_eq!(float_map(&out.join("disparity.pfm")).values, map.pixels(), "{name} {filter}");
 
             let DynamicImage::ImageLuma16(samples) = picture(&out.join("disparity.png")) else { panic!("16-bit grey") };
@@ -116,7 +116,7 @@ fn a_calibration_adds_depth_in_metres_and_millimetres_and_a_cloud() {
     let out = bench.path("out");
     let rig = RectifiedRig::with_offset(100.0, 0.2, 47.5, 23.5, 48.5).expect("a rig");
     let scale = DepthScale::new(&rig).expect("in range");
-    let map = in_process(Method::Block, Checks::DEFAULT);
+    let map = in_process(Method::Block, Filter::Default);
     let depth = float_map(&out.join("depth.pfm"));
     assert_eq!(depth.values, map.depth_m(&scale));
     let DynamicImage::ImageLuma16(millimetres) = picture(&out.join("depth.png")) else { panic!("16-bit grey") };
@@ -176,6 +176,7 @@ fn bench_prints_one_json_object() {
         (Method::Block, "block", "1"),
         (Method::Block, "block", "3"),
         (Method::Sgm, "sgm", "2"),
+        (Method::SgmEdge, "sgm-edge", "1"),
     ] {
         let fixed = ["bench", "--left", left, "--right", right, "--disparities", "32", "--repeat", "3"];
         let run = stereo(fixed.into_iter().chain(["--method", name, "--threads", threads]));

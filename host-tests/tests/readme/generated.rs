@@ -7,7 +7,7 @@ use image::imageops::{FilterType, replace, resize};
 use image::{DynamicImage, RgbImage};
 use std::sync::LazyLock;
 use stereopsis::depth::DepthScale;
-use stereopsis::matching::{Block, Config, Fast, Filter, Scheme, Sgm, SgmLean, state_bytes};
+use stereopsis::matching::{Block, Config, Fast, Filter, Scheme, Sgm, SgmEdge, SgmLean, state_bytes};
 use stereopsis::pipeline::Pipeline;
 use stereopsis_host::colour::ColourScale;
 use stereopsis_host::map::DisparityMap;
@@ -66,7 +66,7 @@ fn state_table() -> String {
     fn rows<S: Scheme>() -> String {
         [row::<S, 160, 32>(), row::<S, 320, 64>(), row::<S, 640, 64>(), row::<S, 640, 128>()].concat()
     }
-    table + &[rows::<Fast>(), rows::<Block>(), rows::<SgmLean>(), rows::<Sgm>()].concat()
+    table + &[rows::<Fast>(), rows::<Block>(), rows::<SgmLean>(), rows::<Sgm>(), rows::<SgmEdge>()].concat()
 }
 
 /// The built-in scene, rendered once.
@@ -87,9 +87,8 @@ static DEMO: LazyLock<Demo> = LazyLock::new(|| {
 
 impl Demo {
     fn match_with(&self, method: Method, filter: Filter) -> DisparityMap {
-        let checks = method.checks(filter);
-        let config =
-            Config { checks, ..Config::new(self.scene.width(), self.scene.height(), self.scene.disparities()) };
+        let search = Config::new(self.scene.width(), self.scene.height(), self.scene.disparities());
+        let config = method.with_filter(filter, search);
         run(method, &config, &mut self.camera.clone(), |_| ()).expect("a frame").map
     }
 }

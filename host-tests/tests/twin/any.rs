@@ -4,7 +4,7 @@ use super::list::{PATTERNS, random_penalties};
 use super::{compare, pipeline};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use stereopsis::matching::{Block, Checks, Config, Fast, Sgm, SgmLean};
+use stereopsis::matching::{Block, Checks, Config, Fast, Sgm, SgmEdge, SgmLean};
 use stereopsis::units::Disparity;
 use stereopsis_host::scene::Random;
 use stereopsis_host::scene::pattern::Pattern;
@@ -64,6 +64,7 @@ proptest! {
             compare::<Block, _>(&mut pipeline(), &config, &pair),
             compare::<SgmLean, _>(&mut pipeline(), &config, &pair),
             compare::<Sgm, _>(&mut pipeline(), &config, &pair),
+            compare::<SgmEdge, _>(&mut pipeline(), &config, &pair),
         ] {
             if let Err(e) = compared {
                 prop_assert!(false, "{pattern:?}: {e}");

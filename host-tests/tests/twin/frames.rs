@@ -2,7 +2,7 @@
 
 use super::{Any, Method, difference, pipeline, rows};
 use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, StereoSource};
-use stereopsis::matching::{Block, Checks, Config, Fast, Kernel, MatchError, Sgm};
+use stereopsis::matching::{Block, Checks, Config, Fast, Kernel, MatchError, Sgm, SgmEdge};
 use stereopsis::pipeline::PipelineError;
 use stereopsis_host::scene::SceneCamera;
 use stereopsis_host::scene::pattern::Pattern;
@@ -133,15 +133,14 @@ fn a_frame_or_a_size_may_change_at_any_row() {
     }
 }
 
-#[test]
-fn paths_of_a_frame_do_not_reach_into_the_next() {
-    let config = Config { checks: Checks::STRICT, ..Config::new(90, 30, 32) };
-    let mut pipeline = pipeline::<Sgm>();
+fn frames_along_paths<S: Method>() {
+    let config = Config { checks: Checks::STRICT, penalties: S::PENALTIES, ..Config::new(90, 30, 32) };
+    let mut pipeline = pipeline::<S>();
     pipeline.start(&config).expect("the configuration is valid");
     for (rows_taken, pattern) in [(0, LIVE), (7, Pattern::Noise), (29, Pattern::Saturated), (30, LIVE), (3, LIVE)] {
         let mut camera = camera(pattern, 90, 30, 9);
         let (left, right) = camera.pictures();
-        let expected = match_pair(&Sgm::TWIN, &config, left, right);
+        let expected = match_pair(&S::TWIN, &config, left, right);
         let map = rows(&mut pipeline, &mut camera).expect("the camera works");
         assert_eq!(difference(&map, &expected), None, "{pattern:?}");
         // The next frame is given up after some rows.
@@ -150,6 +149,12 @@ fn paths_of_a_frame_do_not_reach_into_the_next() {
             assert!(pipeline.next_row(&mut camera).expect("the camera works").is_some());
         }
     }
+}
+
+#[test]
+fn paths_of_a_frame_do_not_reach_into_the_next() {
+    frames_along_paths::<Sgm>();
+    frames_along_paths::<SgmEdge>();
 }
 
 #[test]
@@ -241,5 +246,6 @@ fn a_row_comes_as_many_lines_late_as_promised() {
         latency::<Fast>(height);
         latency::<Block>(height);
         latency::<Sgm>(height);
+        latency::<SgmEdge>(height);
     }
 }

@@ -3,7 +3,7 @@
 use super::{Any, HALVES, Method, W, compare, pipeline};
 use image::GrayImage;
 use std::collections::BTreeSet;
-use stereopsis::matching::{Block, Checks, Config, Fast, Penalties, Sgm, SgmLean};
+use stereopsis::matching::{Block, Checks, Config, Fast, Penalties, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::Pipeline;
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::scene::pattern::Pattern;
@@ -162,6 +162,12 @@ fn sgm_lean_equals_its_twin_at_all_sizes_ranges_and_pictures() {
 fn sgm_equals_its_twin_at_all_sizes_ranges_and_pictures() {
     run_list::<Sgm>();
 }
+
+#[test]
+fn sgm_edge_equals_its_twin_at_all_sizes_ranges_and_pictures() {
+    run_list::<SgmEdge>();
+}
+
 /// Checks of which every stage does something.
 const ALL_STAGES: Checks = Checks { median: true, fill_pixels: 16, fill_step: Disparity::NONE, ..Checks::STRICT };
 
@@ -183,6 +189,7 @@ fn every_pattern_with_every_preset() {
     every_pattern::<Block>();
     every_pattern::<SgmLean>();
     every_pattern::<Sgm>();
+    every_pattern::<SgmEdge>();
 }
 
 fn rendered<S: Method>(pipeline: &mut Any<S>, scene: &Scene, pair: &(GrayImage, GrayImage)) {
@@ -205,6 +212,7 @@ fn a_rendered_scene_equals_the_twin() {
     rendered::<Block>(&mut pipeline(), &scene, &pair);
     rendered::<SgmLean>(&mut pipeline(), &scene, &pair);
     rendered::<Sgm>(&mut pipeline(), &scene, &pair);
+    rendered::<SgmEdge>(&mut pipeline(), &scene, &pair);
 }
 
 /// The median and the filling at every width around that of a group of lanes, and every height around that of the
@@ -236,6 +244,7 @@ fn median_and_filling_equal_the_twins_at_all_borders() {
     filtered::<Fast>();
     filtered::<Block>();
     filtered::<Sgm>();
+    filtered::<SgmEdge>();
 }
 
 /// One surface over the whole picture, against thresholds around its size and around the powers of two.
@@ -255,4 +264,5 @@ fn surfaces_of_any_size_are_counted() {
     whole_surface::<Block>();
     whole_surface::<SgmLean>();
     whole_surface::<Sgm>();
+    whole_surface::<SgmEdge>();
 }

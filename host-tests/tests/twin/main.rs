@@ -9,7 +9,7 @@ mod list;
 
 use image::GrayImage;
 use stereopsis::camera::StereoSource;
-use stereopsis::matching::{Block, Config, Fast, Kernel, Scheme, Sgm, SgmLean};
+use stereopsis::matching::{Block, Config, Fast, Kernel, Scheme, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::{Pipeline, PipelineError};
 use stereopsis_host::scene::SceneCamera;
 use stereopsis_host::scene::pattern::Pattern;
@@ -38,6 +38,10 @@ impl Method for Block {
 
 impl Method for Sgm {
     const TWIN: twin::Scheme = twin::Scheme::SGM;
+}
+
+impl Method for SgmEdge {
+    const TWIN: twin::Scheme = twin::Scheme::SGM_EDGE;
 }
 
 impl Method for SgmLean {

@@ -224,7 +224,11 @@ fn refused() -> Outcome {
     says(&[".", "right.pgm"], ".: cannot be read")?;
     says(&["right.pgm"], "usage: depth [LEFT.pgm RIGHT.pgm]")?;
     for (name, value, expected) in [
-        ("STEREOPSIS_METHOD", "sobel", "STEREOPSIS_METHOD is \"sobel\", known are: fast, block, sgm-lean, sgm"),
+        (
+            "STEREOPSIS_METHOD",
+            "sobel",
+            "STEREOPSIS_METHOD is \"sobel\", known are: fast, block, sgm-lean, sgm, sgm-edge",
+        ),
         ("STEREOPSIS_DISPARITIES", "40", "STEREOPSIS_DISPARITIES is 40: it must be a multiple of 16"),
         ("STEREOPSIS_WIDTH", "32", "STEREOPSIS_WIDTH is 32: it must be 64 (the disparities) to 6553"),
     ] {

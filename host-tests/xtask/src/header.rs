@@ -9,7 +9,7 @@ use cbindgen::{Builder, Config, DocumentationLength, DocumentationStyle, Languag
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use std::fs;
 use stereopsis::ffi::state_bytes;
-use stereopsis::matching::{Block, Fast, Scheme, Sgm, SgmLean};
+use stereopsis::matching::{Block, Fast, Scheme, Sgm, SgmEdge, SgmLean};
 
 /// The header, from the repository's root.
 const HEADER: &str = "src/ffi/stereopsis.h";
@@ -87,11 +87,12 @@ fn config() -> Outcome<Config> {
         no_includes: true,
         sys_includes: vec!["stddef.h".to_owned(), "stdint.h".to_owned()],
         after_includes: Some(format!(
-            "\n{}\n{}\n{}\n{}",
+            "\n{}\n{}\n{}\n{}\n{}",
             bytes_macro::<Fast>()?,
             bytes_macro::<Block>()?,
             bytes_macro::<SgmLean>()?,
-            bytes_macro::<Sgm>()?
+            bytes_macro::<Sgm>()?,
+            bytes_macro::<SgmEdge>()?
         )),
         usize_is_size_t: true,
         style: Style::Both,

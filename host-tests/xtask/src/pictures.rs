@@ -80,8 +80,7 @@ impl Pictures {
     pub fn matched(&self, method: Method, disparities: u16) -> Outcome<DisparityMap> {
         let camera = MemoryPair::new(self.width, self.left.clone(), self.right.clone());
         let mut camera = camera.ok_or_else(|| Failure::new("the pictures are empty"))?;
-        let checks = method.checks(Filter::Default);
-        let config = Config { checks, ..Config::new(self.width, self.height, disparities) };
+        let config = method.with_filter(Filter::Default, Config::new(self.width, self.height, disparities));
         let outcome = run(method, &config, &mut camera, |_| ());
         outcome.map(|outcome| outcome.map).map_err(|e| Failure::new(format!("{method} on the host: {e}")))
     }

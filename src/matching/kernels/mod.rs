@@ -22,7 +22,7 @@ mod winner;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-pub(super) use paths::{COLUMNS_OFF, Guide, PathWork};
+pub(super) use paths::{COLUMNS_OFF, EdgeWork, Guide, PathWork};
 pub use scratch::{Aligned, Columns, Room, Scratch, Volumes};
 pub(super) use scratch::{bytes_mut, halves_mut, winners_mut};
 pub use winner::Winner;

@@ -48,17 +48,16 @@ impl<const W: usize, const D: usize> Columns<W, D> {
     }
 }
 
-/// The costs, the paths from above and the sums of `W` columns with `D` disparities each, and [`COLUMNS_OFF`] columns more
-/// for the paths.
+/// `VOLUMES` numbers for each of `D` disparities of `W` columns, and [`COLUMNS_OFF`] columns more.
 #[repr(C, align(8))]
-pub struct Volumes<const W: usize, const D: usize> {
-    columns: [[[u8; D]; W]; 3],
+pub struct Volumes<const VOLUMES: usize, const W: usize, const D: usize> {
+    columns: [[[u8; D]; W]; VOLUMES],
     more: [[u8; D]; COLUMNS_OFF],
 }
 
-impl<const W: usize, const D: usize> Volumes<W, D> {
+impl<const VOLUMES: usize, const W: usize, const D: usize> Volumes<VOLUMES, W, D> {
     /// All zero.
-    pub const ZERO: Self = Self { columns: [[[0; D]; W]; 3], more: [[0; D]; COLUMNS_OFF] };
+    pub const ZERO: Self = Self { columns: [[[0; D]; W]; VOLUMES], more: [[0; D]; COLUMNS_OFF] };
 
     /// All of it, one column after the other.
     pub fn flat(&mut self) -> &mut [u8] {

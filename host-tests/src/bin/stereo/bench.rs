@@ -20,7 +20,7 @@ struct Times {
 
 pub fn run(args: &BenchArgs) -> Result<(), Failure> {
     let mut pair = Pair::open(&args.pair)?;
-    let config = input::config(&args.range, args.way.checks(), pair.width, pair.height)?;
+    let config = input::config(&args.range, &args.way, pair.width, pair.height)?;
     // Files and the conversion to grey are left out of the times.
     let mut camera = MemoryPair::record(&mut pair.camera)?;
     let (frame_ms, kernel) = time_frames(args.way.way(), &config, &mut camera, usize::from(args.repeat))?;

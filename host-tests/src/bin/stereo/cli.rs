@@ -5,9 +5,9 @@ use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
 use std::ffi::OsString;
 use std::path::PathBuf;
-use stereopsis::matching::{Checks, Config, Filter, Kernel};
+use stereopsis::matching::{Config, Filter, Kernel};
 use stereopsis_host::command_line::usage_line;
-use stereopsis_host::run::{Method, Way};
+use stereopsis_host::run::{Method, UnknownMethod, Way};
 
 /// What is told to one who names another command.
 const COMMANDS: &str = "the commands are demo, match and bench";
@@ -113,7 +113,7 @@ pub struct RangeArgs {
 
 #[derive(Debug, Args)]
 pub struct WayArgs {
-    /// fast (4-bit census, 9x7 window) or block (8-bit census, 9x9 window)
+    /// fast (4-bit census, 9x7 window), block (8-bit census, 9x9 window), or along paths sgm-lean, sgm and sgm-edge
     #[arg(long, value_name = "METHOD", default_value = "block", value_parser = method)]
     pub method: Method,
     /// dense (an answer wherever there is a candidate), default, or strict (sure answers only)
@@ -132,11 +132,6 @@ impl WayArgs {
     pub fn way(&self) -> Way {
         Way { method: self.method, kernel: self.kernel, threads: self.threads }
     }
-
-    /// The checks of the filter, for the method.
-    pub fn checks(&self) -> Checks {
-        self.method.checks(self.filter)
-    }
 }
 
 fn filter(text: &str) -> Result<Filter, &'static str> {
@@ -151,10 +146,7 @@ fn kernel(text: &str) -> Result<Kernel, String> {
 }
 
 fn method(text: &str) -> Result<Method, String> {
-    text.parse().map_err(|unknown| match text {
-        "sgm-edge" => format!("sgm-edge is not in this build; {unknown}"),
-        _ => format!("{unknown}"),
-    })
+    text.parse().map_err(|unknown: UnknownMethod| unknown.to_string())
 }
 
 fn disparities(text: &str) -> Result<u16, String> {

@@ -27,7 +27,7 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
     let (left, right) = scene.render();
     let truth = scene.truth();
     let range = crate::cli::RangeArgs { disparities: scene.disparities(), min_disparity: 0 };
-    let config = input::config(&range, args.way.checks(), scene.width(), scene.height())?;
+    let config = input::config(&range, &args.way, scene.width(), scene.height())?;
     let no_pair = || Failure::new("the scene's two pictures differ in size");
     let mut camera = MemoryPair::new(config.width, left.to_vec(), right.to_vec()).ok_or_else(no_pair)?;
     let outcome = run::run(args.way.way(), &config, &mut camera, |_| {})?;

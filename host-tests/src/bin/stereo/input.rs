@@ -1,11 +1,11 @@
 //! The images and the search, checked against each other before any work.
 
-use crate::cli::{PairArgs, RangeArgs};
+use crate::cli::{PairArgs, RangeArgs, WayArgs};
 use crate::failure::Failure;
 use image::RgbImage;
 use stereopsis::camera::{CameraPair, LineSource};
 use stereopsis::imaging::GreyLines;
-use stereopsis::matching::{Checks, Config};
+use stereopsis::matching::Config;
 use stereopsis_host::mock::MockCamera;
 
 /// Bytes of the longest raw line: RGB with 16 bits.
@@ -39,8 +39,8 @@ impl Pair {
     }
 }
 
-/// The search in images of that size, or which option does not fit them.
-pub fn config(range: &RangeArgs, checks: Checks, width: u16, height: u16) -> Result<Config, Failure> {
+/// The search in images of that size, as the method and its filter have it, or which option does not fit them.
+pub fn config(range: &RangeArgs, way: &WayArgs, width: u16, height: u16) -> Result<Config, Failure> {
     let RangeArgs { disparities, min_disparity } = *range;
     if width < Config::FEWEST_DISPARITIES {
         let least = Config::FEWEST_DISPARITIES;
@@ -59,5 +59,6 @@ pub fn config(range: &RangeArgs, checks: Checks, width: u16, height: u16) -> Res
              {most} is possible"
         )));
     }
-    Ok(Config { min_disparity, checks, ..Config::new(width, height, disparities) })
+    let search = Config { min_disparity, ..Config::new(width, height, disparities) };
+    Ok(way.method.with_filter(way.filter, search))
 }

@@ -17,7 +17,7 @@ use stereopsis_host::run;
 pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let calibration = args.calib.as_ref().map(|path| Calibration::open(path, &args.pair.left)).transpose()?;
     let mut pair = Pair::open(&args.pair)?;
-    let config = input::config(&args.range, args.way.checks(), pair.width, pair.height)?;
+    let config = input::config(&args.range, &args.way, pair.width, pair.height)?;
     let scale = calibration.as_ref().map(|c| scale(c, pair.width, pair.height)).transpose()?;
     Staging::probe(&args.out)?;
 

@@ -6,7 +6,7 @@ use super::super::{Kernel, Select};
 use super::groups::Wide;
 #[cfg(target_pointer_width = "64")]
 use super::groups::{Groups, Vector};
-use super::{Guide, PathWork};
+use super::{EdgeWork, Guide, PathWork};
 use crate::matching::paths::Along;
 use crate::matching::scheme::Around;
 
@@ -36,7 +36,7 @@ macro_rules! in_words {
 }
 
 mod words {
-    use super::super::{Guide, Passes, PathWork};
+    use super::super::{EdgeWork, Guide, Passes, PathWork};
     use super::{Along, Around, Select};
 
     #[inline(never)]
@@ -47,6 +47,11 @@ mod words {
         room: &mut [u8],
     ) {
         super::super::enter::<P, S>(work, is_first, lines, room);
+    }
+
+    #[inline(never)]
+    pub(super) fn within_edges<P: Passes>(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+        super::super::within_edges::<P>(work, edges);
     }
 
     #[inline(never)]
@@ -103,6 +108,24 @@ impl Kernel {
             Self::Avx2(avx2) => avx2.run(
                 #[inline(always)]
                 || in_wide!(work, enter, [S], is_first, lines, room),
+            ),
+        }
+    }
+
+    /// Averages the costs of a row with those around it, within edges.
+    #[inline(always)]
+    pub(in crate::matching) fn within_edges(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+        match self {
+            #[cfg(not(stereopsis_vectors))]
+            Self::Planes => in_words!(work, within_edges, [], edges),
+            #[cfg(stereopsis_vectors)]
+            Self::Lanes => in_words!(work, within_edges, [], edges),
+            #[cfg(target_pointer_width = "64")]
+            Self::Lanes => in_vectors!(work, within_edges, [], edges),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(avx2) => avx2.run(
+                #[inline(always)]
+                || in_wide!(work, within_edges, [], edges),
             ),
         }
     }

@@ -2,19 +2,21 @@
 //! paths into a pixel, from the left, from the right and from above (the average of the two beside it, two columns off).
 //!
 //! A pixel's candidates are bytes side by side; the largest disparity comes first, so that they stand in memory as they do
-//! in the right image. A row takes three passes:
+//! in the right image. A row takes three passes, or four:
 //!
 //! ```text
 //! enter  (all columns):      a[d] = average(a[d], pixel cost[d])                                      with row y + 1
+//!   within edges (if so):    a[d] = average of the column's pixel costs around row y                  with row y + 2
 //! gather (left to right):    t[d] = a[d] + message(t of row y - 1)[d],  r[d] = a[d] + message(r)[d],  q[d] = r[d] + t[d]
 //! decide (right to left):    l[d] = a[d] + message(l)[d],  s[d] = q[d] + l[d],  winner: the least s[d]
 //!
 //! message(p)[d] = min(p[d], p[d - 1] + step, p[d + 1] + step, least p + jump) - least p
 //! ```
 //!
-//! Everything fits bytes: see [`Penalties`]. Kept from row to row are a, t and the room for q.
+//! Everything fits bytes: see [`Penalties`]. Kept from row to row are a, t and the room for q; within edges, two more.
 //!
 //! * `features`: what a pixel's cost compares, of a row of both images.
+//! * `edges`: how far a row's costs are averaged with others.
 //! * `groups`: the passes, for vectors and for plain words.
 //! * `dsp`: the passes for cores with Arm's instructions on four bytes.
 //! * `dispatch`: which of them a kernel calls.
@@ -24,6 +26,7 @@
 mod dispatch;
 #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
 mod dsp;
+mod edges;
 mod features;
 #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
 mod groups;
@@ -38,6 +41,8 @@ use crate::matching::paths::Along;
 use crate::matching::penalties::Penalties;
 use crate::matching::scheme::Around;
 use features::Features;
+
+pub(in crate::matching) use edges::EdgeWork;
 
 /// What the passes work on.
 ///
@@ -79,8 +84,11 @@ pub(in crate::matching) const COLUMNS_OFF: usize = 2;
 trait Passes {
     /// Makes the costs those of no row.
     fn clear(work: &mut PathWork<'_>);
-    /// Averages a row into the costs.
+    /// Averages a row into the costs; within edges, puts it in their place.
     fn enter<S: Along>(work: &mut PathWork<'_>, features: &Features<'_>);
+    /// Makes the costs of the row, of those that stand in their place before: of the pixels two rows below, or of no meaning
+    /// where that is outside of the image.
+    fn within_edges(work: &mut PathWork<'_>, edges: EdgeWork<'_>);
     /// Moves the path from above down to the row and the path from the left through it, and adds the two up.
     fn gather(work: &mut PathWork<'_>, guide: Guide<'_>);
     /// Adds the path from the right to the other two and selects the winner of every pixel that has a candidate.
@@ -96,6 +104,12 @@ fn enter<P: Passes, S: Along>(work: &mut PathWork<'_>, is_first: bool, lines: [&
     if let Some(features) = features::of::<S>(work, lines, room) {
         P::enter::<S>(work, &features);
     }
+}
+
+/// Averages the costs of a row with those around it, within edges.
+#[inline(always)]
+fn within_edges<P: Passes>(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+    P::within_edges(work, edges);
 }
 
 /// Selects the winners of the row whose costs there are, and puts them in `ROWS` for each of their parts as kernels in

@@ -2,6 +2,7 @@
 //! of bytes. The instructions of a word are counted with each; the loop adds half of one.
 #![allow(unsafe_code)]
 
+use crate::matching::paths::Along;
 use core::arch::asm;
 
 /// Four times the lines of a word, and around again until `n` is 0.
@@ -81,10 +82,10 @@ pub(super) struct Rest {
 
 /// A cost's loop, in which the lines at the beginning put the share of the gradient along the line in `a`.
 ///
-/// The rest are 24 instructions: how far apart two numbers are is the greater of their two differences, the other of which
+/// The rest are 22 instructions, and two that average: how far apart two numbers are is the greater of their two differences, the other of which
 /// is 0; the bits of a byte are counted by twos, fours and eights; masks are such as an instruction holds.
 macro_rules! cost {
-    ($costs:ident, $rows:ident, $count:ident, $along:ident, $rest:ident, $($line:literal)*) => {
+    ($costs:ident, $rows:ident, $count:ident, $along:ident, $rest:ident, [$($line:literal)*], [$($average:literal)*]) => {
         asm!(
             four_words!(
                 $($line)*
@@ -110,8 +111,7 @@ macro_rules! cost {
                 "add {a}, {a}, {t}"
                 "add {a}, {a}, {b}"
                 "uqsub8 {a}, {most}, {a}"
-                "ldr {b}, [{costs}]"
-                "uhadd8 {a}, {a}, {b}"
+                $($average)*
                 "str {a}, [{costs}], #4"
             ),
             costs = inout(reg) $costs.as_mut_ptr() => _,
@@ -129,29 +129,38 @@ macro_rules! cost {
     };
 }
 
-/// Averages a pixel's agreements into `costs`, in which its gradient `along` the line is compared with all between the right
-/// ones and halfway to their neighbours: how far it is from `least` to `greatest`. `rows` begins with the first candidate in
-/// the features' rows, so many bytes to a row. Those numbers are doubled.
+/// Averages a pixel's agreements into `costs`, or puts them there within edges. Its gradient `along` the line is compared with
+/// all between the right ones and halfway to their neighbours: how far it is from `least` to `greatest`. `rows` begins with
+/// the first candidate in the features' rows, so many bytes to a row. Those numbers are doubled.
 #[inline(always)]
-pub(super) fn between_pixels(costs: &mut [u32], rows: &[u8], count: usize, along: u32, rest: &Rest) {
+pub(super) fn between_pixels<S: Along>(costs: &mut [u32], rows: &[u8], count: usize, along: u32, rest: &Rest) {
     if costs.len() < 4 || rows.len() < 5 * count + 4 * costs.len() {
         return;
+    }
+    macro_rules! between_pixels {
+        ($average:tt) => {
+            cost!(costs, rows, count, along, rest, [
+                "add {t}, {rows}, {count}"
+                "ldr {a}, [{t}, {count}, lsl #1]"
+                "ldr {b}, [{rows}, {count}, lsl #2]"
+                "uqsub8 {a}, {a}, {along}"
+                "uqsub8 {b}, {along}, {b}"
+                "orr {a}, {a}, {b}"
+            ], $average)
+        };
     }
     // SAFETY: `costs.len() / 4` times four words are read from six rows, the last of which begins after five of them, and
     // read from `costs` and written to it.
     unsafe {
-        cost!(costs, rows, count, along, rest,
-            "add {t}, {rows}, {count}"
-            "ldr {a}, [{t}, {count}, lsl #1]"
-            "ldr {b}, [{rows}, {count}, lsl #2]"
-            "uqsub8 {a}, {a}, {along}"
-            "uqsub8 {b}, {along}, {b}"
-            "orr {a}, {a}, {b}"
-        );
+        if S::WITHIN_EDGES {
+            between_pixels!([])
+        } else {
+            between_pixels!(["ldr {b}, [{costs}]" "uhadd8 {a}, {a}, {b}"])
+        }
     }
 }
 
-/// The same with the right ones themselves.
+/// The same with the right ones themselves, which are not doubled. Always averages.
 #[inline(always)]
 pub(super) fn at_pixels(costs: &mut [u32], rows: &[u8], count: usize, along: u32, rest: &Rest) {
     if costs.len() < 4 || rows.len() < 5 * count + 4 * costs.len() {
@@ -159,13 +168,13 @@ pub(super) fn at_pixels(costs: &mut [u32], rows: &[u8], count: usize, along: u32
     }
     // SAFETY: as for `between_pixels`.
     unsafe {
-        cost!(costs, rows, count, along, rest,
+        cost!(costs, rows, count, along, rest, [
             "sub {t}, {rows}, {count}"
             "ldr {b}, [{t}]"
             "uqsub8 {a}, {b}, {along}"
             "uqsub8 {b}, {along}, {b}"
             "orr {a}, {a}, {b}"
             "lsl {a}, {a}, #1"
-        );
+        ], ["ldr {b}, [{costs}]" "uhadd8 {a}, {a}, {b}"]);
     }
 }

@@ -11,16 +11,18 @@
 //! * `blocks`: the other loops over a pixel's words, in assembler.
 //! * `winners`: the least of the paths' sums.
 //! * `features`: what is compared, four pixels at a time.
+//! * `edges`: how far a row's costs are averaged with others.
 //! * `instructions`: the instructions that the compiler has no names for.
 
 mod blocks;
+mod edges;
 mod features;
 mod instructions;
 mod rows;
 mod winners;
 
 use super::features::Features;
-use super::{Guide, Passes, PathWork};
+use super::{EdgeWork, Guide, Passes, PathWork};
 use crate::matching::kernels::STEP;
 use crate::matching::kernels::scratch::words_mut;
 use crate::matching::kernels::winner::{Found, Unique};
@@ -54,7 +56,7 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
             let rest = Rest { across: splat(across), census: splat(census), brightness: splat(brightness >> 1), most };
             let candidates = right.get(x..).unwrap_or(&[]);
             if S::BETWEEN_PIXELS {
-                blocks::between_pixels(column, candidates, count, splat(2 * along), &rest);
+                blocks::between_pixels::<S>(column, candidates, count, splat(2 * along), &rest);
             } else {
                 blocks::at_pixels(column, candidates, count, splat(along), &rest);
             }
@@ -65,6 +67,11 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
                 column.get_mut(..beyond).unwrap_or_default().fill(least);
             }
         }
+    }
+
+    #[inline(always)]
+    fn within_edges(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+        edges::within_edges(work, stride::<WORDS, ALL>(work), edges);
     }
 
     #[inline(always)]

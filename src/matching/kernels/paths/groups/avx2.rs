@@ -80,6 +80,11 @@ impl Group for Wide {
     }
 
     #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        safely!(Self(_mm256_and_si256(self.0, other.0)))
+    }
+
+    #[inline(always)]
     fn apart(self, other: Self) -> Self {
         self.minus_saturating(other).or(other.minus_saturating(self))
     }

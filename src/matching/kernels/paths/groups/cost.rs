@@ -34,11 +34,11 @@ pub(super) fn enter<G: Group, S: Along, const CELLS: usize, const ALL: bool>(
         if S::BETWEEN_PIXELS {
             let ranges = groups::<G>(range.0).zip(groups::<G>(range.1));
             for (cell, (others, (least, greatest))) in column.iter_mut().zip(others.zip(ranges)) {
-                rest.put(cell, along.minus_saturating(greatest).or(least.minus_saturating(along)), others);
+                rest.put::<S>(cell, along.minus_saturating(greatest).or(least.minus_saturating(along)), others);
             }
         } else {
             for (cell, (others, other)) in column.iter_mut().zip(others.zip(groups::<G>(alongs))) {
-                rest.put(cell, along.apart(other), others);
+                rest.put::<S>(cell, along.apart(other), others);
             }
         }
     }
@@ -55,11 +55,11 @@ struct Rest<G> {
 impl<G: Group> Rest<G> {
     /// Averages the cost of some candidates into what there is of the rows above.
     #[inline(always)]
-    fn put(&self, cell: &mut G::Cell, along: G, (of_brightness, (of_across, of_census)): (G, (G, G))) {
+    fn put<S: Along>(&self, cell: &mut G::Cell, along: G, (of_brightness, (of_across, of_census)): (G, (G, G))) {
         let brightness = self.brightness.apart(of_brightness);
         let rest = self.across.apart(of_across).plus(brightness.quarter()).plus(self.census.bits_apart(of_census));
         let cost = along.plus(along).plus(rest).min(self.most);
-        *cell = G::of(*cell).average_up(cost).cell();
+        *cell = if S::WITHIN_EDGES { cost } else { G::of(*cell).average_up(cost) }.cell();
     }
 }
 

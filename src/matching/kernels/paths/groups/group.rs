@@ -44,6 +44,8 @@ pub(in crate::matching) trait Group: Copy + 'static {
     fn bits_apart(self, other: Self) -> Self;
     /// Bits of either, eight bits each.
     fn or(self, other: Self) -> Self;
+    /// Bits of both, eight bits each.
+    fn and(self, other: Self) -> Self;
     /// Each lane's number in the lane after it; the first one's is the last of `before`.
     fn after(self, before: Self) -> Self;
     /// Each lane's number in the lane before it; the last one's is the first of `next`.

@@ -1,11 +1,12 @@
 //! The passes, written once for groups of bytes whose lanes run over the disparities of one pixel.
 //!
-//! * `cost`, `gather`, `decide`: the passes.
+//! * `cost`, `edges`, `gather`, `decide`: the passes.
 //! * `group`: what they are written for. `words`: four bytes in a word; `sse2`, `avx2`, `neon`: registers of larger
 //!   processors, with what they have alike from `registers`.
 
 mod cost;
 mod decide;
+mod edges;
 mod gather;
 mod group;
 
@@ -20,7 +21,7 @@ mod sse2;
 mod words;
 
 use super::features::Features;
-use super::{COLUMNS_OFF, Guide, Passes, PathWork};
+use super::{COLUMNS_OFF, EdgeWork, Guide, Passes, PathWork};
 use crate::matching::kernels::winner::{Found, Unique};
 use crate::matching::kernels::{MASKS, STEP};
 use crate::matching::paths::Along;
@@ -51,6 +52,11 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Passes for Groups<G, CELLS, 
     #[inline(always)]
     fn enter<S: Along>(work: &mut PathWork<'_>, features: &Features<'_>) {
         cost::enter::<G, S, CELLS, ALL>(work, features);
+    }
+
+    #[inline(always)]
+    fn within_edges(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+        edges::within_edges::<G, CELLS, ALL>(work, edges);
     }
 
     #[inline(always)]

@@ -89,6 +89,11 @@ impl Group for Vector {
     }
 
     #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        safely!(Self(vandq_u8(self.0, other.0)))
+    }
+
+    #[inline(always)]
     fn quarter(self) -> Self {
         safely!(Self(vshrq_n_u8(self.0, 2)))
     }

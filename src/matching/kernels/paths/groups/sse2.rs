@@ -79,6 +79,11 @@ impl Group for Vector {
     }
 
     #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        safely!(Self(_mm_and_si128(self.0, other.0)))
+    }
+
+    #[inline(always)]
     fn apart(self, other: Self) -> Self {
         self.minus_saturating(other).or(other.minus_saturating(self))
     }

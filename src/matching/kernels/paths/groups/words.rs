@@ -131,6 +131,11 @@ impl Group for Word {
     }
 
     #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+
+    #[inline(always)]
     fn after(self, before: Self) -> Self {
         Self(self.0 << 8 | before.0 >> 24)
     }

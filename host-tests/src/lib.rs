@@ -20,4 +20,5 @@ pub mod ply;
 pub mod report;
 pub mod run;
 pub mod scene;
+pub mod sparsification;
 pub mod twin;

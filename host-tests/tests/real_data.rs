@@ -15,6 +15,7 @@ use stereopsis::matching::{Config, Filter};
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::mock::MockCamera;
 use stereopsis_host::run::{MOST_WIDTH, Method, run};
+use stereopsis_host::sparsification::Sparsification;
 
 /// An answer that is off by more is bad, px.
 const BAD_PX: f32 = 2.0;
@@ -78,7 +79,7 @@ impl Scene {
         let mut camera = CameraPair::new(left, right, 0).expect("one size");
         let format = stereopsis::camera::StereoSource::format(&camera);
         let checks = method.checks(filter);
-        let config = Config { checks, ..Config::new(format.width, format.height, self.disparities) };
+        let config = Config { checks, confidence: true, ..Config::new(format.width, format.height, self.disparities) };
         run(method, &config, &mut camera, |_| ()).expect("a frame").map
     }
 
@@ -97,6 +98,43 @@ impl Scene {
         let (density, bad2) = (share(answers, scored), 1.0 - share(good, answers.max(1)));
         Score { density, bad2, missed: 1.0 - share(good, scored) }
     }
+}
+
+impl Scene {
+    /// What confidences are worth, for three losses: over 2 px off, over 1 px off, the error.
+    fn worth(&self, map: &DisparityMap) -> [Sparsification; 3] {
+        let losses: [fn(f32) -> f32; 3] =
+            [|error| f32::from(u8::from(error > 2.0)), |error| f32::from(u8::from(error > 1.0)), |error| error];
+        losses.map(|loss| {
+            let of_known = |i: usize, px: f32| (self.truth[i] > 0.0).then(|| loss((px - self.truth[i]).abs()));
+            Sparsification::of(&map.judged(of_known)).expect("answers that are scored")
+        })
+    }
+}
+
+/// The area under the sparsification curve of every scene, from the oracle's (0) to that of a random order (1): printed as
+/// such, and over the oracle's; for answers over 2 px off at most `bound`.
+fn confidence_on_real_pairs(method: Method, filter: Filter, bound: f64) {
+    let mut table =
+        format!("{:24}{:>24}{:>24}{:>24}\n", format!("{method}, {}", filter.name()), "bad2", "bad1", "error");
+    let mut worst = (0.0, String::new());
+    let (mut mean, scenes) = ([[0.0; 2]; 3], scenes());
+    for folder in &scenes {
+        let scene = Scene::read(folder.clone());
+        let worth = scene.worth(&scene.match_with(method, filter)).map(|s| [s.from_oracle(), s.area / s.oracle]);
+        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        writeln!(table, "{name:24}{}", worth.map(|[from, over]| format!("{from:12.3}{over:12.2}")).concat())
+            .expect("to a string");
+        if worth[0][0] > worst.0 {
+            worst = (worth[0][0], name);
+        }
+        for (mean, worth) in mean.iter_mut().flatten().zip(worth.iter().flatten()) {
+            *mean += worth / scenes.len() as f64;
+        }
+    }
+    let mean = mean.map(|[from, over]| format!("{from:12.3}{over:12.2}")).concat();
+    println!("{table}{:24}{mean}\n", "mean");
+    assert!(worst.0 <= bound, "{method}, {}: {worst:?}", filter.name());
 }
 
 /// The mean over all scenes, printed under a table of them.
@@ -153,4 +191,13 @@ fn sgm_on_real_pairs() {
 fn strict_answers_of_sgm_are_sure() {
     let mean = mean_with(Method::Sgm, Filter::Strict);
     assert!(mean.density >= 0.95 && mean.bad2 <= 0.014, "density {}, bad2 {}", mean.density, mean.bad2);
+}
+
+#[test]
+fn confidence_tells_wrong_answers_on_every_real_pair() {
+    for method in Method::ALL {
+        for filter in [Filter::Dense, Filter::Default] {
+            confidence_on_real_pairs(method, filter, 0.15);
+        }
+    }
 }

@@ -21,6 +21,9 @@ pub struct Config {
     pub checks: Checks,
     /// What the methods along paths take changes to be worth.
     pub penalties: Penalties,
+    /// Whether rows say how sure each answer is ([`Row::confidences`](super::Row::confidences)). Where they do not, the kernel
+    /// saves the search for each pixel's second best.
+    pub confidence: bool,
 }
 
 impl Config {
@@ -32,9 +35,17 @@ impl Config {
     /// Where every search ends, px: its largest disparity lies below, so that no answer is near [`Disparity::NONE`].
     pub const END: u16 = Disparity::MAX_PIXELS;
 
-    /// A search from disparity 0 with the default checks of the block methods.
+    /// A search from disparity 0 with the default checks of the block methods, and without confidences.
     pub const fn new(width: u16, height: u16, disparities: u16) -> Self {
-        Self { width, height, disparities, min_disparity: 0, checks: Checks::DEFAULT, penalties: Penalties::DEFAULT }
+        Self {
+            width,
+            height,
+            disparities,
+            min_disparity: 0,
+            checks: Checks::DEFAULT,
+            penalties: Penalties::DEFAULT,
+            confidence: false,
+        }
     }
 
     /// The same search with the checks of an operating point of a method.
@@ -63,6 +74,7 @@ impl Config {
             fill_step: Disparity::ZERO,
         },
         penalties: Penalties::UNSET,
+        confidence: false,
     };
 
     /// Whether a matcher for lines up to `width` and ranges up to `disparities` can do this.

@@ -4,6 +4,7 @@
 //! paths bring together what the pixels of a surface have in common: from the left, from the right, and from above. No
 //! frame is kept, and no path comes from below: that path measured least, and it would take the frame.
 
+use super::confidence;
 use super::config::Checks;
 use super::kernels::{Aligned, Guide, PathWork, Room, Select, Unique, bytes_mut, halves_mut, winners_mut};
 use super::memory::{Bytes, Memory, Parts, first};
@@ -113,6 +114,11 @@ impl<const W: usize, const D: usize> Memory for PathMemory<W, D> {
             scratch: self.room.words(),
         }
     }
+
+    // The winners are the first in the room.
+    fn after_winners(&self, width: usize) -> &[u8] {
+        self.room.bytes().get(..width).unwrap_or(&[])
+    }
 }
 
 impl<'a, S: Along> Stages<'a, S> {
@@ -152,7 +158,11 @@ impl<'a, S: Along> Stages<'a, S> {
             let select = Select {
                 disparities: work.disparities,
                 winners: self.winners,
-                unique: Unique::new(config.checks.uniqueness_percent, flags),
+                unique: Unique::new(
+                    config.checks.uniqueness_percent,
+                    flags,
+                    confidence::margins(config, self.support.lengths),
+                ),
             };
             self.kernel.select(work, guide, select);
         }

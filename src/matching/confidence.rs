@@ -39,70 +39,66 @@ pub(super) fn margins<'a>(config: &Config, lengths: &'a mut [u16]) -> &'a mut [u
     if config.confidence { first(bytes_of_halves(lengths), usize::from(config.width)) } else { &mut [] }
 }
 
+// The loops below end where a slice does, by `else { return }`: loops with more than one end are not unrolled, which would take
+// three times the flash for what most firmware never asks for.
+
 /// Puts the margins of a row's answers where their flags are.
 #[inline(never)]
-pub(super) fn keep(config: &Config, margins: &mut [u8], answers: &[Disparity], flags: &mut [PixelFlags]) {
-    // These may have no candidate over two px from the winner, and so nothing to be sure by.
-    let begin = usize::from(config.min_disparity).min(margins.len());
-    let few = begin..margins.len().min(begin + 2 * BESIDE + 1);
-    margins.get_mut(few).unwrap_or_default().fill(0);
-    for (flags, (&margin, answer)) in flags.iter_mut().zip(margins.iter().zip(answers)) {
-        let shared = margin.min(MOST_MARGIN) | CEILING * u8::from(flags.contains(PixelFlags::CEILING));
-        *flags = if answer.is_some() { PixelFlags::from_bits(shared) } else { *flags };
+pub(super) fn keep(config: &Config, margins: &[u8], answers: &[Disparity], flags: &mut [PixelFlags]) {
+    // The columns before may have no candidate over two px from the winner, and so nothing to be sure by.
+    let enough = usize::from(config.min_disparity) + 2 * BESIDE + 1;
+    for (x, flags) in flags.iter_mut().enumerate() {
+        let (Some(&margin), Some(answer)) = (margins.get(x), answers.get(x)) else { return };
+        let margin = if x < enough { 0 } else { margin.min(MOST_MARGIN) };
+        if answer.is_some() {
+            *flags = PixelFlags::from_bits(margin | CEILING * u8::from(flags.contains(PixelFlags::CEILING)));
+        }
     }
 }
 
-/// Makes confidences of the margins of a row, of which `answers` are those that are to be judged and `row` what they were
-/// before the median, and gives its flags back. `columns` are the rows above and below, `room` has a byte for each pixel.
+/// The rows around one that is to be judged.
+pub(super) struct Around<'a> {
+    /// What is to be judged.
+    pub answers: &'a [Disparity],
+    /// The same before the median.
+    pub row: &'a [Disparity],
+    /// The rows above and below, [`ROWS`] off; empty where there is none.
+    pub columns: [&'a [Disparity]; 2 * ROWS.len()],
+}
+
+/// Makes confidences of the margins of a row, and gives its flags back.
 #[inline(never)]
-pub(super) fn tell<'a>(
-    answers: &[Disparity],
-    row: &[Disparity],
-    columns: impl Iterator<Item = &'a [Disparity]>,
-    flags: &mut [PixelFlags],
-    [confidences, room]: [&mut [u8]; 2],
-) {
-    for ((flags, answer), confidence) in flags.iter_mut().zip(answers).zip(confidences.iter_mut()) {
+pub(super) fn tell(around: &Around<'_>, flags: &mut [PixelFlags], confidences: &mut [u8]) {
+    for (x, confidence) in confidences.iter_mut().enumerate() {
+        let (Some(flags), Some(here)) = (flags.get_mut(x), around.answers.get(x)) else { return };
         let shared = flags.bits();
-        *confidence = shared & MOST_MARGIN;
-        *flags = if answer.is_some() { PixelFlags::CEILING.when(shared & CEILING != 0) } else { *flags };
-    }
-    room.fill(0);
-    for off in COLUMNS {
-        apart(answers, row.get(off..).unwrap_or(&[]), room);
-        let (right, room) = (answers.get(off..).unwrap_or(&[]), room.get_mut(off..).unwrap_or_default());
-        apart(right, row, room);
-    }
-    agree(room, confidences);
-    room.fill(0);
-    for other in columns {
-        apart(answers, other, room);
-    }
-    agree(room, confidences);
-}
-
-/// Keeps in `most` how far an answer is from another one, in quarters of steps, up to [`AGREEMENT`].
-#[inline(never)]
-fn apart(answers: &[Disparity], others: &[Disparity], most: &mut [u8]) {
-    for ((answer, other), most) in answers.iter().zip(others).zip(most) {
-        let apart = (answer.raw().abs_diff(other.raw()) / 4).min(u16::from(AGREEMENT)) as u8;
-        // No answer says nothing.
-        *most = (*most).max(if other.is_some() { apart } else { 0 });
+        // Beside the row there is no answer, which says nothing.
+        let beside = COLUMNS.map(|off| [x.wrapping_sub(off), x + off]);
+        let s = beside.as_flattened().iter().fold(0, |most, &x| apart(*here, around.row.get(x)).max(most));
+        let t = around.columns.iter().fold(0, |most, row| apart(*here, row.get(x)).max(most));
+        let agreement = |apart: u16| AGREEMENT.saturating_sub((apart / 4).min(255) as u8);
+        *confidence = (shared & MOST_MARGIN) + agreement(s) + agreement(t);
+        if here.is_some() {
+            *flags = PixelFlags::CEILING.when(shared & CEILING != 0);
+        }
     }
 }
 
-/// Adds what is left of the agreement.
-fn agree(apart: &[u8], confidences: &mut [u8]) {
-    for (confidence, apart) in confidences.iter_mut().zip(apart) {
-        *confidence += AGREEMENT - apart;
-    }
+/// How far another answer is, 0 where it is none.
+#[inline(always)]
+fn apart(here: Disparity, other: Option<&Disparity>) -> u16 {
+    other.map_or(0, |other| if other.is_some() { other.raw().abs_diff(here.raw()) } else { 0 })
 }
 
 /// Says of a row that is judged and filled which of its pixels have no answer of their own.
 #[inline(never)]
 pub(super) fn judge(finished: &[Disparity], flags: &[PixelFlags], confidences: &mut [u8]) {
-    for (confidence, (answer, flags)) in confidences.iter_mut().zip(finished.iter().zip(flags)) {
-        let own = if flags.contains(PixelFlags::FILLED) { FILLED } else { (*confidence).max(FILLED) };
-        *confidence = if answer.is_some() { own } else { 0 };
+    for (x, confidence) in confidences.iter_mut().enumerate() {
+        let (Some(answer), Some(flags)) = (finished.get(x), flags.get(x)) else { return };
+        if answer.is_none() {
+            *confidence = 0;
+        } else if flags.contains(PixelFlags::FILLED) || *confidence == 0 {
+            *confidence = FILLED;
+        }
     }
 }

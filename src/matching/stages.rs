@@ -94,12 +94,12 @@ impl<S: Scheme> Stages<'_, S> {
         let (width, finished, band) = (self.width, &*self.finished, &*self.band);
         let row = slot(band, judged % BAND, width);
         let answers = if self.config.checks.median { slot(finished, judged % HISTORY, width) } else { row };
-        let above = confidence::ROWS.into_iter().filter_map(|off| judged.checked_sub(off));
-        let above = above.map(|y| slot(finished, y % HISTORY, width));
-        let below = confidence::ROWS.into_iter().map(|off| slot(band, (judged + off) % BAND, width));
-        let (confidences, room) = bytes_of(self.winners).split_at_mut_checked(width).unwrap_or_default();
-        let room = [confidences, first(room, width)];
-        confidence::tell(answers, row, above.chain(below), slot_mut(self.flags, judged % BAND, width), room);
+        let [near, far] = confidence::ROWS;
+        let above = |off: usize| judged.checked_sub(off).map_or(&[][..], |y| slot(finished, y % HISTORY, width));
+        let below = |off: usize| slot(band, (judged + off) % BAND, width);
+        let around = confidence::Around { answers, row, columns: [above(near), above(far), below(near), below(far)] };
+        let confidences = first(bytes_of(self.winners), width);
+        confidence::tell(&around, slot_mut(self.flags, judged % BAND, width), confidences);
     }
 
     /// Makes room for `row`: the row that came out last goes into the history as it was judged, and the medians are made

@@ -51,7 +51,7 @@ pub(super) fn keep(config: &Config, margins: &[u8], answers: &[Disparity], flags
         let (Some(&margin), Some(answer)) = (margins.get(x), answers.get(x)) else { return };
         let margin = if x < enough { 0 } else { margin.min(MOST_MARGIN) };
         if answer.is_some() {
-            *flags = PixelFlags::from_bits(margin | CEILING * u8::from(flags.contains(PixelFlags::CEILING)));
+            *flags = PixelFlags::from_bits(margin | (CEILING * u8::from(flags.contains(PixelFlags::CEILING))));
         }
     }
 }

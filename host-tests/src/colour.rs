@@ -5,6 +5,7 @@
 //! * [`diverging`]: blue over white to orange, for errors with a sign.
 
 use image::{GrayImage, Rgb, RgbImage};
+use stereopsis::matching::Row;
 use stereopsis::units::PixelFlags;
 
 use crate::map::{DisparityMap, quantile};
@@ -127,6 +128,17 @@ pub fn flags_picture(map: &DisparityMap, left: &RgbImage) -> RgbImage {
 pub fn flags_raw(map: &DisparityMap) -> GrayImage {
     let bytes = map.flags.iter().map(|f| f.bits()).collect();
     GrayImage::from_raw(map.width as u32, map.height as u32, bytes).unwrap_or_default()
+}
+
+/// The confidences' bytes as they are, for programs.
+pub fn confidence_raw(map: &DisparityMap) -> GrayImage {
+    GrayImage::from_raw(map.width as u32, map.height as u32, map.confidence.clone()).unwrap_or_default()
+}
+
+/// How sure the answers are: sure is bright; black where there is none.
+pub fn confidence_picture(map: &DisparityMap) -> RgbImage {
+    let shade = |c: u8| if c > 0 { viridis(f32::from(c) / f32::from(Row::MOST_CONFIDENCE)) } else { NO_ANSWER };
+    picture(map.width, map.confidence.iter().map(|&c| shade(c)))
 }
 
 /// Errors with a sign, from blue (-`limit`) over white to orange (+`limit`); black for what is not finite.

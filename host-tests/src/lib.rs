@@ -22,4 +22,5 @@ pub mod real;
 pub mod report;
 pub mod run;
 pub mod scene;
+pub mod sparsification;
 pub mod twin;

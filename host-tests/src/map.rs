@@ -1,5 +1,6 @@
 //! Whole maps: what the core says row by row, kept for files and figures.
 
+use crate::sparsification::Judged;
 use stereopsis::depth::DepthScale;
 use stereopsis::matching::Row;
 use stereopsis::units::{Disparity, PixelFlags};
@@ -17,6 +18,8 @@ pub struct DisparityMap {
     pub flags: Vec<PixelFlags>,
     /// Standard deviation of the answers, px; NaN where there is none.
     pub sigma_px: Vec<f32>,
+    /// How sure the answers are; 0 where there is none, and everywhere where the configuration did not ask.
+    pub confidence: Vec<u8>,
 }
 
 impl DisparityMap {
@@ -29,6 +32,7 @@ impl DisparityMap {
             disparity: vec![Disparity::NONE; pixels],
             flags: vec![PixelFlags::CLEAR; pixels],
             sigma_px: vec![f32::NAN; pixels],
+            confidence: vec![0; pixels],
         }
     }
 
@@ -41,6 +45,9 @@ impl DisparityMap {
         let places = y * self.width..(y + 1) * self.width;
         self.disparity[places.clone()].copy_from_slice(row.disparities());
         self.flags[places.clone()].copy_from_slice(row.flags());
+        if !row.confidences().is_empty() {
+            self.confidence[places.clone()].copy_from_slice(row.confidences());
+        }
         for (x, sigma) in self.sigma_px[places].iter_mut().enumerate() {
             *sigma = row.sigma_px(x).unwrap_or(f32::NAN);
         }
@@ -52,6 +59,7 @@ impl DisparityMap {
         self.disparity.extend(rows.disparity);
         self.flags.extend(rows.flags);
         self.sigma_px.extend(rows.sigma_px);
+        self.confidence.extend(rows.confidence);
     }
 
     /// The disparities in px; `f32::INFINITY` where there is no answer.
@@ -72,6 +80,15 @@ impl DisparityMap {
     /// Share of the pixels that have an answer, 0 to 1.
     pub fn density(&self) -> f64 {
         self.answers() as f64 / self.disparity.len().max(1) as f64
+    }
+
+    /// How sure the answers are, with what `loss` makes of each that it knows something of: by its pixel and disparity in px.
+    pub fn judged(&self, loss: impl Fn(usize, f32) -> Option<f32>) -> Vec<Judged> {
+        let pixels = self.disparity.iter().zip(&self.confidence).enumerate();
+        let judged = |(i, (d, &confidence)): (usize, (&Disparity, &u8))| {
+            Some(Judged { confidence, loss: loss(i, d.to_f32()?)? })
+        };
+        pixels.filter_map(judged).collect()
     }
 
     /// How many pixels carry `flag`, with or without an answer.

@@ -56,6 +56,7 @@ fn config(width: u16, height: u16, disparities: u16) -> Config {
         edges: [0; 2],
         fill_pixels: 0,
         fill_step: 0,
+        confidence: 0,
     };
     // SAFETY: the pointer is to a configuration.
     let status =
@@ -64,7 +65,7 @@ fn config(width: u16, height: u16, disparities: u16) -> Config {
     config
 }
 
-const NO_ROW: Row = Row { index: 0, width: 0, disparities: null(), flags: null() };
+const NO_ROW: Row = Row { index: 0, width: 0, disparities: null(), flags: null(), confidences: null() };
 
 #[test]
 fn rows_are_those_of_the_pipeline() {
@@ -77,7 +78,9 @@ fn rows_are_those_of_the_pipeline() {
 
         let mut pipeline = Box::new(Pipeline::<Block, WIDTH, DISPARITIES>::new());
         let checks = Checks { median: true, fill_pixels: 3, ..Checks::DEFAULT };
-        let asked = matching::Config { checks, ..matching::Config::new(width, height, 32) };
+        // With and without.
+        let confidence = width > 37;
+        let asked = matching::Config { checks, confidence, ..matching::Config::new(width, height, 32) };
         pipeline.start(&asked).expect("the configuration is valid");
         pipeline.begin().expect("it is started");
         let mut expected = Vec::new();
@@ -85,7 +88,8 @@ fn rows_are_those_of_the_pipeline() {
             let sigma: Vec<f32> = (0..width.into()).map(|x| row.sigma_px(x).unwrap_or(f32::INFINITY)).collect();
             let raw: Vec<u16> = row.disparities().iter().map(|d| d.raw()).collect();
             let flags: Vec<u8> = row.flags().iter().map(|f| f.bits()).collect();
-            expected.push((row.index(), raw, flags, sigma));
+            let confidences = confidence.then(|| row.confidences().to_vec());
+            expected.push((row.index(), raw, flags, sigma, confidences));
         };
         for (left, right) in left.iter().zip(&right) {
             pipeline.push(left, right).expect("a line").map(&mut keep);
@@ -97,7 +101,7 @@ fn rows_are_those_of_the_pipeline() {
         let mut memory = memory();
         let (status, handle) = init(&mut memory, 0, stereopsis_size());
         assert_eq!(status, Status::Ok);
-        let config = Config { median: 1, fill_pixels: 3, ..config(width, height, 32) };
+        let config = Config { median: 1, fill_pixels: 3, confidence: confidence.into(), ..config(width, height, 32) };
         let mut found = Vec::new();
         // SAFETY: the handle is from `init`, lines have their length, and rows are read before the next call.
         unsafe {
@@ -125,7 +129,9 @@ fn rows_are_those_of_the_pipeline() {
                 assert_eq!(stereopsis_sigma_px(handle, sigma.as_mut_ptr(), sigma.len()), Status::Ok);
                 let disparities = std::slice::from_raw_parts(row.disparities, row.width.into()).to_vec();
                 let flags = std::slice::from_raw_parts(row.flags, row.width.into()).to_vec();
-                found.push((row.index, disparities, flags, sigma));
+                let confidences = (!row.confidences.is_null())
+                    .then(|| std::slice::from_raw_parts(row.confidences, row.width.into()).to_vec());
+                found.push((row.index, disparities, flags, sigma, confidences));
             }
             assert_eq!(stereopsis_deinit(handle), Status::Ok);
         }

@@ -18,6 +18,7 @@ struct Kept {
     disparities: Vec<Disparity>,
     flags: Vec<PixelFlags>,
     sigma_px: Vec<Option<u32>>,
+    confidences: Vec<u8>,
 }
 
 impl From<Row<'_>> for Kept {
@@ -28,6 +29,7 @@ impl From<Row<'_>> for Kept {
             disparities: row.disparities().to_vec(),
             flags: row.flags().to_vec(),
             sigma_px: (0..row.disparities().len()).map(sigma).collect(),
+            confidences: row.confidences().to_vec(),
         }
     }
 }
@@ -74,7 +76,7 @@ fn pushed<S: Scheme>(pipeline: &mut Any<S>, pair: &(GrayImage, GrayImage)) -> Ve
 }
 
 fn compare<S: Scheme>(width: u16, height: u16, checks: Checks) {
-    let config = Config { checks, ..Config::new(width, height, 16) };
+    let config = Config { checks, confidence: true, ..Config::new(width, height, 16) };
     let pair = pair(width, height);
     let mut pipeline = started::<S>(&config);
     let expected = pulled(&mut pipeline, &pair);

@@ -9,6 +9,7 @@ use stereopsis::matching::{Config, Filter};
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::real::{RealScene, Score};
 use stereopsis_host::run::{MemoryPair, Method, run};
+use stereopsis_host::sparsification::Sparsification;
 
 /// The scenes, read once.
 static SCENES: LazyLock<Vec<RealScene>> = LazyLock::new(|| {
@@ -20,7 +21,42 @@ fn match_with(scene: &RealScene, method: Method, filter: Filter) -> DisparityMap
     let (width, height) = (scene.left.width() as u16, scene.left.height() as u16);
     let camera = MemoryPair::new(width, scene.left.to_vec(), scene.right.to_vec());
     let config = method.with_filter(filter, Config::new(width, height, scene.disparities));
+    let config = Config { confidence: true, ..config };
     run(method, &config, &mut camera.expect("two images of one size"), |_| ()).expect("a frame").map
+}
+
+/// What confidences are worth, for three losses: over 2 px off, over 1 px off, the error.
+fn worth(scene: &RealScene, map: &DisparityMap) -> [Sparsification; 3] {
+    let losses: [fn(f32) -> f32; 3] =
+        [|error| f32::from(u8::from(error > 2.0)), |error| f32::from(u8::from(error > 1.0)), |error| error];
+    losses.map(|loss| {
+        let of_known = |i: usize, px: f32| (scene.truth[i] > 0.0).then(|| loss((px - scene.truth[i]).abs()));
+        Sparsification::of(&map.judged(of_known)).expect("answers that are scored")
+    })
+}
+
+/// The area under the sparsification curve of every scene, from the oracle's (0) to that of a random order (1): printed as
+/// such, and over the oracle's; for answers over 2 px off at most `bound`.
+fn confidence_on_real_pairs(method: Method, filter: Filter, bound: f64) {
+    let mut table =
+        format!("{:24}{:>24}{:>24}{:>24}\n", format!("{method}, {}", filter.name()), "bad2", "bad1", "error");
+    let mut worst = (0.0, String::new());
+    let mut mean = [[0.0; 2]; 3];
+    for scene in SCENES.iter() {
+        let worth = worth(scene, &match_with(scene, method, filter)).map(|s| [s.from_oracle(), s.area / s.oracle]);
+        let name = scene.name.clone();
+        writeln!(table, "{name:24}{}", worth.map(|[from, over]| format!("{from:12.3}{over:12.2}")).concat())
+            .expect("to a string");
+        if worth[0][0] > worst.0 {
+            worst = (worth[0][0], name);
+        }
+        for (mean, worth) in mean.iter_mut().flatten().zip(worth.iter().flatten()) {
+            *mean += worth / SCENES.len() as f64;
+        }
+    }
+    let mean = mean.map(|[from, over]| format!("{from:12.3}{over:12.2}")).concat();
+    println!("{table}{:24}{mean}\n", "mean");
+    assert!(worst.0 <= bound, "{method}, {}: {worst:?}", filter.name());
 }
 
 /// The mean over all scenes, printed under a table of them.
@@ -85,4 +121,13 @@ fn strict_answers_of_sgm_are_sure() {
     assert!(mean.density >= 0.95 && mean.bad2 <= 0.014, "density {}, bad2 {}", mean.density, mean.bad2);
     let mean = mean_with(Method::SgmEdge, Filter::Strict);
     assert!(mean.density >= 0.955 && mean.bad2 <= 0.012, "density {}, bad2 {}", mean.density, mean.bad2);
+}
+
+#[test]
+fn confidence_tells_wrong_answers_on_every_real_pair() {
+    for method in Method::ALL {
+        for filter in [Filter::Dense, Filter::Default] {
+            confidence_on_real_pairs(method, filter, 0.15);
+        }
+    }
 }

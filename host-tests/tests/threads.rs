@@ -17,6 +17,7 @@ fn assert_same(one: &DisparityMap, bands: &DisparityMap, what: &str) {
     assert_eq!((one.width, one.height), (bands.width, bands.height), "{what}");
     assert!(one.disparity == bands.disparity, "{what}: disparities");
     assert!(one.flags == bands.flags, "{what}: flags");
+    assert!(one.confidence == bands.confidence, "{what}: confidences");
     assert!(one.sigma_px.iter().map(|s| s.to_bits()).eq(bands.sigma_px.iter().map(|s| s.to_bits())), "{what}: sigma");
 }
 
@@ -53,7 +54,7 @@ fn bands_give_the_same_rows() {
         let pair = MemoryPair::new(width, left.into_raw(), right.into_raw()).expect("one size");
         for method in Method::ALL.into_iter().filter(|method| method.is_exact_in_bands()) {
             for checks in [Checks::DENSE, Checks::DEFAULT, Checks::STRICT, narrow, median, filled] {
-                let config = Config { checks, ..Config::new(width, height, 32) };
+                let config = Config { checks, confidence: true, ..Config::new(width, height, 32) };
                 let one = map(method, &config, &pair, 1);
                 for threads in [2, 3, 4, 7] {
                     let what = format!("{width}x{height}, {}, {threads} threads, {checks:?}", method.name());

@@ -63,6 +63,8 @@ pub struct Config {
     /// Fill: gaps along the row of at most this many pixels, between two answers, get the farther of the two and
     /// `STEREOPSIS_FLAG_FILLED`; with 0 none does.
     pub fill_pixels: u8,
+    /// Whether rows say how sure each answer is; 0 is no, and saves the search for each pixel's second best.
+    pub confidence: u8,
     /// Fill: by how much the two answers may differ, in 1/32 px; 65535 for any two.
     pub fill_step: u16,
 }
@@ -100,6 +102,7 @@ impl Config {
             jump,
             edges,
             fill_pixels: checks.fill_pixels,
+            confidence: 0,
             fill_step: checks.fill_step.raw(),
         })
     }
@@ -136,6 +139,7 @@ impl Config {
                 jump: self.jump,
                 edges: self.edges,
             },
+            confidence: self.confidence != 0,
         })
     }
 }

@@ -42,28 +42,38 @@ const _: () = {
 pub struct Row {
     /// The row in the image, from 0.
     pub index: u16,
-    /// Pixels in the row: the length of both arrays.
+    /// Pixels in the row: the length of the arrays.
     pub width: u16,
     /// A disparity for each column in 1/32 px, `STEREOPSIS_NONE` for no answer.
     pub disparities: *const u16,
     /// The `STEREOPSIS_FLAG_` bits of each column: why there is no answer, or none of its own.
     pub flags: *const u8,
+    /// How sure the answer of each column is, 1 to 207, 0 for no answer; null unless the configuration's `confidence` asked
+    /// for it. The number puts answers in order, the wrong ones first; it is no probability.
+    pub confidences: *const u8,
 }
 
 impl Row {
     /// No row.
-    pub(super) const NONE: Self = Self { index: 0, width: 0, disparities: core::ptr::null(), flags: core::ptr::null() };
+    pub(super) const NONE: Self = Self {
+        index: 0,
+        width: 0,
+        disparities: core::ptr::null(),
+        flags: core::ptr::null(),
+        confidences: core::ptr::null(),
+    };
 }
 
 impl From<matching::Row<'_>> for Row {
     fn from(row: matching::Row<'_>) -> Self {
-        let (disparities, flags) = (row.disparities(), row.flags());
+        let (disparities, flags, confidences) = (row.disparities(), row.flags(), row.confidences());
         Self {
             index: row.index(),
             // A row is as wide as the configuration says, in 16 bits.
             width: disparities.len().min(flags.len()) as u16,
             disparities: disparities.as_ptr().cast(),
             flags: flags.as_ptr().cast(),
+            confidences: if confidences.is_empty() { core::ptr::null() } else { confidences.as_ptr() },
         }
     }
 }

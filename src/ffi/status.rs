@@ -5,7 +5,7 @@ use crate::pipeline::PushError;
 use core::ffi::CStr;
 
 /// The version of this interface. It changes when a program that was compiled with another header would go wrong.
-pub const STEREOPSIS_ABI: u32 = 2;
+pub const STEREOPSIS_ABI: u32 = 3;
 
 /// What a call answers: below 0 it is an error, and nothing has changed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

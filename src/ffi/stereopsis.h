@@ -70,7 +70,7 @@
 /**
  * The version of this interface. It changes when a program that was compiled with another header would go wrong.
  */
-#define STEREOPSIS_ABI 2
+#define STEREOPSIS_ABI 3
 
 /**
  * Every matcher's memory may be aligned to this many bytes: `uint64_t` will do.
@@ -380,6 +380,10 @@ typedef struct stereopsis_config {
    */
   uint8_t fill_pixels;
   /**
+   * Whether rows say how sure each answer is; 0 is no, and saves the search for each pixel's second best.
+   */
+  uint8_t confidence;
+  /**
    * Fill: by how much the two answers may differ, in 1/32 px; 65535 for any two.
    */
   uint16_t fill_step;
@@ -394,7 +398,7 @@ typedef struct stereopsis_row {
    */
   uint16_t index;
   /**
-   * Pixels in the row: the length of both arrays.
+   * Pixels in the row: the length of the arrays.
    */
   uint16_t width;
   /**
@@ -405,6 +409,11 @@ typedef struct stereopsis_row {
    * The `STEREOPSIS_FLAG_` bits of each column: why there is no answer, or none of its own.
    */
   const uint8_t *flags;
+  /**
+   * How sure the answer of each column is, 1 to 207, 0 for no answer; null unless the configuration's `confidence` asked
+   * for it. The number puts answers in order, the wrong ones first; it is no probability.
+   */
+  const uint8_t *confidences;
 } stereopsis_row;
 
 /**

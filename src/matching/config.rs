@@ -21,6 +21,9 @@ pub struct Config {
     pub checks: Checks,
     /// What the methods along paths take changes to be worth.
     pub penalties: Penalties,
+    /// Whether rows say how sure each answer is ([`Row::confidences`](super::Row::confidences)). Where they do not, the kernel
+    /// saves the search for each pixel's second best.
+    pub confidence: bool,
 }
 
 impl Config {
@@ -33,9 +36,17 @@ impl Config {
     pub const END: u16 = Disparity::MAX_PIXELS;
 
     /// A search from disparity 0 with the default checks of the block methods and the penalties of
-    /// [`Sgm`](super::Sgm): [`Self::with_filter`] has those of a method.
+    /// [`Sgm`](super::Sgm): [`Self::with_filter`] has those of a method. Without confidences.
     pub const fn new(width: u16, height: u16, disparities: u16) -> Self {
-        Self { width, height, disparities, min_disparity: 0, checks: Checks::DEFAULT, penalties: Penalties::DEFAULT }
+        Self {
+            width,
+            height,
+            disparities,
+            min_disparity: 0,
+            checks: Checks::DEFAULT,
+            penalties: Penalties::DEFAULT,
+            confidence: false,
+        }
     }
 
     /// The same search with the checks of an operating point of a method, and its penalties.
@@ -64,6 +75,7 @@ impl Config {
             fill_step: Disparity::ZERO,
         },
         penalties: Penalties::UNSET,
+        confidence: false,
     };
 
     /// Whether a matcher for lines up to `width` and ranges up to `disparities` can do this.

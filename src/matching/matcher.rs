@@ -174,6 +174,7 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             finished: self.finished.as_flattened(),
             band: self.band.as_flattened(),
             sigma_px: S::SIGMA_PX,
+            confidences: if self.config.confidence { self.memory.after_winners(width) } else { &[] },
         })
     }
 

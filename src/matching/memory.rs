@@ -1,6 +1,6 @@
 //! What a method keeps from row to row, and room to work in.
 
-use super::kernels::{Aligned, Columns, OUTSIDE, Scratch, Winner};
+use super::kernels::{Aligned, Columns, OUTSIDE, Scratch, Winner, read_bytes_of};
 
 /// How much memory a method takes: multiples of the width, of width x disparities, and of the disparities.
 pub struct Bytes {
@@ -14,6 +14,8 @@ pub trait Memory {
     const EMPTY: Self;
     /// All of it, cut to a frame's width and candidates.
     fn parts(&mut self, width: usize, stride: usize) -> Parts<'_>;
+    /// What stands where the winners of a row stood, a byte for each of its pixels, until the next row.
+    fn after_winners(&self, width: usize) -> &[u8];
 }
 
 /// The memory of a method as slices.
@@ -66,6 +68,10 @@ impl<const ROWS: usize, const W: usize, const D: usize> Memory for WindowMemory<
             lengths: first(&mut self.lengths, width),
             scratch: self.scratch.words(),
         }
+    }
+
+    fn after_winners(&self, width: usize) -> &[u8] {
+        read_bytes_of(&self.winners).get(..width).unwrap_or(&[])
     }
 }
 

@@ -5,6 +5,7 @@
 //! left image is crossed. Then paths bring together what the pixels of a surface have in common: from the left, from the right, and from above. No
 //! frame is kept, and no path comes from below: that path measured least, and it would take the frame.
 
+use super::confidence;
 use super::config::Checks;
 use super::kernels::{
     COLUMNS_OFF, EdgeWork, Guide, PathWork, Room, Select, Unique, Volumes, bytes_mut, halves_mut, winners_mut,
@@ -152,6 +153,11 @@ impl<const GUIDES: usize, const VOLUMES: usize, const W: usize, const D: usize> 
             scratch: self.room.words(),
         }
     }
+
+    // The winners are the first in the room.
+    fn after_winners(&self, width: usize) -> &[u8] {
+        self.room.bytes().get(..width).unwrap_or(&[])
+    }
 }
 
 impl<'a, S: Along> Stages<'a, S> {
@@ -204,7 +210,11 @@ impl<'a, S: Along> Stages<'a, S> {
             let select = Select {
                 disparities: work.disparities,
                 winners: self.winners,
-                unique: Unique::new(config.checks.uniqueness_percent, flags),
+                unique: Unique::new(
+                    config.checks.uniqueness_percent,
+                    flags,
+                    confidence::margins(config, self.support.lengths),
+                ),
             };
             self.kernel.select(work, guide, select);
         }

@@ -1,5 +1,6 @@
 //! One row of results.
 
+use super::confidence::{AGREEMENT, MOST_MARGIN};
 use super::speckle::BAND;
 use crate::units::{Disparity, PixelFlags};
 
@@ -23,6 +24,7 @@ pub struct Row<'a> {
     /// `BAND` rows before median and speckle filter, row `y` in slot `y % BAND`: this row and those below.
     pub(super) band: &'a [Disparity],
     pub(super) sigma_px: f32,
+    pub(super) confidences: &'a [u8],
 }
 
 impl<'a> Row<'a> {
@@ -39,6 +41,27 @@ impl<'a> Row<'a> {
     /// The flags of each column.
     pub fn flags(&self) -> &'a [PixelFlags] {
         self.flags
+    }
+
+    /// The largest of [`Self::confidences`].
+    pub const MOST_CONFIDENCE: u8 = MOST_MARGIN + 2 * AGREEMENT;
+
+    /// How sure the answer of each column is, from 1 to [`Self::MOST_CONFIDENCE`]; 0 where there is no answer. Empty unless
+    /// [`Config::confidence`](super::Config::confidence) asked for them.
+    ///
+    /// With `m` the cost of the best candidate over two px away less the winner's, at most 127, `s` the greatest difference to
+    /// the answers 4 and 8 columns left and right, and `t` to those 2 and 4 rows above and below, in 1/32 px:
+    ///
+    /// `confidence = max(1, m + (40 - min(s / 4, 40)) + (40 - min(t / 4, 40)))`
+    ///
+    /// Answers above are as they came out, but for what was filled; the others are as they were before the median and the speckle
+    /// filter. A filled answer ([`PixelFlags::FILLED`]) has 1, and `m` is 0 in the first five columns that have a candidate.
+    ///
+    /// The number puts the answers of one method in order, the wrong ones first: take away those under a threshold and the share
+    /// of wrong ones falls. It is no probability, and says nothing about fractions of a pixel; [`Self::sigma_px`] does, of an
+    /// answer that is right.
+    pub fn confidences(&self) -> &'a [u8] {
+        self.confidences
     }
 
     /// Standard deviation of the answer at column `x`, px; `None` where there is no answer.

@@ -1,10 +1,12 @@
 //! One row through the stages, over slices: compiled once for each scheme, whatever the capacities.
 
 use super::answers::{self, Winners};
+use super::confidence;
 use super::config::Config;
 use super::fill;
-use super::kernels::{Kernel, Winner, halves_mut};
+use super::kernels::{Kernel, Winner, bytes_of, halves_mut};
 use super::median;
+use super::memory::first;
 use super::row::{HISTORY, slot};
 use super::scheme::{Around, Scheme};
 use super::speckle::{BAND, LOOK_AHEAD, Support};
@@ -69,6 +71,9 @@ impl<S: Scheme> Stages<'_, S> {
         }
         let checks = &self.config.checks;
         let judged = row + BAND - LOOK_AHEAD;
+        if let Some(judged) = row.checked_sub(LOOK_AHEAD).filter(|_| self.config.confidence) {
+            self.tell(judged);
+        }
         let flags = slot_mut(self.flags, judged % BAND, self.width);
         let finished = slot_mut(self.finished, judged % HISTORY, self.width);
         if checks.median {
@@ -79,6 +84,22 @@ impl<S: Scheme> Stages<'_, S> {
         if checks.fill_pixels > 0 {
             fill::fill(finished, flags, checks.fill_pixels, checks.fill_step);
         }
+        if self.config.confidence {
+            confidence::judge(finished, flags, first(bytes_of(self.winners), self.width));
+        }
+    }
+
+    /// Makes the confidences of the row to be judged, where its winners stood.
+    fn tell(&mut self, judged: usize) {
+        let (width, finished, band) = (self.width, &*self.finished, &*self.band);
+        let row = slot(band, judged % BAND, width);
+        let answers = if self.config.checks.median { slot(finished, judged % HISTORY, width) } else { row };
+        let [near, far] = confidence::ROWS;
+        let above = |off: usize| judged.checked_sub(off).map_or(&[][..], |y| slot(finished, y % HISTORY, width));
+        let below = |off: usize| slot(band, (judged + off) % BAND, width);
+        let around = confidence::Around { answers, row, columns: [above(near), above(far), below(near), below(far)] };
+        let confidences = first(bytes_of(self.winners), width);
+        confidence::tell(&around, slot_mut(self.flags, judged % BAND, width), confidences);
     }
 
     /// Makes room for `row`: the row that came out last goes into the history as it was judged, and the medians are made
@@ -108,6 +129,9 @@ impl<S: Scheme> Stages<'_, S> {
         // The kernel is done with its room.
         let winners = Winners { winners: self.winners, right: self.right, room: self.scratch };
         answers::answer::<S>(self.kernel, self.config, winners, answers, flags);
+        if self.config.confidence {
+            confidence::keep(self.config, confidence::margins(self.config, self.support.lengths), answers, flags);
+        }
         surface::average(self.kernel, answers, self.support.lengths, halves_mut(self.scratch), checks);
     }
 }

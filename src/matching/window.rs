@@ -5,6 +5,7 @@
 //! sums are left out: `block` adds quarters of them, rounded down. On real pairs that hardly shows, while the windows take
 //! half the registers of a vector, and two of ten bit planes less.
 
+use super::confidence;
 #[cfg(not(stereopsis_vectors))]
 use super::kernels::codes;
 use super::kernels::{RowWork, Select, Unique};
@@ -214,12 +215,13 @@ impl<S: Windowed> Stages<'_, S> {
             scratch: self.scratch,
         };
         let flags = slot_mut(self.flags, row.unwrap_or(0) % BAND, width);
+        let margins = confidence::margins(config, self.support.lengths);
         let select = row.map(|_| {
             flags.fill(PixelFlags::CLEAR);
             Select {
                 disparities: usize::from(config.disparities),
                 winners: self.winners,
-                unique: Unique::new(config.checks.uniqueness_percent, flags),
+                unique: Unique::new(config.checks.uniqueness_percent, flags, margins),
             }
         });
         self.kernel.row::<S>(work, select);

@@ -2,6 +2,7 @@
 
 use crate::map::{DisparityMap, quantile};
 use crate::scene::Truth;
+use crate::sparsification::{Judged, Sparsification};
 use serde::Serialize;
 use stereopsis::depth::DepthScale;
 
@@ -25,6 +26,8 @@ pub struct Accuracy {
     pub median_depth_error_relative: f64,
     /// Answers at pixels that only the left camera sees: all of them are guesses.
     pub answers_where_occluded: usize,
+    /// How well their confidence tells those that are more than 2 px off; absent when there is no answer.
+    pub sparsification: Option<Sparsification>,
 }
 
 impl Accuracy {
@@ -71,7 +74,17 @@ impl Accuracy {
             median_depth_error_m: median(errors_m),
             median_depth_error_relative: median(relative),
             answers_where_occluded: guesses,
+            sparsification: Sparsification::of(&Self::judged(map, truth)),
         }
+    }
+
+    /// The answers for points that both cameras see: 1 for those that are bad, 0 for the others.
+    pub fn judged(map: &DisparityMap, truth: &Truth) -> Vec<Judged> {
+        map.judged(|i, px| {
+            let known = !truth.occluded[i] && truth.depth_m[i].is_finite();
+            let bad = (px - truth.disparity[i]).abs() > Self::BAD_PX;
+            known.then(|| f32::from(u8::from(bad)))
+        })
     }
 
     /// The true disparities in px; infinite where the scene shows nothing.

@@ -11,7 +11,9 @@ mod svg;
 pub use accuracy::Accuracy;
 pub use summary::{Depth, Spread, Summary};
 
-use crate::colour::{ColourScale, FLAG_COLOURS, NO_ANSWER, error_picture, first_reason, flags_picture};
+use crate::colour::{
+    ColourScale, FLAG_COLOURS, NO_ANSWER, confidence_picture, error_picture, first_reason, flags_picture,
+};
 use crate::map::DisparityMap;
 use crate::scene::Truth;
 use image::RgbImage;
@@ -81,7 +83,14 @@ impl Report<'_> {
         self.pictures(out)?;
         writeln!(out, "</div>\n<h2>Disparities</h2><figure>")?;
         out.write_all(svg::histogram(self.map, s.min_disparity, s.disparities).as_bytes())?;
-        writeln!(out, "</figure>\n<h2>Figures</h2><figure>{}</figure>", table(&self.figures()))?;
+        writeln!(out, "</figure>")?;
+        if let Some(truth) = self.truth {
+            let note = "Of the answers more than 2 px off, while the least sure ones are taken away: what is left. Below: \
+                        taken away in the order of their error, the best there is.";
+            let curves = svg::sparsification(&Accuracy::judged(self.map, truth));
+            writeln!(out, "<h2>Confidence</h2><figure>{curves}{}</figure>", caption(note))?;
+        }
+        writeln!(out, "<h2>Figures</h2><figure>{}</figure>", table(&self.figures()))?;
         writeln!(out, "</body></html>")
     }
 
@@ -119,6 +128,8 @@ impl Report<'_> {
             show("True disparity", Kind::Map, &picture, &(bar + &caption("The same colours as the answers.")))?;
         }
         show("Why pixels have no answer", Kind::Map, &flags_picture(self.map, self.left), &self.legend())?;
+        let note = "Sure is bright: the second best candidate costs much more, and the answers around agree; black: no answer.";
+        show("Confidence", Kind::Map, &confidence_picture(self.map), &caption(note))?;
         if let Some(truth) = self.truth {
             let errors = Accuracy::errors_px(self.map, truth);
             let picture = error_picture(truth.width, &errors, ERROR_LIMIT_PX);
@@ -161,6 +172,9 @@ impl Report<'_> {
         let mut add = |name: &str, value: String| rows.push((name.into(), value));
         let metres = |value: Option<f32>| value.map_or("-".to_owned(), |z| format!("{} m", svg::three_digits(z)));
         add("Answers", format!("{} of {} ({})", s.answers, self.map.disparity.len(), percent(s.density)));
+        if let Some(c) = s.confidence {
+            add("Confidence, least / median / largest", format!("{} / {} / {}", c.min, c.median, c.max));
+        }
         if let Some(d) = s.disparity_px {
             add("Disparity, least / median / largest", format!("{:.2} / {:.2} / {:.2} px", d.min, d.median, d.max));
         }
@@ -189,6 +203,9 @@ impl Report<'_> {
             add("Of these answers over 2 px off", percent(a.bad2));
             add("RMS error of the others", format!("{:.3} px", a.rms_good_px));
             add("True depth within 3 sigma", percent(a.within_3_sigma));
+            if let Some(s) = a.sparsification {
+                add("Confidence, from the best order (0 %) to none (100 %)", percent(s.from_oracle()));
+            }
             let (m, share) = (a.median_depth_error_m * 1000.0, percent(a.median_depth_error_relative));
             add("Median depth error", format!("{m:.1} mm ({share})"));
             add("Answers at pixels that only the left camera sees", a.answers_where_occluded.to_string());

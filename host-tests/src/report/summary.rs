@@ -34,6 +34,9 @@ pub struct Summary {
     pub flags: BTreeMap<&'static str, usize>,
     /// The answers' disparities; absent when there is none.
     pub disparity_px: Option<Spread>,
+    /// How sure the answers are, 1 to 207; absent when there is none. The numbers put answers in order, they are no
+    /// probabilities.
+    pub confidence: Option<Spread>,
     /// Bytes that the matcher's state takes for this width and range.
     pub state_bytes: usize,
     /// How many lines after its own a row came out.
@@ -104,6 +107,13 @@ impl Depth {
     }
 }
 
+/// The confidences of the answers, in ascending order.
+fn confidences(map: &DisparityMap) -> Vec<f32> {
+    let mut confidences: Vec<u8> = map.confidence.iter().copied().filter(|&c| c > 0).collect();
+    confidences.sort_unstable();
+    confidences.into_iter().map(f32::from).collect()
+}
+
 impl Summary {
     /// The figures of `outcome`.
     pub fn new(
@@ -127,6 +137,7 @@ impl Summary {
             answers: map.answers(),
             flags: PixelFlags::NAMES.into_iter().map(|(flag, name)| (name, map.flagged(flag))).collect(),
             disparity_px: Spread::of(&map.sorted()),
+            confidence: Spread::of(&confidences(map)),
             state_bytes: method.state_bytes(config.width, config.disparities),
             latency_lines: method.latency_lines(),
             time_ms: outcome.time_ms,

@@ -2,6 +2,7 @@
 
 use crate::colour::{ColourScale, diverging, viridis};
 use crate::map::DisparityMap;
+use crate::sparsification::{Judged, curves};
 use image::Rgb;
 use std::fmt::Write;
 use stereopsis::geometry::RectifiedRig;
@@ -87,6 +88,33 @@ pub(super) fn histogram(map: &DisparityMap, min_disparity: u16, disparities: u16
     }
     let share = 100.0 * highest as f64 / map.answers().max(1) as f64;
     let _ = write!(svg, "<text x=\"30\" y=\"12\">highest column: {share:.1} % of the answers</text></svg>");
+    svg
+}
+
+/// The share of bad answers among those that are left, over the share that was taken away: in the order of confidence, and in
+/// that of the error.
+pub(super) fn sparsification(answers: &[Judged]) -> String {
+    const STEPS: usize = 100;
+    let [found, oracle] = curves(answers, STEPS);
+    let highest = found.iter().copied().fold(1e-4, f64::max);
+    let points = |curve: &[f64]| -> String {
+        let point = |(step, &share): (usize, &f64)| {
+            format!("{:.1},{:.1} ", 30.0 + 580.0 * step as f64 / STEPS as f64, 170.0 - 150.0 * share / highest)
+        };
+        curve.iter().enumerate().map(point).collect()
+    };
+    let mut svg =
+        "<svg class=\"wide\" viewBox=\"0 0 640 200\" role=\"img\" aria-label=\"Bad answers that are left\">".to_owned();
+    for (curve, style) in [(&found, ""), (&oracle, " stroke-dasharray=\"4 3\"")] {
+        let points = points(curve);
+        let _ = write!(svg, "<polyline class=\"curve\"{style} points=\"{}\"/>", points.trim_end());
+    }
+    svg.push_str("<line class=\"axis\" x1=\"30\" y1=\"170.5\" x2=\"610\" y2=\"170.5\"/>");
+    for tick in 0..=4 {
+        let t = tick as f32 / 4.0;
+        text(&mut svg, 30.0 + 580.0 * t, 190.0, &format!("{:.0} %", 100.0 * t));
+    }
+    let _ = write!(svg, "<text x=\"30\" y=\"12\">at most {:.2} %</text></svg>", 100.0 * highest);
     svg
 }
 

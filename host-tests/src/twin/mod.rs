@@ -7,6 +7,7 @@
 //!   sum along paths.
 //! * `select`: the cheapest disparity, its fraction, the checks.
 //! * `filter`: smoothing along the row, the median, the speckle filter, filling, the deviation.
+//! * `confidence`: how sure an answer is.
 //!
 //! Nothing here is shared with the core but its words: [`Config`], [`Disparity`], [`PixelFlags`].
 
@@ -14,6 +15,7 @@ pub mod census;
 pub mod cost;
 pub mod paths;
 
+mod confidence;
 mod filter;
 mod select;
 
@@ -128,6 +130,8 @@ pub struct Answers {
     pub flags: Vec<PixelFlags>,
     /// The deviation of every answer, px.
     pub sigma_px: Vec<Option<f32>>,
+    /// How sure every answer is; 0 where there is none. Empty where the configuration does not ask.
+    pub confidence: Vec<u8>,
 }
 
 /// Matches a pair of pictures.
@@ -159,14 +163,16 @@ pub fn match_pair(scheme: &Scheme, config: &Config, left: &GrayImage, right: &Gr
         disparity: Vec::new(),
         flags: Vec::new(),
         sigma_px: Vec::new(),
+        confidence: Vec::new(),
     };
-    let mut lengths = Vec::new();
+    let (mut lengths, mut margins) = (Vec::new(), Vec::new());
     for y in 0..left.height {
-        let (answers, flags) = select::select_row(scheme, config, &left, &sums, y);
+        let (answers, flags, row_margins) = select::select_row(scheme, config, &left, &sums, y);
         let (smooth, row_lengths) = filter::smooth_row(&config.checks, &answers);
         map.disparity.extend(smooth);
         lengths.extend(row_lengths);
         map.flags.extend(flags);
+        margins.extend(row_margins);
     }
     let before = map.disparity.clone();
     if config.checks.median {
@@ -176,5 +182,8 @@ pub fn match_pair(scheme: &Scheme, config: &Config, left: &GrayImage, right: &Gr
     let after = map.disparity.clone();
     let mut map = filter::fill_gaps(&config.checks, map);
     map.sigma_px = filter::sigmas(scheme, config, &before, &after, &map);
+    if config.confidence {
+        map.confidence = confidence::confidences(config, &margins, &before, &after, &map);
+    }
     map
 }

@@ -14,14 +14,14 @@ struct Winner {
     cost: u16,
 }
 
-/// The answers and flags of row `y`, before smoothing and the speckle filter.
+/// The answers and flags of row `y`, before smoothing and the speckle filter, and the margins of its winners.
 pub(super) fn select_row(
     scheme: &Scheme,
     config: &Config,
     left: &Picture<'_>,
     sums: &Volume,
     y: usize,
-) -> (Vec<Disparity>, Vec<PixelFlags>) {
+) -> (Vec<Disparity>, Vec<PixelFlags>, Vec<u16>) {
     let smallest = usize::from(config.min_disparity);
     let checks = &config.checks;
     // Candidates are the disparities whose partner lies inside the right picture.
@@ -34,11 +34,13 @@ pub(super) fn select_row(
 
     let mut disparities = vec![Disparity::NONE; sums.width];
     let mut flags = vec![PixelFlags::CLEAR; sums.width];
+    let mut margins = vec![0; sums.width];
     for x in 0..sums.width {
         let Some(best) = winners[x] else {
             flags[x] = PixelFlags::OUTSIDE;
             continue;
         };
+        margins[x] = margin(candidates(x), best);
         let mut refused = false;
         let mut say = |flag: PixelFlags, refuses: bool| {
             flags[x] = flags[x].union(flag);
@@ -64,7 +66,7 @@ pub(super) fn select_row(
             disparities[x] = Disparity::from_raw(steps as u16);
         }
     }
-    (disparities, flags)
+    (disparities, flags, margins)
 }
 
 /// The cheapest candidate; the smallest disparity among equals.
@@ -110,6 +112,16 @@ fn ambiguous(candidates: &[u16], best: Winner, percent: u8) -> bool {
     let others = candidates.iter().enumerate().filter(|&(d, _)| d.abs_diff(best.d) > 2);
     let second = others.map(|(_, &cost)| u32::from(cost)).filter(|&cost| cost < 255).min();
     second.is_some_and(|second| second * (100 - u32::from(percent)) <= u32::from(best.cost) * 100)
+}
+
+/// How much more the cheapest of the candidates over 2 px from the winner costs; 0 where there are so few of them that
+/// there might be none.
+fn margin(candidates: &[u16], best: Winner) -> u16 {
+    if candidates.len() <= 5 {
+        return 0;
+    }
+    let others = candidates.iter().enumerate().filter(|&(d, _)| d.abs_diff(best.d) > 2);
+    others.map(|(_, &cost)| cost).min().expect("of six one is over 2 px away") - best.cost
 }
 
 /// Whether the candidates beside the winner, as far as there are any, cost no more than the winner.

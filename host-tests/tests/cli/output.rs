@@ -3,8 +3,15 @@
 use super::support::{Bench, HEIGHT, WIDTH, calibration, names, program, text};
 use std::process::{Command, Stdio};
 
-const PLAIN: [&str; 6] =
-    ["disparity.pfm", "disparity.png", "disparity_colour.png", "flags.png", "report.html", "summary.json"];
+const PLAIN: [&str; 7] = [
+    "confidence.png",
+    "disparity.pfm",
+    "disparity.png",
+    "disparity_colour.png",
+    "flags.png",
+    "report.html",
+    "summary.json",
+];
 
 #[test]
 fn a_folder_is_made_with_its_parents_and_holds_the_results_alone() {
@@ -25,7 +32,7 @@ fn the_results_replace_those_of_an_earlier_run_and_nothing_else() {
     // Depths of another run beside these disparities would mislead.
     bench.matched(&[]);
     let mut expected: Vec<&str> = PLAIN.to_vec();
-    expected.insert(4, "notes.txt");
+    expected.insert(5, "notes.txt");
     assert_eq!(names(&out), expected);
 }
 

@@ -18,6 +18,7 @@ fn in_process(method: Method, filter: Filter) -> DisparityMap {
     let (left, right) = pair();
     let mut camera = MemoryPair::new(WIDTH as u16, left.into_raw(), right.into_raw()).expect("one size");
     let config = method.with_filter(filter, Config::new(WIDTH as u16, HEIGHT as u16, 32));
+    let config = Config { confidence: true, ..config };
     run(method, &config, &mut camera, |_| {}).expect("a source that cannot fail").map
 }
 
@@ -78,12 +79,17 @@ fn the_files_hold_what_the_library_says() {
             }
             let DynamicImage::ImageLuma8(flags) = picture(&out.join("flags.png")) else { panic!("8-bit grey") };
             assert!(flags.iter().zip(&map.flags).all(|(byte, flags)| *byte == flags.bits()));
+            let DynamicImage::ImageLuma8(sure) = picture(&out.join("confidence.png")) else { panic!("8-bit grey") };
+            assert!(sure.as_raw() == &map.confidence);
+            assert!(map.confidence.iter().zip(&map.disparity).all(|(c, d)| (*c > 0) == d.is_some()));
             let DynamicImage::ImageRgb8(colours) = picture(&out.join("disparity_colour.png")) else { panic!("colour") };
             assert!(colours.pixels().zip(&map.disparity).all(|(c, d)| (c.0 == [0; 3]) == d.is_none()));
 
             let summary = json(&out.join("summary.json"));
             assert_eq!((summary["method"].as_str(), summary["filter"].as_str()), (Some(name), Some(filter)));
             assert_eq!(summary["answers"], map.answers());
+            let surest = map.confidence.iter().max().map(|&c| f64::from(c));
+            assert_eq!(summary["confidence"]["max"].as_f64(), surest);
             assert_eq!(summary["flags"]["mismatch"], map.flagged(PixelFlags::MISMATCH));
             assert_eq!(summary["state_bytes"], method.state_bytes(WIDTH as u16, 32));
             assert_eq!(summary["latency_lines"], method.latency_lines());
@@ -200,6 +206,7 @@ fn the_demo_writes_the_truth_beside_the_answers() {
     let expected = [
         "calib.txt",
         "cloud.ply",
+        "confidence.png",
         "depth.pfm",
         "depth.png",
         "disparity.pfm",
@@ -226,6 +233,9 @@ fn the_demo_writes_the_truth_beside_the_answers() {
     assert!(accuracy["density"].as_f64().is_some_and(|share| share > 0.9), "{accuracy}");
     assert!(accuracy["bad2"].as_f64().is_some_and(|share| share < 0.02), "{accuracy}");
     assert!(accuracy["within_3_sigma"].as_f64().is_some_and(|share| share > 0.98), "{accuracy}");
+    let worth = &accuracy["sparsification"];
+    let [area, oracle, random] = ["area", "oracle", "random"].map(|name| worth[name].as_f64().expect("a number"));
+    assert!(oracle < area && area - oracle < 0.15 * (random - oracle), "{worth}");
     assert!(text(&run.stdout).contains("within 3 sigma_Z"));
     // Its own pictures may be replaced.
     assert!(stereo(arguments).status.success());

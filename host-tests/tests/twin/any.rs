@@ -34,10 +34,10 @@ prop_compose! {
 prop_compose! {
     fn any_config()(
         width in 1u16..=300, height in 1u16..=60, disparities in 16u16..=256, min_disparity in 0u16..60,
-        checks in any_checks(), seed: u64,
+        checks in any_checks(), confidence: bool, seed: u64,
     ) -> Config {
         let penalties = random_penalties(&mut Random::new(seed));
-        Config { width, height, disparities, min_disparity, checks, penalties }
+        Config { width, height, disparities, min_disparity, checks, penalties, confidence }
     }
 }
 

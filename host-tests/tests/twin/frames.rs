@@ -63,7 +63,7 @@ impl StereoSource for Faulty {
 
 #[test]
 fn a_frame_does_not_influence_the_next() {
-    let config = Config { checks: Checks::STRICT, ..Config::new(90, 30, 32) };
+    let config = Config { checks: Checks::STRICT, confidence: true, ..Config::new(90, 30, 32) };
     let mut pipeline = pipeline::<Block>();
     pipeline.start(&config).expect("the configuration is valid");
     let frames: Vec<_> = [LIVE, Pattern::Noise, Pattern::Constant(0), Pattern::Saturated, LIVE]
@@ -112,7 +112,11 @@ fn a_frame_or_a_size_may_change_at_any_row() {
     let mut width = 120;
     for rows_taken in [0, 1, 5, 11, 24, 25] {
         width = if width == 120 { 37 } else { 120 };
-        let config = Config { checks: Checks::STRICT, ..Config::new(width, 25, if width == 120 { 64 } else { 16 }) };
+        let config = Config {
+            checks: Checks::STRICT,
+            confidence: true,
+            ..Config::new(width, 25, if width == 120 { 64 } else { 16 })
+        };
         pipeline.start(&config).expect("the configuration is valid");
         let mut camera = camera(LIVE, u32::from(width), 25, 3);
         let (left, right) = camera.pictures();
@@ -134,7 +138,8 @@ fn a_frame_or_a_size_may_change_at_any_row() {
 }
 
 fn frames_along_paths<S: Method>() {
-    let config = Config { checks: Checks::STRICT, penalties: S::PENALTIES, ..Config::new(90, 30, 32) };
+    let config =
+        Config { checks: Checks::STRICT, penalties: S::PENALTIES, confidence: true, ..Config::new(90, 30, 32) };
     let mut pipeline = pipeline::<S>();
     pipeline.start(&config).expect("the configuration is valid");
     for (rows_taken, pattern) in [(0, LIVE), (7, Pattern::Noise), (29, Pattern::Saturated), (30, LIVE), (3, LIVE)] {

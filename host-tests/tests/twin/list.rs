@@ -3,7 +3,7 @@
 use super::{Any, HALVES, Method, W, compare, pipeline};
 use image::GrayImage;
 use std::collections::BTreeSet;
-use stereopsis::matching::{Block, Checks, Config, Fast, Penalties, Sgm, SgmEdge, SgmLean};
+use stereopsis::matching::{Block, Checks, Config, Fast, Penalties, Row, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::Pipeline;
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::scene::pattern::Pattern;
@@ -111,6 +111,7 @@ fn list(rounds: usize) -> Vec<(Config, Pattern, u64)> {
             min_disparity: MIN_DISPARITIES[i * 3 % MIN_DISPARITIES.len()],
             checks,
             penalties,
+            confidence: i % 4 > 0,
             ..Config::new(width, height, DISPARITIES[i * 4 % DISPARITIES.len()])
         };
         cases.push((config, PATTERNS[i * 2 % PATTERNS.len()], random.bits()));
@@ -122,7 +123,7 @@ fn run_list<S: Method>() {
     let cases = list(4);
     let mut pipeline = pipeline::<S>();
     let mut of_halves = Box::new(Pipeline::<S, W, HALVES>::new());
-    let (mut answers, mut flags) = (0, PixelFlags::CLEAR);
+    let (mut answers, mut flags, mut confidences) = (0, PixelFlags::CLEAR, [false; 256]);
     for (config, pattern, seed) in &cases {
         let pair = pattern.pair(u32::from(config.width), u32::from(config.height), *seed);
         let map = compare(&mut pipeline, config, &pair).unwrap_or_else(|e| panic!("{pattern:?}: {e}"));
@@ -131,10 +132,16 @@ fn run_list<S: Method>() {
         }
         answers += map.disparity.iter().filter(|d| d.is_some()).count();
         flags = map.flags.iter().fold(flags, |all, f| all.union(*f));
+        map.confidence.iter().for_each(|&c| confidences[usize::from(c)] = true);
     }
     // The list says something: there are answers, fractions of all kinds of flags, and every value was used.
     assert!(answers > 100_000, "{answers} answers");
     assert!(PixelFlags::NAMES.iter().all(|(flag, _)| flags.contains(*flag)), "flags seen: {flags:?}");
+    let kinds = confidences.iter().filter(|&&c| c).count();
+    assert!(
+        kinds > 150 && confidences.iter().skip(usize::from(Row::MOST_CONFIDENCE) + 1).all(|&c| !c),
+        "{kinds} confidences"
+    );
     let used = |value: fn(&Config) -> u16| cases.iter().map(|(c, ..)| value(c)).collect::<BTreeSet<_>>();
     assert_eq!(used(|c| c.width), widths().into_iter().collect());
     assert_eq!(used(|c| c.height), heights().into_iter().collect());
@@ -177,7 +184,7 @@ fn every_pattern<S: Method>() {
     for (i, pattern) in PATTERNS.into_iter().enumerate() {
         let pair = pattern.pair(71, 22, i as u64);
         for checks in [Checks::DENSE, Checks::DEFAULT, Checks::STRICT, ALL_STAGES] {
-            let config = Config { checks, ..Config::new(71, 22, 32) };
+            let config = Config { checks, confidence: true, ..Config::new(71, 22, 32) };
             compare(&mut pipeline, &config, &pair).unwrap_or_else(|e| panic!("{pattern:?}: {e}"));
         }
     }
@@ -195,8 +202,12 @@ fn every_pattern_with_every_preset() {
 fn rendered<S: Method>(pipeline: &mut Any<S>, scene: &Scene, pair: &(GrayImage, GrayImage)) {
     for checks in [Checks::DENSE, Checks::DEFAULT, Checks::STRICT, ALL_STAGES] {
         for min_disparity in [0, 5] {
-            let config =
-                Config { checks, min_disparity, ..Config::new(scene.width(), scene.height(), scene.disparities()) };
+            let config = Config {
+                checks,
+                min_disparity,
+                confidence: true,
+                ..Config::new(scene.width(), scene.height(), scene.disparities())
+            };
             let map = compare(pipeline, &config, pair).unwrap_or_else(|e| panic!("{e}"));
             let answers = map.disparity.iter().filter(|d| d.is_some()).count();
             assert!(answers * 3 > map.disparity.len(), "{answers} answers");
@@ -224,7 +235,7 @@ fn filtered<S: Method>() {
     let (mut filled, mut moved) = (0, 0);
     for (width, height) in (1..=40).flat_map(|width| [1, 2, 3, 5, 6, 9].map(|height| (width, height))) {
         let pair = Pattern::Shifted { most: 9, noise_grey: 9.0 }.pair(width, height, u64::from(width));
-        let config = |checks| Config { checks, ..Config::new(width as u16, height as u16, 16) };
+        let config = |checks| Config { checks, confidence: true, ..Config::new(width as u16, height as u16, 16) };
         let plain = match_pair(&S::TWIN, &config(gaps), &pair.0, &pair.1);
         for (median, fill_pixels) in [(true, 0), (false, 1), (true, 2), (false, 5), (true, u8::MAX)] {
             let fill_step = if fill_pixels > 1 { Disparity::NONE } else { Disparity::ONE_PIXEL };

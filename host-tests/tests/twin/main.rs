@@ -1,4 +1,4 @@
-//! The pipeline against its naive twin: every disparity, flag and deviation, to the bit, for every kernel.
+//! The pipeline against its naive twin: every disparity, flag, deviation and confidence, to the bit, for every kernel.
 //!
 //! * `list`: all sizes, ranges, pictures and checks. `any`: any combination of them.
 //! * `frames`: one frame after the other, faults and changes in between.
@@ -55,7 +55,8 @@ fn rows<S: Scheme, C: StereoSource, const D: usize>(
 ) -> Result<Answers, PipelineError<C::Error>> {
     let format = camera.format();
     let (width, height) = (usize::from(format.width), usize::from(format.height));
-    let mut map = Answers { width, height, disparity: Vec::new(), flags: Vec::new(), sigma_px: Vec::new() };
+    let (disparity, flags, sigma_px, confidence) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut map = Answers { width, height, disparity, flags, sigma_px, confidence };
     pipeline.begin_frame(camera)?;
     let mut due = 0;
     while let Some(row) = pipeline.next_row(camera)? {
@@ -63,6 +64,7 @@ fn rows<S: Scheme, C: StereoSource, const D: usize>(
         due += 1;
         map.disparity.extend_from_slice(row.disparities());
         map.flags.extend_from_slice(row.flags());
+        map.confidence.extend_from_slice(row.confidences());
         map.sigma_px.extend((0..width).map(|x| row.sigma_px(x)));
         assert_eq!(row.sigma_px(width), None, "there is no pixel beside the image");
     }
@@ -74,14 +76,17 @@ fn rows<S: Scheme, C: StereoSource, const D: usize>(
 fn difference(core: &Answers, twin: &Answers) -> Option<String> {
     assert_eq!((core.width, core.height), (twin.width, twin.height));
     assert_eq!(core.disparity.len(), twin.disparity.len());
+    assert_eq!(core.confidence.len(), twin.confidence.len());
     let bits = |sigma: Option<f32>| sigma.map(f32::to_bits);
     let at = (0..core.disparity.len()).find(|&i| {
         core.disparity[i] != twin.disparity[i]
             || core.flags[i] != twin.flags[i]
             || bits(core.sigma_px[i]) != bits(twin.sigma_px[i])
+            || core.confidence.get(i) != twin.confidence.get(i)
     })?;
     let pixel = |map: &Answers| {
-        format!("raw {} flags {:#08b} sigma {:?}", map.disparity[at].raw(), map.flags[at].bits(), map.sigma_px[at])
+        let (raw, flags) = (map.disparity[at].raw(), map.flags[at].bits());
+        format!("raw {raw} flags {flags:#08b} sigma {:?} confidence {:?}", map.sigma_px[at], map.confidence.get(at))
     };
     let (x, y) = (at % core.width, at / core.width);
     Some(format!("column {x}, row {y}: the core says {}, the twin {}", pixel(core), pixel(twin)))

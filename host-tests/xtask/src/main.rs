@@ -9,7 +9,7 @@
 //! * `header` writes the header of the C interface anew, or checks it.
 //!
 //! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`],
-//! [`growth`], [`c`], [`arm64`] and [`readme`] are five of them. [`altered`] needs data that not everybody has.
+//! [`c`], [`arm`] and [`readme`] are four of them. [`growth`] takes long, [`altered`] needs data that not everybody has.
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
@@ -17,7 +17,7 @@ use std::process::ExitCode;
 use stereopsis_host::command_line::{one_line, usage_line};
 
 mod altered;
-mod arm64;
+mod arm;
 mod c;
 mod elf;
 mod firmware;

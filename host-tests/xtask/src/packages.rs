@@ -6,9 +6,10 @@ use crate::steps::{Failure, Outcome, command, output_of, run};
 fn packages_with(program: &str) -> Vec<&str> {
     match program {
         "qemu-system-riscv32" => vec!["qemu-system-misc", "qemu-system-riscv"],
-        "qemu-aarch64" => vec!["qemu-user"],
+        "qemu-aarch64" | "qemu-arm" => vec!["qemu-user"],
         "arm-none-eabi-gcc" => vec!["gcc-arm-none-eabi"],
         "aarch64-linux-gnu-gcc" => vec!["gcc-aarch64-linux-gnu"],
+        "arm-linux-gnueabihf-gcc" => vec!["gcc-arm-linux-gnueabihf"],
         same => vec![same],
     }
 }
@@ -18,6 +19,7 @@ fn library_of(program: &str) -> Option<&'static str> {
     match program {
         "arm-none-eabi-gcc" => Some("libnewlib-arm-none-eabi"),
         "aarch64-linux-gnu-gcc" => Some("libc6-dev-arm64-cross"),
+        "arm-linux-gnueabihf-gcc" => Some("libc6-dev-armhf-cross"),
         _ => None,
     }
 }

@@ -1,6 +1,6 @@
 //! Gets the tools that the tests need: targets and components by rustup, QEMU and what C needs by apt-get.
 
-use crate::arm64;
+use crate::arm;
 use crate::packages;
 use crate::steps::{Failure, Outcome, command, output_of, root, run};
 use std::fs;
@@ -30,11 +30,7 @@ pub fn run_all() -> Outcome {
     components()?;
     toolchain(&rust_version()?)?;
     packages::install(&[QEMU_ARM, QEMU_RISCV, "arm-none-eabi-gcc", "cmake", "make", "gcc", "g++"])?;
-    if arm64::IS_HOST {
-        return Ok(());
-    }
-    targets(&[arm64::TARGET])?;
-    packages::install(&arm64::PROGRAMS)
+    arm::others().try_for_each(|arm| arm.set_up())
 }
 
 /// What firmware for these targets needs.
@@ -50,7 +46,7 @@ fn installed(kind: &str) -> Outcome<String> {
 }
 
 /// Adds the targets that are missing.
-fn targets(needed: &[&str]) -> Outcome {
+pub fn targets(needed: &[&str]) -> Outcome {
     let there = installed("target")?;
     let mut missing: Vec<_> =
         needed.iter().copied().filter(|target| !there.lines().any(|line| line == *target)).collect();

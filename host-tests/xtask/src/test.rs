@@ -1,9 +1,8 @@
 //! `cargo xtask test`: every check of the repository, one step after another.
 
-use crate::arm64;
+use crate::arm;
 use crate::c;
 use crate::firmware;
-use crate::growth;
 use crate::setup::{self, TARGETS};
 use crate::steps::{Failure, Outcome, Steps, cargo, command, run as run_command, target_dir};
 use std::path::PathBuf;
@@ -24,15 +23,14 @@ pub fn run() -> Outcome {
     steps.step("format", format)?;
     steps.step("clippy", clippy)?;
     steps.step("tests", || tests(data.is_some()))?;
-    if !arm64::IS_HOST {
-        steps.step("64-bit Arm", arm64::run)?;
+    for arm in arm::others() {
+        steps.step(arm.name, || arm.run())?;
     }
     steps.step("documentation", documentation)?;
     steps.step("cross builds", cross_builds)?;
     let version = setup::rust_version()?;
     steps.step(&format!("stated rust-version {version}"), || rust_version(&version))?;
     steps.step("firmware", firmware::check_all)?;
-    steps.step("growth", growth::check)?;
     steps.step("C interface", c::run)?;
     steps.summary();
     if data.is_none() {

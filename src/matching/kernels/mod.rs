@@ -24,7 +24,7 @@ mod x86;
 
 pub(super) use paths::{COLUMNS_OFF, EdgeWork, Guide, PathWork};
 pub use scratch::{Aligned, Columns, Room, Scratch, Volumes};
-pub(super) use scratch::{bytes_mut, halves_mut, winners_mut};
+pub(super) use scratch::{bytes_mut, bytes_of, bytes_of_halves, halves_mut, read_bytes_of, winners_mut};
 pub use winner::Winner;
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 pub(super) use winner::WinnerRows;
@@ -167,7 +167,7 @@ impl Kernel {
 }
 
 /// How near a disparity may be to the winner and still be of it: what costs little there does not make it ambiguous.
-const BESIDE: usize = 2;
+pub(super) const BESIDE: usize = 2;
 
 /// 256 lanes of ones, then 256 of zero: a slice of it masks the lanes before any one.
 #[cfg(not(stereopsis_dsp))]

@@ -87,6 +87,11 @@ impl<const W: usize, const D: usize> Room<W, D> {
     pub const ZERO: Self =
         Self { pixels: [[0; W]; Room::<0, 0>::PER_PIXEL], disparities: [[0; D]; Room::<0, 0>::PER_DISPARITY] };
 
+    /// Its first bytes, to read.
+    pub fn bytes(&self) -> &[u8] {
+        self.pixels.as_flattened()
+    }
+
     /// All of it as words, but for the last bytes if they are not a whole one.
     pub fn words(&mut self) -> &mut [u32] {
         let words = (size_of_val(&self.pixels) + size_of_val(&self.disparities)) / size_of::<u32>();
@@ -107,10 +112,21 @@ pub(super) fn words_mut(bytes: &mut [u8]) -> &mut [u32] {
 }
 
 /// Winners as bytes, four for each.
-#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-pub(super) fn bytes_of(winners: &mut [Winner]) -> &mut [u8] {
+pub(in crate::matching) fn bytes_of(winners: &mut [Winner]) -> &mut [u8] {
     // SAFETY: a winner is a word (`repr(transparent)`), every value of which is four bytes and the other way round.
     unsafe { winners.align_to_mut().1 }
+}
+
+/// [`bytes_of`], to read.
+pub(in crate::matching) fn read_bytes_of(winners: &[Winner]) -> &[u8] {
+    // SAFETY: a winner is a word (`repr(transparent)`), every value of which is four bytes.
+    unsafe { winners.align_to().1 }
+}
+
+/// Half-words as bytes, two for each.
+pub(in crate::matching) fn bytes_of_halves(halves: &mut [u16]) -> &mut [u8] {
+    // SAFETY: every value of a half-word is two bytes and the other way round.
+    unsafe { halves.align_to_mut().1 }
 }
 
 /// Words as winners.

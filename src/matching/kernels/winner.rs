@@ -15,10 +15,16 @@ pub(in crate::matching) struct Select<'a> {
     pub unique: Unique<'a>,
 }
 
-/// The flags of pixels whose second best is too near: [`Checks::uniqueness_percent`](crate::matching::Checks::uniqueness_percent).
+/// What is asked of the second best: the least cost of the candidates over two px beside the winner, `u8::MAX` where there
+/// is none. A kernel that is asked for nothing ([`Unique::is_asked`]) need not look for it; [`Unique::judge`] and
+/// [`Unique::starting_at`] look where it is asked for.
 pub(in crate::matching) struct Unique<'a> {
     share: Share,
+    /// The flags of pixels whose second best is too near:
+    /// [`Checks::uniqueness_percent`](crate::matching::Checks::uniqueness_percent). Empty where that is not asked.
     flags: &'a mut [PixelFlags],
+    /// How much more the second best costs, for [`confidence`](crate::matching::confidence). Empty where that is not asked.
+    margins: &'a mut [u8],
 }
 
 /// The share of the second best cost, percent, that a winner's has to stay below.
@@ -34,40 +40,54 @@ impl Share {
 }
 
 impl<'a> Unique<'a> {
-    /// Flags the pixels of a row, none of them where no `percent` is asked for.
-    pub fn new(percent: Option<u8>, flags: &'a mut [PixelFlags]) -> Self {
+    /// Flags the pixels of a row, none of them where no `percent` is asked for, and gives their margins, as far as there are
+    /// places for them.
+    pub fn new(percent: Option<u8>, flags: &'a mut [PixelFlags], margins: &'a mut [u8]) -> Self {
         match percent {
-            Some(percent) => Self { share: Share(100 - u32::from(percent.min(99))), flags },
-            None => Self { share: Share(100), flags: &mut [] },
+            Some(percent) => Self { share: Share(100 - u32::from(percent.min(99))), flags, margins },
+            None => Self { share: Share(100), flags: &mut [], margins },
         }
     }
 
-    /// Flags the pixel in column `x`: see [`Self::starting_at`].
+    /// Whether the second best is wanted of any pixel.
+    #[inline(always)]
+    pub fn is_asked(&self) -> bool {
+        !self.flags.is_empty() | !self.margins.is_empty()
+    }
+
+    /// Judges the pixel in column `x`: it is given the winner's cost, and what finds the second best, which is asked where it
+    /// is wanted.
     #[inline(always)]
     pub fn judge(&mut self, x: usize, cost: u8, second: impl FnOnce() -> u8) {
-        if let Some(flags) = self.flags.get_mut(x) {
-            *flags = flags.union(PixelFlags::AMBIGUOUS.when(self.share.is_ambiguous(cost, second())));
+        if self.is_asked() {
+            let second = second();
+            judge(self.share, (self.flags.get_mut(x), self.margins.get_mut(x)), cost, second);
         }
     }
 
-    /// Whether any pixel is flagged.
-    #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-    pub fn is_asked(&self) -> bool {
-        !self.flags.is_empty()
-    }
-
-    /// Flags the pixels from column `begin` on, one after the other: it is given the winner's cost, and what finds the least cost
-    /// of the candidates over two px beside it, `u8::MAX` where there is none, which is asked where it is wanted.
+    /// Judges the pixels from column `begin` on, one after the other: see [`Self::judge`].
     #[inline(always)]
     pub fn starting_at(self, begin: usize) -> impl FnMut(u8, &mut dyn FnMut() -> u8) {
-        let share = self.share;
+        let (share, is_asked) = (self.share, self.is_asked());
         let mut flags = self.flags.get_mut(begin..).unwrap_or_default().iter_mut();
+        let mut margins = self.margins.get_mut(begin..).unwrap_or_default().iter_mut();
         move |cost, second| {
-            if let Some(flags) = flags.next() {
+            if is_asked {
                 let second = second();
-                *flags = flags.union(PixelFlags::AMBIGUOUS.when(share.is_ambiguous(cost, second)));
+                judge(share, (flags.next(), margins.next()), cost, second);
             }
         }
+    }
+}
+
+/// Says of a pixel what is asked.
+#[inline(always)]
+fn judge(share: Share, (flags, margin): (Option<&mut PixelFlags>, Option<&mut u8>), cost: u8, second: u8) {
+    if let Some(flags) = flags {
+        *flags = flags.union(PixelFlags::AMBIGUOUS.when(share.is_ambiguous(cost, second)));
+    }
+    if let Some(margin) = margin {
+        *margin = second.wrapping_sub(cost);
     }
 }
 

@@ -24,7 +24,7 @@ const MATCH_EXAMPLE: &str = "Example:
 
 Written into the folder: disparity.pfm (px, infinity where there is no answer), disparity.png (16 bit, px x 256, 0 where \
 there is none), disparity_colour.png (near is bright), flags.png (a byte a pixel: 1 outside, 2 ceiling, 4 untextured, \
-8 ambiguous, 16 mismatch, 32 speckle, 64 filled), summary.json and report.html; with --calib also depth.pfm (metres), depth.png \
+8 ambiguous, 16 mismatch, 32 speckle, 64 filled), confidence.png (a byte a pixel: surer is more, 0 is no answer), summary.json and report.html; with --calib also depth.pfm (metres), depth.png \
 (16 bit, millimetres) and cloud.ply. The files appear together when all of them are complete.";
 
 const BENCH_EXAMPLE: &str = "Example:

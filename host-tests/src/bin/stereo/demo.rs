@@ -9,6 +9,7 @@ use image::{DynamicImage, GrayImage, RgbImage};
 use std::fmt::Write as _;
 use std::path::Path;
 use stereopsis::depth::DepthScale;
+use stereopsis::matching::Config;
 use stereopsis_host::calibration::write_middlebury;
 use stereopsis_host::colour::error_picture;
 use stereopsis_host::output::Staging;
@@ -28,6 +29,7 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
     let truth = scene.truth();
     let range = crate::cli::RangeArgs { disparities: scene.disparities(), min_disparity: 0 };
     let config = input::config(&range, &args.way, scene.width(), scene.height())?;
+    let config = Config { confidence: true, ..config };
     let no_pair = || Failure::new("the scene's two pictures differ in size");
     let mut camera = MemoryPair::new(config.width, left.to_vec(), right.to_vec()).ok_or_else(no_pair)?;
     let outcome = run::run(args.way.way(), &config, &mut camera, |_| {})?;
@@ -86,6 +88,13 @@ fn beside_the_truth(a: &Accuracy) -> String {
     let _ = writeln!(text, "  over 2 px off (bad2)   {:6.2} % of the answers", 100.0 * a.bad2);
     let _ = writeln!(text, "  RMS error of the good  {:6.3} px", a.rms_good_px);
     let _ = writeln!(text, "  within 3 sigma_Z       {:6.2} % of the answers", 100.0 * a.within_3_sigma);
+    if let Some(s) = a.sparsification {
+        let _ = writeln!(
+            text,
+            "  confidence             {:6.1} % of the way from the best order to none",
+            100.0 * s.from_oracle()
+        );
+    }
     let (mm, relative) = (1000.0 * a.median_depth_error_m, 100.0 * a.median_depth_error_relative);
     let _ = writeln!(text, "  median depth error     {mm:6.1} mm ({relative:.2} %)");
     text

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use std::ops::Deref;
 use stereopsis::depth::DepthScale;
 use stereopsis::units::Disparity;
-use stereopsis_host::colour::{ColourScale, flags_raw};
+use stereopsis_host::colour::{ColourScale, confidence_raw, flags_raw};
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::output::{OutputError, Staging};
 use stereopsis_host::pfm;
@@ -25,6 +25,7 @@ pub fn write(staging: &mut Staging, report: &Report<'_>, scale: Option<&DepthSca
     let colour = ColourScale::of(map).picture(map.width, &pixels);
     staging.write("disparity_colour.png", |out| png(out, &colour))?;
     staging.write("flags.png", |out| png(out, &flags_raw(map)))?;
+    staging.write("confidence.png", |out| png(out, &confidence_raw(map)))?;
     staging.write("summary.json", |out| json(out, report.summary))?;
     if let Some(scale) = scale {
         let [depth_pfm, depth_png, cloud] = WITH_DEPTH;

@@ -8,6 +8,7 @@ use crate::{files, print};
 use std::fmt::Write;
 use std::path::Path;
 use stereopsis::depth::DepthScale;
+use stereopsis::matching::Config;
 use stereopsis_host::calibration::Calibration;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
@@ -18,6 +19,7 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let calibration = args.calib.as_ref().map(|path| Calibration::open(path, &args.pair.left)).transpose()?;
     let mut pair = Pair::open(&args.pair)?;
     let config = input::config(&args.range, &args.way, pair.width, pair.height)?;
+    let config = Config { confidence: true, ..config };
     let scale = calibration.as_ref().map(|c| scale(c, pair.width, pair.height)).transpose()?;
     Staging::probe(&args.out)?;
 

@@ -124,7 +124,7 @@ fn answers(method: Method, scene: &RealScene, [left, right]: &[GrayImage; 2]) ->
     let (width, height) = (left.width() as u16, left.height() as u16);
     let camera = MemoryPair::new(width, left.to_vec(), right.to_vec());
     let mut camera = camera.ok_or_else(|| failed(&"the pictures are empty"))?;
-    let config = Config { checks: method.checks(Filter::Default), ..Config::new(width, height, scene.disparities) };
+    let config = method.with_filter(Filter::Default, Config::new(width, height, scene.disparities));
     let outcome = match_pair(method, &config, &mut camera, |_| ());
     outcome.map(|outcome| outcome.map.pixels()).map_err(|e| failed(&e))
 }

@@ -30,8 +30,7 @@ pub fn run() -> Outcome {
         let camera = MemoryPair::new(size.width, left.into_raw(), right.into_raw());
         let mut camera = camera.ok_or_else(|| Failure::new("the pictures are empty"))?;
         for (column, &(method, kernel)) in columns.iter_mut().zip(&ways) {
-            let checks = method.checks(Filter::Default);
-            let config = Config { checks, ..Config::new(size.width, size.height, size.disparities) };
+            let config = method.with_filter(Filter::Default, Config::new(size.width, size.height, size.disparities));
             let way = Way { kernel: Some(kernel), ..method.into() };
             let frames = (EVALUATIONS / size.evaluations()).max(FEWEST);
             let timed = time_frames(way, &config, &mut camera, frames as usize);

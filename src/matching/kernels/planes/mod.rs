@@ -19,7 +19,7 @@ use super::{OUTSIDE, RowWork, Select};
 use crate::matching::scheme::Around;
 use crate::matching::window::Windowed;
 use plane::Plane;
-use windows::{WINDOW, Windows};
+use windows::{Judge, WINDOW, Windows};
 
 pub(in crate::matching) use census::codes;
 
@@ -75,7 +75,11 @@ fn row_of<S: Windowed, P: Plane, const GROUPS: usize>(work: RowWork<'_>, select:
     // Left of here no pixel has a candidate.
     let begin = min_disparity.min(width);
     let winners = winners.get_mut(begin..).unwrap_or_default();
-    let judge = unique.starting_at(begin);
+    // Nothing of it stands in the loops' registers where nothing is asked.
+    let is_asked = unique.is_asked();
+    let mut judge = unique.starting_at(begin);
+    let mut judge = |cost, second| judge(cost, &mut || second);
+    let judge: Option<&mut Judge<'_>> = if is_asked { Some(&mut judge) } else { None };
     let Some(windows) = scratch.as_chunks_mut::<WINDOW>().0.get_mut(..groups) else { return };
     let mut windows = Windows::new(windows, disparities);
     // What is farther to the left is no candidate's: its sums are zero.

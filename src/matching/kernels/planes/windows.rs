@@ -19,6 +19,9 @@ type Window<P> = [P; WINDOW];
 /// The most groups that there are: of half-words, 256 candidates.
 const MOST_GROUPS: usize = 16;
 
+/// Takes the cost of a winner and that of its second best.
+pub(super) type Judge<'a> = dyn FnMut(u8, u8) + 'a;
+
 /// The window of a pixel, in groups of candidates.
 pub(super) struct Windows<'a, P> {
     groups: &'a mut [Window<P>],
@@ -47,7 +50,7 @@ impl<'a, P: Plane> Windows<'a, P> {
         entering: &[Column<P>],
         leaving: &[Column<P>],
         winners: &mut [Winner],
-        mut judge: impl FnMut(u8, &mut dyn FnMut() -> u8),
+        mut judge: Option<&mut Judge<'_>>,
     ) {
         let of = |candidates: usize| -> [P; GROUPS] {
             core::array::from_fn(|group| P::first(candidates.saturating_sub(group * P::CANDIDATES)))
@@ -76,10 +79,10 @@ impl<'a, P: Plane> Windows<'a, P> {
                 let is_above = above != P::NONE && (!last || group + 1 < GROUPS);
                 look_beyond(&windows, disparity, is_above, winner);
             }
-            judge(winner.cost(), &mut || {
-                let windows = windows;
-                best_of_the_rest(&windows, disparity, &candidates)
-            });
+            if let Some(judge) = &mut judge {
+                let (windows, candidates) = (windows, candidates);
+                judge(winner.cost(), best_of_the_rest(&windows, disparity, &candidates));
+            }
         }
     }
 
@@ -90,7 +93,7 @@ impl<'a, P: Plane> Windows<'a, P> {
         entering: &[Column<P>],
         leaving: &[Column<P>],
         winners: &mut [Winner],
-        mut judge: impl FnMut(u8, &mut dyn FnMut() -> u8),
+        mut judge: Option<&mut Judge<'_>>,
     ) {
         let groups = self.groups.len().max(1);
         let (mut entering, mut leaving) = (entering.chunks_exact(groups), leaving.chunks_exact(groups));
@@ -112,10 +115,10 @@ impl<'a, P: Plane> Windows<'a, P> {
             *winner = winner_of(self.groups, group, lane, among(group));
             let disparity = group * P::CANDIDATES + lane;
             look_beyond(self.groups, disparity, disparity + 1 < candidates, winner);
-            judge(winner.cost(), &mut || {
+            if let Some(judge) = &mut judge {
                 let candidates: [P; MOST_GROUPS] = core::array::from_fn(among);
-                best_of_the_rest(self.groups, disparity, &candidates)
-            });
+                judge(winner.cost(), best_of_the_rest(self.groups, disparity, &candidates));
+            }
         }
     }
 }

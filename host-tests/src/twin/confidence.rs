@@ -1,0 +1,49 @@
+//! How sure an answer is.
+
+use super::Answers;
+use stereopsis::matching::Config;
+use stereopsis::units::{Disparity, PixelFlags};
+
+/// The confidence of every pixel of the `map`, of the margins of the winners, and of the answers around: those `before` median
+/// and speckle filter, in rows above those `after`.
+pub(super) fn confidences(
+    config: &Config,
+    margins: &[u16],
+    before: &[Disparity],
+    after: &[Disparity],
+    map: &Answers,
+) -> Vec<u8> {
+    let (width, height) = (usize::from(config.width), usize::from(config.height));
+    let confidence = |(x, y): (usize, usize)| {
+        let here = y * width + x;
+        if map.disparity[here].is_none() {
+            return 0;
+        }
+        if map.flags[here].contains(PixelFlags::FILLED) {
+            return 1;
+        }
+        let (mut beside, mut column) = (Vec::new(), Vec::new());
+        for off in [4, 8] {
+            if x >= off {
+                beside.push(before[here - off]);
+            }
+            if x + off < width {
+                beside.push(before[here + off]);
+            }
+        }
+        for off in [2, 4] {
+            if y >= off {
+                column.push(after[here - off * width]);
+            }
+            if y + off < height {
+                column.push(before[here + off * width]);
+            }
+        }
+        let agreement = |others: Vec<Disparity>| {
+            let most = others.into_iter().filter_map(|other| map.disparity[here].distance(other)).max();
+            40u16.saturating_sub(most.unwrap_or(0) / 4)
+        };
+        (margins[here].min(127) + agreement(beside) + agreement(column)).max(1) as u8
+    };
+    (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(confidence).collect()
+}

@@ -1,0 +1,61 @@
+//! The kernels for Arm beside their naive twins, in emulators of programs: the vectors of 64 bits, and, in the assembler of
+//! 32 bits, the instructions that Cortex-M4, M7 and M33 have on four bytes.
+
+use crate::packages;
+use crate::setup;
+use crate::steps::{Outcome, cargo, run as run_command};
+
+/// A processor that the tests are built for.
+pub struct Arm {
+    /// Its name in the list of steps.
+    pub name: &'static str,
+    target: &'static str,
+    linker: &'static str,
+    emulator: &'static str,
+    /// Where the linker's package has the libraries that programs load.
+    libraries: &'static str,
+    /// For the compiler.
+    flags: &'static str,
+}
+
+const ARM64: Arm = Arm {
+    name: "64-bit Arm",
+    target: "aarch64-unknown-linux-gnu",
+    linker: "aarch64-linux-gnu-gcc",
+    emulator: "qemu-aarch64",
+    libraries: "/usr/aarch64-linux-gnu",
+    flags: "",
+};
+
+const ARM32: Arm = Arm {
+    name: "32-bit Arm",
+    target: "thumbv7neon-unknown-linux-gnueabihf",
+    linker: "arm-linux-gnueabihf-gcc",
+    emulator: "qemu-arm",
+    libraries: "/usr/arm-linux-gnueabihf",
+    flags: "--cfg stereopsis_dsp",
+};
+
+/// Those that the tests do not run on anyway.
+pub fn others() -> impl Iterator<Item = Arm> {
+    [ARM64, ARM32].into_iter().filter(|arm| !(cfg!(target_arch = "aarch64") && arm.target == ARM64.target))
+}
+
+impl Arm {
+    /// Adds the target and the programs that are missing.
+    pub fn set_up(&self) -> Outcome {
+        setup::targets(&[self.target])?;
+        packages::install(&[self.linker, self.emulator])
+    }
+
+    /// Runs the tests that hold every kernel to the twins.
+    pub fn run(&self) -> Outcome {
+        let mut tests =
+            cargo(&["test", "--locked", "--target", self.target, "-p", "stereopsis-host", "--test", "twin"]);
+        let variable = |what: &str| format!("CARGO_TARGET_{}_{what}", self.target.replace('-', "_").to_uppercase());
+        tests.env(variable("LINKER"), self.linker);
+        tests.env(variable("RUNNER"), format!("{} -L {}", self.emulator, self.libraries));
+        tests.env(variable("RUSTFLAGS"), self.flags);
+        run_command(&mut tests)
+    }
+}

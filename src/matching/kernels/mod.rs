@@ -4,6 +4,7 @@
 //!
 //! * `planes`: bit planes in plain 32-bit words, for cores without vectors.
 //! * `lanes`: safe Rust over fixed lanes, which the compiler turns into the vectors that the target has.
+//! * `helium`: the same in assembly for the vectors of a Cortex-M55.
 //! * `x86`: the same code compiled for AVX2, chosen when the processor has it.
 //! * `winner`: what all of them give.
 //!
@@ -12,6 +13,8 @@
 //!
 //! Every kernel gives the same bits. A new one is a variant of [`Kernel`] and an arm in [`Kernel::row`].
 
+#[cfg(stereopsis_vectors)]
+pub mod helium;
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 mod lanes;
 mod paths;
@@ -107,6 +110,11 @@ impl Kernel {
             // Whole words, in a form that lets the compiler see it: a firmware is linked without what cannot be asked for.
             return disparities.next_multiple_of(32).min(most) & !31;
         }
+        #[cfg(stereopsis_vectors)]
+        if let Some(group) = [64, 32].into_iter().find(|&group| most.is_multiple_of(group)) {
+            // As many as there is assembly for, likewise; never none.
+            return (disparities.next_multiple_of(group).min(most) & !(group - 1)).max(group);
+        }
         disparities.next_multiple_of(STEP).min(most) & !(STEP - 1)
     }
 
@@ -123,8 +131,16 @@ impl Kernel {
         if self == Self::Planes {
             return planes::codes_of::<S>([left, right], min_disparity, scratch, out);
         }
-        let _ = (min_disparity, scratch);
+        let _ = min_disparity;
         let (of_left, of_right) = out.split_at_mut_checked(out.len() / 2).unwrap_or_default();
+        #[cfg(stereopsis_vectors)]
+        if S::BITS <= 4 {
+            for (lines, codes) in [(left, of_left), (right, of_right)] {
+                helium::census_plus4(lines, bytes_mut(scratch), codes);
+            }
+            return;
+        }
+        let _ = scratch;
         S::census(left, of_left);
         S::census(right, of_right);
     }

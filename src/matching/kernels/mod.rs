@@ -4,12 +4,13 @@
 //!
 //! * `planes`: bit planes in plain 32-bit words, for cores without vectors.
 //! * `lanes`: safe Rust over fixed lanes, which the compiler turns into the vectors that the target has.
-//! * `helium`: the same in assembly for the vectors of a Cortex-M55.
 //! * `x86`: the same code compiled for AVX2, chosen when the processor has it.
+//! * `helium`: what `lanes` and the stages after it do for a row, in assembly for the vectors of a Cortex-M55.
 //! * `winner`: what all of them give.
 //!
 //! A 32-bit core gets `planes` alone, unless it is compiled with `--cfg stereopsis_vectors`, which says that its vectors
-//! are on (Helium on a Cortex-M55: `-C target-cpu=cortex-m55`); then it gets `lanes` alone. Larger processors have both.
+//! are on (Helium on a Cortex-M55: `-C target-cpu=cortex-m55`); then it gets `lanes` alone, most of it
+//! from `helium`. Larger processors have both.
 //!
 //! Every kernel gives the same bits. A new one is a variant of [`Kernel`] and an arm in [`Kernel::row`].
 
@@ -168,8 +169,8 @@ impl Kernel {
     /// Moves the window to the next row and selects its winners, unless the row is only gathered (`select` is `None`).
     // Where there is one kernel it is inlined, so that the compiler sees which numbers of candidates can be asked for, and
     // a firmware is linked without the code for others.
-    #[cfg_attr(any(target_pointer_width = "64", stereopsis_vectors), inline)]
-    #[cfg_attr(not(any(target_pointer_width = "64", stereopsis_vectors)), inline(always))]
+    #[cfg_attr(target_pointer_width = "64", inline)]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(always))]
     pub(super) fn row<S: Windowed>(self, work: RowWork<'_>, select: Option<Select<'_>>) {
         match self {
             #[cfg(not(stereopsis_vectors))]

@@ -51,9 +51,10 @@ pub(super) fn average(
 pub(super) const ROOM: usize = 2 * Checks::MOST_SMOOTHING as usize;
 
 /// Whether two answers are of one surface; `NONE`s are, and are far from every answer (Config::check).
+#[cfg(not(stereopsis_vectors))]
 #[inline(always)]
 pub(super) fn of_one(a: u16, b: u16, step: Disparity) -> bool {
-    if cfg!(any(target_pointer_width = "64", stereopsis_vectors)) {
+    if cfg!(target_pointer_width = "64") {
         // Half-words stay half-words.
         a.abs_diff(b) <= step.raw()
     } else {

@@ -152,7 +152,7 @@ fn move_packed<const STRIDE: usize>(codes: Codes<'_>, columns: &mut [u8]) {
     }
 }
 
-/// [`of_eight_bits`] of both rows: ten instructions for 16 candidates, and six for a column.
+/// [`of_eight_bits`] of both rows: ten instructions for 16 candidates, and eight for a column.
 #[inline(never)]
 fn move_rows<const STRIDE: usize>(enter: Codes<'_>, leave: Codes<'_>, columns: &mut [u8]) {
     let count = columns.len() / STRIDE;

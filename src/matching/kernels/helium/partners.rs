@@ -21,7 +21,7 @@ pub fn keep(costs: &[u8], disparities: &[u8], right: &mut [u16], kept: &mut [u8]
     look(kept, right);
 }
 
-/// The first half: nine instructions for a pixel. None of `disparities` is over its index.
+/// The first half: 34 instructions for four pixels. None of `disparities` is over its index.
 fn offer(costs: &[u8], disparities: &[u8], right: &mut [u16]) {
     let turns = costs.len() / TURN;
     if turns > 0 {
@@ -84,8 +84,9 @@ fn look(disparities: &mut [u8], right: &[u16]) {
             "vldrh.u16 q0, [{right}, q1, uxtw #1]",
             "vstrb.16 q0, [r0], #8",
             "letp lr, 2b",
-            count = in(reg) count,  right = in(reg) right.as_ptr(),
-            inout("r4") 0 => _, inout("r0") disparities.as_mut_ptr() => _, out("lr") _, out("q0") _, out("q1") _, options(nostack),
+            count = in(reg) count, right = in(reg) right.as_ptr(),
+            inout("r0") disparities.as_mut_ptr() => _, inout("r4") 0 => _, out("lr") _, out("q0") _, out("q1") _,
+            options(nostack),
         );
     }
 }

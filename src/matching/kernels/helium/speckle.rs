@@ -10,7 +10,7 @@ pub struct Judged<'a> {
     pub above: &'a [Disparity],
     /// As [`super::average`] leaves them.
     pub lengths: &'a [u16],
-    /// Two bytes for each answer, all zero when a frame begins: one row of the support so far, and one of the bits.
+    /// Two rows of bytes, all zero when a frame begins: the support so far, and the bits.
     pub kept: &'a mut [u16],
     pub flags: &'a mut [PixelFlags],
     /// The row that waited; where there is none, it is in `finished`.
@@ -18,7 +18,9 @@ pub struct Judged<'a> {
     pub finished: &'a mut [Disparity],
 }
 
-/// Judges the row with support of at least `pixels`, where a surface changes by up to `step`. 29 instructions for eight answers.
+/// Judges the row with support of at least `pixels`, where a surface changes by up to `step`.
+///
+/// 29 instructions for eight answers.
 #[inline(never)]
 pub fn judge(work: Judged<'_>, step: Disparity, pixels: u8) {
     let Judged { here, above, lengths, kept, flags, answers, finished } = work;
@@ -30,8 +32,9 @@ pub fn judge(work: Judged<'_>, step: Disparity, pixels: u8) {
     let finished = finished.as_mut_ptr();
     let answers = answers.map_or(finished.cast_const(), <[_]>::as_ptr);
     let counts = kept.as_mut_ptr().cast::<u8>();
-    // SAFETY: `count` of each are read and written, which all have, of `kept` and `lengths` in bytes: the loop is one for so many lanes
-    // of half-words. A `Disparity` is a half-word and a `PixelFlags` a byte, every value of which is one.
+    // SAFETY: `count` of each are read and written, which all have, of `lengths` one byte for each and of `kept` two: the
+    // loop is one for so many lanes of half-words. A `Disparity` is a half-word and a `PixelFlags` a byte, every value of
+    // which is one.
     unsafe {
         asm!(
             "vdup.16 q7, {step}",
@@ -74,12 +77,11 @@ pub fn judge(work: Judged<'_>, step: Disparity, pixels: u8) {
             "letp lr, 2b",
             count = in(reg) count, step = in(reg) u32::from(step.raw()), pixels = in(reg) u32::from(pixels),
             here = inout(reg) here.as_ptr() => _, above = inout(reg) above.as_ptr() => _,
-
-
             answers = inout(reg) answers => _, finished = inout(reg) finished => _,
             speckle = const PixelFlags::SPECKLE.bits() as u32,
-            inout("r0") lengths.as_ptr() => _, inout("r1") counts => _, inout("r2") counts.add(count) => _, inout("r3") flags.as_mut_ptr() => _, out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, out("q4") _, out("q5") _, out("q6") _,
-            out("q7") _, options(nostack),
+            inout("r0") lengths.as_ptr() => _, inout("r1") counts => _, inout("r2") counts.add(count) => _,
+            inout("r3") flags.as_mut_ptr() => _, out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _,
+            out("q4") _, out("q5") _, out("q6") _, out("q7") _, options(nostack),
         );
     }
 }

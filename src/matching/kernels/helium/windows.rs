@@ -135,7 +135,7 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
 }
 
 /// The other side for the side that a winner lacks which is the smallest or the last of the pixel's candidates: of these
-/// the first pixel has one, the next one two, and so on up to `disparities`. Fourteen instructions for 16 pixels.
+/// the first pixel has one, the next one two, and so on up to `disparities`. Twelve instructions for 16 pixels.
 #[inline(never)]
 pub(super) fn complete(rows: [&mut [u8]; 4], disparities: usize) {
     let [below, costs, above, winners] = rows;
@@ -165,7 +165,8 @@ pub(super) fn complete(rows: [&mut [u8]; 4], disparities: usize) {
             count = in(reg) count, last = in(reg) disparities - 1, lanes = in(reg) LANES,
             winners = inout(reg) winners.as_ptr() => _, below = inout(reg) below.as_mut_ptr() => _,
             above = inout(reg) above.as_mut_ptr() => _,
-            inout("r4") 0 => _, out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, out("q4") _, out("q5") _, options(nostack),
+            inout("r4") 0 => _, out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, out("q4") _,
+            out("q5") _, options(nostack),
         );
     }
     // The only candidate has none beside it.

@@ -24,8 +24,7 @@ fn missed(method: Method, alteration: Alteration) -> f64 {
     let [left, right] = altered(alteration, 1);
     let (width, height) = (left.width() as u16, left.height() as u16);
     let mut camera = MemoryPair::new(width, left.into_raw(), right.into_raw()).expect("two pictures of one size");
-    let checks = method.checks(Filter::Default);
-    let config = Config { checks, ..Config::new(width, height, SCENE.disparities) };
+    let config = method.with_filter(Filter::Default, Config::new(width, height, SCENE.disparities));
     let map = run(method, &config, &mut camera, |_| ()).expect("a frame").map;
     Score::of(map.disparity.iter().map(|d| d.to_f32()), &SCENE.truth).expect("scored pixels").missed
 }

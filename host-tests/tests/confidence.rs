@@ -16,8 +16,8 @@ fn map(method: Method, config: &Config, (left, right): &(GrayImage, GrayImage)) 
     run(method, config, &mut pair, |_| ()).expect("a source that cannot fail").map
 }
 
-fn config(scene: &Scene, checks: Checks) -> Config {
-    Config { checks, confidence: true, ..Config::new(scene.width(), scene.height(), scene.disparities()) }
+fn config(scene: &Scene) -> Config {
+    Config { confidence: true, ..Config::new(scene.width(), scene.height(), scene.disparities()) }
 }
 
 #[test]
@@ -26,7 +26,7 @@ fn wrong_answers_are_the_least_sure() {
     let (pair, truth) = (scene.render(), scene.truth());
     for method in Method::ALL {
         for filter in [Filter::Dense, Filter::Default] {
-            let map = map(method, &config(&scene, method.checks(filter)), &pair);
+            let map = map(method, &method.with_filter(filter, config(&scene)), &pair);
             let judged = Accuracy::judged(&map, &truth);
             let worth = Sparsification::of(&judged).expect("there are answers");
             let from_oracle = worth.from_oracle();
@@ -41,7 +41,7 @@ fn wrong_answers_are_the_least_sure() {
 fn what_is_filled_is_the_least_sure_and_what_has_no_answer_has_none() {
     let scene = Scene::small(200, 150);
     let checks = Checks { fill_pixels: 16, median: true, ..Checks::STRICT };
-    let map = map(Method::Block, &config(&scene, checks), &scene.render());
+    let map = map(Method::Block, &Config { checks, ..config(&scene) }, &scene.render());
     let mut filled = 0;
     for (i, (&confidence, flags)) in map.confidence.iter().zip(&map.flags).enumerate() {
         assert_eq!(confidence > 0, map.disparity[i].is_some());
@@ -59,7 +59,7 @@ fn nothing_else_changes_with_it() {
     let pair = scene.render();
     for method in Method::ALL {
         for filter in Filter::ALL {
-            let with = config(&scene, method.checks(filter));
+            let with = method.with_filter(filter, config(&scene));
             let (with, without) =
                 (map(method, &with, &pair), map(method, &Config { confidence: false, ..with }, &pair));
             assert!(without.confidence.iter().all(|&c| c == 0));

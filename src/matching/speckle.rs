@@ -11,7 +11,10 @@
 //! all that is to be kept of those, in one word with the support so far.
 
 use super::config::Checks;
+#[cfg(stereopsis_vectors)]
+use super::kernels::helium::{self, Judged};
 use super::row::slot;
+#[cfg(not(stereopsis_vectors))]
 use super::surface::of_one;
 use crate::units::{Disparity, PixelFlags};
 
@@ -30,10 +33,11 @@ pub(super) struct Support<'a> {
 }
 
 /// Bits of rows that go on, and then of rows that have enough.
+#[cfg(not(stereopsis_vectors))]
 const ROWS: usize = LOOK_AHEAD;
 
 /// What the numbers are worked on in: where there are vectors, half-words, of which they hold more.
-#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+#[cfg(target_pointer_width = "64")]
 type Word = u16;
 #[cfg(not(any(target_pointer_width = "64", stereopsis_vectors)))]
 type Word = u32;
@@ -60,8 +64,13 @@ impl Support<'_> {
         finished: &mut [Disparity],
     ) {
         let judged = slot(band, (y + BAND - LOOK_AHEAD) % BAND, self.kept.len());
-        let out = judged.iter().zip(flags).zip(finished);
-        self.judge(y, band, checks, out.map(|((answer, flags), finished)| (*answer, flags, finished)));
+        #[cfg(stereopsis_vectors)]
+        self.judge(y, band, checks, flags, Some(judged), finished);
+        #[cfg(not(stereopsis_vectors))]
+        {
+            let out = judged.iter().zip(flags).zip(finished);
+            self.judge(y, band, checks, out.map(|((answer, flags), finished)| (*answer, flags, finished)));
+        }
     }
 
     /// The same where the answers to be judged are in `finished` already.
@@ -74,10 +83,34 @@ impl Support<'_> {
         flags: &mut [PixelFlags],
         finished: &mut [Disparity],
     ) {
-        let out = flags.iter_mut().zip(finished);
-        self.judge(y, band, checks, out.map(|(flags, finished)| (*finished, flags, finished)));
+        #[cfg(stereopsis_vectors)]
+        self.judge(y, band, checks, flags, None, finished);
+        #[cfg(not(stereopsis_vectors))]
+        {
+            let out = flags.iter_mut().zip(finished);
+            self.judge(y, band, checks, out.map(|(flags, finished)| (*finished, flags, finished)));
+        }
     }
 
+    /// In the vectors of a Cortex-M55, which keep what they keep of a column in two rows of bytes.
+    #[cfg(stereopsis_vectors)]
+    fn judge(
+        &mut self,
+        y: usize,
+        band: &[Disparity],
+        checks: &Checks,
+        flags: &mut [PixelFlags],
+        answers: Option<&[Disparity]>,
+        finished: &mut [Disparity],
+    ) {
+        let row = |y: usize| slot(band, y % BAND, self.kept.len());
+        let (here, above) = (row(y), row(y + BAND - 1));
+        let (lengths, kept) = (&*self.lengths, &mut *self.kept);
+        let work = Judged { here, above, lengths, kept, flags, answers, finished };
+        helium::judge(work, checks.surface_step, checks.speckle_pixels);
+    }
+
+    #[cfg(not(stereopsis_vectors))]
     #[inline(always)]
     #[allow(clippy::unnecessary_cast, reason = "a word is a half-word on some cores only")]
     fn judge<'a>(

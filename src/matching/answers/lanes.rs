@@ -2,6 +2,8 @@
 
 use super::{Rules, consistency};
 use crate::matching::kernels::WinnerRows;
+#[cfg(stereopsis_vectors)]
+use crate::matching::kernels::helium;
 use crate::matching::scheme::Scheme;
 use crate::units::{Disparity, PixelFlags};
 
@@ -9,6 +11,14 @@ use crate::units::{Disparity, PixelFlags};
 #[inline(never)]
 pub(super) fn keep(winners: &WinnerRows<'_>, right: &mut [u16], kept: &mut [u8]) {
     let (costs, disparities) = (&*winners.costs, &*winners.disparities);
+    #[cfg(stereopsis_vectors)]
+    helium::keep(costs, disparities, right, kept);
+    #[cfg(not(stereopsis_vectors))]
+    offer_and_look(costs, disparities, right, kept);
+}
+
+#[cfg(not(stereopsis_vectors))]
+fn offer_and_look(costs: &[u8], disparities: &[u8], right: &mut [u16], kept: &mut [u8]) {
     let keys = costs.iter().zip(disparities).map(|(&cost, &d)| (u32::from(cost) << 8 | u32::from(d), d));
     consistency::offer(keys, right);
     for (x, (kept, &disparity)) in kept.iter_mut().zip(disparities).enumerate() {

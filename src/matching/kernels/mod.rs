@@ -5,13 +5,17 @@
 //! * `planes`: bit planes in plain 32-bit words, for cores without vectors.
 //! * `lanes`: safe Rust over fixed lanes, which the compiler turns into the vectors that the target has.
 //! * `x86`: the same code compiled for AVX2, chosen when the processor has it.
+//! * `helium`: what `lanes` and the stages after it do for a row, in assembly for the vectors of a Cortex-M55.
 //! * `winner`: what all of them give.
 //!
 //! A 32-bit core gets `planes` alone, unless it is compiled with `--cfg stereopsis_vectors`, which says that its vectors
-//! are on (Helium on a Cortex-M55: `-C target-cpu=cortex-m55`); then it gets `lanes` alone. Larger processors have both.
+//! are on (Helium on a Cortex-M55: `-C target-cpu=cortex-m55`); then it gets `lanes` alone, most of it
+//! from `helium`. Larger processors have both.
 //!
 //! Every kernel gives the same bits. A new one is a variant of [`Kernel`] and an arm in [`Kernel::row`].
 
+#[cfg(stereopsis_vectors)]
+pub mod helium;
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 mod lanes;
 mod paths;
@@ -107,6 +111,11 @@ impl Kernel {
             // Whole words, in a form that lets the compiler see it: a firmware is linked without what cannot be asked for.
             return disparities.next_multiple_of(32).min(most) & !31;
         }
+        #[cfg(stereopsis_vectors)]
+        if let Some(group) = [64, 32].into_iter().find(|&group| most.is_multiple_of(group)) {
+            // As many as there is assembly for, likewise; never none.
+            return (disparities.next_multiple_of(group).min(most) & !(group - 1)).max(group);
+        }
         disparities.next_multiple_of(STEP).min(most) & !(STEP - 1)
     }
 
@@ -123,8 +132,16 @@ impl Kernel {
         if self == Self::Planes {
             return planes::codes_of::<S>([left, right], min_disparity, scratch, out);
         }
-        let _ = (min_disparity, scratch);
+        let _ = min_disparity;
         let (of_left, of_right) = out.split_at_mut_checked(out.len() / 2).unwrap_or_default();
+        #[cfg(stereopsis_vectors)]
+        if S::BITS <= 4 {
+            for (lines, codes) in [(left, of_left), (right, of_right)] {
+                helium::census_plus4(lines, bytes_mut(scratch), codes);
+            }
+            return;
+        }
+        let _ = scratch;
         S::census(left, of_left);
         S::census(right, of_right);
     }
@@ -152,8 +169,8 @@ impl Kernel {
     /// Moves the window to the next row and selects its winners, unless the row is only gathered (`select` is `None`).
     // Where there is one kernel it is inlined, so that the compiler sees which numbers of candidates can be asked for, and
     // a firmware is linked without the code for others.
-    #[cfg_attr(any(target_pointer_width = "64", stereopsis_vectors), inline)]
-    #[cfg_attr(not(any(target_pointer_width = "64", stereopsis_vectors)), inline(always))]
+    #[cfg_attr(target_pointer_width = "64", inline)]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(always))]
     pub(super) fn row<S: Windowed>(self, work: RowWork<'_>, select: Option<Select<'_>>) {
         match self {
             #[cfg(not(stereopsis_vectors))]

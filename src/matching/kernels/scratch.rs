@@ -13,15 +13,18 @@ pub struct Scratch<const W: usize, const D: usize> {
     sums: [u8; D],
     before: [u16; D],
     codes: [u16; W],
+    /// What makes the last word a whole one.
+    rest: u16,
 }
 
 impl<const W: usize, const D: usize> Scratch<W, D> {
     /// All zero.
-    pub const ZERO: Self = Self { sums: [0; D], before: [0; D], codes: [0; W] };
+    pub const ZERO: Self = Self { sums: [0; D], before: [0; D], codes: [0; W], rest: 0 };
 
     /// All of it as words.
     pub fn words(&mut self) -> &mut [u32] {
-        let words = (size_of_val(&self.sums) + size_of_val(&self.before) + size_of_val(&self.codes)) / size_of::<u32>();
+        let bytes = size_of_val(&self.sums) + size_of_val(&self.before) + size_of_val(&self.codes);
+        let words = (bytes + size_of_val(&self.rest)) / size_of::<u32>();
         // SAFETY: the fields are integers without a gap between them (`repr(C)`, the first a whole number of half-words),
         // any of whose values is a word, and `words` does not reach beyond the last one.
         unsafe { core::slice::from_raw_parts_mut(core::ptr::from_mut(self).cast(), words) }

@@ -5,7 +5,7 @@ use crate::matching::config::Checks;
 use crate::units::Disparity;
 
 /// Pixels worked on at a time.
-pub(super) const LANES: usize = if cfg!(stereopsis_vectors) { 8 } else { 16 };
+pub(super) const LANES: usize = 16;
 /// How far the answers around a pixel reach, to each side.
 const REACH: usize = ROOM / 2;
 

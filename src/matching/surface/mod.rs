@@ -6,20 +6,23 @@
 //! surface's ends, so that depth edges stay where they are.
 //!
 //! * `runs`: pixel by pixel, from the sums up to each.
-//! * `lanes`: pixels side by side, for the kernels in vectors.
+//! * `lanes`: pixels side by side, for the kernels in vectors; for those of a Cortex-M55 in `kernels/helium`.
 //!
-//! Both give the same. The work is the same for every row.
+//! All give the same. The work is the same for every row.
 
-#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+#[cfg(target_pointer_width = "64")]
 mod lanes;
+#[cfg(not(stereopsis_vectors))]
 mod runs;
 
 use super::config::Checks;
 use super::kernels::Kernel;
+#[cfg(stereopsis_vectors)]
+use super::kernels::helium;
 use crate::units::Disparity;
 
 /// Makes every answer of a row the average of up to [`Checks::smoothing_radius`] pairs around it, and gives for each how
-/// many its surface has along the row. `room` has [`ROOM`] numbers more than there are answers.
+/// many its surface has along the row; Helium's lengths are bytes. `room` has [`ROOM`] numbers more than there are answers.
 pub(super) fn average(
     kernel: Kernel,
     answers: &mut [Disparity],
@@ -27,7 +30,7 @@ pub(super) fn average(
     room: &mut [u16],
     checks: &Checks,
 ) {
-    #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+    #[cfg(target_pointer_width = "64")]
     if kernel.has_vectors() && answers.len() >= lanes::LANES {
         return kernel.in_vectors(
             #[inline(always)]
@@ -35,17 +38,23 @@ pub(super) fn average(
         );
     }
     let _ = kernel;
-    runs::count(answers, lengths, room, checks.surface_step);
-    runs::average(answers, lengths, room, checks.smoothing_radius);
+    #[cfg(stereopsis_vectors)]
+    helium::average(answers, lengths, room, checks.surface_step, checks.smoothing_radius);
+    #[cfg(not(stereopsis_vectors))]
+    {
+        runs::count(answers, lengths, room, checks.surface_step);
+        runs::average(answers, lengths, room, checks.smoothing_radius);
+    }
 }
 
 /// Numbers that are wanted beside one for each answer: by the lanes, the runs want one.
 pub(super) const ROOM: usize = 2 * Checks::MOST_SMOOTHING as usize;
 
 /// Whether two answers are of one surface; `NONE`s are, and are far from every answer (Config::check).
+#[cfg(not(stereopsis_vectors))]
 #[inline(always)]
 pub(super) fn of_one(a: u16, b: u16, step: Disparity) -> bool {
-    if cfg!(any(target_pointer_width = "64", stereopsis_vectors)) {
+    if cfg!(target_pointer_width = "64") {
         // Half-words stay half-words.
         a.abs_diff(b) <= step.raw()
     } else {
@@ -55,7 +64,7 @@ pub(super) fn of_one(a: u16, b: u16, step: Disparity) -> bool {
 }
 
 /// `2^16 / (2 reach + 1)`, rounded.
-const RECIPROCALS: [i32; 16] = {
+pub(super) const RECIPROCALS: [i32; 16] = {
     let mut table = [0; 16];
     let mut reach = 0;
     while reach <= Checks::MOST_SMOOTHING as usize {

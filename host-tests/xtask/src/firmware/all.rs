@@ -5,7 +5,7 @@ use super::checksums::{self, Checksum};
 use super::frame::{self, Frame, MOST_STACK};
 use super::program::{Built, Program};
 use super::scene::Scene;
-use super::{parallel, refusals, tables};
+use super::{awkward, parallel, refusals, tables};
 use crate::pictures::Pictures;
 use crate::setup;
 use crate::steps::{Failure, Outcome, root};
@@ -36,6 +36,7 @@ pub fn run(check: bool) -> Outcome {
     setup::firmware(&board::ALL.map(|board| board.target))?;
     let real = checksums::pairs()?;
     refusals::check()?;
+    awkward::check()?;
     let jobs = programs()?;
     let results = parallel::work(jobs, |program| one(program, &real))?;
     let part = tables::part(&results)?;

@@ -4,10 +4,12 @@
 //!   text.
 //! * [`frame`]: one frame on one core, held to the host. [`summary`]: the files that are written of it.
 //! * [`all`]: every core, method and size; [`tables`] of it for README.md, [`parallel`] work; [`checksums`] on real pictures.
+//! * [`awkward`]: sizes that fill no vector, where the rows are in assembly.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
 
 mod all;
 mod arguments;
+mod awkward;
 mod checksums;
 mod emulate;
 pub mod frame;

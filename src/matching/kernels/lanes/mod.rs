@@ -14,6 +14,8 @@
 
 mod columns;
 
+#[cfg(stereopsis_vectors)]
+use super::helium;
 use super::scratch::bytes_mut;
 use super::winner::Found;
 use super::{BESIDE, MASKS, OUTSIDE, RowWork, STEP, Select, WinnerRows};
@@ -34,7 +36,13 @@ const fn disparities<const STRIDE: usize>() -> [u8; STRIDE] {
 #[inline(always)]
 pub(in crate::matching) fn row<S: Windowed>(work: RowWork<'_>, select: Option<Select<'_>>) {
     match work.stride {
+        #[cfg(stereopsis_vectors)]
+        32 => helium::row::<S, 32>(work, select),
+        #[cfg(stereopsis_vectors)]
+        64 => helium::row::<S, 64>(work, select),
+        #[cfg(not(stereopsis_vectors))]
         32 => row_in_groups::<S, STEP, 32>(work, select, nearest_with::<32>),
+        #[cfg(not(stereopsis_vectors))]
         64 => row_in_groups::<S, STEP, 64>(work, select, nearest_with::<64>),
         _ => row_in_groups::<S, STEP, 0>(work, select, nearest_with::<0>),
     }
@@ -194,7 +202,7 @@ fn minimum<const N: usize>(lanes: &[u8; N]) -> u8 {
 /// The least cost of the candidates over [`BESIDE`] px beside the winner; `u8::MAX` where there is none.
 #[cfg_attr(stereopsis_vectors, inline(never))]
 #[cfg_attr(not(stereopsis_vectors), inline(always))]
-fn best_of_the_rest<const N: usize>(disparity: usize, mask: &[u8], sums: &mut [u8]) -> u8 {
+pub(super) fn best_of_the_rest<const N: usize>(disparity: usize, mask: &[u8], sums: &mut [u8]) -> u8 {
     // The winner and those beside it are raised while the others are looked at.
     let lane = (sums.len() - 1).saturating_sub(disparity);
     let nearest = lane.saturating_sub(BESIDE)..sums.len().min(lane + BESIDE + 1);

@@ -1,0 +1,43 @@
+//! Lines that fill no vector, and disparities that fill no group of lanes, on the core whose rows are in assembly: equal to the
+//! host's to the bit, as all frames are.
+
+use super::board::M55;
+use super::frame;
+use super::program::Program;
+use crate::pictures::Pictures;
+use crate::steps::Outcome;
+use stereopsis_host::run::Method;
+
+/// Pixels in a line at most, and disparities: of 32 and of 64 lanes, and of a number that there is no assembly for.
+const PROGRAMS: [(u16, u16); 3] = [(67, 29), (161, 53), (97, 47)];
+/// Pixels in a line less than the most.
+const NARROWER: [u16; 4] = [0, 1, 37, 50];
+/// Lines: the window never is whole, and a few more.
+const HEIGHTS: [u16; 2] = [5, 21];
+
+/// Each method, program and size.
+pub fn check() -> Outcome {
+    for method in [Method::Fast, Method::Block] {
+        for (most, disparities) in PROGRAMS {
+            let built = Program::new(M55, method, most, HEIGHTS[1], disparities)?.build()?;
+            for (less, height) in NARROWER.into_iter().flat_map(|less| HEIGHTS.map(|height| (less, height))) {
+                frame::run(&built, &Pictures::drawn(most - less, height, pixel), false)?;
+            }
+            println!("{}: {} awkward sizes are equal to the host's", built.program, NARROWER.len() * HEIGHTS.len());
+        }
+    }
+    Ok(())
+}
+
+/// Noise in grains, nearer in the middle of every few columns, with some of its own in each camera.
+fn pixel(u: u32, v: u32, right: bool) -> u8 {
+    let mix = |n: u32| {
+        let n = (n ^ (n >> 15)).wrapping_mul(0x2C1B_3C6D);
+        n ^ (n >> 13)
+    };
+    let disparity = if u / 24 % 3 == 1 { 21 } else { 4 + v / 5 };
+    let seen = u + if right { disparity } else { 0 };
+    let texture = mix((seen / 2).wrapping_mul(0x9E37_79B1) ^ (v / 2).wrapping_mul(0x85EB_CA77)) & 0xff;
+    let noise = mix(u.wrapping_mul(0xC2B2_AE3D) ^ v.wrapping_mul(0x27D4_EB2F) ^ u32::from(right)) % 5;
+    (texture * 3 / 4 + noise) as u8
+}

@@ -1,0 +1,197 @@
+//! The costs of a row, added to the columns under the window, and those of the row that leaves it subtracted.
+#![allow(unsafe_code)]
+
+use core::arch::asm;
+
+/// By how much more bits the lower four of a byte differ than the upper four, modulo 2^8.
+static LESS: [u8; 256] = table::<4>();
+/// How many bits are set.
+static BITS: [u8; 256] = table::<8>();
+
+/// The bits that are set among the lowest so many, less those above.
+const fn table<const LOWEST: u32>() -> [u8; 256] {
+    let mut table = [0; 256];
+    let mut byte = 0;
+    while byte < 256u32 {
+        let upper = byte >> LOWEST;
+        table[byte as usize] = ((byte ^ upper << LOWEST).count_ones() as u8).wrapping_sub(upper.count_ones() as u8);
+        byte += 1;
+    }
+    table
+}
+
+/// Codes: of the left image, and of the right one with more before, so that column x is compared with those from x on.
+struct Codes<'a> {
+    left: &'a [u8],
+    right: &'a [u8],
+}
+
+/// Moves the sums of the `columns` one row down, for codes of up to four bits: `rows` are the row that enters below and the
+/// one that leaves above. `room` holds two bytes a column, and a column.
+#[inline(never)]
+pub(super) fn of_four_bits<const STRIDE: usize>(
+    rows: [Option<&[u8]>; 2],
+    min_disparity: usize,
+    room: &mut [u8],
+    columns: &mut [u8],
+) {
+    let [enter, leave] = rows;
+    let Some(either) = enter.or(leave) else { return };
+    let keep = (0x0f * u8::from(enter.is_some()), 0xf0 * u8::from(leave.is_some()));
+    let (new, old) = (enter.unwrap_or(either), leave.unwrap_or(either));
+    let width = either.len() / 2;
+    let (left, right) = room.split_at_mut_checked(width).unwrap_or_default();
+    pack(new, old, keep, left);
+    let (new, old) = (new.get(width..).unwrap_or(&[]), old.get(width..).unwrap_or(&[]));
+    let right = with_more_before::<STRIDE>(width, min_disparity, right, |right| pack(new, old, keep, right));
+    move_packed::<STRIDE>(Codes { left, right }, columns);
+}
+
+/// The codes of two rows in the halves of a byte, of each what is to be kept.
+#[inline(never)]
+fn pack(new: &[u8], old: &[u8], keep: (u8, u8), out: &mut [u8]) {
+    for ((out, &new), &old) in out.iter_mut().zip(new).zip(old) {
+        *out = new & keep.0 | old << 4 & keep.1;
+    }
+}
+
+/// [`of_four_bits`] for codes of up to eight bits.
+#[inline(never)]
+pub(super) fn of_eight_bits<const STRIDE: usize>(
+    rows: [Option<&[u8]>; 2],
+    min_disparity: usize,
+    room: &mut [u8],
+    columns: &mut [u8],
+) {
+    let width = columns.len() / STRIDE;
+    let [enter, leave] = rows;
+    let (new, old) = room.split_at_mut_checked(width + STRIDE - 1).unwrap_or_default();
+    let (enter, leave) =
+        (codes::<STRIDE>(enter, width, min_disparity, new), codes::<STRIDE>(leave, width, min_disparity, old));
+    move_rows::<STRIDE>(enter, leave, columns);
+}
+
+/// The codes of a row; of none, codes that do not differ.
+#[inline(never)]
+fn codes<'a, const STRIDE: usize>(
+    row: Option<&'a [u8]>,
+    width: usize,
+    min_disparity: usize,
+    room: &'a mut [u8],
+) -> Codes<'a> {
+    let Some((left, from)) = row.and_then(|row| row.split_at_checked(width)) else {
+        room.fill(0);
+        return Codes { left: room, right: room };
+    };
+    let right = with_more_before::<STRIDE>(width, min_disparity, room, |right| {
+        for (right, &from) in right.iter_mut().zip(from) {
+            *right = from;
+        }
+    });
+    Codes { left, right }
+}
+
+/// The right codes, which `put` makes, with so many before that every column finds `STRIDE`: the first one is repeated for
+/// those that lie left of the image.
+#[inline(always)]
+fn with_more_before<const STRIDE: usize>(
+    width: usize,
+    min_disparity: usize,
+    room: &mut [u8],
+    put: impl FnOnce(&mut [u8]),
+) -> &[u8] {
+    let room = room.get_mut(..width + STRIDE - 1).unwrap_or_default();
+    let outside = room.len().min(STRIDE - 1 + min_disparity);
+    // One more is put, and repeated.
+    put(room.get_mut(outside..).unwrap_or_default());
+    let first = room.get(outside).copied().unwrap_or(0);
+    room.get_mut(..outside).unwrap_or_default().fill(first);
+    room
+}
+
+/// [`of_four_bits`] of codes that hold both rows: six instructions for 16 candidates, and three for a column.
+#[inline(never)]
+fn move_packed<const STRIDE: usize>(codes: Codes<'_>, columns: &mut [u8]) {
+    let Codes { left, right } = codes;
+    let count = left.len();
+    if count == 0 || right.len() < count + STRIDE - 1 || columns.len() < count * STRIDE {
+        return;
+    }
+    // SAFETY: the lengths asked for above are what is read and written: of column `x` `left[x]`, `right[x..x + STRIDE]` and
+    // `columns[x * STRIDE..][..STRIDE]`. A byte's entry of the table is in the table. `count` is not 0.
+    unsafe {
+        asm!(
+            "dls lr, {count}",
+            "2:",
+            "ldrb {code}, [{left}], #1",
+            "vdup.8 q2, {code}",
+            ".irp at, 48, 32, 16, 0",
+            ".if \\at < {stride}",
+            ".if \\at",
+            "vldrb.u8 q0, [{right}, #\\at]",
+            ".else",
+            "vldrb.u8 q0, [{right}], #1",
+            ".endif",
+            "veor q0, q0, q2",
+            "vldrb.u8 q1, [{less}, q0]",
+            "vldrb.u8 q0, [{columns}, #\\at]",
+            "vadd.i8 q0, q0, q1",
+            ".if \\at",
+            "vstrb.8 q0, [{columns}, #\\at]",
+            ".else",
+            "vstrb.8 q0, [{columns}], #{stride}",
+            ".endif",
+            ".endif",
+            ".endr",
+            "le lr, 2b",
+            count = in(reg) count, code = out(reg) _, left = inout(reg) left.as_ptr() => _,
+            right = inout(reg) right.as_ptr() => _, columns = inout(reg) columns.as_mut_ptr() => _,
+            less = in(reg) LESS.as_ptr(), stride = const STRIDE,
+            out("lr") _, out("q0") _, out("q1") _, out("q2") _, options(nostack),
+        );
+    }
+}
+
+/// [`of_eight_bits`] of both rows: ten instructions for 16 candidates, and eight for a column.
+#[inline(never)]
+fn move_rows<const STRIDE: usize>(enter: Codes<'_>, leave: Codes<'_>, columns: &mut [u8]) {
+    let count = columns.len() / STRIDE;
+    let is_whole = |codes: &Codes<'_>| codes.left.len() >= count && codes.right.len() >= count + STRIDE - 1;
+    if count == 0 || !is_whole(&enter) || !is_whole(&leave) {
+        return;
+    }
+    // SAFETY: as for `move_packed`, of two rows.
+    unsafe {
+        asm!(
+            "dls lr, {count}",
+            "2:",
+            "ldrb {code}, [{left}], #1",
+            "vdup.8 q2, {code}",
+            "ldrb {code}, [{old_left}], #1",
+            "vdup.8 q3, {code}",
+            ".irp at, 48, 32, 16, 0",
+            ".if \\at < {stride}",
+            "vldrb.u8 q0, [{right}, #\\at]",
+            "veor q0, q0, q2",
+            "vldrb.u8 q1, [{bits}, q0]",
+            "vldrb.u8 q0, [{columns}, #\\at]",
+            "vadd.i8 q1, q1, q0",
+            "vldrb.u8 q0, [{old_right}, #\\at]",
+            "veor q0, q0, q3",
+            "vldrb.u8 q4, [{bits}, q0]",
+            "vsub.i8 q1, q1, q4",
+            "vstrb.8 q1, [{columns}, #\\at]",
+            ".endif",
+            ".endr",
+            "add {right}, {right}, #1",
+            "add {old_right}, {old_right}, #1",
+            "add {columns}, {columns}, #{stride}",
+            "le lr, 2b",
+            count = in(reg) count, code = out(reg) _, left = inout(reg) enter.left.as_ptr() => _,
+            right = inout(reg) enter.right.as_ptr() => _, old_left = inout(reg) leave.left.as_ptr() => _,
+            old_right = inout(reg) leave.right.as_ptr() => _, columns = inout(reg) columns.as_mut_ptr() => _,
+            bits = in(reg) BITS.as_ptr(), stride = const STRIDE,
+            out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, out("q4") _, options(nostack),
+        );
+    }
+}

@@ -47,7 +47,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_SGM_LEAN_BYTES(width, disparities) \
-  ((size_t)192 + (size_t)52 * (width) + (size_t)6 * (disparities) + \
+  ((size_t)192 + (size_t)52 * (width) + (size_t)8 * (disparities) + \
    (size_t)3 * (width) * (disparities))
 
 /**
@@ -55,7 +55,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_SGM_BYTES(width, disparities) \
-  ((size_t)192 + (size_t)52 * (width) + (size_t)6 * (disparities) + \
+  ((size_t)192 + (size_t)52 * (width) + (size_t)8 * (disparities) + \
    (size_t)3 * (width) * (disparities))
 
 /**
@@ -63,7 +63,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_SGM_EDGE_BYTES(width, disparities) \
-  ((size_t)192 + (size_t)53 * (width) + (size_t)6 * (disparities) + \
+  ((size_t)192 + (size_t)53 * (width) + (size_t)8 * (disparities) + \
    (size_t)5 * (width) * (disparities))
 
 

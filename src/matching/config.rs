@@ -21,8 +21,7 @@ pub struct Config {
     pub checks: Checks,
     /// What the methods along paths take changes to be worth.
     pub penalties: Penalties,
-    /// Whether rows say how sure each answer is ([`Row::confidences`](super::Row::confidences)). Where they do not, the kernel
-    /// saves the search for each pixel's second best.
+    /// Whether rows say how sure each answer is ([`Row::confidences`](super::Row::confidences)): a search more for each pixel.
     pub confidence: bool,
 }
 

@@ -5,7 +5,7 @@ use super::super::edges::{EdgeWork, edges_at};
 use super::instructions::uhadd8;
 use crate::matching::kernels::scratch::words_mut;
 
-/// As of [`groups`](super::super::groups), with agreements for costs: their averages are rounded down.
+/// As in `groups`, with agreements for costs: their averages are rounded down.
 #[inline(always)]
 pub(super) fn within_edges(work: &mut PathWork<'_>, stride: usize, edges: EdgeWork<'_>) {
     let count = stride / 4;

@@ -1,5 +1,5 @@
 //! The passes on cores with Arm's instructions on four bytes (`--cfg stereopsis_dsp`: Cortex-M4, M7, and M33 with its
-//! extension; M55): the same numbers as [`Groups`](super::Groups) of words has, in fewer instructions.
+//! extension; M55): the same numbers as words in `groups` have, in fewer instructions.
 //!
 //! * A path stays in memory, between two words that no path comes from: what stands beside a disparity is the same word one
 //!   byte off. A path's two pixels take turns in two places.
@@ -7,7 +7,7 @@
 //!   halving addition, which rounds down, rounds the cost up.
 //! * Lanes beyond the search agree so little that no path from there is the least.
 //!
-//! * `rows`: the paths, in assembler.
+//! * `rows`: the paths through a row; `walk`: their loops, in assembler.
 //! * `blocks`: the other loops over a pixel's words, in assembler.
 //! * `winners`: the least of the paths' sums.
 //! * `features`: what is compared, four pixels at a time.
@@ -19,6 +19,7 @@ mod edges;
 mod features;
 mod instructions;
 mod rows;
+mod walk;
 mod winners;
 
 use super::features::Features;

@@ -1,0 +1,268 @@
+//! The loops of a path over the pixels of a row, in assembler: between two loops over a pixel's words the compiler has more to
+//! hold than there are registers.
+//!
+//! With m the least that it costs to come from beside, and j the least cost and a jump, a path's cost at a pixel is
+//! `most - agreement - (j - m, at least 0)`: one saturating subtraction does for the minimum of m and j and for taking the
+//! least off. The least is found on the way, of each byte of a word first.
+#![allow(unsafe_code)]
+
+use super::{far, splat};
+use crate::matching::penalties::Penalties;
+use core::arch::asm;
+
+/// A path's costs at a pixel, with a word before and after that no path comes from.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub(super) struct Padded<const WORDS: usize> {
+    before: u32,
+    pub words: [u32; WORDS],
+    after: u32,
+}
+
+impl<const WORDS: usize> Padded<WORDS> {
+    /// As many words of no cost.
+    pub fn new(words: usize, penalties: &Penalties) -> Self {
+        let far = splat(far(penalties));
+        let mut path = Self { before: far, words: [far; WORDS], after: far };
+        path.words.get_mut(..words).unwrap_or_default().fill(0);
+        path
+    }
+}
+
+/// What a path pays between two pixels, by the change of the left image's brightness.
+#[repr(C)]
+pub(super) struct Steps {
+    /// From which changes on the second step is taken, and the third.
+    edges: [u32; 2],
+    steps: [Step; 3],
+}
+
+/// What a path pays on its way into a pixel, four times in a word.
+#[repr(C)]
+pub(super) struct Step {
+    /// One disparity up or down.
+    step: u32,
+    /// Any further.
+    jump: u32,
+    /// That and the most that a pixel's cost may be.
+    most: u32,
+}
+
+impl Steps {
+    pub fn new(penalties: &Penalties) -> Self {
+        let steps = penalties.changes().map(|change| Step {
+            step: splat(change.step),
+            jump: splat(change.jump),
+            most: splat(penalties.cost.wrapping_add(change.jump)),
+        });
+        Self { edges: penalties.edges.map(u32::from), steps }
+    }
+}
+
+/// What both functions go by, at these places of the frame in `lr`.
+#[repr(C)]
+pub(super) struct Frame {
+    /// 0: the pixel's place in the line, and 4: how far it is to the next.
+    pub pixel: *const u8,
+    pub on: isize,
+    /// 8: how far it is to the pixel that the path comes from. Along the row the first comes from itself.
+    pub from: isize,
+    /// 12, 16: a path before and after, which take turns; or the average and nothing.
+    pub paths: [*mut u32; 2],
+    /// 20: bytes from a column's end to the next column's beginning.
+    pub gap: isize,
+    /// 24: columns to go.
+    pub columns: usize,
+    /// 28: a column's words, in fours.
+    pub fours: usize,
+    /// 32
+    pub steps: *const Steps,
+    /// 36, 40: the first and the last column of the row above, 44: bytes to that on the other side of the pixel.
+    pub above: [*mut u32; 2],
+    pub other: isize,
+    /// 48: how far it is, along the row, after the first pixel.
+    pub then: isize,
+}
+
+/// Four times the lines of a word, and around again until `r5` is 0.
+macro_rules! four_words {
+    ($label:literal, $($line:literal)*) => {
+        concat!(
+            $label, ":\n", $($line, "\n",)* $($line, "\n",)* $($line, "\n",)* $($line, "\n",)*
+            "subs r5, r5, #1\n", "bne ", $label, "b"
+        )
+    };
+}
+
+/// The least of four bytes in `r9`, in all of them: half a word off, then a byte. 6 instructions.
+macro_rules! least_of_four {
+    () => {
+        "ror r10, r9, #16
+         usub8 r11, r9, r10
+         sel r9, r10, r9
+         ror r10, r9, #8
+         usub8 r11, r9, r10
+         sel r9, r10, r9"
+    };
+}
+
+/// Goes on to the next pixel, and puts what it costs to come into this one in `r6` to `r8`: step, jump from the least cost,
+/// most. 16 instructions.
+macro_rules! choose_step {
+    () => {
+        "ldrd r12, r6, [lr]
+         ldr r11, [lr, #8]
+         ldrb r10, [r12]
+         ldrb r11, [r12, r11]
+         add r12, r12, r6
+         str r12, [lr]
+         ldr r6, [lr, #32]
+         usad8 r10, r10, r11
+         ldrd r11, r12, [r6], #8
+         cmp r10, r11
+         it hs
+         addhs r6, r6, #12
+         cmp r10, r12
+         it hs
+         addhs r6, r6, #12
+         ldm r6, {{r6, r7, r8}}
+         add r7, r7, r9"
+    };
+}
+
+/// Takes a path along a row with agreements `costs`: what is in `from` and the path's cost are the `sums`, 255 at the most.
+/// 18 instructions a word and 39 a pixel.
+///
+/// # Safety
+/// The frame's columns, `fours` times four words each, can be read from `costs` and `from` on, and written from `sums` on;
+/// a pixel for each from its place on; and the paths have a word more before and after.
+#[inline(never)]
+pub(super) unsafe fn go_along(frame: *mut Frame, costs: *const u32, from: *const u32, sums: *mut u32) {
+    // SAFETY: as the function's. `r6` and `r7`, which are the compiler's, are put back.
+    unsafe {
+        asm!(
+            // r0 path, r1 its next pixel, r2 costs, r3 from, r4 sums
+            "push {{r6, r7}}",
+            "mov r9, #0",
+            "1:",
+            choose_step!(),
+            "ldrd r0, r1, [lr, #12]",
+            "strd r1, r0, [lr, #12]",
+            "ldr r5, [lr, #28]",
+            "mvn r9, #0",
+            four_words!(
+                "2",
+                "ldr r10, [r0, #-1]"
+                "ldr r11, [r0, #1]"
+                "usub8 r12, r10, r11"
+                "sel r10, r11, r10"
+                "add r10, r10, r6"
+                "ldr r12, [r0], #4"
+                "usub8 r11, r10, r12"
+                "sel r10, r12, r10"
+                "uqsub8 r10, r7, r10"
+                "ldr r12, [r2], #4"
+                "usub8 r12, r8, r12"
+                "sub r10, r12, r10"
+                "ldr r11, [r3], #4"
+                "str r10, [r1], #4"
+                "uqadd8 r11, r11, r10"
+                "str r11, [r4], #4"
+                "usub8 r11, r9, r10"
+                "sel r9, r10, r9"
+            ),
+            least_of_four!(),
+            "ldr r10, [lr, #48]",
+            "str r10, [lr, #8]",
+            "ldrd r10, r11, [lr, #20]",
+            "add r2, r2, r10",
+            "add r3, r3, r10",
+            "add r4, r4, r10",
+            "subs r11, r11, #1",
+            "str r11, [lr, #24]",
+            "bne 1b",
+            "pop {{r6, r7}}",
+            inout("r2") costs => _, inout("r3") from => _, inout("r4") sums => _, inout("lr") frame => _,
+            out("r0") _, out("r1") _, out("r5") _, out("r8") _, out("r9") _, out("r10") _, out("r11") _, out("r12") _,
+        );
+    }
+}
+
+/// Takes the path from above into a row with agreements `costs`, from the average of two columns, rounded down, or from
+/// nothing if there are none. `kept` begins with what was one of the two. 19 instructions a word and 52 a pixel.
+///
+/// # Safety
+/// As for [`go_along`]; and the frame's columns of the row above can be read.
+#[inline(never)]
+pub(super) unsafe fn go_down(frame: *mut Frame, costs: *const u32, kept: *mut u32) {
+    // SAFETY: as for `go_along`.
+    unsafe {
+        asm!(
+            // r0 average, r2 costs, r3 kept
+            "push {{r6, r7}}",
+            "1:",
+            "mov r9, #0",
+            "ldrd r10, r11, [lr, #36]",
+            "cmp r10, #0",
+            "beq 3f",
+            // The columns on both sides, or the nearest that there is.
+            "ldr r1, [lr, #44]",
+            "add r1, r3, r1",
+            "mov r0, r3",
+            "cmp r0, r10",
+            "it lo",
+            "movlo r0, r10",
+            "cmp r0, r11",
+            "it hi",
+            "movhi r0, r11",
+            "cmp r1, r10",
+            "it lo",
+            "movlo r1, r10",
+            "cmp r1, r11",
+            "it hi",
+            "movhi r1, r11",
+            "ldr r12, [lr, #12]",
+            "ldr r5, [lr, #28]",
+            "mvn r9, #0",
+            four_words!(
+                "2",
+                "ldr r10, [r0], #4"
+                "ldr r11, [r1], #4"
+                "uhadd8 r10, r10, r11"
+                "str r10, [r12], #4"
+                "usub8 r11, r9, r10"
+                "sel r9, r10, r9"
+            ),
+            least_of_four!(),
+            "3:",
+            choose_step!(),
+            "ldr r0, [lr, #12]",
+            "ldr r5, [lr, #28]",
+            four_words!(
+                "4",
+                "ldr r10, [r0, #-1]"
+                "ldr r11, [r0, #1]"
+                "usub8 r12, r10, r11"
+                "sel r10, r11, r10"
+                "add r10, r10, r6"
+                "ldr r12, [r0], #4"
+                "usub8 r11, r10, r12"
+                "sel r10, r12, r10"
+                "uqsub8 r10, r7, r10"
+                "ldr r12, [r2], #4"
+                "usub8 r12, r8, r12"
+                "sub r10, r12, r10"
+                "str r10, [r3], #4"
+            ),
+            "ldrd r10, r11, [lr, #20]",
+            "add r2, r2, r10",
+            "add r3, r3, r10",
+            "subs r11, r11, #1",
+            "str r11, [lr, #24]",
+            "bne 1b",
+            "pop {{r6, r7}}",
+            inout("r2") costs => _, inout("r3") kept => _, inout("lr") frame => _,
+            out("r0") _, out("r1") _, out("r5") _, out("r8") _, out("r9") _, out("r10") _, out("r11") _, out("r12") _,
+        );
+    }
+}

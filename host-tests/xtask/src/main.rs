@@ -9,7 +9,7 @@
 //! * `header` writes the header of the C interface anew, or checks it.
 //!
 //! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`],
-//! [`c`], [`arm`] and [`readme`] are four of them. [`growth`] takes long, [`altered`] needs data that not everybody has.
+//! [`growth`], [`c`], [`arm`] and [`readme`] are five of them. [`altered`] needs data that not everybody has.
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};

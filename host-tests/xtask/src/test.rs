@@ -3,6 +3,7 @@
 use crate::arm;
 use crate::c;
 use crate::firmware;
+use crate::growth;
 use crate::setup::{self, TARGETS};
 use crate::steps::{Failure, Outcome, Steps, cargo, command, run as run_command, target_dir};
 use std::path::PathBuf;
@@ -31,6 +32,7 @@ pub fn run() -> Outcome {
     let version = setup::rust_version()?;
     steps.step(&format!("stated rust-version {version}"), || rust_version(&version))?;
     steps.step("firmware", firmware::check_all)?;
+    steps.step("growth", growth::check)?;
     steps.step("C interface", c::run)?;
     steps.summary();
     if data.is_none() {

@@ -31,3 +31,8 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Outcome {
     if arguments.host { host::run() } else { cores::run(arguments.check) }
 }
+
+/// The instructions on the cores, compared with README.md.
+pub fn check() -> Outcome {
+    cores::run(true)
+}

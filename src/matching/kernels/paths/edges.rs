@@ -15,7 +15,8 @@
 pub(in crate::matching) struct EdgeWork<'a> {
     /// The left image's row and the two below it, as far as they are inside of the image.
     pub guides: [Option<&'a [u8]>; 3],
-    /// The average of the row's costs and those above; afterwards that of the next row. As the volumes of [`PathWork`](super::PathWork).
+    /// The average of the row's costs and those above; afterwards that of the next row. As the volumes of
+    /// [`PathWork`](super::PathWork).
     pub above: &'a mut [u8],
     /// The costs of the next row's pixels; afterwards those of the row after it.
     pub below: &'a mut [u8],

@@ -15,7 +15,7 @@ use core::arch::asm;
 #[repr(C)]
 pub(super) struct Padded<const WORDS: usize> {
     before: u32,
-    pub words: [u32; WORDS],
+    words: [u32; WORDS],
     after: u32,
 }
 
@@ -26,6 +26,11 @@ impl<const WORDS: usize> Padded<WORDS> {
         let mut path = Self { before: far, words: [far; WORDS], after: far };
         path.words.get_mut(..words).unwrap_or_default().fill(0);
         path
+    }
+
+    /// Where its words begin, by a pointer to all of it: the word before and the one after are read too.
+    pub fn place(&mut self) -> *mut u32 {
+        core::ptr::from_mut(self).cast::<u32>().wrapping_add(1)
     }
 }
 
@@ -86,7 +91,7 @@ pub(super) struct Frame {
 
 /// Four times the lines of a word, and around again until `r5` is 0.
 macro_rules! four_words {
-    ($label:literal, $($line:literal)*) => {
+    ($label:literal, $($line:expr),*) => {
         concat!(
             $label, ":\n", $($line, "\n",)* $($line, "\n",)* $($line, "\n",)* $($line, "\n",)*
             "subs r5, r5, #1\n", "bne ", $label, "b"
@@ -130,6 +135,24 @@ macro_rules! choose_step {
     };
 }
 
+/// A word of the path at `r0`, taken into the pixel whose agreements are at `r2`, in `r10`. 12 instructions.
+macro_rules! step {
+    () => {
+        "ldr r10, [r0, #-1]
+         ldr r11, [r0, #1]
+         usub8 r12, r10, r11
+         sel r10, r11, r10
+         add r10, r10, r6
+         ldr r12, [r0], #4
+         usub8 r11, r10, r12
+         sel r10, r12, r10
+         uqsub8 r10, r7, r10
+         ldr r12, [r2], #4
+         usub8 r12, r8, r12
+         sub r10, r12, r10"
+    };
+}
+
 /// Takes a path along a row with agreements `costs`: what is in `from` and the path's cost are the `sums`, 255 at the most.
 /// 18 instructions a word and 39 a pixel.
 ///
@@ -152,23 +175,12 @@ pub(super) unsafe fn go_along(frame: *mut Frame, costs: *const u32, from: *const
             "mvn r9, #0",
             four_words!(
                 "2",
-                "ldr r10, [r0, #-1]"
-                "ldr r11, [r0, #1]"
-                "usub8 r12, r10, r11"
-                "sel r10, r11, r10"
-                "add r10, r10, r6"
-                "ldr r12, [r0], #4"
-                "usub8 r11, r10, r12"
-                "sel r10, r12, r10"
-                "uqsub8 r10, r7, r10"
-                "ldr r12, [r2], #4"
-                "usub8 r12, r8, r12"
-                "sub r10, r12, r10"
-                "ldr r11, [r3], #4"
-                "str r10, [r1], #4"
-                "uqadd8 r11, r11, r10"
-                "str r11, [r4], #4"
-                "usub8 r11, r9, r10"
+                step!(),
+                "ldr r11, [r3], #4",
+                "str r10, [r1], #4",
+                "uqadd8 r11, r11, r10",
+                "str r11, [r4], #4",
+                "usub8 r11, r9, r10",
                 "sel r9, r10, r9"
             ),
             least_of_four!(),
@@ -226,11 +238,11 @@ pub(super) unsafe fn go_down(frame: *mut Frame, costs: *const u32, kept: *mut u3
             "mvn r9, #0",
             four_words!(
                 "2",
-                "ldr r10, [r0], #4"
-                "ldr r11, [r1], #4"
-                "uhadd8 r10, r10, r11"
-                "str r10, [r12], #4"
-                "usub8 r11, r9, r10"
+                "ldr r10, [r0], #4",
+                "ldr r11, [r1], #4",
+                "uhadd8 r10, r10, r11",
+                "str r10, [r12], #4",
+                "usub8 r11, r9, r10",
                 "sel r9, r10, r9"
             ),
             least_of_four!(),
@@ -240,18 +252,7 @@ pub(super) unsafe fn go_down(frame: *mut Frame, costs: *const u32, kept: *mut u3
             "ldr r5, [lr, #28]",
             four_words!(
                 "4",
-                "ldr r10, [r0, #-1]"
-                "ldr r11, [r0, #1]"
-                "usub8 r12, r10, r11"
-                "sel r10, r11, r10"
-                "add r10, r10, r6"
-                "ldr r12, [r0], #4"
-                "usub8 r11, r10, r12"
-                "sel r10, r12, r10"
-                "uqsub8 r10, r7, r10"
-                "ldr r12, [r2], #4"
-                "usub8 r12, r8, r12"
-                "sub r10, r12, r10"
+                step!(),
                 "str r10, [r3], #4"
             ),
             "ldrd r10, r11, [lr, #20]",

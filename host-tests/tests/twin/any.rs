@@ -1,7 +1,7 @@
 //! Any combination of sizes, ranges, pictures, checks and penalties.
 
 use super::list::{PATTERNS, random_penalties};
-use super::{compare, pipeline};
+use super::{compare, emulated, pipeline};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use stereopsis::matching::{Block, Checks, Config, Fast, Sgm, SgmEdge, SgmLean};
@@ -50,7 +50,7 @@ fn any_pattern() -> impl Strategy<Value = Pattern> {
 
 proptest! {
     #![proptest_config(ProptestConfig {
-        cases: 60,
+        cases: if emulated() { 6 } else { 60 },
         rng_seed: RngSeed::Fixed(4),
         failure_persistence: None,
         ..ProptestConfig::default()

@@ -112,6 +112,16 @@ fn compare<S: Method, const D: usize>(
     Ok(expected)
 }
 
+/// Whether an emulator runs the tests, which takes ten times as long: `cargo xtask test` says so.
+fn emulated() -> bool {
+    std::env::var_os("STEREOPSIS_EMULATED").is_some()
+}
+
+/// All of a long list; in an emulator every `nth` of it.
+fn long<T>(list: impl IntoIterator<Item = T>, nth: usize) -> impl Iterator<Item = T> {
+    list.into_iter().step_by(if emulated() { nth } else { 1 })
+}
+
 fn pipeline<S: Scheme>() -> Box<Any<S>> {
     Box::new(Pipeline::new())
 }

@@ -3,7 +3,7 @@
 //! * [`arguments`]: what is asked for. [`program`]: one build of the example. [`emulate`]: QEMU. [`log`]: the firmware's log as
 //!   text.
 //! * [`frame`]: one frame on one core, held to the host. [`summary`]: the files that are written of it.
-//! * [`all`]: every core, method and size; [`tables`] of it for README.md, [`parallel`] work; [`checksums`] on real pictures.
+//! * [`all`]: every core, method and size; [`tables`] of it for README.md; [`checksums`] on real pictures.
 //! * [`awkward`]: sizes that fill no vector, where the rows are in assembly.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
 
@@ -14,7 +14,6 @@ mod checksums;
 mod emulate;
 pub mod frame;
 mod log;
-pub mod parallel;
 pub mod program;
 mod refusals;
 mod summary;

@@ -51,19 +51,19 @@ pub struct Built {
     pub elf: PathBuf,
 }
 
-/// Cargo builds one program at a time in its folder; what comes out has the same name every time.
-static FOLDER: Mutex<()> = Mutex::new(());
+/// Cargo builds one program at a time in a folder; what comes out has the same name every time.
+static FOLDERS: [Mutex<()>; 2] = [const { Mutex::new(()) }; 2];
 
 /// Cargo in the example's folder, where its own configuration names the target.
 pub fn cargo(words: &str) -> Command {
     let mut cargo = command("cargo", &words.split_whitespace().collect::<Vec<_>>());
-    cargo.current_dir(root().join("examples/firmware")).env("CARGO_TARGET_DIR", folder());
+    cargo.current_dir(root().join("examples/firmware")).env("CARGO_TARGET_DIR", folder(0));
     cargo
 }
 
 /// Where the example is built.
-fn folder() -> PathBuf {
-    target_dir().join("firmware")
+fn folder(at: usize) -> PathBuf {
+    target_dir().join(["firmware", "firmware-too"][at])
 }
 
 impl Program {
@@ -92,18 +92,23 @@ impl Program {
         Ok(Self { board, method, width, height, disparities, all_memory: needed > BUDGET })
     }
 
-    /// Builds it. Several threads may: one after another.
+    /// The folder that it is built in: all programs of a target in one, and about as many programs in each.
+    pub fn folder(&self) -> usize {
+        usize::from(self.board.target.starts_with("thumbv8m") || self.board.target.starts_with("riscv"))
+    }
+
+    /// Builds it. Several threads may: in a folder, one after another.
     pub fn build(&self) -> Outcome<Built> {
-        let _turn = FOLDER.lock().unwrap_or_else(PoisonError::into_inner);
+        let _turn = FOLDERS[self.folder()].lock().unwrap_or_else(PoisonError::into_inner);
         let output = self.cargo("build --locked --release --quiet").output();
         let output = output.map_err(|e| Failure::new(format!("cargo: {e}")))?;
         if !output.status.success() {
             eprint!("{}", String::from_utf8_lossy(&output.stderr));
             return Err(Failure::new(format!("examples/firmware does not build for {self}")));
         }
-        let kept = folder().join("programs");
+        let kept = folder(0).join("programs");
         let elf = kept.join(format!("{self}"));
-        let from = folder().join(self.board.target).join("release/depth");
+        let from = folder(self.folder()).join(self.board.target).join("release/depth");
         let keep = || fs::create_dir_all(&kept).and_then(|()| fs::copy(&from, &elf));
         keep().map_err(|e| Failure::new(format!("{}: {e}", elf.display())))?;
         Ok(Built { program: *self, elf })
@@ -112,7 +117,7 @@ impl Program {
     /// Cargo with what is built in its environment.
     pub fn cargo(&self, words: &str) -> Command {
         let mut cargo = cargo(words);
-        cargo.args(["--target", self.board.target]);
+        cargo.args(["--target", self.board.target]).env("CARGO_TARGET_DIR", folder(self.folder()));
         cargo.env("STEREO_CORE", self.board.core).env("STEREO_METHOD", self.method.name());
         for (name, value) in [("WIDTH", self.width), ("HEIGHT", self.height), ("DISPARITIES", self.disparities)] {
             cargo.env(format!("STEREO_{name}"), value.to_string());

@@ -12,15 +12,17 @@
 //! 5. `surface`: the answers averaged along the row, within their surface.
 //! 6. `median`: if asked for, the middle one of the answers around each.
 //! 7. `speckle`: answers dropped that too few others support, in a band of five rows.
-//! 8. `fill`: if asked for, small gaps along the row closed.
-//! 9. `confidence`: if asked for, how sure each answer is, of what its second best cost and of the answers beside it.
-//! 10. [`Row`]: what came out, with the uncertainty of each answer.
+//! 8. `down`: with the methods along paths, the answers smoothed down the columns, within their surface.
+//! 9. `fill`: if asked for, small gaps along the row closed.
+//! 10. `confidence`: if asked for, how sure each answer is, of what its second best cost and of the answers beside it.
+//! 11. [`Row`]: what came out, with the uncertainty of each answer.
 //!
 //! [`Matcher`] owns the `memory` and runs the `stages`. [`Config`] says what is searched and which answers are refused.
 
 mod answers;
 mod confidence;
 mod config;
+mod down;
 mod fill;
 mod kernels;
 mod matcher;

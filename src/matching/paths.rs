@@ -69,6 +69,7 @@ macro_rules! along_paths {
             const RADIUS_Y: usize = <Self as Along>::ROWS_BELOW;
             const SIGMA_PX: f32 = 0.15;
             const STEP: u8 = STEP;
+            const SMOOTH_DOWN: bool = true;
             const DEFAULT: Checks = DEFAULT;
             const STRICT: Checks = STRICT;
             const PENALTIES: Penalties = $penalties;

@@ -6,7 +6,7 @@
 //! * [`cost`]: bits that differ, per disparity, and their sum over the window. [`paths`]: differences of pixels, and their
 //!   sum along paths.
 //! * `select`: the cheapest disparity, its fraction, the checks.
-//! * `filter`: smoothing along the row, the median, the speckle filter, filling, the deviation.
+//! * `filter`: smoothing along the row, the median, the speckle filter, smoothing down the columns, filling, the deviation.
 //! * `confidence`: how sure an answer is.
 //!
 //! Nothing here is shared with the core but its words: [`Config`], [`Disparity`], [`PixelFlags`].
@@ -34,6 +34,8 @@ pub struct Scheme {
     pub radius_y: usize,
     /// How much a disparity beside the winner costs for that alone.
     pub step: i32,
+    /// Whether answers that are averaged along the row are smoothed down the columns too.
+    pub smooth_down: bool,
     /// The least deviation of an answer, px.
     pub sigma_px: f32,
 }
@@ -64,6 +66,7 @@ impl Scheme {
         radius_x: 4,
         radius_y: 3,
         step: 0,
+        smooth_down: false,
         sigma_px: 0.15,
     };
     /// The twin of [`stereopsis::matching::Block`]: 8-bit census, 9 x 9 window, in
@@ -73,6 +76,7 @@ impl Scheme {
         radius_x: 4,
         radius_y: 4,
         step: 0,
+        smooth_down: false,
         sigma_px: 0.15,
     };
     /// The twin of [`stereopsis::matching::Sgm`].
@@ -81,6 +85,7 @@ impl Scheme {
         radius_x: 4,
         radius_y: 1,
         step: 12,
+        smooth_down: true,
         sigma_px: 0.15,
     };
     /// The twin of [`stereopsis::matching::SgmLean`].
@@ -178,12 +183,16 @@ pub fn match_pair(scheme: &Scheme, config: &Config, left: &GrayImage, right: &Gr
     if config.checks.median {
         map.disparity = filter::medians(map.width, &before);
     }
-    let map = filter::drop_speckles(&config.checks, &before, &lengths, map);
+    let answers = map.disparity.clone();
+    let mut map = filter::drop_speckles(&config.checks, &before, &lengths, map);
+    if scheme.smooth_down && config.checks.smoothing_radius > 0 {
+        filter::smooth_down(&before, &mut map);
+    }
     let after = map.disparity.clone();
     let mut map = filter::fill_gaps(&config.checks, map);
     map.sigma_px = filter::sigmas(scheme, config, &before, &after, &map);
     if config.confidence {
-        map.confidence = confidence::confidences(config, &margins, &before, &after, &map);
+        map.confidence = confidence::confidences(config, &margins, &before, [&answers, &after], &map);
     }
     map
 }

@@ -4,11 +4,12 @@
 //! bit: `n + 255 - c + 1 >= 256`. Averages of bytes need no room beside them, `(a | b) - ((a ^ b) >> 1)` (Warren 2012,
 //! 2-5).
 
-use crate::matching::kernels::scratch::{words_mut, words_of};
+use super::scratch::{words_mut, words_of};
 use crate::matching::scheme::Around;
 use crate::matching::window::Windowed;
 
 /// The highest bit of every byte.
+#[cfg(not(stereopsis_dsp))]
 const TOP: u32 = 0x8080_8080;
 
 /// The word of a line in three places: two columns to the left, here, two to the right.
@@ -73,12 +74,16 @@ fn census_of_words<S: Windowed>(lines: [&[u32]; 3], out: &mut [u32]) {
 /// The codes of four pixels, bit `i` from the neighbour `neighbours[i]`: its row and column among `around`.
 #[inline(always)]
 pub(in crate::matching) fn codes<const BITS: usize>(around: &[Three; 3], neighbours: &[(usize, usize); BITS]) -> u32 {
+    #[cfg(not(stereopsis_dsp))]
     let inverse = !around[1][1];
     let mut not_darker = 0;
     for &(row, column) in neighbours {
         let n = around[row][column];
-        let average = (n | inverse).wrapping_sub((n ^ inverse) >> 1 & !TOP);
-        not_darker = not_darker >> 1 | average & TOP;
+        #[cfg(stereopsis_dsp)]
+        let first = super::bytes::not_less(n, around[1][1]);
+        #[cfg(not(stereopsis_dsp))]
+        let first = (n | inverse).wrapping_sub((n ^ inverse) >> 1 & !TOP) & TOP;
+        not_darker = not_darker >> 1 | first;
     }
     (!not_darker >> (8 - BITS)) & ((0xff >> (8 - BITS)) * 0x0101_0101)
 }

@@ -4,7 +4,9 @@
 //! bit: `n + 255 - c + 1 >= 256`. Averages of bytes need no room beside them, `(a | b) - ((a ^ b) >> 1)` (Warren 2012,
 //! 2-5).
 
+#[cfg(not(stereopsis_dsp))]
 use super::scratch::{words_mut, words_of};
+#[cfg(not(stereopsis_dsp))]
 use crate::matching::scheme::Around;
 use crate::matching::window::Windowed;
 
@@ -16,6 +18,7 @@ const TOP: u32 = 0x8080_8080;
 type Three = [u32; 3];
 
 /// The census row of five lines.
+#[cfg(not(stereopsis_dsp))]
 #[inline(never)]
 pub(super) fn census<S: Windowed>(rows: &Around<'_>, out: &mut [u8]) {
     let width = out.len();
@@ -30,7 +33,7 @@ pub(super) fn census<S: Windowed>(rows: &Around<'_>, out: &mut [u8]) {
 
 /// The census row of lines that are not all in whole words, as those whose width is no multiple of four.
 #[inline(never)]
-fn census_of_bytes<S: Windowed>(lines: [&[u8]; 3], out: &mut [u8]) {
+pub(super) fn census_of_bytes<S: Windowed>(lines: [&[u8]; 3], out: &mut [u8]) {
     for (x, out) in (0..).step_by(4).zip(out.chunks_mut(4)) {
         let codes = S::codes(&lines.map(|line| [0, 2, 4].map(|place| word(line, x + place))));
         for (out, code) in out.iter_mut().zip(codes.to_le_bytes()) {
@@ -51,6 +54,7 @@ fn word(line: &[u8], x: usize) -> u32 {
 }
 
 /// The census row of lines in whole words.
+#[cfg(not(stereopsis_dsp))]
 #[inline(always)]
 fn census_of_words<S: Windowed>(lines: [&[u32]; 3], out: &mut [u32]) {
     // Columns outside the line are the nearest inside it.

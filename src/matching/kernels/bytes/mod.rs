@@ -9,6 +9,7 @@
 //! The work is the same for every picture, but for a few instructions where a winner is at an end of the search.
 
 mod answers;
+mod census;
 mod columns;
 mod rows;
 mod speckle;
@@ -18,9 +19,10 @@ mod windows;
 mod word;
 
 use super::scratch::{bytes_mut, bytes_of_words as bytes_of, words_mut};
-use super::{RowWork, Select, TABLE_WORDS, census};
+use super::{RowWork, Select, TABLE_WORDS};
 use crate::matching::scheme::Around;
 use crate::matching::window::{Windowed, code_bytes};
+use census::census;
 
 pub use answers::{Refused, answer, offer};
 pub use speckle::judge;
@@ -44,15 +46,15 @@ struct Rows<'a> {
 pub(super) fn codes_of<S: Windowed>([left, right]: [&Around<'_>; 2], scratch: &mut [u32], out: &mut [u8]) {
     if S::BITS > 4 {
         let (of_left, of_right) = out.split_at_mut_checked(out.len() / 2).unwrap_or_default();
-        census::census::<S>(left, of_left);
-        census::census::<S>(right, of_right);
+        census::<S>(left, of_left);
+        census::<S>(right, of_right);
         return;
     }
     let width = out.len() / code_bytes::<S>();
     let out = out.get_mut(..width).unwrap_or_default();
     let of_right = bytes_mut(scratch).get_mut(..out.len()).unwrap_or_default();
-    census::census::<S>(left, out);
-    census::census::<S>(right, of_right);
+    census::<S>(left, out);
+    census::<S>(right, of_right);
     let (words, last) = out.as_chunks_mut::<4>();
     for (out, right) in words.iter_mut().zip(scratch.iter()) {
         *out = (u32::from_le_bytes(*out) | right << 4).to_le_bytes();

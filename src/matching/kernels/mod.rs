@@ -247,8 +247,8 @@ pub(super) struct RowWork<'a> {
     pub scratch: &'a mut [u32],
 }
 
-/// Words that the tables of the kernel in bytes take, where codes have up to four bits.
-pub const TABLE_WORDS: usize = 2 * 16 * 96 / size_of::<u32>();
+/// Words that the tables of the kernel in bytes take, where codes have up to four bits, and four that rows are read beyond.
+pub const TABLE_WORDS: usize = 2 * 16 * 96 / size_of::<u32>() + 4;
 
 /// Columns of zero sums before the image's first and after its last, to stand for those outside.
 pub const OUTSIDE: usize = 5;

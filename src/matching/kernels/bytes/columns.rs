@@ -10,7 +10,7 @@
 use super::tables::{self, LINE, Table};
 use super::word::{ONE, add};
 use super::{Rows, bytes_of, rows};
-use crate::matching::kernels::{OUTSIDE, STEP, TABLE_WORDS};
+use crate::matching::kernels::{OUTSIDE, STEP};
 use crate::matching::window::Windowed;
 
 /// Candidates that tables serve at a time, at most.
@@ -25,7 +25,9 @@ pub(super) fn update_by_tables<const STRIDE: usize>(
     scratch: &mut [u32],
     columns: &mut [u32],
 ) {
-    let Some((tables, scratch)) = scratch.split_at_mut_checked(TABLE_WORDS) else { return };
+    let Some((tables, scratch)) = scratch.split_at_mut_checked(size_of::<[Table; 2]>() / size_of::<u32>()) else {
+        return;
+    };
     let tables = tables.as_chunks_mut().0.as_chunks_mut().0.first_chunk_mut::<2>();
     let (Some(tables), Some(any)) = (tables, row.enter.or(row.leave)) else { return };
     let [new, old] = reversed(row, [row.enter, row.leave].map(|codes| codes.unwrap_or(&[])), scratch);
@@ -126,8 +128,8 @@ pub(super) fn update<S: Windowed, const STRIDE: usize>(
 /// The right codes of both rows from the partner of the last column's first candidate back, with those of all candidates of
 /// the first column.
 fn reversed<'a>(row: &Rows<'_>, right: [&[u8]; 2], room: &'a mut [u32]) -> [&'a [u8]; 2] {
-    // A word more, for pieces begin between words.
-    let words = (row.width + row.stride).div_ceil(4) + 1;
+    // Tables read up to seven bytes more, and pieces begin between words.
+    let words = ((row.width + row.stride).div_ceil(4) + 2).min(room.len() / 2);
     let Some((new, old)) = room.split_at_mut_checked(words) else { return [&[]; 2] };
     let last = row.width as i32 - 1 - row.min_disparity as i32;
     for (right, out) in right.into_iter().zip([&mut *new, old.get_mut(..words).unwrap_or_default()]) {

@@ -29,7 +29,7 @@ pub use speckle::judge;
 pub use surface::average;
 pub(super) use word::not_less;
 
-const _: () = assert!(TABLE_WORDS == size_of::<[tables::Table; 2]>() / size_of::<u32>());
+const _: () = assert!(TABLE_WORDS == size_of::<[tables::Table; 2]>() / size_of::<u32>() + 4);
 
 /// A row's columns and what enters and leaves them.
 struct Rows<'a> {

@@ -88,6 +88,29 @@ macro_rules! take_less {
     };
 }
 
+/// The first two words: 5 instructions.
+macro_rules! take_first {
+    () => {
+        concat!(
+            "usub8 {v0}, {s1}, {s0}\n",
+            "sel {least}, {s0}, {s1}\n",
+            "mov {places}, #0\n",
+            "mov {v0}, #0x04040404\n",
+            "sel {places}, {places}, {v0}\n",
+        )
+    };
+}
+
+/// The lanes' own places added: an instruction, and 2 more where no register is left for them.
+macro_rules! add_lanes {
+    (all) => {
+        "add {places}, {places}, {lanes}\n"
+    };
+    (few) => {
+        "movw {v0}, #0x0100\nmovt {v0}, #0x0302\nadd {places}, {places}, {v0}\n"
+    };
+}
+
 /// Whether the disparity under `s1` and above is at an end, and what changes from pixel to pixel.
 macro_rules! compare_with_ends {
     (all) => {
@@ -110,12 +133,12 @@ static MASKS: [u8; 128] = {
 };
 
 macro_rules! winners {
-    ($name:ident, $digits:ident $(of $mask:literal)?, $which:ident $(from $first:ident)?, $stride:literal,
+    ($name:ident, $digits:ident $(of $mask:literal)?, $which:ident $(with $lanes:literal)? $(from $first:ident)?, $stride:literal,
         [$(($d:literal, $even:literal, $odd:literal)),*]) => {
         /// Moves the window on from column to column, and selects the winner of each. `columns` are those that leave, one
         /// for each winner and [`ACROSS`] more that enter. The first winner has `first` candidates and each one more than
-        /// the one before it; where that is not asked for all have all. 28 instructions a pixel beside 16 for eight of its
-        /// candidates, 4 more where only some digits of the columns count, and 4 more where not all are candidates; 6
+        /// the one before it; where that is not asked for all have all. 21 instructions a pixel beside 16 for eight of its
+        /// candidates, 4 more where only some digits of the columns count; 4 for eight and 4 more where not all are candidates; 6
         /// more where a winner is at an end.
         #[inline(never)]
         pub(in super::super) fn $name(
@@ -142,8 +165,9 @@ macro_rules! winners {
             unsafe {
                 asm!(
                     "2:",
-                    "mov {least}, #-1",
-                    "mov {places}, #0",
+                    slide_eight!($digits, "0"),
+                    mask_eight!($which, "0"),
+                    take_first!(),
                     $(
                         slide_eight!($digits, $d),
                         mask_eight!($which, $d),
@@ -151,9 +175,7 @@ macro_rules! winners {
                         take_less!("{s1}", $odd),
                     )*
                     // Half-words of sum and place, two and two; the least of the four goes to the low half.
-                    "movw {v0}, #0x0100",
-                    "movt {v0}, #0x0302",
-                    "add {places}, {places}, {v0}",
+                    add_lanes!($which),
                     "uxtb16 {s0}, {places}",
                     "uxtb16 {s1}, {least}",
                     "orr {s0}, {s0}, {s1}, lsl #8",
@@ -194,6 +216,7 @@ macro_rules! winners {
                     winner = inout(reg) winners.start => _,
                     end = in(reg) winners.end,
                     $(mask = in(reg) $mask,)?
+                    $(lanes = in(reg) $lanes,)?
                     $(masks = inout(reg) masks => _, last = inout(reg) { let _ = $first; last } => _,)?
                     least = out(reg) _, places = out(reg) _,
                     s0 = out(reg) _, s1 = out(reg) _, v0 = out(reg) _, v1 = out(reg) _,
@@ -210,24 +233,24 @@ pub(in super::super) const ACROSS: usize = 9;
 
 macro_rules! winners_of {
     ($stride:literal: [$fast:ident, $fast_few:ident, $block:ident, $block_few:ident], $eights:tt) => {
-        winners!($fast, all, all, $stride, $eights);
+        winners!($fast, all, all with 0x0302_0100, $stride, $eights);
         winners!($fast_few, all, few from first, $stride, $eights);
-        winners!($block, quarters of 0x3f3f_3f3fu32, all, $stride, $eights);
+        winners!($block, quarters of 0x3f3f_3f3fu32, all with 0x0302_0100, $stride, $eights);
         winners!($block_few, quarters of 0x3f3f_3f3fu32, few from first, $stride, $eights);
     };
 }
 
 winners_of!(16: [fast_16, fast_few_of_16, block_16, block_few_of_16],
-    [("0", "0", "0x04040404"), ("8", "0x08080808", "0x0c0c0c0c")]);
+    [("8", "0x08080808", "0x0c0c0c0c")]);
 winners_of!(32: [fast_32, fast_few_of_32, block_32, block_few_of_32],
-    [("0", "0", "0x04040404"), ("8", "0x08080808", "0x0c0c0c0c"),
+    [("8", "0x08080808", "0x0c0c0c0c"),
     ("16", "0x10101010", "0x14141414"), ("24", "0x18181818", "0x1c1c1c1c")]);
 winners_of!(48: [fast_48, fast_few_of_48, block_48, block_few_of_48],
-    [("0", "0", "0x04040404"), ("8", "0x08080808", "0x0c0c0c0c"),
+    [("8", "0x08080808", "0x0c0c0c0c"),
     ("16", "0x10101010", "0x14141414"), ("24", "0x18181818", "0x1c1c1c1c"),
     ("32", "0x20202020", "0x24242424"), ("40", "0x28282828", "0x2c2c2c2c")]);
 winners_of!(64: [fast_64, fast_few_of_64, block_64, block_few_of_64],
-    [("0", "0", "0x04040404"), ("8", "0x08080808", "0x0c0c0c0c"),
+    [("8", "0x08080808", "0x0c0c0c0c"),
     ("16", "0x10101010", "0x14141414"), ("24", "0x18181818", "0x1c1c1c1c"),
     ("32", "0x20202020", "0x24242424"), ("40", "0x28282828", "0x2c2c2c2c"),
     ("48", "0x30303030", "0x34343434"), ("56", "0x38383838", "0x3c3c3c3c")]);

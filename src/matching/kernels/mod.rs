@@ -127,12 +127,7 @@ impl Kernel {
             // Whole words, in a form that lets the compiler see it: a firmware is linked without what cannot be asked for.
             return disparities.next_multiple_of(32).min(most) & !31;
         }
-        #[cfg(stereopsis_dsp)]
-        if most.is_multiple_of(32) {
-            // Likewise; never none.
-            return (disparities.next_multiple_of(32).min(most) & !31).max(32);
-        }
-        #[cfg(stereopsis_vectors)]
+        #[cfg(any(stereopsis_vectors, stereopsis_dsp))]
         if let Some(group) = [64, 32].into_iter().find(|&group| most.is_multiple_of(group)) {
             // As many as there is assembly for, likewise; never none.
             return (disparities.next_multiple_of(group).min(most) & !(group - 1)).max(group);

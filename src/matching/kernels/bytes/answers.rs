@@ -18,7 +18,27 @@ pub struct Refused {
     pub flags: PixelFlags,
 }
 
-/// Offers every winner to its partner: see `answers::consistency`. 13 instructions a pixel.
+/// One winner of [`offer`]: 11 instructions.
+macro_rules! offer_one {
+    () => {
+        concat!(
+            "ldr {w}, [{winners}], #4\n",
+            "lsr {d}, {w}, #24\n",
+            "sub {c}, {x}, {d}\n",
+            "usat {c}, #16, {c}\n",
+            "and {w}, {w}, #0xff00\n",
+            "orr {w}, {w}, {d}\n",
+            // Of one partner, those who come later are farther away: their disparity is larger.
+            "ldrh {d}, [{right}, {c}, lsl #1]\n",
+            "cmp {w}, {d}\n",
+            "it lo\n",
+            "strhlo {w}, [{right}, {c}, lsl #1]\n",
+            "add {x}, {x}, #1\n",
+        )
+    };
+}
+
+/// Offers every winner to its partner: see `answers::consistency`. 12 instructions a pixel.
 #[inline(never)]
 pub fn offer(winners: &[Winner], right: &mut [u16]) {
     right.fill(u16::MAX);
@@ -26,23 +46,16 @@ pub fn offer(winners: &[Winner], right: &mut [u16]) {
     if count == 0 {
         return;
     }
-    // SAFETY: the loop counts `x` up to `count`. It reads winner `x`, of which there are so many, and reads and writes the right
+    // SAFETY: the loop counts `x` up to `count`, by two but for one in the first round if `count` is odd. It reads winner `x`, of which there are so many, and reads and writes the right
     // column `x - disparity`, or the first one if that is less than 0: one before `count`.
     unsafe {
         asm!(
+            "tst {count}, #1",
+            "bne 3f",
             "2:",
-            "ldr {w}, [{winners}], #4",
-            "lsr {d}, {w}, #24",
-            "sub {c}, {x}, {d}",
-            "usat {c}, #16, {c}",
-            "and {w}, {w}, #0xff00",
-            "orr {w}, {w}, {d}",
-            // Of one partner, those who come later are farther away: their disparity is larger.
-            "ldrh {d}, [{right}, {c}, lsl #1]",
-            "cmp {w}, {d}",
-            "it lo",
-            "strhlo {w}, [{right}, {c}, lsl #1]",
-            "add {x}, {x}, #1",
+            offer_one!(),
+            "3:",
+            offer_one!(),
             "cmp {x}, {count}",
             "bne 2b",
             x = inout(reg) 0 => _,
@@ -55,7 +68,55 @@ pub fn offer(winners: &[Winner], right: &mut [u16]) {
     }
 }
 
-/// The answers and flags of winners that were offered to the `right`. 39 instructions a pixel.
+/// One winner of [`answer`]: 37 instructions.
+macro_rules! answer_one {
+    () => {
+        concat!(
+            "ldr {w}, [{winners}, {x}, lsl #2]\n",
+            "lsr {d}, {w}, #24\n",
+            // How far from what the partner keeps.
+            "sub {c}, {x}, {d}\n",
+            "usat {c}, #16, {c}\n",
+            "ldrb {c}, [{right}, {c}, lsl #1]\n",
+            "ldrb {f}, [{flags}, {x}]\n",
+            "usad8 {c}, {c}, {d}\n",
+            "cmp {c}, {q}, lsr #16\n",
+            "it hi\n",
+            "orrhi {f}, {f}, #16\n",
+            "cmp {d}, {p}, lsr #24\n",
+            "it eq\n",
+            "orreq {f}, {f}, #2\n",
+            // The rises to the disparities below and above, of which the winner costs least; 16 times their difference, and half
+            // of the steeper one more.
+            "uxtb {c}, {w}, ror #8\n",
+            "orr {c}, {c}, {c}, lsl #16\n",
+            "sub {w}, {w}, {c}\n",
+            "uxtb16 {w}, {w}\n",
+            "uxth {a}, {w}\n",
+            "subs {c}, {a}, {w}, lsr #16\n",
+            "lsl {c}, {c}, #4\n",
+            "itte lo\n",
+            "lsrlo {a}, {w}, #16\n",
+            "sublo {c}, {c}, {a}, lsr #1\n",
+            "addhs {c}, {c}, {a}, lsr #1\n",
+            "cmp {a}, #0\n",
+            "itt eq\n",
+            "orreq {f}, {f}, {p}, lsr #8\n",
+            "moveq {a}, #1\n",
+            "sdiv {c}, {c}, {a}\n",
+            "add {c}, {c}, {d}, lsl #5\n",
+            "add {c}, {c}, {q}\n",
+            "tst {f}, {p}\n",
+            "it ne\n",
+            "movne {c}, #-1\n",
+            "strb {f}, [{flags}, {x}]\n",
+            "strh {c}, [{answers}, {x}, lsl #1]\n",
+            "add {x}, {x}, #1\n",
+        )
+    };
+}
+
+/// The answers and flags of winners that were offered to the `right`. 38 instructions a pixel.
 #[inline(never)]
 pub fn answer(
     winners: &[Winner],
@@ -74,51 +135,16 @@ pub fn answer(
     let flags_and_ceiling =
         u32::from(refused.flags.bits()) | u32::from(refused.flat.bits()) << 8 | u32::from(refused.ceiling) << 24;
     let least_and_tolerance = u32::from(refused.min_disparity) << 5 & 0xffff | u32::from(refused.tolerance) << 16;
-    // SAFETY: the loop counts `x` up to `count`, which all four slices have: it reads winner `x`, what the right column
+    // SAFETY: the loop counts `x` up to `count`, which all four slices have, as above: it reads winner `x`, what the right column
     // `x - disparity` keeps, or the first one if that is less than 0, and changes flag and answer `x`. The divisor is not 0.
     unsafe {
         asm!(
+            "tst {count}, #1",
+            "bne 3f",
             "2:",
-            "ldr {w}, [{winners}, {x}, lsl #2]",
-            "lsr {d}, {w}, #24",
-            // How far from what the partner keeps.
-            "sub {c}, {x}, {d}",
-            "usat {c}, #16, {c}",
-            "ldrb {c}, [{right}, {c}, lsl #1]",
-            "ldrb {f}, [{flags}, {x}]",
-            "usad8 {c}, {c}, {d}",
-            "cmp {c}, {q}, lsr #16",
-            "it hi",
-            "orrhi {f}, {f}, #16",
-            "cmp {d}, {p}, lsr #24",
-            "it eq",
-            "orreq {f}, {f}, #2",
-            // The rises to the disparities below and above, of which the winner costs least; 16 times their difference, and half
-            // of the steeper one more.
-            "uxtb {c}, {w}, ror #8",
-            "orr {c}, {c}, {c}, lsl #16",
-            "sub {w}, {w}, {c}",
-            "uxtb16 {w}, {w}",
-            "uxth {a}, {w}",
-            "subs {c}, {a}, {w}, lsr #16",
-            "lsl {c}, {c}, #4",
-            "itte lo",
-            "lsrlo {a}, {w}, #16",
-            "sublo {c}, {c}, {a}, lsr #1",
-            "addhs {c}, {c}, {a}, lsr #1",
-            "cmp {a}, #0",
-            "itt eq",
-            "orreq {f}, {f}, {p}, lsr #8",
-            "moveq {a}, #1",
-            "sdiv {c}, {c}, {a}",
-            "add {c}, {c}, {d}, lsl #5",
-            "add {c}, {c}, {q}",
-            "tst {f}, {p}",
-            "it ne",
-            "movne {c}, #-1",
-            "strb {f}, [{flags}, {x}]",
-            "strh {c}, [{answers}, {x}, lsl #1]",
-            "add {x}, {x}, #1",
+            answer_one!(),
+            "3:",
+            answer_one!(),
             "cmp {x}, {count}",
             "bne 2b",
             x = inout(reg) 0 => _,

@@ -30,9 +30,11 @@ pub(super) fn census<S: Windowed>(rows: &Around<'_>, out: &mut [u8]) {
     let words = |at: usize| words(at).map(|bytes| bytes.map_or(0, u32::from_le_bytes));
     let edge = |places: [[u32; 3]; 3]| S::codes(&places).to_le_bytes();
     let (first, second) = (words(0), words(2));
-    let first = edge([0, 1, 2].map(|row| [first[row] << 16 | (first[row] & 0xff) * 0x0101, first[row], second[row]]));
+    let first =
+        edge([0, 1, 2].map(|row| [(first[row] << 16) | ((first[row] & 0xff) * 0x0101), first[row], second[row]]));
     let (before, last) = (words(width - 6), words(width - 4));
-    let last = edge([0, 1, 2].map(|row| [before[row], last[row], last[row] >> 16 | (last[row] >> 24) * 0x0101_0000]));
+    let last =
+        edge([0, 1, 2].map(|row| [before[row], last[row], (last[row] >> 16) | ((last[row] >> 24) * 0x0101_0000)]));
     let codes = [(0, first[0]), (1, first[1]), (width - 2, last[2]), (width - 1, last[3])];
     for (x, code) in codes {
         if let Some(out) = out.get_mut(x) {

@@ -41,9 +41,9 @@ pub(super) fn update_by_tables<const STRIDE: usize>(
     let words = (row.stride / 4).max(1);
     // Beside the columns that windows have is what windows beyond the ends have: of them nothing differs.
     for outside in [begin, OUTSIDE + row.width] {
-        for sums in columns.get_mut(outside * words..(outside + OUTSIDE) * words).unwrap_or_default() {
-            *sums = add(*sums, 4 * ONE);
-        }
+        let sums = columns.get_mut(outside * words..(outside + OUTSIDE) * words).unwrap_or_default();
+        // They are all the same.
+        sums.fill(add(sums.first().copied().unwrap_or(0), 4 * ONE));
     }
     for chunk in (0..row.stride).step_by(MOST) {
         let half = MOST.min(row.stride - chunk) / 2;

@@ -1,10 +1,19 @@
 //! The kernel in bytes, for cores with Arm's instructions on four bytes in a word (Cortex-M4, M7, M33): a word is four
 //! candidates of a column, the smallest disparity lowest.
 //!
-//! * `word`: what is done to four bytes.
+//! In running order:
+//!
+//! * `census`: the codes of a row.
 //! * `tables`: what every left code costs against a row's right codes, where codes have four bits.
 //! * `columns`: costs into the columns under the window.
 //! * `windows`: columns into windows, windows into winners.
+//! * `rows`: the loops of both over the pixels of a row, in assembly for the usual numbers of candidates.
+//! * `answers`: winners into answers; `surface`: these averaged; `speckle`: their support counted, which all methods share.
+//! * `word`: what is done to four bytes.
+//!
+//! The compiler has no instructions on four bytes, and keeps too little in registers: the loops over pixels are in assembly. A
+//! loop over two pixels in a round is entered in its middle where their number is odd. Each loop is a function that stands alone
+//! (`inline(never)`).
 //!
 //! The work is the same for every picture, but for a few instructions where a winner is at an end of the search.
 
@@ -98,18 +107,22 @@ fn row_of<S: Windowed, const STRIDE: usize>(work: RowWork<'_>, select: Option<Se
 #[inline(never)]
 fn reverse(row: &[u8], last: i32, out: &mut [u32]) {
     let begin = row.get(..(last + 1).max(0) as usize).unwrap_or(&[]);
-    let (rest, words) = begin.as_rchunks::<4>();
-    let first = u32::from(row.first().copied().unwrap_or(0));
-    let mut out = out.iter_mut();
-    for (word, out) in words.iter().rev().zip(out.by_ref()) {
+    let (rest, fours) = begin.as_rchunks::<16>();
+    for (four, out) in fours.iter().rev().zip(out.as_chunks_mut::<4>().0) {
+        let words = four.as_chunks::<4>().0;
+        for (out, word) in out.iter_mut().zip(words.iter().rev()) {
+            *out = u32::from_be_bytes(*word);
+        }
+    }
+    let (rest, words) = rest.as_rchunks::<4>();
+    let first = u32::from(row.first().copied().unwrap_or(0)) * 0x0101_0101;
+    let out = out.get_mut(4 * fours.len()..).unwrap_or_default();
+    for (out, word) in out.iter_mut().zip(words.iter().rev()) {
         *out = u32::from_be_bytes(*word);
     }
-    if !rest.is_empty()
-        && let Some(out) = out.next()
-    {
-        *out = rest.iter().fold(first * 0x0101_0101, |word, &byte| word << 8 | u32::from(byte));
-    }
-    for out in out {
-        *out = first * 0x0101_0101;
+    let out = out.get_mut(words.len()..).unwrap_or_default();
+    if let Some((next, out)) = out.split_first_mut() {
+        *next = rest.iter().fold(first, |word, &byte| word << 8 | u32::from(byte));
+        out.fill(first);
     }
 }

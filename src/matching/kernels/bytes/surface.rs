@@ -73,30 +73,64 @@ fn count(answers: &[Disparity], lengths: &mut [u8], sums: &mut [u16], step: Disp
     unsafe {
         asm!(
             "strh {sum}, [{sums}]",
-            "tst {count}, #1",
-            "add {count}, {count}, #1",
+            "tst {t}, #1",
             "bne 3f",
             "2:",
             count_one!("a", "b"),
             "3:",
             count_one!("b", "a"),
-            "subs {count}, {count}, #2",
-            "cmp {count}, #1",
-            "bhi 2b",
-            count = inout(reg) count => _,
-            answers = inout(reg) answers.as_ptr() => _,
+            "cmp {answers}, {end}",
+            "bne 2b",
+            answers = inout(reg) answers.as_ptr() => _, end = in(reg) answers.as_ptr().add(count),
             lengths = inout(reg) lengths.as_mut_ptr() => _,
             sums = inout(reg) sums.as_mut_ptr() => _,
             sum = inout(reg) 0 => _,
             length = inout(reg) 0 => _,
             a = inout(reg) before => _, b = inout(reg) before => _,
-            step = in(reg) u32::from(step.raw()), one = in(reg) 1, t = out(reg) _,
+            step = in(reg) u32::from(step.raw()), one = in(reg) 1, t = inout(reg) count => _,
             options(nostack),
         );
     }
 }
 
-/// The pass back: makes every answer the average, and every length that of the whole surface. 29 instructions an answer.
+/// One answer of [`average_back`]: 26 instructions.
+macro_rules! average_one {
+    () => {
+        concat!(
+            // How many there are from here on: the first of the next surface has the length 1.
+            "cmp {to}, #1\n",
+            "ldrb {to}, [{lengths}, #-1]!\n",
+            "ite ne\n",
+            "addne {from}, {from}, #1\n",
+            "moveq {from}, #1\n",
+            "add {t}, {to}, {from}\n",
+            "sub {t}, {t}, #1\n",
+            "usat {t}, #8, {t}\n",
+            "strb {t}, [{lengths}]\n",
+            // As many to both sides.
+            "usub16 {t}, {to}, {from}\n",
+            "sel {reach}, {from}, {to}\n",
+            "usub16 {t}, {reach}, {most}\n",
+            "sel {reach}, {most}, {reach}\n",
+            "sub {u}, {sums}, {reach}, lsl #1\n",
+            "ldrh {u}, [{u}]\n",
+            "sub {sums}, {sums}, #2\n",
+            "add {t}, {sums}, {reach}, lsl #1\n",
+            "ldrh {t}, [{t}]\n",
+            "sub {t}, {t}, {u}\n",
+            // What the others differ by, over how many they are, rounded: there is no tie.
+            "ldr {reach}, [{counts}, {reach}, lsl #2]\n",
+            "ldrh {u}, [{answers}, #-2]!\n",
+            "smultb {v}, {reach}, {u}\n",
+            "sub {t}, {t}, {v}\n",
+            "smlabb {t}, {t}, {reach}, {half}\n",
+            "add {u}, {u}, {t}, asr #16\n",
+            "strh {u}, [{answers}]\n",
+        )
+    };
+}
+
+/// The pass back: makes every answer the average, and every length that of the whole surface. 28 instructions an answer.
 #[inline(never)]
 fn average_back(answers: &mut [Disparity], lengths: &mut [u8], sums: &[u16], radius: u8) {
     let count = answers.len();
@@ -104,41 +138,17 @@ fn average_back(answers: &mut [Disparity], lengths: &mut [u8], sums: &[u16], rad
         return;
     }
     let first = lengths.as_mut_ptr();
-    // SAFETY: from the last of `count` answers and lengths back to the first, they are read and written. The number `reach` is
+    // SAFETY: from the last of `count` answers and lengths back to the first, they are read and written, two in a round but for one in the first if `count` is odd. The number `reach` is
     // no more than how many of the surface there are up to an answer, no more than how many there are from it on, and no more
     // than COUNTS has. So sums are read between the first and the one that stands `count` after it.
     unsafe {
         asm!(
+            "tst {t}, #1",
+            "bne 3f",
             "2:",
-            // How many there are from here on: the first of the next surface has the length 1.
-            "cmp {to}, #1",
-            "ldrb {to}, [{lengths}, #-1]!",
-            "ite ne",
-            "addne {from}, {from}, #1",
-            "moveq {from}, #1",
-            "add {t}, {to}, {from}",
-            "sub {t}, {t}, #1",
-            "usat {t}, #8, {t}",
-            "strb {t}, [{lengths}]",
-            // As many to both sides.
-            "usub16 {t}, {to}, {from}",
-            "sel {reach}, {from}, {to}",
-            "usub16 {t}, {reach}, {most}",
-            "sel {reach}, {most}, {reach}",
-            "sub {u}, {sums}, {reach}, lsl #1",
-            "ldrh {u}, [{u}]",
-            "sub {sums}, {sums}, #2",
-            "add {t}, {sums}, {reach}, lsl #1",
-            "ldrh {t}, [{t}]",
-            "sub {t}, {t}, {u}",
-            // What the others differ by, over how many they are, rounded: there is no tie.
-            "ldr {reach}, [{counts}, {reach}, lsl #2]",
-            "ldrh {u}, [{answers}, #-2]!",
-            "smultb {v}, {reach}, {u}",
-            "sub {t}, {t}, {v}",
-            "smlabb {t}, {t}, {reach}, {half}",
-            "add {u}, {u}, {t}, asr #16",
-            "strh {u}, [{answers}]",
+            average_one!(),
+            "3:",
+            average_one!(),
             "cmp {lengths}, {first}",
             "bne 2b",
             answers = inout(reg) answers.as_mut_ptr().add(count) => _,
@@ -149,7 +159,7 @@ fn average_back(answers: &mut [Disparity], lengths: &mut [u8], sums: &[u16], rad
             most = in(reg) usize::from(radius).min(MOST) + 1,
             half = in(reg) 1 << 15,
             to = inout(reg) 1 => _, from = inout(reg) 0 => _,
-            reach = out(reg) _, t = out(reg) _, u = out(reg) _, v = out(reg) _,
+            reach = out(reg) _, t = inout(reg) count => _, u = out(reg) _, v = out(reg) _,
             options(nostack),
         );
     }

@@ -38,7 +38,9 @@ pub(super) fn select<S: Windowed, const STRIDE: usize>(
     let diameter = 2 * S::RADIUS_X + 1;
     let inside = room.get_mut(1..=words).unwrap_or_default();
     inside.fill(0);
-    for column in from(first).chunks_exact(words).take(diameter) {
+    // Nothing differs in the columns outside.
+    let outside = OUTSIDE - first.min(OUTSIDE);
+    for column in from(first).chunks_exact(words).take(diameter).skip(outside) {
         for (sum, &column) in inside.iter_mut().zip(column) {
             *sum = add(*sum, sub(digits::<S>(column), bias));
         }

@@ -31,7 +31,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_FAST_BYTES(width, disparities) \
-  ((size_t)192 + (size_t)66 * (width) + (size_t)13 * (disparities) + \
+  ((size_t)3280 + (size_t)66 * (width) + (size_t)13 * (disparities) + \
    (size_t)1 * (width) * (disparities))
 
 /**

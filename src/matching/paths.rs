@@ -133,6 +133,7 @@ pub struct PathMemory<const GUIDES: usize, const VOLUMES: usize, const W: usize,
 
 impl<const GUIDES: usize, const VOLUMES: usize> PathMemory<GUIDES, VOLUMES, 0, 0> {
     pub const BYTES: Bytes = Bytes {
+        fixed: 0,
         per_pixel: GUIDES + Room::<0, 0>::PER_PIXEL,
         per_candidate: VOLUMES,
         per_disparity: COLUMNS_OFF + Room::<0, 0>::PER_DISPARITY,

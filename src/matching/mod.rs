@@ -5,6 +5,7 @@
 //! 1. [`scheme`](Scheme): what a method is. `window`: [`Fast`] and [`Block`], census codes compared over a window.
 //!    `paths`: [`Sgm`], [`SgmLean`] and [`SgmEdge`], gradients, brightness and a census compared along paths, by
 //!    [`Penalties`].
+//!    If asked for, `quiet`: lines smoothed against noise before.
 //! 2. `kernels`: the cost of every candidate, its sum, the winner of every pixel. The only stage whose work grows with the
 //!    number of disparities, behind one seam ([`Kernel`]).
 //! 3. `texture`: whether the window has texture.
@@ -24,12 +25,14 @@ mod confidence;
 mod config;
 mod down;
 mod fill;
+mod filter;
 mod kernels;
 mod matcher;
 mod median;
 mod memory;
 mod paths;
 mod penalties;
+mod quiet;
 mod row;
 mod scheme;
 mod speckle;
@@ -38,7 +41,8 @@ mod surface;
 mod texture;
 mod window;
 
-pub use config::{Checks, Config, ConfigError, Filter};
+pub use config::{Checks, Config, ConfigError};
+pub use filter::Filter;
 pub use kernels::Kernel;
 pub use matcher::{MatchError, Matcher, state_bytes};
 pub use paths::{Sgm, SgmEdge, SgmLean};

@@ -2,7 +2,7 @@
 
 use super::config::Checks;
 #[cfg(doc)]
-use super::config::Filter;
+use super::filter::Filter;
 use super::memory::{Bytes, Memory};
 use super::penalties::Penalties;
 use super::stages::Stages;

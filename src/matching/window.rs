@@ -8,13 +8,14 @@
 use super::confidence;
 #[cfg(not(stereopsis_vectors))]
 use super::kernels::codes;
-use super::kernels::{RowWork, Select, TABLE_WORDS, Unique};
+use super::kernels::{RowWork, Select, TABLE_WORDS, Unique, bytes_of, bytes_of_halves};
 use super::memory::{Bytes, WindowMemory};
+use super::quiet::quiet;
 use super::row::slot;
 use super::scheme::{Around, Lines, Scheme};
 use super::speckle::BAND;
 use super::stages::{Stages, slot_mut};
-use crate::imaging::{census_plus4, census_ring8};
+use crate::imaging::{Noise, census_plus4, census_ring8};
 use crate::units::PixelFlags;
 
 /// A method whose costs are sums over a window.
@@ -212,6 +213,16 @@ impl<S: Windowed> Stages<'_, S> {
     /// Turns the lines around row `y` into its codes.
     fn enter_codes(&mut self, y: usize, lines: [&Around<'_>; 2]) {
         let row = slot_mut(self.codes, y % rows::<S>(), code_bytes::<S>() * self.width);
+        let smoothed;
+        let lines = if self.config.noise == Noise::None {
+            lines
+        } else {
+            // The row has no winners yet. Codes look at three rows of the five.
+            let (winners, of_right) = (bytes_of(self.winners), bytes_of_halves(self.right));
+            let places = [winners, of_right].map(|room| room.chunks_exact_mut(self.width.max(1)));
+            smoothed = quiet(lines, &[0, 2, 4], places.into_iter().flatten());
+            smoothed.each_ref()
+        };
         self.kernel.codes::<S>(lines, usize::from(self.config.min_disparity), self.scratch, row);
     }
 

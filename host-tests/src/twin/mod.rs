@@ -2,7 +2,7 @@
 //!
 //! In: two pictures, a configuration. Out: [`Answers`]. In running order:
 //!
-//! * [`census`](mod@census): darker neighbours as bits.
+//! * [`smooth`]: pictures with less noise, if asked for. [`census`](mod@census): darker neighbours as bits.
 //! * [`cost`]: bits that differ, per disparity, and their sum over the window. [`paths`]: differences of pixels, and their
 //!   sum along paths.
 //! * `select`: the cheapest disparity, its fraction, the checks.
@@ -14,12 +14,14 @@
 pub mod census;
 pub mod cost;
 pub mod paths;
+pub mod smooth;
 
 mod confidence;
 mod filter;
 mod select;
 
 use image::GrayImage;
+use smooth::Seen;
 use stereopsis::matching::Config;
 use stereopsis::units::{Disparity, PixelFlags};
 
@@ -148,18 +150,21 @@ pub fn match_pair(scheme: &Scheme, config: &Config, left: &GrayImage, right: &Gr
     let size = (u32::from(config.width), u32::from(config.height));
     assert_eq!((left.dimensions(), right.dimensions()), (size, size), "the pictures have the configuration's size");
     let (left, right) = (Picture::new(left), Picture::new(right));
+    let seen = [&left, &right].map(|picture| Seen::new(*picture, config.noise));
     let sums = match scheme.cost {
         Cost::Window { neighbours, unit } => {
-            cost::window_sums(scheme, unit, &cost::costs(neighbours, config, &left, &right))
+            cost::window_sums(scheme, unit, &cost::costs(neighbours, config, &seen[0], &seen[1]))
         }
         Cost::Paths { between_pixels, within_edges } => {
-            let costs = paths::costs(between_pixels, config, &left, &right);
+            let costs = paths::costs(between_pixels, config, &seen[0], &seen[1]);
+            let guide = seen[0].rows();
+            let guide = Picture::new(&guide);
             let costs = if within_edges {
-                paths::averaged_within_edges(config, &costs, &left)
+                paths::averaged_within_edges(config, &costs, &guide)
             } else {
                 paths::averaged_down(&costs)
             };
-            paths::path_sums(config, &costs, &left)
+            paths::path_sums(config, &costs, &guide)
         }
     };
     let mut map = Answers {

@@ -3,6 +3,7 @@
 use super::{Any, HALVES, Method, W, compare, emulated, long, pipeline};
 use image::GrayImage;
 use std::collections::BTreeSet;
+use stereopsis::imaging::Noise;
 use stereopsis::matching::{Block, Checks, Config, Fast, Penalties, Row, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::Pipeline;
 use stereopsis::units::{Disparity, PixelFlags};
@@ -112,6 +113,7 @@ fn list(rounds: usize) -> Vec<(Config, Pattern, u64)> {
             checks,
             penalties,
             confidence: i % 4 > 0,
+            noise: [Noise::None, Noise::Low, Noise::None, Noise::High][i / 2 % 4],
             ..Config::new(width, height, DISPARITIES[i * 4 % DISPARITIES.len()])
         };
         cases.push((config, PATTERNS[i * 2 % PATTERNS.len()], random.bits()));

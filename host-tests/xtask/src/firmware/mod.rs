@@ -32,7 +32,9 @@ use crate::setup;
 use crate::steps::{Failure, Outcome};
 use arguments::One;
 use program::Program;
+use stereopsis::imaging::Noise;
 use stereopsis_host::output::Staging;
+use stereopsis_host::run::NoiseChoice;
 
 /// Does what the command line asks for.
 pub fn run(arguments: &Arguments) -> Outcome {
@@ -54,6 +56,11 @@ fn run_one(one: &One) -> Outcome {
         None => (Pictures::of_scene(one.scene())?, true),
     };
     let program = Program::new(one.board, one.method, pictures.width, pictures.height, one.disparities)?;
+    let noise = match one.noise {
+        NoiseChoice::Auto if is_scene => Noise::None,
+        choice => pictures.noise(choice)?,
+    };
+    let program = Program { noise, ..program };
     Staging::probe(&one.out).map_err(|e| Failure::new(format!("--out: {e}")))?;
     setup::firmware(&[one.board.target])?;
     let built = program.build()?;

@@ -6,6 +6,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
+use stereopsis::imaging::Noise;
 use stereopsis::matching::Config;
 use stereopsis_host::run::Method;
 
@@ -40,6 +41,8 @@ pub struct Program {
     pub width: u16,
     pub height: u16,
     pub disparities: u16,
+    /// How noisy the cameras are.
+    pub noise: Noise,
     /// Whether it takes all RAM that the board has, because the budget is too small.
     all_memory: bool,
 }
@@ -67,7 +70,7 @@ fn folder(at: usize) -> PathBuf {
 }
 
 impl Program {
-    /// A program for frames of that size; the failure names the option that asks for too much.
+    /// A program for frames of that size from cameras with little noise; the failure names the option that asks for too much.
     pub fn new(board: Board, method: Method, width: u16, height: u16, disparities: u16) -> Outcome<Self> {
         let least = Config::FEWEST_DISPARITIES;
         if width < least {
@@ -89,7 +92,7 @@ impl Program {
                 board.core, board.machine
             )));
         }
-        Ok(Self { board, method, width, height, disparities, all_memory: needed > BUDGET })
+        Ok(Self { board, method, width, height, disparities, noise: Noise::None, all_memory: needed > BUDGET })
     }
 
     /// The folder that it is built in: all programs of a target in one, and about as many programs in each.
@@ -119,6 +122,7 @@ impl Program {
         let mut cargo = cargo(words);
         cargo.args(["--target", self.board.target]).env("CARGO_TARGET_DIR", folder(self.folder()));
         cargo.env("STEREO_CORE", self.board.core).env("STEREO_METHOD", self.method.name());
+        cargo.env("STEREO_NOISE", self.noise.name());
         for (name, value) in [("WIDTH", self.width), ("HEIGHT", self.height), ("DISPARITIES", self.disparities)] {
             cargo.env(format!("STEREO_{name}"), value.to_string());
         }
@@ -137,6 +141,7 @@ impl Program {
 impl std::fmt::Display for Program {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { board, method, width, height, disparities, .. } = self;
-        write!(f, "{}-{method}-{width}x{height}x{disparities}", board.core)
+        write!(f, "{}-{method}-{width}x{height}x{disparities}", board.core)?;
+        if self.noise == Noise::None { Ok(()) } else { write!(f, "-{}", self.noise.name()) }
     }
 }

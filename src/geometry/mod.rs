@@ -1,9 +1,43 @@
 //! Pure maths on fixed-size nalgebra types: no pixels come in.
 //!
-//! In: calibrated numbers. Out: types that have checked them once, so that nobody after them has to.
+//! In: calibrated numbers, and correspondences that somebody found. Out: types that have checked them once, so that
+//! nobody after them has to.
 //!
-//! * [`RectifiedRig`]: two cameras whose rows are aligned; its re-projection matrix Q.
+//! * [`Real`]: `f32` or `f64`. `linear`: factors and null vectors that are bounded and cannot panic.
+//! * [`Camera`] with its [`Distortion`]; [`Pose`] of a second camera beside the first; [`RectifiedRig`]: two cameras whose
+//!   rows are aligned, and its re-projection matrix Q.
+//! * [`Essential`] and [`Fundamental`]: two views, in the cameras' frames and in px, with lines, epipoles and distances.
+//! * [`Correspondence`]s to [`Fundamental`]: [`eight_point`]. To [`Homography`]: its direct linear transform.
+//!
+//! R and t carry a point of camera 2 into camera 1, `P = R P' + t`, and `p^T F p' = 0`; what OpenCV writes the other way
+//! round is converted by functions that say so.
 
+mod camera;
+mod correspondence;
+mod degenerate;
+mod distance;
+mod distortion;
+mod eight_point;
+mod essential;
+mod fundamental;
+mod homography;
+mod line;
+mod linear;
+mod normalise;
+mod pose;
+mod real;
 mod rig;
+mod skew;
 
+pub use camera::{Camera, CameraError, ProjectionError};
+pub use correspondence::Correspondence;
+pub use distortion::Distortion;
+pub use eight_point::{EightPointError, eight_point, eight_point_weighted};
+pub use essential::{Essential, EssentialError};
+pub use fundamental::{Fundamental, FundamentalError};
+pub use homography::{Homography, HomographyError};
+pub use line::{Epipole, Line};
+pub use pose::{Pose, PoseError};
+pub use real::Real;
 pub use rig::{RectifiedRig, RigError};
+pub use skew::skew;

@@ -55,12 +55,11 @@ fn run_one(one: &One) -> Outcome {
         Some((left, right)) => (Pictures::open(left, right)?, false),
         None => (Pictures::of_scene(one.scene())?, true),
     };
-    let program = Program::new(one.board, one.method, pictures.width, pictures.height, one.disparities)?;
-    let noise = match one.noise {
+    let mut program = Program::new(one.board, one.method, pictures.width, pictures.height, one.disparities)?;
+    program.noise = match one.noise {
         NoiseChoice::Auto if is_scene => Noise::None,
         choice => pictures.noise(choice)?,
     };
-    let program = Program { noise, ..program };
     Staging::probe(&one.out).map_err(|e| Failure::new(format!("--out: {e}")))?;
     setup::firmware(&[one.board.target])?;
     let built = program.build()?;

@@ -6,7 +6,7 @@
 //! 2. [`LineWindow`]: the last five lines, as the five rows around a centre.
 //! 3. [`census_plus4`], [`census_ring8`], [`census_wide8`], [`census_full24`]: the codes of one row. [`gradients`]: how its
 //!    brightness changes along the line and across it.
-//! 4. [`NoiseMeter`]: how noisy the lines are, in levels of [`Noise`]; [`smooth`]: a row of a window with less of it.
+//! 4. [`NoiseMeter`]: how noisy the lines are, in levels of [`Noise`]; [`smooth()`]: a row of a window with less of it.
 //!
 //! Borders: a row or column outside the image is the nearest one inside it, everywhere in this module.
 

@@ -8,7 +8,7 @@ pub enum Noise {
     /// Little: pixels are compared as they are.
     #[default]
     None,
-    /// A deviation of about 2 grey levels: lines are smoothed ([`smooth`](super::smooth)).
+    /// A deviation of about 2 grey levels: lines are smoothed ([`smooth()`](super::smooth())).
     Low,
     /// A deviation from about 3 grey levels on: lines are smoothed, and gradients count half as much as with
     /// [`Noise::Low`].

@@ -1,4 +1,5 @@
-//! Winners become answers: what `answers::pixels` does, of methods whose costs rise for nothing but the disparity ([`Scheme::STEP`](crate::matching::Scheme::STEP) is 0).
+//! Winners become answers: what `answers::pixels` does, of methods whose costs rise for nothing but the disparity
+//! ([`Scheme::STEP`](crate::matching::Scheme::STEP) is 0).
 #![allow(unsafe_code)]
 
 use crate::matching::kernels::Winner;
@@ -46,8 +47,9 @@ pub fn offer(winners: &[Winner], right: &mut [u16]) {
     if count == 0 {
         return;
     }
-    // SAFETY: the loop counts `x` up to `count`, by two but for one in the first round if `count` is odd. It reads winner `x`, of which there are so many, and reads and writes the right
-    // column `x - disparity`, or the first one if that is less than 0: one before `count`.
+    // SAFETY: the loop counts `x` up to `count`, by two but for one in the first round if `count` is odd. It reads winner `x`,
+    // of which there are so many, and reads and writes the right column `x - disparity`, or the first one if that is less than
+    // 0: one before `count`.
     unsafe {
         asm!(
             "tst {count}, #1",

@@ -9,8 +9,8 @@ use core::arch::asm;
 /// How far averages reach at most, to each side.
 const MOST: usize = RECIPROCALS.len() - 1;
 
-/// By how many answers from one to the farthest, itself among them, an average reaches: the reciprocal of all of them by 2^16, and
-/// above it how many they are. The reciprocal of one, which nothing is multiplied by, is left out.
+/// By how many answers from one to the farthest, itself among them, an average reaches: the reciprocal of all of them by 2^16,
+/// and above it how many they are. The reciprocal of one, which nothing is multiplied by, is left out.
 static COUNTS: [u32; MOST + 2] = {
     let mut counts = [0; MOST + 2];
     let mut reach = 0;
@@ -138,9 +138,10 @@ fn average_back(answers: &mut [Disparity], lengths: &mut [u8], sums: &[u16], rad
         return;
     }
     let first = lengths.as_mut_ptr();
-    // SAFETY: from the last of `count` answers and lengths back to the first, they are read and written, two in a round but for one in the first if `count` is odd. The number `reach` is
-    // no more than how many of the surface there are up to an answer, no more than how many there are from it on, and no more
-    // than COUNTS has. So sums are read between the first and the one that stands `count` after it.
+    // SAFETY: from the last of `count` answers and lengths back to the first, they are read and written, two in a round but for
+    // one in the first if `count` is odd. The number `reach` is no more than how many of the surface there are up to an answer,
+    // no more than how many there are from it on, and no more than COUNTS has. So sums are read between the first and the one
+    // that stands `count` after it.
     unsafe {
         asm!(
             "tst {t}, #1",

@@ -149,8 +149,8 @@ macro_rules! four_by_bits {
 
 macro_rules! by_bits {
     ($name:ident, $stride:literal, [$(($even:literal, $odd:literal)),*]) => {
-        /// Adds to the columns the bits in which the entering codes differ, and those in which the leaving ones are equal, but for
-        /// eight: 21 instructions for four candidates, and 12 for a column. The first column has the last candidates of the
+        /// Adds to the columns the bits in which the entering codes differ, and those in which the leaving ones are equal, but
+        /// for eight: 21 instructions for four candidates, and 12 for a column. The first column has the last candidates of the
         /// reversed rows `new` and `old`.
         #[inline(never)]
         pub(in super::super) fn $name(

@@ -8,6 +8,7 @@
 //!   rows are aligned, and its re-projection matrix Q.
 //! * [`Essential`] and [`Fundamental`]: two views, in the cameras' frames and in px, with lines, epipoles and distances.
 //! * [`Correspondence`]s to [`Fundamental`]: [`eight_point`]. To [`Homography`]: its direct linear transform.
+//! * Correspondences of which some are wrong: [`robust_fundamental`].
 //!
 //! R and t carry a point of camera 2 into camera 1, `P = R P' + t`, and `p^T F p' = 0`; what OpenCV writes the other way
 //! round is converted by functions that say so.
@@ -27,6 +28,8 @@ mod normalise;
 mod pose;
 mod real;
 mod rig;
+mod robust;
+mod seven_point;
 mod skew;
 
 pub use camera::{Camera, CameraError, ProjectionError};
@@ -40,4 +43,5 @@ pub use line::{Epipole, Line};
 pub use pose::{Pose, PoseError};
 pub use real::Real;
 pub use rig::{RectifiedRig, RigError};
+pub use robust::{RobustConfig, RobustError, RobustFundamental, Sampling, robust_fundamental};
 pub use skew::skew;

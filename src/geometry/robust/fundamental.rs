@@ -1,0 +1,118 @@
+//! F from correspondences of which some are wrong.
+
+use super::config::RobustConfig;
+use super::frame::Frame;
+use super::loss::Loss;
+use super::refine::{Matrix, refine};
+use super::search::Search;
+use crate::geometry::{Correspondence, Fundamental, Real};
+
+/// Why correspondences give no fundamental matrix, however many of them are left out.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum RobustError {
+    /// Fewer than eight correspondences.
+    TooFew,
+    /// A number is infinite or not a number.
+    NotFinite,
+    /// The threshold is not greater than zero, or not a number.
+    Threshold,
+    /// The probability of a miss is not between zero and one.
+    MissProbability,
+    /// No sample is allowed.
+    NoSamples,
+    /// The slice for the inliers is shorter than the correspondences; this many are needed.
+    Inliers(usize),
+    /// No sample of seven gave an estimate that more than seven correspondences agree with: all are wrong, or the same,
+    /// or the ones of an image are on a line.
+    NoAgreement,
+    /// What agrees is on a plane, or the camera has only turned: a homography is the answer.
+    Plane,
+}
+
+impl core::fmt::Display for RobustError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::TooFew => "a fundamental matrix needs eight correspondences",
+            Self::NotFinite => "a coordinate is not finite",
+            Self::Threshold => "the threshold must be greater than zero",
+            Self::MissProbability => "the probability of a miss must be between zero and one",
+            Self::NoSamples => "one sample at least is needed",
+            Self::Inliers(needed) => return write!(f, "the inliers need a slice of {needed}"),
+            Self::NoAgreement => "no fundamental matrix has more than seven correspondences agree with it",
+            Self::Plane => "what agrees is on a plane, or the camera has only turned: a homography is the answer",
+        })
+    }
+}
+
+impl core::error::Error for RobustError {}
+
+/// A fundamental matrix, and how sure it is.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct RobustFundamental<T: Real> {
+    /// F.
+    pub fundamental: Fundamental<T>,
+    /// How many correspondences are within the threshold.
+    pub inliers: usize,
+    /// Root mean square of their Sampson distances, px.
+    pub rms_px: T,
+    /// Samples of seven that were drawn.
+    pub samples: u32,
+    /// The probability that an estimate with as many inliers was missed: `(1 - w^7)^k` for the share w of inliers and k
+    /// samples. More than was asked when the samples ran out.
+    pub miss_probability: T,
+}
+
+/// The fundamental matrix that most correspondences agree with, px; `inliers` is filled with which do.
+pub fn robust_fundamental<T: Real>(
+    seen: &[Correspondence<T>],
+    config: &RobustConfig<T>,
+    inliers: &mut [bool],
+) -> Result<RobustFundamental<T>, RobustError> {
+    let n = seen.len();
+    if n < 8 {
+        return Err(RobustError::TooFew);
+    }
+    if !(config.threshold_px > T::ZERO && config.threshold_px.is_finite()) {
+        return Err(RobustError::Threshold);
+    }
+    if !(config.miss_probability > T::ZERO && config.miss_probability < T::ONE) {
+        return Err(RobustError::MissProbability);
+    }
+    if config.most_samples == 0 {
+        return Err(RobustError::NoSamples);
+    }
+    let inliers = inliers.get_mut(..n).ok_or(RobustError::Inliers(n))?;
+    if !seen.iter().all(Correspondence::is_finite) {
+        return Err(RobustError::NotFinite);
+    }
+    let frames = Frame::of_points(seen).ok_or(RobustError::NoAgreement)?;
+    let mut search = Search::new(seen, frames, config);
+    search.run(config);
+    let best = search.best.ok_or(RobustError::NoAgreement)?;
+    let loss = Loss::new(config.threshold_px);
+    let (best, _) = refine(best, Matrix::Fundamental, seen, &frames, loss, 20);
+    let f = frames[0].matrix().tr_mul(&best.matrix()) * frames[1].matrix();
+    let fundamental = Fundamental::of_singular(&f);
+    let most = config.threshold_px * config.threshold_px;
+    let (mut count, mut sum) = (0, T::ZERO);
+    for (inlier, s) in inliers.iter_mut().zip(seen) {
+        let squared = fundamental.sampson_squared_px2(s);
+        *inlier = squared <= most;
+        if *inlier {
+            count += 1;
+            sum += squared;
+        }
+    }
+    if count <= super::MINIMUM {
+        return Err(RobustError::NoAgreement);
+    }
+    Ok(RobustFundamental {
+        fundamental,
+        inliers: count,
+        rms_px: (sum / T::count(count)).sqrt(),
+        samples: search.drawn,
+        miss_probability: search.missed,
+    })
+}

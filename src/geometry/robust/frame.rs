@@ -43,6 +43,11 @@ impl<T: Real> Frame<T> {
         Some([first, second].map(|mean| Self { a: scale, b: T::ZERO, d: scale, cx: mean.x, cy: mean.y }))
     }
 
+    /// Units to a pixel, along v.
+    pub(super) fn scale(&self) -> T {
+        self.d
+    }
+
     /// (x, y) of a pixel.
     #[inline(always)]
     pub(super) fn apply(&self, pixel: Point2<T>) -> Point2<T> {

@@ -27,7 +27,8 @@ pub enum RobustError {
     /// No sample of seven gave an estimate that more than seven correspondences agree with: all are wrong, or the same,
     /// or the ones of an image are on a line.
     NoAgreement,
-    /// What agrees is on a plane, or the camera has only turned: a homography is the answer.
+    /// What agrees is on a plane, or the camera has only turned: a homography is the answer. The inliers say which those
+    /// are.
     Plane,
 }
 
@@ -90,9 +91,15 @@ pub fn robust_fundamental<T: Real>(
     let frames = Frame::of_points(seen).ok_or(RobustError::NoAgreement)?;
     let mut search = Search::new(seen, frames, config);
     search.run(config);
+    if let Some(plane) = search.only_plane() {
+        for (inlier, s) in inliers.iter_mut().zip(seen) {
+            *inlier = plane.distance_squared_px2(s) <= search.on_plane_px2();
+        }
+        return Err(RobustError::Plane);
+    }
     let best = search.best.ok_or(RobustError::NoAgreement)?;
     let loss = Loss::new(config.threshold_px);
-    let (best, _) = refine(best, Matrix::Fundamental, seen, &frames, loss, 20);
+    let (best, _) = refine(best, Matrix::Fundamental, seen, &frames, loss, (1, 20));
     let f = frames[0].matrix().tr_mul(&best.matrix()) * frames[1].matrix();
     let fundamental = Fundamental::of_singular(&f);
     let most = config.threshold_px * config.threshold_px;

@@ -3,7 +3,7 @@
 use crate::geometry::Real;
 
 /// How many thresholds away a correspondence has no weight any more.
-const WIDTH: f64 = 1.0;
+const WIDTH: f64 = 1.5;
 
 /// A threshold, marginalised: the number that is small when an estimate is good.
 ///

@@ -3,7 +3,7 @@
 //! In: correspondences, a threshold and a seed. Out: [`RobustFundamental`], and which correspondences agree with it.
 //!
 //! * `config`: what is asked. `random`, `pool`: samples of seven, uniform or the likely ones first.
-//! * `plane`: samples that cannot be, and what to do about those that lie on a plane.
+//! * `plane`, `parallax`: samples that cannot be, and what to do about those that lie on a plane.
 //! * `loss`: what a distance is worth. `verdict`: whether an estimate is worth anything, from a few correspondences.
 //! * `frame`, `factored`, `refine`: the estimate whose geometric error is least, also of an essential matrix.
 //! * `search`: the loop over samples. `fundamental`: its beginning and end.
@@ -15,6 +15,7 @@ mod factored;
 mod frame;
 mod fundamental;
 mod loss;
+mod parallax;
 mod plane;
 mod pool;
 mod random;

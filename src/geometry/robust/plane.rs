@@ -5,7 +5,8 @@
 //! known now, and with it two correspondences off the plane give F (Chum, Werner & Matas 2005).
 
 use super::MINIMUM;
-use crate::geometry::{Correspondence, Real, skew};
+use super::frame::Frame;
+use crate::geometry::{Correspondence, Real, homography, skew};
 use nalgebra::{Matrix3, Vector3};
 
 /// Triplets of a sample of seven: any five of the seven hold one of them.
@@ -28,27 +29,49 @@ impl<T: Real> Plane<T> {
 
     /// The plane of five correspondences or more of a sample, to within `px2` px squared, for the F of that sample.
     pub(super) fn of_sample(f: &Matrix3<T>, sample: &[Correspondence<T>; MINIMUM], px2: T) -> Option<Self> {
-        let epipole = left_null(f)?;
-        // Any plane of the pencil: H = [e]x F - e v^T (Hartley & Zisserman 2004, 13.6).
-        let base = skew(&epipole) * f;
         TRIPLETS.iter().find_map(|triplet| {
-            let three = triplet.map(|i| sample.get(i).copied());
-            let [Some(x), Some(y), Some(z)] = three else { return None };
-            let three = [x, y, z];
-            let row = |s: &Correspondence<T>| s.second.to_homogeneous();
-            let offset = |s: &Correspondence<T>| {
-                let p = s.first.to_homogeneous();
-                let across = p.cross(&epipole);
-                p.cross(&(base * row(s))).dot(&across) / across.norm_squared()
-            };
-            let [r0, r1, r2] = three.map(|s| row(&s));
-            let (c0, c1, c2) = (r1.cross(&r2), r2.cross(&r0), r0.cross(&r1));
-            let determinant = r0.dot(&c0);
-            let [b0, b1, b2] = three.map(|s| offset(&s));
-            let v = (c0 * b0 + c1 * b1 + c2 * b2) / determinant;
-            let plane = Self::new(base - epipole * v.transpose());
+            let [Some(x), Some(y), Some(z)] = triplet.map(|i| sample.get(i).copied()) else { return None };
+            let plane = Self::through(f, [x, y, z])?;
             (sample.iter().filter(|s| plane.distance_squared_px2(s) < px2).count() >= 5).then_some(plane)
         })
+    }
+
+    /// The plane of three correspondences, for an F that they agree with: of the pencil `H = [e]x F - e v^T` the one that
+    /// maps the three (Hartley & Zisserman 2004, 13.6). `None` when F has no epipole.
+    pub(super) fn through(f: &Matrix3<T>, three: [Correspondence<T>; 3]) -> Option<Self> {
+        let epipole = left_null(f)?;
+        let base = skew(&epipole) * f;
+        let row = |s: &Correspondence<T>| s.second.to_homogeneous();
+        let offset = |s: &Correspondence<T>| {
+            let p = s.first.to_homogeneous();
+            let across = p.cross(&epipole);
+            p.cross(&(base * row(s))).dot(&across) / across.norm_squared()
+        };
+        let [r0, r1, r2] = three.map(|s| row(&s));
+        let (c0, c1, c2) = (r1.cross(&r2), r2.cross(&r0), r0.cross(&r1));
+        let [b0, b1, b2] = three.map(|s| offset(&s));
+        let v = (c0 * b0 + c1 * b1 + c2 * b2) / r0.dot(&c0);
+        Some(Self::new(base - epipole * v.transpose()))
+    }
+
+    /// The plane by least squares of all that are on this one to within `px2` px squared, and how many those are.
+    pub(super) fn fitted(&self, seen: &[Correspondence<T>], frames: &[Frame<T>; 2], px2: T) -> (Self, usize) {
+        let count = self.count(seen, px2);
+        // Four are no more than determine it.
+        if count <= 4 {
+            return (*self, count);
+        }
+        let on = seen.iter().filter(|s| self.distance_squared_px2(s) < px2);
+        let [first, second] = frames;
+        let (h, _) = homography::solve(on.map(|s| (first.apply(s.first), second.apply(s.second))), count);
+        let fitted = Self::new(first.inverse() * h * second.matrix());
+        let again = fitted.count(seen, px2);
+        if again >= count { (fitted, again) } else { (*self, count) }
+    }
+
+    /// How many are on the plane to within `px2` px squared.
+    pub(super) fn count(&self, seen: &[Correspondence<T>], px2: T) -> usize {
+        seen.iter().filter(|s| self.distance_squared_px2(s) < px2).count()
     }
 
     /// The larger of the two squared distances to where the plane puts the other image's point, px^2.

@@ -28,7 +28,7 @@ struct Equations<T: Real> {
 const MOST_STEPS: usize = 20;
 
 /// Levenberg's and Marquardt's method, `steps` at most, on the sum of the loss of Sampson's distances, by the seven or
-/// five numbers of the matrix; the estimate, its gain, and whether it stopped because it no longer moved.
+/// five numbers of the matrix; the estimate and its gain. Of the correspondences every `every`th is used.
 ///
 /// One pass over the correspondences a step: about 150 operations for each that has a weight, 40 for one that has none.
 #[inline(never)]
@@ -38,10 +38,10 @@ pub(super) fn refine<T: Real>(
     seen: &[Correspondence<T>],
     frames: &[Frame<T>; 2],
     loss: Loss<T>,
-    steps: usize,
+    (every, steps): (usize, usize),
 ) -> (Factored<T>, T) {
     let mut best = start;
-    let mut equations = Equations::about(&best, kind, seen, frames, loss);
+    let mut equations = Equations::about(&best, kind, seen.iter().step_by(every.max(1)), frames, loss);
     let mut damping = T::of(1e-4);
     for _ in 0..steps.min(MOST_STEPS) {
         let step = equations.step(damping);
@@ -50,7 +50,7 @@ pub(super) fn refine<T: Real>(
             break;
         }
         let moved = best.moved(&step);
-        let there = Equations::about(&moved, kind, seen, frames, loss);
+        let there = Equations::about(&moved, kind, seen.iter().step_by(every.max(1)), frames, loss);
         if there.gain > equations.gain {
             let better = there.gain - equations.gain;
             let settled = better <= there.gain * T::of(1e-7).max(T::EPSILON * T::of(4.0));
@@ -72,10 +72,10 @@ pub(super) fn refine<T: Real>(
 
 impl<T: Real> Equations<T> {
     #[inline(always)]
-    fn about(
+    fn about<'a>(
         f: &Factored<T>,
         kind: Matrix,
-        seen: &[Correspondence<T>],
+        seen: impl Iterator<Item = &'a Correspondence<T>>,
         [first, second]: &[Frame<T>; 2],
         loss: Loss<T>,
     ) -> Self {

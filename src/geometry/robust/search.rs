@@ -13,20 +13,18 @@ use crate::geometry::seven_point::seven_point;
 use crate::geometry::{Correspondence, Real};
 use nalgebra::{Matrix3, Point2};
 
-/// Pairs off a plane that are tried at most, every time that the best estimate lies on one.
-const PAIRS: u32 = 64;
-/// A sample is on a plane when it is as near to it as so many thresholds.
-const ON_PLANE: f64 = 2.0;
+/// How many correspondences refine an estimate on the way.
+const ENOUGH: usize = 150;
 /// Samples that are drawn at least.
 const FEWEST: u32 = 16;
 
 /// The best estimate so far and how it was come by.
 pub(super) struct Search<'a, T: Real> {
-    seen: &'a [Correspondence<T>],
+    pub(super) seen: &'a [Correspondence<T>],
     pub(super) frames: [Frame<T>; 2],
-    loss: Loss<T>,
-    pool: Pool,
-    test: Test<T>,
+    pub(super) loss: Loss<T>,
+    pub(super) pool: Pool,
+    pub(super) test: Test<T>,
     stride: usize,
     pub(super) best: Option<Factored<T>>,
     pub(super) worth: Worth<T>,
@@ -84,9 +82,8 @@ impl<'a, T: Real> Search<'a, T> {
             if !one_sense(&f, &sample) || !self.consider(&f) {
                 continue;
             }
-            let px2 = self.loss.width_squared * T::of(ON_PLANE * ON_PLANE);
-            if let Some(plane) = Plane::of_sample(&f, &sample, px2) {
-                self.leave(&plane, px2);
+            if let Some(plane) = Plane::of_sample(&f, &sample, self.on_plane_px2()) {
+                self.leave(&plane);
             }
         }
     }
@@ -101,48 +98,39 @@ impl<'a, T: Real> Search<'a, T> {
     }
 
     /// From the frames to px.
-    fn in_pixels(&self, f: &Matrix3<T>) -> Matrix3<T> {
+    pub(super) fn in_pixels(&self, f: &Matrix3<T>) -> Matrix3<T> {
         let f = self.frames[0].matrix().tr_mul(f) * self.frames[1].matrix();
         f / f.norm()
     }
 
-    /// Makes an estimate (px) the best one, after it was refined, when it is better than that; whether it is.
+    /// Where an evaluation of the correspondences begins, and the step by which it goes on.
+    pub(super) fn order(&mut self) -> (usize, usize) {
+        (self.pool.below(self.seen.len()), self.stride)
+    }
+
+    /// Makes an estimate (px) the best one, after it was refined, when it is better than that before; whether it is.
     fn consider(&mut self, f: &Matrix3<T>) -> bool {
-        let order = (self.pool.below(self.seen.len()), self.stride);
-        if self.test.judge(f, self.seen, self.loss, self.worth.gain, order).is_none() {
-            return false;
-        }
+        let order = self.order();
+        self.test.judge(f, self.seen, self.loss, self.worth.gain, order).is_some() && self.improve(f)
+    }
+
+    /// Refines an estimate (px) and makes it the best one if it is then; whether it is.
+    pub(super) fn improve(&mut self, f: &Matrix3<T>) -> bool {
         let in_frames = self.frames[0].inverse().tr_mul(f) * self.frames[1].inverse();
         let Some(mut refined) = Factored::new(&in_frames) else { return false };
-        // From far to near: what a sample of seven makes of its noise is a few thresholds off elsewhere.
-        for (wider, steps) in [(3.0, 3), (1.5, 3), (1.0, 3)] {
-            (refined, _) =
-                refine(refined, Matrix::Fundamental, self.seen, &self.frames, self.loss.widened(wider), steps);
+        // From far to near: what a sample of seven makes of its noise is a few thresholds off elsewhere. Some of the
+        // correspondences are enough for that: the last estimate is refined by all.
+        let every = self.seen.len() / ENOUGH;
+        for (wider, steps) in [(2.5, 3), (1.0, 3)] {
+            let loss = self.loss.widened(wider);
+            (refined, _) = refine(refined, Matrix::Fundamental, self.seen, &self.frames, loss, (every, steps));
         }
-        let f = self.in_pixels(&refined.matrix());
+        let (f, order) = (self.in_pixels(&refined.matrix()), self.order());
         // Without a best one nothing is dropped.
         let Some(worth) = Test::new().judge(&f, self.seen, self.loss, self.worth.gain, order) else { return false };
         (self.best, self.worth) = (Some(refined), worth);
         self.test.learn(T::count(worth.kept) / T::count(self.seen.len()));
         true
-    }
-
-    /// Tries pairs off the plane that the best estimate's sample is on.
-    fn leave(&mut self, plane: &Plane<T>, px2: T) {
-        for _ in 0..PAIRS {
-            let (Some(one), Some(two)) = (self.off(plane, px2), self.off(plane, px2)) else { return };
-            if one != two {
-                self.consider(&plane.with_parallax(&one, &two));
-            }
-        }
-    }
-
-    /// A correspondence that is not on the plane, of the first few that chance finds.
-    fn off(&mut self, plane: &Plane<T>, px2: T) -> Option<Correspondence<T>> {
-        (0..PAIRS).find_map(|_| {
-            let s = *self.seen.get(self.pool.below(self.seen.len()))?;
-            (plane.distance_squared_px2(&s) > px2).then_some(s)
-        })
     }
 }
 

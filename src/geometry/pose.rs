@@ -56,6 +56,11 @@ impl<T: Real> Pose<T> {
         Ok(Self { rotation: svd.u * svd.v.transpose(), translation })
     }
 
+    /// A pose of what is known to be a rotation.
+    pub(crate) fn of_parts(rotation: Matrix3<T>, translation: Vector3<T>) -> Self {
+        Self { rotation, translation }
+    }
+
     /// The pose that OpenCV's `stereoCalibrate` writes as R, T, with `P' = R P + T`.
     pub fn from_opencv(rotation: Matrix3<T>, translation: Vector3<T>) -> Result<Self, PoseError> {
         Ok(Self::new(rotation, translation)?.inverse())

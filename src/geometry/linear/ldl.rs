@@ -13,9 +13,9 @@ pub(crate) struct Ldl<T, const N: usize> {
     inverse_pivots: [T; N],
 }
 
-/// Steps of inverse iteration at most. Each divides what is left of the other eigenvectors by the ratio of the two
-/// smallest eigenvalues; the starting vector is exact where M is singular.
-const MOST_STEPS: usize = 32;
+/// Steps to the null vector at most, of two solutions each. One is enough where M is singular, three to six where the
+/// smallest eigenvalue is a tenth of the next; where the two are nearly one, both eigenvectors are as good.
+const MOST_STEPS: usize = 16;
 
 impl<T: Real, const N: usize> Ldl<T, N> {
     /// Factors M, of which both triangles are filled.
@@ -105,25 +105,44 @@ impl<T: Real, const N: usize> Ldl<T, N> {
         self.restored(self.solve_ordered(ordered))
     }
 
-    /// The eigenvector of the smallest eigenvalue, of length one: what minimises `|M^(1/2) x|` with `|x| = 1`.
+    /// The eigenvector of the smallest eigenvalue, of length one: what minimises `x^T M x` with `|x| = 1`.
+    ///
+    /// Inverse iteration, of which every step takes the best of all that x and `M^-1 x` span, by a 2x2 eigenproblem
+    /// (Lanczos' method on `M^-1`, begun anew after two vectors; Golub & Van Loan 2013, 10.1). Plain inverse iteration
+    /// takes 44 steps per digit where two eigenvalues are within 5 %, as they are with few noisy rows.
     #[inline(always)]
     pub(crate) fn null_vector(&self) -> [T; N] {
         // Backwards from the last pivot alone: the null vector itself when that pivot is zero.
         let mut x = [T::ZERO; N];
         x[N - 1] = T::ONE;
         let mut x = unit(self.back(x));
-        let enough = T::EPSILON.sqrt() * T::of(0.0625);
+        let enough = (T::EPSILON * T::of(8.0)).max(T::of(1e-10));
         for _ in 0..MOST_STEPS {
-            let next = unit(self.solve_ordered(x));
-            // M is positive: the step turns x by less than a right angle, never over.
-            let change = x.iter().zip(&next).fold(T::ZERO, |most, (&a, &b)| most.max((a - b).abs()));
-            x = next;
-            if change <= enough {
+            let w = self.solve_ordered(x);
+            let xx = dot(&x, &w);
+            let across: [T; N] = core::array::from_fn(|i| w[i] - xx * x[i]);
+            let xy = dot(&across, &across).sqrt();
+            if !(xy > xx * T::EPSILON) {
+                break;
+            }
+            let y = across.map(|v| v / xy);
+            let yy = dot(&y, &self.solve_ordered(y));
+            // The larger eigenvalue's vector of [xx xy; xy yy] is (cosine, sine).
+            let half = (xx - yy) * T::of(0.5);
+            let root = (half * half + xy * xy).sqrt();
+            let (cosine, sine) = if half > T::ZERO { (half + root, xy) } else { (xy, root - half) };
+            x = unit(core::array::from_fn(|i| cosine * x[i] + sine * y[i]));
+            if sine <= enough * cosine {
                 break;
             }
         }
         self.restored(x)
     }
+}
+
+/// `a^T b`.
+fn dot<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
+    a.iter().zip(b).fold(T::ZERO, |sum, (&a, &b)| sum + a * b)
 }
 
 /// `x` at length one.
@@ -132,7 +151,7 @@ fn unit<T: Real, const N: usize>(x: [T; N]) -> [T; N] {
     let most = x.iter().fold(T::ZERO, |most, &v| most.max(v.abs()));
     let by = T::ONE / most;
     let x = x.map(|v| v * by);
-    let by = T::ONE / x.iter().fold(T::ZERO, |sum, &v| sum + v * v).sqrt();
+    let by = T::ONE / dot(&x, &x).sqrt();
     x.map(|v| v * by)
 }
 

@@ -1,7 +1,7 @@
 //! From pixels to the coordinates that an estimate is made in, and back.
 
 use crate::geometry::{Camera, Correspondence, Real};
-use nalgebra::{Matrix3, Point2, Vector2, Vector3};
+use nalgebra::{Matrix3, Point2, Vector2};
 
 /// `x = a (u - cx) + b (v - cy)`, `y = d (v - cy)`: an upper triangular matrix before homogeneous pixels.
 #[derive(Clone, Copy)]
@@ -74,10 +74,5 @@ impl<T: Real> Frame<T> {
         let Self { a, b, d, cx, cy } = *self;
         let (o, l) = (T::ZERO, T::ONE);
         Matrix3::new(l / a, -b / (a * d), cx, o, l / d, cy, o, o, l)
-    }
-
-    /// What was a direction (x, y, 1) of this frame, as homogeneous px.
-    pub(super) fn to_pixels(&self, point: &Vector3<T>) -> Vector3<T> {
-        self.inverse() * point
     }
 }

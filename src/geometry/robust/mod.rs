@@ -6,11 +6,13 @@
 //! * `plane`, `parallax`: samples that cannot be, and what to do about those that lie on a plane.
 //! * `loss`: what a distance is worth. `verdict`: whether an estimate is worth anything, from a few correspondences.
 //! * `frame`, `factored`, `refine`: the estimate whose geometric error is least, also of an essential matrix.
-//! * `search`: the loop over samples. `fundamental`: its beginning and end.
+//! * `search`: the loop over samples. `fundamental`: its beginning and end. `essential`: the
+//!   refinement when the cameras are known.
 //!
 //! Every loop is bounded, nothing is allocated; what is held besides the caller's slices is a few hundred bytes.
 
 mod config;
+mod essential;
 mod factored;
 mod frame;
 mod fundamental;

@@ -40,6 +40,14 @@ Written is one JSON object: fundamental (3x3 in rows, p1^T F p2 = 0 for a point 
 inliers (whether each match is within the threshold), time_us (the estimate alone, the best of five); with ransac also \
 samples and miss_probability, the probability that a better estimate was missed.";
 
+const POSE_EXAMPLE: &str = "Example:
+  stereo pose --matches matches.csv --calib calib.txt --out pose.json
+
+Written is one JSON object: essential (3x3 in rows), rotation and translation (a point P' of the second camera is \
+R P' + t in the first; t has length one, for the scale is not in the matches), points (in the first camera, the baseline is \
+one; null where a match is wrong or its sights are parallel), inliers, and model: fundamental, or homography when what \
+was seen is on a plane.";
+
 #[derive(Debug, Parser)]
 #[command(name = "stereo", version, about = "Depth from two images, by the code that runs on the microcontroller")]
 #[command(after_help = EXAMPLES, arg_required_else_help = false)]
@@ -61,6 +69,9 @@ pub enum Command {
     /// Estimate the fundamental matrix of two images from matches, some of them wrong
     #[command(after_help = FUNDAMENTAL_EXAMPLE)]
     Fundamental(FundamentalArgs),
+    /// Estimate where the second of two known cameras stands from matches, and the points they show
+    #[command(after_help = POSE_EXAMPLE)]
+    Pose(PoseArgs),
 }
 
 #[derive(Debug, Args)]
@@ -149,6 +160,21 @@ pub struct FundamentalArgs {
     /// The matches: lines of x1,y1,x2,y2 in px under that header
     #[arg(long, value_name = "FILE")]
     pub matches: PathBuf,
+    #[command(flatten)]
+    pub robust: RobustArgs,
+    /// File for the result; its folder is made when it is missing
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct PoseArgs {
+    /// The matches: lines of x1,y1,x2,y2 in px under that header
+    #[arg(long, value_name = "FILE")]
+    pub matches: PathBuf,
+    /// Calibration of the two cameras, which need not be rectified: a Middlebury or KITTI calib.txt
+    #[arg(long, value_name = "FILE")]
+    pub calib: PathBuf,
     #[command(flatten)]
     pub robust: RobustArgs,
     /// File for the result; its folder is made when it is missing

@@ -12,6 +12,7 @@ mod files;
 mod fundamental;
 mod input;
 mod matching;
+mod pose;
 mod progress;
 
 use cli::Command;
@@ -37,6 +38,7 @@ fn start() -> Result<(), Failure> {
         Ok(Command::Match(args)) => matching::run(&args),
         Ok(Command::Bench(args)) => bench::run(&args),
         Ok(Command::Fundamental(args)) => fundamental::run(&args),
+        Ok(Command::Pose(args)) => pose::run(&args),
         Err(cli::Stop::Help(text)) => print(&text),
         Err(cli::Stop::Usage(failure)) => Err(failure),
     }

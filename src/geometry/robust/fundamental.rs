@@ -65,7 +65,31 @@ pub struct RobustFundamental<T: Real> {
     pub miss_probability: T,
 }
 
-/// The fundamental matrix that most correspondences agree with, px; `inliers` is filled with which do.
+/// The fundamental matrix of correspondences of which some are wrong, px; `inliers` is filled with which agree with it.
+///
+/// Samples of seven give candidates, a sequential test drops the bad ones after a few correspondences, each best one so
+/// far is refined, and the last is the one that makes the sum of a loss of Sampson's distances least: the weight of a
+/// correspondence falls as `(1 - d^2 / w^2)^2` to zero at one and a half thresholds w, so that neither the noise nor a
+/// sharp limit has to be known (Barath et al. 2020 arrive at nearly the same weights). Where most of what agrees is on
+/// one plane, F is looked for by what is off it.
+///
+/// Bounded by [`RobustConfig::most_samples`], and stopped before that by [`RobustConfig::miss_probability`]. The same
+/// input and seed give the same bits. Stack only, besides the slices. `f32` errs as `f64` does from 0.1 px of noise on.
+///
+/// ```
+/// use stereopsis::geometry::{Correspondence, RobustConfig, robust_fundamental};
+/// // A rectified pair: rows are equal, but for the last match, which is 40 rows off.
+/// let at = [(0, 0, 8), (90, 0, 9), (0, 70, 6), (90, 70, 17), (20, 20, 4), (60, 10, 13), (30, 50, 12), (70, 60, 5),
+///     (45, 33, 7), (12, 64, 19), (81, 25, 3), (38, 5, 10), (55, 47, 15), (5, 38, 16), (66, 35, 40)];
+/// let mut seen = at.map(|(u, v, d)| Correspondence::new(f64::from(u), f64::from(v), f64::from(u - d), f64::from(v)));
+/// seen[14].second.y += 40.0;
+/// let mut inliers = [false; 15];
+/// let found = robust_fundamental(&seen, &RobustConfig::new(0.5), &mut inliers)?;
+/// assert_eq!(found.inliers, 14);
+/// assert!(inliers[..14].iter().all(|&inlier| inlier) && !inliers[14]);
+/// assert!(found.rms_px < 1e-6 && found.miss_probability <= 1e-3);
+/// # Ok::<(), stereopsis::geometry::RobustError>(())
+/// ```
 pub fn robust_fundamental<T: Real>(
     seen: &[Correspondence<T>],
     config: &RobustConfig<T>,

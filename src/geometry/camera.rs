@@ -155,7 +155,7 @@ impl<T: Real> Camera<T> {
             return Err(ProjectionError::Behind);
         }
         let by = T::ONE / point.z;
-        Ok(self.to_pixel(&self.distortion.distort(&Vector2::new(point.x * by, point.y * by))))
+        Ok(self.pixel_of(&self.distortion.distort(&Vector2::new(point.x * by, point.y * by))))
     }
 
     /// The sight of a pixel: the direction `(x, y, 1)` in the camera's frame of all that is seen there.
@@ -176,11 +176,11 @@ impl<T: Real> Camera<T> {
     /// Where the pixel would be without the lens's distortion, px.
     pub fn undistort(&self, pixel: &Point2<T>) -> Result<Point2<T>, ProjectionError> {
         let sight = self.unproject(pixel)?;
-        Ok(self.to_pixel(&sight.xy()))
+        Ok(self.pixel_of(&sight.xy()))
     }
 
     /// From the plane Z = 1, after the lens, to pixels.
-    fn to_pixel(&self, plane: &Vector2<T>) -> Point2<T> {
+    fn pixel_of(&self, plane: &Vector2<T>) -> Point2<T> {
         Point2::new(self.fx * plane.x + self.skew * plane.y + self.cx, self.fy * plane.y + self.cy)
     }
 }

@@ -1,6 +1,6 @@
 //! F from eight correspondences or more.
 
-use super::linear::{Ldl, null_of_rows};
+use super::linear::{Ldl, matrix3, null_of_rows};
 use super::normalise::Normalisation;
 use super::{Correspondence, Fundamental, Real, degenerate};
 use nalgebra::{Matrix3, Vector3};
@@ -127,14 +127,14 @@ fn solve<T: Real>(
             return Err(EightPointError::Undetermined);
         }
     }
-    let singular = nearest_singular(&Matrix3::from_row_slice(&f));
+    let singular = nearest_singular(&matrix3(&f));
     let f = second.after(&first.after(&singular.transpose()).transpose());
     Ok(Fundamental::of_singular(&f))
 }
 
 /// The sum of `w r r^T` over the rows r of all correspondences. r is p times p', so that of its 81 elements only six of
 /// p p^T times six of p' p'^T differ.
-#[inline(always)]
+#[allow(clippy::needless_range_loop, reason = "an element is named by its row and column")]
 fn normal_matrix<T: Real>(seen: impl Iterator<Item = (nalgebra::Point2<T>, nalgebra::Point2<T>, T)>) -> [[T; 9]; 9] {
     let mut sums = [[T::ZERO; 6]; 6];
     for (p, q, w) in seen {
@@ -149,11 +149,18 @@ fn normal_matrix<T: Real>(seen: impl Iterator<Item = (nalgebra::Point2<T>, nalge
     }
     /// Where the product of numbers i and j of (x, y, 1) stands among the six.
     const PRODUCT: [[usize; 3]; 3] = [[0, 1, 3], [1, 2, 4], [3, 4, 5]];
-    core::array::from_fn(|i| core::array::from_fn(|j| sums[PRODUCT[i / 3][j / 3]][PRODUCT[i % 3][j % 3]]))
+    let mut normal = [[T::ZERO; 9]; 9];
+    for i in 0..9 {
+        for j in 0..9 {
+            // At most 5 anyway; the compiler cannot know.
+            let (p, q) = (PRODUCT[i / 3][j / 3].min(5), PRODUCT[i % 3][j % 3].min(5));
+            normal[i][j] = sums[p][q];
+        }
+    }
+    normal
 }
 
 /// `F - (F v) v^T` with v the singular vector of the smallest singular value: the nearest singular matrix.
-#[inline(always)]
 fn nearest_singular<T: Real>(f: &Matrix3<T>) -> Matrix3<T> {
     let squared: [[T; 3]; 3] = f.tr_mul(f).into();
     let v = Vector3::from(Ldl::<T, 3>::new(squared).null_vector());

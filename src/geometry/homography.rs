@@ -1,6 +1,6 @@
 //! The homography: two views of a plane, or of anything from one place.
 
-use super::linear::{Ldl, null_of_rows};
+use super::linear::{Ldl, Projective, matrix3, null_of_rows};
 use super::normalise::Normalisation;
 use super::{Camera, Correspondence, Pose, Real};
 use nalgebra::{Matrix3, Point2, Vector3};
@@ -168,32 +168,14 @@ pub(super) fn solve<T: Real>(seen: impl Iterator<Item = (Point2<T>, Point2<T>)>,
         }
         null_of_rows(rows)
     } else {
-        // The normal matrix is [S 0 -U; 0 S -V; -U -V W] with S, U, V, W the sums of 1, x, y and x^2 + y^2 times q q^T.
-        let mut sums = [[[o; 3]; 3]; 4];
+        let mut equations = Projective::<T, 3>::new();
         for (p, q) in seen {
-            let q = [q.x, q.y, l];
-            for (sum, factor) in sums.iter_mut().zip([l, p.x, p.y, p.x * p.x + p.y * p.y]) {
-                for (row, &a) in sum.iter_mut().zip(&q) {
-                    for (element, &b) in row.iter_mut().zip(&q) {
-                        *element += factor * a * b;
-                    }
-                }
-            }
+            equations.add(p.x, p.y, &[q.x, q.y, l]);
         }
-        let [s, u, v, w] = sums;
-        let normal = core::array::from_fn(|i| {
-            core::array::from_fn(|j| match (i / 3, j / 3) {
-                (0, 0) | (1, 1) => s[i % 3][j % 3],
-                (0, 1) | (1, 0) => o,
-                (0, _) | (_, 0) => -u[i % 3][j % 3],
-                (1, _) | (_, 1) => -v[i % 3][j % 3],
-                _ => w[i % 3][j % 3],
-            })
-        });
-        let ldl = Ldl::<T, 9>::new(normal);
+        let ldl = Ldl::<T, 9>::new(equations.normal_matrix());
         (ldl.null_vector(), ldl.relative_pivot(7))
     };
-    (Matrix3::from_row_slice(&h), pivot)
+    (matrix3(&h), pivot)
 }
 
 #[cfg(test)]

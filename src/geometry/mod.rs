@@ -17,6 +17,11 @@
 //! R and t carry a point of camera 2 into camera 1, `P = R P' + t`, and `p^T F p' = 0`; what OpenCV writes the other way
 //! round is converted by functions that say so.
 
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "`!(a > b)` refuses what is not a number together with what is too small"
+)]
+
 mod camera;
 mod correspondence;
 mod degenerate;

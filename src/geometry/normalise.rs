@@ -1,7 +1,7 @@
 //! Hartley's normalisation: what makes an estimate from pixels well conditioned.
 
 use super::Real;
-use nalgebra::{Matrix3, Point2};
+use nalgebra::{Matrix3, Point2, RowVector3};
 
 /// `x = s (u - cx)`, `y = s (v - cy)`: the points' centroid goes to the origin and their root mean square distance from
 /// it to the root of two (Hartley 1997; Hartley & Zisserman 2004, 4.4.4).
@@ -48,7 +48,7 @@ impl<T: Real> Normalisation<T> {
     /// `N^-1 M`: from something that gives normalised points to the same that gives px.
     pub(crate) fn before(&self, m: &Matrix3<T>) -> Matrix3<T> {
         let per_scale = T::ONE / self.scale;
-        let z = m.row(2).into_owned();
+        let z = RowVector3::new(m.m31, m.m32, m.m33);
         Matrix3::from_rows(&[m.row(0) * per_scale + z * self.cx, m.row(1) * per_scale + z * self.cy, z])
     }
 }

@@ -1,6 +1,6 @@
 //! Projection matrices: a camera at a place in the world, as one matrix.
 
-use super::linear::Ldl;
+use super::linear::{Ldl, Projective};
 use super::{Camera, CameraError, Pose, Real};
 use nalgebra::{Matrix3, Matrix3x4, Point2, Point3, Vector3};
 
@@ -80,9 +80,7 @@ impl<T: Real> Projection<T> {
             return Err(ResectionError::Infinite);
         }
         let scaled = matrix / size;
-        let left: Matrix3<T> = scaled.fixed_view::<3, 3>(0, 0).into_owned();
-        let row = |i: usize| -> Vector3<T> { left.row(i).transpose() };
-        let (a, b, c) = (row(0), row(1), row(2));
+        let [a, b, c] = rows(&scaled);
         let determinant = a.cross(&b).dot(&c);
         // The sine of the angle between the third row and the first two, times the sine between those.
         if !(determinant.abs() > a.norm() * b.norm() * c.norm() * T::EPSILON * T::of(16.0)) {
@@ -115,45 +113,29 @@ impl<T: Real> Projection<T> {
         if world.is_flat(landmarks.iter().map(|l| l.world.coords)) {
             return Err(ResectionError::Plane);
         }
-        // As for a homography, with four numbers in place of three: [S 0 -U; 0 S -V; -U -V W].
         let (o, l) = (T::ZERO, T::ONE);
-        let mut sums = [[[o; 4]; 4]; 4];
+        let mut equations = Projective::<T, 4>::new();
         for landmark in landmarks {
             let point = world.apply(&landmark.world.coords);
             let seen = pixel.apply(&Vector3::new(landmark.pixel.x, landmark.pixel.y, o));
-            let point = [point.x, point.y, point.z, l];
-            for (sum, factor) in sums.iter_mut().zip([l, seen.x, seen.y, seen.x * seen.x + seen.y * seen.y]) {
-                for (row, &a) in sum.iter_mut().zip(&point) {
-                    for (element, &b) in row.iter_mut().zip(&point) {
-                        *element += factor * a * b;
-                    }
-                }
-            }
+            equations.add(seen.x, seen.y, &[point.x, point.y, point.z, l]);
         }
-        let [s, u, v, w] = sums;
-        let ldl = Ldl::<T, 12>::new(core::array::from_fn(|i| {
-            core::array::from_fn(|j| match (i / 4, j / 4) {
-                (0, 0) | (1, 1) => s[i % 4][j % 4],
-                (0, 1) | (1, 0) => o,
-                (0, _) | (_, 0) => -u[i % 4][j % 4],
-                (1, _) | (_, 1) => -v[i % 4][j % 4],
-                _ => w[i % 4][j % 4],
-            })
-        }));
+        let ldl = Ldl::<T, 12>::new(equations.normal_matrix());
         if !(ldl.relative_pivot(10) > T::EPSILON * T::of(4.0)) {
             return Err(ResectionError::Undetermined);
         }
-        let normalised = Matrix3x4::from_row_slice(&ldl.null_vector());
+        let [a, b, c, d, e, f, g, h, i, j, k, m] = ldl.null_vector();
+        let normalised = Matrix3x4::new(a, b, c, d, e, f, g, h, i, j, k, m);
         // M = N_p^-1 M_n N_P.
-        let mut matrix = normalised;
-        for i in 0..3 {
-            let scaled: Vector3<T> = normalised.fixed_view::<1, 3>(i, 0).transpose() * world.scale;
-            matrix.fixed_view_mut::<1, 3>(i, 0).copy_from(&scaled.transpose());
-            matrix[(i, 3)] = normalised[(i, 3)] - scaled.dot(&world.centre);
-        }
-        let (x, y, z) = (matrix.row(0).into_owned(), matrix.row(1).into_owned(), matrix.row(2).into_owned());
-        let by = l / pixel.scale;
-        let rows = [x * by + z * pixel.centre.x, y * by + z * pixel.centre.y, z];
+        let per_pixel = l / pixel.scale;
+        let [x, y, z] = rows(&normalised).map(|row| row * world.scale);
+        let shift = |row: &Vector3<T>, last: T| last - row.dot(&world.centre);
+        let (x, y, z) = (
+            x.push(shift(&x, normalised.m14)) * per_pixel,
+            y.push(shift(&y, normalised.m24)) * per_pixel,
+            z.push(shift(&z, normalised.m34)),
+        );
+        let rows = [x + z * pixel.centre.x, y + z * pixel.centre.y, z].map(|row| row.transpose());
         let found = Self::from_matrix(&Matrix3x4::from_rows(&rows))?;
         if landmarks.iter().any(|l| !(found.depth(&l.world) > o)) {
             return Err(ResectionError::Behind);
@@ -164,8 +146,7 @@ impl<T: Real> Projection<T> {
     /// The camera and its place: K by a triangular factor times a rotation (RQ), and the pose that carries a point of the
     /// camera into the world (Hartley & Zisserman 2004, 6.2.4).
     pub fn decompose(&self) -> Result<(Camera<T>, Pose<T>), ResectionError> {
-        let row = |i: usize| -> Vector3<T> { self.matrix.fixed_view::<1, 3>(i, 0).transpose() };
-        let (a, b, r2) = (row(0), row(1), row(2));
+        let [a, b, r2] = rows(&self.matrix);
         // Gram-Schmidt from the last row up; that row has length one.
         let cy = b.dot(&r2);
         let b = b - r2 * cy;
@@ -175,7 +156,7 @@ impl<T: Real> Projection<T> {
         let r0 = r1.cross(&r2);
         let camera = Camera::new(a.dot(&r0), fy, a.dot(&r2), cy).and_then(|camera| camera.with_skew(a.dot(&r1)));
         let camera = camera.map_err(ResectionError::Camera)?;
-        let shift: Vector3<T> = self.matrix.column(3).into_owned();
+        let shift = Vector3::new(self.matrix.m14, self.matrix.m24, self.matrix.m34);
         let rotation = Matrix3::from_columns(&[r0, r1, r2]);
         let pose = Pose::new(rotation, -(rotation * (camera.inverse_matrix() * shift)));
         Ok((camera, pose.map_err(|_| ResectionError::Infinite)?))
@@ -196,6 +177,11 @@ impl<T: Real> Projection<T> {
         let h = self.matrix * world.to_homogeneous();
         (h.z > T::ZERO).then(|| Point2::new(h.x / h.z, h.y / h.z))
     }
+}
+
+/// The first three columns of M, row by row.
+fn rows<T: Real>(m: &Matrix3x4<T>) -> [Vector3<T>; 3] {
+    [Vector3::new(m.m11, m.m12, m.m13), Vector3::new(m.m21, m.m22, m.m23), Vector3::new(m.m31, m.m32, m.m33)]
 }
 
 /// How many landmarks have different places in the world, counted up to six.

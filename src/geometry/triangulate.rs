@@ -2,7 +2,7 @@
 
 use super::linear::Ldl;
 use super::{Camera, Correspondence, Essential, EssentialError, Fundamental, Pose, Real};
-use nalgebra::{Matrix2x3, Matrix3, Point2, Point3, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix2x3, Matrix3, Point2, Point3, Vector2, Vector3};
 
 /// Two cameras whose pose is known: what triangulates.
 ///
@@ -168,7 +168,7 @@ impl<T: Real> TwoViews<T> {
     /// The correspondence nearest to `seen` (undistorted px, in both images together) whose sights meet.
     pub fn nearest_possible(&self, seen: &Correspondence<T>) -> Correspondence<T> {
         let f = self.fundamental.matrix();
-        let square = f.fixed_view::<2, 2>(0, 0).into_owned();
+        let square = Matrix2::new(f.m11, f.m12, f.m21, f.m22);
         let homogeneous = |x: &Point2<T>| Vector3::new(x.x, x.y, T::ONE);
         let (p, q) = (homogeneous(&seen.first), homogeneous(&seen.second));
         let residual = p.dot(&(f * q));
@@ -251,7 +251,8 @@ fn slope<T: Real>(camera: &Camera<T>, point: &Point3<T>) -> Matrix2x3<T> {
     let (x, y) = (point.x * by, point.y * by);
     let (_, lens) = camera.distortion().distort_with_derivative(&Vector2::new(x, y));
     let plane = Matrix2x3::new(l, o, -x, o, l, -y) * by;
-    camera.matrix().fixed_view::<2, 2>(0, 0) * lens * plane
+    let k = camera.matrix();
+    Matrix2::new(k.m11, k.m12, k.m21, k.m22) * lens * plane
 }
 
 #[cfg(test)]

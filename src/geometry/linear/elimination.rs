@@ -7,10 +7,12 @@ use crate::geometry::Real;
 /// those before it.
 ///
 /// A is not squared on the way, as it is in normal equations: half as many digits are lost.
-#[inline(always)]
 pub(crate) fn null_of_rows<T: Real, const M: usize, const N: usize>(mut rows: [[T; N]; M]) -> ([T; N], T) {
     const { assert!(M + 1 == N, "one row less than unknowns") };
-    let mut order: [usize; N] = core::array::from_fn(|i| i);
+    let mut order = [0; N];
+    for (place, slot) in order.iter_mut().enumerate() {
+        *slot = place;
+    }
     let mut inverse_pivots = [T::ZERO; M];
     let (mut least, mut most) = (T::ZERO, T::ZERO);
     for k in 0..M {

@@ -2,7 +2,7 @@
 
 use super::MINIMUM;
 use super::plane::Plane;
-use super::search::Search;
+use super::search::{ENOUGH, Search};
 use super::verdict::{Test, sampson};
 use crate::geometry::{Correspondence, Real};
 use nalgebra::Matrix3;
@@ -58,11 +58,11 @@ impl<T: Real> Search<'_, T> {
     pub(super) fn only_plane(&mut self) -> Option<Plane<T>> {
         let px2 = self.on_plane_px2();
         let f = self.in_pixels(&self.best?.matrix());
-        let (mut plane, mut most) = (None, 0);
+        let (mut plane, mut most, every) = (None, 0, self.seen.len() / ENOUGH);
         for _ in 0..TRIPLETS {
             let [Some(a), Some(b), Some(c)] = [(); 3].map(|()| self.agreeing(&f)) else { continue };
             let Some(candidate) = Plane::through(&f, [a, b, c]) else { continue };
-            let count = candidate.count(self.seen, px2);
+            let count = candidate.count(self.seen, every, px2);
             if count > most {
                 (plane, most) = (Some(candidate), count);
             }

@@ -56,7 +56,7 @@ impl<T: Real> Plane<T> {
 
     /// The plane by least squares of all that are on this one to within `px2` px squared, and how many those are.
     pub(super) fn fitted(&self, seen: &[Correspondence<T>], frames: &[Frame<T>; 2], px2: T) -> (Self, usize) {
-        let count = self.count(seen, px2);
+        let count = self.count(seen, 1, px2);
         // Four are no more than determine it.
         if count <= 4 {
             return (*self, count);
@@ -65,13 +65,13 @@ impl<T: Real> Plane<T> {
         let [first, second] = frames;
         let (h, _) = homography::solve(on.map(|s| (first.apply(s.first), second.apply(s.second))), count);
         let fitted = Self::new(first.inverse() * h * second.matrix());
-        let again = fitted.count(seen, px2);
+        let again = fitted.count(seen, 1, px2);
         if again >= count { (fitted, again) } else { (*self, count) }
     }
 
-    /// How many are on the plane to within `px2` px squared.
-    pub(super) fn count(&self, seen: &[Correspondence<T>], px2: T) -> usize {
-        seen.iter().filter(|s| self.distance_squared_px2(s) < px2).count()
+    /// How many of every `every`th are on the plane to within `px2` px squared.
+    pub(super) fn count(&self, seen: &[Correspondence<T>], every: usize, px2: T) -> usize {
+        seen.iter().step_by(every.max(1)).filter(|s| self.distance_squared_px2(s) < px2).count()
     }
 
     /// The larger of the two squared distances to where the plane puts the other image's point, px^2.

@@ -1,5 +1,7 @@
 //! The estimate that makes the geometric error least.
 
+#![allow(clippy::needless_range_loop, reason = "an element is named by its row and column, as in the equations")]
+
 use super::factored::{FREE, Factored};
 use super::frame::Frame;
 use super::loss::Loss;

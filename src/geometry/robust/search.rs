@@ -14,7 +14,7 @@ use crate::geometry::{Correspondence, Real};
 use nalgebra::{Matrix3, Point2};
 
 /// How many correspondences refine an estimate on the way.
-const ENOUGH: usize = 150;
+pub(super) const ENOUGH: usize = 150;
 /// Samples that are drawn at least.
 const FEWEST: u32 = 16;
 

@@ -72,7 +72,7 @@ impl<T: Real> Test<T> {
         let mut at = start;
         let mut ahead = T::count(seen.len());
         for tried in 1..=seen.len() {
-            let Some(s) = seen.get(at) else { return None };
+            let s = seen.get(at)?;
             at += stride;
             if at >= seen.len() {
                 at -= seen.len();

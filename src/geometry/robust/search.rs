@@ -13,6 +13,9 @@ use crate::geometry::seven_point::seven_point;
 use crate::geometry::{Correspondence, Real};
 use nalgebra::{Matrix3, Point2};
 
+/// What a candidate has to be worth to be refined, over the best candidate before it: refined ones end in different
+/// minima, and the best candidate's need not be the best.
+const NEARLY: f64 = 0.7;
 /// How many correspondences refine an estimate on the way.
 pub(super) const ENOUGH: usize = 150;
 /// Samples that are drawn at least.
@@ -26,6 +29,8 @@ pub(super) struct Search<'a, T: Real> {
     pub(super) pool: Pool,
     pub(super) test: Test<T>,
     stride: usize,
+    /// What the best candidate was worth before it was refined.
+    raw_gain: T,
     pub(super) best: Option<Factored<T>>,
     pub(super) worth: Worth<T>,
     /// Samples drawn.
@@ -44,6 +49,7 @@ impl<'a, T: Real> Search<'a, T> {
             pool: Pool::new(config.sampling, config.seed, seen.len()),
             test: Test::new(),
             stride: stride(seen.len()),
+            raw_gain: T::ZERO,
             best: None,
             worth: Worth { gain: T::ZERO, kept: 0 },
             drawn: 0,
@@ -111,7 +117,12 @@ impl<'a, T: Real> Search<'a, T> {
     /// Makes an estimate (px) the best one, after it was refined, when it is better than that before; whether it is.
     fn consider(&mut self, f: &Matrix3<T>) -> bool {
         let order = self.order();
-        self.test.judge(f, self.seen, self.loss, self.worth.gain, order).is_some() && self.improve(f)
+        let Some(worth) = self.test.judge(f, self.seen, self.loss, self.raw_gain * T::of(NEARLY), order) else {
+            return false;
+        };
+        self.raw_gain = self.raw_gain.max(worth.gain);
+        self.test.learn(T::count(worth.kept) / T::count(self.seen.len()));
+        self.improve(f)
     }
 
     /// Refines an estimate (px) and makes it the best one if it is then; whether it is.
@@ -129,7 +140,6 @@ impl<'a, T: Real> Search<'a, T> {
         // Without a best one nothing is dropped.
         let Some(worth) = Test::new().judge(&f, self.seen, self.loss, self.worth.gain, order) else { return false };
         (self.best, self.worth) = (Some(refined), worth);
-        self.test.learn(T::count(worth.kept) / T::count(self.seen.len()));
         true
     }
 }

@@ -7,7 +7,7 @@
 //! * [`Camera`] with its [`Distortion`]; [`Pose`] of a second camera beside the first; [`RectifiedRig`]: two cameras whose
 //!   rows are aligned, and its re-projection matrix Q.
 //! * [`Essential`] and [`Fundamental`]: two views, in the cameras' frames and in px, with lines, epipoles and distances.
-//! * [`Correspondence`]s to [`Fundamental`]: [`eight_point`]. To [`Homography`]: its direct linear transform. [`choose`]
+//! * [`Correspondence`]s to [`Fundamental`]: [`eight_point()`]. To [`Homography`]: its direct linear transform. [`choose`]
 //!   says which of the two it is.
 //! * Correspondences of which some are wrong: [`robust_fundamental`], and [`Essential::refined`] for cameras that are known.
 //! * [`Essential::recover_pose`] and [`Homography::recover_motions`]: the pose, without its scale ([`RelativePose`]).

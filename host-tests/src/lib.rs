@@ -5,6 +5,7 @@
 //! * [`mock`]: a camera that reads image files.
 //! * [`scene`]: a ray-traced scene as a camera, with its true depth, disparity and occlusion.
 //! * [`calibration`]: rectified rigs from Middlebury's and KITTI's files.
+//! * [`matches`]: correspondences from files.
 //! * [`real`]: real pairs with a known truth, also altered, and scores on them.
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
 //! * [`twin`]: each stage again, naively, to hold the core to.
@@ -14,6 +15,7 @@ pub mod calibration;
 pub mod colour;
 pub mod command_line;
 pub mod map;
+pub mod matches;
 pub mod mock;
 pub mod output;
 pub mod pfm;

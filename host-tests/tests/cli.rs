@@ -8,3 +8,5 @@ mod refused;
 mod results;
 #[path = "cli/support.rs"]
 mod support;
+#[path = "cli/two_view.rs"]
+mod two_view;

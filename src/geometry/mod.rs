@@ -9,6 +9,7 @@
 //! * [`Essential`] and [`Fundamental`]: two views, in the cameras' frames and in px, with lines, epipoles and distances.
 //! * [`Correspondence`]s to [`Fundamental`]: [`eight_point()`]. To [`Homography`]: its direct linear transform. [`choose`]
 //!   says which of the two it is.
+//! * Correspondences of which some are wrong: [`robust_fundamental`], and [`Essential::refined`] for cameras that are known.
 //! * [`Essential::recover_pose`] and [`Homography::recover_motions`]: the pose, without its scale ([`RelativePose`]).
 //! * [`TwoViews`]: points from two sights, with their residual, angle and covariance.
 //! * [`Projection`]: a camera in the world as one matrix, to and from its parts, and from [`Landmark`]s.
@@ -41,6 +42,8 @@ mod real;
 mod recover;
 mod relative;
 mod rig;
+mod robust;
+mod seven_point;
 mod skew;
 mod triangulate;
 
@@ -60,5 +63,6 @@ pub use real::Real;
 pub use recover::{RecoverError, RecoveredPose};
 pub use relative::{RelativePose, ScaleError};
 pub use rig::{RectifiedRig, RigError};
+pub use robust::{RobustConfig, RobustError, RobustFundamental, Sampling, robust_fundamental};
 pub use skew::skew;
 pub use triangulate::{Triangulated, TriangulationError, TwoViews};

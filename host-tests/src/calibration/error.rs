@@ -122,6 +122,14 @@ pub enum Fault {
         /// cx of cam1 less cx of cam0, px.
         between: f64,
     },
+    /// A camera is refused by the core.
+    #[error("{key}: {error}")]
+    Camera {
+        /// The camera's key.
+        key: String,
+        /// Why.
+        error: stereopsis::geometry::CameraError,
+    },
     /// The rig is refused by the core.
     #[error("{0}")]
     Rig(stereopsis::geometry::RigError),

@@ -65,6 +65,19 @@ pub(super) fn read(text: &str, left_image: &Path) -> Result<Calibration, Fault> 
     })
 }
 
+/// fx, skew, cx, fy, cy of both cameras, with their labels.
+pub(super) fn matrices(text: &str) -> Result<[(String, [f64; 5]); 2], Fault> {
+    let [left, right] = match bare(text) {
+        Some(pair) => pair,
+        None => choose(text, Path::new(""))?,
+    };
+    let of = |matrix: Matrix<'_>| {
+        let p: [f64; 12] = numbers(matrix.label, matrix.line, matrix.numbers)?;
+        Ok((matrix.label.to_owned(), [p[0], p[1], p[2], p[5], p[6]]))
+    };
+    Ok([of(left)?, of(right)?])
+}
+
 /// The matrices of the pair that the left image belongs to: the colour cameras 2 and 3 where the file has them, unless
 /// the path names a grey camera.
 fn choose<'a>(text: &'a str, left_image: &Path) -> Result<[Matrix<'a>; 2], Fault> {

@@ -39,13 +39,7 @@ pub fn write_middlebury(rig: &RectifiedRig, width: u16, height: u16, disparities
 }
 
 pub(super) fn read(text: &str) -> Result<Calibration, Fault> {
-    let find = |wanted: &str| -> Result<Option<Entry<'_>>, Fault> {
-        let mut found = entries(text).filter(|entry| entry.key == wanted);
-        match (found.next(), found.next()) {
-            (_, Some(second)) => Err(Fault::Twice { key: wanted.into(), line: second.line }),
-            (first, None) => Ok(first),
-        }
-    };
+    let find = |wanted: &str| find(text, wanted);
     let need = |key: &str, form| find(key)?.ok_or_else(|| Fault::Missing(key.into(), form));
 
     let cam0 = camera(&need("cam0", "cam0=[f 0 cx; 0 f cy; 0 0 1]")?)?;
@@ -71,11 +65,34 @@ pub(super) fn read(text: &str) -> Result<Calibration, Fault> {
     })
 }
 
+/// The one line of a key, if there is one.
+fn find<'a>(text: &'a str, wanted: &str) -> Result<Option<Entry<'a>>, Fault> {
+    let mut found = entries(text).filter(|entry| entry.key == wanted);
+    match (found.next(), found.next()) {
+        (_, Some(second)) => Err(Fault::Twice { key: wanted.into(), line: second.line }),
+        (first, None) => Ok(first),
+    }
+}
+
+/// fx, skew, cx, fy, cy of both cameras, with their keys.
+pub(super) fn matrices(text: &str) -> Result<[(String, [f64; 5]); 2], Fault> {
+    let of = |key: &str| {
+        let entry = find(text, key)?.ok_or_else(|| Fault::Missing(key.into(), "[fx 0 cx; 0 fy cy; 0 0 1]"))?;
+        let [fx, skew, cx, _, fy, cy, _, _, _] = numbers(entry.key, entry.line, &inside(&entry))?;
+        Ok((key.to_owned(), [fx, skew, cx, fy, cy]))
+    };
+    Ok([of("cam0")?, of("cam1")?])
+}
+
 /// `[fx 0 cx; 0 fy cy; 0 0 1]`.
 fn camera<'a>(entry: &Entry<'a>) -> Result<Intrinsics<'a>, Fault> {
-    let inside = entry.value.trim_start_matches('[').trim_end_matches(']').replace([';', ','], " ");
-    let [fx, _, cx, _, fy, cy, _, _, _] = numbers(entry.key, entry.line, &inside)?;
+    let [fx, _, cx, _, fy, cy, _, _, _] = numbers(entry.key, entry.line, &inside(entry))?;
     Ok(Intrinsics { key: entry.key, fx, fy, cx, cy })
+}
+
+/// The numbers between the brackets.
+fn inside(entry: &Entry) -> String {
+    entry.value.trim_start_matches('[').trim_end_matches(']').replace([';', ','], " ")
 }
 
 fn whole(entry: &Entry) -> Result<u16, Fault> {

@@ -3,14 +3,17 @@
 //! In: a `calib.txt` of the Middlebury stereo pages (millimetres) or of KITTI (metres), told apart by content. Out: a
 //! [`RectifiedRig`] in metres, with the image size where the file says it.
 //!
+//! * [`Cameras`]: the two cameras alone, which need not be rectified.
 //! * `middlebury`: `cam0=[f 0 cx; 0 f cy; 0 0 1]`, `cam1`, `doffs`, `baseline`, and optional sizes.
 //! * `kitti`: projection matrices of 12 numbers, labelled `P0:` to `P3:` or `P_rect_00:` to `P_rect_03:`, or two
 //!   lines without labels for left and right.
 
+mod cameras;
 mod error;
 mod kitti;
 mod middlebury;
 
+pub use cameras::Cameras;
 pub use error::{CalibrationError, Fault};
 pub use middlebury::write_middlebury;
 

@@ -6,5 +6,6 @@ mod matrices;
 mod planes;
 mod points;
 mod poses;
+mod robust;
 mod twin;
 mod views;

@@ -4,11 +4,13 @@
 //!
 //! * [`Ldl`]: `L D L^T` of a symmetric, positive semi-definite matrix, and its null vector by inverse iteration.
 //! * [`null_of_rows`]: the one vector that N - 1 rows leave free, by elimination.
+//! * [`cubic_roots`]: the real roots of a cubic, in closed form.
 //! * [`Projective`]: the normal equations of `p ~ M q`.
 //! * [`Svd3`]: singular values of a 3x3 matrix, by Jacobi rotations of its columns.
 
 #![allow(clippy::needless_range_loop, reason = "an element is named by its row and column, as in the equations")]
 
+mod cubic;
 mod elimination;
 mod ldl;
 mod projective;
@@ -16,6 +18,7 @@ mod svd3;
 
 use nalgebra::Matrix3;
 
+pub(crate) use cubic::cubic_roots;
 pub(crate) use elimination::null_of_rows;
 pub(crate) use ldl::Ldl;
 pub(crate) use projective::Projective;

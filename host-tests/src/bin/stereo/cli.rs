@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use clap::error::ErrorKind;
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use stereopsis::matching::{Config, Filter, Kernel};
@@ -10,7 +10,7 @@ use stereopsis_host::command_line::usage_line;
 use stereopsis_host::run::{Method, NoiseChoice, UnknownMethod, UnknownNoise, Way};
 
 /// What is told to one who names another command.
-const COMMANDS: &str = "the commands are demo, match and bench";
+const COMMANDS: &str = "the commands are demo, match, bench, fundamental and pose";
 
 const EXAMPLES: &str = "Examples:
   stereo demo --out demo-out
@@ -33,6 +33,21 @@ const BENCH_EXAMPLE: &str = "Example:
 Printed is one JSON object: frame_ms (a time for each frame, after one that is left out; files and start-up left out, one \
 thread), kernel, width, height, disparities, state_bytes, noise.";
 
+const FUNDAMENTAL_EXAMPLE: &str = "Example:
+  stereo fundamental --matches matches.csv --out fundamental.json
+
+Written is one JSON object: fundamental (3x3 in rows, p1^T F p2 = 0 for a point p1 of the first image and p2 of the second), \
+inliers (whether each match is within the threshold), time_us (the estimate alone, the best of five); with ransac also \
+samples and miss_probability, the probability that a better estimate was missed.";
+
+const POSE_EXAMPLE: &str = "Example:
+  stereo pose --matches matches.csv --calib calib.txt --out pose.json
+
+Written is one JSON object: essential (3x3 in rows), rotation and translation (a point P' of the second camera is \
+R P' + t in the first; t has length one, for the scale is not in the matches), points (in the first camera, the baseline is \
+one; null where a match is wrong or its sights are parallel), inliers, and model: fundamental, or homography when what \
+was seen is on a plane.";
+
 #[derive(Debug, Parser)]
 #[command(name = "stereo", version, about = "Depth from two images, by the code that runs on the microcontroller")]
 #[command(after_help = EXAMPLES, arg_required_else_help = false)]
@@ -51,6 +66,12 @@ pub enum Command {
     /// Time the matching of a rectified pair of images
     #[command(after_help = BENCH_EXAMPLE)]
     Bench(BenchArgs),
+    /// Estimate the fundamental matrix of two images from matches, some of them wrong
+    #[command(after_help = FUNDAMENTAL_EXAMPLE)]
+    Fundamental(FundamentalArgs),
+    /// Estimate where the second of two known cameras stands from matches, and the points they show
+    #[command(after_help = POSE_EXAMPLE)]
+    Pose(PoseArgs),
 }
 
 #[derive(Debug, Args)]
@@ -139,6 +160,62 @@ impl WayArgs {
 
 fn noise(text: &str) -> Result<NoiseChoice, String> {
     text.parse().map_err(|unknown: UnknownNoise| unknown.to_string())
+}
+
+#[derive(Debug, Args)]
+pub struct FundamentalArgs {
+    /// The matches: lines of x1,y1,x2,y2 in px under that header
+    #[arg(long, value_name = "FILE")]
+    pub matches: PathBuf,
+    #[command(flatten)]
+    pub robust: RobustArgs,
+    /// File for the result; its folder is made when it is missing
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct PoseArgs {
+    /// The matches: lines of x1,y1,x2,y2 in px under that header
+    #[arg(long, value_name = "FILE")]
+    pub matches: PathBuf,
+    /// Calibration of the two cameras, which need not be rectified: a Middlebury or KITTI calib.txt
+    #[arg(long, value_name = "FILE")]
+    pub calib: PathBuf,
+    #[command(flatten)]
+    pub robust: RobustArgs,
+    /// File for the result; its folder is made when it is missing
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct RobustArgs {
+    /// eight-point (all matches are right) or ransac (some are wrong)
+    #[arg(long, value_name = "METHOD", default_value = "ransac")]
+    pub method: TwoViewMethod,
+    /// Sampson distance up to which a match counts as right, px, 0.001 to 1000
+    #[arg(long, value_name = "PX", default_value_t = 1.0, value_parser = threshold, allow_negative_numbers = true)]
+    pub threshold: f64,
+    /// What ransac's random choices begin with
+    #[arg(long, value_name = "S", default_value_t = 0, value_parser = seed, allow_negative_numbers = true)]
+    pub seed: u64,
+}
+
+/// How a fundamental matrix is estimated.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub enum TwoViewMethod {
+    EightPoint,
+    Ransac,
+}
+
+fn threshold(text: &str) -> Result<f64, &'static str> {
+    let value = text.parse().ok().filter(|value| (0.001..=1000.0).contains(value));
+    value.ok_or("a number from 0.001 to 1000 is needed")
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("a whole number from 0 to {} is needed", u64::MAX))
 }
 
 fn filter(text: &str) -> Result<Filter, &'static str> {

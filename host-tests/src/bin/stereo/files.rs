@@ -1,9 +1,13 @@
 //! The files that `match` and `demo` write. Names and formats are a contract with programs that read them.
 
+use crate::failure::Failure;
 use image::codecs::png::PngEncoder;
 use image::{EncodableLayout, ImageBuffer, ImageError, Luma, Pixel, PixelWithColorType, RgbImage};
+use serde::Serialize;
+use std::ffi::OsStr;
 use std::io::{self, Write};
 use std::ops::Deref;
+use std::path::Path;
 use stereopsis::depth::DepthScale;
 use stereopsis::units::Disparity;
 use stereopsis_host::colour::{ColourScale, confidence_raw, flags_raw};
@@ -11,10 +15,20 @@ use stereopsis_host::map::DisparityMap;
 use stereopsis_host::output::{OutputError, Staging};
 use stereopsis_host::pfm;
 use stereopsis_host::ply::{self, ColouredPoint};
-use stereopsis_host::report::{Report, Summary};
+use stereopsis_host::report::Report;
 
 /// What is written only with a calibration. A run without one takes the files of an earlier run with it away.
 pub const WITH_DEPTH: [&str; 3] = ["depth.pfm", "depth.png", "cloud.ply"];
+
+/// Writes one file, whole or not at all: `value` as JSON.
+pub fn json_file(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
+    let no_file = || Failure::new(format!("--out {}: is not a file; name a file for the result", path.display()));
+    let name = path.file_name().and_then(OsStr::to_str).filter(|_| !path.is_dir()).ok_or_else(no_file)?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut staging = Staging::new(folder)?;
+    staging.write(name, |out| json(out, value))?;
+    Ok(staging.commit(&[])?)
+}
 
 /// Writes all files of a run but those of the truth.
 pub fn write(staging: &mut Staging, report: &Report<'_>, scale: Option<&DepthScale>) -> Result<(), OutputError> {
@@ -50,8 +64,8 @@ where
     })
 }
 
-fn json(out: &mut dyn Write, summary: &Summary) -> io::Result<()> {
-    serde_json::to_writer_pretty(&mut *out, summary)?;
+fn json(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, value)?;
     out.write_all(b"\n")
 }
 

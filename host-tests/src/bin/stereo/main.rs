@@ -2,15 +2,17 @@
 //!
 //! * `cli`: what is asked for. `failure`: what is said when it cannot be done.
 //! * `input`: the images and the search, checked against each other. `progress`: how far it is.
-//! * `matching`, `bench`, `demo`: the commands. `files`: the results as files.
+//! * `matching`, `bench`, `demo`, `fundamental`, `pose`: the commands. `files`: the results as files.
 
 mod bench;
 mod cli;
 mod demo;
 mod failure;
 mod files;
+mod fundamental;
 mod input;
 mod matching;
+mod pose;
 mod progress;
 
 use cli::Command;
@@ -35,6 +37,8 @@ fn start() -> Result<(), Failure> {
         Ok(Command::Demo(args)) => demo::run(&args),
         Ok(Command::Match(args)) => matching::run(&args),
         Ok(Command::Bench(args)) => bench::run(&args),
+        Ok(Command::Fundamental(args)) => fundamental::run(&args),
+        Ok(Command::Pose(args)) => pose::run(&args),
         Err(cli::Stop::Help(text)) => print(&text),
         Err(cli::Stop::Usage(failure)) => Err(failure),
     }

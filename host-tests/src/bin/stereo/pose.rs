@@ -1,0 +1,160 @@
+//! `stereo pose`: correspondences of known cameras into where the second one stands, and points.
+
+use crate::cli::{PoseArgs, RobustArgs, TwoViewMethod};
+use crate::failure::Failure;
+use crate::files::json_file;
+use crate::fundamental::rows;
+use crate::print;
+use serde::Serialize;
+use stereopsis::geometry::{
+    Camera, Correspondence, EightPointError, Essential, Fundamental, Homography, PlaneMotionError, RobustConfig,
+    RobustError, TwoViewModel, TwoViews, choose, eight_point, robust_fundamental,
+};
+use stereopsis_host::calibration::Cameras;
+use stereopsis_host::matches::read_matches;
+
+/// What is written. Names are a contract with programs that read them.
+#[derive(Serialize)]
+struct Answer {
+    essential: [[f64; 3]; 3],
+    rotation: [[f64; 3]; 3],
+    translation: [f64; 3],
+    points: Vec<Option<[f64; 3]>>,
+    inliers: Vec<bool>,
+    model: &'static str,
+}
+
+/// A start for the refinement, and which model it comes from.
+struct Start {
+    essential: Vec<Essential<f64>>,
+    model: &'static str,
+}
+
+pub fn run(args: &PoseArgs) -> Result<(), Failure> {
+    let seen = read_matches(&args.matches)?;
+    let cameras = Cameras::open(&args.calib)?;
+    let (mut answer, rms) = solve(&seen, &cameras, &args.robust)
+        .map_err(|why| Failure::new(format!("{}: {why}", args.matches.display())))?;
+    // A zero's sign says nothing.
+    answer.translation.iter_mut().for_each(|x| *x += 0.0);
+    json_file(&args.out, &answer)?;
+    let (kept, points) = (answer.inliers.iter().filter(|&&i| i).count(), answer.points.iter().flatten().count());
+    let n = seen.len();
+    print(&format!(
+        "{kept} of {n} matches within {} px ({rms:.3} px RMS), {points} points, by the {} matrix\n",
+        args.robust.threshold, answer.model
+    ))
+}
+
+fn solve(seen: &[Correspondence<f64>], cameras: &Cameras, args: &RobustArgs) -> Result<(Answer, f64), String> {
+    let (first, second) = (pinhole(&cameras.first)?, pinhole(&cameras.second)?);
+    let seen = undistorted(seen, cameras)?;
+    let Start { essential, model } = start(&seen, &first, &second, args)?;
+    let mut best: Option<(usize, f64, _, _, Vec<bool>)> = None;
+    let mut why = "no pose".to_owned();
+    for essential in essential {
+        let refined = match args.method {
+            // Every match counts alike, however far off it is.
+            TwoViewMethod::EightPoint => Ok(essential),
+            TwoViewMethod::Ransac => essential.refined(&seen, &first, &second, args.threshold),
+        };
+        let refined = refined.map_err(|e| e.to_string())?;
+        let f = Fundamental::from_essential(&refined, &first, &second);
+        let inliers: Vec<bool> = seen.iter().map(|s| f.sampson_px(s).abs() <= args.threshold).collect();
+        let kept = || seen.iter().zip(&inliers).filter(|&(_, &inlier)| inlier).map(|(s, _)| *s);
+        let squares: f64 = kept().map(|s| f.sampson_squared_px2(&s)).sum();
+        let rms = (squares / kept().count().max(1) as f64).sqrt();
+        match refined.recover_pose(kept(), &first, &second) {
+            Ok(found) => {
+                if best.as_ref().is_none_or(|(in_front, ..)| found.in_front > *in_front) {
+                    best = Some((found.in_front, rms, refined, found.pose, inliers));
+                }
+            }
+            Err(e) => why = e.to_string(),
+        }
+    }
+    let (_, rms, essential, pose, inliers) = best.ok_or(why)?;
+    let in_baselines = pose.in_baselines();
+    let views = TwoViews::new(first, second, in_baselines).map_err(|e| e.to_string())?;
+    let point = |(s, &inlier): (&Correspondence<f64>, &bool)| {
+        let point = inlier.then(|| views.optimal(s).ok()).flatten()?.point;
+        Some([point.x, point.y, point.z])
+    };
+    let answer = Answer {
+        essential: rows(essential.matrix()),
+        rotation: rows(pose.rotation()),
+        translation: (*in_baselines.translation()).into(),
+        points: seen.iter().zip(&inliers).map(point).collect(),
+        inliers,
+        model,
+    };
+    Ok((answer, rms))
+}
+
+/// Essential matrices to begin with: one of a scene with depth, two of a plane.
+fn start(
+    seen: &[Correspondence<f64>],
+    first: &Camera<f64>,
+    second: &Camera<f64>,
+    args: &RobustArgs,
+) -> Result<Start, String> {
+    let mut inliers = vec![true; seen.len()];
+    let found = match args.method {
+        TwoViewMethod::EightPoint => match eight_point(seen) {
+            Err(EightPointError::Plane) => None,
+            found => Some(found.map_err(|e| e.to_string())?),
+        },
+        TwoViewMethod::Ransac => {
+            let config = RobustConfig { seed: args.seed, ..RobustConfig::new(args.threshold) };
+            match robust_fundamental(seen, &config, &mut inliers) {
+                Err(RobustError::Plane) => None,
+                found => Some(found.map_err(|e| e.to_string())?.fundamental),
+            }
+        }
+    };
+    let kept: Vec<_> = seen.iter().zip(&inliers).filter(|&(_, &inlier)| inlier).map(|(s, _)| *s).collect();
+    let homography = match found {
+        None => Some(Homography::from_correspondences(&kept).map_err(|e| e.to_string())?),
+        Some(f) => {
+            let squares: f64 = kept.iter().map(|s| f.sampson_squared_px2(s)).sum();
+            // Exact matches have the noise of their digits.
+            let sigma = (squares / kept.len() as f64).sqrt().max(0.01);
+            match choose(&kept, sigma).map(|choice| choice.model) {
+                Ok(TwoViewModel::Planar(h)) => Some(h),
+                _ => None,
+            }
+        }
+    };
+    match (homography, found) {
+        (None, Some(f)) => {
+            let essential = Essential::from_fundamental(&f, first, second).map_err(|e| e.to_string())?;
+            Ok(Start { essential: vec![essential], model: "fundamental" })
+        }
+        (None, None) => Err("no model fits".to_owned()),
+        (Some(h), _) => {
+            let motions = h.recover_motions(kept, first, second).map_err(|e| match e {
+                PlaneMotionError::NoBaseline => "the camera has only turned: there is no translation".to_owned(),
+                e => e.to_string(),
+            })?;
+            let poses = motions.iter().filter_map(|(motion, _)| motion.relative_pose());
+            let essential = poses.filter_map(|pose| Essential::from_pose(&pose.in_baselines()).ok()).collect();
+            Ok(Start { essential, model: "homography" })
+        }
+    }
+}
+
+/// The camera without its lens.
+fn pinhole(camera: &Camera<f64>) -> Result<Camera<f64>, String> {
+    Camera::from_matrix(&camera.matrix()).map_err(|e| e.to_string())
+}
+
+/// The matches as cameras without lenses would show them.
+fn undistorted(seen: &[Correspondence<f64>], cameras: &Cameras) -> Result<Vec<Correspondence<f64>>, String> {
+    let both = seen.iter().zip(1..).map(|(s, number)| {
+        let first = cameras.first.undistort(&s.first);
+        let second = cameras.second.undistort(&s.second);
+        let (first, second) = first.and_then(|p| Ok((p, second?))).map_err(|e| format!("match {number}: {e}"))?;
+        Ok(Correspondence { first, second })
+    });
+    both.collect()
+}

@@ -1,0 +1,77 @@
+//! Two cameras from a calibration file, rectified or not.
+
+use super::{CalibrationError, Fault, kitti, load, middlebury};
+use std::path::Path;
+use stereopsis::geometry::Camera;
+
+/// The two cameras of a calibration file, by themselves: neither where they stand nor whether they are rectified.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Cameras {
+    /// The first (left) camera, px.
+    pub first: Camera<f64>,
+    /// The second (right) camera, px.
+    pub second: Camera<f64>,
+}
+
+impl Cameras {
+    /// Reads the file at `path`: Middlebury's `cam0` and `cam1` or KITTI's projection matrices, told apart by content. Of
+    /// KITTI's cameras it is the pair that [`Calibration::open`](super::Calibration::open) takes for a colour picture.
+    pub fn open(path: &Path) -> Result<Self, CalibrationError> {
+        Self::read(path).map_err(|fault| CalibrationError { path: path.into(), fault })
+    }
+
+    fn read(path: &Path) -> Result<Self, Fault> {
+        let text = load(path)?;
+        if text.trim().is_empty() {
+            return Err(Fault::Empty);
+        }
+        let [(first_key, first), (second_key, second)] = if middlebury::is_one(&text) {
+            middlebury::matrices(&text)?
+        } else if kitti::is_one(&text) {
+            kitti::matrices(&text)?
+        } else {
+            return Err(Fault::Unknown);
+        };
+        Ok(Self { first: camera(first_key, first)?, second: camera(second_key, second)? })
+    }
+}
+
+/// A camera of fx, skew, cx, fy, cy.
+fn camera(key: String, [fx, skew, cx, fy, cy]: [f64; 5]) -> Result<Camera<f64>, Fault> {
+    let camera = Camera::new(fx, fy, cx, cy).and_then(|camera| camera.with_skew(skew));
+    camera.map_err(|error| Fault::Camera { key, error })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Result<Cameras, String> {
+        let file = tempfile::NamedTempFile::new().expect("a temporary file");
+        std::fs::write(file.path(), text).expect("a file");
+        Cameras::open(file.path()).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn cameras_need_not_be_rectified() {
+        let cameras = of("cam0=[500 2 320; 0 510 240; 0 0 1]\ncam1=[600 0 300; 0 600 200; 0 0 1]\n").expect("cameras");
+        assert_eq!(cameras.first.focal_px(), (500.0, 510.0));
+        assert_eq!(cameras.first.skew_px(), 2.0);
+        assert_eq!(cameras.second.principal_point(), (300.0, 200.0));
+        let cameras = of("P0: 500 0 320 0 0 510 240 0 0 0 1 0\nP1: 500 0 320 -50 0 510 240 0 0 0 1 0\n");
+        assert_eq!(cameras.expect("cameras").second.focal_px(), (500.0, 510.0));
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        for (text, said) in [
+            ("", "empty"),
+            ("hello", "neither"),
+            ("cam0=[500 0 320; 0 510 240; 0 0 1]\n", "cam1 is missing"),
+            ("cam0=[0 0 320; 0 510 240; 0 0 1]\ncam1=[1 0 0; 0 1 0; 0 0 1]\n", "cam0: the focal lengths"),
+        ] {
+            let error = of(text).expect_err(text);
+            assert!(error.contains(said), "{text}: {error}");
+        }
+    }
+}

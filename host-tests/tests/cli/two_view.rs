@@ -1,0 +1,189 @@
+//! `fundamental` and `pose`: matches in, one JSON file out, or one line and nothing.
+
+use super::support::{Bench, stereo, text};
+use serde_json::Value;
+use std::fmt::Write;
+
+/// Focal length and principal point of both cameras, px.
+const CAMERA: (f64, f64, f64) = (500.0, 320.0, 240.0);
+
+/// Matches of a scene before two cameras that look alike, the second one 0.8 to the right and 0.6 ahead: t = (0.8, 0,
+/// 0.6), R = 1. Every fifth match is wrong when asked; `flat` puts the scene on a wall.
+fn matches(count: usize, wrong: bool, flat: bool) -> String {
+    let (f, cx, cy) = CAMERA;
+    let mut text = "x1,y1,x2,y2\n".to_owned();
+    for i in 0..count {
+        let fraction = |step: f64| (i as f64 * step).fract();
+        let (x, y) = (4.0 * fraction(0.618_034) - 2.0, 3.0 * fraction(0.754_877) - 1.5);
+        let z = if flat { 6.0 + 0.4 * x - 0.3 * y } else { 5.0 + 3.0 * fraction(0.569_840) };
+        let (mut u, v) = (f * (x - 0.8) / (z - 0.6) + cx, f * y / (z - 0.6) + cy);
+        let mut below = v;
+        if wrong && i % 5 == 0 {
+            (u, below) = (640.0 * fraction(0.414_214), 480.0 * fraction(0.732_051));
+        }
+        writeln!(text, "{:.6},{:.6},{u:.6},{below:.6}", f * x / z + cx, f * y / z + cy).expect("to a string");
+    }
+    text
+}
+
+fn calibration() -> String {
+    let (f, cx, cy) = CAMERA;
+    format!("cam0=[{f} 0 {cx}; 0 {f} {cy}; 0 0 1]\ncam1=[{f} 0 {cx}; 0 {f} {cy}; 0 0 1]\n")
+}
+
+fn arguments(bench: &Bench, command: &str, extra: &[&str]) -> Vec<String> {
+    let file = |name: &str| bench.path(name).display().to_string();
+    let mut all = vec![command.to_owned(), "--matches".into(), file("m.csv"), "--out".into(), file("out/answer.json")];
+    if command == "pose" {
+        all.extend(["--calib".to_owned(), file("calib.txt")]);
+    }
+    all.extend(extra.iter().map(|&option| option.to_owned()));
+    all
+}
+
+fn answer(bench: &Bench, command: &str, extra: &[&str]) -> Value {
+    let run = stereo(arguments(bench, command, extra));
+    assert!(run.status.success() && run.stderr.is_empty(), "{command} {extra:?}: {}", text(&run.stderr));
+    let json = std::fs::read(bench.path("out/answer.json")).expect("the answer");
+    serde_json::from_slice(&json).expect("an object")
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    let list = value.as_array().expect("a list").iter();
+    list.flat_map(|v| if v.is_array() { numbers(v) } else { vec![v.as_f64().expect("a number")] }).collect()
+}
+
+/// The bools, as how many of the right and of the wrong matches are kept.
+fn kept(value: &Value) -> (usize, usize) {
+    let list = value["inliers"].as_array().expect("a list").iter().enumerate();
+    let of = |wrong: bool| {
+        list.clone().filter(|(i, v)| (i % 5 == 0) == wrong && v.as_bool().expect("true or false")).count()
+    };
+    (of(false), of(true))
+}
+
+fn bench(matches: &str) -> Bench {
+    let bench = Bench::new();
+    bench.put("m.csv", matches.as_bytes());
+    bench.put("calib.txt", calibration().as_bytes());
+    bench
+}
+
+#[test]
+fn fundamental_finds_the_wrong_ones() {
+    let bench = bench(&matches(100, true, false));
+    let first = answer(&bench, "fundamental", &["--seed", "7"]);
+    let (right, wrong) = kept(&first);
+    assert!(right == 80 && wrong <= 3, "{right} {wrong}");
+    // F = K^-T [t]x K^-1 with t = (0.8, 0, 0.6): p^T F p' = 0 for (320, 240) of the one and (320 - 400/5.4 ...) says the
+    // file itself: every right line.
+    let f = numbers(&first["fundamental"]);
+    for line in matches(100, true, false).lines().skip(1).enumerate().filter(|(i, _)| i % 5 != 0).map(|(_, line)| line)
+    {
+        let m: Vec<f64> = line.split(',').map(|word| word.parse().expect("a number")).collect();
+        let (p, q) = ([m[0], m[1], 1.0], [m[2], m[3], 1.0]);
+        let along = |row: usize| (0..3).map(|j| f[3 * row + j] * q[j]).sum::<f64>();
+        let slope = along(0).hypot(along(1));
+        let residual: f64 = (0..3).map(|i| p[i] * along(i)).sum();
+        assert!((residual / slope).abs() < 0.01, "{line}: {} px", residual / slope);
+    }
+    assert!(first["time_us"].as_f64().expect("a number") > 0.0);
+    assert!(first["miss_probability"].as_f64().expect("a number") <= 1e-3);
+    let again = answer(&bench, "fundamental", &["--seed", "7"]);
+    assert_eq!(first["fundamental"], again["fundamental"]);
+    assert_eq!(first["inliers"], again["inliers"]);
+}
+
+#[test]
+fn fundamental_by_eight_points() {
+    let bench = bench(&matches(40, false, false));
+    let found = answer(&bench, "fundamental", &["--method", "eight-point", "--threshold", "0.01"]);
+    assert_eq!(kept(&found), (32, 8));
+    assert!(found.get("samples").is_none());
+}
+
+#[test]
+fn pose_of_the_second_camera() {
+    for (flat, model) in [(false, "fundamental"), (true, "homography")] {
+        let bench = bench(&matches(100, true, flat));
+        let found = answer(&bench, "pose", &[]);
+        assert_eq!(found["model"], model);
+        let (right, wrong) = kept(&found);
+        assert!(right == 80 && wrong <= 3, "{right} {wrong}");
+        let t = numbers(&found["translation"]);
+        assert!((t.iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-9, "{t:?}");
+        assert_eq!(found["points"].as_array().expect("a list").len(), 100);
+        if flat {
+            // Of a wall two poses have all points in front: either is an answer.
+            continue;
+        }
+        let rotation = numbers(&found["rotation"]);
+        let identity = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+        assert!(rotation.iter().zip(identity).all(|(a, b)| (a - b).abs() < 1e-4), "{rotation:?}");
+        assert!(t.iter().zip([0.8, 0.0, 0.6]).all(|(a, b)| (a - b).abs() < 1e-3), "{t:?}");
+        // E = [t]x R, over its sign.
+        let e = numbers(&found["essential"]);
+        let expected = [0.0, -0.6, 0.0, 0.6, 0.0, -0.8, 0.0, 0.8, 0.0];
+        let sign = e[3].signum();
+        assert!(e.iter().zip(expected).all(|(a, b)| (sign * a - b).abs() < 1e-3), "{e:?}");
+        // The second match, in baselines of length one.
+        let point = numbers(&found["points"][1]);
+        let (x, y) = (4.0 * 0.618_034 - 2.0, 3.0 * 0.754_877 - 1.5);
+        let z = 5.0 + 3.0 * 0.569_840;
+        assert!(point.iter().zip([x, y, z]).all(|(a, b)| (a - b).abs() < 0.01 * z), "{point:?}");
+    }
+}
+
+#[test]
+fn bad_matches() {
+    let bench = bench("");
+    for (content, culprit) in [
+        ("", "empty"),
+        ("x1,y1,x2\n1,2,3\n", "y2"),
+        ("x1,y1,x2,y2\n1,2,nan,4\n", "line 2: x2"),
+        ("x1,y1,x2,y2\n1,2,3,4\n1,2\n", "line 3: x2"),
+        ("x1,y1,x2,y2\n1,2,3,4\n", "eight"),
+        ("x1,y1,x2,y2\n", "eight"),
+        ("\u{0}\u{1}\u{2}", "m.csv"),
+    ] {
+        bench.put("m.csv", content.as_bytes());
+        for command in ["fundamental", "pose"] {
+            for method in ["ransac", "eight-point"] {
+                bench.refused(&arguments(&bench, command, &["--method", method]), culprit);
+                bench.refused(&arguments(&bench, command, &["--method", method]), "m.csv");
+            }
+        }
+    }
+    bench.put("m.csv", &[0xff, 0xfe, b',', 0xc0]);
+    bench.refused(&arguments(&bench, "fundamental", &[]), "m.csv");
+    bench.put("m.csv", "1,2,3,4\n".repeat(50).as_bytes());
+    bench.refused(&arguments(&bench, "fundamental", &[]), "m.csv");
+    bench.put("m.csv", matches(60, false, true).as_bytes());
+    bench.refused(&arguments(&bench, "fundamental", &[]), "plane");
+    bench.refused(&arguments(&bench, "fundamental", &["--method", "eight-point"]), "plane");
+    let missing = bench.path("none.csv").display().to_string();
+    bench.refused(&["fundamental", "--matches", &missing, "--out", "answer.json"], "none.csv");
+}
+
+#[test]
+fn bad_options_of_two_views() {
+    let bench = bench(&matches(60, true, false));
+    for bad in ["0", "-1", "nan", "inf", "x", "1e9"] {
+        bench.refused(&arguments(&bench, "fundamental", &["--threshold", bad]), "--threshold");
+        bench.refused(&arguments(&bench, "pose", &["--threshold", bad]), "--threshold");
+    }
+    for bad in ["-1", "1.5", "x", "99999999999999999999"] {
+        bench.refused(&arguments(&bench, "fundamental", &["--seed", bad]), "--seed");
+    }
+    bench.refused(&arguments(&bench, "fundamental", &["--method", "seven"]), "--method");
+    let matches = bench.path("m.csv").display().to_string();
+    let folder = bench.path("").display().to_string();
+    bench.refused(&["fundamental", "--matches", &matches, "--out", &folder], "--out");
+    bench.refused(&["fundamental", "--matches", &matches], "--out");
+    bench.refused(&["fundamental", "--out", "answer.json"], "--matches");
+    bench.refused(&["pose", "--matches", &matches, "--out", "answer.json"], "--calib");
+    bench.put("calib.txt", b"cam0=[500 0 320; 0 500 240; 0 0 1]\n");
+    bench.refused(&arguments(&bench, "pose", &[]), "cam1");
+    bench.put("calib.txt", b"hello");
+    bench.refused(&arguments(&bench, "pose", &[]), "calib.txt");
+}

@@ -3,7 +3,7 @@
 //! In: lines from a camera. Out: census rows.
 //!
 //! 1. [`GreyLines`]: any pixel format as 8-bit grey lines.
-//! 2. [`LineWindow`]: the last five lines, as the five rows around a centre.
+//! 2. [`LineBand`]: the last lines, as the rows around a centre; [`LineWindow`] holds five.
 //! 3. [`census_plus4`], [`census_ring8`], [`census_wide8`], [`census_full24`]: the codes of one row. [`gradients`]: how its
 //!    brightness changes along the line and across it.
 //!
@@ -17,4 +17,4 @@ mod window;
 pub use census::{census_full24, census_plus4, census_ring8, census_wide8};
 pub use gradient::gradients;
 pub use grey::GreyLines;
-pub use window::LineWindow;
+pub use window::{LineBand, LineWindow};

@@ -81,7 +81,7 @@ fn bad_options() {
     }
     bench.refused(&["bench", "--left", "a", "--right", "b", "--disparities", "64", "--repeat", "0"], "--repeat");
     bench.refused::<&str>(&[], "subcommand");
-    bench.refused(&["rectify"], "the commands are demo, match and bench");
+    bench.refused(&["rectify"], "the commands are demo, match, bench and features");
     bench.refused(&bench.arguments(&[("--left", "two\nlines.png")]), "two\\nlines.png");
 }
 

@@ -2,12 +2,13 @@
 //!
 //! * `cli`: what is asked for. `failure`: what is said when it cannot be done.
 //! * `input`: the images and the search, checked against each other. `progress`: how far it is.
-//! * `matching`, `bench`, `demo`: the commands. `files`: the results as files.
+//! * `matching`, `bench`, `demo`, `features`: the commands. `files`: the results as files.
 
 mod bench;
 mod cli;
 mod demo;
 mod failure;
+mod features;
 mod files;
 mod input;
 mod matching;
@@ -35,6 +36,7 @@ fn start() -> Result<(), Failure> {
         Ok(Command::Demo(args)) => demo::run(&args),
         Ok(Command::Match(args)) => matching::run(&args),
         Ok(Command::Bench(args)) => bench::run(&args),
+        Ok(Command::Features(args)) => features::run(&args),
         Err(cli::Stop::Help(text)) => print(&text),
         Err(cli::Stop::Usage(failure)) => Err(failure),
     }

@@ -5,6 +5,7 @@
 //! | `STEREO_METHOD` | `fast`, `block`, `sgm-lean`, `sgm` or `sgm-edge` | `block` |
 //! | `STEREO_WIDTH`, `STEREO_HEIGHT` | pixels in a line at most; with the height, the size of the built-in scene | 160, 120 |
 //! | `STEREO_DISPARITIES` | disparities that are searched, 16 to 256 | 32 |
+//! | `STEREO_NOISE` | how noisy the cameras are: `none`, `low` or `high` | `none` |
 //! | `STEREO_CORE` | the board's core, where the target leaves a choice | the target's first |
 //! | `STEREO_MEMORY` | `budget` of memory.x, or all that the `board` has | `budget` |
 
@@ -104,6 +105,12 @@ fn choice(board: &Board) -> Result<String, Box<dyn Error>> {
     let width = number("STEREO_WIDTH", 160, 16, 4096)?;
     let height = number("STEREO_HEIGHT", 120, 1, 4096)?;
     let disparities = number("STEREO_DISPARITIES", 32, 16, 256)?;
+    let noise = match variable("STEREO_NOISE", "none").as_str() {
+        "none" => "None",
+        "low" => "Low",
+        "high" => "High",
+        other => return Err(format!("STEREO_NOISE={other}: none, low or high").into()),
+    };
     let lanes = disparities.next_multiple_of(16);
     Ok(format!(
         "/// The matching method.\n\
@@ -116,6 +123,8 @@ fn choice(board: &Board) -> Result<String, Box<dyn Error>> {
          pub const HEIGHT: u16 = {height};\n\
          /// Disparities that are searched, px.\n\
          pub const DISPARITIES: u16 = {disparities};\n\
+         /// How noisy the cameras are.\n\
+         pub const NOISE: stereopsis::imaging::Noise = stereopsis::imaging::Noise::{noise};\n\
          /// The pipeline that has room for them.\n\
          pub type BoardPipeline = stereopsis::pipeline::Pipeline<Method, {}, {lanes}>;\n\
          /// The board.\n\

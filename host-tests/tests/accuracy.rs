@@ -151,9 +151,9 @@ fn block_is_accurate_to_a_fraction_of_a_pixel() {
 
 #[test]
 fn sgm_is_accurate_to_a_fraction_of_a_pixel() {
-    sub_pixel::<SgmLean>(0.085, 0.01, 1.1);
-    sub_pixel::<Sgm>(0.075, 0.01, 1.1);
-    sub_pixel::<SgmEdge>(0.07, 0.01, 1.1);
+    sub_pixel::<SgmLean>(0.05, 0.01, 1.1);
+    sub_pixel::<Sgm>(0.05, 0.01, 1.1);
+    sub_pixel::<SgmEdge>(0.05, 0.01, 1.1);
 }
 
 /// Bounds in percent: answers within three sigma in depth, answers over 2 px off, visible points without a right answer.

@@ -2,9 +2,10 @@
 
 use image::GrayImage;
 use std::sync::LazyLock;
+use stereopsis::imaging::Noise;
 use stereopsis::matching::{Config, Filter};
 use stereopsis_host::real::{Alteration, RealError, RealScene, Score};
-use stereopsis_host::run::{MemoryPair, Method, run};
+use stereopsis_host::run::{MemoryPair, Method, NoiseChoice, run};
 use stereopsis_host::scene::Scene;
 
 /// A rendered scene as a folder's files would give it.
@@ -21,10 +22,16 @@ fn altered(alteration: Alteration, seed: u64) -> [GrayImage; 2] {
 }
 
 fn missed(method: Method, alteration: Alteration) -> f64 {
+    missed_with(method, alteration, NoiseChoice::Told(Noise::None))
+}
+
+fn missed_with(method: Method, alteration: Alteration, noise: NoiseChoice) -> f64 {
     let [left, right] = altered(alteration, 1);
     let (width, height) = (left.width() as u16, left.height() as u16);
     let mut camera = MemoryPair::new(width, left.into_raw(), right.into_raw()).expect("two pictures of one size");
     let config = method.with_filter(Filter::Default, Config::new(width, height, SCENE.disparities));
+    let (noise, _) = noise.level(&mut camera).expect("a frame");
+    let config = Config { noise, ..config };
     let map = run(method, &config, &mut camera, |_| ()).expect("a frame").map;
     Score::of(map.disparity.iter().map(|d| d.to_f32()), &SCENE.truth).expect("scored pixels").missed
 }
@@ -84,6 +91,18 @@ fn altered_pairs_are_harder_and_paths_bear_another_exposure() {
     for method in [Method::SgmLean, Method::Sgm] {
         let missed = missed(method, Alteration::Exposure { gain: 1.2, offset: 15.0 });
         assert!(missed < 0.1, "{method} misses {missed} with another exposure");
+    }
+}
+
+#[test]
+fn measured_noise_is_smoothed_and_what_has_little_is_left() {
+    for method in Method::ALL {
+        let [as_told, measured] = [NoiseChoice::Told(Noise::None), NoiseChoice::Auto]
+            .map(|noise| missed_with(method, Alteration::Noise(5.0), noise));
+        assert!(measured < 0.9 * as_told, "{method} misses {measured} of noisy pixels, {as_told} without smoothing");
+        let [as_told, measured] = [NoiseChoice::Told(Noise::None), NoiseChoice::Auto]
+            .map(|noise| missed_with(method, Alteration::Unaltered, noise));
+        assert_eq!(measured, as_told, "{method}: as taken");
     }
 }
 

@@ -1,11 +1,12 @@
 //! The core's census rows against the twin's, at all small widths and heights.
 
 use image::GrayImage;
-use stereopsis::imaging::{LineWindow, census_full24, census_plus4, census_ring8, census_wide8};
+use stereopsis::imaging::{LineWindow, Noise, census_full24, census_plus4, census_ring8, census_wide8};
 use stereopsis_host::scene::Random;
 use stereopsis_host::scene::pattern::Pattern;
 use stereopsis_host::twin::Picture;
 use stereopsis_host::twin::census::{FULL24, PLUS4, RING8, WIDE8, census};
+use stereopsis_host::twin::smooth::Seen;
 
 const WIDEST: usize = 70;
 
@@ -42,7 +43,7 @@ fn core_census(image: &GrayImage) -> [Vec<u32>; 4] {
 }
 
 fn compare(image: &GrayImage, what: &str) -> [Vec<u32>; 4] {
-    let picture = Picture::new(image);
+    let picture = Seen::new(Picture::new(image), Noise::None);
     let core = core_census(image);
     let twins = [&PLUS4[..], &RING8, &WIDE8, &FULL24].map(|neighbours| census(&picture, neighbours));
     for ((core, twin), name) in core.iter().zip(&twins).zip(["plus4", "ring8", "wide8", "full24"]) {

@@ -5,7 +5,10 @@
 
 use std::ffi::{CStr, c_void};
 use std::ptr::{null, null_mut};
-use stereopsis::ffi::{Config, Handle, Rig, Row, STEREOPSIS_ALIGN, STEREOPSIS_PRESET_DEFAULT, Status, state_bytes};
+use stereopsis::ffi::{
+    Config, Handle, Rig, Row, STEREOPSIS_ALIGN, STEREOPSIS_NOISE_LOW, STEREOPSIS_PRESET_DEFAULT, Status, state_bytes,
+};
+use stereopsis::imaging::Noise;
 use stereopsis::matching::{self, Block, Checks};
 use stereopsis::pipeline::Pipeline;
 use stereopsis_host::scene::pattern::Pattern;
@@ -57,6 +60,7 @@ fn config(width: u16, height: u16, disparities: u16) -> Config {
         fill_pixels: 0,
         fill_step: 0,
         confidence: 0,
+        noise: 0,
     };
     // SAFETY: the pointer is to a configuration.
     let status =
@@ -81,6 +85,7 @@ fn rows_are_those_of_the_pipeline() {
         // With and without.
         let confidence = width > 37;
         let asked = matching::Config { checks, confidence, ..matching::Config::new(width, height, 32) };
+        let asked = matching::Config { noise: Noise::Low, ..asked };
         pipeline.start(&asked).expect("the configuration is valid");
         pipeline.begin().expect("it is started");
         let mut expected = Vec::new();
@@ -102,6 +107,7 @@ fn rows_are_those_of_the_pipeline() {
         let (status, handle) = init(&mut memory, 0, stereopsis_size());
         assert_eq!(status, Status::Ok);
         let config = Config { median: 1, fill_pixels: 3, confidence: confidence.into(), ..config(width, height, 32) };
+        let config = Config { noise: STEREOPSIS_NOISE_LOW, ..config };
         let mut found = Vec::new();
         // SAFETY: the handle is from `init`, lines have their length, and rows are read before the next call.
         unsafe {

@@ -2,13 +2,15 @@
 //!
 //! Built by the feature `real-data`, which `cargo xtask test` sets when `STEREO_DATA` is.
 
+use image::GrayImage;
 use std::fmt::Write;
 use std::path::Path;
 use std::sync::LazyLock;
+use stereopsis::imaging::Noise;
 use stereopsis::matching::{Config, Filter};
 use stereopsis_host::map::DisparityMap;
-use stereopsis_host::real::{RealScene, Score};
-use stereopsis_host::run::{MemoryPair, Method, run};
+use stereopsis_host::real::{Alteration, RealScene, Score};
+use stereopsis_host::run::{MemoryPair, Method, measure_noise, run};
 use stereopsis_host::sparsification::Sparsification;
 
 /// The scenes, read once.
@@ -17,12 +19,22 @@ static SCENES: LazyLock<Vec<RealScene>> = LazyLock::new(|| {
     RealScene::all(&Path::new(&data).join("stereo")).unwrap_or_else(|e| panic!("STEREO_DATA: {e}"))
 });
 
+fn camera([left, right]: [&GrayImage; 2]) -> MemoryPair {
+    MemoryPair::new(left.width() as u16, left.to_vec(), right.to_vec()).expect("two images of one size")
+}
+
+/// A scene as `stereo match` does it: noise is measured.
 fn match_with(scene: &RealScene, method: Method, filter: Filter) -> DisparityMap {
+    match_images(scene, [&scene.left, &scene.right], method, filter)
+}
+
+fn match_images(scene: &RealScene, images: [&GrayImage; 2], method: Method, filter: Filter) -> DisparityMap {
     let (width, height) = (scene.left.width() as u16, scene.left.height() as u16);
-    let camera = MemoryPair::new(width, scene.left.to_vec(), scene.right.to_vec());
+    let mut camera = camera(images);
+    let noise = measure_noise(&mut camera).expect("a frame").level();
     let config = method.with_filter(filter, Config::new(width, height, scene.disparities));
-    let config = Config { confidence: true, ..config };
-    run(method, &config, &mut camera.expect("two images of one size"), |_| ()).expect("a frame").map
+    let config = Config { confidence: true, noise, ..config };
+    run(method, &config, &mut camera, |_| ()).expect("a frame").map
 }
 
 /// What confidences are worth, for three losses: over 2 px off, over 1 px off, the error.
@@ -129,5 +141,41 @@ fn confidence_tells_wrong_answers_on_every_real_pair() {
         for filter in [Filter::Dense, Filter::Default] {
             confidence_on_real_pairs(method, filter, 0.15);
         }
+    }
+}
+
+/// What the meter's description says of these scenes.
+#[test]
+fn noise_is_measured_on_every_real_pair() {
+    let (mut measured, mut textured) = (Vec::new(), 0);
+    for (scene, seed) in SCENES.iter().zip(1..) {
+        let meters = [0.0, 2.0, 5.0].map(|sigma| {
+            let [left, right] = Alteration::Noise(sigma).apply([&scene.left, &scene.right], seed);
+            measure_noise(&mut camera([&left, &right])).expect("a frame")
+        });
+        let sigmas = meters.each_ref().map(|meter| f64::from(meter.sigma_16ths().expect("a run")) / 16.0);
+        println!("{:24}{:?}", scene.name, sigmas);
+        textured += usize::from(meters[0].level() != Noise::None);
+        assert!(meters[1].level() >= Noise::Low && meters[2].level() == Noise::High, "{}: {sigmas:?}", scene.name);
+        measured.push(sigmas);
+    }
+    assert!(textured <= 1 && measured.iter().all(|[clean, ..]| *clean < 2.9), "{measured:?}");
+}
+
+#[test]
+fn sgm_on_noisy_real_pairs() {
+    for (sigma, most) in [(2.0, 0.09), (5.0, 0.15)] {
+        let scores: Vec<_> = SCENES
+            .iter()
+            .zip(1..)
+            .map(|(scene, seed)| {
+                let [left, right] = Alteration::Noise(sigma).apply([&scene.left, &scene.right], seed);
+                let answers = match_images(scene, [&left, &right], Method::Sgm, Filter::Default).disparity;
+                Score::of(answers.iter().map(|d| d.to_f32()), &scene.truth).expect("scored pixels")
+            })
+            .collect();
+        let mean = Score::mean(&scores);
+        println!("sgm, noise of {sigma}: {mean:?}");
+        assert!(mean.missed <= most, "noise of {sigma}: missed {}", mean.missed);
     }
 }

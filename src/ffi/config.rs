@@ -3,6 +3,7 @@
 
 use super::Status;
 use super::instance::either;
+use crate::imaging::Noise;
 use crate::matching::{self, Checks, ConfigError, Filter, Penalties, Scheme};
 use crate::units::Disparity;
 
@@ -15,6 +16,13 @@ pub const STEREOPSIS_PRESET_STRICT: i32 = 2;
 
 /// In `left_right_px` and `uniqueness_percent` of a configuration: not checked.
 pub const STEREOPSIS_NOT_CHECKED: i16 = -1;
+
+/// In `noise` of a configuration: little, so that pixels are compared as they are.
+pub const STEREOPSIS_NOISE_NONE: u8 = 0;
+/// In `noise` of a configuration: a deviation of about 2 grey levels.
+pub const STEREOPSIS_NOISE_LOW: u8 = 1;
+/// In `noise` of a configuration: a deviation from about 3 grey levels on.
+pub const STEREOPSIS_NOISE_HIGH: u8 = 2;
 
 /// Frame size, search range and checks. `stereopsis_config_default` fills it, fields may be changed after that.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -67,6 +75,8 @@ pub struct Config {
     pub confidence: u8,
     /// Fill: by how much the two answers may differ, in 1/32 px; 65535 for any two.
     pub fill_step: u16,
+    /// How noisy both cameras are, a `STEREOPSIS_NOISE_`: what is compared is smoothed accordingly.
+    pub noise: u8,
 }
 
 impl Config {
@@ -104,6 +114,7 @@ impl Config {
             fill_pixels: checks.fill_pixels,
             confidence: 0,
             fill_step: checks.fill_step.raw(),
+            noise: STEREOPSIS_NOISE_NONE,
         })
     }
 
@@ -140,6 +151,12 @@ impl Config {
                 edges: self.edges,
             },
             confidence: self.confidence != 0,
+            noise: match self.noise {
+                STEREOPSIS_NOISE_NONE => Noise::None,
+                STEREOPSIS_NOISE_LOW => Noise::Low,
+                STEREOPSIS_NOISE_HIGH => Noise::High,
+                _ => return Err(Status::Noise),
+            },
         })
     }
 }

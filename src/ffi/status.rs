@@ -5,7 +5,7 @@ use crate::pipeline::PushError;
 use core::ffi::CStr;
 
 /// The version of this interface. It changes when a program that was compiled with another header would go wrong.
-pub const STEREOPSIS_ABI: u32 = 3;
+pub const STEREOPSIS_ABI: u32 = 4;
 
 /// What a call answers: below 0 it is an error, and nothing has changed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -76,6 +76,8 @@ pub enum Status {
     Gradient = -28,
     /// Configuration: the penalties are not in order, or too large together.
     Penalties = -29,
+    /// Configuration: the noise is none of the `STEREOPSIS_NOISE_` numbers.
+    Noise = -30,
 }
 
 impl Status {
@@ -114,11 +116,12 @@ impl Status {
             Self::RigOffset => c"the principal points must be under 30000 px apart",
             Self::Gradient => c"the range of gradients must be 1 to 14",
             Self::Penalties => c"the penalties must be in order, and their sums within bytes",
+            Self::Noise => c"there is no such level of noise",
         }
     }
 
     /// Every status, for the way back from a number.
-    const ALL: [Self; 32] = [
+    const ALL: [Self; 33] = [
         Self::Ok,
         Self::NoRowYet,
         Self::FrameDone,
@@ -151,6 +154,7 @@ impl Status {
         Self::RigOffset,
         Self::Gradient,
         Self::Penalties,
+        Self::Noise,
     ];
 }
 

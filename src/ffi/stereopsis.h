@@ -31,7 +31,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_FAST_BYTES(width, disparities) \
-  ((size_t)192 + (size_t)66 * (width) + (size_t)13 * (disparities) + \
+  ((size_t)3280 + (size_t)66 * (width) + (size_t)13 * (disparities) + \
    (size_t)1 * (width) * (disparities))
 
 /**
@@ -70,7 +70,7 @@
 /**
  * The version of this interface. It changes when a program that was compiled with another header would go wrong.
  */
-#define STEREOPSIS_ABI 3
+#define STEREOPSIS_ABI 4
 
 /**
  * Every matcher's memory may be aligned to this many bytes: `uint64_t` will do.
@@ -96,6 +96,21 @@
  * In `left_right_px` and `uniqueness_percent` of a configuration: not checked.
  */
 #define STEREOPSIS_NOT_CHECKED -1
+
+/**
+ * In `noise` of a configuration: little, so that pixels are compared as they are.
+ */
+#define STEREOPSIS_NOISE_NONE 0
+
+/**
+ * In `noise` of a configuration: a deviation of about 2 grey levels.
+ */
+#define STEREOPSIS_NOISE_LOW 1
+
+/**
+ * In `noise` of a configuration: a deviation from about 3 grey levels on.
+ */
+#define STEREOPSIS_NOISE_HIGH 2
 
 /**
  * The disparity that means "no answer".
@@ -278,6 +293,10 @@ enum stereopsis_status
    * Configuration: the penalties are not in order, or too large together.
    */
   STEREOPSIS_STATUS_PENALTIES = -29,
+  /**
+   * Configuration: the noise is none of the `STEREOPSIS_NOISE_` numbers.
+   */
+  STEREOPSIS_STATUS_NOISE = -30,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -387,6 +406,10 @@ typedef struct stereopsis_config {
    * Fill: by how much the two answers may differ, in 1/32 px; 65535 for any two.
    */
   uint16_t fill_step;
+  /**
+   * How noisy both cameras are, a `STEREOPSIS_NOISE_`: what is compared is smoothed accordingly.
+   */
+  uint8_t noise;
 } stereopsis_config;
 
 /**

@@ -1,7 +1,9 @@
 //! What a matcher is asked to do, checked once before the first line.
 
+use super::filter::Filter;
 use super::penalties::Penalties;
 use super::scheme::Scheme;
+use crate::imaging::Noise;
 use crate::units::Disparity;
 use core::fmt;
 
@@ -23,6 +25,9 @@ pub struct Config {
     pub penalties: Penalties,
     /// Whether rows say how sure each answer is ([`Row::confidences`](super::Row::confidences)): a search more for each pixel.
     pub confidence: bool,
+    /// How noisy both cameras are: what is compared is smoothed accordingly. The next frame's is what a
+    /// [`NoiseMeter`](crate::imaging::NoiseMeter) says of this one. It takes work, but no memory.
+    pub noise: Noise,
 }
 
 impl Config {
@@ -35,7 +40,8 @@ impl Config {
     pub const END: u16 = Disparity::MAX_PIXELS;
 
     /// A search from disparity 0 with the default checks of the block methods and the penalties of
-    /// [`Sgm`](super::Sgm): [`Self::with_filter`] has those of a method. Without confidences.
+    /// [`Sgm`](super::Sgm): [`Self::with_filter`] has those of a method. Without confidences, for cameras with
+    /// little noise.
     pub const fn new(width: u16, height: u16, disparities: u16) -> Self {
         Self {
             width,
@@ -45,6 +51,7 @@ impl Config {
             checks: Checks::DEFAULT,
             penalties: Penalties::DEFAULT,
             confidence: false,
+            noise: Noise::None,
         }
     }
 
@@ -75,6 +82,7 @@ impl Config {
         },
         penalties: Penalties::UNSET,
         confidence: false,
+        noise: Noise::None,
     };
 
     /// Whether a matcher for lines up to `width` and ranges up to `disparities` can do this.
@@ -101,41 +109,6 @@ impl Config {
             return Err(ConfigError::SurfaceStep);
         }
         self.penalties.check()
-    }
-}
-
-/// An operating point: how many answers, and how sure. What it is made of depends on the method.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Filter {
-    /// Every pixel with a candidate gets an answer.
-    Dense,
-    /// Most answers, few of them wrong.
-    Default,
-    /// Sure answers: fewer, and wrong only rarely.
-    Strict,
-}
-
-impl Filter {
-    /// All of them, from the most answers to the surest.
-    pub const ALL: [Self; 3] = [Self::Dense, Self::Default, Self::Strict];
-
-    /// The name, as the programs spell it.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Dense => "dense",
-            Self::Default => "default",
-            Self::Strict => "strict",
-        }
-    }
-
-    /// What it is for a method.
-    pub const fn checks<S: Scheme>(self) -> Checks {
-        match self {
-            Self::Dense => Checks::DENSE,
-            Self::Default => S::DEFAULT,
-            Self::Strict => S::STRICT,
-        }
     }
 }
 
@@ -166,7 +139,8 @@ pub struct Checks {
     /// Two neighbours are of one surface when they differ by at most this; up to 1 px.
     pub surface_step: Disparity,
     /// Answers are averaged along the line with up to this many pairs of neighbours, left and right alike, of their
-    /// surface; 0 to [`Checks::MOST_SMOOTHING`], 0 for none.
+    /// surface; 0 to [`Checks::MOST_SMOOTHING`], 0 for none. With the methods along paths they are then smoothed down the
+    /// columns as well ([`Scheme::SMOOTH_DOWN`]).
     pub smoothing_radius: u8,
     /// Speckle: answers are dropped that have fewer of their surface, themselves included, on a cross: in their column,
     /// down to four rows below, and along the rows of these. 0: none is.

@@ -50,9 +50,9 @@ pub struct Matcher<S: Scheme, const W: usize, const D: usize> {
 pub const fn state_bytes<S: Scheme>(width: usize, disparities: usize) -> usize {
     let lanes = disparities.next_multiple_of(STEP);
     let width = if width < lanes { lanes } else { width };
-    let Bytes { per_pixel, per_candidate, per_disparity } = S::BYTES;
+    let Bytes { fixed, per_pixel, per_candidate, per_disparity } = S::BYTES;
     let per_column = per_pixel + per_candidate * lanes + 2 + 1 + 2 + (2 + 1) * BAND + 2 * HISTORY;
-    width * per_column + per_disparity * lanes + FIXED_BYTES
+    width * per_column + per_disparity * lanes + fixed + FIXED_BYTES
 }
 
 /// Why a matcher took no line.

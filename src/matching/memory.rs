@@ -2,8 +2,9 @@
 
 use super::kernels::{Aligned, Columns, OUTSIDE, Scratch, Winner, read_bytes_of};
 
-/// How much memory a method takes: multiples of the width, of width x disparities, and of the disparities.
+/// How much memory a method takes: always, and multiples of the width, of width x disparities, and of the disparities.
 pub struct Bytes {
+    pub fixed: usize,
     pub per_pixel: usize,
     pub per_candidate: usize,
     pub per_disparity: usize,
@@ -33,25 +34,32 @@ pub struct Parts<'a> {
     pub scratch: &'a mut [u32],
 }
 
-/// The memory of a window over `ROWS` rows of codes, with the one that leaves it.
-pub struct WindowMemory<const ROWS: usize, const W: usize, const D: usize> {
-    codes: Aligned<[[[u8; 2]; W]; ROWS]>,
+/// The memory of a window over `ROWS` rows of codes, with the one that leaves it: `CODES` bytes for the two of a pixel. Of its
+/// room to work in, `TABLES` words are beside what grows with the frame.
+pub struct WindowMemory<const CODES: usize, const ROWS: usize, const TABLES: usize, const W: usize, const D: usize> {
+    codes: Aligned<[[[u8; CODES]; W]; ROWS]>,
     columns: Columns<W, D>,
-    scratch: Scratch<W, D>,
+    scratch: Scratch<TABLES, W, D>,
     winners: [Winner; W],
     right: [u16; W],
     lengths: [u16; W],
 }
 
-impl<const ROWS: usize> WindowMemory<ROWS, 0, 0> {
-    /// Two bytes a code; the scratch's codes, the winner, what the right column keeps and the length.
-    pub const BYTES: Bytes =
-        Bytes { per_pixel: 2 * ROWS + 2 + 4 + 2 + 2, per_candidate: 1, per_disparity: 3 + 2 * OUTSIDE };
+impl<const CODES: usize, const ROWS: usize, const TABLES: usize> WindowMemory<CODES, ROWS, TABLES, 0, 0> {
+    /// The codes; the scratch's codes, the winner, what the right column keeps and the length.
+    pub const BYTES: Bytes = Bytes {
+        fixed: TABLES * size_of::<u32>(),
+        per_pixel: CODES * ROWS + 2 + 4 + 2 + 2,
+        per_candidate: 1,
+        per_disparity: 3 + 2 * OUTSIDE,
+    };
 }
 
-impl<const ROWS: usize, const W: usize, const D: usize> Memory for WindowMemory<ROWS, W, D> {
+impl<const CODES: usize, const ROWS: usize, const TABLES: usize, const W: usize, const D: usize> Memory
+    for WindowMemory<CODES, ROWS, TABLES, W, D>
+{
     const EMPTY: Self = Self {
-        codes: Aligned([[[0; 2]; W]; ROWS]),
+        codes: Aligned([[[0; CODES]; W]; ROWS]),
         columns: Columns::ZERO,
         scratch: Scratch::ZERO,
         winners: [Winner::NONE; W],
@@ -61,7 +69,7 @@ impl<const ROWS: usize, const W: usize, const D: usize> Memory for WindowMemory<
 
     fn parts(&mut self, width: usize, stride: usize) -> Parts<'_> {
         Parts {
-            codes: first(self.codes.0.as_flattened_mut().as_flattened_mut(), 2 * width * ROWS),
+            codes: first(self.codes.0.as_flattened_mut().as_flattened_mut(), CODES * width * ROWS),
             columns: first(self.columns.flat(), (width + 2 * OUTSIDE) * stride),
             winners: first(&mut self.winners, width),
             right: first(&mut self.right, width),

@@ -5,6 +5,7 @@
 //! 1. [`scheme`](Scheme): what a method is. `window`: [`Fast`] and [`Block`], census codes compared over a window.
 //!    `paths`: [`Sgm`], [`SgmLean`] and [`SgmEdge`], gradients, brightness and a census compared along paths, by
 //!    [`Penalties`].
+//!    If asked for, `quiet`: lines smoothed against noise before.
 //! 2. `kernels`: the cost of every candidate, its sum, the winner of every pixel. The only stage whose work grows with the
 //!    number of disparities, behind one seam ([`Kernel`]).
 //! 3. `texture`: whether the window has texture.
@@ -12,22 +13,26 @@
 //! 5. `surface`: the answers averaged along the row, within their surface.
 //! 6. `median`: if asked for, the middle one of the answers around each.
 //! 7. `speckle`: answers dropped that too few others support, in a band of five rows.
-//! 8. `fill`: if asked for, small gaps along the row closed.
-//! 9. `confidence`: if asked for, how sure each answer is, of what its second best cost and of the answers beside it.
-//! 10. [`Row`]: what came out, with the uncertainty of each answer.
+//! 8. `down`: with the methods along paths, the answers smoothed down the columns, within their surface.
+//! 9. `fill`: if asked for, small gaps along the row closed.
+//! 10. `confidence`: if asked for, how sure each answer is, of what its second best cost and of the answers beside it.
+//! 11. [`Row`]: what came out, with the uncertainty of each answer.
 //!
 //! [`Matcher`] owns the `memory` and runs the `stages`. [`Config`] says what is searched and which answers are refused.
 
 mod answers;
 mod confidence;
 mod config;
+mod down;
 mod fill;
+mod filter;
 mod kernels;
 mod matcher;
 mod median;
 mod memory;
 mod paths;
 mod penalties;
+mod quiet;
 mod row;
 mod scheme;
 mod speckle;
@@ -36,7 +41,8 @@ mod surface;
 mod texture;
 mod window;
 
-pub use config::{Checks, Config, ConfigError, Filter};
+pub use config::{Checks, Config, ConfigError};
+pub use filter::Filter;
 pub use kernels::Kernel;
 pub use matcher::{MatchError, Matcher, state_bytes};
 pub use paths::{Sgm, SgmEdge, SgmLean};

@@ -12,10 +12,12 @@ use super::kernels::{
 };
 use super::memory::{Bytes, Memory, Parts, first};
 use super::penalties::Penalties;
+use super::quiet::{gradient_shift, quiet};
 use super::row::slot;
 use super::scheme::{Around, Lines, Scheme};
 use super::speckle::BAND;
 use super::stages::{Stages, slot_mut};
+use crate::imaging::{Noise, smooth};
 use crate::units::PixelFlags;
 
 /// A method along paths.
@@ -69,6 +71,7 @@ macro_rules! along_paths {
             const RADIUS_Y: usize = <Self as Along>::ROWS_BELOW;
             const SIGMA_PX: f32 = 0.15;
             const STEP: u8 = STEP;
+            const SMOOTH_DOWN: bool = true;
             const DEFAULT: Checks = DEFAULT;
             const STRICT: Checks = STRICT;
             const PENALTIES: Penalties = $penalties;
@@ -132,6 +135,7 @@ pub struct PathMemory<const GUIDES: usize, const VOLUMES: usize, const W: usize,
 
 impl<const GUIDES: usize, const VOLUMES: usize> PathMemory<GUIDES, VOLUMES, 0, 0> {
     pub const BYTES: Bytes = Bytes {
+        fixed: 0,
         per_pixel: GUIDES + Room::<0, 0>::PER_PIXEL,
         per_candidate: VOLUMES,
         per_disparity: COLUMNS_OFF + Room::<0, 0>::PER_DISPARITY,
@@ -174,22 +178,34 @@ impl<'a, S: Along> Stages<'a, S> {
             disparities: usize::from(config.disparities),
             min_disparity: usize::from(config.min_disparity),
             penalties: &config.penalties,
+            gradient_shift: gradient_shift(config.noise),
             costs,
             top,
-            sums,
+            sums: &mut [],
         };
-        if let Some(lines) = lines {
+        let guide = |y: usize| slot(self.codes, y % guides::<S>(), width);
+        let has_noise = config.noise != Noise::None;
+        // Where sums will be, ten smoothed lines have room: a column has sixteen sums at least.
+        let smoothed;
+        let seen = match lines {
+            Some(lines) if has_noise => {
+                smoothed = quiet(lines, &[0, 1, 2, 3, 4], sums.chunks_exact_mut(width.max(1)));
+                Some(smoothed.each_ref())
+            }
+            lines => lines,
+        };
+        if let Some(lines) = seen {
             self.kernel.enter::<S>(&mut work, bottom == 0, lines, bytes_mut(self.scratch));
         }
-        let guide = |y: usize| slot(self.codes, y % guides::<S>(), width);
         if S::WITHIN_EDGES {
             let (above, below) = rest.split_at_mut_checked(width * stride).unwrap_or_default();
             let inside = |y: &usize| *y < usize::from(config.height);
             let [here, next] = [2, 1].map(|up| bottom.checked_sub(up).filter(inside).map(guide));
-            let guides = [here, next, lines.map(|[left, _]| left[2])];
+            let guides = [here, next, seen.map(|[left, _]| left[2])];
             self.kernel.within_edges(&mut work, EdgeWork { guides, above, below });
         }
-        // The features are done with.
+        // The features are done with, and the smoothed lines.
+        work.sums = sums;
         let room = core::mem::take(&mut self.scratch);
         let (winners, room) = room.split_at_mut_checked(width).unwrap_or_default();
         let (right, room) = room.split_at_mut_checked(width.div_ceil(2)).unwrap_or_default();
@@ -219,8 +235,11 @@ impl<'a, S: Along> Stages<'a, S> {
             self.kernel.select(work, guide, select);
         }
         if let Some([left, _]) = lines {
-            for (kept, pixel) in slot_mut(self.codes, bottom % guides::<S>(), width).iter_mut().zip(left[2]) {
-                *kept = *pixel;
+            let kept = slot_mut(self.codes, bottom % guides::<S>(), width);
+            if has_noise {
+                smooth(left, 2, kept);
+            } else {
+                kept.iter_mut().zip(left[2]).for_each(|(kept, pixel)| *kept = *pixel);
             }
         }
     }

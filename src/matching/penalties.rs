@@ -12,7 +12,8 @@ use super::config::ConfigError;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Penalties {
     /// A pixel's gradients are cut off at this many units to each side, 1 to [`Self::MOST_GRADIENT`]. The unit is an
-    /// eighth of a grey level per pixel: a gradient is that of Sobel's operator.
+    /// eighth of a grey level per pixel: a gradient is that of Sobel's operator. With [`Noise::Low`](crate::imaging::Noise::Low)
+    /// it is a quarter, with [`Noise::High`](crate::imaging::Noise::High) a half.
     pub gradient: u8,
     /// A pixel's cost is cut off at this.
     pub cost: u8,

@@ -21,7 +21,8 @@ pub struct Row<'a> {
     pub(super) flags: &'a [PixelFlags],
     /// `HISTORY` finished rows, row `y` in slot `y % HISTORY`; of these only the row itself has its gaps filled.
     pub(super) finished: &'a [Disparity],
-    /// `BAND` rows before median and speckle filter, row `y` in slot `y % BAND`: this row and those below.
+    /// `BAND` rows before median, speckle filter and smoothing down the columns, row `y` in slot `y % BAND`: this row and
+    /// those below.
     pub(super) band: &'a [Disparity],
     pub(super) sigma_px: f32,
     pub(super) confidences: &'a [u8],
@@ -54,8 +55,9 @@ impl<'a> Row<'a> {
     ///
     /// `confidence = max(1, m + (40 - min(s / 4, 40)) + (40 - min(t / 4, 40)))`
     ///
-    /// Answers above are as they came out, but for what was filled; the others are as they were before the median and the speckle
-    /// filter. A filled answer ([`PixelFlags::FILLED`]) has 1, and `m` is 0 in the first five columns that have a candidate.
+    /// Answers above are as they came out, but for what was filled; the others are as they were before the median, the speckle
+    /// filter and the smoothing down the columns, and so is the answer itself but for the median. A filled answer
+    /// ([`PixelFlags::FILLED`]) has 1, and `m` is 0 in the first five columns that have a candidate.
     ///
     /// The number puts the answers of one method in order, the wrong ones first: take away those under a threshold and the share
     /// of wrong ones falls. It is no probability, and says nothing about fractions of a pixel; [`Self::sigma_px`] does, of an
@@ -70,7 +72,7 @@ impl<'a> Row<'a> {
     /// window sees two surfaces and may answer with either one's disparity, so the answers up to four pixels left,
     /// right, above and below are looked at: three sigma reach to the farthest of them,
     /// `sigma = max(SIGMA_PX, spread / 3)`. Those above are as they came out, but for what was filled; the others are as
-    /// they were before the median and the speckle filter.
+    /// they were before the median, the speckle filter and the smoothing down the columns.
     ///
     /// A filled answer ([`PixelFlags::FILLED`]) is a guess: its sigma is at least 1 px, and three of it reach the
     /// answers on both sides of its gap as well.

@@ -2,7 +2,7 @@
 
 use super::config::Checks;
 #[cfg(doc)]
-use super::config::Filter;
+use super::filter::Filter;
 use super::memory::{Bytes, Memory};
 use super::penalties::Penalties;
 use super::stages::Stages;
@@ -20,6 +20,9 @@ pub trait Scheme: Lines + Sized + 'static {
     /// How much more a disparity one px beside the winner's costs for that alone, on a slanted surface: what is left of the
     /// rise tells where between pixels it lies.
     const STEP: u8 = 0;
+    /// Whether answers that are averaged along the line are smoothed down the columns as well: of what an answer is away from
+    /// the one above, as that came out, 5/8, and 5/32 of what it is away from that four rows below, where both are within 1 px.
+    const SMOOTH_DOWN: bool = false;
     /// The checks of [`Filter::Default`].
     const DEFAULT: Checks = Checks::DEFAULT;
     /// The checks of [`Filter::Strict`].

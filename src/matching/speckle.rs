@@ -11,10 +11,12 @@
 //! all that is to be kept of those, in one word with the support so far.
 
 use super::config::Checks;
+#[cfg(stereopsis_dsp)]
+use super::kernels::bytes as assembly;
 #[cfg(stereopsis_vectors)]
-use super::kernels::helium::{self, Judged};
+use super::kernels::helium as assembly;
 use super::row::slot;
-#[cfg(not(stereopsis_vectors))]
+#[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
 use super::surface::of_one;
 use crate::units::{Disparity, PixelFlags};
 
@@ -34,13 +36,28 @@ pub(super) struct Support<'a> {
 
 /// Bits of rows that go on, and then of rows that have enough.
 #[cfg(not(stereopsis_vectors))]
-const ROWS: usize = LOOK_AHEAD;
+pub(super) const ROWS: usize = LOOK_AHEAD;
 
 /// What the numbers are worked on in: where there are vectors, half-words, of which they hold more.
 #[cfg(target_pointer_width = "64")]
 type Word = u16;
-#[cfg(not(any(target_pointer_width = "64", stereopsis_vectors)))]
+#[cfg(not(any(target_pointer_width = "64", stereopsis_vectors, stereopsis_dsp)))]
 type Word = u32;
+
+/// A row of the band, the one above it, and the row that waited for it.
+#[cfg(any(stereopsis_vectors, stereopsis_dsp))]
+pub(super) struct Judged<'a> {
+    pub here: &'a [Disparity],
+    pub above: &'a [Disparity],
+    /// Bytes, as the kernel's `average` leaves them; they are done with.
+    pub lengths: &'a mut [u16],
+    /// All zero when a frame begins, then in the kernel's own order.
+    pub kept: &'a mut [u16],
+    pub flags: &'a mut [PixelFlags],
+    /// The row that waited; where there is none, it is in `finished`.
+    pub answers: Option<&'a [Disparity]>,
+    pub finished: &'a mut [Disparity],
+}
 
 impl Support<'_> {
     /// Forgets the frame before. `band` is the ring of rows.
@@ -64,9 +81,9 @@ impl Support<'_> {
         finished: &mut [Disparity],
     ) {
         let judged = slot(band, (y + BAND - LOOK_AHEAD) % BAND, self.kept.len());
-        #[cfg(stereopsis_vectors)]
+        #[cfg(any(stereopsis_vectors, stereopsis_dsp))]
         self.judge(y, band, checks, flags, Some(judged), finished);
-        #[cfg(not(stereopsis_vectors))]
+        #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
         {
             let out = judged.iter().zip(flags).zip(finished);
             self.judge(y, band, checks, out.map(|((answer, flags), finished)| (*answer, flags, finished)));
@@ -83,17 +100,17 @@ impl Support<'_> {
         flags: &mut [PixelFlags],
         finished: &mut [Disparity],
     ) {
-        #[cfg(stereopsis_vectors)]
+        #[cfg(any(stereopsis_vectors, stereopsis_dsp))]
         self.judge(y, band, checks, flags, None, finished);
-        #[cfg(not(stereopsis_vectors))]
+        #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
         {
             let out = flags.iter_mut().zip(finished);
             self.judge(y, band, checks, out.map(|(flags, finished)| (*finished, flags, finished)));
         }
     }
 
-    /// In the vectors of a Cortex-M55, which keep what they keep of a column in two rows of bytes.
-    #[cfg(stereopsis_vectors)]
+    /// In assembly.
+    #[cfg(any(stereopsis_vectors, stereopsis_dsp))]
     fn judge(
         &mut self,
         y: usize,
@@ -105,12 +122,12 @@ impl Support<'_> {
     ) {
         let row = |y: usize| slot(band, y % BAND, self.kept.len());
         let (here, above) = (row(y), row(y + BAND - 1));
-        let (lengths, kept) = (&*self.lengths, &mut *self.kept);
+        let (lengths, kept) = (&mut *self.lengths, &mut *self.kept);
         let work = Judged { here, above, lengths, kept, flags, answers, finished };
-        helium::judge(work, checks.surface_step, checks.speckle_pixels);
+        assembly::judge(work, checks.surface_step, checks.speckle_pixels);
     }
 
-    #[cfg(not(stereopsis_vectors))]
+    #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
     #[inline(always)]
     #[allow(clippy::unnecessary_cast, reason = "a word is a half-word on some cores only")]
     fn judge<'a>(

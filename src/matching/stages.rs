@@ -3,6 +3,7 @@
 use super::answers::{self, Winners};
 use super::confidence;
 use super::config::Config;
+use super::down;
 use super::fill;
 use super::kernels::{Kernel, Winner, bytes_of, halves_mut};
 use super::median;
@@ -81,6 +82,12 @@ impl<S: Scheme> Stages<'_, S> {
         } else {
             self.support.count(row, self.band, checks, flags, finished);
         }
+        // The first row has none above it, and the last have none so far below.
+        if S::SMOOTH_DOWN && checks.smoothing_radius > 0 && row > LOOK_AHEAD && row < height {
+            down::smooth(self.kernel, judged, self.finished, slot(self.band, row % BAND, self.width));
+        }
+        let flags = slot_mut(self.flags, judged % BAND, self.width);
+        let finished = slot_mut(self.finished, judged % HISTORY, self.width);
         if checks.fill_pixels > 0 {
             fill::fill(finished, flags, checks.fill_pixels, checks.fill_step);
         }

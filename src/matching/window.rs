@@ -8,13 +8,14 @@
 use super::confidence;
 #[cfg(not(stereopsis_vectors))]
 use super::kernels::codes;
-use super::kernels::{RowWork, Select, Unique};
+use super::kernels::{RowWork, Select, TABLE_WORDS, Unique, bytes_of, bytes_of_halves};
 use super::memory::{Bytes, WindowMemory};
+use super::quiet::quiet;
 use super::row::slot;
 use super::scheme::{Around, Lines, Scheme};
 use super::speckle::BAND;
 use super::stages::{Stages, slot_mut};
-use crate::imaging::{census_plus4, census_ring8};
+use crate::imaging::{Noise, census_plus4, census_ring8};
 use crate::units::PixelFlags;
 
 /// A method whose costs are sums over a window.
@@ -43,6 +44,21 @@ const fn rows<S: Windowed>() -> usize {
     2 * S::RADIUS_Y + 2
 }
 
+/// Bytes that a pixel's two codes take: one, where no kernel wants more.
+pub(super) const fn code_bytes<S: Windowed>() -> usize {
+    if cfg!(stereopsis_dsp) && S::BITS <= 4 { 1 } else { 2 }
+}
+
+/// Words for the tables of the kernel that has some.
+const fn table_words<S: Windowed>() -> usize {
+    if cfg!(stereopsis_dsp) { most_table_words::<S>() } else { 0 }
+}
+
+/// The same for any kernel: a matcher's bytes are told for all processors alike.
+const fn most_table_words<S: Windowed>() -> usize {
+    if S::BITS <= 4 { TABLE_WORDS } else { 0 }
+}
+
 /// What the arithmetic relies on.
 const fn check<S: Windowed>() {
     let column = S::BITS * (2 * S::RADIUS_Y + 1);
@@ -57,8 +73,10 @@ macro_rules! window_lines {
         const _: () = check::<$method>();
 
         impl Lines for $method {
-            type Memory<const W: usize, const D: usize> = WindowMemory<{ rows::<$method>() }, W, D>;
-            const BYTES: Bytes = WindowMemory::<{ rows::<$method>() }, 0, 0>::BYTES;
+            type Memory<const W: usize, const D: usize> =
+                WindowMemory<{ code_bytes::<$method>() }, { rows::<$method>() }, { table_words::<$method>() }, W, D>;
+            const BYTES: Bytes =
+                WindowMemory::<2, { rows::<$method>() }, { most_table_words::<$method>() }, 0, 0>::BYTES;
 
             #[inline(always)]
             fn enter(stages: &mut Stages<'_, Self>, y: usize, lines: [&Around<'_>; 2]) {
@@ -194,7 +212,17 @@ impl Windowed for Block {
 impl<S: Windowed> Stages<'_, S> {
     /// Turns the lines around row `y` into its codes.
     fn enter_codes(&mut self, y: usize, lines: [&Around<'_>; 2]) {
-        let row = slot_mut(self.codes, y % rows::<S>(), 2 * self.width);
+        let row = slot_mut(self.codes, y % rows::<S>(), code_bytes::<S>() * self.width);
+        let smoothed;
+        let lines = if self.config.noise == Noise::None {
+            lines
+        } else {
+            // The row has no winners yet. Codes look at three rows of the five.
+            let (winners, of_right) = (bytes_of(self.winners), bytes_of_halves(self.right));
+            let places = [winners, of_right].map(|room| room.chunks_exact_mut(self.width.max(1)));
+            smoothed = quiet(lines, &[0, 2, 4], places.into_iter().flatten());
+            smoothed.each_ref()
+        };
         self.kernel.codes::<S>(lines, usize::from(self.config.min_disparity), self.scratch, row);
     }
 
@@ -204,7 +232,7 @@ impl<S: Windowed> Stages<'_, S> {
     fn select_windows(&mut self, bottom: usize, enters: bool, row: Option<usize>) {
         let (width, config) = (self.width, self.config);
         let leaves = bottom.checked_sub(2 * S::RADIUS_Y + 1);
-        let codes = |y: usize| slot(self.codes, y % rows::<S>(), 2 * width);
+        let codes = |y: usize| slot(self.codes, y % rows::<S>(), code_bytes::<S>() * width);
         let work = RowWork {
             width,
             stride: self.stride,

@@ -6,6 +6,7 @@ use crate::run::{Method, Outcome};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use stereopsis::depth::DepthScale;
+use stereopsis::imaging::NoiseMeter;
 use stereopsis::matching::Config;
 use stereopsis::units::PixelFlags;
 
@@ -26,6 +27,10 @@ pub struct Summary {
     pub disparities: u16,
     /// The smallest of them, px.
     pub min_disparity: u16,
+    /// How noisy the images are taken to be: `none`, `low` or `high`.
+    pub noise: &'static str,
+    /// The deviation of their noise as it was measured, grey levels; absent when it was told, or when no place shows it.
+    pub noise_sigma: Option<f64>,
     /// Share of the pixels with an answer, 0 to 1.
     pub density: f64,
     /// Pixels with an answer.
@@ -133,6 +138,8 @@ impl Summary {
             height: config.height,
             disparities: config.disparities,
             min_disparity: config.min_disparity,
+            noise: config.noise.name(),
+            noise_sigma: None,
             density: map.density(),
             answers: map.answers(),
             flags: PixelFlags::NAMES.into_iter().map(|(flag, name)| (name, map.flagged(flag))).collect(),
@@ -144,5 +151,10 @@ impl Summary {
             depth: scale.map(|scale| Depth::of(scale, config, method, map)),
             accuracy,
         }
+    }
+
+    /// The same with the noise that a meter measured.
+    pub fn with_noise(self, meter: Option<&NoiseMeter>) -> Self {
+        Self { noise_sigma: meter.and_then(NoiseMeter::sigma_16ths).map(|sigma| f64::from(sigma) / 16.0), ..self }
     }
 }

@@ -4,15 +4,18 @@
 //!
 //! * [`Method`]: the methods of this build. [`Way`]: a method, on a kernel, in so many threads.
 //! * [`run`]: one frame into a map. [`time_frames`]: several, timed.
+//! * [`measure_noise`]: a frame for that alone, if [`NoiseChoice`] asks for it.
 //! * `bands`: a frame in bands, one thread each.
 //! * [`MemoryPair`]: a stereo source over two pictures in memory.
 
 mod bands;
 mod memory;
 mod method;
+mod noise;
 
 pub use memory::MemoryPair;
 pub use method::{Method, UnknownMethod};
+pub use noise::{NoiseChoice, UnknownNoise, measure_noise};
 
 use self::bands::Bands;
 use self::method::with_scheme;

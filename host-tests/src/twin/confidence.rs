@@ -5,12 +5,12 @@ use stereopsis::matching::Config;
 use stereopsis::units::{Disparity, PixelFlags};
 
 /// The confidence of every pixel of the `map`, of the margins of the winners, and of the answers around: those `before` median
-/// and speckle filter, in rows above those `after`.
+/// and speckle filter, in rows above those `after`. The answer itself is that after the median.
 pub(super) fn confidences(
     config: &Config,
     margins: &[u16],
     before: &[Disparity],
-    after: &[Disparity],
+    [answers, after]: [&[Disparity]; 2],
     map: &Answers,
 ) -> Vec<u8> {
     let (width, height) = (usize::from(config.width), usize::from(config.height));
@@ -40,7 +40,7 @@ pub(super) fn confidences(
             }
         }
         let agreement = |others: Vec<Disparity>| {
-            let most = others.into_iter().filter_map(|other| map.disparity[here].distance(other)).max();
+            let most = others.into_iter().filter_map(|other| answers[here].distance(other)).max();
             40u16.saturating_sub(most.unwrap_or(0) / 4)
         };
         (margins[here].min(127) + agreement(beside) + agreement(column)).max(1) as u8

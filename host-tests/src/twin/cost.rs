@@ -1,7 +1,8 @@
 //! The cost of every disparity at every pixel, and its sum over the window.
 
+use super::Scheme;
 use super::census::census;
-use super::{Picture, Scheme};
+use super::smooth::Seen;
 use stereopsis::matching::Config;
 
 /// A number for every row, column and disparity.
@@ -32,9 +33,10 @@ impl Volume {
 
 /// How many census bits differ between (x, y) on the left and (x - m - d, y) on the right; left of the right picture's
 /// edge, its first column stands in.
-pub fn costs(neighbours: &[(isize, isize)], config: &Config, left: &Picture<'_>, right: &Picture<'_>) -> Volume {
+pub fn costs(neighbours: &[(isize, isize)], config: &Config, left: &Seen<'_>, right: &Seen<'_>) -> Volume {
     let (left_words, right_words) = (census(left, neighbours), census(right, neighbours));
     let smallest = usize::from(config.min_disparity);
+    let left = left.picture;
     let mut volume = Volume::filled(left.width, left.height, usize::from(config.disparities));
     for y in 0..left.height {
         for x in 0..left.width {

@@ -2,11 +2,11 @@
 //!
 //! In: two pictures, a configuration. Out: [`Answers`]. In running order:
 //!
-//! * [`census`](mod@census): darker neighbours as bits.
+//! * [`smooth`]: pictures with less noise, if asked for. [`census`](mod@census): darker neighbours as bits.
 //! * [`cost`]: bits that differ, per disparity, and their sum over the window. [`paths`]: differences of pixels, and their
 //!   sum along paths.
 //! * `select`: the cheapest disparity, its fraction, the checks.
-//! * `filter`: smoothing along the row, the median, the speckle filter, filling, the deviation.
+//! * `filter`: smoothing along the row, the median, the speckle filter, smoothing down the columns, filling, the deviation.
 //! * `confidence`: how sure an answer is.
 //!
 //! Apart from them: [`features`], corners, descriptors and matches.
@@ -17,12 +17,14 @@ pub mod census;
 pub mod cost;
 pub mod features;
 pub mod paths;
+pub mod smooth;
 
 mod confidence;
 mod filter;
 mod select;
 
 use image::GrayImage;
+use smooth::Seen;
 use stereopsis::matching::Config;
 use stereopsis::units::{Disparity, PixelFlags};
 
@@ -37,6 +39,8 @@ pub struct Scheme {
     pub radius_y: usize,
     /// How much a disparity beside the winner costs for that alone.
     pub step: i32,
+    /// Whether answers that are averaged along the row are smoothed down the columns too.
+    pub smooth_down: bool,
     /// The least deviation of an answer, px.
     pub sigma_px: f32,
 }
@@ -67,6 +71,7 @@ impl Scheme {
         radius_x: 4,
         radius_y: 3,
         step: 0,
+        smooth_down: false,
         sigma_px: 0.15,
     };
     /// The twin of [`stereopsis::matching::Block`]: 8-bit census, 9 x 9 window, in
@@ -76,6 +81,7 @@ impl Scheme {
         radius_x: 4,
         radius_y: 4,
         step: 0,
+        smooth_down: false,
         sigma_px: 0.15,
     };
     /// The twin of [`stereopsis::matching::Sgm`].
@@ -84,6 +90,7 @@ impl Scheme {
         radius_x: 4,
         radius_y: 1,
         step: 12,
+        smooth_down: true,
         sigma_px: 0.15,
     };
     /// The twin of [`stereopsis::matching::SgmLean`].
@@ -146,18 +153,21 @@ pub fn match_pair(scheme: &Scheme, config: &Config, left: &GrayImage, right: &Gr
     let size = (u32::from(config.width), u32::from(config.height));
     assert_eq!((left.dimensions(), right.dimensions()), (size, size), "the pictures have the configuration's size");
     let (left, right) = (Picture::new(left), Picture::new(right));
+    let seen = [&left, &right].map(|picture| Seen::new(*picture, config.noise));
     let sums = match scheme.cost {
         Cost::Window { neighbours, unit } => {
-            cost::window_sums(scheme, unit, &cost::costs(neighbours, config, &left, &right))
+            cost::window_sums(scheme, unit, &cost::costs(neighbours, config, &seen[0], &seen[1]))
         }
         Cost::Paths { between_pixels, within_edges } => {
-            let costs = paths::costs(between_pixels, config, &left, &right);
+            let costs = paths::costs(between_pixels, config, &seen[0], &seen[1]);
+            let guide = seen[0].rows();
+            let guide = Picture::new(&guide);
             let costs = if within_edges {
-                paths::averaged_within_edges(config, &costs, &left)
+                paths::averaged_within_edges(config, &costs, &guide)
             } else {
                 paths::averaged_down(&costs)
             };
-            paths::path_sums(config, &costs, &left)
+            paths::path_sums(config, &costs, &guide)
         }
     };
     let mut map = Answers {
@@ -181,12 +191,16 @@ pub fn match_pair(scheme: &Scheme, config: &Config, left: &GrayImage, right: &Gr
     if config.checks.median {
         map.disparity = filter::medians(map.width, &before);
     }
-    let map = filter::drop_speckles(&config.checks, &before, &lengths, map);
+    let answers = map.disparity.clone();
+    let mut map = filter::drop_speckles(&config.checks, &before, &lengths, map);
+    if scheme.smooth_down && config.checks.smoothing_radius > 0 {
+        filter::smooth_down(&before, &mut map);
+    }
     let after = map.disparity.clone();
     let mut map = filter::fill_gaps(&config.checks, map);
     map.sigma_px = filter::sigmas(scheme, config, &before, &after, &map);
     if config.confidence {
-        map.confidence = confidence::confidences(config, &margins, &before, &after, &map);
+        map.confidence = confidence::confidences(config, &margins, &before, [&answers, &after], &map);
     }
     map
 }

@@ -3,6 +3,7 @@
 use super::Picture;
 use super::census::{WIDE8, census};
 use super::cost::Volume;
+use super::smooth::Seen;
 use stereopsis::matching::{Config, Penalties};
 
 /// A number for every pixel of a picture, whose edge goes on for ever outside of it.
@@ -42,23 +43,23 @@ struct Looks {
 }
 
 impl Looks {
-    fn of(picture: &Picture<'_>, penalties: &Penalties) -> Self {
-        let at = |x, y| i32::from(picture.at(x, y));
+    fn of(seen: &Seen<'_>, penalties: &Penalties) -> Self {
+        let at = |x, y, off| i32::from(seen.at(x, y, off));
         let most = i32::from(penalties.gradient);
-        let cut = |gradient: i32| gradient.clamp(-most, most) + most;
+        let cut = |gradient: i32| (gradient >> seen.gradient_shift()).clamp(-most, most) + most;
         let along = |x, y| {
-            let difference = |y| at(x + 1, y) - at(x - 1, y);
-            cut(difference(y - 1) + 2 * difference(y) + difference(y + 1))
+            let difference = |off| at(x + 1, y, off) - at(x - 1, y, off);
+            cut(difference(-1) + 2 * difference(0) + difference(1))
         };
         let across = |x, y| {
-            let difference = |x| at(x, y + 1) - at(x, y - 1);
+            let difference = |x| at(x, y, 1) - at(x, y, -1);
             cut(difference(x - 1) + 2 * difference(x) + difference(x + 1))
         };
         Self {
-            along: Numbers::of(picture, along),
-            across: Numbers::of(picture, across),
-            brightness: Numbers::of(picture, |x, y| at(x, y) / 2),
-            census: census(picture, &WIDE8),
+            along: Numbers::of(&seen.picture, along),
+            across: Numbers::of(&seen.picture, across),
+            brightness: Numbers::of(&seen.picture, |x, y| at(x, y, 0) / 2),
+            census: census(seen, &WIDE8),
         }
     }
 }
@@ -71,7 +72,7 @@ fn apart_between(left: &Numbers, x: isize, right: &Numbers, other_x: isize, y: i
 
 /// How little (x, y) on the left looks like (x - m - d, y) on the right; left of the right picture's edge, its first column
 /// stands in.
-pub fn costs(between_pixels: bool, config: &Config, left: &Picture<'_>, right: &Picture<'_>) -> Volume {
+pub fn costs(between_pixels: bool, config: &Config, left: &Seen<'_>, right: &Seen<'_>) -> Volume {
     let penalties = &config.penalties;
     let (left, right) = (Looks::of(left, penalties), Looks::of(right, penalties));
     let (width, height) = (left.along.width, left.along.height);

@@ -7,18 +7,20 @@ use std::fs;
 use std::path::Path;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::RectifiedRig;
+use stereopsis::imaging::Noise;
 use stereopsis::matching::{Config, Filter, Kernel};
 use stereopsis::units::PixelFlags;
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::pfm::{self, FloatMap};
-use stereopsis_host::run::{MemoryPair, Method, run};
+use stereopsis_host::run::{MemoryPair, Method, NoiseChoice, run};
 
 /// What the library says of the pair.
-fn in_process(method: Method, filter: Filter) -> DisparityMap {
+fn in_process(method: Method, filter: Filter, noise: NoiseChoice) -> DisparityMap {
     let (left, right) = pair();
     let mut camera = MemoryPair::new(WIDTH as u16, left.into_raw(), right.into_raw()).expect("one size");
     let config = method.with_filter(filter, Config::new(WIDTH as u16, HEIGHT as u16, 32));
-    let config = Config { confidence: true, ..config };
+    let (noise, _) = noise.level(&mut camera).expect("a source that cannot fail");
+    let config = Config { confidence: true, noise, ..config };
     run(method, &config, &mut camera, |_| {}).expect("a source that cannot fail").map
 }
 
@@ -67,7 +69,7 @@ fn the_files_hold_what_the_library_says() {
     let out = bench.path("out");
     for method in Method::ALL {
         for filter in Filter::ALL {
-            let map = in_process(method, filter);
+            let map = in_process(method, filter, NoiseChoice::Auto);
             let (name, filter) = (method.name(), filter.name());
             bench.matched(&[("--method", name), ("--filter", filter)]);
             assert_eq!(float_map(&out.join("disparity.pfm")).values, map.pixels(), "{name} {filter}");
@@ -103,6 +105,28 @@ fn the_files_hold_what_the_library_says() {
 }
 
 #[test]
+fn noise_is_measured_or_told() {
+    let bench = Bench::new();
+    let summary = || json(&bench.path("out/summary.json"));
+    let mut maps = Vec::new();
+    for noise in Noise::ALL {
+        bench.matched(&[("--method", "sgm"), ("--noise", noise.name())]);
+        let map = float_map(&bench.path("out/disparity.pfm")).values;
+        let expected = in_process(Method::Sgm, Filter::Default, NoiseChoice::Told(noise));
+        assert_eq!(map, expected.pixels(), "{noise:?}");
+        assert_eq!(summary()["noise"], noise.name());
+        assert!(summary()["noise_sigma"].is_null());
+        maps.push(map);
+    }
+    assert!(maps[0] != maps[1] && maps[1] != maps[2]);
+    // Every pixel of the picture is chosen by chance.
+    bench.matched(&[("--method", "sgm")]);
+    assert_eq!(summary()["noise"], "high");
+    assert!(summary()["noise_sigma"].as_f64().is_some_and(|sigma| sigma > 10.0));
+    assert_eq!(float_map(&bench.path("out/disparity.pfm")).values, maps[2]);
+}
+
+#[test]
 fn the_answers_are_those_of_the_pictures() {
     let bench = Bench::new();
     bench.matched(&[]);
@@ -122,7 +146,7 @@ fn a_calibration_adds_depth_in_metres_and_millimetres_and_a_cloud() {
     let out = bench.path("out");
     let rig = RectifiedRig::with_offset(100.0, 0.2, 47.5, 23.5, 48.5).expect("a rig");
     let scale = DepthScale::new(&rig).expect("in range");
-    let map = in_process(Method::Block, Filter::Default);
+    let map = in_process(Method::Block, Filter::Default, NoiseChoice::Auto);
     let depth = float_map(&out.join("depth.pfm"));
     assert_eq!(depth.values, map.depth_m(&scale));
     let DynamicImage::ImageLuma16(millimetres) = picture(&out.join("depth.png")) else { panic!("16-bit grey") };
@@ -189,7 +213,7 @@ fn bench_prints_one_json_object() {
         assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
         let printed: Value = serde_json::from_slice(&run.stdout).expect("one JSON object");
         let keys: Vec<&String> = printed.as_object().expect("an object").keys().collect();
-        assert_eq!(keys, ["disparities", "frame_ms", "height", "kernel", "state_bytes", "width"]);
+        assert_eq!(keys, ["disparities", "frame_ms", "height", "kernel", "noise", "state_bytes", "width"]);
         assert_eq!(printed["state_bytes"], method.state_bytes(WIDTH as u16, 32));
         let times = printed["frame_ms"].as_array().expect("a list");
         assert!(times.len() == 3 && times.iter().all(|t| t.as_f64().is_some_and(|ms| ms > 0.0)), "{times:?}");

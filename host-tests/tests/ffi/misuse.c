@@ -138,6 +138,7 @@ static void configurations(void) {
     REFUSED(step[1], 19, PENALTIES);
     REFUSED(jump[0], 96, PENALTIES);
     REFUSED(edges[0], 21, PENALTIES);
+    REFUSED(noise, 3, NOISE);
     for (int32_t preset = STEREOPSIS_PRESET_DENSE; preset <= STEREOPSIS_PRESET_STRICT; preset++) {
         EXPECT(stereopsis_config_default(WIDTH, HEIGHT, 32, preset, &c), OK);
         EXPECT(stereopsis_start(s, &c), OK);

@@ -1,9 +1,10 @@
 //! Any combination of sizes, ranges, pictures, checks and penalties.
 
 use super::list::{PATTERNS, random_penalties};
-use super::{compare, pipeline};
+use super::{compare, emulated, pipeline};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use stereopsis::imaging::Noise;
 use stereopsis::matching::{Block, Checks, Config, Fast, Sgm, SgmEdge, SgmLean};
 use stereopsis::units::Disparity;
 use stereopsis_host::scene::Random;
@@ -34,10 +35,10 @@ prop_compose! {
 prop_compose! {
     fn any_config()(
         width in 1u16..=300, height in 1u16..=60, disparities in 16u16..=256, min_disparity in 0u16..60,
-        checks in any_checks(), confidence: bool, seed: u64,
+        checks in any_checks(), confidence: bool, noise in proptest::sample::select(&Noise::ALL[..]), seed: u64,
     ) -> Config {
         let penalties = random_penalties(&mut Random::new(seed));
-        Config { width, height, disparities, min_disparity, checks, penalties, confidence }
+        Config { width, height, disparities, min_disparity, checks, penalties, confidence, noise }
     }
 }
 
@@ -50,7 +51,7 @@ fn any_pattern() -> impl Strategy<Value = Pattern> {
 
 proptest! {
     #![proptest_config(ProptestConfig {
-        cases: 60,
+        cases: if emulated() { 6 } else { 60 },
         rng_seed: RngSeed::Fixed(4),
         failure_persistence: None,
         ..ProptestConfig::default()

@@ -24,6 +24,7 @@ mod firmware;
 mod growth;
 mod header;
 mod packages;
+mod parallel;
 mod pictures;
 mod readme;
 mod setup;

@@ -8,11 +8,11 @@ use std::fmt;
 use std::io::Write;
 use std::path::Path;
 use stereopsis::camera::{CameraPair, StereoSource};
-use stereopsis::imaging::GreyLines;
+use stereopsis::imaging::{GreyLines, Noise};
 use stereopsis::matching::{Config, Filter};
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::mock::MockCamera;
-use stereopsis_host::run::{MemoryPair, Method, run};
+use stereopsis_host::run::{MemoryPair, Method, NoiseChoice, run};
 
 /// Bytes of the longest raw line: RGB with 16 bits.
 const RAW: usize = MockCamera::MOST_PIXELS as usize * 6;
@@ -76,18 +76,30 @@ impl Pictures {
         Ok(Self { width: format.width, height: format.height, left, right })
     }
 
-    /// What the host's pipeline finds in them.
-    pub fn matched(&self, method: Method, disparities: u16) -> Outcome<DisparityMap> {
+    /// The pictures as a camera.
+    fn camera(&self) -> Outcome<MemoryPair> {
         let camera = MemoryPair::new(self.width, self.left.clone(), self.right.clone());
-        let mut camera = camera.ok_or_else(|| Failure::new("the pictures are empty"))?;
+        camera.ok_or_else(|| Failure::new("the pictures are empty"))
+    }
+
+    /// Their noise, told or measured.
+    pub fn noise(&self, choice: NoiseChoice) -> Outcome<Noise> {
+        let level = choice.level(&mut self.camera()?);
+        level.map(|(noise, _)| noise).map_err(|e| Failure::new(format!("camera: {e}")))
+    }
+
+    /// What the host's pipeline finds in them.
+    pub fn matched(&self, method: Method, disparities: u16, noise: Noise) -> Outcome<DisparityMap> {
+        let mut camera = self.camera()?;
         let config = method.with_filter(Filter::Default, Config::new(self.width, self.height, disparities));
+        let config = Config { noise, ..config };
         let outcome = run(method, &config, &mut camera, |_| ());
         outcome.map(|outcome| outcome.map).map_err(|e| Failure::new(format!("{method} on the host: {e}")))
     }
 
-    /// The checksum of what the host's pipeline finds in them, see [`crc32`].
+    /// The checksum of what the host's pipeline finds in them, as pictures with little noise, see [`crc32`].
     pub fn crc32(&self, method: Method, disparities: u16) -> Outcome<u32> {
-        self.matched(method, disparities).map(|map| crc32(&map))
+        self.matched(method, disparities, Noise::None).map(|map| crc32(&map))
     }
 
     /// Writes `left.pgm` and `right.pgm`, which firmware reads.

@@ -10,6 +10,7 @@ use crate::units::PixelFlags;
 
 /// Offers every winner to its partner, each by its cost above 8 bits of its disparity, and that disparity. The first of equal
 /// costs stays. The first winner is that of the first column that has a candidate, whose partner is the first right column.
+#[cfg(not(stereopsis_dsp))]
 #[inline(always)]
 pub(super) fn offer(winners: impl Iterator<Item = (u32, u8)>, right: &mut [u16]) {
     right.fill(u16::MAX);

@@ -16,6 +16,8 @@ mod pixels;
 mod subpixel;
 
 use super::config::Config;
+#[cfg(stereopsis_dsp)]
+use super::kernels::bytes::{self, Refused};
 use super::kernels::{Kernel, Winner};
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 use super::kernels::{WinnerRows, bytes_mut};
@@ -86,6 +88,15 @@ pub(super) fn answer<S: Scheme>(
     }
     let _ = (kernel, room);
     let winners = winners.get(begin..).unwrap_or(&[]);
+    #[cfg(not(stereopsis_dsp))]
     pixels::offer(winners, right);
+    #[cfg(stereopsis_dsp)]
+    bytes::offer(winners, right);
+    #[cfg(stereopsis_dsp)]
+    if S::STEP == 0 {
+        let Rules { min_disparity, ceiling, tolerance, flat, refused } = rules;
+        let refused = Refused { min_disparity, ceiling, tolerance, flat, flags: refused };
+        return bytes::answer(winners, right, &refused, answers, flags);
+    }
     pixels::answer::<S>(winners, right, &rules, answers, flags);
 }

@@ -6,6 +6,7 @@ use crate::matching::scheme::Scheme;
 use crate::units::{Disparity, PixelFlags};
 
 /// [`consistency::offer`] of all winners.
+#[cfg(not(stereopsis_dsp))]
 #[inline(never)]
 pub(super) fn offer(winners: &[Winner], right: &mut [u16]) {
     consistency::offer(winners.iter().map(|winner| (winner.key(), winner.disparity() as u8)), right);

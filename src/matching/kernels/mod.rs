@@ -2,24 +2,31 @@
 //!
 //! In: the census rows that enter and leave the window. Out: a [`Winner`] for every pixel of the row.
 //!
+//! * `census`: the codes of four pixels at a time in plain 32-bit words, for the next two.
 //! * `planes`: bit planes in plain 32-bit words, for cores without vectors.
+//! * `bytes`: four bytes in a word, for cores that have Arm's instructions for that.
 //! * `lanes`: safe Rust over fixed lanes, which the compiler turns into the vectors that the target has.
 //! * `x86`: the same code compiled for AVX2, chosen when the processor has it.
 //! * `helium`: what `lanes` and the stages after it do for a row, in assembly for the vectors of a Cortex-M55.
 //! * `winner`: what all of them give.
 //!
-//! A 32-bit core gets `planes` alone, unless it is compiled with `--cfg stereopsis_vectors`, which says that its vectors
-//! are on (Helium on a Cortex-M55: `-C target-cpu=cortex-m55`); then it gets `lanes` alone, most of it
-//! from `helium`. Larger processors have both.
+//! A 32-bit core gets `planes` alone, unless it is compiled with `--cfg stereopsis_dsp`, which says that it has instructions
+//! on four bytes (Cortex-M4, M7, M33); then it gets `bytes` alone; or with `--cfg stereopsis_vectors`, which says that its
+//! vectors are on (Helium on a Cortex-M55: `-C target-cpu=cortex-m55`); then it gets `lanes` alone, most of it from `helium`.
+//! Larger processors have `planes` and `lanes`.
 //!
 //! Every kernel gives the same bits. A new one is a variant of [`Kernel`] and an arm in [`Kernel::row`].
 
+#[cfg(stereopsis_dsp)]
+pub mod bytes;
+#[cfg(not(stereopsis_vectors))]
+mod census;
 #[cfg(stereopsis_vectors)]
 pub mod helium;
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 mod lanes;
 mod paths;
-#[cfg(not(stereopsis_vectors))]
+#[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
 mod planes;
 mod scratch;
 mod winner;
@@ -35,7 +42,7 @@ pub(super) use winner::WinnerRows;
 pub(super) use winner::{Select, Unique};
 
 #[cfg(not(stereopsis_vectors))]
-pub(super) use planes::codes;
+pub(super) use census::codes;
 
 use super::scheme::Around;
 use super::window::Windowed;
@@ -49,8 +56,11 @@ pub const STEP: usize = 16;
 #[non_exhaustive]
 pub enum Kernel {
     /// Bit planes in 32-bit words.
-    #[cfg(not(stereopsis_vectors))]
+    #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
     Planes,
+    /// Four bytes in a 32-bit word.
+    #[cfg(stereopsis_dsp)]
+    Bytes,
     /// Vectors of the compilation's own target.
     #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
     Lanes,
@@ -61,8 +71,10 @@ pub enum Kernel {
 
 impl Kernel {
     /// A kernel that every processor runs, and whose bytes are zero.
-    #[cfg(not(stereopsis_vectors))]
+    #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
     pub(super) const FIRST: Self = Self::Planes;
+    #[cfg(stereopsis_dsp)]
+    pub(super) const FIRST: Self = Self::Bytes;
     #[cfg(stereopsis_vectors)]
     pub(super) const FIRST: Self = Self::Lanes;
 
@@ -75,15 +87,17 @@ impl Kernel {
         #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
         return Self::Lanes;
         #[cfg(not(any(target_pointer_width = "64", stereopsis_vectors)))]
-        return Self::Planes;
+        return Self::FIRST;
     }
 
     /// All that this processor runs.
     pub fn available() -> impl Iterator<Item = Self> {
         let best = Self::detect();
         let others = [
-            #[cfg(not(stereopsis_vectors))]
+            #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
             Self::Planes,
+            #[cfg(stereopsis_dsp)]
+            Self::Bytes,
             #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
             Self::Lanes,
         ];
@@ -93,8 +107,10 @@ impl Kernel {
     /// Its name in reports.
     pub const fn name(self) -> &'static str {
         match self {
-            #[cfg(not(stereopsis_vectors))]
+            #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
             Self::Planes => "planes",
+            #[cfg(stereopsis_dsp)]
+            Self::Bytes => "bytes",
             #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
             Self::Lanes => "lanes",
             #[cfg(target_arch = "x86_64")]
@@ -106,12 +122,12 @@ impl Kernel {
     /// [`STEP`]s.
     #[inline]
     pub(super) fn candidates(self, disparities: usize, most: usize) -> usize {
-        #[cfg(not(stereopsis_vectors))]
+        #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
         if self == Self::Planes && most.is_multiple_of(32) {
             // Whole words, in a form that lets the compiler see it: a firmware is linked without what cannot be asked for.
             return disparities.next_multiple_of(32).min(most) & !31;
         }
-        #[cfg(stereopsis_vectors)]
+        #[cfg(any(stereopsis_vectors, stereopsis_dsp))]
         if let Some(group) = [64, 32].into_iter().find(|&group| most.is_multiple_of(group)) {
             // As many as there is assembly for, likewise; never none.
             return (disparities.next_multiple_of(group).min(most) & !(group - 1)).max(group);
@@ -128,9 +144,13 @@ impl Kernel {
         scratch: &mut [u32],
         out: &mut [u8],
     ) {
-        #[cfg(not(stereopsis_vectors))]
+        #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
         if self == Self::Planes {
             return planes::codes_of::<S>([left, right], min_disparity, scratch, out);
+        }
+        #[cfg(stereopsis_dsp)]
+        if self == Self::Bytes {
+            return bytes::codes_of::<S>([left, right], scratch, out);
         }
         let _ = min_disparity;
         let (of_left, of_right) = out.split_at_mut_checked(out.len() / 2).unwrap_or_default();
@@ -173,8 +193,10 @@ impl Kernel {
     #[cfg_attr(not(target_pointer_width = "64"), inline(always))]
     pub(super) fn row<S: Windowed>(self, work: RowWork<'_>, select: Option<Select<'_>>) {
         match self {
-            #[cfg(not(stereopsis_vectors))]
+            #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
             Self::Planes => planes::row::<S>(work, select),
+            #[cfg(stereopsis_dsp)]
+            Self::Bytes => bytes::row::<S>(work, select),
             #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
             Self::Lanes => lanes::row::<S>(work, select),
             #[cfg(target_arch = "x86_64")]
@@ -219,6 +241,9 @@ pub(super) struct RowWork<'a> {
     /// Room to work in.
     pub scratch: &'a mut [u32],
 }
+
+/// Words that the tables of the kernel in bytes take, where codes have up to four bits, and four that rows are read beyond.
+pub const TABLE_WORDS: usize = 2 * 16 * 96 / size_of::<u32>() + 4;
 
 /// Columns of zero sums before the image's first and after its last, to stand for those outside.
 pub const OUTSIDE: usize = 5;

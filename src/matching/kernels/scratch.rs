@@ -7,9 +7,10 @@ use super::{COLUMNS_OFF, OUTSIDE};
 /// What a kernel works with while a row lasts. No kernel finds anything in it from the row before.
 ///
 /// `2 W + 3 D` bytes: room for window sums of all disparities beside the codes of the right image's rows, in the order in
-/// which the kernel reads them, each with as many before as there are disparities.
+/// which the kernel reads them, each with as many before as there are disparities. Beside that `TABLES` words.
 #[repr(C, align(8))]
-pub struct Scratch<const W: usize, const D: usize> {
+pub struct Scratch<const TABLES: usize, const W: usize, const D: usize> {
+    tables: [u32; TABLES],
     sums: [u8; D],
     before: [u16; D],
     codes: [u16; W],
@@ -17,14 +18,14 @@ pub struct Scratch<const W: usize, const D: usize> {
     rest: u16,
 }
 
-impl<const W: usize, const D: usize> Scratch<W, D> {
+impl<const TABLES: usize, const W: usize, const D: usize> Scratch<TABLES, W, D> {
     /// All zero.
-    pub const ZERO: Self = Self { sums: [0; D], before: [0; D], codes: [0; W], rest: 0 };
+    pub const ZERO: Self = Self { tables: [0; TABLES], sums: [0; D], before: [0; D], codes: [0; W], rest: 0 };
 
     /// All of it as words.
     pub fn words(&mut self) -> &mut [u32] {
         let bytes = size_of_val(&self.sums) + size_of_val(&self.before) + size_of_val(&self.codes);
-        let words = (bytes + size_of_val(&self.rest)) / size_of::<u32>();
+        let words = TABLES + (bytes + size_of_val(&self.rest)) / size_of::<u32>();
         // SAFETY: the fields are integers without a gap between them (`repr(C)`, the first a whole number of half-words),
         // any of whose values is a word, and `words` does not reach beyond the last one.
         unsafe { core::slice::from_raw_parts_mut(core::ptr::from_mut(self).cast(), words) }
@@ -151,17 +152,24 @@ pub(in crate::matching) fn halves_mut(words: &mut [u32]) -> &mut [u16] {
 }
 
 /// Bytes as half-words, as far as they are whole ones at a half-word's place.
-#[cfg(not(stereopsis_vectors))]
+#[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
 pub(super) fn halves_of_mut(bytes: &mut [u8]) -> &mut [u16] {
     // SAFETY: every value of two bytes is a half-word and the other way round.
     unsafe { bytes.align_to_mut().1 }
 }
 
 /// [`halves_of_mut`], to read.
-#[cfg(not(stereopsis_vectors))]
+#[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
 pub(super) fn halves_of(bytes: &[u8]) -> &[u16] {
     // SAFETY: every value of two bytes is a half-word.
     unsafe { bytes.align_to().1 }
+}
+
+/// Words as bytes, to read.
+#[cfg(stereopsis_dsp)]
+pub(super) fn bytes_of_words(words: &[u32]) -> &[u8] {
+    // SAFETY: every value of a word is four bytes.
+    unsafe { words.align_to().1 }
 }
 
 /// [`words_mut`], to read.

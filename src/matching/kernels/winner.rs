@@ -117,15 +117,22 @@ impl Winner {
         Self(u32::from_le_bytes([below, cost, above, disparity]))
     }
 
+    /// [`Self::new`] of a word with the three costs from the lowest byte up, whatever its highest byte is.
+    #[cfg(stereopsis_dsp)]
+    #[inline(always)]
+    pub fn of_costs(costs: u32, disparity: u8) -> Self {
+        Self(costs & 0x00ff_ffff | u32::from(disparity) << 24)
+    }
+
     /// The costs one below and one above.
-    #[cfg(not(stereopsis_vectors))]
+    #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
     #[inline(always)]
     pub fn beside(self) -> (u8, u8) {
         (self.0 as u8, (self.0 >> 16) as u8)
     }
 
     /// The same winner with other costs beside it.
-    #[cfg(not(stereopsis_vectors))]
+    #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
     #[inline(always)]
     pub fn with_beside(self, beside: (u8, u8)) -> Self {
         Self::new(self.cost(), self.disparity() as u8, beside)

@@ -6,23 +6,26 @@
 //! surface's ends, so that depth edges stay where they are.
 //!
 //! * `runs`: pixel by pixel, from the sums up to each.
-//! * `lanes`: pixels side by side, for the kernels in vectors; for those of a Cortex-M55 in `kernels/helium`.
+//! * `lanes`: pixels side by side, for the kernels in vectors; in assembly in `kernels/helium` and
+//!   `kernels/bytes`.
 //!
 //! All give the same. The work is the same for every row.
 
 #[cfg(target_pointer_width = "64")]
 mod lanes;
-#[cfg(not(stereopsis_vectors))]
+#[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
 mod runs;
 
 use super::config::Checks;
 use super::kernels::Kernel;
+#[cfg(stereopsis_dsp)]
+use super::kernels::bytes as assembly;
 #[cfg(stereopsis_vectors)]
-use super::kernels::helium;
+use super::kernels::helium as assembly;
 use crate::units::Disparity;
 
 /// Makes every answer of a row the average of up to [`Checks::smoothing_radius`] pairs around it, and gives for each how
-/// many its surface has along the row; Helium's lengths are bytes. `room` has [`ROOM`] numbers more than there are answers.
+/// many its surface has along the row; in assembly these are bytes. `room` has [`ROOM`] numbers more than there are answers.
 pub(super) fn average(
     kernel: Kernel,
     answers: &mut [Disparity],
@@ -38,9 +41,9 @@ pub(super) fn average(
         );
     }
     let _ = kernel;
-    #[cfg(stereopsis_vectors)]
-    helium::average(answers, lengths, room, checks.surface_step, checks.smoothing_radius);
-    #[cfg(not(stereopsis_vectors))]
+    #[cfg(any(stereopsis_vectors, stereopsis_dsp))]
+    assembly::average(answers, lengths, room, checks.surface_step, checks.smoothing_radius);
+    #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
     {
         runs::count(answers, lengths, room, checks.surface_step);
         runs::average(answers, lengths, room, checks.smoothing_radius);
@@ -51,7 +54,7 @@ pub(super) fn average(
 pub(super) const ROOM: usize = 2 * Checks::MOST_SMOOTHING as usize;
 
 /// Whether two answers are of one surface; `NONE`s are, and are far from every answer (Config::check).
-#[cfg(not(stereopsis_vectors))]
+#[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
 #[inline(always)]
 pub(super) fn of_one(a: u16, b: u16, step: Disparity) -> bool {
     if cfg!(target_pointer_width = "64") {

@@ -28,11 +28,13 @@ pub(super) fn count(answers: &[Disparity], lengths: &mut [u16], sums: &mut [u16]
 pub(super) fn average(answers: &mut [Disparity], lengths: &mut [u16], sums: &[u16], radius: u8) {
     // The first of the next surface has the length 1.
     let (mut whole, mut next) = (0, 1);
+    // Never more than there are reciprocals, which here costs nothing to say.
+    let radius = u32::from(radius) % RECIPROCALS.len() as u32;
     for ((x, answer), length) in answers.iter_mut().enumerate().zip(lengths).rev() {
         let here = u32::from(*length);
         whole = if next > 1 { whole } else { here };
         next = here;
-        let reach = (here - 1).min(whole.wrapping_sub(here)).min(u32::from(radius)) as usize;
+        let reach = (here - 1).min(whole.wrapping_sub(here)).min(radius) as usize;
         let to = |x: usize| sums.get(x).copied().unwrap_or(0);
         let sum = to(x + reach + 1).wrapping_sub(to(x.wrapping_sub(reach)));
         *answer = averaged(*answer, sum, reach);

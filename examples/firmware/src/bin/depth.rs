@@ -13,7 +13,7 @@ use stereopsis::pipeline::PipelineError;
 use stereopsis_firmware::camera::files::FileError;
 use stereopsis_firmware::camera::scene::Scene;
 use stereopsis_firmware::camera::{Camera, timed::Timed};
-use stereopsis_firmware::choice::{BOARD, BoardPipeline, DISPARITIES, HEIGHT, METHOD, Method, WIDTH};
+use stereopsis_firmware::choice::{BOARD, BoardPipeline, DISPARITIES, HEIGHT, METHOD, Method, NOISE, WIDTH};
 use stereopsis_firmware::clock::Clock;
 use stereopsis_firmware::console::Console;
 use stereopsis_firmware::host::HostError;
@@ -60,6 +60,7 @@ fn run(pipeline: &mut BoardPipeline) -> Result<(), Failure> {
     let format = camera.format();
     defmt::info!("{=str} on {=str}: {=u16}x{=u16}", METHOD, BOARD.core, format.width, format.height);
     let config = Config::new(format.width, format.height, DISPARITIES).with_filter::<Method>(Filter::Default);
+    let config = Config { noise: NOISE, ..config };
     pipeline.start(&config).map_err(Failure::Config)?;
     let mut rows = Rows::create().map_err(Failure::Rows)?;
     let calibration = clock.calibrate();

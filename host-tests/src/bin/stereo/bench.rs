@@ -16,6 +16,7 @@ struct Times {
     height: u16,
     disparities: u16,
     state_bytes: usize,
+    noise: &'static str,
 }
 
 pub fn run(args: &BenchArgs) -> Result<(), Failure> {
@@ -23,6 +24,7 @@ pub fn run(args: &BenchArgs) -> Result<(), Failure> {
     let config = input::config(&args.range, &args.way, pair.width, pair.height)?;
     // Files and the conversion to grey are left out of the times.
     let mut camera = MemoryPair::record(&mut pair.camera)?;
+    let (config, _) = input::with_noise(&args.way, config, &mut camera)?;
     let (frame_ms, kernel) = time_frames(args.way.way(), &config, &mut camera, usize::from(args.repeat))?;
     let times = Times {
         frame_ms,
@@ -31,6 +33,7 @@ pub fn run(args: &BenchArgs) -> Result<(), Failure> {
         height: config.height,
         disparities: config.disparities,
         state_bytes: args.way.method.state_bytes(config.width, config.disparities),
+        noise: config.noise.name(),
     };
     print(&(serde_json::to_string(&times)? + "\n"))
 }

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use stereopsis::matching::{Config, Filter, Kernel};
 use stereopsis_host::command_line::usage_line;
 use stereopsis_host::correspond::Plan;
-use stereopsis_host::run::{Method, UnknownMethod, Way};
+use stereopsis_host::run::{Method, NoiseChoice, UnknownMethod, UnknownNoise, Way};
 
 /// What is told to one who names another command.
 const COMMANDS: &str = "the commands are demo, match, bench and features";
@@ -33,7 +33,7 @@ const BENCH_EXAMPLE: &str = "Example:
   stereo bench --left left.png --right right.png --disparities 64 --method fast --repeat 9
 
 Printed is one JSON object: frame_ms (a time for each frame, after one that is left out; files and start-up left out, one \
-thread), kernel, width, height, disparities, state_bytes.";
+thread), kernel, width, height, disparities, state_bytes, noise.";
 
 const FEATURES_EXAMPLE: &str = "Example:
   stereo features --left first.png --right second.png --out matches.csv --picture matches.png
@@ -163,6 +163,9 @@ pub struct WayArgs {
     /// dense (an answer wherever there is a candidate), default, or strict (sure answers only)
     #[arg(long, value_name = "FILTER", default_value = "default", value_parser = filter)]
     pub filter: Filter,
+    /// How noisy the images are: none, low (a deviation of about 2 grey levels), high (3 and more), or auto, which measures it
+    #[arg(long, value_name = "NOISE", default_value = "auto", value_parser = noise)]
+    pub noise: NoiseChoice,
     /// The kernel that does the work, by default the fastest of this processor; all give the same bits
     #[arg(long, value_name = "KERNEL", env = "STEREO_KERNEL", value_parser = kernel)]
     pub kernel: Option<Kernel>,
@@ -176,6 +179,10 @@ impl WayArgs {
     pub fn way(&self) -> Way {
         Way { method: self.method, kernel: self.kernel, threads: self.threads }
     }
+}
+
+fn noise(text: &str) -> Result<NoiseChoice, String> {
+    text.parse().map_err(|unknown: UnknownNoise| unknown.to_string())
 }
 
 fn filter(text: &str) -> Result<Filter, &'static str> {

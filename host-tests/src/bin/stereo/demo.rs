@@ -32,12 +32,14 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
     let config = Config { confidence: true, ..config };
     let no_pair = || Failure::new("the scene's two pictures differ in size");
     let mut camera = MemoryPair::new(config.width, left.to_vec(), right.to_vec()).ok_or_else(no_pair)?;
+    let (config, meter) = input::with_noise(&args.way, config, &mut camera)?;
     let outcome = run::run(args.way.way(), &config, &mut camera, |_| {})?;
     let scale = DepthScale::new(&scene.rig())?;
 
     let accuracy = Accuracy::of(&outcome.map, &truth, &scale);
     let filter = args.way.filter.name();
     let summary = Summary::new(args.way.method, filter, &config, &outcome, Some(&scale), Some(accuracy));
+    let summary = summary.with_noise(meter.as_ref());
     let (left_rgb, right_rgb) = (colours(&left), colours(&right));
     let report = Report {
         left_name: IMAGES[0],

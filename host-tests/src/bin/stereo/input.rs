@@ -3,8 +3,9 @@
 use crate::cli::{PairArgs, RangeArgs, WayArgs};
 use crate::failure::Failure;
 use image::RgbImage;
-use stereopsis::camera::{CameraPair, LineSource};
-use stereopsis::imaging::GreyLines;
+use std::fmt::Display;
+use stereopsis::camera::{CameraPair, LineSource, StereoSource};
+use stereopsis::imaging::{GreyLines, NoiseMeter};
 use stereopsis::matching::Config;
 use stereopsis_host::mock::MockCamera;
 
@@ -39,7 +40,8 @@ impl Pair {
     }
 }
 
-/// The search in images of that size, as the method and its filter have it, or which option does not fit them.
+/// The search in images of that size, as the method and its filter have it, or which option does not fit them. The noise is
+/// still to be told: [`with_noise`].
 pub fn config(range: &RangeArgs, way: &WayArgs, width: u16, height: u16) -> Result<Config, Failure> {
     let RangeArgs { disparities, min_disparity } = *range;
     if width < Config::FEWEST_DISPARITIES {
@@ -61,4 +63,14 @@ pub fn config(range: &RangeArgs, way: &WayArgs, width: u16, height: u16) -> Resu
     }
     let search = Config { min_disparity, ..Config::new(width, height, disparities) };
     Ok(way.method.with_filter(way.filter, search))
+}
+
+/// The search with the noise that is told or measured in the source's next frame, and what was measured.
+pub fn with_noise<C: StereoSource<Error: Display>>(
+    way: &WayArgs,
+    config: Config,
+    source: &mut C,
+) -> Result<(Config, Option<NoiseMeter>), Failure> {
+    let (noise, meter) = way.noise.level(source).map_err(|e| Failure::new(e.to_string()))?;
+    Ok((Config { noise, ..config }, meter))
 }

@@ -23,11 +23,13 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let scale = calibration.as_ref().map(|c| scale(c, pair.width, pair.height)).transpose()?;
     Staging::probe(&args.out)?;
 
+    let (config, meter) = input::with_noise(&args.way, config, &mut pair.camera)?;
     let progress = Progress::over(&config);
     let outcome = run::run(args.way.way(), &config, &mut pair.camera, |rows| progress.rows(rows))?;
     drop(progress);
 
     let summary = Summary::new(args.way.method, args.way.filter.name(), &config, &outcome, scale.as_ref(), None);
+    let summary = summary.with_noise(meter.as_ref());
     let report = Report {
         left_name: &name(&args.pair.left),
         right_name: &name(&args.pair.right),
@@ -70,6 +72,10 @@ pub fn figures(summary: &Summary) -> String {
         s.filter
     );
     let _ = writeln!(text, "density      {:.1} % of the pixels", 100.0 * s.density);
+    let _ = match s.noise_sigma {
+        Some(sigma) => writeln!(text, "noise        {}, {sigma:.1} grey levels", s.noise),
+        None => writeln!(text, "noise        {}, as told", s.noise),
+    };
     if let Some(d) = s.disparity_px {
         let _ = writeln!(text, "disparity    {:.2} to {:.2} px, median {:.2} px", d.min, d.max, d.median);
     }

@@ -16,7 +16,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use stereopsis::matching::{Config, Filter};
 use stereopsis_host::real::{Alteration, RealScene, Score};
-use stereopsis_host::run::{MemoryPair, Method, run as match_pair};
+use stereopsis_host::run::{MemoryPair, Method, measure_noise, run as match_pair};
 use table::Column;
 use tempfile::NamedTempFile;
 
@@ -125,6 +125,8 @@ fn answers(method: Method, scene: &RealScene, [left, right]: &[GrayImage; 2]) ->
     let camera = MemoryPair::new(width, left.to_vec(), right.to_vec());
     let mut camera = camera.ok_or_else(|| failed(&"the pictures are empty"))?;
     let config = method.with_filter(Filter::Default, Config::new(width, height, scene.disparities));
+    let noise = measure_noise(&mut camera).map_err(|e| failed(&e))?.level();
+    let config = Config { noise, ..config };
     let outcome = match_pair(method, &config, &mut camera, |_| ());
     outcome.map(|outcome| outcome.map.pixels()).map_err(|e| failed(&e))
 }

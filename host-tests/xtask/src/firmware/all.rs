@@ -5,10 +5,12 @@ use super::checksums::{self, Checksum};
 use super::frame::{self, Frame, MOST_STACK};
 use super::program::{Built, Program};
 use super::scene::Scene;
-use super::{awkward, parallel, refusals, tables};
+use super::{awkward, refusals, tables};
+use crate::parallel;
 use crate::pictures::Pictures;
 use crate::setup;
 use crate::steps::{Failure, Outcome, root};
+use std::collections::BTreeMap;
 use std::fs;
 use stereopsis_host::run::Method;
 
@@ -37,8 +39,9 @@ pub fn run(check: bool) -> Outcome {
     let real = checksums::pairs()?;
     refusals::check()?;
     awkward::check()?;
-    let jobs = programs()?;
-    let results = parallel::work(jobs, |program| one(program, &real))?;
+    let results = parallel::work(in_turn(programs()?), |(at, program)| Ok((at, one(program, &real)?)))?;
+    let results: BTreeMap<_, _> = results.into_iter().collect();
+    let results: Vec<_> = results.into_values().collect();
     let part = tables::part(&results)?;
     println!("{part}");
     for result in &results {
@@ -60,6 +63,22 @@ fn programs() -> Outcome<Vec<Program>> {
     });
     all.map(|(board, method, (width, height, disparities))| Program::new(board, method, width, height, disparities))
         .collect()
+}
+
+/// The programs with their places, those of the one folder and those of the other in turn: two are built at a time.
+fn in_turn(programs: Vec<Program>) -> Vec<(usize, Program)> {
+    let mut built = [0; 2];
+    let mut jobs: Vec<_> = programs
+        .into_iter()
+        .enumerate()
+        .map(|(at, program)| {
+            let turn = built[program.folder()];
+            built[program.folder()] += 1;
+            (turn, at, program)
+        })
+        .collect();
+    jobs.sort_by_key(|&(turn, at, _)| (turn, at));
+    jobs.into_iter().map(|(_, at, program)| (at, program)).collect()
 }
 
 /// One program, on all the pictures of its size.

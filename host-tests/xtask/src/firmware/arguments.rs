@@ -6,7 +6,7 @@ use crate::steps::{Failure, Outcome};
 use clap::Args;
 use std::path::PathBuf;
 use stereopsis::matching::Config;
-use stereopsis_host::run::Method;
+use stereopsis_host::run::{Method, NoiseChoice, UnknownNoise};
 
 /// The options of `firmware`.
 #[derive(Args)]
@@ -27,11 +27,14 @@ pub struct Arguments {
     /// The matching method
     #[arg(long, default_value = "block", value_parser = method)]
     method: Method,
+    /// How noisy the images are: none, low, high, or auto, which measures it; the built-in scene is taken to have none
+    #[arg(long, default_value = "auto", value_parser = noise)]
+    noise: NoiseChoice,
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR", required_unless_present = "all")]
     out: Option<PathBuf>,
     /// Every core, method and size on the built-in scene: writes the table of README.md
-    #[arg(long, conflicts_with_all = ["core", "left", "right", "disparities", "method", "out"])]
+    #[arg(long, conflicts_with_all = ["core", "left", "right", "disparities", "method", "noise", "out"])]
     all: bool,
     /// With --all: writes nothing, fails when README.md's table is another
     #[arg(long, requires = "all")]
@@ -48,6 +51,8 @@ pub struct One {
     pub disparities: u16,
     /// The matching method.
     pub method: Method,
+    /// The images' noise.
+    pub noise: NoiseChoice,
     /// Where the results go.
     pub out: PathBuf,
 }
@@ -62,7 +67,7 @@ impl Arguments {
             return Err(Failure::new("--core, --disparities and --out are needed, or --all"));
         };
         let pair = self.left.clone().zip(self.right.clone());
-        Ok(Some(One { board, pair, disparities, method: self.method, out }))
+        Ok(Some(One { board, pair, disparities, method: self.method, noise: self.noise, out }))
     }
 }
 
@@ -84,6 +89,10 @@ fn core(name: &str) -> Result<Board, String> {
 
 fn method(name: &str) -> Result<Method, String> {
     name.parse().map_err(|unknown| format!("{unknown}"))
+}
+
+fn noise(name: &str) -> Result<NoiseChoice, String> {
+    name.parse().map_err(|unknown: UnknownNoise| unknown.to_string())
 }
 
 fn disparities(text: &str) -> Result<u16, String> {

@@ -13,8 +13,8 @@ use stereopsis_host::run::Method;
 /// Pairs of the folder of real pictures.
 const PAIRS: [&str; 3] = ["cones", "venus", "mb2014q_Motorcycle"];
 
-/// The example in C has to say what the cores say.
-const IN_C: [(&str, c::Core); 3] = [("C, host", c::Core::Host), ("C, m4", c::Core::M4), ("C, m7", c::Core::M7)];
+/// The example in C has to say what the cores say; in the order of [`c::CORES`].
+const IN_C: [&str; 3] = ["C, host", "C, m4", "C, m7"];
 
 /// One core's checksum on one pair.
 pub struct Checksum {
@@ -52,14 +52,17 @@ pub fn compare(results: &[Result], pairs: &[(String, Pictures)]) -> Outcome {
             row.push((board.core, *crc32));
         }
     }
-    for ((pair, method, width, height, disparities), row) in &mut rows {
-        let of = pairs.iter().find(|(name, _)| name == *pair).map(|(_, pictures)| pictures.scaled(*width, *height));
+    let scaled = |&(pair, method, width, height, disparities): &(&String, &str, u16, u16, u16)| {
+        let of = pairs.iter().find(|(name, _)| name == pair).map(|(_, pictures)| pictures.scaled(width, height));
         let pictures = of.ok_or_else(|| Failure::new(format!("{pair}: no such pair")))??;
         let method: Method = method.parse().map_err(|e| Failure::new(format!("{e}")))?;
-        row.push(("host", pictures.crc32(method, *disparities)?));
-        for (name, core) in IN_C {
-            row.push((name, c::crc32(core, &pictures, method, *disparities)?));
-        }
+        Ok((pictures, method, disparities))
+    };
+    let frames = rows.keys().map(scaled).collect::<Outcome<Vec<_>>>()?;
+    let runs: Vec<_> = frames.iter().map(|(pictures, method, disparities)| (pictures, *method, *disparities)).collect();
+    for ((row, &(pictures, method, disparities)), in_c) in rows.values_mut().zip(&runs).zip(c::crc32s(&runs)?) {
+        row.push(("host", pictures.crc32(method, disparities)?));
+        row.extend(IN_C.into_iter().zip(in_c));
     }
     let columns: Vec<&str> = rows.values().next().into_iter().flatten().map(|(name, _)| *name).collect();
     println!("CRC-32 of disparities and flags:\n");

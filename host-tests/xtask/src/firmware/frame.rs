@@ -64,7 +64,7 @@ pub fn with_any_stack(built: &Built, pictures: &Pictures, is_scene: bool) -> Out
     let log = log::read(built, folder.path())?;
     let rows = fs::read(folder.path().join("rows.bin")).map_err(|e| failed(format!("rows.bin: {e}")))?;
 
-    let map = pictures.matched(program.method, program.disparities)?;
+    let map = pictures.matched(program.method, program.disparities, program.noise)?;
     if let Some(what) = difference(&map, &rows) {
         return Err(failed(what));
     }

@@ -3,7 +3,7 @@
 //! * [`arguments`]: what is asked for. [`program`]: one build of the example. [`emulate`]: QEMU. [`log`]: the firmware's log as
 //!   text.
 //! * [`frame`]: one frame on one core, held to the host. [`summary`]: the files that are written of it.
-//! * [`all`]: every core, method and size; [`tables`] of it for README.md, [`parallel`] work; [`checksums`] on real pictures.
+//! * [`all`]: every core, method and size; [`tables`] of it for README.md; [`checksums`] on real pictures.
 //! * [`awkward`]: sizes that fill no vector, where the rows are in assembly.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
 
@@ -14,7 +14,6 @@ mod checksums;
 mod emulate;
 pub mod frame;
 mod log;
-pub mod parallel;
 pub mod program;
 mod refusals;
 mod summary;
@@ -33,7 +32,9 @@ use crate::setup;
 use crate::steps::{Failure, Outcome};
 use arguments::One;
 use program::Program;
+use stereopsis::imaging::Noise;
 use stereopsis_host::output::Staging;
+use stereopsis_host::run::NoiseChoice;
 
 /// Does what the command line asks for.
 pub fn run(arguments: &Arguments) -> Outcome {
@@ -54,7 +55,11 @@ fn run_one(one: &One) -> Outcome {
         Some((left, right)) => (Pictures::open(left, right)?, false),
         None => (Pictures::of_scene(one.scene())?, true),
     };
-    let program = Program::new(one.board, one.method, pictures.width, pictures.height, one.disparities)?;
+    let mut program = Program::new(one.board, one.method, pictures.width, pictures.height, one.disparities)?;
+    program.noise = match one.noise {
+        NoiseChoice::Auto if is_scene => Noise::None,
+        choice => pictures.noise(choice)?,
+    };
     Staging::probe(&one.out).map_err(|e| Failure::new(format!("--out: {e}")))?;
     setup::firmware(&[one.board.target])?;
     let built = program.build()?;

@@ -6,6 +6,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
+use stereopsis::imaging::Noise;
 use stereopsis::matching::Config;
 use stereopsis_host::run::Method;
 
@@ -40,6 +41,8 @@ pub struct Program {
     pub width: u16,
     pub height: u16,
     pub disparities: u16,
+    /// How noisy the cameras are.
+    pub noise: Noise,
     /// Whether it takes all RAM that the board has, because the budget is too small.
     all_memory: bool,
 }
@@ -51,23 +54,23 @@ pub struct Built {
     pub elf: PathBuf,
 }
 
-/// Cargo builds one program at a time in its folder; what comes out has the same name every time.
-static FOLDER: Mutex<()> = Mutex::new(());
+/// Cargo builds one program at a time in a folder; what comes out has the same name every time.
+static FOLDERS: [Mutex<()>; 2] = [const { Mutex::new(()) }; 2];
 
 /// Cargo in the example's folder, where its own configuration names the target.
 pub fn cargo(words: &str) -> Command {
     let mut cargo = command("cargo", &words.split_whitespace().collect::<Vec<_>>());
-    cargo.current_dir(root().join("examples/firmware")).env("CARGO_TARGET_DIR", folder());
+    cargo.current_dir(root().join("examples/firmware")).env("CARGO_TARGET_DIR", folder(0));
     cargo
 }
 
 /// Where the example is built.
-fn folder() -> PathBuf {
-    target_dir().join("firmware")
+fn folder(at: usize) -> PathBuf {
+    target_dir().join(["firmware", "firmware-too"][at])
 }
 
 impl Program {
-    /// A program for frames of that size; the failure names the option that asks for too much.
+    /// A program for frames of that size from cameras with little noise; the failure names the option that asks for too much.
     pub fn new(board: Board, method: Method, width: u16, height: u16, disparities: u16) -> Outcome<Self> {
         let least = Config::FEWEST_DISPARITIES;
         if width < least {
@@ -89,21 +92,26 @@ impl Program {
                 board.core, board.machine
             )));
         }
-        Ok(Self { board, method, width, height, disparities, all_memory: needed > BUDGET })
+        Ok(Self { board, method, width, height, disparities, noise: Noise::None, all_memory: needed > BUDGET })
     }
 
-    /// Builds it. Several threads may: one after another.
+    /// The folder that it is built in: all programs of a target in one, and about as many programs in each.
+    pub fn folder(&self) -> usize {
+        usize::from(self.board.target.starts_with("thumbv8m") || self.board.target.starts_with("riscv"))
+    }
+
+    /// Builds it. Several threads may: in a folder, one after another.
     pub fn build(&self) -> Outcome<Built> {
-        let _turn = FOLDER.lock().unwrap_or_else(PoisonError::into_inner);
+        let _turn = FOLDERS[self.folder()].lock().unwrap_or_else(PoisonError::into_inner);
         let output = self.cargo("build --locked --release --quiet").output();
         let output = output.map_err(|e| Failure::new(format!("cargo: {e}")))?;
         if !output.status.success() {
             eprint!("{}", String::from_utf8_lossy(&output.stderr));
             return Err(Failure::new(format!("examples/firmware does not build for {self}")));
         }
-        let kept = folder().join("programs");
+        let kept = folder(0).join("programs");
         let elf = kept.join(format!("{self}"));
-        let from = folder().join(self.board.target).join("release/depth");
+        let from = folder(self.folder()).join(self.board.target).join("release/depth");
         let keep = || fs::create_dir_all(&kept).and_then(|()| fs::copy(&from, &elf));
         keep().map_err(|e| Failure::new(format!("{}: {e}", elf.display())))?;
         Ok(Built { program: *self, elf })
@@ -112,8 +120,9 @@ impl Program {
     /// Cargo with what is built in its environment.
     pub fn cargo(&self, words: &str) -> Command {
         let mut cargo = cargo(words);
-        cargo.args(["--target", self.board.target]);
+        cargo.args(["--target", self.board.target]).env("CARGO_TARGET_DIR", folder(self.folder()));
         cargo.env("STEREO_CORE", self.board.core).env("STEREO_METHOD", self.method.name());
+        cargo.env("STEREO_NOISE", self.noise.name());
         for (name, value) in [("WIDTH", self.width), ("HEIGHT", self.height), ("DISPARITIES", self.disparities)] {
             cargo.env(format!("STEREO_{name}"), value.to_string());
         }
@@ -132,6 +141,7 @@ impl Program {
 impl std::fmt::Display for Program {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { board, method, width, height, disparities, .. } = self;
-        write!(f, "{}-{method}-{width}x{height}x{disparities}", board.core)
+        write!(f, "{}-{method}-{width}x{height}x{disparities}", board.core)?;
+        if self.noise == Noise::None { Ok(()) } else { write!(f, "-{}", self.noise.name()) }
     }
 }

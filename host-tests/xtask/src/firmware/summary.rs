@@ -18,6 +18,7 @@ struct Summary<'a> {
     width: u16,
     height: u16,
     disparities: u16,
+    noise: &'a str,
     /// From the camera's lines to checked rows; neither the camera nor the writing of the rows is in it.
     instructions: u64,
     instructions_per_evaluation: f64,
@@ -58,6 +59,7 @@ fn summary(frame: &Frame) -> Summary<'_> {
         width: program.width,
         height: program.height,
         disparities: program.disparities,
+        noise: program.noise.name(),
         instructions: frame.instructions,
         instructions_per_evaluation: frame.per_evaluation(),
         static_ram_bytes: sizes.static_ram,

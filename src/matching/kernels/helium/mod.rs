@@ -30,7 +30,7 @@ mod windows;
 
 pub use census::census_plus4;
 pub use partners::keep;
-pub use speckle::{Judged, judge};
+pub use speckle::judge;
 pub use surface::average;
 
 use super::lanes::best_of_the_rest;

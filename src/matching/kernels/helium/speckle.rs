@@ -1,24 +1,12 @@
 //! Support counted and speckle dropped: what `speckle.rs` of the stages does.
 #![allow(unsafe_code)]
 
+use crate::matching::speckle::Judged;
 use crate::units::{Disparity, PixelFlags};
 use core::arch::asm;
 
-/// A row of the band, the one above it, and the row that waited for it.
-pub struct Judged<'a> {
-    pub here: &'a [Disparity],
-    pub above: &'a [Disparity],
-    /// As [`super::average`] leaves them.
-    pub lengths: &'a [u16],
-    /// Two rows of bytes, all zero when a frame begins: the support so far, and the bits.
-    pub kept: &'a mut [u16],
-    pub flags: &'a mut [PixelFlags],
-    /// The row that waited; where there is none, it is in `finished`.
-    pub answers: Option<&'a [Disparity]>,
-    pub finished: &'a mut [Disparity],
-}
-
-/// Judges the row with support of at least `pixels`, where a surface changes by up to `step`.
+/// Judges the row with support of at least `pixels`, where a surface changes by up to `step`. What is kept is two rows of bytes:
+/// the support so far, and the bits.
 ///
 /// 29 instructions for eight answers.
 #[inline(never)]

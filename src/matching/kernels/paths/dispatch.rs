@@ -98,8 +98,10 @@ impl Kernel {
         room: &mut [u8],
     ) {
         match self {
-            #[cfg(not(stereopsis_vectors))]
+            #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
             Self::Planes => in_words!(work, enter, [S], is_first, lines, room),
+            #[cfg(stereopsis_dsp)]
+            Self::Bytes => in_words!(work, enter, [S], is_first, lines, room),
             #[cfg(stereopsis_vectors)]
             Self::Lanes => in_words!(work, enter, [S], is_first, lines, room),
             #[cfg(target_pointer_width = "64")]
@@ -116,8 +118,10 @@ impl Kernel {
     #[inline(always)]
     pub(in crate::matching) fn within_edges(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
         match self {
-            #[cfg(not(stereopsis_vectors))]
+            #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
             Self::Planes => in_words!(work, within_edges, [], edges),
+            #[cfg(stereopsis_dsp)]
+            Self::Bytes => in_words!(work, within_edges, [], edges),
             #[cfg(stereopsis_vectors)]
             Self::Lanes => in_words!(work, within_edges, [], edges),
             #[cfg(target_pointer_width = "64")]
@@ -134,8 +138,10 @@ impl Kernel {
     #[inline(always)]
     pub(in crate::matching) fn select(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
         match self {
-            #[cfg(not(stereopsis_vectors))]
+            #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
             Self::Planes => in_words!(work, select, [false], guide, select),
+            #[cfg(stereopsis_dsp)]
+            Self::Bytes => in_words!(work, select, [false], guide, select),
             #[cfg(stereopsis_vectors)]
             Self::Lanes => in_words!(work, select, [true], guide, select),
             #[cfg(target_pointer_width = "64")]

@@ -43,11 +43,14 @@ pub(super) fn of<'a, S: Along>(
     lines: [&Around<'a>; 2],
     room: &'a mut [u8],
 ) -> Option<Features<'a>> {
-    let (width, gradient) = (work.width, work.penalties.gradient);
+    let width = work.width;
+    let looks = |lines: &Around<'_>, looks: [&mut [u8]; 3]| {
+        looks_of(lines, work.penalties.gradient, work.gradient_shift, looks)
+    };
     let [left, right] = lines.map(|lines| lines.map(|line| line.get(..width).unwrap_or(&[])));
     let (of_left, of_right) = room.split_at_mut_checked(3 * width)?;
     let [along, across, census] = rows(of_left, width);
-    looks(&left, gradient, [&mut *along, &mut *across, &mut *census]);
+    looks(&left, [&mut *along, &mut *across, &mut *census]);
     let of_left = Looks { along, across, census, brightness: left[2] };
 
     // One more than is compared, for the numbers halfway to the last.
@@ -55,15 +58,11 @@ pub(super) fn of<'a, S: Along>(
     let of_right = of_right.get_mut(..6 * count)?;
     let [along, across, census, brightness, least, greatest]: [_; 6] = rows(of_right, count);
     let outside = count.min(work.stride - 1 + work.min_disparity);
-    looks(
-        &right,
-        gradient,
-        [&mut *along, &mut *across, &mut *census].map(|row| row.get_mut(outside..).unwrap_or_default()),
-    );
+    looks(&right, [&mut *along, &mut *across, &mut *census].map(|row| row.get_mut(outside..).unwrap_or_default()));
     halve(right[2], brightness.get_mut(outside..).unwrap_or_default());
     // The first column on its own, with the next one: the row may begin behind it.
     let mut first = [[0; 2]; 3];
-    looks(&right, gradient, first.each_mut().map(|first| first.get_mut(..width.min(2)).unwrap_or_default()));
+    looks(&right, first.each_mut().map(|first| first.get_mut(..width.min(2)).unwrap_or_default()));
     let [first_along, first_across, first_census] = first;
     let first_brightness = [0, 1].map(|x| right[2].get(x).map_or(0, |pixel| pixel >> 1));
     for (row, [first, _]) in [
@@ -92,6 +91,18 @@ pub(super) fn of<'a, S: Along>(
 fn rows<const N: usize>(room: &mut [u8], length: usize) -> [&mut [u8]; N] {
     let mut rows = room.chunks_exact_mut(length.max(1));
     core::array::from_fn(|_| rows.next().unwrap_or_default())
+}
+
+/// The features of as many columns as there is a place for. Gradients are cut off before they are shifted, which is the same
+/// as after.
+#[inline(always)]
+fn looks_of(lines: &Around<'_>, gradient: u8, shift: u32, [along, across, census]: [&mut [u8]; 3]) {
+    looks(lines, gradient << shift, [&mut *along, &mut *across, census]);
+    if shift > 0 {
+        for number in along.iter_mut().chain(across) {
+            *number >>= shift;
+        }
+    }
 }
 
 /// The features of as many columns as there is a place for.

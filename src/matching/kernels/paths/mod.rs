@@ -58,6 +58,8 @@ pub(in crate::matching) struct PathWork<'a> {
     /// The smallest disparity, px.
     pub min_disparity: usize,
     pub penalties: &'a Penalties,
+    /// How far gradients are shifted to the right.
+    pub gradient_shift: u32,
     /// Costs, paths from above, and sums of paths: each `stride` bytes for each column, where a word may stand. The paths from
     /// above have [`COLUMNS_OFF`] columns more.
     pub costs: &'a mut [u8],

@@ -2,26 +2,22 @@
 //! is as many words as it has bits. Additions are chains of full adders, bit by bit; comparisons go from the highest plane
 //! down. Safe Rust; the arithmetic is that of plain words.
 //!
-//! * `census`: four pixels of a row at a time.
 //! * `columns`: what changes from code to code; the bits in which codes differ, counted into the columns under the window.
 //! * `windows`: columns into windows, windows into winners.
 //! * `plane`: the word itself.
 //!
 //! The work is the same for every picture, but for some ten instructions where a winner is at an end of the search.
 
-mod census;
 mod columns;
 mod plane;
 mod windows;
 
 use super::scratch::{bytes_mut, halves_of, halves_of_mut};
-use super::{OUTSIDE, RowWork, Select};
+use super::{OUTSIDE, RowWork, Select, census};
 use crate::matching::scheme::Around;
 use crate::matching::window::Windowed;
 use plane::Plane;
 use windows::{Judge, WINDOW, Windows};
-
-pub(in crate::matching) use census::codes;
 
 /// The sums of a column, lowest plane first: a place for each eighth of its bytes, of which the last are free.
 type Column<P> = [P; 8];

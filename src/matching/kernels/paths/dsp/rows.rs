@@ -47,12 +47,11 @@ pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>,
         from: (line.as_ptr() as isize).wrapping_sub(here as isize),
         paths: [between.place(), core::ptr::null_mut()],
         gap: gap * column_bytes,
-        columns: width,
+        end: column(if is_odd { 1 } else { width }).cast_const(),
         fours: stride / 16,
         steps: &steps,
         above: if guide.above.is_some() { above } else { [core::ptr::null_mut(); 2] },
         other: on * 2 * COLUMNS_OFF as isize * column_bytes,
-        then: 0,
     };
     // SAFETY: `width` columns are in the volume of the costs and two more in that of the paths; so many pixels are in both
     // lines; and a column has `4 * fours` words, `WORDS` at the most, as the average has room for.
@@ -79,20 +78,19 @@ pub(super) fn along<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>
         Way::Right => (0, 1, 0, width),
         Way::Left => (width - 1, -1, -2, width - work.min_disparity),
     };
+    let first = x * stride / 4;
     let mut frame = Frame {
         pixel: guide.here.as_ptr().wrapping_add(x),
         on,
         from: 0,
         paths: paths.each_mut().map(Padded::place),
         gap: gap * stride as isize,
-        columns,
+        end: sums.wrapping_add(first).wrapping_offset(on * (columns * stride / 4) as isize).cast_const(),
         fours: stride / 16,
         steps: &steps,
         above: [core::ptr::null_mut(); 2],
         other: 0,
-        then: -on,
     };
-    let first = x * stride / 4;
     // SAFETY: `columns` columns from column `x` on are in the volumes, and so many pixels in the line; and a column has
     // `4 * fours` words, `WORDS` at the most, as the paths have room for.
     unsafe {

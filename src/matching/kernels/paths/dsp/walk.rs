@@ -70,14 +70,15 @@ pub(super) struct Frame {
     /// 0: the pixel's place in the line, and 4: how far it is to the next.
     pub pixel: *const u8,
     pub on: isize,
-    /// 8: how far it is to the pixel that the path comes from. Along the row the first comes from itself.
+    /// 8: along the row, the brightness of the pixel that the path comes from, which the first may have any of. Down, how far
+    /// it is to that pixel.
     pub from: isize,
     /// 12, 16: a path before and after, which take turns; or the average and nothing.
     pub paths: [*mut u32; 2],
     /// 20: bytes from a column's end to the next column's beginning.
     pub gap: isize,
-    /// 24: columns to go.
-    pub columns: usize,
+    /// 24: where the sums, or the paths that are kept, are at their end.
+    pub end: *const u32,
     /// 28: a column's words, in fours.
     pub fours: usize,
     /// 32
@@ -85,8 +86,6 @@ pub(super) struct Frame {
     /// 36, 40: the first and the last column of the row above, 44: bytes to that on the other side of the pixel.
     pub above: [*mut u32; 2],
     pub other: isize,
-    /// 48: how far it is, along the row, after the first pixel.
-    pub then: isize,
 }
 
 /// Four times the lines of a word, and around again until `r5` is 0.
@@ -112,13 +111,17 @@ macro_rules! least_of_four {
 }
 
 /// Goes on to the next pixel, and puts what it costs to come into this one in `r6` to `r8`: step, jump from the least cost,
-/// most. 16 instructions.
+/// most. `$from`: along the row, keeps this pixel's brightness in `r10` for the next; down, looks up where `r11` says. 17
+/// instructions.
 macro_rules! choose_step {
-    () => {
-        "ldrd r12, r6, [lr]
+    ($from:literal) => {
+        concat!(
+            "ldrd r12, r6, [lr]
          ldr r11, [lr, #8]
          ldrb r10, [r12]
-         ldrb r11, [r12, r11]
+         ",
+            $from,
+            "
          add r12, r12, r6
          str r12, [lr]
          ldr r6, [lr, #32]
@@ -132,6 +135,7 @@ macro_rules! choose_step {
          addhs r6, r6, #12
          ldm r6, {{r6, r7, r8}}
          add r7, r7, r9"
+        )
     };
 }
 
@@ -154,7 +158,7 @@ macro_rules! step {
 }
 
 /// Takes a path along a row with agreements `costs`: what is in `from` and the path's cost are the `sums`, 255 at the most.
-/// 18 instructions a word and 39 a pixel.
+/// 18 instructions a word and 36 a pixel.
 ///
 /// # Safety
 /// The frame's columns, `fours` times four words each, can be read from `costs` and `from` on, and written from `sums` on;
@@ -168,7 +172,7 @@ pub(super) unsafe fn go_along(frame: *mut Frame, costs: *const u32, from: *const
             "push {{r6, r7}}",
             "mov r9, #0",
             "1:",
-            choose_step!(),
+            choose_step!("str r10, [lr, #8]"),
             "ldrd r0, r1, [lr, #12]",
             "strd r1, r0, [lr, #12]",
             "ldr r5, [lr, #28]",
@@ -184,14 +188,11 @@ pub(super) unsafe fn go_along(frame: *mut Frame, costs: *const u32, from: *const
                 "sel r9, r10, r9"
             ),
             least_of_four!(),
-            "ldr r10, [lr, #48]",
-            "str r10, [lr, #8]",
             "ldrd r10, r11, [lr, #20]",
             "add r2, r2, r10",
             "add r3, r3, r10",
             "add r4, r4, r10",
-            "subs r11, r11, #1",
-            "str r11, [lr, #24]",
+            "cmp r4, r11",
             "bne 1b",
             "pop {{r6, r7}}",
             inout("r2") costs => _, inout("r3") from => _, inout("r4") sums => _, inout("lr") frame => _,
@@ -201,7 +202,7 @@ pub(super) unsafe fn go_along(frame: *mut Frame, costs: *const u32, from: *const
 }
 
 /// Takes the path from above into a row with agreements `costs`, from the average of two columns, rounded down, or from
-/// nothing if there are none. `kept` begins with what was one of the two. 19 instructions a word and 52 a pixel.
+/// nothing if there are none. `kept` begins with what was one of the two. 19 instructions a word and 51 a pixel.
 ///
 /// # Safety
 /// As for [`go_along`]; and the frame's columns of the row above can be read.
@@ -247,7 +248,7 @@ pub(super) unsafe fn go_down(frame: *mut Frame, costs: *const u32, kept: *mut u3
             ),
             least_of_four!(),
             "3:",
-            choose_step!(),
+            choose_step!("ldrb r11, [r12, r11]"),
             "ldr r0, [lr, #12]",
             "ldr r5, [lr, #28]",
             four_words!(
@@ -258,8 +259,7 @@ pub(super) unsafe fn go_down(frame: *mut Frame, costs: *const u32, kept: *mut u3
             "ldrd r10, r11, [lr, #20]",
             "add r2, r2, r10",
             "add r3, r3, r10",
-            "subs r11, r11, #1",
-            "str r11, [lr, #24]",
+            "cmp r3, r11",
             "bne 1b",
             "pop {{r6, r7}}",
             inout("r2") costs => _, inout("r3") kept => _, inout("lr") frame => _,

@@ -4,17 +4,21 @@
 //! bit: `n + 255 - c + 1 >= 256`. Averages of bytes need no room beside them, `(a | b) - ((a ^ b) >> 1)` (Warren 2012,
 //! 2-5).
 
-use crate::matching::kernels::scratch::{words_mut, words_of};
+#[cfg(not(stereopsis_dsp))]
+use super::scratch::{words_mut, words_of};
+#[cfg(not(stereopsis_dsp))]
 use crate::matching::scheme::Around;
 use crate::matching::window::Windowed;
 
 /// The highest bit of every byte.
+#[cfg(not(stereopsis_dsp))]
 const TOP: u32 = 0x8080_8080;
 
 /// The word of a line in three places: two columns to the left, here, two to the right.
 type Three = [u32; 3];
 
 /// The census row of five lines.
+#[cfg(not(stereopsis_dsp))]
 #[inline(never)]
 pub(super) fn census<S: Windowed>(rows: &Around<'_>, out: &mut [u8]) {
     let width = out.len();
@@ -29,7 +33,7 @@ pub(super) fn census<S: Windowed>(rows: &Around<'_>, out: &mut [u8]) {
 
 /// The census row of lines that are not all in whole words, as those whose width is no multiple of four.
 #[inline(never)]
-fn census_of_bytes<S: Windowed>(lines: [&[u8]; 3], out: &mut [u8]) {
+pub(super) fn census_of_bytes<S: Windowed>(lines: [&[u8]; 3], out: &mut [u8]) {
     for (x, out) in (0..).step_by(4).zip(out.chunks_mut(4)) {
         let codes = S::codes(&lines.map(|line| [0, 2, 4].map(|place| word(line, x + place))));
         for (out, code) in out.iter_mut().zip(codes.to_le_bytes()) {
@@ -50,6 +54,7 @@ fn word(line: &[u8], x: usize) -> u32 {
 }
 
 /// The census row of lines in whole words.
+#[cfg(not(stereopsis_dsp))]
 #[inline(always)]
 fn census_of_words<S: Windowed>(lines: [&[u32]; 3], out: &mut [u32]) {
     // Columns outside the line are the nearest inside it.
@@ -73,12 +78,16 @@ fn census_of_words<S: Windowed>(lines: [&[u32]; 3], out: &mut [u32]) {
 /// The codes of four pixels, bit `i` from the neighbour `neighbours[i]`: its row and column among `around`.
 #[inline(always)]
 pub(in crate::matching) fn codes<const BITS: usize>(around: &[Three; 3], neighbours: &[(usize, usize); BITS]) -> u32 {
+    #[cfg(not(stereopsis_dsp))]
     let inverse = !around[1][1];
     let mut not_darker = 0;
     for &(row, column) in neighbours {
         let n = around[row][column];
-        let average = (n | inverse).wrapping_sub((n ^ inverse) >> 1 & !TOP);
-        not_darker = not_darker >> 1 | average & TOP;
+        #[cfg(stereopsis_dsp)]
+        let first = super::bytes::not_less(n, around[1][1]);
+        #[cfg(not(stereopsis_dsp))]
+        let first = (n | inverse).wrapping_sub((n ^ inverse) >> 1 & !TOP) & TOP;
+        not_darker = not_darker >> 1 | first;
     }
     (!not_darker >> (8 - BITS)) & ((0xff >> (8 - BITS)) * 0x0101_0101)
 }

@@ -1,0 +1,10 @@
+//! Two views of known geometry: what the types keep, what the estimates reach, what is refused by name.
+
+mod cameras;
+mod estimates;
+mod matrices;
+mod planes;
+mod points;
+mod poses;
+mod twin;
+mod views;

@@ -1,0 +1,73 @@
+//! The numbers that geometry is done in.
+
+use nalgebra::RealField;
+
+/// `f32` or `f64`: what every type of [`geometry`](crate::geometry) is generic over.
+///
+/// `f32` is what the cores have hardware for; each function whose result needs more says so with a figure. Roots and
+/// angles come from nalgebra's [`RealField`]. Sealed: no other type implements it.
+pub trait Real: RealField + Copy + sealed::Sealed {
+    /// Zero.
+    const ZERO: Self;
+    /// One.
+    const ONE: Self;
+    /// The step from one to the next larger number: 2^-23 or 2^-52.
+    const EPSILON: Self;
+
+    /// The number nearest to `value`.
+    fn of(value: f64) -> Self;
+
+    /// How many, as a number; exact to 2^24 in `f32`.
+    fn count(n: usize) -> Self;
+
+    /// The same number as `f64`.
+    fn to_f64(self) -> f64;
+}
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+impl Real for f32 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    const EPSILON: Self = Self::EPSILON;
+
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+
+    #[inline(always)]
+    fn count(n: usize) -> Self {
+        n as Self
+    }
+
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+}
+
+impl Real for f64 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    const EPSILON: Self = Self::EPSILON;
+
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn count(n: usize) -> Self {
+        n as Self
+    }
+
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+}

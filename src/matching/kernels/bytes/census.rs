@@ -1,0 +1,112 @@
+//! Census rows, four pixels at a time.
+#![allow(unsafe_code)]
+
+use crate::matching::scheme::Around;
+use crate::matching::window::Windowed;
+use core::arch::asm;
+
+/// The fewest pixels of a row that has whole words at both ends.
+const FEWEST: usize = 8;
+
+/// The census row of five lines.
+#[inline(never)]
+pub(super) fn census<S: Windowed>(rows: &Around<'_>, out: &mut [u8]) {
+    let width = out.len();
+    let lines = [0, 2, 4].map(|row: usize| rows.get(row).and_then(|r| r.get(..width)).unwrap_or(&[]));
+    if width < FEWEST || lines.iter().any(|line| line.len() < width) {
+        return crate::matching::kernels::census::census_of_bytes::<S>(lines, out);
+    }
+    if let Some(inner) = out.get_mut(2..width - 2) {
+        // The last group is moved back to end with the inner pixels.
+        let last = inner.len() - 4;
+        for (from, to) in [(0, inner.len() & !3), (last, inner.len())] {
+            let lines = lines.map(|line| line.get(from..).unwrap_or(&[]));
+            let out = inner.get_mut(from..to).unwrap_or_default();
+            if S::BITS <= 4 { plus4(lines, out) } else { ring8(lines, out) }
+        }
+    }
+    // Columns outside the line are the nearest inside it.
+    let words = |at: usize| lines.map(|line| line.get(at..).and_then(|line| line.first_chunk().copied()));
+    let words = |at: usize| words(at).map(|bytes| bytes.map_or(0, u32::from_le_bytes));
+    let edge = |places: [[u32; 3]; 3]| S::codes(&places).to_le_bytes();
+    let (first, second) = (words(0), words(2));
+    let first =
+        edge([0, 1, 2].map(|row| [(first[row] << 16) | ((first[row] & 0xff) * 0x0101), first[row], second[row]]));
+    let (before, last) = (words(width - 6), words(width - 4));
+    let last =
+        edge([0, 1, 2].map(|row| [before[row], last[row], (last[row] >> 16) | ((last[row] >> 24) * 0x0101_0000)]));
+    let codes = [(0, first[0]), (1, first[1]), (width - 2, last[2]), (width - 1, last[3])];
+    for (x, code) in codes {
+        if let Some(out) = out.get_mut(x) {
+            *out = code;
+        }
+    }
+}
+
+/// The bit of a neighbour where it is darker: 4 instructions.
+macro_rules! compare {
+    ($line:literal, $place:literal, $bit:literal) => {
+        concat!(
+            "ldr {n}, [{",
+            $line,
+            "}",
+            $place,
+            "\n",
+            "usub8 {n}, {n}, {c}\n",
+            "orr {n}, {code}, #",
+            $bit,
+            "\n",
+            "sel {code}, {code}, {n}\n",
+        )
+    };
+}
+
+macro_rules! census_of {
+    ($(#[$doc:meta])* $name:ident: $($neighbours:expr),*) => {
+        $(#[$doc])*
+        #[inline(never)]
+        fn $name([above, here, below]: [&[u8]; 3], out: &mut [u8]) {
+            let count = out.len() & !3;
+            if count == 0 || [above, here, below].iter().any(|line| line.len() < count + 4) {
+                return;
+            }
+            let out = out.as_mut_ptr();
+            // SAFETY: `count` codes are written, four in every round, and of every line `count` pixels read and two beside them
+            // on both sides, which the lines have.
+            unsafe {
+                asm!(
+                    "2:",
+                    "ldr {c}, [{here}], #4",
+                    "mov {code}, #0",
+                    $($neighbours,)*
+                    "str {code}, [{out}], #4",
+                    "cmp {out}, {end}",
+                    "bne 2b",
+                    above = inout(reg) above.as_ptr().add(2) => _,
+                    here = inout(reg) here.as_ptr().add(2) => _,
+                    below = inout(reg) below.as_ptr().add(2) => _,
+                    out = inout(reg) out => _, end = in(reg) out.add(count),
+                    c = out(reg) _, n = out(reg) _, code = out(reg) _,
+                    options(nostack),
+                );
+            }
+        }
+    };
+}
+
+// The first read of a line moves on by four pixels.
+census_of! {
+    /// [`crate::imaging::census_plus4`] of the pixels from the third one of each line on: 21 instructions for four.
+    plus4:
+    compare!("above", "], #4", "0x01010101"), compare!("here", ", #-6]", "0x02020202"),
+    compare!("here", ", #-2]", "0x04040404"), compare!("below", "], #4", "0x08080808")
+}
+
+census_of! {
+    /// [`crate::imaging::census_ring8`], likewise: 37 instructions for four.
+    ring8:
+    compare!("above", "], #4", "0x02020202"), compare!("above", ", #-6]", "0x01010101"),
+    compare!("above", ", #-2]", "0x04040404"), compare!("here", ", #-6]", "0x08080808"),
+    compare!("here", ", #-2]", "0x10101010"), compare!("below", "], #4", "0x40404040"),
+    compare!("below", ", #-6]", "0x20202020"), compare!("below", ", #-2]", "0x80808080")
+}

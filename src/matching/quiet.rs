@@ -1,0 +1,34 @@
+//! The lines around a row, smoothed as the configuration asks for.
+//!
+//! It is done again for every row, in room that its other stages do not need yet: keeping smoothed lines would take two more
+//! lines of each camera. So no row waits longer, and a row depends on the same lines as without.
+
+use super::scheme::Around;
+use crate::imaging::{Noise, smooth};
+
+/// How far gradients are shifted to the right.
+pub(super) const fn gradient_shift(noise: Noise) -> u32 {
+    match noise {
+        Noise::None => 0,
+        Noise::Low => 1,
+        Noise::High => 2,
+    }
+}
+
+/// The lines of both images, of which `rows` are smoothed, each in one of the places.
+pub(super) fn quiet<'a>(
+    lines: [&Around<'a>; 2],
+    rows: &[usize],
+    mut places: impl Iterator<Item = &'a mut [u8]>,
+) -> [Around<'a>; 2] {
+    lines.map(|lines| {
+        let mut quiet = *lines;
+        for &row in rows {
+            if let (Some(to), Some(place)) = (quiet.get_mut(row), places.next()) {
+                smooth(lines, row, place);
+                *to = place;
+            }
+        }
+        quiet
+    })
+}

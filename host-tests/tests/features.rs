@@ -10,7 +10,9 @@ mod scenes;
 mod twins;
 
 use image::GrayImage;
+use nalgebra::Matrix3;
 use stereopsis::features::{Feature, FeatureConfig, FeatureCounts, FeatureDetector, Match, Matcher, Search};
+use stereopsis::geometry::Fundamental;
 
 /// The capacity of the detectors here: lines, and corners in a row of cells.
 const W: usize = 330;
@@ -34,6 +36,12 @@ fn matched(left: &[Feature], right: &[Feature], search: &Search) -> Vec<Match> {
     let dropped = matcher.run(left, right, search, list.as_mut_view());
     assert_eq!(dropped, Ok(0));
     list.to_vec()
+}
+
+/// F of two pictures with aligned rows: the line of a point is its row.
+fn rows_aligned() -> Fundamental<f32> {
+    let shift = Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0);
+    Fundamental::from_matrix(&shift).expect("a matrix of rank two")
 }
 
 /// The configuration for a picture.

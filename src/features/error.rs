@@ -70,7 +70,7 @@ pub enum SearchError {
     Ratio,
     /// A distance is negative or not a number.
     Range,
-    /// The fundamental matrix or the tolerance is not finite, or the tolerance negative.
+    /// The distance from the epipolar line is negative or not a number.
     Epipolar,
     /// A picture has more features than the matcher holds.
     TooMany {
@@ -84,7 +84,7 @@ impl fmt::Display for SearchError {
         match self {
             Self::Ratio => write!(f, "the ratio is not 1 to 100 percent"),
             Self::Range => write!(f, "a distance is negative or no number"),
-            Self::Epipolar => write!(f, "the fundamental matrix or its tolerance is not finite, or negative"),
+            Self::Epipolar => write!(f, "the distance from the epipolar line is negative or no number"),
             Self::TooMany { needed } => write!(f, "the matcher would have to hold {needed} features"),
         }
     }

@@ -1,14 +1,16 @@
 //! Which features may match, and how much better than others a match has to be.
 
 use super::{Feature, SearchError};
-use nalgebra::{Matrix3, Vector3};
+use crate::geometry::{Fundamental, Line};
+use nalgebra::Point2;
 
 /// Lines on which partners lie, when it is known how the cameras stand to each other.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Epipolar {
-    /// The fundamental matrix F with `p^T F p' = 0`: p in the left picture, p' in the right one, `(column, row, 1)` in px.
-    pub fundamental: Matrix3<f32>,
-    /// How far from its line `l' = F^T p` a partner may lie, px.
+    /// F with `p^T F p' = 0`: p in the left picture, p' in the right one.
+    pub fundamental: Fundamental<f32>,
+    /// How far from its line `l' = F^T p` a partner may lie, px. Of a point at the epipole, which has no line, partners may
+    /// lie everywhere.
     pub tolerance_px: f32,
 }
 
@@ -57,28 +59,24 @@ impl Search {
             return Err(SearchError::Range);
         }
         match &self.epipolar {
-            Some(e) if !(e.tolerance_px >= 0.0 && e.fundamental.iter().all(|x| x.is_finite())) => {
-                Err(SearchError::Epipolar)
-            }
+            Some(e) if !(e.tolerance_px >= 0.0) => Err(SearchError::Epipolar),
             _ => Ok(()),
         }
     }
 
     /// The places where partners of one left feature may be.
     pub(super) fn around(&self, left: &Feature) -> Places {
-        let band = self.epipolar.map(|e| {
-            let line = e.fundamental.tr_mul(&Vector3::new(left.x_px, left.y_px, 1.0));
-            (line, e.tolerance_px * e.tolerance_px * (line.x * line.x + line.y * line.y))
+        let band = self.epipolar.and_then(|e| {
+            let line = e.fundamental.line_in_second(&Point2::new(left.x_px, left.y_px))?;
+            Some((line, e.tolerance_px))
         });
         Places { x_px: left.x_px, y_px: left.y_px, level: left.level, band }
     }
 
     /// Whether a right feature lies there.
     pub(super) fn admits(&self, places: &Places, right: &Feature) -> bool {
-        let on_line = |(line, most): &(Vector3<f32>, f32)| {
-            let residual = line.x * right.x_px + line.y * right.y_px + line.z;
-            residual * residual <= *most
-        };
+        let on_line =
+            |(line, most): &(Line<f32>, f32)| line.distance_px(&Point2::new(right.x_px, right.y_px)).abs() <= *most;
         places.level.abs_diff(right.level) <= self.levels_apart
             && (places.x_px - right.x_px).abs() <= self.along_px
             && (places.y_px - right.y_px).abs() <= self.across_px
@@ -97,6 +95,6 @@ pub(super) struct Places {
     x_px: f32,
     y_px: f32,
     level: u8,
-    /// The line, and the square of the tolerance in the units of its residual.
-    band: Option<(Vector3<f32>, f32)>,
+    /// The line, and how far from it.
+    band: Option<(Line<f32>, f32)>,
 }

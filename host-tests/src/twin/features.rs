@@ -147,10 +147,10 @@ pub fn matches(left: &[Feature], right: &[Feature], search: &Search) -> Vec<Matc
     let admitted = |a: &Feature, b: &Feature| {
         let near = (a.x_px - b.x_px).abs() <= search.along_px && (a.y_px - b.y_px).abs() <= search.across_px;
         let on_line = search.epipolar.is_none_or(|e| {
-            let f = &e.fundamental;
-            let [l, m, n] = [0, 1, 2].map(|i| f[(0, i)] * a.x_px + f[(1, i)] * a.y_px + f[(2, i)]);
-            let residual = l * b.x_px + m * b.y_px + n;
-            residual * residual <= e.tolerance_px * e.tolerance_px * (l * l + m * m)
+            let f = e.fundamental.matrix().map(f64::from);
+            let [ax, ay, bx, by] = [a.x_px, a.y_px, b.x_px, b.y_px].map(f64::from);
+            let [l, m, n] = [0, 1, 2].map(|i| f[(0, i)] * ax + f[(1, i)] * ay + f[(2, i)]);
+            (l * bx + m * by + n).abs() <= f64::from(e.tolerance_px) * l.hypot(m)
         });
         near && on_line && a.level.abs_diff(b.level) <= search.levels_apart
     };

@@ -36,6 +36,7 @@ pub fn run(args: &FeaturesArgs) -> Result<(), Failure> {
     }
 
     let found = correspond(&plan(args), &left.grey, &right.grey)?;
+    // Both files are complete and on the disk before either moves to its place.
     let mut staging = Staging::new(&out.folder)?;
     staging.write(&out.name, |out| out.write_all(lines(&found).as_bytes()))?;
     let mut elsewhere = None;
@@ -111,6 +112,8 @@ impl Place {
             _ => PathBuf::from("."),
         };
         Staging::probe(&folder)?;
+        // One folder has one spelling, so that two options that mean one file are seen to; a new one keeps its own.
+        let folder = folder.canonicalize().unwrap_or(folder);
         Ok(Self { folder, name })
     }
 }

@@ -10,11 +10,13 @@
 //! imaging        lines, line windows, pixel formats, census, gradients, noise
 //! matching       lines -> disparity row: census, costs, winner, checks, sub-pixel, speckle
 //! depth          disparity -> metres with its uncertainty, points
+//! features       corners, descriptors, matches: which point of one picture is which of another
 //! pipeline       the live path, row by row
 //! ffi            the same for C, with the feature `ffi`
 //!
 //! camera -lines-> imaging -line windows-> matching -disparity row-> depth
 //!        '------------------------ pipeline -----------------------' -> ffi
+//! camera -lines-> imaging -line bands-> features -matches
 //! ```
 //!
 //! A way in: [`pipeline::Pipeline`] is what firmware holds, [`camera::StereoSource`] is what it implements,
@@ -34,6 +36,8 @@ pub mod imaging;
 pub mod matching;
 
 pub mod depth;
+
+pub mod features;
 
 pub mod pipeline;
 

@@ -8,14 +8,18 @@
 //! * [`matches`]: correspondences from files.
 //! * [`real`]: real pairs with a known truth, also altered, and scores on them.
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
+//! * [`correspond`]: two pictures through the core's features and matcher.
 //! * [`twin`]: each stage again, naively, to hold the core to.
-//! * [`map`], [`pfm`], [`ply`], [`colour`], [`output`], [`report`]: results as files. [`command_line`]: errors in one line.
+//! * [`map`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`output`], [`report`]: results as
+//!   files. [`command_line`]: errors in one line.
 
 pub mod calibration;
 pub mod colour;
 pub mod command_line;
+pub mod correspond;
 pub mod map;
 pub mod matches;
+pub mod matches_picture;
 pub mod mock;
 pub mod output;
 pub mod pfm;

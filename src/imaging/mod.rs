@@ -3,7 +3,7 @@
 //! In: lines from a camera. Out: census rows.
 //!
 //! 1. [`GreyLines`]: any pixel format as 8-bit grey lines.
-//! 2. [`LineWindow`]: the last five lines, as the five rows around a centre.
+//! 2. [`LineBand`]: the last lines, as the rows around a centre; [`LineWindow`] holds five.
 //! 3. [`census_plus4`], [`census_ring8`], [`census_wide8`], [`census_full24`]: the codes of one row. [`gradients`]: how its
 //!    brightness changes along the line and across it.
 //! 4. [`NoiseMeter`]: how noisy the lines are, in levels of [`Noise`]; [`smooth()`]: a row of a window with less of it.
@@ -22,4 +22,4 @@ pub use gradient::gradients;
 pub use grey::GreyLines;
 pub use noise::{Noise, NoiseMeter};
 pub use smooth::smooth;
-pub use window::LineWindow;
+pub use window::{LineBand, LineWindow};

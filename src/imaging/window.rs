@@ -1,8 +1,11 @@
-//! The last five lines of a stream.
+//! The last lines of a stream.
 
-/// Five lines over fixed storage: as line `n` comes in, line `n - 5` goes.
+/// The last five lines: the rows around a centre.
+pub type LineWindow<const W: usize> = LineBand<W, 5>;
+
+/// `N` lines over fixed storage: as line `n` comes in, line `n - N` goes.
 ///
-/// `W` is the capacity; the real width is set per frame. A window takes `5 W` bytes and a few words.
+/// `W` is the capacity; the real width is set per frame. A band takes `N W` bytes and a few words.
 ///
 /// ```
 /// use stereopsis::imaging::LineWindow;
@@ -17,8 +20,8 @@
 /// ```
 /// Each line begins where a word may stand: those who look at it can take four pixels at a time.
 #[derive(Debug)]
-pub struct LineWindow<const W: usize> {
-    lines: [Line<W>; 5],
+pub struct LineBand<const W: usize, const N: usize> {
+    lines: [Line<W>; N],
     width: usize,
     count: usize,
 }
@@ -28,10 +31,11 @@ pub struct LineWindow<const W: usize> {
 #[repr(C, align(4))]
 struct Line<const W: usize>([u8; W]);
 
-impl<const W: usize> LineWindow<W> {
-    /// An empty window.
+impl<const W: usize, const N: usize> LineBand<W, N> {
+    /// An empty band.
     pub const fn new() -> Self {
-        Self { lines: [const { Line([0; W]) }; 5], width: 0, count: 0 }
+        const { assert!(N > 0, "a band holds at least one line") };
+        Self { lines: [const { Line([0; W]) }; N], width: 0, count: 0 }
     }
 
     /// Forgets all lines; the next ones have `width` pixels (at most the capacity).
@@ -43,7 +47,7 @@ impl<const W: usize> LineWindow<W> {
     /// Where the next line goes. It counts once [`Self::accept`] is called.
     pub fn next_line(&mut self) -> &mut [u8] {
         let width = self.width;
-        match self.lines.get_mut(self.count % 5) {
+        match self.lines.get_mut(self.count % N) {
             Some(Line(line)) => line.get_mut(..width).unwrap_or_default(),
             None => &mut [],
         }
@@ -59,18 +63,18 @@ impl<const W: usize> LineWindow<W> {
         self.count
     }
 
-    /// The rows `centre - 2` to `centre + 2`. Rows above the image are row 0; rows that did not come yet, the last one
-    /// that did. The caller asks for a centre whose rows are still held: not more than two above the newest, or below it.
-    pub fn around(&self, centre: usize) -> [&[u8]; 5] {
+    /// The `M` rows around `centre`, of an odd number: two above to two below where `M` is 5. Rows above the image are
+    /// row 0; rows that did not come yet, the last one that did. The caller asks for a centre whose rows are still held.
+    pub fn around<const M: usize>(&self, centre: usize) -> [&[u8]; M] {
         let newest = self.count.saturating_sub(1);
         core::array::from_fn(|i| {
-            let row = (centre + i).saturating_sub(2).min(newest);
-            self.lines.get(row % 5).and_then(|Line(line)| line.get(..self.width)).unwrap_or(&[])
+            let row = (centre + i).saturating_sub(M / 2).min(newest);
+            self.lines.get(row % N).and_then(|Line(line)| line.get(..self.width)).unwrap_or(&[])
         })
     }
 }
 
-impl<const W: usize> Default for LineWindow<W> {
+impl<const W: usize, const N: usize> Default for LineBand<W, N> {
     fn default() -> Self {
         Self::new()
     }

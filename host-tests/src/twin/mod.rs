@@ -9,10 +9,13 @@
 //! * `filter`: smoothing along the row, the median, the speckle filter, smoothing down the columns, filling, the deviation.
 //! * `confidence`: how sure an answer is.
 //!
+//! Apart from them: [`features`], corners, descriptors and matches.
+//!
 //! Nothing here is shared with the core but its words: [`Config`], [`Disparity`], [`PixelFlags`].
 
 pub mod census;
 pub mod cost;
+pub mod features;
 pub mod paths;
 pub mod smooth;
 

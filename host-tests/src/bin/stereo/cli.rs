@@ -7,17 +7,19 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use stereopsis::matching::{Config, Filter, Kernel};
 use stereopsis_host::command_line::usage_line;
+use stereopsis_host::correspond::Plan;
 use stereopsis_host::run::{Method, NoiseChoice, UnknownMethod, UnknownNoise, Way};
 
 /// What is told to one who names another command.
-const COMMANDS: &str = "the commands are demo, match, bench, fundamental and pose";
+const COMMANDS: &str = "the commands are demo, match, bench, features, fundamental and pose";
 
 const EXAMPLES: &str = "Examples:
   stereo demo --out demo-out
   stereo match --left left.png --right right.png --disparities 64 --calib calib.txt --out out/scene
   stereo bench --left left.png --right right.png --disparities 64 --method fast
+  stereo features --left first.png --right second.png --out matches.csv
 
-The images are a rectified pair: PNG, JPEG, PGM/PPM or TIFF, 8 or 16 bit, grey or colour, up to 4096 x 4096.";
+The images of match and bench are a rectified pair; all are PNG, JPEG, PGM/PPM or TIFF, 8 or 16 bit, grey or colour, up to 4096 x 4096.";
 
 const MATCH_EXAMPLE: &str = "Example:
   stereo match --left left.png --right right.png --disparities 64 --calib calib.txt --out out/scene
@@ -48,6 +50,12 @@ R P' + t in the first; t has length one, for the scale is not in the matches), p
 one; null where a match is wrong or its sights are parallel), inliers, and model: fundamental, or homography when what \
 was seen is on a plane.";
 
+const FEATURES_EXAMPLE: &str = "Example:
+  stereo features --left first.png --right second.png --out matches.csv --picture matches.png
+
+Written is a line x1,y1,x2,y2 for every match, under that header: column and row in the left image, column and row in the \
+right one, in px. The images need not be rectified or of one size.";
+
 #[derive(Debug, Parser)]
 #[command(name = "stereo", version, about = "Depth from two images, by the code that runs on the microcontroller")]
 #[command(after_help = EXAMPLES, arg_required_else_help = false)]
@@ -72,6 +80,9 @@ pub enum Command {
     /// Estimate where the second of two known cameras stands from matches, and the points they show
     #[command(after_help = POSE_EXAMPLE)]
     Pose(PoseArgs),
+    /// Find points of one image in another: corners, matched by what they look like
+    #[command(after_help = FEATURES_EXAMPLE)]
+    Features(FeaturesArgs),
 }
 
 #[derive(Debug, Args)]
@@ -110,6 +121,39 @@ pub struct BenchArgs {
     /// How many frames are timed, 1 to 10000
     #[arg(long, value_name = "K", default_value_t = 5, value_parser = repeat, allow_negative_numbers = true)]
     pub repeat: u16,
+}
+
+#[derive(Debug, Args)]
+pub struct FeaturesArgs {
+    #[command(flatten)]
+    pub pair: PairArgs,
+    /// File for the matches
+    #[arg(long, value_name = "FILE.csv")]
+    pub out: PathBuf,
+    /// File for a picture of the matches over the images
+    #[arg(long, value_name = "FILE.png")]
+    pub picture: Option<PathBuf>,
+    /// About how many corners are kept of each image, 50 to 12000, spread over it
+    #[arg(long, value_name = "N", default_value_t = 3200, value_parser = corners, allow_negative_numbers = true)]
+    pub corners: u16,
+    /// Grey levels by which a corner differs from its surroundings, 1 to 254
+    #[arg(long, value_name = "G", default_value_t = 12, value_parser = contrast, allow_negative_numbers = true)]
+    pub contrast: u16,
+    /// How many sizes of the images are searched, 1 to 8, each two thirds of the one before
+    #[arg(long, value_name = "L", default_value_t = 3, value_parser = levels, allow_negative_numbers = true)]
+    pub levels: u16,
+    /// A match differs in fewer bits than so many percent of the second best, 1 to 100
+    #[arg(long, value_name = "PERCENT", default_value_t = 80, value_parser = percent, allow_negative_numbers = true)]
+    pub ratio: u16,
+    /// How many columns partners may lie apart, px; anywhere by default
+    #[arg(long, value_name = "PX", value_parser = apart, allow_negative_numbers = true)]
+    pub columns_apart: Option<u16>,
+    /// How many rows partners may lie apart, px; anywhere by default
+    #[arg(long, value_name = "PX", value_parser = apart, allow_negative_numbers = true)]
+    pub rows_apart: Option<u16>,
+    /// The images are turned against each other by more than some 15 degrees
+    #[arg(long)]
+    pub turned: bool,
 }
 
 #[derive(Debug, Args)]
@@ -243,6 +287,26 @@ fn threads(text: &str) -> Result<u16, String> {
 
 fn min_disparity(text: &str) -> Result<u16, String> {
     whole(text, 0, Config::END - Config::FEWEST_DISPARITIES)
+}
+
+fn corners(text: &str) -> Result<u16, String> {
+    whole(text, Plan::FEWEST, Plan::MOST)
+}
+
+fn contrast(text: &str) -> Result<u16, String> {
+    whole(text, 1, 254)
+}
+
+fn levels(text: &str) -> Result<u16, String> {
+    whole(text, 1, 8)
+}
+
+fn percent(text: &str) -> Result<u16, String> {
+    whole(text, 1, 100)
+}
+
+fn apart(text: &str) -> Result<u16, String> {
+    whole(text, 0, 4096)
 }
 
 fn repeat(text: &str) -> Result<u16, String> {

@@ -2,12 +2,13 @@
 //!
 //! * `cli`: what is asked for. `failure`: what is said when it cannot be done.
 //! * `input`: the images and the search, checked against each other. `progress`: how far it is.
-//! * `matching`, `bench`, `demo`, `fundamental`, `pose`: the commands. `files`: the results as files.
+//! * `matching`, `bench`, `demo`, `features`, `fundamental`, `pose`: the commands. `files`: the results as files.
 
 mod bench;
 mod cli;
 mod demo;
 mod failure;
+mod features;
 mod files;
 mod fundamental;
 mod input;
@@ -39,6 +40,7 @@ fn start() -> Result<(), Failure> {
         Ok(Command::Bench(args)) => bench::run(&args),
         Ok(Command::Fundamental(args)) => fundamental::run(&args),
         Ok(Command::Pose(args)) => pose::run(&args),
+        Ok(Command::Features(args)) => features::run(&args),
         Err(cli::Stop::Help(text)) => print(&text),
         Err(cli::Stop::Usage(failure)) => Err(failure),
     }

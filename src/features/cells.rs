@@ -1,0 +1,44 @@
+//! The strongest corners of every cell in a row of cells.
+
+use super::{Corner, Descriptor};
+
+/// A corner with the descriptor that it gets once its patch is whole.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slot {
+    pub corner: Corner,
+    pub descriptor: Descriptor,
+}
+
+impl Slot {
+    pub const EMPTY: Self = Self { corner: Corner::NONE, descriptor: Descriptor::NONE };
+
+    fn is_free(&self) -> bool {
+        self.corner.score == 0
+    }
+}
+
+/// Puts a corner into a cell: into a free slot or the place of the weakest corner there, of equals the last that came, if
+/// the new one is stronger. Whether a corner had to stay outside or leave.
+pub(super) fn insert(cell: &mut [Slot], corner: Corner) -> bool {
+    // Corners come in reading order: of equals the one that is farther on is the later one.
+    let weakest = cell.iter_mut().min_by_key(|slot| order(&slot.corner));
+    match weakest {
+        Some(slot) if slot.corner.score < corner.score => {
+            let crowded = !slot.is_free();
+            slot.corner = corner;
+            crowded
+        }
+        _ => true,
+    }
+}
+
+/// Takes the strongest corner out of a cell, of equals the first that came.
+pub(super) fn take_strongest(cell: &mut [Slot]) -> Option<Slot> {
+    let strongest = cell.iter_mut().filter(|slot| !slot.is_free()).max_by_key(|slot| order(&slot.corner))?;
+    Some(core::mem::replace(strongest, Slot::EMPTY))
+}
+
+/// Stronger is more, and of equals the one that comes first in reading order.
+fn order(corner: &Corner) -> (u8, core::cmp::Reverse<(u16, u16)>) {
+    (corner.score, core::cmp::Reverse((corner.row, corner.column)))
+}

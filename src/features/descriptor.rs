@@ -1,0 +1,89 @@
+//! A patch in 256 bits: which of two points is darker, for 256 pairs of points.
+
+use super::pattern::{PATCH_RADIUS, PATTERN};
+use super::turn::Turn;
+
+/// What a corner's surroundings look like: bit `i` says whether in the `i`-th pair of points the first is darker.
+///
+/// BRIEF (Calonder, Lepetit, Strecha & Fua 2010) on a patch of radius 15 px of smoothed lines. As it is, it tolerates
+/// turns of about 15 degrees.
+#[derive(Clone, Copy, PartialEq, Eq, Default, Debug, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Descriptor(pub [u32; 8]);
+
+impl Descriptor {
+    /// The bits of a descriptor.
+    pub const BITS: u16 = 256;
+
+    /// No bit set.
+    pub const NONE: Self = Self([0; 8]);
+
+    /// How many bits differ, 0 to 256.
+    #[inline]
+    pub fn distance(&self, other: &Self) -> u16 {
+        let differing = self.0.iter().zip(&other.0).map(|(a, b)| (a ^ b).count_ones());
+        differing.sum::<u32>() as u16
+    }
+
+    /// The descriptor of a patch whose points are taken from a picture turned by `turn`.
+    pub fn of(patch: &Patch, turn: Turn) -> Self {
+        let mut words = [0; 8];
+        for (word, pairs) in words.iter_mut().zip(PATTERN.as_chunks::<32>().0) {
+            for (bit, pair) in pairs.iter().enumerate() {
+                let [first, second] = pair.map(|[x, y]| patch.at(turn.of(x.into(), y.into())));
+                *word |= u32::from(first < second) << bit;
+            }
+        }
+        Self(words)
+    }
+}
+
+/// Pixels in a row of a patch, and rows.
+const SIDE: usize = 2 * PATCH_RADIUS as usize + 1;
+
+/// The square around a corner, of smoothed pixels.
+#[derive(Clone, Debug)]
+pub struct Patch([u8; Self::STRIDE * Self::STRIDE]);
+
+impl Patch {
+    /// Rows and columns of the square.
+    pub const SIDE: usize = SIDE;
+    /// A power of two: a place is masked, and so is always inside.
+    const STRIDE: usize = 32;
+
+    /// The square around `column` of the middle one of these rows; `None` where it is not whole.
+    pub fn cut(rows: &[&[u8]; SIDE], column: usize) -> Option<Self> {
+        let from = column.checked_sub(PATCH_RADIUS as usize)?;
+        let mut patch = Self([0; Self::STRIDE * Self::STRIDE]);
+        for (place, row) in patch.0.as_chunks_mut::<{ Self::STRIDE }>().0.iter_mut().zip(rows) {
+            let pixels: &[u8; SIDE] = row.get(from..)?.first_chunk()?;
+            place[..SIDE].copy_from_slice(pixels);
+        }
+        Some(patch)
+    }
+
+    /// The pixel so far to the right of the middle and below it, up to the radius.
+    #[inline]
+    fn at(&self, (right, down): (i32, i32)) -> u8 {
+        let place = (down + PATCH_RADIUS) as usize * Self::STRIDE + (right + PATCH_RADIUS) as usize;
+        self.0[place & (Self::STRIDE * Self::STRIDE - 1)]
+    }
+
+    /// In which direction the patch is brighter, seen from its middle: that of the first moments `sum of x I` and
+    /// `sum of y I` of a circle of the radius (Rosin 1999, as in ORB).
+    pub fn direction(&self) -> Turn {
+        let (mut right, mut down) = (0, 0);
+        for y in -PATCH_RADIUS..=PATCH_RADIUS {
+            let mut row = 0;
+            for x in -PATCH_RADIUS..=PATCH_RADIUS {
+                if x * x + y * y <= PATCH_RADIUS * PATCH_RADIUS {
+                    let pixel = i32::from(self.at((x, y)));
+                    right += x * pixel;
+                    row += pixel;
+                }
+            }
+            down += y * row;
+        }
+        Turn::towards(right, down)
+    }
+}

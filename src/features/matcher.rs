@@ -1,0 +1,141 @@
+//! Which features of two pictures are the same: everyone is compared with everyone.
+
+use super::{Descriptor, Feature, Search, SearchError};
+use heapless::VecView;
+
+/// A feature of the left picture and one of the right, by their places in the lists.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Match {
+    /// The left feature's place.
+    pub left: u16,
+    /// The right feature's place.
+    pub right: u16,
+    /// Bits in which they differ.
+    pub different: u16,
+}
+
+/// More bits than can differ: no partner.
+const NOBODY: u16 = Descriptor::BITS + 1;
+
+/// The best partner of a feature so far.
+#[derive(Clone, Copy, Debug)]
+struct Best {
+    different: u16,
+    partner: u16,
+}
+
+impl Best {
+    const NONE: Self = Self { different: NOBODY, partner: 0 };
+
+    /// Of equals the first that comes stays.
+    fn offer(&mut self, different: u16, partner: u16) {
+        if different < self.different {
+            *self = Self { different, partner };
+        }
+    }
+}
+
+/// Matches up to `N` features of one picture with up to `N` of another.
+///
+/// It takes `10 N` bytes. Matching takes as many comparisons of 256 bits as there are pairs of features that the search
+/// admits, and one pass more over the right ones for each left one.
+///
+/// A match is the best partner of its left feature, clearly better than any other that lies elsewhere (Lowe, "Distinctive
+/// image features from scale-invariant keypoints", IJCV 2004, 7.1), and its left feature is the best partner of the right
+/// one. Of partners that are equally good, the first in the list is the best one.
+///
+/// ```
+/// use stereopsis::features::{Descriptor, Feature, Matcher, Search};
+/// let feature = |x_px, word| {
+///     Feature { x_px, y_px: 9.0, score: 20, level: 0, descriptor: Descriptor([word; 8]) }
+/// };
+/// let left = [feature(20.0, 0x00ff), feature(40.0, 0xff00)];
+/// let right = [feature(35.0, 0xff01), feature(16.0, 0x00ff)];
+/// let mut matches = heapless::Vec::<_, 4>::new();
+/// let dropped = Matcher::<8>::new().run(&left, &right, &Search::new(), matches.as_mut_view())?;
+/// assert_eq!(dropped, 0);
+/// assert_eq!(matches.iter().map(|m| (m.left, m.right, m.different)).collect::<Vec<_>>(), [(0, 1, 0), (1, 0, 8)]);
+/// # Ok::<(), stereopsis::features::SearchError>(())
+/// ```
+#[derive(Debug)]
+pub struct Matcher<const N: usize> {
+    of_left: [Best; N],
+    of_right: [Best; N],
+    /// Bits in which one left feature differs from every right one.
+    different: [u16; N],
+}
+
+impl<const N: usize> Matcher<N> {
+    /// A matcher.
+    pub const fn new() -> Self {
+        const { assert!(N <= 1 << 16, "a match says its features' places in 16 bits") };
+        Self { of_left: [Best::NONE; N], of_right: [Best::NONE; N], different: [0; N] }
+    }
+
+    /// Adds the matches to `out`, in the order of the left features. How many it had no place for.
+    pub fn run(
+        &mut self,
+        left: &[Feature],
+        right: &[Feature],
+        search: &Search,
+        out: &mut VecView<Match>,
+    ) -> Result<u32, SearchError> {
+        search.check()?;
+        let needed = left.len().max(right.len());
+        let scratch = self.of_left.get_mut(..left.len()).zip(self.of_right.get_mut(..right.len()));
+        let (Some((of_left, of_right)), Some(different)) = (scratch, self.different.get_mut(..right.len())) else {
+            return Err(SearchError::TooMany { needed });
+        };
+        of_right.fill(Best::NONE);
+        for ((here, feature), best) in (0..).zip(left).zip(of_left.iter_mut()) {
+            *best = best_partner(here, feature, right, search, of_right, different);
+        }
+        let mut dropped = 0;
+        for (here, best) in (0..).zip(of_left.iter()) {
+            let mutual = of_right.get(usize::from(best.partner)).is_some_and(|back| back.partner == here);
+            if best.different < NOBODY && mutual {
+                let found = Match { left: here, right: best.partner, different: best.different };
+                dropped += u32::from(out.push(found).is_err());
+            }
+        }
+        Ok(dropped)
+    }
+}
+
+/// The partner of a left feature in place `here`, [`Best::NONE`] if none is clearly the best; the right features are told
+/// of it, whatever comes out.
+fn best_partner(
+    here: u16,
+    feature: &Feature,
+    right: &[Feature],
+    search: &Search,
+    of_right: &mut [Best],
+    different: &mut [u16],
+) -> Best {
+    let places = search.around(feature);
+    let mut best = Best::NONE;
+    for (((partner, other), back), different) in (0..).zip(right).zip(of_right).zip(different.iter_mut()) {
+        *different = NOBODY;
+        if search.admits(&places, other) {
+            *different = feature.descriptor.distance(&other.descriptor);
+            best.offer(*different, partner);
+            back.offer(*different, here);
+        }
+    }
+    let Some(chosen) = right.get(usize::from(best.partner)) else { return Best::NONE };
+    let elsewhere = |other: &Feature| {
+        (other.x_px - chosen.x_px).abs() >= search.apart_px || (other.y_px - chosen.y_px).abs() >= search.apart_px
+    };
+    let others = right.iter().zip(different.iter()).filter(|(other, _)| elsewhere(other)).map(|(_, d)| *d);
+    // With nobody else, or nobody else who is admitted, half of the bits is what a stranger would differ in.
+    let second = others.min().unwrap_or(NOBODY).min(Descriptor::BITS / 2);
+    let clear = 100 * u32::from(best.different) < u32::from(search.ratio_percent) * u32::from(second);
+    if clear && best.different <= search.most_different { best } else { Best::NONE }
+}
+
+impl<const N: usize> Default for Matcher<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

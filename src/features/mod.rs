@@ -1,0 +1,43 @@
+//! Features of pictures and their matches: which point of one picture is which point of another.
+//!
+//! In: lines of grey pixels, from two cameras or of two moments. Out: pairs of features, with sub-pixel positions.
+//!
+//! 1. [`Shrink`]: ever smaller pictures, for scenes that come nearer.
+//! 2. [`FeatureDetector`]: lines to features, in a band of lines. In it, in running order:
+//!    [`smooth_row`]; [`fast_scores`], the segment test; local maxima as [`Corner`]s, refined by [`refine`]; `cells`, the
+//!    strongest in every cell; [`Patch`] and [`Descriptor`], what they look like, turned by a [`Turn`]; [`PATTERN`].
+//! 3. [`Matcher`]: all features of one picture with all of another, as a [`Search`] admits.
+//!
+//! Pixels to matches is integer arithmetic but for positions: [`Feature`] has them in px of the full picture, and a search
+//! along epipolar lines compares them with lines.
+
+mod cells;
+mod config;
+mod corner;
+mod descriptor;
+mod detector;
+mod error;
+mod fast;
+mod feature;
+mod matcher;
+mod pattern;
+mod refine;
+mod search;
+mod shrink;
+mod smooth;
+mod turn;
+
+pub use config::{FeatureConfig, Orientation};
+pub use corner::Corner;
+pub use descriptor::{Descriptor, Patch};
+pub use detector::{FeatureCounts, FeatureDetector};
+pub use error::{FeatureConfigError, FeatureLineError, SearchError};
+pub use fast::fast_scores;
+pub use feature::{Feature, Level};
+pub use matcher::{Match, Matcher};
+pub use pattern::{PAIRS, PATCH_RADIUS, PATTERN, Pair};
+pub use refine::refine;
+pub use search::{Epipolar, Search};
+pub use shrink::Shrink;
+pub use smooth::smooth_row;
+pub use turn::Turn;

@@ -1,0 +1,100 @@
+//! Which features may match, and how much better than others a match has to be.
+
+use super::{Feature, SearchError};
+use crate::geometry::{Fundamental, Line};
+use nalgebra::Point2;
+
+/// Lines on which partners lie, when it is known how the cameras stand to each other.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Epipolar {
+    /// F with `p^T F p' = 0`: p in the left picture, p' in the right one.
+    pub fundamental: Fundamental<f32>,
+    /// How far from its line `l' = F^T p` a partner may lie, px. Of a point at the epipole, which has no line, partners may
+    /// lie everywhere.
+    pub tolerance_px: f32,
+}
+
+/// What a match has to be.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Search {
+    /// A match has fewer different bits than so many percent of the second best partner (Lowe 2004, 7.1): 1 to 100.
+    pub ratio_percent: u8,
+    /// The second best partner is one that lies at least so far from the best, px along the row or the column: the same
+    /// corner found once more, on another level, is no other one.
+    pub apart_px: f32,
+    /// Bits that may be different, at most.
+    pub most_different: u16,
+    /// By how many levels partners may differ.
+    pub levels_apart: u8,
+    /// How far partners may lie apart along the row, px.
+    pub along_px: f32,
+    /// How far partners may lie apart across the rows, px.
+    pub across_px: f32,
+    /// The lines on which they lie, if they are known.
+    pub epipolar: Option<Epipolar>,
+}
+
+impl Search {
+    /// 80 % of the second best, which lies 4 px from the best; at most a quarter of the bits different; one level apart at
+    /// most; everywhere in the picture.
+    pub const fn new() -> Self {
+        Self {
+            ratio_percent: 80,
+            apart_px: 4.0,
+            most_different: 64,
+            levels_apart: 1,
+            along_px: f32::INFINITY,
+            across_px: f32::INFINITY,
+            epipolar: None,
+        }
+    }
+
+    /// Whether the numbers make sense.
+    pub(super) fn check(&self) -> Result<(), SearchError> {
+        if !(1..=100).contains(&self.ratio_percent) {
+            return Err(SearchError::Ratio);
+        }
+        // Not a number compares as false.
+        if !(self.along_px >= 0.0 && self.across_px >= 0.0 && self.apart_px >= 0.0) {
+            return Err(SearchError::Range);
+        }
+        match &self.epipolar {
+            Some(e) if !(e.tolerance_px >= 0.0) => Err(SearchError::Epipolar),
+            _ => Ok(()),
+        }
+    }
+
+    /// The places where partners of one left feature may be.
+    pub(super) fn around(&self, left: &Feature) -> Places {
+        let band = self.epipolar.and_then(|e| {
+            let line = e.fundamental.line_in_second(&Point2::new(left.x_px, left.y_px))?;
+            Some((line, e.tolerance_px))
+        });
+        Places { x_px: left.x_px, y_px: left.y_px, level: left.level, band }
+    }
+
+    /// Whether a right feature lies there.
+    pub(super) fn admits(&self, places: &Places, right: &Feature) -> bool {
+        let on_line =
+            |(line, most): &(Line<f32>, f32)| line.distance_px(&Point2::new(right.x_px, right.y_px)).abs() <= *most;
+        places.level.abs_diff(right.level) <= self.levels_apart
+            && (places.x_px - right.x_px).abs() <= self.along_px
+            && (places.y_px - right.y_px).abs() <= self.across_px
+            && places.band.as_ref().is_none_or(on_line)
+    }
+}
+
+impl Default for Search {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Where the partners of one feature may be.
+pub(super) struct Places {
+    x_px: f32,
+    y_px: f32,
+    level: u8,
+    /// The line, and how far from it.
+    band: Option<(Line<f32>, f32)>,
+}

@@ -1,0 +1,42 @@
+//! Lines without the noise of single pixels, which a comparison of two pixels would follow.
+
+/// A row smoothed by the weights `[1 4 6 4 1] / 16` along both axes, rounded to the nearest.
+///
+/// `rows` are the two above, the row, and the two below. As many are written as the rows and `out` have, but for the two
+/// columns at either end, which are left as they are: no patch reaches them.
+pub fn smooth_row(rows: &[&[u8]; 5], out: &mut [u8]) {
+    let width = rows.iter().fold(out.len(), |least, row| least.min(row.len()));
+    let [a, b, c, d, e] = rows.map(|row| row.get(..width).unwrap_or(&[]).iter());
+    let mut columns =
+        a.zip(b).zip(c).zip(d).zip(e).map(|((((a, b), c), d), e)| sum([a, b, c, d, e].map(|&p| p.into())));
+    let mut last: [u16; 5] = [0; 5];
+    for place in last.iter_mut().skip(1) {
+        *place = columns.next().unwrap_or(0);
+    }
+    for (out, column) in out.iter_mut().skip(2).zip(columns) {
+        let [_, b, c, d, e] = last;
+        last = [b, c, d, e, column];
+        *out = ((sum(last) + 128) >> 8) as u8;
+    }
+}
+
+/// The weighted sum: 16 times the mean, so at most 4080 of bytes and 65280 of sums of bytes.
+#[inline(always)]
+fn sum([a, b, c, d, e]: [u16; 5]) -> u16 {
+    a + e + 4 * (b + d) + 6 * c
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn white_stays_white_and_a_point_spreads() {
+        let mut out = [7; 7];
+        smooth_row(&[&[255; 7]; 5], &mut out);
+        assert_eq!(out, [7, 7, 255, 255, 255, 7, 7]);
+        smooth_row(&[&[0; 7], &[0; 7], &[0, 0, 0, 160, 0, 0, 0], &[0; 7], &[0; 7]], &mut out);
+        // 160 x 6 x 4 / 256 and 160 x 6 x 6 / 256.
+        assert_eq!(out, [7, 7, 15, 23, 15, 7, 7]);
+    }
+}

@@ -6,7 +6,7 @@
 //! * `planes`: bit planes in plain 32-bit words, for cores without vectors.
 //! * `bytes`: four bytes in a word, for cores that have Arm's instructions for that.
 //! * `lanes`: safe Rust over fixed lanes, which the compiler turns into the vectors that the target has.
-//! * `x86`: the same code compiled for AVX2, chosen when the processor has it.
+//! * `x86`: the same code compiled for AVX2 and for AVX-512, chosen when the processor has it.
 //! * `helium`: what `lanes` and the stages after it do for a row, in assembly for the vectors of a Cortex-M55.
 //! * `winner`: what all of them give.
 //!
@@ -67,6 +67,9 @@ pub enum Kernel {
     /// 256-bit vectors of x86-64.
     #[cfg(target_arch = "x86_64")]
     Avx2(x86::Avx2),
+    /// 512-bit vectors of x86-64.
+    #[cfg(target_arch = "x86_64")]
+    Avx512(x86::Avx512),
 }
 
 impl Kernel {
@@ -81,6 +84,10 @@ impl Kernel {
     /// The fastest that this processor runs.
     pub fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
+        if let Some(avx512) = x86::Avx512::detect() {
+            return Self::Avx512(avx512);
+        }
+        #[cfg(target_arch = "x86_64")]
         if let Some(avx2) = x86::Avx2::detect() {
             return Self::Avx2(avx2);
         }
@@ -90,18 +97,21 @@ impl Kernel {
         return Self::FIRST;
     }
 
-    /// All that this processor runs.
+    /// All that this processor runs, the fastest last.
     pub fn available() -> impl Iterator<Item = Self> {
-        let best = Self::detect();
-        let others = [
+        let all = [
             #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
-            Self::Planes,
+            Some(Self::Planes),
             #[cfg(stereopsis_dsp)]
-            Self::Bytes,
+            Some(Self::Bytes),
             #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-            Self::Lanes,
+            Some(Self::Lanes),
+            #[cfg(target_arch = "x86_64")]
+            x86::Avx2::detect().map(Self::Avx2),
+            #[cfg(target_arch = "x86_64")]
+            x86::Avx512::detect().map(Self::Avx512),
         ];
-        others.into_iter().filter(move |&kernel| kernel != best).chain([best])
+        all.into_iter().flatten()
     }
 
     /// Its name in reports.
@@ -115,6 +125,8 @@ impl Kernel {
             Self::Lanes => "lanes",
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(_) => "avx2",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(_) => "avx512",
         }
     }
 
@@ -182,6 +194,8 @@ impl Kernel {
         match self {
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(avx2) => avx2.run(work),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(avx512) => avx512.run(work),
             _ => work(),
         }
     }
@@ -201,6 +215,8 @@ impl Kernel {
             Self::Lanes => lanes::row::<S>(work, select),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(avx2) => avx2.row::<S>(work, select),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(avx512) => avx512.row::<S>(work, select),
         }
     }
 }

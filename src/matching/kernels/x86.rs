@@ -1,11 +1,13 @@
-//! The kernel in lanes compiled for AVX2, and unrolled for the usual numbers of disparities.
+//! The kernel in lanes compiled for AVX2 and for AVX-512, and unrolled for the usual numbers of disparities.
 #![allow(unsafe_code)]
 
 use super::{RowWork, Select, lanes};
 use crate::matching::window::Windowed;
-use core::arch::x86_64::{_mm256_cmpeq_epi8, _mm256_loadu_si256, _mm256_movemask_epi8, _mm256_set1_epi8};
+use core::arch::x86_64::*;
 
 cpufeatures::new!(avx2, "avx2");
+// What every processor with operations on bytes in 512 bits has: level 4 of x86-64.
+cpufeatures::new!(avx512, "avx2", "avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl");
 
 /// Proof that the processor has AVX2: only [`Avx2::detect`] makes one.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -65,4 +67,65 @@ fn nearest_of_64(least: u8, sums: &[u8]) -> usize {
         equal = equal >> 32 | u64::from(mask) << 32;
     }
     equal.leading_zeros() as usize
+}
+
+/// Proof that the processor has AVX-512, with operations on bytes, and that its registers are kept: only [`Avx512::detect`]
+/// makes one.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Avx512(());
+
+impl Avx512 {
+    pub(super) fn detect() -> Option<Self> {
+        avx512::get().then_some(Self(()))
+    }
+
+    /// Does something that is compiled for AVX-512 as far as it is inlined.
+    #[inline(always)]
+    pub(super) fn run(self, work: impl FnOnce()) {
+        // SAFETY: `self` is the proof that the processor has the features that the function is compiled for.
+        unsafe { run_512(work) }
+    }
+
+    #[inline]
+    pub(super) fn row<S: Windowed>(self, work: RowWork<'_>, select: Option<Select<'_>>) {
+        // SAFETY: `self` is the proof that the processor has the features that the function is compiled for.
+        unsafe { row_512::<S>(work, select) }
+    }
+}
+
+#[target_feature(enable = "avx2,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
+fn run_512(work: impl FnOnce()) {
+    work();
+}
+
+#[target_feature(enable = "avx2,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
+fn row_512<S: Windowed>(work: RowWork<'_>, select: Option<Select<'_>>) {
+    use lanes::row_in_groups;
+    let nearest = |least: u8, sums: &[u8]| nearest_of_64s(least, sums);
+    match work.stride {
+        32 => row_in_groups::<S, 32, 32>(work, select, |least: u8, sums: &[u8]| nearest_of_64(least, sums)),
+        64 => row_in_groups::<S, 64, 64>(work, select, nearest),
+        128 => row_in_groups::<S, 64, 128>(work, select, nearest),
+        256 => row_in_groups::<S, 64, 256>(work, select, nearest),
+        stride if stride % 64 == 0 => row_in_groups::<S, 64, 0>(work, select, nearest),
+        stride if stride % 32 == 0 => row_in_groups::<S, 32, 0>(work, select, lanes::nearest_with::<0>),
+        _ => row_in_groups::<S, 16, 0>(work, select, lanes::nearest_with::<0>),
+    }
+}
+
+/// [`lanes::nearest_with`] of whole registers of AVX-512: the last bit of the last mask that has one.
+#[target_feature(enable = "avx512f,avx512bw")]
+#[inline]
+fn nearest_of_64s(least: u8, sums: &[u8]) -> usize {
+    let least = _mm512_set1_epi8(least as i8);
+    let mut nearest = 0;
+    for group in sums.as_chunks::<64>().0 {
+        // SAFETY: the group is 64 bytes, and no alignment is asked for.
+        let group = unsafe { _mm512_loadu_si512(group.as_ptr().cast()) };
+        let equal = _mm512_cmpeq_epi8_mask(group, least);
+        // A group farther on has smaller disparities.
+        nearest = if equal != 0 { equal.leading_zeros() as usize } else { nearest + 64 };
+    }
+    nearest
 }

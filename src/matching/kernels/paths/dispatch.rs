@@ -2,10 +2,10 @@
 //! usual numbers of disparities, which lets the compiler unroll them and keep them in registers.
 
 use super::super::{Kernel, Select};
-#[cfg(target_arch = "x86_64")]
-use super::groups::Wide;
 #[cfg(target_pointer_width = "64")]
 use super::groups::{Groups, Vector};
+#[cfg(target_arch = "x86_64")]
+use super::groups::{Wide, Widest};
 use super::{EdgeWork, Guide, PathWork};
 use crate::matching::paths::Along;
 use crate::matching::scheme::Around;
@@ -87,6 +87,21 @@ macro_rules! in_wide {
     };
 }
 
+/// The same in registers of AVX-512, where they are full.
+#[cfg(target_arch = "x86_64")]
+macro_rules! in_widest {
+    ($work:ident, $pass:ident, [$($more:tt)?], $($argument:expr),*) => {
+        match $work.stride {
+            64 => super::$pass::<Groups<Widest, 1, true>, $($more)?>($work, $($argument),*),
+            128 => super::$pass::<Groups<Widest, 2, true>, $($more)?>($work, $($argument),*),
+            stride if stride % 64 == 0 => super::$pass::<Groups<Widest, 4, false>, $($more)?>($work, $($argument),*),
+            32 => super::$pass::<Groups<Wide, 1, true>, $($more)?>($work, $($argument),*),
+            stride if stride % 32 == 0 => super::$pass::<Groups<Wide, 8, false>, $($more)?>($work, $($argument),*),
+            _ => super::$pass::<Groups<Vector, 16, false>, $($more)?>($work, $($argument),*),
+        }
+    };
+}
+
 impl Kernel {
     /// Adds a row of both images to the costs of a method along paths, the first row of a frame to none.
     #[inline(always)]
@@ -111,6 +126,11 @@ impl Kernel {
                 #[inline(always)]
                 || in_wide!(work, enter, [S], is_first, lines, room),
             ),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(avx512) => avx512.run(
+                #[inline(always)]
+                || in_widest!(work, enter, [S], is_first, lines, room),
+            ),
         }
     }
 
@@ -131,6 +151,11 @@ impl Kernel {
                 #[inline(always)]
                 || in_wide!(work, within_edges, [], edges),
             ),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(avx512) => avx512.run(
+                #[inline(always)]
+                || in_widest!(work, within_edges, [], edges),
+            ),
         }
     }
 
@@ -150,6 +175,11 @@ impl Kernel {
             Self::Avx2(avx2) => avx2.run(
                 #[inline(always)]
                 || in_wide!(work, select, [true], guide, select),
+            ),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(avx512) => avx512.run(
+                #[inline(always)]
+                || in_widest!(work, select, [true], guide, select),
             ),
         }
     }

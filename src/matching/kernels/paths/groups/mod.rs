@@ -1,8 +1,8 @@
 //! The passes, written once for groups of bytes whose lanes run over the disparities of one pixel.
 //!
 //! * `cost`, `edges`, `gather`, `decide`: the passes.
-//! * `group`: what they are written for. `words`: four bytes in a word; `sse2`, `avx2`, `neon`: registers of larger
-//!   processors, with what they have alike from `registers`.
+//! * `group`: what they are written for. `words`: four bytes in a word; `sse2`, `avx2`, `avx512`, `neon`: registers of
+//!   larger processors, with what they have alike from `registers`.
 
 mod cost;
 mod decide;
@@ -12,6 +12,8 @@ mod group;
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
@@ -31,6 +33,8 @@ use group::Group;
 
 #[cfg(target_arch = "x86_64")]
 pub(super) use avx2::Wide;
+#[cfg(target_arch = "x86_64")]
+pub(super) use avx512::Widest;
 #[cfg(target_arch = "aarch64")]
 pub(super) use neon::Vector;
 #[cfg(target_arch = "x86_64")]

@@ -211,12 +211,13 @@ impl Kernel {
             Self::Planes => planes::row::<S>(work, select),
             #[cfg(stereopsis_dsp)]
             Self::Bytes => bytes::row::<S>(work, select),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(avx2) if work.stride.is_multiple_of(32) => avx2.row::<S>(work, select),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(avx512) if work.stride.is_multiple_of(32) => avx512.row::<S>(work, select),
+            // Of registers that would not be full there is nothing to gain.
             #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-            Self::Lanes => lanes::row::<S>(work, select),
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2(avx2) => avx2.row::<S>(work, select),
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512(avx512) => avx512.row::<S>(work, select),
+            _ => lanes::row::<S>(work, select),
         }
     }
 }

@@ -26,6 +26,7 @@ impl Avx2 {
         unsafe { run(work) }
     }
 
+    /// A row whose columns are whole registers: of 32 lanes.
     #[inline]
     pub(super) fn row<S: Windowed>(self, work: RowWork<'_>, select: Option<Select<'_>>) {
         // SAFETY: `self` is the proof that the processor has the one feature that the function is compiled for.
@@ -40,18 +41,28 @@ fn run(work: impl FnOnce()) {
 
 #[target_feature(enable = "avx2")]
 fn row<S: Windowed>(work: RowWork<'_>, select: Option<Select<'_>>) {
-    use lanes::row_in_groups;
     // Two registers of lanes at a time measured best; and masks up to 64 lanes, with more of them the numbers. (A closure
     // has the features of what it is in.)
     let nearest = |least: u8, sums: &[u8]| nearest_of_64(least, sums);
     match work.stride {
-        32 => row_in_groups::<S, 32, 32>(work, select, nearest),
-        64 => row_in_groups::<S, 64, 64>(work, select, nearest),
-        128 => row_in_groups::<S, 64, 128>(work, select, lanes::nearest_with::<128>),
-        256 => row_in_groups::<S, 64, 256>(work, select, lanes::nearest_with::<256>),
-        stride if stride % 32 == 0 => row_in_groups::<S, 32, 0>(work, select, lanes::nearest_with::<0>),
-        _ => row_in_groups::<S, 16, 0>(work, select, lanes::nearest_with::<0>),
+        32 => in_groups::<S, 32, 32>(work, select, nearest),
+        64 => in_groups::<S, 64, 64>(work, select, nearest),
+        128 => in_groups::<S, 64, 128>(work, select, lanes::nearest_with::<128>),
+        256 => in_groups::<S, 64, 256>(work, select, lanes::nearest_with::<256>),
+        _ => in_groups::<S, 32, 0>(work, select, lanes::nearest_with::<0>),
     }
+}
+
+/// [`lanes::row_in_groups`], each number of lanes in a function of its own: the compiler's passes take far longer over one
+/// function of all of them.
+#[target_feature(enable = "avx2")]
+#[inline(never)]
+fn in_groups<S: Windowed, const GROUP: usize, const STRIDE: usize>(
+    work: RowWork<'_>,
+    select: Option<Select<'_>>,
+    nearest: impl Fn(u8, &[u8]) -> usize,
+) {
+    lanes::row_in_groups::<S, GROUP, STRIDE>(work, select, nearest);
 }
 
 /// [`lanes::nearest_with`] of 32 or 64 lanes: the last bit of a mask instead of the least number.
@@ -87,6 +98,7 @@ impl Avx512 {
         unsafe { run_512(work) }
     }
 
+    /// A row whose columns are whole registers of AVX2.
     #[inline]
     pub(super) fn row<S: Windowed>(self, work: RowWork<'_>, select: Option<Select<'_>>) {
         // SAFETY: `self` is the proof that the processor has the features that the function is compiled for.
@@ -101,17 +113,21 @@ fn run_512(work: impl FnOnce()) {
 
 #[target_feature(enable = "avx2,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
 fn row_512<S: Windowed>(work: RowWork<'_>, select: Option<Select<'_>>) {
-    use lanes::row_in_groups;
-    let nearest = |least: u8, sums: &[u8]| nearest_of_64s(least, sums);
     match work.stride {
-        32 => row_in_groups::<S, 32, 32>(work, select, |least: u8, sums: &[u8]| nearest_of_64(least, sums)),
-        64 => row_in_groups::<S, 64, 64>(work, select, nearest),
-        128 => row_in_groups::<S, 64, 128>(work, select, nearest),
-        256 => row_in_groups::<S, 64, 256>(work, select, nearest),
-        stride if stride % 64 == 0 => row_in_groups::<S, 64, 0>(work, select, nearest),
-        stride if stride % 32 == 0 => row_in_groups::<S, 32, 0>(work, select, lanes::nearest_with::<0>),
-        _ => row_in_groups::<S, 16, 0>(work, select, lanes::nearest_with::<0>),
+        64 => in_groups_512::<S, 64>(work, select),
+        128 => in_groups_512::<S, 128>(work, select),
+        256 => in_groups_512::<S, 256>(work, select),
+        stride if stride % 64 == 0 => in_groups_512::<S, 0>(work, select),
+        _ => row::<S>(work, select),
     }
+}
+
+/// [`in_groups`] of 64 lanes.
+#[target_feature(enable = "avx2,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
+#[inline(never)]
+fn in_groups_512<S: Windowed, const STRIDE: usize>(work: RowWork<'_>, select: Option<Select<'_>>) {
+    let nearest = |least: u8, sums: &[u8]| nearest_of_64s(least, sums);
+    lanes::row_in_groups::<S, 64, STRIDE>(work, select, nearest);
 }
 
 /// [`lanes::nearest_with`] of whole registers of AVX-512: the last bit of the last mask that has one.

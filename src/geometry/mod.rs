@@ -13,6 +13,8 @@
 //! * [`Essential::recover_pose`] and [`Homography::recover_motions`]: the pose, without its scale ([`RelativePose`]).
 //! * [`TwoViews`]: points from two sights, with their residual, angle and covariance.
 //! * [`Projection`]: a camera in the world as one matrix, to and from its parts, and from [`Landmark`]s.
+//! * One camera before something of known shape: [`Sighting`] of an object of known size, the poses of a [`SquareMark`], the
+//!   orientation between [`Walls`].
 //!
 //! R and t carry a point of camera 2 into camera 1, `P = R P' + t`, and `p^T F p' = 0`; what OpenCV writes the other way
 //! round is converted by functions that say so.
@@ -31,6 +33,7 @@ mod eight_point;
 mod essential;
 mod fundamental;
 mod homography;
+mod landmarks;
 mod line;
 mod linear;
 mod model;
@@ -54,6 +57,10 @@ pub use eight_point::{EightPointError, eight_point, eight_point_weighted};
 pub use essential::{Essential, EssentialError};
 pub use fundamental::{Fundamental, FundamentalError};
 pub use homography::{Homography, HomographyError};
+pub use landmarks::{
+    MarkPose, MarkPoses, Segment, Sighting, SightingError, SquareMark, SquareMarkError, VanishingPoint,
+    VanishingPointError, Walls, WallsError,
+};
 pub use line::{Epipole, Line};
 pub use model::{ModelChoice, TwoViewModel, choose, gric};
 pub use plane::{PlaneMotion, PlaneMotionError};

@@ -15,3 +15,11 @@ pub fn skew<T: Real>(a: &Vector3<T>) -> Matrix3<T> {
     let o = T::ZERO;
     Matrix3::new(o, -a.z, a.y, a.z, o, -a.x, -a.y, a.x, o)
 }
+
+/// A rotation that is `1 + [w]x` to first order, by a quaternion: exact at every size, and without an angle.
+pub(crate) fn turn<T: Real>(w: &Vector3<T>) -> Matrix3<T> {
+    let half = w * T::of(0.5);
+    let by = T::of(2.0) / (T::ONE + half.norm_squared());
+    let cross = skew(&half);
+    Matrix3::identity() + (cross + cross * cross) * by
+}

@@ -2,6 +2,7 @@
 
 mod cameras;
 mod estimates;
+mod landmarks;
 mod matrices;
 mod planes;
 mod points;

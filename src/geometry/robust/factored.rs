@@ -2,6 +2,7 @@
 
 use crate::geometry::Real;
 use crate::geometry::linear::Svd3;
+use crate::geometry::skew::turn;
 use nalgebra::{Matrix3, Vector3};
 
 /// `F = U diag(c, s, 0) V^T` with rotations U and V and `c^2 + s^2 = 1`: three numbers turn U, three V, one moves (c, s)
@@ -62,20 +63,12 @@ impl<T: Real> Factored<T> {
         let [u0, u1, u2, v0, v1, v2, along] = *step;
         let (sine, cosine) = along.sin_cos();
         Self {
-            u: self.u * turn(Vector3::new(u0, u1, u2)),
-            v: self.v * turn(Vector3::new(v0, v1, v2)),
+            u: self.u * turn(&Vector3::new(u0, u1, u2)),
+            v: self.v * turn(&Vector3::new(v0, v1, v2)),
             c: self.c * cosine - self.s * sine,
             s: self.s * cosine + self.c * sine,
         }
     }
-}
-
-/// A rotation that is `1 + [w]x` to first order, by a quaternion: exact at every size, and without an angle.
-fn turn<T: Real>(w: Vector3<T>) -> Matrix3<T> {
-    let half = w * T::of(0.5);
-    let by = T::of(2.0) / (T::ONE + half.norm_squared());
-    let cross = crate::geometry::skew(&half);
-    Matrix3::identity() + (cross + cross * cross) * by
 }
 
 #[cfg(test)]

@@ -18,6 +18,30 @@
 //!
 //! R and t carry a point of camera 2 into camera 1, `P = R P' + t`, and `p^T F p' = 0`; what OpenCV writes the other way
 //! round is converted by functions that say so.
+//!
+//! # The lecture's equations
+//!
+//! Where the equations of Stanford's AA273, lecture 6 (Pavone 2018), are computed, in the lecture's order. Each has a worked
+//! number in the tests.
+//!
+//! | equation | computed by |
+//! | --- | --- |
+//! | `p ~ M P`, `M = K [R^T \| -R^T t]` | [`Projection::new`], [`Projection::project`] |
+//! | `Z = f S / s`, an object of known size | [`Sighting::of_length`] |
+//! | `z = b f / (p_u - p'_u)`, sights of a rectified pair | [`RectifiedRig::depth_m`] |
+//! | 6.2: least `d(p, M P)^2 + d(p', M' P)^2` | [`TwoViews::optimal`], its value [`Triangulated::residual_px`] |
+//! | `p . [t x (R p')] = 0`, three vectors in the epipolar plane | [`Essential::residual`] |
+//! | `[a]x b = a x b` | [`skew()`] |
+//! | `E = [t]x R`, `p^T E p' = 0` | [`Essential::from_pose`], [`Essential::residual`] |
+//! | `E` has the singular values `(s, s, 0)` | [`Essential::nearest`] |
+//! | `F = K^-T E K'^-1`, `p^T F p' = 0` | [`Fundamental::from_essential`], [`Fundamental::residual`] |
+//! | `l = F p'`, `l' = F^T p` | [`Fundamental::line_in_first`], [`Fundamental::line_in_second`] |
+//! | `F^T e = 0`, `F e' = 0` | [`Fundamental::epipole_in_first`], [`Fundamental::epipole_in_second`] |
+//! | least `\|W f\|` with `\|f\| = 1`, normalised | [`eight_point()`] |
+//! | the nearest matrix of rank 2, `U diag(s1, s2, 0) V^T` | [`Fundamental::from_matrix`] |
+//! | `E = K^T F K'` and its four poses | [`Essential::from_fundamental`], [`Essential::poses`] |
+//! | rows of a rectified pair: `F ~ [0 0 0; 0 0 -1; 0 1 0]` | [`Fundamental::from_cameras`] of such a pair |
+//! | disparity to a point, `P ~ Q (u v d 1)^T` | [`RectifiedRig::reproject`] |
 
 #![allow(
     clippy::neg_cmp_op_on_partial_ord,

@@ -3,6 +3,7 @@
 mod cameras;
 mod estimates;
 mod landmarks;
+mod lecture;
 mod matrices;
 mod planes;
 mod points;

@@ -60,6 +60,12 @@ impl<T: Real> Fundamental<T> {
         Self { matrix: scaled / scaled.norm() }
     }
 
+    /// The same, of its rows.
+    pub(super) fn of_rows(mut rows: [[T; 3]; 3]) -> Self {
+        linear::unit(rows.as_flattened_mut());
+        Self { matrix: linear::matrix3(&rows) }
+    }
+
     /// `F = K^-T E K'^-1`.
     ///
     /// Lenses are not in it: it holds for undistorted pixels ([`Camera::undistort`]).

@@ -3,7 +3,7 @@
 #![allow(clippy::needless_range_loop, reason = "an element is named by its row and column, as in the equations")]
 
 use super::Real;
-use super::linear::{cubic_roots, matrix3};
+use super::linear::{cubic_roots, matrix3, rows3};
 use nalgebra::{Matrix3, Point2};
 
 /// Up to three fundamental matrices.
@@ -19,7 +19,7 @@ pub(crate) fn seven_point<T: Real>(seen: &[(Point2<T>, Point2<T>); 7]) -> Candid
     let rows = seen.map(|(p, q)| [p.x * q.x, p.x * q.y, p.x, p.y * q.x, p.y * q.y, p.y, q.x, q.y, T::ONE]);
     let mut candidates = Candidates::new();
     let Some([g, h]) = pencil(rows) else { return candidates };
-    let (g, h) = (matrix3(&g), matrix3(&h));
+    let (g, h) = (matrix3(&rows3(g)), matrix3(&rows3(h)));
     let (of_g, of_h) = (cofactors(&g), cofactors(&h));
     let (c0, c3) = (of_g.column(0).dot(&g.column(0)), of_h.column(0).dot(&h.column(0)));
     let (c1, c2) = (of_g.dot(&h), of_h.dot(&g));

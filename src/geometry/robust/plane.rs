@@ -63,7 +63,7 @@ impl<T: Real> Plane<T> {
         }
         let on = seen.iter().filter(|s| self.distance_squared_px2(s) < px2);
         let [first, second] = frames;
-        let (h, _) = homography::solve(on.map(|s| (first.apply(s.first), second.apply(s.second))), count);
+        let (h, _) = homography::least_squares(on.map(|s| (first.apply(s.first), second.apply(s.second))));
         let fitted = Self::new(first.inverse() * h * second.matrix());
         let again = fitted.count(seen, 1, px2);
         if again >= count { (fitted, again) } else { (*self, count) }

@@ -146,6 +146,6 @@ impl<T: Real> Equations<T> {
                 *diagonal += *diagonal * damping;
             }
         }
-        Ldl::new(damped).solve(&self.slope).map(|x| -x)
+        Ldl::new(&mut damped).solve(&self.slope).map(|x| -x)
     }
 }

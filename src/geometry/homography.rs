@@ -1,6 +1,6 @@
 //! The homography: two views of a plane, or of anything from one place.
 
-use super::linear::{Ldl, Projective, matrix3, null_of_rows, rank, rows3};
+use super::linear::{Ldl, Projective, columns3, matrix3, null_of_rows, rank, rows3};
 use super::normalise::Both;
 use super::weighted::Weighted;
 use super::{Camera, Correspondence, Pose, Real};
@@ -61,8 +61,7 @@ impl<T: Real> Homography<T> {
         let scaled = matrix / size;
         let matrix = scaled / scaled.norm();
         // The inverse but for its scale: the columns' cross products are its rows.
-        let column = |j: usize| -> Vector3<T> { matrix.column(j).into() };
-        let (a, b, c) = (column(0), column(1), column(2));
+        let [a, b, c] = columns3(&matrix);
         let rows = [b.cross(&c), c.cross(&a), a.cross(&b)];
         let (determinant, size) = (rows[2].dot(&c), rows[2].norm() * c.norm());
         if !(determinant.abs() > size * T::EPSILON * T::of(16.0)) || size == T::ZERO {

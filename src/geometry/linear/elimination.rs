@@ -8,40 +8,66 @@ use crate::geometry::Real;
 /// ([`rank`]).
 ///
 /// `rows` is what the elimination makes of them. A is not squared on the way, as it is in normal equations: half as many
-/// digits are lost. Nothing is swapped: a column whose pivot is chosen is zero in all rows below, so that whole rows can be
-/// worked on.
+/// digits are lost.
 pub(crate) fn null_of_rows<T: Real, const M: usize, const N: usize>(rows: &mut [[T; N]; M]) -> ([T; N], [T; M]) {
     const { assert!(M + 1 == N, "one row less than unknowns") };
     let (mut pivots, mut places) = ([T::ZERO; M], [0; M]);
+    eliminate(rows, &mut pivots, &mut places);
     // One in the column that no row has its pivot in.
     let mut x = [T::ONE; N];
-    let mut rest = rows.as_mut_slice();
-    for (chosen, chosen_place) in pivots.iter_mut().zip(&mut places) {
+    solve(rows, &pivots, &places, &mut x);
+    (x, pivots)
+}
+
+/// Two vectors of length one that span what M = N - 2 rows leave free, and the pivots.
+pub(crate) fn pencil_of_rows<T: Real, const M: usize, const N: usize>(rows: &mut [[T; N]; M]) -> ([[T; N]; 2], [T; M]) {
+    const { assert!(M + 2 == N, "two rows less than unknowns") };
+    let (mut pivots, mut places) = ([T::ZERO; M], [0; M]);
+    eliminate(rows, &mut pivots, &mut places);
+    let mut both = [[T::ZERO; N]; 2];
+    let mut free = (0..N).filter(|place| !places.contains(place));
+    for x in &mut both {
+        if let Some(slot) = free.next().and_then(|place| x.get_mut(place)) {
+            *slot = T::ONE;
+        }
+        solve(rows, &pivots, &places, x);
+    }
+    (both, pivots)
+}
+
+/// Makes every row's largest element its pivot and zero in all rows below. Nothing is swapped: whole rows are worked on.
+#[inline(never)]
+fn eliminate<T: Real, const N: usize>(rows: &mut [[T; N]], pivots: &mut [T], places: &mut [usize]) {
+    let mut rest = rows;
+    for (pivot, place) in pivots.iter_mut().zip(places) {
         let Some((row, below)) = rest.split_first_mut() else { break };
-        let (mut place, mut pivot) = (0, T::ZERO);
         for (j, &element) in row.iter().enumerate() {
             if element.abs() > pivot.abs() {
-                (place, pivot) = (j, element);
+                (*place, *pivot) = (j, element);
             }
         }
-        let inverse = inverse_of(pivot);
-        let place = place.min(N - 1);
+        let (place, inverse) = ((*place).min(N - 1), inverse_of(*pivot));
         for other in below.iter_mut() {
             let by = other[place] * inverse;
             combine(other, T::ONE, row, -by);
             other[place] = T::ZERO;
         }
-        (*chosen, *chosen_place) = (pivot, place);
-        x[place] = T::ZERO;
         rest = below;
     }
-    for ((row, &pivot), &place) in rows.iter().zip(&pivots).zip(&places).rev() {
+}
+
+/// From x with the unknowns that are free, all of it, at length one.
+#[inline(never)]
+fn solve<T: Real, const N: usize>(rows: &[[T; N]], pivots: &[T], places: &[usize], x: &mut [T; N]) {
+    for &place in places {
+        x[place.min(N - 1)] = T::ZERO;
+    }
+    for ((row, &pivot), &place) in rows.iter().zip(pivots).zip(places).rev() {
         // What stands in the columns of the pivots above is zero.
-        let value = -dot(row, &x) * inverse_of(pivot);
+        let value = -dot(row, x) * inverse_of(pivot);
         x[place.min(N - 1)] = value;
     }
-    unit(&mut x);
-    (x, pivots)
+    unit(x);
 }
 
 /// What a row is divided by. In one that depends on the others any number will do: the caller is told by the pivot.
@@ -58,7 +84,7 @@ pub(crate) fn rank<T: Real>(pivots: &[T], share: T) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{null_of_rows, rank};
+    use super::{null_of_rows, pencil_of_rows, rank};
 
     #[test]
     fn two_rows_leave_their_cross_product() {
@@ -77,5 +103,14 @@ mod tests {
         let (_, pivots) = null_of_rows::<f64, 2, 3>(&mut [[1.0, 3.0, 2.0], [-2.0, -6.0, -4.0]]);
         assert_eq!((pivots, rank(&pivots, 0.1)), ([3.0, 0.0], 1));
         assert_eq!([rank(&[4.0, 1.0], 0.2), rank(&[4.0, 1.0], 0.3), rank(&[0.0, 0.0], 0.1)], [2, 1, 0]);
+    }
+    #[test]
+    fn one_row_leaves_a_plane() {
+        let ([a, b], pivots) = pencil_of_rows::<f64, 1, 3>(&mut [[1.0, 2.0, -2.0]]);
+        assert_eq!(pivots, [2.0]);
+        for x in [a, b] {
+            assert!((x[0] + 2.0 * x[1] - 2.0 * x[2]).abs() < 1e-15 && x.iter().map(|x| x * x).sum::<f64>() > 0.999);
+        }
+        assert!(a[0] != 0.0 && b[0] == 0.0);
     }
 }

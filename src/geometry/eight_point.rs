@@ -1,9 +1,9 @@
 //! F from eight correspondences or more.
 
-use super::linear::{Ldl, matrix3, null_of_rows};
-use super::normalise::Normalisation;
+use super::linear::{Ldl, dot, null_of_rows, rank, rows3, times_transposed3, transposed3};
+use super::normalise::Both;
+use super::weighted::Weighted;
 use super::{Correspondence, Fundamental, Real, degenerate};
-use nalgebra::{Matrix3, Vector3};
 
 /// Why correspondences give no fundamental matrix.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -40,6 +40,10 @@ impl core::fmt::Display for EightPointError {
 
 impl core::error::Error for EightPointError {}
 
+/// Squarings at most: of a second singular value that is a thousandth more than the smallest e^-8 is left after them, and
+/// where the two are nearer than that, either matrix is as near.
+const MOST_SQUARINGS: usize = 12;
+
 /// The fundamental matrix of eight correspondences or more, px, by the normalised eight-point algorithm: F minimises
 /// `sum (p^T F p')^2` with `|F| = 1` over points normalised after Hartley, and is then replaced by the nearest singular
 /// matrix (Longuet-Higgins 1981; Hartley 1997; Hartley & Zisserman 2004, algorithm 11.1). All correspondences are used:
@@ -51,8 +55,9 @@ impl core::error::Error for EightPointError {}
 /// err alike. With 9 to 11 correspondences the normal equations lose more in `f32`: 0.02 px, and one set of nine in sixty
 /// is refused as [`EightPointError::Undetermined`].
 ///
-/// A set that is degenerate to 0.0007 px is refused by name. Points that are on a plane only to within their noise are
-/// not refused here, for the noise is not known: [`choose`](super::choose) tells those.
+/// A set that is degenerate to 0.0007 px is refused by name; in `f32` to 0.02 px for eight and to 0.3 px for more. Points
+/// that are on a plane only to within their noise are not refused here, for the noise is not known:
+/// [`choose`](super::choose) tells those.
 ///
 /// ```
 /// use stereopsis::geometry::{Correspondence, EightPointError, eight_point};
@@ -65,7 +70,7 @@ impl core::error::Error for EightPointError {}
 /// # Ok::<(), EightPointError>(())
 /// ```
 pub fn eight_point<T: Real>(seen: &[Correspondence<T>]) -> Result<Fundamental<T>, EightPointError> {
-    solve(seen.iter().map(|&s| (s, T::ONE)))
+    solve(Weighted::alike(seen))
 }
 
 /// The same with each squared residual times its weight: `sum w (p^T F p')^2`. A weight of zero leaves a correspondence
@@ -74,70 +79,64 @@ pub fn eight_point_weighted<T: Real>(
     seen: &[Correspondence<T>],
     weights: &[T],
 ) -> Result<Fundamental<T>, EightPointError> {
-    let weighted = seen.iter().copied().zip(weights.iter().copied());
-    // What is not a number stays in, and is refused.
-    solve(weighted.filter(|&(_, weight)| !(weight <= T::ZERO)))
+    solve(Weighted::new(seen, weights))
 }
 
-#[inline(always)]
-fn solve<T: Real>(
-    seen: impl Iterator<Item = (Correspondence<T>, T)> + Clone,
-) -> Result<Fundamental<T>, EightPointError> {
-    let plain = seen.clone().map(|(s, _)| s);
-    let count = plain.clone().count();
+fn solve<T: Real>(seen: Weighted<'_, T>) -> Result<Fundamental<T>, EightPointError> {
+    let count = seen.iter().count();
     if count < 8 {
         return Err(EightPointError::TooFew);
     }
     // A sum with something infinite or not a number in it is neither.
-    let sum = seen.clone().fold(T::ZERO, |sum, (s, w)| sum + s.first.x + s.first.y + s.second.x + s.second.y + w);
+    let sum = seen.iter().fold(T::ZERO, |sum, (s, w)| sum + s.first.x + s.first.y + s.second.x + s.second.y + w);
     if !sum.is_finite() {
         return Err(EightPointError::NotFinite);
     }
-    let first = Normalisation::of(plain.clone().map(|s| s.first), count);
-    let second = Normalisation::of(plain.clone().map(|s| s.second), count);
-    let (Some(first), Some(second)) = (first, second) else {
+    let Some(both) = Both::of(seen) else {
         // One point in one of the images: nothing is more on a line.
-        let repeated = degenerate::distinct::<T, 8>(plain) < 8;
+        let repeated = degenerate::distinct::<T, 8>(seen) < 8;
         return Err(if repeated { EightPointError::Repeated } else { EightPointError::Line });
     };
-    let normalised = seen.map(|(s, weight)| (first.apply(s.first), second.apply(s.second), weight));
 
-    // The row of a correspondence: f11 f12 f13 f21 ... of p^T F p', which are p's numbers times those of p'.
-    let (f, pivot, suspicious, least) = if count == 8 {
+    // The row of a correspondence: f11 f12 f13 f21 ... of p^T F p', which are p's numbers times those of p'. Elimination
+    // works on the rows, the factor on their squares.
+    let on_it = T::of(degenerate::ON_IT);
+    let (f, pivots, on_it, least) = if count == 8 {
         let mut rows = [[T::ONE; 9]; 8];
-        for (row, (p, q, _)) in rows.iter_mut().zip(normalised) {
+        for (row, (seen, _)) in rows.iter_mut().zip(seen.iter()) {
+            let (p, q) = both.apply(seen);
             *row = [p.x * q.x, p.x * q.y, p.x, p.y * q.x, p.y * q.y, p.y, q.x, q.y, T::ONE];
         }
-        let (f, pivot) = null_of_rows(rows);
-        (f, pivot, T::of(1e-4), T::EPSILON * T::of(64.0))
+        let (f, pivots) = null_of_rows(&mut rows);
+        (f, pivots, on_it.max(T::EPSILON * T::of(1024.0)), T::EPSILON * T::of(64.0))
     } else {
-        let ldl = Ldl::<T, 9>::new(normal_matrix(normalised));
-        (
-            ldl.null_vector(),
-            ldl.relative_pivot(7),
-            T::of(1e-8).max(T::EPSILON * T::of(32.0)),
-            T::of(1e-14).max(T::EPSILON * T::of(4.0)),
-        )
+        let ldl = Ldl::<T, 9>::new(&mut normal_matrix(seen, &both));
+        let [a, b, c, d, e, f, g, h, _] = *ldl.pivots();
+        let least = T::of(1e-14).max(T::EPSILON * T::of(4.0));
+        let on_it = (on_it * on_it).max(T::EPSILON * T::of(32.0));
+        (ldl.null_vector(), [a, b, c, d, e, f, g, h], on_it, least)
     };
-    if !(pivot > suspicious) {
-        if let Some(reason) = degenerate::reason(plain, count, &first, &second) {
+    let f = rows3(f);
+    let cofactors = cofactors(&f);
+    let full = rank(&pivots, on_it);
+    if full < 8 {
+        if let Some(reason) = degenerate::reason(seen, full, dot(&f[0], &cofactors[0]), &cofactors) {
             return Err(reason);
         }
-        if !(pivot > least) {
+        if rank(&pivots, least) < 8 {
             return Err(EightPointError::Undetermined);
         }
     }
-    let singular = nearest_singular(&matrix3(&f));
-    let f = second.after(&first.after(&singular.transpose()).transpose());
-    Ok(Fundamental::of_singular(&f))
+    Ok(Fundamental::of_rows(both.in_pixels(nearest_singular(&f, &cofactors))))
 }
 
 /// The sum of `w r r^T` over the rows r of all correspondences. r is p times p', so that of its 81 elements only six of
 /// p p^T times six of p' p'^T differ.
 #[allow(clippy::needless_range_loop, reason = "an element is named by its row and column")]
-fn normal_matrix<T: Real>(seen: impl Iterator<Item = (nalgebra::Point2<T>, nalgebra::Point2<T>, T)>) -> [[T; 9]; 9] {
+fn normal_matrix<T: Real>(seen: Weighted<'_, T>, both: &Both<T>) -> [[T; 9]; 9] {
     let mut sums = [[T::ZERO; 6]; 6];
-    for (p, q, w) in seen {
+    for (seen, w) in seen.iter() {
+        let (p, q) = both.apply(seen);
         let (a, b) = (p.x * w, p.y * w);
         let p = [a * p.x, a * p.y, b * p.y, a, b, w];
         let q = [q.x * q.x, q.x * q.y, q.y * q.y, q.x, q.y, T::ONE];
@@ -161,10 +160,44 @@ fn normal_matrix<T: Real>(seen: impl Iterator<Item = (nalgebra::Point2<T>, nalge
 }
 
 /// `F - (F v) v^T` with v the singular vector of the smallest singular value: the nearest singular matrix.
-fn nearest_singular<T: Real>(f: &Matrix3<T>) -> Matrix3<T> {
-    let squared: [[T; 3]; 3] = f.tr_mul(f).into();
-    let v = Vector3::from(Ldl::<T, 3>::new(squared).null_vector());
-    f - f * v * v.transpose()
+///
+/// v is the eigenvector of the largest eigenvalue of `C^T C`, where C is F's matrix of cofactors: its singular values are
+/// the products of two of F's. The matrix is squared until nothing else is left in it.
+fn nearest_singular<T: Real>(f: &[[T; 3]; 3], cofactors: &[[T; 3]; 3]) -> [[T; 3]; 3] {
+    let columns = transposed3(*cofactors);
+    let mut power = times_transposed3(&columns, &columns);
+    for _ in 0..MOST_SQUARINGS {
+        let by = T::ONE / trace(&power);
+        power.as_flattened_mut().iter_mut().for_each(|x| *x *= by);
+        // It is symmetric.
+        power = times_transposed3(&power, &power);
+        // One less the sum of the squared eigenvalues, whose sum is one: about two of the second, which was squared now.
+        if T::ONE - trace(&power) <= T::EPSILON.sqrt() {
+            break;
+        }
+    }
+    let by = T::ONE / trace(&power);
+    let off = times_transposed3(f, &power);
+    let mut nearest = *f;
+    for (x, &off) in nearest.as_flattened_mut().iter_mut().zip(off.as_flattened()) {
+        *x -= off * by;
+    }
+    nearest
+}
+
+fn trace<T: Real>(m: &[[T; 3]; 3]) -> T {
+    m[0][0] + m[1][1] + m[2][2]
+}
+
+/// The derivatives of the determinant by the elements: the cross products of the rows.
+fn cofactors<T: Real>([a, b, c]: &[[T; 3]; 3]) -> [[T; 3]; 3] {
+    [cross(b, c), cross(c, a), cross(a, b)]
+}
+
+/// `a x b`.
+#[inline(never)]
+fn cross<T: Real>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 #[cfg(test)]
@@ -173,15 +206,24 @@ mod tests {
 
     #[test]
     fn the_nearest_singular_matrix_drops_the_smallest_value() {
-        let f = Matrix3::from_diagonal(&Vector3::new(3.0, 0.5, 2.0_f64));
-        assert_eq!(nearest_singular(&f), Matrix3::from_diagonal(&Vector3::new(3.0, 0.0, 2.0)));
+        let f = [[3.0, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 2.0_f64]];
+        let found = nearest_singular(&f, &cofactors(&f));
+        let expected = [[3.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 2.0]];
+        let off = found.as_flattened().iter().zip(expected.as_flattened()).map(|(a, b)| (a - b).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-15, "{found:?}");
     }
 
     #[test]
     fn the_normal_matrix_is_the_rows_squared() {
-        let (p, q) = (nalgebra::Point2::new(2.0, 3.0), nalgebra::Point2::new(5.0, 7.0_f64));
-        let row = [10.0, 14.0, 2.0, 15.0, 21.0, 3.0, 5.0, 7.0, 1.0];
-        let normal = normal_matrix([(p, q, 0.5)].into_iter());
-        assert_eq!(normal, row.map(|a| row.map(|b| 0.5 * a * b)));
+        // Normalised, the points are (-1, 0) and (1, 0) times the root of two, in both images.
+        let seen = [(10.0, 14.0), (12.0, 14.0_f64)].map(|(u, v)| Correspondence::new(u, v, u + 3.0, v - 5.0));
+        let (seen, r) = (Weighted::new(&seen, &[0.5, 0.5]), 2.0_f64.sqrt());
+        let both = Both::of(seen).expect("two points");
+        let normal = normal_matrix(seen, &both);
+        let rows = [-r, r].map(|x| [x * x, 0.0, x, 0.0, 0.0, 0.0, x, 0.0, 1.0]);
+        for (i, j) in (0..9).flat_map(|i| (0..9).map(move |j| (i, j))) {
+            let expected: f64 = rows.iter().map(|row| 0.5 * row[i] * row[j]).sum();
+            assert!((normal[i][j] - expected).abs() < 1e-14, "{i} {j}");
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! The essential matrix: two views in the cameras' own frames.
 
-use super::linear::Svd3;
+use super::linear::{Svd3, columns3, product};
 use super::{Camera, Fundamental, Pose, Real, skew};
 use nalgebra::{Matrix3, Vector3};
 
@@ -50,7 +50,7 @@ impl<T: Real> Essential<T> {
             return Err(EssentialError::NoBaseline);
         }
         let scaled = t / size;
-        Ok(Self { matrix: skew(&(scaled / scaled.norm())) * pose.rotation() })
+        Ok(Self { matrix: product(&skew(&(scaled / scaled.norm())), pose.rotation()) })
     }
 
     /// The essential matrix that is nearest to a matrix: its first two singular values by their mean, its third by
@@ -67,7 +67,8 @@ impl<T: Real> Essential<T> {
         if !(s1 > s0 * T::EPSILON * T::of(16.0)) {
             return Err(EssentialError::Rank);
         }
-        Ok(Self { matrix: u * Matrix3::from_diagonal(&Vector3::new(T::ONE, T::ONE, T::ZERO)) * v.transpose() })
+        let [u0, u1, _] = columns3(&u);
+        Ok(Self { matrix: product(&Matrix3::from_columns(&[u0, u1, Vector3::zeros()]), &v.transpose()) })
     }
 
     /// `E = K^T F K'`, and the nearest essential matrix of that.
@@ -78,7 +79,7 @@ impl<T: Real> Essential<T> {
         first: &Camera<T>,
         second: &Camera<T>,
     ) -> Result<Self, EssentialError> {
-        Self::nearest(&(first.matrix().transpose() * fundamental.matrix() * second.matrix()))
+        Self::nearest(&product(&product(&first.matrix().transpose(), fundamental.matrix()), &second.matrix()))
     }
 
     /// What OpenCV writes as E, with `x2^T E x1 = 0`: the transpose.

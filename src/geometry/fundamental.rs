@@ -49,7 +49,7 @@ impl<T: Real> Fundamental<T> {
         if !(svd.values[1] > svd.values[0] * T::EPSILON * T::of(16.0)) {
             return Err(FundamentalError::Rank);
         }
-        let v: Vector3<T> = svd.v.column(2).into();
+        let [_, _, v] = linear::columns3(&svd.v);
         let singular = balanced.matrix - balanced.matrix * v * v.transpose();
         Ok(Self::of_singular(&balanced.restored(&singular)))
     }
@@ -60,11 +60,18 @@ impl<T: Real> Fundamental<T> {
         Self { matrix: scaled / scaled.norm() }
     }
 
+    /// The same, of its rows.
+    pub(super) fn of_rows(mut rows: [[T; 3]; 3]) -> Self {
+        linear::unit(rows.as_flattened_mut());
+        Self { matrix: linear::matrix3(&rows) }
+    }
+
     /// `F = K^-T E K'^-1`.
     ///
     /// Lenses are not in it: it holds for undistorted pixels ([`Camera::undistort`]).
     pub fn from_essential(essential: &Essential<T>, first: &Camera<T>, second: &Camera<T>) -> Self {
-        Self::of_singular(&(first.inverse_matrix().transpose() * essential.matrix() * second.inverse_matrix()))
+        let left = linear::product(&first.inverse_matrix().transpose(), essential.matrix());
+        Self::of_singular(&linear::product(&left, &second.inverse_matrix()))
     }
 
     /// `F = K^-T [t]x R K'^-1`, of two cameras and the pose of the second beside the first.
@@ -109,8 +116,7 @@ impl<T: Real> Fundamental<T> {
 
     /// e, the second camera's centre in the first image: `F^T e = 0`.
     pub fn epipole_in_first(&self) -> Epipole<T> {
-        let m = &self.matrix;
-        orthogonal([m.column(0).into(), m.column(1).into(), m.column(2).into()])
+        orthogonal(linear::columns3(&self.matrix))
     }
 
     /// e', the first camera's centre in the second image: `F e' = 0`.

@@ -1,7 +1,8 @@
 //! The homography: two views of a plane, or of anything from one place.
 
-use super::linear::{Ldl, Projective, matrix3, null_of_rows};
-use super::normalise::Normalisation;
+use super::linear::{Ldl, Projective, columns3, matrix3, null_of_rows, rank, rows3};
+use super::normalise::Both;
+use super::weighted::Weighted;
 use super::{Camera, Correspondence, Pose, Real};
 use nalgebra::{Matrix3, Point2, Vector3};
 
@@ -60,8 +61,7 @@ impl<T: Real> Homography<T> {
         let scaled = matrix / size;
         let matrix = scaled / scaled.norm();
         // The inverse but for its scale: the columns' cross products are its rows.
-        let column = |j: usize| -> Vector3<T> { matrix.column(j).into() };
-        let (a, b, c) = (column(0), column(1), column(2));
+        let [a, b, c] = columns3(&matrix);
         let rows = [b.cross(&c), c.cross(&a), a.cross(&b)];
         let (determinant, size) = (rows[2].dot(&c), rows[2].norm() * c.norm());
         if !(determinant.abs() > size * T::EPSILON * T::of(16.0)) || size == T::ZERO {
@@ -95,18 +95,17 @@ impl<T: Real> Homography<T> {
         if !seen.iter().all(Correspondence::is_finite) {
             return Err(HomographyError::NotFinite);
         }
-        let first = Normalisation::of(seen.iter().map(|s| s.first), seen.len());
-        let second = Normalisation::of(seen.iter().map(|s| s.second), seen.len());
-        let (Some(first), Some(second)) = (first, second) else { return Err(HomographyError::Repeated) };
-        let normalised = seen.iter().map(|s| (first.apply(s.first), second.apply(s.second)));
-        let (matrix, pivot) = solve(normalised, seen.len());
-        // Elimination works on the rows, the factor on their squares.
-        let least = if seen.len() == 4 { T::of(1e-6).max(T::EPSILON * T::of(32.0)) } else { T::EPSILON * T::of(32.0) };
-        if !(pivot > least) {
-            let fourth = super::degenerate::distinct::<T, 4>(seen.iter().copied()) >= 4;
+        let alike = Weighted::alike(seen);
+        let Some(both) = Both::of(alike) else { return Err(HomographyError::Repeated) };
+        let (matrix, is_one) = match <&[Correspondence<T>; 4]>::try_from(seen) {
+            Ok(four) => of_four(four.map(|s| both.apply(&s))),
+            Err(_) => least_squares(seen.iter().map(|s| both.apply(s))),
+        };
+        if !is_one {
+            let fourth = super::degenerate::distinct::<T, 4>(alike) >= 4;
             return Err(if fourth { HomographyError::Line } else { HomographyError::Repeated });
         }
-        let matrix = first.before(&second.after(&matrix));
+        let matrix = both.first.before(&both.second.after(&matrix));
         Self::from_matrix(&matrix).map_err(|error| match error {
             HomographyError::Singular => HomographyError::Line,
             other => other,
@@ -155,27 +154,30 @@ impl<T: Real> Homography<T> {
     }
 }
 
-/// H of normalised correspondences, |H| = 1, and the smallest pivot over the largest.
-pub(super) fn solve<T: Real>(seen: impl Iterator<Item = (Point2<T>, Point2<T>)>, count: usize) -> (Matrix3<T>, T) {
+/// The two equations of a pair for the elements of H, row by row.
+fn equations<T: Real>((p, q): (Point2<T>, Point2<T>)) -> [[T; 9]; 2] {
     let (o, l) = (T::ZERO, T::ONE);
-    let (h, pivot) = if count == 4 {
-        let mut rows = [[o; 9]; 8];
-        for (pair, (p, q)) in rows.chunks_exact_mut(2).zip(seen) {
-            if let [a, b] = pair {
-                *a = [q.x, q.y, l, o, o, o, -p.x * q.x, -p.x * q.y, -p.x];
-                *b = [o, o, o, q.x, q.y, l, -p.y * q.x, -p.y * q.y, -p.y];
-            }
-        }
-        null_of_rows(rows)
-    } else {
-        let mut equations = Projective::<T, 3>::new();
-        for (p, q) in seen {
-            equations.add(p.x, p.y, &[q.x, q.y, l]);
-        }
-        let ldl = Ldl::<T, 9>::new(equations.normal_matrix());
-        (ldl.null_vector(), ldl.relative_pivot(7))
-    };
-    (matrix3(&h), pivot)
+    [
+        [q.x, q.y, l, o, o, o, -p.x * q.x, -p.x * q.y, -p.x], //
+        [o, o, o, q.x, q.y, l, -p.y * q.x, -p.y * q.y, -p.y],
+    ]
+}
+
+/// H of four normalised correspondences, |H| = 1, and whether it is the only one.
+fn of_four<T: Real>([a, b, c, d]: [(Point2<T>, Point2<T>); 4]) -> (Matrix3<T>, bool) {
+    let ([a0, a1], [b0, b1], [c0, c1], [d0, d1]) = (equations(a), equations(b), equations(c), equations(d));
+    let (h, pivots) = null_of_rows(&mut [a0, a1, b0, b1, c0, c1, d0, d1]);
+    (matrix3(&rows3(h)), rank(&pivots, T::of(1e-6).max(T::EPSILON * T::of(32.0))) == 8)
+}
+
+/// H of more normalised correspondences than four, |H| = 1, and whether it is the only one.
+pub(super) fn least_squares<T: Real>(seen: impl Iterator<Item = (Point2<T>, Point2<T>)>) -> (Matrix3<T>, bool) {
+    let mut sums = Projective::<T, 3>::new();
+    for (p, q) in seen {
+        sums.add(p.x, p.y, &[q.x, q.y, T::ONE]);
+    }
+    let ldl = Ldl::<T, 9>::new(&mut sums.normal_matrix());
+    (matrix3(&rows3(ldl.null_vector())), rank(ldl.pivots(), T::EPSILON * T::of(32.0)) >= 8)
 }
 
 #[cfg(test)]

@@ -73,6 +73,7 @@ mod robust;
 mod seven_point;
 mod skew;
 mod triangulate;
+mod weighted;
 
 pub use camera::{Camera, CameraError, ProjectionError};
 pub use correspondence::Correspondence;

@@ -1,6 +1,8 @@
 //! Hartley's normalisation: what makes an estimate from pixels well conditioned.
 
-use super::Real;
+use super::linear::transposed3;
+use super::weighted::{Image, Weighted};
+use super::{Correspondence, Real};
 use nalgebra::{Matrix3, Point2, RowVector3};
 
 /// `x = s (u - cx)`, `y = s (v - cy)`: the points' centroid goes to the origin and their root mean square distance from
@@ -13,11 +15,12 @@ pub(crate) struct Normalisation<T: Real> {
 }
 
 impl<T: Real> Normalisation<T> {
-    /// Of `count` points; `None` when all are one point, to the rounding of their mean.
-    #[inline(always)]
-    pub(crate) fn of(points: impl Iterator<Item = Point2<T>> + Clone, count: usize) -> Option<Self> {
+    /// Of one image's points, whatever they weigh; `None` when all are one point, to the rounding of their mean.
+    #[inline(never)]
+    pub(crate) fn of(seen: Weighted<'_, T>, image: Image) -> Option<Self> {
+        let points = seen.iter().map(|(s, _)| image.point(s));
+        let (x, y, count) = points.clone().fold((T::ZERO, T::ZERO, 0), |(x, y, n), p| (x + p.x, y + p.y, n + 1));
         let per_point = T::ONE / T::count(count);
-        let (x, y) = points.clone().fold((T::ZERO, T::ZERO), |(x, y), p| (x + p.x, y + p.y));
         let (cx, cy) = (x * per_point, y * per_point);
         let spread = points.fold(T::ZERO, |sum, p| {
             let (x, y) = (p.x - cx, p.y - cy);
@@ -37,12 +40,17 @@ impl<T: Real> Normalisation<T> {
         Point2::new((pixel.x - self.cx) * self.scale, (pixel.y - self.cy) * self.scale)
     }
 
-    /// `M N`, where N is this normalisation as a matrix: from something that takes normalised points to the same for px.
+    /// The line `l N` of pixels, of a line l of normalised points.
     #[inline(always)]
+    fn of_line(&self, [a, b, c]: [T; 3]) -> [T; 3] {
+        let (a, b) = (a * self.scale, b * self.scale);
+        [a, b, c - a * self.cx - b * self.cy]
+    }
+
+    /// `M N`, where N is this normalisation as a matrix: from something that takes normalised points to the same for px.
     pub(crate) fn after(&self, m: &Matrix3<T>) -> Matrix3<T> {
-        let (a, b) = (m.column(0) * self.scale, m.column(1) * self.scale);
-        let c = m.column(2) - a * self.cx - b * self.cy;
-        Matrix3::from_columns(&[a, b, c])
+        let row = |i: usize| RowVector3::from(self.of_line([m[(i, 0)], m[(i, 1)], m[(i, 2)]]));
+        Matrix3::from_rows(&[row(0), row(1), row(2)])
     }
 
     /// `N^-1 M`: from something that gives normalised points to the same that gives px.
@@ -53,6 +61,38 @@ impl<T: Real> Normalisation<T> {
     }
 }
 
+/// Those of both images.
+pub(super) struct Both<T: Real> {
+    pub(super) first: Normalisation<T>,
+    pub(super) second: Normalisation<T>,
+}
+
+impl<T: Real> Both<T> {
+    /// `None` when all points of an image are one.
+    pub(super) fn of(seen: Weighted<'_, T>) -> Option<Self> {
+        let [first, second] = [Image::First, Image::Second].map(|image| Normalisation::of(seen, image));
+        Some(Self { first: first?, second: second? })
+    }
+
+    /// A correspondence, normalised.
+    #[inline(always)]
+    pub(super) fn apply(&self, seen: &Correspondence<T>) -> (Point2<T>, Point2<T>) {
+        (self.first.apply(seen.first), self.second.apply(seen.second))
+    }
+
+    /// F of pixels, of that of normalised points: `N^T F N'`.
+    pub(super) fn in_pixels(&self, mut f: [[T; 3]; 3]) -> [[T; 3]; 3] {
+        // Of every row, and then of every column, which are the rows of the transpose.
+        for side in [&self.second, &self.first] {
+            for row in &mut f {
+                *row = side.of_line(*row);
+            }
+            f = transposed3(f);
+        }
+        f
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -60,16 +100,18 @@ mod tests {
 
     #[test]
     fn a_square_of_side_two() {
-        let square = [(9.0, 4.0), (11.0, 4.0), (11.0, 6.0), (9.0, 6.0_f64)].map(|(u, v)| Point2::new(u, v));
-        let n = Normalisation::of(square.into_iter(), 4).expect("four points");
+        let square =
+            [(9.0, 4.0), (11.0, 4.0), (11.0, 6.0), (9.0, 6.0_f64)].map(|(u, v)| Correspondence::new(u, v, 0.0, 0.0));
+        let n = Normalisation::of(Weighted::alike(&square), Image::First).expect("four points");
         assert_eq!(
-            square.map(|p| n.apply(p)),
+            square.map(|s| n.apply(s.first)),
             [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Point2::new(x, y))
         );
         // As a matrix N, and N^-1 N = 1.
         let matrix = n.after(&Matrix3::identity());
         assert_eq!(matrix * Vector3::new(11.0, 6.0, 1.0), Vector3::new(1.0, 1.0, 1.0));
         assert_eq!(n.before(&matrix), Matrix3::identity());
-        assert!(Normalisation::of([square[0]; 5].into_iter(), 5).is_none());
+        assert!(Normalisation::of(Weighted::alike(&square), Image::Second).is_none());
+        assert!(Both::of(Weighted::alike(&square)).is_none());
     }
 }

@@ -1,6 +1,6 @@
 //! The pose in a homography.
 
-use super::linear::Svd3;
+use super::linear::{Svd3, columns3};
 use super::{Camera, Correspondence, Homography, Pose, Real, RelativePose};
 use nalgebra::{Matrix3, Vector3};
 
@@ -102,8 +102,7 @@ impl<T: Real> Homography<T> {
             return Err(PlaneMotionError::NoBaseline);
         }
         let (along, across) = ((down / spread).sqrt(), (up / spread).sqrt());
-        let column = |j: usize| -> Vector3<T> { v.column(j).into() };
-        let (v0, v1, v2) = (column(0), column(1), column(2));
+        let [v0, v1, v2] = columns3(&v);
         // Vectors of the plane at right angles to v1 whose length H keeps.
         let motion = |u: Vector3<T>| {
             let n = v1.cross(&u);

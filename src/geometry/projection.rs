@@ -1,6 +1,6 @@
 //! Projection matrices: a camera at a place in the world, as one matrix.
 
-use super::linear::{Ldl, Projective};
+use super::linear::{Ldl, Projective, rank};
 use super::{Camera, CameraError, Pose, Real};
 use nalgebra::{Matrix3, Matrix3x4, Point2, Point3, Vector3};
 
@@ -120,8 +120,8 @@ impl<T: Real> Projection<T> {
             let seen = pixel.apply(&Vector3::new(landmark.pixel.x, landmark.pixel.y, o));
             equations.add(seen.x, seen.y, &[point.x, point.y, point.z, l]);
         }
-        let ldl = Ldl::<T, 12>::new(equations.normal_matrix());
-        if !(ldl.relative_pivot(10) > T::EPSILON * T::of(4.0)) {
+        let ldl = Ldl::<T, 12>::new(&mut equations.normal_matrix());
+        if rank(ldl.pivots(), T::EPSILON * T::of(4.0)) < 11 {
             return Err(ResectionError::Undetermined);
         }
         let [a, b, c, d, e, f, g, h, i, j, k, m] = ldl.null_vector();
@@ -222,7 +222,7 @@ impl<T: Real> Centred<T> {
             let p = self.apply(&p);
             sum + p * p.transpose()
         });
-        let normal = Vector3::from(Ldl::<T, 3>::new(scatter.into()).null_vector());
+        let normal = Vector3::from(Ldl::<T, 3>::new(&mut scatter.into()).null_vector());
         let most = T::of(1e-6).max(T::EPSILON * T::of(32.0));
         let (off, count) = points.fold((T::ZERO, T::ZERO), |(off, count), p| {
             let distance = self.apply(&p).dot(&normal);

@@ -1,6 +1,6 @@
 //! The pose in an essential matrix.
 
-use super::linear::Svd3;
+use super::linear::{Svd3, columns3, product};
 use super::{Camera, Correspondence, Essential, Real, RelativePose};
 use nalgebra::{Matrix3, Unit, Vector3};
 
@@ -45,11 +45,10 @@ impl<T: Real> Essential<T> {
     /// quarter turn about Z, `t = u3` or `-u3` (Hartley & Zisserman 2004, 9.6.2). Two and two have one rotation.
     pub fn poses(&self) -> [RelativePose<T>; 4] {
         let svd = Svd3::new(self.matrix());
-        let (o, l) = (T::ZERO, T::ONE);
-        let quarter = Matrix3::new(o, -l, o, l, o, o, o, o, l);
-        let direction: Vector3<T> = svd.u.column(2).into();
-        let one = svd.u * quarter * svd.v.transpose();
-        let other = svd.u * quarter.transpose() * svd.v.transpose();
+        let ([u0, u1, direction], back) = (columns3(&svd.u), svd.v.transpose());
+        // U W and U W^T.
+        let one = product(&Matrix3::from_columns(&[u1, -u0, direction]), &back);
+        let other = product(&Matrix3::from_columns(&[-u1, u0, direction]), &back);
         let t = Unit::new_unchecked(direction);
         [
             RelativePose::new(one, t),

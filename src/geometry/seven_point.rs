@@ -1,9 +1,7 @@
 //! F from seven correspondences, as few as determine it.
 
-#![allow(clippy::needless_range_loop, reason = "an element is named by its row and column, as in the equations")]
-
 use super::Real;
-use super::linear::{cubic_roots, matrix3};
+use super::linear::{columns3, cubic_roots, matrix3, pencil_of_rows, rank, rows3};
 use nalgebra::{Matrix3, Point2};
 
 /// Up to three fundamental matrices.
@@ -16,12 +14,19 @@ pub(crate) type Candidates<T> = heapless::Vec<Matrix3<T>, 3>;
 /// seven points on a plane do; `1e-7` of the largest pivot (in `f32` 32 roundings) count as nothing.
 #[inline]
 pub(crate) fn seven_point<T: Real>(seen: &[(Point2<T>, Point2<T>); 7]) -> Candidates<T> {
-    let rows = seen.map(|(p, q)| [p.x * q.x, p.x * q.y, p.x, p.y * q.x, p.y * q.y, p.y, q.x, q.y, T::ONE]);
     let mut candidates = Candidates::new();
-    let Some([g, h]) = pencil(rows) else { return candidates };
-    let (g, h) = (matrix3(&g), matrix3(&h));
+    let mut rows = [[T::ONE; 9]; 7];
+    for (row, (p, q)) in rows.iter_mut().zip(seen) {
+        *row = [p.x * q.x, p.x * q.y, p.x, p.y * q.x, p.y * q.y, p.y, q.x, q.y, T::ONE];
+    }
+    let ([g, h], pivots) = pencil_of_rows(&mut rows);
+    if rank(&pivots, T::of(1e-7).max(T::EPSILON * T::of(32.0))) < 7 {
+        return candidates;
+    }
+    let (g, h) = (matrix3(&rows3(g)), matrix3(&rows3(h)));
     let (of_g, of_h) = (cofactors(&g), cofactors(&h));
-    let (c0, c3) = (of_g.column(0).dot(&g.column(0)), of_h.column(0).dot(&h.column(0)));
+    let determinant = |m: &Matrix3<T>, of: &Matrix3<T>| m.m11 * of.m11 + m.m21 * of.m21 + m.m31 * of.m31;
+    let (c0, c3) = (determinant(&g, &of_g), determinant(&h, &of_h));
     let (c1, c2) = (of_g.dot(&h), of_h.dot(&g));
     // The leading coefficient is the larger one, so that no root is at infinity.
     let turned = c3.abs() < c0.abs();
@@ -36,64 +41,8 @@ pub(crate) fn seven_point<T: Real>(seen: &[(Point2<T>, Point2<T>); 7]) -> Candid
 
 /// The derivative of the determinant by each element.
 fn cofactors<T: Real>(m: &Matrix3<T>) -> Matrix3<T> {
-    let (a, b, c) = (m.column(0), m.column(1), m.column(2));
+    let [a, b, c] = columns3(m);
     Matrix3::from_columns(&[b.cross(&c), c.cross(&a), a.cross(&b)])
-}
-
-/// Two vectors, each of length one, that span what seven rows leave free, by elimination with the largest element of
-/// each row as its pivot; `None` when a row depends on those before it.
-#[inline(always)]
-fn pencil<T: Real>(mut rows: [[T; 9]; 7]) -> Option<[[T; 9]; 2]> {
-    let mut order: [usize; 9] = core::array::from_fn(|i| i);
-    let mut inverse_pivots = [T::ZERO; 7];
-    let mut most = T::ZERO;
-    let least = T::of(1e-7).max(T::EPSILON * T::of(32.0));
-    for k in 0..7 {
-        let mut best = k;
-        for j in k + 1..9 {
-            if rows[k][j].abs() > rows[k][best.min(8)].abs() {
-                best = j;
-            }
-        }
-        let best = best.min(8);
-        if best != k {
-            order.swap(k, best);
-            for row in &mut rows {
-                row.swap(k, best);
-            }
-        }
-        let pivot = rows[k][k];
-        most = most.max(pivot.abs());
-        if !(pivot.abs() > least * most) {
-            return None;
-        }
-        inverse_pivots[k] = T::ONE / pivot;
-        for i in k + 1..7 {
-            let factor = rows[i][k] * inverse_pivots[k];
-            for j in k + 1..9 {
-                rows[i][j] -= factor * rows[k][j];
-            }
-        }
-    }
-    Some([7, 8].map(|free| {
-        let mut x = [T::ZERO; 9];
-        x[free] = T::ONE;
-        for i in (0..7).rev() {
-            let mut sum = rows[i][free];
-            for j in i + 1..7 {
-                sum += rows[i][j] * x[j];
-            }
-            x[i] = -sum * inverse_pivots[i];
-        }
-        let by = T::ONE / x.iter().fold(T::ZERO, |sum, &v| sum + v * v).sqrt();
-        let mut restored = [T::ZERO; 9];
-        for (&value, &place) in x.iter().zip(&order) {
-            if let Some(slot) = restored.get_mut(place) {
-                *slot = value * by;
-            }
-        }
-        restored
-    }))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The cross product as a matrix.
 
 use super::Real;
+use super::linear::product;
 use nalgebra::{Matrix3, Vector3};
 
 /// `[a]x`, with `[a]x b = a x b`: skew-symmetric and, but for a = 0, of rank 2 (Hartley & Zisserman 2004, A4.3).
@@ -21,5 +22,5 @@ pub(crate) fn turn<T: Real>(w: &Vector3<T>) -> Matrix3<T> {
     let half = w * T::of(0.5);
     let by = T::of(2.0) / (T::ONE + half.norm_squared());
     let cross = skew(&half);
-    Matrix3::identity() + (cross + cross * cross) * by
+    Matrix3::identity() + (cross + product(&cross, &cross)) * by
 }

@@ -124,7 +124,7 @@ impl<T: Real> TwoViews<T> {
                 }
             }
         }
-        let [x, y, z, w] = Ldl::<T, 4>::new(squared).null_vector();
+        let [x, y, z, w] = Ldl::<T, 4>::new(&mut squared).null_vector();
         if w == T::ZERO {
             return Err(TriangulationError::SmallAngle);
         }
@@ -158,7 +158,7 @@ impl<T: Real> TwoViews<T> {
         let information = first.tr_mul(&first) + second.tr_mul(&second);
         // At size one: squares of px per unit are large.
         let size = information.amax();
-        let ldl = Ldl::<T, 3>::new((information / size).into());
+        let ldl = Ldl::<T, 3>::new(&mut (information / size).into());
         let (o, l) = (T::ZERO, T::ONE);
         let inverse = Matrix3::from([ldl.solve(&[l, o, o]), ldl.solve(&[o, l, o]), ldl.solve(&[o, o, l])]);
         // The two triangles differ by rounding.

@@ -1,10 +1,12 @@
-//! What the programs of this firmware share. A program stands in `src/bin`; `depth` is the first.
+//! What the programs of this firmware share. A program stands in `src/bin`: `depth` is the pipeline, `pose`
+//! two views.
 //!
 //! * [`choice`]: the method, the sizes and the board, chosen when it is built; [`board`] is the list of boards.
 //! * [`camera`]: where lines come from: the built-in scene, or two files on the host.
 //! * [`rows`]: rows of disparity to a file on the host, with their checksum. [`console`]: figures as text.
 //! * [`host`]: files on the host.
 //! * [`clock`]: instructions counted; [`stack`]: the stack measured.
+//! * [`two_views`]: matches of a known world, and the pose and points that they give.
 //! * [`log`]: defmt through semihosting. [`runtime`]: start and end of a program, and no panic.
 //!
 //! Files, text and log go to the host by semihosting, which works under QEMU and with a debugger. In a product these
@@ -20,6 +22,7 @@ pub mod log;
 pub mod rows;
 pub mod runtime;
 pub mod stack;
+pub mod two_views;
 
 /// The method, the sizes and the board: `build.rs` writes this from the environment.
 pub mod choice {

@@ -87,8 +87,9 @@ pub(super) fn vanishing_point<T: Real>(
                 }
             }
         }
-        let ldl = Ldl::new(matrix);
-        if !(ldl.relative_pivot(1) > T::EPSILON * T::of(64.0)) {
+        let ldl = Ldl::new(&mut matrix);
+        let [largest, second, _] = *ldl.pivots();
+        if !(second > largest * T::EPSILON * T::of(64.0)) {
             return Err(PencilError::Line);
         }
         point = Some(Vector3::from(ldl.null_vector()));

@@ -146,7 +146,7 @@ impl<T: Real> SquareMark<T> {
                     *diagonal *= T::ONE + damping;
                 }
             }
-            let [a, b, c, x, y, z] = Ldl::new(matrix).solve(&equations.right);
+            let [a, b, c, x, y, z] = Ldl::new(&mut matrix).solve(&equations.right);
             let there = Pose::of_parts(
                 turn(&Vector3::new(a, b, c)) * pose.rotation(),
                 pose.translation() + Vector3::new(x, y, z) * self.side_m,

@@ -255,7 +255,7 @@ fn refined<T: Real>(
                 *diagonal *= T::ONE + damping;
             }
         }
-        let [x, y, z, along] = Ldl::new(matrix).solve(&equations.right);
+        let [x, y, z, along] = Ldl::new(&mut matrix).solve(&equations.right);
         let there = turn(&Vector3::new(x, y, z)) * rotation;
         let farther = focal * (T::ONE + along.max(-T::of(0.5)).min(T::ONE));
         let better = Equations::of(bundles, plane, &there, farther, free);
@@ -272,7 +272,7 @@ fn refined<T: Real>(
     }
     // The steps' products are a rotation but for rounding.
     let svd = Svd3::new(&rotation);
-    let ldl = Ldl::new(equations.normal);
+    let ldl = Ldl::new(&mut equations.normal);
     let deviation = |k: usize| {
         let mut unit = [T::ZERO; 4];
         if let Some(one) = unit.get_mut(k) {

@@ -1,85 +1,116 @@
 //! The vector that N - 1 equations leave free.
 
+use super::{combine, dot, unit};
 use crate::geometry::Real;
 
 /// x with `A x = 0` for M = N - 1 rows of N numbers, of length one, by elimination: the largest element of each row in
-/// turn is its pivot. The second number is the smallest pivot over the largest: next to nothing where a row depends on
-/// those before it.
+/// turn is its pivot. The second result are the pivots: next to nothing where a row depends on those before it
+/// ([`rank`]).
 ///
-/// A is not squared on the way, as it is in normal equations: half as many digits are lost.
-pub(crate) fn null_of_rows<T: Real, const M: usize, const N: usize>(mut rows: [[T; N]; M]) -> ([T; N], T) {
+/// `rows` is what the elimination makes of them. A is not squared on the way, as it is in normal equations: half as many
+/// digits are lost.
+pub(crate) fn null_of_rows<T: Real, const M: usize, const N: usize>(rows: &mut [[T; N]; M]) -> ([T; N], [T; M]) {
     const { assert!(M + 1 == N, "one row less than unknowns") };
-    let mut order = [0; N];
-    for (place, slot) in order.iter_mut().enumerate() {
-        *slot = place;
+    let (mut pivots, mut places) = ([T::ZERO; M], [0; M]);
+    eliminate(rows, &mut pivots, &mut places);
+    // One in the column that no row has its pivot in.
+    let mut x = [T::ONE; N];
+    solve(rows, &pivots, &places, &mut x);
+    (x, pivots)
+}
+
+/// Two vectors of length one that span what M = N - 2 rows leave free, and the pivots.
+pub(crate) fn pencil_of_rows<T: Real, const M: usize, const N: usize>(rows: &mut [[T; N]; M]) -> ([[T; N]; 2], [T; M]) {
+    const { assert!(M + 2 == N, "two rows less than unknowns") };
+    let (mut pivots, mut places) = ([T::ZERO; M], [0; M]);
+    eliminate(rows, &mut pivots, &mut places);
+    let mut both = [[T::ZERO; N]; 2];
+    let mut free = (0..N).filter(|place| !places.contains(place));
+    for x in &mut both {
+        if let Some(slot) = free.next().and_then(|place| x.get_mut(place)) {
+            *slot = T::ONE;
+        }
+        solve(rows, &pivots, &places, x);
     }
-    let mut inverse_pivots = [T::ZERO; M];
-    let (mut least, mut most) = (T::ZERO, T::ZERO);
-    for k in 0..M {
-        let mut best = k;
-        let mut size = rows[k][k].abs();
-        for j in k + 1..N {
-            let here = rows[k][j].abs();
-            if here > size {
-                (best, size) = (j, here);
+    (both, pivots)
+}
+
+/// Makes every row's largest element its pivot and zero in all rows below. Nothing is swapped: whole rows are worked on.
+#[inline(never)]
+fn eliminate<T: Real, const N: usize>(rows: &mut [[T; N]], pivots: &mut [T], places: &mut [usize]) {
+    let mut rest = rows;
+    for (pivot, place) in pivots.iter_mut().zip(places) {
+        let Some((row, below)) = rest.split_first_mut() else { break };
+        for (j, &element) in row.iter().enumerate() {
+            if element.abs() > pivot.abs() {
+                (*place, *pivot) = (j, element);
             }
         }
-        let best = best.min(N - 1);
-        if best != k {
-            order.swap(k, best);
-            for row in &mut rows {
-                row.swap(k, best);
-            }
+        let (place, inverse) = ((*place).min(N - 1), inverse_of(*pivot));
+        for other in below.iter_mut() {
+            let by = other[place] * inverse;
+            combine(other, T::ONE, row, -by);
+            other[place] = T::ZERO;
         }
-        (least, most) = if k == 0 { (size, size) } else { (least.min(size), most.max(size)) };
-        let pivot = rows[k][k];
-        // A row that depends on the others: any number will do, the caller is told by the smallest pivot.
-        inverse_pivots[k] = if size > T::ZERO { T::ONE / pivot } else { T::ZERO };
-        for i in k + 1..M {
-            let factor = rows[i][k] * inverse_pivots[k];
-            for j in k + 1..N {
-                rows[i][j] -= factor * rows[k][j];
-            }
-        }
+        rest = below;
     }
-    let mut x = [T::ZERO; N];
-    x[N - 1] = T::ONE;
-    for i in (0..M).rev() {
-        let mut sum = T::ZERO;
-        for j in i + 1..N {
-            sum += rows[i][j] * x[j];
-        }
-        x[i] = -sum * inverse_pivots[i];
+}
+
+/// From x with the unknowns that are free, all of it, at length one.
+#[inline(never)]
+fn solve<T: Real, const N: usize>(rows: &[[T; N]], pivots: &[T], places: &[usize], x: &mut [T; N]) {
+    for &place in places {
+        x[place.min(N - 1)] = T::ZERO;
     }
-    let by = T::ONE / x.iter().fold(T::ZERO, |sum, &v| sum + v * v).sqrt();
-    let mut restored = [T::ZERO; N];
-    for (&value, &place) in x.iter().zip(&order) {
-        if let Some(slot) = restored.get_mut(place) {
-            *slot = value * by;
-        }
+    for ((row, &pivot), &place) in rows.iter().zip(pivots).zip(places).rev() {
+        // What stands in the columns of the pivots above is zero.
+        let value = -dot(row, x) * inverse_of(pivot);
+        x[place.min(N - 1)] = value;
     }
-    (restored, if most > T::ZERO { least / most } else { T::ZERO })
+    unit(x);
+}
+
+/// What a row is divided by. In one that depends on the others any number will do: the caller is told by the pivot.
+fn inverse_of<T: Real>(pivot: T) -> T {
+    if pivot == T::ZERO { T::ZERO } else { T::ONE / pivot }
+}
+
+/// How many pivots are more than a `share` of the largest.
+#[inline(never)]
+pub(crate) fn rank<T: Real>(pivots: &[T], share: T) -> usize {
+    let least = pivots.iter().fold(T::ZERO, |most, &pivot| most.max(pivot.abs())) * share;
+    pivots.iter().filter(|pivot| pivot.abs() > least).count()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::null_of_rows;
+    use super::{null_of_rows, pencil_of_rows, rank};
 
     #[test]
     fn two_rows_leave_their_cross_product() {
         // (1, 0, 2) x (0, 1, 2) = (-2, -2, 1).
-        let (x, pivot) = null_of_rows::<f64, 2, 3>([[1.0, 0.0, 2.0], [0.0, 1.0, 2.0]]);
+        let (x, pivots) = null_of_rows::<f64, 2, 3>(&mut [[1.0, 0.0, 2.0], [0.0, 1.0, 2.0]]);
         let sign = -x[0].signum();
         for (x, expected) in x.iter().zip([-2.0, -2.0, 1.0]) {
             assert!((sign * x - expected / 3.0).abs() < 1e-15, "{x}");
         }
-        // The pivots are 2 and, in the second row less the first, 1: (0 - 1, 1, 0).
-        assert_eq!(pivot, 0.5);
+        // The second row less the first is (-1, 1, 0).
+        assert_eq!(pivots, [2.0, -1.0]);
     }
 
     #[test]
     fn a_row_that_depends_on_another_is_told() {
-        let (_, pivot) = null_of_rows::<f64, 2, 3>([[1.0, 3.0, 2.0], [-2.0, -6.0, -4.0]]);
-        assert_eq!(pivot, 0.0);
+        let (_, pivots) = null_of_rows::<f64, 2, 3>(&mut [[1.0, 3.0, 2.0], [-2.0, -6.0, -4.0]]);
+        assert_eq!((pivots, rank(&pivots, 0.1)), ([3.0, 0.0], 1));
+        assert_eq!([rank(&[4.0, 1.0], 0.2), rank(&[4.0, 1.0], 0.3), rank(&[0.0, 0.0], 0.1)], [2, 1, 0]);
+    }
+    #[test]
+    fn one_row_leaves_a_plane() {
+        let ([a, b], pivots) = pencil_of_rows::<f64, 1, 3>(&mut [[1.0, 2.0, -2.0]]);
+        assert_eq!(pivots, [2.0]);
+        for x in [a, b] {
+            assert!((x[0] + 2.0 * x[1] - 2.0 * x[2]).abs() < 1e-15 && x.iter().map(|x| x * x).sum::<f64>() > 0.999);
+        }
+        assert!(a[0] != 0.0 && b[0] == 0.0);
     }
 }

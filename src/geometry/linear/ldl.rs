@@ -1,16 +1,18 @@
 //! `L D L^T` with the largest pivot first, and the null vector.
 
+use super::{combine, dot, unit};
 use crate::geometry::Real;
 
-/// A symmetric, positive semi-definite N x N matrix M, factored as `P M P^T = L D L^T`: the largest remaining diagonal
-/// element is the next pivot, so that the pivots fall and their number over a threshold is the rank (Golub & Van Loan
-/// 2013, 4.2.8).
+/// A symmetric, positive semi-definite N x N matrix M as a sum `r r^T / d` of one term for each unknown: `L D L^T` with the
+/// largest remaining diagonal element d as the next pivot, so that the pivots fall and their number over a threshold is the
+/// rank (Golub & Van Loan 2013, 4.2.8).
+///
+/// Nothing is swapped: r is zero where the pivots before it are, so that whole rows can be worked on.
 pub(crate) struct Ldl<T, const N: usize> {
-    /// L below the diagonal, `D L^T` on it and above.
     rows: [[T; N]; N],
-    /// Which row of M stands where.
-    order: [usize; N],
-    inverse_pivots: [T; N],
+    pivots: [T; N],
+    /// Which unknown's each pivot is.
+    places: [usize; N],
 }
 
 /// Steps to the null vector at most, of two solutions each. One is enough where M is singular, three to six where the
@@ -18,97 +20,69 @@ pub(crate) struct Ldl<T, const N: usize> {
 const MOST_STEPS: usize = 16;
 
 impl<T: Real, const N: usize> Ldl<T, N> {
-    /// Factors M, of which both triangles are filled.
-    pub(crate) fn new(mut rows: [[T; N]; N]) -> Self {
-        let mut order = [0; N];
-        for (place, slot) in order.iter_mut().enumerate() {
-            *slot = place;
-        }
-        let mut inverse_pivots = [T::ZERO; N];
-        let mut floor = T::ZERO;
-        for k in 0..N {
-            let (mut best, mut largest) = (k, rows[k][k]);
-            for i in k + 1..N {
-                if rows[i][i] > largest {
-                    (best, largest) = (i, rows[i][i]);
+    /// Factors M, of which both triangles are filled, and overwrites it.
+    pub(crate) fn new(m: &mut [[T; N]; N]) -> Self {
+        let mut factor = Self { rows: [[T::ZERO; N]; N], pivots: [T::ZERO; N], places: [0; N] };
+        // Below this a pivot is rounding, and may even be negative.
+        let mut floor = T::of(1e-30);
+        let slots = factor.rows.iter_mut().zip(&mut factor.pivots).zip(&mut factor.places);
+        for (k, ((row, pivot_slot), place_slot)) in slots.enumerate() {
+            // Those that were pivots are less than any number.
+            let (mut place, mut pivot) = (0, -T::ONE / T::ZERO);
+            for (i, row) in m.iter().enumerate() {
+                if row[i] > pivot {
+                    (place, pivot) = (i, row[i]);
                 }
             }
-            // Says to the compiler that it is within the array.
-            let best = best.min(N - 1);
-            if best != k {
-                rows.swap(k, best);
-                order.swap(k, best);
-                for row in &mut rows {
-                    row.swap(k, best);
-                }
-            }
+            let place = place.min(N - 1);
             if k == 0 {
-                // Below this a pivot is rounding, and may even be negative.
-                floor = (rows[k][k] * T::EPSILON).max(T::of(1e-30));
+                floor = floor.max(pivot * T::EPSILON);
             }
-            rows[k][k] = rows[k][k].max(floor);
-            inverse_pivots[k] = T::ONE / rows[k][k];
-            for i in k + 1..N {
-                let factor = rows[i][k] * inverse_pivots[k];
-                for j in k + 1..N {
-                    rows[i][j] -= factor * rows[k][j];
-                }
-                rows[i][k] = factor;
+            let pivot = pivot.max(floor);
+            let inverse = T::ONE / pivot;
+            *row = m[place];
+            row[place] = pivot;
+            for (other, &by) in m.iter_mut().zip(row.iter()) {
+                combine(other, T::ONE, row, -by * inverse);
+                other[place] = T::ZERO;
             }
+            m[place] = [T::ZERO; N];
+            m[place][place] = -T::ONE / T::ZERO;
+            (*pivot_slot, *place_slot) = (pivot, place);
         }
-        Self { rows, order, inverse_pivots }
+        factor
     }
 
-    /// The pivot `k` over the largest, 1 to epsilon: what is left of the matrix after `k` directions.
-    pub(crate) fn relative_pivot(&self, k: usize) -> T {
-        match self.inverse_pivots.get(k) {
-            Some(&inverse) => T::ONE / (inverse * self.rows[0][0]),
-            None => T::ZERO,
-        }
-    }
-
-    /// x of `L D L^T x = b`, in the factor's order.
-    fn solve_ordered(&self, mut x: [T; N]) -> [T; N] {
-        for i in 0..N {
-            let mut sum = x[i];
-            for j in 0..i {
-                sum -= self.rows[i][j] * x[j];
-            }
-            x[i] = sum;
-        }
-        self.back(x)
-    }
-
-    /// x of `D L^T x = y`.
-    fn back(&self, mut x: [T; N]) -> [T; N] {
-        for i in (0..N).rev() {
-            let mut sum = x[i];
-            for j in i + 1..N {
-                sum -= self.rows[i][j] * x[j];
-            }
-            x[i] = sum * self.inverse_pivots[i];
-        }
-        x
-    }
-
-    /// From the factor's order to the matrix's.
-    fn restored(&self, ordered: [T; N]) -> [T; N] {
-        let mut x = [T::ZERO; N];
-        for (&value, &place) in ordered.iter().zip(&self.order) {
-            if let Some(slot) = x.get_mut(place) {
-                *slot = value;
-            }
-        }
-        x
+    /// The pivots, which fall, to epsilon of the first: what is left of the matrix after so many directions.
+    pub(crate) fn pivots(&self) -> &[T; N] {
+        &self.pivots
     }
 
     /// x of `M x = b`. Where M is singular, the pivots that are rounding count as [`Real::EPSILON`] of the largest.
     pub(crate) fn solve(&self, b: &[T; N]) -> [T; N] {
-        let mut ordered = [T::ZERO; N];
-        for (slot, &place) in ordered.iter_mut().zip(&self.order) {
-            *slot = b.get(place).copied().unwrap_or(T::ZERO);
+        let mut b = *b;
+        let mut y = [T::ZERO; N];
+        for (y, (row, &pivot, place)) in y.iter_mut().zip(self.terms()) {
+            *y = b[place];
+            combine(&mut b, T::ONE, row, -*y / pivot);
         }
-        self.restored(self.solve_ordered(ordered))
+        self.back(&y)
+    }
+
+    /// x with `r^T x = y` for all rows r.
+    fn back(&self, y: &[T; N]) -> [T; N] {
+        let mut x = [T::ZERO; N];
+        for ((row, &pivot, place), &y) in self.terms().zip(y).rev() {
+            x[place] = (y - dot(row, &x)) / pivot;
+        }
+        x
+    }
+
+    /// r, d and the place of d for each term.
+    fn terms(&self) -> impl DoubleEndedIterator<Item = (&[T; N], &T, usize)> + ExactSizeIterator {
+        // At most N - 1 anyway; the compiler cannot know.
+        let terms = self.rows.iter().zip(&self.pivots).zip(&self.places);
+        terms.map(|((row, pivot), &place)| (row, pivot, place.min(N - 1)))
     }
 
     /// The eigenvector of the smallest eigenvalue, of length one: what minimises `x^T M x` with `|x| = 1`.
@@ -118,55 +92,33 @@ impl<T: Real, const N: usize> Ldl<T, N> {
     /// takes 44 steps per digit where two eigenvalues are within 5 %, as they are with few noisy rows.
     pub(crate) fn null_vector(&self) -> [T; N] {
         // Backwards from the last pivot alone: the null vector itself when that pivot is zero.
-        let mut x = [T::ZERO; N];
-        x[N - 1] = T::ONE;
-        let mut x = unit(self.back(x));
+        let mut last = [T::ZERO; N];
+        last[N - 1] = T::ONE;
+        let mut x = self.back(&last);
+        unit(&mut x);
         let enough = (T::EPSILON * T::of(8.0)).max(T::of(1e-10));
         for _ in 0..MOST_STEPS {
-            let w = self.solve_ordered(x);
-            let xx = dot(&x, &w);
-            let across = combined(&w, T::ONE, &x, -xx);
-            let xy = dot(&across, &across).sqrt();
+            let mut y = self.solve(&x);
+            let xx = dot(&x, &y);
+            combine(&mut y, T::ONE, &x, -xx);
+            let xy = dot(&y, &y).sqrt();
             if !(xy > xx * T::EPSILON) {
                 break;
             }
-            let y = across.map(|v| v / xy);
-            let yy = dot(&y, &self.solve_ordered(y));
+            combine(&mut y, T::ONE / xy, &x, T::ZERO);
+            let yy = dot(&y, &self.solve(&y));
             // The larger eigenvalue's vector of [xx xy; xy yy] is (cosine, sine).
             let half = (xx - yy) * T::of(0.5);
             let root = (half * half + xy * xy).sqrt();
             let (cosine, sine) = if half > T::ZERO { (half + root, xy) } else { (xy, root - half) };
-            x = unit(combined(&x, cosine, &y, sine));
+            combine(&mut x, cosine, &y, sine);
+            unit(&mut x);
             if sine <= enough * cosine {
                 break;
             }
         }
-        self.restored(x)
+        x
     }
-}
-
-/// `a s + b t`.
-fn combined<T: Real, const N: usize>(a: &[T; N], s: T, b: &[T; N], t: T) -> [T; N] {
-    let mut sum = *a;
-    for (a, &b) in sum.iter_mut().zip(b) {
-        *a = *a * s + b * t;
-    }
-    sum
-}
-
-/// `a^T b`.
-fn dot<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
-    a.iter().zip(b).fold(T::ZERO, |sum, (&a, &b)| sum + a * b)
-}
-
-/// `x` at length one.
-fn unit<T: Real, const N: usize>(x: [T; N]) -> [T; N] {
-    // By the largest element first: its square may be more than a number holds.
-    let most = x.iter().fold(T::ZERO, |most, &v| most.max(v.abs()));
-    let by = T::ONE / most;
-    let x = x.map(|v| v * by);
-    let by = T::ONE / dot(&x, &x).sqrt();
-    x.map(|v| v * by)
 }
 
 #[cfg(test)]
@@ -176,18 +128,18 @@ mod tests {
     #[test]
     fn solves_a_small_system() {
         // [4 2; 2 3] (1, 2) = (8, 8).
-        let ldl = Ldl::new([[4.0, 2.0], [2.0, 3.0_f64]]);
+        let ldl = Ldl::new(&mut [[4.0, 2.0], [2.0, 3.0_f64]]);
         assert_eq!(ldl.solve(&[8.0, 8.0]), [1.0, 2.0]);
         // The pivots are 4 and 3 - 2 * 2 / 4 = 2.
-        assert_eq!(ldl.relative_pivot(1), 0.5);
+        assert_eq!(ldl.pivots(), &[4.0, 2.0]);
         // The larger one goes first.
-        assert_eq!(Ldl::new([[3.0, 2.0], [2.0, 4.0_f64]]).solve(&[8.0, 8.0]), [2.0, 1.0]);
+        assert_eq!(Ldl::new(&mut [[3.0, 2.0], [2.0, 4.0_f64]]).solve(&[8.0, 8.0]), [2.0, 1.0]);
     }
 
     #[test]
     fn finds_the_null_vector() {
         // a a^T + b b^T with a = (1, 0, 2), b = (0, 1, 2): both are orthogonal to (2, 2, -1) / 3.
-        let x = Ldl::new([[1.0, 0.0, 2.0], [0.0, 1.0, 2.0], [2.0, 2.0, 8.0_f64]]).null_vector();
+        let x = Ldl::new(&mut [[1.0, 0.0, 2.0], [0.0, 1.0, 2.0], [2.0, 2.0, 8.0_f64]]).null_vector();
         let sign = x[0].signum();
         for (x, expected) in x.iter().zip([2.0, 2.0, -1.0]) {
             assert!((sign * x - expected / 3.0).abs() < 1e-15, "{x}");
@@ -197,7 +149,7 @@ mod tests {
     #[test]
     fn finds_the_smallest_eigenvector() {
         // Eigenvalues 1 and 3, with (1, -1) and (1, 1).
-        let x = Ldl::new([[2.0, 1.0], [1.0, 2.0_f64]]).null_vector();
+        let x = Ldl::new(&mut [[2.0, 1.0], [1.0, 2.0_f64]]).null_vector();
         assert!((x[0] + x[1]).abs() < 1e-9 && (x[0] * x[0] - 0.5).abs() < 1e-9, "{x:?}");
     }
 }

@@ -1,5 +1,6 @@
 //! Singular values of a 3x3 matrix.
 
+use super::columns3;
 use crate::geometry::Real;
 use nalgebra::{Matrix3, Vector3};
 
@@ -18,7 +19,7 @@ const MOST_SWEEPS: usize = 12;
 
 impl<T: Real> Svd3<T> {
     pub(crate) fn new(matrix: &Matrix3<T>) -> Self {
-        let mut a: [Vector3<T>; 3] = [matrix.column(0).into(), matrix.column(1).into(), matrix.column(2).into()];
+        let mut a = columns3(matrix);
         let mut v = [Vector3::x(), Vector3::y(), Vector3::z()];
         for _ in 0..MOST_SWEEPS {
             let [a0, a1, a2] = &mut a;

@@ -27,7 +27,7 @@ impl<T: Real> Essential<T> {
         let start = Factored::new(self.matrix()).ok_or(EssentialError::Rank)?.essential();
         let loss = Loss::new(threshold_px);
         // From far to near: the start may come from a matrix that knew nothing of the cameras.
-        let (wide, _) = refine(start, Matrix::Essential, seen, &frames, loss.widened(2.5), (1, STEPS / 2));
+        let (wide, _) = refine(start, Matrix::Essential, seen, &frames, loss.widened(T::of(2.5)), (1, STEPS / 2));
         let (near, _) = refine(wide, Matrix::Essential, seen, &frames, loss, (1, STEPS / 2));
         Self::nearest(&near.matrix())
     }

@@ -1,7 +1,7 @@
 //! F by the seven numbers that it has, and E by its five.
 
 use crate::geometry::Real;
-use crate::geometry::linear::Svd3;
+use crate::geometry::linear::{Svd3, columns3, product};
 use crate::geometry::skew::turn;
 use nalgebra::{Matrix3, Vector3};
 
@@ -38,9 +38,8 @@ impl<T: Real> Factored<T> {
     }
 
     pub(super) fn matrix(&self) -> Matrix3<T> {
-        let column = |m: &Matrix3<T>, j: usize| -> Vector3<T> { m.column(j).into() };
-        let first = column(&self.u, 0) * column(&self.v, 0).transpose() * self.c;
-        first + column(&self.u, 1) * column(&self.v, 1).transpose() * self.s
+        let ([u0, u1, _], [v0, v1, _]) = (columns3(&self.u), columns3(&self.v));
+        u0 * v0.transpose() * self.c + u1 * v1.transpose() * self.s
     }
 
     /// The derivatives of `a^T diag(c, s, 0) b` with `a = U^T p`, `b = V^T q` by the seven numbers.
@@ -61,10 +60,13 @@ impl<T: Real> Factored<T> {
     /// The matrix after a step of the seven numbers.
     pub(super) fn moved(&self, step: &[T; FREE]) -> Self {
         let [u0, u1, u2, v0, v1, v2, along] = *step;
-        let (sine, cosine) = along.sin_cos();
+        // An angle that is `along` to first order, by the tangent of its half.
+        let half = along * T::of(0.5);
+        let by = T::ONE / (T::ONE + half * half);
+        let (sine, cosine) = (along * by, (T::ONE - half * half) * by);
         Self {
-            u: self.u * turn(&Vector3::new(u0, u1, u2)),
-            v: self.v * turn(&Vector3::new(v0, v1, v2)),
+            u: product(&self.u, &turn(&Vector3::new(u0, u1, u2))),
+            v: product(&self.v, &turn(&Vector3::new(v0, v1, v2))),
             c: self.c * cosine - self.s * sine,
             s: self.s * cosine + self.c * sine,
         }

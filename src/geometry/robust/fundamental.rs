@@ -124,8 +124,7 @@ pub fn robust_fundamental<T: Real>(
     let best = search.best.ok_or(RobustError::NoAgreement)?;
     let loss = Loss::new(config.threshold_px);
     let (best, _) = refine(best, Matrix::Fundamental, seen, &frames, loss, (1, 20));
-    let f = frames[0].matrix().tr_mul(&best.matrix()) * frames[1].matrix();
-    let fundamental = Fundamental::of_singular(&f);
+    let fundamental = Fundamental::of_singular(&search.in_pixels(&best.matrix()));
     let most = config.threshold_px * config.threshold_px;
     let (mut count, mut sum) = (0, T::ZERO);
     for (inlier, s) in inliers.iter_mut().zip(seen) {

@@ -26,7 +26,7 @@ impl<T: Real> Loss<T> {
     }
 
     /// The same `factor` times as wide.
-    pub(super) fn widened(self, factor: f64) -> Self {
-        Self { width_squared: self.width_squared * T::of(factor * factor) }
+    pub(super) fn widened(self, factor: T) -> Self {
+        Self { width_squared: self.width_squared * factor * factor }
     }
 }

@@ -35,7 +35,7 @@ impl<T: Real> Search<'_, T> {
             let f = plane.with_parallax(&one, &two);
             let order = self.order();
             // The plane is in all of them: what tells them apart is off it, which a wide loss sees better.
-            let loss = self.loss.widened(ON_PLANE);
+            let loss = self.loss.widened(T::of(ON_PLANE));
             if let Some(worth) = Test::new().judge(&f, self.seen, loss, gain, order) {
                 (best, gain) = (Some(f), worth.gain);
             }

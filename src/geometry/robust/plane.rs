@@ -6,6 +6,7 @@
 
 use super::MINIMUM;
 use super::frame::Frame;
+use crate::geometry::linear::{columns3, product};
 use crate::geometry::{Correspondence, Real, homography, skew};
 use nalgebra::{Matrix3, Vector3};
 
@@ -21,8 +22,7 @@ pub(super) struct Plane<T: Real> {
 
 impl<T: Real> Plane<T> {
     fn new(matrix: Matrix3<T>) -> Self {
-        let column = |j: usize| -> Vector3<T> { matrix.column(j).into() };
-        let (a, b, c) = (column(0), column(1), column(2));
+        let [a, b, c] = columns3(&matrix);
         let rows = [b.cross(&c), c.cross(&a), a.cross(&b)].map(|row| row.transpose());
         Self { matrix, adjugate: Matrix3::from_rows(&rows) }
     }
@@ -40,7 +40,7 @@ impl<T: Real> Plane<T> {
     /// maps the three (Hartley & Zisserman 2004, 13.6). `None` when F has no epipole.
     pub(super) fn through(f: &Matrix3<T>, three: [Correspondence<T>; 3]) -> Option<Self> {
         let epipole = left_null(f)?;
-        let base = skew(&epipole) * f;
+        let base = product(&skew(&epipole), f);
         let row = |s: &Correspondence<T>| s.second.to_homogeneous();
         let offset = |s: &Correspondence<T>| {
             let p = s.first.to_homogeneous();
@@ -63,8 +63,8 @@ impl<T: Real> Plane<T> {
         }
         let on = seen.iter().filter(|s| self.distance_squared_px2(s) < px2);
         let [first, second] = frames;
-        let (h, _) = homography::solve(on.map(|s| (first.apply(s.first), second.apply(s.second))), count);
-        let fitted = Self::new(first.inverse() * h * second.matrix());
+        let (h, _) = homography::least_squares(on.map(|s| (first.apply(s.first), second.apply(s.second))));
+        let fitted = Self::new(product(&product(&first.inverse(), &h), &second.matrix()));
         let again = fitted.count(seen, 1, px2);
         if again >= count { (fitted, again) } else { (*self, count) }
     }
@@ -89,14 +89,14 @@ impl<T: Real> Plane<T> {
             s.first.to_homogeneous().cross(&(self.matrix * s.second.to_homogeneous())).normalize()
         };
         let epipole = line(one).cross(&line(two));
-        let f = skew(&epipole) * self.matrix;
+        let f = product(&skew(&epipole), &self.matrix);
         f / f.norm()
     }
 }
 
 /// e with `F^T e = 0`, at length one: the largest of the cross products of F's columns.
 pub(super) fn left_null<T: Real>(f: &Matrix3<T>) -> Option<Vector3<T>> {
-    let (a, b, c) = (f.column(0), f.column(1), f.column(2));
+    let [a, b, c] = columns3(f);
     let mut best = a.cross(&b);
     for other in [a.cross(&c), b.cross(&c)] {
         if other.norm_squared() > best.norm_squared() {

@@ -73,7 +73,7 @@ pub(super) fn refine<T: Real>(
 }
 
 impl<T: Real> Equations<T> {
-    #[inline(always)]
+    #[inline(never)]
     fn about<'a>(
         f: &Factored<T>,
         kind: Matrix,
@@ -120,19 +120,19 @@ impl<T: Real> Equations<T> {
                 }
             }
         }
-        for i in 0..FREE {
-            for j in 0..i {
-                matrix[i][j] = matrix[j][i];
+        let upper = matrix;
+        for (i, row) in matrix.iter_mut().enumerate() {
+            for (element, other) in row.iter_mut().zip(&upper).take(i) {
+                *element = other.get(i).copied().unwrap_or(T::ZERO);
             }
         }
         if kind == Matrix::Essential {
-            for k in [5, 6] {
-                slope[k] = T::ZERO;
-                for j in 0..FREE {
-                    matrix[k][j] = T::ZERO;
-                    matrix[j][k] = T::ZERO;
+            let [.., fifth, sixth] = &mut slope;
+            (*fifth, *sixth) = (T::ZERO, T::ZERO);
+            for (k, row) in matrix.iter_mut().enumerate() {
+                for (j, element) in row.iter_mut().enumerate().filter(|(j, _)| k.max(*j) >= 5) {
+                    *element = if j == k { T::ONE } else { T::ZERO };
                 }
-                matrix[k][k] = T::ONE;
             }
         }
         Self { gain, matrix, slope }
@@ -146,6 +146,6 @@ impl<T: Real> Equations<T> {
                 *diagonal += *diagonal * damping;
             }
         }
-        Ldl::new(damped).solve(&self.slope).map(|x| -x)
+        Ldl::new(&mut damped).solve(&self.slope).map(|x| -x)
     }
 }

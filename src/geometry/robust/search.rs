@@ -9,6 +9,7 @@ use super::pool::Pool;
 use super::refine::{Matrix, refine};
 use super::verdict::{Test, Worth};
 use super::{MINIMUM, Sample};
+use crate::geometry::linear::product;
 use crate::geometry::seven_point::seven_point;
 use crate::geometry::{Correspondence, Real};
 use nalgebra::{Matrix3, Point2};
@@ -70,12 +71,21 @@ impl<'a, T: Real> Search<'a, T> {
     /// `(1 - w^7)^k`: the probability that none of k samples held correspondences of the best estimate alone, w being
     /// their share.
     fn miss(&self) -> T {
-        let n = self.seen.len();
-        let all_good = (0..MINIMUM)
-            .fold(T::ONE, |product, i| product * T::count(self.worth.kept.saturating_sub(i)) / T::count(n - i));
-        let Ok(drawn) = i32::try_from(self.drawn) else { return T::ZERO };
+        let (mut kept, mut all, mut all_good) = (T::count(self.worth.kept), T::count(self.seen.len()), T::ONE);
+        for _ in 0..MINIMUM {
+            all_good *= kept.max(T::ZERO) / all;
+            (kept, all) = (kept - T::ONE, all - T::ONE);
+        }
         // A good estimate is dropped unseen once in a hundred times.
-        (T::ONE - all_good * T::of(0.99)).powi(drawn)
+        let (mut base, mut missed, mut left) = (T::ONE - all_good * T::of(0.99), T::ONE, self.drawn);
+        while left > 0 {
+            if left & 1 == 1 {
+                missed *= base;
+            }
+            base *= base;
+            left >>= 1;
+        }
+        missed
     }
 
     fn try_sample(&mut self, places: &Sample) {
@@ -105,7 +115,7 @@ impl<'a, T: Real> Search<'a, T> {
 
     /// From the frames to px.
     pub(super) fn in_pixels(&self, f: &Matrix3<T>) -> Matrix3<T> {
-        let f = self.frames[0].matrix().tr_mul(f) * self.frames[1].matrix();
+        let f = product(&product(&self.frames[0].matrix().transpose(), f), &self.frames[1].matrix());
         f / f.norm()
     }
 
@@ -127,12 +137,12 @@ impl<'a, T: Real> Search<'a, T> {
 
     /// Refines an estimate (px) and makes it the best one if it is then; whether it is.
     pub(super) fn improve(&mut self, f: &Matrix3<T>) -> bool {
-        let in_frames = self.frames[0].inverse().tr_mul(f) * self.frames[1].inverse();
+        let in_frames = product(&product(&self.frames[0].inverse().transpose(), f), &self.frames[1].inverse());
         let Some(mut refined) = Factored::new(&in_frames) else { return false };
         // From far to near: what a sample of seven makes of its noise is a few thresholds off elsewhere. Some of the
         // correspondences are enough for that: the last estimate is refined by all.
         let every = self.seen.len() / ENOUGH;
-        for (wider, steps) in [(2.5, 3), (1.0, 3)] {
+        for (wider, steps) in [(T::of(2.5), 3), (T::ONE, 3)] {
             let loss = self.loss.widened(wider);
             (refined, _) = refine(refined, Matrix::Fundamental, self.seen, &self.frames, loss, (every, steps));
         }

@@ -70,8 +70,8 @@ fn noise_costs_both_precisions_the_same() {
     }
 }
 
-/// What OpenCV 5.0.0 reaches on the same correspondences, `findFundamentalMat(second, first, FM_8POINT)` in `f64` but for its
-/// order of the images: how many correspondences, and the mean over sixty scenes of the root mean square Sampson distance,
+/// What OpenCV 5.0.0 reaches on the same correspondences, `findFundamentalMat(first, second, FM_8POINT)` in `f64`: how
+/// many correspondences, and the mean over sixty scenes of the root mean square Sampson distance,
 /// px, of the exact points.
 const OPENCV: [(usize, f64); 4] = [(8, 1.947494), (20, 0.329060), (50, 0.200196), (200, 0.098837)];
 

@@ -28,6 +28,16 @@ pub struct Sizes {
 impl Sizes {
     /// Reads a linked file; fails when it holds nothing of the library, or does not say so.
     pub fn of(path: &Path) -> Outcome<Self> {
+        let sizes = Self::of_any(path)?;
+        // A program without symbols would pass for one without panics.
+        if sizes.dense_flash == 0 {
+            return Err(Failure::new(format!("{}: it has no symbols of the library", path.display())));
+        }
+        Ok(sizes)
+    }
+
+    /// Reads a linked file that may hold nothing of the library.
+    pub fn of_any(path: &Path) -> Outcome<Self> {
         let failed = |what: String| Failure::new(format!("{}: {what}", path.display()));
         let bytes = fs::read(path).map_err(|e| failed(e.to_string()))?;
         let file = object::File::parse(bytes.as_slice()).map_err(|e| failed(e.to_string()))?;
@@ -66,10 +76,6 @@ impl Sizes {
             }
         }
         let dense_flash = pieces.values().filter(|(_, dense)| *dense).map(|(size, _)| size).sum();
-        // A program without symbols would pass for one without panics.
-        if dense_flash == 0 {
-            return Err(failed("it has no symbols of the library".into()));
-        }
         Ok(Self { static_ram, flash_sections, dense_flash, panics, allocations })
     }
 

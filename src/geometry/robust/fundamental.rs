@@ -73,8 +73,14 @@ pub struct RobustFundamental<T: Real> {
 /// sharp limit has to be known (Barath et al. 2020 arrive at nearly the same weights). Where most of what agrees is on
 /// one plane, F is looked for by what is off it.
 ///
-/// Bounded by [`RobustConfig::most_samples`], and stopped before that by [`RobustConfig::miss_probability`]. The same
-/// input and seed give the same bits. Stack only, besides the slices. `f32` errs as `f64` does from 0.1 px of noise on.
+/// Bounded by [`RobustConfig::most_samples`], and stopped before that by [`RobustConfig::miss_probability`]. A sample has
+/// three candidates at most. Each costs n distances at most, of which a bad one needs a few; one that is nearly as good as
+/// the best is refined, by eight passes over 300 correspondences at most and n distances; one that is on a plane too tries
+/// a hundred others, of n + 200 distances each. So a sample costs no more than 330 n + 80 000 distances, usually some
+/// dozens, and the end of the search once more as much; the number of samples is what counts. With the share w of right
+/// matches it is about `7 / w^7` for a miss of 0.1 %: 85 for w = 0.7, 4 300 for 0.4, where 10 000 are drawn below 0.35.
+///
+/// The same input and seed give the same bits. Stack only, besides the slices. `f32` errs as `f64` does from 0.1 px of noise on.
 ///
 /// ```
 /// use stereopsis::geometry::{Correspondence, RobustConfig, robust_fundamental};

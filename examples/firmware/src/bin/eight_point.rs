@@ -50,7 +50,7 @@ fn main() -> ! {
 
 /// F of the correspondences: whether there is one.
 #[inline(never)]
-fn solve(seen: &[Correspondence<f32>]) -> bool {
+fn solve(seen: &[Correspondence<f32>; 8]) -> bool {
     #[cfg(not(feature = "bare"))]
     return stereopsis::geometry::eight_point(seen).map(black_box).is_ok();
     // The smallest use of them.

@@ -1,6 +1,7 @@
 //! What `cargo xtask firmware` is asked for.
 
 use super::board::{self, Board};
+use super::program::Optimised;
 use super::scene::Scene;
 use crate::steps::{Failure, Outcome};
 use clap::Args;
@@ -11,6 +12,12 @@ use stereopsis_host::run::{Method, NoiseChoice, UnknownNoise};
 /// The options of `firmware`.
 #[derive(Args)]
 pub struct Arguments {
+    /// The program: depth, rows of disparity; or pose, two views
+    #[arg(long, default_value = "depth", value_parser = ["depth", "pose"])]
+    program: String,
+    /// With --program pose: made for size, not for speed
+    #[arg(long)]
+    small: bool,
     /// The core: m0, m3, m4, m7, m33, m55 or rv32
     #[arg(long, value_parser = core, required_unless_present = "all")]
     core: Option<Board>,
@@ -21,8 +28,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", requires = "left")]
     right: Option<PathBuf>,
     /// How many whole disparities are searched: 16 to 256
-    #[arg(long, value_name = "N", value_parser = disparities, required_unless_present = "all")]
-    #[arg(allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = disparities, allow_negative_numbers = true)]
     disparities: Option<u16>,
     /// The matching method
     #[arg(long, default_value = "block", value_parser = method)]
@@ -34,7 +40,7 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR", required_unless_present = "all")]
     out: Option<PathBuf>,
     /// Every core, method and size on the built-in scene: writes the table of README.md
-    #[arg(long, conflicts_with_all = ["core", "left", "right", "disparities", "method", "noise", "out"])]
+    #[arg(long, conflicts_with_all = ["program", "small", "core", "left", "right", "disparities", "method", "noise", "out"])]
     all: bool,
     /// With --all: writes nothing, fails when README.md's table is another
     #[arg(long, requires = "all")]
@@ -57,17 +63,45 @@ pub struct One {
     pub out: PathBuf,
 }
 
+/// What is asked for.
+pub enum Asked {
+    /// One frame on one core.
+    Depth(One),
+    /// Two views on one core.
+    Pose { board: Board, optimised: Optimised, out: PathBuf },
+    /// All cores.
+    All,
+}
+
 impl Arguments {
-    /// The one frame that is asked for; `None` for all cores.
-    pub fn one(&self) -> Outcome<Option<One>> {
+    /// The one program that is asked for, or all.
+    pub fn asked(&self) -> Outcome<Asked> {
         if self.all {
-            return Ok(None);
+            return Ok(Asked::All);
         }
-        let (Some(board), Some(disparities), Some(out)) = (self.core, self.disparities, self.out.clone()) else {
-            return Err(Failure::new("--core, --disparities and --out are needed, or --all"));
+        let (Some(board), Some(out)) = (self.core, self.out.clone()) else {
+            return Err(Failure::new("--core and --out are needed, or --all"));
         };
         let pair = self.left.clone().zip(self.right.clone());
-        Ok(Some(One { board, pair, disparities, method: self.method, noise: self.noise, out }))
+        if self.program == "pose" {
+            if board == board::M0 {
+                return Err(Failure::new("--core m0: two views need more RAM than QEMU's microbit has"));
+            }
+            if pair.is_some() || self.disparities.is_some() {
+                return Err(Failure::new(
+                    "--program pose sees no images: --left, --right and --disparities are for depth",
+                ));
+            }
+            let optimised = if self.small { Optimised::Size } else { Optimised::Speed };
+            return Ok(Asked::Pose { board, optimised, out });
+        }
+        if self.small {
+            return Err(Failure::new("--small is for --program pose: depth is made for speed"));
+        }
+        let disparities = self
+            .disparities
+            .ok_or_else(|| Failure::new("--disparities is needed: how many whole ones are searched"))?;
+        Ok(Asked::Depth(One { board, pair, disparities, method: self.method, noise: self.noise, out }))
     }
 }
 

@@ -29,12 +29,20 @@ fn qemu(board: Board) -> Command {
 pub fn run(built: &Built, folder: &Path) -> Outcome<String> {
     let program = &built.program;
     let limit = LIMIT + Duration::from_secs(program.evaluations() / SLOWEST);
-    let mut qemu = qemu(program.board);
-    let Ended { status, printed, told } = ended_within(qemu.arg(&built.elf).current_dir(folder), limit)?;
+    run_within(program.board, &built.elf, &program.to_string(), folder, limit)
+}
+
+/// [`run`] for any linked file, by its name in an error.
+pub fn run_elf(board: Board, elf: &Path, name: &str, folder: &Path) -> Outcome<String> {
+    run_within(board, elf, name, folder, LIMIT)
+}
+
+fn run_within(board: Board, elf: &Path, name: &str, folder: &Path, limit: Duration) -> Outcome<String> {
+    let Ended { status, printed, told } = ended_within(qemu(board).arg(elf).current_dir(folder), limit)?;
     if status.success() {
         return Ok(printed);
     }
-    let lines = super::log::read(built, folder).unwrap_or_default();
+    let lines = super::log::read(elf, name, folder).unwrap_or_default();
     let last = lines.last().map_or(told.trim(), String::as_str);
-    Err(Failure::new(format!("{program} in QEMU: {status}: {last}")))
+    Err(Failure::new(format!("{name} in QEMU: {status}: {last}")))
 }

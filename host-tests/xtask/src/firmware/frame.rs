@@ -1,5 +1,6 @@
 //! One frame on one core, measured, and held to the host's own run.
 
+use super::board::Board;
 use super::program::{Built, Program};
 use super::{emulate, log};
 use crate::elf::Sizes;
@@ -61,7 +62,7 @@ pub fn with_any_stack(built: &Built, pictures: &Pictures, is_scene: bool) -> Out
     let printed = emulate::run(built, folder.path())?;
     let figures = figures(&printed);
     let figure = |name: &str| figures.get(name).copied().ok_or_else(|| failed(format!("it prints no {name}")));
-    let log = log::read(built, folder.path())?;
+    let log = log::read(&built.elf, &program.to_string(), folder.path())?;
     let rows = fs::read(folder.path().join("rows.bin")).map_err(|e| failed(format!("rows.bin: {e}")))?;
 
     let map = pictures.matched(program.method, program.disparities, program.noise)?;
@@ -72,15 +73,11 @@ pub fn with_any_stack(built: &Built, pictures: &Pictures, is_scene: bool) -> Out
     if u64::from(crc32) != figure("crc32")? {
         return Err(failed(format!("its checksum is {:08x}, that of its rows {crc32:08x}", figure("crc32")?)));
     }
-    let instructions = |ticks: u64| ticks as f64 * 1e9 / f64::from(program.board.ticks_per_second);
-    let known = instructions(figure("calibration_ticks")?);
-    if (known - KNOWN).abs() > KNOWN * KNOWN_WITHIN {
-        return Err(failed(format!("{KNOWN} instructions are counted as {known}: the board's clock is another")));
-    }
+    calibrated(program.board, figure("calibration_ticks")?).map_err(failed)?;
     let stack = figure("stack_bytes")?;
     let sizes = Sizes::of(&built.elf)?;
     sizes.without_panics()?;
-    let (instructions, pipeline) = (instructions(figure("ticks")?).round() as u64, figure("pipeline_bytes")?);
+    let (instructions, pipeline) = (instructions(program.board, figure("ticks")?), figure("pipeline_bytes")?);
     Ok(Frame { program, map, instructions, stack, pipeline, sizes, crc32, log })
 }
 
@@ -106,8 +103,22 @@ impl Frame {
     }
 }
 
+/// The instructions of so many ticks.
+pub fn instructions(board: Board, ticks: u64) -> u64 {
+    (ticks as f64 * 1e9 / f64::from(board.ticks_per_second)).round() as u64
+}
+
+/// Whether a board counts known work right; else what is wrong.
+pub fn calibrated(board: Board, ticks: u64) -> Result<(), String> {
+    let known = instructions(board, ticks) as f64;
+    if (known - KNOWN).abs() > KNOWN * KNOWN_WITHIN {
+        return Err(format!("{KNOWN} instructions are counted as {known}: the board's clock is another"));
+    }
+    Ok(())
+}
+
 /// The firmware's lines of a name and a number.
-fn figures(printed: &str) -> HashMap<&str, u64> {
+pub fn figures(printed: &str) -> HashMap<&str, u64> {
     let words = printed.lines().filter_map(|line| line.trim().split_once(' '));
     words.filter_map(|(name, number)| Some((name, number.parse().ok()?))).collect()
 }

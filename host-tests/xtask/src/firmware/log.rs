@@ -1,6 +1,5 @@
 //! The firmware's log, decoded: what the encoded file means stands in the linked one.
 
-use super::program::Built;
 use crate::steps::{Failure, Outcome};
 use defmt_decoder::{DecodeError, Table};
 use std::fs;
@@ -9,10 +8,10 @@ use std::path::Path;
 /// The file that the firmware writes.
 const NAME: &str = "log.defmt";
 
-/// The log's lines, each with its level.
-pub fn read(built: &Built, folder: &Path) -> Outcome<Vec<String>> {
-    let failed = |what: String| Failure::new(format!("the log of {}: {what}", built.program));
-    let elf = fs::read(&built.elf).map_err(|e| failed(e.to_string()))?;
+/// The log's lines, each with its level, of a linked file that an error names so.
+pub fn read(elf: &Path, name: &str, folder: &Path) -> Outcome<Vec<String>> {
+    let failed = |what: String| Failure::new(format!("the log of {name}: {what}"));
+    let elf = fs::read(elf).map_err(|e| failed(e.to_string()))?;
     let table = Table::parse(&elf).map_err(|e| failed(format!("{e:#}")))?;
     let table = table.ok_or_else(|| failed("the program has no section .defmt".into()))?;
     let bytes = fs::read(folder.join(NAME)).map_err(|e| failed(format!("{NAME}: {e}")))?;

@@ -5,6 +5,7 @@
 //! * [`frame`]: one frame on one core, held to the host. [`summary`]: the files that are written of it.
 //! * [`all`]: every core, method and size; [`tables`] of it for README.md; [`checksums`] on real pictures.
 //! * [`awkward`]: sizes that fill no vector, where the rows are in assembly.
+//! * [`pose`]: two views on one core, held to the host; [`two_views_all`]: on every core.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
 
 mod all;
@@ -14,15 +15,19 @@ mod checksums;
 mod emulate;
 pub mod frame;
 mod log;
+mod pose;
 pub mod program;
 mod refusals;
 mod summary;
 pub mod tables;
+mod two_views_all;
 
 #[path = "../../../../examples/firmware/src/board.rs"]
 pub mod board;
 #[path = "../../../../examples/firmware/src/camera/scene.rs"]
 pub mod scene;
+#[path = "../../../../examples/firmware/src/two_views.rs"]
+pub mod two_views;
 
 pub use arguments::Arguments;
 pub use program::{VECTORS, cargo};
@@ -30,23 +35,43 @@ pub use program::{VECTORS, cargo};
 use crate::pictures::Pictures;
 use crate::setup;
 use crate::steps::{Failure, Outcome};
-use arguments::One;
-use program::Program;
+use arguments::{Asked, One};
+use board::Board;
+use program::{Optimised, Program};
+use std::path::Path;
 use stereopsis::imaging::Noise;
 use stereopsis_host::output::Staging;
 use stereopsis_host::run::NoiseChoice;
 
 /// Does what the command line asks for.
 pub fn run(arguments: &Arguments) -> Outcome {
-    match arguments.one()? {
-        Some(one) => run_one(&one),
-        None => all::run(arguments.check),
+    match arguments.asked()? {
+        Asked::Depth(one) => run_one(&one),
+        Asked::Pose { board, optimised, out } => run_pose(board, optimised, &out),
+        Asked::All => run_all(arguments.check),
     }
+}
+
+/// Every core and program; writes README.md's tables, or compares them.
+fn run_all(check: bool) -> Outcome {
+    all::run(check)?;
+    two_views_all::run(check)
 }
 
 /// Every core, method and size, compared with README.md.
 pub fn check_all() -> Outcome {
-    all::run(true)
+    run_all(true)
+}
+
+/// Two views on one core into a folder.
+fn run_pose(board: Board, optimised: Optimised, out: &Path) -> Outcome {
+    Staging::probe(out).map_err(|e| Failure::new(format!("--out: {e}")))?;
+    setup::firmware(&[board.target])?;
+    let pose = pose::run(board, optimised)?;
+    pose.write(out)?;
+    println!("{}", pose.told());
+    println!("results are in {}; what was found is what the host finds, to the bit", out.display());
+    Ok(())
 }
 
 /// One frame on one core into a folder.

@@ -69,6 +69,74 @@ fn folder(at: usize) -> PathBuf {
     target_dir().join(["firmware", "firmware-too"][at])
 }
 
+/// The folder of a board: all programs of a target in one, and about as many programs in each.
+fn folder_of(board: Board) -> usize {
+    usize::from(board.target.starts_with("thumbv8m") || board.target.starts_with("riscv"))
+}
+
+/// Cargo for a board, with its flags.
+fn cargo_for(board: Board, words: &str) -> Command {
+    let mut cargo = cargo(words);
+    cargo.args(["--target", board.target]).env("CARGO_TARGET_DIR", folder(folder_of(board)));
+    // Flags of the caller's would count in the figures.
+    cargo.env_remove("CARGO_ENCODED_RUSTFLAGS").env("RUSTFLAGS", flags(board));
+    cargo.env("STEREO_CORE", board.core);
+    cargo
+}
+
+/// Runs cargo, which builds what an error names so.
+fn build(mut cargo: Command, name: &str) -> Outcome {
+    let output = cargo.output().map_err(|e| Failure::new(format!("cargo: {e}")))?;
+    if output.status.success() {
+        return Ok(());
+    }
+    eprint!("{}", String::from_utf8_lossy(&output.stderr));
+    Err(Failure::new(format!("examples/firmware does not build for {name}")))
+}
+
+/// Copies what was built, a path below the target's folder, to where the next build leaves it alone.
+fn keep(board: Board, from: &str, name: &str) -> Outcome<PathBuf> {
+    let kept = folder(0).join("programs");
+    let (from, elf) = (folder(folder_of(board)).join(board.target).join(from), kept.join(name));
+    let keep = || fs::create_dir_all(&kept).and_then(|()| fs::copy(&from, &elf));
+    keep().map_err(|e| Failure::new(format!("{}: {e}", elf.display())))?;
+    Ok(elf)
+}
+
+/// What an optimiser is asked for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Optimised {
+    /// Opt-level 3.
+    Speed,
+    /// Opt-level s.
+    Size,
+}
+
+impl Optimised {
+    /// The name of the profile, and of its folder.
+    pub fn profile(self) -> &'static str {
+        match self {
+            Self::Speed => "release",
+            Self::Size => "small",
+        }
+    }
+}
+
+/// Builds a program that has no sizes to choose, with the features named; the linked file.
+pub fn build_plain(board: Board, bin: &str, optimised: Optimised, features: &str) -> Outcome<PathBuf> {
+    let _turn = FOLDERS[folder_of(board)].lock().unwrap_or_else(PoisonError::into_inner);
+    let (profile, core) = (optimised.profile(), board.core);
+    let name =
+        [core, bin, profile, features].iter().filter(|part| !part.is_empty()).copied().collect::<Vec<_>>().join("-");
+    let mut cargo = cargo_for(board, "build --locked --quiet");
+    for other in ["METHOD", "NOISE", "WIDTH", "HEIGHT", "DISPARITIES", "MEMORY"] {
+        cargo.env_remove(format!("STEREO_{other}"));
+    }
+    cargo.args(["--profile", profile, "--bin", bin, "--features", features]);
+    build(cargo, &name)?;
+    keep(board, &format!("{profile}/{bin}"), &name)
+}
+
 impl Program {
     /// A program for frames of that size from cameras with little noise; the failure names the option that asks for too much.
     pub fn new(board: Board, method: Method, width: u16, height: u16, disparities: u16) -> Outcome<Self> {
@@ -97,38 +165,25 @@ impl Program {
 
     /// The folder that it is built in: all programs of a target in one, and about as many programs in each.
     pub fn folder(&self) -> usize {
-        usize::from(self.board.target.starts_with("thumbv8m") || self.board.target.starts_with("riscv"))
+        folder_of(self.board)
     }
 
     /// Builds it. Several threads may: in a folder, one after another.
     pub fn build(&self) -> Outcome<Built> {
         let _turn = FOLDERS[self.folder()].lock().unwrap_or_else(PoisonError::into_inner);
-        let output = self.cargo("build --locked --release --quiet").output();
-        let output = output.map_err(|e| Failure::new(format!("cargo: {e}")))?;
-        if !output.status.success() {
-            eprint!("{}", String::from_utf8_lossy(&output.stderr));
-            return Err(Failure::new(format!("examples/firmware does not build for {self}")));
-        }
-        let kept = folder(0).join("programs");
-        let elf = kept.join(format!("{self}"));
-        let from = folder(self.folder()).join(self.board.target).join("release/depth");
-        let keep = || fs::create_dir_all(&kept).and_then(|()| fs::copy(&from, &elf));
-        keep().map_err(|e| Failure::new(format!("{}: {e}", elf.display())))?;
-        Ok(Built { program: *self, elf })
+        let name = self.to_string();
+        build(self.cargo("build --locked --release --quiet --bin depth"), &name)?;
+        Ok(Built { program: *self, elf: keep(self.board, "release/depth", &name)? })
     }
 
     /// Cargo with what is built in its environment.
     pub fn cargo(&self, words: &str) -> Command {
-        let mut cargo = cargo(words);
-        cargo.args(["--target", self.board.target]).env("CARGO_TARGET_DIR", folder(self.folder()));
-        cargo.env("STEREO_CORE", self.board.core).env("STEREO_METHOD", self.method.name());
-        cargo.env("STEREO_NOISE", self.noise.name());
+        let mut cargo = cargo_for(self.board, words);
+        cargo.env("STEREO_METHOD", self.method.name()).env("STEREO_NOISE", self.noise.name());
         for (name, value) in [("WIDTH", self.width), ("HEIGHT", self.height), ("DISPARITIES", self.disparities)] {
             cargo.env(format!("STEREO_{name}"), value.to_string());
         }
         cargo.env("STEREO_MEMORY", if self.all_memory { "board" } else { "budget" });
-        // Flags of the caller's would count in the figures.
-        cargo.env_remove("CARGO_ENCODED_RUSTFLAGS").env("RUSTFLAGS", flags(self.board));
         cargo
     }
 

@@ -1,6 +1,7 @@
 //! The eight-point algorithm alone: what it takes on eight correspondences, in instructions and in flash.
 //!
-//! Its flash is the difference to the same program without it, which the feature `bare` makes.
+//! That there are eight is known when it is compiled: for any number the normal equations come on top. Its flash is the
+//! difference to the same program without it, which the feature `bare` makes.
 
 #![no_std]
 #![no_main]

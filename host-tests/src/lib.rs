@@ -8,7 +8,8 @@
 //! * [`matches`]: correspondences from files.
 //! * [`real`]: real pairs with a known truth, also altered, and scores on them.
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
-//! * [`correspond`]: two pictures through the core's features and matcher.
+//! * [`correspond`]: two pictures through the core's features and matcher. [`two_view`]: correspondences of a known scene,
+//!   with noise and wrong ones.
 //! * [`twin`]: each stage again, naively, to hold the core to.
 //! * [`map`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`output`], [`report`]: results as
 //!   files. [`command_line`]: errors in one line.
@@ -30,3 +31,4 @@ pub mod run;
 pub mod scene;
 pub mod sparsification;
 pub mod twin;
+pub mod two_view;

@@ -1,22 +1,30 @@
-//! Points of the world seen by two cameras of known geometry.
+//! Points of the world seen by two cameras of known geometry, with noise and wrong matches: a scene without pixels.
+//!
+//! In: a seed, or a pose and what makes points. Out: [`Views`], exact; [`noisy`] adds noise to it and [`mixed`] wrong matches.
 
+use crate::scene::Random;
 use nalgebra::{Matrix3, Point2, Point3, Rotation3, Vector3};
-use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use stereopsis::geometry::{Camera, Correspondence, Fundamental, Pose};
-use stereopsis_host::scene::Random;
 
 /// Two cameras of 640 x 480 pixels, and what both see.
+#[derive(Clone, Debug)]
 pub struct Views {
+    /// Both cameras.
     pub camera: Camera<f64>,
+    /// The second camera beside the first: `P = R P' + t`, metres.
     pub pose: Pose<f64>,
-    /// In camera 1.
+    /// In camera 1, metres.
     pub points: Vec<Point3<f64>>,
+    /// Where both cameras see them, px.
     pub seen: Vec<Correspondence<f64>>,
 }
 
 impl Views {
     /// `count` points that `next` makes of random numbers, in camera 1, as far as both images of 640 x 480 show them.
+    ///
+    /// # Panics
+    ///
+    /// When the images show fewer than `count` of a hundred times as many points.
     pub fn of(random: &mut Random, count: usize, pose: Pose<f64>, next: impl Fn(&mut Random) -> Point3<f64>) -> Self {
         let camera = Camera::new(600.0, 600.0, 320.0, 240.0).expect("a camera");
         let mut views = Self { camera, pose, points: Vec::new(), seen: Vec::new() };
@@ -48,14 +56,6 @@ impl Views {
     pub fn fundamental(&self) -> Fundamental<f64> {
         Fundamental::from_cameras(&self.pose, &self.camera, &self.camera).expect("a baseline")
     }
-}
-
-/// Poses with a baseline, turned up to half a turn about any axis.
-pub fn any_pose() -> impl Strategy<Value = Pose<f64>> {
-    let numbers = || (-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64).prop_map(|(x, y, z)| Vector3::new(x, y, z));
-    (numbers(), numbers())
-        .prop_filter("a baseline", |(_, t)| t.norm() > 0.05)
-        .prop_map(|(r, t)| Pose::new(*Rotation3::new(r * 3.0).matrix(), t).expect("a rotation"))
 }
 
 /// A camera half a metre to the right, and a little of everything else.
@@ -97,7 +97,25 @@ pub fn rms_sampson(f: &Fundamental<f64>, seen: &[Correspondence<f64>]) -> f64 {
     (seen.iter().map(|s| f.sampson_squared_px2(s)).sum::<f64>() / seen.len() as f64).sqrt()
 }
 
-/// The same cases in every run.
-pub fn seeded() -> ProptestConfig {
-    ProptestConfig { cases: 100, rng_seed: RngSeed::Fixed(5), failure_persistence: None, ..ProptestConfig::default() }
+/// What a matcher would find: the correspondences with noise of `sigma` px, and among them wrong ones, anywhere in images of
+/// 640 x 480 pixels, which are `share` (0 to 1, without 1) of all. With each, whether it is right.
+pub fn mixed(seen: &[Correspondence<f64>], sigma: f64, share: f64, seed: u64) -> Vec<(Correspondence<f64>, bool)> {
+    let mut random = Random::new(seed ^ 0xbad);
+    let mut all: Vec<_> = noisy(seen, sigma, seed).into_iter().map(|s| (s, true)).collect();
+    let wrong = (share / (1.0 - share) * all.len() as f64).round() as usize;
+    for _ in 0..wrong {
+        let mut place = || Point2::new(640.0 * random.unit(), 480.0 * random.unit());
+        let one = Correspondence { first: place(), second: place() };
+        let at = random.below(all.len() + 1);
+        all.insert(at, (one, false));
+    }
+    all
+}
+
+/// By how many degrees an estimated pose is off the true one: its rotation, and the direction of its translation.
+pub fn off_degrees(found: &Pose<f64>, truth: &Pose<f64>) -> (f64, f64) {
+    let angle = |cosine: f64| cosine.clamp(-1.0, 1.0).acos().to_degrees();
+    let turned = found.rotation().tr_mul(truth.rotation()).trace();
+    let (a, b) = (found.translation(), truth.translation());
+    (angle((turned - 1.0) / 2.0), angle(a.dot(b) / (a.norm() * b.norm())))
 }

@@ -11,13 +11,14 @@
 //! * [`correspond`]: two pictures through the core's features and matcher. [`two_view`]: correspondences of a known scene,
 //!   with noise and wrong ones.
 //! * [`twin`]: each stage again, naively, to hold the core to.
-//! * [`map`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`output`], [`report`]: results as
+//! * [`map`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`], [`output`], [`report`]: results as
 //!   files. [`command_line`]: errors in one line.
 
 pub mod calibration;
 pub mod colour;
 pub mod command_line;
 pub mod correspond;
+pub mod epipolar_picture;
 pub mod map;
 pub mod matches;
 pub mod matches_picture;

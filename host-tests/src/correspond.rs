@@ -3,6 +3,7 @@
 use image::GrayImage;
 use stereopsis::features::{
     Feature, FeatureConfig, FeatureCounts, FeatureDetector, Level, Match, Matcher, Orientation, Search, Shrink,
+    drop_repeats,
 };
 
 /// The longest line, px.
@@ -13,8 +14,12 @@ const SLOTS: usize = WIDEST / FeatureConfig::LEAST_CELL as usize * PER_CELL;
 const PER_CELL: usize = 5;
 /// Features that a picture may have.
 const MOST: usize = 16384;
-/// Two pixels of three: from level to level a scene looks 1.5 times as far away.
-const SHRINK: usize = 3;
+/// Three pixels of four: from level to level a scene looks a third farther away.
+const SHRINK: usize = 4;
+/// Matches that lie nearer to each other than this at both ends are of one corner, px.
+const REPEATED_PX: f32 = 1.5;
+/// With fewer matches than one for so many features, the pictures may be turned against each other.
+const FEW: usize = 4;
 
 /// How features are found and matched.
 #[derive(Clone, Copy, Debug)]
@@ -25,8 +30,8 @@ pub struct Plan {
     pub threshold: u8,
     /// How many levels, the full picture included.
     pub levels: u8,
-    /// How corners are described.
-    pub orientation: Orientation,
+    /// How corners are described; `None` is upright and, where few match, turned as well: what has more matches.
+    pub orientation: Option<Orientation>,
     /// What a match has to be.
     pub search: Search,
 }
@@ -39,8 +44,9 @@ impl Plan {
 
     /// Side of the cells that spread the corners over a picture of so many pixels.
     fn cell_px(&self, pixels: u32) -> u16 {
-        // Every level has four ninths of the cells of the one before.
-        let shares: f64 = (0..i32::from(self.levels)).map(|level| (4.0f64 / 9.0).powi(level)).sum();
+        // Every level has nine sixteenths of the cells of the one before.
+        let share = ((SHRINK - 1) as f64 / SHRINK as f64).powi(2);
+        let shares: f64 = (0..i32::from(self.levels)).map(|level| share.powi(level)).sum();
         let side = f64::from(pixels) * shares * PER_CELL as f64 / f64::from(self.corners);
         (side.sqrt().round() as u16).clamp(FeatureConfig::LEAST_CELL, WIDEST as u16)
     }
@@ -48,7 +54,9 @@ impl Plan {
 
 impl Default for Plan {
     fn default() -> Self {
-        Self { corners: 3200, threshold: 12, levels: 3, orientation: Orientation::Upright, search: Search::new() }
+        // Partners may be on any two levels: the pictures may be taken from near and from far.
+        let search = Search { levels_apart: u8::MAX, ..Search::new() };
+        Self { corners: 4000, threshold: 8, levels: 4, orientation: None, search }
     }
 }
 
@@ -94,20 +102,39 @@ pub enum CorrespondError {
     },
 }
 
-/// The features of both pictures and their matches.
+/// The features of both pictures and their matches, a corner that was found on several levels once.
 pub fn correspond(plan: &Plan, left: &GrayImage, right: &GrayImage) -> Result<Correspondences, CorrespondError> {
-    let (left, right) = (features(plan, left)?, features(plan, right)?);
+    if let Some(orientation) = plan.orientation {
+        return described(plan, orientation, left, right);
+    }
+    let upright = described(plan, Orientation::Upright, left, right)?;
+    if FEW * upright.matches.len() >= upright.left.len().min(upright.right.len()) {
+        return Ok(upright);
+    }
+    let turned = described(plan, Orientation::Centroid, left, right)?;
+    Ok(if turned.matches.len() > upright.matches.len() { turned } else { upright })
+}
+
+/// The same, with corners described in one way.
+fn described(
+    plan: &Plan,
+    orientation: Orientation,
+    left: &GrayImage,
+    right: &GrayImage,
+) -> Result<Correspondences, CorrespondError> {
+    let (left, right) = (features(plan, orientation, left)?, features(plan, orientation, right)?);
     let mut matches = Box::new(heapless::Vec::<Match, MOST>::new());
     let mut matcher = Box::new(Matcher::<MOST>::new());
     let dropped = matcher.run(&left, &right, &plan.search, matches.as_mut_view())?;
     if dropped > 0 {
         return Err(CorrespondError::Room { dropped });
     }
+    drop_repeats(&left, &right, matches.as_mut_view(), REPEATED_PX);
     Ok(Correspondences { left, right, matches: matches.to_vec() })
 }
 
 /// The features of a picture, those of the full one first.
-pub fn features(plan: &Plan, picture: &GrayImage) -> Result<Vec<Feature>, CorrespondError> {
+pub fn features(plan: &Plan, orientation: Orientation, picture: &GrayImage) -> Result<Vec<Feature>, CorrespondError> {
     let cell_px = plan.cell_px(picture.width() * picture.height());
     let mut detector = Box::new(FeatureDetector::<WIDEST, SLOTS>::new());
     let mut list = Box::new(heapless::Vec::<Feature, MOST>::new());
@@ -119,7 +146,7 @@ pub fn features(plan: &Plan, picture: &GrayImage) -> Result<Vec<Feature>, Corres
             threshold: plan.threshold,
             cell_px,
             per_cell: PER_CELL as u16,
-            orientation: plan.orientation,
+            orientation,
             level,
             ..FeatureConfig::new(width, height)
         };

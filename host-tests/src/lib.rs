@@ -8,15 +8,17 @@
 //! * [`matches`]: correspondences from files.
 //! * [`real`]: real pairs with a known truth, also altered, and scores on them.
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
-//! * [`correspond`]: two pictures through the core's features and matcher.
+//! * [`correspond`]: two pictures through the core's features and matcher. [`two_view`]: correspondences of a known scene,
+//!   with noise and wrong ones.
 //! * [`twin`]: each stage again, naively, to hold the core to.
-//! * [`map`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`output`], [`report`]: results as
+//! * [`map`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`], [`output`], [`report`]: results as
 //!   files. [`command_line`]: errors in one line.
 
 pub mod calibration;
 pub mod colour;
 pub mod command_line;
 pub mod correspond;
+pub mod epipolar_picture;
 pub mod map;
 pub mod matches;
 pub mod matches_picture;
@@ -30,3 +32,4 @@ pub mod run;
 pub mod scene;
 pub mod sparsification;
 pub mod twin;
+pub mod two_view;

@@ -11,13 +11,7 @@ const SQUARE: i64 = 2;
 /// The picture: the images half as bright, and each match (column and row in the left image, column and row in the right
 /// one, px) in a colour that goes by its column on the left.
 pub fn matches_picture(left: &RgbImage, right: &RgbImage, matches: impl Iterator<Item = [f32; 4]>) -> RgbImage {
-    let beside = left.width() + GAP;
-    let mut picture = RgbImage::new(beside + right.width(), left.height().max(right.height()));
-    for (image, begin) in [(left, 0), (right, beside)] {
-        for (x, y, Rgb(colour)) in image.enumerate_pixels() {
-            picture.put_pixel(begin + x, y, Rgb(colour.map(|c| c / 2)));
-        }
-    }
+    let (mut picture, beside) = side_by_side(left, right);
     for [x1, y1, x2, y2] in matches {
         let colour = viridis(0.2 + 0.8 * x1 / left.width() as f32);
         let (from, to) = ([x1, y1], [x2 + beside as f32, y2]);
@@ -27,6 +21,18 @@ pub fn matches_picture(left: &RgbImage, right: &RgbImage, matches: impl Iterator
         }
     }
     picture
+}
+
+/// The two images half as bright, and the column at which the right one begins.
+pub(crate) fn side_by_side(left: &RgbImage, right: &RgbImage) -> (RgbImage, u32) {
+    let beside = left.width() + GAP;
+    let mut picture = RgbImage::new(beside + right.width(), left.height().max(right.height()));
+    for (image, begin) in [(left, 0), (right, beside)] {
+        for (x, y, Rgb(colour)) in image.enumerate_pixels() {
+            picture.put_pixel(begin + x, y, Rgb(colour.map(|c| c / 2)));
+        }
+    }
+    (picture, beside)
 }
 
 /// A thin line between two points, as bright as what lies below it and half of the colour, so that many can cross.
@@ -44,7 +50,7 @@ fn line(picture: &mut RgbImage, [x1, y1]: [f32; 2], [x2, y2]: [f32; 2], Rgb(colo
 }
 
 /// The outline of a square around a point, where the picture has it.
-fn square(picture: &mut RgbImage, [x, y]: [f32; 2], colour: Rgb<u8>) {
+pub(crate) fn square(picture: &mut RgbImage, [x, y]: [f32; 2], colour: Rgb<u8>) {
     let (x, y) = (x.round() as i64, y.round() as i64);
     for (dx, dy) in (-SQUARE..=SQUARE).flat_map(|dy| (-SQUARE..=SQUARE).map(move |dx| (dx, dy))) {
         let place = (u32::try_from(x + dx), u32::try_from(y + dy));

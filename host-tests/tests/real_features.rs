@@ -7,10 +7,15 @@ use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 use std::fs;
 use std::path::PathBuf;
+use std::process::Command;
+use stereopsis::geometry::Pose;
 use stereopsis_host::correspond::{Plan, correspond};
+use stereopsis_host::two_view::off_degrees;
 
 /// Pairs of pictures of the folder's fountain that are neighbours.
 const NEIGHBOURS: [[u8; 2]; 5] = [[0, 1], [1, 2], [2, 3], [3, 4], [4, 5]];
+/// And those that are one farther on, turned by twice as much.
+const NEXT: [[u8; 2]; 4] = [[0, 2], [1, 3], [2, 4], [3, 5]];
 /// How far a match may lie from its true epipolar lines, px.
 const INLIER_PX: f64 = 1.5;
 
@@ -24,12 +29,21 @@ fn picture(number: u8) -> GrayImage {
     image::open(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())).into_luma8()
 }
 
-/// The true fundamental matrix in OpenCV's order: `x2^T F x1 = 0`.
-fn fundamental([left, right]: [u8; 2]) -> Matrix3<f64> {
+/// What is known of a pair.
+fn truth([left, right]: [u8; 2]) -> Value {
     let path = folder().join(format!("pair_{left:02}_{right:02}.json"));
     let text = fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    let json: Value = serde_json::from_str(&text).expect("JSON");
-    Matrix3::from_fn(|row, column| json["F"][row][column].as_f64().expect("a number"))
+    serde_json::from_str(&text).expect("JSON")
+}
+
+/// The true fundamental matrix in OpenCV's order: `x2^T F x1 = 0`.
+fn fundamental(pair: [u8; 2]) -> Matrix3<f64> {
+    let json = truth(pair);
+    matrix(&json["F"])
+}
+
+fn matrix(value: &Value) -> Matrix3<f64> {
+    Matrix3::from_fn(|row, column| value[row][column].as_f64().expect("a number"))
 }
 
 /// The larger of the distances to the two epipolar lines, px.
@@ -54,7 +68,40 @@ fn matches_of_neighbours_lie_on_the_true_epipolar_lines() {
         let (share, median) = (inliers as f64 / distances.len() as f64, distances[distances.len() / 2]);
         table +=
             &format!("{pair:?}: {} matches, {:.1} % inliers, median {median:.3} px\n", distances.len(), 100.0 * share);
-        assert!(distances.len() >= 700 && share >= 0.88 && median <= 0.35, "{table}");
+        assert!(distances.len() >= 800 && share >= 0.89 && median <= 0.25, "{table}");
+    }
+    println!("{table}");
+}
+
+/// Runs the program `stereo`; what it says.
+fn stereo(arguments: &[&str]) -> String {
+    let run = Command::new(env!("CARGO_BIN_EXE_stereo")).args(arguments).output().expect("the program starts");
+    assert!(run.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&run.stderr));
+    String::from_utf8_lossy(&run.stdout).into_owned()
+}
+
+#[test]
+fn the_programs_find_the_true_pose_of_two_pictures() {
+    let bench = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| bench.path().join(name).display().to_string();
+    let (matches, calibration, answer) = (file("matches.csv"), file("calib.txt"), file("pose.json"));
+    let mut table = String::new();
+    for pair in NEIGHBOURS.into_iter().chain(NEXT) {
+        let [left, right] = pair.map(|number| folder().join(format!("image_{number:04}.png")).display().to_string());
+        stereo(&["features", "--left", &left, "--right", &right, "--out", &matches]);
+        let truth = truth(pair);
+        let cameras = ["K1", "K2"].map(|name| matrix(&truth[name]));
+        let of = |k: &Matrix3<f64>| format!("[{} 0 {}; 0 {} {}; 0 0 1]", k[(0, 0)], k[(0, 2)], k[(1, 1)], k[(1, 2)]);
+        let text = format!("cam0={}\ncam1={}\n", of(&cameras[0]), of(&cameras[1]));
+        fs::write(&calibration, text).expect("a file");
+        stereo(&["pose", "--matches", &matches, "--calib", &calibration, "--out", &answer]);
+        let found: Value = serde_json::from_slice(&fs::read(&answer).expect("a file")).expect("JSON");
+        let vector = |value: &Value| Vector3::from_fn(|i, _| value[i].as_f64().expect("a number"));
+        let found = Pose::new(matrix(&found["rotation"]), vector(&found["translation"])).expect("a rotation");
+        let truth = Pose::from_opencv(matrix(&truth["R"]), vector(&truth["t"])).expect("a rotation");
+        let (rotation, direction) = off_degrees(&found, &truth);
+        table += &format!("{pair:?}: off by {rotation:.3} and {direction:.3} degrees\n");
+        assert!(rotation < 0.2 && direction < 0.5, "{table}");
     }
     println!("{table}");
 }

@@ -3,8 +3,8 @@
 //! The figures are printed: `cargo test --test scene -- --nocapture`.
 
 use image::GrayImage;
-use nalgebra::{Point3, Rotation3, Vector3};
-use stereopsis::geometry::RectifiedRig;
+use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
+use stereopsis::geometry::{Pose, RectifiedRig};
 use stereopsis_host::scene::{Object, Scene, Shape, Texture, Truth};
 
 type Pair = (GrayImage, GrayImage);
@@ -35,6 +35,24 @@ fn rms(values: impl Iterator<Item = f64> + Clone) -> f64 {
 /// A share in percent.
 fn percent(part: usize, whole: usize) -> f64 {
     100.0 * part as f64 / whole as f64
+}
+
+#[test]
+fn a_camera_elsewhere_sees_what_the_right_one_sees() {
+    let scene = Scene::small(160, 120).with_noise(0.0, 1);
+    let beside = Vector3::new(f64::from(scene.rig().baseline_m()), 0.0, 0.0);
+    let pose = Pose::new(Matrix3::identity(), beside).expect("a rotation");
+    let (seen, right) = (scene.seen_from(&pose).render().0, scene.render().1);
+    // Rounding turns a grey level here and there.
+    let most = seen.pixels().zip(right.pixels()).map(|(a, b)| a.0[0].abs_diff(b.0[0])).max();
+    let other = seen.pixels().zip(right.pixels()).filter(|(a, b)| a != b).count();
+    assert!(most <= Some(1) && other < 200, "{other} pixels differ, by up to {most:?}");
+    // A camera turned by half a turn about its axis sees the scene upside down.
+    let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), core::f64::consts::PI);
+    let turned = scene.seen_from(&Pose::new(*turn.matrix(), Vector3::zeros()).expect("a rotation")).render().0;
+    let (back, left) = (image::imageops::rotate180(&turned), scene.render().0);
+    let differing = back.pixels().zip(left.pixels()).filter(|(a, b)| a.0[0].abs_diff(b.0[0]) > 1);
+    assert!(differing.count() < 200);
 }
 
 #[test]

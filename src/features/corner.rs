@@ -1,6 +1,6 @@
 //! A corner: where it is, to a fraction of a pixel, and how strong.
 
-/// A corner of a picture.
+/// A corner of a picture. Until its patch is whole, it lies at the centre of the strongest pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Corner {
@@ -8,9 +8,9 @@ pub struct Corner {
     pub column: u16,
     /// Its row.
     pub row: u16,
-    /// How far the corner lies to the right of that pixel's centre, 1/64 px; -32 to 32.
+    /// How far the corner lies to the right of that pixel's centre, 1/64 px; -112 to 112.
     pub right: i8,
-    /// How far it lies below, 1/64 px; -32 to 32.
+    /// How far it lies below, 1/64 px; -112 to 112.
     pub down: i8,
     /// How strong it is: the score of [`fast_scores`](super::fast_scores). 0 is no corner.
     pub score: u8,

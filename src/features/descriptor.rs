@@ -64,7 +64,7 @@ impl Patch {
 
     /// The pixel so far to the right of the middle and below it, up to the radius.
     #[inline]
-    fn at(&self, (right, down): (i32, i32)) -> u8 {
+    pub(super) fn at(&self, (right, down): (i32, i32)) -> u8 {
         let place = (down + PATCH_RADIUS) as usize * Self::STRIDE + (right + PATCH_RADIUS) as usize;
         self.0[place & (Self::STRIDE * Self::STRIDE - 1)]
     }

@@ -40,8 +40,8 @@ pub struct FeatureCounts {
 /// by its length, but for its corners: a descriptor for each slot at most.
 ///
 /// In running order, with what each waits for: a row is smoothed (2 lines), scored (3), its local maxima become corners
-/// (4) and are put into their cells; those still there when the patch is whole (17) are described; when a row of cells is
-/// done, its corners come out, cell by cell from the left, the strongest of each first.
+/// (4) and are put into their cells; those still there when the patch is whole (17) are refined and described; when a row of
+/// cells is done, its corners come out, cell by cell from the left, the strongest of each first.
 ///
 /// ```
 /// use stereopsis::features::{FeatureConfig, FeatureDetector};
@@ -156,7 +156,7 @@ impl<const W: usize, const C: usize> FeatureDetector<W, C> {
         }
         let cells = self.cells.get_mut(row / cell_px % 2);
         let [above, here, below] = self.scores.around(row);
-        let (Some(cells), Some(raw)) = (cells, Some(self.raw.around::<7>(row))) else { return };
+        let Some(cells) = cells else { return };
         let triples = above.windows(3).zip(here.windows(3)).zip(below.windows(3)).enumerate();
         for (left, ((above, here), below)) in triples.skip(MARGIN - 1).take(width - 2 * MARGIN) {
             let (&[a, b, c], &[d, score, e], &[f, g, h]) = (above, here, below) else { continue };
@@ -164,9 +164,7 @@ impl<const W: usize, const C: usize> FeatureDetector<W, C> {
                 continue;
             }
             let column = left + 1;
-            let square = raw.map(|row| row.get(column - 3..).and_then(|row| row.first_chunk()).unwrap_or(&[0; 7]));
-            let [right, down] = refine(&square);
-            let corner = Corner { column: column as u16, row: row as u16, right, down, score };
+            let corner = Corner { column: column as u16, row: row as u16, score, ..Corner::NONE };
             let first = column / cell_px * per_cell;
             self.counts.corners += 1;
             if let Some(cell) = cells.get_mut(first..first + per_cell) {
@@ -175,7 +173,7 @@ impl<const W: usize, const C: usize> FeatureDetector<W, C> {
         }
     }
 
-    /// The descriptors of a row's corners.
+    /// Where a row's corners are, to a fraction of a pixel, and what they look like.
     fn describe(&mut self, row: usize) {
         let (cell_px, _) = self.cell();
         let rows = self.smooth.around(row);
@@ -187,6 +185,7 @@ impl<const W: usize, const C: usize> FeatureDetector<W, C> {
                 Orientation::Upright => Turn::NONE,
                 Orientation::Centroid => patch.direction(),
             };
+            [slot.corner.right, slot.corner.down] = refine(&patch);
             slot.descriptor = Descriptor::of(&patch, turn);
         }
     }

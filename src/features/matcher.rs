@@ -36,7 +36,7 @@ impl Best {
     }
 }
 
-/// Matches up to `N` features of one picture with up to `N` of another.
+/// Matches up to `N` features of one picture with up to `N` of another, 65534 at most.
 ///
 /// It takes `10 N` bytes. Matching takes as many comparisons of 256 bits as there are pairs of features that the search
 /// admits, and one pass more over the right ones for each left one.
@@ -69,7 +69,8 @@ pub struct Matcher<const N: usize> {
 impl<const N: usize> Matcher<N> {
     /// A matcher.
     pub const fn new() -> Self {
-        const { assert!(N <= 1 << 16, "a match says its features' places in 16 bits") };
+        // Counting in 16 bits ends one beyond the last place.
+        const { assert!(N < u16::MAX as usize, "a match says its features' places in 16 bits") };
         Self { of_left: [Best::NONE; N], of_right: [Best::NONE; N], different: [0; N] }
     }
 

@@ -4,9 +4,11 @@
 //!
 //! 1. [`Shrink`]: ever smaller pictures, for scenes that come nearer.
 //! 2. [`FeatureDetector`]: lines to features, in a band of lines. In it, in running order:
-//!    [`smooth_row`]; [`fast_scores`], the segment test; local maxima as [`Corner`]s, refined by [`refine`]; `cells`, the
-//!    strongest in every cell; [`Patch`] and [`Descriptor`], what they look like, turned by a [`Turn`]; [`PATTERN`].
+//!    [`smooth_row`]; [`fast_scores`], the segment test; local maxima as [`Corner`]s; `cells`, the strongest in every cell;
+//!    [`Patch`], what is around them; [`refine`], where they are; [`Descriptor`], what they look like, turned by a [`Turn`];
+//!    [`PATTERN`].
 //! 3. [`Matcher`]: all features of one picture with all of another, as a [`Search`] admits.
+//! 4. [`drop_repeats`]: a corner found on several levels is one match.
 //!
 //! Pixels to matches is integer arithmetic but for positions: [`Feature`] has them in px of the full picture, and a search
 //! along epipolar lines compares them with lines.
@@ -22,6 +24,7 @@ mod feature;
 mod matcher;
 mod pattern;
 mod refine;
+mod repeats;
 mod search;
 mod shrink;
 mod smooth;
@@ -37,6 +40,7 @@ pub use feature::{Feature, Level};
 pub use matcher::{Match, Matcher};
 pub use pattern::{PAIRS, PATCH_RADIUS, PATTERN, Pair};
 pub use refine::refine;
+pub use repeats::drop_repeats;
 pub use search::{Epipolar, Search};
 pub use shrink::Shrink;
 pub use smooth::smooth_row;

@@ -1,55 +1,86 @@
 //! Where a corner lies between the pixels.
 
-/// How far the corner at the middle of a square of seven lies from that pixel's centre, to the right and down, in steps of
-/// 1/64 px: up to half a pixel.
+use super::Patch;
+
+/// Rows and columns of gradients, of responses, and of the responses that a surface is laid through.
+const GRADIENTS: usize = 7;
+const RESPONSES: usize = 5;
+const NEAREST: usize = 3;
+/// Responses are shortened to so many bits: products of their sums stay below 2^60.
+const BITS: u32 = 22;
+/// A surface may have its top so far from the strongest pixel, 1/64 px.
+const FARTHEST: i64 = 48;
+
+/// How far the corner of a patch lies from the centre of the patch's middle pixel, to the right and down, in steps of
+/// 1/64 px: up to 112, a pixel and three quarters.
 ///
-/// It is the top of a parabola, along the row and down the column, through the responses at the pixel and at those beside
-/// it, each with the two next to it across at half the weight: of three 3 x 3 neighbourhoods instead of one, the noise
-/// is averaged. A response is `det / trace` of the sum of `g g^T` over 3 x 3 gradients g (Noble, "Finding corners", 1988):
-/// it falls off on all sides of a corner, where the score of the segment test has plateaus. On the pictures of a real
-/// scene, distances to the true epipolar lines were two thirds of those of the strongest pixels' centres (a median of 0.22
-/// and 0.33 px).
-pub fn refine(square: &[&[u8; 7]; 7]) -> [i8; 2] {
-    // Sums over rows and columns of the responses, weighted by 1 2 1.
-    let (mut along, mut across) = ([0; 3], [0; 3]);
-    for ((y, down), across) in WEIGHTS.into_iter().enumerate().zip(&mut across) {
-        for ((x, right), along) in WEIGHTS.into_iter().enumerate().zip(&mut along) {
-            let response = response(square, x, y);
-            *along += response * down;
-            *across += response * right;
+/// The response of a pixel is the determinant of the sum of `g g^T` over the 3 x 3 gradients g around it, of smoothed
+/// pixels: Harris's ("A combined corner and edge detector", Alvey 1988) without its trace. Of the middle pixel and the eight
+/// around it the one that responds most is taken, for the segment test finds its strongest pixel up to a pixel beside the
+/// corner; then the top of the quadratic surface that fits the 3 x 3 responses around that one best, with weights `1 2 1`
+/// along and across. Where the surface has no top, it is the pixel's centre.
+///
+/// The test `matches_follow_turns` prints how far matches of turned pictures lie from where they should.
+pub fn refine(patch: &Patch) -> [i8; 2] {
+    let responses = responses(patch);
+    let response = |x: usize, y: usize| responses.get(y).and_then(|row| row.get(x)).copied().unwrap_or(0);
+    let middle = RESPONSES / 2;
+    let (mut x, mut y) = (middle, middle);
+    for (column, row) in (0..NEAREST * NEAREST).map(|i| (middle - 1 + i % NEAREST, middle - 1 + i / NEAREST)) {
+        if response(column, row) > response(x, y) {
+            (x, y) = (column, row);
         }
     }
-    [along, across].map(top)
+    let square = core::array::from_fn(|j| core::array::from_fn(|i| response(x + i - 1, y + j - 1)));
+    let [right, down] = top(&square);
+    let steps = |whole: usize, part: i64| (64 * (whole as i64 - middle as i64) + part) as i8;
+    [steps(x, right), steps(y, down)]
 }
 
-const WEIGHTS: [i64; 3] = [1, 2, 1];
-
-/// The response around the pixel (x + 2, y + 2) of a square of seven.
-fn response(square: &[&[u8; 7]; 7], x: usize, y: usize) -> i64 {
-    let pixel = |x: usize, y: usize| square.get(y).and_then(|row| row.get(x)).map_or(0, |&pixel| i64::from(pixel));
-    let (mut xx, mut xy, mut yy) = (0, 0, 0);
-    for (x, y) in (0..9).map(|i| (x + 1 + i % 3, y + 1 + i / 3)) {
-        let right = pixel(x + 1, y) - pixel(x - 1, y);
-        let down = pixel(x, y + 1) - pixel(x, y - 1);
-        xx += right * right;
-        xy += right * down;
-        yy += down * down;
-    }
-    // Differences are at most 255 and the sums below 2^20. One more than the trace is never nothing.
-    (xx * yy - xy * xy) / (xx + yy + 1)
+/// The responses of the 5 x 5 pixels in the middle. A gradient is at most 255, so sums are below 2^20 and determinants,
+/// which are never negative, below 2^39.
+fn responses(patch: &Patch) -> [[i64; RESPONSES]; RESPONSES] {
+    let reach = (GRADIENTS / 2) as i32;
+    let products: [[[i32; 3]; GRADIENTS]; GRADIENTS] = core::array::from_fn(|y| {
+        core::array::from_fn(|x| {
+            let (x, y) = (x as i32 - reach, y as i32 - reach);
+            let pixel = |x: i32, y: i32| i32::from(patch.at((x, y)));
+            let (right, down) = (pixel(x + 1, y) - pixel(x - 1, y), pixel(x, y + 1) - pixel(x, y - 1));
+            [right * right, right * down, down * down]
+        })
+    });
+    core::array::from_fn(|y| {
+        core::array::from_fn(|x| {
+            let around = products.iter().skip(y).take(3).flat_map(|row| row.iter().skip(x).take(3));
+            let [xx, xy, yy] = around.fold([0; 3], |sum, one| [sum[0] + one[0], sum[1] + one[1], sum[2] + one[2]]);
+            i64::from(xx) * i64::from(yy) - i64::from(xy) * i64::from(xy)
+        })
+    })
 }
 
-/// Where the parabola through three values has its top, from the middle one, in steps of 1/64; nowhere but in the middle if
-/// it has none, and half a pixel at most.
-fn top([before, here, after]: [i64; 3]) -> i8 {
-    let bend = 2 * (2 * here - before - after);
-    if bend <= 0 {
-        return 0;
+/// The top of the quadratic surface through nine values, to the right of the middle one and down, in steps of 1/64.
+///
+/// With the weighted first differences `X`, `Y` and second differences `XX`, `YY`, `XY` it is where both slopes vanish:
+/// `x = (XY Y - YY X) / 2 D` and `y = (XY X - XX Y) / 2 D` with `D = XX YY - XY^2`.
+fn top(square: &[[i64; NEAREST]; NEAREST]) -> [i64; 2] {
+    let most = square.as_flattened().iter().fold(0, |most, &value| value.max(most));
+    let shift = (i64::BITS - most.leading_zeros()).saturating_sub(BITS);
+    let [[a, b, c], [d, e, f], [g, h, i]] = square.map(|row| row.map(|value| value >> shift));
+    let columns = [a + 2 * d + g, b + 2 * e + h, c + 2 * f + i];
+    let rows = [a + 2 * b + c, d + 2 * e + f, g + 2 * h + i];
+    let slope = |[before, _, after]: [i64; 3]| after - before;
+    let bend = |[before, here, after]: [i64; 3]| after - 2 * here + before;
+    let (x, y, xx, yy, xy) = (slope(columns), slope(rows), bend(columns), bend(rows), i - g - c + a);
+    let determinant = xx * yy - xy * xy;
+    if xx >= 0 || determinant <= 0 {
+        return [0, 0];
     }
     // To the nearest, halves away from nothing: as far to the left as to the right.
-    let steps = 64 * (after - before);
-    let rounded = (2 * steps.abs() + bend) / (2 * bend);
-    (rounded.min(32) * steps.signum()) as i8
+    let steps = |above: i64| {
+        let rounded = (64 * above.abs() + determinant) / (2 * determinant);
+        rounded.min(FARTHEST) * above.signum()
+    };
+    [steps(xy * y - yy * x), steps(xy * x - xx * y)]
 }
 
 #[cfg(test)]
@@ -57,29 +88,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_spot_between_two_pixels_is_found_there() {
-        // Symmetric about the column 3.5 and the row 3.
-        let spot: [[u8; 7]; 7] = [
-            [0; 7],
-            [0, 0, 0, 30, 30, 0, 0],
-            [0, 0, 40, 120, 120, 40, 0],
-            [0, 0, 60, 200, 200, 60, 0],
-            [0, 0, 40, 120, 120, 40, 0],
-            [0, 0, 0, 30, 30, 0, 0],
-            [0; 7],
-        ];
-        let [right, down] = refine(&spot.each_ref());
-        assert!(right > 16 && down == 0, "{right}, {down}");
-        assert_eq!(refine(&[&[80; 7]; 7]), [0, 0]);
-    }
-
-    #[test]
-    fn tops_of_parabolas() {
-        assert_eq!(top([0, 4, 0]), 0);
-        assert_eq!(top([-9, -1, -1]), 32);
-        assert_eq!(top([-1, -1, -9]), -32);
-        // -(x - 1/4)^2 at -1, 0 and 1, in sixteenths.
-        assert_eq!(top([-25, -1, -9]), 16);
-        assert_eq!(top([5, 1, 5]), 0);
+    fn tops_of_surfaces() {
+        // 90 - 8 (x - a)^2 - 8 (y - b)^2 at -1, 0 and 1.
+        let bowl = |a: f64, b: f64| -> [[i64; 3]; 3] {
+            core::array::from_fn(|j| {
+                core::array::from_fn(|i| {
+                    let (x, y) = (i as f64 - 1.0 - a, j as f64 - 1.0 - b);
+                    (90.0 - 8.0 * (x * x + y * y)) as i64
+                })
+            })
+        };
+        assert_eq!(top(&bowl(0.0, 0.0)), [0, 0]);
+        assert_eq!(top(&bowl(0.25, -0.5)), [16, -32]);
+        assert_eq!(top(&bowl(1.0, -1.0)), [FARTHEST, -FARTHEST]);
+        // A ridge and a hollow have no top.
+        assert_eq!(top(&[[1, 5, 1]; 3]), [0, 0]);
+        assert_eq!(top(&[[9, 5, 9], [5, 1, 5], [9, 5, 9]]), [0, 0]);
     }
 }

@@ -25,9 +25,9 @@ pub use shape::{Object, Shape};
 pub use texture::{Points, SAMPLES, Texture};
 
 use image::GrayImage;
-use nalgebra::Point3;
+use nalgebra::{Point3, Rotation3};
 use render::Eye;
-use stereopsis::geometry::RectifiedRig;
+use stereopsis::geometry::{Pose, RectifiedRig};
 
 /// Bodies before a rectified rig, with a lamp.
 ///
@@ -119,6 +119,19 @@ impl Scene {
     pub fn render(&self) -> (GrayImage, GrayImage) {
         let noise = |camera: u64| Random::new(self.seed.wrapping_mul(2).wrapping_add(camera)).bits();
         (render::picture(self, &Eye::left(self), noise(0)), render::picture(self, &Eye::right(self), noise(1)))
+    }
+
+    /// The scene in the frame of a camera that stands elsewhere: its left picture is what that camera sees, from a pose that
+    /// need not be rectified beside this one's. `pose` carries a point of that camera into this one's left camera, metres.
+    pub fn seen_from(&self, pose: &Pose<f64>) -> Self {
+        let mut scene = self.clone();
+        let back = Rotation3::from_matrix_unchecked(pose.rotation().transpose());
+        scene.lamp = pose.inverse_transform(&self.lamp);
+        for object in &mut scene.objects {
+            object.position = pose.inverse_transform(&object.position);
+            object.rotation = back * object.rotation;
+        }
+        scene
     }
 
     /// The true values.

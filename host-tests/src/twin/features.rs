@@ -51,26 +51,41 @@ fn smooth(picture: &Picture<'_>, x: isize, y: isize) -> u8 {
     ((sum + 128) / 256) as u8
 }
 
-/// How far the corner lies from the pixel (x, y), in 1/64 px.
+/// How far the corner lies from the pixel (x, y), in 1/64 px: the pixel of the nine that responds most, and from there the
+/// top of a surface through the nine around it.
 fn refined(picture: &Picture<'_>, x: isize, y: isize) -> [i8; 2] {
-    let response = |x: isize, y: isize| -> i64 {
+    let response = |x: isize, y: isize| -> i128 {
         let mut sums = [0; 3];
         for (x, y) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy))) {
-            let at = |x, y| i64::from(picture.at(x, y));
+            let at = |x, y| i128::from(smooth(picture, x, y));
             let g = [at(x + 1, y) - at(x - 1, y), at(x, y + 1) - at(x, y - 1)];
             sums = [sums[0] + g[0] * g[0], sums[1] + g[0] * g[1], sums[2] + g[1] * g[1]];
         }
-        (sums[0] * sums[2] - sums[1] * sums[1]) / (sums[0] + sums[2] + 1)
+        sums[0] * sums[2] - sums[1] * sums[1]
     };
-    let three = |at: &dyn Fn(isize, isize) -> i64| [-1, 0, 1].map(|a| at(a, -1) + 2 * at(a, 0) + at(a, 1));
-    let top = |[a, b, c]: [i64; 3]| {
-        let bend = 2 * b - a - c;
-        if bend <= 0 { 0.0 } else { (64.0 * (c - a) as f64 / (2 * bend) as f64).round().clamp(-32.0, 32.0) }
+    let nine = || (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)));
+    // Of equals the middle one, then the first in reading order.
+    let strongest = |&(dx, dy): &(isize, isize)| (response(x + dx, y + dy), (dx, dy) == (0, 0), -3 * dy - dx);
+    let (right, down) = nine().max_by_key(strongest).expect("nine");
+    let mut values: Vec<i128> = nine().map(|(dx, dy)| response(x + right + dx, y + down + dy)).collect();
+    while values.iter().any(|&value| value >= 1 << 22) {
+        values.iter_mut().for_each(|value| *value /= 2);
+    }
+    // Differences along and across, each summed over three with the weights 1 2 1.
+    let sum = |weights: [i128; 9]| values.iter().zip(weights).map(|(value, weight)| value * weight).sum::<i128>();
+    let (fx, fy) = (sum([-1, 0, 1, -2, 0, 2, -1, 0, 1]), sum([-1, -2, -1, 0, 0, 0, 1, 2, 1]));
+    let (fxx, fyy) = (sum([1, -2, 1, 2, -4, 2, 1, -2, 1]), sum([1, 2, 1, -2, -4, -2, 1, 2, 1]));
+    let fxy = sum([1, 0, -1, 0, 0, 0, -1, 0, 1]);
+    let determinant = fxx * fyy - fxy * fxy;
+    let part = |above: i128| {
+        if fxx >= 0 || determinant <= 0 {
+            return 0;
+        }
+        let nearest = (64 * above.abs() + determinant).div_euclid(2 * determinant) as i64;
+        nearest.min(48) * above.signum() as i64
     };
-    [
-        top(three(&|along, across| response(x + along, y + across))) as i8,
-        top(three(&|along, across| response(x + across, y + along))) as i8,
-    ]
+    let place = |whole: isize, above: i128| (64 * whole as i64 + part(above)) as i8;
+    [place(right, fxy * fy - fyy * fx), place(down, fxy * fx - fxx * fy)]
 }
 
 /// The descriptor of the corner at (x, y).
@@ -174,6 +189,22 @@ pub fn matches(left: &[Feature], right: &[Feature], search: &Search) -> Vec<Matc
         }
     }
     found
+}
+
+/// The matches without those that lie less than `apart_px` from one that stays before them, at both ends.
+pub fn without_repeats(left: &[Feature], right: &[Feature], matches: &[Match], apart_px: f32) -> Vec<Match> {
+    let ends = |m: &Match| {
+        let (a, b) = (&left[usize::from(m.left)], &right[usize::from(m.right)]);
+        [a.x_px, a.y_px, b.x_px, b.y_px]
+    };
+    let near = |k: &Match, m: &Match| ends(k).into_iter().zip(ends(m)).all(|(a, b)| (a - b).abs() < apart_px);
+    let mut kept: Vec<Match> = Vec::new();
+    for m in matches {
+        if !kept.iter().any(|k| near(k, m)) {
+            kept.push(*m);
+        }
+    }
+    kept
 }
 
 /// The picture with `n - 1` pixels of every `n`; of columns that are left over, none, and of rows, all that have one below.

@@ -3,12 +3,13 @@
 use super::support::{Bench, encode, names, stereo, text};
 use image::{GrayImage, ImageFormat, Luma, imageops};
 use std::fs;
+use stereopsis_host::scene::Random;
 
-/// Two pictures of spots, the second one 7 columns to the left and 3 rows up.
+/// Two pictures of spots whose greys do not repeat, the second one 7 columns to the left and 3 rows up.
 fn put_spots(bench: &Bench) -> [String; 2] {
     let spots = GrayImage::from_fn(200, 150, |x, y| {
         let (cell, inside) = ([x / 9, y / 9], [x % 9, y % 9]);
-        let grey = (cell[0] * 7 + cell[1] * 13 + cell[0] * cell[1] * 5) % 11 * 23;
+        let grey = Random::new(u64::from(cell[0] * 100 + cell[1])).below(12) * 23;
         Luma([if inside[0] < 6 && inside[1] < 5 { grey as u8 } else { 40 }])
     });
     [("first.png", 0, 0), ("second.png", 7, 3)].map(|(name, x, y)| {
@@ -98,6 +99,7 @@ fn what_cannot_be_done_is_named() {
         ("--ratio", "-1", "--ratio"),
         ("--rows-apart", "x", "--rows-apart"),
         ("--columns-apart", "4097", "--columns-apart"),
+        ("--orientation", "sideways", "--orientation"),
         ("--method", "orb", "--method"),
     ] {
         bench.refused(&change(option, value), culprit);

@@ -1,6 +1,7 @@
 //! `fundamental` and `pose`: matches in, one JSON file out, or one line and nothing.
 
-use super::support::{Bench, stereo, text};
+use super::support::{Bench, encode, stereo, text};
+use image::{GrayImage, ImageFormat, Rgb, imageops};
 use serde_json::Value;
 use std::fmt::Write;
 
@@ -100,6 +101,42 @@ fn fundamental_by_eight_points() {
     let found = answer(&bench, "fundamental", &["--method", "eight-point", "--threshold", "0.01"]);
     assert_eq!(kept(&found), (32, 8));
     assert!(found.get("samples").is_none());
+}
+
+#[test]
+fn a_picture_of_epipolar_lines() {
+    let bench = bench(&matches(100, true, false));
+    let put = |name, width, height| {
+        bench.put(name, &encode(&GrayImage::new(width, height), ImageFormat::Png)).display().to_string()
+    };
+    let (left, right, small) = (put("l.png", 640, 480), put("r.png", 640, 500), put("small.png", 200, 480));
+    let lines = bench.path("out/lines.png").display().to_string();
+    answer(&bench, "fundamental", &["--left", &left, "--right", &right, "--picture", &lines]);
+    let drawn = image::open(&lines).expect("a picture").into_rgb8();
+    assert_eq!(drawn.dimensions(), (1284, 500));
+    // Wrong ones in red at both ends, lines from the left edge to the right edge of both images.
+    let red = |p: &Rgb<u8>| p.0 == [230, 40, 40];
+    for begin in [0, 644] {
+        let image = imageops::crop_imm(&drawn, begin, 0, 640, 480).to_image();
+        assert!(image.pixels().filter(|p| red(p)).count() > 15 * 8);
+        for column in [0, 639] {
+            let crossing = (0..480).filter(|&y| image.get_pixel(column, y).0 != [0; 3]).count();
+            assert!(crossing >= 10, "{crossing} lines reach column {column}");
+        }
+    }
+    let missing = bench.path("missing.png").display().to_string();
+    let out = bench.path("out/answer.json").display().to_string();
+    for (images, culprit) in [
+        (["--left", &small, "--right", &right, "--picture", &lines].as_slice(), "--left"),
+        (&["--left", &left, "--right", &small, "--picture", &lines], "--right"),
+        (&["--left", &left, "--right", &missing, "--picture", &lines], "missing.png"),
+        (&["--left", &left, "--right", &right, "--picture", &out], "--picture"),
+        (&["--left", &left, "--right", &right], "--picture"),
+        (&["--left", &left, "--picture", &lines], "--right"),
+        (&["--picture", &lines], "--left"),
+    ] {
+        bench.refused(&arguments(&bench, "fundamental", images), culprit);
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::{C, config, detect, matched, rows_aligned};
 use image::GrayImage;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use stereopsis::features::{Epipolar, FeatureConfig, Level, Orientation, Search, fast_scores};
+use stereopsis::features::{Epipolar, FeatureConfig, Level, Match, Orientation, Search, drop_repeats, fast_scores};
 use stereopsis_host::correspond::shrunk;
 use stereopsis_host::scene::Random;
 use stereopsis_host::scene::pattern::Pattern;
@@ -128,6 +128,30 @@ fn matches_under_every_search() {
     assert!(found[0] >= 10 && found[2] < found[0] && found[4] > found[0], "{found:?}");
     assert_eq!(matched(&left, &[], &every), []);
     assert_eq!(matched(&[], &right, &every), []);
+}
+
+#[test]
+fn matches_without_repeats() {
+    let (left, right) = Pattern::Shifted { most: 9, noise_grey: 3.0 }.pair(150, 90, 8);
+    let lists = [left, right].map(|image| {
+        let smaller = shrunk::<4>(&image);
+        let mut list = detect(&config(&image), &image).0;
+        let level = Level::FULL.shrunk::<4>();
+        list.extend(detect(&FeatureConfig { level, ..config(&smaller) }, &smaller).0);
+        list
+    });
+    let matches = matched(&lists[0], &lists[1], &Search { ratio_percent: 100, most_different: 256, ..Search::new() });
+    let mut left_over = Vec::new();
+    for apart_px in [f32::NAN, 0.0, 0.5, 1.5, 6.0, 1e9] {
+        let mut core = Box::new(heapless::Vec::<Match, 4096>::new());
+        core.extend_from_slice(&matches).expect("room for all");
+        let dropped = drop_repeats(&lists[0], &lists[1], core.as_mut_view(), apart_px);
+        let expected = twin::without_repeats(&lists[0], &lists[1], &matches, apart_px);
+        assert_eq!((&core[..], dropped), (&expected[..], matches.len() - expected.len()), "{apart_px} px");
+        left_over.push(core.len());
+    }
+    assert_eq!([left_over[0], left_over[1], left_over[5]], [matches.len(), matches.len(), 1]);
+    assert!(left_over[2] >= left_over[3] && left_over[3] > left_over[4], "{left_over:?}");
 }
 
 proptest! {

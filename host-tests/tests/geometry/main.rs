@@ -1,6 +1,7 @@
 //! Two views of known geometry: what the types keep, what the estimates reach, what is refused by name.
 
 mod cameras;
+mod chain;
 mod estimates;
 mod landmarks;
 mod lecture;

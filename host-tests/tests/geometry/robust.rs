@@ -1,6 +1,6 @@
 //! The robust estimate: what it keeps, what it is worth, what it does not depend on, what it refuses.
 
-use crate::views::{Views, anywhere, narrow, nearby, noisy, seeded};
+use crate::views::{Views, anywhere, mixed, narrow, nearby, noisy, seeded};
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 use proptest::prelude::*;
 use stereopsis::geometry::{
@@ -25,17 +25,8 @@ impl Mixed {
     }
 
     fn of(views: Views, seed: u64, share: f64) -> Self {
-        let mut random = Random::new(seed ^ 0xbad);
-        let mut seen: Vec<_> = noisy(&views.seen, 0.3, seed).into_iter().map(|s| (s, true)).collect();
-        let wrong = (share / (1.0 - share) * seen.len() as f64).round() as usize;
-        for _ in 0..wrong {
-            let mut place = || Point2::new(640.0 * random.unit(), 480.0 * random.unit());
-            let one = Correspondence { first: place(), second: place() };
-            let at = random.below(seen.len() + 1);
-            seen.insert(at, (one, false));
-        }
-        let truth = Fundamental::from_cameras(&views.pose, &views.camera, &views.camera).expect("a baseline");
-        let (seen, right) = seen.into_iter().unzip();
+        let truth = views.fundamental();
+        let (seen, right) = mixed(&views.seen, 0.3, share, seed).into_iter().unzip();
         Self { views, seen, right, truth }
     }
 

@@ -1,12 +1,12 @@
 //! `stereo features`: points of one image found in another.
 
-use crate::cli::FeaturesArgs;
 use crate::failure::Failure;
-use crate::files::png;
+use crate::place::Place;
 use crate::print;
+use crate::two_view::{FeaturesArgs, OrientationChoice};
 use image::{GrayImage, RgbImage};
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use stereopsis::camera::LineSource;
 use stereopsis::features::{Orientation, Search};
 use stereopsis::imaging::GreyLines;
@@ -14,7 +14,6 @@ use stereopsis_host::command_line::one_line;
 use stereopsis_host::correspond::{Correspondences, Plan, correspond};
 use stereopsis_host::matches_picture::matches_picture;
 use stereopsis_host::mock::MockCamera;
-use stereopsis_host::output::Staging;
 
 /// Bytes of the longest raw line: RGB with 16 bits.
 const RAW: usize = MockCamera::MOST_PIXELS as usize * 6;
@@ -29,26 +28,11 @@ struct Image {
 pub fn run(args: &FeaturesArgs) -> Result<(), Failure> {
     let left = open(&args.pair.left)?;
     let right = open(&args.pair.right)?;
-    let out = Place::of("--out", &args.out)?;
-    let picture = args.picture.as_ref().map(|path| Place::of("--picture", path)).transpose()?;
-    if picture.as_ref().is_some_and(|picture| picture.folder == out.folder && picture.name == out.name) {
-        return Err(Failure::new(format!("--picture: {} is the file of --out; name another", args.out.display())));
-    }
+    let (out, picture) = Place::with_picture(&args.out, args.picture.as_deref())?;
 
     let found = correspond(&plan(args), &left.grey, &right.grey)?;
-    // Both files are complete and on the disk before either moves to its place.
-    let mut staging = Staging::new(&out.folder)?;
-    staging.write(&out.name, |out| out.write_all(lines(&found).as_bytes()))?;
-    let mut elsewhere = None;
-    if let Some(place) = &picture {
-        let drawn = matches_picture(&left.colours, &right.colours, found.points());
-        let to = if place.folder == out.folder { &mut staging } else { elsewhere.insert(Staging::new(&place.folder)?) };
-        to.write(&place.name, |out| png(out, &drawn))?;
-    }
-    if let Some(elsewhere) = elsewhere {
-        elsewhere.commit(&[])?;
-    }
-    staging.commit(&[])?;
+    let drawn = |place| (place, matches_picture(&left.colours, &right.colours, found.points()));
+    out.write(|out| out.write_all(lines(&found).as_bytes()), picture.as_ref().map(drawn))?;
 
     let mut text = String::new();
     for note in [left.note, right.note].iter().flatten() {
@@ -68,12 +52,16 @@ fn plan(args: &FeaturesArgs) -> Plan {
         corners: args.corners,
         threshold: byte(args.contrast),
         levels: byte(args.levels),
-        orientation: if args.turned { Orientation::Centroid } else { Orientation::Upright },
+        orientation: match args.orientation {
+            OrientationChoice::Auto => None,
+            OrientationChoice::Upright => Some(Orientation::Upright),
+            OrientationChoice::Turned => Some(Orientation::Centroid),
+        },
         search: Search {
             ratio_percent: byte(args.ratio),
             along_px: px(args.columns_apart),
             across_px: px(args.rows_apart),
-            ..Search::new()
+            ..Plan::default().search
         },
     }
 }
@@ -91,31 +79,6 @@ fn open(path: &Path) -> Result<Image, Failure> {
         lines.next_line(line)?;
     }
     Ok(Image { grey, colours, note })
-}
-
-/// A result's folder and its name there.
-struct Place {
-    folder: PathBuf,
-    name: String,
-}
-
-impl Place {
-    /// Where the option wants its file; refused before any work where none can be made.
-    fn of(option: &str, path: &Path) -> Result<Self, Failure> {
-        let no_file = || Failure::new(format!("{option}: '{}' is not the name of a file", path.display()));
-        let name = path.file_name().and_then(|name| name.to_str()).ok_or_else(no_file)?.to_owned();
-        if path.is_dir() {
-            return Err(no_file());
-        }
-        let folder = match path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-            _ => PathBuf::from("."),
-        };
-        Staging::probe(&folder)?;
-        // One folder has one spelling, so that two options that mean one file are seen to; a new one keeps its own.
-        let folder = folder.canonicalize().unwrap_or(folder);
-        Ok(Self { folder, name })
-    }
 }
 
 /// The matches as lines of numbers, to a thousandth of a pixel.

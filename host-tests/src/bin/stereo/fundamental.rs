@@ -1,15 +1,20 @@
 //! `stereo fundamental`: correspondences into a fundamental matrix.
 
-use crate::cli::{FundamentalArgs, RobustArgs, TwoViewMethod};
 use crate::failure::Failure;
-use crate::files::json_file;
+use crate::files::json;
+use crate::place::Place;
 use crate::print;
-use nalgebra::Matrix3;
+use crate::two_view::{FundamentalArgs, RobustArgs, TwoViewMethod};
+use image::RgbImage;
+use nalgebra::{Matrix3, Point2};
 use serde::Serialize;
 use std::hint::black_box;
+use std::path::Path;
 use std::time::Instant;
 use stereopsis::geometry::{Correspondence, Fundamental, RobustConfig, eight_point, robust_fundamental};
+use stereopsis_host::epipolar_picture::epipolar_picture;
 use stereopsis_host::matches::read_matches;
+use stereopsis_host::mock::MockCamera;
 
 /// How often the solver is timed.
 const TIMED: usize = 5;
@@ -35,6 +40,9 @@ pub struct Estimate {
 
 pub fn run(args: &FundamentalArgs) -> Result<(), Failure> {
     let seen = read_matches(&args.matches)?;
+    let (out, picture) = Place::with_picture(&args.out, args.picture.as_deref())?;
+    let images = args.left.as_deref().zip(args.right.as_deref());
+    let images = images.map(|(left, right)| images_of(&seen, left, right)).transpose()?;
     let failed = |why: String| Failure::new(format!("{}: {why}", args.matches.display()));
     let estimate = estimate(&seen, &args.robust).map_err(failed)?;
     let mut best = f64::INFINITY;
@@ -45,6 +53,11 @@ pub fn run(args: &FundamentalArgs) -> Result<(), Failure> {
         black_box(again);
     }
     let kept = estimate.inliers.iter().filter(|&&inlier| inlier).count();
+    let drawn = |(place, (left, right)): (_, &(RgbImage, RgbImage))| {
+        let matches: Vec<_> = seen.iter().copied().zip(estimate.inliers.iter().copied()).collect();
+        (place, epipolar_picture(left, right, &estimate.fundamental, &matches))
+    };
+    let drawn = picture.as_ref().zip(images.as_ref()).map(drawn);
     let answer = Answer {
         fundamental: rows(estimate.fundamental.matrix()),
         inliers: estimate.inliers,
@@ -52,9 +65,30 @@ pub fn run(args: &FundamentalArgs) -> Result<(), Failure> {
         samples: estimate.samples.map(|(samples, _)| samples),
         miss_probability: estimate.samples.map(|(_, missed)| missed),
     };
-    json_file(&args.out, &answer)?;
+    out.write(|out| json(out, &answer), drawn)?;
     let n = seen.len();
     print(&format!("{kept} of {n} matches within {} px, {best:.0} us\n", args.robust.threshold))
+}
+
+/// The images of the matches, for display; refused when a match is outside of its image.
+fn images_of(seen: &[Correspondence<f64>], left: &Path, right: &Path) -> Result<(RgbImage, RgbImage), Failure> {
+    let images = (MockCamera::open(left)?.picture(), MockCamera::open(right)?.picture());
+    let inside = |p: &Point2<f64>, image: &RgbImage| {
+        let within = |x: f64, side: u32| (-0.5..=f64::from(side) - 0.5).contains(&x);
+        within(p.x, image.width()) && within(p.y, image.height())
+    };
+    for (s, number) in seen.iter().zip(1..) {
+        for (option, path, p, image) in [("--left", left, s.first, &images.0), ("--right", right, s.second, &images.1)]
+        {
+            if !inside(&p, image) {
+                let (name, (width, height)) = (path.display(), image.dimensions());
+                let why =
+                    format!("{option} {name}: match {number} is outside of its {width} x {height} px; name its image");
+                return Err(Failure::new(why));
+            }
+        }
+    }
+    Ok(images)
 }
 
 /// By the method that the options name, or why not.

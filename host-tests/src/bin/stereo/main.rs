@@ -1,8 +1,9 @@
 //! `stereo`: depth from two images by the code that runs on the microcontroller.
 //!
-//! * `cli`: what is asked for. `failure`: what is said when it cannot be done.
+//! * `cli`, `two_view`: what is asked for. `failure`: what is said when it cannot be done.
 //! * `input`: the images and the search, checked against each other. `progress`: how far it is.
-//! * `matching`, `bench`, `demo`, `features`, `fundamental`, `pose`: the commands. `files`: the results as files.
+//! * `matching`, `bench`, `demo`, `features`, `fundamental`, `pose`: the commands. `files`, `place`: the
+//!   results as files.
 
 mod bench;
 mod cli;
@@ -13,8 +14,10 @@ mod files;
 mod fundamental;
 mod input;
 mod matching;
+mod place;
 mod pose;
 mod progress;
+mod two_view;
 
 use cli::Command;
 use failure::Failure;

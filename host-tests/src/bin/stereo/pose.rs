@@ -1,10 +1,10 @@
 //! `stereo pose`: correspondences of known cameras into where the second one stands, and points.
 
-use crate::cli::{PoseArgs, RobustArgs, TwoViewMethod};
 use crate::failure::Failure;
 use crate::files::json_file;
 use crate::fundamental::rows;
 use crate::print;
+use crate::two_view::{PoseArgs, RobustArgs, TwoViewMethod};
 use serde::Serialize;
 use stereopsis::geometry::{
     Camera, Correspondence, EightPointError, Essential, Fundamental, Homography, PlaneMotionError, RobustConfig,

@@ -9,6 +9,7 @@
 //! * [`real`]: real pairs with a known truth, also altered, and scores on them.
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
 //! * [`correspond`]: two pictures through the core's features and matcher.
+//! * [`focus`]: focus stacks, a simulated lens, and stacks through the core's map.
 //! * [`twin`]: each stage again, naively, to hold the core to.
 //! * [`map`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`output`], [`report`]: results as
 //!   files. [`command_line`]: errors in one line.
@@ -17,6 +18,7 @@ pub mod calibration;
 pub mod colour;
 pub mod command_line;
 pub mod correspond;
+pub mod focus;
 pub mod map;
 pub mod matches;
 pub mod matches_picture;

@@ -1,0 +1,7 @@
+//! Depth from focus: the lens, sharpness, peaks, lens motors.
+
+mod autofocus;
+mod dw9714;
+mod lens;
+mod stacks;
+mod twins;

@@ -18,12 +18,13 @@ const fn table() -> [u16; STEPS + 1] {
         // In 1/2^31.
         let mut x = ((STEPS + i) as u64) << (31 - 6);
         let mut log: u16 = (x >> 32) as u16;
-        x >>= x >> 32;
+        x >>= log;
         let mut bit = 0;
         while bit < 15 {
             x = (x * x) >> 31;
-            log = log << 1 | (x >> 32) as u16;
-            x >>= x >> 32;
+            let is_set = (x >> 32) as u16;
+            log = log << 1 | is_set;
+            x >>= is_set;
             bit += 1;
         }
         table[i] = log;

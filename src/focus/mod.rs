@@ -7,7 +7,7 @@
 //! * [`SharpnessRows`]: classic measures of sharpness over windows. In them and below, in running order: [`binomial`],
 //!   [`modified_laplacian`], [`tenengrad`], [`laplacian`].
 //! * [`FocusMap`]: frames to a [`FocusPeak`] for each cell, with [`Breathing`]; then [`median_row`].
-//! * [`FocusScale`]: peaks to [`FocusDepth`].
+//! * [`FocusScale`]: peaks to [`Depth`](crate::depth::Depth).
 //! * [`LensActuator`], [`Dw9714`]: what moves a lens. [`FocusCalibration`]: its positions to distances.
 //! * [`RegionSharpness`], [`Autofocus`] with its [`FocusSearch`]: a region brought into focus in few frames.
 
@@ -47,6 +47,6 @@ pub use median::median_row;
 pub use micrometres::MicroLens;
 pub use region::{Region, RegionSharpness};
 pub use rows::{binomial, laplacian, modified_laplacian, tenengrad};
-pub use scale::{FocusDepth, FocusScale, FocusScaleError};
+pub use scale::{FocusScale, FocusScaleError};
 pub use search::{FocusSearch, Next};
 pub use sharpness::{Measure, SharpnessRows};

@@ -2,17 +2,8 @@
 
 use super::lens::finite;
 use super::{Breathing, FocusLineError, FocusPeak, LensError, ThinLens};
+use crate::depth::Depth;
 use core::fmt;
-
-/// A depth by focus.
-#[derive(Clone, Copy, PartialEq, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct FocusDepth {
-    /// The distance from the lens, along its axis, m.
-    pub depth_m: f32,
-    /// Its deviation, m.
-    pub sigma_m: f32,
-}
 
 /// The depth of every frame of a stack: the image distance `z` between lens and sensor in each, and the lens, whose equation
 /// gives `Z` with `sigma_Z = f^2 / (z - f)^2 sigma_z`. Between two frames `z` is a straight line.
@@ -96,10 +87,10 @@ impl<'a> FocusScale<'a> {
     }
 
     /// The depth of a peak, with what its deviation makes of it.
-    pub fn depth(&self, peak: &FocusPeak) -> Result<FocusDepth, LensError> {
+    pub fn depth(&self, peak: &FocusPeak) -> Result<Depth, LensError> {
         let (image, step) = self.image(peak.position())?;
         let depth_m = self.lens.object_distance(image)?;
-        Ok(FocusDepth { depth_m, sigma_m: self.lens.object_sigma(image, peak.sigma() * step.abs())? })
+        Ok(Depth { depth_m, sigma_m: self.lens.object_sigma(image, peak.sigma() * step.abs())? })
     }
 
     /// How much larger a frame is than the first one, by [`ThinLens::breathing`]; a frame that has no position is as large.

@@ -139,7 +139,7 @@ fn table(step: u128) -> i64 {
         if x >= 1 << 32 {
             x >>= 1;
         }
-        x = x * x >> 31;
+        x = (x * x) >> 31;
         log = 2 * log + (x >> 32) as i64;
     }
     log

@@ -2,6 +2,7 @@
 
 mod autofocus;
 mod dw9714;
+mod fusion;
 mod lens;
 mod stacks;
 mod twins;

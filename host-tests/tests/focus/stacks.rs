@@ -156,7 +156,7 @@ fn what_has_no_texture_has_no_answer() {
     let found = answer(&render(&blank), |_| Breathing::NONE);
     let share = found.answers() as f64 / found.peaks.len() as f64;
     assert!(share < 0.05, "{share} answered");
-    assert!(found.peaks.iter().any(|peak| *peak == Err(NoFocus::Untextured)));
+    assert!(found.peaks.contains(&Err(NoFocus::Untextured)));
     assert!(found.index().contains(&f32::INFINITY) && found.confidence().contains(&0.0));
 }
 
@@ -189,5 +189,5 @@ fn breathing_is_corrected_by_the_lens() {
     let left = answer(&frames, |_| Breathing::NONE);
     let [ours, plain] = [corrected, left].map(|found| errors(&found.index(), &truth(&scene)));
     println!("corrected {ours:?}, left {plain:?}");
-assert!(ours.0 <= 0.12 && ours.1 >= 0.95 && ours.0 < 0.9 * plain.0, "{ours:?} {plain:?}");
+    assert!(ours.0 <= 0.12 && ours.1 >= 0.95 && ours.0 < 0.9 * plain.0, "{ours:?} {plain:?}");
 }

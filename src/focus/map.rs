@@ -4,20 +4,10 @@ use super::boxes::Boxes;
 use super::cell::BIAS;
 use super::logarithm::log2;
 use super::{
-    Breathing, FocusCell, FocusConfig, FocusConfigError, FocusLineError, FocusPeak, NoFocus, binomial,
+    Breathing, FocusCell, FocusConfig, FocusConfigError, FocusLineError, FocusPeak, NoFocus, SharperRow, binomial,
     modified_laplacian,
 };
 use crate::imaging::LineBand;
-
-/// What a row of cells is told to the caller while a frame comes in.
-#[derive(Clone, Copy, Debug)]
-pub struct SharperRow<'a> {
-    /// The row of cells, from the top.
-    pub index: usize,
-    /// Whether each cell is sharper in this frame than in all before: who copies those pixels has, in the end, a picture that is
-    /// sharp all over.
-    pub sharper: &'a [bool],
-}
 
 /// Depth from focus: the frame in which each cell is sharpest, with a fraction, from frames that come one at a time.
 ///
@@ -146,10 +136,8 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
     }
 
     fn check_complete(&self) -> Result<(), FocusLineError> {
-        match self.config.height - self.taken {
-            0 => Ok(()),
-            missing => Err(FocusLineError::FrameIncomplete { missing }),
-        }
+        let missing = self.config.height - self.taken;
+        if missing == 0 { Ok(()) } else { Err(FocusLineError::FrameIncomplete { missing }) }
     }
 
     /// What the last frame's brightness adds to the logarithms of its sharpness: those of a frame half as bright are raised by 1.

@@ -1,6 +1,7 @@
 //! The command line: options, their limits, help.
 
 use crate::failure::Failure;
+use crate::focus::{self, FocusArgs};
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
@@ -56,16 +57,6 @@ const FEATURES_EXAMPLE: &str = "Example:
 Written is a line x1,y1,x2,y2 for every match, under that header: column and row in the left image, column and row in the \
 right one, in px. The images need not be rectified or of one size.";
 
-const FOCUS_EXAMPLE: &str = "Example:
-  stereo focus --frames stack --focal-length-mm 4 --positions positions.csv --out depth
-
-Written into the folder: index.pfm (the frame in which each pixel is sharpest, from 1, with its fraction; infinity where there \
-is no answer), confidence.pfm (0 to 1), all_in_focus.png (each pixel as in that frame); with the lens's data also depth.pfm (metres).
-
-The positions are lines, one a frame in the order of the frames' names, under the header image_distance_mm (from lens to sensor) or \
-focus_distance_mm (from lens to what is in focus); without one of these, the last number of a line counts, in mm, as the distance to \
-the sensor if no line has more than two focal lengths. Frames that grow with the sensor's distance are brought to one size.";
-
 #[derive(Debug, Parser)]
 #[command(name = "stereo", version, about = "Depth from two images, by the code that runs on the microcontroller")]
 #[command(after_help = EXAMPLES, arg_required_else_help = false)]
@@ -94,24 +85,8 @@ pub enum Command {
     #[command(after_help = FEATURES_EXAMPLE)]
     Features(FeaturesArgs),
     /// Tell depth by focus: frames of one scene with the lens in different positions
-    #[command(after_help = FOCUS_EXAMPLE)]
+    #[command(after_help = focus::EXAMPLE)]
     Focus(FocusArgs),
-}
-
-#[derive(Debug, Args)]
-pub struct FocusArgs {
-    /// Folder with the frames, images of one size; they count in the order of their names
-    #[arg(long, value_name = "DIR")]
-    pub frames: PathBuf,
-    /// Focal length of the lens, mm; with --positions it gives depths
-    #[arg(long, value_name = "F", requires = "positions", value_parser = focal_length, allow_negative_numbers = true)]
-    pub focal_length_mm: Option<f64>,
-    /// Where the lens stood in each frame; with --focal-length-mm it gives depths
-    #[arg(long, value_name = "FILE.csv", requires = "focal_length_mm")]
-    pub positions: Option<PathBuf>,
-    /// Folder for the results; made when it is missing
-    #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -285,11 +260,6 @@ pub enum TwoViewMethod {
 fn threshold(text: &str) -> Result<f64, &'static str> {
     let value = text.parse().ok().filter(|value| (0.001..=1000.0).contains(value));
     value.ok_or("a number from 0.001 to 1000 is needed")
-}
-
-fn focal_length(text: &str) -> Result<f64, &'static str> {
-    let value = text.parse().ok().filter(|value| (0.1..=10_000.0).contains(value));
-    value.ok_or("a number of millimetres from 0.1 to 10000 is needed")
 }
 
 fn seed(text: &str) -> Result<u64, String> {

@@ -1,10 +1,11 @@
 //! `stereo focus`: depth from a stack of frames with the lens in different positions.
 
-use crate::cli::FocusArgs;
 use crate::failure::Failure;
 use crate::files::png;
 use crate::print;
+use clap::Args;
 use std::fmt::Write;
+use std::path::PathBuf;
 use stereopsis::focus::{Breathing, FocusConfig, FocusScale, ThinLens};
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::focus::breathing::Agreement;
@@ -13,6 +14,38 @@ use stereopsis_host::focus::run::run as map;
 use stereopsis_host::focus::stack::Stack;
 use stereopsis_host::output::Staging;
 use stereopsis_host::pfm;
+
+/// What follows the options in the command's help.
+pub const EXAMPLE: &str = "Example:
+  stereo focus --frames stack --focal-length-mm 4 --positions positions.csv --out depth
+
+Written into the folder: index.pfm (the frame in which each pixel is sharpest, from 1, with its fraction; infinity where there \
+is no answer), confidence.pfm (0 to 1), all_in_focus.png (each pixel as in that frame); with the lens's data also depth.pfm (metres).
+
+The positions are lines, one a frame in the order of the frames' names, under the header image_distance_mm (from lens to sensor) or \
+focus_distance_mm (from lens to what is in focus); without one of these, the last number of a line counts, in mm, as the distance to \
+the sensor if no line has more than two focal lengths. Frames that grow with the sensor's distance are brought to one size.";
+
+#[derive(Debug, Args)]
+pub struct FocusArgs {
+    /// Folder with the frames, images of one size; they count in the order of their names
+    #[arg(long, value_name = "DIR")]
+    pub frames: PathBuf,
+    /// Focal length of the lens, mm; with --positions it gives depths
+    #[arg(long, value_name = "F", requires = "positions", value_parser = focal_length, allow_negative_numbers = true)]
+    pub focal_length_mm: Option<f64>,
+    /// Where the lens stood in each frame; with --focal-length-mm it gives depths
+    #[arg(long, value_name = "FILE.csv", requires = "focal_length_mm")]
+    pub positions: Option<PathBuf>,
+    /// Folder for the results; made when it is missing
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+fn focal_length(text: &str) -> Result<f64, &'static str> {
+    let value = text.parse().ok().filter(|value| (0.1..=10_000.0).contains(value));
+    value.ok_or("a number of millimetres from 0.1 to 10000 is needed")
+}
 
 /// What is written only with lens data. A run without them takes the file of an earlier run away.
 const WITH_DEPTH: [&str; 1] = ["depth.pfm"];
@@ -65,8 +98,11 @@ pub fn run(args: &FocusArgs) -> Result<(), Failure> {
     print(&text)
 }
 
-/// The lens and its distances from the sensor, m, if both are told of.
-fn positions(args: &FocusArgs, frames: usize) -> Result<Option<(ThinLens<f32>, Vec<f32>)>, Failure> {
+/// A lens, and for each frame its distance from the sensor, m.
+type Positions = (ThinLens<f32>, Vec<f32>);
+
+/// Those of the options, if both are told of.
+fn positions(args: &FocusArgs, frames: usize) -> Result<Option<Positions>, Failure> {
     let (Some(focal_mm), Some(path)) = (args.focal_length_mm, &args.positions) else { return Ok(None) };
     let named = |error| Failure::new(format!("--focal-length-mm {focal_mm}: {error}"));
     let lens = ThinLens::new(focal_mm / 1000.0).map_err(named)?;

@@ -180,7 +180,7 @@ impl FocusCell {
         let bend = a * y0 - b * y2;
         let most = i64::from(half) << 8;
         let off = if bend > 0 {
-            (y1 * num * 512 + den * bend).div_euclid(2 * den * bend).clamp(-most, most)
+            (y1 * num * 512 + den * bend).checked_div_euclid(2 * den * bend).unwrap_or(0).clamp(-most, most)
         } else {
             y1.signum() * most
         };

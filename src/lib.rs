@@ -10,6 +10,7 @@
 //! imaging        lines, line windows, pixel formats, census, gradients, noise
 //! matching       lines -> disparity row: census, costs, winner, checks, sub-pixel, speckle
 //! depth          disparity -> metres with its uncertainty, points
+//! focus          thin lens, sharpness, depth from focus, lens motors
 //! features       corners, descriptors, matches: which point of one picture is which of another
 //! pipeline       the live path, row by row
 //! ffi            the same for C, with the feature `ffi`
@@ -17,6 +18,7 @@
 //! camera -lines-> imaging -line windows-> matching -disparity row-> depth
 //!        '------------------------ pipeline -----------------------' -> ffi
 //! camera -lines-> imaging -line bands-> features -matches
+//!                         '-------------> focus -peaks-> depth by one lens
 //! ```
 //!
 //! A way in: [`pipeline::Pipeline`] is what firmware holds, [`camera::StereoSource`] is what it implements,
@@ -36,6 +38,8 @@ pub mod imaging;
 pub mod matching;
 
 pub mod depth;
+
+pub mod focus;
 
 pub mod features;
 

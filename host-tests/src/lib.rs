@@ -10,6 +10,7 @@
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
 //! * [`correspond`]: two pictures through the core's features and matcher. [`two_view`]: correspondences of a known scene,
 //!   with noise and wrong ones.
+//! * [`focus`]: focus stacks, a simulated lens, and stacks through the core's map.
 //! * [`twin`]: each stage again, naively, to hold the core to.
 //! * [`map`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`], [`output`], [`report`]: results as
 //!   files. [`command_line`]: errors in one line.
@@ -19,6 +20,7 @@ pub mod colour;
 pub mod command_line;
 pub mod correspond;
 pub mod epipolar_picture;
+pub mod focus;
 pub mod map;
 pub mod matches;
 pub mod matches_picture;

@@ -2,6 +2,8 @@
 
 #[path = "cli/features.rs"]
 mod features;
+#[path = "cli/focus.rs"]
+mod focus;
 #[path = "cli/output.rs"]
 mod output;
 #[path = "cli/refused.rs"]

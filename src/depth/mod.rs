@@ -6,15 +6,18 @@
 //! * [`DepthScale`]: `Z = f b / (d + doffs)` and `sigma_Z = Z^2 / (f b) sigma_d`.
 //! * [`DepthRange`]: the nearest and the farthest depth that a search range can tell, and the error there.
 //! * [`DepthTable`]: depths looked up, for cores that cannot divide.
+//! * [`Depth`]: a depth with its deviation, also by focus; [`fuse`]: two maps as one.
 //!
 //! How sure a depth is has two parts. [`DepthScale::sigma`] is how exact it is if the answer is right, of
 //! [`Row::sigma_px`](crate::matching::Row::sigma_px). Whether it is right is what
 //! [`Row::confidences`](crate::matching::Row::confidences) tell: leave out the least sure, and believe the deviations of the others.
 
+mod estimate;
 mod range;
 mod scale;
 mod table;
 
+pub use estimate::{Depth, fuse};
 pub use range::DepthRange;
 pub use scale::{DepthError, DepthScale};
 pub use table::{DepthTable, TableError};

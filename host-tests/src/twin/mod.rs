@@ -9,13 +9,14 @@
 //! * `filter`: smoothing along the row, the median, the speckle filter, smoothing down the columns, filling, the deviation.
 //! * `confidence`: how sure an answer is.
 //!
-//! Apart from them: [`features`], corners, descriptors and matches.
+//! Apart from them: [`features`], corners, descriptors and matches; [`focus`], sharpness and its peaks.
 //!
 //! Nothing here is shared with the core but its words: [`Config`], [`Disparity`], [`PixelFlags`].
 
 pub mod census;
 pub mod cost;
 pub mod features;
+pub mod focus;
 pub mod paths;
 pub mod smooth;
 

@@ -1,6 +1,7 @@
 //! The command line: options, their limits, help.
 
 use crate::failure::Failure;
+use crate::focus::{self, FocusArgs};
 use crate::two_view::{FEATURES_EXAMPLE, FUNDAMENTAL_EXAMPLE, FeaturesArgs, FundamentalArgs, POSE_EXAMPLE, PoseArgs};
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
@@ -11,7 +12,7 @@ use stereopsis_host::command_line::usage_line;
 use stereopsis_host::run::{Method, NoiseChoice, UnknownMethod, UnknownNoise, Way};
 
 /// What is told to one who names another command.
-const COMMANDS: &str = "the commands are demo, match, bench, features, fundamental and pose";
+const COMMANDS: &str = "the commands are demo, match, bench, features, focus, fundamental and pose";
 
 const EXAMPLES: &str = "Examples:
   stereo demo --out demo-out
@@ -62,6 +63,9 @@ pub enum Command {
     /// Find points of one image in another: corners, matched by what they look like
     #[command(after_help = FEATURES_EXAMPLE)]
     Features(FeaturesArgs),
+    /// Tell depth by focus: frames of one scene with the lens in different positions
+    #[command(after_help = focus::EXAMPLE)]
+    Focus(FocusArgs),
 }
 
 #[derive(Debug, Args)]

@@ -2,8 +2,8 @@
 //!
 //! * `cli`, `two_view`: what is asked for. `failure`: what is said when it cannot be done.
 //! * `input`: the images and the search, checked against each other. `progress`: how far it is.
-//! * `matching`, `bench`, `demo`, `features`, `fundamental`, `pose`: the commands. `files`, `place`: the
-//!   results as files.
+//! * `matching`, `bench`, `demo`, `features`, `focus`, `fundamental`, `pose`: the commands. `files`, `place`: the results as
+//!   files.
 
 mod bench;
 mod cli;
@@ -11,6 +11,7 @@ mod demo;
 mod failure;
 mod features;
 mod files;
+mod focus;
 mod fundamental;
 mod input;
 mod matching;
@@ -44,6 +45,7 @@ fn start() -> Result<(), Failure> {
         Ok(Command::Fundamental(args)) => fundamental::run(&args),
         Ok(Command::Pose(args)) => pose::run(&args),
         Ok(Command::Features(args)) => features::run(&args),
+        Ok(Command::Focus(args)) => focus::run(&args),
         Err(cli::Stop::Help(text)) => print(&text),
         Err(cli::Stop::Usage(failure)) => Err(failure),
     }

@@ -1,0 +1,125 @@
+//! `stereo focus`: depth from a stack of frames with the lens in different positions.
+
+use crate::failure::Failure;
+use crate::files::png;
+use crate::print;
+use clap::Args;
+use std::fmt::Write;
+use std::path::PathBuf;
+use stereopsis::focus::{Breathing, FocusConfig, FocusScale, ThinLens};
+use stereopsis_host::command_line::one_line;
+use stereopsis_host::focus::breathing::Agreement;
+use stereopsis_host::focus::positions::read_positions;
+use stereopsis_host::focus::run::run as map;
+use stereopsis_host::focus::stack::Stack;
+use stereopsis_host::output::Staging;
+use stereopsis_host::pfm;
+
+/// What follows the options in the command's help.
+pub const EXAMPLE: &str = "Example:
+  stereo focus --frames stack --focal-length-mm 4 --positions positions.csv --out depth
+
+Written into the folder: index.pfm (the frame in which each pixel is sharpest, from 1, with its fraction; infinity where there \
+is no answer), confidence.pfm (0 to 1), all_in_focus.png (each pixel as in that frame); with the lens's data also depth.pfm (metres).
+
+The positions are lines, one a frame in the order of the frames' names, under the header image_distance_mm (from lens to sensor) or \
+focus_distance_mm (from lens to what is in focus); without one of these, the last number of a line counts, in mm, as the distance to \
+the sensor if no line has more than two focal lengths. Frames that grow with the sensor's distance are brought to one size.";
+
+#[derive(Debug, Args)]
+pub struct FocusArgs {
+    /// Folder with the frames, images of one size; they count in the order of their names
+    #[arg(long, value_name = "DIR")]
+    pub frames: PathBuf,
+    /// Focal length of the lens, mm; with --positions it gives depths
+    #[arg(long, value_name = "F", requires = "positions", value_parser = focal_length, allow_negative_numbers = true)]
+    pub focal_length_mm: Option<f64>,
+    /// Where the lens stood in each frame; with --focal-length-mm it gives depths
+    #[arg(long, value_name = "FILE.csv", requires = "focal_length_mm")]
+    pub positions: Option<PathBuf>,
+    /// Folder for the results; made when it is missing
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+fn focal_length(text: &str) -> Result<f64, &'static str> {
+    let value = text.parse().ok().filter(|value| (0.1..=10_000.0).contains(value));
+    value.ok_or("a number of millimetres from 0.1 to 10000 is needed")
+}
+
+/// What is written only with lens data. A run without them takes the file of an earlier run away.
+const WITH_DEPTH: [&str; 1] = ["depth.pfm"];
+
+pub fn run(args: &FocusArgs) -> Result<(), Failure> {
+    let stack = Stack::open(&args.frames)?;
+    let positions = positions(args, stack.len())?;
+    let scale = match (&positions, &args.positions) {
+        (Some((lens, images)), Some(path)) => {
+            let named = |error| Failure::new(format!("{}: {error}", path.display()));
+            Some(FocusScale::new(*lens, images).map_err(named)?)
+        }
+        _ => None,
+    };
+    Staging::probe(&args.out)?;
+    let (width, height) = stack.size();
+    // Images have at most 4096 columns and rows.
+    let config = FocusConfig::pixels(width as u16, height as u16);
+    let is_breathing = match &scale {
+        Some(scale) => breathes(&stack, scale)?,
+        None => false,
+    };
+    let breathing = |frame| match &scale {
+        Some(scale) if is_breathing => scale.breathing(frame),
+        _ => Ok(Breathing::NONE),
+    };
+    let result = map(&config, (0..stack.len()).map(|index| stack.frame(index)), breathing)?;
+
+    let mut staging = Staging::new(&args.out)?;
+    staging.write("index.pfm", |out| pfm::write(out, result.width, &result.index()))?;
+    staging.write("confidence.pfm", |out| pfm::write(out, result.width, &result.confidence()))?;
+    staging.write("all_in_focus.png", |out| png(out, &result.picture))?;
+    if let Some(scale) = &scale {
+        staging.write(WITH_DEPTH[0], |out| pfm::write(out, result.width, &result.depth_m(scale)))?;
+    }
+    staging.commit(&WITH_DEPTH)?;
+
+    let share = 100.0 * result.answers() as f64 / result.peaks.len().max(1) as f64;
+    let mut text =
+        format!("{} frames of {width} x {height} pixels, {share:.1} % in focus in one of them\n", stack.len());
+    if scale.is_some() {
+        let grow = if is_breathing {
+            "grow as the lens says: corrected"
+        } else {
+            "do not grow as the lens says: left as they are"
+        };
+        let _ = writeln!(text, "the frames {grow}");
+    }
+    let _ = writeln!(text, "results are in {}", one_line(&args.out.display().to_string()));
+    print(&text)
+}
+
+/// A lens, and for each frame its distance from the sensor, m.
+type Positions = (ThinLens<f32>, Vec<f32>);
+
+/// Those of the options, if both are told of.
+fn positions(args: &FocusArgs, frames: usize) -> Result<Option<Positions>, Failure> {
+    let (Some(focal_mm), Some(path)) = (args.focal_length_mm, &args.positions) else { return Ok(None) };
+    let named = |error| Failure::new(format!("--focal-length-mm {focal_mm}: {error}"));
+    let lens = ThinLens::new(focal_mm / 1000.0).map_err(named)?;
+    let single = ThinLens::new((focal_mm / 1000.0) as f32).map_err(named)?;
+    Ok(Some((single, read_positions(path, lens, frames)?)))
+}
+
+/// Whether frames agree better with each other at the sizes that the lens gives them.
+fn breathes(stack: &Stack, scale: &FocusScale<'_>) -> Result<bool, Failure> {
+    let mut agreement = Agreement::default();
+    let mut before = stack.frame(0)?;
+    for index in 1..stack.len() {
+        let after = stack.frame(index)?;
+        if let Some(ratio) = scale.growth(index) {
+            agreement.add(&before.grey, &after.grey, ratio);
+        }
+        before = after;
+    }
+    Ok(agreement.is_breathing())
+}

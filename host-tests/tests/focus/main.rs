@@ -1,0 +1,8 @@
+//! Depth from focus: the lens, sharpness, peaks, lens motors.
+
+mod autofocus;
+mod dw9714;
+mod fusion;
+mod lens;
+mod stacks;
+mod twins;

@@ -1,0 +1,56 @@
+//! The magnification of a frame: which of its pixels shows what a pixel of the first shows.
+
+use super::FocusLineError;
+
+/// Where the pixels of the reference are in a frame that is larger or smaller by a factor, about the picture's middle.
+///
+/// What is interpolated is the sharpness, never the picture: an interpolated picture is blurred, more so between pixels than on
+/// them, and that would be taken for focus.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Breathing {
+    /// In 1/2^16.
+    scale: u32,
+}
+
+impl Breathing {
+    /// As large as the reference.
+    pub const NONE: Self = Self { scale: 1 << 16 };
+
+    /// A frame in which all is `scale` times as large as in the reference, 1/2 to 2: of
+    /// [`ThinLens::breathing`](super::ThinLens::breathing).
+    pub fn new(scale: f32) -> Result<Self, FocusLineError> {
+        if (0.5..=2.0).contains(&scale) {
+            // At least half, so that adding a half and cutting off rounds to the nearest.
+            Ok(Self { scale: (scale * 65536.0 + 0.5) as u32 })
+        } else {
+            Err(FocusLineError::Scale)
+        }
+    }
+
+    /// Whether nothing moves.
+    pub(super) fn is_none(self) -> bool {
+        self == Self::NONE
+    }
+
+    /// The column or row of the frame, of `size`, that is nearest to what column or row `place` of the reference shows; the last
+    /// one inside of the frame where it shows no such place.
+    pub fn source(self, place: usize, size: usize) -> usize {
+        let (before, part) = self.between(place, size);
+        before + usize::from(part >= 128)
+    }
+
+    /// The column or row before what column or row `place` of the reference shows, and how far it is from there to the next
+    /// one, in 1/256; 0 in the last one.
+    #[inline]
+    pub(super) fn between(self, place: usize, size: usize) -> (usize, u32) {
+        if self.is_none() {
+            return (place, 0);
+        }
+        // Twice the distance from the middle: sizes have 16 bits.
+        let last = size.saturating_sub(1) as i64;
+        let off = 2 * place as i64 - last;
+        let place = ((off * i64::from(self.scale) + (last << 16)) >> 9).clamp(0, last << 8);
+        ((place >> 8) as usize, (place & 255) as u32)
+    }
+}

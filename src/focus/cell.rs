@@ -1,0 +1,219 @@
+//! One cell of the picture through the frames: where its sharpness has its peak.
+
+use super::logarithm::{FRACTION, OCTAVE, log2};
+use core::fmt;
+
+/// Frames that a peak is fitted to.
+pub(super) const FRAMES: usize = 7;
+/// What a frame's brightness may shift a logarithm by, either way.
+pub(super) const BIAS: u16 = 4 * OCTAVE;
+/// Weights of the frames around a peak, for the choice of it.
+const CHOICE: [(isize, u32); 5] = [(-2, 1), (-1, 2), (0, 3), (1, 2), (2, 1)];
+
+/// The state of a cell, 36 bytes: its last sharpnesses and its peak so far.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct FocusCell {
+    /// Logarithms of the sharpness of the last frames, that of frame n in place n mod 7.
+    recent: [u16; FRAMES],
+    /// The largest of them, for the picture that is sharp all over.
+    largest: u16,
+    /// That of the peak's frame.
+    peak: u16,
+    /// How strongly the parabola bends at the peak, per frame and frame.
+    bend: u16,
+    /// The weighted sum by which the peak was chosen.
+    choice: u32,
+    /// Where the peak is, in 1/256 frame from 0.
+    position: u32,
+    /// Sum of all logarithms.
+    sum: u32,
+    /// Sum of the sizes of their second differences.
+    rough: u32,
+}
+
+/// Where a cell is in focus, and how sure that is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct FocusPeak {
+    /// The frame, counted from 0, in 1/256.
+    pub position_q8: u32,
+    /// Its deviation, in 1/256 frame, of a peak that is the right one.
+    pub sigma_q8: u32,
+    /// How far the peak stands out: `h / (h + 1)` in 1/255, where `h` is how many times its sharpness is twice the geometric mean
+    /// of all frames'.
+    pub confidence: u8,
+}
+
+impl FocusPeak {
+    /// The frame from 0, with its fraction.
+    pub fn position(&self) -> f32 {
+        // Exact: 24 bits are 65 536 frames.
+        self.position_q8 as f32 / 256.0
+    }
+
+    /// Its deviation in frames.
+    pub fn sigma(&self) -> f32 {
+        self.sigma_q8 as f32 / 256.0
+    }
+}
+
+/// Why a cell is nowhere in focus.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum NoFocus {
+    /// Fewer frames came than a peak has sides and a top.
+    TooFewFrames {
+        /// How many would have been enough.
+        needed: u32,
+    },
+    /// The sharpness changes no more than noise does.
+    Untextured,
+}
+
+impl fmt::Display for NoFocus {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooFewFrames { needed } => write!(f, "at least {needed} frames are needed"),
+            Self::Untextured => f.write_str("the sharpness changes no more than noise does"),
+        }
+    }
+}
+
+impl core::error::Error for NoFocus {}
+
+impl FocusCell {
+    /// Before the first frame.
+    pub const EMPTY: Self =
+        Self { recent: [0; FRAMES], largest: 0, peak: 0, bend: 0, choice: 0, position: 0, sum: 0, rough: 0 };
+    /// Frames that a peak needs.
+    pub const FEWEST_FRAMES: u32 = 3;
+
+    /// Takes the sharpness in `frame` and, first, completes the frame before: `shift` is what its brightness adds to logarithms.
+    /// True if no frame before was as sharp, with its own brightness taken to be that of the frame before.
+    #[inline]
+    pub(super) fn push(&mut self, frame: u32, sharpness: u32, shift: u16) -> bool {
+        if frame == 0 {
+            *self = Self::EMPTY;
+        }
+        self.complete(frame, shift);
+        let log = log2(sharpness);
+        if let Some(place) = self.recent.get_mut(frame as usize % FRAMES) {
+            *place = log;
+        }
+        let shifted = log.saturating_add(shift);
+        let is_sharper = frame == 0 || shifted > self.largest;
+        self.largest = if is_sharper { shifted } else { self.largest };
+        is_sharper
+    }
+
+    /// Completes the last of `frames` frames and looks at the candidate that is then due.
+    fn complete(&mut self, frames: u32, shift: u16) {
+        let Some(last) = frames.checked_sub(1) else { return };
+        let log = match self.recent.get_mut(last as usize % FRAMES) {
+            Some(place) => {
+                *place = place.saturating_add(shift);
+                u32::from(*place)
+            }
+            None => return,
+        };
+        self.sum = self.sum.saturating_add(log);
+        if last >= 2 {
+            let bend = (log + self.at(last - 2)).abs_diff(2 * self.at(last - 1));
+            self.rough = self.rough.saturating_add(bend);
+        }
+        match last {
+            0..6 => {}
+            6 => (0..4).for_each(|candidate| self.consider(candidate, frames)),
+            _ => self.consider(last - 3, frames),
+        }
+    }
+
+    /// After the last of all `frames` frames: the candidates that were still to see the frames after them.
+    pub(super) fn finish(&mut self, frames: u32, shift: u16) {
+        self.complete(frames, shift);
+        let first = if frames < FRAMES as u32 { 0 } else { frames - 3 };
+        (first..frames).for_each(|candidate| self.consider(candidate, frames));
+    }
+
+    fn at(&self, frame: u32) -> u32 {
+        self.recent.get(frame as usize % FRAMES).copied().unwrap_or(0).into()
+    }
+
+    /// Takes `candidate` as the peak if it and its neighbours are sharper than those of the peak so far.
+    fn consider(&mut self, candidate: u32, frames: u32) {
+        let last = frames.saturating_sub(1);
+        let near = |by: isize| candidate.saturating_add_signed(by as i32).min(last);
+        let choice = CHOICE.iter().fold(0, |sum, &(by, weight)| sum + weight * self.at(near(by)));
+        if choice <= self.choice && candidate > 0 {
+            return;
+        }
+        self.choice = choice;
+        self.peak = self.at(candidate) as u16;
+        let half = (last / 2).min(3);
+        let centre = candidate.clamp(half, last - half);
+        (self.position, self.bend) = self.fit(centre, half);
+    }
+
+    /// The top of the parabola through the logarithms of the frames around `centre`, by weighted least squares: with `half`
+    /// of 3 the weights are 1, 2, 3, 3, 3, 2, 1, with 2 1, 2, 2, 2, 1. In 1/256 frame, with its bend. A parabola that opens
+    /// upwards has its top at the end that is higher.
+    fn fit(&self, centre: u32, half: u32) -> (u32, u16) {
+        // The normal equations solved for the top: `num / den * y1 / (a y0 - b y2)`, and the bend as `(a y0 - b y2) / c`,
+        // where yk is the sum of weight, distance^k and logarithm.
+        let (weights, num, den, a, b, c): (&[i64], _, _, _, _, _) = match half {
+            3 => (&[3, 3, 2, 1], 47, 10, 8, 3, 188),
+            2 => (&[2, 2, 1], 3, 2, 3, 2, 18),
+            1 => (&[1, 1], 1, 2, 2, 3, 1),
+            _ => return (centre << 8, 0),
+        };
+        let (mut y0, mut y1, mut y2) = (0, 0, 0);
+        for (distance, &weight) in (0_u32..).zip(weights) {
+            let [before, after] = [centre.saturating_sub(distance), centre + distance].map(|f| i64::from(self.at(f)));
+            let (d, both) = (i64::from(distance), if distance == 0 { after } else { before + after });
+            y0 += weight * both;
+            y1 += weight * d * (after - before);
+            y2 += weight * d * d * both;
+        }
+        // Without the mean of the logarithms, which changes nothing: with these weights `a y0 - b y2` of a constant is 0 only
+        // for a and b of the normal equations, as here.
+        let bend = a * y0 - b * y2;
+        let most = i64::from(half) << 8;
+        let off = if bend > 0 {
+            (y1 * num * 512 + den * bend).checked_div_euclid(2 * den * bend).unwrap_or(0).clamp(-most, most)
+        } else {
+            y1.signum() * most
+        };
+        let position = (i64::from(centre) << 8) + off;
+        (position.max(0) as u32, (bend / c).clamp(0, u16::MAX.into()) as u16)
+    }
+
+    /// The peak, after the last of `frames` frames.
+    pub(super) fn peak(&self, frames: u32) -> Result<FocusPeak, NoFocus> {
+        if frames < Self::FEWEST_FRAMES {
+            return Err(NoFocus::TooFewFrames { needed: Self::FEWEST_FRAMES });
+        }
+        let height = u32::from(self.peak).saturating_sub(self.sum / frames);
+        if height < Self::SURE && 4 * height < 7 * self.rough_mean(frames) || height < Self::LEAST {
+            return Err(NoFocus::Untextured);
+        }
+        let confidence = (height * 255 / (height + u32::from(OCTAVE))) as u8;
+        // Noise of deviation s changes the slope at the top by 0.21 s and second differences by 1.95 s in the mean of their
+        // sizes. What else is in a window, nearer and farther, moves a peak by the more, the wider it is: by a twelfth of the
+        // distance at which it has fallen by half an octave, on rendered slopes and waves.
+        let bend = u32::from(self.bend).max(1);
+        let noise = self.rough_mean(frames) * 27 / bend;
+        let width = ((u32::from(OCTAVE) << 16) / bend).isqrt();
+        Ok(FocusPeak { position_q8: self.position, sigma_q8: (noise + width / 12).clamp(16, frames << 8), confidence })
+    }
+
+    /// The mean size of second differences.
+    fn rough_mean(&self, frames: u32) -> u32 {
+        self.rough.checked_div(frames.saturating_sub(2)).unwrap_or(0)
+    }
+
+    /// A peak so high is no noise: twice the mean.
+    const SURE: u32 = 1 << FRACTION;
+    /// A peak so low is rounding: 4 percent over the mean.
+    const LEAST: u32 = 116;
+}

@@ -1,0 +1,54 @@
+//! Depth from focus: the lens that images a point sharply tells how far it is.
+//!
+//! In: frames of one scene with the lens in different positions, line by line. Out: for each pixel or tile the position in which
+//! it is sharpest, and its depth.
+//!
+//! * [`ThinLens`], [`MicroLens`]: `1/z + 1/Z = 1/f` in floats and in whole micrometres, with [`DepthOfField`].
+//! * [`SharpnessRows`]: classic measures of sharpness over windows. In them and below, in running order: [`binomial`],
+//!   [`modified_laplacian`], [`tenengrad`], [`laplacian`].
+//! * [`FocusMap`]: frames to a [`FocusPeak`] for each cell, with [`Breathing`]; then [`median_row`].
+//! * [`FocusScale`]: peaks to [`Depth`](crate::depth::Depth).
+//! * [`LensActuator`], [`Dw9714`]: what moves a lens. [`FocusCalibration`]: its positions to distances.
+//! * [`RegionSharpness`], [`Autofocus`] with its [`FocusSearch`]: a region brought into focus in few frames.
+
+mod actuator;
+mod autofocus;
+mod boxes;
+mod breathing;
+mod calibration;
+mod cell;
+mod config;
+mod dw9714;
+mod error;
+mod field;
+mod lens;
+mod logarithm;
+mod map;
+mod median;
+mod micrometres;
+mod region;
+mod rows;
+mod scale;
+mod search;
+mod sharper;
+mod sharpness;
+
+pub use actuator::{ActuatorErrorType, ActuatorLimits, LensActuator};
+pub use autofocus::{Autofocus, AutofocusError, Focused, LensCommand, LensEvent};
+pub use breathing::Breathing;
+pub use calibration::{FocusCalibration, FocusCalibrationError};
+pub use cell::{FocusCell, FocusPeak, NoFocus};
+pub use config::{FocusConfig, FocusConfigError, FocusLineError};
+pub use dw9714::{Dw9714, Slew};
+pub use error::LensError;
+pub use field::{DepthOfField, Far};
+pub use lens::ThinLens;
+pub use map::FocusMap;
+pub use median::median_row;
+pub use micrometres::MicroLens;
+pub use region::{Region, RegionSharpness};
+pub use rows::{binomial, laplacian, modified_laplacian, tenengrad};
+pub use scale::{FocusScale, FocusScaleError};
+pub use search::{FocusSearch, Next};
+pub use sharper::SharperRow;
+pub use sharpness::{Measure, SharpnessRows};

@@ -1,0 +1,11 @@
+//! What a frame tells while it comes in.
+
+/// What a row of cells is told to the caller while a frame comes in.
+#[derive(Clone, Copy, Debug)]
+pub struct SharperRow<'a> {
+    /// The row of cells, from the top.
+    pub index: usize,
+    /// Whether each cell is sharper in this frame than in all before: who copies those pixels has, in the end, a picture that is
+    /// sharp all over.
+    pub sharper: &'a [bool],
+}

@@ -6,6 +6,7 @@ mod matrices;
 mod planes;
 mod points;
 mod poses;
+mod rectify;
 mod robust;
 mod twin;
 mod views;

@@ -9,7 +9,7 @@
 //! * `filter`: smoothing along the row, the median, the speckle filter, smoothing down the columns, filling, the deviation.
 //! * `confidence`: how sure an answer is.
 //!
-//! Apart from them: [`features`], corners, descriptors and matches.
+//! Apart from them: [`features`], corners, descriptors and matches; [`remap`](mod@remap), raw pictures as rectified ones.
 //!
 //! Nothing here is shared with the core but its words: [`Config`], [`Disparity`], [`PixelFlags`].
 
@@ -17,6 +17,7 @@ pub mod census;
 pub mod cost;
 pub mod features;
 pub mod paths;
+pub mod remap;
 pub mod smooth;
 
 mod confidence;

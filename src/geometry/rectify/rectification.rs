@@ -76,14 +76,15 @@ impl core::error::Error for RectifyError {}
 /// use stereopsis::geometry::{Camera, Crop, ImageSize, Pose, Rectification, StereoRig};
 /// use nalgebra::{Matrix3, Point2, Vector3};
 /// // The right camera sees everything one row higher.
-/// let (left, right) = (Camera::new(500.0, 500.0, 320.0, 240.0)?, Camera::new(500.0, 500.0, 320.0, 239.0)?);
+/// let (left, right) = (Camera::new(500.0_f64, 500.0, 320.0, 240.0)?, Camera::new(500.0, 500.0, 320.0, 239.0)?);
 /// let size = ImageSize { width: 641, height: 481 };
 /// let pose = Pose::new(Matrix3::identity(), Vector3::new(0.06, 0.0, 0.0))?;
 /// let rectified = Rectification::new(&StereoRig::new([left, right], pose, [size; 2])?, Crop::Natural, size)?;
 /// let [first, second] = rectified.warps();
-/// let middle = rectified.camera().principal_point();
-/// assert_eq!(first.source(&middle.into())?.pixel, Point2::new(320.0, 240.0));
-/// assert_eq!(second.source(&middle.into())?.pixel, Point2::new(320.0, 239.0));
+/// let (cx, cy) = rectified.camera().principal_point();
+/// let middle = Point2::new(cx, cy);
+/// assert_eq!(first.source(&middle)?.pixel, Point2::new(320.0, 240.0));
+/// assert_eq!(second.source(&middle)?.pixel, Point2::new(320.0, 239.0));
 /// assert_eq!(rectified.rig()?.baseline_m(), 0.06);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

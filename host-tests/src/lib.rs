@@ -8,6 +8,7 @@
 //! * [`matches`]: correspondences from files.
 //! * [`real`]: real pairs with a known truth, also altered, and scores on them.
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
+//! * [`rectify`]: raw pictures through the core's remap.
 //! * [`correspond`]: two pictures through the core's features and matcher.
 //! * [`twin`]: each stage again, naively, to hold the core to.
 //! * [`map`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`output`], [`report`]: results as
@@ -25,6 +26,7 @@ pub mod output;
 pub mod pfm;
 pub mod ply;
 pub mod real;
+pub mod rectify;
 pub mod report;
 pub mod run;
 pub mod scene;

@@ -26,7 +26,7 @@ pub fn json_file(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
     let name = path.file_name().and_then(OsStr::to_str).filter(|_| !path.is_dir()).ok_or_else(no_file)?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut staging = Staging::new(folder)?;
-    staging.write(name, |out| json(out, value))?;
+    staging.write(name, |out| json_of(out, value))?;
     Ok(staging.commit(&[])?)
 }
 
@@ -40,7 +40,7 @@ pub fn write(staging: &mut Staging, report: &Report<'_>, scale: Option<&DepthSca
     staging.write("disparity_colour.png", |out| png(out, &colour))?;
     staging.write("flags.png", |out| png(out, &flags_raw(map)))?;
     staging.write("confidence.png", |out| png(out, &confidence_raw(map)))?;
-    staging.write("summary.json", |out| json(out, report.summary))?;
+    staging.write("summary.json", |out| json_of(out, report.summary))?;
     if let Some(scale) = scale {
         let [depth_pfm, depth_png, cloud] = WITH_DEPTH;
         staging.write(depth_pfm, |out| pfm::write(out, map.width, &map.depth_m(scale)))?;
@@ -64,7 +64,8 @@ where
     })
 }
 
-fn json(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
+/// A value as JSON.
+pub fn json_of(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut *out, value)?;
     out.write_all(b"\n")
 }

@@ -2,7 +2,7 @@
 //!
 //! * `cli`: what is asked for. `failure`: what is said when it cannot be done.
 //! * `input`: the images and the search, checked against each other. `progress`: how far it is.
-//! * `matching`, `bench`, `demo`, `features`, `fundamental`, `pose`: the commands. `files`: the results as files.
+//! * `matching`, `bench`, `demo`, `rectify`, `features`, `fundamental`, `pose`: the commands. `files`: the results as files.
 
 mod bench;
 mod cli;
@@ -15,6 +15,7 @@ mod input;
 mod matching;
 mod pose;
 mod progress;
+mod rectify;
 
 use cli::Command;
 use failure::Failure;
@@ -40,6 +41,7 @@ fn start() -> Result<(), Failure> {
         Ok(Command::Bench(args)) => bench::run(&args),
         Ok(Command::Fundamental(args)) => fundamental::run(&args),
         Ok(Command::Pose(args)) => pose::run(&args),
+        Ok(Command::Rectify(args)) => rectify::run(&args),
         Ok(Command::Features(args)) => features::run(&args),
         Err(cli::Stop::Help(text)) => print(&text),
         Err(cli::Stop::Usage(failure)) => Err(failure),

@@ -7,7 +7,7 @@
 //! units math     words: Disparity, Millimetres, PixelFlags; the one file that names libm
 //! geometry       pure maths on fixed-size nalgebra types, no pixels
 //! camera         traits for where lines come from; two cameras as one stereo source
-//! imaging        lines, line windows, pixel formats, census, gradients, noise
+//! imaging        lines, line windows, pixel formats, remap, census, gradients, noise
 //! matching       lines -> disparity row: census, costs, winner, checks, sub-pixel, speckle
 //! depth          disparity -> metres with its uncertainty, points
 //! focus          thin lens, sharpness, depth from focus, lens motors

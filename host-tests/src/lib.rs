@@ -11,6 +11,7 @@
 //! * [`correspond`]: two pictures through the core's features and matcher. [`two_view`]: correspondences of a known scene,
 //!   with noise and wrong ones.
 //! * [`focus`]: focus stacks, a simulated lens, and stacks through the core's map.
+//! * [`rectify`]: raw pictures through the core's remap.
 //! * [`twin`]: each stage again, naively, to hold the core to.
 //! * [`map`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`], [`output`], [`report`]: results as
 //!   files. [`command_line`]: errors in one line.
@@ -29,6 +30,7 @@ pub mod output;
 pub mod pfm;
 pub mod ply;
 pub mod real;
+pub mod rectify;
 pub mod report;
 pub mod run;
 pub mod scene;

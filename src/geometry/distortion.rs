@@ -74,6 +74,31 @@ impl<T: Real> Distortion<T> {
         (distorted, derivative)
     }
 
+    /// The squared radius r^2 up to which a growing radius is put at a growing one, of `p1 = p2 = 0`; 64 at most, which is a
+    /// field of view of 166 degrees. Beyond it, coefficients that were fitted within the image turn the image over.
+    pub fn reach_r2(&self) -> T {
+        // d(r q) / dr = q + 2 r^2 dq / d(r^2).
+        let grows = |r: T| {
+            let s = r * r;
+            T::ONE + s * (T::of(3.0) * self.k1 + s * (T::of(5.0) * self.k2 + s * T::of(7.0) * self.k3)) > T::ZERO
+        };
+        let most = T::of(8.0);
+        let step = T::of(1.0 / 64.0);
+        let mut r = T::ZERO;
+        while r < most && grows(r + step) {
+            r += step;
+        }
+        // The end lies within one step.
+        let mut part = step;
+        for _ in 0..12 {
+            part *= T::of(0.5);
+            if grows(r + part) {
+                r += part;
+            }
+        }
+        r.min(most) * r.min(most)
+    }
+
     /// The point that [`Self::distort`] puts at `distorted`, to within `tolerance`, in units of the plane Z = 1.
     ///
     /// Newton's method, at most twelve steps. `None` when it has not come within the tolerance, or when it came to
@@ -124,6 +149,14 @@ mod tests {
         assert!((derivative.column(0) - slope).amax() < 1e-9, "{derivative} {slope}");
         let back = lens.undistort(&distorted, 1e-12).expect("it converges");
         assert!((back - point).amax() < 1e-12);
+    }
+
+    #[test]
+    fn the_radius_grows_up_to_the_fold() {
+        // 1 - 3 r^2 / 2 is zero at r^2 = 2/3.
+        let lens = Distortion { k1: -0.5, ..Distortion::<f64>::NONE };
+        assert!((lens.reach_r2() - 2.0 / 3.0).abs() < 1e-4, "{}", lens.reach_r2());
+        assert_eq!(Distortion::<f64>::NONE.reach_r2(), 64.0);
     }
 
     #[test]

@@ -6,6 +6,8 @@
 //! * [`Real`]: `f32` or `f64`. `linear`: factors and null vectors that are bounded and cannot panic.
 //! * [`Camera`] with its [`Distortion`]; [`Pose`] of a second camera beside the first; [`RectifiedRig`]: two cameras whose
 //!   rows are aligned, and its re-projection matrix Q.
+//! * [`StereoRig`]: two cameras as they are mounted; [`Rectification`] aligns their rows, a [`Warp`] for each, with a
+//!   [`RectificationReport`].
 //! * [`Essential`] and [`Fundamental`]: two views, in the cameras' frames and in px, with lines, epipoles and distances.
 //! * [`Correspondence`]s to [`Fundamental`]: [`eight_point()`]. To [`Homography`]: its direct linear transform. [`choose`]
 //!   says which of the two it is.
@@ -67,11 +69,13 @@ mod pose;
 mod projection;
 mod real;
 mod recover;
+mod rectify;
 mod relative;
 mod rig;
 mod robust;
 mod seven_point;
 mod skew;
+mod stereo_rig;
 mod triangulate;
 mod weighted;
 
@@ -93,8 +97,10 @@ pub use pose::{Pose, PoseError};
 pub use projection::{Landmark, Projection, ResectionError};
 pub use real::Real;
 pub use recover::{RecoverError, RecoveredPose};
+pub use rectify::{Axis, Crop, Rectification, RectificationReport, RectifyError, Warp, WarpSource};
 pub use relative::{RelativePose, ScaleError};
 pub use rig::{RectifiedRig, RigError};
 pub use robust::{RobustConfig, RobustError, RobustFundamental, Sampling, robust_fundamental};
 pub use skew::skew;
+pub use stereo_rig::{ImageSize, StereoRig, StereoRigError};
 pub use triangulate::{Triangulated, TriangulationError, TwoViews};

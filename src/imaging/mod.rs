@@ -6,14 +6,17 @@
 //! 2. [`LineBand`]: the last lines, as the rows around a centre; [`LineWindow`] holds five.
 //! 3. [`census_plus4`], [`census_ring8`], [`census_wide8`], [`census_full24`]: the codes of one row. [`gradients`]: how its
 //!    brightness changes along the line and across it.
-//! 4. [`NoiseMeter`]: how noisy the lines are, in levels of [`Noise`]; [`smooth()`]: a row of a window with less of it.
+//! 4. [`RectifiedPair`]: raw lines as rectified ones, by a [`Remap`] for each camera with its [`RemapTable`].
+//! 5. [`NoiseMeter`]: how noisy the lines are, in levels of [`Noise`]; [`smooth()`]: a row of a window with less of it.
 //!
-//! Borders: a row or column outside the image is the nearest one inside it, everywhere in this module.
+//! Borders, but of remapped lines: a row or column outside the image is the nearest one inside it, everywhere in this
+//! module.
 
 mod census;
 mod gradient;
 mod grey;
 mod noise;
+mod remap;
 mod smooth;
 mod window;
 
@@ -21,5 +24,6 @@ pub use census::{census_full24, census_plus4, census_ring8, census_wide8};
 pub use gradient::gradients;
 pub use grey::GreyLines;
 pub use noise::{Noise, NoiseMeter};
+pub use remap::{RectifiedPair, RectifiedPairError, Remap, RemapError, RemapTable, RemapTableError};
 pub use smooth::smooth;
 pub use window::{LineBand, LineWindow};

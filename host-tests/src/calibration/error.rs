@@ -29,6 +29,36 @@ pub enum Fault {
     /// The content is of no format that is read.
     #[error("is neither a Middlebury calib.txt (cam0=[...]) nor a KITTI one (P0: and P1:, or two lines of 12 numbers)")]
     Unknown,
+    /// The content is of no format of a rig that is not rectified.
+    #[error(
+        "is no calibration of two cameras: OpenCV's YAML or XML, ROS's camera_info, Kalibr's camchain, Middlebury's or KITTI's calib.txt"
+    )]
+    UnknownRaw,
+    /// YAML, JSON or XML that is none.
+    #[error("is not well-formed: {0}")]
+    Syntax(String),
+    /// One camera's file of two.
+    #[error("is the camera_info of one camera; give --calib a second time, with the other camera's")]
+    OneOfTwo,
+    /// What a key has is wrong.
+    #[error("{key}: {problem}")]
+    Key {
+        /// The key.
+        key: String,
+        /// What is wrong, and what would be right.
+        problem: String,
+    },
+    /// The baseline is so long or so short that its unit is suspected.
+    #[error("{key}: a baseline of {baseline_m} m is not likely; where it is in millimetres, say --unit mm")]
+    Unit {
+        /// The key that it comes from.
+        key: &'static str,
+        /// What follows, m.
+        baseline_m: f64,
+    },
+    /// The rig is refused by the core.
+    #[error("{0}")]
+    StereoRig(stereopsis::geometry::StereoRigError),
     /// A key that is needed is not there.
     #[error("{0} is missing; {1} is needed")]
     Missing(String, &'static str),

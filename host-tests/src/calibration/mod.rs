@@ -4,6 +4,7 @@
 //! [`RectifiedRig`] in metres, with the image size where the file says it.
 //!
 //! * [`Cameras`]: the two cameras alone, which need not be rectified.
+//! * [`RawCalibration`]: two cameras as they are mounted, also from OpenCV's, ROS's and Kalibr's files.
 //! * `middlebury`: `cam0=[f 0 cx; 0 f cy; 0 0 1]`, `cam1`, `doffs`, `baseline`, and optional sizes.
 //! * `kitti`: projection matrices of 12 numbers, labelled `P0:` to `P3:` or `P_rect_00:` to `P_rect_03:`, or two
 //!   lines without labels for left and right.
@@ -12,10 +13,12 @@ mod cameras;
 mod error;
 mod kitti;
 mod middlebury;
+mod raw;
 
 pub use cameras::Cameras;
 pub use error::{CalibrationError, Fault};
 pub use middlebury::write_middlebury;
+pub use raw::RawCalibration;
 
 use std::fs::File;
 use std::io::Read;

@@ -9,7 +9,8 @@
 //! * `filter`: smoothing along the row, the median, the speckle filter, smoothing down the columns, filling, the deviation.
 //! * `confidence`: how sure an answer is.
 //!
-//! Apart from them: [`features`], corners, descriptors and matches; [`focus`], sharpness and its peaks.
+//! Apart from them: [`features`], corners, descriptors and matches; [`focus`], sharpness and its peaks;
+//! [`remap`](mod@remap), raw pictures as rectified ones.
 //!
 //! Nothing here is shared with the core but its words: [`Config`], [`Disparity`], [`PixelFlags`].
 
@@ -18,6 +19,7 @@ pub mod cost;
 pub mod features;
 pub mod focus;
 pub mod paths;
+pub mod remap;
 pub mod smooth;
 
 mod confidence;

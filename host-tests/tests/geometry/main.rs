@@ -9,6 +9,7 @@ mod matrices;
 mod planes;
 mod points;
 mod poses;
+mod rectify;
 mod robust;
 mod twin;
 mod views;

@@ -1,5 +1,9 @@
 //! The command line: options, their limits, help.
 
+mod rectify;
+
+pub use rectify::{RectifyArgs, Unit};
+
 use crate::failure::Failure;
 use crate::focus::{self, FocusArgs};
 use crate::two_view::{FEATURES_EXAMPLE, FUNDAMENTAL_EXAMPLE, FeaturesArgs, FundamentalArgs, POSE_EXAMPLE, PoseArgs};
@@ -12,7 +16,7 @@ use stereopsis_host::command_line::usage_line;
 use stereopsis_host::run::{Method, NoiseChoice, UnknownMethod, UnknownNoise, Way};
 
 /// What is told to one who names another command.
-const COMMANDS: &str = "the commands are demo, match, bench, features, focus, fundamental and pose";
+const COMMANDS: &str = "the commands are demo, match, bench, rectify, features, focus, fundamental and pose";
 
 const EXAMPLES: &str = "Examples:
   stereo demo --out demo-out
@@ -54,6 +58,9 @@ pub enum Command {
     /// Time the matching of a rectified pair of images
     #[command(after_help = BENCH_EXAMPLE)]
     Bench(BenchArgs),
+    /// Align the rows of an unrectified pair of images, by a calibration of the two cameras
+    #[command(after_help = rectify::EXAMPLE)]
+    Rectify(RectifyArgs),
     /// Estimate the fundamental matrix of two images from matches, some of them wrong
     #[command(after_help = FUNDAMENTAL_EXAMPLE)]
     Fundamental(FundamentalArgs),

@@ -2,8 +2,8 @@
 //!
 //! * `cli`, `two_view`: what is asked for. `failure`: what is said when it cannot be done.
 //! * `input`: the images and the search, checked against each other. `progress`: how far it is.
-//! * `matching`, `bench`, `demo`, `features`, `focus`, `fundamental`, `pose`: the commands. `files`, `place`: the results as
-//!   files.
+//! * `matching`, `bench`, `demo`, `rectify`, `features`, `focus`, `fundamental`, `pose`: the commands. `files`, `place`: the
+//!   results as files.
 
 mod bench;
 mod cli;
@@ -18,6 +18,7 @@ mod matching;
 mod place;
 mod pose;
 mod progress;
+mod rectify;
 mod two_view;
 
 use cli::Command;
@@ -44,6 +45,7 @@ fn start() -> Result<(), Failure> {
         Ok(Command::Bench(args)) => bench::run(&args),
         Ok(Command::Fundamental(args)) => fundamental::run(&args),
         Ok(Command::Pose(args)) => pose::run(&args),
+        Ok(Command::Rectify(args)) => rectify::run(&args),
         Ok(Command::Features(args)) => features::run(&args),
         Ok(Command::Focus(args)) => focus::run(&args),
         Err(cli::Stop::Help(text)) => print(&text),

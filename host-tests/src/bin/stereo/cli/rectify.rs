@@ -1,0 +1,44 @@
+//! The options of `stereo rectify`.
+
+use super::PairArgs;
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+pub const EXAMPLE: &str = "Example:
+  stereo rectify --left left.png --right right.png --calib stereo.yml --out rectified
+
+Written into the folder: left.png and right.png (grey, rows aligned), valid_left.png and valid_right.png (255 where the \
+raw image was seen, 0 elsewhere), and rectified.json (the new cameras, Q, the rows of input that the remap holds at \
+once). Cameras below each other get their columns aligned.";
+
+#[derive(Debug, Args)]
+pub struct RectifyArgs {
+    #[command(flatten)]
+    pub pair: PairArgs,
+    /// Calibration of the two cameras: OpenCV's YAML or XML, Kalibr's camchain, a Middlebury or KITTI calib.txt; twice for
+    /// ROS's camera_info, the left camera's and the right one's, or for OpenCV's intrinsics and extrinsics
+    #[arg(long, value_name = "FILE", required = true)]
+    pub calib: Vec<PathBuf>,
+    /// What is shown: from 0, nothing but what both cameras see, to 1, all of both images; by default at their own scale
+    #[arg(long, value_name = "ALPHA", value_parser = alpha, allow_negative_numbers = true)]
+    pub alpha: Option<f64>,
+    /// The unit of lengths in OpenCV's files
+    #[arg(long, value_name = "UNIT", default_value = "m")]
+    pub unit: Unit,
+    /// Folder for the results; made when it is missing
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// A unit of length.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub enum Unit {
+    M,
+    Cm,
+    Mm,
+}
+
+fn alpha(text: &str) -> Result<f64, &'static str> {
+    let value = text.parse().ok().filter(|value| (0.0..=1.0).contains(value));
+    value.ok_or("a number from 0 to 1 is needed")
+}

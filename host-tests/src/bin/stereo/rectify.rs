@@ -1,0 +1,140 @@
+//! `stereo rectify`: a raw pair and a calibration into a rectified pair.
+
+use crate::cli::{RectifyArgs, Unit};
+use crate::failure::Failure;
+use crate::files::{json, png};
+use crate::input::Pair;
+use crate::print;
+use nalgebra::{DMatrix, Matrix3};
+use serde::Serialize;
+use std::fmt::Write;
+use stereopsis::geometry::{Crop, ImageSize, Rectification, RectificationReport};
+use stereopsis_host::calibration::RawCalibration;
+use stereopsis_host::command_line::one_line;
+use stereopsis_host::output::Staging;
+use stereopsis_host::rectify::{RectifiedPictures, rectify};
+
+/// What `rectified.json` holds. Names are a contract with programs that read it.
+#[derive(Serialize)]
+struct Summary {
+    /// The calibration's format.
+    calibration: &'static str,
+    /// `horizontal`: rows are aligned; `vertical`: columns.
+    axis: &'static str,
+    width: u16,
+    height: u16,
+    /// The camera that both rectified images are of.
+    focal_px: f64,
+    cx: f64,
+    cy: f64,
+    baseline_m: f64,
+    /// `(X Y Z W)^T = Q (u v d 1)^T`, metres.
+    q: Vec<Vec<f64>>,
+    left: Side,
+    right: Side,
+    /// The share of the rectified image that both cameras see.
+    common: f64,
+    /// Across and down, of what both see.
+    field_of_view_deg: [f64; 2],
+}
+
+#[derive(Serialize)]
+struct Side {
+    /// `K [1 | t]` in the left rectified camera, as OpenCV's P1 and P2.
+    projection: Vec<Vec<f64>>,
+    /// From the raw camera's frame into the rectified one's, as OpenCV's R1 and R2.
+    rotation: Vec<Vec<f64>>,
+    /// Raw rows that the remap holds at once.
+    rows: u16,
+    /// The share of the rectified image that the camera sees.
+    seen: f64,
+    /// The largest way of a pixel, px.
+    largest_warp_px: f64,
+}
+
+pub fn run(args: &RectifyArgs) -> Result<(), Failure> {
+    let pair = Pair::open(&args.pair)?;
+    let size = ImageSize { width: pair.width, height: pair.height };
+    let unit_m = match args.unit {
+        Unit::M => 1.0,
+        Unit::Cm => 0.01,
+        Unit::Mm => 0.001,
+    };
+    if args.calib.len() > 2 {
+        return Err(Failure::new("--calib: is given more than twice; a file of both cameras or one of each is needed"));
+    }
+    let calibration = RawCalibration::open(&args.calib, size, unit_m)?;
+    let named = |e: &dyn std::fmt::Display| Failure::new(format!("{}: {e}", calibration.path.display()));
+    let crop = args.alpha.map_or(Crop::Natural, Crop::Alpha);
+    let rectification = Rectification::new(&calibration.rig, crop, size).map_err(|e| named(&e))?;
+    Staging::probe(&args.out)?;
+    let result = rectify(&rectification, pair.camera).map_err(|e| named(&e))?;
+    let report = rectification.report();
+
+    let mut staging = Staging::new(&args.out)?;
+    let [left, right] = &result.pictures;
+    let [valid_left, valid_right] = &result.valid;
+    for (name, picture) in
+        [("left.png", left), ("right.png", right), ("valid_left.png", valid_left), ("valid_right.png", valid_right)]
+    {
+        staging.write(name, |out| png(out, picture))?;
+    }
+    let summary = summary(calibration.format, &rectification, &result, &report);
+    staging.write("rectified.json", |out| json(out, &summary))?;
+    staging.commit(&[])?;
+
+    let mut text = String::new();
+    for note in &pair.notes {
+        let _ = writeln!(text, "note: {}", one_line(note));
+    }
+    let _ = writeln!(text, "{} x {} px, {}, {} calibration", size.width, size.height, summary.axis, calibration.format);
+    let _ = writeln!(text, "camera       f {:.2} px, baseline {:.4} m", summary.focal_px, summary.baseline_m);
+    let _ = writeln!(text, "both see     {:.1} % of the image", 100.0 * summary.common);
+    let _ = writeln!(text, "rows held    {} left, {} right", summary.left.rows, summary.right.rows);
+    let _ = writeln!(text, "results are in {}", one_line(&args.out.display().to_string()));
+    print(&text)
+}
+
+fn summary(
+    calibration: &'static str,
+    rectification: &Rectification<f64>,
+    result: &RectifiedPictures,
+    report: &RectificationReport<f64>,
+) -> Summary {
+    let camera = rectification.camera();
+    let (focal_px, (cx, cy)) = (camera.focal_px().0, camera.principal_point());
+    let is_horizontal = rectification.axis().is_horizontal();
+    let side = |i: usize, away: f64| {
+        let mut projection = DMatrix::zeros(3, 4);
+        projection.view_mut((0, 0), (3, 3)).copy_from(&camera.matrix());
+        projection[(usize::from(!is_horizontal), 3)] = -focal_px * away;
+        let rotation: &Matrix3<f64> = rectification.warps()[i].rotation();
+        Side {
+            projection: rows_of(&projection),
+            rotation: rows_of(&DMatrix::from_fn(3, 3, |r, c| rotation[(r, c)])),
+            rows: result.rows[i],
+            seen: report.seen[i],
+            largest_warp_px: report.largest_warp_px[i],
+        }
+    };
+    let q = rectification.q();
+    Summary {
+        calibration,
+        axis: if is_horizontal { "horizontal" } else { "vertical" },
+        width: rectification.size().width,
+        height: rectification.size().height,
+        focal_px,
+        cx,
+        cy,
+        baseline_m: rectification.baseline_m(),
+        q: rows_of(&DMatrix::from_fn(4, 4, |r, c| q[(r, c)])),
+        left: side(0, 0.0),
+        right: side(1, rectification.baseline_m()),
+        common: report.common,
+        field_of_view_deg: report.field_of_view_rad.map(f64::to_degrees),
+    }
+}
+
+fn rows_of(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+}

@@ -1,0 +1,38 @@
+//! Kalibr's camchain.
+
+use super::tree::{Tree, list, need, numbers, size};
+use super::{Fault, Found, camera, pose_of};
+
+const CAMERA: &str = "a camera with camera_model, intrinsics, distortion_model and distortion_coeffs";
+
+pub(super) fn is_one(tree: &Tree) -> bool {
+    tree.get("cam0").is_some_and(|cam| cam.get("intrinsics").is_some() || cam.get("camera_model").is_some())
+}
+
+pub(super) fn read(tree: &Tree) -> Result<Found, Fault> {
+    let [left, right] = [need(tree, "cam0", CAMERA)?, need(tree, "cam1", CAMERA)?];
+    let one = |name: &str, cam: &Tree| {
+        let key = |key: &str| format!("{name}: {key}");
+        for (field, known) in [("camera_model", "pinhole"), ("distortion_model", "radtan")] {
+            let found = need(cam, field, CAMERA)?.as_str().unwrap_or("");
+            let is_none = field == "distortion_model" && found == "none";
+            if found != known && !is_none {
+                let problem = format!("'{found}' is not supported; calibrate with {known}");
+                return Err(Fault::Key { key: key(field), problem });
+            }
+        }
+        let inner = numbers(&key("intrinsics"), need(cam, "intrinsics", CAMERA)?)?;
+        let lens = list(&key("distortion_coeffs"), need(cam, "distortion_coeffs", CAMERA)?)?;
+        camera(name, inner, &lens)
+    };
+    let key = "T_cn_cnm1";
+    let matrix = need(right, key, "in cam1, the 4x4 matrix that carries a point of cam0 into cam1")?;
+    let [r00, r01, r02, t0, r10, r11, r12, t1, r20, r21, r22, t2, ..] = numbers::<16>(key, matrix)?;
+    Ok(Found {
+        format: "Kalibr",
+        cameras: [one("cam0", left)?, one("cam1", right)?],
+        pose: pose_of(key, [r00, r01, r02, r10, r11, r12, r20, r21, r22], [t0, t1, t2])?,
+        size: left.get("resolution").map(|value| size("resolution", value)).transpose()?,
+        baseline_key: key,
+    })
+}

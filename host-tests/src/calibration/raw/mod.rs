@@ -1,0 +1,134 @@
+//! Rigs that are not rectified, from the files of the programs that calibrate them.
+//!
+//! In: one file, or two of ROS. Out: a [`RawCalibration`], in metres. The formats are told apart by content:
+//!
+//! * `opencv`: FileStorage as YAML, XML or JSON, with K1, D1, K2, D2, R and T by their usual names; `P' = R P + T`.
+//! * `ros`: a camera_info for each camera; where the second stands is in its rectification and projection matrices.
+//! * `kalibr`: a camchain with `cam0`, `cam1` and `T_cn_cnm1`, which carries a point of cam0 into cam1.
+//! * Middlebury's and KITTI's calib.txt, whose cameras are rectified.
+//!
+//! `tree` reads the first three's syntax.
+
+mod kalibr;
+mod opencv;
+mod ros;
+mod tree;
+
+use super::{Calibration, CalibrationError, Fault, kitti, load, middlebury};
+use nalgebra::{Matrix3, Vector3};
+use std::path::{Path, PathBuf};
+use stereopsis::geometry::{Camera, Distortion, ImageSize, Pose, StereoRig};
+use tree::Tree;
+
+/// Baselines beyond these are taken for a wrong unit, m.
+const LIKELY_M: std::ops::RangeInclusive<f64> = 1e-3..=10.0;
+
+/// A rig from a file.
+#[derive(Clone, PartialEq, Debug)]
+pub struct RawCalibration {
+    /// The file; the first of two.
+    pub path: PathBuf,
+    /// The format's name.
+    pub format: &'static str,
+    /// The two cameras, their lenses, where they stand and the sizes of their images.
+    pub rig: StereoRig<f64>,
+}
+
+/// A camera of a file, and where the second stands, before all is checked together.
+struct Found {
+    format: &'static str,
+    cameras: [Camera<f64>; 2],
+    pose: Pose<f64>,
+    /// Where the file says it.
+    size: Option<[u64; 2]>,
+    /// What names the baseline in the file.
+    baseline_key: &'static str,
+}
+
+impl RawCalibration {
+    /// Reads a rig for images of `images` px. Lengths of OpenCV's files are in units of `unit_m` metres; the other formats say
+    /// theirs.
+    pub fn open(paths: &[PathBuf], images: ImageSize, unit_m: f64) -> Result<Self, CalibrationError> {
+        let path = paths.first().cloned().unwrap_or_default();
+        let read = || -> Result<Self, Fault> {
+            let found = find(paths, unit_m)?;
+            for (which, side, image) in [("width", 0, images.width), ("height", 1, images.height)] {
+                if let Some(calibrated) = found.size.map(|size| size[side]).filter(|&c| c != u64::from(image)) {
+                    let calibrated = u16::try_from(calibrated).unwrap_or(u16::MAX);
+                    return Err(Fault::Size { which, calibrated, image });
+                }
+            }
+            let rig = StereoRig::new(found.cameras, found.pose, [images; 2]).map_err(Fault::StereoRig)?;
+            if !LIKELY_M.contains(&rig.baseline_m()) {
+                return Err(Fault::Unit { key: found.baseline_key, baseline_m: rig.baseline_m() });
+            }
+            Ok(Self { path: path.clone(), format: found.format, rig })
+        };
+        read().map_err(|fault| CalibrationError { path: path.clone(), fault })
+    }
+}
+
+fn find(paths: &[PathBuf], unit_m: f64) -> Result<Found, Fault> {
+    let mut trees = Vec::new();
+    let mut fault = None;
+    for path in paths {
+        let text = load(path)?;
+        if text.trim().is_empty() {
+            return Err(Fault::Empty);
+        }
+        match tree::read(&text) {
+            Ok(found) => trees.extend(found),
+            Err(error) => fault = Some(error),
+        }
+        if trees.iter().all(|tree| !is_tree(tree)) && (middlebury::is_one(&text) || kitti::is_one(&text)) {
+            return rectified(path);
+        }
+    }
+    match trees.as_slice() {
+        [one, ..] if kalibr::is_one(one) => kalibr::read(one),
+        [one, two] if ros::is_one(one) && ros::is_one(two) => ros::read(one, two),
+        [one, ..] if ros::is_one(one) => Err(Fault::OneOfTwo),
+        [one, rest @ ..] if opencv::is_one(one) || rest.iter().any(opencv::is_one) => opencv::read(&trees, unit_m),
+        _ => Err(fault.map_or(Fault::UnknownRaw, Fault::Syntax)),
+    }
+}
+
+fn is_tree(tree: &Tree) -> bool {
+    kalibr::is_one(tree) || ros::is_one(tree) || opencv::is_one(tree)
+}
+
+/// Middlebury's and KITTI's cameras.
+fn rectified(path: &Path) -> Result<Found, Fault> {
+    let calibration = Calibration::open(path, path).map_err(|error| error.fault)?;
+    let rig = &calibration.rig;
+    let (f, (cx, cy)) = (f64::from(rig.focal_px()), rig.principal_point());
+    let offset = f64::from(rig.disparity_offset_px());
+    let one = |key: &str, cx: f64| camera(key, [f, f, cx, f64::from(cy)], &[]);
+    let pose = Pose::new(Matrix3::identity(), Vector3::new(f64::from(rig.baseline_m()), 0.0, 0.0));
+    Ok(Found {
+        format: calibration.format,
+        cameras: [one("the left camera", f64::from(cx))?, one("the right camera", f64::from(cx) + offset)?],
+        pose: pose.map_err(|error| Fault::Key { key: "the baseline".into(), problem: error.to_string() })?,
+        size: calibration.width.zip(calibration.height).map(|(w, h)| [w.into(), h.into()]),
+        baseline_key: "the baseline",
+    })
+}
+
+/// A camera of fx, fy, cx, cy and up to five coefficients in OpenCV's order; more have to be zero.
+fn camera(key: &str, [fx, fy, cx, cy]: [f64; 4], lens: &[f64]) -> Result<Camera<f64>, Fault> {
+    if lens.iter().skip(5).any(|&k| k != 0.0) {
+        let problem =
+            "a lens with more than five coefficients (k1, k2, p1, p2, k3) is not supported; calibrate with those";
+        return Err(Fault::Key { key: key.into(), problem: problem.into() });
+    }
+    let mut five = [0.0; 5];
+    five.iter_mut().zip(lens).for_each(|(to, &k)| *to = k);
+    let camera = Camera::new(fx, fy, cx, cy).and_then(|c| c.with_distortion(Distortion::from_opencv(five)));
+    camera.map_err(|error| Fault::Camera { key: key.into(), error })
+}
+
+/// The pose of R and T as OpenCV writes them.
+fn pose_of(keys: &str, r: [f64; 9], t: [f64; 3]) -> Result<Pose<f64>, Fault> {
+    let pose = Pose::from_opencv(Matrix3::from_row_slice(&r), Vector3::from(t));
+    pose.map_err(|error| Fault::Key { key: keys.into(), problem: error.to_string() })
+}

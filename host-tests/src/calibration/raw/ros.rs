@@ -1,0 +1,60 @@
+//! ROS's camera_info, one for each camera.
+
+use super::tree::{Tree, list, need, numbers, size};
+use super::{Fault, Found, camera, pose_of};
+use nalgebra::{Matrix3, Vector3};
+use serde_json::json;
+
+const FORM: &str =
+    "a camera_info has image_width, camera_matrix, distortion_coefficients, rectification_matrix, projection_matrix";
+
+pub(super) fn is_one(tree: &Tree) -> bool {
+    tree.get("camera_matrix").is_some() && tree.get("projection_matrix").is_some()
+}
+
+/// The second camera's projection has `P[0, 3] = -f b` (or `P[1, 3]`, below each other), and both rectification matrices turn
+/// into one frame, so `R = R2^T R1` and `T = R2^T (P[0, 3] / f, P[1, 3] / f, 0)`.
+pub(super) fn read(first: &Tree, second: &Tree) -> Result<Found, Fault> {
+    let [shift, other] = [projection(first)?, projection(second)?].map(|p| Vector3::new(p[3] / p[0], p[7] / p[5], 0.0));
+    // In whatever order they were given: the first is the one that the projection counts from.
+    if shift.norm() > 0.0 && other.norm() == 0.0 {
+        return read(second, first);
+    }
+    let turns = [rotation(first)?, rotation(second)?];
+    let r = turns[1].transpose() * turns[0];
+    let t = turns[1].transpose() * (other - shift);
+    let [w, h] = ["image_width", "image_height"].map(|key| first.get(key).cloned().unwrap_or_default());
+    Ok(Found {
+        format: "ROS",
+        cameras: [one("the first camera", first)?, one("the second camera", second)?],
+        pose: pose_of("rectification_matrix", r.transpose().as_slice().try_into().unwrap_or([0.0; 9]), t.into())?,
+        size: first.get("image_width").map(|_| size("image_width and image_height", &json!([w, h]))).transpose()?,
+        baseline_key: "projection_matrix",
+    })
+}
+
+fn projection(tree: &Tree) -> Result<[f64; 12], Fault> {
+    let p: [f64; 12] = numbers("projection_matrix", need(tree, "projection_matrix", FORM)?)?;
+    if p[0] > 0.0 && p[5] > 0.0 {
+        return Ok(p);
+    }
+    Err(Fault::FocalLength { key: "projection_matrix".into(), focal_px: p[0].min(p[5]) })
+}
+
+fn rotation(tree: &Tree) -> Result<Matrix3<f64>, Fault> {
+    let r: [f64; 9] = numbers("rectification_matrix", need(tree, "rectification_matrix", FORM)?)?;
+    // Checked by itself: the product of two wrong ones may be right.
+    pose_of("rectification_matrix", r, [0.0; 3])?;
+    Ok(Matrix3::from_row_slice(&r))
+}
+
+fn one(which: &str, tree: &Tree) -> Result<stereopsis::geometry::Camera<f64>, Fault> {
+    let model = tree.get("distortion_model").and_then(Tree::as_str).unwrap_or("plumb_bob");
+    if !["plumb_bob", "rational_polynomial", "none", ""].contains(&model) {
+        let problem = format!("'{model}' is not supported; calibrate with plumb_bob");
+        return Err(Fault::Key { key: "distortion_model".into(), problem });
+    }
+    let k: [f64; 9] = numbers("camera_matrix", need(tree, "camera_matrix", FORM)?)?;
+    let lens = list("distortion_coefficients", need(tree, "distortion_coefficients", FORM)?)?;
+    camera(which, [k[0], k[4], k[2], k[5]], &lens)
+}

@@ -1,0 +1,96 @@
+//! Pictures through the core's remap.
+
+use image::GrayImage;
+use stereopsis::camera::{CameraError, StereoSource};
+use stereopsis::geometry::Rectification;
+use stereopsis::imaging::{RectifiedPair, RectifiedPairError, Remap, RemapError, RemapTable, RemapTableError};
+
+/// Capacities for the largest pictures: columns, lines held at once, slots of the table.
+const WIDTH: usize = 4096;
+const LINES: usize = 1025;
+const SLOTS: usize = 300_000;
+/// The remaps are made and moved on the stack.
+const STACK: usize = 256 << 20;
+
+/// A pair of pictures, rectified.
+#[derive(Clone, PartialEq, Debug)]
+pub struct RectifiedPictures {
+    /// Left and right.
+    pub pictures: [GrayImage; 2],
+    /// 255 where the raw pictures were seen, 0 elsewhere.
+    pub valid: [GrayImage; 2],
+    /// Raw rows that the left and the right remap need at once.
+    pub rows: [u16; 2],
+    /// The side of a cell of the tables' lattices, px.
+    pub cells: [u16; 2],
+}
+
+/// Why pictures were not rectified.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RectifyPicturesError {
+    /// A warp has no table.
+    #[error("the {0} image cannot be remapped: {1}")]
+    Table(&'static str, RemapTableError),
+    /// A remap refused.
+    #[error("the {0} image cannot be remapped: {1}")]
+    Remap(&'static str, RemapError),
+    /// The source or the pair failed.
+    #[error("{0}")]
+    Pair(String),
+    /// The system gave no thread.
+    #[error("no thread for the remap: {0}")]
+    Thread(std::io::Error),
+}
+
+/// Takes a frame of a source of raw lines and rectifies it line by line, as a microcontroller does.
+pub fn rectify<S>(rectification: &Rectification<f64>, source: S) -> Result<RectifiedPictures, RectifyPicturesError>
+where
+    S: StereoSource + Send,
+    S::Error: std::fmt::Display,
+{
+    std::thread::scope(|scope| {
+        let builder = std::thread::Builder::new().stack_size(STACK);
+        let work =
+            builder.spawn_scoped(scope, || frame(rectification, source)).map_err(RectifyPicturesError::Thread)?;
+        work.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
+
+fn frame<S>(rectification: &Rectification<f64>, source: S) -> Result<RectifiedPictures, RectifyPicturesError>
+where
+    S: StereoSource,
+    S::Error: std::fmt::Display,
+{
+    let [first, second] = rectification.warps();
+    let remap = |side, warp| {
+        let table = RemapTable::<SLOTS>::new(warp).map_err(|e| RectifyPicturesError::Table(side, e))?;
+        Remap::<WIDTH, LINES, SLOTS>::new(table).map_err(|e| RectifyPicturesError::Remap(side, e))
+    };
+    let (left, right) = (remap("left", first)?, remap("right", second)?);
+    let rows = [left.table().rows(), right.table().rows()];
+    let cells = [left.table(), right.table()].map(|table| 1 << table.shift());
+    let failed = |e: RectifiedPairError<S::Error>| RectifyPicturesError::Pair(e.to_string());
+    let mut pair = RectifiedPair::new(source, left, right).map_err(failed)?;
+    let format = pair.format();
+    let blank = || GrayImage::new(format.width.into(), format.height.into());
+    let mut result = RectifiedPictures { pictures: [blank(), blank()], valid: [blank(), blank()], rows, cells };
+    let stopped = |e: CameraError<RectifiedPairError<S::Error>>| {
+        RectifyPicturesError::Pair(match e {
+            CameraError::Hardware(e) => e.to_string(),
+            other => format!("{other:?}"),
+        })
+    };
+    pair.start_frame().map_err(stopped)?;
+    let width = usize::from(format.width);
+    let ([left, right], [valid_left, valid_right]) = (&mut result.pictures, &mut result.valid);
+    let lines = left.chunks_exact_mut(width).zip(right.chunks_exact_mut(width));
+    let masks = valid_left.chunks_exact_mut(width).zip(valid_right.chunks_exact_mut(width));
+    for ((left, right), masks) in lines.zip(masks) {
+        pair.next_lines(left, right).map_err(stopped)?;
+        for (to, valid) in [masks.0, masks.1].into_iter().zip(pair.valid()) {
+            to.iter_mut().zip(valid).for_each(|(to, &valid)| *to = valid * 255);
+        }
+    }
+    Ok(result)
+}

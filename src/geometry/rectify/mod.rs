@@ -1,0 +1,18 @@
+//! From two cameras as they are mounted to two whose rows are aligned.
+//!
+//! In: a [`StereoRig`](super::StereoRig). Out: a [`Rectification`] of it.
+//!
+//! 1. `align`: the rotations of both cameras into one frame.
+//! 2. `crop`: the camera that both rectified images are of.
+//! 3. [`Warp`]: where each rectified pixel comes from.
+//! 4. [`RectificationReport`]: what is left and what it costs.
+
+mod align;
+mod crop;
+mod rectification;
+mod report;
+mod warp;
+
+pub use rectification::{Axis, Crop, Rectification, RectifyError};
+pub use report::RectificationReport;
+pub use warp::{Warp, WarpSource};

@@ -1,0 +1,144 @@
+//! Two raw cameras as a rectified stereo source.
+
+use super::{Remap, RemapError};
+use crate::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource};
+use core::fmt;
+
+/// A stereo source of rectified lines over one of raw lines: what stands between two cameras and the pipeline.
+///
+/// Raw lines are taken in pairs, as they come, until both cameras have what their next rectified line needs.
+#[derive(Debug)]
+pub struct RectifiedPair<S, const W: usize, const N: usize, const SLOTS: usize> {
+    source: S,
+    left: Remap<W, N, SLOTS>,
+    right: Remap<W, N, SLOTS>,
+    valid: [[u8; W]; 2],
+    last: LineStart,
+}
+
+/// Why there is no rectified pair of lines.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum RectifiedPairError<E> {
+    /// The raw source failed.
+    Source(E),
+    /// A remap refused.
+    Remap(RemapError),
+    /// The raw lines are not 8-bit grey, or not of the size that the tables are for.
+    Raw(LineFormat),
+    /// The two tables make rectified images of different sizes.
+    Sizes,
+}
+
+impl<E: fmt::Display> fmt::Display for RectifiedPairError<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Source(e) => e.fmt(f),
+            Self::Remap(e) => e.fmt(f),
+            Self::Raw(format) => write!(
+                f,
+                "raw frames of {}x{} px are not those of the remap, which takes 8-bit grey",
+                format.width, format.height
+            ),
+            Self::Sizes => f.write_str("the two remaps make images of different sizes"),
+        }
+    }
+}
+
+impl<E: fmt::Display + fmt::Debug> core::error::Error for RectifiedPairError<E> {}
+
+impl<E> From<RemapError> for CameraError<RectifiedPairError<E>> {
+    fn from(error: RemapError) -> Self {
+        match error {
+            RemapError::BufferTooShort { needed } => Self::BufferTooShort { needed },
+            RemapError::NoLineLeft => Self::NoLineLeft,
+            other => Self::Hardware(RectifiedPairError::Remap(other)),
+        }
+    }
+}
+
+impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> RectifiedPair<S, W, N, SLOTS> {
+    /// Rectifies what a source gives; refused where raw lines and remaps do not fit each other, or the bands are too small for
+    /// both cameras in step: a camera's lines are held until the other one's next line has come, too.
+    pub fn new(
+        source: S,
+        left: Remap<W, N, SLOTS>,
+        right: Remap<W, N, SLOTS>,
+    ) -> Result<Self, RectifiedPairError<S::Error>> {
+        let format = source.format();
+        let raws = [left.table().raw_size(), right.table().raw_size()];
+        let fits = raws.iter().all(|raw| (raw.width, raw.height) == (format.width, format.height));
+        if !fits || format.pixel != PixelFormat::Grey8 {
+            return Err(RectifiedPairError::Raw(format));
+        }
+        if left.table().size() != right.table().size() {
+            return Err(RectifiedPairError::Sizes);
+        }
+        let (mut came, mut most) = (0, 0);
+        for row in 0..left.table().size().height {
+            let needs = [left.table().raw_rows(row), right.table().raw_rows(row)];
+            came = needs.iter().flatten().fold(came, |came, (_, last)| came.max(*last));
+            most = needs.iter().flatten().fold(most, |most, (first, _)| most.max(came - first + 1));
+        }
+        if usize::from(most) + 1 > N {
+            return Err(RectifiedPairError::Remap(RemapError::Lines { needed: usize::from(most) + 1 }));
+        }
+        let last = LineStart { row: 0, timestamp_us: 0 };
+        Ok(Self { source, left, right, valid: [[0; W]; 2], last })
+    }
+
+    /// Which pixels of the left and of the right line that came last are valid (1 or 0).
+    pub fn valid(&self) -> [&[u8]; 2] {
+        let width = usize::from(self.left.table().size().width);
+        self.valid.each_ref().map(|valid| valid.get(..width).unwrap_or(&[]))
+    }
+
+    /// The remaps of the left and of the right camera.
+    pub fn remaps(&self) -> [&Remap<W, N, SLOTS>; 2] {
+        [&self.left, &self.right]
+    }
+
+    /// Gives the source back.
+    pub fn release(self) -> S {
+        self.source
+    }
+}
+
+impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> ErrorType for RectifiedPair<S, W, N, SLOTS> {
+    type Error = RectifiedPairError<S::Error>;
+}
+
+impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> StereoSource
+    for RectifiedPair<S, W, N, SLOTS>
+{
+    fn format(&self) -> LineFormat {
+        let size = self.left.table().size();
+        LineFormat { width: size.width, height: size.height, ..self.source.format() }
+    }
+
+    fn max_row_skew_us(&self) -> u32 {
+        self.source.max_row_skew_us()
+    }
+
+    fn start_frame(&mut self) -> Result<FrameStart, CameraError<Self::Error>> {
+        let start = self.source.start_frame().map_err(|e| e.map_hardware(RectifiedPairError::Source))?;
+        self.left.begin();
+        self.right.begin();
+        Ok(start)
+    }
+
+    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
+        // Each turn takes a raw line; an image has at most 4096.
+        while self.left.wants_line() || self.right.wants_line() {
+            let lines = self.source.next_lines(self.left.next_line(), self.right.next_line());
+            self.last = lines.map_err(|e| e.map_hardware(RectifiedPairError::Source))?;
+            self.left.accept();
+            self.right.accept();
+        }
+        let [valid_left, valid_right] = &mut self.valid;
+        let row = self.left.row(left, valid_left)?;
+        self.right.row(right, valid_right)?;
+        Ok(LineStart { row, ..self.last })
+    }
+}

@@ -61,14 +61,15 @@ fn score_of(square: &[&[u8; 7]; 7], threshold: u8) -> u8 {
     if best > least { best as u8 } else { 0 }
 }
 
-/// The greatest of all minima of nine in a row, around the circle: minima of two, of four, of eight, of nine.
+/// The greatest of all minima of nine in a row, around the circle: minima of two, of four, of eight, of nine. Places are
+/// masked, so that they are inside to a compiler that does not unroll, too.
 #[inline(always)]
 fn weakest_of_best_nine(values: [i16; 16]) -> i16 {
     let mut minima = values;
     for step in [1, 2, 4] {
-        minima = core::array::from_fn(|i| minima[i].min(minima[(i + step) & 15]));
+        minima = core::array::from_fn(|i| minima[i & 15].min(minima[(i + step) & 15]));
     }
-    (0..16).fold(i16::MIN, |best, i| best.max(minima[i].min(values[(i + 8) & 15])))
+    (0..16).fold(i16::MIN, |best, i| best.max(minima[i & 15].min(values[(i + 8) & 15])))
 }
 
 #[cfg(test)]

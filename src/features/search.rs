@@ -59,7 +59,7 @@ impl Search {
             return Err(SearchError::Range);
         }
         match &self.epipolar {
-            Some(e) if !(e.tolerance_px >= 0.0) => Err(SearchError::Epipolar),
+            Some(e) if e.tolerance_px.is_nan() || e.tolerance_px < 0.0 => Err(SearchError::Epipolar),
             _ => Ok(()),
         }
     }

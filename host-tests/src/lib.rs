@@ -5,7 +5,7 @@
 //! * [`mock`]: a camera that reads image files.
 //! * [`scene`]: a ray-traced scene as a camera, with its true depth, disparity and occlusion.
 //! * [`calibration`]: rectified rigs from Middlebury's and KITTI's files.
-//! * [`matches`]: correspondences from files.
+//! * [`mod@matches`]: correspondences from files.
 //! * [`real`]: real pairs with a known truth, also altered, and scores on them.
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
 //! * [`correspond`]: two pictures through the core's features and matcher. [`two_view`]: correspondences of a known scene,

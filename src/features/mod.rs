@@ -5,7 +5,7 @@
 //! 1. [`Shrink`]: ever smaller pictures, for scenes that come nearer.
 //! 2. [`FeatureDetector`]: lines to features, in a band of lines. In it, in running order:
 //!    [`smooth_row`]; [`fast_scores`], the segment test; local maxima as [`Corner`]s; `cells`, the strongest in every cell;
-//!    [`Patch`], what is around them; [`refine`], where they are; [`Descriptor`], what they look like, turned by a [`Turn`];
+//!    [`Patch`], what is around them; [`refine()`], where they are; [`Descriptor`], what they look like, turned by a [`Turn`];
 //!    [`PATTERN`].
 //! 3. [`Matcher`]: all features of one picture with all of another, as a [`Search`] admits.
 //! 4. [`drop_repeats`]: a corner found on several levels is one match.

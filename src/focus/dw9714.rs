@@ -1,8 +1,9 @@
 //! Dongwoon's DW9714: a 10-bit current for the voice coil of a small lens, over I2C.
 //!
-//! A write is two bytes, from the data sheet: `PD FLAG D9..D4` and `D3..D0 S3..S0`. PD powers the coil down, FLAG is 0 in writes
-//! and 1 in reads while the coil still moves, D is the current in 1023rds of 100 mA, and S is how it gets there: 0 at once, else
-//! `S3 S2` codes at a time (1, 2, 4), one every 81 us times 2 to the power of `S1 S0`.
+//! A write is two bytes, as Linux's drivers of the chip send them (`drivers/media/i2c/dw9714.c`): `PD FLAG D9..D4` and
+//! `D3..D0 S3..S0`. PD powers the coil down, FLAG is 0 in writes and 1 in reads while the coil still moves, D is the
+//! current in 1023rds of 100 mA, and S is how it gets there: 0 at once, else `S3 S2` codes at a time (1, 2, 4), one every
+//! 81 us times 2 to the power of `S1 S0`.
 
 use super::actuator::{ActuatorErrorType, ActuatorLimits, LensActuator};
 use embedded_hal::i2c::I2c;

@@ -47,6 +47,17 @@ impl FeatureConfig {
         Self { width, height, threshold: 12, cell_px: 32, per_cell: 5, orientation, level }
     }
 
+    /// No picture. All zeros: a detector in a `static` that waits takes RAM and no flash.
+    pub(super) const NONE: Self = Self {
+        width: 0,
+        height: 0,
+        threshold: 0,
+        cell_px: 0,
+        per_cell: 0,
+        orientation: Orientation::Upright,
+        level: Level::NONE,
+    };
+
     /// How many slots a detector needs for this: a row of cells with as many as are kept in each.
     pub const fn slots(&self) -> usize {
         if self.cell_px == 0 { 0 } else { self.width.div_ceil(self.cell_px) as usize * self.per_cell as usize }

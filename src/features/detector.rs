@@ -7,6 +7,7 @@ use super::{
     fast_scores, refine, smooth_row,
 };
 use crate::imaging::LineBand;
+use core::num::NonZero;
 use heapless::VecView;
 
 /// Lines that the smoothing of a row waits for.
@@ -78,7 +79,7 @@ impl<const W: usize, const C: usize> FeatureDetector<W, C> {
     /// A detector that waits for [`Self::start`].
     pub const fn new() -> Self {
         Self {
-            config: FeatureConfig::new(0, 0),
+            config: FeatureConfig::NONE,
             taken: 0,
             raw: LineBand::new(),
             smooth: LineBand::new(),
@@ -117,7 +118,8 @@ impl<const W: usize, const C: usize> FeatureDetector<W, C> {
         if line.len() != place.len() {
             return Err(FeatureLineError::Length { needed: place.len() });
         }
-        place.copy_from_slice(line);
+        // They are as long: a copy of slices would ask once more, and panic.
+        place.iter_mut().zip(line).for_each(|(place, &pixel)| *place = pixel);
         self.raw.accept();
         let newest = usize::from(self.taken);
         self.taken += 1;
@@ -139,10 +141,11 @@ impl<const W: usize, const C: usize> FeatureDetector<W, C> {
         Ok(())
     }
 
-    /// The side of a cell, px, and how many corners are kept in it. Neither is 0, which the compiler is told once more: it
-    /// leaves no panic where they divide.
-    fn cell(&self) -> (usize, usize) {
-        (usize::from(self.config.cell_px).max(1), usize::from(self.config.per_cell).max(1))
+    /// The side of a cell, px, and how many corners are kept in it. Neither is 0, and their type says so: it leaves no
+    /// panic where they divide, however little the compiler does.
+    fn cell(&self) -> (NonZero<usize>, usize) {
+        let least = |number: u16| NonZero::new(usize::from(number)).unwrap_or(NonZero::<usize>::MIN);
+        (least(self.config.cell_px), least(self.config.per_cell).get())
     }
 
     /// The corners of a row into their cells: pixels that score more than the neighbours that come before them, and no less
@@ -197,13 +200,15 @@ impl<const W: usize, const C: usize> FeatureDetector<W, C> {
         let is_last = newest + 1 == usize::from(height);
         // Rows of cells whose last row is described.
         let done = (newest + 1).saturating_sub(MARGIN) / cell_px;
-        let begins = (newest + 1).saturating_sub(MARGIN).is_multiple_of(cell_px);
+        let begins = (newest + 1).saturating_sub(MARGIN).is_multiple_of(cell_px.get());
         let one = (begins && done > 0).then(|| done - 1);
         // The last row of cells may be cut off.
         let rest = is_last.then_some(done);
         for row in one.into_iter().chain(rest) {
             let Some(cells) = self.cells.get_mut(row % 2) else { continue };
-            for cell in cells.chunks_mut(per_cell) {
+            let mut waiting = cells.as_mut_slice();
+            while let Some((cell, others)) = waiting.split_at_mut_checked(per_cell) {
+                waiting = others;
                 while let Some(slot) = cells::take_strongest(cell) {
                     let feature = Feature::new(&slot.corner, level, slot.descriptor);
                     self.counts.dropped += u32::from(out.push(feature).is_err());

@@ -56,20 +56,30 @@ fn score_of(square: &[&[u8; 7]; 7], threshold: u8) -> u8 {
         return 0;
     }
     let differences: [i16; 16] = core::array::from_fn(difference);
-    let best = weakest_of_best_nine(differences).max(weakest_of_best_nine(differences.map(|d| -d)));
+    // Nine on a side that is out already are no more than the threshold.
+    let mut best = least;
+    if brighter {
+        best = best.max(weakest_of_best_nine(&differences));
+    }
+    if darker {
+        best = best.max(weakest_of_best_nine(&differences.map(|d| -d)));
+    }
     // A difference of bytes is at most 255.
     if best > least { best as u8 } else { 0 }
 }
 
-/// The greatest of all minima of nine in a row, around the circle: minima of two, of four, of eight, of nine. Places are
-/// masked, so that they are inside to a compiler that does not unroll, too.
+/// The greatest of all minima of nine in a row, around the circle. Eight that begin at an odd place are in two such nines,
+/// with the one before them and with the one after them: of these two the greater counts. Places are masked, so that they
+/// are inside to a compiler that does not unroll, too.
 #[inline(always)]
-fn weakest_of_best_nine(values: [i16; 16]) -> i16 {
-    let mut minima = values;
-    for step in [1, 2, 4] {
-        minima = core::array::from_fn(|i| minima[i & 15].min(minima[(i + step) & 15]));
-    }
-    (0..16).fold(i16::MIN, |best, i| best.max(minima[i & 15].min(values[(i + 8) & 15])))
+fn weakest_of_best_nine(values: &[i16; 16]) -> i16 {
+    let value = |i: usize| values[i & 15];
+    let twos: [i16; 8] = core::array::from_fn(|i| value(2 * i + 1).min(value(2 * i + 2)));
+    let fours: [i16; 8] = core::array::from_fn(|i| twos[i & 7].min(twos[(i + 1) & 7]));
+    (0..8).fold(i16::MIN, |best, i| {
+        let eight = fours[i & 7].min(fours[(i + 2) & 7]);
+        best.max(eight.min(value(2 * i).max(value(2 * i + 9))))
+    })
 }
 
 #[cfg(test)]

@@ -14,6 +14,9 @@ impl Level {
     /// The full picture.
     pub const FULL: Self = Self { index: 0, scale: 1.0 };
 
+    /// No picture.
+    pub(super) const NONE: Self = Self { index: 0, scale: 0.0 };
+
     /// The level of a picture that [`Shrink`](super::Shrink) makes of this level's, `N - 1` pixels of every `N`.
     pub fn shrunk<const N: usize>(self) -> Self {
         const { assert!(2 <= N && N <= 16, "2 to 16 pixels become one less") };

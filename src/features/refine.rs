@@ -77,7 +77,7 @@ fn top(square: &[[i64; NEAREST]; NEAREST]) -> [i64; 2] {
     }
     // To the nearest, halves away from nothing: as far to the left as to the right.
     let steps = |above: i64| {
-        let rounded = (64 * above.abs() + determinant) / (2 * determinant);
+        let rounded = (64 * above.abs() + determinant).checked_div(2 * determinant).unwrap_or(0);
         rounded.min(FARTHEST) * above.signum()
     };
     [steps(xy * y - yy * x), steps(xy * x - xx * y)]

@@ -55,9 +55,11 @@ impl<const W: usize, const N: usize> Shrink<W, N> {
     pub fn push(&mut self, line: &[u8]) -> Option<&[u8]> {
         let parts = N as u16;
         core::mem::swap(&mut self.before, &mut self.here);
-        let (places, _) = self.here.split_at_mut_checked(self.width)?;
-        for (group, places) in line.as_chunks::<N>().0.iter().zip(places.chunks_mut(N - 1)) {
-            for ((j, pair), place) in (1..).zip(group.windows(2)).zip(places) {
+        let (mut places, _) = self.here.split_at_mut_checked(self.width)?;
+        for group in line.as_chunks::<N>().0 {
+            let Some((here, after)) = places.split_at_mut_checked(N - 1) else { break };
+            places = after;
+            for ((j, pair), place) in (1..).zip(group.windows(2)).zip(here) {
                 let &[a, b] = pair else { continue };
                 *place = (parts - j) * u16::from(a) + j * u16::from(b);
             }

@@ -12,10 +12,10 @@ use stereopsis_host::run::{Method, NoiseChoice, UnknownNoise};
 /// The options of `firmware`.
 #[derive(Args)]
 pub struct Arguments {
-    /// The program: depth, rows of disparity; or pose, two views
-    #[arg(long, default_value = "depth", value_parser = ["depth", "pose"])]
+    /// The program: depth, rows of disparity; pose, two views; or features, corners of two pictures and their matches
+    #[arg(long, default_value = "depth", value_parser = ["depth", "pose", "features"])]
     program: String,
-    /// With --program pose: made for size, not for speed
+    /// With --program pose or features: made for size, not for speed
     #[arg(long)]
     small: bool,
     /// The core: m0, m3, m4, m7, m33, m55 or rv32
@@ -69,6 +69,8 @@ pub enum Asked {
     Depth(One),
     /// Two views on one core.
     Pose { board: Board, optimised: Optimised, out: PathBuf },
+    /// Features of two pictures on one core.
+    Features { board: Board, optimised: Optimised, out: PathBuf },
     /// All cores.
     All,
 }
@@ -83,20 +85,24 @@ impl Arguments {
             return Err(Failure::new("--core and --out are needed, or --all"));
         };
         let pair = self.left.clone().zip(self.right.clone());
-        if self.program == "pose" {
+        if self.program != "depth" {
+            let name = &self.program;
             if board == board::M0 {
-                return Err(Failure::new("--core m0: two views need more RAM than QEMU's microbit has"));
+                return Err(Failure::new(format!("--core m0: {name} needs more RAM than QEMU's microbit has")));
             }
             if pair.is_some() || self.disparities.is_some() {
-                return Err(Failure::new(
-                    "--program pose sees no images: --left, --right and --disparities are for depth",
-                ));
+                return Err(Failure::new(format!(
+                    "--program {name} takes no images: --left, --right and --disparities are for depth"
+                )));
             }
             let optimised = if self.small { Optimised::Size } else { Optimised::Speed };
-            return Ok(Asked::Pose { board, optimised, out });
+            return Ok(match name.as_str() {
+                "pose" => Asked::Pose { board, optimised, out },
+                _ => Asked::Features { board, optimised, out },
+            });
         }
         if self.small {
-            return Err(Failure::new("--small is for --program pose: depth is made for speed"));
+            return Err(Failure::new("--small is for --program pose and features: depth is made for speed"));
         }
         let disparities = self
             .disparities

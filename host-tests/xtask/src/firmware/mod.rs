@@ -6,6 +6,7 @@
 //! * [`all`]: every core, method and size; [`tables`] of it for README.md; [`checksums`] on real pictures.
 //! * [`awkward`]: sizes that fill no vector, where the rows are in assembly.
 //! * [`pose`]: two views on one core, held to the host; [`two_views_all`]: on every core.
+//! * [`features`]: features of two pictures and their matches, on one core and on those of the table.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
 
 mod all;
@@ -13,6 +14,7 @@ mod arguments;
 mod awkward;
 mod checksums;
 mod emulate;
+mod features;
 pub mod frame;
 mod log;
 mod pose;
@@ -26,6 +28,8 @@ mod two_views_all;
 pub mod board;
 #[path = "../../../../examples/firmware/src/camera/scene.rs"]
 pub mod scene;
+#[path = "../../../../examples/firmware/src/two_pictures.rs"]
+pub mod two_pictures;
 #[path = "../../../../examples/firmware/src/two_views.rs"]
 pub mod two_views;
 
@@ -48,6 +52,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     match arguments.asked()? {
         Asked::Depth(one) => run_one(&one),
         Asked::Pose { board, optimised, out } => run_pose(board, optimised, &out),
+        Asked::Features { board, optimised, out } => run_features(board, optimised, &out),
         Asked::All => run_all(arguments.check),
     }
 }
@@ -55,7 +60,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
 /// Every core and program; writes README.md's tables, or compares them.
 fn run_all(check: bool) -> Outcome {
     all::run(check)?;
-    two_views_all::run(check)
+    two_views_all::run(check)?;
+    features::run_all(check)
 }
 
 /// Every core, method and size, compared with README.md.
@@ -70,6 +76,17 @@ fn run_pose(board: Board, optimised: Optimised, out: &Path) -> Outcome {
     let pose = pose::run(board, optimised)?;
     pose.write(out)?;
     println!("{}", pose.told());
+    println!("results are in {}; what was found is what the host finds, to the bit", out.display());
+    Ok(())
+}
+
+/// Features and matches on one core into a folder.
+fn run_features(board: Board, optimised: Optimised, out: &Path) -> Outcome {
+    Staging::probe(out).map_err(|e| Failure::new(format!("--out: {e}")))?;
+    setup::firmware(&[board.target])?;
+    let features = features::run(board, optimised)?;
+    features.write(out)?;
+    println!("{}", features.told());
     println!("results are in {}; what was found is what the host finds, to the bit", out.display());
     Ok(())
 }

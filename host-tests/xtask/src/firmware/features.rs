@@ -1,0 +1,276 @@
+//! The program `features` on one core: two pictures to features and their matches, measured, and held to the host's own run.
+
+use super::board::{self, Board};
+use super::frame::{calibrated, figures, instructions};
+use super::program::{Optimised, build_plain};
+use super::scene::{Scene, SceneCamera};
+use super::two_pictures::{HEIGHT, TwoPictures, WIDTH};
+use super::{emulate, log, tables};
+use crate::elf::Sizes;
+use crate::parallel;
+use crate::steps::{Failure, Outcome};
+use serde::Serialize;
+use std::fmt::Debug;
+use std::fs;
+use std::path::Path;
+use stereopsis::camera::StereoSource;
+use stereopsis::features::{Feature, Match};
+use stereopsis_host::output::{OutputError, Staging};
+
+/// The part of README.md.
+pub const FEATURES: tables::Part = tables::Part { name: "features", command: "cargo xtask firmware --all" };
+
+/// What is measured: both cores that are built alike, and one of them made for size.
+const CASES: [(Board, Optimised); 3] =
+    [(board::M4, Optimised::Speed), (board::M7, Optimised::Speed), (board::M7, Optimised::Size)];
+
+/// What the cameras see.
+const SCENE: Scene = Scene { width: WIDTH as u16, height: HEIGHT as u16 };
+/// The most static RAM, bytes: both detectors, both lists and the matcher.
+const MOST_RAM: u64 = 32 * 1024;
+/// The most stack, bytes.
+const MOST_STACK: u64 = 8 * 1024;
+/// A right match lies so near to where the scene says, px.
+const NEAR_PX: f32 = 1.5;
+/// Of so many matches one may be wrong.
+const ONE_WRONG_OF: usize = 10;
+
+/// What came of it. Names and units of the fields are a contract with programs that read `summary.json`.
+#[derive(Serialize)]
+pub struct Features {
+    core: &'static str,
+    board: &'static str,
+    target: &'static str,
+    /// `release` is made for speed, `small` for size.
+    profile: &'static str,
+    width: usize,
+    height: usize,
+    /// Both pictures' features.
+    detection_instructions: u64,
+    detection_instructions_per_pixel: f64,
+    /// All features of the one picture with all of the other.
+    matching_instructions: u64,
+    static_ram_bytes: u64,
+    stack_bytes: u64,
+    flash_bytes: u64,
+    panic_symbols: usize,
+    allocation_symbols: usize,
+    left: u64,
+    right: u64,
+    matches: u64,
+    right_matches: usize,
+    crc32: String,
+}
+
+/// Builds the program and runs it; fails when what it finds is not what the host finds, to the bit, or not what the scene
+/// shows, and when it takes more than it may.
+pub fn run(board: Board, optimised: Optimised) -> Outcome<Features> {
+    let name = format!("{}-features-{}", board.core, optimised.profile());
+    let failed = |what: String| Failure::new(format!("{name}: {what}"));
+    let elf = build_plain(board, "features", optimised, "")?;
+    let folder = tempfile::tempdir().map_err(|e| failed(e.to_string()))?;
+    let printed = emulate::run_elf(board, &elf, &name, folder.path())?;
+    for line in log::read(&elf, &name, folder.path())? {
+        println!("{name}: {line}");
+    }
+    let there = fs::read(folder.path().join("features.bin")).map_err(|e| failed(format!("features.bin: {e}")))?;
+    let pictures = of_host()?;
+    same(&there, &bytes(&pictures)).map_err(failed)?;
+    let right_matches = pictures.matches.iter().filter(|found| is_right(&pictures, found)).count();
+    if right_matches * ONE_WRONG_OF < pictures.matches.len() * (ONE_WRONG_OF - 1) || right_matches == 0 {
+        return Err(failed(format!("{right_matches} of {} matches are right", pictures.matches.len())));
+    }
+
+    let figures = figures(&printed);
+    let figure = |name: &str| figures.get(name).copied().ok_or_else(|| failed(format!("it prints no {name}")));
+    calibrated(board, figure("calibration_ticks")?).map_err(failed)?;
+    let sizes = Sizes::of(&elf)?;
+    sizes.without_panics()?;
+    let detection_instructions = instructions(board, figure("detection_ticks")?);
+    let features = Features {
+        core: board.core,
+        board: board.machine,
+        target: board.target,
+        profile: optimised.profile(),
+        width: WIDTH,
+        height: HEIGHT,
+        detection_instructions,
+        detection_instructions_per_pixel: detection_instructions as f64 / figure("pixels")?.max(1) as f64,
+        matching_instructions: instructions(board, figure("matching_ticks")?),
+        static_ram_bytes: sizes.static_ram,
+        stack_bytes: figure("stack_bytes")?,
+        flash_bytes: sizes.flash(),
+        panic_symbols: sizes.panics.len(),
+        allocation_symbols: sizes.allocations.len(),
+        left: figure("left")?,
+        right: figure("right")?,
+        matches: figure("matches")?,
+        right_matches,
+        crc32: format!("{:08x}", crc32fast::hash(&there)),
+    };
+    let limits = [
+        ("bytes of static RAM", features.static_ram_bytes, MOST_RAM),
+        ("bytes of stack", features.stack_bytes, MOST_STACK),
+    ];
+    match limits.iter().find(|(_, is, most)| is > most) {
+        Some((what, is, most)) => Err(failed(format!("{is} {what}, at most {most} may be"))),
+        None => Ok(features),
+    }
+}
+
+/// Measures [`CASES`]; writes the table into README.md, or compares it.
+pub fn run_all(check: bool) -> Outcome {
+    let all = parallel::work(CASES.to_vec(), |(board, optimised)| {
+        let features = run(board, optimised)?;
+        println!("{}", features.told());
+        Ok(features)
+    })?;
+    let part = tables::with_compiler(&table(&all))?;
+    println!("{part}");
+    tables::into_readme(&FEATURES, &part, check)
+}
+
+fn table(all: &[Features]) -> String {
+    let mut table =
+        "| core | made for | detection, for a pixel | matching | features | matches | of them right | static RAM | \
+                     stack | flash | panic symbols |\n\
+                     | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n"
+            .to_owned();
+    for features in all {
+        let made_for = if features.profile == Optimised::Speed.profile() { "speed" } else { "size" };
+        table += &format!(
+            "| {} | {made_for} | {:.1} | {} | {} and {} | {} | {} | {} | {} | {} | {} |\n",
+            features.core,
+            features.detection_instructions_per_pixel,
+            features.matching_instructions,
+            features.left,
+            features.right,
+            features.matches,
+            features.right_matches,
+            features.static_ram_bytes,
+            features.stack_bytes,
+            features.flash_bytes,
+            features.panic_symbols
+        );
+    }
+    table
+}
+
+/// What the host finds in the same lines.
+fn of_host() -> Outcome<Box<TwoPictures>> {
+    let failed = |what: &dyn Debug| Failure::new(format!("the host finds no features: {what:?}"));
+    let (mut pictures, mut left, mut right) = (Box::new(TwoPictures::new()), [0; WIDTH], [0; WIDTH]);
+    let mut camera = SceneCamera::new(SCENE);
+    camera.start_frame().map_err(|e| failed(&e))?;
+    pictures.start().map_err(|e| failed(&e))?;
+    for _ in 0..HEIGHT {
+        camera.next_lines(&mut left, &mut right).map_err(|e| failed(&e))?;
+        pictures.push(&left, &right).map_err(|e| failed(&e))?;
+    }
+    pictures.pair().map_err(|e| failed(&e))?;
+    Ok(pictures)
+}
+
+/// Whether a match is where the scene says: as far to the left as its surface is away, in the same row.
+fn is_right(pictures: &TwoPictures, found: &Match) -> bool {
+    let (left, right) = (&pictures.left.features, &pictures.right.features);
+    let ends = left.get(usize::from(found.left)).zip(right.get(usize::from(found.right)));
+    ends.is_some_and(|(left, right)| {
+        let (u, v) = (left.x_px.round() as i32, left.y_px.round() as i32);
+        let disparity = if SCENE.on_board(u, v) {
+            f32::from(SCENE.board_disparity())
+        } else {
+            SCENE.floor_disparity(v) as f32 / 16.0
+        };
+        (left.x_px - right.x_px - disparity).abs() <= NEAR_PX && (left.y_px - right.y_px).abs() <= NEAR_PX
+    })
+}
+
+/// The bytes of `features.bin`: features of the left picture, of the right one, matches, with their numbers.
+fn bytes(pictures: &TwoPictures) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for features in [&pictures.left.features, &pictures.right.features] {
+        bytes.extend((features.len() as u16).to_le_bytes());
+        for Feature { x_px, y_px, score, level, descriptor } in features {
+            bytes.extend([x_px, y_px].iter().flat_map(|x| x.to_le_bytes()));
+            bytes.extend([score, level]);
+            bytes.extend(descriptor.0.iter().flat_map(|word| word.to_le_bytes()));
+        }
+    }
+    bytes.extend((pictures.matches.len() as u16).to_le_bytes());
+    bytes.extend(pictures.matches.iter().flat_map(|m| [m.left, m.right, m.different]).flat_map(u16::to_le_bytes));
+    bytes
+}
+
+/// Whether the board found what the host found; else where they differ.
+fn same(board: &[u8], host: &[u8]) -> Result<(), String> {
+    if board.len() != host.len() {
+        return Err(format!("features.bin has {} bytes, the host's {}", board.len(), host.len()));
+    }
+    match board.iter().zip(host).position(|(a, b)| a != b) {
+        Some(at) => Err(format!("byte {at} of features.bin is not the host's")),
+        None => Ok(()),
+    }
+}
+
+impl Features {
+    /// In a line.
+    pub fn told(&self) -> String {
+        format!(
+            "{}-features-{}: {:.1} instructions for a pixel, {} for matching {} with {} features; RAM {} bytes, stack {}, \
+             flash {}; {} of {} matches are right, crc32 {}",
+            self.core,
+            self.profile,
+            self.detection_instructions_per_pixel,
+            self.matching_instructions,
+            self.left,
+            self.right,
+            self.static_ram_bytes,
+            self.stack_bytes,
+            self.flash_bytes,
+            self.right_matches,
+            self.matches,
+            self.crc32
+        )
+    }
+
+    /// Writes `summary.json` into a folder.
+    pub fn write(&self, out: &Path) -> Outcome {
+        let write = || -> std::result::Result<(), OutputError> {
+            let mut staging = Staging::new(out)?;
+            staging.write("summary.json", |file| {
+                serde_json::to_writer_pretty(&mut *file, self)?;
+                file.write_all(b"\n")
+            })?;
+            staging.commit(&[])
+        };
+        write().map_err(|e| Failure::new(format!("--out: {e}")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_bit_makes_a_difference() {
+        let pictures = of_host().expect("features");
+        let host = bytes(&pictures);
+        let features = pictures.left.features.len() + pictures.right.features.len();
+        assert_eq!(host.len(), 6 + 42 * features + 6 * pictures.matches.len());
+        assert!(same(&host, &host).is_ok());
+        let mut other = host.clone();
+        other[40] ^= 1;
+        assert!(same(&other, &host).is_err() && same(&host[1..], &host).is_err());
+    }
+
+    #[test]
+    fn a_match_elsewhere_is_wrong() {
+        let mut pictures = of_host().expect("features");
+        let right = |pictures: &TwoPictures| pictures.matches.iter().filter(|m| is_right(pictures, m)).count();
+        let before = right(&pictures);
+        assert!(before > 0);
+        pictures.right.features.iter_mut().for_each(|feature| feature.y_px += 2.0 * NEAR_PX + 0.1);
+        assert_eq!(right(&pictures), 0);
+    }
+}

@@ -11,7 +11,7 @@
 //!
 //! A rectified pixel takes 40 instructions on a Cortex-M7, its place and its mask included: 320 x 240 px, the camera turned by one degree,
 //! a lens with k1 = -0.1 and k2 = 0.02, cells of 64 px, a band of 16 lines. The same without a lens takes
-//! 45; cells of 32 px, for stronger lenses, are about 5 more. (All calls of [`Remap::row`] for a frame, by the SysTick of QEMU's
+//! 43; cells of 32 px, for stronger lenses, are about 5 more. (All calls of [`Remap::row`] for a frame, by the SysTick of QEMU's
 //! mps2-an500 with `-icount shift=0`, one nanosecond an instruction, at opt-level 3.) The table takes 9 million instructions once.
 
 mod lines;

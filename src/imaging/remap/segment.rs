@@ -50,25 +50,31 @@ impl Segment {
         match self.part {
             Part::None => valid.fill(0),
             Part::All => valid.fill(1),
-            Part::Some => {
-                let (mut column, mut row) = (self.column, self.row);
-                // From 0 to the last pixel, to a 256th.
-                let ends = [raw.width, raw.height].map(|side| ((u32::from(side) - 1) << BITS) + 2 * HALF as u32);
-                let is_in = |k: i32, column: &Run, row: &Run| {
-                    column.at(k).cast_unsigned() < ends[0] && row.at(k).cast_unsigned() < ends[1]
-                };
-                valid.fill(1);
-                for valid in valid.chunks_mut(1 << piece) {
-                    // A piece is straight: its ends tell.
-                    if !is_in(0, &column, &row) || !is_in((1 << piece) - 1, &column, &row) {
-                        for (k, valid) in (0..).zip(valid) {
-                            *valid = is_in(k, &column, &row).into();
-                        }
-                    }
-                    column.advance(piece);
-                    row.advance(piece);
+            Part::Some => self.mask_pieces(raw, piece, valid),
+        }
+    }
+
+    #[inline(never)]
+    fn mask_pieces(&self, raw: ImageSize, piece: u32, valid: &mut [u8]) {
+        let (mut column, mut row) = (self.column, self.row);
+        // From 0 to the last pixel, to a 256th.
+        let [right, bottom] = [raw.width, raw.height].map(|side| ((u32::from(side) - 1) << BITS) + 2 * HALF as u32);
+        let is_in = |x: i32, y: i32| x.cast_unsigned() < right && y.cast_unsigned() < bottom;
+        valid.fill(1);
+        let mut begins_in = is_in(column.start, row.start);
+        for valid in valid.chunks_mut(1 << piece) {
+            let (mut x, mut y, step) = (column.start, row.start, (column.step, row.step));
+            column.advance(piece);
+            row.advance(piece);
+            let ends_in = is_in(column.start, row.start);
+            // A piece is straight: its ends tell.
+            if !begins_in || !ends_in {
+                for valid in valid {
+                    *valid = is_in(x, y).into();
+                    (x, y) = (x.wrapping_add(step.0), y.wrapping_add(step.1));
                 }
             }
+            begins_in = ends_in;
         }
     }
 }

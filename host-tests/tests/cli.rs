@@ -6,6 +6,8 @@ mod features;
 mod focus;
 #[path = "cli/output.rs"]
 mod output;
+#[path = "cli/rectify.rs"]
+mod rectify;
 #[path = "cli/refused.rs"]
 mod refused;
 #[path = "cli/results.rs"]

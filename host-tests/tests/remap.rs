@@ -103,7 +103,7 @@ fn too_small_a_band_is_refused_with_what_would_do() {
     assert!((50..90).contains(&needed), "{needed}");
     assert!(whole::<320, 90>(&table, &noise(QVGA, 6)).is_ok());
     assert_eq!(Remap::<319, 90, SLOTS>::new(table.clone()).map(|_| ()), Err(RemapError::Width { needed: 320 }));
-    let needed = RemapTable::<0>::slots(QVGA, 5);
+    let needed = RemapTable::<0>::slots(QVGA, 6);
     assert_eq!(RemapTable::<8>::new(warp).map(|_| ()), Err(RemapTableError::Slots { needed }));
     assert!(matches!(needed, 140..400), "{needed}");
     let mut remap = Remap::<320, 90, SLOTS>::new(table).expect("enough");

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-/// Why a file gives no rectified rig: one line that names the file, the key or the line, and what would be right.
+/// Why a file gives no rig: one line that names the file, the key or the line, and what would be right.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {fault}", path.display())]
 pub struct CalibrationError {
@@ -18,13 +18,13 @@ pub struct CalibrationError {
 #[non_exhaustive]
 pub enum Fault {
     /// The operating system refused to open or read the file.
-    #[error("cannot be read ({0}); give a Middlebury or KITTI calib.txt")]
+    #[error("cannot be read ({0}); give a calibration file")]
     Read(io::Error),
     /// Not UTF-8, longer than a calibration can be, or not a file.
-    #[error("is no text file of at most {} bytes; give a Middlebury or KITTI calib.txt", super::MOST_BYTES)]
+    #[error("is no text file of at most {} bytes; give a calibration file", super::MOST_BYTES)]
     NotText,
     /// The file has no byte or only white space.
-    #[error("the file is empty; give a Middlebury or KITTI calib.txt")]
+    #[error("the file is empty; give a calibration file")]
     Empty,
     /// The content is of no format that is read.
     #[error("is neither a Middlebury calib.txt (cam0=[...]) nor a KITTI one (P0: and P1:, or two lines of 12 numbers)")]

@@ -1,11 +1,8 @@
 //! Raw lines in a band, and rectified lines out of it.
 
 use super::RemapTable;
-use super::segment::{BITS, Part, Segment, Segments};
-use crate::geometry::ImageSize;
-
-/// Columns of the raw image that four rectified ones may span to be looked up at once.
-const SPAN: usize = 8;
+use super::sample::Band;
+use super::segment::{Part, Segments};
 
 /// One camera's raw lines, rectified.
 ///
@@ -183,165 +180,26 @@ impl<const W: usize, const N: usize, const SLOTS: usize> Remap<W, N, SLOTS> {
             return Err(RemapError::Late { row });
         }
         // Rows in the band are counted from the slot of the first one that is needed.
-        let shift = (i32::from(first) - i32::from(first % Self::ROWS)) << BITS;
-        let raw = self.table.raw_size();
+        let (raw, piece) = (self.table.raw_size(), self.table.piece());
+        let band = Band::new(&self.lines, first - first % Self::ROWS, raw, piece);
         let cell = 1 << self.table.shift();
-        let segments = Segments::new(&self.table, row);
-        for ((out, valid), segment) in out.chunks_mut(cell).zip(valid.chunks_mut(cell)).zip(segments) {
-            segment.mask(raw, self.table.piece(), valid);
+        let mut segments = Segments::new(&self.table, row);
+        valid.fill(1);
+        for ((out, valid), segment) in out.chunks_mut(cell).zip(valid.chunks_mut(cell)).zip(&mut segments) {
             match segment.part {
-                Part::None => out.fill(0),
-                Part::All => self.inside(&segment, shift, out),
-                Part::Some => self.at_the_edge(&segment, shift, out, valid),
+                Part::All => band.segment::<false>(&segment, out, valid),
+                Part::Some => {
+                    segment.mask(raw, piece, valid);
+                    band.segment::<true>(&segment, out, valid);
+                }
+                Part::None => {
+                    valid.fill(0);
+                    out.fill(0);
+                }
             }
         }
         self.next += 1;
         self.needs = if self.next < self.table.size().height { self.table.raw_rows(self.next) } else { None };
         Ok(row)
-    }
-
-    /// The pixels of a segment that is inside the raw image.
-    #[inline(never)]
-    fn inside(&self, segment: &Segment, shift: i32, out: &mut [u8]) {
-        let lines = self.lines.as_flattened();
-        let (mut column, mut row) = (segment.column, segment.row);
-        row.start -= shift;
-        let piece = self.table.piece();
-        for four in out.chunks_mut(1 << piece) {
-            let (mut x, mut y) = (column.start, row.start);
-            // Mostly all of a piece are between the same two rows, and a few columns: these are looked up once.
-            let last = (x.wrapping_add(column.step.wrapping_mul(3)), y.wrapping_add(row.step.wrapping_mul(3)));
-            let is_one_row = (y ^ last.1) >> BITS == 0;
-            let columns = ((last.0 >> BITS) - (x >> BITS)) as u32;
-            let at = at::<W, N>((x >> BITS) as u32, (y >> BITS) as u32);
-            let is_together = is_one_row && columns < SPAN as u32 && at <= (N * W).saturating_sub(W + SPAN + 1);
-            match lines.get(at..at.wrapping_add(W + SPAN + 1)) {
-                Some(window) if is_together => {
-                    let mut along = x & ((1 << BITS) - 1);
-                    for out in four {
-                        let at = (along >> BITS) as usize % SPAN;
-                        let pixel = |at: usize| u32::from(window.get(at).copied().unwrap_or(0));
-                        let around = [pixel(at), pixel(at + 1), pixel(at + W), pixel(at + W + 1)];
-                        *out = weighted(around, fraction(along), fraction(y));
-                        along = along.wrapping_add(column.step);
-                        y = y.wrapping_add(row.step);
-                        // Pixel by pixel: unrolled, this has more numbers at hand than a Cortex-M has registers.
-                        core::hint::black_box(());
-                    }
-                }
-                _ => {
-                    for out in four {
-                        *out = between::<W, N>(lines, x, y);
-                        x = x.wrapping_add(column.step);
-                        y = y.wrapping_add(row.step);
-                        core::hint::black_box(());
-                    }
-                }
-            }
-            column.advance(piece);
-            row.advance(piece);
-        }
-    }
-
-    /// The pixels of a segment of which some are not.
-    fn at_the_edge(&self, segment: &Segment, shift: i32, out: &mut [u8], valid: &[u8]) {
-        let lines = self.lines.as_flattened();
-        let raw = self.table.raw_size();
-        let places = segment.column.places(self.table.piece()).zip(segment.row.places(self.table.piece()));
-        for ((out, &valid), (column, row)) in out.iter_mut().zip(valid).zip(places) {
-            *out = if valid == 0 {
-                0
-            } else {
-                let (x, right) = split(column, raw.width);
-                let (y, down) = split(row, raw.height);
-                weighted(four::<W, N>(lines, x, y.wrapping_sub((shift >> BITS) as u32)), right, down)
-            };
-        }
-    }
-}
-
-impl Segment {
-    /// Whether its pixels are in the raw image.
-    pub(super) fn mask(&self, raw: ImageSize, piece: u32, valid: &mut [u8]) {
-        match self.part {
-            Part::None => valid.fill(0),
-            Part::All => valid.fill(1),
-            Part::Some => {
-                let is_in = |place: i32, side: u16| place >= 0 && place >> (BITS - 8) <= (i32::from(side) - 1) << 8;
-                for ((valid, column), row) in
-                    valid.iter_mut().zip(self.column.places(piece)).zip(self.row.places(piece))
-                {
-                    *valid = (is_in(column, raw.width) && is_in(row, raw.height)).into();
-                }
-            }
-        }
-    }
-}
-
-/// A place as a pixel that has another after it, and 256ths of the way to that: all of it on the image's last one.
-fn split(place: i32, side: u16) -> (u32, u32) {
-    let whole = (place >> BITS).clamp(0, i32::from(side) - 2);
-    (whole as u32, (place >> (BITS - 8)).wrapping_sub(whole << 8) as u32)
-}
-
-/// 256ths of the way from a place's pixel to the next.
-#[inline(always)]
-fn fraction(place: i32) -> u32 {
-    (place >> (BITS - 8)) as u32 & 0xff
-}
-
-/// The pixel at a place of the band.
-#[inline(always)]
-fn between<const W: usize, const N: usize>(lines: &[u8], column: i32, row: i32) -> u8 {
-    weighted(four::<W, N>(lines, (column >> BITS) as u32, (row >> BITS) as u32), fraction(column), fraction(row))
-}
-
-/// Where a pixel is in the band.
-#[inline(always)]
-fn at<const W: usize, const N: usize>(column: u32, row: u32) -> usize {
-    let rows = N as u32 - 1;
-    // Slots are counted from one within the band: those past its end begin again.
-    let slot = if rows.is_power_of_two() { row & (rows - 1) } else { row.min(row.wrapping_sub(rows)) };
-    (slot as usize).wrapping_mul(W).wrapping_add(column as usize)
-}
-
-/// Four pixels of the band: two neighbours, and the two below.
-#[inline(always)]
-fn four<const W: usize, const N: usize>(lines: &[u8], column: u32, row: u32) -> [u32; 4] {
-    let at = at::<W, N>(column, row);
-    if at > N * W - W - 2 {
-        return [0; 4];
-    }
-    let pixel = |at: usize| u32::from(lines.get(at).copied().unwrap_or(0));
-    [pixel(at), pixel(at + 1), pixel(at + W), pixel(at + W + 1)]
-}
-
-/// Their mean, weighted by 256ths of a pixel to the right and down, to the nearest.
-#[inline(always)]
-fn weighted([a, b, c, d]: [u32; 4], right: u32, down: u32) -> u8 {
-    let top = (a << 8).wrapping_add(b.wrapping_sub(a).wrapping_mul(right));
-    let bottom = (c << 8).wrapping_add(d.wrapping_sub(c).wrapping_mul(right));
-    let mean = (top << 8).wrapping_add(bottom.wrapping_sub(top).wrapping_mul(down));
-    (mean.wrapping_add(1 << 15) >> 16) as u8
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_mean_of_four() {
-        assert_eq!(weighted([10, 20, 30, 40], 0, 0), 10);
-        assert_eq!(weighted([10, 20, 30, 40], 128, 0), 15);
-        assert_eq!(weighted([10, 20, 30, 40], 128, 128), 25);
-        assert_eq!(weighted([10, 20, 30, 40], 256, 256), 40);
-    }
-
-    #[test]
-    fn the_band_begins_again() {
-        // Three rows and the copy of the first.
-        let lines = [[1, 2], [3, 4], [5, 6], [1, 2]];
-        assert_eq!(four::<2, 4>(lines.as_flattened(), 0, 2), [5, 6, 1, 2]);
-        assert_eq!(four::<2, 4>(lines.as_flattened(), 0, 4), [3, 4, 5, 6]);
     }
 }

@@ -1,11 +1,14 @@
 //! The places of a rectified line's pixels in the raw image, piece by piece.
 
 use super::RemapTable;
+use crate::geometry::ImageSize;
 
 /// Fractional bits of a place.
 pub(super) const BITS: u32 = 16;
 /// Half of the finest step that pixels are weighted in, 1/256 px.
 const HALF: i32 = 1 << (BITS - 9);
+/// The greatest step of pieces that are looked up in one window, less than 2 px: its four pixels begin in 7 columns.
+pub(super) const NARROW: i32 = (2 << BITS) - 1;
 /// Fractional bits of the weights between rows of the lattice.
 const WEIGHT_BITS: u32 = 20;
 
@@ -35,9 +38,45 @@ pub(super) struct Run {
     pub start: i32,
     pub step: i32,
     pub bend: i32,
-    /// The least and the greatest place are not beyond these.
-    pub least: i32,
-    pub greatest: i32,
+    /// The place after the last pixel.
+    end: i32,
+    /// The place where the tangents at both ends meet: a parabola stays between its ends and that (Bézier).
+    meet: i32,
+}
+
+impl Segment {
+    /// Whether its pixels are in the raw image: 1 or 0.
+    pub fn mask(&self, raw: ImageSize, piece: u32, valid: &mut [u8]) {
+        match self.part {
+            Part::None => valid.fill(0),
+            Part::All => valid.fill(1),
+            Part::Some => self.mask_pieces(raw, piece, valid),
+        }
+    }
+
+    #[inline(never)]
+    fn mask_pieces(&self, raw: ImageSize, piece: u32, valid: &mut [u8]) {
+        let (mut column, mut row) = (self.column, self.row);
+        // From 0 to the last pixel, to a 256th.
+        let [right, bottom] = [raw.width, raw.height].map(|side| ((u32::from(side) - 1) << BITS) + 2 * HALF as u32);
+        let is_in = |x: i32, y: i32| x.cast_unsigned() < right && y.cast_unsigned() < bottom;
+        valid.fill(1);
+        let mut begins_in = is_in(column.start, row.start);
+        for valid in valid.chunks_mut(1 << piece) {
+            let (mut x, mut y, step) = (column.start, row.start, (column.step, row.step));
+            column.advance(piece);
+            row.advance(piece);
+            let ends_in = is_in(column.start, row.start);
+            // A piece is straight: its ends tell.
+            if !begins_in || !ends_in {
+                for valid in valid {
+                    *valid = is_in(x, y).into();
+                    (x, y) = (x.wrapping_add(step.0), y.wrapping_add(step.1));
+                }
+            }
+            begins_in = ends_in;
+        }
+    }
 }
 
 impl Run {
@@ -50,23 +89,51 @@ impl Run {
         let bent = length * pieces * (pieces - 1) / 2 * bend;
         let step = rounded(to - from - bent, shift);
         let start = from + HALF - if piece == 0 { 0 } else { bend / 4 };
-        // A parabola stays between its ends and the place where its tangents there meet (Bézier).
         let end = start + length * pieces * step + bent;
         let meet = start + length * pieces * (2 * step - bend) / 4;
-        let least = start.min(end).min(meet) - 1;
-        let greatest = start.max(end).max(meet) + 1;
-        Self { start, step, bend, least, greatest }
+        Self { start, step, bend, end, meet }
+    }
+
+    /// No place is less.
+    pub fn least(&self) -> i32 {
+        self.start.min(self.end).min(self.meet) - 1
+    }
+
+    /// No place is greater.
+    pub fn greatest(&self) -> i32 {
+        self.start.max(self.end).max(self.meet) + 1
+    }
+
+    /// Whether all places are before `last` and not negative.
+    #[inline(always)]
+    fn is_before(&self, last: i32) -> bool {
+        let most = (last - 2).cast_unsigned();
+        [self.start, self.end, self.meet].iter().all(|place| (place.wrapping_sub(1)).cast_unsigned() < most)
     }
 
     /// The places of the pixels.
     pub fn places(&self, piece: u32) -> impl Iterator<Item = i32> {
         let mut run = *self;
         let pieces = core::iter::from_fn(move || {
-            let (start, step) = (run.start, run.step);
+            let this = run;
             run.advance(piece);
-            Some((0..1 << piece).map(move |k| start.wrapping_add(step.wrapping_mul(k))))
+            Some((0..1 << piece).map(move |k| this.at(k)))
         });
         pieces.flatten()
+    }
+
+    /// The place of a pixel of the piece that it is at.
+    #[inline(always)]
+    pub fn at(&self, k: i32) -> i32 {
+        self.start.wrapping_add(self.step.wrapping_mul(k))
+    }
+
+    /// Whether each of that many pieces of four pixels goes to the right, by less than 8 px from the first pixel's column to the last one's.
+    #[inline(always)]
+    pub fn is_narrow(&self, pieces: usize) -> bool {
+        // The step grows or shrinks all along: its ends tell.
+        let is_small = |step: i32| (0..=NARROW).contains(&step);
+        is_small(self.step) && is_small(self.step.wrapping_add(self.bend.wrapping_mul(pieces as i32)))
     }
 
     /// Moves on by a piece. Past its last one a run may go anywhere.
@@ -107,36 +174,32 @@ impl<'a> Segments<'a> {
     pub fn new<const SLOTS: usize>(table: &'a RemapTable<SLOTS>, row: u16) -> Self {
         let shift = table.shift();
         let raw = table.raw_size();
-        let mut segments = Self {
-            rows: table.rows_around(row),
-            weights: weights(i32::from(row) & ((1 << shift) - 1), shift),
-            window: [Node::default(); 4],
-            next: 0,
+        let rows = table.rows_around(row);
+        let weights = weights(i32::from(row) & ((1 << shift) - 1), shift);
+        Self {
+            rows,
+            weights,
+            window: [Node::default(), node(&rows, &weights, 0), node(&rows, &weights, 1), node(&rows, &weights, 2)],
+            next: 3,
             left: table.cells(),
             shift,
             piece: table.piece(),
             most: [raw.width, raw.height].map(|side| (i32::from(side) - 1) << BITS),
-        };
-        for _ in 0..3 {
-            segments.advance();
         }
-        segments
     }
+}
 
-    /// Moves the window on by a column of the lattice.
-    fn advance(&mut self) {
-        let [_, b, c, d] = self.window;
-        let [n0, n1, n2, n3] = self.rows.map(|row| row.get(self.next).copied().unwrap_or([1, 0]));
-        let [w0, w1, w2, w3] = self.weights.map(i64::from);
-        let at = |axis: usize| {
-            let sum = w0 * i64::from(n0[axis]) + w1 * i64::from(n1[axis]);
-            let sum = sum + w2 * i64::from(n2[axis]) + w3 * i64::from(n3[axis]);
-            ((sum + (1 << (WEIGHT_BITS - 1))) >> WEIGHT_BITS) as i32
-        };
-        let node = Node { place: [at(0), at(1)], is_beyond: (n1[0] | n2[0]) & 1 != 0 };
-        self.window = [b, c, d, node];
-        self.next += 1;
-    }
+/// A column of the lattice, in the line that weights of its four rows give.
+#[inline(always)]
+fn node(rows: &[&[[i32; 2]]; 4], weights: &[i32; 4], column: usize) -> Node {
+    let [n0, n1, n2, n3] = rows.map(|row| row.get(column).copied().unwrap_or([1, 0]));
+    let [w0, w1, w2, w3] = weights.map(i64::from);
+    let at = |axis: usize| {
+        let sum = w0 * i64::from(n0[axis]) + w1 * i64::from(n1[axis]);
+        let sum = sum + w2 * i64::from(n2[axis]) + w3 * i64::from(n3[axis]);
+        ((sum + (1 << (WEIGHT_BITS - 1))) >> WEIGHT_BITS) as i32
+    };
+    Node { place: [at(0), at(1)], is_beyond: (n1[0] | n2[0]) & 1 != 0 }
 }
 
 impl Iterator for Segments<'_> {
@@ -145,18 +208,21 @@ impl Iterator for Segments<'_> {
     #[inline]
     fn next(&mut self) -> Option<Segment> {
         self.left = self.left.checked_sub(1)?;
-        self.advance();
-        let [a, b, c, d] = self.window;
+        let [_, a, b, c] = self.window;
+        let d = node(&self.rows, &self.weights, self.next);
+        self.window = [a, b, c, d];
+        self.next += 1;
         let run = |axis: usize| Run::between([a, b, c, d].map(|node| node.place[axis]), self.shift, self.piece);
         let (column, row) = (run(0), run(1));
         let [last_column, last_row] = self.most;
-        // Outside for all pixels, or inside with the pixels to the right and below.
-        let out = |run: &Run, last: i32| run.greatest < 0 || run.least >= last + 2 * HALF;
-        let inside = |run: &Run, last: i32| run.least >= 0 && run.greatest < last;
-        let part = if b.is_beyond || c.is_beyond || out(&column, last_column) || out(&row, last_row) {
+        // Inside with the pixels to the right and below, or outside for all pixels.
+        let is_out = |run: &Run, last: i32| run.greatest() < 0 || run.least() >= last + 2 * HALF;
+        let part = if b.is_beyond || c.is_beyond {
             Part::None
-        } else if inside(&column, last_column) && inside(&row, last_row) {
+        } else if column.is_before(last_column) && row.is_before(last_row) {
             Part::All
+        } else if is_out(&column, last_column) || is_out(&row, last_row) {
+            Part::None
         } else {
             Part::Some
         };
@@ -192,7 +258,7 @@ mod tests {
         assert_eq!((run.start, run.step, run.bend), (HALF - 32, 64, 128));
         let places: [i32; 6] = core::array::from_fn(|k| run.places(2).nth(k).unwrap_or(0) - run.start);
         assert_eq!(places, [0, 64, 128, 192, 256, 448]);
-        assert_eq!((run.least, run.greatest), (run.start - 1, run.start + 1025));
+        assert_eq!((run.least(), run.greatest()), (run.start - 1, run.start + 1025));
         // And in pieces of one.
         let run = Run::between([1024, 0, 1024, 4096], 3, 0);
         let places: [i32; 5] = core::array::from_fn(|k| run.places(0).nth(k).unwrap_or(0) - HALF);

@@ -4,11 +4,11 @@ use super::segment::{BITS, Part, Run, Segments};
 use crate::geometry::{ImageSize, Real, Warp};
 use nalgebra::Point2;
 
-/// Where the pixels of a rectified image are in the raw one: a lattice of places every 8, 16 or 32 px, in 1/65536 px.
+/// Where the pixels of a rectified image are in the raw one: a lattice of places every 8, 16, 32 or 64 px, in 1/65536 px.
 ///
 /// Between the lattice's rows a place is on the cubic through four of them, between its columns on a parabola that is bent as
 /// that cubic, drawn as straight lines of four pixels where these do; all in integers, so that every core finds the same places. The widest lattice is taken with which the places stay
-/// within [`Self::TOLERANCE_PX`] of the warp's own, which is looked at in two rows and every second column of each cell. It takes 8 bytes for a
+/// within [`Self::TOLERANCE_PX`] of the warp's own, which is looked at in every fourth row and every second column. It takes 8 bytes for a
 /// slot, which [`Self::slots`] counts.
 ///
 /// [`Self::raw_rows`] of every row follow the lattice, two in the room of a place.
@@ -53,7 +53,7 @@ impl core::fmt::Display for RemapTableError {
 impl core::error::Error for RemapTableError {}
 
 /// The widest lattice and the finest: powers of two.
-const WIDEST: u32 = 5;
+const WIDEST: u32 = 6;
 const FINEST: u32 = 3;
 /// Places farther outside the raw image than this on the left and above, and farther than that on the right and below, say
 /// no more than that they are outside. Sums of four fit a word.
@@ -69,7 +69,7 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
             Self { slots: [[1, 0]; SLOTS], shift: 0, piece: 0, size: warp.size(), raw: warp.raw_size(), rows: 0 };
         // Four pixels at a time along a line are faster.
         for piece in [2, 0] {
-            for shift in (FINEST..=WIDEST).rev() {
+            for shift in (FINEST..=table.widest()).rev() {
                 table.fill(warp, shift)?;
                 table.piece = piece;
                 if table.is_near(warp) {
@@ -81,7 +81,7 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         Err(RemapTableError::TooBent)
     }
 
-    /// How many slots the table of an image of that size takes with cells of `2^shift` px: 32, 16 or 8.
+    /// How many slots the table of an image of that size takes with cells of `2^shift` px, shift 6 to 3.
     pub const fn slots(size: ImageSize, shift: u32) -> usize {
         Self::nodes(size, shift) + (size.height as usize).div_ceil(2)
     }
@@ -89,6 +89,12 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
     /// How many of them are the lattice's places.
     const fn nodes(size: ImageSize, shift: u32) -> usize {
         lattice(size.width, shift) * lattice(size.height, shift)
+    }
+
+    /// The widest lattice whose cells are no wider than the image: places far outside say little about it.
+    fn widest(&self) -> u32 {
+        let side = u32::from(self.size.width.min(self.size.height));
+        (FINEST..=WIDEST).rev().find(|shift| 1 << shift <= side).unwrap_or(FINEST)
     }
 
     fn fill<T: Real>(&mut self, warp: &Warp<T>, shift: u32) -> Result<(), RemapTableError> {
@@ -119,7 +125,7 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
             (T::of(f64::from(place)) - T::of(128.0)) * scale
         };
         let last = self.size.height.saturating_sub(1);
-        for y in (0..last).step_by(cell / 2).chain([last]) {
+        for y in (0..last).step_by(4).chain([last]) {
             for (segment, x) in Segments::new(self, y).zip((0..).step_by(cell)) {
                 let length = cell.min(usize::from(self.size.width) - x);
                 // At the ends and in the middle of each four.
@@ -155,7 +161,7 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
 
     /// The side of a lattice cell as a power of two.
     pub fn shift(&self) -> u32 {
-        // 3 to 5.
+        // 3 to 6.
         u32::from(self.shift)
     }
 
@@ -202,8 +208,8 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         for row in 0..self.size.height {
             let (mut first, mut last) = (i32::from(u16::MAX), 0);
             for segment in Segments::new(self, row).filter(|segment| segment.part != Part::None) {
-                first = first.min(of(segment.row.least));
-                last = last.max((of(segment.row.greatest) + 1).min(last_row));
+                first = first.min(of(segment.row.least()));
+                last = last.max((of(segment.row.greatest()) + 1).min(last_row));
             }
             let slot = self.slots.get_mut(begin + usize::from(row / 2));
             if let Some(packed) = slot.and_then(|slot| slot.get_mut(usize::from(row % 2))) {

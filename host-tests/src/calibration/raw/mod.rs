@@ -50,8 +50,13 @@ impl RawCalibration {
     /// theirs.
     pub fn open(paths: &[PathBuf], images: ImageSize, unit_m: f64) -> Result<Self, CalibrationError> {
         let path = paths.first().cloned().unwrap_or_default();
+        let texts = paths.iter().map(|path| {
+            let text = load(path).and_then(|text| if text.trim().is_empty() { Err(Fault::Empty) } else { Ok(text) });
+            text.map_err(|fault| CalibrationError { path: path.clone(), fault })
+        });
+        let texts = texts.collect::<Result<Vec<_>, _>>()?;
         let read = || -> Result<Self, Fault> {
-            let found = find(paths, unit_m)?;
+            let found = find(paths, &texts, unit_m)?;
             for (which, side, image) in [("width", 0, images.width), ("height", 1, images.height)] {
                 if let Some(calibrated) = found.size.map(|size| size[side]).filter(|&c| c != u64::from(image)) {
                     let calibrated = u16::try_from(calibrated).unwrap_or(u16::MAX);
@@ -68,19 +73,15 @@ impl RawCalibration {
     }
 }
 
-fn find(paths: &[PathBuf], unit_m: f64) -> Result<Found, Fault> {
+fn find(paths: &[PathBuf], texts: &[String], unit_m: f64) -> Result<Found, Fault> {
     let mut trees = Vec::new();
     let mut fault = None;
-    for path in paths {
-        let text = load(path)?;
-        if text.trim().is_empty() {
-            return Err(Fault::Empty);
-        }
-        match tree::read(&text) {
+    for (path, text) in paths.iter().zip(texts) {
+        match tree::read(text) {
             Ok(found) => trees.extend(found),
             Err(error) => fault = Some(error),
         }
-        if trees.iter().all(|tree| !is_tree(tree)) && (middlebury::is_one(&text) || kitti::is_one(&text)) {
+        if trees.iter().all(|tree| !is_tree(tree)) && (middlebury::is_one(text) || kitti::is_one(text)) {
             return rectified(path);
         }
     }

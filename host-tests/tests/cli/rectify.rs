@@ -1,0 +1,193 @@
+//! `stereo rectify`: its files, and what it says when it cannot.
+
+use super::support::{Bench, HEIGHT, WIDTH, calibration, encode, names, pair, stereo, text};
+use image::{GrayImage, ImageFormat, Luma};
+use serde_json::Value;
+
+/// Rows that the right camera stands too high in its housing: its picture is as far down.
+const DOWN: u32 = 4;
+
+/// The calibration of such a pair, in metres.
+fn opencv() -> String {
+    let camera = |n: u32, cy: f64| {
+        format!(
+            "K{n}: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ 100., 0., 47.5, 0., 100., {cy}, 0., 0., 1. ]\n\
+             D{n}: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n   data: [ 0., 0., 0., 0., 0. ]\n"
+        )
+    };
+    format!(
+        "%YAML:1.0\n---\nimage_width: {WIDTH}\nimage_height: {HEIGHT}\n{}{}R: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n\
+         \x20  data: [ 1., 0., 0., 0., 1., 0., 0., 0., 1. ]\nT: !!opencv-matrix\n   rows: 3\n   cols: 1\n   dt: d\n\
+         \x20  data: [ -0.2, 0., 0. ]\n",
+        camera(1, 23.5),
+        camera(2, 23.5 + f64::from(DOWN))
+    )
+}
+
+/// A raw pair, its calibration, and the command for them.
+fn raw(bench: &Bench) -> Vec<String> {
+    let right = pair().1;
+    let lower = GrayImage::from_fn(WIDTH, HEIGHT, |x, y| *right.get_pixel(x, y.saturating_sub(DOWN)));
+    let file = |path: std::path::PathBuf| path.display().to_string();
+    let right = file(bench.put("lower.png", &encode(&lower, ImageFormat::Png)));
+    let calib = file(bench.put("stereo.yml", opencv().as_bytes()));
+    let (left, out) = (file(bench.path("left.png")), file(bench.path("out")));
+    ["rectify", "--left", &left, "--right", &right, "--calib", &calib, "--out", &out].map(str::to_owned).into()
+}
+
+/// The command with another value of an option, or with one more.
+fn with(arguments: &[String], option: &str, value: &str) -> Vec<String> {
+    let mut arguments = arguments.to_vec();
+    match arguments.iter().position(|argument| argument == option) {
+        Some(at) => arguments[at + 1] = value.to_owned(),
+        None => arguments.extend([option.to_owned(), value.to_owned()]),
+    }
+    arguments
+}
+
+fn keys(value: &Value) -> Vec<&str> {
+    value.as_object().expect("an object").keys().map(String::as_str).collect()
+}
+
+#[test]
+fn rows_are_aligned_and_the_new_cameras_told() {
+    let bench = Bench::new();
+    let arguments = raw(&bench);
+    let run = stereo(&arguments);
+    assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
+    assert!(text(&run.stdout).starts_with("96 x 48 px, horizontal, OpenCV calibration\n"), "{}", text(&run.stdout));
+    let files = ["left.png", "rectified.json", "right.png", "valid_left.png", "valid_right.png"];
+    assert_eq!(names(&bench.path("out")), files);
+
+    // Both go halfway, by whole rows: every pixel is one of the raw pictures.
+    let picture = |name: &str| {
+        let opened = image::open(bench.path("out").join(name)).expect(name);
+        assert_eq!(opened.color(), image::ColorType::L8, "{name}");
+        opened.into_luma8()
+    };
+    let halfway = DOWN / 2;
+    let seen = |row: u32, raw: &GrayImage, x: u32| (row < HEIGHT).then(|| raw.get_pixel(x, row).0[0]);
+    let lower = image::open(bench.path("lower.png")).expect("the raw one").into_luma8();
+    let expected = |is_right: bool, x: u32, y: u32| {
+        if is_right { seen(y + halfway, &lower, x) } else { seen(y.wrapping_sub(halfway), &pair().0, x) }
+    };
+    for (is_right, name) in [(false, "left.png"), (true, "right.png")] {
+        let grey = GrayImage::from_fn(WIDTH, HEIGHT, |x, y| Luma([expected(is_right, x, y).unwrap_or(0)]));
+        let mask = GrayImage::from_fn(WIDTH, HEIGHT, |x, y| Luma([expected(is_right, x, y).map_or(0, |_| 255)]));
+        assert!(picture(name) == grey, "{name}");
+        assert!(picture(&format!("valid_{name}")) == mask, "the mask of {name}");
+    }
+
+    let told = std::fs::read(bench.path("out/rectified.json")).expect("rectified.json");
+    let told: Value = serde_json::from_slice(&told).expect("JSON");
+    let mut all = keys(&told);
+    all.sort_unstable();
+    let expected = "axis baseline_m calibration common cx cy field_of_view_deg focal_px height left q right width";
+    assert_eq!(all.join(" "), expected);
+    for side in ["left", "right"] {
+        let mut all = keys(&told[side]);
+        all.sort_unstable();
+        assert_eq!(all.join(" "), "largest_warp_px projection rotation rows seen");
+    }
+    let near = |value: &Value, expected: f64| {
+        let found = value.as_f64().expect("a number");
+        assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+    };
+    assert_eq!((&told["axis"], &told["width"], &told["height"]), (&"horizontal".into(), &96.into(), &48.into()));
+    near(&told["left"]["largest_warp_px"], f64::from(halfway));
+    near(&told["right"]["largest_warp_px"], f64::from(halfway));
+    near(&told["focal_px"], 100.0);
+    near(&told["cy"], 25.5);
+    near(&told["baseline_m"], 0.2);
+    near(&told["right"]["projection"][0][3], -20.0);
+    // A disparity of 12 px is 100 px * 0.2 m / 12 px.
+    let q = |row: usize, column: usize| told["q"][row][column].as_f64().expect("a number");
+    near(&(q(2, 3) / (12.0 * q(3, 2) + q(3, 3))).into(), 100.0 * 0.2 / 12.0);
+
+    // What was rectified can be matched.
+    let file = |name: &str| bench.path("out").join(name).display().to_string();
+    let matched = bench.matched(&[
+        ("--left", &file("left.png")),
+        ("--right", &file("right.png")),
+        ("--out", &bench.path("depth").display().to_string()),
+    ]);
+    assert!(text(&matched.stdout).contains("median 5."), "{}", text(&matched.stdout));
+}
+
+#[test]
+fn a_calibration_that_is_wrong_is_named() {
+    let bench = Bench::new();
+    let arguments = raw(&bench);
+    let good = opencv();
+    let instead = |from: &str, to: &str| {
+        assert!(good.contains(from), "{from}");
+        good.replacen(from, to, 1)
+    };
+    let cases = [
+        (good.split_at(good.find("T: ").expect("T")).0.to_owned(), "T is missing"),
+        (instead("K2: !!opencv-matrix", "K3: !!opencv-matrix"), "K2 is missing"),
+        (instead("100., 0., 47.5", ".Nan, 0., 47.5"), "K1"),
+        (instead("[ -0.2, 0., 0. ]", "[ .Inf, 0., 0. ]"), "line 33"),
+        (instead("[ -0.2, 0., 0. ]", "[ inf, 0., 0. ]"), "T: a number is not finite"),
+        (instead("[ 1., 0., 0., 0., 1., 0.", "[ 2., 0., 0., 0., 1., 0."), "R: the matrix is no rotation"),
+        (instead("[ -0.2, 0., 0. ]", "[ 0.2, 0., 0. ]"), "swapped"),
+        (instead("[ -0.2, 0., 0. ]", "[ 0., 0., 0. ]"), "the baseline is zero"),
+        (instead("[ -0.2, 0., 0. ]", "[ -200., 0., 0. ]"), "--unit mm"),
+        (instead("image_width: 96", "image_width: 640"), "width says 640"),
+        (instead("image_height: 48", "image_height: -48"), "no size of an image"),
+        ("P0: 1 2 3\nP1: 1 2 3\n".into(), "P0"),
+        (String::new(), "empty"),
+        ("hello\n".into(), "no calibration of two cameras"),
+    ];
+    for (content, culprit) in cases {
+        let file = bench.put("bad.yml", content.as_bytes()).display().to_string();
+        bench.refused(&with(&arguments, "--calib", &file), culprit);
+        bench.refused(&with(&arguments, "--calib", &file), "bad.yml: ");
+    }
+    let bytes = bench.put("bytes.yml", &[0; 4000]).display().to_string();
+    bench.refused(&with(&arguments, "--calib", &bytes), "bytes.yml: is no text file");
+    let missing = bench.path("none.yml").display().to_string();
+    bench.refused(&with(&arguments, "--calib", &missing), "none.yml: cannot be read");
+    // The second of two files.
+    for (file, culprit) in [(&bytes, "bytes.yml: "), (&missing, "none.yml: ")] {
+        let mut both = arguments.clone();
+        both.extend(["--calib".to_owned(), file.clone()]);
+        bench.refused(&both, culprit);
+        both.extend(["--calib".to_owned(), file.clone()]);
+        bench.refused(&both, "--calib: is given more than twice");
+    }
+    // Millimetres, when they are said to be.
+    let file = bench.put("mm.yml", instead("[ -0.2, 0., 0. ]", "[ -200., 0., 0. ]").as_bytes()).display().to_string();
+    let run = stereo(with(&with(&arguments, "--calib", &file), "--unit", "mm"));
+    assert!(run.status.success() && text(&run.stdout).contains("baseline 0.2000 m"), "{}", text(&run.stderr));
+}
+
+#[test]
+fn options_and_places_that_are_wrong_are_named() {
+    let bench = Bench::new();
+    let arguments = raw(&bench);
+    for option in ["--left", "--right", "--calib", "--out"] {
+        let mut without = arguments.clone();
+        let at = without.iter().position(|argument| argument == option).expect("an option");
+        without.drain(at..at + 2);
+        bench.refused(&without, option);
+    }
+    for alpha in ["-0.1", "1.1", "nan", "x", ""] {
+        bench.refused(&with(&arguments, "--alpha", alpha), "--alpha");
+    }
+    bench.refused(&with(&arguments, "--unit", "inch"), "--unit");
+    let missing = bench.path("missing.png").display().to_string();
+    bench.refused(&with(&arguments, "--left", &missing), "missing.png");
+    let small = bench.put("small.png", &encode(&GrayImage::new(WIDTH, HEIGHT - 1), ImageFormat::Png));
+    bench.refused(&with(&arguments, "--right", &small.display().to_string()), "small.png");
+    let file = bench.put("file", b"content").display().to_string();
+    bench.refused(&with(&arguments, "--out", &file), "is not a folder");
+    bench.refused(&with(&arguments, "--out", &format!("{file}/below")), "file/below");
+    bench.refused(&with(&arguments, "--out", "/proc"), "/proc");
+    std::fs::create_dir_all(bench.path("taken/rectified.json")).expect("a folder in the way");
+    bench.refused(&with(&arguments, "--out", &bench.path("taken").display().to_string()), "rectified.json");
+    // Rectified already: nothing is to be done, and it is.
+    let calib = bench.put("calib.txt", calibration(WIDTH, HEIGHT).as_bytes()).display().to_string();
+    let run = stereo(with(&arguments, "--calib", &calib));
+    assert!(run.status.success() && text(&run.stdout).contains("Middlebury calibration"), "{}", text(&run.stderr));
+}

@@ -17,6 +17,9 @@ impl Breathing {
     /// As large as the reference.
     pub const NONE: Self = Self { scale: 1 << 16 };
 
+    /// Before the first frame.
+    pub(super) const UNSET: Self = Self { scale: 0 };
+
     /// A frame in which all is `scale` times as large as in the reference, 1/2 to 2: of
     /// [`ThinLens::breathing`](super::ThinLens::breathing).
     pub fn new(scale: f32) -> Result<Self, FocusLineError> {

@@ -151,7 +151,7 @@ impl FocusCell {
         self.choice = choice;
         self.peak = self.at(candidate) as u16;
         let half = (last / 2).min(3);
-        let centre = candidate.clamp(half, last - half);
+        let centre = candidate.min(last - half).max(half);
         (self.position, self.bend) = self.fit(centre, half);
     }
 
@@ -204,7 +204,11 @@ impl FocusCell {
         let bend = u32::from(self.bend).max(1);
         let noise = self.rough_mean(frames) * 27 / bend;
         let width = ((u32::from(OCTAVE) << 16) / bend).isqrt();
-        Ok(FocusPeak { position_q8: self.position, sigma_q8: (noise + width / 12).clamp(16, frames << 8), confidence })
+        Ok(FocusPeak {
+            position_q8: self.position,
+            sigma_q8: (noise + width / 12).min(frames << 8).max(16),
+            confidence,
+        })
     }
 
     /// The mean size of second differences.

@@ -26,6 +26,9 @@ impl FocusConfig {
     /// The most pixels in a window, counted as often as they count: with it no sum overflows.
     pub const MOST_WEIGHT: u32 = 1 << 14;
 
+    /// No frames.
+    pub(super) const NONE: Self = Self { width: 0, height: 0, cell_px: 0, radius: 0, exposure_varies: false };
+
     /// An answer a pixel, from windows of radius 3.
     pub const fn pixels(width: u16, height: u16) -> Self {
         Self { width, height, cell_px: 1, radius: 3, exposure_varies: true }

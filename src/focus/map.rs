@@ -65,17 +65,17 @@ pub struct FocusMap<const W: usize, const C: usize, S> {
     /// The first frame's logarithm of its mean brightness, and what the last complete frame's adds to sharpness.
     reference: u16,
     shift: u16,
-    is_finished: bool,
+    is_running: bool,
 }
 
 impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>> FocusMap<W, C, S> {
     /// Bytes of a map beside its cells.
     pub const LINE_BYTES: usize = size_of::<FocusMap<W, C, ()>>();
 
-    /// A map over its memory for cells, which waits for [`Self::start`].
+    /// A map over its memory for cells, which waits for [`Self::start`]. All zeros: in a `static` it takes no flash.
     pub const fn new(cells: S) -> Self {
         Self {
-            config: FocusConfig::pixels(0, 0),
+            config: FocusConfig::NONE,
             raw: LineBand::new(),
             smooth: [[0; W]; 3],
             lines: [[0; W]; 2],
@@ -84,15 +84,15 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
             sharper: [false; C],
             cells,
             floor: 0,
-            breathing: Breathing::NONE,
+            breathing: Breathing::UNSET,
             frames: 0,
             taken: 0,
             next_row: 0,
             rows_out: 0,
             brightness: 0,
             reference: 0,
-            shift: BIAS,
-            is_finished: true,
+            shift: 0,
+            is_running: false,
         }
     }
 
@@ -104,7 +104,7 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
         self.frames = 0;
         self.taken = config.height;
         self.shift = BIAS;
-        self.is_finished = false;
+        self.is_running = true;
         self.cells.as_mut().fill(FocusCell::EMPTY);
         Ok(())
     }
@@ -116,7 +116,7 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
 
     /// Begins the next frame; all lines of the one before have come.
     pub fn begin_frame(&mut self, breathing: Breathing) -> Result<(), FocusLineError> {
-        if self.is_finished {
+        if !self.is_running {
             return Err(FocusLineError::NoLineDue);
         }
         self.check_complete()?;
@@ -156,7 +156,7 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
 
     /// The next line of grey pixels. Rows of cells that are complete are told to `row`.
     pub fn push(&mut self, line: &[u8], mut row: impl FnMut(SharperRow<'_>)) -> Result<(), FocusLineError> {
-        if self.is_finished || self.frames == 0 || self.taken >= self.config.height {
+        if !self.is_running || self.frames == 0 || self.taken >= self.config.height {
             return Err(FocusLineError::NoLineDue);
         }
         let place = self.raw.next_line();
@@ -276,7 +276,7 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
 
     /// Ends the stack: then all peaks are known.
     pub fn finish(&mut self) -> Result<(), FocusLineError> {
-        if self.is_finished {
+        if !self.is_running {
             return Err(FocusLineError::NoLineDue);
         }
         self.check_complete()?;
@@ -284,7 +284,7 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
         let (frames, shift) = (self.frames, self.shift);
         let count = self.config.cells();
         self.cells.as_mut().iter_mut().take(count).for_each(|cell| cell.finish(frames, shift));
-        self.is_finished = true;
+        self.is_running = false;
         Ok(())
     }
 
@@ -292,7 +292,7 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
     pub fn peak(&self, column: usize, row: usize) -> Result<FocusPeak, NoFocus> {
         let columns = self.config.columns();
         let place =
-            (column < columns && row < self.config.rows() && self.is_finished).then_some(row * columns + column);
+            (column < columns && row < self.config.rows() && !self.is_running).then_some(row * columns + column);
         let cell = place.and_then(|place| self.cells.as_ref().get(place));
         cell.ok_or(NoFocus::TooFewFrames { needed: FocusCell::FEWEST_FRAMES })?.peak(self.frames)
     }

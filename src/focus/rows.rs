@@ -12,35 +12,45 @@ const _: () = assert!(LAPLACIAN < 1 << 14);
 /// Each pixel and its eight neighbours, weighted 1, 2, 1 along and across, their sum: 16 times the brightness, at most 4080. It
 /// keeps 3/8 of the deviation of noise that has nothing to do with its neighbours', and rounds nothing.
 pub fn binomial([above, here, below]: [&[u8]; 3], out: &mut [u16]) {
-    let down = |((&a, &b), &c): ((&u8, &u8), &u8)| u16::from(a) + 2 * u16::from(b) + u16::from(c);
-    let mut columns = above.iter().zip(here).zip(below).map(down);
-    let Some(first) = columns.next() else { return };
+    // In whole words, as below: cores without vectors cut nothing off then.
+    let down = |((&a, &b), &c): ((&u8, &u8), &u8)| u32::from(a) + 2 * u32::from(b) + u32::from(c);
+    let Some(first) = above.iter().zip(here).zip(below).map(down).next() else { return };
     let (mut left, mut middle) = (first, first);
-    let mut places = out.iter_mut();
-    for (right, place) in columns.zip(&mut places) {
-        *place = left + 2 * middle + right;
+    let rights = after_first(above).iter().zip(after_first(here)).zip(after_first(below)).map(down);
+    for (right, place) in rights.zip(out.iter_mut()) {
+        *place = (left + 2 * middle + right) as u16;
         (left, middle) = (middle, right);
     }
-    if let Some(place) = places.next() {
-        *place = left + 3 * middle;
+    let width = above.len().min(here.len()).min(below.len());
+    if let Some(place) = width.checked_sub(1).and_then(|last| out.get_mut(last)) {
+        *place = (left + 3 * middle) as u16;
     }
+}
+
+/// What is to the right of the first column.
+fn after_first<T>(row: &[T]) -> &[T] {
+    row.get(1..).unwrap_or(&[])
 }
 
 /// The modified Laplacian `|2 b - l - r| + |2 b - a - c|` of rows of bytes or of [`binomial`] (Nayar & Nakagawa 1994): the second
 /// differences along and across, which cannot cancel each other. At most 16320.
 pub fn modified_laplacian<T: Copy + Into<u16>>([above, here, below]: [&[T]; 3], out: &mut [u16]) {
     let width = above.len().min(here.len()).min(below.len());
-    let mut nexts = here.iter().take(width).map(|&b| b.into());
-    let Some(first) = nexts.next() else { return };
-    let (mut left, mut middle): (u16, u16) = (first, first);
-    let value = |l: u16, b: u16, r: u16, a: u16, c: u16| (2 * b).abs_diff(l + r) + (2 * b).abs_diff(a + c);
-    let mut places = out.iter_mut().zip(above.iter().zip(below));
-    for (right, (place, (&a, &c))) in nexts.zip(&mut places) {
-        *place = value(left, middle, right, a.into(), c.into());
+    let wide = |pixel: T| i32::from(pixel.into());
+    let value = |l: i32, b: i32, r: i32, a: T, c: T| {
+        ((2 * b - l - r).unsigned_abs() + (2 * b - wide(a) - wide(c)).unsigned_abs()) as u16
+    };
+    let Some(first) = here.first().copied().map(wide) else { return };
+    let (mut left, mut middle) = (first, first);
+    let rights = here.get(1..width).unwrap_or(&[]);
+    for (((&right, &a), &c), place) in rights.iter().zip(above).zip(below).zip(out.iter_mut()) {
+        let right = wide(right);
+        *place = value(left, middle, right, a, c);
         (left, middle) = (middle, right);
     }
-    if let Some((place, (&a, &c))) = places.next() {
-        *place = value(left, middle, middle, a.into(), c.into());
+    let last = width.checked_sub(1).and_then(|last| Some((*above.get(last)?, *below.get(last)?, out.get_mut(last)?)));
+    if let Some((a, c, place)) = last {
+        *place = value(left, middle, middle, a, c);
     }
 }
 

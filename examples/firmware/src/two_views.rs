@@ -88,6 +88,12 @@ impl Cameras {
     }
 }
 
+impl Default for World {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl World {
     /// Nothing yet.
     pub const fn new() -> Self {

@@ -12,10 +12,11 @@ use stereopsis_host::run::{Method, NoiseChoice, UnknownNoise};
 /// The options of `firmware`.
 #[derive(Args)]
 pub struct Arguments {
-    /// The program: depth, rows of disparity; pose, two views; or features, corners of two pictures and their matches
-    #[arg(long, default_value = "depth", value_parser = ["depth", "pose", "features"])]
+    /// The program: depth, rows of disparity; pose, two views; features, corners of two pictures and their matches; or focus,
+    /// a lens that moves
+    #[arg(long, default_value = "depth", value_parser = ["depth", "pose", "features", "focus"])]
     program: String,
-    /// With --program pose or features: made for size, not for speed
+    /// With a program other than depth: made for size, not for speed
     #[arg(long)]
     small: bool,
     /// The core: m0, m3, m4, m7, m33, m55 or rv32
@@ -63,14 +64,26 @@ pub struct One {
     pub out: PathBuf,
 }
 
+/// A program without sizes to choose.
+pub struct Plain {
+    /// The core's board.
+    pub board: Board,
+    /// What the optimiser is asked for.
+    pub optimised: Optimised,
+    /// Where the results go.
+    pub out: PathBuf,
+}
+
 /// What is asked for.
 pub enum Asked {
     /// One frame on one core.
     Depth(One),
     /// Two views on one core.
-    Pose { board: Board, optimised: Optimised, out: PathBuf },
+    Pose(Plain),
     /// Features of two pictures on one core.
-    Features { board: Board, optimised: Optimised, out: PathBuf },
+    Features(Plain),
+    /// A lens that moves, on one core.
+    Focus(Plain),
     /// All cores.
     All,
 }
@@ -96,13 +109,15 @@ impl Arguments {
                 )));
             }
             let optimised = if self.small { Optimised::Size } else { Optimised::Speed };
+            let plain = Plain { board, optimised, out };
             return Ok(match name.as_str() {
-                "pose" => Asked::Pose { board, optimised, out },
-                _ => Asked::Features { board, optimised, out },
+                "pose" => Asked::Pose(plain),
+                "features" => Asked::Features(plain),
+                _ => Asked::Focus(plain),
             });
         }
         if self.small {
-            return Err(Failure::new("--small is for --program pose and features: depth is made for speed"));
+            return Err(Failure::new("--small is for the programs other than depth, which is made for speed"));
         }
         let disparities = self
             .disparities

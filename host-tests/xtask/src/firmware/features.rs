@@ -5,17 +5,15 @@ use super::frame::{calibrated, figures, instructions};
 use super::program::{Optimised, build_plain};
 use super::scene::{Scene, SceneCamera};
 use super::two_pictures::{HEIGHT, TwoPictures, WIDTH};
-use super::{emulate, log, tables};
+use super::{emulate, log, results, tables};
 use crate::elf::Sizes;
 use crate::parallel;
 use crate::steps::{Failure, Outcome};
 use serde::Serialize;
 use std::fmt::Debug;
 use std::fs;
-use std::path::Path;
 use stereopsis::camera::StereoSource;
 use stereopsis::features::{Feature, Match};
-use stereopsis_host::output::{OutputError, Staging};
 
 /// The part of README.md.
 pub const FEATURES: tables::Part = tables::Part { name: "features", command: "cargo xtask firmware --all" };
@@ -75,7 +73,7 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Features> {
     }
     let there = fs::read(folder.path().join("features.bin")).map_err(|e| failed(format!("features.bin: {e}")))?;
     let pictures = of_host()?;
-    same(&there, &bytes(&pictures)).map_err(failed)?;
+    results::same("features.bin", &there, &bytes(&pictures)).map_err(failed)?;
     let right_matches = pictures.matches.iter().filter(|found| is_right(&pictures, found)).count();
     if right_matches * ONE_WRONG_OF < pictures.matches.len() * (ONE_WRONG_OF - 1) || right_matches == 0 {
         return Err(failed(format!("{right_matches} of {} matches are right", pictures.matches.len())));
@@ -202,17 +200,6 @@ fn bytes(pictures: &TwoPictures) -> Vec<u8> {
     bytes
 }
 
-/// Whether the board found what the host found; else where they differ.
-fn same(board: &[u8], host: &[u8]) -> Result<(), String> {
-    if board.len() != host.len() {
-        return Err(format!("features.bin has {} bytes, the host's {}", board.len(), host.len()));
-    }
-    match board.iter().zip(host).position(|(a, b)| a != b) {
-        Some(at) => Err(format!("byte {at} of features.bin is not the host's")),
-        None => Ok(()),
-    }
-}
-
 impl Features {
     /// In a line.
     pub fn told(&self) -> String {
@@ -233,19 +220,6 @@ impl Features {
             self.crc32
         )
     }
-
-    /// Writes `summary.json` into a folder.
-    pub fn write(&self, out: &Path) -> Outcome {
-        let write = || -> std::result::Result<(), OutputError> {
-            let mut staging = Staging::new(out)?;
-            staging.write("summary.json", |file| {
-                serde_json::to_writer_pretty(&mut *file, self)?;
-                file.write_all(b"\n")
-            })?;
-            staging.commit(&[])
-        };
-        write().map_err(|e| Failure::new(format!("--out: {e}")))
-    }
 }
 
 #[cfg(test)]
@@ -253,15 +227,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_bit_makes_a_difference() {
+    fn all_that_was_found_is_in_the_file() {
         let pictures = of_host().expect("features");
-        let host = bytes(&pictures);
         let features = pictures.left.features.len() + pictures.right.features.len();
-        assert_eq!(host.len(), 6 + 42 * features + 6 * pictures.matches.len());
-        assert!(same(&host, &host).is_ok());
-        let mut other = host.clone();
-        other[40] ^= 1;
-        assert!(same(&other, &host).is_err() && same(&host[1..], &host).is_err());
+        assert_eq!(bytes(&pictures).len(), 6 + 42 * features + 6 * pictures.matches.len());
     }
 
     #[test]

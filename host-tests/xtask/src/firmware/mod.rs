@@ -7,6 +7,7 @@
 //! * [`awkward`]: sizes that fill no vector, where the rows are in assembly.
 //! * [`pose`]: two views on one core, held to the host; [`two_views_all`]: on every core.
 //! * [`features`]: features of two pictures and their matches, on one core and on those of the table.
+//! * [`focus`]: a lens that moves, likewise. [`results`]: what such a program leaves.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
 
 mod all;
@@ -15,11 +16,13 @@ mod awkward;
 mod checksums;
 mod emulate;
 mod features;
+mod focus;
 pub mod frame;
 mod log;
 mod pose;
 pub mod program;
 mod refusals;
+mod results;
 mod summary;
 pub mod tables;
 mod two_views_all;
@@ -28,6 +31,8 @@ mod two_views_all;
 pub mod board;
 #[path = "../../../../examples/firmware/src/camera/scene.rs"]
 pub mod scene;
+#[path = "../../../../examples/firmware/src/sweep.rs"]
+pub mod sweep;
 #[path = "../../../../examples/firmware/src/two_pictures.rs"]
 pub mod two_pictures;
 #[path = "../../../../examples/firmware/src/two_views.rs"]
@@ -39,10 +44,13 @@ pub use program::{VECTORS, cargo};
 use crate::pictures::Pictures;
 use crate::setup;
 use crate::steps::{Failure, Outcome};
-use arguments::{Asked, One};
+use arguments::{Asked, One, Plain};
 use board::Board;
+use features::Features;
+use focus::Focus;
+use pose::Pose;
 use program::{Optimised, Program};
-use std::path::Path;
+use serde::Serialize;
 use stereopsis::imaging::Noise;
 use stereopsis_host::output::Staging;
 use stereopsis_host::run::NoiseChoice;
@@ -51,8 +59,9 @@ use stereopsis_host::run::NoiseChoice;
 pub fn run(arguments: &Arguments) -> Outcome {
     match arguments.asked()? {
         Asked::Depth(one) => run_one(&one),
-        Asked::Pose { board, optimised, out } => run_pose(board, optimised, &out),
-        Asked::Features { board, optimised, out } => run_features(board, optimised, &out),
+        Asked::Pose(plain) => run_plain(&plain, pose::run, Pose::told),
+        Asked::Features(plain) => run_plain(&plain, features::run, Features::told),
+        Asked::Focus(plain) => run_plain(&plain, focus::run, Focus::told),
         Asked::All => run_all(arguments.check),
     }
 }
@@ -61,7 +70,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
 fn run_all(check: bool) -> Outcome {
     all::run(check)?;
     two_views_all::run(check)?;
-    features::run_all(check)
+    features::run_all(check)?;
+    focus::run_all(check)
 }
 
 /// Every core, method and size, compared with README.md.
@@ -69,24 +79,17 @@ pub fn check_all() -> Outcome {
     run_all(true)
 }
 
-/// Two views on one core into a folder.
-fn run_pose(board: Board, optimised: Optimised, out: &Path) -> Outcome {
+/// A program without sizes to choose, on one core into a folder.
+fn run_plain<T: Serialize>(
+    Plain { board, optimised, out }: &Plain,
+    run: fn(Board, Optimised) -> Outcome<T>,
+    told: fn(&T) -> String,
+) -> Outcome {
     Staging::probe(out).map_err(|e| Failure::new(format!("--out: {e}")))?;
     setup::firmware(&[board.target])?;
-    let pose = pose::run(board, optimised)?;
-    pose.write(out)?;
-    println!("{}", pose.told());
-    println!("results are in {}; what was found is what the host finds, to the bit", out.display());
-    Ok(())
-}
-
-/// Features and matches on one core into a folder.
-fn run_features(board: Board, optimised: Optimised, out: &Path) -> Outcome {
-    Staging::probe(out).map_err(|e| Failure::new(format!("--out: {e}")))?;
-    setup::firmware(&[board.target])?;
-    let features = features::run(board, optimised)?;
-    features.write(out)?;
-    println!("{}", features.told());
+    let found = run(*board, *optimised)?;
+    results::write(&found, out)?;
+    println!("{}", told(&found));
     println!("results are in {}; what was found is what the host finds, to the bit", out.display());
     Ok(())
 }

@@ -4,14 +4,12 @@ use super::board::Board;
 use super::frame::{calibrated, figures, instructions};
 use super::program::{Optimised, build_plain};
 use super::two_views::{Cameras, Found, MATCHES, Missing, World};
-use super::{emulate, log};
+use super::{emulate, log, results};
 use crate::elf::Sizes;
 use crate::steps::{Failure, Outcome};
 use nalgebra::Point3;
 use serde::Serialize;
 use std::fs;
-use std::path::Path;
-use stereopsis_host::output::{OutputError, Staging};
 
 /// What the program begins its world with.
 const SEED: u32 = 5;
@@ -69,7 +67,7 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Pose> {
         println!("{name}: {line}");
     }
     let there = fs::read(folder.path().join("pose.bin")).map_err(|e| failed(format!("pose.bin: {e}")))?;
-    same(&there, &of_host()?).map_err(failed)?;
+    results::same("pose.bin", &there, &of_host()?).map_err(failed)?;
 
     let figures = figures(&printed);
     let figure = |name: &str| figures.get(name).copied().ok_or_else(|| failed(format!("it prints no {name}")));
@@ -145,17 +143,6 @@ fn of_host() -> Outcome<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Whether the board found what the host found; else where they differ.
-fn same(board: &[u8], host: &[u8]) -> Result<(), String> {
-    if board.len() != host.len() {
-        return Err(format!("pose.bin has {} bytes, the host's {}", board.len(), host.len()));
-    }
-    match board.iter().zip(host).position(|(a, b)| a != b) {
-        Some(at) => Err(format!("byte {at} of pose.bin is not the host's")),
-        None => Ok(()),
-    }
-}
-
 impl Pose {
     /// In a line.
     pub fn told(&self) -> String {
@@ -173,19 +160,6 @@ impl Pose {
             self.flash_bytes
         )
     }
-
-    /// Writes `summary.json` into a folder.
-    pub fn write(&self, out: &Path) -> Outcome {
-        let write = || -> std::result::Result<(), OutputError> {
-            let mut staging = Staging::new(out)?;
-            staging.write("summary.json", |file| {
-                serde_json::to_writer_pretty(&mut *file, self)?;
-                file.write_all(b"\n")
-            })?;
-            staging.commit(&[])
-        };
-        write().map_err(|e| Failure::new(format!("--out: {e}")))
-    }
 }
 
 #[cfg(test)]
@@ -193,12 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_bit_makes_a_difference() {
-        let host = of_host().expect("a pose");
-        assert_eq!(host.len(), 4 * 21 + 13 * MATCHES);
-        assert!(same(&host, &host).is_ok());
-        let mut other = host.clone();
-        other[90] ^= 1;
-        assert!(same(&other, &host).is_err() && same(&host[1..], &host).is_err());
+    fn all_that_was_found_is_in_the_file() {
+        assert_eq!(of_host().expect("a pose").len(), 4 * 21 + 13 * MATCHES);
     }
 }

@@ -134,7 +134,7 @@ fn two(pixels: &[u8], at: usize) -> u16 {
 
 /// A place as a pixel that has another after it, and 256ths of the way to that: all of it on the image's last one.
 fn split(place: i32, side: u16) -> (i32, u32) {
-    let whole = (place >> BITS).clamp(0, i32::from(side) - 2);
+    let whole = (place >> BITS).clamp(0, i32::from(side.saturating_sub(2)));
     (whole, (place >> (BITS - 8)).wrapping_sub(whole << 8) as u32)
 }
 

@@ -88,12 +88,13 @@ mod tests {
 
     #[test]
     fn the_corner_of_a_square_is_one_and_its_edge_is_none() {
-        // Bright from column 5 and row 3 on: the centre (5, 3) is the square's corner.
+        // Bright from column 5 and row 3 on: the centre (5, 3) is the square's corner. Of (6, 3) ten neighbours are dark, of
+        // (7, 3) nine, of (8, 3) seven.
         let rows: [[u8; 12]; 7] =
             core::array::from_fn(|y| core::array::from_fn(|x| if x >= 5 && y >= 3 { 90 } else { 20 }));
         let mut scores = [9; 12];
         fast_scores(&rows.each_ref().map(|row| &row[..]), 10, &mut scores);
-        assert_eq!(scores, [0, 0, 0, 0, 0, 70, 70, 0, 0, 0, 0, 0]);
+        assert_eq!(scores, [0, 0, 0, 0, 0, 70, 70, 70, 0, 0, 0, 0]);
         fast_scores(&rows.each_ref().map(|row| &row[..]), 70, &mut scores);
         assert_eq!(scores, [0; 12]);
     }

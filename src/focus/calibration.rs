@@ -9,7 +9,7 @@ use core::fmt;
 /// use stereopsis::focus::{FocusCalibration, ThinLens};
 /// let lens = ThinLens::new(0.004)?;
 /// // Targets at known distances, and the positions in which they were sharpest.
-/// let calibration = FocusCalibration::fit(lens, &[(100, 2.0), (500, 0.2), (700, 0.125)])?;
+/// let calibration = FocusCalibration::fit(lens, &[(100, 2.0), (500, 0.2), (700, 0.139)])?;
 /// assert!((calibration.focus_distance_m(500)? - 0.2).abs() < 0.01);
 /// assert_eq!(calibration.position(calibration.focus_distance_m(321)?)?, 321);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -22,7 +22,7 @@ use super::segment::{Part, Segments};
 /// let lower = Camera::new(60.0, 60.0, 31.5, 4.5)?;
 /// let rig = StereoRig::new([camera, lower], Pose::new(Matrix3::identity(), Vector3::x())?, [size; 2])?;
 /// let rectified = Rectification::new(&rig, Crop::Natural, size)?;
-/// let mut remap = Remap::<64, 4, 24>::new(RemapTable::new(&rectified.warps()[1])?)?;
+/// let mut remap = Remap::<64, 4, 48>::new(RemapTable::new(&rectified.warps()[1])?)?;
 /// let (mut line, mut valid) = ([0; 64], [0; 64]);
 /// remap.begin();
 /// for brightness in [10, 20] {

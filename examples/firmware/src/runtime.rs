@@ -1,12 +1,35 @@
 //! Start and end of a program, and the proof that it cannot panic.
 
+use crate::console::Console;
+use crate::{log, stack};
 use core::panic::PanicInfo;
 use semihosting::process;
+use static_cell::ConstStaticCell;
 
 #[cfg(target_arch = "arm")]
 pub use cortex_m_rt::entry;
 #[cfg(target_arch = "riscv32")]
 pub use riscv_rt::entry;
+
+/// A program from start to end: paints the stack, does the work in the memory that stands in a static, and says in the log and
+/// on the console why it failed, if it did.
+// Inlined: a call of its own would be on the stack that is measured.
+#[inline(always)]
+pub fn run<M, F: defmt::Format>(
+    memory: &'static ConstStaticCell<M>,
+    work: impl FnOnce(&'static mut M) -> Result<(), F>,
+) -> ! {
+    stack::paint();
+    log::start();
+    // Only the first call gets it; there is no second one.
+    let Some(memory) = memory.try_take() else { end(false) };
+    let done = work(memory);
+    if let Err(failure) = &done {
+        defmt::error!("{}", failure);
+        Console::open().text("error: log.defmt says why\n");
+    }
+    end(done.is_ok())
+}
 
 /// Ends the emulation: with status 0 when all went well, else 1.
 pub fn end(well: bool) -> ! {

@@ -18,25 +18,16 @@ use stereopsis_firmware::clock::Clock;
 use stereopsis_firmware::console::Console;
 use stereopsis_firmware::host::HostError;
 use stereopsis_firmware::rows::Rows;
-use stereopsis_firmware::{log, runtime, stack};
+use stereopsis_firmware::{runtime, stack};
 
 /// All the memory that the matcher takes, at an address fixed by the linker.
 static PIPELINE: ConstStaticCell<BoardPipeline> = ConstStaticCell::new(BoardPipeline::new());
 
 #[runtime::entry]
 fn main() -> ! {
-    stack::paint();
     #[cfg(feature = "panics")]
     core::hint::black_box([1u8; 2][core::hint::black_box(2)]);
-    log::start();
-    // Only the first call gets it; there is no second one.
-    let Some(pipeline) = PIPELINE.try_take() else { runtime::end(false) };
-    let done = run(pipeline);
-    if let Err(failure) = &done {
-        defmt::error!("{}", failure);
-        Console::open().text("error: log.defmt says why\n");
-    }
-    runtime::end(done.is_ok())
+    runtime::run(&PIPELINE, run)
 }
 
 /// Why there is no frame.

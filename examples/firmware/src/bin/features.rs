@@ -17,7 +17,7 @@ use stereopsis_firmware::clock::Clock;
 use stereopsis_firmware::console::Console;
 use stereopsis_firmware::host::{HostError, HostFile};
 use stereopsis_firmware::two_pictures::{HEIGHT, TwoPictures, WIDTH};
-use stereopsis_firmware::{log, runtime, stack};
+use stereopsis_firmware::{runtime, stack};
 
 /// What the cameras see.
 const SCENE: Scene = Scene { width: WIDTH as u16, height: HEIGHT as u16 };
@@ -34,16 +34,7 @@ static MEMORY: ConstStaticCell<Memory> =
 
 #[runtime::entry]
 fn main() -> ! {
-    stack::paint();
-    log::start();
-    // Only the first call gets it; there is no second one.
-    let Some(memory) = MEMORY.try_take() else { runtime::end(false) };
-    let done = run(memory);
-    if let Err(failure) = &done {
-        defmt::error!("{}", failure);
-        Console::open().text("error: log.defmt says why\n");
-    }
-    runtime::end(done.is_ok())
+    runtime::run(&MEMORY, run)
 }
 
 /// Why there are no matches.

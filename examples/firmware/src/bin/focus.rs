@@ -13,23 +13,14 @@ use stereopsis_firmware::clock::Clock;
 use stereopsis_firmware::console::Console;
 use stereopsis_firmware::host::{HostError, HostFile};
 use stereopsis_firmware::sweep::{Broken, CONFIG, FRAMES, HEIGHT, Map, Sweep, WIDTH};
-use stereopsis_firmware::{log, runtime, stack};
+use stereopsis_firmware::{runtime, stack};
 
 /// All the memory that it takes besides the stack, at an address fixed by the linker.
 static SWEEP: ConstStaticCell<Sweep> = ConstStaticCell::new(Sweep::new());
 
 #[runtime::entry]
 fn main() -> ! {
-    stack::paint();
-    log::start();
-    // Only the first call gets it; there is no second one.
-    let Some(sweep) = SWEEP.try_take() else { runtime::end(false) };
-    let done = run(sweep);
-    if let Err(failure) = &done {
-        defmt::error!("{}", failure);
-        Console::open().text("error: log.defmt says why\n");
-    }
-    runtime::end(done.is_ok())
+    runtime::run(&SWEEP, run)
 }
 
 /// Why there is no focus.

@@ -1,26 +1,19 @@
 //! The program `features` on one core: two pictures to features and their matches, measured, and held to the host's own run.
 
-use super::board::{self, Board};
-use super::frame::{calibrated, figures, instructions};
-use super::program::{Optimised, build_plain};
+use super::board::Board;
+use super::program::Optimised;
+use super::results::{CASES, Ran, Taken, measured};
 use super::scene::{Scene, SceneCamera};
+use super::tables;
 use super::two_pictures::{HEIGHT, TwoPictures, WIDTH};
-use super::{emulate, log, results, tables};
-use crate::elf::Sizes;
-use crate::parallel;
 use crate::steps::{Failure, Outcome};
 use serde::Serialize;
 use std::fmt::Debug;
-use std::fs;
 use stereopsis::camera::StereoSource;
 use stereopsis::features::{Feature, Match};
 
 /// The part of README.md.
 pub const FEATURES: tables::Part = tables::Part { name: "features", command: "cargo xtask firmware --all" };
-
-/// What is measured: both cores that are built alike, and one of them made for size.
-const CASES: [(Board, Optimised); 3] =
-    [(board::M4, Optimised::Speed), (board::M7, Optimised::Speed), (board::M7, Optimised::Size)];
 
 /// What the cameras see.
 const SCENE: Scene = Scene { width: WIDTH as u16, height: HEIGHT as u16 };
@@ -36,11 +29,8 @@ const ONE_WRONG_OF: usize = 10;
 /// What came of it. Names and units of the fields are a contract with programs that read `summary.json`.
 #[derive(Serialize)]
 pub struct Features {
-    core: &'static str,
-    board: &'static str,
-    target: &'static str,
-    /// `release` is made for speed, `small` for size.
-    profile: &'static str,
+    #[serde(flatten)]
+    taken: Taken,
     width: usize,
     height: usize,
     /// Both pictures' features.
@@ -48,11 +38,6 @@ pub struct Features {
     detection_instructions_per_pixel: f64,
     /// All features of the one picture with all of the other.
     matching_instructions: u64,
-    static_ram_bytes: u64,
-    stack_bytes: u64,
-    flash_bytes: u64,
-    panic_symbols: usize,
-    allocation_symbols: usize,
     left: u64,
     right: u64,
     matches: u64,
@@ -63,66 +48,36 @@ pub struct Features {
 /// Builds the program and runs it; fails when what it finds is not what the host finds, to the bit, or not what the scene
 /// shows, and when it takes more than it may.
 pub fn run(board: Board, optimised: Optimised) -> Outcome<Features> {
-    let name = format!("{}-features-{}", board.core, optimised.profile());
-    let failed = |what: String| Failure::new(format!("{name}: {what}"));
-    let elf = build_plain(board, "features", optimised, "")?;
-    let folder = tempfile::tempdir().map_err(|e| failed(e.to_string()))?;
-    let printed = emulate::run_elf(board, &elf, &name, folder.path())?;
-    for line in log::read(&elf, &name, folder.path())? {
-        println!("{name}: {line}");
-    }
-    let there = fs::read(folder.path().join("features.bin")).map_err(|e| failed(format!("features.bin: {e}")))?;
     let pictures = of_host()?;
-    results::same("features.bin", &there, &bytes(&pictures)).map_err(failed)?;
+    let found = bytes(&pictures);
+    let ran = Ran::of(board, "features", optimised, &found)?;
     let right_matches = pictures.matches.iter().filter(|found| is_right(&pictures, found)).count();
     if right_matches * ONE_WRONG_OF < pictures.matches.len() * (ONE_WRONG_OF - 1) || right_matches == 0 {
-        return Err(failed(format!("{right_matches} of {} matches are right", pictures.matches.len())));
+        return Err(ran.failed(format!("{right_matches} of {} matches are right", pictures.matches.len())));
     }
-
-    let figures = figures(&printed);
-    let figure = |name: &str| figures.get(name).copied().ok_or_else(|| failed(format!("it prints no {name}")));
-    calibrated(board, figure("calibration_ticks")?).map_err(failed)?;
-    let sizes = Sizes::of(&elf)?;
-    sizes.without_panics()?;
-    let detection_instructions = instructions(board, figure("detection_ticks")?);
-    let features = Features {
-        core: board.core,
-        board: board.machine,
-        target: board.target,
-        profile: optimised.profile(),
+    ran.within(&[
+        ("bytes of static RAM", ran.taken.static_ram_bytes, MOST_RAM),
+        ("bytes of stack", ran.taken.stack_bytes, MOST_STACK),
+    ])?;
+    let detection_instructions = ran.instructions("detection_ticks")?;
+    Ok(Features {
         width: WIDTH,
         height: HEIGHT,
         detection_instructions,
-        detection_instructions_per_pixel: detection_instructions as f64 / figure("pixels")?.max(1) as f64,
-        matching_instructions: instructions(board, figure("matching_ticks")?),
-        static_ram_bytes: sizes.static_ram,
-        stack_bytes: figure("stack_bytes")?,
-        flash_bytes: sizes.flash(),
-        panic_symbols: sizes.panics.len(),
-        allocation_symbols: sizes.allocations.len(),
-        left: figure("left")?,
-        right: figure("right")?,
-        matches: figure("matches")?,
+        detection_instructions_per_pixel: detection_instructions as f64 / ran.figure("pixels")?.max(1) as f64,
+        matching_instructions: ran.instructions("matching_ticks")?,
+        left: ran.figure("left")?,
+        right: ran.figure("right")?,
+        matches: ran.figure("matches")?,
         right_matches,
-        crc32: format!("{:08x}", crc32fast::hash(&there)),
-    };
-    let limits = [
-        ("bytes of static RAM", features.static_ram_bytes, MOST_RAM),
-        ("bytes of stack", features.stack_bytes, MOST_STACK),
-    ];
-    match limits.iter().find(|(_, is, most)| is > most) {
-        Some((what, is, most)) => Err(failed(format!("{is} {what}, at most {most} may be"))),
-        None => Ok(features),
-    }
+        crc32: format!("{:08x}", crc32fast::hash(&found)),
+        taken: ran.taken,
+    })
 }
 
 /// Measures [`CASES`]; writes the table into README.md, or compares it.
 pub fn run_all(check: bool) -> Outcome {
-    let all = parallel::work(CASES.to_vec(), |(board, optimised)| {
-        let features = run(board, optimised)?;
-        println!("{}", features.told());
-        Ok(features)
-    })?;
+    let all = measured(&CASES, run, Features::told)?;
     let part = tables::with_compiler(&table(&all))?;
     println!("{part}");
     tables::into_readme(&FEATURES, &part, check)
@@ -135,20 +90,21 @@ fn table(all: &[Features]) -> String {
                      | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n"
             .to_owned();
     for features in all {
-        let made_for = if features.profile == Optimised::Speed.profile() { "speed" } else { "size" };
+        let taken = &features.taken;
         table += &format!(
-            "| {} | {made_for} | {:.1} | {} | {} and {} | {} | {} | {} | {} | {} | {} |\n",
-            features.core,
+            "| {} | {} | {:.1} | {} | {} and {} | {} | {} | {} | {} | {} | {} |\n",
+            taken.core,
+            taken.made_for(),
             features.detection_instructions_per_pixel,
             features.matching_instructions,
             features.left,
             features.right,
             features.matches,
             features.right_matches,
-            features.static_ram_bytes,
-            features.stack_bytes,
-            features.flash_bytes,
-            features.panic_symbols
+            taken.static_ram_bytes,
+            taken.stack_bytes,
+            taken.flash_bytes,
+            taken.panic_symbols
         );
     }
     table
@@ -206,15 +162,15 @@ impl Features {
         format!(
             "{}-features-{}: {:.1} instructions for a pixel, {} for matching {} with {} features; RAM {} bytes, stack {}, \
              flash {}; {} of {} matches are right, crc32 {}",
-            self.core,
-            self.profile,
+            self.taken.core,
+            self.taken.profile,
             self.detection_instructions_per_pixel,
             self.matching_instructions,
             self.left,
             self.right,
-            self.static_ram_bytes,
-            self.stack_bytes,
-            self.flash_bytes,
+            self.taken.static_ram_bytes,
+            self.taken.stack_bytes,
+            self.taken.flash_bytes,
             self.right_matches,
             self.matches,
             self.crc32

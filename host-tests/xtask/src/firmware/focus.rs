@@ -1,23 +1,16 @@
 //! The program `focus` on one core: frames of a lens that moves to where each tile is in focus, measured, and held to the host's
 //! own run.
 
-use super::board::{self, Board};
-use super::frame::{calibrated, figures, instructions};
-use super::program::{Optimised, build_plain};
+use super::board::Board;
+use super::program::Optimised;
+use super::results::{CASES, Ran, Taken, measured};
 use super::sweep::{CONFIG, FRAMES, HEIGHT, Map, Sweep, WIDTH, in_focus_q8};
-use super::{emulate, log, results, tables};
-use crate::elf::Sizes;
-use crate::parallel;
+use super::tables;
 use crate::steps::{Failure, Outcome};
 use serde::Serialize;
-use std::fs;
 
 /// The part of README.md.
 pub const FOCUS: tables::Part = tables::Part { name: "focus", command: "cargo xtask firmware --all" };
-
-/// What is measured: both cores that are built alike, and one of them made for size.
-const CASES: [(Board, Optimised); 3] =
-    [(board::M4, Optimised::Speed), (board::M7, Optimised::Speed), (board::M7, Optimised::Size)];
 
 /// The most instructions for a pixel of a frame on these cores, made for speed.
 const MOST_PER_PIXEL: f64 = 60.0;
@@ -33,11 +26,8 @@ const MOST_ERROR_Q8: u32 = 25;
 /// What came of it. Names and units of the fields are a contract with programs that read `summary.json`.
 #[derive(Serialize)]
 pub struct Focus {
-    core: &'static str,
-    board: &'static str,
-    target: &'static str,
-    /// `release` is made for speed, `small` for size.
-    profile: &'static str,
+    #[serde(flatten)]
+    taken: Taken,
     width: usize,
     height: usize,
     frames: u32,
@@ -46,11 +36,6 @@ pub struct Focus {
     instructions_per_pixel: f64,
     /// The map.
     state_bytes: u64,
-    static_ram_bytes: u64,
-    stack_bytes: u64,
-    flash_bytes: u64,
-    panic_symbols: usize,
-    allocation_symbols: usize,
     tiles: u64,
     in_focus: u64,
     median_error_frames: f64,
@@ -60,69 +45,41 @@ pub struct Focus {
 /// Builds the program and runs it; fails when what it finds is not what the host finds, to the bit, or far from the truth, and
 /// when it takes more than it may.
 pub fn run(board: Board, optimised: Optimised) -> Outcome<Focus> {
-    let name = format!("{}-focus-{}", board.core, optimised.profile());
-    let failed = |what: String| Failure::new(format!("{name}: {what}"));
-    let elf = build_plain(board, "focus", optimised, "")?;
-    let folder = tempfile::tempdir().map_err(|e| failed(e.to_string()))?;
-    let printed = emulate::run_elf(board, &elf, &name, folder.path())?;
-    for line in log::read(&elf, &name, folder.path())? {
-        println!("{name}: {line}");
-    }
-    let there = fs::read(folder.path().join("focus.bin")).map_err(|e| failed(format!("focus.bin: {e}")))?;
     let sweep = of_host()?;
-    results::same("focus.bin", &there, &bytes(&sweep.map)).map_err(failed)?;
-    let error = median_error_q8(&sweep.map).ok_or_else(|| failed("nothing is in focus".into()))?;
-
-    let figures = figures(&printed);
-    let figure = |name: &str| figures.get(name).copied().ok_or_else(|| failed(format!("it prints no {name}")));
-    calibrated(board, figure("calibration_ticks")?).map_err(failed)?;
-    let sizes = Sizes::of(&elf)?;
-    sizes.without_panics()?;
-    let instructions = instructions(board, figure("ticks")?);
-    let focus = Focus {
-        core: board.core,
-        board: board.machine,
-        target: board.target,
-        profile: optimised.profile(),
+    let found = bytes(&sweep.map);
+    let ran = Ran::of(board, "focus", optimised, &found)?;
+    let error = median_error_q8(&sweep.map).ok_or_else(|| ran.failed("nothing is in focus".into()))?;
+    let state_bytes = ran.figure("state_bytes")?;
+    ran.within(&[
+        ("bytes of state", state_bytes, MOST_STATE),
+        ("bytes of stack", ran.taken.stack_bytes, MOST_STACK),
+        ("1/256 frame from the truth in the median", error.into(), MOST_ERROR_Q8.into()),
+    ])?;
+    let instructions = ran.instructions("ticks")?;
+    let instructions_per_pixel = instructions as f64 / ran.figure("pixels")?.max(1) as f64;
+    let is_held = HELD.contains(&board.core) && optimised == Optimised::Speed;
+    if is_held && instructions_per_pixel > MOST_PER_PIXEL {
+        let what = format!("{instructions_per_pixel:.1} instructions for a pixel, at most {MOST_PER_PIXEL} may be");
+        return Err(ran.failed(what));
+    }
+    Ok(Focus {
         width: WIDTH,
         height: HEIGHT,
         frames: FRAMES,
         instructions,
-        instructions_per_pixel: instructions as f64 / figure("pixels")?.max(1) as f64,
-        state_bytes: figure("state_bytes")?,
-        static_ram_bytes: sizes.static_ram,
-        stack_bytes: figure("stack_bytes")?,
-        flash_bytes: sizes.flash(),
-        panic_symbols: sizes.panics.len(),
-        allocation_symbols: sizes.allocations.len(),
-        tiles: figure("tiles")?,
-        in_focus: figure("in_focus")?,
+        instructions_per_pixel,
+        state_bytes,
+        tiles: ran.figure("tiles")?,
+        in_focus: ran.figure("in_focus")?,
         median_error_frames: f64::from(error) / 256.0,
-        crc32: format!("{:08x}", crc32fast::hash(&there)),
-    };
-    let is_held = HELD.contains(&board.core) && optimised == Optimised::Speed;
-    if is_held && focus.instructions_per_pixel > MOST_PER_PIXEL {
-        let is = focus.instructions_per_pixel;
-        return Err(failed(format!("{is:.1} instructions for a pixel, at most {MOST_PER_PIXEL} may be")));
-    }
-    let limits = [
-        ("bytes of state", focus.state_bytes, MOST_STATE),
-        ("bytes of stack", focus.stack_bytes, MOST_STACK),
-        ("1/256 frame from the truth in the median", error.into(), MOST_ERROR_Q8.into()),
-    ];
-    match limits.iter().find(|(_, is, most)| is > most) {
-        Some((what, is, most)) => Err(failed(format!("{is} {what}, at most {most} may be"))),
-        None => Ok(focus),
-    }
+        crc32: format!("{:08x}", crc32fast::hash(&found)),
+        taken: ran.taken,
+    })
 }
 
 /// Measures [`CASES`]; writes the table into README.md, or compares it.
 pub fn run_all(check: bool) -> Outcome {
-    let all = parallel::work(CASES.to_vec(), |(board, optimised)| {
-        let focus = run(board, optimised)?;
-        println!("{}", focus.told());
-        Ok(focus)
-    })?;
+    let all = measured(&CASES, run, Focus::told)?;
     let part = tables::with_compiler(&table(&all))?;
     println!("{part}");
     tables::into_readme(&FOCUS, &part, check)
@@ -133,16 +90,17 @@ fn table(all: &[Focus]) -> String {
                      | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n"
         .to_owned();
     for focus in all {
-        let made_for = if focus.profile == Optimised::Speed.profile() { "speed" } else { "size" };
+        let taken = &focus.taken;
         table += &format!(
-            "| {} | {made_for} | {:.1} | {} | {} | {} | {} | {} |\n",
-            focus.core,
+            "| {} | {} | {:.1} | {} | {} | {} | {} | {} |\n",
+            taken.core,
+            taken.made_for(),
             focus.instructions_per_pixel,
             focus.state_bytes,
-            focus.static_ram_bytes,
-            focus.stack_bytes,
-            focus.flash_bytes,
-            focus.panic_symbols
+            taken.static_ram_bytes,
+            taken.stack_bytes,
+            taken.flash_bytes,
+            taken.panic_symbols
         );
     }
     table
@@ -189,13 +147,13 @@ impl Focus {
         format!(
             "{}-focus-{}: {:.1} instructions for a pixel of a frame; state {} bytes, RAM {}, stack {}, flash {}; {} of {} \
              tiles are in focus, {:.3} frames from the truth in the median, crc32 {}",
-            self.core,
-            self.profile,
+            self.taken.core,
+            self.taken.profile,
             self.instructions_per_pixel,
             self.state_bytes,
-            self.static_ram_bytes,
-            self.stack_bytes,
-            self.flash_bytes,
+            self.taken.static_ram_bytes,
+            self.taken.stack_bytes,
+            self.taken.flash_bytes,
             self.in_focus,
             self.tiles,
             self.median_error_frames,

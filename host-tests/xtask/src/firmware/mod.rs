@@ -7,7 +7,7 @@
 //! * [`awkward`]: sizes that fill no vector, where the rows are in assembly.
 //! * [`pose`]: two views on one core, held to the host; [`two_views_all`]: on every core.
 //! * [`features`]: features of two pictures and their matches, on one core and on those of the table.
-//! * [`focus`]: a lens that moves, likewise. [`results`]: what such a program leaves.
+//! * [`focus`]: a lens that moves, likewise. [`results`]: the run of such a program, and what it leaves.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
 
 mod all;

@@ -4,9 +4,9 @@ use super::board::{self, Board};
 use super::frame::{figures, instructions};
 use super::pose::{self, Pose};
 use super::program::{Optimised, build_plain};
+use super::results::measured;
 use super::{emulate, tables};
 use crate::elf::Sizes;
-use crate::parallel;
 use crate::steps::{Failure, Outcome};
 
 /// The part of README.md.
@@ -35,11 +35,7 @@ struct EightPoint {
 
 /// Measures all of it; writes the table into README.md, or compares it.
 pub fn run(check: bool) -> Outcome {
-    let poses = parallel::work(CASES.to_vec(), |(board, optimised)| {
-        let pose = pose::run(board, optimised)?;
-        println!("{}", pose.told());
-        Ok(pose)
-    })?;
+    let poses = measured(&CASES, pose::run, Pose::told)?;
     let alone = eight_point()?;
     let part = tables::with_compiler(&table(&poses, &alone))?;
     println!("{part}");
@@ -75,17 +71,18 @@ fn table(poses: &[Pose], alone: &EightPoint) -> String {
                      panic symbols |\n| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n"
             .to_owned();
     for pose in poses {
-        let made_for = if pose.profile == Optimised::Speed.profile() { "speed" } else { "size" };
+        let taken = &pose.taken;
         table += &format!(
-            "| {} | {made_for} | {} | {} | {} | {} | {} | {} | {} |\n",
-            pose.core,
+            "| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
+            taken.core,
+            taken.made_for(),
             pose.eight_point_instructions,
             pose.robust_instructions,
             pose.instructions,
-            pose.static_ram_bytes,
-            pose.stack_bytes,
-            pose.flash_bytes,
-            pose.panic_symbols
+            taken.static_ram_bytes,
+            taken.stack_bytes,
+            taken.flash_bytes,
+            taken.panic_symbols
         );
     }
     table += &format!(

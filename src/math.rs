@@ -11,3 +11,9 @@ pub(crate) fn round(x: f32) -> f32 {
 pub(crate) fn atan(x: f32) -> f32 {
     libm::atanf(x)
 }
+
+/// The angle in radians whose tangent is `x`.
+#[inline]
+pub(crate) fn atan_f64(x: f64) -> f64 {
+    libm::atan(x)
+}

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use std::path::PathBuf;
-use stereopsis::geometry::ImageSize;
+use stereopsis::geometry::{Distortion, Fisheye, ImageSize, Lens};
 use stereopsis_host::calibration::RawCalibration;
 use tempfile::TempDir;
 
@@ -114,8 +114,8 @@ fn one_rig_in_every_format() {
         let [left, right] = found.rig.cameras();
         assert_eq!((left.focal_px(), left.principal_point()), ((500.0, 510.0), (320.0, 240.0)));
         assert_eq!((right.focal_px(), right.principal_point()), ((505.0, 515.0), (325.0, 245.0)));
-        assert_eq!(left.distortion().to_opencv(), [-0.25, 0.0625, 0.001, -0.002, 0.0]);
-        assert_eq!(right.distortion().to_opencv(), [-0.125, 0.03125, 0.0, 0.0, 0.0]);
+        assert_eq!(*left.lens(), Distortion::from_opencv([-0.25, 0.0625, 0.001, -0.002, 0.0]).into());
+        assert_eq!(*right.lens(), Distortion::from_opencv([-0.125, 0.03125, 0.0, 0.0, 0.0]).into());
         // P' = R P + T.
         let (r, t) = found.rig.pose().to_opencv();
         assert!((r - Matrix3::new(0.8, -0.6, 0.0, 0.6, 0.8, 0.0, 0.0, 0.0, 1.0)).amax() < 1e-12, "{format}");
@@ -144,6 +144,29 @@ fn a_camera_info_for_each_camera() {
     }
     let error = open(&[&left], 1.0).expect_err("one camera");
     assert!(error.contains("--calib a second time"), "{error}");
+}
+
+#[test]
+fn lenses_of_other_models() {
+    let wide: Lens<f64> = Fisheye::from_opencv([-0.25, 0.0625, 0.001, -0.002]).into();
+    let of = |texts: &[&str]| *open(texts, 1.0).expect("a rig").rig.cameras()[0].lens();
+    assert_eq!(of(&[&KALIBR.replace("radtan", "equidistant")]), wide);
+    let camera_info = |model: &str, lens: &str, shift| {
+        let text = ros("[500., 0., 320., 0., 510., 240., 0., 0., 1.]", lens, [1.0, 0.0], shift);
+        text.replace("plumb_bob", model)
+    };
+    let of_ros = |model, lens| of(&[&camera_info(model, lens, 0.0), &camera_info(model, lens, -40.0)]);
+    assert_eq!(of_ros("equidistant", "[-0.25, 0.0625, 0.001, -0.002]"), wide);
+    let rational = [-0.25, 0.0625, 0.001, -0.002, 0.5, 0.125, 0.25, 0.75];
+    let text = format!("{rational:?}");
+    assert_eq!(of_ros("rational_polynomial", &text), Distortion::from_opencv_rational(rational).into());
+    // OpenCV's own, and how its programs mark the other model.
+    let longer = JSON.replacen("-0.002, 0]", "-0.002, 0.5, 0.125, 0.25, 0.75, 0, 0, 0, 0, 0, 0]", 1);
+    assert_eq!(of(&[&longer]), Distortion::from_opencv_rational(rational).into());
+    let four = JSON.replace("-0.002, 0]", "-0.002]").replace("0.03125, 0, 0, 0]", "0.03125, 0, 0]");
+    for marked in ["\"fisheye_model\": 1", "\"model\": \"Fisheye\""] {
+        assert_eq!(of(&[&four.replacen('{', &format!("{{{marked}, "), 1)]), wide);
+    }
 }
 
 #[test]
@@ -187,9 +210,10 @@ fn what_is_wrong_is_said_in_one_line() {
         (with("[ -0.1, 0.02, 0.01 ]", "[ -0.1, 0.02 ]"), "T: has 2 numbers; 3 are needed"),
         (with("5.0e+02", "-5.0e+02"), "K1: the focal lengths"),
         (with("image_width: 640", "image_width: 641"), "width says 641"),
-        (with("0.001, -0.002, 0. ]", "0.001, -0.002, 0., 0.5 ]"), "more than five coefficients"),
+        (with("0.001, -0.002, 0. ]", "0.001, -0.002, 0., 0., 0., 0., 0.5 ]"), "thin prisms"),
+        (with("%YAML:1.0\n---\n", "%YAML:1.0\n---\nfisheye_model: 1\n"), "D1: a fisheye lens has four coefficients"),
         (with("data: [ 5.0e+02", "data: [ [ 5.0e+02"), "not well-formed"),
-        (KALIBR.replacen("radtan", "equidistant", 1), "'equidistant' is not supported"),
+        (KALIBR.replacen("radtan", "fov", 1), "'fov' is not supported; calibrate with radtan or equidistant"),
         (KALIBR.replacen("T_cn_cnm1", "T_cam_imu", 1), "T_cn_cnm1 is missing"),
         (XML.replacen("</R>", "", 1), "not well-formed"),
         ("hello".into(), "no calibration of two cameras"),

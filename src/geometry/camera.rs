@@ -1,12 +1,12 @@
 //! A pinhole camera with a lens that distorts.
 
-use super::{Distortion, Real};
+use super::{Lens, Real};
 use nalgebra::{Matrix3, Point2, Point3, Vector2, Vector3};
 
 /// A pinhole camera: focal lengths, principal point and skew in px, and the lens before it.
 ///
 /// A point `(X, Y, Z)` of the camera's frame (X right, Y down, Z forward) is seen at
-/// `u = fx x + s y + cx`, `v = fy y + cy` with `(x, y) = (X / Z, Y / Z)` after [`Distortion`]; pixel centres are at
+/// `u = fx x + s y + cx`, `v = fy y + cy` with `(x, y) = (X / Z, Y / Z)` after the [`Lens`]; pixel centres are at
 /// integers (Hartley & Zisserman 2004, 6.1). A camera with `fx = fy = 1` and all else zero has no pixels: its
 /// coordinates are those of the plane Z = 1.
 ///
@@ -24,7 +24,7 @@ pub struct Camera<T: Real> {
     cx: T,
     cy: T,
     skew: T,
-    distortion: Distortion<T>,
+    lens: Lens<T>,
 }
 
 /// Why numbers are no camera.
@@ -87,7 +87,7 @@ impl<T: Real> Camera<T> {
         if [cx, cy].iter().any(|c| c.abs() > most) {
             return Err(CameraError::OutOfRange);
         }
-        Ok(Self { fx, fy, cx, cy, skew: T::ZERO, distortion: Distortion::NONE })
+        Ok(Self { fx, fy, cx, cy, skew: T::ZERO, lens: Lens::NONE })
     }
 
     /// The camera whose matrix is K, upper triangular, of any scale but zero.
@@ -108,11 +108,12 @@ impl<T: Real> Camera<T> {
     }
 
     /// The same behind another lens.
-    pub fn with_distortion(self, distortion: Distortion<T>) -> Result<Self, CameraError> {
-        if !distortion.to_opencv().iter().all(|k| k.is_finite()) {
+    pub fn with_distortion(self, lens: impl Into<Lens<T>>) -> Result<Self, CameraError> {
+        let lens = lens.into();
+        if !lens.is_finite() {
             return Err(CameraError::NotFinite);
         }
-        Ok(Self { distortion, ..self })
+        Ok(Self { lens, ..self })
     }
 
     /// Focal lengths along u and v, px.
@@ -131,8 +132,8 @@ impl<T: Real> Camera<T> {
     }
 
     /// The lens.
-    pub fn distortion(&self) -> &Distortion<T> {
-        &self.distortion
+    pub fn lens(&self) -> &Lens<T> {
+        &self.lens
     }
 
     /// `K = [fx s cx; 0 fy cy; 0 0 1]`, px; the lens is not in it.
@@ -155,7 +156,7 @@ impl<T: Real> Camera<T> {
             return Err(ProjectionError::Behind);
         }
         let by = T::ONE / point.z;
-        Ok(self.pixel_of(&self.distortion.distort(&Vector2::new(point.x * by, point.y * by))))
+        Ok(self.pixel_of(&self.lens.distort(&Vector2::new(point.x * by, point.y * by))))
     }
 
     /// The sight of a pixel: the direction `(x, y, 1)` in the camera's frame of all that is seen there.
@@ -164,12 +165,12 @@ impl<T: Real> Camera<T> {
     pub fn unproject(&self, pixel: &Point2<T>) -> Result<Vector3<T>, ProjectionError> {
         let y = (pixel.y - self.cy) / self.fy;
         let x = (pixel.x - self.cx - self.skew * y) / self.fx;
-        if self.distortion.is_none() {
+        if self.lens.is_none() {
             return Ok(Vector3::new(x, y, T::ONE));
         }
         let rounding = T::EPSILON * T::of(10.0) * (T::ONE + x.abs().max(y.abs()));
         let tolerance = rounding.max(T::EPSILON.sqrt() * T::of(3e-3) / self.fx.max(self.fy));
-        let plane = self.distortion.undistort(&Vector2::new(x, y), tolerance);
+        let plane = self.lens.undistort(&Vector2::new(x, y), tolerance);
         plane.map(|p| Vector3::new(p.x, p.y, T::ONE)).ok_or(ProjectionError::NotConverged)
     }
 

@@ -4,7 +4,7 @@
 //! nobody after them has to.
 //!
 //! * [`Real`]: `f32` or `f64`. `linear`: factors and null vectors that are bounded and cannot panic.
-//! * [`Camera`] with its [`Distortion`]; [`Pose`] of a second camera beside the first; [`RectifiedRig`]: two cameras whose
+//! * [`Camera`] with its [`Lens`] ([`Distortion`] or [`Fisheye`]); [`Pose`] of a second camera beside the first; [`RectifiedRig`]: two cameras whose
 //!   rows are aligned, and its re-projection matrix Q.
 //! * [`StereoRig`]: two cameras as they are mounted; [`Rectification`] aligns their rows, a [`Warp`] for each, with a
 //!   [`RectificationReport`].
@@ -57,9 +57,11 @@ mod distance;
 mod distortion;
 mod eight_point;
 mod essential;
+mod fisheye;
 mod fundamental;
 mod homography;
 mod landmarks;
+mod lens;
 mod line;
 mod linear;
 mod model;
@@ -84,12 +86,14 @@ pub use correspondence::Correspondence;
 pub use distortion::Distortion;
 pub use eight_point::{EightPointError, eight_point, eight_point_weighted};
 pub use essential::{Essential, EssentialError};
+pub use fisheye::Fisheye;
 pub use fundamental::{Fundamental, FundamentalError};
 pub use homography::{Homography, HomographyError};
 pub use landmarks::{
     MarkPose, MarkPoses, Segment, Sighting, SightingError, SquareMark, SquareMarkError, VanishingPoint,
     VanishingPointError, Walls, WallsError,
 };
+pub use lens::Lens;
 pub use line::{Epipole, Line};
 pub use model::{ModelChoice, TwoViewModel, choose, gric};
 pub use plane::{PlaneMotion, PlaneMotionError};

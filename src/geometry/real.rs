@@ -1,5 +1,6 @@
 //! The numbers that geometry is done in.
 
+use crate::math::{atan, atan_f64};
 use nalgebra::RealField;
 
 /// `f32` or `f64`: what every type of [`geometry`](crate::geometry) is generic over.
@@ -22,6 +23,9 @@ pub trait Real: RealField + Copy + sealed::Sealed {
 
     /// The same number as `f64`.
     fn to_f64(self) -> f64;
+
+    /// The angle in radians whose tangent it is: the same bits on every machine, which an operating system's is not.
+    fn arc_tangent(self) -> Self;
 }
 
 mod sealed {
@@ -49,6 +53,11 @@ impl Real for f32 {
     fn to_f64(self) -> f64 {
         f64::from(self)
     }
+
+    #[inline(always)]
+    fn arc_tangent(self) -> Self {
+        atan(self)
+    }
 }
 
 impl Real for f64 {
@@ -69,5 +78,10 @@ impl Real for f64 {
     #[inline(always)]
     fn to_f64(self) -> f64 {
         self
+    }
+
+    #[inline(always)]
+    fn arc_tangent(self) -> Self {
+        atan_f64(self)
     }
 }

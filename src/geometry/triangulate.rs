@@ -249,7 +249,7 @@ fn slope<T: Real>(camera: &Camera<T>, point: &Point3<T>) -> Matrix2x3<T> {
     let (o, l) = (T::ZERO, T::ONE);
     let by = l / point.z;
     let (x, y) = (point.x * by, point.y * by);
-    let (_, lens) = camera.distortion().distort_with_derivative(&Vector2::new(x, y));
+    let (_, lens) = camera.lens().distort_with_derivative(&Vector2::new(x, y));
     let plane = Matrix2x3::new(l, o, -x, o, l, -y) * by;
     let k = camera.matrix();
     Matrix2::new(k.m11, k.m12, k.m21, k.m22) * lens * plane

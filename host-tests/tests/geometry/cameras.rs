@@ -4,19 +4,20 @@ use crate::views::{any_pose, seeded};
 use nalgebra::{Matrix3x4, Point2, Point3, Rotation3, Vector3};
 use proptest::prelude::*;
 use stereopsis::geometry::{
-    Camera, Distortion, Landmark, Pose, Projection, ProjectionError, RectifiedRig, ResectionError,
+    Camera, Distortion, Fisheye, Landmark, Lens, Pose, Projection, ProjectionError, RectifiedRig, ResectionError,
 };
 use stereopsis_host::scene::Random;
 
 /// Coefficients of lenses from a little to a lot of distortion, that turn nothing over in the image.
 fn lenses() -> impl Strategy<Value = Distortion<f64>> {
-    (-0.3..0.3, -0.05..0.1, -0.002..0.002, -0.002..0.002, 0.0..0.02).prop_map(|(k1, k2, p1, p2, k3)| Distortion {
-        k1,
-        k2,
-        p1,
-        p2,
-        k3,
-    })
+    (-0.3..0.3, -0.05..0.1, -0.002..0.002, -0.002..0.002, 0.0..0.02, -0.05..0.3, 0.0..0.1, 0.0..0.01)
+        .prop_map(|(k1, k2, p1, p2, k3, k4, k5, k6)| Distortion::from_opencv_rational([k1, k2, p1, p2, k3, k4, k5, k6]))
+}
+
+/// Coefficients of wide lenses.
+fn fisheyes() -> impl Strategy<Value = Fisheye<f64>> {
+    (-0.1..0.1, -0.02..0.02, -0.005..0.005, 0.0..0.001)
+        .prop_map(|(k1, k2, k3, k4)| Fisheye::from_opencv([k1, k2, k3, k4]))
 }
 
 proptest! {
@@ -33,10 +34,24 @@ proptest! {
         let undistorted = camera.undistort(&pixel).expect("it converges");
         prop_assert!((undistorted - straight.project(&Point3::new(x, y, 1.0)).expect("in front")).norm() < 1e-6);
         // In f32 to two thousandths of a pixel.
-        let narrow = Distortion::from_opencv(lens.to_opencv().map(|k| k as f32));
+        let narrow = Distortion::from_opencv_rational(lens.to_opencv().map(|k| k as f32));
         let narrow = Camera::new(600.0, 580.0, 321.0, 243.0_f32).and_then(|c| c.with_skew(1.5)?.with_distortion(narrow));
         let again = narrow.expect("a camera").undistort(&pixel.map(|x| x as f32)).expect("it converges");
         prop_assert!((again.map(f64::from) - undistorted).norm() < 2e-3);
+    }
+
+    /// Up to 80 degrees from the axis.
+    #[test]
+    fn a_wide_pixel_there_and_back(lens in fisheyes(), angle in 0.0..1.4_f64, around in 0.0..6.3_f64) {
+        let camera = Camera::new(300.0, 290.0, 321.0, 243.0).and_then(|c| c.with_distortion(lens)).expect("a camera");
+        let point = Point3::new(angle.sin() * around.cos(), angle.sin() * around.sin(), angle.cos());
+        let pixel = camera.project(&point).expect("in front");
+        let sight = camera.unproject(&pixel).expect("it converges").normalize();
+        prop_assert!((sight - point.coords).amax() < 1e-8, "{sight}");
+        let narrow = Fisheye::from_opencv(lens.to_opencv().map(|k| k as f32));
+        let narrow = Camera::new(300.0, 290.0, 321.0, 243.0_f32).and_then(|c| c.with_distortion(narrow)).expect("a camera");
+        let sight = narrow.unproject(&pixel.map(|x| x as f32)).expect("it converges").normalize();
+        prop_assert!((sight.map(f64::from) - point.coords).amax() < 2e-5, "{sight}");
     }
 
     #[test]
@@ -117,6 +132,39 @@ fn outside_of_the_lens_model_is_refused() {
     assert!(camera.unproject(&Point2::new(320.0 + 350.0, 240.0)).is_ok());
     assert_eq!(camera.unproject(&Point2::new(320.0 + 352.0, 240.0)), Err(ProjectionError::NotConverged));
     assert_eq!(camera.unproject(&Point2::new(f64::NAN, 240.0)), Err(ProjectionError::NotConverged));
+}
+
+/// Where `cv2.projectPoints` and `cv2.fisheye.projectPoints` (OpenCV 5.0.0) see three points.
+#[test]
+fn lenses_are_those_of_opencv() {
+    let rational = Distortion::from_opencv_rational([0.9, 0.3, 0.001, -0.002, 0.05, 1.2, 0.6, 0.1]);
+    let fisheye = Fisheye::from_opencv([-0.02, 0.01, -0.004, 0.0006]);
+    let points = [Point3::new(0.5, 0.3, 1.0), Point3::new(-0.9, 0.4, 1.0), Point3::new(1.5, -1.2, 1.0)];
+    let seen: [(Lens<f64>, [Point2<f64>; 3]); 2] = [
+        (
+            rational.into(),
+            [
+                Point2::new(500.72848355676916, 351.45469738741303),
+                Point2::new(36.65437591143194, 369.1238620847921),
+                Point2::new(663.7854650091441, -42.81182130749818),
+            ],
+        ),
+        (
+            fisheye.into(),
+            [
+                Point2::new(500.18351022906165, 350.8128587908729),
+                Point2::new(38.32913578069605, 368.31672703323846),
+                Point2::new(655.5448036427063, -35.14673898701909),
+            ],
+        ),
+    ];
+    for (lens, pixels) in seen {
+        let camera = Camera::new(400.0, 410.0, 320.0, 240.0).and_then(|c| c.with_distortion(lens)).expect("a camera");
+        for (point, pixel) in points.iter().zip(pixels) {
+            let found = camera.project(point).expect("in front");
+            assert!((found - pixel).norm() < 1e-9, "{lens:?}: {found} {pixel}");
+        }
+    }
 }
 
 #[test]

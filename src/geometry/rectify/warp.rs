@@ -36,7 +36,7 @@ impl<T: Real> Warp<T> {
         size: ImageSize,
     ) -> Self {
         // A hundredth less than the fold itself, where the map stands still.
-        let reach_r2 = camera.distortion().reach_r2() * T::of(0.98);
+        let reach_r2 = camera.lens().reach_r2() * T::of(0.98);
         Self { camera, raw, rotation, new, size, reach_r2 }
     }
 

@@ -1,7 +1,7 @@
 //! Kalibr's camchain.
 
 use super::tree::{Tree, list, need, numbers, size};
-use super::{Fault, Found, camera, pose_of};
+use super::{Fault, Found, Model, camera, pose_of};
 
 const CAMERA: &str = "a camera with camera_model, intrinsics, distortion_model and distortion_coeffs";
 
@@ -13,17 +13,23 @@ pub(super) fn read(tree: &Tree) -> Result<Found, Fault> {
     let [left, right] = [need(tree, "cam0", CAMERA)?, need(tree, "cam1", CAMERA)?];
     let one = |name: &str, cam: &Tree| {
         let key = |key: &str| format!("{name}: {key}");
-        for (field, known) in [("camera_model", "pinhole"), ("distortion_model", "radtan")] {
-            let found = need(cam, field, CAMERA)?.as_str().unwrap_or("");
-            let is_none = field == "distortion_model" && found == "none";
-            if found != known && !is_none {
-                let problem = format!("'{found}' is not supported; calibrate with {known}");
-                return Err(Fault::Key { key: key(field), problem });
-            }
+        let text = |field: &str| Ok(need(cam, field, CAMERA)?.as_str().unwrap_or(""));
+        let refused = |field: &str, found: &str, known: &str| {
+            let problem = format!("'{found}' is not supported; calibrate with {known}");
+            Err(Fault::Key { key: key(field), problem })
+        };
+        let found = text("camera_model")?;
+        if found != "pinhole" {
+            return refused("camera_model", found, "pinhole");
         }
+        let model = match text("distortion_model")? {
+            "radtan" | "none" => Model::BrownConrady,
+            "equidistant" => Model::Fisheye,
+            found => return refused("distortion_model", found, "radtan or equidistant"),
+        };
         let inner = numbers(&key("intrinsics"), need(cam, "intrinsics", CAMERA)?)?;
         let lens = list(&key("distortion_coeffs"), need(cam, "distortion_coeffs", CAMERA)?)?;
-        camera(name, inner, &lens)
+        camera(name, inner, model, &lens)
     };
     let key = "T_cn_cnm1";
     let matrix = need(right, key, "in cam1, the 4x4 matrix that carries a point of cam0 into cam1")?;

@@ -17,7 +17,7 @@ mod tree;
 use super::{Calibration, CalibrationError, Fault, kitti, load, middlebury};
 use nalgebra::{Matrix3, Vector3};
 use std::path::{Path, PathBuf};
-use stereopsis::geometry::{Camera, Distortion, ImageSize, Pose, StereoRig};
+use stereopsis::geometry::{Camera, Distortion, Fisheye, ImageSize, Lens, Pose, StereoRig};
 use tree::Tree;
 
 /// Baselines beyond these are taken for a wrong unit, m.
@@ -104,7 +104,7 @@ fn rectified(path: &Path) -> Result<Found, Fault> {
     let rig = &calibration.rig;
     let (f, (cx, cy)) = (f64::from(rig.focal_px()), rig.principal_point());
     let offset = f64::from(rig.disparity_offset_px());
-    let one = |key: &str, cx: f64| camera(key, [f, f, cx, f64::from(cy)], &[]);
+    let one = |key: &str, cx: f64| camera(key, [f, f, cx, f64::from(cy)], Model::BrownConrady, &[]);
     let pose = Pose::new(Matrix3::identity(), Vector3::new(f64::from(rig.baseline_m()), 0.0, 0.0));
     Ok(Found {
         format: calibration.format,
@@ -115,16 +115,34 @@ fn rectified(path: &Path) -> Result<Found, Fault> {
     })
 }
 
-/// A camera of fx, fy, cx, cy and up to five coefficients in OpenCV's order; more have to be zero.
-fn camera(key: &str, [fx, fy, cx, cy]: [f64; 4], lens: &[f64]) -> Result<Camera<f64>, Fault> {
-    if lens.iter().skip(5).any(|&k| k != 0.0) {
-        let problem =
-            "a lens with more than five coefficients (k1, k2, p1, p2, k3) is not supported; calibrate with those";
-        return Err(Fault::Key { key: key.into(), problem: problem.into() });
-    }
-    let mut five = [0.0; 5];
-    five.iter_mut().zip(lens).for_each(|(to, &k)| *to = k);
-    let camera = Camera::new(fx, fy, cx, cy).and_then(|c| c.with_distortion(Distortion::from_opencv(five)));
+/// How a lens's coefficients act.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Model {
+    /// k1, k2, p1, p2, k3, k4, k5, k6 in OpenCV's order; what comes after them has to be zero.
+    BrownConrady,
+    /// k1, k2, k3, k4 of the angle to the axis.
+    Fisheye,
+}
+
+/// A camera of fx, fy, cx, cy and its lens.
+fn camera(key: &str, [fx, fy, cx, cy]: [f64; 4], model: Model, lens: &[f64]) -> Result<Camera<f64>, Fault> {
+    let wrong = |problem: &str| Err(Fault::Key { key: key.into(), problem: problem.into() });
+    let lens = match (model, lens) {
+        (Model::Fisheye, &[k1, k2, k3, k4]) => Lens::from(Fisheye::from_opencv([k1, k2, k3, k4])),
+        (Model::Fisheye, _) => return wrong("a fisheye lens has four coefficients, k1, k2, k3, k4"),
+        (Model::BrownConrady, lens) => {
+            if lens.iter().skip(8).any(|&k| k != 0.0) {
+                return wrong(
+                    "a lens with thin prisms or a tilted sensor (coefficients from the ninth on) is not supported; \
+                     calibrate with k1, k2, p1, p2, k3, k4, k5, k6 at most",
+                );
+            }
+            let mut eight = [0.0; 8];
+            eight.iter_mut().zip(lens).for_each(|(to, &k)| *to = k);
+            Distortion::from_opencv_rational(eight).into()
+        }
+    };
+    let camera = Camera::new(fx, fy, cx, cy).and_then(|c| c.with_distortion(lens));
     camera.map_err(|error| Fault::Camera { key: key.into(), error })
 }
 

@@ -1,7 +1,7 @@
 //! OpenCV's FileStorage: the matrices by the names that calibration programs give them.
 
 use super::tree::{Tree, list, numbers, size};
-use super::{Fault, Found, camera, pose_of};
+use super::{Fault, Found, Model, camera, pose_of};
 use serde_json::{Value, json};
 
 /// Names of a camera's matrix without its number or side, and of its lens, in small letters without signs between.
@@ -28,6 +28,14 @@ pub(super) fn read(trees: &[Tree], unit_m: f64) -> Result<Found, Fault> {
     let of_rig = |names: &[&str], key: &'static str, form| {
         trees.iter().find_map(|tree| plain(tree, names)).ok_or_else(|| Fault::Missing(key.into(), form))
     };
+    // As OpenCV's own program of calibration marks its files, and as others name the model.
+    let is_fisheye = trees.iter().any(|tree| {
+        let flag = plain(tree, &["fisheyemodel", "fisheye"])
+            .is_some_and(|(_, flag)| flag.as_bool().or_else(|| flag.as_f64().map(|flag| flag != 0.0)).unwrap_or(false));
+        let name = plain(tree, &["model", "distortionmodel", "cameramodel"]).and_then(|(_, name)| name.as_str());
+        flag || name.is_some_and(|name| ["fisheye", "equidistant"].contains(&name.to_lowercase().as_str()))
+    });
+    let model = if is_fisheye { Model::Fisheye } else { Model::BrownConrady };
     let one = |side: usize, matrix_key: &'static str, lens_key: &'static str| {
         let (key, value) = of_camera(&MATRIX, side, matrix_key, "the 3x3 camera matrix")?;
         let [fx, _, cx, _, fy, cy, _, _, scale] = numbers::<9>(key, value)?;
@@ -35,7 +43,7 @@ pub(super) fn read(trees: &[Tree], unit_m: f64) -> Result<Found, Fault> {
             return Err(Fault::Key { key: key.into(), problem: "the last element of a camera matrix is 1".into() });
         }
         let (lens_key, lens) = of_camera(&LENS, side, lens_key, "the lens's coefficients k1, k2, p1, p2, k3")?;
-        camera(key, [fx, fy, cx, cy], &list(lens_key, lens)?)
+        camera(key, [fx, fy, cx, cy], model, &list(lens_key, lens)?)
     };
     let cameras = [one(0, "K1", "D1")?, one(1, "K2", "D2")?];
     let (r_key, r) = of_rig(&ROTATION, "R", "the 3x3 rotation from the first camera to the second")?;

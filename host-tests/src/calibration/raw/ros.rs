@@ -1,7 +1,7 @@
 //! ROS's camera_info, one for each camera.
 
 use super::tree::{Tree, list, need, numbers, size};
-use super::{Fault, Found, camera, pose_of};
+use super::{Fault, Found, Model, camera, pose_of};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::json;
 
@@ -49,12 +49,16 @@ fn rotation(tree: &Tree) -> Result<Matrix3<f64>, Fault> {
 }
 
 fn one(which: &str, tree: &Tree) -> Result<stereopsis::geometry::Camera<f64>, Fault> {
-    let model = tree.get("distortion_model").and_then(Tree::as_str).unwrap_or("plumb_bob");
-    if !["plumb_bob", "rational_polynomial", "none", ""].contains(&model) {
-        let problem = format!("'{model}' is not supported; calibrate with plumb_bob");
-        return Err(Fault::Key { key: "distortion_model".into(), problem });
-    }
+    let model = match tree.get("distortion_model").and_then(Tree::as_str).unwrap_or("plumb_bob") {
+        "plumb_bob" | "rational_polynomial" | "none" | "" => Model::BrownConrady,
+        "equidistant" | "fisheye" => Model::Fisheye,
+        found => {
+            let problem =
+                format!("'{found}' is not supported; calibrate with plumb_bob, rational_polynomial or equidistant");
+            return Err(Fault::Key { key: "distortion_model".into(), problem });
+        }
+    };
     let k: [f64; 9] = numbers("camera_matrix", need(tree, "camera_matrix", FORM)?)?;
     let lens = list("distortion_coefficients", need(tree, "distortion_coefficients", FORM)?)?;
-    camera(which, [k[0], k[4], k[2], k[5]], &lens)
+    camera(which, [k[0], k[4], k[2], k[5]], model, &lens)
 }

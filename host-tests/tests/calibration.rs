@@ -151,3 +151,74 @@ fn what_is_written_reads_back() {
     assert_eq!(read.rig.principal_point(), rig.principal_point());
     assert_eq!((read.width, read.height, read.disparities), (Some(640), Some(480), Some(64)));
 }
+
+/// The rectified cameras that OpenCV's, ROS's and our own files speak of.
+#[test]
+fn rectified_cameras_of_other_programs() {
+    let yaml = "%YAML:1.0\n---\nR: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nT: [-60, 0, 0]\n";
+    let matrix = |key: &str, columns: u8, data: &str| {
+        let head = format!(
+            "{key}: !!opencv-matrix\n   rows: {}\n   cols: {columns}\n   dt: d\n",
+            if columns == 3 { 3 } else { columns }
+        );
+        format!("{head}   data: [ {data} ]\n")
+    };
+    let p1 = matrix("P1", 4, "500., 0., 320., 0., 0., 500., 240., 0., 0., 0., 1., 0.");
+    let p2 = matrix("P2", 4, "500., 0., 330., -30000., 0., 500., 240., 0., 0., 0., 1., 0.");
+    let q = matrix(
+        "Q",
+        4,
+        "1., 0., 0., -320., 0., 1., 0., -240., 0., 0., 0., 500., 0., 0., 0.016666666666666666, 0.16666666666666666",
+    );
+    let ros = |shift: &str, cx: &str| {
+        format!(
+            "image_width: 640\ncamera_matrix: {{data: [510, 0, 300, 0, 510, 220, 0, 0, 1]}}\n\
+             projection_matrix: {{data: [500, 0, {cx}, {shift}, 0, 500, 240, 0, 0, 0, 1, 0]}}\n"
+        )
+    };
+    let ours = "{\"axis\": \"horizontal\", \"focal_px\": 500, \"q\": [[1, 0, 0, -320], [0, 1, 0, -240], [0, 0, 0, 500], \
+                [0, 0, 16.666666666666668, 166.66666666666666]]}";
+    let mounted = "K1: [500, 0, 320, 0, 500, 240, 0, 0, 1]\nD1: [0, 0, 0, 0, 0]\nK2: [500, 0, 330, 0, 500, 240, 0, 0, 1]\n\
+                   D2: [0, 0, 0, 0, 0]\nR: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nT: [-60, 0, 0]\n";
+    let of = |texts: &[&str], unit_m: f64| {
+        let folder = tempfile::TempDir::new().expect("a temporary folder");
+        let paths: Vec<_> = (0..texts.len()).map(|i| folder.path().join(format!("file{i}"))).collect();
+        for (path, text) in paths.iter().zip(texts) {
+            fs::write(path, text).expect("room for a few bytes");
+        }
+        Calibration::open_all(&paths, Path::new("left.png"), unit_m).map_err(|e| e.to_string())
+    };
+    for (texts, unit_m) in [
+        (vec![format!("{yaml}{p1}{p2}")], 1e-3),
+        (vec![format!("{yaml}{q}")], 1e-3),
+        (vec![ros("0", "320"), ros("-30", "330")], 1.0),
+        (vec![ros("-30", "330"), ros("0", "320")], 1.0),
+        (vec![ours.to_owned()], 1.0),
+        (vec![mounted.to_owned()], 1e-3),
+    ] {
+        let texts: Vec<_> = texts.iter().map(String::as_str).collect();
+        let rig = of(&texts, unit_m).expect(texts[0]).rig;
+        near(rig.focal_px(), 500.0);
+        near(rig.baseline_m(), 0.06);
+        near(rig.principal_point().0, 320.0);
+        near(rig.disparity_offset_px(), 10.0);
+    }
+    for (text, said) in [
+        (mounted.replace("R: [1, 0, 0, 0, 1, 0", "R: [0.8, 0.6, 0, -0.6, 0.8, 0"), "--rectify"),
+        (mounted.replace("D2: [0", "D2: [0.1"), "--rectify"),
+        (format!("{yaml}{p1}{p2}"), "--unit mm"),
+        (
+            format!("{yaml}{p1}{}", p2.replace("-30000., 0., 500., 240., 0.", "0., 0., 500., 240., -30.")),
+            "below each other",
+        ),
+        (format!("{yaml}{p1}{}", p2.replace("-30000.", "30000.")), "with the right camera on the right"),
+        (format!("{yaml}{p1}{}", p2.replace("-30000.", ".Nan")), "neither"),
+        (format!("{yaml}{}", q.replace("500.", "nan")), "Q: a number is not finite"),
+        (format!("{yaml}{}", q.replace("1., 0., 0., -320.", "1., 0., 0.5, -320.")), "is no Q"),
+        (format!("{yaml}["), "not well-formed"),
+        (ros("0", "320"), "--calib a second time"),
+    ] {
+        let error = of(&[&text], 1.0).expect_err(said);
+        assert!(error.contains(said) && !error.contains('\n'), "{said}: {error}");
+    }
+}

@@ -1,7 +1,7 @@
 //! Two cameras from a calibration file, rectified or not.
 
-use super::{CalibrationError, Fault, kitti, load, middlebury};
-use std::path::Path;
+use super::{CalibrationError, Fault, kitti, load_all, middlebury, raw};
+use std::path::PathBuf;
 use stereopsis::geometry::Camera;
 
 /// The two cameras of a calibration file, by themselves: neither where they stand nor whether they are rectified.
@@ -14,21 +14,24 @@ pub struct Cameras {
 }
 
 impl Cameras {
-    /// Reads the file at `path`: Middlebury's `cam0` and `cam1` or KITTI's projection matrices, told apart by content. Of
-    /// KITTI's cameras it is the pair that [`Calibration::open`](super::Calibration::open) takes for a colour picture.
-    pub fn open(path: &Path) -> Result<Self, CalibrationError> {
-        Self::read(path).map_err(|fault| CalibrationError { path: path.into(), fault })
+    /// Reads one file, or two of ROS: any format that [`RawCalibration`](super::RawCalibration) reads, or the file of one camera,
+    /// which is both then. Of KITTI's cameras it is the pair that [`Calibration::open`](super::Calibration::open) takes for a
+    /// colour picture.
+    pub fn open(paths: &[PathBuf]) -> Result<Self, CalibrationError> {
+        let texts = load_all(paths)?;
+        let path = paths.first().cloned().unwrap_or_default();
+        Self::read(&texts).map_err(|fault| CalibrationError { path, fault })
     }
 
-    fn read(path: &Path) -> Result<Self, Fault> {
-        let text = load(path)?;
-        if text.trim().is_empty() {
-            return Err(Fault::Empty);
+    fn read(texts: &[String]) -> Result<Self, Fault> {
+        if let Some([first, second]) = raw::cameras(texts)? {
+            return Ok(Self { first, second });
         }
-        let [(first_key, first), (second_key, second)] = if middlebury::is_one(&text) {
-            middlebury::matrices(&text)?
-        } else if kitti::is_one(&text) {
-            kitti::matrices(&text)?
+        let text = texts.first().map_or("", String::as_str);
+        let [(first_key, first), (second_key, second)] = if middlebury::is_one(text) {
+            middlebury::matrices(text)?
+        } else if kitti::is_one(text) {
+            kitti::matrices(text)?
         } else {
             return Err(Fault::Unknown);
         };
@@ -49,7 +52,7 @@ mod tests {
     fn of(text: &str) -> Result<Cameras, String> {
         let file = tempfile::NamedTempFile::new().expect("a temporary file");
         std::fs::write(file.path(), text).expect("a file");
-        Cameras::open(file.path()).map_err(|e| e.to_string())
+        Cameras::open(&[file.path().into()]).map_err(|e| e.to_string())
     }
 
     #[test]
@@ -60,6 +63,12 @@ mod tests {
         assert_eq!(cameras.second.principal_point(), (300.0, 200.0));
         let cameras = of("P0: 500 0 320 0 0 510 240 0 0 0 1 0\nP1: 500 0 320 -50 0 510 240 0 0 0 1 0\n");
         assert_eq!(cameras.expect("cameras").second.focal_px(), (500.0, 510.0));
+        let one = "%YAML:1.0\n---\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   \
+                   data: [ 500., 0., 320., 0., 510., 240., 0., 0., 1. ]\ndistortion_coefficients: [ 0.5, 0, 0, 0, 0 ]\n";
+        let cameras = of(one).expect("one camera");
+        assert_eq!(cameras.first.focal_px(), (500.0, 510.0));
+        assert_eq!(cameras.first, cameras.second);
+        assert!(!cameras.first.lens().is_none());
     }
 
     #[test]

@@ -27,7 +27,9 @@ pub enum Fault {
     #[error("the file is empty; give a calibration file")]
     Empty,
     /// The content is of no format that is read.
-    #[error("is neither a Middlebury calib.txt (cam0=[...]) nor a KITTI one (P0: and P1:, or two lines of 12 numbers)")]
+    #[error(
+        "is neither a Middlebury calib.txt (cam0=[...]) nor a KITTI one (P0: and P1:, or two lines of 12 numbers), nor of OpenCV, ROS or Kalibr"
+    )]
     Unknown,
     /// The content is of no format of a rig that is not rectified.
     #[error(
@@ -40,6 +42,14 @@ pub enum Fault {
     /// One camera's file of two.
     #[error("is the camera_info of one camera; give --calib a second time, with the other camera's")]
     OneOfTwo,
+    /// A calibration of raw images where one of rectified ones is needed.
+    #[error(
+        "says how the cameras are mounted, but not how their rectified images are (P1 and P2, or Q); give --rectify with raw images"
+    )]
+    NotRectified,
+    /// Rectified cameras below each other.
+    #[error("the cameras stand below each other; cameras beside each other are needed")]
+    Below,
     /// What a key has is wrong.
     #[error("{key}: {problem}")]
     Key {
@@ -52,7 +62,7 @@ pub enum Fault {
     #[error("{key}: a baseline of {baseline_m} m is not likely; where it is in millimetres, say --unit mm")]
     Unit {
         /// The key that it comes from.
-        key: &'static str,
+        key: String,
         /// What follows, m.
         baseline_m: f64,
     },

@@ -1,7 +1,8 @@
 //! Rectified rigs from calibration files.
 //!
-//! In: a `calib.txt` of the Middlebury stereo pages (millimetres) or of KITTI (metres), told apart by content. Out: a
-//! [`RectifiedRig`] in metres, with the image size where the file says it.
+//! In: a `calib.txt` of the Middlebury stereo pages (millimetres) or of KITTI (metres), or what OpenCV, ROS or the command
+//! `rectify` say of rectified images, told apart by content. Out: a [`RectifiedRig`] in metres, with the image size where the
+//! file says it.
 //!
 //! * [`Cameras`]: the two cameras alone, which need not be rectified.
 //! * [`RawCalibration`]: two cameras as they are mounted, also from OpenCV's, ROS's and Kalibr's files.
@@ -33,7 +34,7 @@ const MOST_BYTES: u64 = 1 << 20;
 pub struct Calibration {
     /// The file.
     pub path: PathBuf,
-    /// The format's name: "Middlebury" or "KITTI".
+    /// The format's name: "Middlebury", "KITTI", "OpenCV".
     pub format: &'static str,
     /// The two cameras.
     pub rig: RectifiedRig,
@@ -49,24 +50,32 @@ impl Calibration {
     /// Reads the file at `path`. KITTI's files hold a grey and a colour pair of cameras: the components of
     /// `left_image`'s path choose, `image_0`, `image_1`, `image_00` or `image_01` the grey pair.
     pub fn open(path: impl AsRef<Path>, left_image: &Path) -> Result<Self, CalibrationError> {
-        let path = path.as_ref();
-        let failed = |fault| CalibrationError { path: path.into(), fault };
-        let text = load(path).map_err(failed)?;
-        Self::parse(path, &text, left_image).map_err(failed)
+        Self::open_all(&[path.as_ref().into()], left_image, 1.0)
     }
 
-    fn parse(path: &Path, text: &str, left_image: &Path) -> Result<Self, Fault> {
-        if text.trim().is_empty() {
-            return Err(Fault::Empty);
+    /// The same of one file, or of two of ROS. Lengths of OpenCV's files are in units of `unit_m` metres; the other formats
+    /// say theirs.
+    pub fn open_all(paths: &[PathBuf], left_image: &Path, unit_m: f64) -> Result<Self, CalibrationError> {
+        let texts = load_all(paths)?;
+        let path = paths.first().cloned().unwrap_or_default();
+        match Self::parse(paths, &texts, left_image, unit_m) {
+            Ok(read) => Ok(Self { path, ..read }),
+            Err(fault) => Err(CalibrationError { path, fault }),
         }
-        let read = if middlebury::is_one(text) {
-            middlebury::read(text)?
+    }
+
+    fn parse(paths: &[PathBuf], texts: &[String], left_image: &Path, unit_m: f64) -> Result<Self, Fault> {
+        if let Some(found) = raw::rectified_rig(paths, texts, unit_m)? {
+            return Ok(found);
+        }
+        let text = texts.first().map_or("", String::as_str);
+        if middlebury::is_one(text) {
+            middlebury::read(text)
         } else if kitti::is_one(text) {
-            kitti::read(text, left_image)?
+            kitti::read(text, left_image)
         } else {
-            return Err(Fault::Unknown);
-        };
-        Ok(Self { path: path.into(), ..read })
+            Err(Fault::Unknown)
+        }
     }
 
     /// Whether images of `width` x `height` pixels are those that the file was made for; a size that the file does not
@@ -82,6 +91,15 @@ impl Calibration {
         }
         Ok(())
     }
+}
+
+/// The texts of files that are not empty.
+fn load_all(paths: &[PathBuf]) -> Result<Vec<String>, CalibrationError> {
+    let one = |path: &PathBuf| {
+        let text = load(path).and_then(|text| if text.trim().is_empty() { Err(Fault::Empty) } else { Ok(text) });
+        text.map_err(|fault| CalibrationError { path: path.clone(), fault })
+    };
+    paths.iter().map(one).collect()
 }
 
 fn load(path: &Path) -> Result<String, Fault> {

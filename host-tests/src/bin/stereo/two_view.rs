@@ -95,9 +95,10 @@ pub struct PoseArgs {
     /// The matches: lines of x1,y1,x2,y2 in px under that header
     #[arg(long, value_name = "FILE")]
     pub matches: PathBuf,
-    /// Calibration of the two cameras, which need not be rectified: a Middlebury or KITTI calib.txt
-    #[arg(long, value_name = "FILE")]
-    pub calib: PathBuf,
+    /// Calibration of the two cameras, which need not be rectified, or of the one that took both images: OpenCV's YAML, XML or
+    /// JSON, ROS's camera_info (twice for two cameras), Kalibr's camchain, a Middlebury or KITTI calib.txt
+    #[arg(long, value_name = "FILE", required = true)]
+    pub calib: Vec<PathBuf>,
     #[command(flatten)]
     pub robust: RobustArgs,
     /// File for the result; its folder is made when it is missing

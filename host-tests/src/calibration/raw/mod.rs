@@ -7,18 +7,21 @@
 //! * `kalibr`: a camchain with `cam0`, `cam1` and `T_cn_cnm1`, which carries a point of cam0 into cam1.
 //! * Middlebury's and KITTI's calib.txt, whose cameras are rectified.
 //!
-//! `tree` reads the first three's syntax.
+//! `tree` reads the first three's syntax; `aligned` reads what they say of rectified images, [`cameras`] of the cameras alone.
 
+mod aligned;
 mod kalibr;
 mod opencv;
 mod ros;
 mod tree;
 
-use super::{Calibration, CalibrationError, Fault, kitti, load, middlebury};
+use super::{Calibration, CalibrationError, Fault, kitti, load_all, middlebury};
 use nalgebra::{Matrix3, Vector3};
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::{Camera, Distortion, Fisheye, ImageSize, Lens, Pose, StereoRig};
 use tree::Tree;
+
+pub(super) use aligned::read as rectified_rig;
 
 /// Baselines beyond these are taken for a wrong unit, m.
 const LIKELY_M: std::ops::RangeInclusive<f64> = 1e-3..=10.0;
@@ -50,11 +53,7 @@ impl RawCalibration {
     /// theirs.
     pub fn open(paths: &[PathBuf], images: ImageSize, unit_m: f64) -> Result<Self, CalibrationError> {
         let path = paths.first().cloned().unwrap_or_default();
-        let texts = paths.iter().map(|path| {
-            let text = load(path).and_then(|text| if text.trim().is_empty() { Err(Fault::Empty) } else { Ok(text) });
-            text.map_err(|fault| CalibrationError { path: path.clone(), fault })
-        });
-        let texts = texts.collect::<Result<Vec<_>, _>>()?;
+        let texts = load_all(paths)?;
         let read = || -> Result<Self, Fault> {
             let found = find(paths, &texts, unit_m)?;
             for (which, side, image) in [("width", 0, images.width), ("height", 1, images.height)] {
@@ -64,13 +63,46 @@ impl RawCalibration {
                 }
             }
             let rig = StereoRig::new(found.cameras, found.pose, [images; 2]).map_err(Fault::StereoRig)?;
-            if !LIKELY_M.contains(&rig.baseline_m()) {
-                return Err(Fault::Unit { key: found.baseline_key, baseline_m: rig.baseline_m() });
-            }
+            likely(found.baseline_key, rig.baseline_m())?;
             Ok(Self { path: path.clone(), format: found.format, rig })
         };
         read().map_err(|fault| CalibrationError { path: path.clone(), fault })
     }
+}
+
+/// Refuses what is rather in another unit.
+fn likely(key: &str, baseline_m: f64) -> Result<(), Fault> {
+    if LIKELY_M.contains(&baseline_m) { Ok(()) } else { Err(Fault::Unit { key: key.into(), baseline_m }) }
+}
+
+/// The documents of files that are trees; what is of another format has none.
+fn trees(texts: &[String]) -> Result<Vec<Tree>, Fault> {
+    let mut trees = Vec::new();
+    for text in texts {
+        match tree::read(text) {
+            Ok(found) => trees.extend(found),
+            Err(error) if text.trim_start().starts_with(['%', '<', '{']) => return Err(Fault::Syntax(error)),
+            Err(_) => {}
+        }
+    }
+    Ok(trees)
+}
+
+/// The cameras alone, wherever they stand; one twice where the files say of one only. Nothing where the files are of none of
+/// these formats.
+pub(super) fn cameras(texts: &[String]) -> Result<Option<[Camera<f64>; 2]>, Fault> {
+    let trees = trees(texts)?;
+    let both = match trees.as_slice() {
+        [one, ..] if kalibr::is_one(one) => kalibr::cameras(one)?,
+        [one, two] if ros::is_one(one) && ros::is_one(two) => [ros::camera_of(one)?, ros::camera_of(two)?],
+        [one] if ros::is_one(one) => [ros::camera_of(one)?; 2],
+        trees if trees.iter().any(opencv::is_one) => opencv::cameras(trees)?,
+        trees => match trees.iter().find(|tree| opencv::is_one_camera(tree)) {
+            Some(tree) => [opencv::camera_of(tree)?; 2],
+            None => return Ok(None),
+        },
+    };
+    Ok(Some(both))
 }
 
 fn find(paths: &[PathBuf], texts: &[String], unit_m: f64) -> Result<Found, Fault> {

@@ -3,11 +3,15 @@
 use super::tree::{Tree, list, numbers, size};
 use super::{Fault, Found, Model, camera, pose_of};
 use serde_json::{Value, json};
+use stereopsis::geometry::Camera;
 
 /// Names of a camera's matrix without its number or side, and of its lens, in small letters without signs between.
 const MATRIX: [&str; 7] = ["m", "k", "a", "cameramatrix", "cammatrix", "intrinsicmatrix", "mtx"];
 const LENS: [&str; 7] =
     ["d", "dist", "distcoeffs", "distcoeff", "distortioncoefficients", "distortioncoeffs", "distortion"];
+const PROJECTION: [&str; 3] = ["p", "projection", "projectionmatrix"];
+const MATRIX_FORM: &str = "the 3x3 camera matrix";
+const LENS_FORM: &str = "the lens's coefficients k1, k2, p1, p2, k3";
 const SIDES: [&[&str]; 2] = [&["1", "l", "left"], &["2", "r", "right"]];
 const ROTATION: [&str; 4] = ["r", "rotation", "rotationmatrix", "rmat"];
 const TRANSLATION: [&str; 4] = ["t", "translation", "translationvector", "tvec"];
@@ -20,32 +24,64 @@ pub(super) fn is_one(tree: &Tree) -> bool {
     both.any(|found| found.is_some()) || (plain(tree, &ROTATION).is_some() && plain(tree, &TRANSLATION).is_some())
 }
 
-pub(super) fn read(trees: &[Tree], unit_m: f64) -> Result<Found, Fault> {
+/// Whether the matrix of a camera without a number or a side is there.
+pub(super) fn is_one_camera(tree: &Tree) -> bool {
+    plain(tree, &MATRIX).is_some()
+}
+
+/// That camera.
+pub(super) fn camera_of(tree: &Tree) -> Result<Camera<f64>, Fault> {
+    let needed = |names: &[&str], key: &str, form| plain(tree, names).ok_or_else(|| Fault::Missing(key.into(), form));
+    let matrix = needed(&MATRIX, "camera_matrix", MATRIX_FORM)?;
+    one(matrix, needed(&LENS, "distortion_coefficients", LENS_FORM)?, model(std::slice::from_ref(tree)))
+}
+
+/// The two cameras.
+pub(super) fn cameras(trees: &[Tree]) -> Result<[Camera<f64>; 2], Fault> {
+    let model = model(trees);
     let of_camera = |names: &[&str], side: usize, key: &'static str, form| {
         let found = trees.iter().flat_map(|tree| names.iter().filter_map(|name| sided(tree, name, SIDES[side])));
         found.into_iter().next().ok_or_else(|| Fault::Missing(key.into(), form))
     };
-    let of_rig = |names: &[&str], key: &'static str, form| {
-        trees.iter().find_map(|tree| plain(tree, names)).ok_or_else(|| Fault::Missing(key.into(), form))
+    let both = [("K1", "D1"), ("K2", "D2")];
+    let camera = |side: usize| {
+        let (matrix, lens) = both[side];
+        let matrix = of_camera(&MATRIX, side, matrix, MATRIX_FORM)?;
+        one(matrix, of_camera(&LENS, side, lens, LENS_FORM)?, model)
     };
-    // As OpenCV's own program of calibration marks its files, and as others name the model.
+    Ok([camera(0)?, camera(1)?])
+}
+
+fn one((key, matrix): (&str, &Value), (lens_key, lens): (&str, &Value), model: Model) -> Result<Camera<f64>, Fault> {
+    let [fx, _, cx, _, fy, cy, _, _, scale] = numbers::<9>(key, matrix)?;
+    if scale != 1.0 {
+        return Err(Fault::Key { key: key.into(), problem: "the last element of a camera matrix is 1".into() });
+    }
+    camera(key, [fx, fy, cx, cy], model, &list(lens_key, lens)?)
+}
+
+/// As OpenCV's own program of calibration marks its files, and as others name the model.
+fn model(trees: &[Tree]) -> Model {
     let is_fisheye = trees.iter().any(|tree| {
         let flag = plain(tree, &["fisheyemodel", "fisheye"])
             .is_some_and(|(_, flag)| flag.as_bool().or_else(|| flag.as_f64().map(|flag| flag != 0.0)).unwrap_or(false));
         let name = plain(tree, &["model", "distortionmodel", "cameramodel"]).and_then(|(_, name)| name.as_str());
         flag || name.is_some_and(|name| ["fisheye", "equidistant"].contains(&name.to_lowercase().as_str()))
     });
-    let model = if is_fisheye { Model::Fisheye } else { Model::BrownConrady };
-    let one = |side: usize, matrix_key: &'static str, lens_key: &'static str| {
-        let (key, value) = of_camera(&MATRIX, side, matrix_key, "the 3x3 camera matrix")?;
-        let [fx, _, cx, _, fy, cy, _, _, scale] = numbers::<9>(key, value)?;
-        if scale != 1.0 {
-            return Err(Fault::Key { key: key.into(), problem: "the last element of a camera matrix is 1".into() });
-        }
-        let (lens_key, lens) = of_camera(&LENS, side, lens_key, "the lens's coefficients k1, k2, p1, p2, k3")?;
-        camera(key, [fx, fy, cx, cy], model, &list(lens_key, lens)?)
+    if is_fisheye { Model::Fisheye } else { Model::BrownConrady }
+}
+
+/// A rectified camera's projection matrix, of 12 numbers: p1 and p2 are a lens's coefficients too.
+pub(super) fn projection(tree: &Tree, side: usize) -> Option<(&str, &Value)> {
+    let found = PROJECTION.iter().find_map(|name| sided(tree, name, SIDES[side]))?;
+    list(found.0, found.1).is_ok_and(|numbers| numbers.len() == 12).then_some(found)
+}
+
+pub(super) fn read(trees: &[Tree], unit_m: f64) -> Result<Found, Fault> {
+    let cameras = cameras(trees)?;
+    let of_rig = |names: &[&str], key: &'static str, form| {
+        trees.iter().find_map(|tree| plain(tree, names)).ok_or_else(|| Fault::Missing(key.into(), form))
     };
-    let cameras = [one(0, "K1", "D1")?, one(1, "K2", "D2")?];
     let (r_key, r) = of_rig(&ROTATION, "R", "the 3x3 rotation from the first camera to the second")?;
     let (t_key, t) = of_rig(&TRANSLATION, "T", "the translation from the first camera to the second")?;
     let t = numbers::<3>(t_key, t)?.map(|x| x * unit_m);

@@ -33,7 +33,7 @@ pub(super) fn read(first: &Tree, second: &Tree) -> Result<Found, Fault> {
     })
 }
 
-fn projection(tree: &Tree) -> Result<[f64; 12], Fault> {
+pub(super) fn projection(tree: &Tree) -> Result<[f64; 12], Fault> {
     let p: [f64; 12] = numbers("projection_matrix", need(tree, "projection_matrix", FORM)?)?;
     if p[0] > 0.0 && p[5] > 0.0 {
         return Ok(p);
@@ -46,6 +46,11 @@ fn rotation(tree: &Tree) -> Result<Matrix3<f64>, Fault> {
     // Checked by itself: the product of two wrong ones may be right.
     pose_of("rectification_matrix", r, [0.0; 3])?;
     Ok(Matrix3::from_row_slice(&r))
+}
+
+/// The camera of a camera_info.
+pub(super) fn camera_of(tree: &Tree) -> Result<stereopsis::geometry::Camera<f64>, Fault> {
+    one("the camera", tree)
 }
 
 fn one(which: &str, tree: &Tree) -> Result<stereopsis::geometry::Camera<f64>, Fault> {

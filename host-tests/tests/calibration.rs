@@ -86,7 +86,7 @@ fn what_is_no_calibration_is_said() {
     assert!(matches!(fault([0x89, b'P', 0, 1, 2]), Fault::NotText));
     assert!(matches!(fault([0xff, 0xfe, b'a']), Fault::NotText));
     assert!(matches!(fault(vec![b' '; (1 << 20) + 1]), Fault::NotText));
-    assert!(matches!(fault("%YAML:1.0\nM1: !!opencv-matrix\n"), Fault::Unknown));
+    assert!(matches!(fault("%YAML:1.0\nM1: !!opencv-matrix\n"), Fault::Missing(key, _) if key == "D1"));
     let missing = Calibration::open("no/such/calib.txt", Path::new("l.png")).expect_err("no file");
     assert!(matches!(missing.fault, Fault::Read(_)) && missing.to_string().starts_with("no/such/calib.txt"));
 }
@@ -212,7 +212,7 @@ fn rectified_cameras_of_other_programs() {
             "below each other",
         ),
         (format!("{yaml}{p1}{}", p2.replace("-30000.", "30000.")), "with the right camera on the right"),
-        (format!("{yaml}{p1}{}", p2.replace("-30000.", ".Nan")), "neither"),
+        (format!("{yaml}{p1}{}", p2.replace("-30000.", ".Nan")), "P2: a number is not finite"),
         (format!("{yaml}{}", q.replace("500.", "nan")), "Q: a number is not finite"),
         (format!("{yaml}{}", q.replace("1., 0., 0., -320.", "1., 0., 0.5, -320.")), "is no Q"),
         (format!("{yaml}["), "not well-formed"),

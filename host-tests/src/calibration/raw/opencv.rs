@@ -74,7 +74,9 @@ fn model(trees: &[Tree]) -> Model {
 /// A rectified camera's projection matrix, of 12 numbers: p1 and p2 are a lens's coefficients too.
 pub(super) fn projection(tree: &Tree, side: usize) -> Option<(&str, &Value)> {
     let found = PROJECTION.iter().find_map(|name| sided(tree, name, SIDES[side]))?;
-    list(found.0, found.1).is_ok_and(|numbers| numbers.len() == 12).then_some(found)
+    // KITTI's are lines of text. What is a matrix and none of numbers is refused by who reads it.
+    let is_matrix = found.1.is_array() || found.1.get("data").is_some();
+    (is_matrix && list(found.0, found.1).map_or(true, |numbers| numbers.len() == 12)).then_some(found)
 }
 
 pub(super) fn read(trees: &[Tree], unit_m: f64) -> Result<Found, Fault> {

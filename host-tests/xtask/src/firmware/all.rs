@@ -1,6 +1,6 @@
 //! `cargo xtask firmware --all`: every core, method and size, two at a time.
 
-use super::board::{self, Board, M0};
+use super::board::{self, Board, M0, M7, M55};
 use super::checksums::{self, Checksum};
 use super::frame::{self, Frame, MOST_STACK};
 use super::program::{Built, Program};
@@ -34,12 +34,12 @@ pub struct Result {
 }
 
 /// Runs all of it and prints it; writes the tables into README.md, or compares them.
-pub fn run(check: bool) -> Outcome {
+pub fn run(readme: tables::Readme) -> Outcome {
     setup::firmware(&board::ALL.map(|board| board.target))?;
     let real = checksums::pairs()?;
     refusals::check()?;
     awkward::check()?;
-    let results = parallel::work(in_turn(programs()?), |(at, program)| Ok((at, one(program, &real)?)))?;
+    let results = parallel::work(in_turn(programs(readme)?), |(at, program)| Ok((at, one(program, &real)?)))?;
     let results: BTreeMap<_, _> = results.into_iter().collect();
     let results: Vec<_> = results.into_values().collect();
     let part = tables::part(&results)?;
@@ -47,7 +47,7 @@ pub fn run(check: bool) -> Outcome {
     for result in &results {
         held(result)?;
     }
-    tables::into_readme(&tables::FIRMWARE, &part, check)?;
+    tables::into_readme(&tables::FIRMWARE, &part, readme)?;
     if real.is_empty() {
         println!("checksums on real pairs: NOT RUN, set STEREO_DATA to the folder that holds stereo/");
         return Ok(());
@@ -55,9 +55,15 @@ pub fn run(check: bool) -> Outcome {
     checksums::compare(&results, &real)
 }
 
-/// What is built, in the order of the tables.
-fn programs() -> Outcome<Vec<Program>> {
-    let sizes = |board: Board| if board == M0 { SMALLEST.as_slice() } else { SIZES.as_slice() };
+/// What is built, in the order of the tables. Of a sample the larger size is on two cores only, one that works in words and
+/// one that works in vectors.
+fn programs(readme: tables::Readme) -> Outcome<Vec<Program>> {
+    let is_whole = |board| readme != tables::Readme::Sample || [M7, M55].contains(&board);
+    let sizes = |board: Board| match board {
+        M0 => SMALLEST.as_slice(),
+        board if is_whole(board) => SIZES.as_slice(),
+        _ => &SIZES[..1],
+    };
     let all = board::ALL.into_iter().flat_map(|board| {
         Method::ALL.into_iter().flat_map(move |method| sizes(board).iter().map(move |&size| (board, method, size)))
     });

@@ -64,12 +64,16 @@ pub fn compare(results: &[Result], pairs: &[(String, Pictures)]) -> Outcome {
         row.push(("host", pictures.crc32(method, disparities)?));
         row.extend(IN_C.into_iter().zip(in_c));
     }
-    let columns: Vec<&str> = rows.values().next().into_iter().flatten().map(|(name, _)| *name).collect();
+    // Not every size is on every core.
+    let longest = rows.values().max_by_key(|row| row.len());
+    let columns: Vec<&str> = longest.into_iter().flatten().map(|(name, _)| *name).collect();
     println!("CRC-32 of disparities and flags:\n");
     println!("| pair | method | pixels | disparities | {} |", columns.join(" | "));
     println!("| --- | --- | --- | ---: |{}", " --- |".repeat(columns.len()));
     for ((pair, method, width, height, disparities), row) in &rows {
-        let cells: String = row.iter().map(|(_, crc32)| format!(" `{crc32:08x}` |")).collect();
+        let on = |column: &&str| row.iter().find(|(name, _)| name == column);
+        let cell = |column| on(column).map_or("  |".to_owned(), |(_, crc32)| format!(" `{crc32:08x}` |"));
+        let cells: String = columns.iter().map(cell).collect();
         println!("| {pair} | `{method}` | {width}x{height} | {disparities} |{cells}");
     }
     println!();

@@ -76,11 +76,11 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Features> {
 }
 
 /// Measures [`CASES`]; writes the table into README.md, or compares it.
-pub fn run_all(check: bool) -> Outcome {
-    let all = measured(&CASES, run, Features::told)?;
+pub fn run_all(readme: tables::Readme) -> Outcome {
+    let all = measured(&CASES, readme, run, Features::told)?;
     let part = tables::with_compiler(&table(&all))?;
     println!("{part}");
-    tables::into_readme(&FEATURES, &part, check)
+    tables::into_readme(&FEATURES, &part, readme)
 }
 
 fn table(all: &[Features]) -> String {

@@ -78,11 +78,11 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Focus> {
 }
 
 /// Measures [`CASES`]; writes the table into README.md, or compares it.
-pub fn run_all(check: bool) -> Outcome {
-    let all = measured(&CASES, run, Focus::told)?;
+pub fn run_all(readme: tables::Readme) -> Outcome {
+    let all = measured(&CASES, readme, run, Focus::told)?;
     let part = tables::with_compiler(&table(&all))?;
     println!("{part}");
-    tables::into_readme(&FOCUS, &part, check)
+    tables::into_readme(&FOCUS, &part, readme)
 }
 
 fn table(all: &[Focus]) -> String {

@@ -54,6 +54,7 @@ use serde::Serialize;
 use stereopsis::imaging::Noise;
 use stereopsis_host::output::Staging;
 use stereopsis_host::run::NoiseChoice;
+use tables::Readme;
 
 /// Does what the command line asks for.
 pub fn run(arguments: &Arguments) -> Outcome {
@@ -62,21 +63,21 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Asked::Pose(plain) => run_plain(&plain, pose::run, Pose::told),
         Asked::Features(plain) => run_plain(&plain, features::run, Features::told),
         Asked::Focus(plain) => run_plain(&plain, focus::run, Focus::told),
-        Asked::All => run_all(arguments.check),
+        Asked::All => run_all(Readme::of_check(arguments.check)),
     }
 }
 
 /// Every core and program; writes README.md's tables, or compares them.
-fn run_all(check: bool) -> Outcome {
-    all::run(check)?;
-    two_views_all::run(check)?;
-    features::run_all(check)?;
-    focus::run_all(check)
+fn run_all(readme: Readme) -> Outcome {
+    all::run(readme)?;
+    two_views_all::run(readme)?;
+    features::run_all(readme)?;
+    focus::run_all(readme)
 }
 
-/// Every core, method and size, compared with README.md.
-pub fn check_all() -> Outcome {
-    run_all(true)
+/// Every core and method and a part of the sizes and programs, compared with README.md.
+pub fn check_sample() -> Outcome {
+    run_all(Readme::Sample)
 }
 
 /// A program without sizes to choose, on one core into a folder.

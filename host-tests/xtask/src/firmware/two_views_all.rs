@@ -34,8 +34,8 @@ struct EightPoint {
 }
 
 /// Measures all of it; writes the table into README.md, or compares it.
-pub fn run(check: bool) -> Outcome {
-    let poses = measured(&CASES, pose::run, Pose::told)?;
+pub fn run(readme: tables::Readme) -> Outcome {
+    let poses = measured(&CASES, readme, pose::run, Pose::told)?;
     let alone = eight_point()?;
     let part = tables::with_compiler(&table(&poses, &alone))?;
     println!("{part}");
@@ -45,7 +45,7 @@ pub fn run(check: bool) -> Outcome {
             "the eight-point algorithm takes {flash} bytes of flash, at most {most} may be"
         )));
     }
-    tables::into_readme(&POSE, &part, check)
+    tables::into_readme(&POSE, &part, readme)
 }
 
 /// The program `eight_point` made for size, and how much flash it has more than without the algorithm.

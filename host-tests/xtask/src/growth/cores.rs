@@ -6,7 +6,7 @@ use crate::firmware::board::{Board, M4, M55};
 use crate::firmware::frame::{self, Frame};
 use crate::firmware::program::{Built, Program};
 use crate::firmware::scene::Scene;
-use crate::firmware::tables;
+use crate::firmware::tables::{self, Readme};
 use crate::parallel;
 use crate::pictures::Pictures;
 use crate::setup;
@@ -34,23 +34,34 @@ const MOST_IN_HALVES: f64 = 2.0;
 const PART: tables::Part = tables::Part { name: "growth", command: "cargo xtask growth" };
 
 /// Measures all of it and prints it; writes the table into README.md, or compares it.
-pub fn run(check: bool) -> Outcome {
-    setup::firmware(&CORES.map(|board| board.target))?;
-    let series = series(&WIDTHS, &HEIGHTS, &DISPARITIES);
-    let jobs: Vec<_> = CORES.into_iter().flat_map(|board| METHODS.map(|method| (board, method))).collect();
-    let columns = parallel::work(jobs, |(board, method)| column(board, method, &series))?;
+pub fn run(readme: Readme) -> Outcome {
+    let text = measured(&CORES, &DISPARITIES)?;
+    tables::into_readme(&PART, &tables::with_compiler(&text)?, readme)
+}
+
+/// Holds a few sizes on one core to the limits: columns are not lines of README.md.
+pub fn sample() -> Outcome {
+    measured(&CORES[..1], &[16, 32, 64, 128]).map(drop)
+}
+
+/// Measures all sizes and holds them to the limits; the table.
+fn measured(cores: &[Board], disparities: &[u16]) -> Outcome<String> {
+    setup::firmware(&cores.iter().map(|board| board.target).collect::<Vec<_>>())?;
+    let series = series(&WIDTHS, &HEIGHTS, disparities);
+    let jobs: Vec<_> = cores.iter().flat_map(|&board| METHODS.map(|method| (board, method))).collect();
+    let columns = parallel::work(jobs, |(board, method)| column(board, method, &series, disparities))?;
     let text = table::text(&series, &columns);
     println!("{text}");
     table::held(&series, &columns, |size| if size.disparities.is_multiple_of(32) { MOST } else { MOST_IN_HALVES })?;
-    tables::into_readme(&PART, &tables::with_compiler(&text)?, check)
+    Ok(text)
 }
 
 /// The instructions of one method on one core, for each evaluation, at all sizes.
-fn column(board: Board, method: Method, series: &[Series]) -> Outcome<Column> {
+fn column(board: Board, method: Method, series: &[Series], searches: &[u16]) -> Outcome<Column> {
     let sizes: Vec<Size> = series.iter().flat_map(|(_, sizes)| sizes.iter().copied()).collect();
     let (widest, highest) = (WIDTHS[WIDTHS.len() - 1], HEIGHTS[HEIGHTS.len() - 1]);
     let mut costs = vec![0.0; sizes.len()];
-    for disparities in DISPARITIES {
+    for &disparities in searches {
         let built = Program::new(board, method, widest, highest, disparities)?.build()?;
         let mut stack = 0;
         for (cost, &size) in costs.iter_mut().zip(&sizes).filter(|(_, size)| size.disparities == disparities) {

@@ -4,7 +4,8 @@
 //!
 //! * [`mock`]: a camera that reads image files.
 //! * [`scene`]: a ray-traced scene as a camera, with its true depth, disparity and occlusion.
-//! * [`calibration`]: rectified rigs from Middlebury's and KITTI's files.
+//! * [`calibration`]: rigs from and to the files of other programs.
+//! * [`calibrate`]: a rig from pictures of a chessboard.
 //! * [`mod@matches`]: correspondences from files.
 //! * [`real`]: real pairs with a known truth, also altered, and scores on them.
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
@@ -16,6 +17,7 @@
 //! * [`map`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`], [`output`], [`report`]: results as
 //!   files. [`command_line`]: errors in one line.
 
+pub mod calibrate;
 pub mod calibration;
 pub mod colour;
 pub mod command_line;

@@ -36,7 +36,7 @@ pub(crate) fn side_by_side(left: &RgbImage, right: &RgbImage) -> (RgbImage, u32)
 }
 
 /// A thin line between two points, as bright as what lies below it and half of the colour, so that many can cross.
-fn line(picture: &mut RgbImage, [x1, y1]: [f32; 2], [x2, y2]: [f32; 2], Rgb(colour): Rgb<u8>) {
+pub(crate) fn line(picture: &mut RgbImage, [x1, y1]: [f32; 2], [x2, y2]: [f32; 2], Rgb(colour): Rgb<u8>) {
     let steps = (x2 - x1).abs().max((y2 - y1).abs()).ceil().max(1.0);
     for step in 0..=steps as u32 {
         let share = step as f32 / steps;

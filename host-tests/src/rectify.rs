@@ -1,6 +1,7 @@
 //! Pictures through the core's remap.
 
-use image::GrayImage;
+use crate::run::MemoryPair;
+use image::{GrayImage, RgbImage};
 use stereopsis::camera::{CameraError, StereoSource};
 use stereopsis::geometry::Rectification;
 use stereopsis::imaging::{RectifiedPair, RectifiedPairError, Remap, RemapError, RemapTable, RemapTableError};
@@ -43,21 +44,60 @@ pub enum RectifyPicturesError {
     Thread(std::io::Error),
 }
 
+/// A source of rectified lines over one of raw lines, with room for the largest pictures.
+pub type RectifiedSource<S> = RectifiedPair<S, WIDTH, LINES, SLOTS>;
+
+/// Does something with rectified lines over a source of raw ones.
+pub fn with_rectified<S, T>(
+    rectification: &Rectification<f64>,
+    source: S,
+    work: impl FnOnce(&mut RectifiedSource<S>) -> T + Send,
+) -> Result<T, RectifyPicturesError>
+where
+    S: StereoSource + Send,
+    S::Error: std::fmt::Display,
+    T: Send,
+{
+    std::thread::scope(|scope| {
+        let builder = std::thread::Builder::new().stack_size(STACK);
+        let in_thread = || rectified(rectification, source).map(|mut source| work(&mut source));
+        let thread = builder.spawn_scoped(scope, in_thread).map_err(RectifyPicturesError::Thread)?;
+        thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
+
 /// Takes a frame of a source of raw lines and rectifies it line by line, as a microcontroller does.
 pub fn rectify<S>(rectification: &Rectification<f64>, source: S) -> Result<RectifiedPictures, RectifyPicturesError>
 where
     S: StereoSource + Send,
     S::Error: std::fmt::Display,
 {
-    std::thread::scope(|scope| {
-        let builder = std::thread::Builder::new().stack_size(STACK);
-        let work =
-            builder.spawn_scoped(scope, || frame(rectification, source)).map_err(RectifyPicturesError::Thread)?;
-        work.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-    })
+    with_rectified(rectification, source, frame)?
 }
 
-fn frame<S>(rectification: &Rectification<f64>, source: S) -> Result<RectifiedPictures, RectifyPicturesError>
+/// Rectifies two colour pictures of one size, channel by channel.
+pub fn rectify_colours(
+    rectification: &Rectification<f64>,
+    left: &RgbImage,
+    right: &RgbImage,
+) -> Result<(RgbImage, RgbImage), RectifyPicturesError> {
+    let size = rectification.size();
+    let (mut new_left, mut new_right) =
+        (RgbImage::new(size.width.into(), size.height.into()), RgbImage::new(size.width.into(), size.height.into()));
+    for channel in 0..3 {
+        let of = |picture: &RgbImage| picture.pixels().map(|pixel| pixel.0[channel]).collect();
+        let width = u16::try_from(left.width()).unwrap_or(u16::MAX);
+        let pair = MemoryPair::new(width, of(left), of(right))
+            .ok_or_else(|| RectifyPicturesError::Pair("the images differ in size".into()))?;
+        let [of_left, of_right] = rectify(rectification, pair)?.pictures;
+        for (to, from) in [(&mut new_left, of_left), (&mut new_right, of_right)] {
+            to.pixels_mut().zip(from.pixels()).for_each(|(to, from)| to.0[channel] = from.0[0]);
+        }
+    }
+    Ok((new_left, new_right))
+}
+
+fn rectified<S>(rectification: &Rectification<f64>, source: S) -> Result<RectifiedSource<S>, RectifyPicturesError>
 where
     S: StereoSource,
     S::Error: std::fmt::Display,
@@ -68,10 +108,16 @@ where
         Remap::<WIDTH, LINES, SLOTS>::new(table).map_err(|e| RectifyPicturesError::Remap(side, e))
     };
     let (left, right) = (remap("left", first)?, remap("right", second)?);
-    let rows = [left.table().rows(), right.table().rows()];
-    let cells = [left.table(), right.table()].map(|table| 1 << table.shift());
-    let failed = |e: RectifiedPairError<S::Error>| RectifyPicturesError::Pair(e.to_string());
-    let mut pair = RectifiedPair::new(source, left, right).map_err(failed)?;
+    RectifiedPair::new(source, left, right).map_err(|e| RectifyPicturesError::Pair(e.to_string()))
+}
+
+fn frame<S>(pair: &mut RectifiedSource<S>) -> Result<RectifiedPictures, RectifyPicturesError>
+where
+    S: StereoSource,
+    S::Error: std::fmt::Display,
+{
+    let tables = pair.remaps().map(|remap| remap.table());
+    let (rows, cells) = (tables.map(RemapTable::rows), tables.map(|table| 1 << table.shift()));
     let format = pair.format();
     let blank = || GrayImage::new(format.width.into(), format.height.into());
     let mut result = RectifiedPictures { pictures: [blank(), blank()], valid: [blank(), blank()], rows, cells };

@@ -103,7 +103,7 @@ fn open(texts: &[&str], unit_m: f64) -> Result<RawCalibration, String> {
         path
     };
     let paths: Vec<_> = texts.iter().enumerate().map(put).collect();
-    RawCalibration::open(&paths, SIZE, unit_m).map_err(|e| e.to_string())
+    RawCalibration::open(&paths, Some(SIZE), Some(unit_m)).map_err(|e| e.to_string())
 }
 
 #[test]

@@ -6,7 +6,11 @@ use proptest::prelude::*;
 use stereopsis::camera::{CameraPair, LineSource, StereoSource};
 use stereopsis::geometry::{Camera, Crop, Distortion, ImageSize, Pose, Rectification, StereoRig, Warp};
 use stereopsis::imaging::{RectifiedPair, RectifiedPairError, Remap, RemapError, RemapTable, RemapTableError};
+use stereopsis::matching::{Config, Filter};
+use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::mock::MockCamera;
+use stereopsis_host::rectify::{rectify, with_rectified};
+use stereopsis_host::run::{MemoryPair, Method, Way, run};
 use stereopsis_host::scene::Random;
 use stereopsis_host::twin::remap as twin;
 
@@ -185,6 +189,64 @@ fn a_pair_is_taken_in_step() {
     let small = CameraPair::new(small.clone(), small, 0).expect("of one size");
     let refused = RectifiedPair::new(small, left, right).map(|_| ());
     assert_eq!(refused, Err(RectifiedPairError::Raw(format)));
+}
+
+/// Raw lines through remap, census and matching in one loop: what rectified pictures give, without the answers that have not
+/// been seen by both cameras.
+#[test]
+fn nothing_that_was_not_seen_becomes_an_answer() {
+    let size = ImageSize { width: 160, height: 64 };
+    let lens = |k1: f64| camera(size, 150.0, [k1, 0.02, 0.0, 0.0, 0.0]);
+    let both = rectified(size, [lens(-0.2), lens(-0.15)], [0.02, -0.01, 0.03], Crop::Alpha(1.0));
+    // The right camera sees all six px farther left.
+    let left = noise(size, 11);
+    let right = GrayImage::from_fn(160, 64, |x, y| *left.get_pixel((x + 6).min(159), y));
+    let raw = || MemoryPair::new(160, left.to_vec(), right.to_vec()).expect("a pair");
+    let whole = rectify(&both, raw()).expect("rectified");
+    let [valid_left, valid_right] = whole.valid.each_ref().map(|mask| mask.as_raw());
+    let outside = valid_left.iter().filter(|&&seen| seen == 0).count();
+    assert!(outside > 500, "{outside}");
+    for (method, threads) in [
+        (Method::Fast, 1),
+        (Method::Fast, 3),
+        (Method::Block, 1),
+        (Method::Sgm, 1),
+        (Method::SgmLean, 2),
+        (Method::SgmEdge, 1),
+    ] {
+        let config = method.with_filter(Filter::Default, Config::new(160, 64, 32));
+        let config = Config { confidence: true, ..config };
+        let way = Way { threads, ..method.into() };
+        let found = with_rectified(&both, raw(), |source| run(way, &config, source, |_| ()).expect("a map").map);
+        let found = found.expect("remaps");
+        assert!(found.answers() > 300, "{method}: {}", found.answers());
+        let pictures = whole.pictures.each_ref().map(|picture| picture.to_vec());
+        let [left, right] = pictures;
+        let mut pair = MemoryPair::new(160, left, right).expect("a pair");
+        let plain = run(way, &config, &mut pair, |_| ()).expect("a map").map;
+        let mut lost = 0;
+        for (i, (&d, &flags)) in plain.disparity.iter().zip(&plain.flags).enumerate() {
+            let (x, row) = (i % 160, i / 160 * 160);
+            let partner = d.to_f32().map(|d| x as i32 - (d + 0.5).floor() as i32);
+            let is_seen = |column: i32| column >= 0 && valid_right[row + column as usize] != 0;
+            let is_lost = valid_left[i] == 0 || partner.is_some_and(|column| !is_seen(column));
+            lost += usize::from(is_lost && d.is_some());
+            if is_lost {
+                let (none, outside) = (Disparity::NONE, PixelFlags::OUTSIDE);
+                assert!((found.flags[i].contains(outside) && found.disparity[i] == none) || valid_left[i] != 0);
+            }
+            // Along paths an answer that is gone draws none of those below it.
+            if matches!(method, Method::Fast | Method::Block) {
+                let expected = if is_lost { (Disparity::NONE, PixelFlags::OUTSIDE) } else { (d, flags) };
+                assert_eq!((found.disparity[i], found.flags[i]), expected, "{method}, {x}, {}", row / 160);
+            }
+            let d = found.disparity[i];
+            let partner = d.to_f32().map(|d| x as i32 - (d + 0.5).floor() as i32);
+            assert!(partner.is_none_or(|column| valid_left[i] != 0 && is_seen(column)), "{method}");
+            assert_eq!(found.confidence[i] == 0, d.is_none(), "{method}");
+        }
+        assert!(lost > 20, "{method}: {lost}");
+    }
 }
 
 proptest! {

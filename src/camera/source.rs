@@ -131,6 +131,14 @@ pub trait StereoSource: ErrorType {
 
     /// Takes the next row of both cameras.
     fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>>;
+
+    /// Writes which pixels of a row the left and the right camera saw, 1 or 0 for each, and says that it did; or says that they
+    /// saw all, as cameras do by themselves. Rectified lines have borders that nothing was seen of
+    /// ([`RectifiedPair`](crate::imaging::RectifiedPair)).
+    fn mask(&self, row: u16, masks: [&mut [u8]; 2]) -> bool {
+        let _ = (row, masks);
+        false
+    }
 }
 
 impl<T: StereoSource + ?Sized> StereoSource for &mut T {
@@ -148,5 +156,9 @@ impl<T: StereoSource + ?Sized> StereoSource for &mut T {
 
     fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
         (**self).next_lines(left, right)
+    }
+
+    fn mask(&self, row: u16, masks: [&mut [u8]; 2]) -> bool {
+        (**self).mask(row, masks)
     }
 }

@@ -79,4 +79,8 @@ impl<S: StereoSource, P: OutputPin, D: DelayNs> StereoSource for Triggered<S, P,
     fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
         self.source.next_lines(left, right).map_err(|e| e.map_hardware(TriggerError::Source))
     }
+
+    fn mask(&self, row: u16, masks: [&mut [u8]; 2]) -> bool {
+        self.source.mask(row, masks)
+    }
 }

@@ -7,7 +7,7 @@
 //! * [`Camera`] with its [`Lens`] ([`Distortion`] or [`Fisheye`]); [`Pose`] of a second camera beside the first; [`RectifiedRig`]: two cameras whose
 //!   rows are aligned, and its re-projection matrix Q.
 //! * [`StereoRig`]: two cameras as they are mounted; [`Rectification`] aligns their rows, a [`Warp`] for each, with a
-//!   [`RectificationReport`].
+//!   [`RectificationReport`]; a [`RowMeter`] tells while the cameras run whether they still agree. [`StereoRig::to_record`] and [`StereoRig::from_record`]: the rig in flash.
 //! * [`Essential`] and [`Fundamental`]: two views, in the cameras' frames and in px, with lines, epipoles and distances.
 //! * [`Correspondence`]s to [`Fundamental`]: [`eight_point()`]. To [`Homography`]: its direct linear transform. [`choose`]
 //!   says which of the two it is.
@@ -70,6 +70,7 @@ mod plane;
 mod pose;
 mod projection;
 mod real;
+mod record;
 mod recover;
 mod rectify;
 mod relative;
@@ -100,8 +101,12 @@ pub use plane::{PlaneMotion, PlaneMotionError};
 pub use pose::{Pose, PoseError};
 pub use projection::{Landmark, Projection, ResectionError};
 pub use real::Real;
+pub use record::RecordError;
 pub use recover::{RecoverError, RecoveredPose};
-pub use rectify::{Axis, Crop, Rectification, RectificationReport, RectifyError, Warp, WarpSource};
+pub use rectify::{
+    Axis, Crop, Rectification, RectificationReport, RectifyError, RowAlignment, RowHealth, RowMeter, RowMeterError,
+    UncalibratedError, UncalibratedRectification, Warp, WarpSource,
+};
 pub use relative::{RelativePose, ScaleError};
 pub use rig::{RectifiedRig, RigError};
 pub use robust::{RobustConfig, RobustError, RobustFundamental, Sampling, robust_fundamental};

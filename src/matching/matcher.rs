@@ -1,11 +1,12 @@
 //! The memory of a block matcher and its stages, in running order.
 
 use super::kernels::{Kernel, STEP};
-use super::memory::{Bytes, Memory, Parts, first};
+use super::mask;
+use super::memory::{AfterRow, Bytes, Memory, Parts, first};
 use super::row::{HISTORY, Row};
 use super::scheme::{Around, Scheme};
 use super::speckle::{BAND, LOOK_AHEAD, Support};
-use super::stages::Stages;
+use super::stages::{Stages, slot_mut};
 use super::surface::ROOM;
 use super::texture::Texture;
 use super::{Config, ConfigError};
@@ -176,6 +177,26 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             sigma_px: S::SIGMA_PX,
             confidences: if self.config.confidence { self.memory.after_winners(width) } else { &[] },
         })
+    }
+
+    /// Takes the answers of the row that came out last away where one of the cameras did not see.
+    ///
+    /// `valid` is given the row and two masks to write, of the left and of the right image's pixels: 1 for one that was seen, 0
+    /// for another. It says whether it wrote them; without, everything was seen. An answer stays whose pixel was seen, and in
+    /// the right image the pixel nearest to its partner. Else there is none, of [`PixelFlags::OUTSIDE`] alone.
+    pub fn mask(&mut self, valid: impl FnOnce(u16, [&mut [u8]; 2]) -> bool) {
+        let width = usize::from(self.config.width).min(W);
+        let Some(index) = self.taken.checked_sub(Self::DELAY + 1) else { return };
+        let AfterRow { confidences, masks: [left, right] } = self.memory.after_row(width);
+        if !valid(index as u16, [&mut *left, &mut *right]) {
+            return;
+        }
+        let row = mask::Masked {
+            answers: slot_mut(self.finished.as_flattened_mut(), index % HISTORY, width),
+            flags: slot_mut(self.band_flags.as_flattened_mut(), index % BAND, width),
+            confidences: if self.config.confidence { confidences } else { &mut [] },
+        };
+        row.take_away(left, right);
     }
 
     fn step(&mut self, lines: Option<[&Around<'_>; 2]>) -> Result<(), MatchError> {

@@ -1,6 +1,6 @@
 //! What a method keeps from row to row, and room to work in.
 
-use super::kernels::{Aligned, Columns, OUTSIDE, Scratch, Winner, read_bytes_of};
+use super::kernels::{Aligned, Columns, OUTSIDE, Scratch, Winner, bytes_of, bytes_of_halves, read_bytes_of};
 
 /// How much memory a method takes: always, and multiples of the width, of width x disparities, and of the disparities.
 pub struct Bytes {
@@ -17,6 +17,16 @@ pub trait Memory {
     fn parts(&mut self, width: usize, stride: usize) -> Parts<'_>;
     /// What stands where the winners of a row stood, a byte for each of its pixels, until the next row.
     fn after_winners(&self, width: usize) -> &[u8];
+    /// The same to change, and what nothing needs until the next row.
+    fn after_row(&mut self, width: usize) -> AfterRow<'_>;
+}
+
+/// A finished row's bytes, one for each pixel.
+pub struct AfterRow<'a> {
+    /// [`Memory::after_winners`].
+    pub confidences: &'a mut [u8],
+    /// Room for two masks.
+    pub masks: [&'a mut [u8]; 2],
 }
 
 /// The memory of a method as slices.
@@ -80,6 +90,12 @@ impl<const CODES: usize, const ROWS: usize, const TABLES: usize, const W: usize,
 
     fn after_winners(&self, width: usize) -> &[u8] {
         read_bytes_of(&self.winners).get(..width).unwrap_or(&[])
+    }
+
+    fn after_row(&mut self, width: usize) -> AfterRow<'_> {
+        let masks = bytes_of_halves(first(&mut self.right, width));
+        let (left, right) = masks.split_at_mut_checked(width).unwrap_or_default();
+        AfterRow { confidences: first(bytes_of(&mut self.winners), width), masks: [left, right] }
     }
 }
 

@@ -16,7 +16,8 @@
 //! 8. `down`: with the methods along paths, the answers smoothed down the columns, within their surface.
 //! 9. `fill`: if asked for, small gaps along the row closed.
 //! 10. `confidence`: if asked for, how sure each answer is, of what its second best cost and of the answers beside it.
-//! 11. [`Row`]: what came out, with the uncertainty of each answer.
+//! 11. `mask`: answers taken away where a camera did not see.
+//! 12. [`Row`]: what came out, with the uncertainty of each answer.
 //!
 //! [`Matcher`] owns the `memory` and runs the `stages`. [`Config`] says what is searched and which answers are refused.
 
@@ -27,6 +28,7 @@ mod down;
 mod fill;
 mod filter;
 mod kernels;
+mod mask;
 mod matcher;
 mod median;
 mod memory;

@@ -8,9 +8,9 @@
 use super::confidence;
 use super::config::Checks;
 use super::kernels::{
-    COLUMNS_OFF, EdgeWork, Guide, PathWork, Room, Select, Unique, Volumes, bytes_mut, halves_mut, winners_mut,
+    COLUMNS_OFF, EdgeWork, Guide, PathWork, Room, Select, Unique, Volumes, Winner, bytes_mut, halves_mut, winners_mut,
 };
-use super::memory::{Bytes, Memory, Parts, first};
+use super::memory::{AfterRow, Bytes, Memory, Parts, first};
 use super::penalties::Penalties;
 use super::quiet::{gradient_shift, quiet};
 use super::row::slot;
@@ -161,6 +161,14 @@ impl<const GUIDES: usize, const VOLUMES: usize, const W: usize, const D: usize> 
     // The winners are the first in the room.
     fn after_winners(&self, width: usize) -> &[u8] {
         self.room.bytes().get(..width).unwrap_or(&[])
+    }
+
+    // What the right columns keep stands behind the winners, two bytes for each.
+    fn after_row(&mut self, width: usize) -> AfterRow<'_> {
+        let room = bytes_mut(self.room.words());
+        let (winners, masks) = room.split_at_mut_checked(size_of::<Winner>() * width).unwrap_or_default();
+        let (left, right) = first(masks, 2 * width).split_at_mut_checked(width).unwrap_or_default();
+        AfterRow { confidences: first(winners, width), masks: [left, right] }
     }
 }
 

@@ -79,7 +79,12 @@ impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
     /// frame are out. After an error the frame is over.
     pub fn next_row<C: StereoSource>(&mut self, camera: &mut C) -> Result<Option<Row<'_>>, PipelineError<C::Error>> {
         match self.advance(|pipeline| pipeline.take_lines(camera)) {
-            Ok(is_out) => Ok(self.row().filter(|_| is_out)),
+            Ok(is_out) => {
+                if is_out {
+                    self.matcher.mask(|row, masks| camera.mask(row, masks));
+                }
+                Ok(self.row().filter(|_| is_out))
+            }
             Err(e) => {
                 self.stop();
                 Err(e)
@@ -142,6 +147,12 @@ impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
     /// The row that came out last, until the next line goes in; `None` before the first of a frame.
     pub fn row(&self) -> Option<Row<'_>> {
         self.matcher.row()
+    }
+
+    /// Takes the answers of [`Self::row`] away where a camera did not see ([`Matcher::mask`]). [`Self::next_row`] asks the
+    /// camera itself; this is for who pushes lines that have such places.
+    pub fn mask(&mut self, valid: impl FnOnce(u16, [&mut [u8]; 2]) -> bool) {
+        self.matcher.mask(valid);
     }
 
     /// What the pipeline was started for; all zero before.

@@ -66,6 +66,12 @@ pub enum Fault {
         /// What follows, m.
         baseline_m: f64,
     },
+    /// A record of the core's is refused by it.
+    #[error("{0}")]
+    Record(stereopsis::geometry::RecordError),
+    /// Neither the file nor the caller says how large the images are.
+    #[error("does not say how large the images are; give --size, as 640x480")]
+    NoSize,
     /// The rig is refused by the core.
     #[error("{0}")]
     StereoRig(stereopsis::geometry::StereoRigError),

@@ -6,6 +6,7 @@
 //!
 //! * [`Cameras`]: the two cameras alone, which need not be rectified.
 //! * [`RawCalibration`]: two cameras as they are mounted, also from OpenCV's, ROS's and Kalibr's files.
+//! * [`describe`]: such a calibration in words. [`write_opencv`], [`write_rust`], [`write_c`]: as a file.
 //! * `middlebury`: `cam0=[f 0 cx; 0 f cy; 0 0 1]`, `cam1`, `doffs`, `baseline`, and optional sizes.
 //! * `kitti`: projection matrices of 12 numbers, labelled `P0:` to `P3:` or `P_rect_00:` to `P_rect_03:`, or two
 //!   lines without labels for left and right.
@@ -15,11 +16,15 @@ mod error;
 mod kitti;
 mod middlebury;
 mod raw;
+mod words;
+mod write;
 
 pub use cameras::Cameras;
 pub use error::{CalibrationError, Fault};
 pub use middlebury::write_middlebury;
 pub use raw::RawCalibration;
+pub use words::describe;
+pub use write::{write_c, write_opencv, write_rust};
 
 use std::fs::File;
 use std::io::Read;
@@ -50,12 +55,11 @@ impl Calibration {
     /// Reads the file at `path`. KITTI's files hold a grey and a colour pair of cameras: the components of
     /// `left_image`'s path choose, `image_0`, `image_1`, `image_00` or `image_01` the grey pair.
     pub fn open(path: impl AsRef<Path>, left_image: &Path) -> Result<Self, CalibrationError> {
-        Self::open_all(&[path.as_ref().into()], left_image, 1.0)
+        Self::open_all(&[path.as_ref().into()], left_image, None)
     }
 
-    /// The same of one file, or of two of ROS. Lengths of OpenCV's files are in units of `unit_m` metres; the other formats
-    /// say theirs.
-    pub fn open_all(paths: &[PathBuf], left_image: &Path, unit_m: f64) -> Result<Self, CalibrationError> {
+    /// The same of one file, or of two of ROS. The unit is as for [`RawCalibration::open`].
+    pub fn open_all(paths: &[PathBuf], left_image: &Path, unit_m: Option<f64>) -> Result<Self, CalibrationError> {
         let texts = load_all(paths)?;
         let path = paths.first().cloned().unwrap_or_default();
         match Self::parse(paths, &texts, left_image, unit_m) {
@@ -64,7 +68,7 @@ impl Calibration {
         }
     }
 
-    fn parse(paths: &[PathBuf], texts: &[String], left_image: &Path, unit_m: f64) -> Result<Self, Fault> {
+    fn parse(paths: &[PathBuf], texts: &[String], left_image: &Path, unit_m: Option<f64>) -> Result<Self, Fault> {
         if let Some(found) = raw::rectified_rig(paths, texts, unit_m)? {
             return Ok(found);
         }

@@ -9,6 +9,8 @@ pub struct MemoryPair {
     format: LineFormat,
     left: Vec<u8>,
     right: Vec<u8>,
+    /// What was seen of the pictures; all, when there are none.
+    masks: Option<[Vec<u8>; 2]>,
     frames: u32,
     row: u16,
 }
@@ -23,7 +25,12 @@ impl MemoryPair {
         for (left, right) in left.chunks_exact_mut(line.max(1)).zip(right.chunks_exact_mut(line.max(1))) {
             source.next_lines(left, right)?;
         }
-        Ok(Self { format, left, right, frames: 0, row: format.height })
+        let width = usize::from(format.width);
+        let [mut of_left, mut of_right] = [(); 2].map(|()| vec![1; width * lines]);
+        let rows = of_left.chunks_exact_mut(width.max(1)).zip(of_right.chunks_exact_mut(width.max(1)));
+        let has_masks = (0..format.height).zip(rows).all(|(row, (left, right))| source.mask(row, [left, right]));
+        let masks = has_masks.then_some([of_left, of_right]);
+        Ok(Self { format, left, right, masks, frames: 0, row: format.height })
     }
 
     /// Two grey pictures with `width` pixels in a row; `None` when they are not the same whole number of rows, or one
@@ -33,7 +40,7 @@ impl MemoryPair {
         let height = u16::try_from(rows).ok().filter(|&height| height > 0)?;
         let whole = left.len() == rows * usize::from(width) && right.len() == left.len();
         let format = LineFormat { width, height, pixel: PixelFormat::Grey8 };
-        whole.then_some(Self { format, left, right, frames: 0, row: height })
+        whole.then_some(Self { format, left, right, masks: None, frames: 0, row: height })
     }
 
     /// Some rows of both pictures.
@@ -45,8 +52,11 @@ impl MemoryPair {
         let line = self.format.line_bytes();
         let bytes = rows.start * line..rows.end * line;
         let format = LineFormat { height: rows.len() as u16, ..self.format };
+        let width = usize::from(format.width);
+        let pixels = rows.start * width..rows.end * width;
+        let masks = self.masks.as_ref().map(|masks| masks.each_ref().map(|mask| mask[pixels.clone()].to_vec()));
         let (left, right) = (self.left[bytes.clone()].to_vec(), self.right[bytes].to_vec());
-        Self { format, left, right, frames: 0, row: format.height }
+        Self { format, left, right, masks, frames: 0, row: format.height }
     }
 }
 
@@ -81,5 +91,14 @@ impl StereoSource for MemoryPair {
         right.get_mut(..needed).ok_or(too_short)?.copy_from_slice(&self.right[first..first + needed]);
         self.row += 1;
         Ok(LineStart { row: self.row - 1, timestamp_us: 0 })
+    }
+
+    fn mask(&self, row: u16, out: [&mut [u8]; 2]) -> bool {
+        let Some(masks) = &self.masks else { return false };
+        let width = usize::from(self.format.width);
+        for (out, mask) in out.into_iter().zip(masks) {
+            out.copy_from_slice(&mask[usize::from(row) * width..][..width]);
+        }
+        true
     }
 }

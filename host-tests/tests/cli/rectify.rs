@@ -191,3 +191,45 @@ fn options_and_places_that_are_wrong_are_named() {
     let run = stereo(with(&arguments, "--calib", &calib));
     assert!(run.status.success() && text(&run.stdout).contains("Middlebury calibration"), "{}", text(&run.stderr));
 }
+
+#[test]
+fn a_raw_pair_is_matched_in_one_loop() {
+    let bench = Bench::new();
+    raw(&bench);
+    let file = |name: &str| bench.path(name).display().to_string();
+    let (lower, calib) = (file("lower.png"), file("stereo.yml"));
+    let change = [("--right", lower.as_str()), ("--calib", calib.as_str()), ("--out", &file("raw"))];
+    let rectify = |change: &[(&str, &str)]| {
+        let mut arguments = bench.arguments(change);
+        arguments.push("--rectify".into());
+        arguments
+    };
+    let run = stereo(rectify(&change));
+    assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
+    assert!(text(&run.stdout).contains("camera       f 100.00 px, baseline 0.2000 m"), "{}", text(&run.stdout));
+    for name in ["depth.pfm", "rectified_left.png", "rectified_right.png", "rectified.json", "report.html"] {
+        assert!(names(&bench.path("raw")).contains(&name.to_owned()), "{name}");
+    }
+    // The background is 5 px away from itself. The left camera saw nothing of two rows above, the right one of two below.
+    let summary = std::fs::read(bench.path("raw/summary.json")).expect("a summary");
+    let summary: Value = serde_json::from_slice(&summary).expect("JSON");
+    assert!((summary["depth"]["found_m"]["median"].as_f64().expect("a depth") - 4.0).abs() < 0.1, "{summary}");
+    let flags = image::open(bench.path("raw/flags.png")).expect("flags").into_luma8();
+    let depth = image::open(bench.path("raw/depth.png")).expect("depths").into_luma16();
+    for (x, y, flags) in flags.enumerate_pixels() {
+        let is_seen = [y >= DOWN / 2, y < HEIGHT - DOWN / 2];
+        assert!(is_seen == [true; 2] || depth.get_pixel(x, y).0[0] == 0, "{x} {y}");
+        assert!(is_seen[0] || flags.0[0] == 1, "{x} {y} {}", flags.0[0]);
+    }
+    // A run without takes away what only this one wrote.
+    bench.matched(&[("--out", &file("raw"))]);
+    assert!(!names(&bench.path("raw")).contains(&"rectified.json".to_owned()));
+
+    bench.refused(&rectify(&[]), "--calib");
+    bench.refused(&bench.arguments(&[("--alpha", "0")]), "--alpha");
+    bench.refused(&bench.arguments(&[("--unit", "mm")]), "--unit");
+    let bad = bench.put("bad.yml", opencv().replacen("-0.2, 0.", "0.2, 0.", 1).as_bytes()).display().to_string();
+    bench.refused(&rectify(&[("--calib", &bad)]), "swapped");
+    let below = bench.put("below.yml", opencv().replacen("-0.2, 0.", "0., -0.2", 1).as_bytes()).display().to_string();
+    bench.refused(&rectify(&[("--calib", &below)]), "below each other");
+}

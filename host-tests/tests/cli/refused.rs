@@ -82,7 +82,10 @@ fn bad_options() {
     }
     bench.refused(&["bench", "--left", "a", "--right", "b", "--disparities", "64", "--repeat", "0"], "--repeat");
     bench.refused::<&str>(&[], "subcommand");
-    bench.refused(&["sharpen"], "the commands are demo, match, bench, rectify, features, focus, fundamental and pose");
+    bench.refused(
+        &["sharpen"],
+        "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental and pose",
+    );
     bench.refused(&bench.arguments(&[("--left", "two\nlines.png")]), "two\\nlines.png");
 }
 

@@ -6,13 +6,20 @@
 //! 2. `crop`: the camera that both rectified images are of.
 //! 3. [`Warp`]: where each rectified pixel comes from.
 //! 4. [`RectificationReport`]: what is left and what it costs.
+//! 5. [`RowMeter`]: while the cameras run, whether the rows still agree, and [`Rectification::corrected`] where they do not.
+//!
+//! [`UncalibratedRectification`]: the same from matches alone, without metric depth.
 
 mod align;
+mod alignment;
 mod crop;
 mod rectification;
 mod report;
+mod uncalibrated;
 mod warp;
 
+pub use alignment::{RowAlignment, RowHealth, RowMeter, RowMeterError};
 pub use rectification::{Axis, Crop, Rectification, RectifyError};
 pub use report::RectificationReport;
+pub use uncalibrated::{UncalibratedError, UncalibratedRectification};
 pub use warp::{Warp, WarpSource};

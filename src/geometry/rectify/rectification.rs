@@ -114,6 +114,11 @@ impl<T: Real> Rectification<T> {
         Ok(Self { warps, axis, camera, baseline_m: rig.baseline_m(), size })
     }
 
+    /// The same with other warps, into the same camera.
+    pub(super) fn with_warps(&self, warps: [Warp<T>; 2]) -> Self {
+        Self { warps, ..*self }
+    }
+
     /// The warps of the first and of the second camera.
     pub fn warps(&self) -> &[Warp<T>; 2] {
         &self.warps

@@ -141,4 +141,10 @@ impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> Stereo
         self.right.row(right, valid_right)?;
         Ok(LineStart { row, ..self.last })
     }
+
+    fn mask(&self, row: u16, [left, right]: [&mut [u8]; 2]) -> bool {
+        self.left.table().mask(row, left);
+        self.right.table().mask(row, right);
+        true
+    }
 }

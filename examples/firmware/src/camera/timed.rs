@@ -51,4 +51,8 @@ impl<C: StereoSource> StereoSource for Timed<'_, C> {
         self.ticks += self.clock.now() - start;
         line
     }
+
+    fn mask(&self, row: u16, masks: [&mut [u8]; 2]) -> bool {
+        self.camera.mask(row, masks)
+    }
 }

@@ -1,8 +1,12 @@
 //! The command line: options, their limits, help.
 
+mod calib;
+mod calibrate;
 mod rectify;
 
-pub use rectify::{RectifyArgs, Unit};
+pub use calib::{CalibArgs, CalibCommand, CheckArgs, ConvertArgs, FileArgs, Format};
+pub use calibrate::CalibrateArgs;
+pub use rectify::{RectifyArgs, RectifyOptions, Unit};
 
 use crate::failure::Failure;
 use crate::focus::{self, FocusArgs};
@@ -16,7 +20,8 @@ use stereopsis_host::command_line::usage_line;
 use stereopsis_host::run::{Method, NoiseChoice, UnknownMethod, UnknownNoise, Way};
 
 /// What is told to one who names another command.
-const COMMANDS: &str = "the commands are demo, match, bench, rectify, features, focus, fundamental and pose";
+const COMMANDS: &str =
+    "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental and pose";
 
 const EXAMPLES: &str = "Examples:
   stereo demo --out demo-out
@@ -28,11 +33,13 @@ The images of match and bench are a rectified pair; all are PNG, JPEG, PGM/PPM o
 
 const MATCH_EXAMPLE: &str = "Example:
   stereo match --left left.png --right right.png --disparities 64 --calib calib.txt --out out/scene
+  stereo match --left raw_left.png --right raw_right.png --disparities 64 --rectify --calib stereo.yml --out out/raw
 
 Written into the folder: disparity.pfm (px, infinity where there is no answer), disparity.png (16 bit, px x 256, 0 where \
 there is none), disparity_colour.png (near is bright), flags.png (a byte a pixel: 1 outside, 2 ceiling, 4 untextured, \
 8 ambiguous, 16 mismatch, 32 speckle, 64 filled), confidence.png (a byte a pixel: surer is more, 0 is no answer), summary.json and report.html; with --calib also depth.pfm (metres), depth.png \
-(16 bit, millimetres) and cloud.ply. The files appear together when all of them are complete.";
+(16 bit, millimetres) and cloud.ply; with --rectify also rectified_left.png, rectified_right.png and rectified.json, the \
+cameras of all the others. The files appear together when all of them are complete.";
 
 const BENCH_EXAMPLE: &str = "Example:
   stereo bench --left left.png --right right.png --disparities 64 --method fast --repeat 9
@@ -61,6 +68,12 @@ pub enum Command {
     /// Align the rows of an unrectified pair of images, by a calibration of the two cameras
     #[command(after_help = rectify::EXAMPLE)]
     Rectify(RectifyArgs),
+    /// Find two cameras, their lenses and where they stand from images of a chessboard
+    #[command(after_help = calibrate::EXAMPLE)]
+    Calibrate(CalibrateArgs),
+    /// Check a calibration file, or write it in another format
+    #[command(after_help = calib::EXAMPLE)]
+    Calib(CalibArgs),
     /// Estimate the fundamental matrix of two images from matches, some of them wrong
     #[command(after_help = FUNDAMENTAL_EXAMPLE)]
     Fundamental(FundamentalArgs),
@@ -92,9 +105,15 @@ pub struct MatchArgs {
     pub range: RangeArgs,
     #[command(flatten)]
     pub way: WayArgs,
-    /// Calibration of the pair, for depths: a Middlebury or KITTI calib.txt
+    /// Calibration of the pair, for depths: a Middlebury or KITTI calib.txt, what OpenCV or ROS (twice) say of rectified images,
+    /// or rectified.json; with --rectify how the cameras are mounted, as for the command rectify
     #[arg(long, value_name = "FILE")]
-    pub calib: Option<PathBuf>,
+    pub calib: Vec<PathBuf>,
+    /// Take the images raw, as the cameras give them, and rectify them line by line before they are matched
+    #[arg(long)]
+    pub rectify: bool,
+    #[command(flatten)]
+    pub options: RectifyOptions,
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,

@@ -2,10 +2,12 @@
 //!
 //! * `cli`, `two_view`: what is asked for. `failure`: what is said when it cannot be done.
 //! * `input`: the images and the search, checked against each other. `progress`: how far it is.
-//! * `matching`, `bench`, `demo`, `rectify`, `features`, `focus`, `fundamental`, `pose`: the commands. `files`, `place`: the
+//! * `matching`, `bench`, `demo`, `calibrate`, `calib`, `rectify`, `features`, `focus`, `fundamental`, `pose`: the commands. `files`, `place`: the
 //!   results as files.
 
 mod bench;
+mod calib;
+mod calibrate;
 mod cli;
 mod demo;
 mod failure;
@@ -46,6 +48,8 @@ fn start() -> Result<(), Failure> {
         Ok(Command::Fundamental(args)) => fundamental::run(&args),
         Ok(Command::Pose(args)) => pose::run(&args),
         Ok(Command::Rectify(args)) => rectify::run(&args),
+        Ok(Command::Calibrate(args)) => calibrate::run(&args),
+        Ok(Command::Calib(args)) => calib::run(&args),
         Ok(Command::Features(args)) => features::run(&args),
         Ok(Command::Focus(args)) => focus::run(&args),
         Err(cli::Stop::Help(text)) => print(&text),

@@ -1,62 +1,147 @@
-//! `stereo match`: a rectified pair into a folder of results.
+//! `stereo match`: a pair, rectified or raw, into a folder of results.
 
-use crate::cli::MatchArgs;
+use crate::cli::{MatchArgs, Unit};
 use crate::failure::Failure;
 use crate::input::{self, Pair};
 use crate::progress::Progress;
-use crate::{files, print};
-use std::fmt::Write;
+use crate::{files, print, rectify};
+use image::RgbImage;
+use std::fmt::{Display, Write};
 use std::path::Path;
+use stereopsis::camera::StereoSource;
 use stereopsis::depth::DepthScale;
+use stereopsis::geometry::ImageSize;
+use stereopsis::imaging::NoiseMeter;
 use stereopsis::matching::Config;
 use stereopsis_host::calibration::Calibration;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
+use stereopsis_host::rectify::{rectify_colours, with_rectified};
 use stereopsis_host::report::{Report, Summary};
-use stereopsis_host::run;
+use stereopsis_host::run::{self, Outcome};
+
+/// What is written only of raw images.
+const RECTIFIED: [&str; 3] = ["rectified_left.png", "rectified_right.png", "rectified.json"];
+
+/// What is matched, and what its depths are.
+struct Scene {
+    left: RgbImage,
+    right: RgbImage,
+    scale: Option<DepthScale>,
+    rectified: Option<rectify::Summary>,
+}
+
+/// What came of the matching.
+struct Matched {
+    config: Config,
+    meter: Option<NoiseMeter>,
+    outcome: Outcome,
+}
 
 pub fn run(args: &MatchArgs) -> Result<(), Failure> {
-    let calibration = args.calib.as_ref().map(|path| Calibration::open(path, &args.pair.left)).transpose()?;
     let mut pair = Pair::open(&args.pair)?;
     let config = input::config(&args.range, &args.way, pair.width, pair.height)?;
     let config = Config { confidence: true, ..config };
-    let scale = calibration.as_ref().map(|c| scale(c, pair.width, pair.height)).transpose()?;
-    Staging::probe(&args.out)?;
+    let (scene, matched) = if args.rectify {
+        raw(args, config, &mut pair)?
+    } else {
+        let scale = scale(args, &pair)?;
+        Staging::probe(&args.out)?;
+        let matched = matched(args, config, &mut pair.camera)?;
+        (Scene { left: pair.left, right: pair.right, scale, rectified: None }, matched)
+    };
 
-    let (config, meter) = input::with_noise(&args.way, config, &mut pair.camera)?;
-    let progress = Progress::over(&config);
-    let outcome = run::run(args.way.way(), &config, &mut pair.camera, |rows| progress.rows(rows))?;
-    drop(progress);
-
-    let summary = Summary::new(args.way.method, args.way.filter.name(), &config, &outcome, scale.as_ref(), None);
+    let Matched { config, meter, outcome } = matched;
+    let scale = scene.scale.as_ref();
+    let summary = Summary::new(args.way.method, args.way.filter.name(), &config, &outcome, scale, None);
     let summary = summary.with_noise(meter.as_ref());
     let report = Report {
         left_name: &name(&args.pair.left),
         right_name: &name(&args.pair.right),
-        left: &pair.left,
-        right: &pair.right,
+        left: &scene.left,
+        right: &scene.right,
         map: &outcome.map,
         summary: &summary,
-        rig: scale.as_ref().map(DepthScale::rig),
+        rig: scale.map(DepthScale::rig),
         truth: None,
     };
     let mut staging = Staging::new(&args.out)?;
-    files::write(&mut staging, &report, scale.as_ref())?;
-    staging.commit(&files::WITH_DEPTH)?;
+    files::write(&mut staging, &report, scale)?;
+    let [left, right, told] = RECTIFIED;
+    if let Some(rectified) = &scene.rectified {
+        staging.write(left, |out| files::png(out, &scene.left))?;
+        staging.write(right, |out| files::png(out, &scene.right))?;
+        staging.write(told, |out| files::json(out, rectified))?;
+    }
+    let stale: Vec<_> = files::WITH_DEPTH.into_iter().chain(RECTIFIED).collect();
+    staging.commit(&stale)?;
 
     let mut text = String::new();
     for note in &pair.notes {
         let _ = writeln!(text, "note: {}", one_line(note));
     }
     text += &figures(&summary);
+    if let Some(rectified) = &scene.rectified {
+        text += &rectified.figures();
+    }
     text += &place(&args.out);
     print(&text)
 }
 
-/// The scale of depths for images of that size.
-fn scale(calibration: &Calibration, width: u16, height: u16) -> Result<DepthScale, Failure> {
-    calibration.check_size(width, height)?;
-    DepthScale::new(&calibration.rig).map_err(|e| Failure::new(format!("{}: {e}", calibration.path.display())))
+fn matched<C: StereoSource<Error: Display>>(
+    args: &MatchArgs,
+    config: Config,
+    source: &mut C,
+) -> Result<Matched, Failure> {
+    let (config, meter) = input::with_noise(&args.way, config, source)?;
+    let progress = Progress::over(&config);
+    let outcome = run::run(args.way.way(), &config, source, |rows| progress.rows(rows));
+    let outcome = outcome.map_err(|e| Failure::new(e.to_string()))?;
+    Ok(Matched { config, meter, outcome })
+}
+
+/// Matches a raw pair: remap, census and matching in one loop over the rows.
+fn raw(args: &MatchArgs, config: Config, pair: &mut Pair) -> Result<(Scene, Matched), Failure> {
+    if args.calib.is_empty() {
+        return Err(Failure::new("--rectify: --calib is missing; give the calibration of the two cameras"));
+    }
+    let size = ImageSize { width: pair.width, height: pair.height };
+    let (calibration, rectification) = rectify::open(&args.calib, &args.options, size)?;
+    let named = |e: &dyn Display| Failure::new(format!("{}: {e}", calibration.path.display()));
+    if !rectification.axis().is_horizontal() {
+        return Err(named(&"the cameras stand below each other; match takes cameras beside each other"));
+    }
+    let rig = rectification.rig().map_err(|e| named(&e))?;
+    let scale = DepthScale::new(&rig).map_err(|e| named(&e))?;
+    Staging::probe(&args.out)?;
+    let (left, right) = rectify_colours(&rectification, &pair.left, &pair.right).map_err(|e| named(&e))?;
+    let (rows, matched) = with_rectified(&rectification, &mut pair.camera, |source| {
+        (source.remaps().map(|remap| remap.table().rows()), matched(args, config, source))
+    })
+    .map_err(|e| named(&e))?;
+    let told = rectify::Summary::new(calibration.format, &rectification, rows, &rectification.report());
+    Ok((Scene { left, right, scale: Some(scale), rectified: Some(told) }, matched?))
+}
+
+/// The scale of depths in images that are rectified already, where there is a calibration.
+fn scale(args: &MatchArgs, pair: &Pair) -> Result<Option<DepthScale>, Failure> {
+    if args.options.alpha.is_some() {
+        return Err(Failure::new("--alpha: is for raw images; give --rectify too"));
+    }
+    match args.calib.len() {
+        0 if args.options.unit.is_some() => return Err(Failure::new("--unit: is that of --calib, which is missing")),
+        0 => return Ok(None),
+        1 | 2 => {}
+        _ => {
+            return Err(Failure::new(
+                "--calib: is given more than twice; a file of both cameras or one of each is needed",
+            ));
+        }
+    }
+    let calibration = Calibration::open_all(&args.calib, &args.pair.left, args.options.unit.map(Unit::metres))?;
+    calibration.check_size(pair.width, pair.height)?;
+    let scale = DepthScale::new(&calibration.rig);
+    scale.map(Some).map_err(|e| Failure::new(format!("{}: {e}", calibration.path.display())))
 }
 
 /// The figures of a run in a few lines.

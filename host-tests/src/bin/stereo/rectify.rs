@@ -1,6 +1,6 @@
 //! `stereo rectify`: a raw pair and a calibration into a rectified pair.
 
-use crate::cli::{RectifyArgs, Unit};
+use crate::cli::{RectifyArgs, RectifyOptions, Unit};
 use crate::failure::Failure;
 use crate::files::{json, png};
 use crate::input::Pair;
@@ -8,15 +8,16 @@ use crate::print;
 use nalgebra::{DMatrix, Matrix3};
 use serde::Serialize;
 use std::fmt::Write;
+use std::path::PathBuf;
 use stereopsis::geometry::{Crop, ImageSize, Rectification, RectificationReport};
 use stereopsis_host::calibration::RawCalibration;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
-use stereopsis_host::rectify::{RectifiedPictures, rectify};
+use stereopsis_host::rectify::rectify;
 
 /// What `rectified.json` holds. Names are a contract with programs that read it.
 #[derive(Serialize)]
-struct Summary {
+pub struct Summary {
     /// The calibration's format.
     calibration: &'static str,
     /// `horizontal`: rows are aligned; `vertical`: columns.
@@ -55,18 +56,8 @@ struct Side {
 pub fn run(args: &RectifyArgs) -> Result<(), Failure> {
     let pair = Pair::open(&args.pair)?;
     let size = ImageSize { width: pair.width, height: pair.height };
-    let unit_m = match args.unit {
-        Unit::M => 1.0,
-        Unit::Cm => 0.01,
-        Unit::Mm => 0.001,
-    };
-    if args.calib.len() > 2 {
-        return Err(Failure::new("--calib: is given more than twice; a file of both cameras or one of each is needed"));
-    }
-    let calibration = RawCalibration::open(&args.calib, size, unit_m)?;
+    let (calibration, rectification) = open(&args.calib, &args.rectify, size)?;
     let named = |e: &dyn std::fmt::Display| Failure::new(format!("{}: {e}", calibration.path.display()));
-    let crop = args.alpha.map_or(Crop::Natural, Crop::Alpha);
-    let rectification = Rectification::new(&calibration.rig, crop, size).map_err(|e| named(&e))?;
     Staging::probe(&args.out)?;
     let result = rectify(&rectification, pair.camera).map_err(|e| named(&e))?;
     let report = rectification.report();
@@ -79,7 +70,7 @@ pub fn run(args: &RectifyArgs) -> Result<(), Failure> {
     {
         staging.write(name, |out| png(out, picture))?;
     }
-    let summary = summary(calibration.format, &rectification, &result, &report);
+    let summary = Summary::new(calibration.format, &rectification, result.rows, &report);
     staging.write("rectified.json", |out| json(out, &summary))?;
     staging.commit(&[])?;
 
@@ -88,50 +79,79 @@ pub fn run(args: &RectifyArgs) -> Result<(), Failure> {
         let _ = writeln!(text, "note: {}", one_line(note));
     }
     let _ = writeln!(text, "{} x {} px, {}, {} calibration", size.width, size.height, summary.axis, calibration.format);
-    let _ = writeln!(text, "camera       f {:.2} px, baseline {:.4} m", summary.focal_px, summary.baseline_m);
-    let _ = writeln!(text, "both see     {:.1} % of the image", 100.0 * summary.common);
-    let _ = writeln!(text, "rows held    {} left, {} right", summary.left.rows, summary.right.rows);
+    text += &summary.figures();
     let _ = writeln!(text, "results are in {}", one_line(&args.out.display().to_string()));
     print(&text)
 }
 
-fn summary(
-    calibration: &'static str,
-    rectification: &Rectification<f64>,
-    result: &RectifiedPictures,
-    report: &RectificationReport<f64>,
-) -> Summary {
-    let camera = rectification.camera();
-    let (focal_px, (cx, cy)) = (camera.focal_px().0, camera.principal_point());
-    let is_horizontal = rectification.axis().is_horizontal();
-    let side = |i: usize, away: f64| {
-        let mut projection = DMatrix::zeros(3, 4);
-        projection.view_mut((0, 0), (3, 3)).copy_from(&camera.matrix());
-        projection[(usize::from(!is_horizontal), 3)] = -focal_px * away;
-        let rotation: &Matrix3<f64> = rectification.warps()[i].rotation();
-        Side {
-            projection: rows_of(&projection),
-            rotation: rows_of(&DMatrix::from_fn(3, 3, |r, c| rotation[(r, c)])),
-            rows: result.rows[i],
-            seen: report.seen[i],
-            largest_warp_px: report.largest_warp_px[i],
+/// The rig of a calibration for images of that size, and its rectification.
+pub fn open(
+    calib: &[PathBuf],
+    options: &RectifyOptions,
+    size: ImageSize,
+) -> Result<(RawCalibration, Rectification<f64>), Failure> {
+    if calib.len() > 2 {
+        return Err(Failure::new("--calib: is given more than twice; a file of both cameras or one of each is needed"));
+    }
+    let calibration = RawCalibration::open(calib, Some(size), options.unit.map(Unit::metres))?;
+    let crop = options.alpha.map_or(Crop::Natural, Crop::Alpha);
+    let rectification = Rectification::new(&calibration.rig, crop, size)
+        .map_err(|e| Failure::new(format!("{}: {e}", calibration.path.display())))?;
+    Ok((calibration, rectification))
+}
+
+impl Summary {
+    /// The figures in a few lines.
+    pub fn figures(&self) -> String {
+        format!(
+            "camera       f {:.2} px, baseline {:.4} m\nboth see     {:.1} % of the image\n\
+             rows held    {} left, {} right\n",
+            self.focal_px,
+            self.baseline_m,
+            100.0 * self.common,
+            self.left.rows,
+            self.right.rows
+        )
+    }
+
+    pub fn new(
+        calibration: &'static str,
+        rectification: &Rectification<f64>,
+        rows: [u16; 2],
+        report: &RectificationReport<f64>,
+    ) -> Self {
+        let camera = rectification.camera();
+        let (focal_px, (cx, cy)) = (camera.focal_px().0, camera.principal_point());
+        let is_horizontal = rectification.axis().is_horizontal();
+        let side = |i: usize, away: f64| {
+            let mut projection = DMatrix::zeros(3, 4);
+            projection.view_mut((0, 0), (3, 3)).copy_from(&camera.matrix());
+            projection[(usize::from(!is_horizontal), 3)] = -focal_px * away;
+            let rotation: &Matrix3<f64> = rectification.warps()[i].rotation();
+            Side {
+                projection: rows_of(&projection),
+                rotation: rows_of(&DMatrix::from_fn(3, 3, |r, c| rotation[(r, c)])),
+                rows: rows[i],
+                seen: report.seen[i],
+                largest_warp_px: report.largest_warp_px[i],
+            }
+        };
+        let q = rectification.q();
+        Self {
+            calibration,
+            axis: if is_horizontal { "horizontal" } else { "vertical" },
+            width: rectification.size().width,
+            height: rectification.size().height,
+            focal_px,
+            cx,
+            cy,
+            baseline_m: rectification.baseline_m(),
+            q: rows_of(&DMatrix::from_fn(4, 4, |r, c| q[(r, c)])),
+            left: side(0, 0.0),
+            right: side(1, rectification.baseline_m()),
+            common: report.common,
+            field_of_view_deg: report.field_of_view_rad.map(f64::to_degrees),
         }
-    };
-    let q = rectification.q();
-    Summary {
-        calibration,
-        axis: if is_horizontal { "horizontal" } else { "vertical" },
-        width: rectification.size().width,
-        height: rectification.size().height,
-        focal_px,
-        cx,
-        cy,
-        baseline_m: rectification.baseline_m(),
-        q: rows_of(&DMatrix::from_fn(4, 4, |r, c| q[(r, c)])),
-        left: side(0, 0.0),
-        right: side(1, rectification.baseline_m()),
-        common: report.common,
-        field_of_view_deg: report.field_of_view_rad.map(f64::to_degrees),
     }
 }
 

@@ -18,9 +18,10 @@ const ROTATION_TOLERANCE: f64 = 1e-5;
 pub(in crate::calibration) fn read(
     paths: &[PathBuf],
     texts: &[String],
-    unit_m: f64,
+    told_m: Option<f64>,
 ) -> Result<Option<Calibration>, Fault> {
     let trees = trees(texts)?;
+    let unit_m = opencv::unit(&trees, told_m)?;
     if let [one, two] = trees.as_slice()
         && ros::is_one(one)
         && ros::is_one(two)
@@ -42,7 +43,7 @@ pub(in crate::calibration) fn read(
     if !trees.iter().any(super::is_tree) {
         return Ok(None);
     }
-    standing(find(paths, texts, unit_m)?).map(Some)
+    standing(find(paths, texts, told_m)?).map(Some)
 }
 
 /// `P = K [1 | t]`, the second with `-f b` in its fourth column.

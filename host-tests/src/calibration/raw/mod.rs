@@ -5,6 +5,7 @@
 //! * `opencv`: FileStorage as YAML, XML or JSON, with K1, D1, K2, D2, R and T by their usual names; `P' = R P + T`.
 //! * `ros`: a camera_info for each camera; where the second stands is in its rectification and projection matrices.
 //! * `kalibr`: a camchain with `cam0`, `cam1` and `T_cn_cnm1`, which carries a point of cam0 into cam1.
+//! * `record`: the core's own, as it stands in flash.
 //! * Middlebury's and KITTI's calib.txt, whose cameras are rectified.
 //!
 //! `tree` reads the first three's syntax; `aligned` reads what they say of rectified images, [`cameras`] of the cameras alone.
@@ -12,6 +13,7 @@
 mod aligned;
 mod kalibr;
 mod opencv;
+mod record;
 mod ros;
 mod tree;
 
@@ -49,24 +51,53 @@ struct Found {
 }
 
 impl RawCalibration {
-    /// Reads a rig for images of `images` px. Lengths of OpenCV's files are in units of `unit_m` metres; the other formats say
-    /// theirs.
-    pub fn open(paths: &[PathBuf], images: ImageSize, unit_m: f64) -> Result<Self, CalibrationError> {
+    /// Reads a rig for images of `images` px, or of the size that the file says where none is given. Lengths of OpenCV's files
+    /// are in units of `unit_m` metres where the file does not say `length_unit`, and in metres where neither does; the other
+    /// formats say theirs.
+    pub fn open(paths: &[PathBuf], images: Option<ImageSize>, unit_m: Option<f64>) -> Result<Self, CalibrationError> {
         let path = paths.first().cloned().unwrap_or_default();
+        if let [one] = paths
+            && let Some(record) = record::read(one)
+        {
+            let read = record.and_then(|rig| Self::checked(path.clone(), "record", rig, images, "the record"));
+            return read.map_err(|fault| CalibrationError { path: path.clone(), fault });
+        }
         let texts = load_all(paths)?;
         let read = || -> Result<Self, Fault> {
             let found = find(paths, &texts, unit_m)?;
-            for (which, side, image) in [("width", 0, images.width), ("height", 1, images.height)] {
-                if let Some(calibrated) = found.size.map(|size| size[side]).filter(|&c| c != u64::from(image)) {
-                    let calibrated = u16::try_from(calibrated).unwrap_or(u16::MAX);
-                    return Err(Fault::Size { which, calibrated, image });
+            let images = match (images, found.size) {
+                (Some(images), _) => images,
+                (None, Some([width, height])) => {
+                    let [width, height] = [width, height].map(|side| u16::try_from(side).unwrap_or(u16::MAX));
+                    ImageSize { width, height }
                 }
-            }
-            let rig = StereoRig::new(found.cameras, found.pose, [images; 2]).map_err(Fault::StereoRig)?;
-            likely(found.baseline_key, rig.baseline_m())?;
-            Ok(Self { path: path.clone(), format: found.format, rig })
+                (None, None) => return Err(Fault::NoSize),
+            };
+            let size = found.size.map_or(images, |size| {
+                let [width, height] = size.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
+                ImageSize { width, height }
+            });
+            let rig = StereoRig::new(found.cameras, found.pose, [size; 2]).map_err(Fault::StereoRig)?;
+            Self::checked(path.clone(), found.format, rig, Some(images), found.baseline_key)
         };
         read().map_err(|fault| CalibrationError { path: path.clone(), fault })
+    }
+
+    fn checked(
+        path: PathBuf,
+        format: &'static str,
+        rig: StereoRig<f64>,
+        images: Option<ImageSize>,
+        baseline_key: &'static str,
+    ) -> Result<Self, Fault> {
+        for (images, size) in images.iter().flat_map(|images| rig.sizes().map(|size| (images, size))) {
+            let sides = [("width", size.width, images.width), ("height", size.height, images.height)];
+            if let Some((which, calibrated, image)) = sides.into_iter().find(|(_, a, b)| a != b) {
+                return Err(Fault::Size { which, calibrated, image });
+            }
+        }
+        likely(baseline_key, rig.baseline_m())?;
+        Ok(Self { path, format, rig })
     }
 }
 
@@ -105,7 +136,7 @@ pub(super) fn cameras(texts: &[String]) -> Result<Option<[Camera<f64>; 2]>, Faul
     Ok(Some(both))
 }
 
-fn find(paths: &[PathBuf], texts: &[String], unit_m: f64) -> Result<Found, Fault> {
+fn find(paths: &[PathBuf], texts: &[String], unit_m: Option<f64>) -> Result<Found, Fault> {
     let mut trees = Vec::new();
     let mut fault = None;
     for (path, text) in paths.iter().zip(texts) {

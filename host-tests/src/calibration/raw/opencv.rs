@@ -79,13 +79,14 @@ pub(super) fn projection(tree: &Tree, side: usize) -> Option<(&str, &Value)> {
     (is_matrix && list(found.0, found.1).map_or(true, |numbers| numbers.len() == 12)).then_some(found)
 }
 
-pub(super) fn read(trees: &[Tree], unit_m: f64) -> Result<Found, Fault> {
+pub(super) fn read(trees: &[Tree], unit_m: Option<f64>) -> Result<Found, Fault> {
     let cameras = cameras(trees)?;
     let of_rig = |names: &[&str], key: &'static str, form| {
         trees.iter().find_map(|tree| plain(tree, names)).ok_or_else(|| Fault::Missing(key.into(), form))
     };
     let (r_key, r) = of_rig(&ROTATION, "R", "the 3x3 rotation from the first camera to the second")?;
     let (t_key, t) = of_rig(&TRANSLATION, "T", "the translation from the first camera to the second")?;
+    let unit_m = unit(trees, unit_m)?;
     let t = numbers::<3>(t_key, t)?.map(|x| x * unit_m);
     // Some programs write a rotation vector.
     let r = match list(r_key, r)?.as_slice() {
@@ -102,6 +103,24 @@ pub(super) fn read(trees: &[Tree], unit_m: f64) -> Result<Found, Fault> {
         size: trees.iter().find_map(sides).map(|(key, value)| size(key, &value)).transpose()?,
         baseline_key: "T",
     })
+}
+
+/// The unit of T, m: what the file says, or what is told, which must agree.
+pub(super) fn unit(trees: &[Tree], told_m: Option<f64>) -> Result<f64, Fault> {
+    let Some((key, value)) = trees.iter().find_map(|tree| plain(tree, &["lengthunit"])) else {
+        return Ok(told_m.unwrap_or(1.0));
+    };
+    let wrong = |problem: String| Err(Fault::Key { key: key.into(), problem });
+    let said_m = match value.as_str() {
+        Some("m") => 1.0,
+        Some("cm") => 0.01,
+        Some("mm") => 0.001,
+        _ => return wrong(format!("{value} is no unit; m, cm or mm is right")),
+    };
+    if told_m.is_some_and(|told| told != said_m) {
+        return wrong(format!("the file says {value}, --unit something else; leave --unit out"));
+    }
+    Ok(said_m)
 }
 
 /// A key of a camera: `K1`, `cameraMatrixLeft`, `left_camera_matrix`.

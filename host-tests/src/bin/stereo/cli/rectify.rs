@@ -19,15 +19,22 @@ pub struct RectifyArgs {
     /// ROS's camera_info, the left camera's and the right one's, or for OpenCV's intrinsics and extrinsics
     #[arg(long, value_name = "FILE", required = true)]
     pub calib: Vec<PathBuf>,
-    /// What is shown: from 0, nothing but what both cameras see, to 1, all of both images; by default at their own scale
-    #[arg(long, value_name = "ALPHA", value_parser = alpha, allow_negative_numbers = true)]
-    pub alpha: Option<f64>,
-    /// The unit of lengths in OpenCV's files
-    #[arg(long, value_name = "UNIT", default_value = "m")]
-    pub unit: Unit,
+    #[command(flatten)]
+    pub rectify: RectifyOptions,
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+}
+
+/// How rigs are rectified.
+#[derive(Debug, Args)]
+pub struct RectifyOptions {
+    /// What is shown: from 0, nothing but what both cameras see, to 1, all of both images; by default at their own scale
+    #[arg(long, value_name = "ALPHA", value_parser = alpha, allow_negative_numbers = true)]
+    pub alpha: Option<f64>,
+    /// The unit of lengths in OpenCV's files, which do not say it: m where none is given
+    #[arg(long, value_name = "UNIT")]
+    pub unit: Option<Unit>,
 }
 
 /// A unit of length.
@@ -36,6 +43,17 @@ pub enum Unit {
     M,
     Cm,
     Mm,
+}
+
+impl Unit {
+    /// The unit's length, m.
+    pub fn metres(self) -> f64 {
+        match self {
+            Self::M => 1.0,
+            Self::Cm => 0.01,
+            Self::Mm => 0.001,
+        }
+    }
 }
 
 fn alpha(text: &str) -> Result<f64, &'static str> {

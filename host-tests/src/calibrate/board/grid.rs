@@ -1,0 +1,172 @@
+//! Corners with whole coordinates.
+
+use super::Pattern;
+use super::corners::{self, Corner};
+use super::level::Level;
+use super::links::Links;
+use nalgebra::Point2;
+use std::collections::{BTreeMap, VecDeque};
+
+/// Steps along the four edges of a corner, clockwise on the screen.
+const STEPS: [(i32, i32); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
+
+/// A corner of a grid: where it is, and which of the corner's edges points along the grid's first axis.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    place: Point2<f64>,
+    /// Whether it is bright behind (clockwise of) the edge along the first axis.
+    is_bright: bool,
+}
+
+/// Corners that belong together, by column and row.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Grid {
+    nodes: BTreeMap<(i32, i32), Node>,
+}
+
+/// Corners of the pattern, row by row, and whether it is bright behind the first edge of the first one.
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    pub columns: usize,
+    pub rows: usize,
+    pub places: Vec<Point2<f64>>,
+    pub is_bright: bool,
+}
+
+/// All grids, the largest first.
+pub(super) fn grids(corners: &[Corner], links: &Links) -> Vec<Grid> {
+    let mut is_taken = vec![false; corners.len()];
+    let mut grids = Vec::new();
+    for first in 0..corners.len() {
+        if is_taken[first] || links[first].iter().flatten().count() < 2 {
+            continue;
+        }
+        let grid = grow(corners, links, first, &mut is_taken);
+        if grid.len() >= 6 {
+            grids.push(grid);
+        }
+    }
+    grids.sort_by_key(|grid| std::cmp::Reverse(grid.len()));
+    grids
+}
+
+/// From link to link.
+fn grow(corners: &[Corner], links: &Links, first: usize, is_taken: &mut [bool]) -> Grid {
+    let mut grid = Grid::default();
+    let mut waiting = VecDeque::from([(first, 0, (0, 0))]);
+    is_taken[first] = true;
+    while let Some((i, along, at)) = waiting.pop_front() {
+        grid.nodes.insert(at, Node { place: corners[i].place, is_bright: along % 2 == 0 });
+        for edge in 0..4 {
+            let Some((j, back)) = links[i][edge] else { continue };
+            let step = (edge + 4 - along) % 4;
+            let next = (at.0 + STEPS[step].0, at.1 + STEPS[step].1);
+            if is_taken[j] || grid.nodes.contains_key(&next) || waiting.iter().any(|w| w.2 == next) {
+                continue;
+            }
+            is_taken[j] = true;
+            // The edge that leads back points along the opposite step.
+            waiting.push_back((j, (back + 4 - (step + 2) % 4) % 4, next));
+        }
+    }
+    grid
+}
+
+impl Grid {
+    /// How many corners it has.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Puts corners in that links missed: where those beside them expect one, and one is seen.
+    pub fn complete(&mut self, level: &Level, corners: &[Corner]) {
+        for _ in 0..4 {
+            let mut found = Vec::new();
+            let beside = self.nodes.keys().flat_map(|at| STEPS.map(|step| (at.0 + step.0, at.1 + step.1)));
+            let gaps: std::collections::BTreeSet<_> = beside.filter(|at| !self.nodes.contains_key(at)).collect();
+            for at in gaps {
+                let Some((expected, spacing, is_bright)) = self.expected(at) else { continue };
+                let near = corners.iter().map(|c| c.place).filter(|p| (p - expected).norm() < 0.25 * spacing);
+                let nearest = near.min_by(|a, b| (a - expected).norm().total_cmp(&(b - expected).norm()));
+                // Within the grid a weak corner will do.
+                let is_within =
+                    STEPS.iter().filter(|s| self.nodes.contains_key(&(at.0 + s.0, at.1 + s.1))).count() >= 3;
+                let weak = || level.saddle(&expected, 0.2 * spacing).filter(|_| is_within);
+                let Some(place) = nearest.or_else(weak) else { continue };
+                let is_free = self.nodes.values().all(|node| (node.place - place).norm() > 0.4 * spacing);
+                let looks_right = corners::look(level, place).is_some_and(|corner| self.fits(at, &corner, is_bright));
+                if is_free && (looks_right || is_within) {
+                    found.push((at, Node { place, is_bright }));
+                }
+            }
+            if found.is_empty() {
+                break;
+            }
+            self.nodes.extend(found);
+        }
+    }
+
+    /// Where a corner is expected, of three in a row beside it on one side, or of those on both; with their spacing.
+    fn expected(&self, at: (i32, i32)) -> Option<(Point2<f64>, f64, bool)> {
+        let node = |step: (i32, i32), k: i32| self.nodes.get(&(at.0 + k * step.0, at.1 + k * step.1));
+        let mut places = Vec::new();
+        for step in STEPS {
+            if let (Some(a), Some(b)) = (node(step, 1), node(step, -1)) {
+                places.push((a.place + (b.place - a.place) / 2.0, (b.place - a.place).norm() / 2.0, !a.is_bright));
+            } else if let (Some(a), Some(b), Some(c)) = (node(step, 1), node(step, 2), node(step, 3)) {
+                // The steps change evenly.
+                let (first, second) = (a.place - b.place, b.place - c.place);
+                places.push((a.place + first + (first - second) * 0.8, first.norm(), !a.is_bright));
+            }
+        }
+        let count = places.len() as f64;
+        let (_, spacing, is_bright) = *places.first()?;
+        let sum = places.iter().fold(nalgebra::Vector2::zeros(), |sum, (place, ..)| sum + place.coords);
+        Some((Point2::from(sum / count), spacing, is_bright))
+    }
+
+    /// Whether a corner's edges point to the corners beside it, with bright and dark as they are there.
+    fn fits(&self, at: (i32, i32), corner: &Corner, is_bright: bool) -> bool {
+        STEPS.iter().enumerate().all(|(i, step)| {
+            let Some(node) = self.nodes.get(&(at.0 + step.0, at.1 + step.1)) else { return true };
+            let way = (node.place - corner.place).normalize();
+            let parity = (i + usize::from(!is_bright)) % 2;
+            (0..4).any(|edge| edge % 2 == parity && corner.edges[edge].dot(&way) > 0.85)
+        })
+    }
+
+    /// The block of the pattern's size, either way round; or `Err` of the size of a grid that has room for several, or of
+    /// nothing.
+    pub fn block(&self, pattern: Pattern) -> Result<Block, Option<(usize, usize)>> {
+        let (c, r) = (pattern.columns() as i32, pattern.rows() as i32);
+        let mut ways = vec![(c, r)];
+        if c != r {
+            ways.push((r, c));
+        }
+        let mut found = Vec::new();
+        for (columns, rows) in ways {
+            for &(x, y) in self.nodes.keys() {
+                let mut block = (0..rows).flat_map(|j| (0..columns).map(move |i| (x + i, y + j)));
+                if block.all(|at| self.nodes.contains_key(&at)) {
+                    found.push((x, y, columns, rows));
+                }
+            }
+        }
+        match found.as_slice() {
+            [] => Err(None),
+            [(x, y, columns, rows)] => {
+                let block = (0..*rows).flat_map(|j| (0..*columns).map(move |i| (x + i, y + j)));
+                let places = block.map(|at| self.nodes[&at].place).collect();
+                let is_bright = self.nodes[&(*x, *y)].is_bright;
+                Ok(Block { columns: *columns as usize, rows: *rows as usize, places, is_bright })
+            }
+            _ => {
+                let range = |of: fn(&(i32, i32)) -> i32| {
+                    let all = || self.nodes.keys().map(of);
+                    (all().max().unwrap_or(0) - all().min().unwrap_or(0) + 1) as usize
+                };
+                Err(Some((range(|at| at.0), range(|at| at.1))))
+            }
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! A picture at another size, smoothed.
+
+use image::GrayImage;
+use nalgebra::{Point2, Vector2};
+
+/// Brightness as numbers.
+#[derive(Clone, Debug)]
+pub(super) struct Level {
+    pub width: usize,
+    pub height: usize,
+    pixels: Vec<f32>,
+    scale: f64,
+}
+
+impl Level {
+    /// The picture at `scale`, smoothed with a deviation of one of the new pixels.
+    pub fn new(picture: &GrayImage, scale: f64) -> Self {
+        let mut level = Self {
+            width: picture.width() as usize,
+            height: picture.height() as usize,
+            pixels: picture.as_raw().iter().map(|&p| f32::from(p)).collect(),
+            scale: 1.0,
+        };
+        while level.scale > scale * 1.01 {
+            level = level.halved();
+        }
+        if scale > level.scale * 1.5 {
+            level = level.doubled();
+        }
+        level.smoothed()
+    }
+
+    /// The picture as it is.
+    pub fn raw(picture: &GrayImage) -> Self {
+        let (width, height) = (picture.width() as usize, picture.height() as usize);
+        Self { width, height, pixels: picture.as_raw().iter().map(|&p| f32::from(p)).collect(), scale: 1.0 }
+    }
+
+    /// Means of two by two.
+    fn halved(&self) -> Self {
+        let (width, height) = (self.width / 2, self.height / 2);
+        let pixels = (0..width * height).map(|i| {
+            let (x, y) = (2 * (i % width) as isize, 2 * (i / width) as isize);
+            (self.at(x, y) + self.at(x + 1, y) + self.at(x, y + 1) + self.at(x + 1, y + 1)) / 4.0
+        });
+        Self { width, height, pixels: pixels.collect(), scale: self.scale / 2.0 }
+    }
+
+    fn doubled(&self) -> Self {
+        let (width, height, scale) = (self.width * 2, self.height * 2, self.scale * 2.0);
+        let empty = Self { width, height, pixels: Vec::new(), scale };
+        let pixels = (0..width * height).map(|i| {
+            let here = Point2::new((i % width) as f64, (i / width) as f64);
+            let there = (here.coords.add_scalar(0.5)) / 2.0;
+            self.value(&Point2::from(there.add_scalar(-0.5)))
+        });
+        let pixels = pixels.collect();
+        Self { pixels, ..empty }
+    }
+
+    fn smoothed(self) -> Self {
+        // Of a Gaussian with deviation 1.
+        const WEIGHTS: [f32; 4] = [0.3991, 0.2420, 0.0540, 0.0045];
+        let along = |level: &Self, dx: isize, dy: isize| -> Vec<f32> {
+            let at = |i: usize| {
+                let (x, y) = ((i % level.width) as isize, (i / level.width) as isize);
+                let sides = (1_isize..4).map(|k| {
+                    let both = level.at(x + k * dx, y + k * dy) + level.at(x - k * dx, y - k * dy);
+                    both * WEIGHTS[k as usize]
+                });
+                level.at(x, y) * WEIGHTS[0] + sides.sum::<f32>()
+            };
+            (0..level.pixels.len()).map(at).collect()
+        };
+        let rows = Self { pixels: along(&self, 1, 0), ..self };
+        Self { pixels: along(&rows, 0, 1), ..rows }
+    }
+
+    /// A pixel, or the nearest one inside.
+    #[inline]
+    pub fn at(&self, x: isize, y: isize) -> f32 {
+        let x = x.clamp(0, self.width as isize - 1) as usize;
+        let y = y.clamp(0, self.height as isize - 1) as usize;
+        self.pixels[y * self.width + x]
+    }
+
+    /// Brightness between pixels.
+    pub fn value(&self, p: &Point2<f64>) -> f32 {
+        let (x, y) = (p.x.floor(), p.y.floor());
+        let (fx, fy) = ((p.x - x) as f32, (p.y - y) as f32);
+        let (x, y) = (x as isize, y as isize);
+        let top = self.at(x, y) * (1.0 - fx) + self.at(x + 1, y) * fx;
+        let bottom = self.at(x, y + 1) * (1.0 - fx) + self.at(x + 1, y + 1) * fx;
+        top * (1.0 - fy) + bottom * fy
+    }
+
+    /// Whether a place is so far inside.
+    pub fn is_inside(&self, p: &Point2<f64>, margin: f64) -> bool {
+        p.x >= margin
+            && p.y >= margin
+            && p.x <= (self.width - 1) as f64 - margin
+            && p.y <= (self.height - 1) as f64 - margin
+    }
+
+    /// Second derivatives xx, xy, yy at a pixel.
+    pub fn bends(&self, x: isize, y: isize) -> [f32; 3] {
+        let twice = 2.0 * self.at(x, y);
+        let xy = self.at(x + 1, y + 1) + self.at(x - 1, y - 1) - self.at(x + 1, y - 1) - self.at(x - 1, y + 1);
+        let xx = self.at(x + 1, y) + self.at(x - 1, y) - twice;
+        let yy = self.at(x, y + 1) + self.at(x, y - 1) - twice;
+        [xx, xy / 4.0, yy]
+    }
+
+    /// The saddle near a place, by Newton's method, at most `most` px away.
+    pub fn saddle(&self, from: &Point2<f64>, most: f64) -> Option<Point2<f64>> {
+        let mut place = *from;
+        for _ in 0..6 {
+            if !self.is_inside(&place, 1.0) {
+                return None;
+            }
+            let v = |dx: f64, dy: f64| f64::from(self.value(&Point2::new(place.x + dx, place.y + dy)));
+            let slope = Vector2::new(v(1.0, 0.0) - v(-1.0, 0.0), v(0.0, 1.0) - v(0.0, -1.0)) / 2.0;
+            let middle = 2.0 * v(0.0, 0.0);
+            let xx = v(1.0, 0.0) + v(-1.0, 0.0) - middle;
+            let yy = v(0.0, 1.0) + v(0.0, -1.0) - middle;
+            let xy = (v(1.0, 1.0) + v(-1.0, -1.0) - v(1.0, -1.0) - v(-1.0, 1.0)) / 4.0;
+            let determinant = xx * yy - xy * xy;
+            if determinant >= -1e-6 {
+                return None;
+            }
+            let step = -Vector2::new(yy * slope.x - xy * slope.y, xx * slope.y - xy * slope.x) / determinant;
+            place += step;
+            if (place - from).norm() > most {
+                return None;
+            }
+            if step.norm() < 0.02 {
+                break;
+            }
+        }
+        Some(place)
+    }
+
+    /// A place of this level in the picture: pixel centres are at integers in both.
+    pub fn to_picture(&self, p: &Point2<f64>) -> Point2<f64> {
+        Point2::from((p.coords.add_scalar(0.5) / self.scale).add_scalar(-0.5))
+    }
+}

@@ -1,0 +1,138 @@
+//! A chessboard's inner corners in a picture.
+//!
+//! In: a grey picture and a [`Pattern`]. Out: the corners in the board's order, to a small part of a pixel, or
+//! [`BoardError`]. In running order, at several sizes of the picture until the board is found at one:
+//!
+//! * `level`: the picture made smaller or larger, smoothed, with its derivatives.
+//! * `corners`: places where brightness is a saddle, and where two dark and two bright sectors meet.
+//! * `links`: corners that an edge joins, dark on the right side of it and bright on the other all along.
+//! * `grid`: corners with whole coordinates, from link to link; gaps filled, and the block that is the pattern.
+//! * `order`: which of its corners is the first.
+//! * `refine`: the corners again in the picture itself, where all gradients around point across them.
+
+mod corners;
+mod grid;
+mod level;
+mod links;
+mod order;
+mod refine;
+
+use image::GrayImage;
+use nalgebra::Point2;
+
+/// The inner corners of a chessboard: where four squares meet.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Pattern {
+    columns: usize,
+    rows: usize,
+}
+
+impl Pattern {
+    /// A pattern of so many inner corners along a row and down a column, 3 to 64 each; `None` of others.
+    pub fn new(columns: usize, rows: usize) -> Option<Self> {
+        let is_one = |n: usize| (3..=64).contains(&n);
+        (is_one(columns) && is_one(rows)).then_some(Self { columns, rows })
+    }
+
+    /// Corners along a row.
+    pub fn columns(self) -> usize {
+        self.columns
+    }
+
+    /// Corners down a column.
+    pub fn rows(self) -> usize {
+        self.rows
+    }
+
+    /// All of them.
+    pub fn corners(self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// Where the corners are on the board, in squares, row by row.
+    pub fn places(self) -> impl Iterator<Item = Point2<f64>> {
+        (0..self.rows).flat_map(move |y| (0..self.columns).map(move |x| Point2::new(x as f64, y as f64)))
+    }
+
+    /// Whether the board looks the same when it is turned by half a turn: then its first corner cannot be told from its last.
+    pub fn is_ambiguous(self) -> bool {
+        (self.columns + self.rows).is_multiple_of(2)
+    }
+}
+
+/// A board in a picture.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Board {
+    /// The corners in the order of [`Pattern::places`], px. The order is right-handed, seen from the camera.
+    pub corners: Vec<Point2<f64>>,
+}
+
+/// Why there is no board.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BoardError {
+    /// No corners that belong together, or far fewer than the pattern has.
+    #[error("no board with {} x {} inner corners is seen; the most that belong together are {most}", pattern.columns, pattern.rows)]
+    NotFound {
+        /// What was looked for.
+        pattern: Pattern,
+        /// The largest grid's corners.
+        most: usize,
+    },
+    /// A grid that holds the pattern in more than one place.
+    #[error(
+        "the board has more inner corners than the pattern, up to {columns} x {rows}; give the pattern as the board is"
+    )]
+    Larger {
+        /// Corners along the grid.
+        columns: usize,
+        /// Corners down the grid.
+        rows: usize,
+    },
+}
+
+/// The largest side of a picture that is searched at once, px: more makes the search slow and no surer.
+const LARGEST: u32 = 1100;
+
+/// Finds the board. Of a pattern that [is ambiguous](Pattern::is_ambiguous) the first row points to the right, or as it does in
+/// `like`, another camera's picture of the same moment.
+pub fn find(picture: &GrayImage, pattern: Pattern, like: Option<&Board>) -> Result<Board, BoardError> {
+    let side = picture.width().max(picture.height());
+    let mut base = 1.0;
+    while f64::from(side) * base > f64::from(LARGEST) {
+        base /= 2.0;
+    }
+    let (mut most, mut larger) = (0, None);
+    for scale in [1.0, 0.5, 2.0, 0.25, 0.125] {
+        let scale = scale * base;
+        if scale > 2.0 || f64::from(side) * scale < 60.0 || f64::from(side) * scale > 2.0 * f64::from(LARGEST) {
+            continue;
+        }
+        let level = level::Level::new(picture, scale);
+        let corners = corners::find(&level);
+        let links = links::links(&level, &corners);
+        for mut grid in grid::grids(&corners, &links) {
+            // Corners that links missed are looked for where they are needed.
+            let found = match grid.block(pattern) {
+                Err(None) => {
+                    grid.complete(&level, &corners);
+                    grid.block(pattern)
+                }
+                found => found,
+            };
+            most = most.max(grid.len());
+            match found {
+                Ok(block) => {
+                    let found = order::order(&block, pattern, like);
+                    let places = found.into_iter().map(|p| level.to_picture(&p)).collect();
+                    if let Some(corners) = refine::refine(picture, pattern, places) {
+                        return Ok(Board { corners });
+                    }
+                }
+                Err(Some((columns, rows))) => larger = Some(BoardError::Larger { columns, rows }),
+                Err(None) => {}
+            }
+        }
+    }
+    Err(larger.unwrap_or(BoardError::NotFound { pattern, most }))
+}

@@ -1,0 +1,248 @@
+//! The least sum of squares of re-projection errors.
+
+use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3, Point2, Point3, Rotation3, Vector2, Vector3};
+use stereopsis::geometry::Distortion;
+
+/// Parameters of a camera: fx, fy, cx, cy, k1, k2, p1, p2, k3.
+pub(super) const INNER: usize = 9;
+/// Of a pose: a small turn and a way.
+const OUTER: usize = 6;
+
+/// What a camera is made of, in the order of its parameters.
+pub(super) type Inner = [f64; INNER];
+
+/// From one frame to another: `P' = R P + t`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Outer {
+    pub r: Matrix3<f64>,
+    pub t: Vector3<f64>,
+}
+
+impl Outer {
+    pub const fn new(r: Matrix3<f64>, t: Vector3<f64>) -> Self {
+        Self { r, t }
+    }
+
+    fn apply(&self, p: &Vector3<f64>) -> Vector3<f64> {
+        self.r * p + self.t
+    }
+
+    /// Turned by a small rotation, and moved.
+    fn moved(&self, step: &[f64]) -> Self {
+        let turn = Rotation3::new(Vector3::new(step[0], step[1], step[2]));
+        let mut r = Rotation3::from_matrix_unchecked(turn.matrix() * self.r);
+        r.renormalize();
+        Self { r: r.into_inner(), t: self.t + Vector3::new(step[3], step[4], step[5]) }
+    }
+}
+
+/// One camera's corners of each view, or two cameras', with what is to be found.
+#[derive(Clone, Debug)]
+pub(super) struct Bundle<'a> {
+    /// The board's corners; their unit is that of all lengths.
+    pub board: &'a [Point3<f64>],
+    /// For each camera the corners of each view.
+    pub seen: Vec<Vec<&'a [Point2<f64>]>>,
+    /// Each camera.
+    pub inner: Vec<Inner>,
+    /// From the first camera to the second.
+    pub beside: Outer,
+    /// From the board to the first camera, of each view.
+    pub views: Vec<Outer>,
+    /// Which parameters of a camera are to be found; the others stay.
+    pub free: [bool; INNER],
+}
+
+/// J^T J and J^T r.
+struct Normal {
+    matrix: DMatrix<f64>,
+    vector: DVector<f64>,
+    cost: f64,
+}
+
+/// A place in the picture, and its derivatives by the camera's parameters and by the point in the camera's frame.
+struct Projected {
+    place: Vector2<f64>,
+    by_inner: [Vector2<f64>; INNER],
+    by_point: Matrix2x3<f64>,
+}
+
+/// Where a camera sees a point of its frame; `None` behind it.
+fn project(inner: &Inner, p: &Vector3<f64>) -> Option<Projected> {
+    if p.z <= 1e-6 {
+        return None;
+    }
+    let [fx, fy, cx, cy, k1, k2, p1, p2, k3] = *inner;
+    let plane = Vector2::new(p.x / p.z, p.y / p.z);
+    let (x, y) = (plane.x, plane.y);
+    let (d, slope) = Distortion::from_opencv([k1, k2, p1, p2, k3]).distort_with_derivative(&plane);
+    let r2 = plane.norm_squared();
+    let f = Vector2::new(fx, fy);
+    let radial = plane.component_mul(&f);
+    let by_inner = [
+        Vector2::new(d.x, 0.0),
+        Vector2::new(0.0, d.y),
+        Vector2::x(),
+        Vector2::y(),
+        radial * r2,
+        radial * r2 * r2,
+        Vector2::new(2.0 * x * y, r2 + 2.0 * y * y).component_mul(&f),
+        Vector2::new(r2 + 2.0 * x * x, 2.0 * x * y).component_mul(&f),
+        radial * r2 * r2 * r2,
+    ];
+    let by_z = 1.0 / p.z;
+    let to_plane = Matrix2x3::new(by_z, 0.0, -x * by_z, 0.0, by_z, -y * by_z);
+    let mut by_point = slope * to_plane;
+    by_point.row_mut(0).scale_mut(fx);
+    by_point.row_mut(1).scale_mut(fy);
+    Some(Projected { place: Vector2::new(fx * d.x + cx, fy * d.y + cy), by_inner, by_point })
+}
+
+/// Derivatives of a point by the small turn of the vector that was turned, and by the way: two rows, six columns.
+fn by_outer(by_point: &Matrix2x3<f64>, turned: &Vector3<f64>) -> [Vector2<f64>; OUTER] {
+    let by_turn = by_point * -turned.cross_matrix();
+    std::array::from_fn(|i| if i < 3 { by_turn.column(i).into() } else { by_point.column(i - 3).into() })
+}
+
+impl Bundle<'_> {
+    fn cameras(&self) -> usize {
+        self.inner.len()
+    }
+
+    fn beside_at(&self) -> usize {
+        self.cameras() * INNER
+    }
+
+    fn view_at(&self, view: usize) -> usize {
+        self.beside_at() + if self.cameras() > 1 { OUTER } else { 0 } + view * OUTER
+    }
+
+    fn parameters(&self) -> usize {
+        self.view_at(self.views.len())
+    }
+
+    /// Corner by corner what is seen less what is expected, px; `None` where a point is behind a camera.
+    pub fn residuals(&self, camera: usize, view: usize) -> Option<Vec<Vector2<f64>>> {
+        let (seen, pose) = (self.seen[camera][view], &self.views[view]);
+        let residual = |(board, seen): (&Point3<f64>, &Point2<f64>)| {
+            let mut point = pose.apply(&board.coords);
+            if camera > 0 {
+                point = self.beside.apply(&point);
+            }
+            Some(seen.coords - project(&self.inner[camera], &point)?.place)
+        };
+        self.board.iter().zip(seen).map(residual).collect()
+    }
+
+    /// The sum of squares, px^2; endless where a point is behind a camera.
+    pub fn cost(&self) -> f64 {
+        let all = (0..self.cameras()).flat_map(|camera| (0..self.views.len()).map(move |view| (camera, view)));
+        let sums = all.map(|(camera, view)| {
+            self.residuals(camera, view).map(|r| r.iter().map(Vector2::norm_squared).sum::<f64>())
+        });
+        sums.sum::<Option<f64>>().filter(|cost| cost.is_finite()).unwrap_or(f64::INFINITY)
+    }
+
+    fn normal(&self) -> Option<Normal> {
+        let n = self.parameters();
+        let mut normal = Normal { matrix: DMatrix::zeros(n, n), vector: DVector::zeros(n), cost: 0.0 };
+        let mut columns: Vec<(usize, Vector2<f64>)> = Vec::with_capacity(INNER + 2 * OUTER);
+        for (camera, inner) in self.inner.iter().enumerate() {
+            for (view, pose) in self.views.iter().enumerate() {
+                for (board, seen) in self.board.iter().zip(self.seen[camera][view]) {
+                    let turned = pose.r * board.coords;
+                    let first = turned + pose.t;
+                    columns.clear();
+                    let projected = if camera == 0 {
+                        let projected = project(inner, &first)?;
+                        let of_view = by_outer(&projected.by_point, &turned);
+                        columns.extend(of_view.into_iter().enumerate().map(|(i, c)| (self.view_at(view) + i, c)));
+                        projected
+                    } else {
+                        let again = self.beside.r * first;
+                        let projected = project(inner, &(again + self.beside.t))?;
+                        let of_beside = by_outer(&projected.by_point, &again);
+                        columns.extend(of_beside.into_iter().enumerate().map(|(i, c)| (self.beside_at() + i, c)));
+                        let of_view = by_outer(&(projected.by_point * self.beside.r), &turned);
+                        columns.extend(of_view.into_iter().enumerate().map(|(i, c)| (self.view_at(view) + i, c)));
+                        projected
+                    };
+                    let of_inner = projected.by_inner.into_iter().enumerate().filter(|(i, _)| self.free[*i]);
+                    columns.extend(of_inner.map(|(i, c)| (camera * INNER + i, c)));
+                    let residual = seen.coords - projected.place;
+                    normal.cost += residual.norm_squared();
+                    for (a, column) in &columns {
+                        normal.vector[*a] += column.dot(&residual);
+                        for (b, other) in &columns {
+                            normal.matrix[(*a, *b)] += column.dot(other);
+                        }
+                    }
+                }
+            }
+        }
+        // What is not free stays.
+        for i in 0..n {
+            if normal.matrix[(i, i)] == 0.0 {
+                normal.matrix[(i, i)] = 1.0;
+            }
+        }
+        normal.cost.is_finite().then_some(normal)
+    }
+
+    fn moved(&self, step: &DVector<f64>) -> Self {
+        let mut moved = self.clone();
+        let step = step.as_slice();
+        for (camera, inner) in moved.inner.iter_mut().enumerate() {
+            inner.iter_mut().zip(&step[camera * INNER..]).for_each(|(p, s)| *p += s);
+        }
+        if self.cameras() > 1 {
+            moved.beside = self.beside.moved(&step[self.beside_at()..]);
+        }
+        for (view, pose) in moved.views.iter_mut().enumerate() {
+            *pose = pose.moved(&step[self.view_at(view)..]);
+        }
+        moved
+    }
+
+    /// Levenberg and Marquardt's method, at most `most` steps; returns the cost, px^2, endless if there is none.
+    pub fn minimise(&mut self, most: usize) -> f64 {
+        let mut damping = 1e-3;
+        let Some(mut normal) = self.normal() else { return f64::INFINITY };
+        for _ in 0..most {
+            let mut matrix = normal.matrix.clone();
+            (0..matrix.nrows()).for_each(|i| matrix[(i, i)] *= 1.0 + damping);
+            let step = matrix.cholesky().map(|factors| factors.solve(&normal.vector));
+            let next = step.map(|step| self.moved(&step));
+            let is_camera = |bundle: &Self| bundle.inner.iter().all(|inner| inner[0] > 1.0 && inner[1] > 1.0);
+            let better = next.filter(is_camera).map(|next| (next.cost(), next)).filter(|(cost, _)| *cost < normal.cost);
+            let Some((cost, next)) = better else {
+                damping *= 8.0;
+                if damping > 1e12 {
+                    break;
+                }
+                continue;
+            };
+            let gained = (normal.cost - cost) / normal.cost.max(1e-300);
+            *self = next;
+            damping = (damping / 5.0).max(1e-12);
+            if gained < 1e-12 {
+                return cost;
+            }
+            match self.normal() {
+                Some(new) => normal = new,
+                None => return cost,
+            }
+        }
+        normal.cost
+    }
+
+    /// Standard deviations of the cameras' parameters, and of the pose between them, from the residuals.
+    pub fn deviations(&self) -> Option<Vec<f64>> {
+        let normal = self.normal()?;
+        let seen = 2 * self.seen.iter().flatten().map(|corners| corners.len()).sum::<usize>();
+        let free = self.parameters() - self.cameras() * self.free.iter().filter(|free| !**free).count();
+        let variance = normal.cost / (seen.checked_sub(free)?.max(1)) as f64;
+        let inverse = normal.matrix.cholesky()?.inverse();
+        Some((0..self.view_at(0)).map(|i| (inverse[(i, i)] * variance).sqrt()).collect())
+    }
+}

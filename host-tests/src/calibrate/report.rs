@@ -1,0 +1,67 @@
+//! The residuals of a calibration, drawn.
+
+use super::{Calibrated, View, ViewFigures};
+use crate::matches_picture::{line, side_by_side, square};
+use image::{Rgb, RgbImage};
+use std::fmt::Write;
+
+/// How many times longer than they are residuals are drawn.
+pub const LONGER: f64 = 50.0;
+
+const CORNER: Rgb<u8> = Rgb([80, 200, 255]);
+const RESIDUAL: Rgb<u8> = Rgb([255, 160, 40]);
+
+/// Both pictures of a view, half as bright: a square at every corner, and from it a line to where the corner would be were its
+/// residual [`LONGER`] times as long.
+pub fn picture(left: &RgbImage, right: &RgbImage, view: &View, figures: &ViewFigures) -> RgbImage {
+    let (mut picture, beside) = side_by_side(left, right);
+    for (camera, begin) in [(0, 0), (1, beside)] {
+        for (corner, residual) in view.corners[camera].iter().zip(&figures.residuals[camera]) {
+            let end = corner + LONGER * residual;
+            let [from, to] = [corner, &end].map(|p| [(p.x + f64::from(begin)) as f32, p.y as f32]);
+            line(&mut picture, from, to, RESIDUAL);
+            square(&mut picture, from, CORNER);
+        }
+    }
+    picture
+}
+
+/// One page over all views: `names` are the left and the right picture's, `files` those of the drawings.
+pub fn page(found: &Calibrated, names: &[[String; 2]], files: &[String]) -> String {
+    let escape =
+        |text: &str| text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;");
+    let mut text = format!(
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Calibration</title><style>\n{}</style></head>\
+         <body>\n<h1>Calibration from {} views</h1>\n<p>Re-projection error {:.3} px (root mean square of all corners); the left \
+         camera by itself {:.3} px, the right one {:.3} px. Residuals are drawn {LONGER} times as long as they are.</p>\n",
+        include_str!("../report/style.css"),
+        found.views.len(),
+        found.rms_px,
+        found.alone_px[0],
+        found.alone_px[1],
+    );
+    text +=
+        "<table><tr><th>left</th><th>right</th><th>left, px</th><th>right, px</th><th>distance, m</th><th></th></tr>\n";
+    let outliers = found.outliers();
+    for (i, (view, [left, right])) in found.views.iter().zip(names).enumerate() {
+        let remark = if outliers.contains(&i) { "fits badly" } else { "" };
+        let _ = writeln!(
+            text,
+            "<tr><td>{}</td><td>{}</td><td>{:.3}</td><td>{:.3}</td><td>{:.3}</td><td>{remark}</td></tr>",
+            escape(left),
+            escape(right),
+            view.rms_px[0],
+            view.rms_px[1],
+            view.distance_m
+        );
+    }
+    text += "</table>\n";
+    for (file, [left, right]) in files.iter().zip(names) {
+        let (file, left, right) = (escape(file), escape(left), escape(right));
+        let _ = writeln!(
+            text,
+            "<figure><img src=\"{file}\" alt=\"residuals of {left} and {right}\"><figcaption>{left}, {right}</figcaption></figure>"
+        );
+    }
+    text + "</body></html>\n"
+}

@@ -1,0 +1,195 @@
+//! From corners to a rig.
+
+use super::board::Pattern;
+use super::bundle::{Bundle, INNER, Inner, Outer};
+use super::start;
+use nalgebra::{Matrix3, Point2, Point3, Rotation3, Vector2, Vector3};
+use stereopsis::geometry::{Camera, Distortion, ImageSize, StereoRig, StereoRigError};
+
+/// The corners of one board in both pictures of a moment, in the order of [`Pattern::places`], px.
+#[derive(Clone, PartialEq, Debug)]
+pub struct View {
+    /// In the left and in the right picture.
+    pub corners: [Vec<Point2<f64>>; 2],
+}
+
+/// What is left of a view.
+#[derive(Clone, PartialEq, Debug)]
+pub struct ViewFigures {
+    /// For the left and the right picture, corner by corner what is seen less what is expected, px.
+    pub residuals: [Vec<Vector2<f64>>; 2],
+    /// Their root mean square, of each picture, px.
+    pub rms_px: [f64; 2],
+    /// How far away the middle of the board was, m.
+    pub distance_m: f64,
+}
+
+/// A rig from views of a board.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Calibrated {
+    /// The rig, metres.
+    pub rig: StereoRig<f64>,
+    /// The root mean square of all residuals, px: as OpenCV counts it, of points and not of coordinates.
+    pub rms_px: f64,
+    /// The same of each camera when it is found by itself: where both together are much worse, the pictures of a pair are not of
+    /// one moment, or the cameras moved against each other.
+    pub alone_px: [f64; 2],
+    /// Of each view.
+    pub views: Vec<ViewFigures>,
+    /// Standard deviation of the focal length of each camera, px, the greater of fx and fy.
+    pub focal_sigma_px: [f64; 2],
+    /// Standard deviation of the baseline, m.
+    pub baseline_sigma_m: f64,
+}
+
+/// Why there is no rig.
+#[derive(Clone, Copy, PartialEq, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SolveError {
+    /// Too few views.
+    #[error(
+        "{views} views are too few; at least {} with the board turned each time are needed",
+        Calibrated::LEAST_VIEWS
+    )]
+    TooFew {
+        /// How many there are.
+        views: usize,
+    },
+    /// No camera explains what the left or the right one saw.
+    #[error("the {0} camera cannot be found from these views; turn the board more, about two axes, in some of them")]
+    Camera(&'static str),
+    /// The result is no rig.
+    #[error("{0}")]
+    Rig(StereoRigError),
+}
+
+impl Calibrated {
+    /// The fewest views.
+    pub const LEAST_VIEWS: usize = 3;
+
+    /// Views that fit much worse than most: over two and a half times the middle one, and by more than a tenth of a pixel.
+    pub fn outliers(&self) -> Vec<usize> {
+        let worst = |view: &ViewFigures| view.rms_px[0].max(view.rms_px[1]);
+        let middle = self.middle_rms_px();
+        let is_out = |view: &ViewFigures| worst(view) > 2.5 * middle && worst(view) > middle + 0.1;
+        (0..self.views.len()).filter(|&i| is_out(&self.views[i])).collect()
+    }
+
+    /// What the middle one of the views has, the worse of its pictures, px.
+    pub fn middle_rms_px(&self) -> f64 {
+        let mut all: Vec<_> = self.views.iter().map(|view| view.rms_px[0].max(view.rms_px[1])).collect();
+        all.sort_by(f64::total_cmp);
+        all.get(all.len() / 2).copied().unwrap_or(0.0)
+    }
+}
+
+/// Finds the rig that explains the views best: k1, k2, p1, p2, k3 of each camera, and the pose between them.
+///
+/// # Panics
+///
+/// When a view has not the pattern's corners.
+pub fn solve(pattern: Pattern, square_m: f64, size: ImageSize, views: &[View]) -> Result<Calibrated, SolveError> {
+    assert!(views.iter().flat_map(|v| &v.corners).all(|c| c.len() == pattern.corners()), "corners of the pattern");
+    if views.len() < Calibrated::LEAST_VIEWS {
+        return Err(SolveError::TooFew { views: views.len() });
+    }
+    let board: Vec<Point3<f64>> = pattern.places().map(|p| Point3::new(p.x, p.y, 0.0)).collect();
+    let seen: [Vec<&[Point2<f64>]>; 2] = [0, 1].map(|i| views.iter().map(|v| v.corners[i].as_slice()).collect());
+    let [first, second] =
+        [(0, "left"), (1, "right")].map(|(i, name)| alone(&board, &seen[i], size).ok_or(SolveError::Camera(name)));
+    let (first, second) = (first?, second?);
+    let rms = |cost: f64, cameras: usize| (cost / (cameras * views.len() * board.len()) as f64).sqrt();
+    let alone_px = [rms(first.cost(), 1), rms(second.cost(), 1)];
+
+    let mut both = Bundle {
+        board: &board,
+        seen: seen.into(),
+        inner: vec![first.inner[0], second.inner[0]],
+        beside: between(&first, &second).ok_or(SolveError::Camera("right"))?,
+        views: first.views,
+        free: [true; INNER],
+    };
+    let cost = both.minimise(200);
+    if !cost.is_finite() {
+        return Err(SolveError::Camera("right"));
+    }
+    result(&both, square_m, size, alone_px).map_err(SolveError::Rig)
+}
+
+fn result(both: &Bundle<'_>, square_m: f64, size: ImageSize, alone_px: [f64; 2]) -> Result<Calibrated, StereoRigError> {
+    let camera = |inner: &Inner| {
+        let [fx, fy, cx, cy, k1, k2, p1, p2, k3] = *inner;
+        Camera::new(fx, fy, cx, cy).and_then(|c| c.with_distortion(Distortion::from_opencv([k1, k2, p1, p2, k3])))
+    };
+    let cameras = [camera(&both.inner[0]), camera(&both.inner[1])];
+    let [Ok(left), Ok(right)] = cameras else { return Err(StereoRigError::NoBaseline) };
+    let rig = StereoRig::from_opencv([left, right], both.beside.r, both.beside.t * square_m, [size; 2])?;
+    let root = |residuals: &[Vector2<f64>]| {
+        (residuals.iter().map(Vector2::norm_squared).sum::<f64>() / residuals.len().max(1) as f64).sqrt()
+    };
+    let middle = both.board.iter().fold(Vector3::zeros(), |sum, p| sum + p.coords) / both.board.len() as f64;
+    let views = (0..both.views.len()).map(|view| {
+        let residuals = [0, 1].map(|camera| both.residuals(camera, view).unwrap_or_default());
+        let pose = &both.views[view];
+        let distance_m = (pose.r * middle + pose.t).norm() * square_m;
+        ViewFigures { rms_px: residuals.each_ref().map(|r| root(r)), residuals, distance_m }
+    });
+    let views: Vec<_> = views.collect();
+    let all: Vec<_> = views.iter().flat_map(|view| view.residuals.iter().flatten().copied()).collect();
+    let sigma = both.deviations().unwrap_or_else(|| vec![f64::INFINITY; 2 * INNER + 6]);
+    let focal = |camera: usize| sigma[camera * INNER].max(sigma[camera * INNER + 1]);
+    let along = both.beside.t.normalize();
+    let way = Vector3::new(sigma[2 * INNER + 3], sigma[2 * INNER + 4], sigma[2 * INNER + 5]);
+    Ok(Calibrated {
+        rig,
+        rms_px: root(&all),
+        alone_px,
+        views,
+        focal_sigma_px: [focal(0), focal(1)],
+        baseline_sigma_m: way.component_mul(&along).norm() * square_m,
+    })
+}
+
+/// One camera by itself.
+fn alone<'a>(board: &'a [Point3<f64>], seen: &[&'a [Point2<f64>]], size: ImageSize) -> Option<Bundle<'a>> {
+    let homographies = seen.iter().map(|seen| start::homography(board, seen)).collect::<Option<Vec<_>>>()?;
+    let (width, height) = (f64::from(size.width), f64::from(size.height));
+    let middle = Vector2::new(width - 1.0, height - 1.0) / 2.0;
+    let free = |parameters: &[usize]| std::array::from_fn(|i| parameters.contains(&i));
+    // A lens that bends much misleads homographies: then one of the usual fields of view is nearer.
+    let usual = [0.45, 0.7, 1.0, 1.6, 3.0].map(|share| Vector2::repeat(share * width));
+    let zhang = start::focal_lengths(&homographies, middle);
+    let begins = zhang.into_iter().chain(usual).filter_map(|focal| {
+        let inner = start::camera(focal, middle);
+        let views = homographies.iter().map(|h| start::pose(&inner, h)).collect::<Option<Vec<_>>>()?;
+        let (beside, seen) = (Outer::new(Matrix3::identity(), Vector3::zeros()), vec![seen.to_vec()]);
+        let mut bundle = Bundle { board, seen, inner: vec![inner], beside, views, free: free(&[0, 1, 4]) };
+        let cost = bundle.minimise(12);
+        cost.is_finite().then_some((cost, bundle))
+    });
+    let (_, mut best) = begins.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    for parameters in [&[0, 1, 4][..], &[0, 1, 2, 3, 4, 5], &[0, 1, 2, 3, 4, 5, 6, 7, 8]] {
+        best.free = free(parameters);
+        best.minimise(if parameters.len() == INNER { 200 } else { 40 });
+    }
+    Some(best)
+}
+
+/// From the first camera to the second, as most views have it: of every view's, that from which all others are least far.
+fn between(first: &Bundle<'_>, second: &Bundle<'_>) -> Option<Outer> {
+    let all: Vec<Outer> = first
+        .views
+        .iter()
+        .zip(&second.views)
+        .map(|(a, b)| {
+            let r = b.r * a.r.transpose();
+            Outer::new(r, b.t - r * a.t)
+        })
+        .collect();
+    let far = |a: &Outer, b: &Outer| {
+        let turn = Rotation3::from_matrix_unchecked(a.r.transpose() * b.r).angle();
+        turn * 10.0 + (a.t - b.t).norm()
+    };
+    let total = |one: &Outer| all.iter().map(|other| far(one, other)).sum::<f64>();
+    all.iter().min_by(|a, b| total(a).total_cmp(&total(b))).copied()
+}

@@ -1,0 +1,126 @@
+//! A rig in words.
+
+use super::RawCalibration;
+use nalgebra::{Point2, Vector2};
+use std::fmt::Write;
+use stereopsis::geometry::{Camera, Crop, ImageSize, Rectification, RectifyError};
+
+/// The standard deviation of a disparity that depths are told with, px: that of the methods, away from depth edges.
+const SIGMA_PX: f64 = 0.15;
+/// The distances at which errors are told, m.
+const DISTANCES_M: [f64; 6] = [0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
+
+/// What a calibration says, what the rig can tell with a search of so many disparities, and what looks wrong: lines of text, the
+/// last ones warnings. A rig that cannot be rectified is refused.
+pub fn describe(calibration: &RawCalibration, disparities: u16) -> Result<String, RectifyError> {
+    let rig = &calibration.rig;
+    let size = rig.sizes()[0];
+    let rectified = Rectification::new(rig, Crop::Natural, size)?;
+    let (report, f, b) = (rectified.report(), rectified.camera().focal_px().0, rig.baseline_m());
+    let mut text = String::new();
+    let mut warnings = Vec::new();
+    let _ = writeln!(text, "{} calibration, images of {} x {} px", calibration.format, size.width, size.height);
+    for (name, camera) in ["left", "right"].into_iter().zip(rig.cameras()) {
+        one(name, camera, size, &mut text, &mut warnings);
+    }
+    let t = rig.pose().translation();
+    let way = if rectified.axis().is_horizontal() { "right of" } else { "below" };
+    let angle = rig.pose().angle_rad().to_degrees();
+    let _ = writeln!(
+        text,
+        "baseline     {:.2} mm: the second camera stands {way} the first, {:.2} mm across and {:.2} mm ahead",
+        1000.0 * b,
+        1000.0 * if rectified.axis().is_horizontal() { t.y } else { t.x },
+        1000.0 * t.z
+    );
+    let _ = writeln!(text, "turned       {angle:.2} degrees against each other");
+    let [across, down] = report.field_of_view_rad.map(f64::to_degrees);
+    let _ = writeln!(
+        text,
+        "rectified    f {f:.1} px, both see {:.0} % of the image: {across:.1} x {down:.1} degrees; a remap holds {} and {} rows",
+        100.0 * report.common,
+        report.rows[0],
+        report.rows[1]
+    );
+    let most = f64::from(disparities) - 1.0;
+    let _ = writeln!(
+        text,
+        "depths       from {:.3} m ({most} px, of a search of {disparities}) to about {:.1} m, where an error of {SIGMA_PX} px is a tenth",
+        f * b / most,
+        0.1 * f * b / SIGMA_PX
+    );
+    for z in DISTANCES_M.into_iter().filter(|z| f * b / z <= most && f * b / z >= 1.0) {
+        let _ = writeln!(
+            text,
+            "  at {z:5.2} m  {:6.1} px, +- {:.1} mm for {SIGMA_PX} px",
+            f * b / z,
+            1000.0 * z * z / (f * b) * SIGMA_PX
+        );
+    }
+    if b > 0.6 {
+        warnings.push(format!(
+            "a baseline of {b:.2} m is long for a small rig: was T in another unit? say --unit mm or cm"
+        ));
+    }
+    if b < 0.005 {
+        warnings.push(format!("a baseline of {:.2} mm is short: was T in another unit? say --unit", 1000.0 * b));
+    }
+    if angle > 10.0 {
+        warnings.push(format!(
+            "the cameras are turned against each other by {angle:.0} degrees: much of both images is lost"
+        ));
+    }
+    if report.common < 0.7 {
+        warnings.push(format!("both cameras see only {:.0} % of the rectified image", 100.0 * report.common));
+    }
+    let [left, right] = rig.cameras().each_ref().map(|camera| camera.focal_px().0);
+    if (left / right).max(right / left) > 1.1 {
+        warnings.push(format!("the focal lengths of the two cameras differ: {left:.0} and {right:.0} px"));
+    }
+    if warnings.is_empty() {
+        text += "nothing looks wrong\n";
+    }
+    for warning in warnings {
+        let _ = writeln!(text, "warning: {warning}");
+    }
+    Ok(text)
+}
+
+/// One camera.
+fn one(name: &str, camera: &Camera<f64>, size: ImageSize, text: &mut String, warnings: &mut Vec<String>) {
+    let ((fx, fy), (cx, cy)) = (camera.focal_px(), camera.principal_point());
+    let (w, h) = (f64::from(size.width) - 1.0, f64::from(size.height) - 1.0);
+    let sight = |x: f64, y: f64| camera.unproject(&Point2::new(x, y)).ok();
+    let angle = |a: Option<nalgebra::Vector3<f64>>, b: Option<nalgebra::Vector3<f64>>| {
+        a.zip(b).map_or_else(|| "unknown".to_owned(), |(a, b)| format!("{:.1}", a.angle(&b).to_degrees()))
+    };
+    let _ = writeln!(
+        text,
+        "{name:<12} f {fx:.1} x {fy:.1} px, centre {cx:.1}, {cy:.1}; sees {} x {} degrees",
+        angle(sight(0.0, cy), sight(w, cy)),
+        angle(sight(cx, 0.0), sight(cx, h))
+    );
+    let corners = [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)];
+    if !camera.lens().is_none() {
+        let moved = |(x, y): (f64, f64)| Some((camera.undistort(&Point2::new(x, y)).ok()? - Point2::new(x, y)).norm());
+        match corners.map(moved).into_iter().collect::<Option<Vec<f64>>>() {
+            Some(all) => {
+                let most = all.into_iter().fold(0.0, f64::max);
+                let _ = writeln!(text, "{:<12} the lens moves a corner of the image by {most:.1} px", "");
+            }
+            None => warnings.push(format!(
+                "the {name} lens's coefficients describe no sight for a corner of the image: it stays black"
+            )),
+        }
+    }
+    let off = Vector2::new((cx - w / 2.0) / w, (cy - h / 2.0) / h).amax();
+    if off > 0.15 {
+        warnings.push(format!(
+            "the {name} principal point ({cx:.0}, {cy:.0}) is far from the middle of {} x {} px: was it calibrated at another size?",
+            size.width, size.height
+        ));
+    }
+    if (fx / fy).max(fy / fx) > 1.02 {
+        warnings.push(format!("the {name} camera's pixels are not square: fx {fx:.1}, fy {fy:.1} px"));
+    }
+}

@@ -1,0 +1,108 @@
+//! Rigs from corners.
+
+use super::{SIZE, STANDS, pattern, rig, stand};
+use nalgebra::Vector2;
+use stereopsis::geometry::Lens;
+use stereopsis_host::calibrate::board::find;
+use stereopsis_host::calibrate::scene::BoardCamera;
+use stereopsis_host::calibrate::{SolveError, View, solve};
+use stereopsis_host::scene::Random;
+
+/// 25 mm.
+const SQUARE_M: f64 = 0.025;
+
+/// Where the corners are, off by `sigma` px along each axis.
+fn views(sigma: f64) -> Vec<View> {
+    let (pattern, cameras) = (pattern(9, 6), BoardCamera::pair(&rig()));
+    let mut random = Random::new(9);
+    let mut off = move || sigma * random.gauss();
+    let view = |(axis, place)| {
+        let stands = stand(pattern, axis, place, SQUARE_M);
+        let corners = [0, 1].map(|i| {
+            let corners = cameras[i].corners(pattern, &stands[i]).expect("all in the image");
+            corners.into_iter().map(|p| p + Vector2::new(off(), off())).collect()
+        });
+        View { corners }
+    };
+    STANDS.into_iter().map(view).collect()
+}
+
+#[test]
+fn a_rig_comes_back_from_exact_corners() {
+    let found = solve(pattern(9, 6), SQUARE_M, SIZE, &views(0.0)).expect("a rig");
+    assert!(found.rms_px < 1e-6, "{}", found.rms_px);
+    let truth = rig();
+    assert!((found.rig.baseline_m() - truth.baseline_m()).abs() < 1e-8);
+    assert!((found.rig.pose().rotation() - truth.pose().rotation()).amax() < 1e-7);
+    for (found, truth) in found.rig.cameras().iter().zip(truth.cameras()) {
+        assert!((found.matrix() - truth.matrix()).amax() < 1e-4);
+        let [Lens::BrownConrady(a), Lens::BrownConrady(b)] = [found, truth].map(|camera| *camera.lens()) else {
+            panic!("another lens")
+        };
+        assert!(a.to_opencv().iter().zip(b.to_opencv()).all(|(a, b)| (a - b).abs() < 1e-4), "{a:?} {b:?}");
+    }
+    assert!(found.outliers().is_empty());
+}
+
+#[test]
+fn a_rig_from_noisy_corners_is_as_near_as_it_says() {
+    let sigma = 0.1;
+    let views = views(sigma);
+    let found = solve(pattern(9, 6), SQUARE_M, SIZE, &views).expect("a rig");
+    // Two coordinates of each corner, less one parameter each: 84 for 2160.
+    let expected = sigma * (2.0 * (1.0 - 84.0 / 2160.0) as f64).sqrt();
+    assert!((found.rms_px / expected - 1.0).abs() < 0.06, "{} {expected}", found.rms_px);
+    let off = (found.rig.baseline_m() - rig().baseline_m()).abs();
+    assert!(off < 4.0 * found.baseline_sigma_m, "{off} {}", found.baseline_sigma_m);
+    assert!(found.baseline_sigma_m < 1e-4);
+    for camera in 0..2 {
+        let off = (found.rig.cameras()[camera].focal_px().0 - rig().cameras()[camera].focal_px().0).abs();
+        assert!(off < 4.0 * found.focal_sigma_px[camera] && off < 1.0, "{off}");
+    }
+    // What moves no parameter is at a minimum: no other rig fits better.
+    let again = solve(pattern(9, 6), SQUARE_M, SIZE, &views[..9]).expect("a rig");
+    assert!(again.rms_px < found.rms_px * 1.05);
+}
+
+#[test]
+fn a_view_that_fits_badly_is_named() {
+    let mut views = views(0.05);
+    let mut random = Random::new(1);
+    for corner in views[4].corners.iter_mut().flatten() {
+        *corner += Vector2::new(random.gauss(), random.gauss());
+    }
+    let found = solve(pattern(9, 6), SQUARE_M, SIZE, &views).expect("a rig");
+    assert_eq!(found.outliers(), [4]);
+}
+
+#[test]
+fn too_little_is_refused_or_said_to_be_uncertain() {
+    let views = views(0.05);
+    let few = solve(pattern(9, 6), SQUARE_M, SIZE, &views[..2]);
+    assert_eq!(few, Err(SolveError::TooFew { views: 2 }));
+    // The same view again and again says nothing of the focal length.
+    let same = vec![views[9].clone(); 5];
+    let uncertain = |found: &stereopsis_host::calibrate::Calibrated| found.focal_sigma_px[0] > 0.03 * 165.0;
+    let found = solve(pattern(9, 6), SQUARE_M, SIZE, &same);
+    assert!(found.as_ref().map_or(true, |found| !(found.focal_sigma_px[0] < 1.0) || uncertain(found)), "{found:?}");
+}
+
+/// From pictures: what the whole way costs.
+#[test]
+fn a_rig_comes_back_from_pictures() {
+    let (pattern, cameras) = (pattern(9, 6), BoardCamera::pair(&rig()));
+    let mut random = Random::new(2);
+    let view = |(axis, place)| {
+        let stands = stand(pattern, axis, place, SQUARE_M);
+        let corners = [0, 1].map(|i| {
+            let picture = cameras[i].picture(pattern, &stands[i], 1.5, &mut random);
+            find(&picture, pattern, None).expect("a board").corners
+        });
+        View { corners }
+    };
+    let views: Vec<_> = STANDS.into_iter().map(view).collect();
+    let found = solve(pattern, SQUARE_M, SIZE, &views).expect("a rig");
+    let (b, truth) = (found.rig.baseline_m(), rig().baseline_m());
+    assert!((b / truth - 1.0).abs() < 0.005, "{b} {truth}");
+    assert!(found.rms_px < 0.2, "{}", found.rms_px);
+}

@@ -1,0 +1,184 @@
+//! `stereo calibrate` and `stereo calib`: their files, and what they say when they cannot.
+
+use super::support::{Bench, encode, names, stereo, text};
+use image::ImageFormat;
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use stereopsis::geometry::{Camera, Distortion, ImageSize, Pose, StereoRig};
+use stereopsis_host::calibrate::board::Pattern;
+use stereopsis_host::calibrate::scene::BoardCamera;
+use stereopsis_host::scene::Random;
+
+const SIZE: ImageSize = ImageSize { width: 240, height: 180 };
+const VIEWS: [[f64; 6]; 5] = [
+    [0.4, 0.0, 0.1, 0.08, 0.0, 10.0],
+    [-0.4, 0.2, -0.2, 0.0, -0.1, 11.0],
+    [0.1, 0.5, 0.3, 0.2, -0.1, 11.0],
+    [0.2, -0.5, 0.0, 0.0, 0.1, 11.0],
+    [-0.3, -0.4, 1.5, 0.15, 0.05, 11.0],
+];
+
+fn rig() -> StereoRig<f64> {
+    let camera = |f: f64, k1: f64| {
+        let camera = Camera::new(f, f, 119.0, 91.0).expect("a camera");
+        camera.with_distortion(Distortion::from_opencv([k1, 0.05, 0.0, 0.0, 0.0])).expect("a lens")
+    };
+    let pose = Pose::new(Matrix3::identity(), Vector3::new(0.06, 0.001, 0.0)).expect("a pose");
+    StereoRig::new([camera(180.0, -0.2), camera(181.0, -0.19)], pose, [SIZE; 2]).expect("a rig")
+}
+
+/// Pairs of a board with squares of 30 mm, `left1.png` to `right5.png`, and one with nothing to see.
+fn pictures(bench: &Bench) {
+    let (pattern, mut random) = (Pattern::new(6, 5).expect("a pattern"), Random::new(7));
+    let cameras = BoardCamera::pair(&rig());
+    let middle = Vector3::new(2.5, 2.0, 0.0);
+    for (n, [a, b, c, x, y, z]) in (1..).zip(VIEWS) {
+        let r = Rotation3::new(Vector3::new(a, b, c)).into_inner();
+        let left = Pose::new(r, Vector3::new(x, y, 1.0) * z - r * middle).expect("a pose");
+        let beside = Pose::new(Matrix3::identity(), rig().pose().translation() / 0.03).expect("a pose");
+        for ((camera, side), board) in cameras.iter().zip(["left", "right"]).zip([left, beside.inverse().then(&left)]) {
+            camera.corners(pattern, &board).expect("all in the image");
+            let picture = camera.picture(pattern, &board, 1.0, &mut random);
+            bench.put(&format!("{side}{n}.png"), &encode(&picture, ImageFormat::Png));
+        }
+    }
+    for side in ["left", "right"] {
+        let blank = image::GrayImage::new(240, 180);
+        bench.put(&format!("{side}6.png"), &encode(&blank, ImageFormat::Png));
+    }
+}
+
+fn arguments(bench: &Bench, change: &[(&str, &str)]) -> Vec<String> {
+    let file = |name: &str| bench.path(name).display().to_string();
+    let mut options = std::collections::BTreeMap::from([
+        ("--left", file("left?.png")),
+        ("--right", file("right?.png")),
+        ("--pattern", "6x5".into()),
+        ("--square-mm", "30".into()),
+        ("--out", file("stereo.yml")),
+    ]);
+    options.extend(change.iter().map(|(option, value)| (*option, (*value).to_owned())));
+    let options = options.into_iter().flat_map(|(option, value)| [option.to_owned(), value]);
+    ["calibrate".to_owned()].into_iter().chain(options).collect()
+}
+
+#[test]
+fn a_rig_is_calibrated_checked_and_converted() {
+    let bench = Bench::new();
+    pictures(&bench);
+    let file = |name: &str| bench.path(name).display().to_string();
+    let run = stereo(arguments(&bench, &[("--report", &file("report"))]));
+    let said = text(&run.stdout);
+    assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
+    // The pair of `Bench` has no number in its names; the sixth has no board.
+    assert!(said.contains("left.png has no partner"), "{said}");
+    assert!(said.contains("left6.png: no board with 6 x 5 inner corners is seen"), "{said}");
+    assert!(said.contains("5 of 6 views, 240 x 180 px\n"), "{said}");
+    let baseline: f64 = said
+        .lines()
+        .find_map(|line| line.strip_prefix("baseline")?.trim().split(' ').next()?.parse().ok())
+        .unwrap_or_else(|| panic!("{said}"));
+    assert!((baseline - 60.0).abs() < 0.6, "{said}");
+    let drawn = ["index.html", "view001.png", "view002.png", "view003.png", "view004.png", "view005.png"];
+    assert_eq!(names(&bench.path("report")), drawn);
+
+    // It is read by all that read calibrations.
+    let check = |name: &str| {
+        let run = stereo(["calib", "check", "--calib", &file(name)]);
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        text(&run.stdout)
+    };
+    let words = check("stereo.yml");
+    assert!(words.starts_with("OpenCV calibration, images of 240 x 180 px\n") && words.contains("right of"), "{words}");
+    assert!(words.contains("nothing looks wrong"), "{words}");
+    let convert = |from: &str, to: &str, out: &str| {
+        let run = stereo(["calib", "convert", "--calib", &file(from), "--to", to, "--out", &file(out)]);
+        assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
+        std::fs::read(bench.path(out)).expect("a file")
+    };
+    assert_eq!(convert("stereo.yml", "record", "rig.bin").len(), 328);
+    assert!(text(&convert("rig.bin", "rust", "rig.rs")).contains("pub const STEREO_RIG: [u8; 328]"));
+    assert!(text(&convert("rig.bin", "c", "rig.h")).contains("static const uint8_t stereo_rig[STEREO_RIG_BYTES]"));
+    convert("rig.bin", "opencv", "again.yml");
+    let rest = |words: &str| words.split_once('\n').map(|(_, rest)| rest.to_owned());
+    assert_eq!(rest(&check("again.yml")), rest(&words));
+    assert!(check("rig.bin").starts_with("record calibration"));
+
+    // Swapped: the left camera stands right.
+    let swapped = [("--left", file("right?.png")), ("--right", file("left?.png"))];
+    let swapped = swapped.each_ref().map(|(option, value)| (*option, value.as_str()));
+    bench.refused(&arguments(&bench, &swapped), "swapped");
+    bench.refused(&arguments(&bench, &[("--pattern", "7x6")]), "0 views are too few");
+
+    // A record that is broken, or cut.
+    let record = std::fs::read(bench.path("rig.bin")).expect("a record");
+    let mut broken = record.clone();
+    broken[100] ^= 8;
+    for (bytes, culprit) in [(&broken[..], "checksum"), (&record[..100], "328 bytes")] {
+        let bad = bench.put("bad.bin", bytes).display().to_string();
+        bench.refused(&["calib", "check", "--calib", &bad], culprit);
+        bench.refused(&["calib", "convert", "--calib", &bad, "--to", "c", "--out", &file("x.h")], "bad.bin: ");
+    }
+}
+
+#[test]
+fn options_that_are_wrong_are_named() {
+    let bench = Bench::new();
+    let file = |name: &str| bench.path(name).display().to_string();
+    for (option, values) in [
+        ("--pattern", &["", "9", "9x", "2x6", "9x65", "ax6"][..]),
+        ("--square-mm", &["0", "-25", "nan", "1001", "x"]),
+        ("--left", &["/nowhere/left*.png", "["]),
+        ("--out", &["/proc", "/"]),
+    ] {
+        for value in values {
+            bench.refused(&arguments(&bench, &[(option, value)]), option);
+        }
+    }
+    bench.refused(&arguments(&bench, &[("--square-mm", "0.025")]), "is it in metres?");
+    let pair = [("--left", file("left.png")), ("--right", file("right.png"))];
+    let one = pair.each_ref().map(|(option, value)| (*option, value.as_str()));
+    bench.refused(&arguments(&bench, &one), "0 views are too few");
+    let bad = bench.put("bad.png", b"no picture").display().to_string();
+    bench.refused(&arguments(&bench, &[("--left", &bad), ("--right", &file("right.png"))]), "bad.png");
+    let uneven = [("--left", file("*.png")), ("--right", file("right.png"))];
+    let uneven = uneven.each_ref().map(|(option, value)| (*option, value.as_str()));
+    bench.refused(&arguments(&bench, &uneven), "as many of both");
+
+    bench.refused(&["calib"], "check");
+    bench.refused(&["calib", "check"], "--calib");
+    let calib = bench.put("stereo.yml", b"cam0=[1 0 1; 0 1 1; 0 0 1]\n").display().to_string();
+    bench.refused(&["calib", "check", "--calib", &calib], "cam1 is missing");
+    bench.refused(&["calib", "convert", "--calib", &calib, "--to", "word", "--out", &file("x")], "--to");
+    bench.refused(&["calib", "check", "--calib", &calib, "--size", "640"], "--size");
+}
+
+#[test]
+fn what_looks_wrong_is_said() {
+    let bench = Bench::new();
+    let yaml = |t: &str, unit: &str, cx: f64, size: &str| {
+        let camera =
+            |n: u32| format!("K{n}: [200., 0., {cx}, 0., 210., 90., 0., 0., 1.]\nD{n}: [0., 0., 0., 0., 0.]\n");
+        format!("{size}{}{}{unit}R: [1., 0., 0., 0., 1., 0., 0., 0., 1.]\nT: [{t}, 0., 0.]\n", camera(1), camera(2))
+    };
+    let size = "image_width: 240\nimage_height: 180\n";
+    let check = |content: String, more: &[&str]| {
+        let path = bench.put("rig.yml", content.as_bytes()).display().to_string();
+        let arguments: Vec<_> = ["calib", "check", "--calib", &path].into_iter().chain(more.iter().copied()).collect();
+        let run = stereo(&arguments);
+        if run.status.success() { text(&run.stdout) } else { text(&run.stderr) }
+    };
+    let words = check(yaml("-0.06", "", 119.5, size), &[]);
+    assert!(words.contains("baseline     60.00 mm") && words.contains("pixels are not square"), "{words}");
+    assert!(check(yaml("-0.06", "", 40.0, size), &[]).contains("far from the middle"));
+    // 60 of something: millimetres.
+    assert!(check(yaml("-60.0", "", 119.5, size), &[]).contains("--unit mm"));
+    assert!(check(yaml("-60.0", "", 119.5, size), &["--unit", "mm"]).contains("60.00 mm"));
+    assert!(check(yaml("-60.0", "length_unit: mm\n", 119.5, size), &[]).contains("60.00 mm"));
+    assert!(check(yaml("-60.0", "length_unit: mm\n", 119.5, size), &["--unit", "m"]).contains("leave --unit out"));
+    assert!(check(yaml("-60.0", "length_unit: feet\n", 119.5, size), &[]).contains("m, cm or mm"));
+    assert!(check(yaml("-6.0", "", 119.5, size), &[]).contains("was T in another unit?"));
+    assert!(check(yaml("0.06", "", 119.5, size), &[]).contains("swapped"));
+    assert!(check(yaml("-0.06", "", 119.5, ""), &[]).contains("--size"));
+    assert!(check(yaml("-0.06", "", 119.5, ""), &["--size", "240x180"]).contains("240 x 180"));
+    assert!(check(yaml("-0.06", "", 119.5, size), &["--size", "240x181"]).contains("height says 180"));
+}

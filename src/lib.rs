@@ -43,6 +43,8 @@ pub mod focus;
 
 pub mod features;
 
+pub mod motion;
+
 pub mod pipeline;
 
 #[cfg(feature = "ffi")]

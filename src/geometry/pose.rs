@@ -57,7 +57,7 @@ impl<T: Real> Pose<T> {
     }
 
     /// A pose of what is known to be a rotation.
-    pub(crate) fn of_parts(rotation: Matrix3<T>, translation: Vector3<T>) -> Self {
+    pub(crate) const fn of_parts(rotation: Matrix3<T>, translation: Vector3<T>) -> Self {
         Self { rotation, translation }
     }
 

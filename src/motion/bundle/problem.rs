@@ -1,0 +1,163 @@
+//! What is adjusted: views, points and sights.
+
+use super::gauge::Gauge;
+use super::view::View;
+use super::workspace::{Slot, Workspace};
+use crate::geometry::Real;
+use nalgebra::{Point2, Point3};
+
+/// Where a view sees a point.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Sight<T: Real> {
+    /// Which point.
+    pub point: u32,
+    /// Which view.
+    pub view: u16,
+    /// Which camera of the view: 0, or 1 for the second of a rig.
+    pub eye: u16,
+    /// px.
+    pub pixel: Point2<T>,
+}
+
+/// Views and points that move until the sights agree with them.
+#[derive(Debug)]
+pub struct Problem<'a, V, T: Real> {
+    /// The views.
+    pub views: &'a mut [V],
+    /// The points, in the world.
+    pub points: &'a mut [Point3<T>],
+    /// The sights, those of point 0 first, then those of point 1, and so on.
+    pub sights: &'a [Sight<T>],
+}
+
+/// Why there is nothing to adjust.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum BundleError {
+    /// There is no sight.
+    Empty,
+    /// This sight names a view that there is not.
+    View(usize),
+    /// This sight names a point that there is not.
+    Point(usize),
+    /// This sight stands behind one of a later point.
+    Unsorted(usize),
+    /// A coordinate of this sight is infinite or not a number.
+    NotFinite(usize),
+    /// What this sight shows cannot be seen there: the point is behind the camera, or it or the view is not finite.
+    NotSeen(usize),
+    /// The gauge names a view that there is not, or one twice, or none.
+    Gauge,
+    /// A tolerance, the damping or the width of the loss is not greater than zero.
+    Config,
+    /// The workspace is too small; so much is needed.
+    Workspace(Need),
+}
+
+/// The sizes of a [`Workspace`] for a problem.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Need {
+    /// Slots: one for each view.
+    pub slots: usize,
+    /// Terms.
+    pub terms: usize,
+    /// Trial points: one for each point.
+    pub points: usize,
+    /// Blocks of the reduced matrix; not known, and zero, while the other sizes are too small.
+    pub blocks: usize,
+}
+
+impl core::fmt::Display for BundleError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Empty => f.write_str("there is no observation"),
+            Self::View(at) => write!(f, "observation {at} names a camera that there is not"),
+            Self::Point(at) => write!(f, "observation {at} names a point that there is not"),
+            Self::Unsorted(at) => write!(f, "observation {at} stands behind one of a later point"),
+            Self::NotFinite(at) => write!(f, "a coordinate of observation {at} is not finite"),
+            Self::NotSeen(at) => write!(f, "the point of observation {at} is not before its camera, or not finite"),
+            Self::Gauge => f.write_str("the gauge must name views that there are"),
+            Self::Config => f.write_str("tolerances, damping and the loss's width must be greater than zero"),
+            Self::Workspace(need) => write!(
+                f,
+                "the workspace needs {} slots, {} terms, {} points and {} blocks",
+                need.slots, need.terms, need.points, need.blocks
+            ),
+        }
+    }
+}
+
+impl core::error::Error for BundleError {}
+
+impl<T: Real> Sight<T> {
+    /// Not in use.
+    pub const EMPTY: Self = Self { point: 0, view: 0, eye: 0, pixel: Point2::new(T::ZERO, T::ZERO) };
+}
+
+/// The sights of each point in turn.
+pub(super) fn tracks<T: Real>(sights: &[Sight<T>]) -> impl Iterator<Item = &[Sight<T>]> {
+    sights.chunk_by(|a, b| a.point == b.point)
+}
+
+impl<V, T: Real> Problem<'_, V, T> {
+    /// Refuses indices and numbers that cannot be.
+    fn check(&self) -> Result<(), BundleError> {
+        if self.sights.is_empty() {
+            return Err(BundleError::Empty);
+        }
+        let mut last = 0;
+        for (at, sight) in self.sights.iter().enumerate() {
+            if usize::from(sight.view) >= self.views.len() {
+                return Err(BundleError::View(at));
+            }
+            if sight.point as usize >= self.points.len() {
+                return Err(BundleError::Point(at));
+            }
+            if sight.point < last {
+                return Err(BundleError::Unsorted(at));
+            }
+            last = sight.point;
+            if !(sight.pixel.x.is_finite() && sight.pixel.y.is_finite()) {
+                return Err(BundleError::NotFinite(at));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Checks a problem and lays out the rows of its reduced matrix, or says how much memory is missing.
+pub(super) fn prepare<V: View<T, N>, T: Real, const N: usize>(
+    problem: &Problem<'_, V, T>,
+    gauge: &Gauge,
+    workspace: &mut Workspace<'_, V, T, N>,
+) -> Result<(), BundleError> {
+    problem.check()?;
+    if !gauge.is_sound(problem.views.len()) {
+        return Err(BundleError::Gauge);
+    }
+    let longest = tracks(problem.sights).map(<[_]>::len).max().unwrap_or(0).min(problem.views.len());
+    let mut need = Need { slots: problem.views.len(), terms: longest, points: problem.points.len(), blocks: 0 };
+    let short = workspace.terms.len() < need.terms || workspace.trial_points.len() < need.points;
+    let slots = match workspace.slots.get_mut(..need.slots) {
+        Some(slots) if !short => slots,
+        _ => return Err(BundleError::Workspace(need)),
+    };
+    for (i, (slot, view)) in slots.iter_mut().zip(problem.views.iter()).enumerate() {
+        *slot = Slot { first: i, trial: *view, ..Slot::EMPTY };
+    }
+    for track in tracks(problem.sights) {
+        let least = track.iter().map(|sight| usize::from(sight.view)).min().unwrap_or(0);
+        for sight in track {
+            if let Some(slot) = slots.get_mut(usize::from(sight.view)) {
+                slot.first = slot.first.min(least);
+            }
+        }
+    }
+    for (i, slot) in slots.iter_mut().enumerate() {
+        slot.offset = need.blocks;
+        need.blocks = need.blocks.saturating_add(i - slot.first.min(i) + 1);
+    }
+    if workspace.blocks.len() < need.blocks { Err(BundleError::Workspace(need)) } else { Ok(()) }
+}

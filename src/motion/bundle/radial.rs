@@ -1,0 +1,83 @@
+//! A view whose lens moves too: f, k1 and k2, as the data sets of bundle adjustment have it.
+
+use super::view::{Slope, View, chained, moved};
+use crate::geometry::{Pose, ProjectionError, Real};
+use nalgebra::{Matrix3, Point2, Point3, Vector3};
+
+/// A camera with square pixels, the origin of pixels at its centre, and a lens `q = 1 + k1 r^2 + k2 r^4` (Agarwal et al. 2010,
+/// "Bundle Adjustment in the Large"): `(u, v) = f q (x, y)`, `(x, y) = (X / Z, Y / Z)`. Nine numbers move.
+///
+/// X is right, Y down and Z forward, as everywhere here; there Y is up and Z backward, so that v and the second and third
+/// row of the rotation change their sign. As there, a point behind the camera is seen through its centre; none is in the
+/// plane of the centre itself.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct RadialView<T: Real> {
+    /// Where it stands: from the camera into the world.
+    pub pose: Pose<T>,
+    /// f, px.
+    pub focal_px: T,
+    /// Of r^2.
+    pub k1: T,
+    /// Of r^4.
+    pub k2: T,
+}
+
+impl<T: Real> View<T, 9> for RadialView<T> {
+    const EMPTY: Self = {
+        let o = T::ZERO;
+        let pose = Pose::of_parts(Matrix3::new(o, o, o, o, o, o, o, o, o), Vector3::new(o, o, o));
+        Self { pose, focal_px: o, k1: o, k2: o }
+    };
+
+    fn pose(&self) -> &Pose<T> {
+        &self.pose
+    }
+
+    fn with_pose(&self, pose: Pose<T>) -> Self {
+        Self { pose, ..*self }
+    }
+
+    fn slope(&self, _: u16, world: &Point3<T>) -> Result<Slope<T, 9>, ProjectionError> {
+        let own = self.pose.inverse_transform(world);
+        if own.z == T::ZERO {
+            return Err(ProjectionError::Behind);
+        }
+        let (two, f) = (T::of(2.0), self.focal_px);
+        let by = T::ONE / own.z;
+        let (x, y) = (own.x * by, own.y * by);
+        let r2 = x * x + y * y;
+        let q = T::ONE + r2 * (self.k1 + r2 * self.k2);
+        let dq = self.k1 + two * r2 * self.k2;
+        let row = |by_x: T, by_y: T| Vector3::new(by_x * by, by_y * by, -(by_x * x + by_y * y) * by);
+        let across = f * two * x * y * dq;
+        let rows = [row(f * (q + two * x * x * dq), across), row(across, f * (q + two * y * y * dq))];
+        let [(u, du), (v, dv)] = chained(rows, &own, &self.pose);
+        let with_lens = |[a, b, c, d, e, g]: [T; 6], x: T| [a, b, c, d, e, g, q * x, f * r2 * x, f * r2 * r2 * x];
+        Ok(Slope {
+            pixel: Point2::new(f * q * x, f * q * y),
+            by_view: [with_lens(u, x), with_lens(v, y)],
+            by_point: [du, dv],
+        })
+    }
+
+    fn project(&self, _: u16, world: &Point3<T>) -> Result<Point2<T>, ProjectionError> {
+        let own = self.pose.inverse_transform(world);
+        if own.z == T::ZERO {
+            return Err(ProjectionError::Behind);
+        }
+        let by = T::ONE / own.z;
+        let (x, y) = (own.x * by, own.y * by);
+        let r2 = x * x + y * y;
+        let scale = self.focal_px * (T::ONE + r2 * (self.k1 + r2 * self.k2));
+        Ok(Point2::new(scale * x, scale * y))
+    }
+
+    fn moved(&self, &[a, b, c, x, y, z, f, k1, k2]: &[T; 9]) -> Self {
+        Self {
+            pose: moved(&self.pose, [a, b, c], [x, y, z]),
+            focal_px: self.focal_px + f,
+            k1: self.k1 + k1,
+            k2: self.k2 + k2,
+        }
+    }
+}

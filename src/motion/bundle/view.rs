@@ -1,0 +1,95 @@
+//! A camera at a place, as bundle adjustment sees it.
+
+use crate::geometry::{Pose, ProjectionError, Real, skew};
+use nalgebra::{Matrix3, Point2, Point3, Vector3};
+
+/// A place from which points are seen, with N numbers that may move: the first three turn it, the next three move its
+/// centre, what follows is the lens's.
+///
+/// A step w of the first three makes the rotation `R C(w)`, a turn about the camera's own axes, where C is Cayley's map
+/// `C(w) = I + 2 / (1 + |w/2|^2) ([w/2]x + [w/2]x^2)`: a rotation for every w, without a sine, which turns by `|w|` radians to
+/// the second order (Hartley & Zisserman 2004, A4.3; Bauchau & Trainelli 2003). Of the next three, in the world's axes, the
+/// centre is moved.
+pub trait View<T: Real, const N: usize>: Copy {
+    /// What fills a slot that is not in use: zeros.
+    const EMPTY: Self;
+
+    /// Where it stands: R and t carry a point of the camera into the world, t is its centre.
+    fn pose(&self) -> &Pose<T>;
+
+    /// The same elsewhere.
+    fn with_pose(&self, pose: Pose<T>) -> Self;
+
+    /// Where a point of the world is seen by an eye (0, or 1 for the second camera of a rig), px, with the derivatives.
+    fn slope(&self, eye: u16, world: &Point3<T>) -> Result<Slope<T, N>, ProjectionError>;
+
+    /// Where a point of the world is seen, px.
+    fn project(&self, eye: u16, world: &Point3<T>) -> Result<Point2<T>, ProjectionError>;
+
+    /// The same after a step.
+    fn moved(&self, step: &[T; N]) -> Self;
+}
+
+/// Where a point is seen, and how that moves.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Slope<T: Real, const N: usize> {
+    /// px.
+    pub pixel: Point2<T>,
+    /// The derivative of u and of v by the view's N numbers, at a step of zero.
+    pub by_view: [[T; N]; 2],
+    /// The derivative of u and of v by the point.
+    pub by_point: [[T; 3]; 2],
+}
+
+/// The pose after a step of three numbers that turn and three that move.
+pub(super) fn moved<T: Real>(pose: &Pose<T>, turn: [T; 3], shift: [T; 3]) -> Pose<T> {
+    let half = Vector3::from(turn) * T::of(0.5);
+    let cross = skew(&half);
+    let by = T::of(2.0) / (T::ONE + half.norm_squared());
+    let turned = pose.rotation() * (Matrix3::identity() + (cross + cross * cross) * by);
+    Pose::of_parts(orthonormal(&turned), pose.translation() + Vector3::from(shift))
+}
+
+/// What many products of rotations have drifted to, as a rotation again (Gram and Schmidt).
+fn orthonormal<T: Real>(m: &Matrix3<T>) -> Matrix3<T> {
+    let x = Vector3::new(m.m11, m.m21, m.m31);
+    let x = x * (T::ONE / x.norm());
+    let y = Vector3::new(m.m12, m.m22, m.m32);
+    let y = y - x * x.dot(&y);
+    let y = y * (T::ONE / y.norm());
+    let z = x.cross(&y);
+    Matrix3::new(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z)
+}
+
+/// The derivatives of a pixel by a step of the pose and by the point, of those by the point in the camera's frame.
+///
+/// `P' = C(w)^T R^T (P - t)`: by w it is `[P']x`, by the centre `-R^T`, by P `R^T`.
+pub(super) fn chained<T: Real>(slope: [Vector3<T>; 2], own: &Point3<T>, pose: &Pose<T>) -> [([T; 6], [T; 3]); 2] {
+    slope.map(|row| {
+        let turn = row.cross(&own.coords);
+        let place = pose.rotation() * row;
+        ([turn.x, turn.y, turn.z, -place.x, -place.y, -place.z], [place.x, place.y, place.z])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turn_by_two_tangents_of_a_half() {
+        // |w/2| = 1 about Z turns by 2 atan 1, a quarter: X goes to Y.
+        let pose = moved(&Pose::<f64>::identity(), [0.0, 0.0, 2.0], [1.0, 2.0, 3.0]);
+        assert_eq!(pose.transform(&Point3::new(1.0, 0.0, 0.0)), Point3::new(1.0, 3.0, 3.0));
+    }
+
+    #[test]
+    fn rotations_stay_rotations() {
+        let mut pose = Pose::<f32>::identity();
+        for _ in 0..10_000 {
+            pose = moved(&pose, [0.3, -0.2, 0.1], [0.0; 3]);
+        }
+        let off = (pose.rotation().transpose() * pose.rotation() - Matrix3::identity()).amax();
+        assert!(off < 1e-6, "{off}");
+    }
+}

@@ -1,0 +1,3 @@
+//! Motion.
+
+pub mod bundle;

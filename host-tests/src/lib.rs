@@ -13,10 +13,12 @@
 //!   with noise and wrong ones.
 //! * [`focus`]: focus stacks, a simulated lens, and stacks through the core's map.
 //! * [`rectify`]: raw pictures through the core's remap.
+//! * [`bal`]: problems of bundle adjustment through the core.
 //! * [`twin`]: each stage again, naively, to hold the core to.
 //! * [`map`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`], [`output`], [`report`]: results as
 //!   files. [`command_line`]: errors in one line.
 
+pub mod bal;
 pub mod calibrate;
 pub mod calibration;
 pub mod colour;

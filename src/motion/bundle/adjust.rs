@@ -64,6 +64,8 @@ pub struct Adjustment<T> {
     config: BundleConfig<T>,
     initial_cost: T,
     cost: T,
+    /// What rounding of the pixels makes of no cost at all.
+    floor: T,
     damping: T,
     growth: T,
     iterations: u32,
@@ -116,8 +118,20 @@ impl<T: Real> Adjustment<T> {
         if !initial_cost.is_finite() {
             return Err(BundleError::NotSeen(unseen(problem)));
         }
+        let rounding = T::EPSILON * T::of(4.0);
+        let pixels = problem.sights.iter().fold(T::ZERO, |sum, sight| sum + sight.pixel.coords.norm_squared());
+        let floor = T::of(0.5) * pixels * rounding * rounding;
         let damping = config.damping;
-        Ok(Self { config, initial_cost, cost: initial_cost, damping, growth: T::of(2.0), iterations: 0, steps: 0 })
+        Ok(Self {
+            config,
+            initial_cost,
+            cost: initial_cost,
+            floor,
+            damping,
+            growth: T::of(2.0),
+            iterations: 0,
+            steps: 0,
+        })
     }
 
     /// Tries a step, and takes it when it lowers the cost. Its work depends on the problem alone.
@@ -130,6 +144,9 @@ impl<T: Real> Adjustment<T> {
     ) -> ControlFlow<Stop> {
         if self.iterations >= self.config.most_iterations {
             return ControlFlow::Break(Stop::Iterations);
+        }
+        if self.cost <= self.floor {
+            return ControlFlow::Break(Stop::Exact);
         }
         self.iterations += 1;
         let BundleConfig { gauge, loss, .. } = &self.config;
@@ -163,7 +180,7 @@ impl<T: Real> Adjustment<T> {
         self.damping *= (T::ONE - turn * turn * turn).max(T::of(1.0 / 3.0));
         self.damping = self.damping.max(T::of(1e-12));
         self.growth = T::of(2.0);
-        if self.cost == T::ZERO {
+        if self.cost <= self.floor {
             ControlFlow::Break(Stop::Exact)
         } else if gain <= before * self.config.cost_tolerance {
             ControlFlow::Break(Stop::Cost)

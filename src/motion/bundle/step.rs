@@ -146,7 +146,8 @@ pub(super) fn propose<V: View<T, N>, T: Real, const N: usize>(
     let half = T::of(0.5);
     let (mut predicted, mut cost, mut moved) = (T::ZERO, T::ZERO, T::ZERO);
     // -g x / 2 + damping x^T D x / 2.
-    let mut promise = |x: T, gradient: T, diagonal: T| predicted += half * x * (damping * damper(diagonal) * x - gradient);
+    let mut promise =
+        |x: T, gradient: T, diagonal: T| predicted += half * x * (damping * damper(diagonal) * x - gradient);
     for (at, (view, slot)) in (0..).zip(problem.views.iter().zip(reduced.slots.iter_mut())) {
         let other = |at: u16| problem.views.get(usize::from(at)).map_or(*view.pose(), |other| *other.pose());
         let freedom = gauge.freedom(at, view.pose(), other);

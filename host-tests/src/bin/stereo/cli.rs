@@ -8,6 +8,7 @@ pub use calib::{CalibArgs, CalibCommand, CheckArgs, ConvertArgs, FileArgs, Forma
 pub use calibrate::CalibrateArgs;
 pub use rectify::{RectifyArgs, RectifyOptions, Unit};
 
+use crate::bundle::{self, BundleArgs};
 use crate::failure::Failure;
 use crate::focus::{self, FocusArgs};
 use crate::two_view::{FEATURES_EXAMPLE, FUNDAMENTAL_EXAMPLE, FeaturesArgs, FundamentalArgs, POSE_EXAMPLE, PoseArgs};
@@ -21,7 +22,7 @@ use stereopsis_host::run::{Method, NoiseChoice, UnknownMethod, UnknownNoise, Way
 
 /// What is told to one who names another command.
 const COMMANDS: &str =
-    "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental and pose";
+    "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental, pose and bundle";
 
 const EXAMPLES: &str = "Examples:
   stereo demo --out demo-out
@@ -86,6 +87,9 @@ pub enum Command {
     /// Tell depth by focus: frames of one scene with the lens in different positions
     #[command(after_help = focus::EXAMPLE)]
     Focus(FocusArgs),
+    /// Refine cameras and points until they agree best with what was seen: bundle adjustment of a problem in BAL's format
+    #[command(after_help = bundle::EXAMPLE)]
+    Bundle(BundleArgs),
 }
 
 #[derive(Debug, Args)]

@@ -2,10 +2,11 @@
 //!
 //! * `cli`, `two_view`: what is asked for. `failure`: what is said when it cannot be done.
 //! * `input`: the images and the search, checked against each other. `progress`: how far it is.
-//! * `matching`, `bench`, `demo`, `calibrate`, `calib`, `rectify`, `features`, `focus`, `fundamental`, `pose`: the commands. `files`, `place`: the
-//!   results as files.
+//! * `matching`, `bench`, `demo`, `calibrate`, `calib`, `rectify`, `features`, `focus`, `fundamental`, `pose`, `bundle`: the
+//!   commands. `files`, `place`: the results as files.
 
 mod bench;
+mod bundle;
 mod calib;
 mod calibrate;
 mod cli;
@@ -52,6 +53,7 @@ fn start() -> Result<(), Failure> {
         Ok(Command::Calib(args)) => calib::run(&args),
         Ok(Command::Features(args)) => features::run(&args),
         Ok(Command::Focus(args)) => focus::run(&args),
+        Ok(Command::Bundle(args)) => bundle::run(&args),
         Err(cli::Stop::Help(text)) => print(&text),
         Err(cli::Stop::Usage(failure)) => Err(failure),
     }

@@ -2,6 +2,8 @@
 
 #[path = "cli/calibrate.rs"]
 mod calibrate;
+#[path = "cli/bundle.rs"]
+mod bundle;
 #[path = "cli/features.rs"]
 mod features;
 #[path = "cli/focus.rs"]

@@ -1,5 +1,5 @@
 //! What the programs of this firmware share. A program stands in `src/bin`: `depth` is the pipeline, `pose`
-//! two views, `features` corners and their matches, `focus` depth by a lens that moves.
+//! two views, `bundle` their adjustment, `features` corners and their matches, `focus` depth by a lens that moves.
 //!
 //! * [`choice`]: the method, the sizes and the board, chosen when it is built; [`board`] is the list of boards.
 //! * [`camera`]: where lines come from: the built-in scene, or two files on the host.
@@ -7,6 +7,7 @@
 //! * [`host`]: files on the host.
 //! * [`clock`]: instructions counted; [`stack`]: the stack measured.
 //! * [`two_views`]: matches of a known world, and the pose and points that they give.
+//! * [`window`]: two views and their points, adjusted.
 //! * [`two_pictures`]: features of two cameras' lines, and their matches.
 //! * [`sweep`]: frames of a lens that moves, and where each tile is in focus.
 //! * [`log`]: defmt through semihosting. [`runtime`]: start and end of a program, and no panic.
@@ -27,6 +28,7 @@ pub mod stack;
 pub mod sweep;
 pub mod two_pictures;
 pub mod two_views;
+pub mod window;
 
 /// The method, the sizes and the board: `build.rs` writes this from the environment.
 pub mod choice {

@@ -16,9 +16,9 @@ use nalgebra::Matrix3;
 /// gauge holds. What is held has none.
 ///
 /// Each block costs the solution of the reduced equations once per row. In `f32` a view is good to some percent.
-pub struct Covariances<'p, 'w, V, T: Real, const N: usize> {
-    problem: &'p Problem<'p, V, T>,
-    reduced: Workspace<'w, V, T, N>,
+pub struct Covariances<'a, V, T: Real, const N: usize> {
+    problem: Problem<'a, V, T>,
+    reduced: Workspace<'a, V, T, N>,
     gauge: Gauge,
     loss: Loss<T>,
     variance: T,
@@ -51,20 +51,20 @@ impl core::fmt::Display for CovarianceError {
 
 impl core::error::Error for CovarianceError {}
 
-impl<'p, 'w, V: View<T, N>, T: Real, const N: usize> Covariances<'p, 'w, V, T, N> {
+impl<'a, V: View<T, N>, T: Real, const N: usize> Covariances<'a, V, T, N> {
     /// Factors the equations of the problem as it is, without damping. `sigma_px` is the standard deviation of a coordinate.
     pub fn new(
-        problem: &'p Problem<'p, V, T>,
-        mut workspace: Workspace<'w, V, T, N>,
+        problem: Problem<'a, V, T>,
+        mut workspace: Workspace<'a, V, T, N>,
         gauge: Gauge,
         loss: Loss<T>,
         sigma_px: T,
     ) -> Result<Self, CovarianceError> {
-        prepare(problem, &gauge, &mut workspace).map_err(CovarianceError::Problem)?;
+        prepare(&problem, &gauge, &mut workspace).map_err(CovarianceError::Problem)?;
         for track in tracks(problem.sights) {
             let mut point = PointEquations::ZERO;
             for sight in track {
-                if let Some(linear) = Linear::of(problem, sight, &gauge, &loss) {
+                if let Some(linear) = Linear::of(&problem, sight, &gauge, &loss) {
                     point.add(&linear.by_point, linear.residual);
                 }
             }
@@ -72,10 +72,10 @@ impl<'p, 'w, V: View<T, N>, T: Real, const N: usize> Covariances<'p, 'w, V, T, N
                 return Err(CovarianceError::Point(track.first().map_or(0, |sight| sight.point as usize)));
             }
         }
-        reduce(problem, &mut workspace, &gauge, &loss, T::ZERO);
+        reduce(&problem, &mut workspace, &gauge, &loss, T::ZERO);
         let mut found = Self { problem, reduced: workspace, gauge, loss, variance: sigma_px * sigma_px };
-        // What is left of a pivot that should be zero is some roundings of what it was.
-        found.envelope().factor(T::EPSILON * T::of(64.0)).map_err(|_| CovarianceError::Undetermined)?;
+        // What is left of a pivot that should be zero is some hundred roundings of what it was.
+        found.envelope().factor(T::EPSILON * T::of(1024.0)).map_err(|_| CovarianceError::Undetermined)?;
         Ok(found)
     }
 
@@ -128,11 +128,10 @@ impl<'p, 'w, V: View<T, N>, T: Real, const N: usize> Covariances<'p, 'w, V, T, N
     ///
     /// `V^-1 + V^-1 W^T S^-1 W V^-1`.
     pub fn point(&mut self, point: usize) -> Result<Matrix3<T>, CovarianceError> {
-        let problem = self.problem;
-        let track = tracks(problem.sights).find(|track| track.first().is_some_and(|s| s.point as usize == point));
+        let track = tracks(self.problem.sights).find(|track| track.first().is_some_and(|s| s.point as usize == point));
         let (mut equations, mut used) = (PointEquations::ZERO, 0);
         for sight in track.ok_or(CovarianceError::Point(point))? {
-            let Some(linear) = Linear::of(problem, sight, &self.gauge, &self.loss) else { continue };
+            let Some(linear) = Linear::of(&self.problem, sight, &self.gauge, &self.loss) else { continue };
             equations.add(&linear.by_point, linear.residual);
             used = add_term(self.reduced.terms, used, &linear);
         }

@@ -1,7 +1,7 @@
 //! One step: the equations of the views with the points eliminated, then the points.
 
 use super::envelope::{Envelope, Indefinite};
-use super::gauge::Gauge;
+use super::gauge::{Freedom, Gauge};
 use super::loss::Loss;
 use super::problem::{Problem, tracks};
 use super::track::{Linear, PointEquations, PointFactor, add_term, damper};
@@ -152,7 +152,11 @@ pub(super) fn propose<V: View<T, N>, T: Real, const N: usize>(
         let other = |at: u16| problem.views.get(usize::from(at)).map_or(*view.pose(), |other| *other.pose());
         let freedom = gauge.freedom(at, view.pose(), other);
         let trial = view.moved(&slot.step);
-        slot.trial = trial.with_pose(freedom.settled(trial.pose()));
+        slot.trial = match freedom {
+            // To the bit where it was.
+            Freedom::None => *view,
+            freedom => trial.with_pose(freedom.settled(trial.pose())),
+        };
         for k in 0..N {
             promise(slot.step[k], slot.gradient[k], slot.diagonal[k]);
         }

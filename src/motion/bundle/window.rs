@@ -10,7 +10,7 @@ use super::view::View;
 use super::workspace::{Slot, Term, Workspace};
 use crate::geometry::Real;
 use core::ops::ControlFlow;
-use nalgebra::{Matrix3, Point2, Point3};
+use nalgebra::{Point2, Point3};
 
 /// A problem of up to so many views, points and sights, and all that adjusting it takes, for a `static`: all zeros at first.
 ///
@@ -198,17 +198,15 @@ where
         adjustment.iterate(&mut problem, &mut workspace)
     }
 
-    /// The covariance of a view and of a point, where every coordinate of a sight has a deviation of `sigma_px`.
-    pub fn covariance(
+    /// How sure views and points are, where every coordinate of a sight has a deviation of `sigma_px`.
+    pub fn covariances(
         &mut self,
-        (view, point): (u16, usize),
         gauge: Gauge,
         loss: Loss<T>,
         sigma_px: T,
-    ) -> Result<([[T; N]; N], Matrix3<T>), CovarianceError> {
+    ) -> Result<Covariances<'_, V, T, N>, CovarianceError> {
         let (problem, workspace) = self.parts();
-        let mut found = Covariances::new(&problem, workspace, gauge, loss, sigma_px)?;
-        Ok((found.view(view), found.point(point)?))
+        Covariances::new(problem, workspace, gauge, loss, sigma_px)
     }
 }
 

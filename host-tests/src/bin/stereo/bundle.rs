@@ -103,18 +103,23 @@ fn told(
 ) -> String {
     let report = running.report();
     let after = squares_of(running.problem());
+    let plain = |cost: f64| if cost >= 1e-3 { format!("{cost:.6}") } else { format!("{cost:.6e}") };
     let rms = |cost: f64| (2.0 * cost / observations as f64).sqrt();
     let huber = match args.loss {
         LossChoice::Squares => String::new(),
         LossChoice::Huber => format!(
             "initial loss: {}\nfinal loss: {}\nloss: half the sum of Huber's of width {} px\n",
-            report.initial_cost, report.cost, args.width
+            plain(report.initial_cost),
+            plain(report.cost),
+            args.width
         ),
     };
     format!(
-        "{cameras} cameras, {points} points, {observations} observations\ninitial cost: {squares}\nfinal cost: {after}\n\
+        "{cameras} cameras, {points} points, {observations} observations\ninitial cost: {}\nfinal cost: {}\n\
          cost: half the sum of squared residuals, px^2; from {:.4} to {:.4} px RMS of an observation\n{huber}\
          {} iterations, {} of them steps, in {seconds:.3} s and {:.1} MB; stopped: {}\n",
+        plain(squares),
+        plain(after),
         rms(squares),
         rms(after),
         report.iterations,

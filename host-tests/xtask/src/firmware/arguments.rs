@@ -12,9 +12,9 @@ use stereopsis_host::run::{Method, NoiseChoice, UnknownNoise};
 /// The options of `firmware`.
 #[derive(Args)]
 pub struct Arguments {
-    /// The program: depth, rows of disparity; pose, two views; features, corners of two pictures and their matches; or focus,
+    /// The program: depth, rows of disparity; pose, two views; bundle, their adjustment; features, corners of two pictures and their matches; or focus,
     /// a lens that moves
-    #[arg(long, default_value = "depth", value_parser = ["depth", "pose", "features", "focus"])]
+    #[arg(long, default_value = "depth", value_parser = ["depth", "pose", "bundle", "features", "focus"])]
     program: String,
     /// With a program other than depth: made for size, not for speed
     #[arg(long)]
@@ -80,6 +80,8 @@ pub enum Asked {
     Depth(One),
     /// Two views on one core.
     Pose(Plain),
+    /// Two views and their points adjusted, on one core.
+    Bundle(Plain),
     /// Features of two pictures on one core.
     Features(Plain),
     /// A lens that moves, on one core.
@@ -112,6 +114,7 @@ impl Arguments {
             let plain = Plain { board, optimised, out };
             return Ok(match name.as_str() {
                 "pose" => Asked::Pose(plain),
+                "bundle" => Asked::Bundle(plain),
                 "features" => Asked::Features(plain),
                 _ => Asked::Focus(plain),
             });

@@ -6,6 +6,7 @@
 //! * [`all`]: every core, method and size; [`tables`] of it for README.md; [`checksums`] on real pictures.
 //! * [`awkward`]: sizes that fill no vector, where the rows are in assembly.
 //! * [`pose`]: two views on one core, held to the host; [`two_views_all`]: on every core.
+//! * [`bundle`]: their adjustment, likewise.
 //! * [`features`]: features of two pictures and their matches, on one core and on those of the table.
 //! * [`focus`]: a lens that moves, likewise. [`results`]: the run of such a program, and what it leaves.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
@@ -13,6 +14,7 @@
 mod all;
 mod arguments;
 mod awkward;
+mod bundle;
 mod checksums;
 mod emulate;
 mod features;
@@ -37,6 +39,8 @@ pub mod sweep;
 pub mod two_pictures;
 #[path = "../../../../examples/firmware/src/two_views.rs"]
 pub mod two_views;
+#[path = "../../../../examples/firmware/src/window.rs"]
+pub mod window;
 
 pub use arguments::Arguments;
 pub use program::{VECTORS, cargo};
@@ -46,6 +50,7 @@ use crate::setup;
 use crate::steps::{Failure, Outcome};
 use arguments::{Asked, One, Plain};
 use board::Board;
+use bundle::Bundle;
 use features::Features;
 use focus::Focus;
 use pose::Pose;
@@ -63,6 +68,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Asked::Pose(plain) => run_plain(&plain, pose::run, Pose::told),
         Asked::Features(plain) => run_plain(&plain, features::run, Features::told),
         Asked::Focus(plain) => run_plain(&plain, focus::run, Focus::told),
+        Asked::Bundle(plain) => run_plain(&plain, bundle::run, Bundle::told),
         Asked::All => run_all(Readme::of_check(arguments.check)),
     }
 }
@@ -71,6 +77,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
 fn run_all(readme: Readme) -> Outcome {
     all::run(readme)?;
     two_views_all::run(readme)?;
+    bundle::run_all(readme)?;
     features::run_all(readme)?;
     focus::run_all(readme)
 }

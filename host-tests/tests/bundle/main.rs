@@ -1,0 +1,9 @@
+//! Bundle adjustment: derivatives against differences, steps against the naive twin, results against the truth.
+
+mod covariance;
+mod files;
+mod refused;
+mod scene;
+mod slopes;
+mod solve;
+mod twin;

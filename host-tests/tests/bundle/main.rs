@@ -1,4 +1,4 @@
-//! Bundle adjustment: derivatives against differences, steps against the naive twin, results against the truth.
+//! Bundle adjustment: derivatives against differences, steps against the naive twin, results against the truth; structure from sights alone.
 
 mod covariance;
 mod files;
@@ -6,4 +6,5 @@ mod refused;
 mod scene;
 mod slopes;
 mod solve;
+mod structure;
 mod twin;

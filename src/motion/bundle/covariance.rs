@@ -61,6 +61,11 @@ impl<'a, V: View<T, N>, T: Real, const N: usize> Covariances<'a, V, T, N> {
         sigma_px: T,
     ) -> Result<Self, CovarianceError> {
         prepare(&problem, &gauge, &mut workspace).map_err(CovarianceError::Problem)?;
+        // What is left of a pivot that should be zero may, in `f32`, be more than one that counts: asked of the gauge first.
+        let lengths = problem.sights.iter().any(|sight| sight.eye > 0);
+        if !gauge.is_complete(lengths) {
+            return Err(CovarianceError::Undetermined);
+        }
         for track in tracks(problem.sights) {
             let mut point = PointEquations::ZERO;
             for sight in track {
@@ -74,7 +79,6 @@ impl<'a, V: View<T, N>, T: Real, const N: usize> Covariances<'a, V, T, N> {
         }
         reduce(&problem, &mut workspace, &gauge, &loss, T::ZERO);
         let mut found = Self { problem, reduced: workspace, gauge, loss, variance: sigma_px * sigma_px };
-        // What is left of a pivot that should be zero is some hundred roundings of what it was.
         found.envelope().factor(T::EPSILON * T::of(1024.0)).map_err(|_| CovarianceError::Undetermined)?;
         Ok(found)
     }

@@ -40,6 +40,15 @@ impl Gauge {
         }
     }
 
+    /// Whether it holds frame and scale; `lengths`: there are rigs, whose own baseline is a scale.
+    pub(super) fn is_complete(&self, lengths: bool) -> bool {
+        match self {
+            Self::Free => false,
+            Self::Views(held) => lengths || held.len() > 1,
+            Self::Baseline { .. } => true,
+        }
+    }
+
     /// What view `at` may do, where `pose` is its own and `of` that of another.
     pub(super) fn freedom<T: Real>(&self, at: u16, pose: &Pose<T>, of: impl FnOnce(u16) -> Pose<T>) -> Freedom<T> {
         match self {

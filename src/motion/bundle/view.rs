@@ -1,6 +1,6 @@
 //! A camera at a place, as bundle adjustment sees it.
 
-use crate::geometry::{Pose, ProjectionError, Real, skew};
+use crate::geometry::{Pose, ProjectionError, Real, turn};
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
 /// A place from which points are seen, with N numbers that may move: the first three turn it, the next three move its
@@ -42,11 +42,8 @@ pub struct Slope<T: Real, const N: usize> {
 }
 
 /// The pose after a step of three numbers that turn and three that move.
-pub(super) fn moved<T: Real>(pose: &Pose<T>, turn: [T; 3], shift: [T; 3]) -> Pose<T> {
-    let half = Vector3::from(turn) * T::of(0.5);
-    let cross = skew(&half);
-    let by = T::of(2.0) / (T::ONE + half.norm_squared());
-    let turned = pose.rotation() * (Matrix3::identity() + (cross + cross * cross) * by);
+pub(super) fn moved<T: Real>(pose: &Pose<T>, by: [T; 3], shift: [T; 3]) -> Pose<T> {
+    let turned = pose.rotation() * turn(&Vector3::from(by));
     Pose::of_parts(orthonormal(&turned), pose.translation() + Vector3::from(shift))
 }
 

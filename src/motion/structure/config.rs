@@ -1,0 +1,119 @@
+//! What is asked of a structure, and why there is none.
+
+use crate::geometry::Real;
+use crate::motion::bundle::BundleError;
+
+/// How a structure is found.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct StructureConfig<T> {
+    /// Residual up to which a sight counts as right, px.
+    pub threshold_px: T,
+    /// The least angle between two sights of a point, radians.
+    pub min_angle_rad: T,
+    /// Samples at most of each robust estimate.
+    pub most_samples: u32,
+    /// What the random choices begin with.
+    pub seed: u64,
+}
+
+impl<T: Real> StructureConfig<T> {
+    /// With a threshold in px; one degree, 2 000 samples, seed 0.
+    pub fn new(threshold_px: T) -> Self {
+        Self { threshold_px, min_angle_rad: T::of(0.0175), most_samples: 2000, seed: 0 }
+    }
+}
+
+/// Why two views give no pose.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum PairFault {
+    /// They have fewer than twelve points in common.
+    TooFew,
+    /// What they have in common agrees on nothing.
+    NoAgreement,
+    /// The camera has not moved: what agrees is where it was, within the threshold.
+    NoMotion,
+    /// The camera has turned about its centre, or all that both see is far away beside the motion: a turn explains what
+    /// agrees.
+    PureRotation,
+    /// What both see is on a plane, and two motions explain it.
+    Plane,
+    /// Too few points are seen at the least angle.
+    SmallAngle,
+}
+
+/// Why there is no structure.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum StructureError {
+    /// There are fewer than two views.
+    Views,
+    /// The threshold or the angle is not greater than zero, or no sample is allowed.
+    Config,
+    /// No two views give a pose; this is why, of those with most in common.
+    NoPair(PairFault),
+    /// The sights are none, or the memory is too small.
+    Bundle(BundleError),
+    /// The slices for matches, landmarks, inliers or sights are too short; so many are needed.
+    Memory(usize),
+}
+
+/// What is known of a view.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Placement {
+    /// Not yet anything.
+    Unknown,
+    /// Where it stands.
+    Placed,
+    /// It sees fewer than six points that are known.
+    TooFew,
+    /// What it sees agrees on no pose.
+    NoAgreement,
+}
+
+/// What is known of a point.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum PointState {
+    /// Fewer than two views that stand somewhere see it.
+    Unknown,
+    /// Where it is.
+    Known,
+    /// Its sights are nearly parallel: it is far away, or at infinity.
+    Far,
+    /// Its sights do not meet before the cameras.
+    Apart,
+}
+
+impl core::fmt::Display for PairFault {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::TooFew => "fewer than twelve points are seen by both views",
+            Self::NoAgreement => "what both views see agrees on nothing",
+            Self::NoMotion => "the camera has not moved",
+            Self::PureRotation => "the camera has only turned, or all is far away",
+            Self::Plane => "what both views see is on a plane, and two motions explain it",
+            Self::SmallAngle => "too few points are seen at an angle",
+        })
+    }
+}
+
+impl core::fmt::Display for StructureError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Views => f.write_str("structure needs two views"),
+            Self::Config => f.write_str("the threshold, the angle and the samples must be greater than zero"),
+            Self::NoPair(fault) => write!(f, "no two views give a pose: {fault}"),
+            Self::Bundle(error) => error.fmt(f),
+            Self::Memory(needed) => write!(f, "slices of {needed} are needed"),
+        }
+    }
+}
+
+impl core::error::Error for PairFault {}
+impl core::error::Error for StructureError {}

@@ -1,0 +1,228 @@
+//! From two views to all.
+
+use super::config::{PairFault, Placement, PointState, StructureConfig, StructureError};
+use super::many::{agreeing, triangulate};
+use super::memory::SceneMemory;
+use super::scaled::Structure;
+use super::start::{Pair, pair};
+use crate::geometry::{Camera, Correspondence, Landmark, Pose, Real, RobustConfig, robust_resection};
+use crate::motion::bundle::{BundleConfig, BundleReport, Gauge, Loss, Problem, Sight, adjust};
+use nalgebra::Point2;
+
+/// Known points that a view must see.
+const FEWEST_LANDMARKS: usize = 6;
+
+/// How a structure was found.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct StructureReport<T> {
+    /// The two views that it began with: the first is the frame, their distance was the unit of length.
+    pub pair: (u16, u16),
+    /// Whether what those two have in common is on a plane: their pose is by its homography.
+    pub plane: bool,
+    /// Views that stand somewhere.
+    pub views: usize,
+    /// Points that are known.
+    pub points: usize,
+    /// Sights that agree with them.
+    pub sights: usize,
+    /// The last adjustment; its cost is half the sum of Huber's loss, px^2.
+    pub bundle: BundleReport<T>,
+}
+
+/// Finds views and points from sights of which some are wrong (sorted by point, px with the lens's distortion).
+///
+/// Bounded: robust estimates for all pairs of views, then at most one resection, one triangulation of every point and one
+/// adjustment for every view.
+pub fn structure<'a, T: Real>(
+    mut memory: SceneMemory<'a, T>,
+    sights: &[Sight<T>],
+    config: &StructureConfig<T>,
+) -> Result<(Structure<'a, T>, StructureReport<T>), StructureError> {
+    let positive = |x: T| x > T::ZERO && x.is_finite();
+    if !(positive(config.threshold_px) && positive(config.min_angle_rad) && config.most_samples > 0) {
+        return Err(StructureError::Config);
+    }
+    if memory.views.len() < 2 {
+        return Err(StructureError::Views);
+    }
+    if let Some(needed) = memory.missing(sights.len()) {
+        return Err(StructureError::Memory(needed));
+    }
+    memory.placements.fill(Placement::Unknown);
+    memory.states.fill(PointState::Unknown);
+    let (first, second, found) = best_pair(&mut memory, sights, config)?;
+    place(&mut memory, first, Pose::identity());
+    place(&mut memory, second, found.pose.in_baselines());
+    let gauge = Gauge::Baseline { held: first, other: second };
+    let mut bundle = settle(&mut memory, sights, config, &gauge)?;
+    for _ in 2..memory.views.len() {
+        if !next_view(&mut memory, sights, config) {
+            break;
+        }
+        bundle = settle(&mut memory, sights, config, &gauge)?;
+    }
+    let kept = keep(&mut memory, sights, config.threshold_px);
+    let report = StructureReport {
+        pair: (first, second),
+        plane: found.plane,
+        views: memory.placements.iter().filter(|&&p| p == Placement::Placed).count(),
+        points: memory.states.iter().filter(|&&s| s == PointState::Known).count(),
+        sights: kept,
+        bundle,
+    };
+    let SceneMemory { views, placements, points, states, .. } = memory;
+    Ok((Structure::new(views, placements, points, states), report))
+}
+
+fn place<T: Real>(memory: &mut SceneMemory<'_, T>, at: u16, pose: Pose<T>) {
+    let at = usize::from(at);
+    if let (Some(view), Some(placement)) = (memory.views.get_mut(at), memory.placements.get_mut(at)) {
+        view.pose = pose;
+        *placement = Placement::Placed;
+    }
+}
+
+/// The camera without its lens.
+fn pinhole<T: Real>(camera: &Camera<T>) -> Camera<T> {
+    // Of a camera that is one: its matrix is another's.
+    Camera::from_matrix(&camera.matrix()).unwrap_or(*camera)
+}
+
+/// A view's sight without its lens.
+fn undistorted<T: Real>(memory: &SceneMemory<'_, T>, sight: &Sight<T>) -> Option<Point2<T>> {
+    memory.views.get(usize::from(sight.view))?.camera.undistort(&sight.pixel).ok()
+}
+
+fn tracks<T: Real>(sights: &[Sight<T>]) -> impl Iterator<Item = &[Sight<T>]> {
+    sights.chunk_by(|a, b| a.point == b.point)
+}
+
+/// The pair with most points at an angle.
+fn best_pair<T: Real>(
+    memory: &mut SceneMemory<'_, T>,
+    sights: &[Sight<T>],
+    config: &StructureConfig<T>,
+) -> Result<(u16, u16, Pair<T>), StructureError> {
+    let mut best: Option<(u16, u16, Pair<T>)> = None;
+    let mut worst = (0, PairFault::TooFew);
+    let views = memory.views.len().min(usize::from(u16::MAX)) as u16;
+    for second in 1..views {
+        for first in 0..second {
+            let mut count = 0;
+            for track in tracks(sights) {
+                let of = |view: u16| track.iter().find(|sight| sight.view == view);
+                let (Some(a), Some(b)) = (of(first), of(second)) else { continue };
+                let (Some(a), Some(b)) = (undistorted(memory, a), undistorted(memory, b)) else { continue };
+                if let Some(slot) = memory.matches.get_mut(count) {
+                    *slot = Correspondence { first: a, second: b };
+                    count += 1;
+                }
+            }
+            let camera = |at: u16| memory.views.get(usize::from(at)).map(|view| pinhole(&view.camera));
+            let (Some(a), Some(b)) = (camera(first), camera(second)) else { continue };
+            let seen = memory.matches.get_mut(..count).unwrap_or(&mut []);
+            match pair(&a, &b, seen, memory.inliers, config) {
+                Ok(found) if best.as_ref().is_none_or(|(_, _, old)| found.angled > old.angled) => {
+                    best = Some((first, second, found));
+                }
+                Ok(_) => {}
+                Err(fault) if count >= worst.0 => worst = (count, fault),
+                Err(_) => {}
+            }
+        }
+    }
+    best.ok_or(StructureError::NoPair(worst.1))
+}
+
+/// Triangulates all points anew, and adjusts what agrees.
+fn settle<T: Real>(
+    memory: &mut SceneMemory<'_, T>,
+    sights: &[Sight<T>],
+    config: &StructureConfig<T>,
+    gauge: &Gauge,
+) -> Result<BundleReport<T>, StructureError> {
+    for track in tracks(sights) {
+        let at = track.first().map_or(0, |sight| sight.point as usize);
+        let (Some(point), Some(state)) = (memory.points.get_mut(at), memory.states.get_mut(at)) else { continue };
+        let placements = &*memory.placements;
+        let placed = move |sight: &Sight<T>| placements.get(usize::from(sight.view)) == Some(&Placement::Placed);
+        let track = track.iter().copied().filter(placed);
+        match triangulate(memory.views, track, config.threshold_px, config.min_angle_rad) {
+            Ok(found) => (*point, *state) = (found, PointState::Known),
+            Err(why) => *state = why,
+        }
+    }
+    let kept = keep(memory, sights, config.threshold_px);
+    let SceneMemory { views, points, kept: slice, workspace, .. } = memory;
+    let sights = slice.get(..kept).unwrap_or(&[]);
+    let mut problem = Problem { views, points, sights };
+    let loss = Loss::Huber(config.threshold_px * T::of(0.5));
+    let config = BundleConfig { loss, ..BundleConfig::new(gauge.clone()) };
+    adjust(&mut problem, workspace, config).map_err(StructureError::Bundle)
+}
+
+/// Collects the sights that agree; how many they are.
+fn keep<T: Real>(memory: &mut SceneMemory<'_, T>, sights: &[Sight<T>], threshold_px: T) -> usize {
+    let mut kept = 0;
+    for track in tracks(sights) {
+        let at = track.first().map_or(0, |sight| sight.point as usize);
+        let (Some(point), Some(PointState::Known)) = (memory.points.get(at), memory.states.get(at)) else { continue };
+        let placements = &*memory.placements;
+        let placed = move |sight: &Sight<T>| placements.get(usize::from(sight.view)) == Some(&Placement::Placed);
+        for sight in agreeing(memory.views, track.iter().copied().filter(placed), point, threshold_px) {
+            if let Some(slot) = memory.kept.get_mut(kept) {
+                *slot = sight;
+                kept += 1;
+            }
+        }
+    }
+    kept
+}
+
+/// Places the view that sees most known points; whether there was one to try.
+fn next_view<T: Real>(memory: &mut SceneMemory<'_, T>, sights: &[Sight<T>], config: &StructureConfig<T>) -> bool {
+    let known = |memory: &SceneMemory<'_, T>, sight: &Sight<T>| {
+        memory.states.get(sight.point as usize) == Some(&PointState::Known)
+    };
+    let (mut most, mut next) = (0, None);
+    for at in 0..memory.views.len() {
+        if !matches!(memory.placements.get(at), Some(Placement::Unknown | Placement::TooFew)) {
+            continue;
+        }
+        let count = sights.iter().filter(|s| usize::from(s.view) == at && known(memory, s)).count();
+        if count < FEWEST_LANDMARKS {
+            if let Some(placement) = memory.placements.get_mut(at) {
+                *placement = Placement::TooFew;
+            }
+        } else if count > most {
+            (most, next) = (count, Some(at));
+        }
+    }
+    let Some(next) = next else { return false };
+    let mut count = 0;
+    for sight in sights.iter().filter(|sight| usize::from(sight.view) == next) {
+        let Some(pixel) = undistorted(memory, sight) else { continue };
+        if !known(memory, sight) {
+            continue;
+        }
+        let point = memory.points.get(sight.point as usize).copied();
+        if let (Some(world), Some(slot)) = (point, memory.landmarks.get_mut(count)) {
+            *slot = Landmark { world, pixel };
+            count += 1;
+        }
+    }
+    let landmarks = memory.landmarks.get(..count).unwrap_or(&[]);
+    let robust =
+        RobustConfig { most_samples: config.most_samples, seed: config.seed, ..RobustConfig::new(config.threshold_px) };
+    let camera = memory.views.get(next).map(|view| pinhole(&view.camera));
+    let found = camera.and_then(|camera| robust_resection(landmarks, &camera, &robust, memory.inliers).ok());
+    match found.filter(|found| found.inliers >= FEWEST_LANDMARKS) {
+        Some(found) => place(memory, next as u16, found.pose),
+        None => {
+            if let Some(placement) = memory.placements.get_mut(next) {
+                *placement = Placement::NoAgreement;
+            }
+        }
+    }
+    true
+}

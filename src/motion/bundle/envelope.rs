@@ -111,12 +111,14 @@ impl<V, T: Real, const N: usize> Envelope<'_, V, T, N> {
 /// `C -= A^T B`.
 #[inline]
 fn subtract_product<T: Real, const N: usize>(c: &mut Block<T, N>, a: &Block<T, N>, b: &Block<T, N>) {
-    for (from, line) in a.iter().zip(b) {
-        for (to, &by) in c.iter_mut().zip(from) {
-            for (x, &y) in to.iter_mut().zip(line) {
-                *x -= by * y;
+    for k in 0..N {
+        let mut line = c[k];
+        for (from, to) in a.iter().zip(b) {
+            for l in 0..N {
+                line[l] -= from[k] * to[l];
             }
         }
+        c[k] = line;
     }
 }
 

@@ -87,11 +87,11 @@ fn add_view<V, T: Real, const N: usize>(reduced: &mut Envelope<'_, V, T, N>, lin
         }
     }
     let Some(block) = reduced.block(linear.view, linear.view) else { return };
-    for row in &linear.by_view {
-        for (line, &by) in block.iter_mut().zip(row) {
-            for (x, &y) in line.iter_mut().zip(row) {
-                *x += by * y;
-            }
+    let [u, v] = &linear.by_view;
+    for k in 0..N {
+        let line = &mut block[k];
+        for l in 0..N {
+            line[l] += u[k] * u[l] + v[k] * v[l];
         }
     }
 }
@@ -118,12 +118,15 @@ fn eliminate<V, T: Real, const N: usize>(
         for b in terms.iter().take(n + 1) {
             let (row, column) = if a.view > b.view { (a, b) } else { (b, a) };
             let Some(block) = reduced.block(row.view, column.view) else { return };
-            for (from, to) in column.cross.iter().zip(&row.cross) {
-                for (line, &by) in block.iter_mut().zip(from) {
-                    for (x, &y) in line.iter_mut().zip(to) {
-                        *x -= by * y;
-                    }
+            // One pass over the block: three products for every element that is loaded.
+            let ([a, b, c], [x, y, z]) = (&column.cross, row.cross);
+            for k in 0..N {
+                let (a, b, c) = (a[k], b[k], c[k]);
+                let mut line = block[k];
+                for l in 0..N {
+                    line[l] -= a * x[l] + b * y[l] + c * z[l];
                 }
+                block[k] = line;
             }
         }
     }

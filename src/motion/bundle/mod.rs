@@ -41,6 +41,7 @@ pub use covariance::{CovarianceError, Covariances};
 pub use gauge::Gauge;
 pub use loss::Loss;
 pub use pinhole::{CameraView, RigView};
+pub(crate) use problem::tracks;
 pub use problem::{BundleError, Need, Problem, Sight};
 pub use radial::RadialView;
 pub use view::{Slope, View};

@@ -97,8 +97,15 @@ impl<T: Real> Sight<T> {
 }
 
 /// The sights of each point in turn.
-pub(super) fn tracks<T: Real>(sights: &[Sight<T>]) -> impl Iterator<Item = &[Sight<T>]> {
-    sights.chunk_by(|a, b| a.point == b.point)
+pub(crate) fn tracks<T: Real>(mut sights: &[Sight<T>]) -> impl Iterator<Item = &[Sight<T>]> {
+    // (`chunk_by` leaves a panic in a small program.)
+    core::iter::from_fn(move || {
+        let point = sights.first()?.point;
+        let end = sights.iter().position(|sight| sight.point != point).unwrap_or(sights.len());
+        let (track, rest) = sights.split_at_checked(end)?;
+        sights = rest;
+        Some(track)
+    })
 }
 
 impl<V, T: Real> Problem<'_, V, T> {

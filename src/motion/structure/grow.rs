@@ -6,7 +6,7 @@ use super::memory::SceneMemory;
 use super::scaled::Structure;
 use super::start::{Pair, pair};
 use crate::geometry::{Camera, Correspondence, Landmark, Pose, Real, RobustConfig, robust_resection};
-use crate::motion::bundle::{BundleConfig, BundleReport, Gauge, Loss, Problem, Sight, adjust};
+use crate::motion::bundle::{BundleConfig, BundleReport, Gauge, Loss, Problem, Sight, adjust, tracks};
 use nalgebra::Point2;
 
 /// Known points that a view must see.
@@ -91,10 +91,6 @@ fn pinhole<T: Real>(camera: &Camera<T>) -> Camera<T> {
 /// A view's sight without its lens.
 fn undistorted<T: Real>(memory: &SceneMemory<'_, T>, sight: &Sight<T>) -> Option<Point2<T>> {
     memory.views.get(usize::from(sight.view))?.camera.undistort(&sight.pixel).ok()
-}
-
-fn tracks<T: Real>(sights: &[Sight<T>]) -> impl Iterator<Item = &[Sight<T>]> {
-    sights.chunk_by(|a, b| a.point == b.point)
 }
 
 /// The pair with most points at an angle.

@@ -12,12 +12,14 @@
 //! depth          disparity -> metres with its uncertainty, points
 //! focus          thin lens, sharpness, depth from focus, lens motors
 //! features       corners, descriptors, matches: which point of one picture is which of another
+//! motion         how cameras move: structure of many views, bundle adjustment
 //! pipeline       the live path, row by row
 //! ffi            the same for C, with the feature `ffi`
 //!
 //! camera -lines-> imaging -line windows-> matching -disparity row-> depth
 //!        '------------------------ pipeline -----------------------' -> ffi
 //! camera -lines-> imaging -line bands-> features -matches
+//!                         |                          '-sights-> geometry, motion
 //!                         '-------------> focus -peaks-> depth by one lens
 //! ```
 //!

@@ -40,12 +40,10 @@ pub enum Broken {
     Bundle(BundleError),
 }
 
-/// What came of it, and what it took.
+/// What came of it.
 pub struct Outcome {
     /// Costs, steps and why it stopped.
     pub report: BundleReport<f32>,
-    /// Ticks of all iterations.
-    pub ticks: u64,
     /// How far the second camera's centre is from the truth, of the baseline.
     pub centre_off: f32,
     /// How far it is turned from the truth, radians.
@@ -65,12 +63,12 @@ impl Adjusted {
     }
 
     /// Fills the window with a guess: the second camera a degree and a half and a tenth of the baseline off, the points a twentieth
-    /// too near or too far. Then adjusts it, the first view and the baseline held, and compares with the truth.
+    /// too near or too far. Then adjusts it, the first view and the baseline held, and compares with the truth. Returns the ticks of all iterations too.
     ///
     /// # Errors
     /// When the world or its window cannot be; which they can.
     #[inline(never)]
-    pub fn run(&mut self, mut now: impl FnMut() -> u64) -> Result<Outcome, Broken> {
+    pub fn run(&mut self, mut now: impl FnMut() -> u64) -> Result<(Outcome, u64), Broken> {
         let cameras = Cameras::new().map_err(Broken::World)?;
         self.world.fill(&cameras, SEED).map_err(Broken::World)?;
         self.fill(&cameras)?;
@@ -91,7 +89,7 @@ impl Adjusted {
         let off = (found.translation() - truth.translation()).norm() / truth.translation().norm();
         // The distance of two rotations is the root of two times their angle, while it is small.
         let turned = (found.rotation() - truth.rotation()).norm() * core::f32::consts::FRAC_1_SQRT_2;
-        Ok(Outcome { report, ticks, centre_off: off, turned_off: turned })
+        Ok((Outcome { report, centre_off: off, turned_off: turned }, ticks))
     }
 
     #[inline(never)]

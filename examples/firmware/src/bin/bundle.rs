@@ -60,12 +60,12 @@ fn run(memory: &mut Adjusted) -> Result<(), Failure> {
     let clock = Clock::start();
     defmt::info!("{=usize} points on {=str}", MATCHES, BOARD.core);
     let calibration = clock.calibrate();
-    let outcome = memory.run(|| clock.now())?;
+    let (outcome, ticks) = memory.run(|| clock.now())?;
     let stack = stack::used();
     write(&memory.window).map_err(Failure::Host)?;
     let mut console = Console::open();
     console.figure("calibration_ticks", calibration);
-    console.figure("ticks", outcome.ticks);
+    console.figure("ticks", ticks);
     console.figure("iterations", outcome.report.iterations.into());
     console.figure("state_bytes", size_of::<TwoViews>() as u64);
     console.figure("stack_bytes", stack as u64);

@@ -92,7 +92,7 @@ fn table(all: &[Bundle]) -> String {
 /// The window as the host adjusts it.
 fn of_host() -> Outcome<(Box<TwoViews>, Adjustment)> {
     let mut memory = Box::new(Adjusted::new());
-    let found = memory.run(|| 0).map_err(|e| Failure::new(format!("the host adjusts nothing: {e:?}")))?;
+    let (found, _) = memory.run(|| 0).map_err(|e| Failure::new(format!("the host adjusts nothing: {e:?}")))?;
     if !found.is_good() {
         return Err(Failure::new("what the host finds is not the truth"));
     }

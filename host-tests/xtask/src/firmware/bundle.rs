@@ -59,11 +59,11 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Bundle> {
 }
 
 /// Measures [`CASES`]; writes the table into README.md, or compares it.
-pub fn run_all(check: bool) -> Outcome {
-    let all = measured(&CASES, run, Bundle::told)?;
+pub fn run_all(readme: tables::Readme) -> Outcome {
+    let all = measured(&CASES, readme, run, Bundle::told)?;
     let part = tables::with_compiler(&table(&all))?;
     println!("{part}");
-    tables::into_readme(&BUNDLE, &part, check)
+    tables::into_readme(&BUNDLE, &part, readme)
 }
 
 fn table(all: &[Bundle]) -> String {

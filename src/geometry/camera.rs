@@ -77,7 +77,7 @@ impl core::error::Error for ProjectionError {}
 impl<T: Real> Camera<T> {
     /// What fills a slot that is not in use: zeros, which are no camera.
     pub(crate) const EMPTY: Self =
-        Self { fx: T::ZERO, fy: T::ZERO, cx: T::ZERO, cy: T::ZERO, skew: T::ZERO, distortion: Distortion::NONE };
+        Self { fx: T::ZERO, fy: T::ZERO, cx: T::ZERO, cy: T::ZERO, skew: T::ZERO, lens: Lens::NONE };
 
     /// A camera without skew and distortion: focal lengths and principal point, px.
     pub fn new(fx: T, fy: T, cx: T, cy: T) -> Result<Self, CameraError> {

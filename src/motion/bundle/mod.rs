@@ -18,7 +18,7 @@
 //! would on a host, and a tenth of the memory. A step costs, for n sights, 2 n derivatives, for every point a block product for each
 //! pair of its views, and Cholesky's factor of the views' matrix within its envelope.
 //!
-//! In `f32` the cost comes within some roundings of the least, 1e-5 of it; views follow with the root of that where the images
+//! In `f32` the cost comes within 1e-4 of the least; views follow with the root of that where the images
 //! say little. What has hundreds of views is for `f64`.
 #![allow(clippy::needless_range_loop, reason = "an element is named by its row and column, as in the equations")]
 

@@ -40,7 +40,7 @@ fn slope_of<T: Real>(camera: &Camera<T>, own: &Point3<T>) -> Result<(Point2<T>, 
     }
     let by = T::ONE / own.z;
     let (x, y) = (own.x * by, own.y * by);
-    let (plane, lens) = camera.distortion().distort_with_derivative(&Vector2::new(x, y));
+    let (plane, lens) = camera.lens().distort_with_derivative(&Vector2::new(x, y));
     let ((fx, fy), (cx, cy), skew) = (camera.focal_px(), camera.principal_point(), camera.skew_px());
     let pixel = Point2::new(fx * plane.x + skew * plane.y + cx, fy * plane.y + cy);
     let row = |by_x: T, by_y: T| Vector3::new(by_x * by, by_y * by, -(by_x * x + by_y * y) * by);

@@ -1,9 +1,9 @@
 //! The program `stereo` as its users run it: what it writes, and what it says when it cannot.
 
-#[path = "cli/calibrate.rs"]
-mod calibrate;
 #[path = "cli/bundle.rs"]
 mod bundle;
+#[path = "cli/calibrate.rs"]
+mod calibrate;
 #[path = "cli/features.rs"]
 mod features;
 #[path = "cli/focus.rs"]

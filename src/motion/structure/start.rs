@@ -131,11 +131,11 @@ fn before_plane<T: Real>(
 fn compact<T: Real>(seen: &mut [Correspondence<T>], inliers: &[bool]) -> usize {
     let mut kept = 0;
     for at in 0..seen.len() {
-        if let (Some(&true), Some(&this)) = (inliers.get(at), seen.get(at)) {
-            if let Some(slot) = seen.get_mut(kept) {
-                *slot = this;
-                kept += 1;
-            }
+        if let (Some(&true), Some(&this)) = (inliers.get(at), seen.get(at))
+            && let Some(slot) = seen.get_mut(kept)
+        {
+            *slot = this;
+            kept += 1;
         }
     }
     kept

@@ -88,7 +88,7 @@ fn noise_and_wrong_sights_are_borne() {
         let seen = with_wrong(scene(views(6), 80, 1, 0.3, |_, _| true), share);
         let (centres, points, known) =
             found(&seen, |metric, report| errors(&seen, metric, report)).expect("a structure");
-        assert!(centres < 0.08 && points < 0.08 && known >= 76, "{share}: {centres} {points} {known}");
+        assert!(centres < 0.08 && points < 0.08 && known >= 74, "{share}: {centres} {points} {known}");
     }
 }
 

@@ -86,7 +86,7 @@ pub enum PointState {
     Known,
     /// Its sights are nearly parallel: it is far away, or at infinity.
     Far,
-    /// Its sights do not meet before the cameras.
+    /// Its sights do not meet before the cameras, or fewer than half of them do.
     Apart,
 }
 

@@ -9,7 +9,8 @@ use nalgebra::{Matrix3, Point3, Vector3};
 /// Steps to the least re-projection error, at most.
 const MOST_STEPS: usize = 5;
 
-/// The point that most of these sights agree with, to a threshold, and least squares of those that do; refused when no two do.
+/// The point that most of these sights agree with, to a threshold, and least squares of those that do; refused when no half of
+/// them, and no two, do: two wrong ones of many meet by chance.
 ///
 /// Every pair of sights that has the least angle between its rays is a candidate, by the midpoint; the one with most sights within
 /// the threshold is refined by Gauss and Newton's method.
@@ -50,7 +51,7 @@ pub(super) fn triangulate<T: Real>(
             }
         }
     }
-    let Some((_, _, point)) = best else {
+    let Some((_, _, point)) = best.filter(|(count, ..)| 2 * count >= seen) else {
         return Err(match (seen, angled) {
             (0 | 1, _) => PointState::Unknown,
             (_, false) => PointState::Far,

@@ -3,7 +3,7 @@
 use super::config::RobustConfig;
 use super::loss::Loss;
 use super::random::Random;
-use crate::geometry::linear::Ldl;
+use crate::geometry::linear::{Ldl, covariance6};
 use crate::geometry::skew::{skew, turn};
 use crate::geometry::{Camera, Landmark, Pose, Real, p3p};
 use nalgebra::{Matrix3, Matrix6, Point3, Vector3};
@@ -110,7 +110,7 @@ pub fn robust_resection<T: Real>(
     }
     let free = T::count((2 * count).saturating_sub(6).max(1));
     let rms_px = (squares / free).sqrt();
-    let covariance = inverse(&information) * (rms_px * rms_px);
+    let covariance = covariance6(&information) * (rms_px * rms_px);
     Ok(RobustResection { pose, covariance, inliers: count, rms_px, samples })
 }
 
@@ -245,11 +245,14 @@ impl<T: Real> Problem<'_, T> {
             let weight = left * left;
             // P' = exp(-[w]x) P' - d, so that the slopes by w and d are [P']x and -1.
             let turned = skew(&p);
-            for (row, error) in [(0, du), (1, dv)] {
-                let at = if row == 0 { u } else { v };
-                let by_point = (self.k.row(row) - self.k.row(2) * at) * by;
-                let by_turn = by_point * turned;
-                let j = [by_turn[0], by_turn[1], by_turn[2], -by_point[0], -by_point[1], -by_point[2]];
+            let k = &self.k;
+            for (across, at, error) in [
+                (Vector3::new(k.m11, k.m12, k.m13), u, du), //
+                (Vector3::new(k.m21, k.m22, k.m23), v, dv),
+            ] {
+                let by_point = (across - Vector3::new(k.m31, k.m32, k.m33) * at) * by;
+                let by_turn = turned.tr_mul(&by_point);
+                let j = [by_turn.x, by_turn.y, by_turn.z, -by_point.x, -by_point.y, -by_point.z];
                 for ((line, slope), &a) in information.iter_mut().zip(&mut slope).zip(&j) {
                     *slope += a * error * weight;
                     for (sum, &b) in line.iter_mut().zip(&j) {
@@ -266,30 +269,4 @@ impl<T: Real> Problem<'_, T> {
 fn moved<T: Real>(pose: &Pose<T>, by: &Vector3<T>, step: &Vector3<T>) -> Pose<T> {
     let rotation = pose.rotation() * turn(by);
     Pose::of_parts(rotation, pose.translation() + rotation * step)
-}
-
-/// The inverse of an information; infinite on the diagonal where it has a direction of nothing.
-fn inverse<T: Real>(information: &[[T; 6]; 6]) -> Matrix6<T> {
-    let mut out = Matrix6::zeros();
-    // At size one in every direction.
-    let mut scale = [T::ZERO; 6];
-    for (i, (scale, row)) in scale.iter_mut().zip(information).enumerate() {
-        let d = row.get(i).copied().unwrap_or(T::ZERO);
-        *scale = if d > T::ZERO { T::ONE / d.sqrt() } else { T::ZERO };
-    }
-    let mut m = *information;
-    for (row, &a) in m.iter_mut().zip(&scale) {
-        row.iter_mut().zip(&scale).for_each(|(x, &b)| *x *= a * b);
-    }
-    let ldl = Ldl::<T, 6>::new(&mut m);
-    let open = ldl.pivots().iter().any(|&pivot| !(pivot > T::EPSILON * T::of(16.0)));
-    for i in 0..6 {
-        let mut unit = [T::ZERO; 6];
-        unit[i] = T::ONE;
-        let column = ldl.solve(&unit);
-        for j in 0..6 {
-            out[(j, i)] = if open && i == j { T::ONE / T::ZERO } else { column[j] * scale[i] * scale[j] };
-        }
-    }
-    (out + out.transpose()) * T::of(0.5)
 }

@@ -17,8 +17,8 @@ fn holds<V: View<f64, N>, const N: usize>(view: &V, eye: u16, point: &Point3<f64
         step[k] = h * sizes[k];
         view.moved(&step).project(eye, point).expect("seen")
     };
-    for k in 0..N {
-        let off = (by(k, STEP) - by(k, -STEP)) / (2.0 * STEP * sizes[k]);
+    for (k, size) in sizes.iter().enumerate() {
+        let off = (by(k, STEP) - by(k, -STEP)) / (2.0 * STEP * size);
         near(&[slope.by_view[0][k], slope.by_view[1][k]], &[off.x, off.y], &format!("view's number {k}"));
     }
     for k in 0..3 {

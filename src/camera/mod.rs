@@ -5,14 +5,24 @@
 //! * [`LineFormat`], [`FrameStart`], [`LineStart`]: what is known about lines and frames.
 //! * [`LineSource`]: one camera. [`StereoSource`]: a rectified pair.
 //! * [`CameraPair`]: two line sources as a stereo source, checked row by row.
+//! * [`SideBySide`], [`Interleaved`]: one stream that carries both cameras, in halves of a line or line by line. [`Mirrored`]:
+//!   lines from right to left.
+//! * [`LineSlots`]: lines from an interrupt or DMA to the matcher, by value; [`HandedLines`] is the camera on the matcher's side.
+//!   [`PingPong`]: the halves of a circular DMA buffer.
 //! * [`Triggered`]: pulses the sensors' common trigger pin before every frame.
 
 mod format;
+mod handoff;
 mod pair;
+mod ping_pong;
 mod source;
+mod streams;
 mod trigger;
 
 pub use format::{FrameStart, LineFormat, LineStart, PixelFormat};
-pub use pair::{CameraPair, PairError};
-pub use source::{CameraError, ErrorType, LineSource, StereoSource};
+pub use handoff::{EmptyLine, FilledLine, HandedLines, LineConsumer, LineProducer, LineSlots};
+pub use pair::{CameraPair, PairError, Pairing, RowSkew};
+pub use ping_pong::{Half, PingPong};
+pub use source::{CameraError, ErrorType, LineFault, LineSource, StereoSource};
+pub use streams::{Interleaved, Mirrored, SideBySide, StreamError};
 pub use trigger::{TriggerError, Triggered};

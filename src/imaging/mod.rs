@@ -2,7 +2,7 @@
 //!
 //! In: lines from a camera. Out: census rows.
 //!
-//! 1. [`GreyLines`]: any pixel format as 8-bit grey lines.
+//! 1. [`GreyLines`]: any pixel format as 8-bit grey lines; [`BayerLines`]: a mosaic of colours as well.
 //! 2. [`LineBand`]: the last lines, as the rows around a centre; [`LineWindow`] holds five.
 //! 3. [`census_plus4`], [`census_ring8`], [`census_wide8`], [`census_full24`]: the codes of one row. [`gradients`]: how its
 //!    brightness changes along the line and across it.
@@ -12,6 +12,7 @@
 //! Borders, but of remapped lines: a row or column outside the image is the nearest one inside it, everywhere in this
 //! module.
 
+mod bayer;
 mod census;
 mod gradient;
 mod grey;
@@ -20,6 +21,7 @@ mod remap;
 mod smooth;
 mod window;
 
+pub use bayer::BayerLines;
 pub use census::{census_full24, census_plus4, census_ring8, census_wide8};
 pub use gradient::gradients;
 pub use grey::GreyLines;

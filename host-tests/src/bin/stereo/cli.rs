@@ -10,6 +10,8 @@ pub use rectify::{RectifyArgs, RectifyOptions, Unit};
 
 use crate::failure::Failure;
 use crate::focus::{self, FocusArgs};
+use crate::record::{self, RecordArgs};
+use crate::replay::{self, ReplayArgs};
 use crate::two_view::{FEATURES_EXAMPLE, FUNDAMENTAL_EXAMPLE, FeaturesArgs, FundamentalArgs, POSE_EXAMPLE, PoseArgs};
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
@@ -21,7 +23,7 @@ use stereopsis_host::run::{Method, NoiseChoice, UnknownMethod, UnknownNoise, Way
 
 /// What is told to one who names another command.
 const COMMANDS: &str =
-    "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental and pose";
+    "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental, pose, record and replay";
 
 const EXAMPLES: &str = "Examples:
   stereo demo --out demo-out
@@ -86,6 +88,12 @@ pub enum Command {
     /// Tell depth by focus: frames of one scene with the lens in different positions
     #[command(after_help = focus::EXAMPLE)]
     Focus(FocusArgs),
+    /// Make a recording of a camera from images, with faults if they are wanted
+    #[command(after_help = record::EXAMPLE)]
+    Record(RecordArgs),
+    /// Play recorded lines, with the faults that they had, through the code that runs on the device
+    #[command(after_help = replay::EXAMPLE)]
+    Replay(ReplayArgs),
 }
 
 #[derive(Debug, Args)]
@@ -182,7 +190,7 @@ fn noise(text: &str) -> Result<NoiseChoice, String> {
     text.parse().map_err(|unknown: UnknownNoise| unknown.to_string())
 }
 
-fn filter(text: &str) -> Result<Filter, &'static str> {
+pub fn filter(text: &str) -> Result<Filter, &'static str> {
     Filter::ALL.into_iter().find(|filter| filter.name() == text).ok_or("the filters are dense, default and strict")
 }
 
@@ -193,7 +201,7 @@ fn kernel(text: &str) -> Result<Kernel, String> {
     })
 }
 
-fn method(text: &str) -> Result<Method, String> {
+pub fn method(text: &str) -> Result<Method, String> {
     text.parse().map_err(|unknown: UnknownMethod| unknown.to_string())
 }
 

@@ -1,0 +1,8 @@
+//! What stands between sensors and the pipeline, and what it does when they fail.
+//!
+//! * `faults`: the pipeline before a source with every fault, held against the injector's record.
+//! * `handoff`: lines from an interrupt. `formats`: pixel formats and streams of two cameras.
+
+mod faults;
+mod formats;
+mod handoff;

@@ -9,12 +9,14 @@
 //!   lines from right to left.
 //! * [`LineSlots`]: lines from an interrupt or DMA to the matcher, by value; [`HandedLines`] is the camera on the matcher's side.
 //!   [`PingPong`]: the halves of a circular DMA buffer.
+//! * [`Mt9v034`], [`Hm01b0`]: sensors over I2C. [`ExposureControl`]: what an automatic exposure asks of one.
 //! * [`Triggered`]: pulses the sensors' common trigger pin before every frame.
 
 mod format;
 mod handoff;
 mod pair;
 mod ping_pong;
+mod sensors;
 mod source;
 mod streams;
 mod trigger;
@@ -23,6 +25,9 @@ pub use format::{FrameStart, LineFormat, LineStart, PixelFormat};
 pub use handoff::{EmptyLine, FilledLine, HandedLines, LineConsumer, LineProducer, LineSlots};
 pub use pair::{CameraPair, PairError, Pairing, RowSkew};
 pub use ping_pong::{Half, PingPong};
+pub use sensors::{
+    ExposureControl, Hm01b0, Hm01b0Mode, Hm01b0Size, Mt9v034, Mt9v034Mode, Mt9v034Pattern, Mt9v034Window, SensorError,
+};
 pub use source::{CameraError, ErrorType, LineFault, LineSource, StereoSource};
 pub use streams::{Interleaved, Mirrored, SideBySide, StreamError};
 pub use trigger::{TriggerError, Triggered};

@@ -1,8 +1,11 @@
 //! What stands between sensors and the pipeline, and what it does when they fail.
 //!
 //! * `faults`: the pipeline before a source with every fault, held against the injector's record.
-//! * `handoff`: lines from an interrupt. `formats`: pixel formats and streams of two cameras.
+//! * `handoff`: lines from an interrupt. `formats`: pixel formats and streams of two cameras. `sensors`: what is written to them.
+//! * `exposure`: one exposure for two cameras, and what their pictures tell of their health.
 
+mod exposure;
 mod faults;
 mod formats;
 mod handoff;
+mod sensors;

@@ -122,7 +122,7 @@ pub struct LineProducer<'a, 'b, const B: usize> {
 impl<'b, const B: usize> LineProducer<'_, 'b, B> {
     /// A slot for the line that comes now; with none the line is lost, which is counted.
     pub fn begin(&mut self) -> Option<EmptyLine<'b, B>> {
-        let slot = self.free.dequeue().map(EmptyLine);
+        let slot = take(&mut self.free).map(EmptyLine);
         if slot.is_none() {
             self.overruns = self.overruns.saturating_add(1);
         }
@@ -132,7 +132,7 @@ impl<'b, const B: usize> LineProducer<'_, 'b, B> {
     /// The line is whole: it waits for the consumer.
     pub fn finish(&mut self, line: EmptyLine<'b, B>, frame: FrameStart, start: LineStart) {
         // There are no more slots than the queue has room for.
-        let _ = self.waiting.enqueue(FilledLine { bytes: line.0, frame, start, overruns: self.overruns });
+        put(&mut self.waiting, FilledLine { bytes: line.0, frame, start, overruns: self.overruns });
     }
 
     /// Lines that found no slot.
@@ -151,13 +151,26 @@ impl<'b, const B: usize> LineConsumer<'_, 'b, B> {
     /// The line that has waited longest.
     #[allow(clippy::should_implement_trait, reason = "an iterator's items need not be given back")]
     pub fn next(&mut self) -> Option<FilledLine<'b, B>> {
-        self.waiting.dequeue()
+        take(&mut self.waiting)
     }
 
     /// The line was read: its slot is free.
     pub fn done(&mut self, line: FilledLine<'b, B>) {
         // There are no more slots than the queue has room for.
-        let _ = self.free.enqueue(line.bytes);
+        put(&mut self.free, line.bytes);
+    }
+}
+
+/// Takes the oldest of a queue. A queue's length, by which its ends divide, is not 0: said here, the compiler sees it and leaves
+/// no panic.
+fn take<T>(queue: &mut Consumer<'_, T>) -> Option<T> {
+    if queue.capacity().wrapping_add(1) == 0 { None } else { queue.dequeue() }
+}
+
+/// Puts one more into a queue that has room for it.
+fn put<T>(queue: &mut Producer<'_, T>, item: T) {
+    if queue.capacity().wrapping_add(1) != 0 {
+        let _ = queue.enqueue(item);
     }
 }
 

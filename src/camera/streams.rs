@@ -60,6 +60,11 @@ impl<S: LineSource, const RAW: usize> SideBySide<S, RAW> {
         if needed > RAW { Err(StreamError::BufferTooShort { needed }) } else { Ok(Self { source, raw: [0; RAW] }) }
     }
 
+    /// The stream.
+    pub fn source(&self) -> &S {
+        &self.source
+    }
+
     /// Gives the stream back.
     pub fn release(self) -> S {
         self.source

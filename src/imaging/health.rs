@@ -81,7 +81,7 @@ impl PairMonitor {
     /// Fewer votes say nothing.
     const FEWEST_VOTES: u32 = 4;
 
-    /// For disparities up to `most_disparity`, of which each fourth is tried.
+    /// For disparities up to `most_disparity`. Trying them costs, for each pixel of a frame, `most_disparity / 4` differences.
     pub const fn new(most_disparity: u16) -> Self {
         Self { sides: [Side::NEW; 2], most_disparity, row: 0, right_way: 0, wrong_way: 0 }
     }
@@ -111,9 +111,9 @@ impl PairMonitor {
         }
     }
 
-    /// The least sum of differences between `a` and `b` moved right, in 256ths a pixel, over disparities from 4 on.
+    /// The least mean of differences between `a` and `b` moved right, in 256ths, over disparities from 1 on.
     fn least(&self, a: &[u8], b: &[u8]) -> u32 {
-        let tried = (4..=usize::from(self.most_disparity)).step_by(4);
+        let tried = 1..=usize::from(self.most_disparity);
         let fit = |d: usize| {
             let pairs = a.iter().skip(d).zip(b);
             let (sum, count) = pairs.fold((0_u32, 0_u32), |(sum, count), (a, b)| {

@@ -110,9 +110,9 @@ fn pictures_tell_what_is_wrong_with_a_camera() {
 fn swapped_cameras_are_told_and_others_are_not() {
     let scenes = [Scene::small(160, 96), Scene::small(200, 120)].map(|scene| scene.render());
     let patterns = [1, 2, 3].map(|seed| Pattern::Shifted { most: 24, noise_grey: 3.0 }.pair(160, 96, seed));
-    for (left, right) in scenes.iter().chain(&patterns) {
-        assert!(!watched(left, right, 40).are_swapped());
-        assert!(watched(right, left, 40).are_swapped());
+    for (i, (left, right)) in scenes.iter().chain(&patterns).enumerate() {
+        assert!(!watched(left, right, 40).are_swapped(), "{i}");
+        assert!(watched(right, left, 40).are_swapped(), "{i}: {:?}", watched(right, left, 40));
         assert!(!watched(left, left, 40).are_swapped(), "all far away");
     }
     let (blank, noise) = (Pattern::Constant(90).pair(160, 96, 1), Pattern::Noise.pair(160, 96, 1));

@@ -2,8 +2,10 @@
 //!
 //! * `faults`: the pipeline before a source with every fault, held against the injector's record.
 //! * `handoff`: lines from an interrupt. `formats`: pixel formats and streams of two cameras. `sensors`: what is written to them.
+//! * `after`: answers over frames, smaller rows, rows on a display.
 //! * `exposure`: one exposure for two cameras, and what their pictures tell of their health.
 
+mod after;
 mod exposure;
 mod faults;
 mod formats;

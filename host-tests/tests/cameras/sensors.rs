@@ -105,7 +105,7 @@ fn a_mt9v034s_times_are_those_of_its_data_sheet() {
     // The defaults: 846 clocks a row, 525 rows and 4 clocks a frame: 444 154 clocks, 16.66 ms at 26.66 MHz (table 4 and 5).
     let sensor = Mt9v034::new(Mock::new(&[]), AT, 26_660_000);
     assert_eq!(sensor.row_time_ns(), 31_732);
-    assert_eq!(sensor.frame_time_us(), 16_661);
+    assert_eq!(sensor.frame_time_us(), 16_660);
     sensor.release().done();
 
     let mut expected = mt9v034_start();

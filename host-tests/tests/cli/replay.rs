@@ -9,7 +9,7 @@ use stereopsis_host::scene::pattern::Pattern;
 /// Two images of a bench, and their options.
 fn put_pair(bench: &Bench, folders: bool) -> [String; 2] {
     let (left, right) = Pattern::Shifted { most: 12, noise_grey: 2.0 }.pair(48, 30, 5);
-    let mut put = |side: &str, image: &image::GrayImage| {
+    let put = |side: &str, image: &image::GrayImage| {
         if !folders {
             let path = bench.path(&format!("{side}.png"));
             image.save(&path).expect("a file");

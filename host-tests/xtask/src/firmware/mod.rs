@@ -7,7 +7,8 @@
 //! * [`awkward`]: sizes that fill no vector, where the rows are in assembly.
 //! * [`pose`]: two views on one core, held to the host; [`two_views_all`]: on every core.
 //! * [`features`]: features of two pictures and their matches, on one core and on those of the table.
-//! * [`focus`]: a lens that moves, likewise. [`results`]: the run of such a program, and what it leaves.
+//! * [`focus`]: a lens that moves, likewise. [`interrupt`]: lines that an interrupt brings.
+//! * [`results`]: the run of such a program, and what it leaves.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
 
 mod all;
@@ -18,6 +19,7 @@ mod emulate;
 mod features;
 mod focus;
 pub mod frame;
+mod interrupt;
 mod log;
 mod pose;
 pub mod program;
@@ -48,6 +50,7 @@ use arguments::{Asked, One, Plain};
 use board::Board;
 use features::Features;
 use focus::Focus;
+use interrupt::Interrupt;
 use pose::Pose;
 use program::{Optimised, Program};
 use serde::Serialize;
@@ -63,6 +66,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Asked::Pose(plain) => run_plain(&plain, pose::run, Pose::told),
         Asked::Features(plain) => run_plain(&plain, features::run, Features::told),
         Asked::Focus(plain) => run_plain(&plain, focus::run, Focus::told),
+        Asked::Interrupt(plain) => run_plain(&plain, interrupt::run, Interrupt::told),
         Asked::All => run_all(Readme::of_check(arguments.check)),
     }
 }
@@ -72,7 +76,9 @@ fn run_all(readme: Readme) -> Outcome {
     all::run(readme)?;
     two_views_all::run(readme)?;
     features::run_all(readme)?;
-    focus::run_all(readme)
+    focus::run_all(readme)?;
+    println!("{}", interrupt::run(board::M4, Optimised::Speed)?.told());
+    Ok(())
 }
 
 /// Every core and method and a part of the sizes and programs, compared with README.md.

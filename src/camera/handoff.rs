@@ -177,7 +177,7 @@ fn put<T>(queue: &mut Producer<'_, T>, item: T) {
 /// The camera that an interrupt feeds through [`LineSlots`].
 ///
 /// `wait` is called while no line waits, to sleep until the next interrupt; it says false when the time is over, which is
-/// [`CameraError::TimedOut`]. A line that is lost on the way is seen by the next one's row.
+/// [`CameraError::TimedOut`], and has to say so some time. A line that is lost on the way is seen by the next one's row.
 pub struct HandedLines<'a, 'b, F, const B: usize> {
     consumer: LineConsumer<'a, 'b, B>,
     format: LineFormat,
@@ -234,8 +234,8 @@ impl<F: FnMut() -> bool, const B: usize> LineSource for HandedLines<'_, '_, F, B
 
     fn start_frame(&mut self) -> Result<FrameStart, CameraError<Infallible>> {
         self.is_over = true;
-        loop {
-            // Bounded by `wait`, which says when it is time to give up, and by the lines of the frame before.
+        // What is left of the frame before goes: its lines and as many that come meanwhile, but not without an end.
+        for _ in 0..=2 * u32::from(self.format.height) {
             let line = self.take()?;
             if self.frame.is_none_or(|frame| frame.sequence != line.frame.sequence) {
                 let frame = line.frame;
@@ -245,6 +245,7 @@ impl<F: FnMut() -> bool, const B: usize> LineSource for HandedLines<'_, '_, F, B
             }
             self.consumer.done(line);
         }
+        Err(CameraError::LostSync)
     }
 
     fn next_line(&mut self, to: &mut [u8]) -> Result<LineStart, CameraError<Infallible>> {

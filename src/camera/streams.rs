@@ -115,7 +115,11 @@ impl<S: LineSource> Interleaved<S> {
     /// For cameras that exposed together and are only sent one after the other, that is 0.
     pub fn new(source: S, line_us: u32) -> Result<Self, StreamError> {
         let height = source.format().height;
-        if height % 2 != 0 { Err(StreamError::OddHeight { height }) } else { Ok(Self { source, line_us, lost: false }) }
+        if !height.is_multiple_of(2) {
+            Err(StreamError::OddHeight { height })
+        } else {
+            Ok(Self { source, line_us, lost: false })
+        }
     }
 
     /// Gives the stream back.

@@ -1,17 +1,17 @@
 //! A seeded injector of faults before any source of lines, with a record of what it did.
 //!
 //! * [`Fault`]: the faults by name. [`Record`]: what was done to a frame, and what anybody can know about it.
-//! * [`Faulty`]: a [`LineSource`] or a [`StereoSource`] with faults.
+//! * [`Faulty`]: a [`LineSource`](stereopsis::camera::LineSource) or a
+//!   [`StereoSource`](stereopsis::camera::StereoSource) with faults.
 
 mod record;
+mod source;
 
 pub use record::{Fault, Record};
 
 use crate::scene::random::Random;
 use std::fmt;
-use stereopsis::camera::{
-    CameraError, ErrorType, FrameStart, LineFault, LineFormat, LineSource, LineStart, StereoSource,
-};
+use stereopsis::camera::{CameraError, FrameStart, LineFault, LineStart};
 
 /// The error of a source with faults.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -257,49 +257,5 @@ impl<S> Faulty<S> {
                 Ok(start)
             }
         }
-    }
-}
-
-impl<S: ErrorType> ErrorType for Faulty<S> {
-    type Error = FaultyError<S::Error>;
-}
-
-impl<S: LineSource> LineSource for Faulty<S> {
-    fn format(&self) -> LineFormat {
-        self.inner.format()
-    }
-
-    fn start_frame(&mut self) -> Result<FrameStart, CameraError<Self::Error>> {
-        self.start(|inner| inner.start_frame())
-    }
-
-    fn next_line(&mut self, line: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
-        let format = self.format();
-        self.next(format.height, format.line_bytes(), &mut [line], |inner, lines| match lines {
-            [line] => inner.next_line(line),
-            _ => Err(CameraError::NoLineLeft),
-        })
-    }
-}
-
-impl<S: StereoSource> StereoSource for Faulty<S> {
-    fn format(&self) -> LineFormat {
-        self.inner.format()
-    }
-
-    fn max_row_skew_us(&self) -> u32 {
-        self.inner.max_row_skew_us()
-    }
-
-    fn start_frame(&mut self) -> Result<FrameStart, CameraError<Self::Error>> {
-        self.start(|inner| inner.start_frame())
-    }
-
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
-        let format = self.inner.format();
-        self.next(format.height, format.line_bytes(), &mut [left, right], |inner, lines| match lines {
-            [left, right] => inner.next_lines(left, right),
-            _ => Err(CameraError::NoLineLeft),
-        })
     }
 }

@@ -13,12 +13,13 @@ use core::cell::RefCell;
 use critical_section::Mutex;
 use static_cell::ConstStaticCell;
 use stereopsis::camera::{
-    CameraError, FrameStart, HandedLines, LineFormat, LineProducer, LineSlots, LineStart, PixelFormat, SideBySide,
-    StereoSource, StreamError,
+    FrameStart, HandedLines, LineFormat, LineProducer, LineSlots, LineStart, PixelFormat, SideBySide, StereoSource,
+    StreamError,
 };
 use stereopsis::matching::{Block, Config, ConfigError, Filter, Row};
 use stereopsis::pipeline::{Guarded, PipelineError};
 use stereopsis::units::{Disparity, PixelFlags};
+use stereopsis_firmware::camera::memory::{Direct, Picture};
 use stereopsis_firmware::camera::scene::{Scene, SceneCamera};
 use stereopsis_firmware::choice::BOARD;
 use stereopsis_firmware::clock::Clock;
@@ -39,12 +40,12 @@ const BLANKING: usize = 16;
 /// Frames at each rate.
 const FRAMES: u32 = 4;
 
-/// What the cameras see, line by line.
-struct Picture([[u8; LINE]; HEIGHT]);
+/// What the cameras see.
+type Seen = Picture<LINE, HEIGHT>;
 
 /// All that it takes besides the stack.
 struct Memory {
-    picture: Picture,
+    picture: Seen,
     slots: [[u8; LINE]; SLOTS],
     queues: LineSlots<'static, LINE, { SLOTS + 1 }>,
     pipeline: Guarded<Block, WIDTH, DISPARITIES>,
@@ -68,7 +69,7 @@ static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory {
 /// The interrupt's own: where it is in its frame, and where lines go.
 struct Sensor {
     producer: LineProducer<'static, 'static, LINE>,
-    picture: &'static Picture,
+    picture: &'static Seen,
     sequence: u32,
     row: usize,
 }
@@ -167,7 +168,7 @@ fn run(memory: &'static mut Memory) -> Result<(), Failure> {
 
     // Without an interrupt: what the rows are, and how long they take.
     pipeline.start(&config)?;
-    let mut direct = Direct { picture, row: HEIGHT, sequence: 0 };
+    let mut direct = Direct::new(picture);
     let start = clock.now();
     pipeline.begin_frame(&mut direct)?;
     let mut y = 0;
@@ -217,7 +218,7 @@ fn run(memory: &'static mut Memory) -> Result<(), Failure> {
     Ok(())
 }
 
-fn render(scene: &mut SceneCamera, picture: &mut Picture) -> Result<(), Failure> {
+fn render(scene: &mut SceneCamera, picture: &mut Seen) -> Result<(), Failure> {
     scene.start_frame().map_err(|_| Failure::Scene)?;
     for line in &mut picture.0 {
         let (left, right) = line.split_at_mut(WIDTH);
@@ -280,40 +281,5 @@ impl Rows {
             file.write(bytes.as_flattened())?;
         }
         Ok(())
-    }
-}
-
-/// The picture as a camera, without an interrupt.
-struct Direct<'a> {
-    picture: &'a Picture,
-    row: usize,
-    sequence: u32,
-}
-
-impl stereopsis::camera::ErrorType for Direct<'_> {
-    type Error = core::convert::Infallible;
-}
-
-impl StereoSource for Direct<'_> {
-    fn format(&self) -> LineFormat {
-        LineFormat { width: WIDTH as u16, height: HEIGHT as u16, pixel: PixelFormat::Grey8 }
-    }
-
-    fn max_row_skew_us(&self) -> u32 {
-        0
-    }
-
-    fn start_frame(&mut self) -> Result<FrameStart, CameraError<Self::Error>> {
-        (self.row, self.sequence) = (0, self.sequence.wrapping_add(1));
-        Ok(FrameStart { sequence: self.sequence, ..FrameStart::default() })
-    }
-
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
-        let line = self.picture.0.get(self.row).ok_or(CameraError::NoLineLeft)?;
-        let (l, r) = line.split_at(WIDTH);
-        left.iter_mut().zip(l).for_each(|(to, &from)| *to = from);
-        right.iter_mut().zip(r).for_each(|(to, &from)| *to = from);
-        self.row += 1;
-        Ok(LineStart { row: (self.row - 1) as u16, timestamp_us: 0 })
     }
 }

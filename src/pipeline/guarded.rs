@@ -147,6 +147,7 @@ impl<S: Scheme, const W: usize, const D: usize> Guarded<S, W, D> {
             }
             Ok(true) => {
                 count(&mut self.lines.counters.rows, 1);
+                self.pipeline.matcher.mask(|row, masks| camera.mask(row, masks));
                 self.mark();
                 Ok(self.pipeline.row())
             }

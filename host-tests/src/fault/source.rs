@@ -34,6 +34,10 @@ impl<S: StereoSource> StereoSource for Faulty<S> {
         self.inner.max_row_skew_us()
     }
 
+    fn mask(&self, row: u16, masks: [&mut [u8]; 2]) -> bool {
+        self.inner.mask(row, masks)
+    }
+
     fn start_frame(&mut self) -> Result<FrameStart, CameraError<Self::Error>> {
         self.start(|inner| inner.start_frame())
     }

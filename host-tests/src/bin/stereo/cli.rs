@@ -22,8 +22,7 @@ use stereopsis_host::command_line::usage_line;
 use stereopsis_host::run::{Method, NoiseChoice, UnknownMethod, UnknownNoise, Way};
 
 /// What is told to one who names another command.
-const COMMANDS: &str =
-    "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental, pose, record and replay";
+const COMMANDS: &str = "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental, pose, record and replay";
 
 const EXAMPLES: &str = "Examples:
   stereo demo --out demo-out

@@ -6,10 +6,10 @@
 //! ```text
 //! units math     words: Disparity, Millimetres, PixelFlags; the one file that names libm
 //! geometry       pure maths on fixed-size nalgebra types, no pixels
-//! camera         traits for where lines come from; two cameras as one stereo source
+//! camera         traits for where lines come from; two cameras as one stereo source; sensor drivers, line hand-off
 //! imaging        lines, line windows, pixel formats, remap, census, gradients, noise
 //! matching       lines -> disparity row: census, costs, winner, checks, sub-pixel, speckle
-//! depth          disparity -> metres with its uncertainty, points
+//! depth          disparity -> metres with its uncertainty, points; over frames, smaller, on a display
 //! focus          thin lens, sharpness, depth from focus, lens motors
 //! features       corners, descriptors, matches: which point of one picture is which of another
 //! motion         how cameras move: structure of many views, bundle adjustment

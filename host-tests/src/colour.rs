@@ -30,8 +30,8 @@ const VIRIDIS: [[u8; 3]; 9] = [
 const DIVERGING: [[u8; 3]; 3] = [[0x00, 0x72, 0xb2], [0xf7, 0xf7, 0xf7], [0xd5, 0x5e, 0x00]];
 
 /// The colour of each reason, in the order of [`PixelFlags::NAMES`]: Okabe and Ito's sky blue, yellow, bluish green,
-/// orange, blue, reddish purple and vermillion.
-pub const FLAG_COLOURS: [Rgb<u8>; 7] = [
+/// orange, blue, reddish purple and vermillion; and a grey.
+pub const FLAG_COLOURS: [Rgb<u8>; 8] = [
     Rgb([0x56, 0xb4, 0xe9]),
     Rgb([0xf0, 0xe4, 0x42]),
     Rgb([0x00, 0x9e, 0x73]),
@@ -39,6 +39,7 @@ pub const FLAG_COLOURS: [Rgb<u8>; 7] = [
     Rgb([0x00, 0x72, 0xb2]),
     Rgb([0xcc, 0x79, 0xa7]),
     Rgb([0xd5, 0x5e, 0x00]),
+    Rgb([0x60, 0x60, 0x60]),
 ];
 
 /// The colour at `t`, 0 (far, dark) to 1 (near, bright).

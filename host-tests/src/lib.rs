@@ -3,11 +3,13 @@
 //! In running order:
 //!
 //! * [`mock`]: a camera that reads image files.
+//! * [`fault`]: faults before any source, seeded and recorded.
 //! * [`scene`]: a ray-traced scene as a camera, with its true depth, disparity and occlusion.
 //! * [`calibration`]: rigs from and to the files of other programs.
 //! * [`calibrate`]: a rig from pictures of a chessboard.
 //! * [`mod@matches`]: correspondences from files.
 //! * [`real`]: real pairs with a known truth, also altered, and scores on them.
+//! * [`recording`]: lines as they came, in a file, and played again.
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
 //! * [`correspond`]: two pictures through the core's features and matcher. [`two_view`]: correspondences of a known scene,
 //!   with noise and wrong ones.
@@ -25,6 +27,7 @@ pub mod colour;
 pub mod command_line;
 pub mod correspond;
 pub mod epipolar_picture;
+pub mod fault;
 pub mod focus;
 pub mod map;
 pub mod matches;
@@ -34,6 +37,7 @@ pub mod output;
 pub mod pfm;
 pub mod ply;
 pub mod real;
+pub mod recording;
 pub mod rectify;
 pub mod report;
 pub mod run;

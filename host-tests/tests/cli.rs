@@ -14,6 +14,8 @@ mod output;
 mod rectify;
 #[path = "cli/refused.rs"]
 mod refused;
+#[path = "cli/replay.rs"]
+mod replay;
 #[path = "cli/results.rs"]
 mod results;
 #[path = "cli/support.rs"]

@@ -1,17 +1,63 @@
 //! Two line sources as one stereo source.
 
-use super::{CameraError, ErrorType, FrameStart, LineFormat, LineSource, LineStart, StereoSource};
+use super::{CameraError, ErrorType, FrameStart, LineFault, LineFormat, LineSource, LineStart, StereoSource};
 use core::fmt;
 
 /// Two rectified cameras, taken row by row and checked: one row number, time stamps within the bound on row skew.
 ///
 /// When one camera lost a frame, [`start_frame`](StereoSource::start_frame) starts frames of the camera that is behind
-/// until the sequence numbers agree, at most [`CameraPair::MAX_CATCH_UP`] of them.
+/// until they are of one [`Pairing`], at most [`CameraPair::MAX_CATCH_UP`] of them. When one lost a line, the pair fails once
+/// and goes on with the row below it: the camera that is behind gives up the lines that the other one has passed. An old line or
+/// frame of one of them, told by its time stamp or number, is refused: the caller sees the left camera's alone.
 #[derive(Debug)]
 pub struct CameraPair<L, R> {
     left: L,
     right: R,
+    pairing: Pairing,
     max_row_skew_us: u32,
+    skew: RowSkew,
+    /// Lines that a camera gives up before the next one.
+    left_behind: u16,
+    right_behind: u16,
+    /// The sequence numbers of the frames that the cameras started last.
+    before: [u32; 2],
+    /// The newest time stamps of their frames, microseconds.
+    newest_us: [u64; 2],
+}
+
+/// What says that two frames are of one moment.
+#[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Pairing {
+    /// Equal sequence numbers: cameras that count the pulses of one trigger.
+    #[default]
+    Sequence,
+    /// Time stamps within the bound on row skew: cameras that run freely, stamped by one clock. The pair's sequence number
+    /// is the left camera's.
+    TimeStamp,
+}
+
+/// The row skew of a frame so far: how much later than the left camera the right one read out its row, by the time stamps.
+#[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct RowSkew {
+    /// Rows that it was measured on; with none the other fields are 0.
+    pub rows: u16,
+    /// The least, microseconds; negative where the right camera was first.
+    pub least_us: i64,
+    /// The most, microseconds.
+    pub most_us: i64,
+}
+
+impl RowSkew {
+    fn add(&mut self, left_us: u64, right_us: u64) {
+        // Stamps near 2^64 us are 584 000 years: the difference fits.
+        let skew = right_us.wrapping_sub(left_us) as i64;
+        let first = self.rows == 0;
+        self.least_us = if first { skew } else { self.least_us.min(skew) };
+        self.most_us = if first { skew } else { self.most_us.max(skew) };
+        self.rows = self.rows.saturating_add(1);
+    }
 }
 
 /// Why two cameras did not give a pair.
@@ -44,6 +90,11 @@ pub enum PairError<L, R> {
         /// The right camera's.
         right: u16,
     },
+    /// The frames' time stamps stayed apart.
+    FrameSkew {
+        /// Microseconds between them.
+        skew_us: u64,
+    },
     /// The two lines were read out too far apart.
     RowSkew {
         /// Microseconds between them.
@@ -65,6 +116,7 @@ impl<L: fmt::Display, R: fmt::Display> fmt::Display for PairError<L, R> {
                 write!(f, "frame {left} of the left camera meets frame {right} of the right")
             }
             Self::Rows { left, right } => write!(f, "row {left} of the left camera meets row {right} of the right"),
+            Self::FrameSkew { skew_us } => write!(f, "the cameras' frames stay {skew_us} us apart"),
             Self::RowSkew { skew_us } => write!(f, "the cameras' rows are {skew_us} us apart"),
         }
     }
@@ -82,12 +134,77 @@ impl<L: LineSource, R: LineSource> CameraPair<L, R> {
         if l != r {
             return Err(CameraError::Hardware(PairError::Formats { left: l, right: r }));
         }
-        Ok(Self { left, right, max_row_skew_us })
+        let (pairing, skew) = (Pairing::Sequence, RowSkew::default());
+        Ok(Self {
+            left,
+            right,
+            pairing,
+            max_row_skew_us,
+            skew,
+            left_behind: 0,
+            right_behind: 0,
+            before: [0; 2],
+            newest_us: [0; 2],
+        })
+    }
+
+    /// The same with another way to tell which frames belong together.
+    pub fn paired_by(self, pairing: Pairing) -> Self {
+        Self { pairing, ..self }
+    }
+
+    /// The row skew measured on this frame's rows, those included that were refused for it.
+    pub fn row_skew(&self) -> RowSkew {
+        self.skew
+    }
+
+    fn start_left(&mut self) -> Paired<Started, L, R> {
+        let start = self.left.start_frame().map_err(|e| e.map_hardware(PairError::Left))?;
+        let [before, _] = &mut self.before;
+        Ok(Started::after(before, start))
+    }
+
+    fn start_right(&mut self) -> Paired<Started, L, R> {
+        let start = self.right.start_frame().map_err(|e| e.map_hardware(PairError::Right))?;
+        let [_, before] = &mut self.before;
+        Ok(Started::after(before, start))
+    }
+
+    /// How far the left camera's frame is before (negative) or behind the right one's; 0 is a pair.
+    fn apart(&self, left: &Started, right: &Started) -> i64 {
+        // A camera that gives its frame once more is behind, whatever its number says.
+        if left.is_stale || right.is_stale {
+            return if left.is_stale { -1 } else { 1 };
+        }
+        let (left, right) = (&left.start, &right.start);
+        match self.pairing {
+            // The counters wrap: the one behind is the one that reaches the other in fewer steps.
+            Pairing::Sequence => i64::from(left.sequence.wrapping_sub(right.sequence) as i32),
+            Pairing::TimeStamp => {
+                let apart = left.timestamp_us.wrapping_sub(right.timestamp_us) as i64;
+                if apart.unsigned_abs() <= u64::from(self.max_row_skew_us) { 0 } else { apart }
+            }
+        }
     }
 
     /// Gives the two cameras back.
     pub fn release(self) -> (L, R) {
         (self.left, self.right)
+    }
+}
+
+/// A camera's frame, and whether it is the one before once more.
+struct Started {
+    start: FrameStart,
+    is_stale: bool,
+}
+
+impl Started {
+    fn after(before: &mut u32, start: FrameStart) -> Self {
+        // A source that does not count says 0.
+        let is_stale = start.sequence != 0 && start.sequence == *before;
+        *before = start.sequence;
+        Self { start, is_stale }
     }
 }
 
@@ -105,29 +222,55 @@ impl<L: LineSource, R: LineSource> StereoSource for CameraPair<L, R> {
     }
 
     fn start_frame(&mut self) -> Paired<FrameStart, L, R> {
-        let mut left = self.left.start_frame().map_err(|e| e.map_hardware(PairError::Left))?;
-        let mut right = self.right.start_frame().map_err(|e| e.map_hardware(PairError::Right))?;
+        (self.skew, self.left_behind, self.right_behind) = (RowSkew::default(), 0, 0);
+        let (mut left, mut right) = (self.start_left()?, self.start_right()?);
         for _ in 0..Self::MAX_CATCH_UP {
-            // The counters wrap: the one behind is the one that reaches the other in fewer steps.
-            match left.sequence.wrapping_sub(right.sequence) as i32 {
+            match self.apart(&left, &right) {
                 0 => break,
-                1.. => right = self.right.start_frame().map_err(|e| e.map_hardware(PairError::Right))?,
-                _ => left = self.left.start_frame().map_err(|e| e.map_hardware(PairError::Left))?,
+                1.. => right = self.start_right()?,
+                _ => left = self.start_left()?,
             }
         }
-        if left.sequence != right.sequence {
-            let error = PairError::Sequence { left: left.sequence, right: right.sequence };
-            return Err(CameraError::Hardware(error));
+        let apart = self.apart(&left, &right);
+        let (left, right) = (left.start, right.start);
+        if apart != 0 {
+            return Err(CameraError::Hardware(match self.pairing {
+                Pairing::Sequence => PairError::Sequence { left: left.sequence, right: right.sequence },
+                Pairing::TimeStamp => PairError::FrameSkew { skew_us: left.timestamp_us.abs_diff(right.timestamp_us) },
+            }));
         }
+        self.newest_us = [left.timestamp_us, right.timestamp_us];
         Ok(left)
     }
 
     fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Paired<LineStart, L, R> {
-        let l = self.left.next_line(left).map_err(|e| e.map_hardware(PairError::Left))?;
-        let r = self.right.next_line(right).map_err(|e| e.map_hardware(PairError::Right))?;
+        let needed = self.format().line_bytes();
+        if left.len().min(right.len()) < needed {
+            return Err(CameraError::BufferTooShort { needed });
+        }
+        for _ in 0..core::mem::take(&mut self.left_behind) {
+            self.left.next_line(left).map_err(|e| e.map_hardware(PairError::Left))?;
+        }
+        for _ in 0..core::mem::take(&mut self.right_behind) {
+            self.right.next_line(right).map_err(|e| e.map_hardware(PairError::Right))?;
+        }
+        // Both are asked, whatever the first one says: they stay in step.
+        let (l, r) = (self.left.next_line(left), self.right.next_line(right));
+        let l = l.map_err(|e| e.map_hardware(PairError::Left))?;
+        let r = r.map_err(|e| e.map_hardware(PairError::Right))?;
         if l.row != r.row {
+            self.left_behind = r.row.saturating_sub(l.row);
+            self.right_behind = l.row.saturating_sub(r.row);
             return Err(CameraError::Hardware(PairError::Rows { left: l.row, right: r.row }));
         }
+        // The caller sees the left camera's time stamps alone.
+        for (newest_us, line) in self.newest_us.iter_mut().zip([&l, &r]) {
+            if line.timestamp_us != 0 && line.timestamp_us < *newest_us {
+                return Err(CameraError::LineLost(LineFault::Stale));
+            }
+            *newest_us = (*newest_us).max(line.timestamp_us);
+        }
+        self.skew.add(l.timestamp_us, r.timestamp_us);
         let skew_us = l.timestamp_us.abs_diff(r.timestamp_us);
         if skew_us > u64::from(self.max_row_skew_us) {
             return Err(CameraError::Hardware(PairError::RowSkew { skew_us }));

@@ -25,8 +25,41 @@ pub enum CameraError<E> {
         /// Bytes that would have been enough.
         needed: usize,
     },
-    /// A line was asked for before a frame was started, or after its last line.
+    /// A line was asked for before a frame was started, or after its last line: before the frame's height is reached, the
+    /// sensor gave a short frame.
     NoLineLeft,
+    /// The next line is lost. The frame goes on: the next call gives the line below it.
+    LineLost(LineFault),
+    /// Nothing came within the time that the source waits.
+    TimedOut,
+    /// Where the sensor is in its frame is not known, or it began another frame: this one is over.
+    LostSync,
+}
+
+/// What happened to a line that its source knows to be lost.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum LineFault {
+    /// It did not come: sync was seen and no pixels, or it came to no free buffer.
+    Dropped,
+    /// It was overwritten while it was read, or has fewer or more pixels than a line.
+    Torn,
+    /// It came after the time at which it was of use.
+    Late,
+    /// The buffer holds a line of before: nobody has filled it since.
+    Stale,
+}
+
+impl fmt::Display for LineFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Dropped => "a line was dropped",
+            Self::Torn => "a line was torn",
+            Self::Late => "a line came too late",
+            Self::Stale => "a line was an old one",
+        })
+    }
 }
 
 impl<E> CameraError<E> {
@@ -36,6 +69,9 @@ impl<E> CameraError<E> {
             Self::Hardware(e) => CameraError::Hardware(inside(e)),
             Self::BufferTooShort { needed } => CameraError::BufferTooShort { needed },
             Self::NoLineLeft => CameraError::NoLineLeft,
+            Self::LineLost(fault) => CameraError::LineLost(fault),
+            Self::TimedOut => CameraError::TimedOut,
+            Self::LostSync => CameraError::LostSync,
         }
     }
 }
@@ -46,6 +82,9 @@ impl<E: fmt::Display> fmt::Display for CameraError<E> {
             Self::Hardware(e) => write!(f, "{e}"),
             Self::BufferTooShort { needed } => write!(f, "the line buffer must hold {needed} bytes"),
             Self::NoLineLeft => f.write_str("no line is left in this frame"),
+            Self::LineLost(fault) => write!(f, "{fault}"),
+            Self::TimedOut => f.write_str("the camera gave nothing in time"),
+            Self::LostSync => f.write_str("the sensor's frame broke off"),
         }
     }
 }
@@ -73,10 +112,20 @@ impl<E: fmt::Display + fmt::Debug> core::error::Error for CameraError<E> {}
 /// Contract:
 /// * [`format`](Self::format) does not change between two frames unless the caller asks the driver for it.
 /// * [`start_frame`](Self::start_frame) may be called at any time; lines not taken from the frame before are dropped.
-/// * [`next_line`](Self::next_line) blocks until the line is whole. It fills the first
+/// * [`next_line`](Self::next_line) blocks until the line is whole, for a bounded time. It fills the first
 ///   [`LineFormat::line_bytes`] bytes of the buffer and leaves the rest. On an error the buffer's content means nothing.
+/// * [`LineStart::row`] is the row that the sensor read out, not how many lines were asked for: after a lost line the number
+///   jumps, and who takes the lines sees that. It grows within a frame, until the next `start_frame`.
+/// * A line is of the frame that was started. When the sensor begins another one before the last row, `next_line` is
+///   [`CameraError::LostSync`], or [`CameraError::NoLineLeft`] where the frame was short: never a line of the other frame.
+/// * [`FrameStart::sequence`] grows with every frame, and time stamps do not run backwards. A buffer that nobody filled
+///   since is told by that, when it is handed out again.
 /// * After the last line, `next_line` is [`CameraError::NoLineLeft`] until a frame is started.
-/// * After an error the caller may start the next frame.
+/// * After an error the caller may start the next frame, or ask for the next line. A source that can go on within the frame
+///   says where by the row's number; one that cannot fails again.
+///
+/// What a source knows and does not say, nobody behind it can tell: a torn line looks like a line. What can be told from
+/// outside, `pipeline::Guarded` counts by name.
 pub trait LineSource: ErrorType {
     /// The shape of the frames.
     fn format(&self) -> LineFormat;

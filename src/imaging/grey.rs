@@ -5,7 +5,9 @@ use crate::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineSource, 
 /// A line source whose lines are [`PixelFormat::Grey8`], over one that gives another format.
 ///
 /// `RAW` is the size of the buffer for one raw line, bytes. Samples of more than 8 bits lose their low bits; colour
-/// becomes luma with the weights of ITU-R BT.601, `(4899 R + 9617 G + 1868 B + 2^13) / 2^14`.
+/// becomes luma with the weights of ITU-R BT.601, `(4899 R + 9617 G + 1868 B + 2^13) / 2^14`. Fewer than 8 bits are spread over
+/// eight by repeating the high ones, so that white is 255. Of a mosaic, pixels of one line are taken as they are;
+/// [`BayerLines`](super::BayerLines) makes grey of two.
 #[derive(Debug)]
 pub struct GreyLines<S, const RAW: usize> {
     source: S,
@@ -56,27 +58,45 @@ impl<S: LineSource, const RAW: usize> LineSource for GreyLines<S, RAW> {
 }
 
 /// One line of raw pixels as grey, as many as both have.
-fn to_grey(pixel: PixelFormat, raw: &[u8], out: &mut [u8]) {
+pub(super) fn to_grey(pixel: PixelFormat, raw: &[u8], out: &mut [u8]) {
     match pixel {
-        PixelFormat::Grey8 => out.iter_mut().zip(raw).for_each(|(o, &r)| *o = r),
-        PixelFormat::Grey16 { bits } => {
+        PixelFormat::Grey8 | PixelFormat::Bayer8 => out.iter_mut().zip(raw).for_each(|(o, &r)| *o = r),
+        PixelFormat::Grey16 { bits } | PixelFormat::Bayer16 { bits } => {
             let shift = shift(bits);
-            for (o, r) in out.iter_mut().zip(raw.as_chunks().0) {
-                *o = top(*r, shift);
-            }
+            groups(raw, out, |raw| [top(raw, shift)]);
         }
-        PixelFormat::Rgb8 => {
-            for (o, &rgb) in out.iter_mut().zip(raw.as_chunks().0) {
-                *o = luma(rgb);
-            }
+        // The bytes of high bits are the grey.
+        PixelFormat::Grey10Packed => groups(raw, out, |[a, b, c, d, _]| [a, b, c, d]),
+        PixelFormat::Grey12Packed => groups(raw, out, |[a, b, _]| [a, b]),
+        PixelFormat::Yuyv => groups(raw, out, |[y0, _, y1, _]| [y0, y1]),
+        PixelFormat::Uyvy => groups(raw, out, |[_, y0, _, y1]| [y0, y1]),
+        PixelFormat::Rgb565 { high_byte_first: true } => {
+            groups(raw, out, |raw| [luma(rgb565(u16::from_be_bytes(raw)))])
         }
+        PixelFormat::Rgb565 { high_byte_first: false } => {
+            groups(raw, out, |raw| [luma(rgb565(u16::from_le_bytes(raw)))])
+        }
+        PixelFormat::Rgb8 => groups(raw, out, |rgb| [luma(rgb)]),
         PixelFormat::Rgb16 { bits } => {
             let shift = shift(bits);
-            for (o, &[r0, r1, g0, g1, b0, b1]) in out.iter_mut().zip(raw.as_chunks().0) {
-                *o = luma([top([r0, r1], shift), top([g0, g1], shift), top([b0, b1], shift)]);
-            }
+            groups(raw, out, |[r0, r1, g0, g1, b0, b1]| {
+                [luma([top([r0, r1], shift), top([g0, g1], shift), top([b0, b1], shift)])]
+            });
         }
     }
+}
+
+/// Groups of `B` raw bytes to `P` pixels each; of the last group as many as there is room for.
+fn groups<const B: usize, const P: usize>(raw: &[u8], out: &mut [u8], grey: impl Fn([u8; B]) -> [u8; P]) {
+    for (out, &raw) in out.chunks_mut(P).zip(raw.as_chunks().0) {
+        out.iter_mut().zip(grey(raw)).for_each(|(o, g)| *o = g);
+    }
+}
+
+/// Red, green and blue of 5, 6 and 5 bits as bytes.
+fn rgb565(pixel: u16) -> [u8; 3] {
+    let (r, g, b) = (pixel >> 11, pixel >> 5 & 0x3f, pixel & 0x1f);
+    [(r << 3 | r >> 2) as u8, (g << 2 | g >> 4) as u8, (b << 3 | b >> 2) as u8]
 }
 
 fn shift(bits: u8) -> u32 {

@@ -27,7 +27,7 @@ pub struct LineBand<const W: usize, const N: usize> {
 }
 
 /// One line, in whole words.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C, align(4))]
 struct Line<const W: usize>([u8; W]);
 
@@ -56,6 +56,17 @@ impl<const W: usize, const N: usize> LineBand<W, N> {
     /// The line is whole.
     pub fn accept(&mut self) {
         self.count += 1;
+    }
+
+    /// Puts a copy of the newest line, of zeros where there is none, where the next line goes: it stands in for one that is
+    /// lost.
+    pub fn repeat(&mut self) {
+        let (newest, next) = (self.count.wrapping_sub(1), self.count);
+        if self.count == 0 {
+            self.next_line().fill(0);
+        } else if let Ok([Line(from), Line(to)]) = self.lines.get_disjoint_mut([newest % N, next % N]) {
+            *to = *from;
+        }
     }
 
     /// Lines accepted since [`Self::begin`].

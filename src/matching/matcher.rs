@@ -199,6 +199,13 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
         row.take_away(left, right);
     }
 
+    /// Flags every pixel of the row that came out last as [`PixelFlags::DAMAGED`]; its answers go unless `keeps_answers`.
+    pub(crate) fn mark_damaged(&mut self, keeps_answers: bool) {
+        if let Some(index) = self.taken.checked_sub(Self::DELAY + 1) {
+            self.stages().mark_damaged(index, keeps_answers);
+        }
+    }
+
     fn step(&mut self, lines: Option<[&Around<'_>; 2]>) -> Result<(), MatchError> {
         let height = usize::from(self.config.height);
         if height == 0 {

@@ -5,7 +5,7 @@ use super::confidence;
 use super::config::Config;
 use super::down;
 use super::fill;
-use super::kernels::{Kernel, Winner, bytes_of, halves_mut};
+use super::kernels::{Kernel, Winner, bytes_of, halves_mut, winners_mut};
 use super::median;
 use super::memory::first;
 use super::row::{HISTORY, slot};
@@ -53,6 +53,22 @@ impl<S: Scheme> Stages<'_, S> {
             self.texture.push::<S>(line, &self.config.checks);
         }
         self.match_row(y, lines);
+    }
+
+    /// Flags the row `index`, which just came out, as one that rests on a lost line.
+    pub(super) fn mark_damaged(self, index: usize, keeps_answers: bool) {
+        for flags in slot_mut(self.flags, index % BAND, self.width) {
+            let others = if keeps_answers { *flags } else { flags.without(PixelFlags::FILLED) };
+            *flags = others.union(PixelFlags::DAMAGED);
+        }
+        if !keeps_answers {
+            slot_mut(self.finished, index % HISTORY, self.width).fill(Disparity::NONE);
+            if self.config.confidence {
+                // Where the winners share the scratch, they are the first in it.
+                let winners = if self.winners.is_empty() { winners_mut(self.scratch) } else { self.winners };
+                first(bytes_of(winners), self.width).fill(0);
+            }
+        }
     }
 
     /// Adds row `bottom`, answers for the row that has its costs with it, and judges the one that waited for that.

@@ -26,6 +26,16 @@ pub enum PipelineError<E> {
         /// The row that came.
         given: u16,
     },
+    /// The camera handed out the frame before once more: [`Guarded`](super::Guarded) tells.
+    StaleFrame {
+        /// Its sequence number.
+        sequence: u32,
+    },
+    /// The camera handed out a line of before this frame, or of before the line above: [`Guarded`](super::Guarded) tells.
+    StaleLine {
+        /// The row that it said.
+        row: u16,
+    },
     /// No frame was begun.
     Matcher(MatchError),
 }
@@ -42,6 +52,8 @@ impl<E: fmt::Display> fmt::Display for PipelineError<E> {
             Self::RowOrder { expected, given } => {
                 write!(f, "row {given} came from the camera where {expected} was due")
             }
+            Self::StaleFrame { sequence } => write!(f, "the camera gave frame {sequence} once more"),
+            Self::StaleLine { row } => write!(f, "the camera gave an old line as row {row}"),
             Self::Matcher(e) => write!(f, "{e}"),
         }
     }

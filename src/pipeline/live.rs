@@ -20,9 +20,9 @@ use crate::matching::{Config, ConfigError, Kernel, MatchError, Matcher, Row, Sch
 #[doc = "assert_eq!(Pipeline::<Block, 320, 64>::LATENCY, 10);"]
 #[doc = "```"]
 pub struct Pipeline<S: Scheme, const W: usize, const D: usize> {
-    left: LineWindow<W>,
-    right: LineWindow<W>,
-    matcher: Matcher<S, W, D>,
+    pub(super) left: LineWindow<W>,
+    pub(super) right: LineWindow<W>,
+    pub(super) matcher: Matcher<S, W, D>,
     /// Rows whose five lines went into the matcher.
     taken: usize,
     height: usize,
@@ -30,7 +30,7 @@ pub struct Pipeline<S: Scheme, const W: usize, const D: usize> {
 
 impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
     /// Lines below a census code that it looks at.
-    const CENSUS_REACH: usize = 2;
+    pub(super) const CENSUS_REACH: usize = 2;
 
     /// Row y comes out when line y + `LATENCY` is in.
     pub const LATENCY: usize = Self::CENSUS_REACH + Matcher::<S, W, D>::DELAY;
@@ -162,7 +162,10 @@ impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
 
     /// Takes rows through the matcher until one comes out, each after `lines` took what it needs; false when all rows of
     /// the frame are out.
-    fn advance<E: From<MatchError>>(&mut self, mut lines: impl FnMut(&mut Self) -> Result<(), E>) -> Result<bool, E> {
+    pub(super) fn advance<E: From<MatchError>>(
+        &mut self,
+        mut lines: impl FnMut(&mut Self) -> Result<(), E>,
+    ) -> Result<bool, E> {
         // Every step takes one row, and the first row is out after `DELAY` of them.
         for _ in 0..=Matcher::<S, W, D>::DELAY {
             if self.taken >= self.height + Matcher::<S, W, D>::DELAY {
@@ -202,7 +205,7 @@ impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
     }
 
     /// Lines that have to be in before the next row can be taken.
-    fn lines_needed(&self) -> usize {
+    pub(super) fn lines_needed(&self) -> usize {
         self.taken.saturating_add(Self::CENSUS_REACH + 1).min(self.height)
     }
 
@@ -218,7 +221,7 @@ impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
     }
 
     /// No rows until the next frame.
-    fn stop(&mut self) {
+    pub(super) fn stop(&mut self) {
         self.taken = usize::MAX;
     }
 }

@@ -1,11 +1,12 @@
 //! What the programs of this firmware share. A program stands in `src/bin`: `depth` is the pipeline, `pose`
-//! two views, `bundle` their adjustment, `features` corners and their matches, `focus` depth by a lens that moves.
+//! two views, `bundle` their adjustment, `features` corners and their matches, `focus` depth by a lens that moves,
+//! `interrupt` lines that an interrupt brings.
 //!
 //! * [`choice`]: the method, the sizes and the board, chosen when it is built; [`board`] is the list of boards.
 //! * [`camera`]: where lines come from: the built-in scene, or two files on the host.
 //! * [`rows`]: rows of disparity to a file on the host, with their checksum. [`console`]: figures as text.
 //! * [`host`]: files on the host.
-//! * [`clock`]: instructions counted; [`stack`]: the stack measured.
+//! * [`clock`]: instructions counted; [`ticker`]: the same timer, for interrupts. [`stack`]: the stack measured.
 //! * [`two_views`]: matches of a known world, and the pose and points that they give.
 //! * [`window`]: two views and their points, adjusted.
 //! * [`two_pictures`]: features of two cameras' lines, and their matches.
@@ -26,6 +27,7 @@ pub mod rows;
 pub mod runtime;
 pub mod stack;
 pub mod sweep;
+pub mod ticker;
 pub mod two_pictures;
 pub mod two_views;
 pub mod window;

@@ -47,7 +47,7 @@ pub struct Report<'a> {
 pub const ERROR_LIMIT_PX: f32 = 3.0;
 
 /// What each flag says, in the order of [`PixelFlags::NAMES`].
-const MEANINGS: [&str; 7] = [
+const MEANINGS: [&str; 8] = [
     "no candidate lies inside the right image",
     "the largest disparity searched won: the surface may be nearer",
     "its neighbours cost the same, or too little texture in the window",
@@ -55,6 +55,7 @@ const MEANINGS: [&str; 7] = [
     "the right image disagrees: occluded or mismatched",
     "too few answers around it are of its surface",
     "answered with the farther one of the answers on both sides of a small gap",
+    "a line that it rests on was lost",
 ];
 
 impl Report<'_> {

@@ -6,13 +6,16 @@
 //! * [`run`]: one frame into a map. [`time_frames`]: several, timed.
 //! * [`measure_noise`]: a frame for that alone, if [`NoiseChoice`] asks for it.
 //! * `bands`: a frame in bands, one thread each.
+//! * [`run_guarded`]: frames of a source that may fail.
 //! * [`MemoryPair`]: a stereo source over two pictures in memory.
 
 mod bands;
+mod guarded;
 mod memory;
 mod method;
 mod noise;
 
+pub use guarded::{GuardedFrame, run_guarded};
 pub use memory::MemoryPair;
 pub use method::{Method, UnknownMethod};
 pub use noise::{NoiseChoice, UnknownNoise, measure_noise};

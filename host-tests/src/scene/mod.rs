@@ -13,7 +13,7 @@
 pub mod pattern;
 
 mod camera;
-mod random;
+pub(crate) mod random;
 mod ready;
 mod render;
 mod shape;

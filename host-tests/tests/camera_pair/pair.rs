@@ -4,7 +4,7 @@ use super::{Camera, LineFault, SMALL, camera, numbered, pair, small};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use stereopsis::camera::{
-    CameraError, CameraPair, FrameStart, LineFormat, LineStart, PairError, PixelFormat, StereoSource,
+    CameraError, CameraPair, FrameStart, LineFormat, LineStart, PairError, Pairing, PixelFormat, RowSkew, StereoSource,
 };
 
 type Failure = CameraError<PairError<LineFault, LineFault>>;
@@ -144,6 +144,43 @@ fn a_buffer_that_is_too_short_says_what_is_needed() {
     assert_eq!(both.next_lines(&mut [0; 3], &mut [0; 4]), Err(CameraError::BufferTooShort { needed: 4 }));
     both.start_frame().expect("the cameras work");
     assert_eq!(both.next_lines(&mut [0; 4], &mut [0; 3]), Err(CameraError::BufferTooShort { needed: 4 }));
+}
+
+#[test]
+fn cameras_that_run_freely_are_paired_by_their_time_stamps() {
+    // The right camera's counter is seven behind, and its clock stamps the same moments two microseconds later.
+    let free = |first: u32| Camera { late_us: 7002, ..numbered(&[first]) };
+    for (left, right, starts) in [(10, 3, (1, 1)), (9, 3, (2, 1)), (10, 1, (1, 3))] {
+        let mut both = pair(numbered(&[left]), free(right)).paired_by(Pairing::TimeStamp);
+        assert_eq!(both.row_skew(), RowSkew::default());
+        assert_eq!(frame(&mut both).expect("they are near enough")[0].len(), 12);
+        assert_eq!(both.row_skew(), RowSkew { rows: 3, least_us: 2, most_us: 2 });
+        let (left, right) = both.release();
+        assert_eq!((left.starts, right.starts), starts);
+        assert_eq!(left.sequence, right.sequence + 7);
+    }
+    let apart = Camera { late_us: 7500, ..numbered(&[3]) };
+    let mut both = pair(numbered(&[10]), apart).paired_by(Pairing::TimeStamp);
+    let error = both.start_frame().expect_err("they are half a frame apart");
+    assert_eq!(error, CameraError::Hardware(PairError::FrameSkew { skew_us: 500 }));
+    assert_eq!(error.to_string(), "the cameras' frames stay 500 us apart");
+}
+
+#[test]
+fn the_row_skew_is_measured_on_refused_rows_too() {
+    let mut both = pair(Camera { late_us: 6, ..small(0) }, small(0));
+    both.start_frame().expect("the sequence numbers agree");
+    assert!(both.next_lines(&mut [0; 4], &mut [0; 4]).is_err());
+    assert_eq!(both.row_skew(), RowSkew { rows: 1, least_us: -6, most_us: -6 });
+}
+
+#[test]
+fn an_old_line_or_frame_of_one_camera_is_refused() {
+    // The frame of before once more: the camera is started again.
+    let mut both = pair(numbered(&[10, 11, 12]), numbered(&[10, 10, 11, 12]));
+    assert_eq!([0; 3].map(|_| both.start_frame().map(|start| start.sequence)), [Ok(10), Ok(11), Ok(12)]);
+    let (left, right) = both.release();
+    assert_eq!((left.starts, right.starts), (3, 4));
 }
 
 proptest! {

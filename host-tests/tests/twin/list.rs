@@ -140,7 +140,9 @@ fn run_list<S: Method>() {
     }
     // The list says something: there are answers, fractions of all kinds of flags, and every value was used.
     assert!(answers > fewest, "{answers} answers");
-    assert!(PixelFlags::NAMES.iter().all(|(flag, _)| flags.contains(*flag)), "flags seen: {flags:?}");
+    // A matcher loses no lines.
+    let mut seen = PixelFlags::NAMES.iter().map(|(flag, _)| flags.contains(*flag) != (*flag == PixelFlags::DAMAGED));
+    assert!(seen.all(|is_right| is_right), "flags seen: {flags:?}");
     let kinds = confidences.iter().filter(|&&c| c).count();
     assert!(
         kinds > kinds_of_confidence && confidences.iter().skip(usize::from(Row::MOST_CONFIDENCE) + 1).all(|&c| !c),

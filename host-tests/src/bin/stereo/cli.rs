@@ -11,6 +11,8 @@ pub use rectify::{RectifyArgs, RectifyOptions, Unit};
 use crate::bundle::{self, BundleArgs};
 use crate::failure::Failure;
 use crate::focus::{self, FocusArgs};
+use crate::record::{self, RecordArgs};
+use crate::replay::{self, ReplayArgs};
 use crate::two_view::{FEATURES_EXAMPLE, FUNDAMENTAL_EXAMPLE, FeaturesArgs, FundamentalArgs, POSE_EXAMPLE, PoseArgs};
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
@@ -21,8 +23,8 @@ use stereopsis_host::command_line::usage_line;
 use stereopsis_host::run::{Method, NoiseChoice, UnknownMethod, UnknownNoise, Way};
 
 /// What is told to one who names another command.
-const COMMANDS: &str =
-    "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental, pose and bundle";
+const COMMANDS: &str = "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental, pose, bundle, \
+                        record and replay";
 
 const EXAMPLES: &str = "Examples:
   stereo demo --out demo-out
@@ -90,6 +92,12 @@ pub enum Command {
     /// Refine cameras and points until they agree best with what was seen: bundle adjustment of a problem in BAL's format
     #[command(after_help = bundle::EXAMPLE)]
     Bundle(BundleArgs),
+    /// Make a recording of a camera from images, with faults if they are wanted
+    #[command(after_help = record::EXAMPLE)]
+    Record(RecordArgs),
+    /// Play recorded lines, with the faults that they had, through the code that runs on the device
+    #[command(after_help = replay::EXAMPLE)]
+    Replay(ReplayArgs),
 }
 
 #[derive(Debug, Args)]
@@ -186,7 +194,7 @@ fn noise(text: &str) -> Result<NoiseChoice, String> {
     text.parse().map_err(|unknown: UnknownNoise| unknown.to_string())
 }
 
-fn filter(text: &str) -> Result<Filter, &'static str> {
+pub fn filter(text: &str) -> Result<Filter, &'static str> {
     Filter::ALL.into_iter().find(|filter| filter.name() == text).ok_or("the filters are dense, default and strict")
 }
 
@@ -197,7 +205,7 @@ fn kernel(text: &str) -> Result<Kernel, String> {
     })
 }
 
-fn method(text: &str) -> Result<Method, String> {
+pub fn method(text: &str) -> Result<Method, String> {
     text.parse().map_err(|unknown: UnknownMethod| unknown.to_string())
 }
 

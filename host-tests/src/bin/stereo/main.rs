@@ -2,8 +2,8 @@
 //!
 //! * `cli`, `two_view`: what is asked for. `failure`: what is said when it cannot be done.
 //! * `input`: the images and the search, checked against each other. `progress`: how far it is.
-//! * `matching`, `bench`, `demo`, `calibrate`, `calib`, `rectify`, `features`, `focus`, `fundamental`, `pose`, `bundle`: the
-//!   commands. `files`, `place`: the results as files.
+//! * `matching`, `bench`, `demo`, `calibrate`, `calib`, `rectify`, `features`, `focus`, `fundamental`, `pose`, `bundle`,
+//!   `record`, `replay`: the commands. `files`, `place`: the results as files.
 
 mod bench;
 mod bundle;
@@ -21,7 +21,9 @@ mod matching;
 mod place;
 mod pose;
 mod progress;
+mod record;
 mod rectify;
+mod replay;
 mod two_view;
 
 use cli::Command;
@@ -54,6 +56,8 @@ fn start() -> Result<(), Failure> {
         Ok(Command::Features(args)) => features::run(&args),
         Ok(Command::Focus(args)) => focus::run(&args),
         Ok(Command::Bundle(args)) => bundle::run(&args),
+        Ok(Command::Record(args)) => record::run(&args),
+        Ok(Command::Replay(args)) => replay::run(&args),
         Err(cli::Stop::Help(text)) => print(&text),
         Err(cli::Stop::Usage(failure)) => Err(failure),
     }

@@ -12,9 +12,9 @@ use stereopsis_host::run::{Method, NoiseChoice, UnknownNoise};
 /// The options of `firmware`.
 #[derive(Args)]
 pub struct Arguments {
-    /// The program: depth, rows of disparity; pose, two views; bundle, their adjustment; features, corners of two pictures and their matches; or focus,
-    /// a lens that moves
-    #[arg(long, default_value = "depth", value_parser = ["depth", "pose", "bundle", "features", "focus"])]
+    /// The program: depth, rows of disparity; pose, two views; bundle, their adjustment; features, corners of two pictures and
+    /// their matches; focus, a lens that moves; or interrupt, lines that a timer brings
+    #[arg(long, default_value = "depth", value_parser = ["depth", "pose", "bundle", "features", "focus", "interrupt"])]
     program: String,
     /// With a program other than depth: made for size, not for speed
     #[arg(long)]
@@ -86,6 +86,8 @@ pub enum Asked {
     Features(Plain),
     /// A lens that moves, on one core.
     Focus(Plain),
+    /// Lines by an interrupt, on one core.
+    Interrupt(Plain),
     /// All cores.
     All,
 }
@@ -105,6 +107,9 @@ impl Arguments {
             if board == board::M0 {
                 return Err(Failure::new(format!("--core m0: {name} needs more RAM than QEMU's microbit has")));
             }
+            if board == board::RV32 && name == "interrupt" {
+                return Err(Failure::new("--core rv32: interrupt needs the timer of a Cortex-M"));
+            }
             if pair.is_some() || self.disparities.is_some() {
                 return Err(Failure::new(format!(
                     "--program {name} takes no images: --left, --right and --disparities are for depth"
@@ -116,6 +121,7 @@ impl Arguments {
                 "pose" => Asked::Pose(plain),
                 "bundle" => Asked::Bundle(plain),
                 "features" => Asked::Features(plain),
+                "interrupt" => Asked::Interrupt(plain),
                 _ => Asked::Focus(plain),
             });
         }

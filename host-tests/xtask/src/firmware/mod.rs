@@ -8,7 +8,8 @@
 //! * [`pose`]: two views on one core, held to the host; [`two_views_all`]: on every core.
 //! * [`bundle`]: their adjustment, likewise.
 //! * [`features`]: features of two pictures and their matches, on one core and on those of the table.
-//! * [`focus`]: a lens that moves, likewise. [`results`]: the run of such a program, and what it leaves.
+//! * [`focus`]: a lens that moves, likewise. [`interrupt`]: lines that an interrupt brings.
+//! * [`results`]: the run of such a program, and what it leaves.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
 
 mod all;
@@ -20,6 +21,7 @@ mod emulate;
 mod features;
 mod focus;
 pub mod frame;
+mod interrupt;
 mod log;
 mod pose;
 pub mod program;
@@ -53,6 +55,7 @@ use board::Board;
 use bundle::Bundle;
 use features::Features;
 use focus::Focus;
+use interrupt::Interrupt;
 use pose::Pose;
 use program::{Optimised, Program};
 use serde::Serialize;
@@ -69,6 +72,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Asked::Features(plain) => run_plain(&plain, features::run, Features::told),
         Asked::Focus(plain) => run_plain(&plain, focus::run, Focus::told),
         Asked::Bundle(plain) => run_plain(&plain, bundle::run, Bundle::told),
+        Asked::Interrupt(plain) => run_plain(&plain, interrupt::run, Interrupt::told),
         Asked::All => run_all(Readme::of_check(arguments.check)),
     }
 }
@@ -79,7 +83,9 @@ fn run_all(readme: Readme) -> Outcome {
     two_views_all::run(readme)?;
     bundle::run_all(readme)?;
     features::run_all(readme)?;
-    focus::run_all(readme)
+    focus::run_all(readme)?;
+    println!("{}", interrupt::run(board::M4, Optimised::Speed)?.told());
+    Ok(())
 }
 
 /// Every core and method and a part of the sizes and programs, compared with README.md.

@@ -1,0 +1,80 @@
+//! `stereo record`: a recording from images, with faults if they are wanted.
+
+use crate::cli::whole;
+use crate::failure::Failure;
+use crate::place::Place;
+use crate::print;
+use clap::Args;
+use std::path::PathBuf;
+use stereopsis_host::command_line::one_line;
+use stereopsis_host::fault::{Fault, Faulty};
+use stereopsis_host::recording::{Pictures, record};
+
+/// What follows the options in the command's help.
+pub const EXAMPLE: &str = "Example:
+  stereo record --left left.png --right right.png --frames 10 --faults 0.01 --out field.lines
+
+--left and --right are an image each, or folders whose images belong together in the order of their names. With --faults each line \
+has a fault with that probability, as cameras have them: lines that are dropped, torn, late, old or repeated, bus errors, time-outs, \
+short frames, lost sync. A recording begins with two lines of text; the documentation of `stereopsis_host::recording` has its format, \
+which firmware can write as well.";
+
+#[derive(Debug, Args)]
+pub struct RecordArgs {
+    /// The left image, or a folder of them
+    #[arg(long, value_name = "FILE|DIR")]
+    pub left: PathBuf,
+    /// The right image, or a folder of them
+    #[arg(long, value_name = "FILE|DIR")]
+    pub right: PathBuf,
+    /// How many frames, 1 to 60000; by default each pair once. They begin again after the last
+    #[arg(long, value_name = "K", value_parser = frames, allow_negative_numbers = true)]
+    pub frames: Option<u16>,
+    /// Frames per second of the recorded clock
+    #[arg(long, value_name = "F", default_value_t = 30.0, value_parser = rate, allow_negative_numbers = true)]
+    pub fps: f64,
+    /// The probability of a fault, for each line and frame
+    #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = probability, allow_negative_numbers = true)]
+    pub faults: f64,
+    /// Where the faults' random numbers begin
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+    /// The recording
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+fn frames(text: &str) -> Result<u16, String> {
+    whole(text, 1, 60_000)
+}
+
+pub fn rate(text: &str) -> Result<f64, &'static str> {
+    let value = text.parse().ok().filter(|value| (0.01..=10_000.0).contains(value));
+    value.ok_or("a number from 0.01 to 10000 is needed")
+}
+
+fn probability(text: &str) -> Result<f64, &'static str> {
+    text.parse().ok().filter(|value| (0.0..=1.0).contains(value)).ok_or("a number from 0 to 1 is needed")
+}
+
+pub fn run(args: &RecordArgs) -> Result<(), Failure> {
+    let pictures = Pictures::open(&args.left, &args.right, args.fps)?;
+    let place = Place::of("--out", &args.out)?;
+    let frames = args.frames.map_or(pictures.frames() as u32, u32::from);
+    let faults: &[Fault] = if args.faults > 0.0 { &Fault::ALL } else { &[] };
+    let mut source = Faulty::new(pictures, faults, args.faults, args.seed);
+    let mut recorded = None;
+    place.write(
+        |out| {
+            recorded = Some(record(&mut source, frames, out)?);
+            match source.inner_mut().failed() {
+                Some(e) => Err(std::io::Error::other(e)),
+                None => Ok(()),
+            }
+        },
+        None,
+    )?;
+    let told = recorded.unwrap_or_default();
+    let name = one_line(&args.out.display().to_string());
+    print(&format!("{} frames, {} lines, {} errors are in {name}\n", told.frames, told.lines, told.faults))
+}

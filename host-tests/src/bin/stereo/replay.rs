@@ -1,0 +1,261 @@
+//! `stereo replay`: recorded lines through the code that runs on the device.
+
+use crate::cli::{RangeArgs, WayArgs};
+use crate::failure::Failure;
+use crate::files::{json, png};
+use crate::{input, print};
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+use std::fmt::{Display, Write as _};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use stereopsis::camera::StereoSource;
+use stereopsis::imaging::Noise;
+use stereopsis::matching::{Config, Filter};
+use stereopsis::pipeline::FaultCounters;
+use stereopsis::units::PixelFlags;
+use stereopsis_host::colour::flags_raw;
+use stereopsis_host::command_line::one_line;
+use stereopsis_host::output::Staging;
+use stereopsis_host::pfm;
+use stereopsis_host::recording::{Header, Pictures, Playback, Recording};
+use stereopsis_host::run::{GuardedFrame, Method, NoiseChoice, run_guarded};
+
+/// What follows the options in the command's help.
+pub const EXAMPLE: &str = "Example:
+  stereo replay --from field.lines --disparities 64 --out replayed
+
+Written into the folder: for each frame 000001-disparity.pfm (px, infinity where there is no answer) and 000001-flags.png (the bits of \
+`stereo match`, and 128 where a lost line was rested on); frames.csv, a line for each frame; summary.json with every fault counted \
+by name. A folder to play has the folders left and right in it, with images that belong together in the order of their names.";
+
+#[derive(Debug, Args)]
+pub struct ReplayArgs {
+    /// A recording by `stereo record` or by firmware, or a folder with left and right in it
+    #[arg(long, value_name = "FILE|DIR")]
+    pub from: PathBuf,
+    #[command(flatten)]
+    pub range: RangeArgs,
+    /// fast, block, sgm-lean, sgm or sgm-edge
+    #[arg(long, value_name = "METHOD", default_value = "block", value_parser = crate::cli::method)]
+    pub method: Method,
+    /// dense, default or strict
+    #[arg(long, value_name = "FILTER", default_value = "default", value_parser = crate::cli::filter)]
+    pub filter: Filter,
+    /// As fast as possible, or as fast as it was recorded
+    #[arg(long, value_name = "TIMING", default_value = "fast")]
+    pub timing: Timing,
+    /// Frames per second, for a folder
+    #[arg(long, value_name = "F", default_value_t = 30.0, value_parser = crate::record::rate, allow_negative_numbers = true)]
+    pub fps: f64,
+    /// How many lines of a frame may be lost before it is given up; by default all
+    #[arg(long, value_name = "N")]
+    pub most_lost: Option<u16>,
+    /// How many frames are played; by default all
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
+    pub frames: Option<u32>,
+    /// Folder for the results; made when it is missing
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub enum Timing {
+    /// As fast as possible
+    Fast,
+    /// By the time stamps
+    Recorded,
+}
+
+/// The replay in figures.
+#[derive(Serialize)]
+struct Summary {
+    width: u16,
+    height: u16,
+    method: &'static str,
+    disparities: u16,
+    min_disparity: u16,
+    frames: u32,
+    whole_frames: u32,
+    damaged_frames: u32,
+    broken_frames: u32,
+    failed_frames: u32,
+    recording_was_cut: bool,
+    counters: Counters,
+}
+
+/// [`FaultCounters`], by name.
+#[derive(Serialize)]
+struct Counters {
+    frames_skipped: u32,
+    frames_stale: u32,
+    restarts: u32,
+    rows: u32,
+    rows_damaged: u32,
+    lines: u32,
+    lines_dropped: u32,
+    lines_repeated: u32,
+    lines_torn: u32,
+    lines_late: u32,
+    lines_stale: u32,
+    lines_failed: u32,
+    lines_timed_out: u32,
+    lines_short: u32,
+    syncs_lost: u32,
+}
+
+impl From<FaultCounters> for Counters {
+    fn from(c: FaultCounters) -> Self {
+        Self {
+            frames_skipped: c.frames_skipped,
+            frames_stale: c.frames_stale,
+            restarts: c.restarts,
+            rows: c.rows,
+            rows_damaged: c.rows_damaged,
+            lines: c.lines,
+            lines_dropped: c.lines_dropped,
+            lines_repeated: c.lines_repeated,
+            lines_torn: c.lines_torn,
+            lines_late: c.lines_late,
+            lines_stale: c.lines_stale,
+            lines_failed: c.lines_failed,
+            lines_timed_out: c.lines_timed_out,
+            lines_short: c.lines_short,
+            syncs_lost: c.syncs_lost,
+        }
+    }
+}
+
+pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
+    if args.from.is_dir() {
+        let side = |name: &str| args.from.join(name);
+        for name in ["left", "right"] {
+            if !side(name).is_dir() {
+                let from = args.from.display();
+                return Err(Failure::new(format!("--from {from}: the folder has no folder '{name}' in it")));
+            }
+        }
+        let mut pictures = Pictures::open(&side("left"), &side("right"), args.fps)?;
+        let recorded = recorded(&mut pictures)?;
+        let mut source = Playback::new(recorded, args.timing == Timing::Recorded);
+        return play(args, &mut source);
+    }
+    let mut source = Playback::new(Recording::open(&args.from)?, args.timing == Timing::Recorded);
+    play(args, &mut source)
+}
+
+/// A folder's pictures as a recording.
+fn recorded(pictures: &mut Pictures) -> Result<Recording, Failure> {
+    let mut bytes = Vec::new();
+    let frames = pictures.frames() as u32;
+    stereopsis_host::recording::record(pictures, frames, &mut bytes)?;
+    if let Some(e) = pictures.failed() {
+        return Err(e.into());
+    }
+    Ok(Recording::read(Path::new("the folder"), Box::new(io::Cursor::new(bytes)))?)
+}
+
+fn config(args: &ReplayArgs, header: Header) -> Result<Config, Failure> {
+    if header.width < Config::FEWEST_DISPARITIES {
+        let (from, least) = (args.from.display(), Config::FEWEST_DISPARITIES);
+        return Err(Failure::new(format!("{from}: lines of {} pixels; at least {least} are needed", header.width)));
+    }
+    let noise = NoiseChoice::Told(Noise::None);
+    let way = WayArgs { method: args.method, filter: args.filter, noise, kernel: None, threads: 1 };
+    input::config(&args.range, &way, header.width, header.height)
+}
+
+fn play(args: &ReplayArgs, source: &mut Playback<Recording>) -> Result<(), Failure> {
+    let format = source.format();
+    let header = Header { width: format.width, height: format.height, max_row_skew_us: source.max_row_skew_us() };
+    let config = config(args, header)?;
+    let mut staging = Staging::new(&args.out)?;
+    let (mut written, mut table, mut names) = (Ok(()), TABLE.to_owned(), Vec::new());
+    let mut left = args.frames.unwrap_or(u32::MAX);
+    let go_on = |source: &mut Playback<Recording>| {
+        left = left.wrapping_sub(1);
+        left != u32::MAX && source.has_frame()
+    };
+    let keep = |frame: GuardedFrame| {
+        let number = names.len() + 1;
+        table += &line(number, &frame);
+        let [disparity, flags] = KINDS.map(|kind| format!("{number:06}{kind}"));
+        if written.is_ok() && frame.rows > 0 {
+            written = staging
+                .write(&disparity, |out| pfm::write(out, frame.map.width, &frame.map.pixels()))
+                .and_then(|()| staging.write(&flags, |out| png(out, &flags_raw(&frame.map))));
+        }
+        names.push(());
+    };
+    let counters = run_guarded(args.method, &config, args.most_lost, source, go_on, keep)
+        .map_err(|e| Failure::new(format!("--disparities: {e}")))?;
+    written?;
+    if let Some(e) = source.failed() {
+        return Err(e.into());
+    }
+    let summary = Summary {
+        width: config.width,
+        height: config.height,
+        method: args.method.name(),
+        disparities: config.disparities,
+        min_disparity: config.min_disparity,
+        frames: names.len() as u32,
+        whole_frames: counters.frames_whole,
+        damaged_frames: counters.frames_damaged,
+        broken_frames: counters.frames_broken,
+        failed_frames: counters.frames_failed + counters.frames_stale,
+        recording_was_cut: source.was_cut(),
+        counters: counters.into(),
+    };
+    staging.write("frames.csv", |out| out.write_all(table.as_bytes()))?;
+    staging.write("summary.json", |out| json(out, &summary))?;
+    let stale = earlier_results(&args.out)?;
+    staging.commit(&stale.iter().map(String::as_str).collect::<Vec<_>>())?;
+    print(&told(&summary, &args.out))
+}
+
+/// The endings of a frame's files.
+const KINDS: [&str; 2] = ["-disparity.pfm", "-flags.png"];
+const TABLE: &str = "frame,sequence,timestamp_us,rows,damaged_rows,lost_lines,answers,error\n";
+
+fn line(number: usize, frame: &GuardedFrame) -> String {
+    fn or_empty<T: Display>(value: Option<T>) -> String {
+        value.map_or_else(String::new, |value| value.to_string())
+    }
+    let sequence = or_empty(frame.start.map(|start| start.sequence));
+    let timestamp_us = or_empty(frame.start.map(|start| start.timestamp_us));
+    let error = frame.error.as_deref().unwrap_or_default().replace(',', ";");
+    let (rows, damaged, lost, answers) = (frame.rows, frame.damaged_rows, frame.lost_lines, frame.map.answers());
+    format!("{number},{sequence},{timestamp_us},{rows},{damaged},{lost},{answers},{}\n", one_line(&error))
+}
+
+/// The files of frames that stand in the folder already.
+fn earlier_results(out: &Path) -> Result<Vec<String>, Failure> {
+    let is_result = |name: &String| {
+        KINDS
+            .iter()
+            .filter_map(|kind| name.strip_suffix(kind))
+            .any(|n| n.len() == 6 && n.bytes().all(|b| b.is_ascii_digit()))
+    };
+    let entries = fs::read_dir(out).map_err(|e| Failure::new(format!("--out {}: {e}", out.display())))?;
+    Ok(entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).filter(is_result).collect())
+}
+
+fn told(s: &Summary, out: &Path) -> String {
+    let mut text = format!("{} frames of {} x {} px, method {}\n", s.frames, s.width, s.height, s.method);
+    let _ = writeln!(
+        text,
+        "{} whole, {} with rows flagged as {}, {} broken off, {} that did not begin",
+        s.whole_frames,
+        s.damaged_frames,
+        PixelFlags::NAMES.last().map_or("", |(_, name)| name),
+        s.broken_frames,
+        s.failed_frames
+    );
+    if s.recording_was_cut {
+        text += "note: the recording ends within a record; what is before it was played\n";
+    }
+    let _ = writeln!(text, "results are in {}", one_line(&out.display().to_string()));
+    text
+}

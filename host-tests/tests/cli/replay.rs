@@ -1,0 +1,157 @@
+//! `stereo record` and `stereo replay`: their files, and what they say when they cannot.
+
+use super::support::{Bench, names, stereo, text};
+use std::fs;
+use std::time::Instant;
+use stereopsis_host::pfm;
+use stereopsis_host::scene::pattern::Pattern;
+
+/// Two images of a bench, and their options.
+fn put_pair(bench: &Bench, folders: bool) -> [String; 2] {
+    let (left, right) = Pattern::Shifted { most: 12, noise_grey: 2.0 }.pair(48, 30, 5);
+    let put = |side: &str, image: &image::GrayImage| {
+        if !folders {
+            let path = bench.path(&format!("{side}.png"));
+            image.save(&path).expect("a file");
+            return path.display().to_string();
+        }
+        let folder = bench.path("frames").join(side);
+        fs::create_dir_all(&folder).expect("a folder");
+        for name in ["1.png", "2.png"] {
+            image.save(folder.join(name)).expect("a file");
+        }
+        folder.display().to_string()
+    };
+    [put("left", &left), put("right", &right)]
+}
+
+fn run(arguments: &[&str]) -> String {
+    let run = stereo(arguments);
+    assert!(run.status.success() && run.stderr.is_empty(), "{arguments:?}: {}", text(&run.stderr));
+    text(&run.stdout).to_owned()
+}
+
+fn summary(bench: &Bench, folder: &str) -> serde_json::Value {
+    let file = fs::read(bench.path(folder).join("summary.json")).expect("a summary");
+    serde_json::from_slice(&file).expect("JSON")
+}
+
+fn disparities(bench: &Bench, name: &str) -> Vec<u32> {
+    let file = fs::read(bench.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+    pfm::read(&mut file.as_slice()).expect("a PFM").values.iter().map(|v| v.to_bits()).collect()
+}
+
+#[test]
+fn what_is_recorded_is_played_as_match_sees_it() {
+    let bench = Bench::new();
+    let [left, right] = put_pair(&bench, false);
+    let [file, out, matched] = ["a.lines", "out", "matched"].map(|name| bench.path(name).display().to_string());
+    let told = run(&["record", "--left", &left, "--right", &right, "--frames", "3", "--fps", "50", "--out", &file]);
+    assert!(told.starts_with("3 frames, 90 lines, 0 errors are in "), "{told}");
+    for method in ["block", "sgm"] {
+        let matching = ["--disparities", "16", "--method", method];
+        let replay = [&["replay", "--from", &file, "--out", &out][..], &matching].concat();
+        let told = run(&replay);
+        assert!(told.contains("3 whole, 0 with rows flagged as damaged, 0 broken off"), "{told}");
+        let pair = ["match", "--left", &left, "--right", &right, "--noise", "none", "--out", &matched];
+        run(&[&pair[..], &matching].concat());
+        let expected = disparities(&bench, "matched/disparity.pfm");
+        for frame in 1..=3 {
+            assert_eq!(disparities(&bench, &format!("out/{frame:06}-disparity.pfm")), expected, "{method} {frame}");
+        }
+    }
+    let summary = summary(&bench, "out");
+    assert_eq!((&summary["frames"], &summary["counters"]["lines"]), (&3.into(), &90.into()));
+    let table = fs::read_to_string(bench.path("out/frames.csv")).expect("a table");
+    assert_eq!(table.lines().count(), 4);
+    assert!(
+        table.lines().nth(2).is_some_and(|line| line.starts_with("2,2,40000,30,0,0,") && line.ends_with(',')),
+        "{table}"
+    );
+
+    // At the recorded speed the three frames take over two periods of 20 ms; fewer frames leave none of the others' files.
+    let start = Instant::now();
+    run(&["replay", "--from", &file, "--disparities", "16", "--timing", "recorded", "--out", &out]);
+    assert!(start.elapsed().as_millis() >= 40, "{:?}", start.elapsed());
+    run(&["replay", "--from", &file, "--disparities", "16", "--frames", "1", "--out", &out]);
+    assert_eq!(names(&bench.path("out")), ["000001-disparity.pfm", "000001-flags.png", "frames.csv", "summary.json"]);
+}
+
+#[test]
+fn recorded_faults_happen_again_and_are_counted_by_name() {
+    let bench = Bench::new();
+    let [left, right] = put_pair(&bench, false);
+    let [file, again, out] = ["a.lines", "b.lines", "out"].map(|name| bench.path(name).display().to_string());
+    let images = ["--left", &left, "--right", &right, "--frames", "60", "--faults", "0.02", "--seed", "4"];
+    for file in [&file, &again] {
+        run(&[&["record", "--out", file][..], &images].concat());
+    }
+    assert_eq!(fs::read(&file).expect("a file"), fs::read(&again).expect("a file"), "the faults are seeded");
+    let told = run(&["replay", "--from", &file, "--disparities", "16", "--out", &out]);
+    assert!(told.starts_with("60 frames of 48 x 30 px"), "{told}");
+    let summary = summary(&bench, "out");
+    let count = |name: &str| summary["counters"][name].as_u64().unwrap_or_else(|| panic!("{name}"));
+    let kinds = [
+        "lines_dropped",
+        "lines_repeated",
+        "lines_torn",
+        "lines_late",
+        "lines_failed",
+        "lines_timed_out",
+        "lines_short",
+    ];
+    assert!(kinds.iter().filter(|kind| count(kind) > 0).count() > 5, "{summary}");
+    assert!(count("rows_damaged") > 0 && count("rows_damaged") < count("rows"), "{summary}");
+    let frames = |name: &str| summary[name].as_u64().expect("a number");
+    let all = frames("whole_frames") + frames("damaged_frames") + frames("broken_frames") + frames("failed_frames");
+    assert_eq!((all, frames("frames")), (60, 60), "{summary}");
+
+    // A recording that was cut is played up to there.
+    let bytes = fs::read(&file).expect("a file");
+    fs::write(&again, &bytes[..bytes.len() * 2 / 3]).expect("a file");
+    let told = run(&["replay", "--from", &again, "--disparities", "16", "--out", &out]);
+    assert!(told.contains("ends within a record"), "{told}");
+}
+
+#[test]
+fn folders_are_played_in_the_order_of_their_names() {
+    let bench = Bench::new();
+    put_pair(&bench, true);
+    let [frames, out] = ["frames", "out"].map(|name| bench.path(name).display().to_string());
+    run(&["replay", "--from", &frames, "--disparities", "16", "--out", &out]);
+    assert_eq!(disparities(&bench, "out/000001-disparity.pfm"), disparities(&bench, "out/000002-disparity.pfm"));
+}
+
+#[test]
+fn what_cannot_be_played_is_named() {
+    let bench = Bench::new();
+    let [left, right] = put_pair(&bench, false);
+    let frames = put_pair(&bench, true);
+    let [file, out, missing] = ["a.lines", "out", "missing"].map(|name| bench.path(name).display().to_string());
+    let replay = |from: &str, wanted: &str| {
+        bench.refused(&["replay", "--from", from, "--disparities", "16", "--out", &out], wanted);
+    };
+    replay(&missing, "missing: cannot be read");
+    replay(&left, "left.png: is no recording; give one by `stereo record`");
+    replay(&frames[0], "has no folder 'left' in it");
+    run(&["record", "--left", &left, "--right", &right, "--out", &file]);
+    let mut bytes = fs::read(&file).expect("a file");
+    bench.refused(
+        &["replay", "--from", &file, "--disparities", "64", "--out", &out],
+        "--disparities 64: the images are 48",
+    );
+    let at = bytes.len() - (11 + 2 * 48);
+    bytes[at] = b'?';
+    fs::write(&file, &bytes).expect("a file");
+    replay(&file, "is corrupt at byte");
+    fs::write(&file, "stereopsis recording 1\n{\"width\":0,\"height\":9,\"max_row_skew_us\":0}\n").expect("a file");
+    replay(&file, "frames of 0 x 9");
+    let record = |arguments: &[&str], wanted: &str| bench.refused(&[&["record"][..], arguments].concat(), wanted);
+    record(&["--left", &left, "--right", &missing, "--out", &file], "missing: cannot be read");
+    record(&["--left", &left, "--right", &frames[1], "--out", &file], "has 1 images and");
+    record(&["--left", &left, "--right", &right, "--faults", "2", "--out", &file], "a number from 0 to 1");
+    record(
+        &["--left", &left, "--right", &right, "--out", &bench.path("").display().to_string()],
+        "is not the name of a file",
+    );
+}

@@ -1,0 +1,270 @@
+//! Lines from an interrupt to the matcher.
+
+use super::{CameraError, ErrorType, FrameStart, LineFormat, LineSource, LineStart};
+use core::convert::Infallible;
+use heapless::spsc::{Consumer, Producer, Queue};
+
+/// The slots through which lines go from one producer, an interrupt or DMA, to one consumer, with `B` bytes each.
+///
+/// A slot is in one place: free, being filled, waiting, or being read. Filling and reading own it, and hand it on by value: a line is
+/// read once, whole, and nobody writes into it meanwhile. There is no lock; either side may interrupt the other.
+///
+/// ```text
+///              begin              finish               next
+///  free ──────────────> EmptyLine ───────> waiting ──────────> FilledLine
+///    ^                     │ give_back                            │ done
+///    └─────────────────────┴──────────────────────────────────────┘
+/// ```
+///
+/// `N` is the length of the queues: they take `N - 1` slots. A slot that is dropped instead of handed on is lost.
+///
+/// ```
+/// use stereopsis::camera::{FrameStart, LineSlots, LineStart};
+/// let mut bytes = [[0; 4]; 2]; // two statics in firmware
+/// let mut slots = LineSlots::<4, 3>::new();
+/// let (mut producer, mut consumer) = slots.split(&mut bytes);
+/// let frame = FrameStart::default();
+/// for row in 0..3 {
+///     // In the interrupt. The third line finds no slot.
+///     let Some(mut line) = producer.begin() else { continue };
+///     line.bytes().fill(row as u8);
+///     producer.finish(line, frame, LineStart { row, timestamp_us: 0 });
+/// }
+/// assert_eq!(producer.overruns(), 1);
+/// let line = consumer.next().expect("two lines wait");
+/// assert_eq!((line.start().row, line.bytes()), (0, &[0; 4]));
+/// consumer.done(line);
+/// ```
+#[derive(Debug)]
+pub struct LineSlots<'b, const B: usize, const N: usize> {
+    free: Queue<&'b mut [u8; B], N>,
+    waiting: Queue<FilledLine<'b, B>, N>,
+}
+
+impl<'b, const B: usize, const N: usize> LineSlots<'b, B, N> {
+    /// Queues without slots.
+    pub const fn new() -> Self {
+        Self { free: Queue::new(), waiting: Queue::new() }
+    }
+
+    /// The two ends, with `slots` to go between them, of which the first `N - 1` are used.
+    pub fn split<'a>(&'a mut self, slots: &'b mut [[u8; B]]) -> (LineProducer<'a, 'b, B>, LineConsumer<'a, 'b, B>) {
+        // What an earlier pair of ends left here goes.
+        while self.free.dequeue().is_some() {}
+        while self.waiting.dequeue().is_some() {}
+        for slot in slots.iter_mut().take(N.saturating_sub(1)) {
+            // It has room for these.
+            let _ = self.free.enqueue(slot);
+        }
+        let (give, free) = self.free.split();
+        let (fill, waiting) = self.waiting.split();
+        (LineProducer { free, waiting: fill, overruns: 0 }, LineConsumer { waiting, free: give })
+    }
+}
+
+impl<const B: usize, const N: usize> Default for LineSlots<'_, B, N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// A slot that is being filled.
+#[derive(Debug)]
+#[must_use = "a slot that is dropped is lost"]
+pub struct EmptyLine<'b, const B: usize>(&'b mut [u8; B]);
+
+impl<const B: usize> EmptyLine<'_, B> {
+    /// Where the line goes.
+    pub fn bytes(&mut self) -> &mut [u8; B] {
+        self.0
+    }
+}
+
+/// A line that is whole.
+#[derive(Debug)]
+#[must_use = "a slot that is dropped is lost"]
+pub struct FilledLine<'b, const B: usize> {
+    bytes: &'b mut [u8; B],
+    frame: FrameStart,
+    start: LineStart,
+    overruns: u32,
+}
+
+impl<const B: usize> FilledLine<'_, B> {
+    /// The line.
+    pub fn bytes(&self) -> &[u8; B] {
+        self.bytes
+    }
+
+    /// The frame that it is of.
+    pub fn frame(&self) -> FrameStart {
+        self.frame
+    }
+
+    /// Its row and time.
+    pub fn start(&self) -> LineStart {
+        self.start
+    }
+
+    /// Lines for which there had been no slot when this one was finished, in all.
+    pub fn overruns(&self) -> u32 {
+        self.overruns
+    }
+}
+
+/// The end of the interrupt.
+pub struct LineProducer<'a, 'b, const B: usize> {
+    free: Consumer<'a, &'b mut [u8; B]>,
+    waiting: Producer<'a, FilledLine<'b, B>>,
+    overruns: u32,
+}
+
+impl<'b, const B: usize> LineProducer<'_, 'b, B> {
+    /// A slot for the line that comes now; with none the line is lost, which is counted.
+    pub fn begin(&mut self) -> Option<EmptyLine<'b, B>> {
+        let slot = take(&mut self.free).map(EmptyLine);
+        if slot.is_none() {
+            self.overruns = self.overruns.saturating_add(1);
+        }
+        slot
+    }
+
+    /// The line is whole: it waits for the consumer.
+    pub fn finish(&mut self, line: EmptyLine<'b, B>, frame: FrameStart, start: LineStart) {
+        // There are no more slots than the queue has room for.
+        put(&mut self.waiting, FilledLine { bytes: line.0, frame, start, overruns: self.overruns });
+    }
+
+    /// Lines that found no slot.
+    pub fn overruns(&self) -> u32 {
+        self.overruns
+    }
+}
+
+/// The matcher's end.
+pub struct LineConsumer<'a, 'b, const B: usize> {
+    waiting: Consumer<'a, FilledLine<'b, B>>,
+    free: Producer<'a, &'b mut [u8; B]>,
+}
+
+impl<'b, const B: usize> LineConsumer<'_, 'b, B> {
+    /// The line that has waited longest.
+    #[allow(clippy::should_implement_trait, reason = "an iterator's items need not be given back")]
+    pub fn next(&mut self) -> Option<FilledLine<'b, B>> {
+        take(&mut self.waiting)
+    }
+
+    /// The line was read: its slot is free.
+    pub fn done(&mut self, line: FilledLine<'b, B>) {
+        // There are no more slots than the queue has room for.
+        put(&mut self.free, line.bytes);
+    }
+}
+
+/// Takes the oldest of a queue. A queue's length, by which its ends divide, is not 0: said here, the compiler sees it and leaves
+/// no panic.
+fn take<T>(queue: &mut Consumer<'_, T>) -> Option<T> {
+    if queue.capacity().wrapping_add(1) == 0 { None } else { queue.dequeue() }
+}
+
+/// Puts one more into a queue that has room for it.
+fn put<T>(queue: &mut Producer<'_, T>, item: T) {
+    if queue.capacity().wrapping_add(1) != 0 {
+        let _ = queue.enqueue(item);
+    }
+}
+
+/// The camera that an interrupt feeds through [`LineSlots`].
+///
+/// `wait` is called while no line waits, to sleep until the next interrupt; it says false when the time is over, which is
+/// [`CameraError::TimedOut`], and has to say so some time. A line that is lost on the way is seen by the next one's row.
+pub struct HandedLines<'a, 'b, F, const B: usize> {
+    consumer: LineConsumer<'a, 'b, B>,
+    format: LineFormat,
+    wait: F,
+    /// A line of a frame that was not started yet.
+    pending: Option<FilledLine<'b, B>>,
+    /// The frame that was started.
+    frame: Option<FrameStart>,
+    is_over: bool,
+    overruns: u32,
+}
+
+impl<'a, 'b, F: FnMut() -> bool, const B: usize> HandedLines<'a, 'b, F, B> {
+    /// A camera of that format; refused when its lines are longer than a slot.
+    pub fn new(
+        consumer: LineConsumer<'a, 'b, B>,
+        format: LineFormat,
+        wait: F,
+    ) -> Result<Self, CameraError<Infallible>> {
+        let needed = format.line_bytes();
+        if needed > B {
+            return Err(CameraError::BufferTooShort { needed });
+        }
+        Ok(Self { consumer, format, wait, pending: None, frame: None, is_over: true, overruns: 0 })
+    }
+
+    /// Lines that found no slot, up to the newest one that came.
+    pub fn overruns(&self) -> u32 {
+        self.overruns
+    }
+
+    /// The next line, of whichever frame.
+    fn take(&mut self) -> Result<FilledLine<'b, B>, CameraError<Infallible>> {
+        loop {
+            if let Some(line) = self.pending.take().or_else(|| self.consumer.next()) {
+                self.overruns = line.overruns;
+                return Ok(line);
+            }
+            if !(self.wait)() {
+                return Err(CameraError::TimedOut);
+            }
+        }
+    }
+}
+
+impl<F, const B: usize> ErrorType for HandedLines<'_, '_, F, B> {
+    type Error = Infallible;
+}
+
+impl<F: FnMut() -> bool, const B: usize> LineSource for HandedLines<'_, '_, F, B> {
+    fn format(&self) -> LineFormat {
+        self.format
+    }
+
+    fn start_frame(&mut self) -> Result<FrameStart, CameraError<Infallible>> {
+        self.is_over = true;
+        // What is left of the frame before goes: its lines and as many that come meanwhile, but not without an end.
+        for _ in 0..=2 * u32::from(self.format.height) {
+            let line = self.take()?;
+            if self.frame.is_none_or(|frame| frame.sequence != line.frame.sequence) {
+                let frame = line.frame;
+                (self.frame, self.is_over) = (Some(frame), false);
+                self.pending = Some(line);
+                return Ok(frame);
+            }
+            self.consumer.done(line);
+        }
+        Err(CameraError::LostSync)
+    }
+
+    fn next_line(&mut self, to: &mut [u8]) -> Result<LineStart, CameraError<Infallible>> {
+        let needed = self.format.line_bytes();
+        let Some(to) = to.get_mut(..needed) else { return Err(CameraError::BufferTooShort { needed }) };
+        if self.is_over {
+            return Err(CameraError::NoLineLeft);
+        }
+        let line = self.take()?;
+        if self.frame.is_none_or(|frame| frame.sequence != line.frame.sequence) {
+            // The next frame has begun: this one was short.
+            self.pending = Some(line);
+            self.is_over = true;
+            return Err(CameraError::NoLineLeft);
+        }
+        to.iter_mut().zip(line.bytes()).for_each(|(to, &from)| *to = from);
+        let start = line.start;
+        self.consumer.done(line);
+        self.is_over = start.row.saturating_add(1) >= self.format.height;
+        Ok(start)
+    }
+}

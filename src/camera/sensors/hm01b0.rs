@@ -1,0 +1,272 @@
+//! Himax's HM01B0: 324x324 pixels of 8 bits behind a rolling shutter, a few milliwatts.
+//!
+//! Registers have 8 bits at addresses of 16, the high byte first. Their names, numbers and values are those of OpenMV's driver
+//! (`drivers/sensors/hm01b0.c` and `.h`, MIT). Some are reserved in the data sheet, and the picture is bad without them.
+//!
+//! A line takes 376 clocks, the frame as many lines as it is told. The exposure is whole lines, two fewer than the frame's at most.
+//! What is written after [`Hm01b0::initialise`] counts from the frame after the group's command.
+
+use super::{ExposureControl, SensorError, within};
+use embedded_hal::delay::DelayNs;
+use embedded_hal::i2c::I2c;
+
+const MODEL_ID_HIGH: u16 = 0x0000;
+const MODEL_ID_LOW: u16 = 0x0001;
+const MODE_SELECT: u16 = 0x0100;
+const ORIENTATION: u16 = 0x0101;
+const SOFTWARE_RESET: u16 = 0x0103;
+const GROUP: u16 = 0x0104;
+const INTEGRATION: u16 = 0x0202;
+const ANALOG_GAIN: u16 = 0x0205;
+const FRAME_LINES: u16 = 0x0340;
+const LINE_CLOCKS: u16 = 0x0342;
+const READOUT_X: u16 = 0x0383;
+const READOUT_Y: u16 = 0x0387;
+const BINNING: u16 = 0x0390;
+const TEST_PATTERN: u16 = 0x0601;
+const AUTO_EXPOSURE: u16 = 0x2100;
+const QVGA_WINDOW: u16 = 0x3010;
+
+/// How often a sensor that comes up is asked.
+const ATTEMPTS: u8 = 10;
+const CLOCKS_A_LINE: u16 = 0x0178;
+
+/// Analog settings, black level, and defect correction for a sensor without colours.
+const SETTINGS: [(u16, u8); 29] = [
+    (0x1003, 0x08),
+    (0x1007, 0x08),
+    (0x3044, 0x0a),
+    (0x3045, 0x00),
+    (0x3047, 0x0a),
+    (0x3050, 0xc0),
+    (0x3051, 0x42),
+    (0x3052, 0x50),
+    (0x3053, 0x00),
+    (0x3054, 0x03),
+    (0x3055, 0xf7),
+    (0x3056, 0xf8),
+    (0x3057, 0x29),
+    (0x3058, 0x1f),
+    (0x3064, 0x00),
+    (0x3065, 0x04),
+    (0x3067, 0x00),
+    (0x1000, 0x43),
+    (0x1001, 0x43),
+    (0x1002, 0x43),
+    (0x0350, 0x7f),
+    (0x1006, 0x01),
+    (0x1008, 0x01),
+    (0x1009, 0xa0),
+    (0x100a, 0x60),
+    (0x100b, 0x90),
+    (0x100c, 0x40),
+    (0x1012, 0x00),
+    (0x3059, 0x02),
+];
+
+/// The part of the array that is read out.
+#[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Hm01b0Size {
+    /// All of it: 324x324.
+    Whole,
+    /// Its middle: 324x244.
+    #[default]
+    Qvga,
+    /// The middle, two by two pixels as one: 162x122.
+    Qqvga,
+}
+
+impl Hm01b0Size {
+    /// Lines of a frame, blanking included, at least.
+    const fn least_lines(self) -> u16 {
+        match self {
+            // As for the window, whose frame is that of 244 lines and 16 of blanking.
+            Self::Whole => 340,
+            Self::Qvga => 0x0104,
+            Self::Qqvga => 0x0084,
+        }
+    }
+
+    /// Pixels in a line, lines in a frame.
+    pub const fn pixels(self) -> (u16, u16) {
+        match self {
+            Self::Whole => (324, 324),
+            Self::Qvga => (324, 244),
+            Self::Qqvga => (162, 122),
+        }
+    }
+}
+
+/// What the sensor does.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Hm01b0Mode {
+    /// Nothing.
+    Standby,
+    /// One frame after the other.
+    Streaming,
+    /// A frame for each pulse on its pin TRIG.
+    Triggered,
+}
+
+/// A HM01B0 on an I2C bus.
+#[derive(Debug)]
+pub struct Hm01b0<I> {
+    bus: I,
+    /// Of the clock that the lines are counted in, hertz.
+    clock_hz: u32,
+    frame_lines: u16,
+    size: Hm01b0Size,
+}
+
+impl<I: I2c> Hm01b0<I> {
+    /// Its address on the bus, 7 bits.
+    pub const ADDRESS: u8 = 0x24;
+    /// What it says that it is.
+    pub const IDENTITY: u16 = 0x01b0;
+
+    /// A sensor on that bus, whose lines are counted in a clock of so many hertz: the master clock by what the register OSC_CLK_DIV
+    /// divides it, 8 after a reset. Nothing is sent.
+    pub const fn new(bus: I, clock_hz: u32) -> Self {
+        let size = Hm01b0Size::Qvga;
+        Self { bus, clock_hz, frame_lines: size.least_lines(), size }
+    }
+
+    /// Resets the sensor by its register, waits for it, asks who it is, and sets it up, without automatic exposure, in standby.
+    pub fn initialise<D: DelayNs>(&mut self, delay: &mut D) -> Result<(), SensorError<I::Error>> {
+        self.write(SOFTWARE_RESET, 1)?;
+        delay.delay_ms(1);
+        let mut is_ready = false;
+        for _ in 0..ATTEMPTS {
+            is_ready = self.read(MODE_SELECT)? == 0;
+            if is_ready {
+                break;
+            }
+            delay.delay_ms(10);
+        }
+        if !is_ready {
+            return Err(SensorError::NoReset);
+        }
+        self.identify()?;
+        for (register, value) in SETTINGS {
+            self.write(register, value)?;
+        }
+        self.write(AUTO_EXPOSURE, 0)?;
+        self.write_pair(LINE_CLOCKS, CLOCKS_A_LINE)?;
+        self.set_size(Hm01b0Size::Qvga)
+    }
+
+    /// Asks the chip who it is.
+    pub fn identify(&mut self) -> Result<(), SensorError<I::Error>> {
+        let found = u16::from_be_bytes([self.read(MODEL_ID_HIGH)?, self.read(MODEL_ID_LOW)?]);
+        if found == Self::IDENTITY { Ok(()) } else { Err(SensorError::Identity { found }) }
+    }
+
+    /// Starts or stops frames.
+    pub fn set_mode(&mut self, mode: Hm01b0Mode) -> Result<(), SensorError<I::Error>> {
+        self.write(
+            MODE_SELECT,
+            match mode {
+                Hm01b0Mode::Standby => 0,
+                Hm01b0Mode::Streaming => 1,
+                Hm01b0Mode::Triggered => 5,
+            },
+        )
+    }
+
+    /// Reads out that part of the array, at the highest frame rate of the clock.
+    pub fn set_size(&mut self, size: Hm01b0Size) -> Result<(), SensorError<I::Error>> {
+        let (readout, binning) = if size == Hm01b0Size::Qqvga { (3, 3) } else { (1, 0) };
+        self.write(READOUT_X, readout)?;
+        self.write(READOUT_Y, readout)?;
+        self.write(BINNING, binning)?;
+        self.write(QVGA_WINDOW, u8::from(size != Hm01b0Size::Whole))?;
+        self.write_pair(FRAME_LINES, size.least_lines())?;
+        self.write(GROUP, 1)?;
+        (self.size, self.frame_lines) = (size, size.least_lines());
+        Ok(())
+    }
+
+    /// Sets the time between two frames, to the next whole line.
+    pub fn set_frame_time(&mut self, frame_us: u32) -> Result<(), SensorError<I::Error>> {
+        within(frame_us, self.lines_us(self.size.least_lines()), self.lines_us(u16::MAX))?;
+        let lines = self.lines_in(frame_us).max(self.size.least_lines());
+        self.write_pair(FRAME_LINES, lines)?;
+        self.write(GROUP, 1)?;
+        self.frame_lines = lines;
+        Ok(())
+    }
+
+    /// The time between two frames, microseconds.
+    pub fn frame_time_us(&self) -> u32 {
+        self.lines_us(self.frame_lines)
+    }
+
+    /// Reads columns from the right, rows from below.
+    pub fn set_flips(&mut self, rows: bool, columns: bool) -> Result<(), SensorError<I::Error>> {
+        self.write(ORIENTATION, u8::from(columns) | u8::from(rows) << 1)?;
+        self.write(GROUP, 1)
+    }
+
+    /// Sends a pattern of bars instead of what the sensor sees.
+    pub fn set_test_pattern(&mut self, is_on: bool) -> Result<(), SensorError<I::Error>> {
+        self.write(TEST_PATTERN, u8::from(is_on))
+    }
+
+    /// Gives the bus back.
+    pub fn release(self) -> I {
+        self.bus
+    }
+
+    fn lines_us(&self, lines: u16) -> u32 {
+        let clocks = u64::from(lines) * u64::from(CLOCKS_A_LINE);
+        (clocks * 1_000_000).div_ceil(u64::from(self.clock_hz.max(1))).min(u32::MAX.into()) as u32
+    }
+
+    fn lines_in(&self, time_us: u32) -> u16 {
+        let clocks = u64::from(time_us) * u64::from(self.clock_hz) / 1_000_000;
+        (clocks / u64::from(CLOCKS_A_LINE)).min(u16::MAX.into()) as u16
+    }
+
+    fn write(&mut self, register: u16, value: u8) -> Result<(), SensorError<I::Error>> {
+        let [high, low] = register.to_be_bytes();
+        self.bus.write(Self::ADDRESS, &[high, low, value]).map_err(SensorError::Bus)
+    }
+
+    /// Two registers beside each other, the high byte's first.
+    fn write_pair(&mut self, register: u16, value: u16) -> Result<(), SensorError<I::Error>> {
+        let [high, low] = value.to_be_bytes();
+        self.write(register, high)?;
+        self.write(register + 1, low)
+    }
+
+    fn read(&mut self, register: u16) -> Result<u8, SensorError<I::Error>> {
+        let mut value = [0];
+        self.bus.write_read(Self::ADDRESS, &register.to_be_bytes(), &mut value).map_err(SensorError::Bus)?;
+        let [value] = value;
+        Ok(value)
+    }
+}
+
+impl<I: I2c> ExposureControl for Hm01b0<I> {
+    type Error = SensorError<I::Error>;
+
+    fn exposure_limits_us(&self) -> (u32, u32) {
+        (self.lines_us(2), self.lines_us(self.frame_lines.saturating_sub(2)))
+    }
+
+    fn most_gain_16ths(&self) -> u16 {
+        128
+    }
+
+    /// The gain is 1, 2, 4 or 8: the next one below.
+    fn set_exposure(&mut self, exposure_us: u32, gain_16ths: u16) -> Result<(), Self::Error> {
+        within(gain_16ths.into(), 16, 128)?;
+        let lines = self.lines_in(exposure_us).clamp(2, self.frame_lines.saturating_sub(2).max(2));
+        let doublings = (gain_16ths / 16).checked_ilog2().unwrap_or(0) as u8;
+        self.write_pair(INTEGRATION, lines)?;
+        self.write(ANALOG_GAIN, doublings << 4)?;
+        self.write(GROUP, 1)
+    }
+}

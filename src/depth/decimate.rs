@@ -1,0 +1,86 @@
+//! Rows of disparity made smaller.
+
+use crate::units::Disparity;
+
+/// Makes one pixel of `N x N`, `N` from 2 to 8, row by row: the median of the block's answers, the nearer one of two, where at
+/// least half of its pixels have one.
+///
+/// The mean of two surfaces is none of them; a median is one of the answers. The disparity is still in pixels of the full
+/// picture: [`DepthScale`](super::DepthScale) gives the same depth, and a point has the columns and rows of the block's middle,
+/// `N u + (N - 1) / 2`. `W` is the room for a full row: `2 W N` bytes.
+///
+/// ```
+/// use stereopsis::depth::Decimator;
+/// use stereopsis::units::Disparity;
+/// let mut small = Decimator::<4, 2>::new();
+/// let row = |d: [u16; 4]| d.map(Disparity::from_pixels);
+/// assert!(small.push(&row([3, 4, 9, 9]), &mut [Disparity::NONE; 2]).is_none());
+/// let mut out = [Disparity::NONE; 2];
+/// assert_eq!(small.push(&row([5, 6, 9, 9]), &mut out), Some(0));
+/// assert_eq!(out, [5, 9].map(Disparity::from_pixels));
+/// ```
+#[derive(Debug)]
+pub struct Decimator<const W: usize, const N: usize> {
+    rows: [[Disparity; W]; N],
+    width: usize,
+    taken: usize,
+}
+
+/// Pixels of the largest block.
+const MOST: usize = 64;
+
+impl<const W: usize, const N: usize> Decimator<W, N> {
+    /// Before a frame's first row.
+    pub const fn new() -> Self {
+        const { assert!(N >= 2 && N <= 8, "blocks have 2 to 8 pixels a side") };
+        Self { rows: [[Disparity::NONE; W]; N], width: 0, taken: 0 }
+    }
+
+    /// Forgets the frame before.
+    pub fn begin(&mut self) {
+        self.taken = 0;
+    }
+
+    /// Takes the next row; with each `N`th writes a smaller one and says which. Columns and rows that fill no block are left out.
+    pub fn push(&mut self, row: &[Disparity], out: &mut [Disparity]) -> Option<usize> {
+        let slot = self.rows.get_mut(self.taken % N)?;
+        slot.iter_mut().zip(row).for_each(|(to, &from)| *to = from);
+        self.width = row.len().min(W);
+        self.taken += 1;
+        if !self.taken.is_multiple_of(N) {
+            return None;
+        }
+        for (u, out) in out.iter_mut().enumerate().take(self.width / N) {
+            let mut block = [0; MOST];
+            let mut count = 0;
+            let answers = self.rows.iter().flat_map(|row| row.iter().skip(u * N).take(N)).filter(|d| d.is_some());
+            for (answer, to) in answers.zip(&mut block) {
+                *to = answer.raw();
+                count += 1;
+            }
+            *out = median(&mut block, count).filter(|_| 2 * count >= N * N).unwrap_or(Disparity::NONE);
+        }
+        Some(self.taken / N - 1)
+    }
+}
+
+impl<const W: usize, const N: usize> Default for Decimator<W, N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The median of the first `count`, the larger one of two; they are put in order.
+fn median(values: &mut [u16; MOST], count: usize) -> Option<Disparity> {
+    let values = values.get_mut(..count)?;
+    // By insertion: 64 of them at most.
+    for i in 1..count {
+        for j in (1..=i).rev() {
+            match values.get_mut(j - 1..=j) {
+                Some([a, b]) if *a > *b => core::mem::swap(a, b),
+                _ => break,
+            }
+        }
+    }
+    values.get(count / 2).map(|&steps| Disparity::from_raw(steps))
+}

@@ -1,0 +1,92 @@
+//! How bright a picture is.
+
+/// Counts of grey levels over the lines of a frame: 16 bins of 16 levels each, with the pixels that are black and those that are
+/// saturated beside them. 80 bytes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Histogram {
+    bins: [u32; 16],
+    black: u32,
+    saturated: u32,
+    sum: u64,
+}
+
+impl Histogram {
+    /// At most this is black.
+    pub const BLACK: u8 = 2;
+    /// At least this is saturated.
+    pub const SATURATED: u8 = 253;
+
+    /// Nothing counted.
+    pub const fn new() -> Self {
+        Self { bins: [0; 16], black: 0, saturated: 0, sum: 0 }
+    }
+
+    /// Forgets the frame before.
+    pub fn begin(&mut self) {
+        *self = Self::new();
+    }
+
+    /// Counts a line's pixels, of each eight columns one: which one goes round with `row`. Some thousands of pixels tell the light of a
+    /// frame, and a line of 320 costs 40 look-ups.
+    pub fn line(&mut self, row: usize, line: &[u8]) {
+        for &grey in line.iter().skip(row % 8).step_by(8) {
+            if let Some(bin) = self.bins.get_mut(usize::from(grey >> 4)) {
+                *bin = bin.saturating_add(1);
+            }
+            self.black = self.black.saturating_add(u32::from(grey <= Self::BLACK));
+            self.saturated = self.saturated.saturating_add(u32::from(grey >= Self::SATURATED));
+            self.sum = self.sum.saturating_add(u64::from(grey));
+        }
+    }
+
+    /// Pixels counted.
+    pub fn count(&self) -> u32 {
+        self.bins.iter().fold(0, |sum, &bin| sum.saturating_add(bin))
+    }
+
+    /// The counts of levels 0 to 15, 16 to 31, and so on.
+    pub fn bins(&self) -> &[u32; 16] {
+        &self.bins
+    }
+
+    /// The mean grey in 16ths; 0 where nothing was counted.
+    pub fn mean_16ths(&self) -> u16 {
+        (16 * self.sum).checked_div(self.count().into()).unwrap_or(0) as u16
+    }
+
+    /// Black pixels in 1000.
+    pub fn black_per_mille(&self) -> u16 {
+        self.per_mille(self.black)
+    }
+
+    /// Saturated pixels in 1000.
+    pub fn saturated_per_mille(&self) -> u16 {
+        self.per_mille(self.saturated)
+    }
+
+    fn per_mille(&self, part: u32) -> u16 {
+        (u64::from(part) * 1000).checked_div(self.count().into()).unwrap_or(0) as u16
+    }
+}
+
+impl Default for Histogram {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_of_eight_columns_is_counted_and_all_in_eight_rows() {
+        let mut histogram = Histogram::new();
+        let line: [u8; 16] = core::array::from_fn(|x| 17 * x as u8);
+        histogram.line(0, &line);
+        assert_eq!((histogram.count(), histogram.mean_16ths()), (2, 8 * 17 * 16 / 2));
+        (1..8).for_each(|row| histogram.line(row, &line));
+        assert_eq!((histogram.count(), histogram.bins()), (16, &[1; 16]));
+        assert_eq!((histogram.black_per_mille(), histogram.saturated_per_mille()), (62, 62));
+    }
+}

@@ -15,6 +15,7 @@
 //! * [`Essential::recover_pose`] and [`Homography::recover_motions`]: the pose, without its scale ([`RelativePose`]).
 //! * [`TwoViews`]: points from two sights, with their residual, angle and covariance.
 //! * [`Projection`]: a camera in the world as one matrix, to and from its parts, and from [`Landmark`]s.
+//! * Where a camera stands among known points: [`p3p()`] of three, [`robust_resection`] of many, some of them wrong.
 //! * One camera before something of known shape: [`Sighting`] of an object of known size, the poses of a [`SquareMark`], the
 //!   orientation between [`Walls`].
 //!
@@ -63,9 +64,10 @@ mod homography;
 mod landmarks;
 mod lens;
 mod line;
-mod linear;
+pub(crate) mod linear;
 mod model;
 mod normalise;
+mod p3p;
 mod plane;
 mod pose;
 mod projection;
@@ -97,6 +99,7 @@ pub use landmarks::{
 pub use lens::Lens;
 pub use line::{Epipole, Line};
 pub use model::{ModelChoice, TwoViewModel, choose, gric};
+pub use p3p::{P3pError, P3pPoses, p3p};
 pub use plane::{PlaneMotion, PlaneMotionError};
 pub use pose::{Pose, PoseError};
 pub use projection::{Landmark, Projection, ResectionError};
@@ -109,7 +112,11 @@ pub use rectify::{
 };
 pub use relative::{RelativePose, ScaleError};
 pub use rig::{RectifiedRig, RigError};
-pub use robust::{RobustConfig, RobustError, RobustFundamental, Sampling, robust_fundamental};
+pub use robust::{
+    RobustConfig, RobustError, RobustFundamental, RobustResection, RobustResectionError, Sampling, robust_fundamental,
+    robust_resection,
+};
 pub use skew::skew;
+pub(crate) use skew::turn;
 pub use stereo_rig::{ImageSize, StereoRig, StereoRigError};
 pub use triangulate::{Triangulated, TriangulationError, TwoViews};

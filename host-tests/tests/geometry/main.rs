@@ -10,6 +10,7 @@ mod planes;
 mod points;
 mod poses;
 mod rectify;
+mod resection;
 mod robust;
 mod twin;
 mod views;

@@ -1,4 +1,4 @@
-//! Two views when some of the correspondences are wrong.
+//! Two views, or a view of known points, when some of the correspondences are wrong.
 //!
 //! In: correspondences, a threshold and a seed. Out: [`RobustFundamental`], and which correspondences agree with it.
 //!
@@ -7,7 +7,8 @@
 //! * `loss`: what a distance is worth. `verdict`: whether an estimate is worth anything, from a few correspondences.
 //! * `frame`, `factored`, `refine`: the estimate whose geometric error is least, also of an essential matrix.
 //! * `search`: the loop over samples. `fundamental`: its beginning and end. `essential`: the
-//!   refinement when the cameras are known.
+//!   refinement when the cameras are known. `resection`: a camera's pose from [`Landmark`](super::Landmark)s, by samples
+//!   of three.
 //!
 //! Every loop is bounded, nothing is allocated; what is held besides the caller's slices is a few hundred bytes.
 
@@ -22,11 +23,13 @@ mod plane;
 mod pool;
 mod random;
 mod refine;
+mod resection;
 mod search;
 mod verdict;
 
 pub use config::{RobustConfig, Sampling};
 pub use fundamental::{RobustError, RobustFundamental, robust_fundamental};
+pub use resection::{RobustResection, RobustResectionError, robust_resection};
 
 /// Correspondences of a sample.
 const MINIMUM: usize = 7;

@@ -39,7 +39,7 @@ impl Pool {
         (self.inside, self.due) = (inside, self.due.saturating_add(more.saturating_add(1)));
         // The newest has not been drawn yet: it is one of the seven.
         let newest = self.size - 1;
-        let mut sample = self.random.sample(self.size);
+        let mut sample: Sample = self.random.sample(self.size);
         if let (false, [first, ..]) = (sample.contains(&newest), &mut sample) {
             *first = newest;
         }

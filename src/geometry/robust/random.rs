@@ -1,7 +1,5 @@
 //! Random choices that a seed repeats.
 
-use super::MINIMUM;
-
 /// Numbers by SplitMix64 (Steele, Lea & Flood 2014): a counter in steps of the golden ratio, its bits mixed. One
 /// multiplication of 64 bits twice a number, eight bytes of state, every seed is as good as any other.
 pub(super) struct Random(u64);
@@ -26,12 +24,12 @@ impl Random {
         ((u64::from(self.bits()) * n as u64) >> 32) as usize
     }
 
-    /// Seven different numbers below `n`, which is seven at least: Floyd's method, one number for each (Bentley & Floyd
+    /// K different numbers below `n`, which is K at least: Floyd's method, one number for each (Bentley & Floyd
     /// 1987).
-    pub(super) fn sample(&mut self, n: usize) -> [usize; MINIMUM] {
-        let mut chosen = [usize::MAX; MINIMUM];
-        for k in 0..MINIMUM {
-            let last = n - MINIMUM + k;
+    pub(super) fn sample<const K: usize>(&mut self, n: usize) -> [usize; K] {
+        let mut chosen = [usize::MAX; K];
+        for k in 0..K {
+            let last = n - K + k;
             let number = self.below(last + 1);
             let taken = chosen.contains(&number);
             if let Some(slot) = chosen.get_mut(k) {
@@ -58,13 +56,13 @@ mod tests {
         let mut random = Random::new(5);
         let mut seen = [0; 9];
         for _ in 0..900 {
-            let mut sample = random.sample(9);
+            let mut sample: [usize; 7] = random.sample(9);
             sample.sort_unstable();
             assert!(sample.windows(2).all(|pair| pair[0] < pair[1]), "{sample:?}");
             sample.iter().for_each(|&i| seen[i] += 1);
         }
         // Seven of nine, 700 times each; the standard deviation is 12.
         assert!(seen.iter().all(|n| (640..760).contains(n)), "{seen:?}");
-        assert_eq!(random.sample(7).iter().sum::<usize>(), 21);
+        assert_eq!(random.sample::<7>(7).iter().sum::<usize>(), 21);
     }
 }

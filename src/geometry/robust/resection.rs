@@ -1,0 +1,295 @@
+//! Where a camera stands, from points of known position of which some are wrong.
+
+use super::config::RobustConfig;
+use super::loss::Loss;
+use super::random::Random;
+use crate::geometry::linear::Ldl;
+use crate::geometry::skew::{skew, turn};
+use crate::geometry::{Camera, Landmark, Pose, Real, p3p};
+use nalgebra::{Matrix3, Matrix6, Point3, Vector3};
+
+/// Why landmarks give no pose, however many of them are left out.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum RobustResectionError {
+    /// Fewer than four landmarks.
+    TooFew,
+    /// A number is infinite or not a number.
+    NotFinite,
+    /// The threshold is not greater than zero, or not a number.
+    Threshold,
+    /// The probability of a miss is not between zero and one.
+    MissProbability,
+    /// No sample is allowed.
+    NoSamples,
+    /// The slice for the inliers is shorter than the landmarks; this many are needed.
+    Inliers(usize),
+    /// No sample of three gave a pose that more than three landmarks agree with: all are wrong, or on a line.
+    NoAgreement,
+}
+
+impl core::fmt::Display for RobustResectionError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::TooFew => "a pose needs four landmarks",
+            Self::NotFinite => "a coordinate is not finite",
+            Self::Threshold => "the threshold must be greater than zero",
+            Self::MissProbability => "the probability of a miss must be between zero and one",
+            Self::NoSamples => "one sample at least is needed",
+            Self::Inliers(needed) => return write!(f, "the inliers need a slice of {needed}"),
+            Self::NoAgreement => "no pose has more than three landmarks agree with it",
+        })
+    }
+}
+
+impl core::error::Error for RobustResectionError {}
+
+/// Where a camera stands in the world, and how sure that is.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct RobustResection<T: Real> {
+    /// Carries a point of the camera into the world.
+    pub pose: Pose<T>,
+    /// The covariance of the pose to first order, if the inliers' coordinates have the deviation [`Self::rms_px`]: a turn
+    /// (radians) and a step, both along the camera's axes, `P = R exp([w]x) (P' + d) + t`. Infinite where the landmarks leave
+    /// the pose open.
+    pub covariance: Matrix6<T>,
+    /// How many landmarks are within the threshold.
+    pub inliers: usize,
+    /// Root mean square of a coordinate's re-projection error among them, px, corrected for the six numbers of the pose.
+    pub rms_px: T,
+    /// Samples of three that were drawn.
+    pub samples: u32,
+}
+
+/// Landmarks of a sample, and one more that a pose has to agree with.
+const MINIMUM: usize = 3;
+/// Steps of the refinement of each best pose, and of the last.
+const QUICK: usize = 4;
+const LAST: usize = 12;
+
+/// The pose of a camera from landmarks of which some are wrong (undistorted px); `inliers` is filled with which agree.
+///
+/// Samples of three give up to four poses each ([`p3p()`]); each best one so far is refined over all landmarks by
+/// least squares with weights that fall to zero at one and a half thresholds, as in
+/// [`robust_fundamental`](crate::geometry::robust_fundamental). Bounded by [`RobustConfig::most_samples`], each sample by
+/// four passes over the landmarks, each best one by four more; [`RobustConfig::sampling`] does not count here.
+pub fn robust_resection<T: Real>(
+    landmarks: &[Landmark<T>],
+    camera: &Camera<T>,
+    config: &RobustConfig<T>,
+    inliers: &mut [bool],
+) -> Result<RobustResection<T>, RobustResectionError> {
+    check(landmarks, config, inliers.len())?;
+    let problem = Problem { landmarks, k: camera.matrix(), inverse: camera.inverse_matrix() };
+    let loss = Loss::new(config.threshold_px);
+    let mut random = Random::new(config.seed);
+    let mut best: Option<(Pose<T>, T)> = None;
+    let (mut samples, mut needed) = (0, config.most_samples);
+    while samples < needed {
+        samples += 1;
+        for pose in problem.sample(&mut random) {
+            let Some(gain) = problem.gain(&pose, loss, best.map_or(T::ZERO, |(_, gain)| gain)) else { continue };
+            // The refinement of a pose by its own landmarks makes it better, or it is as it was.
+            let (refined, _) = problem.refined(pose, loss, QUICK);
+            let better = problem.gain(&refined, loss, gain);
+            let (pose, gain) = better.map_or((pose, gain), |better| (refined, better));
+            best = Some((pose, gain));
+            let share = T::count(problem.within(&pose, config.threshold_px).0) / T::count(landmarks.len());
+            needed = needed.min(enough(share, config));
+        }
+    }
+    let (pose, _) = best.ok_or(RobustResectionError::NoAgreement)?;
+    let (pose, information) = problem.refined(pose, loss, LAST);
+    let (count, squares) = problem.within(&pose, config.threshold_px);
+    if count <= MINIMUM {
+        return Err(RobustResectionError::NoAgreement);
+    }
+    for (inlier, landmark) in inliers.iter_mut().zip(landmarks) {
+        *inlier = problem.squared(&pose, landmark).is_some_and(|e| e <= config.threshold_px * config.threshold_px);
+    }
+    let free = T::count((2 * count).saturating_sub(6).max(1));
+    let rms_px = (squares / free).sqrt();
+    let covariance = inverse(&information) * (rms_px * rms_px);
+    Ok(RobustResection { pose, covariance, inliers: count, rms_px, samples })
+}
+
+fn check<T: Real>(
+    landmarks: &[Landmark<T>],
+    config: &RobustConfig<T>,
+    room: usize,
+) -> Result<(), RobustResectionError> {
+    let finite = |l: &Landmark<T>| l.world.iter().chain(l.pixel.iter()).all(|x| x.is_finite());
+    if landmarks.len() <= MINIMUM {
+        Err(RobustResectionError::TooFew)
+    } else if room < landmarks.len() {
+        Err(RobustResectionError::Inliers(landmarks.len()))
+    } else if !(config.threshold_px > T::ZERO) {
+        Err(RobustResectionError::Threshold)
+    } else if !(config.miss_probability > T::ZERO && config.miss_probability < T::ONE) {
+        Err(RobustResectionError::MissProbability)
+    } else if config.most_samples == 0 {
+        Err(RobustResectionError::NoSamples)
+    } else if !landmarks.iter().all(finite) {
+        Err(RobustResectionError::NotFinite)
+    } else {
+        Ok(())
+    }
+}
+
+/// After so many samples of three, with a share of right landmarks, the chance that each had a wrong one is as asked.
+fn enough<T: Real>(share: T, config: &RobustConfig<T>) -> u32 {
+    let all_right = share * share * share;
+    if !(all_right < T::ONE) {
+        return 1;
+    }
+    let samples = config.miss_probability.ln() / (T::ONE - all_right).ln();
+    // Not a number and what is too large are the most.
+    if samples < T::of(f64::from(u32::MAX)) { samples.to_f64() as u32 + 1 } else { u32::MAX }
+}
+
+struct Problem<'a, T: Real> {
+    landmarks: &'a [Landmark<T>],
+    k: Matrix3<T>,
+    inverse: Matrix3<T>,
+}
+
+impl<T: Real> Problem<'_, T> {
+    /// The poses of a random sample.
+    fn sample(&self, random: &mut Random) -> impl Iterator<Item = Pose<T>> {
+        let chosen: [usize; MINIMUM] = random.sample(self.landmarks.len());
+        let mut sights = [Vector3::z(); MINIMUM];
+        let mut points = [Point3::origin(); MINIMUM];
+        for ((sight, point), &place) in sights.iter_mut().zip(&mut points).zip(&chosen) {
+            if let Some(landmark) = self.landmarks.get(place) {
+                *sight = self.inverse * landmark.pixel.to_homogeneous();
+                *point = landmark.world;
+            }
+        }
+        let poses = p3p(&sights, &points).ok();
+        let at = move |i: usize| poses.as_ref().and_then(|p| p.as_slice().get(i).copied());
+        (0..4).map_while(at)
+    }
+
+    /// The squared distance of a landmark's projection from its pixel, px^2; `None` behind the camera.
+    #[inline(always)]
+    fn squared(&self, pose: &Pose<T>, landmark: &Landmark<T>) -> Option<T> {
+        let p = self.k * pose.inverse_transform(&landmark.world).coords;
+        if !(p.z > T::ZERO) {
+            return None;
+        }
+        let by = T::ONE / p.z;
+        let (x, y) = (p.x * by - landmark.pixel.x, p.y * by - landmark.pixel.y);
+        Some(x * x + y * y)
+    }
+
+    /// The sum of the loss's gains, if it is more than `best`.
+    fn gain(&self, pose: &Pose<T>, loss: Loss<T>, best: T) -> Option<T> {
+        let per_width = T::ONE / loss.width_squared;
+        let mut ahead = T::count(self.landmarks.len());
+        let mut gain = T::ZERO;
+        for landmark in self.landmarks {
+            ahead -= T::ONE;
+            let left = T::ONE - self.squared(pose, landmark).map_or(T::ONE, |e| (e * per_width).min(T::ONE));
+            gain += left * left * left;
+            if gain + ahead <= best {
+                return None;
+            }
+        }
+        (gain > best).then_some(gain)
+    }
+
+    /// How many landmarks are within a threshold, and the sum of their squared distances.
+    fn within(&self, pose: &Pose<T>, threshold_px: T) -> (usize, T) {
+        let squared = self.landmarks.iter().filter_map(|landmark| self.squared(pose, landmark));
+        let near = squared.filter(|&e| e <= threshold_px * threshold_px);
+        near.fold((0, T::ZERO), |(count, sum), e| (count + 1, sum + e))
+    }
+
+    /// The pose after some steps of Gauss and Newton's method with weights `(1 - e^2 / w^2)^2`, each held to a step that
+    /// makes the gain larger; and the weighted information at it, px^-2.
+    fn refined(&self, start: Pose<T>, loss: Loss<T>, steps: usize) -> (Pose<T>, [[T; 6]; 6]) {
+        let mut pose = start;
+        let mut gain = self.gain(&pose, loss, -T::ONE).unwrap_or(T::ZERO);
+        for _ in 0..steps {
+            let (information, slope) = self.normal(&pose, loss);
+            let [a, b, c, d, e, f] = Ldl::<T, 6>::new(&mut { information }).solve(&slope);
+            let next = moved(&pose, &Vector3::new(a, b, c), &Vector3::new(d, e, f));
+            let Some(then) = self.gain(&next, loss, gain) else { break };
+            let little = then - gain <= gain * T::EPSILON.sqrt();
+            (pose, gain) = (next, then);
+            if little {
+                break;
+            }
+        }
+        let (information, _) = self.normal(&pose, loss);
+        (pose, information)
+    }
+
+    /// The normal equations of a turn and a step along the camera's axes.
+    fn normal(&self, pose: &Pose<T>, loss: Loss<T>) -> ([[T; 6]; 6], [T; 6]) {
+        let (mut information, mut slope) = ([[T::ZERO; 6]; 6], [T::ZERO; 6]);
+        for landmark in self.landmarks {
+            let p = pose.inverse_transform(&landmark.world).coords;
+            let seen = self.k * p;
+            if !(seen.z > T::ZERO) {
+                continue;
+            }
+            let by = T::ONE / seen.z;
+            let (u, v) = (seen.x * by, seen.y * by);
+            let (du, dv) = (landmark.pixel.x - u, landmark.pixel.y - v);
+            let left = T::ONE - (du * du + dv * dv) / loss.width_squared;
+            if !(left > T::ZERO) {
+                continue;
+            }
+            let weight = left * left;
+            // P' = exp(-[w]x) P' - d, so that the slopes by w and d are [P']x and -1.
+            let turned = skew(&p);
+            for (row, error) in [(0, du), (1, dv)] {
+                let at = if row == 0 { u } else { v };
+                let by_point = (self.k.row(row) - self.k.row(2) * at) * by;
+                let by_turn = by_point * turned;
+                let j = [by_turn[0], by_turn[1], by_turn[2], -by_point[0], -by_point[1], -by_point[2]];
+                for ((line, slope), &a) in information.iter_mut().zip(&mut slope).zip(&j) {
+                    *slope += a * error * weight;
+                    for (sum, &b) in line.iter_mut().zip(&j) {
+                        *sum += a * b * weight;
+                    }
+                }
+            }
+        }
+        (information, slope)
+    }
+}
+
+/// A pose after a turn and a step along the camera's axes.
+fn moved<T: Real>(pose: &Pose<T>, by: &Vector3<T>, step: &Vector3<T>) -> Pose<T> {
+    let rotation = pose.rotation() * turn(by);
+    Pose::of_parts(rotation, pose.translation() + rotation * step)
+}
+
+/// The inverse of an information; infinite on the diagonal where it has a direction of nothing.
+fn inverse<T: Real>(information: &[[T; 6]; 6]) -> Matrix6<T> {
+    let mut out = Matrix6::zeros();
+    // At size one in every direction.
+    let mut scale = [T::ZERO; 6];
+    for (i, (scale, row)) in scale.iter_mut().zip(information).enumerate() {
+        let d = row.get(i).copied().unwrap_or(T::ZERO);
+        *scale = if d > T::ZERO { T::ONE / d.sqrt() } else { T::ZERO };
+    }
+    let mut m = *information;
+    for (row, &a) in m.iter_mut().zip(&scale) {
+        row.iter_mut().zip(&scale).for_each(|(x, &b)| *x *= a * b);
+    }
+    let ldl = Ldl::<T, 6>::new(&mut m);
+    let open = ldl.pivots().iter().any(|&pivot| !(pivot > T::EPSILON * T::of(16.0)));
+    for i in 0..6 {
+        let mut unit = [T::ZERO; 6];
+        unit[i] = T::ONE;
+        let column = ldl.solve(&unit);
+        for j in 0..6 {
+            out[(j, i)] = if open && i == j { T::ONE / T::ZERO } else { column[j] * scale[i] * scale[j] };
+        }
+    }
+    (out + out.transpose()) * T::of(0.5)
+}

@@ -1,0 +1,8 @@
+//! How cameras move, and what they see on the way.
+//!
+//! In: pictures of one camera or of a rectified pair, one moment after the other, with their features. Out: where the
+//! camera stands.
+//!
+//! * [`odometry`]: from frame to frame, as they come.
+
+pub mod odometry;

@@ -12,12 +12,13 @@
 //! depth          disparity -> metres with its uncertainty, points
 //! focus          thin lens, sharpness, depth from focus, lens motors
 //! features       corners, descriptors, matches: which point of one picture is which of another
+//! motion         where a camera goes, from what it sees
 //! pipeline       the live path, row by row
 //! ffi            the same for C, with the feature `ffi`
 //!
 //! camera -lines-> imaging -line windows-> matching -disparity row-> depth
 //!        '------------------------ pipeline -----------------------' -> ffi
-//! camera -lines-> imaging -line bands-> features -matches
+//! camera -lines-> imaging -line bands-> features -matches-> motion -poses
 //!                         '-------------> focus -peaks-> depth by one lens
 //! ```
 //!
@@ -42,6 +43,8 @@ pub mod depth;
 pub mod focus;
 
 pub mod features;
+
+pub mod motion;
 
 pub mod pipeline;
 

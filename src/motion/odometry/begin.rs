@@ -117,10 +117,17 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         for (number, track) in (0_u16..).zip(self.tracks.iter_mut()) {
             track.used = track.used && self.pairings.iter().any(|p| p.owner == number);
         }
-        let problem = Problem { pairings: &self.pairings, baseline: T::ZERO };
-        let solved = problem.solve(*pose, Free::Nothing);
+        let judged = |pairings: &[Pairing<T>]| Problem { pairings, baseline: T::ZERO }.solve(*pose, Free::Nothing);
+        let solved = judged(&self.pairings);
         let motion = self.told.inverse().then(pose);
         self.carry(rig, frame, &solved, &Matrix6::zeros());
+        // The pose by the points that it has given a depth.
+        for pairing in self.pairings.iter_mut() {
+            if let Some(point) = pairing.point.updated(pose, &pairing.sight, T::ZERO) {
+                pairing.point = point;
+            }
+        }
+        let solved = judged(&self.pairings);
         self.begun = true;
         self.told = Pose::identity();
         self.velocity = Some(*pose);

@@ -1,10 +1,10 @@
 //! Where the points are in the new frame.
 
 use super::config::OdometryRig;
-use super::engine::{Odometry, product};
+use super::engine::{FEWEST, Odometry, product};
 use super::frame::Frame;
 use super::point::Sight;
-use super::solve::Pairing;
+use super::solve::{Free, Pairing, Problem};
 use super::track::Track;
 use crate::features::{Descriptor, Feature, Template};
 use crate::geometry::{Landmark, Pose, Real, RobustConfig, robust_resection};
@@ -19,6 +19,8 @@ const APART_PX: f32 = 4.0;
 const RESECTION_PX: f64 = 3.0;
 /// How far from the predicted place pixels are looked for, px.
 const ALIGN_PX: f32 = 4.0;
+/// A deviation of corners that begins with what is far off, px.
+const COARSE_PX: f64 = 2.0;
 /// How alike pixels have to be.
 pub(super) const ALIKE: f32 = 0.8;
 /// How far rows of a pair may be off each other, px.
@@ -35,8 +37,9 @@ impl<T: Real, const N: usize> Odometry<T, N> {
             self.recognise(rig, frame.features, &self.told.clone(), self.config.far_px);
             pose = self.resect(rig);
         }
-        // Where too few are recognised by their descriptors, pixels may still be where they are expected.
-        let pose = pose.or(self.velocity.map(|_| predicted))?;
+        // Where too few have a depth it is a turn at least; where too few are recognised by their descriptors, pixels may still be
+        // where they are expected.
+        let pose = pose.or_else(|| self.turned(rig)).or(self.velocity.map(|_| predicted))?;
         self.pair(rig, frame, &pose);
         Some(pose)
     }
@@ -106,6 +109,20 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         };
         let found = robust_resection(&self.landmarks, &rig.camera, &config, &mut self.inliers).ok()?;
         (found.inliers >= 10 && 4 * found.inliers >= self.landmarks.len()).then_some(found.pose)
+    }
+
+    /// The turn that most of what was recognised agrees with, as if all were far away; `None` of too few.
+    fn turned(&mut self, rig: &OdometryRig<T>) -> Option<Pose<T>> {
+        self.pairings.clear();
+        let sigma = T::of(COARSE_PX) / rig.focal();
+        for (owner, track) in (0_u16..).zip(self.tracks.iter()) {
+            let Some([x, y]) = track.now.filter(|_| track.used) else { continue };
+            let Ok(at) = rig.camera.unproject(&Point2::new(T::of(x.into()), T::of(y.into()))) else { continue };
+            let sight = Sight { at, in_right: false, sigma };
+            let _ = self.pairings.push(Pairing { point: track.point, sight, owner });
+        }
+        let found = Problem { pairings: &self.pairings, baseline: rig.baseline() }.solve(self.told, Free::Turn);
+        (found.kept >= 2 * FEWEST && 2 * found.kept >= self.pairings.len()).then_some(found.pose)
     }
 
     /// Finds every point by its pixels around where the pose puts it, and in the right picture.

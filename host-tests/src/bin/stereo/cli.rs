@@ -10,6 +10,7 @@ pub use rectify::{RectifyArgs, RectifyOptions, Unit};
 
 use crate::failure::Failure;
 use crate::focus::{self, FocusArgs};
+use crate::odometry::{self, OdometryArgs};
 use crate::two_view::{FEATURES_EXAMPLE, FUNDAMENTAL_EXAMPLE, FeaturesArgs, FundamentalArgs, POSE_EXAMPLE, PoseArgs};
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
@@ -21,7 +22,7 @@ use stereopsis_host::run::{Method, NoiseChoice, UnknownMethod, UnknownNoise, Way
 
 /// What is told to one who names another command.
 const COMMANDS: &str =
-    "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental and pose";
+    "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental, pose and odometry";
 
 const EXAMPLES: &str = "Examples:
   stereo demo --out demo-out
@@ -86,6 +87,9 @@ pub enum Command {
     /// Tell depth by focus: frames of one scene with the lens in different positions
     #[command(after_help = focus::EXAMPLE)]
     Focus(FocusArgs),
+    /// Tell where a camera, or a pair, went: a sequence of frames into a trajectory
+    #[command(after_help = odometry::EXAMPLE)]
+    Odometry(OdometryArgs),
 }
 
 #[derive(Debug, Args)]

@@ -2,7 +2,8 @@
 //!
 //! * `cli`, `two_view`: what is asked for. `failure`: what is said when it cannot be done.
 //! * `input`: the images and the search, checked against each other. `progress`: how far it is.
-//! * `matching`, `bench`, `demo`, `calibrate`, `calib`, `rectify`, `features`, `focus`, `fundamental`, `pose`: the commands. `files`, `place`: the
+//! * `matching`, `bench`, `demo`, `calibrate`, `calib`, `rectify`, `features`, `focus`, `fundamental`, `pose`, `odometry`: the
+//!   commands. `files`, `place`: the
 //!   results as files.
 
 mod bench;
@@ -17,6 +18,7 @@ mod focus;
 mod fundamental;
 mod input;
 mod matching;
+mod odometry;
 mod place;
 mod pose;
 mod progress;
@@ -52,6 +54,7 @@ fn start() -> Result<(), Failure> {
         Ok(Command::Calib(args)) => calib::run(&args),
         Ok(Command::Features(args)) => features::run(&args),
         Ok(Command::Focus(args)) => focus::run(&args),
+        Ok(Command::Odometry(args)) => odometry::run(&args),
         Err(cli::Stop::Help(text)) => print(&text),
         Err(cli::Stop::Usage(failure)) => Err(failure),
     }

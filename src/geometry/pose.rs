@@ -39,8 +39,14 @@ impl core::error::Error for PoseError {}
 
 impl<T: Real> Pose<T> {
     /// Camera 2 where camera 1 is.
+    pub(crate) const IDENTITY: Self = {
+        let (o, l) = (T::ZERO, T::ONE);
+        Self { rotation: Matrix3::new(l, o, o, o, l, o, o, o, l), translation: Vector3::new(o, o, o) }
+    };
+
+    /// Camera 2 where camera 1 is.
     pub fn identity() -> Self {
-        Self { rotation: Matrix3::identity(), translation: Vector3::zeros() }
+        Self::IDENTITY
     }
 
     /// A pose of a rotation that is given to four decimals or more; the nearest exact one is held.

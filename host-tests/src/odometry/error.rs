@@ -57,9 +57,10 @@ pub fn align(estimate: &[Pose<f64>], truth: &[Pose<f64>], alignment: Alignment) 
 /// The absolute trajectory error: the root mean square of the places' distances after alignment (Sturm et al. 2012).
 pub fn ate(estimate: &[Pose<f64>], truth: &[Pose<f64>], alignment: Alignment) -> Option<f64> {
     let Similarity { scale, rotation, translation } = align(estimate, truth, alignment)?;
-    let squares = estimate.iter().zip(truth).map(|(p, q)| {
-        (rotation * p.translation() * scale + translation - q.translation()).norm_squared()
-    });
+    let squares = estimate
+        .iter()
+        .zip(truth)
+        .map(|(p, q)| (rotation * p.translation() * scale + translation - q.translation()).norm_squared());
     let n = estimate.len().min(truth.len());
     Some((squares.sum::<f64>() / n as f64).sqrt())
 }

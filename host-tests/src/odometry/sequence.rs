@@ -158,10 +158,20 @@ impl Sequence {
     }
 }
 
+/// The names of a folder's images that are a number and nothing else; none where there is no folder.
+pub fn numbered(folder: &Path) -> Vec<String> {
+    let names = images(folder).unwrap_or_default().into_iter();
+    let names = names.filter_map(|path| path.file_name()?.to_str().map(str::to_owned));
+    names
+        .filter(|name| name.strip_suffix(".png").is_some_and(|stem| stem.bytes().all(|b| b.is_ascii_digit())))
+        .collect()
+}
+
 /// Whether both cameras have the same frames: the same names, or, where no name is in both, as many.
 fn partners(left: &[PathBuf], right: &[PathBuf], folder: &Path, other: &Path) -> Result<(), SequenceError> {
     let stem = |path: &PathBuf| path.file_stem().map(|stem| stem.to_owned());
-    let (left_stems, right_stems): (Vec<_>, Vec<_>) = (left.iter().map(stem).collect(), right.iter().map(stem).collect());
+    let (left_stems, right_stems): (Vec<_>, Vec<_>) =
+        (left.iter().map(stem).collect(), right.iter().map(stem).collect());
     if left_stems.iter().any(|stem| right_stems.contains(stem)) {
         let without = |from: &[PathBuf], stems: &[Option<std::ffi::OsString>]| {
             from.iter().find(|path| !stems.contains(&stem(path))).cloned()

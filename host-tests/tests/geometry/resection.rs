@@ -155,5 +155,8 @@ fn what_has_no_pose_is_refused_by_name() {
         })
         .collect();
     assert_eq!(run(&line, &config, 20), Err(RobustResectionError::NoAgreement));
-    assert_eq!(p3p(&[0, 1, 2].map(|i: usize| line[i].world.coords), &[0, 1, 2].map(|i: usize| line[i].world)), Err(P3pError::Line));
+    assert_eq!(
+        p3p(&[0, 1, 2].map(|i: usize| line[i].world.coords), &[0, 1, 2].map(|i: usize| line[i].world)),
+        Err(P3pError::Line)
+    );
 }

@@ -59,8 +59,9 @@ fn points_at_infinity_tell_the_turn_alone() {
 
 #[test]
 fn a_plane_is_enough_for_a_pair_and_no_wrong_pose_of_one_camera() {
-    let path: Vec<_> =
-        (0..4).map(|i| pose([0.0, 0.005 * f64::from(i), 0.0], [0.12 * f64::from(i), 0.0, 0.05 * f64::from(i)])).collect();
+    let path: Vec<_> = (0..4)
+        .map(|i| pose([0.0, 0.005 * f64::from(i), 0.0], [0.12 * f64::from(i), 0.0, 0.05 * f64::from(i)]))
+        .collect();
     let frames = frames(wall(2.5, 0.3), path.clone());
     let trajectory = stereo(rig(), &frames);
     for (found, truth) in trajectory.poses.iter().zip(&path) {

@@ -63,7 +63,11 @@ fn two_hundred_frames() {
     println!("stereo: {:.3} % of the way off at its end, ATE {ate:.4} m", 100.0 * share);
     for length in [10.0, 50.0] {
         let drift = drift(&trajectory.poses, &truth, length, 1.0).expect("ways");
-        println!("drift over {length} m: {:.3} %, {:.4} deg/m", 100.0 * drift.translation, drift.rotation_rad.to_degrees());
+        println!(
+            "drift over {length} m: {:.3} %, {:.4} deg/m",
+            100.0 * drift.translation,
+            drift.rotation_rad.to_degrees()
+        );
     }
     assert!(share < 0.01, "{:.3} % of the way", 100.0 * share);
     let trajectory = mono(street.rig(), &frames);

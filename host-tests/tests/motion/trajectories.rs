@@ -18,7 +18,8 @@ fn files_come_back_as_they_were() {
     let text = String::from_utf8(bytes.clone()).expect("text");
     assert_eq!(text.lines().count(), 12);
     assert!(text.lines().all(|line| line.split(' ').count() == 12));
-    let first: Vec<f64> = text.lines().next().expect("a line").split(' ').map(|w| w.parse().expect("a number")).collect();
+    let first: Vec<f64> =
+        text.lines().next().expect("a line").split(' ').map(|w| w.parse().expect("a number")).collect();
     assert_eq!(first, [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
     let file = tempfile::NamedTempFile::new().expect("a file");
     std::fs::write(file.path(), &bytes).expect("room");

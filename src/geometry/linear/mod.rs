@@ -5,12 +5,14 @@
 //! * [`Ldl`]: `L D L^T` of a symmetric, positive semi-definite matrix, and its null vector by inverse iteration.
 //! * [`null_of_rows`]: the one vector that N - 1 rows leave free, by elimination; [`pencil_of_rows`]: the two that
 //!   N - 2 do. [`rank`]: how many pivots count.
+//! * [`covariance6`]: the inverse of an information of six numbers.
 //! * [`cubic_roots`]: the real roots of a cubic.
 //! * [`Projective`]: the normal equations of `p ~ M q`.
 //! * [`Svd3`]: singular values of a 3x3 matrix, by Jacobi rotations of its columns.
 
 #![allow(clippy::needless_range_loop, reason = "an element is named by its row and column, as in the equations")]
 
+mod covariance;
 mod cubic;
 mod elimination;
 mod ldl;
@@ -20,6 +22,7 @@ mod svd3;
 use super::Real;
 use nalgebra::{Matrix3, Vector3};
 
+pub(crate) use covariance::covariance6;
 pub(crate) use cubic::cubic_roots;
 pub(crate) use elimination::{null_of_rows, pencil_of_rows, rank};
 pub(crate) use ldl::Ldl;

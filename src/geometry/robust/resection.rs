@@ -3,7 +3,7 @@
 use super::config::RobustConfig;
 use super::loss::Loss;
 use super::random::Random;
-use crate::geometry::linear::Ldl;
+use crate::geometry::linear::{Ldl, covariance6};
 use crate::geometry::skew::{skew, turn};
 use crate::geometry::{Camera, Landmark, Pose, Real, p3p};
 use nalgebra::{Matrix3, Matrix6, Point3, Vector3};
@@ -110,7 +110,7 @@ pub fn robust_resection<T: Real>(
     }
     let free = T::count((2 * count).saturating_sub(6).max(1));
     let rms_px = (squares / free).sqrt();
-    let covariance = inverse(&information) * (rms_px * rms_px);
+    let covariance = covariance6(&information) * (rms_px * rms_px);
     Ok(RobustResection { pose, covariance, inliers: count, rms_px, samples })
 }
 
@@ -266,30 +266,4 @@ impl<T: Real> Problem<'_, T> {
 fn moved<T: Real>(pose: &Pose<T>, by: &Vector3<T>, step: &Vector3<T>) -> Pose<T> {
     let rotation = pose.rotation() * turn(by);
     Pose::of_parts(rotation, pose.translation() + rotation * step)
-}
-
-/// The inverse of an information; infinite on the diagonal where it has a direction of nothing.
-fn inverse<T: Real>(information: &[[T; 6]; 6]) -> Matrix6<T> {
-    let mut out = Matrix6::zeros();
-    // At size one in every direction.
-    let mut scale = [T::ZERO; 6];
-    for (i, (scale, row)) in scale.iter_mut().zip(information).enumerate() {
-        let d = row.get(i).copied().unwrap_or(T::ZERO);
-        *scale = if d > T::ZERO { T::ONE / d.sqrt() } else { T::ZERO };
-    }
-    let mut m = *information;
-    for (row, &a) in m.iter_mut().zip(&scale) {
-        row.iter_mut().zip(&scale).for_each(|(x, &b)| *x *= a * b);
-    }
-    let ldl = Ldl::<T, 6>::new(&mut m);
-    let open = ldl.pivots().iter().any(|&pivot| !(pivot > T::EPSILON * T::of(16.0)));
-    for i in 0..6 {
-        let mut unit = [T::ZERO; 6];
-        unit[i] = T::ONE;
-        let column = ldl.solve(&unit);
-        for j in 0..6 {
-            out[(j, i)] = if open && i == j { T::ONE / T::ZERO } else { column[j] * scale[i] * scale[j] };
-        }
-    }
-    (out + out.transpose()) * T::of(0.5)
 }

@@ -5,8 +5,9 @@ use super::engine::{FEWEST, Odometry};
 use super::follow::ALIKE;
 use super::frame::Frame;
 use super::point::Sight;
-use super::solve::{Free, Pairing, Problem, Solved, covariance};
+use super::solve::{Free, Pairing, Problem, Solved};
 use super::step::{State, Step};
+use crate::geometry::linear::covariance6;
 use crate::geometry::{
     Camera, Correspondence, Essential, Homography, Pose, Real, RobustConfig, RobustError, robust_fundamental,
 };
@@ -68,7 +69,7 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         let motion = self.told.inverse().then(&pose);
         self.told = pose;
         let mut of_turn = Matrix6::identity() * T::of(1e12);
-        let all = covariance(&solved.information);
+        let all = covariance6(&solved.information);
         of_turn.fixed_view_mut::<3, 3>(0, 0).copy_from(&all.fixed_view::<3, 3>(0, 0));
         if state == State::Still {
             of_turn = all;
@@ -97,14 +98,7 @@ impl<T: Real, const N: usize> Odometry<T, N> {
     }
 
     /// The unit of length is the way to this frame.
-    fn begun(
-        &mut self,
-        rig: &OdometryRig<T>,
-        frame: &Frame<'_>,
-        pose: &Pose<T>,
-        sigma: T,
-        shown: Step<T>,
-    ) -> Step<T> {
+    fn begun(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>, pose: &Pose<T>, sigma: T, shown: Step<T>) -> Step<T> {
         for pairing in self.pairings.iter_mut() {
             let sight = Vector3::new(pairing.point.at.x, pairing.point.at.y, T::ONE);
             pairing.point = super::engine::unknown(sight, T::of(USUAL), sigma);
@@ -132,7 +126,7 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         self.told = Pose::identity();
         self.velocity = Some(*pose);
         self.renew(rig, frame);
-        let covariance = covariance(&solved.information);
+        let covariance = covariance6(&solved.information);
         let residual = (solved.squares / T::count(solved.numbers.max(1))).sqrt();
         Step { motion, covariance, state: State::Tracked, inliers: solved.kept, residual, ..shown }
     }

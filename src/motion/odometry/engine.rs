@@ -3,11 +3,12 @@
 use super::config::{OdometryConfig, OdometryRig};
 use super::frame::{Frame, OdometryError};
 use super::point::InversePoint;
-use super::solve::{Pairing, Solved, WIDTH, covariance};
+use super::solve::{Pairing, Problem, Solved, WIDTH};
 use super::step::{State, Step};
 use super::track::Track;
 use super::verdict::Verdict;
 use crate::features::Template;
+use crate::geometry::linear::covariance6;
 use crate::geometry::{Landmark, Pose, Real};
 use heapless::Vec;
 use nalgebra::{Matrix3, Matrix6, Point3, Vector3};
@@ -53,19 +54,19 @@ const DOUBT: f64 = 1.0;
 
 impl<T: Real, const N: usize> Odometry<T, N> {
     /// An odometry that waits for [`Self::start`].
-    pub fn new() -> Self {
+    pub const fn new() -> Self {
         const { assert!(N < u16::MAX as usize && N >= 16, "points are told by 16 bits, and a few are needed") };
         Self {
             rig: None,
             config: OdometryConfig::new(0),
             size: (0, 0),
-            tracks: [Track::empty(); N],
+            tracks: [Track::EMPTY; N],
             pairings: Vec::new(),
             landmarks: Vec::new(),
             inliers: [false; N],
             partners: [(0, 0); N],
             velocity: None,
-            told: Pose::identity(),
+            told: Pose::IDENTITY,
             lost: 0,
             begun: false,
             frames: 0,
@@ -137,7 +138,7 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         let points = self.points();
         let residual = (solved.squares / T::count(solved.numbers.saturating_sub(6).max(1))).sqrt();
         // The noise may be more than was configured, and is then all over.
-        let covariance = covariance(&solved.information) * (residual * residual).max(T::ONE);
+        let covariance = covariance6(&solved.information) * (residual * residual).max(T::ONE);
         let telling = self.telling(&solved.pose, state);
         let motion = self.told.inverse().then(&telling);
         self.told = telling;
@@ -177,19 +178,13 @@ impl<T: Real, const N: usize> Odometry<T, N> {
     }
 
     /// What was seen makes the points surer, and they move into the new camera's frame.
-    pub(super) fn carry(
-        &mut self,
-        rig: &OdometryRig<T>,
-        frame: &Frame<'_>,
-        solved: &Solved<T>,
-        of_pose: &Matrix6<T>,
-    ) {
+    pub(super) fn carry(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>, solved: &Solved<T>, of_pose: &Matrix6<T>) {
         let pose = &solved.pose;
         let most = T::of(WIDTH * WIDTH);
         let baseline = rig.baseline();
         for pairing in &self.pairings {
             let Some(track) = self.tracks.get_mut(usize::from(pairing.owner)) else { continue };
-            let squared = super::solve::Problem { pairings: &[], baseline }.squared(pose, pairing);
+            let squared = Problem { pairings: &[], baseline }.squared(pose, pairing);
             match squared.filter(|&d| d < most).and_then(|_| track.point.updated(pose, &pairing.sight, baseline)) {
                 Some(point) => {
                     track.point = point;

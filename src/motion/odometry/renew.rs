@@ -27,9 +27,8 @@ impl<T: Real, const N: usize> Odometry<T, N> {
             let Some(feature) = features.get(at) else { break };
             let place = [feature.x_px, feature.y_px];
             let spacing = self.config.spacing_px;
-            let near = |t: &Track<T>| {
-                (t.pixel[0] - place[0]).abs() < spacing && (t.pixel[1] - place[1]).abs() < spacing
-            };
+            let near =
+                |t: &Track<T>| (t.pixel[0] - place[0]).abs() < spacing && (t.pixel[1] - place[1]).abs() < spacing;
             if self.tracks.iter().any(|track| track.used && near(track)) {
                 continue;
             }
@@ -74,7 +73,7 @@ fn fresh<T: Real>(
             InversePoint { at: Vector3::new(sight.x, sight.y, r), covariance }
         }
     };
-    Some(Track { point, template, descriptor: feature.descriptor, pixel, seen: 1, used: true, ..Track::empty() })
+    Some(Track { point, template, descriptor: feature.descriptor, pixel, seen: 1, used: true, ..Track::EMPTY })
 }
 
 /// A step that meets all numbers below `n` before it meets one again.

@@ -35,7 +35,7 @@ impl<T: Real> Unscaled<Step<T>> {
 
 impl<T: Real, const N: usize> StereoOdometry<T, N> {
     /// An odometry that waits for [`Self::start`].
-    pub fn new() -> Self {
+    pub const fn new() -> Self {
         Self(Odometry::new())
     }
 
@@ -53,7 +53,7 @@ impl<T: Real, const N: usize> StereoOdometry<T, N> {
 
 impl<T: Real, const N: usize> MonocularOdometry<T, N> {
     /// An odometry that waits for [`Self::start`].
-    pub fn new() -> Self {
+    pub const fn new() -> Self {
         Self(Odometry::new())
     }
 

@@ -4,7 +4,7 @@ use super::point::{InversePoint, Sight, seen};
 use super::whiten::Whitener;
 use crate::geometry::linear::Ldl;
 use crate::geometry::{Pose, Real, turn};
-use nalgebra::{Matrix6, SMatrix, Vector3};
+use nalgebra::{SMatrix, Vector3};
 
 /// A point and where the new camera sees it.
 #[derive(Clone, Copy, Debug)]
@@ -165,29 +165,4 @@ impl<T: Real> Problem<'_, T> {
 pub(super) fn moved<T: Real>(pose: &Pose<T>, &[a, b, c, d, e, f]: &[T; 6]) -> Pose<T> {
     let rotation = pose.rotation() * turn(&Vector3::new(a, b, c));
     Pose::of_parts(rotation, pose.translation() + rotation * Vector3::new(d, e, f))
-}
-
-/// The covariance of an information; where it leaves a direction open, that is as wide as the numbers allow.
-pub(super) fn covariance<T: Real>(information: &[[T; 6]; 6]) -> Matrix6<T> {
-    let mut m = *information;
-    let mut scale = [T::ONE; 6];
-    for (i, (scale, row)) in scale.iter_mut().zip(information).enumerate() {
-        let d = row.get(i).copied().unwrap_or(T::ZERO);
-        *scale = T::ONE / d.max(T::of(1e-12)).sqrt();
-    }
-    for (row, &a) in m.iter_mut().zip(&scale) {
-        row.iter_mut().zip(&scale).for_each(|(x, &b)| *x *= a * b);
-    }
-    let ldl = Ldl::<T, 6>::new(&mut m);
-    let mut out = Matrix6::zeros();
-    for (i, &a) in scale.iter().enumerate() {
-        let mut unit = [T::ZERO; 6];
-        if let Some(one) = unit.get_mut(i) {
-            *one = T::ONE;
-        }
-        for (j, (x, &b)) in ldl.solve(&unit).iter().zip(&scale).enumerate() {
-            out[(j, i)] = *x * a * b;
-        }
-    }
-    (out + out.transpose()) * T::of(0.5)
 }

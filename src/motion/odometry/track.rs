@@ -33,9 +33,10 @@ pub(super) struct Track<T: Real> {
 
 impl<T: Real> Track<T> {
     /// A place for one.
-    pub fn empty() -> Self {
+    pub const EMPTY: Self = {
+        let o = T::ZERO;
         Self {
-            point: InversePoint { at: Vector3::zeros(), covariance: Matrix3::zeros() },
+            point: InversePoint { at: Vector3::new(o, o, o), covariance: Matrix3::new(o, o, o, o, o, o, o, o, o) },
             template: Template::NONE,
             warp: [[1.0, 0.0], [0.0, 1.0]],
             descriptor: Descriptor::NONE,
@@ -48,7 +49,7 @@ impl<T: Real> Track<T> {
             wrong: 0,
             used: false,
         }
-    }
+    };
 
     /// Whether the depth is known to a share of itself.
     pub fn is_deep(&self, share: f64) -> bool {

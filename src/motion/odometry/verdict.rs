@@ -2,8 +2,9 @@
 
 use super::config::OdometryRig;
 use super::engine::{FEWEST, Odometry};
-use super::solve::{Free, Problem, Solved, covariance};
+use super::solve::{Free, Problem, Solved};
 use super::step::State;
+use crate::geometry::linear::covariance6;
 use crate::geometry::{Pose, Real};
 
 /// What a frame's sights say.
@@ -65,6 +66,6 @@ impl<T: Real, const N: usize> Odometry<T, N> {
 
 /// The largest deviation of the step along an axis.
 fn step_deviation<T: Real>(solved: &Solved<T>) -> T {
-    let c = covariance(&solved.information);
+    let c = covariance6(&solved.information);
     c[(3, 3)].max(c[(4, 4)]).max(c[(5, 5)]).sqrt()
 }

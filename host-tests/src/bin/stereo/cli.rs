@@ -12,6 +12,7 @@ use crate::failure::Failure;
 use crate::focus::{self, FocusArgs};
 use crate::odometry::{self, OdometryArgs};
 use crate::two_view::{FEATURES_EXAMPLE, FUNDAMENTAL_EXAMPLE, FeaturesArgs, FundamentalArgs, POSE_EXAMPLE, PoseArgs};
+use crate::walk::{self, WalkArgs};
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
 use std::ffi::OsString;
@@ -90,6 +91,9 @@ pub enum Command {
     /// Tell where a camera, or a pair, went: a sequence of frames into a trajectory
     #[command(after_help = odometry::EXAMPLE)]
     Odometry(OdometryArgs),
+    /// Drive through a built-in street: a sequence of frames with true poses, for odometry
+    #[command(after_help = walk::EXAMPLE)]
+    Walk(WalkArgs),
 }
 
 #[derive(Debug, Args)]

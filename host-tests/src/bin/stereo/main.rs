@@ -2,7 +2,8 @@
 //!
 //! * `cli`, `two_view`: what is asked for. `failure`: what is said when it cannot be done.
 //! * `input`: the images and the search, checked against each other. `progress`: how far it is.
-//! * `matching`, `bench`, `demo`, `calibrate`, `calib`, `rectify`, `features`, `focus`, `fundamental`, `pose`, `odometry`: the
+//! * `matching`, `bench`, `demo`, `calibrate`, `calib`, `rectify`, `features`, `focus`, `fundamental`, `pose`, `odometry`,
+//!   `walk`: the
 //!   commands. `files`, `place`: the
 //!   results as files.
 
@@ -24,6 +25,7 @@ mod pose;
 mod progress;
 mod rectify;
 mod two_view;
+mod walk;
 
 use cli::Command;
 use failure::Failure;
@@ -55,6 +57,7 @@ fn start() -> Result<(), Failure> {
         Ok(Command::Features(args)) => features::run(&args),
         Ok(Command::Focus(args)) => focus::run(&args),
         Ok(Command::Odometry(args)) => odometry::run(&args),
+        Ok(Command::Walk(args)) => walk::run(&args),
         Err(cli::Stop::Help(text)) => print(&text),
         Err(cli::Stop::Usage(failure)) => Err(failure),
     }

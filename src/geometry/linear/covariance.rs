@@ -1,0 +1,51 @@
+//! From what is known to how sure it is.
+
+use super::Ldl;
+use crate::geometry::Real;
+use nalgebra::Matrix6;
+
+/// The covariance of six numbers of this information, its inverse; a direction in which nothing is known is as wide as
+/// [`Real::EPSILON`] of what is known along the axes makes it.
+pub(crate) fn covariance6<T: Real>(information: &[[T; 6]; 6]) -> Matrix6<T> {
+    // At size one along every axis: turns and steps have units of their own.
+    let mut m = *information;
+    let mut scale = [T::ONE; 6];
+    for (i, (scale, row)) in scale.iter_mut().zip(information).enumerate() {
+        let d = row.get(i).copied().unwrap_or(T::ZERO);
+        *scale = T::ONE / d.max(T::of(1e-12)).sqrt();
+    }
+    for (row, &a) in m.iter_mut().zip(&scale) {
+        row.iter_mut().zip(&scale).for_each(|(x, &b)| *x *= a * b);
+    }
+    let ldl = Ldl::<T, 6>::new(&mut m);
+    let mut out = Matrix6::zeros();
+    for (i, &a) in scale.iter().enumerate() {
+        let mut unit = [T::ZERO; 6];
+        if let Some(one) = unit.get_mut(i) {
+            *one = T::ONE;
+        }
+        for (j, (x, &b)) in ldl.solve(&unit).iter().zip(&scale).enumerate() {
+            out[(j, i)] = *x * a * b;
+        }
+    }
+    (out + out.transpose()) * T::of(0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_inverse_of_a_small_block() {
+        let mut information = [[0.0_f64; 6]; 6];
+        for (i, row) in information.iter_mut().enumerate() {
+            row[i] = 1e6;
+        }
+        // [4 2; 2 3] has the inverse [3 -2; -2 4] / 8.
+        (information[0][0], information[0][1], information[1][0], information[1][1]) = (4.0, 2.0, 2.0, 3.0);
+        let c = covariance6(&information);
+        for (value, expected) in [(c.m11, 0.375), (c.m12, -0.25), (c.m21, -0.25), (c.m22, 0.5), (c.m33, 1e-6)] {
+            assert!((value - expected).abs() < 1e-15, "{value} {expected}");
+        }
+    }
+}

@@ -1,5 +1,10 @@
 //! A few pixels of one picture, found again in another to a small part of a pixel.
 
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "`!(a > b)` refuses what is not a number together with what is too small"
+)]
+
 use crate::imaging::Picture;
 
 /// Pixels that are compared to either side of the middle one, and one more for their slopes.

@@ -98,8 +98,7 @@ pub fn p3p<T: Real>(sights: &[Vector3<T>; 3], points: &[Point3<T>; 3]) -> Result
         let [c1, c2, c3] = [y1 * l.x, y2 * l.y, y3 * l.z];
         let Some(seen) = triad(&(c1 - c2), &(c1 - c3)) else { continue };
         let rotation = frame * seen.transpose();
-        let third = T::of(1.0 / 3.0);
-        let translation = (x1 + x2 + x3) * third - rotation * ((c1 + c2 + c3) * third);
+        let translation = (x1 + x2 + x3 - rotation * (c1 + c2 + c3)) * T::of(1.0 / 3.0);
         if !translation.iter().all(|x| x.is_finite()) {
             continue;
         }
@@ -157,8 +156,8 @@ impl<T: Real> Equations<T> {
                 if !(scale > T::ZERO) {
                     continue;
                 }
-                let start = direction * ((a12 + a13 + a23) / scale).sqrt();
-                let start = if start.sum() < T::ZERO { -start } else { start };
+                let size = ((a12 + a13 + a23) / scale).sqrt();
+                let start = direction * if direction.sum() < T::ZERO { -size } else { size };
                 if let (Some(l), Some(slot)) = (self.corrected(start), slots.next()) {
                     *slot = Some(l);
                 }
@@ -184,12 +183,11 @@ impl<T: Real> Equations<T> {
         let mut error = residual(&l);
         for _ in 0..STEPS {
             let (x, y, z) = (l.x, l.y, l.z);
-            let rows = [
+            let [p, q, r] = [
                 Vector3::new(x - c12 * y, y - c12 * x, T::ZERO),
                 Vector3::new(x - c13 * z, T::ZERO, z - c13 * x),
                 Vector3::new(T::ZERO, y - c23 * z, z - c23 * y),
             ];
-            let [p, q, r] = rows;
             // The inverse by cross products of the rows.
             let determinant = p.dot(&q.cross(&r)) * two;
             let step = (q.cross(&r) * error.x + r.cross(&p) * error.y + p.cross(&q) * error.z) / determinant;
@@ -292,12 +290,7 @@ fn directions<T: Real>(normal: &Vector3<T>, form: &Matrix3<T>) -> [Option<Vector
     let root = discriminant.sqrt();
     // u : v of a u^2 + 2 b u v + c v^2, without cancellation: (-h : a) and (c : -h) with h of b's sign.
     let h = if b < T::ZERO { b - root } else { b + root };
-    let of = |u: T, v: T| {
-        let direction = p * u + q * v;
-        let norm = direction.norm();
-        (norm > T::ZERO).then(|| direction / norm)
-    };
-    [of(-h, a), of(c, -h)]
+    [p * -h + q * a, p * c - q * h].map(|v| (v.norm_squared() > T::ZERO).then(|| v / v.norm()))
 }
 
 #[cfg(test)]

@@ -5,4 +5,9 @@
 //!
 //! * [`odometry`]: from frame to frame, as they come.
 
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "`!(a > b)` refuses what is not a number together with what is too small"
+)]
+
 pub mod odometry;

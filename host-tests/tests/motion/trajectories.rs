@@ -8,7 +8,7 @@ use stereopsis_host::odometry::poses;
 
 /// A way round a corner.
 fn way() -> Vec<Pose<f64>> {
-    (0..12).map(|i| f64::from(i)).map(|s| pose([0.0, 0.1 * s, 0.02 * s], [0.05 * s * s, 0.1 * s, s])).collect()
+    (0..12).map(f64::from).map(|s| pose([0.0, 0.1 * s, 0.02 * s], [0.05 * s * s, 0.1 * s, s])).collect()
 }
 
 #[test]

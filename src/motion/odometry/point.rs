@@ -48,7 +48,7 @@ impl<T: Real> InversePoint<T> {
     /// The point as a camera sees it that stands at `pose` (P = R P' + t); `None` behind it.
     ///
     /// `h = R^T ((x, y, 1) - r t)` is the point over its old depth: `x' = h_x / h_z`, `y' = h_y / h_z`, `r' = r / h_z`. The
-    /// camera's turn w and step d are `P' = exp(-[w]x) P' - d`, so that dh/dw = [h]x and dh/dd = -r.
+    /// camera's turn w and step d are `P' = exp(-[w]x) P' - d`, so that `dh/dw = [h]x` and `dh/dd = -r`.
     ///
     /// Where the depth is no more than noise the step has no slope: squares of noise would look like knowledge of it.
     pub fn moved(&self, pose: &Pose<T>) -> Option<Moved<T>> {

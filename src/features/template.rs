@@ -6,6 +6,7 @@
 )]
 
 use crate::imaging::Picture;
+use nalgebra::ComplexField;
 
 /// Pixels that are compared to either side of the middle one, and one more for their slopes.
 const REACH: usize = 5;
@@ -106,7 +107,7 @@ impl Template {
             if !(other > 0.0) {
                 return None;
             }
-            likeness = cross / (own * other).sqrt();
+            likeness = cross / ComplexField::sqrt(own * other);
             let gain = cross / other;
             let (mut a, mut b) = (0.0, 0.0);
             for ((seen, value), slope) in seen.iter().zip(&values).zip(&slopes) {
@@ -162,7 +163,7 @@ impl Template {
             }
             let spread = (n * other_squares - other * other) as f32;
             let product = own_spread * spread;
-            if product > 0.0 { (n * cross - sum * other) as f32 / product.sqrt() } else { -1.0 }
+            if product > 0.0 { (n * cross - sum * other) as f32 / ComplexField::sqrt(product) } else { -1.0 }
         };
         // The largest, and the largest of what is three columns away from it: of a stretch that is before it, and one behind.
         let (mut best, mut best_column, mut elsewhere) = (-1.0_f32, None, -1.0_f32);

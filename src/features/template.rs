@@ -63,7 +63,8 @@ impl Template {
         let (column, row) = (x as usize, y as usize);
         let mut template = Self { part: [x_px - column as f32, y_px - row as f32], ..Self::NONE };
         for (line, row) in template.pixels.iter_mut().zip(row - Self::MARGIN..) {
-            line.copy_from_slice(picture.run(column - Self::MARGIN, row, OUTER)?);
+            // By its length: a copy of two that may differ leaves a panic.
+            *line = *picture.run(column - Self::MARGIN, row, OUTER)?.first_chunk()?;
         }
         Some(template)
     }

@@ -257,12 +257,15 @@ fn null_vector<T: Real>(m: &Matrix3<T>) -> Option<Vector3<T>> {
 
 /// Two directions in a plane.
 fn basis<T: Real>(normal: &Vector3<T>) -> [Vector3<T>; 2] {
-    let axis = match normal.iamin() {
-        0 => Vector3::x(),
-        1 => Vector3::y(),
-        _ => Vector3::z(),
+    let [x, y, z] = [normal.x.abs(), normal.y.abs(), normal.z.abs()];
+    let least = if x <= y && x <= z {
+        Vector3::x()
+    } else if y <= z {
+        Vector3::y()
+    } else {
+        Vector3::z()
     };
-    let one = normal.cross(&axis);
+    let one = normal.cross(&least);
     let one = one / one.norm();
     let other = normal.cross(&one);
     [one, other / other.norm()]

@@ -39,15 +39,15 @@ impl core::error::Error for PoseError {}
 
 impl<T: Real> Pose<T> {
     /// Camera 2 where camera 1 is.
-    pub(crate) const IDENTITY: Self = {
-        let (o, l) = (T::ZERO, T::ONE);
-        Self { rotation: Matrix3::new(l, o, o, o, l, o, o, o, l), translation: Vector3::new(o, o, o) }
-    };
-
-    /// Camera 2 where camera 1 is.
     pub fn identity() -> Self {
-        Self::IDENTITY
+        Self { rotation: Matrix3::identity(), translation: Vector3::zeros() }
     }
+
+    /// No pose yet, in what waits for one. All zeros.
+    pub(crate) const NOTHING: Self = {
+        let o = T::ZERO;
+        Self { rotation: Matrix3::new(o, o, o, o, o, o, o, o, o), translation: Vector3::new(o, o, o) }
+    };
 
     /// A pose of a rotation that is given to four decimals or more; the nearest exact one is held.
     pub fn new(rotation: Matrix3<T>, translation: Vector3<T>) -> Result<Self, PoseError> {

@@ -18,14 +18,14 @@ pub(crate) fn covariance6<T: Real>(information: &[[T; 6]; 6]) -> Matrix6<T> {
         row.iter_mut().zip(&scale).for_each(|(x, &b)| *x *= a * b);
     }
     let ldl = Ldl::<T, 6>::new(&mut m);
-    let mut out = Matrix6::zeros();
-    for (i, &a) in scale.iter().enumerate() {
+    let mut out = Matrix6::<T>::zeros();
+    for (i, (column, &a)) in out.data.0.iter_mut().zip(&scale).enumerate() {
         let mut unit = [T::ZERO; 6];
         if let Some(one) = unit.get_mut(i) {
             *one = T::ONE;
         }
-        for (j, (x, &b)) in ldl.solve(&unit).iter().zip(&scale).enumerate() {
-            out[(j, i)] = *x * a * b;
+        for ((to, x), &b) in column.iter_mut().zip(ldl.solve(&unit)).zip(&scale) {
+            *to = x * a * b;
         }
     }
     (out + out.transpose()) * T::of(0.5)

@@ -245,11 +245,14 @@ impl<T: Real> Problem<'_, T> {
             let weight = left * left;
             // P' = exp(-[w]x) P' - d, so that the slopes by w and d are [P']x and -1.
             let turned = skew(&p);
-            for (row, error) in [(0, du), (1, dv)] {
-                let at = if row == 0 { u } else { v };
-                let by_point = (self.k.row(row) - self.k.row(2) * at) * by;
-                let by_turn = by_point * turned;
-                let j = [by_turn[0], by_turn[1], by_turn[2], -by_point[0], -by_point[1], -by_point[2]];
+            let k = &self.k;
+            for (across, at, error) in [
+                (Vector3::new(k.m11, k.m12, k.m13), u, du), //
+                (Vector3::new(k.m21, k.m22, k.m23), v, dv),
+            ] {
+                let by_point = (across - Vector3::new(k.m31, k.m32, k.m33) * at) * by;
+                let by_turn = turned.tr_mul(&by_point);
+                let j = [by_turn.x, by_turn.y, by_turn.z, -by_point.x, -by_point.y, -by_point.z];
                 for ((line, slope), &a) in information.iter_mut().zip(&mut slope).zip(&j) {
                     *slope += a * error * weight;
                     for (sum, &b) in line.iter_mut().zip(&j) {

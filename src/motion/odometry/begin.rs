@@ -7,6 +7,7 @@ use super::frame::Frame;
 use super::point::Sight;
 use super::solve::{Free, Pairing, Problem, Solved};
 use super::step::{State, Step};
+use super::track::UPRIGHT;
 use crate::geometry::linear::covariance6;
 use crate::geometry::{
     Camera, Correspondence, Essential, Homography, Pose, Real, RobustConfig, RobustError, robust_fundamental,
@@ -83,8 +84,7 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         self.pairings.clear();
         for (owner, track) in (0_u16..).zip(self.tracks.iter_mut()) {
             let Some(at) = track.now.filter(|_| track.used) else { continue };
-            let upright = [[1.0, 0.0], [0.0, 1.0]];
-            let aligned = track.template.align(&frame.left, &upright, at, 3.0).filter(|a| a.likeness > ALIKE);
+            let aligned = track.template.align(&frame.left, &UPRIGHT, at, 3.0).filter(|a| a.likeness > ALIKE);
             let now = aligned.map_or(at, |a| [a.x_px, a.y_px]);
             track.now = Some(now);
             let Ok(sight) = rig.camera.unproject(&Point2::new(T::of(now[0].into()), T::of(now[1].into()))) else {

@@ -76,6 +76,17 @@ pub struct OdometryConfig {
 }
 
 impl OdometryConfig {
+    /// Nothing is asked. All zeros.
+    pub(super) const NONE: Self = Self {
+        far_px: 0.0,
+        near_px: 0.0,
+        most_disparity_px: 0,
+        sigma_px: 0.0,
+        spacing_px: 0.0,
+        most_samples: 0,
+        seed: 0,
+    };
+
     /// For pictures of so many columns: a sixth of them as far as motion goes that is not known, a twentieth where it is, a
     /// quarter as the largest disparity, 0.3 px of noise, 10 px from point to point, 300 samples.
     pub const fn new(width: u16) -> Self {

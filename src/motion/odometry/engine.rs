@@ -5,7 +5,7 @@ use super::frame::{Frame, OdometryError};
 use super::point::InversePoint;
 use super::solve::{Pairing, Problem, Solved, WIDTH};
 use super::step::{State, Step};
-use super::track::Track;
+use super::track::{Track, UPRIGHT};
 use super::verdict::Verdict;
 use crate::features::Template;
 use crate::geometry::linear::covariance6;
@@ -19,7 +19,8 @@ use nalgebra::{Matrix3, Matrix6, Point3, Vector3};
 /// unit of length is.
 #[derive(Debug)]
 pub struct Odometry<T: Real, const N: usize> {
-    pub(super) rig: Option<OdometryRig<T>>,
+    /// The rig, when there is one. An `Option` of it would not be all zeros.
+    rig: Vec<OdometryRig<T>, 1>,
     pub(super) config: OdometryConfig,
     pub(super) size: (usize, usize),
     pub(super) tracks: [Track<T>; N],
@@ -57,8 +58,8 @@ impl<T: Real, const N: usize> Odometry<T, N> {
     pub const fn new() -> Self {
         const { assert!(N < u16::MAX as usize && N >= 16, "points are told by 16 bits, and a few are needed") };
         Self {
-            rig: None,
-            config: OdometryConfig::new(0),
+            rig: Vec::new(),
+            config: OdometryConfig::NONE,
             size: (0, 0),
             tracks: [Track::EMPTY; N],
             pairings: Vec::new(),
@@ -66,7 +67,8 @@ impl<T: Real, const N: usize> Odometry<T, N> {
             inliers: [false; N],
             partners: [(0, 0); N],
             velocity: None,
-            told: Pose::IDENTITY,
+            // The first frame sets it.
+            told: Pose::NOTHING,
             lost: 0,
             begun: false,
             frames: 0,
@@ -75,7 +77,8 @@ impl<T: Real, const N: usize> Odometry<T, N> {
 
     /// Begins with a rig: what was known is forgotten.
     pub fn start(&mut self, rig: OdometryRig<T>, config: OdometryConfig) {
-        self.rig = Some(rig);
+        self.rig.clear();
+        let _ = self.rig.push(rig);
         self.config = config;
         self.frames = 0;
         self.forget();
@@ -87,7 +90,7 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         self.velocity = None;
         self.told = Pose::identity();
         self.lost = 0;
-        self.begun = self.rig.is_some_and(|rig| rig.right.is_some());
+        self.begun = self.rig.first().is_some_and(|rig| rig.right.is_some());
     }
 
     /// The next frame.
@@ -96,7 +99,7 @@ impl<T: Real, const N: usize> Odometry<T, N> {
     /// twenty passes over the points, ten steps of alignment for each in each picture, and one search along the row for each
     /// new one.
     pub fn step(&mut self, frame: &Frame<'_>) -> Result<Step<T>, OdometryError> {
-        let rig = self.rig.ok_or(OdometryError::NotStarted)?;
+        let rig = *self.rig.first().ok_or(OdometryError::NotStarted)?;
         let size = (frame.left.width(), frame.left.height());
         match frame.right {
             None if rig.right.is_some() => return Err(OdometryError::NoRight),
@@ -220,7 +223,7 @@ impl<T: Real, const N: usize> Odometry<T, N> {
                     let fits = grown > GROWN[0] && grown < GROWN[1] && track.likeness > ALIKE;
                     if !fits && let Some(template) = Template::cut(&frame.left, pixel[0], pixel[1]) {
                         track.template = template;
-                        track.warp = [[1.0, 0.0], [0.0, 1.0]];
+                        track.warp = UPRIGHT;
                     }
                 }
                 None => {

@@ -5,7 +5,7 @@ use super::engine::{FEWEST, Odometry, product};
 use super::frame::Frame;
 use super::point::Sight;
 use super::solve::{Free, Pairing, Problem};
-use super::track::Track;
+use super::track::{Track, UPRIGHT};
 use crate::features::{Descriptor, Feature, Template};
 use crate::geometry::{Landmark, Pose, Real, RobustConfig, robust_resection};
 use nalgebra::{Point2, Point3, Vector3};
@@ -184,8 +184,7 @@ pub(super) fn disparity<T: Real>(
     // Columns of both pictures differ by the principal points, too.
     let offset = (right_cx - rig.camera.principal_point().0).to_f64() as f32;
     let template = Template::cut(&frame.left, x, y)?;
-    let upright = [[1.0, 0.0], [0.0, 1.0]];
-    let found = template.align(&right, &upright, [x - expected + offset, y], ALIGN_PX)?;
+    let found = template.align(&right, &UPRIGHT, [x - expected + offset, y], ALIGN_PX)?;
     let good = found.likeness > ALIKE && (found.y_px - y).abs() < ROWS_PX;
     good.then_some(x - found.x_px + offset)
 }

@@ -1,8 +1,9 @@
 //! A point of the scene in the camera's own frame, near or at infinity, and how sure it is.
 
 use super::whiten::Whitener;
+use crate::geometry::linear::columns3;
 use crate::geometry::{Pose, Real, skew};
-use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
+use nalgebra::{ArrayStorage, Matrix3, Matrix6, SMatrix, Vector3};
 
 /// What a point is seen at: x and y of the sight `(x, y, 1)`, and its disparity `x - x'` over the focal length, if there is a
 /// right camera. A disparity is found from the very place in the left picture, and so has an error of its own.
@@ -63,16 +64,13 @@ impl<T: Real> InversePoint<T> {
         let at = Vector3::new(h.x * by, h.y * by, r * by);
         let o = T::ZERO;
         let by_h = Matrix3::new(by, o, -at.x * by, o, by, -at.y * by, o, o, -at.z * by);
-        let mut columns = back;
-        columns.set_column(2, &-step);
+        let columns =
+            Matrix3::new(back.m11, back.m12, -step.x, back.m21, back.m22, -step.y, back.m31, back.m32, -step.z);
         let mut by_point = by_h * columns;
         by_point.m33 += by;
-        let by_turn = by_h * skew(&h);
-        let mut by_pose = SMatrix::<T, 3, 6>::zeros();
-        by_pose.fixed_view_mut::<3, 3>(0, 0).copy_from(&by_turn);
-        if self.is_near() {
-            by_pose.fixed_view_mut::<3, 3>(0, 3).copy_from(&(by_h * -r));
-        }
+        let step = if self.is_near() { by_h * -r } else { Matrix3::zeros() };
+        let ([a, b, c], [d, e, f]) = (columns3(&(by_h * skew(&h))), columns3(&step));
+        let by_pose = SMatrix::<T, 3, 6>::from_array_storage(ArrayStorage([a, b, c, d, e, f].map(|v| [v.x, v.y, v.z])));
         Some(Moved { at, by_point, by_pose })
     }
 
@@ -109,9 +107,7 @@ impl<T: Real> InversePoint<T> {
         // What rounding left of the two triangles, and of the diagonal.
         covariance = (covariance + covariance.transpose()) * T::of(0.5);
         let floor = sight.sigma * sight.sigma * T::of(1e-4);
-        for i in 0..3 {
-            covariance[(i, i)] += floor;
-        }
+        covariance += Matrix3::identity() * floor;
         at.iter().all(|x| x.is_finite()).then_some(Self { at, covariance })
     }
 }

@@ -5,7 +5,7 @@ use super::engine::Odometry;
 use super::follow::{ALIKE, disparity};
 use super::frame::Frame;
 use super::point::InversePoint;
-use super::track::Track;
+use super::track::{Track, UPRIGHT};
 use crate::features::{Feature, Template};
 use crate::geometry::Real;
 use nalgebra::{Matrix3, Point2, Vector3};
@@ -73,7 +73,17 @@ fn fresh<T: Real>(
             InversePoint { at: Vector3::new(sight.x, sight.y, r), covariance }
         }
     };
-    Some(Track { point, template, descriptor: feature.descriptor, pixel, seen: 1, used: true, ..Track::EMPTY })
+    Some(Track {
+        point,
+        template,
+        descriptor: feature.descriptor,
+        pixel,
+        warp: UPRIGHT,
+        likeness: 1.0,
+        seen: 1,
+        used: true,
+        ..Track::EMPTY
+    })
 }
 
 /// A step that meets all numbers below `n` before it meets one again.

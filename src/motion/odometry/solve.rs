@@ -133,9 +133,14 @@ impl<T: Real> Problem<'_, T> {
             sum.numbers += pairing.sight.rows();
             sum.squares += squared;
             let weight = left * left;
-            for row in 0..3 {
-                let error = off[row] * weight;
-                let j: [T; 6] = core::array::from_fn(|i| by_pose[(row, i)]);
+            let columns = &by_pose.data.0;
+            let rows = [
+                (off.x, columns.map(|[x, _, _]| x)),
+                (off.y, columns.map(|[_, y, _]| y)),
+                (off.z, columns.map(|[_, _, z]| z)),
+            ];
+            for (error, j) in rows {
+                let error = error * weight;
                 for ((line, slope), &a) in sum.information.iter_mut().zip(&mut slope).zip(&j) {
                     *slope += a * error;
                     let a = a * weight;

@@ -31,18 +31,21 @@ pub(super) struct Track<T: Real> {
     pub used: bool,
 }
 
+/// As it was.
+pub(super) const UPRIGHT: [[f32; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
+
 impl<T: Real> Track<T> {
-    /// A place for one.
+    /// A place for one. All zeros: an odometry in a `static` takes RAM and no flash.
     pub const EMPTY: Self = {
         let o = T::ZERO;
         Self {
             point: InversePoint { at: Vector3::new(o, o, o), covariance: Matrix3::new(o, o, o, o, o, o, o, o, o) },
             template: Template::NONE,
-            warp: [[1.0, 0.0], [0.0, 1.0]],
+            warp: [[0.0; 2]; 2],
             descriptor: Descriptor::NONE,
             pixel: [0.0; 2],
             now: None,
-            likeness: 1.0,
+            likeness: 0.0,
             fresh: Descriptor::NONE,
             seen: 0,
             missed: 0,

@@ -2,7 +2,7 @@
 
 use super::point::Sight;
 use crate::geometry::Real;
-use nalgebra::{Matrix3, SMatrix, Vector3};
+use nalgebra::{Matrix3, SMatrix};
 
 /// The factor L of `S = J C J^T + sigma^2 = L L^T`, of two rows or three.
 pub(super) struct Whitener<T: Real> {
@@ -31,14 +31,12 @@ impl<T: Real> Whitener<T> {
     /// `L^-1 M`; a row that does not count is zero.
     pub fn apply<const C: usize>(&self, m: &SMatrix<T, 3, C>) -> SMatrix<T, 3, C> {
         let mut out = SMatrix::<T, 3, C>::zeros();
-        for i in 0..C {
-            let column = Vector3::new(m[(0, i)], m[(1, i)], m[(2, i)]);
-            let x = column.x / self.l.m11;
-            let y = (column.y - self.l.m21 * x) / self.l.m22;
-            let z = (column.z - self.l.m31 * x - self.l.m32 * y) / self.l.m33;
-            out[(0, i)] = x;
-            out[(1, i)] = y;
-            out[(2, i)] = if self.rows == 3 { z } else { T::ZERO };
+        // Columns as they are held: indices that are not known to be inside leave a panic.
+        for (to, &[a, b, c]) in out.data.0.iter_mut().zip(&m.data.0) {
+            let x = a / self.l.m11;
+            let y = (b - self.l.m21 * x) / self.l.m22;
+            let z = (c - self.l.m31 * x - self.l.m32 * y) / self.l.m33;
+            *to = [x, y, if self.rows == 3 { z } else { T::ZERO }];
         }
         out
     }

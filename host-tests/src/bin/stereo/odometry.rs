@@ -42,9 +42,9 @@ pub struct OdometryArgs {
     /// Calibration: KITTI's or Middlebury's calib.txt, or OpenCV's, Kalibr's, ROS's (twice, a file for each camera)
     #[arg(long, value_name = "FILE", required = true)]
     pub calib: Vec<PathBuf>,
-    /// Unit of the lengths in an OpenCV calibration
-    #[arg(long, value_name = "UNIT", default_value = "m")]
-    pub unit: Unit,
+    /// The unit of lengths in OpenCV's files, which do not say it: m where none is given
+    #[arg(long, value_name = "UNIT")]
+    pub unit: Option<Unit>,
     /// File for the poses
     #[arg(long, value_name = "poses.txt")]
     pub out: PathBuf,
@@ -109,8 +109,9 @@ fn cameras(args: &OdometryArgs, sequence: &Sequence) -> Result<Cams, Failure> {
         return Ok(Cams { rig: Rig::Mono(camera), rectification: None, format: "one camera of the" });
     }
     // KITTI's files have a grey and a colour pair: the pictures say which.
+    let unit_m = args.unit.map(Unit::metres);
     let pair = if sequence.is_grey() { "image_0" } else { "image_2" };
-    match RawCalibration::open(&args.calib, size, args.unit.metres()) {
+    match RawCalibration::open(&args.calib, Some(size), unit_m) {
         Ok(raw) if !matches!(raw.format, "KITTI" | "Middlebury") => {
             let named = |e: &dyn std::fmt::Display| Failure::new(format!("{}: {e}", path.display()));
             let rectification = Rectification::new(&raw.rig, Crop::Natural, size).map_err(|e| named(&e))?;
@@ -121,7 +122,7 @@ fn cameras(args: &OdometryArgs, sequence: &Sequence) -> Result<Cams, Failure> {
             Ok(Cams { rig: Rig::Stereo(rig), rectification: Some(rectification), format: raw.format })
         }
         _ => {
-            let calibration = Calibration::open_all(&args.calib, Path::new(pair), args.unit.metres())?;
+            let calibration = Calibration::open_all(&args.calib, Path::new(pair), unit_m)?;
             calibration.check_size(size.width, size.height)?;
             Ok(Cams { rig: Rig::Stereo(calibration.rig), rectification: None, format: calibration.format })
         }

@@ -12,13 +12,13 @@
 //! depth          disparity -> metres with its uncertainty, points; over frames, smaller, on a display
 //! focus          thin lens, sharpness, depth from focus, lens motors
 //! features       corners, descriptors, matches: which point of one picture is which of another
-//! motion         how cameras move: structure of many views, bundle adjustment
+//! motion         where cameras go and what they see on the way: odometry, structure of many views, bundle adjustment
 //! pipeline       the live path, row by row
 //! ffi            the same for C, with the feature `ffi`
 //!
 //! camera -lines-> imaging -line windows-> matching -disparity row-> depth
 //!        '------------------------ pipeline -----------------------' -> ffi
-//! camera -lines-> imaging -line bands-> features -matches
+//! camera -lines-> imaging -line bands-> features -matches-> motion -poses
 //!                         |                          '-sights-> geometry, motion
 //!                         '-------------> focus -peaks-> depth by one lens
 //! ```

@@ -14,6 +14,7 @@
 //! * [`correspond`]: two pictures through the core's features and matcher. [`two_view`]: correspondences of a known scene,
 //!   with noise and wrong ones.
 //! * [`focus`]: focus stacks, a simulated lens, and stacks through the core's map.
+//! * [`odometry`]: sequences of pictures through the core's odometry, trajectories and their errors.
 //! * [`rectify`]: raw pictures through the core's remap.
 //! * [`bal`]: problems of bundle adjustment through the core.
 //! * [`twin`]: each stage again, naively, to hold the core to.
@@ -33,6 +34,7 @@ pub mod map;
 pub mod matches;
 pub mod matches_picture;
 pub mod mock;
+pub mod odometry;
 pub mod output;
 pub mod pfm;
 pub mod ply;

@@ -8,6 +8,8 @@ mod calibrate;
 mod features;
 #[path = "cli/focus.rs"]
 mod focus;
+#[path = "cli/odometry.rs"]
+mod odometry;
 #[path = "cli/output.rs"]
 mod output;
 #[path = "cli/rectify.rs"]

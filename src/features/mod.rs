@@ -9,6 +9,7 @@
 //!    [`PATTERN`].
 //! 3. [`Matcher`]: all features of one picture with all of another, as a [`Search`] admits.
 //! 4. [`drop_repeats`]: a corner found on several levels is one match.
+//! 5. [`Template`]: where pictures are held whole, a place found again to a small part of a pixel.
 //!
 //! Pixels to matches is integer arithmetic but for positions: [`Feature`] has them in px of the full picture, and a search
 //! along epipolar lines compares them with lines.
@@ -28,6 +29,7 @@ mod repeats;
 mod search;
 mod shrink;
 mod smooth;
+mod template;
 mod turn;
 
 pub use config::{FeatureConfig, Orientation};
@@ -44,4 +46,5 @@ pub use repeats::drop_repeats;
 pub use search::{Epipolar, Search};
 pub use shrink::Shrink;
 pub use smooth::smooth_row;
+pub use template::{Aligned, AlongRow, Template};
 pub use turn::Turn;

@@ -43,6 +43,12 @@ impl<T: Real> Pose<T> {
         Self { rotation: Matrix3::identity(), translation: Vector3::zeros() }
     }
 
+    /// No pose yet, in what waits for one. All zeros.
+    pub(crate) const NOTHING: Self = {
+        let o = T::ZERO;
+        Self { rotation: Matrix3::new(o, o, o, o, o, o, o, o, o), translation: Vector3::new(o, o, o) }
+    };
+
     /// A pose of a rotation that is given to four decimals or more; the nearest exact one is held.
     pub fn new(rotation: Matrix3<T>, translation: Vector3<T>) -> Result<Self, PoseError> {
         if !rotation.iter().chain(&translation).all(|x| x.is_finite()) {

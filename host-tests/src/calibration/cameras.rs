@@ -23,6 +23,17 @@ impl Cameras {
         Self::read(&texts).map_err(|fault| CalibrationError { path, fault })
     }
 
+    /// The first camera of such files, for which a file of one of KITTI's matrices is enough.
+    pub fn open_first(paths: &[PathBuf]) -> Result<Camera<f64>, CalibrationError> {
+        let texts = load_all(paths)?;
+        let path = paths.first().cloned().unwrap_or_default();
+        let found = match texts.first().and_then(|text| kitti::alone(text)) {
+            Some(found) => found.and_then(|(key, numbers)| camera(key, numbers)),
+            None => Self::read(&texts).map(|cameras| cameras.first),
+        };
+        found.map_err(|fault| CalibrationError { path, fault })
+    }
+
     fn read(texts: &[String]) -> Result<Self, Fault> {
         if let Some([first, second]) = raw::cameras(texts)? {
             return Ok(Self { first, second });

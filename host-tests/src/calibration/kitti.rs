@@ -78,6 +78,17 @@ pub(super) fn matrices(text: &str) -> Result<[(String, [f64; 5]); 2], Fault> {
     Ok([of(left)?, of(right)?])
 }
 
+/// fx, skew, cx, fy, cy of the camera of a file that has only one matrix, with its label; `None` of other files.
+pub(super) fn alone(text: &str) -> Option<Result<(String, [f64; 5]), Fault>> {
+    let mut lines = text.lines().zip(1..).filter(|(content, _)| !content.trim().is_empty());
+    let (content, line) = lines.next().filter(|_| lines.next().is_none())?;
+    let matrix = labelled(text).next().map(|(_, matrix)| matrix);
+    let is_bare = content.split_ascii_whitespace().next()?.parse::<f64>().is_ok();
+    let matrix = matrix.or(is_bare.then_some(Matrix { label: "the camera", line, numbers: content }))?;
+    let numbers = numbers(matrix.label, line, matrix.numbers);
+    Some(numbers.map(|p: [f64; 12]| (matrix.label.to_owned(), [p[0], p[1], p[2], p[5], p[6]])))
+}
+
 /// The matrices of the pair that the left image belongs to: the colour cameras 2 and 3 where the file has them, unless
 /// the path names a grey camera.
 fn choose<'a>(text: &'a str, left_image: &Path) -> Result<[Matrix<'a>; 2], Fault> {

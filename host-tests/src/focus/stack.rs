@@ -81,17 +81,7 @@ impl Stack {
     /// The images of a folder in the order of their names, byte by byte. Hidden files, and files whose ending is not that of an
     /// image, are passed over.
     pub fn open(folder: &Path) -> Result<Self, StackError> {
-        let failed = |source| StackError::Folder { path: folder.into(), source };
-        let mut files = Vec::new();
-        for entry in std::fs::read_dir(folder).map_err(failed)? {
-            let path = entry.map_err(failed)?.path();
-            let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-            let is_hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
-            if !is_hidden && ENDINGS.contains(&ending.as_str()) && !path.is_dir() {
-                files.push(path);
-            }
-        }
-        files.sort();
+        let files = images(folder).map_err(|source| StackError::Folder { path: folder.into(), source })?;
         if !(FEWEST..=MOST).contains(&files.len()) {
             return Err(StackError::Count { path: folder.into(), found: files.len() });
         }
@@ -136,7 +126,23 @@ impl Stack {
     }
 }
 
-fn read(path: &Path) -> Result<Frame, StackError> {
+/// The images of a folder in the order of their names.
+pub(crate) fn images(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        let is_hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+        if !is_hidden && ENDINGS.contains(&ending.as_str()) && !path.is_dir() {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// An image in grey, as the core sees it, and in colour.
+pub(crate) fn read(path: &Path) -> Result<Frame, StackError> {
     let failed = |source| StackError::Camera { path: path.into(), source };
     let camera = MockCamera::open(path)?;
     let colours = camera.picture();

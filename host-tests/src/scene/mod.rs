@@ -5,6 +5,7 @@
 //!
 //! * [`Shape`], [`Object`], [`Texture`]: what a scene is made of.
 //! * [`Scene`]: the scene; [`Scene::demo`], [`Scene::small`], [`Scene::slanted_plane`] are ready-made.
+//! * [`MovingScene`]: a scene that the rig moves through.
 //! * [`Truth`]: the true values, by ray casting at the pixel centres.
 //! * [`SceneCamera`]: pictures as a stereo source.
 //! * [`pattern`]: pictures that are hard on a matcher and show nothing.
@@ -13,6 +14,7 @@
 pub mod pattern;
 
 mod camera;
+mod moving;
 pub(crate) mod random;
 mod ready;
 mod render;
@@ -20,6 +22,7 @@ mod shape;
 mod texture;
 
 pub use camera::SceneCamera;
+pub use moving::MovingScene;
 pub use random::Random;
 pub use shape::{Object, Shape};
 pub use texture::{Points, SAMPLES, Texture};

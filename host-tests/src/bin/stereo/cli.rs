@@ -11,9 +11,11 @@ pub use rectify::{RectifyArgs, RectifyOptions, Unit};
 use crate::bundle::{self, BundleArgs};
 use crate::failure::Failure;
 use crate::focus::{self, FocusArgs};
+use crate::odometry::{self, OdometryArgs};
 use crate::record::{self, RecordArgs};
 use crate::replay::{self, ReplayArgs};
 use crate::two_view::{FEATURES_EXAMPLE, FUNDAMENTAL_EXAMPLE, FeaturesArgs, FundamentalArgs, POSE_EXAMPLE, PoseArgs};
+use crate::walk::{self, WalkArgs};
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
 use std::ffi::OsString;
@@ -24,7 +26,7 @@ use stereopsis_host::run::{Method, NoiseChoice, UnknownMethod, UnknownNoise, Way
 
 /// What is told to one who names another command.
 const COMMANDS: &str = "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental, pose, bundle, \
-                        record and replay";
+                        odometry, walk, record and replay";
 
 const EXAMPLES: &str = "Examples:
   stereo demo --out demo-out
@@ -98,6 +100,12 @@ pub enum Command {
     /// Play recorded lines, with the faults that they had, through the code that runs on the device
     #[command(after_help = replay::EXAMPLE)]
     Replay(ReplayArgs),
+    /// Tell where a camera, or a pair, went: a sequence of frames into a trajectory
+    #[command(after_help = odometry::EXAMPLE)]
+    Odometry(OdometryArgs),
+    /// Drive through a built-in street: a sequence of frames with true poses, for odometry
+    #[command(after_help = walk::EXAMPLE)]
+    Walk(WalkArgs),
 }
 
 #[derive(Debug, Args)]

@@ -3,7 +3,7 @@
 //! * `cli`, `two_view`: what is asked for. `failure`: what is said when it cannot be done.
 //! * `input`: the images and the search, checked against each other. `progress`: how far it is.
 //! * `matching`, `bench`, `demo`, `calibrate`, `calib`, `rectify`, `features`, `focus`, `fundamental`, `pose`, `bundle`,
-//!   `record`, `replay`: the commands. `files`, `place`: the results as files.
+//!   `odometry`, `walk`, `record`, `replay`: the commands. `files`, `place`: the results as files.
 
 mod bench;
 mod bundle;
@@ -18,6 +18,7 @@ mod focus;
 mod fundamental;
 mod input;
 mod matching;
+mod odometry;
 mod place;
 mod pose;
 mod progress;
@@ -25,6 +26,7 @@ mod record;
 mod rectify;
 mod replay;
 mod two_view;
+mod walk;
 
 use cli::Command;
 use failure::Failure;
@@ -58,6 +60,8 @@ fn start() -> Result<(), Failure> {
         Ok(Command::Bundle(args)) => bundle::run(&args),
         Ok(Command::Record(args)) => record::run(&args),
         Ok(Command::Replay(args)) => replay::run(&args),
+        Ok(Command::Odometry(args)) => odometry::run(&args),
+        Ok(Command::Walk(args)) => walk::run(&args),
         Err(cli::Stop::Help(text)) => print(&text),
         Err(cli::Stop::Usage(failure)) => Err(failure),
     }

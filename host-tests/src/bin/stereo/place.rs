@@ -35,25 +35,39 @@ impl Place {
     pub fn with_picture(out: &Path, picture: Option<&Path>) -> Result<(Self, Option<Self>), Failure> {
         let place = Self::of("--out", out)?;
         let picture = picture.map(|path| Self::of("--picture", path)).transpose()?;
-        if picture.as_ref().is_some_and(|picture| picture.folder == place.folder && picture.name == place.name) {
+        if picture.as_ref().is_some_and(|picture| picture.is(&place)) {
             return Err(Failure::new(format!("--picture: {} is the file of --out; name another", out.display())));
         }
         Ok((place, picture))
     }
 
-    /// Writes the result and its picture. Both are complete and on the disk before either moves to its place.
+    /// Whether both are one file.
+    pub fn is(&self, other: &Self) -> bool {
+        self.folder == other.folder && self.name == other.name
+    }
+
+    /// Writes the result and its picture.
     pub fn write(
         &self,
         result: impl FnOnce(&mut dyn Write) -> io::Result<()>,
         picture: Option<(&Self, RgbImage)>,
     ) -> Result<(), Failure> {
+        self.write_both(result, picture.map(|(place, drawn)| (place, move |out: &mut dyn Write| png(out, &drawn))))
+    }
+
+    /// Writes the result and another file. Both are complete and on the disk before either moves to its place.
+    pub fn write_both(
+        &self,
+        result: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+        second: Option<(&Self, impl FnOnce(&mut dyn Write) -> io::Result<()>)>,
+    ) -> Result<(), Failure> {
         let mut staging = Staging::new(&self.folder)?;
         staging.write(&self.name, |out| result(out))?;
         let mut elsewhere = None;
-        if let Some((place, drawn)) = picture {
+        if let Some((place, content)) = second {
             let one_folder = place.folder == self.folder;
             let to = if one_folder { &mut staging } else { elsewhere.insert(Staging::new(&place.folder)?) };
-            to.write(&place.name, |out| png(out, &drawn))?;
+            to.write(&place.name, |out| content(out))?;
         }
         if let Some(elsewhere) = elsewhere {
             elsewhere.commit(&[])?;

@@ -1,0 +1,230 @@
+//! `stereo odometry`: where a camera, or a pair, went, from what it saw.
+
+use crate::cli::Unit;
+use crate::failure::Failure;
+use crate::place::Place;
+use crate::print;
+use crate::progress::Progress;
+use clap::Args;
+use image::GrayImage;
+use std::fmt::Write;
+use std::io;
+use std::path::{Path, PathBuf};
+use stereopsis::geometry::{Crop, ImageSize, Pose, Rectification};
+use stereopsis::motion::odometry::State;
+use stereopsis_host::calibration::{Calibration, Cameras, RawCalibration};
+use stereopsis_host::command_line::one_line;
+use stereopsis_host::odometry::error::{Alignment, align, ate, drift, rpe};
+use stereopsis_host::odometry::picture::svg;
+use stereopsis_host::odometry::poses;
+use stereopsis_host::odometry::run::{Rig, Trajectory, run as follow};
+use stereopsis_host::odometry::sequence::{Sequence, SequenceError};
+use stereopsis_host::rectify::{RectifyPicturesError, rectify};
+use stereopsis_host::scene::SceneCamera;
+
+/// What follows the options in the command's help.
+pub const EXAMPLE: &str = "Example:
+  stereo odometry --sequence street --calib street/calib.txt --out poses.txt --picture way.svg
+
+The frames are the images in street/left and street/right, in the order of their names; without street/right it is one camera. \
+Written is a line for each frame, as KITTI does: 12 numbers, the rows of [R | t], which carries a point of that frame's camera \
+into the first one's; metres for a pair, of one camera units of its first baseline. What is not known of a frame is laid between \
+those that are, and counted in what is printed. Places that come back are not recognised: errors add up along the way.
+
+A pair that is not rectified (OpenCV's, Kalibr's and ROS's calibrations) is rectified first; its poses are those of the rectified \
+left camera.";
+
+#[derive(Debug, Args)]
+pub struct OdometryArgs {
+    /// Folder with the frames: left and right, or left alone
+    #[arg(long, value_name = "DIR")]
+    pub sequence: PathBuf,
+    /// Calibration: KITTI's or Middlebury's calib.txt, or OpenCV's, Kalibr's, ROS's (twice, a file for each camera)
+    #[arg(long, value_name = "FILE", required = true)]
+    pub calib: Vec<PathBuf>,
+    /// The unit of lengths in OpenCV's files, which do not say it: m where none is given
+    #[arg(long, value_name = "UNIT")]
+    pub unit: Option<Unit>,
+    /// File for the poses
+    #[arg(long, value_name = "poses.txt")]
+    pub out: PathBuf,
+    /// Also draw the way, from above and from the side
+    #[arg(long, value_name = "FILE.svg")]
+    pub picture: Option<PathBuf>,
+    /// True poses in the same form: errors are printed, and they are drawn
+    #[arg(long, value_name = "FILE")]
+    pub truth: Option<PathBuf>,
+}
+
+/// Why a frame did not come.
+#[derive(Debug, thiserror::Error)]
+enum SourceError {
+    #[error(transparent)]
+    Sequence(#[from] SequenceError),
+    #[error(transparent)]
+    Rectify(#[from] RectifyPicturesError),
+}
+
+/// The cameras, and what aligns their rows where they are not.
+struct Cams {
+    rig: Rig,
+    rectification: Option<Rectification<f64>>,
+    format: &'static str,
+}
+
+pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
+    let sequence = Sequence::open(&args.sequence)?;
+    let cameras = cameras(args, &sequence)?;
+    let truth = args.truth.as_deref().map(poses::read).transpose()?;
+    let place = Place::of("--out", &args.out)?;
+    let picture = args.picture.as_deref().map(|path| Place::of("--picture", path)).transpose()?;
+    if picture.as_ref().is_some_and(|picture| picture.is(&place)) {
+        return Err(Failure::new(format!("--picture: {} is the file of --out; name another", args.out.display())));
+    }
+
+    let progress = Progress::over_frames(sequence.len());
+    let frames = (0..sequence.len()).map(|i| frame(&sequence, cameras.rectification.as_ref(), i));
+    let trajectory = follow(&cameras.rig, frames, |_| progress.one_more())?;
+    drop(progress);
+
+    let unit = if sequence.is_stereo() { "m" } else { "first baselines" };
+    let draw = |out: &mut dyn io::Write| {
+        let aligned = truth.as_deref().map(|truth| beside(&trajectory, truth, sequence.is_stereo()));
+        out.write_all(svg(&trajectory, aligned.as_deref(), unit).as_bytes())
+    };
+    place.write_both(|out| poses::write(out, &trajectory.poses), picture.as_ref().map(|place| (place, draw)))?;
+    print(&summary(args, &sequence, &cameras, &trajectory, truth.as_deref()))
+}
+
+fn cameras(args: &OdometryArgs, sequence: &Sequence) -> Result<Cams, Failure> {
+    // Images have at most 4096 columns and rows.
+    let size = ImageSize { width: sequence.size().0 as u16, height: sequence.size().1 as u16 };
+    let [path, ..] = args.calib.as_slice() else { return Err(Failure::new("--calib: a file is needed")) };
+    if args.calib.len() > 2 {
+        return Err(Failure::new("--calib: is given more than twice; a file of both cameras or one of each is needed"));
+    }
+    if !sequence.is_stereo() {
+        // The first camera of whatever the file describes.
+        let camera = Cameras::open_first(&args.calib)?;
+        return Ok(Cams { rig: Rig::Mono(camera), rectification: None, format: "one camera of the" });
+    }
+    // KITTI's files have a grey and a colour pair: the pictures say which.
+    let unit_m = args.unit.map(Unit::metres);
+    let pair = if sequence.is_grey() { "image_0" } else { "image_2" };
+    match RawCalibration::open(&args.calib, Some(size), unit_m) {
+        Ok(raw) if !matches!(raw.format, "KITTI" | "Middlebury") => {
+            let named = |e: &dyn std::fmt::Display| Failure::new(format!("{}: {e}", path.display()));
+            let rectification = Rectification::new(&raw.rig, Crop::Natural, size).map_err(|e| named(&e))?;
+            if !rectification.axis().is_horizontal() {
+                return Err(named(&"the cameras are one above the other; an odometry needs them side by side"));
+            }
+            let rig = rectification.rig().map_err(|e| named(&e))?;
+            Ok(Cams { rig: Rig::Stereo(rig), rectification: Some(rectification), format: raw.format })
+        }
+        _ => {
+            let calibration = Calibration::open_all(&args.calib, Path::new(pair), unit_m)?;
+            calibration.check_size(size.width, size.height)?;
+            Ok(Cams { rig: Rig::Stereo(calibration.rig), rectification: None, format: calibration.format })
+        }
+    }
+}
+
+/// A frame, its rows aligned.
+fn frame(
+    sequence: &Sequence,
+    rectification: Option<&Rectification<f64>>,
+    index: usize,
+) -> Result<(GrayImage, Option<GrayImage>), SourceError> {
+    let (left, right) = sequence.frame(index)?;
+    match (rectification, right) {
+        (Some(rectification), Some(right)) => {
+            let [left, right] = rectify(rectification, SceneCamera::new(left, right))?.pictures;
+            Ok((left, Some(right)))
+        }
+        (_, right) => Ok((left, right)),
+    }
+}
+
+/// The truth as the trajectory would have it: turned, moved, and of one camera scaled onto it.
+fn beside(trajectory: &Trajectory, truth: &[Pose<f64>], is_stereo: bool) -> Vec<Pose<f64>> {
+    let Some(s) = align(truth, &trajectory.poses, alignment(is_stereo)) else { return Vec::new() };
+    let moved = |p: &Pose<f64>| {
+        Pose::new(s.rotation * p.rotation(), s.rotation * p.translation() * s.scale + s.translation).unwrap_or(*p)
+    };
+    truth.iter().map(moved).collect()
+}
+
+fn alignment(is_stereo: bool) -> Alignment {
+    if is_stereo { Alignment::Rigid } else { Alignment::Similar }
+}
+
+fn summary(
+    args: &OdometryArgs,
+    sequence: &Sequence,
+    cameras: &Cams,
+    trajectory: &Trajectory,
+    truth: Option<&[Pose<f64>]>,
+) -> String {
+    let (width, height) = sequence.size();
+    let kind = if sequence.is_stereo() { "a pair" } else { "one camera" };
+    let mut text =
+        format!("{} frames of {width} x {height} px, {kind}, {} calibration\n", sequence.len(), cameras.format);
+    let states = [
+        (State::Tracked, "tracked"),
+        (State::Still, "still"),
+        (State::Turned, "turned, step not told from none"),
+        (State::StepUnknown, "turned, step not known"),
+        (State::Waiting, "waiting for a baseline, laid between others"),
+        (State::Lost, "lost, laid between others"),
+        (State::Found, "found again"),
+        (State::Restarted, "begun anew, motion not known"),
+    ];
+    let counted: Vec<String> = states
+        .iter()
+        .map(|&(state, name)| (trajectory.count(state), name))
+        .filter(|&(count, _)| count > 0)
+        .map(|(count, name)| format!("{count} {name}"))
+        .collect();
+    let _ = writeln!(text, "frames       {}", counted.join(", "));
+    let unit = if sequence.is_stereo() { "m" } else { "first baselines (the unit of length is not known)" };
+    let _ = writeln!(text, "way          {:.3} {unit}", trajectory.length());
+    if let Some(truth) = truth {
+        errors(&mut text, trajectory, truth, sequence.is_stereo());
+    }
+    let _ = writeln!(text, "results are in {}", one_line(&args.out.display().to_string()));
+    text
+}
+
+fn errors(text: &mut String, trajectory: &Trajectory, truth: &[Pose<f64>], is_stereo: bool) {
+    if truth.len() != trajectory.poses.len() {
+        let _ = writeln!(text, "note: the truth has {} poses; as many as both have are compared", truth.len());
+    }
+    let alignment = alignment(is_stereo);
+    let Some(found) = align(&trajectory.poses, truth, alignment) else { return };
+    let scale = found.scale;
+    if let Some(ate) = ate(&trajectory.poses, truth, alignment) {
+        let _ = writeln!(text, "ATE          {ate:.4} m RMS after alignment, scale {scale:.5}");
+    }
+    if let Some(rpe) = rpe(&trajectory.poses, truth, 1, scale) {
+        let _ = writeln!(
+            text,
+            "RPE          {:.4} m, {:.4} deg RMS from frame to frame; direction {:.3} deg mean, {:.3} deg worst",
+            rpe.translation,
+            rpe.rotation_rad.to_degrees(),
+            rpe.direction_rad.to_degrees(),
+            rpe.worst_direction_rad.to_degrees()
+        );
+    }
+    for length in [5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 400.0, 800.0] {
+        let Some(off) = drift(&trajectory.poses, truth, length, scale) else {
+            break;
+        };
+        let _ = writeln!(
+            text,
+            "drift        over {length} m: {:.3} %, {:.5} deg/m ({} ways)",
+            100.0 * off.translation,
+            off.rotation_rad.to_degrees(),
+            off.ways
+        );
+    }
+}

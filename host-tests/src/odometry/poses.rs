@@ -1,0 +1,71 @@
+//! Trajectories as KITTI's odometry benchmark writes them: a line for each frame, the first three rows of the matrix that
+//! carries a point of that frame's camera into the first one's, row by row.
+
+use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use stereopsis::geometry::Pose;
+
+/// Why a file is no trajectory.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PosesError {
+    /// The file cannot be read.
+    #[error("{}: cannot be read ({source}); give a text file of poses", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system says.
+        source: io::Error,
+    },
+    /// A line is no pose.
+    #[error("{}: line {line} is no pose; 12 numbers are needed, the rows of [R | t]", path.display())]
+    Line {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+    },
+}
+
+/// Writes a trajectory. The first line of one that begins in the first camera is the identity, exactly.
+pub fn write(out: &mut dyn Write, poses: &[Pose<f64>]) -> io::Result<()> {
+    for pose in poses {
+        let (r, t) = (pose.rotation(), pose.translation());
+        let rows = (0..3).flat_map(|i| [r[(i, 0)], r[(i, 1)], r[(i, 2)], t[i]]);
+        // A zero's sign says nothing.
+        let numbers: Vec<String> = rows.map(|x| format!("{:.9e}", x + 0.0)).collect();
+        writeln!(out, "{}", numbers.join(" "))?;
+    }
+    Ok(())
+}
+
+/// Reads a trajectory; empty lines are passed over, and rotations may have few decimals.
+pub fn read(path: &Path) -> Result<Vec<Pose<f64>>, PosesError> {
+    let text = std::fs::read_to_string(path).map_err(|source| PosesError::Read { path: path.into(), source })?;
+    let lines = text.lines().zip(1..).filter(|(content, _)| !content.trim().is_empty());
+    let pose = |(content, line): (&str, usize)| {
+        let numbers: Vec<f64> = content.split_ascii_whitespace().filter_map(|word| word.parse().ok()).collect();
+        let found = <[f64; 12]>::try_from(numbers).ok().filter(|n| n.iter().all(|x| x.is_finite()));
+        let pose = found.and_then(|n| {
+            let r = Matrix3::new(n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10]);
+            // Files of other programs have six digits or fewer.
+            let nearest = Rotation3::from_matrix_eps(&r, 1e-12, 100, Rotation3::identity());
+            Pose::new(*nearest.matrix(), Vector3::new(n[3], n[7], n[11])).ok()
+        });
+        pose.ok_or_else(|| PosesError::Line { path: path.into(), line })
+    };
+    lines.map(pose).collect()
+}
+
+/// A share of the way from one pose to another: along a line, and about one axis.
+pub fn between(from: &Pose<f64>, to: &Pose<f64>, share: f64) -> Pose<f64> {
+    let of = |p: &Pose<f64>| {
+        let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*p.rotation()));
+        Isometry3::from_parts(Translation3::from(*p.translation()), turn)
+    };
+    let (a, b) = (of(from), of(to));
+    let turn = a.rotation.try_slerp(&b.rotation, share, 1e-9).unwrap_or(a.rotation);
+    let place = a.translation.vector.lerp(&b.translation.vector, share);
+    Pose::new(*turn.to_rotation_matrix().matrix(), place).unwrap_or(*from)
+}

@@ -1,0 +1,93 @@
+//! `stereo odometry` and `stereo walk`: their files, and what they say when they cannot.
+
+use super::support::{Bench, names, stereo, text};
+use std::fs;
+use std::path::Path;
+
+fn walk(bench: &Bench, frames: &str) -> String {
+    let street = bench.path("street").display().to_string();
+    let run = stereo(["walk", "--out", &street, "--frames", frames, "--width", "200"]);
+    assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
+    street
+}
+
+fn poses(path: &Path) -> Vec<Vec<f64>> {
+    let text = fs::read_to_string(path).expect("poses");
+    text.lines().map(|line| line.split(' ').map(|word| word.parse().expect("a number")).collect()).collect()
+}
+
+#[test]
+fn a_line_for_every_frame() {
+    let bench = Bench::new();
+    walk(&bench, "5");
+    let street = walk(&bench, "4");
+    assert_eq!(names(&bench.path("street")), ["calib.txt", "left", "poses.txt", "right"]);
+    assert_eq!(names(&bench.path("street/left")), ["000000.png", "000001.png", "000002.png", "000003.png"]);
+    let calib = format!("{street}/calib.txt");
+    let (out, way) = (bench.path("new/found.txt"), bench.path("new/way.svg"));
+    let truth = format!("{street}/poses.txt");
+    let arguments = ["odometry", "--sequence", &street, "--calib", &calib, "--out"];
+    let mut with_all = arguments.map(str::to_owned).to_vec();
+    with_all.extend([out.display().to_string(), "--picture".into(), way.display().to_string()]);
+    with_all.extend(["--truth".into(), truth]);
+    let run = stereo(&with_all);
+    assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
+    let said = text(&run.stdout);
+    assert!(
+        said.starts_with("4 frames of 200 x 100 px, a pair, KITTI calibration\nframes       3 tracked\n"),
+        "{said}"
+    );
+    assert!(said.contains("ATE ") && said.contains("RPE "), "{said}");
+    let found = poses(&out);
+    assert!(found.len() == 4 && found.iter().all(|line| line.len() == 12), "{found:?}");
+    assert_eq!(found[0], [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    let true_poses = poses(&bench.path("street/poses.txt"));
+    let off = (0..3).map(|i| (found[3][4 * i + 3] - true_poses[3][4 * i + 3]).powi(2)).sum::<f64>().sqrt();
+    assert!(off < 0.05, "{off} m of 1.5 m");
+    assert!(fs::read_to_string(way).expect("a drawing").starts_with("<svg "));
+
+    // One camera: the same frames without the right ones.
+    fs::remove_dir_all(bench.path("street/right")).expect("the folder");
+    with_all.truncate(6);
+    with_all.push(out.display().to_string());
+    let run = stereo(&with_all);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    assert!(text(&run.stdout).contains("one camera"), "{}", text(&run.stdout));
+    assert_eq!(poses(&out).len(), 4);
+}
+
+#[test]
+fn what_is_wrong_is_named_and_nothing_is_left() {
+    let bench = Bench::new();
+    let street = walk(&bench, "3");
+    let calib = format!("{street}/calib.txt");
+    let out = bench.path("new/found.txt").display().to_string();
+    let all = |sequence: &str, calib: &str, out: &str| {
+        ["odometry", "--sequence", sequence, "--calib", calib, "--out", out].map(str::to_owned)
+    };
+    let refused = |culprit: &str| bench.refused(&all(&street, &calib, &out), culprit);
+    bench.refused(&all("missing", &calib, &out), "missing");
+    bench.refused(&all(&street, "missing.txt", &out), "missing.txt");
+    bench.refused(&all(&street, &calib, &street), "--out");
+    bench.refused(&["odometry", "--sequence", &street, "--calib", &calib], "--out");
+    bench.refused(&["walk", "--out", &out, "--frames", "1"], "--frames");
+
+    let (first, last) = (bench.path("street/right/000000.png"), bench.path("street/right/000002.png"));
+    let kept = fs::read(&last).expect("a frame");
+    fs::remove_file(&last).expect("a frame");
+    refused("left/000002.png");
+    fs::write(&last, b"no image").expect("room");
+    refused("right/000002.png");
+    let small = image::GrayImage::new(90, 50);
+    small.save(&last).expect("room");
+    refused("all frames must have one size");
+    fs::write(&last, &kept).expect("room");
+    bench.put("broken.txt", b"P0: 1 2 3\n");
+    bench.refused(&all(&street, &bench.path("broken.txt").display().to_string(), &out), "broken.txt");
+    let empty = bench.path("empty");
+    fs::create_dir_all(empty.join("left")).expect("folders");
+    bench.refused(&all(&empty.display().to_string(), &calib, &out), "has 0 images");
+    fs::remove_dir_all(bench.path("street/left")).expect("the folder");
+    refused("left");
+    assert!(first.is_file() && !bench.path("new").exists());
+}

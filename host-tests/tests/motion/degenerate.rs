@@ -1,0 +1,129 @@
+//! What cannot be told is named, and never a wrong pose.
+
+use crate::support::{frames, mono, pose, rig, room, stereo, turned_deg, wall};
+use image::GrayImage;
+use stereopsis::features::Feature;
+use stereopsis::geometry::Pose;
+use stereopsis::imaging::Picture;
+use stereopsis::motion::odometry::{Frame, OdometryConfig, OdometryError, State, StereoOdometry};
+
+#[test]
+fn a_camera_that_stands_still_stands_still() {
+    let frames = frames(room(), vec![Pose::identity(); 4]);
+    for trajectory in [stereo(rig(), &frames), mono(rig(), &frames)] {
+        let states: Vec<_> = trajectory.steps.iter().map(|step| step.state).collect();
+        assert_eq!(states, [State::First, State::Still, State::Still, State::Still]);
+        assert!(trajectory.poses.iter().all(|pose| *pose == Pose::identity()), "{:?}", trajectory.poses);
+    }
+}
+
+#[test]
+fn one_camera_that_only_turns_has_no_step() {
+    let path: Vec<_> = (0..5).map(|i| pose([0.004 * f64::from(i), 0.02 * f64::from(i), 0.0], [0.0; 3])).collect();
+    let trajectory = mono(rig(), &frames(room(), path.clone()));
+    for ((found, truth), step) in trajectory.poses.iter().zip(&path).zip(&trajectory.steps).skip(1) {
+        assert_eq!(step.state, State::Turned);
+        assert_eq!(found.translation().norm(), 0.0);
+        assert!(turned_deg(found, truth) < 0.05, "{}", turned_deg(found, truth));
+        // What is not known of the step says so.
+        assert!(step.covariance[(3, 3)] > 1e6 && step.covariance[(0, 0)] < 1e-6, "{}", step.covariance);
+    }
+}
+
+#[test]
+fn a_pair_that_only_turns_measures_that_there_is_no_step() {
+    let path: Vec<_> = (0..4).map(|i| pose([0.0, 0.02 * f64::from(i), 0.0], [0.0; 3])).collect();
+    let trajectory = stereo(rig(), &frames(room(), path.clone()));
+    for ((found, truth), step) in trajectory.poses.iter().zip(&path).zip(&trajectory.steps).skip(1) {
+        assert_eq!(step.state, State::Tracked);
+        assert!(turned_deg(found, truth) < 0.1, "{}", turned_deg(found, truth));
+        assert!(found.translation().norm() < 0.01, "{}", found.translation());
+    }
+}
+
+#[test]
+fn points_at_infinity_tell_the_turn_alone() {
+    // A wall in 3 km: a step of 30 cm moves it by 0.02 px.
+    let path: Vec<_> = (0..4).map(|i| pose([0.0, 0.015 * f64::from(i), 0.0], [0.3 * f64::from(i), 0.0, 0.0])).collect();
+    let frames = frames(wall(3000.0, 0.0), path.clone());
+    let trajectory = stereo(rig(), &frames);
+    for ((found, truth), step) in trajectory.poses.iter().zip(&path).zip(&trajectory.steps).skip(1) {
+        assert_eq!(step.state, State::StepUnknown);
+        assert_eq!(found.translation().norm(), 0.0);
+        assert!(turned_deg(found, truth) < 0.1, "{}", turned_deg(found, truth));
+    }
+    // To one camera it is as if it only turned.
+    let trajectory = mono(rig(), &frames);
+    assert!(trajectory.steps.iter().skip(1).all(|step| step.state == State::Turned));
+}
+
+#[test]
+fn a_plane_is_enough_for_a_pair_and_no_wrong_pose_of_one_camera() {
+    let path: Vec<_> = (0..4)
+        .map(|i| pose([0.0, 0.005 * f64::from(i), 0.0], [0.12 * f64::from(i), 0.0, 0.05 * f64::from(i)]))
+        .collect();
+    let frames = frames(wall(2.5, 0.3), path.clone());
+    let trajectory = stereo(rig(), &frames);
+    for (found, truth) in trajectory.poses.iter().zip(&path) {
+        let off = (found.translation() - truth.translation()).norm();
+        assert!(off < 0.01 && turned_deg(found, truth) < 0.3, "{off} {}", turned_deg(found, truth));
+    }
+    // Of one camera a plane has two motions: either it waits, or it is the right one, of which so
+    // small a picture says the direction to some degrees: the wrong one is 20 off.
+    let trajectory = mono(rig(), &frames);
+    for (i, step) in trajectory.steps.iter().enumerate().skip(1) {
+        if step.state == State::Tracked {
+            let found = trajectory.poses[i].translation().angle(path[i].translation());
+            assert!(found.to_degrees() < 10.0, "{i}: {} deg", found.to_degrees());
+        } else {
+            assert!(!step.state.is_known(), "{:?}", step.state);
+        }
+    }
+}
+
+#[test]
+fn lost_in_the_dark_and_found_again() {
+    let path: Vec<_> = (0..7).map(|i| pose([0.0, 0.01 * f64::from(i), 0.0], [0.0, 0.0, 0.06 * f64::from(i)])).collect();
+    let mut frames = frames(room(), path.clone());
+    let dark = GrayImage::new(frames[0].0.width(), frames[0].0.height());
+    for frame in &mut frames[3..5] {
+        *frame = (dark.clone(), dark.clone());
+    }
+    let trajectory = stereo(rig(), &frames);
+    let states: Vec<_> = trajectory.steps.iter().map(|step| step.state).collect();
+    let (tracked, lost) = (State::Tracked, State::Lost);
+    assert_eq!(states, [State::First, tracked, tracked, lost, lost, State::Found, tracked]);
+    // Those in between lie on the way.
+    for (found, truth) in trajectory.poses.iter().zip(&path) {
+        let off = (found.translation() - truth.translation()).norm();
+        assert!(off < 0.02 && turned_deg(found, truth) < 0.2, "{off} {}", turned_deg(found, truth));
+    }
+}
+
+#[test]
+fn what_does_not_come_back_is_begun_anew() {
+    let mut frames = frames(room(), vec![Pose::identity(); 1]);
+    let dark = GrayImage::new(frames[0].0.width(), frames[0].0.height());
+    frames.extend((0..7).map(|_| (dark.clone(), dark.clone())));
+    let trajectory = stereo(rig(), &frames);
+    let states: Vec<_> = trajectory.steps.iter().map(|step| step.state).collect();
+    let lost = State::Lost;
+    assert_eq!(states, [State::First, lost, lost, lost, lost, lost, State::Restarted, lost]);
+}
+
+#[test]
+fn frames_that_do_not_fit_are_refused_by_name() {
+    let mut odometry = StereoOdometry::<f32, 16>::new();
+    let pixels = [0; 64 * 48];
+    let picture = Picture::new(&pixels, 64, 48).expect("a picture");
+    let features: [Feature; 0] = [];
+    let frame = Frame { left: picture, right: Some(picture), features: &features };
+    assert_eq!(odometry.step(&frame).err(), Some(OdometryError::NotStarted));
+    odometry.start(&rig(), OdometryConfig::new(64)).expect("a rig");
+    assert_eq!(odometry.step(&Frame { right: None, ..frame }).err(), Some(OdometryError::NoRight));
+    let other = Picture::new(&pixels, 48, 64).expect("a picture");
+    assert_eq!(odometry.step(&Frame { right: Some(other), ..frame }).err(), Some(OdometryError::Size));
+    assert_eq!(odometry.step(&frame).map(|step| step.state), Ok(State::First));
+    assert_eq!(odometry.step(&Frame { left: other, right: Some(other), ..frame }).err(), Some(OdometryError::Size));
+    assert_eq!(odometry.step(&frame).map(|step| step.state), Ok(State::Lost));
+}

@@ -1,0 +1,75 @@
+//! Files of poses, and how far trajectories are off.
+
+use crate::support::pose;
+use nalgebra::Vector3;
+use stereopsis::geometry::Pose;
+use stereopsis_host::odometry::error::{Alignment, align, ate, drift, rpe};
+use stereopsis_host::odometry::poses;
+
+/// A way round a corner.
+fn way() -> Vec<Pose<f64>> {
+    (0..12).map(f64::from).map(|s| pose([0.0, 0.1 * s, 0.02 * s], [0.05 * s * s, 0.1 * s, s])).collect()
+}
+
+#[test]
+fn files_come_back_as_they_were() {
+    let mut bytes = Vec::new();
+    poses::write(&mut bytes, &way()).expect("room");
+    let text = String::from_utf8(bytes.clone()).expect("text");
+    assert_eq!(text.lines().count(), 12);
+    assert!(text.lines().all(|line| line.split(' ').count() == 12));
+    let first: Vec<f64> =
+        text.lines().next().expect("a line").split(' ').map(|w| w.parse().expect("a number")).collect();
+    assert_eq!(first, [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    let file = tempfile::NamedTempFile::new().expect("a file");
+    std::fs::write(file.path(), &bytes).expect("room");
+    for (a, b) in poses::read(file.path()).expect("poses").iter().zip(way()) {
+        assert!((a.translation() - b.translation()).norm() < 1e-8 && (a.rotation() - b.rotation()).amax() < 1e-8);
+    }
+    std::fs::write(file.path(), "1 0 0 0 0 1 0 0 0 0 1 0\n1 2 3\n").expect("room");
+    let error = poses::read(file.path()).expect_err("no pose").to_string();
+    assert!(error.ends_with("line 2 is no pose; 12 numbers are needed, the rows of [R | t]"), "{error}");
+}
+
+#[test]
+fn alignment_undoes_a_similarity() {
+    let truth = way();
+    let by = pose([0.3, -0.5, 0.2], [4.0, -1.0, 2.0]);
+    let moved: Vec<_> = truth
+        .iter()
+        .map(|p| {
+            let p = by.then(p);
+            Pose::new(*p.rotation(), p.translation() * 0.25).expect("a pose")
+        })
+        .collect();
+    let found = align(&moved, &truth, Alignment::Similar).expect("an alignment");
+    assert!((found.scale - 4.0).abs() < 1e-9, "{}", found.scale);
+    assert!(ate(&moved, &truth, Alignment::Similar).expect("places") < 1e-9);
+    // With the scale held, the places of a way a quarter as long are off by three quarters of its spread.
+    assert!(ate(&moved, &truth, Alignment::Rigid).expect("places") > 1.0);
+    let relative = rpe(&moved, &truth, 1, found.scale).expect("steps");
+    assert!(relative.translation < 1e-9 && relative.rotation_rad < 1e-7 && relative.worst_direction_rad < 1e-6);
+    assert!(align(&moved[..1], &truth, Alignment::Similar).is_none());
+    assert!(rpe(&moved[..1], &truth, 1, 1.0).is_none());
+}
+
+#[test]
+fn worked_by_hand() {
+    // Straight ahead in steps of 1; the estimate's are 1.02 and it turns by 0.001 rad with each.
+    let truth: Vec<_> = (0..11).map(|i| pose([0.0; 3], [0.0, 0.0, f64::from(i)])).collect();
+    let mut estimate = vec![Pose::identity()];
+    for _ in 0..10 {
+        let last = estimate[estimate.len() - 1];
+        estimate.push(last.then(&pose([0.0, 0.001, 0.0], [0.0, 0.0, 1.02])));
+    }
+    let one = rpe(&estimate, &truth, 1, 1.0).expect("steps");
+    assert!((one.translation - 0.02).abs() < 1e-9 && (one.rotation_rad - 0.001).abs() < 1e-9, "{one:?}");
+    assert!(one.worst_direction_rad < 1e-7);
+    let five = drift(&estimate, &truth, 5.0, 1.0).expect("ways");
+    assert_eq!(five.ways, 6);
+    // 0.1 of 5 ahead, and sideways 1.02 (1 + 2 + 3 + 4) / 1000 of 5: the root of their squares.
+    assert!((five.translation - 0.1_f64.hypot(0.0102) / 5.0).abs() < 1e-5, "{five:?}");
+    assert!((five.rotation_rad - 0.001).abs() < 1e-9);
+    assert!(drift(&estimate, &truth, 11.0, 1.0).is_none());
+    assert_eq!(Vector3::new(0.0, 0.0, 10.0), *truth[10].translation());
+}

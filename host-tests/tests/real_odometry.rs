@@ -1,0 +1,38 @@
+//! The odometry on the sequences of the folder in `STEREO_DATA`.
+//!
+//! Built by the feature `real-data`, which `cargo xtask test` sets when `STEREO_DATA` is.
+
+use std::path::PathBuf;
+use stereopsis::motion::odometry::State;
+use stereopsis_host::calibration::Cameras;
+use stereopsis_host::odometry::error::{Alignment, align, ate, drift, rpe};
+use stereopsis_host::odometry::poses;
+use stereopsis_host::odometry::run::{Rig, run};
+use stereopsis_host::odometry::sequence::Sequence;
+
+#[test]
+fn a_street_of_kitti_with_one_camera() {
+    let data = std::env::var_os("STEREO_DATA").expect("set STEREO_DATA to the folder that holds odometry/");
+    let folder = PathBuf::from(data).join("odometry/kitti_mono_1");
+    let sequence = Sequence::open(&folder).expect("a sequence");
+    let truth = poses::read(&folder.join("poses.txt")).expect("poses");
+    let camera = Cameras::open_first(&folder.join("calib.txt")).expect("a camera");
+    let frames = (0..sequence.len()).map(|i| sequence.frame(i));
+    let found = run(&Rig::Mono(camera), frames, |_| ()).expect("a trajectory");
+    assert!(found.steps.iter().skip(1).all(|step| step.state == State::Tracked));
+
+    let scale = align(&found.poses, &truth, Alignment::Similar).expect("places").scale;
+    let error = ate(&found.poses, &truth, Alignment::Similar).expect("places");
+    let steps = rpe(&found.poses, &truth, 1, scale).expect("steps");
+    // The truth of the first ten frames turns evenly by 0.8 degrees, which the pictures do not: it is compared behind them.
+    let after = drift(&found.poses[10..], &truth[10..], 20.0, scale).expect("ways");
+    let all = drift(&found.poses, &truth, 20.0, scale).expect("ways");
+    let [rotation, all_rotation] = [after, all].map(|d| d.rotation_rad.to_degrees());
+    let worst = steps.worst_direction_rad.to_degrees();
+    println!(
+        "ATE {error:.3} m, {rotation:.4} deg/m over 20 m ({all_rotation:.4} with the beginning), directions {worst:.2} deg"
+    );
+    assert!(error < 0.1, "{error} m");
+    assert!(worst < 3.0, "{worst} deg");
+    assert!(rotation < 0.01 && all_rotation < 0.01, "{rotation} {all_rotation} deg/m");
+}

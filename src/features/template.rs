@@ -1,0 +1,224 @@
+//! A few pixels of one picture, found again in another to a small part of a pixel.
+
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "`!(a > b)` refuses what is not a number together with what is too small"
+)]
+
+use crate::imaging::Picture;
+use nalgebra::ComplexField;
+
+/// Pixels that are compared to either side of the middle one, and one more for their slopes.
+const REACH: usize = 5;
+const SIDE: usize = 2 * REACH + 1;
+const OUTER: usize = SIDE + 2;
+const COUNT: usize = SIDE * SIDE;
+/// Steps of the alignment at most.
+const STEPS: usize = 10;
+/// A step that is no more, px.
+const LITTLE: f32 = 0.01;
+
+/// The 11 x 11 pixels around a place of a picture, with a margin of one.
+#[derive(Clone, Copy, Debug)]
+pub struct Template {
+    pixels: [[u8; OUTER]; OUTER],
+    /// How far the place lies to the right of the middle pixel's centre and below, px.
+    part: [f32; 2],
+}
+
+/// Where a template was found.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Aligned {
+    /// The column of its place, px.
+    pub x_px: f32,
+    /// The row, px.
+    pub y_px: f32,
+    /// How alike the pixels are, whatever their brightness and contrast: the correlation coefficient, 1 at most.
+    pub likeness: f32,
+}
+
+/// Where a template fits along a row.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct AlongRow {
+    /// The column of its place, to whole steps from it, px.
+    pub x_px: f32,
+    /// The correlation coefficient there.
+    pub likeness: f32,
+    /// The largest one three columns away and farther.
+    pub elsewhere: f32,
+}
+
+impl Template {
+    /// Pixels to either side that a template needs.
+    pub const MARGIN: usize = REACH + 1;
+    /// Nothing: finds nothing.
+    pub const NONE: Self = Self { pixels: [[0; OUTER]; OUTER], part: [0.0; 2] };
+
+    /// What is around a place; `None` next to the picture's edge.
+    pub fn cut(picture: &Picture<'_>, x_px: f32, y_px: f32) -> Option<Self> {
+        let (x, y) = (x_px + 0.5, y_px + 0.5);
+        if !(x >= Self::MARGIN as f32 && y >= Self::MARGIN as f32) {
+            return None;
+        }
+        let (column, row) = (x as usize, y as usize);
+        let mut template = Self { part: [x_px - column as f32, y_px - row as f32], ..Self::NONE };
+        for (line, row) in template.pixels.iter_mut().zip(row - Self::MARGIN..) {
+            // By its length: a copy of two that may differ leaves a panic.
+            *line = *picture.run(column - Self::MARGIN, row, OUTER)?.first_chunk()?;
+        }
+        Some(template)
+    }
+
+    /// The place in another picture that makes the squared differences least, brightness and contrast apart, from a start
+    /// on; `warp` carries a way from the place in this template's picture, px, into a way in the other. `None` where
+    /// there is nothing to hold on to, or it leaves the picture, or goes farther than `farthest_px`.
+    ///
+    /// Gauss and Newton's method with the template's slopes (the inverse compositional algorithm; Baker & Matthews 2004),
+    /// at most ten steps.
+    pub fn align(
+        &self,
+        picture: &Picture<'_>,
+        warp: &[[f32; 2]; 2],
+        start: [f32; 2],
+        farthest_px: f32,
+    ) -> Option<Aligned> {
+        let (values, slopes) = self.values_and_slopes();
+        let (mut xx, mut xy, mut yy, mut own) = (0.0, 0.0, 0.0, 0.0);
+        for (value, [x, y]) in values.iter().zip(&slopes) {
+            own += value * value;
+            xx += x * x;
+            xy += x * y;
+            yy += y * y;
+        }
+        let determinant = xx * yy - xy * xy;
+        // Along an edge it could be anywhere.
+        if !(determinant > 1e-3 * (xx + yy) * (xx + yy)) {
+            return None;
+        }
+        let [mut x, mut y] = start;
+        let mut likeness = -1.0;
+        for _ in 0..STEPS {
+            let mut seen = [0.0; COUNT];
+            self.look(picture, warp, [x, y], &mut seen)?;
+            let (mut cross, mut other) = (0.0, 0.0);
+            for (seen, value) in seen.iter().zip(&values) {
+                cross += seen * value;
+                other += seen * seen;
+            }
+            if !(other > 0.0) {
+                return None;
+            }
+            likeness = cross / ComplexField::sqrt(own * other);
+            let gain = cross / other;
+            let (mut a, mut b) = (0.0, 0.0);
+            for ((seen, value), slope) in seen.iter().zip(&values).zip(&slopes) {
+                let off = gain * seen - value;
+                a += off * slope[0];
+                b += off * slope[1];
+            }
+            let (right, down) = ((yy * a - xy * b) / determinant, (xx * b - xy * a) / determinant);
+            // It is the template that should move: the picture's place moves back.
+            x -= warp[0][0] * right + warp[0][1] * down;
+            y -= warp[1][0] * right + warp[1][1] * down;
+            let (dx, dy) = (x - start[0], y - start[1]);
+            if !(dx * dx + dy * dy <= farthest_px * farthest_px) {
+                return None;
+            }
+            if right.abs().max(down.abs()) < LITTLE {
+                break;
+            }
+        }
+        Some(Aligned { x_px: x, y_px: y, likeness })
+    }
+
+    /// The column of `row` from `least` to `most` around which the other picture is most like the template, as it is and to
+    /// whole pixels; `None` where no column is inside.
+    pub fn along_row(&self, picture: &Picture<'_>, row: usize, least: usize, most: usize) -> Option<AlongRow> {
+        let mut own = [[0_i32; SIDE]; SIDE];
+        let (mut sum, mut squares) = (0, 0);
+        for (to, line) in own.iter_mut().zip(self.pixels.iter().skip(1)) {
+            for (to, &pixel) in to.iter_mut().zip(line.iter().skip(1)) {
+                *to = pixel.into();
+                sum += *to;
+                squares += *to * *to;
+            }
+        }
+        let n = COUNT as i32;
+        let own_spread = (n * squares - sum * sum) as f32;
+        let (least, most) = (least.max(REACH), most.min(picture.width().checked_sub(REACH + 1)?));
+        let first_row = row.checked_sub(REACH)?;
+        let mut lines = [&[0_u8; 0][..]; SIDE];
+        for (line, row) in lines.iter_mut().zip(first_row..) {
+            *line = picture.run(0, row, picture.width())?;
+        }
+        let likeness = |column: usize| {
+            let (mut other, mut other_squares, mut cross) = (0, 0, 0);
+            for (line, own) in lines.iter().zip(&own) {
+                let Some(run) = line.get(column - REACH..=column + REACH) else { return -1.0 };
+                for (&pixel, &own) in run.iter().zip(own) {
+                    let pixel = i32::from(pixel);
+                    other += pixel;
+                    other_squares += pixel * pixel;
+                    cross += pixel * own;
+                }
+            }
+            let spread = (n * other_squares - other * other) as f32;
+            let product = own_spread * spread;
+            if product > 0.0 { (n * cross - sum * other) as f32 / ComplexField::sqrt(product) } else { -1.0 }
+        };
+        // The largest, and the largest of what is three columns away from it: of a stretch that is before it, and one behind.
+        let (mut best, mut best_column, mut elsewhere) = (-1.0_f32, None, -1.0_f32);
+        let mut before = [-1.0_f32; 2];
+        let mut far_before = -1.0_f32;
+        for column in least..=most {
+            let here = likeness(column);
+            if best_column.is_none() || here > best {
+                (best, best_column, elsewhere) = (here, Some(column), far_before);
+            } else if best_column.is_some_and(|best: usize| column - best >= 3) {
+                elsewhere = elsewhere.max(here);
+            }
+            // What will be three columns away from the next one.
+            let [oldest, last] = before;
+            far_before = far_before.max(oldest);
+            before = [last, here];
+        }
+        best_column.map(|column| AlongRow { x_px: column as f32 + self.part[0], likeness: best, elsewhere })
+    }
+
+    /// The pixels without their mean, and their slopes without theirs.
+    fn values_and_slopes(&self) -> ([f32; COUNT], [[f32; 2]; COUNT]) {
+        let (mut values, mut slopes) = ([0.0; COUNT], [[0.0; 2]; COUNT]);
+        let mut at = values.iter_mut().zip(&mut slopes);
+        for rows in self.pixels.windows(3) {
+            let [above, here, below] = rows else { continue };
+            for ((around, above), below) in here.windows(3).zip(above.iter().skip(1)).zip(below.iter().skip(1)) {
+                let (&[left, pixel, right], Some((value, slope))) = (around, at.next()) else { continue };
+                *value = f32::from(pixel);
+                let half = |a: u8, b: u8| (f32::from(b) - f32::from(a)) * 0.5;
+                *slope = [half(left, right), half(*above, *below)];
+            }
+        }
+        let mean = values.iter().sum::<f32>() / COUNT as f32;
+        values.iter_mut().for_each(|v| *v -= mean);
+        let sums = slopes.iter().fold([0.0; 2], |s, g| [s[0] + g[0], s[1] + g[1]]);
+        for slope in &mut slopes {
+            slope[0] -= sums[0] / COUNT as f32;
+            slope[1] -= sums[1] / COUNT as f32;
+        }
+        (values, slopes)
+    }
+
+    /// The picture's brightness where the template's pixels come to lie, without its mean.
+    fn look(&self, picture: &Picture<'_>, w: &[[f32; 2]; 2], [x, y]: [f32; 2], out: &mut [f32; COUNT]) -> Option<()> {
+        let [right, down] = self.part;
+        let mut sum = 0.0;
+        for (i, out) in out.iter_mut().enumerate() {
+            let (a, b) = ((i % SIDE) as f32 - REACH as f32 - right, (i / SIDE) as f32 - REACH as f32 - down);
+            *out = picture.sample(x + w[0][0] * a + w[0][1] * b, y + w[1][0] * a + w[1][1] * b)?;
+            sum += *out;
+        }
+        let mean = sum / COUNT as f32;
+        out.iter_mut().for_each(|v| *v -= mean);
+        Some(())
+    }
+}

@@ -1,0 +1,104 @@
+//! The cameras, and what is asked.
+
+use crate::geometry::{Camera, Real, RectifiedRig};
+
+/// One camera, or a pair whose rows are aligned.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct OdometryRig<T: Real> {
+    pub(super) camera: Camera<T>,
+    /// The baseline, m, and the right camera's column of the principal point, px.
+    pub(super) right: Option<(T, T)>,
+}
+
+/// Why numbers are no rig of an odometry.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum OdometryRigError {
+    /// The rig's numbers are no camera.
+    Camera,
+}
+
+impl core::fmt::Display for OdometryRigError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("the rig's numbers are no camera")
+    }
+}
+
+impl core::error::Error for OdometryRigError {}
+
+impl<T: Real> OdometryRig<T> {
+    /// One camera, whose lens may distort.
+    pub const fn one(camera: Camera<T>) -> Self {
+        Self { camera, right: None }
+    }
+
+    /// Two cameras with aligned rows.
+    pub fn stereo(rig: &RectifiedRig) -> Result<Self, OdometryRigError> {
+        let of = |x: f32| T::of(x.into());
+        let (cx, cy) = rig.principal_point();
+        let camera = Camera::new(of(rig.focal_px()), of(rig.focal_px()), of(cx), of(cy));
+        let camera = camera.map_err(|_| OdometryRigError::Camera)?;
+        // u' = f (X - b) / Z + cx', and doffs = cx' - cx.
+        let right_cx = of(cx) + of(rig.disparity_offset_px());
+        Ok(Self { camera, right: Some((of(rig.baseline_m()), right_cx)) })
+    }
+
+    /// The baseline, m; zero of one camera.
+    pub(super) fn baseline(&self) -> T {
+        self.right.map_or(T::ZERO, |(b, _)| b)
+    }
+
+    /// The mean focal length, px.
+    pub(super) fn focal(&self) -> T {
+        let (fx, fy) = self.camera.focal_px();
+        (fx + fy) * T::of(0.5)
+    }
+}
+
+/// What is asked of an odometry.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct OdometryConfig {
+    /// How far from its predicted place a feature is looked for while the motion is not known, px.
+    pub far_px: f32,
+    /// And when it is known.
+    pub near_px: f32,
+    /// The largest disparity of a new point, px.
+    pub most_disparity_px: u16,
+    /// The deviation of a place found by its pixels, px.
+    pub sigma_px: f32,
+    /// New points keep so far from others, px.
+    pub spacing_px: f32,
+    /// Samples of the robust resection at most.
+    pub most_samples: u32,
+    /// What random choices begin with.
+    pub seed: u64,
+}
+
+impl OdometryConfig {
+    /// Nothing is asked. All zeros.
+    pub(super) const NONE: Self = Self {
+        far_px: 0.0,
+        near_px: 0.0,
+        most_disparity_px: 0,
+        sigma_px: 0.0,
+        spacing_px: 0.0,
+        most_samples: 0,
+        seed: 0,
+    };
+
+    /// For pictures of so many columns: a sixth of them as far as motion goes that is not known, a twentieth where it is, a
+    /// quarter as the largest disparity, 0.3 px of noise, 10 px from point to point, 300 samples.
+    pub const fn new(width: u16) -> Self {
+        let wide = width as f32;
+        Self {
+            far_px: wide / 6.0,
+            near_px: wide / 20.0,
+            most_disparity_px: width / 4,
+            sigma_px: 0.3,
+            spacing_px: 10.0,
+            most_samples: 300,
+            seed: 0,
+        }
+    }
+}

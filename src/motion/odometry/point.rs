@@ -1,0 +1,119 @@
+//! A point of the scene in the camera's own frame, near or at infinity, and how sure it is.
+
+use super::whiten::Whitener;
+use crate::geometry::linear::columns3;
+use crate::geometry::{Pose, Real, skew};
+use nalgebra::{ArrayStorage, Matrix3, Matrix6, SMatrix, Vector3};
+
+/// What a point is seen at: x and y of the sight `(x, y, 1)`, and its disparity `x - x'` over the focal length, if there is a
+/// right camera. A disparity is found from the very place in the left picture, and so has an error of its own.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Sight<T: Real> {
+    pub at: Vector3<T>,
+    /// Whether the third number counts.
+    pub in_right: bool,
+    /// The deviation of each number.
+    pub sigma: T,
+}
+
+impl<T: Real> Sight<T> {
+    /// How many numbers count.
+    pub fn rows(&self) -> usize {
+        if self.in_right { 3 } else { 2 }
+    }
+}
+
+/// A point as `(x, y, r) = (X / Z, Y / Z, 1 / Z)`, which is finite for points at infinity, and in which what both cameras of a
+/// rectified pair see is linear (Civera, Davison & Montiel 2008 have the same with a point of reference); with its covariance.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct InversePoint<T: Real> {
+    pub at: Vector3<T>,
+    pub covariance: Matrix3<T>,
+}
+
+/// A point from another camera.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moved<T: Real> {
+    /// Its three numbers there.
+    pub at: Vector3<T>,
+    /// Their slopes by the numbers here.
+    pub by_point: Matrix3<T>,
+    /// Their slopes by a turn and a step of that camera along its own axes.
+    pub by_pose: SMatrix<T, 3, 6>,
+}
+
+/// Points whose sight would be wider than this are not followed: 1/8 is 83 degrees from the axis.
+const LEAST_FORWARD: f64 = 0.125;
+
+impl<T: Real> InversePoint<T> {
+    /// The point as a camera sees it that stands at `pose` (P = R P' + t); `None` behind it.
+    ///
+    /// `h = R^T ((x, y, 1) - r t)` is the point over its old depth: `x' = h_x / h_z`, `y' = h_y / h_z`, `r' = r / h_z`. The
+    /// camera's turn w and step d are `P' = exp(-[w]x) P' - d`, so that `dh/dw = [h]x` and `dh/dd = -r`.
+    ///
+    /// Where the depth is no more than noise the step has no slope: squares of noise would look like knowledge of it.
+    pub fn moved(&self, pose: &Pose<T>) -> Option<Moved<T>> {
+        let (x, y, r) = (self.at.x, self.at.y, self.at.z);
+        let back = pose.rotation().transpose();
+        let step = back * pose.translation();
+        let h = back * Vector3::new(x, y, T::ONE) - step * r;
+        if !(h.z > T::of(LEAST_FORWARD)) {
+            return None;
+        }
+        let by = T::ONE / h.z;
+        let at = Vector3::new(h.x * by, h.y * by, r * by);
+        let o = T::ZERO;
+        let by_h = Matrix3::new(by, o, -at.x * by, o, by, -at.y * by, o, o, -at.z * by);
+        let columns =
+            Matrix3::new(back.m11, back.m12, -step.x, back.m21, back.m22, -step.y, back.m31, back.m32, -step.z);
+        let mut by_point = by_h * columns;
+        by_point.m33 += by;
+        let step = if self.is_near() { by_h * -r } else { Matrix3::zeros() };
+        let ([a, b, c], [d, e, f]) = (columns3(&(by_h * skew(&h))), columns3(&step));
+        let by_pose = SMatrix::<T, 3, 6>::from_array_storage(ArrayStorage([a, b, c, d, e, f].map(|v| [v.x, v.y, v.z])));
+        Some(Moved { at, by_point, by_pose })
+    }
+
+    /// Whether the point is nearer than infinity, to three deviations.
+    pub fn is_near(&self) -> bool {
+        let r = self.at.z;
+        r > T::ZERO && r * r > self.covariance.m33 * T::of(9.0)
+    }
+
+    /// The point in the frame of a camera at `pose`, whose own covariance makes it less sure.
+    pub fn carried(&self, pose: &Pose<T>, of_pose: &Matrix6<T>) -> Option<Self> {
+        let moved = self.moved(pose)?;
+        let covariance = moved.by_point * self.covariance * moved.by_point.transpose()
+            + moved.by_pose * of_pose * moved.by_pose.transpose();
+        Some(Self { at: moved.at, covariance })
+    }
+
+    /// The point after it was seen from a camera whose pose is taken for exact: the likeliest one by Gauss and Newton's
+    /// method on both what was known and what is seen (an iterated Kalman update; Bell & Cathey 1993), three steps.
+    pub fn updated(&self, pose: &Pose<T>, sight: &Sight<T>, baseline: T) -> Option<Self> {
+        let mut at = self.at;
+        let mut covariance = self.covariance;
+        for _ in 0..3 {
+            let moved = Self { at, covariance }.moved(pose)?;
+            let slope = seen(baseline) * moved.by_point;
+            let whitener = Whitener::of(&slope, &self.covariance, sight)?;
+            // The innovation around the point that was known.
+            let off = sight.at - seen(baseline) * moved.at - slope * (self.at - at);
+            // C J^T S^-1 = (L^-1 J C)^T L^-1.
+            let gain = whitener.apply(&(slope * self.covariance));
+            at = self.at + gain.tr_mul(&whitener.apply(&off));
+            covariance = self.covariance - gain.tr_mul(&gain);
+        }
+        // What rounding left of the two triangles, and of the diagonal.
+        covariance = (covariance + covariance.transpose()) * T::of(0.5);
+        let floor = sight.sigma * sight.sigma * T::of(1e-4);
+        covariance += Matrix3::identity() * floor;
+        at.iter().all(|x| x.is_finite()).then_some(Self { at, covariance })
+    }
+}
+
+/// From a point's three numbers to what is seen of it: the disparity is `b r`.
+pub(super) fn seen<T: Real>(baseline: T) -> Matrix3<T> {
+    let (o, l) = (T::ZERO, T::ONE);
+    Matrix3::new(l, o, o, o, l, o, o, o, baseline)
+}

@@ -1,0 +1,173 @@
+//! The pose of the new camera from points that it sees, each with its uncertainty.
+
+use super::point::{InversePoint, Sight, seen};
+use super::whiten::Whitener;
+use crate::geometry::linear::Ldl;
+use crate::geometry::{Pose, Real, turn};
+use nalgebra::{SMatrix, Vector3};
+
+/// A point and where the new camera sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pairing<T: Real> {
+    pub point: InversePoint<T>,
+    pub sight: Sight<T>,
+    /// Whose point it is.
+    pub owner: u16,
+}
+
+/// What of the pose is looked for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Free {
+    /// Turn and step.
+    All,
+    /// The turn alone.
+    Turn,
+    /// Nothing: the pose is judged.
+    Nothing,
+}
+
+/// A pose, and what the pairings say of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Solved<T: Real> {
+    pub pose: Pose<T>,
+    /// The information in units of the sights' deviations.
+    pub information: [[T; 6]; 6],
+    /// The sum of the robust loss `w^2 / 3 (1 - (1 - d^2 / w^2)^3)`, which is d^2 for small distances d.
+    pub cost: T,
+    /// Pairings within the loss's width, the numbers in their sights, and the sum of their squared distances.
+    pub kept: usize,
+    pub numbers: usize,
+    pub squares: T,
+}
+
+/// Distances, in deviations, at which a pairing has no weight any more: from far to near.
+const WIDTHS: [f64; 3] = [12.0, 7.0, 4.5];
+/// Steps for each width at most.
+const STEPS: usize = 6;
+/// The last width.
+pub(super) const WIDTH: f64 = WIDTHS[2];
+
+pub(super) struct Problem<'a, T: Real> {
+    pub pairings: &'a [Pairing<T>],
+    pub baseline: T,
+}
+
+impl<T: Real> Problem<'_, T> {
+    /// The likeliest pose near a start: each pairing's distance is in units of the sight's noise and the point's own
+    /// uncertainty together, which to first order is as if points and pose were found together.
+    pub fn solve(&self, start: Pose<T>, free: Free) -> Solved<T> {
+        let mut best = self.judge(start, T::of(WIDTHS[0]));
+        if free != Free::Nothing {
+            for width in WIDTHS.map(T::of) {
+                best = self.descend(best.pose, width, free);
+            }
+        }
+        self.judge(best.pose, T::of(WIDTH))
+    }
+
+    /// Levenberg and Marquardt's method with one width.
+    fn descend(&self, start: Pose<T>, width: T, free: Free) -> Solved<T> {
+        let (mut best, mut slope) = self.normal(start, width);
+        let mut damping = T::of(1e-6);
+        for _ in 0..STEPS {
+            let mut m = best.information;
+            for (i, row) in m.iter_mut().enumerate() {
+                if let Some(d) = row.get_mut(i) {
+                    // A direction of which nothing is said stays as it is.
+                    *d += *d * damping + T::of(1e-3);
+                }
+            }
+            if free == Free::Turn {
+                for (i, row) in m.iter_mut().enumerate() {
+                    for (j, x) in row.iter_mut().enumerate() {
+                        if i >= 3 || j >= 3 {
+                            *x = if i == j { T::ONE } else { T::ZERO };
+                        }
+                    }
+                }
+                slope.iter_mut().skip(3).for_each(|x| *x = T::ZERO);
+            }
+            let step = Ldl::<T, 6>::new(&mut m).solve(&slope);
+            let next = moved(&best.pose, &step);
+            let (then, next_slope) = self.normal(next, width);
+            if then.cost < best.cost {
+                let little = best.cost - then.cost <= best.cost * T::of(1e-6);
+                (best, slope) = (then, next_slope);
+                damping *= T::of(0.1);
+                if little {
+                    break;
+                }
+            } else {
+                damping = damping.max(T::of(1e-6)) * T::of(100.0);
+                if damping > T::of(1e3) {
+                    break;
+                }
+            }
+        }
+        best
+    }
+
+    fn judge(&self, pose: Pose<T>, width: T) -> Solved<T> {
+        self.normal(pose, width).0
+    }
+
+    fn normal(&self, pose: Pose<T>, width: T) -> (Solved<T>, [T; 6]) {
+        let none = [[T::ZERO; 6]; 6];
+        let mut sum = Solved { pose, information: none, cost: T::ZERO, kept: 0, numbers: 0, squares: T::ZERO };
+        let mut slope = [T::ZERO; 6];
+        let width_squared = width * width;
+        let most = width_squared * T::of(1.0 / 3.0);
+        for pairing in self.pairings {
+            let Some((off, by_pose)) = self.residual(&pose, pairing) else {
+                sum.cost += most;
+                continue;
+            };
+            let squared = off.norm_squared();
+            let left = T::ONE - squared / width_squared;
+            if !(left > T::ZERO) {
+                sum.cost += most;
+                continue;
+            }
+            sum.cost += most * (T::ONE - left * left * left);
+            sum.kept += 1;
+            sum.numbers += pairing.sight.rows();
+            sum.squares += squared;
+            let weight = left * left;
+            let columns = &by_pose.data.0;
+            let rows = [
+                (off.x, columns.map(|[x, _, _]| x)),
+                (off.y, columns.map(|[_, y, _]| y)),
+                (off.z, columns.map(|[_, _, z]| z)),
+            ];
+            for (error, j) in rows {
+                let error = error * weight;
+                for ((line, slope), &a) in sum.information.iter_mut().zip(&mut slope).zip(&j) {
+                    *slope += a * error;
+                    let a = a * weight;
+                    line.iter_mut().zip(&j).for_each(|(sum, &b)| *sum += a * b);
+                }
+            }
+        }
+        (sum, slope)
+    }
+
+    /// How far off a sight is, in deviations, and the slopes of what is expected.
+    fn residual(&self, pose: &Pose<T>, pairing: &Pairing<T>) -> Option<(Vector3<T>, SMatrix<T, 3, 6>)> {
+        let moved = pairing.point.moved(pose)?;
+        let seen = seen(self.baseline);
+        let whitener = Whitener::of(&(seen * moved.by_point), &pairing.point.covariance, &pairing.sight)?;
+        let off = pairing.sight.at - seen * moved.at;
+        Some((whitener.apply(&off), whitener.apply(&(seen * moved.by_pose))))
+    }
+
+    /// The squared distance of a pairing, in deviations.
+    pub fn squared(&self, pose: &Pose<T>, pairing: &Pairing<T>) -> Option<T> {
+        self.residual(pose, pairing).map(|(off, _)| off.norm_squared())
+    }
+}
+
+/// A pose after a turn and a step along the camera's axes.
+pub(super) fn moved<T: Real>(pose: &Pose<T>, &[a, b, c, d, e, f]: &[T; 6]) -> Pose<T> {
+    let rotation = pose.rotation() * turn(&Vector3::new(a, b, c));
+    Pose::of_parts(rotation, pose.translation() + rotation * Vector3::new(d, e, f))
+}

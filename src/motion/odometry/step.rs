@@ -1,0 +1,76 @@
+//! What comes out.
+
+use crate::geometry::{Pose, Real};
+use nalgebra::Matrix6;
+
+/// What is known of a frame's pose.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum State {
+    /// The first frame: the others stand beside it.
+    First,
+    /// Of one camera: there is no unit of length yet, for nothing but turns could be told from what was seen so far. The motion
+    /// is what is known of the turn; the next frame that is [`State::Tracked`] has the whole motion since.
+    Waiting,
+    /// The pose is measured.
+    Tracked,
+    /// The pictures are the same to their noise: the motion is none.
+    Still,
+    /// The turn is measured. There may be a step, which cannot be told from none: of one camera it has no direction. The
+    /// motion has none.
+    Turned,
+    /// The turn is measured. What is seen is too far away to tell a step by, or there is too little of it: the step is not
+    /// known, and the motion has none.
+    StepUnknown,
+    /// Too little was found again: the motion is not known, and is none. The next frame that is [`State::Found`] has the whole
+    /// motion since.
+    Lost,
+    /// Found again, by points that were known before.
+    Found,
+    /// Begun anew, for what was known before did not come back: the motion since the last pose that was known is not known,
+    /// and is none.
+    Restarted,
+}
+
+impl State {
+    /// Whether turn and step are known.
+    pub const fn is_known(self) -> bool {
+        matches!(self, Self::First | Self::Tracked | Self::Still | Self::Found)
+    }
+}
+
+/// The motion from the frame before to this one.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Step<T: Real> {
+    /// Carries a point of this camera into the one before, `P = R P' + t`: t is where this one stands.
+    pub motion: Pose<T>,
+    /// The covariance of the motion: a turn (radians) and a step (the unit of the motion), both along this camera's axes,
+    /// `P = R exp([w]x) (P' + d) + t`. Very large where nothing is known.
+    pub covariance: Matrix6<T>,
+    /// What is known.
+    pub state: State,
+    /// Points that are followed.
+    pub points: usize,
+    /// Those that were found in this frame.
+    pub found: usize,
+    /// Those that agree with the pose.
+    pub inliers: usize,
+    /// The root mean square of what is left of their sights, in units of what was expected: 1 where the noise is as configured.
+    pub residual: T,
+}
+
+impl<T: Real> Step<T> {
+    /// Nothing moved, and nothing is known of it.
+    pub(super) fn none(state: State) -> Self {
+        Self {
+            motion: Pose::identity(),
+            covariance: Matrix6::identity() * T::of(1e12),
+            state,
+            points: 0,
+            found: 0,
+            inliers: 0,
+            residual: T::ZERO,
+        }
+    }
+}

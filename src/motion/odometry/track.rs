@@ -1,0 +1,63 @@
+//! What is followed from frame to frame.
+
+use super::point::InversePoint;
+use crate::features::{Descriptor, Template};
+use crate::geometry::Real;
+use nalgebra::{Matrix3, Vector3};
+
+/// A point with what it looks like.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Track<T: Real> {
+    pub point: InversePoint<T>,
+    /// The pixels, as they were when the template was cut.
+    pub template: Template,
+    /// Carries ways from the place in the template's picture into ways in the last picture.
+    pub warp: [[f32; 2]; 2],
+    pub descriptor: Descriptor,
+    /// Where it was seen last, px.
+    pub pixel: [f32; 2],
+    /// Where it is seen in this frame, if it is, and the likeness of the pixels; refilled with each frame.
+    pub now: Option<[f32; 2]>,
+    /// How alike its pixels were.
+    pub likeness: f32,
+    /// The descriptor of the feature that it was recognised by in this frame.
+    pub fresh: Descriptor,
+    /// Frames in which it was found.
+    pub seen: u16,
+    /// Frames since it was found.
+    pub missed: u8,
+    /// Frames in which it disagreed with the others.
+    pub wrong: u8,
+    pub used: bool,
+}
+
+/// As it was.
+pub(super) const UPRIGHT: [[f32; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
+
+impl<T: Real> Track<T> {
+    /// A place for one. All zeros: an odometry in a `static` takes RAM and no flash.
+    pub const EMPTY: Self = {
+        let o = T::ZERO;
+        Self {
+            point: InversePoint { at: Vector3::new(o, o, o), covariance: Matrix3::new(o, o, o, o, o, o, o, o, o) },
+            template: Template::NONE,
+            warp: [[0.0; 2]; 2],
+            descriptor: Descriptor::NONE,
+            pixel: [0.0; 2],
+            now: None,
+            likeness: 0.0,
+            fresh: Descriptor::NONE,
+            seen: 0,
+            missed: 0,
+            wrong: 0,
+            used: false,
+        }
+    };
+
+    /// Whether the depth is known to a share of itself.
+    pub fn is_deep(&self, share: f64) -> bool {
+        let r = self.point.at.z;
+        let variance = self.point.covariance.m33;
+        r > T::ZERO && variance < r * r * T::of(share * share)
+    }
+}

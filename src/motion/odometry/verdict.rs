@@ -1,0 +1,71 @@
+//! Whether what was found is a motion.
+
+use super::config::OdometryRig;
+use super::engine::{FEWEST, Odometry};
+use super::solve::{Free, Problem, Solved};
+use super::step::State;
+use crate::geometry::linear::covariance6;
+use crate::geometry::{Pose, Real};
+
+/// What a frame's sights say.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Verdict<T: Real> {
+    /// Too few agree.
+    Lost,
+    /// The pose, and how much of it is known.
+    Known(Solved<T>, State),
+}
+
+/// By how much, in squared deviations, a motion of six numbers, and a step of three, has to explain the sights better than none
+/// does: with noise alone it is more once in 10 000 times.
+const SIX: f64 = 28.0;
+const THREE: f64 = 21.0;
+/// The share of what was found that has to agree.
+const SHARE: f64 = 0.3;
+/// Deviations of a step, in baselines, from which on one that cannot be told from none is not known.
+const UNKNOWN: f64 = 0.1;
+/// And from which on it is not, whatever it is.
+const OPEN: f64 = 100.0;
+
+impl<T: Real, const N: usize> Odometry<T, N> {
+    pub(super) fn verdict(&self, rig: &OdometryRig<T>, start: Option<Pose<T>>) -> Verdict<T> {
+        let problem = Problem { pairings: &self.pairings, baseline: rig.baseline() };
+        let Some(start) = start else { return Verdict::Lost };
+        let all = problem.solve(start, Free::All);
+        let found = self.pairings.len();
+        if all.kept < FEWEST || T::count(all.kept) < T::count(found) * T::of(SHARE) {
+            return Verdict::Lost;
+        }
+        // In units of the noise that there is.
+        let scale = (all.squares / T::count(all.numbers.saturating_sub(6).max(1))).max(T::of(0.05));
+        let gain = |other: &Solved<T>| (other.cost - all.cost) / scale;
+        let still = problem.solve(self.told, Free::Nothing);
+        if gain(&still) < T::of(SIX) {
+            return Verdict::Known(still, State::Still);
+        }
+        let was_lost = self.lost > 0;
+        let state = if was_lost { State::Found } else { State::Tracked };
+        let turn = Pose::of_parts(*all.pose.rotation(), *self.told.translation());
+        let turned = problem.solve(turn, Free::Turn);
+        let deviation = step_deviation(&all);
+        let unit = match rig.right {
+            Some((baseline, _)) => baseline,
+            // Of one camera the last step is as good a unit as any.
+            None => self.velocity.map_or(T::ONE, |v| v.translation().norm()) * T::of(10.0),
+        };
+        let is_none = gain(&turned) < T::of(THREE);
+        if deviation > unit * T::of(OPEN) || (is_none && deviation > unit * T::of(UNKNOWN)) {
+            return Verdict::Known(turned, State::StepUnknown);
+        }
+        if is_none && rig.right.is_none() {
+            return Verdict::Known(turned, State::Turned);
+        }
+        Verdict::Known(all, state)
+    }
+}
+
+/// The largest deviation of the step along an axis.
+fn step_deviation<T: Real>(solved: &Solved<T>) -> T {
+    let c = covariance6(&solved.information);
+    c[(3, 3)].max(c[(4, 4)]).max(c[(5, 5)]).sqrt()
+}

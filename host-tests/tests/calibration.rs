@@ -186,7 +186,7 @@ fn rectified_cameras_of_other_programs() {
         for (path, text) in paths.iter().zip(texts) {
             fs::write(path, text).expect("room for a few bytes");
         }
-        Calibration::open_all(&paths, Path::new("left.png"), unit_m).map_err(|e| e.to_string())
+        Calibration::open_all(&paths, Path::new("left.png"), Some(unit_m)).map_err(|e| e.to_string())
     };
     for (texts, unit_m) in [
         (vec![format!("{yaml}{p1}{p2}")], 1e-3),

@@ -5,7 +5,7 @@
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::ImageSize;
-use stereopsis_host::calibrate::board::{Pattern, find};
+use stereopsis_host::calibrate::board::{Board, Pattern, find};
 use stereopsis_host::calibrate::{Calibrated, View, solve};
 
 fn folder(name: &str) -> PathBuf {
@@ -23,7 +23,7 @@ fn calibrated(folder: &Path, reference: &Value) -> Calibrated {
     let pattern = Pattern::new(9, 6).expect("a pattern");
     let number = |value: &Value| value.as_f64().expect("a number");
     let [width, height] = [0, 1].map(|i| number(&reference["image_size"][i]) as u16);
-    let look = |name: &str, like| {
+    let look = |name: &str, like: Option<&Board>| {
         let path = folder.join(name);
         let picture = image::open(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())).into_luma8();
         find(&picture, pattern, like).unwrap_or_else(|e| panic!("{name}: {e}"))

@@ -61,8 +61,8 @@ proptest! {
         }
         let found = meter.alignment().expect("five frames");
         let other = single.alignment().expect("five frames");
-        for axis in 0..3 {
-            let (off, sigma) = ((found.turn_rad[axis] - turned[axis]).abs(), found.sigma_rad[axis]);
+        for (axis, truth) in turned.into_iter().enumerate() {
+            let (off, sigma) = ((found.turn_rad[axis] - truth).abs(), found.sigma_rad[axis]);
             // A hundredth of the angle is what a small one leaves out.
             prop_assert!(off < 5.0 * sigma + 3e-4, "{axis}: {off} {sigma}");
             prop_assert!((f64::from(other.turn_rad[axis]) - found.turn_rad[axis]).abs() < 0.1 * sigma + 1e-5);

@@ -31,8 +31,6 @@ fn sealed(mut record: [u8; 328]) -> [u8; 328] {
 
 fn near(a: &Rig, b: &Rig) -> bool {
     let cameras = a.cameras().iter().zip(b.cameras());
-    let mut lenses =
-        cameras.clone().flat_map(|(a, b)| a.distortion().to_opencv().into_iter().zip(b.distortion().to_opencv()));
     cameras.into_iter().all(|(a, b)| (a.matrix() - b.matrix()).amax() < 1e-9)
         && a.cameras().each_ref().map(|c| *c.lens()) == b.cameras().each_ref().map(|c| *c.lens())
         && (a.pose().rotation() - b.pose().rotation()).amax() < 1e-12

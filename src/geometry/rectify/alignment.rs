@@ -27,7 +27,7 @@ use nalgebra::{Matrix3, Vector3};
 /// let mut meter = RowMeter::new();
 /// // The right camera sees everything 1.5 px too low.
 /// let seen: [_; 30] = std::array::from_fn(|i| {
-///     let (u, v) = (10.0 * i as f64 + 12.0, f64::from(i as u8 * 37 % 240));
+///     let (u, v) = (10.0 * i as f64 + 12.0, (37 * i % 240) as f64);
 ///     Correspondence { first: Point2::new(u, v), second: Point2::new(u - 9.0, v + 1.5) }
 /// });
 /// meter.add(&camera, &seen)?;

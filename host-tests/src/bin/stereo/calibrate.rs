@@ -107,8 +107,7 @@ fn doubts(result: &Calibrated) -> Vec<String> {
     let mut doubts = Vec::new();
     for (name, camera) in [("left", 0), ("right", 1)] {
         let share = result.focal_sigma_px[camera] / result.rig.cameras()[camera].focal_px().0;
-        // Also what is no number.
-        if !(share < 0.01) {
+        if share.is_nan() || share > 0.01 {
             doubts.push(format!(
                 "the {name} focal length is uncertain by {:.1} %: tilt the board more, about two axes",
                 100.0 * share

@@ -77,7 +77,7 @@ pub enum Command {
     #[command(after_help = calibrate::EXAMPLE)]
     Calibrate(CalibrateArgs),
     /// Check a calibration file, or write it in another format
-    #[command(after_help = calib::EXAMPLE)]
+    #[command(after_help = calib::EXAMPLE, arg_required_else_help = false, subcommand_required = true)]
     Calib(CalibArgs),
     /// Estimate the fundamental matrix of two images from matches, some of them wrong
     #[command(after_help = FUNDAMENTAL_EXAMPLE)]

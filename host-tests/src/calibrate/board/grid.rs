@@ -57,8 +57,8 @@ fn grow(corners: &[Corner], links: &Links, first: usize, is_taken: &mut [bool]) 
     is_taken[first] = true;
     while let Some((i, along, at)) = waiting.pop_front() {
         grid.nodes.insert(at, Node { place: corners[i].place, is_bright: along % 2 == 0 });
-        for edge in 0..4 {
-            let Some((j, back)) = links[i][edge] else { continue };
+        for (edge, link) in links[i].iter().enumerate() {
+            let Some((j, back)) = *link else { continue };
             let step = (edge + 4 - along) % 4;
             let next = (at.0 + STEPS[step].0, at.1 + STEPS[step].1);
             if is_taken[j] || grid.nodes.contains_key(&next) || waiting.iter().any(|w| w.2 == next) {

@@ -30,12 +30,6 @@ impl Level {
         level.smoothed()
     }
 
-    /// The picture as it is.
-    pub fn raw(picture: &GrayImage) -> Self {
-        let (width, height) = (picture.width() as usize, picture.height() as usize);
-        Self { width, height, pixels: picture.as_raw().iter().map(|&p| f32::from(p)).collect(), scale: 1.0 }
-    }
-
     /// Means of two by two.
     fn halved(&self) -> Self {
         let (width, height) = (self.width / 2, self.height / 2);

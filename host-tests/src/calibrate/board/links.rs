@@ -51,7 +51,7 @@ fn is_edge(level: &Level, from: &Corner, to: &Corner, edge: usize) -> bool {
     let length = way.norm();
     let across = Vector2::new(-way.y, way.x) / length;
     let beside = (0.18 * length).clamp(1.2, 6.0);
-    let sign = if edge % 2 == 0 { 1.0 } else { -1.0 };
+    let sign = if edge.is_multiple_of(2) { 1.0 } else { -1.0 };
     let least = 0.35 * from.contrast.min(to.contrast);
     [0.25, 0.4, 0.5, 0.6, 0.75].iter().all(|&part| {
         let middle = from.place + part * way;

@@ -32,7 +32,7 @@ pub(super) fn order(block: &Block, pattern: Pattern, like: Option<&Board>) -> Ve
         block.is_bright ^ !(steps + quarters).is_multiple_of(2)
     };
     let fits = |quarters: &usize| {
-        (block.columns, block.rows) == if quarters % 2 == 0 { (columns, rows) } else { (rows, columns) }
+        (block.columns, block.rows) == if quarters.is_multiple_of(2) { (columns, rows) } else { (rows, columns) }
     };
     let along = |corners: &[Point2<f64>]| (corners[columns - 1] - corners[0]).normalize();
     let wanted = like.map_or(Vector2::x(), |board| along(&board.corners));

@@ -61,7 +61,8 @@ fn one(level: &Level, from: &Point2<f64>, half: f64) -> Option<Point2<f64>> {
             b += gg * off;
         }
         let determinant = a.determinant();
-        if !(determinant > 1e-9 * a.trace() * a.trace()) {
+        let least = 1e-9 * a.trace() * a.trace();
+        if determinant.is_nan() || determinant <= least {
             return None;
         }
         let step = Vector2::new(a.m22 * b.x - a.m12 * b.y, a.m11 * b.y - a.m21 * b.x) / determinant;

@@ -16,7 +16,7 @@ fn a_street_of_kitti_with_one_camera() {
     let folder = PathBuf::from(data).join("odometry/kitti_mono_1");
     let sequence = Sequence::open(&folder).expect("a sequence");
     let truth = poses::read(&folder.join("poses.txt")).expect("poses");
-    let camera = Cameras::open_first(&folder.join("calib.txt")).expect("a camera");
+    let camera = Cameras::open_first(&[folder.join("calib.txt")]).expect("a camera");
     let frames = (0..sequence.len()).map(|i| sequence.frame(i));
     let found = run(&Rig::Mono(camera), frames, |_| ()).expect("a trajectory");
     assert!(found.steps.iter().skip(1).all(|step| step.state == State::Tracked));

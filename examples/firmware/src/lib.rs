@@ -1,6 +1,6 @@
 //! What the programs of this firmware share. A program stands in `src/bin`: `depth` is the pipeline, `pose`
 //! two views, `bundle` their adjustment, `features` corners and their matches, `focus` depth by a lens that moves,
-//! `interrupt` lines that an interrupt brings.
+//! `interrupt` lines that an interrupt brings, `odometry` where a pair of cameras goes.
 //!
 //! * [`choice`]: the method, the sizes and the board, chosen when it is built; [`board`] is the list of boards.
 //! * [`camera`]: where lines come from: the built-in scene, or two files on the host.
@@ -11,6 +11,7 @@
 //! * [`window`]: two views and their points, adjusted.
 //! * [`two_pictures`]: features of two cameras' lines, and their matches.
 //! * [`sweep`]: frames of a lens that moves, and where each tile is in focus.
+//! * [`walk`]: a view that moves, and the motion from frame to frame.
 //! * [`log`]: defmt through semihosting. [`runtime`]: start and end of a program, and no panic.
 //!
 //! Files, text and log go to the host by semihosting, which works under QEMU and with a debugger. In a product these
@@ -30,7 +31,10 @@ pub mod sweep;
 pub mod ticker;
 pub mod two_pictures;
 pub mod two_views;
+pub mod walk;
 pub mod window;
+
+use camera::scene;
 
 /// The method, the sizes and the board: `build.rs` writes this from the environment.
 pub mod choice {

@@ -13,8 +13,8 @@ use stereopsis_host::run::{Method, NoiseChoice, UnknownNoise};
 #[derive(Args)]
 pub struct Arguments {
     /// The program: depth, rows of disparity; pose, two views; bundle, their adjustment; features, corners of two pictures and
-    /// their matches; focus, a lens that moves; or interrupt, lines that a timer brings
-    #[arg(long, default_value = "depth", value_parser = ["depth", "pose", "bundle", "features", "focus", "interrupt"])]
+    /// their matches; focus, a lens that moves; odometry, where a pair goes; or interrupt, lines that a timer brings
+    #[arg(long, default_value = "depth", value_parser = ["depth", "pose", "bundle", "features", "focus", "odometry", "interrupt"])]
     program: String,
     /// With a program other than depth: made for size, not for speed
     #[arg(long)]
@@ -86,6 +86,8 @@ pub enum Asked {
     Features(Plain),
     /// A lens that moves, on one core.
     Focus(Plain),
+    /// Where a pair goes, on one core.
+    Odometry(Plain),
     /// Lines by an interrupt, on one core.
     Interrupt(Plain),
     /// All cores.
@@ -121,6 +123,7 @@ impl Arguments {
                 "pose" => Asked::Pose(plain),
                 "bundle" => Asked::Bundle(plain),
                 "features" => Asked::Features(plain),
+                "odometry" => Asked::Odometry(plain),
                 "interrupt" => Asked::Interrupt(plain),
                 _ => Asked::Focus(plain),
             });

@@ -8,7 +8,8 @@
 //! * [`pose`]: two views on one core, held to the host; [`two_views_all`]: on every core.
 //! * [`bundle`]: their adjustment, likewise.
 //! * [`features`]: features of two pictures and their matches, on one core and on those of the table.
-//! * [`focus`]: a lens that moves, likewise. [`interrupt`]: lines that an interrupt brings.
+//! * [`focus`]: a lens that moves, likewise. [`odometry`]: where a pair of cameras goes. [`interrupt`]: lines that an
+//!   interrupt brings.
 //! * [`results`]: the run of such a program, and what it leaves.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
 
@@ -23,6 +24,7 @@ mod focus;
 pub mod frame;
 mod interrupt;
 mod log;
+mod odometry;
 mod pose;
 pub mod program;
 mod refusals;
@@ -41,6 +43,8 @@ pub mod sweep;
 pub mod two_pictures;
 #[path = "../../../../examples/firmware/src/two_views.rs"]
 pub mod two_views;
+#[path = "../../../../examples/firmware/src/walk.rs"]
+pub mod walk;
 #[path = "../../../../examples/firmware/src/window.rs"]
 pub mod window;
 
@@ -56,6 +60,7 @@ use bundle::Bundle;
 use features::Features;
 use focus::Focus;
 use interrupt::Interrupt;
+use odometry::Odometry;
 use pose::Pose;
 use program::{Optimised, Program};
 use serde::Serialize;
@@ -72,6 +77,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Asked::Features(plain) => run_plain(&plain, features::run, Features::told),
         Asked::Focus(plain) => run_plain(&plain, focus::run, Focus::told),
         Asked::Bundle(plain) => run_plain(&plain, bundle::run, Bundle::told),
+        Asked::Odometry(plain) => run_plain(&plain, odometry::run, Odometry::told),
         Asked::Interrupt(plain) => run_plain(&plain, interrupt::run, Interrupt::told),
         Asked::All => run_all(Readme::of_check(arguments.check)),
     }
@@ -84,6 +90,7 @@ fn run_all(readme: Readme) -> Outcome {
     bundle::run_all(readme)?;
     features::run_all(readme)?;
     focus::run_all(readme)?;
+    odometry::run_all(readme)?;
     println!("{}", interrupt::run(board::M4, Optimised::Speed)?.told());
     Ok(())
 }

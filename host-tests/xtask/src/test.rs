@@ -64,8 +64,9 @@ fn clippy() -> Outcome {
     run_cargo(&format!("clippy --locked --workspace --all-targets --features {REAL_DATA} -- -D warnings"))?;
     run_cargo("clippy --locked -p stereopsis --features defmt,ffi -- -D warnings")?;
     // The kinds of cores have code of their own.
-    for target in ["thumbv7em-none-eabihf", "riscv32imac-unknown-none-elf"] {
-        run_command(&mut firmware::cargo(&format!("clippy --locked --release --target {target} -- -D warnings")))?;
+    for (target, features) in [("thumbv7em-none-eabihf", "large"), ("riscv32imac-unknown-none-elf", "")] {
+        let words = format!("clippy --locked --release --target {target} --features={features} -- -D warnings");
+        run_command(&mut firmware::cargo(&words))?;
     }
     let mut vectors = firmware::cargo("clippy --locked --release --target thumbv8m.main-none-eabihf -- -D warnings");
     run_command(vectors.env("RUSTFLAGS", firmware::VECTORS))?;

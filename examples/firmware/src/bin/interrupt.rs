@@ -79,14 +79,14 @@ static SENSOR: Mutex<RefCell<Option<Sensor>>> = Mutex::new(RefCell::new(None));
 impl Sensor {
     /// A line's time has passed.
     fn tick(&mut self) {
-        if let Some(bytes) = self.picture.0.get(self.row) {
-            if let Some(mut line) = self.producer.begin() {
-                line.bytes().copy_from_slice(bytes);
-                let frame_us = u64::from(self.sequence) * 10_000;
-                let frame = FrameStart { sequence: self.sequence, timestamp_us: frame_us, exposure_us: 0 };
-                let start = LineStart { row: self.row as u16, timestamp_us: frame_us + self.row as u64 };
-                self.producer.finish(line, frame, start);
-            }
+        if let Some(bytes) = self.picture.0.get(self.row)
+            && let Some(mut line) = self.producer.begin()
+        {
+            line.bytes().copy_from_slice(bytes);
+            let frame_us = u64::from(self.sequence) * 10_000;
+            let frame = FrameStart { sequence: self.sequence, timestamp_us: frame_us, exposure_us: 0 };
+            let start = LineStart { row: self.row as u16, timestamp_us: frame_us + self.row as u64 };
+            self.producer.finish(line, frame, start);
         }
         self.row += 1;
         if self.row >= HEIGHT + BLANKING {

@@ -134,7 +134,7 @@ pub fn build_plain(board: Board, bin: &str, optimised: Optimised, features: &str
     }
     // Without floating-point instructions geometry is more flash than the budget.
     cargo.env("STEREO_MEMORY", "board");
-    cargo.args(["--profile", profile, "--bin", bin, "--features", features]);
+    cargo.args(["--profile", profile, "--bin", bin, "--features", "large", "--features", features]);
     build(cargo, &name)?;
     keep(board, &format!("{profile}/{bin}"), &name)
 }

@@ -32,7 +32,7 @@ pub fn check() -> Outcome {
 /// Builds the example with a panic in it and wants the linker to refuse it by name.
 fn a_panic_does_not_link() -> Outcome {
     let program = Program::new(M4, Method::Block, 160, 120, 32)?;
-    let output = program.cargo("build --locked --release --quiet --features panics").output();
+    let output = program.cargo("build --locked --release --quiet --bin depth --features panics").output();
     let output = output.map_err(|e| Failure::new(format!("cargo: {e}")))?;
     let told = String::from_utf8_lossy(&output.stderr);
     if output.status.success() {

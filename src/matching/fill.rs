@@ -7,7 +7,7 @@
 //! [`PixelFlags::FILLED`], and no other answer's uncertainty looks at it: [`take_back`] takes it out of the row once the
 //! row has been seen.
 //!
-//! Two passes, each with the same work for every picture.
+//! Two passes.
 
 use crate::units::{Disparity, PixelFlags};
 
@@ -16,27 +16,60 @@ use crate::units::{Disparity, PixelFlags};
 pub(super) fn fill(answers: &mut [Disparity], flags: &mut [PixelFlags], most: u8, step: Disparity) {
     // To the right: what is in a gap gets the answer on its left, as far as the gap may reach, and the flag.
     let (mut left, mut length) = (u32::from(Disparity::NONE.raw()), 0u32);
-    for (answer, flags) in answers.iter_mut().zip(flags.iter_mut()) {
-        let here = u32::from(answer.raw());
-        let gap = if_none(here);
-        length = (length + 1) & gap;
-        left ^= (left ^ here) & !gap;
-        *answer = Disparity::from_raw((left | if_more(length, u32::from(most))) as u16);
-        *flags = PixelFlags::from_bits(flags.bits() | PixelFlags::FILLED.bits() & gap as u8);
+    for (answers, flags) in answers.chunks_mut(GROUP).zip(flags.chunks_mut(GROUP)) {
+        if let Some(last) = whole(answers) {
+            (left, length) = (last, 0);
+            continue;
+        }
+        for (answer, flags) in answers.iter_mut().zip(flags) {
+            let here = u32::from(answer.raw());
+            let gap = if_none(here);
+            length = (length + 1) & gap;
+            left ^= (left ^ here) & !gap;
+            *answer = Disparity::from_raw((left | if_more(length, u32::from(most))) as u16);
+            *flags = PixelFlags::from_bits(flags.bits() | PixelFlags::FILLED.bits() & gap as u8);
+        }
     }
     // And back: the answer on its right, if that is less. What the pass before left out is at the gap's right end, and
     // so none of the gap is filled.
     let (mut right, mut refused) = (0, u32::MAX);
-    for (answer, flags) in answers.iter_mut().zip(flags).rev() {
-        let here = u32::from(answer.raw());
-        let gap = if_filled(*flags);
-        let apart = here.abs_diff(right);
-        refused = (refused | if_none(here) | if_more(apart, u32::from(step.raw()))) & gap;
-        right ^= (right ^ here) & !gap;
-        let lesser = right ^ (right ^ here) & if_more(right, here);
-        *answer = Disparity::from_raw((lesser | refused) as u16);
-        *flags = PixelFlags::from_bits(flags.bits() & !(PixelFlags::FILLED.bits() & refused as u8));
+    for (answers, flags) in answers.chunks_mut(GROUP).zip(flags.chunks_mut(GROUP)).rev() {
+        if let (Some(_), Some(first)) = (unfilled(flags), answers.first()) {
+            (right, refused) = (u32::from(first.raw()), 0);
+            continue;
+        }
+        for (answer, flags) in answers.iter_mut().zip(flags).rev() {
+            let here = u32::from(answer.raw());
+            let gap = if_filled(*flags);
+            let apart = here.abs_diff(right);
+            refused = (refused | if_none(here) | if_more(apart, u32::from(step.raw()))) & gap;
+            right ^= (right ^ here) & !gap;
+            let lesser = right ^ (right ^ here) & if_more(right, here);
+            *answer = Disparity::from_raw((lesser | refused) as u16);
+            *flags = PixelFlags::from_bits(flags.bits() & !(PixelFlags::FILLED.bits() & refused as u8));
+        }
     }
+}
+
+/// Pixels of which one look tells that they have no gap, where that is done at all.
+const GROUP: usize = 16;
+/// Whether groups without a gap are passed over: on processors with vectors. On small cores the work is the same for every picture.
+const PASSES_OVER: bool = cfg!(target_pointer_width = "64");
+
+/// The last number of a group that has no gap.
+#[inline(always)]
+fn whole(answers: &[Disparity]) -> Option<u32> {
+    let group = answers.first_chunk::<GROUP>().filter(|_| PASSES_OVER)?;
+    let greatest = group.iter().fold(0, |most, answer| most.max(answer.raw()));
+    (greatest < Disparity::NONE.raw()).then_some(u32::from(group[GROUP - 1].raw()))
+}
+
+/// Whether nothing is filled in a group.
+#[inline(always)]
+fn unfilled(flags: &[PixelFlags]) -> Option<()> {
+    let group = flags.first_chunk::<GROUP>().filter(|_| PASSES_OVER)?;
+    let any = group.iter().fold(0, |any, flags| any | flags.bits());
+    (any & PixelFlags::FILLED.bits() == 0).then_some(())
 }
 
 /// Takes out what was filled: no answer again. The flags stay as they are.

@@ -58,15 +58,6 @@ impl Penalties {
         Ok(())
     }
 
-    /// What a step and a jump cost between two pixels of the left image.
-    #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
-    #[inline(always)]
-    pub(super) fn between(&self, a: u8, b: u8) -> Change {
-        let change = a.abs_diff(b);
-        let grade = if change < self.edges[0] { 0 } else { 1 + usize::from(change >= self.edges[1]) };
-        self.changes()[grade]
-    }
-
     /// What a step and a jump cost where the left image's brightness changes little, more and much.
     #[inline(always)]
     pub(super) fn changes(&self) -> [Change; 3] {

@@ -6,6 +6,8 @@
 //! half the registers of a vector, and two of ten bit planes less.
 
 use super::confidence;
+#[cfg(target_pointer_width = "64")]
+use super::kernels::Group;
 #[cfg(not(stereopsis_vectors))]
 use super::kernels::codes;
 use super::kernels::{RowWork, Select, TABLE_WORDS, Unique, bytes_of, bytes_of_halves};
@@ -32,8 +34,17 @@ pub trait Windowed: Scheme {
     #[cfg(not(stereopsis_vectors))]
     fn codes(around: &[[u32; 3]; 3]) -> u32;
     /// How many bits of two codes differ.
-    #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+    #[cfg(stereopsis_vectors)]
     fn hamming(a: u8, b: u8) -> u8;
+    /// What a code is compared by with [`Self::apart`].
+    #[cfg(target_pointer_width = "64")]
+    fn key<G: Group>(code: u8) -> G;
+    /// How many bits of a code, whose key this is, and of others differ.
+    #[cfg(target_pointer_width = "64")]
+    fn apart<G: Group>(key: G, others: G) -> G;
+    /// The digits of columns' sums that a window adds up.
+    #[cfg(target_pointer_width = "64")]
+    fn digits<G: Group>(columns: G) -> G;
     /// How many bits are set in each byte of two words together, of the bits that a code has.
     #[cfg(not(stereopsis_vectors))]
     fn bits_of_two(a: u32, b: u32) -> u32;
@@ -138,13 +149,31 @@ impl Windowed for Fast {
         codes(around, &PLUS4)
     }
 
-    #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+    #[cfg(stereopsis_vectors)]
     #[inline(always)]
     fn hamming(a: u8, b: u8) -> u8 {
         // Four bits need half of a byte's bit count: pairs, then the two pairs.
         let x = a ^ b;
         let pairs = x - ((x >> 1) & 0b0101);
         (pairs & 0b0011) + (pairs >> 2)
+    }
+
+    #[cfg(target_pointer_width = "64")]
+    #[inline(always)]
+    fn key<G: Group>(code: u8) -> G {
+        G::key_of_four(code)
+    }
+
+    #[cfg(target_pointer_width = "64")]
+    #[inline(always)]
+    fn apart<G: Group>(key: G, others: G) -> G {
+        key.four_bits_apart(others)
+    }
+
+    #[cfg(target_pointer_width = "64")]
+    #[inline(always)]
+    fn digits<G: Group>(columns: G) -> G {
+        columns
     }
 
     #[cfg(not(stereopsis_vectors))]
@@ -184,18 +213,32 @@ impl Windowed for Block {
         codes(around, &RING8)
     }
 
-    #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+    #[cfg(stereopsis_vectors)]
     #[inline(always)]
     fn hamming(a: u8, b: u8) -> u8 {
+        // Those vectors have no bit count.
         let x = a ^ b;
-        if cfg!(stereopsis_vectors) {
-            // Vectors that have no bit count.
-            let pairs = x - ((x >> 1) & 0x55);
-            let fours = (pairs & 0x33) + ((pairs >> 2) & 0x33);
-            (fours + (fours >> 4)) & 0x0f
-        } else {
-            x.count_ones() as u8
-        }
+        let pairs = x - ((x >> 1) & 0x55);
+        let fours = (pairs & 0x33) + ((pairs >> 2) & 0x33);
+        (fours + (fours >> 4)) & 0x0f
+    }
+
+    #[cfg(target_pointer_width = "64")]
+    #[inline(always)]
+    fn key<G: Group>(code: u8) -> G {
+        G::splat(code)
+    }
+
+    #[cfg(target_pointer_width = "64")]
+    #[inline(always)]
+    fn apart<G: Group>(key: G, others: G) -> G {
+        key.bits_apart(others)
+    }
+
+    #[cfg(target_pointer_width = "64")]
+    #[inline(always)]
+    fn digits<G: Group>(columns: G) -> G {
+        columns.quarter()
     }
 
     #[cfg(not(stereopsis_vectors))]

@@ -5,15 +5,17 @@
 //! * `census`: the codes of four pixels at a time in plain 32-bit words, for the next two.
 //! * `planes`: bit planes in plain 32-bit words, for cores without vectors.
 //! * `bytes`: four bytes in a word, for cores that have Arm's instructions for that.
-//! * `lanes`: safe Rust over fixed lanes, which the compiler turns into the vectors that the target has.
-//! * `x86`: the same code compiled for AVX2 and for AVX-512, chosen when the processor has it.
-//! * `helium`: what `lanes` and the stages after it do for a row, in assembly for the vectors of a Cortex-M55.
+//! * `groups`: bytes side by side, in the registers of larger processors and in words.
+//! * `windows`: sums over windows, for groups. `x86`: the same compiled for AVX2 and for AVX-512, chosen when the processor has it.
+//! * `paths`: costs along paths, for groups, and for Arm's instructions on four bytes.
+//! * `helium`: what stages do for a row, in assembly for the vectors of a Cortex-M55; `lanes`: safe Rust over fixed lanes for what
+//!   is not there, which the compiler turns into vectors.
 //! * `winner`: what all of them give.
 //!
 //! A 32-bit core gets `planes` alone, unless it is compiled with `--cfg stereopsis_dsp`, which says that it has instructions
 //! on four bytes (Cortex-M4, M7, M33); then it gets `bytes` alone; or with `--cfg stereopsis_vectors`, which says that its
-//! vectors are on (Helium on a Cortex-M55: `-C target-cpu=cortex-m55`); then it gets `lanes` alone, most of it from `helium`.
-//! Larger processors have `planes` and `lanes`.
+//! vectors are on (Helium on a Cortex-M55: `-C target-cpu=cortex-m55`); then it gets `helium` and `lanes` alone.
+//! Larger processors have `planes`, and `windows` in the vectors that there are.
 //!
 //! Every kernel gives the same bits. A new one is a variant of [`Kernel`] and an arm in [`Kernel::row`].
 
@@ -21,18 +23,26 @@
 pub mod bytes;
 #[cfg(not(stereopsis_vectors))]
 mod census;
+#[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
+mod groups;
 #[cfg(stereopsis_vectors)]
 pub mod helium;
-#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+#[cfg(stereopsis_vectors)]
 mod lanes;
 mod paths;
 #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
 mod planes;
+#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+mod row_codes;
 mod scratch;
+#[cfg(target_pointer_width = "64")]
+mod windows;
 mod winner;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+#[cfg(target_pointer_width = "64")]
+pub use groups::Group;
 pub(super) use paths::{COLUMNS_OFF, EdgeWork, Guide, PathWork};
 pub use scratch::{Aligned, Columns, Room, Scratch, Volumes};
 pub(super) use scratch::{bytes_mut, bytes_of, bytes_of_halves, halves_mut, read_bytes_of, winners_mut};
@@ -216,8 +226,10 @@ impl Kernel {
             #[cfg(target_arch = "x86_64")]
             Self::Avx512(avx512) if work.stride.is_multiple_of(32) => avx512.row::<S>(work, select),
             // Of registers that would not be full there is nothing to gain.
-            #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-            _ => lanes::row::<S>(work, select),
+            #[cfg(target_pointer_width = "64")]
+            _ => windows::in_vectors::<S>(work, select),
+            #[cfg(stereopsis_vectors)]
+            Self::Lanes => lanes::row::<S>(work, select),
         }
     }
 }

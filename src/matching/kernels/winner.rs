@@ -99,6 +99,21 @@ pub(in crate::matching) struct Found {
     pub beside: (u8, u8),
 }
 
+/// The costs one below a winner and one above it, of those in so many lanes. At an end of the candidates it is the one that
+/// there is; beside an only candidate, itself.
+#[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
+#[inline(always)]
+pub(super) fn beside(lanes: usize, disparity: u8, candidates: usize, at: impl Fn(usize) -> u8) -> (u8, u8) {
+    let disparity = usize::from(disparity);
+    let lane = (lanes - 1).wrapping_sub(disparity);
+    if disparity > 0 && disparity + 1 < candidates {
+        (at(lane + 1), at(lane.wrapping_sub(1)))
+    } else {
+        let one = at(if disparity > 0 { lane + 1 } else { lane.wrapping_sub(usize::from(candidates > 1)) });
+        (one, one)
+    }
+}
+
 /// The best disparity of a pixel, in a word: from the lowest byte up the cost below it, its own, the cost above it, and
 /// the disparity.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -1,13 +1,31 @@
-//! The kernel in lanes compiled for AVX2 and for AVX-512, and unrolled for the usual numbers of disparities.
+//! Windows in the registers of AVX2 and AVX-512, unrolled for the usual numbers of disparities.
 #![allow(unsafe_code)]
 
-use super::{RowWork, Select, lanes};
+use super::groups::{Wide, Widest};
+use super::{RowWork, Select, windows};
 use crate::matching::window::Windowed;
-use core::arch::x86_64::*;
+use core::arch::x86_64::__cpuid;
 
 cpufeatures::new!(avx2, "avx2");
-// What every processor with operations on bytes in 512 bits has: level 4 of x86-64.
-cpufeatures::new!(avx512, "avx2", "avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl");
+// Level 4 of x86-64, and what counts and moves bytes of 512 bits: Ice Lake, Zen 4 and what came after. Registers of 512 bits
+// slow older processors down.
+cpufeatures::new!(
+    avx512,
+    "avx2",
+    "avx512f",
+    "avx512bw",
+    "avx512cd",
+    "avx512dq",
+    "avx512vl",
+    "avx512vbmi",
+    "avx512bitalg"
+);
+
+/// Whether the processor counts leading zeros; `cpufeatures` does not know that one.
+fn counts_zeros() -> bool {
+    // Every processor of 64 bits has this leaf.
+    __cpuid(0x8000_0001).ecx & 1 << 5 != 0
+}
 
 /// Proof that the processor has AVX2: only [`Avx2::detect`] makes one.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -16,7 +34,7 @@ pub struct Avx2(());
 
 impl Avx2 {
     pub(super) fn detect() -> Option<Self> {
-        avx2::get().then_some(Self(()))
+        (avx2::get() && counts_zeros()).then_some(Self(()))
     }
 
     /// Does something that is compiled for AVX2 as far as it is inlined.
@@ -34,50 +52,27 @@ impl Avx2 {
     }
 }
 
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,lzcnt")]
 fn run(work: impl FnOnce()) {
     work();
 }
 
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,lzcnt")]
 fn row<S: Windowed>(work: RowWork<'_>, select: Option<Select<'_>>) {
-    // Two registers of lanes at a time measured best; and masks up to 64 lanes, with more of them the numbers. (A closure
-    // has the features of what it is in.)
-    let nearest = |least: u8, sums: &[u8]| nearest_of_64(least, sums);
     match work.stride {
-        32 => in_groups::<S, 32, 32>(work, select, nearest),
-        64 => in_groups::<S, 64, 64>(work, select, nearest),
-        128 => in_groups::<S, 64, 128>(work, select, lanes::nearest_with::<128>),
-        256 => in_groups::<S, 64, 256>(work, select, lanes::nearest_with::<256>),
-        _ => in_groups::<S, 32, 0>(work, select, lanes::nearest_with::<0>),
+        32 => in_wide::<S, 1, true>(work, select),
+        64 => in_wide::<S, 2, true>(work, select),
+        128 => in_wide::<S, 4, true>(work, select),
+        256 => in_wide::<S, 8, true>(work, select),
+        _ => in_wide::<S, 8, false>(work, select),
     }
 }
 
-/// [`lanes::row_in_groups`], each number of lanes in a function of its own: the compiler's passes take far longer over one
-/// function of all of them.
-#[target_feature(enable = "avx2")]
+/// Each number of groups in a function of its own: the compiler's passes take far longer over one function of all of them.
+#[target_feature(enable = "avx2,lzcnt")]
 #[inline(never)]
-fn in_groups<S: Windowed, const GROUP: usize, const STRIDE: usize>(
-    work: RowWork<'_>,
-    select: Option<Select<'_>>,
-    nearest: impl Fn(u8, &[u8]) -> usize,
-) {
-    lanes::row_in_groups::<S, GROUP, STRIDE>(work, select, nearest);
-}
-
-/// [`lanes::nearest_with`] of 32 or 64 lanes: the last bit of a mask instead of the least number.
-#[target_feature(enable = "avx2")]
-#[inline]
-fn nearest_of_64(least: u8, sums: &[u8]) -> usize {
-    let least = _mm256_set1_epi8(least as i8);
-    let mut equal = 0;
-    for group in sums.as_chunks::<32>().0 {
-        // SAFETY: the group is 32 bytes, and no alignment is asked for.
-        let group = unsafe { _mm256_loadu_si256(group.as_ptr().cast()) };
-        let mask = _mm256_movemask_epi8(_mm256_cmpeq_epi8(group, least)) as u32;
-        equal = equal >> 32 | u64::from(mask) << 32;
-    }
-    equal.leading_zeros() as usize
+fn in_wide<S: Windowed, const CELLS: usize, const ALL: bool>(work: RowWork<'_>, select: Option<Select<'_>>) {
+    windows::row::<S, Wide, CELLS, ALL>(work, select);
 }
 
 /// Proof that the processor has AVX-512, with operations on bytes, and that its registers are kept: only [`Avx512::detect`]
@@ -88,7 +83,7 @@ pub struct Avx512(());
 
 impl Avx512 {
     pub(super) fn detect() -> Option<Self> {
-        avx512::get().then_some(Self(()))
+        (avx512::get() && counts_zeros()).then_some(Self(()))
     }
 
     /// Does something that is compiled for AVX-512 as far as it is inlined.
@@ -106,42 +101,25 @@ impl Avx512 {
     }
 }
 
-#[target_feature(enable = "avx2,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
+#[target_feature(enable = "avx2,lzcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,avx512bitalg")]
 fn run_512(work: impl FnOnce()) {
     work();
 }
 
-#[target_feature(enable = "avx2,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
+#[target_feature(enable = "avx2,lzcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,avx512bitalg")]
 fn row_512<S: Windowed>(work: RowWork<'_>, select: Option<Select<'_>>) {
     match work.stride {
-        64 => in_groups_512::<S, 64>(work, select),
-        128 => in_groups_512::<S, 128>(work, select),
-        256 => in_groups_512::<S, 256>(work, select),
-        stride if stride % 64 == 0 => in_groups_512::<S, 0>(work, select),
+        64 => in_widest::<S, 1, true>(work, select),
+        128 => in_widest::<S, 2, true>(work, select),
+        256 => in_widest::<S, 4, true>(work, select),
+        stride if stride % 64 == 0 => in_widest::<S, 4, false>(work, select),
         _ => row::<S>(work, select),
     }
 }
 
-/// [`in_groups`] of 64 lanes.
-#[target_feature(enable = "avx2,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
+/// [`in_wide`] in registers of AVX-512.
+#[target_feature(enable = "avx2,lzcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,avx512bitalg")]
 #[inline(never)]
-fn in_groups_512<S: Windowed, const STRIDE: usize>(work: RowWork<'_>, select: Option<Select<'_>>) {
-    let nearest = |least: u8, sums: &[u8]| nearest_of_64s(least, sums);
-    lanes::row_in_groups::<S, 64, STRIDE>(work, select, nearest);
-}
-
-/// [`lanes::nearest_with`] of whole registers of AVX-512: the last bit of the last mask that has one.
-#[target_feature(enable = "avx512f,avx512bw")]
-#[inline]
-fn nearest_of_64s(least: u8, sums: &[u8]) -> usize {
-    let least = _mm512_set1_epi8(least as i8);
-    let mut nearest = 0;
-    for group in sums.as_chunks::<64>().0 {
-        // SAFETY: the group is 64 bytes, and no alignment is asked for.
-        let group = unsafe { _mm512_loadu_si512(group.as_ptr().cast()) };
-        let equal = _mm512_cmpeq_epi8_mask(group, least);
-        // A group farther on has smaller disparities.
-        nearest = if equal != 0 { equal.leading_zeros() as usize } else { nearest + 64 };
-    }
-    nearest
+fn in_widest<S: Windowed, const CELLS: usize, const ALL: bool>(work: RowWork<'_>, select: Option<Select<'_>>) {
+    windows::row::<S, Widest, CELLS, ALL>(work, select);
 }

@@ -1,19 +1,7 @@
 //! The costs of a row, added to the columns under the window.
 
+use super::super::row_codes::{RowCodes, pixels};
 use crate::matching::window::Windowed;
-
-/// The codes of a row in both images.
-#[derive(Clone, Copy)]
-pub(super) struct RowCodes<'a> {
-    left: &'a [u8],
-    right: &'a [u8],
-}
-
-/// The code of every column with the codes that it is compared with, the farthest first.
-#[inline(always)]
-fn pixels(row: RowCodes<'_>, stride: usize) -> impl Iterator<Item = (&u8, &[u8])> {
-    row.left.iter().zip(row.right.windows(stride))
-}
 
 /// Moves the sums of all columns one row down.
 #[inline(always)]
@@ -63,26 +51,4 @@ pub(super) fn update<S: Windowed, const N: usize>(
         }
         (None, None) => {}
     }
-}
-
-/// The row with more before its right codes: column x is compared with `stride` of them from x on. The first code is
-/// repeated for those that lie left of the image.
-#[cfg_attr(stereopsis_vectors, inline(never))]
-#[cfg_attr(not(stereopsis_vectors), inline(always))]
-pub(super) fn with_more_before<'a>(
-    codes: &'a [u8],
-    min_disparity: usize,
-    stride: usize,
-    out: &'a mut [u8],
-) -> RowCodes<'a> {
-    let (left, right) = codes.split_at_checked(codes.len() / 2).unwrap_or_default();
-    // One more than is wanted, so that words are copied to words' places.
-    let out = out.get_mut(..left.len() + stride).unwrap_or_default();
-    let outside = out.len().min(stride + min_disparity);
-    let (before, inside) = out.split_at_mut_checked(outside).unwrap_or_default();
-    before.fill(right.first().copied().unwrap_or(0));
-    for (inside, code) in inside.iter_mut().zip(right) {
-        *inside = *code;
-    }
-    RowCodes { left, right: out.get(1..).unwrap_or(&[]) }
 }

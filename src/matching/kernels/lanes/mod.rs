@@ -14,8 +14,8 @@
 
 mod columns;
 
-#[cfg(stereopsis_vectors)]
 use super::helium;
+use super::row_codes::with_more_before;
 use super::scratch::bytes_mut;
 use super::winner::Found;
 use super::{BESIDE, MASKS, OUTSIDE, RowWork, STEP, Select, WinnerRows};
@@ -36,14 +36,8 @@ const fn disparities<const STRIDE: usize>() -> [u8; STRIDE] {
 #[inline(always)]
 pub(in crate::matching) fn row<S: Windowed>(work: RowWork<'_>, select: Option<Select<'_>>) {
     match work.stride {
-        #[cfg(stereopsis_vectors)]
         32 => helium::row::<S, 32>(work, select),
-        #[cfg(stereopsis_vectors)]
         64 => helium::row::<S, 64>(work, select),
-        #[cfg(not(stereopsis_vectors))]
-        32 => row_in_groups::<S, STEP, 32>(work, select, nearest_with::<32>),
-        #[cfg(not(stereopsis_vectors))]
-        64 => row_in_groups::<S, STEP, 64>(work, select, nearest_with::<64>),
         _ => row_in_groups::<S, STEP, 0>(work, select, nearest_with::<0>),
     }
 }
@@ -63,8 +57,8 @@ pub(in crate::matching) fn row_in_groups<S: Windowed, const N: usize, const STRI
     let stride = if STRIDE > 0 { STRIDE } else { stride.max(STEP) };
     let Some((sums, codes)) = bytes_mut(scratch).split_at_mut_checked(stride) else { return };
     let Some((new, old)) = codes.split_at_mut_checked(codes.len() / 2) else { return };
-    let enter = enter.map(|row| columns::with_more_before(row, min_disparity, stride, new));
-    let leave = leave.map(|row| columns::with_more_before(row, min_disparity, stride, old));
+    let enter = enter.map(|row| with_more_before(row, min_disparity, stride, new));
+    let leave = leave.map(|row| with_more_before(row, min_disparity, stride, old));
     // Columns first, then windows: a processor that looks ahead finds more independent work in two short loops than in
     // a long one.
     if let Some(inside) = columns.get_mut(OUTSIDE * stride..) {
@@ -175,8 +169,7 @@ fn slide_to_winner<S: Windowed, const N: usize, const MASKED: bool>(
 
 /// The smallest disparity with the least sum. Masked lanes may have it too, but are of larger ones.
 // Helium: of groups of lanes beside other work the compiler makes single ones, of a function of its own one vector loop.
-#[cfg_attr(stereopsis_vectors, inline(never))]
-#[cfg_attr(not(stereopsis_vectors), inline(always))]
+#[inline(never)]
 pub(in crate::matching) fn nearest_with<const STRIDE: usize>(least: u8, sums: &[u8]) -> usize {
     match sums.first_chunk::<STRIDE>() {
         Some(sums) if STRIDE > 0 => nearest_among(least, sums, const { &disparities::<STRIDE>() }),
@@ -200,8 +193,7 @@ fn minimum<const N: usize>(lanes: &[u8; N]) -> u8 {
 }
 
 /// The least cost of the candidates over [`BESIDE`] px beside the winner; `u8::MAX` where there is none.
-#[cfg_attr(stereopsis_vectors, inline(never))]
-#[cfg_attr(not(stereopsis_vectors), inline(always))]
+#[inline(never)]
 pub(super) fn best_of_the_rest<const N: usize>(disparity: usize, mask: &[u8], sums: &mut [u8]) -> u8 {
     // The winner and those beside it are raised while the others are looked at.
     let lane = (sums.len() - 1).saturating_sub(disparity);

@@ -1,18 +1,20 @@
 //! Which groups of bytes a kernel works on, and how many of them are a column: known when the crate is compiled for the
 //! usual numbers of disparities, which lets the compiler unroll them and keep them in registers.
 
+#[cfg(target_pointer_width = "64")]
+use super::super::groups::Vector;
+#[cfg(target_arch = "x86_64")]
+use super::super::groups::{Wide, Widest};
 use super::super::{Kernel, Select};
 #[cfg(target_pointer_width = "64")]
-use super::groups::{Groups, Vector};
-#[cfg(target_arch = "x86_64")]
-use super::groups::{Wide, Widest};
+use super::passes::Groups;
 use super::{EdgeWork, Guide, PathWork};
 use crate::matching::paths::Along;
 use crate::matching::scheme::Around;
 
 /// Words of so many bytes' candidates.
 #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
-type Words<const CELLS: usize, const ALL: bool> = super::groups::Groups<super::groups::Word, CELLS, ALL>;
+type Words<const CELLS: usize, const ALL: bool> = super::passes::Groups<super::super::groups::Word, CELLS, ALL>;
 /// The same; that all of them are in use does not help there.
 #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
 type Words<const CELLS: usize, const ALL: bool> = super::dsp::Words<CELLS, ALL>;

@@ -2,22 +2,23 @@
 //! paths into a pixel, from the left, from the right and from above (the average of the two beside it, two columns off).
 //!
 //! A pixel's candidates are bytes side by side; the largest disparity comes first, so that they stand in memory as they do
-//! in the right image. A row takes three passes, or four:
+//! in the right image. A row takes these passes:
 //!
 //! ```text
 //! enter  (all columns):      a[d] = average(a[d], pixel cost[d])                                      with row y + 1
 //!   within edges (if so):    a[d] = average of the column's pixel costs around row y                  with row y + 2
-//! gather (left to right):    t[d] = a[d] + message(t of row y - 1)[d],  r[d] = a[d] + message(r)[d],  q[d] = r[d] + t[d]
-//! decide (right to left):    l[d] = a[d] + message(l)[d],  s[d] = q[d] + l[d],  winner: the least s[d]
+//! select (to the right):     t[d] = a[d] + message(t of row y - 1)[d],  r[d] = a[d] + message(r)[d]
+//!        (to the left):      l[d] = a[d] + message(l)[d]
+//!        (where both were):  s[d] = r[d] + t[d] + l[d],  winner: the least s[d]
 //!
 //! message(p)[d] = min(p[d], p[d - 1] + step, p[d + 1] + step, least p + jump) - least p
 //! ```
 //!
-//! Everything fits bytes: see [`Penalties`]. Kept from row to row are a, t and the room for q; within edges, two more.
+//! Everything fits bytes: see [`Penalties`]. Kept from row to row are a, t and the room for s; within edges, two more.
 //!
 //! * `features`: what a pixel's cost compares, of a row of both images.
 //! * `edges`: how far a row's costs are averaged with others.
-//! * `groups`: the passes, for vectors and for plain words.
+//! * `passes`: the passes, for vectors and for plain words.
 //! * `dsp`: the passes for cores with Arm's instructions on four bytes.
 //! * `dispatch`: which of them a kernel calls.
 //!
@@ -29,7 +30,7 @@ mod dsp;
 mod edges;
 mod features;
 #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
-mod groups;
+mod passes;
 
 use super::winner::Select;
 #[cfg(not(stereopsis_vectors))]
@@ -91,10 +92,9 @@ trait Passes {
     /// Makes the costs of the row, of those that stand in their place before: of the pixels two rows below, or of no meaning
     /// where that is outside of the image.
     fn within_edges(work: &mut PathWork<'_>, edges: EdgeWork<'_>);
-    /// Moves the path from above down to the row and the path from the left through it, and adds the two up.
-    fn gather(work: &mut PathWork<'_>, guide: Guide<'_>);
-    /// Adds the path from the right to the other two and selects the winner of every pixel that has a candidate.
-    fn decide(work: &mut PathWork<'_>, guide: Guide<'_>, unique: Unique<'_>, put: impl FnMut(usize, Found));
+    /// Moves the path from above down to the row, and those from the left and from the right through it, adds the three up, and
+    /// selects the winner of every pixel that has a candidate.
+    fn select(work: &mut PathWork<'_>, guide: Guide<'_>, unique: Unique<'_>, put: impl FnMut(usize, Found));
 }
 
 /// Adds a row of both images to the costs; the first row of a frame to none.
@@ -118,14 +118,13 @@ fn within_edges<P: Passes>(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
 /// vectors have them, or one by one.
 #[inline(always)]
 fn select<P: Passes, const ROWS: bool>(mut work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
-    P::gather(&mut work, guide);
     let Select { winners, unique, .. } = select;
     if ROWS {
         #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
         {
             let begin = work.min_disparity.min(work.width);
             let WinnerRows { below, costs, above, disparities } = WinnerRows::of(winners, begin);
-            P::decide(
+            P::select(
                 &mut work,
                 guide,
                 unique,
@@ -142,7 +141,7 @@ fn select<P: Passes, const ROWS: bool>(mut work: PathWork<'_>, guide: Guide<'_>,
         }
     } else {
         #[cfg(not(stereopsis_vectors))]
-        P::decide(
+        P::select(
             &mut work,
             guide,
             unique,

@@ -76,13 +76,9 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
     }
 
     #[inline(always)]
-    fn gather(work: &mut PathWork<'_>, guide: Guide<'_>) {
+    fn select(work: &mut PathWork<'_>, guide: Guide<'_>, unique: Unique<'_>, put: impl FnMut(usize, Found)) {
         rows::down::<WORDS, ALL>(work, guide);
         rows::along::<WORDS, ALL>(work, guide, Way::Right);
-    }
-
-    #[inline(always)]
-    fn decide(work: &mut PathWork<'_>, guide: Guide<'_>, unique: Unique<'_>, put: impl FnMut(usize, Found)) {
         rows::along::<WORDS, ALL>(work, guide, Way::Left);
         winners::select(work, stride::<WORDS, ALL>(work), unique, put);
     }

@@ -2,7 +2,7 @@
 
 /// So many bytes in a register. None of the operations but those that say so lets a lane overflow: numbers have seven bits
 /// unless more are allowed.
-pub(in crate::matching) trait Group: Copy + 'static {
+pub trait Group: Copy + 'static {
     /// Bytes in a group.
     const LANES: usize;
     /// A group in memory, where a word may stand if it is one.
@@ -42,6 +42,12 @@ pub(in crate::matching) trait Group: Copy + 'static {
     fn quarter(self) -> Self;
     /// How many bits of two bytes differ: eight bits each.
     fn bits_apart(self, other: Self) -> Self;
+    /// What a code of four bits is compared by with [`Self::four_bits_apart`].
+    #[cfg(target_pointer_width = "64")]
+    fn key_of_four(code: u8) -> Self;
+    /// How many bits of a code, whose key this is, and of others differ: four bits each.
+    #[cfg(target_pointer_width = "64")]
+    fn four_bits_apart(self, others: Self) -> Self;
     /// Bits of either, eight bits each.
     fn or(self, other: Self) -> Self;
     /// Bits of both, eight bits each.
@@ -57,6 +63,6 @@ pub(in crate::matching) trait Group: Copy + 'static {
     fn last_least(cells: &[Self]) -> (u8, usize);
     /// The number in one of the lanes of all cells.
     fn lane(cells: &[Self], lane: usize) -> u8;
-    /// Puts 255 in one of the lanes of all cells.
-    fn raise(cells: &mut [Self], lane: usize);
+    /// Puts 255 in one of the lanes of all cells and in [`BESIDE`](crate::matching::kernels::BESIDE) to each side of it.
+    fn raise_around(cells: &mut [Self], lane: usize);
 }

@@ -1,8 +1,8 @@
 //! A row's costs, averaged within edges.
 
 use super::super::edges::{EdgeWork, edges_at};
-use super::group::Group;
 use super::{PathWork, stride};
+use crate::matching::kernels::groups::Group;
 
 /// Makes the costs of the row of those that stand in their place before: of the pixels two rows below, or of no meaning
 /// where that is outside of the image.

@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::group::Group;
-use super::registers::register;
+use super::registers::{AROUND, BITS_APART_OF_FOUR, register};
 use core::arch::x86_64::*;
 
 /// 64 bytes in a register.
@@ -18,6 +18,27 @@ macro_rules! safely {
         unsafe { $work }
     };
 }
+
+/// Of two registers' lanes, each one's place before it; before the first one the last of the second register.
+const AFTER: &[u8; 64] = &{
+    let mut lanes = [127; 64];
+    let mut lane = 1;
+    while lane < 64 {
+        lanes[lane] = lane as u8 - 1;
+        lane += 1;
+    }
+    lanes
+};
+/// Each one's place after it; after the last one the first of the second register.
+const BEFORE: &[u8; 64] = &{
+    let mut lanes = [64; 64];
+    let mut lane = 0;
+    while lane < 63 {
+        lanes[lane] = lane as u8 + 1;
+        lane += 1;
+    }
+    lanes
+};
 
 impl Group for Widest {
     register!(64);
@@ -101,27 +122,28 @@ impl Group for Widest {
 
     #[inline(always)]
     fn bits_apart(self, other: Self) -> Self {
-        safely!({
-            // The bits of a nibble, looked up.
-            let bits = _mm512_broadcast_i32x4(_mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4));
-            let nibble = _mm512_set1_epi8(0x0f);
-            let apart = _mm512_xor_si512(self.0, other.0);
-            let low = _mm512_shuffle_epi8(bits, _mm512_and_si512(apart, nibble));
-            let high = _mm512_shuffle_epi8(bits, _mm512_and_si512(_mm512_srli_epi16(apart, 4), nibble));
-            Self(_mm512_add_epi8(low, high))
-        })
+        safely!(Self(_mm512_popcnt_epi8(_mm512_xor_si512(self.0, other.0))))
     }
 
-    // In quarters of a register, moved on by a quarter and then by a byte.
+    #[inline(always)]
+    fn key_of_four(code: u8) -> Self {
+        let bits = BITS_APART_OF_FOUR.get(usize::from(code)).unwrap_or(&[0; 16]);
+        safely!(Self(_mm512_broadcast_i32x4(_mm_loadu_si128(bits.as_ptr().cast()))))
+    }
+
+    #[inline(always)]
+    fn four_bits_apart(self, others: Self) -> Self {
+        safely!(Self(_mm512_shuffle_epi8(self.0, others.0)))
+    }
 
     #[inline(always)]
     fn after(self, before: Self) -> Self {
-        safely!(Self(_mm512_alignr_epi8(self.0, _mm512_alignr_epi64(self.0, before.0, 6), 15)))
+        safely!(Self(_mm512_permutex2var_epi8(self.0, _mm512_loadu_si512(AFTER.as_ptr().cast()), before.0)))
     }
 
     #[inline(always)]
     fn before(self, next: Self) -> Self {
-        safely!(Self(_mm512_alignr_epi8(_mm512_alignr_epi64(next.0, self.0, 2), self.0, 1)))
+        safely!(Self(_mm512_permutex2var_epi8(self.0, _mm512_loadu_si512(BEFORE.as_ptr().cast()), next.0)))
     }
 
     #[inline(always)]
@@ -144,8 +166,8 @@ impl Widest {
         for (first, cell) in (0..).step_by(64).zip(cells) {
             // A bit for each lane that has it.
             let equal = safely!(_mm512_cmpeq_epi8_mask(cell.0, number.0));
-            let last = (first | 63usize) - (equal | 1).leading_zeros() as usize;
-            place = if equal != 0 { last } else { place };
+            let last = (first | 63usize).wrapping_sub(equal.leading_zeros() as usize);
+            place = if equal != 0 || cells.len() == 1 { last } else { place };
         }
         place
     }

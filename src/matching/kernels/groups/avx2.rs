@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::group::Group;
-use super::registers::register;
+use super::registers::{AROUND, BITS_APART_OF_FOUR, register};
 use core::arch::x86_64::*;
 
 /// 32 bytes in a register.
@@ -115,6 +115,17 @@ impl Group for Wide {
     }
 
     #[inline(always)]
+    fn key_of_four(code: u8) -> Self {
+        let bits = BITS_APART_OF_FOUR.get(usize::from(code)).unwrap_or(&[0; 16]);
+        safely!(Self(_mm256_broadcastsi128_si256(_mm_loadu_si128(bits.as_ptr().cast()))))
+    }
+
+    #[inline(always)]
+    fn four_bits_apart(self, others: Self) -> Self {
+        safely!(Self(_mm256_shuffle_epi8(self.0, others.0)))
+    }
+
+    #[inline(always)]
     fn after(self, before: Self) -> Self {
         safely!(Self(_mm256_alignr_epi8(self.0, _mm256_permute2x128_si256(before.0, self.0, 0x21), 15)))
     }
@@ -141,16 +152,16 @@ impl Wide {
     fn last_lane_of(cells: &[Self], number: Self) -> usize {
         // A bit for each lane that has it, of 64 at a time.
         let mut place = 0;
-        for (first, cells) in (0..).step_by(64).zip(cells.chunks(2)) {
-            let equal = cells.iter().rev().fold(
+        for (first, pair) in (0..).step_by(64).zip(cells.chunks(2)) {
+            let equal = pair.iter().rev().fold(
                 0u64,
                 #[inline(always)]
                 |bits, cell| {
                     bits << 32 | u64::from(safely!(_mm256_movemask_epi8(_mm256_cmpeq_epi8(cell.0, number.0))) as u32)
                 },
             );
-            let last = (first | 63usize) - (equal | 1).leading_zeros() as usize;
-            place = if equal != 0 { last } else { place };
+            let last = (first | 63usize).wrapping_sub(equal.leading_zeros() as usize);
+            place = if equal != 0 || cells.len() <= 2 { last } else { place };
         }
         place
     }

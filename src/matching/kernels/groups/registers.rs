@@ -1,5 +1,7 @@
 //! What groups in registers have alike, whichever processor's: everything that only moves bytes.
 
+use crate::matching::kernels::BESIDE;
+
 /// Items of an `impl Group` for a register of so many bytes. Beside them it needs `last_lane_of(cells, number)`: the last
 /// lane of all cells that has the number which is in all lanes of `number` and in one of the cells.
 macro_rules! register {
@@ -49,14 +51,34 @@ macro_rules! register {
         }
 
         #[inline(always)]
-        fn raise(cells: &mut [Self], lane: usize) {
-            let (first, length) = (cells.as_mut_ptr().cast(), size_of_val(cells));
-            // SAFETY: as above; any byte is good.
-            let bytes: &mut [u8] = unsafe { core::slice::from_raw_parts_mut(first, length) };
-            if let Some(byte) = bytes.get_mut(lane) {
-                *byte = u8::MAX;
+        fn raise_around(cells: &mut [Self], lane: usize) {
+            let ones = AROUND.get(256usize.wrapping_sub(lane)..).unwrap_or(&[]);
+            for (cell, &ones) in cells.iter_mut().zip(Self::groups(ones)) {
+                *cell = cell.or(Self::of_bytes(ones));
             }
         }
     };
 }
 pub(super) use register;
+
+/// Ones in the lane 256 and as many beside it as belong to a winner.
+pub(super) const AROUND: &[u8; 512] = &{
+    let mut around = [0; 512];
+    let mut lane = 256 - BESIDE;
+    while lane <= 256 + BESIDE {
+        around[lane] = u8::MAX;
+        lane += 1;
+    }
+    around
+};
+
+/// How many bits of two codes of four bits differ.
+pub(super) const BITS_APART_OF_FOUR: &[[u8; 16]; 16] = &{
+    let mut apart = [[0; 16]; 16];
+    let mut codes = 0;
+    while codes < 256 {
+        apart[codes / 16][codes % 16] = ((codes / 16) ^ (codes % 16)).count_ones() as u8;
+        codes += 1;
+    }
+    apart
+};

@@ -1,49 +1,20 @@
 //! The passes, written once for groups of bytes whose lanes run over the disparities of one pixel.
 //!
-//! * `cost`, `edges`, `gather`, `decide`: the passes.
-//! * `group`: what they are written for. `words`: four bytes in a word; `sse2`, `avx2`, `avx512`, `neon`: registers of
-//!   larger processors, with what they have alike from `registers`.
+//! * `cost`, `edges`, `select`: the passes; `gather` and `decide`: the two ends of the last one.
 
 mod cost;
 mod decide;
 mod edges;
 mod gather;
-mod group;
-
-#[cfg(target_arch = "x86_64")]
-mod avx2;
-#[cfg(target_arch = "x86_64")]
-mod avx512;
-#[cfg(target_arch = "aarch64")]
-mod neon;
-#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
-mod registers;
-#[cfg(target_arch = "x86_64")]
-mod sse2;
-mod words;
+mod select;
 
 use super::features::Features;
 use super::{COLUMNS_OFF, EdgeWork, Guide, Passes, PathWork};
+use crate::matching::kernels::groups::Group;
 use crate::matching::kernels::winner::{Found, Unique};
 use crate::matching::kernels::{MASKS, STEP};
 use crate::matching::paths::Along;
-use crate::matching::penalties::Change;
 use core::marker::PhantomData;
-use group::Group;
-
-#[cfg(target_arch = "x86_64")]
-pub(super) use avx2::Wide;
-#[cfg(target_arch = "x86_64")]
-pub(super) use avx512::Widest;
-#[cfg(target_arch = "aarch64")]
-pub(super) use neon::Vector;
-#[cfg(target_arch = "x86_64")]
-pub(super) use sse2::Vector;
-pub(super) use words::Word;
-/// The target's own vectors, as far as they are used here.
-#[cfg(all(target_pointer_width = "64", not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
-pub(super) use words::Word as Vector;
-
 /// The passes over columns of up to `CELLS` groups, all of them in use if `ALL`: then the compiler knows how many.
 pub(super) struct Groups<G, const CELLS: usize, const ALL: bool>(PhantomData<G>);
 
@@ -64,13 +35,8 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Passes for Groups<G, CELLS, 
     }
 
     #[inline(always)]
-    fn gather(work: &mut PathWork<'_>, guide: Guide<'_>) {
-        gather::gather::<G, CELLS, ALL>(work, guide);
-    }
-
-    #[inline(always)]
-    fn decide(work: &mut PathWork<'_>, guide: Guide<'_>, unique: Unique<'_>, put: impl FnMut(usize, Found)) {
-        decide::decide::<G, CELLS, ALL>(work, guide, unique, put);
+    fn select(work: &mut PathWork<'_>, guide: Guide<'_>, unique: Unique<'_>, put: impl FnMut(usize, Found)) {
+        select::select::<G, CELLS, ALL>(work, guide, unique, put);
     }
 }
 
@@ -80,39 +46,23 @@ fn stride<G: Group, const CELLS: usize, const ALL: bool>(work: &PathWork<'_>) ->
     if ALL { CELLS * G::LANES } else { work.stride.max(STEP) }
 }
 
-/// The first column of a volume, and the rest.
+/// A column of a volume; none where there is none.
 #[inline(always)]
-fn split_first<C, const CELLS: usize, const ALL: bool>(volume: &[C], count: usize) -> Option<(&[C], &[C])> {
+fn column<C, const CELLS: usize, const ALL: bool>(volume: &[C], x: usize, count: usize) -> &[C] {
     if ALL {
-        let (column, rest) = volume.split_first_chunk::<CELLS>()?;
-        Some((column, rest))
+        volume.get(x * CELLS..).and_then(|rest| rest.first_chunk::<CELLS>()).map_or(&[], |column| column)
     } else {
-        volume.split_at_checked(count)
+        volume.get(x * count..).and_then(|rest| rest.get(..count)).unwrap_or(&[])
     }
 }
 
 /// The same, to write.
 #[inline(always)]
-fn split_first_mut<C, const CELLS: usize, const ALL: bool>(
-    volume: &mut [C],
-    count: usize,
-) -> Option<(&mut [C], &mut [C])> {
+fn column_mut<C, const CELLS: usize, const ALL: bool>(volume: &mut [C], x: usize, count: usize) -> &mut [C] {
     if ALL {
-        let (column, rest) = volume.split_first_chunk_mut::<CELLS>()?;
-        Some((column, rest))
+        volume.get_mut(x * CELLS..).and_then(|rest| rest.first_chunk_mut::<CELLS>()).map_or(&mut [], |column| column)
     } else {
-        volume.split_at_mut_checked(count)
-    }
-}
-
-/// The last column of a volume, after the rest.
-#[inline(always)]
-fn split_last<C, const CELLS: usize, const ALL: bool>(volume: &[C], count: usize) -> Option<(&[C], &[C])> {
-    if ALL {
-        let (rest, column) = volume.split_last_chunk::<CELLS>()?;
-        Some((rest, column))
-    } else {
-        volume.split_at_checked(volume.len().checked_sub(count)?)
+        volume.get_mut(x * count..).and_then(|rest| rest.get_mut(..count)).unwrap_or_default()
     }
 }
 
@@ -137,6 +87,23 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
         if ALL { &self.0 } else { self.0.get(..count).unwrap_or(&[]) }
     }
 
+    /// Puts it in memory.
+    #[inline(always)]
+    fn put(&self, cells: &mut [G::Cell]) {
+        for (to, from) in cells.iter_mut().zip(&self.0) {
+            *to = from.cell();
+        }
+    }
+
+    /// The sum with another one, at most 255 in each lane.
+    #[inline(always)]
+    fn plus_saturating(mut self, other: &Self) -> Self {
+        for (cell, &other) in self.0.iter_mut().zip(&other.0) {
+            *cell = cell.plus_saturating(other);
+        }
+        self
+    }
+
     /// The average with another one, rounded down.
     #[inline(always)]
     fn average(mut self, other: &[G::Cell]) -> Self {
@@ -148,14 +115,14 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
 
     /// Goes on to a pixel that has these costs.
     #[inline(always)]
-    fn step(mut self, steps: &Steps<G, CELLS, ALL>, change: Change, costs: &[G::Cell]) -> Self {
+    fn step(mut self, steps: &Steps<G, CELLS, ALL>, change: &[G::Cell; 2], costs: &[G::Cell]) -> Self {
         let least = self.cells(costs.len()).iter().fold(
             steps.far,
             #[inline(always)]
             |least, &cell| least.min(cell),
         );
         let least = least.least();
-        let (step, jump) = (G::splat(change.step), least.plus(G::splat(change.jump)));
+        let (step, jump) = (G::of(change[0]), least.plus(G::of(change[1])));
         let (mut before, mut here) = (steps.far, self.0.first().copied().unwrap_or(steps.far));
         for (i, &cost) in costs.iter().enumerate().take(CELLS) {
             let next = if i + 1 < costs.len() { self.0.get(i + 1).copied().unwrap_or(steps.far) } else { steps.far };
@@ -171,10 +138,14 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
 }
 
 /// What every step of a path needs.
-struct Steps<G, const CELLS: usize, const ALL: bool> {
+struct Steps<G: Group, const CELLS: usize, const ALL: bool> {
     /// A cost so high that no path comes from there: beside the search's ends.
     far: G,
-    /// The same where lanes are beyond the search, and 0 where they are not, if there are such lanes.
+    /// What a step and a jump cost where the left image's brightness changes little, more and much; the last one twice.
+    changes: [[G::Cell; 2]; 4],
+    /// The changes of brightness at which it is more, and much.
+    edges: [u8; 2],
+    /// `far` where lanes are beyond the search, and 0 where they are not, if there are such lanes.
     beyond: Option<Path<G, CELLS, ALL>>,
 }
 
@@ -195,7 +166,18 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Steps<G, CELLS, ALL> {
         } else {
             None
         };
-        Self { far: G::splat(far), beyond }
+        let [little, more, much] =
+            work.penalties.changes().map(|change| [change.step, change.jump].map(|cost| G::splat(cost).cell()));
+        Self { far: G::splat(far), changes: [little, more, much, much], edges: work.penalties.edges, beyond }
+    }
+
+    /// What a step and a jump cost between two pixels of the left image.
+    #[inline(always)]
+    fn between(&self, a: u8, b: u8) -> &[G::Cell; 2] {
+        let change = a.abs_diff(b);
+        // The first edge is no greater than the second.
+        let grade = usize::from(change >= self.edges[0]) + usize::from(change >= self.edges[1]);
+        &self.changes[grade & 3]
     }
 
     /// Closes a path's lanes that are beyond the search.

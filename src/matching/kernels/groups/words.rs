@@ -5,6 +5,7 @@
 //! `dsp`.)
 
 use super::group::Group;
+use crate::matching::kernels::BESIDE;
 use crate::matching::kernels::scratch::{words_mut, words_of};
 
 /// The top bit of each lane.
@@ -125,6 +126,20 @@ impl Group for Word {
         Self((fours + (fours >> 4)) & 0x0f0f_0f0f)
     }
 
+    #[cfg(target_pointer_width = "64")]
+    #[inline(always)]
+    fn key_of_four(code: u8) -> Self {
+        Self::splat(code)
+    }
+
+    #[cfg(target_pointer_width = "64")]
+    #[inline(always)]
+    fn four_bits_apart(self, others: Self) -> Self {
+        let bits = self.0 ^ others.0;
+        let pairs = bits - (bits >> 1 & 0x0505_0505);
+        Self((pairs & 0x0303_0303) + (pairs >> 2 & 0x0303_0303))
+    }
+
     #[inline(always)]
     fn or(self, other: Self) -> Self {
         Self(self.0 | other.0)
@@ -185,9 +200,11 @@ impl Group for Word {
     }
 
     #[inline(always)]
-    fn raise(cells: &mut [Self], lane: usize) {
-        if let Some(cell) = cells.get_mut(lane / 4) {
-            cell.0 |= 0xff << (8 * (lane % 4));
+    fn raise_around(cells: &mut [Self], lane: usize) {
+        for lane in lane.saturating_sub(BESIDE)..lane + BESIDE + 1 {
+            if let Some(cell) = cells.get_mut(lane / 4) {
+                cell.0 |= 0xff << (8 * (lane % 4));
+            }
         }
     }
 }

@@ -1,8 +1,8 @@
 //! A row's costs, averaged into those of the rows above.
 
 use super::super::features::Features;
-use super::group::Group;
 use super::{PathWork, stride};
+use crate::matching::kernels::groups::Group;
 use crate::matching::paths::Along;
 
 /// Adds a row.

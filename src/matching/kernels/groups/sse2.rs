@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::group::Group;
-use super::registers::register;
+use super::registers::{AROUND, register};
 use core::arch::x86_64::*;
 
 /// 16 bytes in a register.
@@ -107,6 +107,21 @@ impl Group for Vector {
             let high = _mm_and_si128(_mm_srli_epi16(pairs, 2), mask(0x33));
             let fours = _mm_add_epi8(_mm_and_si128(pairs, mask(0x33)), high);
             Self(_mm_and_si128(_mm_add_epi8(fours, _mm_srli_epi16(fours, 4)), mask(0x0f)))
+        })
+    }
+
+    #[inline(always)]
+    fn key_of_four(code: u8) -> Self {
+        Self::splat(code)
+    }
+
+    #[inline(always)]
+    fn four_bits_apart(self, others: Self) -> Self {
+        safely!({
+            let mask = |bits: i8| _mm_set1_epi8(bits);
+            let bits = _mm_xor_si128(self.0, others.0);
+            let pairs = _mm_sub_epi8(bits, _mm_and_si128(_mm_srli_epi16(bits, 1), mask(0x05)));
+            Self(_mm_add_epi8(_mm_and_si128(pairs, mask(0x03)), _mm_and_si128(_mm_srli_epi16(pairs, 2), mask(0x03))))
         })
     }
 

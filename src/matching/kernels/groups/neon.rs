@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::group::Group;
-use super::registers::register;
+use super::registers::{AROUND, BITS_APART_OF_FOUR, register};
 use core::arch::aarch64::*;
 
 /// 16 bytes in a register.
@@ -101,6 +101,17 @@ impl Group for Vector {
     #[inline(always)]
     fn bits_apart(self, other: Self) -> Self {
         safely!(Self(vcntq_u8(veorq_u8(self.0, other.0))))
+    }
+
+    #[inline(always)]
+    fn key_of_four(code: u8) -> Self {
+        let bits = BITS_APART_OF_FOUR.get(usize::from(code)).unwrap_or(&[0; 16]);
+        safely!(Self(vld1q_u8(bits.as_ptr())))
+    }
+
+    #[inline(always)]
+    fn four_bits_apart(self, others: Self) -> Self {
+        safely!(Self(vqtbl1q_u8(self.0, others.0)))
     }
 
     #[inline(always)]

@@ -14,62 +14,86 @@ use crate::units::{Disparity, PixelFlags};
 /// Fills the gaps of up to `most` pixels whose sides differ by up to `step`.
 #[inline(never)]
 pub(super) fn fill(answers: &mut [Disparity], flags: &mut [PixelFlags], most: u8, step: Disparity) {
-    // To the right: what is in a gap gets the answer on its left, as far as the gap may reach, and the flag.
-    let (mut left, mut length) = (u32::from(Disparity::NONE.raw()), 0u32);
-    for (answers, flags) in answers.chunks_mut(GROUP).zip(flags.chunks_mut(GROUP)) {
-        if let Some(last) = whole(answers) {
-            (left, length) = (last, 0);
-            continue;
+    let mut right = ToRight { left: u32::from(Disparity::NONE.raw()), length: 0, most: u32::from(most) };
+    let mut left = ToLeft { right: 0, refused: u32::MAX, step: u32::from(step.raw()) };
+    // On small cores the work is the same for every picture. Larger processors see at one look that a group has no gap.
+    if cfg!(target_pointer_width = "64") {
+        for (answers, flags) in answers.chunks_mut(GROUP).zip(flags.chunks_mut(GROUP)) {
+            match answers.last() {
+                Some(last) if is_whole(answers) => (right.left, right.length) = (u32::from(last.raw()), 0),
+                _ => right.through(answers, flags),
+            }
         }
+        for (answers, flags) in answers.chunks_mut(GROUP).zip(flags.chunks_mut(GROUP)).rev() {
+            match answers.first() {
+                Some(first) if is_unfilled(flags) => (left.right, left.refused) = (u32::from(first.raw()), 0),
+                _ => left.through(answers, flags),
+            }
+        }
+    } else {
+        right.through(answers, flags);
+        left.through(answers, flags);
+    }
+}
+
+/// To the right: what is in a gap gets the answer on its left, as far as the gap may reach, and the flag.
+struct ToRight {
+    left: u32,
+    length: u32,
+    most: u32,
+}
+
+impl ToRight {
+    #[inline(always)]
+    fn through(&mut self, answers: &mut [Disparity], flags: &mut [PixelFlags]) {
         for (answer, flags) in answers.iter_mut().zip(flags) {
             let here = u32::from(answer.raw());
             let gap = if_none(here);
-            length = (length + 1) & gap;
-            left ^= (left ^ here) & !gap;
-            *answer = Disparity::from_raw((left | if_more(length, u32::from(most))) as u16);
+            self.length = (self.length + 1) & gap;
+            self.left ^= (self.left ^ here) & !gap;
+            *answer = Disparity::from_raw((self.left | if_more(self.length, self.most)) as u16);
             *flags = PixelFlags::from_bits(flags.bits() | PixelFlags::FILLED.bits() & gap as u8);
-        }
-    }
-    // And back: the answer on its right, if that is less. What the pass before left out is at the gap's right end, and
-    // so none of the gap is filled.
-    let (mut right, mut refused) = (0, u32::MAX);
-    for (answers, flags) in answers.chunks_mut(GROUP).zip(flags.chunks_mut(GROUP)).rev() {
-        if let (Some(_), Some(first)) = (unfilled(flags), answers.first()) {
-            (right, refused) = (u32::from(first.raw()), 0);
-            continue;
-        }
-        for (answer, flags) in answers.iter_mut().zip(flags).rev() {
-            let here = u32::from(answer.raw());
-            let gap = if_filled(*flags);
-            let apart = here.abs_diff(right);
-            refused = (refused | if_none(here) | if_more(apart, u32::from(step.raw()))) & gap;
-            right ^= (right ^ here) & !gap;
-            let lesser = right ^ (right ^ here) & if_more(right, here);
-            *answer = Disparity::from_raw((lesser | refused) as u16);
-            *flags = PixelFlags::from_bits(flags.bits() & !(PixelFlags::FILLED.bits() & refused as u8));
         }
     }
 }
 
-/// Pixels of which one look tells that they have no gap, where that is done at all.
-const GROUP: usize = 16;
-/// Whether groups without a gap are passed over: on processors with vectors. On small cores the work is the same for every picture.
-const PASSES_OVER: bool = cfg!(target_pointer_width = "64");
+/// And back: the answer on its right, if that is less. What the pass before left out is at the gap's right end, and so none of
+/// the gap is filled.
+struct ToLeft {
+    right: u32,
+    refused: u32,
+    step: u32,
+}
 
-/// The last number of a group that has no gap.
+impl ToLeft {
+    #[inline(always)]
+    fn through(&mut self, answers: &mut [Disparity], flags: &mut [PixelFlags]) {
+        for (answer, flags) in answers.iter_mut().zip(flags).rev() {
+            let here = u32::from(answer.raw());
+            let gap = if_filled(*flags);
+            let apart = here.abs_diff(self.right);
+            self.refused = (self.refused | if_none(here) | if_more(apart, self.step)) & gap;
+            self.right ^= (self.right ^ here) & !gap;
+            let lesser = self.right ^ (self.right ^ here) & if_more(self.right, here);
+            *answer = Disparity::from_raw((lesser | self.refused) as u16);
+            *flags = PixelFlags::from_bits(flags.bits() & !(PixelFlags::FILLED.bits() & self.refused as u8));
+        }
+    }
+}
+
+/// Pixels that are looked at together.
+const GROUP: usize = 16;
+
+/// Whether all of a group have an answer.
 #[inline(always)]
-fn whole(answers: &[Disparity]) -> Option<u32> {
-    let group = answers.first_chunk::<GROUP>().filter(|_| PASSES_OVER)?;
-    let greatest = group.iter().fold(0, |most, answer| most.max(answer.raw()));
-    (greatest < Disparity::NONE.raw()).then_some(u32::from(group[GROUP - 1].raw()))
+fn is_whole(answers: &[Disparity]) -> bool {
+    answers.iter().fold(0, |most, answer| most.max(answer.raw())) < Disparity::NONE.raw()
 }
 
 /// Whether nothing is filled in a group.
 #[inline(always)]
-fn unfilled(flags: &[PixelFlags]) -> Option<()> {
-    let group = flags.first_chunk::<GROUP>().filter(|_| PASSES_OVER)?;
-    let any = group.iter().fold(0, |any, flags| any | flags.bits());
-    (any & PixelFlags::FILLED.bits() == 0).then_some(())
+fn is_unfilled(flags: &[PixelFlags]) -> bool {
+    flags.iter().fold(0, |any, flags| any | flags.bits()) & PixelFlags::FILLED.bits() == 0
 }
 
 /// Takes out what was filled: no answer again. The flags stay as they are.

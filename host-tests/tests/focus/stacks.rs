@@ -96,7 +96,7 @@ fn usual() -> &'static (FocusScene, Vec<GrayImage>) {
 fn textured_pixels_are_a_tenth_of_a_frame_off() {
     let mut table = String::new();
     // Finest detail px, contrast, noise, and what must hold.
-    for (finest, contrast, noise, median, share) in [(2.0, 160.0, 1.0, 0.1, 0.95), (3.0, 160.0, 3.0, 0.15, 0.95)] {
+    for (finest, contrast, noise, median, share) in [(2.0, 160.0, 1.0, 0.05, 0.95), (3.0, 160.0, 3.0, 0.1, 0.95)] {
         let (scene, frames) = match usual() {
             usual if finest == 2.0 => usual.clone(),
             _ => {
@@ -189,5 +189,5 @@ fn breathing_is_corrected_by_the_lens() {
     let left = answer(&frames, |_| Breathing::NONE);
     let [ours, plain] = [corrected, left].map(|found| errors(&found.index(), &truth(&scene)));
     println!("corrected {ours:?}, left {plain:?}");
-    assert!(ours.0 <= 0.12 && ours.1 >= 0.95 && ours.0 < 0.9 * plain.0, "{ours:?} {plain:?}");
+    assert!(ours.0 <= 0.14 && ours.1 >= 0.95 && ours.0 < 0.95 * plain.0, "{ours:?} {plain:?}");
 }

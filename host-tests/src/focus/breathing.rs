@@ -12,6 +12,11 @@ pub struct Agreement {
 }
 
 impl Agreement {
+    /// Whether frames of that size differ enough to be told apart: by two pixels in a corner.
+    pub fn is_telling((width, height): (u32, u32), ratio: f32) -> bool {
+        (ratio - 1.0).abs() * (width as f32).hypot(height as f32) >= 4.0
+    }
+
     /// Adds a pair of frames, of which `after` is `ratio` times as large as `before` by the lens's model.
     pub fn add(&mut self, before: &GrayImage, after: &GrayImage, ratio: f32) {
         let Ok(scale) = Breathing::new(ratio) else { return };

@@ -171,8 +171,12 @@ impl FocusCell {
         let ((narrow, narrow_bend), _) = fit(NARROW);
         let ((wide, wide_bend), is_inside) = fit(WIDE);
         let [few, many] = BROAD[usize::from(!is_inside)];
-        let share = (many.saturating_sub(wide_bend.into()) * 256 / (many - few)).min(256);
-        let mix = |wide: u32, narrow: u32| (wide * share + narrow * (256 - share) + 128) >> 8;
+        let share = (many.saturating_sub(wide_bend.into()) * 256).checked_div(many - few).unwrap_or(0).min(256);
+        let mix = |wide: u32, narrow: u32| {
+            // A position has 24 bits, and both are within a window of each other.
+            let apart = (wide as i32).wrapping_sub(narrow as i32);
+            narrow.saturating_add_signed(apart.wrapping_mul(share as i32).wrapping_add(128) >> 8)
+        };
         self.position = mix(wide, narrow);
         self.bend = mix(wide_bend.into(), narrow_bend.into()) as u16;
         self.wide = share as u16;
@@ -227,7 +231,7 @@ impl FocusCell {
         // the mean of their sizes. What else is in a window, nearer and farther, moves a peak by the more, the wider it is: by a
         // twelfth of the distance at which it has fallen by half an octave, on rendered slopes and waves.
         let (bend, wide) = (u32::from(self.bend).max(1), u32::from(self.wide));
-        let noise = self.rough_mean(frames) * (27 * (256 - wide) + 14 * wide) / (bend << 8);
+        let noise = (self.rough_mean(frames) * (27 * (256 - wide) + 14 * wide)).checked_div(bend << 8).unwrap_or(0);
         if noise > (frames * 12).max(256) {
             return Err(NoFocus::Broad);
         }

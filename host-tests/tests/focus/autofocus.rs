@@ -21,8 +21,13 @@ fn image_m(position: f64) -> f64 {
 fn flat(seed: u64, textured: bool) -> (FocusScene, f64) {
     let mut random = Random::new(seed);
     let lens = ThinLens::new(4e-3).expect("a lens");
-    // Three steps inside of the range: beside its ends a peak has one flank.
-    let best = 48.0 + 927.0 * random.unit();
+    // Anywhere in the range, half of the scenes beside its ends, where a peak has one flank.
+    let place = random.unit();
+    let best = match seed % 4 {
+        0 => 0.5 + 80.0 * place,
+        1 => 1022.5 - 80.0 * place,
+        _ => 0.5 + 1022.0 * place,
+    };
     let depth = lens.object_distance(image_m(best)).expect("an object");
     let (finest, contrast) = (1.5 + 3.0 * random.unit(), if textured { 60.0 + 140.0 * random.unit() } else { 0.0 });
     let grey = texture(SIDE, SIDE, finest, contrast, seed);

@@ -163,7 +163,7 @@ fn what_cannot_be_recorded_or_is_odd_is_told_by_name() {
     let file = bench.path("a.lines");
     let out = file.display().to_string();
     let refused = |left: &str| {
-        let run = stereo(&["record", "--left", left, "--right", &right, "--out", &out]);
+        let run = stereo(["record", "--left", left, "--right", &right, "--out", &out]);
         assert!(!run.status.success() && !file.exists());
         let told = text(&run.stderr).to_owned();
         assert!(told.lines().count() == 1, "{told}");

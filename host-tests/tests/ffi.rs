@@ -3,6 +3,9 @@
 //! `ffi/misuse.c` goes through every status from C, under sanitizers (`cargo xtask c`).
 #![allow(unsafe_code, reason = "functions with a C ABI are called as C calls them")]
 
+#[path = "ffi/lost.rs"]
+mod lost;
+
 use std::ffi::{CStr, c_void};
 use std::ptr::{null, null_mut};
 use stereopsis::ffi::{

@@ -24,20 +24,25 @@ fn generated_parts_are_those_of_this_tree() {
     let path = root().join("README.md");
     let readme = read(&path);
     let current = generated::splice(&readme).unwrap_or_else(|e| panic!("README.md: {e}"));
-    let picture = generated::picture();
-    let picture_path = root().join(generated::PICTURE);
+    let pictures = [(generated::PICTURE, generated::picture()), (generated::DISPLAY, generated::display())];
     if std::env::var("STEREOPSIS_README").as_deref() == Ok("write") {
-        fs::create_dir_all(picture_path.parent().expect("a folder")).expect("the picture's folder");
-        fs::write(&picture_path, generated::as_png(&picture)).expect("the picture");
+        for (place, picture) in &pictures {
+            let path = root().join(place);
+            fs::create_dir_all(path.parent().expect("a folder")).expect("the picture's folder");
+            fs::write(&path, generated::as_png(picture)).expect("the picture");
+        }
         fs::write(&path, current).expect("README.md");
         return;
     }
     let differs = readme.lines().zip(current.lines()).find(|(old, new)| old != new);
     assert!(readme == current, "README.md is not current, run `cargo xtask readme`: {differs:?}");
-    let stored = image::open(&picture_path).unwrap_or_else(|e| panic!("{}: {e}", generated::PICTURE)).into_rgb8();
-    assert!(stored == picture, "{} is not current, run `cargo xtask readme`", generated::PICTURE);
-    let bytes = fs::metadata(&picture_path).expect("the picture").len();
-    assert!(bytes < 150_000, "{} has {bytes} bytes", generated::PICTURE);
+    for (place, picture) in &pictures {
+        let path = root().join(place);
+        let stored = image::open(&path).unwrap_or_else(|e| panic!("{place}: {e}")).into_rgb8();
+        assert!(stored == *picture, "{place} is not current, run `cargo xtask readme`");
+        let bytes = fs::metadata(&path).expect("the picture").len();
+        assert!(bytes < 150_000, "{place} has {bytes} bytes");
+    }
 }
 
 /// What is committed is cloned as a user would, and every `sh` block of its README is run there.

@@ -48,29 +48,39 @@ fn a_radial_scene_is_symmetric() {
     let found = answer("radial256_30");
     let index = found.index();
     let middle = (found.width - 1) as f32 / 2.0;
-    let mut rings = vec![Vec::new(); 120];
-    for (i, &frame) in index.iter().enumerate() {
-        let (x, y) = ((i % found.width) as f32 - middle, (i / found.width) as f32 - middle);
-        if let (true, Some(ring)) = (frame.is_finite(), rings.get_mut(x.hypot(y) as usize)) {
-            ring.push(frame);
+    // Within the largest circle, and out to the corners, where the blur hardly changes from frame to frame.
+    for (radii, half, one, answered) in [(120, 0.95, 0.98, 0.95), (180, 0.92, 0.97, 0.85)] {
+        let mut rings = vec![Vec::new(); radii];
+        let mut all = 0.0;
+        for (i, &frame) in index.iter().enumerate() {
+            let (x, y) = ((i % found.width) as f32 - middle, (i / found.width) as f32 - middle);
+            if let Some(ring) = rings.get_mut(x.hypot(y) as usize) {
+                all += 1.0;
+                ring.extend(frame.is_finite().then_some(frame));
+            }
         }
+        let mut off = Vec::new();
+        for ring in rings[2..].iter_mut().filter(|ring| !ring.is_empty()) {
+            ring.sort_by(f32::total_cmp);
+            let median = ring[ring.len() / 2];
+            off.extend(ring.iter().map(|frame| (frame - median).abs()));
+        }
+        let within = |most: f32| off.iter().filter(|&&e| e <= most).count() as f64 / off.len() as f64;
+        let share = off.len() as f64 / all;
+        println!(
+            "to {radii} px: {share:.3} answered, of these {:.3} and {:.3} within 0.5 and 1 frame",
+            within(0.5),
+            within(1.0)
+        );
+        assert!(within(0.5) >= half && within(1.0) >= one && share > answered, "{radii} {share}");
     }
-    let mut off = Vec::new();
-    for ring in &mut rings[2..] {
-        ring.sort_by(f32::total_cmp);
-        let median = ring[ring.len() / 2];
-        off.extend(ring.iter().map(|frame| (frame - median).abs()));
-    }
-    let within = |most: f32| off.iter().filter(|&&e| e <= most).count() as f64 / off.len() as f64;
-    println!("within 0.5 frame of the ring's median {:.3}, within 1 {:.3}", within(0.5), within(1.0));
-    assert!(within(0.5) >= 0.85 && within(1.0) >= 0.95, "{} {}", within(0.5), within(1.0));
 }
 
 #[test]
 fn a_webcam_that_breathes_is_answered() {
     let found = answer("webcam_320x240");
     let share = found.answers() as f64 / found.peaks.len() as f64;
-    assert!(share > 0.9, "{share} answered");
+    assert!(share > 0.8, "{share} answered");
     // The sponge in front is nearer, in focus later, than the paper behind it.
     let median = |left: usize, top: usize| {
         let mut all: Vec<_> = (0..900).map(|i| found.index()[(top + i / 30) * found.width + left + i % 30]).collect();

@@ -53,6 +53,8 @@ pub use format::{FrameStart, LineFormat, LineStart, PixelFormat};
 pub use handoff::{EmptyLine, FilledLine, HandedLines, LineConsumer, LineProducer, LineSlots};
 pub use pair::{CameraPair, PairError, Pairing, RowSkew};
 pub use ping_pong::{Half, PingPong};
+#[cfg(feature = "async")]
+pub use sensors::{AsyncHm01b0, AsyncMt9v034};
 pub use sensors::{
     ExposureControl, Hm01b0, Hm01b0Mode, Hm01b0Size, Mt9v034, Mt9v034Mode, Mt9v034Pattern, Mt9v034Window, SensorError,
 };

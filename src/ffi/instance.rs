@@ -2,7 +2,11 @@
 #![allow(unsafe_code)]
 
 use super::state::{State, share_bytes};
-use super::{Config, Handle, Row, Status};
+use super::{
+    Config, Counters, Handle, Row, STEREOPSIS_LOST_DROPPED, STEREOPSIS_LOST_LATE, STEREOPSIS_LOST_STALE,
+    STEREOPSIS_LOST_TORN, Status,
+};
+use crate::camera::LineFault;
 use crate::matching::{self, MatchError, Scheme};
 use crate::pipeline::Pipeline;
 use core::ffi::c_void;
@@ -154,6 +158,88 @@ impl<S: Scheme, const W: usize, const D: usize> Instance<S, W, D> {
             Ok(found) => unsafe { give(row, found, Status::NoRowYet) },
             Err(e) => e.into(),
         }
+    }
+
+    /// Takes the line above once more, for one that was lost.
+    ///
+    /// # Safety
+    ///
+    /// As [`Self::deinit`]; `row` is null or points to a row's bytes.
+    pub unsafe fn push_lost(handle: *mut Handle, fault: i32, row: *mut Row) -> Status {
+        if row.is_null() {
+            return Status::Null;
+        }
+        // SAFETY: the caller's promise.
+        let state = match unsafe { State::<S, W, D>::open(handle) } {
+            Ok(state) if state.overlaps(row, 1) => return Status::Overlap,
+            Ok(state) => state,
+            Err(status) => return status,
+        };
+        let fault = match fault {
+            STEREOPSIS_LOST_DROPPED => LineFault::Dropped,
+            STEREOPSIS_LOST_TORN => LineFault::Torn,
+            STEREOPSIS_LOST_LATE => LineFault::Late,
+            STEREOPSIS_LOST_STALE => LineFault::Stale,
+            _ => return Status::Fault,
+        };
+        match state.pipeline.push_lost(fault) {
+            // SAFETY: the caller's promise, and the row stands beside the state.
+            Ok(found) => unsafe { give(row, found, Status::NoRowYet) },
+            Err(e) => e.into(),
+        }
+    }
+
+    /// Takes answers of the last row away where a camera did not see.
+    ///
+    /// # Safety
+    ///
+    /// As [`Self::deinit`]; `left` and `right` are null or point to `length` bytes.
+    pub unsafe fn mask(handle: *mut Handle, left: *const u8, right: *const u8, length: usize) -> Status {
+        // SAFETY: the caller's promise.
+        let state = match unsafe { State::<S, W, D>::open(handle) } {
+            Ok(state) => state,
+            Err(status) => return status,
+        };
+        let Some(row) = state.pipeline.row() else { return Status::NoRowYet };
+        if length != row.disparities().len() {
+            return Status::LineLength;
+        }
+        if state.overlaps(left, length) || state.overlaps(right, length) {
+            return Status::Overlap;
+        }
+        state.pipeline.mask(|_, masks| {
+            for (mask, given) in masks.into_iter().zip([left, right]) {
+                if given.is_null() {
+                    mask.fill(1);
+                } else {
+                    // SAFETY: the caller's promise, and the array does not stand in the state.
+                    let given = unsafe { core::slice::from_raw_parts(given, length) };
+                    mask.iter_mut().zip(given).for_each(|(mask, given)| *mask = *given);
+                }
+            }
+            true
+        });
+        Status::Ok
+    }
+
+    /// What went wrong since the start.
+    ///
+    /// # Safety
+    ///
+    /// As [`Self::deinit`]; `counters` is null or points to counters' bytes.
+    pub unsafe fn counters(handle: *mut Handle, counters: *mut Counters) -> Status {
+        if counters.is_null() {
+            return Status::Null;
+        }
+        // SAFETY: the caller's promise.
+        let state = match unsafe { State::<S, W, D>::open(handle) } {
+            Ok(state) if state.overlaps(counters, 1) => return Status::Overlap,
+            Ok(state) => state,
+            Err(status) => return status,
+        };
+        // SAFETY: the caller's promise; no alignment is asked for.
+        unsafe { counters.write_unaligned(state.pipeline.counters().into()) };
+        Status::Ok
     }
 
     /// Goes on below the last line.

@@ -22,7 +22,7 @@ macro_rules! instantiate_c_api {
         pub mod stereopsis_c {
             use super::StereopsisInstance;
             use core::ffi::{c_char, c_void};
-            use $crate::ffi::{Config, Handle, Rig, Row, Status};
+            use $crate::ffi::{Config, Counters, Handle, NoiseMeter, Rig, Row, Status};
 
             /// The library's interface: a program that was compiled with another `STEREOPSIS_ABI` must not go on.
             #[unsafe(no_mangle)]
@@ -142,6 +142,38 @@ macro_rules! instantiate_c_api {
                 unsafe { StereopsisInstance::push(handle, left, right, length, row) }
             }
 
+            /// In place of `stereopsis_push`, of a line that did not come, for a reason of the `STEREOPSIS_LOST_` numbers: the
+            /// line above stands in. Rows whose matching window saw it have no answers and `STEREOPSIS_FLAG_DAMAGED` on every
+            /// pixel, rows that it can have touched otherwise keep theirs and have the flag, and every other row is
+            /// what it would be without the loss. Answers as `stereopsis_push` does.
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn stereopsis_push_lost(handle: *mut Handle, fault: i32, row: *mut Row) -> Status {
+                // SAFETY: as above.
+                unsafe { StereopsisInstance::push_lost(handle, fault, row) }
+            }
+
+            /// Takes answers of the row that came out last away where a camera did not see, such as the black border of a
+            /// rectified image: masks of the left and of the right image's row, `length` bytes each, 0 for a pixel that was
+            /// not seen; null where all were. An answer goes, and has `STEREOPSIS_FLAG_OUTSIDE`, where its own pixel or its
+            /// partner was not seen. The row's arrays change in place.
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn stereopsis_mask(
+                handle: *mut Handle,
+                left: *const u8,
+                right: *const u8,
+                length: usize,
+            ) -> Status {
+                // SAFETY: as above.
+                unsafe { StereopsisInstance::mask(handle, left, right, length) }
+            }
+
+            /// What was counted since `stereopsis_start`.
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn stereopsis_counters(handle: *mut Handle, counters: *mut Counters) -> Status {
+                // SAFETY: as above.
+                unsafe { StereopsisInstance::counters(handle, counters) }
+            }
+
             /// Gives the next row when all lines are in: `STEREOPSIS_STATUS_OK` with a row, or
             /// `STEREOPSIS_STATUS_FRAME_DONE` with an empty one when all are out.
             #[unsafe(no_mangle)]
@@ -161,6 +193,37 @@ macro_rules! instantiate_c_api {
             ) -> Status {
                 // SAFETY: as above.
                 unsafe { StereopsisInstance::sigma_px(handle, sigma_px, count) }
+            }
+
+            /// A meter that has seen no line; it needs no matcher. As often as light may change: measure a frame, and give
+            /// what it says to the configuration of the next ones.
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn stereopsis_noise_clear(meter: *mut NoiseMeter) -> Status {
+                // SAFETY: as above.
+                unsafe { $crate::ffi::noise_clear(meter) }
+            }
+
+            /// Measures a line of either camera, 8-bit grey, 65535 bytes at most.
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn stereopsis_noise_line(
+                meter: *mut NoiseMeter,
+                line: *const u8,
+                length: usize,
+            ) -> Status {
+                // SAFETY: as above.
+                unsafe { $crate::ffi::noise_line(meter, line, length) }
+            }
+
+            /// The `STEREOPSIS_NOISE_` number of the lines so far, for the configuration's `noise`, and unless `sigma_16ths` is
+            /// null the deviation in 1/16 grey level; none and 0 before the first line.
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn stereopsis_noise_level(
+                meter: *mut NoiseMeter,
+                noise: *mut u8,
+                sigma_16ths: *mut u16,
+            ) -> Status {
+                // SAFETY: as above.
+                unsafe { $crate::ffi::noise_level(meter, noise, sigma_16ths) }
             }
 
             /// Depths of `count` disparities to the nearest millimetre, 0 for none: no answer, at infinity, or beyond

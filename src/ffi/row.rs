@@ -22,6 +22,8 @@ pub const STEREOPSIS_FLAG_MISMATCH: u8 = 16;
 pub const STEREOPSIS_FLAG_SPECKLE: u8 = 32;
 /// The answer is not the pixel's own but the farther one of those on both sides of a small gap in the row.
 pub const STEREOPSIS_FLAG_FILLED: u8 = 64;
+/// A line near the row was lost (`stereopsis_push_lost`). Beside an answer: the line can have touched it.
+pub const STEREOPSIS_FLAG_DAMAGED: u8 = 128;
 
 /// The constants are literals, so that the header has them; these are what they say.
 const _: () = {
@@ -34,6 +36,7 @@ const _: () = {
     assert!(STEREOPSIS_FLAG_MISMATCH == PixelFlags::MISMATCH.bits());
     assert!(STEREOPSIS_FLAG_SPECKLE == PixelFlags::SPECKLE.bits());
     assert!(STEREOPSIS_FLAG_FILLED == PixelFlags::FILLED.bits());
+    assert!(STEREOPSIS_FLAG_DAMAGED == PixelFlags::DAMAGED.bits());
 };
 
 /// A row of results. The arrays stand in the matcher's memory and hold until the next call with its handle.

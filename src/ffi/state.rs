@@ -3,7 +3,7 @@
 
 use super::Status;
 use crate::matching::{self, Scheme};
-use crate::pipeline::Pipeline;
+use crate::pipeline::Guarded;
 use core::ffi::c_void;
 
 /// Every matcher's memory may be aligned to this many bytes: `uint64_t` will do.
@@ -19,14 +19,14 @@ pub struct Handle {
 pub(super) struct State<S: Scheme, const W: usize, const D: usize> {
     /// [`MARK`] and the state's own address: memory that was moved or never initialised does not have it.
     mark: usize,
-    pub(super) pipeline: Pipeline<S, W, D>,
+    pub(super) pipeline: Guarded<S, W, D>,
 }
 
 /// Bits that memory is unlikely to hold by chance.
 const MARK: usize = 0x57E2_E0D5;
 
 /// Bytes of lines and counters beside the matcher, at most.
-const FIXED_BYTES: usize = 128;
+const FIXED_BYTES: usize = 352;
 
 /// Bytes of memory that a matcher takes on any target, at most: what the macros of `stereopsis.h` say.
 ///
@@ -72,7 +72,7 @@ impl<S: Scheme, const W: usize, const D: usize> State<S, W, D> {
         // SAFETY: as before; nothing refers to these bytes yet. The constant is all zero: the bytes are set in place and
         // no copy stands on the stack.
         unsafe {
-            (&raw mut (*state).pipeline).write(const { Pipeline::new() });
+            (&raw mut (*state).pipeline).write(const { Guarded::new() });
             (&raw mut (*state).mark).write_volatile(Self::mark_of(state));
         }
         Ok(state.cast())

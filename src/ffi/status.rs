@@ -5,7 +5,7 @@ use crate::pipeline::PushError;
 use core::ffi::CStr;
 
 /// The version of this interface. It changes when a program that was compiled with another header would go wrong.
-pub const STEREOPSIS_ABI: u32 = 4;
+pub const STEREOPSIS_ABI: u32 = 5;
 
 /// What a call answers: below 0 it is an error, and nothing has changed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -78,6 +78,8 @@ pub enum Status {
     Penalties = -29,
     /// Configuration: the noise is none of the `STEREOPSIS_NOISE_` numbers.
     Noise = -30,
+    /// The fault is none of the `STEREOPSIS_LOST_` numbers.
+    Fault = -31,
 }
 
 impl Status {
@@ -117,11 +119,12 @@ impl Status {
             Self::Gradient => c"the range of gradients must be 1 to 14",
             Self::Penalties => c"the penalties must be in order, and their sums within bytes",
             Self::Noise => c"there is no such level of noise",
+            Self::Fault => c"there is no such fault of a line",
         }
     }
 
     /// Every status, for the way back from a number.
-    const ALL: [Self; 33] = [
+    const ALL: [Self; 34] = [
         Self::Ok,
         Self::NoRowYet,
         Self::FrameDone,
@@ -155,6 +158,7 @@ impl Status {
         Self::Gradient,
         Self::Penalties,
         Self::Noise,
+        Self::Fault,
     ];
 }
 

@@ -13,6 +13,7 @@
      stereopsis_start(matcher, &config);
      stereopsis_begin_frame(matcher);
      for each line: stereopsis_push(matcher, left, right, 320, &row);
+       or, where it was lost: stereopsis_push_lost(matcher, STEREOPSIS_LOST_DROPPED, &row);
      until STEREOPSIS_STATUS_FRAME_DONE: stereopsis_flush(matcher, &row);
 
    One call at a time for one handle. Pointers are checked for null, alignment and overlap; what cannot be checked is the
@@ -31,7 +32,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_FAST_BYTES(width, disparities) \
-  ((size_t)3280 + (size_t)66 * (width) + (size_t)13 * (disparities) + \
+  ((size_t)3504 + (size_t)66 * (width) + (size_t)13 * (disparities) + \
    (size_t)1 * (width) * (disparities))
 
 /**
@@ -39,7 +40,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_BLOCK_BYTES(width, disparities) \
-  ((size_t)192 + (size_t)70 * (width) + (size_t)13 * (disparities) + \
+  ((size_t)416 + (size_t)70 * (width) + (size_t)13 * (disparities) + \
    (size_t)1 * (width) * (disparities))
 
 /**
@@ -47,7 +48,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_SGM_LEAN_BYTES(width, disparities) \
-  ((size_t)192 + (size_t)52 * (width) + (size_t)8 * (disparities) + \
+  ((size_t)416 + (size_t)52 * (width) + (size_t)8 * (disparities) + \
    (size_t)3 * (width) * (disparities))
 
 /**
@@ -55,7 +56,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_SGM_BYTES(width, disparities) \
-  ((size_t)192 + (size_t)52 * (width) + (size_t)8 * (disparities) + \
+  ((size_t)416 + (size_t)52 * (width) + (size_t)8 * (disparities) + \
    (size_t)3 * (width) * (disparities))
 
 /**
@@ -63,14 +64,14 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_SGM_EDGE_BYTES(width, disparities) \
-  ((size_t)192 + (size_t)53 * (width) + (size_t)8 * (disparities) + \
+  ((size_t)416 + (size_t)53 * (width) + (size_t)8 * (disparities) + \
    (size_t)5 * (width) * (disparities))
 
 
 /**
  * The version of this interface. It changes when a program that was compiled with another header would go wrong.
  */
-#define STEREOPSIS_ABI 4
+#define STEREOPSIS_ABI 5
 
 /**
  * Every matcher's memory may be aligned to this many bytes: `uint64_t` will do.
@@ -156,6 +157,31 @@
  * The answer is not the pixel's own but the farther one of those on both sides of a small gap in the row.
  */
 #define STEREOPSIS_FLAG_FILLED 64
+
+/**
+ * A line near the row was lost (`stereopsis_push_lost`). Beside an answer: the line can have touched it.
+ */
+#define STEREOPSIS_FLAG_DAMAGED 128
+
+/**
+ * The line did not come, or no buffer was free for it.
+ */
+#define STEREOPSIS_LOST_DROPPED 0
+
+/**
+ * The line was overwritten while it was read, or has fewer or more pixels than a line.
+ */
+#define STEREOPSIS_LOST_TORN 1
+
+/**
+ * The line came after the time at which it was of use.
+ */
+#define STEREOPSIS_LOST_LATE 2
+
+/**
+ * The buffer holds a line of before: nobody has filled it since.
+ */
+#define STEREOPSIS_LOST_STALE 3
 
 /**
  * What a call answers: below 0 it is an error, and nothing has changed.
@@ -297,6 +323,10 @@ enum stereopsis_status
    * Configuration: the noise is none of the `STEREOPSIS_NOISE_` numbers.
    */
   STEREOPSIS_STATUS_NOISE = -30,
+  /**
+   * The fault is none of the `STEREOPSIS_LOST_` numbers.
+   */
+  STEREOPSIS_STATUS_FAULT = -31,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -440,6 +470,67 @@ typedef struct stereopsis_row {
 } stereopsis_row;
 
 /**
+ * Counts since `stereopsis_start`, each of which stays at its largest value when it is reached.
+ */
+typedef struct stereopsis_counts {
+  /**
+   * Frames begun.
+   */
+  uint32_t frames;
+  /**
+   * Frames of which every line came, and every row went out.
+   */
+  uint32_t frames_whole;
+  /**
+   * Frames of which every row went out, some of them flagged.
+   */
+  uint32_t frames_damaged;
+  /**
+   * Frames that were given up after they had begun.
+   */
+  uint32_t frames_broken;
+  /**
+   * Rows that went out.
+   */
+  uint32_t rows;
+  /**
+   * Rows of these with `STEREOPSIS_FLAG_DAMAGED`.
+   */
+  uint32_t rows_damaged;
+  /**
+   * Lines that came.
+   */
+  uint32_t lines;
+  /**
+   * Lines told as `STEREOPSIS_LOST_DROPPED`.
+   */
+  uint32_t lines_dropped;
+  /**
+   * Lines told as `STEREOPSIS_LOST_TORN`.
+   */
+  uint32_t lines_torn;
+  /**
+   * Lines told as `STEREOPSIS_LOST_LATE`.
+   */
+  uint32_t lines_late;
+  /**
+   * Lines told as `STEREOPSIS_LOST_STALE`.
+   */
+  uint32_t lines_stale;
+} stereopsis_counts;
+
+/**
+ * How noisy the lines are that it was given: the caller's memory, for `stereopsis_noise_clear` and what follows it. The words are
+ * the library's.
+ */
+typedef struct stereopsis_noise_meter {
+  /**
+   * Counters.
+   */
+  uint32_t words[65];
+} stereopsis_noise_meter;
+
+/**
  * Two cameras after rectification: rows are aligned, both have one focal length.
  */
 typedef struct stereopsis_rig {
@@ -558,6 +649,32 @@ stereopsis_status stereopsis_push(struct stereopsis *handle,
                                   struct stereopsis_row *row);
 
 /**
+ * In place of `stereopsis_push`, of a line that did not come, for a reason of the `STEREOPSIS_LOST_` numbers: the
+ * line above stands in. Rows whose matching window saw it have no answers and `STEREOPSIS_FLAG_DAMAGED` on every
+ * pixel, rows that it can have touched otherwise keep theirs and have the flag, and every other row is
+ * what it would be without the loss. Answers as `stereopsis_push` does.
+ */
+stereopsis_status stereopsis_push_lost(struct stereopsis *handle,
+                                       int32_t fault,
+                                       struct stereopsis_row *row);
+
+/**
+ * Takes answers of the row that came out last away where a camera did not see, such as the black border of a
+ * rectified image: masks of the left and of the right image's row, `length` bytes each, 0 for a pixel that was
+ * not seen; null where all were. An answer goes, and has `STEREOPSIS_FLAG_OUTSIDE`, where its own pixel or its
+ * partner was not seen. The row's arrays change in place.
+ */
+stereopsis_status stereopsis_mask(struct stereopsis *handle,
+                                  const uint8_t *left,
+                                  const uint8_t *right,
+                                  size_t length);
+
+/**
+ * What was counted since `stereopsis_start`.
+ */
+stereopsis_status stereopsis_counters(struct stereopsis *handle, struct stereopsis_counts *counters);
+
+/**
  * Gives the next row when all lines are in: `STEREOPSIS_STATUS_OK` with a row, or
  * `STEREOPSIS_STATUS_FRAME_DONE` with an empty one when all are out.
  */
@@ -569,6 +686,27 @@ stereopsis_status stereopsis_flush(struct stereopsis *handle, struct stereopsis_
  * written.
  */
 stereopsis_status stereopsis_sigma_px(struct stereopsis *handle, float *sigma_px, size_t count);
+
+/**
+ * A meter that has seen no line; it needs no matcher. As often as light may change: measure a frame, and give
+ * what it says to the configuration of the next ones.
+ */
+stereopsis_status stereopsis_noise_clear(struct stereopsis_noise_meter *meter);
+
+/**
+ * Measures a line of either camera, 8-bit grey, 65535 bytes at most.
+ */
+stereopsis_status stereopsis_noise_line(struct stereopsis_noise_meter *meter,
+                                        const uint8_t *line,
+                                        size_t length);
+
+/**
+ * The `STEREOPSIS_NOISE_` number of the lines so far, for the configuration's `noise`, and unless `sigma_16ths` is
+ * null the deviation in 1/16 grey level; none and 0 before the first line.
+ */
+stereopsis_status stereopsis_noise_level(struct stereopsis_noise_meter *meter,
+                                         uint8_t *noise,
+                                         uint16_t *sigma_16ths);
 
 /**
  * Depths of `count` disparities to the nearest millimetre, 0 for none: no answer, at infinity, or beyond

@@ -3,17 +3,23 @@
 use super::logarithm::{FRACTION, OCTAVE, log2};
 use core::fmt;
 
-/// Frames that a peak is fitted to.
-pub(super) const FRAMES: usize = 7;
+/// Frames that a broad peak is fitted to, and half of them; half of those of a narrow one.
+pub(super) const FRAMES: usize = 11;
+const WIDE: u32 = 5;
+const NARROW: u32 = 3;
 /// What a frame's brightness may shift a logarithm by, either way.
 pub(super) const BIAS: u16 = 4 * OCTAVE;
 /// Weights of the frames around a peak, for the choice of it.
 const CHOICE: [(isize, u32); 5] = [(-2, 1), (-1, 2), (0, 3), (1, 2), (2, 1)];
 
-/// The state of a cell, 36 bytes: its last sharpnesses and its peak so far.
+/// Bends of the wide fit, below the first of which it counts alone and from the second on not at all: where its frames lie around the
+/// peak, and where the stack ends within them and they see one flank more than the other.
+const BROAD: [[u32; 2]; 2] = [[40, 80], [15, 30]];
+
+/// The state of a cell, 44 bytes: its last sharpnesses and its peak so far.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct FocusCell {
-    /// Logarithms of the sharpness of the last frames, that of frame n in place n mod 7.
+    /// Logarithms of the sharpness of the last frames, that of frame n in place n mod 11.
     recent: [u16; FRAMES],
     /// The largest of them, for the picture that is sharp all over.
     largest: u16,
@@ -21,6 +27,8 @@ pub struct FocusCell {
     peak: u16,
     /// How strongly the parabola bends at the peak, per frame and frame.
     bend: u16,
+    /// What share of the peak is that of the wide fit, in 1/256.
+    wide: u16,
     /// The weighted sum by which the peak was chosen.
     choice: u32,
     /// Where the peak is, in 1/256 frame from 0.
@@ -39,6 +47,8 @@ pub struct FocusPeak {
     pub position_q8: u32,
     /// Its deviation, in 1/256 frame, of a peak that is the right one.
     pub sigma_q8: u32,
+    /// What noise has part in it, in 1/256 frame: what an average over neighbours makes smaller.
+    pub noise_q8: u32,
     /// How far the peak stands out: `h / (h + 1)` in 1/255, where `h` is how many times its sharpness is twice the geometric mean
     /// of all frames'.
     pub confidence: u8,
@@ -69,6 +79,8 @@ pub enum NoFocus {
     },
     /// The sharpness changes no more than noise does.
     Untextured,
+    /// The peak is so broad that noise moves it by more than a frame and more than a 21st of all frames.
+    Broad,
 }
 
 impl fmt::Display for NoFocus {
@@ -76,6 +88,7 @@ impl fmt::Display for NoFocus {
         match self {
             Self::TooFewFrames { needed } => write!(f, "at least {needed} frames are needed"),
             Self::Untextured => f.write_str("the sharpness changes no more than noise does"),
+            Self::Broad => f.write_str("the peak is so broad that noise hides where it is"),
         }
     }
 }
@@ -85,7 +98,7 @@ impl core::error::Error for NoFocus {}
 impl FocusCell {
     /// Before the first frame.
     pub const EMPTY: Self =
-        Self { recent: [0; FRAMES], largest: 0, peak: 0, bend: 0, choice: 0, position: 0, sum: 0, rough: 0 };
+        Self { recent: [0; FRAMES], largest: 0, peak: 0, bend: 0, wide: 0, choice: 0, position: 0, sum: 0, rough: 0 };
     /// Frames that a peak needs.
     pub const FEWEST_FRAMES: u32 = 3;
 
@@ -123,16 +136,16 @@ impl FocusCell {
             self.rough = self.rough.saturating_add(bend);
         }
         match last {
-            0..6 => {}
-            6 => (0..4).for_each(|candidate| self.consider(candidate, frames)),
-            _ => self.consider(last - 3, frames),
+            0..10 => {}
+            10 => (0..=WIDE).for_each(|candidate| self.consider(candidate, frames)),
+            _ => self.consider(last - WIDE, frames),
         }
     }
 
     /// After the last of all `frames` frames: the candidates that were still to see the frames after them.
     pub(super) fn finish(&mut self, frames: u32, shift: u16) {
         self.complete(frames, shift);
-        let first = if frames < FRAMES as u32 { 0 } else { frames - 3 };
+        let first = if frames < FRAMES as u32 { 0 } else { frames - WIDE };
         (first..frames).for_each(|candidate| self.consider(candidate, frames));
     }
 
@@ -150,18 +163,36 @@ impl FocusCell {
         }
         self.choice = choice;
         self.peak = self.at(candidate) as u16;
-        let half = (last / 2).min(3);
-        let centre = candidate.min(last - half).max(half);
-        (self.position, self.bend) = self.fit(centre, half);
+        let fit = |most: u32| {
+            let half = (last / 2).min(most);
+            let centre = candidate.min(last - half).max(half);
+            (self.fit(centre, half), centre == candidate)
+        };
+        let ((narrow, narrow_bend), _) = fit(NARROW);
+        let ((wide, wide_bend), is_inside) = fit(WIDE);
+        let [few, many] = BROAD[usize::from(!is_inside)];
+        let share = (many.saturating_sub(wide_bend.into()) * 256).checked_div(many - few).unwrap_or(0).min(256);
+        let mix = |wide: u32, narrow: u32| {
+            // A position has 24 bits, and both are within a window of each other.
+            let apart = (wide as i32).wrapping_sub(narrow as i32);
+            narrow.saturating_add_signed(apart.wrapping_mul(share as i32).wrapping_add(128) >> 8)
+        };
+        self.position = mix(wide, narrow);
+        self.bend = mix(wide_bend.into(), narrow_bend.into()) as u16;
+        self.wide = share as u16;
     }
 
     /// The top of the parabola through the logarithms of the frames around `centre`, by weighted least squares: with `half`
     /// of 3 the weights are 1, 2, 3, 3, 3, 2, 1, with 2 1, 2, 2, 2, 1. In 1/256 frame, with its bend. A parabola that opens
     /// upwards has its top at the end that is higher.
+    // Once in a program: in line, and unrolled for each width, it takes 16 KB of flash.
+    #[inline(never)]
     fn fit(&self, centre: u32, half: u32) -> (u32, u16) {
         // The normal equations solved for the top: `num / den * y1 / (a y0 - b y2)`, and the bend as `(a y0 - b y2) / c`,
         // where yk is the sum of weight, distance^k and logarithm.
         let (weights, num, den, a, b, c): (&[i64], _, _, _, _, _) = match half {
+            5 => (&[4, 4, 4, 3, 2, 1], 193, 26, 13, 2, 1544),
+            4 => (&[4, 4, 3, 2, 1], 157, 10, 25, 6, 1570),
             3 => (&[3, 3, 2, 1], 47, 10, 8, 3, 188),
             2 => (&[2, 2, 1], 3, 2, 3, 2, 18),
             1 => (&[1, 1], 1, 2, 2, 3, 1),
@@ -198,15 +229,20 @@ impl FocusCell {
             return Err(NoFocus::Untextured);
         }
         let confidence = (height * 255 / (height + u32::from(OCTAVE))) as u8;
-        // Noise of deviation s changes the slope at the top by 0.21 s and second differences by 1.95 s in the mean of their
-        // sizes. What else is in a window, nearer and farther, moves a peak by the more, the wider it is: by a twelfth of the
-        // distance at which it has fallen by half an octave, on rendered slopes and waves.
-        let bend = u32::from(self.bend).max(1);
-        let noise = self.rough_mean(frames) * 27 / bend;
+        // Noise of deviation s changes the slope at the top by 0.21 s, with the wide fit by 0.11 s, and second differences by 1.95 s in
+        // the mean of their sizes. What else is in a window, nearer and farther, moves a peak by the more, the wider it is: by a
+        // twelfth of the distance at which it has fallen by half an octave, on rendered slopes and waves.
+        let (bend, wide) = (u32::from(self.bend).max(1), u32::from(self.wide));
+        let noise = (self.rough_mean(frames) * (27 * (256 - wide) + 14 * wide)).checked_div(bend << 8).unwrap_or(0);
+        if noise > (frames * 12).max(256) {
+            return Err(NoFocus::Broad);
+        }
         let width = ((u32::from(OCTAVE) << 16) / bend).isqrt();
+        let most = frames << 8;
         Ok(FocusPeak {
             position_q8: self.position,
-            sigma_q8: (noise + width / 12).min(frames << 8).max(16),
+            sigma_q8: (noise + width / 12).min(most).max(16),
+            noise_q8: noise.min(most),
             confidence,
         })
     }

@@ -11,13 +11,14 @@ use crate::imaging::LineBand;
 
 /// Depth from focus: the frame in which each cell is sharpest, with a fraction, from frames that come one at a time.
 ///
-/// `W` is the longest line, px, and `C` the most cells in a row; `S` is the owner's memory for the cells, 36 bytes each. Beside
+/// `W` is the longest line, px, and `C` the most cells in a row; `S` is the owner's memory for the cells, 44 bytes each. Beside
 /// them the map takes 13 bytes for every pixel of a line and 73 for every cell of a row ([`Self::LINE_BYTES`]). The work for a
 /// line is bounded by its length, and that for a stack grows with the number of frames.
 ///
 /// In running order: lines are smoothed ([`binomial`]); [`modified_laplacian`]; summed up in cells, then twice over windows;
-/// their logarithms pass through the cells, which keep the last seven frames and the peak so far, a parabola through seven
-/// logarithms. Its peak is found the better, the more frames it spans; three are enough.
+/// their logarithms pass through the cells, which keep the last eleven frames and the peak so far: a parabola through seven
+/// logarithms, or through eleven where it is broad and noise would move its top. A peak is found the better, the more frames it
+/// spans; three are enough.
 ///
 /// The measure is the default against noise and changes of brightness: smoothing keeps 3/8 of the noise, absolute values grow
 /// in proportion to the contrast where squares would let the strongest edge of a window decide, and a frame's mean brightness

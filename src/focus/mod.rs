@@ -6,7 +6,7 @@
 //! * [`ThinLens`], [`MicroLens`]: `1/z + 1/Z = 1/f` in floats and in whole micrometres, with [`DepthOfField`].
 //! * [`SharpnessRows`]: classic measures of sharpness over windows. In them and below, in running order: [`binomial`],
 //!   [`modified_laplacian`], [`tenengrad`], [`laplacian`].
-//! * [`FocusMap`]: frames to a [`FocusPeak`] for each cell, with [`Breathing`]; then [`median_row`].
+//! * [`FocusMap`]: frames to a [`FocusPeak`] for each cell, with [`Breathing`]; then [`median_row`] and [`plane_row`].
 //! * [`FocusScale`]: peaks to [`Depth`](crate::depth::Depth).
 //! * [`LensActuator`], [`Dw9714`]: what moves a lens. [`FocusCalibration`]: its positions to distances.
 //! * [`RegionSharpness`], [`Autofocus`] with its [`FocusSearch`]: a region brought into focus in few frames.
@@ -26,6 +26,7 @@ mod logarithm;
 mod map;
 mod median;
 mod micrometres;
+mod plane;
 mod region;
 mod rows;
 mod scale;
@@ -46,6 +47,7 @@ pub use lens::ThinLens;
 pub use map::FocusMap;
 pub use median::median_row;
 pub use micrometres::MicroLens;
+pub use plane::plane_row;
 pub use region::{Region, RegionSharpness};
 pub use rows::{binomial, laplacian, modified_laplacian, tenengrad};
 pub use scale::{FocusScale, FocusScaleError};

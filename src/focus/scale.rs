@@ -13,7 +13,7 @@ use core::fmt;
 /// let lens = ThinLens::new(0.050)?;
 /// let scale = FocusScale::new(lens, &[0.0510, 0.0520, 0.0530])?;
 /// // Between the first two frames, 1/8 frame uncertain: 0.125 mm of z.
-/// let depth = scale.depth(&FocusPeak { position_q8: 128, sigma_q8: 32, confidence: 200 })?;
+/// let depth = scale.depth(&FocusPeak { position_q8: 128, sigma_q8: 32, noise_q8: 9, confidence: 200 })?;
 /// assert!((depth.depth_m - 0.050 * 0.0515 / 0.0015).abs() < 1e-4);
 /// assert!((depth.sigma_m - 0.05 * 0.05 / (0.0015 * 0.0015) * 0.000125).abs() < 1e-4);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

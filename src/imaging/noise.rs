@@ -51,6 +51,8 @@ impl Noise {
 /// assert_eq!(meter.level(), Noise::None);
 /// ```
 #[derive(Clone, Debug)]
+// As the interface for C has it.
+#[repr(C)]
 pub struct NoiseMeter {
     /// How many sums there are from `BIN` times the index on; the last one counts all beyond it.
     counts: [u32; 64],

@@ -2,9 +2,9 @@
 
 use super::counters::{FaultCounters, count};
 use super::lines::LineGuard;
-use super::{Pipeline, PipelineError};
-use crate::camera::{ErrorType, FrameStart, StereoSource};
-use crate::matching::{Config, ConfigError, Kernel, Row, Scheme};
+use super::{Pipeline, PipelineError, PushError};
+use crate::camera::{ErrorType, FrameStart, LineFault, StereoSource};
+use crate::matching::{Config, ConfigError, Kernel, MatchError, Row, Scheme};
 
 /// A [`Pipeline`] that goes on when lines get lost, flags what they touch and counts every fault by name.
 ///
@@ -31,6 +31,8 @@ use crate::matching::{Config, ConfigError, Kernel, Row, Scheme};
 /// old time stamp    due           the line above stands in            lines_stale
 /// none left         -             the line above stands in            lines_short
 /// ```
+///
+/// Lines that the caller brings ([`Self::push`]) are taken as they are, and one that did not come is told ([`Self::push_lost`]).
 ///
 /// Time stamps are looked at where the source has them: 0 is none. A frame is the one before once more when its sequence
 /// number, not 0, is that of the one before, or when its number and its stamp, not 0, are.
@@ -139,14 +141,10 @@ impl<S: Scheme, const W: usize, const D: usize> Guarded<S, W, D> {
                 Err(e)
             }
             Ok(false) => {
-                if core::mem::take(&mut self.is_running) {
-                    let LineGuard { lost, counters, .. } = &mut self.lines;
-                    count(if *lost == 0 { &mut counters.frames_whole } else { &mut counters.frames_damaged }, 1);
-                }
+                self.end();
                 Ok(None)
             }
             Ok(true) => {
-                count(&mut self.lines.counters.rows, 1);
                 self.pipeline.matcher.mask(|row, masks| camera.mask(row, masks));
                 self.mark();
                 Ok(self.pipeline.row())
@@ -154,8 +152,70 @@ impl<S: Scheme, const W: usize, const D: usize> Guarded<S, W, D> {
         }
     }
 
-    /// Flags the row that came out where it rests on a lost line.
+    /// Begins a frame whose lines the caller brings, and forgets the one before.
+    pub fn begin(&mut self) -> Result<(), MatchError> {
+        self.give_up();
+        self.pipeline.begin()?;
+        count(&mut self.lines.counters.frames, 1);
+        self.lines.begin(&FrameStart::default());
+        self.is_running = true;
+        Ok(())
+    }
+
+    /// As [`Pipeline::push`], with the row flagged where it rests on a line that was lost.
+    pub fn push(&mut self, left: &[u8], right: &[u8]) -> Result<Option<Row<'_>>, PushError> {
+        let due = self.pipeline.left.count();
+        let is_out = self.pipeline.push(left, right)?.is_some();
+        Ok(self.pushed(None, due, is_out))
+    }
+
+    /// In place of [`Self::push`], of a line that did not come: the line above stands in. It counts by its fault. The caller
+    /// says how many lines of a frame it bears.
+    pub fn push_lost(&mut self, fault: LineFault) -> Result<Option<Row<'_>>, PushError> {
+        let due = self.pipeline.left.count();
+        let is_out = self.pipeline.push_repeated()?.is_some();
+        Ok(self.pushed(Some(fault), due, is_out))
+    }
+
+    fn pushed(&mut self, lost: Option<LineFault>, due: usize, is_out: bool) -> Option<Row<'_>> {
+        self.lines.pushed(lost, due);
+        if is_out {
+            self.mark();
+        }
+        self.pipeline.row()
+    }
+
+    /// As [`Pipeline::flush`], with the row flagged.
+    pub fn flush(&mut self) -> Result<Option<Row<'_>>, PushError> {
+        if self.pipeline.flush()?.is_some() {
+            self.mark();
+            return Ok(self.pipeline.row());
+        }
+        self.end();
+        Ok(None)
+    }
+
+    /// The row that came out last, until the next line goes in; `None` before the first of a frame.
+    pub fn row(&self) -> Option<Row<'_>> {
+        self.pipeline.row()
+    }
+
+    /// Takes the answers of [`Self::row`] away where a camera did not see: [`Pipeline::mask`].
+    pub fn mask(&mut self, valid: impl FnOnce(u16, [&mut [u8]; 2]) -> bool) {
+        self.pipeline.mask(valid);
+    }
+
+    /// Counts a frame of which all rows are out.
+    fn end(&mut self) {
+        if core::mem::take(&mut self.is_running) {
+            let LineGuard { lost, counters, .. } = &mut self.lines;
+            count(if *lost == 0 { &mut counters.frames_whole } else { &mut counters.frames_damaged }, 1);
+        }
+    }
+
+    /// Counts the row that came out, and flags it where it rests on a lost line.
     fn mark(&mut self) {
+        count(&mut self.lines.counters.rows, 1);
         let Some(row) = self.pipeline.row().map(|row| usize::from(row.index())) else { return };
         if self.lines.lost == 0 || row > self.lines.last_lost.saturating_add(self.reach_down()) {
             return;

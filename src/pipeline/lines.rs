@@ -50,6 +50,14 @@ impl LineGuard {
         (self.newest_us, self.told, self.held, self.is_short) = (start.timestamp_us, 0, None, false);
     }
 
+    /// Counts a line that the caller brought, or lost for a reason, as number `due` of its frame.
+    pub(super) fn pushed(&mut self, lost: Option<LineFault>, due: usize) {
+        if let Some(fault) = lost {
+            count(counter_of(fault)(&mut self.counters), 1);
+        }
+        self.note(lost.is_none(), due);
+    }
+
     /// Whether another line stood in for the one `back` lines above the newest.
     pub(super) fn stood_in(&self, back: usize) -> bool {
         back < 64 && self.stood_in >> back & 1 != 0
@@ -180,13 +188,18 @@ impl LineGuard {
     ) -> Result<(), PipelineError<E>> {
         pipeline.left.accept();
         pipeline.right.accept();
+        self.note(is_own, due);
+        Ok(())
+    }
+
+    /// Remembers whether the newest line is its row's own.
+    fn note(&mut self, is_own: bool, due: usize) {
         self.stood_in = self.stood_in << 1 | u64::from(!is_own);
         if is_own {
             count(&mut self.counters.lines, 1);
         } else {
             (self.lost, self.last_lost) = (self.lost.saturating_add(1), due);
         }
-        Ok(())
     }
 }
 

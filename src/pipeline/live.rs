@@ -126,6 +126,24 @@ impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
             }
             window.accept();
         }
+        Ok(self.pushed()?)
+    }
+
+    /// As [`Self::push`], with the line above once more: for one that did not come.
+    pub(super) fn push_repeated(&mut self) -> Result<Option<Row<'_>>, PushError> {
+        self.begun()?;
+        if self.left.count() >= self.height {
+            return Err(PushError::NoLineLeft);
+        }
+        for window in [&mut self.left, &mut self.right] {
+            window.repeat();
+            window.accept();
+        }
+        Ok(self.pushed()?)
+    }
+
+    /// The row that the newest line brings out.
+    fn pushed(&mut self) -> Result<Option<Row<'_>>, MatchError> {
         // The image's last line completes up to three rows; `flush` takes all but the first of them.
         if self.lines_needed() <= self.left.count() {
             self.step()?;

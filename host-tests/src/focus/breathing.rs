@@ -1,5 +1,7 @@
 //! Whether the frames of a stack grow as the thin lens says: a lens that keeps its angle of view, and a stack that was aligned, do
 //! not.
+//!
+//! Neighbouring frames of a fine sweep differ by less than a pixel: those are compared that differ by two in a corner.
 
 use image::GrayImage;
 use stereopsis::focus::Breathing;
@@ -12,6 +14,11 @@ pub struct Agreement {
 }
 
 impl Agreement {
+    /// Whether frames of that size differ enough to be told apart: by two pixels in a corner.
+    pub fn is_telling((width, height): (u32, u32), ratio: f32) -> bool {
+        (ratio - 1.0).abs() * (width as f32).hypot(height as f32) >= 4.0
+    }
+
     /// Adds a pair of frames, of which `after` is `ratio` times as large as `before` by the lens's model.
     pub fn add(&mut self, before: &GrayImage, after: &GrayImage, ratio: f32) {
         let Ok(scale) = Breathing::new(ratio) else { return };

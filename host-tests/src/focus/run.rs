@@ -4,7 +4,7 @@ use super::stack::{Frame, StackError};
 use image::RgbImage;
 use stereopsis::focus::{
     Breathing, FocusCell, FocusConfig, FocusConfigError, FocusLineError, FocusMap, FocusPeak, FocusScale, NoFocus,
-    median_row,
+    median_row, plane_row,
 };
 
 const MOST: usize = crate::mock::MockCamera::MOST_PIXELS as usize;
@@ -40,7 +40,7 @@ pub enum FocusError {
     },
 }
 
-/// Passes all frames through the core's map, each magnified as `breathing` tells of its index, and takes the median of answers.
+/// Passes all frames through the core's map, each magnified as `breathing` tells of its index, and takes medians of answers, then planes through them.
 pub fn run(
     config: &FocusConfig,
     frames: impl IntoIterator<Item = Result<Frame, StackError>>,
@@ -79,6 +79,7 @@ pub fn run(
     for (y, out) in peaks.chunks_exact_mut(columns).enumerate() {
         let near = [y.saturating_sub(2), y.saturating_sub(1), y, (y + 1).min(rows - 1), (y + 2).min(rows - 1)];
         median_row(near.map(|y| &raw[y * columns..][..columns]), out);
+        plane_row(&raw, columns, y, out);
     }
     Ok(FocusResult { width: columns, peaks, picture })
 }

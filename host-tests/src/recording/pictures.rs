@@ -107,10 +107,10 @@ impl Pictures {
 
 /// The images of a folder by name, or the one image.
 fn images(path: &Path) -> Result<Vec<PathBuf>, PicturesError> {
-    if !path.is_dir() {
+    let failed = |source| PicturesError::Read { path: path.into(), source };
+    if !fs::metadata(path).map_err(failed)?.is_dir() {
         return Ok(vec![path.into()]);
     }
-    let failed = |source| PicturesError::Read { path: path.into(), source };
     let is_image = |path: &PathBuf| {
         let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
         ["png", "jpg", "jpeg", "pgm", "ppm", "pnm", "tif", "tiff"].contains(&ending.as_str())

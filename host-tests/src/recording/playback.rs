@@ -72,6 +72,9 @@ impl RecordedFault {
     }
 }
 
+/// The longest pause of a recording that is waited for.
+const LONGEST_WAIT: Duration = Duration::from_secs(10);
+
 /// Plays records as the source did that they are of.
 pub struct Playback<I: Iterator<Item = Result<Entry, RecordingError>>> {
     entries: Peekable<I>,
@@ -81,6 +84,10 @@ pub struct Playback<I: Iterator<Item = Result<Entry, RecordingError>>> {
     /// When the first record was played, and its time stamp.
     began: Option<(Instant, u64)>,
     in_frame: bool,
+    /// Frames played, the stamp of the last one, and the first that has one of before.
+    frames: u32,
+    last_us: u64,
+    went_back: Option<u32>,
     was_cut: bool,
     failed: Option<RecordingError>,
 }
@@ -102,6 +109,9 @@ impl<I: Iterator<Item = Result<Entry, RecordingError>>> Playback<I> {
             is_timed,
             began: None,
             in_frame: false,
+            frames: 0,
+            last_us: 0,
+            went_back: None,
             was_cut: false,
             failed: None,
         }
@@ -130,6 +140,11 @@ impl<I: Iterator<Item = Result<Entry, RecordingError>>> Playback<I> {
         self.was_cut
     }
 
+    /// The first frame, from 1, whose time stamp is of before that of the frame before.
+    pub fn went_back(&self) -> Option<u32> {
+        self.went_back
+    }
+
     /// The error of the recording itself at which it ended.
     pub fn failed(&mut self) -> Option<RecordingError> {
         self.failed.take()
@@ -141,14 +156,18 @@ impl<I: Iterator<Item = Result<Entry, RecordingError>>> Playback<I> {
         }
     }
 
-    /// Waits until it is time for what has this stamp; a source without a clock does not wait.
+    /// Waits until it is time for what has this stamp; a source without a clock does not wait. Where the stamps jump, back or by more
+    /// than [`LONGEST_WAIT`], time begins anew.
     fn wait(&mut self, timestamp_us: u64) {
         if !self.is_timed || timestamp_us == 0 {
             return;
         }
         let (began, first_us) = *self.began.get_or_insert((Instant::now(), timestamp_us));
-        let due = Duration::from_micros(timestamp_us.saturating_sub(first_us));
-        std::thread::sleep(due.saturating_sub(began.elapsed()));
+        let due = timestamp_us.checked_sub(first_us).map(Duration::from_micros);
+        match due.map(|due| due.saturating_sub(began.elapsed())) {
+            Some(wait) if wait <= LONGEST_WAIT => std::thread::sleep(wait),
+            _ => self.began = Some((Instant::now(), timestamp_us)),
+        }
     }
 }
 
@@ -174,6 +193,13 @@ impl<I: Iterator<Item = Result<Entry, RecordingError>>> StereoSource for Playbac
             Some(Ok(Entry::Frame(start))) => {
                 self.wait(start.timestamp_us);
                 self.in_frame = true;
+                self.frames += 1;
+                if start.timestamp_us != 0 {
+                    if start.timestamp_us < self.last_us {
+                        self.went_back.get_or_insert(self.frames);
+                    }
+                    self.last_us = start.timestamp_us;
+                }
                 Ok(start)
             }
             Some(Ok(Entry::NoFrame(fault))) => Err(fault.error()),

@@ -155,8 +155,8 @@ pub fn log2(value: i64) -> i64 {
     (octave * 2048 + ((low * 65536 + (high - low) * rest + (1 << 19)) >> 20)).min(65535)
 }
 
-/// A peak: its place in 1/256 frame from 0, deviation and confidence.
-pub type Peak = [i64; 3];
+/// A peak: its place in 1/256 frame from 0, deviation, what noise has in it, and confidence.
+pub type Peak = [i64; 4];
 
 /// The peak of a cell whose sharpness is given for every frame, with what each frame's brightness adds to logarithms.
 pub fn peak(sharpness: &[i64], shifts: &[i64]) -> Option<Peak> {
@@ -166,20 +166,43 @@ pub fn peak(sharpness: &[i64], shifts: &[i64]) -> Option<Peak> {
     let choice = |i: i64| at(i - 2) + 2 * at(i - 1) + 3 * at(i) + 2 * at(i + 1) + at(i + 2);
     // The first of the largest.
     let candidate = (0..=last).rev().max_by_key(|&i| choice(i))?;
-    let half = (last / 2).min(3);
+    let (narrow, narrow_bend, _) = parabola(&at, candidate, (last / 2).min(3), last)?;
+    let (wide, wide_bend, is_inside) = parabola(&at, candidate, (last / 2).min(5), last)?;
+    let (few, many) = if is_inside { (40, 80) } else { (15, 30) };
+    let share = ((many - wide_bend) * 256 / (many - few)).clamp(0, 256);
+    let mix = |wide: i64, narrow: i64| (wide * share + narrow * (256 - share) + 128) / 256;
+    let (place, bend) = (mix(wide.max(0), narrow.max(0)), mix(wide_bend, narrow_bend).max(1));
+    let rough: i64 = logs.windows(3).map(|w| (w[0] + w[2] - 2 * w[1]).abs()).sum::<i64>() / (last - 1);
+    let height = (at(candidate) - logs.iter().sum::<i64>() / (last + 1)).max(0);
+    if height < 116 || height < 2048 && 4 * height < 7 * rough {
+        return None;
+    }
+    let noise = rough * (27 * (256 - share) + 14 * share) / (bend * 256);
+    if noise > ((last + 1) * 12).max(256) {
+        return None;
+    }
+    let most = (last + 1) * 256;
+    let sigma = (noise + ((2048 << 16) / bend).isqrt() / 12).clamp(16, most);
+    Some([place, sigma, noise.min(most), height * 255 / (height + 2048)])
+}
+
+/// The top of the parabola through the logarithms around a candidate, its bend, and whether the candidate is in the middle of them.
+fn parabola(at: &dyn Fn(i64) -> i64, candidate: i64, half: i64, last: i64) -> Option<(i64, i64, bool)> {
     let centre = candidate.clamp(half, last - half);
     let weights: &[i64] = match half {
+        5 => &[4, 4, 4, 3, 2, 1],
+        4 => &[4, 4, 3, 2, 1],
         3 => &[3, 3, 2, 1],
         2 => &[2, 2, 1],
         1 => &[1, 1],
         _ => return None,
     };
-    let moment = |power: u32| -> i64 {
-        (-half..=half).map(|d| weights[d.unsigned_abs() as usize] * d.pow(power) * at(centre + d)).sum()
+    let weighted = |power: u32, value: &dyn Fn(i64) -> i64| -> i64 {
+        (-half..=half).map(|d| weights[d.unsigned_abs() as usize] * d.pow(power) * value(d)).sum()
     };
+    let moment = |power: u32| weighted(power, &|d| at(centre + d));
     // Sums of weights by even powers of the distance, and the parabola m + l d + q d^2 of the normal equations.
-    let weight =
-        |power: u32| -> i64 { (-half..=half).map(|d| weights[d.unsigned_abs() as usize] * d.pow(power)).sum() };
+    let weight = |power: u32| weighted(power, &|_| 1);
     let (s0, s2, s4) = (weight(0), weight(2), weight(4));
     // -2 q and l as fractions with their denominators.
     let (bend_top, bend_under) = (-2 * (s0 * moment(2) - s2 * moment(0)), s0 * s4 - s2 * s2);
@@ -191,15 +214,7 @@ pub fn peak(sharpness: &[i64], shifts: &[i64]) -> Option<Peak> {
     } else {
         slope_top.signum() * most
     };
-    let place = centre * 256 + off;
-    let bend = (bend_top / bend_under).clamp(0, 65535).max(1);
-    let rough: i64 = logs.windows(3).map(|w| (w[0] + w[2] - 2 * w[1]).abs()).sum::<i64>() / (last - 1);
-    let height = (at(candidate) - logs.iter().sum::<i64>() / (last + 1)).max(0);
-    if height < 116 || height < 2048 && 4 * height < 7 * rough {
-        return None;
-    }
-    let sigma = (rough * 27 / bend + ((2048 << 16) / bend).isqrt() / 12).clamp(16, (last + 1) * 256);
-    Some([place.max(0), sigma, height * 255 / (height + 2048)])
+    Some((centre * 256 + off, (bend_top / bend_under).clamp(0, 65535), centre == candidate))
 }
 
 /// What each frame's brightness adds to its logarithms.
@@ -227,13 +242,50 @@ pub fn median(columns: usize, peaks: &[Option<Peak>]) -> Vec<Option<Peak>> {
     let rows = (peaks.len() / columns) as i64;
     let at = |x: i64, y: i64| peaks[y.clamp(0, rows - 1) as usize * columns + x as usize];
     let around = |i: usize| {
-        let [_, sigma, confidence] = peaks[i]?;
+        let [_, sigma, noise, confidence] = peaks[i]?;
         let (x, y) = ((i % columns) as i64, (i / columns) as i64);
         let near = (y - 2..=y + 2).flat_map(|v| (x - 2..=x + 2).map(move |u| (u, v)));
         let inside = near.filter(|&(u, _)| (0..columns as i64).contains(&u));
         let mut places: Vec<i64> = inside.filter_map(|(u, v)| at(u, v)).map(|[place, ..]| place).collect();
         places.sort_unstable();
-        Some([places[(places.len() - 1) / 2], sigma, confidence])
+        Some([places[(places.len() - 1) / 2], sigma, noise, confidence])
     };
     (0..peaks.len()).map(around).collect()
+}
+
+/// Answers of more than a tenth of a frame of noise replaced by the plane through those around the median, by least squares.
+pub fn planes(columns: usize, peaks: &[Option<Peak>], medians: &[Option<Peak>]) -> Vec<Option<f64>> {
+    use nalgebra::{Matrix3, Vector3};
+    let rows = (peaks.len() / columns) as i64;
+    let at = |x: i64, y: i64| {
+        let is_inside = (0..columns as i64).contains(&x) && (0..rows).contains(&y);
+        is_inside.then(|| peaks[y as usize * columns + x as usize]).flatten()
+    };
+    let fitted = |(i, median): (usize, &Option<Peak>)| {
+        let [place, _, noise, _] = (*median)?.map(|v| v as f64);
+        let step = match noise as i64 {
+            ..26 => return Some(place),
+            26..51 => 1,
+            51..102 => 2,
+            _ => 4,
+        };
+        let (x, y) = ((i % columns) as i64, (i / columns) as i64);
+        let (mut squares, mut values) = (Matrix3::<f64>::zeros(), Vector3::<f64>::zeros());
+        for (dy, dx) in (-3..=3).flat_map(|dy| (-3..=3).map(move |dx| (dy, dx))) {
+            let Some([near, _, near_noise, _]) = at(x + step * dx, y + step * dy).map(|p| p.map(|v| v as f64)) else {
+                continue;
+            };
+            if (near - place).abs() <= 90.0 + 3.0 * noise.hypot(near_noise) {
+                let unknowns = Vector3::new(1.0, dx as f64, dy as f64);
+                let weight = 38.0 * 38.0 / (near_noise * near_noise + 38.0 * 38.0);
+                squares += weight * unknowns * unknowns.transpose();
+                values += weight * (near - place) * unknowns;
+            }
+        }
+        let ridge = 1e-3 * squares[(0, 0)];
+        squares += Matrix3::from_diagonal(&Vector3::new(0.0, ridge, ridge));
+        let plane = squares.lu().solve(&values).unwrap_or_default();
+        Some((place + plane[0]).max(0.0))
+    };
+    medians.iter().enumerate().map(fitted).collect()
 }

@@ -3,7 +3,7 @@
 use super::sensors::fails_at_each_step;
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::i2c::{Mock, Transaction};
-use stereopsis::camera::{ExposureControl, Hm01b0, Hm01b0Mode, Hm01b0Size, SensorError};
+use stereopsis::camera::{Hm01b0, Hm01b0Mode, Hm01b0Size, SensorError};
 
 /// The HM01B0's register of 8 bits at an address of 16.
 fn hw(register: u16, value: u8) -> Transaction {
@@ -29,7 +29,7 @@ fn size(readout: u8, binning: u8, window: u8, lines: u16) -> Vec<Transaction> {
     registers.map(|(register, value)| hw(register, value)).to_vec()
 }
 
-fn hm01b0_start() -> Vec<Transaction> {
+pub fn hm01b0_start() -> Vec<Transaction> {
     let mut all = vec![hw(0x0103, 1), hr(0x0100, 0), hr(0x0000, 0x01), hr(0x0001, 0xb0)];
     let settings = [
         (0x1003, 0x08),
@@ -70,10 +70,10 @@ fn hm01b0_start() -> Vec<Transaction> {
     all
 }
 
-#[test]
-fn a_hm01b0_is_set_up_register_by_register() {
+/// All that is said in a session with every setting.
+pub fn hm01b0_session() -> Vec<Transaction> {
     let mut expected = hm01b0_start();
-    expected.extend([size(3, 3, 1, 132), size(1, 0, 0, 340)].concat());
+    expected.extend([size(3, 3, 1, 132), size(1, 0, 0, 346)].concat());
     expected.extend([
         hw(0x0100, 5),
         hw(0x0100, 1),
@@ -91,7 +91,12 @@ fn a_hm01b0_is_set_up_register_by_register() {
         hw(0x0205, 0x20),
         hw(0x0104, 1),
     ]);
-    let mut bus = Mock::new(&expected);
+    expected
+}
+
+#[test]
+fn a_hm01b0_is_set_up_register_by_register() {
+    let mut bus = Mock::new(&hm01b0_session());
     let mut sensor = Hm01b0::new(bus.clone(), 3_000_000);
     sensor.initialise(&mut NoopDelay::new()).expect("the bus takes it");
     sensor.set_size(Hm01b0Size::Qqvga).expect("the bus takes it");
@@ -103,7 +108,7 @@ fn a_hm01b0_is_set_up_register_by_register() {
     sensor.set_test_pattern(true).expect("the bus takes it");
     sensor.set_frame_time(100_000).expect("the bus takes it");
     assert!((99_800..=100_000).contains(&sensor.frame_time_us()));
-    assert!(sensor.set_frame_time(10_000).is_err(), "340 lines take 42.6 ms");
+    assert!(sensor.set_frame_time(10_000).is_err(), "346 lines take 43.4 ms");
     sensor.set_exposure(20_000, 16 * 7).expect("the bus takes it");
     assert!(sensor.set_exposure(20_000, 15).is_err());
     assert_eq!(Hm01b0Size::Qqvga.pixels(), (162, 122));

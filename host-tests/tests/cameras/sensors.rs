@@ -5,10 +5,10 @@ use embedded_hal_mock::eh1::MockError;
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::digital::{Mock as PinMock, State, Transaction as PinTransaction};
 use embedded_hal_mock::eh1::i2c::{Mock, Transaction};
-use stereopsis::camera::{ExposureControl, Mt9v034, Mt9v034Mode, Mt9v034Pattern, Mt9v034Window, SensorError};
+use stereopsis::camera::{Mt9v034, Mt9v034Mode, Mt9v034Pattern, Mt9v034Window, SensorError};
 
-const CLOCK_HZ: u32 = 26_600_000;
-const AT: u8 = 0x48;
+pub const CLOCK_HZ: u32 = 26_600_000;
+pub const AT: u8 = 0x48;
 
 /// The MT9V034's register as 16 bits, high byte first.
 fn w(register: u8, value: u16) -> Transaction {
@@ -20,7 +20,7 @@ fn identity(value: u16) -> Transaction {
 }
 
 /// All that `initialise` says to a MT9V034.
-fn mt9v034_start() -> Vec<Transaction> {
+pub fn mt9v034_start() -> Vec<Transaction> {
     vec![
         identity(0x1324),
         w(0x0c, 1),
@@ -46,12 +46,12 @@ fn mt9v034_start() -> Vec<Transaction> {
     ]
 }
 
-fn reset_pin() -> PinMock {
+pub fn reset_pin() -> PinMock {
     PinMock::new(&[PinTransaction::set(State::Low), PinTransaction::set(State::High)])
 }
 
-#[test]
-fn a_mt9v034_is_set_up_register_by_register() {
+/// All that is said in a session with every setting.
+pub fn mt9v034_session() -> Vec<Transaction> {
     let mut expected = mt9v034_start();
     expected.extend([
         w(0x07, 0x0398),
@@ -73,7 +73,12 @@ fn a_mt9v034_is_set_up_register_by_register() {
         w(0x7f, 0x3800),
         w(0x7f, 0),
     ]);
-    let (mut bus, mut pin) = (Mock::new(&expected), reset_pin());
+    expected
+}
+
+#[test]
+fn a_mt9v034_is_set_up_register_by_register() {
+    let (mut bus, mut pin) = (Mock::new(&mt9v034_session()), reset_pin());
     let mut sensor = Mt9v034::new(bus.clone(), AT, CLOCK_HZ);
     sensor.initialise(&mut pin, &mut NoopDelay::new()).expect("the bus takes it");
     sensor.set_mode(Mt9v034Mode::Snapshot).expect("the bus takes it");

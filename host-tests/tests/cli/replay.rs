@@ -155,3 +155,40 @@ fn what_cannot_be_played_is_named() {
         "is not the name of a file",
     );
 }
+
+#[test]
+fn what_cannot_be_recorded_or_is_odd_is_told_by_name() {
+    let bench = Bench::new();
+    let [left, right] = put_pair(&bench, true);
+    let file = bench.path("a.lines");
+    let out = file.display().to_string();
+    let refused = |left: &str| {
+        let run = stereo(["record", "--left", left, "--right", &right, "--out", &out]);
+        assert!(!run.status.success() && !file.exists());
+        let told = text(&run.stderr).to_owned();
+        assert!(told.lines().count() == 1, "{told}");
+        told
+    };
+    let missing = bench.path("missing").display().to_string();
+    assert!(refused(&missing).contains("missing: cannot be read ("), "{}", refused(&missing));
+
+    // The second frame's time stamp is of before the first one's.
+    run(&["record", "--left", &left, "--right", &right, "--out", &out]);
+    let mut bytes = fs::read(&file).expect("a recording");
+    let header = 2 + bytes.split(|&b| b == b'\n').take(2).map(<[u8]>::len).sum::<usize>();
+    let frame = 17 + 30 * (11 + 2 * 48);
+    assert_eq!((bytes[header], bytes[header + frame]), (b'F', b'F'));
+    bytes[header + frame + 5..][..8].copy_from_slice(&1_u64.to_le_bytes());
+    fs::write(&file, bytes).expect("a recording");
+    let replayed = bench.path("out").display().to_string();
+    let told = run(&["replay", "--from", &out, "--disparities", "16", "--timing", "recorded", "--out", &replayed]);
+    assert!(told.contains("note: time stamps go back at frame 2;"), "{told}");
+    assert_eq!(summary(&bench, "out")["time_went_back_at"], 2);
+
+    // An image of another size.
+    fs::remove_file(&file).expect("it is there");
+    image::GrayImage::new(48, 29).save(std::path::Path::new(&left).join("2.png")).expect("a file");
+    image::GrayImage::new(48, 29).save(std::path::Path::new(&right).join("2.png")).expect("a file");
+    let told = refused(&left);
+    assert!(told.contains("2.png: is of another size than the first image") && !told.contains("a.lines"), "{told}");
+}

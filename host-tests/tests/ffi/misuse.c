@@ -218,6 +218,110 @@ static void lines(void) {
     release(g);
 }
 
+/* A frame with one lost line: which rows have the flag, and what is counted. */
+static void lost_lines(void) {
+    guarded g = take();
+    stereopsis *s;
+    stereopsis_config c = config();
+    stereopsis_row row, untouched;
+    stereopsis_counts counts;
+    uint8_t line[WIDTH], seen[WIDTH];
+    int damaged = 0, rows = 0;
+    int32_t status;
+    memset(&row, 0x5A, sizeof row);
+    untouched = row;
+    for (size_t i = 0; i < WIDTH; i++) line[i] = (uint8_t)(i * 37 % 251);
+    c.height = 40;
+    EXPECT(stereopsis_init(g.memory, g.size, &s), OK);
+    EXPECT(stereopsis_push_lost(s, STEREOPSIS_LOST_TORN, &row), NOT_STARTED);
+    EXPECT(stereopsis_start(s, &c), OK);
+    EXPECT(stereopsis_push_lost(s, STEREOPSIS_LOST_TORN, &row), NOT_BEGUN);
+    EXPECT(stereopsis_begin_frame(s), OK);
+    EXPECT(stereopsis_push_lost(NULL, STEREOPSIS_LOST_TORN, &row), NULL);
+    EXPECT(stereopsis_push_lost(s, STEREOPSIS_LOST_TORN, NULL), NULL);
+    EXPECT(stereopsis_push_lost(s, STEREOPSIS_LOST_TORN, (stereopsis_row *)(void *)g.memory), OVERLAP);
+    EXPECT(stereopsis_push_lost(s, -1, &row), FAULT);
+    EXPECT(stereopsis_push_lost(s, 4, &row), FAULT);
+    EXPECT(stereopsis_mask(s, NULL, NULL, WIDTH), NO_ROW_YET);
+    CHECK(memcmp(&row, &untouched, sizeof row) == 0);
+    for (int y = 0; y < c.height; y++) {
+        status = y == 20 ? stereopsis_push_lost(s, STEREOPSIS_LOST_TORN, &row) : stereopsis_push(s, line, line, WIDTH, &row);
+        CHECK(status >= 0);
+        if (status == STEREOPSIS_STATUS_OK) damaged += (row.flags[0] & STEREOPSIS_FLAG_DAMAGED) != 0, rows++;
+    }
+    EXPECT(stereopsis_push_lost(s, STEREOPSIS_LOST_TORN, &row), NO_LINE_LEFT);
+    while ((status = stereopsis_flush(s, &row)) == STEREOPSIS_STATUS_OK)
+        damaged += (row.flags[0] & STEREOPSIS_FLAG_DAMAGED) != 0, rows++;
+    CHECK(status == STEREOPSIS_STATUS_FRAME_DONE && rows == 40 && damaged > 1 && damaged < 40);
+    EXPECT(stereopsis_counters(s, NULL), NULL);
+    EXPECT(stereopsis_counters(NULL, &counts), NULL);
+    EXPECT(stereopsis_counters(s, (stereopsis_counts *)(void *)g.memory), OVERLAP);
+    EXPECT(stereopsis_counters(s, &counts), OK);
+    CHECK(counts.frames == 1 && counts.frames_damaged == 1 && counts.frames_whole == 0 && counts.frames_broken == 0);
+    CHECK(counts.lines == 39 && counts.lines_torn == 1 && counts.lines_dropped == 0);
+    CHECK(counts.rows == 40 && counts.rows_damaged == (uint32_t)damaged);
+
+    /* A frame without, of which the left half of a row was not seen. */
+    EXPECT(stereopsis_begin_frame(s), OK);
+    for (int y = 0; y < c.height; y++) CHECK(stereopsis_push(s, line, line, WIDTH, &row) >= 0);
+    for (size_t i = 0; i < WIDTH; i++) seen[i] = i >= WIDTH / 2;
+    EXPECT(stereopsis_mask(s, seen, NULL, WIDTH - 1), LINE_LENGTH);
+    EXPECT(stereopsis_mask(s, g.memory, NULL, WIDTH), OVERLAP);
+    EXPECT(stereopsis_mask(NULL, seen, NULL, WIDTH), NULL);
+    EXPECT(stereopsis_mask(s, NULL, NULL, WIDTH), OK);
+    int answers = 0;
+    for (size_t i = 0; i < WIDTH; i++) answers += row.disparities[i] != STEREOPSIS_NONE;
+    CHECK(answers > WIDTH / 2);
+    EXPECT(stereopsis_mask(s, seen, NULL, WIDTH), OK);
+    for (size_t i = 0; i < WIDTH / 2; i++)
+        CHECK(row.disparities[i] == STEREOPSIS_NONE && (row.flags[i] & STEREOPSIS_FLAG_OUTSIDE) != 0);
+    EXPECT(stereopsis_mask(s, NULL, seen, WIDTH), OK);
+    EXPECT(stereopsis_begin_frame(s), OK);
+    EXPECT(stereopsis_counters(s, &counts), OK);
+    CHECK(counts.frames == 3 && counts.frames_broken == 1);
+    EXPECT(stereopsis_deinit(s), OK);
+    EXPECT(stereopsis_counters(s, &counts), NOT_INITIALISED);
+    EXPECT(stereopsis_mask(s, NULL, NULL, WIDTH), NOT_INITIALISED);
+    release(g);
+}
+
+static void noise(void) {
+    stereopsis_noise_meter meter;
+    uint8_t line[WIDTH], level = 9;
+    uint16_t sigma = 9;
+    uint32_t random = 1;
+    memset(&meter, 0xA5, sizeof meter);
+    EXPECT(stereopsis_noise_clear(NULL), NULL);
+    EXPECT(stereopsis_noise_clear((stereopsis_noise_meter *)(void *)((char *)&meter + 1)), MISALIGNED);
+    EXPECT(stereopsis_noise_clear(&meter), OK);
+    EXPECT(stereopsis_noise_level(&meter, &level, &sigma), OK);
+    CHECK(level == STEREOPSIS_NOISE_NONE && sigma == 0);
+    EXPECT(stereopsis_noise_line(NULL, line, WIDTH), NULL);
+    EXPECT(stereopsis_noise_line(&meter, NULL, WIDTH), NULL);
+    EXPECT(stereopsis_noise_line(&meter, line, SIZE_MAX), TOO_MANY);
+    EXPECT(stereopsis_noise_line(&meter, (const uint8_t *)&meter, WIDTH), OVERLAP);
+    EXPECT(stereopsis_noise_level(&meter, NULL, &sigma), NULL);
+    EXPECT(stereopsis_noise_level(NULL, &level, &sigma), NULL);
+    /* Evenly spread over 16 levels: a deviation of 4.6. */
+    for (int y = 0; y < 200; y++) {
+        for (size_t i = 0; i < WIDTH; i++) {
+            random = random * 1664525u + 1013904223u;
+            line[i] = (uint8_t)(100 + (random >> 28));
+        }
+        EXPECT(stereopsis_noise_line(&meter, line, WIDTH), OK);
+    }
+    EXPECT(stereopsis_noise_level(&meter, &level, NULL), OK);
+    EXPECT(stereopsis_noise_level(&meter, &level, &sigma), OK);
+    CHECK(level == STEREOPSIS_NOISE_HIGH && sigma > 56 && sigma < 96);
+    EXPECT(stereopsis_noise_clear(&meter), OK);
+    for (int y = 0; y < 10; y++) {
+        memset(line, 90 + y, WIDTH);
+        EXPECT(stereopsis_noise_line(&meter, line, WIDTH), OK);
+    }
+    EXPECT(stereopsis_noise_level(&meter, &level, &sigma), OK);
+    CHECK(level == STEREOPSIS_NOISE_NONE && sigma < 4);
+}
+
 static void depths(void) {
     stereopsis_rig rig, wrong;
     uint16_t words[3] = {25 * STEREOPSIS_STEPS_PER_PX, STEREOPSIS_NONE, 0}, depth[3];
@@ -255,6 +359,8 @@ int main(void) {
     memory();
     configurations();
     lines();
+    lost_lines();
+    noise();
     depths();
     printf("%d failures\n", failures);
     return failures > 0;

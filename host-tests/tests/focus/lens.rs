@@ -59,7 +59,7 @@ fn a_scale_is_positions_that_go_one_way() {
     assert_eq!(FocusScale::new(lens, &[0.0041, 0.004]).err(), Some(FocusScaleError::Position { index: 1, reason }));
     for positions in [[0.0041, 0.0042, 0.0043], [0.0043, 0.0042, 0.0041]] {
         let scale = FocusScale::new(lens, &positions).expect("a scale");
-        let peak = FocusPeak { position_q8: 256, sigma_q8: 64, confidence: 9 };
+        let peak = FocusPeak { position_q8: 256, sigma_q8: 64, noise_q8: 0, confidence: 9 };
         let depth = scale.depth(&peak).expect("a depth");
         let exact = 0.004 * 0.0042 / 0.0002;
         assert!((depth.depth_m - exact).abs() < 1e-4 * exact, "{depth:?}");

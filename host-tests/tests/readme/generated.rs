@@ -2,13 +2,17 @@
 //!
 //! A table stands between `<!-- generated: NAME -->` and `<!-- end: NAME -->`, each on a line of its own.
 
+use embedded_graphics_core::geometry::{Point, Size};
+use embedded_graphics_core::pixelcolor::Rgb565;
+use embedded_graphics_simulator::{OutputSettingsBuilder, SimulatorDisplay};
 use image::codecs::png::{CompressionType, FilterType as PngFilter, PngEncoder};
 use image::imageops::{FilterType, replace, resize};
 use image::{DynamicImage, RgbImage};
 use std::sync::LazyLock;
-use stereopsis::depth::DepthScale;
+use stereopsis::depth::{Decimator, DepthScale, DisparityColours};
 use stereopsis::matching::{Block, Config, Fast, Filter, Scheme, Sgm, SgmEdge, SgmLean, state_bytes};
 use stereopsis::pipeline::Pipeline;
+use stereopsis::units::Disparity;
 use stereopsis_host::colour::ColourScale;
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::report::Accuracy;
@@ -17,6 +21,9 @@ use stereopsis_host::scene::{Scene, Truth};
 
 /// Where the picture stands in the repository.
 pub const PICTURE: &str = ".github/demo.png";
+
+/// What a display on the device shows, and where that stands.
+pub const DISPLAY: &str = ".github/display.png";
 
 /// Columns of each half of the picture.
 const HALF_COLUMNS: u32 = 320;
@@ -32,8 +39,10 @@ const MADE_ELSEWHERE: [&str; 8] = ["firmware", "pose", "features", "bundle", "fo
 
 /// README.md with every part made anew; an error names what is missing or not closed.
 pub fn splice(readme: &str) -> Result<String, String> {
-    if !readme.contains(&format!("]({PICTURE})")) {
-        return Err(format!("it does not show {PICTURE}"));
+    for picture in [PICTURE, DISPLAY] {
+        if !readme.contains(&format!("]({picture})")) {
+            return Err(format!("it does not show {picture}"));
+        }
     }
     splice_parts(readme, &PARTS)
 }
@@ -129,6 +138,27 @@ pub fn picture() -> RgbImage {
     // An average of two colours would be the colour of another disparity.
     replace(&mut both, &resize(&colours, HALF_COLUMNS, rows, FilterType::Nearest), i64::from(HALF_COLUMNS), 0);
     both
+}
+
+/// The same answers as a display of 160x120 with 16-bit colours shows them, in embedded-graphics' simulator: a block of four by four
+/// to a pixel, row by row as on the device.
+pub fn display() -> RgbImage {
+    const MOST: usize = 640;
+    let map = DEMO.match_with(Method::Block, Filter::Default);
+    let mut display = SimulatorDisplay::<Rgb565>::new(Size::new((map.width / 4) as u32, (map.height / 4) as u32));
+    let colours = DisparityColours::new(Disparity::from_pixels(4), Disparity::from_pixels(60));
+    let mut smaller = Decimator::<MOST, 4>::new();
+    smaller.begin();
+    for row in map.disparity.chunks_exact(map.width) {
+        let mut out = [Disparity::NONE; MOST / 4];
+        if let Some(y) = smaller.push(row, &mut out) {
+            let Ok(()) = colours.draw_row(&mut display, Point::new(0, y as i32), &out[..map.width / 4]);
+        }
+    }
+    let settings = OutputSettingsBuilder::new().scale(3).pixel_spacing(1).build();
+    let shown = display.to_rgb_output_image(&settings);
+    let shown = shown.as_image_buffer();
+    RgbImage::from_raw(shown.width(), shown.height(), shown.as_raw().to_vec()).expect("three bytes a pixel")
 }
 
 /// The picture as a file.

@@ -16,14 +16,23 @@ const HEADER: &str = "src/ffi/stereopsis.h";
 /// The file with the macro, and the macro.
 const MACRO: (&str, &str) = ("src/ffi/names.rs", "instantiate_c_api");
 /// The files that cbindgen reads as they are, in the header's order.
-const FILES: [&str; 5] =
-    ["src/ffi/status.rs", "src/ffi/state.rs", "src/ffi/config.rs", "src/ffi/row.rs", "src/ffi/rig.rs"];
+const FILES: [&str; 7] = [
+    "src/ffi/status.rs",
+    "src/ffi/state.rs",
+    "src/ffi/config.rs",
+    "src/ffi/row.rs",
+    "src/ffi/faults.rs",
+    "src/ffi/noise.rs",
+    "src/ffi/rig.rs",
+];
 /// Names that Rust spells in its own way.
-const NAMES: [(&str, &str); 5] = [
+const NAMES: [(&str, &str); 7] = [
     ("Handle", "stereopsis"),
     ("Status", "stereopsis_status"),
     ("Config", "stereopsis_config"),
     ("Row", "stereopsis_row"),
+    ("Counters", "stereopsis_counts"),
+    ("NoiseMeter", "stereopsis_noise_meter"),
     ("Rig", "stereopsis_rig"),
 ];
 
@@ -42,6 +51,7 @@ const TOP: &str = "/* Depth from two cameras, line by line: the functions of lib
      stereopsis_start(matcher, &config);
      stereopsis_begin_frame(matcher);
      for each line: stereopsis_push(matcher, left, right, 320, &row);
+       or, where it was lost: stereopsis_push_lost(matcher, STEREOPSIS_LOST_DROPPED, &row);
      until STEREOPSIS_STATUS_FRAME_DONE: stereopsis_flush(matcher, &row);
 
    One call at a time for one handle. Pointers are checked for null, alignment and overlap; what cannot be checked is the

@@ -62,7 +62,7 @@ fn format() -> Outcome {
 
 fn clippy() -> Outcome {
     run_cargo(&format!("clippy --locked --workspace --all-targets --features {REAL_DATA} -- -D warnings"))?;
-    run_cargo("clippy --locked -p stereopsis --features defmt,ffi -- -D warnings")?;
+    run_cargo("clippy --locked -p stereopsis --features async,defmt,ffi -- -D warnings")?;
     // The kinds of cores have code of their own.
     for (target, features) in [("thumbv7em-none-eabihf", "large"), ("riscv32imac-unknown-none-elf", "")] {
         let words = format!("clippy --locked --release --target {target} --features={features} -- -D warnings");
@@ -80,7 +80,7 @@ fn tests(with_real_data: bool) -> Outcome {
 
 fn documentation() -> Outcome {
     // The core's private items too: its comments link to them. Then what a user reads, in the same place.
-    for words in ["-p stereopsis --features ffi --document-private-items", "--workspace"] {
+    for words in ["-p stereopsis --features async,ffi --document-private-items", "--workspace"] {
         let mut docs = cargo(&["doc", "--locked", "--no-deps"]);
         run_command(docs.args(words.split_whitespace()).env("RUSTDOCFLAGS", "-D warnings"))?;
     }
@@ -89,7 +89,7 @@ fn documentation() -> Outcome {
 
 fn cross_builds() -> Outcome {
     // The firmware is built with the one set of features for every core; here the code is as generic as it was written.
-    for (chore, features) in [("check", [].as_slice()), ("build", &["--features", "defmt,ffi"])] {
+    for (chore, features) in [("check", [].as_slice()), ("build", &["--features", "async,defmt,ffi"])] {
         let mut build = cargo(&[chore, "--locked", "--release", "-p", "stereopsis"]);
         build.args(features).args(TARGETS.iter().flat_map(|target| ["--target", target]));
         run_command(build.env("RUSTFLAGS", "-D warnings"))?;

@@ -7,8 +7,6 @@
 //! What is written after [`Hm01b0::initialise`] counts from the frame after the group's command.
 
 use super::{ExposureControl, SensorError, within};
-use embedded_hal::delay::DelayNs;
-use embedded_hal::i2c::I2c;
 
 const MODEL_ID_HIGH: u16 = 0x0000;
 const MODEL_ID_LOW: u16 = 0x0001;
@@ -81,8 +79,9 @@ impl Hm01b0Size {
     /// Lines of a frame, blanking included, at least.
     const fn least_lines(self) -> u16 {
         match self {
-            // As for the window, whose frame is that of 244 lines and 16 of blanking.
-            Self::Whole => 340,
+            // Open drivers write 265, fewer than its own rows. Zephyr's (`drivers/video/hm01b0.c`) says that there are at most
+            // 45 frames a second, and 60 of the window, whose 260 lines so are 346 here.
+            Self::Whole => 346,
             Self::Qvga => 0x0104,
             Self::Qqvga => 0x0084,
         }
@@ -110,163 +109,190 @@ pub enum Hm01b0Mode {
     Triggered,
 }
 
-/// A HM01B0 on an I2C bus.
-#[derive(Debug)]
-pub struct Hm01b0<I> {
-    bus: I,
-    /// Of the clock that the lines are counted in, hertz.
-    clock_hz: u32,
-    frame_lines: u16,
-    size: Hm01b0Size,
-}
-
-impl<I: I2c> Hm01b0<I> {
-    /// Its address on the bus, 7 bits.
-    pub const ADDRESS: u8 = 0x24;
-    /// What it says that it is.
-    pub const IDENTITY: u16 = 0x01b0;
-
-    /// A sensor on that bus, whose lines are counted in a clock of so many hertz: the master clock by what the register OSC_CLK_DIV
-    /// divides it, 8 after a reset. Nothing is sent.
-    pub const fn new(bus: I, clock_hz: u32) -> Self {
-        let size = Hm01b0Size::Qvga;
-        Self { bus, clock_hz, frame_lines: size.least_lines(), size }
+/// The driver, over a bus that blocks or one that is waited for: `async` and `.await`, or nothing in their places.
+macro_rules! driver {
+    ($driver:ident, $about:literal, $i2c:path, $delay:path, [$($async:ident)?], [$($wait:tt)*]) => {
+    #[doc = $about]
+    #[derive(Debug)]
+    pub struct $driver<I> {
+        bus: I,
+        /// Of the clock that the lines are counted in, hertz.
+        clock_hz: u32,
+        frame_lines: u16,
+        size: Hm01b0Size,
     }
 
-    /// Resets the sensor by its register, waits for it, asks who it is, and sets it up, without automatic exposure, in standby.
-    pub fn initialise<D: DelayNs>(&mut self, delay: &mut D) -> Result<(), SensorError<I::Error>> {
-        self.write(SOFTWARE_RESET, 1)?;
-        delay.delay_ms(1);
-        let mut is_ready = false;
-        for _ in 0..ATTEMPTS {
-            is_ready = self.read(MODE_SELECT)? == 0;
-            if is_ready {
-                break;
+    impl<I: $i2c> $driver<I> {
+        /// Its address on the bus, 7 bits.
+        pub const ADDRESS: u8 = 0x24;
+        /// What it says that it is.
+        pub const IDENTITY: u16 = 0x01b0;
+
+        /// A sensor on that bus, whose lines are counted in a clock of so many hertz: the master clock by what the register OSC_CLK_DIV
+        /// divides it, 8 after a reset. Nothing is sent.
+        pub const fn new(bus: I, clock_hz: u32) -> Self {
+            let size = Hm01b0Size::Qvga;
+            Self { bus, clock_hz, frame_lines: size.least_lines(), size }
+        }
+
+        /// Resets the sensor by its register, waits for it, asks who it is, and sets it up, without automatic exposure, in standby.
+        pub $($async)? fn initialise<D: $delay>(&mut self, delay: &mut D) -> Result<(), SensorError<I::Error>> {
+            self.write(SOFTWARE_RESET, 1)$($wait)*?;
+            delay.delay_ms(1)$($wait)*;
+            let mut is_ready = false;
+            for _ in 0..ATTEMPTS {
+                is_ready = self.read(MODE_SELECT)$($wait)*? == 0;
+                if is_ready {
+                    break;
+                }
+                delay.delay_ms(10)$($wait)*;
             }
-            delay.delay_ms(10);
+            if !is_ready {
+                return Err(SensorError::NoReset);
+            }
+            self.identify()$($wait)*?;
+            for (register, value) in SETTINGS {
+                self.write(register, value)$($wait)*?;
+            }
+            self.write(AUTO_EXPOSURE, 0)$($wait)*?;
+            self.write_pair(LINE_CLOCKS, CLOCKS_A_LINE)$($wait)*?;
+            self.set_size(Hm01b0Size::Qvga)$($wait)*
         }
-        if !is_ready {
-            return Err(SensorError::NoReset);
+
+        /// Asks the chip who it is.
+        pub $($async)? fn identify(&mut self) -> Result<(), SensorError<I::Error>> {
+            let found = u16::from_be_bytes([self.read(MODEL_ID_HIGH)$($wait)*?, self.read(MODEL_ID_LOW)$($wait)*?]);
+            if found == Self::IDENTITY { Ok(()) } else { Err(SensorError::Identity { found }) }
         }
-        self.identify()?;
-        for (register, value) in SETTINGS {
-            self.write(register, value)?;
+
+        /// Starts or stops frames.
+        pub $($async)? fn set_mode(&mut self, mode: Hm01b0Mode) -> Result<(), SensorError<I::Error>> {
+            self.write(
+                MODE_SELECT,
+                match mode {
+                    Hm01b0Mode::Standby => 0,
+                    Hm01b0Mode::Streaming => 1,
+                    Hm01b0Mode::Triggered => 5,
+                },
+            )$($wait)*
         }
-        self.write(AUTO_EXPOSURE, 0)?;
-        self.write_pair(LINE_CLOCKS, CLOCKS_A_LINE)?;
-        self.set_size(Hm01b0Size::Qvga)
-    }
 
-    /// Asks the chip who it is.
-    pub fn identify(&mut self) -> Result<(), SensorError<I::Error>> {
-        let found = u16::from_be_bytes([self.read(MODEL_ID_HIGH)?, self.read(MODEL_ID_LOW)?]);
-        if found == Self::IDENTITY { Ok(()) } else { Err(SensorError::Identity { found }) }
-    }
+        /// Reads out that part of the array, at the highest frame rate of the clock.
+        pub $($async)? fn set_size(&mut self, size: Hm01b0Size) -> Result<(), SensorError<I::Error>> {
+            let (readout, binning) = if size == Hm01b0Size::Qqvga { (3, 3) } else { (1, 0) };
+            self.write(READOUT_X, readout)$($wait)*?;
+            self.write(READOUT_Y, readout)$($wait)*?;
+            self.write(BINNING, binning)$($wait)*?;
+            self.write(QVGA_WINDOW, u8::from(size != Hm01b0Size::Whole))$($wait)*?;
+            self.write_pair(FRAME_LINES, size.least_lines())$($wait)*?;
+            self.write(GROUP, 1)$($wait)*?;
+            (self.size, self.frame_lines) = (size, size.least_lines());
+            Ok(())
+        }
 
-    /// Starts or stops frames.
-    pub fn set_mode(&mut self, mode: Hm01b0Mode) -> Result<(), SensorError<I::Error>> {
-        self.write(
-            MODE_SELECT,
-            match mode {
-                Hm01b0Mode::Standby => 0,
-                Hm01b0Mode::Streaming => 1,
-                Hm01b0Mode::Triggered => 5,
-            },
-        )
-    }
+        /// Sets the time between two frames, to the next whole line.
+        pub $($async)? fn set_frame_time(&mut self, frame_us: u32) -> Result<(), SensorError<I::Error>> {
+            within(frame_us, self.lines_us(self.size.least_lines()), self.lines_us(u16::MAX))?;
+            let lines = self.lines_in(frame_us).max(self.size.least_lines());
+            self.write_pair(FRAME_LINES, lines)$($wait)*?;
+            self.write(GROUP, 1)$($wait)*?;
+            self.frame_lines = lines;
+            Ok(())
+        }
 
-    /// Reads out that part of the array, at the highest frame rate of the clock.
-    pub fn set_size(&mut self, size: Hm01b0Size) -> Result<(), SensorError<I::Error>> {
-        let (readout, binning) = if size == Hm01b0Size::Qqvga { (3, 3) } else { (1, 0) };
-        self.write(READOUT_X, readout)?;
-        self.write(READOUT_Y, readout)?;
-        self.write(BINNING, binning)?;
-        self.write(QVGA_WINDOW, u8::from(size != Hm01b0Size::Whole))?;
-        self.write_pair(FRAME_LINES, size.least_lines())?;
-        self.write(GROUP, 1)?;
-        (self.size, self.frame_lines) = (size, size.least_lines());
-        Ok(())
-    }
+        /// The time between two frames, microseconds.
+        pub fn frame_time_us(&self) -> u32 {
+            self.lines_us(self.frame_lines)
+        }
 
-    /// Sets the time between two frames, to the next whole line.
-    pub fn set_frame_time(&mut self, frame_us: u32) -> Result<(), SensorError<I::Error>> {
-        within(frame_us, self.lines_us(self.size.least_lines()), self.lines_us(u16::MAX))?;
-        let lines = self.lines_in(frame_us).max(self.size.least_lines());
-        self.write_pair(FRAME_LINES, lines)?;
-        self.write(GROUP, 1)?;
-        self.frame_lines = lines;
-        Ok(())
-    }
+        /// Reads columns from the right, rows from below.
+        pub $($async)? fn set_flips(&mut self, rows: bool, columns: bool) -> Result<(), SensorError<I::Error>> {
+            self.write(ORIENTATION, u8::from(columns) | u8::from(rows) << 1)$($wait)*?;
+            self.write(GROUP, 1)$($wait)*
+        }
 
-    /// The time between two frames, microseconds.
-    pub fn frame_time_us(&self) -> u32 {
-        self.lines_us(self.frame_lines)
-    }
+        /// Sends a pattern of bars instead of what the sensor sees.
+        pub $($async)? fn set_test_pattern(&mut self, is_on: bool) -> Result<(), SensorError<I::Error>> {
+            self.write(TEST_PATTERN, u8::from(is_on))$($wait)*
+        }
 
-    /// Reads columns from the right, rows from below.
-    pub fn set_flips(&mut self, rows: bool, columns: bool) -> Result<(), SensorError<I::Error>> {
-        self.write(ORIENTATION, u8::from(columns) | u8::from(rows) << 1)?;
-        self.write(GROUP, 1)
-    }
+        /// The least and the most exposure that leave the frame rate as it is, microseconds.
+        pub fn exposure_limits_us(&self) -> (u32, u32) {
+            (self.lines_us(2), self.lines_us(self.frame_lines.saturating_sub(2)))
+        }
 
-    /// Sends a pattern of bars instead of what the sensor sees.
-    pub fn set_test_pattern(&mut self, is_on: bool) -> Result<(), SensorError<I::Error>> {
-        self.write(TEST_PATTERN, u8::from(is_on))
-    }
+        /// Sets exposure, rounded to what the sensor has, and gain in sixteenths.
+        ///
+        /// The gain is 1, 2, 4 or 8: the next one below.
+        pub $($async)? fn set_exposure(&mut self, exposure_us: u32, gain_16ths: u16) -> Result<(), SensorError<I::Error>> {
+            within(gain_16ths.into(), 16, 128)?;
+            let lines = self.lines_in(exposure_us).clamp(2, self.frame_lines.saturating_sub(2).max(2));
+            let doublings = (gain_16ths / 16).checked_ilog2().unwrap_or(0) as u8;
+            self.write_pair(INTEGRATION, lines)$($wait)*?;
+            self.write(ANALOG_GAIN, doublings << 4)$($wait)*?;
+            self.write(GROUP, 1)$($wait)*
+        }
 
-    /// Gives the bus back.
-    pub fn release(self) -> I {
-        self.bus
-    }
+        /// Gives the bus back.
+        pub fn release(self) -> I {
+            self.bus
+        }
 
-    fn lines_us(&self, lines: u16) -> u32 {
-        let clocks = u64::from(lines) * u64::from(CLOCKS_A_LINE);
-        (clocks * 1_000_000).div_ceil(u64::from(self.clock_hz.max(1))).min(u32::MAX.into()) as u32
-    }
+        fn lines_us(&self, lines: u16) -> u32 {
+            let clocks = u64::from(lines) * u64::from(CLOCKS_A_LINE);
+            (clocks * 1_000_000).div_ceil(u64::from(self.clock_hz.max(1))).min(u32::MAX.into()) as u32
+        }
 
-    fn lines_in(&self, time_us: u32) -> u16 {
-        let clocks = u64::from(time_us) * u64::from(self.clock_hz) / 1_000_000;
-        (clocks / u64::from(CLOCKS_A_LINE)).min(u16::MAX.into()) as u16
-    }
+        fn lines_in(&self, time_us: u32) -> u16 {
+            let clocks = u64::from(time_us) * u64::from(self.clock_hz) / 1_000_000;
+            (clocks / u64::from(CLOCKS_A_LINE)).min(u16::MAX.into()) as u16
+        }
 
-    fn write(&mut self, register: u16, value: u8) -> Result<(), SensorError<I::Error>> {
-        let [high, low] = register.to_be_bytes();
-        self.bus.write(Self::ADDRESS, &[high, low, value]).map_err(SensorError::Bus)
-    }
+        $($async)? fn write(&mut self, register: u16, value: u8) -> Result<(), SensorError<I::Error>> {
+            let [high, low] = register.to_be_bytes();
+            self.bus.write(Self::ADDRESS, &[high, low, value])$($wait)*.map_err(SensorError::Bus)
+        }
 
-    /// Two registers beside each other, the high byte's first.
-    fn write_pair(&mut self, register: u16, value: u16) -> Result<(), SensorError<I::Error>> {
-        let [high, low] = value.to_be_bytes();
-        self.write(register, high)?;
-        self.write(register + 1, low)
-    }
+        /// Two registers beside each other, the high byte's first.
+        $($async)? fn write_pair(&mut self, register: u16, value: u16) -> Result<(), SensorError<I::Error>> {
+            let [high, low] = value.to_be_bytes();
+            self.write(register, high)$($wait)*?;
+            self.write(register + 1, low)$($wait)*
+        }
 
-    fn read(&mut self, register: u16) -> Result<u8, SensorError<I::Error>> {
-        let mut value = [0];
-        self.bus.write_read(Self::ADDRESS, &register.to_be_bytes(), &mut value).map_err(SensorError::Bus)?;
-        let [value] = value;
-        Ok(value)
+        $($async)? fn read(&mut self, register: u16) -> Result<u8, SensorError<I::Error>> {
+            let mut value = [0];
+            self.bus.write_read(Self::ADDRESS, &register.to_be_bytes(), &mut value)$($wait)*.map_err(SensorError::Bus)?;
+            let [value] = value;
+            Ok(value)
+        }
     }
+    };
 }
 
-impl<I: I2c> ExposureControl for Hm01b0<I> {
+driver!(Hm01b0, "A HM01B0 on an I2C bus.", embedded_hal::i2c::I2c, embedded_hal::delay::DelayNs, [], []);
+#[cfg(feature = "async")]
+driver!(
+    AsyncHm01b0,
+    "A HM01B0 on an I2C bus that is waited for: [`Hm01b0`], call for call. A call whose future is dropped leaves the sensor as one that failed.",
+    embedded_hal_async::i2c::I2c,
+    embedded_hal_async::delay::DelayNs,
+    [async],
+    [.await]
+);
+
+impl<I: embedded_hal::i2c::I2c> ExposureControl for Hm01b0<I> {
     type Error = SensorError<I::Error>;
 
     fn exposure_limits_us(&self) -> (u32, u32) {
-        (self.lines_us(2), self.lines_us(self.frame_lines.saturating_sub(2)))
+        self.exposure_limits_us()
     }
 
     fn most_gain_16ths(&self) -> u16 {
         128
     }
 
-    /// The gain is 1, 2, 4 or 8: the next one below.
     fn set_exposure(&mut self, exposure_us: u32, gain_16ths: u16) -> Result<(), Self::Error> {
-        within(gain_16ths.into(), 16, 128)?;
-        let lines = self.lines_in(exposure_us).clamp(2, self.frame_lines.saturating_sub(2).max(2));
-        let doublings = (gain_16ths / 16).checked_ilog2().unwrap_or(0) as u8;
-        self.write_pair(INTEGRATION, lines)?;
-        self.write(ANALOG_GAIN, doublings << 4)?;
-        self.write(GROUP, 1)
+        self.set_exposure(exposure_us, gain_16ths)
     }
 }

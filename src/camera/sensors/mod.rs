@@ -5,18 +5,24 @@
 //! * [`ExposureControl`]: what an automatic exposure asks of a sensor. [`SensorError`]: why a sensor did not do what it was told.
 //!
 //! A driver owns its bus by value; a shared one comes by `embedded-hal-bus` or `&mut`. Delay and reset pin are asked for where
-//! they are needed. All of it blocks, for the time that the bus takes. A write that fails leaves the sensor between two settings:
+//! they are needed. All of it blocks, for the time that the bus takes; with the feature `async` there is each driver over a bus that is
+//! waited for as well (`AsyncMt9v034`, `AsyncHm01b0`), made of the same text. A write that fails leaves the sensor between two settings:
 //! the call may be repeated as it is, and [`Mt9v034::initialise`] or [`Hm01b0::initialise`] begins anew.
 //!
-//! Other sensors come with drivers of their own, which need no adapter: they configure, over the same traits. The crate `ov7670`
-//! (0.1) sets size, format, gain and exposure of an OV7670, but neither its frame rate, windows, test pattern nor clock, and looks at
-//! no identity. The crate `hm01b0` (0.1) has exposure, trigger and test pattern; as it neither windows nor bins, there is a driver
-//! here.
+//! Other sensors come with drivers of their own, which need no adapter: they configure, over the same traits. For the OV7670 there
+//! is the crate `ov7670` 0.1.0, over `embedded-hal` 1.0: it sets size, format, gain and exposure, but neither frame rate, windows,
+//! test pattern nor clock, and looks at no identity, so that an adapter could give an [`ExposureControl`] and no more; its
+//! only version is its first. The crate
+//! `hm01b0` 0.1.0 has exposure, trigger and test pattern; as it neither windows nor bins, there is a driver here.
 
 mod hm01b0;
 mod mt9v034;
 
+#[cfg(feature = "async")]
+pub use hm01b0::AsyncHm01b0;
 pub use hm01b0::{Hm01b0, Hm01b0Mode, Hm01b0Size};
+#[cfg(feature = "async")]
+pub use mt9v034::AsyncMt9v034;
 pub use mt9v034::{Mt9v034, Mt9v034Mode, Mt9v034Pattern, Mt9v034Window};
 
 use core::fmt;

@@ -114,12 +114,15 @@ fn positions(args: &FocusArgs, frames: usize) -> Result<Option<Positions>, Failu
 fn breathes(stack: &Stack, scale: &FocusScale<'_>) -> Result<bool, Failure> {
     let mut agreement = Agreement::default();
     let mut before = stack.frame(0)?;
+    let mut ratio = 1.0;
     for index in 1..stack.len() {
-        let after = stack.frame(index)?;
-        if let Some(ratio) = scale.growth(index) {
+        ratio *= scale.growth(index).unwrap_or(1.0);
+        // The next frame by itself may hardly differ.
+        if Agreement::is_telling(stack.size(), ratio) {
+            let after = stack.frame(index)?;
             agreement.add(&before.grey, &after.grey, ratio);
+            (before, ratio) = (after, 1.0);
         }
-        before = after;
     }
     Ok(agreement.is_breathing())
 }

@@ -64,16 +64,20 @@ pub fn run(args: &RecordArgs) -> Result<(), Failure> {
     let faults: &[Fault] = if args.faults > 0.0 { &Fault::ALL } else { &[] };
     let mut source = Faulty::new(pictures, faults, args.faults, args.seed);
     let mut recorded = None;
-    place.write(
+    let mut bad_image = None;
+    let written = place.write(
         |out| {
             recorded = Some(record(&mut source, frames, out)?);
-            match source.inner_mut().failed() {
-                Some(e) => Err(std::io::Error::other(e)),
-                None => Ok(()),
-            }
+            bad_image = source.inner_mut().failed();
+            // What is written is then of no use, and it is not the place that is at fault.
+            if bad_image.is_some() { Err(std::io::ErrorKind::InvalidData.into()) } else { Ok(()) }
         },
         None,
-    )?;
+    );
+    if let Some(error) = bad_image {
+        return Err(error.into());
+    }
+    written?;
     let told = recorded.unwrap_or_default();
     let name = one_line(&args.out.display().to_string());
     print(&format!("{} frames, {} lines, {} errors are in {name}\n", told.frames, told.lines, told.faults))

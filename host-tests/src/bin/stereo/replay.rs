@@ -82,6 +82,8 @@ struct Summary {
     broken_frames: u32,
     failed_frames: u32,
     recording_was_cut: bool,
+    /// The first frame, from 1, whose time stamp is of before that of the frame before.
+    time_went_back_at: Option<u32>,
     counters: Counters,
 }
 
@@ -206,6 +208,7 @@ fn play(args: &ReplayArgs, source: &mut Playback<Recording>) -> Result<(), Failu
         broken_frames: counters.frames_broken,
         failed_frames: counters.frames_failed + counters.frames_stale,
         recording_was_cut: source.was_cut(),
+        time_went_back_at: source.went_back(),
         counters: counters.into(),
     };
     staging.write("frames.csv", |out| out.write_all(table.as_bytes()))?;
@@ -255,6 +258,10 @@ fn told(s: &Summary, out: &Path) -> String {
     );
     if s.recording_was_cut {
         text += "note: the recording ends within a record; what is before it was played\n";
+    }
+    if let Some(frame) = s.time_went_back_at {
+        let _ =
+            writeln!(text, "note: time stamps go back at frame {frame}; frames were played in the order of the file");
     }
     let _ = writeln!(text, "results are in {}", one_line(&out.display().to_string()));
     text

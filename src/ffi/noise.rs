@@ -1,0 +1,105 @@
+//! The meter of noise, in memory of the caller's.
+#![allow(unsafe_code)]
+
+use super::{STEREOPSIS_NOISE_HIGH, STEREOPSIS_NOISE_LOW, STEREOPSIS_NOISE_NONE, Status};
+use crate::imaging::{self, Noise};
+
+/// How noisy the lines are that it was given: the caller's memory, for `stereopsis_noise_clear` and what follows it. The words are
+/// the library's.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(C)]
+pub struct NoiseMeter {
+    /// Counters.
+    pub words: [u32; 65],
+}
+
+/// Both are 65 words in a row, and every bit pattern is a meter: one of anything says anything, and no more.
+const _: () = assert!(
+    size_of::<NoiseMeter>() == size_of::<imaging::NoiseMeter>()
+        && align_of::<NoiseMeter>() == align_of::<imaging::NoiseMeter>()
+);
+
+/// The meter at a pointer.
+///
+/// # Safety
+///
+/// `meter` is null or points to a meter that nothing else uses for `'a`.
+unsafe fn open<'a>(meter: *mut NoiseMeter) -> Result<&'a mut imaging::NoiseMeter, Status> {
+    if meter.is_null() {
+        return Err(Status::Null);
+    }
+    if !meter.is_aligned() {
+        return Err(Status::Misaligned);
+    }
+    // SAFETY: the caller's promise; the layouts are the same, and words have no bits that they must not have.
+    Ok(unsafe { &mut *meter.cast::<imaging::NoiseMeter>() })
+}
+
+/// Forgets all lines.
+///
+/// # Safety
+///
+/// `meter` is null or points to a meter's bytes, which need no content.
+pub unsafe fn noise_clear(meter: *mut NoiseMeter) -> Status {
+    if meter.is_null() {
+        return Status::Null;
+    }
+    if !meter.is_aligned() {
+        return Status::Misaligned;
+    }
+    // SAFETY: the caller's promise.
+    unsafe { meter.write(NoiseMeter { words: [0; 65] }) };
+    Status::Ok
+}
+
+/// Takes a line of 8-bit grey.
+///
+/// # Safety
+///
+/// `meter` is null or points to a meter, `line` is null or points to `length` bytes beside it.
+pub unsafe fn noise_line(meter: *mut NoiseMeter, line: *const u8, length: usize) -> Status {
+    if line.is_null() {
+        return Status::Null;
+    }
+    if length > usize::from(u16::MAX) {
+        return Status::TooMany;
+    }
+    if super::state::share_bytes(meter.cast(), size_of::<NoiseMeter>(), line.cast(), length) {
+        return Status::Overlap;
+    }
+    // SAFETY: the caller's promise, and both stand beside each other.
+    let (meter, line) = unsafe { (open(meter), core::slice::from_raw_parts(line, length)) };
+    super::instance::either(meter.map(|meter| {
+        meter.line(line);
+        Status::Ok
+    }))
+}
+
+/// Says how noisy the lines are.
+///
+/// # Safety
+///
+/// `meter` is null or points to a meter, `noise` and `sigma_16ths` are null or point to numbers.
+pub unsafe fn noise_level(meter: *mut NoiseMeter, noise: *mut u8, sigma_16ths: *mut u16) -> Status {
+    if noise.is_null() {
+        return Status::Null;
+    }
+    // SAFETY: the caller's promise.
+    let (level, sigma) = match unsafe { open(meter) } {
+        Ok(meter) => (meter.level(), meter.sigma_16ths().unwrap_or(0)),
+        Err(status) => return status,
+    };
+    let level = match level {
+        Noise::None => STEREOPSIS_NOISE_NONE,
+        Noise::Low => STEREOPSIS_NOISE_LOW,
+        Noise::High => STEREOPSIS_NOISE_HIGH,
+    };
+    // SAFETY: the caller's promise; no alignment is asked for.
+    unsafe {
+        noise.write_unaligned(level);
+        if !sigma_16ths.is_null() {
+            sigma_16ths.write_unaligned(sigma);
+        }
+    }
+    Status::Ok
+}

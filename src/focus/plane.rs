@@ -1,0 +1,102 @@
+//! Answers that noise moves, from those around them.
+
+use super::{FocusPeak, NoFocus};
+
+/// Places that are looked at to either side, in steps of 1, 2 or 4 cells.
+const REACH: i32 = 3;
+/// Noise from which on that step is taken, 1/256 frame: a tenth of a frame, two and four.
+const STEPS: [(u32, i32); 3] = [(102, 4), (51, 2), (26, 1)];
+/// What answers of one surface differ by without noise, and what none is surer than, 1/256 frame.
+const NEAR: f32 = 90.0;
+const SUREST: f32 = 38.0;
+/// What a slope is held back by, of the weight of all.
+const RIDGE: f32 = 1e-3;
+
+/// The answers of a row of cells, each the value at its own place of the plane that fits best to the answers around it, in proportion to one
+/// over their variance: moving least squares (Lancaster & Salkauskas 1981). `peaks` are all cells, row by row; `out` has the medians of
+/// that row ([`median_row`](super::median_row)), by which it is told which answers are of the same surface: those within
+/// a third of a frame and three deviations.
+///
+/// An answer that noise moves by less than a tenth of a frame stays as it is; others see 7 by 7 answers around them, one, two
+/// or four cells apart, the more noise the farther. For a window's sharpness is shared by its neighbours, and only what lies farther away
+/// tells anything new. A plane and no mean, as weights are not the same on both sides of a slope. A cell without an answer stays
+/// so, and one keeps its own deviation and confidence.
+pub fn plane_row(
+    peaks: &[Result<FocusPeak, NoFocus>],
+    columns: usize,
+    row: usize,
+    out: &mut [Result<FocusPeak, NoFocus>],
+) {
+    let at = |x: i32, y: i32| {
+        let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
+        if x >= columns {
+            return None;
+        }
+        peaks.get(y.checked_mul(columns)?.checked_add(x)?)?.ok()
+    };
+    for (x, own) in (0..columns as i32).zip(out) {
+        let Ok(own) = own else { continue };
+        let Some(&(_, step)) = STEPS.iter().find(|(least, _)| own.noise_q8 >= *least) else { continue };
+        let mut sums = Sums::default();
+        let own_variance = square(own.noise_q8 as f32);
+        for dy in -REACH..=REACH {
+            for dx in -REACH..=REACH {
+                let Some(near) = at(x + step * dx, row as i32 + step * dy) else { continue };
+                let off = near.position_q8 as f32 - own.position_q8 as f32;
+                let variance = square(near.noise_q8 as f32);
+                if square((off.abs() - NEAR).max(0.0)) <= 9.0 * (own_variance + variance) {
+                    sums.add([dx as f32, dy as f32], off, SUREST * SUREST / (variance + SUREST * SUREST));
+                }
+            }
+        }
+        let moved = own.position_q8 as f32 + sums.value();
+        // Rounded; a cast of what is out of range is the nearest end.
+        own.position_q8 = (moved + 0.5) as u32;
+    }
+}
+
+fn square(x: f32) -> f32 {
+    x * x
+}
+
+/// The normal equations of a plane `z + a x + b y` through weighted answers.
+#[derive(Default)]
+struct Sums {
+    weight: f32,
+    /// Sums of weight and place, and of weight and its square and product.
+    places: [f32; 2],
+    squares: [f32; 2],
+    product: f32,
+    /// Sums of weight and answer, and of these and place.
+    value: f32,
+    values: [f32; 2],
+}
+
+impl Sums {
+    fn add(&mut self, [x, y]: [f32; 2], value: f32, weight: f32) {
+        self.weight += weight;
+        let [px, py] = &mut self.places;
+        let [sx, sy] = &mut self.squares;
+        let [vx, vy] = &mut self.values;
+        *px += weight * x;
+        *py += weight * y;
+        *sx += weight * x * x;
+        *sy += weight * y * y;
+        self.product += weight * x * y;
+        self.value += weight * value;
+        *vx += weight * x * value;
+        *vy += weight * y * value;
+    }
+
+    /// The plane in the middle, by Cramer's rule; 0 where there is nothing.
+    fn value(&self) -> f32 {
+        let [px, py] = self.places;
+        let [sx, sy] = self.squares.map(|square| square + RIDGE * self.weight);
+        let [vx, vy] = self.values;
+        let (w, p, v) = (self.weight, self.product, self.value);
+        let minor = sx * sy - p * p;
+        let all = w * minor - px * (px * sy - p * py) + py * (px * p - sx * py);
+        let top = v * minor - px * (vx * sy - p * vy) + py * (vx * p - sx * vy);
+        if all > 0.0 { top / all } else { 0.0 }
+    }
+}

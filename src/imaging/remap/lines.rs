@@ -3,6 +3,7 @@
 use super::RemapTable;
 use super::sample::Band;
 use super::segment::{Part, Segments};
+use core::cell::Cell;
 
 /// One camera's raw lines, rectified.
 ///
@@ -183,14 +184,14 @@ impl<const W: usize, const N: usize, const SLOTS: usize> Remap<W, N, SLOTS> {
         let (raw, piece) = (self.table.raw_size(), self.table.piece());
         let band = Band::new(&self.lines, first - first % Self::ROWS, raw, piece);
         let cell = 1 << self.table.shift();
-        let mut segments = Segments::new(&self.table, row);
+        let mut segments = Segments::new(&self.table, row, self.table.is_whole(row));
         valid.fill(1);
         for ((out, valid), segment) in out.chunks_mut(cell).zip(valid.chunks_mut(cell)).zip(&mut segments) {
             match segment.part {
-                Part::All => band.segment::<false>(&segment, out, valid),
+                Part::All => band.segment::<false>(&segment, Cell::from_mut(out).as_slice_of_cells(), valid),
                 Part::Some => {
                     segment.mask(raw, piece, valid);
-                    band.segment::<true>(&segment, out, valid);
+                    band.segment::<true>(&segment, Cell::from_mut(out).as_slice_of_cells(), valid);
                 }
                 Part::None => {
                     valid.fill(0);

@@ -207,11 +207,12 @@ impl<'a> Segments<'a> {
         let Some(((n0, n1), (n2, n3))) = self.columns.next() else { return [0; 2] };
         self.beyond = self.beyond << 1 | ((n1[0] | n2[0]) & 1).cast_unsigned();
         let [w0, w1, w2, w3] = self.weights.map(i64::from);
-        [0, 1].map(|axis| {
-            let sum = w0 * i64::from(n0[axis]) + w1 * i64::from(n1[axis]);
-            let sum = sum + w2 * i64::from(n2[axis]) + w3 * i64::from(n3[axis]);
+        let at = |[a, b, c, d]: [i32; 4]| {
+            let sum = w0 * i64::from(a) + w1 * i64::from(b);
+            let sum = sum + w2 * i64::from(c) + w3 * i64::from(d);
             ((sum + (1 << (WEIGHT_BITS - 1))) >> WEIGHT_BITS) as i32
-        })
+        };
+        [at([n0[0], n1[0], n2[0], n3[0]]), at([n0[1], n1[1], n2[1], n3[1]])]
     }
 
     /// What of a segment between two columns of the lattice is in the raw image.
@@ -238,8 +239,8 @@ impl Iterator for Segments<'_> {
         let [a, b, c] = self.last;
         let d = self.node();
         self.last = [b, c, d];
-        let run = |axis: usize| Run::between([a[axis], b[axis], c[axis], d[axis]], &self.cell);
-        let (column, row) = (run(0), run(1));
+        let column = Run::between([a[0], b[0], c[0], d[0]], &self.cell);
+        let row = Run::between([a[1], b[1], c[1], d[1]], &self.cell);
         let part = match self.is_whole {
             true => Part::All,
             // Those at both ends, the last but one and the one before that.

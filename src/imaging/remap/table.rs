@@ -56,6 +56,8 @@ impl core::error::Error for RemapTableError {}
 /// The widest lattice and the finest: powers of two.
 const WIDEST: u32 = 6;
 const FINEST: u32 = 3;
+/// The size of no image.
+const NO_PIXELS: ImageSize = ImageSize { width: 0, height: 0 };
 /// Added to what is noted of a row when all of it is in the raw image: its last raw row is less than 4096.
 const WHOLE: u32 = 1 << 31;
 /// What is noted of a row that shows nothing of the raw image: its first raw row is after the last.
@@ -68,18 +70,38 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
     /// How far a place that is looked at may be from the warp's, px: then all are within 0.05 px.
     pub const TOLERANCE_PX: f64 = 0.03;
 
+    /// A table of an image without pixels, to be [`set`](Self::set) where it stands.
+    pub const fn empty() -> Self {
+        Self { slots: [[1, 0]; SLOTS], shift: FINEST as u8, piece: 0, size: NO_PIXELS, raw: NO_PIXELS, rows: 0 }
+    }
+
     /// The table of a warp.
     pub fn new<T: Real>(warp: &Warp<T>) -> Result<Self, RemapTableError> {
-        let mut table =
-            Self { slots: [[1, 0]; SLOTS], shift: 0, piece: 0, size: warp.size(), raw: warp.raw_size(), rows: 0 };
+        let mut table = Self::empty();
+        table.set(warp)?;
+        Ok(table)
+    }
+
+    /// Makes it the table of a warp, without another in between; [`Self::empty`] when there is none.
+    pub fn set<T: Real>(&mut self, warp: &Warp<T>) -> Result<(), RemapTableError> {
+        (self.size, self.raw) = (warp.size(), warp.raw_size());
+        self.make(warp).inspect_err(|_| self.clear())
+    }
+
+    /// Leaves it [`Self::empty`].
+    pub(super) fn clear(&mut self) {
+        (self.size, self.raw, self.rows) = (NO_PIXELS, NO_PIXELS, 0);
+    }
+
+    fn make<T: Real>(&mut self, warp: &Warp<T>) -> Result<(), RemapTableError> {
         // Four pixels at a time along a line are faster.
         for piece in [2, 0] {
-            for shift in (FINEST..=table.widest()).rev() {
-                table.fill(warp, shift)?;
-                table.piece = piece;
-                if table.is_near(warp) {
-                    table.note_rows();
-                    return Ok(table);
+            for shift in (FINEST..=self.widest()).rev() {
+                self.fill(warp, shift)?;
+                self.piece = piece;
+                if self.is_near(warp) {
+                    self.note_rows();
+                    return Ok(());
                 }
             }
         }
@@ -201,8 +223,7 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
     /// What is noted of a row; of none that it is seen nowhere.
     fn noted(&self, row: u16) -> u32 {
         let slot = self.slots.get(Self::nodes(self.size, self.shift()) + usize::from(row / 2));
-        let noted = slot.and_then(|slot| slot.get(usize::from(row % 2)));
-        noted.map_or(NOWHERE, |noted| noted.cast_unsigned())
+        slot.and_then(|slot| slot.get(usize::from(row % 2))).map_or(NOWHERE, |noted| noted.cast_unsigned())
     }
 
     /// Whether each pixel of a rectified row is seen: 1 or 0, as many as there is room for.
@@ -219,16 +240,14 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
     /// Notes which raw rows each row needs, and how many are held at most.
     fn note_rows(&mut self) {
         let begin = Self::nodes(self.size, self.shift());
-        let last_row = i32::from(self.raw.height) - 1;
+        let last_row = i32::from(self.raw.height.saturating_sub(1));
         let of = |place: i32| (place >> BITS).clamp(0, last_row);
         let cell = Cell::new(self.shift(), self.piece());
         let (mut last_so_far, mut most) = (0, 0);
         for row in 0..self.size.height {
-            let (mut first, mut last, mut whole) = (i32::from(u16::MAX), 0, WHOLE);
+            let (mut first, mut last, mut whole) = (i32::from(u16::MAX), 0, true);
             for segment in Segments::new(self, row, false) {
-                if segment.part != Part::All {
-                    whole = 0;
-                }
+                whole &= segment.part == Part::All;
                 if segment.part != Part::None {
                     let (least, greatest) = segment.row.reach(&cell);
                     first = first.min(of(least));
@@ -237,7 +256,7 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
             }
             let slot = self.slots.get_mut(begin + usize::from(row / 2));
             if let Some(noted) = slot.and_then(|slot| slot.get_mut(usize::from(row % 2))) {
-                *noted = (first | last << 16) | whole.cast_signed();
+                *noted = first | last << 16 | if whole { WHOLE.cast_signed() } else { 0 };
             }
             if first <= last {
                 last_so_far = last.max(last_so_far);

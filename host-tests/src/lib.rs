@@ -42,6 +42,7 @@ pub mod real;
 pub mod recording;
 pub mod rectify;
 pub mod report;
+pub mod rows;
 pub mod run;
 pub mod scene;
 pub mod sparsification;

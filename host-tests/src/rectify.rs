@@ -4,7 +4,9 @@ use crate::run::MemoryPair;
 use image::{GrayImage, RgbImage};
 use stereopsis::camera::{CameraError, StereoSource};
 use stereopsis::geometry::Rectification;
-use stereopsis::imaging::{RectifiedPair, RectifiedPairError, Remap, RemapError, RemapTable, RemapTableError};
+use stereopsis::imaging::{
+    RectifiedPair, RectifiedPairError, Remap, RemapError, RemapPair, RemapTable, RemapTableError,
+};
 
 /// Capacities for the largest pictures: columns, lines held at once, slots of the table.
 const WIDTH: usize = 4096;
@@ -45,13 +47,13 @@ pub enum RectifyPicturesError {
 }
 
 /// A source of rectified lines over one of raw lines, with room for the largest pictures.
-pub type RectifiedSource<S> = RectifiedPair<S, WIDTH, LINES, SLOTS>;
+pub type RectifiedSource<'a, S> = RectifiedPair<'a, S, WIDTH, LINES, SLOTS>;
 
 /// Does something with rectified lines over a source of raw ones.
 pub fn with_rectified<S, T>(
     rectification: &Rectification<f64>,
     source: S,
-    work: impl FnOnce(&mut RectifiedSource<S>) -> T + Send,
+    work: impl FnOnce(&mut RectifiedSource<'_, S>) -> T + Send,
 ) -> Result<T, RectifyPicturesError>
 where
     S: StereoSource + Send,
@@ -60,7 +62,11 @@ where
 {
     std::thread::scope(|scope| {
         let builder = std::thread::Builder::new().stack_size(STACK);
-        let in_thread = || rectified(rectification, source).map(|mut source| work(&mut source));
+        let in_thread = || {
+            let mut remaps = remaps(rectification)?;
+            let pair = RectifiedPair::new(source, &mut remaps);
+            Ok(work(&mut pair.map_err(|e| RectifyPicturesError::Pair(e.to_string()))?))
+        };
         let thread = builder.spawn_scoped(scope, in_thread).map_err(RectifyPicturesError::Thread)?;
         thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })
@@ -97,21 +103,17 @@ pub fn rectify_colours(
     Ok((new_left, new_right))
 }
 
-fn rectified<S>(rectification: &Rectification<f64>, source: S) -> Result<RectifiedSource<S>, RectifyPicturesError>
-where
-    S: StereoSource,
-    S::Error: std::fmt::Display,
-{
+/// The remaps of both cameras.
+fn remaps(rectification: &Rectification<f64>) -> Result<Box<RemapPair<WIDTH, LINES, SLOTS>>, RectifyPicturesError> {
     let [first, second] = rectification.warps();
     let remap = |side, warp| {
         let table = RemapTable::<SLOTS>::new(warp).map_err(|e| RectifyPicturesError::Table(side, e))?;
         Remap::<WIDTH, LINES, SLOTS>::new(table).map_err(|e| RectifyPicturesError::Remap(side, e))
     };
-    let (left, right) = (remap("left", first)?, remap("right", second)?);
-    RectifiedPair::new(source, left, right).map_err(|e| RectifyPicturesError::Pair(e.to_string()))
+    Ok(Box::new(RemapPair::new(remap("left", first)?, remap("right", second)?)))
 }
 
-fn frame<S>(pair: &mut RectifiedSource<S>) -> Result<RectifiedPictures, RectifyPicturesError>
+fn frame<S>(pair: &mut RectifiedSource<'_, S>) -> Result<RectifiedPictures, RectifyPicturesError>
 where
     S: StereoSource,
     S::Error: std::fmt::Display,

@@ -2,11 +2,19 @@
 //!
 //! Built by the feature `real-data`, which `cargo xtask test` sets when `STEREO_DATA` is.
 
+use image::GrayImage;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use stereopsis::geometry::ImageSize;
+use stereopsis::geometry::{Crop, ImageSize, Rectification};
 use stereopsis_host::calibrate::board::{Board, Pattern, find};
-use stereopsis_host::calibrate::{Calibrated, View, solve};
+use stereopsis_host::calibrate::{Calibrated, LensModel, View, solve};
+use stereopsis_host::calibration::RawCalibration;
+use stereopsis_host::rectify::rectify;
+use stereopsis_host::run::MemoryPair;
+
+/// How far rows are apart after OpenCV's own remap, px.
+const OPENCV_CHESSBOARD_PX: f64 = 0.1362;
+const OPENCV_QQVGA_PX: f64 = 0.2392;
 
 fn folder(name: &str) -> PathBuf {
     let data = std::env::var_os("STEREO_DATA").expect("set STEREO_DATA to the folder that holds calib/");
@@ -37,7 +45,7 @@ fn calibrated(folder: &Path, reference: &Value) -> Calibrated {
     });
     let views: Vec<_> = views.collect();
     let square_m = number(&reference["square"]);
-    solve(pattern, square_m, ImageSize { width, height }, &views).expect("a rig")
+    solve(LensModel::Brown, pattern, square_m, ImageSize { width, height }, &views).expect("a rig")
 }
 
 #[test]
@@ -55,5 +63,54 @@ fn residuals_and_baselines_are_those_of_opencv() {
         let baseline = t.iter().map(|x| x * x).sum::<f64>().sqrt();
         let off = found.rig.baseline_m() / baseline - 1.0;
         assert!(off.abs() < 0.005, "{name}: {} m, OpenCV {baseline} m", found.rig.baseline_m());
+    }
+}
+
+/// The root mean square of how far the rows of corresponding corners are apart in rectified views, px, and in how many views all
+/// corners are shown.
+fn rows_apart(views: impl Iterator<Item = [GrayImage; 2]>) -> (f64, usize) {
+    let pattern = Pattern::new(9, 6).expect("a pattern");
+    let (mut squares, mut corners, mut count) = (0.0, 0_usize, 0);
+    for [left, right] in views {
+        // A board at the border may be cut off by the crop.
+        let Ok(left) = find(&left, pattern, None) else { continue };
+        let Ok(right) = find(&right, pattern, Some(&left)) else { continue };
+        squares += left.corners.iter().zip(&right.corners).map(|(a, b)| (a.y - b.y).powi(2)).sum::<f64>();
+        corners += left.corners.len();
+        count += 1;
+    }
+    ((squares / corners as f64).sqrt(), count)
+}
+
+/// OpenCV's calibration in our remap. What OpenCV's own remap gives was measured with OpenCV 5.0.0: `stereoRectify` with its default
+/// crop on the reference's K1, D1, K2, D2, R and T, `initUndistortRectifyMap` and a bilinear `remap` of all views, and in these
+/// pictures the corners as they are found here.
+#[test]
+fn rows_agree_as_well_as_through_opencv() {
+    for (name, file, opencv_px, least) in [
+        ("opencv_chessboard", "derived_reference_calibration.json", OPENCV_CHESSBOARD_PX, 13),
+        ("qqvga_class_270x180", "derived_reference_calibration_2.json", OPENCV_QQVGA_PX, 24),
+    ] {
+        let folder = folder(name);
+        let path = folder.join(file);
+        let reference = reference(&path);
+        let rig = RawCalibration::open(&[path], None, None).unwrap_or_else(|e| panic!("{e}")).rig;
+        let size = rig.sizes()[0];
+        let both = Rectification::new(&rig, Crop::Natural, size).expect("rectified");
+        let names = reference["used_left"].as_array().expect("names");
+        let views = names.iter().map(|name| {
+            let name = name.as_str().expect("a name");
+            let raw = [name.to_owned(), name.replace("left", "right")].map(|name| {
+                let path = folder.join(name);
+                image::open(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())).into_luma8().into_vec()
+            });
+            let [left, right] = raw;
+            let pair = MemoryPair::new(size.width, left, right).expect("a pair");
+            rectify(&both, pair).expect("rectified").pictures
+        });
+        let (apart, count) = rows_apart(views);
+        println!("{name}: {apart:.4} px in {count} views, OpenCV {opencv_px} px");
+        assert!(count >= least, "{name}: {count} views");
+        assert!(apart <= opencv_px + 0.02, "{name}: {apart} px, OpenCV {opencv_px} px");
     }
 }

@@ -5,7 +5,9 @@ use nalgebra::{Point2, Rotation3, Vector3};
 use proptest::prelude::*;
 use stereopsis::camera::{CameraPair, LineSource, StereoSource};
 use stereopsis::geometry::{Camera, Crop, Distortion, ImageSize, Pose, Rectification, StereoRig, Warp};
-use stereopsis::imaging::{RectifiedPair, RectifiedPairError, Remap, RemapError, RemapTable, RemapTableError};
+use stereopsis::imaging::{
+    RectifiedPair, RectifiedPairError, Remap, RemapError, RemapPair, RemapTable, RemapTableError,
+};
 use stereopsis::matching::{Config, Filter};
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::mock::MockCamera;
@@ -161,8 +163,13 @@ fn a_pair_is_taken_in_step() {
         CameraPair::new(left, right, 0).expect("of one size")
     };
     let remaps = || tables.clone().map(|table| Remap::<320, 40, SLOTS>::new(table).expect("enough rows"));
+    // Set where they stand, they are what they are when they are made.
+    let mut set = Box::new(RemapPair::<320, 40, SLOTS>::empty());
+    set.set(&both).expect("enough rows");
     let [left, right] = remaps();
-    let mut pair = Box::new(RectifiedPair::new(source(), left, right).expect("enough rows for both"));
+    let mut made = Box::new(RemapPair::new(left, right));
+    assert_eq!(format!("{set:?}"), format!("{made:?}"));
+    let mut pair = RectifiedPair::new(source(), &mut set).expect("enough rows for both");
     let expected = [twin::remap(&tables[0], &raw[0]), twin::remap(&tables[1], &raw[1])];
     for frame in 0..2 {
         assert_eq!(pair.start_frame().expect("a frame").sequence, frame);
@@ -185,9 +192,8 @@ fn a_pair_is_taken_in_step() {
     assert!(usize::from(most) < 39);
     let small = MockCamera::from_image(noise(ImageSize { width: 64, height: 240 }, 1).into()).expect("an image");
     let format = small.format();
-    let [left, right] = remaps();
     let small = CameraPair::new(small.clone(), small, 0).expect("of one size");
-    let refused = RectifiedPair::new(small, left, right).map(|_| ());
+    let refused = RectifiedPair::new(small, &mut made).map(|_| ());
     assert_eq!(refused, Err(RectifiedPairError::Raw(format)));
 }
 

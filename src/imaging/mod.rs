@@ -36,6 +36,6 @@ pub use health::{CameraHealth, PairMonitor};
 pub use histogram::Histogram;
 pub use noise::{Noise, NoiseMeter};
 pub use picture::{Picture, PictureError};
-pub use remap::{RectifiedPair, RectifiedPairError, Remap, RemapError, RemapTable, RemapTableError};
+pub use remap::{RectifiedPair, RectifiedPairError, Remap, RemapError, RemapPair, RemapTable, RemapTableError};
 pub use smooth::smooth;
 pub use window::{LineBand, LineWindow};

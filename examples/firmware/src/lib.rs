@@ -1,6 +1,6 @@
 //! What the programs of this firmware share. A program stands in `src/bin`: `depth` is the pipeline, `pose`
 //! two views, `bundle` their adjustment, `features` corners and their matches, `focus` depth by a lens that moves,
-//! `interrupt` lines that an interrupt brings, `odometry` where a pair of cameras goes.
+//! `interrupt` lines that an interrupt brings, `odometry` where a pair of cameras goes, `rectify` raw lines.
 //!
 //! * [`choice`]: the method, the sizes and the board, chosen when it is built; [`board`] is the list of boards.
 //! * [`camera`]: where lines come from: the built-in scene, or two files on the host.
@@ -11,6 +11,7 @@
 //! * [`window`]: two views and their points, adjusted.
 //! * [`two_pictures`]: features of two cameras' lines, and their matches.
 //! * [`sweep`]: frames of a lens that moves, and where each tile is in focus.
+//! * [`raw_pair`]: raw lines, rectified, and depth from them.
 //! * [`walk`]: a view that moves, and the motion from frame to frame.
 //! * [`log`]: defmt through semihosting. [`runtime`]: start and end of a program, and no panic.
 //!
@@ -24,6 +25,7 @@ pub mod clock;
 pub mod console;
 pub mod host;
 pub mod log;
+pub mod raw_pair;
 pub mod rows;
 pub mod runtime;
 pub mod stack;

@@ -1,10 +1,10 @@
 //! The least sum of squares of re-projection errors.
 
+use super::lens::LensModel;
 use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3, Point2, Point3, Rotation3, Vector2, Vector3};
-use stereopsis::geometry::Distortion;
 
-/// Parameters of a camera: fx, fy, cx, cy, k1, k2, p1, p2, k3.
-pub(super) const INNER: usize = 9;
+/// Parameters of a camera: fx, fy, cx, cy and up to eight of its lens, in the order of [`LensModel`].
+pub(super) const INNER: usize = 4 + 8;
 /// Of a pose: a small turn and a way.
 const OUTER: usize = 6;
 
@@ -41,6 +41,8 @@ impl Outer {
 pub(super) struct Bundle<'a> {
     /// The board's corners; their unit is that of all lengths.
     pub board: &'a [Point3<f64>],
+    /// What the lenses are.
+    pub model: LensModel,
     /// For each camera the corners of each view.
     pub seen: Vec<Vec<&'a [Point2<f64>]>>,
     /// Each camera.
@@ -68,30 +70,18 @@ struct Projected {
 }
 
 /// Where a camera sees a point of its frame; `None` behind it.
-fn project(inner: &Inner, p: &Vector3<f64>) -> Option<Projected> {
+fn project(model: LensModel, inner: &Inner, p: &Vector3<f64>) -> Option<Projected> {
     if p.z <= 1e-6 {
         return None;
     }
-    let [fx, fy, cx, cy, k1, k2, p1, p2, k3] = *inner;
+    let [fx, fy, cx, cy, coefficients @ ..] = *inner;
     let plane = Vector2::new(p.x / p.z, p.y / p.z);
-    let (x, y) = (plane.x, plane.y);
-    let (d, slope) = Distortion::from_opencv([k1, k2, p1, p2, k3]).distort_with_derivative(&plane);
-    let r2 = plane.norm_squared();
+    let (d, slope) = model.lens(coefficients).distort_with_derivative(&plane);
     let f = Vector2::new(fx, fy);
-    let radial = plane.component_mul(&f);
-    let by_inner = [
-        Vector2::new(d.x, 0.0),
-        Vector2::new(0.0, d.y),
-        Vector2::x(),
-        Vector2::y(),
-        radial * r2,
-        radial * r2 * r2,
-        Vector2::new(2.0 * x * y, r2 + 2.0 * y * y).component_mul(&f),
-        Vector2::new(r2 + 2.0 * x * x, 2.0 * x * y).component_mul(&f),
-        radial * r2 * r2 * r2,
-    ];
+    let [a, b, c, e, g, h, i, j] = model.slopes(coefficients, &plane).map(|slope| slope.component_mul(&f));
+    let by_inner = [Vector2::new(d.x, 0.0), Vector2::new(0.0, d.y), Vector2::x(), Vector2::y(), a, b, c, e, g, h, i, j];
     let by_z = 1.0 / p.z;
-    let to_plane = Matrix2x3::new(by_z, 0.0, -x * by_z, 0.0, by_z, -y * by_z);
+    let to_plane = Matrix2x3::new(by_z, 0.0, -plane.x * by_z, 0.0, by_z, -plane.y * by_z);
     let mut by_point = slope * to_plane;
     by_point.row_mut(0).scale_mut(fx);
     by_point.row_mut(1).scale_mut(fy);
@@ -129,7 +119,7 @@ impl Bundle<'_> {
             if camera > 0 {
                 point = self.beside.apply(&point);
             }
-            Some(seen.coords - project(&self.inner[camera], &point)?.place)
+            Some(seen.coords - project(self.model, &self.inner[camera], &point)?.place)
         };
         self.board.iter().zip(seen).map(residual).collect()
     }
@@ -140,7 +130,14 @@ impl Bundle<'_> {
         let sums = all.map(|(camera, view)| {
             self.residuals(camera, view).map(|r| r.iter().map(Vector2::norm_squared).sum::<f64>())
         });
-        sums.sum::<Option<f64>>().filter(|cost| cost.is_finite()).unwrap_or(f64::INFINITY)
+        let sum = sums.sum::<Option<f64>>().map(|sum| sum + self.bounds());
+        sum.filter(|cost| cost.is_finite()).unwrap_or(f64::INFINITY)
+    }
+
+    /// What the coefficients count, px^2.
+    fn bounds(&self) -> f64 {
+        let of = |inner: &Inner| inner.iter().enumerate().map(|(i, x)| self.model.weight(i) * x * x).sum::<f64>();
+        self.inner.iter().map(of).sum()
     }
 
     fn normal(&self) -> Option<Normal> {
@@ -154,13 +151,13 @@ impl Bundle<'_> {
                     let first = turned + pose.t;
                     columns.clear();
                     let projected = if camera == 0 {
-                        let projected = project(inner, &first)?;
+                        let projected = project(self.model, inner, &first)?;
                         let of_view = by_outer(&projected.by_point, &turned);
                         columns.extend(of_view.into_iter().enumerate().map(|(i, c)| (self.view_at(view) + i, c)));
                         projected
                     } else {
                         let again = self.beside.r * first;
-                        let projected = project(inner, &(again + self.beside.t))?;
+                        let projected = project(self.model, inner, &(again + self.beside.t))?;
                         let of_beside = by_outer(&projected.by_point, &again);
                         columns.extend(of_beside.into_iter().enumerate().map(|(i, c)| (self.beside_at() + i, c)));
                         let of_view = by_outer(&(projected.by_point * self.beside.r), &turned);
@@ -178,6 +175,13 @@ impl Bundle<'_> {
                         }
                     }
                 }
+            }
+        }
+        normal.cost += self.bounds();
+        for (camera, inner) in self.inner.iter().enumerate() {
+            for (i, x) in inner.iter().enumerate().filter(|(i, _)| self.free[*i]) {
+                normal.matrix[(camera * INNER + i, camera * INNER + i)] += self.model.weight(i);
+                normal.vector[camera * INNER + i] -= self.model.weight(i) * x;
             }
         }
         // What is not free stays.

@@ -7,16 +7,18 @@
 //! * `start`: focal lengths and poses from each view's homography (Zhang 2000).
 //! * `bundle`: the least sum of squares of all residuals, by Levenberg and Marquardt's method; first of each camera by itself,
 //!   lens coefficient by lens coefficient, then of both with one pose between them.
-//! * `solve`: these in order, and what their result is worth.
+//! * `lens`: the models of lenses. `solve`: these in order, and what their result is worth.
 //! * [`report`](mod@report): the residuals, drawn.
 //!
 //! [`scene`] makes pictures of boards for tests.
 
 pub mod board;
 mod bundle;
+mod lens;
 pub mod report;
 pub mod scene;
 mod solve;
 mod start;
 
+pub use lens::LensModel;
 pub use solve::{Calibrated, SolveError, View, ViewFigures, solve};

@@ -2,9 +2,10 @@
 
 use super::board::Pattern;
 use super::bundle::{Bundle, INNER, Inner, Outer};
+use super::lens::LensModel;
 use super::start;
 use nalgebra::{Matrix3, Point2, Point3, Rotation3, Vector2, Vector3};
-use stereopsis::geometry::{Camera, Distortion, ImageSize, StereoRig, StereoRigError};
+use stereopsis::geometry::{Camera, ImageSize, StereoRig, StereoRigError};
 
 /// The corners of one board in both pictures of a moment, in the order of [`Pattern::places`], px.
 #[derive(Clone, PartialEq, Debug)]
@@ -83,33 +84,45 @@ impl Calibrated {
     }
 }
 
-/// Finds the rig that explains the views best: k1, k2, p1, p2, k3 of each camera, and the pose between them.
+/// Finds the rig that explains the views best: both cameras with lenses of a model, and the pose between them.
 ///
 /// # Panics
 ///
 /// When a view has not the pattern's corners.
-pub fn solve(pattern: Pattern, square_m: f64, size: ImageSize, views: &[View]) -> Result<Calibrated, SolveError> {
+pub fn solve(
+    model: LensModel,
+    pattern: Pattern,
+    square_m: f64,
+    size: ImageSize,
+    views: &[View],
+) -> Result<Calibrated, SolveError> {
     assert!(views.iter().flat_map(|v| &v.corners).all(|c| c.len() == pattern.corners()), "corners of the pattern");
     if views.len() < Calibrated::LEAST_VIEWS {
         return Err(SolveError::TooFew { views: views.len() });
     }
     let board: Vec<Point3<f64>> = pattern.places().map(|p| Point3::new(p.x, p.y, 0.0)).collect();
     let seen: [Vec<&[Point2<f64>]>; 2] = [0, 1].map(|i| views.iter().map(|v| v.corners[i].as_slice()).collect());
-    let [first, second] =
-        [(0, "left"), (1, "right")].map(|(i, name)| alone(&board, &seen[i], size).ok_or(SolveError::Camera(name)));
+    let [first, second] = [(0, "left"), (1, "right")]
+        .map(|(i, name)| alone(model, &board, &seen[i], size).ok_or(SolveError::Camera(name)));
     let (first, second) = (first?, second?);
     let rms = |cost: f64, cameras: usize| (cost / (cameras * views.len() * board.len()) as f64).sqrt();
     let alone_px = [rms(first.cost(), 1), rms(second.cost(), 1)];
 
     let mut both = Bundle {
         board: &board,
+        model,
         seen: seen.into(),
         inner: vec![first.inner[0], second.inner[0]],
         beside: between(&first, &second).ok_or(SolveError::Camera("right"))?,
         views: first.views,
-        free: [true; INNER],
+        free: first.free,
     };
-    let cost = both.minimise(200);
+    let mut cost = both.minimise(200);
+    let all = std::array::from_fn(|parameter| model.has(parameter));
+    if both.free != all {
+        both.free = all;
+        cost = both.minimise(200);
+    }
     if !cost.is_finite() {
         return Err(SolveError::Camera("right"));
     }
@@ -118,8 +131,8 @@ pub fn solve(pattern: Pattern, square_m: f64, size: ImageSize, views: &[View]) -
 
 fn result(both: &Bundle<'_>, square_m: f64, size: ImageSize, alone_px: [f64; 2]) -> Result<Calibrated, StereoRigError> {
     let camera = |inner: &Inner| {
-        let [fx, fy, cx, cy, k1, k2, p1, p2, k3] = *inner;
-        Camera::new(fx, fy, cx, cy).and_then(|c| c.with_distortion(Distortion::from_opencv([k1, k2, p1, p2, k3])))
+        let [fx, fy, cx, cy, coefficients @ ..] = *inner;
+        Camera::new(fx, fy, cx, cy).and_then(|c| c.with_distortion(both.model.lens(coefficients)))
     };
     let cameras = [camera(&both.inner[0]), camera(&both.inner[1])];
     let [Ok(left), Ok(right)] = cameras else { return Err(StereoRigError::NoBaseline) };
@@ -151,26 +164,39 @@ fn result(both: &Bundle<'_>, square_m: f64, size: ImageSize, alone_px: [f64; 2])
 }
 
 /// One camera by itself.
-fn alone<'a>(board: &'a [Point3<f64>], seen: &[&'a [Point2<f64>]], size: ImageSize) -> Option<Bundle<'a>> {
-    let homographies = seen.iter().map(|seen| start::homography(board, seen)).collect::<Option<Vec<_>>>()?;
+fn alone<'a>(
+    model: LensModel,
+    board: &'a [Point3<f64>],
+    seen: &[&'a [Point2<f64>]],
+    size: ImageSize,
+) -> Option<Bundle<'a>> {
     let (width, height) = (f64::from(size.width), f64::from(size.height));
     let middle = Vector2::new(width - 1.0, height - 1.0) / 2.0;
+    let steps = model.steps();
     let free = |parameters: &[usize]| std::array::from_fn(|i| parameters.contains(&i));
-    // A lens that bends much misleads homographies: then one of the usual fields of view is nearer.
-    let usual = [0.45, 0.7, 1.0, 1.6, 3.0].map(|share| Vector2::repeat(share * width));
-    let zhang = start::focal_lengths(&homographies, middle);
-    let begins = zhang.into_iter().chain(usual).filter_map(|focal| {
+    let homographies = |of: &dyn Fn(&Point2<f64>) -> Point2<f64>| {
+        let flat = seen.iter().map(|seen| seen.iter().map(of).collect::<Vec<_>>());
+        flat.map(|flat| start::homography(board, &flat)).collect::<Option<Vec<_>>>()
+    };
+    let plain = homographies(&|p| *p);
+    let zhang = plain.as_ref().and_then(|plain| start::focal_lengths(plain, middle));
+    // A lens that bends much misleads homographies: then one of the usual fields of view is nearer, and places as a lens has them
+    // that puts equal angles at equal ways.
+    let usual = [0.3, 0.45, 0.7, 1.0, 1.6, 3.0].map(|share| Vector2::repeat(share * width));
+    let bent = usual.into_iter().filter_map(|focal| Some((focal, homographies(&|p| start::flat(p, focal.x, middle))?)));
+    let straight = zhang.into_iter().chain(usual).filter_map(|focal| Some((focal, plain.clone()?)));
+    let begins = straight.chain(bent).filter_map(|(focal, homographies)| {
         let inner = start::camera(focal, middle);
         let views = homographies.iter().map(|h| start::pose(&inner, h)).collect::<Option<Vec<_>>>()?;
         let (beside, seen) = (Outer::new(Matrix3::identity(), Vector3::zeros()), vec![seen.to_vec()]);
-        let mut bundle = Bundle { board, seen, inner: vec![inner], beside, views, free: free(&[0, 1, 4]) };
+        let mut bundle = Bundle { board, model, seen, inner: vec![inner], beside, views, free: free(steps[0]) };
         let cost = bundle.minimise(12);
         cost.is_finite().then_some((cost, bundle))
     });
     let (_, mut best) = begins.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    for parameters in [&[0, 1, 4][..], &[0, 1, 2, 3, 4, 5], &[0, 1, 2, 3, 4, 5, 6, 7, 8]] {
+    for (i, parameters) in steps.iter().enumerate() {
         best.free = free(parameters);
-        best.minimise(if parameters.len() == INNER { 200 } else { 40 });
+        best.minimise(if i + 1 == steps.len() { 200 } else { 40 });
     }
     Some(best)
 }

@@ -18,6 +18,15 @@ pub(super) fn camera(focal: Vector2<f64>, middle: Vector2<f64>) -> Inner {
     inner
 }
 
+/// Where a camera without a lens sees what one sees at `p` whose lens puts equal angles at equal ways, of the same focal length:
+/// `r = tan(theta)`, up to 80 degrees.
+pub(super) fn flat(p: &Point2<f64>, focal: f64, middle: Vector2<f64>) -> Point2<f64> {
+    let way = (p.coords - middle) / focal;
+    let theta = way.norm();
+    let longer = if theta < 1e-9 { 1.0 } else { theta.min(1.4).tan() / theta };
+    Point2::from(middle + way * (focal * longer))
+}
+
 /// Focal lengths from views of a plane (Zhang 2000, 3.1), where the principal point is in the middle: both axes of the board
 /// are of one length and square, so `h1^T w h2 = 0` and `h1^T w h1 = h2^T w h2` with `w = diag(1 / fx^2, 1 / fy^2, 1)`.
 pub(super) fn focal_lengths(homographies: &[Matrix3<f64>], middle: Vector2<f64>) -> Option<Vector2<f64>> {

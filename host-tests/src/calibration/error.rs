@@ -21,7 +21,7 @@ pub enum Fault {
     #[error("cannot be read ({0}); give a calibration file")]
     Read(io::Error),
     /// Not UTF-8, longer than a calibration can be, or not a file.
-    #[error("is no text file of at most {} bytes; give a calibration file", super::MOST_BYTES)]
+    #[error("is no text file (UTF-8) of at most {} bytes; give a calibration file", super::MOST_BYTES)]
     NotText,
     /// The file has no byte or only white space.
     #[error("the file is empty; give a calibration file")]
@@ -59,13 +59,18 @@ pub enum Fault {
         problem: String,
     },
     /// The baseline is so long or so short that its unit is suspected.
-    #[error("{key}: a baseline of {baseline_m} m is not likely; where it is in millimetres, say --unit mm")]
+    #[error("{key}: a baseline of {} m is not likely; {advice}", *baseline_m as f32)]
     Unit {
         /// The key that it comes from.
         key: String,
         /// What follows, m.
         baseline_m: f64,
+        /// What would be right in this format.
+        advice: &'static str,
     },
+    /// The second camera stands on the other side of the first.
+    #[error("{0}; exchange them in the file, or --left and --right")]
+    Swapped(stereopsis::geometry::RectifyError),
     /// A record of the core's is refused by it.
     #[error("{0}")]
     Record(stereopsis::geometry::RecordError),

@@ -60,8 +60,12 @@ impl Calibration {
 
     /// The same of one file, or of two of ROS. The unit is as for [`RawCalibration::open`].
     pub fn open_all(paths: &[PathBuf], left_image: &Path, unit_m: Option<f64>) -> Result<Self, CalibrationError> {
-        let texts = load_all(paths)?;
         let path = paths.first().cloned().unwrap_or_default();
+        if let Some(record) = raw::recorded(&path) {
+            let fault = record.err().unwrap_or(Fault::NotRectified);
+            return Err(CalibrationError { path, fault });
+        }
+        let texts = load_all(paths)?;
         match Self::parse(paths, &texts, left_image, unit_m) {
             Ok(read) => Ok(Self { path, ..read }),
             Err(fault) => Err(CalibrationError { path, fault }),
@@ -73,13 +77,15 @@ impl Calibration {
             return Ok(found);
         }
         let text = texts.first().map_or("", String::as_str);
-        if middlebury::is_one(text) {
-            middlebury::read(text)
+        let found = if middlebury::is_one(text) {
+            middlebury::read(text)?
         } else if kitti::is_one(text) {
-            kitti::read(text, left_image)
+            kitti::read(text, left_image)?
         } else {
-            Err(Fault::Unknown)
-        }
+            return Err(Fault::Unknown);
+        };
+        raw::likely(found.format, "the baseline", found.rig.baseline_m().into())?;
+        Ok(found)
     }
 
     /// Whether images of `width` x `height` pixels are those that the file was made for; a size that the file does not

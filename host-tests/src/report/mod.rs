@@ -182,6 +182,9 @@ impl Report<'_> {
         for (flag, name) in PixelFlags::NAMES {
             add(&format!("Pixels with the flag '{name}'"), self.map.flagged(flag).to_string());
         }
+        if let Some(rows) = &s.rows {
+            add("Rows of the images", rows.told());
+        }
         add("Matcher state", format!("{} bytes", s.state_bytes));
         add("Delay", format!("{} lines", s.latency_lines));
         add("Time", format!("{:.2} ms", s.time_ms));

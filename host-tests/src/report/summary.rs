@@ -2,6 +2,7 @@
 
 use super::Accuracy;
 use crate::map::{DisparityMap, quantile};
+use crate::rows::Rows;
 use crate::run::{Method, Outcome};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -50,6 +51,8 @@ pub struct Summary {
     pub time_ms: f64,
     /// Depths, when there is a calibration.
     pub depth: Option<Depth>,
+    /// How well the images' rows agree; absent when too few features match.
+    pub rows: Option<Rows>,
     /// How right the answers are, when the truth is known.
     pub accuracy: Option<Accuracy>,
 }
@@ -149,8 +152,14 @@ impl Summary {
             latency_lines: method.latency_lines(),
             time_ms: outcome.time_ms,
             depth: scale.map(|scale| Depth::of(scale, config, method, map)),
+            rows: None,
             accuracy,
         }
+    }
+
+    /// The same with how well rows agree.
+    pub fn with_rows(self, rows: Option<Rows>) -> Self {
+        Self { rows, ..self }
     }
 
     /// The same with the noise that a meter measured.

@@ -12,6 +12,7 @@ use stereopsis::geometry::{
 use stereopsis::matching::{Config, Filter};
 use stereopsis_host::correspond::{Plan, correspond};
 use stereopsis_host::rectify::{rectify, with_rectified};
+use stereopsis_host::rows::Rows;
 use stereopsis_host::run::{MemoryPair, Method, run};
 use stereopsis_host::scene::{Random, Scene};
 
@@ -131,7 +132,8 @@ fn a_knock_is_told_and_taken_back() {
     let whole = density(&calibrated, &right);
     let plan = Plan { corners: 400, levels: 1, orientation: Some(Orientation::Upright), ..Plan::default() };
     let mut random = Random::new(2);
-    for degrees in [[0.3, 0.0, 0.0], [0.0, 0.0, 0.3], [-0.3, 0.0, -0.3], [0.3, 0.1, 0.2]] {
+    let signs = [[0.3, 0.0, 0.0], [-0.3, 0.0, 0.0], [0.0, 0.0, 0.3], [0.0, 0.0, -0.3]];
+    for degrees in signs.into_iter().chain([[0.3, 0.1, 0.2]]) {
         let turned: [f64; 3] = degrees.map(f64::to_radians);
         let bad = knocked(&right, &camera, &turn(turned));
         let mut meter = RowMeter::new();
@@ -156,5 +158,32 @@ fn a_knock_is_told_and_taken_back() {
         let (hurt, healed) = (density(&calibrated, &bad), density(&calibrated.corrected(&found), &bad));
         assert!(hurt < whole - 0.004, "{degrees:?}: {hurt} of {whole}");
         assert!(healed > whole - 0.02, "{degrees:?}: {healed} of {whole}, {hurt} before");
+    }
+}
+
+/// What the program says of one pair.
+#[test]
+fn rows_of_a_pair_are_told_with_their_uncertainty() {
+    let scene = Scene::small(SIZE.width, SIZE.height);
+    let (left, right) = scene.render();
+    let rig = scene.rig();
+    let (f, (cx, cy)) = (f64::from(rig.focal_px()), rig.principal_point());
+    let camera = Camera::new(f, f, cx.into(), cy.into()).expect("a camera");
+    let good = Rows::measure([&left, &right], None, Some(&camera)).expect("features");
+    assert!(good.error_px < 0.15 && good.health == "good" && good.warning().is_none(), "{good:?}");
+    for degrees in [[0.3, 0.0, 0.0], [-0.3, 0.0, 0.0], [0.0, 0.0, 0.5], [0.0, 0.0, -0.5]] {
+        let bad = knocked(&right, &camera, &turn(degrees.map(f64::to_radians)));
+        let told = Rows::measure([&left, &bad], None, Some(&camera)).expect("features");
+        let (pitch, sigma) = (told.pitch_deg.expect("calibrated"), told.pitch_sigma_deg.expect("calibrated"));
+        assert!((pitch - degrees[0]).abs() < 0.05 + 4.0 * sigma, "{degrees:?}: {told:?}");
+        assert!((told.roll_deg - degrees[2]).abs() < 0.05 + 4.0 * told.roll_sigma_deg, "{degrees:?}: {told:?}");
+        assert!(told.sigma_px < 0.2 && told.health != "good", "{degrees:?}: {told:?}");
+        assert!(told.warning().is_some_and(|line| line.contains("0.25 px")), "{degrees:?}: {told:?}");
+        // Without a focal length rows and the roll are told, and no pitch.
+        let other = Rows::measure([&left, &bad], None, None).expect("features");
+        assert!((other.error_px - told.error_px).abs() < 0.2 && other.pitch_deg.is_none(), "{other:?}");
+        // Where nothing is shown nothing is measured.
+        let nothing = GrayImage::new(SIZE.width.into(), SIZE.height.into());
+        assert_eq!(Rows::measure([&left, &bad], Some([&nothing, &nothing]), None), None);
     }
 }

@@ -102,6 +102,31 @@ fn a_rig_is_calibrated_checked_and_converted() {
     assert_eq!(rest(&check("again.yml")), rest(&words));
     assert!(check("rig.bin").starts_with("record calibration"));
 
+    // A record of raw cameras is no calibration of rectified images.
+    let record = file("rig.bin");
+    let (left, right, out) = (file("left1.png"), file("right1.png"), file("out"));
+    let matched =
+        ["match", "--left", &left, "--right", &right, "--disparities", "16", "--calib", &record, "--out", &out];
+    bench.refused(&matched.map(str::to_owned), "rig.bin: says how the cameras are mounted");
+    // What is swapped in a file is noticed by all that read it.
+    let yaml = std::fs::read_to_string(bench.path("stereo.yml")).expect("text");
+    let (head, tail) = yaml.split_once("T: ").expect("T");
+    bench.put("exchanged.yml", format!("{head}T: {}", tail.replacen("[ -", "[ ", 1)).as_bytes());
+    let (exchanged, none) = (file("exchanged.yml"), file("none.bin"));
+    let convert = ["calib", "convert", "--calib", &exchanged, "--to", "record", "--out", &none];
+    bench.refused(&convert.map(str::to_owned), "exchanged.yml: the second camera stands left of the first");
+    bench.refused(&["calib", "check", "--calib", &exchanged].map(str::to_owned), "swapped");
+
+    // Other lenses, from the same images.
+    for lens in ["rational", "fisheye"] {
+        let run = stereo(arguments(&bench, &[("--lens", lens), ("--out", &file("lens.yml"))]));
+        let said = text(&run.stdout);
+        assert!(run.status.success() && said.contains("5 of 6 views"), "{lens}: {said}{}", text(&run.stderr));
+        let written = std::fs::read_to_string(bench.path("lens.yml")).expect("a file");
+        assert_eq!(written.contains("fisheye"), lens == "fisheye", "{written}");
+    }
+    bench.refused(&arguments(&bench, &[("--lens", "wide")]), "--lens");
+
     // Swapped: the left camera stands right.
     let swapped = [("--left", file("right?.png")), ("--right", file("left?.png"))];
     let swapped = swapped.each_ref().map(|(option, value)| (*option, value.as_str()));

@@ -233,3 +233,58 @@ fn a_raw_pair_is_matched_in_one_loop() {
     let below = bench.put("below.yml", opencv().replacen("-0.2, 0.", "0., -0.2", 1).as_bytes()).display().to_string();
     bench.refused(&rectify(&[("--calib", &below)]), "below each other");
 }
+
+/// Without a calibration: a vertical offset that matches tell.
+#[test]
+fn rows_are_aligned_by_matches_alone() {
+    let bench = Bench::new();
+    let mut arguments = raw(&bench);
+    let at = arguments.iter().position(|argument| argument == "--calib").expect("an option");
+    arguments.drain(at..at + 2);
+    bench.refused(&arguments, "--calib");
+    let put = |name: &str, points: &dyn Fn(f64, f64, f64) -> (f64, f64), count: u32| {
+        let line = |i: u32| {
+            let (x, y) = (f64::from(30 + i * 17 % 60), f64::from(3 + i * 11 % 40));
+            let (x2, y2) = points(x, y, f64::from(i * i % 7));
+            format!("{x},{y},{x2},{y2}\n")
+        };
+        let text: String = ["x1,y1,x2,y2\n".to_owned()].into_iter().chain((0..count).map(line)).collect();
+        bench.put(name, text.as_bytes()).display().to_string()
+    };
+    let beside = |x: f64, y: f64, near: f64| (x - 4.0 - 3.5 * near, y + f64::from(DOWN));
+    let good = with(&arguments, "--matches", &put("good.csv", &beside, 40));
+    let run = stereo(&good);
+    assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
+    assert!(text(&run.stdout).contains("without a calibration"), "{}", text(&run.stdout));
+    let files = ["left.png", "rectified.json", "right.png", "valid_left.png", "valid_right.png"];
+    assert_eq!(names(&bench.path("out")), files);
+    let told = std::fs::read(bench.path("out/rectified.json")).expect("rectified.json");
+    let told: Value = serde_json::from_slice(&told).expect("JSON");
+    assert!(told["calibration"].is_null() && told["row_error_px"].as_f64().is_some_and(|px| px < 0.01), "{told}");
+    // The same point is in the same row, left of where it is in the left image.
+    let image_of = |side: usize, x: f64, y: f64| {
+        let h = |row: usize, column: usize| told["homographies"][side][row][column].as_f64().expect("a number");
+        let row = |i: usize| h(i, 0) * x + h(i, 1) * y + h(i, 2);
+        (row(0) / row(2), row(1) / row(2))
+    };
+    let (first, second) = (image_of(0, 50.0, 20.0), image_of(1, 43.0, 24.0));
+    assert!((first.1 - second.1).abs() < 0.01 && first.0 > second.0, "{first:?} {second:?}");
+    let shown = image::open(bench.path("out/valid_right.png")).expect("a mask").into_luma8();
+    assert!(shown.iter().filter(|&&seen| seen == 255).count() > 96 * 48 / 2);
+
+    let forward = |x: f64, y: f64, _| {
+        let by = 1.01 + 0.012 * ((7.0 * x + 13.0 * y) % 11.0);
+        (47.5 + (x - 47.5) * by, 23.5 + (y - 23.5) * by)
+    };
+    for (file, culprit) in [
+        (put("few.csv", &beside, 5), "few.csv: "),
+        (put("forward.csv", &forward, 40), "forward.csv: "),
+        (put("outside.csv", &|x, y, _| (x + 90.0, y), 40), "outside"),
+        (bench.path("none.csv").display().to_string(), "none.csv: cannot be read"),
+    ] {
+        bench.refused(&with(&arguments, "--matches", &file), culprit);
+    }
+    let both = with(&good, "--calib", &bench.path("stereo.yml").display().to_string());
+    bench.refused(&both, "--calib");
+    bench.refused(&with(&good, "--alpha", "0"), "--alpha");
+}

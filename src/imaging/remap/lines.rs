@@ -1,8 +1,10 @@
 //! Raw lines in a band, and rectified lines out of it.
 
-use super::RemapTable;
 use super::sample::Band;
 use super::segment::{Part, Segments};
+use super::{RemapTable, RemapTableError};
+use crate::geometry::{Real, Warp};
+use core::cell::Cell;
 
 /// One camera's raw lines, rectified.
 ///
@@ -78,6 +80,8 @@ pub enum RemapError {
     },
     /// The frame's last rectified line was taken.
     NoLineLeft,
+    /// The warp has no table.
+    Table(RemapTableError),
 }
 
 impl core::fmt::Display for RemapError {
@@ -88,6 +92,7 @@ impl core::fmt::Display for RemapError {
             Self::BufferTooShort { needed } => write!(f, "the line's and the mask's buffers must hold {needed} bytes"),
             Self::Early { needed } => write!(f, "the next rectified line needs {needed} raw lines"),
             Self::Late { row } => write!(f, "a raw line that rectified row {row} needs is no longer held"),
+            Self::Table(error) => error.fmt(f),
             Self::NoLineLeft => f.write_str("no rectified line is left in this frame"),
         }
     }
@@ -103,19 +108,38 @@ impl<const W: usize, const N: usize, const SLOTS: usize> Remap<W, N, SLOTS> {
         N as u16 - 1
     };
 
+    /// A remap to an image without pixels, for a static: [`Self::set`] gives it a warp.
+    pub const fn empty() -> Self {
+        Self { table: RemapTable::empty(), lines: [[0; W]; N], came: 0, next: 0, needs: None }
+    }
+
     /// A remap through a table; refused when the band is too small for it.
     pub fn new(table: RemapTable<SLOTS>) -> Result<Self, RemapError> {
-        let rows = table.rows();
+        let mut remap = Self { table, ..Self::empty() };
+        remap.check()?;
+        remap.begin();
+        Ok(remap)
+    }
+
+    /// Makes it the remap of a warp where it stands, in no more memory; [`Self::empty`] when that is refused.
+    pub fn set<T: Real>(&mut self, warp: &Warp<T>) -> Result<(), RemapError> {
+        self.table.set(warp).map_err(RemapError::Table)?;
+        let checked = self.check();
+        if checked.is_err() {
+            self.table.clear();
+        }
+        self.begin();
+        checked
+    }
+
+    /// Whether the band is large enough for the table.
+    fn check(&self) -> Result<(), RemapError> {
+        let rows = self.table.rows();
         if rows > Self::ROWS {
             return Err(RemapError::Lines { needed: usize::from(rows) + 1 });
         }
-        let needed = usize::from(table.raw_size().width.max(table.size().width));
-        if needed > W {
-            return Err(RemapError::Width { needed });
-        }
-        let mut remap = Self { table, lines: [[0; W]; N], came: 0, next: 0, needs: None };
-        remap.begin();
-        Ok(remap)
+        let needed = usize::from(self.table.raw_size().width.max(self.table.size().width));
+        if needed > W { Err(RemapError::Width { needed }) } else { Ok(()) }
     }
 
     /// The table.
@@ -183,14 +207,14 @@ impl<const W: usize, const N: usize, const SLOTS: usize> Remap<W, N, SLOTS> {
         let (raw, piece) = (self.table.raw_size(), self.table.piece());
         let band = Band::new(&self.lines, first - first % Self::ROWS, raw, piece);
         let cell = 1 << self.table.shift();
-        let mut segments = Segments::new(&self.table, row);
+        let mut segments = Segments::new(&self.table, row, self.table.is_whole(row));
         valid.fill(1);
         for ((out, valid), segment) in out.chunks_mut(cell).zip(valid.chunks_mut(cell)).zip(&mut segments) {
             match segment.part {
-                Part::All => band.segment::<false>(&segment, out, valid),
+                Part::All => band.segment::<false>(&segment, Cell::from_mut(out).as_slice_of_cells(), valid),
                 Part::Some => {
                     segment.mask(raw, piece, valid);
-                    band.segment::<true>(&segment, out, valid);
+                    band.segment::<true>(&segment, Cell::from_mut(out).as_slice_of_cells(), valid);
                 }
                 Part::None => {
                     valid.fill(0);

@@ -2,17 +2,48 @@
 
 use super::{Remap, RemapError};
 use crate::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource};
+use crate::geometry::{Real, Rectification};
 use core::fmt;
+
+/// The remaps of two cameras, and which pixels of their last lines are valid: what stands in a static.
+#[derive(Clone, Debug)]
+pub struct RemapPair<const W: usize, const N: usize, const SLOTS: usize> {
+    left: Remap<W, N, SLOTS>,
+    right: Remap<W, N, SLOTS>,
+    valid: [[u8; W]; 2],
+}
+
+impl<const W: usize, const N: usize, const SLOTS: usize> RemapPair<W, N, SLOTS> {
+    /// Remaps to images without pixels: [`Self::set`] gives them their warps.
+    pub const fn empty() -> Self {
+        Self { left: Remap::empty(), right: Remap::empty(), valid: [[0; W]; 2] }
+    }
+
+    /// Of two remaps, of the left and of the right camera.
+    pub fn new(left: Remap<W, N, SLOTS>, right: Remap<W, N, SLOTS>) -> Self {
+        Self { left, right, valid: [[0; W]; 2] }
+    }
+
+    /// Makes them the remaps of a rectification where they stand.
+    pub fn set<T: Real>(&mut self, rectification: &Rectification<T>) -> Result<(), RemapError> {
+        let [left, right] = rectification.warps();
+        self.left.set(left)?;
+        self.right.set(right)
+    }
+
+    /// The remaps of the left and of the right camera.
+    pub fn remaps(&self) -> [&Remap<W, N, SLOTS>; 2] {
+        [&self.left, &self.right]
+    }
+}
 
 /// A stereo source of rectified lines over one of raw lines: what stands between two cameras and the pipeline.
 ///
 /// Raw lines are taken in pairs, as they come, until both cameras have what their next rectified line needs.
 #[derive(Debug)]
-pub struct RectifiedPair<S, const W: usize, const N: usize, const SLOTS: usize> {
+pub struct RectifiedPair<'a, S, const W: usize, const N: usize, const SLOTS: usize> {
     source: S,
-    left: Remap<W, N, SLOTS>,
-    right: Remap<W, N, SLOTS>,
-    valid: [[u8; W]; 2],
+    pair: &'a mut RemapPair<W, N, SLOTS>,
     last: LineStart,
 }
 
@@ -58,14 +89,11 @@ impl<E> From<RemapError> for CameraError<RectifiedPairError<E>> {
     }
 }
 
-impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> RectifiedPair<S, W, N, SLOTS> {
+impl<'a, S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> RectifiedPair<'a, S, W, N, SLOTS> {
     /// Rectifies what a source gives; refused where raw lines and remaps do not fit each other, or the bands are too small for
     /// both cameras in step: a camera's lines are held until the other one's next line has come, too.
-    pub fn new(
-        source: S,
-        left: Remap<W, N, SLOTS>,
-        right: Remap<W, N, SLOTS>,
-    ) -> Result<Self, RectifiedPairError<S::Error>> {
+    pub fn new(source: S, pair: &'a mut RemapPair<W, N, SLOTS>) -> Result<Self, RectifiedPairError<S::Error>> {
+        let [left, right] = pair.remaps();
         let format = source.format();
         let raws = [left.table().raw_size(), right.table().raw_size()];
         let fits = raws.iter().all(|raw| (raw.width, raw.height) == (format.width, format.height));
@@ -85,18 +113,18 @@ impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> Rectif
             return Err(RectifiedPairError::Remap(RemapError::Lines { needed: usize::from(most) + 1 }));
         }
         let last = LineStart { row: 0, timestamp_us: 0 };
-        Ok(Self { source, left, right, valid: [[0; W]; 2], last })
+        Ok(Self { source, pair, last })
     }
 
     /// Which pixels of the left and of the right line that came last are valid (1 or 0).
     pub fn valid(&self) -> [&[u8]; 2] {
-        let width = usize::from(self.left.table().size().width);
-        self.valid.each_ref().map(|valid| valid.get(..width).unwrap_or(&[]))
+        let width = usize::from(self.pair.left.table().size().width);
+        self.pair.valid.each_ref().map(|valid| valid.get(..width).unwrap_or(&[]))
     }
 
     /// The remaps of the left and of the right camera.
     pub fn remaps(&self) -> [&Remap<W, N, SLOTS>; 2] {
-        [&self.left, &self.right]
+        self.pair.remaps()
     }
 
     /// Gives the source back.
@@ -105,15 +133,17 @@ impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> Rectif
     }
 }
 
-impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> ErrorType for RectifiedPair<S, W, N, SLOTS> {
+impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> ErrorType
+    for RectifiedPair<'_, S, W, N, SLOTS>
+{
     type Error = RectifiedPairError<S::Error>;
 }
 
 impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> StereoSource
-    for RectifiedPair<S, W, N, SLOTS>
+    for RectifiedPair<'_, S, W, N, SLOTS>
 {
     fn format(&self) -> LineFormat {
-        let size = self.left.table().size();
+        let size = self.pair.left.table().size();
         LineFormat { width: size.width, height: size.height, ..self.source.format() }
     }
 
@@ -123,28 +153,28 @@ impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> Stereo
 
     fn start_frame(&mut self) -> Result<FrameStart, CameraError<Self::Error>> {
         let start = self.source.start_frame().map_err(|e| e.map_hardware(RectifiedPairError::Source))?;
-        self.left.begin();
-        self.right.begin();
+        self.pair.left.begin();
+        self.pair.right.begin();
         Ok(start)
     }
 
     fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
+        let RemapPair { left: first, right: second, valid: [first_valid, second_valid] } = &mut *self.pair;
         // Each turn takes a raw line; an image has at most 4096.
-        while self.left.wants_line() || self.right.wants_line() {
-            let lines = self.source.next_lines(self.left.next_line(), self.right.next_line());
+        while first.wants_line() || second.wants_line() {
+            let lines = self.source.next_lines(first.next_line(), second.next_line());
             self.last = lines.map_err(|e| e.map_hardware(RectifiedPairError::Source))?;
-            self.left.accept();
-            self.right.accept();
+            first.accept();
+            second.accept();
         }
-        let [valid_left, valid_right] = &mut self.valid;
-        let row = self.left.row(left, valid_left)?;
-        self.right.row(right, valid_right)?;
+        let row = first.row(left, first_valid)?;
+        second.row(right, second_valid)?;
         Ok(LineStart { row, ..self.last })
     }
 
     fn mask(&self, row: u16, [left, right]: [&mut [u8]; 2]) -> bool {
-        self.left.table().mask(row, left);
-        self.right.table().mask(row, right);
+        self.pair.left.table().mask(row, left);
+        self.pair.right.table().mask(row, right);
         true
     }
 }

@@ -2,6 +2,7 @@
 
 use super::segment::{BITS, NARROW, Segment};
 use crate::geometry::ImageSize;
+use core::cell::Cell;
 
 /// Columns of the raw image that a piece may span to be looked up at once.
 const SPAN: usize = 8;
@@ -24,70 +25,105 @@ impl<'a, const W: usize, const N: usize> Band<'a, W, N> {
     }
 
     /// The pixels of a segment; unless all of it is inside the raw image, it is at an `EDGE`.
+    ///
+    /// They go into cells: what is written may be what is read next as far as the compiler knows, so that it finishes a pixel
+    /// before it begins another, and all that a pixel takes stays in registers.
     #[inline(never)]
-    pub fn segment<const EDGE: bool>(&self, segment: &Segment, out: &mut [u8], valid: &[u8]) {
-        let (mut column, mut row) = (segment.column, segment.row);
-        row.start -= self.top;
+    pub fn segment<const EDGE: bool>(&self, segment: &Segment, out: &[Cell<u8>], valid: &[u8]) {
+        let (mut x, mut y) = (segment.column.start, segment.row.start.wrapping_sub(self.top));
+        let (mut right, mut down) = (segment.column.step, segment.row.step);
+        let (more_right, more_down) = (segment.column.bend, segment.row.bend);
         let (mut out, mut valid) = (out, valid);
-        if self.piece == 2 && column.is_narrow(out.len() / 4) {
-            let ((fours, rest), (valids, rest_valid)) = (out.as_chunks_mut::<4>(), valid.as_chunks::<4>());
-            for (four, valid) in fours.iter_mut().zip(valids) {
-                let (x, y, right, down) = (column.start, row.start, column.step, row.step);
-                // What is right of the last column and below the last row weighs nothing: any pixel of the band will do.
-                let is_edge = EDGE && *valid != [1; 4];
-                column.advance(2);
-                row.advance(2);
-                // Says no more than is known, and keeps the compiler from counting multiples of the step along.
-                column.step &= NARROW;
-                let at = Self::index(x, y);
-                match self.lines.get(at..at.wrapping_add(W + ROW)) {
-                    // Mostly all of it is between the same two rows.
-                    Some(window) if (y ^ row.start) >> BITS == 0 && !is_edge => {
-                        between_two::<W>(window, x, y, right, down, four)
-                    }
-                    _ if EDGE => self.at_the_edge(x, y, right, down, four, valid),
-                    _ => self.anywhere(x, y, right, down, four),
+        if self.piece == 2 && segment.column.is_narrow(out.len() / 4) {
+            let ((fours, rest), (valids, rest_valid)) = (out.as_chunks::<4>(), valid.as_chunks::<4>());
+            for (four, valid) in fours.iter().zip(valids) {
+                let end = y.wrapping_add(down << 2);
+                // Mostly all of it is between the same two rows.
+                let crossed = (y ^ end) >> BITS;
+                let is_done = (!EDGE || *valid == [1; 4])
+                    && if crossed == 0 {
+                        self.between_two(x, y, right, down, four)
+                    } else {
+                        self.between_three(x, y, right, down, four)
+                    };
+                if !is_done {
+                    self.piece::<EDGE>(x, y, right, down, four, valid);
                 }
+                x = x.wrapping_add(right << 2);
+                y = end;
+                // Says no more than is known, places being less than 2^29 apart, and keeps the compiler from counting multiples of
+                // the steps along.
+                right = right.wrapping_add(more_right) & NARROW;
+                down = down.wrapping_add(more_down) << 4 >> 4;
             }
             if rest.is_empty() {
                 return;
             }
             (out, valid) = (rest, rest_valid);
         }
-        for (out, valid) in out.chunks_mut(1 << self.piece).zip(valid.chunks(1 << self.piece)) {
-            let (x, y, right, down) = (column.start, row.start, column.step, row.step);
-            if EDGE {
-                self.at_the_edge(x, y, right, down, out, valid);
-            } else {
-                self.anywhere(x, y, right, down, out);
-            }
-            column.advance(self.piece);
-            row.advance(self.piece);
+        for (out, valid) in out.chunks(1 << self.piece).zip(valid.chunks(1 << self.piece)) {
+            self.piece::<EDGE>(x, y, right, down, out, valid);
+            x = x.wrapping_add(right << self.piece);
+            y = y.wrapping_add(down << self.piece);
+            right = right.wrapping_add(more_right);
+            down = down.wrapping_add(more_down);
         }
     }
 
-    /// Pixels of which some are outside, or on the last column or row.
-    #[inline(never)]
-    fn at_the_edge(&self, mut x: i32, mut y: i32, right: i32, down: i32, out: &mut [u8], valid: &[u8]) {
-        for (out, &valid) in out.iter_mut().zip(valid) {
-            *out = if valid == 0 { 0 } else { self.near_the_last(x, y.wrapping_add(self.top)) };
-            x = x.wrapping_add(right);
+    /// Four pixels that are between the same two rows; whether they are.
+    #[inline(always)]
+    fn between_two(&self, x: i32, mut y: i32, right: i32, down: i32, out: &[Cell<u8>; 4]) -> bool {
+        let at = Self::index(x, y);
+        let Some(window) = self.lines.get(at..at.wrapping_add(W + ROW)) else { return false };
+        let mut along = x & ((1 << BITS) - 1);
+        for out in out {
+            let at = (along >> BITS) as usize % SPAN;
+            out.set(mean(two(window, at), two(window, W + at), fraction(along), fraction(y)));
+            along = along.wrapping_add(right);
             y = y.wrapping_add(down);
         }
+        true
     }
 
-    /// Pixels that are inside, the first at a place, the others by steps from it.
-    #[inline(never)]
-    fn anywhere(&self, mut x: i32, mut y: i32, right: i32, down: i32, out: &mut [u8]) {
+    /// Four pixels that are between the same two rows or the next two; whether they are.
+    #[inline(always)]
+    fn between_three(&self, x: i32, mut y: i32, right: i32, down: i32, out: &[Cell<u8>; 4]) -> bool {
+        let top = y.min(y.wrapping_add(down << 2));
+        let at = Self::index(x, top);
+        let Some(window) = self.lines.get(at..at.wrapping_add(2 * W + ROW)) else { return false };
+        // Four steps of a quarter cross one row at most.
+        if down.unsigned_abs() > 1 << (BITS - 2) {
+            return false;
+        }
+        y = y.wrapping_sub(top >> BITS << BITS);
+        let mut along = x & ((1 << BITS) - 1);
         for out in out {
-            let [upper, lower] = self.four(x, y);
-            *out = mean(upper, lower, fraction(x), fraction(y));
+            let at = ((along >> BITS) as usize % SPAN).wrapping_add((y >> BITS) as usize % 2 * W);
+            out.set(mean(two(window, at), two(window, W + at), fraction(along), fraction(y)));
+            along = along.wrapping_add(right);
+            y = y.wrapping_add(down);
+        }
+        true
+    }
+
+    /// The pixels of a piece, wherever they are.
+    #[inline(never)]
+    fn piece<const EDGE: bool>(&self, mut x: i32, mut y: i32, right: i32, down: i32, out: &[Cell<u8>], valid: &[u8]) {
+        for (out, &valid) in out.iter().zip(valid) {
+            let at = Self::index(x, y);
+            out.set(match self.lines.get(at..at.wrapping_add(W + 2)) {
+                _ if EDGE && valid == 0 => 0,
+                Some(window) => mean(two(window, 0), two(window, W), fraction(x), fraction(y)),
+                // It is the band's last pixel.
+                None => self.near_the_last(x, y.wrapping_add(self.top)),
+            });
             x = x.wrapping_add(right);
             y = y.wrapping_add(down);
         }
     }
 
     /// The pixel at a place that may be on the image's last column or row.
+    #[inline(never)]
     fn near_the_last(&self, column: i32, row: i32) -> u8 {
         let (x, right) = split(column, self.raw.width);
         let (y, down) = split(row, self.raw.height);
@@ -111,18 +147,6 @@ impl<'a, const W: usize, const N: usize> Band<'a, W, N> {
         let at = Self::index(column, row);
         let window = self.lines.get(at..at.wrapping_add(W + 2)).unwrap_or_default();
         [two(window, 0), two(window, W)]
-    }
-}
-
-/// Four pixels that are between the same two rows, in a window that begins where the first one is.
-#[inline(always)]
-fn between_two<const W: usize>(window: &[u8], x: i32, mut y: i32, right: i32, down: i32, out: &mut [u8; 4]) {
-    let mut along = x & ((1 << BITS) - 1);
-    for out in out {
-        let at = (along >> BITS) as usize % SPAN;
-        *out = mean(two(window, at), two(window, W + at), fraction(along), fraction(y));
-        along = along.wrapping_add(right);
-        y = y.wrapping_add(down);
     }
 }
 

@@ -2,6 +2,8 @@
 
 use super::RemapTable;
 use crate::geometry::ImageSize;
+use core::iter::Zip;
+use core::slice::Iter;
 
 /// Fractional bits of a place.
 pub(super) const BITS: u32 = 16;
@@ -38,18 +40,40 @@ pub(super) struct Run {
     pub start: i32,
     pub step: i32,
     pub bend: i32,
-    /// The place after the last pixel.
-    end: i32,
-    /// The place where the tangents at both ends meet: a parabola stays between its ends and that (Bézier).
-    meet: i32,
+}
+
+/// What all cells of a lattice have in common.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell {
+    /// The side as a power of two.
+    shift: u32,
+    /// Whether places are on straight pieces of four pixels, not of one.
+    is_fours: bool,
+    /// How far the sum of four places is shifted to be a bend.
+    bend_shift: u32,
+    /// How many bends there are along a cell.
+    bent: i32,
+}
+
+impl Cell {
+    /// Cells of `2^shift` px in pieces of `2^piece`.
+    pub fn new(shift: u32, piece: u32) -> Self {
+        let pieces = 1 << (shift - piece);
+        Self {
+            shift,
+            is_fours: piece > 0,
+            bend_shift: 2 * shift + 1 - piece,
+            bent: (pieces * (pieces - 1) / 2) << piece,
+        }
+    }
 }
 
 impl Segment {
-    /// Whether its pixels are in the raw image: 1 or 0.
+    /// Whether its pixels are in the raw image: 1 or 0, for those that are 1.
     pub fn mask(&self, raw: ImageSize, piece: u32, valid: &mut [u8]) {
         match self.part {
             Part::None => valid.fill(0),
-            Part::All => valid.fill(1),
+            Part::All => {}
             Part::Some => self.mask_pieces(raw, piece, valid),
         }
     }
@@ -60,7 +84,6 @@ impl Segment {
         // From 0 to the last pixel, to a 256th.
         let [right, bottom] = [raw.width, raw.height].map(|side| ((u32::from(side) - 1) << BITS) + 2 * HALF as u32);
         let is_in = |x: i32, y: i32| x.cast_unsigned() < right && y.cast_unsigned() < bottom;
-        valid.fill(1);
         let mut begins_in = is_in(column.start, row.start);
         for valid in valid.chunks_mut(1 << piece) {
             let (mut x, mut y, step) = (column.start, row.start, (column.step, row.step));
@@ -81,34 +104,23 @@ impl Segment {
 
 impl Run {
     /// Along the parabola through two places of the lattice that is bent as the cubic through these and the two beside them is
-    /// halfway, in pieces of `2^piece` pixels, 1 or 4. A straight line between two places of it is off by up to half of `bend` in the
+    /// halfway, in pieces of 1 or 4 pixels. A straight line between two places of it is off by up to half of `bend` in the
     /// middle of four pixels: all are moved by a quarter.
-    fn between([before, from, to, after]: [i32; 4], shift: u32, piece: u32) -> Self {
-        let (length, pieces) = (1 << piece, 1 << (shift - piece));
-        let bend = rounded(before + after - from - to, 2 * shift + 1 - piece);
-        let bent = length * pieces * (pieces - 1) / 2 * bend;
-        let step = rounded(to - from - bent, shift);
-        let start = from + HALF - if piece == 0 { 0 } else { bend / 4 };
-        let end = start + length * pieces * step + bent;
-        let meet = start + length * pieces * (2 * step - bend) / 4;
-        Self { start, step, bend, end, meet }
-    }
-
-    /// No place is less.
-    pub fn least(&self) -> i32 {
-        self.start.min(self.end).min(self.meet) - 1
-    }
-
-    /// No place is greater.
-    pub fn greatest(&self) -> i32 {
-        self.start.max(self.end).max(self.meet) + 1
-    }
-
-    /// Whether all places are before `last` and not negative.
     #[inline(always)]
-    fn is_before(&self, last: i32) -> bool {
-        let most = (last - 2).cast_unsigned();
-        [self.start, self.end, self.meet].iter().all(|place| (place.wrapping_sub(1)).cast_unsigned() < most)
+    fn between([before, from, to, after]: [i32; 4], cell: &Cell) -> Self {
+        let bend = rounded(before + after - from - to, cell.bend_shift);
+        let bent = cell.bent * bend;
+        let step = rounded(to - from - bent, cell.shift);
+        let start = from + HALF - if cell.is_fours { bend / 4 } else { 0 };
+        Self { start, step, bend }
+    }
+
+    /// No place along a cell is less, and none is greater.
+    pub fn reach(&self, cell: &Cell) -> (i32, i32) {
+        let end = self.start + (self.step << cell.shift) + cell.bent * self.bend;
+        // Where the tangents at both ends meet: a parabola stays between its ends and that (Bézier).
+        let meet = self.start + (((2 * self.step - self.bend) << cell.shift) >> 2);
+        (self.start.min(end).min(meet) - 1, self.start.max(end).max(meet) + 1)
     }
 
     /// The places of the pixels.
@@ -151,55 +163,71 @@ fn rounded(x: i32, shift: u32) -> i32 {
 
 /// The segments of one rectified line, from the left.
 pub(super) struct Segments<'a> {
-    /// Four rows of the lattice: the line is between the second and the third.
-    rows: [&'a [[i32; 2]]; 4],
+    /// What is left of four rows of the lattice: the line is between the second and the third.
+    columns: Columns<'a>,
     weights: [i32; 4],
-    /// Places on the last columns of the lattice: those of three, and the next one's.
-    window: [Node; 4],
-    next: usize,
+    /// Places on the last three columns of the lattice.
+    last: [[i32; 2]; 3],
+    /// A bit for each column so far, the last one's lowest: whether the lens model does not describe it.
+    beyond: u32,
     left: u16,
-    shift: u32,
-    piece: u32,
+    cell: Cell,
     /// The last column and row of the raw image, with fractional bits.
     most: [i32; 2],
+    /// Whether all segments are known to be in the raw image.
+    is_whole: bool,
 }
 
-#[derive(Clone, Copy, Default)]
-struct Node {
-    place: [i32; 2],
-    is_beyond: bool,
-}
+/// Four rows side by side.
+type Columns<'a> = Zip<Zip<Iter<'a, [i32; 2]>, Iter<'a, [i32; 2]>>, Zip<Iter<'a, [i32; 2]>, Iter<'a, [i32; 2]>>>;
 
 impl<'a> Segments<'a> {
-    pub fn new<const SLOTS: usize>(table: &'a RemapTable<SLOTS>, row: u16) -> Self {
-        let shift = table.shift();
-        let raw = table.raw_size();
-        let rows = table.rows_around(row);
-        let weights = weights(i32::from(row) & ((1 << shift) - 1), shift);
-        Self {
-            rows,
-            weights,
-            window: [Node::default(), node(&rows, &weights, 0), node(&rows, &weights, 1), node(&rows, &weights, 2)],
-            next: 3,
+    /// Those of a line, all of which are in the raw image if it is known to be `whole`.
+    pub fn new<const SLOTS: usize>(table: &'a RemapTable<SLOTS>, row: u16, is_whole: bool) -> Self {
+        let (shift, raw) = (table.shift(), table.raw_size());
+        let [n0, n1, n2, n3] = table.rows_around(row);
+        let mut segments = Self {
+            columns: n0.iter().zip(n1).zip(n2.iter().zip(n3)),
+            weights: weights(i32::from(row) & ((1 << shift) - 1), shift),
+            last: [[0; 2]; 3],
+            beyond: 0,
             left: table.cells(),
-            shift,
-            piece: table.piece(),
+            cell: Cell::new(shift, table.piece()),
             most: [raw.width, raw.height].map(|side| (i32::from(side) - 1) << BITS),
+            is_whole,
+        };
+        segments.last = [segments.node(), segments.node(), segments.node()];
+        segments
+    }
+
+    /// The place on the next column of the lattice, in the line that the weights of its four rows give.
+    #[inline(always)]
+    fn node(&mut self) -> [i32; 2] {
+        // There is one for each cell, and three.
+        let Some(((n0, n1), (n2, n3))) = self.columns.next() else { return [0; 2] };
+        self.beyond = self.beyond << 1 | ((n1[0] | n2[0]) & 1).cast_unsigned();
+        let [w0, w1, w2, w3] = self.weights.map(i64::from);
+        let at = |[a, b, c, d]: [i32; 4]| {
+            let sum = w0 * i64::from(a) + w1 * i64::from(b);
+            let sum = sum + w2 * i64::from(c) + w3 * i64::from(d);
+            ((sum + (1 << (WEIGHT_BITS - 1))) >> WEIGHT_BITS) as i32
+        };
+        [at([n0[0], n1[0], n2[0], n3[0]]), at([n0[1], n1[1], n2[1], n3[1]])]
+    }
+
+    /// What of a segment between two columns of the lattice is in the raw image.
+    fn part(&self, column: &Run, row: &Run) -> Part {
+        let [last_column, last_row] = self.most;
+        let ((left, right), (top, bottom)) = (column.reach(&self.cell), row.reach(&self.cell));
+        // Inside with the pixels to the right and below, or outside for all pixels.
+        if left >= 0 && top >= 0 && right < last_column && bottom < last_row {
+            Part::All
+        } else if right < 0 || bottom < 0 || left >= last_column + 2 * HALF || top >= last_row + 2 * HALF {
+            Part::None
+        } else {
+            Part::Some
         }
     }
-}
-
-/// A column of the lattice, in the line that weights of its four rows give.
-#[inline(always)]
-fn node(rows: &[&[[i32; 2]]; 4], weights: &[i32; 4], column: usize) -> Node {
-    let [n0, n1, n2, n3] = rows.map(|row| row.get(column).copied().unwrap_or([1, 0]));
-    let [w0, w1, w2, w3] = weights.map(i64::from);
-    let at = |axis: usize| {
-        let sum = w0 * i64::from(n0[axis]) + w1 * i64::from(n1[axis]);
-        let sum = sum + w2 * i64::from(n2[axis]) + w3 * i64::from(n3[axis]);
-        ((sum + (1 << (WEIGHT_BITS - 1))) >> WEIGHT_BITS) as i32
-    };
-    Node { place: [at(0), at(1)], is_beyond: (n1[0] | n2[0]) & 1 != 0 }
 }
 
 impl Iterator for Segments<'_> {
@@ -208,23 +236,16 @@ impl Iterator for Segments<'_> {
     #[inline]
     fn next(&mut self) -> Option<Segment> {
         self.left = self.left.checked_sub(1)?;
-        let [_, a, b, c] = self.window;
-        let d = node(&self.rows, &self.weights, self.next);
-        self.window = [a, b, c, d];
-        self.next += 1;
-        let run = |axis: usize| Run::between([a, b, c, d].map(|node| node.place[axis]), self.shift, self.piece);
-        let (column, row) = (run(0), run(1));
-        let [last_column, last_row] = self.most;
-        // Inside with the pixels to the right and below, or outside for all pixels.
-        let is_out = |run: &Run, last: i32| run.greatest() < 0 || run.least() >= last + 2 * HALF;
-        let part = if b.is_beyond || c.is_beyond {
-            Part::None
-        } else if column.is_before(last_column) && row.is_before(last_row) {
-            Part::All
-        } else if is_out(&column, last_column) || is_out(&row, last_row) {
-            Part::None
-        } else {
-            Part::Some
+        let [a, b, c] = self.last;
+        let d = self.node();
+        self.last = [b, c, d];
+        let column = Run::between([a[0], b[0], c[0], d[0]], &self.cell);
+        let row = Run::between([a[1], b[1], c[1], d[1]], &self.cell);
+        let part = match self.is_whole {
+            true => Part::All,
+            // Those at both ends, the last but one and the one before that.
+            false if self.beyond & 0b110 != 0 => Part::None,
+            false => self.part(&column, &row),
         };
         Some(Segment { column, row, part })
     }
@@ -254,13 +275,14 @@ mod tests {
     #[test]
     fn a_parabola_in_fours() {
         // 16 k^2 at -8, 0, 8 and 16: at 0, 4 and 8 it is 0, 256 and 1024, less a quarter of the bend.
-        let run = Run::between([1024, 0, 1024, 4096], 3, 2);
+        let cell = Cell::new(3, 2);
+        let run = Run::between([1024, 0, 1024, 4096], &cell);
         assert_eq!((run.start, run.step, run.bend), (HALF - 32, 64, 128));
         let places: [i32; 6] = core::array::from_fn(|k| run.places(2).nth(k).unwrap_or(0) - run.start);
         assert_eq!(places, [0, 64, 128, 192, 256, 448]);
-        assert_eq!((run.least(), run.greatest()), (run.start - 1, run.start + 1025));
+        assert_eq!(run.reach(&cell), (run.start - 1, run.start + 1025));
         // And in pieces of one.
-        let run = Run::between([1024, 0, 1024, 4096], 3, 0);
+        let run = Run::between([1024, 0, 1024, 4096], &Cell::new(3, 0));
         let places: [i32; 5] = core::array::from_fn(|k| run.places(0).nth(k).unwrap_or(0) - HALF);
         assert_eq!(places, [0, 16, 64, 144, 256]);
     }

@@ -1,6 +1,6 @@
 //! A warp as a coarse lattice of places.
 
-use super::segment::{BITS, Part, Run, Segments};
+use super::segment::{BITS, Cell, Part, Run, Segments};
 use crate::geometry::{ImageSize, Real, Warp};
 use nalgebra::Point2;
 
@@ -18,7 +18,8 @@ use nalgebra::Point2;
 #[derive(Clone, Debug)]
 pub struct RemapTable<const SLOTS: usize> {
     /// The lattice, row by row: column and row, where the lowest bit of the column says that the lens model does not describe
-    /// the place. Then the raw rows that each rectified row needs: the first and, 16 bits higher, the last.
+    /// the place. Then the raw rows that each rectified row needs: the first and, 16 bits higher, the last; and whether
+    /// all of the row is in the raw image.
     slots: [[i32; 2]; SLOTS],
     shift: u8,
     piece: u8,
@@ -55,6 +56,12 @@ impl core::error::Error for RemapTableError {}
 /// The widest lattice and the finest: powers of two.
 const WIDEST: u32 = 6;
 const FINEST: u32 = 3;
+/// The size of no image.
+const NO_PIXELS: ImageSize = ImageSize { width: 0, height: 0 };
+/// Added to what is noted of a row when all of it is in the raw image: its last raw row is less than 4096.
+const WHOLE: u32 = 1 << 31;
+/// What is noted of a row that shows nothing of the raw image: its first raw row is after the last.
+const NOWHERE: u32 = 0xffff;
 /// Places farther outside the raw image than this on the left and above, and farther than that on the right and below, say
 /// no more than that they are outside. Sums of four fit a word.
 const FARTHEST: (f64, f64) = (-2048.0, 6143.0);
@@ -63,18 +70,38 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
     /// How far a place that is looked at may be from the warp's, px: then all are within 0.05 px.
     pub const TOLERANCE_PX: f64 = 0.03;
 
+    /// A table of an image without pixels, to be [`set`](Self::set) where it stands.
+    pub const fn empty() -> Self {
+        Self { slots: [[1, 0]; SLOTS], shift: FINEST as u8, piece: 0, size: NO_PIXELS, raw: NO_PIXELS, rows: 0 }
+    }
+
     /// The table of a warp.
     pub fn new<T: Real>(warp: &Warp<T>) -> Result<Self, RemapTableError> {
-        let mut table =
-            Self { slots: [[1, 0]; SLOTS], shift: 0, piece: 0, size: warp.size(), raw: warp.raw_size(), rows: 0 };
+        let mut table = Self::empty();
+        table.set(warp)?;
+        Ok(table)
+    }
+
+    /// Makes it the table of a warp, without another in between; [`Self::empty`] when there is none.
+    pub fn set<T: Real>(&mut self, warp: &Warp<T>) -> Result<(), RemapTableError> {
+        (self.size, self.raw) = (warp.size(), warp.raw_size());
+        self.make(warp).inspect_err(|_| self.clear())
+    }
+
+    /// Leaves it [`Self::empty`].
+    pub(super) fn clear(&mut self) {
+        (self.size, self.raw, self.rows) = (NO_PIXELS, NO_PIXELS, 0);
+    }
+
+    fn make<T: Real>(&mut self, warp: &Warp<T>) -> Result<(), RemapTableError> {
         // Four pixels at a time along a line are faster.
         for piece in [2, 0] {
-            for shift in (FINEST..=table.widest()).rev() {
-                table.fill(warp, shift)?;
-                table.piece = piece;
-                if table.is_near(warp) {
-                    table.note_rows();
-                    return Ok(table);
+            for shift in (FINEST..=self.widest()).rev() {
+                self.fill(warp, shift)?;
+                self.piece = piece;
+                if self.is_near(warp) {
+                    self.note_rows();
+                    return Ok(());
                 }
             }
         }
@@ -126,7 +153,7 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         };
         let last = self.size.height.saturating_sub(1);
         for y in (0..last).step_by(4).chain([last]) {
-            for (segment, x) in Segments::new(self, y).zip((0..).step_by(cell)) {
+            for (segment, x) in Segments::new(self, y, false).zip((0..).step_by(cell)) {
                 let length = cell.min(usize::from(self.size.width) - x);
                 // At the ends and in the middle of each four.
                 for k in (0..length).step_by(2) {
@@ -183,18 +210,29 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
 
     /// The first and the last raw row that a rectified row needs; none where it shows nothing of the raw image.
     pub fn raw_rows(&self, row: u16) -> Option<(u16, u16)> {
-        let slot = self.slots.get(Self::nodes(self.size, self.shift()) + usize::from(row / 2))?;
-        let packed = slot.get(usize::from(row % 2))?.cast_unsigned();
-        let (first, last) = (packed as u16, (packed >> 16) as u16);
+        let noted = self.noted(row);
+        let (first, last) = (noted as u16, (noted >> 16) as u16 & !(WHOLE >> 16) as u16);
         (first <= last).then_some((first, last))
+    }
+
+    /// Whether all pixels of a row are in the raw image, and not on its last column or row.
+    pub(super) fn is_whole(&self, row: u16) -> bool {
+        self.noted(row) & WHOLE != 0
+    }
+
+    /// What is noted of a row; of none that it is seen nowhere.
+    fn noted(&self, row: u16) -> u32 {
+        let slot = self.slots.get(Self::nodes(self.size, self.shift()) + usize::from(row / 2));
+        slot.and_then(|slot| slot.get(usize::from(row % 2))).map_or(NOWHERE, |noted| noted.cast_unsigned())
     }
 
     /// Whether each pixel of a rectified row is seen: 1 or 0, as many as there is room for.
     pub fn mask(&self, row: u16, valid: &mut [u8]) {
         let room = valid.len().min(self.size.width.into());
         let Some(valid) = valid.get_mut(..room) else { return };
-        let cell = 1 << self.shift;
-        for (valid, segment) in valid.chunks_mut(cell).zip(Segments::new(self, row)) {
+        let (cell, is_whole) = (1 << self.shift, self.is_whole(row));
+        valid.fill(1);
+        for (valid, segment) in valid.chunks_mut(cell).zip(Segments::new(self, row, is_whole)) {
             segment.mask(self.raw, self.piece(), valid);
         }
     }
@@ -202,18 +240,23 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
     /// Notes which raw rows each row needs, and how many are held at most.
     fn note_rows(&mut self) {
         let begin = Self::nodes(self.size, self.shift());
-        let last_row = i32::from(self.raw.height) - 1;
+        let last_row = i32::from(self.raw.height.saturating_sub(1));
         let of = |place: i32| (place >> BITS).clamp(0, last_row);
+        let cell = Cell::new(self.shift(), self.piece());
         let (mut last_so_far, mut most) = (0, 0);
         for row in 0..self.size.height {
-            let (mut first, mut last) = (i32::from(u16::MAX), 0);
-            for segment in Segments::new(self, row).filter(|segment| segment.part != Part::None) {
-                first = first.min(of(segment.row.least()));
-                last = last.max((of(segment.row.greatest()) + 1).min(last_row));
+            let (mut first, mut last, mut whole) = (i32::from(u16::MAX), 0, true);
+            for segment in Segments::new(self, row, false) {
+                whole &= segment.part == Part::All;
+                if segment.part != Part::None {
+                    let (least, greatest) = segment.row.reach(&cell);
+                    first = first.min(of(least));
+                    last = last.max((of(greatest) + 1).min(last_row));
+                }
             }
             let slot = self.slots.get_mut(begin + usize::from(row / 2));
-            if let Some(packed) = slot.and_then(|slot| slot.get_mut(usize::from(row % 2))) {
-                *packed = first | last << 16;
+            if let Some(noted) = slot.and_then(|slot| slot.get_mut(usize::from(row % 2))) {
+                *noted = first | last << 16 | if whole { WHOLE.cast_signed() } else { 0 };
             }
             if first <= last {
                 last_so_far = last.max(last_so_far);

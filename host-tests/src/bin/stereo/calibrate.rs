@@ -44,7 +44,8 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
         let last = notes.last().map(|note| format!("; {note}")).unwrap_or_default();
         Failure::new(format!("--left and --right: {e}{last}"))
     };
-    let result = solve(args.pattern, args.square_mm / 1000.0, size, &views).map_err(|e| failed(&e))?;
+    let result =
+        solve(args.lens.into(), args.pattern, args.square_mm / 1000.0, size, &views).map_err(|e| failed(&e))?;
     let rectified = Rectification::new(&result.rig, Crop::Natural, size).map_err(|e| failed(&e))?;
 
     for i in result.outliers() {

@@ -26,6 +26,7 @@ mod record;
 mod rectify;
 mod replay;
 mod two_view;
+mod uncalibrated;
 mod walk;
 
 use cli::Command;

@@ -4,20 +4,22 @@ use crate::cli::{MatchArgs, Unit};
 use crate::failure::Failure;
 use crate::input::{self, Pair};
 use crate::progress::Progress;
-use crate::{files, print, rectify};
-use image::RgbImage;
+use crate::{files, print, rectify as raw_pair};
+use image::{RgbImage, imageops};
 use std::fmt::{Display, Write};
+use std::io::Write as _;
 use std::path::Path;
 use stereopsis::camera::StereoSource;
 use stereopsis::depth::DepthScale;
-use stereopsis::geometry::ImageSize;
+use stereopsis::geometry::{Camera, ImageSize, RectifiedRig};
 use stereopsis::imaging::NoiseMeter;
 use stereopsis::matching::Config;
 use stereopsis_host::calibration::Calibration;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
-use stereopsis_host::rectify::{rectify_colours, with_rectified};
+use stereopsis_host::rectify::{rectify, rectify_colours, with_rectified};
 use stereopsis_host::report::{Report, Summary};
+use stereopsis_host::rows::Rows;
 use stereopsis_host::run::{self, Outcome};
 
 /// What is written only of raw images.
@@ -28,7 +30,8 @@ struct Scene {
     left: RgbImage,
     right: RgbImage,
     scale: Option<DepthScale>,
-    rectified: Option<rectify::Summary>,
+    rectified: Option<raw_pair::Summary>,
+    rows: Option<Rows>,
 }
 
 /// What came of the matching.
@@ -48,13 +51,16 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         let scale = scale(args, &pair)?;
         Staging::probe(&args.out)?;
         let matched = matched(args, config, &mut pair.camera)?;
-        (Scene { left: pair.left, right: pair.right, scale, rectified: None }, matched)
+        let [left, right] = [&pair.left, &pair.right].map(imageops::grayscale);
+        let camera = scale.as_ref().and_then(|scale| camera(scale.rig()));
+        let rows = Rows::measure([&left, &right], None, camera.as_ref());
+        (Scene { left: pair.left, right: pair.right, scale, rectified: None, rows }, matched)
     };
 
     let Matched { config, meter, outcome } = matched;
     let scale = scene.scale.as_ref();
     let summary = Summary::new(args.way.method, args.way.filter.name(), &config, &outcome, scale, None);
-    let summary = summary.with_noise(meter.as_ref());
+    let summary = summary.with_noise(meter.as_ref()).with_rows(scene.rows);
     let report = Report {
         left_name: &name(&args.pair.left),
         right_name: &name(&args.pair.right),
@@ -79,6 +85,10 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let mut text = String::new();
     for note in &pair.notes {
         let _ = writeln!(text, "note: {}", one_line(note));
+    }
+    if let Some(warning) = scene.rows.as_ref().and_then(Rows::warning) {
+        // Nobody is left to tell when standard error is closed.
+        let _ = writeln!(std::io::stderr(), "stereo: warning: {warning}");
     }
     text += &figures(&summary);
     if let Some(rectified) = &scene.rectified {
@@ -106,7 +116,7 @@ fn raw(args: &MatchArgs, config: Config, pair: &mut Pair) -> Result<(Scene, Matc
         return Err(Failure::new("--rectify: --calib is missing; give the calibration of the two cameras"));
     }
     let size = ImageSize { width: pair.width, height: pair.height };
-    let (calibration, rectification) = rectify::open(&args.calib, &args.options, size)?;
+    let (calibration, rectification) = raw_pair::open(&args.calib, &args.options, size)?;
     let named = |e: &dyn Display| Failure::new(format!("{}: {e}", calibration.path.display()));
     if !rectification.axis().is_horizontal() {
         return Err(named(&"the cameras stand below each other; match takes cameras beside each other"));
@@ -119,8 +129,16 @@ fn raw(args: &MatchArgs, config: Config, pair: &mut Pair) -> Result<(Scene, Matc
         (source.remaps().map(|remap| remap.table().rows()), matched(args, config, source))
     })
     .map_err(|e| named(&e))?;
-    let told = rectify::Summary::new(calibration.format, &rectification, rows, &rectification.report());
-    Ok((Scene { left, right, scale: Some(scale), rectified: Some(told) }, matched?))
+    let told = raw_pair::Summary::new(calibration.format, &rectification, rows, &rectification.report());
+    let grey = rectify(&rectification, &mut pair.camera).map_err(|e| named(&e))?;
+    let rows = Rows::measure(grey.pictures.each_ref(), Some(grey.valid.each_ref()), Some(rectification.camera()));
+    Ok((Scene { left, right, scale: Some(scale), rectified: Some(told), rows }, matched?))
+}
+
+/// The camera of a rectified pair.
+fn camera(rig: &RectifiedRig) -> Option<Camera<f64>> {
+    let (f, (cx, cy)) = (f64::from(rig.focal_px()), rig.principal_point());
+    Camera::new(f, f, cx.into(), cy.into()).ok()
 }
 
 /// The scale of depths in images that are rectified already, where there is a calibration.
@@ -161,6 +179,9 @@ pub fn figures(summary: &Summary) -> String {
         Some(sigma) => writeln!(text, "noise        {}, {sigma:.1} grey levels", s.noise),
         None => writeln!(text, "noise        {}, as told", s.noise),
     };
+    if let Some(rows) = &s.rows {
+        let _ = writeln!(text, "rows         {}", rows.told());
+    }
     if let Some(d) = s.disparity_px {
         let _ = writeln!(text, "disparity    {:.2} to {:.2} px, median {:.2} px", d.min, d.max, d.median);
     }

@@ -12,7 +12,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::{Crop, ImageSize, Pose, Rectification};
 use stereopsis::motion::odometry::State;
-use stereopsis_host::calibration::{Calibration, Cameras, RawCalibration};
+use stereopsis_host::calibration::{Calibration, Cameras, Fault, RawCalibration};
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::odometry::error::{Alignment, align, ate, drift, rpe};
 use stereopsis_host::odometry::picture::svg;
@@ -121,8 +121,12 @@ fn cameras(args: &OdometryArgs, sequence: &Sequence) -> Result<Cams, Failure> {
             let rig = rectification.rig().map_err(|e| named(&e))?;
             Ok(Cams { rig: Rig::Stereo(rig), rectification: Some(rectification), format: raw.format })
         }
-        _ => {
-            let calibration = Calibration::open_all(&args.calib, Path::new(pair), unit_m)?;
+        raw => {
+            let calibration = match (Calibration::open_all(&args.calib, Path::new(pair), unit_m), raw) {
+                // What is wrong with the cameras as they are mounted says more.
+                (Err(error), Err(raw)) if matches!(error.fault, Fault::NotRectified | Fault::Unknown) => Err(raw)?,
+                (found, _) => found?,
+            };
             calibration.check_size(size.width, size.height)?;
             Ok(Cams { rig: Rig::Stereo(calibration.rig), rectification: None, format: calibration.format })
         }

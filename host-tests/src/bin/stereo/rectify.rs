@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::files::{json, png};
 use crate::input::Pair;
 use crate::print;
+use crate::uncalibrated;
 use nalgebra::{DMatrix, Matrix3};
 use serde::Serialize;
 use std::fmt::Write;
@@ -55,6 +56,9 @@ struct Side {
 
 pub fn run(args: &RectifyArgs) -> Result<(), Failure> {
     let pair = Pair::open(&args.pair)?;
+    if let Some(matches) = &args.matches {
+        return uncalibrated::run(&pair, matches, &args.out);
+    }
     let size = ImageSize { width: pair.width, height: pair.height };
     let (calibration, rectification) = open(&args.calib, &args.rectify, size)?;
     let named = |e: &dyn std::fmt::Display| Failure::new(format!("{}: {e}", calibration.path.display()));

@@ -100,6 +100,6 @@ fn calibration(
     baseline_m: f64,
 ) -> Result<Calibration, Fault> {
     let rig = rig(left, right, key, baseline_m)?;
-    super::likely(key, f64::from(rig.baseline_m()))?;
+    super::likely(format, key, f64::from(rig.baseline_m()))?;
     Ok(Calibration { path: PathBuf::new(), format, rig, width: None, height: None, disparities: None })
 }

@@ -20,10 +20,13 @@ mod tree;
 use super::{Calibration, CalibrationError, Fault, kitti, load_all, middlebury};
 use nalgebra::{Matrix3, Vector3};
 use std::path::{Path, PathBuf};
-use stereopsis::geometry::{Camera, Distortion, Fisheye, ImageSize, Lens, Pose, StereoRig};
+use stereopsis::geometry::{
+    Camera, Crop, Distortion, Fisheye, ImageSize, Lens, Pose, Rectification, RectifyError, StereoRig,
+};
 use tree::Tree;
 
 pub(super) use aligned::read as rectified_rig;
+pub(super) use record::read as recorded;
 
 /// Baselines beyond these are taken for a wrong unit, m.
 const LIKELY_M: std::ops::RangeInclusive<f64> = 1e-3..=10.0;
@@ -96,14 +99,26 @@ impl RawCalibration {
                 return Err(Fault::Size { which, calibrated, image });
             }
         }
-        likely(baseline_key, rig.baseline_m())?;
+        likely(format, baseline_key, rig.baseline_m())?;
+        // All else that rectification may refuse is fine elsewhere.
+        if let Err(error @ RectifyError::Swapped(_)) = Rectification::new(&rig, Crop::Natural, rig.sizes()[0]) {
+            return Err(Fault::Swapped(error));
+        }
         Ok(Self { path, format, rig })
     }
 }
 
 /// Refuses what is rather in another unit.
-fn likely(key: &str, baseline_m: f64) -> Result<(), Fault> {
-    if LIKELY_M.contains(&baseline_m) { Ok(()) } else { Err(Fault::Unit { key: key.into(), baseline_m }) }
+pub(super) fn likely(format: &str, key: &str, baseline_m: f64) -> Result<(), Fault> {
+    if LIKELY_M.contains(&baseline_m) {
+        return Ok(());
+    }
+    let advice = match format {
+        "OpenCV" => "where it is in millimetres, say --unit mm",
+        "Middlebury" => "this format has it in millimetres",
+        _ => "this format has lengths in metres",
+    };
+    Err(Fault::Unit { key: key.into(), baseline_m, advice })
 }
 
 /// The documents of files that are trees; what is of another format has none.

@@ -7,7 +7,7 @@ use std::path::Path;
 use stereopsis::geometry::StereoRig;
 
 /// The rig of a file that begins as a record does; nothing of other files, also of those that cannot be read.
-pub(super) fn read(path: &Path) -> Option<Result<StereoRig<f64>, Fault>> {
+pub(in crate::calibration) fn read(path: &Path) -> Option<Result<StereoRig<f64>, Fault>> {
     if !std::fs::metadata(path).is_ok_and(|found| found.is_file()) {
         return None;
     }

@@ -13,8 +13,9 @@ use stereopsis_host::run::{Method, NoiseChoice, UnknownNoise};
 #[derive(Args)]
 pub struct Arguments {
     /// The program: depth, rows of disparity; pose, two views; bundle, their adjustment; features, corners of two pictures and
-    /// their matches; focus, a lens that moves; odometry, where a pair goes; or interrupt, lines that a timer brings
-    #[arg(long, default_value = "depth", value_parser = ["depth", "pose", "bundle", "features", "focus", "odometry", "interrupt"])]
+    /// their matches; focus, a lens that moves; odometry, where a pair goes; rectify, raw lines; or interrupt, lines
+    /// that a timer brings
+    #[arg(long, default_value = "depth", value_parser = ["depth", "pose", "bundle", "features", "focus", "odometry", "rectify", "interrupt"])]
     program: String,
     /// With a program other than depth: made for size, not for speed
     #[arg(long)]
@@ -88,6 +89,8 @@ pub enum Asked {
     Focus(Plain),
     /// Where a pair goes, on one core.
     Odometry(Plain),
+    /// Raw lines rectified, on one core.
+    Rectify(Plain),
     /// Lines by an interrupt, on one core.
     Interrupt(Plain),
     /// All cores.
@@ -112,6 +115,9 @@ impl Arguments {
             if board == board::RV32 && name == "interrupt" {
                 return Err(Failure::new("--core rv32: interrupt needs the timer of a Cortex-M"));
             }
+            if self.small && name == "rectify" {
+                return Err(Failure::new("--small: rectify has the dense path in it, which is made for speed"));
+            }
             if pair.is_some() || self.disparities.is_some() {
                 return Err(Failure::new(format!(
                     "--program {name} takes no images: --left, --right and --disparities are for depth"
@@ -124,6 +130,7 @@ impl Arguments {
                 "bundle" => Asked::Bundle(plain),
                 "features" => Asked::Features(plain),
                 "odometry" => Asked::Odometry(plain),
+                "rectify" => Asked::Rectify(plain),
                 "interrupt" => Asked::Interrupt(plain),
                 _ => Asked::Focus(plain),
             });

@@ -10,6 +10,7 @@
 //! * [`features`]: features of two pictures and their matches, on one core and on those of the table.
 //! * [`focus`]: a lens that moves, likewise. [`odometry`]: where a pair of cameras goes. [`interrupt`]: lines that an
 //!   interrupt brings.
+//! * [`rectify`]: raw lines, and depth from them, likewise.
 //! * [`results`]: the run of such a program, and what it leaves.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
 
@@ -27,6 +28,7 @@ mod log;
 mod odometry;
 mod pose;
 pub mod program;
+mod rectify;
 mod refusals;
 mod results;
 mod summary;
@@ -35,6 +37,8 @@ mod two_views_all;
 
 #[path = "../../../../examples/firmware/src/board.rs"]
 pub mod board;
+#[path = "../../../../examples/firmware/src/raw_pair.rs"]
+pub mod raw_pair;
 #[path = "../../../../examples/firmware/src/camera/scene.rs"]
 pub mod scene;
 #[path = "../../../../examples/firmware/src/sweep.rs"]
@@ -63,6 +67,7 @@ use interrupt::Interrupt;
 use odometry::Odometry;
 use pose::Pose;
 use program::{Optimised, Program};
+use rectify::Rectify;
 use serde::Serialize;
 use stereopsis::imaging::Noise;
 use stereopsis_host::output::Staging;
@@ -78,6 +83,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Asked::Focus(plain) => run_plain(&plain, focus::run, Focus::told),
         Asked::Bundle(plain) => run_plain(&plain, bundle::run, Bundle::told),
         Asked::Odometry(plain) => run_plain(&plain, odometry::run, Odometry::told),
+        Asked::Rectify(plain) => run_plain(&plain, rectify::run, Rectify::told),
         Asked::Interrupt(plain) => run_plain(&plain, interrupt::run, Interrupt::told),
         Asked::All => run_all(Readme::of_check(arguments.check)),
     }
@@ -91,6 +97,7 @@ fn run_all(readme: Readme) -> Outcome {
     features::run_all(readme)?;
     focus::run_all(readme)?;
     odometry::run_all(readme)?;
+    rectify::run_all(readme)?;
     println!("{}", interrupt::run(board::M4, Optimised::Speed)?.told());
     Ok(())
 }

@@ -1,7 +1,8 @@
 //! The options of `stereo calibrate`.
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use std::path::PathBuf;
+use stereopsis_host::calibrate::LensModel;
 use stereopsis_host::calibrate::board::Pattern;
 
 pub const EXAMPLE: &str = "Example:
@@ -27,12 +28,36 @@ pub struct CalibrateArgs {
     /// The side of a square of the board, millimetres
     #[arg(long, value_name = "MM", value_parser = square, allow_negative_numbers = true)]
     pub square_mm: f64,
+    /// What the lenses are
+    #[arg(long, value_name = "MODEL", default_value = "brown")]
+    pub lens: LensChoice,
     /// The calibration file
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
     /// Folder for the residuals, drawn
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
+}
+
+/// A model of lenses.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub enum LensChoice {
+    /// k1, k2, p1, p2, k3: most lenses
+    Brown,
+    /// k1, k2, p1, p2, k3, k4, k5, k6: wide lenses with a strong barrel, many views
+    Rational,
+    /// k1, k2, k3, k4 of the angle to the axis: lenses of more than some 100 degrees
+    Fisheye,
+}
+
+impl From<LensChoice> for LensModel {
+    fn from(choice: LensChoice) -> Self {
+        match choice {
+            LensChoice::Brown => Self::Brown,
+            LensChoice::Rational => Self::Rational,
+            LensChoice::Fisheye => Self::Fisheye,
+        }
+    }
 }
 
 fn pattern(text: &str) -> Result<Pattern, &'static str> {

@@ -6,10 +6,13 @@ use std::path::PathBuf;
 
 pub const EXAMPLE: &str = "Example:
   stereo rectify --left left.png --right right.png --calib stereo.yml --out rectified
+  stereo rectify --left left.png --right right.png --matches matches.csv --out aligned
 
 Written into the folder: left.png and right.png (grey, rows aligned), valid_left.png and valid_right.png (255 where the \
 raw image was seen, 0 elsewhere), and rectified.json (the new cameras, Q, the rows of input that the remap holds at \
-once). Cameras below each other get their columns aligned.";
+once). Cameras below each other get their columns aligned.
+
+Without a calibration matches of the command features align the rows (--matches): the same files, but rectified.json has two homographies instead of cameras, for nothing in metres is known then, and lenses are not straightened.";
 
 #[derive(Debug, Args)]
 pub struct RectifyArgs {
@@ -17,10 +20,13 @@ pub struct RectifyArgs {
     pub pair: PairArgs,
     /// Calibration of the two cameras: OpenCV's YAML or XML, Kalibr's camchain, a Middlebury or KITTI calib.txt; twice for
     /// ROS's camera_info, the left camera's and the right one's, or for OpenCV's intrinsics and extrinsics
-    #[arg(long, value_name = "FILE", required = true)]
+    #[arg(long, value_name = "FILE", required_unless_present = "matches")]
     pub calib: Vec<PathBuf>,
     #[command(flatten)]
     pub rectify: RectifyOptions,
+    /// Instead of a calibration: matches of the two images, lines of x1,y1,x2,y2 in px under that header, some of them wrong
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["calib", "alpha", "unit"])]
+    pub matches: Option<PathBuf>,
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,

@@ -7,6 +7,16 @@ pub struct Console(Option<HostFile>);
 
 /// Digits of the largest number.
 const DIGITS: usize = 20;
+/// What a one is worth in each of them.
+const POWERS: &[u64; DIGITS] = &{
+    let mut powers = [1; DIGITS];
+    let mut digit = DIGITS - 1;
+    while digit > 0 {
+        powers[digit - 1] = powers[digit] * 10;
+        digit -= 1;
+    }
+    powers
+};
 
 impl Console {
     /// The console; one that swallows everything when the host has none.
@@ -16,20 +26,18 @@ impl Console {
 
     /// A line: the name, a blank, the number.
     pub fn figure(&mut self, name: &str, number: u64) {
+        // Powers of ten are taken away: a 32-bit core's division of 64 bits is a kilobyte of flash.
         let mut digits = [b'0'; DIGITS];
         let mut rest = number;
-        let mut count = 0;
-        for digit in digits.iter_mut().rev() {
-            *digit = b'0' + (rest % 10) as u8;
-            rest /= 10;
-            count += 1;
-            if rest == 0 {
-                break;
+        for (digit, &power) in digits.iter_mut().zip(POWERS) {
+            while let Some(less) = rest.checked_sub(power) {
+                (rest, *digit) = (less, *digit + 1);
             }
         }
+        let zeros = digits.iter().take(DIGITS - 1).take_while(|&&digit| digit == b'0').count();
         self.text(name);
         self.text(" ");
-        self.bytes(digits.get(DIGITS.saturating_sub(count)..).unwrap_or_default());
+        self.bytes(digits.get(zeros..).unwrap_or_default());
         self.text("\n");
     }
 

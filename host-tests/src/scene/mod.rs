@@ -18,6 +18,7 @@ mod moving;
 pub(crate) mod random;
 mod ready;
 mod render;
+mod road;
 mod shape;
 mod texture;
 

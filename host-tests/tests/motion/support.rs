@@ -4,7 +4,7 @@ use image::GrayImage;
 use nalgebra::{Point3, Rotation3, Vector3};
 use std::convert::Infallible;
 use stereopsis::geometry::{Camera, Pose, RectifiedRig};
-use stereopsis_host::odometry::run::{Rig, Trajectory, run};
+use stereopsis_host::odometry::run::{Rig, Trajectory, VIEWS, run};
 use stereopsis_host::scene::{MovingScene, Object, Scene, Shape, Texture};
 
 /// A small picture: what is rendered counts.
@@ -56,12 +56,12 @@ pub fn frames(scene: Scene, path: Vec<Pose<f64>>) -> Vec<(GrayImage, GrayImage)>
 
 pub fn stereo(rig: RectifiedRig, frames: &[(GrayImage, GrayImage)]) -> Trajectory {
     let frames = frames.iter().map(|(left, right)| Ok::<_, Infallible>((left.clone(), Some(right.clone()))));
-    run(&Rig::Stereo(rig), frames, |_| ()).expect("a trajectory")
+    run(&Rig::Stereo(rig), frames, VIEWS, |_| ()).expect("a trajectory")
 }
 
 pub fn mono(rig: RectifiedRig, frames: &[(GrayImage, GrayImage)]) -> Trajectory {
     let frames = frames.iter().map(|(left, _)| Ok::<_, Infallible>((left.clone(), None)));
-    run(&Rig::Mono(camera(&rig)), frames, |_| ()).expect("a trajectory")
+    run(&Rig::Mono(camera(&rig)), frames, VIEWS, |_| ()).expect("a trajectory")
 }
 
 /// The angle between two poses' turns, degrees.

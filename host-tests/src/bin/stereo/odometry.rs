@@ -1,6 +1,6 @@
 //! `stereo odometry`: where a camera, or a pair, went, from what it saw.
 
-use crate::cli::Unit;
+use crate::cli::{Unit, whole};
 use crate::failure::Failure;
 use crate::place::Place;
 use crate::print;
@@ -17,7 +17,7 @@ use stereopsis_host::command_line::one_line;
 use stereopsis_host::odometry::error::{Alignment, align, ate, drift, rpe};
 use stereopsis_host::odometry::picture::svg;
 use stereopsis_host::odometry::poses;
-use stereopsis_host::odometry::run::{Rig, Trajectory, run as follow};
+use stereopsis_host::odometry::run::{MOST_VIEWS, Rig, Trajectory, VIEWS, run as follow};
 use stereopsis_host::odometry::sequence::{Sequence, SequenceError};
 use stereopsis_host::rectify::{RectifyPicturesError, rectify};
 use stereopsis_host::scene::SceneCamera;
@@ -45,6 +45,9 @@ pub struct OdometryArgs {
     /// The unit of lengths in OpenCV's files, which do not say it: m where none is given
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<Unit>,
+    /// Frames that are adjusted together, the last of them, 0 to 12; with 0 or 1 every pose stays as it was told when its frame came
+    #[arg(long, value_name = "N", default_value_t = VIEWS as u16, value_parser = window, allow_negative_numbers = true)]
+    pub window: u16,
     /// File for the poses
     #[arg(long, value_name = "poses.txt")]
     pub out: PathBuf,
@@ -54,6 +57,10 @@ pub struct OdometryArgs {
     /// True poses in the same form: errors are printed, and they are drawn
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
+}
+
+fn window(text: &str) -> Result<u16, String> {
+    whole(text, 0, MOST_VIEWS as u16)
 }
 
 /// Why a frame did not come.
@@ -84,7 +91,7 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
 
     let progress = Progress::over_frames(sequence.len());
     let frames = (0..sequence.len()).map(|i| frame(&sequence, cameras.rectification.as_ref(), i));
-    let trajectory = follow(&cameras.rig, frames, |_| progress.one_more())?;
+    let trajectory = follow(&cameras.rig, frames, args.window.into(), |_| progress.one_more())?;
     drop(progress);
 
     let unit = if sequence.is_stereo() { "m" } else { "first baselines" };

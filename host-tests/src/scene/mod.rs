@@ -20,6 +20,7 @@ mod ready;
 mod render;
 mod road;
 mod shape;
+mod simple;
 mod texture;
 
 pub use camera::SceneCamera;

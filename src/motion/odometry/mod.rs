@@ -16,6 +16,7 @@
 //! 5. `point`: what was seen makes the points surer; they move into the new camera's frame.
 //! 6. `renew`: new points where there are none, by the right picture at once, of one camera with a depth that is not known yet.
 //! 7. `begin`: of one camera, the first two views: their essential matrix, and with it the unit of length.
+//! 8. `refine`: who holds a [`Refinement`] beside it has the last views adjusted together with each new one, by what `seen` says.
 //!
 //! [`StereoOdometry`] gives metres; [`MonocularOdometry`] lengths without a unit, each an [`Unscaled`] number of first baselines.
 

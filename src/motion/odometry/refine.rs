@@ -152,11 +152,13 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize> Refi
     /// The second view becomes the frame.
     fn drop_oldest(&mut self) {
         let Some(&base) = self.poses.get(1) else { return };
-        self.poses.remove(0);
         let back = base.inverse();
-        for pose in self.poses.iter_mut() {
-            *pose = back.then(pose).orthonormal();
+        let mut poses = Vec::new();
+        let _ = poses.push(Pose::identity());
+        for pose in self.poses.iter().skip(2) {
+            let _ = poses.push(back.then(pose).orthonormal());
         }
+        self.poses = poses;
         for row in self.rows.iter_mut().filter(|row| row.seen != 0) {
             row.point = base.inverse_transform(&row.point);
             (row.seen, row.deep) = (row.seen >> 1, row.deep >> 1);
@@ -215,7 +217,9 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize> Refi
             let good =
                 |view: usize, pose: &Pose<T>, eye: u16| row.sight(view, eye).filter(|sight| near(pose, eye, sight));
             let views = || self.poses.iter().enumerate();
-            if views().filter(|&(view, pose)| good(view, pose, 0).is_some()).count() < 2 {
+            // Two sights without a disparity agree with nearly any motion, also with one of the point's own.
+            let enough = if row.deep != 0 { 2 } else { self.poses.len().min(3) };
+            if views().filter(|&(view, pose)| good(view, pose, 0).is_some()).count() < enough {
                 continue;
             }
             if self.window.add_point(row.point).is_err() {

@@ -2,7 +2,7 @@
 
 use crate::cli::{Unit, whole};
 use crate::failure::Failure;
-use crate::place::Place;
+use crate::place::{Content, Place};
 use crate::print;
 use crate::progress::Progress;
 use clap::Args;
@@ -54,6 +54,9 @@ pub struct OdometryArgs {
     /// Also draw the way, from above and from the side
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,
+    /// Also write what is known of each frame: its state, points, and how sure turn and step are, lines of CSV
+    #[arg(long, value_name = "FILE.csv")]
+    pub states: Option<PathBuf>,
     /// True poses in the same form: errors are printed, and they are drawn
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
@@ -83,10 +86,11 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
     let sequence = Sequence::open(&args.sequence)?;
     let cameras = cameras(args, &sequence)?;
     let truth = args.truth.as_deref().map(poses::read).transpose()?;
-    let place = Place::of("--out", &args.out)?;
-    let picture = args.picture.as_deref().map(|path| Place::of("--picture", path)).transpose()?;
-    if picture.as_ref().is_some_and(|picture| picture.is(&place)) {
-        return Err(Failure::new(format!("--picture: {} is the file of --out; name another", args.out.display())));
+    let (place, picture) = Place::with_picture(&args.out, args.picture.as_deref())?;
+    let states = args.states.as_deref().map(|path| Place::of("--states", path)).transpose()?;
+    if states.as_ref().is_some_and(|states| states.is(&place) || picture.as_ref().is_some_and(|p| p.is(states))) {
+        let what = args.states.as_deref().unwrap_or(Path::new("")).display().to_string();
+        return Err(Failure::new(format!("--states: {what} is the file of another option; name another")));
     }
 
     let progress = Progress::over_frames(sequence.len());
@@ -99,7 +103,11 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
         let aligned = truth.as_deref().map(|truth| beside(&trajectory, truth, sequence.is_stereo()));
         out.write_all(svg(&trajectory, aligned.as_deref(), unit).as_bytes())
     };
-    place.write_both(|out| poses::write(out, &trajectory.poses), picture.as_ref().map(|place| (place, draw)))?;
+    let mut others: Vec<(&Place, Content<'_>)> = Vec::new();
+    others.extend(picture.as_ref().map(|place| (place, Box::new(draw) as Content<'_>)));
+    let list = |out: &mut dyn io::Write| poses::write_states(out, &trajectory.steps);
+    others.extend(states.as_ref().map(|place| (place, Box::new(list) as Content<'_>)));
+    place.write_all(|out| poses::write(out, &trajectory.poses), others)?;
     print(&summary(args, &sequence, &cameras, &trajectory, truth.as_deref()))
 }
 

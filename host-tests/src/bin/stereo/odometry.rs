@@ -121,6 +121,7 @@ fn cameras(args: &OdometryArgs, sequence: &Sequence) -> Result<Cams, Failure> {
     if !sequence.is_stereo() {
         // The first camera of whatever the file describes.
         let camera = Cameras::open_first(&args.calib)?;
+        fits(path, camera.principal_point(), size)?;
         return Ok(Cams { rig: Rig::Mono(camera), rectification: None, format: "one camera of the" });
     }
     // KITTI's files have a grey and a colour pair: the pictures say which.
@@ -143,9 +144,25 @@ fn cameras(args: &OdometryArgs, sequence: &Sequence) -> Result<Cams, Failure> {
                 (found, _) => found?,
             };
             calibration.check_size(size.width, size.height)?;
+            let (cx, cy) = calibration.rig.principal_point();
+            fits(path, (cx.into(), cy.into()), size)?;
             Ok(Cams { rig: Rig::Stereo(calibration.rig), rectification: None, format: calibration.format })
         }
     }
+}
+
+/// Files of KITTI do not say for which size they are: a principal point in the outer tenth of the pictures is of another one.
+fn fits(path: &Path, (cx, cy): (f64, f64), size: ImageSize) -> Result<(), Failure> {
+    let (width, height) = (f64::from(size.width), f64::from(size.height));
+    let inside = |c: f64, length: f64| (0.1 * length..=0.9 * length).contains(&c);
+    if inside(cx, width) && inside(cy, height) {
+        return Ok(());
+    }
+    Err(Failure::new(format!(
+        "{}: its principal point ({cx:.1}, {cy:.1}) is not near the middle of the frames, which are {width} x {height} px; give the \
+         calibration of frames of this size",
+        path.display()
+    )))
 }
 
 /// A frame, its rows aligned.

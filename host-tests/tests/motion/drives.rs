@@ -44,7 +44,6 @@ fn a_short_drive() {
     // The first steps are as sure as two views of so small a picture make them.
     let [mean, worst] = [rpe_mono.direction_rad, rpe_mono.worst_direction_rad].map(f64::to_degrees);
     assert!(mean < 0.6 && worst < 1.5, "{rpe_mono:?}");
-    println!("{mean} {worst} {rpe_stereo:?} {share}");
 }
 
 #[test]

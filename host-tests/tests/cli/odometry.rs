@@ -130,7 +130,8 @@ fn states(bench: &Bench, scene: &str, one_camera: bool) -> Vec<String> {
     let state = |line: &str| {
         let words: Vec<_> = line.split(',').collect();
         assert_eq!(words.len(), 7, "{line}");
-        let known = !unknown.contains(&words[1]) && !(one_camera && words[1] == "still");
+        let no_unit = one_camera && words[1] == "still";
+        let known = !(no_unit || unknown.contains(&words[1]));
         assert_eq!(words[6].is_empty(), !known, "{line}");
         words[1].to_owned()
     };

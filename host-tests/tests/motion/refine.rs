@@ -59,7 +59,7 @@ fn seen(n: usize, noise_px: f64, in_right: bool) -> Vec<SeenPoint<f64>> {
         seen.push(SeenPoint {
             name: (i as u16, 3),
             pixel,
-            disparity_px: (in_right && (i + n) % 4 > 0).then_some(disparity),
+            disparity_px: (in_right && !(i + n).is_multiple_of(4)).then_some(disparity),
             inverse: Vector3::new(guess.x / guess.z, guess.y / guess.z, 1.0 / guess.z),
         });
     }

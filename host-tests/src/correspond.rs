@@ -123,14 +123,20 @@ fn described(
     right: &GrayImage,
 ) -> Result<Correspondences, CorrespondError> {
     let (left, right) = (features(plan, orientation, left)?, features(plan, orientation, right)?);
+    let matches = matches(plan, &left, &right)?;
+    Ok(Correspondences { left, right, matches })
+}
+
+/// Which features of two pictures are the same, a corner that was found on several levels once.
+pub fn matches(plan: &Plan, left: &[Feature], right: &[Feature]) -> Result<Vec<Match>, CorrespondError> {
     let mut matches = Box::new(heapless::Vec::<Match, MOST>::new());
     let mut matcher = Box::new(Matcher::<MOST>::new());
-    let dropped = matcher.run(&left, &right, &plan.search, matches.as_mut_view())?;
+    let dropped = matcher.run(left, right, &plan.search, matches.as_mut_view())?;
     if dropped > 0 {
         return Err(CorrespondError::Room { dropped });
     }
-    drop_repeats(&left, &right, matches.as_mut_view(), REPEATED_PX);
-    Ok(Correspondences { left, right, matches: matches.to_vec() })
+    drop_repeats(left, right, matches.as_mut_view(), REPEATED_PX);
+    Ok(matches.to_vec())
 }
 
 /// The features of a picture, those of the full one first.

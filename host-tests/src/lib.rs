@@ -16,6 +16,7 @@
 //! * [`focus`]: focus stacks, a simulated lens, and stacks through the core's map.
 //! * [`odometry`]: sequences of pictures through the core's odometry, trajectories and their errors.
 //! * [`rectify`]: raw pictures through the core's remap.
+//! * [`views`]: pictures of one camera from several places through the core's structure from motion.
 //! * [`bal`]: problems of bundle adjustment through the core.
 //! * [`twin`]: each stage again, naively, to hold the core to.
 //! * [`map`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`], [`output`], [`report`]: results as
@@ -48,3 +49,4 @@ pub mod scene;
 pub mod sparsification;
 pub mod twin;
 pub mod two_view;
+pub mod views;

@@ -16,9 +16,14 @@ pub struct ColouredPoint {
 
 /// Writes the points in their order.
 pub fn write(out: &mut dyn Write, points: &[ColouredPoint]) -> io::Result<()> {
+    write_in(out, points, "metres")
+}
+
+/// The same with a length of one that is another.
+pub fn write_in(out: &mut dyn Write, points: &[ColouredPoint], unit: &str) -> io::Result<()> {
     write!(
         out,
-        "ply\nformat binary_little_endian 1.0\ncomment metres; X right, Y down, Z forward from the left camera\n\
+        "ply\nformat binary_little_endian 1.0\ncomment {unit}; X right, Y down, Z forward from the left camera\n\
          element vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
          property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
         points.len()

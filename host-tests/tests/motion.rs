@@ -4,6 +4,8 @@
 mod degenerate;
 #[path = "motion/drives.rs"]
 mod drives;
+#[path = "motion/refine.rs"]
+mod refine;
 #[path = "motion/support.rs"]
 mod support;
 #[path = "motion/templates.rs"]

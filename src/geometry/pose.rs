@@ -112,6 +112,19 @@ impl<T: Real> Pose<T> {
         }
     }
 
+    /// What many products of rotations have drifted to, as a rotation again (Gram and Schmidt).
+    pub(crate) fn orthonormal(&self) -> Self {
+        let m = &self.rotation;
+        let x = Vector3::new(m.m11, m.m21, m.m31);
+        let x = x * (T::ONE / x.norm());
+        let y = Vector3::new(m.m12, m.m22, m.m32);
+        let y = y - x * x.dot(&y);
+        let y = y * (T::ONE / y.norm());
+        let z = x.cross(&y);
+        let rotation = Matrix3::new(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z);
+        Self { rotation, translation: self.translation }
+    }
+
     /// The angle of the rotation, radians, 0 to pi.
     pub fn angle_rad(&self) -> T {
         let r = &self.rotation;

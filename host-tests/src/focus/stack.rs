@@ -142,7 +142,7 @@ pub(crate) fn images(folder: &Path) -> io::Result<Vec<PathBuf>> {
 }
 
 /// An image in grey, as the core sees it, and in colour.
-pub(crate) fn read(path: &Path) -> Result<Frame, StackError> {
+pub fn read(path: &Path) -> Result<Frame, StackError> {
     let failed = |source| StackError::Camera { path: path.into(), source };
     let camera = MockCamera::open(path)?;
     let colours = camera.picture();

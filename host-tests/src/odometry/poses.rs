@@ -5,6 +5,7 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vect
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::Pose;
+use stereopsis::motion::odometry::{State, Step};
 
 /// Why a file is no trajectory.
 #[derive(Debug, thiserror::Error)]
@@ -36,6 +37,39 @@ pub fn write(out: &mut dyn Write, poses: &[Pose<f64>]) -> io::Result<()> {
         // A zero's sign says nothing.
         let numbers: Vec<String> = rows.map(|x| format!("{:.9e}", x + 0.0)).collect();
         writeln!(out, "{}", numbers.join(" "))?;
+    }
+    Ok(())
+}
+
+/// What a frame's state is called in files.
+pub const fn name(state: State) -> &'static str {
+    match state {
+        State::First => "first",
+        State::Waiting => "waiting",
+        State::Tracked => "tracked",
+        State::Still => "still",
+        State::Turned => "turned",
+        State::StepUnknown => "step_unknown",
+        State::Lost => "lost",
+        State::Found => "found",
+        State::Restarted => "restarted",
+        _ => "unknown",
+    }
+}
+
+/// Writes a line for each frame: its number from 0, its state, the points that are followed, found and agree, and the largest
+/// standard deviations of the turn (degrees) and of the step (the unit of the poses); nothing where nothing is known.
+pub fn write_states(out: &mut dyn Write, steps: &[Step<f64>]) -> io::Result<()> {
+    writeln!(out, "frame,state,points,found,agree,sigma_turn_deg,sigma_step")?;
+    for (frame, step) in steps.iter().enumerate() {
+        let sigma = |from: usize, by: f64| {
+            let variance = (from..from + 3).map(|i| step.covariance[(i, i)]).fold(0.0, f64::max);
+            // What is not known has a very large one.
+            if variance < 1e9 { format!("{:.3e}", variance.sqrt() * by) } else { String::new() }
+        };
+        let Step { points, found, inliers, .. } = step;
+        let (turn, shift) = (sigma(0, 1_f64.to_degrees()), sigma(3, 1.0));
+        writeln!(out, "{frame},{},{points},{found},{inliers},{turn},{shift}", name(step.state))?;
     }
     Ok(())
 }

@@ -18,7 +18,9 @@ mod moving;
 pub(crate) mod random;
 mod ready;
 mod render;
+mod road;
 mod shape;
+mod simple;
 mod texture;
 
 pub use camera::SceneCamera;

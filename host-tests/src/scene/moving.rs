@@ -13,6 +13,10 @@ pub struct MovingScene {
     noise_grey: f64,
     /// The share of the time from frame to frame that the shutter is open.
     shutter: f64,
+    /// Bodies with the poses that carry them into the scene, frame by frame.
+    movers: Vec<(Object, Vec<Pose<f64>>)>,
+    /// By how much pictures are brighter, frame by frame in turn; by nothing when there is none.
+    gains: Vec<f64>,
 }
 
 /// Moments that make up a blurred frame.
@@ -22,7 +26,14 @@ impl MovingScene {
     /// The scene seen from these poses, which carry a point of the left camera into the scene's frame: without noise, in no
     /// time.
     pub fn new(scene: Scene, path: Vec<Pose<f64>>) -> Self {
-        Self { scene: scene.with_light(Point3::new(0.0, -50.0, 0.0), 1.0), path, noise_grey: 0.0, shutter: 0.0 }
+        Self {
+            scene: scene.with_light(Point3::new(0.0, -50.0, 0.0), 1.0),
+            path,
+            noise_grey: 0.0,
+            shutter: 0.0,
+            movers: Vec::new(),
+            gains: Vec::new(),
+        }
     }
 
     /// The same with Gaussian sensor noise of a deviation in grey levels.
@@ -33,6 +44,17 @@ impl MovingScene {
     /// The same with a shutter that is open for a share of the time between frames, 0 to 1: motion blurs.
     pub fn with_shutter(self, shutter: f64) -> Self {
         Self { shutter, ..self }
+    }
+
+    /// The same with a body, given in its own frame, that moves: each frame's pose carries it into the scene.
+    pub fn with_mover(mut self, body: Object, path: Vec<Pose<f64>>) -> Self {
+        self.movers.push((body, path));
+        self
+    }
+
+    /// The same with pictures of a changing exposure: times these, one frame after the other, and again from the first.
+    pub fn with_gains(self, gains: Vec<f64>) -> Self {
+        Self { gains, ..self }
     }
 
     /// A street of so many metres with walls and boxes on both sides, driven through in steps of `step_m`, swerving and nodding:
@@ -112,31 +134,36 @@ impl MovingScene {
         let pictures: Vec<_> = (0..moments)
             .map(|moment| {
                 let time = ((moment as f64 + 0.5) / moments as f64 - 0.5) * self.shutter;
-                self.scene.seen_from(&self.pose(index, time)).with_noise(noise, seed(moment)).render()
+                let scene = self.movers.iter().fold(self.scene.clone(), |scene, (body, path)| {
+                    scene.with(body.clone().carried(&pose_at(path, index, time)))
+                });
+                scene.seen_from(&pose_at(&self.path, index, time)).with_noise(noise, seed(moment)).render()
             })
             .collect();
+        let gain = if self.gains.is_empty() { 1.0 } else { self.gains[index % self.gains.len()] };
         let side = |pick: fn(&(GrayImage, GrayImage)) -> &GrayImage| {
             let first = pick(&pictures[0]);
             GrayImage::from_fn(first.width(), first.height(), |x, y| {
                 let sum: u32 = pictures.iter().map(|pair| u32::from(pick(pair).get_pixel(x, y).0[0])).sum();
-                image::Luma([((sum + moments as u32 / 2) / moments as u32) as u8])
+                let mean = (sum + moments as u32 / 2) / moments as u32;
+                image::Luma([(f64::from(mean) * gain).round().min(255.0) as u8])
             })
         };
         (side(|pair| &pair.0), side(|pair| &pair.1))
     }
+}
 
-    /// The pose a part of the time before or after a frame.
-    fn pose(&self, index: usize, time: f64) -> Pose<f64> {
-        let here = self.path[index];
-        let at = |index: Option<usize>| index.and_then(|index| self.path.get(index));
-        let (before, after) = (at(index.checked_sub(1)), at(index.checked_add(1)));
-        // Before the first frame, and after the last, the motion is that beside it.
-        let (other, share) = match (before, after) {
-            (Some(before), _) if time < 0.0 => (before, -time),
-            (_, Some(after)) => (after, time),
-            (Some(before), None) => (before, -time),
-            (None, None) => (&here, 0.0),
-        };
-        crate::odometry::poses::between(&here, other, share)
-    }
+/// The pose a part of the time before or after a frame.
+fn pose_at(path: &[Pose<f64>], index: usize, time: f64) -> Pose<f64> {
+    let here = path[index];
+    let at = |index: Option<usize>| index.and_then(|index| path.get(index));
+    let (before, after) = (at(index.checked_sub(1)), at(index.checked_add(1)));
+    // Before the first frame, and after the last, the motion is that beside it.
+    let (other, share) = match (before, after) {
+        (Some(before), _) if time < 0.0 => (before, -time),
+        (_, Some(after)) => (after, time),
+        (Some(before), None) => (before, -time),
+        (None, None) => (&here, 0.0),
+    };
+    crate::odometry::poses::between(&here, other, share)
 }

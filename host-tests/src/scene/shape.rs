@@ -2,6 +2,7 @@
 
 use super::texture::Texture;
 use nalgebra::{Point2, Point3, Rotation3, Vector3};
+use stereopsis::geometry::Pose;
 
 /// A body in its own coordinates, metres: the origin is its middle.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,6 +137,12 @@ impl Object {
     /// The same body turned.
     pub fn turned(self, rotation: Rotation3<f64>) -> Self {
         Self { rotation, ..self }
+    }
+
+    /// The same body where a pose carries it.
+    pub fn carried(self, pose: &Pose<f64>) -> Self {
+        let turn = Rotation3::from_matrix_unchecked(*pose.rotation());
+        Self { position: pose.transform(&self.position), rotation: turn * self.rotation, ..self }
     }
 
     /// The plane through `point` at right angles to `normal`.

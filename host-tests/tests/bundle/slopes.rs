@@ -3,7 +3,8 @@
 use crate::scene::{calibrated, placed, radial, rig};
 use nalgebra::{Point3, Vector3};
 use proptest::prelude::*;
-use stereopsis::motion::bundle::View;
+use stereopsis::geometry::{Camera, Pose};
+use stereopsis::motion::bundle::{AlignedView, View};
 
 /// Central differences err by the square of the step, and by roundings over it: of pixels in thousands, a millionth or so.
 const STEP: f64 = 1e-5;
@@ -50,6 +51,13 @@ proptest! {
     }
 
     #[test]
+    fn of_a_rectified_pair((pose, point) in placed()) {
+        let view = aligned(pose);
+        holds(&view, 0, &point, [1.0; 6]);
+        holds(&view, 1, &point, [1.0; 6]);
+    }
+
+    #[test]
     fn of_a_camera_with_its_lens((pose, point) in placed()) {
         let view = radial::<f64>(1).with_pose(pose);
         holds(&view, 0, &point, [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 100.0, 1.0, 1.0]);
@@ -57,6 +65,20 @@ proptest! {
         let behind = pose.transform(&(-pose.inverse_transform(&point)));
         holds(&view, 0, &behind, [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 100.0, 1.0, 1.0]);
     }
+}
+
+fn aligned(pose: Pose<f64>) -> AlignedView<f64> {
+    AlignedView { camera: Camera::new(500.0, 500.0, 320.0, 240.0).expect("a camera"), baseline: 0.12, pose }
+}
+
+#[test]
+fn a_disparity_by_its_definition() {
+    let view = aligned(Pose::identity());
+    let point = Point3::new(0.3, -0.2, 4.0);
+    // f b / Z = 500 x 0.12 / 4, whatever the column.
+    let disparity = view.project(1, &point).expect("seen");
+    assert!((disparity.x - 15.0).abs() < 1e-12 && disparity.y == 0.0, "{disparity}");
+    assert!(view.project(1, &Point3::new(0.0, 0.0, -1.0)).is_err());
 }
 
 #[test]

@@ -7,7 +7,7 @@ use stereopsis::geometry::{Correspondence, Landmark, Pose};
 use stereopsis::motion::bundle::{CameraView, Sight, View};
 use stereopsis::motion::structure::{
     MetricStructure, PairFault, Placement, PointState, SceneMemory, StructureConfig, StructureError, StructureReport,
-    structure,
+    StructureRoom, structure,
 };
 use stereopsis_host::scene::Random;
 
@@ -169,4 +169,30 @@ fn no_views_or_sights_are_refused() {
     none.sights.clear();
     let error = found(&none, |_, _| ()).err();
     assert_eq!(error, Some(StructureError::NoPair(PairFault::TooFew)));
+}
+
+#[test]
+fn a_room_gives_what_slices_give() {
+    let seen = with_wrong(scene(views(4), 50, 1, 0.3, |_, _| true), 0.1);
+    let cameras: Vec<_> = seen.views.iter().map(|view| view.camera).collect();
+    let config = StructureConfig::new(1.5);
+    let mut room = Box::new(StructureRoom::<f64, 5, 60, 250>::new());
+    let (of_room, report) = room.find(&cameras, seen.points.len(), &seen.sights, &config).expect("a structure");
+    let pose = |n| *of_room.pose(n).expect("placed");
+    let poses: Vec<_> = (0..4).map(pose).collect();
+    let (a, b) = (usize::from(report.pair.0), usize::from(report.pair.1));
+    let metres = (seen.views[a].pose.translation() - seen.views[b].pose.translation()).norm();
+    let unit = (poses[a].translation() - poses[b].translation()).norm();
+    let of_slices = found(&seen, |metric, _| (0..4).map(|n| *metric.pose(n).expect("placed")).collect::<Vec<_>>());
+    for (one, other) in poses.iter().zip(of_slices.expect("a structure")) {
+        assert!((one.translation() * (metres / unit) - other.translation()).amax() < 1e-12);
+        assert_eq!(one.rotation(), other.rotation());
+    }
+    // What has no room says how much would do.
+    let mut small = StructureRoom::<f64, 3, 60, 250>::new();
+    assert_eq!(small.find(&cameras, 50, &seen.sights, &config).err(), Some(StructureError::Memory(4)));
+    let mut small = StructureRoom::<f64, 5, 49, 250>::new();
+    assert_eq!(small.find(&cameras, 50, &seen.sights, &config).err(), Some(StructureError::Memory(50)));
+    let mut small = StructureRoom::<f64, 5, 60, 199>::new();
+    assert_eq!(small.find(&cameras, 50, &seen.sights, &config).err(), Some(StructureError::Memory(200)));
 }

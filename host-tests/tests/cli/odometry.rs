@@ -82,6 +82,9 @@ fn what_is_wrong_is_named_and_nothing_is_left() {
     small.save(&last).expect("room");
     refused("all frames must have one size");
     fs::write(&last, &kept).expect("room");
+    // A calibration of frames twice as large.
+    bench.put("large.txt", b"P0: 240 0 199 0 0 240 99 0 0 0 1 0\nP1: 240 0 199 -96 0 240 99 0 0 0 1 0\n");
+    bench.refused(&all(&street, &bench.path("large.txt").display().to_string(), &out), "large.txt");
     bench.put("broken.txt", b"P0: 1 2 3\n");
     bench.refused(&all(&street, &bench.path("broken.txt").display().to_string(), &out), "broken.txt");
     let empty = bench.path("empty");
@@ -90,4 +93,104 @@ fn what_is_wrong_is_named_and_nothing_is_left() {
     fs::remove_dir_all(bench.path("street/left")).expect("the folder");
     refused("left");
     assert!(first.is_file() && !bench.path("new").exists());
+}
+
+/// The states of a scene that `walk` draws, as `--states` writes them, of a pair or of its left camera.
+fn states(bench: &Bench, scene: &str, one_camera: bool) -> Vec<String> {
+    let street = bench.path(scene);
+    if !street.is_dir() {
+        let to = street.display().to_string();
+        let run = stereo(["walk", "--scene", scene, "--out", &to, "--frames", "4", "--width", "200"]);
+        assert!(run.status.success(), "{}", text(&run.stderr));
+    }
+    if one_camera {
+        fs::remove_dir_all(street.join("right")).expect("the folder");
+    }
+    let [sequence, calib] = [street.clone(), street.join("calib.txt")].map(|path| path.display().to_string());
+    let [out, list] = ["found.txt", "states.csv"].map(|name| bench.path(name).display().to_string());
+    let run = stereo([
+        "odometry",
+        "--sequence",
+        &sequence,
+        "--calib",
+        &calib,
+        "--out",
+        &out,
+        "--states",
+        &list,
+        "--window",
+        "3",
+    ]);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let list = fs::read_to_string(list).expect("states");
+    let mut lines = list.lines();
+    assert_eq!(lines.next(), Some("frame,state,points,found,agree,sigma_turn_deg,sigma_step"));
+    // What is not known of a step has no deviation; nor has one camera that stands still a unit for it.
+    let unknown = ["turned", "step_unknown", "waiting", "lost", "restarted"];
+    let state = |line: &str| {
+        let words: Vec<_> = line.split(',').collect();
+        assert_eq!(words.len(), 7, "{line}");
+        let no_unit = one_camera && words[1] == "still";
+        let known = !(no_unit || unknown.contains(&words[1]));
+        assert_eq!(words[6].is_empty(), !known, "{line}");
+        words[1].to_owned()
+    };
+    let found = lines.map(state).collect();
+    if scene != "wall" {
+        assert!(poses(&bench.path("found.txt")).iter().all(|line| [3, 7, 11].iter().all(|&i| line[i].abs() < 0.02)));
+    }
+    found
+}
+
+#[test]
+fn what_cannot_be_told_is_named() {
+    let bench = Bench::new();
+    assert_eq!(states(&bench, "still", false), ["first", "still", "still", "still"]);
+    assert_eq!(states(&bench, "still", true), ["first", "still", "still", "still"]);
+    assert_eq!(states(&bench, "turn", false), ["first", "tracked", "tracked", "tracked"]);
+    assert_eq!(states(&bench, "turn", true), ["first", "turned", "turned", "turned"]);
+    assert_eq!(states(&bench, "far", false), ["first", "step_unknown", "step_unknown", "step_unknown"]);
+    assert_eq!(states(&bench, "far", true), ["first", "turned", "turned", "turned"]);
+    assert_eq!(states(&bench, "wall", false), ["first", "tracked", "tracked", "tracked"]);
+    // Two motions explain a plane: one camera waits until it is sure of one, which is the right one.
+    assert_eq!(states(&bench, "wall", true), ["first", "waiting", "tracked", "tracked"]);
+    let [x, y, z] = [3, 7, 11].map(|i| poses(&bench.path("found.txt"))[3][i]);
+    assert!((z / x - 0.4).abs() < 0.05 && (y / x).abs() < 0.05, "{x} {y} {z}");
+}
+
+#[test]
+fn views_of_a_street_stand_where_they_stood() {
+    let bench = Bench::new();
+    let street = bench.path("street").display().to_string();
+    let run = stereo(["walk", "--out", &street, "--frames", "4", "--width", "320", "--step", "1"]);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let [images, calib] = [format!("{street}/left/*.png"), format!("{street}/calib.txt")];
+    let out = bench.path("seen").display().to_string();
+    let mut arguments =
+        ["structure", "--images", &images, "--calib", &calib, "--out", &out].map(str::to_owned).to_vec();
+    let run = stereo(&arguments);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    assert!(text(&run.stdout).contains("which is not known"), "{}", text(&run.stdout));
+    arguments.extend(["--baseline".into(), "1".into()]);
+    let run = stereo(&arguments);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    assert!(text(&run.stdout).starts_with("4 of 4 views stand somewhere"), "{}", text(&run.stdout));
+    assert_eq!(names(&bench.path("seen")), ["cloud.ply", "poses.txt", "structure.json", "views.svg"]);
+    let (found, truth) = (poses(&bench.path("seen/poses.txt")), poses(&bench.path("street/poses.txt")));
+    for (found, truth) in found.iter().zip(&truth) {
+        let off = [3, 7, 11].iter().map(|&i| (found[i] - truth[i]).powi(2)).sum::<f64>().sqrt();
+        assert!(off < 0.06, "{off} m of 3 m: {found:?} {truth:?}");
+    }
+    let json = fs::read_to_string(bench.path("seen/structure.json")).expect("json");
+    assert!(json.contains("\"unit\": \"m\"") && json.contains("\"placed\""), "{json}");
+    let cloud = fs::read(bench.path("seen/cloud.ply")).expect("a cloud");
+    assert!(cloud.starts_with(b"ply\nformat binary_little_endian 1.0\ncomment m; X right"));
+    let one = format!("{street}/left/000000.png");
+    let other = bench.path("other").display().to_string();
+    bench.refused(&["structure", "--images", &one, "--calib", &calib, "--out", &other], "2 to 60 are needed");
+    // Twice the same picture.
+    fs::copy(&one, bench.path("again.png")).expect("room");
+    let again = bench.path("again.png").display().to_string();
+    bench.refused(&["structure", "--images", &one, &again, "--calib", &calib, "--out", &other], "has not moved");
+    assert!(!bench.path("other").exists());
 }

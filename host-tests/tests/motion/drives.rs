@@ -43,7 +43,7 @@ fn a_short_drive() {
     let rpe_mono = rpe(&trajectory.poses[waited + 1..], &truth[waited + 1..], 1, scale).expect("steps");
     // The first steps are as sure as two views of so small a picture make them.
     let [mean, worst] = [rpe_mono.direction_rad, rpe_mono.worst_direction_rad].map(f64::to_degrees);
-    assert!(mean < 2.0 && worst < 8.0, "{rpe_mono:?}");
+    assert!(mean < 0.6 && worst < 1.5, "{rpe_mono:?}");
 }
 
 #[test]

@@ -5,8 +5,9 @@
 //!
 //! In running order:
 //!
-//! * [`CameraView`], [`RigView`], [`RadialView`]: a calibrated camera, two of them mounted to each other, or one whose focal length and
-//!   radial distortion are refined too. `view`: how a pixel moves with the view and with the point.
+//! * [`CameraView`], [`RigView`], [`AlignedView`], [`RadialView`]: a calibrated camera, two of them mounted to each other, a
+//!   rectified pair's left one with its disparities, or one whose focal length and radial distortion are refined too. `view`: how
+//!   a pixel moves with the view and with the point.
 //! * [`Problem`] with its [`Sight`]s, and the [`Workspace`] it takes; [`Window`] is both in one `static`. `problem`: indices and sizes
 //!   are checked once.
 //! * `track`: the equations of one point. `step`: all points are taken out of the equations (Schur's complement), what is left
@@ -23,6 +24,7 @@
 #![allow(clippy::needless_range_loop, reason = "an element is named by its row and column, as in the equations")]
 
 mod adjust;
+mod aligned;
 mod covariance;
 mod envelope;
 mod gauge;
@@ -37,6 +39,7 @@ mod window;
 mod workspace;
 
 pub use adjust::{Adjustment, BundleConfig, BundleReport, Stop, adjust};
+pub use aligned::AlignedView;
 pub use covariance::{CovarianceError, Covariances};
 pub use gauge::Gauge;
 pub use loss::Loss;

@@ -2,7 +2,7 @@
 
 use super::view::{Slope, View, chained, moved};
 use crate::geometry::{Camera, Pose, ProjectionError, Real};
-use nalgebra::{Matrix3, Point2, Point3, Vector2, Vector3};
+use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 /// A calibrated camera: six numbers move, its lens does not.
 ///
@@ -28,13 +28,11 @@ pub struct RigView<T: Real> {
     pub pose: Pose<T>,
 }
 
-const fn no_pose<T: Real>() -> Pose<T> {
-    let o = T::ZERO;
-    Pose::of_parts(Matrix3::new(o, o, o, o, o, o, o, o, o), Vector3::new(o, o, o))
-}
-
 /// The pixel of a point in the camera's frame, and the derivatives of u and v by it.
-fn slope_of<T: Real>(camera: &Camera<T>, own: &Point3<T>) -> Result<(Point2<T>, [Vector3<T>; 2]), ProjectionError> {
+pub(super) fn slope_of<T: Real>(
+    camera: &Camera<T>,
+    own: &Point3<T>,
+) -> Result<(Point2<T>, [Vector3<T>; 2]), ProjectionError> {
     if !(own.z > T::ZERO) {
         return Err(ProjectionError::Behind);
     }
@@ -49,7 +47,7 @@ fn slope_of<T: Real>(camera: &Camera<T>, own: &Point3<T>) -> Result<(Point2<T>, 
 }
 
 impl<T: Real> View<T, 6> for CameraView<T> {
-    const EMPTY: Self = Self { camera: Camera::EMPTY, pose: no_pose() };
+    const EMPTY: Self = Self { camera: Camera::EMPTY, pose: Pose::NOTHING };
 
     fn pose(&self) -> &Pose<T> {
         &self.pose
@@ -84,7 +82,7 @@ impl<T: Real> RigView<T> {
 }
 
 impl<T: Real> View<T, 6> for RigView<T> {
-    const EMPTY: Self = Self { cameras: [Camera::EMPTY; 2], second: no_pose(), pose: no_pose() };
+    const EMPTY: Self = Self { cameras: [Camera::EMPTY; 2], second: Pose::NOTHING, pose: Pose::NOTHING };
 
     fn pose(&self) -> &Pose<T> {
         &self.pose

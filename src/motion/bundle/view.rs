@@ -1,7 +1,7 @@
 //! A camera at a place, as bundle adjustment sees it.
 
 use crate::geometry::{Pose, ProjectionError, Real, turn};
-use nalgebra::{Matrix3, Point2, Point3, Vector3};
+use nalgebra::{Point2, Point3, Vector3};
 
 /// A place from which points are seen, with N numbers that may move: the first three turn it, the next three move its
 /// centre, what follows is the lens's.
@@ -44,18 +44,7 @@ pub struct Slope<T: Real, const N: usize> {
 /// The pose after a step of three numbers that turn and three that move.
 pub(super) fn moved<T: Real>(pose: &Pose<T>, by: [T; 3], shift: [T; 3]) -> Pose<T> {
     let turned = pose.rotation() * turn(&Vector3::from(by));
-    Pose::of_parts(orthonormal(&turned), pose.translation() + Vector3::from(shift))
-}
-
-/// What many products of rotations have drifted to, as a rotation again (Gram and Schmidt).
-fn orthonormal<T: Real>(m: &Matrix3<T>) -> Matrix3<T> {
-    let x = Vector3::new(m.m11, m.m21, m.m31);
-    let x = x * (T::ONE / x.norm());
-    let y = Vector3::new(m.m12, m.m22, m.m32);
-    let y = y - x * x.dot(&y);
-    let y = y * (T::ONE / y.norm());
-    let z = x.cross(&y);
-    Matrix3::new(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z)
+    Pose::of_parts(turned, pose.translation() + Vector3::from(shift)).orthonormal()
 }
 
 /// The derivatives of a pixel by a step of the pose and by the point, of those by the point in the camera's frame.
@@ -72,6 +61,7 @@ pub(super) fn chained<T: Real>(slope: [Vector3<T>; 2], own: &Point3<T>, pose: &P
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Matrix3;
 
     #[test]
     fn a_turn_by_two_tangents_of_a_half() {

@@ -21,6 +21,8 @@ const THRESHOLD_PX: f64 = 1.5;
 const PARALLAX_PX: f64 = 3.0;
 /// The share that has to agree with the two views, and to be in front of both.
 const AGREE: f64 = 0.6;
+/// The most that is left of a turn's sights, squared deviations.
+const MOST_SCALE: f64 = 1.4;
 /// The share of the points that have to be left in view; below it the first view is another one.
 const LEFT: f64 = 0.4;
 /// Inverse depths that are expected, in baselines, and their deviation.
@@ -46,8 +48,9 @@ impl<T: Real, const N: usize> Odometry<T, N> {
             return self.again(rig, frame, shown);
         }
         let still = problem.solve(told, Free::Nothing);
-        let of_turn = T::count(turned.kept) >= T::count(found) * T::of(0.85);
         let scale = (turned.squares / T::count(turned.numbers.saturating_sub(3).max(1))).max(T::of(0.05));
+        // A wall that is passed moves nearly as by a turn: what is left has to be noise.
+        let of_turn = T::count(turned.kept) >= T::count(found) * T::of(0.85) && scale < T::of(MOST_SCALE);
         let step = if of_turn {
             let no_turn = (still.cost - turned.cost) / scale < T::of(21.0);
             let state = if no_turn && scale < T::of(2.0) { State::Still } else { State::Turned };

@@ -88,7 +88,7 @@ impl OdometryConfig {
     };
 
     /// For pictures of so many columns: a sixth of them as far as motion goes that is not known, a twentieth where it is, a
-    /// quarter as the largest disparity, 0.3 px of noise, 10 px from point to point, 300 samples.
+    /// quarter as the largest disparity, 0.3 px of noise, 7 px from point to point, 300 samples.
     pub const fn new(width: u16) -> Self {
         let wide = width as f32;
         Self {
@@ -96,7 +96,7 @@ impl OdometryConfig {
             near_px: wide / 20.0,
             most_disparity_px: width / 4,
             sigma_px: 0.3,
-            spacing_px: 10.0,
+            spacing_px: 7.0,
             most_samples: 300,
             seed: 0,
         }

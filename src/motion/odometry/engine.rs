@@ -125,6 +125,11 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         Ok(self.follow_on(&rig, frame))
     }
 
+    /// The rig, if there is one.
+    pub(super) fn rig(&self) -> Option<&OdometryRig<T>> {
+        self.rig.first()
+    }
+
     /// How many points are followed.
     pub fn points(&self) -> usize {
         self.tracks.iter().filter(|track| track.used).count()

@@ -39,8 +39,15 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         }
         // Where too few have a depth it is a turn at least; where too few are recognised by their descriptors, pixels may still be
         // where they are expected.
-        let pose = pose.or_else(|| self.turned(rig)).or(self.velocity.map(|_| predicted))?;
-        self.pair(rig, frame, &pose);
+        let mut pose = pose.or_else(|| self.turned(rig)).or(self.velocity.map(|_| predicted))?;
+        self.pairings.clear();
+        self.pair(rig, frame, &pose, true);
+        // What was recognised says by its pixels more exactly where the others are.
+        let solved = Problem { pairings: &self.pairings, baseline: rig.baseline() }.solve(pose, Free::All);
+        if solved.kept >= 2 * FEWEST && 2 * solved.kept >= self.pairings.len() {
+            pose = solved.pose;
+        }
+        self.pair(rig, frame, &pose, false);
         Some(pose)
     }
 
@@ -125,12 +132,12 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         (found.kept >= 2 * FEWEST && 2 * found.kept >= self.pairings.len()).then_some(found.pose)
     }
 
-    /// Finds every point by its pixels around where the pose puts it, and in the right picture.
-    fn pair(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>, pose: &Pose<T>) {
-        self.pairings.clear();
+    /// Finds points by their pixels around where the pose puts them, and in the right picture: those that were recognised, or the
+    /// others.
+    fn pair(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>, pose: &Pose<T>, recognised: bool) {
         let sigma = T::of(self.config.sigma_px.into()) / rig.focal();
         for (owner, track) in (0_u16..).zip(self.tracks.iter_mut()) {
-            if !track.used {
+            if !track.used || track.now.is_some() != recognised {
                 continue;
             }
             let recognised = track.now.take();

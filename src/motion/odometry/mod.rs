@@ -16,6 +16,7 @@
 //! 5. `point`: what was seen makes the points surer; they move into the new camera's frame.
 //! 6. `renew`: new points where there are none, by the right picture at once, of one camera with a depth that is not known yet.
 //! 7. `begin`: of one camera, the first two views: their essential matrix, and with it the unit of length.
+//! 8. `refine`: who holds a [`Refinement`] beside it has the last views adjusted together with each new one, by what `seen` says.
 //!
 //! [`StereoOdometry`] gives metres; [`MonocularOdometry`] lengths without a unit, each an [`Unscaled`] number of first baselines.
 
@@ -25,8 +26,10 @@ mod engine;
 mod follow;
 mod frame;
 mod point;
+mod refine;
 mod renew;
 mod scale;
+mod seen;
 mod solve;
 mod step;
 mod track;
@@ -36,5 +39,7 @@ mod whiten;
 pub use config::{OdometryConfig, OdometryRig, OdometryRigError};
 pub use engine::Odometry;
 pub use frame::{Frame, OdometryError};
+pub use refine::{Refinement, RefinementConfig};
 pub use scale::{MonocularOdometry, StereoOdometry, Unscaled};
+pub use seen::SeenPoint;
 pub use step::{State, Step};

@@ -117,3 +117,54 @@ pub(super) fn seen<T: Real>(baseline: T) -> Matrix3<T> {
     let (o, l) = (T::ZERO, T::ONE);
     Matrix3::new(l, o, o, o, l, o, o, o, baseline)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn near(a: f64, b: f64) {
+        assert!((a - b).abs() < 1e-7, "{a} {b}");
+    }
+
+    fn point(variances: [f64; 3]) -> InversePoint<f64> {
+        InversePoint {
+            at: Vector3::new(0.25, 0.0, 0.25),
+            covariance: Matrix3::from_diagonal(&Vector3::from(variances)),
+        }
+    }
+
+    #[test]
+    fn a_step_of_one_towards_a_point_four_ahead() {
+        // (1, 0, 4) is (1, 0, 3) from there.
+        let pose = Pose::of_parts(Matrix3::identity(), Vector3::new(0.0, 0.0, 1.0));
+        let moved = point([1e-8; 3]).moved(&pose).expect("before it");
+        near(moved.at.x, 1.0 / 3.0);
+        near(moved.at.z, 1.0 / 3.0);
+        // x' = x / (1 - r) and r' = r / (1 - r).
+        near(moved.by_point.m11, 4.0 / 3.0);
+        near(moved.by_point.m33, 16.0 / 9.0);
+        // Behind it, and too far to the side.
+        let beyond = Pose::of_parts(Matrix3::identity(), Vector3::new(0.0, 0.0, 3.9));
+        assert!(point([1e-8; 3]).moved(&beyond).is_none());
+    }
+
+    #[test]
+    fn two_that_are_as_sure_meet_in_the_middle() {
+        // The point and the sight have a variance of 4e-4: half the way, half the variance, and 4e-8 for rounding.
+        let sight = Sight { at: Vector3::new(0.27, 0.0, 0.0), in_right: false, sigma: 0.02 };
+        let point = point([4e-4, 4e-4, 1e-4]).updated(&Pose::identity(), &sight, 0.0).expect("numbers");
+        near(point.at.x, 0.26);
+        near(point.at.z, 0.25);
+        near(point.covariance.m11, 2e-4 + 4e-8);
+        near(point.covariance.m33, 1e-4 + 4e-8);
+    }
+
+    #[test]
+    fn a_disparity_tells_the_depth() {
+        // b r = 0.125 of a variance of 0.5^2 x 16e-4 = 4e-4, as the sight's: r by half of 0.01 / 0.5.
+        let sight = Sight { at: Vector3::new(0.25, 0.0, 0.135), in_right: true, sigma: 0.02 };
+        let point = point([4e-4, 4e-4, 16e-4]).updated(&Pose::identity(), &sight, 0.5).expect("numbers");
+        near(point.at.z, 0.26);
+        near(point.covariance.m33, 8e-4 + 4e-8);
+    }
+}

@@ -36,7 +36,7 @@ impl<T: Real, const N: usize> Odometry<T, N> {
             let sigma = T::of(self.config.sigma_px.into()) / rig.focal();
             let Some(track) = self.tracks.iter_mut().find(|track| !track.used) else { break };
             if let Some(fresh) = fresh(rig, frame, feature, most, usual, sigma) {
-                *track = fresh;
+                *track = Track { lives: track.lives.wrapping_add(1), ..fresh };
             }
         }
     }

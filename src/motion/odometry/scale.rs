@@ -3,6 +3,7 @@
 use super::config::{OdometryConfig, OdometryRig, OdometryRigError};
 use super::engine::Odometry;
 use super::frame::{Frame, OdometryError};
+use super::seen::SeenPoint;
 use super::step::Step;
 use crate::geometry::{Camera, Pose, Real, RectifiedRig};
 
@@ -49,6 +50,11 @@ impl<T: Real, const N: usize> StereoOdometry<T, N> {
     pub fn step(&mut self, frame: &Frame<'_>) -> Result<Step<T>, OdometryError> {
         self.0.step(frame)
     }
+
+    /// What the last frame saw, as [`Odometry::seen`]: metres.
+    pub fn seen(&self) -> impl Iterator<Item = SeenPoint<T>> {
+        self.0.seen()
+    }
 }
 
 impl<T: Real, const N: usize> MonocularOdometry<T, N> {
@@ -65,5 +71,10 @@ impl<T: Real, const N: usize> MonocularOdometry<T, N> {
     /// The next frame, as [`Odometry::step`].
     pub fn step(&mut self, frame: &Frame<'_>) -> Result<Unscaled<Step<T>>, OdometryError> {
         self.0.step(frame).map(Unscaled)
+    }
+
+    /// What the last frame saw, as [`Odometry::seen`]: first baselines.
+    pub fn seen(&self) -> impl Iterator<Item = SeenPoint<T>> {
+        self.0.seen()
     }
 }

@@ -171,3 +171,49 @@ pub(super) fn moved<T: Real>(pose: &Pose<T>, &[a, b, c, d, e, f]: &[T; 6]) -> Po
     let rotation = pose.rotation() * turn(&Vector3::new(a, b, c));
     Pose::of_parts(rotation, pose.translation() + rotation * Vector3::new(d, e, f))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Matrix3;
+
+    /// What a camera at a pose sees of points that are sure.
+    fn seen(pose: &Pose<f64>, wrong: usize) -> [Pairing<f64>; 12] {
+        core::array::from_fn(|n| {
+            let k = n as f64;
+            let at = Vector3::new(0.4 * (k * 1.3).sin(), 0.3 * (k * 2.1).cos(), 0.1 + 0.03 * k);
+            let point = InversePoint { at, covariance: Matrix3::identity() * 1e-12 };
+            let there = point.moved(pose).map_or(at, |moved| moved.at);
+            let off = if n < wrong { 0.2 } else { 0.0 };
+            let sight = Sight { at: Vector3::new(there.x + off, there.y, 0.5 * there.z), in_right: true, sigma: 1e-3 };
+            Pairing { point, sight, owner: 0 }
+        })
+    }
+
+    #[test]
+    fn the_pose_that_was_and_what_is_wrong_left_out() {
+        let truth = moved(&Pose::identity(), &[0.01, -0.02, 0.005, 0.1, -0.05, 0.3]);
+        for wrong in [0, 2] {
+            let pairings = seen(&truth, wrong);
+            let problem = Problem { pairings: &pairings, baseline: 0.5 };
+            let near = moved(&truth, &[0.002, 0.001, 0.0, 0.005, 0.0, -0.01]);
+            let solved = problem.solve(near, Free::All);
+            let off = truth.inverse().then(&solved.pose);
+            assert!(off.translation().norm() < 1e-6 && off.angle_rad() < 1e-7, "{wrong}: {off:?}");
+            assert_eq!((solved.kept, solved.numbers), (12 - wrong, 3 * (12 - wrong)));
+            // What is wrong costs w^2 / 3 each.
+            assert!((solved.cost - wrong as f64 * WIDTH * WIDTH / 3.0).abs() < 1e-6, "{}", solved.cost);
+        }
+    }
+
+    #[test]
+    fn a_turn_alone_leaves_the_step() {
+        // Within the widest reach, twelve deviations.
+        let truth = moved(&Pose::identity(), &[0.004, -0.003, 0.002, 0.0, 0.0, 0.0]);
+        let pairings = seen(&truth, 0);
+        let problem = Problem { pairings: &pairings, baseline: 0.5 };
+        let solved = problem.solve(Pose::identity(), Free::Turn);
+        assert!(truth.inverse().then(&solved.pose).angle_rad() < 1e-7);
+        assert_eq!(solved.pose.translation().norm(), 0.0);
+    }
+}

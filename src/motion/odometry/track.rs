@@ -29,6 +29,8 @@ pub(super) struct Track<T: Real> {
     /// Frames in which it disagreed with the others.
     pub wrong: u8,
     pub used: bool,
+    /// How many points had this place before.
+    pub lives: u16,
 }
 
 /// As it was.
@@ -51,6 +53,7 @@ impl<T: Real> Track<T> {
             missed: 0,
             wrong: 0,
             used: false,
+            lives: 0,
         }
     };
 

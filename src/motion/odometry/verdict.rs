@@ -32,6 +32,11 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         let problem = Problem { pairings: &self.pairings, baseline: rig.baseline() };
         let Some(start) = start else { return Verdict::Lost };
         let all = problem.solve(start, Free::All);
+        // Where much moves by itself the start may be near a pose of that; as fast as before is another one.
+        let all = match self.velocity.map(|velocity| problem.solve(self.told.then(&velocity), Free::All)) {
+            Some(other) if other.cost < all.cost => other,
+            _ => all,
+        };
         let found = self.pairings.len();
         if all.kept < FEWEST || T::count(all.kept) < T::count(found) * T::of(SHARE) {
             return Verdict::Lost;

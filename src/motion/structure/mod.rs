@@ -11,16 +11,18 @@
 //! * `grow`: of all pairs the best one, then view after view by resection
 //!   ([`robust_resection`](crate::geometry::robust_resection)), its new points by `many`, and a bundle adjustment of what there is.
 //! * `many`: a point from all that see it, some of them wrongly.
-//! * [`Structure`]: the result, without a scale. [`SceneMemory`]: what it is made in.
+//! * [`Structure`]: the result, without a scale. [`SceneMemory`]: what it is made in; [`StructureRoom`]: that in one `static`.
 
 mod config;
 mod grow;
 mod many;
 mod memory;
+mod room;
 mod scaled;
 mod start;
 
 pub use config::{PairFault, Placement, PointState, StructureConfig, StructureError};
 pub use grow::{StructureReport, structure};
 pub use memory::SceneMemory;
+pub use room::StructureRoom;
 pub use scaled::{MetricStructure, Structure};

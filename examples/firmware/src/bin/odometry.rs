@@ -8,11 +8,7 @@
 
 use heapless::Vec;
 use static_cell::ConstStaticCell;
-use stereopsis::camera::CameraError;
-use stereopsis::features::{FeatureConfigError, FeatureLineError};
-use stereopsis::geometry::RigError;
-use stereopsis::imaging::PictureError;
-use stereopsis::motion::odometry::{OdometryError, OdometryRigError, Step};
+use stereopsis::motion::odometry::Step;
 use stereopsis_firmware::choice::BOARD;
 use stereopsis_firmware::clock::Clock;
 use stereopsis_firmware::console::Console;
@@ -31,20 +27,8 @@ fn main() -> ! {
 /// Why there is no motion.
 #[derive(defmt::Format)]
 enum Failure {
-    /// The camera gave no lines.
-    Camera(CameraError<core::convert::Infallible>),
-    /// The detector cannot do what is asked.
-    Config(FeatureConfigError),
-    /// A line is not what is due.
-    Line(FeatureLineError),
-    /// The numbers are no rig.
-    Rig(RigError),
-    /// Nor one of an odometry.
-    OdometryRig(OdometryRigError),
-    /// The pixels are no picture.
-    Picture(PictureError),
-    /// The frame was not taken.
-    Odometry(OdometryError),
+    /// There is none.
+    Walk(Broken),
     /// The motion is not known, or not that of the window.
     Wrong,
     /// The host did not take the results.
@@ -53,15 +37,7 @@ enum Failure {
 
 impl From<Broken> for Failure {
     fn from(broken: Broken) -> Self {
-        match broken {
-            Broken::Camera(error) => Self::Camera(error),
-            Broken::Config(error) => Self::Config(error),
-            Broken::Line(error) => Self::Line(error),
-            Broken::Rig(error) => Self::Rig(error),
-            Broken::OdometryRig(error) => Self::OdometryRig(error),
-            Broken::Picture(error) => Self::Picture(error),
-            Broken::Odometry(error) => Self::Odometry(error),
-        }
+        Self::Walk(broken)
     }
 }
 

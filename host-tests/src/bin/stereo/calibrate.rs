@@ -163,7 +163,7 @@ fn number(path: &Path) -> Option<u64> {
 }
 
 /// The files that patterns name, in order of their names.
-fn files(option: &str, patterns: &[String]) -> Result<Vec<PathBuf>, Failure> {
+pub fn files(option: &str, patterns: &[String]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for pattern in patterns {
         // A name with brackets in it may be a file's.

@@ -14,6 +14,7 @@ use crate::focus::{self, FocusArgs};
 use crate::odometry::{self, OdometryArgs};
 use crate::record::{self, RecordArgs};
 use crate::replay::{self, ReplayArgs};
+use crate::structure::{self, StructureArgs};
 use crate::two_view::{FEATURES_EXAMPLE, FUNDAMENTAL_EXAMPLE, FeaturesArgs, FundamentalArgs, POSE_EXAMPLE, PoseArgs};
 use crate::walk::{self, WalkArgs};
 use clap::error::ErrorKind;
@@ -26,7 +27,7 @@ use stereopsis_host::run::{Method, NoiseChoice, UnknownMethod, UnknownNoise, Way
 
 /// What is told to one who names another command.
 const COMMANDS: &str = "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental, pose, bundle, \
-                        odometry, walk, record and replay";
+                        odometry, structure, walk, record and replay";
 
 const EXAMPLES: &str = "Examples:
   stereo demo --out demo-out
@@ -103,6 +104,9 @@ pub enum Command {
     /// Tell where a camera, or a pair, went: a sequence of frames into a trajectory
     #[command(after_help = odometry::EXAMPLE)]
     Odometry(OdometryArgs),
+    /// Tell where a camera stood and what it saw: pictures from several places into poses and points
+    #[command(after_help = structure::EXAMPLE)]
+    Structure(StructureArgs),
     /// Drive through a built-in street: a sequence of frames with true poses, for odometry
     #[command(after_help = walk::EXAMPLE)]
     Walk(WalkArgs),

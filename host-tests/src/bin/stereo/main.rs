@@ -25,6 +25,7 @@ mod progress;
 mod record;
 mod rectify;
 mod replay;
+mod structure;
 mod two_view;
 mod uncalibrated;
 mod walk;
@@ -62,6 +63,7 @@ fn start() -> Result<(), Failure> {
         Ok(Command::Record(args)) => record::run(&args),
         Ok(Command::Replay(args)) => replay::run(&args),
         Ok(Command::Odometry(args)) => odometry::run(&args),
+        Ok(Command::Structure(args)) => structure::run(&args),
         Ok(Command::Walk(args)) => walk::run(&args),
         Err(cli::Stop::Help(text)) => print(&text),
         Err(cli::Stop::Usage(failure)) => Err(failure),

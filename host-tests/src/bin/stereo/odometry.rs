@@ -1,8 +1,8 @@
 //! `stereo odometry`: where a camera, or a pair, went, from what it saw.
 
-use crate::cli::Unit;
+use crate::cli::{Unit, whole};
 use crate::failure::Failure;
-use crate::place::Place;
+use crate::place::{Content, Place};
 use crate::print;
 use crate::progress::Progress;
 use clap::Args;
@@ -17,7 +17,7 @@ use stereopsis_host::command_line::one_line;
 use stereopsis_host::odometry::error::{Alignment, align, ate, drift, rpe};
 use stereopsis_host::odometry::picture::svg;
 use stereopsis_host::odometry::poses;
-use stereopsis_host::odometry::run::{Rig, Trajectory, run as follow};
+use stereopsis_host::odometry::run::{MOST_VIEWS, Rig, Trajectory, VIEWS, run as follow};
 use stereopsis_host::odometry::sequence::{Sequence, SequenceError};
 use stereopsis_host::rectify::{RectifyPicturesError, rectify};
 use stereopsis_host::scene::SceneCamera;
@@ -45,15 +45,25 @@ pub struct OdometryArgs {
     /// The unit of lengths in OpenCV's files, which do not say it: m where none is given
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<Unit>,
+    /// Frames that are adjusted together, the last of them, 0 to 12; with 0 or 1 every pose stays as it was told when its frame came
+    #[arg(long, value_name = "N", default_value_t = VIEWS as u16, value_parser = window, allow_negative_numbers = true)]
+    pub window: u16,
     /// File for the poses
     #[arg(long, value_name = "poses.txt")]
     pub out: PathBuf,
     /// Also draw the way, from above and from the side
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,
+    /// Also write what is known of each frame: its state, points, and how sure turn and step are, lines of CSV
+    #[arg(long, value_name = "FILE.csv")]
+    pub states: Option<PathBuf>,
     /// True poses in the same form: errors are printed, and they are drawn
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
+}
+
+fn window(text: &str) -> Result<u16, String> {
+    whole(text, 0, MOST_VIEWS as u16)
 }
 
 /// Why a frame did not come.
@@ -76,15 +86,16 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
     let sequence = Sequence::open(&args.sequence)?;
     let cameras = cameras(args, &sequence)?;
     let truth = args.truth.as_deref().map(poses::read).transpose()?;
-    let place = Place::of("--out", &args.out)?;
-    let picture = args.picture.as_deref().map(|path| Place::of("--picture", path)).transpose()?;
-    if picture.as_ref().is_some_and(|picture| picture.is(&place)) {
-        return Err(Failure::new(format!("--picture: {} is the file of --out; name another", args.out.display())));
+    let (place, picture) = Place::with_picture(&args.out, args.picture.as_deref())?;
+    let states = args.states.as_deref().map(|path| Place::of("--states", path)).transpose()?;
+    if states.as_ref().is_some_and(|states| states.is(&place) || picture.as_ref().is_some_and(|p| p.is(states))) {
+        let what = args.states.as_deref().unwrap_or(Path::new("")).display().to_string();
+        return Err(Failure::new(format!("--states: {what} is the file of another option; name another")));
     }
 
     let progress = Progress::over_frames(sequence.len());
     let frames = (0..sequence.len()).map(|i| frame(&sequence, cameras.rectification.as_ref(), i));
-    let trajectory = follow(&cameras.rig, frames, |_| progress.one_more())?;
+    let trajectory = follow(&cameras.rig, frames, args.window.into(), |_| progress.one_more())?;
     drop(progress);
 
     let unit = if sequence.is_stereo() { "m" } else { "first baselines" };
@@ -92,7 +103,11 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
         let aligned = truth.as_deref().map(|truth| beside(&trajectory, truth, sequence.is_stereo()));
         out.write_all(svg(&trajectory, aligned.as_deref(), unit).as_bytes())
     };
-    place.write_both(|out| poses::write(out, &trajectory.poses), picture.as_ref().map(|place| (place, draw)))?;
+    let mut others: Vec<(&Place, Content<'_>)> = Vec::new();
+    others.extend(picture.as_ref().map(|place| (place, Box::new(draw) as Content<'_>)));
+    let list = |out: &mut dyn io::Write| poses::write_states(out, &trajectory.steps);
+    others.extend(states.as_ref().map(|place| (place, Box::new(list) as Content<'_>)));
+    place.write_all(|out| poses::write(out, &trajectory.poses), others)?;
     print(&summary(args, &sequence, &cameras, &trajectory, truth.as_deref()))
 }
 
@@ -106,6 +121,7 @@ fn cameras(args: &OdometryArgs, sequence: &Sequence) -> Result<Cams, Failure> {
     if !sequence.is_stereo() {
         // The first camera of whatever the file describes.
         let camera = Cameras::open_first(&args.calib)?;
+        fits(path, camera.principal_point(), size)?;
         return Ok(Cams { rig: Rig::Mono(camera), rectification: None, format: "one camera of the" });
     }
     // KITTI's files have a grey and a colour pair: the pictures say which.
@@ -128,9 +144,25 @@ fn cameras(args: &OdometryArgs, sequence: &Sequence) -> Result<Cams, Failure> {
                 (found, _) => found?,
             };
             calibration.check_size(size.width, size.height)?;
+            let (cx, cy) = calibration.rig.principal_point();
+            fits(path, (cx.into(), cy.into()), size)?;
             Ok(Cams { rig: Rig::Stereo(calibration.rig), rectification: None, format: calibration.format })
         }
     }
+}
+
+/// Files of KITTI do not say for which size they are: a principal point in the outer tenth of the pictures is of another one.
+fn fits(path: &Path, (cx, cy): (f64, f64), size: ImageSize) -> Result<(), Failure> {
+    let (width, height) = (f64::from(size.width), f64::from(size.height));
+    let inside = |c: f64, length: f64| (0.1 * length..=0.9 * length).contains(&c);
+    if inside(cx, width) && inside(cy, height) {
+        return Ok(());
+    }
+    Err(Failure::new(format!(
+        "{}: its principal point ({cx:.1}, {cy:.1}) is not near the middle of the frames, which are {width} x {height} px; give the \
+         calibration of frames of this size",
+        path.display()
+    )))
 }
 
 /// A frame, its rows aligned.

@@ -7,6 +7,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use stereopsis_host::output::Staging;
 
+/// What writes a file.
+pub type Content<'a> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a>;
+
 /// A result's folder and its name there.
 pub struct Place {
     folder: PathBuf,
@@ -52,25 +55,33 @@ impl Place {
         result: impl FnOnce(&mut dyn Write) -> io::Result<()>,
         picture: Option<(&Self, RgbImage)>,
     ) -> Result<(), Failure> {
-        self.write_both(result, picture.map(|(place, drawn)| (place, move |out: &mut dyn Write| png(out, &drawn))))
+        let drawn = |drawn: RgbImage| Box::new(move |out: &mut dyn Write| png(out, &drawn)) as Content<'_>;
+        self.write_all(result, picture.map(|(place, picture)| (place, drawn(picture))).into_iter().collect())
     }
 
-    /// Writes the result and another file. Both are complete and on the disk before either moves to its place.
-    pub fn write_both(
+    /// Writes the result and other files. All are complete and on the disk before any moves to its place.
+    pub fn write_all(
         &self,
         result: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-        second: Option<(&Self, impl FnOnce(&mut dyn Write) -> io::Result<()>)>,
+        others: Vec<(&Self, Content<'_>)>,
     ) -> Result<(), Failure> {
         let mut staging = Staging::new(&self.folder)?;
         staging.write(&self.name, |out| result(out))?;
-        let mut elsewhere = None;
-        if let Some((place, content)) = second {
-            let one_folder = place.folder == self.folder;
-            let to = if one_folder { &mut staging } else { elsewhere.insert(Staging::new(&place.folder)?) };
+        let mut elsewhere: Vec<(&Path, Staging)> = Vec::new();
+        for (place, content) in others {
+            let to = if place.folder == self.folder {
+                &mut staging
+            } else if let Some(at) = elsewhere.iter().position(|(folder, _)| *folder == place.folder) {
+                &mut elsewhere[at].1
+            } else {
+                elsewhere.push((&place.folder, Staging::new(&place.folder)?));
+                let last = elsewhere.len() - 1;
+                &mut elsewhere[last].1
+            };
             to.write(&place.name, |out| content(out))?;
         }
-        if let Some(elsewhere) = elsewhere {
-            elsewhere.commit(&[])?;
+        for (_, staging) in elsewhere {
+            staging.commit(&[])?;
         }
         Ok(staging.commit(&[])?)
     }

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::files::png;
 use crate::print;
 use crate::progress::Progress;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use stereopsis::geometry::RectifiedRig;
 use stereopsis_host::command_line::one_line;
@@ -21,18 +21,38 @@ pub const EXAMPLE: &str = "Example:
 
 Written into the folder: left/000000.png and so on, right/000000.png, calib.txt and poses.txt in KITTI's formats.";
 
-/// Metres from frame to frame.
-const STEP_M: f64 = 0.5;
+/// What is driven through.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub enum WalkScene {
+    /// Boxes and walls on both sides, 0.5 m from frame to frame
+    Street,
+    /// Bends, cars and lorries that move by themselves, 1.2 m from frame to frame
+    Road,
+    /// A room; the cameras stand still
+    Still,
+    /// The room; the cameras turn on the spot
+    Turn,
+    /// One wall, 12 cm from frame to frame
+    Wall,
+    /// All is 3 km away
+    Far,
+}
 
 #[derive(Debug, Args)]
 pub struct WalkArgs {
     /// Folder for the sequence; made when it is missing
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+    /// What is driven through
+    #[arg(long, value_name = "SCENE", default_value = "street")]
+    pub scene: WalkScene,
+    /// Metres from frame to frame on a street or road, 0.1 to 2
+    #[arg(long, value_name = "M", value_parser = step, allow_negative_numbers = true)]
+    pub step: Option<f64>,
     /// How many frames, 2 to 2000
     #[arg(long, value_name = "N", default_value_t = 12, value_parser = frames, allow_negative_numbers = true)]
     pub frames: u16,
-    /// Columns of a picture, 160 to 1280; it has half as many rows
+    /// Columns of a picture, 160 to 1280; it has half as many rows, on a road three tenths, in a room two thirds
     #[arg(long, value_name = "PX", default_value_t = 320, value_parser = width, allow_negative_numbers = true)]
     pub width: u16,
     /// Deviation of the sensors' noise, grey levels, 0 to 50
@@ -41,6 +61,18 @@ pub struct WalkArgs {
     /// Percent of the time between frames that the shutter is open, 0 to 100: motion blurs, and takes four times as long to draw
     #[arg(long, value_name = "PERCENT", default_value_t = 0, value_parser = percent, allow_negative_numbers = true)]
     pub shutter: u16,
+    /// Percent by which the pictures' brightness changes from frame to frame and back, 0 to 80
+    #[arg(long, value_name = "PERCENT", default_value_t = 0, value_parser = exposure, allow_negative_numbers = true)]
+    pub exposure: u16,
+}
+
+fn step(text: &str) -> Result<f64, &'static str> {
+    let value = text.parse().ok().filter(|value| (0.1..=2.0).contains(value));
+    value.ok_or("a number from 0.1 to 2 is needed")
+}
+
+fn exposure(text: &str) -> Result<u16, String> {
+    whole(text, 0, 80)
 }
 
 fn frames(text: &str) -> Result<u16, String> {
@@ -60,9 +92,21 @@ fn percent(text: &str) -> Result<u16, String> {
 }
 
 pub fn run(args: &WalkArgs) -> Result<(), Failure> {
-    let street = MovingScene::street(args.width, args.width / 2, args.frames.into(), STEP_M, 7)
+    let (width, frames) = (args.width, args.frames.into());
+    let street = match args.scene {
+        WalkScene::Street => MovingScene::street(width, width / 2, frames, args.step.unwrap_or(0.5), 7),
+        WalkScene::Road => MovingScene::road(width, frames, args.step.unwrap_or(1.2), 3),
+        WalkScene::Still => MovingScene::still(width, frames),
+        WalkScene::Turn => MovingScene::turning(width, frames),
+        WalkScene::Wall => MovingScene::along_wall(width, frames),
+        WalkScene::Far => MovingScene::far(width, frames),
+    };
+    // Down and up again in ten frames or so.
+    let gain = |i: u32| 1.0 - f64::from(args.exposure) / 100.0 * (0.5 - 0.5 * (f64::from(i) * 0.6).cos());
+    let street = street
         .with_noise(args.noise.into())
-        .with_shutter(f64::from(args.shutter) / 100.0);
+        .with_shutter(f64::from(args.shutter) / 100.0)
+        .with_gains((0..args.frames.into()).map(gain).collect());
     let mut top = Staging::new(&args.out)?;
     let folders = ["left", "right"].map(|side| args.out.join(side));
     let [mut left, mut right] = [Staging::new(&folders[0])?, Staging::new(&folders[1])?];

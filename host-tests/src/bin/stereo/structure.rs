@@ -1,0 +1,206 @@
+//! `stereo structure`: pictures of one camera from several places into where it stood, and points.
+
+use crate::calibrate::files;
+use crate::failure::Failure;
+use crate::files::json;
+use crate::print;
+use crate::progress::Progress;
+use clap::Args;
+use image::{GrayImage, RgbImage};
+use serde::Serialize;
+use std::path::PathBuf;
+use stereopsis::motion::structure::Placement;
+use stereopsis_host::calibration::Cameras;
+use stereopsis_host::command_line::one_line;
+use stereopsis_host::correspond::Plan;
+use stereopsis_host::focus::stack::read;
+use stereopsis_host::odometry::picture::svg_of;
+use stereopsis_host::odometry::poses;
+use stereopsis_host::output::Staging;
+use stereopsis_host::ply::{self, ColouredPoint};
+use stereopsis_host::views::{Found, Length, Links, link, solve};
+
+/// What follows the options in the command's help.
+pub const EXAMPLE: &str = "Example:
+  stereo structure --images 'statue/*.jpg' --calib camera.yml --baseline 0.25 --out statue-out
+
+The images are of one camera, in the order of their names, each with something in common with those before it. Written are \
+structure.json, poses.txt (KITTI's form: a line for each image that stands somewhere, the rows of [R | t], which carries a point \
+of that camera into the first one's), cloud.ply, and views.svg from above and from the side.
+
+Images alone do not say how large things are: without --baseline lengths are in units of the distance of the two views that it \
+began with, and the files say so.";
+
+#[derive(Debug, Args)]
+pub struct StructureArgs {
+    /// The images, a pattern or several: 2 to 60
+    #[arg(long, value_name = "GLOB", required = true, num_args = 1..)]
+    pub images: Vec<String>,
+    /// The camera's calibration: any file that other commands read; of a pair's the first camera
+    #[arg(long, value_name = "FILE", required = true)]
+    pub calib: Vec<PathBuf>,
+    /// The distance of the first two images' cameras in truth, m: gives the scale
+    #[arg(long, value_name = "M", value_parser = baseline, allow_negative_numbers = true)]
+    pub baseline: Option<f64>,
+    /// Residual up to which a sight counts as right, px, 0.1 to 20
+    #[arg(long, value_name = "PX", default_value_t = 1.5, value_parser = threshold, allow_negative_numbers = true)]
+    pub threshold: f64,
+    /// Folder for the results; made when it is missing
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+fn baseline(text: &str) -> Result<f64, &'static str> {
+    let value = text.parse().ok().filter(|value| (1e-4..=1e4).contains(value));
+    value.ok_or("a number from 0.0001 to 10000 is needed")
+}
+
+fn threshold(text: &str) -> Result<f64, &'static str> {
+    let value = text.parse().ok().filter(|value| (0.1..=20.0).contains(value));
+    value.ok_or("a number from 0.1 to 20 is needed")
+}
+
+/// Images at most: all pairs of them are tried as a beginning.
+const MOST: usize = 60;
+
+/// What is written. Names are a contract with programs that read them.
+#[derive(Serialize)]
+struct Answer {
+    /// What a length of one is.
+    unit: String,
+    views: Vec<ViewAnswer>,
+    began_with: [String; 2],
+    plane: bool,
+    points: usize,
+    sights: usize,
+    rms_px: f64,
+}
+
+#[derive(Serialize)]
+struct ViewAnswer {
+    image: String,
+    state: &'static str,
+    rotation: Option<[[f64; 3]; 3]>,
+    translation: Option<[f64; 3]>,
+}
+
+struct Images {
+    names: Vec<String>,
+    grey: Vec<GrayImage>,
+    colours: Vec<RgbImage>,
+}
+
+pub fn run(args: &StructureArgs) -> Result<(), Failure> {
+    let images = images(args)?;
+    let camera = Cameras::open_first(&args.calib)?;
+    let mut staging = Staging::new(&args.out)?;
+    let count = images.grey.len();
+    let progress = Progress::over_frames(count);
+    let plan = Plan { levels: 3, ..Plan::default() };
+    let links = link(&plan, &images.grey, || progress.one_more())?;
+    drop(progress);
+    let length = args.baseline.map(|metres| Length { views: (0, 1), metres });
+    let found = solve(&camera, count, &links, args.threshold, length)
+        .map_err(|why| Failure::new(format!("--images {}: {why}", args.images.join(" "))))?;
+    let beside = found.beside_first();
+    let unit = match (args.baseline, found.report.pair) {
+        (Some(_), _) => "m".to_owned(),
+        (None, (a, b)) => {
+            let name = |at: u16| &images.names[usize::from(at)];
+            format!("the distance of {} and {}, which is not known", name(a), name(b))
+        }
+    };
+    let answer = answer(&found, &images, &unit);
+    let standing: Vec<_> = beside.iter().flatten().copied().collect();
+    staging.write("structure.json", |out| json(out, &answer))?;
+    staging.write("poses.txt", |out| poses::write(out, &standing))?;
+    staging.write("cloud.ply", |out| ply::write_in(out, &cloud(&found, &images, &links), &unit))?;
+    let places: Vec<_> = found.known().iter().map(|(_, point)| point.coords).collect();
+    staging.write("views.svg", |out| out.write_all(svg_of(&standing, &places, &unit).as_bytes()))?;
+    staging.commit(&[])?;
+    let names = |wanted: bool| answer.views.iter().filter(move |view| (view.state == "placed") == wanted);
+    let mut text = format!(
+        "{} of {count} views stand somewhere, {} points, {} sights, {:.3} px RMS\n",
+        names(true).count(),
+        answer.points,
+        answer.sights,
+        answer.rms_px
+    );
+    for view in names(false) {
+        text += &format!("note: {} stands nowhere: {}\n", one_line(&view.image), view.state);
+    }
+    text += &format!("unit         {}\n", one_line(&unit));
+    if answer.plane {
+        text += "note: what it began with is on a plane\n";
+    }
+    print(&format!("{text}results are in {}\n", one_line(&args.out.display().to_string())))
+}
+
+fn images(args: &StructureArgs) -> Result<Images, Failure> {
+    let paths = files("--images", &args.images)?;
+    if !(2..=MOST).contains(&paths.len()) {
+        let given = args.images.join(" ");
+        return Err(Failure::new(format!("--images {given}: {} images; 2 to {MOST} are needed", paths.len())));
+    }
+    let mut images = Images { names: Vec::new(), grey: Vec::new(), colours: Vec::new() };
+    for path in &paths {
+        let frame = read(path)?;
+        let size = frame.grey.dimensions();
+        if let Some(first) = images.grey.first().map(GrayImage::dimensions).filter(|&first| first != size) {
+            return Err(Failure::new(format!(
+                "{}: is {} x {} and {} is {} x {}; all images must have one size",
+                path.display(),
+                size.0,
+                size.1,
+                paths[0].display(),
+                first.0,
+                first.1
+            )));
+        }
+        images.names.push(path.file_name().unwrap_or_default().to_string_lossy().into_owned());
+        images.grey.push(frame.grey);
+        images.colours.push(frame.colours);
+    }
+    Ok(images)
+}
+
+fn answer(found: &Found, images: &Images, unit: &str) -> Answer {
+    let view = |((name, place), pose): ((&String, &Result<_, Placement>), &Option<_>)| {
+        let pose: &Option<stereopsis::geometry::Pose<f64>> = pose;
+        ViewAnswer {
+            image: name.clone(),
+            state: match place {
+                Ok(_) => "placed",
+                Err(Placement::TooFew) => "too few points in common with the others",
+                Err(Placement::NoAgreement) => "what it sees agrees on no pose",
+                Err(_) => "unknown",
+            },
+            rotation: pose.map(|pose| crate::fundamental::rows(pose.rotation())),
+            translation: pose.map(|pose| (*pose.translation()).into()),
+        }
+    };
+    let beside = found.beside_first();
+    let (a, b) = found.report.pair;
+    let name = |at: u16| images.names[usize::from(at)].clone();
+    Answer {
+        unit: unit.to_owned(),
+        views: images.names.iter().zip(&found.poses).zip(&beside).map(view).collect(),
+        began_with: [name(a), name(b)],
+        plane: found.report.plane,
+        points: found.report.points,
+        sights: found.report.sights,
+        rms_px: found.rms_px,
+    }
+}
+
+/// The points with the colour of the first picture that shows them.
+fn cloud(found: &Found, images: &Images, links: &Links) -> Vec<ColouredPoint> {
+    let coloured = found.known().into_iter().filter_map(|(number, point)| {
+        let at = links.sights.partition_point(|sight| sight.point < number);
+        let sight = links.sights.get(at)?;
+        let colours = &images.colours[usize::from(sight.view)];
+        let colour = colours.get_pixel_checked(sight.pixel.x.round() as u32, sight.pixel.y.round() as u32)?;
+        Some(ColouredPoint { position_m: [point.x, point.y, point.z].map(|x| x as f32), colour: colour.0 })
+    });
+    coloured.collect()
+}

@@ -30,8 +30,11 @@ impl Console {
         let mut digits = [b'0'; DIGITS];
         let mut rest = number;
         for (digit, &power) in digits.iter_mut().zip(POWERS) {
-            while let Some(less) = rest.checked_sub(power) {
-                (rest, *digit) = (less, *digit + 1);
+            // No more than nine times: of a loop without an end the compiler makes a division again.
+            for _ in 0..9 {
+                if rest >= power {
+                    (rest, *digit) = (rest - power, *digit + 1);
+                }
             }
         }
         let zeros = digits.iter().take(DIGITS - 1).take_while(|&&digit| digit == b'0').count();

@@ -163,7 +163,7 @@ fn rectification<E>(cameras: [Camera<f32>; 2], to_second: Vector3<f32>) -> Resul
     Rectification::new(&rig, Crop::Natural, SIZE).map_err(Broken::Rectify)
 }
 
-/// Cameras that see the built-in scene, the right one all of it [`LOWER`] rows lower than the left one.
+/// Cameras that see the built-in scene, the right one all of it some rows lower than the left one.
 pub struct Lowered {
     left: SceneCamera,
     right: SceneCamera,

@@ -23,8 +23,10 @@ cpufeatures::new!(
 
 /// Whether the processor counts leading zeros; `cpufeatures` does not know that one.
 fn counts_zeros() -> bool {
-    // Every processor of 64 bits has this leaf.
-    __cpuid(0x8000_0001).ecx & 1 << 5 != 0
+    // SAFETY: every processor of 64 bits has the instruction and this leaf. Newer compilers know the first.
+    #[allow(unused_unsafe)]
+    let leaf = unsafe { __cpuid(0x8000_0001) };
+    leaf.ecx & 1 << 5 != 0
 }
 
 /// Proof that the processor has AVX2: only [`Avx2::detect`] makes one.

@@ -6,8 +6,6 @@
 /// `rows` are the rows above, here and below; those numbers are written for which all of them have a pixel and
 /// both places. A line ends where
 /// the shortest of them does, and columns outside it are the nearest inside.
-// Where a kernel calls it, it is compiled for the kernel's instructions.
-#[cfg_attr(target_pointer_width = "64", inline(always))]
 pub fn gradients(rows: &[&[u8]; 3], most: u8, along: &mut [u8], across: &mut [u8]) {
     let most = i16::from(most.min(127));
     let width = rows.iter().fold(usize::MAX, |w, row| w.min(row.len()));

@@ -23,7 +23,8 @@ cpufeatures::new!(
 
 /// Whether the processor counts leading zeros; `cpufeatures` does not know that one.
 fn counts_zeros() -> bool {
-    // SAFETY: every processor of 64 bits has the instruction and this leaf. Newer compilers know the first.
+    // SAFETY: every processor of 64 bits has the instruction and this leaf. To compilers later than the oldest that is supported the
+    // call is safe without it.
     #[allow(unused_unsafe)]
     let leaf = unsafe { __cpuid(0x8000_0001) };
     leaf.ecx & 1 << 5 != 0

@@ -56,6 +56,8 @@ pub fn census_ring8(rows: &[&[u8]; 5], out: &mut [u8]) {
 }
 
 /// Eight bits a pixel: corners and edge centres of 9x5 pixels, and along the line at distance 2. As [`census_plus4`].
+// Where there are vectors it is compiled with the kernel's instructions.
+#[cfg_attr(target_pointer_width = "64", inline(always))]
 pub fn census_wide8(rows: &[&[u8]; 5], out: &mut [u8]) {
     census::<_, 8, WIDE>(rows, &WIDE8, out);
 }

@@ -6,6 +6,8 @@
 /// `rows` are the rows above, here and below; those numbers are written for which all of them have a pixel and
 /// both places. A line ends where
 /// the shortest of them does, and columns outside it are the nearest inside.
+// Where there are vectors it is compiled with the kernel's instructions.
+#[cfg_attr(target_pointer_width = "64", inline(always))]
 pub fn gradients(rows: &[&[u8]; 3], most: u8, along: &mut [u8], across: &mut [u8]) {
     let most = i16::from(most.min(127));
     let width = rows.iter().fold(usize::MAX, |w, row| w.min(row.len()));
@@ -44,17 +46,24 @@ const AROUND: usize = LANES + 2;
 #[inline(always)]
 fn group<const N: usize, const M: usize>(around: [&[u8; M]; 3], most: i16) -> ([u8; N], [u8; N]) {
     const { assert!(M == N + 2) };
-    let (mut sums, mut differences) = ([0i16; M], [0i16; M]);
-    for i in 0..M {
-        let [above, here, below] = around.map(|row| i16::from(row[i]));
-        sums[i] = above + 2 * here + below;
-        differences[i] = below - above;
-    }
     let (mut along, mut across) = ([0; N], [0; N]);
     let cut = |gradient: i16| (gradient.clamp(-most, most) + most) as u8;
+    // Each from the pixels: sums kept for the next column would be vectors in memory, read across two of them.
+    let at = |row: usize, off: usize| {
+        let pixels = around.get(row).and_then(|row| row.get(off..)).and_then(|row| row.first_chunk::<N>());
+        pixels.copied().unwrap_or([0; N])
+    };
+    let (above, above_1, above_2) = (at(0, 0), at(0, 1), at(0, 2));
+    let (here, here_2) = (at(1, 0), at(1, 2));
+    let (below, below_1, below_2) = (at(2, 0), at(2, 1), at(2, 2));
+    let difference = |a: u8, b: u8| i16::from(a) - i16::from(b);
     for i in 0..N {
-        along[i] = cut(sums[i + 2] - sums[i]);
-        across[i] = cut(differences[i] + 2 * differences[i + 1] + differences[i + 2]);
+        let sides =
+            [difference(above_2[i], above[i]), difference(here_2[i], here[i]), difference(below_2[i], below[i])];
+        along[i] = cut(sides[0] + 2 * sides[1] + sides[2]);
+        let down =
+            [difference(below[i], above[i]), difference(below_1[i], above_1[i]), difference(below_2[i], above_2[i])];
+        across[i] = cut(down[0] + 2 * down[1] + down[2]);
     }
     (along, across)
 }

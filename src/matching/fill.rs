@@ -14,25 +14,35 @@ use crate::units::{Disparity, PixelFlags};
 /// Fills the gaps of up to `most` pixels whose sides differ by up to `step`.
 #[inline(never)]
 pub(super) fn fill(answers: &mut [Disparity], flags: &mut [PixelFlags], most: u8, step: Disparity) {
-    let mut right = ToRight { left: u32::from(Disparity::NONE.raw()), length: 0, most: u32::from(most) };
-    let mut left = ToLeft { right: 0, refused: u32::MAX, step: u32::from(step.raw()) };
     // On small cores the work is the same for every picture. Larger processors see at one look that a group has no gap.
     if cfg!(target_pointer_width = "64") {
-        for (answers, flags) in answers.chunks_mut(GROUP).zip(flags.chunks_mut(GROUP)) {
-            match answers.last() {
-                Some(last) if is_whole(answers) => (right.left, right.length) = (u32::from(last.raw()), 0),
-                _ => right.through(answers, flags),
-            }
-        }
-        for (answers, flags) in answers.chunks_mut(GROUP).zip(flags.chunks_mut(GROUP)).rev() {
-            match answers.first() {
-                Some(first) if is_unfilled(flags) => (left.right, left.refused) = (u32::from(first.raw()), 0),
-                _ => left.through(answers, flags),
-            }
-        }
+        gaps(answers, flags, most, step);
     } else {
+        let mut right = ToRight { left: u32::from(Disparity::NONE.raw()), length: 0, most: u32::from(most) };
+        let mut left = ToLeft { right: 0, refused: u32::MAX, step: u32::from(step.raw()) };
         right.through(answers, flags);
         left.through(answers, flags);
+    }
+}
+
+/// Gap by gap.
+fn gaps(answers: &mut [Disparity], flags: &mut [PixelFlags], most: u8, step: Disparity) {
+    let mut end = 0;
+    while let Some(rest) = answers.get(end..) {
+        let whole = GROUP * rest.chunks(GROUP).take_while(|group| is_whole(group)).count();
+        let Some(more) = rest.iter().skip(whole).position(|answer| answer.is_none()) else { return };
+        let Some(length) = rest.iter().skip(whole + more).position(|answer| !answer.is_none()) else { return };
+        let begin = end + whole + more;
+        end = begin + length;
+        let sides = (begin.checked_sub(1).and_then(|left| answers.get(left)), answers.get(end));
+        let (Some(&left), Some(&right)) = sides else { continue };
+        if length > usize::from(most) || left.raw().abs_diff(right.raw()) > step.raw() {
+            continue;
+        }
+        if let (Some(gap), Some(flags)) = (answers.get_mut(begin..end), flags.get_mut(begin..end)) {
+            gap.fill(if left.raw() < right.raw() { left } else { right });
+            flags.iter_mut().for_each(|flags| *flags = flags.union(PixelFlags::FILLED));
+        }
     }
 }
 
@@ -88,12 +98,6 @@ const GROUP: usize = 16;
 #[inline(always)]
 fn is_whole(answers: &[Disparity]) -> bool {
     answers.iter().fold(0, |most, answer| most.max(answer.raw())) < Disparity::NONE.raw()
-}
-
-/// Whether nothing is filled in a group.
-#[inline(always)]
-fn is_unfilled(flags: &[PixelFlags]) -> bool {
-    flags.iter().fold(0, |any, flags| any | flags.bits()) & PixelFlags::FILLED.bits() == 0
 }
 
 /// Takes out what was filled: no answer again. The flags stay as they are.

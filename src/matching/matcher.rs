@@ -2,6 +2,8 @@
 
 use super::kernels::{Kernel, STEP};
 use super::mask;
+#[cfg(target_pointer_width = "64")]
+use super::memory::before_line;
 use super::memory::{AfterRow, Bytes, Memory, Parts, first};
 use super::row::{HISTORY, Row};
 use super::scheme::{Around, Scheme};
@@ -36,6 +38,9 @@ pub struct Matcher<S: Scheme, const W: usize, const D: usize> {
     /// The kernel of the next frame, once one is chosen.
     next_kernel: Kernel,
     kernel_chosen: bool,
+    /// Where a frame's columns begin in their room, the same from line to line wherever the matcher is moved to.
+    #[cfg(target_pointer_width = "64")]
+    columns_begin: u8,
     /// Lines taken, counting on below the image.
     taken: usize,
 }
@@ -112,6 +117,8 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             kernel: Kernel::FIRST,
             next_kernel: Kernel::FIRST,
             kernel_chosen: false,
+            #[cfg(target_pointer_width = "64")]
+            columns_begin: 0,
             taken: 0,
         }
     }
@@ -149,6 +156,12 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     pub fn begin_frame(&mut self) {
         self.taken = 0;
         self.kernel = self.next_kernel;
+        #[cfg(target_pointer_width = "64")]
+        {
+            let (width, stride) = self.size();
+            let columns = self.memory.parts(width).columns;
+            self.columns_begin = before_line(columns, S::Memory::<W, D>::column_bytes(width, stride));
+        }
         self.stages().begin();
     }
 
@@ -226,11 +239,19 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
         Ok(())
     }
 
+    /// The width of a frame, and how many candidates of a column the kernel works on.
+    fn size(&self) -> (usize, usize) {
+        let disparities = usize::from(self.config.disparities);
+        (usize::from(self.config.width).min(W), self.kernel.candidates(disparities, D))
+    }
+
     /// The memory as slices of the frame's real size: what follows is compiled once for each scheme.
     fn stages(&mut self) -> Stages<'_, S> {
-        let width = usize::from(self.config.width).min(W);
-        let stride = self.kernel.candidates(usize::from(self.config.disparities), D);
-        let Parts { codes, columns, winners, right, lengths, scratch } = self.memory.parts(width, stride);
+        let (width, stride) = self.size();
+        let Parts { codes, columns, winners, right, lengths, scratch } = self.memory.parts(width);
+        #[cfg(target_pointer_width = "64")]
+        let columns = columns.get_mut(usize::from(self.columns_begin)..).unwrap_or_default();
+        let columns = first(columns, S::Memory::<W, D>::column_bytes(width, stride));
         Stages {
             scheme: PhantomData,
             width,

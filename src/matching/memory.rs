@@ -13,8 +13,10 @@ pub struct Bytes {
 /// The memory of a method, all zero when it is [`Memory::EMPTY`].
 pub trait Memory {
     const EMPTY: Self;
-    /// All of it, cut to a frame's width and candidates.
-    fn parts(&mut self, width: usize, stride: usize) -> Parts<'_>;
+    /// All of it, cut to a frame's width, but for the columns.
+    fn parts(&mut self, width: usize) -> Parts<'_>;
+    /// Bytes of the columns that a frame of this width and so many candidates takes.
+    fn column_bytes(width: usize, stride: usize) -> usize;
     /// What stands where the winners of a row stood, a byte for each of its pixels, until the next row.
     fn after_winners(&self, width: usize) -> &[u8];
     /// The same to change, and what nothing needs until the next row.
@@ -33,7 +35,7 @@ pub struct AfterRow<'a> {
 pub struct Parts<'a> {
     /// What the rows that are still wanted look like.
     pub codes: &'a mut [u8],
-    /// What is summed for every candidate of every column, where a word may stand.
+    /// Room for what is summed for every candidate of every column, where a word may stand.
     pub columns: &'a mut [u8],
     /// Of each column its winner, what the right one keeps, and how long its surface is along the row; empty where these
     /// share the `scratch`.
@@ -77,15 +79,19 @@ impl<const CODES: usize, const ROWS: usize, const TABLES: usize, const W: usize,
         lengths: [0; W],
     };
 
-    fn parts(&mut self, width: usize, stride: usize) -> Parts<'_> {
+    fn parts(&mut self, width: usize) -> Parts<'_> {
         Parts {
             codes: first(self.codes.0.as_flattened_mut().as_flattened_mut(), CODES * width * ROWS),
-            columns: first(self.columns.flat(), (width + 2 * OUTSIDE) * stride),
+            columns: self.columns.flat(),
             winners: first(&mut self.winners, width),
             right: first(&mut self.right, width),
             lengths: first(&mut self.lengths, width),
             scratch: self.scratch.words(),
         }
+    }
+
+    fn column_bytes(width: usize, stride: usize) -> usize {
+        (width + 2 * OUTSIDE) * stride
     }
 
     fn after_winners(&self, width: usize) -> &[u8] {
@@ -97,6 +103,15 @@ impl<const CODES: usize, const ROWS: usize, const TABLES: usize, const W: usize,
         let (left, right) = masks.split_at_mut_checked(width).unwrap_or_default();
         AfterRow { confidences: first(bytes_of(&mut self.winners), width), masks: [left, right] }
     }
+}
+
+/// How many bytes before the first line of the cache in a room where `count` bytes still have their place: vectors as long as a
+/// line are then read and written at once. Where processors have no such vectors, and where there is no place, none.
+#[cfg(target_pointer_width = "64")]
+pub fn before_line(room: &[u8], count: usize) -> u8 {
+    const LINE: usize = 64;
+    let before = room.as_ptr().align_offset(LINE);
+    if before < LINE && before + count <= room.len() { before as u8 } else { 0 }
 }
 
 /// The first `count` of a slice.

@@ -147,15 +147,19 @@ impl<const GUIDES: usize, const VOLUMES: usize, const W: usize, const D: usize> 
 {
     const EMPTY: Self = Self { guides: [[0; W]; GUIDES], volumes: Volumes::ZERO, room: Room::ZERO };
 
-    fn parts(&mut self, width: usize, stride: usize) -> Parts<'_> {
+    fn parts(&mut self, width: usize) -> Parts<'_> {
         Parts {
             codes: first(self.guides.as_flattened_mut(), GUIDES * width),
-            columns: first(self.volumes.flat(), (VOLUMES * width + COLUMNS_OFF) * stride),
+            columns: self.volumes.flat(),
             winners: &mut [],
             right: &mut [],
             lengths: &mut [],
             scratch: self.room.words(),
         }
+    }
+
+    fn column_bytes(width: usize, stride: usize) -> usize {
+        (VOLUMES * width + COLUMNS_OFF) * stride
     }
 
     // The winners are the first in the room.

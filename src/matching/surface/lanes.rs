@@ -81,22 +81,33 @@ fn averaged<const RADIUS: usize>(around: &[u16; LANES + ROOM], step: Disparity, 
     out
 }
 
-/// For every answer how many its surface has.
-#[inline(never)]
+/// For every answer how many its surface has: surface by surface.
+#[inline(always)]
 fn count(answers: &[u16], lengths: &mut [u16], step: Disparity) {
-    let Some((&(mut before), _)) = answers.split_first() else { return };
-    let mut length = 0u16;
-    for (&here, out) in answers.iter().zip(lengths.iter_mut()) {
-        let joined = of_one(here, before, step);
-        length = (length & 0u16.wrapping_sub(u16::from(joined))) + 1;
-        before = here;
-        *out = length;
+    let (mut begin, mut rest) = (0, lengths);
+    let mut end_at = |x: usize| {
+        let (surface, after) = core::mem::take(&mut rest).split_at_mut_checked(x - begin).unwrap_or_default();
+        surface.fill(surface.len() as u16);
+        (begin, rest) = (x, after);
+    };
+    // Of a group and the answer before it: which are not of one surface with the one before.
+    let pairs = answers.windows(LANES + 1).step_by(LANES);
+    for (x, group) in (1..).step_by(LANES).zip(pairs) {
+        let Some((before, here)) = group.first_chunk::<LANES>().zip(group.last_chunk::<LANES>()) else { break };
+        let mut ends = 0;
+        for i in 0..LANES {
+            ends |= u32::from(!of_one(here[i], before[i], step)) << i;
+        }
+        while ends != 0 {
+            end_at(x + ends.trailing_zeros() as usize);
+            ends &= ends - 1;
+        }
     }
-    // The first of the next surface has the length 1.
-    let (mut whole, mut next) = (0, 1);
-    for length in lengths.iter_mut().rev() {
-        whole = if next > 1 { whole } else { *length };
-        next = *length;
-        *length = whole;
+    let grouped = answers.len().saturating_sub(1) / LANES * LANES;
+    for (x, pair) in (grouped + 1..).zip(answers.get(grouped..).unwrap_or(&[]).windows(2)) {
+        if !of_one(pair[1], pair[0], step) {
+            end_at(x);
+        }
     }
+    end_at(answers.len());
 }

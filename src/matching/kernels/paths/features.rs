@@ -44,13 +44,11 @@ pub(super) fn of<'a, S: Along>(
     room: &'a mut [u8],
 ) -> Option<Features<'a>> {
     let width = work.width;
-    let looks = |lines: &Around<'_>, looks: [&mut [u8]; 3]| {
-        looks_of(lines, work.penalties.gradient, work.gradient_shift, looks)
-    };
+    let (most, shift) = (work.penalties.gradient, work.gradient_shift);
     let [left, right] = lines.map(|lines| lines.map(|line| line.get(..width).unwrap_or(&[])));
     let (of_left, of_right) = room.split_at_mut_checked(3 * width)?;
     let [along, across, census] = rows(of_left, width);
-    looks(&left, [&mut *along, &mut *across, &mut *census]);
+    looks_of(&left, most, shift, [&mut *along, &mut *across, &mut *census]);
     let of_left = Looks { along, across, census, brightness: left[2] };
 
     // One more than is compared, for the numbers halfway to the last.
@@ -58,11 +56,13 @@ pub(super) fn of<'a, S: Along>(
     let of_right = of_right.get_mut(..6 * count)?;
     let [along, across, census, brightness, least, greatest]: [_; 6] = rows(of_right, count);
     let outside = count.min(work.stride - 1 + work.min_disparity);
-    looks(&right, [&mut *along, &mut *across, &mut *census].map(|row| row.get_mut(outside..).unwrap_or_default()));
+    let inside = [&mut *along, &mut *across, &mut *census].map(|row| row.get_mut(outside..).unwrap_or_default());
+    looks_of(&right, most, shift, inside);
     halve(right[2], brightness.get_mut(outside..).unwrap_or_default());
     // The first column on its own, with the next one: the row may begin behind it.
     let mut first = [[0; 2]; 3];
-    looks(&right, first.each_mut().map(|first| first.get_mut(..width.min(2)).unwrap_or_default()));
+    let places = first.each_mut().map(|first| first.get_mut(..width.min(2)).unwrap_or_default());
+    looks_of(&right, most, shift, places);
     let [first_along, first_across, first_census] = first;
     let first_brightness = [0, 1].map(|x| right[2].get(x).map_or(0, |pixel| pixel >> 1));
     for (row, [first, _]) in [

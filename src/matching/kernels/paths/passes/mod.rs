@@ -116,8 +116,9 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
     /// Goes on to a pixel that has these costs.
     #[inline(always)]
     fn step(mut self, steps: &Steps<G, CELLS, ALL>, change: &[G::Cell; 2], costs: &[G::Cell]) -> Self {
-        let least = self.cells(costs.len()).iter().fold(
-            steps.far,
+        let (&first, rest) = self.cells(costs.len()).split_first().unwrap_or((&steps.far, &[]));
+        let least = rest.iter().fold(
+            first,
             #[inline(always)]
             |least, &cell| least.min(cell),
         );

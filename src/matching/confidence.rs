@@ -19,6 +19,7 @@
 use super::config::Config;
 use super::kernels::{BESIDE, bytes_of_halves};
 use super::memory::first;
+use super::rolled::rolled;
 use crate::units::{Disparity, PixelFlags};
 
 /// The largest margin that is told apart: seven bits of the shared byte.
@@ -39,15 +40,13 @@ pub(super) fn margins<'a>(config: &Config, lengths: &'a mut [u16]) -> &'a mut [u
     if config.confidence { first(bytes_of_halves(lengths), usize::from(config.width)) } else { &mut [] }
 }
 
-// The loops below end where a slice does, by `else { return }`: loops with more than one end are not unrolled, which would take
-// three times the flash for what most firmware never asks for.
-
 /// Puts the margins of a row's answers where their flags are.
 #[inline(never)]
 pub(super) fn keep(config: &Config, margins: &[u8], answers: &[Disparity], flags: &mut [PixelFlags]) {
     // The columns before may have no candidate over two px from the winner, and so nothing to be sure by.
     let enough = usize::from(config.min_disparity) + 2 * BESIDE + 1;
     for (x, flags) in flags.iter_mut().enumerate() {
+        rolled();
         let (Some(&margin), Some(answer)) = (margins.get(x), answers.get(x)) else { return };
         let margin = if x < enough { 0 } else { margin.min(MOST_MARGIN) };
         if answer.is_some() {
@@ -70,6 +69,7 @@ pub(super) struct Around<'a> {
 #[inline(never)]
 pub(super) fn tell(around: &Around<'_>, flags: &mut [PixelFlags], confidences: &mut [u8]) {
     for (x, confidence) in confidences.iter_mut().enumerate() {
+        rolled();
         let (Some(flags), Some(here)) = (flags.get_mut(x), around.answers.get(x)) else { return };
         let shared = flags.bits();
         // Beside the row there is no answer, which says nothing.
@@ -94,6 +94,7 @@ fn apart(here: Disparity, other: Option<&Disparity>) -> u16 {
 #[inline(never)]
 pub(super) fn judge(finished: &[Disparity], flags: &[PixelFlags], confidences: &mut [u8]) {
     for (x, confidence) in confidences.iter_mut().enumerate() {
+        rolled();
         let (Some(answer), Some(flags)) = (finished.get(x), flags.get(x)) else { return };
         if answer.is_none() {
             *confidence = 0;

@@ -9,6 +9,7 @@
 //!
 //! Two passes.
 
+use super::rolled::{rolled, rolled_if_scalar};
 use crate::units::{Disparity, PixelFlags};
 
 /// Fills the gaps of up to `most` pixels whose sides differ by up to `step`.
@@ -57,6 +58,7 @@ impl ToRight {
     #[inline(always)]
     fn through(&mut self, answers: &mut [Disparity], flags: &mut [PixelFlags]) {
         for (answer, flags) in answers.iter_mut().zip(flags) {
+            rolled();
             let here = u32::from(answer.raw());
             let gap = if_none(here);
             self.length = (self.length + 1) & gap;
@@ -79,6 +81,7 @@ impl ToLeft {
     #[inline(always)]
     fn through(&mut self, answers: &mut [Disparity], flags: &mut [PixelFlags]) {
         for (answer, flags) in answers.iter_mut().zip(flags).rev() {
+            rolled();
             let here = u32::from(answer.raw());
             let gap = if_filled(*flags);
             let apart = here.abs_diff(self.right);
@@ -104,6 +107,7 @@ fn is_whole(answers: &[Disparity]) -> bool {
 #[inline(never)]
 pub(super) fn take_back(answers: &mut [Disparity], flags: &[PixelFlags]) {
     for (answer, flags) in answers.iter_mut().zip(flags) {
+        rolled_if_scalar();
         *answer = Disparity::from_raw(answer.raw() | if_filled(*flags) as u16);
     }
 }

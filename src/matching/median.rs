@@ -10,6 +10,7 @@
 //! The work is the same for every picture: numbers change places in a fixed order, and nothing is asked of them.
 
 use super::kernels::Kernel;
+use super::rolled::rolled;
 use crate::units::Disparity;
 
 /// No answer, as a number.
@@ -36,6 +37,7 @@ fn pixels([above, here, below]: [&[Disparity]; 3], out: &mut [Disparity]) {
     const OUTSIDE: [i32; 3] = [NONE as i32; 3];
     let (mut left, mut middle) = (OUTSIDE, columns.next().unwrap_or(OUTSIDE));
     for out in out {
+        rolled();
         let right = columns.next().unwrap_or(OUTSIDE);
         *out = of_columns([left, middle, right]);
         (left, middle) = (middle, right);

@@ -35,6 +35,7 @@ mod memory;
 mod paths;
 mod penalties;
 mod quiet;
+mod rolled;
 mod row;
 mod scheme;
 mod speckle;

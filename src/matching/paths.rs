@@ -250,8 +250,8 @@ impl<'a, S: Along> Stages<'a, S> {
             let kept = slot_mut(self.codes, bottom % guides::<S>(), width);
             if has_noise {
                 smooth(left, 2, kept);
-            } else {
-                kept.iter_mut().zip(left[2]).for_each(|(kept, pixel)| *kept = *pixel);
+            } else if let Some(line) = left[2].get(..kept.len()) {
+                kept.copy_from_slice(line);
             }
         }
     }

@@ -110,6 +110,8 @@ impl<'a> Row<'a> {
 }
 
 /// Row `index` of rows of `width`.
+// A stage asks for a row or two: once in flash it is smaller, and no slower to speak of.
+#[cfg_attr(all(target_pointer_width = "32", not(stereopsis_dsp)), inline(never))]
 pub(super) fn slot<T>(rows: &[T], index: usize, width: usize) -> &[T] {
     rows.get(index * width..).and_then(|r| r.get(..width)).unwrap_or(&[])
 }

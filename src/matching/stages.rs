@@ -159,6 +159,8 @@ impl<S: Scheme> Stages<'_, S> {
     }
 }
 
+/// The same, to write.
+#[cfg_attr(all(target_pointer_width = "32", not(stereopsis_dsp)), inline(never))]
 pub(super) fn slot_mut<T>(rows: &mut [T], index: usize, width: usize) -> &mut [T] {
     rows.get_mut(index * width..).and_then(|r| r.get_mut(..width)).unwrap_or_default()
 }

@@ -4,6 +4,7 @@
 //! there does texture tell disparities apart. One bit a pixel is kept, 16 rows of them in a word a column.
 
 use super::config::Checks;
+use super::rolled::{rolled, rolled_if_scalar};
 use super::scheme::Scheme;
 use crate::units::PixelFlags;
 
@@ -24,30 +25,34 @@ impl Texture<'_> {
 
     /// Moves one row on; `line` is the new row, or `None` below the image.
     pub(super) fn push<S: Scheme>(&mut self, line: Option<&[u8]>, checks: &Checks) {
-        for (word, count) in self.history.iter_mut().zip(self.counts.iter_mut()) {
-            *count -= (*word >> (2 * S::RADIUS_Y)) as u8 & 1;
-            *word <<= 1;
-        }
-        let Some(line) = line else { return };
-        let mark = |word: &mut u16, count: &mut u8, left: u8, right: u8| {
-            let textured = u8::from(left.abs_diff(right) >= checks.texture_gradient);
-            *word |= u16::from(textured);
-            *count += textured;
+        let go_on = |word: &mut u16, count: &mut u8, textured: bool| {
+            *count = *count - ((*word >> (2 * S::RADIUS_Y)) as u8 & 1) + u8::from(textured);
+            *word = *word << 1 | u16::from(textured);
         };
+        let Some(line) = line else {
+            for (word, count) in self.history.iter_mut().zip(self.counts.iter_mut()) {
+                rolled();
+                go_on(word, count, false);
+            }
+            return;
+        };
+        let gradient = checks.texture_gradient;
         let beside = line.iter().zip(line.iter().skip(2));
         let inner = self.history.iter_mut().zip(self.counts.iter_mut()).skip(1);
         for ((word, count), (&left, &right)) in inner.zip(beside) {
-            mark(word, count, left, right);
+            rolled_if_scalar();
+            go_on(word, count, left.abs_diff(right) >= gradient);
         }
         // At the two ends the pixel itself stands for the neighbour outside.
         let last = line.len().saturating_sub(1);
         let ends = [(0, 0, 1.min(last)), (last, last.saturating_sub(1), last)];
         // A line of one pixel has one end.
         for &(x, left, right) in ends.iter().take(line.len().min(2)) {
+            rolled();
             let pixels = line.get(left).zip(line.get(right));
             let place = self.history.get_mut(x).zip(self.counts.get_mut(x));
             if let (Some((&left, &right)), Some((word, count))) = (pixels, place) {
-                mark(word, count, left, right);
+                go_on(word, count, left.abs_diff(right) >= gradient);
             }
         }
     }
@@ -58,6 +63,7 @@ impl Texture<'_> {
         let column = |x: usize| self.counts.get(x).map_or(0, |&count| u16::from(count));
         let mut count: u16 = (0..S::RADIUS_X).map(column).sum();
         for (x, flags) in flags.iter_mut().enumerate() {
+            rolled();
             count += column(x + S::RADIUS_X);
             count -= column(x.wrapping_sub(S::RADIUS_X + 1));
             *flags = flags.union(PixelFlags::UNTEXTURED.when(count < pixels));

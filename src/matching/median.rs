@@ -19,7 +19,7 @@ const NONE: u16 = Disparity::NONE.raw();
 /// Makes `out` the medians of the second of three rows of its width.
 pub(super) fn median(kernel: Kernel, rows: [&[Disparity]; 3], out: &mut [Disparity]) {
     #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
-    if kernel.has_vectors() && out.len() >= lanes::LANES + 2 {
+    if kernel.has_vectors() {
         return kernel.in_vectors(
             #[inline(always)]
             || lanes::median(rows, out),
@@ -85,13 +85,15 @@ fn middle_of_nine<T: Copy>(nine: [[T; 3]; 3], order: impl Fn(T, T) -> (T, T)) ->
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 mod lanes {
     use super::{NONE, middle_of_nine, of_columns};
+    use crate::matching::rolled::rolled;
     use crate::units::Disparity;
 
     /// Pixels worked on at a time.
     pub(super) const LANES: usize = if cfg!(stereopsis_vectors) { 8 } else { 16 };
 
-    /// [`super::median`] of at least [`LANES`] pixels between two others.
-    #[inline(always)]
+    /// [`super::median`].
+    #[cfg_attr(target_pointer_width = "64", inline(always))]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
     pub(super) fn median(rows: [&[Disparity]; 3], out: &mut [Disparity]) {
         let inner = out.len().saturating_sub(2);
         // The last group is moved back to end with the inner pixels.
@@ -103,8 +105,10 @@ mod lanes {
                 group([above, here, below], out);
             }
         }
-        // The first and the last pixel.
-        for x in [0, inner + 1] {
+        // The first and the last pixel, and all of a row that is shorter than a group.
+        let grouped = if inner < LANES { 1 } else { 1 + inner };
+        for x in (0..1).chain(grouped..out.len()) {
+            rolled();
             let at = |row: &[Disparity], x: usize| i32::from(row.get(x).map_or(NONE, |d| d.raw()));
             let column = |x: usize| rows.map(|row| at(row, x));
             if let Some(out) = out.get_mut(x) {

@@ -21,14 +21,21 @@ pub(super) fn quiet<'a>(
     rows: &[usize],
     mut places: impl Iterator<Item = &'a mut [u8]>,
 ) -> [Around<'a>; 2] {
-    lines.map(|lines| {
-        let mut quiet = *lines;
-        for &row in rows {
-            if let (Some(to), Some(place)) = (quiet.get_mut(row), places.next()) {
-                smooth(lines, row, place);
-                *to = place;
-            }
+    let mut quiet = lines.map(|lines| *lines);
+    for lines in &mut quiet {
+        quiet_lines(lines, rows, &mut places);
+    }
+    quiet
+}
+
+/// Those of one image.
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+fn quiet_lines<'a>(quiet: &mut Around<'a>, rows: &[usize], places: &mut impl Iterator<Item = &'a mut [u8]>) {
+    let lines = *quiet;
+    for &row in rows {
+        if let (Some(to), Some(place)) = (quiet.get_mut(row), places.next()) {
+            smooth(&lines, row, place);
+            *to = place;
         }
-        quiet
-    })
+    }
 }

@@ -10,6 +10,7 @@ use super::dsp::{between, halve, looks, range};
 #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
 use crate::imaging::{census_wide8, gradients};
 use crate::matching::paths::Along;
+use crate::matching::rolled::rolled;
 use crate::matching::scheme::Around;
 
 /// Rows of numbers, a byte a pixel.
@@ -99,9 +100,17 @@ fn rows<const N: usize>(room: &mut [u8], length: usize) -> [&mut [u8]; N] {
 fn looks_of(lines: &Around<'_>, gradient: u8, shift: u32, [along, across, census]: [&mut [u8]; 3]) {
     looks(lines, gradient << shift, [&mut *along, &mut *across, census]);
     if shift > 0 {
-        for number in along.iter_mut().chain(across) {
-            *number >>= shift;
-        }
+        shift_down(along, shift);
+        shift_down(across, shift);
+    }
+}
+
+/// Numbers, shifted to the right.
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+fn shift_down(numbers: &mut [u8], shift: u32) {
+    for number in numbers {
+        rolled();
+        *number >>= shift;
     }
 }
 
@@ -118,6 +127,7 @@ fn looks(lines: &Around<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 
 #[inline(always)]
 fn halve(numbers: &[u8], halves: &mut [u8]) {
     for (to, from) in halves.iter_mut().zip(numbers) {
+        rolled();
         *to = from >> 1;
     }
 }
@@ -138,6 +148,7 @@ fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
     for ((least, greatest), ((&before, &here), &next)) in
         inner.zip(numbers.iter().zip(numbers.iter().skip(1)).zip(next))
     {
+        rolled();
         (*least, *greatest) = between(before, here, next);
     }
 }

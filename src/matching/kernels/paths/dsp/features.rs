@@ -5,6 +5,7 @@
 
 use super::instructions::{bits_where_less, max8, min8, uhadd8, uqsub16};
 use super::splat;
+use crate::matching::rolled::rolled;
 use crate::matching::scheme::Around;
 
 /// Columns in a word.
@@ -137,11 +138,16 @@ fn cut(a: [u32; 2], b: [u32; 2], most: u8) -> u32 {
 
 /// Half of each number.
 pub(in super::super) fn halve(numbers: &[u8], halves: &mut [u8]) {
-    for (to, from) in halves.chunks_mut(COLUMNS).zip(numbers.chunks(COLUMNS)) {
-        match (to.first_chunk_mut(), from.first_chunk()) {
-            (Some(to), Some(&from)) => *to = (u32::from_le_bytes(from) >> 1 & splat(0x7f)).to_le_bytes(),
-            _ => to.iter_mut().zip(from).for_each(|(to, from)| *to = from >> 1),
-        }
+    let count = numbers.len().min(halves.len());
+    let (groups, rest) = numbers.get(..count).unwrap_or(&[]).as_chunks::<COLUMNS>();
+    let (of_groups, of_rest) = halves.get_mut(..count).unwrap_or_default().as_chunks_mut::<COLUMNS>();
+    for (to, &from) in of_groups.iter_mut().zip(groups) {
+        rolled();
+        *to = (u32::from_le_bytes(from) >> 1 & splat(0x7f)).to_le_bytes();
+    }
+    for (to, from) in of_rest.iter_mut().zip(rest) {
+        rolled();
+        *to = from >> 1;
     }
 }
 

@@ -1,12 +1,13 @@
 //! Four bytes in a 32-bit word.
 //!
 //! The lanes have a spare bit at the top of each. It is set before a subtraction and tells then whether the lane is
-//! not smaller: masks and minima are made of that, in seven operations. (Arm's instructions on four bytes take two: see
-//! `dsp`.)
+//! not smaller: differences that end at 0 are made of that, and minima of those, in six operations. (Arm's instructions on four
+//! bytes take two: see `dsp`.)
 
 use super::group::Group;
 use crate::matching::kernels::BESIDE;
 use crate::matching::kernels::scratch::{words_mut, words_of};
+use crate::matching::rolled::rolled;
 
 /// The top bit of each lane.
 const TOP: u32 = 0x8080_8080;
@@ -17,13 +18,6 @@ const ONE: u32 = 0x0101_0101;
 #[derive(Clone, Copy)]
 #[repr(transparent)]
 pub(in crate::matching) struct Word(u32);
-
-/// All but the top bit of each lane in which `a` is not less than `b`.
-#[inline(always)]
-fn not_less(a: u32, b: u32) -> u32 {
-    let top = ((a | TOP) - b) & TOP;
-    top - (top >> 7)
-}
 
 impl Group for Word {
     const LANES: usize = 4;
@@ -84,23 +78,26 @@ impl Group for Word {
 
     #[inline(always)]
     fn minus_saturating(self, other: Self) -> Self {
-        Self(((self.0 | TOP) - other.0) & not_less(self.0, other.0))
+        let difference = (self.0 | TOP) - other.0;
+        let not_less = difference & TOP;
+        Self(difference & (not_less - (not_less >> 7)))
     }
 
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        Self(self.0 ^ (self.0 ^ other.0) & not_less(self.0, other.0))
+        self.minus(self.minus_saturating(other))
     }
 
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        Self(other.0 ^ (self.0 ^ other.0) & not_less(self.0, other.0))
+        other.plus(self.minus_saturating(other))
     }
 
     #[inline(always)]
     fn apart(self, other: Self) -> Self {
-        let least = self.min(other);
-        Self((self.0 ^ other.0 ^ least.0) - least.0)
+        // The greater less the lesser, of which only the whole is no less than 0 in each lane.
+        let more = self.minus_saturating(other);
+        other.minus(self).plus(more).plus(more)
     }
 
     #[inline(always)]
@@ -175,10 +172,12 @@ impl Group for Word {
             let mut least = [0x7fff_7fffu32; 2];
             let mut place = 0x007f_007fu32;
             for cell in cells {
+                rolled();
                 for (least, costs) in least.iter_mut().zip([(cell.0 & 0x00ff_00ff) << 7, cell.0 >> 1 & 0x7f80_7f80]) {
                     let key = costs | place;
-                    let top = ((*least | HALVES) - key) & HALVES;
-                    *least ^= (*least ^ key) & (top - (top >> 15));
+                    let difference = (*least | HALVES) - key;
+                    let not_less = difference & HALVES;
+                    *least -= difference & (not_less - (not_less >> 15));
                 }
                 place -= 0x0001_0001;
             }

@@ -19,8 +19,23 @@ type Words<const CELLS: usize, const ALL: bool> = super::passes::Groups<super::s
 #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
 type Words<const CELLS: usize, const ALL: bool> = super::dsp::Words<CELLS, ALL>;
 
-/// Calls a pass with the groups, how many of them there is room for in a column, and whether all of it is used. Words: each
-/// a function of its own, so that a firmware is linked without those for numbers of disparities that cannot be asked for.
+/// Calls a pass with words, of which there is room for so many in a column. Each is a function of its own, so that a firmware
+/// is linked without those for numbers of disparities that cannot be asked for.
+#[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
+macro_rules! in_words {
+    ($work:ident, $pass:ident, [$($more:tt)?], $($argument:expr),*) => {
+        match $work.stride {
+            0 => (),
+            // Room for as few as will do, and one more: a path's costs stand on the stack, several times.
+            ..=64 => words::$pass::<Words<17, false>, $($more)?>($work, $($argument),*),
+            ..=128 => words::$pass::<Words<33, false>, $($more)?>($work, $($argument),*),
+            _ => words::$pass::<Words<65, false>, $($more)?>($work, $($argument),*),
+        }
+    };
+}
+
+/// The same with Arm's instructions, and whether all of a column is used.
+#[cfg(any(stereopsis_dsp, stereopsis_vectors))]
 macro_rules! in_words {
     ($work:ident, $pass:ident, [$($more:tt)?], $($argument:expr),*) => {
         match $work.stride {

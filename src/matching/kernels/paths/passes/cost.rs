@@ -4,6 +4,7 @@ use super::super::features::Features;
 use super::{PathWork, stride};
 use crate::matching::kernels::groups::Group;
 use crate::matching::paths::Along;
+use crate::matching::rolled::rolled;
 
 /// Adds a row.
 #[inline(always)]
@@ -34,10 +35,12 @@ pub(super) fn enter<G: Group, S: Along, const CELLS: usize, const ALL: bool>(
         if S::BETWEEN_PIXELS {
             let ranges = groups::<G>(range.0).zip(groups::<G>(range.1));
             for (cell, (others, (least, greatest))) in column.iter_mut().zip(others.zip(ranges)) {
+                rolled();
                 rest.put::<S>(cell, along.minus_saturating(greatest).or(least.minus_saturating(along)), others);
             }
         } else {
             for (cell, (others, other)) in column.iter_mut().zip(others.zip(groups::<G>(alongs))) {
+                rolled();
                 rest.put::<S>(cell, along.apart(other), others);
             }
         }

@@ -47,6 +47,16 @@ impl<P: FnMut(usize, Found)> Judge<'_, P> {
         x: usize,
         mut total: Path<G, CELLS, ALL>,
     ) {
+        self.decide_of(x, &mut total);
+    }
+
+    /// The same, with sums that may be lost.
+    #[inline(always)]
+    pub(super) fn decide_of<G: Group, const CELLS: usize, const ALL: bool>(
+        &mut self,
+        x: usize,
+        total: &mut Path<G, CELLS, ALL>,
+    ) {
         let Self { stride, disparities, min_disparity, ref mut unique, ref mut put } = *self;
         // The first pixels have fewer candidates than there are lanes.
         let candidates = disparities.min(x + 1 - min_disparity);

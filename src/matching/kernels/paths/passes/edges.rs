@@ -3,6 +3,7 @@
 use super::super::edges::{EdgeWork, edges_at};
 use super::{PathWork, stride};
 use crate::matching::kernels::groups::Group;
+use crate::matching::rolled::rolled;
 
 /// Makes the costs of the row of those that stand in their place before: of the pixels two rows below, or of no meaning
 /// where that is outside of the image.
@@ -19,6 +20,7 @@ pub(super) fn within_edges<G: Group, const CELLS: usize, const ALL: bool>(
     for (x, (costs, (above, below))) in columns.enumerate() {
         let [at_next, at_last] = edges_at(&edges.guides, x, much).map(Choice::<G>::new);
         for (cost, (above, below)) in costs.iter_mut().zip(above.iter_mut().zip(below)) {
+            rolled();
             let (row, one, two) = (G::of(*above), G::of(*below), G::of(*cost));
             let both = one.average_up(at_last.of(one, two));
             *cost = row.average_up(at_next.of(row, both)).cell();

@@ -1,12 +1,13 @@
 //! The passes, written once for groups of bytes whose lanes run over the disparities of one pixel.
 //!
-//! * `cost`, `edges`, `select`: the passes; `gather` and `decide`: the two ends of the last one.
+//! * `cost`, `edges`, `select`: the passes; `gather` and `decide`: the two ends of the last one; `turns`: the same for words.
 
 mod cost;
 mod decide;
 mod edges;
 mod gather;
 mod select;
+mod turns;
 
 use super::features::Features;
 use super::{COLUMNS_OFF, EdgeWork, Guide, Passes, PathWork};
@@ -36,7 +37,11 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Passes for Groups<G, CELLS, 
 
     #[inline(always)]
     fn select(work: &mut PathWork<'_>, guide: Guide<'_>, unique: Unique<'_>, put: impl FnMut(usize, Found)) {
-        select::select::<G, CELLS, ALL>(work, guide, unique, put);
+        if G::LANES == size_of::<u32>() && !ALL {
+            turns::select::<G, CELLS>(work, guide, unique, put);
+        } else {
+            select::select::<G, CELLS, ALL>(work, guide, unique, put);
+        }
     }
 }
 
@@ -158,10 +163,8 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Steps<G, CELLS, ALL> {
         let stride = stride::<G, CELLS, ALL>(work);
         let beyond = if work.disparities < stride {
             let mut beyond = Path([G::splat(0); CELLS]);
-            let mut numbers = [0; 256];
-            numbers.get_mut(..stride - work.disparities).unwrap_or_default().fill(far);
-            for (cell, &numbers) in beyond.0.iter_mut().zip(G::groups(&numbers)) {
-                *cell = G::of_bytes(numbers);
+            for (cell, &mask) in beyond.0.iter_mut().zip(G::groups(mask(stride, work.disparities))) {
+                *cell = G::of_bytes(mask).and(G::splat(far));
             }
             Some(beyond)
         } else {

@@ -15,6 +15,8 @@
 /// smooth(&[&dark, &dark, &bright, &dark, &dark], 1, &mut line);
 /// assert_eq!(line, [0, 10, 20, 10, 0]);
 /// ```
+// In flash once.
+#[cfg_attr(target_pointer_width = "32", inline(never))]
 pub fn smooth(rows: &[&[u8]; 5], row: usize, out: &mut [u8]) {
     let near = [row.saturating_sub(1), row, (row + 1).min(4)].map(|row| rows.get(row).copied().unwrap_or(&[]));
     let width = near.iter().fold(usize::MAX, |w, row| w.min(row.len()));

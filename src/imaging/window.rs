@@ -76,6 +76,8 @@ impl<const W: usize, const N: usize> LineBand<W, N> {
 
     /// The `M` rows around `centre`, of an odd number: two above to two below where `M` is 5. Rows above the image are
     /// row 0; rows that did not come yet, the last one that did. The caller asks for a centre whose rows are still held.
+    // Asked for once in a row of each camera.
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
     pub fn around<const M: usize>(&self, centre: usize) -> [&[u8]; M] {
         let newest = self.count.saturating_sub(1);
         core::array::from_fn(|i| {

@@ -15,6 +15,8 @@ use super::config::Checks;
 use super::kernels::bytes as assembly;
 #[cfg(stereopsis_vectors)]
 use super::kernels::helium as assembly;
+#[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
+use super::rolled::rolled;
 use super::row::slot;
 #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
 use super::surface::of_one;
@@ -143,6 +145,7 @@ impl Support<'_> {
         let (step, pixels) = (checks.surface_step, Word::from(checks.speckle_pixels));
         let rows = here.iter().zip(above).zip(self.lengths.iter().zip(self.kept.iter_mut()));
         for (((here, above), (&length, kept)), (answer, flags, finished)) in rows.zip(out) {
+            rolled();
             let joined = Word::from(of_one(here.raw(), above.raw(), step));
             let before = Word::from(*kept);
             let support = before >> (2 * ROWS) & Word::MIN.wrapping_sub(joined);

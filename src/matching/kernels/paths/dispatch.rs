@@ -26,6 +26,7 @@ macro_rules! in_words {
     ($work:ident, $pass:ident, [$($more:tt)?], $($argument:expr),*) => {
         match $work.stride {
             0 => (),
+            16 => words::$pass::<Words<4, true>, $($more)?>($work, $($argument),*),
             // Room for as few as will do, and one more: a path's costs stand on the stack, several times.
             ..=64 => words::$pass::<Words<17, false>, $($more)?>($work, $($argument),*),
             ..=128 => words::$pass::<Words<33, false>, $($more)?>($work, $($argument),*),

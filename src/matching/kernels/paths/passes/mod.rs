@@ -32,17 +32,28 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Passes for Groups<G, CELLS, 
 
     #[inline(always)]
     fn within_edges(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
-        edges::within_edges::<G, CELLS, ALL>(work, edges);
+        if is_word::<G>() {
+            edges::within_edges::<G, CELLS, false>(work, edges);
+        } else {
+            edges::within_edges::<G, CELLS, ALL>(work, edges);
+        }
     }
 
     #[inline(always)]
     fn select(work: &mut PathWork<'_>, guide: Guide<'_>, unique: Unique<'_>, put: impl FnMut(usize, Found)) {
-        if G::LANES == size_of::<u32>() && !ALL {
+        if is_word::<G>() && !ALL {
             turns::select::<G, CELLS>(work, guide, unique, put);
         } else {
             select::select::<G, CELLS, ALL>(work, guide, unique, put);
         }
     }
+}
+
+/// Whether groups are small, so that a column has many: loops over them take little flash if they are not unrolled, and little
+/// longer.
+#[inline(always)]
+const fn is_word<G: Group>() -> bool {
+    G::LANES == size_of::<u32>()
 }
 
 /// Lanes of a column, known to the compiler if `ALL` the cells of a path are in use.

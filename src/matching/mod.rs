@@ -19,7 +19,7 @@
 //! 11. `mask`: answers taken away where a camera did not see.
 //! 12. [`Row`]: what came out, with the uncertainty of each answer.
 //!
-//! [`Matcher`] owns the `memory` and runs the `stages`. [`Config`] says what is searched and which answers are refused.
+//! [`Matcher`] owns the `memory` and runs the `stages`, of which some loops are kept small by `rolled`. [`Config`] says what is searched and which answers are refused.
 
 mod answers;
 mod confidence;

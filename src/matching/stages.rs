@@ -37,6 +37,7 @@ pub struct Stages<'a, S: Scheme> {
 
 impl<S: Scheme> Stages<'_, S> {
     /// Forgets the frame before.
+    #[inline(never)]
     pub(super) fn begin(self) {
         self.columns.fill(0);
         self.texture.clear();

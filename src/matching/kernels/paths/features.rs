@@ -72,10 +72,7 @@ pub(super) fn of<'a, S: Along>(
         (&mut *census, first_census),
         (&mut *brightness, first_brightness),
     ] {
-        repeat(row, first, outside);
-        // Behind the last column it goes on.
-        let last = row.get(outside + width - 1).copied().unwrap_or(0);
-        row.get_mut(outside + width..).unwrap_or_default().fill(last);
+        go_on(row, first, outside, outside + width);
     }
     if S::BETWEEN_PIXELS {
         range(along, least, greatest);
@@ -130,6 +127,15 @@ fn halve(numbers: &[u8], halves: &mut [u8]) {
         rolled();
         *to = from >> 1;
     }
+}
+
+/// Repeats the first column before the image, and behind it what stands in its last one, before `end`.
+#[cfg_attr(target_pointer_width = "64", inline(always))]
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
+fn go_on(row: &mut [u8], first: u8, outside: usize, end: usize) {
+    repeat(row, first, outside);
+    let last = row.get(end.wrapping_sub(1)).copied().unwrap_or(0);
+    row.get_mut(end..).unwrap_or_default().fill(last);
 }
 
 /// Repeats the first column before the image.

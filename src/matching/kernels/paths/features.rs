@@ -93,7 +93,8 @@ fn rows<const N: usize>(room: &mut [u8], length: usize) -> [&mut [u8]; N] {
 
 /// The features of as many columns as there is a place for. Gradients are cut off before they are shifted, which is the same
 /// as after.
-#[inline(always)]
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+#[cfg_attr(not(target_pointer_width = "32"), inline(always))]
 fn looks_of(lines: &Around<'_>, gradient: u8, shift: u32, [along, across, census]: [&mut [u8]; 3]) {
     looks(lines, gradient << shift, [&mut *along, &mut *across, census]);
     if shift > 0 {

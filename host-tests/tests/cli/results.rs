@@ -18,9 +18,9 @@ use stereopsis_host::run::{MemoryPair, Method, NoiseChoice, run};
 fn in_process(method: Method, filter: Filter, noise: NoiseChoice) -> DisparityMap {
     let (left, right) = pair();
     let mut camera = MemoryPair::new(WIDTH as u16, left.into_raw(), right.into_raw()).expect("one size");
-    let config = method.with_filter(filter, Config::new(WIDTH as u16, HEIGHT as u16, 32));
     let (noise, _) = noise.level(&mut camera).expect("a source that cannot fail");
-    let config = Config { confidence: true, noise, ..config };
+    let search = Config { confidence: true, noise, ..Config::new(WIDTH as u16, HEIGHT as u16, 32) };
+    let config = method.with_filter(filter, search);
     run(method, &config, &mut camera, |_| {}).expect("a source that cannot fail").map
 }
 

@@ -127,6 +127,28 @@ fn noise_is_measured_or_told() {
 }
 
 #[test]
+fn exposures_are_balanced_where_they_differ() {
+    let bench = Bench::new();
+    let right = bench.path("bright.png").display().to_string();
+    let mut picture = pair().1;
+    picture.iter_mut().for_each(|grey| *grey = (*grey / 2).saturating_add(80));
+    picture.save(&right).expect("a picture");
+    let answers = |options: &[(&str, &str)]| {
+        let all = [&[("--right", right.as_str()), ("--noise", "none")][..], options].concat();
+        let told = text(&bench.matched(&all).stdout).contains("exposure     right image x ");
+        (told, fs::read(bench.path("out/disparity.pfm")).expect("a result"))
+    };
+    let (told, balanced) = answers(&[("--method", "sgm")]);
+    let (told_without, as_it_comes) = answers(&[("--method", "sgm"), ("--balance", "none")]);
+    assert!(told && !told_without && balanced != as_it_comes);
+    // A census does not ask how bright a pixel is.
+    let (told, _) = answers(&[("--method", "block")]);
+    assert!(!told);
+    let alike = bench.matched(&[("--method", "sgm")]);
+    assert!(!text(&alike.stdout).contains("exposure"), "the pair as it is");
+}
+
+#[test]
 fn the_answers_are_those_of_the_pictures() {
     let bench = Bench::new();
     bench.matched(&[]);

@@ -6,11 +6,11 @@ use image::GrayImage;
 use std::fmt::Write;
 use std::path::Path;
 use std::sync::LazyLock;
-use stereopsis::imaging::Noise;
+use stereopsis::imaging::{Balance, Noise};
 use stereopsis::matching::{Config, Filter};
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::real::{Alteration, RealScene, Score};
-use stereopsis_host::run::{MemoryPair, Method, measure_noise, run};
+use stereopsis_host::run::{MemoryPair, Method, measure_balance, measure_noise, run};
 use stereopsis_host::sparsification::Sparsification;
 
 /// The scenes, read once.
@@ -32,8 +32,8 @@ fn match_images(scene: &RealScene, images: [&GrayImage; 2], method: Method, filt
     let (width, height) = (scene.left.width() as u16, scene.left.height() as u16);
     let mut camera = camera(images);
     let noise = measure_noise(&mut camera).expect("a frame").level();
-    let config = method.with_filter(filter, Config::new(width, height, scene.disparities));
-    let config = Config { confidence: true, noise, ..config };
+    let search = Config { confidence: true, noise, ..Config::new(width, height, scene.disparities) };
+    let config = method.with_filter(filter, search);
     run(method, &config, &mut camera, |_| ()).expect("a frame").map
 }
 
@@ -164,7 +164,8 @@ fn noise_is_measured_on_every_real_pair() {
 
 #[test]
 fn sgm_on_noisy_real_pairs() {
-    for (sigma, most) in [(2.0, 0.09), (5.0, 0.15)] {
+    // OpenCV's StereoSGBM misses 0.13 and 0.25, and of its answers 0.06 and 0.088 are wrong.
+    for (sigma, most_missed, most_wrong) in [(2.0, 0.085, 0.06), (5.0, 0.17, 0.088)] {
         let scores: Vec<_> = SCENES
             .iter()
             .zip(1..)
@@ -176,6 +177,26 @@ fn sgm_on_noisy_real_pairs() {
             .collect();
         let mean = Score::mean(&scores);
         println!("sgm, noise of {sigma}: {mean:?}");
-        assert!(mean.missed <= most, "noise of {sigma}: missed {}", mean.missed);
+        assert!(mean.missed <= most_missed && mean.bad2 <= most_wrong, "noise of {sigma}: {mean:?}");
     }
+}
+
+#[test]
+fn sgm_on_real_pairs_of_other_exposures() {
+    let mut scores = Vec::new();
+    for scene in SCENES.iter() {
+        let balance = |right: &GrayImage| measure_balance(&mut camera([&scene.left, right])).expect("a frame");
+        assert_eq!(balance(&scene.right), Balance::NONE, "{}: as taken", scene.name);
+        let exposure = Alteration::Exposure { gain: 1.2, offset: 15.0 };
+        let [_, mut right] = exposure.apply([&scene.left, &scene.right], 1);
+        let balance = balance(&right);
+        println!("{:24}{balance:?}", scene.name);
+        balance.line(&mut right);
+        let answers = match_images(scene, [&scene.left, &right], Method::Sgm, Filter::Default).disparity;
+        scores.push(Score::of(answers.iter().map(|d| d.to_f32()), &scene.truth).expect("scored pixels"));
+    }
+    let mean = Score::mean(&scores);
+    println!("sgm, right x 1.2 + 15: {mean:?}");
+    // 0.111 as it comes. On three scenes too much is saturated.
+    assert!(mean.missed <= 0.1, "missed {}", mean.missed);
 }

@@ -88,7 +88,7 @@ impl Config {
             STEREOPSIS_PRESET_STRICT => Filter::Strict,
             _ => return Err(Status::Preset),
         };
-        let checks = filter.checks::<S>();
+        let checks = filter.checks::<S>(Noise::None);
         let Penalties { gradient, cost, step, jump, edges } = S::PENALTIES;
         let or_not = |limit: Option<u8>| limit.map_or(STEREOPSIS_NOT_CHECKED, i16::from);
         Ok(Self {

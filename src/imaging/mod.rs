@@ -9,11 +9,13 @@
 //! 4. [`RectifiedPair`]: raw lines as rectified ones, by a [`Remap`] for each camera with its [`RemapTable`].
 //! 5. [`PairMonitor`]: what the pictures tell of the cameras' health, with a [`Histogram`] of each; [`AutoExposure`]: one exposure for
 //!    both.
-//! 6. [`NoiseMeter`]: how noisy the lines are, in levels of [`Noise`]; [`smooth()`]: a row of a window with less of it.
+//! 6. [`BalancedPair`]: the right camera's lines as the left one would have exposed them.
+//! 7. [`NoiseMeter`]: how noisy the lines are, in levels of [`Noise`]; [`smooth()`]: a row of a window with less of it.
 //!
 //! Borders, but of remapped lines: a row or column outside the image is the nearest one inside it, everywhere in this
 //! module.
 
+mod balance;
 mod bayer;
 mod census;
 mod exposure;
@@ -27,6 +29,7 @@ mod remap;
 mod smooth;
 mod window;
 
+pub use balance::{Balance, BalancedPair};
 pub use bayer::BayerLines;
 pub use census::{census_full24, census_plus4, census_ring8, census_wide8};
 pub use exposure::{AutoExposure, ExposureCommand, ExposureLimits};

@@ -26,7 +26,8 @@ pub struct Config {
     /// Whether rows say how sure each answer is ([`Row::confidences`](super::Row::confidences)): a search more for each pixel.
     pub confidence: bool,
     /// How noisy both cameras are: what is compared is smoothed accordingly. The next frame's is what a
-    /// [`NoiseMeter`](crate::imaging::NoiseMeter) says of this one. It takes work, but no memory.
+    /// [`NoiseMeter`](crate::imaging::NoiseMeter) says of this one. It takes work, but no memory. Checks and penalties that suit
+    /// it are those of [`Config::with_filter`] after it is set.
     pub noise: Noise,
 }
 
@@ -55,9 +56,20 @@ impl Config {
         }
     }
 
-    /// The same search with the checks of an operating point of a method, and its penalties.
+    /// The same search with the checks of an operating point of a method, and its penalties: those for cameras that have as
+    /// much [noise](Self::noise) as it says so far.
+    ///
+    /// ```
+    /// use stereopsis::{imaging::Noise, matching::{Config, Filter, Sgm}};
+    /// let config = Config { noise: Noise::High, ..Config::new(320, 240, 64) }.with_filter::<Sgm>(Filter::Default);
+    /// assert_eq!(config.checks.uniqueness_percent, Some(12));
+    /// ```
     pub const fn with_filter<S: Scheme>(self, filter: Filter) -> Self {
-        Self { checks: filter.checks::<S>(), penalties: S::PENALTIES, ..self }
+        let penalties = match self.noise {
+            Noise::None => S::PENALTIES,
+            Noise::Low | Noise::High => S::PENALTIES_IN_NOISE,
+        };
+        Self { checks: filter.checks::<S>(self.noise), penalties, ..self }
     }
 
     /// All zero: a matcher that was not started, which so takes no place in flash when it is a static.

@@ -2,6 +2,7 @@
 
 use super::config::Checks;
 use super::scheme::Scheme;
+use crate::imaging::Noise;
 
 /// An operating point: how many answers, and how sure. What it is made of depends on the method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -28,12 +29,14 @@ impl Filter {
         }
     }
 
-    /// What it is for a method.
-    pub const fn checks<S: Scheme>(self) -> Checks {
-        match self {
-            Self::Dense => Checks::DENSE,
-            Self::Default => S::DEFAULT,
-            Self::Strict => S::STRICT,
+    /// What it is for a method, with cameras that have so much noise.
+    pub const fn checks<S: Scheme>(self, noise: Noise) -> Checks {
+        match (self, noise) {
+            (Self::Dense, _) => Checks::DENSE,
+            (Self::Default, Noise::None) => S::DEFAULT,
+            (Self::Default, Noise::Low) => S::DEFAULT_IN_NOISE[0],
+            (Self::Default, Noise::High) => S::DEFAULT_IN_NOISE[1],
+            (Self::Strict, _) => S::STRICT,
         }
     }
 }

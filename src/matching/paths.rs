@@ -64,7 +64,10 @@ impl Along for SgmEdge {
 /// [`Scheme`] and [`Lines`] of a method along paths.
 macro_rules! along_paths {
     ($method:ty, $name:literal, $penalties:expr) => {
-        const _: () = assert!($penalties.check().is_ok(), "the default is a good choice");
+        const _: () = assert!(
+            $penalties.check().is_ok() && $penalties.in_noise().check().is_ok(),
+            "the default is a good choice"
+        );
 
         impl Scheme for $method {
             const RADIUS_X: usize = 4;
@@ -73,8 +76,10 @@ macro_rules! along_paths {
             const STEP: u8 = STEP;
             const SMOOTH_DOWN: bool = true;
             const DEFAULT: Checks = DEFAULT;
+            const DEFAULT_IN_NOISE: [Checks; 2] = DEFAULT_IN_NOISE;
             const STRICT: Checks = STRICT;
             const PENALTIES: Penalties = $penalties;
+            const PENALTIES_IN_NOISE: Penalties = $penalties.in_noise();
             const NAME: &'static str = $name;
         }
 
@@ -113,6 +118,11 @@ const fn guides<S: Along>() -> usize {
 const STEP: u8 = 12;
 /// Costs along paths leave small gaps inside of surfaces, which are filled.
 const DEFAULT: Checks = Checks { smoothing_radius: 8, speckle_pixels: 20, fill_pixels: 16, ..Checks::DEFAULT };
+/// Noise makes wrong answers whose cost others come near to, and that few others agree with.
+const DEFAULT_IN_NOISE: [Checks; 2] = [
+    Checks { uniqueness_percent: Some(5), ..DEFAULT },
+    Checks { uniqueness_percent: Some(12), speckle_pixels: 60, ..DEFAULT },
+];
 /// They are least sure where another disparity costs little more; texture says less than that, for paths bridge what has none.
 const STRICT: Checks =
     Checks { uniqueness_percent: Some(30), speckle_pixels: 20, median: true, fill_pixels: 8, ..Checks::DEFAULT };

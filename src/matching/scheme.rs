@@ -6,6 +6,8 @@ use super::filter::Filter;
 use super::memory::{Bytes, Memory};
 use super::penalties::Penalties;
 use super::stages::Stages;
+#[cfg(doc)]
+use crate::imaging::Noise;
 
 /// A matching method. The crate's own types implement it: [`Fast`](super::Fast), [`Block`](super::Block),
 /// [`SgmLean`](super::SgmLean), [`Sgm`](super::Sgm) and [`SgmEdge`](super::SgmEdge).
@@ -25,6 +27,8 @@ pub trait Scheme: Lines + Sized + 'static {
     const SMOOTH_DOWN: bool = false;
     /// The checks of [`Filter::Default`].
     const DEFAULT: Checks = Checks::DEFAULT;
+    /// The same where cameras have noise, [`Noise::Low`] and [`Noise::High`].
+    const DEFAULT_IN_NOISE: [Checks; 2] = [Self::DEFAULT; 2];
     /// The checks of [`Filter::Strict`].
     const STRICT: Checks = Checks::STRICT;
     /// What changes of the disparity are worth; of no meaning to the block methods.
@@ -35,6 +39,8 @@ pub trait Scheme: Lines + Sized + 'static {
     /// assert_eq!(config.penalties, SgmEdge::PENALTIES);
     /// ```
     const PENALTIES: Penalties = Penalties::DEFAULT;
+    /// The same where cameras have noise.
+    const PENALTIES_IN_NOISE: Penalties = Self::PENALTIES;
     /// The method's name, as the programs spell it.
     const NAME: &'static str;
 }

@@ -74,6 +74,12 @@ impl Method {
         matches!(self, Self::Fast | Self::Block)
     }
 
+    /// Whether pixels are compared by their brightness, so that another exposure of one camera counts; a census asks which
+    /// one of two is darker.
+    pub const fn compares_brightness(self) -> bool {
+        matches!(self, Self::SgmLean | Self::Sgm | Self::SgmEdge)
+    }
+
     /// How many lines after its own a row of disparities comes out.
     pub const fn latency_lines(self) -> usize {
         with_scheme!(self, S => Host::<S>::LATENCY)

@@ -5,16 +5,19 @@
 //! * [`Method`]: the methods of this build. [`Way`]: a method, on a kernel, in so many threads.
 //! * [`run`]: one frame into a map. [`time_frames`]: several, timed.
 //! * [`measure_noise`]: a frame for that alone, if [`NoiseChoice`] asks for it.
+//! * [`measure_balance`]: the same for the cameras' exposures.
 //! * `bands`: a frame in bands, one thread each.
 //! * [`run_guarded`]: frames of a source that may fail.
 //! * [`MemoryPair`]: a stereo source over two pictures in memory.
 
+mod balance;
 mod bands;
 mod guarded;
 mod memory;
 mod method;
 mod noise;
 
+pub use balance::measure_balance;
 pub use guarded::{GuardedFrame, run_guarded};
 pub use memory::MemoryPair;
 pub use method::{Method, UnknownMethod};

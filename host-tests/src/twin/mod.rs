@@ -9,11 +9,12 @@
 //! * `filter`: smoothing along the row, the median, the speckle filter, smoothing down the columns, filling, the deviation.
 //! * `confidence`: how sure an answer is.
 //!
-//! Apart from them: [`bundle`], the step of a bundle adjustment; [`features`], corners, descriptors and matches; [`focus`], sharpness and its peaks;
+//! Apart from them: [`mod@balance`], one exposure for both pictures; [`bundle`], the step of a bundle adjustment; [`features`], corners, descriptors and matches; [`focus`], sharpness and its peaks;
 //! [`remap`](mod@remap), raw pictures as rectified ones.
 //!
 //! Nothing here is shared with the core but its words: [`Config`], [`Disparity`], [`PixelFlags`].
 
+pub mod balance;
 pub mod bundle;
 pub mod census;
 pub mod cost;

@@ -7,6 +7,7 @@
 //! * `exposure`: one exposure for two cameras, and what their pictures tell of their health.
 
 mod after;
+mod balance;
 mod changing;
 mod exposure;
 mod faults;

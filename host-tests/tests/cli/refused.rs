@@ -65,6 +65,7 @@ fn bad_options() {
     bench.refused(&bench.arguments(&[("--method", "sgm-full")]), "fast, block, sgm-lean, sgm and sgm-edge");
     bench.refused(&bench.arguments(&[("--filter", "soft")]), "dense, default and strict");
     bench.refused(&bench.arguments(&[("--noise", "2")]), "auto, none, low or high");
+    bench.refused(&bench.arguments(&[("--balance", "half")]), "auto or none");
     for threads in ["0", "65", "-1", "two", ""] {
         bench.refused(&bench.arguments(&[("--threads", threads)]), "--threads");
     }

@@ -18,9 +18,9 @@ use stereopsis_host::run::{MemoryPair, Method, NoiseChoice, run};
 fn in_process(method: Method, filter: Filter, noise: NoiseChoice) -> DisparityMap {
     let (left, right) = pair();
     let mut camera = MemoryPair::new(WIDTH as u16, left.into_raw(), right.into_raw()).expect("one size");
-    let config = method.with_filter(filter, Config::new(WIDTH as u16, HEIGHT as u16, 32));
     let (noise, _) = noise.level(&mut camera).expect("a source that cannot fail");
-    let config = Config { confidence: true, noise, ..config };
+    let search = Config { confidence: true, noise, ..Config::new(WIDTH as u16, HEIGHT as u16, 32) };
+    let config = method.with_filter(filter, search);
     run(method, &config, &mut camera, |_| {}).expect("a source that cannot fail").map
 }
 
@@ -124,6 +124,28 @@ fn noise_is_measured_or_told() {
     assert_eq!(summary()["noise"], "high");
     assert!(summary()["noise_sigma"].as_f64().is_some_and(|sigma| sigma > 10.0));
     assert_eq!(float_map(&bench.path("out/disparity.pfm")).values, maps[2]);
+}
+
+#[test]
+fn exposures_are_balanced_where_they_differ() {
+    let bench = Bench::new();
+    let right = bench.path("bright.png").display().to_string();
+    let mut picture = pair().1;
+    picture.iter_mut().for_each(|grey| *grey = (*grey / 2).saturating_add(80));
+    picture.save(&right).expect("a picture");
+    let answers = |options: &[(&str, &str)]| {
+        let all = [&[("--right", right.as_str()), ("--noise", "none")][..], options].concat();
+        let told = text(&bench.matched(&all).stdout).contains("exposure     right image x ");
+        (told, fs::read(bench.path("out/disparity.pfm")).expect("a result"))
+    };
+    let (told, balanced) = answers(&[("--method", "sgm")]);
+    let (told_without, as_it_comes) = answers(&[("--method", "sgm"), ("--balance", "none")]);
+    assert!(told && !told_without && balanced != as_it_comes);
+    // A census does not ask how bright a pixel is.
+    let (told, _) = answers(&[("--method", "block")]);
+    assert!(!told);
+    let alike = bench.matched(&[("--method", "sgm")]);
+    assert!(!text(&alike.stdout).contains("exposure"), "the pair as it is");
 }
 
 #[test]

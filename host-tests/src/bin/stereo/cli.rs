@@ -129,6 +129,10 @@ pub struct MatchArgs {
     pub range: RangeArgs,
     #[command(flatten)]
     pub way: WayArgs,
+    /// Whether the right image is brought to the left one's exposure: auto, where they clearly differ and the method compares
+    /// brightness (sgm-lean, sgm, sgm-edge), or none
+    #[arg(long, value_name = "BALANCE", default_value = "auto", value_parser = balance)]
+    pub balance: BalanceChoice,
     /// Calibration of the pair, for depths: a Middlebury or KITTI calib.txt, what OpenCV or ROS (twice) say of rectified images,
     /// or rectified.json; with --rectify how the cameras are mounted, as for the command rectify
     #[arg(long, value_name = "FILE")]
@@ -199,6 +203,21 @@ impl WayArgs {
     /// The method, on the kernel, in the threads.
     pub fn way(&self) -> Way {
         Way { method: self.method, kernel: self.kernel, threads: self.threads }
+    }
+}
+
+/// Whether exposures are balanced.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum BalanceChoice {
+    Auto,
+    None,
+}
+
+fn balance(text: &str) -> Result<BalanceChoice, &'static str> {
+    match text {
+        "auto" => Ok(BalanceChoice::Auto),
+        "none" => Ok(BalanceChoice::None),
+        _ => Err("the balance is auto or none"),
     }
 }
 

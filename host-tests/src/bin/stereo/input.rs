@@ -72,5 +72,5 @@ pub fn with_noise<C: StereoSource<Error: Display>>(
     source: &mut C,
 ) -> Result<(Config, Option<NoiseMeter>), Failure> {
     let (noise, meter) = way.noise.level(source).map_err(|e| Failure::new(e.to_string()))?;
-    Ok((Config { noise, ..config }, meter))
+    Ok((way.method.with_filter(way.filter, Config { noise, ..config }), meter))
 }

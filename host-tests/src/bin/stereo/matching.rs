@@ -1,6 +1,6 @@
 //! `stereo match`: a pair, rectified or raw, into a folder of results.
 
-use crate::cli::{MatchArgs, Unit};
+use crate::cli::{BalanceChoice, MatchArgs, Unit};
 use crate::failure::Failure;
 use crate::input::{self, Pair};
 use crate::progress::Progress;
@@ -12,7 +12,7 @@ use std::path::Path;
 use stereopsis::camera::StereoSource;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::{Camera, ImageSize, RectifiedRig};
-use stereopsis::imaging::NoiseMeter;
+use stereopsis::imaging::{Balance, BalancedPair, NoiseMeter};
 use stereopsis::matching::Config;
 use stereopsis_host::calibration::Calibration;
 use stereopsis_host::command_line::one_line;
@@ -20,7 +20,7 @@ use stereopsis_host::output::Staging;
 use stereopsis_host::rectify::{rectify, rectify_colours, with_rectified};
 use stereopsis_host::report::{Report, Summary};
 use stereopsis_host::rows::Rows;
-use stereopsis_host::run::{self, Outcome};
+use stereopsis_host::run::{self, Outcome, measure_noise};
 
 /// What is written only of raw images.
 const RECTIFIED: [&str; 3] = ["rectified_left.png", "rectified_right.png", "rectified.json"];
@@ -38,6 +38,7 @@ struct Scene {
 struct Matched {
     config: Config,
     meter: Option<NoiseMeter>,
+    balance: Balance,
     outcome: Outcome,
 }
 
@@ -57,7 +58,7 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         (Scene { left: pair.left, right: pair.right, scale, rectified: None, rows }, matched)
     };
 
-    let Matched { config, meter, outcome } = matched;
+    let Matched { config, meter, balance, outcome } = matched;
     let scale = scene.scale.as_ref();
     let summary = Summary::new(args.way.method, args.way.filter.name(), &config, &outcome, scale, None);
     let summary = summary.with_noise(meter.as_ref()).with_rows(scene.rows);
@@ -91,6 +92,11 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         let _ = writeln!(std::io::stderr(), "stereo: warning: {warning}");
     }
     text += &figures(&summary);
+    if balance != Balance::NONE {
+        let [gain, offset] =
+            [i32::from(balance.gain_256ths), balance.offset_256ths].map(|number| f64::from(number) / 256.0);
+        let _ = writeln!(text, "exposure     right image x {gain:.2} {offset:+.1} grey levels, as the left one has it");
+    }
     if let Some(rectified) = &scene.rectified {
         text += &rectified.figures();
     }
@@ -103,11 +109,26 @@ fn matched<C: StereoSource<Error: Display>>(
     config: Config,
     source: &mut C,
 ) -> Result<Matched, Failure> {
+    if args.balance == BalanceChoice::None || !args.way.method.compares_brightness() {
+        return matched_as_it_comes(args, config, source);
+    }
+    let mut balanced = BalancedPair::new(source);
+    // The first frame shows the exposures.
+    measure_noise(&mut balanced).map_err(|e| Failure::new(e.to_string()))?;
+    let matched = matched_as_it_comes(args, config, &mut balanced)?;
+    Ok(Matched { balance: balanced.balance(), ..matched })
+}
+
+fn matched_as_it_comes<C: StereoSource<Error: Display>>(
+    args: &MatchArgs,
+    config: Config,
+    source: &mut C,
+) -> Result<Matched, Failure> {
     let (config, meter) = input::with_noise(&args.way, config, source)?;
     let progress = Progress::over(&config);
     let outcome = run::run(args.way.way(), &config, source, |rows| progress.rows(rows));
     let outcome = outcome.map_err(|e| Failure::new(e.to_string()))?;
-    Ok(Matched { config, meter, outcome })
+    Ok(Matched { config, meter, balance: Balance::NONE, outcome })
 }
 
 /// Matches a raw pair: remap, census and matching in one loop over the rows.

@@ -16,7 +16,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use stereopsis::matching::{Config, Filter};
 use stereopsis_host::real::{Alteration, RealScene, Score};
-use stereopsis_host::run::{MemoryPair, Method, measure_noise, run as match_pair};
+use stereopsis_host::run::{MemoryPair, Method, measure_balance, measure_noise, run as match_pair};
 use table::Column;
 use tempfile::NamedTempFile;
 
@@ -122,11 +122,17 @@ fn columns(scenes: &[RealScene], opencv: Option<&OpenCv>) -> Outcome<Vec<Column>
 fn answers(method: Method, scene: &RealScene, [left, right]: &[GrayImage; 2]) -> Outcome<Vec<f32>> {
     let failed = |e: &dyn std::fmt::Display| Failure::new(format!("{}, {method}: {e}", scene.name));
     let (width, height) = (left.width() as u16, left.height() as u16);
-    let camera = MemoryPair::new(width, left.to_vec(), right.to_vec());
-    let mut camera = camera.ok_or_else(|| failed(&"the pictures are empty"))?;
-    let config = method.with_filter(Filter::Default, Config::new(width, height, scene.disparities));
+    let pair =
+        |right: Vec<u8>| MemoryPair::new(width, left.to_vec(), right).ok_or_else(|| failed(&"the pictures are empty"));
+    let mut right = right.to_vec();
+    if method.compares_brightness() {
+        // As `stereo match` does it.
+        measure_balance(&mut pair(right.clone())?).map_err(|e| failed(&e))?.line(&mut right);
+    }
+    let mut camera = pair(right)?;
     let noise = measure_noise(&mut camera).map_err(|e| failed(&e))?.level();
-    let config = Config { noise, ..config };
+    let search = Config { noise, ..Config::new(width, height, scene.disparities) };
+    let config = method.with_filter(Filter::Default, search);
     let outcome = match_pair(method, &config, &mut camera, |_| ());
     outcome.map(|outcome| outcome.map.pixels()).map_err(|e| failed(&e))
 }

@@ -2,7 +2,7 @@
 //! usual numbers of disparities, which lets the compiler unroll them and keep them in registers.
 
 #[cfg(target_pointer_width = "64")]
-use super::super::groups::Vector;
+use super::super::groups::{Group, Vector};
 #[cfg(target_arch = "x86_64")]
 use super::super::groups::{Wide, Widest};
 use super::super::{Kernel, Select};
@@ -78,15 +78,19 @@ mod words {
     }
 }
 
+/// Groups of the target's own vectors in the widest column; where these are words, one more, for which there must be room.
+#[cfg(target_pointer_width = "64")]
+const MOST: usize = 256 / Vector::LANES + if Vector::LANES == size_of::<u32>() { 1 } else { 0 };
+
 /// The same in vectors of the compilation's own target.
 #[cfg(target_pointer_width = "64")]
 macro_rules! in_vectors {
     ($work:ident, $pass:ident, [$($more:tt)?], $($argument:expr),*) => {
         match $work.stride {
-            32 => super::$pass::<Groups<Vector, 2, true>, $($more)?>($work, $($argument),*),
-            64 => super::$pass::<Groups<Vector, 4, true>, $($more)?>($work, $($argument),*),
-            128 => super::$pass::<Groups<Vector, 8, true>, $($more)?>($work, $($argument),*),
-            _ => super::$pass::<Groups<Vector, 16, false>, $($more)?>($work, $($argument),*),
+            32 => super::$pass::<Groups<Vector, { 32 / Vector::LANES }, true>, $($more)?>($work, $($argument),*),
+            64 => super::$pass::<Groups<Vector, { 64 / Vector::LANES }, true>, $($more)?>($work, $($argument),*),
+            128 => super::$pass::<Groups<Vector, { 128 / Vector::LANES }, true>, $($more)?>($work, $($argument),*),
+            _ => super::$pass::<Groups<Vector, MOST, false>, $($more)?>($work, $($argument),*),
         }
     };
 }
@@ -100,7 +104,7 @@ macro_rules! in_wide {
             64 => super::$pass::<Groups<Wide, 2, true>, $($more)?>($work, $($argument),*),
             128 => super::$pass::<Groups<Wide, 4, true>, $($more)?>($work, $($argument),*),
             stride if stride % 32 == 0 => super::$pass::<Groups<Wide, 8, false>, $($more)?>($work, $($argument),*),
-            _ => super::$pass::<Groups<Vector, 16, false>, $($more)?>($work, $($argument),*),
+            _ => super::$pass::<Groups<Vector, MOST, false>, $($more)?>($work, $($argument),*),
         }
     };
 }
@@ -115,7 +119,7 @@ macro_rules! in_widest {
             stride if stride % 64 == 0 => super::$pass::<Groups<Widest, 4, false>, $($more)?>($work, $($argument),*),
             32 => super::$pass::<Groups<Wide, 1, true>, $($more)?>($work, $($argument),*),
             stride if stride % 32 == 0 => super::$pass::<Groups<Wide, 8, false>, $($more)?>($work, $($argument),*),
-            _ => super::$pass::<Groups<Vector, 16, false>, $($more)?>($work, $($argument),*),
+            _ => super::$pass::<Groups<Vector, MOST, false>, $($more)?>($work, $($argument),*),
         }
     };
 }

@@ -172,7 +172,7 @@ impl Kernel {
         }
         #[cfg(stereopsis_dsp)]
         if self == Self::Bytes {
-            return bytes::codes_of::<S>([left, right], scratch, out);
+            return bytes::codes_of::<S>([left, right], out);
         }
         let _ = min_disparity;
         let (of_left, of_right) = out.split_at_mut_checked(out.len() / 2).unwrap_or_default();

@@ -8,13 +8,17 @@ use core::arch::asm;
 /// The fewest pixels of a row that has whole words at both ends.
 const FEWEST: usize = 8;
 
-/// The census row of five lines.
+/// The census row of five lines; or of the right ones, whose codes have four bits, into the high halves of bytes whose low halves
+/// are the left ones.
 #[inline(never)]
-pub(super) fn census<S: Windowed>(rows: &Around<'_>, out: &mut [u8]) {
+pub(super) fn census<S: Windowed>(rows: &Around<'_>, of_right: bool, out: &mut [u8]) {
     let width = out.len();
     let lines = [0, 2, 4].map(|row: usize| rows.get(row).and_then(|r| r.get(..width)).unwrap_or(&[]));
     if width < FEWEST || lines.iter().any(|line| line.len() < width) {
-        return crate::matching::kernels::census::census_of_bytes::<S>(lines, out);
+        let mut codes = [0; FEWEST];
+        let codes = codes.get_mut(..width).unwrap_or_default();
+        crate::matching::kernels::census::census_of_bytes::<S>(lines, codes);
+        return out.iter_mut().zip(codes).for_each(|(out, code)| put(*code, of_right, out));
     }
     if let Some(inner) = out.get_mut(2..width - 2) {
         // The last group is moved back to end with the inner pixels.
@@ -22,7 +26,13 @@ pub(super) fn census<S: Windowed>(rows: &Around<'_>, out: &mut [u8]) {
         for (from, to) in [(0, inner.len() & !3), (last, inner.len())] {
             let lines = lines.map(|line| line.get(from..).unwrap_or(&[]));
             let out = inner.get_mut(from..to).unwrap_or_default();
-            if S::BITS <= 4 { plus4(lines, out) } else { ring8(lines, out) }
+            if of_right {
+                plus4_of_right(lines, out);
+            } else if S::BITS <= 4 {
+                plus4(lines, out);
+            } else {
+                ring8(lines, out);
+            }
         }
     }
     // Columns outside the line are the nearest inside it.
@@ -38,9 +48,15 @@ pub(super) fn census<S: Windowed>(rows: &Around<'_>, out: &mut [u8]) {
     let codes = [(0, first[0]), (1, first[1]), (width - 2, last[2]), (width - 1, last[3])];
     for (x, code) in codes {
         if let Some(out) = out.get_mut(x) {
-            *out = code;
+            put(code, of_right, out);
         }
     }
+}
+
+/// A code where it belongs.
+#[inline(always)]
+fn put(code: u8, of_right: bool, out: &mut u8) {
+    *out = if of_right { *out | code << 4 } else { code };
 }
 
 /// The bit of a neighbour where it is darker: 4 instructions.
@@ -62,7 +78,7 @@ macro_rules! compare {
 }
 
 macro_rules! census_of {
-    ($(#[$doc:meta])* $name:ident: $($neighbours:expr),*) => {
+    ($(#[$doc:meta])* $name:ident from $before:literal: $($neighbours:expr),*) => {
         $(#[$doc])*
         #[inline(never)]
         fn $name([above, here, below]: [&[u8]; 3], out: &mut [u8]) {
@@ -77,7 +93,7 @@ macro_rules! census_of {
                 asm!(
                     "2:",
                     "ldr {c}, [{here}], #4",
-                    "mov {code}, #0",
+                    $before,
                     $($neighbours,)*
                     "str {code}, [{out}], #4",
                     "cmp {out}, {end}",
@@ -97,14 +113,21 @@ macro_rules! census_of {
 // The first read of a line moves on by four pixels.
 census_of! {
     /// [`crate::imaging::census_plus4`] of the pixels from the third one of each line on: 21 instructions for four.
-    plus4:
+    plus4 from "mov {code}, #0":
     compare!("above", "], #4", "0x01010101"), compare!("here", ", #-6]", "0x02020202"),
     compare!("here", ", #-2]", "0x04040404"), compare!("below", "], #4", "0x08080808")
 }
 
 census_of! {
+    /// The same of right lines, into the high halves of bytes.
+    plus4_of_right from "ldr {code}, [{out}]":
+    compare!("above", "], #4", "0x10101010"), compare!("here", ", #-6]", "0x20202020"),
+    compare!("here", ", #-2]", "0x40404040"), compare!("below", "], #4", "0x80808080")
+}
+
+census_of! {
     /// [`crate::imaging::census_ring8`], likewise: 37 instructions for four.
-    ring8:
+    ring8 from "mov {code}, #0":
     compare!("above", "], #4", "0x02020202"), compare!("above", ", #-6]", "0x01010101"),
     compare!("above", ", #-2]", "0x04040404"), compare!("here", ", #-6]", "0x08080808"),
     compare!("here", ", #-2]", "0x10101010"), compare!("below", "], #4", "0x40404040"),

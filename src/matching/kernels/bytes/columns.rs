@@ -30,7 +30,8 @@ pub(super) fn update_by_tables<const STRIDE: usize>(
     };
     let tables = tables.as_chunks_mut().0.as_chunks_mut().0.first_chunk_mut::<2>();
     let (Some(tables), Some(any)) = (tables, row.enter.or(row.leave)) else { return };
-    let [new, old] = reversed(row, [row.enter, row.leave].map(|codes| codes.unwrap_or(&[])), scratch);
+    // The right codes alone.
+    let [new, old] = reversed(row, [row.enter, row.leave].map(|codes| codes.unwrap_or(&[])), 0xf0f0_f0f0, scratch);
     // Nothing differs in a row that is not there.
     if row.enter.is_none() {
         tables::fill(&mut tables[0], 0);
@@ -38,23 +39,26 @@ pub(super) fn update_by_tables<const STRIDE: usize>(
     if row.leave.is_none() {
         tables::fill(&mut tables[1], 4);
     }
-    let words = (row.stride / 4).max(1);
+    // Never none.
+    let stride = if STRIDE > 0 { STRIDE } else { row.stride.max(STEP) };
+    let words = stride / 4;
     // Beside the columns that windows have is what windows beyond the ends have: of them nothing differs.
     for outside in [begin, OUTSIDE + row.width] {
         let sums = columns.get_mut(outside * words..(outside + OUTSIDE) * words).unwrap_or_default();
-        // They are all the same.
-        sums.fill(add(sums.first().copied().unwrap_or(0), 4 * ONE));
+        // They are all the same, and whole steps of them.
+        let sum = add(sums.first().copied().unwrap_or(0), 4 * ONE);
+        sums.as_chunks_mut().0.iter_mut().for_each(|sums| *sums = [sum; STEP / 4]);
     }
-    for chunk in (0..row.stride).step_by(MOST) {
-        let half = MOST.min(row.stride - chunk) / 2;
+    for chunk in (0..stride).step_by(MOST) {
+        let half = MOST.min(stride - chunk) / 2;
         for from in (begin..row.width).step_by(LINE - half) {
             let piece = from..row.width.min(from + LINE - half);
             let first = row.width - piece.end + chunk;
             if row.enter.is_some() {
-                tables::make::<false>(&mut tables[0], new.get(first..).unwrap_or(&[]), half, piece.len());
+                tables::make(&mut tables[0], new.get(first..).unwrap_or(&[]), half, piece.len());
             }
             if row.leave.is_some() {
-                tables::make::<true>(&mut tables[1], old.get(first..).unwrap_or(&[]), half, piece.len());
+                tables::make_equal(&mut tables[1], old.get(first..).unwrap_or(&[]), half, piece.len());
             }
             let codes = [row.enter, row.leave].map(|codes| codes.unwrap_or(any).get(piece.clone()).unwrap_or(&[]));
             let columns = columns.get_mut((OUTSIDE + from) * words..(OUTSIDE + piece.end) * words).unwrap_or_default();
@@ -102,7 +106,7 @@ pub(super) fn update<S: Windowed, const STRIDE: usize>(
     // Never none.
     let stride = if STRIDE > 0 { STRIDE } else { row.stride.max(STEP) };
     let halves = [row.enter, row.leave].map(|codes| codes.map(|row| row.split_at(row.len() / 2)));
-    let [new, old] = reversed(row, halves.map(|row| row.map_or(&[][..], |(_, right)| right)), scratch);
+    let [new, old] = reversed(row, halves.map(|row| row.map_or(&[][..], |(_, right)| right)), u32::MAX, scratch);
     // The codes of a row that is not there are 0 on both sides.
     let lefts = [halves[0].map_or(new, |(left, _)| left), halves[1].map_or(old, |(left, _)| left)];
     let [enters, leaves] = lefts.map(|left| left.get(begin..).unwrap_or(&[]));
@@ -126,14 +130,14 @@ pub(super) fn update<S: Windowed, const STRIDE: usize>(
 }
 
 /// The right codes of both rows from the partner of the last column's first candidate back, with those of all candidates of
-/// the first column.
-fn reversed<'a>(row: &Rows<'_>, right: [&[u8]; 2], room: &'a mut [u32]) -> [&'a [u8]; 2] {
+/// the first column; of each the bits of a mask.
+fn reversed<'a>(row: &Rows<'_>, right: [&[u8]; 2], mask: u32, room: &'a mut [u32]) -> [&'a [u8]; 2] {
     // Tables read up to seven bytes more, and pieces begin between words.
     let words = ((row.width + row.stride).div_ceil(4) + 2).min(room.len() / 2);
     let Some((new, old)) = room.split_at_mut_checked(words) else { return [&[]; 2] };
     let last = row.width as i32 - 1 - row.min_disparity as i32;
     for (right, out) in right.into_iter().zip([&mut *new, old.get_mut(..words).unwrap_or_default()]) {
-        super::reverse(right, last, out);
+        rows::reverse(right, last, mask, out);
     }
     [bytes_of(new), bytes_of(old)]
 }

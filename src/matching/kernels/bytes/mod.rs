@@ -7,13 +7,15 @@
 //! * `tables`: what every left code costs against a row's right codes, where codes have four bits.
 //! * `columns`: costs into the columns under the window.
 //! * `windows`: columns into windows, windows into winners.
-//! * `rows`: the loops of both over the pixels of a row, in assembly for the usual numbers of candidates.
+//! * `rows`: the right codes from right to left, and the loops of both over the pixels of a row, in assembly for the usual numbers
+//!   of candidates.
 //! * `answers`: winners into answers; `surface`: these averaged; `speckle`: their support counted, which all methods share.
 //! * `word`: what is done to four bytes.
 //!
 //! The compiler has no instructions on four bytes, and keeps too little in registers: the loops over pixels are in assembly. A
 //! loop over two pixels in a round is entered in its middle where their number is odd. Each loop is a function that stands alone
-//! (`inline(never)`).
+//! (`inline(never)`). Where a loop needs more registers than operands may be, or such that one instruction loads, all of them are
+//! named, and the two that are not the assembly's (r6, r7) are kept on the stack.
 //!
 //! The work is the same for every picture, but for a few instructions where a winner is at an end of the search.
 
@@ -27,7 +29,7 @@ mod tables;
 mod windows;
 mod word;
 
-use super::scratch::{bytes_mut, bytes_of_words as bytes_of, words_mut};
+use super::scratch::{bytes_of_words as bytes_of, words_mut};
 use super::{RowWork, Select, TABLE_WORDS};
 use crate::matching::scheme::Around;
 use crate::matching::window::{Windowed, code_bytes};
@@ -52,25 +54,17 @@ struct Rows<'a> {
 /// [`super::Kernel::codes`] for bytes: where codes have four bits a pixel's two are one byte, the left one low; else the
 /// left ones are before the right ones.
 #[inline]
-pub(super) fn codes_of<S: Windowed>([left, right]: [&Around<'_>; 2], scratch: &mut [u32], out: &mut [u8]) {
+pub(super) fn codes_of<S: Windowed>([left, right]: [&Around<'_>; 2], out: &mut [u8]) {
     if S::BITS > 4 {
         let (of_left, of_right) = out.split_at_mut_checked(out.len() / 2).unwrap_or_default();
-        census::<S>(left, of_left);
-        census::<S>(right, of_right);
+        census::<S>(left, false, of_left);
+        census::<S>(right, false, of_right);
         return;
     }
     let width = out.len() / code_bytes::<S>();
     let out = out.get_mut(..width).unwrap_or_default();
-    let of_right = bytes_mut(scratch).get_mut(..out.len()).unwrap_or_default();
-    census::<S>(left, out);
-    census::<S>(right, of_right);
-    let (words, last) = out.as_chunks_mut::<4>();
-    for (out, right) in words.iter_mut().zip(scratch.iter()) {
-        *out = (u32::from_le_bytes(*out) | right << 4).to_le_bytes();
-    }
-    for (out, right) in last.iter_mut().zip(bytes_mut(scratch).iter().skip(4 * words.len())) {
-        *out |= *right << 4;
-    }
+    census::<S>(left, false, out);
+    census::<S>(right, true, out);
 }
 
 /// [`super::Kernel::row`] in bytes.
@@ -100,29 +94,5 @@ fn row_of<S: Windowed, const STRIDE: usize>(work: RowWork<'_>, select: Option<Se
     }
     if let Some(select) = select {
         windows::select::<S, STRIDE>(&rows, scratch, columns, select);
-    }
-}
-
-/// The bytes of a row from `last` back; before the row its first stands for them, and where there is no row, 0.
-#[inline(never)]
-fn reverse(row: &[u8], last: i32, out: &mut [u32]) {
-    let begin = row.get(..(last + 1).max(0) as usize).unwrap_or(&[]);
-    let (rest, fours) = begin.as_rchunks::<16>();
-    for (four, out) in fours.iter().rev().zip(out.as_chunks_mut::<4>().0) {
-        let words = four.as_chunks::<4>().0;
-        for (out, word) in out.iter_mut().zip(words.iter().rev()) {
-            *out = u32::from_be_bytes(*word);
-        }
-    }
-    let (rest, words) = rest.as_rchunks::<4>();
-    let first = u32::from(row.first().copied().unwrap_or(0)) * 0x0101_0101;
-    let out = out.get_mut(4 * fours.len()..).unwrap_or_default();
-    for (out, word) in out.iter_mut().zip(words.iter().rev()) {
-        *out = u32::from_be_bytes(*word);
-    }
-    let out = out.get_mut(words.len()..).unwrap_or_default();
-    if let Some((next, out)) = out.split_first_mut() {
-        *next = rest.iter().fold(first, |word, &byte| word << 8 | u32::from(byte));
-        out.fill(first);
     }
 }

@@ -32,7 +32,7 @@ pub fn judge(work: Judged<'_>, step: Disparity, pixels: u8) {
         };
         let joined = u16::from(here.raw().abs_diff(above.raw()) <= step.raw());
         let support = (*kept >> 8) * joined;
-        let support = (u16::from(length) + support).min(0xff);
+        let support = (u16::from(length) + 1 + support).min(0xff);
         let mut bits = (*kept << 1 & 0b1_1110_1110) | joined;
         bits |= ((bits ^ (bits + 1)) << ROWS) * u16::from(support >= u16::from(pixels));
         *kept = support << 8 | (bits & 0xff);
@@ -43,7 +43,7 @@ pub fn judge(work: Judged<'_>, step: Disparity, pixels: u8) {
 }
 
 /// Counts the support of `four` columns, a multiple of four and not 0, and leaves where their lengths stood the highest bit set
-/// of those whose row that waited has enough. 42 instructions for four.
+/// of those whose row that waited has enough. 43 instructions for four.
 #[inline(never)]
 fn join(
     here: &[Disparity],
@@ -54,68 +54,72 @@ fn join(
 ) {
     let (here, lengths) = (here.as_ptr(), lengths.as_mut_ptr());
     // SAFETY: of every slice `four` elements are read, and of the last two written, four in every round: `judge` asked for so
-    // many. They are integers, or integers' own types, any of which is one.
+    // many. They are integers, or integers' own types, any of which is one. The stack
+    // and the two registers that no operand may be are left as they were.
     unsafe {
         asm!(
+            "push {{r6, r7}}",
+            "mov r7, #0x01010101",
             "2:",
             // Joined where the step is no less than the difference.
-            "ldr {a}, [{here}], #4",
-            "ldr {b}, [{above}], #4",
-            "uqsub16 {t}, {a}, {b}",
-            "uqsub16 {b}, {b}, {a}",
-            "orr {t}, {t}, {b}",
-            "usub16 {t}, {step}, {t}",
-            "sel {j}, {low}, {zero}",
-            "ldr {a}, [{here}], #4",
-            "ldr {b}, [{above}], #4",
-            "uqsub16 {t}, {a}, {b}",
-            "uqsub16 {b}, {b}, {a}",
-            "orr {t}, {t}, {b}",
-            "usub16 {t}, {step}, {t}",
-            "orr {t}, {j}, #0xff00ff00",
-            "sel {j}, {t}, {j}",
+            "ldr r0, [r3], #4",
+            "ldr r1, [r5], #4",
+            "uqsub16 r2, r0, r1",
+            "uqsub16 r1, r1, r0",
+            "orr r2, r2, r1",
+            "usub16 r2, r10, r2",
+            "sel r6, r12, lr",
+            "ldr r0, [r3], #4",
+            "ldr r1, [r5], #4",
+            "uqsub16 r2, r0, r1",
+            "uqsub16 r1, r1, r0",
+            "orr r2, r2, r1",
+            "usub16 r2, r10, r2",
+            "orr r2, r6, #0xff00ff00",
+            "sel r6, r2, r6",
             // Lengths, the two in the middle changed.
-            "ldr {t}, [{lengths}]",
-            "uxtb16 {a}, {t}",
-            "uxtb16 {b}, {t}, ror #8",
-            "pkhbt {t}, {a}, {b}, lsl #16",
-            "pkhtb {b}, {b}, {a}, asr #16",
-            "orr {t}, {t}, {b}, lsl #8",
-            // The support, 255 at most, goes on where it is joined.
-            "ldr {a}, [{kept}]",
-            "and {a}, {a}, {j}",
-            "uqadd8 {a}, {a}, {t}",
-            "str {a}, [{kept}], #4",
+            "ldr r2, [r8]",
+            "uxtb16 r0, r2",
+            "uxtb16 r1, r2, ror #8",
+            "pkhbt r2, r0, r1, lsl #16",
+            "pkhtb r1, r1, r0, asr #16",
+            "orr r2, r2, r1, lsl #8",
+            // The support, 255 at most, the answer itself in it, goes on where it is joined.
+            "ldr r0, [r9]",
+            "and r0, r0, r6",
+            "uqadd8 r0, r0, r2",
+            "uqadd8 r0, r0, r7",
+            "str r0, [r9], #4",
             // Each bit stands for the row before now; the highest of both halves goes.
-            "ldr {b}, [{kept}]",
-            "and {t}, {b}, #0x80808080",
-            "bic {b}, {b}, #0x88888888",
-            "and {j}, {j}, #0x01010101",
-            "orr {b}, {j}, {b}, lsl #1",
+            "ldr r1, [r9]",
+            "and r2, r1, #0x80808080",
+            "bic r1, r1, #0x88888888",
+            "and r6, r6, #0x01010101",
+            "orr r1, r6, r1, lsl #1",
             // This row, and those above as far as they are joined, where there is enough.
-            "add {j}, {b}, #0x01010101",
-            "eor {j}, {j}, {b}",
-            "usub8 {a}, {a}, {pixels}",
-            "sel {j}, {j}, {zero}",
-            "and {a}, {j}, #0x0f0f0f0f",
-            "orr {b}, {b}, {a}, lsl #4",
-            "str {b}, [{kept}], #4",
+            "add r6, r1, #0x01010101",
+            "eor r6, r6, r1",
+            "usub8 r0, r0, r11",
+            "sel r6, r6, lr",
+            "and r0, r6, #0x0f0f0f0f",
+            "orr r1, r1, r0, lsl #4",
+            "str r1, [r9], #4",
             // The row that waited had enough, or is reached.
-            "and {j}, {j}, #0x10101010",
-            "orr {t}, {t}, {j}, lsl #3",
-            "str {t}, [{lengths}], #4",
-            "cmp {here}, {end}",
+            "and r6, r6, #0x10101010",
+            "orr r2, r2, r6, lsl #3",
+            "str r2, [r8], #4",
+            "cmp r3, r4",
             "bne 2b",
-            here = inout(reg) here => _, end = in(reg) here.wrapping_add(four),
-            above = inout(reg) above.as_ptr() => _,
-            lengths = inout(reg) lengths => _,
-            kept = inout(reg) kept.as_mut_ptr() => _,
-            step = in(reg) u32::from(step.raw()) * 0x1_0001,
-            pixels = in(reg) u32::from(pixels) * 0x0101_0101,
-            low = in(reg) 0x00ff_00ff,
-            zero = in(reg) 0,
-            a = out(reg) _, b = out(reg) _, t = out(reg) _, j = out(reg) _,
-            options(nostack),
+            "pop {{r6, r7}}",
+            inout("r3") here => _, in("r4") here.wrapping_add(four),
+            inout("r5") above.as_ptr() => _,
+            inout("r8") lengths => _,
+            inout("r9") kept.as_mut_ptr() => _,
+            in("r10") u32::from(step.raw()) * 0x1_0001,
+            in("r11") u32::from(pixels) * 0x0101_0101,
+            in("r12") 0x00ff_00ff,
+            in("lr") 0,
+            out("r0") _, out("r1") _, out("r2") _,
         );
     }
 }

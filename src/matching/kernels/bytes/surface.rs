@@ -9,19 +9,20 @@ use core::arch::asm;
 /// How far averages reach at most, to each side.
 const MOST: usize = RECIPROCALS.len() - 1;
 
-/// By how many answers from one to the farthest, itself among them, an average reaches: the reciprocal of all of them by 2^16,
-/// and above it how many they are. The reciprocal of one, which nothing is multiplied by, is left out.
-static COUNTS: [u32; MOST + 2] = {
-    let mut counts = [0; MOST + 2];
+/// By how far an average reaches: the reciprocal of how many answers that are by 2^16, and above it how many less than none they
+/// are. The reciprocal of one, which nothing is multiplied by, is left out.
+static COUNTS: [u32; MOST + 1] = {
+    let mut counts = [0; MOST + 1];
     let mut reach = 0;
     while reach <= MOST {
-        counts[reach + 1] = (2 * reach as u32 + 1) << 16 | (RECIPROCALS[reach] as u32 & 0xffff);
+        counts[reach] = (2 * reach as u32 + 1).wrapping_neg() << 16 | (RECIPROCALS[reach] as u32 & 0xffff);
         reach += 1;
     }
     counts
 };
 
-/// [`crate::matching::surface::average`]; a length is a byte, that of the answer `x` the byte `x`, and 255 for all above.
+/// [`crate::matching::surface::average`]; a length is a byte, that of the answer `x` the byte `x`: one less than it is, and 255
+/// for all above.
 #[inline(never)]
 pub fn average(answers: &mut [Disparity], lengths: &mut [u16], sums: &mut [u16], step: Disparity, radius: u8) {
     let lengths = bytes_of_halves(lengths);
@@ -48,7 +49,7 @@ macro_rules! count_one {
             "cmp {t}, {step}, lsl #1\n",
             "ite ls\n",
             "uqadd8ls {length}, {length}, {one}\n",
-            "movhi {length}, #1\n",
+            "movhi {length}, #0\n",
             "strb {length}, [{lengths}], #1\n",
             "add {sum}, {sum}, {",
             $here,
@@ -58,7 +59,7 @@ macro_rules! count_one {
     };
 }
 
-/// The pass to the right: for every answer how many of its surface there are up to it, and the sum of all raw disparities up to
+/// The pass to the right: for every answer how many of its surface there are before it, and the sum of all raw disparities up to
 /// it, modulo 2^16, after one for none. 11 instructions an answer.
 #[inline(never)]
 fn count(answers: &[Disparity], lengths: &mut [u8], sums: &mut [u16], step: Disparity) {
@@ -93,18 +94,17 @@ fn count(answers: &[Disparity], lengths: &mut [u8], sums: &mut [u16], step: Disp
     }
 }
 
-/// One answer of [`average_back`]: 26 instructions.
+/// One answer of [`average_back`]: 23 instructions.
 macro_rules! average_one {
     () => {
         concat!(
-            // How many there are from here on: the first of the next surface has the length 1.
-            "cmp {to}, #1\n",
+            // How many there are after it: the first of the next surface has none before it.
+            "cmp {to}, #0\n",
             "ldrb {to}, [{lengths}, #-1]!\n",
             "ite ne\n",
             "addne {from}, {from}, #1\n",
-            "moveq {from}, #1\n",
+            "moveq {from}, #0\n",
             "add {t}, {to}, {from}\n",
-            "sub {t}, {t}, #1\n",
             "usat {t}, #8, {t}\n",
             "strb {t}, [{lengths}]\n",
             // As many to both sides.
@@ -112,17 +112,15 @@ macro_rules! average_one {
             "sel {reach}, {from}, {to}\n",
             "usub16 {t}, {reach}, {most}\n",
             "sel {reach}, {most}, {reach}\n",
+            "ldrh {t}, [{sums}, {reach}, lsl #1]\n",
             "sub {u}, {sums}, {reach}, lsl #1\n",
-            "ldrh {u}, [{u}]\n",
+            "ldrh {u}, [{u}, #-2]\n",
             "sub {sums}, {sums}, #2\n",
-            "add {t}, {sums}, {reach}, lsl #1\n",
-            "ldrh {t}, [{t}]\n",
             "sub {t}, {t}, {u}\n",
             // What the others differ by, over how many they are, rounded: there is no tie.
             "ldr {reach}, [{counts}, {reach}, lsl #2]\n",
             "ldrh {u}, [{answers}, #-2]!\n",
-            "smultb {v}, {reach}, {u}\n",
-            "sub {t}, {t}, {v}\n",
+            "smlatb {t}, {reach}, {u}, {t}\n",
             "smlabb {t}, {t}, {reach}, {half}\n",
             "add {u}, {u}, {t}, asr #16\n",
             "strh {u}, [{answers}]\n",
@@ -130,7 +128,7 @@ macro_rules! average_one {
     };
 }
 
-/// The pass back: makes every answer the average, and every length that of the whole surface. 28 instructions an answer.
+/// The pass back: makes every answer the average, and every length that of the whole surface. 24 instructions an answer.
 #[inline(never)]
 fn average_back(answers: &mut [Disparity], lengths: &mut [u8], sums: &[u16], radius: u8) {
     let count = answers.len();
@@ -139,8 +137,8 @@ fn average_back(answers: &mut [Disparity], lengths: &mut [u8], sums: &[u16], rad
     }
     let first = lengths.as_mut_ptr();
     // SAFETY: from the last of `count` answers and lengths back to the first, they are read and written, two in a round but for
-    // one in the first if `count` is odd. The number `reach` is no more than how many of the surface there are up to an answer,
-    // no more than how many there are from it on, and no more than COUNTS has. So sums are read between the first and the one
+    // one in the first if `count` is odd. The number `reach` is no more than how many of the surface there are before an answer,
+    // no more than how many there are after it, and no more than COUNTS has. So sums are read between the first and the one
     // that stands `count` after it.
     unsafe {
         asm!(
@@ -157,10 +155,10 @@ fn average_back(answers: &mut [Disparity], lengths: &mut [u8], sums: &[u16], rad
             // The sum up to the last.
             sums = inout(reg) sums.as_ptr().add(count) => _,
             counts = in(reg) COUNTS.as_ptr(),
-            most = in(reg) usize::from(radius).min(MOST) + 1,
+            most = in(reg) usize::from(radius).min(MOST),
             half = in(reg) 1 << 15,
-            to = inout(reg) 1 => _, from = inout(reg) 0 => _,
-            reach = out(reg) _, t = inout(reg) count => _, u = out(reg) _, v = out(reg) _,
+            to = inout(reg) 0 => _, from = inout(reg) 0 => _,
+            reach = out(reg) _, t = inout(reg) count => _, u = out(reg) _,
             options(nostack),
         );
     }

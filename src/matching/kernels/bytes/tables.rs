@@ -48,95 +48,100 @@ macro_rules! next {
     };
 }
 
-/// Makes the costs of so many pixels, the last one first, with candidates `apart` apart in both halves of a byte: against a
-/// reversed row whose right codes are the high halves of its bytes; or with `LEFT` what the costs leave of four. Of the row as
-/// many bytes are read as make whole rounds of eight.
-///
-/// 87 instructions for sixteen costs of all codes.
-#[inline(never)]
-pub(super) fn make<const LEFT: bool>(table: &mut Table, row: &[u8], apart: usize, pixels: usize) {
-    let rounds = (pixels + apart).div_ceil(8);
-    if rounds == 0 || 8 * rounds > LINE || row.len() < apart + 8 * rounds {
-        return;
-    }
-    // SAFETY: in each of the rounds eight bytes of the row are read from its beginning on and eight from `apart` on, and as many
-    // written of each line, of which there are `LINE`: `line` is in the one of code 8. What the registers held for the next
-    // round is below the stack's end meanwhile.
-    unsafe {
-        asm!(
-            "2:",
-            "ldr {near_0}, [{row}], #4",
-            "ldr {far_0}, [{row}], #4",
-            "ldr {near_1}, [{far}], #4",
-            "ldr {far_1}, [{far}], #4",
-            // Right codes, the near ones low. Against the opposite code all bits differ that do not.
-            "and {near_0}, {near_0}, #0xf0f0f0f0",
-            "and {near_1}, {near_1}, #0xf0f0f0f0",
-            "orr {near_3}, {near_1}, {near_0}, lsr #4",
-            "eor {near_3}, {near_3}, {all}",
-            "and {far_0}, {far_0}, #0xf0f0f0f0",
-            "and {far_1}, {far_1}, #0xf0f0f0f0",
-            "orr {far_0}, {far_1}, {far_0}, lsr #4",
-            "strd {row}, {far}, [sp, #-16]!",
-            "str {all}, [sp, #8]",
-            "eor {far}, {far_0}, {all}",
-            // Their bits, and the sum of these: what code 0 costs.
-            "and {near_0}, {ones}, {near_3}",
-            "and {near_1}, {ones}, {near_3}, lsr #1",
-            "and {near_2}, {ones}, {near_3}, lsr #2",
-            "and {near_3}, {ones}, {near_3}, lsr #3",
-            "add {row}, {near_0}, {near_1}",
-            "add {row}, {row}, {near_2}",
-            "add {row}, {row}, {near_3}",
-            "and {far_0}, {ones}, {far}",
-            "and {far_1}, {ones}, {far}, lsr #1",
-            "and {far_2}, {ones}, {far}, lsr #2",
-            "and {far}, {ones}, {far}, lsr #3",
-            "add {all}, {far_0}, {far_1}",
-            "add {all}, {all}, {far_2}",
-            "add {all}, {all}, {far}",
-            "strd {row}, {all}, [{line}, #{length} * -8]",
-            // How much more a code costs that has the bit.
-            "sub {near_0}, {ones}, {near_0}, lsl #1",
-            "sub {near_1}, {ones}, {near_1}, lsl #1",
-            "sub {near_2}, {ones}, {near_2}, lsl #1",
-            "sub {near_3}, {ones}, {near_3}, lsl #1",
-            "sub {far_0}, {ones}, {far_0}, lsl #1",
-            "sub {far_1}, {ones}, {far_1}, lsl #1",
-            "sub {far_2}, {ones}, {far_2}, lsl #1",
-            "sub {far}, {ones}, {far}, lsl #1",
-            next!("add", "0", "1"),
-            next!("add", "1", "3"),
-            next!("sub", "0", "2"),
-            next!("add", "2", "6"),
-            next!("add", "0", "7"),
-            next!("sub", "1", "5"),
-            next!("sub", "0", "4"),
-            "add {row}, {row}, {near_3}",
-            "add {all}, {all}, {far}",
-            "strd {row}, {all}, [{line}, #{length} * (12 - 8)]",
-            next!("add", "0", "13"),
-            next!("add", "1", "15"),
-            next!("sub", "0", "14"),
-            next!("sub", "2", "10"),
-            next!("add", "0", "11"),
-            next!("sub", "1", "9"),
-            next!("sub", "0", "8"),
-            "add {line}, {line}, #8",
-            "ldr {all}, [sp, #8]",
-            "ldrd {row}, {far}, [sp], #16",
-            "subs {rounds}, {rounds}, #1",
-            "bne 2b",
-            rounds = inout(reg) rounds => _,
-            row = inout(reg) row.as_ptr() => _, far = inout(reg) row.as_ptr().add(apart) => _,
-            line = inout(reg) table.as_mut_ptr().cast::<u8>().add(8 * LINE) => _,
-            all = inout(reg) if LEFT { u32::MAX } else { 0 } => _,
-            ones = in(reg) ONE, length = const LINE,
-            near_0 = out(reg) _, near_1 = out(reg) _, near_2 = out(reg) _, near_3 = out(reg) _,
-            far_0 = out(reg) _, far_1 = out(reg) _, far_2 = out(reg) _,
-        );
-    }
+macro_rules! make {
+    ($(#[$doc:meta])* $name:ident, $differ:literal) => {
+        $(#[$doc])*
+        #[inline(never)]
+        pub(super) fn $name(table: &mut Table, row: &[u8], apart: usize, pixels: usize) {
+            let rounds = (pixels + apart).div_ceil(8);
+            if rounds == 0 || 8 * rounds > LINE || row.len() < apart + 8 * rounds {
+                return;
+            }
+            // SAFETY: in each of the rounds eight bytes of the row are read from its beginning on and eight from `apart` on, and as many
+            // written of each line, of which there are `LINE`: `line` is in the one of code 8. What the registers held for the next
+            // round is below the stack's end meanwhile.
+            unsafe {
+                asm!(
+                    "2:",
+                    "ldr {near_0}, [{row}], #4",
+                    "ldr {far_0}, [{row}], #4",
+                    "ldr {near_1}, [{far}], #4",
+                    "ldr {far_1}, [{far}], #4",
+                    // Right codes, of the near words of the row's two the first low.
+                    "orr {near_3}, {near_1}, {near_0}, lsr #4",
+                    "strd {row}, {far}, [sp, #-8]!",
+                    "orr {far}, {far_1}, {far_0}, lsr #4",
+                    // Their bits, and the sum of these: what code 0 costs.
+                    concat!($differ, " {near_0}, {ones}, {near_3}"),
+                    concat!($differ, " {near_1}, {ones}, {near_3}, lsr #1"),
+                    concat!($differ, " {near_2}, {ones}, {near_3}, lsr #2"),
+                    concat!($differ, " {near_3}, {ones}, {near_3}, lsr #3"),
+                    "add {row}, {near_0}, {near_1}",
+                    "add {row}, {row}, {near_2}",
+                    "add {row}, {row}, {near_3}",
+                    concat!($differ, " {far_0}, {ones}, {far}"),
+                    concat!($differ, " {far_1}, {ones}, {far}, lsr #1"),
+                    concat!($differ, " {far_2}, {ones}, {far}, lsr #2"),
+                    concat!($differ, " {far}, {ones}, {far}, lsr #3"),
+                    "add {all}, {far_0}, {far_1}",
+                    "add {all}, {all}, {far_2}",
+                    "add {all}, {all}, {far}",
+                    "strd {row}, {all}, [{line}, #{length} * -8]",
+                    // How much more a code costs that has the bit.
+                    "sub {near_0}, {ones}, {near_0}, lsl #1",
+                    "sub {near_1}, {ones}, {near_1}, lsl #1",
+                    "sub {near_2}, {ones}, {near_2}, lsl #1",
+                    "sub {near_3}, {ones}, {near_3}, lsl #1",
+                    "sub {far_0}, {ones}, {far_0}, lsl #1",
+                    "sub {far_1}, {ones}, {far_1}, lsl #1",
+                    "sub {far_2}, {ones}, {far_2}, lsl #1",
+                    "sub {far}, {ones}, {far}, lsl #1",
+                    next!("add", "0", "1"),
+                    next!("add", "1", "3"),
+                    next!("sub", "0", "2"),
+                    next!("add", "2", "6"),
+                    next!("add", "0", "7"),
+                    next!("sub", "1", "5"),
+                    next!("sub", "0", "4"),
+                    "add {row}, {row}, {near_3}",
+                    "add {all}, {all}, {far}",
+                    "strd {row}, {all}, [{line}, #{length} * (12 - 8)]",
+                    next!("add", "0", "13"),
+                    next!("add", "1", "15"),
+                    next!("sub", "0", "14"),
+                    next!("sub", "2", "10"),
+                    next!("add", "0", "11"),
+                    next!("sub", "1", "9"),
+                    next!("sub", "0", "8"),
+                    "add {line}, {line}, #8",
+                    "ldrd {row}, {far}, [sp], #8",
+                    "subs {rounds}, {rounds}, #1",
+                    "bne 2b",
+                    rounds = inout(reg) rounds => _,
+                    row = inout(reg) row.as_ptr() => _, far = inout(reg) row.as_ptr().add(apart) => _,
+                    line = inout(reg) table.as_mut_ptr().cast::<u8>().add(8 * LINE) => _,
+                    all = out(reg) _,
+                    ones = in(reg) ONE, length = const LINE,
+                    near_0 = out(reg) _, near_1 = out(reg) _, near_2 = out(reg) _, near_3 = out(reg) _,
+                    far_0 = out(reg) _, far_1 = out(reg) _, far_2 = out(reg) _,
+                );
+            }
+        }
+    };
 }
+
+make!(
+    /// Makes the costs of so many pixels, the last one first, with candidates `apart` apart in both halves of a byte: against a
+    /// reversed row whose right codes are the high halves of its bytes, with nothing in the low ones. Of the row as many bytes are
+    /// read as make whole rounds of eight.
+    ///
+    /// 79 instructions for sixteen costs of all codes.
+    make, "and"
+);
+make!(
+    /// The same of what the costs leave of four: how many bits are equal.
+    make_equal, "bic"
+);
 
 /// The costs of a code from a place on.
 #[inline(always)]

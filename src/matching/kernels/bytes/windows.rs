@@ -24,6 +24,7 @@ pub(super) fn select<S: Windowed, const STRIDE: usize>(
     columns: &[u32],
     select: Select<'_>,
 ) {
+    const { assert!(2 * S::RADIUS_X + 1 == rows::ACROSS) };
     let Select { disparities, winners, unique } = select;
     // Never none.
     let words = if STRIDE > 0 { STRIDE / 4 } else { (row.stride / 4).max(1) };
@@ -33,78 +34,97 @@ pub(super) fn select<S: Windowed, const STRIDE: usize>(
     let begin = row.min_disparity.min(row.width);
     let from = |column: usize| columns.get(column * words..).unwrap_or(&[]);
     let first = OUTSIDE + begin - S::RADIUS_X - 1;
-    // All columns have the same sum too many, and a window as many columns.
-    let bias = if S::BITS > 4 { 0 } else { from(first).first().copied().unwrap_or(0) };
-    let diameter = 2 * S::RADIUS_X + 1;
-    let inside = room.get_mut(1..=words).unwrap_or_default();
-    inside.fill(0);
-    // Nothing differs in the columns outside.
-    let outside = OUTSIDE - first.min(OUTSIDE);
-    for column in from(first).chunks_exact(words).take(diameter).skip(outside) {
-        for (sum, &column) in inside.iter_mut().zip(column) {
-            *sum = add(*sum, sub(digits::<S>(column), bias));
-        }
-    }
+    // All columns have the same sum too many, those outside nothing else, and a window as many columns.
+    let bias = if S::BITS > 4 { 0 } else { from(first).first().copied().unwrap_or(0) & 0xff };
+    let none = (0u32.wrapping_sub(rows::ACROSS as u32 * bias) & 0xff) * ONE;
+    let in_assembly = STRIDE > 0 && disparities == row.stride;
+    // As far as here pixels have few candidates, and sums of no others.
+    let fewest = if in_assembly { fewest_of(STRIDE) } else { 4 * words };
+    begin_with::<S>(none, from(first + 1), words, (0, fewest / 4), room);
     let judged = unique.is_asked();
     let mut judge = unique.starting_at(begin);
-    let winners = winners.get_mut(begin..).unwrap_or_default();
-    let mut x = 0;
-    while let Some(rest) = winners.get_mut(x..).filter(|rest| !rest.is_empty()) {
-        let candidates = disparities.min(x + 1);
-        // The first pixels have fewer candidates than there are lanes.
-        let growing = candidates < disparities;
-        let alike = if judged || STRIDE == 0 || disparities < row.stride || candidates == 1 {
-            // One by one where they are judged, for their sums are looked at.
-            1
-        } else if growing {
-            rest.len().min(disparities - candidates)
-        } else {
-            rest.len()
-        };
-        let next = rest.get_mut(..alike).unwrap_or_default();
-        let by_words = STRIDE == 0 || disparities < row.stride || candidates == 1;
-        if by_words || !in_assembly::<S, STRIDE>(growing.then_some(candidates), room, from(first + x), next) {
-            for (winner, x) in next.iter_mut().zip(x..) {
-                let candidates = disparities.min(x + 1);
-                *winner = next_among::<S>(candidates, from(first + x + diameter), from(first + x), room);
-            }
+    let Some((winner, winners)) = winners.get_mut(begin..).and_then(|winners| winners.split_first_mut()) else {
+        return;
+    };
+    // The first pixel has one candidate.
+    *winner = at_an_end(room.get(1).map_or(0, |sum| sum << 8 & 0xff00), 1, bytes_of(room));
+    if judged {
+        judge(winner.cost(), &mut || second_of(0, 1, room));
+    }
+    if in_assembly && !judged {
+        let (next, winners) = winners.split_at_mut(winners.len().min(fewest - 1));
+        run::<S, STRIDE>(Some((2, true)), room, from(first + 1), next);
+        begin_with::<S>(none, from(first + fewest), words, (fewest / 4, words), room);
+        let (next, winners) = winners.split_at_mut(winners.len().min(disparities - fewest));
+        run::<S, STRIDE>(Some((fewest + 1, false)), room, from(first + fewest), next);
+        run::<S, STRIDE>(None, room, from(first + disparities), winners);
+        return;
+    }
+    // One by one where they are judged, for their sums are looked at.
+    for (winner, x) in winners.iter_mut().zip(1..) {
+        if x == fewest {
+            begin_with::<S>(none, from(first + x), words, (fewest / 4, words), room);
         }
-        if let ([winner], true) = (next, judged) {
+        let candidates = disparities.min(x + 1);
+        let few = (x < disparities).then_some((candidates, x < fewest));
+        if !in_assembly || !run::<S, STRIDE>(few, room, from(first + x), core::slice::from_mut(winner)) {
+            *winner = next_among::<S>(candidates, from(first + x + rows::ACROSS), from(first + x), room);
+        }
+        if judged {
             judge(winner.cost(), &mut || second_of(winner.disparity() as usize, candidates, room));
         }
-        x += alike;
     }
 }
 
-/// The winners of pixels of which the first has `first` candidates, each one more than the one before it; or if it is `None`,
-/// of pixels for which all are candidates. Whether this core and this number of candidates have such a loop.
+/// How many candidates the first pixels have sums of, in assembly.
+const fn fewest_of(stride: usize) -> usize {
+    if stride == 64 { 32 } else { 16 }
+}
+
+/// The sums of the window under the first columns, in words from one to another, from what a window of `none` has.
 #[inline(always)]
-fn in_assembly<S: Windowed, const STRIDE: usize>(
-    first: Option<usize>,
+fn begin_with<S: Windowed>(none: u32, columns: &[u32], words: usize, (from, to): (usize, usize), room: &mut [u32]) {
+    let sums = room.get_mut(1 + from..1 + to).unwrap_or_default();
+    for (four, sums) in (from..).step_by(4).zip(sums.as_chunks_mut().0) {
+        let columns = columns.get(four..).unwrap_or(&[]);
+        if S::COLUMN_SHIFT == 0 {
+            rows::begin_fast(none, columns, words, sums);
+        } else {
+            rows::begin_block(none, columns, words, sums);
+        }
+    }
+}
+
+/// The winners of pixels of which the first has so many candidates, each one more than the one before it, and whether they
+/// have no more than the fewest; or if it is `None`, of pixels for which all are candidates. Whether there is such a loop.
+#[inline(always)]
+fn run<S: Windowed, const STRIDE: usize>(
+    few: Option<(usize, bool)>,
     room: &mut [u32],
     columns: &[u32],
     winners: &mut [Winner],
 ) -> bool {
-    const { assert!(2 * S::RADIUS_X + 1 == rows::ACROSS) };
     macro_rules! run {
-        ($all:ident, $few:ident) => {{
+        ($all:ident, $fewest:ident, $few:ident) => {{
             let Some(sums) = room.first_chunk_mut() else { return false };
-            match first {
-                None => rows::$all(sums, columns.as_chunks().0, winners),
-                Some(first) => rows::$few(sums, columns.as_chunks().0, winners, first),
+            let columns = columns.as_chunks().0;
+            match few {
+                None => rows::$all(sums, columns, winners),
+                Some((first, true)) => rows::$fewest(sums, columns, winners, first),
+                Some((first, false)) => rows::$few(sums, columns, winners, first),
             }
             true
         }};
     }
     match (S::COLUMN_SHIFT, STRIDE) {
-        (0, 16) => run!(fast_16, fast_few_of_16),
-        (0, 32) => run!(fast_32, fast_few_of_32),
-        (0, 48) => run!(fast_48, fast_few_of_48),
-        (0, 64) => run!(fast_64, fast_few_of_64),
-        (2, 16) => run!(block_16, block_few_of_16),
-        (2, 32) => run!(block_32, block_few_of_32),
-        (2, 48) => run!(block_48, block_few_of_48),
-        (2, 64) => run!(block_64, block_few_of_64),
+        (0, 16) => run!(fast_16, fast_few_of_16, fast_few_of_16),
+        (0, 32) => run!(fast_32, fast_fewest_of_32, fast_few_of_32),
+        (0, 48) => run!(fast_48, fast_fewest_of_48, fast_few_of_48),
+        (0, 64) => run!(fast_64, fast_fewest_of_64, fast_few_of_64),
+        (2, 16) => run!(block_16, block_few_of_16, block_few_of_16),
+        (2, 32) => run!(block_32, block_fewest_of_32, block_few_of_32),
+        (2, 48) => run!(block_48, block_fewest_of_48, block_few_of_48),
+        (2, 64) => run!(block_64, block_fewest_of_64, block_few_of_64),
         _ => false,
     }
 }

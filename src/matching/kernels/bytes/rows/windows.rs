@@ -1,125 +1,10 @@
-//! Columns into windows, windows into winners.
+//! Columns into windows, windows into winners: the loops. What is in which register `super::pixel` says.
 
 use crate::matching::kernels::Winner;
 use core::arch::asm;
 
-/// Eight window sums one column on: 8 instructions, and 4 more where only some digits of the columns count.
-macro_rules! slide_eight {
-    (all, $d:literal) => {
-        concat!(
-            "ldrd {s0}, {s1}, [{sums}, #(4 + ",
-            $d,
-            ")]\n",
-            "ldrd {v0}, {v1}, [{column}, #({across} + ",
-            $d,
-            ")]\n",
-            "uadd8 {s0}, {s0}, {v0}\n",
-            "uadd8 {s1}, {s1}, {v1}\n",
-            "ldrd {v0}, {v1}, [{column}, #",
-            $d,
-            "]\n",
-            "usub8 {s0}, {s0}, {v0}\n",
-            "usub8 {s1}, {s1}, {v1}\n",
-            "strd {s0}, {s1}, [{sums}, #(4 + ",
-            $d,
-            ")]\n",
-        )
-    };
-    (quarters, $d:literal) => {
-        concat!(
-            "ldrd {s0}, {s1}, [{sums}, #(4 + ",
-            $d,
-            ")]\n",
-            "ldrd {v0}, {v1}, [{column}, #({across} + ",
-            $d,
-            ")]\n",
-            "and {v0}, {mask}, {v0}, lsr #2\n",
-            "and {v1}, {mask}, {v1}, lsr #2\n",
-            "add {s0}, {s0}, {v0}\n",
-            "add {s1}, {s1}, {v1}\n",
-            "ldrd {v0}, {v1}, [{column}, #",
-            $d,
-            "]\n",
-            "and {v0}, {mask}, {v0}, lsr #2\n",
-            "and {v1}, {mask}, {v1}, lsr #2\n",
-            "sub {s0}, {s0}, {v0}\n",
-            "sub {s1}, {s1}, {v1}\n",
-            "strd {s0}, {s1}, [{sums}, #(4 + ",
-            $d,
-            ")]\n",
-        )
-    };
-}
-
-/// Eight sums of which those that are no candidate's do not win: 4 instructions.
-macro_rules! mask_eight {
-    (all, $d:literal) => {
-        ""
-    };
-    (few, $d:literal) => {
-        concat!(
-            "ldr {v0}, [{masks}, #",
-            $d,
-            "]\n",
-            "ldr {v1}, [{masks}, #(4 + ",
-            $d,
-            ")]\n",
-            "orr {s0}, {s0}, {v0}\n",
-            "orr {s1}, {s1}, {v1}\n",
-        )
-    };
-}
-
-/// Where a word's sums are less than the least, they are it, and the word their place: 4 instructions.
-macro_rules! take_less {
-    ($sums:literal, $place:literal) => {
-        concat!(
-            "usub8 {v0}, ",
-            $sums,
-            ", {least}\n",
-            "sel {least}, {least}, ",
-            $sums,
-            "\n",
-            "mov {v0}, #",
-            $place,
-            "\n",
-            "sel {places}, {places}, {v0}\n",
-        )
-    };
-}
-
-/// The first two words: 5 instructions.
-macro_rules! take_first {
-    () => {
-        concat!(
-            "usub8 {v0}, {s1}, {s0}\n",
-            "sel {least}, {s0}, {s1}\n",
-            "mov {places}, #0\n",
-            "mov {v0}, #0x04040404\n",
-            "sel {places}, {places}, {v0}\n",
-        )
-    };
-}
-
-/// The lanes' own places added: an instruction, and 2 more where no register is left for them.
-macro_rules! add_lanes {
-    (all) => {
-        "add {places}, {places}, {lanes}\n"
-    };
-    (few) => {
-        "movw {v0}, #0x0100\nmovt {v0}, #0x0302\nadd {places}, {places}, {v0}\n"
-    };
-}
-
-/// Whether the disparity under `s1` and above is at an end, and what changes from pixel to pixel.
-macro_rules! compare_with_ends {
-    (all) => {
-        "cmp {s1}, #({stride} - 2)\n"
-    };
-    (few) => {
-        concat!("cmp {s1}, {last}\n", "sub {masks}, {masks}, #1\n", "add {last}, {last}, #1\n")
-    };
-}
+/// How many columns after the one that leaves a window the one is that enters it.
+pub(in super::super) const ACROSS: usize = 9;
 
 /// No candidate, for the most candidates, then one for each of them.
 static MASKS: [u8; 128] = {
@@ -132,125 +17,156 @@ static MASKS: [u8; 128] = {
     masks
 };
 
+/// [`winners_of`] for all candidates.
 macro_rules! winners {
-    ($name:ident, $digits:ident $(of $mask:literal)?, $which:ident $(with $lanes:literal)? $(from $first:ident)?, $stride:literal,
-        [$(($d:literal, $even:literal, $odd:literal)),*]) => {
-        /// Moves the window on from column to column, and selects the winner of each. `columns` are those that leave, one
-        /// for each winner and [`ACROSS`] more that enter. The first winner has `first` candidates and each one more than
-        /// the one before it; where that is not asked for all have all. 21 instructions a pixel beside 16 for eight of its
-        /// candidates, 4 more where only some digits of the columns count; 4 for eight and 4 more where not all are candidates; 6
-        /// more where a winner is at an end.
+    ($name:ident, $rounds:tt, $digits:ident, $stride:literal $ends:ident,
+        ($before:literal, $after:literal, $back:literal), [$($at:literal),*],
+        $blocks:tt) => {
+        /// Moves the window on from column to column, and selects the winner of each, with all candidates. `columns` are those
+        /// that leave, one for each winner and [`ACROSS`] more that enter. 18 instructions a pixel, two more where a round has
+        /// one, 26 for every sixteen of its candidates less 3 for the first, and what `slide` says more; 7 more where a winner
+        /// is at an end.
         #[inline(never)]
         pub(in super::super) fn $name(
             sums: &mut [u32; $stride / 4 + 2],
             columns: &[[u32; $stride / 4]],
             winners: &mut [Winner],
-            $($first: usize,)?
         ) {
             if winners.is_empty() || columns.len() < winners.len() + ACROSS {
                 return;
             }
-            $(
-                if $first < 2 || $first + winners.len() > $stride {
-                    return;
-                }
-                let masks = MASKS.as_ptr().wrapping_add(64 - $first);
-                let last = $first - 2;
-            )?
+            let count = winners.len();
             let winners = winners.as_mut_ptr_range();
-            // SAFETY: the loop writes as many winners as there are. For each it reads two columns, of which there are
-            // enough, and reads and writes the sums, of which the one before the first and the one after the last are
-            // read as neighbours of a winner. Masks begin as many bytes before their middle as there are candidates, of
-            // which there are less than half of all masks.
+            // SAFETY: the loop writes as many winners as there are, one in a round; or two, but for one in the first if their
+            // number is odd. For each it reads two columns, of which there are enough, and reads and writes the sums, of which
+            // the word before the first and the one after the last are read as neighbours of a winner. The stack and the two registers
+            // that no operand may be are left as they were.
             unsafe {
                 asm!(
+                    enter!($digits),
+                    places!($($at),*),
+                    if_twice!($rounds, "tst r0, #1\nbne 3f\n"),
                     "2:",
-                    slide_eight!($digits, "0"),
-                    mask_eight!($which, "0"),
-                    take_first!(),
-                    $(
-                        slide_eight!($digits, $d),
-                        mask_eight!($which, $d),
-                        take_less!("{s0}", $even),
-                        take_less!("{s1}", $odd),
-                    )*
-                    // Half-words of sum and place, two and two; the least of the four goes to the low half.
-                    add_lanes!($which),
-                    "uxtb16 {s0}, {places}",
-                    "uxtb16 {s1}, {least}",
-                    "orr {s0}, {s0}, {s1}, lsl #8",
-                    "uxtb16 {s1}, {places}, ror #8",
-                    "uxtb16 {v0}, {least}, ror #8",
-                    "orr {s1}, {s1}, {v0}, lsl #8",
-                    "usub16 {v0}, {s0}, {s1}",
-                    "sel {s0}, {s1}, {s0}",
-                    "ror {s1}, {s0}, #16",
-                    "usub16 {v0}, {s0}, {s1}",
-                    "sel {s0}, {s1}, {s0}",
-                    "uxtb {s0}, {s0}",
-                    // With the sums beside it.
-                    "add {s1}, {sums}, {s0}",
-                    "ldr {v0}, [{s1}, #3]",
-                    "sub {s1}, {s0}, #1",
-                    compare_with_ends!($which),
-                    "bhs 4f",
+                    if_twice!($rounds, pixel!($digits, "4", "5", $back, $blocks $ends)),
                     "3:",
-                    "bfi {v0}, {s0}, #24, #8",
-                    "str {v0}, [{winner}], #4",
-                    "add {column}, {column}, #{stride}",
-                    "cmp {winner}, {end}",
+                    pixel!($digits, "6", "7", $back, $blocks $ends),
+                    compare_with_last!($digits),
                     "bne 2b",
-                    "b 5f",
-                    // At an end the one beside it that there is stands for both.
-                    "4:",
-                    "cmp {s0}, #0",
-                    "ite eq",
-                    "lsreq {s1}, {v0}, #16",
-                    "movne {s1}, {v0}",
-                    "bfi {v0}, {s1}, #0, #8",
-                    "bfi {v0}, {s1}, #16, #8",
-                    "b 3b",
-                    "5:",
-                    column = inout(reg) columns.as_ptr() => _,
-                    sums = in(reg) sums.as_mut_ptr(),
-                    winner = inout(reg) winners.start => _,
-                    end = in(reg) winners.end,
-                    $(mask = in(reg) $mask,)?
-                    $(lanes = in(reg) $lanes,)?
-                    $(masks = inout(reg) masks => _, last = inout(reg) { let _ = $first; last } => _,)?
-                    least = out(reg) _, places = out(reg) _,
-                    s0 = out(reg) _, s1 = out(reg) _, v0 = out(reg) _, v1 = out(reg) _,
-                    across = const ACROSS * $stride, stride = const $stride,
-                    options(nostack),
+                    "b 8f",
+                    if_twice!($rounds, concat!("4:\n", at_an_end!(), "b 5b\n")),
+                    "6:",
+                    at_an_end!(),
+                    "b 7b",
+                    "8:",
+                    "add sp, sp, #48",
+                    "pop {{r6, r7}}",
+                    ends = const $stride - 2, beside = const -1 - $after,
+                    inout("r0") count => _, inout("r1") winners.end => _,
+                    out("r2") _, out("r3") _, out("r4") _, out("r5") _, out("r8") _, out("r9") _,
+                    inout("r10") columns.as_ptr().add(ACROSS) => _,
+                    inout("r11") columns.as_ptr() => _,
+                    inout("r12") sums.as_mut_ptr().cast::<u8>().add(4 + $before) => _,
+                    inout("lr") winners.start => _,
                 );
             }
         }
     };
 }
 
-/// How many columns after the one that leaves a window the one is that enters it.
-pub(in super::super) const ACROSS: usize = 9;
-
-macro_rules! winners_of {
-    ($stride:literal: [$fast:ident, $fast_few:ident, $block:ident, $block_few:ident], $eights:tt) => {
-        winners!($fast, all, all with 0x0302_0100, $stride, $eights);
-        winners!($fast_few, all, few from first, $stride, $eights);
-        winners!($block, quarters of 0x3f3f_3f3fu32, all with 0x0302_0100, $stride, $eights);
-        winners!($block_few, quarters of 0x3f3f_3f3fu32, few from first, $stride, $eights);
+/// [`winners_of`] for the first pixels, which have fewer candidates.
+macro_rules! few_winners {
+    ($name:ident, $digits:ident, $stride:literal, $most:literal, ($before:literal, $after:literal, $back:literal),
+        [$($at:literal),*], $blocks:tt) => {
+        /// The same where the first winner has `first` candidates and each one more than the one before it, up to
+        #[doc = concat!("` ", stringify!($most), " `")]
+        /// of them, of which alone there are sums. 14 instructions a pixel more, and 9 for every sixteen that may be none.
+        #[inline(never)]
+        pub(in super::super) fn $name(
+            sums: &mut [u32; $stride / 4 + 2],
+            columns: &[[u32; $stride / 4]],
+            winners: &mut [Winner],
+            first: usize,
+        ) {
+            if winners.is_empty() || columns.len() < winners.len() + ACROSS {
+                return;
+            }
+            if first < 2 || first + winners.len() > $most + 1 {
+                return;
+            }
+            let winners = winners.as_mut_ptr_range();
+            // SAFETY: as above, but for a winner in every round. Masks begin as many bytes before their middle as there are
+            // candidates: fewer than half of all masks, which are more than sums that are read.
+            unsafe {
+                asm!(
+                    enter!($digits),
+                    "strd r2, r3, [sp, #40]",
+                    places!($($at),*),
+                    "2:",
+                    pixel!($digits, "4", "5", $back, $blocks few),
+                    compare_with_last!($digits),
+                    "bne 2b",
+                    "b 8f",
+                    "4:",
+                    at_an_end!(),
+                    "b 5b",
+                    "8:",
+                    "add sp, sp, #48",
+                    "pop {{r6, r7}}",
+                    beside = const -1 - $after,
+                    out("r0") _, inout("r1") winners.end => _,
+                    inout("r2") first - 2 => _, inout("r3") MASKS.as_ptr().wrapping_add(64 - first) => _,
+                    out("r4") _, out("r5") _, out("r8") _, out("r9") _,
+                    inout("r10") columns.as_ptr().add(ACROSS) => _,
+                    inout("r11") columns.as_ptr() => _,
+                    inout("r12") sums.as_mut_ptr().cast::<u8>().add(4 + $before) => _,
+                    inout("lr") winners.start => _,
+                );
+            }
+        }
     };
 }
 
-winners_of!(16: [fast_16, fast_few_of_16, block_16, block_few_of_16],
-    [("8", "0x08080808", "0x0c0c0c0c")]);
-winners_of!(32: [fast_32, fast_few_of_32, block_32, block_few_of_32],
-    [("8", "0x08080808", "0x0c0c0c0c"),
-    ("16", "0x10101010", "0x14141414"), ("24", "0x18181818", "0x1c1c1c1c")]);
-winners_of!(48: [fast_48, fast_few_of_48, block_48, block_few_of_48],
-    [("8", "0x08080808", "0x0c0c0c0c"),
-    ("16", "0x10101010", "0x14141414"), ("24", "0x18181818", "0x1c1c1c1c"),
-    ("32", "0x20202020", "0x24242424"), ("40", "0x28282828", "0x2c2c2c2c")]);
-winners_of!(64: [fast_64, fast_few_of_64, block_64, block_few_of_64],
-    [("8", "0x08080808", "0x0c0c0c0c"),
-    ("16", "0x10101010", "0x14141414"), ("24", "0x18181818", "0x1c1c1c1c"),
-    ("32", "0x20202020", "0x24242424"), ("40", "0x28282828", "0x2c2c2c2c"),
-    ("48", "0x30303030", "0x34343434"), ("56", "0x38383838", "0x3c3c3c3c")]);
+/// The loops for so many candidates: for all of them, and for the first pixels. For each of them: how many bytes after the first
+/// sum `r12` stands before a pixel, and how many once its sums are read; what makes up for what the pointers moved otherwise
+/// than they should; where the places of later blocks stand; and the blocks.
+macro_rules! winners_of {
+    (16, $digits:ident: $all:ident, $few:ident) => {
+        winners!($all, 2, $digits, 16 power, (0, 0, ""), [], [all "ldmia r12" "stmia r12"]);
+        few_winners!($few, $digits, 16, 16, (0, 0, ""), [], [few "ldmia r12" "stmia r12"]);
+    };
+    (32, $digits:ident: $all:ident, $fewest:ident, $few:ident) => {
+        winners!($all, 2, $digits, 32 power, (16, 16, ""), ["8"],
+            [all "ldmdb r12" "stmdb r12", all "16" "ldmia r12" "stmia r12"]);
+        few_winners!($fewest, $digits, 32, 16, (0, 0, "add r10, r10, #16\nadd r11, r11, #16\n"), [],
+            [few "ldmia r12" "stmia r12"]);
+        few_winners!($few, $digits, 32, 32, (16, 16, ""), ["8"],
+            [all "ldmdb r12" "stmdb r12", few "16" "ldmia r12" "stmia r12"]);
+    };
+    (48, $digits:ident: $all:ident, $fewest:ident, $few:ident) => {
+        winners!($all, 1, $digits, 48 other, (16, 32, "sub r12, r12, #16\n"), ["8", "16"],
+            [all "ldmdb r12" "stmdb r12", all "16" "ldmia r12" "stmia r12!", all "32" "ldmia r12" "stmia r12"]);
+        few_winners!($fewest, $digits, 48, 16, (0, 0, "add r10, r10, #32\nadd r11, r11, #32\n"), [],
+            [few "ldmia r12" "stmia r12"]);
+        few_winners!($few, $digits, 48, 48, (16, 32, "sub r12, r12, #16\n"), ["8", "16"],
+            [all "ldmdb r12" "stmdb r12", few "16" "ldmia r12" "stmia r12!", few "32" "ldmia r12" "stmia r12"]);
+    };
+    (64, $digits:ident: $all:ident, $fewest:ident, $few:ident) => {
+        winners!($all, 1, $digits, 64 power, (16, 48, "sub r12, r12, #32\n"), ["8", "16", "24"],
+            [all "ldmdb r12" "stmdb r12", all "16" "ldmia r12" "stmia r12!", all "32" "ldmia r12" "stmia r12!",
+            all "48" "ldmia r12" "stmia r12"]);
+        few_winners!($fewest, $digits, 64, 32, (16, 16, "add r10, r10, #32\nadd r11, r11, #32\n"), ["8"],
+            [few "ldmdb r12" "stmdb r12", few "16" "ldmia r12" "stmia r12"]);
+        few_winners!($few, $digits, 64, 64, (16, 48, "sub r12, r12, #32\n"), ["8", "16", "24"],
+            [all "ldmdb r12" "stmdb r12", all "16" "ldmia r12" "stmia r12!", few "32" "ldmia r12" "stmia r12!",
+            few "48" "ldmia r12" "stmia r12"]);
+    };
+}
+
+winners_of!(16, all: fast_16, fast_few_of_16);
+winners_of!(32, all: fast_32, fast_fewest_of_32, fast_few_of_32);
+winners_of!(48, all: fast_48, fast_fewest_of_48, fast_few_of_48);
+winners_of!(64, all: fast_64, fast_fewest_of_64, fast_few_of_64);
+winners_of!(16, quarters: block_16, block_few_of_16);
+winners_of!(32, quarters: block_32, block_fewest_of_32, block_few_of_32);
+winners_of!(48, quarters: block_48, block_fewest_of_48, block_few_of_48);
+winners_of!(64, quarters: block_64, block_fewest_of_64, block_few_of_64);

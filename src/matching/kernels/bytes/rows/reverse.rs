@@ -1,0 +1,53 @@
+//! A row of codes from right to left.
+
+use core::arch::asm;
+
+/// The bytes of a row from `last` back, of each the bits of a mask; before the row its first stands for them, and where there is
+/// no row, 0. 16 instructions for sixteen.
+#[inline(never)]
+pub(in super::super) fn reverse(row: &[u8], last: i32, mask: u32, out: &mut [u32]) {
+    let begin = row.get(..(last + 1).max(0) as usize).unwrap_or(&[]);
+    let count = (begin.len() / 16).min(out.len() / 4);
+    let rest = begin.get(..begin.len() - 16 * count).unwrap_or(&[]);
+    if count > 0 {
+        // SAFETY: of sixteen bytes `count` times, the last ones first, as many words are made: the row has so many, and `out`.
+        unsafe {
+            asm!(
+                "2:",
+                "ldr {d}, [{row}, #-4]",
+                "ldr {c}, [{row}, #-8]",
+                "ldr {b}, [{row}, #-12]",
+                "ldr {a}, [{row}, #-16]!",
+                "and {d}, {d}, {mask}",
+                "and {c}, {c}, {mask}",
+                "and {b}, {b}, {mask}",
+                "and {a}, {a}, {mask}",
+                "rev {d}, {d}",
+                "rev {c}, {c}",
+                "rev {b}, {b}",
+                "rev {a}, {a}",
+                "strd {d}, {c}, [{out}], #8",
+                "strd {b}, {a}, [{out}], #8",
+                "subs {count}, {count}, #1",
+                "bne 2b",
+                row = inout(reg) begin.as_ptr_range().end => _,
+                out = inout(reg) out.as_mut_ptr() => _,
+                count = inout(reg) count => _,
+                mask = in(reg) mask,
+                a = out(reg) _, b = out(reg) _, c = out(reg) _, d = out(reg) _,
+                options(nostack),
+            );
+        }
+    }
+    let (rest, words) = rest.as_rchunks::<4>();
+    let first = (u32::from(row.first().copied().unwrap_or(0)) * 0x0101_0101) & mask;
+    let out = out.get_mut(4 * count..).unwrap_or_default();
+    for (out, word) in out.iter_mut().zip(words.iter().rev()) {
+        *out = u32::from_be_bytes(*word) & mask;
+    }
+    let out = out.get_mut(words.len()..).unwrap_or_default();
+    if let Some((next, out)) = out.split_first_mut() {
+        *next = rest.iter().fold(first, |word, &byte| word << 8 | u32::from(byte)) & mask;
+        out.fill(first);
+    }
+}

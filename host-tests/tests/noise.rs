@@ -58,8 +58,8 @@ fn lines_and_places_of_unequal_length_are_taken_as_far_as_all_go() {
     assert_eq!(line, [7; 4]);
 }
 
-/// The meter's estimate by its definition, grey levels.
-fn plain_sigma(images: &[&GrayImage]) -> Option<f64> {
+/// The meter's estimate by its definition, grey levels, and that of the quarter.
+fn plain_sigmas(images: &[&GrayImage]) -> Option<[f64; 2]> {
     let mut sums: Vec<i32> = Vec::new();
     for image in images {
         for line in image.as_raw().chunks_exact(image.width() as usize) {
@@ -73,7 +73,8 @@ fn plain_sigma(images: &[&GrayImage]) -> Option<f64> {
         }
     }
     sums.sort_unstable();
-    sums.get(sums.len().checked_sub(1)? / 128).map(|&sum| f64::from(sum) / 45.5)
+    let last = sums.len().checked_sub(1)?;
+    Some([128, 4].map(|share| f64::from(sums[last / share]) / 45.5))
 }
 
 /// A slope with noise of that deviation.
@@ -99,8 +100,8 @@ fn the_meter_says_what_its_definition_says() {
         for (sigma, seed) in [(0.0, 1), (1.0, 2), (4.0, 3), (12.0, 4)] {
             let images = [slope(width, height, sigma, seed), slope(width, height, sigma, seed + 9)];
             let images = images.each_ref();
-            let (said, plain) = (meter_of(&images).sigma_16ths(), plain_sigma(&images));
-            let (said, plain) = (f64::from(said.expect("a run")) / 16.0, plain.expect("a run"));
+            let (said, plain) = (meter_of(&images).sigma_16ths(), plain_sigmas(&images));
+            let (said, [plain, _]) = (f64::from(said.expect("a run")) / 16.0, plain.expect("a run"));
             // The last counter holds all sums beyond it.
             let plain = plain.min(359.0 / 16.0);
             // A counter holds sums that differ by up to 15, and the unit is a sixteenth.
@@ -108,8 +109,24 @@ fn the_meter_says_what_its_definition_says() {
         }
     }
     for narrow in [Pattern::Noise.pair(19, 9, 1).0, Pattern::Constant(0).pair(90, 9, 1).0] {
-        assert_eq!((meter_of(&[&narrow]).sigma_16ths(), plain_sigma(&[&narrow])), (None, None));
+        assert_eq!((meter_of(&[&narrow]).sigma_16ths(), plain_sigmas(&[&narrow])), (None, None));
         assert_eq!(meter_of(&[&narrow]).level(), Noise::None);
+    }
+}
+
+#[test]
+fn texture_without_a_quiet_place_is_no_noise() {
+    // A tenth of the columns show noise alone, the others texture of so many times its deviation.
+    for (times, level) in [(1.0, Noise::High), (1.7, Noise::High), (5.0, Noise::None), (8.0, Noise::None)] {
+        let mut random = Random::new(7);
+        let picture = GrayImage::from_fn(333, 120, |x, _| {
+            let deviation = if x < 33 { 4.0 } else { 4.0 * times };
+            Luma([(128.0 + deviation * random.gauss()).round().clamp(1.0, 254.0) as u8])
+        });
+        let [quiet, quarter] = plain_sigmas(&[&picture]).expect("a run");
+        assert!((quarter / quiet - 3.0).abs() > 0.3, "{times}: too near to say, {quiet}, {quarter}");
+        assert_eq!(quarter > 3.0 * quiet, level == Noise::None, "{times}: {quiet}, {quarter}");
+        assert_eq!(meter_of(&[&picture]).level(), level, "{times}");
     }
 }
 

@@ -1,4 +1,20 @@
 //! What semi-global matching takes a pixel's cost and a step of the disparity to be worth.
+//!
+//! # What does not pay
+//!
+//! Measured on 15 real pairs, of which [`Sgm`](super::Sgm) misses 3.40 % with default checks (4.34 % of slanted, faint surfaces):
+//!
+//! * Smaller steps for slanted floors: 12 in place of 18 misses 3.65 % (5.06 %), 9 4.06 %; only where texture is low, no less.
+//! * A second order. A step of 12 in the direction of the path's last one at that disparity: 3.61 % (5.15 %); in that of
+//!   its cheapest one over 8 px: 3.44 % (5.04 %).
+//! * Paths that follow the slope of the row above (after Scharstein, Taniai & Sinha 2017): along and down, with what does not
+//!   follow it as cheap, 3.92 % (3.84 %), down alone 3.66 % (4.23 %). On faint rendered planes they miss 0.4 % of 2.3 %, where
+//!   steps of 12 miss 1.2 %; but where an answer is wrong, the rows below keep to it: Midd1 and Monopoly lose 2 points each.
+//! * The last frame's answers as a prior: any disparity over 1 px from them costs more. Put on the costs of still pairs with
+//!   noise of 5 grey levels, 4 of a cost's 16 miss 13.0 % in the third frame, of 16.3 %, but 10.7 % of the answers are wrong,
+//!   of 8.9 %: what `TemporalFilter` does behind the matcher (13.5 %, 11.2 %). With noise of 2 levels and the answers of another
+//!   pair as a prior, 19.9 % are missed in the first frame, 15.3 % in the third, of 8.6 % and 9.0 %. On the sums, 18 misses
+//!   15.3 %, with 8.4 % wrong.
 
 use super::config::ConfigError;
 

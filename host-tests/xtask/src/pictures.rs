@@ -8,11 +8,11 @@ use std::fmt;
 use std::io::Write;
 use std::path::Path;
 use stereopsis::camera::{CameraPair, StereoSource};
-use stereopsis::imaging::{GreyLines, Noise};
+use stereopsis::imaging::{Balance, GreyLines, Noise};
 use stereopsis::matching::{Config, Filter};
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::mock::MockCamera;
-use stereopsis_host::run::{MemoryPair, Method, NoiseChoice, run};
+use stereopsis_host::run::{MemoryPair, Method, NoiseChoice, measure_balance, run};
 
 /// Bytes of the longest raw line: RGB with 16 bits.
 const RAW: usize = MockCamera::MOST_PIXELS as usize * 6;
@@ -82,6 +82,13 @@ impl Pictures {
         camera.ok_or_else(|| Failure::new("the pictures are empty"))
     }
 
+    /// Makes the right picture one of the left one's exposure where the two clearly differ, as `stereo match` does it.
+    pub fn balance(&mut self) -> Outcome<Balance> {
+        let balance = measure_balance(&mut self.camera()?).map_err(|e| Failure::new(format!("camera: {e}")))?;
+        balance.line(&mut self.right);
+        Ok(balance)
+    }
+
     /// Their noise, told or measured.
     pub fn noise(&self, choice: NoiseChoice) -> Outcome<Noise> {
         let level = choice.level(&mut self.camera()?);
@@ -91,8 +98,8 @@ impl Pictures {
     /// What the host's pipeline finds in them.
     pub fn matched(&self, method: Method, disparities: u16, noise: Noise) -> Outcome<DisparityMap> {
         let mut camera = self.camera()?;
-        let config = method.with_filter(Filter::Default, Config::new(self.width, self.height, disparities));
-        let config = Config { noise, ..config };
+        let search = Config { noise, ..Config::new(self.width, self.height, disparities) };
+        let config = method.with_filter(Filter::Default, search);
         let outcome = run(method, &config, &mut camera, |_| ());
         outcome.map(|outcome| outcome.map).map_err(|e| Failure::new(format!("{method} on the host: {e}")))
     }

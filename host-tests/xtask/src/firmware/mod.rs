@@ -69,7 +69,7 @@ use pose::Pose;
 use program::{Optimised, Program};
 use rectify::Rectify;
 use serde::Serialize;
-use stereopsis::imaging::Noise;
+use stereopsis::imaging::{Balance, Noise};
 use stereopsis_host::output::Staging;
 use stereopsis_host::run::NoiseChoice;
 use tables::Readme;
@@ -124,11 +124,14 @@ fn run_plain<T: Serialize>(
 
 /// One frame on one core into a folder.
 fn run_one(one: &One) -> Outcome {
-    let (pictures, is_scene) = match &one.pair {
+    let (mut pictures, is_scene) = match &one.pair {
         Some((left, right)) => (Pictures::open(left, right)?, false),
         None => (Pictures::of_scene(one.scene())?, true),
     };
     let mut program = Program::new(one.board, one.method, pictures.width, pictures.height, one.disparities)?;
+    if !is_scene && one.method.compares_brightness() && pictures.balance()? != Balance::NONE {
+        println!("the right camera shows its image in the left one's exposure, as `stereo match` takes it");
+    }
     program.noise = match one.noise {
         NoiseChoice::Auto if is_scene => Noise::None,
         choice => pictures.noise(choice)?,

@@ -19,7 +19,16 @@
 //! 11. `mask`: answers taken away where a camera did not see.
 //! 12. [`Row`]: what came out, with the uncertainty of each answer.
 //!
-//! [`Matcher`] owns the `memory` and runs the `stages`, of which some loops are kept small by `rolled`. [`Config`] says what is searched and which answers are refused.
+//! [`Matcher`] owns the `memory` and runs the `stages`, of which some loops are kept small by `rolled`. [`Config`] says what is
+//! searched and which answers are refused.
+//!
+//! # What was tried and is not done
+//!
+//! Gradients beside the census of [`Block`], as the methods along paths have them, with plain windows of 9x9 pixels, without
+//! checks, on 15 real pairs: eight bits of census have 9.5 % of the answers over 2 px off; with half the difference of the
+//! gradients along and across, cut off at 7, it is 8.9 % (12 pairs win), with that along alone 9.6 %. With noise of 2 grey levels
+//! 24.1 % become 22.5 %. An eighth of the brightness and the whole gradient along beside them make it 8.7 %, but 18.8 % in place
+//! of 16.5 % where the right image is x 1.2 + 15. A window's sum no longer fits a byte then, and takes twice the registers.
 
 mod answers;
 mod confidence;

@@ -1,11 +1,12 @@
 //! The pipeline against its naive twin: every disparity, flag, deviation and confidence, to the bit, for every kernel.
 //!
 //! * `list`: all sizes, ranges, pictures and checks. `any`: any combination of them.
-//! * `frames`: one frame after the other, faults and changes in between.
+//! * `frames`: one frame after the other, faults and changes in between. `moved`: a matcher that changes its place.
 
 mod any;
 mod frames;
 mod list;
+mod moved;
 
 use image::GrayImage;
 use stereopsis::camera::StereoSource;

@@ -1,6 +1,6 @@
 //! `stereo match`: a pair, rectified or raw, into a folder of results.
 
-use crate::cli::{BalanceChoice, MatchArgs, Unit};
+use crate::cli::{MatchArgs, Unit};
 use crate::failure::Failure;
 use crate::input::{self, Pair};
 use crate::progress::Progress;
@@ -104,7 +104,7 @@ fn matched<C: StereoSource<Error: Display>>(
     config: Config,
     source: &mut C,
 ) -> Result<Matched, Failure> {
-    if args.balance == BalanceChoice::None || !args.way.method.compares_brightness() {
+    if !args.balance.is_for(args.way.method) {
         return matched_as_it_comes(args, config, source);
     }
     let mut balanced = BalancedPair::new(source);

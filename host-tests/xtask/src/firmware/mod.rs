@@ -4,6 +4,7 @@
 //!   text.
 //! * [`frame`]: one frame on one core, held to the host. [`summary`]: the files that are written of it.
 //! * [`all`]: every core, method and size; [`tables`] of it for README.md; [`checksums`] on real pictures.
+//! * [`as_match`]: noisy cameras that are exposed unequally, beside `stereo match`.
 //! * [`awkward`]: sizes that fill no vector, where the rows are in assembly.
 //! * [`pose`]: two views on one core, held to the host; [`two_views_all`]: on every core.
 //! * [`bundle`]: their adjustment, likewise.
@@ -16,6 +17,7 @@
 
 mod all;
 mod arguments;
+mod as_match;
 mod awkward;
 mod bundle;
 mod checksums;
@@ -69,6 +71,7 @@ use pose::Pose;
 use program::{Optimised, Program};
 use rectify::Rectify;
 use serde::Serialize;
+use std::path::Path;
 use stereopsis::imaging::{Balance, Noise};
 use stereopsis_host::output::Staging;
 use stereopsis_host::run::NoiseChoice;
@@ -102,9 +105,11 @@ fn run_all(readme: Readme) -> Outcome {
     Ok(())
 }
 
-/// Every core and method and a part of the sizes and programs, compared with README.md.
-pub fn check_sample() -> Outcome {
-    run_all(Readme::Sample)
+/// Every core and method and a part of the sizes and programs, compared with README.md; and a frame with what the program `stereo`
+/// at that path makes of it.
+pub fn check_sample(stereo: &Path) -> Outcome {
+    run_all(Readme::Sample)?;
+    as_match::check(stereo)
 }
 
 /// A program without sizes to choose, on one core into a folder.

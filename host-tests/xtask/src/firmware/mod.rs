@@ -12,7 +12,7 @@
 //! * [`focus`]: a lens that moves, likewise. [`odometry`]: where a pair of cameras goes. [`interrupt`]: lines that an
 //!   interrupt brings.
 //! * [`rectify`]: raw lines, and depth from them, likewise.
-//! * [`results`]: the run of such a program, and what it leaves.
+//! * [`results`]: the run of such a program, and what it leaves; [`plain`]: the table of it.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
 
 mod all;
@@ -28,6 +28,7 @@ pub mod frame;
 mod interrupt;
 mod log;
 mod odometry;
+mod plain;
 mod pose;
 pub mod program;
 mod rectify;
@@ -96,11 +97,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
 fn run_all(readme: Readme) -> Outcome {
     all::run(readme)?;
     two_views_all::run(readme)?;
-    bundle::run_all(readme)?;
-    features::run_all(readme)?;
-    focus::run_all(readme)?;
-    odometry::run_all(readme)?;
-    rectify::run_all(readme)?;
+    plain::run_all(readme, bundle::run, Bundle::told)?;
+    plain::run_all(readme, features::run, Features::told)?;
+    plain::run_all(readme, focus::run, Focus::told)?;
+    plain::run_all(readme, odometry::run, Odometry::told)?;
+    plain::run_all(readme, rectify::run, Rectify::told)?;
     println!("{}", interrupt::run(board::M4, Optimised::Speed)?.told());
     Ok(())
 }

@@ -5,14 +5,18 @@
 
 #[path = "ffi/lost.rs"]
 mod lost;
+#[path = "ffi/noise.rs"]
+mod noise;
 
 use std::ffi::{CStr, c_void};
 use std::ptr::{null, null_mut};
+use std::slice;
 use stereopsis::ffi::{
-    Config, Handle, Rig, Row, STEREOPSIS_ALIGN, STEREOPSIS_NOISE_LOW, STEREOPSIS_PRESET_DEFAULT, Status, state_bytes,
+    Config, Handle, Instance, Rig, Row, STEREOPSIS_ALIGN, STEREOPSIS_NOISE_LOW, STEREOPSIS_PRESET_DEFAULT, Status,
+    state_bytes,
 };
 use stereopsis::imaging::Noise;
-use stereopsis::matching::{self, Block, Checks};
+use stereopsis::matching::{self, Block, Checks, Scheme};
 use stereopsis::pipeline::Pipeline;
 use stereopsis_host::scene::pattern::Pattern;
 
@@ -74,78 +78,110 @@ fn config(width: u16, height: u16, disparities: u16) -> Config {
 
 const NO_ROW: Row = Row { index: 0, width: 0, disparities: null(), flags: null(), confidences: null() };
 
+/// The lines of both cameras.
+type Lines = [Vec<Vec<u8>>; 2];
+
+/// Both cameras' lines of a scene with noise, with as many rows as asked for.
+fn lines(width: u16, height: u16) -> Lines {
+    let (left, right) = Pattern::Shifted { most: 12, noise_grey: 4.0 }.pair(width.into(), height.into(), 5);
+    [left, right].map(|picture| picture.as_raw().chunks(usize::from(width)).map(<[u8]>::to_vec).collect())
+}
+
+/// A row that came out.
+#[derive(PartialEq)]
+struct Found {
+    index: u16,
+    disparities: Vec<u16>,
+    flags: Vec<u8>,
+    sigma_px: Vec<f32>,
+    confidences: Option<Vec<u8>>,
+}
+
+/// The rows of a pipeline in Rust.
+fn rows<S: Scheme>(config: &matching::Config, [left, right]: &Lines) -> Vec<Found> {
+    let mut pipeline = Box::new(Pipeline::<S, WIDTH, DISPARITIES>::new());
+    pipeline.start(config).expect("the configuration is valid");
+    pipeline.begin().expect("it is started");
+    let mut found = Vec::new();
+    let mut keep = |row: matching::Row<'_>| {
+        found.push(Found {
+            index: row.index(),
+            disparities: row.disparities().iter().map(|d| d.raw()).collect(),
+            flags: row.flags().iter().map(|f| f.bits()).collect(),
+            sigma_px: (0..config.width.into()).map(|x| row.sigma_px(x).unwrap_or(f32::INFINITY)).collect(),
+            confidences: config.confidence.then(|| row.confidences().to_vec()),
+        });
+    };
+    for (left, right) in left.iter().zip(right) {
+        pipeline.push(left, right).expect("a line").map(&mut keep);
+    }
+    while let Some(row) = pipeline.flush().expect("all lines are in") {
+        keep(row);
+    }
+    found
+}
+
+/// The rows of the functions for C.
+fn c_rows<S: Scheme>(config: &Config, [left, right]: &Lines) -> Vec<Found> {
+    type C<S> = Instance<S, WIDTH, DISPARITIES>;
+    let mut memory = vec![0xA5A5_A5A5_A5A5_A5A5_u64; C::<S>::size().div_ceil(8)];
+    let mut handle = null_mut();
+    let mut found = Vec::new();
+    // SAFETY: the memory outlives the handle, lines have their length, and rows are read before the next call.
+    unsafe {
+        let status = C::<S>::init(memory.as_mut_ptr().cast(), size_of_val(&memory[..]), &raw mut handle);
+        assert_eq!(status, Status::Ok);
+        assert_eq!(C::<S>::start(handle, config), Status::Ok);
+        assert_eq!(C::<S>::begin_frame(handle), Status::Ok);
+        let mut row = NO_ROW;
+        let mut lines = left.iter().zip(right);
+        let mut taken = 0;
+        loop {
+            let status = match lines.next() {
+                Some((l, r)) => C::<S>::push(handle, l.as_ptr(), r.as_ptr(), l.len(), &raw mut row),
+                None => C::<S>::flush(handle, &raw mut row),
+            };
+            taken += 1;
+            match status {
+                Status::Ok => {}
+                Status::NoRowYet => {
+                    assert!(taken <= C::<S>::latency() && row == NO_ROW);
+                    continue;
+                }
+                Status::FrameDone => break,
+                wrong => panic!("{wrong:?}"),
+            }
+            let width = usize::from(row.width);
+            let mut sigma_px = vec![0.0; width];
+            assert_eq!(C::<S>::sigma_px(handle, sigma_px.as_mut_ptr(), width), Status::Ok);
+            found.push(Found {
+                index: row.index,
+                disparities: slice::from_raw_parts(row.disparities, width).to_vec(),
+                flags: slice::from_raw_parts(row.flags, width).to_vec(),
+                sigma_px,
+                confidences: (!row.confidences.is_null())
+                    .then(|| slice::from_raw_parts(row.confidences, width).to_vec()),
+            });
+        }
+        assert_eq!(C::<S>::deinit(handle), Status::Ok);
+    }
+    found
+}
+
 #[test]
 fn rows_are_those_of_the_pipeline() {
     for (width, height) in [(96, 30), (37, 1), (1, 9), (50, 12)] {
-        let (left, right) = Pattern::Shifted { most: 12, noise_grey: 4.0 }.pair(width.into(), height.into(), 5);
-        let lines = |picture: &image::GrayImage| -> Vec<Vec<u8>> {
-            picture.as_raw().chunks(usize::from(width)).map(<[u8]>::to_vec).collect()
-        };
-        let (left, right) = (lines(&left), lines(&right));
-
-        let mut pipeline = Box::new(Pipeline::<Block, WIDTH, DISPARITIES>::new());
+        let lines = lines(width, height);
         let checks = Checks { median: true, fill_pixels: 3, ..Checks::DEFAULT };
         // With and without.
         let confidence = width > 37;
         let asked = matching::Config { checks, confidence, ..matching::Config::new(width, height, 32) };
         let asked = matching::Config { noise: Noise::Low, ..asked };
-        pipeline.start(&asked).expect("the configuration is valid");
-        pipeline.begin().expect("it is started");
-        let mut expected = Vec::new();
-        let mut keep = |row: matching::Row<'_>| {
-            let sigma: Vec<f32> = (0..width.into()).map(|x| row.sigma_px(x).unwrap_or(f32::INFINITY)).collect();
-            let raw: Vec<u16> = row.disparities().iter().map(|d| d.raw()).collect();
-            let flags: Vec<u8> = row.flags().iter().map(|f| f.bits()).collect();
-            let confidences = confidence.then(|| row.confidences().to_vec());
-            expected.push((row.index(), raw, flags, sigma, confidences));
-        };
-        for (left, right) in left.iter().zip(&right) {
-            pipeline.push(left, right).expect("a line").map(&mut keep);
-        }
-        while let Some(row) = pipeline.flush().expect("all lines are in") {
-            keep(row);
-        }
-
-        let mut memory = memory();
-        let (status, handle) = init(&mut memory, 0, stereopsis_size());
-        assert_eq!(status, Status::Ok);
         let config = Config { median: 1, fill_pixels: 3, confidence: confidence.into(), ..config(width, height, 32) };
         let config = Config { noise: STEREOPSIS_NOISE_LOW, ..config };
-        let mut found = Vec::new();
-        // SAFETY: the handle is from `init`, lines have their length, and rows are read before the next call.
-        unsafe {
-            assert_eq!(stereopsis_start(handle, &raw const config), Status::Ok);
-            assert_eq!(stereopsis_begin_frame(handle), Status::Ok);
-            let mut row = NO_ROW;
-            let mut lines = left.iter().zip(&right);
-            let mut taken = 0;
-            loop {
-                let status = match lines.next() {
-                    Some((l, r)) => stereopsis_push(handle, l.as_ptr(), r.as_ptr(), l.len(), &raw mut row),
-                    None => stereopsis_flush(handle, &raw mut row),
-                };
-                taken += 1;
-                match status {
-                    Status::Ok => {}
-                    Status::NoRowYet => {
-                        assert!(taken <= stereopsis_latency() && row == NO_ROW);
-                        continue;
-                    }
-                    Status::FrameDone => break,
-                    wrong => panic!("{wrong:?}"),
-                }
-                let mut sigma = vec![0.0; width.into()];
-                assert_eq!(stereopsis_sigma_px(handle, sigma.as_mut_ptr(), sigma.len()), Status::Ok);
-                let disparities = std::slice::from_raw_parts(row.disparities, row.width.into()).to_vec();
-                let flags = std::slice::from_raw_parts(row.flags, row.width.into()).to_vec();
-                let confidences = (!row.confidences.is_null())
-                    .then(|| std::slice::from_raw_parts(row.confidences, row.width.into()).to_vec());
-                found.push((row.index, disparities, flags, sigma, confidences));
-            }
-            assert_eq!(stereopsis_deinit(handle), Status::Ok);
-        }
+        let found = c_rows::<Block>(&config, &lines);
         assert_eq!(found.len(), usize::from(height));
-        assert!(found == expected, "{width}x{height}");
+        assert!(found == rows::<Block>(&asked, &lines), "{width}x{height}");
     }
 }
 

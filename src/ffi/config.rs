@@ -7,11 +7,11 @@ use crate::imaging::Noise;
 use crate::matching::{self, Checks, ConfigError, Filter, Penalties, Scheme};
 use crate::units::Disparity;
 
-/// `stereopsis_config_default`: an answer wherever there is a candidate.
+/// `stereopsis_config_default` and `_noise`: an answer wherever there is a candidate.
 pub const STEREOPSIS_PRESET_DENSE: i32 = 0;
-/// `stereopsis_config_default`: drops what the other image or the neighbourhood contradicts.
+/// `stereopsis_config_default` and `_noise`: drops what the other image or the neighbourhood contradicts.
 pub const STEREOPSIS_PRESET_DEFAULT: i32 = 1;
-/// `stereopsis_config_default`: drops what is ambiguous or has little texture as well.
+/// `stereopsis_config_default` and `_noise`: drops what is ambiguous or has little texture as well.
 pub const STEREOPSIS_PRESET_STRICT: i32 = 2;
 
 /// In `left_right_px` and `uniqueness_percent` of a configuration: not checked.
@@ -75,27 +75,51 @@ pub struct Config {
     pub confidence: u8,
     /// Fill: by how much the two answers may differ, in 1/32 px; 65535 for any two.
     pub fill_step: u16,
-    /// How noisy both cameras are, a `STEREOPSIS_NOISE_`: what is compared is smoothed accordingly.
+    /// How noisy both cameras are, a `STEREOPSIS_NOISE_`: what is compared is smoothed accordingly. `stereopsis_config_noise`
+    /// sets it with the checks and penalties that suit it.
     pub noise: u8,
 }
 
-impl Config {
-    /// A search from disparity 0 with the checks of a preset and the penalties of the method.
-    pub(super) fn preset<S: Scheme>(width: u16, height: u16, disparities: u16, preset: i32) -> Result<Self, Status> {
-        let filter = match preset {
-            STEREOPSIS_PRESET_DENSE => Filter::Dense,
-            STEREOPSIS_PRESET_DEFAULT => Filter::Default,
-            STEREOPSIS_PRESET_STRICT => Filter::Strict,
-            _ => return Err(Status::Preset),
-        };
-        let checks = filter.checks::<S>(Noise::None);
-        let Penalties { gradient, cost, step, jump, edges } = S::PENALTIES;
+/// A filter by its `STEREOPSIS_PRESET_` number.
+fn filter(preset: i32) -> Result<Filter, Status> {
+    match preset {
+        STEREOPSIS_PRESET_DENSE => Ok(Filter::Dense),
+        STEREOPSIS_PRESET_DEFAULT => Ok(Filter::Default),
+        STEREOPSIS_PRESET_STRICT => Ok(Filter::Strict),
+        _ => Err(Status::Preset),
+    }
+}
+
+/// A level of noise by its `STEREOPSIS_NOISE_` number.
+fn level(noise: u8) -> Result<Noise, Status> {
+    match noise {
+        STEREOPSIS_NOISE_NONE => Ok(Noise::None),
+        STEREOPSIS_NOISE_LOW => Ok(Noise::Low),
+        STEREOPSIS_NOISE_HIGH => Ok(Noise::High),
+        _ => Err(Status::Noise),
+    }
+}
+
+/// The `STEREOPSIS_NOISE_` number of a level.
+pub(super) const fn noise_number(level: Noise) -> u8 {
+    match level {
+        Noise::None => STEREOPSIS_NOISE_NONE,
+        Noise::Low => STEREOPSIS_NOISE_LOW,
+        Noise::High => STEREOPSIS_NOISE_HIGH,
+    }
+}
+
+impl From<matching::Config> for Config {
+    fn from(config: matching::Config) -> Self {
+        let matching::Config { width, height, disparities, min_disparity, checks, penalties, confidence, noise } =
+            config;
+        let Penalties { gradient, cost, step, jump, edges } = penalties;
         let or_not = |limit: Option<u8>| limit.map_or(STEREOPSIS_NOT_CHECKED, i16::from);
-        Ok(Self {
+        Self {
             width,
             height,
             disparities,
-            min_disparity: 0,
+            min_disparity,
             left_right_px: or_not(checks.left_right_px),
             uniqueness_percent: or_not(checks.uniqueness_percent),
             texture_gradient: checks.texture_gradient,
@@ -112,10 +136,19 @@ impl Config {
             jump,
             edges,
             fill_pixels: checks.fill_pixels,
-            confidence: 0,
+            confidence: confidence.into(),
             fill_step: checks.fill_step.raw(),
-            noise: STEREOPSIS_NOISE_NONE,
-        })
+            noise: noise_number(noise),
+        }
+    }
+}
+
+impl Config {
+    /// The same search with the checks of a preset and the penalties of the method for so much noise.
+    fn with_filter<S: Scheme>(self, filter: Filter, noise: Noise) -> Self {
+        let search = matching::Config::new(self.width, self.height, self.disparities);
+        let config = matching::Config { noise, ..search }.with_filter::<S>(filter);
+        Self { min_disparity: self.min_disparity, confidence: self.confidence, ..config.into() }
     }
 
     /// The same in the crate's own types, which check the rest.
@@ -151,12 +184,7 @@ impl Config {
                 edges: self.edges,
             },
             confidence: self.confidence != 0,
-            noise: match self.noise {
-                STEREOPSIS_NOISE_NONE => Noise::None,
-                STEREOPSIS_NOISE_LOW => Noise::Low,
-                STEREOPSIS_NOISE_HIGH => Noise::High,
-                _ => return Err(Status::Noise),
-            },
+            noise: level(self.noise)?,
         })
     }
 }
@@ -192,9 +220,27 @@ pub unsafe fn config_default<S: Scheme>(
     if config.is_null() {
         return Status::Null;
     }
-    either(Config::preset::<S>(width, height, disparities, preset).map(|preset| {
+    either(filter(preset).map(|filter| {
+        let search = matching::Config::new(width, height, disparities);
         // SAFETY: the caller's promise; no alignment is asked for.
-        unsafe { config.write_unaligned(preset) };
+        unsafe { config.write_unaligned(search.with_filter::<S>(filter).into()) };
         Status::Ok
+    }))
+}
+
+/// Sets a configuration's checks and penalties for cameras with noise: `stereopsis_config_noise`.
+///
+/// # Safety
+///
+/// `config` is null or points to a configuration.
+pub unsafe fn config_noise<S: Scheme>(preset: i32, noise: u8, config: *mut Config) -> Status {
+    if config.is_null() {
+        return Status::Null;
+    }
+    either(filter(preset).and_then(|filter| {
+        let noise = level(noise)?;
+        // SAFETY: the caller's promise; no alignment is asked for.
+        unsafe { config.write_unaligned(config.read_unaligned().with_filter::<S>(filter, noise)) };
+        Ok(Status::Ok)
     }))
 }

@@ -110,6 +110,15 @@ macro_rules! instantiate_c_api {
                 }
             }
 
+            /// Makes a configuration one for cameras with `noise`, a `STEREOPSIS_NOISE_` such as `stereopsis_noise_level`
+            /// tells: sets that, and the checks of a `STEREOPSIS_PRESET_` and the method's penalties for it. Size, search
+            /// and `confidence` stay as they are.
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn stereopsis_config_noise(preset: i32, noise: u8, config: *mut Config) -> Status {
+                // SAFETY: as above.
+                unsafe { $crate::ffi::config_noise::<$crate::matching::$method>(preset, noise, config) }
+            }
+
             /// Checks a configuration, which is copied, and gets ready for the first frame. It can be called again, for
             /// another configuration; a frame that is under way is lost.
             #[unsafe(no_mangle)]
@@ -214,7 +223,7 @@ macro_rules! instantiate_c_api {
                 unsafe { $crate::ffi::noise_line(meter, line, length) }
             }
 
-            /// The `STEREOPSIS_NOISE_` number of the lines so far, for the configuration's `noise`, and unless `sigma_16ths` is
+            /// The `STEREOPSIS_NOISE_` number of the lines so far, for `stereopsis_config_noise`, and unless `sigma_16ths` is
             /// null the deviation in 1/16 grey level; none and 0 before the first line.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_noise_level(

@@ -1,8 +1,9 @@
 //! The meter of noise, in memory of the caller's.
 #![allow(unsafe_code)]
 
-use super::{STEREOPSIS_NOISE_HIGH, STEREOPSIS_NOISE_LOW, STEREOPSIS_NOISE_NONE, Status};
-use crate::imaging::{self, Noise};
+use super::Status;
+use super::config::noise_number;
+use crate::imaging;
 
 /// How noisy the lines are that it was given: the caller's memory, for `stereopsis_noise_clear` and what follows it. The words are
 /// the library's.
@@ -86,13 +87,8 @@ pub unsafe fn noise_level(meter: *mut NoiseMeter, noise: *mut u8, sigma_16ths: *
     }
     // SAFETY: the caller's promise.
     let (level, sigma) = match unsafe { open(meter) } {
-        Ok(meter) => (meter.level(), meter.sigma_16ths().unwrap_or(0)),
+        Ok(meter) => (noise_number(meter.level()), meter.sigma_16ths().unwrap_or(0)),
         Err(status) => return status,
-    };
-    let level = match level {
-        Noise::None => STEREOPSIS_NOISE_NONE,
-        Noise::Low => STEREOPSIS_NOISE_LOW,
-        Noise::High => STEREOPSIS_NOISE_HIGH,
     };
     // SAFETY: the caller's promise; no alignment is asked for.
     unsafe {

@@ -79,17 +79,17 @@
 #define STEREOPSIS_ALIGN 8
 
 /**
- * `stereopsis_config_default`: an answer wherever there is a candidate.
+ * `stereopsis_config_default` and `_noise`: an answer wherever there is a candidate.
  */
 #define STEREOPSIS_PRESET_DENSE 0
 
 /**
- * `stereopsis_config_default`: drops what the other image or the neighbourhood contradicts.
+ * `stereopsis_config_default` and `_noise`: drops what the other image or the neighbourhood contradicts.
  */
 #define STEREOPSIS_PRESET_DEFAULT 1
 
 /**
- * `stereopsis_config_default`: drops what is ambiguous or has little texture as well.
+ * `stereopsis_config_default` and `_noise`: drops what is ambiguous or has little texture as well.
  */
 #define STEREOPSIS_PRESET_STRICT 2
 
@@ -437,7 +437,8 @@ typedef struct stereopsis_config {
    */
   uint16_t fill_step;
   /**
-   * How noisy both cameras are, a `STEREOPSIS_NOISE_`: what is compared is smoothed accordingly.
+   * How noisy both cameras are, a `STEREOPSIS_NOISE_`: what is compared is smoothed accordingly. `stereopsis_config_noise`
+   * sets it with the checks and penalties that suit it.
    */
   uint8_t noise;
 } stereopsis_config;
@@ -625,6 +626,13 @@ stereopsis_status stereopsis_config_default(uint16_t width,
                                             struct stereopsis_config *config);
 
 /**
+ * Makes a configuration one for cameras with `noise`, a `STEREOPSIS_NOISE_` such as `stereopsis_noise_level`
+ * tells: sets that, and the checks of a `STEREOPSIS_PRESET_` and the method's penalties for it. Size, search
+ * and `confidence` stay as they are.
+ */
+stereopsis_status stereopsis_config_noise(int32_t preset, uint8_t noise, struct stereopsis_config *config);
+
+/**
  * Checks a configuration, which is copied, and gets ready for the first frame. It can be called again, for
  * another configuration; a frame that is under way is lost.
  */
@@ -701,7 +709,7 @@ stereopsis_status stereopsis_noise_line(struct stereopsis_noise_meter *meter,
                                         size_t length);
 
 /**
- * The `STEREOPSIS_NOISE_` number of the lines so far, for the configuration's `noise`, and unless `sigma_16ths` is
+ * The `STEREOPSIS_NOISE_` number of the lines so far, for `stereopsis_config_noise`, and unless `sigma_16ths` is
  * null the deviation in 1/16 grey level; none and 0 before the first line.
  */
 stereopsis_status stereopsis_noise_level(struct stereopsis_noise_meter *meter,

@@ -1,6 +1,7 @@
 //! Lines of two cameras as they came, with their time stamps and faults, in a file: to bring a failure in the field to the desk.
 //!
 //! * [`record()`]: a stereo source into a file. [`Recording`]: such a file. [`Playback`]: it as a stereo source again.
+//! * [`Balanced`]: its records with both cameras of one exposure.
 //! * [`Pictures`]: images, or folders of them, as a stereo source at a frame rate.
 //!
 //! A recording begins with a line of text, `stereopsis recording 1`, and a line of JSON: `width`, `height`, `max_row_skew_us`.
@@ -14,9 +15,11 @@
 //!
 //! A file that ends within a record is played up to there: what wrote it may have failed as well.
 
+mod balanced;
 mod pictures;
 mod playback;
 
+pub use balanced::Balanced;
 pub use pictures::{Pictures, PicturesError};
 pub use playback::{Playback, RecordedFault};
 
@@ -102,6 +105,13 @@ pub enum Entry {
     NoLine(RecordedFault),
     /// The file ends within a record.
     Cut,
+}
+
+impl Entry {
+    /// Whether it is of a frame that began: a row that came, or did not.
+    fn is_of_frame(&self) -> bool {
+        matches!(self, Self::Line { .. } | Self::NoLine(_))
+    }
 }
 
 /// A recording that is read record by record.
@@ -219,6 +229,11 @@ pub struct Recorded {
     pub faults: u32,
 }
 
+/// How many records of rows a frame has at most: a source may repeat lines and fail, but not without an end.
+fn most_rows(height: u16) -> u32 {
+    4 * u32::from(height)
+}
+
 /// Writes the next `frames` frames of a source, errors as well.
 pub fn record<S: StereoSource>(source: &mut S, frames: u32, out: &mut dyn Write) -> io::Result<Recorded> {
     let format = source.format();
@@ -241,8 +256,7 @@ pub fn record<S: StereoSource>(source: &mut S, frames: u32, out: &mut dyn Write)
                 continue;
             }
         }
-        // A source may repeat lines and fail: not without an end.
-        for _ in 0..4 * u32::from(format.height) {
+        for _ in 0..most_rows(format.height) {
             match source.next_lines(&mut left, &mut right) {
                 Ok(start) => {
                     told.lines += 1;

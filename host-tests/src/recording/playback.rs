@@ -1,6 +1,6 @@
 //! A recording as a stereo source.
 
-use super::{Entry, Header, LINE_FAULTS, Recording, RecordingError};
+use super::{Entry, Header, LINE_FAULTS, RecordingError};
 use std::fmt;
 use std::iter::Peekable;
 use std::time::{Duration, Instant};
@@ -92,17 +92,9 @@ pub struct Playback<I: Iterator<Item = Result<Entry, RecordingError>>> {
     failed: Option<RecordingError>,
 }
 
-impl Playback<Recording> {
-    /// Plays a recording, at the speed at which it was recorded or as fast as it is taken.
-    pub fn new(recording: Recording, is_timed: bool) -> Self {
-        let header = recording.header();
-        Self::of(recording, header, is_timed)
-    }
-}
-
 impl<I: Iterator<Item = Result<Entry, RecordingError>>> Playback<I> {
-    /// Plays any records.
-    pub fn of(entries: I, header: Header, is_timed: bool) -> Self {
+    /// Plays the records of such a recording, at the speed at which it was recorded or as fast as they are taken.
+    pub fn new(entries: I, header: Header, is_timed: bool) -> Self {
         Self {
             entries: entries.peekable(),
             header,
@@ -212,8 +204,7 @@ impl<I: Iterator<Item = Result<Entry, RecordingError>>> StereoSource for Playbac
         let (Some(to_left), Some(to_right)) = (left.get_mut(..needed), right.get_mut(..needed)) else {
             return Err(CameraError::BufferTooShort { needed });
         };
-        let is_of_frame = |entry: &Result<Entry, _>| matches!(entry, Ok(Entry::Line { .. } | Entry::NoLine(_)));
-        match self.entries.next_if(|entry| self.in_frame && is_of_frame(entry)) {
+        match self.entries.next_if(|entry| self.in_frame && entry.as_ref().is_ok_and(Entry::is_of_frame)) {
             Some(Ok(Entry::Line { start, left, right })) => {
                 self.wait(start.timestamp_us);
                 to_left.copy_from_slice(&left);

@@ -9,7 +9,7 @@ mod summary;
 mod svg;
 
 pub use accuracy::Accuracy;
-pub use summary::{Depth, Spread, Summary};
+pub use summary::{Depth, Exposure, Spread, Summary};
 
 use crate::colour::{
     ColourScale, FLAG_COLOURS, NO_ANSWER, confidence_picture, error_picture, first_reason, flags_picture,

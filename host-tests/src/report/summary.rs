@@ -7,7 +7,7 @@ use crate::run::{Method, Outcome};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use stereopsis::depth::DepthScale;
-use stereopsis::imaging::NoiseMeter;
+use stereopsis::imaging::{Balance, NoiseMeter};
 use stereopsis::matching::Config;
 use stereopsis::units::PixelFlags;
 
@@ -32,6 +32,8 @@ pub struct Summary {
     pub noise: &'static str,
     /// The deviation of their noise as it was measured, grey levels; absent when it was told, or when no place shows it.
     pub noise_sigma: Option<f64>,
+    /// How the right image was brought to the left one's exposure; absent when it was matched as it came.
+    pub balance: Option<Exposure>,
     /// Share of the pixels with an answer, 0 to 1.
     pub density: f64,
     /// Pixels with an answer.
@@ -55,6 +57,23 @@ pub struct Summary {
     pub rows: Option<Rows>,
     /// How right the answers are, when the truth is known.
     pub accuracy: Option<Accuracy>,
+}
+
+/// What was made of grey levels: `gain grey + offset`.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+pub struct Exposure {
+    /// The gain.
+    pub gain: f64,
+    /// The offset, grey levels.
+    pub offset: f64,
+}
+
+impl Exposure {
+    /// What a balance does; `None` when that is nothing.
+    pub fn of(balance: Balance) -> Option<Self> {
+        let [gain, offset] = [i32::from(balance.gain_256ths), balance.offset_256ths].map(|n| f64::from(n) / 256.0);
+        (balance != Balance::NONE).then_some(Self { gain, offset })
+    }
 }
 
 /// Least, middle and largest value.
@@ -143,6 +162,7 @@ impl Summary {
             min_disparity: config.min_disparity,
             noise: config.noise.name(),
             noise_sigma: None,
+            balance: None,
             density: map.density(),
             answers: map.answers(),
             flags: PixelFlags::NAMES.into_iter().map(|(flag, name)| (name, map.flagged(flag))).collect(),
@@ -165,5 +185,10 @@ impl Summary {
     /// The same with the noise that a meter measured.
     pub fn with_noise(self, meter: Option<&NoiseMeter>) -> Self {
         Self { noise_sigma: meter.and_then(NoiseMeter::sigma_16ths).map(|sigma| f64::from(sigma) / 16.0), ..self }
+    }
+
+    /// The same with what was done to the right image.
+    pub fn with_balance(self, balance: Balance) -> Self {
+        Self { balance: Exposure::of(balance), ..self }
     }
 }

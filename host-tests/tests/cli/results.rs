@@ -133,19 +133,24 @@ fn exposures_are_balanced_where_they_differ() {
     let mut picture = pair().1;
     picture.iter_mut().for_each(|grey| *grey = (*grey / 2).saturating_add(80));
     picture.save(&right).expect("a picture");
+    let balance = || json(&bench.path("out/summary.json"))["balance"].take();
     let answers = |options: &[(&str, &str)]| {
         let all = [&[("--right", right.as_str()), ("--noise", "none")][..], options].concat();
-        let told = text(&bench.matched(&all).stdout).contains("exposure     right image x ");
+        let told = text(&bench.matched(&all).stdout);
         (told, fs::read(bench.path("out/disparity.pfm")).expect("a result"))
     };
     let (told, balanced) = answers(&[("--method", "sgm")]);
+    let number = |name: &str| balance()[name].as_f64().expect("a number");
+    let [gain, offset] = ["gain", "offset"].map(number);
+    assert!((gain - 2.0).abs() < 0.1 && (offset + 160.0).abs() < 10.0, "{gain}, {offset}");
+    assert!(told.contains(&format!("exposure     right image x {gain:.2} {offset:+.1} grey levels")), "{told}");
     let (told_without, as_it_comes) = answers(&[("--method", "sgm"), ("--balance", "none")]);
-    assert!(told && !told_without && balanced != as_it_comes);
+    assert!(!told_without.contains("exposure") && balance().is_null() && balanced != as_it_comes);
     // A census does not ask how bright a pixel is.
     let (told, _) = answers(&[("--method", "block")]);
-    assert!(!told);
+    assert!(!told.contains("exposure") && balance().is_null());
     let alike = bench.matched(&[("--method", "sgm")]);
-    assert!(!text(&alike.stdout).contains("exposure"), "the pair as it is");
+    assert!(!text(&alike.stdout).contains("exposure") && balance().is_null(), "the pair as it is");
 }
 
 #[test]

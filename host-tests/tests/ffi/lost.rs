@@ -49,11 +49,7 @@ impl StereoSource for Losing<'_> {
 #[test]
 fn lost_lines_are_those_of_a_guarded_pipeline() {
     let (width, height) = (50, 40);
-    let (left, right) = Pattern::Shifted { most: 12, noise_grey: 4.0 }.pair(width.into(), height.into(), 5);
-    let lines = |picture: &image::GrayImage| -> Vec<Vec<u8>> {
-        picture.as_raw().chunks(usize::from(width)).map(<[u8]>::to_vec).collect()
-    };
-    let (left, right) = (lines(&left), lines(&right));
+    let [left, right] = lines(width, height);
     for lost in [&[][..], &[0], &[39], &[7, 8, 20], &[3, 31, 32, 33, 38]] {
         let mut guarded = Box::new(Guarded::<Block, WIDTH, DISPARITIES>::new());
         guarded.start(&matching::Config::new(width, height, 32)).expect("the configuration is valid");

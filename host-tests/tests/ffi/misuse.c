@@ -140,6 +140,26 @@ static void configurations(void) {
     REFUSED(jump[0], 96, PENALTIES);
     REFUSED(edges[0], 21, PENALTIES);
     REFUSED(noise, 3, NOISE);
+
+    /* For cameras with noise: what is wrong changes nothing, what is right keeps the search. */
+    stereopsis_config before;
+    c = config();
+    memcpy(&before, &c, sizeof c);
+    EXPECT(stereopsis_config_noise(STEREOPSIS_PRESET_DEFAULT, STEREOPSIS_NOISE_LOW, NULL), NULL);
+    EXPECT(stereopsis_config_noise(-1, STEREOPSIS_NOISE_LOW, &c), PRESET);
+    EXPECT(stereopsis_config_noise(3, 3, &c), PRESET);
+    EXPECT(stereopsis_config_noise(STEREOPSIS_PRESET_DEFAULT, 3, &c), NOISE);
+    CHECK(memcmp(&c, &before, sizeof c) == 0);
+    for (uint8_t level = STEREOPSIS_NOISE_NONE; level <= STEREOPSIS_NOISE_HIGH; level++) {
+        c = before;
+        c.min_disparity = 5;
+        c.confidence = 2;
+        c.cost = 0;
+        EXPECT(stereopsis_config_noise(STEREOPSIS_PRESET_DEFAULT, level, &c), OK);
+        CHECK(c.noise == level && c.min_disparity == 5 && c.confidence == 2 && c.cost > 0);
+        CHECK(c.width == WIDTH && c.height == HEIGHT && c.disparities == 32);
+        EXPECT(stereopsis_start(s, &c), OK);
+    }
     for (int32_t preset = STEREOPSIS_PRESET_DENSE; preset <= STEREOPSIS_PRESET_STRICT; preset++) {
         EXPECT(stereopsis_config_default(WIDTH, HEIGHT, 32, preset, &c), OK);
         EXPECT(stereopsis_start(s, &c), OK);

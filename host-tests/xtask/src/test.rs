@@ -5,7 +5,7 @@ use crate::c;
 use crate::firmware;
 use crate::growth;
 use crate::setup::{self, TARGETS};
-use crate::steps::{Failure, Outcome, Steps, cargo, command, run as run_command, target_dir};
+use crate::steps::{Failure, Outcome, Steps, cargo, command, root, run as run_command, target_dir};
 use std::path::PathBuf;
 
 /// The feature that builds the tests on real stereo pairs.
@@ -31,7 +31,7 @@ pub fn run() -> Outcome {
     steps.step("cross builds", cross_builds)?;
     let version = setup::rust_version()?;
     steps.step(&format!("stated rust-version {version}"), || rust_version(&version))?;
-    steps.step("firmware", firmware::check_sample)?;
+    steps.step("firmware", || firmware::check_sample(&stereo()))?;
     steps.step("growth", growth::sample)?;
     steps.step("C interface", c::run)?;
     steps.summary();
@@ -76,6 +76,11 @@ fn clippy() -> Outcome {
 fn tests(with_real_data: bool) -> Outcome {
     let features = if with_real_data { format!(" --features {REAL_DATA}") } else { String::new() };
     run_cargo(&format!("test --locked --workspace{features}"))
+}
+
+/// The program `stereo`, as the step of the tests has built it.
+fn stereo() -> PathBuf {
+    root().join(target_dir()).join("debug/stereo").with_extension(std::env::consts::EXE_EXTENSION)
 }
 
 fn documentation() -> Outcome {

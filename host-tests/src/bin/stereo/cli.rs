@@ -129,10 +129,8 @@ pub struct MatchArgs {
     pub range: RangeArgs,
     #[command(flatten)]
     pub way: WayArgs,
-    /// Whether the right image is brought to the left one's exposure: auto, where they clearly differ and the method compares
-    /// brightness (sgm-lean, sgm, sgm-edge), or none
-    #[arg(long, value_name = "BALANCE", default_value = "auto", value_parser = balance)]
-    pub balance: BalanceChoice,
+    #[command(flatten)]
+    pub balance: BalanceArgs,
     /// Calibration of the pair, for depths: a Middlebury or KITTI calib.txt, what OpenCV or ROS (twice) say of rectified images,
     /// or rectified.json; with --rectify how the cameras are mounted, as for the command rectify
     #[arg(long, value_name = "FILE")]
@@ -206,9 +204,24 @@ impl WayArgs {
     }
 }
 
+#[derive(Debug, Args)]
+pub struct BalanceArgs {
+    /// Whether the right image is brought to the left one's exposure: auto, where they clearly differ and the method compares
+    /// brightness (sgm-lean, sgm, sgm-edge), or none
+    #[arg(long, value_name = "BALANCE", default_value = "auto", value_parser = balance)]
+    balance: BalanceChoice,
+}
+
+impl BalanceArgs {
+    /// Whether exposures are balanced for that method.
+    pub fn is_for(&self, method: Method) -> bool {
+        self.balance == BalanceChoice::Auto && method.compares_brightness()
+    }
+}
+
 /// Whether exposures are balanced.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum BalanceChoice {
+enum BalanceChoice {
     Auto,
     None,
 }

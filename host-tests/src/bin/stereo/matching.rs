@@ -1,6 +1,6 @@
 //! `stereo match`: a pair, rectified or raw, into a folder of results.
 
-use crate::cli::{BalanceChoice, MatchArgs, Unit};
+use crate::cli::{MatchArgs, Unit};
 use crate::failure::Failure;
 use crate::input::{self, Pair};
 use crate::progress::Progress;
@@ -18,7 +18,7 @@ use stereopsis_host::calibration::Calibration;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
 use stereopsis_host::rectify::{rectify, rectify_colours, with_rectified};
-use stereopsis_host::report::{Report, Summary};
+use stereopsis_host::report::{Exposure, Report, Summary};
 use stereopsis_host::rows::Rows;
 use stereopsis_host::run::{self, Outcome, measure_noise};
 
@@ -61,7 +61,7 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let Matched { config, meter, balance, outcome } = matched;
     let scale = scene.scale.as_ref();
     let summary = Summary::new(args.way.method, args.way.filter.name(), &config, &outcome, scale, None);
-    let summary = summary.with_noise(meter.as_ref()).with_rows(scene.rows);
+    let summary = summary.with_noise(meter.as_ref()).with_balance(balance).with_rows(scene.rows);
     let report = Report {
         left_name: &name(&args.pair.left),
         right_name: &name(&args.pair.right),
@@ -92,11 +92,6 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         let _ = writeln!(std::io::stderr(), "stereo: warning: {warning}");
     }
     text += &figures(&summary);
-    if balance != Balance::NONE {
-        let [gain, offset] =
-            [i32::from(balance.gain_256ths), balance.offset_256ths].map(|number| f64::from(number) / 256.0);
-        let _ = writeln!(text, "exposure     right image x {gain:.2} {offset:+.1} grey levels, as the left one has it");
-    }
     if let Some(rectified) = &scene.rectified {
         text += &rectified.figures();
     }
@@ -109,7 +104,7 @@ fn matched<C: StereoSource<Error: Display>>(
     config: Config,
     source: &mut C,
 ) -> Result<Matched, Failure> {
-    if args.balance == BalanceChoice::None || !args.way.method.compares_brightness() {
+    if !args.balance.is_for(args.way.method) {
         return matched_as_it_comes(args, config, source);
     }
     let mut balanced = BalancedPair::new(source);
@@ -214,6 +209,9 @@ pub fn figures(summary: &Summary) -> String {
         "cost         {:.1} ms on kernel {}, {} bytes of state, {} lines of delay",
         s.time_ms, s.kernel, s.state_bytes, s.latency_lines
     );
+    if let Some(Exposure { gain, offset }) = s.balance {
+        let _ = writeln!(text, "exposure     right image x {gain:.2} {offset:+.1} grey levels, as the left one has it");
+    }
     text
 }
 

@@ -1,6 +1,6 @@
 //! `stereo replay`: recorded lines through the code that runs on the device.
 
-use crate::cli::{RangeArgs, WayArgs};
+use crate::cli::{BalanceArgs, RangeArgs, WayArgs};
 use crate::failure::Failure;
 use crate::files::{json, png};
 use crate::{input, print};
@@ -10,7 +10,7 @@ use std::fmt::{Display, Write as _};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use stereopsis::camera::StereoSource;
+use std::sync::atomic::{AtomicU32, Ordering};
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{Config, Filter};
 use stereopsis::pipeline::FaultCounters;
@@ -19,7 +19,7 @@ use stereopsis_host::colour::flags_raw;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
 use stereopsis_host::pfm;
-use stereopsis_host::recording::{Header, Pictures, Playback, Recording};
+use stereopsis_host::recording::{Balanced, Entry, Header, Pictures, Playback, Recording, RecordingError};
 use stereopsis_host::run::{GuardedFrame, Method, NoiseChoice, run_guarded};
 
 /// What follows the options in the command's help.
@@ -43,6 +43,8 @@ pub struct ReplayArgs {
     /// dense, default or strict
     #[arg(long, value_name = "FILTER", default_value = "default", value_parser = crate::cli::filter)]
     pub filter: Filter,
+    #[command(flatten)]
+    pub balance: BalanceArgs,
     /// As fast as possible, or as fast as it was recorded
     #[arg(long, value_name = "TIMING", default_value = "fast")]
     pub timing: Timing,
@@ -81,6 +83,8 @@ struct Summary {
     damaged_frames: u32,
     broken_frames: u32,
     failed_frames: u32,
+    /// Frames whose right image was brought to the left one's exposure.
+    balanced_frames: u32,
     recording_was_cut: bool,
     /// The first frame, from 1, whose time stamp is of before that of the frame before.
     time_went_back_at: Option<u32>,
@@ -130,21 +134,25 @@ impl From<FaultCounters> for Counters {
 }
 
 pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
-    if args.from.is_dir() {
-        let side = |name: &str| args.from.join(name);
-        for name in ["left", "right"] {
-            if !side(name).is_dir() {
-                let from = args.from.display();
-                return Err(Failure::new(format!("--from {from}: the folder has no folder '{name}' in it")));
-            }
-        }
-        let mut pictures = Pictures::open(&side("left"), &side("right"), args.fps)?;
-        let recorded = recorded(&mut pictures)?;
-        let mut source = Playback::new(recorded, args.timing == Timing::Recorded);
-        return play(args, &mut source);
+    let recording = if args.from.is_dir() { of_folder(args)? } else { Recording::open(&args.from)? };
+    let (header, is_timed, balanced) = (recording.header(), args.timing == Timing::Recorded, AtomicU32::new(0));
+    if args.balance.is_for(args.method) {
+        let entries = Balanced::new(recording, header, &balanced);
+        return play(args, header, &mut Playback::new(entries, header, is_timed), &balanced);
     }
-    let mut source = Playback::new(Recording::open(&args.from)?, args.timing == Timing::Recorded);
-    play(args, &mut source)
+    play(args, header, &mut Playback::new(recording, header, is_timed), &balanced)
+}
+
+/// A folder's pictures, with those of each side in a folder.
+fn of_folder(args: &ReplayArgs) -> Result<Recording, Failure> {
+    let side = |name: &str| args.from.join(name);
+    for name in ["left", "right"] {
+        if !side(name).is_dir() {
+            let from = args.from.display();
+            return Err(Failure::new(format!("--from {from}: the folder has no folder '{name}' in it")));
+        }
+    }
+    recorded(&mut Pictures::open(&side("left"), &side("right"), args.fps)?)
 }
 
 /// A folder's pictures as a recording.
@@ -168,14 +176,17 @@ fn config(args: &ReplayArgs, header: Header) -> Result<Config, Failure> {
     input::config(&args.range, &way, header.width, header.height)
 }
 
-fn play(args: &ReplayArgs, source: &mut Playback<Recording>) -> Result<(), Failure> {
-    let format = source.format();
-    let header = Header { width: format.width, height: format.height, max_row_skew_us: source.max_row_skew_us() };
+fn play<I: Iterator<Item = Result<Entry, RecordingError>> + Send>(
+    args: &ReplayArgs,
+    header: Header,
+    source: &mut Playback<I>,
+    balanced: &AtomicU32,
+) -> Result<(), Failure> {
     let config = config(args, header)?;
     let mut staging = Staging::new(&args.out)?;
     let (mut written, mut table, mut names) = (Ok(()), TABLE.to_owned(), Vec::new());
     let mut left = args.frames.unwrap_or(u32::MAX);
-    let go_on = |source: &mut Playback<Recording>| {
+    let go_on = |source: &mut Playback<I>| {
         left = left.wrapping_sub(1);
         left != u32::MAX && source.has_frame()
     };
@@ -207,6 +218,7 @@ fn play(args: &ReplayArgs, source: &mut Playback<Recording>) -> Result<(), Failu
         damaged_frames: counters.frames_damaged,
         broken_frames: counters.frames_broken,
         failed_frames: counters.frames_failed + counters.frames_stale,
+        balanced_frames: balanced.load(Ordering::Relaxed),
         recording_was_cut: source.was_cut(),
         time_went_back_at: source.went_back(),
         counters: counters.into(),
@@ -256,6 +268,9 @@ fn told(s: &Summary, out: &Path) -> String {
         s.broken_frames,
         s.failed_frames
     );
+    if s.balanced_frames > 0 {
+        let _ = writeln!(text, "{} with the right image in the left one's exposure", s.balanced_frames);
+    }
     if s.recording_was_cut {
         text += "note: the recording ends within a record; what is before it was played\n";
     }

@@ -1,15 +1,12 @@
 //! The program `bundle` on one core: two views and 128 points from a guess to the truth, measured, and held to the host's own run.
 
 use super::board::Board;
+use super::plain::Tabled;
 use super::program::Optimised;
-use super::results::{CASES, Ran, Taken, measured};
-use super::tables;
+use super::results::{Ran, Taken};
 use super::window::{Adjusted, Outcome as Adjustment, TwoViews};
 use crate::steps::{Failure, Outcome};
 use serde::Serialize;
-
-/// The part of README.md.
-pub const BUNDLE: tables::Part = tables::Part { name: "bundle", command: "cargo xtask firmware --all" };
 
 /// The most state, bytes.
 const MOST_STATE: u64 = 24 * 1024;
@@ -58,37 +55,6 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Bundle> {
     })
 }
 
-/// Measures [`CASES`]; writes the table into README.md, or compares it.
-pub fn run_all(readme: tables::Readme) -> Outcome {
-    let all = measured(&CASES, readme, run, Bundle::told)?;
-    let part = tables::with_compiler(&table(&all))?;
-    println!("{part}");
-    tables::into_readme(&BUNDLE, &part, readme)
-}
-
-fn table(all: &[Bundle]) -> String {
-    let mut table =
-        "| core | made for | instructions for an iteration | iterations | state | static RAM | stack | flash | panic symbols |\n\
-         | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n"
-            .to_owned();
-    for bundle in all {
-        let taken = &bundle.taken;
-        table += &format!(
-            "| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
-            taken.core,
-            taken.made_for(),
-            bundle.instructions_per_iteration,
-            bundle.iterations,
-            bundle.state_bytes,
-            taken.static_ram_bytes,
-            taken.stack_bytes,
-            taken.flash_bytes,
-            taken.panic_symbols
-        );
-    }
-    table
-}
-
 /// The window as the host adjusts it.
 fn of_host() -> Outcome<(Box<TwoViews>, Adjustment)> {
     let mut memory = Box::new(Adjusted::new());
@@ -106,23 +72,27 @@ fn bytes(window: &TwoViews) -> Vec<u8> {
     poses.chain(window.points().iter().flat_map(|point| point.iter())).flat_map(|x| x.to_le_bytes()).collect()
 }
 
+impl Tabled for Bundle {
+    const NAME: &'static str = "bundle";
+    const COLUMNS: &'static [&'static str] = &["instructions for an iteration", "iterations", "state"];
+
+    fn cells(&self) -> Vec<String> {
+        [self.instructions_per_iteration, self.iterations, self.state_bytes].map(|n| n.to_string()).into()
+    }
+
+    fn taken(&self) -> &Taken {
+        &self.taken
+    }
+}
+
 impl Bundle {
     /// In a line.
     pub fn told(&self) -> String {
-        format!(
-            "{}-bundle-{}: {} instructions for an iteration, {} of them; cost {:.3} from {:.3}; state {} bytes, RAM {}, \
-             stack {}, flash {}",
-            self.taken.core,
-            self.taken.profile,
-            self.instructions_per_iteration,
-            self.iterations,
-            self.cost,
-            self.initial_cost,
-            self.state_bytes,
-            self.taken.static_ram_bytes,
-            self.taken.stack_bytes,
-            self.taken.flash_bytes
-        )
+        let told = format!(
+            "{} instructions for an iteration, {} of them; cost {:.3} from {:.3}; state {} bytes",
+            self.instructions_per_iteration, self.iterations, self.cost, self.initial_cost, self.state_bytes
+        );
+        self.taken.told("bundle", &told)
     }
 }
 

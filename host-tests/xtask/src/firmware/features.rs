@@ -1,19 +1,16 @@
 //! The program `features` on one core: two pictures to features and their matches, measured, and held to the host's own run.
 
 use super::board::Board;
+use super::plain::Tabled;
 use super::program::Optimised;
-use super::results::{CASES, Ran, Taken, measured};
+use super::results::{Ran, Taken};
 use super::scene::{Scene, SceneCamera};
-use super::tables;
 use super::two_pictures::{HEIGHT, TwoPictures, WIDTH};
 use crate::steps::{Failure, Outcome};
 use serde::Serialize;
 use std::fmt::Debug;
 use stereopsis::camera::StereoSource;
 use stereopsis::features::{Feature, Match};
-
-/// The part of README.md.
-pub const FEATURES: tables::Part = tables::Part { name: "features", command: "cargo xtask firmware --all" };
 
 /// What the cameras see.
 const SCENE: Scene = Scene { width: WIDTH as u16, height: HEIGHT as u16 };
@@ -75,41 +72,6 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Features> {
     })
 }
 
-/// Measures [`CASES`]; writes the table into README.md, or compares it.
-pub fn run_all(readme: tables::Readme) -> Outcome {
-    let all = measured(&CASES, readme, run, Features::told)?;
-    let part = tables::with_compiler(&table(&all))?;
-    println!("{part}");
-    tables::into_readme(&FEATURES, &part, readme)
-}
-
-fn table(all: &[Features]) -> String {
-    let mut table =
-        "| core | made for | detection, for a pixel | matching | features | matches | of them right | static RAM | \
-                     stack | flash | panic symbols |\n\
-                     | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n"
-            .to_owned();
-    for features in all {
-        let taken = &features.taken;
-        table += &format!(
-            "| {} | {} | {:.1} | {} | {} and {} | {} | {} | {} | {} | {} | {} |\n",
-            taken.core,
-            taken.made_for(),
-            features.detection_instructions_per_pixel,
-            features.matching_instructions,
-            features.left,
-            features.right,
-            features.matches,
-            features.right_matches,
-            taken.static_ram_bytes,
-            taken.stack_bytes,
-            taken.flash_bytes,
-            taken.panic_symbols
-        );
-    }
-    table
-}
-
 /// What the host finds in the same lines.
 fn of_host() -> Outcome<Box<TwoPictures>> {
     let failed = |what: &dyn Debug| Failure::new(format!("the host finds no features: {what:?}"));
@@ -156,25 +118,40 @@ fn bytes(pictures: &TwoPictures) -> Vec<u8> {
     bytes
 }
 
+impl Tabled for Features {
+    const NAME: &'static str = "features";
+    const COLUMNS: &'static [&'static str] =
+        &["detection, for a pixel", "matching", "features", "matches", "of them right"];
+
+    fn cells(&self) -> Vec<String> {
+        vec![
+            format!("{:.1}", self.detection_instructions_per_pixel),
+            self.matching_instructions.to_string(),
+            format!("{} and {}", self.left, self.right),
+            self.matches.to_string(),
+            self.right_matches.to_string(),
+        ]
+    }
+
+    fn taken(&self) -> &Taken {
+        &self.taken
+    }
+}
+
 impl Features {
     /// In a line.
     pub fn told(&self) -> String {
-        format!(
-            "{}-features-{}: {:.1} instructions for a pixel, {} for matching {} with {} features; RAM {} bytes, stack {}, \
-             flash {}; {} of {} matches are right, crc32 {}",
-            self.taken.core,
-            self.taken.profile,
+        let told = format!(
+            "{:.1} instructions for a pixel, {} for matching {} with {} features; {} of {} matches are right, crc32 {}",
             self.detection_instructions_per_pixel,
             self.matching_instructions,
             self.left,
             self.right,
-            self.taken.static_ram_bytes,
-            self.taken.stack_bytes,
-            self.taken.flash_bytes,
             self.right_matches,
             self.matches,
             self.crc32
-        )
+        );
+        self.taken.told("features", &told)
     }
 }
 

@@ -2,15 +2,12 @@
 //! own run.
 
 use super::board::Board;
+use super::plain::Tabled;
 use super::program::Optimised;
-use super::results::{CASES, Ran, Taken, measured};
+use super::results::{Ran, Taken};
 use super::sweep::{CONFIG, FRAMES, HEIGHT, Map, Sweep, WIDTH, in_focus_q8};
-use super::tables;
 use crate::steps::{Failure, Outcome};
 use serde::Serialize;
-
-/// The part of README.md.
-pub const FOCUS: tables::Part = tables::Part { name: "focus", command: "cargo xtask firmware --all" };
 
 /// The most instructions for a pixel of a frame on these cores, made for speed.
 const MOST_PER_PIXEL: f64 = 60.0;
@@ -77,35 +74,6 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Focus> {
     })
 }
 
-/// Measures [`CASES`]; writes the table into README.md, or compares it.
-pub fn run_all(readme: tables::Readme) -> Outcome {
-    let all = measured(&CASES, readme, run, Focus::told)?;
-    let part = tables::with_compiler(&table(&all))?;
-    println!("{part}");
-    tables::into_readme(&FOCUS, &part, readme)
-}
-
-fn table(all: &[Focus]) -> String {
-    let mut table = "| core | made for | instructions for a pixel of a frame | state | static RAM | stack | flash | panic symbols |\n\
-                     | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n"
-        .to_owned();
-    for focus in all {
-        let taken = &focus.taken;
-        table += &format!(
-            "| {} | {} | {:.1} | {} | {} | {} | {} | {} |\n",
-            taken.core,
-            taken.made_for(),
-            focus.instructions_per_pixel,
-            focus.state_bytes,
-            taken.static_ram_bytes,
-            taken.stack_bytes,
-            taken.flash_bytes,
-            taken.panic_symbols
-        );
-    }
-    table
-}
-
 /// What the host finds in the same frames.
 fn of_host() -> Outcome<Box<Sweep>> {
     let mut sweep = Box::new(Sweep::new());
@@ -141,24 +109,33 @@ fn median_error_q8(map: &Map) -> Option<u32> {
     errors.get(errors.len() / 2).copied()
 }
 
+impl Tabled for Focus {
+    const NAME: &'static str = "focus";
+    const COLUMNS: &'static [&'static str] = &["instructions for a pixel of a frame", "state"];
+
+    fn cells(&self) -> Vec<String> {
+        vec![format!("{:.1}", self.instructions_per_pixel), self.state_bytes.to_string()]
+    }
+
+    fn taken(&self) -> &Taken {
+        &self.taken
+    }
+}
+
 impl Focus {
     /// In a line.
     pub fn told(&self) -> String {
-        format!(
-            "{}-focus-{}: {:.1} instructions for a pixel of a frame; state {} bytes, RAM {}, stack {}, flash {}; {} of {} \
-             tiles are in focus, {:.3} frames from the truth in the median, crc32 {}",
-            self.taken.core,
-            self.taken.profile,
+        let told = format!(
+            "{:.1} instructions for a pixel of a frame; state {} bytes; {} of {} tiles are in focus, {:.3} frames from the truth in \
+             the median, crc32 {}",
             self.instructions_per_pixel,
             self.state_bytes,
-            self.taken.static_ram_bytes,
-            self.taken.stack_bytes,
-            self.taken.flash_bytes,
             self.in_focus,
             self.tiles,
             self.median_error_frames,
             self.crc32
-        )
+        );
+        self.taken.told("focus", &told)
     }
 }
 

@@ -92,21 +92,17 @@ fn of_host() -> Outcome<Vec<u8>> {
 impl Interrupt {
     /// In a line.
     pub fn told(&self) -> String {
-        format!(
-            "{}-interrupt-{}: a line every {} instructions, {} rows and no line lost; at twice the rate {} lines lost and told, {} of {} \
-             rows flagged, none wrong without a flag; RAM {}, stack {}, flash {}, crc32 {}",
-            self.taken.core,
-            self.taken.profile,
+        let told = format!(
+            "a line every {} instructions, {} rows and no line lost; at twice the rate {} lines lost and told, {} of {} rows flagged, \
+             none wrong without a flag; crc32 {}",
             self.instructions_per_line,
             self.rows,
             self.lost_lines_at_twice,
             self.damaged_rows_at_twice,
             self.rows_at_twice,
-            self.taken.static_ram_bytes,
-            self.taken.stack_bytes,
-            self.taken.flash_bytes,
             self.crc32
-        )
+        );
+        self.taken.told("interrupt", &told)
     }
 }
 

@@ -4,6 +4,7 @@
 //!   text.
 //! * [`frame`]: one frame on one core, held to the host. [`summary`]: the files that are written of it.
 //! * [`all`]: every core, method and size; [`tables`] of it for README.md; [`checksums`] on real pictures.
+//! * [`as_match`]: noisy cameras that are exposed unequally, beside `stereo match`.
 //! * [`awkward`]: sizes that fill no vector, where the rows are in assembly.
 //! * [`pose`]: two views on one core, held to the host; [`two_views_all`]: on every core.
 //! * [`bundle`]: their adjustment, likewise.
@@ -11,11 +12,12 @@
 //! * [`focus`]: a lens that moves, likewise. [`odometry`]: where a pair of cameras goes. [`interrupt`]: lines that an
 //!   interrupt brings.
 //! * [`rectify`]: raw lines, and depth from them, likewise.
-//! * [`results`]: the run of such a program, and what it leaves.
+//! * [`results`]: the run of such a program, and what it leaves; [`plain`]: the table of it.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
 
 mod all;
 mod arguments;
+mod as_match;
 mod awkward;
 mod bundle;
 mod checksums;
@@ -26,6 +28,7 @@ pub mod frame;
 mod interrupt;
 mod log;
 mod odometry;
+mod plain;
 mod pose;
 pub mod program;
 mod rectify;
@@ -69,6 +72,7 @@ use pose::Pose;
 use program::{Optimised, Program};
 use rectify::Rectify;
 use serde::Serialize;
+use std::path::Path;
 use stereopsis::imaging::{Balance, Noise};
 use stereopsis_host::output::Staging;
 use stereopsis_host::run::NoiseChoice;
@@ -93,18 +97,20 @@ pub fn run(arguments: &Arguments) -> Outcome {
 fn run_all(readme: Readme) -> Outcome {
     all::run(readme)?;
     two_views_all::run(readme)?;
-    bundle::run_all(readme)?;
-    features::run_all(readme)?;
-    focus::run_all(readme)?;
-    odometry::run_all(readme)?;
-    rectify::run_all(readme)?;
+    plain::run_all(readme, bundle::run, Bundle::told)?;
+    plain::run_all(readme, features::run, Features::told)?;
+    plain::run_all(readme, focus::run, Focus::told)?;
+    plain::run_all(readme, odometry::run, Odometry::told)?;
+    plain::run_all(readme, rectify::run, Rectify::told)?;
     println!("{}", interrupt::run(board::M4, Optimised::Speed)?.told());
     Ok(())
 }
 
-/// Every core and method and a part of the sizes and programs, compared with README.md.
-pub fn check_sample() -> Outcome {
-    run_all(Readme::Sample)
+/// Every core and method and a part of the sizes and programs, compared with README.md; and a frame with what the program `stereo`
+/// at that path makes of it.
+pub fn check_sample(stereo: &Path) -> Outcome {
+    run_all(Readme::Sample)?;
+    as_match::check(stereo)
 }
 
 /// A program without sizes to choose, on one core into a folder.

@@ -1,16 +1,13 @@
 //! The program `odometry` on one core: the motion of a pair from frame to frame, measured, and held to the host's own run.
 
 use super::board::Board;
+use super::plain::Tabled;
 use super::program::Optimised;
-use super::results::{CASES, Ran, Taken, measured};
-use super::tables;
+use super::results::{Ran, Taken};
 use super::walk::{FRAMES, Walk, is_right, turned};
 use crate::steps::{Failure, Outcome};
 use serde::Serialize;
 use stereopsis::motion::odometry::Step;
-
-/// The part of README.md.
-pub const ODOMETRY: tables::Part = tables::Part { name: "odometry", command: "cargo xtask firmware --all" };
 
 /// The most static RAM, bytes: both pictures, the detector and the odometry.
 const MOST_RAM: u64 = 52 * 1024;
@@ -52,37 +49,6 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Odometry> {
     })
 }
 
-/// Measures [`CASES`]; writes the table into README.md, or compares it.
-pub fn run_all(readme: tables::Readme) -> Outcome {
-    let all = measured(&CASES, readme, run, Odometry::told)?;
-    let part = tables::with_compiler(&table(&all))?;
-    println!("{part}");
-    tables::into_readme(&ODOMETRY, &part, readme)
-}
-
-fn table(all: &[Odometry]) -> String {
-    let mut table =
-        "| core | made for | instructions for a frame | at most | state | static RAM | stack | flash | panic symbols |\n\
-         | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n"
-            .to_owned();
-    for odometry in all {
-        let taken = &odometry.taken;
-        table += &format!(
-            "| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
-            taken.core,
-            taken.made_for(),
-            odometry.instructions_per_frame,
-            odometry.worst_frame_instructions,
-            odometry.state_bytes,
-            taken.static_ram_bytes,
-            taken.stack_bytes,
-            taken.flash_bytes,
-            taken.panic_symbols
-        );
-    }
-    table
-}
-
 /// What the host finds in the same pictures.
 fn of_host() -> Outcome<Vec<Step<f32>>> {
     let mut walk = Box::new(Walk::new());
@@ -104,23 +70,31 @@ fn bytes(steps: &[Step<f32>]) -> Vec<u8> {
     numbers.flat_map(|x| x.to_le_bytes()).collect()
 }
 
+impl Tabled for Odometry {
+    const NAME: &'static str = "odometry";
+    const COLUMNS: &'static [&'static str] = &["instructions for a frame", "at most", "state"];
+
+    fn cells(&self) -> Vec<String> {
+        [self.instructions_per_frame, self.worst_frame_instructions, self.state_bytes].map(|n| n.to_string()).into()
+    }
+
+    fn taken(&self) -> &Taken {
+        &self.taken
+    }
+}
+
 impl Odometry {
     /// In a line.
     pub fn told(&self) -> String {
-        format!(
-            "{}-odometry-{}: {} instructions for a frame, {} at most; {} points agree in the last, {} urad turned; state {} bytes, \
-             RAM {}, stack {}, flash {}",
-            self.taken.core,
-            self.taken.profile,
+        let told = format!(
+            "{} instructions for a frame, {} at most; {} points agree in the last, {} urad turned; state {} bytes",
             self.instructions_per_frame,
             self.worst_frame_instructions,
             self.inliers,
             self.turned_urad,
-            self.state_bytes,
-            self.taken.static_ram_bytes,
-            self.taken.stack_bytes,
-            self.taken.flash_bytes
-        )
+            self.state_bytes
+        );
+        self.taken.told("odometry", &told)
     }
 }
 

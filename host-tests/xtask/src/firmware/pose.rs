@@ -1,6 +1,7 @@
 //! The program `pose` on one core: two views, measured, and held to the host's own run.
 
-use super::board::Board;
+use super::board::{self, Board};
+use super::plain::Tabled;
 use super::program::Optimised;
 use super::results::{Ran, Taken};
 use super::two_views::{Cameras, Found, MATCHES, Missing, World};
@@ -25,16 +26,16 @@ const WITH_FLOATS: [&str; 4] = ["m4", "m7", "m33", "m55"];
 #[derive(Serialize)]
 pub struct Pose {
     #[serde(flatten)]
-    pub taken: Taken,
+    taken: Taken,
     matches: u64,
     /// F of eight correspondences.
-    pub eight_point_instructions: u64,
+    eight_point_instructions: u64,
     /// F of all matches, wrong ones among them.
-    pub robust_instructions: u64,
+    robust_instructions: u64,
     /// That, the pose and the points.
-    pub instructions: u64,
+    instructions: u64,
     /// Samples of seven.
-    pub samples: u64,
+    samples: u64,
     inliers: u64,
     points: u64,
     right_lost: u64,
@@ -101,22 +102,37 @@ fn of_host() -> Outcome<Vec<u8>> {
     Ok(bytes)
 }
 
+impl Tabled for Pose {
+    const NAME: &'static str = "pose";
+    /// The smallest board, which has too little RAM, left out. One core of each kind made for size is enough: the others take as much.
+    const CASES: &'static [(Board, Optimised)] = &[
+        (board::M3, Optimised::Speed),
+        (board::M4, Optimised::Speed),
+        (board::M7, Optimised::Speed),
+        (board::M7, Optimised::Size),
+        (board::M33, Optimised::Speed),
+        (board::M55, Optimised::Speed),
+        (board::RV32, Optimised::Speed),
+    ];
+    const COLUMNS: &'static [&'static str] = &["F of 8", "F of 128, a third wrong", "and pose and points"];
+
+    fn cells(&self) -> Vec<String> {
+        [self.eight_point_instructions, self.robust_instructions, self.instructions].map(|n| n.to_string()).into()
+    }
+
+    fn taken(&self) -> &Taken {
+        &self.taken
+    }
+}
+
 impl Pose {
     /// In a line.
     pub fn told(&self) -> String {
-        format!(
-            "{}-pose-{}: {} instructions, of them {} for F with {} samples; {} for eight points alone; RAM {} bytes, stack {}, \
-             flash {}",
-            self.taken.core,
-            self.taken.profile,
-            self.instructions,
-            self.robust_instructions,
-            self.samples,
-            self.eight_point_instructions,
-            self.taken.static_ram_bytes,
-            self.taken.stack_bytes,
-            self.taken.flash_bytes
-        )
+        let told = format!(
+            "{} instructions, of them {} for F with {} samples; {} for eight points alone",
+            self.instructions, self.robust_instructions, self.samples, self.eight_point_instructions
+        );
+        self.taken.told("pose", &told)
     }
 }
 

@@ -2,21 +2,15 @@
 //! own run.
 
 use super::board::{self, Board};
+use super::plain::Tabled;
 use super::program::Optimised;
 use super::raw_pair::{Broken, Lens, Lowered, RawPair, SCENE, on_board};
-use super::results::{Ran, Taken, measured};
+use super::results::{Ran, Taken};
 use super::scene::SceneCamera;
-use super::tables;
 use crate::steps::{Failure, Outcome};
 use serde::Serialize;
 use std::convert::Infallible;
 use stereopsis::matching::Row;
-
-/// The part of README.md.
-pub const RECTIFY: tables::Part = tables::Part { name: "rectify", command: "cargo xtask firmware --all" };
-
-/// What it is measured on: the dense path is made for speed.
-const CASES: [(Board, Optimised); 2] = [(board::M4, Optimised::Speed), (board::M7, Optimised::Speed)];
 
 /// The most instructions for a rectified pixel on these cores, whatever the lens.
 const MOST_PER_PIXEL: f64 = 40.0;
@@ -74,35 +68,6 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Rectify> {
     })
 }
 
-/// Measures [`CASES`]; writes the table into README.md, or compares it.
-pub fn run_all(readme: tables::Readme) -> Outcome {
-    let all = measured(&CASES, readme, run, Rectify::told)?;
-    let part = tables::with_compiler(&table(&all))?;
-    println!("{part}");
-    tables::into_readme(&RECTIFY, &part, readme)
-}
-
-fn table(all: &[Rectify]) -> String {
-    let mut table = "| core | no lens | mild lens | strong lens | depth | state | raw lines | static RAM | stack | flash | panic symbols |\n\
-                     | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n"
-        .to_owned();
-    for rectify in all {
-        let (taken, [none, mild, strong]) = (&rectify.taken, rectify.instructions_per_pixel);
-        table += &format!(
-            "| {} | {none:.1} | {mild:.1} | {strong:.1} | {} | {} | {} | {} | {} | {} | {} |\n",
-            taken.core,
-            rectify.depth_instructions,
-            rectify.state_bytes,
-            rectify.band_bytes,
-            taken.static_ram_bytes,
-            taken.stack_bytes,
-            taken.flash_bytes,
-            taken.panic_symbols
-        );
-    }
-    table
-}
-
 /// The bytes of `rectify.bin`: behind each lens the left and the right line of each row and which of their pixels are valid; then the
 /// disparity and the flags of each pixel.
 fn of_host() -> Outcome<Vec<u8>> {
@@ -133,23 +98,32 @@ fn of_host() -> Outcome<Vec<u8>> {
     Ok(bytes)
 }
 
+impl Tabled for Rectify {
+    const NAME: &'static str = "rectify";
+    /// The dense path is made for speed.
+    const CASES: &'static [(Board, Optimised)] = &[(board::M4, Optimised::Speed), (board::M7, Optimised::Speed)];
+    const COLUMNS: &'static [&'static str] = &["no lens", "mild lens", "strong lens", "depth", "state", "raw lines"];
+
+    fn cells(&self) -> Vec<String> {
+        let numbers = [self.depth_instructions, self.state_bytes, self.band_bytes].map(|n| n.to_string());
+        self.instructions_per_pixel.map(|n| format!("{n:.1}")).into_iter().chain(numbers).collect()
+    }
+
+    fn taken(&self) -> &Taken {
+        &self.taken
+    }
+}
+
 impl Rectify {
     /// In a line.
     pub fn told(&self) -> String {
         let [none, mild, strong] = self.instructions_per_pixel;
-        format!(
-            "{}-rectify-{}: {none:.1} instructions for a pixel without a lens, {mild:.1} with a mild and {strong:.1} with a strong \
-             one; {} for a frame of depth, {:.1} % right; state {} bytes beside {} of lines, RAM {}, stack {}, flash {}",
-            self.taken.core,
-            self.taken.profile,
-            self.depth_instructions,
-            self.right_percent,
-            self.state_bytes,
-            self.band_bytes,
-            self.taken.static_ram_bytes,
-            self.taken.stack_bytes,
-            self.taken.flash_bytes
-        )
+        let told = format!(
+            "{none:.1} instructions for a pixel without a lens, {mild:.1} with a mild and {strong:.1} with a strong one; {} for a \
+             frame of depth, {:.1} % right; state {} bytes beside {} of lines",
+            self.depth_instructions, self.right_percent, self.state_bytes, self.band_bytes
+        );
+        self.taken.told("rectify", &told)
     }
 }
 

@@ -1,23 +1,17 @@
 //! A program without sizes to choose, run on one core: what it prints, what it takes, and what it leaves: a file that has to be
 //! the host's, and `summary.json`.
 
-use super::board::{self, Board};
+use super::board::Board;
 use super::frame::{calibrated, figures, instructions};
 use super::program::{Optimised, build_plain};
-use super::tables::Readme;
 use super::{emulate, log};
 use crate::elf::Sizes;
-use crate::parallel;
 use crate::steps::{Failure, Outcome};
 use serde::Serialize;
 use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 use stereopsis_host::output::{OutputError, Staging};
-
-/// What most programs are measured on: both cores that are built alike, and one of them made for size.
-pub const CASES: [(Board, Optimised); 3] =
-    [(board::M4, Optimised::Speed), (board::M7, Optimised::Speed), (board::M7, Optimised::Size)];
 
 /// What every such program takes. Names and units of the fields are a contract with programs that read `summary.json`.
 #[derive(Serialize)]
@@ -26,7 +20,7 @@ pub struct Taken {
     board: &'static str,
     target: &'static str,
     /// `release` is made for speed, `small` for size.
-    pub profile: &'static str,
+    profile: &'static str,
     pub static_ram_bytes: u64,
     pub stack_bytes: u64,
     pub flash_bytes: u64,
@@ -38,6 +32,12 @@ impl Taken {
     /// What it is made for, in words.
     pub fn made_for(&self) -> &'static str {
         if self.profile == Optimised::Speed.profile() { "speed" } else { "size" }
+    }
+
+    /// What came of a program, and this, in a line.
+    pub fn told(&self, program: &str, found: &str) -> String {
+        let Self { core, profile, static_ram_bytes: ram, stack_bytes: stack, flash_bytes: flash, .. } = self;
+        format!("{core}-{program}-{profile}: {found}; RAM {ram} bytes, stack {stack}, flash {flash}")
     }
 }
 
@@ -106,22 +106,6 @@ impl Ran {
             None => Ok(()),
         }
     }
-}
-
-/// Runs a program on all of these and says what came of each. Cores with the same instructions are as one in a sample.
-pub fn measured<T: Send>(
-    cases: &[(Board, Optimised)],
-    readme: Readme,
-    run: fn(Board, Optimised) -> Outcome<T>,
-    told: fn(&T) -> String,
-) -> Outcome<Vec<T>> {
-    let is_measured = |board: Board| readme != Readme::Sample || [board::M7, board::RV32].contains(&board);
-    let cases = cases.iter().copied().filter(|&(board, _)| is_measured(board)).collect();
-    parallel::work(cases, |(board, optimised)| {
-        let found = run(board, optimised)?;
-        println!("{}", told(&found));
-        Ok(found)
-    })
 }
 
 /// Whether the board found what the host found; else where their files differ.

@@ -1,28 +1,13 @@
-//! Two views on every core: the table of README.md.
+//! Two views on every core, and the eight-point algorithm alone.
 
-use super::board::{self, Board};
+use super::board;
 use super::frame::{figures, instructions};
 use super::pose::{self, Pose};
 use super::program::{Optimised, build_plain};
-use super::results::measured;
-use super::{emulate, tables};
+use super::tables::Readme;
+use super::{emulate, plain};
 use crate::elf::Sizes;
 use crate::steps::{Failure, Outcome};
-
-/// The part of README.md.
-pub const POSE: tables::Part = tables::Part { name: "pose", command: "cargo xtask firmware --all" };
-
-/// What is measured, the smallest board, which has too little RAM, left out. One core of each kind made for size is enough:
-/// the others take as much.
-const CASES: [(Board, Optimised); 7] = [
-    (board::M3, Optimised::Speed),
-    (board::M4, Optimised::Speed),
-    (board::M7, Optimised::Speed),
-    (board::M7, Optimised::Size),
-    (board::M33, Optimised::Speed),
-    (board::M55, Optimised::Speed),
-    (board::RV32, Optimised::Speed),
-];
 
 /// The most flash that the eight-point algorithm may take made for size, bytes.
 const MOST_EIGHT_POINT: u64 = 4 * 1024;
@@ -34,18 +19,18 @@ struct EightPoint {
 }
 
 /// Measures all of it; writes the table into README.md, or compares it.
-pub fn run(readme: tables::Readme) -> Outcome {
-    let poses = measured(&CASES, readme, pose::run, Pose::told)?;
-    let alone = eight_point()?;
-    let part = tables::with_compiler(&table(&poses, &alone))?;
-    println!("{part}");
-    if alone.flash > MOST_EIGHT_POINT {
-        let (flash, most) = (alone.flash, MOST_EIGHT_POINT);
+pub fn run(readme: Readme) -> Outcome {
+    let poses = plain::measured(readme, pose::run, Pose::told)?;
+    let EightPoint { instructions, flash } = eight_point()?;
+    if flash > MOST_EIGHT_POINT {
         return Err(Failure::new(format!(
-            "the eight-point algorithm takes {flash} bytes of flash, at most {most} may be"
+            "the eight-point algorithm takes {flash} bytes of flash, at most {MOST_EIGHT_POINT} may be"
         )));
     }
-    tables::into_readme(&POSE, &part, readme)
+    let alone = format!(
+        "\nThe eight-point algorithm alone, for eight and made for size, takes {flash} bytes of flash and {instructions} instructions on m7.\n"
+    );
+    plain::into_readme::<Pose>(&(plain::table(&poses) + &alone), readme)
 }
 
 /// The program `eight_point` made for size, and how much flash it has more than without the algorithm.
@@ -63,31 +48,4 @@ fn eight_point() -> Outcome<EightPoint> {
     // The one without it has nothing of the library, which `Sizes` does not take for a firmware.
     let flash = sizes.flash().saturating_sub(Sizes::of_any(&without)?.flash());
     Ok(EightPoint { instructions, flash })
-}
-
-fn table(poses: &[Pose], alone: &EightPoint) -> String {
-    let mut table =
-        "| core | made for | F of 8 | F of 128, a third wrong | and pose and points | static RAM | stack | flash | \
-                     panic symbols |\n| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n"
-            .to_owned();
-    for pose in poses {
-        let taken = &pose.taken;
-        table += &format!(
-            "| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
-            taken.core,
-            taken.made_for(),
-            pose.eight_point_instructions,
-            pose.robust_instructions,
-            pose.instructions,
-            taken.static_ram_bytes,
-            taken.stack_bytes,
-            taken.flash_bytes,
-            taken.panic_symbols
-        );
-    }
-    table += &format!(
-        "\nThe eight-point algorithm alone, for eight and made for size, takes {} bytes of flash and {} instructions on m7.\n",
-        alone.flash, alone.instructions
-    );
-    table
 }

@@ -1,5 +1,7 @@
 //! The program `stereo` as its users run it: what it writes, and what it says when it cannot.
 
+#[path = "cli/as_match.rs"]
+mod as_match;
 #[path = "cli/bundle.rs"]
 mod bundle;
 #[path = "cli/calibrate.rs"]

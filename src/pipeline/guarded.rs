@@ -60,6 +60,14 @@ impl<S: Scheme, const W: usize, const D: usize> Guarded<S, W, D> {
         Ok(())
     }
 
+    /// Another configuration from the next frame on: counters go on, and a frame under way is over. So a frame can be matched
+    /// for the [noise](Config::noise) that was measured in the one before. What is refused changes nothing.
+    pub fn restart(&mut self, config: &Config) -> Result<(), ConfigError> {
+        self.pipeline.start(config)?;
+        self.give_up();
+        Ok(())
+    }
+
     /// How many lines of a frame may be lost before it ends with an error; all of them where nothing is set. With a camera that is dead each of them may cost
     /// the time that the source waits: a few are enough where that matters.
     pub fn set_most_lost(&mut self, lines: u16) {

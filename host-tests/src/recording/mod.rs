@@ -1,7 +1,7 @@
 //! Lines of two cameras as they came, with their time stamps and faults, in a file: to bring a failure in the field to the desk.
 //!
 //! * [`record()`]: a stereo source into a file. [`Recording`]: such a file. [`Playback`]: it as a stereo source again.
-//! * [`Balanced`]: its records with both cameras of one exposure.
+//! * [`Ahead`]: its records with both cameras of one exposure, each frame measured before it is played.
 //! * [`Pictures`]: images, or folders of them, as a stereo source at a frame rate.
 //!
 //! A recording begins with a line of text, `stereopsis recording 1`, and a line of JSON: `width`, `height`, `max_row_skew_us`.
@@ -15,11 +15,11 @@
 //!
 //! A file that ends within a record is played up to there: what wrote it may have failed as well.
 
-mod balanced;
+mod ahead;
 mod pictures;
 mod playback;
 
-pub use balanced::Balanced;
+pub use ahead::{Ahead, Seen};
 pub use pictures::{Pictures, PicturesError};
 pub use playback::{Playback, RecordedFault};
 

@@ -28,17 +28,18 @@ pub struct GuardedFrame {
     pub error: Option<String>,
 }
 
-/// Takes frames of `source` as long as `go_on` says so before each, and gives them to `keep`.
+/// Takes frames of `source` as long as `next` has a configuration for each, and gives them to `keep`. The first one is begun with
+/// `config`.
 pub fn run_guarded<C: StereoSource<Error: Display> + Send>(
     method: Method,
     config: &Config,
     most_lost: Option<u16>,
     source: &mut C,
-    go_on: impl FnMut(&mut C) -> bool + Send,
+    next: impl FnMut(&mut C) -> Option<Config> + Send,
     keep: impl FnMut(GuardedFrame) + Send,
 ) -> Result<FaultCounters, ConfigError> {
     std::thread::scope(|scope| {
-        let work = move || with_scheme!(method, S => frames::<S, C>(config, most_lost, source, go_on, keep));
+        let work = move || with_scheme!(method, S => frames::<S, C>(config, most_lost, source, next, keep));
         let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work).expect("a thread");
         thread.join().expect("a thread without a panic")
     })
@@ -48,7 +49,7 @@ fn frames<S: Scheme, C: StereoSource<Error: Display>>(
     config: &Config,
     most_lost: Option<u16>,
     source: &mut C,
-    mut go_on: impl FnMut(&mut C) -> bool,
+    mut next: impl FnMut(&mut C) -> Option<Config>,
     mut keep: impl FnMut(GuardedFrame),
 ) -> Result<FaultCounters, ConfigError> {
     let mut guarded = Guarded::<S, MOST_WIDTH, MOST_DISPARITIES>::new();
@@ -56,7 +57,10 @@ fn frames<S: Scheme, C: StereoSource<Error: Display>>(
     if let Some(lines) = most_lost {
         guarded.set_most_lost(lines);
     }
-    while go_on(source) {
+    while let Some(config) = next(source) {
+        if config != *guarded.config() {
+            guarded.restart(&config)?;
+        }
         let before = guarded.counters().rows_damaged;
         let map = DisparityMap::new(config.width.into(), config.height.into());
         let mut frame = GuardedFrame { start: None, map, rows: 0, damaged_rows: 0, lost_lines: 0, error: None };

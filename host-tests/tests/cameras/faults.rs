@@ -6,7 +6,8 @@ use super::changing::{Changing, HEIGHT, Kept, WIDTH, config, frames, reference};
 use stereopsis::camera::{
     CameraError, CameraPair, ErrorType, FrameStart, LineFormat, LineSource, LineStart, StereoSource,
 };
-use stereopsis::matching::{Block, Fast, Scheme, Sgm};
+use stereopsis::imaging::Noise;
+use stereopsis::matching::{Block, Config, ConfigError, Fast, Scheme, Sgm};
 use stereopsis::pipeline::{FaultCounters, Guarded, Pipeline, PipelineError};
 use stereopsis::units::PixelFlags;
 use stereopsis_host::fault::{Fault, Faulty, Record};
@@ -224,4 +225,41 @@ fn a_limit_on_lost_lines_ends_the_frame_with_what_was_lost() {
     assert!(matches!(error, Some(PipelineError::Camera(CameraError::TimedOut))), "{error:?}");
     assert_eq!((source.record().lost.len(), guarded.counters().lines_timed_out), (4, 4));
     assert_eq!((guarded.lost_lines(), guarded.counters().frames_broken), (3, 1));
+}
+
+#[test]
+fn another_configuration_leaves_the_counters() {
+    let mut source = Faulty::new(Changing::new(), &[Fault::LineDropped], 0.05, 4);
+    let mut guarded = Box::new(Guarded::<Block, 32, 16>::new());
+    let told = config::<Block>();
+    guarded.start(&told).expect("the configuration fits");
+    guarded.begin_frame(&mut source).expect("a frame");
+    while guarded.next_row(&mut source).expect("lines are lost, no frame").is_some() {}
+    let first = *guarded.counters();
+    assert!(first.lines_dropped > 0 && first.frames == 1, "{first:?}");
+
+    // In a frame that is under way, which goes on when the configuration is refused.
+    guarded.begin_frame(&mut source).expect("a frame");
+    guarded.next_row(&mut source).expect("a row");
+    assert_eq!(guarded.restart(&Config { width: 33, ..told }), Err(ConfigError::Width { given: 33, most: 32 }));
+    assert!(guarded.next_row(&mut source).is_ok_and(|row| row.is_some_and(|row| row.index() == 1)));
+    let noisy = Config { noise: Noise::High, ..told };
+    guarded.restart(&noisy).expect("the configuration fits");
+    assert!(guarded.next_row(&mut source).is_ok_and(|row| row.is_none()), "the frame is over");
+    assert_eq!((guarded.config(), guarded.counters().frames_broken), (&noisy, 1));
+
+    let mut clean = Changing::new();
+    guarded.begin_frame(&mut clean).expect("a frame");
+    let mut plain = Box::new(Pipeline::<Block, 32, 16>::new());
+    plain.start(&noisy).expect("the configuration fits");
+    let mut other = Changing::new();
+    plain.begin_frame(&mut other).expect("a frame");
+    while let Some(row) = plain.next_row(&mut other).expect("no fault") {
+        assert_eq!(guarded.next_row(&mut clean).expect("no fault").map(Kept::from), Some(row.into()));
+    }
+    assert!(guarded.next_row(&mut clean).is_ok_and(|row| row.is_none()));
+    let after = *guarded.counters();
+    // Its number is of before: that camera began anew.
+    assert_eq!((after.frames, after.restarts, after.frames_whole), (3, 1, 1));
+    assert!(after.lines_dropped >= first.lines_dropped && after.rows > first.rows);
 }

@@ -2,16 +2,12 @@
 
 use super::support::{Bench, names, stereo, text};
 use std::fs;
-use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Instant;
-use stereopsis::camera::{FrameStart, LineFault, LineStart, StereoSource};
-use stereopsis::imaging::BalancedPair;
 use stereopsis_host::pfm;
-use stereopsis_host::recording::{Balanced, Entry, Header, Playback, RecordedFault, RecordingError};
 use stereopsis_host::scene::pattern::Pattern;
 
 /// Two images of a bench, and their options.
-fn put_pair(bench: &Bench, folders: bool) -> [String; 2] {
+pub fn put_pair(bench: &Bench, folders: bool) -> [String; 2] {
     let (left, right) = Pattern::Shifted { most: 12, noise_grey: 2.0 }.pair(48, 30, 5);
     let put = |side: &str, image: &image::GrayImage| {
         if !folders {
@@ -29,18 +25,18 @@ fn put_pair(bench: &Bench, folders: bool) -> [String; 2] {
     [put("left", &left), put("right", &right)]
 }
 
-fn run(arguments: &[&str]) -> String {
+pub fn run(arguments: &[&str]) -> String {
     let run = stereo(arguments);
     assert!(run.status.success() && run.stderr.is_empty(), "{arguments:?}: {}", text(&run.stderr));
     text(&run.stdout).to_owned()
 }
 
-fn summary(bench: &Bench, folder: &str) -> serde_json::Value {
+pub fn summary(bench: &Bench, folder: &str) -> serde_json::Value {
     let file = fs::read(bench.path(folder).join("summary.json")).expect("a summary");
     serde_json::from_slice(&file).expect("JSON")
 }
 
-fn disparities(bench: &Bench, name: &str) -> Vec<u32> {
+pub fn disparities(bench: &Bench, name: &str) -> Vec<u32> {
     let file = fs::read(bench.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
     pfm::read(&mut file.as_slice()).expect("a PFM").values.iter().map(|v| v.to_bits()).collect()
 }
@@ -57,7 +53,7 @@ fn what_is_recorded_is_played_as_match_sees_it() {
         let replay = [&["replay", "--from", &file, "--out", &out][..], &matching].concat();
         let told = run(&replay);
         assert!(told.contains("3 whole, 0 with rows flagged as damaged, 0 broken off"), "{told}");
-        let pair = ["match", "--left", &left, "--right", &right, "--noise", "none", "--out", &matched];
+        let pair = ["match", "--left", &left, "--right", &right, "--out", &matched];
         run(&[&pair[..], &matching].concat());
         let expected = disparities(&bench, "matched/disparity.pfm");
         for frame in 1..=3 {
@@ -79,104 +75,6 @@ fn what_is_recorded_is_played_as_match_sees_it() {
     assert!(start.elapsed().as_millis() >= 40, "{:?}", start.elapsed());
     run(&["replay", "--from", &file, "--disparities", "16", "--frames", "1", "--out", &out]);
     assert_eq!(names(&bench.path("out")), ["000001-disparity.pfm", "000001-flags.png", "frames.csv", "summary.json"]);
-}
-
-#[test]
-fn unequal_exposures_are_played_as_match_sees_them() {
-    let bench = Bench::new();
-    let [left, alike] = put_pair(&bench, false);
-    let brighter = bench.path("brighter.png").display().to_string();
-    let mut picture = image::open(&alike).expect("a picture").into_luma8();
-    picture.iter_mut().for_each(|grey| *grey = *grey / 2 + 80);
-    picture.save(&brighter).expect("a file");
-    let [frames, file, out, matched] =
-        ["frames", "a.lines", "out", "matched"].map(|name| bench.path(name).display().to_string());
-    // Every frame by its own lines: the right camera's exposure changes at once, and back.
-    let rights = [&alike, &brighter, &alike, &brighter];
-    for (n, right) in (1..).zip(rights) {
-        for (side, image) in [("left", &left), ("right", right)] {
-            fs::create_dir_all(bench.path("frames").join(side)).expect("a folder");
-            fs::copy(image, bench.path("frames").join(side).join(format!("{n}.png"))).expect("a file");
-        }
-    }
-    let sides = ["left", "right"].map(|side| bench.path("frames").join(side).display().to_string());
-    run(&["record", "--left", &sides[0], "--right", &sides[1], "--out", &file]);
-    let mut answers = Vec::new();
-    for (matching, balanced) in [
-        (&["--method", "sgm"][..], 2),
-        (&["--method", "sgm-edge", "--balance", "auto"], 2),
-        (&["--method", "sgm", "--balance", "none"], 0),
-        (&["--method", "block"], 0),
-    ] {
-        for from in [&file, &frames] {
-            let replay = ["replay", "--from", from, "--disparities", "16", "--out", &out];
-            let told = run(&[&replay[..], matching].concat());
-            assert_eq!(told.contains("2 with the right image in the left one's exposure"), balanced > 0, "{told}");
-            assert_eq!(summary(&bench, "out")["balanced_frames"], balanced, "{matching:?}");
-            for (n, right) in (1..).zip(rights) {
-                let pair = ["match", "--left", &left, "--right", right, "--disparities", "16", "--noise", "none"];
-                run(&[&pair[..], &["--out", &matched], matching].concat());
-                let [found, expected] = [format!("out/{n:06}-disparity.pfm"), "matched/disparity.pfm".into()]
-                    .map(|name| fs::read(bench.path(&name)).expect("a result"));
-                assert!(found == expected, "{matching:?}, frame {n} from {from}");
-                answers.push(found);
-            }
-        }
-    }
-    assert_ne!(answers[1], answers[17], "it makes a difference to sgm");
-
-    // Those that are played are counted, and none ahead of them.
-    for (frames, balanced) in [("1", 0), ("2", 1), ("3", 1), ("4", 2)] {
-        let replay = ["replay", "--from", &file, "--disparities", "16", "--method", "sgm", "--out", &out];
-        run(&[&replay[..], &["--frames", frames]].concat());
-        assert_eq!(summary(&bench, "out")["balanced_frames"], balanced, "{frames} frames");
-    }
-}
-
-/// The right lines of a frame of 48 x 30 that was started; those that came.
-fn right_lines(source: &mut impl StereoSource) -> Vec<Option<[u8; 48]>> {
-    let line = |_| {
-        let [mut left, mut right] = [[0; 48]; 2];
-        source.next_lines(&mut left, &mut right).is_ok().then_some(right)
-    };
-    (0..30).map(line).collect()
-}
-
-#[test]
-fn frames_that_lost_lines_are_balanced_by_those_that_came() {
-    let (left, right) = Pattern::Shifted { most: 12, noise_grey: 2.0 }.pair(48, 30, 5);
-    let line = |image: &image::GrayImage, row: usize| image.as_raw()[48 * row..][..48].to_vec();
-    let mut entries = vec![Entry::NoFrame(RecordedFault::TimedOut), Entry::Frame(FrameStart::default())];
-    for row in 0..30 {
-        entries.push(match row {
-            0 | 11 | 12 => Entry::NoLine(RecordedFault::Line(LineFault::Torn)),
-            _ => Entry::Line {
-                start: LineStart { row: row as u16, timestamp_us: 0 },
-                left: line(&left, row),
-                right: line(&right, row).iter().map(|grey| grey / 4 + 10).collect(),
-            },
-        });
-    }
-    let header = Header { width: 48, height: 30, max_row_skew_us: 0 };
-    // The core's own pair sees the frame, and then again.
-    let twice = entries.iter().chain(&entries[1..]).cloned().map(Ok::<_, RecordingError>);
-    let mut pair = BalancedPair::new(Playback::new(twice, header, false));
-    assert!(pair.start_frame().is_err(), "none began");
-    let seen = [(); 2].map(|()| {
-        pair.start_frame().expect("a frame");
-        right_lines(&mut pair)
-    });
-    let frames = AtomicU32::new(0);
-    let balanced = Balanced::new(entries.into_iter().map(Ok), header, &frames);
-    let mut playback = Playback::new(balanced, header, false);
-    assert!(playback.start_frame().is_err(), "none began");
-    playback.start_frame().expect("a frame");
-    assert_eq!(frames.load(Ordering::Relaxed), 0, "nothing was asked for yet");
-    let found = right_lines(&mut playback);
-    assert_eq!(frames.load(Ordering::Relaxed), 1);
-    assert!(!playback.has_frame());
-    assert!(found[11].is_none() && found[13].is_some() && found != seen[0]);
-    assert_eq!(found, seen[1]);
 }
 
 #[test]

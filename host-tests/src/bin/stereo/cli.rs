@@ -234,7 +234,7 @@ fn balance(text: &str) -> Result<BalanceChoice, &'static str> {
     }
 }
 
-fn noise(text: &str) -> Result<NoiseChoice, String> {
+pub fn noise(text: &str) -> Result<NoiseChoice, String> {
     text.parse().map_err(|unknown: UnknownNoise| unknown.to_string())
 }
 

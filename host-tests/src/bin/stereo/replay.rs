@@ -10,7 +10,6 @@ use std::fmt::{Display, Write as _};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{Config, Filter};
 use stereopsis::pipeline::FaultCounters;
@@ -19,7 +18,7 @@ use stereopsis_host::colour::flags_raw;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
 use stereopsis_host::pfm;
-use stereopsis_host::recording::{Balanced, Entry, Header, Pictures, Playback, Recording, RecordingError};
+use stereopsis_host::recording::{Ahead, Header, Pictures, Playback, Recording, Seen};
 use stereopsis_host::run::{GuardedFrame, Method, NoiseChoice, run_guarded};
 
 /// What follows the options in the command's help.
@@ -43,6 +42,10 @@ pub struct ReplayArgs {
     /// dense, default or strict
     #[arg(long, value_name = "FILTER", default_value = "default", value_parser = crate::cli::filter)]
     pub filter: Filter,
+    /// How noisy the images are: none, low (a deviation of about 2 grey levels), high (3 and more), or auto, which measures each
+    /// frame
+    #[arg(long, value_name = "NOISE", default_value = "auto", value_parser = crate::cli::noise)]
+    pub noise: NoiseChoice,
     #[command(flatten)]
     pub balance: BalanceArgs,
     /// As fast as possible, or as fast as it was recorded
@@ -83,6 +86,8 @@ struct Summary {
     damaged_frames: u32,
     broken_frames: u32,
     failed_frames: u32,
+    /// Frames that were smoothed against noise.
+    noisy_frames: u32,
     /// Frames whose right image was brought to the left one's exposure.
     balanced_frames: u32,
     recording_was_cut: bool,
@@ -135,12 +140,9 @@ impl From<FaultCounters> for Counters {
 
 pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
     let recording = if args.from.is_dir() { of_folder(args)? } else { Recording::open(&args.from)? };
-    let (header, is_timed, balanced) = (recording.header(), args.timing == Timing::Recorded, AtomicU32::new(0));
-    if args.balance.is_for(args.method) {
-        let entries = Balanced::new(recording, header, &balanced);
-        return play(args, header, &mut Playback::new(entries, header, is_timed), &balanced);
-    }
-    play(args, header, &mut Playback::new(recording, header, is_timed), &balanced)
+    let (header, seen) = (recording.header(), Seen::default());
+    let ahead = Ahead::new(recording, header, args.balance.is_for(args.method), &seen);
+    play(args, header, &mut Playback::new(ahead, header, args.timing == Timing::Recorded), &seen)
 }
 
 /// A folder's pictures, with those of each side in a folder.
@@ -166,29 +168,35 @@ fn recorded(pictures: &mut Pictures) -> Result<Recording, Failure> {
     Ok(Recording::read(Path::new("the folder"), Box::new(io::Cursor::new(bytes)))?)
 }
 
+/// The search in frames without noise.
 fn config(args: &ReplayArgs, header: Header) -> Result<Config, Failure> {
     if header.width < Config::FEWEST_DISPARITIES {
         let (from, least) = (args.from.display(), Config::FEWEST_DISPARITIES);
         return Err(Failure::new(format!("{from}: lines of {} pixels; at least {least} are needed", header.width)));
     }
-    let noise = NoiseChoice::Told(Noise::None);
-    let way = WayArgs { method: args.method, filter: args.filter, noise, kernel: None, threads: 1 };
+    let way = WayArgs { method: args.method, filter: args.filter, noise: args.noise, kernel: None, threads: 1 };
     input::config(&args.range, &way, header.width, header.height)
 }
 
-fn play<I: Iterator<Item = Result<Entry, RecordingError>> + Send>(
+fn play(
     args: &ReplayArgs,
     header: Header,
-    source: &mut Playback<I>,
-    balanced: &AtomicU32,
+    source: &mut Playback<Ahead<'_, Recording>>,
+    seen: &Seen,
 ) -> Result<(), Failure> {
     let config = config(args, header)?;
     let mut staging = Staging::new(&args.out)?;
     let (mut written, mut table, mut names) = (Ok(()), TABLE.to_owned(), Vec::new());
     let mut left = args.frames.unwrap_or(u32::MAX);
-    let go_on = |source: &mut Playback<I>| {
-        left = left.wrapping_sub(1);
-        left != u32::MAX && source.has_frame()
+    let mut noisy_frames = 0;
+    let next = |source: &mut Playback<_>| {
+        left = left.checked_sub(1).filter(|_| source.has_frame())?;
+        let noise = match args.noise {
+            NoiseChoice::Told(noise) => noise,
+            NoiseChoice::Auto => seen.noise(),
+        };
+        noisy_frames += u32::from(noise != Noise::None);
+        Some(args.method.with_filter(args.filter, Config { noise, ..config }))
     };
     let keep = |frame: GuardedFrame| {
         let number = names.len() + 1;
@@ -201,7 +209,7 @@ fn play<I: Iterator<Item = Result<Entry, RecordingError>> + Send>(
         }
         names.push(());
     };
-    let counters = run_guarded(args.method, &config, args.most_lost, source, go_on, keep)
+    let counters = run_guarded(args.method, &config, args.most_lost, source, next, keep)
         .map_err(|e| Failure::new(format!("--disparities: {e}")))?;
     written?;
     if let Some(e) = source.failed() {
@@ -218,7 +226,8 @@ fn play<I: Iterator<Item = Result<Entry, RecordingError>> + Send>(
         damaged_frames: counters.frames_damaged,
         broken_frames: counters.frames_broken,
         failed_frames: counters.frames_failed + counters.frames_stale,
-        balanced_frames: balanced.load(Ordering::Relaxed),
+        noisy_frames,
+        balanced_frames: seen.balanced_frames(),
         recording_was_cut: source.was_cut(),
         time_went_back_at: source.went_back(),
         counters: counters.into(),
@@ -268,6 +277,9 @@ fn told(s: &Summary, out: &Path) -> String {
         s.broken_frames,
         s.failed_frames
     );
+    if s.noisy_frames > 0 {
+        let _ = writeln!(text, "{} smoothed against noise", s.noisy_frames);
+    }
     if s.balanced_frames > 0 {
         let _ = writeln!(text, "{} with the right image in the left one's exposure", s.balanced_frames);
     }

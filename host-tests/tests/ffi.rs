@@ -131,7 +131,7 @@ fn c_rows<S: Scheme>(config: &Config, [left, right]: &Lines) -> Vec<Found> {
     unsafe {
         let status = C::<S>::init(memory.as_mut_ptr().cast(), size_of_val(&memory[..]), &raw mut handle);
         assert_eq!(status, Status::Ok);
-        assert_eq!(C::<S>::start(handle, config), Status::Ok);
+        assert_eq!(C::<S>::start(handle, config, false), Status::Ok);
         assert_eq!(C::<S>::begin_frame(handle), Status::Ok);
         let mut row = NO_ROW;
         let mut lines = left.iter().zip(right);

@@ -95,19 +95,24 @@ impl<S: Scheme, const W: usize, const D: usize> Instance<S, W, D> {
         }))
     }
 
-    /// Checks a configuration and gets ready for the first frame.
+    /// Checks a configuration and gets ready for the first frame; `keeps_counters` where it is for the next one.
     ///
     /// # Safety
     ///
     /// As [`Self::deinit`]; `config` is null or points to a configuration.
-    pub unsafe fn start(handle: *mut Handle, config: *const Config) -> Status {
+    pub unsafe fn start(handle: *mut Handle, config: *const Config, keeps_counters: bool) -> Status {
         if config.is_null() {
             return Status::Null;
         }
         // SAFETY: the caller's promise; no alignment is asked for, and every bit pattern is a configuration.
         let (state, config) = unsafe { (State::<S, W, D>::open(handle), config.read_unaligned()) };
         let start = || {
-            state?.pipeline.start(&config.checked()?)?;
+            let (pipeline, config) = (&mut state?.pipeline, config.checked()?);
+            if keeps_counters {
+                pipeline.restart(&config)?
+            } else {
+                pipeline.start(&config)?
+            }
             Ok(Status::Ok)
         };
         either(start())

@@ -120,11 +120,19 @@ macro_rules! instantiate_c_api {
             }
 
             /// Checks a configuration, which is copied, and gets ready for the first frame. It can be called again, for
-            /// another configuration; a frame that is under way is lost.
+            /// another configuration; a frame that is under way is lost, and counters go to zero.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_start(handle: *mut Handle, config: *const Config) -> Status {
                 // SAFETY: as above.
-                unsafe { StereopsisInstance::start(handle, config) }
+                unsafe { StereopsisInstance::start(handle, config, false) }
+            }
+
+            /// `stereopsis_start` between two frames, for the noise of the one before as it may be: counters go on, and a frame
+            /// that is under way counts as broken off. A configuration that is refused changes nothing.
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn stereopsis_restart(handle: *mut Handle, config: *const Config) -> Status {
+                // SAFETY: as above.
+                unsafe { StereopsisInstance::start(handle, config, true) }
             }
 
             /// Begins a frame and forgets the one before.

@@ -634,9 +634,16 @@ stereopsis_status stereopsis_config_noise(int32_t preset, uint8_t noise, struct 
 
 /**
  * Checks a configuration, which is copied, and gets ready for the first frame. It can be called again, for
- * another configuration; a frame that is under way is lost.
+ * another configuration; a frame that is under way is lost, and counters go to zero.
  */
 stereopsis_status stereopsis_start(struct stereopsis *handle, const struct stereopsis_config *config);
+
+/**
+ * `stereopsis_start` between two frames, for the noise of the one before as it may be: counters go on, and a frame
+ * that is under way counts as broken off. A configuration that is refused changes nothing.
+ */
+stereopsis_status stereopsis_restart(struct stereopsis *handle,
+                                     const struct stereopsis_config *config);
 
 /**
  * Begins a frame and forgets the one before.

@@ -27,7 +27,7 @@ pub struct Config {
     pub confidence: bool,
     /// How noisy both cameras are: what is compared is smoothed accordingly. The next frame's is what a
     /// [`NoiseMeter`](crate::imaging::NoiseMeter) says of this one. It takes work, but no memory. Checks and penalties that suit
-    /// it are those of [`Config::with_filter`] after it is set.
+    /// it are those of [`Config::with_filter`] after it is set. Between frames a guarded pipeline takes it by `restart`.
     pub noise: Noise,
 }
 

@@ -4,7 +4,7 @@ use super::*;
 use stereopsis::camera::{
     CameraError, ErrorType, FrameStart, LineFault, LineFormat, LineStart, PixelFormat, StereoSource,
 };
-use stereopsis::ffi::{Counters, STEREOPSIS_LOST_LATE};
+use stereopsis::ffi::{Counters, STEREOPSIS_LOST_LATE, STEREOPSIS_NOISE_HIGH};
 use stereopsis::pipeline::Guarded;
 
 /// A source that loses some lines and says so.
@@ -87,6 +87,15 @@ fn lost_lines_are_those_of_a_guarded_pipeline() {
                 found.push((row.index, disparities, std::slice::from_raw_parts(row.flags, row.width.into()).to_vec()));
             }
             assert_eq!(stereopsis_counters(handle, &raw mut counters), Status::Ok);
+            // Another configuration leaves them, and begins no frame.
+            let (noisy, mut after) = (Config { noise: STEREOPSIS_NOISE_HIGH, ..config }, Counters::default());
+            assert_eq!(stereopsis_restart(handle, &raw const noisy), Status::Ok);
+            assert_eq!(stereopsis_flush(handle, &raw mut row), Status::NotBegun);
+            assert_eq!(stereopsis_counters(handle, &raw mut after), Status::Ok);
+            assert_eq!(after, counters);
+            assert_eq!(stereopsis_start(handle, &raw const noisy), Status::Ok);
+            assert_eq!(stereopsis_counters(handle, &raw mut after), Status::Ok);
+            assert_eq!(after, Counters::default());
             assert_eq!(stereopsis_deinit(handle), Status::Ok);
         }
         assert!(found == expected, "{lost:?}");

@@ -106,6 +106,7 @@ static void memory(void) {
         stereopsis_config wrong = config();           \
         wrong.field = (value);                        \
         EXPECT(stereopsis_start(s, &wrong), status);  \
+        EXPECT(stereopsis_restart(s, &wrong), status); \
         EXPECT(stereopsis_begin_frame(s), NOT_STARTED); \
     } while (0)
 
@@ -120,6 +121,8 @@ static void configurations(void) {
     c = config();
     EXPECT(stereopsis_start(NULL, &c), NULL);
     EXPECT(stereopsis_start(s, NULL), NULL);
+    EXPECT(stereopsis_restart(NULL, &c), NULL);
+    EXPECT(stereopsis_restart(s, NULL), NULL);
     REFUSED(width, 0, WIDTH);
     REFUSED(width, STEREOPSIS_WIDTH + 1, WIDTH);
     REFUSED(height, 0, HEIGHT);
@@ -159,6 +162,18 @@ static void configurations(void) {
         CHECK(c.noise == level && c.min_disparity == 5 && c.confidence == 2 && c.cost > 0);
         CHECK(c.width == WIDTH && c.height == HEIGHT && c.disparities == 32);
         EXPECT(stereopsis_start(s, &c), OK);
+    }
+    /* Refused, it leaves the frame that is under way; taken, it ends it. */
+    EXPECT(stereopsis_begin_frame(s), OK);
+    c.width = 0;
+    EXPECT(stereopsis_restart(s, &c), WIDTH);
+    c.width = WIDTH;
+    {
+        uint8_t line[WIDTH] = {0};
+        stereopsis_row row;
+        EXPECT(stereopsis_push(s, line, line, WIDTH, &row), NO_ROW_YET);
+        EXPECT(stereopsis_restart(s, &c), OK);
+        EXPECT(stereopsis_push(s, line, line, WIDTH, &row), NOT_BEGUN);
     }
     for (int32_t preset = STEREOPSIS_PRESET_DENSE; preset <= STEREOPSIS_PRESET_STRICT; preset++) {
         EXPECT(stereopsis_config_default(WIDTH, HEIGHT, 32, preset, &c), OK);

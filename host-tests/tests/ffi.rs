@@ -9,6 +9,7 @@ mod lost;
 mod noise;
 
 use std::ffi::{CStr, c_void};
+use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 use std::slice;
 use stereopsis::ffi::{
@@ -44,36 +45,14 @@ fn init(memory: &mut [u64], offset: usize, length: usize) -> (Status, *mut Handl
 
 /// A configuration of the default preset.
 fn config(width: u16, height: u16, disparities: u16) -> Config {
-    let mut config = Config {
-        width: 0,
-        height: 0,
-        disparities: 0,
-        min_disparity: 0,
-        left_right_px: 0,
-        uniqueness_percent: 0,
-        texture_gradient: 0,
-        texture_pixels: 0,
-        refuse_ceiling: 0,
-        refuse_flat: 0,
-        smoothing_radius: 0,
-        median: 0,
-        surface_step: 0,
-        speckle_pixels: 0,
-        gradient: 0,
-        cost: 0,
-        step: [0; 2],
-        jump: [0; 3],
-        edges: [0; 2],
-        fill_pixels: 0,
-        fill_step: 0,
-        confidence: 0,
-        noise: 0,
-    };
-    // SAFETY: the pointer is to a configuration.
-    let status =
-        unsafe { stereopsis_config_default(width, height, disparities, STEREOPSIS_PRESET_DEFAULT, &raw mut config) };
-    assert_eq!(status, Status::Ok);
-    config
+    let mut config = MaybeUninit::uninit();
+    let filled = config.as_mut_ptr();
+    // SAFETY: the pointer is to memory for a configuration, all of which is filled.
+    unsafe {
+        let status = stereopsis_config_default(width, height, disparities, STEREOPSIS_PRESET_DEFAULT, filled);
+        assert_eq!(status, Status::Ok);
+        config.assume_init()
+    }
 }
 
 const NO_ROW: Row = Row { index: 0, width: 0, disparities: null(), flags: null(), confidences: null() };

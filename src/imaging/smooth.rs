@@ -57,7 +57,7 @@ fn by_columns(near: [&[u8]; 3], out: &mut [u8]) -> Range<usize> {
 
 /// Smoothes the first columns that stand in whole words, with a whole word after them, and says which these are.
 ///
-/// Every word is smoothed down the columns once: 27 instructions for four columns.
+/// Every word is smoothed down the columns once.
 fn by_words(near: [&[u8]; 3], out: &mut [u8]) -> Range<usize> {
     let [above, middle, below] = near.map(|row| row.as_chunks::<4>().0.iter().map(|four| u32::from_le_bytes(*four)));
     let mut down = above.zip(middle).zip(below).map(|((above, middle), below)| quarters(above, middle, below));

@@ -68,8 +68,8 @@ impl<S: Scheme, const W: usize, const D: usize> Guarded<S, W, D> {
         Ok(())
     }
 
-    /// How many lines of a frame may be lost before it ends with an error; all of them where nothing is set. With a camera that is dead each of them may cost
-    /// the time that the source waits: a few are enough where that matters.
+    /// How many lines of a frame may be lost before it ends with an error; all of them where nothing is set. With a camera that
+    /// is dead each of them may cost the time that the source waits: a few are enough where that matters.
     pub fn set_most_lost(&mut self, lines: u16) {
         self.lines.most_lost = Some(lines);
     }

@@ -8,7 +8,7 @@ use stereopsis_host::scene::SceneCamera;
 use stereopsis_host::scene::pattern::Pattern;
 use stereopsis_host::twin::match_pair;
 
-const LIVE: Pattern = Pattern::Shifted { most: 12, noise_grey: 4.0 };
+pub const LIVE: Pattern = Pattern::Shifted { most: 12, noise_grey: 4.0 };
 
 fn camera(pattern: Pattern, width: u32, height: u32, seed: u64) -> SceneCamera {
     let (left, right) = pattern.pair(width, height, seed);

@@ -1,10 +1,8 @@
 //! A matcher that changes its place between two lines of a frame.
 
 use super::Method;
+use super::frames::LIVE;
 use stereopsis::matching::{Config, Fast, Matcher, Sgm};
-use stereopsis_host::scene::pattern::Pattern;
-
-const PATTERN: Pattern = Pattern::Shifted { most: 12, noise_grey: 4.0 };
 
 /// Where a matcher stands: the two places are eight bytes apart, seen from the lines of a cache.
 #[repr(C, align(64))]
@@ -22,7 +20,7 @@ impl<const BEFORE: usize, M> Place<BEFORE, M> {
 fn moved_within_a_frame<S: Method>() {
     type Size<S> = Matcher<S, 96, 64>;
     let (width, height) = (90, 24);
-    let (left, right) = PATTERN.pair(width, height, 5);
+    let (left, right) = LIVE.pair(width, height, 5);
     let around = |picture: &image::GrayImage, y: usize| {
         [-2, -1, 0, 1, 2].map(|off| {
             let y = y.saturating_add_signed(off).min(height as usize - 1);

@@ -1,7 +1,7 @@
 //! Depth from two cameras, on a microcontroller: `no_std`, no allocation, line by line.
 //!
-//! Lines of pixels go in, rows of disparity and depth come out a few lines later. The modules stand in the order in
-//! which data moves; each uses only what stands above it.
+//! Lines of pixels go in, rows of disparity and depth come out a few lines later. The modules stand in the
+//! order in which data moves; each uses only what stands above it.
 //!
 //! ```text
 //! units math     words: Disparity, Millimetres, PixelFlags; the one file that names libm

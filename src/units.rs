@@ -87,9 +87,10 @@ impl fmt::Display for Disparity {
 
 /// Why a pixel has no answer, and what is to be known about one that has: one byte, a bit for each reason.
 ///
-/// A pixel without an answer has at least one bit set. [`PixelFlags::CEILING`] can stand on a pixel with an answer,
-/// when the checks let such answers through, and [`PixelFlags::DAMAGED`] when a camera lost a line. [`PixelFlags::FILLED`] stands on pixels with an answer alone, beside the
-/// bits that say why they had none of their own.
+/// A pixel without an answer has at least one bit set. [`PixelFlags::CEILING`] can stand on a pixel with an
+/// answer, when the checks let such answers through, and [`PixelFlags::DAMAGED`] when a camera lost a line.
+/// [`PixelFlags::FILLED`] stands on pixels with an answer alone, beside the bits that say why they had none
+/// of their own.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(transparent)]
@@ -110,10 +111,11 @@ impl PixelFlags {
     pub const MISMATCH: Self = Self(1 << 4);
     /// Too few answers around it are of its surface.
     pub const SPECKLE: Self = Self(1 << 5);
-    /// The answer is not the pixel's own but the farther one of those on both sides of a small gap in the row.
+    /// The answer is not the pixel's own but the farther one of those on both sides of a small gap in the
+    /// row.
     pub const FILLED: Self = Self(1 << 6);
-    /// A line that the pixel rests on was lost, and another one stood in for it: an answer may be wrong, and there is none
-    /// where the matching window saw the lost line itself.
+    /// A line that the pixel rests on was lost, and another one stood in for it: an answer may be wrong, and
+    /// there is none where the matching window saw the lost line itself.
     pub const DAMAGED: Self = Self(1 << 7);
 
     /// Every flag with its name, in order of the bits.

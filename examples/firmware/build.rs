@@ -43,8 +43,7 @@ REGION_ALIAS(\"REGION_STACK\", RAM);
 ";
 
 /// A stack that is too small for the pipeline does not link.
-const STACK: &str =
-    "ASSERT(_stack_start - __euninit >= 2048, \"ERROR: less than 2048 bytes of RAM are left to the stack\");\n";
+const STACK: &str = "ASSERT(_stack_start - __euninit >= 2048, \"ERROR: less than 2048 bytes of RAM are left to the stack\");\n";
 
 fn main() -> Result<(), Box<dyn Error>> {
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set")?);
@@ -91,7 +90,9 @@ fn board() -> Result<Board, Box<dyn Error>> {
     let core = variable("STEREO_CORE", "");
     let fits = |board: &&Board| board.target == target && (core.is_empty() || board.core == core);
     let found = board::ALL.iter().find(fits);
-    found.copied().ok_or_else(|| format!("src/board.rs has no board with STEREO_CORE={core} for {target}").into())
+    found
+        .copied()
+        .ok_or_else(|| format!("src/board.rs has no board with STEREO_CORE={core} for {target}").into())
 }
 
 /// The constants and types of `src/choice.rs`.

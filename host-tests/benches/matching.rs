@@ -43,7 +43,9 @@ fn method<S: Scheme>(criterion: &mut Criterion, camera: &mut MemoryPair) -> Resu
 fn main() -> ExitCode {
     let mut criterion = Criterion::default().configure_from_args();
     let (left, right) = Scene::small(WIDTH, HEIGHT).render();
-    let Some(mut camera) = MemoryPair::new(WIDTH, left.into_raw(), right.into_raw()) else { return ExitCode::FAILURE };
+    let Some(mut camera) = MemoryPair::new(WIDTH, left.into_raw(), right.into_raw()) else {
+        return ExitCode::FAILURE;
+    };
     let done = method::<Fast>(&mut criterion, &mut camera)
         .and_then(|()| method::<Block>(&mut criterion, &mut camera))
         .and_then(|()| method::<SgmLean>(&mut criterion, &mut camera))

@@ -1,7 +1,9 @@
 //! Colours that the colour blind can tell apart, for pictures of results.
 //!
-//! * [`viridis`]: brightness grows along it, so that it reads in grey as well; far is dark violet, near bright yellow.
-//! * [`FLAG_COLOURS`]: Okabe and Ito's palette, one colour for each reason without an answer of the pixel's own.
+//! * [`viridis`]: brightness grows along it, so that it reads in grey as well; far is dark violet, near
+//!   bright yellow.
+//! * [`FLAG_COLOURS`]: Okabe and Ito's palette, one colour for each reason without an answer of the pixel's
+//!   own.
 //! * [`diverging`]: blue over white to orange, for errors with a sign.
 
 use image::{GrayImage, Rgb, RgbImage};
@@ -29,8 +31,8 @@ const VIRIDIS: [[u8; 3]; 9] = [
 /// Okabe and Ito's blue, white and vermillion.
 const DIVERGING: [[u8; 3]; 3] = [[0x00, 0x72, 0xb2], [0xf7, 0xf7, 0xf7], [0xd5, 0x5e, 0x00]];
 
-/// The colour of each reason, in the order of [`PixelFlags::NAMES`]: Okabe and Ito's sky blue, yellow, bluish green,
-/// orange, blue, reddish purple and vermillion; and a grey.
+/// The colour of each reason, in the order of [`PixelFlags::NAMES`]: Okabe and Ito's sky blue, yellow, bluish
+/// green, orange, blue, reddish purple and vermillion; and a grey.
 pub const FLAG_COLOURS: [Rgb<u8>; 8] = [
     Rgb([0x56, 0xb4, 0xe9]),
     Rgb([0xf0, 0xe4, 0x42]),
@@ -64,7 +66,8 @@ fn between(anchors: &[[u8; 3]], t: f32) -> Rgb<u8> {
     let low = (at as usize).min(last - 1);
     let share = at - low as f32;
     let [from, to] = [anchors[low], anchors[low + 1]];
-    Rgb([0, 1, 2].map(|c| (f32::from(from[c]) + share * (f32::from(to[c]) - f32::from(from[c]))).round() as u8))
+    Rgb([0, 1, 2]
+        .map(|c| (f32::from(from[c]) + share * (f32::from(to[c]) - f32::from(from[c]))).round() as u8))
 }
 
 /// The disparities between which the colours run.
@@ -77,8 +80,9 @@ pub struct ColourScale {
 }
 
 impl ColourScale {
-    /// From the 2nd to the 98th of a hundred of the answers, so that a few wrong ones do not take the colours of all
-    /// others; at least 1 px wide. The search range is not used: a scene often fills a small part of it.
+    /// From the 2nd to the 98th of a hundred of the answers, so that a few wrong ones do not take the colours
+    /// of all others; at least 1 px wide. The search range is not used: a scene often fills a small part
+    /// of it.
     pub fn of(map: &DisparityMap) -> Self {
         let sorted = map.sorted();
         let far_px = quantile(&sorted, 0.02).unwrap_or(0.0);
@@ -101,16 +105,17 @@ impl ColourScale {
     }
 }
 
-/// The first reason without an answer, or that the answer was filled in, as an index into [`PixelFlags::NAMES`]; `None`
-/// for a pixel with an answer of its own.
+/// The first reason without an answer, or that the answer was filled in, as an index into
+/// [`PixelFlags::NAMES`]; `None` for a pixel with an answer of its own.
 pub fn first_reason(map: &DisparityMap, pixel: usize) -> Option<usize> {
     let answered = map.disparity[pixel].is_some();
-    let says = |flag: PixelFlags| map.flags[pixel].contains(flag) && (!answered || flag == PixelFlags::FILLED);
+    let says =
+        |flag: PixelFlags| map.flags[pixel].contains(flag) && (!answered || flag == PixelFlags::FILLED);
     PixelFlags::NAMES.iter().position(|(flag, _)| says(*flag))
 }
 
-/// Why pixels have no answer, or which were filled in: the first reason's colour over the left image, which stays grey
-/// and pale where there are answers.
+/// Why pixels have no answer, or which were filled in: the first reason's colour over the left image, which
+/// stays grey and pale where there are answers.
 pub fn flags_picture(map: &DisparityMap, left: &RgbImage) -> RgbImage {
     picture(
         map.width,
@@ -138,7 +143,8 @@ pub fn confidence_raw(map: &DisparityMap) -> GrayImage {
 
 /// How sure the answers are: sure is bright; black where there is none.
 pub fn confidence_picture(map: &DisparityMap) -> RgbImage {
-    let shade = |c: u8| if c > 0 { viridis(f32::from(c) / f32::from(Row::MOST_CONFIDENCE)) } else { NO_ANSWER };
+    let shade =
+        |c: u8| if c > 0 { viridis(f32::from(c) / f32::from(Row::MOST_CONFIDENCE)) } else { NO_ANSWER };
     picture(map.width, map.confidence.iter().map(|&c| shade(c)))
 }
 

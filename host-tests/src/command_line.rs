@@ -2,8 +2,8 @@
 
 use clap::error::{Error, ErrorKind};
 
-/// clap's message, which has several paragraphs, as one line: the first one and the tips. `commands` is what is told to
-/// one who names another command.
+/// clap's message, which has several paragraphs, as one line: the first one and the tips. `commands` is what
+/// is told to one who names another command.
 pub fn usage_line(error: &Error, commands: &str) -> String {
     let text = error.render().to_string();
     let first = text.lines().map(str::trim).take_while(|line| !line.is_empty());

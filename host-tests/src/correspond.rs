@@ -1,9 +1,10 @@
-//! Two pictures through the core's detector and matcher: corners on several levels, and which of them are the same.
+//! Two pictures through the core's detector and matcher: corners on several levels, and which of them are the
+//! same.
 
 use image::GrayImage;
 use stereopsis::features::{
-    Feature, FeatureConfig, FeatureCounts, FeatureDetector, Level, Match, Matcher, Orientation, Search, Shrink,
-    drop_repeats,
+    Feature, FeatureConfig, FeatureCounts, FeatureDetector, Level, Match, Matcher, Orientation, Search,
+    Shrink, drop_repeats,
 };
 
 /// The longest line, px.
@@ -24,13 +25,15 @@ const FEW: usize = 4;
 /// How features are found and matched.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// For about how many features of each picture there is room, on all levels: [`Plan::FEWEST`] to [`Plan::MOST`].
+    /// For about how many features of each picture there is room, on all levels: [`Plan::FEWEST`] to
+    /// [`Plan::MOST`].
     pub corners: u16,
     /// Grey levels by which a corner differs from its circle.
     pub threshold: u8,
     /// How many levels, the full picture included.
     pub levels: u8,
-    /// How corners are described; `None` is upright and, where few match, turned as well: what has more matches.
+    /// How corners are described; `None` is upright and, where few match, turned as well: what has more
+    /// matches.
     pub orientation: Option<Orientation>,
     /// What a match has to be.
     pub search: Search,
@@ -103,7 +106,11 @@ pub enum CorrespondError {
 }
 
 /// The features of both pictures and their matches, a corner that was found on several levels once.
-pub fn correspond(plan: &Plan, left: &GrayImage, right: &GrayImage) -> Result<Correspondences, CorrespondError> {
+pub fn correspond(
+    plan: &Plan,
+    left: &GrayImage,
+    right: &GrayImage,
+) -> Result<Correspondences, CorrespondError> {
     if let Some(orientation) = plan.orientation {
         return described(plan, orientation, left, right);
     }
@@ -140,7 +147,11 @@ pub fn matches(plan: &Plan, left: &[Feature], right: &[Feature]) -> Result<Vec<M
 }
 
 /// The features of a picture, those of the full one first.
-pub fn features(plan: &Plan, orientation: Orientation, picture: &GrayImage) -> Result<Vec<Feature>, CorrespondError> {
+pub fn features(
+    plan: &Plan,
+    orientation: Orientation,
+    picture: &GrayImage,
+) -> Result<Vec<Feature>, CorrespondError> {
     let cell_px = plan.cell_px(picture.width() * picture.height());
     let mut detector = Box::new(FeatureDetector::<WIDEST, SLOTS>::new());
     let mut list = Box::new(heapless::Vec::<Feature, MOST>::new());

@@ -10,9 +10,9 @@ const LINES: usize = 24;
 /// A match that does not agree with the matrix.
 const WRONG: Rgb<u8> = Rgb([230, 40, 40]);
 
-/// The picture: the images half as bright, with a small square at both ends of every match, red for one that is no inlier.
-/// For up to 24 inliers, spread evenly over the columns of the left image, `l = F p'` is drawn in the left image and `l' = F^T p`
-/// in the right one, in the colour of their points.
+/// The picture: the images half as bright, with a small square at both ends of every match, red for one that
+/// is no inlier. For up to 24 inliers, spread evenly over the columns of the left image, `l = F p'` is drawn
+/// in the left image and `l' = F^T p` in the right one, in the colour of their points.
 pub fn epipolar_picture(
     left: &RgbImage,
     right: &RgbImage,
@@ -22,7 +22,8 @@ pub fn epipolar_picture(
     let (mut picture, beside) = side_by_side(left, right);
     let mut inliers: Vec<_> = matches.iter().filter(|(_, inlier)| *inlier).map(|(seen, _)| *seen).collect();
     inliers.sort_by(|a, b| a.first.x.total_cmp(&b.first.x));
-    let colour = |seen: &Correspondence<f64>| viridis(0.2 + 0.8 * (seen.first.x / f64::from(left.width())) as f32);
+    let colour =
+        |seen: &Correspondence<f64>| viridis(0.2 + 0.8 * (seen.first.x / f64::from(left.width())) as f32);
     for seen in (0..LINES).filter_map(|i| inliers.get(i * inliers.len() / LINES)) {
         for (line, begin, image) in [
             (fundamental.line_in_first(&seen.second), 0, left),
@@ -68,11 +69,13 @@ mod tests {
         let rows = Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0);
         let fundamental = Fundamental::from_matrix(&rows).expect("rank 2");
         let (left, right) = (RgbImage::new(20, 12), RgbImage::new(16, 12));
-        let of =
-            |row: f64, inlier| (Correspondence { first: Point2::new(9.0, row), second: Point2::new(6.0, row) }, inlier);
+        let of = |row: f64, inlier| {
+            (Correspondence { first: Point2::new(9.0, row), second: Point2::new(6.0, row) }, inlier)
+        };
         let picture = epipolar_picture(&left, &right, &fundamental, &[of(4.0, true), of(9.0, false)]);
         assert_eq!(picture.dimensions(), (40, 12));
-        let columns = |row: u32| (0..40).filter(|&x| picture.get_pixel(x, row).0 != [0; 3]).collect::<Vec<_>>();
+        let columns =
+            |row: u32| (0..40).filter(|&x| picture.get_pixel(x, row).0 != [0; 3]).collect::<Vec<_>>();
         // All columns but the gap.
         assert_eq!(columns(4), (0..20).chain(24..40).collect::<Vec<_>>());
         // The outline of the wrong one's squares, in red.

@@ -11,16 +11,16 @@
 //! * [`real`]: real pairs with a known truth, also altered, and scores on them.
 //! * [`recording`]: lines as they came, in a file, and played again.
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
-//! * [`correspond`]: two pictures through the core's features and matcher. [`two_view`]: correspondences of a known scene,
-//!   with noise and wrong ones.
+//! * [`correspond`]: two pictures through the core's features and matcher. [`two_view`]: correspondences of a
+//!   known scene, with noise and wrong ones.
 //! * [`focus`]: focus stacks, a simulated lens, and stacks through the core's map.
 //! * [`odometry`]: sequences of pictures through the core's odometry, trajectories and their errors.
 //! * [`rectify`]: raw pictures through the core's remap.
 //! * [`views`]: pictures of one camera from several places through the core's structure from motion.
 //! * [`bal`]: problems of bundle adjustment through the core.
 //! * [`twin`]: each stage again, naively, to hold the core to.
-//! * [`map`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`], [`output`], [`report`]: results as
-//!   files. [`command_line`]: errors in one line.
+//! * [`map`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`], [`output`],
+//!   [`report`]: results as files. [`command_line`]: errors in one line.
 
 pub mod bal;
 pub mod calibrate;

@@ -82,7 +82,8 @@ impl DisparityMap {
         self.answers() as f64 / self.disparity.len().max(1) as f64
     }
 
-    /// How sure the answers are, with what `loss` makes of each that it knows something of: by its pixel and disparity in px.
+    /// How sure the answers are, with what `loss` makes of each that it knows something of: by its pixel and
+    /// disparity in px.
     pub fn judged(&self, loss: impl Fn(usize, f32) -> Option<f32>) -> Vec<Judged> {
         let pixels = self.disparity.iter().zip(&self.confidence).enumerate();
         let judged = |(i, (d, &confidence)): (usize, (&Disparity, &u8))| {

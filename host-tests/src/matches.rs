@@ -56,8 +56,8 @@ pub enum MatchesFault {
     TooMany,
 }
 
-/// Reads the file at `path`: comma-separated, with a header that names x1, y1, x2 and y2 in any order and among others, or
-/// without one and those four first.
+/// Reads the file at `path`: comma-separated, with a header that names x1, y1, x2 and y2 in any order and
+/// among others, or without one and those four first.
 pub fn read_matches(path: &Path) -> Result<Vec<Correspondence<f64>>, MatchesError> {
     read(path).map_err(|fault| MatchesError { path: path.into(), fault })
 }

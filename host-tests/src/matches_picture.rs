@@ -8,9 +8,13 @@ const GAP: u32 = 4;
 /// Half the side of a square at a point, px.
 const SQUARE: i64 = 2;
 
-/// The picture: the images half as bright, and each match (column and row in the left image, column and row in the right
-/// one, px) in a colour that goes by its column on the left.
-pub fn matches_picture(left: &RgbImage, right: &RgbImage, matches: impl Iterator<Item = [f32; 4]>) -> RgbImage {
+/// The picture: the images half as bright, and each match (column and row in the left image, column and row
+/// in the right one, px) in a colour that goes by its column on the left.
+pub fn matches_picture(
+    left: &RgbImage,
+    right: &RgbImage,
+    matches: impl Iterator<Item = [f32; 4]>,
+) -> RgbImage {
     let (mut picture, beside) = side_by_side(left, right);
     for [x1, y1, x2, y2] in matches {
         let colour = viridis(0.2 + 0.8 * x1 / left.width() as f32);
@@ -35,7 +39,8 @@ pub(crate) fn side_by_side(left: &RgbImage, right: &RgbImage) -> (RgbImage, u32)
     (picture, beside)
 }
 
-/// A thin line between two points, as bright as what lies below it and half of the colour, so that many can cross.
+/// A thin line between two points, as bright as what lies below it and half of the colour, so that many can
+/// cross.
 pub(crate) fn line(picture: &mut RgbImage, [x1, y1]: [f32; 2], [x2, y2]: [f32; 2], Rgb(colour): Rgb<u8>) {
     let steps = (x2 - x1).abs().max((y2 - y1).abs()).ceil().max(1.0);
     for step in 0..=steps as u32 {

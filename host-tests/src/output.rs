@@ -1,7 +1,8 @@
 //! Result files that appear together or not at all.
 //!
-//! Files are written into a hidden folder inside the target and renamed when the last one is complete and on the disk.
-//! Whatever fails before that leaves the target as it was: files of an earlier run stay, folders made for this run go.
+//! Files are written into a hidden folder inside the target and renamed when the last one is complete and on
+//! the disk. Whatever fails before that leaves the target as it was: files of an earlier run stay, folders
+//! made for this run go.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -47,7 +48,8 @@ pub struct Staging {
 }
 
 impl Staging {
-    /// Makes the target folder, with its parents, where it is missing, and checks that files can be made in it.
+    /// Makes the target folder, with its parents, where it is missing, and checks that files can be made in
+    /// it.
     pub fn new(target: &Path) -> Result<Self, OutputError> {
         let made = MadeFolders::up_to(target)?;
         let files = tempfile::Builder::new()
@@ -78,8 +80,8 @@ impl Staging {
         Ok(())
     }
 
-    /// Moves all files to their places. `stale` are names that an earlier run may have written and this one did not:
-    /// they go, so that the folder holds one run's results.
+    /// Moves all files to their places. `stale` are names that an earlier run may have written and this one
+    /// did not: they go, so that the folder holds one run's results.
     pub fn commit(self, stale: &[&str]) -> Result<(), OutputError> {
         let mut moves = Moves { done: Vec::new() };
         let old = self.files.path().join("old");
@@ -89,7 +91,9 @@ impl Staging {
             let place = self.target.join(name);
             let failed = |source| OutputError::File { path: place.clone(), source };
             match fs::symlink_metadata(&place) {
-                Ok(found) if found.is_dir() => return Err(failed(io::Error::from(io::ErrorKind::IsADirectory))),
+                Ok(found) if found.is_dir() => {
+                    return Err(failed(io::Error::from(io::ErrorKind::IsADirectory)));
+                }
                 Ok(_) => moves.rename(&place, &old.join(name)).map_err(failed)?,
                 Err(_) => {}
             }

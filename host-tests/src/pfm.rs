@@ -23,7 +23,9 @@ pub enum PfmError {
     #[error("{0}")]
     Read(#[from] io::Error),
     /// The header is not `Pf`, two sizes and a scale.
-    #[error("a one-channel PFM starts with the lines 'Pf', '<width> <height>' and a scale; line {line} is '{found}'")]
+    #[error(
+        "a one-channel PFM starts with the lines 'Pf', '<width> <height>' and a scale; line {line} is '{found}'"
+    )]
     Header {
         /// The line, from 1.
         line: usize,
@@ -40,7 +42,8 @@ pub enum PfmError {
     },
 }
 
-/// Writes `values`, `width` in a row from the top, as a PFM file. Values behind the last whole row are left out.
+/// Writes `values`, `width` in a row from the top, as a PFM file. Values behind the last whole row are left
+/// out.
 pub fn write(out: &mut dyn Write, width: usize, values: &[f32]) -> io::Result<()> {
     let rows = values.chunks_exact(width.max(1));
     // A negative scale says little-endian.

@@ -1,7 +1,7 @@
 //! Coloured point clouds as binary little-endian PLY files.
 //!
-//! Coordinates are metres in the left camera's frame: X right, Y down, Z forward. A viewer whose Y points up shows the
-//! cloud upside down until it is turned half round the X axis.
+//! Coordinates are metres in the left camera's frame: X right, Y down, Z forward. A viewer whose Y points up
+//! shows the cloud upside down until it is turned half round the X axis.
 
 use std::io::{self, Write};
 

@@ -73,7 +73,10 @@ where
 }
 
 /// Takes a frame of a source of raw lines and rectifies it line by line, as a microcontroller does.
-pub fn rectify<S>(rectification: &Rectification<f64>, source: S) -> Result<RectifiedPictures, RectifyPicturesError>
+pub fn rectify<S>(
+    rectification: &Rectification<f64>,
+    source: S,
+) -> Result<RectifiedPictures, RectifyPicturesError>
 where
     S: StereoSource + Send,
     S::Error: std::fmt::Display,
@@ -88,8 +91,10 @@ pub fn rectify_colours(
     right: &RgbImage,
 ) -> Result<(RgbImage, RgbImage), RectifyPicturesError> {
     let size = rectification.size();
-    let (mut new_left, mut new_right) =
-        (RgbImage::new(size.width.into(), size.height.into()), RgbImage::new(size.width.into(), size.height.into()));
+    let (mut new_left, mut new_right) = (
+        RgbImage::new(size.width.into(), size.height.into()),
+        RgbImage::new(size.width.into(), size.height.into()),
+    );
     for channel in 0..3 {
         let of = |picture: &RgbImage| picture.pixels().map(|pixel| pixel.0[channel]).collect();
         let width = u16::try_from(left.width()).unwrap_or(u16::MAX);
@@ -104,7 +109,9 @@ pub fn rectify_colours(
 }
 
 /// The remaps of both cameras.
-fn remaps(rectification: &Rectification<f64>) -> Result<Box<RemapPair<WIDTH, LINES, SLOTS>>, RectifyPicturesError> {
+fn remaps(
+    rectification: &Rectification<f64>,
+) -> Result<Box<RemapPair<WIDTH, LINES, SLOTS>>, RectifyPicturesError> {
     let [first, second] = rectification.warps();
     let remap = |side, warp| {
         let table = RemapTable::<SLOTS>::new(warp).map_err(|e| RectifyPicturesError::Table(side, e))?;
@@ -122,7 +129,8 @@ where
     let (rows, cells) = (tables.map(RemapTable::rows), tables.map(|table| 1 << table.shift()));
     let format = pair.format();
     let blank = || GrayImage::new(format.width.into(), format.height.into());
-    let mut result = RectifiedPictures { pictures: [blank(), blank()], valid: [blank(), blank()], rows, cells };
+    let mut result =
+        RectifiedPictures { pictures: [blank(), blank()], valid: [blank(), blank()], rows, cells };
     let stopped = |e: CameraError<RectifiedPairError<S::Error>>| {
         RectifyPicturesError::Pair(match e {
             CameraError::Hardware(e) => e.to_string(),

@@ -1,4 +1,5 @@
-//! How well the rows of a pair agree: features of both pictures, and by how much the right camera is turned by them.
+//! How well the rows of a pair agree: features of both pictures, and by how much the right camera is turned
+//! by them.
 
 use crate::correspond::{Plan, correspond};
 use image::GrayImage;
@@ -21,8 +22,8 @@ pub struct Rows {
     pub error_px: f64,
     /// Its standard deviation.
     pub sigma_px: f64,
-    /// By how much the right camera is turned about the axis that points right, degrees; absent when no calibration tells the
-    /// focal length.
+    /// By how much the right camera is turned about the axis that points right, degrees; absent when no
+    /// calibration tells the focal length.
     pub pitch_deg: Option<f64>,
     /// Its standard deviation.
     pub pitch_sigma_deg: Option<f64>,
@@ -37,8 +38,8 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Measures a pair with aligned rows by the camera that both pictures are of, where a calibration tells it; `valid` is 0 where a
-    /// picture shows nothing. `None` where too few features match.
+    /// Measures a pair with aligned rows by the camera that both pictures are of, where a calibration tells
+    /// it; `valid` is 0 where a picture shows nothing. `None` where too few features match.
     pub fn measure(
         pictures: [&GrayImage; 2],
         valid: Option<[&GrayImage; 2]>,
@@ -50,7 +51,8 @@ impl Rows {
         let (w, h) = (f64::from(width), f64::from(height));
         let assumed = Camera::new(w, w, (w - 1.0) / 2.0, (h - 1.0) / 2.0).ok()?;
         let by = camera.unwrap_or(&assumed);
-        let plan = Plan { corners: CORNERS, levels: 1, orientation: Some(Orientation::Upright), ..Plan::default() };
+        let plan =
+            Plan { corners: CORNERS, levels: 1, orientation: Some(Orientation::Upright), ..Plan::default() };
         let found = correspond(&plan, pictures[0], pictures[1]).ok()?;
         let seen = found.points().map(|[x1, y1, x2, y2]| Correspondence {
             first: Point2::new(x1, y1).cast::<f64>(),
@@ -59,7 +61,8 @@ impl Rows {
         let is_shown = |s: &Correspondence<f64>| {
             valid.is_none_or(|[left, right]| is_within(left, &s.first) && is_within(right, &s.second))
         };
-        let seen: Vec<_> = seen.filter(|s| (s.first.y - s.second.y).abs() < ROWS_APART && is_shown(s)).collect();
+        let seen: Vec<_> =
+            seen.filter(|s| (s.first.y - s.second.y).abs() < ROWS_APART && is_shown(s)).collect();
         let mut meter = RowMeter::new();
         meter.add(by, &seen).ok()?;
         Some(Self::of(&meter.alignment().ok()?, by, camera.is_some(), size, seen.len()))
@@ -124,5 +127,7 @@ fn is_within(valid: &GrayImage, place: &Point2<f64>) -> bool {
         let pixel = u32::try_from(x).ok().zip(u32::try_from(y).ok());
         pixel.and_then(|(x, y)| valid.get_pixel_checked(x, y)).is_some_and(|pixel| pixel.0[0] != 0)
     };
-    [(-MARGIN, -MARGIN), (MARGIN, -MARGIN), (-MARGIN, MARGIN), (MARGIN, MARGIN)].into_iter().all(|(x, y)| at(x, y))
+    [(-MARGIN, -MARGIN), (MARGIN, -MARGIN), (-MARGIN, MARGIN), (MARGIN, MARGIN)]
+        .into_iter()
+        .all(|(x, y)| at(x, y))
 }

@@ -1,8 +1,9 @@
 //! What a confidence is worth: the area under the sparsification curve.
 //!
-//! The least sure answers are taken away one after the other; the curve is the mean loss of those that are left, over the share
-//! that was taken. A confidence is good when the loss falls fast. Two others tell how good it could be: the oracle's, which
-//! takes away the worst answers first, and that of a random order, which stays where it is.
+//! The least sure answers are taken away one after the other; the curve is the mean loss of those that are
+//! left, over the share that was taken. A confidence is good when the loss falls fast. Two others tell how
+//! good it could be: the oracle's, which takes away the worst answers first, and that of a random order,
+//! which stays where it is.
 
 use serde::Serialize;
 
@@ -36,16 +37,16 @@ impl Sparsification {
         Some(Self { area: area(&curve), oracle: area(&best), random: *best.last()? })
     }
 
-    /// How far from the oracle, of the way to a random order: 0 is the oracle itself, 1 a confidence that says nothing; 0 where
-    /// all answers are as good.
+    /// How far from the oracle, of the way to a random order: 0 is the oracle itself, 1 a confidence that
+    /// says nothing; 0 where all answers are as good.
     pub fn from_oracle(&self) -> f64 {
         let way = self.random - self.oracle;
         if way > 0.0 { (self.area - self.oracle) / way } else { 0.0 }
     }
 }
 
-/// Mean losses of the answers that are left, by the share of them that was taken away, from 0: of confidence and of the oracle;
-/// `steps` of each.
+/// Mean losses of the answers that are left, by the share of them that was taken away, from 0: of confidence
+/// and of the oracle; `steps` of each.
 pub fn curves(answers: &[Judged], steps: usize) -> [Vec<f64>; 2] {
     let mut losses: Vec<f64> = answers.iter().map(|a| f64::from(a.loss)).collect();
     losses.sort_by(f64::total_cmp);
@@ -105,7 +106,8 @@ mod tests {
 
     #[test]
     fn curves_begin_with_all_answers() {
-        let answers = [(1, 1.0), (7, 0.0), (8, 1.0), (9, 0.0)].map(|(confidence, loss)| Judged { confidence, loss });
+        let answers =
+            [(1, 1.0), (7, 0.0), (8, 1.0), (9, 0.0)].map(|(confidence, loss)| Judged { confidence, loss });
         let [found, oracle] = curves(&answers, 2);
         assert_eq!((found, oracle), (vec![0.5, 0.5], vec![0.5, 0.0]));
     }

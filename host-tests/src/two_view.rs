@@ -1,6 +1,8 @@
-//! Points of the world seen by two cameras of known geometry, with noise and wrong matches: a scene without pixels.
+//! Points of the world seen by two cameras of known geometry, with noise and wrong matches: a scene without
+//! pixels.
 //!
-//! In: a seed, or a pose and what makes points. Out: [`Views`], exact; [`noisy`] adds noise to it and [`mixed`] wrong matches.
+//! In: a seed, or a pose and what makes points. Out: [`Views`], exact; [`noisy`] adds noise to it and
+//! [`mixed`] wrong matches.
 
 use crate::scene::Random;
 use nalgebra::{Matrix3, Point2, Point3, Rotation3, Vector3};
@@ -20,12 +22,18 @@ pub struct Views {
 }
 
 impl Views {
-    /// `count` points that `next` makes of random numbers, in camera 1, as far as both images of 640 x 480 show them.
+    /// `count` points that `next` makes of random numbers, in camera 1, as far as both images of 640 x 480
+    /// show them.
     ///
     /// # Panics
     ///
     /// When the images show fewer than `count` of a hundred times as many points.
-    pub fn of(random: &mut Random, count: usize, pose: Pose<f64>, next: impl Fn(&mut Random) -> Point3<f64>) -> Self {
+    pub fn of(
+        random: &mut Random,
+        count: usize,
+        pose: Pose<f64>,
+        next: impl Fn(&mut Random) -> Point3<f64>,
+    ) -> Self {
         let camera = Camera::new(600.0, 600.0, 320.0, 240.0).expect("a camera");
         let mut views = Self { camera, pose, points: Vec::new(), seen: Vec::new() };
         for _ in 0..100 * count {
@@ -33,7 +41,8 @@ impl Views {
                 return views;
             }
             let point = next(random);
-            let (Ok(p), Ok(q)) = (camera.project(&point), camera.project(&pose.inverse_transform(&point))) else {
+            let (Ok(p), Ok(q)) = (camera.project(&point), camera.project(&pose.inverse_transform(&point)))
+            else {
                 continue;
             };
             let inside = |p: &Point2<f64>| (0.0..640.0).contains(&p.x) && (0.0..480.0).contains(&p.y);
@@ -97,9 +106,15 @@ pub fn rms_sampson(f: &Fundamental<f64>, seen: &[Correspondence<f64>]) -> f64 {
     (seen.iter().map(|s| f.sampson_squared_px2(s)).sum::<f64>() / seen.len() as f64).sqrt()
 }
 
-/// What a matcher would find: the correspondences with noise of `sigma` px, and among them wrong ones, anywhere in images of
-/// 640 x 480 pixels, which are `share` (0 to 1, without 1) of all. With each, whether it is right.
-pub fn mixed(seen: &[Correspondence<f64>], sigma: f64, share: f64, seed: u64) -> Vec<(Correspondence<f64>, bool)> {
+/// What a matcher would find: the correspondences with noise of `sigma` px, and among them wrong ones,
+/// anywhere in images of 640 x 480 pixels, which are `share` (0 to 1, without 1) of all. With each, whether
+/// it is right.
+pub fn mixed(
+    seen: &[Correspondence<f64>],
+    sigma: f64,
+    share: f64,
+    seed: u64,
+) -> Vec<(Correspondence<f64>, bool)> {
     let mut random = Random::new(seed ^ 0xbad);
     let mut all: Vec<_> = noisy(seen, sigma, seed).into_iter().map(|s| (s, true)).collect();
     let wrong = (share / (1.0 - share) * all.len() as f64).round() as usize;
@@ -112,7 +127,8 @@ pub fn mixed(seen: &[Correspondence<f64>], sigma: f64, share: f64, seed: u64) ->
     all
 }
 
-/// By how many degrees an estimated pose is off the true one: its rotation, and the direction of its translation.
+/// By how many degrees an estimated pose is off the true one: its rotation, and the direction of its
+/// translation.
 pub fn off_degrees(found: &Pose<f64>, truth: &Pose<f64>) -> (f64, f64) {
     let angle = |cosine: f64| cosine.clamp(-1.0, 1.0).acos().to_degrees();
     let turned = found.rotation().tr_mul(truth.rotation()).trace();

@@ -84,12 +84,13 @@ impl Found {
     /// Error and true disparity of the answers for them, px.
     fn errors(&self) -> impl Iterator<Item = (f64, f64)> + Clone + '_ {
         let all = self.truth.disparity.iter().zip(&self.disparity).zip(&self.truth.occluded);
-        all.filter(|(_, occluded)| !**occluded).filter_map(|((t, d), _)| d.map(|d| (f64::from(d - t), f64::from(*t))))
+        all.filter(|(_, occluded)| !**occluded)
+            .filter_map(|((t, d), _)| d.map(|d| (f64::from(d - t), f64::from(*t))))
     }
 }
 
-/// Mean error in each sixteenth of a pixel of the true disparity: pixel locking pulls answers towards whole pixels, so
-/// the mean is positive in one half of the bins and negative in the other.
+/// Mean error in each sixteenth of a pixel of the true disparity: pixel locking pulls answers towards whole
+/// pixels, so the mean is positive in one half of the bins and negative in the other.
 fn mean_error_by_fraction(found: &Found) -> [f64; 16] {
     let mut sums = [(0.0, 0); 16];
     for (error, truth) in found.errors() {
@@ -123,7 +124,8 @@ fn sub_pixel<S: Scheme>(rms_bound: f64, locking_bound: f64, share_bound: f64) {
     let by_fraction = mean_error_by_fraction(&found);
     let locking = by_fraction.iter().fold(0.0, |most: f64, e| most.max((e - mean).abs()));
     let shares = share_by_fraction(&found);
-    let (least, fullest) = shares.iter().fold((f64::MAX, 0.0), |(l, f): (f64, f64), s| (l.min(*s), f.max(*s)));
+    let (least, fullest) =
+        shares.iter().fold((f64::MAX, 0.0), |(l, f): (f64, f64), s| (l.min(*s), f.max(*s)));
     let answered = percent(found.visible().filter(|(_, d)| d.is_some()).count(), found.visible().count());
     println!(
         "slanted plane, {}: RMS {error:.4} px, mean {mean:+.4} px, {answered:.2} % answered; pixel locking: mean error \
@@ -156,12 +158,16 @@ fn sgm_is_accurate_to_a_fraction_of_a_pixel() {
     sub_pixel::<SgmEdge>(0.05, 0.01, 1.1);
 }
 
-/// Bounds in percent: answers within three sigma in depth, answers over 2 px off, visible points without a right answer.
+/// Bounds in percent: answers within three sigma in depth, answers over 2 px off, visible points without a
+/// right answer.
 fn demo<S: Scheme>(within_bound: f64, bad2_bound: f64, missed_bound: f64) {
     let (scene, pair) = demo_pair();
     let found = find::<S>(scene, pair, S::DEFAULT);
     let within = |sigmas: f32| {
-        percent(found.depth_errors_in_sigma.iter().filter(|e| **e <= sigmas).count(), found.depth_errors_in_sigma.len())
+        percent(
+            found.depth_errors_in_sigma.iter().filter(|e| **e <= sigmas).count(),
+            found.depth_errors_in_sigma.len(),
+        )
     };
     let answers = found.errors().count();
     let bad2 = percent(found.errors().filter(|(e, _)| e.abs() > 2.0).count(), answers);
@@ -228,6 +234,8 @@ fn the_blank_board_is_refused_and_the_wall_beside_it_is_not() {
     let checks = Checks { texture_gradient: 6, texture_pixels: 12, ..Checks::DENSE };
     let found = find::<Block>(scene, pair, checks);
     let (on_board, on_wall) = (part(&found, board, untextured), part(&found, wall, untextured));
-    println!("a gradient of 6 in 12 pixels refuses {on_board:.1} % of the board and {on_wall:.1} % of the wall");
+    println!(
+        "a gradient of 6 in 12 pixels refuses {on_board:.1} % of the board and {on_wall:.1} % of the wall"
+    );
     assert!(on_board > 99.0 && on_wall < 1.0);
 }

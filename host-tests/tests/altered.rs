@@ -13,7 +13,8 @@ static SCENE: LazyLock<RealScene> = LazyLock::new(|| {
     let scene = Scene::small(320, 240);
     let ((left, right), truth) = (scene.render(), scene.truth());
     let scored = |i: usize| !truth.occluded[i] && i % truth.width >= usize::from(scene.disparities());
-    let truth = (0..truth.disparity.len()).map(|i| if scored(i) { truth.disparity[i] } else { 0.0 }).collect();
+    let truth =
+        (0..truth.disparity.len()).map(|i| if scored(i) { truth.disparity[i] } else { 0.0 }).collect();
     RealScene { name: "room".into(), disparities: scene.disparities(), left, right, truth }
 });
 
@@ -32,7 +33,8 @@ fn missed_with(method: Method, alteration: Alteration, noise: NoiseChoice) -> f6
 fn score(method: Method, filter: Filter, alteration: Alteration, noise: NoiseChoice) -> Score {
     let [left, right] = altered(alteration, 1);
     let (width, height) = (left.width() as u16, left.height() as u16);
-    let mut camera = MemoryPair::new(width, left.into_raw(), right.into_raw()).expect("two pictures of one size");
+    let mut camera =
+        MemoryPair::new(width, left.into_raw(), right.into_raw()).expect("two pictures of one size");
     let (noise, _) = noise.level(&mut camera).expect("a frame");
     let search = Config { noise, ..Config::new(width, height, SCENE.disparities) };
     let config = method.with_filter(filter, search);
@@ -106,10 +108,16 @@ fn measured_noise_is_smoothed_and_what_has_little_is_left() {
                 .map(|noise| score(method, filter, Alteration::Noise(5.0), noise))
         };
         let [as_told, measured] = noisy(Filter::Dense).map(|score| score.missed);
-        assert!(measured < 0.9 * as_told, "{method} misses {measured} of noisy pixels, {as_told} without smoothing");
+        assert!(
+            measured < 0.9 * as_told,
+            "{method} misses {measured} of noisy pixels, {as_told} without smoothing"
+        );
         if [Method::SgmLean, Method::Sgm, Method::SgmEdge].contains(&method) {
             let [as_told, measured] = noisy(Filter::Default).map(|score| score.bad2);
-            assert!(measured < 0.8 * as_told, "of its answers {method} has {measured} wrong, {as_told} as told");
+            assert!(
+                measured < 0.8 * as_told,
+                "of its answers {method} has {measured} wrong, {as_told} as told"
+            );
         }
         let [as_told, measured] = [NoiseChoice::Told(Noise::None), NoiseChoice::Auto]
             .map(|noise| missed_with(method, Alteration::Unaltered, noise));

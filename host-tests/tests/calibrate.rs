@@ -37,8 +37,8 @@ fn turn(axis: [f64; 3]) -> nalgebra::Matrix3<f64> {
     Rotation3::new(Vector3::from(axis)).into_inner()
 }
 
-/// A board turned so, whose middle is at `x`, `y` of the plane Z = 1 and `z` squares away; the same board in the right camera,
-/// where a square is `square_m` long.
+/// A board turned so, whose middle is at `x`, `y` of the plane Z = 1 and `z` squares away; the same board in
+/// the right camera, where a square is `square_m` long.
 fn stand(pattern: Pattern, axis: [f64; 3], [x, y, z]: [f64; 3], square_m: f64) -> [Pose<f64>; 2] {
     let r = turn(axis);
     let middle = Vector3::new(pattern.columns() as f64 - 1.0, pattern.rows() as f64 - 1.0, 0.0) / 2.0;

@@ -94,7 +94,8 @@ fn what_is_no_calibration_is_said() {
 #[test]
 fn a_missing_key_is_named() {
     for key in ["cam0", "cam1", "baseline"] {
-        let text: String = MIDDLEBURY.lines().filter(|l| !l.starts_with(key)).map(|l| format!("{l}\n")).collect();
+        let text: String =
+            MIDDLEBURY.lines().filter(|l| !l.starts_with(key)).map(|l| format!("{l}\n")).collect();
         let Fault::Missing(missing, _) = fault(text) else { panic!("{key} is not reported") };
         assert_eq!(missing, key);
     }
@@ -109,7 +110,9 @@ fn a_bad_number_is_named_with_its_line() {
         matches!(bad("193.001", "wide"), Fault::NotANumber { key, line: 4, found } if key == "baseline" && found == "wide")
     );
     assert!(matches!(bad("193.001", "inf"), Fault::NotFinite { key, .. } if key == "baseline"));
-    assert!(matches!(bad("doffs=32.778", "doffs=nan"), Fault::NotFinite { key, line: 3, .. } if key == "doffs"));
+    assert!(
+        matches!(bad("doffs=32.778", "doffs=nan"), Fault::NotFinite { key, line: 3, .. } if key == "doffs")
+    );
     assert!(matches!(bad("999.421 0 294", "1e300 0 294"), Fault::NotFinite { key, .. } if key == "cam0"));
     assert!(
         matches!(bad("0 0 1]\ncam1", "0 0]\ncam1"), Fault::Count { key, found: 8, needed: 9, .. } if key == "cam0")

@@ -85,7 +85,10 @@ fn extremes_and_ties() {
         for (width, height) in [(1, 1), (2, 3), (5, 5), (16, 9), (33, 7), (70, 20)] {
             let codes = compare(&pattern.pair(width, height, 5).0, &format!("{pattern:?}"));
             if let Pattern::Constant(_) = pattern {
-                assert!(codes.iter().flatten().all(|&code| code == 0), "nothing is darker in a constant picture");
+                assert!(
+                    codes.iter().flatten().all(|&code| code == 0),
+                    "nothing is darker in a constant picture"
+                );
             }
         }
     }
@@ -93,7 +96,8 @@ fn extremes_and_ties() {
 
 #[test]
 fn borders_of_short_lines_in_black_and_white() {
-    // No line here is longer than what a code looks at to both sides and a group: every column is beside an end.
+    // No line here is longer than what a code looks at to both sides and a group: every column is beside an
+    // end.
     for (width, seed) in (1..=10).flat_map(|width| (0..200).map(move |seed| (width, seed))) {
         compare(&Pattern::Saturated.pair(width, 5, seed).0, &format!("black and white, seed {seed}"));
     }
@@ -104,7 +108,8 @@ fn neighbours_one_grey_level_apart_are_told_apart_everywhere_in_the_range() {
     // A signed or saturating comparison would fail at one of the steps.
     for grey in 0..255 {
         for (low, high) in [(grey, grey + 1), (0, grey + 1), (grey, 255)] {
-            let image = GrayImage::from_fn(9, 7, |x, y| image::Luma([if (x + 2 * y) % 3 == 0 { low } else { high }]));
+            let image =
+                GrayImage::from_fn(9, 7, |x, y| image::Luma([if (x + 2 * y) % 3 == 0 { low } else { high }]));
             let codes = compare(&image, &format!("{low} and {high}"));
             assert!(codes[3].iter().any(|&code| code != 0));
         }

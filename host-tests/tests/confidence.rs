@@ -64,7 +64,12 @@ fn nothing_else_changes_with_it() {
                 (map(method, &with, &pair), map(method, &Config { confidence: false, ..with }, &pair));
             assert!(without.confidence.iter().all(|&c| c == 0));
             assert!(with.confidence.iter().any(|&c| c > 0));
-            assert_eq!((with.disparity, with.flags), (without.disparity, without.flags), "{method}, {}", filter.name());
+            assert_eq!(
+                (with.disparity, with.flags),
+                (without.disparity, without.flags),
+                "{method}, {}",
+                filter.name()
+            );
         }
     }
 }

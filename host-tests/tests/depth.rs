@@ -9,7 +9,8 @@ use stereopsis::matching::Config;
 use stereopsis::units::{Disparity, Metres, Millimetres};
 
 fn rig(focal_px: f32, baseline_m: f32, doffs_px: f32) -> RectifiedRig {
-    RectifiedRig::with_offset(focal_px, baseline_m, 320.0, 240.0, 320.0 + doffs_px).expect("the numbers are in range")
+    RectifiedRig::with_offset(focal_px, baseline_m, 320.0, 240.0, 320.0 + doffs_px)
+        .expect("the numbers are in range")
 }
 
 /// The rig's numbers as f64: f b (px m) and doffs (px), exactly as the rig holds them.
@@ -27,7 +28,8 @@ fn close(value: f32, expected: f64, relative: f64) -> bool {
 
 #[test]
 fn millimetres_are_rounded_to_the_nearest_for_every_disparity() {
-    // f b is a whole number of millimetres times steps, so the quotient is exact: 64 px m = 2 048 000 mm steps.
+    // f b is a whole number of millimetres times steps, so the quotient is exact: 64 px m = 2 048 000 mm
+    // steps.
     for (focal, baseline, doffs, product) in [
         (512.0, 0.125, 0, 2_048_000_u64),
         (512.0, 0.125, 3, 2_048_000),
@@ -78,7 +80,8 @@ fn the_ends_of_the_range_are_no_depth() {
 
 #[test]
 fn rigs_without_depths_are_refused() {
-    let refused = |focal, baseline, doffs| DepthScale::new(&rig(focal, baseline, doffs)).expect_err("out of range");
+    let refused =
+        |focal, baseline, doffs| DepthScale::new(&rig(focal, baseline, doffs)).expect_err("out of range");
     assert_eq!(refused(1e6, 1.0, 0.0), DepthError::TooLarge);
     assert_eq!(refused(1e-3, 1e-3, 0.0), DepthError::TooSmall);
     assert_eq!(refused(500.0, 0.1, 31_000.0), DepthError::Offset);
@@ -124,8 +127,12 @@ fn q_is_opencvs() {
     let (f, b, cx, cy, cx_right) = (700.0, 0.25, 310.5, 255.0, 322.5);
     let rig = RectifiedRig::with_offset(f, b, cx, cy, cx_right).expect("the numbers are in range");
     let tx = -b;
-    let expected =
-        [[1.0, 0.0, 0.0, -cx], [0.0, 1.0, 0.0, -cy], [0.0, 0.0, 0.0, f], [0.0, 0.0, -1.0 / tx, (cx - cx_right) / tx]];
+    let expected = [
+        [1.0, 0.0, 0.0, -cx],
+        [0.0, 1.0, 0.0, -cy],
+        [0.0, 0.0, 0.0, f],
+        [0.0, 0.0, -1.0 / tx, (cx - cx_right) / tx],
+    ];
     let q = rig.q();
     for (row, expected) in expected.iter().enumerate() {
         for (column, expected) in expected.iter().enumerate() {

@@ -1,6 +1,7 @@
 //! Features and matches: the core against its naive twins, and against what a rendered scene is known to be.
 //!
-//! * `twins`: every stage, to the bit. `refused`: capacities and errors. `scenes`: matches that follow a known motion.
+//! * `twins`: every stage, to the bit. `refused`: capacities and errors. `scenes`: matches that follow a
+//!   known motion.
 
 #[path = "features/refused.rs"]
 mod refused;

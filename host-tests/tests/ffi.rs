@@ -13,8 +13,8 @@ use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 use std::slice;
 use stereopsis::ffi::{
-    Config, Handle, Instance, Rig, Row, STEREOPSIS_ALIGN, STEREOPSIS_NOISE_LOW, STEREOPSIS_PRESET_DEFAULT, Status,
-    state_bytes,
+    Config, Handle, Instance, Rig, Row, STEREOPSIS_ALIGN, STEREOPSIS_NOISE_LOW, STEREOPSIS_PRESET_DEFAULT,
+    Status, state_bytes,
 };
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{self, Block, Checks, Scheme};
@@ -106,7 +106,8 @@ fn c_rows<S: Scheme>(config: &Config, [left, right]: &Lines) -> Vec<Found> {
     let mut memory = vec![0xA5A5_A5A5_A5A5_A5A5_u64; C::<S>::size().div_ceil(8)];
     let mut handle = null_mut();
     let mut found = Vec::new();
-    // SAFETY: the memory outlives the handle, lines have their length, and rows are read before the next call.
+    // SAFETY: the memory outlives the handle, lines have their length, and rows are read before the next
+    // call.
     unsafe {
         let status = C::<S>::init(memory.as_mut_ptr().cast(), size_of_val(&memory[..]), &raw mut handle);
         assert_eq!(status, Status::Ok);
@@ -156,7 +157,8 @@ fn rows_are_those_of_the_pipeline() {
         let confidence = width > 37;
         let asked = matching::Config { checks, confidence, ..matching::Config::new(width, height, 32) };
         let asked = matching::Config { noise: Noise::Low, ..asked };
-        let config = Config { median: 1, fill_pixels: 3, confidence: confidence.into(), ..config(width, height, 32) };
+        let config =
+            Config { median: 1, fill_pixels: 3, confidence: confidence.into(), ..config(width, height, 32) };
         let config = Config { noise: STEREOPSIS_NOISE_LOW, ..config };
         let found = c_rows::<Block>(&config, &lines);
         assert_eq!(found.len(), usize::from(height));
@@ -214,7 +216,9 @@ fn every_status_of_the_header_has_a_text() {
     let header = include_str!("../../src/ffi/stereopsis.h");
     let codes: Vec<i32> = header
         .lines()
-        .filter_map(|line| line.trim().strip_prefix("STEREOPSIS_STATUS_")?.strip_suffix(',')?.split_once(" = "))
+        .filter_map(|line| {
+            line.trim().strip_prefix("STEREOPSIS_STATUS_")?.strip_suffix(',')?.split_once(" = ")
+        })
         .map(|(_, code)| code.parse().expect("a number"))
         .collect();
     assert!(codes.len() > 20, "the header's statuses were not found");
@@ -224,7 +228,11 @@ fn every_status_of_the_header_has_a_text() {
     assert_eq!(text(i32::MIN), unknown);
     for &code in &codes {
         assert_ne!(text(code), unknown, "{code}");
-        assert!(codes.iter().filter(|&&other| text(other) == text(code)).count() == 1, "{code}: {:?}", text(code));
+        assert!(
+            codes.iter().filter(|&&other| text(other) == text(code)).count() == 1,
+            "{code}: {:?}",
+            text(code)
+        );
     }
 }
 
@@ -243,6 +251,7 @@ fn depths_are_the_scales() {
     let disparities = [25 * 32, 50 * 32, 0, u16::MAX];
     let mut millimetres = [1; 4];
     // SAFETY: both arrays have the length that is said.
-    let status = unsafe { stereopsis_millimetres(&raw const rig, disparities.as_ptr(), millimetres.as_mut_ptr(), 4) };
+    let status =
+        unsafe { stereopsis_millimetres(&raw const rig, disparities.as_ptr(), millimetres.as_mut_ptr(), 4) };
     assert_eq!((status, millimetres), (Status::Ok, [2000, 1000, 0, 0]));
 }

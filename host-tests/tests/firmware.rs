@@ -38,7 +38,8 @@ fn the_scene_is_matched_at_every_size() {
             }
         };
         let at = |i: usize| ((i % map.width) as i32, (i / map.width) as i32);
-        let errors = map.disparity.iter().enumerate().filter_map(|(i, d)| d.distance(truth(at(i).0, at(i).1)));
+        let errors =
+            map.disparity.iter().enumerate().filter_map(|(i, d)| d.distance(truth(at(i).0, at(i).1)));
         let (answers, right) = (map.answers(), errors.filter(|&error| error <= Disparity::ONE).count());
         let pixels = map.width * map.height;
         assert!(answers * 10 >= pixels * 8, "{width}x{height}: {answers} answers for {pixels} pixels");

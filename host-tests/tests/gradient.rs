@@ -26,7 +26,8 @@ fn masked(mask: &[[i32; 3]; 3], rows: &[&[u8]; 3], most: u8) -> Vec<u8> {
     (0..width).map(at_column).collect()
 }
 
-/// Compares the core's gradients of three rows of one length with the masks', with every number to cut off at.
+/// Compares the core's gradients of three rows of one length with the masks', with every number to cut off
+/// at.
 fn compare(rows: &[&[u8]; 3]) {
     let width = rows[0].len();
     for most in MOST {
@@ -35,7 +36,11 @@ fn compare(rows: &[&[u8]; 3]) {
         gradients(rows, most, &mut along, &mut across);
         assert_eq!(along[..width], masked(&ALONG, rows, most), "along {rows:?}, cut off at {most}");
         assert_eq!(across[..width], masked(&ACROSS, rows, most), "across {rows:?}, cut off at {most}");
-        assert_eq!((&along[width..], &across[width..]), (&[0xa5; 3][..], &[0x5a; 3][..]), "behind {width} columns");
+        assert_eq!(
+            (&along[width..], &across[width..]),
+            (&[0xa5; 3][..], &[0x5a; 3][..]),
+            "behind {width} columns"
+        );
     }
 }
 

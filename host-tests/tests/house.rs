@@ -1,4 +1,5 @@
-//! The house rules that a machine can read: short files, no panics in the core, nothing of one machine, a tidy root.
+//! The house rules that a machine can read: short files, no panics in the core, nothing of one machine, a
+//! tidy root.
 
 mod source;
 
@@ -28,7 +29,8 @@ const ROOT: [&str; 16] = [
     "src",
 ];
 
-/// Text that belongs to one machine or one mirror of packages. Written in two halves, so that this file passes.
+/// Text that belongs to one machine or one mirror of packages. Written in two halves, so that this file
+/// passes.
 const FOREIGN: [&str; 11] = [
     concat!("/wo", "rk/"),
     concat!("/tm", "p/"),
@@ -75,7 +77,8 @@ fn panics(name: &str, tokens: &[TokenTree]) -> Vec<String> {
             continue;
         }
         let name_here = word(Some(token));
-        let is_method = i > 0 && is_sign(tokens.get(i - 1), '.') && PANICKING_METHODS.contains(&name_here.as_str());
+        let is_method =
+            i > 0 && is_sign(tokens.get(i - 1), '.') && PANICKING_METHODS.contains(&name_here.as_str());
         let is_macro = is_sign(tokens.get(i + 1), '!') && PANICKING_MACROS.contains(&name_here.as_str());
         if is_method || is_macro {
             found.push(format!("{name}:{}: {name_here}", line(token)));
@@ -122,7 +125,8 @@ fn the_core_does_not_panic_on_its_own() {
 #[test]
 fn the_root_is_tidy() {
     let files = source::files();
-    let stray: Vec<_> = files.iter().filter(|name| !ROOT.contains(&name.split('/').next().unwrap_or(name))).collect();
+    let stray: Vec<_> =
+        files.iter().filter(|name| !ROOT.contains(&name.split('/').next().unwrap_or(name))).collect();
     assert!(stray.is_empty(), "at the root, without a place there: {stray:?}");
 }
 
@@ -137,7 +141,10 @@ mod shown_to_fail {
     #[test]
     fn panics_are_found_in_code_alone() {
         assert_eq!(count("fn f() { a.unwrap(); b.expect(\"b\"); todo!() }"), 3);
-        assert_eq!(count("fn f() { g(|| panic!(\"x\")); if a { unreachable!() } else { unimplemented!() } }"), 3);
+        assert_eq!(
+            count("fn f() { g(|| panic!(\"x\")); if a { unreachable!() } else { unimplemented!() } }"),
+            3
+        );
         assert_eq!(count("/// a.unwrap()\nfn f() { a.unwrap_or(0); } // todo!()"), 0);
         assert_eq!(count("#[cfg(test)]\nmod tests { fn f() { a.unwrap() } }\nfn g() { a.unwrap() }"), 1);
         assert_eq!(count("#[cfg(test)]\nuse x::y;\nfn g() { a.unwrap() }"), 1);
@@ -148,7 +155,10 @@ mod shown_to_fail {
     #[test]
     fn foreign_text_is_found() {
         for what in FOREIGN {
-            assert_eq!(foreign("README.md", &format!("one\nsee {what}here")), [format!("README.md:2: {what}")]);
+            assert_eq!(
+                foreign("README.md", &format!("one\nsee {what}here")),
+                [format!("README.md:2: {what}")]
+            );
         }
         assert!(foreign("README.md", "a workshop, a root, a home").is_empty());
         assert!(foreign("Cargo.lock", FOREIGN[5]).is_empty());

@@ -7,30 +7,36 @@ use source::{inside, is_sign, line, tokens, word};
 
 /// The modules of the finished crate, in running order.
 const HOUSE: [&str; 12] = [
-    "units", "math", "geometry", "camera", "imaging", "matching", "depth", "focus", "features", "motion", "pipeline",
-    "ffi",
+    "units", "math", "geometry", "camera", "imaging", "matching", "depth", "focus", "features", "motion",
+    "pipeline", "ffi",
 ];
 
 /// The modules that `lib.rs` declares, in its order.
 fn declared(lib: &str) -> Vec<String> {
     let tokens = tokens("src/lib.rs", lib);
     let ends = |i: usize| is_sign(tokens.get(i + 2), ';');
-    (0..tokens.len()).filter(|&i| word(tokens.get(i)) == "mod" && ends(i)).map(|i| word(tokens.get(i + 1))).collect()
+    (0..tokens.len())
+        .filter(|&i| word(tokens.get(i)) == "mod" && ends(i))
+        .map(|i| word(tokens.get(i + 1)))
+        .collect()
 }
 
-/// Where a file stands in the module tree: `src/a/b.rs` is `a::b`, `src/a/mod.rs` is `a`, `src/lib.rs` nothing.
+/// Where a file stands in the module tree: `src/a/b.rs` is `a::b`, `src/a/mod.rs` is `a`, `src/lib.rs`
+/// nothing.
 fn module_of(name: &str) -> Vec<String> {
     let path = name.trim_start_matches("src/").trim_end_matches(".rs");
     path.split('/').filter(|part| !matches!(*part, "mod" | "lib")).map(str::to_owned).collect()
 }
 
-/// A path in the source that begins at the crate's root: the line, and the first name after it (`*` for a glob).
+/// A path in the source that begins at the crate's root: the line, and the first name after it (`*` for a
+/// glob).
 struct Reference {
     line: usize,
     top: String,
 }
 
-/// Collects what `tokens` in `module` name by `crate::` or `super::`, macros' arguments and `use` groups included.
+/// Collects what `tokens` in `module` name by `crate::` or `super::`, macros' arguments and `use` groups
+/// included.
 fn references(tokens: &[TokenTree], module: &[String], found: &mut Vec<Reference>) {
     let mut i = 0;
     while let Some(token) = tokens.get(i) {
@@ -96,7 +102,9 @@ fn upward(order: &[String], name: &str, text: &str) -> Vec<String> {
     let judge = |r: Reference| match order.iter().position(|m| *m == r.top) {
         Some(place) if place <= own_place => None,
         Some(_) => Some(format!("{name}:{}: {own} uses {}, which stands below it", r.line, r.top)),
-        None => Some(format!("{name}:{}: crate::{} is no module: name the module that has it", r.line, r.top)),
+        None => {
+            Some(format!("{name}:{}: crate::{} is no module: name the module that has it", r.line, r.top))
+        }
     };
     found.into_iter().filter_map(judge).collect()
 }
@@ -106,7 +114,9 @@ fn lines_naming(name: &str, text: &str, wanted: &str) -> Vec<String> {
     fn search(tokens: &[TokenTree], wanted: &str, lines: &mut Vec<usize>) {
         for token in tokens {
             match token {
-                TokenTree::Group(group) => search(&group.stream().into_iter().collect::<Vec<_>>(), wanted, lines),
+                TokenTree::Group(group) => {
+                    search(&group.stream().into_iter().collect::<Vec<_>>(), wanted, lines)
+                }
                 TokenTree::Ident(ident) if ident == wanted => lines.push(line(token)),
                 _ => {}
             }
@@ -134,7 +144,8 @@ fn modules_stand_in_running_order() {
 #[test]
 fn no_file_uses_what_stands_below_it() {
     let order = declared(&source::text("src/lib.rs"));
-    let wrong: Vec<_> = source::core_files().iter().flat_map(|(name, text)| upward(&order, name, text)).collect();
+    let wrong: Vec<_> =
+        source::core_files().iter().flat_map(|(name, text)| upward(&order, name, text)).collect();
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
@@ -159,7 +170,9 @@ mod shown_to_fail {
     use super::*;
 
     fn order() -> Vec<String> {
-        declared("//! Map.\npub mod units;\nmod math;\npub mod camera;\n#[cfg(feature = \"x\")]\npub mod matching;")
+        declared(
+            "//! Map.\npub mod units;\nmod math;\npub mod camera;\n#[cfg(feature = \"x\")]\npub mod matching;",
+        )
     }
 
     fn count(name: &str, text: &str) -> usize {
@@ -173,10 +186,19 @@ mod shown_to_fail {
 
     #[test]
     fn downward_and_sideways_edges_pass() {
-        assert_eq!(count("src/matching/row.rs", "use crate::{units::Disparity, camera::{self, LineFormat}};"), 0);
-        assert_eq!(count("src/matching/row.rs", "use super::config::Config; use super::super::units::Px;"), 0);
+        assert_eq!(
+            count("src/matching/row.rs", "use crate::{units::Disparity, camera::{self, LineFormat}};"),
+            0
+        );
+        assert_eq!(
+            count("src/matching/row.rs", "use super::config::Config; use super::super::units::Px;"),
+            0
+        );
         assert_eq!(count("src/camera/mod.rs", "pub(crate) mod pair; pub(in crate::camera) fn f() {}"), 0);
-        assert_eq!(count("src/camera/mod.rs", "/// [`crate::matching::Config`]\nfn f() {} // crate::matching"), 0);
+        assert_eq!(
+            count("src/camera/mod.rs", "/// [`crate::matching::Config`]\nfn f() {} // crate::matching"),
+            0
+        );
     }
 
     #[test]

@@ -8,8 +8,12 @@ use stereopsis::camera::{CameraError, CameraPair, LineSource, PixelFormat, Stere
 use stereopsis::imaging::GreyLines;
 use stereopsis_host::mock::{MockCamera, MockError};
 
-const FORMATS: [(ImageFormat, &str); 4] =
-    [(ImageFormat::Png, "png"), (ImageFormat::Jpeg, "jpg"), (ImageFormat::Pnm, "pnm"), (ImageFormat::Tiff, "tiff")];
+const FORMATS: [(ImageFormat, &str); 4] = [
+    (ImageFormat::Png, "png"),
+    (ImageFormat::Jpeg, "jpg"),
+    (ImageFormat::Pnm, "pnm"),
+    (ImageFormat::Tiff, "tiff"),
+];
 
 struct Files(tempfile::TempDir);
 
@@ -76,7 +80,9 @@ fn every_kind_of_samples_comes_out_as_it_is_stored() {
             true,
         ),
         (
-            DynamicImage::ImageRgb16(image::ImageBuffer::from_fn(37, 23, |x, y| Rgb([0, 1, 2].map(|c| deep(x, y, c))))),
+            DynamicImage::ImageRgb16(image::ImageBuffer::from_fn(37, 23, |x, y| {
+                Rgb([0, 1, 2].map(|c| deep(x, y, c)))
+            })),
             PixelFormat::Rgb16 { bits: 16 },
             false,
         ),
@@ -103,7 +109,9 @@ fn every_kind_of_samples_comes_out_as_it_is_stored() {
             let expected: Vec<u8> = match pixel {
                 PixelFormat::Grey8 => image.to_luma8().into_raw(),
                 PixelFormat::Rgb8 => image.to_rgb8().into_raw(),
-                PixelFormat::Grey16 { .. } => image.to_luma16().iter().flat_map(|s| s.to_le_bytes()).collect(),
+                PixelFormat::Grey16 { .. } => {
+                    image.to_luma16().iter().flat_map(|s| s.to_le_bytes()).collect()
+                }
                 _ => image.to_rgb16().iter().flat_map(|s| s.to_le_bytes()).collect(),
             };
             assert_eq!(frame(&mut camera), expected, "{pixel:?} {format:?}");
@@ -161,7 +169,8 @@ fn a_grey_and_a_colour_image_make_a_pair_of_equal_lines() {
 #[test]
 fn the_video_has_no_end_and_lines_follow_the_contract() {
     let files = Files::new();
-    let mut camera = MockCamera::open(files.put("a", &encode(&grey().into(), ImageFormat::Png))).expect("a PNG");
+    let mut camera =
+        MockCamera::open(files.put("a", &encode(&grey().into(), ImageFormat::Png))).expect("a PNG");
     let mut line = [0; 40];
     assert_eq!(camera.next_line(&mut line), Err(CameraError::NoLineLeft), "no frame was started");
     for sequence in 0..3 {
@@ -184,11 +193,16 @@ fn half_a_file_is_an_error_wherever_it_ends() {
         MockCamera::open(files.put(name, &whole)).expect("the whole file");
         for length in 1..whole.len() {
             let path = files.put(name, &whole[..length]);
-            let error = MockCamera::open(&path).expect_err(&format!("{format:?}: {length} of {} bytes", whole.len()));
+            let error =
+                MockCamera::open(&path).expect_err(&format!("{format:?}: {length} of {} bytes", whole.len()));
             let text = error.to_string();
             assert!(text.contains(name) && !text.contains('\n'), "{text}");
             let late = length > whole.len() / 2 && format != ImageFormat::Tiff;
-            assert!(!late || matches!(error, MockError::Truncated { .. }), "{length} of {}: {text}", whole.len());
+            assert!(
+                !late || matches!(error, MockError::Truncated { .. }),
+                "{length} of {}: {text}",
+                whole.len()
+            );
         }
     }
 }
@@ -233,16 +247,29 @@ fn what_is_no_image_is_named() {
     assert!(matches!(open(files.0.path()), MockError::NotAFile { .. }));
     assert!(matches!(open(&files.put("empty.png", b"")), MockError::Empty { .. }));
     assert!(matches!(open(&files.put("text.png", b"this is text")), MockError::NotAnImage { .. }));
-    assert!(matches!(open(&files.put("claims", b"P5 5000 10 255\n")), MockError::TooLarge { width: 5000, .. }));
+    assert!(matches!(
+        open(&files.put("claims", b"P5 5000 10 255\n")),
+        MockError::TooLarge { width: 5000, .. }
+    ));
     assert!(matches!(open(&files.put("zero", b"P5 0 10 255\n")), MockError::ZeroSize { .. }));
     let mut huge = encode(&grey().into(), ImageFormat::Png);
     huge[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
-    assert!(matches!(open(&files.put("huge.png", &huge)), MockError::Corrupt { .. } | MockError::TooLarge { .. }));
+    assert!(matches!(
+        open(&files.put("huge.png", &huge)),
+        MockError::Corrupt { .. } | MockError::TooLarge { .. }
+    ));
     let wide = GrayImage::new(4097, 16);
-    assert!(matches!(open(&files.put("w", &encode(&wide.into(), ImageFormat::Png))), MockError::TooLarge { .. }));
+    assert!(matches!(
+        open(&files.put("w", &encode(&wide.into(), ImageFormat::Png))),
+        MockError::TooLarge { .. }
+    ));
     let float = DynamicImage::ImageRgb32F(image::ImageBuffer::new(4, 4));
-    assert!(matches!(open(&files.put("f.tiff", &encode(&float, ImageFormat::Tiff))), MockError::Samples { .. }));
-    MockCamera::open(files.put("most", &encode(&GrayImage::new(4096, 16).into(), ImageFormat::Png))).expect("4096");
+    assert!(matches!(
+        open(&files.put("f.tiff", &encode(&float, ImageFormat::Tiff))),
+        MockError::Samples { .. }
+    ));
+    MockCamera::open(files.put("most", &encode(&GrayImage::new(4096, 16).into(), ImageFormat::Png)))
+        .expect("4096");
 }
 
 #[test]

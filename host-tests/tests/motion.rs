@@ -1,4 +1,5 @@
-//! Visual odometry: on scenes that are driven through, where nothing moves or nothing can be told, and what its errors are.
+//! Visual odometry: on scenes that are driven through, where nothing moves or nothing can be told, and what
+//! its errors are.
 
 #[path = "motion/degenerate.rs"]
 mod degenerate;

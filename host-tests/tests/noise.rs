@@ -47,10 +47,15 @@ fn smoothed_lines_equal_the_twins_at_all_widths_and_heights() {
 #[test]
 fn lines_and_places_of_unequal_length_are_taken_as_far_as_all_go() {
     let (long, short) = ([200; 40], [200; 21]);
-    for (rows, places, written) in [([&long[..], &long, &short, &long, &long], 40, 21), ([&long[..]; 5], 9, 9)] {
+    for (rows, places, written) in
+        [([&long[..], &long, &short, &long, &long], 40, 21), ([&long[..]; 5], 9, 9)]
+    {
         let mut line = [7; 40];
         smooth(&rows, 1, &mut line[..places]);
-        assert!(line[..written].iter().all(|&pixel| pixel == 200) && line[written..].iter().all(|&pixel| pixel == 7));
+        assert!(
+            line[..written].iter().all(|&pixel| pixel == 200)
+                && line[written..].iter().all(|&pixel| pixel == 7)
+        );
     }
     let mut line = [7; 4];
     smooth(&[&[], &[1], &[1], &[1], &[1]], 0, &mut line);
@@ -65,7 +70,8 @@ fn plain_sigmas(images: &[&GrayImage]) -> Option<[f64; 2]> {
         for line in image.as_raw().chunks_exact(image.width() as usize) {
             let runs = line.len().saturating_sub(4) / 16;
             for pixels in (0..runs).map(|run| &line[16 * run..16 * run + 20]) {
-                let masked = |at: &[u8]| [1, -4, 6, -4, 1].iter().zip(at).map(|(m, &p)| m * i32::from(p)).sum::<i32>();
+                let masked =
+                    |at: &[u8]| [1, -4, 6, -4, 1].iter().zip(at).map(|(m, &p)| m * i32::from(p)).sum::<i32>();
                 if pixels.iter().all(|pixel| (1..=254).contains(pixel)) {
                     sums.push(pixels.windows(5).map(|at| masked(at).abs()).sum());
                 }
@@ -105,7 +111,10 @@ fn the_meter_says_what_its_definition_says() {
             // The last counter holds all sums beyond it.
             let plain = plain.min(359.0 / 16.0);
             // A counter holds sums that differ by up to 15, and the unit is a sixteenth.
-            assert!((said - plain).abs() <= 16.0 / 45.5 + 1.0 / 16.0, "{width}x{height}, {sigma}: {said}, {plain}");
+            assert!(
+                (said - plain).abs() <= 16.0 / 45.5 + 1.0 / 16.0,
+                "{width}x{height}, {sigma}: {said}, {plain}"
+            );
         }
     }
     for narrow in [Pattern::Noise.pair(19, 9, 1).0, Pattern::Constant(0).pair(90, 9, 1).0] {
@@ -147,7 +156,8 @@ fn known_noise_is_measured_and_gets_its_level() {
         // Rounding to whole grey levels is noise of a third of one.
         let within = if sigma > 0.0 { 0.2 + 0.05 * sigma } else { 0.5 };
         assert!((said - sigma.hypot(0.29)).abs() < within, "{said} said, {sigma} true");
-        let mut pair = MemoryPair::new(320, left.into_raw(), right.into_raw()).expect("two pictures of one size");
+        let mut pair =
+            MemoryPair::new(320, left.into_raw(), right.into_raw()).expect("two pictures of one size");
         let meter = measure_noise(&mut pair).expect("a frame");
         assert_eq!(meter.level(), level, "{sigma}");
         // The frame can be had again.

@@ -1,4 +1,5 @@
-//! Lines that the caller pushes give the rows that lines pulled from a camera give, and every misuse has its error.
+//! Lines that the caller pushes give the rows that lines pulled from a camera give, and every misuse has its
+//! error.
 
 use image::GrayImage;
 use stereopsis::matching::{Block, Checks, Config, Fast, MatchError, Row, Scheme, Sgm, SgmEdge, SgmLean};

@@ -186,8 +186,11 @@ fn what_is_wrong_is_said_in_one_line() {
     let less = |key: &str| {
         let begin = YAML.find(&format!("{key}: !!")).expect("a key");
         // Up to the next line that is not indented.
-        let rest =
-            YAML[begin..].lines().skip(1).skip_while(|line| line.starts_with(' ')).map(|line| format!("{line}\n"));
+        let rest = YAML[begin..]
+            .lines()
+            .skip(1)
+            .skip_while(|line| line.starts_with(' '))
+            .map(|line| format!("{line}\n"));
         let rest: String = rest.collect();
         format!("{}{rest}", &YAML[..begin])
     };
@@ -211,7 +214,10 @@ fn what_is_wrong_is_said_in_one_line() {
         (with("5.0e+02", "-5.0e+02"), "K1: the focal lengths"),
         (with("image_width: 640", "image_width: 641"), "width says 641"),
         (with("0.001, -0.002, 0. ]", "0.001, -0.002, 0., 0., 0., 0., 0.5 ]"), "thin prisms"),
-        (with("%YAML:1.0\n---\n", "%YAML:1.0\n---\nfisheye_model: 1\n"), "a fisheye lens has four coefficients"),
+        (
+            with("%YAML:1.0\n---\n", "%YAML:1.0\n---\nfisheye_model: 1\n"),
+            "a fisheye lens has four coefficients",
+        ),
         (with("data: [ 5.0e+02", "data: [ [ 5.0e+02"), "not well-formed"),
         (KALIBR.replacen("radtan", "fov", 1), "'fov' is not supported; calibrate with radtan or equidistant"),
         (KALIBR.replacen("T_cn_cnm1", "T_cam_imu", 1), "T_cn_cnm1 is missing"),

@@ -66,7 +66,10 @@ fn commands_work_in_a_fresh_clone() {
         run(block, &clone);
     }
     let all = blocks.concat();
-    assert!(all.contains(" demo ") && all.contains(" match "), "README.md runs neither demo nor match:\n{all}");
+    assert!(
+        all.contains(" demo ") && all.contains(" match "),
+        "README.md runs neither demo nor match:\n{all}"
+    );
 
     let outs: Vec<PathBuf> = commands::out_folders(&all).iter().map(|out| clone.join(out)).collect();
     let promised = commands::promised_files(&readme);
@@ -84,12 +87,14 @@ fn is_installed(program: &str) -> bool {
 
 /// Runs a block's lines in one shell, which ends at the first that fails.
 fn run(block: &str, clone: &Path) {
-    // The build products go where this test's own are: the dependencies are built once. The clone's packages take the
-    // places of this tree's, so its commands are all of the release profile, of which no test is.
+    // The build products go where this test's own are: the dependencies are built once. The clone's packages
+    // take the places of this tree's, so its commands are all of the release profile, of which no test
+    // is.
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("the target folder");
     let mut shell = Command::new("sh");
     shell.args(["-e", "-x", "-c", block]).current_dir(clone).env("CARGO_TARGET_DIR", target);
     let output = shell.output().expect("sh");
-    let told = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    let told =
+        format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert!(output.status.success(), "a block of README.md failed, {}:\n{block}\n{told}", output.status);
 }

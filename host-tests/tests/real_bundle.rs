@@ -1,4 +1,5 @@
-//! Problems of bundle adjustment of the folder in `STEREO_DATA`, held to the least cost that is known of each.
+//! Problems of bundle adjustment of the folder in `STEREO_DATA`, held to the least cost that is known of
+//! each.
 //!
 //! Built by the feature `real-data`, which `cargo xtask test` sets when `STEREO_DATA` is.
 
@@ -34,8 +35,8 @@ fn small_problems_have_nothing_left() {
 
 #[test]
 fn forty_nine_cameras_reach_the_least_cost() {
-    // SciPy 1.17's `least_squares` (trf, sparsity given, x_scale = jac) stops at 13409.0 with ftol 1e-4; steps of this
-    // adjustment to a tolerance of 1e-7 come to 13344.25.
+    // SciPy 1.17's `least_squares` (trf, sparsity given, x_scale = jac) stops at 13409.0 with ftol 1e-4;
+    // steps of this adjustment to a tolerance of 1e-7 come to 13344.25.
     let report = adjusted("problem-49-7776-pre.txt");
     assert!((report.initial_cost - 850_912.46).abs() < 0.01, "{report:?}");
     assert!(report.cost < 13_344.25 * 1.001, "{report:?}");

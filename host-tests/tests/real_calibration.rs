@@ -59,15 +59,16 @@ fn residuals_and_baselines_are_those_of_opencv() {
         let found = calibrated(&folder, &reference);
         let rms = reference["rms"].as_f64().expect("a number");
         assert!(found.rms_px <= 1.02 * rms, "{name}: {} px, OpenCV {rms} px", found.rms_px);
-        let t: Vec<f64> = reference["T"].as_array().expect("T").iter().map(|x| x.as_f64().expect("a number")).collect();
+        let t: Vec<f64> =
+            reference["T"].as_array().expect("T").iter().map(|x| x.as_f64().expect("a number")).collect();
         let baseline = t.iter().map(|x| x * x).sum::<f64>().sqrt();
         let off = found.rig.baseline_m() / baseline - 1.0;
         assert!(off.abs() < 0.005, "{name}: {} m, OpenCV {baseline} m", found.rig.baseline_m());
     }
 }
 
-/// The root mean square of how far the rows of corresponding corners are apart in rectified views, px, and in how many views all
-/// corners are shown.
+/// The root mean square of how far the rows of corresponding corners are apart in rectified views, px, and in
+/// how many views all corners are shown.
 fn rows_apart(views: impl Iterator<Item = [GrayImage; 2]>) -> (f64, usize) {
     let pattern = Pattern::new(9, 6).expect("a pattern");
     let (mut squares, mut corners, mut count) = (0.0, 0_usize, 0);
@@ -82,9 +83,10 @@ fn rows_apart(views: impl Iterator<Item = [GrayImage; 2]>) -> (f64, usize) {
     ((squares / corners as f64).sqrt(), count)
 }
 
-/// OpenCV's calibration in our remap. What OpenCV's own remap gives was measured with OpenCV 5.0.0: `stereoRectify` with its default
-/// crop on the reference's K1, D1, K2, D2, R and T, `initUndistortRectifyMap` and a bilinear `remap` of all views, and in these
-/// pictures the corners as they are found here.
+/// OpenCV's calibration in our remap. What OpenCV's own remap gives was measured with OpenCV 5.0.0:
+/// `stereoRectify` with its default crop on the reference's K1, D1, K2, D2, R and T,
+/// `initUndistortRectifyMap` and a bilinear `remap` of all views, and in these pictures the corners as they
+/// are found here.
 #[test]
 fn rows_agree_as_well_as_through_opencv() {
     for (name, file, opencv_px, least) in [
@@ -102,7 +104,10 @@ fn rows_agree_as_well_as_through_opencv() {
             let name = name.as_str().expect("a name");
             let raw = [name.to_owned(), name.replace("left", "right")].map(|name| {
                 let path = folder.join(name);
-                image::open(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())).into_luma8().into_vec()
+                image::open(&path)
+                    .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+                    .into_luma8()
+                    .into_vec()
             });
             let [left, right] = raw;
             let pair = MemoryPair::new(size.width, left, right).expect("a pair");

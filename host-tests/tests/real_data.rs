@@ -1,4 +1,5 @@
-//! Accuracy on the real rectified pairs of the folder in `STEREO_DATA`: both methods, default filter, every scene.
+//! Accuracy on the real rectified pairs of the folder in `STEREO_DATA`: both methods, default filter, every
+//! scene.
 //!
 //! Built by the feature `real-data`, which `cargo xtask test` sets when `STEREO_DATA` is.
 
@@ -47,15 +48,16 @@ fn worth(scene: &RealScene, map: &DisparityMap) -> [Sparsification; 3] {
     })
 }
 
-/// The area under the sparsification curve of every scene, from the oracle's (0) to that of a random order (1): printed as
-/// such, and over the oracle's; for answers over 2 px off at most `bound`.
+/// The area under the sparsification curve of every scene, from the oracle's (0) to that of a random order
+/// (1): printed as such, and over the oracle's; for answers over 2 px off at most `bound`.
 fn confidence_on_real_pairs(method: Method, filter: Filter, bound: f64) {
     let mut table =
         format!("{:24}{:>24}{:>24}{:>24}\n", format!("{method}, {}", filter.name()), "bad2", "bad1", "error");
     let mut worst = (0.0, String::new());
     let mut mean = [[0.0; 2]; 3];
     for scene in SCENES.iter() {
-        let worth = worth(scene, &match_with(scene, method, filter)).map(|s| [s.from_oracle(), s.area / s.oracle]);
+        let worth =
+            worth(scene, &match_with(scene, method, filter)).map(|s| [s.from_oracle(), s.area / s.oracle]);
         let name = scene.name.clone();
         writeln!(table, "{name:24}{}", worth.map(|[from, over]| format!("{from:12.3}{over:12.2}")).concat())
             .expect("to a string");
@@ -77,8 +79,13 @@ fn mean_over_scenes(method: Method) -> Score {
 }
 
 fn mean_with(method: Method, filter: Filter) -> Score {
-    let mut table =
-        format!("{:24}{:>9}{:>9}{:>9}\n", format!("{method}, {}", filter.name()), "density", "bad2 %", "missed %");
+    let mut table = format!(
+        "{:24}{:>9}{:>9}{:>9}\n",
+        format!("{method}, {}", filter.name()),
+        "density",
+        "bad2 %",
+        "missed %"
+    );
     let mut row = |name: &str, s: Score| {
         writeln!(table, "{name:24}{:9.3}{:9.2}{:9.2}", s.density, 100.0 * s.bad2, 100.0 * s.missed)
             .expect("to a string");
@@ -156,7 +163,11 @@ fn noise_is_measured_on_every_real_pair() {
         let sigmas = meters.each_ref().map(|meter| f64::from(meter.sigma_16ths().expect("a run")) / 16.0);
         println!("{:24}{:?}", scene.name, sigmas);
         textured += usize::from(meters[0].level() != Noise::None);
-        assert!(meters[1].level() >= Noise::Low && meters[2].level() == Noise::High, "{}: {sigmas:?}", scene.name);
+        assert!(
+            meters[1].level() >= Noise::Low && meters[2].level() == Noise::High,
+            "{}: {sigmas:?}",
+            scene.name
+        );
         measured.push(sigmas);
     }
     assert!(textured <= 1 && measured.iter().all(|[clean, ..]| *clean < 2.9), "{measured:?}");
@@ -185,7 +196,8 @@ fn sgm_on_noisy_real_pairs() {
 fn sgm_on_real_pairs_of_other_exposures() {
     let mut scores = Vec::new();
     for scene in SCENES.iter() {
-        let balance = |right: &GrayImage| measure_balance(&mut camera([&scene.left, right])).expect("a frame");
+        let balance =
+            |right: &GrayImage| measure_balance(&mut camera([&scene.left, right])).expect("a frame");
         assert_eq!(balance(&scene.right), Balance::NONE, "{}: as taken", scene.name);
         let exposure = Alteration::Exposure { gain: 1.2, offset: 15.0 };
         let [_, mut right] = exposure.apply([&scene.left, &scene.right], 1);

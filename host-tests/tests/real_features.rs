@@ -66,8 +66,11 @@ fn matches_of_neighbours_lie_on_the_true_epipolar_lines() {
         distances.sort_by(f64::total_cmp);
         let inliers = distances.partition_point(|&d| d < INLIER_PX);
         let (share, median) = (inliers as f64 / distances.len() as f64, distances[distances.len() / 2]);
-        table +=
-            &format!("{pair:?}: {} matches, {:.1} % inliers, median {median:.3} px\n", distances.len(), 100.0 * share);
+        table += &format!(
+            "{pair:?}: {} matches, {:.1} % inliers, median {median:.3} px\n",
+            distances.len(),
+            100.0 * share
+        );
         assert!(distances.len() >= 800 && share >= 0.89 && median <= 0.25, "{table}");
     }
     println!("{table}");
@@ -75,7 +78,8 @@ fn matches_of_neighbours_lie_on_the_true_epipolar_lines() {
 
 /// Runs the program `stereo`; what it says.
 fn stereo(arguments: &[&str]) -> String {
-    let run = Command::new(env!("CARGO_BIN_EXE_stereo")).args(arguments).output().expect("the program starts");
+    let run =
+        Command::new(env!("CARGO_BIN_EXE_stereo")).args(arguments).output().expect("the program starts");
     assert!(run.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&run.stderr));
     String::from_utf8_lossy(&run.stdout).into_owned()
 }
@@ -87,11 +91,14 @@ fn the_programs_find_the_true_pose_of_two_pictures() {
     let (matches, calibration, answer) = (file("matches.csv"), file("calib.txt"), file("pose.json"));
     let mut table = String::new();
     for pair in NEIGHBOURS.into_iter().chain(NEXT) {
-        let [left, right] = pair.map(|number| folder().join(format!("image_{number:04}.png")).display().to_string());
+        let [left, right] =
+            pair.map(|number| folder().join(format!("image_{number:04}.png")).display().to_string());
         stereo(&["features", "--left", &left, "--right", &right, "--out", &matches]);
         let truth = truth(pair);
         let cameras = ["K1", "K2"].map(|name| matrix(&truth[name]));
-        let of = |k: &Matrix3<f64>| format!("[{} 0 {}; 0 {} {}; 0 0 1]", k[(0, 0)], k[(0, 2)], k[(1, 1)], k[(1, 2)]);
+        let of = |k: &Matrix3<f64>| {
+            format!("[{} 0 {}; 0 {} {}; 0 0 1]", k[(0, 0)], k[(0, 2)], k[(1, 1)], k[(1, 2)])
+        };
         let text = format!("cam0={}\ncam1={}\n", of(&cameras[0]), of(&cameras[1]));
         fs::write(&calibration, text).expect("a file");
         stereo(&["pose", "--matches", &matches, "--calib", &calibration, "--out", &answer]);

@@ -83,7 +83,8 @@ fn a_webcam_that_breathes_is_answered() {
     assert!(share > 0.8, "{share} answered");
     // The sponge in front is nearer, in focus later, than the paper behind it.
     let median = |left: usize, top: usize| {
-        let mut all: Vec<_> = (0..900).map(|i| found.index()[(top + i / 30) * found.width + left + i % 30]).collect();
+        let mut all: Vec<_> =
+            (0..900).map(|i| found.index()[(top + i / 30) * found.width + left + i % 30]).collect();
         all.sort_by(f32::total_cmp);
         all[450]
     };

@@ -1,4 +1,5 @@
-//! Raw lines to rectified ones: to the bit what the naive twin says, near the exact warp, within the rows that were said.
+//! Raw lines to rectified ones: to the bit what the naive twin says, near the exact warp, within the rows
+//! that were said.
 
 use image::GrayImage;
 use nalgebra::{Point2, Rotation3, Vector3};
@@ -30,7 +31,12 @@ fn camera(size: ImageSize, focal: f64, lens: [f64; 5]) -> Camera<f64> {
     camera.with_distortion(Distortion::from_opencv(lens)).expect("a lens")
 }
 
-fn rectified(size: ImageSize, cameras: [Camera<f64>; 2], turn: [f64; 3], crop: Crop<f64>) -> Rectification<f64> {
+fn rectified(
+    size: ImageSize,
+    cameras: [Camera<f64>; 2],
+    turn: [f64; 3],
+    crop: Crop<f64>,
+) -> Rectification<f64> {
     let turn = Rotation3::new(Vector3::from(turn)).into_inner();
     let pose = Pose::new(turn, Vector3::new(0.06, 0.0005, -0.001)).expect("a pose");
     let rig = StereoRig::new(cameras, pose, [size; 2]).expect("a rig");
@@ -38,7 +44,10 @@ fn rectified(size: ImageSize, cameras: [Camera<f64>; 2], turn: [f64; 3], crop: C
 }
 
 /// The whole image through a remap that holds `N` lines.
-fn whole<const W: usize, const N: usize>(table: &Table, raw: &GrayImage) -> Result<(GrayImage, Vec<u8>), RemapError> {
+fn whole<const W: usize, const N: usize>(
+    table: &Table,
+    raw: &GrayImage,
+) -> Result<(GrayImage, Vec<u8>), RemapError> {
     let mut remap = Box::new(Remap::<W, N, SLOTS>::new(table.clone())?);
     let width = usize::from(table.size().width);
     let (mut out, mut valid) = (GrayImage::new(width as u32, table.size().height.into()), Vec::new());
@@ -63,7 +72,8 @@ fn whole<const W: usize, const N: usize>(table: &Table, raw: &GrayImage) -> Resu
     Ok((out, valid))
 }
 
-/// The largest distance between a table's places and the warp's, px, over all pixels that are in the raw image.
+/// The largest distance between a table's places and the warp's, px, over all pixels that are in the raw
+/// image.
 fn farthest(table: &Table, warp: &Warp<f64>) -> f64 {
     let mut most = 0.0_f64;
     for (u, v) in (0..table.size().height).flat_map(|v| (0..table.size().width).map(move |u| (u, v))) {
@@ -108,7 +118,10 @@ fn too_small_a_band_is_refused_with_what_would_do() {
     };
     assert!((50..90).contains(&needed), "{needed}");
     assert!(whole::<320, 90>(&table, &noise(QVGA, 6)).is_ok());
-    assert_eq!(Remap::<319, 90, SLOTS>::new(table.clone()).map(|_| ()), Err(RemapError::Width { needed: 320 }));
+    assert_eq!(
+        Remap::<319, 90, SLOTS>::new(table.clone()).map(|_| ()),
+        Err(RemapError::Width { needed: 320 })
+    );
     let needed = RemapTable::<0>::slots(QVGA, 6);
     assert_eq!(RemapTable::<8>::new(warp).map(|_| ()), Err(RemapTableError::Slots { needed }));
     assert!(matches!(needed, 140..400), "{needed}");
@@ -125,10 +138,13 @@ fn too_small_a_band_is_refused_with_what_would_do() {
 
 #[test]
 fn a_strong_lens_stays_within_a_twentieth_of_a_pixel() {
-    // A barrel of 90 degrees across; then lenses that fold before the corners, which are too much to be shown whole.
+    // A barrel of 90 degrees across; then lenses that fold before the corners, which are too much to be shown
+    // whole.
     let barrel = |focal, lens| camera(QVGA, focal, lens);
-    let mild = [barrel(200.0, [-0.15, 0.03, 0.0, 0.0, 0.0]), barrel(200.0, [-0.16, 0.035, 0.001, -0.0005, 0.0])];
-    let folding = [barrel(165.0, [-0.23, 0.045, 0.001, -0.0005, -0.003]), barrel(165.0, [-0.3, 0.01, 0.0, 0.0, 0.0])];
+    let mild =
+        [barrel(200.0, [-0.15, 0.03, 0.0, 0.0, 0.0]), barrel(200.0, [-0.16, 0.035, 0.001, -0.0005, 0.0])];
+    let folding =
+        [barrel(165.0, [-0.23, 0.045, 0.001, -0.0005, -0.003]), barrel(165.0, [-0.3, 0.01, 0.0, 0.0, 0.0])];
     let turn = [0.02, -0.03, 0.015];
     let whole_view = rectified(QVGA, folding, turn, Crop::Alpha(1.0));
     assert_eq!(Table::new(&whole_view.warps()[1]).map(|_| ()), Err(RemapTableError::TooBent));
@@ -190,15 +206,16 @@ fn a_pair_is_taken_in_step() {
     // Each alone needs fewer rows than both in step.
     let most = tables.iter().map(Table::rows).max().expect("two");
     assert!(usize::from(most) < 39);
-    let small = MockCamera::from_image(noise(ImageSize { width: 64, height: 240 }, 1).into()).expect("an image");
+    let small =
+        MockCamera::from_image(noise(ImageSize { width: 64, height: 240 }, 1).into()).expect("an image");
     let format = small.format();
     let small = CameraPair::new(small.clone(), small, 0).expect("of one size");
     let refused = RectifiedPair::new(small, &mut made).map(|_| ());
     assert_eq!(refused, Err(RectifiedPairError::Raw(format)));
 }
 
-/// Raw lines through remap, census and matching in one loop: what rectified pictures give, without the answers that have not
-/// been seen by both cameras.
+/// Raw lines through remap, census and matching in one loop: what rectified pictures give, without the
+/// answers that have not been seen by both cameras.
 #[test]
 fn nothing_that_was_not_seen_becomes_an_answer() {
     let size = ImageSize { width: 160, height: 64 };
@@ -223,7 +240,8 @@ fn nothing_that_was_not_seen_becomes_an_answer() {
         let config = method.with_filter(Filter::Default, Config::new(160, 64, 32));
         let config = Config { confidence: true, ..config };
         let way = Way { threads, ..method.into() };
-        let found = with_rectified(&both, raw(), |source| run(way, &config, source, |_| ()).expect("a map").map);
+        let found =
+            with_rectified(&both, raw(), |source| run(way, &config, source, |_| ()).expect("a map").map);
         let found = found.expect("remaps");
         assert!(found.answers() > 300, "{method}: {}", found.answers());
         let pictures = whole.pictures.each_ref().map(|picture| picture.to_vec());
@@ -239,7 +257,9 @@ fn nothing_that_was_not_seen_becomes_an_answer() {
             lost += usize::from(is_lost && d.is_some());
             if is_lost {
                 let (none, outside) = (Disparity::NONE, PixelFlags::OUTSIDE);
-                assert!((found.flags[i].contains(outside) && found.disparity[i] == none) || valid_left[i] != 0);
+                assert!(
+                    (found.flags[i].contains(outside) && found.disparity[i] == none) || valid_left[i] != 0
+                );
             }
             // Along paths an answer that is gone draws none of those below it.
             if matches!(method, Method::Fast | Method::Block) {

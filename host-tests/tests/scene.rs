@@ -11,7 +11,8 @@ type Pair = (GrayImage, GrayImage);
 
 /// Left minus right at these disparities, grey levels, for every point that both see.
 fn differences((left, right): &Pair, truth: &Truth) -> Vec<f64> {
-    let pixels = truth.disparity.iter().zip(&truth.occluded).enumerate().filter(|(_, (_, occluded))| !**occluded);
+    let pixels =
+        truth.disparity.iter().zip(&truth.occluded).enumerate().filter(|(_, (_, occluded))| !**occluded);
     pixels
         .filter_map(|(i, (&disparity, _))| {
             let (x, y) = ((i % truth.width) as u32, (i / truth.width) as u32);
@@ -49,7 +50,8 @@ fn a_camera_elsewhere_sees_what_the_right_one_sees() {
     assert!(most <= Some(1) && other < 200, "{other} pixels differ, by up to {most:?}");
     // A camera turned by half a turn about its axis sees the scene upside down.
     let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), core::f64::consts::PI);
-    let turned = scene.seen_from(&Pose::new(*turn.matrix(), Vector3::zeros()).expect("a rotation")).render().0;
+    let turned =
+        scene.seen_from(&Pose::new(*turn.matrix(), Vector3::zeros()).expect("a rotation")).render().0;
     let (back, left) = (image::imageops::rotate180(&turned), scene.render().0);
     let differing = back.pixels().zip(left.pixels()).filter(|(a, b)| a.0[0].abs_diff(b.0[0]) > 1);
     assert!(differing.count() < 200);
@@ -109,7 +111,8 @@ fn rig() -> RectifiedRig {
 fn the_depth_of_a_plane_is_the_analytic_one() {
     let (normal, distance) = (Vector3::new(0.3, -0.2, 1.0), 2.0);
     let point = Point3::from(normal * (distance / normal.norm_squared()));
-    let truth = Scene::new(rig(), 161, 121, 64).with(Object::plane(point, normal, Texture::flat(0.5))).truth();
+    let truth =
+        Scene::new(rig(), 161, 121, 64).with(Object::plane(point, normal, Texture::flat(0.5))).truth();
     for (i, (&z, &d)) in truth.depth_m.iter().zip(&truth.disparity).enumerate() {
         let (u, v) = ((i % 161) as f64, (i / 161) as f64);
         // n P = distance on the plane, with P = Z ((u - cx) / f, (v - cy) / f, 1).
@@ -138,7 +141,8 @@ fn the_slanted_plane_has_the_disparity_that_it_says() {
 fn depths(shape: Shape, position: Point3<f64>, rotation: Rotation3<f64>) -> Vec<(Vector3<f64>, f64)> {
     let body = Object::new(shape, Texture::flat(0.5), position).turned(rotation);
     let truth = Scene::new(rig(), 161, 121, 64).with(body).truth();
-    let ray = |i: usize| Vector3::new(((i % 161) as f64 - 80.0) / 300.0, ((i / 161) as f64 - 60.0) / 300.0, 1.0);
+    let ray =
+        |i: usize| Vector3::new(((i % 161) as f64 - 80.0) / 300.0, ((i / 161) as f64 - 60.0) / 300.0, 1.0);
     truth.depth_m.iter().enumerate().map(|(i, &z)| (ray(i), f64::from(z))).collect()
 }
 
@@ -183,7 +187,9 @@ fn boxes_and_bars_are_as_large_as_they_say() {
             // On the surface: one of the coordinates is at its limit, and none is beyond.
             let off = match shape {
                 Shape::Cuboid { half } => p.abs().component_div(&half).max() - 1.0,
-                Shape::Cylinder { radius, half_height } => (p.xz().norm() / radius).max(p.y.abs() / half_height) - 1.0,
+                Shape::Cylinder { radius, half_height } => {
+                    (p.xz().norm() / radius).max(p.y.abs() / half_height) - 1.0
+                }
                 _ => p.z + ((p.x.abs() / 0.2).max(p.y.abs() / 0.15) - 1.0).max(0.0),
             };
             assert!(off.abs() < 1e-5, "{shape:?}: {p}");
@@ -191,7 +197,9 @@ fn boxes_and_bars_are_as_large_as_they_say() {
             let nearer = rotation.inverse() * (ray * (z - 0.001) - centre.coords);
             let inside = match shape {
                 Shape::Cuboid { half } => nearer.abs().component_div(&half).max() < 1.0,
-                Shape::Cylinder { radius, half_height } => nearer.xz().norm() < radius && nearer.y.abs() < half_height,
+                Shape::Cylinder { radius, half_height } => {
+                    nearer.xz().norm() < radius && nearer.y.abs() < half_height
+                }
                 _ => false,
             };
             assert!(!inside, "{shape:?}");
@@ -211,8 +219,8 @@ fn a_body_hides_a_strip_as_wide_as_the_step_in_disparity() {
     let rig = RectifiedRig::new(300.0, 0.1, 80.0, 60.0).expect("the numbers are in range");
     let truth = Scene::new(rig, 161, 121, 64).with(wall).with(card).truth();
     let row = 60 * 161..61 * 161;
-    // The card covers columns 65 to 95 with 30 px of disparity, the wall has 15: 15 px left of the card are hidden,
-    // and the first 15 columns fall off the right picture.
+    // The card covers columns 65 to 95 with 30 px of disparity, the wall has 15: 15 px left of the card are
+    // hidden, and the first 15 columns fall off the right picture.
     for (x, (&d, &occluded)) in truth.disparity[row.clone()].iter().zip(&truth.occluded[row]).enumerate() {
         let expected = if (65..=95).contains(&x) { 30.0 } else { 15.0 };
         assert!((d - expected).abs() < 1e-5, "column {x}: {d}");

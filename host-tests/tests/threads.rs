@@ -18,7 +18,10 @@ fn assert_same(one: &DisparityMap, bands: &DisparityMap, what: &str) {
     assert!(one.disparity == bands.disparity, "{what}: disparities");
     assert!(one.flags == bands.flags, "{what}: flags");
     assert!(one.confidence == bands.confidence, "{what}: confidences");
-    assert!(one.sigma_px.iter().map(|s| s.to_bits()).eq(bands.sigma_px.iter().map(|s| s.to_bits())), "{what}: sigma");
+    assert!(
+        one.sigma_px.iter().map(|s| s.to_bits()).eq(bands.sigma_px.iter().map(|s| s.to_bits())),
+        "{what}: sigma"
+    );
 }
 
 /// A path from above begins anew in each band, and so do the costs of the rows above.

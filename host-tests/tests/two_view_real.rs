@@ -29,7 +29,8 @@ fn matrix(value: &serde_json::Value) -> Matrix3<f64> {
 fn pairs() -> Vec<Pair> {
     let data = std::env::var_os("STEREO_DATA").expect("set STEREO_DATA to the folder that holds two_view/");
     let folder = Path::new(&data).join("two_view/fountain-P11");
-    let entries = std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("STEREO_DATA: {}: {e}", folder.display()));
+    let entries =
+        std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("STEREO_DATA: {}: {e}", folder.display()));
     let mut files: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
     files.retain(|file| file.extension().is_some_and(|extension| extension == "csv"));
     files.sort();
@@ -72,7 +73,8 @@ impl Pair {
         seen
     }
 
-    /// The mean distance of the right matches to their lines, px, and the share of them that is within a pixel.
+    /// The mean distance of the right matches to their lines, px, and the share of them that is within a
+    /// pixel.
     fn score(&self, f: &Fundamental<f64>) -> (f64, f64) {
         let distances: Vec<f64> = self.right().iter().map(|s| f.symmetric_px(s)).collect();
         let n = distances.len() as f64;
@@ -102,7 +104,10 @@ fn wrong_matches_do_no_harm() {
             }
             let recall = recalls.iter().sum::<f64>() / recalls.len() as f64;
             let error = median(errors);
-            assert!(error < 0.175 && recall > 0.983, "{share} wrong, seed {seed}: {error} px, recall {recall}");
+            assert!(
+                error < 0.175 && recall > 0.983,
+                "{share} wrong, seed {seed}: {error} px, recall {recall}"
+            );
         }
     }
 }
@@ -121,15 +126,21 @@ fn the_pose_is_the_true_one() {
         let seen = pair.with_wrong(0.3, 1);
         let mut inliers = vec![false; seen.len()];
         let found = robust_fundamental(&seen, &RobustConfig::new(1.0), &mut inliers).expect("an estimate");
-        let start = Essential::from_fundamental(&found.fundamental, &pair.camera, &pair.camera).expect("rank 2");
+        let start =
+            Essential::from_fundamental(&found.fundamental, &pair.camera, &pair.camera).expect("rank 2");
         let essential = start.refined(&seen, &pair.camera, &pair.camera, 1.0).expect("rank 2");
         let kept = seen.iter().zip(&inliers).filter(|&(_, &inlier)| inlier).map(|(s, _)| *s);
-        let pose = essential.recover_pose(kept, &pair.camera, &pair.camera).expect("a pose").pose.in_baselines();
+        let pose =
+            essential.recover_pose(kept, &pair.camera, &pair.camera).expect("a pose").pose.in_baselines();
         let (rotation, translation) = pose.to_opencv();
         let turned = rotation.tr_mul(&pair.rotation).trace();
         let off_rotation = ((turned - 1.0) / 2.0).clamp(-1.0, 1.0).acos().to_degrees();
         let along = translation.dot(&pair.translation) / pair.translation.norm();
         let off_direction = along.clamp(-1.0, 1.0).acos().to_degrees();
-        assert!(off_rotation < 0.3 && off_direction < 1.5, "{}: {off_rotation} {off_direction} degrees", pair.name);
+        assert!(
+            off_rotation < 0.3 && off_direction < 1.5,
+            "{}: {off_rotation} {off_direction} degrees",
+            pair.name
+        );
     }
 }

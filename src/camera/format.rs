@@ -12,10 +12,11 @@ pub enum PixelFormat {
         /// Significant bits: 10 for a sensor that gives 0 to 1023.
         bits: u8,
     },
-    /// 10 bits a pixel, four pixels in five bytes as MIPI CSI-2 has them (RAW10): the high eight bits of each, then the low two of
-    /// all, the first pixel's lowest.
+    /// 10 bits a pixel, four pixels in five bytes as MIPI CSI-2 has them (RAW10): the high eight bits of
+    /// each, then the low two of all, the first pixel's lowest.
     Grey10Packed,
-    /// 12 bits a pixel, two pixels in three bytes (RAW12): the high eight bits of each, then the low four of both.
+    /// 12 bits a pixel, two pixels in three bytes (RAW12): the high eight bits of each, then the low four of
+    /// both.
     Grey12Packed,
     /// Two pixels in four bytes, Y U Y V: brightness, with colour between (YUY2).
     Yuyv,
@@ -23,12 +24,14 @@ pub enum PixelFormat {
     Uyvy,
     /// Two bytes a pixel, 5 bits of red, 6 of green, 5 of blue from the high bit down.
     Rgb565 {
-        /// Whether the high byte comes first, as parallel sensors send it; else the low one does, as a framebuffer has it.
+        /// Whether the high byte comes first, as parallel sensors send it; else the low one does, as a
+        /// framebuffer has it.
         high_byte_first: bool,
     },
     /// One byte a pixel under a mosaic of colours, of any of the four Bayer patterns.
     Bayer8,
-    /// Two bytes a pixel, low byte first, of which the low `bits` (8 to 16) carry brightness, under a Bayer mosaic.
+    /// Two bytes a pixel, low byte first, of which the low `bits` (8 to 16) carry brightness, under a Bayer
+    /// mosaic.
     Bayer16 {
         /// Significant bits.
         bits: u8,
@@ -101,7 +104,7 @@ pub struct FrameStart {
 pub struct LineStart {
     /// The row in the frame, from 0.
     pub row: u16,
-    /// When the line was read out, microseconds of the source's clock; equals the frame's time stamp where the source
-    /// has no clock by line.
+    /// When the line was read out, microseconds of the source's clock; equals the frame's time stamp where
+    /// the source has no clock by line.
     pub timestamp_us: u64,
 }

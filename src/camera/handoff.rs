@@ -4,10 +4,12 @@ use super::{CameraError, ErrorType, FrameStart, LineFormat, LineSource, LineStar
 use core::convert::Infallible;
 use heapless::spsc::{Consumer, Producer, Queue};
 
-/// The slots through which lines go from one producer, an interrupt or DMA, to one consumer, with `B` bytes each.
+/// The slots through which lines go from one producer, an interrupt or DMA, to one consumer, with `B` bytes
+/// each.
 ///
-/// A slot is in one place: free, being filled, waiting, or being read. Filling and reading own it, and hand it on by value: a line is
-/// read once, whole, and nobody writes into it meanwhile. There is no lock; either side may interrupt the other.
+/// A slot is in one place: free, being filled, waiting, or being read. Filling and reading own it, and hand
+/// it on by value: a line is read once, whole, and nobody writes into it meanwhile. There is no lock; either
+/// side may interrupt the other.
 ///
 /// ```text
 ///              begin              finish               next
@@ -16,7 +18,8 @@ use heapless::spsc::{Consumer, Producer, Queue};
 ///    └─────────────────────┴──────────────────────────────────────┘
 /// ```
 ///
-/// `N` is the length of the queues: they take `N - 1` slots. A slot that is dropped instead of handed on is lost.
+/// `N` is the length of the queues: they take `N - 1` slots. A slot that is dropped instead of handed on is
+/// lost.
 ///
 /// ```
 /// use stereopsis::camera::{FrameStart, LineSlots, LineStart};
@@ -48,7 +51,10 @@ impl<'b, const B: usize, const N: usize> LineSlots<'b, B, N> {
     }
 
     /// The two ends, with `slots` to go between them, of which the first `N - 1` are used.
-    pub fn split<'a>(&'a mut self, slots: &'b mut [[u8; B]]) -> (LineProducer<'a, 'b, B>, LineConsumer<'a, 'b, B>) {
+    pub fn split<'a>(
+        &'a mut self,
+        slots: &'b mut [[u8; B]],
+    ) -> (LineProducer<'a, 'b, B>, LineConsumer<'a, 'b, B>) {
         // What an earlier pair of ends left here goes.
         while self.free.dequeue().is_some() {}
         while self.waiting.dequeue().is_some() {}
@@ -161,8 +167,8 @@ impl<'b, const B: usize> LineConsumer<'_, 'b, B> {
     }
 }
 
-/// Takes the oldest of a queue. A queue's length, by which its ends divide, is not 0: said here, the compiler sees it and leaves
-/// no panic.
+/// Takes the oldest of a queue. A queue's length, by which its ends divide, is not 0: said here, the compiler
+/// sees it and leaves no panic.
 fn take<T>(queue: &mut Consumer<'_, T>) -> Option<T> {
     if queue.capacity().wrapping_add(1) == 0 { None } else { queue.dequeue() }
 }
@@ -176,8 +182,9 @@ fn put<T>(queue: &mut Producer<'_, T>, item: T) {
 
 /// The camera that an interrupt feeds through [`LineSlots`].
 ///
-/// `wait` is called while no line waits, to sleep until the next interrupt; it says false when the time is over, which is
-/// [`CameraError::TimedOut`], and has to say so some time. A line that is lost on the way is seen by the next one's row.
+/// `wait` is called while no line waits, to sleep until the next interrupt; it says false when the time is
+/// over, which is [`CameraError::TimedOut`], and has to say so some time. A line that is lost on the way is
+/// seen by the next one's row.
 pub struct HandedLines<'a, 'b, F, const B: usize> {
     consumer: LineConsumer<'a, 'b, B>,
     format: LineFormat,
@@ -234,7 +241,8 @@ impl<F: FnMut() -> bool, const B: usize> LineSource for HandedLines<'_, '_, F, B
 
     fn start_frame(&mut self) -> Result<FrameStart, CameraError<Infallible>> {
         self.is_over = true;
-        // What is left of the frame before goes: its lines and as many that come meanwhile, but not without an end.
+        // What is left of the frame before goes: its lines and as many that come meanwhile, but not without
+        // an end.
         for _ in 0..=2 * u32::from(self.format.height) {
             let line = self.take()?;
             if self.frame.is_none_or(|frame| frame.sequence != line.frame.sequence) {

@@ -3,12 +3,14 @@
 use super::{CameraError, ErrorType, FrameStart, LineFault, LineFormat, LineSource, LineStart, StereoSource};
 use core::fmt;
 
-/// Two rectified cameras, taken row by row and checked: one row number, time stamps within the bound on row skew.
+/// Two rectified cameras, taken row by row and checked: one row number, time stamps within the bound on row
+/// skew.
 ///
-/// When one camera lost a frame, [`start_frame`](StereoSource::start_frame) starts frames of the camera that is behind
-/// until they are of one [`Pairing`], at most [`CameraPair::MAX_CATCH_UP`] of them. When one lost a line, the pair fails once
-/// and goes on with the row below it: the camera that is behind gives up the lines that the other one has passed. An old line or
-/// frame of one of them, told by its time stamp or number, is refused: the caller sees the left camera's alone.
+/// When one camera lost a frame, [`start_frame`](StereoSource::start_frame) starts frames of the camera that
+/// is behind until they are of one [`Pairing`], at most [`CameraPair::MAX_CATCH_UP`] of them. When one lost a
+/// line, the pair fails once and goes on with the row below it: the camera that is behind gives up the lines
+/// that the other one has passed. An old line or frame of one of them, told by its time stamp or number, is
+/// refused: the caller sees the left camera's alone.
 #[derive(Debug)]
 pub struct CameraPair<L, R> {
     left: L,
@@ -32,12 +34,13 @@ pub enum Pairing {
     /// Equal sequence numbers: cameras that count the pulses of one trigger.
     #[default]
     Sequence,
-    /// Time stamps within the bound on row skew: cameras that run freely, stamped by one clock. The pair's sequence number
-    /// is the left camera's.
+    /// Time stamps within the bound on row skew: cameras that run freely, stamped by one clock. The pair's
+    /// sequence number is the left camera's.
     TimeStamp,
 }
 
-/// The row skew of a frame so far: how much later than the left camera the right one read out its row, by the time stamps.
+/// The row skew of a frame so far: how much later than the left camera the right one read out its row, by the
+/// time stamps.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct RowSkew {
@@ -115,7 +118,9 @@ impl<L: fmt::Display, R: fmt::Display> fmt::Display for PairError<L, R> {
             Self::Sequence { left, right } => {
                 write!(f, "frame {left} of the left camera meets frame {right} of the right")
             }
-            Self::Rows { left, right } => write!(f, "row {left} of the left camera meets row {right} of the right"),
+            Self::Rows { left, right } => {
+                write!(f, "row {left} of the left camera meets row {right} of the right")
+            }
             Self::FrameSkew { skew_us } => write!(f, "the cameras' frames stay {skew_us} us apart"),
             Self::RowSkew { skew_us } => write!(f, "the cameras' rows are {skew_us} us apart"),
         }
@@ -236,7 +241,9 @@ impl<L: LineSource, R: LineSource> StereoSource for CameraPair<L, R> {
         if apart != 0 {
             return Err(CameraError::Hardware(match self.pairing {
                 Pairing::Sequence => PairError::Sequence { left: left.sequence, right: right.sequence },
-                Pairing::TimeStamp => PairError::FrameSkew { skew_us: left.timestamp_us.abs_diff(right.timestamp_us) },
+                Pairing::TimeStamp => {
+                    PairError::FrameSkew { skew_us: left.timestamp_us.abs_diff(right.timestamp_us) }
+                }
             }));
         }
         self.newest_us = [left.timestamp_us, right.timestamp_us];

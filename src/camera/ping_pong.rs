@@ -32,8 +32,9 @@ impl Half {
 ///                            must be done before the DMA is back in that half
 /// ```
 ///
-/// The interrupt of a half calls [`Self::take`], which copies the line into a slot of [`LineSlots`](super::LineSlots). The
-/// DMA does not wait: after the copy its position tells whether it has come back into the half meanwhile.
+/// The interrupt of a half calls [`Self::take`], which copies the line into a slot of
+/// [`LineSlots`](super::LineSlots). The DMA does not wait: after the copy its position tells whether it has
+/// come back into the half meanwhile.
 #[derive(Clone, Copy, Default, Debug)]
 pub struct PingPong {
     due: Half,
@@ -52,8 +53,9 @@ impl PingPong {
         self.due = Half::First;
     }
 
-    /// Copies the half that is `done` into `line`, as many bytes as both have. `writing` is asked afterwards which half the DMA is in:
-    /// it is compared by its remaining count, as in `if ndtr > length / 2 { Half::First } else { Half::Second }`.
+    /// Copies the half that is `done` into `line`, as many bytes as both have. `writing` is asked afterwards
+    /// which half the DMA is in: it is compared by its remaining count, as in `if ndtr > length / 2 {
+    /// Half::First } else { Half::Second }`.
     ///
     /// [`LineFault::Torn`]: the DMA is in the half that was copied; what was copied is of two lines. Lines that were missed
     /// before this one come as [`Self::take`]'s number: it is 0 unless an interrupt was lost.

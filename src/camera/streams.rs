@@ -57,7 +57,11 @@ impl<S: LineSource, const RAW: usize> SideBySide<S, RAW> {
             return Err(StreamError::OddWidth { width });
         }
         let needed = source.format().line_bytes();
-        if needed > RAW { Err(StreamError::BufferTooShort { needed }) } else { Ok(Self { source, raw: [0; RAW] }) }
+        if needed > RAW {
+            Err(StreamError::BufferTooShort { needed })
+        } else {
+            Ok(Self { source, raw: [0; RAW] })
+        }
     }
 
     /// The stream.
@@ -111,8 +115,8 @@ pub struct Interleaved<S> {
 }
 
 impl<S: LineSource> Interleaved<S> {
-    /// Takes the two cameras from a stream whose lines come `line_us` microseconds apart: so far are the rows of the two.
-    /// For cameras that exposed together and are only sent one after the other, that is 0.
+    /// Takes the two cameras from a stream whose lines come `line_us` microseconds apart: so far are the rows
+    /// of the two. For cameras that exposed together and are only sent one after the other, that is 0.
     pub fn new(source: S, line_us: u32) -> Result<Self, StreamError> {
         let height = source.format().height;
         if !height.is_multiple_of(2) {
@@ -166,7 +170,11 @@ impl<S: LineSource> StereoSource for Interleaved<S> {
 }
 
 impl<S: LineSource> Interleaved<S> {
-    fn next_lines_of_row(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<S::Error>> {
+    fn next_lines_of_row(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<S::Error>> {
         let first = self.source.next_line(left)?;
         if first.row % 2 != 0 {
             return Err(CameraError::LineLost(LineFault::Dropped));
@@ -179,7 +187,8 @@ impl<S: LineSource> Interleaved<S> {
         self.lost = false;
         let second = self.source.next_line(right)?;
         if second.row != first.row.saturating_add(1) {
-            // It is of a row below. If that is a left line, its right one comes next, and is passed over there.
+            // It is of a row below. If that is a left line, its right one comes next, and is passed over
+            // there.
             return Err(CameraError::LineLost(LineFault::Dropped));
         }
         Ok(LineStart { row: first.row / 2, ..first })
@@ -188,9 +197,9 @@ impl<S: LineSource> Interleaved<S> {
 
 /// A camera whose lines run from right to left, as behind a mirror: turned round.
 ///
-/// Rows cannot be turned round without a frame's memory: a sensor that stands on its head is told to read out so
-/// ([`Mt9v034::set_flips`](super::Mt9v034::set_flips)). Two cameras that stand on their heads together need nothing: the picture is
-/// upside down, and the disparities are right.
+/// Rows cannot be turned round without a frame's memory: a sensor that stands on its head is told to read out
+/// so ([`Mt9v034::set_flips`](super::Mt9v034::set_flips)). Two cameras that stand on their heads together
+/// need nothing: the picture is upside down, and the disparities are right.
 #[derive(Debug)]
 pub struct Mirrored<S> {
     source: S,

@@ -7,7 +7,8 @@ use embedded_hal::digital::OutputPin;
 
 /// A stereo source whose sensors wait for a pulse on one pin: both expose at the same moment.
 ///
-/// [`start_frame`](StereoSource::start_frame) pulls the pin high for the pulse's length, then waits for the frame.
+/// [`start_frame`](StereoSource::start_frame) pulls the pin high for the pulse's length, then waits for the
+/// frame.
 ///
 /// ```text
 ///             ┌──────────┐
@@ -76,7 +77,11 @@ impl<S: StereoSource, P: OutputPin, D: DelayNs> StereoSource for Triggered<S, P,
         self.source.start_frame().map_err(|e| e.map_hardware(TriggerError::Source))
     }
 
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
+    fn next_lines(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<Self::Error>> {
         self.source.next_lines(left, right).map_err(|e| e.map_hardware(TriggerError::Source))
     }
 

@@ -2,12 +2,12 @@
 
 use crate::units::Disparity;
 
-/// Makes one pixel of `N x N`, `N` from 2 to 8, row by row: the median of the block's answers, the nearer one of two, where at
-/// least half of its pixels have one.
+/// Makes one pixel of `N x N`, `N` from 2 to 8, row by row: the median of the block's answers, the nearer one
+/// of two, where at least half of its pixels have one.
 ///
-/// The mean of two surfaces is none of them; a median is one of the answers. The disparity is still in pixels of the full
-/// picture: [`DepthScale`](super::DepthScale) gives the same depth, and a point has the columns and rows of the block's middle,
-/// `N u + (N - 1) / 2`. `W` is the room for a full row: `2 W N` bytes.
+/// The mean of two surfaces is none of them; a median is one of the answers. The disparity is still in pixels
+/// of the full picture: [`DepthScale`](super::DepthScale) gives the same depth, and a point has the columns
+/// and rows of the block's middle, `N u + (N - 1) / 2`. `W` is the room for a full row: `2 W N` bytes.
 ///
 /// ```
 /// use stereopsis::depth::Decimator;
@@ -41,7 +41,8 @@ impl<const W: usize, const N: usize> Decimator<W, N> {
         self.taken = 0;
     }
 
-    /// Takes the next row; with each `N`th writes a smaller one and says which. Columns and rows that fill no block are left out.
+    /// Takes the next row; with each `N`th writes a smaller one and says which. Columns and rows that fill no
+    /// block are left out.
     pub fn push(&mut self, row: &[Disparity], out: &mut [Disparity]) -> Option<usize> {
         let slot = self.rows.get_mut(self.taken % N)?;
         slot.iter_mut().zip(row).for_each(|(to, &from)| *to = from);
@@ -53,7 +54,8 @@ impl<const W: usize, const N: usize> Decimator<W, N> {
         for (u, out) in out.iter_mut().enumerate().take(self.width / N) {
             let mut block = [0; MOST];
             let mut count = 0;
-            let answers = self.rows.iter().flat_map(|row| row.iter().skip(u * N).take(N)).filter(|d| d.is_some());
+            let answers =
+                self.rows.iter().flat_map(|row| row.iter().skip(u * N).take(N)).filter(|d| d.is_some());
             for (answer, to) in answers.zip(&mut block) {
                 *to = answer.raw();
                 count += 1;

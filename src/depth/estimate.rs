@@ -26,9 +26,10 @@ impl Depth {
     /// Two depths that differ by more than so many deviations of their difference are of different surfaces.
     pub const SAME_SURFACE: f32 = 3.0;
 
-    /// What both say together, weighted by one over their variances: the estimate of least variance if their errors have
-    /// nothing to do with each other. It is taken of `1 / Z`, in which the errors of disparity and of focus are even; its deviation
-    /// is `sigma_Z / Z^2`. Where they contradict each other the surer one stands alone.
+    /// What both say together, weighted by one over their variances: the estimate of least variance if their
+    /// errors have nothing to do with each other. It is taken of `1 / Z`, in which the errors of
+    /// disparity and of focus are even; its deviation is `sigma_Z / Z^2`. Where they contradict each
+    /// other the surer one stands alone.
     pub fn fused(self, other: Self) -> Self {
         let [a, b] = [self, other].map(|d| (1.0 / d.depth_m, d.sigma_m / (d.depth_m * d.depth_m)));
         let (variance_a, variance_b) = (a.1 * a.1, b.1 * b.1);
@@ -43,15 +44,16 @@ impl Depth {
 }
 
 impl DepthScale {
-    /// The depth of a disparity that is uncertain by `sigma_px`; `None` for no answer and at or behind infinity.
+    /// The depth of a disparity that is uncertain by `sigma_px`; `None` for no answer and at or behind
+    /// infinity.
     pub fn depth(&self, disparity: Disparity, sigma_px: f32) -> Option<Depth> {
         let (Metres(depth_m), Metres(sigma_m)) = (self.metres(disparity)?, self.sigma(disparity, sigma_px)?);
         Some(Depth { depth_m, sigma_m })
     }
 }
 
-/// Two maps of one view as one, pixel by pixel: [`Depth::fused`] where both have an answer, else the answer of the one that has it.
-/// Those pixels are written that all three have.
+/// Two maps of one view as one, pixel by pixel: [`Depth::fused`] where both have an answer, else the answer
+/// of the one that has it. Those pixels are written that all three have.
 pub fn fuse(first: &[Option<Depth>], second: &[Option<Depth>], out: &mut [Option<Depth>]) {
     for ((first, second), out) in first.iter().zip(second).zip(out) {
         *out = match (*first, *second) {

@@ -12,16 +12,16 @@ pub struct DepthRange {
     pub nearest: Metres,
     /// Standard deviation there.
     pub sigma_nearest: Metres,
-    /// Depth at the smallest disparity searched, or at one px of parallax where that lies at or behind infinity: beyond,
-    /// an error of a pixel cannot be told from infinity.
+    /// Depth at the smallest disparity searched, or at one px of parallax where that lies at or behind
+    /// infinity: beyond, an error of a pixel cannot be told from infinity.
     pub farthest: Metres,
     /// Standard deviation there.
     pub sigma_farthest: Metres,
 }
 
 impl DepthScale {
-    /// The depths that a search covers, with the error of an answer that is uncertain by `sigma_px`. `None` when the
-    /// whole search lies at or behind infinity.
+    /// The depths that a search covers, with the error of an answer that is uncertain by `sigma_px`. `None`
+    /// when the whole search lies at or behind infinity.
     pub fn range(&self, config: &Config, sigma_px: f32) -> Option<DepthRange> {
         let last = config.min_disparity.saturating_add(config.disparities).saturating_sub(2);
         let (nearest, sigma_nearest) = self.depth_and_sigma(f32::from(last), sigma_px)?;

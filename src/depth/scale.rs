@@ -77,8 +77,8 @@ impl DepthScale {
         &self.rig
     }
 
-    /// Depth to the nearest millimetre, in integers: one division. [`Millimetres::NONE`] for no answer, at or behind
-    /// infinity, nearer than half a millimetre or beyond 65.535 m.
+    /// Depth to the nearest millimetre, in integers: one division. [`Millimetres::NONE`] for no answer, at or
+    /// behind infinity, nearer than half a millimetre or beyond 65.535 m.
     ///
     /// The offset `doffs` is rounded to 1/32 px, which moves the depth by at most `Z^2 / (f b) / 64`.
     pub fn millimetres(&self, disparity: Disparity) -> Millimetres {

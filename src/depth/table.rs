@@ -1,4 +1,5 @@
-//! Depths looked up instead of divided for: cores without a divider (Cortex-M0+) take some 60 instructions a division.
+//! Depths looked up instead of divided for: cores without a divider (Cortex-M0+) take some 60 instructions a
+//! division.
 
 use super::DepthScale;
 use super::range::largest;
@@ -7,7 +8,8 @@ use crate::units::{Disparity, Millimetres};
 use core::fmt;
 use heapless::Vec;
 
-/// The depth of every disparity of a search range, in `2 N` bytes: [`DepthScale::millimetres`] without a division.
+/// The depth of every disparity of a search range, in `2 N` bytes: [`DepthScale::millimetres`] without a
+/// division.
 ///
 /// `N` is at least `32 disparities + 1`, the steps from the smallest disparity to the largest.
 ///

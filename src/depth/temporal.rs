@@ -39,12 +39,13 @@ impl Default for TemporalConfig {
 
 /// An average over frames for every pixel, row by row as rows come out of the pipeline: `3 W H` bytes.
 ///
-/// With `d` the new answer, `a` the average and `s` the shift: `a <- a + round((d - a) / 2^s)` where `|d - a|` is at most
-/// [`TemporalConfig::most_step`], else `a <- d`. For answers with independent errors of deviation `sigma` that comes to
-/// `sigma sqrt(1 / (2^(s + 1) - 1))`: with `s = 2` three eighths, but for the steps of 1/32 px.
+/// With `d` the new answer, `a` the average and `s` the shift: `a <- a + round((d - a) / 2^s)` where `|d -
+/// a|` is at most [`TemporalConfig::most_step`], else `a <- d`. For answers with independent errors of
+/// deviation `sigma` that comes to `sigma sqrt(1 / (2^(s + 1) - 1))`: with `s = 2` three eighths, but for the
+/// steps of 1/32 px.
 ///
-/// What is held is no answer of this frame, and [`Provenance::Held`] says so. A row that did not come is passed as one
-/// without answers.
+/// What is held is no answer of this frame, and [`Provenance::Held`] says so. A row that did not come is
+/// passed as one without answers.
 #[derive(Debug)]
 pub struct TemporalFilter<const W: usize, const H: usize> {
     average: [[Disparity; W]; H],
@@ -63,11 +64,20 @@ impl<const W: usize, const H: usize> TemporalFilter<W, H> {
         self.average.as_flattened_mut().fill(Disparity::NONE);
     }
 
-    /// Takes row `y` of a frame's answers and gives what is steady of it, as many columns as all of them have.
-    pub fn row(&mut self, y: usize, answers: &[Disparity], out: &mut [Disparity], provenance: &mut [Provenance]) {
+    /// Takes row `y` of a frame's answers and gives what is steady of it, as many columns as all of them
+    /// have.
+    pub fn row(
+        &mut self,
+        y: usize,
+        answers: &[Disparity],
+        out: &mut [Disparity],
+        provenance: &mut [Provenance],
+    ) {
         let (Some(average), Some(age)) = (self.average.get_mut(y), self.age.get_mut(y)) else { return };
         let state = average.iter_mut().zip(age);
-        for (((average, age), &answer), (out, provenance)) in state.zip(answers).zip(out.iter_mut().zip(provenance)) {
+        for (((average, age), &answer), (out, provenance)) in
+            state.zip(answers).zip(out.iter_mut().zip(provenance))
+        {
             *provenance = self.config.pixel(average, age, answer);
             *out = *average;
         }
@@ -89,8 +99,8 @@ impl TemporalConfig {
             Some(step) if step <= self.most_step => {
                 let shift = self.shift.min(4);
                 let (a, d) = (i32::from(average.raw()), i32::from(answer.raw()));
-                // Half a step is rounded away from the average, so that it does not stop short of a steady answer by more than it
-                // must.
+                // Half a step is rounded away from the average, so that it does not stop short of a steady
+                // answer by more than it must.
                 let change = d - a;
                 let rounded = (change.abs() + (1 << shift >> 1)) >> shift;
                 *average = Disparity::from_raw((a + rounded * change.signum()) as u16);

@@ -17,8 +17,8 @@ impl Slot {
     }
 }
 
-/// Puts a corner into a cell: into a free slot or the place of the weakest corner there, of equals the last that came, if
-/// the new one is stronger. Whether a corner had to stay outside or leave.
+/// Puts a corner into a cell: into a free slot or the place of the weakest corner there, of equals the last
+/// that came, if the new one is stronger. Whether a corner had to stay outside or leave.
 pub(super) fn insert(cell: &mut [Slot], corner: Corner) -> bool {
     // Corners come in reading order: of equals the one that is farther on is the later one.
     let weakest = cell.iter_mut().min_by_key(|slot| order(&slot.corner));

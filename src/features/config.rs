@@ -6,12 +6,12 @@ use super::{FeatureConfigError, Level};
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Orientation {
-    /// The patch as it stands: tells most patches apart, and tolerates turns of about 15 degrees. For cameras that are
-    /// mounted alike.
+    /// The patch as it stands: tells most patches apart, and tolerates turns of about 15 degrees. For cameras
+    /// that are mounted alike.
     #[default]
     Upright,
-    /// The patch turned so that its bright side, seen from the middle, lies to the right: for any turn of the camera, with
-    /// fewer matches (ORB; Rublee, Rabaud, Konolige & Bradski, ICCV 2011).
+    /// The patch turned so that its bright side, seen from the middle, lies to the right: for any turn of the
+    /// camera, with fewer matches (ORB; Rublee, Rabaud, Konolige & Bradski, ICCV 2011).
     Centroid,
 }
 
@@ -60,7 +60,11 @@ impl FeatureConfig {
 
     /// How many slots a detector needs for this: a row of cells with as many as are kept in each.
     pub const fn slots(&self) -> usize {
-        if self.cell_px == 0 { 0 } else { self.width.div_ceil(self.cell_px) as usize * self.per_cell as usize }
+        if self.cell_px == 0 {
+            0
+        } else {
+            self.width.div_ceil(self.cell_px) as usize * self.per_cell as usize
+        }
     }
 
     /// Whether a detector with this capacity can do it.

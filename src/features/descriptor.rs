@@ -3,10 +3,11 @@
 use super::pattern::{PATCH_RADIUS, PATTERN};
 use super::turn::Turn;
 
-/// What a corner's surroundings look like: bit `i` says whether in the `i`-th pair of points the first is darker.
+/// What a corner's surroundings look like: bit `i` says whether in the `i`-th pair of points the first is
+/// darker.
 ///
-/// BRIEF (Calonder, Lepetit, Strecha & Fua 2010) on a patch of radius 15 px of smoothed lines. As it is, it tolerates
-/// turns of about 15 degrees.
+/// BRIEF (Calonder, Lepetit, Strecha & Fua 2010) on a patch of radius 15 px of smoothed lines. As it is, it
+/// tolerates turns of about 15 degrees.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Descriptor(pub [u32; 8]);
@@ -69,8 +70,8 @@ impl Patch {
         self.0[place & (Self::STRIDE * Self::STRIDE - 1)]
     }
 
-    /// In which direction the patch is brighter, seen from its middle: that of the first moments `sum of x I` and
-    /// `sum of y I` of a circle of the radius (Rosin 1999, as in ORB).
+    /// In which direction the patch is brighter, seen from its middle: that of the first moments `sum of x I`
+    /// and `sum of y I` of a circle of the radius (Rosin 1999, as in ORB).
     pub fn direction(&self) -> Turn {
         let (mut right, mut down) = (0, 0);
         for y in -PATCH_RADIUS..=PATCH_RADIUS {

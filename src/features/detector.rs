@@ -3,8 +3,8 @@
 use super::cells::{self, Slot};
 use super::pattern::PATCH_RADIUS;
 use super::{
-    Corner, Descriptor, Feature, FeatureConfig, FeatureConfigError, FeatureLineError, Orientation, Patch, Turn,
-    fast_scores, refine, smooth_row,
+    Corner, Descriptor, Feature, FeatureConfig, FeatureConfigError, FeatureLineError, Orientation, Patch,
+    Turn, fast_scores, refine, smooth_row,
 };
 use crate::imaging::LineBand;
 use core::num::NonZero;
@@ -36,13 +36,14 @@ pub struct FeatureCounts {
 
 /// Finds a picture's features line by line: the strongest corners of every cell, with their descriptors.
 ///
-/// `W` is the longest line, px; `C` is how many corners a row of cells keeps: [`FeatureConfig::slots`]. The detector takes
-/// [`Self::BYTES`]: 42 bytes for every pixel of a line, and 80 for every corner that is kept. The work for a line is bounded
+/// `W` is the longest line, px; `C` is how many corners a row of cells keeps: [`FeatureConfig::slots`]. The
+/// detector takes [`Self::BYTES`]: 42 bytes for every pixel of a line, and 80 for every corner that is kept. The work for a line is bounded
 /// by its length, but for its corners: a descriptor for each slot at most.
 ///
-/// In running order, with what each waits for: a row is smoothed (2 lines), scored (3), its local maxima become corners
-/// (4) and are put into their cells; those still there when the patch is whole (17) are refined and described; when a row of
-/// cells is done, its corners come out, cell by cell from the left, the strongest of each first.
+/// In running order, with what each waits for: a row is smoothed (2 lines), scored (3), its local maxima
+/// become corners (4) and are put into their cells; those still there when the patch is whole (17) are
+/// refined and described; when a row of cells is done, its corners come out, cell by cell from the left, the
+/// strongest of each first.
 ///
 /// ```
 /// use stereopsis::features::{FeatureConfig, FeatureDetector};
@@ -108,8 +109,8 @@ impl<const W: usize, const C: usize> FeatureDetector<W, C> {
         self.counts
     }
 
-    /// The next line of grey pixels. The features of cells that are done are added to `out`; for which it has no place are
-    /// counted. With the last line of the frame, all are done.
+    /// The next line of grey pixels. The features of cells that are done are added to `out`; for which it has
+    /// no place are counted. With the last line of the frame, all are done.
     pub fn push(&mut self, line: &[u8], out: &mut VecView<Feature>) -> Result<(), FeatureLineError> {
         if self.taken >= self.config.height {
             return Err(FeatureLineError::NoLineDue);
@@ -141,15 +142,15 @@ impl<const W: usize, const C: usize> FeatureDetector<W, C> {
         Ok(())
     }
 
-    /// The side of a cell, px, and how many corners are kept in it. Neither is 0, and their type says so: it leaves no
-    /// panic where they divide, however little the compiler does.
+    /// The side of a cell, px, and how many corners are kept in it. Neither is 0, and their type says so: it
+    /// leaves no panic where they divide, however little the compiler does.
     fn cell(&self) -> (NonZero<usize>, usize) {
         let least = |number: u16| NonZero::new(usize::from(number)).unwrap_or(NonZero::<usize>::MIN);
         (least(self.config.cell_px), least(self.config.per_cell).get())
     }
 
-    /// The corners of a row into their cells: pixels that score more than the neighbours that come before them, and no less
-    /// than those that come after.
+    /// The corners of a row into their cells: pixels that score more than the neighbours that come before
+    /// them, and no less than those that come after.
     fn find(&mut self, row: usize) {
         let FeatureConfig { width, height, .. } = self.config;
         let (width, height) = (usize::from(width), usize::from(height));
@@ -181,7 +182,8 @@ impl<const W: usize, const C: usize> FeatureDetector<W, C> {
         let (cell_px, _) = self.cell();
         let rows = self.smooth.around(row);
         let Some(cells) = self.cells.get_mut(row / cell_px % 2) else { return };
-        let waiting = cells.iter_mut().filter(|slot| slot.corner.score > 0 && usize::from(slot.corner.row) == row);
+        let waiting =
+            cells.iter_mut().filter(|slot| slot.corner.score > 0 && usize::from(slot.corner.row) == row);
         for slot in waiting {
             let Some(patch) = Patch::cut(&rows, slot.corner.column.into()) else { continue };
             let turn = match self.config.orientation {

@@ -1,7 +1,8 @@
 //! Corners by the segment test: nine neighbours in a row, on a circle of sixteen, all brighter or all darker.
 //!
-//! FAST-9 of Rosten & Drummond, "Machine learning for high-speed corner detection", ECCV 2006. The decision tree is not
-//! theirs: four comparisons refuse most pixels, and the score of the others is worked out the same way for all of them.
+//! FAST-9 of Rosten & Drummond, "Machine learning for high-speed corner detection", ECCV 2006. The decision
+//! tree is not theirs: four comparisons refuse most pixels, and the score of the others is worked out the
+//! same way for all of them.
 
 /// The circle of radius 3 as (row, column) of a square of seven, clockwise from above the centre.
 const CIRCLE: [(usize, usize); 16] = [
@@ -23,9 +24,9 @@ const CIRCLE: [(usize, usize); 16] = [
     (0, 2),
 ];
 
-/// Scores of one row from the three rows above it, the row and the three below: by how many grey levels the weakest of
-/// nine neighbours in a row differs from the pixel, all to one side, for the best such nine; 0 where that is not more than
-/// `threshold`.
+/// Scores of one row from the three rows above it, the row and the three below: by how many grey levels the
+/// weakest of nine neighbours in a row differs from the pixel, all to one side, for the best such nine; 0
+/// where that is not more than `threshold`.
 ///
 /// As many are written as the rows and `scores` have; the three columns at either end have a score of 0.
 pub fn fast_scores(rows: &[&[u8]; 7], threshold: u8, scores: &mut [u8]) {
@@ -68,9 +69,9 @@ fn score_of(square: &[&[u8; 7]; 7], threshold: u8) -> u8 {
     if best > least { best as u8 } else { 0 }
 }
 
-/// The greatest of all minima of nine in a row, around the circle. Eight that begin at an odd place are in two such nines,
-/// with the one before them and with the one after them: of these two the greater counts. Places are masked, so that they
-/// are inside to a compiler that does not unroll, too.
+/// The greatest of all minima of nine in a row, around the circle. Eight that begin at an odd place are in
+/// two such nines, with the one before them and with the one after them: of these two the greater counts.
+/// Places are masked, so that they are inside to a compiler that does not unroll, too.
 #[inline(always)]
 fn weakest_of_best_nine(values: &[i16; 16]) -> i16 {
     let value = |i: usize| values[i & 15];
@@ -88,8 +89,8 @@ mod tests {
 
     #[test]
     fn the_corner_of_a_square_is_one_and_its_edge_is_none() {
-        // Bright from column 5 and row 3 on: the centre (5, 3) is the square's corner. Of (6, 3) ten neighbours are dark, of
-        // (7, 3) nine, of (8, 3) seven.
+        // Bright from column 5 and row 3 on: the centre (5, 3) is the square's corner. Of (6, 3) ten
+        // neighbours are dark, of (7, 3) nine, of (8, 3) seven.
         let rows: [[u8; 12]; 7] =
             core::array::from_fn(|y| core::array::from_fn(|x| if x >= 5 && y >= 3 { 90 } else { 20 }));
         let mut scores = [9; 12];

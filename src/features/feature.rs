@@ -17,7 +17,8 @@ impl Level {
     /// No picture.
     pub(super) const NONE: Self = Self { index: 0, scale: 0.0 };
 
-    /// The level of a picture that [`Shrink`](super::Shrink) makes of this level's, `N - 1` pixels of every `N`.
+    /// The level of a picture that [`Shrink`](super::Shrink) makes of this level's, `N - 1` pixels of every
+    /// `N`.
     pub fn shrunk<const N: usize>(self) -> Self {
         const { assert!(2 <= N && N <= 16, "2 to 16 pixels become one less") };
         Self { index: self.index.saturating_add(1), scale: self.scale * N as f32 / (N - 1) as f32 }
@@ -33,8 +34,8 @@ impl Level {
         self.scale
     }
 
-    /// Where a point of this level lies in the full picture, px: pixel centres are at integers in both, the edges of the
-    /// pictures half a pixel outside of them, so `(x + 1/2) scale - 1/2`.
+    /// Where a point of this level lies in the full picture, px: pixel centres are at integers in both, the
+    /// edges of the pictures half a pixel outside of them, so `(x + 1/2) scale - 1/2`.
     pub fn full_px(self, x: f32) -> f32 {
         (x + 0.5) * self.scale - 0.5
     }

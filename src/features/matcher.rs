@@ -39,12 +39,12 @@ impl Best {
 
 /// Matches up to `N` features of one picture with up to `N` of another, 65534 at most.
 ///
-/// It takes `10 N` bytes. Matching takes as many comparisons of 256 bits as there are pairs of features that the search
-/// admits, and one pass more over the right ones for each left one.
+/// It takes `10 N` bytes. Matching takes as many comparisons of 256 bits as there are pairs of features that
+/// the search admits, and one pass more over the right ones for each left one.
 ///
-/// A match is the best partner of its left feature, clearly better than any other that lies elsewhere (Lowe, "Distinctive
-/// image features from scale-invariant keypoints", IJCV 2004, 7.1), and its left feature is the best partner of the right
-/// one. Of partners that are equally good, the first in the list is the best one.
+/// A match is the best partner of its left feature, clearly better than any other that lies elsewhere (Lowe,
+/// "Distinctive image features from scale-invariant keypoints", IJCV 2004, 7.1), and its left feature is the
+/// best partner of the right one. Of partners that are equally good, the first in the list is the best one.
 ///
 /// ```
 /// use stereopsis::features::{Descriptor, Feature, Matcher, Search};
@@ -87,7 +87,8 @@ impl<const N: usize> Matcher<N> {
         search.check()?;
         let needed = left.len().max(right.len());
         let scratch = self.of_left.get_mut(..left.len()).zip(self.of_right.get_mut(..right.len()));
-        let (Some((of_left, of_right)), Some(different)) = (scratch, self.different.get_mut(..right.len())) else {
+        let (Some((of_left, of_right)), Some(different)) = (scratch, self.different.get_mut(..right.len()))
+        else {
             return Err(SearchError::TooMany { needed });
         };
         of_right.fill(Best::NONE);
@@ -106,8 +107,8 @@ impl<const N: usize> Matcher<N> {
     }
 }
 
-/// The partner of a left feature in place `here`, [`Best::NONE`] if none is clearly the best; the right features are told
-/// of it, whatever comes out.
+/// The partner of a left feature in place `here`, [`Best::NONE`] if none is clearly the best; the right
+/// features are told of it, whatever comes out.
 fn best_partner(
     here: u16,
     feature: &Feature,
@@ -128,7 +129,8 @@ fn best_partner(
     }
     let Some(chosen) = right.get(usize::from(best.partner)) else { return Best::NONE };
     let elsewhere = |other: &Feature| {
-        (other.x_px - chosen.x_px).abs() >= search.apart_px || (other.y_px - chosen.y_px).abs() >= search.apart_px
+        (other.x_px - chosen.x_px).abs() >= search.apart_px
+            || (other.y_px - chosen.y_px).abs() >= search.apart_px
     };
     let others = right.iter().zip(different.iter()).filter(|(other, _)| elsewhere(other)).map(|(_, d)| *d);
     // With nobody else, or nobody else who is admitted, half of the bits is what a stranger would differ in.

@@ -6,13 +6,14 @@ pub const PATCH_RADIUS: i32 = 15;
 /// How many pairs are compared.
 pub const PAIRS: usize = 256;
 
-/// Where the points of a pair lie from the patch's middle, px: to the right and down, of one and of the other.
+/// Where the points of a pair lie from the patch's middle, px: to the right and down, of one and of the
+/// other.
 pub type Pair = [[i8; 2]; 2];
 
-/// The pairs. All their coordinates are drawn independently from a sum of three even distributions of -7 to 7 px (of
-/// deviation 7.5 px, about half the radius: the geometry G II of Calonder, Lepetit, Strecha & Fua, "BRIEF", ECCV 2010); a
-/// pair is drawn again when a point is outside of the circle or both points are nearer to each other than 3 px, which the
-/// smoothing makes alike.
+/// The pairs. All their coordinates are drawn independently from a sum of three even distributions of -7 to 7
+/// px (of deviation 7.5 px, about half the radius: the geometry G II of Calonder, Lepetit, Strecha & Fua,
+/// "BRIEF", ECCV 2010); a pair is drawn again when a point is outside of the circle or both points are nearer
+/// to each other than 3 px, which the smoothing makes alike.
 pub const PATTERN: [Pair; PAIRS] = {
     let mut pattern = [[[0; 2]; 2]; PAIRS];
     let mut state = SEED;
@@ -23,7 +24,8 @@ pub const PATTERN: [Pair; PAIRS] = {
         (b, state) = draw(state);
         (c, state) = draw(state);
         (d, state) = draw(state);
-        let inside = a * a + b * b <= PATCH_RADIUS * PATCH_RADIUS && c * c + d * d <= PATCH_RADIUS * PATCH_RADIUS;
+        let inside =
+            a * a + b * b <= PATCH_RADIUS * PATCH_RADIUS && c * c + d * d <= PATCH_RADIUS * PATCH_RADIUS;
         if inside && (a - c) * (a - c) + (b - d) * (b - d) >= 9 {
             pattern[i] = [[a as i8, b as i8], [c as i8, d as i8]];
             i += 1;

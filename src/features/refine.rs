@@ -11,14 +11,15 @@ const BITS: u32 = 22;
 /// A surface may have its top so far from the strongest pixel, 1/64 px.
 const FARTHEST: i64 = 48;
 
-/// How far the corner of a patch lies from the centre of the patch's middle pixel, to the right and down, in steps of
-/// 1/64 px: up to 112, a pixel and three quarters.
+/// How far the corner of a patch lies from the centre of the patch's middle pixel, to the right and down, in
+/// steps of 1/64 px: up to 112, a pixel and three quarters.
 ///
-/// The response of a pixel is the determinant of the sum of `g g^T` over the 3 x 3 gradients g around it, of smoothed
-/// pixels: Harris's ("A combined corner and edge detector", Alvey 1988) without its trace. Of the middle pixel and the eight
-/// around it the one that responds most is taken, for the segment test finds its strongest pixel up to a pixel beside the
-/// corner; then the top of the quadratic surface that fits the 3 x 3 responses around that one best, with weights `1 2 1`
-/// along and across. Where the surface has no top, it is the pixel's centre.
+/// The response of a pixel is the determinant of the sum of `g g^T` over the 3 x 3 gradients g around it, of
+/// smoothed pixels: Harris's ("A combined corner and edge detector", Alvey 1988) without its trace. Of the
+/// middle pixel and the eight around it the one that responds most is taken, for the segment test finds its
+/// strongest pixel up to a pixel beside the corner; then the top of the quadratic surface that fits the 3 x 3
+/// responses around that one best, with weights `1 2 1` along and across. Where the surface has no top, it is
+/// the pixel's centre.
 ///
 /// The test `matches_follow_turns` prints how far matches of turned pictures lie from where they should.
 pub fn refine(patch: &Patch) -> [i8; 2] {
@@ -26,7 +27,8 @@ pub fn refine(patch: &Patch) -> [i8; 2] {
     let response = |x: usize, y: usize| responses.get(y).and_then(|row| row.get(x)).copied().unwrap_or(0);
     let middle = RESPONSES / 2;
     let (mut x, mut y) = (middle, middle);
-    for (column, row) in (0..NEAREST * NEAREST).map(|i| (middle - 1 + i % NEAREST, middle - 1 + i / NEAREST)) {
+    for (column, row) in (0..NEAREST * NEAREST).map(|i| (middle - 1 + i % NEAREST, middle - 1 + i / NEAREST))
+    {
         if response(column, row) > response(x, y) {
             (x, y) = (column, row);
         }
@@ -37,8 +39,8 @@ pub fn refine(patch: &Patch) -> [i8; 2] {
     [steps(x, right), steps(y, down)]
 }
 
-/// The responses of the 5 x 5 pixels in the middle. A gradient is at most 255, so sums are below 2^20 and determinants,
-/// which are never negative, below 2^39.
+/// The responses of the 5 x 5 pixels in the middle. A gradient is at most 255, so sums are below 2^20 and
+/// determinants, which are never negative, below 2^39.
 fn responses(patch: &Patch) -> [[i64; RESPONSES]; RESPONSES] {
     let reach = (GRADIENTS / 2) as i32;
     let products: [[[i32; 3]; GRADIENTS]; GRADIENTS] = core::array::from_fn(|y| {
@@ -52,16 +54,18 @@ fn responses(patch: &Patch) -> [[i64; RESPONSES]; RESPONSES] {
     core::array::from_fn(|y| {
         core::array::from_fn(|x| {
             let around = products.iter().skip(y).take(3).flat_map(|row| row.iter().skip(x).take(3));
-            let [xx, xy, yy] = around.fold([0; 3], |sum, one| [sum[0] + one[0], sum[1] + one[1], sum[2] + one[2]]);
+            let [xx, xy, yy] =
+                around.fold([0; 3], |sum, one| [sum[0] + one[0], sum[1] + one[1], sum[2] + one[2]]);
             i64::from(xx) * i64::from(yy) - i64::from(xy) * i64::from(xy)
         })
     })
 }
 
-/// The top of the quadratic surface through nine values, to the right of the middle one and down, in steps of 1/64.
+/// The top of the quadratic surface through nine values, to the right of the middle one and down, in steps of
+/// 1/64.
 ///
-/// With the weighted first differences `X`, `Y` and second differences `XX`, `YY`, `XY` it is where both slopes vanish:
-/// `x = (XY Y - YY X) / 2 D` and `y = (XY X - XX Y) / 2 D` with `D = XX YY - XY^2`.
+/// With the weighted first differences `X`, `Y` and second differences `XX`, `YY`, `XY` it is where both
+/// slopes vanish: `x = (XY Y - YY X) / 2 D` and `y = (XY X - XX Y) / 2 D` with `D = XX YY - XY^2`.
 fn top(square: &[[i64; NEAREST]; NEAREST]) -> [i64; 2] {
     let most = square.as_flattened().iter().fold(0, |most, &value| value.max(most));
     let shift = (i64::BITS - most.leading_zeros()).saturating_sub(BITS);

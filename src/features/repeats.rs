@@ -3,12 +3,13 @@
 use super::{Feature, Match};
 use heapless::VecView;
 
-/// Takes out matches that repeat one before them in the list: both of their ends lie less than `apart_px` from the other's,
-/// along the row and down the column. How many there were.
+/// Takes out matches that repeat one before them in the list: both of their ends lie less than `apart_px`
+/// from the other's, along the row and down the column. How many there were.
 ///
-/// A corner is often found on two levels, and matched on both. Matches are in the order of their left features: where these
-/// begin with the full picture, what stays is the match of the finer level, whose position is the better one. It takes as
-/// many comparisons as there are pairs of matches, at most. A match of features that are not in the lists repeats nothing.
+/// A corner is often found on two levels, and matched on both. Matches are in the order of their left
+/// features: where these begin with the full picture, what stays is the match of the finer level, whose
+/// position is the better one. It takes as many comparisons as there are pairs of matches, at most. A match
+/// of features that are not in the lists repeats nothing.
 ///
 /// ```
 /// use stereopsis::features::{Descriptor, Feature, Match, drop_repeats};
@@ -20,7 +21,12 @@ use heapless::VecView;
 /// assert_eq!(drop_repeats(&left, &right, matches.as_mut_view(), 1.5), 1);
 /// assert_eq!(matches, [of(0, 2), of(1, 0)]);
 /// ```
-pub fn drop_repeats(left: &[Feature], right: &[Feature], matches: &mut VecView<Match>, apart_px: f32) -> usize {
+pub fn drop_repeats(
+    left: &[Feature],
+    right: &[Feature],
+    matches: &mut VecView<Match>,
+    apart_px: f32,
+) -> usize {
     let near = |list: &[Feature], one: u16, other: u16| {
         let ends = list.get(usize::from(one)).zip(list.get(usize::from(other)));
         ends.is_some_and(|(a, b)| (a.x_px - b.x_px).abs() < apart_px && (a.y_px - b.y_px).abs() < apart_px)

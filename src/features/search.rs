@@ -9,18 +9,19 @@ use nalgebra::Point2;
 pub struct Epipolar {
     /// F with `p^T F p' = 0`: p in the left picture, p' in the right one.
     pub fundamental: Fundamental<f32>,
-    /// How far from its line `l' = F^T p` a partner may lie, px. Of a point at the epipole, which has no line, partners may
-    /// lie everywhere.
+    /// How far from its line `l' = F^T p` a partner may lie, px. Of a point at the epipole, which has no
+    /// line, partners may lie everywhere.
     pub tolerance_px: f32,
 }
 
 /// What a match has to be.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Search {
-    /// A match has fewer different bits than so many percent of the second best partner (Lowe 2004, 7.1): 1 to 100.
+    /// A match has fewer different bits than so many percent of the second best partner (Lowe 2004, 7.1): 1
+    /// to 100.
     pub ratio_percent: u8,
-    /// The second best partner is one that lies at least so far from the best, px along the row or the column: the same
-    /// corner found once more, on another level, is no other one.
+    /// The second best partner is one that lies at least so far from the best, px along the row or the
+    /// column: the same corner found once more, on another level, is no other one.
     pub apart_px: f32,
     /// Bits that may be different, at most.
     pub most_different: u16,
@@ -35,8 +36,8 @@ pub struct Search {
 }
 
 impl Search {
-    /// 80 % of the second best, which lies 4 px from the best; at most a quarter of the bits different; one level apart at
-    /// most; everywhere in the picture.
+    /// 80 % of the second best, which lies 4 px from the best; at most a quarter of the bits different; one
+    /// level apart at most; everywhere in the picture.
     pub const fn new() -> Self {
         Self {
             ratio_percent: 80,
@@ -75,8 +76,9 @@ impl Search {
 
     /// Whether a right feature lies there.
     pub(super) fn admits(&self, places: &Places, right: &Feature) -> bool {
-        let on_line =
-            |(line, most): &(Line<f32>, f32)| line.distance_px(&Point2::new(right.x_px, right.y_px)).abs() <= *most;
+        let on_line = |(line, most): &(Line<f32>, f32)| {
+            line.distance_px(&Point2::new(right.x_px, right.y_px)).abs() <= *most
+        };
         places.level.abs_diff(right.level) <= self.levels_apart
             && (places.x_px - right.x_px).abs() <= self.along_px
             && (places.y_px - right.y_px).abs() <= self.across_px

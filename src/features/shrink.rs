@@ -1,9 +1,10 @@
 //! Ever smaller pictures of a scene, line by line: what looks alike from nearer and from farther off.
 
-/// Makes `N - 1` pixels of every `N`, and `N - 1` lines of every `N`, each the mean of the area that it covers, rounded.
+/// Makes `N - 1` pixels of every `N`, and `N - 1` lines of every `N`, each the mean of the area that it
+/// covers, rounded.
 ///
-/// `W` is the longest line that comes in, px; it takes `5 W` bytes. What is left over at the right, less than `N` pixels, is
-/// left out. `Shrink<W, 2>` halves a picture; `Shrink<W, 3>` makes two pixels of three.
+/// `W` is the longest line that comes in, px; it takes `5 W` bytes. What is left over at the right, less than
+/// `N` pixels, is left out. `Shrink<W, 2>` halves a picture; `Shrink<W, 3>` makes two pixels of three.
 ///
 /// Pixel `j` of the `N - 1` is `((N - 1 - j) p[j] + (j + 1) p[j + 1]) / N`, along both axes.
 ///

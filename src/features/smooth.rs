@@ -2,8 +2,8 @@
 
 /// A row smoothed by the weights `[1 4 6 4 1] / 16` along both axes, rounded to the nearest.
 ///
-/// `rows` are the two above, the row, and the two below. As many are written as the rows and `out` have, but for the two
-/// columns at either end, which are left as they are: no patch reaches them.
+/// `rows` are the two above, the row, and the two below. As many are written as the rows and `out` have, but
+/// for the two columns at either end, which are left as they are: no patch reaches them.
 pub fn smooth_row(rows: &[&[u8]; 5], out: &mut [u8]) {
     let width = rows.iter().fold(out.len(), |least, row| least.min(row.len()));
     let [a, b, c, d, e] = rows.map(|row| row.get(..width).unwrap_or(&[]).iter());

@@ -33,7 +33,8 @@ pub struct Aligned {
     pub x_px: f32,
     /// The row, px.
     pub y_px: f32,
-    /// How alike the pixels are, whatever their brightness and contrast: the correlation coefficient, 1 at most.
+    /// How alike the pixels are, whatever their brightness and contrast: the correlation coefficient, 1 at
+    /// most.
     pub likeness: f32,
 }
 
@@ -69,12 +70,13 @@ impl Template {
         Some(template)
     }
 
-    /// The place in another picture that makes the squared differences least, brightness and contrast apart, from a start
-    /// on; `warp` carries a way from the place in this template's picture, px, into a way in the other. `None` where
-    /// there is nothing to hold on to, or it leaves the picture, or goes farther than `farthest_px`.
+    /// The place in another picture that makes the squared differences least, brightness and contrast apart,
+    /// from a start on; `warp` carries a way from the place in this template's picture, px, into a way in
+    /// the other. `None` where there is nothing to hold on to, or it leaves the picture, or goes farther
+    /// than `farthest_px`.
     ///
-    /// Gauss and Newton's method with the template's slopes (the inverse compositional algorithm; Baker & Matthews 2004),
-    /// at most ten steps.
+    /// Gauss and Newton's method with the template's slopes (the inverse compositional algorithm; Baker &
+    /// Matthews 2004), at most ten steps.
     pub fn align(
         &self,
         picture: &Picture<'_>,
@@ -131,9 +133,15 @@ impl Template {
         Some(Aligned { x_px: x, y_px: y, likeness })
     }
 
-    /// The column of `row` from `least` to `most` around which the other picture is most like the template, as it is and to
-    /// whole pixels; `None` where no column is inside.
-    pub fn along_row(&self, picture: &Picture<'_>, row: usize, least: usize, most: usize) -> Option<AlongRow> {
+    /// The column of `row` from `least` to `most` around which the other picture is most like the template,
+    /// as it is and to whole pixels; `None` where no column is inside.
+    pub fn along_row(
+        &self,
+        picture: &Picture<'_>,
+        row: usize,
+        least: usize,
+        most: usize,
+    ) -> Option<AlongRow> {
         let mut own = [[0_i32; SIDE]; SIDE];
         let (mut sum, mut squares) = (0, 0);
         for (to, line) in own.iter_mut().zip(self.pixels.iter().skip(1)) {
@@ -166,7 +174,8 @@ impl Template {
             let product = own_spread * spread;
             if product > 0.0 { (n * cross - sum * other) as f32 / ComplexField::sqrt(product) } else { -1.0 }
         };
-        // The largest, and the largest of what is three columns away from it: of a stretch that is before it, and one behind.
+        // The largest, and the largest of what is three columns away from it: of a stretch that is before it,
+        // and one behind.
         let (mut best, mut best_column, mut elsewhere) = (-1.0_f32, None, -1.0_f32);
         let mut before = [-1.0_f32; 2];
         let mut far_before = -1.0_f32;
@@ -191,7 +200,9 @@ impl Template {
         let mut at = values.iter_mut().zip(&mut slopes);
         for rows in self.pixels.windows(3) {
             let [above, here, below] = rows else { continue };
-            for ((around, above), below) in here.windows(3).zip(above.iter().skip(1)).zip(below.iter().skip(1)) {
+            for ((around, above), below) in
+                here.windows(3).zip(above.iter().skip(1)).zip(below.iter().skip(1))
+            {
                 let (&[left, pixel, right], Some((value, slope))) = (around, at.next()) else { continue };
                 *value = f32::from(pixel);
                 let half = |a: u8, b: u8| (f32::from(b) - f32::from(a)) * 0.5;
@@ -209,7 +220,13 @@ impl Template {
     }
 
     /// The picture's brightness where the template's pixels come to lie, without its mean.
-    fn look(&self, picture: &Picture<'_>, w: &[[f32; 2]; 2], [x, y]: [f32; 2], out: &mut [f32; COUNT]) -> Option<()> {
+    fn look(
+        &self,
+        picture: &Picture<'_>,
+        w: &[[f32; 2]; 2],
+        [x, y]: [f32; 2],
+        out: &mut [f32; COUNT],
+    ) -> Option<()> {
         let [right, down] = self.part;
         let mut sum = 0.0;
         for (i, out) in out.iter_mut().enumerate() {

@@ -24,8 +24,8 @@ impl Turn {
         self.0
     }
 
-    /// The turn that brings the direction `right` to that of a vector, to the nearest step; none for a vector of nothing.
-    /// Of two as near, the smaller.
+    /// The turn that brings the direction `right` to that of a vector, to the nearest step; none for a vector
+    /// of nothing. Of two as near, the smaller.
     ///
     /// It is the step along which the vector is longest.
     pub fn towards(right: i32, down: i32) -> Self {

@@ -24,7 +24,8 @@ pub const STEREOPSIS_NOISE_LOW: u8 = 1;
 /// In `noise` of a configuration: a deviation from about 3 grey levels on.
 pub const STEREOPSIS_NOISE_HIGH: u8 = 2;
 
-/// Frame size, search range and checks. `stereopsis_config_default` fills it, fields may be changed after that.
+/// Frame size, search range and checks. `stereopsis_config_default` fills it, fields may be changed after
+/// that.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(C)]
 pub struct Config {
@@ -36,9 +37,11 @@ pub struct Config {
     pub disparities: u16,
     /// The smallest disparity searched, px.
     pub min_disparity: u16,
-    /// Left-right check: the largest difference of the two answers, 0 to 255 px, or `STEREOPSIS_NOT_CHECKED`.
+    /// Left-right check: the largest difference of the two answers, 0 to 255 px, or
+    /// `STEREOPSIS_NOT_CHECKED`.
     pub left_right_px: i16,
-    /// Uniqueness: by how much the second best has to cost more, 0 to 99 percent, or `STEREOPSIS_NOT_CHECKED`.
+    /// Uniqueness: by how much the second best has to cost more, 0 to 99 percent, or
+    /// `STEREOPSIS_NOT_CHECKED`.
     pub uniqueness_percent: i16,
     /// Texture: a pixel counts when its neighbours left and right differ by this many grey levels.
     pub texture_gradient: u8,
@@ -60,23 +63,24 @@ pub struct Config {
     pub gradient: u8,
     /// Methods along paths: a pixel's cost is cut off at this, at least 1.
     pub cost: u8,
-    /// Methods along paths: what a change of the disparity by one px costs where the brightness changes little, and more;
-    /// at least 1, and the second at most the first.
+    /// Methods along paths: what a change of the disparity by one px costs where the brightness changes
+    /// little, and more; at least 1, and the second at most the first.
     pub step: [u8; 2],
-    /// Methods along paths: what a larger change costs where the brightness changes little, more, and much; each at least
-    /// the first step. `cost + step + jump` is at most 127 and `3 cost + 2 jump` at most 254.
+    /// Methods along paths: what a larger change costs where the brightness changes little, more, and much;
+    /// each at least the first step. `cost + step + jump` is at most 127 and `3 cost + 2 jump` at most
+    /// 254.
     pub jump: [u8; 3],
     /// Methods along paths: the changes of brightness, in grey levels, at which it is more, and much.
     pub edges: [u8; 2],
-    /// Fill: gaps along the row of at most this many pixels, between two answers, get the farther of the two and
-    /// `STEREOPSIS_FLAG_FILLED`; with 0 none does.
+    /// Fill: gaps along the row of at most this many pixels, between two answers, get the farther of the two
+    /// and `STEREOPSIS_FLAG_FILLED`; with 0 none does.
     pub fill_pixels: u8,
     /// Whether rows say how sure each answer is; 0 is no, and saves the search for each pixel's second best.
     pub confidence: u8,
     /// Fill: by how much the two answers may differ, in 1/32 px; 65535 for any two.
     pub fill_step: u16,
-    /// How noisy both cameras are, a `STEREOPSIS_NOISE_`: what is compared is smoothed accordingly. `stereopsis_config_noise`
-    /// sets it with the checks and penalties that suit it.
+    /// How noisy both cameras are, a `STEREOPSIS_NOISE_`: what is compared is smoothed accordingly.
+    /// `stereopsis_config_noise` sets it with the checks and penalties that suit it.
     pub noise: u8,
 }
 
@@ -111,8 +115,16 @@ pub(super) const fn noise_number(level: Noise) -> u8 {
 
 impl From<matching::Config> for Config {
     fn from(config: matching::Config) -> Self {
-        let matching::Config { width, height, disparities, min_disparity, checks, penalties, confidence, noise } =
-            config;
+        let matching::Config {
+            width,
+            height,
+            disparities,
+            min_disparity,
+            checks,
+            penalties,
+            confidence,
+            noise,
+        } = config;
         let Penalties { gradient, cost, step, jump, edges } = penalties;
         let or_not = |limit: Option<u8>| limit.map_or(STEREOPSIS_NOT_CHECKED, i16::from);
         Self {

@@ -14,8 +14,8 @@ use core::marker::PhantomData;
 
 /// The functions for method `S`, lines up to `W` pixels and `D` disparities.
 ///
-/// [`instantiate_c_api`](crate::instantiate_c_api) gives them their names in C and says what each of them does and
-/// needs.
+/// [`instantiate_c_api`](crate::instantiate_c_api) gives them their names in C and says what each of them
+/// does and needs.
 pub struct Instance<S: Scheme, const W: usize, const D: usize>(PhantomData<S>);
 
 /// Both ways out of a call are a status.
@@ -65,8 +65,8 @@ impl<S: Scheme, const W: usize, const D: usize> Instance<S, W, D> {
     ///
     /// # Safety
     ///
-    /// `memory` is null or points to `length` bytes that nothing else uses until the matcher is given up; `handle` is
-    /// null or points to a pointer.
+    /// `memory` is null or points to `length` bytes that nothing else uses until the matcher is given up;
+    /// `handle` is null or points to a pointer.
     pub unsafe fn init(memory: *mut c_void, length: usize, handle: *mut *mut Handle) -> Status {
         if handle.is_null() {
             return Status::Null;
@@ -95,7 +95,8 @@ impl<S: Scheme, const W: usize, const D: usize> Instance<S, W, D> {
         }))
     }
 
-    /// Checks a configuration and gets ready for the first frame; `keeps_counters` where it is for the next one.
+    /// Checks a configuration and gets ready for the first frame; `keeps_counters` where it is for the next
+    /// one.
     ///
     /// # Safety
     ///
@@ -133,9 +134,15 @@ impl<S: Scheme, const W: usize, const D: usize> Instance<S, W, D> {
     ///
     /// # Safety
     ///
-    /// As [`Self::deinit`]; `left` and `right` are null or point to `length` bytes, `row` is null or points to a row's
-    /// bytes.
-    pub unsafe fn push(handle: *mut Handle, left: *const u8, right: *const u8, length: usize, row: *mut Row) -> Status {
+    /// As [`Self::deinit`]; `left` and `right` are null or point to `length` bytes, `row` is null or points
+    /// to a row's bytes.
+    pub unsafe fn push(
+        handle: *mut Handle,
+        left: *const u8,
+        right: *const u8,
+        length: usize,
+        row: *mut Row,
+    ) -> Status {
         if left.is_null() || right.is_null() || row.is_null() {
             return Status::Null;
         }
@@ -156,8 +163,9 @@ impl<S: Scheme, const W: usize, const D: usize> Instance<S, W, D> {
             return Status::Overlap;
         }
         // SAFETY: the caller's promise, and neither stands in the state.
-        let (left, right) =
-            unsafe { (core::slice::from_raw_parts(left, length), core::slice::from_raw_parts(right, length)) };
+        let (left, right) = unsafe {
+            (core::slice::from_raw_parts(left, length), core::slice::from_raw_parts(right, length))
+        };
         match state.pipeline.push(left, right) {
             // SAFETY: the caller's promise, and the row stands beside the state.
             Ok(found) => unsafe { give(row, found, Status::NoRowYet) },

@@ -1,7 +1,7 @@
 //! The pipeline for C: functions with a C ABI over memory that the caller owns.
 //!
-//! A program in C gives memory, a configuration and lines, and gets rows. A small Rust package, a `staticlib`, says once
-//! for which method and sizes, and so makes the functions of `stereopsis.h`:
+//! A program in C gives memory, a configuration and lines, and gets rows. A small Rust package, a
+//! `staticlib`, says once for which method and sizes, and so makes the functions of `stereopsis.h`:
 //!
 //! ```
 //! stereopsis::instantiate_c_api!(Block, width = 320, disparities = 64);
@@ -10,7 +10,8 @@
 //!
 //! `examples/c-firmware` is such a package with a program in C. In running order:
 //!
-//! * [`Config`], [`Row`], [`Rig`], [`Counters`], [`NoiseMeter`] and the constants: what crosses the border, laid out as C has it.
+//! * [`Config`], [`Row`], [`Rig`], [`Counters`], [`NoiseMeter`] and the constants: what crosses the border,
+//!   laid out as C has it.
 //! * [`Status`]: what every call answers.
 //! * [`Instance`]: the functions for one method and one capacity; [`Handle`] is what C holds.
 //! * [`instantiate_c_api`](crate::instantiate_c_api): their names in C, from which `cargo xtask header` makes
@@ -18,17 +19,17 @@
 //!
 //! The contract:
 //!
-//! * Memory is the caller's. Nothing is allocated, nothing is kept of a caller's pointer but the memory that was given to
-//!   `stereopsis_init`. Lines are copied.
-//! * Every call checks its pointers for null, and those into arrays of words for alignment; the memory carries a mark
-//!   with its own address, so that memory that was not initialised, was moved or was given up is noticed. What is wrong
-//!   is answered by a status, and nothing has changed then.
+//! * Memory is the caller's. Nothing is allocated, nothing is kept of a caller's pointer but the memory that
+//!   was given to `stereopsis_init`. Lines are copied.
+//! * Every call checks its pointers for null, and those into arrays of words for alignment; the memory
+//!   carries a mark with its own address, so that memory that was not initialised, was moved or was given up
+//!   is noticed. What is wrong is answered by a status, and nothing has changed then.
 //! * Numbers that choose something come as integers and are checked: no number is taken for an enum.
-//! * A call does not panic. On a bare-metal target the program that links the library proves it: see the example's
-//!   panic handler.
+//! * A call does not panic. On a bare-metal target the program that links the library proves it: see the
+//!   example's panic handler.
 //! * One call at a time for one handle. Handles share nothing: two of them may be used by two threads.
-//! * What cannot be checked is up to the caller: a pointer that is neither null nor misaligned points to as many bytes
-//!   as its function says.
+//! * What cannot be checked is up to the caller: a pointer that is neither null nor misaligned points to as
+//!   many bytes as its function says.
 
 mod config;
 mod faults;
@@ -42,7 +43,8 @@ mod status;
 
 pub use config::{
     Config, STEREOPSIS_NOISE_HIGH, STEREOPSIS_NOISE_LOW, STEREOPSIS_NOISE_NONE, STEREOPSIS_NOT_CHECKED,
-    STEREOPSIS_PRESET_DEFAULT, STEREOPSIS_PRESET_DENSE, STEREOPSIS_PRESET_STRICT, config_default, config_noise,
+    STEREOPSIS_PRESET_DEFAULT, STEREOPSIS_PRESET_DENSE, STEREOPSIS_PRESET_STRICT, config_default,
+    config_noise,
 };
 pub use faults::{
     Counters, STEREOPSIS_LOST_DROPPED, STEREOPSIS_LOST_LATE, STEREOPSIS_LOST_STALE, STEREOPSIS_LOST_TORN,

@@ -5,8 +5,8 @@ use super::Status;
 use super::config::noise_number;
 use crate::imaging;
 
-/// How noisy the lines are that it was given: the caller's memory, for `stereopsis_noise_clear` and what follows it. The words are
-/// the library's.
+/// How noisy the lines are that it was given: the caller's memory, for `stereopsis_noise_clear` and what
+/// follows it. The words are the library's.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(C)]
 pub struct NoiseMeter {

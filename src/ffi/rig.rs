@@ -55,7 +55,12 @@ impl From<DepthError> for Status {
 /// # Safety
 ///
 /// `rig` is null or points to a rig; `disparities` and `millimetres` are null or point to `count` words each.
-pub unsafe fn millimetres(rig: *const Rig, disparities: *const u16, millimetres: *mut u16, count: usize) -> Status {
+pub unsafe fn millimetres(
+    rig: *const Rig,
+    disparities: *const u16,
+    millimetres: *mut u16,
+    count: usize,
+) -> Status {
     if rig.is_null() || disparities.is_null() || millimetres.is_null() {
         return Status::Null;
     }

@@ -51,8 +51,9 @@ pub struct Row {
     pub disparities: *const u16,
     /// The `STEREOPSIS_FLAG_` bits of each column: why there is no answer, or none of its own.
     pub flags: *const u8,
-    /// How sure the answer of each column is, 1 to 207, 0 for no answer; null unless the configuration's `confidence` asked
-    /// for it. The number puts answers in order, the wrong ones first; it is no probability.
+    /// How sure the answer of each column is, 1 to 207, 0 for no answer; null unless the configuration's
+    /// `confidence` asked for it. The number puts answers in order, the wrong ones first; it is no
+    /// probability.
     pub confidences: *const u8,
 }
 

@@ -63,14 +63,15 @@ impl<S: Scheme, const W: usize, const D: usize> State<S, W, D> {
         if length < size_of::<Self>() {
             return Err(Status::MemoryTooShort);
         }
-        // SAFETY: the state is aligned and inside of the caller's bytes. What it holds was written by C, or by nobody: a
-        // volatile read takes it as the machine has it, and every bit pattern is an integer.
+        // SAFETY: the state is aligned and inside of the caller's bytes. What it holds was written by C, or
+        // by nobody: a volatile read takes it as the machine has it, and every bit pattern is an
+        // integer.
         let mark = unsafe { (&raw const (*state).mark).read_volatile() };
         if mark == Self::mark_of(state) {
             return Err(Status::AlreadyInitialised);
         }
-        // SAFETY: as before; nothing refers to these bytes yet. The constant is all zero: the bytes are set in place and
-        // no copy stands on the stack.
+        // SAFETY: as before; nothing refers to these bytes yet. The constant is all zero: the bytes are set
+        // in place and no copy stands on the stack.
         unsafe {
             (&raw mut (*state).pipeline).write(const { Guarded::new() });
             (&raw mut (*state).mark).write_volatile(Self::mark_of(state));
@@ -102,14 +103,19 @@ impl<S: Scheme, const W: usize, const D: usize> State<S, W, D> {
 
     /// Gives the memory up.
     pub(super) fn deinit(&mut self) {
-        // SAFETY: a reference is aligned and its bytes are there. The write is volatile as the reads are: nothing here
-        // looks at the mark again, and it has to go all the same.
+        // SAFETY: a reference is aligned and its bytes are there. The write is volatile as the reads are:
+        // nothing here looks at the mark again, and it has to go all the same.
         unsafe { (&raw mut self.mark).write_volatile(0) };
     }
 
     /// Whether `count` values at `data` share bytes with the state.
     pub(super) fn overlaps<T>(&self, data: *const T, count: usize) -> bool {
-        share_bytes((&raw const *self).cast(), size_of::<Self>(), data.cast(), count.saturating_mul(size_of::<T>()))
+        share_bytes(
+            (&raw const *self).cast(),
+            size_of::<Self>(),
+            data.cast(),
+            count.saturating_mul(size_of::<T>()),
+        )
     }
 }
 

@@ -4,7 +4,8 @@ use crate::matching::MatchError;
 use crate::pipeline::PushError;
 use core::ffi::CStr;
 
-/// The version of this interface. It changes when a program that was compiled with another header would go wrong.
+/// The version of this interface. It changes when a program that was compiled with another header would go
+/// wrong.
 pub const STEREOPSIS_ABI: u32 = 5;
 
 /// What a call answers: below 0 it is an error, and nothing has changed.
@@ -164,7 +165,10 @@ impl Status {
 
 /// What a number says that may be a status.
 pub fn status_text(code: i32) -> &'static CStr {
-    Status::ALL.into_iter().find(|status| *status as i32 == code).map_or(c"no status of this library", Status::text)
+    Status::ALL
+        .into_iter()
+        .find(|status| *status as i32 == code)
+        .map_or(c"no status of this library", Status::text)
 }
 
 /// The version of the library.

@@ -10,12 +10,13 @@ pub trait ActuatorErrorType {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ActuatorLimits {
-    /// The least position, in the actuator's own steps; more moves the lens away from the sensor, to nearer focus.
+    /// The least position, in the actuator's own steps; more moves the lens away from the sensor, to nearer
+    /// focus.
     pub least: u16,
     /// The largest position.
     pub most: u16,
-    /// From how many steps below a position it has to be approached, so that friction and slack are always on one side; 0 for an
-    /// actuator that comes to the same place from either side.
+    /// From how many steps below a position it has to be approached, so that friction and slack are always
+    /// on one side; 0 for an actuator that comes to the same place from either side.
     pub backlash: u16,
 }
 

@@ -22,11 +22,13 @@ pub enum LensCommand {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum LensEvent {
-    /// The lens rests, as far as is known at this position: the one that was asked for if the hardware tells none.
+    /// The lens rests, as far as is known at this position: the one that was asked for if the hardware tells
+    /// none.
     Arrived(u16),
     /// The command to move could not be given: the bus failed.
     MoveFailed,
-    /// The sharpness of the region in a frame that was taken where the lens rests, in any unit that is proportional to it.
+    /// The sharpness of the region in a frame that was taken where the lens rests, in any unit that is
+    /// proportional to it.
     Sharpness(u32),
     /// The frame was lost or is no good.
     FrameLost,
@@ -49,7 +51,8 @@ pub struct Focused {
 pub enum AutofocusError {
     /// The sharpness is the same everywhere: the region has no texture, or none in the lens's range.
     Untextured,
-    /// The bus failed, the lens did not arrive, or frames were lost, more often in a row than [`Autofocus::RETRIES`].
+    /// The bus failed, the lens did not arrive, or frames were lost, more often in a row than
+    /// [`Autofocus::RETRIES`].
     Hardware,
     /// The event does not answer the command.
     Unexpected,
@@ -73,10 +76,12 @@ impl fmt::Display for AutofocusError {
 
 impl core::error::Error for AutofocusError {}
 
-/// Finds the sharpest position of a lens in [`FocusSearch::MOST_FRAMES`] frames, those that [`FocusSearch`] asks for.
+/// Finds the sharpest position of a lens in [`FocusSearch::MOST_FRAMES`] frames, those that [`FocusSearch`]
+/// asks for.
 ///
-/// Every move is at most `most_move` positions; longer ones are made in several. Where there is backlash each position is come
-/// to from below. A command that fails is given again, [`Self::RETRIES`] times in a row at most.
+/// Every move is at most `most_move` positions; longer ones are made in several. Where there is backlash each
+/// position is come to from below. A command that fails is given again, [`Self::RETRIES`] times in a row at
+/// most.
 ///
 /// ```
 /// use stereopsis::focus::{ActuatorLimits, Autofocus, LensCommand, LensEvent};
@@ -155,7 +160,9 @@ impl Autofocus {
                     self.fail();
                 }
             }
-            (LensCommand::Move(_), LensEvent::MoveFailed) | (LensCommand::Measure, LensEvent::FrameLost) => self.fail(),
+            (LensCommand::Move(_), LensEvent::MoveFailed) | (LensCommand::Measure, LensEvent::FrameLost) => {
+                self.fail()
+            }
             (LensCommand::Measure, LensEvent::Sharpness(sharpness)) => {
                 self.failures = 0;
                 self.search.measured(self.target, sharpness);

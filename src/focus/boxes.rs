@@ -4,7 +4,8 @@
 pub(super) const MOST_RADIUS: usize = 3;
 const RING: usize = 2 * MOST_RADIUS + 1;
 
-/// Rows of numbers to rows of their sums over windows of `2 r + 1` by `2 r + 1`; what lies outside the picture counts as 0.
+/// Rows of numbers to rows of their sums over windows of `2 r + 1` by `2 r + 1`; what lies outside the
+/// picture counts as 0.
 #[derive(Debug)]
 pub(super) struct Boxes<const C: usize> {
     rows: [[u32; C]; RING],
@@ -28,7 +29,8 @@ impl<const C: usize> Boxes<C> {
         self.rows.as_flattened_mut().fill(0);
     }
 
-    /// The next row; below the picture, nothing. True if `out` has the sums around the row `r` rows before it.
+    /// The next row; below the picture, nothing. True if `out` has the sums around the row `r` rows before
+    /// it.
     pub(super) fn push(&mut self, row: Option<&[u32]>, out: &mut [u32]) -> bool {
         let place = self.taken % (2 * self.radius + 1);
         self.taken += 1;

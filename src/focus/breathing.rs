@@ -2,10 +2,11 @@
 
 use super::FocusLineError;
 
-/// Where the pixels of the reference are in a frame that is larger or smaller by a factor, about the picture's middle.
+/// Where the pixels of the reference are in a frame that is larger or smaller by a factor, about the
+/// picture's middle.
 ///
-/// What is interpolated is the sharpness, never the picture: an interpolated picture is blurred, more so between pixels than on
-/// them, and that would be taken for focus.
+/// What is interpolated is the sharpness, never the picture: an interpolated picture is blurred, more so
+/// between pixels than on them, and that would be taken for focus.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Breathing {
@@ -36,15 +37,15 @@ impl Breathing {
         self == Self::NONE
     }
 
-    /// The column or row of the frame, of `size`, that is nearest to what column or row `place` of the reference shows; the last
-    /// one inside of the frame where it shows no such place.
+    /// The column or row of the frame, of `size`, that is nearest to what column or row `place` of the
+    /// reference shows; the last one inside of the frame where it shows no such place.
     pub fn source(self, place: usize, size: usize) -> usize {
         let (before, part) = self.between(place, size);
         before + usize::from(part >= 128)
     }
 
-    /// The column or row before what column or row `place` of the reference shows, and how far it is from there to the next
-    /// one, in 1/256; 0 in the last one.
+    /// The column or row before what column or row `place` of the reference shows, and how far it is from
+    /// there to the next one, in 1/256; 0 in the last one.
     #[inline]
     pub(super) fn between(self, place: usize, size: usize) -> (usize, u32) {
         if self.is_none() {

@@ -54,7 +54,8 @@ impl fmt::Display for FocusCalibrationError {
 impl core::error::Error for FocusCalibrationError {}
 
 impl FocusCalibration {
-    /// The line with the least squared distances from what was seen: positions, each with the distance in focus, m.
+    /// The line with the least squared distances from what was seen: positions, each with the distance in
+    /// focus, m.
     pub fn fit(lens: ThinLens<f32>, samples: &[(u16, f32)]) -> Result<Self, FocusCalibrationError> {
         let count = samples.len() as f32;
         // Newton's form, f^2 / (Z - f): z - f without the rounding of a difference of nearly equal numbers.

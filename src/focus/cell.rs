@@ -12,8 +12,9 @@ pub(super) const BIAS: u16 = 4 * OCTAVE;
 /// Weights of the frames around a peak, for the choice of it.
 const CHOICE: [(isize, u32); 5] = [(-2, 1), (-1, 2), (0, 3), (1, 2), (2, 1)];
 
-/// Bends of the wide fit, below the first of which it counts alone and from the second on not at all: where its frames lie around the
-/// peak, and where the stack ends within them and they see one flank more than the other.
+/// Bends of the wide fit, below the first of which it counts alone and from the second on not at all: where
+/// its frames lie around the peak, and where the stack ends within them and they see one flank more than the
+/// other.
 const BROAD: [[u32; 2]; 2] = [[40, 80], [15, 30]];
 
 /// The state of a cell, 44 bytes: its last sharpnesses and its peak so far.
@@ -49,8 +50,8 @@ pub struct FocusPeak {
     pub sigma_q8: u32,
     /// What noise has part in it, in 1/256 frame: what an average over neighbours makes smaller.
     pub noise_q8: u32,
-    /// How far the peak stands out: `h / (h + 1)` in 1/255, where `h` is how many times its sharpness is twice the geometric mean
-    /// of all frames'.
+    /// How far the peak stands out: `h / (h + 1)` in 1/255, where `h` is how many times its sharpness is
+    /// twice the geometric mean of all frames'.
     pub confidence: u8,
 }
 
@@ -97,13 +98,23 @@ impl core::error::Error for NoFocus {}
 
 impl FocusCell {
     /// Before the first frame.
-    pub const EMPTY: Self =
-        Self { recent: [0; FRAMES], largest: 0, peak: 0, bend: 0, wide: 0, choice: 0, position: 0, sum: 0, rough: 0 };
+    pub const EMPTY: Self = Self {
+        recent: [0; FRAMES],
+        largest: 0,
+        peak: 0,
+        bend: 0,
+        wide: 0,
+        choice: 0,
+        position: 0,
+        sum: 0,
+        rough: 0,
+    };
     /// Frames that a peak needs.
     pub const FEWEST_FRAMES: u32 = 3;
 
-    /// Takes the sharpness in `frame` and, first, completes the frame before: `shift` is what its brightness adds to logarithms.
-    /// True if no frame before was as sharp, with its own brightness taken to be that of the frame before.
+    /// Takes the sharpness in `frame` and, first, completes the frame before: `shift` is what its brightness
+    /// adds to logarithms. True if no frame before was as sharp, with its own brightness taken to be that
+    /// of the frame before.
     #[inline]
     pub(super) fn push(&mut self, frame: u32, sharpness: u32, shift: u16) -> bool {
         if frame == 0 {
@@ -171,7 +182,8 @@ impl FocusCell {
         let ((narrow, narrow_bend), _) = fit(NARROW);
         let ((wide, wide_bend), is_inside) = fit(WIDE);
         let [few, many] = BROAD[usize::from(!is_inside)];
-        let share = (many.saturating_sub(wide_bend.into()) * 256).checked_div(many - few).unwrap_or(0).min(256);
+        let share =
+            (many.saturating_sub(wide_bend.into()) * 256).checked_div(many - few).unwrap_or(0).min(256);
         let mix = |wide: u32, narrow: u32| {
             // A position has 24 bits, and both are within a window of each other.
             let apart = (wide as i32).wrapping_sub(narrow as i32);
@@ -182,14 +194,14 @@ impl FocusCell {
         self.wide = share as u16;
     }
 
-    /// The top of the parabola through the logarithms of the frames around `centre`, by weighted least squares: with `half`
-    /// of 3 the weights are 1, 2, 3, 3, 3, 2, 1, with 2 1, 2, 2, 2, 1. In 1/256 frame, with its bend. A parabola that opens
-    /// upwards has its top at the end that is higher.
+    /// The top of the parabola through the logarithms of the frames around `centre`, by weighted least
+    /// squares: with `half` of 3 the weights are 1, 2, 3, 3, 3, 2, 1, with 2 1, 2, 2, 2, 1. In 1/256
+    /// frame, with its bend. A parabola that opens upwards has its top at the end that is higher.
     // Once in a program: in line, and unrolled for each width, it takes 16 KB of flash.
     #[inline(never)]
     fn fit(&self, centre: u32, half: u32) -> (u32, u16) {
-        // The normal equations solved for the top: `num / den * y1 / (a y0 - b y2)`, and the bend as `(a y0 - b y2) / c`,
-        // where yk is the sum of weight, distance^k and logarithm.
+        // The normal equations solved for the top: `num / den * y1 / (a y0 - b y2)`, and the bend as `(a y0 -
+        // b y2) / c`, where yk is the sum of weight, distance^k and logarithm.
         let (weights, num, den, a, b, c): (&[i64], _, _, _, _, _) = match half {
             5 => (&[4, 4, 4, 3, 2, 1], 193, 26, 13, 2, 1544),
             4 => (&[4, 4, 3, 2, 1], 157, 10, 25, 6, 1570),
@@ -200,14 +212,15 @@ impl FocusCell {
         };
         let (mut y0, mut y1, mut y2) = (0, 0, 0);
         for (distance, &weight) in (0_u32..).zip(weights) {
-            let [before, after] = [centre.saturating_sub(distance), centre + distance].map(|f| i64::from(self.at(f)));
+            let [before, after] =
+                [centre.saturating_sub(distance), centre + distance].map(|f| i64::from(self.at(f)));
             let (d, both) = (i64::from(distance), if distance == 0 { after } else { before + after });
             y0 += weight * both;
             y1 += weight * d * (after - before);
             y2 += weight * d * d * both;
         }
-        // Without the mean of the logarithms, which changes nothing: with these weights `a y0 - b y2` of a constant is 0 only
-        // for a and b of the normal equations, as here.
+        // Without the mean of the logarithms, which changes nothing: with these weights `a y0 - b y2` of a
+        // constant is 0 only for a and b of the normal equations, as here.
         let bend = a * y0 - b * y2;
         let most = i64::from(half) << 8;
         let off = if bend > 0 {
@@ -229,11 +242,13 @@ impl FocusCell {
             return Err(NoFocus::Untextured);
         }
         let confidence = (height * 255 / (height + u32::from(OCTAVE))) as u8;
-        // Noise of deviation s changes the slope at the top by 0.21 s, with the wide fit by 0.11 s, and second differences by 1.95 s in
-        // the mean of their sizes. What else is in a window, nearer and farther, moves a peak by the more, the wider it is: by a
-        // twelfth of the distance at which it has fallen by half an octave, on rendered slopes and waves.
+        // Noise of deviation s changes the slope at the top by 0.21 s, with the wide fit by 0.11 s, and
+        // second differences by 1.95 s in the mean of their sizes. What else is in a window, nearer
+        // and farther, moves a peak by the more, the wider it is: by a twelfth of the distance at
+        // which it has fallen by half an octave, on rendered slopes and waves.
         let (bend, wide) = (u32::from(self.bend).max(1), u32::from(self.wide));
-        let noise = (self.rough_mean(frames) * (27 * (256 - wide) + 14 * wide)).checked_div(bend << 8).unwrap_or(0);
+        let noise =
+            (self.rough_mean(frames) * (27 * (256 - wide) + 14 * wide)).checked_div(bend << 8).unwrap_or(0);
         if noise > (frames * 12).max(256) {
             return Err(NoFocus::Broad);
         }

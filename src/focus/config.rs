@@ -13,8 +13,8 @@ pub struct FocusConfig {
     pub height: u16,
     /// Side of a cell, px: 1 for an answer a pixel.
     pub cell_px: u16,
-    /// A cell's sharpness is that of the window of `4 r + 1` by `4 r + 1` cells around it, nearer ones counting more: sums over
-    /// `2 r + 1` by `2 r + 1`, twice.
+    /// A cell's sharpness is that of the window of `4 r + 1` by `4 r + 1` cells around it, nearer ones
+    /// counting more: sums over `2 r + 1` by `2 r + 1`, twice.
     pub radius: u8,
     /// Frames differ in exposure: each one's sharpness counts in proportion to its mean brightness.
     pub exposure_varies: bool,

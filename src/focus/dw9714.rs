@@ -1,9 +1,9 @@
 //! Dongwoon's DW9714: a 10-bit current for the voice coil of a small lens, over I2C.
 //!
-//! A write is two bytes, as Linux's drivers of the chip send them (`drivers/media/i2c/dw9714.c`): `PD FLAG D9..D4` and
-//! `D3..D0 S3..S0`. PD powers the coil down, FLAG is 0 in writes and 1 in reads while the coil still moves, D is the
-//! current in 1023rds of 100 mA, and S is how it gets there: 0 at once, else `S3 S2` codes at a time (1, 2, 4), one every
-//! 81 us times 2 to the power of `S1 S0`.
+//! A write is two bytes, as Linux's drivers of the chip send them (`drivers/media/i2c/dw9714.c`): `PD FLAG
+//! D9..D4` and `D3..D0 S3..S0`. PD powers the coil down, FLAG is 0 in writes and 1 in reads while the coil
+//! still moves, D is the current in 1023rds of 100 mA, and S is how it gets there: 0 at once, else `S3 S2`
+//! codes at a time (1, 2, 4), one every 81 us times 2 to the power of `S1 S0`.
 
 use super::actuator::{ActuatorErrorType, ActuatorLimits, LensActuator};
 use embedded_hal::i2c::I2c;
@@ -42,8 +42,9 @@ impl Slew {
 
 /// A DW9714 on an I2C bus.
 ///
-/// The chip does not tell where the lens is: [`Dw9714::is_moving`] tells whether the current still changes. A coil has no friction
-/// to speak of and one position for each current; it rings after a move, which [`Slew`] makes less of.
+/// The chip does not tell where the lens is: [`Dw9714::is_moving`] tells whether the current still changes. A
+/// coil has no friction to speak of and one position for each current; it rings after a move, which [`Slew`]
+/// makes less of.
 #[derive(Debug)]
 pub struct Dw9714<I> {
     bus: I,
@@ -63,8 +64,8 @@ impl<I: I2c> Dw9714<I> {
         Self { bus, slew }
     }
 
-    /// Sets the slew's clock to its default, of 81 us: the chip powers up with it, and another driver may have changed it. The
-    /// registers are protected: they are unlocked, written, locked.
+    /// Sets the slew's clock to its default, of 81 us: the chip powers up with it, and another driver may
+    /// have changed it. The registers are protected: they are unlocked, written, locked.
     pub fn initialise(&mut self) -> Result<(), I::Error> {
         for bytes in [[0xec, 0xa3], [0xa1, 0x00], [0xf2, 0x00], [0xdc, 0x51]] {
             self.bus.write(Self::ADDRESS, &bytes)?;

@@ -9,7 +9,8 @@ use crate::geometry::Real;
 pub enum Far<T> {
     /// At that distance.
     At(T),
-    /// Everything behind the near end is sharp enough: the lens is focused at the hyperfocal distance or beyond.
+    /// Everything behind the near end is sharp enough: the lens is focused at the hyperfocal distance or
+    /// beyond.
     Infinity,
 }
 
@@ -23,8 +24,8 @@ pub struct DepthOfField<T> {
 }
 
 impl<T: Real> ThinLens<T> {
-    /// The nearest distance to focus at with which infinity is sharp: `H = f^2 / (N c) + f`, for the f-number `N = f / A` and
-    /// the largest circle of confusion `c` that counts as sharp.
+    /// The nearest distance to focus at with which infinity is sharp: `H = f^2 / (N c) + f`, for the f-number
+    /// `N = f / A` and the largest circle of confusion `c` that counts as sharp.
     pub fn hyperfocal(&self, f_number: T, blur: T) -> Result<T, LensError> {
         if finite(f_number)? <= T::ZERO {
             return Err(LensError::Aperture);
@@ -35,8 +36,8 @@ impl<T: Real> ThinLens<T> {
         finite(self.focal() / f_number * (self.focal() / blur) + self.focal())
     }
 
-    /// What is sharp enough with the lens focused at `focused`: `Zf (H - f) / (H + Zf - 2 f)` to `Zf (H - f) / (H - Zf)`, where
-    /// [`Self::circle_of_confusion`] is `blur`.
+    /// What is sharp enough with the lens focused at `focused`: `Zf (H - f) / (H + Zf - 2 f)` to `Zf (H - f)
+    /// / (H - Zf)`, where [`Self::circle_of_confusion`] is `blur`.
     ///
     /// ```
     /// use stereopsis::focus::{Far, ThinLens};

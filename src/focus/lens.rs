@@ -3,8 +3,8 @@
 use super::LensError;
 use crate::geometry::Real;
 
-/// A thin lens: `1/z + 1/Z = 1/f` for an object at distance `Z` before it and its image at `z` behind it (Siegwart,
-/// Nourbakhsh & Scaramuzza 2011, 4.2.5). All lengths are in one unit, the caller's.
+/// A thin lens: `1/z + 1/Z = 1/f` for an object at distance `Z` before it and its image at `z` behind it
+/// (Siegwart, Nourbakhsh & Scaramuzza 2011, 4.2.5). All lengths are in one unit, the caller's.
 ///
 /// ```
 /// use stereopsis::focus::ThinLens;
@@ -34,7 +34,8 @@ impl<T: Real> ThinLens<T> {
         Ok(Self { focal })
     }
 
-    /// The lens that images an object at `object` before it sharply at `image` behind it: `f = Z z / (Z + z)`.
+    /// The lens that images an object at `object` before it sharply at `image` behind it: `f = Z z / (Z +
+    /// z)`.
     pub fn from_distances(object: T, image: T) -> Result<Self, LensError> {
         if finite(object)? <= T::ZERO {
             return Err(LensError::ObjectWithinFocus);
@@ -66,8 +67,9 @@ impl<T: Real> ThinLens<T> {
         finite(image / (image - self.focal) * self.focal)
     }
 
-    /// The deviation of [`Self::object_distance`] of an image distance that is uncertain by `sigma`, to first order:
-    /// `sigma_Z = f^2 / (z - f)^2 sigma_z`. The second order is `sigma_z / (z - f)` of it, which is to be small.
+    /// The deviation of [`Self::object_distance`] of an image distance that is uncertain by `sigma`, to first
+    /// order: `sigma_Z = f^2 / (z - f)^2 sigma_z`. The second order is `sigma_z / (z - f)` of it, which
+    /// is to be small.
     pub fn object_sigma(&self, image: T, sigma: T) -> Result<T, LensError> {
         if finite(sigma)? < T::ZERO {
             return Err(LensError::Sigma);
@@ -87,8 +89,9 @@ impl<T: Real> ThinLens<T> {
         finite(self.focal / (object - self.focal))
     }
 
-    /// How much larger the picture is with the sensor at `image` than at `reference`: the chief ray through the lens's middle
-    /// meets a plane `z` behind it at `x = z X / Z`, sharp or not. The change between frames of a focus stack is its breathing.
+    /// How much larger the picture is with the sensor at `image` than at `reference`: the chief ray through
+    /// the lens's middle meets a plane `z` behind it at `x = z X / Z`, sharp or not. The change between
+    /// frames of a focus stack is its breathing.
     pub fn breathing(&self, image: T, reference: T) -> Result<T, LensError> {
         if finite(image)? < self.focal || finite(reference)? < self.focal {
             return Err(LensError::ImageWithinFocus);
@@ -96,8 +99,8 @@ impl<T: Real> ThinLens<T> {
         finite(image / reference)
     }
 
-    /// The diameter on the sensor of the blur of a point at `object` while the lens is focused at `focused`, through an
-    /// aperture of that diameter: `c = A |Z - Zf| / Z f / (Zf - f)`.
+    /// The diameter on the sensor of the blur of a point at `object` while the lens is focused at `focused`,
+    /// through an aperture of that diameter: `c = A |Z - Zf| / Z f / (Zf - f)`.
     pub fn circle_of_confusion(&self, aperture: T, focused: T, object: T) -> Result<T, LensError> {
         if finite(aperture)? <= T::ZERO {
             return Err(LensError::Aperture);

@@ -10,7 +10,8 @@ const STEPS: usize = 64;
 /// `2^15 log2(1 + i / 64)`, to the bit below.
 const TABLE: [u16; STEPS + 1] = table();
 
-/// Bit by bit: a number in `1..2` that is squared doubles its logarithm, whose next bit is whether 2 is passed.
+/// Bit by bit: a number in `1..2` that is squared doubles its logarithm, whose next bit is whether 2 is
+/// passed.
 const fn table() -> [u16; STEPS + 1] {
     let mut table = [0; STEPS + 1];
     let mut i = 0;
@@ -33,7 +34,8 @@ const fn table() -> [u16; STEPS + 1] {
     table
 }
 
-/// The logarithm to base 2 in 1/2^11, at most 65535; of 0, 0. Interpolated in a table of 64 steps an octave: at most 0.0006 off.
+/// The logarithm to base 2 in 1/2^11, at most 65535; of 0, 0. Interpolated in a table of 64 steps an octave:
+/// at most 0.0006 off.
 pub(super) fn log2(value: u32) -> u16 {
     let zeros = value.max(1).leading_zeros();
     let scaled = value.max(1) << zeros;

@@ -4,27 +4,29 @@ use super::boxes::Boxes;
 use super::cell::BIAS;
 use super::logarithm::log2;
 use super::{
-    Breathing, FocusCell, FocusConfig, FocusConfigError, FocusLineError, FocusPeak, NoFocus, SharperRow, binomial,
-    modified_laplacian,
+    Breathing, FocusCell, FocusConfig, FocusConfigError, FocusLineError, FocusPeak, NoFocus, SharperRow,
+    binomial, modified_laplacian,
 };
 use crate::imaging::LineBand;
 
-/// Depth from focus: the frame in which each cell is sharpest, with a fraction, from frames that come one at a time.
+/// Depth from focus: the frame in which each cell is sharpest, with a fraction, from frames that come one at
+/// a time.
 ///
-/// `W` is the longest line, px, and `C` the most cells in a row; `S` is the owner's memory for the cells, 44 bytes each. Beside
-/// them the map takes 13 bytes for every pixel of a line and 73 for every cell of a row ([`Self::LINE_BYTES`]). The work for a
-/// line is bounded by its length, and that for a stack grows with the number of frames.
+/// `W` is the longest line, px, and `C` the most cells in a row; `S` is the owner's memory for the cells, 44
+/// bytes each. Beside them the map takes 13 bytes for every pixel of a line and 73 for every cell of a row
+/// ([`Self::LINE_BYTES`]). The work for a line is bounded by its length, and that for a stack grows with the
+/// number of frames.
 ///
-/// In running order: lines are smoothed ([`binomial`]); [`modified_laplacian`]; summed up in cells, then twice over windows;
-/// their logarithms pass through the cells, which keep the last eleven frames and the peak so far: a parabola through seven
-/// logarithms, or through eleven where it is broad and noise would move its top. A peak is found the better, the more frames it
-/// spans; three are enough.
+/// In running order: lines are smoothed ([`binomial`]); [`modified_laplacian`]; summed up in cells, then
+/// twice over windows; their logarithms pass through the cells, which keep the last eleven frames and the
+/// peak so far: a parabola through seven logarithms, or through eleven where it is broad and noise would move
+/// its top. A peak is found the better, the more frames it spans; three are enough.
 ///
-/// The measure is the default against noise and changes of brightness: smoothing keeps 3/8 of the noise, absolute values grow
-/// in proportion to the contrast where squares would let the strongest edge of a window decide, and a frame's mean brightness
-/// is divided out. On rendered stacks (fine, coarse and photographed texture; slopes, steps, cones and waves; noise of 1 and 4
-/// grey levels) a window of two sums of 7 by 7 has the least error; narrower ones follow the depth more closely, wider ones
-/// average more noise.
+/// The measure is the default against noise and changes of brightness: smoothing keeps 3/8 of the noise,
+/// absolute values grow in proportion to the contrast where squares would let the strongest edge of a window
+/// decide, and a frame's mean brightness is divided out. On rendered stacks (fine, coarse and photographed
+/// texture; slopes, steps, cones and waves; noise of 1 and 4 grey levels) a window of two sums of 7 by 7 has
+/// the least error; narrower ones follow the depth more closely, wider ones average more noise.
 ///
 /// ```
 /// use stereopsis::focus::{Breathing, FocusCell, FocusConfig, FocusMap};
@@ -53,7 +55,8 @@ pub struct FocusMap<const W: usize, const C: usize, S> {
     sums: [u32; C],
     sharper: [bool; C],
     cells: S,
-    /// What every window's sharpness is raised by: two sixteenths of a grey level a pixel, so that rounding is no texture.
+    /// What every window's sharpness is raised by: two sixteenths of a grey level a pixel, so that rounding
+    /// is no texture.
     floor: u32,
     breathing: Breathing,
     /// Frames begun, and lines of the last one that came.
@@ -63,7 +66,8 @@ pub struct FocusMap<const W: usize, const C: usize, S> {
     next_row: u16,
     rows_out: usize,
     brightness: u64,
-    /// The first frame's logarithm of its mean brightness, and what the last complete frame's adds to sharpness.
+    /// The first frame's logarithm of its mean brightness, and what the last complete frame's adds to
+    /// sharpness.
     reference: u16,
     shift: u16,
     is_running: bool,
@@ -73,7 +77,8 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
     /// Bytes of a map beside its cells.
     pub const LINE_BYTES: usize = size_of::<FocusMap<W, C, ()>>();
 
-    /// A map over its memory for cells, which waits for [`Self::start`]. All zeros: in a `static` it takes no flash.
+    /// A map over its memory for cells, which waits for [`Self::start`]. All zeros: in a `static` it takes no
+    /// flash.
     pub const fn new(cells: S) -> Self {
         Self {
             config: FocusConfig::NONE,
@@ -141,7 +146,8 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
         if missing == 0 { Ok(()) } else { Err(FocusLineError::FrameIncomplete { missing }) }
     }
 
-    /// What the last frame's brightness adds to the logarithms of its sharpness: those of a frame half as bright are raised by 1.
+    /// What the last frame's brightness adds to the logarithms of its sharpness: those of a frame half as
+    /// bright are raised by 1.
     fn measure_brightness(&mut self) {
         if self.frames == 0 || !self.config.exposure_varies {
             return;
@@ -183,7 +189,8 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
         Ok(())
     }
 
-    /// Smooths row `centre`, below which a line has come if the picture has one; then the row above it can be measured.
+    /// Smooths row `centre`, below which a line has come if the picture has one; then the row above it can be
+    /// measured.
     fn smooth(&mut self, centre: usize, row: &mut impl FnMut(SharperRow<'_>)) {
         let width = usize::from(self.config.width);
         if let Some(out) = self.smooth.get_mut(centre % 3).and_then(|out| out.get_mut(..width)) {
@@ -194,7 +201,8 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
         }
     }
 
-    /// Measures row `centre`, of which rows down to `newest` are smoothed, and adds it to the rows of the reference that show it.
+    /// Measures row `centre`, of which rows down to `newest` are smoothed, and adds it to the rows of the
+    /// reference that show it.
     fn measure(&mut self, centre: usize, newest: usize, row: &mut impl FnMut(SharperRow<'_>)) {
         let (width, height) = (usize::from(self.config.width), usize::from(self.config.height));
         let rows = [centre.saturating_sub(1), centre, (centre + 1).min(newest)];
@@ -211,8 +219,8 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
         }
     }
 
-    /// Adds the next row of the reference to its cells: it lies by `part` of 256 between the last two measured rows, if it is not
-    /// the last one.
+    /// Adds the next row of the reference to its cells: it lies by `part` of 256 between the last two
+    /// measured rows, if it is not the last one.
     fn add_row(&mut self, part: u32, row: &mut impl FnMut(SharperRow<'_>)) {
         let (width, side) = (usize::from(self.config.width), usize::from(self.config.cell_px).max(1));
         let [newest, before] = self.lines.each_ref().map(|line| line.get(..width).unwrap_or(&[]));
@@ -289,11 +297,12 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
         Ok(())
     }
 
-    /// The peak of a cell, once the stack has ended; [`NoFocus::TooFewFrames`] for one that is not in the picture.
+    /// The peak of a cell, once the stack has ended; [`NoFocus::TooFewFrames`] for one that is not in the
+    /// picture.
     pub fn peak(&self, column: usize, row: usize) -> Result<FocusPeak, NoFocus> {
         let columns = self.config.columns();
-        let place =
-            (column < columns && row < self.config.rows() && !self.is_running).then_some(row * columns + column);
+        let place = (column < columns && row < self.config.rows() && !self.is_running)
+            .then_some(row * columns + column);
         let cell = place.and_then(|place| self.cells.as_ref().get(place));
         cell.ok_or(NoFocus::TooFewFrames { needed: FocusCell::FEWEST_FRAMES })?.peak(self.frames)
     }

@@ -2,10 +2,10 @@
 
 use super::{FocusPeak, NoFocus};
 
-/// The median of the answers' positions in windows of 5 by 5 cells, a row of cells from the five around it: a cell whose noise
-/// was taken for a peak gets its neighbours' answer. A cell without an answer stays so, and one keeps its own deviation and
-/// confidence. Of an even number of answers the lower one of the middle counts. Edges stay in place, for a median invents no
-/// value between two surfaces.
+/// The median of the answers' positions in windows of 5 by 5 cells, a row of cells from the five around it: a
+/// cell whose noise was taken for a peak gets its neighbours' answer. A cell without an answer stays so, and
+/// one keeps its own deviation and confidence. Of an even number of answers the lower one of the middle
+/// counts. Edges stay in place, for a median invents no value between two surfaces.
 ///
 /// The caller repeats the nearest row where there is none; columns outside are left out.
 pub fn median_row(rows: [&[Result<FocusPeak, NoFocus>]; 5], out: &mut [Result<FocusPeak, NoFocus>]) {

@@ -40,15 +40,15 @@ impl MicroLens {
         self.conjugate(object_um).ok_or(LensError::ObjectWithinFocus)?
     }
 
-    /// The distance of what is sharp on a sensor `image_um` behind the lens, to the nearest micrometre: `Z = f z / (z - f)`.
-    /// A micrometre of `z` moves it by `((Z - f) / f)^2`: with a short lens
+    /// The distance of what is sharp on a sensor `image_um` behind the lens, to the nearest micrometre: `Z =
+    /// f z / (z - f)`. A micrometre of `z` moves it by `((Z - f) / f)^2`: with a short lens
     /// [`Self::object_distance_from_extension_um`] tells more.
     pub fn object_distance_um(self, image_um: u32) -> Result<u32, LensError> {
         self.conjugate(image_um).ok_or(LensError::ImageWithinFocus)?
     }
 
-    /// The distance of what is sharp with the sensor `extension_nm` behind the focal plane, by Newton's form of the equation:
-    /// `Z = f + f^2 / (z - f)`.
+    /// The distance of what is sharp with the sensor `extension_nm` behind the focal plane, by Newton's form
+    /// of the equation: `Z = f + f^2 / (z - f)`.
     pub fn object_distance_from_extension_um(self, extension_nm: u32) -> Result<u32, LensError> {
         if extension_nm == 0 {
             return Err(LensError::ImageWithinFocus);

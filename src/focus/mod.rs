@@ -1,12 +1,14 @@
 //! Depth from focus: the lens that images a point sharply tells how far it is.
 //!
-//! In: frames of one scene with the lens in different positions, line by line. Out: for each pixel or tile the position in which
-//! it is sharpest, and its depth.
+//! In: frames of one scene with the lens in different positions, line by line. Out: for each pixel or tile
+//! the position in which it is sharpest, and its depth.
 //!
-//! * [`ThinLens`], [`MicroLens`]: `1/z + 1/Z = 1/f` in floats and in whole micrometres, with [`DepthOfField`].
-//! * [`SharpnessRows`]: classic measures of sharpness over windows. In them and below, in running order: [`binomial`],
-//!   [`modified_laplacian`], [`tenengrad`], [`laplacian`].
-//! * [`FocusMap`]: frames to a [`FocusPeak`] for each cell, with [`Breathing`]; then [`median_row`] and [`plane_row`].
+//! * [`ThinLens`], [`MicroLens`]: `1/z + 1/Z = 1/f` in floats and in whole micrometres, with
+//!   [`DepthOfField`].
+//! * [`SharpnessRows`]: classic measures of sharpness over windows. In them and below, in running order:
+//!   [`binomial`], [`modified_laplacian`], [`tenengrad`], [`laplacian`].
+//! * [`FocusMap`]: frames to a [`FocusPeak`] for each cell, with [`Breathing`]; then [`median_row`] and
+//!   [`plane_row`].
 //! * [`FocusScale`]: peaks to [`Depth`](crate::depth::Depth).
 //! * [`LensActuator`], [`Dw9714`]: what moves a lens. [`FocusCalibration`]: its positions to distances.
 //! * [`RegionSharpness`], [`Autofocus`] with its [`FocusSearch`]: a region brought into focus in few frames.

@@ -1,7 +1,8 @@
 //! What changes from pixel to pixel, a row at a time: what a blurred picture has less of.
 //!
-//! Each looks at the rows above and below its own; the caller repeats the nearest row where there is none. A column outside
-//! the image is the nearest one inside. Those columns are written for which all rows have a pixel and `out` a place.
+//! Each looks at the rows above and below its own; the caller repeats the nearest row where there is none. A
+//! column outside the image is the nearest one inside. Those columns are written for which all rows have a
+//! pixel and `out` a place.
 
 /// Largest number of [`binomial`].
 const BINOMIAL: u32 = 16 * 255;
@@ -9,8 +10,9 @@ const BINOMIAL: u32 = 16 * 255;
 pub(super) const LAPLACIAN: u32 = 4 * BINOMIAL;
 const _: () = assert!(LAPLACIAN < 1 << 14);
 
-/// Each pixel and its eight neighbours, weighted 1, 2, 1 along and across, their sum: 16 times the brightness, at most 4080. It
-/// keeps 3/8 of the deviation of noise that has nothing to do with its neighbours', and rounds nothing.
+/// Each pixel and its eight neighbours, weighted 1, 2, 1 along and across, their sum: 16 times the
+/// brightness, at most 4080. It keeps 3/8 of the deviation of noise that has nothing to do with its
+/// neighbours', and rounds nothing.
 pub fn binomial([above, here, below]: [&[u8]; 3], out: &mut [u16]) {
     // In whole words, as below: cores without vectors cut nothing off then.
     let down = |((&a, &b), &c): ((&u8, &u8), &u8)| u32::from(a) + 2 * u32::from(b) + u32::from(c);
@@ -32,8 +34,8 @@ fn after_first<T>(row: &[T]) -> &[T] {
     row.get(1..).unwrap_or(&[])
 }
 
-/// The modified Laplacian `|2 b - l - r| + |2 b - a - c|` of rows of bytes or of [`binomial`] (Nayar & Nakagawa 1994): the second
-/// differences along and across, which cannot cancel each other. At most 16320.
+/// The modified Laplacian `|2 b - l - r| + |2 b - a - c|` of rows of bytes or of [`binomial`] (Nayar &
+/// Nakagawa 1994): the second differences along and across, which cannot cancel each other. At most 16320.
 pub fn modified_laplacian<T: Copy + Into<u16>>([above, here, below]: [&[T]; 3], out: &mut [u16]) {
     let width = above.len().min(here.len()).min(below.len());
     let wide = |pixel: T| i32::from(pixel.into());
@@ -48,13 +50,16 @@ pub fn modified_laplacian<T: Copy + Into<u16>>([above, here, below]: [&[T]; 3], 
         *place = value(left, middle, right, a, c);
         (left, middle) = (middle, right);
     }
-    let last = width.checked_sub(1).and_then(|last| Some((*above.get(last)?, *below.get(last)?, out.get_mut(last)?)));
+    let last = width
+        .checked_sub(1)
+        .and_then(|last| Some((*above.get(last)?, *below.get(last)?, out.get_mut(last)?)));
     if let Some((a, c, place)) = last {
         *place = value(left, middle, middle, a, c);
     }
 }
 
-/// The squared gradient of Sobel's operator, `Gx^2 + Gy^2` (Krotkov 1987, after Tenenbaum). At most 2 080 800.
+/// The squared gradient of Sobel's operator, `Gx^2 + Gy^2` (Krotkov 1987, after Tenenbaum). At most 2 080
+/// 800.
 pub fn tenengrad([above, here, below]: [&[u8]; 3], out: &mut [u32]) {
     let column = |((&a, &b), &c): ((&u8, &u8), &u8)| {
         let [a, b, c] = [a, b, c].map(i32::from);

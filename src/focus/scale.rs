@@ -5,8 +5,9 @@ use super::{Breathing, FocusLineError, FocusPeak, LensError, ThinLens};
 use crate::depth::Depth;
 use core::fmt;
 
-/// The depth of every frame of a stack: the image distance `z` between lens and sensor in each, and the lens, whose equation
-/// gives `Z` with `sigma_Z = f^2 / (z - f)^2 sigma_z`. Between two frames `z` is a straight line.
+/// The depth of every frame of a stack: the image distance `z` between lens and sensor in each, and the lens,
+/// whose equation gives `Z` with `sigma_Z = f^2 / (z - f)^2 sigma_z`. Between two frames `z` is a straight
+/// line.
 ///
 /// ```
 /// use stereopsis::focus::{FocusPeak, FocusScale, ThinLens};
@@ -50,7 +51,9 @@ impl fmt::Display for FocusScaleError {
         match self {
             Self::TooFew => f.write_str("at least two positions are needed"),
             Self::Position { index, reason } => write!(f, "position {}: {reason}", index + 1),
-            Self::Order { index } => write!(f, "position {}: positions must rise or fall all the way", index + 1),
+            Self::Order { index } => {
+                write!(f, "position {}: positions must rise or fall all the way", index + 1)
+            }
         }
     }
 }
@@ -58,8 +61,8 @@ impl fmt::Display for FocusScaleError {
 impl core::error::Error for FocusScaleError {}
 
 impl<'a> FocusScale<'a> {
-    /// The scale of frames that were taken with the sensor `images_m` behind the lens, one distance a frame, rising or falling
-    /// all the way.
+    /// The scale of frames that were taken with the sensor `images_m` behind the lens, one distance a frame,
+    /// rising or falling all the way.
     pub fn new(lens: ThinLens<f32>, images_m: &'a [f32]) -> Result<Self, FocusScaleError> {
         for (index, &image) in images_m.iter().enumerate() {
             lens.object_distance(image).map_err(|reason| FocusScaleError::Position { index, reason })?;
@@ -81,7 +84,9 @@ impl<'a> FocusScale<'a> {
     fn image(&self, position: f32) -> Result<(f32, f32), LensError> {
         let last = self.images_m.len().saturating_sub(2);
         let whole = (finite(position)?.max(0.0) as usize).min(last);
-        let Some(&[before, after]) = self.images_m.get(whole..whole + 2) else { return Err(LensError::NotFinite) };
+        let Some(&[before, after]) = self.images_m.get(whole..whole + 2) else {
+            return Err(LensError::NotFinite);
+        };
         let step = after - before;
         Ok((before + (position - whole as f32) * step, step))
     }
@@ -93,7 +98,8 @@ impl<'a> FocusScale<'a> {
         Ok(Depth { depth_m, sigma_m: self.lens.object_sigma(image, peak.sigma() * step.abs())? })
     }
 
-    /// How much larger a frame is than the first one, by [`ThinLens::breathing`]; a frame that has no position is as large.
+    /// How much larger a frame is than the first one, by [`ThinLens::breathing`]; a frame that has no
+    /// position is as large.
     pub fn breathing(&self, frame: usize) -> Result<Breathing, FocusLineError> {
         match (self.images_m.get(frame), self.images_m.first()) {
             (Some(&image), Some(&first)) => Breathing::new(image / first),

@@ -19,9 +19,10 @@ pub enum Next {
 
 /// A search in a range of positions whose sharpness rises to one peak and falls behind it.
 ///
-/// Seven positions over the range. Then golden section between the neighbours of the sharpest, which keeps 0.62 of them for each
-/// frame whatever the shape of the peak (Kiefer 1953), while these are much less sharp. On top of the peak differences are as
-/// small as noise: what tells where it is are its flanks, and the frames that are left go there. Last, the least squares of all.
+/// Seven positions over the range. Then golden section between the neighbours of the sharpest, which keeps
+/// 0.62 of them for each frame whatever the shape of the peak (Kiefer 1953), while these are much less sharp.
+/// On top of the peak differences are as small as noise: what tells where it is are its flanks, and the
+/// frames that are left go there. Last, the least squares of all.
 #[derive(Clone, Debug)]
 pub struct FocusSearch {
     least: u16,
@@ -35,8 +36,8 @@ impl FocusSearch {
     pub const MOST_FRAMES: u8 = 12;
     /// Steps of the range, to one of which the search is exact, also beside the ends of the range.
     pub const STEPS: u16 = 64;
-    /// The sharpest position is at least so many percent as sharp as the least sharp one, if there is texture: noise in a few hundred
-    /// pixels makes less of twelve frames.
+    /// The sharpest position is at least so many percent as sharp as the least sharp one, if there is
+    /// texture: noise in a few hundred pixels makes less of twelve frames.
     const LEAST_RISE: u64 = 141;
 
     /// A search from `least` to `most`.
@@ -74,11 +75,13 @@ impl FocusSearch {
         }
         let place = known.iter().position(|(_, sharpness)| *sharpness == most).unwrap_or(0);
         let at = |place: usize| known.get(place).copied().unwrap_or((0, 0));
-        let (before, top, after) = (at(place.saturating_sub(1)), at(place), at((place + 1).min(known.len() - 1)));
+        let (before, top, after) =
+            (at(place.saturating_sub(1)), at(place), at((place + 1).min(known.len() - 1)));
         let (left, right) = (top.0 - before.0, after.0 - top.0);
         let step = (range / u32::from(Self::STEPS)).max(1) as u16;
         let spacing = (range / (COARSE - 1)) as u16;
-        let bounds = (top.0.saturating_sub(spacing).max(self.least), top.0.saturating_add(spacing).min(self.most));
+        let bounds =
+            (top.0.saturating_sub(spacing).max(self.least), top.0.saturating_add(spacing).min(self.most));
         let (place, width) = vertex(known, top, bounds);
         if self.count >= Self::MOST_FRAMES {
             return Next::Best(place);
@@ -105,18 +108,20 @@ impl FocusSearch {
     }
 }
 
-/// How one over the sharpness, less what it is in focus, falls behind the square of the distance: with so many times its own square it
-/// keeps up. From discs of blur before textures of several sizes; a peak that is seen from one side lies 20 positions of 1023 off
-/// without.
+/// How one over the sharpness, less what it is in focus, falls behind the square of the distance: with so
+/// many times its own square it keeps up. From discs of blur before textures of several sizes; a peak that is
+/// seen from one side lies 20 positions of 1023 off without.
 const SLOWER: f32 = 1.5;
 
-/// The lowest point of the parabola through what the samples are less sharp than `top`, `top / sharpness`, by least squares.
+/// The lowest point of the parabola through what the samples are less sharp than `top`, `top / sharpness`, by
+/// least squares.
 ///
-/// Differences of pixels shrink with the area of the blur, so one over the sharpness grows with the square of the distance from
-/// focus, and somewhat slower far from it ([`SLOWER`]): a peak near an end of the range, with samples on one side, is found as well. Weighted by a high
-/// power of the sharpness: the fourth is one over the variance of one over the sharpness under constant noise, the rest for the
-/// blur of a disc, of which all this is only near to true. The top sample's place
-/// where the parabola has no lowest point. Beside it, how far off the sharpness has fallen by 15 percent.
+/// Differences of pixels shrink with the area of the blur, so one over the sharpness grows with the square of
+/// the distance from focus, and somewhat slower far from it ([`SLOWER`]): a peak near an end of the range,
+/// with samples on one side, is found as well. Weighted by a high power of the sharpness: the fourth is one
+/// over the variance of one over the sharpness under constant noise, the rest for the blur of a disc, of
+/// which all this is only near to true. The top sample's place where the parabola has no lowest point. Beside
+/// it, how far off the sharpness has fallen by 15 percent.
 fn vertex(samples: &[(u16, u32)], top: (u16, u32), (least, most): (u16, u16)) -> (u16, u16) {
     let scale = f32::from(most - least).max(1.0);
     let (mut s, mut t) = ([0.0_f32; 5], [0.0_f32; 3]);
@@ -135,7 +140,8 @@ fn vertex(samples: &[(u16, u32)], top: (u16, u32), (least, most): (u16, u16)) ->
             power *= x;
         }
     }
-    // The normal equations of m + l x + q x^2 by Cramer's rule; the determinant of all three cancels in -l / (2 q).
+    // The normal equations of m + l x + q x^2 by Cramer's rule; the determinant of all three cancels in -l /
+    // (2 q).
     let ([s0, s1, s2, s3, s4], [t0, t1, t2]) = (s, t);
     let q = s0 * (s2 * t2 - s3 * t1) - s1 * (s1 * t2 - s3 * t0) + s2 * (s1 * t1 - s2 * t0);
     let l = s0 * (t1 * s4 - s3 * t2) - t0 * (s1 * s4 - s3 * s2) + s2 * (s1 * t2 - t1 * s2);

@@ -5,7 +5,7 @@
 pub struct SharperRow<'a> {
     /// The row of cells, from the top.
     pub index: usize,
-    /// Whether each cell is sharper in this frame than in all before: who copies those pixels has, in the end, a picture that is
-    /// sharp all over.
+    /// Whether each cell is sharper in this frame than in all before: who copies those pixels has, in the
+    /// end, a picture that is sharp all over.
     pub sharper: &'a [bool],
 }

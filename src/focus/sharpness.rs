@@ -12,22 +12,24 @@ const RING: usize = 2 * MOST_RADIUS + 1;
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Measure {
-    /// The sum of the modified Laplacian of smoothed rows, in 1/16 grey level: 799 680. The default: least hurt by noise.
+    /// The sum of the modified Laplacian of smoothed rows, in 1/16 grey level: 799 680. The default: least
+    /// hurt by noise.
     #[default]
     Robust,
     /// The sum of the modified Laplacian (Nayar & Nakagawa 1994): 49 980.
     ModifiedLaplacian,
     /// The sum of squared gradients (Krotkov 1987): 101 959 200.
     Tenengrad,
-    /// `n` times the sum of squares of the Laplacian less the square of its sum: `n^2` times its variance (Pech-Pacheco et al.
-    /// 2000), 2 498 040 000.
+    /// `n` times the sum of squares of the Laplacian less the square of its sum: `n^2` times its variance
+    /// (Pech-Pacheco et al. 2000), 2 498 040 000.
     LaplacianVariance,
 }
 
-/// Lines to rows of a measure over windows of `2 r + 1` by `2 r + 1` pixels; what lies outside the picture is left out.
+/// Lines to rows of a measure over windows of `2 r + 1` by `2 r + 1` pixels; what lies outside the picture is
+/// left out.
 ///
-/// `W` is the longest line. No sum can overflow its 32 bits: [`Measure`] has the largest. Takes 64 bytes for every pixel of a
-/// line.
+/// `W` is the longest line. No sum can overflow its 32 bits: [`Measure`] has the largest. Takes 64 bytes for
+/// every pixel of a line.
 ///
 /// ```
 /// use stereopsis::focus::{Measure, SharpnessRows};
@@ -52,7 +54,8 @@ pub struct SharpnessRows<const W: usize> {
     points: usize,
     raw: LineBand<W, 3>,
     smooth: [[u16; W]; 3],
-    /// The points' values of the rows in the window, and their sums down the columns; the Laplacian has its squares beside.
+    /// The points' values of the rows in the window, and their sums down the columns; the Laplacian has its
+    /// squares beside.
     values: [[i32; W]; RING],
     sums: [i32; W],
     squares: [u32; W],
@@ -80,8 +83,8 @@ impl<const W: usize> SharpnessRows<W> {
         }
     }
 
-    /// Begins a frame of `height` lines of `width` pixels, at most the capacity, with a window of `radius`, at most
-    /// [`Self::MOST_RADIUS`].
+    /// Begins a frame of `height` lines of `width` pixels, at most the capacity, with a window of `radius`,
+    /// at most [`Self::MOST_RADIUS`].
     pub fn start(&mut self, width: u16, height: u16, measure: Measure, radius: u8) {
         self.measure = measure;
         self.radius = usize::from(radius).min(MOST_RADIUS);
@@ -93,7 +96,8 @@ impl<const W: usize> SharpnessRows<W> {
         self.squares.fill(0);
     }
 
-    /// The next line of grey pixels. Rows of the measure that are complete are told with their index; with the last line, all.
+    /// The next line of grey pixels. Rows of the measure that are complete are told with their index; with
+    /// the last line, all.
     pub fn push(&mut self, line: &[u8], mut row: impl FnMut(usize, &[u32])) -> Result<(), FocusLineError> {
         if self.taken >= self.height {
             return Err(FocusLineError::NoLineDue);
@@ -138,14 +142,16 @@ impl<const W: usize> SharpnessRows<W> {
         }
     }
 
-    /// The points' values of row `centre` into the ring, in place of those that leave the window, which are taken off the sums.
+    /// The points' values of row `centre` into the ring, in place of those that leave the window, which are
+    /// taken off the sums.
     fn point_row(&mut self, centre: usize, newest: usize, row: &mut impl FnMut(usize, &[u32])) {
         let raw = self.raw.around(centre);
         let (mut small, mut large, mut signed) = ([0; W], [0; W], [0; W]);
         let value: &dyn Fn(usize) -> i32 = match self.measure {
             Measure::Robust => {
                 let rows = [centre.saturating_sub(1), centre, (centre + 1).min(newest)];
-                let rows = rows.map(|y| self.smooth.get(y % 3).and_then(|row| row.get(..self.width)).unwrap_or(&[]));
+                let rows =
+                    rows.map(|y| self.smooth.get(y % 3).and_then(|row| row.get(..self.width)).unwrap_or(&[]));
                 modified_laplacian(rows, &mut small);
                 &|x| small.get(x).copied().unwrap_or(0).into()
             }
@@ -172,7 +178,8 @@ impl<const W: usize> SharpnessRows<W> {
         self.window(true, row);
     }
 
-    /// Gives out the row of windows whose last row of points is in the sums; below the picture, first takes a row off.
+    /// Gives out the row of windows whose last row of points is in the sums; below the picture, first takes a
+    /// row off.
     fn window(&mut self, is_inside: bool, row: &mut impl FnMut(usize, &[u32])) {
         let side = 2 * self.radius + 1;
         if !is_inside && let Some(kept) = self.values.get_mut(self.points % side) {
@@ -193,9 +200,12 @@ impl<const W: usize> SharpnessRows<W> {
             (sums.iter().sum::<i32>(), squares.iter().sum::<u32>(), sums.len() as u32)
         };
         for (x, out) in out.iter_mut().enumerate().take(self.width) {
-            let (sum, square, count) = columns(x.saturating_sub(self.radius), (x + self.radius + 1).min(self.width));
+            let (sum, square, count) =
+                columns(x.saturating_sub(self.radius), (x + self.radius + 1).min(self.width));
             *out = match self.measure {
-                Measure::LaplacianVariance => (rows * count * square).saturating_sub(sum.unsigned_abs().pow(2)),
+                Measure::LaplacianVariance => {
+                    (rows * count * square).saturating_sub(sum.unsigned_abs().pow(2))
+                }
                 _ => sum as u32,
             };
         }

@@ -6,9 +6,9 @@ use nalgebra::{Matrix3, Point2, Point3, Vector2, Vector3};
 /// A pinhole camera: focal lengths, principal point and skew in px, and the lens before it.
 ///
 /// A point `(X, Y, Z)` of the camera's frame (X right, Y down, Z forward) is seen at
-/// `u = fx x + s y + cx`, `v = fy y + cy` with `(x, y) = (X / Z, Y / Z)` after the [`Lens`]; pixel centres are at
-/// integers (Hartley & Zisserman 2004, 6.1). A camera with `fx = fy = 1` and all else zero has no pixels: its
-/// coordinates are those of the plane Z = 1.
+/// `u = fx x + s y + cx`, `v = fy y + cy` with `(x, y) = (X / Z, Y / Z)` after the [`Lens`]; pixel centres
+/// are at integers (Hartley & Zisserman 2004, 6.1). A camera with `fx = fy = 1` and all else zero has no
+/// pixels: its coordinates are those of the plane Z = 1.
 ///
 /// ```
 /// use stereopsis::geometry::Camera;
@@ -165,7 +165,8 @@ impl<T: Real> Camera<T> {
 
     /// The sight of a pixel: the direction `(x, y, 1)` in the camera's frame of all that is seen there.
     ///
-    /// Exact without distortion; with it, to a thousandth of a pixel or ten roundings of the column, whichever is more.
+    /// Exact without distortion; with it, to a thousandth of a pixel or ten roundings of the column,
+    /// whichever is more.
     pub fn unproject(&self, pixel: &Point2<T>) -> Result<Vector3<T>, ProjectionError> {
         let y = (pixel.y - self.cy) / self.fy;
         let x = (pixel.x - self.cx - self.skew * y) / self.fx;
@@ -196,13 +197,15 @@ mod tests {
 
     #[test]
     fn the_inverse_is_the_inverse() {
-        let camera = Camera::new(500.0, 400.0, 320.0, 240.0).and_then(|c| c.with_skew(2.0)).expect("a camera");
+        let camera =
+            Camera::new(500.0, 400.0, 320.0, 240.0).and_then(|c| c.with_skew(2.0)).expect("a camera");
         assert_eq!(camera.inverse_matrix() * camera.matrix(), Matrix3::identity());
     }
 
     #[test]
     fn skew_moves_columns_only() {
-        let camera = Camera::new(500.0, 400.0, 320.0, 240.0).and_then(|c| c.with_skew(2.0)).expect("a camera");
+        let camera =
+            Camera::new(500.0, 400.0, 320.0, 240.0).and_then(|c| c.with_skew(2.0)).expect("a camera");
         // (x, y) = (1/2, 1/4): u = 250 + 0.5 + 320, v = 100 + 240.
         let pixel = camera.project(&Point3::new(1.0, 0.5, 2.0)).expect("in front");
         assert_eq!(pixel, Point2::new(570.5, 340.0_f64));

@@ -3,8 +3,8 @@
 use super::weighted::Weighted;
 use super::{EightPointError, Real};
 
-/// How far points may be off a line or a plane, normalised, and still count as on it: 0.0007 px in an image of 640 x 480
-/// (in `f32` more, for the rounding).
+/// How far points may be off a line or a plane, normalised, and still count as on it: 0.0007 px in an image
+/// of 640 x 480 (in `f32` more, for the rounding).
 /// No measured point is as exact; what rounding leaves is less.
 pub(super) const ON_IT: f64 = 4e-6;
 
@@ -26,11 +26,12 @@ pub(super) fn distinct<T: Real, const N: usize>(seen: Weighted<'_, T>) -> usize 
     count
 }
 
-/// The reason by name why the equations of correspondences have a solution too many, if there is one. F is any of the
-/// solutions, at size one; `rank` is that of the equations.
+/// The reason by name why the equations of correspondences have a solution too many, if there is one. F is
+/// any of the solutions, at size one; `rank` is that of the equations.
 ///
-/// On a plane they have rank six, and `F = [e]x H` for every e: none is of rank three. When all points of an image are on
-/// a line l, `F = l v^T` for every v: all are of rank one. On lines of both images the equations have rank four at most.
+/// On a plane they have rank six, and `F = [e]x H` for every e: none is of rank three. When all points of an
+/// image are on a line l, `F = l v^T` for every v: all are of rank one. On lines of both images the equations
+/// have rank four at most.
 pub(super) fn reason<T: Real>(
     seen: Weighted<'_, T>,
     rank: usize,

@@ -20,14 +20,15 @@ impl<T: Real> Fundamental<T> {
         Parts { residual: p.dot(&first), first, second: self.matrix().tr_mul(&p) }
     }
 
-    /// The algebraic residual `p^T F p'`, with |F| = 1: zero when the correspondence is possible. It has no unit that
-    /// means anything; the distances below have.
+    /// The algebraic residual `p^T F p'`, with |F| = 1: zero when the correspondence is possible. It has no
+    /// unit that means anything; the distances below have.
     pub fn residual(&self, seen: &Correspondence<T>) -> T {
         self.parts(seen).residual
     }
 
-    /// Sampson's distance squared, px^2: `(p^T F p')^2 / (l_1^2 + l_2^2 + l'_1^2 + l'_2^2)`, to first order the
-    /// squared distance in (u, v, u', v') to the nearest possible correspondence (Hartley & Zisserman 2004, 11.9).
+    /// Sampson's distance squared, px^2: `(p^T F p')^2 / (l_1^2 + l_2^2 + l'_1^2 + l'_2^2)`, to first order
+    /// the squared distance in (u, v, u', v') to the nearest possible correspondence (Hartley & Zisserman
+    /// 2004, 11.9).
     ///
     /// Zero when both points are epipoles.
     #[inline]
@@ -44,8 +45,8 @@ impl<T: Real> Fundamental<T> {
         if slope > T::ZERO { residual / slope } else { T::ZERO }
     }
 
-    /// The distances of p and p' to their epipolar lines in the first and the second image, px, not negative. Zero for
-    /// an epipole, of which all lines are.
+    /// The distances of p and p' to their epipolar lines in the first and the second image, px, not negative.
+    /// Zero for an epipole, of which all lines are.
     pub fn line_distances_px(&self, seen: &Correspondence<T>) -> (T, T) {
         let Parts { residual, first, second } = self.parts(seen);
         let distance = |line: Vector3<T>| {
@@ -55,8 +56,8 @@ impl<T: Real> Fundamental<T> {
         (distance(first), distance(second))
     }
 
-    /// The symmetric epipolar distance squared, px^2: the sum of both squared distances to the lines (Hartley &
-    /// Zisserman 2004, 11.10).
+    /// The symmetric epipolar distance squared, px^2: the sum of both squared distances to the lines (Hartley
+    /// & Zisserman 2004, 11.10).
     pub fn symmetric_squared_px2(&self, seen: &Correspondence<T>) -> T {
         let (first, second) = self.line_distances_px(seen);
         first * first + second * second
@@ -76,7 +77,8 @@ mod tests {
 
     #[test]
     fn rows_that_are_two_off() {
-        // A rectified pair: the distance to either line is 2; the nearest possible pair moves both points by 1.
+        // A rectified pair: the distance to either line is 2; the nearest possible pair moves both points by
+        // 1.
         let f = Fundamental::from_matrix(&Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0_f64))
             .expect("a fundamental matrix");
         let seen = Correspondence::new(100.0, 50.0, 90.0, 52.0);

@@ -8,7 +8,8 @@ use nalgebra::{Matrix2, Vector2};
 ///
 /// `r^2 = x^2 + y^2`, `q = (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6)`,
 /// `x_d = x q + 2 p1 x y + p2 (r^2 + 2 x^2)`, `y_d = y q + p1 (r^2 + 2 y^2) + 2 p2 x y`
-/// (Brown 1971; OpenCV's `distCoeffs = (k1, k2, p1, p2, k3, k4, k5, k6)`, of which most lenses need the first five).
+/// (Brown 1971; OpenCV's `distCoeffs = (k1, k2, p1, p2, k3, k4, k5, k6)`, of which most lenses need the first
+/// five).
 ///
 /// The default is a lens without distortion.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -60,8 +61,8 @@ impl<T: Real> Distortion<T> {
         self.distort_with_derivative(point).0
     }
 
-    /// The distorted point, and the derivative of both its coordinates by x and y. Where the denominator is not positive
-    /// they are no numbers.
+    /// The distorted point, and the derivative of both its coordinates by x and y. Where the denominator is
+    /// not positive they are no numbers.
     pub fn distort_with_derivative(&self, point: &Vector2<T>) -> (Vector2<T>, Matrix2<T>) {
         let (x, y) = (point.x, point.y);
         let two = T::of(2.0);
@@ -128,7 +129,10 @@ mod tests {
         // Over 1 + 0.2 / 2 + 0.08 / 4 + 0.16 / 8 = 1.14, p1 and p2 apart.
         let rational = Distortion { k4: 0.2, k5: 0.08, k6: 0.16, ..lens };
         let distorted = rational.distort(&point);
-        assert!((distorted - Vector2::new(0.535 / 1.14 + 0.02, 0.535 / 1.14 + 0.025)).amax() < 1e-15, "{distorted}");
+        assert!(
+            (distorted - Vector2::new(0.535 / 1.14 + 0.02, 0.535 / 1.14 + 0.025)).amax() < 1e-15,
+            "{distorted}"
+        );
     }
 
     #[test]

@@ -20,8 +20,8 @@ pub enum EightPointError {
     Line,
     /// One homography maps all points: they are on a plane, or the camera has only turned.
     Plane,
-    /// Two or more matrices fit, for no reason of the above: all points and both camera centres are on one quadric, such
-    /// as a sphere, a cylinder or a pair of planes.
+    /// Two or more matrices fit, for no reason of the above: all points and both camera centres are on one
+    /// quadric, such as a sphere, a cylinder or a pair of planes.
     Undetermined,
 }
 
@@ -32,7 +32,9 @@ impl core::fmt::Display for EightPointError {
             Self::NotFinite => "a coordinate is not finite",
             Self::Repeated => "a fundamental matrix needs eight correspondences that are not the same",
             Self::Line => "the points of an image are on a line",
-            Self::Plane => "the points are on a plane, or the camera has only turned: a homography is the answer",
+            Self::Plane => {
+                "the points are on a plane, or the camera has only turned: a homography is the answer"
+            }
             Self::Undetermined => "more than one fundamental matrix fits the points",
         })
     }
@@ -40,24 +42,25 @@ impl core::fmt::Display for EightPointError {
 
 impl core::error::Error for EightPointError {}
 
-/// Squarings at most: of a second singular value that is a thousandth more than the smallest e^-8 is left after them, and
-/// where the two are nearer than that, either matrix is as near.
+/// Squarings at most: of a second singular value that is a thousandth more than the smallest e^-8 is left
+/// after them, and where the two are nearer than that, either matrix is as near.
 const MOST_SQUARINGS: usize = 12;
 
-/// The fundamental matrix of eight correspondences or more, px, by the normalised eight-point algorithm: F minimises
-/// `sum (p^T F p')^2` with `|F| = 1` over points normalised after Hartley, and is then replaced by the nearest singular
-/// matrix (Longuet-Higgins 1981; Hartley 1997; Hartley & Zisserman 2004, algorithm 11.1). All correspondences are used:
-/// one that is wrong spoils the result.
+/// The fundamental matrix of eight correspondences or more, px, by the normalised eight-point algorithm: F
+/// minimises `sum (p^T F p')^2` with `|F| = 1` over points normalised after Hartley, and is then replaced by
+/// the nearest singular matrix (Longuet-Higgins 1981; Hartley 1997; Hartley & Zisserman 2004, algorithm
+/// 11.1). All correspondences are used: one that is wrong spoils the result.
 ///
-/// Eight are solved by elimination, more by their normal equations. Sampson's error (root mean square) on exact points of
-/// a 640 x 480 image is under 1e-9 px in `f64`. In `f32` it is under 0.001 px for eight and under 0.002 px for twenty or
-/// more, mostly a tenth of that, near the rounding of the coordinates themselves; from 0.1 px of noise on `f32` and `f64`
-/// err alike. With 9 to 11 correspondences the normal equations lose more in `f32`: 0.02 px, and one set of nine in sixty
-/// is refused as [`EightPointError::Undetermined`].
+/// Eight are solved by elimination, more by their normal equations. Sampson's error (root mean square) on
+/// exact points of a 640 x 480 image is under 1e-9 px in `f64`. In `f32` it is under 0.001 px for eight and
+/// under 0.002 px for twenty or more, mostly a tenth of that, near the rounding of the coordinates
+/// themselves; from 0.1 px of noise on `f32` and `f64` err alike. With 9 to 11 correspondences the normal
+/// equations lose more in `f32`: 0.02 px, and one set of nine in sixty is refused as
+/// [`EightPointError::Undetermined`].
 ///
-/// A set that is degenerate to 0.0007 px is refused by name; in `f32` to 0.02 px for eight and to 0.3 px for more. Points
-/// that are on a plane only to within their noise are not refused here, for the noise is not known:
-/// [`choose`](super::choose) tells those.
+/// A set that is degenerate to 0.0007 px is refused by name; in `f32` to 0.02 px for eight and to 0.3 px for
+/// more. Points that are on a plane only to within their noise are not refused here, for the noise is not
+/// known: [`choose`](super::choose) tells those.
 ///
 /// ```
 /// use stereopsis::geometry::{Correspondence, EightPointError, eight_point};
@@ -73,8 +76,8 @@ pub fn eight_point<T: Real>(seen: &[Correspondence<T>]) -> Result<Fundamental<T>
     solve(Weighted::alike(seen))
 }
 
-/// The same with each squared residual times its weight: `sum w (p^T F p')^2`. A weight of zero leaves a correspondence
-/// out altogether, and so does a negative one; correspondences without a weight are left out.
+/// The same with each squared residual times its weight: `sum w (p^T F p')^2`. A weight of zero leaves a
+/// correspondence out altogether, and so does a negative one; correspondences without a weight are left out.
 pub fn eight_point_weighted<T: Real>(
     seen: &[Correspondence<T>],
     weights: &[T],
@@ -88,7 +91,8 @@ fn solve<T: Real>(seen: Weighted<'_, T>) -> Result<Fundamental<T>, EightPointErr
         return Err(EightPointError::TooFew);
     }
     // A sum with something infinite or not a number in it is neither.
-    let sum = seen.iter().fold(T::ZERO, |sum, (s, w)| sum + s.first.x + s.first.y + s.second.x + s.second.y + w);
+    let sum =
+        seen.iter().fold(T::ZERO, |sum, (s, w)| sum + s.first.x + s.first.y + s.second.x + s.second.y + w);
     if !sum.is_finite() {
         return Err(EightPointError::NotFinite);
     }
@@ -98,8 +102,8 @@ fn solve<T: Real>(seen: Weighted<'_, T>) -> Result<Fundamental<T>, EightPointErr
         return Err(if repeated { EightPointError::Repeated } else { EightPointError::Line });
     };
 
-    // The row of a correspondence: f11 f12 f13 f21 ... of p^T F p', which are p's numbers times those of p'. Elimination
-    // works on the rows, the factor on their squares.
+    // The row of a correspondence: f11 f12 f13 f21 ... of p^T F p', which are p's numbers times those of p'.
+    // Elimination works on the rows, the factor on their squares.
     let on_it = T::of(degenerate::ON_IT);
     let (f, pivots, on_it, least) = if count == 8 {
         let mut rows = [[T::ONE; 9]; 8];
@@ -130,8 +134,8 @@ fn solve<T: Real>(seen: Weighted<'_, T>) -> Result<Fundamental<T>, EightPointErr
     Ok(Fundamental::of_rows(both.in_pixels(nearest_singular(&f, &cofactors))))
 }
 
-/// The sum of `w r r^T` over the rows r of all correspondences. r is p times p', so that of its 81 elements only six of
-/// p p^T times six of p' p'^T differ.
+/// The sum of `w r r^T` over the rows r of all correspondences. r is p times p', so that of its 81 elements
+/// only six of p p^T times six of p' p'^T differ.
 #[allow(clippy::needless_range_loop, reason = "an element is named by its row and column")]
 fn normal_matrix<T: Real>(seen: Weighted<'_, T>, both: &Both<T>) -> [[T; 9]; 9] {
     let mut sums = [[T::ZERO; 6]; 6];
@@ -161,8 +165,8 @@ fn normal_matrix<T: Real>(seen: Weighted<'_, T>, both: &Both<T>) -> [[T; 9]; 9] 
 
 /// `F - (F v) v^T` with v the singular vector of the smallest singular value: the nearest singular matrix.
 ///
-/// v is the eigenvector of the largest eigenvalue of `C^T C`, where C is F's matrix of cofactors: its singular values are
-/// the products of two of F's. The matrix is squared until nothing else is left in it.
+/// v is the eigenvector of the largest eigenvalue of `C^T C`, where C is F's matrix of cofactors: its
+/// singular values are the products of two of F's. The matrix is squared until nothing else is left in it.
 fn nearest_singular<T: Real>(f: &[[T; 3]; 3], cofactors: &[[T; 3]; 3]) -> [[T; 3]; 3] {
     let columns = transposed3(*cofactors);
     let mut power = times_transposed3(&columns, &columns);
@@ -171,7 +175,8 @@ fn nearest_singular<T: Real>(f: &[[T; 3]; 3], cofactors: &[[T; 3]; 3]) -> [[T; 3
         power.as_flattened_mut().iter_mut().for_each(|x| *x *= by);
         // It is symmetric.
         power = times_transposed3(&power, &power);
-        // One less the sum of the squared eigenvalues, whose sum is one: about two of the second, which was squared now.
+        // One less the sum of the squared eigenvalues, whose sum is one: about two of the second, which was
+        // squared now.
         if T::ONE - trace(&power) <= T::EPSILON.sqrt() {
             break;
         }

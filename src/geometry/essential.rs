@@ -4,8 +4,8 @@ use super::linear::{Svd3, columns3, product};
 use super::{Camera, Fundamental, Pose, Real, skew};
 use nalgebra::{Matrix3, Vector3};
 
-/// `E = [t]x R`, with `p^T E p' = 0` for sights p of camera 1 and p' of camera 2, and `P = R P' + t` (Longuet-Higgins
-/// 1981; Hartley & Zisserman 2004, 9.6).
+/// `E = [t]x R`, with `p^T E p' = 0` for sights p of camera 1 and p' of camera 2, and `P = R P' + t`
+/// (Longuet-Higgins 1981; Hartley & Zisserman 2004, 9.6).
 ///
 /// Its scale says nothing; it is held with singular values (1, 1, 0), which stands for |t| = 1.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -53,8 +53,8 @@ impl<T: Real> Essential<T> {
         Ok(Self { matrix: product(&skew(&(scaled / scaled.norm())), pose.rotation()) })
     }
 
-    /// The essential matrix that is nearest to a matrix: its first two singular values by their mean, its third by
-    /// zero (Hartley & Zisserman 2004, 11.7.3).
+    /// The essential matrix that is nearest to a matrix: its first two singular values by their mean, its
+    /// third by zero (Hartley & Zisserman 2004, 11.7.3).
     pub fn nearest(matrix: &Matrix3<T>) -> Result<Self, EssentialError> {
         let size = matrix.amax();
         if !size.is_finite() {
@@ -73,7 +73,8 @@ impl<T: Real> Essential<T> {
 
     /// `E = K^T F K'`, and the nearest essential matrix of that.
     ///
-    /// F knows nothing of lenses: the correspondences it came from have to be undistorted ones ([`Camera::undistort`]).
+    /// F knows nothing of lenses: the correspondences it came from have to be undistorted ones
+    /// ([`Camera::undistort`]).
     pub fn from_fundamental(
         fundamental: &Fundamental<T>,
         first: &Camera<T>,
@@ -121,7 +122,8 @@ mod tests {
     #[test]
     fn the_nearest_one() {
         // diag(3, 1, 0.5): the first two become one.
-        let e = Essential::nearest(&Matrix3::from_diagonal(&Vector3::new(3.0, 1.0, 0.5_f64))).expect("rank 2");
+        let e =
+            Essential::nearest(&Matrix3::from_diagonal(&Vector3::new(3.0, 1.0, 0.5_f64))).expect("rank 2");
         assert!((e.matrix() - Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 0.0))).amax() < 1e-15);
         assert_eq!(Essential::nearest(&Matrix3::<f64>::from_element(1.0)), Err(EssentialError::Rank));
         assert_eq!(Essential::nearest(&Matrix3::<f64>::zeros()), Err(EssentialError::Rank));

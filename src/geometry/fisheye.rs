@@ -3,11 +3,12 @@
 use super::Real;
 use nalgebra::{Matrix2, Vector2};
 
-/// Coefficients of a fisheye lens, without a unit: they act on the angle between a sight and the optical axis.
+/// Coefficients of a fisheye lens, without a unit: they act on the angle between a sight and the optical
+/// axis.
 ///
 /// `theta = atan(r)`, `r^2 = x^2 + y^2` with `(x, y) = (X / Z, Y / Z)`,
-/// `theta_d = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8)`, `(x_d, y_d) = theta_d / r (x, y)`
-/// (Kannala & Brandt 2006; OpenCV's `fisheye`, Kalibr's and ROS's `equidistant`).
+/// `theta_d = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8)`, `(x_d, y_d) = theta_d / r (x,
+/// y)` (Kannala & Brandt 2006; OpenCV's `fisheye`, Kalibr's and ROS's `equidistant`).
 ///
 /// Sights of 90 degrees and more have no place on the plane Z = 1, so that they are left out here.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -60,8 +61,8 @@ impl<T: Real> Fisheye<T> {
         let s = theta * theta;
         let [k1, k2, k3, k4] = self.to_opencv();
         let angle = theta * (T::ONE + s * (k1 + s * (k2 + s * (k3 + s * k4))));
-        let growth =
-            T::ONE + s * (T::of(3.0) * k1 + s * (T::of(5.0) * k2 + s * (T::of(7.0) * k3 + s * T::of(9.0) * k4)));
+        let growth = T::ONE
+            + s * (T::of(3.0) * k1 + s * (T::of(5.0) * k2 + s * (T::of(7.0) * k3 + s * T::of(9.0) * k4)));
         (angle, growth)
     }
 }

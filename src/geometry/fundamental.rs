@@ -3,13 +3,16 @@
 use super::{Camera, Epipole, Essential, EssentialError, Line, Pose, Real, linear};
 use nalgebra::{Matrix3, Point2, Vector3};
 
-/// F, with `p^T F p' = 0` for a point seen at p in the first and at p' in the second image, both homogeneous px
-/// (Hartley & Zisserman 2004, 9.2; there, and in OpenCV, with the images exchanged: `x2^T F x1 = 0`, the transpose).
+/// F, with `p^T F p' = 0` for a point seen at p in the first and at p' in the second image, both homogeneous
+/// px (Hartley & Zisserman 2004, 9.2; there, and in OpenCV, with the images exchanged: `x2^T F x1 = 0`, the
+/// transpose).
 ///
-/// Singular. Its scale says nothing; it is held with `|F| = 1` (the root of the sum of its elements' squares).
+/// Singular. Its scale says nothing; it is held with `|F| = 1` (the root of the sum of its elements'
+/// squares).
 ///
-/// In `f32` distances to it are good to a few thousandths of a pixel in images of 640 x 480, mostly ten times better: F has
-/// three orders of magnitude between its elements and more, and `p^T F p'` is a difference of numbers near one.
+/// In `f32` distances to it are good to a few thousandths of a pixel in images of 640 x 480, mostly ten times
+/// better: F has three orders of magnitude between its elements and more, and `p^T F p'` is a difference of
+/// numbers near one.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Fundamental<T: Real> {
     matrix: Matrix3<T>,
@@ -38,8 +41,8 @@ impl core::fmt::Display for FundamentalError {
 impl core::error::Error for FundamentalError {}
 
 impl<T: Real> Fundamental<T> {
-    /// The singular matrix that is nearest to `matrix`, after rows and columns were brought to one size: pixels and
-    /// the homogeneous one differ by orders of magnitude, and so do the elements of F.
+    /// The singular matrix that is nearest to `matrix`, after rows and columns were brought to one size:
+    /// pixels and the homogeneous one differ by orders of magnitude, and so do the elements of F.
     pub fn from_matrix(matrix: &Matrix3<T>) -> Result<Self, FundamentalError> {
         if !matrix.amax().is_finite() || !matrix.iter().all(|x| x.is_finite()) {
             return Err(FundamentalError::NotFinite);
@@ -75,7 +78,11 @@ impl<T: Real> Fundamental<T> {
     }
 
     /// `F = K^-T [t]x R K'^-1`, of two cameras and the pose of the second beside the first.
-    pub fn from_cameras(pose: &Pose<T>, first: &Camera<T>, second: &Camera<T>) -> Result<Self, EssentialError> {
+    pub fn from_cameras(
+        pose: &Pose<T>,
+        first: &Camera<T>,
+        second: &Camera<T>,
+    ) -> Result<Self, EssentialError> {
         Ok(Self::from_essential(&Essential::from_pose(pose)?, first, second))
     }
 
@@ -99,8 +106,8 @@ impl<T: Real> Fundamental<T> {
         Self { matrix: self.matrix.transpose() }
     }
 
-    /// `l = F p'`: the line of the first image on which what the second shows at `second` is seen. `None` for the
-    /// epipole (to rounding), of which all lines are, and where the line is the one at infinity.
+    /// `l = F p'`: the line of the first image on which what the second shows at `second` is seen. `None` for
+    /// the epipole (to rounding), of which all lines are, and where the line is the one at infinity.
     pub fn line_in_first(&self, second: &Point2<T>) -> Option<Line<T>> {
         let line = self.matrix * second.to_homogeneous();
         // At the epipole nothing is left of the sums but their rounding.
@@ -109,7 +116,8 @@ impl<T: Real> Fundamental<T> {
         if line.x.abs().max(line.y.abs()) <= rounding { None } else { Line::new(&line) }
     }
 
-    /// `l' = F^T p`: the line of the second image on which what the first shows at `first` is seen. `None` as above.
+    /// `l' = F^T p`: the line of the second image on which what the first shows at `first` is seen. `None` as
+    /// above.
     pub fn line_in_second(&self, first: &Point2<T>) -> Option<Line<T>> {
         self.swapped().line_in_first(first)
     }
@@ -125,8 +133,8 @@ impl<T: Real> Fundamental<T> {
     }
 }
 
-/// What is orthogonal to three vectors in a plane: the cross product of the two that are the farthest from parallel.
-/// Each component keeps its own digits, however different their sizes.
+/// What is orthogonal to three vectors in a plane: the cross product of the two that are the farthest from
+/// parallel. Each component keeps its own digits, however different their sizes.
 fn orthogonal<T: Real>([a, b, c]: [Vector3<T>; 3]) -> Epipole<T> {
     let candidate = |a: Vector3<T>, b: Vector3<T>| {
         let (sizes, cross) = (a.norm_squared() * b.norm_squared(), a.cross(&b));
@@ -182,7 +190,8 @@ mod tests {
 
     #[test]
     fn a_rectified_pair() {
-        // f = 500, camera 2 to the right: F is [0 0 0; 0 0 -1; 0 1 0], rows equal, epipoles at infinity along u.
+        // f = 500, camera 2 to the right: F is [0 0 0; 0 0 -1; 0 1 0], rows equal, epipoles at infinity along
+        // u.
         let camera = Camera::new(500.0, 500.0, 320.0, 240.0_f64).expect("a camera");
         let pose = Pose::new(Matrix3::identity(), Vector3::new(0.1, 0.0, 0.0)).expect("a pose");
         let f = Fundamental::from_cameras(&pose, &camera, &camera).expect("a baseline");
@@ -209,10 +218,14 @@ mod tests {
 
     #[test]
     fn the_nearest_singular_matrix() {
-        let f = Fundamental::from_matrix(&Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 1.0_f64))).expect("a rank");
+        let f = Fundamental::from_matrix(&Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 1.0_f64)))
+            .expect("a rank");
         assert!(f.matrix().determinant().abs() < 1e-15);
         assert_eq!(Fundamental::from_matrix(&Matrix3::<f64>::from_element(2.0)), Err(FundamentalError::Rank));
         assert_eq!(Fundamental::from_matrix(&Matrix3::<f64>::zeros()), Err(FundamentalError::Rank));
-        assert_eq!(Fundamental::from_matrix(&Matrix3::from_element(f32::NAN)), Err(FundamentalError::NotFinite));
+        assert_eq!(
+            Fundamental::from_matrix(&Matrix3::from_element(f32::NAN)),
+            Err(FundamentalError::NotFinite)
+        );
     }
 }

@@ -6,11 +6,11 @@ use super::weighted::Weighted;
 use super::{Camera, Correspondence, Pose, Real};
 use nalgebra::{Matrix3, Point2, Vector3};
 
-/// H, with `p ~ H p'`: from a pixel of the second image to that of the first, homogeneous px. (OpenCV's goes from the
-/// first to the second, `x2 ~ H x1`: the inverse.)
+/// H, with `p ~ H p'`: from a pixel of the second image to that of the first, homogeneous px. (OpenCV's goes
+/// from the first to the second, `x2 ~ H x1`: the inverse.)
 ///
-/// For cameras `K (P = R P' + t)` and the plane `n^T P' = d` of camera 2: `H = K (R + t n^T / d) K'^-1` (Hartley &
-/// Zisserman 2004, 13.1). Held with |H| = 1.
+/// For cameras `K (P = R P' + t)` and the plane `n^T P' = d` of camera 2: `H = K (R + t n^T / d) K'^-1`
+/// (Hartley & Zisserman 2004, 13.1). Held with |H| = 1.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Homography<T: Real> {
     matrix: Matrix3<T>,
@@ -83,11 +83,11 @@ impl<T: Real> Homography<T> {
         Self::from_matrix(&(first.matrix() * euclidean * second.inverse_matrix()))
     }
 
-    /// The least-squares homography of four correspondences or more (the direct linear transform on normalised points,
-    /// Hartley & Zisserman 2004, algorithm 4.2); all are used.
+    /// The least-squares homography of four correspondences or more (the direct linear transform on
+    /// normalised points, Hartley & Zisserman 2004, algorithm 4.2); all are used.
     ///
-    /// Four exact ones give the homography to rounding. With noise the algebraic error is least, which is close to the
-    /// transfer error.
+    /// Four exact ones give the homography to rounding. With noise the algebraic error is least, which is
+    /// close to the transfer error.
     pub fn from_correspondences(seen: &[Correspondence<T>]) -> Result<Self, HomographyError> {
         if seen.len() < 4 {
             return Err(HomographyError::TooFew);
@@ -144,11 +144,13 @@ impl<T: Real> Homography<T> {
         Point2::from_homogeneous(self.inverse * first.to_homogeneous())
     }
 
-    /// The symmetric transfer error squared, px^2: `|p - H p'|^2 + |p' - H^-1 p|^2` (Hartley & Zisserman 2004, 4.7);
-    /// infinite when one of the two is at infinity.
+    /// The symmetric transfer error squared, px^2: `|p - H p'|^2 + |p' - H^-1 p|^2` (Hartley & Zisserman
+    /// 2004, 4.7); infinite when one of the two is at infinity.
     pub fn symmetric_squared_px2(&self, seen: &Correspondence<T>) -> T {
         match (self.to_first(&seen.second), self.to_second(&seen.first)) {
-            (Some(first), Some(second)) => (first - seen.first).norm_squared() + (second - seen.second).norm_squared(),
+            (Some(first), Some(second)) => {
+                (first - seen.first).norm_squared() + (second - seen.second).norm_squared()
+            }
             _ => T::ONE / T::ZERO,
         }
     }
@@ -171,7 +173,9 @@ fn of_four<T: Real>([a, b, c, d]: [(Point2<T>, Point2<T>); 4]) -> (Matrix3<T>, b
 }
 
 /// H of more normalised correspondences than four, |H| = 1, and whether it is the only one.
-pub(super) fn least_squares<T: Real>(seen: impl Iterator<Item = (Point2<T>, Point2<T>)>) -> (Matrix3<T>, bool) {
+pub(super) fn least_squares<T: Real>(
+    seen: impl Iterator<Item = (Point2<T>, Point2<T>)>,
+) -> (Matrix3<T>, bool) {
     let mut sums = Projective::<T, 3>::new();
     for (p, q) in seen {
         sums.add(p.x, p.y, &[q.x, q.y, T::ONE]);
@@ -192,7 +196,8 @@ mod tests {
     #[test]
     fn four_corners() {
         // p = p' / (1 + u' / 2): the side at u' = 2 is halved.
-        let h = Homography::from_correspondences(&square([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 2.0)])).expect("H");
+        let h = Homography::from_correspondences(&square([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 2.0)]))
+            .expect("H");
         let expected = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.5, 0.0, 1.0);
         assert!((h.matrix() / h.matrix().m33 - expected).amax() < 1e-14, "{}", h.matrix());
         let middle = h.to_first(&Point2::new(1.0, 1.0)).expect("it is finite");

@@ -13,7 +13,8 @@ pub enum Lens<T: Real> {
     Fisheye(Fisheye<T>),
 }
 
-/// Newton's steps at most. From the distorted point itself, lenses that turn nothing over need three to seven.
+/// Newton's steps at most. From the distorted point itself, lenses that turn nothing over need three to
+/// seven.
 const MOST_STEPS: usize = 12;
 
 impl<T: Real> From<Distortion<T>> for Lens<T> {
@@ -58,9 +59,9 @@ impl<T: Real> Lens<T> {
         }
     }
 
-    /// The squared radius r^2 up to which a growing radius is put at a growing one, without tangential distortion; 64 at
-    /// most, which is a field of view of 166 degrees. Beyond it, coefficients that were fitted within the image turn the
-    /// image over.
+    /// The squared radius r^2 up to which a growing radius is put at a growing one, without tangential
+    /// distortion; 64 at most, which is a field of view of 166 degrees. Beyond it, coefficients that were
+    /// fitted within the image turn the image over.
     pub fn reach_r2(&self) -> T {
         let grows = |r: T| match self {
             Self::BrownConrady(distortion) => distortion.grows_at(r),
@@ -83,11 +84,12 @@ impl<T: Real> Lens<T> {
         r.min(most) * r.min(most)
     }
 
-    /// The point that [`Self::distort`] puts at `distorted`, to within `tolerance`, in units of the plane Z = 1.
+    /// The point that [`Self::distort`] puts at `distorted`, to within `tolerance`, in units of the plane Z =
+    /// 1.
     ///
-    /// Newton's method, at most twelve steps. `None` when it has not come within the tolerance, or when it came to
-    /// where the lens model has turned the image over (the derivative's determinant is not positive): such a point
-    /// is outside of what the coefficients describe.
+    /// Newton's method, at most twelve steps. `None` when it has not come within the tolerance, or when it
+    /// came to where the lens model has turned the image over (the derivative's determinant is not
+    /// positive): such a point is outside of what the coefficients describe.
     pub fn undistort(&self, distorted: &Vector2<T>, tolerance: T) -> Option<Vector2<T>> {
         let mut point = *distorted;
         for _ in 0..=MOST_STEPS {

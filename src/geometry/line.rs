@@ -10,8 +10,8 @@ pub struct Line<T: Real> {
 }
 
 impl<T: Real> Line<T> {
-    /// The line `a u + b v + c = 0` of any scale; `None` when a and b are zero, which is the line at infinity, or when
-    /// a number is not finite.
+    /// The line `a u + b v + c = 0` of any scale; `None` when a and b are zero, which is the line at
+    /// infinity, or when a number is not finite.
     pub fn new(coefficients: &Vector3<T>) -> Option<Self> {
         let size = coefficients.x.abs().max(coefficients.y.abs());
         if !(size > T::ZERO) || !coefficients.iter().all(|x| x.is_finite()) {
@@ -62,8 +62,8 @@ impl<T: Real> Epipole<T> {
         &self.homogeneous
     }
 
-    /// The epipole's column and row, px; `None` at infinity, that is where w is nothing but rounding (farther than
-    /// 2^20 px in `f32`, 2^49 px in `f64`).
+    /// The epipole's column and row, px; `None` at infinity, that is where w is nothing but rounding (farther
+    /// than 2^20 px in `f32`, 2^49 px in `f64`).
     pub fn pixel(&self) -> Option<Point2<T>> {
         let (x, y, w) = (self.homogeneous.x, self.homogeneous.y, self.homogeneous.z);
         (w.abs() > T::EPSILON * T::of(8.0)).then(|| Point2::new(x / w, y / w))

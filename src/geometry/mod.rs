@@ -1,31 +1,36 @@
 //! Pure maths on fixed-size nalgebra types: no pixels come in.
 //!
-//! In: calibrated numbers, and correspondences that somebody found. Out: types that have checked them once, so that
-//! nobody after them has to.
+//! In: calibrated numbers, and correspondences that somebody found. Out: types that have checked them once,
+//! so that nobody after them has to.
 //!
 //! * [`Real`]: `f32` or `f64`. `linear`: factors and null vectors that are bounded and cannot panic.
-//! * [`Camera`] with its [`Lens`] ([`Distortion`] or [`Fisheye`]); [`Pose`] of a second camera beside the first; [`RectifiedRig`]: two cameras whose
-//!   rows are aligned, and its re-projection matrix Q.
-//! * [`StereoRig`]: two cameras as they are mounted; [`Rectification`] aligns their rows, a [`Warp`] for each, with a
-//!   [`RectificationReport`]; a [`RowMeter`] tells while the cameras run whether they still agree. [`StereoRig::to_record`] and [`StereoRig::from_record`]: the rig in flash.
-//! * [`Essential`] and [`Fundamental`]: two views, in the cameras' frames and in px, with lines, epipoles and distances.
-//! * [`Correspondence`]s to [`Fundamental`]: [`eight_point()`]. To [`Homography`]: its direct linear transform. [`choose`]
-//!   says which of the two it is.
-//! * Correspondences of which some are wrong: [`robust_fundamental`], and [`Essential::refined`] for cameras that are known.
-//! * [`Essential::recover_pose`] and [`Homography::recover_motions`]: the pose, without its scale ([`RelativePose`]).
+//! * [`Camera`] with its [`Lens`] ([`Distortion`] or [`Fisheye`]); [`Pose`] of a second camera beside the
+//!   first; [`RectifiedRig`]: two cameras whose rows are aligned, and its re-projection matrix Q.
+//! * [`StereoRig`]: two cameras as they are mounted; [`Rectification`] aligns their rows, a [`Warp`] for
+//!   each, with a [`RectificationReport`]; a [`RowMeter`] tells while the cameras run whether they still
+//!   agree. [`StereoRig::to_record`] and [`StereoRig::from_record`]: the rig in flash.
+//! * [`Essential`] and [`Fundamental`]: two views, in the cameras' frames and in px, with lines, epipoles and
+//!   distances.
+//! * [`Correspondence`]s to [`Fundamental`]: [`eight_point()`]. To [`Homography`]: its direct linear
+//!   transform. [`choose`] says which of the two it is.
+//! * Correspondences of which some are wrong: [`robust_fundamental`], and [`Essential::refined`] for cameras
+//!   that are known.
+//! * [`Essential::recover_pose`] and [`Homography::recover_motions`]: the pose, without its scale
+//!   ([`RelativePose`]).
 //! * [`TwoViews`]: points from two sights, with their residual, angle and covariance.
 //! * [`Projection`]: a camera in the world as one matrix, to and from its parts, and from [`Landmark`]s.
-//! * Where a camera stands among known points: [`p3p()`] of three, [`robust_resection`] of many, some of them wrong.
-//! * One camera before something of known shape: [`Sighting`] of an object of known size, the poses of a [`SquareMark`], the
-//!   orientation between [`Walls`].
+//! * Where a camera stands among known points: [`p3p()`] of three, [`robust_resection`] of many, some of them
+//!   wrong.
+//! * One camera before something of known shape: [`Sighting`] of an object of known size, the poses of a
+//!   [`SquareMark`], the orientation between [`Walls`].
 //!
-//! R and t carry a point of camera 2 into camera 1, `P = R P' + t`, and `p^T F p' = 0`; what OpenCV writes the other way
-//! round is converted by functions that say so.
+//! R and t carry a point of camera 2 into camera 1, `P = R P' + t`, and `p^T F p' = 0`; what OpenCV writes
+//! the other way round is converted by functions that say so.
 //!
 //! # The lecture's equations
 //!
-//! Where the equations of Stanford's AA273, lecture 6 (Pavone 2018), are computed, in the lecture's order. Each has a worked
-//! number in the tests.
+//! Where the equations of Stanford's AA273, lecture 6 (Pavone 2018), are computed, in the lecture's order.
+//! Each has a worked number in the tests.
 //!
 //! | equation | computed by |
 //! | --- | --- |
@@ -107,14 +112,14 @@ pub use real::Real;
 pub use record::RecordError;
 pub use recover::{RecoverError, RecoveredPose};
 pub use rectify::{
-    Axis, Crop, Rectification, RectificationReport, RectifyError, RowAlignment, RowHealth, RowMeter, RowMeterError,
-    UncalibratedError, UncalibratedRectification, Warp, WarpSource,
+    Axis, Crop, Rectification, RectificationReport, RectifyError, RowAlignment, RowHealth, RowMeter,
+    RowMeterError, UncalibratedError, UncalibratedRectification, Warp, WarpSource,
 };
 pub use relative::{RelativePose, ScaleError};
 pub use rig::{RectifiedRig, RigError};
 pub use robust::{
-    RobustConfig, RobustError, RobustFundamental, RobustResection, RobustResectionError, Sampling, robust_fundamental,
-    robust_resection,
+    RobustConfig, RobustError, RobustFundamental, RobustResection, RobustResectionError, Sampling,
+    robust_fundamental, robust_resection,
 };
 pub use skew::skew;
 pub(crate) use skew::turn;

@@ -18,7 +18,8 @@ pub enum TwoViewModel<T: Real> {
 pub struct ModelChoice<T: Real> {
     /// The one with the lower criterion.
     pub model: TwoViewModel<T>,
-    /// GRIC of the fundamental matrix; `None` when the points are on a plane to rounding, so that there is no such matrix.
+    /// GRIC of the fundamental matrix; `None` when the points are on a plane to rounding, so that there is
+    /// no such matrix.
     pub fundamental_gric: Option<T>,
     /// GRIC of the homography; `None` when the points have none.
     pub homography_gric: Option<T>,
@@ -27,8 +28,8 @@ pub struct ModelChoice<T: Real> {
 /// Torr's geometric robust information criterion, without a unit; the model with less is the better one:
 /// `sum min(e^2 / sigma^2, 2 (r - d)) + d n ln r + k ln(r n)`
 ///
-/// with r = 4 numbers in a correspondence, `squared` the n squared distances e^2 to the model in px^2, d the model's
-/// dimension and k its parameters (Torr 1998, equation 28; Torr, Fitzgibbon & Zisserman 1999).
+/// with r = 4 numbers in a correspondence, `squared` the n squared distances e^2 to the model in px^2, d the
+/// model's dimension and k its parameters (Torr 1998, equation 28; Torr, Fitzgibbon & Zisserman 1999).
 pub fn gric<T: Real>(squared: impl Iterator<Item = T>, sigma_px: T, dimension: u8, parameters: u8) -> T {
     let (r, d, k) = (T::of(4.0), T::count(dimension.into()), T::count(parameters.into()));
     let most = T::of(2.0) * (r - d);
@@ -78,8 +79,9 @@ impl<T: Real> Homography<T> {
     }
 }
 
-/// Fits both models to correspondences without outliers whose coordinates have a standard deviation of `sigma_px`, and
-/// chooses by [`gric`]. What the eight-point algorithm refuses as a plane is planar without a vote.
+/// Fits both models to correspondences without outliers whose coordinates have a standard deviation of
+/// `sigma_px`, and chooses by [`gric`]. What the eight-point algorithm refuses as a plane is planar without a
+/// vote.
 ///
 /// The error is that of the eight-point algorithm, when there is no homography either.
 pub fn choose<T: Real>(seen: &[Correspondence<T>], sigma_px: T) -> Result<ModelChoice<T>, EightPointError> {
@@ -88,7 +90,11 @@ pub fn choose<T: Real>(seen: &[Correspondence<T>], sigma_px: T) -> Result<ModelC
     let fundamental = match (eight_point(seen), homography) {
         (Ok(f), _) => f,
         (Err(EightPointError::Plane), Ok(h)) => {
-            return Ok(ModelChoice { model: TwoViewModel::Planar(h), fundamental_gric: None, homography_gric });
+            return Ok(ModelChoice {
+                model: TwoViewModel::Planar(h),
+                fundamental_gric: None,
+                homography_gric,
+            });
         }
         (Err(error), _) => return Err(error),
     };

@@ -5,8 +5,8 @@ use super::weighted::{Image, Weighted};
 use super::{Correspondence, Real};
 use nalgebra::{Matrix3, Point2, RowVector3};
 
-/// `x = s (u - cx)`, `y = s (v - cy)`: the points' centroid goes to the origin and their root mean square distance from
-/// it to the root of two (Hartley 1997; Hartley & Zisserman 2004, 4.4.4).
+/// `x = s (u - cx)`, `y = s (v - cy)`: the points' centroid goes to the origin and their root mean square
+/// distance from it to the root of two (Hartley 1997; Hartley & Zisserman 2004, 4.4.4).
 #[derive(Clone, Copy)]
 pub(crate) struct Normalisation<T: Real> {
     scale: T,
@@ -15,11 +15,13 @@ pub(crate) struct Normalisation<T: Real> {
 }
 
 impl<T: Real> Normalisation<T> {
-    /// Of one image's points, whatever they weigh; `None` when all are one point, to the rounding of their mean.
+    /// Of one image's points, whatever they weigh; `None` when all are one point, to the rounding of their
+    /// mean.
     #[inline(never)]
     pub(crate) fn of(seen: Weighted<'_, T>, image: Image) -> Option<Self> {
         let points = seen.iter().map(|(s, _)| image.point(s));
-        let (x, y, count) = points.clone().fold((T::ZERO, T::ZERO, 0), |(x, y, n), p| (x + p.x, y + p.y, n + 1));
+        let (x, y, count) =
+            points.clone().fold((T::ZERO, T::ZERO, 0), |(x, y, n), p| (x + p.x, y + p.y, n + 1));
         let per_point = T::ONE / T::count(count);
         let (cx, cy) = (x * per_point, y * per_point);
         let spread = points.fold(T::ZERO, |sum, p| {
@@ -47,7 +49,8 @@ impl<T: Real> Normalisation<T> {
         [a, b, c - a * self.cx - b * self.cy]
     }
 
-    /// `M N`, where N is this normalisation as a matrix: from something that takes normalised points to the same for px.
+    /// `M N`, where N is this normalisation as a matrix: from something that takes normalised points to the
+    /// same for px.
     pub(crate) fn after(&self, m: &Matrix3<T>) -> Matrix3<T> {
         let row = |i: usize| RowVector3::from(self.of_line([m[(i, 0)], m[(i, 1)], m[(i, 2)]]));
         Matrix3::from_rows(&[row(0), row(1), row(2)])
@@ -100,8 +103,8 @@ mod tests {
 
     #[test]
     fn a_square_of_side_two() {
-        let square =
-            [(9.0, 4.0), (11.0, 4.0), (11.0, 6.0), (9.0, 6.0_f64)].map(|(u, v)| Correspondence::new(u, v, 0.0, 0.0));
+        let square = [(9.0, 4.0), (11.0, 4.0), (11.0, 6.0), (9.0, 6.0_f64)]
+            .map(|(u, v)| Correspondence::new(u, v, 0.0, 0.0));
         let n = Normalisation::of(Weighted::alike(&square), Image::First).expect("four points");
         assert_eq!(
             square.map(|s| n.apply(s.first)),

@@ -52,12 +52,14 @@ const NO_ANGLE: f64 = 1e-5;
 /// Newton's steps on the three distances.
 const STEPS: usize = 4;
 
-/// All poses of a camera that sees `points` (the world, any unit) along `sights` (the camera's frame, any length).
+/// All poses of a camera that sees `points` (the world, any unit) along `sights` (the camera's frame, any
+/// length).
 ///
-/// The distances l of the points fulfil `|l_i y_i - l_j y_j|^2 = |x_i - x_j|^2` for the three pairs: three quadratic forms.
-/// Two combinations of them vanish, and a combination of those two is a pair of planes, found by one root of a cubic; each
-/// plane leaves a quadratic equation (Persson & Nordberg, "Lambda Twist", ECCV 2018). The distances are then corrected by
-/// Newton's method on the three equations, at most four steps. Every solution has all points before the camera.
+/// The distances l of the points fulfil `|l_i y_i - l_j y_j|^2 = |x_i - x_j|^2` for the three pairs: three
+/// quadratic forms. Two combinations of them vanish, and a combination of those two is a pair of planes,
+/// found by one root of a cubic; each plane leaves a quadratic equation (Persson & Nordberg, "Lambda Twist",
+/// ECCV 2018). The distances are then corrected by Newton's method on the three equations, at most four
+/// steps. Every solution has all points before the camera.
 ///
 /// ```
 /// use stereopsis::geometry::p3p;
@@ -166,8 +168,8 @@ impl<T: Real> Equations<T> {
         found
     }
 
-    /// Newton's method from there, while it makes the equations better; `None` when a distance is not positive or they are
-    /// not fulfilled.
+    /// Newton's method from there, while it makes the equations better; `None` when a distance is not
+    /// positive or they are not fulfilled.
     fn corrected(&self, start: Vector3<T>) -> Option<Vector3<T>> {
         let [c12, c13, c23] = self.cosines;
         let [a12, a13, a23] = self.squares;
@@ -204,7 +206,8 @@ impl<T: Real> Equations<T> {
     }
 }
 
-/// A combination of two symmetric matrices without a determinant: the first plus the second times the root of a cubic.
+/// A combination of two symmetric matrices without a determinant: the first plus the second times the root of
+/// a cubic.
 fn singular_combination<T: Real>(a: &Matrix3<T>, b: &Matrix3<T>) -> Option<Matrix3<T>> {
     let mixed = |p: &Matrix3<T>, q: &Matrix3<T>| {
         let ([p0, p1, p2], [q0, q1, q2]) = (super::linear::columns3(p), super::linear::columns3(q));
@@ -230,7 +233,8 @@ fn second_minor<T: Real>(m: &Matrix3<T>) -> T {
     m.m11 * m.m22 - m.m12 * m.m12 + m.m11 * m.m33 - m.m13 * m.m13 + m.m22 * m.m33 - m.m23 * m.m23
 }
 
-/// The normals of the two planes of a symmetric matrix with eigenvalues `s > 0 > s'` and zero; `None` where it has none.
+/// The normals of the two planes of a symmetric matrix with eigenvalues `s > 0 > s'` and zero; `None` where
+/// it has none.
 fn planes<T: Real>(m: &Matrix3<T>) -> Option<[Vector3<T>; 2]> {
     let half = (m.m11 + m.m22 + m.m33) * T::of(0.5);
     let product = second_minor(m);
@@ -250,7 +254,8 @@ fn planes<T: Real>(m: &Matrix3<T>) -> Option<[Vector3<T>; 2]> {
 fn null_vector<T: Real>(m: &Matrix3<T>) -> Option<Vector3<T>> {
     let [a, b, c] = super::linear::columns3(m);
     let crosses = [a.cross(&b), b.cross(&c), c.cross(&a)];
-    let longest = crosses.iter().fold(crosses[0], |l, c| if c.norm_squared() > l.norm_squared() { *c } else { l });
+    let longest =
+        crosses.iter().fold(crosses[0], |l, c| if c.norm_squared() > l.norm_squared() { *c } else { l });
     let norm = longest.norm();
     (norm > T::ZERO).then(|| longest / norm)
 }
@@ -302,7 +307,8 @@ mod tests {
 
     #[test]
     fn a_camera_at_the_origin() {
-        let points = [Point3::new(1.0, 0.0, 4.0), Point3::new(-1.0, 0.5, 5.0), Point3::new(0.0, -1.0, 3.0_f64)];
+        let points =
+            [Point3::new(1.0, 0.0, 4.0), Point3::new(-1.0, 0.5, 5.0), Point3::new(0.0, -1.0, 3.0_f64)];
         let sights = points.map(|p| p.coords);
         let poses = p3p(&sights, &points).expect("poses");
         let best = poses.as_slice().iter().map(|p| p.translation().norm()).fold(f64::INFINITY, f64::min);

@@ -19,8 +19,8 @@ pub struct PlaneMotion<T: Real> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum PlaneMotionError {
-    /// The camera has turned but not moved, to 64 roundings: the plane is not in the homography. [`Homography::rotation`]
-    /// has what there is.
+    /// The camera has turned but not moved, to 64 roundings: the plane is not in the homography.
+    /// [`Homography::rotation`] has what there is.
     NoBaseline,
 }
 
@@ -69,8 +69,8 @@ impl<T: Real> PlaneMotion<T> {
 }
 
 impl<T: Real> Homography<T> {
-    /// `K^-1 H K'`, with its middle singular value one: `R + t n^T / d`. Its determinant is positive, for both cameras
-    /// see one side of the plane.
+    /// `K^-1 H K'`, with its middle singular value one: `R + t n^T / d`. Its determinant is positive, for
+    /// both cameras see one side of the plane.
     fn euclidean(&self, first: &Camera<T>, second: &Camera<T>) -> (Matrix3<T>, Svd3<T>) {
         let matrix = first.inverse_matrix() * self.matrix() * second.matrix();
         let matrix = matrix / matrix.amax();
@@ -87,13 +87,17 @@ impl<T: Real> Homography<T> {
         svd.u * svd.v.transpose()
     }
 
-    /// The poses and planes that the homography allows, in closed form (Ma, Soatto, Kosecka & Sastry 2004, 5.3.3; Faugeras &
-    /// Lustman 1988): two with the plane ahead of camera 2's axis, then the same two mirrored (-t and -n). Without
-    /// distortion, as H is.
+    /// The poses and planes that the homography allows, in closed form (Ma, Soatto, Kosecka & Sastry 2004,
+    /// 5.3.3; Faugeras & Lustman 1988): two with the plane ahead of camera 2's axis, then the same two
+    /// mirrored (-t and -n). Without distortion, as H is.
     ///
-    /// [`Self::recover_motions`] puts them in order by what is in front of the cameras. Where two remain, a third view or
-    /// the plane's normal decides.
-    pub fn motions(&self, first: &Camera<T>, second: &Camera<T>) -> Result<[PlaneMotion<T>; 4], PlaneMotionError> {
+    /// [`Self::recover_motions`] puts them in order by what is in front of the cameras. Where two remain, a
+    /// third view or the plane's normal decides.
+    pub fn motions(
+        &self,
+        first: &Camera<T>,
+        second: &Camera<T>,
+    ) -> Result<[PlaneMotion<T>; 4], PlaneMotionError> {
         let (h, Svd3 { values: [s0, _, s2], v, .. }) = self.euclidean(first, second);
         let s2 = s2.abs();
         let (up, down) = ((s0 * s0 - T::ONE).max(T::ZERO), (T::ONE - s2 * s2).max(T::ZERO));
@@ -117,12 +121,13 @@ impl<T: Real> Homography<T> {
             PlaneMotion { rotation, translation: translation * sign, normal: n * sign }
         };
         let (one, other) = (motion(v0 * along + v2 * across), motion(v0 * along - v2 * across));
-        let mirrored = |m: PlaneMotion<T>| PlaneMotion { translation: -m.translation, normal: -m.normal, ..m };
+        let mirrored =
+            |m: PlaneMotion<T>| PlaneMotion { translation: -m.translation, normal: -m.normal, ..m };
         Ok([one, other, mirrored(one), mirrored(other)])
     }
 
-    /// The two likeliest of [`Self::motions`], each with how many of the correspondences it has in front of both
-    /// cameras; the one with more first. They are equally likely when the numbers are equal.
+    /// The two likeliest of [`Self::motions`], each with how many of the correspondences it has in front of
+    /// both cameras; the one with more first. They are equally likely when the numbers are equal.
     pub fn recover_motions(
         &self,
         seen: impl IntoIterator<Item = Correspondence<T>>,

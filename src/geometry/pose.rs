@@ -4,7 +4,8 @@ use super::Real;
 use super::linear::Svd3;
 use nalgebra::{Matrix3, Point3, Vector3};
 
-/// R and t, which carry a point of camera 2 into camera 1: `P = R P' + t`. So t is the centre of camera 2 in camera 1.
+/// R and t, which carry a point of camera 2 into camera 1: `P = R P' + t`. So t is the centre of camera 2 in
+/// camera 1.
 ///
 /// Lengths are metres, unless whoever made it says otherwise.
 ///
@@ -22,7 +23,8 @@ pub struct Pose<T: Real> {
 pub enum PoseError {
     /// A number is infinite or not a number.
     NotFinite,
-    /// The matrix is no rotation: a column's length or an angle between two is off by more than 1e-4, or it mirrors.
+    /// The matrix is no rotation: a column's length or an angle between two is off by more than 1e-4, or it
+    /// mirrors.
     NotARotation,
 }
 

@@ -4,10 +4,11 @@ use super::linear::{Ldl, Projective, rank};
 use super::{Camera, CameraError, Pose, Real};
 use nalgebra::{Matrix3, Matrix3x4, Point2, Point3, Vector3};
 
-/// M, with `p ~ M P` for a point P of the world and its undistorted pixel p: `M = K [R^T | -R^T t]`, where R and t carry a
-/// point of the camera into the world (Hartley & Zisserman 2004, 6.1; there `K R [1 | -C]`).
+/// M, with `p ~ M P` for a point P of the world and its undistorted pixel p: `M = K [R^T | -R^T t]`, where R
+/// and t carry a point of the camera into the world (Hartley & Zisserman 2004, 6.1; there `K R [1 | -C]`).
 ///
-/// Held with a third row whose first three elements have length one, so that the third number of `M P` is the depth.
+/// Held with a third row whose first three elements have length one, so that the third number of `M P` is the
+/// depth.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Projection<T: Real> {
     matrix: Matrix3x4<T>,
@@ -33,7 +34,8 @@ pub enum ResectionError {
     TooFew,
     /// All landmarks are on a plane.
     Plane,
-    /// More than one matrix fits: all but one landmark on a plane, or all and the camera on one twisted cubic.
+    /// More than one matrix fits: all but one landmark on a plane, or all and the camera on one twisted
+    /// cubic.
     Undetermined,
     /// Some landmarks are behind the camera that fits.
     Behind,
@@ -60,7 +62,8 @@ impl core::fmt::Display for ResectionError {
 impl core::error::Error for ResectionError {}
 
 impl<T: Real> Projection<T> {
-    /// A camera at a place in the world: `pose` carries a point of the camera into the world. Its lens is left out.
+    /// A camera at a place in the world: `pose` carries a point of the camera into the world. Its lens is
+    /// left out.
     pub fn new(camera: &Camera<T>, pose: &Pose<T>) -> Self {
         let inverse = pose.inverse();
         let outer = Matrix3x4::from_fn(|i, j| match inverse.rotation().get((i, j)) {
@@ -90,11 +93,12 @@ impl<T: Real> Projection<T> {
         Ok(Self { matrix: scaled / by })
     }
 
-    /// The matrix of six landmarks or more that are not on a plane, by the direct linear transform on normalised points
-    /// (Hartley & Zisserman 2004, algorithm 7.1, its linear part); all are used, the algebraic error is least.
+    /// The matrix of six landmarks or more that are not on a plane, by the direct linear transform on
+    /// normalised points (Hartley & Zisserman 2004, algorithm 7.1, its linear part); all are used, the
+    /// algebraic error is least.
     ///
-    /// Squares its equations: with exact landmarks `f64` comes to 1e-9 px. In `f32` it is a starting value, good to a
-    /// tenth of a pixel.
+    /// Squares its equations: with exact landmarks `f64` comes to 1e-9 px. In `f32` it is a starting value,
+    /// good to a tenth of a pixel.
     pub fn from_landmarks(landmarks: &[Landmark<T>]) -> Result<Self, ResectionError> {
         if landmarks.len() < 6 {
             return Err(ResectionError::TooFew);
@@ -143,8 +147,8 @@ impl<T: Real> Projection<T> {
         Ok(found)
     }
 
-    /// The camera and its place: K by a triangular factor times a rotation (RQ), and the pose that carries a point of the
-    /// camera into the world (Hartley & Zisserman 2004, 6.2.4).
+    /// The camera and its place: K by a triangular factor times a rotation (RQ), and the pose that carries a
+    /// point of the camera into the world (Hartley & Zisserman 2004, 6.2.4).
     pub fn decompose(&self) -> Result<(Camera<T>, Pose<T>), ResectionError> {
         let [a, b, r2] = rows(&self.matrix);
         // Gram-Schmidt from the last row up; that row has length one.
@@ -154,7 +158,8 @@ impl<T: Real> Projection<T> {
         let r1 = b / fy;
         // The first row of a rotation is the cross product of the others; K's signs are then right.
         let r0 = r1.cross(&r2);
-        let camera = Camera::new(a.dot(&r0), fy, a.dot(&r2), cy).and_then(|camera| camera.with_skew(a.dot(&r1)));
+        let camera =
+            Camera::new(a.dot(&r0), fy, a.dot(&r2), cy).and_then(|camera| camera.with_skew(a.dot(&r1)));
         let camera = camera.map_err(ResectionError::Camera)?;
         let shift = Vector3::new(self.matrix.m14, self.matrix.m24, self.matrix.m34);
         let rotation = Matrix3::from_columns(&[r0, r1, r2]);
@@ -238,7 +243,8 @@ mod tests {
 
     #[test]
     fn a_camera_two_metres_back() {
-        let camera = Camera::new(500.0, 400.0, 320.0, 240.0_f64).and_then(|c| c.with_skew(2.0)).expect("a camera");
+        let camera =
+            Camera::new(500.0, 400.0, 320.0, 240.0_f64).and_then(|c| c.with_skew(2.0)).expect("a camera");
         // A quarter turn about Y, and two metres back: the camera's Z is the world's X.
         let turn = Matrix3::new(0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0);
         let pose = Pose::new(turn, Vector3::new(-2.0, 0.0, 0.0)).expect("a pose");
@@ -250,7 +256,10 @@ mod tests {
         assert_eq!(projection.project(&Point3::new(-3.0, 0.0, 0.0)), None);
         let (inner, place) = projection.decompose().expect("a camera");
         assert!((inner.matrix() - camera.matrix()).amax() < 1e-12);
-        assert!((place.rotation() - turn).amax() < 1e-15 && (place.translation() - pose.translation()).amax() < 1e-12);
+        assert!(
+            (place.rotation() - turn).amax() < 1e-15
+                && (place.translation() - pose.translation()).amax() < 1e-12
+        );
         // Neither scale nor sign matters.
         let again = Projection::from_matrix(&(projection.matrix() * -3.0)).expect("a camera");
         assert!((again.matrix() - projection.matrix()).amax() < 1e-12);

@@ -5,8 +5,8 @@ use nalgebra::RealField;
 
 /// `f32` or `f64`: what every type of [`geometry`](crate::geometry) is generic over.
 ///
-/// `f32` is what the cores have hardware for; each function whose result needs more says so with a figure. Roots and
-/// angles come from nalgebra's [`RealField`]. Sealed: no other type implements it.
+/// `f32` is what the cores have hardware for; each function whose result needs more says so with a figure.
+/// Roots and angles come from nalgebra's [`RealField`]. Sealed: no other type implements it.
 pub trait Real: RealField + Copy + sealed::Sealed {
     /// Zero.
     const ZERO: Self;
@@ -24,7 +24,8 @@ pub trait Real: RealField + Copy + sealed::Sealed {
     /// The same number as `f64`.
     fn to_f64(self) -> f64;
 
-    /// The angle in radians whose tangent it is: the same bits on every machine, which an operating system's is not.
+    /// The angle in radians whose tangent it is: the same bits on every machine, which an operating system's
+    /// is not.
     fn arc_tangent(self) -> Self;
 }
 

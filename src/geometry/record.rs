@@ -1,6 +1,8 @@
 //! A stereo rig as bytes for flash.
 
-use super::{Camera, CameraError, Distortion, Fisheye, ImageSize, Lens, Pose, Real, StereoRig, StereoRigError};
+use super::{
+    Camera, CameraError, Distortion, Fisheye, ImageSize, Lens, Pose, Real, StereoRig, StereoRigError,
+};
 use nalgebra::{Matrix3, Vector3};
 
 /// What every record begins with.
@@ -9,7 +11,8 @@ const MAGIC: [u8; 4] = *b"STRG";
 const VERSION: u16 = 1;
 /// fx, fy, cx, cy, skew and eight coefficients of both cameras; R row by row; t.
 const NUMBERS: usize = 2 * (5 + 8) + 9 + 3;
-/// Where the numbers begin: behind the magic, the version, the length, both images' columns and rows and both lenses' models.
+/// Where the numbers begin: behind the magic, the version, the length, both images' columns and rows and both
+/// lenses' models.
 const HEAD: usize = 4 + 2 + 2 + 8 + 4;
 /// The models of lenses.
 const BROWN_CONRADY: u16 = 0;
@@ -53,8 +56,12 @@ impl core::fmt::Display for RecordError {
         match self {
             Self::TooShort { needed } => write!(f, "a record of a rig has {needed} bytes; these are fewer"),
             Self::NotARecord => f.write_str("the bytes are no record of a rig, which begins with STRG"),
-            Self::Version { found, known } => write!(f, "the record is of version {found}; version {known} is read"),
-            Self::Checksum => f.write_str("the record's checksum is wrong: it was changed or written in part"),
+            Self::Version { found, known } => {
+                write!(f, "the record is of version {found}; version {known} is read")
+            }
+            Self::Checksum => {
+                f.write_str("the record's checksum is wrong: it was changed or written in part")
+            }
             Self::Lens { found } => write!(f, "the record has a lens of model {found}; 0 and 1 are read"),
             Self::Camera(which, error) => write!(f, "camera {which}: {error}"),
             Self::Rig(error) => error.fmt(f),
@@ -99,7 +106,8 @@ impl<T: Real> StereoRig<T> {
         let [first, second] = self.sizes();
         let [left, right] = self.cameras().each_ref().map(|camera| coefficients(camera.lens()));
         let (all, sides) = ((BODY + 4) as u16, [first.width, first.height, second.width, second.height]);
-        let words = [VERSION, all].into_iter().chain(sides).chain([left.0, right.0]).flat_map(u16::to_le_bytes);
+        let words =
+            [VERSION, all].into_iter().chain(sides).chain([left.0, right.0]).flat_map(u16::to_le_bytes);
         let cameras = self.cameras().iter().zip([left.1, right.1]).flat_map(|(camera, lens)| {
             let ((fx, fy), (cx, cy)) = (camera.focal_px(), camera.principal_point());
             [fx, fy, cx, cy, camera.skew_px()].into_iter().chain(lens)
@@ -115,8 +123,9 @@ impl<T: Real> StereoRig<T> {
         record
     }
 
-    /// The rig of a record at the beginning of `bytes`; what follows it is not looked at. A record that is not whole, of another
-    /// version or of impossible numbers is refused by name: there is no rig by default.
+    /// The rig of a record at the beginning of `bytes`; what follows it is not looked at. A record that is
+    /// not whole, of another version or of impossible numbers is refused by name: there is no rig by
+    /// default.
     pub fn from_record(bytes: &[u8]) -> Result<Self, RecordError> {
         let too_short = RecordError::TooShort { needed: Self::RECORD_BYTES };
         if bytes.first_chunk().is_some_and(|magic| *magic != MAGIC) {
@@ -130,11 +139,16 @@ impl<T: Real> StereoRig<T> {
         if version != VERSION {
             return Err(RecordError::Version { found: version, known: VERSION });
         }
-        if crc32(body) != u32::from_le_bytes(*checksum) || usize::from(u16::from_le_bytes([*l0, *l1])) != record.len() {
+        if crc32(body) != u32::from_le_bytes(*checksum)
+            || usize::from(u16::from_le_bytes([*l0, *l1])) != record.len()
+        {
             return Err(RecordError::Checksum);
         }
         let [w0, w1, h0, h1, x0, x1, y0, y1, m0, m1, n0, n1] = *sizes;
-        let size = |w: [u8; 2], h: [u8; 2]| ImageSize { width: u16::from_le_bytes(w), height: u16::from_le_bytes(h) };
+        let size = |w: [u8; 2], h: [u8; 2]| ImageSize {
+            width: u16::from_le_bytes(w),
+            height: u16::from_le_bytes(h),
+        };
         let sizes = [size([w0, w1], [h0, h1]), size([x0, x1], [y0, y1])];
         let mut values = [T::ZERO; NUMBERS];
         let (chunks, _) = numbers.as_chunks::<8>();

@@ -11,7 +11,8 @@ pub struct RecoveredPose<T: Real> {
     pub pose: RelativePose<T>,
     /// How many correspondences are in front of both cameras with it.
     pub in_front: usize,
-    /// How many could vote: what is left out has parallel sights, or is outside of what the lens model describes.
+    /// How many could vote: what is left out has parallel sights, or is outside of what the lens model
+    /// describes.
     pub voters: usize,
 }
 
@@ -41,8 +42,9 @@ impl core::fmt::Display for RecoverError {
 impl core::error::Error for RecoverError {}
 
 impl<T: Real> Essential<T> {
-    /// The four poses that have this essential matrix: `E = U diag(1, 1, 0) V^T`, `R = U W V^T` or `U W^T V^T` with W a
-    /// quarter turn about Z, `t = u3` or `-u3` (Hartley & Zisserman 2004, 9.6.2). Two and two have one rotation.
+    /// The four poses that have this essential matrix: `E = U diag(1, 1, 0) V^T`, `R = U W V^T` or `U W^T
+    /// V^T` with W a quarter turn about Z, `t = u3` or `-u3` (Hartley & Zisserman 2004, 9.6.2). Two and
+    /// two have one rotation.
     pub fn poses(&self) -> [RelativePose<T>; 4] {
         let svd = Svd3::new(self.matrix());
         let ([u0, u1, direction], back) = (columns3(&svd.u), svd.v.transpose());
@@ -58,8 +60,8 @@ impl<T: Real> Essential<T> {
         ]
     }
 
-    /// The one of [`Self::poses`] with which most correspondences are in front of both cameras, more than half of those
-    /// whose sights are not parallel.
+    /// The one of [`Self::poses`] with which most correspondences are in front of both cameras, more than
+    /// half of those whose sights are not parallel.
     pub fn recover_pose(
         &self,
         seen: impl IntoIterator<Item = Correspondence<T>>,
@@ -71,7 +73,9 @@ impl<T: Real> Essential<T> {
         let mut angled = [0_usize; 4];
         let mut any = false;
         for seen in seen {
-            let (Ok(p), Ok(q)) = (first.unproject(&seen.first), second.unproject(&seen.second)) else { continue };
+            let (Ok(p), Ok(q)) = (first.unproject(&seen.first), second.unproject(&seen.second)) else {
+                continue;
+            };
             any = true;
             for ((pose, vote), angled) in poses.iter().zip(&mut votes).zip(&mut angled) {
                 match in_front(pose, &p, &q) {

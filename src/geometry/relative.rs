@@ -3,8 +3,8 @@
 use super::{Pose, Real};
 use nalgebra::{Matrix3, Point3, Unit, Vector3};
 
-/// R and the direction of t: all that two views tell of a pose. How far apart the cameras are is not in the images; a
-/// scene twice as large seen by cameras twice as far apart looks the same.
+/// R and the direction of t: all that two views tell of a pose. How far apart the cameras are is not in the
+/// images; a scene twice as large seen by cameras twice as far apart looks the same.
 ///
 /// With a baseline or a length in the scene it becomes a [`Pose`] in metres.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -58,7 +58,8 @@ impl<T: Real> RelativePose<T> {
         &self.direction
     }
 
-    /// The pose whose unit of length is the baseline: what is triangulated with it is in baselines, not in metres.
+    /// The pose whose unit of length is the baseline: what is triangulated with it is in baselines, not in
+    /// metres.
     pub fn in_baselines(&self) -> Pose<T> {
         Pose::of_parts(self.rotation, self.direction.into_inner())
     }
@@ -71,8 +72,8 @@ impl<T: Real> RelativePose<T> {
         Ok(Pose::of_parts(self.rotation, self.direction.into_inner() * baseline_m))
     }
 
-    /// The pose in metres, of two points that were triangulated in baselines ([`Self::in_baselines`]) and are `length_m`
-    /// apart in truth.
+    /// The pose in metres, of two points that were triangulated in baselines ([`Self::in_baselines`]) and are
+    /// `length_m` apart in truth.
     pub fn with_length(&self, a: &Point3<T>, b: &Point3<T>, length_m: T) -> Result<Pose<T>, ScaleError> {
         let baselines = (a - b).norm();
         if !(baselines > T::ZERO && baselines.is_finite()) {

@@ -5,13 +5,13 @@ use nalgebra::{Matrix4, Point3, Vector4};
 
 /// Two cameras after rectification, in pixels and metres.
 ///
-/// Conventions: X right, Y down, Z forward from the left camera; pixel centres at integers. A point at depth Z
-/// (metres) with left column u and right column u' has
+/// Conventions: X right, Y down, Z forward from the left camera; pixel centres at integers. A point at depth
+/// Z (metres) with left column u and right column u' has
 ///
 /// `d = u - u'`, `doffs = cx' - cx`, `Z = f b / (d + doffs)`
 ///
-/// (Siegwart, Nourbakhsh & Scaramuzza 2011, 4.2.5; the offset as in Scharstein et al. 2014, whose rectified cameras
-/// have different principal points).
+/// (Siegwart, Nourbakhsh & Scaramuzza 2011, 4.2.5; the offset as in Scharstein et al. 2014, whose rectified
+/// cameras have different principal points).
 ///
 /// ```
 /// use stereopsis::geometry::RectifiedRig;
@@ -61,7 +61,13 @@ impl RectifiedRig {
     }
 
     /// A rig whose right camera has its principal point at column `cx_right`.
-    pub fn with_offset(focal_px: f32, baseline_m: f32, cx: f32, cy: f32, cx_right: f32) -> Result<Self, RigError> {
+    pub fn with_offset(
+        focal_px: f32,
+        baseline_m: f32,
+        cx: f32,
+        cy: f32,
+        cx_right: f32,
+    ) -> Result<Self, RigError> {
         if ![focal_px, baseline_m, cx, cy, cx_right].iter().all(|v| v.is_finite()) {
             return Err(RigError::NotFinite);
         }
@@ -100,7 +106,8 @@ impl RectifiedRig {
         (shift > 0.0).then(|| self.focal_px * self.baseline_m / shift)
     }
 
-    /// Disparity in px of a depth in metres: `f b / Z - doffs`. It is negative where the rig cannot see that far.
+    /// Disparity in px of a depth in metres: `f b / Z - doffs`. It is negative where the rig cannot see that
+    /// far.
     pub fn disparity_px(&self, depth_m: f32) -> f32 {
         self.focal_px * self.baseline_m / depth_m - self.disparity_offset_px()
     }
@@ -130,8 +137,8 @@ impl RectifiedRig {
         )
     }
 
-    /// The point in the left camera's frame, metres, that is seen at column `u`, row `v` with disparity `d` (px);
-    /// `None` at and behind infinity.
+    /// The point in the left camera's frame, metres, that is seen at column `u`, row `v` with disparity `d`
+    /// (px); `None` at and behind infinity.
     pub fn reproject(&self, u: f32, v: f32, d: f32) -> Option<Point3<f32>> {
         let h = self.q() * Vector4::new(u, v, d, 1.0);
         (h.w > 0.0).then(|| Point3::new(h.x / h.w, h.y / h.w, h.z / h.w))

@@ -7,11 +7,13 @@ use nalgebra::{Matrix3, Point2};
 /// Up to three fundamental matrices.
 pub(crate) type Candidates<T> = heapless::Vec<Matrix3<T>, 3>;
 
-/// The singular matrices F with `p^T F p' = 0` for seven pairs of normalised points, one or three (Hartley & Zisserman
-/// 2004, 11.1.2): what the seven equations leave free is a pencil `G + x H`, and `det (G + x H)` is a cubic of x.
+/// The singular matrices F with `p^T F p' = 0` for seven pairs of normalised points, one or three (Hartley &
+/// Zisserman 2004, 11.1.2): what the seven equations leave free is a pencil `G + x H`, and `det (G + x H)` is
+/// a cubic of x.
 ///
-/// None for a degenerate sample: seven equations of which one depends on the others, as those of repeated points or of
-/// seven points on a plane do; `1e-7` of the largest pivot (in `f32` 32 roundings) count as nothing.
+/// None for a degenerate sample: seven equations of which one depends on the others, as those of repeated
+/// points or of seven points on a plane do; `1e-7` of the largest pivot (in `f32` 32 roundings) count as
+/// nothing.
 #[inline]
 pub(crate) fn seven_point<T: Real>(seen: &[(Point2<T>, Point2<T>); 7]) -> Candidates<T> {
     let mut candidates = Candidates::new();
@@ -52,16 +54,21 @@ mod tests {
     #[test]
     fn a_rectified_pair_is_among_the_candidates() {
         // Seven corners of a box, rows equal: F = [0 0 0; 0 0 -1; 0 1 0] over its size.
-        let seen = [(0, 0, 8), (9, 0, 9), (0, 7, 6), (9, 7, 7), (2, 2, 4), (6, 1, 3), (3, 5, 2)].map(|(u, v, d)| {
-            (Point2::new(f64::from(u), f64::from(v)) / 9.0, Point2::new(f64::from(u - d), f64::from(v)) / 9.0)
-        });
+        let seen =
+            [(0, 0, 8), (9, 0, 9), (0, 7, 6), (9, 7, 7), (2, 2, 4), (6, 1, 3), (3, 5, 2)].map(|(u, v, d)| {
+                (
+                    Point2::new(f64::from(u), f64::from(v)) / 9.0,
+                    Point2::new(f64::from(u - d), f64::from(v)) / 9.0,
+                )
+            });
         let candidates = seven_point(&seen);
         let f = Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0) / 2.0_f64.sqrt();
         let off = candidates.iter().map(|c| (c - f).amax().min((c + f).amax())).fold(f64::MAX, f64::min);
         assert!(off < 1e-12, "{off}");
         for c in &candidates {
             assert!(c.determinant().abs() < 1e-14);
-            let residual = |(p, q): &(Point2<f64>, Point2<f64>)| p.to_homogeneous().dot(&(c * q.to_homogeneous()));
+            let residual =
+                |(p, q): &(Point2<f64>, Point2<f64>)| p.to_homogeneous().dot(&(c * q.to_homogeneous()));
             assert!(seen.iter().all(|s| residual(s).abs() < 1e-14));
         }
     }

@@ -4,7 +4,8 @@ use super::Real;
 use super::linear::product;
 use nalgebra::{Matrix3, Vector3};
 
-/// `[a]x`, with `[a]x b = a x b`: skew-symmetric and, but for a = 0, of rank 2 (Hartley & Zisserman 2004, A4.3).
+/// `[a]x`, with `[a]x b = a x b`: skew-symmetric and, but for a = 0, of rank 2 (Hartley & Zisserman 2004,
+/// A4.3).
 ///
 /// ```
 /// use stereopsis::geometry::skew;

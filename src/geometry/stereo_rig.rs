@@ -21,12 +21,15 @@ impl ImageSize {
 
     /// Whether both sides are from [`Self::LEAST`] to [`Self::MOST`].
     pub const fn is_possible(self) -> bool {
-        self.width >= Self::LEAST && self.width <= Self::MOST && self.height >= Self::LEAST && self.height <= Self::MOST
+        self.width >= Self::LEAST
+            && self.width <= Self::MOST
+            && self.height >= Self::LEAST
+            && self.height <= Self::MOST
     }
 }
 
-/// Two cameras with their lenses, where the second stands beside the first, and the sizes of their images: what a stereo
-/// calibration finds. Whoever has one needs to check none of its numbers again.
+/// Two cameras with their lenses, where the second stands beside the first, and the sizes of their images:
+/// what a stereo calibration finds. Whoever has one needs to check none of its numbers again.
 ///
 /// ```
 /// use stereopsis::geometry::{Camera, ImageSize, Pose, StereoRig, StereoRigError};
@@ -73,9 +76,13 @@ impl core::fmt::Display for StereoRigError {
 impl core::error::Error for StereoRigError {}
 
 impl<T: Real> StereoRig<T> {
-    /// A rig of the first (left) and the second camera, the pose of the second in the first (metres), and their images'
-    /// sizes.
-    pub fn new(cameras: [Camera<T>; 2], pose: Pose<T>, sizes: [ImageSize; 2]) -> Result<Self, StereoRigError> {
+    /// A rig of the first (left) and the second camera, the pose of the second in the first (metres), and
+    /// their images' sizes.
+    pub fn new(
+        cameras: [Camera<T>; 2],
+        pose: Pose<T>,
+        sizes: [ImageSize; 2],
+    ) -> Result<Self, StereoRigError> {
         if !(pose.translation().norm() > T::ZERO) {
             return Err(StereoRigError::NoBaseline);
         }

@@ -8,8 +8,8 @@ use nalgebra::{Matrix2, Matrix2x3, Matrix3, Point2, Point3, Vector2, Vector3};
 ///
 /// Distances in px are between undistorted pixels. Lengths are in the unit of the pose.
 ///
-/// In `f32` a point is good to about `Z^2 / (f b)` times a thousandth of a pixel; the linear method, which squares its
-/// equations, to ten times that.
+/// In `f32` a point is good to about `Z^2 / (f b)` times a thousandth of a pixel; the linear method, which
+/// squares its equations, to ten times that.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct TwoViews<T: Real> {
     first: Camera<T>,
@@ -68,12 +68,13 @@ struct Sights<T: Real> {
     angle_rad: T,
 }
 
-/// Steps to the least re-projection error, at most. Two are enough unless the residual is a good part of the distance
-/// to the epipole (Lindstrom 2010, table 2).
+/// Steps to the least re-projection error, at most. Two are enough unless the residual is a good part of the
+/// distance to the epipole (Lindstrom 2010, table 2).
 const MOST_STEPS: usize = 10;
 
 impl<T: Real> TwoViews<T> {
-    /// Refuses sights that meet at less than a milliradian, 0.06 degrees; [`Self::with_min_angle`] moves that.
+    /// Refuses sights that meet at less than a milliradian, 0.06 degrees; [`Self::with_min_angle`] moves
+    /// that.
     pub fn new(first: Camera<T>, second: Camera<T>, pose: Pose<T>) -> Result<Self, EssentialError> {
         let essential = Essential::from_pose(&pose)?;
         let fundamental = Fundamental::from_essential(&essential, &first, &second);
@@ -95,16 +96,16 @@ impl<T: Real> TwoViews<T> {
         &self.pose
     }
 
-    /// The midpoint of the shortest segment between the sights (Hartley & Sturm 1997, 5.3): the cheapest, and not what
-    /// the images say best where the two depths differ.
+    /// The midpoint of the shortest segment between the sights (Hartley & Sturm 1997, 5.3): the cheapest, and
+    /// not what the images say best where the two depths differ.
     pub fn midpoint(&self, seen: &Correspondence<T>) -> Result<Triangulated<T>, TriangulationError> {
         let sights = self.sights(seen)?;
         let point = self.meet(&sights)?;
         self.judged(point, &sights)
     }
 
-    /// The homogeneous least squares of `p x (M P) = 0`, four equations with the focal lengths taken out (Hartley &
-    /// Zisserman 2004, 12.2).
+    /// The homogeneous least squares of `p x (M P) = 0`, four equations with the focal lengths taken out
+    /// (Hartley & Zisserman 2004, 12.2).
     pub fn linear(&self, seen: &Correspondence<T>) -> Result<Triangulated<T>, TriangulationError> {
         let sights = self.sights(seen)?;
         // Lengths in baselines, so that the fourth unknown has the size of the others.
@@ -132,11 +133,11 @@ impl<T: Real> TwoViews<T> {
     }
 
     /// The optimum of the lecture's equation 6.2: the point with the least re-projection error
-    /// `d(p, M P)^2 + d(p', M' P)^2`, px^2, which is the likeliest one if the errors of the four coordinates are
-    /// normally distributed and alike.
+    /// `d(p, M P)^2 + d(p', M' P)^2`, px^2, which is the likeliest one if the errors of the four coordinates
+    /// are normally distributed and alike.
     ///
-    /// The pair of points nearest to `p, p'` that fulfils `p^T F p' = 0` is found by Lindstrom's iteration (Lindstrom
-    /// 2010), at most ten steps of which each fulfils it; their sights meet.
+    /// The pair of points nearest to `p, p'` that fulfils `p^T F p' = 0` is found by Lindstrom's iteration
+    /// (Lindstrom 2010), at most ten steps of which each fulfils it; their sights meet.
     pub fn optimal(&self, seen: &Correspondence<T>) -> Result<Triangulated<T>, TriangulationError> {
         let sights = self.sights(seen)?;
         let nearest = self.nearest_possible(&sights.pixels);
@@ -147,14 +148,15 @@ impl<T: Real> TwoViews<T> {
         self.judged(point, &sights)
     }
 
-    /// The covariance of a triangulated point in camera 1, in the pose's unit squared, to first order, when every
-    /// coordinate in both images has a standard deviation of `sigma_px`:
+    /// The covariance of a triangulated point in camera 1, in the pose's unit squared, to first order, when
+    /// every coordinate in both images has a standard deviation of `sigma_px`:
     /// `sigma^2 (J^T J + J'^T J')^-1` with J and J' the derivatives of both projections.
     ///
     /// In `f32` its smallest direction is lost where the largest deviation is over 2000 times the smallest.
     pub fn covariance(&self, point: &Point3<T>, sigma_px: T) -> Matrix3<T> {
         let first = slope(&self.first, point);
-        let second = slope(&self.second, &self.pose.inverse_transform(point)) * self.pose.rotation().transpose();
+        let second =
+            slope(&self.second, &self.pose.inverse_transform(point)) * self.pose.rotation().transpose();
         let information = first.tr_mul(&first) + second.tr_mul(&second);
         // At size one: squares of px per unit are large.
         let size = information.amax();
@@ -202,7 +204,8 @@ impl<T: Real> TwoViews<T> {
         if !seen.is_finite() {
             return Err(TriangulationError::NotFinite);
         }
-        let sight = |camera: &Camera<T>, pixel| camera.unproject(pixel).map_err(|_| TriangulationError::NotConverged);
+        let sight =
+            |camera: &Camera<T>, pixel| camera.unproject(pixel).map_err(|_| TriangulationError::NotConverged);
         let (first, second) = (sight(&self.first, &seen.first)?, sight(&self.second, &seen.second)?);
         let turned = self.pose.rotation() * second;
         let angle_rad = first.cross(&turned).norm().atan2(first.dot(&turned));
@@ -210,7 +213,8 @@ impl<T: Real> TwoViews<T> {
             return Err(TriangulationError::SmallAngle);
         }
         let pixel = |camera: &Camera<T>, sight: &Vector3<T>| Point2::from((camera.matrix() * sight).xy());
-        let pixels = Correspondence { first: pixel(&self.first, &first), second: pixel(&self.second, &second) };
+        let pixels =
+            Correspondence { first: pixel(&self.first, &first), second: pixel(&self.second, &second) };
         Ok(Sights { first, turned, second, pixels, angle_rad })
     }
 
@@ -239,7 +243,8 @@ impl<T: Real> TwoViews<T> {
             let seen = camera.matrix() * (point.coords / point.z);
             (seen.xy() - pixel.coords).norm_squared()
         };
-        let squared = off(&self.first, &point, &sights.pixels.first) + off(&self.second, &other, &sights.pixels.second);
+        let squared =
+            off(&self.first, &point, &sights.pixels.first) + off(&self.second, &other, &sights.pixels.second);
         Ok(Triangulated { point, residual_px: squared.sqrt(), angle_rad: sights.angle_rad })
     }
 }
@@ -281,8 +286,8 @@ mod tests {
 
     #[test]
     fn the_covariance_of_a_depth() {
-        // On the axis midway between the cameras, Z = 5 m: with x = X / Z small, the disparity has twice the variance
-        // of a column, and sigma_Z = Z^2 / (f b) sigma_d = 25 / 250 * root two * 0.5.
+        // On the axis midway between the cameras, Z = 5 m: with x = X / Z small, the disparity has twice the
+        // variance of a column, and sigma_Z = Z^2 / (f b) sigma_d = 25 / 250 * root two * 0.5.
         let covariance = views().covariance(&Point3::new(0.25, 0.0, 5.0), 0.5);
         assert!((covariance.m33.sqrt() - 0.1 * 2.0_f64.sqrt() * 0.5).abs() < 1e-12, "{covariance}");
         // Rows: two measurements of Y f / Z.

@@ -3,14 +3,15 @@
 use super::histogram::Histogram;
 use crate::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource};
 
-/// What makes grey levels of the right camera those of the left one: `grey <- (gain grey + offset) / 256`, rounded and cut off
-/// at 0 and 255.
+/// What makes grey levels of the right camera those of the left one: `grey <- (gain grey + offset) / 256`,
+/// rounded and cut off at 0 and 255.
 ///
-/// The methods along paths compare brightness and gradients, which other exposures change. Both cameras see about the same,
-/// so the levels under which 1/16, 2/16 and so on of the pixels are belong together, where both are 8 to 248: beyond, levels
-/// are cut off. The gain is that of their mean deviations, 1/2 to 2, and the offset that of their means. Views differ
-/// as well: where these levels differ by under [`Balance::LEAST`] in the mean, there is nothing to balance. On 15 real pairs
-/// as they were taken it is 12 at most. What the brighter camera cut off stays lost.
+/// The methods along paths compare brightness and gradients, which other exposures change. Both cameras see
+/// about the same, so the levels under which 1/16, 2/16 and so on of the pixels are belong together, where
+/// both are 8 to 248: beyond, levels are cut off. The gain is that of their mean deviations, 1/2 to 2, and
+/// the offset that of their means. Views differ as well: where these levels differ by under
+/// [`Balance::LEAST`] in the mean, there is nothing to balance. On 15 real pairs as they were taken it is 12
+/// at most. What the brighter camera cut off stays lost.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Balance {
@@ -78,7 +79,8 @@ fn inside(left: &Histogram, right: &Histogram) -> impl Iterator<Item = [u32; 2]>
     levels.filter(|levels| levels.iter().all(|level| INSIDE.contains(level)))
 }
 
-/// The level under which `k` 16ths of the pixels are, which are taken to lie evenly within a bin; 0 of no pixels.
+/// The level under which `k` 16ths of the pixels are, which are taken to lie evenly within a bin; 0 of no
+/// pixels.
 fn level(histogram: &Histogram, k: u32) -> u32 {
     let mut wanted = u64::from(histogram.count()) * u64::from(k);
     for (bin, &count) in (0..).zip(histogram.bins()) {
@@ -92,8 +94,8 @@ fn level(histogram: &Histogram, k: u32) -> u32 {
     0
 }
 
-/// A pair whose right camera's lines are [balanced](Balance), each frame by what the one before showed: the first one is as it
-/// came. 8-bit grey; other lines stay as they are.
+/// A pair whose right camera's lines are [balanced](Balance), each frame by what the one before showed: the
+/// first one is as it came. 8-bit grey; other lines stay as they are.
 ///
 /// ```
 /// use stereopsis::imaging::BalancedPair;

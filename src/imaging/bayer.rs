@@ -1,17 +1,20 @@
 //! A mosaic of colours as grey.
 
 use super::grey::to_grey;
-use crate::camera::{CameraError, ErrorType, FrameStart, LineFault, LineFormat, LineSource, LineStart, PixelFormat};
+use crate::camera::{
+    CameraError, ErrorType, FrameStart, LineFault, LineFormat, LineSource, LineStart, PixelFormat,
+};
 
 /// Grey lines of [`PixelFormat::Grey8`] over a source of [`PixelFormat::Bayer8`] or [`PixelFormat::Bayer16`].
 ///
 /// A grey pixel is the mean of four, its own and those right of, below and diagonally below it:
-/// `g(x, y) = (p(x, y) + p(x + 1, y) + p(x, y + 1) + p(x + 1, y + 1) + 2) / 4`. Whatever the pattern, these are one red, two
-/// green and one blue: `(R + 2 G + B) / 4`, half a pixel right and below. Both cameras shift alike, and a disparity
-/// does not change. The last column takes the one before it, and the last row the row above.
+/// `g(x, y) = (p(x, y) + p(x + 1, y) + p(x, y + 1) + p(x + 1, y + 1) + 2) / 4`. Whatever the pattern, these
+/// are one red, two green and one blue: `(R + 2 G + B) / 4`, half a pixel right and below. Both cameras shift
+/// alike, and a disparity does not change. The last column takes the one before it, and the last row the row
+/// above.
 ///
-/// A row needs the line below: the source is one line ahead. Where that one is lost, the row is lost as well. `W` is the room
-/// for a line's pixels, `RAW` for its bytes.
+/// A row needs the line below: the source is one line ahead. Where that one is lost, the row is lost as well.
+/// `W` is the room for a line's pixels, `RAW` for its bytes.
 #[derive(Debug)]
 pub struct BayerLines<S, const W: usize, const RAW: usize> {
     source: S,
@@ -24,8 +27,8 @@ pub struct BayerLines<S, const W: usize, const RAW: usize> {
 }
 
 impl<S: LineSource, const W: usize, const RAW: usize> BayerLines<S, W, RAW> {
-    /// Wraps a source; refused when its lines are longer than `RAW` bytes or have more than `W` pixels: `needed` is of the raw
-    /// line where that is too long, else of the pixels.
+    /// Wraps a source; refused when its lines are longer than `RAW` bytes or have more than `W` pixels:
+    /// `needed` is of the raw line where that is too long, else of the pixels.
     pub fn new(source: S) -> Result<Self, CameraError<S::Error>> {
         let format = source.format();
         for (needed, room) in [(format.line_bytes(), RAW), (usize::from(format.width), W)] {
@@ -73,7 +76,8 @@ impl<S: LineSource, const W: usize, const RAW: usize> LineSource for BayerLines<
             None => self.fetch(&format)?,
         };
         if own.row.saturating_add(1) < format.height {
-            // What fails is the line below, and with it this row: the caller's next call is for the row below.
+            // What fails is the line below, and with it this row: the caller's next call is for the row
+            // below.
             let below = self.fetch(&format)?;
             self.start = Some(below);
             if below.row != own.row.saturating_add(1) {

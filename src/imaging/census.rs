@@ -1,7 +1,9 @@
-//! The census transform: each pixel as the signs of its differences to its neighbours (Zabih & Woodfill 1994).
+//! The census transform: each pixel as the signs of its differences to its neighbours (Zabih & Woodfill
+//! 1994).
 //!
-//! A bit is 1 where the neighbour is darker than the centre. A code does not change when brightness or contrast of the
-//! whole neighbourhood does, and the Hamming distance of two codes counts the neighbours that disagree.
+//! A bit is 1 where the neighbour is darker than the centre. A code does not change when brightness or
+//! contrast of the whole neighbourhood does, and the Hamming distance of two codes counts the neighbours that
+//! disagree.
 //!
 //! ```text
 //!        plus4             ring8             full24
@@ -19,12 +21,13 @@
 //!    5 . . . 6 . . . 7
 //! ```
 //!
-//! The numbers are the bits of the code. Columns outside the line are the nearest one inside it; rows outside the image
-//! are the caller's to repeat ([`LineWindow`](super::LineWindow) does).
+//! The numbers are the bits of the code. Columns outside the line are the nearest one inside it; rows outside
+//! the image are the caller's to repeat ([`LineWindow`](super::LineWindow) does).
 
 use core::ops::{BitOrAssign, Shl};
 
-/// A neighbour: row of the window (0 to 4, the centre's is 2) and column (likewise, or 0 to 8 where the centre's is 4).
+/// A neighbour: row of the window (0 to 4, the centre's is 2) and column (likewise, or 0 to 8 where the
+/// centre's is 4).
 type Neighbour = (usize, usize);
 
 const PLUS4: [Neighbour; 4] = [(0, 2), (2, 0), (2, 4), (4, 2)];
@@ -44,8 +47,9 @@ const FULL24: [Neighbour; 24] = {
 
 const WIDE8: [Neighbour; 8] = [(0, 0), (0, 4), (0, 8), (2, 2), (2, 6), (4, 0), (4, 4), (4, 8)];
 
-/// Four bits a pixel: up, left, right and down at distance 2. `rows` are the five rows around the centre row; every
-/// code of `out` is written for which all of them have a pixel. A line ends where the shortest of them does.
+/// Four bits a pixel: up, left, right and down at distance 2. `rows` are the five rows around the centre row;
+/// every code of `out` is written for which all of them have a pixel. A line ends where the shortest of them
+/// does.
 pub fn census_plus4(rows: &[&[u8]; 5], out: &mut [u8]) {
     census::<_, 4, NARROW>(rows, &PLUS4, out);
 }
@@ -55,7 +59,8 @@ pub fn census_ring8(rows: &[&[u8]; 5], out: &mut [u8]) {
     census::<_, 8, NARROW>(rows, &RING8, out);
 }
 
-/// Eight bits a pixel: corners and edge centres of 9x5 pixels, and along the line at distance 2. As [`census_plus4`].
+/// Eight bits a pixel: corners and edge centres of 9x5 pixels, and along the line at distance 2. As
+/// [`census_plus4`].
 // Where there are vectors it is compiled with the kernel's instructions.
 #[cfg_attr(target_pointer_width = "64", inline(always))]
 pub fn census_wide8(rows: &[&[u8]; 5], out: &mut [u8]) {
@@ -74,8 +79,11 @@ const NARROW: usize = LANES + 2 * 2;
 const WIDE: usize = LANES + 2 * 4;
 
 #[inline(always)]
-fn census<C, const BITS: usize, const AROUND: usize>(rows: &[&[u8]; 5], neighbours: &[Neighbour; BITS], out: &mut [C])
-where
+fn census<C, const BITS: usize, const AROUND: usize>(
+    rows: &[&[u8]; 5],
+    neighbours: &[Neighbour; BITS],
+    out: &mut [C],
+) where
     C: Copy + From<bool> + BitOrAssign + Shl<u32, Output = C>,
 {
     // Columns to each side that a code looks at.
@@ -87,13 +95,15 @@ where
     let [Some(a), Some(b), Some(c), Some(d), Some(e)] = rows.map(|row| row.get(..width)) else { return };
     let rows = [a, b, c, d, e];
     let inner = count.min(width.saturating_sub(reach)).saturating_sub(reach);
-    // The inner columns in groups, all bits of a group at once: comparisons without a branch, on whole registers. The
-    // last group is moved back to end with the line.
+    // The inner columns in groups, all bits of a group at once: comparisons without a branch, on whole
+    // registers. The last group is moved back to end with the line.
     let begins = (0..inner / LANES).map(|group| group * LANES).chain(inner.checked_sub(LANES));
     for begin in begins {
-        let around = rows.map(|row| row.get(begin..).and_then(|row| row.first_chunk()).unwrap_or(&[0; AROUND]));
+        let around =
+            rows.map(|row| row.get(begin..).and_then(|row| row.first_chunk()).unwrap_or(&[0; AROUND]));
         let group = |row: usize, column: usize| {
-            let pixels = around.get(row).and_then(|row| row.get(column..)).and_then(|row| row.first_chunk::<LANES>());
+            let pixels =
+                around.get(row).and_then(|row| row.get(column..)).and_then(|row| row.first_chunk::<LANES>());
             pixels.copied().unwrap_or([0; LANES])
         };
         let centre = group(2, reach);

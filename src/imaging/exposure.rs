@@ -26,15 +26,16 @@ pub struct ExposureLimits {
 
 /// Chooses one exposure for both cameras of a pair, from the histograms of their frames.
 ///
-/// The brighter camera is looked at, so that neither saturates. What counts is `light = exposure x gain`: the exposure goes
-/// first, up to its limit, and then the gain. With `m` the mean grey and [`AutoExposure::TARGET`] where it is to be,
-/// `light <- light x clamp(TARGET / m, 1/2, 2)`; where more than [`AutoExposure::MOST_SATURATED`] of 1000 pixels are saturated the mean
-/// says too little, and the light is halved at most and goes down by a quarter at least.
+/// The brighter camera is looked at, so that neither saturates. What counts is `light = exposure x gain`: the
+/// exposure goes first, up to its limit, and then the gain. With `m` the mean grey and
+/// [`AutoExposure::TARGET`] where it is to be, `light <- light x clamp(TARGET / m, 1/2, 2)`; where more than
+/// [`AutoExposure::MOST_SATURATED`] of 1000 pixels are saturated the mean says too little, and the light is
+/// halved at most and goes down by a quarter at least.
 ///
-/// A sensor takes a frame or two until a setting counts: after a change, [`AutoExposure::DELAY`] frames are waited for, so that
-/// none is corrected twice. Within [`AutoExposure::DEAD_BAND`] of the target nothing changes. With these, a response that is linear reaches
-/// the band in as many steps as the light has doublings, and stays: each step either doubles or halves, or lands on the
-/// target.
+/// A sensor takes a frame or two until a setting counts: after a change, [`AutoExposure::DELAY`] frames are
+/// waited for, so that none is corrected twice. Within [`AutoExposure::DEAD_BAND`] of the target nothing
+/// changes. With these, a response that is linear reaches the band in as many steps as the light has
+/// doublings, and stays: each step either doubles or halves, or lands on the target.
 ///
 /// The result is a command, a value: whoever has the sensors gives it to both
 /// ([`ExposureControl`](crate::camera::ExposureControl)).
@@ -56,7 +57,8 @@ impl AutoExposure {
     /// Saturated pixels of 1000 that are too many.
     pub const MOST_SATURATED: u16 = 100;
 
-    /// Begins with the middle of the exposures, and no gain. Limits that contradict themselves are put in order.
+    /// Begins with the middle of the exposures, and no gain. Limits that contradict themselves are put in
+    /// order.
     pub const fn new(limits: ExposureLimits) -> Self {
         let least_us = if limits.least_us == 0 { 1 } else { limits.least_us };
         let most_us = if limits.most_us < least_us { least_us } else { limits.most_us };

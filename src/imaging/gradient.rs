@@ -1,10 +1,11 @@
-//! Gradients of brightness, cut off: what is left is which way the brightness goes, and how steeply where it is flat.
+//! Gradients of brightness, cut off: what is left is which way the brightness goes, and how steeply where it
+//! is flat.
 
-/// Sobel's gradients of a row along the line and across it, in eighths of a grey level per pixel, cut off at `most` (up to
-/// 127) to each side, plus `most`: 0 to 2 `most`.
+/// Sobel's gradients of a row along the line and across it, in eighths of a grey level per pixel, cut off at
+/// `most` (up to 127) to each side, plus `most`: 0 to 2 `most`.
 ///
-/// `rows` are the rows above, here and below; those numbers are written for which all of them have a pixel and
-/// both places. A line ends where
+/// `rows` are the rows above, here and below; those numbers are written for which all of them have a pixel
+/// and both places. A line ends where
 /// the shortest of them does, and columns outside it are the nearest inside.
 // Where there are vectors it is compiled with the kernel's instructions.
 #[cfg_attr(target_pointer_width = "64", inline(always))]
@@ -18,17 +19,22 @@ pub fn gradients(rows: &[&[u8]; 3], most: u8, along: &mut [u8], across: &mut [u8
     // The inner columns in groups; the last group is moved back to end with the line.
     let begins = (0..inner / LANES).map(|group| group * LANES).chain(inner.checked_sub(LANES));
     for begin in begins {
-        let around = rows.map(|row| row.get(begin..).and_then(|row| row.first_chunk()).unwrap_or(&[0; AROUND]));
+        let around =
+            rows.map(|row| row.get(begin..).and_then(|row| row.first_chunk()).unwrap_or(&[0; AROUND]));
         let (to_along, to_across) = (along.get_mut(begin + 1..), across.get_mut(begin + 1..));
         let to_along = to_along.and_then(|to| to.first_chunk_mut::<LANES>());
-        if let (Some(to_along), Some(to_across)) = (to_along, to_across.and_then(|to| to.first_chunk_mut::<LANES>())) {
+        if let (Some(to_along), Some(to_across)) =
+            (to_along, to_across.and_then(|to| to.first_chunk_mut::<LANES>()))
+        {
             (*to_along, *to_across) = group::<LANES, AROUND>(around, most);
         }
     }
     // The columns at the ends one by one, and all of a line that is shorter than a group.
     let grouped = if inner < LANES { 1 } else { 1 + inner };
     for x in (0..count.min(1)).chain(grouped.min(count)..count) {
-        let three = |row: &[u8]| [x.saturating_sub(1), x, (x + 1).min(last)].map(|x| row.get(x).copied().unwrap_or(0));
+        let three = |row: &[u8]| {
+            [x.saturating_sub(1), x, (x + 1).min(last)].map(|x| row.get(x).copied().unwrap_or(0))
+        };
         let around = rows.map(three);
         if let Some((along, across)) = along.get_mut(x).zip(across.get_mut(x)) {
             let ([one], [other]) = group::<1, 3>(around.each_ref(), most);
@@ -48,7 +54,8 @@ fn group<const N: usize, const M: usize>(around: [&[u8; M]; 3], most: i16) -> ([
     const { assert!(M == N + 2) };
     let (mut along, mut across) = ([0; N], [0; N]);
     let cut = |gradient: i16| (gradient.clamp(-most, most) + most) as u8;
-    // Each from the pixels: sums kept for the next column would be vectors in memory, read across two of them.
+    // Each from the pixels: sums kept for the next column would be vectors in memory, read across two of
+    // them.
     let at = |row: usize, off: usize| {
         let pixels = around.get(row).and_then(|row| row.get(off..)).and_then(|row| row.first_chunk::<N>());
         pixels.copied().unwrap_or([0; N])
@@ -58,11 +65,17 @@ fn group<const N: usize, const M: usize>(around: [&[u8; M]; 3], most: i16) -> ([
     let (below, below_1, below_2) = (at(2, 0), at(2, 1), at(2, 2));
     let difference = |a: u8, b: u8| i16::from(a) - i16::from(b);
     for i in 0..N {
-        let sides =
-            [difference(above_2[i], above[i]), difference(here_2[i], here[i]), difference(below_2[i], below[i])];
+        let sides = [
+            difference(above_2[i], above[i]),
+            difference(here_2[i], here[i]),
+            difference(below_2[i], below[i]),
+        ];
         along[i] = cut(sides[0] + 2 * sides[1] + sides[2]);
-        let down =
-            [difference(below[i], above[i]), difference(below_1[i], above_1[i]), difference(below_2[i], above_2[i])];
+        let down = [
+            difference(below[i], above[i]),
+            difference(below_1[i], above_1[i]),
+            difference(below_2[i], above_2[i]),
+        ];
         across[i] = cut(down[0] + 2 * down[1] + down[2]);
     }
     (along, across)

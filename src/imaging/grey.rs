@@ -4,10 +4,10 @@ use crate::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineSource, 
 
 /// A line source whose lines are [`PixelFormat::Grey8`], over one that gives another format.
 ///
-/// `RAW` is the size of the buffer for one raw line, bytes. Samples of more than 8 bits lose their low bits; colour
-/// becomes luma with the weights of ITU-R BT.601, `(4899 R + 9617 G + 1868 B + 2^13) / 2^14`. Fewer than 8 bits are spread over
-/// eight by repeating the high ones, so that white is 255. Of a mosaic, pixels of one line are taken as they are;
-/// [`BayerLines`](super::BayerLines) makes grey of two.
+/// `RAW` is the size of the buffer for one raw line, bytes. Samples of more than 8 bits lose their low bits;
+/// colour becomes luma with the weights of ITU-R BT.601, `(4899 R + 9617 G + 1868 B + 2^13) / 2^14`. Fewer
+/// than 8 bits are spread over eight by repeating the high ones, so that white is 255. Of a mosaic, pixels of
+/// one line are taken as they are; [`BayerLines`](super::BayerLines) makes grey of two.
 #[derive(Debug)]
 pub struct GreyLines<S, const RAW: usize> {
     source: S,

@@ -15,18 +15,21 @@ pub enum CameraHealth {
     Saturated,
     /// All pixels counted are within 16 levels: no picture, as of a port that is stuck.
     Flat,
-    /// Line after line is the same, to the last bit: the sensor's noise is missing. A line that hangs, or a test pattern.
+    /// Line after line is the same, to the last bit: the sensor's noise is missing. A line that hangs, or a
+    /// test pattern.
     Repeating,
 }
 
 /// Watches the lines of two cameras, a frame at a time.
 ///
-/// What is told here is no fault of single lines, and no row is flagged for it: a picture may be dark because it is night. A frame
-/// whose cameras are not [`CameraHealth::Good`] has few answers or none, and those that it has are as sure as others. Stuck columns
-/// and swapped cameras give wrong answers: [`Self::are_swapped`] tells these, from the lines themselves.
+/// What is told here is no fault of single lines, and no row is flagged for it: a picture may be dark because
+/// it is night. A frame whose cameras are not [`CameraHealth::Good`] has few answers or none, and those that
+/// it has are as sure as others. Stuck columns and swapped cameras give wrong answers: [`Self::are_swapped`]
+/// tells these, from the lines themselves.
 ///
-/// To find swapped cameras, each 8th line is compared with the other camera's, moved left and moved right by up to `most` columns: of a
-/// rectified pair the one that is moved the right way fits better. Votes are counted over a frame. 240 bytes.
+/// To find swapped cameras, each 8th line is compared with the other camera's, moved left and moved right by
+/// up to `most` columns: of a rectified pair the one that is moved the right way fits better. Votes are
+/// counted over a frame. 240 bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct PairMonitor {
     sides: [Side; 2],
@@ -81,7 +84,8 @@ impl PairMonitor {
     /// Fewer votes say nothing.
     const FEWEST_VOTES: u32 = 4;
 
-    /// For disparities up to `most_disparity`. Trying them costs, for each pixel of a frame, `most_disparity / 4` differences.
+    /// For disparities up to `most_disparity`. Trying them costs, for each pixel of a frame, `most_disparity
+    /// / 4` differences.
     pub const fn new(most_disparity: u16) -> Self {
         Self { sides: [Side::NEW; 2], most_disparity, row: 0, right_way: 0, wrong_way: 0 }
     }
@@ -141,11 +145,12 @@ impl PairMonitor {
         [&left.histogram, &right.histogram]
     }
 
-    /// How much brighter the right camera sees than the left one, in 256ths: 256 is equally. Of pictures that are not
-    /// black or saturated it is the ratio of their gains; 256 where one is.
+    /// How much brighter the right camera sees than the left one, in 256ths: 256 is equally. Of pictures that
+    /// are not black or saturated it is the ratio of their gains; 256 where one is.
     pub fn gain_ratio_256ths(&self) -> u16 {
         let [left, right] = self.histograms().map(|h| u32::from(h.mean_16ths()));
-        if self.health().iter().any(|health| matches!(health, CameraHealth::Black | CameraHealth::Saturated)) {
+        if self.health().iter().any(|health| matches!(health, CameraHealth::Black | CameraHealth::Saturated))
+        {
             return 256;
         }
         (right * 256 + left / 2).checked_div(left).unwrap_or(256).min(u32::from(u16::MAX)) as u16

@@ -1,7 +1,7 @@
 //! How bright a picture is.
 
-/// Counts of grey levels over the lines of a frame: 16 bins of 16 levels each, with the pixels that are black and those that are
-/// saturated beside them. 80 bytes.
+/// Counts of grey levels over the lines of a frame: 16 bins of 16 levels each, with the pixels that are black
+/// and those that are saturated beside them. 80 bytes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Histogram {
     bins: [u32; 16],
@@ -26,8 +26,8 @@ impl Histogram {
         *self = Self::new();
     }
 
-    /// Counts a line's pixels, of each eight columns one: which one goes round with `row`. Some thousands of pixels tell the light of a
-    /// frame, and a line of 320 costs 40 look-ups.
+    /// Counts a line's pixels, of each eight columns one: which one goes round with `row`. Some thousands of
+    /// pixels tell the light of a frame, and a line of 320 costs 40 look-ups.
     pub fn line(&mut self, row: usize, line: &[u8]) {
         for &grey in line.iter().skip(row % 8).step_by(8) {
             if let Some(bin) = self.bins.get_mut(usize::from(grey >> 4)) {

@@ -31,14 +31,14 @@ impl Noise {
 
 /// Estimates the noise of a frame from its lines, those of one camera or of both, as they come.
 ///
-/// A mask that neither a constant, nor a slope, nor a bend gets through is laid over a line, `(1, -4, 6, -4, 1)`, as
-/// Immerkær does with `(1, -2, 1)` along and across ("Fast noise variance estimation", 1996); along the line alone it needs no
-/// other line. What it leaves is noise where the picture is smooth, and texture elsewhere. So 16 columns at a time are
-/// summed up, `S = sum |mask|`, and the noise is that of the quietest places: of the first 128th of all sums in ascending
-/// order, `sigma = S / 45.5` for Gaussian noise, measured on a slope. Places with a pixel of 0 or 255 are left out: there noise
-/// is cut off. Where nothing is smooth, it says too much: 2.8 grey levels at most on 15 real pairs without
-/// added noise, under 1.9 on all but one of them; with 2 grey levels added 2.2 at least (`tests/real_data.rs` of the host
-/// package prints them).
+/// A mask that neither a constant, nor a slope, nor a bend gets through is laid over a line, `(1, -4, 6, -4,
+/// 1)`, as Immerkær does with `(1, -2, 1)` along and across ("Fast noise variance estimation", 1996); along
+/// the line alone it needs no other line. What it leaves is noise where the picture is smooth, and texture
+/// elsewhere. So 16 columns at a time are summed up, `S = sum |mask|`, and the noise is that of the quietest
+/// places: of the first 128th of all sums in ascending order, `sigma = S / 45.5` for Gaussian noise, measured
+/// on a slope. Places with a pixel of 0 or 255 are left out: there noise is cut off. Where nothing is smooth,
+/// it says too much: 2.8 grey levels at most on 15 real pairs without added noise, under 1.9 on all but one
+/// of them; with 2 grey levels added 2.2 at least (`tests/real_data.rs` of the host package prints them).
 ///
 /// Each line costs the same whatever it shows; a meter takes 256 bytes and a word.
 ///
@@ -71,13 +71,14 @@ const QUIETEST: u32 = 128;
 const TWICE_PER_GREY: u32 = 91;
 
 impl NoiseMeter {
-    /// From this deviation on noise is [`Noise::Low`], in 16ths of a grey level: most textures are taken for less.
+    /// From this deviation on noise is [`Noise::Low`], in 16ths of a grey level: most textures are taken for
+    /// less.
     pub const LOW_16THS: u16 = 30;
     /// And from this on [`Noise::High`].
     pub const HIGH_16THS: u16 = 48;
-    /// How many times as loud as the noise a quarter of a picture may be at least: with noise of 2 grey levels it is up to 2.6 on
-    /// 15 real pairs, 2.9 where they are made 96 to 320 pixels wide but for one, and without 3.1 to 4.5 on those of them that seem
-    /// noisy at 160 pixels but for one.
+    /// How many times as loud as the noise a quarter of a picture may be at least: with noise of 2 grey
+    /// levels it is up to 2.6 on 15 real pairs, 2.9 where they are made 96 to 320 pixels wide but for
+    /// one, and without 3.1 to 4.5 on those of them that seem noisy at 160 pixels but for one.
     pub const TEXTURE: u16 = 3;
 
     /// A meter that has seen no line.
@@ -93,7 +94,9 @@ impl NoiseMeter {
     /// Takes a line of 8-bit grey: as many whole runs of 16 columns as it has, with the two beside them.
     pub fn line(&mut self, line: &[u8]) {
         for run in 0..line.len().saturating_sub(AROUND - RUN) / RUN {
-            let Some(pixels) = line.get(run * RUN..).and_then(|line| line.first_chunk::<AROUND>()) else { return };
+            let Some(pixels) = line.get(run * RUN..).and_then(|line| line.first_chunk::<AROUND>()) else {
+                return;
+            };
             let mut sum = 0;
             let mut is_cut_off = false;
             for i in 0..RUN {
@@ -111,17 +114,20 @@ impl NoiseMeter {
         }
     }
 
-    /// The deviation of the noise in 16ths of a grey level, up to 359; `None` before the first run of columns. It is as
-    /// sure as there are many of them: a frame of 96 x 64 pixels has 320.
+    /// The deviation of the noise in 16ths of a grey level, up to 359; `None` before the first run of
+    /// columns. It is as sure as there are many of them: a frame of 96 x 64 pixels has 320.
     pub fn sigma_16ths(&self) -> Option<u16> {
         self.deviation(QUIETEST)
     }
 
-    /// The level for the next frame; [`Noise::None`] before the first run of columns, and where noise matters little beside the
-    /// picture: where less than a quarter of all places is within [`Self::TEXTURE`] times the noise. That is texture without a
-    /// quiet place as a rule, as of pictures that were made small.
+    /// The level for the next frame; [`Noise::None`] before the first run of columns, and where noise matters
+    /// little beside the picture: where less than a quarter of all places is within [`Self::TEXTURE`]
+    /// times the noise. That is texture without a quiet place as a rule, as of pictures that were made
+    /// small.
     pub fn level(&self) -> Noise {
-        let (Some(sigma), Some(quarter)) = (self.sigma_16ths(), self.deviation(4)) else { return Noise::None };
+        let (Some(sigma), Some(quarter)) = (self.sigma_16ths(), self.deviation(4)) else {
+            return Noise::None;
+        };
         match sigma {
             _ if quarter > Self::TEXTURE * sigma => Noise::None,
             Self::HIGH_16THS.. => Noise::High,

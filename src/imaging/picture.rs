@@ -60,7 +60,8 @@ impl<'a> Picture<'a> {
         self.pixels.get(from..from + length)
     }
 
-    /// The brightness between the centres of four pixels, by their distances along the row and the column; `None` outside.
+    /// The brightness between the centres of four pixels, by their distances along the row and the column;
+    /// `None` outside.
     #[inline]
     pub fn sample(&self, x: f32, y: f32) -> Option<f32> {
         // What is not a number is outside, too.
@@ -68,8 +69,10 @@ impl<'a> Picture<'a> {
             return None;
         }
         let (column, row) = (x as usize, y as usize);
-        let (&[a, b], &[c, d]) =
-            (self.run(column, row, 2)?.first_chunk::<2>()?, self.run(column, row + 1, 2)?.first_chunk::<2>()?);
+        let (&[a, b], &[c, d]) = (
+            self.run(column, row, 2)?.first_chunk::<2>()?,
+            self.run(column, row + 1, 2)?.first_chunk::<2>()?,
+        );
         let (right, down) = (x - column as f32, y - row as f32);
         let [a, b, c, d] = [a, b, c, d].map(f32::from);
         let (above, below) = (a + (b - a) * right, c + (d - c) * right);

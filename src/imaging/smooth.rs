@@ -2,11 +2,13 @@
 
 use core::ops::Range;
 
-/// One of five rows, smoothed down the columns, then along the line, each time with its two neighbours, which count half as
-/// much: `(a + 2 b + c + 2) / 4`. It keeps 3/8 of the deviation of noise that has nothing to do with its neighbours'.
+/// One of five rows, smoothed down the columns, then along the line, each time with its two neighbours, which
+/// count half as much: `(a + 2 b + c + 2) / 4`. It keeps 3/8 of the deviation of noise that has nothing to do
+/// with its neighbours'.
 ///
-/// Above the first row and below the last stands the nearest of the five, and columns outside a line are the nearest inside.
-/// Those numbers are written for which the rows have a pixel and `out` a place; without such a row, none.
+/// Above the first row and below the last stands the nearest of the five, and columns outside a line are the
+/// nearest inside. Those numbers are written for which the rows have a pixel and `out` a place; without such
+/// a row, none.
 ///
 /// ```
 /// use stereopsis::imaging::smooth;
@@ -20,7 +22,8 @@ use core::ops::Range;
 // In flash once.
 #[cfg_attr(target_pointer_width = "32", inline(never))]
 pub fn smooth(rows: &[&[u8]; 5], row: usize, out: &mut [u8]) {
-    let near = [row.saturating_sub(1), row, (row + 1).min(4)].map(|row| rows.get(row).copied().unwrap_or(&[]));
+    let near =
+        [row.saturating_sub(1), row, (row + 1).min(4)].map(|row| rows.get(row).copied().unwrap_or(&[]));
     let width = near.iter().fold(usize::MAX, |w, row| w.min(row.len()));
     let near = near.map(|row| row.get(..width).unwrap_or(row));
     let count = out.len().min(width);
@@ -55,12 +58,15 @@ fn by_columns(near: [&[u8]; 3], out: &mut [u8]) -> Range<usize> {
     1..end
 }
 
-/// Smoothes the first columns that stand in whole words, with a whole word after them, and says which these are.
+/// Smoothes the first columns that stand in whole words, with a whole word after them, and says which these
+/// are.
 ///
 /// Every word is smoothed down the columns once.
 fn by_words(near: [&[u8]; 3], out: &mut [u8]) -> Range<usize> {
-    let [above, middle, below] = near.map(|row| row.as_chunks::<4>().0.iter().map(|four| u32::from_le_bytes(*four)));
-    let mut down = above.zip(middle).zip(below).map(|((above, middle), below)| quarters(above, middle, below));
+    let [above, middle, below] =
+        near.map(|row| row.as_chunks::<4>().0.iter().map(|four| u32::from_le_bytes(*four)));
+    let mut down =
+        above.zip(middle).zip(below).map(|((above, middle), below)| quarters(above, middle, below));
     let mut here = down.next().unwrap_or(0);
     // It ends with the column before the line.
     let mut before = here << 24;
@@ -98,7 +104,8 @@ mod tests {
     fn words_and_columns_say_the_same() {
         let line = |seed: usize| core::array::from_fn::<u8, 41, _>(|x| (x * x * seed + 255 * (x % 3)) as u8);
         let rows = [line(7), line(91), line(46)];
-        for (width, places) in [(41, 41), (40, 40), (39, 39), (8, 8), (7, 7), (3, 3), (41, 30), (41, 1), (2, 2), (0, 0)]
+        for (width, places) in
+            [(41, 41), (40, 40), (39, 39), (8, 8), (7, 7), (3, 3), (41, 30), (41, 1), (2, 2), (0, 0)]
         {
             let near = rows.each_ref().map(|row| &row[..width]);
             let [mut words, mut columns] = [[0; 41]; 2];

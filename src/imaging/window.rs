@@ -58,8 +58,8 @@ impl<const W: usize, const N: usize> LineBand<W, N> {
         self.count += 1;
     }
 
-    /// Puts a copy of the newest line, of zeros where there is none, where the next line goes: it stands in for one that is
-    /// lost.
+    /// Puts a copy of the newest line, of zeros where there is none, where the next line goes: it stands in
+    /// for one that is lost.
     pub fn repeat(&mut self) {
         let (newest, next) = (self.count.wrapping_sub(1), self.count);
         if self.count == 0 {
@@ -74,8 +74,9 @@ impl<const W: usize, const N: usize> LineBand<W, N> {
         self.count
     }
 
-    /// The `M` rows around `centre`, of an odd number: two above to two below where `M` is 5. Rows above the image are
-    /// row 0; rows that did not come yet, the last one that did. The caller asks for a centre whose rows are still held.
+    /// The `M` rows around `centre`, of an odd number: two above to two below where `M` is 5. Rows above the
+    /// image are row 0; rows that did not come yet, the last one that did. The caller asks for a centre
+    /// whose rows are still held.
     // Asked for once in a row of each camera.
     #[cfg_attr(target_pointer_width = "32", inline(never))]
     pub fn around<const M: usize>(&self, centre: usize) -> [&[u8]; M] {

@@ -1,20 +1,22 @@
 //! How sure each answer is, a byte a pixel, if asked for.
 //!
-//! Two things tell right answers from wrong ones: by how much the best of the candidates over two px away costs more, and how
-//! far the answers around it are from it. With the margin `m = second best - winner` of the costs, up to [`MOST_MARGIN`], the
-//! greatest difference `s` to an answer 4 or 8 columns left or right, and `t` to one 2 or 4 rows above or below, in 1/32 px,
+//! Two things tell right answers from wrong ones: by how much the best of the candidates over two px away
+//! costs more, and how far the answers around it are from it. With the margin `m = second best - winner` of
+//! the costs, up to [`MOST_MARGIN`], the greatest difference `s` to an answer 4 or 8 columns left or right,
+//! and `t` to one 2 or 4 rows above or below, in 1/32 px,
 //!
 //! `confidence = m + (K - min(s / 4, K)) + (K - min(t / 4, K))`, `K =` [`AGREEMENT`]
 //!
-//! with `s` and `t` apart because they go wrong apart, and at few places because those between said no more. An answer that was
-//! filled in has [`FILLED`], a pixel without an answer 0.
+//! with `s` and `t` apart because they go wrong apart, and at few places because those between said no more.
+//! An answer that was filled in has [`FILLED`], a pixel without an answer 0.
 //!
-//! The number puts answers in order; it is no probability. What it is worth is the area under the sparsification curve: the share
-//! of wrong answers among those that are left, while the least sure ones are taken away.
+//! The number puts answers in order; it is no probability. What it is worth is the area under the
+//! sparsification curve: the share of wrong answers among those that are left, while the least sure ones are
+//! taken away.
 //!
-//! No memory is added for it. While a row waits to be judged, what is refused has flags and what is answered has a margin,
-//! and the two share a byte. Margins come where the kernel leaves them, in the room for the lengths of surfaces;
-//! confidences go to where the row's winners stood.
+//! No memory is added for it. While a row waits to be judged, what is refused has flags and what is answered
+//! has a margin, and the two share a byte. Margins come where the kernel leaves them, in the room for the
+//! lengths of surfaces; confidences go to where the row's winners stood.
 
 use super::config::Config;
 use super::kernels::{BESIDE, bytes_of_halves};
@@ -34,7 +36,8 @@ pub(super) const ROWS: [usize; 2] = [2, 4];
 /// The confidence of an answer that was filled in, the least: it has no costs of its own.
 const FILLED: u8 = 1;
 
-/// Room for the margins of a row: the lengths of its surfaces are counted later. Empty where no confidences are asked for.
+/// Room for the margins of a row: the lengths of its surfaces are counted later. Empty where no confidences
+/// are asked for.
 #[inline(always)]
 pub(super) fn margins<'a>(config: &Config, lengths: &'a mut [u16]) -> &'a mut [u8] {
     if config.confidence { first(bytes_of_halves(lengths), usize::from(config.width)) } else { &mut [] }
@@ -50,7 +53,8 @@ pub(super) fn keep(config: &Config, margins: &[u8], answers: &[Disparity], flags
         let (Some(&margin), Some(answer)) = (margins.get(x), answers.get(x)) else { return };
         let margin = if x < enough { 0 } else { margin.min(MOST_MARGIN) };
         if answer.is_some() {
-            *flags = PixelFlags::from_bits(margin | (CEILING * u8::from(flags.contains(PixelFlags::CEILING))));
+            *flags =
+                PixelFlags::from_bits(margin | (CEILING * u8::from(flags.contains(PixelFlags::CEILING))));
         }
     }
 }

@@ -17,17 +17,20 @@ pub struct Config {
     pub height: u16,
     /// How many whole disparities are searched: [`Config::FEWEST_DISPARITIES`] up to the matcher's capacity.
     pub disparities: u16,
-    /// The smallest disparity searched, px. The search covers `min_disparity .. min_disparity + disparities`.
+    /// The smallest disparity searched, px. The search covers `min_disparity .. min_disparity +
+    /// disparities`.
     pub min_disparity: u16,
     /// Which answers are refused.
     pub checks: Checks,
     /// What the methods along paths take changes to be worth.
     pub penalties: Penalties,
-    /// Whether rows say how sure each answer is ([`Row::confidences`](super::Row::confidences)): a search more for each pixel.
+    /// Whether rows say how sure each answer is ([`Row::confidences`](super::Row::confidences)): a search
+    /// more for each pixel.
     pub confidence: bool,
     /// How noisy both cameras are: what is compared is smoothed accordingly. The next frame's is what a
-    /// [`NoiseMeter`](crate::imaging::NoiseMeter) says of this one. It takes work, but no memory. Checks and penalties that suit
-    /// it are those of [`Config::with_filter`] after it is set. Between frames a guarded pipeline takes it by `restart`.
+    /// [`NoiseMeter`](crate::imaging::NoiseMeter) says of this one. It takes work, but no memory. Checks and
+    /// penalties that suit it are those of [`Config::with_filter`] after it is set. Between frames a
+    /// guarded pipeline takes it by `restart`.
     pub noise: Noise,
 }
 
@@ -37,12 +40,13 @@ impl Config {
     /// The longest search range of any matcher.
     pub const MOST_DISPARITIES: u16 = 256;
 
-    /// Where every search ends, px: its largest disparity lies below, so that no answer is near [`Disparity::NONE`].
+    /// Where every search ends, px: its largest disparity lies below, so that no answer is near
+    /// [`Disparity::NONE`].
     pub const END: u16 = Disparity::MAX_PIXELS;
 
     /// A search from disparity 0 with the default checks of the block methods and the penalties of
-    /// [`Sgm`](super::Sgm): [`Self::with_filter`] has those of a method. Without confidences, for cameras with
-    /// little noise.
+    /// [`Sgm`](super::Sgm): [`Self::with_filter`] has those of a method. Without confidences, for cameras
+    /// with little noise.
     pub const fn new(width: u16, height: u16, disparities: u16) -> Self {
         Self {
             width,
@@ -56,8 +60,8 @@ impl Config {
         }
     }
 
-    /// The same search with the checks of an operating point of a method, and its penalties: those for cameras that have as
-    /// much [noise](Self::noise) as it says so far.
+    /// The same search with the checks of an operating point of a method, and its penalties: those for
+    /// cameras that have as much [noise](Self::noise) as it says so far.
     ///
     /// ```
     /// use stereopsis::{imaging::Noise, matching::{Config, Filter, Sgm}};
@@ -126,41 +130,42 @@ impl Config {
 
 /// Which answers are refused, and how strictly.
 ///
-/// Three operating points are ready made, those of the block methods here: [`Checks::DENSE`] answers wherever there is a
-/// candidate, [`Checks::DEFAULT`] drops what the other image or the neighbourhood contradicts, [`Checks::STRICT`] keeps what
-/// is well supported. [`Filter::checks`] has them for every method.
+/// Three operating points are ready made, those of the block methods here: [`Checks::DENSE`] answers wherever
+/// there is a candidate, [`Checks::DEFAULT`] drops what the other image or the neighbourhood contradicts,
+/// [`Checks::STRICT`] keeps what is well supported. [`Filter::checks`] has them for every method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Checks {
-    /// Left-right check: an answer stays when the winner that the right image's pixel keeps is at most this many px
-    /// from it. `None`: not checked.
+    /// Left-right check: an answer stays when the winner that the right image's pixel keeps is at most this
+    /// many px from it. `None`: not checked.
     pub left_right_px: Option<u8>,
-    /// Uniqueness: an answer stays when every other disparity costs more than the winner by over this share of its
-    /// own cost, percent, 0 to 99; 0 refuses exact ties only. Those up to two px beside the winner do not count.
-    /// `None`: not checked, and the kernel saves the pass.
+    /// Uniqueness: an answer stays when every other disparity costs more than the winner by over this share
+    /// of its own cost, percent, 0 to 99; 0 refuses exact ties only. Those up to two px beside the
+    /// winner do not count. `None`: not checked, and the kernel saves the pass.
     pub uniqueness_percent: Option<u8>,
     /// Flat: an answer stays when it costs less than a neighbour one px below or above.
     pub refuse_flat: bool,
-    /// Texture: a pixel counts as textured when its left and right neighbour differ by this many grey levels.
+    /// Texture: a pixel counts as textured when its left and right neighbour differ by this many grey
+    /// levels.
     pub texture_gradient: u8,
-    /// Texture: an answer stays when its window holds this many textured pixels. 0: not checked, and the pass
-    /// is saved.
+    /// Texture: an answer stays when its window holds this many textured pixels. 0: not checked, and the
+    /// pass is saved.
     pub texture_pixels: u8,
     /// Whether a winner at the largest disparity searched is refused: the surface may be nearer.
     pub refuse_ceiling: bool,
     /// Two neighbours are of one surface when they differ by at most this; up to 1 px.
     pub surface_step: Disparity,
-    /// Answers are averaged along the line with up to this many pairs of neighbours, left and right alike, of their
-    /// surface; 0 to [`Checks::MOST_SMOOTHING`], 0 for none. With the methods along paths they are then smoothed down the
-    /// columns as well ([`Scheme::SMOOTH_DOWN`]).
+    /// Answers are averaged along the line with up to this many pairs of neighbours, left and right alike,
+    /// of their surface; 0 to [`Checks::MOST_SMOOTHING`], 0 for none. With the methods along paths they
+    /// are then smoothed down the columns as well ([`Scheme::SMOOTH_DOWN`]).
     pub smoothing_radius: u8,
-    /// Speckle: answers are dropped that have fewer of their surface, themselves included, on a cross: in their column,
-    /// down to four rows below, and along the rows of these. 0: none is.
+    /// Speckle: answers are dropped that have fewer of their surface, themselves included, on a cross: in
+    /// their column, down to four rows below, and along the rows of these. 0: none is.
     pub speckle_pixels: u8,
     /// Median: every answer becomes the middle one of those in 3 x 3 pixels around it.
     pub median: bool,
-    /// Fill: gaps along the row of at most this many pixels, between two answers, get the farther of the two, and
-    /// [`PixelFlags::FILLED`](crate::units::PixelFlags::FILLED). 0: none is.
+    /// Fill: gaps along the row of at most this many pixels, between two answers, get the farther of the
+    /// two, and [`PixelFlags::FILLED`](crate::units::PixelFlags::FILLED). 0: none is.
     pub fill_pixels: u8,
     /// Fill: by how much the two answers beside a gap may differ: [`Disparity::NONE`] for any two.
     pub fill_step: Disparity,

@@ -1,17 +1,18 @@
 //! Answers smoothed down the columns, within their surface.
 //!
-//! What is left of the errors of answers that were averaged along the row changes little from column to column, but from row to
-//! row. There are four rows below that are known already, and those above have come out. With x an answer of row y as it is
-//! before, and v as it comes out,
+//! What is left of the errors of answers that were averaged along the row changes little from column to
+//! column, but from row to row. There are four rows below that are known already, and those above have come
+//! out. With x an answer of row y as it is before, and v as it comes out,
 //!
 //! `v(y) = x(y) + (4 (v(y - 1) - x(y)) + (x(y + 4) - x(y))) 5 / 32`
 //!
-//! A recursive filter: each row has 5/8 of what came out above it, and so all rows above have a share that dies away. The row
-//! four below has 5/32, a quarter of that at four times the distance: what is linear down the column, as the disparity of a
-//! plane is, keeps its value. Of independent errors it would leave as much as an average over 7 rows.
+//! A recursive filter: each row has 5/8 of what came out above it, and so all rows above have a share that
+//! dies away. The row four below has 5/32, a quarter of that at four times the distance: what is linear down
+//! the column, as the disparity of a plane is, keeps its value. Of independent errors it would leave as much
+//! as an average over 7 rows.
 //!
-//! Both others must be within 1 px of the answer; one without both stays as it is. What lies between is not looked at, which
-//! measured no worse.
+//! Both others must be within 1 px of the answer; one without both stays as it is. What lies between is not
+//! looked at, which measured no worse.
 
 use super::kernels::Kernel;
 use super::row::{HISTORY, slot};
@@ -27,8 +28,8 @@ const REACH: u32 = Disparity::ONE as u32;
 /// Half a step, and what the differences are too much by, less what they are counted from is too little by.
 const ROUNDED: u32 = (1 << (SHIFT - 1)) + (REACH << SHIFT) - SHARE * (LOOK_AHEAD as u32 + 1) * REACH;
 
-/// Smoothes the row in slot `y % HISTORY` of the `finished` ones by the one above it, that has come out, and row
-/// [`LOOK_AHEAD`] `below` it.
+/// Smoothes the row in slot `y % HISTORY` of the `finished` ones by the one above it, that has come out, and
+/// row [`LOOK_AHEAD`] `below` it.
 pub(super) fn smooth(kernel: Kernel, y: usize, finished: &mut [Disparity], below: &[Disparity]) {
     let width = below.len();
     let (before, rest) = finished.split_at_mut_checked(y % HISTORY * width).unwrap_or_default();
@@ -52,7 +53,8 @@ pub(super) fn smooth(kernel: Kernel, y: usize, finished: &mut [Disparity], below
 #[inline(always)]
 fn row(here: &mut [Disparity], above: &[Disparity], below: &[Disparity]) {
     for (here, (above, below)) in here.iter_mut().zip(above.iter().zip(below)) {
-        // From what is 1 px less, differences within reach are no less than 0, and all of their bits are below that of 2 px.
+        // From what is 1 px less, differences within reach are no less than 0, and all of their bits are
+        // below that of 2 px.
         let x = u32::from(here.raw());
         let least = x.wrapping_sub(REACH);
         let [up, down] = [above, below].map(|other| u32::from(other.raw()).wrapping_sub(least));

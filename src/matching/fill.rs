@@ -1,11 +1,11 @@
 //! Small gaps along a row closed.
 //!
-//! What the right camera does not see lies behind what hides it: a gap between two answers gets the smaller disparity of
-//! the two. Gaps at the row's ends, which have an answer on one side only, stay.
+//! What the right camera does not see lies behind what hides it: a gap between two answers gets the smaller
+//! disparity of the two. Gaps at the row's ends, which have an answer on one side only, stay.
 //!
 //! A filled answer is a guess and says so: it keeps the flags of what was refused there, gets
-//! [`PixelFlags::FILLED`], and no other answer's uncertainty looks at it: [`take_back`] takes it out of the row once the
-//! row has been seen.
+//! [`PixelFlags::FILLED`], and no other answer's uncertainty looks at it: [`take_back`] takes it out of the
+//! row once the row has been seen.
 //!
 //! Two passes.
 
@@ -15,7 +15,8 @@ use crate::units::{Disparity, PixelFlags};
 /// Fills the gaps of up to `most` pixels whose sides differ by up to `step`.
 #[inline(never)]
 pub(super) fn fill(answers: &mut [Disparity], flags: &mut [PixelFlags], most: u8, step: Disparity) {
-    // On small cores the work is the same for every picture. Larger processors see at one look that a group has no gap.
+    // On small cores the work is the same for every picture. Larger processors see at one look that a group
+    // has no gap.
     if cfg!(target_pointer_width = "64") {
         gaps(answers, flags, most, step);
     } else {
@@ -32,7 +33,9 @@ fn gaps(answers: &mut [Disparity], flags: &mut [PixelFlags], most: u8, step: Dis
     while let Some(rest) = answers.get(end..) {
         let whole = GROUP * rest.chunks(GROUP).take_while(|group| is_whole(group)).count();
         let Some(more) = rest.iter().skip(whole).position(|answer| answer.is_none()) else { return };
-        let Some(length) = rest.iter().skip(whole + more).position(|answer| !answer.is_none()) else { return };
+        let Some(length) = rest.iter().skip(whole + more).position(|answer| !answer.is_none()) else {
+            return;
+        };
         let begin = end + whole + more;
         end = begin + length;
         let sides = (begin.checked_sub(1).and_then(|left| answers.get(left)), answers.get(end));
@@ -69,8 +72,8 @@ impl ToRight {
     }
 }
 
-/// And back: the answer on its right, if that is less. What the pass before left out is at the gap's right end, and so none of
-/// the gap is filled.
+/// And back: the answer on its right, if that is less. What the pass before left out is at the gap's right
+/// end, and so none of the gap is filled.
 struct ToLeft {
     right: u32,
     refused: u32,

@@ -10,8 +10,8 @@ pub(super) struct Masked<'a> {
 }
 
 impl Masked<'_> {
-    /// Takes away what the masks say was not seen. In the right image an answer's partner is the nearest pixel; one left of it
-    /// was not seen.
+    /// Takes away what the masks say was not seen. In the right image an answer's partner is the nearest
+    /// pixel; one left of it was not seen.
     pub(super) fn take_away(self, left: &[u8], right: &[u8]) {
         const HALF: u32 = Disparity::ONE as u32 / 2;
         let mut confidences = self.confidences.iter_mut();
@@ -42,8 +42,13 @@ mod tests {
         // Partners: -, 1, 0 (1.5 px, rounded up), 1 (1.47 px, rounded down), left of the image.
         let mut answers = [NONE, d(0), d(64), d(47), d(160)];
         answers[2] = d(48);
-        let mut flags =
-            [PixelFlags::SPECKLE, PixelFlags::CLEAR, PixelFlags::FILLED, PixelFlags::CEILING, PixelFlags::CLEAR];
+        let mut flags = [
+            PixelFlags::SPECKLE,
+            PixelFlags::CLEAR,
+            PixelFlags::FILLED,
+            PixelFlags::CEILING,
+            PixelFlags::CLEAR,
+        ];
         let mut confidences = [0, 9, 9, 9, 9];
         let row = Masked { answers: &mut answers, flags: &mut flags, confidences: &mut confidences };
         row.take_away(&[1, 1, 1, 1, 1], &[1, 0, 1, 1, 1]);

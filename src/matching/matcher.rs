@@ -38,7 +38,8 @@ pub struct Matcher<S: Scheme, const W: usize, const D: usize> {
     /// The kernel of the next frame, once one is chosen.
     next_kernel: Kernel,
     kernel_chosen: bool,
-    /// Where a frame's columns begin in their room, the same from line to line wherever the matcher is moved to.
+    /// Where a frame's columns begin in their room, the same from line to line wherever the matcher is moved
+    /// to.
     #[cfg(target_pointer_width = "64")]
     columns_begin: u8,
     /// Lines taken, counting on below the image.
@@ -90,19 +91,23 @@ impl fmt::Display for MatchError {
 impl core::error::Error for MatchError {}
 
 impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
-    /// How many lines after the one at its centre a row comes out: the window's lower half and the speckle filter's
-    /// look-ahead.
+    /// How many lines after the one at its centre a row comes out: the window's lower half and the speckle
+    /// filter's look-ahead.
     pub const DELAY: usize = S::RADIUS_Y + LOOK_AHEAD;
 
     const CHECKED: () = {
         assert!(D.is_multiple_of(16) && D >= 16 && D <= 256, "D must be a multiple of 16, from 16 to 256");
         assert!(W >= D, "W must be at least D");
         assert!(W <= u16::MAX as usize, "W must be at most 65535");
-        assert!(3 * D >= 2 * ROOM + size_of::<u32>(), "the scratch must hold a row of answers and what is around it");
+        assert!(
+            3 * D >= 2 * ROOM + size_of::<u32>(),
+            "the scratch must hold a row of answers and what is around it"
+        );
         assert!(size_of::<Self>() <= state_bytes::<S>(W, D), "state_bytes must cover the state");
     };
 
-    /// A matcher that waits for [`Self::start`]. Every byte of it is zero: a static of it takes RAM and no flash.
+    /// A matcher that waits for [`Self::start`]. Every byte of it is zero: a static of it takes RAM and no
+    /// flash.
     pub const fn new() -> Self {
         const { Self::CHECKED };
         Self {
@@ -123,8 +128,8 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
         }
     }
 
-    /// Checks what is asked for and gets ready for the first frame, with the fastest kernel of this processor unless
-    /// [`Self::set_kernel`] chose one.
+    /// Checks what is asked for and gets ready for the first frame, with the fastest kernel of this processor
+    /// unless [`Self::set_kernel`] chose one.
     pub fn start(&mut self, config: &Config) -> Result<(), ConfigError> {
         config.check(W, D)?;
         self.config = *config;
@@ -135,8 +140,8 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
         Ok(())
     }
 
-    /// Chooses the kernel from the next frame on: within a frame kernels keep their own form of what they have seen.
-    /// Every kernel gives the same bits.
+    /// Chooses the kernel from the next frame on: within a frame kernels keep their own form of what they
+    /// have seen. Every kernel gives the same bits.
     pub fn set_kernel(&mut self, kernel: Kernel) {
         self.next_kernel = kernel;
         self.kernel_chosen = true;
@@ -179,7 +184,8 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     pub fn row(&self) -> Option<Row<'_>> {
         let width = usize::from(self.config.width);
         let index = self.taken.checked_sub(Self::DELAY + 1)?;
-        let flags = self.band_flags.as_flattened().get((index % BAND) * width..).and_then(|f| f.get(..width))?;
+        let flags =
+            self.band_flags.as_flattened().get((index % BAND) * width..).and_then(|f| f.get(..width))?;
         Some(Row {
             index,
             width,
@@ -194,9 +200,10 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
 
     /// Takes the answers of the row that came out last away where one of the cameras did not see.
     ///
-    /// `valid` is given the row and two masks to write, of the left and of the right image's pixels: 1 for one that was seen, 0
-    /// for another. It says whether it wrote them; without, everything was seen. An answer stays whose pixel was seen, and in
-    /// the right image the pixel nearest to its partner. Else there is none, of [`PixelFlags::OUTSIDE`] alone.
+    /// `valid` is given the row and two masks to write, of the left and of the right image's pixels: 1 for
+    /// one that was seen, 0 for another. It says whether it wrote them; without, everything was seen. An
+    /// answer stays whose pixel was seen, and in the right image the pixel nearest to its partner. Else
+    /// there is none, of [`PixelFlags::OUTSIDE`] alone.
     // Nothing is left of it where the source has no mask.
     #[inline]
     pub fn mask(&mut self, valid: impl FnOnce(u16, [&mut [u8]; 2]) -> bool) {
@@ -214,7 +221,8 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
         row.take_away(left, right);
     }
 
-    /// Flags every pixel of the row that came out last as [`PixelFlags::DAMAGED`]; its answers go unless `keeps_answers`.
+    /// Flags every pixel of the row that came out last as [`PixelFlags::DAMAGED`]; its answers go unless
+    /// `keeps_answers`.
     pub(crate) fn mark_damaged(&mut self, keeps_answers: bool) {
         if let Some(index) = self.taken.checked_sub(Self::DELAY + 1) {
             self.stages().mark_damaged(index, keeps_answers);
@@ -261,7 +269,10 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             codes,
             columns,
             scratch,
-            texture: Texture { history: first(&mut self.texture, width), counts: first(&mut self.textured, width) },
+            texture: Texture {
+                history: first(&mut self.texture, width),
+                counts: first(&mut self.textured, width),
+            },
             winners,
             right,
             band: first(self.band.as_flattened_mut(), width * BAND),

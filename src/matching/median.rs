@@ -1,13 +1,15 @@
 //! The middle one of the answers in 3 x 3 pixels.
 //!
-//! A wrong answer among right ones goes, and depth edges stay where they are. A neighbour that is no answer, or lies
-//! outside of the image, counts as the answer in the middle; where there is none in the middle, there is none after.
+//! A wrong answer among right ones goes, and depth edges stay where they are. A neighbour that is no answer,
+//! or lies outside of the image, counts as the answer in the middle; where there is none in the middle, there
+//! is none after.
 //!
-//! The nine are answers as the band holds them, averaged along the row and not yet judged: the medians go to where the
-//! row will be finished. So nothing is kept beside the band, and a pixel has to do with no row but its own and the two
-//! beside it.
+//! The nine are answers as the band holds them, averaged along the row and not yet judged: the medians go to
+//! where the row will be finished. So nothing is kept beside the band, and a pixel has to do with no row but
+//! its own and the two beside it.
 //!
-//! The work is the same for every picture: numbers change places in a fixed order, and nothing is asked of them.
+//! The work is the same for every picture: numbers change places in a fixed order, and nothing is asked of
+//! them.
 
 use super::kernels::Kernel;
 use super::rolled::rolled;
@@ -145,7 +147,11 @@ mod tests {
             let bit = |i: usize| small >> i & 1;
             let nine = [0, 1, 2].map(|c| [0, 1, 2].map(|r| bit(3 * c + r)));
             let ones = (0..9).map(bit).sum::<i32>();
-            assert_eq!(middle_of_nine(nine, |a, b| (a.min(b), a.max(b))), i32::from(ones >= 5), "{small:09b}");
+            assert_eq!(
+                middle_of_nine(nine, |a, b| (a.min(b), a.max(b))),
+                i32::from(ones >= 5),
+                "{small:09b}"
+            );
         }
     }
 

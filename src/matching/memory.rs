@@ -2,7 +2,8 @@
 
 use super::kernels::{Aligned, Columns, OUTSIDE, Scratch, Winner, bytes_of, bytes_of_halves, read_bytes_of};
 
-/// How much memory a method takes: always, and multiples of the width, of width x disparities, and of the disparities.
+/// How much memory a method takes: always, and multiples of the width, of width x disparities, and of the
+/// disparities.
 pub struct Bytes {
     pub fixed: usize,
     pub per_pixel: usize,
@@ -37,8 +38,8 @@ pub struct Parts<'a> {
     pub codes: &'a mut [u8],
     /// Room for what is summed for every candidate of every column, where a word may stand.
     pub columns: &'a mut [u8],
-    /// Of each column its winner, what the right one keeps, and how long its surface is along the row; empty where these
-    /// share the `scratch`.
+    /// Of each column its winner, what the right one keeps, and how long its surface is along the row; empty
+    /// where these share the `scratch`.
     pub winners: &'a mut [Winner],
     pub right: &'a mut [u16],
     pub lengths: &'a mut [u16],
@@ -46,9 +47,15 @@ pub struct Parts<'a> {
     pub scratch: &'a mut [u32],
 }
 
-/// The memory of a window over `ROWS` rows of codes, with the one that leaves it: `CODES` bytes for the two of a pixel. Of its
-/// room to work in, `TABLES` words are beside what grows with the frame.
-pub struct WindowMemory<const CODES: usize, const ROWS: usize, const TABLES: usize, const W: usize, const D: usize> {
+/// The memory of a window over `ROWS` rows of codes, with the one that leaves it: `CODES` bytes for the two
+/// of a pixel. Of its room to work in, `TABLES` words are beside what grows with the frame.
+pub struct WindowMemory<
+    const CODES: usize,
+    const ROWS: usize,
+    const TABLES: usize,
+    const W: usize,
+    const D: usize,
+> {
     codes: Aligned<[[[u8; CODES]; W]; ROWS]>,
     columns: Columns<W, D>,
     scratch: Scratch<TABLES, W, D>,
@@ -105,8 +112,9 @@ impl<const CODES: usize, const ROWS: usize, const TABLES: usize, const W: usize,
     }
 }
 
-/// How many bytes before the first line of the cache in a room where `count` bytes still have their place: vectors as long as a
-/// line are then read and written at once. Where processors have no such vectors, and where there is no place, none.
+/// How many bytes before the first line of the cache in a room where `count` bytes still have their place:
+/// vectors as long as a line are then read and written at once. Where processors have no such vectors, and
+/// where there is no place, none.
 #[cfg(target_pointer_width = "64")]
 pub fn before_line(room: &[u8], count: usize) -> u8 {
     const LINE: usize = 64;

@@ -1,14 +1,17 @@
-//! The methods whose costs are sums along paths: semi-global matching (Hirschmüller 2008) on lines as they come.
+//! The methods whose costs are sums along paths: semi-global matching (Hirschmüller 2008) on lines as they
+//! come.
 //!
-//! A row's costs are averaged with those of the rows above it and of the one below, each half as much as the next; or, at the
-//! price of two more bytes for every pixel and disparity, with those above and of the two below as far as no edge of the
-//! left image is crossed. Then paths bring together what the pixels of a surface have in common: from the left, from the right, and from above. No
-//! frame is kept, and no path comes from below: that path measured least, and it would take the frame.
+//! A row's costs are averaged with those of the rows above it and of the one below, each half as much as the
+//! next; or, at the price of two more bytes for every pixel and disparity, with those above and of the two
+//! below as far as no edge of the left image is crossed. Then paths bring together what the pixels of a
+//! surface have in common: from the left, from the right, and from above. No frame is kept, and no path comes
+//! from below: that path measured least, and it would take the frame.
 
 use super::confidence;
 use super::config::Checks;
 use super::kernels::{
-    COLUMNS_OFF, EdgeWork, Guide, PathWork, Room, Select, Unique, Volumes, Winner, bytes_mut, halves_mut, winners_mut,
+    COLUMNS_OFF, EdgeWork, Guide, PathWork, Room, Select, Unique, Volumes, Winner, bytes_mut, halves_mut,
+    winners_mut,
 };
 use super::memory::{AfterRow, Bytes, Memory, Parts, first};
 use super::penalties::Penalties;
@@ -22,8 +25,8 @@ use crate::units::PixelFlags;
 
 /// A method along paths.
 pub trait Along: Scheme {
-    /// Whether a pixel's gradient is compared with all between a candidate and halfway to those beside it (one of the two
-    /// halves of Birchfield & Tomasi 1998), or just with the candidate's.
+    /// Whether a pixel's gradient is compared with all between a candidate and halfway to those beside it
+    /// (one of the two halves of Birchfield & Tomasi 1998), or just with the candidate's.
     const BETWEEN_PIXELS: bool;
     /// Whether a row's costs are averaged with those around it within edges: where brightness changes
     /// [much](Penalties::edges) down a column, another surface may begin.
@@ -34,7 +37,8 @@ pub trait Along: Scheme {
     const VOLUMES: usize = if Self::WITHIN_EDGES { 5 } else { 3 };
 }
 
-/// Method `sgm`: gradients, brightness and a wide census along three paths; gradients are compared between pixels.
+/// Method `sgm`: gradients, brightness and a wide census along three paths; gradients are compared between
+/// pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Sgm;
 
@@ -86,7 +90,8 @@ macro_rules! along_paths {
         impl Lines for $method {
             type Memory<const W: usize, const D: usize> =
                 PathMemory<{ guides::<$method>() }, { <$method as Along>::VOLUMES }, W, D>;
-            const BYTES: Bytes = PathMemory::<{ guides::<$method>() }, { <$method as Along>::VOLUMES }, 0, 0>::BYTES;
+            const BYTES: Bytes =
+                PathMemory::<{ guides::<$method>() }, { <$method as Along>::VOLUMES }, 0, 0>::BYTES;
 
             #[inline(always)]
             fn enter(_: &mut Stages<'_, Self>, _: usize, _: [&Around<'_>; 2]) {}
@@ -109,7 +114,8 @@ macro_rules! along_paths {
     };
 }
 
-/// Rows of the left image that are held: the one whose winners are due, the one above it and those below that are in.
+/// Rows of the left image that are held: the one whose winners are due, the one above it and those below that
+/// are in.
 const fn guides<S: Along>() -> usize {
     S::ROWS_BELOW + 1
 }
@@ -117,15 +123,22 @@ const fn guides<S: Along>() -> usize {
 /// What measured best.
 const STEP: u8 = 12;
 /// Costs along paths leave small gaps inside of surfaces, which are filled.
-const DEFAULT: Checks = Checks { smoothing_radius: 8, speckle_pixels: 20, fill_pixels: 16, ..Checks::DEFAULT };
+const DEFAULT: Checks =
+    Checks { smoothing_radius: 8, speckle_pixels: 20, fill_pixels: 16, ..Checks::DEFAULT };
 /// Noise makes wrong answers whose cost others come near to, and that few others agree with.
 const DEFAULT_IN_NOISE: [Checks; 2] = [
     Checks { uniqueness_percent: Some(5), ..DEFAULT },
     Checks { uniqueness_percent: Some(12), speckle_pixels: 60, ..DEFAULT },
 ];
-/// They are least sure where another disparity costs little more; texture says less than that, for paths bridge what has none.
-const STRICT: Checks =
-    Checks { uniqueness_percent: Some(30), speckle_pixels: 20, median: true, fill_pixels: 8, ..Checks::DEFAULT };
+/// They are least sure where another disparity costs little more; texture says less than that, for paths
+/// bridge what has none.
+const STRICT: Checks = Checks {
+    uniqueness_percent: Some(30),
+    speckle_pixels: 20,
+    median: true,
+    fill_pixels: 8,
+    ..Checks::DEFAULT
+};
 /// Costs of more rows are surer, so that smaller jumps will do.
 const WITHIN_EDGES: Penalties = Penalties { jump: [80, 40, 20], ..Penalties::DEFAULT };
 
@@ -137,7 +150,8 @@ along_paths!(SgmEdge, "sgm-edge", WITHIN_EDGES);
 pub struct PathMemory<const GUIDES: usize, const VOLUMES: usize, const W: usize, const D: usize> {
     /// The left image's last rows, row `y` in slot `y % GUIDES`.
     guides: [[u8; W]; GUIDES],
-    /// Costs, paths from above, sums; within edges also the average of the rows above and the costs of the row below.
+    /// Costs, paths from above, sums; within edges also the average of the rows above and the costs of the
+    /// row below.
     volumes: Volumes<VOLUMES, W, D>,
     /// Room for the features of a row; when they are done with, for its winners.
     room: Room<W, D>,

@@ -2,19 +2,23 @@
 //!
 //! # What was tried and is not done
 //!
-//! Measured on 15 real pairs, of which [`Sgm`](super::Sgm) misses 3.40 % with default checks (4.34 % of slanted, faint surfaces):
+//! Measured on 15 real pairs, of which [`Sgm`](super::Sgm) misses 3.40 % with default checks (4.34 % of
+//! slanted, faint surfaces):
 //!
-//! * Smaller steps for slanted floors: 12 in place of 18 misses 3.65 % (5.06 %), 9 4.06 %; only where texture is low, no less.
-//! * A second order. A step of 12 in the direction of the path's last one at that disparity: 3.61 % (5.15 %); in that of
-//!   its cheapest one over 8 px: 3.44 % (5.04 %).
-//! * Paths that follow the slope of the row above (after Scharstein, Taniai & Sinha 2017): along and down, with what does not
-//!   follow it as cheap, 3.92 % (3.84 %), down alone 3.66 % (4.23 %). On faint rendered planes the first misses 0.4 % of 2.3 %,
-//!   steps of 12 miss 1.2 %. Down alone, Midd1 and Monopoly lose 2 points each.
-//! * The last frame's answers as a prior on the costs: any disparity over 1 px from them costs 1 more. It pays while it is
-//!   right: of still pairs with noise of 2 grey levels the third frame misses 7.2 % of 8.7 %, with 5.7 % of the answers wrong
-//!   of 6.2 % (`TemporalFilter`: 7.6 %, 7.0 %); with noise of 5, 14.0 % of 16.3 %, but 9.5 % wrong of 8.9 % (13.5 %, 11.2 %).
-//!   More than 1 has more answers wrong. Another pair's answers as a prior (13 pairs, noise of 2): 1 misses 8.8 % of 8.6 % in
-//!   the first frame, 2 11.6 %, 4 19.9 %, and 15.3 % of 9.0 % in the third. It takes a frame of answers in memory.
+//! * Smaller steps for slanted floors: 12 in place of 18 misses 3.65 % (5.06 %), 9 4.06 %; only where texture
+//!   is low, no less.
+//! * A second order. A step of 12 in the direction of the path's last one at that disparity: 3.61 % (5.15 %);
+//!   in that of its cheapest one over 8 px: 3.44 % (5.04 %).
+//! * Paths that follow the slope of the row above (after Scharstein, Taniai & Sinha 2017): along and down,
+//!   with what does not follow it as cheap, 3.92 % (3.84 %), down alone 3.66 % (4.23 %). On faint rendered
+//!   planes the first misses 0.4 % of 2.3 %, steps of 12 miss 1.2 %. Down alone, Midd1 and Monopoly lose 2
+//!   points each.
+//! * The last frame's answers as a prior on the costs: any disparity over 1 px from them costs 1 more. It
+//!   pays while it is right: of still pairs with noise of 2 grey levels the third frame misses 7.2 % of 8.7
+//!   %, with 5.7 % of the answers wrong of 6.2 % (`TemporalFilter`: 7.6 %, 7.0 %); with noise of 5, 14.0 % of
+//!   16.3 %, but 9.5 % wrong of 8.9 % (13.5 %, 11.2 %). More than 1 has more answers wrong. Another pair's
+//!   answers as a prior (13 pairs, noise of 2): 1 misses 8.8 % of 8.6 % in the first frame, 2 11.6 %, 4 19.9
+//!   %, and 15.3 % of 9.0 % in the third. It takes a frame of answers in memory.
 
 use super::config::ConfigError;
 
@@ -22,18 +26,21 @@ use super::config::ConfigError;
 /// [`SgmEdge`](super::SgmEdge); the block methods do not look at them. Each method's own,
 /// [`Scheme::PENALTIES`](super::Scheme::PENALTIES), are what measured best on real pairs.
 ///
-/// A path's cost at a pixel and disparity is the pixel's own cost and the least of its predecessor's costs: at the same
-/// disparity for nothing, at the next one for a `step`, at any other for a `jump` (Hirschmüller 2008).
+/// A path's cost at a pixel and disparity is the pixel's own cost and the least of its predecessor's costs:
+/// at the same disparity for nothing, at the next one for a `step`, at any other for a `jump` (Hirschmüller
+/// 2008).
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Penalties {
-    /// A pixel's gradients are cut off at this many units to each side, 1 to [`Self::MOST_GRADIENT`]. The unit is an
-    /// eighth of a grey level per pixel: a gradient is that of Sobel's operator. With [`Noise::Low`](crate::imaging::Noise::Low)
-    /// it is a quarter, with [`Noise::High`](crate::imaging::Noise::High) a half.
+    /// A pixel's gradients are cut off at this many units to each side, 1 to [`Self::MOST_GRADIENT`]. The
+    /// unit is an eighth of a grey level per pixel: a gradient is that of Sobel's operator. With
+    /// [`Noise::Low`](crate::imaging::Noise::Low) it is a quarter, with
+    /// [`Noise::High`](crate::imaging::Noise::High) a half.
     pub gradient: u8,
     /// A pixel's cost is cut off at this.
     pub cost: u8,
-    /// What a change of the disparity by one px costs: where the left image's brightness changes little, and more.
+    /// What a change of the disparity by one px costs: where the left image's brightness changes little, and
+    /// more.
     pub step: [u8; 2],
     /// What any larger change costs: where the brightness changes little, more, and much.
     pub jump: [u8; 3],
@@ -47,12 +54,13 @@ impl Penalties {
     pub const MOST_GRADIENT: u8 = 14;
 
     /// What measured best with [`Sgm`](super::Sgm) and [`SgmLean`](super::SgmLean).
-    pub const DEFAULT: Self = Self { gradient: 7, cost: 16, step: [18, 9], jump: [88, 44, 26], edges: [8, 20] };
+    pub const DEFAULT: Self =
+        Self { gradient: 7, cost: 16, step: [18, 9], jump: [88, 44, 26], edges: [8, 20] };
 
     /// The same for smoothed lines, whose edges are fainter; gradients may be larger before they are cut off.
     ///
-    /// What [`Sgm`](super::Sgm) misses on 15 real pairs with noise of 2 and of 5 grey levels, percent, the checks being those
-    /// without noise (`cargo xtask altered` measures any others):
+    /// What [`Sgm`](super::Sgm) misses on 15 real pairs with noise of 2 and of 5 grey levels, percent, the
+    /// checks being those without noise (`cargo xtask altered` measures any others):
     ///
     /// | penalties | sigma 2 | sigma 5 |
     /// | --- | ---: | ---: |
@@ -82,8 +90,8 @@ impl Penalties {
         if cost < 1 || small_step < 1 || small_step > step || step > least || edges[0] > edges[1] {
             return Err(ConfigError::Penalties);
         }
-        // A path's cost and the step from it take seven bits; and where three paths agree least, their sum is still
-        // under 255, so that a winner's cost is none that was cut off.
+        // A path's cost and the step from it take seven bits; and where three paths agree least, their sum is
+        // still under 255, so that a winner's cost is none that was cut off.
         let (cost, step, jump) = (cost as u16, step as u16, most as u16);
         if cost + step + jump > 127 || cost + 2 * (cost + jump) >= 255 {
             return Err(ConfigError::Penalties);

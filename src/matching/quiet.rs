@@ -1,7 +1,8 @@
 //! The lines around a row, smoothed as the configuration asks for.
 //!
-//! It is done again for every row, in room that its other stages do not need yet: keeping smoothed lines would take two more
-//! lines of each camera. So no row waits longer, and a row depends on the same lines as without.
+//! It is done again for every row, in room that its other stages do not need yet: keeping smoothed lines
+//! would take two more lines of each camera. So no row waits longer, and a row depends on the same lines as
+//! without.
 
 use super::scheme::Around;
 use crate::imaging::{Noise, smooth};

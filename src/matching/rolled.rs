@@ -1,9 +1,10 @@
 //! Loops that stay as they are written.
 
-/// In the body of a loop: on 32-bit cores it is neither unrolled nor turned into vectors. Where a row's work is little, that
-/// would take more flash than it saves instructions.
+/// In the body of a loop: on 32-bit cores it is neither unrolled nor turned into vectors. Where a row's work
+/// is little, that would take more flash than it saves instructions.
 ///
-/// It is no instruction, but what is in memory is read anew with each turn: what does not change belongs in a variable.
+/// It is no instruction, but what is in memory is read anew with each turn: what does not change belongs in a
+/// variable.
 #[inline(always)]
 pub(super) fn rolled() {
     #[cfg(target_pointer_width = "32")]

@@ -19,10 +19,11 @@ pub struct Row<'a> {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) flags: &'a [PixelFlags],
-    /// `HISTORY` finished rows, row `y` in slot `y % HISTORY`; of these only the row itself has its gaps filled.
+    /// `HISTORY` finished rows, row `y` in slot `y % HISTORY`; of these only the row itself has its gaps
+    /// filled.
     pub(super) finished: &'a [Disparity],
-    /// `BAND` rows before median, speckle filter and smoothing down the columns, row `y` in slot `y % BAND`: this row and
-    /// those below.
+    /// `BAND` rows before median, speckle filter and smoothing down the columns, row `y` in slot `y % BAND`:
+    /// this row and those below.
     pub(super) band: &'a [Disparity],
     pub(super) sigma_px: f32,
     pub(super) confidences: &'a [u8],
@@ -47,35 +48,37 @@ impl<'a> Row<'a> {
     /// The largest of [`Self::confidences`].
     pub const MOST_CONFIDENCE: u8 = MOST_MARGIN + 2 * AGREEMENT;
 
-    /// How sure the answer of each column is, from 1 to [`Self::MOST_CONFIDENCE`]; 0 where there is no answer. Empty unless
-    /// [`Config::confidence`](super::Config::confidence) asked for them.
+    /// How sure the answer of each column is, from 1 to [`Self::MOST_CONFIDENCE`]; 0 where there is no
+    /// answer. Empty unless [`Config::confidence`](super::Config::confidence) asked for them.
     ///
-    /// With `m` the cost of the best candidate over two px away less the winner's, at most 127, `s` the greatest difference to
-    /// the answers 4 and 8 columns left and right, and `t` to those 2 and 4 rows above and below, in 1/32 px:
+    /// With `m` the cost of the best candidate over two px away less the winner's, at most 127, `s` the
+    /// greatest difference to the answers 4 and 8 columns left and right, and `t` to those 2 and 4 rows
+    /// above and below, in 1/32 px:
     ///
     /// `confidence = max(1, m + (40 - min(s / 4, 40)) + (40 - min(t / 4, 40)))`
     ///
-    /// Answers above are as they came out, but for what was filled; the others are as they were before the median, the speckle
-    /// filter and the smoothing down the columns, and so is the answer itself but for the median. A filled answer
-    /// ([`PixelFlags::FILLED`]) has 1, and `m` is 0 in the first five columns that have a candidate.
+    /// Answers above are as they came out, but for what was filled; the others are as they were before the
+    /// median, the speckle filter and the smoothing down the columns, and so is the answer itself but for
+    /// the median. A filled answer ([`PixelFlags::FILLED`]) has 1, and `m` is 0 in the first five columns
+    /// that have a candidate.
     ///
-    /// The number puts the answers of one method in order, the wrong ones first: take away those under a threshold and the share
-    /// of wrong ones falls. It is no probability, and says nothing about fractions of a pixel; [`Self::sigma_px`] does, of an
-    /// answer that is right.
+    /// The number puts the answers of one method in order, the wrong ones first: take away those under a
+    /// threshold and the share of wrong ones falls. It is no probability, and says nothing about
+    /// fractions of a pixel; [`Self::sigma_px`] does, of an answer that is right.
     pub fn confidences(&self) -> &'a [u8] {
         self.confidences
     }
 
     /// Standard deviation of the answer at column `x`, px; `None` where there is no answer.
     ///
-    /// Away from depth edges it is the method's own ([`Scheme::SIGMA_PX`](super::Scheme::SIGMA_PX)). Near an edge the
-    /// window sees two surfaces and may answer with either one's disparity, so the answers up to four pixels left,
-    /// right, above and below are looked at: three sigma reach to the farthest of them,
-    /// `sigma = max(SIGMA_PX, spread / 3)`. Those above are as they came out, but for what was filled; the others are as
-    /// they were before the median, the speckle filter and the smoothing down the columns.
+    /// Away from depth edges it is the method's own ([`Scheme::SIGMA_PX`](super::Scheme::SIGMA_PX)). Near an
+    /// edge the window sees two surfaces and may answer with either one's disparity, so the answers up to
+    /// four pixels left, right, above and below are looked at: three sigma reach to the farthest of them,
+    /// `sigma = max(SIGMA_PX, spread / 3)`. Those above are as they came out, but for what was filled; the
+    /// others are as they were before the median, the speckle filter and the smoothing down the columns.
     ///
-    /// A filled answer ([`PixelFlags::FILLED`]) is a guess: its sigma is at least 1 px, and three of it reach the
-    /// answers on both sides of its gap as well.
+    /// A filled answer ([`PixelFlags::FILLED`]) is a guess: its sigma is at least 1 px, and three of it reach
+    /// the answers on both sides of its gap as well.
     ///
     /// The work, 16 look-ups and a look at each pixel of the gap, is done when asked for.
     pub fn sigma_px(&self, x: usize) -> Option<f32> {

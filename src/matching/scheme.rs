@@ -16,14 +16,15 @@ pub trait Scheme: Lines + Sized + 'static {
     const RADIUS_X: usize;
     /// And this many rows up and down. A row has its costs when so many rows below it are in.
     const RADIUS_Y: usize;
-    /// Standard deviation of an answer away from depth edges, px: so that on rendered scenes, with sensor noise of up to
-    /// two grey levels, three of it hold 99 % of the answers.
+    /// Standard deviation of an answer away from depth edges, px: so that on rendered scenes, with sensor
+    /// noise of up to two grey levels, three of it hold 99 % of the answers.
     const SIGMA_PX: f32;
-    /// How much more a disparity one px beside the winner's costs for that alone, on a slanted surface: what is left of the
-    /// rise tells where between pixels it lies.
+    /// How much more a disparity one px beside the winner's costs for that alone, on a slanted surface: what
+    /// is left of the rise tells where between pixels it lies.
     const STEP: u8 = 0;
-    /// Whether answers that are averaged along the line are smoothed down the columns as well: of what an answer is away from
-    /// the one above, as that came out, 5/8, and 5/32 of what it is away from that four rows below, where both are within 1 px.
+    /// Whether answers that are averaged along the line are smoothed down the columns as well: of what an
+    /// answer is away from the one above, as that came out, 5/8, and 5/32 of what it is away from that
+    /// four rows below, where both are within 1 px.
     const SMOOTH_DOWN: bool = false;
     /// The checks of [`Filter::Default`].
     const DEFAULT: Checks = Checks::DEFAULT;
@@ -55,13 +56,17 @@ pub trait Lines: Sized {
     fn enter(stages: &mut Stages<'_, Self>, y: usize, lines: [&Around<'_>; 2])
     where
         Self: Scheme;
-    /// Adds row `bottom` to the costs, while there are `lines`, and selects the winners of `row`, where there is one. Called
-    /// for every step: after it, the slices of the stages stand for what they say.
-    fn select(stages: &mut Stages<'_, Self>, bottom: usize, lines: Option<[&Around<'_>; 2]>, row: Option<usize>)
-    where
+    /// Adds row `bottom` to the costs, while there are `lines`, and selects the winners of `row`, where there
+    /// is one. Called for every step: after it, the slices of the stages stand for what they say.
+    fn select(
+        stages: &mut Stages<'_, Self>,
+        bottom: usize,
+        lines: Option<[&Around<'_>; 2]>,
+        row: Option<usize>,
+    ) where
         Self: Scheme;
-    /// [`Stages::step`]. Each method says so for itself, so that its stages are compiled with this crate, once, and
-    /// not with every crate that chooses a capacity.
+    /// [`Stages::step`]. Each method says so for itself, so that its stages are compiled with this crate,
+    /// once, and not with every crate that chooses a capacity.
     fn step(stages: Stages<'_, Self>, y: usize, lines: Option<[&Around<'_>; 2]>)
     where
         Self: Scheme;

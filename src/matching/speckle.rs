@@ -1,14 +1,15 @@
 //! Answers dropped that too few others support, in a band of five rows.
 //!
-//! An answer's support is counted along a cross (after Zhang, Lu & Lafruit 2009): from it straight up and down as far
-//! as the answers are of one surface, and from each of these along its row as far as that surface goes. Upwards every
-//! row counts, downwards the [`LOOK_AHEAD`] rows that have come when the row is judged. For a small patch that is its
-//! size or little less; counting a patch exactly (a union-find over the band) refuses the same answers to within a few
-//! in a hundred, but its work depends on the picture. This one's does not.
+//! An answer's support is counted along a cross (after Zhang, Lu & Lafruit 2009): from it straight up and
+//! down as far as the answers are of one surface, and from each of these along its row as far as that surface
+//! goes. Upwards every row counts, downwards the [`LOOK_AHEAD`] rows that have come when the row is judged.
+//! For a small patch that is its size or little less; counting a patch exactly (a union-find over the band)
+//! refuses the same answers to within a few in a hundred, but its work depends on the picture. This one's
+//! does not.
 //!
-//! Each row adds its surfaces' lengths to the support of the row above where the two are of one surface. Support only
-//! grows downwards: where it is enough, it is enough for all rows above that the surface goes on from. Two bits a row say
-//! all that is to be kept of those, in one word with the support so far.
+//! Each row adds its surfaces' lengths to the support of the row above where the two are of one surface.
+//! Support only grows downwards: where it is enough, it is enough for all rows above that the surface goes on
+//! from. Two bits a row say all that is to be kept of those, in one word with the support so far.
 
 use super::config::Checks;
 #[cfg(stereopsis_dsp)]
@@ -31,8 +32,9 @@ pub(super) const BAND: usize = LOOK_AHEAD + 1;
 pub(super) struct Support<'a> {
     /// Of the newest row: how many answers its surfaces have along it.
     pub lengths: &'a mut [u16],
-    /// From the lowest bit up: whether each of the last four rows goes on from the one above it, the newest row first;
-    /// whether each of them has enough; the support counted so far, as far as a byte holds it.
+    /// From the lowest bit up: whether each of the last four rows goes on from the one above it, the newest
+    /// row first; whether each of them has enough; the support counted so far, as far as a byte holds
+    /// it.
     pub kept: &'a mut [u16],
 }
 
@@ -70,9 +72,9 @@ impl Support<'_> {
         band.get_mut(above..).unwrap_or_default().fill(Disparity::NONE);
     }
 
-    /// Counts row `y` of the `band`, and judges the row that waited for it, [`LOOK_AHEAD`] above: what is finished are
-    /// its answers without those that have less support than the checks ask for. In the first rows of a frame there is
-    /// none yet; what is written then is not looked at.
+    /// Counts row `y` of the `band`, and judges the row that waited for it, [`LOOK_AHEAD`] above: what is
+    /// finished are its answers without those that have less support than the checks ask for. In the
+    /// first rows of a frame there is none yet; what is written then is not looked at.
     #[inline(never)]
     pub(super) fn count(
         &mut self,

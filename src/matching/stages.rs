@@ -72,7 +72,8 @@ impl<S: Scheme> Stages<'_, S> {
         }
     }
 
-    /// Adds row `bottom`, answers for the row that has its costs with it, and judges the one that waited for that.
+    /// Adds row `bottom`, answers for the row that has its costs with it, and judges the one that waited for
+    /// that.
     fn match_row(&mut self, bottom: usize, lines: Option<[&Around<'_>; 2]>) {
         let height = usize::from(self.config.height);
         let row = bottom.checked_sub(S::RADIUS_Y);
@@ -119,15 +120,18 @@ impl<S: Scheme> Stages<'_, S> {
         let row = slot(band, judged % BAND, width);
         let answers = if self.config.checks.median { slot(finished, judged % HISTORY, width) } else { row };
         let [near, far] = confidence::ROWS;
-        let above = |off: usize| judged.checked_sub(off).map_or(&[][..], |y| slot(finished, y % HISTORY, width));
+        let above =
+            |off: usize| judged.checked_sub(off).map_or(&[][..], |y| slot(finished, y % HISTORY, width));
         let below = |off: usize| slot(band, (judged + off) % BAND, width);
-        let around = confidence::Around { answers, row, columns: [above(near), above(far), below(near), below(far)] };
+        let around =
+            confidence::Around { answers, row, columns: [above(near), above(far), below(near), below(far)] };
         let confidences = first(bytes_of(self.winners), width);
         confidence::tell(&around, slot_mut(self.flags, judged % BAND, width), confidences);
     }
 
-    /// Makes room for `row`: the row that came out last goes into the history as it was judged, and the medians are made
-    /// of the one to be judged next, for which the band must still hold the row above it.
+    /// Makes room for `row`: the row that came out last goes into the history as it was judged, and the
+    /// medians are made of the one to be judged next, for which the band must still hold the row above
+    /// it.
     fn prepare(&mut self, row: usize) {
         let checks = &self.config.checks;
         if checks.fill_pixels > 0 {
@@ -154,7 +158,12 @@ impl<S: Scheme> Stages<'_, S> {
         let winners = Winners { winners: self.winners, right: self.right, room: self.scratch };
         answers::answer::<S>(self.kernel, self.config, winners, answers, flags);
         if self.config.confidence {
-            confidence::keep(self.config, confidence::margins(self.config, self.support.lengths), answers, flags);
+            confidence::keep(
+                self.config,
+                confidence::margins(self.config, self.support.lengths),
+                answers,
+                flags,
+            );
         }
         surface::average(self.kernel, answers, self.support.lengths, halves_mut(self.scratch), checks);
     }

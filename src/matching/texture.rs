@@ -1,7 +1,8 @@
 //! How many pixels of a window have texture.
 //!
-//! A pixel has texture when its left and right neighbour differ by a few grey levels: along the line, because only
-//! there does texture tell disparities apart. One bit a pixel is kept, 16 rows of them in a word a column.
+//! A pixel has texture when its left and right neighbour differ by a few grey levels: along the line, because
+//! only there does texture tell disparities apart. One bit a pixel is kept, 16 rows of them in a word a
+//! column.
 
 use super::config::Checks;
 use super::rolled::{rolled, rolled_if_scalar};

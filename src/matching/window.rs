@@ -1,9 +1,9 @@
-//! The two methods whose costs are sums over a window: their census, the window, and how much of a column's sum a
-//! window's is made of.
+//! The two methods whose costs are sums over a window: their census, the window, and how much of a column's
+//! sum a window's is made of.
 //!
-//! Every window's sum fits a byte. Where the bits under a window are more than that, the lowest digits of its columns'
-//! sums are left out: `block` adds quarters of them, rounded down. On real pairs that hardly shows, while the windows take
-//! half the registers of a vector, and two of ten bit planes less.
+//! Every window's sum fits a byte. Where the bits under a window are more than that, the lowest digits of its
+//! columns' sums are left out: `block` adds quarters of them, rounded down. On real pairs that hardly shows,
+//! while the windows take half the registers of a vector, and two of ten bit planes less.
 
 use super::confidence;
 #[cfg(target_pointer_width = "64")]
@@ -30,7 +30,8 @@ pub trait Windowed: Scheme {
     const COLUMN_SHIFT: usize;
     /// The census row at the centre of five rows.
     fn census(rows: &Around<'_>, out: &mut [u8]);
-    /// The codes of four pixels, from the words around them: rows, and columns two to the left, here, two to the right.
+    /// The codes of four pixels, from the words around them: rows, and columns two to the left, here, two to
+    /// the right.
     #[cfg(not(stereopsis_vectors))]
     fn codes(around: &[[u32; 3]; 3]) -> u32;
     /// How many bits of two codes differ.
@@ -73,7 +74,10 @@ const fn most_table_words<S: Windowed>() -> usize {
 /// What the arithmetic relies on.
 const fn check<S: Windowed>() {
     let column = S::BITS * (2 * S::RADIUS_Y + 1);
-    assert!(column < 1 << S::COLUMN_BITS && S::COLUMN_BITS <= 8, "a column's sum must fit its bits, and a byte");
+    assert!(
+        column < 1 << S::COLUMN_BITS && S::COLUMN_BITS <= 8,
+        "a column's sum must fit its bits, and a byte"
+    );
     let window = (column >> S::COLUMN_SHIFT) * (2 * S::RADIUS_X + 1);
     assert!(window < u8::MAX as usize, "a window's sum must fit a byte, and be no 255");
 }
@@ -84,8 +88,13 @@ macro_rules! window_lines {
         const _: () = check::<$method>();
 
         impl Lines for $method {
-            type Memory<const W: usize, const D: usize> =
-                WindowMemory<{ code_bytes::<$method>() }, { rows::<$method>() }, { table_words::<$method>() }, W, D>;
+            type Memory<const W: usize, const D: usize> = WindowMemory<
+                { code_bytes::<$method>() },
+                { rows::<$method>() },
+                { table_words::<$method>() },
+                W,
+                D,
+            >;
             const BYTES: Bytes =
                 WindowMemory::<2, { rows::<$method>() }, { most_table_words::<$method>() }, 0, 0>::BYTES;
 
@@ -117,7 +126,8 @@ macro_rules! window_lines {
 window_lines!(Fast);
 window_lines!(Block);
 
-/// The neighbours of [`census_plus4`] and [`census_ring8`] in order of their bits, two rows and columns to a step.
+/// The neighbours of [`census_plus4`] and [`census_ring8`] in order of their bits, two rows and columns to a
+/// step.
 #[cfg(not(stereopsis_vectors))]
 const PLUS4: [(usize, usize); 4] = [(0, 1), (1, 0), (1, 2), (2, 1)];
 #[cfg(not(stereopsis_vectors))]

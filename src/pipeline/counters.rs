@@ -1,10 +1,11 @@
 //! What went wrong, by name.
 
-/// Faults since the start, each counted once, by what showed it. Every count stays at its largest value when it is reached.
+/// Faults since the start, each counted once, by what showed it. Every count stays at its largest value when
+/// it is reached.
 ///
-/// A line that another one stood in for is one of `lines_dropped`, `lines_torn`, `lines_late`, `lines_stale`, `lines_failed`,
-/// `lines_timed_out` or `lines_short`, and so is the line that ended a frame because too many were lost. Of the lines that are
-/// due after that nothing is known: they count nowhere.
+/// A line that another one stood in for is one of `lines_dropped`, `lines_torn`, `lines_late`, `lines_stale`,
+/// `lines_failed`, `lines_timed_out` or `lines_short`, and so is the line that ended a frame because too many
+/// were lost. Of the lines that are due after that nothing is known: they count nowhere.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -39,7 +40,8 @@ pub struct FaultCounters {
     pub lines_torn: u32,
     /// Lines that the source said came too late.
     pub lines_late: u32,
-    /// Lines with a time stamp of before the frame or of before the line above, or that the source said were old.
+    /// Lines with a time stamp of before the frame or of before the line above, or that the source said were
+    /// old.
     pub lines_stale: u32,
     /// Lines that the hardware failed to give.
     pub lines_failed: u32,

@@ -31,7 +31,8 @@ pub enum PipelineError<E> {
         /// Its sequence number.
         sequence: u32,
     },
-    /// The camera handed out a line of before this frame, or of before the line above: [`Guarded`](super::Guarded) tells.
+    /// The camera handed out a line of before this frame, or of before the line above:
+    /// [`Guarded`](super::Guarded) tells.
     StaleLine {
         /// The row that it said.
         row: u16,

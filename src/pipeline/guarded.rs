@@ -8,18 +8,21 @@ use crate::matching::{Config, ConfigError, Kernel, MatchError, Row, Scheme};
 
 /// A [`Pipeline`] that goes on when lines get lost, flags what they touch and counts every fault by name.
 ///
-/// A [`Pipeline`] ends the frame with the first error. This one takes the line above in a lost line's place, in a
-/// frame as often as [`Self::set_most_lost`] allows, and says so in the rows:
+/// A [`Pipeline`] ends the frame with the first error. This one takes the line above in a lost line's place,
+/// in a frame as often as [`Self::set_most_lost`] allows, and says so in the rows:
 ///
-/// * rows whose matching window saw the lost line have no answers, and [`PixelFlags::DAMAGED`] on every pixel;
-/// * rows farther away that it can have touched, by the checks or along paths, keep their answers and have the flag;
+/// * rows whose matching window saw the lost line have no answers, and [`PixelFlags::DAMAGED`] on every
+///   pixel;
+/// * rows farther away that it can have touched, by the checks or along paths, keep their answers and have
+///   the flag;
 /// * every other row is, to the bit, what it would be without the fault.
 ///
 /// With [`Fast`](crate::matching::Fast) and [`Block`](crate::matching::Block) a lost line reaches
-/// [`Pipeline::LATENCY`] rows up, and [`Self::reach_down`] rows down; along paths it reaches to the end of the frame.
+/// [`Pipeline::LATENCY`] rows up, and [`Self::reach_down`] rows down; along paths it reaches to the end of
+/// the frame.
 ///
-/// What ends a frame, as a [`Pipeline`]'s does: more lost lines than allowed, sync lost, rows that run backwards. The next
-/// frame is as good as the first.
+/// What ends a frame, as a [`Pipeline`]'s does: more lost lines than allowed, sync lost, rows that run
+/// backwards. The next frame is as good as the first.
 ///
 /// ```text
 /// line              row told      what becomes of it
@@ -32,10 +35,11 @@ use crate::matching::{Config, ConfigError, Kernel, MatchError, Row, Scheme};
 /// none left         -             the line above stands in            lines_short
 /// ```
 ///
-/// Lines that the caller brings ([`Self::push`]) are taken as they are, and one that did not come is told ([`Self::push_lost`]).
+/// Lines that the caller brings ([`Self::push`]) are taken as they are, and one that did not come is told
+/// ([`Self::push_lost`]).
 ///
-/// Time stamps are looked at where the source has them: 0 is none. A frame is the one before once more when its sequence
-/// number, not 0, is that of the one before, or when its number and its stamp, not 0, are.
+/// Time stamps are looked at where the source has them: 0 is none. A frame is the one before once more when
+/// its sequence number, not 0, is that of the one before, or when its number and its stamp, not 0, are.
 ///
 /// [`PixelFlags::DAMAGED`]: crate::units::PixelFlags::DAMAGED
 pub struct Guarded<S: Scheme, const W: usize, const D: usize> {
@@ -48,7 +52,8 @@ pub struct Guarded<S: Scheme, const W: usize, const D: usize> {
 type Guard<T, C> = Result<T, PipelineError<<C as ErrorType>::Error>>;
 
 impl<S: Scheme, const W: usize, const D: usize> Guarded<S, W, D> {
-    /// A pipeline that waits for [`Self::start`]. Every byte of it is zero: a static of it takes RAM and no flash.
+    /// A pipeline that waits for [`Self::start`]. Every byte of it is zero: a static of it takes RAM and no
+    /// flash.
     pub const fn new() -> Self {
         Self { pipeline: Pipeline::new(), lines: LineGuard::new(), before: None, is_running: false }
     }
@@ -60,16 +65,18 @@ impl<S: Scheme, const W: usize, const D: usize> Guarded<S, W, D> {
         Ok(())
     }
 
-    /// Another configuration from the next frame on: counters go on, and a frame under way is over. So a frame can be matched
-    /// for the [noise](Config::noise) that was measured in the one before. What is refused changes nothing.
+    /// Another configuration from the next frame on: counters go on, and a frame under way is over. So a
+    /// frame can be matched for the [noise](Config::noise) that was measured in the one before. What is
+    /// refused changes nothing.
     pub fn restart(&mut self, config: &Config) -> Result<(), ConfigError> {
         self.pipeline.start(config)?;
         self.give_up();
         Ok(())
     }
 
-    /// How many lines of a frame may be lost before it ends with an error; all of them where nothing is set. With a camera that
-    /// is dead each of them may cost the time that the source waits: a few are enough where that matters.
+    /// How many lines of a frame may be lost before it ends with an error; all of them where nothing is set.
+    /// With a camera that is dead each of them may cost the time that the source waits: a few are enough
+    /// where that matters.
     pub fn set_most_lost(&mut self, lines: u16) {
         self.lines.most_lost = Some(lines);
     }
@@ -96,7 +103,8 @@ impl<S: Scheme, const W: usize, const D: usize> Guarded<S, W, D> {
 
     /// How many rows down from a lost line the flag stands; along paths it stands to the end of the frame.
     pub fn reach_down(&self) -> usize {
-        // Answers that are smoothed down the columns rest on the row above as it came out, and so does a path.
+        // Answers that are smoothed down the columns rest on the row above as it came out, and so does a
+        // path.
         if S::SMOOTH_DOWN {
             return usize::MAX;
         }
@@ -118,7 +126,9 @@ impl<S: Scheme, const W: usize, const D: usize> Guarded<S, W, D> {
         };
         if let Some(before) = self.before.replace(start) {
             let is_same = start.sequence == before.sequence;
-            if is_same && (start.sequence != 0 || start.timestamp_us != 0 && start.timestamp_us == before.timestamp_us)
+            if is_same
+                && (start.sequence != 0
+                    || start.timestamp_us != 0 && start.timestamp_us == before.timestamp_us)
             {
                 count(&mut self.lines.counters.frames_stale, 1);
                 self.pipeline.stop();
@@ -140,7 +150,8 @@ impl<S: Scheme, const W: usize, const D: usize> Guarded<S, W, D> {
         Ok(start)
     }
 
-    /// The next row of disparities; `None` when all rows of the frame are out. After an error the frame is over.
+    /// The next row of disparities; `None` when all rows of the frame are out. After an error the frame is
+    /// over.
     pub fn next_row<C: StereoSource>(&mut self, camera: &mut C) -> Guard<Option<Row<'_>>, C> {
         let Self { pipeline, lines, .. } = self;
         match pipeline.advance(|pipeline| lines.take(pipeline, camera)) {
@@ -177,8 +188,8 @@ impl<S: Scheme, const W: usize, const D: usize> Guarded<S, W, D> {
         Ok(self.pushed(None, due, is_out))
     }
 
-    /// In place of [`Self::push`], of a line that did not come: the line above stands in. It counts by its fault. The caller
-    /// says how many lines of a frame it bears.
+    /// In place of [`Self::push`], of a line that did not come: the line above stands in. It counts by its
+    /// fault. The caller says how many lines of a frame it bears.
     pub fn push_lost(&mut self, fault: LineFault) -> Result<Option<Row<'_>>, PushError> {
         let due = self.pipeline.left.count();
         let is_out = self.pipeline.push_repeated()?.is_some();

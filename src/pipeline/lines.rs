@@ -93,9 +93,15 @@ impl LineGuard {
         // A camera may give a line again and again: a frame's worth of that is enough.
         for _ in 0..=height {
             if self.is_short {
-                return self.stand_in(pipeline, due, (|c| &mut c.lines_short, CameraError::NoLineLeft.into()));
+                return self.stand_in(
+                    pipeline,
+                    due,
+                    (|c| &mut c.lines_short, CameraError::NoLineLeft.into()),
+                );
             }
-            let lost: Lost<C::Error> = match camera.next_lines(pipeline.left.next_line(), pipeline.right.next_line()) {
+            let lost: Lost<C::Error> = match camera
+                .next_lines(pipeline.left.next_line(), pipeline.right.next_line())
+            {
                 Ok(line) => match self.judge(line, due, height)? {
                     Judged::Due => return self.accept(pipeline, true, due),
                     Judged::Again => continue,

@@ -7,12 +7,12 @@ use crate::matching::{Config, ConfigError, Kernel, MatchError, Matcher, Row, Sch
 
 /// Rows of disparities from a stereo source, in memory of its own and of fixed size: it fits a `static`.
 ///
-/// The row that comes out is [`Pipeline::LATENCY`] lines behind the line that goes in; the last rows come when the
-/// frame's lines are over.
+/// The row that comes out is [`Pipeline::LATENCY`] lines behind the line that goes in; the last rows come
+/// when the frame's lines are over.
 ///
-/// Lines come in one of two ways. With [`Self::begin_frame`] and [`Self::next_row`] the pipeline takes them from a
-/// camera when it needs them. With [`Self::begin`], [`Self::push`] and [`Self::flush`] the caller brings them, from an
-/// interrupt's buffer or from C. Both give the same rows.
+/// Lines come in one of two ways. With [`Self::begin_frame`] and [`Self::next_row`] the pipeline takes them
+/// from a camera when it needs them. With [`Self::begin`], [`Self::push`] and [`Self::flush`] the caller
+/// brings them, from an interrupt's buffer or from C. Both give the same rows.
 #[doc = "```"]
 #[doc = "use stereopsis::{matching::{Block, Config}, pipeline::Pipeline};"]
 #[doc = "static PIPELINE: Pipeline<Block, 320, 64> = Pipeline::new();"]
@@ -35,9 +35,16 @@ impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
     /// Row y comes out when line y + `LATENCY` is in.
     pub const LATENCY: usize = Self::CENSUS_REACH + Matcher::<S, W, D>::DELAY;
 
-    /// A pipeline that waits for [`Self::start`]. Every byte of it is zero: a static of it takes RAM and no flash.
+    /// A pipeline that waits for [`Self::start`]. Every byte of it is zero: a static of it takes RAM and no
+    /// flash.
     pub const fn new() -> Self {
-        Self { left: LineWindow::new(), right: LineWindow::new(), matcher: Matcher::new(), taken: 0, height: 0 }
+        Self {
+            left: LineWindow::new(),
+            right: LineWindow::new(),
+            matcher: Matcher::new(),
+            taken: 0,
+            height: 0,
+        }
     }
 
     /// Checks the configuration and gets ready for the first frame.
@@ -59,7 +66,10 @@ impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
     }
 
     /// Waits for the camera's next frame and forgets the one before.
-    pub fn begin_frame<C: StereoSource>(&mut self, camera: &mut C) -> Result<FrameStart, PipelineError<C::Error>> {
+    pub fn begin_frame<C: StereoSource>(
+        &mut self,
+        camera: &mut C,
+    ) -> Result<FrameStart, PipelineError<C::Error>> {
         self.stop();
         let config = *self.matcher.config();
         let needed = LineFormat { width: config.width, height: config.height, pixel: PixelFormat::Grey8 };
@@ -75,9 +85,12 @@ impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
         Ok(start)
     }
 
-    /// The next row of disparities, taking as many lines from the camera as it needs; `None` when all rows of the
-    /// frame are out. After an error the frame is over.
-    pub fn next_row<C: StereoSource>(&mut self, camera: &mut C) -> Result<Option<Row<'_>>, PipelineError<C::Error>> {
+    /// The next row of disparities, taking as many lines from the camera as it needs; `None` when all rows of
+    /// the frame are out. After an error the frame is over.
+    pub fn next_row<C: StereoSource>(
+        &mut self,
+        camera: &mut C,
+    ) -> Result<Option<Row<'_>>, PipelineError<C::Error>> {
         match self.advance(|pipeline| pipeline.take_lines(camera)) {
             Ok(is_out) => {
                 if is_out {
@@ -106,11 +119,11 @@ impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
         Ok(())
     }
 
-    /// Takes the next line of both cameras, which is copied, and gives the row that it brings out: `None` for the first
-    /// [`Self::LATENCY`] lines. When all lines are in, [`Self::flush`] gives the other rows.
+    /// Takes the next line of both cameras, which is copied, and gives the row that it brings out: `None` for
+    /// the first [`Self::LATENCY`] lines. When all lines are in, [`Self::flush`] gives the other rows.
     ///
-    /// A line has exactly the width that the pipeline was started for. After an error nothing has changed: the right
-    /// line may follow.
+    /// A line has exactly the width that the pipeline was started for. After an error nothing has changed:
+    /// the right line may follow.
     pub fn push(&mut self, left: &[u8], right: &[u8]) -> Result<Option<Row<'_>>, PushError> {
         self.begun()?;
         if self.left.count() >= self.height {
@@ -167,8 +180,8 @@ impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
         self.matcher.row()
     }
 
-    /// Takes the answers of [`Self::row`] away where a camera did not see ([`Matcher::mask`]). [`Self::next_row`] asks the
-    /// camera itself; this is for who pushes lines that have such places.
+    /// Takes the answers of [`Self::row`] away where a camera did not see ([`Matcher::mask`]).
+    /// [`Self::next_row`] asks the camera itself; this is for who pushes lines that have such places.
     pub fn mask(&mut self, valid: impl FnOnce(u16, [&mut [u8]; 2]) -> bool) {
         self.matcher.mask(valid);
     }
@@ -178,8 +191,8 @@ impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
         self.matcher.config()
     }
 
-    /// Takes rows through the matcher until one comes out, each after `lines` took what it needs; false when all rows of
-    /// the frame are out.
+    /// Takes rows through the matcher until one comes out, each after `lines` took what it needs; false when
+    /// all rows of the frame are out.
     pub(super) fn advance<E: From<MatchError>>(
         &mut self,
         mut lines: impl FnMut(&mut Self) -> Result<(), E>,

@@ -1,7 +1,8 @@
 //! The live path, row by row: camera, line windows, census, matching.
 //!
-//! In: lines of two cameras, pulled from a [`StereoSource`](crate::camera::StereoSource) or pushed by the caller. Out:
-//! a [`Row`](crate::matching::Row) of disparities for every line, [`Pipeline::LATENCY`] lines later.
+//! In: lines of two cameras, pulled from a [`StereoSource`](crate::camera::StereoSource) or pushed by the
+//! caller. Out: a [`Row`](crate::matching::Row) of disparities for every line, [`Pipeline::LATENCY`] lines
+//! later.
 //!
 //! * [`Pipeline`]: the memory and the order of the stages.
 //! * [`Guarded`]: the same before cameras that fail, with [`FaultCounters`].
@@ -9,12 +10,12 @@
 //!
 //! # With cameras that fail
 //!
-//! A [`Pipeline`] gives right rows up to the first error, and after an error the next frame. A [`Guarded`] goes on within the frame.
-//! What both promise, whatever the source does:
+//! A [`Pipeline`] gives right rows up to the first error, and after an error the next frame. A [`Guarded`]
+//! goes on within the frame. What both promise, whatever the source does:
 //!
 //! * no panic, and no wait but the source's own;
-//! * a row that comes out is, to the bit, what its lines give; a row that rests on a line that did not come has a flag (from
-//!   [`Guarded`]), or does not come out (from [`Pipeline`]);
+//! * a row that comes out is, to the bit, what its lines give; a row that rests on a line that did not come
+//!   has a flag (from [`Guarded`]), or does not come out (from [`Pipeline`]);
 //! * the next whole frame is as good as the first;
 //! * every fault that can be seen is counted once, by its name ([`FaultCounters`]).
 //!
@@ -30,9 +31,10 @@
 //!
 //! # In an application
 //!
-//! Optional stages stand before and after, row by row: [`RectifiedPair`](crate::imaging::RectifiedPair) for raw lines,
-//! [`PairMonitor`](crate::imaging::PairMonitor) and [`AutoExposure`](crate::imaging::AutoExposure) beside the lines;
-//! [`TemporalFilter`](crate::depth::TemporalFilter) and [`Decimator`](crate::depth::Decimator) on the rows.
+//! Optional stages stand before and after, row by row: [`RectifiedPair`](crate::imaging::RectifiedPair) for
+//! raw lines, [`PairMonitor`](crate::imaging::PairMonitor) and [`AutoExposure`](crate::imaging::AutoExposure)
+//! beside the lines; [`TemporalFilter`](crate::depth::TemporalFilter) and
+//! [`Decimator`](crate::depth::Decimator) on the rows.
 //!
 //! ```
 //! use stereopsis::camera::StereoSource;
@@ -64,9 +66,10 @@
 //! # let _ = TemporalFilter::<160, 120>::new(TemporalConfig::default());
 //! ```
 //!
-//! Two cores share a frame as two pipelines, a band of rows each, and every row is bit-equal to that of one: a band sees
-//! [`Pipeline::LATENCY`] lines more than it gives rows below, and above as many and one more for each answer that the
-//! speckle filter asks for ([`Checks::speckle_pixels`](crate::matching::Checks::speckle_pixels)).
+//! Two cores share a frame as two pipelines, a band of rows each, and every row is bit-equal to that of one:
+//! a band sees [`Pipeline::LATENCY`] lines more than it gives rows below, and above as many and one more for
+//! each answer that the speckle filter asks for
+//! ([`Checks::speckle_pixels`](crate::matching::Checks::speckle_pixels)).
 
 mod counters;
 mod error;

@@ -1,5 +1,5 @@
-//! Takes the method and the sizes from three variables, which a build system sets, and writes the one line that makes the
-//! functions.
+//! Takes the method and the sizes from three variables, which a build system sets, and writes the one line
+//! that makes the functions.
 
 use std::path::PathBuf;
 use std::{env, fs};
@@ -35,12 +35,17 @@ fn write() -> Result<(), String> {
     };
     let (width, disparities) = (number(1, &width)?, number(2, &disparities)?);
     if !disparities.is_multiple_of(16) || !(16..=256).contains(&disparities) {
-        return Err(format!("STEREOPSIS_DISPARITIES is {disparities}: it must be a multiple of 16, from 16 to 256"));
+        return Err(format!(
+            "STEREOPSIS_DISPARITIES is {disparities}: it must be a multiple of 16, from 16 to 256"
+        ));
     }
     if width < disparities || width > 6553 {
-        return Err(format!("STEREOPSIS_WIDTH is {width}: it must be {disparities} (the disparities) to 6553"));
+        return Err(format!(
+            "STEREOPSIS_WIDTH is {width}: it must be {disparities} (the disparities) to 6553"
+        ));
     }
-    let line = format!("stereopsis::instantiate_c_api!({method}, width = {width}, disparities = {disparities});\n");
+    let line =
+        format!("stereopsis::instantiate_c_api!({method}, width = {width}, disparities = {disparities});\n");
     let folder = env::var_os("OUT_DIR").map(PathBuf::from).ok_or("OUT_DIR is not set")?;
     fs::write(folder.join("instance.rs"), line).map_err(|e| format!("instance.rs: {e}"))
 }

@@ -1,7 +1,7 @@
 //! The boards: which core, which memories, which clock. A board of yours is one more entry.
 //!
-//! `build.rs` tells the linker the addresses, `src/clock.rs` counts with the clock, and the task runner of the
-//! repository starts QEMU with the machine's name.
+//! `build.rs` tells the linker the addresses, `src/clock.rs` counts with the clock, and the task runner of
+//! the repository starts QEMU with the machine's name.
 
 /// An emulated board.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

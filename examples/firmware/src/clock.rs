@@ -1,8 +1,8 @@
 //! Instructions counted.
 //!
-//! QEMU started with `-icount shift=0,align=off,sleep=off` lets a nanosecond pass with every instruction. A Cortex-M
-//! counts it with SysTick, whose tick is so many instructions long as the processor's clock period has nanoseconds; RISC-V
-//! has a register that counts instructions. These are instructions, not cycles.
+//! QEMU started with `-icount shift=0,align=off,sleep=off` lets a nanosecond pass with every instruction. A
+//! Cortex-M counts it with SysTick, whose tick is so many instructions long as the processor's clock period
+//! has nanoseconds; RISC-V has a register that counts instructions. These are instructions, not cycles.
 
 use core::cell::Cell;
 #[cfg(target_arch = "arm")]

@@ -1,6 +1,7 @@
 //! Files and the console of the host, by semihosting, without a panic.
 //!
-//! The crate `semihosting` asserts in every call that a handle is not -1; looking first lets the compiler drop that.
+//! The crate `semihosting` asserts in every call that a handle is not -1; looking first lets the compiler
+//! drop that.
 
 use core::ffi::CStr;
 use semihosting::fd::{AsFd, BorrowedFd, OwnedFd};

@@ -1,12 +1,15 @@
 //! What the programs of this firmware share. A program stands in `src/bin`: `depth` is the pipeline, `pose`
-//! two views, `bundle` their adjustment, `features` corners and their matches, `focus` depth by a lens that moves,
-//! `interrupt` lines that an interrupt brings, `odometry` where a pair of cameras goes, `rectify` raw lines.
+//! two views, `bundle` their adjustment, `features` corners and their matches, `focus` depth by a lens that
+//! moves, `interrupt` lines that an interrupt brings, `odometry` where a pair of cameras goes, `rectify` raw
+//! lines.
 //!
-//! * [`choice`]: the method, the sizes and the board, chosen when it is built; [`board`] is the list of boards.
+//! * [`choice`]: the method, the sizes and the board, chosen when it is built; [`board`] is the list of
+//!   boards.
 //! * [`camera`]: where lines come from: the built-in scene, or two files on the host.
 //! * [`rows`]: rows of disparity to a file on the host, with their checksum. [`console`]: figures as text.
 //! * [`host`]: files on the host.
-//! * [`clock`]: instructions counted; [`ticker`]: the same timer, for interrupts. [`stack`]: the stack measured.
+//! * [`clock`]: instructions counted; [`ticker`]: the same timer, for interrupts. [`stack`]: the stack
+//!   measured.
 //! * [`two_views`]: matches of a known world, and the pose and points that they give.
 //! * [`window`]: two views and their points, adjusted.
 //! * [`two_pictures`]: features of two cameras' lines, and their matches.
@@ -15,8 +18,9 @@
 //! * [`walk`]: a view that moves, and the motion from frame to frame.
 //! * [`log`]: defmt through semihosting. [`runtime`]: start and end of a program, and no panic.
 //!
-//! Files, text and log go to the host by semihosting, which works under QEMU and with a debugger. In a product these
-//! modules are the drivers, and what is left is the pipeline in a static and a loop over its rows.
+//! Files, text and log go to the host by semihosting, which works under QEMU and with a debugger. In a
+//! product these modules are the drivers, and what is left is the pipeline in a static and a loop over its
+//! rows.
 #![no_std]
 
 pub mod board;

@@ -1,4 +1,5 @@
-//! defmt through semihosting: the encoded log goes to a file on the host, where the ELF file says what it means.
+//! defmt through semihosting: the encoded log goes to a file on the host, where the ELF file says what it
+//! means.
 
 use crate::host::HostFile;
 use core::cell::RefCell;

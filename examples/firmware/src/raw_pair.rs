@@ -1,13 +1,16 @@
-//! Raw lines of two cameras, rectified as they come: what that costs behind different lenses, and depth from them.
+//! Raw lines of two cameras, rectified as they come: what that costs behind different lenses, and depth from
+//! them.
 //!
-//! It knows no hardware: the same runs on the host, which compares. In a product the lines are those of two cameras, and the
-//! rig is read from flash with `StereoRig::from_record`.
+//! It knows no hardware: the same runs on the host, which compares. In a product the lines are those of two
+//! cameras, and the rig is read from flash with `StereoRig::from_record`.
 
 use super::scene::{Scene, SceneCamera};
 use core::convert::Infallible;
 use nalgebra::{Matrix3, Vector3};
 use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, StereoSource};
-use stereopsis::geometry::{Camera, Crop, Distortion, ImageSize, Pose, Rectification, RectifyError, StereoRig};
+use stereopsis::geometry::{
+    Camera, Crop, Distortion, ImageSize, Pose, Rectification, RectifyError, StereoRig,
+};
 use stereopsis::imaging::{RectifiedPair, RectifiedPairError, RemapError, RemapPair, RemapTable};
 use stereopsis::matching::{Block, Config, ConfigError, Row};
 use stereopsis::pipeline::{Pipeline, PipelineError};
@@ -18,7 +21,8 @@ pub const SCENE: Scene = Scene { width: 320, height: 240 };
 const SIZE: ImageSize = ImageSize { width: SCENE.width, height: SCENE.height };
 /// Pixels in a line.
 const WIDTH: usize = SCENE.width as usize;
-/// Raw lines that are held of a camera, one of them twice: the strong lens needs 22 at once, and powers of two are faster.
+/// Raw lines that are held of a camera, one of them twice: the strong lens needs 22 at once, and powers of
+/// two are faster.
 pub const LINES: usize = 33;
 /// Room for lattices of 32 px.
 const SLOTS: usize = RemapTable::<0>::slots(SIZE, 5);
@@ -85,8 +89,8 @@ impl RawPair {
         Self { remaps: RemapPair::empty(), pipeline: Pipeline::new(), lines: [[0; WIDTH]; 2] }
     }
 
-    /// A frame of a camera behind such lenses: a taker gets both rectified lines of each row, and which of their pixels are valid. The
-    /// ticks by the clock that the pair took, those of the camera among them.
+    /// A frame of a camera behind such lenses: a taker gets both rectified lines of each row, and which of
+    /// their pixels are valid. The ticks by the clock that the pair took, those of the camera among them.
     pub fn remap<C: StereoSource<Error = Infallible>, E>(
         &mut self,
         lens: Lens,
@@ -110,8 +114,8 @@ impl RawPair {
         Ok(ticks)
     }
 
-    /// A frame of depth from raw lines as [`Lowered`] gives them: camera, remap, census and matching in one loop over the
-    /// rows. A taker gets each row; the ticks are counted as in [`Self::remap`].
+    /// A frame of depth from raw lines as [`Lowered`] gives them: camera, remap, census and matching in one
+    /// loop over the rows. A taker gets each row; the ticks are counted as in [`Self::remap`].
     pub fn depth<C: StereoSource<Error = Infallible>, E>(
         &mut self,
         camera: C,
@@ -157,7 +161,10 @@ fn level<E>() -> Result<Rectification<f32>, Broken<E>> {
     rectification([camera(119.5)?, camera(119.5 + f32::from(LOWER))?], Vector3::new(0.06, 0.0, 0.0))
 }
 
-fn rectification<E>(cameras: [Camera<f32>; 2], to_second: Vector3<f32>) -> Result<Rectification<f32>, Broken<E>> {
+fn rectification<E>(
+    cameras: [Camera<f32>; 2],
+    to_second: Vector3<f32>,
+) -> Result<Rectification<f32>, Broken<E>> {
     let pose = Pose::new(Matrix3::identity(), to_second).map_err(|_| Broken::Numbers)?;
     let rig = StereoRig::new(cameras, pose, [SIZE; 2]).map_err(|_| Broken::Numbers)?;
     Rectification::new(&rig, Crop::Natural, SIZE).map_err(Broken::Rectify)
@@ -201,7 +208,11 @@ impl StereoSource for Lowered {
         self.left.start_frame()
     }
 
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Infallible>> {
+    fn next_lines(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<Infallible>> {
         let start = self.left.next_lines(left, right)?;
         if start.row < LOWER {
             right.fill(0);
@@ -212,7 +223,8 @@ impl StereoSource for Lowered {
     }
 }
 
-/// How many pixels of a rectified row show the board, and how many of them are said to be within half a pixel of where it is.
+/// How many pixels of a rectified row show the board, and how many of them are said to be within half a pixel
+/// of where it is.
 pub fn on_board(row: &Row<'_>) -> (u32, u32) {
     let (mut shown, mut right) = (0, 0);
     for (u, disparity) in (0..).zip(row.disparities()) {

@@ -11,8 +11,8 @@ pub use cortex_m_rt::entry;
 #[cfg(target_arch = "riscv32")]
 pub use riscv_rt::entry;
 
-/// A program from start to end: paints the stack, does the work in the memory that stands in a static, and says in the log and
-/// on the console why it failed, if it did.
+/// A program from start to end: paints the stack, does the work in the memory that stands in a static, and
+/// says in the log and on the console why it failed, if it did.
 // Inlined: a call of its own would be on the stack that is measured.
 #[inline(always)]
 pub fn run<M, F: defmt::Format>(
@@ -54,8 +54,8 @@ extern "C" fn exception() -> ! {
     process::exit(2)
 }
 
-/// There is no panic: this handler calls a function that does not exist, so that a program with one panic left in it
-/// does not link, and the linker's error says who panics.
+/// There is no panic: this handler calls a function that does not exist, so that a program with one panic
+/// left in it does not link, and the linker's error says who panics.
 #[panic_handler]
 #[allow(unsafe_code)]
 fn panic(_info: &PanicInfo<'_>) -> ! {

@@ -28,7 +28,8 @@ pub fn paint() {
     let (lowest, _) = bounds();
     let free = (&raw const here).addr().saturating_sub(MARGIN);
     for address in (lowest..free).step_by(4) {
-        // SAFETY: between the linker's last variable and this function's frame there is nothing but free stack.
+        // SAFETY: between the linker's last variable and this function's frame there is nothing but free
+        // stack.
         unsafe { ptr::with_exposed_provenance_mut::<u32>(address).write_volatile(PAINT) }
     }
 }

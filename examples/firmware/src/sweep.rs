@@ -1,7 +1,7 @@
 //! A camera whose lens moves before a slope, and the frame in which each tile of it is sharpest.
 //!
-//! It knows no hardware: the same runs on the host, which compares. In a product the lines are those of a camera, and a
-//! `stereopsis::focus::LensActuator` moves the lens between two frames.
+//! It knows no hardware: the same runs on the host, which compares. In a product the lines are those of a
+//! camera, and a `stereopsis::focus::LensActuator` moves the lens between two frames.
 
 use stereopsis::focus::{Breathing, FocusCell, FocusConfig, FocusConfigError, FocusLineError, FocusMap};
 
@@ -69,7 +69,8 @@ impl Default for Sweep {
     }
 }
 
-/// In which frame a column is in focus, in 1/256 from 0: from the second at the left to the last but one at the right.
+/// In which frame a column is in focus, in 1/256 from 0: from the second at the left to the last but one at
+/// the right.
 pub const fn in_focus_q8(column: usize) -> u32 {
     (256 + (FRAMES as usize - 3) * 256 * column / WIDTH) as u32
 }

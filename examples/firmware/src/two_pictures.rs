@@ -4,7 +4,8 @@
 
 use heapless::Vec;
 use stereopsis::features::{
-    Feature, FeatureConfig, FeatureConfigError, FeatureDetector, FeatureLineError, Match, Matcher, Search, SearchError,
+    Feature, FeatureConfig, FeatureConfigError, FeatureDetector, FeatureLineError, Match, Matcher, Search,
+    SearchError,
 };
 
 /// Pixels in a line.

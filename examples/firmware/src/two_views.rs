@@ -1,12 +1,13 @@
-//! Two cameras that see points of a known world, from matches with wrong ones among them to the pose and the points.
+//! Two cameras that see points of a known world, from matches with wrong ones among them to the pose and the
+//! points.
 //!
 //! It knows no hardware: the same runs on the host, which compares. In a product the matches are those of
 //! `stereopsis::features`, and what is here of the truth is not.
 
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 use stereopsis::geometry::{
-    Camera, Correspondence, Essential, Pose, RecoveredPose, RobustConfig, RobustError, RobustFundamental, TwoViews,
-    robust_fundamental,
+    Camera, Correspondence, Essential, Pose, RecoveredPose, RobustConfig, RobustError, RobustFundamental,
+    TwoViews, robust_fundamental,
 };
 
 /// Matches.
@@ -83,7 +84,8 @@ impl Cameras {
     /// When they cannot be; which they can.
     pub fn new() -> Result<Self, Missing> {
         let camera = Camera::new(500.0, 500.0, 320.0, 240.0).map_err(|_| Missing::World)?;
-        let pose = Pose::new(turn(40.0, 1.0, -2.0, 0.5), Vector3::new(0.3, -0.05, 0.1)).map_err(|_| Missing::World)?;
+        let pose = Pose::new(turn(40.0, 1.0, -2.0, 0.5), Vector3::new(0.3, -0.05, 0.1))
+            .map_err(|_| Missing::World)?;
         Ok(Self { camera, pose })
     }
 }
@@ -97,7 +99,10 @@ impl Default for World {
 impl World {
     /// Nothing yet.
     pub const fn new() -> Self {
-        Self { points: [Point3::new(0.0, 0.0, 0.0); MATCHES], seen: [Correspondence::new(0.0, 0.0, 0.0, 0.0); MATCHES] }
+        Self {
+            points: [Point3::new(0.0, 0.0, 0.0); MATCHES],
+            seen: [Correspondence::new(0.0, 0.0, 0.0, 0.0); MATCHES],
+        }
     }
 
     /// The points of a seed, 4 m to 12 m away.
@@ -111,7 +116,8 @@ impl World {
             let first = random.pixel();
             let sight = cameras.camera.unproject(&first).map_err(|_| Missing::World)?;
             *point = Point3::from(sight * (4.0 + 8.0 * random.unit()));
-            let second = cameras.camera.project(&cameras.pose.inverse_transform(point)).map_err(|_| Missing::World)?;
+            let second =
+                cameras.camera.project(&cameras.pose.inverse_transform(point)).map_err(|_| Missing::World)?;
             let anywhere = random.pixel();
             let second = if is_right(at) { second } else { anywhere };
             let [a, b, c, d] = [first.x, first.y, second.x, second.y].map(|x| x + random.normal() * NOISE_PX);
@@ -126,10 +132,12 @@ impl World {
     /// When they agree on nothing.
     #[inline(never)]
     pub fn fundamental(&self, inliers: &mut [bool; MATCHES]) -> Result<RobustFundamental<f32>, Missing> {
-        robust_fundamental(&self.seen, &RobustConfig::new(THRESHOLD_PX), inliers).map_err(Missing::Fundamental)
+        robust_fundamental(&self.seen, &RobustConfig::new(THRESHOLD_PX), inliers)
+            .map_err(Missing::Fundamental)
     }
 
-    /// The pose in F with the known cameras, and the points by it, in baselines: those of matches that agree and have one.
+    /// The pose in F with the known cameras, and the points by it, in baselines: those of matches that agree
+    /// and have one.
     ///
     /// # Errors
     /// When F is not that of the cameras.
@@ -141,11 +149,14 @@ impl World {
         inliers: &[bool; MATCHES],
         points: &mut [Option<Point3<f32>>; MATCHES],
     ) -> Result<Found, Missing> {
-        let essential = Essential::from_fundamental(&robust.fundamental, camera, camera).map_err(|_| Missing::Pose)?;
-        let essential = essential.refined(&self.seen, camera, camera, THRESHOLD_PX).map_err(|_| Missing::Pose)?;
+        let essential =
+            Essential::from_fundamental(&robust.fundamental, camera, camera).map_err(|_| Missing::Pose)?;
+        let essential =
+            essential.refined(&self.seen, camera, camera, THRESHOLD_PX).map_err(|_| Missing::Pose)?;
         let agreeing = self.seen.iter().zip(inliers).filter(|(_, inlier)| **inlier).map(|(seen, _)| *seen);
         let recovered = essential.recover_pose(agreeing, camera, camera).map_err(|_| Missing::Pose)?;
-        let views = TwoViews::new(*camera, *camera, recovered.pose.in_baselines()).map_err(|_| Missing::Pose)?;
+        let views =
+            TwoViews::new(*camera, *camera, recovered.pose.in_baselines()).map_err(|_| Missing::Pose)?;
         let mut count = 0;
         for ((point, seen), &inlier) in points.iter_mut().zip(&self.seen).zip(inliers) {
             *point = if inlier { views.optimal(seen).ok().map(|found| found.point) } else { None };
@@ -173,7 +184,11 @@ impl World {
         });
         let (sum, count) = off.fold((0.0, 0.0), |(sum, count), off| (sum + off, count + 1.0));
         let of = |right: bool, kept: bool| {
-            inliers.iter().enumerate().filter(|&(at, &inlier)| is_right(at) == right && inlier == kept).count()
+            inliers
+                .iter()
+                .enumerate()
+                .filter(|&(at, &inlier)| is_right(at) == right && inlier == kept)
+                .count()
         };
         Errors {
             rotation_rad: rotation * core::f32::consts::FRAC_1_SQRT_2,
@@ -186,9 +201,9 @@ impl World {
 }
 
 impl Errors {
-    /// Whether the estimate is as good as the noise allows, and better than by chance: within a third of a degree in rotation,
-    /// two in direction, points within 6 %, at most one in eight of the right matches lost, one in eight of the wrong ones
-    /// kept.
+    /// Whether the estimate is as good as the noise allows, and better than by chance: within a third of a
+    /// degree in rotation, two in direction, points within 6 %, at most one in eight of the right matches
+    /// lost, one in eight of the wrong ones kept.
     pub fn are_small(&self) -> bool {
         let wrong = MATCHES / ONE_WRONG_OF;
         self.rotation_rad < 0.006

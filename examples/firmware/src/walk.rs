@@ -1,7 +1,7 @@
 //! A pair of cameras whose view moves, and the motion from frame to frame.
 //!
-//! It knows no hardware: the same runs on the host, which compares. The pictures are a window of the built-in scene that moves two
-//! columns with every frame, as if the cameras turned; in a product they are a camera's.
+//! It knows no hardware: the same runs on the host, which compares. The pictures are a window of the built-in
+//! scene that moves two columns with every frame, as if the cameras turned; in a product they are a camera's.
 
 use super::scene::{Scene, SceneCamera};
 use core::convert::Infallible;
@@ -28,7 +28,8 @@ const COLUMNS: usize = 2;
 const POINTS: usize = 40;
 /// The cameras' focal length, px.
 const FOCAL_PX: f32 = 120.0;
-/// How far all turns together may be from those of the window, of which the middle alone moves as a turn does, radians.
+/// How far all turns together may be from those of the window, of which the middle alone moves as a turn
+/// does, radians.
 const NEAR_RAD: f32 = 0.01;
 /// What is looked for.
 const CONFIG: FeatureConfig =
@@ -115,7 +116,11 @@ impl Walk {
     /// The motion since the frame before.
     pub fn step(&mut self) -> Result<Step<f32>, Broken> {
         let picture = |pixels| Picture::new(pixels, WIDTH as u16, HEIGHT as u16).map_err(Broken::Picture);
-        let frame = Frame { left: picture(&self.left)?, right: Some(picture(&self.right)?), features: &self.features };
+        let frame = Frame {
+            left: picture(&self.left)?,
+            right: Some(picture(&self.right)?),
+            features: &self.features,
+        };
         self.odometry.step(&frame).map_err(Broken::Odometry)
     }
 }

@@ -1,7 +1,7 @@
 //! Two views of a known world and the points that they see, from a guess to the truth by bundle adjustment.
 //!
-//! It knows no hardware: the same runs on the host, which compares. In a product the guess is what `two_views` finds, or the last
-//! pose of an odometry, and what is here of the truth is not.
+//! It knows no hardware: the same runs on the host, which compares. In a product the guess is what
+//! `two_views` finds, or the last pose of an odometry, and what is here of the truth is not.
 
 use super::two_views::{Cameras, MATCHES, Missing, World, is_right};
 use core::ops::ControlFlow;
@@ -62,8 +62,9 @@ impl Adjusted {
         Self { world: World::new(), window: Window::new() }
     }
 
-    /// Fills the window with a guess: the second camera a degree and a half and a tenth of the baseline off, the points a twentieth
-    /// too near or too far. Then adjusts it, the first view and the baseline held, and compares with the truth. Returns the ticks of all iterations too.
+    /// Fills the window with a guess: the second camera a degree and a half and a tenth of the baseline off,
+    /// the points a twentieth too near or too far. Then adjusts it, the first view and the baseline held,
+    /// and compares with the truth. Returns the ticks of all iterations too.
     ///
     /// # Errors
     /// When the world or its window cannot be; which they can.
@@ -110,7 +111,8 @@ impl Adjusted {
             let by = if at % 2 == 0 { 1.05 } else { 0.95 };
             window.add_point(*point * by).map_err(Broken::Window)?;
             // A wrong match is not what is adjusted: it is where it should be.
-            let there = if is_right(at) { seen.second } else { second.project(0, point).map_err(Broken::NotSeen)? };
+            let there =
+                if is_right(at) { seen.second } else { second.project(0, point).map_err(Broken::NotSeen)? };
             window.add_sight(0, 0, seen.first).map_err(Broken::Window)?;
             window.add_sight(1, 0, there).map_err(Broken::Window)?;
         }

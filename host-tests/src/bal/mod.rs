@@ -1,8 +1,10 @@
-//! Problems of bundle adjustment in the format of "Bundle Adjustment in the Large" (Agarwal et al. 2010), which others write too.
+//! Problems of bundle adjustment in the format of "Bundle Adjustment in the Large" (Agarwal et al. 2010),
+//! which others write too.
 //!
-//! A file holds numbers between white space: how many cameras, points and observations there are; for each observation its
-//! camera, its point, and where it is seen, px from the image's centre, right and up; for each camera its rotation vector,
-//! translation, focal length, k1 and k2, `P' = R P + t`, Z backward; for each point its three coordinates.
+//! A file holds numbers between white space: how many cameras, points and observations there are; for each
+//! observation its camera, its point, and where it is seen, px from the image's centre, right and up; for
+//! each camera its rotation vector, translation, focal length, k1 and k2, `P' = R P + t`, Z backward; for
+//! each point its three coordinates.
 //!
 //! * [`read_problem`], with [`BalError`] for what is wrong. [`BalProblem::write`].
 //! * [`BalProblem::start`]: through the core's bundle adjustment.
@@ -52,7 +54,8 @@ fn view([a, b, c, x, y, z, focal_px, k1, k2]: [f64; 9]) -> RadialView<f64> {
 /// The nine numbers of a camera.
 fn numbers(view: &RadialView<f64>) -> [f64; 9] {
     let into_camera = turned_over() * view.pose.rotation().transpose();
-    let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(into_camera)).scaled_axis();
+    let turn =
+        UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(into_camera)).scaled_axis();
     let t = -(into_camera * view.pose.translation());
     [turn.x, turn.y, turn.z, t.x, t.y, t.z, view.focal_px, view.k1, view.k2]
 }
@@ -85,7 +88,9 @@ impl BalProblem {
         for sight in lines.into_iter().flatten() {
             writeln!(out, "{} {} {:e} {:e}", sight.view, sight.point, sight.pixel.x, -sight.pixel.y)?;
         }
-        for number in self.views.iter().flat_map(numbers).chain(self.points.iter().flat_map(|p| [p.x, p.y, p.z])) {
+        for number in
+            self.views.iter().flat_map(numbers).chain(self.points.iter().flat_map(|p| [p.x, p.y, p.z]))
+        {
             writeln!(out, "{number:e}")?;
         }
         Ok(())
@@ -98,7 +103,8 @@ mod tests {
 
     #[test]
     fn a_point_before_and_above() {
-        // Without a turn, two units back: (1, 2, -4) is (1, 2, -6) there, seen at 600 / 6 to the right and 1200 / 6 up.
+        // Without a turn, two units back: (1, 2, -4) is (1, 2, -6) there, seen at 600 / 6 to the right and
+        // 1200 / 6 up.
         let view = view([0.0, 0.0, 0.0, 0.0, 0.0, -2.0, 600.0, 0.0, 0.0]);
         let pixel = view.project(0, &Point3::new(1.0, 2.0, -4.0)).expect("seen");
         assert!((pixel.x - 100.0).abs() < 1e-12 && (pixel.y + 200.0).abs() < 1e-12, "{pixel}");

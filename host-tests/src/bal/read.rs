@@ -71,7 +71,8 @@ fn parse(text: &str) -> Result<BalProblem, BalFault> {
     if text.trim().is_empty() {
         return Err(BalFault::Empty);
     }
-    let words = text.lines().zip(1..).flat_map(|(line, n)| line.split_ascii_whitespace().map(move |word| (n, word)));
+    let words =
+        text.lines().zip(1..).flat_map(|(line, n)| line.split_ascii_whitespace().map(move |word| (n, word)));
     let mut words = Words { words, read: 0, counts: [0; 3] };
     let names = ["the number of cameras", "the number of points", "the number of observations"];
     for ((k, name), most) in names.iter().enumerate().zip([MOST_CAMERAS, MOST, MOST]) {
@@ -85,7 +86,8 @@ fn parse(text: &str) -> Result<BalProblem, BalFault> {
         let [x, y] = words.numbers(|| format!("observation {n}"))?;
         sights.push(Sight { point: point as u32, view: view as u16, eye: 0, pixel: Point2::new(x, -y) });
     }
-    let views = (0..cameras).map(|n| words.numbers(|| format!("camera {n}")).map(view)).collect::<Result<_, _>>()?;
+    let views =
+        (0..cameras).map(|n| words.numbers(|| format!("camera {n}")).map(view)).collect::<Result<_, _>>()?;
     let places = (0..points).map(|n| words.numbers::<3>(|| format!("point {n}")).map(Point3::from));
     let places = places.collect::<Result<_, _>>()?;
     if let Some((line, found)) = words.words.next() {
@@ -121,7 +123,11 @@ mod tests {
         for (from, to, said) in [
             ("1 1 1\n", "0 1 1\n", "line 1: '0' is not the number of cameras; a whole number from 1"),
             ("1 1 1\n", "1 1 2\n", "line 3: '0.1' is not the camera of observation 1"),
-            ("\n0 0 ", "\n0 1 ", "line 2: '1' is not the point of observation 0; a whole number from 0 to 0 is needed"),
+            (
+                "\n0 0 ",
+                "\n0 1 ",
+                "line 2: '1' is not the point of observation 0; a whole number from 0 to 0 is needed",
+            ),
             ("\n0 0 ", "\n-1 0 ", "line 2: '-1' is not the camera of observation 0"),
             ("387.12", "nan", "line 2: number 2 of observation 0: 'nan' is not a finite number"),
             ("500", "5oo", "line 5: number 7 of camera 0: '5oo'"),

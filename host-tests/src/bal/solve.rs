@@ -5,7 +5,8 @@ use nalgebra::Point3;
 use std::mem::size_of_val;
 use std::ops::ControlFlow;
 use stereopsis::motion::bundle::{
-    Adjustment, BundleConfig, BundleError, BundleReport, Need, Problem, RadialView, Slot, Stop, Term, Workspace,
+    Adjustment, BundleConfig, BundleError, BundleReport, Need, Problem, RadialView, Slot, Stop, Term,
+    Workspace,
 };
 
 /// A problem that is being adjusted.

@@ -62,7 +62,8 @@ struct Normal {
     cost: f64,
 }
 
-/// A place in the picture, and its derivatives by the camera's parameters and by the point in the camera's frame.
+/// A place in the picture, and its derivatives by the camera's parameters and by the point in the camera's
+/// frame.
 struct Projected {
     place: Vector2<f64>,
     by_inner: [Vector2<f64>; INNER],
@@ -79,7 +80,8 @@ fn project(model: LensModel, inner: &Inner, p: &Vector3<f64>) -> Option<Projecte
     let (d, slope) = model.lens(coefficients).distort_with_derivative(&plane);
     let f = Vector2::new(fx, fy);
     let [a, b, c, e, g, h, i, j] = model.slopes(coefficients, &plane).map(|slope| slope.component_mul(&f));
-    let by_inner = [Vector2::new(d.x, 0.0), Vector2::new(0.0, d.y), Vector2::x(), Vector2::y(), a, b, c, e, g, h, i, j];
+    let by_inner =
+        [Vector2::new(d.x, 0.0), Vector2::new(0.0, d.y), Vector2::x(), Vector2::y(), a, b, c, e, g, h, i, j];
     let by_z = 1.0 / p.z;
     let to_plane = Matrix2x3::new(by_z, 0.0, -plane.x * by_z, 0.0, by_z, -plane.y * by_z);
     let mut by_point = slope * to_plane;
@@ -88,7 +90,8 @@ fn project(model: LensModel, inner: &Inner, p: &Vector3<f64>) -> Option<Projecte
     Some(Projected { place: Vector2::new(fx * d.x + cx, fy * d.y + cy), by_inner, by_point })
 }
 
-/// Derivatives of a point by the small turn of the vector that was turned, and by the way: two rows, six columns.
+/// Derivatives of a point by the small turn of the vector that was turned, and by the way: two rows, six
+/// columns.
 fn by_outer(by_point: &Matrix2x3<f64>, turned: &Vector3<f64>) -> [Vector2<f64>; OUTER] {
     let by_turn = by_point * -turned.cross_matrix();
     std::array::from_fn(|i| if i < 3 { by_turn.column(i).into() } else { by_point.column(i - 3).into() })
@@ -126,7 +129,8 @@ impl Bundle<'_> {
 
     /// The sum of squares, px^2; endless where a point is behind a camera.
     pub fn cost(&self) -> f64 {
-        let all = (0..self.cameras()).flat_map(|camera| (0..self.views.len()).map(move |view| (camera, view)));
+        let all =
+            (0..self.cameras()).flat_map(|camera| (0..self.views.len()).map(move |view| (camera, view)));
         let sums = all.map(|(camera, view)| {
             self.residuals(camera, view).map(|r| r.iter().map(Vector2::norm_squared).sum::<f64>())
         });
@@ -136,7 +140,8 @@ impl Bundle<'_> {
 
     /// What the coefficients count, px^2.
     fn bounds(&self) -> f64 {
-        let of = |inner: &Inner| inner.iter().enumerate().map(|(i, x)| self.model.weight(i) * x * x).sum::<f64>();
+        let of =
+            |inner: &Inner| inner.iter().enumerate().map(|(i, x)| self.model.weight(i) * x * x).sum::<f64>();
         self.inner.iter().map(of).sum()
     }
 
@@ -153,15 +158,21 @@ impl Bundle<'_> {
                     let projected = if camera == 0 {
                         let projected = project(self.model, inner, &first)?;
                         let of_view = by_outer(&projected.by_point, &turned);
-                        columns.extend(of_view.into_iter().enumerate().map(|(i, c)| (self.view_at(view) + i, c)));
+                        columns.extend(
+                            of_view.into_iter().enumerate().map(|(i, c)| (self.view_at(view) + i, c)),
+                        );
                         projected
                     } else {
                         let again = self.beside.r * first;
                         let projected = project(self.model, inner, &(again + self.beside.t))?;
                         let of_beside = by_outer(&projected.by_point, &again);
-                        columns.extend(of_beside.into_iter().enumerate().map(|(i, c)| (self.beside_at() + i, c)));
+                        columns.extend(
+                            of_beside.into_iter().enumerate().map(|(i, c)| (self.beside_at() + i, c)),
+                        );
                         let of_view = by_outer(&(projected.by_point * self.beside.r), &turned);
-                        columns.extend(of_view.into_iter().enumerate().map(|(i, c)| (self.view_at(view) + i, c)));
+                        columns.extend(
+                            of_view.into_iter().enumerate().map(|(i, c)| (self.view_at(view) + i, c)),
+                        );
                         projected
                     };
                     let of_inner = projected.by_inner.into_iter().enumerate().filter(|(i, _)| self.free[*i]);
@@ -208,7 +219,8 @@ impl Bundle<'_> {
         moved
     }
 
-    /// Levenberg and Marquardt's method, at most `most` steps; returns the cost, px^2, endless if there is none.
+    /// Levenberg and Marquardt's method, at most `most` steps; returns the cost, px^2, endless if there is
+    /// none.
     pub fn minimise(&mut self, most: usize) -> f64 {
         let mut damping = 1e-3;
         let Some(mut normal) = self.normal() else { return f64::INFINITY };
@@ -218,7 +230,10 @@ impl Bundle<'_> {
             let step = matrix.cholesky().map(|factors| factors.solve(&normal.vector));
             let next = step.map(|step| self.moved(&step));
             let is_camera = |bundle: &Self| bundle.inner.iter().all(|inner| inner[0] > 1.0 && inner[1] > 1.0);
-            let better = next.filter(is_camera).map(|next| (next.cost(), next)).filter(|(cost, _)| *cost < normal.cost);
+            let better = next
+                .filter(is_camera)
+                .map(|next| (next.cost(), next))
+                .filter(|(cost, _)| *cost < normal.cost);
             let Some((cost, next)) = better else {
                 damping *= 8.0;
                 if damping > 1e12 {

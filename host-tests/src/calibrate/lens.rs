@@ -11,12 +11,14 @@ pub enum LensModel {
     Brown,
     /// OpenCV's rational one: k1, k2, p1, p2, k3, k4, k5, k6. Wide lenses with a strong barrel.
     Rational,
-    /// Kannala and Brandt's, of the angle to the axis: k1, k2, k3, k4. Lenses that see more than some 100 degrees.
+    /// Kannala and Brandt's, of the angle to the axis: k1, k2, k3, k4. Lenses that see more than some 100
+    /// degrees.
     Fisheye,
 }
 
 impl LensModel {
-    /// Which parameters of a camera by itself are found, in steps: each begins where the one before has ended.
+    /// Which parameters of a camera by itself are found, in steps: each begins where the one before has
+    /// ended.
     pub(super) fn steps(self) -> &'static [&'static [usize]] {
         match self {
             Self::Brown | Self::Rational => &[&[0, 1, 4], &[0, 1, 2, 3, 4, 5], &[0, 1, 2, 3, 4, 5, 6, 7, 8]],
@@ -34,8 +36,8 @@ impl LensModel {
             }
     }
 
-    /// What the square of a camera's parameter counts besides the residuals', px^2. The rational model's upper coefficients undo each
-    /// other: without bounds they grow until a pole is near the image.
+    /// What the square of a camera's parameter counts besides the residuals', px^2. The rational model's
+    /// upper coefficients undo each other: without bounds they grow until a pole is near the image.
     pub(super) fn weight(self, parameter: usize) -> f64 {
         if self == Self::Rational && parameter >= 8 { 0.01 } else { 0.0 }
     }

@@ -1,12 +1,12 @@
 //! A stereo rig from pictures of a chessboard.
 //!
-//! In: pairs of pictures, or of their corners. Out: [`Calibrated`]: the rig in metres, where the boards stood, and
-//! what is left of every corner. In running order:
+//! In: pairs of pictures, or of their corners. Out: [`Calibrated`]: the rig in metres, where the boards
+//! stood, and what is left of every corner. In running order:
 //!
 //! * [`board`]: the board's corners in a picture.
 //! * `start`: focal lengths and poses from each view's homography (Zhang 2000).
-//! * `bundle`: the least sum of squares of all residuals, by Levenberg and Marquardt's method; first of each camera by itself,
-//!   lens coefficient by lens coefficient, then of both with one pose between them.
+//! * `bundle`: the least sum of squares of all residuals, by Levenberg and Marquardt's method; first of each
+//!   camera by itself, lens coefficient by lens coefficient, then of both with one pose between them.
 //! * `lens`: the models of lenses. `solve`: these in order, and what their result is worth.
 //! * [`report`](mod@report): the residuals, drawn.
 //!

@@ -11,8 +11,8 @@ pub const LONGER: f64 = 50.0;
 const CORNER: Rgb<u8> = Rgb([80, 200, 255]);
 const RESIDUAL: Rgb<u8> = Rgb([255, 160, 40]);
 
-/// Both pictures of a view, half as bright: a square at every corner, and from it a line to where the corner would be were its
-/// residual [`LONGER`] times as long.
+/// Both pictures of a view, half as bright: a square at every corner, and from it a line to where the corner
+/// would be were its residual [`LONGER`] times as long.
 pub fn picture(left: &RgbImage, right: &RgbImage, view: &View, figures: &ViewFigures) -> RgbImage {
     let (mut picture, beside) = side_by_side(left, right);
     for (camera, begin) in [(0, 0), (1, beside)] {
@@ -28,8 +28,9 @@ pub fn picture(left: &RgbImage, right: &RgbImage, view: &View, figures: &ViewFig
 
 /// One page over all views: `names` are the left and the right picture's, `files` those of the drawings.
 pub fn page(found: &Calibrated, names: &[[String; 2]], files: &[String]) -> String {
-    let escape =
-        |text: &str| text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;");
+    let escape = |text: &str| {
+        text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    };
     let mut text = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Calibration</title><style>\n{}</style></head>\
          <body>\n<h1>Calibration from {} views</h1>\n<p>Re-projection error {:.3} px (root mean square of all corners); the left \
@@ -40,8 +41,7 @@ pub fn page(found: &Calibrated, names: &[[String; 2]], files: &[String]) -> Stri
         found.alone_px[0],
         found.alone_px[1],
     );
-    text +=
-        "<table><tr><th>left</th><th>right</th><th>left, px</th><th>right, px</th><th>distance, m</th><th></th></tr>\n";
+    text += "<table><tr><th>left</th><th>right</th><th>left, px</th><th>right, px</th><th>distance, m</th><th></th></tr>\n";
     let outliers = found.outliers();
     for (i, (view, [left, right])) in found.views.iter().zip(names).enumerate() {
         let remark = if outliers.contains(&i) { "fits badly" } else { "" };

@@ -37,8 +37,8 @@ impl BoardCamera {
         [0, 1].map(|i| Self::new(rig.cameras()[i], rig.sizes()[i]))
     }
 
-    /// Where the corners of a board are; `board` carries a point of the board (X along rows, Y down columns, unit one square)
-    /// into the camera. `None` when one is outside of the image.
+    /// Where the corners of a board are; `board` carries a point of the board (X along rows, Y down columns,
+    /// unit one square) into the camera. `None` when one is outside of the image.
     pub fn corners(&self, pattern: Pattern, board: &Pose<f64>) -> Option<Vec<Point2<f64>>> {
         let (w, h) = (f64::from(self.size.width) - 1.0, f64::from(self.size.height) - 1.0);
         let is_inside = |p: &Point2<f64>| p.x >= 0.0 && p.y >= 0.0 && p.x <= w && p.y <= h;
@@ -71,8 +71,11 @@ impl BoardCamera {
         };
         GrayImage::from_fn(self.size.width.into(), self.size.height.into(), |x, y| {
             let samples = (0..SAMPLES * SAMPLES).map(|i| (i % SAMPLES, i / SAMPLES));
-            let sum: f64 = samples.map(|(i, j)| brightness(x as usize * SAMPLES + i, y as usize * SAMPLES + j)).sum();
-            Luma([(sum / (SAMPLES * SAMPLES) as f64 + sigma * random.gauss()).round().clamp(0.0, 255.0) as u8])
+            let sum: f64 =
+                samples.map(|(i, j)| brightness(x as usize * SAMPLES + i, y as usize * SAMPLES + j)).sum();
+            Luma(
+                [(sum / (SAMPLES * SAMPLES) as f64 + sigma * random.gauss()).round().clamp(0.0, 255.0) as u8],
+            )
         })
     }
 }

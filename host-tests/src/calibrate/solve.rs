@@ -32,8 +32,8 @@ pub struct Calibrated {
     pub rig: StereoRig<f64>,
     /// The root mean square of all residuals, px: as OpenCV counts it, of points and not of coordinates.
     pub rms_px: f64,
-    /// The same of each camera when it is found by itself: where both together are much worse, the pictures of a pair are not of
-    /// one moment, or the cameras moved against each other.
+    /// The same of each camera when it is found by itself: where both together are much worse, the pictures
+    /// of a pair are not of one moment, or the cameras moved against each other.
     pub alone_px: [f64; 2],
     /// Of each view.
     pub views: Vec<ViewFigures>,
@@ -57,7 +57,9 @@ pub enum SolveError {
         views: usize,
     },
     /// No camera explains what the left or the right one saw.
-    #[error("the {0} camera cannot be found from these views; turn the board more, about two axes, in some of them")]
+    #[error(
+        "the {0} camera cannot be found from these views; turn the board more, about two axes, in some of them"
+    )]
     Camera(&'static str),
     /// The result is no rig.
     #[error("{0}")]
@@ -68,7 +70,8 @@ impl Calibrated {
     /// The fewest views.
     pub const LEAST_VIEWS: usize = 3;
 
-    /// Views that fit much worse than most: over two and a half times the middle one, and by more than a tenth of a pixel.
+    /// Views that fit much worse than most: over two and a half times the middle one, and by more than a
+    /// tenth of a pixel.
     pub fn outliers(&self) -> Vec<usize> {
         let worst = |view: &ViewFigures| view.rms_px[0].max(view.rms_px[1]);
         let middle = self.middle_rms_px();
@@ -84,7 +87,8 @@ impl Calibrated {
     }
 }
 
-/// Finds the rig that explains the views best: both cameras with lenses of a model, and the pose between them.
+/// Finds the rig that explains the views best: both cameras with lenses of a model, and the pose between
+/// them.
 ///
 /// # Panics
 ///
@@ -96,12 +100,16 @@ pub fn solve(
     size: ImageSize,
     views: &[View],
 ) -> Result<Calibrated, SolveError> {
-    assert!(views.iter().flat_map(|v| &v.corners).all(|c| c.len() == pattern.corners()), "corners of the pattern");
+    assert!(
+        views.iter().flat_map(|v| &v.corners).all(|c| c.len() == pattern.corners()),
+        "corners of the pattern"
+    );
     if views.len() < Calibrated::LEAST_VIEWS {
         return Err(SolveError::TooFew { views: views.len() });
     }
     let board: Vec<Point3<f64>> = pattern.places().map(|p| Point3::new(p.x, p.y, 0.0)).collect();
-    let seen: [Vec<&[Point2<f64>]>; 2] = [0, 1].map(|i| views.iter().map(|v| v.corners[i].as_slice()).collect());
+    let seen: [Vec<&[Point2<f64>]>; 2] =
+        [0, 1].map(|i| views.iter().map(|v| v.corners[i].as_slice()).collect());
     let [first, second] = [(0, "left"), (1, "right")]
         .map(|(i, name)| alone(model, &board, &seen[i], size).ok_or(SolveError::Camera(name)));
     let (first, second) = (first?, second?);
@@ -129,7 +137,12 @@ pub fn solve(
     result(&both, square_m, size, alone_px).map_err(SolveError::Rig)
 }
 
-fn result(both: &Bundle<'_>, square_m: f64, size: ImageSize, alone_px: [f64; 2]) -> Result<Calibrated, StereoRigError> {
+fn result(
+    both: &Bundle<'_>,
+    square_m: f64,
+    size: ImageSize,
+    alone_px: [f64; 2],
+) -> Result<Calibrated, StereoRigError> {
     let camera = |inner: &Inner| {
         let [fx, fy, cx, cy, coefficients @ ..] = *inner;
         Camera::new(fx, fy, cx, cy).and_then(|c| c.with_distortion(both.model.lens(coefficients)))
@@ -180,16 +193,19 @@ fn alone<'a>(
     };
     let plain = homographies(&|p| *p);
     let zhang = plain.as_ref().and_then(|plain| start::focal_lengths(plain, middle));
-    // A lens that bends much misleads homographies: then one of the usual fields of view is nearer, and places as a lens has them
-    // that puts equal angles at equal ways.
+    // A lens that bends much misleads homographies: then one of the usual fields of view is nearer, and
+    // places as a lens has them that puts equal angles at equal ways.
     let usual = [0.3, 0.45, 0.7, 1.0, 1.6, 3.0].map(|share| Vector2::repeat(share * width));
-    let bent = usual.into_iter().filter_map(|focal| Some((focal, homographies(&|p| start::flat(p, focal.x, middle))?)));
+    let bent = usual
+        .into_iter()
+        .filter_map(|focal| Some((focal, homographies(&|p| start::flat(p, focal.x, middle))?)));
     let straight = zhang.into_iter().chain(usual).filter_map(|focal| Some((focal, plain.clone()?)));
     let begins = straight.chain(bent).filter_map(|(focal, homographies)| {
         let inner = start::camera(focal, middle);
         let views = homographies.iter().map(|h| start::pose(&inner, h)).collect::<Option<Vec<_>>>()?;
         let (beside, seen) = (Outer::new(Matrix3::identity(), Vector3::zeros()), vec![seen.to_vec()]);
-        let mut bundle = Bundle { board, model, seen, inner: vec![inner], beside, views, free: free(steps[0]) };
+        let mut bundle =
+            Bundle { board, model, seen, inner: vec![inner], beside, views, free: free(steps[0]) };
         let cost = bundle.minimise(12);
         cost.is_finite().then_some((cost, bundle))
     });
@@ -201,7 +217,8 @@ fn alone<'a>(
     Some(best)
 }
 
-/// From the first camera to the second, as most views have it: of every view's, that from which all others are least far.
+/// From the first camera to the second, as most views have it: of every view's, that from which all others
+/// are least far.
 fn between(first: &Bundle<'_>, second: &Bundle<'_>) -> Option<Outer> {
     let all: Vec<Outer> = first
         .views

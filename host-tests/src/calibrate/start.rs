@@ -18,8 +18,8 @@ pub(super) fn camera(focal: Vector2<f64>, middle: Vector2<f64>) -> Inner {
     inner
 }
 
-/// Where a camera without a lens sees what one sees at `p` whose lens puts equal angles at equal ways, of the same focal length:
-/// `r = tan(theta)`, up to 80 degrees.
+/// Where a camera without a lens sees what one sees at `p` whose lens puts equal angles at equal ways, of the
+/// same focal length: `r = tan(theta)`, up to 80 degrees.
 pub(super) fn flat(p: &Point2<f64>, focal: f64, middle: Vector2<f64>) -> Point2<f64> {
     let way = (p.coords - middle) / focal;
     let theta = way.norm();
@@ -27,8 +27,9 @@ pub(super) fn flat(p: &Point2<f64>, focal: f64, middle: Vector2<f64>) -> Point2<
     Point2::from(middle + way * (focal * longer))
 }
 
-/// Focal lengths from views of a plane (Zhang 2000, 3.1), where the principal point is in the middle: both axes of the board
-/// are of one length and square, so `h1^T w h2 = 0` and `h1^T w h1 = h2^T w h2` with `w = diag(1 / fx^2, 1 / fy^2, 1)`.
+/// Focal lengths from views of a plane (Zhang 2000, 3.1), where the principal point is in the middle: both
+/// axes of the board are of one length and square, so `h1^T w h2 = 0` and `h1^T w h1 = h2^T w h2` with `w =
+/// diag(1 / fx^2, 1 / fy^2, 1)`.
 pub(super) fn focal_lengths(homographies: &[Matrix3<f64>], middle: Vector2<f64>) -> Option<Vector2<f64>> {
     let (mut a, mut b) = (Matrix2::zeros(), Vector2::zeros());
     for h in homographies {
@@ -51,7 +52,9 @@ pub(super) fn focal_lengths(homographies: &[Matrix3<f64>], middle: Vector2<f64>)
         }
     }
     let w = a.try_inverse()? * b;
-    (w.x > 0.0 && w.y > 0.0).then(|| Vector2::new(1.0 / w.x.sqrt(), 1.0 / w.y.sqrt())).filter(|f| f.amax() < 1e6)
+    (w.x > 0.0 && w.y > 0.0)
+        .then(|| Vector2::new(1.0 / w.x.sqrt(), 1.0 / w.y.sqrt()))
+        .filter(|f| f.amax() < 1e6)
 }
 
 /// From the board to a camera, by the homography `K [r1 r2 t]`.

@@ -4,7 +4,8 @@ use super::{CalibrationError, Fault, kitti, load_all, middlebury, raw};
 use std::path::PathBuf;
 use stereopsis::geometry::Camera;
 
-/// The two cameras of a calibration file, by themselves: neither where they stand nor whether they are rectified.
+/// The two cameras of a calibration file, by themselves: neither where they stand nor whether they are
+/// rectified.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Cameras {
     /// The first (left) camera, px.
@@ -14,9 +15,9 @@ pub struct Cameras {
 }
 
 impl Cameras {
-    /// Reads one file, or two of ROS: any format that [`RawCalibration`](super::RawCalibration) reads, or the file of one camera,
-    /// which is both then. Of KITTI's cameras it is the pair that [`Calibration::open`](super::Calibration::open) takes for a
-    /// colour picture.
+    /// Reads one file, or two of ROS: any format that [`RawCalibration`](super::RawCalibration) reads, or the
+    /// file of one camera, which is both then. Of KITTI's cameras it is the pair that
+    /// [`Calibration::open`](super::Calibration::open) takes for a colour picture.
     pub fn open(paths: &[PathBuf]) -> Result<Self, CalibrationError> {
         let texts = load_all(paths)?;
         let path = paths.first().cloned().unwrap_or_default();
@@ -68,7 +69,8 @@ mod tests {
 
     #[test]
     fn cameras_need_not_be_rectified() {
-        let cameras = of("cam0=[500 2 320; 0 510 240; 0 0 1]\ncam1=[600 0 300; 0 600 200; 0 0 1]\n").expect("cameras");
+        let cameras =
+            of("cam0=[500 2 320; 0 510 240; 0 0 1]\ncam1=[600 0 300; 0 600 200; 0 0 1]\n").expect("cameras");
         assert_eq!(cameras.first.focal_px(), (500.0, 510.0));
         assert_eq!(cameras.first.skew_px(), 2.0);
         assert_eq!(cameras.second.principal_point(), (300.0, 200.0));

@@ -158,7 +158,9 @@ pub enum Fault {
         rows: (f64, f64),
     },
     /// The baseline is zero or negative.
-    #[error("{key}: the baseline is {baseline_m} m; it must be greater than zero, with the right camera on the right")]
+    #[error(
+        "{key}: the baseline is {baseline_m} m; it must be greater than zero, with the right camera on the right"
+    )]
     Baseline {
         /// Where it comes from.
         key: String,
@@ -166,7 +168,9 @@ pub enum Fault {
         baseline_m: f64,
     },
     /// `doffs` contradicts the principal points.
-    #[error("doffs: {doffs} px contradicts the principal points of cam0 and cam1, which are {between} px apart")]
+    #[error(
+        "doffs: {doffs} px contradicts the principal points of cam0 and cam1, which are {between} px apart"
+    )]
     Offset {
         /// What `doffs` says, px.
         doffs: f64,
@@ -185,7 +189,9 @@ pub enum Fault {
     #[error("{0}")]
     Rig(stereopsis::geometry::RigError),
     /// The images are not of the calibrated size.
-    #[error("{which} says {calibrated}, but the images have {image} pixels; the calibration of these images is needed")]
+    #[error(
+        "{which} says {calibrated}, but the images have {image} pixels; the calibration of these images is needed"
+    )]
     Size {
         /// `width` or `height`.
         which: &'static str,

@@ -36,8 +36,9 @@ fn labelled(text: &str) -> impl Iterator<Item = (usize, Matrix<'_>)> {
 fn bare(text: &str) -> Option<[Matrix<'_>; 2]> {
     let mut lines = text.lines().zip(1..).filter(|(content, _)| !content.trim().is_empty());
     let (left, right) = (lines.next()?, lines.next()?);
-    let starts_with_number =
-        |content: &str| content.split_ascii_whitespace().next().is_some_and(|word| word.parse::<f64>().is_ok());
+    let starts_with_number = |content: &str| {
+        content.split_ascii_whitespace().next().is_some_and(|word| word.parse::<f64>().is_ok())
+    };
     let only_two = lines.next().is_none();
     (only_two && starts_with_number(left.0) && starts_with_number(right.0)).then_some([
         Matrix { label: "left", line: left.1, numbers: left.0 },
@@ -78,7 +79,8 @@ pub(super) fn matrices(text: &str) -> Result<[(String, [f64; 5]); 2], Fault> {
     Ok([of(left)?, of(right)?])
 }
 
-/// fx, skew, cx, fy, cy of the camera of a file that has only one matrix, with its label; `None` of other files.
+/// fx, skew, cx, fy, cy of the camera of a file that has only one matrix, with its label; `None` of other
+/// files.
 pub(super) fn alone(text: &str) -> Option<Result<(String, [f64; 5]), Fault>> {
     let mut lines = text.lines().zip(1..).filter(|(content, _)| !content.trim().is_empty());
     let (content, line) = lines.next().filter(|_| lines.next().is_none())?;
@@ -89,10 +91,11 @@ pub(super) fn alone(text: &str) -> Option<Result<(String, [f64; 5]), Fault>> {
     Some(numbers.map(|p: [f64; 12]| (matrix.label.to_owned(), [p[0], p[1], p[2], p[5], p[6]])))
 }
 
-/// The matrices of the pair that the left image belongs to: the colour cameras 2 and 3 where the file has them, unless
-/// the path names a grey camera.
+/// The matrices of the pair that the left image belongs to: the colour cameras 2 and 3 where the file has
+/// them, unless the path names a grey camera.
 fn choose<'a>(text: &'a str, left_image: &Path) -> Result<[Matrix<'a>; 2], Fault> {
-    let grey = left_image.components().any(|part| GREY_FOLDERS.iter().any(|folder| part.as_os_str() == *folder));
+    let grey =
+        left_image.components().any(|part| GREY_FOLDERS.iter().any(|folder| part.as_os_str() == *folder));
     let has_colour = labelled(text).any(|(camera, _)| camera == 2 || camera == 3);
     let (left, right) = if grey || !has_colour { (0, 1) } else { (2, 3) };
     let find = |wanted: usize| {

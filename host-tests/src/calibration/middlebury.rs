@@ -1,4 +1,5 @@
-//! `calib.txt` of the Middlebury stereo pages, 2014 and later: `key=value` lines, lengths in pixels and millimetres.
+//! `calib.txt` of the Middlebury stereo pages, 2014 and later: `key=value` lines, lengths in pixels and
+//! millimetres.
 
 use super::{Calibration, Fault, Intrinsics, PIXEL_TOLERANCE, numbers, rig};
 use std::path::PathBuf;
@@ -77,7 +78,8 @@ fn find<'a>(text: &'a str, wanted: &str) -> Result<Option<Entry<'a>>, Fault> {
 /// fx, skew, cx, fy, cy of both cameras, with their keys.
 pub(super) fn matrices(text: &str) -> Result<[(String, [f64; 5]); 2], Fault> {
     let of = |key: &str| {
-        let entry = find(text, key)?.ok_or_else(|| Fault::Missing(key.into(), "[fx 0 cx; 0 fy cy; 0 0 1]"))?;
+        let entry =
+            find(text, key)?.ok_or_else(|| Fault::Missing(key.into(), "[fx 0 cx; 0 fy cy; 0 0 1]"))?;
         let [fx, skew, cx, _, fy, cy, _, _, _] = numbers(entry.key, entry.line, &inside(&entry))?;
         Ok((key.to_owned(), [fx, skew, cx, fy, cy]))
     };

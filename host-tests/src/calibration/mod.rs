@@ -1,15 +1,15 @@
 //! Rectified rigs from calibration files.
 //!
-//! In: a `calib.txt` of the Middlebury stereo pages (millimetres) or of KITTI (metres), or what OpenCV, ROS or the command
-//! `rectify` say of rectified images, told apart by content. Out: a [`RectifiedRig`] in metres, with the image size where the
-//! file says it.
+//! In: a `calib.txt` of the Middlebury stereo pages (millimetres) or of KITTI (metres), or what OpenCV, ROS
+//! or the command `rectify` say of rectified images, told apart by content. Out: a [`RectifiedRig`] in
+//! metres, with the image size where the file says it.
 //!
 //! * [`Cameras`]: the two cameras alone, which need not be rectified.
 //! * [`RawCalibration`]: two cameras as they are mounted, also from OpenCV's, ROS's and Kalibr's files.
 //! * [`describe`]: such a calibration in words. [`write_opencv`], [`write_rust`], [`write_c`]: as a file.
 //! * `middlebury`: `cam0=[f 0 cx; 0 f cy; 0 0 1]`, `cam1`, `doffs`, `baseline`, and optional sizes.
-//! * `kitti`: projection matrices of 12 numbers, labelled `P0:` to `P3:` or `P_rect_00:` to `P_rect_03:`, or two
-//!   lines without labels for left and right.
+//! * `kitti`: projection matrices of 12 numbers, labelled `P0:` to `P3:` or `P_rect_00:` to `P_rect_03:`, or
+//!   two lines without labels for left and right.
 
 mod cameras;
 mod error;
@@ -59,7 +59,11 @@ impl Calibration {
     }
 
     /// The same of one file, or of two of ROS. The unit is as for [`RawCalibration::open`].
-    pub fn open_all(paths: &[PathBuf], left_image: &Path, unit_m: Option<f64>) -> Result<Self, CalibrationError> {
+    pub fn open_all(
+        paths: &[PathBuf],
+        left_image: &Path,
+        unit_m: Option<f64>,
+    ) -> Result<Self, CalibrationError> {
         let path = paths.first().cloned().unwrap_or_default();
         if let Some(record) = raw::recorded(&path) {
             let fault = record.err().unwrap_or(Fault::NotRectified);
@@ -72,7 +76,12 @@ impl Calibration {
         }
     }
 
-    fn parse(paths: &[PathBuf], texts: &[String], left_image: &Path, unit_m: Option<f64>) -> Result<Self, Fault> {
+    fn parse(
+        paths: &[PathBuf],
+        texts: &[String],
+        left_image: &Path,
+        unit_m: Option<f64>,
+    ) -> Result<Self, Fault> {
         if let Some(found) = raw::rectified_rig(paths, texts, unit_m)? {
             return Ok(found);
         }
@@ -88,8 +97,8 @@ impl Calibration {
         Ok(found)
     }
 
-    /// Whether images of `width` x `height` pixels are those that the file was made for; a size that the file does not
-    /// say is right.
+    /// Whether images of `width` x `height` pixels are those that the file was made for; a size that the file
+    /// does not say is right.
     pub fn check_size(&self, width: u16, height: u16) -> Result<(), CalibrationError> {
         for (which, calibrated, image) in [("width", self.width, width), ("height", self.height, height)] {
             if let Some(calibrated) = calibrated.filter(|&calibrated| calibrated != image) {
@@ -106,7 +115,8 @@ impl Calibration {
 /// The texts of files that are not empty.
 fn load_all(paths: &[PathBuf]) -> Result<Vec<String>, CalibrationError> {
     let one = |path: &PathBuf| {
-        let text = load(path).and_then(|text| if text.trim().is_empty() { Err(Fault::Empty) } else { Ok(text) });
+        let text =
+            load(path).and_then(|text| if text.trim().is_empty() { Err(Fault::Empty) } else { Ok(text) });
         text.map_err(|fault| CalibrationError { path: path.clone(), fault })
     };
     paths.iter().map(one).collect()
@@ -117,7 +127,11 @@ fn load(path: &Path) -> Result<String, Fault> {
         return Err(Fault::NotText);
     }
     let mut bytes = Vec::new();
-    File::open(path).map_err(Fault::Read)?.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(Fault::Read)?;
+    File::open(path)
+        .map_err(Fault::Read)?
+        .take(MOST_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(Fault::Read)?;
     if bytes.len() as u64 > MOST_BYTES || bytes.contains(&0) {
         return Err(Fault::NotText);
     }
@@ -140,7 +154,12 @@ const FOCAL_TOLERANCE: f64 = 1e-4;
 const PIXEL_TOLERANCE: f64 = 0.5;
 
 /// The rig of two cameras, checked.
-fn rig(left: Intrinsics, right: Intrinsics, baseline_key: &str, baseline_m: f64) -> Result<RectifiedRig, Fault> {
+fn rig(
+    left: Intrinsics,
+    right: Intrinsics,
+    baseline_key: &str,
+    baseline_m: f64,
+) -> Result<RectifiedRig, Fault> {
     for camera in [left, right] {
         if camera.fx <= 0.0 {
             return Err(Fault::FocalLength { key: camera.key.into(), focal_px: camera.fx });

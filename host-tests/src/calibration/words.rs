@@ -5,13 +5,14 @@ use nalgebra::{Point2, Vector2};
 use std::fmt::Write;
 use stereopsis::geometry::{Camera, Crop, ImageSize, Rectification, RectifyError};
 
-/// The standard deviation of a disparity that depths are told with, px: that of the methods, away from depth edges.
+/// The standard deviation of a disparity that depths are told with, px: that of the methods, away from depth
+/// edges.
 const SIGMA_PX: f64 = 0.15;
 /// The distances at which errors are told, m.
 const DISTANCES_M: [f64; 6] = [0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
 
-/// What a calibration says, what the rig can tell with a search of so many disparities, and what looks wrong: lines of text, the
-/// last ones warnings. A rig that cannot be rectified is refused.
+/// What a calibration says, what the rig can tell with a search of so many disparities, and what looks wrong:
+/// lines of text, the last ones warnings. A rig that cannot be rectified is refused.
 pub fn describe(calibration: &RawCalibration, disparities: u16) -> Result<String, RectifyError> {
     let rig = &calibration.rig;
     let size = rig.sizes()[0];
@@ -19,7 +20,8 @@ pub fn describe(calibration: &RawCalibration, disparities: u16) -> Result<String
     let (report, f, b) = (rectified.report(), rectified.camera().focal_px().0, rig.baseline_m());
     let mut text = String::new();
     let mut warnings = Vec::new();
-    let _ = writeln!(text, "{} calibration, images of {} x {} px", calibration.format, size.width, size.height);
+    let _ =
+        writeln!(text, "{} calibration, images of {} x {} px", calibration.format, size.width, size.height);
     for (name, camera) in ["left", "right"].into_iter().zip(rig.cameras()) {
         one(name, camera, size, &mut text, &mut warnings);
     }
@@ -63,7 +65,8 @@ pub fn describe(calibration: &RawCalibration, disparities: u16) -> Result<String
         ));
     }
     if b < 0.005 {
-        warnings.push(format!("a baseline of {:.2} mm is short: was T in another unit? say --unit", 1000.0 * b));
+        warnings
+            .push(format!("a baseline of {:.2} mm is short: was T in another unit? say --unit", 1000.0 * b));
     }
     if angle > 10.0 {
         warnings.push(format!(
@@ -102,7 +105,9 @@ fn one(name: &str, camera: &Camera<f64>, size: ImageSize, text: &mut String, war
     );
     let corners = [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)];
     if !camera.lens().is_none() {
-        let moved = |(x, y): (f64, f64)| Some((camera.undistort(&Point2::new(x, y)).ok()? - Point2::new(x, y)).norm());
+        let moved = |(x, y): (f64, f64)| {
+            Some((camera.undistort(&Point2::new(x, y)).ok()? - Point2::new(x, y)).norm())
+        };
         match corners.map(moved).into_iter().collect::<Option<Vec<f64>>>() {
             Some(all) => {
                 let most = all.into_iter().fold(0.0, f64::max);

@@ -4,8 +4,9 @@ use nalgebra::Matrix3;
 use std::fmt::Write;
 use stereopsis::geometry::{Camera, Lens, StereoRig};
 
-/// A rig as OpenCV's FileStorage writes it, in YAML: K1, D1, K2, D2, R, T, E and F with `P' = R P + T` and `p'^T F p = 0`, as
-/// `stereoCalibrate` gives them. T is in metres, which `length_unit` says. `notes` become comments.
+/// A rig as OpenCV's FileStorage writes it, in YAML: K1, D1, K2, D2, R, T, E and F with `P' = R P + T` and
+/// `p'^T F p = 0`, as `stereoCalibrate` gives them. T is in metres, which `length_unit` says. `notes` become
+/// comments.
 pub fn write_opencv(rig: &StereoRig<f64>, notes: &[String]) -> String {
     let size = rig.sizes()[0];
     let mut text = String::from("%YAML:1.0\n---\n");

@@ -98,7 +98,8 @@ impl<S> Faulty<S> {
     /// One of the faults for this line, or none.
     fn draw(&mut self, of_frames: bool) -> Option<Fault> {
         let (happens, which) = (self.random.unit() < self.per_line, self.random.unit());
-        let among: Vec<_> = self.faults.iter().copied().filter(|fault| fault.is_of_frames() == of_frames).collect();
+        let among: Vec<_> =
+            self.faults.iter().copied().filter(|fault| fault.is_of_frames() == of_frames).collect();
         among.get((which * among.len() as f64) as usize).copied().filter(|_| happens)
     }
 
@@ -125,7 +126,9 @@ impl<S> Faulty<S> {
             }
             Some(Fault::FrameStale | Fault::FrameSkipped) => self.record.frame = None,
             Some(Fault::FrameTimesOut) => return Err(CameraError::TimedOut),
-            Some(Fault::FrameFails) => return Err(CameraError::Hardware(FaultyError::Injected(Fault::FrameFails))),
+            Some(Fault::FrameFails) => {
+                return Err(CameraError::Hardware(FaultyError::Injected(Fault::FrameFails)));
+            }
             _ => {}
         }
         self.start = inner(&mut self.inner).map_err(own)?;
@@ -157,7 +160,10 @@ impl<S> Faulty<S> {
         if let Some(Fault::LineRepeated) = fault.filter(|_| was_given) {
             self.was_given = true;
             self.record.repeated += 1;
-            lines.iter_mut().zip(&self.last).for_each(|(line, last)| line[..line_bytes].copy_from_slice(last));
+            lines
+                .iter_mut()
+                .zip(&self.last)
+                .for_each(|(line, last)| line[..line_bytes].copy_from_slice(last));
             return Ok(LineStart { row: row - 1, timestamp_us: self.start.timestamp_us });
         }
         if let Some(Fault::BusBefore) = fault {
@@ -181,7 +187,10 @@ impl<S> Faulty<S> {
         };
         let tear = |lines: &mut [&mut [u8]], with: &[Vec<u8>]| {
             let from = line_bytes / 3;
-            lines.iter_mut().zip(with).for_each(|(line, old)| line[from..line_bytes].copy_from_slice(&old[from..]));
+            lines
+                .iter_mut()
+                .zip(with)
+                .for_each(|(line, old)| line[from..line_bytes].copy_from_slice(&old[from..]));
         };
         match fault {
             Fault::LinePassedOver => {

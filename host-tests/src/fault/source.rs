@@ -1,7 +1,9 @@
 //! What stands before a camera or a pair is one.
 
 use super::{Faulty, FaultyError};
-use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineSource, LineStart, StereoSource};
+use stereopsis::camera::{
+    CameraError, ErrorType, FrameStart, LineFormat, LineSource, LineStart, StereoSource,
+};
 
 impl<S: ErrorType> ErrorType for Faulty<S> {
     type Error = FaultyError<S::Error>;
@@ -42,7 +44,11 @@ impl<S: StereoSource> StereoSource for Faulty<S> {
         self.start(|inner| inner.start_frame())
     }
 
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
+    fn next_lines(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<Self::Error>> {
         let format = self.inner.format();
         self.next(format.height, format.line_bytes(), &mut [left, right], |inner, lines| match lines {
             [left, right] => inner.next_lines(left, right),

@@ -1,12 +1,14 @@
-//! Whether the frames of a stack grow as the thin lens says: a lens that keeps its angle of view, and a stack that was aligned, do
-//! not.
+//! Whether the frames of a stack grow as the thin lens says: a lens that keeps its angle of view, and a stack
+//! that was aligned, do not.
 //!
-//! Neighbouring frames of a fine sweep differ by less than a pixel: those are compared that differ by two in a corner.
+//! Neighbouring frames of a fine sweep differ by less than a pixel: those are compared that differ by two in
+//! a corner.
 
 use image::GrayImage;
 use stereopsis::focus::Breathing;
 
-/// How far neighbouring frames are from each other, as they are and each seen at its scale, in grey levels summed up.
+/// How far neighbouring frames are from each other, as they are and each seen at its scale, in grey levels
+/// summed up.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Agreement {
     plain: f64,

@@ -73,9 +73,10 @@ const COLUMNS: [(&str, Meaning, f64); 7] = [
 
 /// Reads the file at `path`: for each of `frames` frames the distance between the lens and the sensor, m.
 ///
-/// A header names one of the columns `image_distance_mm` (lens to sensor), `focus_distance_mm` or `focus_distance_m` (lens to what
-/// is in focus). Otherwise the last number of a line counts, in mm: if all are at most two focal lengths, they are distances to
-/// the sensor, else to what is in focus, which is nearer than that in no picture that is smaller than what it shows.
+/// A header names one of the columns `image_distance_mm` (lens to sensor), `focus_distance_mm` or
+/// `focus_distance_m` (lens to what is in focus). Otherwise the last number of a line counts, in mm: if all
+/// are at most two focal lengths, they are distances to the sensor, else to what is in focus, which is nearer
+/// than that in no picture that is smaller than what it shows.
 pub fn read_positions(path: &Path, lens: ThinLens<f64>, frames: usize) -> Result<Vec<f32>, PositionsError> {
     read(path, lens, frames).map_err(|fault| PositionsError { path: path.into(), fault })
 }
@@ -89,7 +90,10 @@ fn read(path: &Path, lens: ThinLens<f64>, frames: usize) -> Result<Vec<f32>, Pos
     let place = |header: &StringRecord| {
         let known = header.iter().enumerate().find_map(|(place, word)| {
             let word = word.to_ascii_lowercase();
-            COLUMNS.iter().find(|(name, ..)| *name == word).map(|&(_, meaning, unit)| (Some(place), meaning, unit))
+            COLUMNS
+                .iter()
+                .find(|(name, ..)| *name == word)
+                .map(|&(_, meaning, unit)| (Some(place), meaning, unit))
         });
         known.unwrap_or((None, Meaning::Either, 1.0))
     };
@@ -100,7 +104,10 @@ fn read(path: &Path, lens: ThinLens<f64>, frames: usize) -> Result<Vec<f32>, Pos
         let line = record.position().map_or(0, csv::Position::line);
         let word = record.get(column.unwrap_or(record.len().saturating_sub(1))).unwrap_or("");
         let number = word.parse().ok().filter(|number: &f64| number.is_finite());
-        values.push((line, number.ok_or_else(|| PositionsFault::NotANumber { line, found: word.to_owned() })? * unit));
+        values.push((
+            line,
+            number.ok_or_else(|| PositionsFault::NotANumber { line, found: word.to_owned() })? * unit,
+        ));
     }
     if values.len() != frames {
         return Err(PositionsFault::Count { found: values.len(), frames });
@@ -109,7 +116,8 @@ fn read(path: &Path, lens: ThinLens<f64>, frames: usize) -> Result<Vec<f32>, Pos
     let is_image = meaning == Meaning::Image || meaning == Meaning::Either && are_near;
     let image = |(line, mm): (u64, f64)| {
         let metres = mm / 1000.0;
-        let image = if is_image { lens.object_distance(metres).map(|_| metres) } else { lens.image_distance(metres) };
+        let image =
+            if is_image { lens.object_distance(metres).map(|_| metres) } else { lens.image_distance(metres) };
         image.map(|image| image as f32).map_err(|reason| PositionsFault::Lens { line, found: mm, reason })
     };
     values.into_iter().map(image).collect()

@@ -1,10 +1,11 @@
-//! A focus stack through the core's map: where each pixel is in focus, how sure that is, and a picture that is sharp all over.
+//! A focus stack through the core's map: where each pixel is in focus, how sure that is, and a picture that
+//! is sharp all over.
 
 use super::stack::{Frame, StackError};
 use image::RgbImage;
 use stereopsis::focus::{
-    Breathing, FocusCell, FocusConfig, FocusConfigError, FocusLineError, FocusMap, FocusPeak, FocusScale, NoFocus,
-    median_row, plane_row,
+    Breathing, FocusCell, FocusConfig, FocusConfigError, FocusLineError, FocusMap, FocusPeak, FocusScale,
+    NoFocus, median_row, plane_row,
 };
 
 const MOST: usize = crate::mock::MockCamera::MOST_PIXELS as usize;
@@ -40,7 +41,8 @@ pub enum FocusError {
     },
 }
 
-/// Passes all frames through the core's map, each magnified as `breathing` tells of its index, and takes medians of answers, then planes through them.
+/// Passes all frames through the core's map, each magnified as `breathing` tells of its index, and takes
+/// medians of answers, then planes through them.
 pub fn run(
     config: &FocusConfig,
     frames: impl IntoIterator<Item = Result<Frame, StackError>>,
@@ -77,7 +79,8 @@ pub fn run(
     let raw: Vec<_> = (0..columns * rows).map(|i| map.peak(i % columns, i / columns)).collect();
     let mut peaks = raw.clone();
     for (y, out) in peaks.chunks_exact_mut(columns).enumerate() {
-        let near = [y.saturating_sub(2), y.saturating_sub(1), y, (y + 1).min(rows - 1), (y + 2).min(rows - 1)];
+        let near =
+            [y.saturating_sub(2), y.saturating_sub(1), y, (y + 1).min(rows - 1), (y + 2).min(rows - 1)];
         median_row(near.map(|y| &raw[y * columns..][..columns]), out);
         plane_row(&raw, columns, y, out);
     }

@@ -1,10 +1,12 @@
-//! A scene of known depth behind a simulated lens: every point is spread over the disc that the thin lens makes of it.
+//! A scene of known depth behind a simulated lens: every point is spread over the disc that the thin lens
+//! makes of it.
 
 use crate::scene::Random;
 use image::{GrayImage, Luma};
 use stereopsis::focus::ThinLens;
 
-/// A surface: its depth and its brightness for each pixel of a sharp picture, both seen through the middle of the lens.
+/// A surface: its depth and its brightness for each pixel of a sharp picture, both seen through the middle of
+/// the lens.
 #[derive(Clone, Debug)]
 pub struct Surface {
     /// Metres; infinite where the surface has a hole.
@@ -26,7 +28,8 @@ pub struct FocusScene {
     pub aperture_m: f64,
     /// The side of a pixel, m.
     pub pixel_m: f64,
-    /// The image distance for which surfaces are drawn pixel on pixel: the others breathe. `None` for a lens that does not.
+    /// The image distance for which surfaces are drawn pixel on pixel: the others breathe. `None` for a lens
+    /// that does not.
     pub reference_m: Option<f64>,
     /// Deviation of the sensor's noise, grey levels.
     pub noise: f64,
@@ -38,8 +41,8 @@ pub struct FocusScene {
 const LEAST_RADIUS: f64 = 0.6;
 
 impl FocusScene {
-    /// The radius of the disc that a point at `depth_m` is on the sensor `image_m` behind the lens, px: `A |z - zo| / zo`, the cone
-    /// of light from the opening to the point's image cut by the sensor.
+    /// The radius of the disc that a point at `depth_m` is on the sensor `image_m` behind the lens, px: `A |z
+    /// - zo| / zo`, the cone of light from the opening to the point's image cut by the sensor.
     ///
     /// # Panics
     ///
@@ -67,7 +70,8 @@ impl FocusScene {
             }
             for ((pixel, light), cover) in picture.iter_mut().zip(light).zip(cover) {
                 if cover > 0.0 {
-                    // The farthest surface goes on outside of the picture. Discs on whole pixels cover them but for some percent.
+                    // The farthest surface goes on outside of the picture. Discs on whole pixels cover them
+                    // but for some percent.
                     let share = if order == 0 { 1.0 } else { f64::min(1.05 * cover, 1.0) };
                     *pixel += (light / cover - *pixel) * share;
                 }
@@ -80,11 +84,21 @@ impl FocusScene {
         })
     }
 
-    /// Adds a pixel's light as a disc: pixels within it count whole, those at its edge by how much of them is inside.
-    fn spread(&self, [x, y]: [usize; 2], image_m: f64, radius: f64, grey: f64, light: &mut [f64], cover: &mut [f64]) {
+    /// Adds a pixel's light as a disc: pixels within it count whole, those at its edge by how much of them is
+    /// inside.
+    fn spread(
+        &self,
+        [x, y]: [usize; 2],
+        image_m: f64,
+        radius: f64,
+        grey: f64,
+        light: &mut [f64],
+        cover: &mut [f64],
+    ) {
         let scale = self.reference_m.map_or(1.0, |reference| image_m / reference);
         let middle = [(self.width - 1) as f64 / 2.0, (self.height - 1) as f64 / 2.0];
-        let [cx, cy] = [(x, middle[0]), (y, middle[1])].map(|(at, middle)| middle + (at as f64 - middle) * scale);
+        let [cx, cy] =
+            [(x, middle[0]), (y, middle[1])].map(|(at, middle)| middle + (at as f64 - middle) * scale);
         let reach = radius + 0.5;
         let weight = |u: i64, v: i64| (reach - (u as f64 - cx).hypot(v as f64 - cy)).clamp(0.0, 1.0);
         let bounds = |c: f64, size: usize| {

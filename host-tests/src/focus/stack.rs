@@ -78,8 +78,8 @@ const FEWEST: usize = 3;
 const MOST: usize = u16::MAX as usize;
 
 impl Stack {
-    /// The images of a folder in the order of their names, byte by byte. Hidden files, and files whose ending is not that of an
-    /// image, are passed over.
+    /// The images of a folder in the order of their names, byte by byte. Hidden files, and files whose ending
+    /// is not that of an image, are passed over.
     pub fn open(folder: &Path) -> Result<Self, StackError> {
         let files = images(folder).map_err(|source| StackError::Folder { path: folder.into(), source })?;
         if !(FEWEST..=MOST).contains(&files.len()) {

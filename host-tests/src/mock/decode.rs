@@ -29,7 +29,8 @@ pub(super) fn read(path: &Path) -> Result<Picture, MockError> {
     let file = load(path)?;
     let guess = image::guess_format(&file).ok().and_then(|format| Some((format, name(format)?)));
     let Some((format, name)) = guess else { return Err(MockError::NotAnImage { path: path.into() }) };
-    let corrupt = |reason: &str| MockError::Corrupt { path: path.into(), format: name, reason: reason.into() };
+    let corrupt =
+        |reason: &str| MockError::Corrupt { path: path.into(), format: name, reason: reason.into() };
     let whole = match format {
         ImageFormat::Png => integrity::png(&file),
         ImageFormat::Jpeg => integrity::jpeg(&file),
@@ -69,9 +70,8 @@ pub(super) fn read(path: &Path) -> Result<Picture, MockError> {
         Integrity::Corrupt(reason) => return Err(corrupt(reason)),
     }
     match DynamicImage::from_decoder(decoder) {
-        Ok(image) => {
-            lines(image).ok_or_else(|| MockError::Samples { path: path.into(), found: "floating point".into() })
-        }
+        Ok(image) => lines(image)
+            .ok_or_else(|| MockError::Samples { path: path.into(), found: "floating point".into() }),
         Err(ImageError::Limits(e)) if e.kind() == LimitErrorKind::InsufficientMemory => {
             Err(corrupt("it asks for more memory than its picture can need"))
         }
@@ -115,7 +115,9 @@ pub(super) fn lines(image: DynamicImage) -> Option<Picture> {
         DynamicImage::ImageLuma8(_) | DynamicImage::ImageLumaA8(_) => {
             (PixelFormat::Grey8, image.into_luma8().into_raw())
         }
-        DynamicImage::ImageRgb8(_) | DynamicImage::ImageRgba8(_) => (PixelFormat::Rgb8, image.into_rgb8().into_raw()),
+        DynamicImage::ImageRgb8(_) | DynamicImage::ImageRgba8(_) => {
+            (PixelFormat::Rgb8, image.into_rgb8().into_raw())
+        }
         DynamicImage::ImageLuma16(_) | DynamicImage::ImageLumaA16(_) => {
             let samples = image.into_luma16().into_raw();
             (PixelFormat::Grey16 { bits: significant_bits(&samples) }, low_byte_first(&samples))

@@ -1,7 +1,8 @@
 //! Whether a file is whole, for the formats whose decoders accept half a file.
 //!
-//! The JPEG decoder fills what is missing with grey and says nothing; the PNG decoder stops reading after the last
-//! row. Both formats have an end mark, and their segments say how long they are, so the walk costs no decoding.
+//! The JPEG decoder fills what is missing with grey and says nothing; the PNG decoder stops reading after the
+//! last row. Both formats have an end mark, and their segments say how long they are, so the walk costs no
+//! decoding.
 
 /// What the walk through a file's segments found.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -34,7 +35,8 @@ pub(super) fn png(file: &[u8]) -> Integrity {
     }
 }
 
-/// Walks the segments of a JPEG file, through the entropy-coded data of every scan, up to the end-of-image mark.
+/// Walks the segments of a JPEG file, through the entropy-coded data of every scan, up to the end-of-image
+/// mark.
 pub(super) fn jpeg(file: &[u8]) -> Integrity {
     const START_OF_SCAN: u8 = 0xda;
     const END_OF_IMAGE: u8 = 0xd9;
@@ -85,7 +87,9 @@ mod tests {
 
     #[test]
     fn a_jpeg_is_whole_at_its_end_mark_only() {
-        let file = [0xff, 0xd8, 0xff, 0xe0, 0, 4, 0xff, 0xd9, 0xff, 0xda, 0, 2, 7, 0xff, 0, 0xff, 0xd0, 9, 0xff, 0xd9];
+        let file = [
+            0xff, 0xd8, 0xff, 0xe0, 0, 4, 0xff, 0xd9, 0xff, 0xda, 0, 2, 7, 0xff, 0, 0xff, 0xd0, 9, 0xff, 0xd9,
+        ];
         assert_eq!(jpeg(&file), Integrity::Whole);
         assert_eq!(jpeg(&[&file[..], b"trailer"].concat()), Integrity::Whole);
         for cut in 2..file.len() {

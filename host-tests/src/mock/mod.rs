@@ -4,8 +4,9 @@
 //! 4096 x 4096. Out: lines in the file's own pixel format, frame after frame without an end.
 //!
 //! * Alpha is dropped: a camera has none. The samples stay as they are, they are not multiplied by it.
-//! * A file with 16 bits a sample may hold the 10 or 12 bits of a sensor. The camera's significant bits are those of
-//!   the largest sample, 8 at least; a pair opened by [`MockCamera::open_pair`] shares the larger of both.
+//! * A file with 16 bits a sample may hold the 10 or 12 bits of a sensor. The camera's significant bits are
+//!   those of the largest sample, 8 at least; a pair opened by [`MockCamera::open_pair`] shares the larger of
+//!   both.
 //! * An orientation that a JPEG's metadata asks for is ignored: lines come as the sensor gave them.
 
 mod decode;
@@ -18,12 +19,14 @@ use decode::Picture;
 use image::{DynamicImage, Rgb, RgbImage};
 use std::convert::Infallible;
 use std::path::Path;
-use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineSource, LineStart, PixelFormat};
+use stereopsis::camera::{
+    CameraError, ErrorType, FrameStart, LineFormat, LineSource, LineStart, PixelFormat,
+};
 
 /// A camera that plays one image file as an endless video.
 ///
-/// Every frame is the same picture; the sequence number counts them, from 0. The camera's clock stands at 0: two
-/// cameras on files have no row skew.
+/// Every frame is the same picture; the sequence number counts them, from 0. The camera's clock stands at 0:
+/// two cameras on files have no row skew.
 #[derive(Clone, Debug)]
 pub struct MockCamera {
     format: LineFormat,
@@ -43,8 +46,8 @@ impl MockCamera {
         Ok(Self::play(decode::read(path.as_ref())?))
     }
 
-    /// Two cameras on the files of a pair: of one size, and with one number of significant bits, so that equal
-    /// brightness stays equal.
+    /// Two cameras on the files of a pair: of one size, and with one number of significant bits, so that
+    /// equal brightness stays equal.
     pub fn open_pair(left: impl AsRef<Path>, right: impl AsRef<Path>) -> Result<(Self, Self), MockError> {
         let (mut l, mut r) = (Self::open(&left)?, Self::open(&right)?);
         let (left_size, right_size) = ((l.format.width, l.format.height), (r.format.width, r.format.height));
@@ -90,7 +93,9 @@ impl MockCamera {
             match self.format.pixel {
                 PixelFormat::Grey16 { bits } => Rgb([deep(at, bits); 3]),
                 PixelFormat::Rgb8 => Rgb([at[0], at[1], at[2]]),
-                PixelFormat::Rgb16 { bits } => Rgb([deep(at, bits), deep(&at[2..], bits), deep(&at[4..], bits)]),
+                PixelFormat::Rgb16 { bits } => {
+                    Rgb([deep(at, bits), deep(&at[2..], bits), deep(&at[4..], bits)])
+                }
                 _ => Rgb([at[0]; 3]),
             }
         })

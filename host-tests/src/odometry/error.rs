@@ -23,14 +23,15 @@ pub struct Similarity {
     pub translation: Vector3<f64>,
 }
 
-/// The alignment of a trajectory's places with the true ones that leaves the least squares (Umeyama 1991); `None` of fewer than
-/// two places, or where all are one.
+/// The alignment of a trajectory's places with the true ones that leaves the least squares (Umeyama 1991);
+/// `None` of fewer than two places, or where all are one.
 pub fn align(estimate: &[Pose<f64>], truth: &[Pose<f64>], alignment: Alignment) -> Option<Similarity> {
     let n = estimate.len().min(truth.len());
     if n < 2 {
         return None;
     }
-    let mean = |poses: &[Pose<f64>]| poses[..n].iter().map(|p| *p.translation()).sum::<Vector3<f64>>() / n as f64;
+    let mean =
+        |poses: &[Pose<f64>]| poses[..n].iter().map(|p| *p.translation()).sum::<Vector3<f64>>() / n as f64;
     let (a, b) = (mean(estimate), mean(truth));
     let (mut cross, mut spread) = (Matrix3::zeros(), 0.0);
     for (p, q) in estimate.iter().zip(truth).take(n) {
@@ -54,7 +55,8 @@ pub fn align(estimate: &[Pose<f64>], truth: &[Pose<f64>], alignment: Alignment) 
     fits.then(|| Similarity { scale, rotation, translation: b - rotation * a * scale })
 }
 
-/// The absolute trajectory error: the root mean square of the places' distances after alignment (Sturm et al. 2012).
+/// The absolute trajectory error: the root mean square of the places' distances after alignment (Sturm et al.
+/// 2012).
 pub fn ate(estimate: &[Pose<f64>], truth: &[Pose<f64>], alignment: Alignment) -> Option<f64> {
     let Similarity { scale, rotation, translation } = align(estimate, truth, alignment)?;
     let squares = estimate
@@ -78,7 +80,8 @@ pub struct RelativeError {
     pub worst_direction_rad: f64,
 }
 
-/// The errors of the motions over `frames` frames, with the estimate's lengths times `scale`; `None` where there are none.
+/// The errors of the motions over `frames` frames, with the estimate's lengths times `scale`; `None` where
+/// there are none.
 pub fn rpe(estimate: &[Pose<f64>], truth: &[Pose<f64>], frames: usize, scale: f64) -> Option<RelativeError> {
     let n = estimate.len().min(truth.len());
     let count = n.checked_sub(frames).filter(|&count| count > 0 && frames > 0)?;
@@ -106,8 +109,8 @@ pub fn rpe(estimate: &[Pose<f64>], truth: &[Pose<f64>], frames: usize, scale: f6
     })
 }
 
-/// What KITTI's benchmark measures: of all ways of a length along the truth, beginning with every frame, how far the end is off,
-/// as a share of the length and as a turn for each unit of it, means.
+/// What KITTI's benchmark measures: of all ways of a length along the truth, beginning with every frame, how
+/// far the end is off, as a share of the length and as a turn for each unit of it, means.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct DriftError {
     /// A share of the way.

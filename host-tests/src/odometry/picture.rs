@@ -9,8 +9,9 @@ use stereopsis::geometry::Pose;
 const SIDE: f64 = 480.0;
 const MARGIN: f64 = 50.0;
 
-/// The trajectory as SVG: X to the right and Z up, as from above, and Y down over Z, as from the side; with a truth drawn behind
-/// it. A dot is a frame of which the pose is not fully known. `unit` names the unit of length.
+/// The trajectory as SVG: X to the right and Z up, as from above, and Y down over Z, as from the side; with a
+/// truth drawn behind it. A dot is a frame of which the pose is not fully known. `unit` names the unit of
+/// length.
 pub fn svg(trajectory: &Trajectory, truth: Option<&[Pose<f64>]>, unit: &str) -> String {
     let steps = trajectory.steps.iter().enumerate();
     let unknown: Vec<_> = steps.filter(|(_, step)| !step.state.is_known()).map(|(frame, _)| frame).collect();

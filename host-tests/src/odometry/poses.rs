@@ -1,5 +1,5 @@
-//! Trajectories as KITTI's odometry benchmark writes them: a line for each frame, the first three rows of the matrix that
-//! carries a point of that frame's camera into the first one's, row by row.
+//! Trajectories as KITTI's odometry benchmark writes them: a line for each frame, the first three rows of the
+//! matrix that carries a point of that frame's camera into the first one's, row by row.
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use std::io::{self, Write};
@@ -57,8 +57,9 @@ pub const fn name(state: State) -> &'static str {
     }
 }
 
-/// Writes a line for each frame: its number from 0, its state, the points that are followed, found and agree, and the largest
-/// standard deviations of the turn (degrees) and of the step (the unit of the poses); nothing where nothing is known.
+/// Writes a line for each frame: its number from 0, its state, the points that are followed, found and agree,
+/// and the largest standard deviations of the turn (degrees) and of the step (the unit of the poses); nothing
+/// where nothing is known.
 pub fn write_states(out: &mut dyn Write, steps: &[Step<f64>]) -> io::Result<()> {
     writeln!(out, "frame,state,points,found,agree,sigma_turn_deg,sigma_step")?;
     for (frame, step) in steps.iter().enumerate() {
@@ -76,10 +77,12 @@ pub fn write_states(out: &mut dyn Write, steps: &[Step<f64>]) -> io::Result<()> 
 
 /// Reads a trajectory; empty lines are passed over, and rotations may have few decimals.
 pub fn read(path: &Path) -> Result<Vec<Pose<f64>>, PosesError> {
-    let text = std::fs::read_to_string(path).map_err(|source| PosesError::Read { path: path.into(), source })?;
+    let text =
+        std::fs::read_to_string(path).map_err(|source| PosesError::Read { path: path.into(), source })?;
     let lines = text.lines().zip(1..).filter(|(content, _)| !content.trim().is_empty());
     let pose = |(content, line): (&str, usize)| {
-        let numbers: Vec<f64> = content.split_ascii_whitespace().filter_map(|word| word.parse().ok()).collect();
+        let numbers: Vec<f64> =
+            content.split_ascii_whitespace().filter_map(|word| word.parse().ok()).collect();
         let found = <[f64; 12]>::try_from(numbers).ok().filter(|n| n.iter().all(|x| x.is_finite()));
         let pose = found.and_then(|n| {
             let r = Matrix3::new(n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10]);

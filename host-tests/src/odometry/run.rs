@@ -28,7 +28,8 @@ pub enum Rig {
 /// A trajectory, with what is known of each pose.
 #[derive(Clone, Debug, Default)]
 pub struct Trajectory {
-    /// Carries a point of each frame's camera into the first one's. What is not known is laid between what is.
+    /// Carries a point of each frame's camera into the first one's. What is not known is laid between what
+    /// is.
     pub poses: Vec<Pose<f64>>,
     /// What the core says of each frame.
     pub steps: Vec<Step<f64>>,
@@ -63,8 +64,9 @@ pub fn plan() -> Plan {
     Plan { corners: 1500, threshold: 8, levels: 1, ..Plan::default() }
 }
 
-/// Takes frames, left and right, until there is none, and says where the camera stood in each. The last `views` are adjusted
-/// together, [`MOST_VIEWS`] at most; with fewer than two every pose stays as it was told. `told` hears of every frame.
+/// Takes frames, left and right, until there is none, and says where the camera stood in each. The last
+/// `views` are adjusted together, [`MOST_VIEWS`] at most; with fewer than two every pose stays as it was
+/// told. `told` hears of every frame.
 pub fn run<E, I>(
     rig: &Rig,
     frames: I,
@@ -77,7 +79,8 @@ where
 {
     std::thread::scope(|scope| {
         let builder = std::thread::Builder::new().stack_size(STACK);
-        let work = builder.spawn_scoped(scope, || follow(rig, frames, views, told)).map_err(RunError::Thread)?;
+        let work =
+            builder.spawn_scoped(scope, || follow(rig, frames, views, told)).map_err(RunError::Thread)?;
         work.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })
 }
@@ -142,7 +145,9 @@ impl Smoother {
 
     /// Takes the trajectory's last frame, and makes it and those before it better.
     fn take(&mut self, odometry: &Either, trajectory: &mut Trajectory) {
-        let Some((step, last)) = trajectory.steps.last().zip(trajectory.steps.len().checked_sub(1)) else { return };
+        let Some((step, last)) = trajectory.steps.last().zip(trajectory.steps.len().checked_sub(1)) else {
+            return;
+        };
         match step.state {
             State::Tracked | State::Found => {}
             // Nothing joins what was before and what comes.
@@ -173,7 +178,12 @@ impl Smoother {
     }
 }
 
-fn follow<E, I>(rig: &Rig, frames: I, views: usize, told: impl Fn(&Step<f64>)) -> Result<Trajectory, RunError<E>>
+fn follow<E, I>(
+    rig: &Rig,
+    frames: I,
+    views: usize,
+    told: impl Fn(&Step<f64>),
+) -> Result<Trajectory, RunError<E>>
 where
     E: std::error::Error,
     I: Iterator<Item = Result<(GrayImage, Option<GrayImage>), E>>,
@@ -235,7 +245,8 @@ impl Trajectory {
         self.steps.push(step);
     }
 
-    /// Puts frame `b` at `pose`, and those since the known frame `a` where they are beside that, or in between.
+    /// Puts frame `b` at `pose`, and those since the known frame `a` where they are beside that, or in
+    /// between.
     fn refine(&mut self, a: usize, b: usize, pose: Pose<f64>) {
         let start = self.poses[a];
         for i in a + 1..b {

@@ -76,8 +76,9 @@ pub enum SequenceError {
 }
 
 impl Sequence {
-    /// The sequence in a folder: `left` and `right`, or `left` alone for one camera; also KITTI's `image_0` and `image_1`,
-    /// `image_2` and `image_3`, or one camera's images in the folder itself. The first frame is read.
+    /// The sequence in a folder: `left` and `right`, or `left` alone for one camera; also KITTI's `image_0`
+    /// and `image_1`, `image_2` and `image_3`, or one camera's images in the folder itself. The first
+    /// frame is read.
     pub fn open(folder: &Path) -> Result<Self, SequenceError> {
         let failed = |path: &Path| {
             let path = path.to_owned();
@@ -97,7 +98,8 @@ impl Sequence {
             let source = io::Error::from(io::ErrorKind::NotFound);
             return Err(SequenceError::Folder { path: folder.join("left"), source });
         }
-        let right = if has_right { images(&right_folder).map_err(failed(&right_folder))? } else { Vec::new() };
+        let right =
+            if has_right { images(&right_folder).map_err(failed(&right_folder))? } else { Vec::new() };
         if left.len() < 2 {
             return Err(SequenceError::Count { path: left_folder, found: left.len() });
         }

@@ -19,7 +19,8 @@ pub enum Alteration {
     },
     /// The right camera has another curve: its brightness is `255 * (grey / 255) ^ gamma`.
     Gamma(f64),
-    /// The right camera's rows are half a pixel off: each is the average of those of the pair above it and at it.
+    /// The right camera's rows are half a pixel off: each is the average of those of the pair above it and at
+    /// it.
     HalfARowLow,
 }
 
@@ -45,8 +46,8 @@ impl Alteration {
         }
     }
 
-    /// The altered pair, rounded to whole grey levels. Noise is another one for each seed and each side, and the same for
-    /// the same.
+    /// The altered pair, rounded to whole grey levels. Noise is another one for each seed and each side, and
+    /// the same for the same.
     pub fn apply(self, [left, right]: [&GrayImage; 2], seed: u64) -> [GrayImage; 2] {
         match self {
             Self::Unaltered => [left.clone(), right.clone()],

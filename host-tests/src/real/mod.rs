@@ -1,8 +1,9 @@
 //! Real rectified pairs with a known truth, and how right answers are on them.
 //!
-//! A scene is a folder with `left.png`, `right.png`, `gt.png` (16 bit, disparity x 256, 0 = unknown), `nonocc.png` (255 = both
-//! cameras see it) and `meta.json` (`disparities`, the search range). Scored are pixels with a known truth that both cameras
-//! see, from column `disparities` on: left of it the range does not fit the right image.
+//! A scene is a folder with `left.png`, `right.png`, `gt.png` (16 bit, disparity x 256, 0 = unknown),
+//! `nonocc.png` (255 = both cameras see it) and `meta.json` (`disparities`, the search range). Scored are
+//! pixels with a known truth that both cameras see, from column `disparities` on: left of it the range does
+//! not fit the right image.
 //!
 //! * [`RealScene`]: one of them. [`Score`]: shares of right and wrong answers.
 //! * [`Alteration`]: the same pair, taken by worse cameras.
@@ -118,7 +119,8 @@ impl RealScene {
         let (left, right) = grey_pair(folder)?;
         let truth_file = |name: &str| {
             let path = folder.join(name);
-            let image = image::open(&path).map_err(|source| RealError::Truth { path: path.clone(), source })?;
+            let image =
+                image::open(&path).map_err(|source| RealError::Truth { path: path.clone(), source })?;
             let (given, wanted) = ((image.width(), image.height()), left.dimensions());
             if given == wanted { Ok(image) } else { Err(RealError::Size { path, given, wanted }) }
         };

@@ -15,8 +15,8 @@ impl Score {
     /// An answer off by more than this is bad, px.
     pub const BAD_PX: f32 = 2.0;
 
-    /// Compares answers in px, `None` or infinite where there is none, with a truth that is 0 where a pixel is not scored.
-    /// `None` when no pixel is scored.
+    /// Compares answers in px, `None` or infinite where there is none, with a truth that is 0 where a pixel
+    /// is not scored. `None` when no pixel is scored.
     pub fn of(answers: impl IntoIterator<Item = Option<f32>>, truth: &[f32]) -> Option<Self> {
         let (mut scored, mut answered, mut good) = (0u32, 0u32, 0u32);
         for (answer, &truth) in answers.into_iter().zip(truth).filter(|(_, truth)| **truth > 0.0) {
@@ -53,7 +53,8 @@ mod tests {
 
     #[test]
     fn scenes_count_alike() {
-        let scores = [Score { density: 1.0, bad2: 0.2, missed: 0.2 }, Score { density: 0.5, bad2: 0.0, missed: 0.5 }];
+        let scores =
+            [Score { density: 1.0, bad2: 0.2, missed: 0.2 }, Score { density: 0.5, bad2: 0.0, missed: 0.5 }];
         assert_eq!(Score::mean(&scores), Score { density: 0.75, bad2: 0.1, missed: 0.35 });
         assert_eq!(Score::mean(&[]), Score::default());
     }

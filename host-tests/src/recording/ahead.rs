@@ -23,8 +23,8 @@ impl Seen {
     }
 }
 
-/// Any records, with every frame measured by its own lines, those that came, before the first of them is given. (A device has not
-/// seen them when the first row goes out: there it goes by the frame before.)
+/// Any records, with every frame measured by its own lines, those that came, before the first of them is
+/// given. (A device has not seen them when the first row goes out: there it goes by the frame before.)
 pub struct Ahead<'a, I: Iterator<Item = Result<Entry, RecordingError>>> {
     entries: Peekable<I>,
     width: u16,
@@ -53,7 +53,8 @@ impl<'a, I: Iterator<Item = Result<Entry, RecordingError>>> Ahead<'a, I> {
     fn read_ahead(&mut self) {
         let (mut left_lines, mut right_lines) = (Vec::new(), Vec::new());
         while self.ahead.len() < self.most_ahead
-            && let Some(Ok(entry)) = self.entries.next_if(|entry| entry.as_ref().is_ok_and(Entry::is_of_frame))
+            && let Some(Ok(entry)) =
+                self.entries.next_if(|entry| entry.as_ref().is_ok_and(Entry::is_of_frame))
         {
             if let Entry::Line { left, right, .. } = &entry {
                 left_lines.extend_from_slice(left);
@@ -70,7 +71,10 @@ impl<'a, I: Iterator<Item = Result<Entry, RecordingError>>> Ahead<'a, I> {
         self.balance.line(&mut right_lines);
         let mut meter = NoiseMeter::new();
         let width = usize::from(self.width);
-        left_lines.chunks_exact(width).chain(right_lines.chunks_exact(width)).for_each(|line| meter.line(line));
+        left_lines
+            .chunks_exact(width)
+            .chain(right_lines.chunks_exact(width))
+            .for_each(|line| meter.line(line));
         if let Ok(mut seen) = self.seen.0.lock() {
             seen.0 = meter.level();
         }

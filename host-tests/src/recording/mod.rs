@@ -1,11 +1,13 @@
-//! Lines of two cameras as they came, with their time stamps and faults, in a file: to bring a failure in the field to the desk.
+//! Lines of two cameras as they came, with their time stamps and faults, in a file: to bring a failure in the
+//! field to the desk.
 //!
-//! * [`record()`]: a stereo source into a file. [`Recording`]: such a file. [`Playback`]: it as a stereo source again.
+//! * [`record()`]: a stereo source into a file. [`Recording`]: such a file. [`Playback`]: it as a stereo
+//!   source again.
 //! * [`Ahead`]: its records with both cameras of one exposure, each frame measured before it is played.
 //! * [`Pictures`]: images, or folders of them, as a stereo source at a frame rate.
 //!
-//! A recording begins with a line of text, `stereopsis recording 1`, and a line of JSON: `width`, `height`, `max_row_skew_us`.
-//! Records follow, all numbers with the low byte first:
+//! A recording begins with a line of text, `stereopsis recording 1`, and a line of JSON: `width`, `height`,
+//! `max_row_skew_us`. Records follow, all numbers with the low byte first:
 //!
 //! | record | bytes |
 //! | --- | --- |
@@ -237,7 +239,8 @@ fn most_rows(height: u16) -> u32 {
 /// Writes the next `frames` frames of a source, errors as well.
 pub fn record<S: StereoSource>(source: &mut S, frames: u32, out: &mut dyn Write) -> io::Result<Recorded> {
     let format = source.format();
-    let header = Header { width: format.width, height: format.height, max_row_skew_us: source.max_row_skew_us() };
+    let header =
+        Header { width: format.width, height: format.height, max_row_skew_us: source.max_row_skew_us() };
     writeln!(out, "{TITLE}\n{}", serde_json::to_string(&header).map_err(io::Error::other)?)?;
     let (mut left, mut right) = (vec![0; format.width.into()], vec![0; format.width.into()]);
     let mut told = Recorded::default();

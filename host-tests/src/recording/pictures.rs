@@ -154,10 +154,15 @@ impl StereoSource for Pictures {
         Ok(FrameStart { sequence: self.frames, timestamp_us: self.frame_start_us(), exposure_us })
     }
 
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
+    fn next_lines(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<Self::Error>> {
         let frame_us = self.frame_start_us();
         let pair = self.current.as_mut().ok_or(CameraError::NoLineLeft)?;
-        let line = pair.next_lines(left, right).map_err(|e| e.map_hardware(|_| "an image cannot be played"))?;
+        let line =
+            pair.next_lines(left, right).map_err(|e| e.map_hardware(|_| "an image cannot be played"))?;
         let after_us = self.frame_us * f64::from(line.row) / f64::from(self.format.height);
         Ok(LineStart { timestamp_us: frame_us + after_us as u64, ..line })
     }

@@ -93,7 +93,8 @@ pub struct Playback<I: Iterator<Item = Result<Entry, RecordingError>>> {
 }
 
 impl<I: Iterator<Item = Result<Entry, RecordingError>>> Playback<I> {
-    /// Plays the records of such a recording, at the speed at which it was recorded or as fast as they are taken.
+    /// Plays the records of such a recording, at the speed at which it was recorded or as fast as they are
+    /// taken.
     pub fn new(entries: I, header: Header, is_timed: bool) -> Self {
         Self {
             entries: entries.peekable(),
@@ -148,8 +149,8 @@ impl<I: Iterator<Item = Result<Entry, RecordingError>>> Playback<I> {
         }
     }
 
-    /// Waits until it is time for what has this stamp; a source without a clock does not wait. Where the stamps jump, back or by more
-    /// than [`LONGEST_WAIT`], time begins anew.
+    /// Waits until it is time for what has this stamp; a source without a clock does not wait. Where the
+    /// stamps jump, back or by more than [`LONGEST_WAIT`], time begins anew.
     fn wait(&mut self, timestamp_us: u64) {
         if !self.is_timed || timestamp_us == 0 {
             return;
@@ -199,7 +200,11 @@ impl<I: Iterator<Item = Result<Entry, RecordingError>>> StereoSource for Playbac
         }
     }
 
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<RecordedFault>> {
+    fn next_lines(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<RecordedFault>> {
         let needed = usize::from(self.header.width);
         let (Some(to_left), Some(to_right)) = (left.get_mut(..needed), right.get_mut(..needed)) else {
             return Err(CameraError::BufferTooShort { needed });

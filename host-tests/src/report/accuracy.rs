@@ -6,8 +6,8 @@ use crate::sparsification::{Judged, Sparsification};
 use serde::Serialize;
 use stereopsis::depth::DepthScale;
 
-/// How right the answers are. Pixels that show nothing, or that only the left camera sees, are left out: no matcher can
-/// know them.
+/// How right the answers are. Pixels that show nothing, or that only the left camera sees, are left out: no
+/// matcher can know them.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
 pub struct Accuracy {
     /// Pixels that both cameras see.
@@ -36,7 +36,8 @@ impl Accuracy {
 
     /// Compares a map with the truth of the same size.
     pub fn of(map: &DisparityMap, truth: &Truth, scale: &DepthScale) -> Self {
-        let (mut seen, mut answers, mut good, mut within, mut squares) = (0usize, 0usize, 0usize, 0usize, 0.0f64);
+        let (mut seen, mut answers, mut good, mut within, mut squares) =
+            (0usize, 0usize, 0usize, 0usize, 0.0f64);
         let (mut errors_m, mut relative) = (Vec::new(), Vec::new());
         let mut guesses = 0;
         for (i, &d) in map.disparity.iter().enumerate() {

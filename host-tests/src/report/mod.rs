@@ -1,7 +1,7 @@
 //! One run on one page: `report.html` holds its pictures and asks for nothing from anywhere.
 //!
-//! In: the pictures, the map and the [`Summary`] of a run, for a rendered scene its truth and the [`Accuracy`]. Out:
-//! HTML that reads on a phone and on paper, in light and dark.
+//! In: the pictures, the map and the [`Summary`] of a run, for a rendered scene its truth and the
+//! [`Accuracy`]. Out: HTML that reads on a phone and on paper, in light and dark.
 
 mod accuracy;
 mod page;
@@ -118,15 +118,19 @@ impl Report<'_> {
         };
         show("Left image", Kind::Photograph, self.left, &caption(self.left_name))?;
         show("Right image", Kind::Photograph, self.right, &caption(self.right_name))?;
-        let note =
-            "Near is bright; black: no answer. The colours run from the 2nd to the 98th percentile of the answers.";
+        let note = "Near is bright; black: no answer. The colours run from the 2nd to the 98th percentile of the answers.";
         let disparity = colours.picture(self.map.width, &self.map.pixels());
         let bar = svg::disparity_bar("disparity", &colours, self.rig);
         show("Disparity", Kind::Map, &disparity, &(bar + &caption(note)))?;
         if let Some(truth) = self.truth {
             let picture = colours.picture(truth.width, &Accuracy::true_disparity_px(truth));
             let bar = svg::disparity_bar("truth", &colours, self.rig);
-            show("True disparity", Kind::Map, &picture, &(bar + &caption("The same colours as the answers.")))?;
+            show(
+                "True disparity",
+                Kind::Map,
+                &picture,
+                &(bar + &caption("The same colours as the answers.")),
+            )?;
         }
         show("Why pixels have no answer", Kind::Map, &flags_picture(self.map, self.left), &self.legend())?;
         let note = "Sure is bright: the second best candidate costs much more, and the answers around agree; black: no answer.";
@@ -134,7 +138,8 @@ impl Report<'_> {
         if let Some(truth) = self.truth {
             let errors = Accuracy::errors_px(self.map, truth);
             let picture = error_picture(truth.width, &errors, ERROR_LIMIT_PX);
-            let note = "Answer minus truth: blue is too far, orange too near, white is right; black: no answer.";
+            let note =
+                "Answer minus truth: blue is too far, orange too near, white is right; black: no answer.";
             show("Error", Kind::Map, &picture, &(svg::error_bar("error", ERROR_LIMIT_PX) + &caption(note)))?;
         }
         Ok(())
@@ -153,7 +158,8 @@ impl Report<'_> {
         }
         let share = |count: usize| percent(count as f64 / self.map.disparity.len().max(1) as f64);
         let row = |[r, g, b]: [u8; 3], text: String, count| {
-            let swatch = format!("<span class=\"swatch\" style=\"background:#{r:02x}{g:02x}{b:02x}\"></span>");
+            let swatch =
+                format!("<span class=\"swatch\" style=\"background:#{r:02x}{g:02x}{b:02x}\"></span>");
             format!("<tr><th>{swatch}{text}</th><td>{}</td></tr>\n", share(count))
         };
         let mut rows = row([0xb0; 3], "answered: the left image, pale".into(), answered);
@@ -163,7 +169,10 @@ impl Report<'_> {
         if unnamed > 0 {
             rows += &row(NO_ANSWER.0, "no reason given".into(), unnamed);
         }
-        format!("<table>{rows}</table>{}", caption("A pixel with several reasons has the colour of the first."))
+        format!(
+            "<table>{rows}</table>{}",
+            caption("A pixel with several reasons has the colour of the first.")
+        )
     }
 
     /// All figures, with names.
@@ -171,13 +180,17 @@ impl Report<'_> {
         let s = self.summary;
         let mut rows: Vec<(String, String)> = Vec::new();
         let mut add = |name: &str, value: String| rows.push((name.into(), value));
-        let metres = |value: Option<f32>| value.map_or("-".to_owned(), |z| format!("{} m", svg::three_digits(z)));
+        let metres =
+            |value: Option<f32>| value.map_or("-".to_owned(), |z| format!("{} m", svg::three_digits(z)));
         add("Answers", format!("{} of {} ({})", s.answers, self.map.disparity.len(), percent(s.density)));
         if let Some(c) = s.confidence {
             add("Confidence, least / median / largest", format!("{} / {} / {}", c.min, c.median, c.max));
         }
         if let Some(d) = s.disparity_px {
-            add("Disparity, least / median / largest", format!("{:.2} / {:.2} / {:.2} px", d.min, d.median, d.max));
+            add(
+                "Disparity, least / median / largest",
+                format!("{:.2} / {:.2} / {:.2} px", d.min, d.median, d.max),
+            );
         }
         for (flag, name) in PixelFlags::NAMES {
             add(&format!("Pixels with the flag '{name}'"), self.map.flagged(flag).to_string());

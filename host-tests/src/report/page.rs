@@ -38,7 +38,8 @@ pub(super) fn escape(text: &str) -> String {
 pub(super) fn figure(title: &str, kind: Kind, picture: &RgbImage, below: &str) -> io::Result<String> {
     let small;
     let picture = if picture.width() > MOST_COLUMNS {
-        let rows = (u64::from(picture.height()) * u64::from(MOST_COLUMNS) / u64::from(picture.width())).max(1) as u32;
+        let rows = (u64::from(picture.height()) * u64::from(MOST_COLUMNS) / u64::from(picture.width())).max(1)
+            as u32;
         let filter = if kind == Kind::Photograph { FilterType::Triangle } else { FilterType::Nearest };
         small = resize(picture, MOST_COLUMNS, rows, filter);
         &small

@@ -30,7 +30,8 @@ pub struct Summary {
     pub min_disparity: u16,
     /// How noisy the images are taken to be: `none`, `low` or `high`.
     pub noise: &'static str,
-    /// The deviation of their noise as it was measured, grey levels; absent when it was told, or when no place shows it.
+    /// The deviation of their noise as it was measured, grey levels; absent when it was told, or when no
+    /// place shows it.
     pub noise_sigma: Option<f64>,
     /// How the right image was brought to the left one's exposure; absent when it was matched as it came.
     pub balance: Option<Exposure>,
@@ -42,8 +43,8 @@ pub struct Summary {
     pub flags: BTreeMap<&'static str, usize>,
     /// The answers' disparities; absent when there is none.
     pub disparity_px: Option<Spread>,
-    /// How sure the answers are, 1 to 207; absent when there is none. The numbers put answers in order, they are no
-    /// probabilities.
+    /// How sure the answers are, 1 to 207; absent when there is none. The numbers put answers in order, they
+    /// are no probabilities.
     pub confidence: Option<Spread>,
     /// Bytes that the matcher's state takes for this width and range.
     pub state_bytes: usize,
@@ -71,7 +72,8 @@ pub struct Exposure {
 impl Exposure {
     /// What a balance does; `None` when that is nothing.
     pub fn of(balance: Balance) -> Option<Self> {
-        let [gain, offset] = [i32::from(balance.gain_256ths), balance.offset_256ths].map(|n| f64::from(n) / 256.0);
+        let [gain, offset] =
+            [i32::from(balance.gain_256ths), balance.offset_256ths].map(|n| f64::from(n) / 256.0);
         (balance != Balance::NONE).then_some(Self { gain, offset })
     }
 }
@@ -90,7 +92,11 @@ pub struct Spread {
 impl Spread {
     /// Of values in ascending order; `None` of nothing.
     pub fn of(sorted: &[f32]) -> Option<Self> {
-        Some(Self { min: quantile(sorted, 0.0)?, median: quantile(sorted, 0.5)?, max: quantile(sorted, 1.0)? })
+        Some(Self {
+            min: quantile(sorted, 0.0)?,
+            median: quantile(sorted, 0.5)?,
+            max: quantile(sorted, 1.0)?,
+        })
     }
 }
 
@@ -103,8 +109,8 @@ pub struct Depth {
     pub baseline_m: f32,
     /// What is added to a disparity before it divides, px.
     pub doffs_px: f32,
-    /// Depth at the largest disparity that is answered, m. With the three fields below absent when the whole range lies
-    /// at or behind infinity.
+    /// Depth at the largest disparity that is answered, m. With the three fields below absent when the whole
+    /// range lies at or behind infinity.
     pub nearest_m: Option<f32>,
     /// Standard deviation there, m.
     pub sigma_nearest_m: Option<f32>,
@@ -184,7 +190,10 @@ impl Summary {
 
     /// The same with the noise that a meter measured.
     pub fn with_noise(self, meter: Option<&NoiseMeter>) -> Self {
-        Self { noise_sigma: meter.and_then(NoiseMeter::sigma_16ths).map(|sigma| f64::from(sigma) / 16.0), ..self }
+        Self {
+            noise_sigma: meter.and_then(NoiseMeter::sigma_16ths).map(|sigma| f64::from(sigma) / 16.0),
+            ..self
+        }
     }
 
     /// The same with what was done to the right image.

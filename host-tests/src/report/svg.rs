@@ -7,12 +7,13 @@ use image::Rgb;
 use std::fmt::Write;
 use stereopsis::geometry::RectifiedRig;
 
-/// The colours of disparities with numbers: px above, metres below where there is a rig. `id` names the drawing in the
-/// page.
+/// The colours of disparities with numbers: px above, metres below where there is a rig. `id` names the
+/// drawing in the page.
 pub(super) fn disparity_bar(id: &str, scale: &ColourScale, rig: Option<&RectifiedRig>) -> String {
     let at = |t: f32| scale.far_px + t * (scale.near_px - scale.far_px);
-    let metres =
-        |rig: &RectifiedRig, px| rig.depth_m(px).map_or("\u{221e}".to_owned(), |z| format!("{} m", three_digits(z)));
+    let metres = |rig: &RectifiedRig, px| {
+        rig.depth_m(px).map_or("\u{221e}".to_owned(), |z| format!("{} m", three_digits(z)))
+    };
     bar(id, viridis, |t| format!("{:.1} px", at(t)), rig.map(|rig| move |t| metres(rig, at(t))))
 }
 
@@ -91,20 +92,25 @@ pub(super) fn histogram(map: &DisparityMap, min_disparity: u16, disparities: u16
     svg
 }
 
-/// The share of bad answers among those that are left, over the share that was taken away: in the order of confidence, and in
-/// that of the error.
+/// The share of bad answers among those that are left, over the share that was taken away: in the order of
+/// confidence, and in that of the error.
 pub(super) fn sparsification(answers: &[Judged]) -> String {
     const STEPS: usize = 100;
     let [found, oracle] = curves(answers, STEPS);
     let highest = found.iter().copied().fold(1e-4, f64::max);
     let points = |curve: &[f64]| -> String {
         let point = |(step, &share): (usize, &f64)| {
-            format!("{:.1},{:.1} ", 30.0 + 580.0 * step as f64 / STEPS as f64, 170.0 - 150.0 * share / highest)
+            format!(
+                "{:.1},{:.1} ",
+                30.0 + 580.0 * step as f64 / STEPS as f64,
+                170.0 - 150.0 * share / highest
+            )
         };
         curve.iter().enumerate().map(point).collect()
     };
     let mut svg =
-        "<svg class=\"wide\" viewBox=\"0 0 640 200\" role=\"img\" aria-label=\"Bad answers that are left\">".to_owned();
+        "<svg class=\"wide\" viewBox=\"0 0 640 200\" role=\"img\" aria-label=\"Bad answers that are left\">"
+            .to_owned();
     for (curve, style) in [(&found, ""), (&oracle, " stroke-dasharray=\"4 3\"")] {
         let points = points(curve);
         let _ = write!(svg, "<polyline class=\"curve\"{style} points=\"{}\"/>", points.trim_end());
@@ -134,6 +140,9 @@ mod tests {
 
     #[test]
     fn lengths_have_three_digits() {
-        assert_eq!([0.01234, 0.5, 1.0, 12.34, 1234.5].map(three_digits), ["0.0123", "0.500", "1.00", "12.3", "1234"]);
+        assert_eq!(
+            [0.01234, 0.5, 1.0, 12.34, 1234.5].map(three_digits),
+            ["0.0123", "0.500", "1.00", "12.3", "1234"]
+        );
     }
 }

@@ -1,17 +1,19 @@
 //! A frame in bands of rows, one thread each: what a chip with two cores does with two pipelines.
 //!
-//! With the block methods every row is bit-equal to that of one pipeline over the whole frame, because each band sees more lines than it gives
-//! rows:
+//! With the block methods every row is bit-equal to that of one pipeline over the whole frame, because each
+//! band sees more lines than it gives rows:
 //!
 //! * below, as many as a row waits for: [`Method::latency_lines`](super::Method::latency_lines);
-//! * above, as many again, for windows and for the uncertainty, which looks back at finished rows; one for the median,
-//!   which looks at the row above; and one for each answer that the speckle filter asks for, since a surface that goes on
-//!   through so many rows has them.
+//! * above, as many again, for windows and for the uncertainty, which looks back at finished rows; one for
+//!   the median, which looks at the row above; and one for each answer that the speckle filter asks for,
+//!   since a surface that goes on through so many rows has them.
 //!
-//! Along paths ([`Method::is_exact_in_bands`](super::Method::is_exact_in_bands) says no) a band's first rows lack what a path
-//! from above has gathered farther up: `tests/threads.rs` measures how many answers that changes.
+//! Along paths ([`Method::is_exact_in_bands`](super::Method::is_exact_in_bands) says no) a band's first rows
+//! lack what a path from above has gathered farther up: `tests/threads.rs` measures how many answers that
+//! changes.
 //!
-//! The lines that are worked on twice are the price: 34 above and 10 below with `block` and the default checks.
+//! The lines that are worked on twice are the price: 34 above and 10 below with `block` and the default
+//! checks.
 
 use super::method::with_scheme;
 use super::{Host, MemoryPair, Outcome, RunError, Way, frame};
@@ -84,8 +86,8 @@ impl Bands {
         Ok(whole)
     }
 
-    /// The times of `frames` frames in milliseconds, after one that is left out, and the kernel that they ran on. The
-    /// threads stay, and begin each frame together.
+    /// The times of `frames` frames in milliseconds, after one that is left out, and the kernel that they ran
+    /// on. The threads stay, and begin each frame together.
     pub(super) fn time(&mut self, frames: usize) -> Result<(Vec<f64>, Kernel), ConfigError> {
         // What cannot be done shows here.
         let kernel = self.run()?.kernel;

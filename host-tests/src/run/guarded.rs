@@ -28,8 +28,8 @@ pub struct GuardedFrame {
     pub error: Option<String>,
 }
 
-/// Takes frames of `source` as long as `next` has a configuration for each, and gives them to `keep`. The first one is begun with
-/// `config`.
+/// Takes frames of `source` as long as `next` has a configuration for each, and gives them to `keep`. The
+/// first one is begun with `config`.
 pub fn run_guarded<C: StereoSource<Error: Display> + Send>(
     method: Method,
     config: &Config,
@@ -40,7 +40,8 @@ pub fn run_guarded<C: StereoSource<Error: Display> + Send>(
 ) -> Result<FaultCounters, ConfigError> {
     std::thread::scope(|scope| {
         let work = move || with_scheme!(method, S => frames::<S, C>(config, most_lost, source, next, keep));
-        let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work).expect("a thread");
+        let thread =
+            std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work).expect("a thread");
         thread.join().expect("a thread without a panic")
     })
 }
@@ -63,7 +64,8 @@ fn frames<S: Scheme, C: StereoSource<Error: Display>>(
         }
         let before = guarded.counters().rows_damaged;
         let map = DisparityMap::new(config.width.into(), config.height.into());
-        let mut frame = GuardedFrame { start: None, map, rows: 0, damaged_rows: 0, lost_lines: 0, error: None };
+        let mut frame =
+            GuardedFrame { start: None, map, rows: 0, damaged_rows: 0, lost_lines: 0, error: None };
         match guarded.begin_frame(source) {
             Err(e) => frame.error = Some(e.to_string()),
             Ok(start) => {

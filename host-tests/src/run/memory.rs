@@ -1,9 +1,12 @@
 //! Pictures in memory as a camera.
 
 use std::ops::Range;
-use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource};
+use stereopsis::camera::{
+    CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource,
+};
 
-/// Two pictures in memory as a stereo source: nothing but copying a line stands between the caller and the matcher.
+/// Two pictures in memory as a stereo source: nothing but copying a line stands between the caller and the
+/// matcher.
 #[derive(Clone, Debug)]
 pub struct MemoryPair {
     format: LineFormat,
@@ -28,13 +31,14 @@ impl MemoryPair {
         let width = usize::from(format.width);
         let [mut of_left, mut of_right] = [(); 2].map(|()| vec![1; width * lines]);
         let rows = of_left.chunks_exact_mut(width.max(1)).zip(of_right.chunks_exact_mut(width.max(1)));
-        let has_masks = (0..format.height).zip(rows).all(|(row, (left, right))| source.mask(row, [left, right]));
+        let has_masks =
+            (0..format.height).zip(rows).all(|(row, (left, right))| source.mask(row, [left, right]));
         let masks = has_masks.then_some([of_left, of_right]);
         Ok(Self { format, left, right, masks, frames: 0, row: format.height })
     }
 
-    /// Two grey pictures with `width` pixels in a row; `None` when they are not the same whole number of rows, or one
-    /// of the sides is 0 or over 65535.
+    /// Two grey pictures with `width` pixels in a row; `None` when they are not the same whole number of
+    /// rows, or one of the sides is 0 or over 65535.
     pub fn new(width: u16, left: Vec<u8>, right: Vec<u8>) -> Option<Self> {
         let rows = left.len().checked_div(usize::from(width))?;
         let height = u16::try_from(rows).ok().filter(|&height| height > 0)?;
@@ -54,7 +58,8 @@ impl MemoryPair {
         let format = LineFormat { height: rows.len() as u16, ..self.format };
         let width = usize::from(format.width);
         let pixels = rows.start * width..rows.end * width;
-        let masks = self.masks.as_ref().map(|masks| masks.each_ref().map(|mask| mask[pixels.clone()].to_vec()));
+        let masks =
+            self.masks.as_ref().map(|masks| masks.each_ref().map(|mask| mask[pixels.clone()].to_vec()));
         let (left, right) = (self.left[bytes.clone()].to_vec(), self.right[bytes].to_vec());
         Self { format, left, right, masks, frames: 0, row: format.height }
     }
@@ -80,7 +85,11 @@ impl StereoSource for MemoryPair {
         Ok(FrameStart { sequence, ..FrameStart::default() })
     }
 
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
+    fn next_lines(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<Self::Error>> {
         let needed = self.format.line_bytes();
         if self.row >= self.format.height {
             return Err(CameraError::NoLineLeft);

@@ -68,14 +68,14 @@ impl Method {
         with_scheme!(self, S => search.with_filter::<S>(filter))
     }
 
-    /// Whether a frame in bands is that of one pipeline to the bit: a window reaches so far and no farther, a path reaches from
-    /// the frame's first row.
+    /// Whether a frame in bands is that of one pipeline to the bit: a window reaches so far and no farther, a
+    /// path reaches from the frame's first row.
     pub const fn is_exact_in_bands(self) -> bool {
         matches!(self, Self::Fast | Self::Block)
     }
 
-    /// Whether pixels are compared by their brightness, so that another exposure of one camera counts; a census asks which
-    /// one of two is darker.
+    /// Whether pixels are compared by their brightness, so that another exposure of one camera counts; a
+    /// census asks which one of two is darker.
     pub const fn compares_brightness(self) -> bool {
         matches!(self, Self::SgmLean | Self::Sgm | Self::SgmEdge)
     }

@@ -40,7 +40,8 @@ pub const MOST_DISPARITIES: usize = 256;
 
 type Host<S> = Pipeline<S, MOST_WIDTH, MOST_DISPARITIES>;
 
-/// A method whose pipeline lives in a static, as in firmware: over a megabyte each, which no thread's stack has to hold.
+/// A method whose pipeline lives in a static, as in firmware: over a megabyte each, which no thread's stack
+/// has to hold.
 trait Held: Scheme {
     /// The pipeline.
     fn pipeline() -> &'static Mutex<Host<Self>>;
@@ -89,8 +90,8 @@ pub struct Outcome {
     pub map: DisparityMap,
     /// What they were computed with.
     pub kernel: Kernel,
-    /// The pipeline's time for the frame, milliseconds: taking lines, census, matching and all checks. The uncertainties
-    /// are worked out beside it.
+    /// The pipeline's time for the frame, milliseconds: taking lines, census, matching and all checks. The
+    /// uncertainties are worked out beside it.
     pub time_ms: f64,
 }
 
@@ -138,7 +139,8 @@ pub fn run<C: StereoSource<Error: fmt::Display>>(
         map.put(usize::from(row.index()), row);
         progress(row.index() + 1);
     };
-    let (kernel, time_ms) = with_scheme!(way.method, S => frame(way, &mut *hold::<S>(), config, camera, &mut keep)?);
+    let (kernel, time_ms) =
+        with_scheme!(way.method, S => frame(way, &mut *hold::<S>(), config, camera, &mut keep)?);
     Ok(Outcome { map, kernel, time_ms })
 }
 
@@ -166,8 +168,8 @@ fn frame<S: Scheme, C: StereoSource<Error: fmt::Display>>(
 
 /// The times of `frames` frames in milliseconds, after one that is left out, and the kernel that they ran on.
 ///
-/// A frame's time is that of everything between asking the camera for it and its last row: with a [`MemoryPair`] that
-/// is copying the lines, census, matching and all checks.
+/// A frame's time is that of everything between asking the camera for it and its last row: with a
+/// [`MemoryPair`] that is copying the lines, census, matching and all checks.
 pub fn time_frames<C: StereoSource<Error: fmt::Display>>(
     way: impl Into<Way>,
     config: &Config,

@@ -30,7 +30,10 @@ pub enum NoiseChoice {
 
 impl NoiseChoice {
     /// The level, and the meter if the source's next frame was taken to measure it.
-    pub fn level<C: StereoSource>(self, source: &mut C) -> Result<(Noise, Option<NoiseMeter>), CameraError<C::Error>> {
+    pub fn level<C: StereoSource>(
+        self,
+        source: &mut C,
+    ) -> Result<(Noise, Option<NoiseMeter>), CameraError<C::Error>> {
         match self {
             Self::Told(noise) => Ok((noise, None)),
             Self::Auto => measure_noise(source).map(|meter| (meter.level(), Some(meter))),

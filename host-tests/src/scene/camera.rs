@@ -2,11 +2,14 @@
 
 use core::convert::Infallible;
 use image::GrayImage;
-use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource};
+use stereopsis::camera::{
+    CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource,
+};
 
 /// Two pictures of one size, handed out row by row as 8-bit grey, frame after frame.
 ///
-/// The sequence number counts the frames from 0. The clock is simulated: 30 frames per second, the lines evenly spread.
+/// The sequence number counts the frames from 0. The clock is simulated: 30 frames per second, the lines
+/// evenly spread.
 #[derive(Clone, Debug)]
 pub struct SceneCamera {
     left: GrayImage,
@@ -50,7 +53,11 @@ impl ErrorType for SceneCamera {
 impl StereoSource for SceneCamera {
     fn format(&self) -> LineFormat {
         // `new` has checked that both sides fit.
-        LineFormat { width: self.left.width() as u16, height: self.left.height() as u16, pixel: PixelFormat::Grey8 }
+        LineFormat {
+            width: self.left.width() as u16,
+            height: self.left.height() as u16,
+            pixel: PixelFormat::Grey8,
+        }
     }
 
     fn max_row_skew_us(&self) -> u32 {
@@ -64,7 +71,11 @@ impl StereoSource for SceneCamera {
         Ok(FrameStart { sequence, timestamp_us: self.frame_us(), exposure_us: 0 })
     }
 
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Infallible>> {
+    fn next_lines(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<Infallible>> {
         if self.row >= self.left.height() {
             return Err(CameraError::NoLineLeft);
         }

@@ -1,7 +1,9 @@
-//! Ray-traced scenes for a rectified rig, with their true depth: what a camera would see, and what a matcher should say.
+//! Ray-traced scenes for a rectified rig, with their true depth: what a camera would see, and what a matcher
+//! should say.
 //!
-//! In: bodies with textures in the left camera's frame, a rig. Out: two 8-bit pictures with sensor noise, and per pixel
-//! of the left one the true depth, the true disparity and whether the right camera sees the point at all.
+//! In: bodies with textures in the left camera's frame, a rig. Out: two 8-bit pictures with sensor noise, and
+//! per pixel of the left one the true depth, the true disparity and whether the right camera sees the point
+//! at all.
 //!
 //! * [`Shape`], [`Object`], [`Texture`]: what a scene is made of.
 //! * [`Scene`]: the scene; [`Scene::demo`], [`Scene::small`], [`Scene::slanted_plane`] are ready-made.
@@ -61,14 +63,15 @@ pub struct Truth {
     pub disparity: Vec<f32>,
     /// Depth Z, metres; infinite where the pixel shows nothing.
     pub depth_m: Vec<f32>,
-    /// Whether the right camera does not see the point: outside of its picture, or hidden by something nearer.
+    /// Whether the right camera does not see the point: outside of its picture, or hidden by something
+    /// nearer.
     pub occluded: Vec<bool>,
 }
 
 impl Scene {
-    /// A scene without bodies: `width` x `height` px, searched over `disparities` whole disparities. The lamp is 2 m
-    /// above and 1 m left of the left camera, three tenths of the light come from everywhere, and the sensors have a
-    /// noise of 1 grey level.
+    /// A scene without bodies: `width` x `height` px, searched over `disparities` whole disparities. The lamp
+    /// is 2 m above and 1 m left of the left camera, three tenths of the light come from everywhere, and
+    /// the sensors have a noise of 1 grey level.
     pub fn new(rig: RectifiedRig, width: u16, height: u16, disparities: u16) -> Self {
         Self {
             rig,
@@ -89,8 +92,8 @@ impl Scene {
         self
     }
 
-    /// The scene with the lamp at a point of the left camera's frame, and with this share (0 to 1) of light from
-    /// everywhere.
+    /// The scene with the lamp at a point of the left camera's frame, and with this share (0 to 1) of light
+    /// from everywhere.
     pub fn with_light(self, lamp: Point3<f64>, ambient: f64) -> Self {
         Self { lamp, ambient, ..self }
     }
@@ -123,11 +126,15 @@ impl Scene {
     /// What the two cameras see, left and right: 4 x 4 samples a pixel, sensor noise, 8 bit.
     pub fn render(&self) -> (GrayImage, GrayImage) {
         let noise = |camera: u64| Random::new(self.seed.wrapping_mul(2).wrapping_add(camera)).bits();
-        (render::picture(self, &Eye::left(self), noise(0)), render::picture(self, &Eye::right(self), noise(1)))
+        (
+            render::picture(self, &Eye::left(self), noise(0)),
+            render::picture(self, &Eye::right(self), noise(1)),
+        )
     }
 
-    /// The scene in the frame of a camera that stands elsewhere: its left picture is what that camera sees, from a pose that
-    /// need not be rectified beside this one's. `pose` carries a point of that camera into this one's left camera, metres.
+    /// The scene in the frame of a camera that stands elsewhere: its left picture is what that camera sees,
+    /// from a pose that need not be rectified beside this one's. `pose` carries a point of that camera
+    /// into this one's left camera, metres.
     pub fn seen_from(&self, pose: &Pose<f64>) -> Self {
         let mut scene = self.clone();
         let back = Rotation3::from_matrix_unchecked(pose.rotation().transpose());

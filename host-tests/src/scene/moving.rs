@@ -1,4 +1,5 @@
-//! A scene that a rig moves through: poses that are known, and frames as they come, with noise and the blur of the motion.
+//! A scene that a rig moves through: poses that are known, and frames as they come, with noise and the blur
+//! of the motion.
 
 use super::{Object, Random, Scene, Shape, Texture};
 use image::GrayImage;
@@ -23,8 +24,8 @@ pub struct MovingScene {
 const MOMENTS: usize = 4;
 
 impl MovingScene {
-    /// The scene seen from these poses, which carry a point of the left camera into the scene's frame: without noise, in no
-    /// time.
+    /// The scene seen from these poses, which carry a point of the left camera into the scene's frame:
+    /// without noise, in no time.
     pub fn new(scene: Scene, path: Vec<Pose<f64>>) -> Self {
         Self {
             scene: scene.with_light(Point3::new(0.0, -50.0, 0.0), 1.0),
@@ -52,13 +53,15 @@ impl MovingScene {
         self
     }
 
-    /// The same with pictures of a changing exposure: times these, one frame after the other, and again from the first.
+    /// The same with pictures of a changing exposure: times these, one frame after the other, and again from
+    /// the first.
     pub fn with_gains(self, gains: Vec<f64>) -> Self {
         Self { gains, ..self }
     }
 
-    /// A street of so many metres with walls and boxes on both sides, driven through in steps of `step_m`, swerving and nodding:
-    /// `width` x `height` px, a field of view of about 80 degrees, a baseline of 0.4 m.
+    /// A street of so many metres with walls and boxes on both sides, driven through in steps of `step_m`,
+    /// swerving and nodding: `width` x `height` px, a field of view of about 80 degrees, a baseline of
+    /// 0.4 m.
     pub fn street(width: u16, height: u16, frames: usize, step_m: f64, seed: u64) -> Self {
         let focal = 0.6 * f32::from(width);
         let (cx, cy) = (f32::from(width) / 2.0 - 0.5, f32::from(height) / 2.0 - 0.5);
@@ -72,7 +75,8 @@ impl MovingScene {
         let way = frames as f64 * step_m;
         let boxes = (way / 6.0) as u32 + 8;
         for i in 0..boxes {
-            let half = Vector3::new(0.6 + random.unit(), 0.8 + 1.2 * random.unit(), 0.6 + 1.4 * random.unit());
+            let half =
+                Vector3::new(0.6 + random.unit(), 0.8 + 1.2 * random.unit(), 0.6 + 1.4 * random.unit());
             let side = if i % 2 == 0 { 1.0 } else { -1.0 };
             let z = 4.0 + (way + 40.0) * (f64::from(i) + random.unit()) / f64::from(boxes);
             let place = Point3::new(side * (4.0 + 3.0 * random.unit()), 1.5 - half.y, z);
@@ -88,7 +92,8 @@ impl MovingScene {
             let roll = 0.01 * (along / 3.1).cos() - 0.01;
             let turn = Rotation3::from_euler_angles(nod, yaw, roll);
             // The way goes where the camera looks: x' = tan(yaw).
-            let place = Vector3::new(0.08 * 9.0 * (1.0 - (along / 9.0).cos()), 0.03 * (along / 1.7).sin(), along);
+            let place =
+                Vector3::new(0.08 * 9.0 * (1.0 - (along / 9.0).cos()), 0.03 * (along / 1.7).sin(), along);
             Pose::new(*turn.matrix(), place).expect("a rotation")
         };
         Self::new(scene, (0..frames).map(at).collect())
@@ -121,8 +126,8 @@ impl MovingScene {
         self.path.iter().map(|pose| back.then(pose)).collect()
     }
 
-    /// What the two cameras see in a frame, counted from 0: the mean over the time that the shutter is open, with the frame's pose
-    /// in its middle.
+    /// What the two cameras see in a frame, counted from 0: the mean over the time that the shutter is open,
+    /// with the frame's pose in its middle.
     ///
     /// # Panics
     ///

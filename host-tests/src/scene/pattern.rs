@@ -24,8 +24,8 @@ pub enum Pattern {
     Checkerboard(u32),
     /// Brighter by this much per column, and half of it per row, from 0 again after 255.
     Ramp(u32),
-    /// The right picture is random, the left one is the right one shifted by up to this many px, each band of rows by
-    /// another distance, with noise of this deviation: answers exist.
+    /// The right picture is random, the left one is the right one shifted by up to this many px, each band of
+    /// rows by another distance, with noise of this deviation: answers exist.
     Shifted {
         /// The largest shift, px.
         most: usize,
@@ -73,7 +73,13 @@ impl Pattern {
 /// Rows between two changes of the shift.
 const BAND: u32 = 7;
 
-fn shifted(width: u32, height: u32, most: usize, noise_grey: f64, random: &mut Random) -> (GrayImage, GrayImage) {
+fn shifted(
+    width: u32,
+    height: u32,
+    most: usize,
+    noise_grey: f64,
+    random: &mut Random,
+) -> (GrayImage, GrayImage) {
     let right = Pattern::Noise.picture(width, height, random);
     let mut shift = 0;
     let left = GrayImage::from_fn(width, height, |x, y| {

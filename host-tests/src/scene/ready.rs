@@ -8,7 +8,8 @@ use stereopsis::geometry::RectifiedRig;
 const CAMERA_HEIGHT: f64 = 0.55;
 const CAMERA_PITCH: f64 = 0.26;
 
-/// Room coordinates (X right, Y down with the floor at 0, Z forward, origin below the left camera) to the camera's.
+/// Room coordinates (X right, Y down with the floor at 0, Z forward, origin below the left camera) to the
+/// camera's.
 struct Room {
     look: Rotation3<f64>,
 }
@@ -31,14 +32,14 @@ impl Room {
 }
 
 impl Scene {
-    /// A room: a floor, a slanted back wall with a blank board, boxes, a ball and a pole, 0.75 m to 4.6 m away.
-    /// 640 x 480 px, 64 disparities.
+    /// A room: a floor, a slanted back wall with a blank board, boxes, a ball and a pole, 0.75 m to 4.6 m
+    /// away. 640 x 480 px, 64 disparities.
     pub fn demo() -> Self {
         Self::room(640, 480)
     }
 
-    /// The room of [`Scene::demo`] in any size of picture. The field of view is the demo's along the longer side, and
-    /// the disparities are in proportion, at least 16.
+    /// The room of [`Scene::demo`] in any size of picture. The field of view is the demo's along the longer
+    /// side, and the disparities are in proportion, at least 16.
     ///
     /// # Panics
     ///
@@ -50,9 +51,13 @@ impl Scene {
     fn room(width: u16, height: u16) -> Self {
         assert!(width > 0 && height > 0, "a picture has at least one pixel");
         let scale = (f32::from(width) / 640.0).max(f32::from(height) / 480.0);
-        let rig =
-            RectifiedRig::new(500.0 * scale, 0.08, (f32::from(width) - 1.0) / 2.0, (f32::from(height) - 1.0) / 2.0)
-                .expect("the numbers are in range");
+        let rig = RectifiedRig::new(
+            500.0 * scale,
+            0.08,
+            (f32::from(width) - 1.0) / 2.0,
+            (f32::from(height) - 1.0) / 2.0,
+        )
+        .expect("the numbers are in range");
         let disparities = ((64.0 * scale).ceil() as u16).clamp(16, 256);
         let room = Room::new();
         let half = |x, y, z| Vector3::new(x, y, z) / 2.0;
@@ -65,7 +70,12 @@ impl Scene {
             .with_light(room.point(-1.3, 2.6, 0.1), 0.3)
             .with(floor)
             // The back wall comes nearer on the right.
-            .with(room.put(Shape::Plane, Texture::new(23, 0.78, 0.09).with_octaves(0.12, 4), (0.0, 1.0, 3.3), 0.42))
+            .with(room.put(
+                Shape::Plane,
+                Texture::new(23, 0.78, 0.09).with_octaves(0.12, 4),
+                (0.0, 1.0, 3.3),
+                0.42,
+            ))
             // A blank board on the wall: nothing to match.
             .with(room.put(
                 Shape::Rectangle { half_width: 0.5, half_height: 0.28 },
@@ -106,8 +116,8 @@ impl Scene {
             ))
     }
 
-    /// One textured plane, slanted both ways: 320 x 240 px, 64 disparities. The true disparity at column u and row v
-    /// is exactly
+    /// One textured plane, slanted both ways: 320 x 240 px, 64 disparities. The true disparity at column u
+    /// and row v is exactly
     ///
     /// `d = 26 + 0.06 (u - 159.5) + 0.02 (v - 119.5)` px.
     pub fn slanted_plane() -> Self {
@@ -115,7 +125,8 @@ impl Scene {
         let (focal, baseline, middle) = (400.0, 0.1, 26.0);
         let rig = RectifiedRig::new(focal, baseline, 159.5, 119.5).expect("the numbers are in range");
         let fb = f64::from(focal) * f64::from(baseline);
-        // n P = f b with P = Z ((u - cx) / f, (v - cy) / f, 1) gives f b / Z = n_x (u - cx) / f + n_y (v - cy) / f + n_z.
+        // n P = f b with P = Z ((u - cx) / f, (v - cy) / f, 1) gives f b / Z = n_x (u - cx) / f + n_y (v -
+        // cy) / f + n_z.
         let n = Vector3::new(0.06 * f64::from(focal), 0.02 * f64::from(focal), middle);
         let point = Point3::from(n * (fb / n.norm_squared()));
         let texture = Texture::new(7, 0.5, 0.25).with_octaves(0.08, 5);

@@ -9,8 +9,8 @@ use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
 /// Samples along each side of a pixel.
 const SIDE: usize = 4;
-/// A surface does not hide itself, nor the edge of a picture: what is hidden lies behind by more than this share of the
-/// ray, or this part of a pixel outside.
+/// A surface does not hide itself, nor the edge of a picture: what is hidden lies behind by more than this
+/// share of the ray, or this part of a pixel outside.
 const SLACK: f64 = 1e-6;
 
 /// One camera's pin-hole.
@@ -21,7 +21,8 @@ pub(super) struct Eye {
     centre: Point2<f64>,
 }
 
-/// Where a ray meets the scene: the object's number and the ray's parameter, which is the depth Z on a ray of the eye.
+/// Where a ray meets the scene: the object's number and the ray's parameter, which is the depth Z on a ray of
+/// the eye.
 struct Meeting {
     object: usize,
     t: f64,
@@ -94,7 +95,8 @@ impl<'a> Rays<'a> {
             object.reach_squared().is_some_and(|reach_squared| {
                 let to_middle = object.position - self.from;
                 let along_middle = along.dot(&to_middle);
-                let passes = (to_middle.norm_squared() - reach_squared) * length_squared > along_middle * along_middle;
+                let passes =
+                    (to_middle.norm_squared() - reach_squared) * length_squared > along_middle * along_middle;
                 !passes && self.meet(i, &along).is_some_and(|t| t < 1.0 - SLACK)
             })
         })
@@ -107,7 +109,8 @@ struct Patch {
     depth: f64,
     /// In the object's coordinates; what is not of the patch is left where it is.
     points: Points,
-    /// The light that falls on each point and goes towards the eye if it is white; 0 for what is not of the patch.
+    /// The light that falls on each point and goes towards the eye if it is white; 0 for what is not of the
+    /// patch.
     light: [f32; SAMPLES],
 }
 
@@ -117,7 +120,15 @@ impl Patch {
     }
 
     /// Adds the point where the eye's ray along `along` meets the object.
-    fn add(&mut self, scene: &Scene, eye: &Rays<'_>, lamp: &Rays<'_>, sample: usize, along: &Vector3<f64>, t: f64) {
+    fn add(
+        &mut self,
+        scene: &Scene,
+        eye: &Rays<'_>,
+        lamp: &Rays<'_>,
+        sample: usize,
+        along: &Vector3<f64>,
+        t: f64,
+    ) {
         let shape = &scene.objects[self.object].shape;
         let (turn, from) = &eye.local[self.object];
         let mut local = from + turn * along * t;

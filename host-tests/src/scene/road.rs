@@ -12,7 +12,8 @@ struct Place {
 }
 
 impl Place {
-    /// The pose of what stands so far right of the road's middle and so far above the camera's height, with its Z along the road.
+    /// The pose of what stands so far right of the road's middle and so far above the camera's height, with
+    /// its Z along the road.
     fn beside(&self, right_m: f64, down_m: f64) -> Pose<f64> {
         let turn = Rotation3::from_axis_angle(&Vector3::y_axis(), self.heading);
         let place = self.at + turn * Vector3::new(right_m, down_m, 0.0);
@@ -49,9 +50,10 @@ fn road(frames: usize, step_m: f64) -> Vec<Place> {
 }
 
 impl MovingScene {
-    /// A road that is driven along in steps of `step_m`, straight and in bends of 2 to 3 degrees a frame: houses and posts beside a
-    /// surface with little to see, cars ahead and oncoming, lorries that overtake and that cross, up to a third of the
-    /// picture. `width` columns, three tenths of them as rows, the field of view and the baseline (0.54 m) of a car's.
+    /// A road that is driven along in steps of `step_m`, straight and in bends of 2 to 3 degrees a frame:
+    /// houses and posts beside a surface with little to see, cars ahead and oncoming, lorries that
+    /// overtake and that cross, up to a third of the picture. `width` columns, three tenths of them as
+    /// rows, the field of view and the baseline (0.54 m) of a car's.
     pub fn road(width: u16, frames: usize, step_m: f64, seed: u64) -> Self {
         let height = width * 3 / 10;
         let (cx, cy) = (f32::from(width) / 2.0 - 0.5, f32::from(height) / 2.0 - 0.5);
@@ -69,8 +71,11 @@ impl MovingScene {
             Object::new(Shape::Cuboid { half }, texture(seed, brightness), position).turned(turn)
         };
         let surface = Texture::new(1, 0.35, 0.06).with_octaves(2.0, 8);
-        let mut scene =
-            Scene::new(rig, width, height, 128).with(Object::plane(Point3::new(0.0, 1.65, 0.0), Vector3::y(), surface));
+        let mut scene = Scene::new(rig, width, height, 128).with(Object::plane(
+            Point3::new(0.0, 1.65, 0.0),
+            Vector3::y(),
+            surface,
+        ));
         let way = frames as f64 * step_m;
         let rows = ((way + BEYOND_M) / 9.0) as u32;
         for i in 0..rows {
@@ -81,15 +86,19 @@ impl MovingScene {
                 let pose = at(along).beside(side * (8.0 + 4.0 * random.unit() + half.x), 1.65 - half.y);
                 scene = scene.with(body(half, number, 0.3 + 0.4 * random.unit(), &pose));
                 let half = Vector3::new(0.12, 1.2 + random.unit(), 0.12);
-                let pose = at(along + 9.0 * random.unit()).beside(side * (4.6 + random.unit()), 1.65 - half.y);
+                let pose =
+                    at(along + 9.0 * random.unit()).beside(side * (4.6 + random.unit()), 1.65 - half.y);
                 scene = scene.with(body(half, number + 2, 0.2 + 0.4 * random.unit(), &pose));
             }
         }
         let path: Vec<_> = (0..frames)
             .map(|i| {
                 let here = at(i as f64 * step_m).beside(0.0, 0.03 * (i as f64 * 0.9).sin());
-                let nod =
-                    Rotation3::from_euler_angles(0.006 * (i as f64 * 1.1).sin(), 0.0, 0.004 * (i as f64 * 0.7).sin());
+                let nod = Rotation3::from_euler_angles(
+                    0.006 * (i as f64 * 1.1).sin(),
+                    0.0,
+                    0.004 * (i as f64 * 0.7).sin(),
+                );
                 here.then(&Pose::new(*nod.matrix(), Vector3::zeros()).expect("a rotation"))
             })
             .collect();
@@ -100,17 +109,22 @@ impl MovingScene {
         let lorry = |seed: u32| body(Vector3::new(1.25, 1.5, 4.5), seed, 0.6, &Pose::identity());
         let along = |f: &dyn Fn(f64) -> Pose<f64>| (0..frames).map(|i| f(i as f64)).collect::<Vec<_>>();
         let mut moving = Self::new(scene, path);
-        // One ahead, nearer and farther; oncoming ones; one that overtakes for as long as it is alongside; one that crosses.
-        moving =
-            moving.with_mover(car(7001), along(&|i| at(i * step_m + 13.0 + 3.0 * (i / 15.0).sin()).beside(0.3, 0.9)));
+        // One ahead, nearer and farther; oncoming ones; one that overtakes for as long as it is alongside;
+        // one that crosses.
+        moving = moving.with_mover(
+            car(7001),
+            along(&|i| at(i * step_m + 13.0 + 3.0 * (i / 15.0).sin()).beside(0.3, 0.9)),
+        );
         for n in 0..(way / 45.0) as u32 + 1 {
             let start = 60.0 + 45.0 * 2.0 * f64::from(n);
             moving = moving.with_mover(car(7100 + n), along(&|i| at(start - i * step_m).beside(-3.2, 0.9)));
         }
         for n in 0..(frames / 80) as u32 + 1 {
             let from = 25.0 + 80.0 * f64::from(n);
-            moving =
-                moving.with_mover(lorry(7200 + n), along(&|i| at(i * step_m + 0.4 * (i - from)).beside(-3.1, 0.15)));
+            moving = moving.with_mover(
+                lorry(7200 + n),
+                along(&|i| at(i * step_m + 0.4 * (i - from)).beside(-3.1, 0.15)),
+            );
             let crossing = 55.0 + 80.0 * f64::from(n);
             let place = at((crossing + 4.0) * step_m + 20.0);
             moving = moving.with_mover(

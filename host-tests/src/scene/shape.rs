@@ -41,20 +41,25 @@ impl Shape {
         let beyond = |t: f64| (t > nearest).then_some(t);
         match *self {
             Self::Plane => beyond(-from.z / along.z),
-            Self::Rectangle { half_width, half_height } => beyond(-from.z / along.z)
-                .filter(|&t| (from.x + t * along.x).abs() <= half_width && (from.y + t * along.y).abs() <= half_height),
+            Self::Rectangle { half_width, half_height } => beyond(-from.z / along.z).filter(|&t| {
+                (from.x + t * along.x).abs() <= half_width && (from.y + t * along.y).abs() <= half_height
+            }),
             Self::Cuboid { half } => {
                 let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
                 for axis in 0..3 {
-                    let (a, b) = ((-half[axis] - from[axis]) / along[axis], (half[axis] - from[axis]) / along[axis]);
+                    let (a, b) =
+                        ((-half[axis] - from[axis]) / along[axis], (half[axis] - from[axis]) / along[axis]);
                     enter = enter.max(a.min(b));
                     leave = leave.min(a.max(b));
                 }
                 if enter > leave { None } else { beyond(enter).or(beyond(leave)) }
             }
             Self::Sphere { radius } => {
-                let (t0, t1) =
-                    roots(along.norm_squared(), along.dot(&from.coords), from.coords.norm_squared() - radius * radius)?;
+                let (t0, t1) = roots(
+                    along.norm_squared(),
+                    along.dot(&from.coords),
+                    from.coords.norm_squared() - radius * radius,
+                )?;
                 beyond(t0).or(beyond(t1))
             }
             Self::Cylinder { radius, half_height } => {
@@ -157,10 +162,17 @@ impl Object {
         self.rotation.inverse_transform_vector(&(p - self.position)).into()
     }
 
-    /// The rectangle of the picture (least and greatest column and row) outside of which a pin-hole camera at `eye`
-    /// does not see the body; the whole plane where the body has no end or reaches behind the camera.
-    pub(super) fn picture_bounds(&self, eye: &Point3<f64>, focal_px: f64, centre: Point2<f64>) -> [Point2<f64>; 2] {
-        let everywhere = [Point2::new(f64::NEG_INFINITY, f64::NEG_INFINITY), Point2::new(f64::INFINITY, f64::INFINITY)];
+    /// The rectangle of the picture (least and greatest column and row) outside of which a pin-hole camera at
+    /// `eye` does not see the body; the whole plane where the body has no end or reaches behind the
+    /// camera.
+    pub(super) fn picture_bounds(
+        &self,
+        eye: &Point3<f64>,
+        focal_px: f64,
+        centre: Point2<f64>,
+    ) -> [Point2<f64>; 2] {
+        let everywhere =
+            [Point2::new(f64::NEG_INFINITY, f64::NEG_INFINITY), Point2::new(f64::INFINITY, f64::INFINITY)];
         let Some(half) = self.shape.half_extent() else { return everywhere };
         let [mut least, mut greatest] = [everywhere[1], everywhere[0]];
         for corner in 0..8 {
@@ -177,7 +189,8 @@ impl Object {
         [least, greatest]
     }
 
-    /// The square of the radius of a ball around the body's middle that holds it; `None` for a body without end.
+    /// The square of the radius of a ball around the body's middle that holds it; `None` for a body without
+    /// end.
     pub(super) fn reach_squared(&self) -> Option<f64> {
         self.shape.half_extent().map(|half| half.norm_squared())
     }

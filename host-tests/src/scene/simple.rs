@@ -1,4 +1,5 @@
-//! A wall, a room, and ways there that little can be told from: standing still, turning on the spot, nothing near.
+//! A wall, a room, and ways there that little can be told from: standing still, turning on the spot, nothing
+//! near.
 
 use super::{MovingScene, Object, Scene, Shape, Texture};
 use nalgebra::{Point3, Rotation3, Vector3};
@@ -9,8 +10,8 @@ const STEP_M: f64 = 0.12;
 const TURN_RAD: f64 = 0.015;
 
 impl Scene {
-    /// A wall without an end, so far ahead and with this normal, and nothing else: `width` columns, two thirds of them as rows, a
-    /// baseline of 0.12 m.
+    /// A wall without an end, so far ahead and with this normal, and nothing else: `width` columns, two
+    /// thirds of them as rows, a baseline of 0.12 m.
     pub fn wall(width: u16, distance_m: f64, normal: Vector3<f64>) -> Self {
         let wall = Object::plane(Point3::new(0.0, 0.0, distance_m), normal, texture(1, distance_m * 0.2));
         let (w, height) = (f32::from(width), width * 2 / 3);

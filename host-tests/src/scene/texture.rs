@@ -10,9 +10,9 @@ pub type Points = [[f32; SAMPLES]; 3];
 
 /// Brightness over the points of an object: several octaves of value noise on a hashed lattice.
 ///
-/// The noise does not repeat. An octave whose lattice is too fine for the camera at the point's depth is faded out, so
-/// the picture has no detail that its pixels cannot hold. The depth of a point is one number for both cameras of a
-/// rectified rig, so both see the same texture.
+/// The noise does not repeat. An octave whose lattice is too fine for the camera at the point's depth is
+/// faded out, so the picture has no detail that its pixels cannot hold. The depth of a point is one number
+/// for both cameras of a rectified rig, so both see the same texture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     /// Which noise: two seeds give textures that have nothing in common.
@@ -25,7 +25,8 @@ pub struct Texture {
     pub coarsest_m: f64,
     /// Number of octaves, each half as wide as the one before.
     pub octaves: u32,
-    /// Factor by which the noise is finer along each of the object's axes: wood has one axis with a small one.
+    /// Factor by which the noise is finer along each of the object's axes: wood has one axis with a small
+    /// one.
     pub fineness: Vector3<f64>,
 }
 
@@ -55,7 +56,8 @@ impl Texture {
         Self { fineness: Vector3::new(1.0 / x, 1.0 / y, 1.0 / z), ..self }
     }
 
-    /// The shares of light that points (object coordinates, metres) send back where a pixel covers `pixel_m` metres.
+    /// The shares of light that points (object coordinates, metres) send back where a pixel covers `pixel_m`
+    /// metres.
     ///
     /// The points of one pixel are taken together, since that is where a rendering spends its time.
     pub fn albedos(&self, points: &Points, pixel_m: f64) -> [f32; SAMPLES] {
@@ -88,11 +90,12 @@ impl Texture {
     }
 }
 
-/// A coordinate on the lattice: the hashed numbers of the two whole numbers around it, and the weight of the second.
+/// A coordinate on the lattice: the hashed numbers of the two whole numbers around it, and the weight of the
+/// second.
 #[inline(always)]
 fn cell(x: f32, multiplier: u32) -> ([u32; 2], f32) {
-    // Adding 1.5 * 2^23 rounds to a whole number and leaves it in the low bits: no call and no branch, unlike `floor`
-    // where the processor's baseline has no instruction for it.
+    // Adding 1.5 * 2^23 rounds to a whole number and leaves it in the low bits: no call and no branch, unlike
+    // `floor` where the processor's baseline has no instruction for it.
     const ROUND: f32 = 12_582_912.0;
     let rounded = x - 0.5 + ROUND;
     let whole = rounded.to_bits().wrapping_sub(ROUND.to_bits());

@@ -7,7 +7,8 @@ use stereopsis::imaging::Balance;
 pub fn balance([left, right]: [&GrayImage; 2]) -> Balance {
     let [left, right] = [left, right].map(levels);
     let inside = |level: f64| (8.0..=248.0).contains(&level);
-    let both: Vec<_> = left.into_iter().zip(right).filter(|(left, right)| inside(*left) && inside(*right)).collect();
+    let both: Vec<_> =
+        left.into_iter().zip(right).filter(|(left, right)| inside(*left) && inside(*right)).collect();
     if both.len() < 3 {
         return Balance::NONE;
     }
@@ -18,14 +19,16 @@ pub fn balance([left, right]: [&GrayImage; 2]) -> Balance {
     let means = [mean(&|both| both.0), mean(&|both| both.1)];
     let spreads = [mean(&|both| (both.0 - means[0]).abs()), mean(&|both| (both.1 - means[1]).abs())];
     let has_contrast = spreads.iter().all(|spread| *spread >= 3.0);
-    let gain = if has_contrast { (256.0 * spreads[0] / spreads[1]).round().clamp(128.0, 512.0) } else { 256.0 };
+    let gain =
+        if has_contrast { (256.0 * spreads[0] / spreads[1]).round().clamp(128.0, 512.0) } else { 256.0 };
     Balance { gain_256ths: gain as u16, offset_256ths: (256.0 * means[0] - gain * means[1]).floor() as i32 }
 }
 
-/// The levels under which 1/16 to 15/16 of the pixels that are counted are: of every row one of eight columns. In a bin of
-/// 16 levels pixels lie evenly; to a 16th of a level.
+/// The levels under which 1/16 to 15/16 of the pixels that are counted are: of every row one of eight
+/// columns. In a bin of 16 levels pixels lie evenly; to a 16th of a level.
 fn levels(picture: &GrayImage) -> Vec<f64> {
-    let counted = picture.enumerate_pixels().filter(|(x, y, _)| x % 8 == y % 8).map(|(_, _, pixel)| pixel.0[0]);
+    let counted =
+        picture.enumerate_pixels().filter(|(x, y, _)| x % 8 == y % 8).map(|(_, _, pixel)| pixel.0[0]);
     let counted: Vec<u8> = counted.collect();
     let under = |level: f64| {
         let bin = (level / 16.0).floor();
@@ -35,7 +38,8 @@ fn levels(picture: &GrayImage) -> Vec<f64> {
     };
     let all: Vec<(f64, f64)> =
         (0..=4096).map(|step| f64::from(step) / 16.0).map(|level| (level, under(level))).collect();
-    let first =
-        |share: f64| all.iter().find(|(_, under)| *under >= share * counted.len() as f64).map(|(level, _)| *level);
+    let first = |share: f64| {
+        all.iter().find(|(_, under)| *under >= share * counted.len() as f64).map(|(level, _)| *level)
+    };
     (1..16).filter_map(|k| first(f64::from(k) / 16.0)).collect()
 }

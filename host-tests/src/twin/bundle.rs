@@ -18,7 +18,8 @@ pub struct Dense<'a, V> {
 }
 
 impl<V> Dense<'_, V> {
-    /// Residuals and their derivatives by all unknowns, weighted by the loss: the free numbers of the views, then three of each point.
+    /// Residuals and their derivatives by all unknowns, weighted by the loss: the free numbers of the views,
+    /// then three of each point.
     pub fn linear<const N: usize>(&self) -> (DVector<f64>, DMatrix<f64>)
     where
         V: View<f64, N>,
@@ -28,7 +29,8 @@ impl<V> Dense<'_, V> {
         let mut slopes = DMatrix::zeros(residuals.len(), columns + 3 * self.points.len());
         for (n, sight) in self.sights.iter().enumerate() {
             let (view, point) = (&self.views[usize::from(sight.view)], &self.points[sight.point as usize]);
-            let seen = |view: &V, point: &Point3<f64>| view.project(sight.eye, point).expect("seen") - sight.pixel;
+            let seen =
+                |view: &V, point: &Point3<f64>| view.project(sight.eye, point).expect("seen") - sight.pixel;
             let off = seen(view, point);
             let weight = self.loss.weight(off.norm_squared()).sqrt();
             residuals.rows_mut(2 * n, 2).copy_from(&(off * weight));
@@ -37,7 +39,9 @@ impl<V> Dense<'_, V> {
             for (k, direction) in free.column_iter().enumerate() {
                 let by = |h: f64| seen(&view.moved(&std::array::from_fn(|i| h * direction[i])), point);
                 let h = 1e-5;
-                slopes.view_mut((2 * n, before + k), (2, 1)).copy_from(&((by(h) - by(-h)) * (weight / (2.0 * h))));
+                slopes
+                    .view_mut((2 * n, before + k), (2, 1))
+                    .copy_from(&((by(h) - by(-h)) * (weight / (2.0 * h))));
             }
             for k in 0..3 {
                 let mut shift = Vector3::zeros();

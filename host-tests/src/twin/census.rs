@@ -23,8 +23,8 @@ pub const FULL24: [(isize, isize); 24] = {
     neighbours
 };
 
-/// The census of the pixel (x, y): bit i is set when the i-th neighbour is darker. Neighbours outside of the picture
-/// are the nearest pixel inside.
+/// The census of the pixel (x, y): bit i is set when the i-th neighbour is darker. Neighbours outside of the
+/// picture are the nearest pixel inside.
 pub fn census_at(picture: &Seen<'_>, neighbours: &[(isize, isize)], x: usize, y: usize) -> u32 {
     let centre = picture.at(x as isize, y as isize, 0);
     let mut word = 0;

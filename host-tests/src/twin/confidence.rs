@@ -4,8 +4,9 @@ use super::Answers;
 use stereopsis::matching::Config;
 use stereopsis::units::{Disparity, PixelFlags};
 
-/// The confidence of every pixel of the `map`, of the margins of the winners, and of the answers around: those `before` median
-/// and speckle filter, in rows above those `after`. The answer itself is that after the median.
+/// The confidence of every pixel of the `map`, of the margins of the winners, and of the answers around:
+/// those `before` median and speckle filter, in rows above those `after`. The answer itself is that after the
+/// median.
 pub(super) fn confidences(
     config: &Config,
     margins: &[u16],

@@ -31,8 +31,8 @@ impl Volume {
     }
 }
 
-/// How many census bits differ between (x, y) on the left and (x - m - d, y) on the right; left of the right picture's
-/// edge, its first column stands in.
+/// How many census bits differ between (x, y) on the left and (x - m - d, y) on the right; left of the right
+/// picture's edge, its first column stands in.
 pub fn costs(neighbours: &[(isize, isize)], config: &Config, left: &Seen<'_>, right: &Seen<'_>) -> Volume {
     let (left_words, right_words) = (census(left, neighbours), census(right, neighbours));
     let smallest = usize::from(config.min_disparity);
@@ -50,8 +50,8 @@ pub fn costs(neighbours: &[(isize, isize)], config: &Config, left: &Seen<'_>, ri
     volume
 }
 
-/// The sum over the part of the window that lies inside the picture: first along columns, of which only whole units count,
-/// then along rows.
+/// The sum over the part of the window that lies inside the picture: first along columns, of which only whole
+/// units count, then along rows.
 pub fn window_sums(scheme: &Scheme, unit: u16, costs: &Volume) -> Volume {
     let (width, height) = (costs.width, costs.height);
     let mut columns = Volume::filled(width, height, costs.disparities);

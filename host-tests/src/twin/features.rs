@@ -24,11 +24,12 @@ const CIRCLE: [(isize, isize); 16] = [
     (-1, -3),
 ];
 
-/// The score of the pixel (x, y): the greatest difference by which nine in a row on the circle are all brighter, or all
-/// darker; 0 where that is not over the threshold.
+/// The score of the pixel (x, y): the greatest difference by which nine in a row on the circle are all
+/// brighter, or all darker; 0 where that is not over the threshold.
 pub fn fast_score(picture: &Picture<'_>, threshold: u8, x: isize, y: isize) -> u8 {
-    let difference =
-        |i: usize| i16::from(picture.at(x + CIRCLE[i % 16].0, y + CIRCLE[i % 16].1)) - i16::from(picture.at(x, y));
+    let difference = |i: usize| {
+        i16::from(picture.at(x + CIRCLE[i % 16].0, y + CIRCLE[i % 16].1)) - i16::from(picture.at(x, y))
+    };
     let mut best = 0;
     for start in 0..16 {
         for sign in [-1, 1] {
@@ -51,8 +52,8 @@ fn smooth(picture: &Picture<'_>, x: isize, y: isize) -> u8 {
     ((sum + 128) / 256) as u8
 }
 
-/// How far the corner lies from the pixel (x, y), in 1/64 px: the pixel of the nine that responds most, and from there the
-/// top of a surface through the nine around it.
+/// How far the corner lies from the pixel (x, y), in 1/64 px: the pixel of the nine that responds most, and
+/// from there the top of a surface through the nine around it.
 fn refined(picture: &Picture<'_>, x: isize, y: isize) -> [i8; 2] {
     let response = |x: isize, y: isize| -> i128 {
         let mut sums = [0; 3];
@@ -72,7 +73,8 @@ fn refined(picture: &Picture<'_>, x: isize, y: isize) -> [i8; 2] {
         values.iter_mut().for_each(|value| *value /= 2);
     }
     // Differences along and across, each summed over three with the weights 1 2 1.
-    let sum = |weights: [i128; 9]| values.iter().zip(weights).map(|(value, weight)| value * weight).sum::<i128>();
+    let sum =
+        |weights: [i128; 9]| values.iter().zip(weights).map(|(value, weight)| value * weight).sum::<i128>();
     let (fx, fy) = (sum([-1, 0, 1, -2, 0, 2, -1, 0, 1]), sum([-1, -2, -1, 0, 0, 0, 1, 2, 1]));
     let (fxx, fyy) = (sum([1, -2, 1, 2, -4, 2, 1, -2, 1]), sum([1, 2, 1, -2, -4, -2, 1, 2, 1]));
     let fxy = sum([1, 0, -1, 0, 0, 0, -1, 0, 1]);
@@ -98,7 +100,9 @@ fn descriptor(picture: &Picture<'_>, orientation: Orientation, x: isize, y: isiz
     });
     let mut turn = 0;
     if orientation == Orientation::Centroid {
-        let circle = (-15..=15).flat_map(|dy| (-15..=15).map(move |dx| (dx, dy))).filter(|(x, y)| x * x + y * y <= 225);
+        let circle = (-15..=15)
+            .flat_map(|dy| (-15..=15).map(move |dx| (dx, dy)))
+            .filter(|(x, y)| x * x + y * y <= 225);
         let moments = circle.fold([0, 0], |[right, down], (dx, dy)| {
             let pixel = i64::from(at(dx, dy));
             [right + i64::from(dx) * pixel, down + i64::from(dy) * pixel]
@@ -121,7 +125,8 @@ fn descriptor(picture: &Picture<'_>, orientation: Orientation, x: isize, y: isiz
     Descriptor(words)
 }
 
-/// All features of a picture in the order in which the detector gives them, and how many corners there are in all.
+/// All features of a picture in the order in which the detector gives them, and how many corners there are in
+/// all.
 pub fn features(config: &FeatureConfig, image: &GrayImage) -> (Vec<Feature>, u32) {
     let picture = Picture::new(image);
     let margin = FeatureConfig::MARGIN as isize;
@@ -145,7 +150,8 @@ pub fn features(config: &FeatureConfig, image: &GrayImage) -> (Vec<Feature>, u32
     let cell = |c: &Corner| (c.row / config.cell_px, c.column / config.cell_px);
     let total = corners.len() as u32;
     corners.sort_by_key(|c| (cell(c), core::cmp::Reverse(c.score), c.row, c.column));
-    let kept = corners.chunk_by(|a, b| cell(a) == cell(b)).flat_map(|c| c.iter().take(config.per_cell.into()));
+    let kept =
+        corners.chunk_by(|a, b| cell(a) == cell(b)).flat_map(|c| c.iter().take(config.per_cell.into()));
     let described = kept.map(|c| {
         let descriptor = descriptor(&picture, config.orientation, c.column as isize, c.row as isize);
         Feature::new(c, config.level, descriptor)
@@ -170,16 +176,18 @@ pub fn matches(left: &[Feature], right: &[Feature], search: &Search) -> Vec<Matc
         near && on_line && a.level.abs_diff(b.level) <= search.levels_apart
     };
     // The best partner of `a` among `others`, of equals the first.
-    let best = |all: &[Feature], is_partner: &dyn Fn(&Feature) -> bool, distance: &dyn Fn(&Feature) -> usize| {
-        let partners = (0..all.len()).filter(|&i| is_partner(&all[i]));
-        partners.min_by_key(|&i| distance(&all[i]))
-    };
+    let best =
+        |all: &[Feature], is_partner: &dyn Fn(&Feature) -> bool, distance: &dyn Fn(&Feature) -> usize| {
+            let partners = (0..all.len()).filter(|&i| is_partner(&all[i]));
+            partners.min_by_key(|&i| distance(&all[i]))
+        };
     let mut found = Vec::new();
     for (i, a) in left.iter().enumerate() {
         let Some(j) = best(right, &|b| admitted(a, b), &|b| bits(a, b)) else { continue };
         let b = &right[j];
-        let apart =
-            |c: &Feature| (c.x_px - b.x_px).abs() >= search.apart_px || (c.y_px - b.y_px).abs() >= search.apart_px;
+        let apart = |c: &Feature| {
+            (c.x_px - b.x_px).abs() >= search.apart_px || (c.y_px - b.y_px).abs() >= search.apart_px
+        };
         let second = best(right, &|c| admitted(a, c) && apart(c), &|c| bits(a, c));
         let second = second.map_or(128, |k| bits(a, &right[k]).min(128));
         let clear = 100 * bits(a, b) < usize::from(search.ratio_percent) * second;
@@ -207,7 +215,8 @@ pub fn without_repeats(left: &[Feature], right: &[Feature], matches: &[Match], a
     kept
 }
 
-/// The picture with `n - 1` pixels of every `n`; of columns that are left over, none, and of rows, all that have one below.
+/// The picture with `n - 1` pixels of every `n`; of columns that are left over, none, and of rows, all that
+/// have one below.
 pub fn shrunk(image: &GrayImage, n: u32) -> GrayImage {
     let (columns, rows) = (image.width() / n * (n - 1), image.height() / n * (n - 1));
     GrayImage::from_fn(columns, rows + (image.height() % n).saturating_sub(1), |x, y| {

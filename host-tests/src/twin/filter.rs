@@ -1,5 +1,5 @@
-//! What happens to answers after they are chosen: smoothing along the row, the median, the speckle filter, smoothing down the
-//! columns, filling, the deviation.
+//! What happens to answers after they are chosen: smoothing along the row, the median, the speckle filter,
+//! smoothing down the columns, filling, the deviation.
 
 use super::{Answers, Scheme};
 use std::ops::Range;
@@ -26,8 +26,8 @@ fn surface(checks: &Checks, row: &[Disparity], x: usize) -> Range<usize> {
     first..end
 }
 
-/// Every answer of a row: averaged with pairs of neighbours, as far left as right, of its surface; and how many answers
-/// that surface has.
+/// Every answer of a row: averaged with pairs of neighbours, as far left as right, of its surface; and how
+/// many answers that surface has.
 pub(super) fn smooth_row(checks: &Checks, row: &[Disparity]) -> (Vec<Disparity>, Vec<usize>) {
     let (mut smooth, mut lengths) = (row.to_vec(), vec![0; row.len()]);
     for x in (0..row.len()).filter(|&x| row[x].is_some()) {
@@ -41,7 +41,8 @@ pub(super) fn smooth_row(checks: &Checks, row: &[Disparity]) -> (Vec<Disparity>,
     (smooth, lengths)
 }
 
-/// The fifth of nine answers around each, in order of size; what is none, or outside, counts as the one in the middle.
+/// The fifth of nine answers around each, in order of size; what is none, or outside, counts as the one in
+/// the middle.
 pub(super) fn medians(width: usize, before: &[Disparity]) -> Vec<Disparity> {
     let height = before.len() / width;
     let median = |i: usize| {
@@ -61,9 +62,15 @@ pub(super) fn medians(width: usize, before: &[Disparity]) -> Vec<Disparity> {
     (0..before.len()).map(|i| if before[i].is_some() { median(i) } else { Disparity::NONE }).collect()
 }
 
-/// The rows after the speckle filter, which judges by the answers `before` the median. `lengths` is that of each answer's surface along its row. An answer needs support:
-/// the lengths in its column, as far up as the surface goes, and as far down but for at most four rows.
-pub(super) fn drop_speckles(checks: &Checks, before: &[Disparity], lengths: &[usize], mut map: Answers) -> Answers {
+/// The rows after the speckle filter, which judges by the answers `before` the median. `lengths` is that of
+/// each answer's surface along its row. An answer needs support: the lengths in its column, as far up as the
+/// surface goes, and as far down but for at most four rows.
+pub(super) fn drop_speckles(
+    checks: &Checks,
+    before: &[Disparity],
+    lengths: &[usize],
+    mut map: Answers,
+) -> Answers {
     let goes_on = |above: usize| {
         let below = above + map.width;
         below < before.len() && of_one_surface(checks, before[above], before[below])
@@ -91,9 +98,9 @@ pub(super) fn drop_speckles(checks: &Checks, before: &[Disparity], lengths: &[us
     map
 }
 
-/// The answers moved towards the line through the one above, as it comes out, and the one four rows below, as it was `before`,
-/// where both are at most 1 px less and under 1 px more: by 5/32 of four times the difference to the former and once that to
-/// the latter, rounded.
+/// The answers moved towards the line through the one above, as it comes out, and the one four rows below, as
+/// it was `before`, where both are at most 1 px less and under 1 px more: by 5/32 of four times the
+/// difference to the former and once that to the latter, rounded.
 pub(super) fn smooth_down(before: &[Disparity], map: &mut Answers) {
     let width = map.width;
     for i in width..before.len().saturating_sub(LOOK_AHEAD * width) {
@@ -109,8 +116,8 @@ pub(super) fn smooth_down(before: &[Disparity], map: &mut Answers) {
     }
 }
 
-/// The answers to the left and to the right of a pixel that has none, along its row, when both exist and no more than
-/// as many pixels lie between them as are filled, and they differ by no more than they may.
+/// The answers to the left and to the right of a pixel that has none, along its row, when both exist and no
+/// more than as many pixels lie between them as are filled, and they differ by no more than they may.
 fn sides(checks: &Checks, row: &[Disparity], x: usize) -> Option<[Disparity; 2]> {
     let left = (0..x).rev().find(|&x| row[x].is_some())?;
     let right = (x + 1..row.len()).find(|&x| row[x].is_some())?;
@@ -132,9 +139,10 @@ pub(super) fn fill_gaps(checks: &Checks, mut map: Answers) -> Answers {
     map
 }
 
-/// The deviation of every answer, px: a third of the greatest difference to an answer within four pixels along the row
-/// and the column, and never less than the scheme's own. The answers are those `before` median and speckle filter, in
-/// rows above those `after`. A filled pixel of the `map` looks at both sides of its gap as well, and has at least 1 px.
+/// The deviation of every answer, px: a third of the greatest difference to an answer within four pixels
+/// along the row and the column, and never less than the scheme's own. The answers are those `before` median
+/// and speckle filter, in rows above those `after`. A filled pixel of the `map` looks at both sides of its
+/// gap as well, and has at least 1 px.
 pub(super) fn sigmas(
     scheme: &Scheme,
     config: &Config,

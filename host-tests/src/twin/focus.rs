@@ -105,7 +105,8 @@ pub fn sharpness(picture: &GrayImage, measure: Measure, radius: i64) -> Numbers 
 /// The sharpness of each cell of a frame, scaled about its middle, interpolated between pixels.
 pub fn cells(config: &FocusConfig, picture: &GrayImage, scale: f32) -> Numbers {
     let points = modified_laplacian(&binomial(&numbers(picture)));
-    let (width, height, side) = (i64::from(config.width), i64::from(config.height), i64::from(config.cell_px));
+    let (width, height, side) =
+        (i64::from(config.width), i64::from(config.height), i64::from(config.cell_px));
     let scale = (scale * 65536.0).round() as i64;
     // (size - 1) / 2 + scale * off, in 1/256, cut off.
     let source = |at: i64, size: i64| {
@@ -158,9 +159,11 @@ pub fn log2(value: i64) -> i64 {
 /// A peak: its place in 1/256 frame from 0, deviation, what noise has in it, and confidence.
 pub type Peak = [i64; 4];
 
-/// The peak of a cell whose sharpness is given for every frame, with what each frame's brightness adds to logarithms.
+/// The peak of a cell whose sharpness is given for every frame, with what each frame's brightness adds to
+/// logarithms.
 pub fn peak(sharpness: &[i64], shifts: &[i64]) -> Option<Peak> {
-    let logs: Vec<i64> = sharpness.iter().zip(shifts).map(|(&s, shift)| (log2(s) + shift).min(65535)).collect();
+    let logs: Vec<i64> =
+        sharpness.iter().zip(shifts).map(|(&s, shift)| (log2(s) + shift).min(65535)).collect();
     let last = logs.len() as i64 - 1;
     let at = |i: i64| logs[i.clamp(0, last) as usize];
     let choice = |i: i64| at(i - 2) + 2 * at(i - 1) + 3 * at(i) + 2 * at(i + 1) + at(i + 2);
@@ -186,7 +189,8 @@ pub fn peak(sharpness: &[i64], shifts: &[i64]) -> Option<Peak> {
     Some([place, sigma, noise.min(most), height * 255 / (height + 2048)])
 }
 
-/// The top of the parabola through the logarithms around a candidate, its bend, and whether the candidate is in the middle of them.
+/// The top of the parabola through the logarithms around a candidate, its bend, and whether the candidate is
+/// in the middle of them.
 fn parabola(at: &dyn Fn(i64) -> i64, candidate: i64, half: i64, last: i64) -> Option<(i64, i64, bool)> {
     let centre = candidate.clamp(half, last - half);
     let weights: &[i64] = match half {
@@ -201,7 +205,8 @@ fn parabola(at: &dyn Fn(i64) -> i64, candidate: i64, half: i64, last: i64) -> Op
         (-half..=half).map(|d| weights[d.unsigned_abs() as usize] * d.pow(power) * value(d)).sum()
     };
     let moment = |power: u32| weighted(power, &|d| at(centre + d));
-    // Sums of weights by even powers of the distance, and the parabola m + l d + q d^2 of the normal equations.
+    // Sums of weights by even powers of the distance, and the parabola m + l d + q d^2 of the normal
+    // equations.
     let weight = |power: u32| weighted(power, &|_| 1);
     let (s0, s2, s4) = (weight(0), weight(2), weight(4));
     // -2 q and l as fractions with their denominators.
@@ -231,7 +236,8 @@ pub fn shifts(frames: &[GrayImage], exposure_varies: bool) -> Vec<i64> {
 
 /// The peaks of all cells of a stack whose frames are scaled.
 pub fn peaks(config: &FocusConfig, frames: &[GrayImage], scales: &[f32]) -> Vec<Option<Peak>> {
-    let volume: Vec<_> = frames.iter().zip(scales).map(|(frame, &scale)| cells(config, frame, scale)).collect();
+    let volume: Vec<_> =
+        frames.iter().zip(scales).map(|(frame, &scale)| cells(config, frame, scale)).collect();
     let shifts = shifts(frames, config.exposure_varies);
     let of_cell = |i: usize| volume.iter().map(|numbers| numbers.values[i]).collect::<Vec<_>>();
     (0..config.cells()).map(|i| peak(&of_cell(i), &shifts)).collect()
@@ -253,7 +259,8 @@ pub fn median(columns: usize, peaks: &[Option<Peak>]) -> Vec<Option<Peak>> {
     (0..peaks.len()).map(around).collect()
 }
 
-/// Answers of more than a tenth of a frame of noise replaced by the plane through those around the median, by least squares.
+/// Answers of more than a tenth of a frame of noise replaced by the plane through those around the median, by
+/// least squares.
 pub fn planes(columns: usize, peaks: &[Option<Peak>], medians: &[Option<Peak>]) -> Vec<Option<f64>> {
     use nalgebra::{Matrix3, Vector3};
     let rows = (peaks.len() / columns) as i64;
@@ -272,7 +279,9 @@ pub fn planes(columns: usize, peaks: &[Option<Peak>], medians: &[Option<Peak>]) 
         let (x, y) = ((i % columns) as i64, (i / columns) as i64);
         let (mut squares, mut values) = (Matrix3::<f64>::zeros(), Vector3::<f64>::zeros());
         for (dy, dx) in (-3..=3).flat_map(|dy| (-3..=3).map(move |dx| (dy, dx))) {
-            let Some([near, _, near_noise, _]) = at(x + step * dx, y + step * dy).map(|p| p.map(|v| v as f64)) else {
+            let Some([near, _, near_noise, _]) =
+                at(x + step * dx, y + step * dy).map(|p| p.map(|v| v as f64))
+            else {
                 continue;
             };
             if (near - place).abs() <= 90.0 + 3.0 * noise.hypot(near_noise) {

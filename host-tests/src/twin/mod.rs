@@ -1,15 +1,18 @@
-//! Every stage of the dense path again, in its plainest form, over whole pictures: what the core is held to, bit by bit.
+//! Every stage of the dense path again, in its plainest form, over whole pictures: what the core is held to,
+//! bit by bit.
 //!
 //! In: two pictures, a configuration. Out: [`Answers`]. In running order:
 //!
 //! * [`smooth`]: pictures with less noise, if asked for. [`census`](mod@census): darker neighbours as bits.
-//! * [`cost`]: bits that differ, per disparity, and their sum over the window. [`paths`]: differences of pixels, and their
-//!   sum along paths.
+//! * [`cost`]: bits that differ, per disparity, and their sum over the window. [`paths`]: differences of
+//!   pixels, and their sum along paths.
 //! * `select`: the cheapest disparity, its fraction, the checks.
-//! * `filter`: smoothing along the row, the median, the speckle filter, smoothing down the columns, filling, the deviation.
+//! * `filter`: smoothing along the row, the median, the speckle filter, smoothing down the columns, filling,
+//!   the deviation.
 //! * `confidence`: how sure an answer is.
 //!
-//! Apart from them: [`mod@balance`], one exposure for both pictures; [`bundle`], the step of a bundle adjustment; [`features`], corners, descriptors and matches; [`focus`], sharpness and its peaks;
+//! Apart from them: [`mod@balance`], one exposure for both pictures; [`bundle`], the step of a bundle
+//! adjustment; [`features`], corners, descriptors and matches; [`focus`], sharpness and its peaks;
 //! [`remap`](mod@remap), raw pictures as rectified ones.
 //!
 //! Nothing here is shared with the core but its words: [`Config`], [`Disparity`], [`PixelFlags`].
@@ -99,7 +102,8 @@ impl Scheme {
         sigma_px: 0.15,
     };
     /// The twin of [`stereopsis::matching::SgmLean`].
-    pub const SGM_LEAN: Self = Self { cost: Cost::Paths { between_pixels: false, within_edges: false }, ..Self::SGM };
+    pub const SGM_LEAN: Self =
+        Self { cost: Cost::Paths { between_pixels: false, within_edges: false }, ..Self::SGM };
     /// The twin of [`stereopsis::matching::SgmEdge`].
     pub const SGM_EDGE: Self =
         Self { cost: Cost::Paths { between_pixels: true, within_edges: true }, radius_y: 2, ..Self::SGM };
@@ -156,7 +160,11 @@ pub struct Answers {
 /// When the pictures are not of the configuration's size.
 pub fn match_pair(scheme: &Scheme, config: &Config, left: &GrayImage, right: &GrayImage) -> Answers {
     let size = (u32::from(config.width), u32::from(config.height));
-    assert_eq!((left.dimensions(), right.dimensions()), (size, size), "the pictures have the configuration's size");
+    assert_eq!(
+        (left.dimensions(), right.dimensions()),
+        (size, size),
+        "the pictures have the configuration's size"
+    );
     let (left, right) = (Picture::new(left), Picture::new(right));
     let seen = [&left, &right].map(|picture| Seen::new(*picture, config.noise));
     let sums = match scheme.cost {

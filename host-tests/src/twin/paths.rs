@@ -70,8 +70,8 @@ fn apart_between(left: &Numbers, x: isize, right: &Numbers, other_x: isize, y: i
     (left.at(x, y) - greatest).max(least - left.at(x, y)).max(0)
 }
 
-/// How little (x, y) on the left looks like (x - m - d, y) on the right; left of the right picture's edge, its first column
-/// stands in.
+/// How little (x, y) on the left looks like (x - m - d, y) on the right; left of the right picture's edge,
+/// its first column stands in.
 pub fn costs(between_pixels: bool, config: &Config, left: &Seen<'_>, right: &Seen<'_>) -> Volume {
     let penalties = &config.penalties;
     let (left, right) = (Looks::of(left, penalties), Looks::of(right, penalties));
@@ -88,7 +88,8 @@ pub fn costs(between_pixels: bool, config: &Config, left: &Seen<'_>, right: &See
                 apart(&left.along, &right.along)
             };
             let bits = (left.census[y * width + x] ^ right.census[y * width + other]).count_ones() as i32;
-            let rest = apart(&left.across, &right.across) + apart(&left.brightness, &right.brightness) / 4 + bits;
+            let rest =
+                apart(&left.across, &right.across) + apart(&left.brightness, &right.brightness) / 4 + bits;
             let sum = 2 * along + rest;
             *cost = sum.min(i32::from(penalties.cost)) as u16;
         }
@@ -115,8 +116,8 @@ fn average(a: &[u16], b: &[u16]) -> Vec<u16> {
     a.iter().zip(b).map(|(a, b)| (a + b) / 2).collect()
 }
 
-/// The costs of each row with those of the rows above and of the one below, each as much as all that come before it;
-/// before the first there is nothing.
+/// The costs of each row with those of the rows above and of the one below, each as much as all that come
+/// before it; before the first there is nothing.
 pub fn averaged_down(costs: &Volume) -> Volume {
     let mut averaged = costs.clone();
     let mut sums = vec![vec![0; costs.disparities]; costs.width];
@@ -134,10 +135,11 @@ pub fn averaged_down(costs: &Volume) -> Volume {
     averaged
 }
 
-/// The costs of each pixel with those of its column as far as the brightness does not change much from row to row: half of
-/// the row's and those above, each as much as all above it, and half of two rows below.
+/// The costs of each pixel with those of its column as far as the brightness does not change much from row to
+/// row: half of the row's and those above, each as much as all above it, and half of two rows below.
 pub fn averaged_within_edges(config: &Config, costs: &Volume, left: &Picture<'_>) -> Volume {
-    let rounded_up = |a: &[u16], b: &[u16]| -> Vec<u16> { add(a, b).iter().map(|twice| twice.div_ceil(2)).collect() };
+    let rounded_up =
+        |a: &[u16], b: &[u16]| -> Vec<u16> { add(a, b).iter().map(|twice| twice.div_ceil(2)).collect() };
     let mut averaged = costs.clone();
     for x in 0..costs.width {
         let bright = |y: usize| left.at(x as isize, y as isize);

@@ -17,8 +17,8 @@ pub fn remap<const SLOTS: usize>(table: &RemapTable<SLOTS>, raw: &GrayImage) -> 
     (out, valid)
 }
 
-/// Where a rectified pixel is in the raw image, in 65536ths of a pixel, half a 256th added; `None` where the lens is not
-/// described.
+/// Where a rectified pixel is in the raw image, in 65536ths of a pixel, half a 256th added; `None` where the
+/// lens is not described.
 pub fn place<const SLOTS: usize>(table: &RemapTable<SLOTS>, u: u32, v: u32) -> Option<[i64; 2]> {
     let cell = 1_i64 << table.shift();
     let columns = usize::from(table.size().width).div_ceil(cell as usize) + 3;
@@ -48,7 +48,9 @@ pub fn place<const SLOTS: usize>(table: &RemapTable<SLOTS>, u: u32, v: u32) -> O
         let step = to_nearest(c - b - length * pieces * (pieces - 1) / 2 * bend, cell);
         let (piece, rest) = ((i64::from(u) % cell) / length, i64::from(u) % length);
         let middle = if length == 1 { 0 } else { bend / 4 };
-        b + 128 - middle + length * (piece * step + piece * (piece - 1) / 2 * bend) + rest * (step + piece * bend)
+        b + 128 - middle
+            + length * (piece * step + piece * (piece - 1) / 2 * bend)
+            + rest * (step + piece * bend)
     }))
 }
 

@@ -76,8 +76,8 @@ fn winner(candidates: &[u16]) -> Option<Winner> {
     Some(Winner { d, cost })
 }
 
-/// What every right column holds after the left pixels, in order, have offered their winners: the cheapest offer, the
-/// first among equals.
+/// What every right column holds after the left pixels, in order, have offered their winners: the cheapest
+/// offer, the first among equals.
 fn held_by_right_columns(winners: &[Option<Winner>], smallest: usize) -> Vec<Option<Winner>> {
     let mut held: Vec<Option<Winner>> = vec![None; winners.len()];
     for (x, winner) in winners.iter().enumerate() {
@@ -91,7 +91,8 @@ fn held_by_right_columns(winners: &[Option<Winner>], smallest: usize) -> Vec<Opt
     held
 }
 
-/// Steps of 1/32 px from the winner to the tip of the two equally steep lines through its cost and its neighbours'.
+/// Steps of 1/32 px from the winner to the tip of the two equally steep lines through its cost and its
+/// neighbours'.
 fn fraction(scheme: &Scheme, candidates: &[u16], best: Winner) -> i32 {
     if best.d == 0 || best.d + 1 >= candidates.len() {
         return 0;
@@ -106,16 +107,16 @@ fn fraction(scheme: &Scheme, candidates: &[u16], best: Winner) -> i32 {
     if before > after { magnitude } else { -magnitude }
 }
 
-/// Whether a candidate more than 2 px from the winner costs no more than the winner and the margin allow. What is cut off
-/// at 255 may cost any more.
+/// Whether a candidate more than 2 px from the winner costs no more than the winner and the margin allow.
+/// What is cut off at 255 may cost any more.
 fn ambiguous(candidates: &[u16], best: Winner, percent: u8) -> bool {
     let others = candidates.iter().enumerate().filter(|&(d, _)| d.abs_diff(best.d) > 2);
     let second = others.map(|(_, &cost)| u32::from(cost)).filter(|&cost| cost < 255).min();
     second.is_some_and(|second| second * (100 - u32::from(percent)) <= u32::from(best.cost) * 100)
 }
 
-/// How much more the cheapest of the candidates over 2 px from the winner costs; 0 where there are so few of them that
-/// there might be none.
+/// How much more the cheapest of the candidates over 2 px from the winner costs; 0 where there are so few of
+/// them that there might be none.
 fn margin(candidates: &[u16], best: Winner) -> u16 {
     if candidates.len() <= 5 {
         return 0;

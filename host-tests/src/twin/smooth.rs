@@ -16,8 +16,8 @@ impl<'a> Seen<'a> {
         Self { picture, noise }
     }
 
-    /// The pixel in column `x` of the line that is `off` rows from row `y`, -2 to 2. Smoothed, a line looks at those beside it
-    /// among these five, and at its own columns.
+    /// The pixel in column `x` of the line that is `off` rows from row `y`, -2 to 2. Smoothed, a line looks
+    /// at those beside it among these five, and at its own columns.
     pub fn at(&self, x: isize, y: isize, off: isize) -> u8 {
         if self.noise == Noise::None {
             return self.picture.at(x, y + off);

@@ -18,8 +18,8 @@ pub struct Links {
     pub points: usize,
 }
 
-/// Corners that are the same point in pictures near each other, and chains of those. A chain that comes to two corners of one
-/// picture is wrong somewhere, and left out.
+/// Corners that are the same point in pictures near each other, and chains of those. A chain that comes to
+/// two corners of one picture is wrong somewhere, and left out.
 pub fn link(plan: &Plan, pictures: &[GrayImage], told: impl Fn()) -> Result<Links, CorrespondError> {
     let mut corners: Vec<Vec<Feature>> = Vec::new();
     // Every corner of every picture by a number, and the one that stands for all it is linked to.

@@ -42,8 +42,8 @@ pub enum SolveError {
     Scale(#[from] ScaleError),
 }
 
-/// Views and points from what one camera saw in `views` places; in metres where a length is known, else in distances of the two
-/// views that it began with.
+/// Views and points from what one camera saw in `views` places; in metres where a length is known, else in
+/// distances of the two views that it began with.
 pub fn solve(
     camera: &Camera<f64>,
     views: usize,
@@ -100,7 +100,8 @@ impl Found {
             let pose = (*self.poses.get(usize::from(sight.view))?).ok()?;
             let point = (*self.points.get(sight.point as usize)?).ok()?;
             let seen = CameraView { camera: *camera, pose }.project(0, &point).ok()?;
-            Some((seen - sight.pixel).norm_squared()).filter(|&squared| squared <= threshold_px * threshold_px)
+            Some((seen - sight.pixel).norm_squared())
+                .filter(|&squared| squared <= threshold_px * threshold_px)
         };
         let (sum, count) = sights.iter().filter_map(squared).fold((0.0, 0), |(sum, n), x| (sum + x, n + 1));
         (sum / f64::from(count.max(1))).sqrt()

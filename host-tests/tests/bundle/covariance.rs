@@ -13,12 +13,19 @@ fn near(a: f64, b: f64, size: f64, what: &str) {
 
 /// The core's blocks beside the twin's, whose step lies in the columns of `free`.
 fn same<V: View<f64, 6>>(truth: &Scene<V, f64>, gauge: &Gauge, free: Vec<DMatrix<f64>>) {
-    let dense = Dense { views: &truth.views, points: &truth.points, sights: &truth.sights, loss: Loss::Squares, free };
+    let dense = Dense {
+        views: &truth.views,
+        points: &truth.points,
+        sights: &truth.sights,
+        loss: Loss::Squares,
+        free,
+    };
     let whole = dense.covariance();
     let (mut views, mut points) = (truth.views.clone(), truth.points.clone());
     let mut room = Room::new(views.len(), points.len());
     let problem = Problem { views: &mut views, points: &mut points, sights: &truth.sights };
-    let mut found = Covariances::new(problem, room.workspace(), gauge.clone(), Loss::Squares, 0.5).expect("determined");
+    let mut found =
+        Covariances::new(problem, room.workspace(), gauge.clone(), Loss::Squares, 0.5).expect("determined");
     let mut at = 0;
     for (n, free) in dense.free.iter().enumerate() {
         let own = whole.view((at, at), (free.ncols(), free.ncols()));
@@ -42,7 +49,8 @@ fn same<V: View<f64, 6>>(truth: &Scene<V, f64>, gauge: &Gauge, free: Vec<DMatrix
 
 #[test]
 fn with_views_held() {
-    let truth = scene((0..4).map(calibrated).collect(), 12, 1, 0.0, |view, point| point % 3 == 0 || view != 1);
+    let truth =
+        scene((0..4).map(calibrated).collect(), 12, 1, 0.0, |view, point| point % 3 == 0 || view != 1);
     let columns = |n: usize| DMatrix::identity(6, if n < 2 { 0 } else { 6 });
     same(&truth, &Gauge::Views(0..2), (0..4).map(columns).collect());
     let truth = scene((0..3).map(rig).collect(), 12, 2, 0.0, |_, _| true);

@@ -26,13 +26,17 @@ fn files_come_back_and_costs_with_them() {
     };
     let text = write(&problem());
     let observations: Vec<&str> = text.lines().skip(1).take(150).collect();
-    assert!(observations.is_sorted_by_key(|line| line.split(' ').next().map(str::to_owned)), "as it was given");
+    assert!(
+        observations.is_sorted_by_key(|line| line.split(' ').next().map(str::to_owned)),
+        "as it was given"
+    );
     let read = read_problem(&path).expect("a problem");
     assert!((read.cost(&Loss::Squares) / problem().cost(&Loss::Squares) - 1.0).abs() < 1e-9);
     let mut running = read.start(&BundleConfig::new(Gauge::Free)).expect("memory");
     while running.iterate().is_continue() {}
     let report = running.report();
-    // chi^2 / 2 of 300 numbers less 45 + 120 unknowns, and seven that are free, at a variance of 1/4: 17.8 with a deviation of 2.1.
+    // chi^2 / 2 of 300 numbers less 45 + 120 unknowns, and seven that are free, at a variance of 1/4: 17.8
+    // with a deviation of 2.1.
     assert!((report.cost - 17.8).abs() < 4.0 * 2.1 && report.stop == Stop::Cost, "{report:?}");
     assert!((running.problem().cost(&Loss::Squares) - report.cost).abs() < 1e-9 * report.cost);
     write(running.problem());

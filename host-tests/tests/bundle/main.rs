@@ -1,4 +1,5 @@
-//! Bundle adjustment: derivatives against differences, steps against the naive twin, results against the truth; structure from sights alone.
+//! Bundle adjustment: derivatives against differences, steps against the naive twin, results against the
+//! truth; structure from sights alone.
 
 mod covariance;
 mod files;

@@ -29,7 +29,10 @@ pub fn pose<T: Real>(turn: [f64; 3], centre: [f64; 3]) -> Pose<T> {
 /// The pose of view n: on an arc of 0.3 a view, turned towards the scene, a little up and down.
 pub fn on_arc<T: Real>(n: usize) -> Pose<T> {
     let n = n as f64;
-    pose([0.02 * (n * 1.7).sin(), -0.06 * n, 0.03 * (n * 0.9).cos()], [0.3 * n, 0.05 * (n * 2.1).sin(), 0.04 * n])
+    pose(
+        [0.02 * (n * 1.7).sin(), -0.06 * n, 0.03 * (n * 0.9).cos()],
+        [0.3 * n, 0.05 * (n * 2.1).sin(), 0.04 * n],
+    )
 }
 
 pub fn calibrated<T: Real>(n: usize) -> CameraView<T> {

@@ -6,7 +6,8 @@ use proptest::prelude::*;
 use stereopsis::geometry::{Camera, Pose};
 use stereopsis::motion::bundle::{AlignedView, View};
 
-/// Central differences err by the square of the step, and by roundings over it: of pixels in thousands, a millionth or so.
+/// Central differences err by the square of the step, and by roundings over it: of pixels in thousands, a
+/// millionth or so.
 const STEP: f64 = 1e-5;
 
 fn holds<V: View<f64, N>, const N: usize>(view: &V, eye: u16, point: &Point3<f64>, sizes: [f64; N]) {

@@ -11,7 +11,11 @@ fn centres_off<V: View<T, N>, T: Real, const N: usize>(found: &[V], truth: &[V])
 }
 
 /// Without noise, from beside the truth back to it.
-fn comes_back<V: View<T, N>, T: Real, const N: usize>(truth: &Scene<V, T>, held: u16, within: f64) -> BundleReport<T> {
+fn comes_back<V: View<T, N>, T: Real, const N: usize>(
+    truth: &Scene<V, T>,
+    held: u16,
+    within: f64,
+) -> BundleReport<T> {
     let mut window = filled(&truth.disturbed(held.into(), 0.01, 0.03));
     let report = window.adjust(BundleConfig::new(Gauge::Views(0..held))).expect("a problem");
     let off = centres_off(window.views(), &truth.views);
@@ -25,13 +29,17 @@ fn comes_back<V: View<T, N>, T: Real, const N: usize>(truth: &Scene<V, T>, held:
 #[test]
 fn from_beside_the_truth() {
     for views in [2, 3, 8] {
-        let report =
-            comes_back::<_, f64, 6>(&scene((0..views).map(calibrated).collect(), 128, 1, 0.0, |_, _| true), 2, 1e-9);
+        let report = comes_back::<_, f64, 6>(
+            &scene((0..views).map(calibrated).collect(), 128, 1, 0.0, |_, _| true),
+            2,
+            1e-9,
+        );
         assert_eq!(report.stop, Stop::Exact, "{report:?}");
     }
     let report = comes_back::<_, f64, 6>(&scene((0..3).map(rig).collect(), 60, 2, 0.0, |_, _| true), 1, 1e-9);
     assert_eq!(report.stop, Stop::Exact, "{report:?}");
-    let report = comes_back::<_, f64, 9>(&scene((0..6).map(radial).collect(), 128, 1, 0.0, |_, _| true), 2, 1e-6);
+    let report =
+        comes_back::<_, f64, 9>(&scene((0..6).map(radial).collect(), 128, 1, 0.0, |_, _| true), 2, 1e-6);
     assert_eq!(report.stop, Stop::Exact, "{report:?}");
     // In f32, pixels are rounded to 3e-5 px: a hundred thousandth of the depth at these baselines.
     comes_back::<_, f32, 6>(&scene((0..3).map(calibrated).collect(), 128, 1, 0.0, |_, _| true), 2, 2e-4);
@@ -40,30 +48,37 @@ fn from_beside_the_truth() {
 
 #[test]
 fn noise_leaves_its_own_cost() {
-    let truth: Scene<CameraView<f64>, f64> = scene((0..6).map(calibrated).collect(), 128, 1, 0.7, |_, _| true);
+    let truth: Scene<CameraView<f64>, f64> =
+        scene((0..6).map(calibrated).collect(), 128, 1, 0.7, |_, _| true);
     let mut window = filled(&truth.disturbed(2, 0.01, 0.03));
     let report = window.adjust(BundleConfig::new(Gauge::Views(0..2))).expect("a problem");
-    // chi^2 / 2 of 2 x 768 numbers less 24 + 384 unknowns, times the variance: 564 x 0.49, with a deviation of 11.6.
+    // chi^2 / 2 of 2 x 768 numbers less 24 + 384 unknowns, times the variance: 564 x 0.49, with a deviation
+    // of 11.6.
     assert!((report.cost - 276.0).abs() < 4.0 * 11.6, "{report:?}");
     assert_eq!(report.stop, Stop::Cost);
-    let single: Scene<CameraView<f32>, f32> = scene((0..6).map(calibrated).collect(), 128, 1, 0.7, |_, _| true);
+    let single: Scene<CameraView<f32>, f32> =
+        scene((0..6).map(calibrated).collect(), 128, 1, 0.7, |_, _| true);
     let mut small = filled(&single.disturbed(2, 0.01, 0.03));
     let other = small.adjust(BundleConfig::new(Gauge::Views(0..2))).expect("a problem");
     // Both begin with the same random numbers.
     assert!((f64::from(other.cost) / report.cost - 1.0).abs() < 1e-4, "{other:?} {report:?}");
-    assert!((centres_off(small.views(), &single.views) - centres_off(window.views(), &truth.views)).abs() < 1e-3);
+    assert!(
+        (centres_off(small.views(), &single.views) - centres_off(window.views(), &truth.views)).abs() < 1e-3
+    );
 }
 
 #[test]
 fn a_baseline_keeps_its_length() {
     let truth = scene((0..4).map(calibrated::<f64>).collect(), 60, 1, 0.3, |_, _| true);
     let mut window = filled(&truth.disturbed(1, 0.01, 0.03));
-    let length = |views: &[CameraView<f64>]| (views[3].pose.translation() - views[0].pose.translation()).norm();
+    let length =
+        |views: &[CameraView<f64>]| (views[3].pose.translation() - views[0].pose.translation()).norm();
     let before = length(window.views());
     let report = window.adjust(BundleConfig::new(Gauge::Baseline { held: 0, other: 3 })).expect("a problem");
     assert_eq!(window.views()[0], truth.views[0]);
     assert!((length(window.views()) - before).abs() < 1e-12 * before, "{report:?}");
-    let direction = |views: &[CameraView<f64>]| (views[3].pose.translation() - views[0].pose.translation()).normalize();
+    let direction =
+        |views: &[CameraView<f64>]| (views[3].pose.translation() - views[0].pose.translation()).normalize();
     assert!((direction(window.views()) - direction(&truth.views)).norm() < 0.01);
     // The same cost as without a gauge: seven numbers are free.
     let mut free = filled(&truth.disturbed(1, 0.01, 0.03));
@@ -92,7 +107,8 @@ fn what_is_far_off_pulls_little() {
 fn a_step_at_a_time_is_the_same() {
     let truth = scene((0..3).map(calibrated::<f64>).collect(), 40, 1, 0.5, |_, _| true);
     let start = truth.disturbed(2, 0.01, 0.03);
-    let config = BundleConfig { most_iterations: 3, cost_tolerance: 1e-15, ..BundleConfig::new(Gauge::Views(0..2)) };
+    let config =
+        BundleConfig { most_iterations: 3, cost_tolerance: 1e-15, ..BundleConfig::new(Gauge::Views(0..2)) };
     let (mut whole, mut stepped) = (filled(&start), filled(&start));
     let report = whole.adjust(config.clone()).expect("a problem");
     assert_eq!((report.stop, report.iterations), (Stop::Iterations, 3));
@@ -117,7 +133,10 @@ fn a_far_point_and_an_exact_problem_stop() {
     }
     let mut window = filled(&truth);
     let report = window.adjust(BundleConfig::new(Gauge::Views(0..2))).expect("a problem");
-    assert!(report.cost < 1e-3 && window.points().iter().all(|p| p.coords.iter().all(|x| x.is_finite())), "{report:?}");
+    assert!(
+        report.cost < 1e-3 && window.points().iter().all(|p| p.coords.iter().all(|x| x.is_finite())),
+        "{report:?}"
+    );
     let exact = scene((0..2).map(calibrated::<f64>).collect(), 20, 1, 0.0, |_, _| true);
     let report = filled(&exact).adjust(BundleConfig::new(Gauge::Views(0..1))).expect("a problem");
     assert_eq!((report.stop, report.iterations), (Stop::Exact, 0));

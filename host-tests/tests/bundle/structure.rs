@@ -6,14 +6,15 @@ use nalgebra::{Point2, Point3};
 use stereopsis::geometry::{Correspondence, Landmark, Pose};
 use stereopsis::motion::bundle::{CameraView, Sight, View};
 use stereopsis::motion::structure::{
-    MetricStructure, PairFault, Placement, PointState, SceneMemory, StructureConfig, StructureError, StructureReport,
-    StructureRoom, structure,
+    MetricStructure, PairFault, Placement, PointState, SceneMemory, StructureConfig, StructureError,
+    StructureReport, StructureRoom, structure,
 };
 use stereopsis_host::scene::Random;
 
 type Seen = Scene<CameraView<f64>, f64>;
 
-/// Runs on memory of the right size; the baseline of the pair it began with is known, and what `judge` makes of it in metres.
+/// Runs on memory of the right size; the baseline of the pair it began with is known, and what `judge` makes
+/// of it in metres.
 fn found<R>(
     seen: &Seen,
     judge: impl FnOnce(&MetricStructure<'_, f64>, &StructureReport<f64>) -> R,
@@ -44,7 +45,11 @@ fn found<R>(
 }
 
 /// The largest error of a view's centre and of a known point, metres; how many points are known.
-fn errors(seen: &Seen, metric: &MetricStructure<'_, f64>, report: &StructureReport<f64>) -> (f64, f64, usize) {
+fn errors(
+    seen: &Seen,
+    metric: &MetricStructure<'_, f64>,
+    report: &StructureReport<f64>,
+) -> (f64, f64, usize) {
     let frame = &seen.views[usize::from(report.pair.0)].pose;
     let (mut centres, mut points, mut known) = (0.0_f64, 0.0_f64, 0);
     for (n, view) in seen.views.iter().enumerate() {
@@ -78,7 +83,8 @@ fn views(count: usize) -> Vec<CameraView<f64>> {
 #[test]
 fn without_noise_it_is_the_truth() {
     let seen = scene(views(5), 60, 1, 0.0, |view, point| point % 3 == 0 || view + 1 != point % 5);
-    let (centres, points, known) = found(&seen, |metric, report| errors(&seen, metric, report)).expect("a structure");
+    let (centres, points, known) =
+        found(&seen, |metric, report| errors(&seen, metric, report)).expect("a structure");
     assert!(centres < 1e-8 && points < 1e-8 && known == 60, "{centres} {points} {known}");
 }
 
@@ -112,7 +118,9 @@ fn a_plane_is_named_and_solved() {
 #[test]
 fn what_gives_no_pose_is_named() {
     let at = |turn: f64, shift: f64| {
-        let place = |n: usize| pose([0.01 * turn, -0.05 * turn * n as f64, 0.02 * turn], [shift * n as f64, 0.0, 0.0]);
+        let place = |n: usize| {
+            pose([0.01 * turn, -0.05 * turn * n as f64, 0.02 * turn], [shift * n as f64, 0.0, 0.0])
+        };
         (0..3).map(|n| calibrated(n).with_pose(place(n))).collect::<Vec<_>>()
     };
     for share in [0.0, 0.2] {
@@ -127,7 +135,10 @@ fn what_gives_no_pose_is_named() {
     let mut random = scene(views(2), 60, 1, 0.0, |_, _| true);
     random = with_wrong(random, 1.1);
     let fault = found(&random, |_, _| ()).err();
-    assert!(matches!(fault, Some(StructureError::NoPair(PairFault::NoAgreement | PairFault::SmallAngle))), "{fault:?}");
+    assert!(
+        matches!(fault, Some(StructureError::NoPair(PairFault::NoAgreement | PairFault::SmallAngle))),
+        "{fault:?}"
+    );
 }
 
 #[test]
@@ -140,7 +151,8 @@ fn points_at_infinity_are_far() {
         let (view, point) = (&seen.views[usize::from(sight.view)], &seen.points[sight.point as usize]);
         sight.pixel = view.project(0, point).expect("before the camera");
     }
-    let states = |metric: &MetricStructure<'_, f64>| (0..60).map(|n| metric.point(n).err()).collect::<Vec<_>>();
+    let states =
+        |metric: &MetricStructure<'_, f64>| (0..60).map(|n| metric.point(n).err()).collect::<Vec<_>>();
     for (n, state) in found(&seen, |metric, _| states(metric)).expect("a structure").into_iter().enumerate() {
         assert_eq!(state, (n % 4 == 0).then_some(PointState::Far), "{n}");
     }
@@ -177,13 +189,15 @@ fn a_room_gives_what_slices_give() {
     let cameras: Vec<_> = seen.views.iter().map(|view| view.camera).collect();
     let config = StructureConfig::new(1.5);
     let mut room = Box::new(StructureRoom::<f64, 5, 60, 250>::new());
-    let (of_room, report) = room.find(&cameras, seen.points.len(), &seen.sights, &config).expect("a structure");
+    let (of_room, report) =
+        room.find(&cameras, seen.points.len(), &seen.sights, &config).expect("a structure");
     let pose = |n| *of_room.pose(n).expect("placed");
     let poses: Vec<_> = (0..4).map(pose).collect();
     let (a, b) = (usize::from(report.pair.0), usize::from(report.pair.1));
     let metres = (seen.views[a].pose.translation() - seen.views[b].pose.translation()).norm();
     let unit = (poses[a].translation() - poses[b].translation()).norm();
-    let of_slices = found(&seen, |metric, _| (0..4).map(|n| *metric.pose(n).expect("placed")).collect::<Vec<_>>());
+    let of_slices =
+        found(&seen, |metric, _| (0..4).map(|n| *metric.pose(n).expect("placed")).collect::<Vec<_>>());
     for (one, other) in poses.iter().zip(of_slices.expect("a structure")) {
         assert!((one.translation() * (metres / unit) - other.translation()).amax() < 1e-12);
         assert_eq!(one.rotation(), other.rotation());

@@ -44,7 +44,8 @@ fn same_step<V: View<f64, N>, const N: usize>(start: &Scene<V, f64>, held: u16, 
     });
     let (sights, free) = (&start.sights, free.collect());
     let step = Dense { views: &start.views, points: &start.points, sights, loss, free }.step(0.01);
-    // Differences err by a ten-thousandth of a step at most: it is their error by the condition of the equations.
+    // Differences err by a ten-thousandth of a step at most: it is their error by the condition of the
+    // equations.
     let size = step.amax();
     for (n, (after, before)) in views.iter().zip(&start.views).enumerate().skip(held.into()) {
         let own = step.fixed_rows::<N>((n - usize::from(held)) * N);

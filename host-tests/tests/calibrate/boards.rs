@@ -63,9 +63,11 @@ fn boards_are_found_when_blurred_small_large_or_cut() {
         let picture = imageops::blur(&picture, blur);
         let (w, h) = (u32::from(SIZE.width) * scale, u32::from(SIZE.height) * scale);
         let picture = imageops::resize(&picture, w, h, imageops::FilterType::Triangle);
-        let found = find(&picture, pattern, None).unwrap_or_else(|e| panic!("{axis:?} {place:?} {blur}: {e}"));
+        let found =
+            find(&picture, pattern, None).unwrap_or_else(|e| panic!("{axis:?} {place:?} {blur}: {e}"));
         let scale = f64::from(scale);
-        let truth = truth.iter().map(|p| Point2::from(p.coords.add_scalar(0.5) * scale).map(|x| x - 0.5)).collect();
+        let truth =
+            truth.iter().map(|p| Point2::from(p.coords.add_scalar(0.5) * scale).map(|x| x - 0.5)).collect();
         let (mean, most) = apart(&found.corners, &as_found(pattern, truth, &found));
         assert!(mean < 0.22 * scale && most < 0.6 * scale, "{axis:?} {place:?} {blur}: {mean} {most}");
     }
@@ -109,8 +111,9 @@ fn an_ambiguous_board_is_told_alike_in_both_pictures() {
         let left = find(&pictures[0], pattern, None).expect("a board");
         let right = find(&pictures[1], pattern, Some(&left)).expect("a board");
         let truth = [0, 1].map(|i| cameras[i].corners(pattern, &stands[i]).expect("corners"));
-        let which =
-            |board: &Board, truth: &[Point2<f64>]| truth.iter().position(|p| (p - board.corners[0]).norm() < 1.0);
+        let which = |board: &Board, truth: &[Point2<f64>]| {
+            truth.iter().position(|p| (p - board.corners[0]).norm() < 1.0)
+        };
         let first = which(&left, &truth[0]);
         assert!(first.is_some() && first == which(&right, &truth[1]), "{roll}: {first:?}");
     }

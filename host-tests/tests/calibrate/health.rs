@@ -6,8 +6,8 @@ use nalgebra::{Matrix3, Point2, Vector3};
 use proptest::prelude::*;
 use stereopsis::features::Orientation;
 use stereopsis::geometry::{
-    Camera, Correspondence, Crop, ImageSize, Pose, Rectification, RowAlignment, RowHealth, RowMeter, RowMeterError,
-    StereoRig,
+    Camera, Correspondence, Crop, ImageSize, Pose, Rectification, RowAlignment, RowHealth, RowMeter,
+    RowMeterError, StereoRig,
 };
 use stereopsis::matching::{Config, Filter};
 use stereopsis_host::correspond::{Plan, correspond};
@@ -22,8 +22,15 @@ fn camera() -> Camera<f64> {
     Camera::new(300.0, 300.0, 161.0, 118.0).expect("a camera")
 }
 
-/// Points of two rectified cameras of which the second was turned: `sigma` px off, and one of `wrong` anywhere.
-fn points(turned: [f64; 3], count: usize, sigma: f64, wrong: usize, random: &mut Random) -> Vec<Correspondence<f64>> {
+/// Points of two rectified cameras of which the second was turned: `sigma` px off, and one of `wrong`
+/// anywhere.
+fn points(
+    turned: [f64; 3],
+    count: usize,
+    sigma: f64,
+    wrong: usize,
+    random: &mut Random,
+) -> Vec<Correspondence<f64>> {
     let rotation = turn(turned);
     let point = |i: usize| {
         let first = Point2::new(random.unit() * 319.0, random.unit() * 239.0);
@@ -92,7 +99,8 @@ fn what_tells_nothing_is_refused() {
     meter.add(&camera(), &seen).expect("enough");
     let found = meter.alignment().expect("a frame");
     assert_eq!(found.health(&camera(), SIZE), RowHealth::Good);
-    let told = |pitch_deg: f64| RowAlignment { turn_rad: [pitch_deg.to_radians(), 0.0, 0.0], sigma_rad: [0.0; 3] };
+    let told =
+        |pitch_deg: f64| RowAlignment { turn_rad: [pitch_deg.to_radians(), 0.0, 0.0], sigma_rad: [0.0; 3] };
     // 300 px by a tenth of a degree is half a pixel.
     assert_eq!(told(0.07).health(&camera(), SIZE), RowHealth::Worn);
     assert_eq!(told(0.1).health(&camera(), SIZE), RowHealth::Bad);
@@ -119,14 +127,16 @@ fn a_knock_is_told_and_taken_back() {
     let rig = scene.rig();
     let (f, (cx, cy)) = (f64::from(rig.focal_px()), rig.principal_point());
     let camera = Camera::new(f, f, cx.into(), cy.into()).expect("a camera");
-    let beside = Pose::new(Matrix3::identity(), Vector3::new(rig.baseline_m().into(), 0.0, 0.0)).expect("a pose");
+    let beside =
+        Pose::new(Matrix3::identity(), Vector3::new(rig.baseline_m().into(), 0.0, 0.0)).expect("a pose");
     let rig = StereoRig::new([camera; 2], beside, [SIZE; 2]).expect("a rig");
     let calibrated = Rectification::new(&rig, Crop::Natural, SIZE).expect("rectified");
     let config = Method::Block.with_filter(Filter::Default, Config::new(SIZE.width, SIZE.height, 64));
     let density = |rectification: &Rectification<f64>, right: &GrayImage| {
         let pair = MemoryPair::new(SIZE.width, left.to_vec(), right.to_vec()).expect("a pair");
-        let map =
-            with_rectified(rectification, pair, |source| run(Method::Block, &config, source, |_| ()).expect("a map"));
+        let map = with_rectified(rectification, pair, |source| {
+            run(Method::Block, &config, source, |_| ()).expect("a map")
+        });
         map.expect("a remap").map.density()
     };
     let whole = density(&calibrated, &right);
@@ -138,8 +148,8 @@ fn a_knock_is_told_and_taken_back() {
         let bad = knocked(&right, &camera, &turn(turned));
         let mut meter = RowMeter::new();
         for _ in 0..10 {
-            let pair =
-                MemoryPair::new(SIZE.width, noisy(&left, &mut random), noisy(&bad, &mut random)).expect("a pair");
+            let pair = MemoryPair::new(SIZE.width, noisy(&left, &mut random), noisy(&bad, &mut random))
+                .expect("a pair");
             let [left, right] = rectify(&calibrated, pair).expect("rectified").pictures;
             let found = correspond(&plan, &left, &right).expect("matches");
             let seen = found.points().map(|[x1, y1, x2, y2]| Correspondence {
@@ -152,7 +162,11 @@ fn a_knock_is_told_and_taken_back() {
         let found = meter.alignment().expect("ten frames");
         for axis in [0, 2] {
             let off = (found.turn_rad[axis] - turned[axis]).to_degrees();
-            assert!(off.abs() < 0.05, "{degrees:?}, axis {axis}: {off} {:?}", found.turn_rad.map(f64::to_degrees));
+            assert!(
+                off.abs() < 0.05,
+                "{degrees:?}, axis {axis}: {off} {:?}",
+                found.turn_rad.map(f64::to_degrees)
+            );
         }
         assert_eq!(found.health(calibrated.camera(), SIZE), RowHealth::Bad, "{degrees:?}");
         let (hurt, healed) = (density(&calibrated, &bad), density(&calibrated.corrected(&found), &bad));
@@ -176,7 +190,10 @@ fn rows_of_a_pair_are_told_with_their_uncertainty() {
         let told = Rows::measure([&left, &bad], None, Some(&camera)).expect("features");
         let (pitch, sigma) = (told.pitch_deg.expect("calibrated"), told.pitch_sigma_deg.expect("calibrated"));
         assert!((pitch - degrees[0]).abs() < 0.05 + 4.0 * sigma, "{degrees:?}: {told:?}");
-        assert!((told.roll_deg - degrees[2]).abs() < 0.05 + 4.0 * told.roll_sigma_deg, "{degrees:?}: {told:?}");
+        assert!(
+            (told.roll_deg - degrees[2]).abs() < 0.05 + 4.0 * told.roll_sigma_deg,
+            "{degrees:?}: {told:?}"
+        );
         assert!(told.sigma_px < 0.2 && told.health != "good", "{degrees:?}: {told:?}");
         assert!(told.warning().is_some_and(|line| line.contains("0.25 px")), "{degrees:?}: {told:?}");
         // Without a focal length rows and the roll are told, and no pitch.

@@ -128,13 +128,14 @@ fn files_are_the_rig_again() {
         std::fs::write(&path, bytes).expect("a file");
         RawCalibration::open(&[path], images, None)
     };
-    let opencv =
-        open("rig.yml", write_opencv(&rig(), &["a note\nof two lines".into()]).as_bytes(), None).expect("a rig");
+    let opencv = open("rig.yml", write_opencv(&rig(), &["a note\nof two lines".into()]).as_bytes(), None)
+        .expect("a rig");
     assert!(near(&opencv.rig, &rig()) && opencv.format == "OpenCV");
     let record = open("rig.bin", &rig().to_record(), None).expect("a rig");
     assert!(near(&record.rig, &rig()) && record.format == "record");
     let other = ImageSize { width: 640, height: 480 };
-    for (name, bytes) in [("rig.yml", write_opencv(&rig(), &[]).into_bytes()), ("rig.bin", rig().to_record().to_vec())]
+    for (name, bytes) in
+        [("rig.yml", write_opencv(&rig(), &[]).into_bytes()), ("rig.bin", rig().to_record().to_vec())]
     {
         let error = open(name, &bytes, Some(other)).expect_err("another size").to_string();
         assert!(error.contains("width says 320"), "{error}");
@@ -143,8 +144,11 @@ fn files_are_the_rig_again() {
     assert!(broken.contains("rig.bin: a record of a rig has 328 bytes"), "{broken}");
     // The constants hold the record's bytes.
     for text in [write_rust(&rig(), &["from a test".into()]), write_c(&rig(), &["from a test".into()])] {
-        let bytes: Vec<u8> =
-            text.split("0x").skip(1).map(|word| u8::from_str_radix(&word[..2], 16).expect("a byte")).collect();
+        let bytes: Vec<u8> = text
+            .split("0x")
+            .skip(1)
+            .map(|word| u8::from_str_radix(&word[..2], 16).expect("a byte"))
+            .collect();
         assert_eq!(bytes, rig().to_record());
         assert!(text.starts_with("// from a test\n"));
     }

@@ -36,7 +36,8 @@ fn a_rig_comes_back_from_exact_corners() {
     assert!((found.rig.pose().rotation() - truth.pose().rotation()).amax() < 1e-7);
     for (found, truth) in found.rig.cameras().iter().zip(truth.cameras()) {
         assert!((found.matrix() - truth.matrix()).amax() < 1e-4);
-        let [Lens::BrownConrady(a), Lens::BrownConrady(b)] = [found, truth].map(|camera| *camera.lens()) else {
+        let [Lens::BrownConrady(a), Lens::BrownConrady(b)] = [found, truth].map(|camera| *camera.lens())
+        else {
             panic!("another lens")
         };
         assert!(a.to_opencv().iter().zip(b.to_opencv()).all(|(a, b)| (a - b).abs() < 1e-4), "{a:?} {b:?}");
@@ -49,7 +50,9 @@ fn a_rig_comes_back_from_exact_corners() {
 fn other_lenses_come_back_from_exact_corners() {
     let rational = Distortion::from_opencv_rational([-0.1, 0.02, 0.0006, -0.0004, 0.001, 0.15, 0.03, 0.002]);
     let fisheye = Fisheye::from_opencv([0.02, -0.008, 0.003, -0.001]);
-    for (model, lens) in [(LensModel::Rational, Lens::from(rational)), (LensModel::Fisheye, Lens::from(fisheye))] {
+    for (model, lens) in
+        [(LensModel::Rational, Lens::from(rational)), (LensModel::Fisheye, Lens::from(fisheye))]
+    {
         let pattern = pattern(9, 6);
         let cameras = rig().cameras().map(|camera| {
             let camera = camera.with_distortion(lens).expect("a lens");
@@ -66,7 +69,11 @@ fn other_lenses_come_back_from_exact_corners() {
         let found = solve(model, pattern, SQUARE_M, SIZE, &views).expect("a rig");
         // Bounds on the rational model's coefficients cost a hundredth of a pixel.
         assert!(found.rms_px < 0.01, "{model:?}: {}", found.rms_px);
-        assert!((found.rig.baseline_m() / rig().baseline_m() - 1.0).abs() < 1e-3, "{model:?}: {:?}", found.rig);
+        assert!(
+            (found.rig.baseline_m() / rig().baseline_m() - 1.0).abs() < 1e-3,
+            "{model:?}: {:?}",
+            found.rig
+        );
         let is_fisheye = matches!(found.rig.cameras()[0].lens(), Lens::Fisheye(_));
         assert_eq!(is_fisheye, model == LensModel::Fisheye);
     }
@@ -111,7 +118,9 @@ fn too_little_is_refused_or_said_to_be_uncertain() {
     // The same view again and again says nothing of the focal length.
     let same = vec![views[9].clone(); 5];
     match solve(LensModel::Brown, pattern(9, 6), SQUARE_M, SIZE, &same) {
-        Ok(found) => assert!(found.focal_sigma_px[0].is_nan() || found.focal_sigma_px[0] > 0.03 * 165.0, "{found:?}"),
+        Ok(found) => {
+            assert!(found.focal_sigma_px[0].is_nan() || found.focal_sigma_px[0] > 0.03 * 165.0, "{found:?}")
+        }
         Err(error) => assert!(matches!(error, SolveError::Camera(_)), "{error}"),
     }
 }

@@ -3,7 +3,9 @@
 use super::{SIZE, turn};
 use nalgebra::{Point2, Vector3};
 use proptest::prelude::*;
-use stereopsis::geometry::{Camera, Correspondence, Fundamental, Pose, UncalibratedError, UncalibratedRectification};
+use stereopsis::geometry::{
+    Camera, Correspondence, Fundamental, Pose, UncalibratedError, UncalibratedRectification,
+};
 use stereopsis_host::scene::Random;
 
 fn camera() -> Camera<f64> {

@@ -78,7 +78,8 @@ fn grey_lines_say_what_they_lack() {
     let source = || camera(format, (0..36).collect());
     let refused = GreyLines::<_, 11>::new(source()).expect_err("a raw line has 12 bytes");
     assert_eq!(refused, CameraError::BufferTooShort { needed: 12 });
-    let mut lines = GreyLines::<_, 12>::new(Camera { fault: Some(1), ..source() }).expect("12 bytes are enough");
+    let mut lines =
+        GreyLines::<_, 12>::new(Camera { fault: Some(1), ..source() }).expect("12 bytes are enough");
     assert_eq!(lines.next_line(&mut [0; 4]), Err(CameraError::NoLineLeft));
     lines.start_frame().expect("the camera works");
     assert_eq!(lines.next_line(&mut [0; 3]), Err(CameraError::BufferTooShort { needed: 4 }));

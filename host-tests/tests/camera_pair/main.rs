@@ -7,7 +7,8 @@ mod pair;
 mod trigger;
 
 use stereopsis::camera::{
-    CameraError, CameraPair, ErrorType, FrameStart, LineFormat, LineSource, LineStart, PixelFormat, StereoSource,
+    CameraError, CameraPair, ErrorType, FrameStart, LineFormat, LineSource, LineStart, PixelFormat,
+    StereoSource,
 };
 use stereopsis_host::scene::Scene;
 
@@ -98,7 +99,10 @@ impl LineSource for Camera {
         self.row += 1;
         line.copy_from_slice(&self.lines[usize::from(row) * needed..][..needed]);
         let told = if self.wrong_row == Some(row) { row + 1 } else { row };
-        Ok(LineStart { row: told, timestamp_us: u64::from(self.sequence) * 1000 + u64::from(row) + self.late_us })
+        Ok(LineStart {
+            row: told,
+            timestamp_us: u64::from(self.sequence) * 1000 + u64::from(row) + self.late_us,
+        })
     }
 }
 

@@ -4,13 +4,16 @@ use super::{Camera, LineFault, SMALL, camera, numbered, pair, small};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use stereopsis::camera::{
-    CameraError, CameraPair, FrameStart, LineFormat, LineStart, PairError, Pairing, PixelFormat, RowSkew, StereoSource,
+    CameraError, CameraPair, FrameStart, LineFormat, LineStart, PairError, Pairing, PixelFormat, RowSkew,
+    StereoSource,
 };
 
 type Failure = CameraError<PairError<LineFault, LineFault>>;
 
 /// All lines of the next frame, left and right.
-fn frame(source: &mut impl StereoSource<Error = PairError<LineFault, LineFault>>) -> Result<[Vec<u8>; 2], Failure> {
+fn frame(
+    source: &mut impl StereoSource<Error = PairError<LineFault, LineFault>>,
+) -> Result<[Vec<u8>; 2], Failure> {
     let format = source.format();
     source.start_frame()?;
     let mut frame = [Vec::new(), Vec::new()];
@@ -103,7 +106,8 @@ fn sequence_numbers_wrap() {
 #[test]
 fn rows_that_were_read_too_far_apart_are_refused() {
     for (left_late, right_late, skew) in [(0, 5, None), (5, 0, None), (0, 6, Some(6)), (900, 0, Some(900))] {
-        let mut both = pair(Camera { late_us: left_late, ..small(0) }, Camera { late_us: right_late, ..small(0) });
+        let mut both =
+            pair(Camera { late_us: left_late, ..small(0) }, Camera { late_us: right_late, ..small(0) });
         let expected = skew.map(|skew_us| CameraError::Hardware(PairError::RowSkew { skew_us }));
         assert_eq!(frame(&mut both).err(), expected, "{left_late} {right_late}");
     }
@@ -148,7 +152,8 @@ fn a_buffer_that_is_too_short_says_what_is_needed() {
 
 #[test]
 fn cameras_that_run_freely_are_paired_by_their_time_stamps() {
-    // The right camera's counter is seven behind, and its clock stamps the same moments two microseconds later.
+    // The right camera's counter is seven behind, and its clock stamps the same moments two microseconds
+    // later.
     let free = |first: u32| Camera { late_us: 7002, ..numbered(&[first]) };
     for (left, right, starts) in [(10, 3, (1, 1)), (9, 3, (2, 1)), (10, 1, (1, 3))] {
         let mut both = pair(numbered(&[left]), free(right)).paired_by(Pairing::TimeStamp);

@@ -10,7 +10,8 @@ use std::cell::RefCell;
 use std::convert::Infallible;
 use std::rc::Rc;
 use stereopsis::camera::{
-    CameraError, ErrorType, FrameStart, LineFormat, LineStart, PairError, StereoSource, TriggerError, Triggered,
+    CameraError, ErrorType, FrameStart, LineFormat, LineStart, PairError, StereoSource, TriggerError,
+    Triggered,
 };
 use stereopsis_host::scene::{Scene, SceneCamera};
 
@@ -121,7 +122,11 @@ impl StereoSource for LoggedSource {
         self.1.start_frame()
     }
 
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Infallible>> {
+    fn next_lines(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<Infallible>> {
         self.1.next_lines(left, right)
     }
 }

@@ -10,7 +10,12 @@ use stereopsis::depth::{Decimator, DisparityColours, Provenance, TemporalConfig,
 use stereopsis::units::Disparity;
 
 fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig { cases, rng_seed: RngSeed::Fixed(12), failure_persistence: None, ..ProptestConfig::default() }
+    ProptestConfig {
+        cases,
+        rng_seed: RngSeed::Fixed(12),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
 }
 
 /// A disparity of a few steps, often none.
@@ -96,7 +101,10 @@ fn blocks<const N: usize>(rows: &[Vec<Disparity>]) -> Result<(), TestCaseError> 
                 let expected = if enough { answers[answers.len() / 2] } else { Disparity::NONE.raw() };
                 prop_assert_eq!(out.raw(), expected);
             }
-            prop_assert!(out[11 / N..].iter().all(|d| *d == Disparity::ZERO), "what fills no block is left alone");
+            prop_assert!(
+                out[11 / N..].iter().all(|d| *d == Disparity::ZERO),
+                "what fills no block is left alone"
+            );
         }
     }
     Ok(())
@@ -116,7 +124,8 @@ fn noise_falls_by_what_the_filter_says() {
     };
     let (mut of_input, mut of_output) = (0.0, 0.0);
     for frame in 0..400 {
-        let answers: Vec<_> = (0..64).map(|_| Disparity::from_raw((3200.0 + 20.0 * noise()) as u16)).collect();
+        let answers: Vec<_> =
+            (0..64).map(|_| Disparity::from_raw((3200.0 + 20.0 * noise()) as u16)).collect();
         let (mut out, mut provenance) = ([Disparity::NONE; 64], [Provenance::Nothing; 64]);
         filter.row(0, &answers, &mut out, &mut provenance);
         if frame >= 50 {
@@ -169,7 +178,10 @@ fn rows_are_drawn_where_they_belong_near_is_bright() {
         299 * u32::from(c.r()) + 587 * u32::from(c.g()) + 114 * u32::from(c.b())
     };
     // By a rounding less from one step to the next.
-    assert!((128..=640).step_by(16).map(|raw| light(Disparity::from_raw(raw))).is_sorted(), "nearer is brighter");
+    assert!(
+        (128..=640).step_by(16).map(|raw| light(Disparity::from_raw(raw))).is_sorted(),
+        "nearer is brighter"
+    );
     assert_eq!(colours.colour(pixels(4)), Rgb888::new(0x44, 0x01, 0x54));
     assert_eq!(colours.colour(pixels(30)), Rgb888::new(0xfd, 0xe7, 0x25));
     // A range of nothing.

@@ -72,7 +72,9 @@ proptest! {
 
 #[test]
 fn any_balance_can_be_applied() {
-    for (gain_256ths, offset_256ths) in [(0, i32::MIN), (u16::MAX, i32::MAX), (u16::MAX, i32::MIN), (0, i32::MAX)] {
+    for (gain_256ths, offset_256ths) in
+        [(0, i32::MIN), (u16::MAX, i32::MAX), (u16::MAX, i32::MIN), (0, i32::MAX)]
+    {
         let mut line = [0, 1, 128, 255];
         Balance { gain_256ths, offset_256ths }.line(&mut line);
         assert!([[0; 4], [255; 4]].contains(&line), "{line:?}");
@@ -82,7 +84,8 @@ fn any_balance_can_be_applied() {
 #[test]
 fn the_second_frame_is_balanced_and_cameras_alike_are_left() {
     let (left, right) = Scene::small(320, 240).render();
-    let source = |right: &GrayImage| MemoryPair::new(320, left.to_vec(), right.to_vec()).expect("two pictures");
+    let source =
+        |right: &GrayImage| MemoryPair::new(320, left.to_vec(), right.to_vec()).expect("two pictures");
     let mut alike = BalancedPair::new(source(&right));
     for _ in 0..3 {
         assert_eq!(frame(&mut alike), [left.clone(), right.clone()]);
@@ -93,7 +96,8 @@ fn the_second_frame_is_balanced_and_cameras_alike_are_left() {
         assert_eq!(frame(&mut pair), [left.clone(), other.clone()], "the first frame is as it came");
         let second = frame(&mut pair);
         assert_eq!(second[0], left);
-        let apart = |a: &GrayImage| a.iter().zip(right.iter()).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>();
+        let apart =
+            |a: &GrayImage| a.iter().zip(right.iter()).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>();
         assert!(apart(&second[1]) < 0.25 * apart(&other), "x {gain} + {offset}: {:?}", pair.balance());
         assert_eq!(frame(&mut pair), second, "it is the lines as they came that count");
     }

@@ -47,7 +47,8 @@ pub struct Changing {
 impl Changing {
     pub fn new() -> Self {
         let camera = |seed| {
-            let (left, right) = Pattern::Shifted { most: 8, noise_grey: 3.0 }.pair(WIDTH.into(), HEIGHT.into(), seed);
+            let (left, right) =
+                Pattern::Shifted { most: 8, noise_grey: 3.0 }.pair(WIDTH.into(), HEIGHT.into(), seed);
             SceneCamera::new(left, right)
         };
         Self { pictures: [camera(1), camera(2)], frames: 0 }
@@ -79,7 +80,11 @@ impl StereoSource for Changing {
         Ok(FrameStart { sequence, timestamp_us: u64::from(sequence) * 1000, exposure_us: 10 })
     }
 
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
+    fn next_lines(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<Self::Error>> {
         let frame_us = u64::from(self.frames) * 1000;
         let line = self.picture().next_lines(left, right)?;
         Ok(LineStart { row: line.row, timestamp_us: frame_us + u64::from(line.row) })

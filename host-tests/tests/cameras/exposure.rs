@@ -1,7 +1,9 @@
 //! One exposure for two cameras, and what their pictures tell of their health.
 
 use image::GrayImage;
-use stereopsis::imaging::{AutoExposure, CameraHealth, ExposureCommand, ExposureLimits, Histogram, PairMonitor};
+use stereopsis::imaging::{
+    AutoExposure, CameraHealth, ExposureCommand, ExposureLimits, Histogram, PairMonitor,
+};
 use stereopsis_host::scene::Scene;
 use stereopsis_host::scene::pattern::Pattern;
 
@@ -9,7 +11,8 @@ const LIMITS: ExposureLimits = ExposureLimits { least_us: 30, most_us: 15_000, m
 
 /// What a camera sees of a scene whose brightest point gives `light` grey levels a millisecond.
 fn histogram(scene: &GrayImage, light: f64, gain: f64, command: ExposureCommand) -> Histogram {
-    let factor = light / 255.0 * gain * f64::from(command.exposure_us) / 1000.0 * f64::from(command.gain_16ths) / 16.0;
+    let factor =
+        light / 255.0 * gain * f64::from(command.exposure_us) / 1000.0 * f64::from(command.gain_16ths) / 16.0;
     let mut histogram = Histogram::new();
     for (row, line) in scene.as_raw().chunks(scene.width() as usize).enumerate() {
         let seen: Vec<u8> = line.iter().map(|&grey| (f64::from(grey) * factor).min(255.0) as u8).collect();
@@ -29,7 +32,8 @@ fn run(lights: &[f64], gains: [f64; 2], delay: usize) -> Vec<(usize, f64)> {
         let (mut changes, mut mean, mut quiet) = (0, 0.0, 0);
         for _ in 0..80 {
             let command = settings.remove(0);
-            let histograms = [histogram(&left, light, gains[0], command), histogram(&right, light, gains[1], command)];
+            let histograms =
+                [histogram(&left, light, gains[0], command), histogram(&right, light, gains[1], command)];
             mean = f64::from(histograms[0].mean_16ths().max(histograms[1].mean_16ths())) / 16.0;
             let next = auto.frame([&histograms[0], &histograms[1]]);
             let before = settings.last().copied().unwrap_or(command);
@@ -55,7 +59,10 @@ fn the_exposure_follows_the_light_and_comes_to_rest() {
         for (changes, mean) in run(&[30.0, 300.0, 8.0, 60.0, 61.0, 1000.0, 20.0], [1.0, 1.0], delay) {
             assert!(changes <= 12, "{changes} changes");
             let target = f64::from(AutoExposure::TARGET);
-            assert!((mean - target).abs() <= f64::from(AutoExposure::DEAD_BAND) + 1.0, "the mean ends at {mean}");
+            assert!(
+                (mean - target).abs() <= f64::from(AutoExposure::DEAD_BAND) + 1.0,
+                "the mean ends at {mean}"
+            );
         }
     }
 }

@@ -49,9 +49,14 @@ fn expect(counters: &mut FaultCounters, record: &Record, begun: bool) {
     }
 }
 
-/// Frames of `faults` at a rate: every row that is not flagged is right, those flagged are those that the record names, the
-/// counters are the record's, and a frame without a fault is whole.
-fn guarded<S: Scheme>(faults: &[Fault], rate: f64, frames: usize, reference: &[Vec<Kept>; 2]) -> FaultCounters {
+/// Frames of `faults` at a rate: every row that is not flagged is right, those flagged are those that the
+/// record names, the counters are the record's, and a frame without a fault is whole.
+fn guarded<S: Scheme>(
+    faults: &[Fault],
+    rate: f64,
+    frames: usize,
+    reference: &[Vec<Kept>; 2],
+) -> FaultCounters {
     let mut source = Faulty::new(Changing::new(), faults, rate, 7 + frames as u64);
     let mut guarded = Box::new(Guarded::<S, 32, 16>::new());
     guarded.start(&config::<S>()).expect("the configuration fits");
@@ -64,7 +69,9 @@ fn guarded<S: Scheme>(faults: &[Fault], rate: f64, frames: usize, reference: &[V
         let frame = source.record().frame;
         match &begun {
             Err(PipelineError::StaleFrame { .. }) => assert_eq!(frame, Some(Fault::FrameStale)),
-            Err(PipelineError::Camera(CameraError::TimedOut)) => assert_eq!(frame, Some(Fault::FrameTimesOut)),
+            Err(PipelineError::Camera(CameraError::TimedOut)) => {
+                assert_eq!(frame, Some(Fault::FrameTimesOut))
+            }
             Err(e) => assert_eq!(frame, Some(Fault::FrameFails), "{e}"),
             Ok(_) => assert!(frame.is_none_or(|fault| fault == Fault::FrameSkipped)),
         }
@@ -101,7 +108,12 @@ fn guarded<S: Scheme>(faults: &[Fault], rate: f64, frames: usize, reference: &[V
             }
             if lost.iter().any(|line| line.abs_diff(y) <= window) {
                 assert!(row.disparities.iter().all(|d| d.is_none()), "{} row {y}: {record:?}", S::NAME);
-                assert!(row.confidences.iter().all(|c| *c == 0), "{} row {y}: {:?}", S::NAME, row.confidences);
+                assert!(
+                    row.confidences.iter().all(|c| *c == 0),
+                    "{} row {y}: {:?}",
+                    S::NAME,
+                    row.confidences
+                );
             }
             expected.rows += 1;
             expected.rows_damaged += u32::from(is_damaged);
@@ -132,7 +144,8 @@ fn every_fault_at_every_rate_is_counted_and_what_it_touches_is_flagged() {
     }
 }
 
-/// A pipeline that knows nothing of faults gives right rows until the first one, an error there, and the next frame.
+/// A pipeline that knows nothing of faults gives right rows until the first one, an error there, and the next
+/// frame.
 #[test]
 fn a_pipeline_gives_right_rows_until_the_first_fault_and_then_an_error() {
     let reference = reference::<Fast>();
@@ -241,7 +254,10 @@ fn another_configuration_leaves_the_counters() {
     // In a frame that is under way, which goes on when the configuration is refused.
     guarded.begin_frame(&mut source).expect("a frame");
     guarded.next_row(&mut source).expect("a row");
-    assert_eq!(guarded.restart(&Config { width: 33, ..told }), Err(ConfigError::Width { given: 33, most: 32 }));
+    assert_eq!(
+        guarded.restart(&Config { width: 33, ..told }),
+        Err(ConfigError::Width { given: 33, most: 32 })
+    );
     assert!(guarded.next_row(&mut source).is_ok_and(|row| row.is_some_and(|row| row.index() == 1)));
     let noisy = Config { noise: Noise::High, ..told };
     guarded.restart(&noisy).expect("the configuration fits");

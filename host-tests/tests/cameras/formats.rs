@@ -54,12 +54,18 @@ impl LineSource for Memory {
 }
 
 fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig { cases, rng_seed: RngSeed::Fixed(11), failure_persistence: None, ..ProptestConfig::default() }
+    ProptestConfig {
+        cases,
+        rng_seed: RngSeed::Fixed(11),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
 }
 
 /// One line through [`GreyLines`].
 fn grey(width: u16, pixel: PixelFormat, bytes: Vec<u8>) -> Vec<u8> {
-    let mut lines = GreyLines::<_, 512>::new(Memory::new(width, 1, pixel, bytes)).expect("512 bytes are enough");
+    let mut lines =
+        GreyLines::<_, 512>::new(Memory::new(width, 1, pixel, bytes)).expect("512 bytes are enough");
     lines.start_frame().expect("memory");
     let mut out = vec![0xa5; usize::from(width) + 2];
     lines.next_line(&mut out).expect("a line");
@@ -264,7 +270,10 @@ fn streams_that_carry_no_two_pictures_are_refused() {
         SideBySide::<_, 9>::new(stream(10, 2, PixelFormat::Grey8)).err(),
         Some(StreamError::BufferTooShort { needed: 10 })
     );
-    assert_eq!(Interleaved::new(stream(4, 3, PixelFormat::Grey8), 0).err(), Some(StreamError::OddHeight { height: 3 }));
+    assert_eq!(
+        Interleaved::new(stream(4, 3, PixelFormat::Grey8), 0).err(),
+        Some(StreamError::OddHeight { height: 3 })
+    );
     assert_eq!(Mirrored::new(stream(4, 3, PixelFormat::Yuyv)).err(), Some(StreamError::SharedBytes));
     assert!(BayerLines::<_, 3, 9>::new(stream(4, 3, PixelFormat::Bayer8)).is_err());
     assert!(BayerLines::<_, 9, 3>::new(stream(4, 3, PixelFormat::Bayer8)).is_err());

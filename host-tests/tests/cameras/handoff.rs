@@ -1,4 +1,5 @@
-//! Lines through slots: every interleaving of the two sides, two threads, and the camera at the matcher's end.
+//! Lines through slots: every interleaving of the two sides, two threads, and the camera at the matcher's
+//! end.
 
 use std::collections::VecDeque;
 use stereopsis::camera::{
@@ -91,7 +92,11 @@ fn run<const N: usize>(schedule: u32, steps: u32) -> (usize, u32) {
     assert!(reading.line.is_none());
     assert!(reading.rows.is_sorted_by(|a, b| a < b), "each line once, in order: {:?}", reading.rows);
     assert_eq!(producer.overruns(), filling.lost);
-    assert_eq!(reading.rows.len() + filling.lost as usize, usize::from(filling.produced), "none is lost untold");
+    assert_eq!(
+        reading.rows.len() + filling.lost as usize,
+        usize::from(filling.produced),
+        "none is lost untold"
+    );
     // What is told with a line is what was lost before it.
     if let Some(&last) = reading.rows.last() {
         assert_eq!(u32::from(last) + 1 - reading.rows.len() as u32, reading.overruns);
@@ -180,7 +185,8 @@ fn handed_lines_are_a_camera_that_tells_what_it_lost() {
     let mut slots = LineSlots::<BYTES, 9>::new();
     let (mut producer, consumer) = slots.split(&mut bytes);
     // Frame 1 whole, frame 2 without row 1, frame 3 short: what the interrupt sends while the camera waits.
-    let mut to_come = VecDeque::from([(1, 0), (1, 1), (1, 2), (2, 0), (2, 2), (3, 0), (3, 1), (4, 0), (4, 1), (4, 2)]);
+    let mut to_come =
+        VecDeque::from([(1, 0), (1, 1), (1, 2), (2, 0), (2, 2), (3, 0), (3, 1), (4, 0), (4, 1), (4, 2)]);
     let mut waits = 0;
     let wait = || {
         waits += 1;

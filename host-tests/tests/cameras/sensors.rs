@@ -105,7 +105,8 @@ fn a_mt9v034_is_set_up_register_by_register() {
 
 #[test]
 fn a_mt9v034s_times_are_those_of_its_data_sheet() {
-    // The defaults: 846 clocks a row, 525 rows and 4 clocks a frame: 444 154 clocks, 16.66 ms at 26.66 MHz (table 4 and 5).
+    // The defaults: 846 clocks a row, 525 rows and 4 clocks a frame: 444 154 clocks, 16.66 ms at 26.66 MHz
+    // (table 4 and 5).
     let sensor = Mt9v034::new(Mock::new(&[]), AT, 26_660_000);
     assert_eq!(sensor.row_time_ns(), 31_732);
     assert_eq!(sensor.frame_time_us(), 16_660);
@@ -144,8 +145,12 @@ fn what_a_mt9v034_has_not_is_refused_before_the_bus() {
     bus.done();
 }
 
-/// Whatever transaction of a start fails, and how: the error comes up, nothing more is said, and a second start works.
-pub fn fails_at_each_step(start: &[Transaction], initialise: impl Fn(&Mock) -> Result<(), SensorError<ErrorKind>>) {
+/// Whatever transaction of a start fails, and how: the error comes up, nothing more is said, and a second
+/// start works.
+pub fn fails_at_each_step(
+    start: &[Transaction],
+    initialise: impl Fn(&Mock) -> Result<(), SensorError<ErrorKind>>,
+) {
     let faults = [
         ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address),
         ErrorKind::NoAcknowledge(NoAcknowledgeSource::Data),
@@ -186,7 +191,10 @@ fn another_chip_at_the_address_is_named_and_left_alone() {
         bus.done();
         pin.done();
     }
-    assert_eq!(SensorError::<ErrorKind>::Identity { found: 0x0360 }.to_string(), "another chip answers: 0x0360");
+    assert_eq!(
+        SensorError::<ErrorKind>::Identity { found: 0x0360 }.to_string(),
+        "another chip answers: 0x0360"
+    );
 }
 
 #[test]

@@ -7,7 +7,8 @@ use embedded_hal_mock::eh1::i2c::Mock;
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 use stereopsis::camera::{
-    AsyncHm01b0, AsyncMt9v034, Hm01b0Mode, Hm01b0Size, Mt9v034Mode, Mt9v034Pattern, Mt9v034Window, SensorError,
+    AsyncHm01b0, AsyncMt9v034, Hm01b0Mode, Hm01b0Size, Mt9v034Mode, Mt9v034Pattern, Mt9v034Window,
+    SensorError,
 };
 
 /// The end of what never has to wait, as the mock's transactions do not.
@@ -76,7 +77,8 @@ fn a_hm01b0_is_set_up_register_by_register() {
 fn a_bus_error_at_any_step_of_a_start_is_told_and_the_next_start_works() {
     fails_at_each_step(&mt9v034_start(), |bus| {
         let mut reset = reset_pin();
-        let done = now(AsyncMt9v034::new(bus.clone(), AT, CLOCK_HZ).initialise(&mut reset, &mut NoopDelay::new()));
+        let done =
+            now(AsyncMt9v034::new(bus.clone(), AT, CLOCK_HZ).initialise(&mut reset, &mut NoopDelay::new()));
         reset.done();
         done
     });

@@ -39,10 +39,15 @@ fn unequal_exposures_are_played_as_match_sees_them() {
         for from in [&file, &frames] {
             let replay = ["replay", "--from", from, "--disparities", "16", "--out", &out];
             let told = run(&[&replay[..], matching].concat());
-            assert_eq!(told.contains("2 with the right image in the left one's exposure"), balanced > 0, "{told}");
+            assert_eq!(
+                told.contains("2 with the right image in the left one's exposure"),
+                balanced > 0,
+                "{told}"
+            );
             assert_eq!(summary(&bench, "out")["balanced_frames"], balanced, "{matching:?}");
             for (n, right) in (1..).zip(rights) {
-                let pair = ["match", "--left", &left, "--right", right, "--disparities", "16", "--out", &matched];
+                let pair =
+                    ["match", "--left", &left, "--right", right, "--disparities", "16", "--out", &matched];
                 run(&[&pair[..], matching].concat());
                 let [found, expected] = [format!("out/{n:06}-disparity.pfm"), "matched/disparity.pfm".into()]
                     .map(|name| fs::read(bench.path(&name)).expect("a result"));
@@ -81,11 +86,14 @@ fn noisy_frames_are_played_as_match_sees_them() {
         picture
     };
     let levels = [0.0, 5.0, 0.0, 2.0];
-    let [frames, out, matched] = ["frames", "out", "matched"].map(|name| bench.path(name).display().to_string());
+    let [frames, out, matched] =
+        ["frames", "out", "matched"].map(|name| bench.path(name).display().to_string());
     for (side, picture) in ["left", "right"].into_iter().zip(&clean) {
         fs::create_dir_all(bench.path("frames").join(side)).expect("a folder");
         for (n, sigma) in (1..).zip(levels) {
-            noise(picture, sigma).save(bench.path("frames").join(side).join(format!("{n}.png"))).expect("a file");
+            noise(picture, sigma)
+                .save(bench.path("frames").join(side).join(format!("{n}.png")))
+                .expect("a file");
         }
     }
     for (matching, noisy) in
@@ -98,9 +106,10 @@ fn noisy_frames_are_played_as_match_sees_them() {
         assert_eq!(summary(&bench, "out")["counters"]["rows"], 4 * 30, "{matching:?}");
         let mut told = Vec::new();
         for n in 1..=levels.len() {
-            let [left, right] =
-                ["left", "right"].map(|side| bench.path(&format!("frames/{side}/{n}.png")).display().to_string());
-            let pair = ["match", "--left", &left, "--right", &right, "--disparities", "16", "--out", &matched];
+            let [left, right] = ["left", "right"]
+                .map(|side| bench.path(&format!("frames/{side}/{n}.png")).display().to_string());
+            let pair =
+                ["match", "--left", &left, "--right", &right, "--disparities", "16", "--out", &matched];
             run(&[&pair[..], matching].concat());
             assert_eq!(
                 disparities(&bench, &format!("out/{n:06}-disparity.pfm")),

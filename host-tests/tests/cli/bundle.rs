@@ -15,7 +15,8 @@ fn problem() -> String {
     for (point, [x, y, z]) in points.iter().enumerate() {
         for camera in 0..3 {
             let shift = 0.5 * f64::from(camera);
-            writeln!(text, "{camera} {point}     {:e} {:e}", -500.0 * (x - shift) / z, -500.0 * y / z).expect("text");
+            writeln!(text, "{camera} {point}     {:e} {:e}", -500.0 * (x - shift) / z, -500.0 * y / z)
+                .expect("text");
         }
     }
     for camera in 0..3 {
@@ -28,7 +29,8 @@ fn problem() -> String {
 
 fn arguments(bench: &Bench, extra: &[&str]) -> Vec<String> {
     let file = |name: &str| bench.path(name).display().to_string();
-    let all = ["bundle".to_owned(), "--problem".into(), file("p.txt"), "--out".into(), file("out/refined.txt")];
+    let all =
+        ["bundle".to_owned(), "--problem".into(), file("p.txt"), "--out".into(), file("out/refined.txt")];
     all.into_iter().chain(extra.iter().map(|&word| word.to_owned())).collect()
 }
 
@@ -55,7 +57,8 @@ fn costs_are_told_and_the_problem_is_refined() {
         // The refined problem is one, with nothing left to do.
         let refined = std::fs::read_to_string(bench.path("out/refined.txt")).expect("the result");
         assert_eq!(refined.split_whitespace().count(), problem().split_whitespace().count());
-        let again = ["bundle".to_owned(), "--problem".into(), bench.path("out/refined.txt").display().to_string()];
+        let again =
+            ["bundle".to_owned(), "--problem".into(), bench.path("out/refined.txt").display().to_string()];
         let out = ["--out".to_owned(), bench.path("out/again.txt").display().to_string()];
         let said = text(&stereo(again.into_iter().chain(out)).stdout);
         assert!(after(&said, "initial cost:") < 1e-12 * initial, "{said}");
@@ -71,7 +74,10 @@ fn what_is_no_problem_is_named() {
     let bench = Bench::new();
     for (content, culprit) in [
         (short.as_bytes(), "p.txt: ends where number 3 of point 8 is due"),
-        (good.replacen("\n0 0 ", "\n7 0 ", 1).as_bytes(), "p.txt: line 2: '7' is not the camera of observation 0"),
+        (
+            good.replacen("\n0 0 ", "\n7 0 ", 1).as_bytes(),
+            "p.txt: line 2: '7' is not the camera of observation 0",
+        ),
         (good.replacen("\n500\n", "\ninf\n", 1).as_bytes(), "p.txt: line 35: number 7 of camera 0: 'inf'"),
         (b"BZh91AY&SY", "p.txt: is compressed; unpack it with bunzip2"),
         (b"", "p.txt: the file is empty"),

@@ -35,7 +35,9 @@ fn pictures(bench: &Bench) {
         let r = Rotation3::new(Vector3::new(a, b, c)).into_inner();
         let left = Pose::new(r, Vector3::new(x, y, 1.0) * z - r * middle).expect("a pose");
         let beside = Pose::new(Matrix3::identity(), rig().pose().translation() / 0.03).expect("a pose");
-        for ((camera, side), board) in cameras.iter().zip(["left", "right"]).zip([left, beside.inverse().then(&left)]) {
+        for ((camera, side), board) in
+            cameras.iter().zip(["left", "right"]).zip([left, beside.inverse().then(&left)])
+        {
             camera.corners(pattern, &board).expect("all in the image");
             let picture = camera.picture(pattern, &board, 1.0, &mut random);
             bench.put(&format!("{side}{n}.png"), &encode(&picture, ImageFormat::Png));
@@ -87,7 +89,10 @@ fn a_rig_is_calibrated_checked_and_converted() {
         text(&run.stdout)
     };
     let words = check("stereo.yml");
-    assert!(words.starts_with("OpenCV calibration, images of 240 x 180 px\n") && words.contains("right of"), "{words}");
+    assert!(
+        words.starts_with("OpenCV calibration, images of 240 x 180 px\n") && words.contains("right of"),
+        "{words}"
+    );
     assert!(words.contains("nothing looks wrong"), "{words}");
     let convert = |from: &str, to: &str, out: &str| {
         let run = stereo(["calib", "convert", "--calib", &file(from), "--to", to, "--out", &file(out)]);
@@ -96,7 +101,9 @@ fn a_rig_is_calibrated_checked_and_converted() {
     };
     assert_eq!(convert("stereo.yml", "record", "rig.bin").len(), 328);
     assert!(text(&convert("rig.bin", "rust", "rig.rs")).contains("pub const STEREO_RIG: [u8; 328]"));
-    assert!(text(&convert("rig.bin", "c", "rig.h")).contains("static const uint8_t stereo_rig[STEREO_RIG_BYTES]"));
+    assert!(
+        text(&convert("rig.bin", "c", "rig.h")).contains("static const uint8_t stereo_rig[STEREO_RIG_BYTES]")
+    );
     convert("rig.bin", "opencv", "again.yml");
     let rest = |words: &str| words.split_once('\n').map(|(_, rest)| rest.to_owned());
     assert_eq!(rest(&check("again.yml")), rest(&words));
@@ -105,8 +112,19 @@ fn a_rig_is_calibrated_checked_and_converted() {
     // A record of raw cameras is no calibration of rectified images.
     let record = file("rig.bin");
     let (left, right, out) = (file("left1.png"), file("right1.png"), file("out"));
-    let matched =
-        ["match", "--left", &left, "--right", &right, "--disparities", "16", "--calib", &record, "--out", &out];
+    let matched = [
+        "match",
+        "--left",
+        &left,
+        "--right",
+        &right,
+        "--disparities",
+        "16",
+        "--calib",
+        &record,
+        "--out",
+        &out,
+    ];
     bench.refused(&matched.map(str::to_owned), "rig.bin: says how the cameras are mounted");
     // What is swapped in a file is noticed by all that read it.
     let yaml = std::fs::read_to_string(bench.path("stereo.yml")).expect("text");
@@ -140,7 +158,8 @@ fn a_rig_is_calibrated_checked_and_converted() {
     for (bytes, culprit) in [(&broken[..], "checksum"), (&record[..100], "328 bytes")] {
         let bad = bench.put("bad.bin", bytes).display().to_string();
         bench.refused(&["calib", "check", "--calib", &bad], culprit);
-        bench.refused(&["calib", "convert", "--calib", &bad, "--to", "c", "--out", &file("x.h")], "bad.bin: ");
+        bench
+            .refused(&["calib", "convert", "--calib", &bad, "--to", "c", "--out", &file("x.h")], "bad.bin: ");
     }
 }
 
@@ -180,14 +199,20 @@ fn options_that_are_wrong_are_named() {
 fn what_looks_wrong_is_said() {
     let bench = Bench::new();
     let yaml = |t: &str, unit: &str, cx: f64, size: &str| {
-        let camera =
-            |n: u32| format!("K{n}: [200., 0., {cx}, 0., 210., 90., 0., 0., 1.]\nD{n}: [0., 0., 0., 0., 0.]\n");
-        format!("{size}{}{}{unit}R: [1., 0., 0., 0., 1., 0., 0., 0., 1.]\nT: [{t}, 0., 0.]\n", camera(1), camera(2))
+        let camera = |n: u32| {
+            format!("K{n}: [200., 0., {cx}, 0., 210., 90., 0., 0., 1.]\nD{n}: [0., 0., 0., 0., 0.]\n")
+        };
+        format!(
+            "{size}{}{}{unit}R: [1., 0., 0., 0., 1., 0., 0., 0., 1.]\nT: [{t}, 0., 0.]\n",
+            camera(1),
+            camera(2)
+        )
     };
     let size = "image_width: 240\nimage_height: 180\n";
     let check = |content: String, more: &[&str]| {
         let path = bench.put("rig.yml", content.as_bytes()).display().to_string();
-        let arguments: Vec<_> = ["calib", "check", "--calib", &path].into_iter().chain(more.iter().copied()).collect();
+        let arguments: Vec<_> =
+            ["calib", "check", "--calib", &path].into_iter().chain(more.iter().copied()).collect();
         let run = stereo(&arguments);
         if run.status.success() { text(&run.stdout) } else { text(&run.stderr) }
     };
@@ -198,7 +223,9 @@ fn what_looks_wrong_is_said() {
     assert!(check(yaml("-60.0", "", 119.5, size), &[]).contains("--unit mm"));
     assert!(check(yaml("-60.0", "", 119.5, size), &["--unit", "mm"]).contains("60.00 mm"));
     assert!(check(yaml("-60.0", "length_unit: mm\n", 119.5, size), &[]).contains("60.00 mm"));
-    assert!(check(yaml("-60.0", "length_unit: mm\n", 119.5, size), &["--unit", "m"]).contains("leave --unit out"));
+    assert!(
+        check(yaml("-60.0", "length_unit: mm\n", 119.5, size), &["--unit", "m"]).contains("leave --unit out")
+    );
     assert!(check(yaml("-60.0", "length_unit: feet\n", 119.5, size), &[]).contains("m, cm or mm"));
     assert!(check(yaml("-6.0", "", 119.5, size), &[]).contains("was T in another unit?"));
     assert!(check(yaml("0.06", "", 119.5, size), &[]).contains("swapped"));

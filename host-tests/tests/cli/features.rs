@@ -56,7 +56,8 @@ fn matches_are_lines_under_a_header() {
 fn an_image_too_small_for_corners_has_none() {
     let bench = Bench::new();
     let [left, _] = put_spots(&bench);
-    let small = bench.put("small.png", &encode(&GrayImage::new(1, 1), ImageFormat::Png)).display().to_string();
+    let small =
+        bench.put("small.png", &encode(&GrayImage::new(1, 1), ImageFormat::Png)).display().to_string();
     let out = bench.path("matches.csv").display().to_string();
     let run = stereo(["features", "--left", &left, "--right", &small, "--out", &out]);
     assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
@@ -67,7 +68,8 @@ fn an_image_too_small_for_corners_has_none() {
 fn what_cannot_be_done_is_named() {
     let bench = Bench::new();
     let [left, right] = put_spots(&bench);
-    let (out, folder) = (bench.path("matches.csv").display().to_string(), bench.path("").display().to_string());
+    let (out, folder) =
+        (bench.path("matches.csv").display().to_string(), bench.path("").display().to_string());
     let missing = bench.path("missing.png").display().to_string();
     let broken = bench.put("broken.png", b"no picture").display().to_string();
     let below = format!("{left}/matches.csv");

@@ -12,12 +12,14 @@ const HEIGHT: u32 = 40;
 fn put_stack(bench: &Bench) -> String {
     let folder = bench.path("stack");
     fs::create_dir(&folder).expect("a folder");
-    let spots =
-        GrayImage::from_fn(WIDTH, HEIGHT, |x, y| Luma([((x * x * 7 + y * y * 13 + x * y * 5) % 11 * 23) as u8]));
+    let spots = GrayImage::from_fn(WIDTH, HEIGHT, |x, y| {
+        Luma([((x * x * 7 + y * y * 13 + x * y * 5) % 11 * 23) as u8])
+    });
     for frame in 1..=7_u32 {
         let blurred = |best: u32| imageops::blur(&spots, 0.3 + 0.5 * frame.abs_diff(best) as f32);
         let (left, right) = (blurred(3), blurred(5));
-        let all = GrayImage::from_fn(WIDTH, HEIGHT, |x, y| *if x < 30 { &left } else { &right }.get_pixel(x, y));
+        let all =
+            GrayImage::from_fn(WIDTH, HEIGHT, |x, y| *if x < 30 { &left } else { &right }.get_pixel(x, y));
         fs::write(folder.join(format!("frame{frame}.png")), encode(&all, ImageFormat::Png)).expect("a file");
     }
     fs::write(folder.join("notes.txt"), "no frame").expect("a file");
@@ -43,7 +45,10 @@ fn frames_count_from_one_and_depth_needs_a_lens() {
     let run = stereo(&with_lens);
     assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
     assert!(text(&run.stdout).starts_with("7 frames of 60 x 40 pixels, "), "{}", text(&run.stdout));
-    assert_eq!(names(&bench.path("new/out")), ["all_in_focus.png", "confidence.pfm", "depth.pfm", "index.pfm"]);
+    assert_eq!(
+        names(&bench.path("new/out")),
+        ["all_in_focus.png", "confidence.pfm", "depth.pfm", "index.pfm"]
+    );
     let index = map(&bench, "new/out/index.pfm");
     let confidence = map(&bench, "new/out/confidence.pfm");
     let depth = map(&bench, "new/out/depth.pfm");
@@ -52,7 +57,11 @@ fn frames_count_from_one_and_depth_needs_a_lens() {
         let at = 20 * 60 + x;
         assert!((index.values[at] - frame).abs() < 0.3, "{}", index.values[at]);
         assert!(confidence.values[at] > 0.3 && confidence.values[at] <= 1.0, "{}", confidence.values[at]);
-        assert!((depth.values[at] * 1000.0 / millimetres - 1.0).abs() < 0.1, "{} {millimetres}", depth.values[at]);
+        assert!(
+            (depth.values[at] * 1000.0 / millimetres - 1.0).abs() < 0.1,
+            "{} {millimetres}",
+            depth.values[at]
+        );
     }
     // The same distances as those of what is in focus, and without a header.
     let same = |file: &str| {
@@ -65,8 +74,9 @@ fn frames_count_from_one_and_depth_needs_a_lens() {
         assert!(pairs.clone().all(|(a, b)| a == b || (a / b - 1.0).abs() < 1e-3));
     };
     same(&positions("4.05\n4.06\n4.07\n4.08\n4.09\n4.10\n4.11\n"));
-    let objects: Vec<String> =
-        (5..=11).map(|i| format!("{}\n", 4.0 * (4.0 + 0.01 * f64::from(i)) / (0.01 * f64::from(i)))).collect();
+    let objects: Vec<String> = (5..=11)
+        .map(|i| format!("{}\n", 4.0 * (4.0 + 0.01 * f64::from(i)) / (0.01 * f64::from(i))))
+        .collect();
     same(&positions(&format!("focus_distance_mm\n{}", objects.concat())));
     same(&positions(&objects.concat()));
 
@@ -98,7 +108,10 @@ fn what_cannot_be_done_is_named() {
         bench.refused(&with(focal, &positions), "--focal-length-mm");
     }
     bench.refused(&good.iter().copied().chain(["--focal-length-mm", "4"]).collect::<Vec<_>>(), "--positions");
-    bench.refused(&good.iter().copied().chain(["--positions", &positions]).collect::<Vec<_>>(), "--focal-length-mm");
+    bench.refused(
+        &good.iter().copied().chain(["--positions", &positions]).collect::<Vec<_>>(),
+        "--focal-length-mm",
+    );
     for (text, culprit) in [
         (lines.to_owned(), "6 positions for 7 frames"),
         (format!("{lines}x\n"), "line 7"),

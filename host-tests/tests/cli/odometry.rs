@@ -137,7 +137,11 @@ fn states(bench: &Bench, scene: &str, one_camera: bool) -> Vec<String> {
     };
     let found = lines.map(state).collect();
     if scene != "wall" {
-        assert!(poses(&bench.path("found.txt")).iter().all(|line| [3, 7, 11].iter().all(|&i| line[i].abs() < 0.02)));
+        assert!(
+            poses(&bench.path("found.txt"))
+                .iter()
+                .all(|line| [3, 7, 11].iter().all(|&i| line[i].abs() < 0.02))
+        );
     }
     found
 }
@@ -191,6 +195,9 @@ fn views_of_a_street_stand_where_they_stood() {
     // Twice the same picture.
     fs::copy(&one, bench.path("again.png")).expect("room");
     let again = bench.path("again.png").display().to_string();
-    bench.refused(&["structure", "--images", &one, &again, "--calib", &calib, "--out", &other], "has not moved");
+    bench.refused(
+        &["structure", "--images", &one, &again, "--calib", &calib, "--out", &other],
+        "has not moved",
+    );
     assert!(!bench.path("other").exists());
 }

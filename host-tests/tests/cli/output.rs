@@ -55,7 +55,8 @@ fn a_place_that_cannot_be_written_is_named() {
     bench.refused(&["demo", "--out", &bench.path("").display().to_string()], "left.png");
 }
 
-/// Runs `match` where no file may grow beyond `blocks` of 512 bytes or more: to the program a disk that fills up.
+/// Runs `match` where no file may grow beyond `blocks` of 512 bytes or more: to the program a disk that fills
+/// up.
 #[cfg(unix)]
 fn matched_on_a_full_disk(bench: &Bench, blocks: u32) -> std::process::Output {
     let mut shell = Command::new("sh");

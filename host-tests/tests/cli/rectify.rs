@@ -32,7 +32,9 @@ fn raw(bench: &Bench) -> Vec<String> {
     let right = file(bench.put("lower.png", &encode(&lower, ImageFormat::Png)));
     let calib = file(bench.put("stereo.yml", opencv().as_bytes()));
     let (left, out) = (file(bench.path("left.png")), file(bench.path("out")));
-    ["rectify", "--left", &left, "--right", &right, "--calib", &calib, "--out", &out].map(str::to_owned).into()
+    ["rectify", "--left", &left, "--right", &right, "--calib", &calib, "--out", &out]
+        .map(str::to_owned)
+        .into()
 }
 
 /// The command with another value of an option, or with one more.
@@ -55,7 +57,11 @@ fn rows_are_aligned_and_the_new_cameras_told() {
     let arguments = raw(&bench);
     let run = stereo(&arguments);
     assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
-    assert!(text(&run.stdout).starts_with("96 x 48 px, horizontal, OpenCV calibration\n"), "{}", text(&run.stdout));
+    assert!(
+        text(&run.stdout).starts_with("96 x 48 px, horizontal, OpenCV calibration\n"),
+        "{}",
+        text(&run.stdout)
+    );
     let files = ["left.png", "rectified.json", "right.png", "valid_left.png", "valid_right.png"];
     assert_eq!(names(&bench.path("out")), files);
 
@@ -73,7 +79,8 @@ fn rows_are_aligned_and_the_new_cameras_told() {
     };
     for (is_right, name) in [(false, "left.png"), (true, "right.png")] {
         let grey = GrayImage::from_fn(WIDTH, HEIGHT, |x, y| Luma([expected(is_right, x, y).unwrap_or(0)]));
-        let mask = GrayImage::from_fn(WIDTH, HEIGHT, |x, y| Luma([expected(is_right, x, y).map_or(0, |_| 255)]));
+        let mask =
+            GrayImage::from_fn(WIDTH, HEIGHT, |x, y| Luma([expected(is_right, x, y).map_or(0, |_| 255)]));
         assert!(picture(name) == grey, "{name}");
         assert!(picture(&format!("valid_{name}")) == mask, "the mask of {name}");
     }
@@ -82,7 +89,8 @@ fn rows_are_aligned_and_the_new_cameras_told() {
     let told: Value = serde_json::from_slice(&told).expect("JSON");
     let mut all = keys(&told);
     all.sort_unstable();
-    let expected = "axis baseline_m calibration common cx cy field_of_view_deg focal_px height left q right width";
+    let expected =
+        "axis baseline_m calibration common cx cy field_of_view_deg focal_px height left q right width";
     assert_eq!(all.join(" "), expected);
     for side in ["left", "right"] {
         let mut all = keys(&told[side]);
@@ -93,7 +101,10 @@ fn rows_are_aligned_and_the_new_cameras_told() {
         let found = value.as_f64().expect("a number");
         assert!((found - expected).abs() < 1e-9, "{found} {expected}");
     };
-    assert_eq!((&told["axis"], &told["width"], &told["height"]), (&"horizontal".into(), &96.into(), &48.into()));
+    assert_eq!(
+        (&told["axis"], &told["width"], &told["height"]),
+        (&"horizontal".into(), &96.into(), &48.into())
+    );
     near(&told["left"]["largest_warp_px"], f64::from(halfway));
     near(&told["right"]["largest_warp_px"], f64::from(halfway));
     near(&told["focal_px"], 100.0);
@@ -157,7 +168,10 @@ fn a_calibration_that_is_wrong_is_named() {
         bench.refused(&both, "--calib: is given more than twice");
     }
     // Millimetres, when they are said to be.
-    let file = bench.put("mm.yml", instead("[ -0.2, 0., 0. ]", "[ -200., 0., 0. ]").as_bytes()).display().to_string();
+    let file = bench
+        .put("mm.yml", instead("[ -0.2, 0., 0. ]", "[ -200., 0., 0. ]").as_bytes())
+        .display()
+        .to_string();
     let run = stereo(with(&with(&arguments, "--calib", &file), "--unit", "mm"));
     assert!(run.status.success() && text(&run.stdout).contains("baseline 0.2000 m"), "{}", text(&run.stderr));
 }
@@ -189,7 +203,11 @@ fn options_and_places_that_are_wrong_are_named() {
     // Rectified already: nothing is to be done, and it is.
     let calib = bench.put("calib.txt", calibration(WIDTH, HEIGHT).as_bytes()).display().to_string();
     let run = stereo(with(&arguments, "--calib", &calib));
-    assert!(run.status.success() && text(&run.stdout).contains("Middlebury calibration"), "{}", text(&run.stderr));
+    assert!(
+        run.status.success() && text(&run.stdout).contains("Middlebury calibration"),
+        "{}",
+        text(&run.stderr)
+    );
 }
 
 #[test]
@@ -206,14 +224,22 @@ fn a_raw_pair_is_matched_in_one_loop() {
     };
     let run = stereo(rectify(&change));
     assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
-    assert!(text(&run.stdout).contains("camera       f 100.00 px, baseline 0.2000 m"), "{}", text(&run.stdout));
+    assert!(
+        text(&run.stdout).contains("camera       f 100.00 px, baseline 0.2000 m"),
+        "{}",
+        text(&run.stdout)
+    );
     for name in ["depth.pfm", "rectified_left.png", "rectified_right.png", "rectified.json", "report.html"] {
         assert!(names(&bench.path("raw")).contains(&name.to_owned()), "{name}");
     }
-    // The background is 5 px away from itself. The left camera saw nothing of two rows above, the right one of two below.
+    // The background is 5 px away from itself. The left camera saw nothing of two rows above, the right one
+    // of two below.
     let summary = std::fs::read(bench.path("raw/summary.json")).expect("a summary");
     let summary: Value = serde_json::from_slice(&summary).expect("JSON");
-    assert!((summary["depth"]["found_m"]["median"].as_f64().expect("a depth") - 4.0).abs() < 0.1, "{summary}");
+    assert!(
+        (summary["depth"]["found_m"]["median"].as_f64().expect("a depth") - 4.0).abs() < 0.1,
+        "{summary}"
+    );
     let flags = image::open(bench.path("raw/flags.png")).expect("flags").into_luma8();
     let depth = image::open(bench.path("raw/depth.png")).expect("depths").into_luma16();
     for (x, y, flags) in flags.enumerate_pixels() {
@@ -228,9 +254,11 @@ fn a_raw_pair_is_matched_in_one_loop() {
     bench.refused(&rectify(&[]), "--calib");
     bench.refused(&bench.arguments(&[("--alpha", "0")]), "--alpha");
     bench.refused(&bench.arguments(&[("--unit", "mm")]), "--unit");
-    let bad = bench.put("bad.yml", opencv().replacen("-0.2, 0.", "0.2, 0.", 1).as_bytes()).display().to_string();
+    let bad =
+        bench.put("bad.yml", opencv().replacen("-0.2, 0.", "0.2, 0.", 1).as_bytes()).display().to_string();
     bench.refused(&rectify(&[("--calib", &bad)]), "swapped");
-    let below = bench.put("below.yml", opencv().replacen("-0.2, 0.", "0., -0.2", 1).as_bytes()).display().to_string();
+    let below =
+        bench.put("below.yml", opencv().replacen("-0.2, 0.", "0., -0.2", 1).as_bytes()).display().to_string();
     bench.refused(&rectify(&[("--calib", &below)]), "below each other");
 }
 
@@ -260,10 +288,14 @@ fn rows_are_aligned_by_matches_alone() {
     assert_eq!(names(&bench.path("out")), files);
     let told = std::fs::read(bench.path("out/rectified.json")).expect("rectified.json");
     let told: Value = serde_json::from_slice(&told).expect("JSON");
-    assert!(told["calibration"].is_null() && told["row_error_px"].as_f64().is_some_and(|px| px < 0.01), "{told}");
+    assert!(
+        told["calibration"].is_null() && told["row_error_px"].as_f64().is_some_and(|px| px < 0.01),
+        "{told}"
+    );
     // The same point is in the same row, left of where it is in the left image.
     let image_of = |side: usize, x: f64, y: f64| {
-        let h = |row: usize, column: usize| told["homographies"][side][row][column].as_f64().expect("a number");
+        let h =
+            |row: usize, column: usize| told["homographies"][side][row][column].as_f64().expect("a number");
         let row = |i: usize| h(i, 0) * x + h(i, 1) * y + h(i, 2);
         (row(0) / row(2), row(1) / row(2))
     };

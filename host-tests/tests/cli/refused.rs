@@ -3,13 +3,18 @@
 use super::support::{Bench, HEIGHT, WIDTH, calibration, encode, pair, program, stereo, text};
 use image::{GrayImage, ImageFormat};
 
-const FORMATS: [(ImageFormat, &str); 4] =
-    [(ImageFormat::Png, "png"), (ImageFormat::Jpeg, "jpg"), (ImageFormat::Pnm, "pgm"), (ImageFormat::Tiff, "tiff")];
+const FORMATS: [(ImageFormat, &str); 4] = [
+    (ImageFormat::Png, "png"),
+    (ImageFormat::Jpeg, "jpg"),
+    (ImageFormat::Pnm, "pgm"),
+    (ImageFormat::Tiff, "tiff"),
+];
 
 #[test]
 fn bad_images() {
     let bench = Bench::new();
-    let mut files = vec![bench.path("missing.png"), bench.put("empty.png", b""), bench.put("text.jpg", b"no picture")];
+    let mut files =
+        vec![bench.path("missing.png"), bench.put("empty.png", b""), bench.put("text.jpg", b"no picture")];
     for (format, extension) in FORMATS {
         let whole = encode(&pair().0, format);
         for (part, of) in [(1, 100), (1, 2), (9, 10), (99, 100)] {
@@ -51,7 +56,8 @@ fn bad_ranges() {
     }
     bench.matched(&[("--disparities", "96")]);
     bench.matched(&[("--min-disparity", "64")]);
-    let narrow = bench.put("narrow.png", &encode(&GrayImage::new(15, 8), ImageFormat::Png)).display().to_string();
+    let narrow =
+        bench.put("narrow.png", &encode(&GrayImage::new(15, 8), ImageFormat::Png)).display().to_string();
     let arguments = bench.arguments(&[("--left", &narrow), ("--right", &narrow), ("--disparities", "16")]);
     bench.refused(&arguments, "15 pixels wide");
 }
@@ -70,7 +76,11 @@ fn bad_options() {
         bench.refused(&bench.arguments(&[("--threads", threads)]), "--threads");
     }
     bench.refused(&bench.arguments(&[("--kernel", "abacus")]), "--kernel");
-    let run = program().args(bench.arguments(&[])).env("STEREO_KERNEL", "abacus").output().expect("the program starts");
+    let run = program()
+        .args(bench.arguments(&[]))
+        .env("STEREO_KERNEL", "abacus")
+        .output()
+        .expect("the program starts");
     bench.is_refusal(&run, "STEREO_KERNEL", "a kernel in the environment");
     bench.refused(&bench.arguments(&[("--colour", "red")]), "--colour");
     for option in ["--left", "--right", "--disparities", "--out"] {
@@ -81,7 +91,10 @@ fn bad_options() {
         arguments.insert(at, option.into());
         bench.refused(&arguments, option);
     }
-    bench.refused(&["bench", "--left", "a", "--right", "b", "--disparities", "64", "--repeat", "0"], "--repeat");
+    bench.refused(
+        &["bench", "--left", "a", "--right", "b", "--disparities", "64", "--repeat", "0"],
+        "--repeat",
+    );
     bench.refused::<&str>(&[], "subcommand");
     bench.refused(
         &["sharpen"],
@@ -125,7 +138,8 @@ fn bad_calibrations() {
 
 #[test]
 fn help_and_version_are_no_errors() {
-    for arguments in [&["--help"][..], &["match", "--help"], &["bench", "-h"], &["demo", "--help"], &["help"]] {
+    for arguments in [&["--help"][..], &["match", "--help"], &["bench", "-h"], &["demo", "--help"], &["help"]]
+    {
         let run = stereo(arguments);
         assert!(run.status.success() && run.stderr.is_empty(), "{arguments:?}");
         assert!(text(&run.stdout).contains("Usage: stereo"), "{arguments:?}");

@@ -45,8 +45,10 @@ pub fn disparities(bench: &Bench, name: &str) -> Vec<u32> {
 fn what_is_recorded_is_played_as_match_sees_it() {
     let bench = Bench::new();
     let [left, right] = put_pair(&bench, false);
-    let [file, out, matched] = ["a.lines", "out", "matched"].map(|name| bench.path(name).display().to_string());
-    let told = run(&["record", "--left", &left, "--right", &right, "--frames", "3", "--fps", "50", "--out", &file]);
+    let [file, out, matched] =
+        ["a.lines", "out", "matched"].map(|name| bench.path(name).display().to_string());
+    let told =
+        run(&["record", "--left", &left, "--right", &right, "--frames", "3", "--fps", "50", "--out", &file]);
     assert!(told.starts_with("3 frames, 90 lines, 0 errors are in "), "{told}");
     for method in ["block", "sgm"] {
         let matching = ["--disparities", "16", "--method", method];
@@ -57,7 +59,11 @@ fn what_is_recorded_is_played_as_match_sees_it() {
         run(&[&pair[..], &matching].concat());
         let expected = disparities(&bench, "matched/disparity.pfm");
         for frame in 1..=3 {
-            assert_eq!(disparities(&bench, &format!("out/{frame:06}-disparity.pfm")), expected, "{method} {frame}");
+            assert_eq!(
+                disparities(&bench, &format!("out/{frame:06}-disparity.pfm")),
+                expected,
+                "{method} {frame}"
+            );
         }
     }
     let summary = summary(&bench, "out");
@@ -69,12 +75,16 @@ fn what_is_recorded_is_played_as_match_sees_it() {
         "{table}"
     );
 
-    // At the recorded speed the three frames take over two periods of 20 ms; fewer frames leave none of the others' files.
+    // At the recorded speed the three frames take over two periods of 20 ms; fewer frames leave none of the
+    // others' files.
     let start = Instant::now();
     run(&["replay", "--from", &file, "--disparities", "16", "--timing", "recorded", "--out", &out]);
     assert!(start.elapsed().as_millis() >= 40, "{:?}", start.elapsed());
     run(&["replay", "--from", &file, "--disparities", "16", "--frames", "1", "--out", &out]);
-    assert_eq!(names(&bench.path("out")), ["000001-disparity.pfm", "000001-flags.png", "frames.csv", "summary.json"]);
+    assert_eq!(
+        names(&bench.path("out")),
+        ["000001-disparity.pfm", "000001-flags.png", "frames.csv", "summary.json"]
+    );
 }
 
 #[test]
@@ -103,7 +113,8 @@ fn recorded_faults_happen_again_and_are_counted_by_name() {
     assert!(kinds.iter().filter(|kind| count(kind) > 0).count() > 5, "{summary}");
     assert!(count("rows_damaged") > 0 && count("rows_damaged") < count("rows"), "{summary}");
     let frames = |name: &str| summary[name].as_u64().expect("a number");
-    let all = frames("whole_frames") + frames("damaged_frames") + frames("broken_frames") + frames("failed_frames");
+    let all =
+        frames("whole_frames") + frames("damaged_frames") + frames("broken_frames") + frames("failed_frames");
     assert_eq!((all, frames("frames")), (60, 60), "{summary}");
 
     // A recording that was cut is played up to there.
@@ -119,7 +130,10 @@ fn folders_are_played_in_the_order_of_their_names() {
     put_pair(&bench, true);
     let [frames, out] = ["frames", "out"].map(|name| bench.path(name).display().to_string());
     run(&["replay", "--from", &frames, "--disparities", "16", "--out", &out]);
-    assert_eq!(disparities(&bench, "out/000001-disparity.pfm"), disparities(&bench, "out/000002-disparity.pfm"));
+    assert_eq!(
+        disparities(&bench, "out/000001-disparity.pfm"),
+        disparities(&bench, "out/000002-disparity.pfm")
+    );
 }
 
 #[test]
@@ -127,7 +141,8 @@ fn what_cannot_be_played_is_named() {
     let bench = Bench::new();
     let [left, right] = put_pair(&bench, false);
     let frames = put_pair(&bench, true);
-    let [file, out, missing] = ["a.lines", "out", "missing"].map(|name| bench.path(name).display().to_string());
+    let [file, out, missing] =
+        ["a.lines", "out", "missing"].map(|name| bench.path(name).display().to_string());
     let replay = |from: &str, wanted: &str| {
         bench.refused(&["replay", "--from", from, "--disparities", "16", "--out", &out], wanted);
     };
@@ -144,9 +159,11 @@ fn what_cannot_be_played_is_named() {
     bytes[at] = b'?';
     fs::write(&file, &bytes).expect("a file");
     replay(&file, "is corrupt at byte");
-    fs::write(&file, "stereopsis recording 1\n{\"width\":0,\"height\":9,\"max_row_skew_us\":0}\n").expect("a file");
+    fs::write(&file, "stereopsis recording 1\n{\"width\":0,\"height\":9,\"max_row_skew_us\":0}\n")
+        .expect("a file");
     replay(&file, "frames of 0 x 9");
-    let record = |arguments: &[&str], wanted: &str| bench.refused(&[&["record"][..], arguments].concat(), wanted);
+    let record =
+        |arguments: &[&str], wanted: &str| bench.refused(&[&["record"][..], arguments].concat(), wanted);
     record(&["--left", &left, "--right", &missing, "--out", &file], "missing: cannot be read");
     record(&["--left", &left, "--right", &frames[1], "--out", &file], "has 1 images and");
     record(&["--left", &left, "--right", &right, "--faults", "2", "--out", &file], "a number from 0 to 1");
@@ -181,7 +198,8 @@ fn what_cannot_be_recorded_or_is_odd_is_told_by_name() {
     bytes[header + frame + 5..][..8].copy_from_slice(&1_u64.to_le_bytes());
     fs::write(&file, bytes).expect("a recording");
     let replayed = bench.path("out").display().to_string();
-    let told = run(&["replay", "--from", &out, "--disparities", "16", "--timing", "recorded", "--out", &replayed]);
+    let told =
+        run(&["replay", "--from", &out, "--disparities", "16", "--timing", "recorded", "--out", &replayed]);
     assert!(told.contains("note: time stamps go back at frame 2;"), "{told}");
     assert_eq!(summary(&bench, "out")["time_went_back_at"], 2);
 
@@ -190,5 +208,8 @@ fn what_cannot_be_recorded_or_is_odd_is_told_by_name() {
     image::GrayImage::new(48, 29).save(std::path::Path::new(&left).join("2.png")).expect("a file");
     image::GrayImage::new(48, 29).save(std::path::Path::new(&right).join("2.png")).expect("a file");
     let told = refused(&left);
-    assert!(told.contains("2.png: is of another size than the first image") && !told.contains("a.lines"), "{told}");
+    assert!(
+        told.contains("2.png: is of another size than the first image") && !told.contains("a.lines"),
+        "{told}"
+    );
 }

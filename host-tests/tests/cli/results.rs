@@ -1,6 +1,8 @@
 //! The files of the contract, decoded and compared with what the library says in this process.
 
-use super::support::{Bench, FAR, HEIGHT, NEAR, WIDTH, calibration, encode, names, pair, program, stereo, text};
+use super::support::{
+    Bench, FAR, HEIGHT, NEAR, WIDTH, calibration, encode, names, pair, program, stereo, text,
+};
 use image::{DynamicImage, ImageFormat};
 use serde_json::Value;
 use std::fs;
@@ -44,19 +46,28 @@ fn every_kernel_and_number_of_threads_writes_the_same() {
     let out = bench.path("out");
     for method in ["fast", "block"] {
         bench.matched(&[("--method", method)]);
-        let [expected, flags] = ["disparity.pfm", "flags.png"].map(|file| fs::read(out.join(file)).expect("a result"));
+        let [expected, flags] =
+            ["disparity.pfm", "flags.png"].map(|file| fs::read(out.join(file)).expect("a result"));
         let bands = stereo(bench.arguments(&[("--method", method), ("--threads", "3")]));
         assert!(bands.status.success(), "{}", text(&bands.stderr));
-        assert!(fs::read(out.join("disparity.pfm")).expect("a result") == expected, "{method} in three threads");
+        assert!(
+            fs::read(out.join("disparity.pfm")).expect("a result") == expected,
+            "{method} in three threads"
+        );
         assert!(fs::read(out.join("flags.png")).expect("a result") == flags, "{method} in three threads");
         for kernel in Kernel::available().map(Kernel::name) {
             let by_option = stereo(bench.arguments(&[("--method", method), ("--kernel", kernel)]));
-            let by_variable =
-                program().args(bench.arguments(&[("--method", method)])).env("STEREO_KERNEL", kernel).output();
+            let by_variable = program()
+                .args(bench.arguments(&[("--method", method)]))
+                .env("STEREO_KERNEL", kernel)
+                .output();
             for run in [by_option, by_variable.expect("the program starts")] {
                 assert!(run.status.success(), "{kernel}: {}", text(&run.stderr));
                 assert_eq!(json(&out.join("summary.json"))["kernel"], kernel);
-                assert!(fs::read(out.join("disparity.pfm")).expect("a result") == expected, "{method} on {kernel}");
+                assert!(
+                    fs::read(out.join("disparity.pfm")).expect("a result") == expected,
+                    "{method} on {kernel}"
+                );
                 assert!(fs::read(out.join("flags.png")).expect("a result") == flags, "{method} on {kernel}");
             }
         }
@@ -74,17 +85,25 @@ fn the_files_hold_what_the_library_says() {
             bench.matched(&[("--method", name), ("--filter", filter)]);
             assert_eq!(float_map(&out.join("disparity.pfm")).values, map.pixels(), "{name} {filter}");
 
-            let DynamicImage::ImageLuma16(samples) = picture(&out.join("disparity.png")) else { panic!("16-bit grey") };
+            let DynamicImage::ImageLuma16(samples) = picture(&out.join("disparity.png")) else {
+                panic!("16-bit grey")
+            };
             for (sample, px) in samples.iter().zip(map.pixels()) {
                 let expected = if px.is_finite() { (px * 256.0).clamp(1.0, 65535.0) } else { 0.0 };
                 assert_eq!(f32::from(*sample), expected);
             }
-            let DynamicImage::ImageLuma8(flags) = picture(&out.join("flags.png")) else { panic!("8-bit grey") };
+            let DynamicImage::ImageLuma8(flags) = picture(&out.join("flags.png")) else {
+                panic!("8-bit grey")
+            };
             assert!(flags.iter().zip(&map.flags).all(|(byte, flags)| *byte == flags.bits()));
-            let DynamicImage::ImageLuma8(sure) = picture(&out.join("confidence.png")) else { panic!("8-bit grey") };
+            let DynamicImage::ImageLuma8(sure) = picture(&out.join("confidence.png")) else {
+                panic!("8-bit grey")
+            };
             assert!(sure.as_raw() == &map.confidence);
             assert!(map.confidence.iter().zip(&map.disparity).all(|(c, d)| (*c > 0) == d.is_some()));
-            let DynamicImage::ImageRgb8(colours) = picture(&out.join("disparity_colour.png")) else { panic!("colour") };
+            let DynamicImage::ImageRgb8(colours) = picture(&out.join("disparity_colour.png")) else {
+                panic!("colour")
+            };
             assert!(colours.pixels().zip(&map.disparity).all(|(c, d)| (c.0 == [0; 3]) == d.is_none()));
 
             let summary = json(&out.join("summary.json"));
@@ -143,7 +162,10 @@ fn exposures_are_balanced_where_they_differ() {
     let number = |name: &str| balance()[name].as_f64().expect("a number");
     let [gain, offset] = ["gain", "offset"].map(number);
     assert!((gain - 2.0).abs() < 0.1 && (offset + 160.0).abs() < 10.0, "{gain}, {offset}");
-    assert!(told.contains(&format!("exposure     right image x {gain:.2} {offset:+.1} grey levels")), "{told}");
+    assert!(
+        told.contains(&format!("exposure     right image x {gain:.2} {offset:+.1} grey levels")),
+        "{told}"
+    );
     let (told_without, as_it_comes) = answers(&[("--method", "sgm"), ("--balance", "none")]);
     assert!(!told_without.contains("exposure") && balance().is_null() && balanced != as_it_comes);
     // A census does not ask how bright a pixel is.
@@ -176,10 +198,15 @@ fn a_calibration_adds_depth_in_metres_and_millimetres_and_a_cloud() {
     let map = in_process(Method::Block, Filter::Default, NoiseChoice::Auto);
     let depth = float_map(&out.join("depth.pfm"));
     assert_eq!(depth.values, map.depth_m(&scale));
-    let DynamicImage::ImageLuma16(millimetres) = picture(&out.join("depth.png")) else { panic!("16-bit grey") };
+    let DynamicImage::ImageLuma16(millimetres) = picture(&out.join("depth.png")) else {
+        panic!("16-bit grey")
+    };
     for ((mm, m), d) in millimetres.iter().zip(&depth.values).zip(&map.disparity) {
         assert_eq!(*mm, scale.millimetres(*d).0);
-        assert!(if m.is_finite() { (f32::from(*mm) - m * 1000.0).abs() <= 1.0 } else { *mm == 0 }, "{mm} mm, {m} m");
+        assert!(
+            if m.is_finite() { (f32::from(*mm) - m * 1000.0).abs() <= 1.0 } else { *mm == 0 },
+            "{mm} mm, {m} m"
+        );
     }
     let cloud = fs::read(out.join("cloud.ply")).expect("a cloud");
     let body = cloud.windows(11).position(|w| w == b"end_header\n").expect("a header") + 11;
@@ -274,18 +301,23 @@ fn the_demo_writes_the_truth_beside_the_answers() {
         "true_disparity.pfm",
     ];
     assert_eq!(names(&out), expected);
-    let read =
-        |name: &str| pfm::read(&mut fs::read(out.join(name)).expect("a result").as_slice()).expect("a float map");
+    let read = |name: &str| {
+        pfm::read(&mut fs::read(out.join(name)).expect("a result").as_slice()).expect("a float map")
+    };
     let (answer, truth, error) = (read("disparity.pfm"), read("true_disparity.pfm"), read("error.pfm"));
     for ((a, t), e) in answer.values.iter().zip(&truth.values).zip(&error.values) {
-        assert!(if a.is_finite() && t.is_finite() { a - t == *e } else { *e == f32::INFINITY }, "{a} {t} {e}");
+        assert!(
+            if a.is_finite() && t.is_finite() { a - t == *e } else { *e == f32::INFINITY },
+            "{a} {t} {e}"
+        );
     }
     let accuracy = &json(&out.join("summary.json"))["accuracy"];
     assert!(accuracy["density"].as_f64().is_some_and(|share| share > 0.9), "{accuracy}");
     assert!(accuracy["bad2"].as_f64().is_some_and(|share| share < 0.02), "{accuracy}");
     assert!(accuracy["within_3_sigma"].as_f64().is_some_and(|share| share > 0.98), "{accuracy}");
     let worth = &accuracy["sparsification"];
-    let [area, oracle, random] = ["area", "oracle", "random"].map(|name| worth[name].as_f64().expect("a number"));
+    let [area, oracle, random] =
+        ["area", "oracle", "random"].map(|name| worth[name].as_f64().expect("a number"));
     assert!(oracle < area && area - oracle < 0.15 * (random - oracle), "{worth}");
     assert!(text(&run.stdout).contains("within 3 sigma_Z"));
     // Its own pictures may be replaced.

@@ -68,7 +68,8 @@ impl Bench {
         found
     }
 
-    /// The arguments of `match` on the pair, with results in `out`; `change` replaces values of options or adds some.
+    /// The arguments of `match` on the pair, with results in `out`; `change` replaces values of options or
+    /// adds some.
     pub fn arguments(&self, change: &[(&str, &str)]) -> Vec<String> {
         let file = |name| self.path(name).display().to_string();
         let mut options = BTreeMap::from([

@@ -8,8 +8,8 @@ use std::fmt::Write;
 /// Focal length and principal point of both cameras, px.
 const CAMERA: (f64, f64, f64) = (500.0, 320.0, 240.0);
 
-/// Matches of a scene before two cameras that look alike, the second one 0.8 to the right and 0.6 ahead: t = (0.8, 0,
-/// 0.6), R = 1. Every fifth match is wrong when asked; `flat` puts the scene on a wall.
+/// Matches of a scene before two cameras that look alike, the second one 0.8 to the right and 0.6 ahead: t =
+/// (0.8, 0, 0.6), R = 1. Every fifth match is wrong when asked; `flat` puts the scene on a wall.
 fn matches(count: usize, wrong: bool, flat: bool) -> String {
     let (f, cx, cy) = CAMERA;
     let mut text = "x1,y1,x2,y2\n".to_owned();
@@ -34,7 +34,8 @@ fn calibration() -> String {
 
 fn arguments(bench: &Bench, command: &str, extra: &[&str]) -> Vec<String> {
     let file = |name: &str| bench.path(name).display().to_string();
-    let mut all = vec![command.to_owned(), "--matches".into(), file("m.csv"), "--out".into(), file("out/answer.json")];
+    let mut all =
+        vec![command.to_owned(), "--matches".into(), file("m.csv"), "--out".into(), file("out/answer.json")];
     if command == "pose" {
         all.extend(["--calib".to_owned(), file("calib.txt")]);
     }
@@ -76,10 +77,15 @@ fn fundamental_finds_the_wrong_ones() {
     let first = answer(&bench, "fundamental", &["--seed", "7"]);
     let (right, wrong) = kept(&first);
     assert!(right == 80 && wrong <= 3, "{right} {wrong}");
-    // F = K^-T [t]x K^-1 with t = (0.8, 0, 0.6): p^T F p' = 0 for (320, 240) of the one and (320 - 400/5.4 ...) says the
-    // file itself: every right line.
+    // F = K^-T [t]x K^-1 with t = (0.8, 0, 0.6): p^T F p' = 0 for (320, 240) of the one and (320 - 400/5.4
+    // ...) says the file itself: every right line.
     let f = numbers(&first["fundamental"]);
-    for line in matches(100, true, false).lines().skip(1).enumerate().filter(|(i, _)| i % 5 != 0).map(|(_, line)| line)
+    for line in matches(100, true, false)
+        .lines()
+        .skip(1)
+        .enumerate()
+        .filter(|(i, _)| i % 5 != 0)
+        .map(|(_, line)| line)
     {
         let m: Vec<f64> = line.split(',').map(|word| word.parse().expect("a number")).collect();
         let (p, q) = ([m[0], m[1], 1.0], [m[2], m[3], 1.0]);

@@ -2,7 +2,8 @@
 
 use super::{config, detect, rows_aligned};
 use stereopsis::features::{
-    Epipolar, FeatureConfig, FeatureConfigError, FeatureDetector, FeatureLineError, Matcher, Search, SearchError,
+    Epipolar, FeatureConfig, FeatureConfigError, FeatureDetector, FeatureLineError, Matcher, Search,
+    SearchError,
 };
 use stereopsis_host::scene::pattern::Pattern;
 
@@ -30,8 +31,14 @@ fn a_full_list_counts_what_it_leaves_out() {
 fn a_detector_says_what_would_have_been_enough() {
     let mut detector = FeatureDetector::<64, 10>::new();
     let good = FeatureConfig::new(64, 64);
-    assert_eq!(detector.start(&FeatureConfig { width: 65, ..good }), Err(FeatureConfigError::Width { most: 64 }));
-    assert_eq!(detector.start(&FeatureConfig { per_cell: 6, ..good }), Err(FeatureConfigError::Slots { needed: 12 }));
+    assert_eq!(
+        detector.start(&FeatureConfig { width: 65, ..good }),
+        Err(FeatureConfigError::Width { most: 64 })
+    );
+    assert_eq!(
+        detector.start(&FeatureConfig { per_cell: 6, ..good }),
+        Err(FeatureConfigError::Slots { needed: 12 })
+    );
     for bad in [FeatureConfig { cell_px: 15, ..good }, FeatureConfig { cell_px: 0, ..good }] {
         assert_eq!(detector.start(&bad), Err(FeatureConfigError::Cells));
     }
@@ -43,8 +50,9 @@ fn a_detector_says_what_would_have_been_enough() {
 fn lines_are_due_between_start_and_the_last() {
     let mut detector = FeatureDetector::<64, 10>::new();
     let mut list = heapless::Vec::<_, 8>::new();
-    let mut push =
-        |detector: &mut FeatureDetector<64, 10>, width: usize| detector.push(&[7; 64][..width], list.as_mut_view());
+    let mut push = |detector: &mut FeatureDetector<64, 10>, width: usize| {
+        detector.push(&[7; 64][..width], list.as_mut_view())
+    };
     assert_eq!(push(&mut detector, 64), Err(FeatureLineError::NoLineDue));
     detector.start(&FeatureConfig::new(64, 2)).expect("within the capacity");
     assert_eq!(push(&mut detector, 63), Err(FeatureLineError::Length { needed: 64 }));
@@ -75,7 +83,9 @@ fn a_frame_that_was_cut_off_leaves_nothing() {
 
 #[test]
 fn a_search_that_makes_no_sense() {
-    let run = |search: Search| Matcher::<4>::new().run(&[], &[], &search, heapless::Vec::<_, 1>::new().as_mut_view());
+    let run = |search: Search| {
+        Matcher::<4>::new().run(&[], &[], &search, heapless::Vec::<_, 1>::new().as_mut_view())
+    };
     let every = Search::new();
     assert_eq!(run(every), Ok(0));
     for ratio_percent in [0, 101] {

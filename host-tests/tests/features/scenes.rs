@@ -4,14 +4,22 @@ use super::{config, detect, matched, rows_aligned};
 use image::{GrayImage, Luma, imageops};
 use nalgebra::{Point2, Rotation3, Vector3};
 use stereopsis::features::{Descriptor, Epipolar, Feature, FeatureConfig, Match, Orientation, Search};
-use stereopsis::geometry::{Camera, Correspondence, Essential, Fundamental, Pose, RobustConfig, robust_fundamental};
+use stereopsis::geometry::{
+    Camera, Correspondence, Essential, Fundamental, Pose, RobustConfig, robust_fundamental,
+};
 use stereopsis_host::correspond::{Plan, correspond};
 use stereopsis_host::scene::Scene;
 use stereopsis_host::scene::pattern::Pattern;
 use stereopsis_host::two_view::off_degrees;
 
-/// The share of the matches that lie within `px` of where `motion` brings the left point, and how many there are.
-fn follow(lists: [&[Feature]; 2], matches: &[Match], px: f32, motion: impl Fn(f32, f32) -> [f32; 2]) -> (f32, usize) {
+/// The share of the matches that lie within `px` of where `motion` brings the left point, and how many there
+/// are.
+fn follow(
+    lists: [&[Feature]; 2],
+    matches: &[Match],
+    px: f32,
+    motion: impl Fn(f32, f32) -> [f32; 2],
+) -> (f32, usize) {
     let good = matches.iter().filter(|m| {
         let (left, right) = (&lists[0][usize::from(m.left)], &lists[1][usize::from(m.right)]);
         let [x, y] = motion(left.x_px, left.y_px);
@@ -45,10 +53,12 @@ fn texture(side: u32) -> GrayImage {
 #[test]
 fn a_shift_by_whole_cells_shifts_all_features() {
     let scene = texture(280);
-    let [left, right] = [(0, 0), (64, 32)].map(|(x, y)| imageops::crop_imm(&scene, x, y, 200, 200).to_image());
+    let [left, right] =
+        [(0, 0), (64, 32)].map(|(x, y)| imageops::crop_imm(&scene, x, y, 200, 200).to_image());
     let [left, right] = [left, right].map(|image| detect(&config(&image), &image).0);
     // Whole cells that both pictures have, away from the margins.
-    let inside = |f: &&Feature, x: f32, y: f32| (x..x + 64.0).contains(&f.x_px) && (y..y + 64.0).contains(&f.y_px);
+    let inside =
+        |f: &&Feature, x: f32, y: f32| (x..x + 64.0).contains(&f.x_px) && (y..y + 64.0).contains(&f.y_px);
     let shifted: Vec<_> = left.iter().filter(|f| inside(f, 96.0, 64.0)).collect();
     let expected: Vec<_> = right
         .iter()
@@ -95,7 +105,8 @@ fn matches_follow_turns() {
         let pair = [&lists[0][..], &lists[1]];
         let (share, count) = follow(pair, &matches, 1.5, motion);
         let off = median_off(pair, &matches, motion);
-        table += &format!("{orientation:?} {degrees}: {share}, {count} of {}, {off} px off\n", lists[0].len());
+        table +=
+            &format!("{orientation:?} {degrees}: {share}, {count} of {}, {off} px off\n", lists[0].len());
         assert!(share >= 0.9 && count >= least && off <= 0.2, "{table}");
     }
     println!("{table}");
@@ -116,12 +127,16 @@ fn matches_in_a_scene_have_its_disparity() {
     let (share, count) = follow(lists, &everywhere, 1.0, true_place);
     assert!(share >= 0.85 && count >= 170, "{share} of {count}");
 
-    let along = Search { epipolar: Some(Epipolar { fundamental: rows_aligned(), tolerance_px: 1.0 }), ..Search::new() };
+    let along = Search {
+        epipolar: Some(Epipolar { fundamental: rows_aligned(), tolerance_px: 1.0 }),
+        ..Search::new()
+    };
     let in_rows = matched(lists[0], lists[1], &along);
     let (share_in_rows, count_in_rows) = follow(lists, &in_rows, 1.0, true_place);
     assert!(share_in_rows >= 0.88 && count_in_rows >= 170, "{share_in_rows} of {count_in_rows}");
-    let most_off =
-        in_rows.iter().map(|m| (lists[0][usize::from(m.left)].y_px - lists[1][usize::from(m.right)].y_px).abs());
+    let most_off = in_rows
+        .iter()
+        .map(|m| (lists[0][usize::from(m.left)].y_px - lists[1][usize::from(m.right)].y_px).abs());
     assert!(most_off.fold(0.0, f32::max) < 1.001);
 
     // Corners that both cameras see are found again, and to a fraction of a pixel.
@@ -131,7 +146,9 @@ fn matches_in_a_scene_have_its_disparity() {
         lists[1].iter().any(|g| (g.x_px - x).hypot(g.y_px - y) <= 1.5)
     });
     let repeated = again.count() as f32 / lists[0].len() as f32;
-    println!("{share} of {count}, in rows {share_in_rows} of {count_in_rows}, {off} px off, found again {repeated}");
+    println!(
+        "{share} of {count}, in rows {share_in_rows} of {count_in_rows}, {off} px off, found again {repeated}"
+    );
     assert!(off <= 0.2 && repeated >= 0.55, "{off} px off, {repeated} found again");
 }
 
@@ -143,7 +160,8 @@ fn a_scene_from_two_poses_gives_the_pose() {
     let camera = Camera::new(focal, focal, cx.into(), cy.into()).expect("a camera");
     // Turned to the left, up and about the axis; to the right, down and ahead.
     let mut table = String::new();
-    for (turn, step) in [([0.02, -0.10, 0.05], [0.25, 0.04, 0.1]), ([-0.03, 0.05, -0.2], [-0.15, 0.1, 0.05])] {
+    for (turn, step) in [([0.02, -0.10, 0.05], [0.25, 0.04, 0.1]), ([-0.03, 0.05, -0.2], [-0.15, 0.1, 0.05])]
+    {
         let rotation = Rotation3::new(Vector3::from(turn));
         let pose = Pose::new(*rotation.matrix(), Vector3::from(step)).expect("a rotation");
         let [left, right] = [scene.render().0, scene.seen_from(&pose).with_noise(1.0, 7).render().0];
@@ -151,7 +169,10 @@ fn a_scene_from_two_poses_gives_the_pose() {
         let seen: Vec<_> = found
             .points()
             .map(|points| points.map(f64::from))
-            .map(|[x1, y1, x2, y2]| Correspondence { first: Point2::new(x1, y1), second: Point2::new(x2, y2) })
+            .map(|[x1, y1, x2, y2]| Correspondence {
+                first: Point2::new(x1, y1),
+                second: Point2::new(x2, y2),
+            })
             .collect();
         let truth = Fundamental::from_cameras(&pose, &camera, &camera).expect("a baseline");
         let right = seen.iter().filter(|s| truth.sampson_px(s).abs() < 1.0).count();
@@ -162,7 +183,8 @@ fn a_scene_from_two_poses_gives_the_pose() {
         let kept = seen.iter().zip(&inliers).filter(|&(_, &inlier)| inlier).map(|(s, _)| *s);
         let recovered = essential.recover_pose(kept, &camera, &camera).expect("a pose");
         let (rotation, direction) = off_degrees(&recovered.pose.in_baselines(), &pose);
-        table += &format!("{right} of {} right, off by {rotation:.3} and {direction:.3} degrees\n", seen.len());
+        table +=
+            &format!("{right} of {} right, off by {rotation:.3} and {direction:.3} degrees\n", seen.len());
         assert!(right >= 200 && 10 * right >= 8 * seen.len() && rotation < 0.5 && direction < 2.0, "{table}");
     }
     println!("{table}");

@@ -4,7 +4,9 @@ use super::{C, config, detect, matched, rows_aligned};
 use image::GrayImage;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use stereopsis::features::{Epipolar, FeatureConfig, Level, Match, Orientation, Search, drop_repeats, fast_scores};
+use stereopsis::features::{
+    Epipolar, FeatureConfig, Level, Match, Orientation, Search, drop_repeats, fast_scores,
+};
 use stereopsis_host::correspond::shrunk;
 use stereopsis_host::scene::Random;
 use stereopsis_host::scene::pattern::Pattern;
@@ -66,7 +68,8 @@ fn scores_of_rows_of_every_width() {
 fn features_of_pictures_of_awkward_sizes() {
     let mut found = 0;
     for pattern in PATTERNS {
-        for (width, height) in [(1, 1), (34, 35), (35, 34), (35, 35), (36, 51), (51, 36), (67, 49), (98, 83)] {
+        for (width, height) in [(1, 1), (34, 35), (35, 34), (35, 35), (36, 51), (51, 36), (67, 49), (98, 83)]
+        {
             let image = picture(pattern, width, height, 3);
             found += compare(&config(&image), &image);
         }
@@ -79,7 +82,8 @@ fn shrunk_pictures_of_awkward_sizes() {
     for (width, height) in [(1, 1), (2, 3), (3, 3), (5, 7), (16, 16), (33, 50)] {
         for pattern in [Pattern::Noise, Pattern::Saturated, Pattern::Constant(255)] {
             let image = picture(pattern, width, height, 5);
-            for (core, n) in [(shrunk::<2>(&image), 2), (shrunk::<3>(&image), 3), (shrunk::<16>(&image), 16)] {
+            for (core, n) in [(shrunk::<2>(&image), 2), (shrunk::<3>(&image), 3), (shrunk::<16>(&image), 16)]
+            {
                 let twin = twin::shrunk(&image, n);
                 // A picture without columns has no rows that could be counted.
                 if twin.width() > 0 {
@@ -140,7 +144,8 @@ fn matches_without_repeats() {
         list.extend(detect(&FeatureConfig { level, ..config(&smaller) }, &smaller).0);
         list
     });
-    let matches = matched(&lists[0], &lists[1], &Search { ratio_percent: 100, most_different: 256, ..Search::new() });
+    let matches =
+        matched(&lists[0], &lists[1], &Search { ratio_percent: 100, most_different: 256, ..Search::new() });
     let mut left_over = Vec::new();
     for apart_px in [f32::NAN, 0.0, 0.5, 1.5, 6.0, 1e9] {
         let mut core = Box::new(heapless::Vec::<Match, 4096>::new());

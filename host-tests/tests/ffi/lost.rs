@@ -21,7 +21,11 @@ impl ErrorType for Losing<'_> {
 impl StereoSource for Losing<'_> {
     fn format(&self) -> LineFormat {
         let size = |n: usize| u16::try_from(n).expect("small");
-        LineFormat { width: size(self.lines[0][0].len()), height: size(self.lines[0].len()), pixel: PixelFormat::Grey8 }
+        LineFormat {
+            width: size(self.lines[0][0].len()),
+            height: size(self.lines[0].len()),
+            pixel: PixelFormat::Grey8,
+        }
     }
 
     fn max_row_skew_us(&self) -> u32 {
@@ -33,7 +37,11 @@ impl StereoSource for Losing<'_> {
         Ok(FrameStart::default())
     }
 
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
+    fn next_lines(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<Self::Error>> {
         let row = self.next;
         self.next += 1;
         if self.lost.contains(&row) {
@@ -74,8 +82,16 @@ fn lost_lines_are_those_of_a_guarded_pipeline() {
             let mut due = 0..usize::from(height);
             loop {
                 let status = match due.next() {
-                    Some(y) if lost.contains(&y) => stereopsis_push_lost(handle, STEREOPSIS_LOST_LATE, &raw mut row),
-                    Some(y) => stereopsis_push(handle, left[y].as_ptr(), right[y].as_ptr(), width.into(), &raw mut row),
+                    Some(y) if lost.contains(&y) => {
+                        stereopsis_push_lost(handle, STEREOPSIS_LOST_LATE, &raw mut row)
+                    }
+                    Some(y) => stereopsis_push(
+                        handle,
+                        left[y].as_ptr(),
+                        right[y].as_ptr(),
+                        width.into(),
+                        &raw mut row,
+                    ),
                     None => stereopsis_flush(handle, &raw mut row),
                 };
                 match status {
@@ -84,7 +100,11 @@ fn lost_lines_are_those_of_a_guarded_pipeline() {
                     status => assert_eq!(status, Status::Ok),
                 }
                 let disparities = std::slice::from_raw_parts(row.disparities, row.width.into()).to_vec();
-                found.push((row.index, disparities, std::slice::from_raw_parts(row.flags, row.width.into()).to_vec()));
+                found.push((
+                    row.index,
+                    disparities,
+                    std::slice::from_raw_parts(row.flags, row.width.into()).to_vec(),
+                ));
             }
             assert_eq!(stereopsis_counters(handle, &raw mut counters), Status::Ok);
             // Another configuration leaves them, and begins no frame.

@@ -2,7 +2,8 @@
 
 use super::*;
 use stereopsis::ffi::{
-    STEREOPSIS_NOISE_HIGH, STEREOPSIS_NOISE_NONE, STEREOPSIS_PRESET_DENSE, STEREOPSIS_PRESET_STRICT, config_noise,
+    STEREOPSIS_NOISE_HIGH, STEREOPSIS_NOISE_NONE, STEREOPSIS_PRESET_DENSE, STEREOPSIS_PRESET_STRICT,
+    config_noise,
 };
 use stereopsis::matching::{Fast, Filter, Sgm, SgmEdge, SgmLean};
 
@@ -11,8 +12,11 @@ const PRESETS: [(i32, Filter); 3] = [
     (STEREOPSIS_PRESET_DEFAULT, Filter::Default),
     (STEREOPSIS_PRESET_STRICT, Filter::Strict),
 ];
-const LEVELS: [(u8, Noise); 3] =
-    [(STEREOPSIS_NOISE_NONE, Noise::None), (STEREOPSIS_NOISE_LOW, Noise::Low), (STEREOPSIS_NOISE_HIGH, Noise::High)];
+const LEVELS: [(u8, Noise); 3] = [
+    (STEREOPSIS_NOISE_NONE, Noise::None),
+    (STEREOPSIS_NOISE_LOW, Noise::Low),
+    (STEREOPSIS_NOISE_HIGH, Noise::High),
+];
 
 /// A configuration in which every field is another than any preset's.
 fn odd(width: u16, height: u16) -> Config {
@@ -45,14 +49,19 @@ fn odd(width: u16, height: u16) -> Config {
 fn rows_of<S: Scheme>() -> Vec<Vec<Found>> {
     let (width, height) = (70, 40);
     let lines = lines(width, height);
-    let search = matching::Config { min_disparity: 2, confidence: true, ..matching::Config::new(width, height, 24) };
+    let search =
+        matching::Config { min_disparity: 2, confidence: true, ..matching::Config::new(width, height, 24) };
     let mut all = Vec::new();
     for (preset, filter) in PRESETS {
         for (number, noise) in LEVELS {
             let mut config = odd(width, height);
             // SAFETY: the pointer is to a configuration.
             assert_eq!(unsafe { config_noise::<S>(preset, number, &raw mut config) }, Status::Ok);
-            assert_eq!((config.min_disparity, config.confidence, config.noise), (2, 77, number), "kept, and set");
+            assert_eq!(
+                (config.min_disparity, config.confidence, config.noise),
+                (2, 77, number),
+                "kept, and set"
+            );
             let asked = matching::Config { noise, ..search }.with_filter::<S>(filter);
             let found = c_rows::<S>(&config, &lines);
             assert!(found == rows::<S>(&asked, &lines), "{}, {filter:?}, {noise:?}", S::NAME);
@@ -64,7 +73,9 @@ fn rows_of<S: Scheme>() -> Vec<Vec<Found>> {
 
 #[test]
 fn rows_for_cameras_with_noise_are_those_of_with_filter() {
-    for all in [rows_of::<Sgm>(), rows_of::<SgmEdge>(), rows_of::<SgmLean>(), rows_of::<Block>(), rows_of::<Fast>()] {
+    for all in
+        [rows_of::<Sgm>(), rows_of::<SgmEdge>(), rows_of::<SgmLean>(), rows_of::<Block>(), rows_of::<Fast>()]
+    {
         assert!(all.chunks(LEVELS.len()).all(|levels| levels[0] != levels[1]), "noise makes a difference");
         assert!(all.chunks(LEVELS.len()).is_sorted_by(|a, b| a != b), "presets do");
     }

@@ -24,7 +24,8 @@ fn flat(seed: u64, textured: bool) -> (FocusScene, f64) {
     // Anywhere in the range, also beside its ends, where a peak has one flank.
     let best = (1023.0 * random.unit()).max(0.5);
     let depth = lens.object_distance(image_m(best)).expect("an object");
-    let (finest, contrast) = (1.5 + 3.0 * random.unit(), if textured { 60.0 + 140.0 * random.unit() } else { 0.0 });
+    let (finest, contrast) =
+        (1.5 + 3.0 * random.unit(), if textured { 60.0 + 140.0 * random.unit() } else { 0.0 });
     let grey = texture(SIDE, SIDE, finest, contrast, seed);
     let scene = FocusScene {
         width: SIDE,
@@ -47,7 +48,8 @@ fn sharpness(frame: &GrayImage) -> u32 {
     meter.sharpness()
 }
 
-/// Follows the commands to the end: with what is measured at a position, and how many moves and frames there were.
+/// Follows the commands to the end: with what is measured at a position, and how many moves and frames there
+/// were.
 fn follow(
     limits: ActuatorLimits,
     most_move: u16,
@@ -101,8 +103,9 @@ fn a_thousand_scenes_come_into_focus_within_twelve_frames() {
 fn a_scene_without_texture_is_told() {
     for seed in 0..50 {
         let (scene, _) = flat(seed, false);
-        let (result, _) =
-            follow(LIMITS, 1023, 300, |at| sharpness(&scene.render(image_m(at.into()), seed << 12 | u64::from(at))));
+        let (result, _) = follow(LIMITS, 1023, 300, |at| {
+            sharpness(&scene.render(image_m(at.into()), seed << 12 | u64::from(at)))
+        });
         assert_eq!(result, Err(AutofocusError::Untextured), "seed {seed}");
     }
     assert_eq!(follow(LIMITS, 1023, 0, |_| 0).0, Err(AutofocusError::Untextured));
@@ -135,7 +138,8 @@ fn moves_are_bounded_and_come_from_below() {
 #[test]
 fn both_ends_of_the_range_are_found() {
     for (best, at_end) in [(0.0, 0), (1023.0, 1023)] {
-        let (focused, _) = follow(LIMITS, 1023, 500, |at| (1e9 / (4e3 + (f64::from(at) - best).powi(2))) as u32);
+        let (focused, _) =
+            follow(LIMITS, 1023, 500, |at| (1e9 / (4e3 + (f64::from(at) - best).powi(2))) as u32);
         assert!(f64::from(focused.expect("a focus").position.abs_diff(at_end)) <= STEP);
     }
     let narrow = ActuatorLimits { least: 5, most: 60, backlash: 0 };

@@ -36,9 +36,12 @@ fn positions_are_two_bytes() {
 
 #[test]
 fn slews_are_told_and_waited_for() {
-    for (slew, bits, period_us) in
-        [(Slew::Direct, 0, 0), (Slew::Linear(0), 0xc, 81), (Slew::Linear(3), 0xf, 648), (Slew::Linear(9), 0xf, 648)]
-    {
+    for (slew, bits, period_us) in [
+        (Slew::Direct, 0, 0),
+        (Slew::Linear(0), 0xc, 81),
+        (Slew::Linear(3), 0xf, 648),
+        (Slew::Linear(9), 0xf, 648),
+    ] {
         let mut bus = Mock::new(&[Transaction::write(ADDRESS, vec![0x01, bits])]);
         let mut lens = Dw9714::new(bus.clone(), slew);
         lens.move_to(16).expect("the bus takes it");

@@ -19,18 +19,21 @@ const BASELINE_M: f64 = 0.004;
 const DISPARITY: usize = 8;
 const WALL_M: f64 = FOCAL_PX * BASELINE_M / DISPARITY as f64;
 
-/// A wall, speckled on its left and with stripes along the rows on its right, which two cameras side by side see alike at every
-/// disparity.
+/// A wall, speckled on its left and with stripes along the rows on its right, which two cameras side by side
+/// see alike at every disparity.
 fn wall() -> Vec<f64> {
     let speckles = texture(WIDTH + DISPARITY, HEIGHT, 2.0, 160.0, 5);
     let stripes = texture(1, HEIGHT, 2.0, 160.0, 6);
     let place = |i: usize| (i % (WIDTH + DISPARITY), i / (WIDTH + DISPARITY));
-    (0..speckles.len()).map(|i| if place(i).0 < WIDTH / 2 { speckles[i] } else { stripes[place(i).1] }).collect()
+    (0..speckles.len())
+        .map(|i| if place(i).0 < WIDTH / 2 { speckles[i] } else { stripes[place(i).1] })
+        .collect()
 }
 
 /// What the camera sees that stands `shift` columns to the right.
 fn scene(shift: usize) -> FocusScene {
-    let grey = wall().chunks_exact(WIDTH + DISPARITY).flat_map(|row| row[shift..shift + WIDTH].to_vec()).collect();
+    let grey =
+        wall().chunks_exact(WIDTH + DISPARITY).flat_map(|row| row[shift..shift + WIDTH].to_vec()).collect();
     FocusScene {
         width: WIDTH,
         height: HEIGHT,
@@ -88,8 +91,8 @@ fn focus_answers_where_stereo_is_blind() {
     let mut both = vec![None; stereo.len()];
     fuse(&stereo, &focus, &mut both);
     let part = |map: &[Option<Depth>], from: usize, to: usize| {
-        let inside =
-            (0..map.len()).filter(|i| (from..to).contains(&(i % WIDTH)) && (8..HEIGHT - 8).contains(&(i / WIDTH)));
+        let inside = (0..map.len())
+            .filter(|i| (from..to).contains(&(i % WIDTH)) && (8..HEIGHT - 8).contains(&(i / WIDTH)));
         let all: Vec<_> = inside.map(|i| map[i]).collect();
         let right = |d: &Depth| (f64::from(d.depth_m) - WALL_M).abs() <= 3.0 * f64::from(d.sigma_m);
         let sigma: f32 =

@@ -15,8 +15,12 @@ fn what_no_lens_does_is_refused_by_name() {
     }
     let lens = ThinLens::new(0.05).expect("a lens");
     for bad in BAD {
-        let all =
-            [lens.image_distance(bad), lens.object_distance(bad), lens.magnification(bad), lens.hyperfocal(bad, 1e-5)];
+        let all = [
+            lens.image_distance(bad),
+            lens.object_distance(bad),
+            lens.magnification(bad),
+            lens.hyperfocal(bad, 1e-5),
+        ];
         assert_eq!(all, [Err(LensError::NotFinite); 4]);
         assert_eq!(lens.object_sigma(0.06, bad), Err(LensError::NotFinite));
         assert_eq!(lens.circle_of_confusion(0.02, bad, 1.0), Err(LensError::NotFinite));
@@ -46,17 +50,29 @@ fn what_no_lens_does_is_refused_by_name() {
     assert_eq!(lens.object_distance_from_extension_um(0), Err(LensError::ImageWithinFocus));
     assert_eq!(lens.object_sigma_um(0, 5), Err(LensError::ImageWithinFocus));
     assert_eq!(lens.object_distance_from_extension_um(1), Err(LensError::TooLarge));
-    assert_eq!(MicroLens::new(u32::MAX - 1).expect("a lens").image_distance_um(u32::MAX), Err(LensError::TooLarge));
+    assert_eq!(
+        MicroLens::new(u32::MAX - 1).expect("a lens").image_distance_um(u32::MAX),
+        Err(LensError::TooLarge)
+    );
 }
 
 #[test]
 fn a_scale_is_positions_that_go_one_way() {
     let lens = ThinLens::new(0.004_f32).expect("a lens");
     assert_eq!(FocusScale::new(lens, &[0.0041]).err(), Some(FocusScaleError::TooFew));
-    assert_eq!(FocusScale::new(lens, &[0.0041, 0.0042, 0.0042]).err(), Some(FocusScaleError::Order { index: 2 }));
-    assert_eq!(FocusScale::new(lens, &[0.0043, 0.0042, 0.0044]).err(), Some(FocusScaleError::Order { index: 2 }));
+    assert_eq!(
+        FocusScale::new(lens, &[0.0041, 0.0042, 0.0042]).err(),
+        Some(FocusScaleError::Order { index: 2 })
+    );
+    assert_eq!(
+        FocusScale::new(lens, &[0.0043, 0.0042, 0.0044]).err(),
+        Some(FocusScaleError::Order { index: 2 })
+    );
     let reason = LensError::ImageWithinFocus;
-    assert_eq!(FocusScale::new(lens, &[0.0041, 0.004]).err(), Some(FocusScaleError::Position { index: 1, reason }));
+    assert_eq!(
+        FocusScale::new(lens, &[0.0041, 0.004]).err(),
+        Some(FocusScaleError::Position { index: 1, reason })
+    );
     for positions in [[0.0041, 0.0042, 0.0043], [0.0043, 0.0042, 0.0041]] {
         let scale = FocusScale::new(lens, &positions).expect("a scale");
         let peak = FocusPeak { position_q8: 256, sigma_q8: 64, noise_q8: 0, confidence: 9 };

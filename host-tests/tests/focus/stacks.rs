@@ -77,9 +77,12 @@ fn errors(found: &[f32], truth: &[f64]) -> (f64, f64) {
 fn plain_argmax(frames: &[GrayImage]) -> Vec<f32> {
     let laplacians: Vec<_> = frames
         .iter()
-        .map(|frame| stereopsis_host::twin::focus::laplacian(&stereopsis_host::twin::focus::numbers(frame)).values)
+        .map(|frame| {
+            stereopsis_host::twin::focus::laplacian(&stereopsis_host::twin::focus::numbers(frame)).values
+        })
         .collect();
-    let best = |i: usize| (0..frames.len()).rev().max_by_key(|&f| laplacians[f][i].abs()).unwrap_or(0) as f32 + 1.0;
+    let best =
+        |i: usize| (0..frames.len()).rev().max_by_key(|&f| laplacians[f][i].abs()).unwrap_or(0) as f32 + 1.0;
     (0..WIDTH * HEIGHT).map(best).collect()
 }
 
@@ -97,7 +100,9 @@ fn usual() -> &'static (FocusScene, Vec<GrayImage>) {
 fn textured_pixels_are_a_tenth_of_a_frame_off() {
     let mut table = String::new();
     // Finest detail px, contrast, noise, and what must hold.
-    for (finest, contrast, noise, median, share) in [(2.0, 160.0, 1.0, 0.05, 0.95), (3.0, 160.0, 3.0, 0.1, 0.95)] {
+    for (finest, contrast, noise, median, share) in
+        [(2.0, 160.0, 1.0, 0.05, 0.95), (3.0, 160.0, 3.0, 0.1, 0.95)]
+    {
         let (scene, frames) = match usual() {
             usual if finest == 2.0 => usual.clone(),
             _ => {
@@ -110,7 +115,8 @@ fn textured_pixels_are_a_tenth_of_a_frame_off() {
         let ours = errors(&found.index(), &truth);
         let plain = errors(&plain_argmax(&frames), &truth);
         let answered = found.answers() as f64 / truth.len() as f64;
-        table += &format!("finest {finest}, noise {noise}: {ours:?}, plain {plain:?}, {answered:.3} answered\n");
+        table +=
+            &format!("finest {finest}, noise {noise}: {ours:?}, plain {plain:?}, {answered:.3} answered\n");
         assert!(ours.0 <= median && ours.1 >= share && answered > 0.95, "{table}");
         assert!(ours.0 < 0.5 * plain.0 && ours.1 > plain.1, "{table}");
     }

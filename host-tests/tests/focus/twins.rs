@@ -3,15 +3,17 @@
 use image::{GrayImage, Luma};
 use proptest::prelude::*;
 use stereopsis::focus::{
-    Breathing, FocusCell, FocusConfig, FocusConfigError, FocusLineError, FocusMap, FocusPeak, Measure, NoFocus,
-    SharpnessRows, binomial, laplacian, median_row, modified_laplacian, plane_row, tenengrad,
+    Breathing, FocusCell, FocusConfig, FocusConfigError, FocusLineError, FocusMap, FocusPeak, Measure,
+    NoFocus, SharpnessRows, binomial, laplacian, median_row, modified_laplacian, plane_row, tenengrad,
 };
 use stereopsis_host::scene::Random;
 use stereopsis_host::twin::focus as twin;
 
 fn noise(width: u32, height: u32, seed: u64, contrast: u8) -> GrayImage {
     let mut random = Random::new(seed);
-    GrayImage::from_fn(width, height, |_, _| Luma([(u16::from(random.byte()) * u16::from(contrast) / 255) as u8]))
+    GrayImage::from_fn(width, height, |_, _| {
+        Luma([(u16::from(random.byte()) * u16::from(contrast) / 255) as u8])
+    })
 }
 
 /// Every row of a function of three rows, those outside repeated.
@@ -145,7 +147,8 @@ fn the_largest_sums_do_not_overflow() {
             core.start(40, 24, measure, 3);
             let mut all = Vec::new();
             for line in picture.chunks_exact(40) {
-                core.push(line, |_, row| all.extend(row.iter().map(|&v| i64::from(v)))).expect("a line that is due");
+                core.push(line, |_, row| all.extend(row.iter().map(|&v| i64::from(v))))
+                    .expect("a line that is due");
             }
             assert_eq!(all, twin::sharpness(picture, measure, 3).values);
         }

@@ -4,14 +4,17 @@ use crate::views::{any_pose, seeded};
 use nalgebra::{Matrix3x4, Point2, Point3, Rotation3, Vector3};
 use proptest::prelude::*;
 use stereopsis::geometry::{
-    Camera, Distortion, Fisheye, Landmark, Lens, Pose, Projection, ProjectionError, RectifiedRig, ResectionError,
+    Camera, Distortion, Fisheye, Landmark, Lens, Pose, Projection, ProjectionError, RectifiedRig,
+    ResectionError,
 };
 use stereopsis_host::scene::Random;
 
 /// Coefficients of lenses from a little to a lot of distortion, that turn nothing over in the image.
 fn lenses() -> impl Strategy<Value = Distortion<f64>> {
     (-0.3..0.3, -0.05..0.1, -0.002..0.002, -0.002..0.002, 0.0..0.02, -0.05..0.3, 0.0..0.1, 0.0..0.01)
-        .prop_map(|(k1, k2, p1, p2, k3, k4, k5, k6)| Distortion::from_opencv_rational([k1, k2, p1, p2, k3, k4, k5, k6]))
+        .prop_map(|(k1, k2, p1, p2, k3, k4, k5, k6)| {
+            Distortion::from_opencv_rational([k1, k2, p1, p2, k3, k4, k5, k6])
+        })
 }
 
 /// Coefficients of wide lenses.
@@ -98,7 +101,9 @@ fn landmarks(
     let mut random = Random::new(seed);
     let mut number = |size: f64| size * (2.0 * random.unit() - 1.0);
     let points = (0..count).map(|_| shape(Point3::new(number(2.0), number(1.5), 5.0 + number(2.0))));
-    points.map(|p| Landmark { world: pose.transform(&p), pixel: camera.project(&p).expect("in front") }).collect()
+    points
+        .map(|p| Landmark { world: pose.transform(&p), pixel: camera.project(&p).expect("in front") })
+        .collect()
 }
 
 #[test]
@@ -127,7 +132,8 @@ fn what_is_no_camera_is_refused() {
 #[test]
 fn outside_of_the_lens_model_is_refused() {
     let lens = Distortion { k1: -0.3, ..Distortion::NONE };
-    let camera = Camera::new(500.0, 500.0, 320.0, 240.0_f64).and_then(|c| c.with_distortion(lens)).expect("a camera");
+    let camera =
+        Camera::new(500.0, 500.0, 320.0, 240.0_f64).and_then(|c| c.with_distortion(lens)).expect("a camera");
     // x (1 - 0.3 x^2) is at most 0.7027, at x = 1.054.
     assert!(camera.unproject(&Point2::new(320.0 + 350.0, 240.0)).is_ok());
     assert_eq!(camera.unproject(&Point2::new(320.0 + 352.0, 240.0)), Err(ProjectionError::NotConverged));
@@ -159,7 +165,8 @@ fn lenses_are_those_of_opencv() {
         ),
     ];
     for (lens, pixels) in seen {
-        let camera = Camera::new(400.0, 410.0, 320.0, 240.0).and_then(|c| c.with_distortion(lens)).expect("a camera");
+        let camera =
+            Camera::new(400.0, 410.0, 320.0, 240.0).and_then(|c| c.with_distortion(lens)).expect("a camera");
         for (point, pixel) in points.iter().zip(pixels) {
             let found = camera.project(point).expect("in front");
             assert!((found - pixel).norm() < 1e-9, "{lens:?}: {found} {pixel}");

@@ -70,8 +70,8 @@ fn noise_costs_both_precisions_the_same() {
     }
 }
 
-/// What OpenCV 5.0.0 reaches on the same correspondences, `findFundamentalMat(first, second, FM_8POINT)` in `f64`: how
-/// many correspondences, and the mean over sixty scenes of the root mean square Sampson distance,
+/// What OpenCV 5.0.0 reaches on the same correspondences, `findFundamentalMat(first, second, FM_8POINT)` in
+/// `f64`: how many correspondences, and the mean over sixty scenes of the root mean square Sampson distance,
 /// px, of the exact points.
 const OPENCV: [(usize, f64); 4] = [(8, 1.947494), (20, 0.329060), (50, 0.200196), (200, 0.098837)];
 
@@ -102,7 +102,8 @@ fn agrees_with_the_twin() {
             assert!(off < 1e-7, "seed {seed}, {n} points, {sigma} px: {off:e} px");
             // Each to the other's epipolar lines, at the corners of the image.
             for (u, v) in [(0.0, 0.0), (640.0, 0.0), (0.0, 480.0), (640.0, 480.0)] {
-                let line = |f: &Fundamental<f64>| *f.line_in_first(&[u, v].into()).expect("a line").coefficients();
+                let line =
+                    |f: &Fundamental<f64>| *f.line_in_first(&[u, v].into()).expect("a line").coefficients();
                 let (a, b) = (line(&ours), line(&theirs));
                 let off = (a - b).amax().min((a + b).amax());
                 assert!(off < 1e-4, "seed {seed}, {n} points, {sigma} px: {off:e}");
@@ -113,7 +114,8 @@ fn agrees_with_the_twin() {
 
 #[test]
 fn a_world_that_moves_changes_nothing() {
-    // Both cameras and all points carried elsewhere together, and the unit of length changed: the same pixels.
+    // Both cameras and all points carried elsewhere together, and the unit of length changed: the same
+    // pixels.
     for seed in 0..20 {
         let mut random = Random::new(seed);
         let views = Views::of(&mut random, 30, nearby(&mut Random::new(seed)), anywhere);
@@ -203,8 +205,8 @@ fn what_is_too_little_is_refused() {
 
 #[test]
 fn a_quadric_through_both_centres_is_refused() {
-    // A cylinder about a vertical axis through (0, 0, 5), radius 5, on which camera 1 is at the origin and camera 2 at an
-    // angle of 0.2 rad about the axis.
+    // A cylinder about a vertical axis through (0, 0, 5), radius 5, on which camera 1 is at the origin and
+    // camera 2 at an angle of 0.2 rad about the axis.
     for n in [8, 9, 40] {
         let pose = Pose::new(
             *Rotation3::new(Vector3::new(0.0, -0.1, 0.0)).matrix(),

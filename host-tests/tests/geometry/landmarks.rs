@@ -1,10 +1,12 @@
-//! Cameras before something of known shape: found again, no worse than the noise allows, refused where nothing is said.
+//! Cameras before something of known shape: found again, no worse than the noise allows, refused where
+//! nothing is said.
 
 use crate::views::seeded;
 use nalgebra::{Matrix3, Point2, Point3, Rotation3, Vector3};
 use proptest::prelude::*;
 use stereopsis::geometry::{
-    Camera, Distortion, Pose, Segment, Sighting, SquareMark, SquareMarkError, VanishingPoint, Walls, WallsError,
+    Camera, Distortion, Pose, Segment, Sighting, SquareMark, SquareMarkError, VanishingPoint, Walls,
+    WallsError,
 };
 use stereopsis_host::scene::Random;
 
@@ -112,7 +114,8 @@ fn room(camera: &Camera<f64>, truth: &Matrix3<f64>, sigma: f64, seed: u64) -> [V
         let direction: Vector3<f64> = truth.column(k).into();
         let mut bundle = Vec::new();
         while bundle.len() < 10 {
-            let start = Vector3::new(4.0 * random.unit() - 2.0, 3.0 * random.unit() - 1.5, 4.0 + 3.0 * random.unit());
+            let start =
+                Vector3::new(4.0 * random.unit() - 2.0, 3.0 * random.unit() - 1.5, 4.0 + 3.0 * random.unit());
             let ends = [start, start + direction * (0.5 + random.unit())];
             let [Ok(a), Ok(b)] = ends.map(|end| camera.project(&Point3::from(end))) else { continue };
             let inside = |p: &Point2<f64>| (0.0..640.0).contains(&p.x) && (0.0..480.0).contains(&p.y);
@@ -159,7 +162,8 @@ fn two_poses_of_a_noisy_mark() {
         let tilt = Vector3::new(random.unit() - 0.5, random.unit() - 0.5, random.unit() - 0.5).normalize();
         let (x, z) = (0.4 * random.unit() - 0.2, 0.6 + 1.4 * random.unit());
         let pose = Pose::new(rotation(tilt * 0.6), Vector3::new(x, -0.1, z)).expect("a pose");
-        let corners = mark.corners().map(|corner| moved(project(&camera(), pose.transform(&corner)), 0.3, &mut random));
+        let corners =
+            mark.corners().map(|corner| moved(project(&camera(), pose.transform(&corner)), 0.3, &mut random));
         let poses = mark.locate(&camera(), &corners).expect("a pose");
         let near = |found: &Pose<f64>| apart(found.rotation(), pose.rotation()) < 0.12;
         found += usize::from(near(&poses.best.pose) || poses.other.is_some_and(|other| near(&other.pose)));
@@ -176,8 +180,9 @@ fn two_poses_of_a_noisy_mark() {
 /// What 200 noisy rooms scatter is what the deviations say.
 #[test]
 fn walls_know_their_deviation() {
-    let truth =
-        rotation(Vector3::new(0.1, 0.2, 0.05)) * rotation(Vector3::new(0.6, 0.0, 0.0)) * rotation(Vector3::y() * 0.7);
+    let truth = rotation(Vector3::new(0.1, 0.2, 0.05))
+        * rotation(Vector3::new(0.6, 0.0, 0.0))
+        * rotation(Vector3::y() * 0.7);
     let sigma = 0.5;
     let (mut turns, mut focals) = (Vec::new(), Vec::new());
     for seed in 0..200 {
@@ -185,8 +190,11 @@ fn walls_know_their_deviation() {
         let of = [&bundles[0][..], &bundles[1], &bundles[2]];
         let walls = Walls::orientation(&square(), of, &truth).expect("an orientation");
         let turn = Rotation3::from_matrix_unchecked(walls.rotation * truth.transpose()).scaled_axis();
-        turns.extend(turn.iter().zip(&walls.sigma_rad_per_px).map(|(turn, deviation)| turn / (deviation * sigma)));
-        let walls = Walls::orientation_and_focal(&Point2::new(320.0, 240.0), of, &truth).expect("an orientation");
+        turns.extend(
+            turn.iter().zip(&walls.sigma_rad_per_px).map(|(turn, deviation)| turn / (deviation * sigma)),
+        );
+        let walls =
+            Walls::orientation_and_focal(&Point2::new(320.0, 240.0), of, &truth).expect("an orientation");
         focals.push((walls.focal_px - 600.0) / (walls.focal_sigma_per_px * sigma));
     }
     let (turns, focals) = (rms(turns.into_iter()), rms(focals.into_iter()));
@@ -232,10 +240,12 @@ fn single_precision() {
     let truth = rotation(Vector3::new(0.6, 0.0, 0.0)) * rotation(Vector3::new(0.0, 0.7, 0.0));
     let bundles = room(&square(), &truth, 0.0, 3);
     let narrow = |p: Point2<f64>| (p.x as f32, p.y as f32);
-    let bundles = bundles.map(|b| b.iter().map(|s| Segment::new(narrow(s.from), narrow(s.to))).collect::<Vec<_>>());
+    let bundles =
+        bundles.map(|b| b.iter().map(|s| Segment::new(narrow(s.from), narrow(s.to))).collect::<Vec<_>>());
     let expected = truth.map(|x| x as f32);
     let of = [&bundles[0][..], &bundles[1], &bundles[2]];
-    let walls = Walls::orientation_and_focal(&Point2::new(320.0, 240.0), of, &expected).expect("an orientation");
+    let walls =
+        Walls::orientation_and_focal(&Point2::new(320.0, 240.0), of, &expected).expect("an orientation");
     assert!((walls.rotation - expected).amax() < 1e-4 && (walls.focal_px - 600.0).abs() < 0.1, "{walls:?}");
 }
 

@@ -1,13 +1,13 @@
 //! The lecture's equations, each by a number that is worked by hand.
 //!
-//! Two cameras of 500 px, principal point (320, 240), the second 0.1 m to the right of the first. The point (0.2, -0.1, 2)
-//! is seen by the first at u = 500 * 0.2 / 2 + 320 = 370, v = 500 * -0.1 / 2 + 240 = 215, by the second, where it is
-//! (0.1, -0.1, 2), at (345, 215).
+//! Two cameras of 500 px, principal point (320, 240), the second 0.1 m to the right of the first. The point
+//! (0.2, -0.1, 2) is seen by the first at u = 500 * 0.2 / 2 + 320 = 370, v = 500 * -0.1 / 2 + 240 = 215, by
+//! the second, where it is (0.1, -0.1, 2), at (345, 215).
 
 use nalgebra::{Matrix3, Matrix3x4, Point2, Point3, Vector3};
 use stereopsis::geometry::{
-    Camera, Correspondence, Essential, Fundamental, Pose, Projection, RectifiedRig, Sighting, TwoViews, eight_point,
-    skew,
+    Camera, Correspondence, Essential, Fundamental, Pose, Projection, RectifiedRig, Sighting, TwoViews,
+    eight_point, skew,
 };
 
 fn camera() -> Camera<f64> {
@@ -68,13 +68,15 @@ fn least_reprojection_error() {
 
 #[test]
 fn the_epipolar_plane() {
-    // t x p' = (0.1, 0, 0) x (0.05, -0.05, 1) = (0, -0.1, -0.005); times p = (0.1, -0.05, 1): 0.005 - 0.005 = 0.
+    // t x p' = (0.1, 0, 0) x (0.05, -0.05, 1) = (0, -0.1, -0.005); times p = (0.1, -0.05, 1): 0.005 - 0.005 =
+    // 0.
     let (p, q) = (Vector3::new(0.1, -0.05, 1.0), Vector3::new(0.05, -0.05, 1.0));
     let t = *pose().translation();
     assert!((skew(&t) * q - Vector3::new(0.0, -0.1, -0.005)).amax() < 1e-15);
     let essential = Essential::from_pose(&pose()).expect("a baseline");
     assert!(essential.residual(&p, &q).abs() < 1e-15);
-    // A row lower, 0.002 of Z = 1: t x (0.05, -0.048, 1) = (0, -0.1, -0.0048), times p: 0.0002, over |t| 0.002.
+    // A row lower, 0.002 of Z = 1: t x (0.05, -0.048, 1) = (0, -0.1, -0.0048), times p: 0.0002, over |t|
+    // 0.002.
     assert!((essential.residual(&p, &Vector3::new(0.05, -0.048, 1.0)).abs() - 0.002).abs() < 1e-12);
 }
 

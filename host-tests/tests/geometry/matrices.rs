@@ -81,7 +81,8 @@ fn single_precision_keeps_a_matrix_to_thousandths_of_a_pixel() {
     let (mut squared, mut largest, mut count) = (0.0, 0.0_f32, 0.0);
     for seed in 0..100 {
         let views = Views::scene(seed, 50);
-        let single = Fundamental::from_matrix(&views.fundamental().matrix().map(|x| x as f32)).expect("rank 2");
+        let single =
+            Fundamental::from_matrix(&views.fundamental().matrix().map(|x| x as f32)).expect("rank 2");
         for seen in crate::views::narrow(&views.seen) {
             let off = single.sampson_px(&seen).abs();
             (squared, largest, count) = (squared + off * off, largest.max(off), count + 1.0);

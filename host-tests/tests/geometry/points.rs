@@ -4,13 +4,18 @@ use crate::twin;
 use crate::views::{Views, noisy, seeded};
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use proptest::prelude::*;
-use stereopsis::geometry::{Camera, Correspondence, Distortion, Pose, Triangulated, TriangulationError, TwoViews};
+use stereopsis::geometry::{
+    Camera, Correspondence, Distortion, Pose, Triangulated, TriangulationError, TwoViews,
+};
 
 fn views(of: &Views) -> TwoViews<f64> {
     TwoViews::new(of.camera, of.camera, of.pose).expect("a baseline")
 }
 
-fn all(views: &TwoViews<f64>, seen: &Correspondence<f64>) -> [Result<Triangulated<f64>, TriangulationError>; 3] {
+fn all(
+    views: &TwoViews<f64>,
+    seen: &Correspondence<f64>,
+) -> [Result<Triangulated<f64>, TriangulationError>; 3] {
     [views.midpoint(seen), views.linear(seen), views.optimal(seen)]
 }
 
@@ -77,7 +82,8 @@ fn single_precision_is_near_double() {
     for seed in 0..50 {
         let scene = Views::scene(seed, 20);
         let camera = Camera::new(600.0, 600.0, 320.0, 240.0_f32).expect("a camera");
-        let pose = Pose::new(scene.pose.rotation().map(|x| x as f32), scene.pose.translation().map(|x| x as f32));
+        let pose =
+            Pose::new(scene.pose.rotation().map(|x| x as f32), scene.pose.translation().map(|x| x as f32));
         let single = TwoViews::new(camera, camera, pose.expect("a pose")).expect("a baseline");
         for (seen, point) in crate::views::narrow(&scene.seen).iter().zip(&scene.points) {
             // Z^2 / (f b) of a pixel.
@@ -145,7 +151,10 @@ fn what_has_no_point_is_refused() {
     assert_eq!(refused(seen(&Point3::new(0.5, 0.3, 5.0))), [None; 3]);
     assert_eq!(refused(seen(&Point3::new(0.5, 0.3, -5.0))), [Some(TriangulationError::Behind); 3]);
     assert_eq!(refused(seen(&Point3::new(50.0, 30.0, 5000.0))), [Some(TriangulationError::SmallAngle); 3]);
-    assert_eq!(refused(Correspondence::new(0.0, f64::NAN, 0.0, 0.0)), [Some(TriangulationError::NotFinite); 3]);
+    assert_eq!(
+        refused(Correspondence::new(0.0, f64::NAN, 0.0, 0.0)),
+        [Some(TriangulationError::NotFinite); 3]
+    );
     let wider = views.with_min_angle(0.2);
     assert_eq!(wider.optimal(&seen(&Point3::new(0.5, 0.3, 5.0))).err(), Some(TriangulationError::SmallAngle));
     assert!(TwoViews::new(scene.camera, scene.camera, Pose::identity()).is_err(), "no baseline");

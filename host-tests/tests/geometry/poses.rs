@@ -74,10 +74,12 @@ fn a_vote_without_a_winner_is_refused() {
     assert_eq!(vote(vec![]), Some(RecoverError::NoCorrespondence));
     // As many that are behind both cameras, and as many that are between.
     let mixed: Vec<_> = scene.seen.iter().flat_map(|s| [*s, s.swapped()]).collect();
-    let straight =
-        Essential::from_pose(&stereopsis::geometry::Pose::new(Matrix3::identity(), Vector3::x()).expect("a pose"));
+    let straight = Essential::from_pose(
+        &stereopsis::geometry::Pose::new(Matrix3::identity(), Vector3::x()).expect("a pose"),
+    );
     let straight = straight.expect("a baseline");
-    let level: Vec<_> = mixed.iter().map(|s| Correspondence::new(s.first.x, 200.0, s.second.x, 200.0)).collect();
+    let level: Vec<_> =
+        mixed.iter().map(|s| Correspondence::new(s.first.x, 200.0, s.second.x, 200.0)).collect();
     assert_eq!(straight.recover_pose(level, &camera, &camera).err(), Some(RecoverError::Cheirality));
     let unit = Camera::new(1.0, 1.0, 0.0, 0.0).expect("a camera");
     let far = Correspondence::new(0.0, 0.0, 0.0, 0.0);

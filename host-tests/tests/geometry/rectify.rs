@@ -3,7 +3,9 @@
 use crate::views::seeded;
 use nalgebra::{Matrix3, Point2, Point3, Rotation3, Vector3};
 use proptest::prelude::*;
-use stereopsis::geometry::{Axis, Camera, Crop, Distortion, ImageSize, Pose, Rectification, RectifyError, StereoRig};
+use stereopsis::geometry::{
+    Axis, Camera, Crop, Distortion, ImageSize, Pose, Rectification, RectifyError, StereoRig,
+};
 
 fn camera([fx, fy, cx, cy]: [f64; 4], lens: [f64; 5]) -> Camera<f64> {
     let camera = Camera::new(fx, fy, cx, cy).expect("a camera");
@@ -112,11 +114,13 @@ fn agrees_with_opencv() {
     for (i, figures) in figures().into_iter().enumerate() {
         for (crop, focal, share) in [
             (Crop::Natural, figures.focal[0], 1e-9),
-            // OpenCV looks at nine points of a side, its corners a pixel farther, and takes single precision.
+            // OpenCV looks at nine points of a side, its corners a pixel farther, and takes single
+            // precision.
             (Crop::Alpha(0.0), figures.focal[1], 0.01),
             (Crop::Alpha(1.0), figures.focal[2], 0.03),
         ] {
-            let rectified = Rectification::new(&figures.rig(), crop, figures.size).expect("it can be rectified");
+            let rectified =
+                Rectification::new(&figures.rig(), crop, figures.size).expect("it can be rectified");
             assert_eq!(rectified.axis(), figures.axis);
             let off = (rectified.warps()[0].rotation() - Matrix3::from_row_slice(&figures.first)).amax();
             assert!(off < 1e-9, "rig {i}: {off:e}");
@@ -136,7 +140,8 @@ fn agrees_with_opencv() {
 #[test]
 fn nothing_black_at_alpha_nought_and_all_seen_at_one() {
     for figures in figures() {
-        let none_lost = Rectification::new(&figures.rig(), Crop::Alpha(0.0), figures.size).expect("rectified");
+        let none_lost =
+            Rectification::new(&figures.rig(), Crop::Alpha(0.0), figures.size).expect("rectified");
         let report = none_lost.report();
         assert!(report.common > 0.999, "{report:?}");
         let all = Rectification::new(&figures.rig(), Crop::Alpha(1.0), figures.size).expect("rectified");
@@ -144,9 +149,16 @@ fn nothing_black_at_alpha_nought_and_all_seen_at_one() {
         for warp in all.warps() {
             for i in 0..=64 {
                 let part = f64::from(i) / 64.0;
-                for raw in [(part * right, 0.0), (part * right, bottom), (0.0, part * bottom), (right, part * bottom)] {
-                    let there = warp.rectify(&Point2::new(raw.0, raw.1)).expect("the lens has a sight for it");
-                    let is_in = (-0.5..=right + 0.5).contains(&there.x) && (-0.5..=bottom + 0.5).contains(&there.y);
+                for raw in [
+                    (part * right, 0.0),
+                    (part * right, bottom),
+                    (0.0, part * bottom),
+                    (right, part * bottom),
+                ] {
+                    let there =
+                        warp.rectify(&Point2::new(raw.0, raw.1)).expect("the lens has a sight for it");
+                    let is_in =
+                        (-0.5..=right + 0.5).contains(&there.x) && (-0.5..=bottom + 0.5).contains(&there.y);
                     assert!(is_in, "{raw:?} is at {there}");
                 }
             }
@@ -168,7 +180,8 @@ fn the_report_says_what_a_turn_costs() {
     let still = turned(0.0);
     assert_eq!((still.rows, still.common), ([2; 2], 1.0));
     assert!(still.largest_warp_px.iter().all(|&px| px < 1e-9));
-    // The baseline is along the first camera's X: the second turns. 319 columns times sin 2 degrees are 11.1 rows.
+    // The baseline is along the first camera's X: the second turns. 319 columns times sin 2 degrees are 11.1
+    // rows.
     let rolled = turned(2.0);
     assert!(rolled.rows[0] == 2 && (12..=14).contains(&rolled.rows[1]), "{rolled:?}");
     // A corner is 199 px from the middle, and 2 degrees of that 6.9 px.

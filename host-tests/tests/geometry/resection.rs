@@ -99,7 +99,10 @@ fn wrong_points_do_no_harm() {
         let config = RobustConfig { seed, ..RobustConfig::new(2.0) };
         let found = robust_resection(&landmarks, &camera(), &config, &mut inliers).expect("a pose");
         let off = difference(&found.pose, &pose);
-        assert!(off.fixed_rows::<3>(0).norm() < 1e-3 && off.fixed_rows::<3>(3).norm() < 5e-3, "{share}: {off}");
+        assert!(
+            off.fixed_rows::<3>(0).norm() < 1e-3 && off.fixed_rows::<3>(3).norm() < 5e-3,
+            "{share}: {off}"
+        );
         let kept = inliers[wrong..].iter().filter(|&&i| i).count();
         assert!(kept >= 99 * (200 - wrong) / 100, "{kept} of {}", 200 - wrong);
         assert!(inliers[..wrong].iter().filter(|&&i| i).count() <= wrong / 20);
@@ -143,7 +146,10 @@ fn what_has_no_pose_is_refused_by_name() {
         run(&landmarks, &RobustConfig { miss_probability: 1.0, ..config }, 20),
         Err(RobustResectionError::MissProbability)
     );
-    assert_eq!(run(&landmarks, &RobustConfig { most_samples: 0, ..config }, 20), Err(RobustResectionError::NoSamples));
+    assert_eq!(
+        run(&landmarks, &RobustConfig { most_samples: 0, ..config }, 20),
+        Err(RobustResectionError::NoSamples)
+    );
     let mut broken = landmarks.clone();
     broken[3].world.x = f64::NAN;
     assert_eq!(run(&broken, &config, 20), Err(RobustResectionError::NotFinite));

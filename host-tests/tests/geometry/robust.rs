@@ -194,7 +194,8 @@ fn an_order_saves_samples() {
         let (found, _) = solve(&front, &first).expect("an estimate");
         ordered += usize::from(mixed.error(&found.fundamental) < 0.5);
         let alike = RobustConfig { most_samples: 200, ..config(seed) };
-        uniform += usize::from(solve(&front, &alike).is_ok_and(|(found, _)| mixed.error(&found.fundamental) < 0.5));
+        uniform +=
+            usize::from(solve(&front, &alike).is_ok_and(|(found, _)| mixed.error(&found.fundamental) < 0.5));
     }
     assert!(ordered >= 9 && uniform <= 7, "{ordered} {uniform}");
 }
@@ -209,8 +210,9 @@ fn what_cannot_be_is_refused_by_name() {
     broken[5].second.y = f64::NAN;
     assert_eq!(of(&broken), RobustError::NotFinite);
     assert_eq!(of(&[mixed.seen[0]; 20]), RobustError::NoAgreement);
-    let line: Vec<_> =
-        (0..30).map(|i| Correspondence::new(f64::from(i), 2.0 * f64::from(i), f64::from(i * i), 3.0)).collect();
+    let line: Vec<_> = (0..30)
+        .map(|i| Correspondence::new(f64::from(i), 2.0 * f64::from(i), f64::from(i * i), 3.0))
+        .collect();
     assert!(matches!(of(&line), RobustError::NoAgreement | RobustError::Plane));
     let mut random = Random::new(4);
     let mut place = || Point2::new(640.0 * random.unit(), 480.0 * random.unit());

@@ -1,4 +1,5 @@
-//! The estimates again, in their plainest form: whole matrices, nalgebra's singular values, search by small steps.
+//! The estimates again, in their plainest form: whole matrices, nalgebra's singular values, search by small
+//! steps.
 
 use nalgebra::{DMatrix, Matrix3, Matrix3x4, Matrix4x3, Point2, Point3, Vector3, Vector4};
 use stereopsis::geometry::{Correspondence, Fundamental, TwoViews};
@@ -40,7 +41,8 @@ fn errors(cameras: &[Matrix3x4<f64>; 2], seen: &Correspondence<f64>, point: &Poi
     Vector4::new(p.x - seen.first.x, p.y - seen.first.y, q.x - seen.second.x, q.y - seen.second.y)
 }
 
-/// The point of least re-projection error by Gauss and Newton's steps, with slopes by differences, from `start`.
+/// The point of least re-projection error by Gauss and Newton's steps, with slopes by differences, from
+/// `start`.
 pub fn least_error(
     views: &TwoViews<f64>,
     k: &Matrix3<f64>,
@@ -51,8 +53,10 @@ pub fn least_error(
     let outer = |r: &Matrix3<f64>, t: &Vector3<f64>| {
         Matrix3x4::from_columns(&[r.column(0), r.column(1), r.column(2), t.column(0)])
     };
-    let cameras =
-        [k * outer(&Matrix3::identity(), &Vector3::zeros()), k * outer(inverse.rotation(), inverse.translation())];
+    let cameras = [
+        k * outer(&Matrix3::identity(), &Vector3::zeros()),
+        k * outer(inverse.rotation(), inverse.translation()),
+    ];
     let mut point = start;
     for _ in 0..50 {
         let here = errors(&cameras, seen, &point);

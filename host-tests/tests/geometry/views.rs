@@ -8,7 +8,8 @@ pub use stereopsis_host::two_view::*;
 
 /// Poses with a baseline, turned up to half a turn about any axis.
 pub fn any_pose() -> impl Strategy<Value = Pose<f64>> {
-    let numbers = || (-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64).prop_map(|(x, y, z)| Vector3::new(x, y, z));
+    let numbers =
+        || (-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64).prop_map(|(x, y, z)| Vector3::new(x, y, z));
     (numbers(), numbers())
         .prop_filter("a baseline", |(_, t)| t.norm() > 0.05)
         .prop_map(|(r, t)| Pose::new(*Rotation3::new(r * 3.0).matrix(), t).expect("a rotation"))
@@ -16,5 +17,10 @@ pub fn any_pose() -> impl Strategy<Value = Pose<f64>> {
 
 /// The same cases in every run.
 pub fn seeded() -> ProptestConfig {
-    ProptestConfig { cases: 100, rng_seed: RngSeed::Fixed(5), failure_persistence: None, ..ProptestConfig::default() }
+    ProptestConfig {
+        cases: 100,
+        rng_seed: RngSeed::Fixed(5),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
 }

@@ -19,7 +19,8 @@ fn a_camera_that_stands_still_stands_still() {
 
 #[test]
 fn one_camera_that_only_turns_has_no_step() {
-    let path: Vec<_> = (0..5).map(|i| pose([0.004 * f64::from(i), 0.02 * f64::from(i), 0.0], [0.0; 3])).collect();
+    let path: Vec<_> =
+        (0..5).map(|i| pose([0.004 * f64::from(i), 0.02 * f64::from(i), 0.0], [0.0; 3])).collect();
     let trajectory = mono(rig(), &frames(room(), path.clone()));
     for ((found, truth), step) in trajectory.poses.iter().zip(&path).zip(&trajectory.steps).skip(1) {
         assert_eq!(step.state, State::Turned);
@@ -44,7 +45,8 @@ fn a_pair_that_only_turns_measures_that_there_is_no_step() {
 #[test]
 fn points_at_infinity_tell_the_turn_alone() {
     // A wall in 3 km: a step of 30 cm moves it by 0.02 px.
-    let path: Vec<_> = (0..4).map(|i| pose([0.0, 0.015 * f64::from(i), 0.0], [0.3 * f64::from(i), 0.0, 0.0])).collect();
+    let path: Vec<_> =
+        (0..4).map(|i| pose([0.0, 0.015 * f64::from(i), 0.0], [0.3 * f64::from(i), 0.0, 0.0])).collect();
     let frames = frames(wall(3000.0, 0.0), path.clone());
     let trajectory = stereo(rig(), &frames);
     for ((found, truth), step) in trajectory.poses.iter().zip(&path).zip(&trajectory.steps).skip(1) {
@@ -83,7 +85,8 @@ fn a_plane_is_enough_for_a_pair_and_no_wrong_pose_of_one_camera() {
 
 #[test]
 fn lost_in_the_dark_and_found_again() {
-    let path: Vec<_> = (0..7).map(|i| pose([0.0, 0.01 * f64::from(i), 0.0], [0.0, 0.0, 0.06 * f64::from(i)])).collect();
+    let path: Vec<_> =
+        (0..7).map(|i| pose([0.0, 0.01 * f64::from(i), 0.0], [0.0, 0.0, 0.06 * f64::from(i)])).collect();
     let mut frames = frames(room(), path.clone());
     let dark = GrayImage::new(frames[0].0.width(), frames[0].0.height());
     for frame in &mut frames[3..5] {
@@ -124,6 +127,9 @@ fn frames_that_do_not_fit_are_refused_by_name() {
     let other = Picture::new(&pixels, 48, 64).expect("a picture");
     assert_eq!(odometry.step(&Frame { right: Some(other), ..frame }).err(), Some(OdometryError::Size));
     assert_eq!(odometry.step(&frame).map(|step| step.state), Ok(State::First));
-    assert_eq!(odometry.step(&Frame { left: other, right: Some(other), ..frame }).err(), Some(OdometryError::Size));
+    assert_eq!(
+        odometry.step(&Frame { left: other, right: Some(other), ..frame }).err(),
+        Some(OdometryError::Size)
+    );
     assert_eq!(odometry.step(&frame).map(|step| step.state), Ok(State::Lost));
 }

@@ -20,7 +20,10 @@ fn path(n: usize) -> Pose<f64> {
 /// Where the motions that are told are off.
 fn told(n: usize) -> Pose<f64> {
     let s = n as f64;
-    let off = pose([0.002 * (3.0 * s).sin(), 0.002 * (2.0 * s).cos(), 0.001], [0.01 * s.cos(), 0.01 * s.sin(), 0.02]);
+    let off = pose(
+        [0.002 * (3.0 * s).sin(), 0.002 * (2.0 * s).cos(), 0.001],
+        [0.01 * s.cos(), 0.01 * s.sin(), 0.02],
+    );
     path(n - 1).inverse().then(&path(n)).then(&off)
 }
 
@@ -38,7 +41,8 @@ fn view() -> AlignedView<f64> {
 
 fn points() -> Vec<Point3<f64>> {
     let mut random = Random::new(5);
-    let mut at = || Point3::new(8.0 * random.unit() - 4.0, 5.0 * random.unit() - 2.5, 4.0 + 14.0 * random.unit());
+    let mut at =
+        || Point3::new(8.0 * random.unit() - 4.0, 5.0 * random.unit() - 2.5, 4.0 + 14.0 * random.unit());
     (0..90).map(|_| at()).collect()
 }
 
@@ -122,7 +126,8 @@ fn as_a_problem_put_together_anew() {
         }
         let (poses, twin) = anew(n + 1 - VIEWS, noise);
         let report = report.expect("an adjustment");
-        // It stops where a step gains a ten-thousandth of the cost, of what gains by steps that shrink slowly: some dozens of those.
+        // It stops where a step gains a ten-thousandth of the cost, of what gains by steps that shrink
+        // slowly: some dozens of those.
         assert!((report.cost - twin.cost).abs() < 5e-3 * twin.cost, "{report:?} {twin:?}");
         for (own, other) in refined.poses().iter().zip(&poses) {
             assert!(off(own, other) < 2e-3, "{n}: {}", off(own, other));
@@ -160,8 +165,10 @@ fn what_has_nothing_in_common_begins_anew() {
         refined.push(&motion, seen(n, 0.1, true).into_iter()).expect("a problem");
     }
     // The same places in memory, given to other points.
-    let others =
-        || (3..5).map(|n| seen(n, 0.0, true).into_iter().map(|seen| SeenPoint { name: (seen.name.0, 4), ..seen }));
+    let others = || {
+        (3..5)
+            .map(|n| seen(n, 0.0, true).into_iter().map(|seen| SeenPoint { name: (seen.name.0, 4), ..seen }))
+    };
     let mut others = others();
     let found = refined.push(&told(3), others.next().expect("two"));
     assert!(matches!(found, Ok(None)), "{found:?}");

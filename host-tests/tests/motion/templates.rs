@@ -8,7 +8,8 @@ use stereopsis::imaging::Picture;
 fn picture(right: f64, down: f64, scale: f64, light: (f64, f64)) -> GrayImage {
     GrayImage::from_fn(80, 60, |x, y| {
         let (x, y) = ((f64::from(x) - 40.0 - right) / scale, (f64::from(y) - 30.0 - down) / scale);
-        let value = (x * 0.55).sin() * 40.0 + (y * 0.43 + x * 0.11).cos() * 35.0 + (x * y * 0.02).sin() * 20.0;
+        let value =
+            (x * 0.55).sin() * 40.0 + (y * 0.43 + x * 0.11).cos() * 35.0 + (x * y * 0.02).sin() * 20.0;
         image::Luma([(light.0 * value + light.1).round().clamp(0.0, 255.0) as u8])
     })
 }
@@ -56,7 +57,8 @@ fn what_holds_nothing_is_not_found() {
 /// Every column's correlation coefficient, by its definition.
 fn naive(first: &GrayImage, second: &GrayImage, (x, y): (usize, usize), column: usize) -> f64 {
     let patch = |picture: &GrayImage, x: usize, y: usize| -> Vec<f64> {
-        let at = |i: usize| f64::from(picture.get_pixel((x + i % 11 - 5) as u32, (y + i / 11 - 5) as u32).0[0]);
+        let at =
+            |i: usize| f64::from(picture.get_pixel((x + i % 11 - 5) as u32, (y + i / 11 - 5) as u32).0[0]);
         (0..121).map(at).collect()
     };
     let (a, b) = (patch(first, x, y), patch(second, column, y));

@@ -24,7 +24,9 @@ fn files_come_back_as_they_were() {
     let file = tempfile::NamedTempFile::new().expect("a file");
     std::fs::write(file.path(), &bytes).expect("room");
     for (a, b) in poses::read(file.path()).expect("poses").iter().zip(way()) {
-        assert!((a.translation() - b.translation()).norm() < 1e-8 && (a.rotation() - b.rotation()).amax() < 1e-8);
+        assert!(
+            (a.translation() - b.translation()).norm() < 1e-8 && (a.rotation() - b.rotation()).amax() < 1e-8
+        );
     }
     std::fs::write(file.path(), "1 0 0 0 0 1 0 0 0 0 1 0\n1 2 3\n").expect("room");
     let error = poses::read(file.path()).expect_err("no pose").to_string();
@@ -48,7 +50,9 @@ fn alignment_undoes_a_similarity() {
     // With the scale held, the places of a way a quarter as long are off by three quarters of its spread.
     assert!(ate(&moved, &truth, Alignment::Rigid).expect("places") > 1.0);
     let relative = rpe(&moved, &truth, 1, found.scale).expect("steps");
-    assert!(relative.translation < 1e-9 && relative.rotation_rad < 1e-7 && relative.worst_direction_rad < 1e-6);
+    assert!(
+        relative.translation < 1e-9 && relative.rotation_rad < 1e-7 && relative.worst_direction_rad < 1e-6
+    );
     assert!(align(&moved[..1], &truth, Alignment::Similar).is_none());
     assert!(rpe(&moved[..1], &truth, 1, 1.0).is_none());
 }

@@ -55,7 +55,8 @@ pub fn promised_files(readme: &str) -> Vec<String> {
             continue;
         }
         let code = line.split('`').skip(1).step_by(2);
-        let is_file = |word: &&str| WRITTEN.iter().any(|end| word.ends_with(end)) && !word.contains([' ', '*', '<']);
+        let is_file =
+            |word: &&str| WRITTEN.iter().any(|end| word.ends_with(end)) && !word.contains([' ', '*', '<']);
         names.extend(code.filter(is_file).map(str::to_owned));
     }
     names.sort();

@@ -52,7 +52,8 @@ fn splice_parts(readme: &str, parts: &[Part]) -> Result<String, String> {
     let mut text = readme.to_owned();
     for (name, make) in parts {
         let (begin, end) = (format!("<!-- generated: {name} -->\n"), format!("<!-- end: {name} -->"));
-        let first = text.find(&begin).ok_or_else(|| format!("there is no line {}", begin.trim()))? + begin.len();
+        let first =
+            text.find(&begin).ok_or_else(|| format!("there is no line {}", begin.trim()))? + begin.len();
         let length = text[first..].find(&end).ok_or_else(|| format!("there is no line {end}"))?;
         text.replace_range(first..first + length, &format!("\n{}\n", make()));
     }
@@ -70,9 +71,10 @@ fn state_table() -> String {
         let (state, whole) = (state_bytes::<S>(W, D), size_of::<Pipeline<S, W, D>>());
         format!("| `{}` | {W} | {D} | {state} | {whole} | {} |\n", S::NAME, Pipeline::<S, W, D>::LATENCY)
     }
-    let table = "| method | pixels in a line | disparities | matcher, bytes | pipeline, bytes | delay, lines |\n\
+    let table =
+        "| method | pixels in a line | disparities | matcher, bytes | pipeline, bytes | delay, lines |\n\
                      | --- | ---: | ---: | ---: | ---: | ---: |\n"
-        .to_owned();
+            .to_owned();
     fn rows<S: Scheme>() -> String {
         [row::<S, 160, 32>(), row::<S, 320, 64>(), row::<S, 640, 64>(), row::<S, 640, 128>()].concat()
     }
@@ -91,7 +93,8 @@ static DEMO: LazyLock<Demo> = LazyLock::new(|| {
     let scene = Scene::demo();
     let (left, right) = scene.render();
     let truth = scene.truth();
-    let camera = MemoryPair::new(scene.width(), left.to_vec(), right.to_vec()).expect("two pictures of one size");
+    let camera =
+        MemoryPair::new(scene.width(), left.to_vec(), right.to_vec()).expect("two pictures of one size");
     Demo { scene, camera, left: DynamicImage::ImageLuma8(left).into_rgb8(), truth }
 });
 
@@ -137,16 +140,22 @@ pub fn picture() -> RgbImage {
     let mut both = RgbImage::new(2 * HALF_COLUMNS, rows);
     replace(&mut both, &resize(&DEMO.left, HALF_COLUMNS, rows, FilterType::Triangle), 0, 0);
     // An average of two colours would be the colour of another disparity.
-    replace(&mut both, &resize(&colours, HALF_COLUMNS, rows, FilterType::Nearest), i64::from(HALF_COLUMNS), 0);
+    replace(
+        &mut both,
+        &resize(&colours, HALF_COLUMNS, rows, FilterType::Nearest),
+        i64::from(HALF_COLUMNS),
+        0,
+    );
     both
 }
 
-/// The same answers as a display of 160x120 with 16-bit colours shows them, in embedded-graphics' simulator: a block of four by four
-/// to a pixel, row by row as on the device.
+/// The same answers as a display of 160x120 with 16-bit colours shows them, in embedded-graphics' simulator:
+/// a block of four by four to a pixel, row by row as on the device.
 pub fn display() -> RgbImage {
     const MOST: usize = 640;
     let map = DEMO.match_with(Method::Block, Filter::Default);
-    let mut display = SimulatorDisplay::<Rgb565>::new(Size::new((map.width / 4) as u32, (map.height / 4) as u32));
+    let mut display =
+        SimulatorDisplay::<Rgb565>::new(Size::new((map.width / 4) as u32, (map.height / 4) as u32));
     let colours = DisparityColours::new(Disparity::from_pixels(4), Disparity::from_pixels(60));
     let mut smaller = Decimator::<MOST, 4>::new();
     smaller.begin();

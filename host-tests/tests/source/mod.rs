@@ -61,7 +61,9 @@ pub fn is_sign(token: Option<&TokenTree>, sign: char) -> bool {
 /// The tokens inside a group with this delimiter.
 pub fn inside(token: Option<&TokenTree>, delimiter: Delimiter) -> Option<Vec<TokenTree>> {
     match token {
-        Some(TokenTree::Group(group)) if group.delimiter() == delimiter => Some(group.stream().into_iter().collect()),
+        Some(TokenTree::Group(group)) if group.delimiter() == delimiter => {
+            Some(group.stream().into_iter().collect())
+        }
         _ => None,
     }
 }

@@ -47,10 +47,15 @@ impl StereoSource for Faulty {
         self.inner.start_frame().map_err(|e| e.map_hardware(|never| match never {}))
     }
 
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<&'static str>> {
+    fn next_lines(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<&'static str>> {
         let due = self.due;
         self.due += 1;
-        let mut start = self.inner.next_lines(left, right).map_err(|e| e.map_hardware(|never| match never {}))?;
+        let mut start =
+            self.inner.next_lines(left, right).map_err(|e| e.map_hardware(|never| match never {}))?;
         if due == self.at {
             match self.fault {
                 Fault::Bus => return Err(CameraError::Hardware("bus fault")),
@@ -90,7 +95,9 @@ fn a_frame_that_broke_off_leaves_nothing_behind() {
         for fault in [Fault::Bus, Fault::RowSkipped] {
             let mut faulty = Faulty { inner: camera(Pattern::Saturated, 70, 26, 1), at, fault, due: 0 };
             match rows(&mut pipeline, &mut faulty).expect_err("line `at` is faulty") {
-                PipelineError::Camera(CameraError::Hardware(e)) if fault == Fault::Bus => assert_eq!(e, "bus fault"),
+                PipelineError::Camera(CameraError::Hardware(e)) if fault == Fault::Bus => {
+                    assert_eq!(e, "bus fault")
+                }
                 PipelineError::RowOrder { expected, given } if fault == Fault::RowSkipped => {
                     assert_eq!((expected, given), (at, at + 1));
                 }
@@ -123,7 +130,8 @@ fn a_frame_or_a_size_may_change_at_any_row() {
         let expected = match_pair(&Block::TWIN, &config, left, right);
         let map = rows(&mut pipeline, &mut camera).expect("the camera works");
         assert_eq!(difference(&map, &expected), None);
-        // The next frame is given up after some rows: by the frame begun above, or by the size of the next round.
+        // The next frame is given up after some rows: by the frame begun above, or by the size of the next
+        // round.
         pipeline.begin_frame(&mut camera).expect("the camera works");
         for _ in 0..rows_taken {
             assert!(pipeline.next_row(&mut camera).expect("the camera works").is_some());
@@ -138,11 +146,17 @@ fn a_frame_or_a_size_may_change_at_any_row() {
 }
 
 fn frames_along_paths<S: Method>() {
-    let config =
-        Config { checks: Checks::STRICT, penalties: S::PENALTIES, confidence: true, ..Config::new(90, 30, 32) };
+    let config = Config {
+        checks: Checks::STRICT,
+        penalties: S::PENALTIES,
+        confidence: true,
+        ..Config::new(90, 30, 32)
+    };
     let mut pipeline = pipeline::<S>();
     pipeline.start(&config).expect("the configuration is valid");
-    for (rows_taken, pattern) in [(0, LIVE), (7, Pattern::Noise), (29, Pattern::Saturated), (30, LIVE), (3, LIVE)] {
+    for (rows_taken, pattern) in
+        [(0, LIVE), (7, Pattern::Noise), (29, Pattern::Saturated), (30, LIVE), (3, LIVE)]
+    {
         let mut camera = camera(pattern, 90, 30, 9);
         let (left, right) = camera.pictures();
         let expected = match_pair(&S::TWIN, &config, left, right);
@@ -224,7 +238,11 @@ impl StereoSource for Counted {
         self.inner.start_frame()
     }
 
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
+    fn next_lines(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<Self::Error>> {
         self.lines += 1;
         self.inner.next_lines(left, right)
     }

@@ -13,8 +13,10 @@ use stereopsis_host::twin::match_pair;
 
 /// The values of the deterministic list: every one of each is used.
 fn widths() -> Vec<u16> {
-    let awkward =
-        [47, 48, 49, 63, 64, 65, 79, 100, 127, 128, 129, 255, 256, 257, 319, 320, 321, 639, 640, 641, 699, 700, 704];
+    let awkward = [
+        47, 48, 49, 63, 64, 65, 79, 100, 127, 128, 129, 255, 256, 257, 319, 320, 321, 639, 640, 641, 699,
+        700, 704,
+    ];
     (1..=40).chain(awkward).collect()
 }
 
@@ -89,7 +91,13 @@ pub(super) fn random_penalties(random: &mut Random) -> Penalties {
     let step = [step, 1 + random.below(usize::from(step)) as u8];
     let edge = random.below(256) as u8;
     let edges = [edge, edge.saturating_add(random.below(60) as u8)];
-    Penalties { gradient: 1 + random.below(usize::from(Penalties::MOST_GRADIENT)) as u8, cost, step, jump, edges }
+    Penalties {
+        gradient: 1 + random.below(usize::from(Penalties::MOST_GRADIENT)) as u8,
+        cost,
+        step,
+        jump,
+        edges,
+    }
 }
 
 /// The deterministic list: every width with `rounds` choices of the rest.
@@ -132,7 +140,8 @@ fn run_list<S: Method>() {
         let pair = pattern.pair(u32::from(config.width), u32::from(config.height), *seed);
         let map = compare(&mut pipeline, config, &pair).unwrap_or_else(|e| panic!("{pattern:?}: {e}"));
         if usize::from(config.disparities) <= HALVES {
-            compare(&mut of_halves, config, &pair).unwrap_or_else(|e| panic!("capacity {HALVES}: {pattern:?}: {e}"));
+            compare(&mut of_halves, config, &pair)
+                .unwrap_or_else(|e| panic!("capacity {HALVES}: {pattern:?}: {e}"));
         }
         answers += map.disparity.iter().filter(|d| d.is_some()).count();
         flags = map.flags.iter().fold(flags, |all, f| all.union(*f));
@@ -141,11 +150,13 @@ fn run_list<S: Method>() {
     // The list says something: there are answers, fractions of all kinds of flags, and every value was used.
     assert!(answers > fewest, "{answers} answers");
     // A matcher loses no lines.
-    let mut seen = PixelFlags::NAMES.iter().map(|(flag, _)| flags.contains(*flag) != (*flag == PixelFlags::DAMAGED));
+    let mut seen =
+        PixelFlags::NAMES.iter().map(|(flag, _)| flags.contains(*flag) != (*flag == PixelFlags::DAMAGED));
     assert!(seen.all(|is_right| is_right), "flags seen: {flags:?}");
     let kinds = confidences.iter().filter(|&&c| c).count();
     assert!(
-        kinds > kinds_of_confidence && confidences.iter().skip(usize::from(Row::MOST_CONFIDENCE) + 1).all(|&c| !c),
+        kinds > kinds_of_confidence
+            && confidences.iter().skip(usize::from(Row::MOST_CONFIDENCE) + 1).all(|&c| !c),
         "{kinds} confidences"
     );
     let used = |value: fn(&Config) -> u16| cases.iter().map(|(c, ..)| value(c)).collect::<BTreeSet<_>>();
@@ -182,7 +193,8 @@ fn sgm_edge_equals_its_twin_at_all_sizes_ranges_and_pictures() {
 }
 
 /// Checks of which every stage does something.
-const ALL_STAGES: Checks = Checks { median: true, fill_pixels: 16, fill_step: Disparity::NONE, ..Checks::STRICT };
+const ALL_STAGES: Checks =
+    Checks { median: true, fill_pixels: 16, fill_step: Disparity::NONE, ..Checks::STRICT };
 
 /// Every picture with each of the ready-made checks, at a size that has all kinds of borders.
 fn every_pattern<S: Method>() {
@@ -234,8 +246,8 @@ fn a_rendered_scene_equals_the_twin() {
     rendered::<SgmEdge>(&mut pipeline(), &scene, &pair);
 }
 
-/// The median and the filling at every width around that of a group of lanes, and every height around that of the
-/// band; gaps of all lengths around those that are filled.
+/// The median and the filling at every width around that of a group of lanes, and every height around that of
+/// the band; gaps of all lengths around those that are filled.
 fn filtered<S: Method>() {
     let mut pipeline = pipeline::<S>();
     // Such that gaps are many and short.
@@ -243,7 +255,8 @@ fn filtered<S: Method>() {
     let (mut filled, mut moved) = (0, 0);
     for (width, height) in (1..=40).flat_map(|width| [1, 2, 3, 5, 6, 9].map(|height| (width, height))) {
         let pair = Pattern::Shifted { most: 9, noise_grey: 9.0 }.pair(width, height, u64::from(width));
-        let config = |checks| Config { checks, confidence: true, ..Config::new(width as u16, height as u16, 16) };
+        let config =
+            |checks| Config { checks, confidence: true, ..Config::new(width as u16, height as u16, 16) };
         let plain = match_pair(&S::TWIN, &config(gaps), &pair.0, &pair.1);
         let mut stages = [(true, 2), (false, 1), (true, u8::MAX), (false, 5), (true, 0)];
         stages.rotate_left((width + height) as usize % 5);

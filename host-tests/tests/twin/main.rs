@@ -1,7 +1,9 @@
-//! The pipeline against its naive twin: every disparity, flag, deviation and confidence, to the bit, for every kernel.
+//! The pipeline against its naive twin: every disparity, flag, deviation and confidence, to the bit, for
+//! every kernel.
 //!
 //! * `list`: all sizes, ranges, pictures and checks. `any`: any combination of them.
-//! * `frames`: one frame after the other, faults and changes in between. `moved`: a matcher that changes its place.
+//! * `frames`: one frame after the other, faults and changes in between. `moved`: a matcher that changes its
+//!   place.
 
 mod any;
 mod frames;
@@ -89,13 +91,18 @@ fn difference(core: &Answers, twin: &Answers) -> Option<String> {
     })?;
     let pixel = |map: &Answers| {
         let (raw, flags) = (map.disparity[at].raw(), map.flags[at].bits());
-        format!("raw {raw} flags {flags:#08b} sigma {:?} confidence {:?}", map.sigma_px[at], map.confidence.get(at))
+        format!(
+            "raw {raw} flags {flags:#08b} sigma {:?} confidence {:?}",
+            map.sigma_px[at],
+            map.confidence.get(at)
+        )
     };
     let (x, y) = (at % core.width, at / core.width);
     Some(format!("column {x}, row {y}: the core says {}, the twin {}", pixel(core), pixel(twin)))
 }
 
-/// Runs the pair through the pipeline with every kernel and compares with the twin, whose answers are returned.
+/// Runs the pair through the pipeline with every kernel and compares with the twin, whose answers are
+/// returned.
 fn compare<S: Method, const D: usize>(
     pipeline: &mut Pipeline<S, W, D>,
     config: &Config,

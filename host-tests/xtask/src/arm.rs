@@ -1,12 +1,12 @@
-//! The kernels for Arm beside their naive twins, in emulators of programs: the vectors of 64 bits, and, in the assembler of
-//! 32 bits, the instructions that Cortex-M4, M7 and M33 have on four bytes.
+//! The kernels for Arm beside their naive twins, in emulators of programs: the vectors of 64 bits, and, in
+//! the assembler of 32 bits, the instructions that Cortex-M4, M7 and M33 have on four bytes.
 
 use crate::packages;
 use crate::setup;
 use crate::steps::{Outcome, cargo, run as run_command};
 
-/// Tests that are long and see nothing on 64-bit Arm that the other tests do not: the rows of the block methods are the same
-/// safe code as on the host.
+/// Tests that are long and see nothing on 64-bit Arm that the other tests do not: the rows of the block
+/// methods are the same safe code as on the host.
 const SAME_AS_HOST: &[&str] = &["fast_equals_its_twin_at_all_sizes", "block_equals_its_twin_at_all_sizes"];
 
 /// A processor that the tests are built for.
@@ -63,7 +63,8 @@ impl Arm {
             cargo(&["test", "--locked", "--target", self.target, "-p", "stereopsis-host", "--test", "twin"]);
         tests.arg("--");
         tests.args(self.skipped.iter().flat_map(|test| ["--skip", test]));
-        let variable = |what: &str| format!("CARGO_TARGET_{}_{what}", self.target.replace('-', "_").to_uppercase());
+        let variable =
+            |what: &str| format!("CARGO_TARGET_{}_{what}", self.target.replace('-', "_").to_uppercase());
         tests.env(variable("LINKER"), self.linker);
         tests.env(variable("RUNNER"), format!("{} -L {}", self.emulator, self.libraries));
         tests.env(variable("RUSTFLAGS"), self.flags);

@@ -1,4 +1,5 @@
-//! What is in a linked firmware, of Rust or of C: bytes of flash and RAM, whose they are, and what must not be there.
+//! What is in a linked firmware, of Rust or of C: bytes of flash and RAM, whose they are, and what must not
+//! be there.
 
 use crate::steps::{Failure, Outcome};
 use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SectionIndex, SectionKind};
@@ -115,8 +116,10 @@ fn is_dense(name: &str) -> bool {
 /// Whether a C name is one of the compiler's routines.
 fn is_builtin(name: &str) -> bool {
     let copies = ["memcpy", "memmove", "memset", "memcmp", "bcmp"];
-    let ends =
-        ["si2", "si3", "si4", "di2", "di3", "di4", "ti2", "ti3", "sf2", "sf3", "df2", "df3", "si", "di", "sf", "df"];
+    let ends = [
+        "si2", "si3", "si4", "di2", "di3", "di4", "ti2", "ti3", "sf2", "sf3", "df2", "df3", "si", "di", "sf",
+        "df",
+    ];
     let is_c = !name.contains("::");
     copies.contains(&name)
         || name.starts_with("__aeabi_")
@@ -150,9 +153,15 @@ mod tests {
         assert!(is_dense("stereopsis::imaging::census::census_ring8"));
         assert!(is_dense("<stereopsis::pipeline::Pipeline<S,_,_>>::next_row"));
         assert!(is_dense(".Lanon.5f7f.3") && is_dense("__aeabi_memcpy") && is_dense("__udivmoddi4"));
-        assert!(!is_dense("<stereopsis::matching::matcher::MatchError as defmt::traits::Format>::_format_data"));
-        assert!(!is_dense("<stereopsis_firmware::camera::timed::Timed<C> as stereopsis::camera::StereoSource>::next"));
-        assert!(!is_dense("stereopsis_firmware::stack::paint") && !is_dense("Reset") && !is_dense("__INTERRUPTS"));
+        assert!(!is_dense(
+            "<stereopsis::matching::matcher::MatchError as defmt::traits::Format>::_format_data"
+        ));
+        assert!(!is_dense(
+            "<stereopsis_firmware::camera::timed::Timed<C> as stereopsis::camera::StereoSource>::next"
+        ));
+        assert!(
+            !is_dense("stereopsis_firmware::stack::paint") && !is_dense("Reset") && !is_dense("__INTERRUPTS")
+        );
     }
 
     #[test]
@@ -160,7 +169,9 @@ mod tests {
         assert!(is_panic("core::panicking::panic_bounds_check") && is_panic("__rustc::rust_begin_unwind"));
         assert!(is_panic("core::option::expect_failed") && !is_panic("stereopsis::pipeline"));
         assert!(is_allocation("__rustc::__rust_alloc") && is_allocation("alloc::raw_vec::grow"));
-        assert!(is_allocation("malloc") && !is_allocation("stereopsis::free_list") && !is_allocation("freeze"));
+        assert!(
+            is_allocation("malloc") && !is_allocation("stereopsis::free_list") && !is_allocation("freeze")
+        );
         assert!(["_malloc_r", "_free_r", "__sbrk", "_sbrk_r", "free"].iter().all(|name| is_allocation(name)));
     }
 }

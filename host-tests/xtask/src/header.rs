@@ -1,8 +1,9 @@
 //! `cargo xtask header`: `src/ffi/stereopsis.h`, made by cbindgen.
 //!
-//! cbindgen reads Rust files and expands no macros, and the functions stand in one: `instantiate_c_api`. So it is given
-//! the macro's own text as a file, with plain paths instead of `$crate`; types and constants it reads from the files of
-//! `src/ffi`. How many bytes a method takes is worked out by the crate and put in as macros.
+//! cbindgen reads Rust files and expands no macros, and the functions stand in one: `instantiate_c_api`. So
+//! it is given the macro's own text as a file, with plain paths instead of `$crate`; types and constants it
+//! reads from the files of `src/ffi`. How many bytes a method takes is worked out by the crate and put in as
+//! macros.
 
 use crate::steps::{Failure, Outcome, root};
 use cbindgen::{Builder, Config, DocumentationLength, DocumentationStyle, Language, RenameRule, Style};
@@ -68,7 +69,9 @@ pub fn run(check: bool) -> Outcome {
     let stored = fs::read_to_string(path).map_err(failed)?;
     match stored.lines().zip(current.lines()).zip(1..).find(|((a, b), _)| a != b) {
         None if stored == current => Ok(()),
-        difference => Err(Failure::new(format!("{HEADER} is not current, run `cargo xtask header`: {difference:?}"))),
+        difference => {
+            Err(Failure::new(format!("{HEADER} is not current, run `cargo xtask header`: {difference:?}")))
+        }
     }
 }
 
@@ -76,12 +79,14 @@ pub fn run(check: bool) -> Outcome {
 fn generate() -> Outcome<String> {
     let folder = tempfile::tempdir().map_err(|e| Failure::new(format!("a temporary folder: {e}")))?;
     let functions = folder.path().join("functions.rs");
-    fs::write(&functions, functions_text()?).map_err(|e| Failure::new(format!("{}: {e}", functions.display())))?;
+    fs::write(&functions, functions_text()?)
+        .map_err(|e| Failure::new(format!("{}: {e}", functions.display())))?;
     let mut builder = Builder::new().with_config(config()?);
     for file in FILES {
         builder = builder.with_src(root().join(file));
     }
-    let bindings = builder.with_src(functions).generate().map_err(|e| Failure::new(format!("cbindgen: {e}")))?;
+    let bindings =
+        builder.with_src(functions).generate().map_err(|e| Failure::new(format!("cbindgen: {e}")))?;
     let mut text = Vec::new();
     bindings.write(&mut text);
     String::from_utf8(text).map_err(|e| Failure::new(format!("cbindgen: {e}")))
@@ -149,7 +154,8 @@ fn functions_text() -> Outcome<String> {
     let (file, name) = MACRO;
     let wrong = |what: &str| Failure::new(format!("{file}: {what}"));
     let text = fs::read_to_string(root().join(file)).map_err(|e| wrong(&e.to_string()))?;
-    let tokens: Vec<_> = text.parse::<TokenStream>().map_err(|e| wrong(&e.to_string()))?.into_iter().collect();
+    let tokens: Vec<_> =
+        text.parse::<TokenStream>().map_err(|e| wrong(&e.to_string()))?.into_iter().collect();
     let is_name = |token: &TokenTree| matches!(token, TokenTree::Ident(ident) if ident == name);
     // macro_rules! name { (pattern) => { body }; }
     let rules = tokens.iter().skip_while(|token| !is_name(token)).nth(1).and_then(braces);

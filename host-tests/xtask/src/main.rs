@@ -45,7 +45,8 @@ enum Chore {
     Test,
     /// Runs the firmware example in QEMU and holds it to the host, bit for bit.
     Firmware(firmware::Arguments),
-    /// Measures what an evaluation costs while the work grows: instructions on two cores, or times on this machine.
+    /// Measures what an evaluation costs while the work grows: instructions on two cores, or times on this
+    /// machine.
     Growth(growth::Arguments),
     /// Measures how right the methods are on real pairs with noise and unequal cameras, beside OpenCV.
     Altered(altered::Arguments),
@@ -72,7 +73,10 @@ fn main() -> ExitCode {
         Err(error) => {
             eprintln!(
                 "error: {}",
-                one_line(&usage_line(&error, "the chores are test, firmware, growth, altered, c, header and readme"))
+                one_line(&usage_line(
+                    &error,
+                    "the chores are test, firmware, growth, altered, c, header and readme"
+                ))
             );
             return ExitCode::FAILURE;
         }

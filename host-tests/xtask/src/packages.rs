@@ -34,7 +34,8 @@ pub fn install(programs: &[&str]) -> Outcome {
     let updated = apt(&["update"]).is_ok();
     let install = |package: &str| apt(&["install", "-y", "--no-install-recommends", package]).is_ok();
     for program in missing {
-        let found = updated && packages_with(program).into_iter().any(|package| install(package) && runs(program));
+        let found =
+            updated && packages_with(program).into_iter().any(|package| install(package) && runs(program));
         let library = library_of(program);
         if found && (is_there(program) || library.is_some_and(install) && is_there(program)) {
             continue;
@@ -43,7 +44,8 @@ pub fn install(programs: &[&str]) -> Outcome {
         if let Some(library) = library {
             names = format!("{names} {library}");
         }
-        let advice = format!("{program} is not installed: install it (Debian, Ubuntu: apt-get install {names})");
+        let advice =
+            format!("{program} is not installed: install it (Debian, Ubuntu: apt-get install {names})");
         return Err(Failure::new(advice));
     }
     Ok(())

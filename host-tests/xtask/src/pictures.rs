@@ -33,7 +33,8 @@ impl Pictures {
     pub fn open(left: &Path, right: &Path) -> Outcome<Self> {
         let (left, right) = MockCamera::open_pair(left, right).map_err(|e| Failure::new(e.to_string()))?;
         let grey = |camera| GreyLines::<_, RAW>::new(camera).map_err(|e| Failure::new(e.to_string()));
-        let mut pair = CameraPair::new(grey(left)?, grey(right)?, 0).map_err(|e| Failure::new(e.to_string()))?;
+        let mut pair =
+            CameraPair::new(grey(left)?, grey(right)?, 0).map_err(|e| Failure::new(e.to_string()))?;
         Self::record(&mut pair)
     }
 
@@ -82,9 +83,11 @@ impl Pictures {
         camera.ok_or_else(|| Failure::new("the pictures are empty"))
     }
 
-    /// Makes the right picture one of the left one's exposure where the two clearly differ, as `stereo match` does it.
+    /// Makes the right picture one of the left one's exposure where the two clearly differ, as `stereo match`
+    /// does it.
     pub fn balance(&mut self) -> Outcome<Balance> {
-        let balance = measure_balance(&mut self.camera()?).map_err(|e| Failure::new(format!("camera: {e}")))?;
+        let balance =
+            measure_balance(&mut self.camera()?).map_err(|e| Failure::new(format!("camera: {e}")))?;
         balance.line(&mut self.right);
         Ok(balance)
     }

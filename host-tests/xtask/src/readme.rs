@@ -6,7 +6,8 @@ use crate::steps::{Outcome, cargo, run as run_command};
 
 /// Writes the parts, or compares them only.
 pub fn run(check: bool) -> Outcome {
-    let mut test = cargo(&["test", "--locked", "--quiet", "-p", "stereopsis-host", "--test", "readme", "generated"]);
+    let mut test =
+        cargo(&["test", "--locked", "--quiet", "-p", "stereopsis-host", "--test", "readme", "generated"]);
     if !check {
         test.env("STEREOPSIS_README", "write");
     }

@@ -80,14 +80,18 @@ fn toolchain(version: &str) -> Outcome {
     if list.lines().any(|line| line.starts_with(&format!("{version}-"))) {
         return Ok(());
     }
-    run(&mut command("rustup", &["toolchain", "install", version, "--profile", "minimal", "--no-self-update"]))
+    run(&mut command(
+        "rustup",
+        &["toolchain", "install", version, "--profile", "minimal", "--no-self-update"],
+    ))
 }
 
 /// The workspace's rust-version with its patch number, as toolchains are named.
 pub fn rust_version() -> Outcome<String> {
-    let manifest =
-        fs::read_to_string(root().join("Cargo.toml")).map_err(|e| Failure::new(format!("Cargo.toml: {e}")))?;
+    let manifest = fs::read_to_string(root().join("Cargo.toml"))
+        .map_err(|e| Failure::new(format!("Cargo.toml: {e}")))?;
     let stated = manifest.lines().find_map(|line| line.strip_prefix("rust-version = "));
-    let version = stated.ok_or_else(|| Failure::new("Cargo.toml states no rust-version"))?.trim().trim_matches('"');
+    let version =
+        stated.ok_or_else(|| Failure::new("Cargo.toml states no rust-version"))?.trim().trim_matches('"');
     Ok(if version.matches('.').count() == 1 { format!("{version}.0") } else { version.to_owned() })
 }

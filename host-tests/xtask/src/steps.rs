@@ -46,7 +46,9 @@ impl Steps {
                 self.taken.push((name.to_owned(), seconds));
                 Ok(value)
             }
-            Err(Failure(line)) => Err(Failure(format!("step \"{name}\" failed after {seconds:.1} s: {line}"))),
+            Err(Failure(line)) => {
+                Err(Failure(format!("step \"{name}\" failed after {seconds:.1} s: {line}")))
+            }
         }
     }
 

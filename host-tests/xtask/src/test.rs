@@ -45,7 +45,8 @@ pub fn run() -> Outcome {
 fn real_data() -> Outcome<Option<PathBuf>> {
     let in_ci = std::env::var("CI").is_ok_and(|ci| !matches!(ci.as_str(), "" | "0" | "false"));
     let Some(folder) = std::env::var_os("STEREO_DATA").map(PathBuf::from) else {
-        let needed = || Failure::new("CI is set and STEREO_DATA is not: it names the folder that holds stereo/");
+        let needed =
+            || Failure::new("CI is set and STEREO_DATA is not: it names the folder that holds stereo/");
         return if in_ci { Err(needed()) } else { Ok(None) };
     };
     if !folder.join("stereo").is_dir() {
@@ -65,10 +66,12 @@ fn clippy() -> Outcome {
     run_cargo("clippy --locked -p stereopsis --features async,defmt,ffi -- -D warnings")?;
     // The kinds of cores have code of their own.
     for (target, features) in [("thumbv7em-none-eabihf", "large"), ("riscv32imac-unknown-none-elf", "")] {
-        let words = format!("clippy --locked --release --target {target} --features={features} -- -D warnings");
+        let words =
+            format!("clippy --locked --release --target {target} --features={features} -- -D warnings");
         run_command(&mut firmware::cargo(&words))?;
     }
-    let mut vectors = firmware::cargo("clippy --locked --release --target thumbv8m.main-none-eabihf -- -D warnings");
+    let mut vectors =
+        firmware::cargo("clippy --locked --release --target thumbv8m.main-none-eabihf -- -D warnings");
     run_command(vectors.env("RUSTFLAGS", firmware::VECTORS))?;
     run_command(&mut c::cargo("clippy --locked --release --target thumbv7em-none-eabihf -- -D warnings"))
 }
@@ -93,7 +96,8 @@ fn documentation() -> Outcome {
 }
 
 fn cross_builds() -> Outcome {
-    // The firmware is built with the one set of features for every core; here the code is as generic as it was written.
+    // The firmware is built with the one set of features for every core; here the code is as generic as it
+    // was written.
     for (chore, features) in [("check", [].as_slice()), ("build", &["--features", "async,defmt,ffi"])] {
         let mut build = cargo(&[chore, "--locked", "--release", "-p", "stereopsis"]);
         build.args(features).args(TARGETS.iter().flat_map(|target| ["--target", target]));
@@ -105,7 +109,14 @@ fn cross_builds() -> Outcome {
 /// The oldest compiler that the packages say they build with, in earnest.
 fn rust_version(version: &str) -> Outcome {
     let mut check = command("rustup", &["run", version, "cargo", "check", "--locked"]);
-    check.args(["-p", "stereopsis", "-p", "stereopsis-host", "--features", "stereopsis/defmt,stereopsis/ffi"]);
+    check.args([
+        "-p",
+        "stereopsis",
+        "-p",
+        "stereopsis-host",
+        "--features",
+        "stereopsis/defmt,stereopsis/ffi",
+    ]);
     // Two compilers that take turns in one folder lock each other out and tidy away each other's products.
     run_command(check.env("CARGO_TARGET_DIR", target_dir().join("rust-version")))
 }

@@ -1,10 +1,12 @@
 //! Himax's HM01B0: 324x324 pixels of 8 bits behind a rolling shutter, a few milliwatts.
 //!
-//! Registers have 8 bits at addresses of 16, the high byte first. Their names, numbers and values are those of OpenMV's driver
-//! (`drivers/sensors/hm01b0.c` and `.h`, MIT). Some are reserved in the data sheet, and the picture is bad without them.
+//! Registers have 8 bits at addresses of 16, the high byte first. Their names, numbers and values are those
+//! of OpenMV's driver (`drivers/sensors/hm01b0.c` and `.h`, MIT). Some are reserved in the data sheet, and
+//! the picture is bad without them.
 //!
-//! A line takes 376 clocks, the frame as many lines as it is told. The exposure is whole lines, two fewer than the frame's at most.
-//! What is written after [`Hm01b0::initialise`] counts from the frame after the group's command.
+//! A line takes 376 clocks, the frame as many lines as it is told. The exposure is whole lines, two fewer
+//! than the frame's at most. What is written after [`Hm01b0::initialise`] counts from the frame after the
+//! group's command.
 
 use super::{ExposureControl, SensorError, within};
 
@@ -79,8 +81,9 @@ impl Hm01b0Size {
     /// Lines of a frame, blanking included, at least.
     const fn least_lines(self) -> u16 {
         match self {
-            // Open drivers write 265, fewer than its own rows. Zephyr's (`drivers/video/hm01b0.c`) says that there are at most
-            // 45 frames a second, and 60 of the window, whose 260 lines so are 346 here.
+            // Open drivers write 265, fewer than its own rows. Zephyr's (`drivers/video/hm01b0.c`) says that
+            // there are at most 45 frames a second, and 60 of the window, whose 260 lines so are
+            // 346 here.
             Self::Whole => 346,
             Self::Qvga => 0x0104,
             Self::Qqvga => 0x0084,
@@ -109,7 +112,8 @@ pub enum Hm01b0Mode {
     Triggered,
 }
 
-/// The driver, over a bus that blocks or one that is waited for: `async` and `.await`, or nothing in their places.
+/// The driver, over a bus that blocks or one that is waited for: `async` and `.await`, or nothing in their
+/// places.
 macro_rules! driver {
     ($driver:ident, $about:literal, $i2c:path, $delay:path, [$($async:ident)?], [$($wait:tt)*]) => {
     #[doc = $about]

@@ -1,19 +1,23 @@
-//! Drivers of image sensors over I2C: what they are told. Where their pixels go, a [`LineSource`](super::LineSource) says, over
-//! the port of the chip at hand.
+//! Drivers of image sensors over I2C: what they are told. Where their pixels go, a
+//! [`LineSource`](super::LineSource) says, over the port of the chip at hand.
 //!
-//! * [`Mt9v034`]: global shutter, 752x480, the classic of embedded stereo. [`Hm01b0`]: rolling shutter, 324x324, milliwatts.
-//! * [`ExposureControl`]: what an automatic exposure asks of a sensor. [`SensorError`]: why a sensor did not do what it was told.
+//! * [`Mt9v034`]: global shutter, 752x480, the classic of embedded stereo. [`Hm01b0`]: rolling shutter,
+//!   324x324, milliwatts.
+//! * [`ExposureControl`]: what an automatic exposure asks of a sensor. [`SensorError`]: why a sensor did not
+//!   do what it was told.
 //!
-//! A driver owns its bus by value; a shared one comes by `embedded-hal-bus` or `&mut`. Delay and reset pin are asked for where
-//! they are needed. All of it blocks, for the time that the bus takes; with the feature `async` there is each driver over a bus that is
-//! waited for as well (`AsyncMt9v034`, `AsyncHm01b0`), made of the same text. A write that fails leaves the sensor between two settings:
-//! the call may be repeated as it is, and [`Mt9v034::initialise`] or [`Hm01b0::initialise`] begins anew.
+//! A driver owns its bus by value; a shared one comes by `embedded-hal-bus` or `&mut`. Delay and reset pin
+//! are asked for where they are needed. All of it blocks, for the time that the bus takes; with the feature
+//! `async` there is each driver over a bus that is waited for as well (`AsyncMt9v034`, `AsyncHm01b0`), made
+//! of the same text. A write that fails leaves the sensor between two settings: the call may be repeated as
+//! it is, and [`Mt9v034::initialise`] or [`Hm01b0::initialise`] begins anew.
 //!
-//! Other sensors come with drivers of their own, which need no adapter: they configure, over the same traits. For the OV7670 there
-//! is the crate `ov7670` 0.1.0, over `embedded-hal` 1.0: it sets size, format, gain and exposure, but neither frame rate, windows,
-//! test pattern nor clock, and looks at no identity, so that an adapter could give an [`ExposureControl`] and no more; its
-//! only version is its first. The crate
-//! `hm01b0` 0.1.0 has exposure, trigger and test pattern; as it neither windows nor bins, there is a driver here.
+//! Other sensors come with drivers of their own, which need no adapter: they configure, over the same traits.
+//! For the OV7670 there is the crate `ov7670` 0.1.0, over `embedded-hal` 1.0: it sets size, format, gain and
+//! exposure, but neither frame rate, windows, test pattern nor clock, and looks at no identity, so that an
+//! adapter could give an [`ExposureControl`] and no more; its only version is its first. The crate
+//! `hm01b0` 0.1.0 has exposure, trigger and test pattern; as it neither windows nor bins, there is a driver
+//! here.
 
 mod hm01b0;
 mod mt9v034;
@@ -82,7 +86,8 @@ pub trait ExposureControl {
     /// The most gain, in sixteenths: 64 is fourfold. The least is 16.
     fn most_gain_16ths(&self) -> u16;
 
-    /// Sets both for a coming frame: which one, the sensor says. The exposure is rounded to what the sensor has.
+    /// Sets both for a coming frame: which one, the sensor says. The exposure is rounded to what the sensor
+    /// has.
     fn set_exposure(&mut self, exposure_us: u32, gain_16ths: u16) -> Result<(), Self::Error>;
 }
 

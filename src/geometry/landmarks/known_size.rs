@@ -8,8 +8,8 @@ use nalgebra::{Point2, Point3, Unit, Vector3};
 pub struct Sighting<T: Real> {
     /// From the optical centre to the object's middle, m.
     pub distance_m: T,
-    /// The standard deviation of the distance that the pixels' noise makes, m; what the object's size is off adds its own
-    /// share, in proportion.
+    /// The standard deviation of the distance that the pixels' noise makes, m; what the object's size is off
+    /// adds its own share, in proportion.
     pub sigma_m: T,
     /// The direction of the object's middle, in the camera's frame (X right, Y down, Z forward).
     pub bearing: Unit<Vector3<T>>,
@@ -36,8 +36,12 @@ impl core::fmt::Display for SightingError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::NotFinite => f.write_str("a number is not finite"),
-            Self::Size => f.write_str("the object's size must be positive, the pixels' deviation not negative"),
-            Self::TooSmall => f.write_str("the object's ends are seen at one place, as far as the noise tells"),
+            Self::Size => {
+                f.write_str("the object's size must be positive, the pixels' deviation not negative")
+            }
+            Self::TooSmall => {
+                f.write_str("the object's ends are seen at one place, as far as the noise tells")
+            }
             Self::Pixel(error) => error.fmt(f),
         }
     }
@@ -46,11 +50,12 @@ impl core::fmt::Display for SightingError {
 impl core::error::Error for SightingError {}
 
 impl<T: Real> Sighting<T> {
-    /// An object of known length across the line of sight, a pole or the height of a door, whose two ends are seen.
+    /// An object of known length across the line of sight, a pole or the height of a door, whose two ends are
+    /// seen.
     ///
-    /// With the angle `a` between the two sights, `d = L / (2 tan(a / 2))`; in the middle of the image and far away that
-    /// is the thin law `Z = f L / l` for `l` px (Siegwart, Nourbakhsh & Scaramuzza 2011, 4.2.5). An object that leans
-    /// along the sight by an angle looks shorter by its cosine, and farther.
+    /// With the angle `a` between the two sights, `d = L / (2 tan(a / 2))`; in the middle of the image and
+    /// far away that is the thin law `Z = f L / l` for `l` px (Siegwart, Nourbakhsh & Scaramuzza 2011,
+    /// 4.2.5). An object that leans along the sight by an angle looks shorter by its cosine, and farther.
     ///
     /// `ends` are px as the camera gives them, each with the standard deviation `sigma_px` along the object.
     ///
@@ -77,8 +82,9 @@ impl<T: Real> Sighting<T> {
         Ok(angle.sighting(distance_m, distance_m / angle.radians.sin()))
     }
 
-    /// A ball of known diameter, of which two opposite points of the outline are seen: `d = D / (2 sin(a / 2))`, for the
-    /// sights touch it. The bearing is that of the middle between the two sights, which is the ball's centre.
+    /// A ball of known diameter, of which two opposite points of the outline are seen: `d = D / (2 sin(a /
+    /// 2))`, for the sights touch it. The bearing is that of the middle between the two sights, which is
+    /// the ball's centre.
     pub fn of_ball(
         camera: &Camera<T>,
         rim: &[Point2<T>; 2],
@@ -118,7 +124,12 @@ struct Angle<T: Real> {
 }
 
 impl<T: Real> Angle<T> {
-    fn between(camera: &Camera<T>, ends: &[Point2<T>; 2], size_m: T, sigma_px: T) -> Result<Self, SightingError> {
+    fn between(
+        camera: &Camera<T>,
+        ends: &[Point2<T>; 2],
+        size_m: T,
+        sigma_px: T,
+    ) -> Result<Self, SightingError> {
         let [a, b] = ends;
         if ![a.x, a.y, b.x, b.y, size_m, sigma_px].iter().all(|x| x.is_finite()) {
             return Err(SightingError::NotFinite);
@@ -141,7 +152,8 @@ impl<T: Real> Angle<T> {
         // The half angle's tangent, exact for small angles too.
         let half_tangent = difference.norm() / sum.norm();
         let two = T::of(2.0);
-        // How far a sight turns when its pixel moves along the object: over a pixel, or as far as the object is long.
+        // How far a sight turns when its pixel moves along the object: over a pixel, or as far as the object
+        // is long.
         let step = along * (T::ONE.min(apart) / (apart * two));
         let turn = |pixel: &Point2<T>| -> Result<T, SightingError> {
             let around = sight(&(pixel + step))? - sight(&(pixel - step))?;
@@ -177,7 +189,8 @@ mod tests {
     #[test]
     fn a_pole_in_the_middle() {
         // 2 m at 10 m: 1 m is 50 px on either side.
-        let seen = Sighting::of_length(&camera(), &[Point2::new(270.0, 240.0), Point2::new(370.0, 240.0)], 2.0, 0.5);
+        let seen =
+            Sighting::of_length(&camera(), &[Point2::new(270.0, 240.0), Point2::new(370.0, 240.0)], 2.0, 0.5);
         let seen = seen.expect("a distance");
         assert!((seen.distance_m - 10.0).abs() < 1e-12);
         assert!((seen.angle_rad - 2.0 * 0.1_f64.atan()).abs() < 1e-15);

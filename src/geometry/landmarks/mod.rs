@@ -4,8 +4,9 @@
 //!
 //! * [`Sighting`]: distance and bearing of an object of known size.
 //! * [`SquareMark`]: the pose of a flat square of known side, with the second pose that its picture may have.
-//! * [`VanishingPoint`]: where the picture of parallel lines converges. [`Walls`]: the camera's orientation in a building,
-//!   from lines along its three orthogonal directions, and the focal length where that is not known.
+//! * [`VanishingPoint`]: where the picture of parallel lines converges. [`Walls`]: the camera's orientation
+//!   in a building, from lines along its three orthogonal directions, and the focal length where that is not
+//!   known.
 
 mod known_size;
 mod pencil;

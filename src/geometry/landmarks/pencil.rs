@@ -4,7 +4,8 @@ use crate::geometry::Real;
 use crate::geometry::linear::Ldl;
 use nalgebra::{Point2, Vector3};
 
-/// A piece of a straight line in the image: its ends, undistorted px ([`Camera::undistort`](crate::geometry::Camera::undistort)).
+/// A piece of a straight line in the image: its ends, undistorted px
+/// ([`Camera::undistort`](crate::geometry::Camera::undistort)).
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Segment<T: Real> {
     /// One end.
@@ -49,16 +50,17 @@ impl<T: Real> Segment<T> {
 }
 
 impl<T: Real> Scaled<T> {
-    /// What the distance of an end from the line through the middle and `v` is the product of with `v`, while `v` moves
-    /// little: `half x middle` over the length of that line's normal. Zero where the segment or the line is none.
+    /// What the distance of an end from the line through the middle and `v` is the product of with `v`, while
+    /// `v` moves little: `half x middle` over the length of that line's normal. Zero where the segment or
+    /// the line is none.
     pub(super) fn gradient(&self, v: &Vector3<T>) -> Vector3<T> {
         let size = self.middle.cross(v).xy().norm();
         if size > T::ZERO { self.half.cross(&self.middle) / size } else { Vector3::zeros() }
     }
 }
 
-/// The point, homogeneous and of length one, from whose lines the ends of two segments or more are least away, and the sum
-/// of the squared distances.
+/// The point, homogeneous and of length one, from whose lines the ends of two segments or more are least
+/// away, and the sum of the squared distances.
 ///
 /// Least squares with weights that are found anew from each point, six times.
 pub(super) fn vanishing_point<T: Real>(

@@ -8,8 +8,8 @@ use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 /// A flat square: a marker, a tile, a board.
 ///
-/// Its frame has the origin in its middle, X to the right and Y down for who looks at it, and Z into it: a camera right
-/// before it has the same axes.
+/// Its frame has the origin in its middle, X to the right and Y down for who looks at it, and Z into it: a
+/// camera right before it has the same axes.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct SquareMark<T: Real> {
     side_m: T,
@@ -26,12 +26,14 @@ pub struct MarkPose<T: Real> {
 
 /// The poses that a picture of a mark may mean.
 ///
-/// A small or distant square has nearly the same picture when it is tilted the other way about its line of sight.
+/// A small or distant square has nearly the same picture when it is tilted the other way about its line of
+/// sight.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct MarkPoses<T: Real> {
     /// The pose with the smaller re-projection error.
     pub best: MarkPose<T>,
-    /// The other one; `None` where both are the same to a milliradian, or the other one is not before the camera.
+    /// The other one; `None` where both are the same to a milliradian, or the other one is not before the
+    /// camera.
     pub other: Option<MarkPose<T>>,
 }
 
@@ -93,13 +95,17 @@ impl<T: Real> SquareMark<T> {
         [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| Point3::new(x, y, T::ZERO))
     }
 
-    /// The pose of the mark whose corners are seen at four pixels, in the order of [`Self::corners`], px as the camera
-    /// gives them.
+    /// The pose of the mark whose corners are seen at four pixels, in the order of [`Self::corners`], px as
+    /// the camera gives them.
     ///
-    /// Both poses come in closed form from the homography's derivative at the mark's middle (Collins & Bartoli 2014,
-    /// "Infinitesimal plane-based pose estimation", 4.1); each is refined to the least re-projection error by Levenberg's
-    /// and Marquardt's method, and that error tells them apart.
-    pub fn locate(&self, camera: &Camera<T>, corners: &[Point2<T>; 4]) -> Result<MarkPoses<T>, SquareMarkError> {
+    /// Both poses come in closed form from the homography's derivative at the mark's middle (Collins &
+    /// Bartoli 2014, "Infinitesimal plane-based pose estimation", 4.1); each is refined to the least
+    /// re-projection error by Levenberg's and Marquardt's method, and that error tells them apart.
+    pub fn locate(
+        &self,
+        camera: &Camera<T>,
+        corners: &[Point2<T>; 4],
+    ) -> Result<MarkPoses<T>, SquareMarkError> {
         if !corners.iter().all(|p| p.x.is_finite() && p.y.is_finite()) {
             return Err(SquareMarkError::NotFinite);
         }
@@ -122,7 +128,8 @@ impl<T: Real> SquareMark<T> {
         let middle = homography.to_first(&Point2::origin()).ok_or(SquareMarkError::Behind)?;
         // In half sides: the depth of the middle is one over the scale of the picture there.
         let start = middle.to_homogeneous() / scale;
-        let refine = |rotation| self.refined(camera, &seen, Pose::of_parts(rotation, start * (self.side_m / two)));
+        let refine =
+            |rotation| self.refined(camera, &seen, Pose::of_parts(rotation, start * (self.side_m / two)));
         match rotations.map(refine) {
             [Some(one), Some(two)] => {
                 let (best, other) = if one.rms_px <= two.rms_px { (one, two) } else { (two, one) };
@@ -166,8 +173,8 @@ impl<T: Real> SquareMark<T> {
         Some(MarkPose { pose, rms_px: (equations.squares * T::of(0.25)).sqrt() })
     }
 
-    /// The normal equations of the corners' errors, over a rotation (in the camera's frame, about the mark's middle) and a
-    /// translation in sides.
+    /// The normal equations of the corners' errors, over a rotation (in the camera's frame, about the mark's
+    /// middle) and a translation in sides.
     fn equations(&self, camera: &Camera<T>, seen: &[Point2<T>; 4], pose: &Pose<T>) -> Option<Equations<T>> {
         let k = camera.matrix();
         let mut equations = Equations { normal: [[T::ZERO; 6]; 6], right: [T::ZERO; 6], squares: T::ZERO };
@@ -212,15 +219,12 @@ impl<T: Real> Equations<T> {
 }
 
 impl<T: Real> MarkPoses<T> {
-    /// The better pose's re-projection error over the other's, 0 to 1: near one the picture does not tell which of the two
-    /// it is; 0 where there is one pose only.
+    /// The better pose's re-projection error over the other's, 0 to 1: near one the picture does not tell
+    /// which of the two it is; 0 where there is one pose only.
     pub fn ambiguity(&self) -> T {
-        self.other.map_or(
-            T::ZERO,
-            |other| {
-                if other.rms_px > T::ZERO { self.best.rms_px / other.rms_px } else { T::ONE }
-            },
-        )
+        self.other.map_or(T::ZERO, |other| {
+            if other.rms_px > T::ZERO { self.best.rms_px / other.rms_px } else { T::ONE }
+        })
     }
 }
 
@@ -251,7 +255,8 @@ mod tests {
     #[test]
     fn right_before_the_camera() {
         // 0.2 m at 1 m: 100 px.
-        let corners = [(270.0, 190.0), (370.0, 190.0), (370.0, 290.0), (270.0, 290.0)].map(|(u, v)| Point2::new(u, v));
+        let corners =
+            [(270.0, 190.0), (370.0, 190.0), (370.0, 290.0), (270.0, 290.0)].map(|(u, v)| Point2::new(u, v));
         let poses = SquareMark::new(0.2).and_then(|mark| mark.locate(&camera(), &corners)).expect("a pose");
         assert!((poses.best.pose.rotation() - Matrix3::identity()).amax() < 1e-6, "{:?}", poses.best);
         assert!((poses.best.pose.translation() - Vector3::new(0.0, 0.0, 1.0)).amax() < 1e-9);
@@ -266,7 +271,10 @@ mod tests {
         assert_eq!(of([(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (0.0, 2.0)]), Err(SquareMarkError::Line));
         assert_eq!(of([(0.0, 0.0), (0.0, 9.0), (9.0, 9.0), (9.0, 0.0)]), Err(SquareMarkError::Mirrored));
         assert_eq!(of([(0.0, 0.0), (9.0, 9.0), (9.0, 0.0), (0.0, 9.0)]), Err(SquareMarkError::NotConvex));
-        assert_eq!(of([(0.0, 0.0), (9.0, 0.0), (f64::NAN, 9.0), (0.0, 9.0)]), Err(SquareMarkError::NotFinite));
+        assert_eq!(
+            of([(0.0, 0.0), (9.0, 0.0), (f64::NAN, 9.0), (0.0, 9.0)]),
+            Err(SquareMarkError::NotFinite)
+        );
         assert_eq!(SquareMark::new(0.0_f32), Err(SquareMarkError::Side));
     }
 }

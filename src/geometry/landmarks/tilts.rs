@@ -4,12 +4,13 @@ use crate::geometry::Real;
 use crate::geometry::skew::skew;
 use nalgebra::{Matrix2, Matrix3, Matrix3x2, Vector2, Vector3};
 
-/// The two rotations that a homography from a plane to the plane Z = 1 may mean, and its scale at the origin; `None` where
-/// it mirrors the plane.
+/// The two rotations that a homography from a plane to the plane Z = 1 may mean, and its scale at the origin;
+/// `None` where it mirrors the plane.
 pub(super) fn rotations<T: Real>(h: &Matrix3<T>) -> Option<(T, [Matrix3<T>; 2])> {
     let h = h / h.m33;
     let p = Vector2::new(h.m13, h.m23);
-    let slope = Matrix2::new(h.m11 - h.m31 * p.x, h.m12 - h.m32 * p.x, h.m21 - h.m31 * p.y, h.m22 - h.m32 * p.y);
+    let slope =
+        Matrix2::new(h.m11 - h.m31 * p.x, h.m12 - h.m32 * p.x, h.m21 - h.m31 * p.y, h.m22 - h.m32 * p.y);
     // The frame whose Z is the sight of the origin.
     let (far, length) = ((T::ONE + p.norm_squared()).sqrt(), p.norm());
     let axis = Vector3::new(-p.y, p.x, T::ZERO) / if length > T::ZERO { length } else { T::ONE };

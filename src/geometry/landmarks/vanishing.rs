@@ -49,14 +49,19 @@ impl From<PencilError> for VanishingPointError {
 }
 
 impl<T: Real> VanishingPoint<T> {
-    /// The point for which the segments' ends are least away, root mean square, from the lines through it and their middles.
+    /// The point for which the segments' ends are least away, root mean square, from the lines through it and
+    /// their middles.
     pub fn of(segments: &[Segment<T>]) -> Result<Self, VanishingPointError> {
         if !segments.iter().all(Segment::is_finite) {
             return Err(VanishingPointError::NotFinite);
         }
         let (centre, scale) = extent(segments.iter());
         if !(scale > T::ZERO) {
-            return Err(if segments.len() < 2 { VanishingPointError::TooFew } else { VanishingPointError::Line });
+            return Err(if segments.len() < 2 {
+                VanishingPointError::TooFew
+            } else {
+                VanishingPointError::Line
+            });
         }
         let (v, squares) = vanishing_point(segments.iter().map(|segment| segment.scaled(&centre, scale)))?;
         let v = Vector3::new(v.x * scale + centre.x * v.z, v.y * scale + centre.y * v.z, v.z);
@@ -80,7 +85,8 @@ impl<T: Real> VanishingPoint<T> {
         self.rms_px
     }
 
-    /// The direction of the lines in the camera's frame, forward; of lines parallel to the image either of the two.
+    /// The direction of the lines in the camera's frame, forward; of lines parallel to the image either of
+    /// the two.
     pub fn direction(&self, camera: &Camera<T>) -> Unit<Vector3<T>> {
         let direction = camera.inverse_matrix() * self.homogeneous;
         Unit::new_normalize(if direction.z < T::ZERO { -direction } else { direction })
@@ -105,13 +111,16 @@ mod tests {
 
     #[test]
     fn rails_converge() {
-        let rails = [Segment::new((0.0, 480.0), (200.0, 180.0)), Segment::new((640.0, 480.0), (440.0, 180.0))];
+        let rails =
+            [Segment::new((0.0, 480.0), (200.0, 180.0)), Segment::new((640.0, 480.0), (440.0, 180.0))];
         let point = VanishingPoint::of(&rails).expect("a point");
         // Left: u = 2 / 3 (480 - v), right: its mirror; both at u = 320 where v = 0.
         assert!((point.pixel().expect("finite") - Point2::new(320.0, 0.0)).norm() < 1e-9, "{point:?}");
         assert!(point.rms_px() < 1e-10);
         let camera = Camera::new(480.0, 480.0, 320.0, 240.0).expect("a camera");
-        assert!((point.direction(&camera).into_inner() - Vector3::new(0.0, -0.5, 1.0).normalize()).norm() < 1e-12);
+        assert!(
+            (point.direction(&camera).into_inner() - Vector3::new(0.0, -0.5, 1.0).normalize()).norm() < 1e-12
+        );
     }
 
     #[test]

@@ -9,17 +9,19 @@ use nalgebra::{Matrix3, Point2, Vector3};
 
 /// How a camera stands in a building, from lines along its three orthogonal directions.
 ///
-/// Lines have no sense: of the 24 orientations that fit them as well it is the one that is nearest to what the caller
-/// expects.
+/// Lines have no sense: of the 24 orientations that fit them as well it is the one that is nearest to what
+/// the caller expects.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Walls<T: Real> {
     /// R carries a direction of the building into the camera's frame: its columns are the three directions.
     pub rotation: Matrix3<T>,
     /// Focal length, px: the camera's, or what was estimated.
     pub focal_px: T,
-    /// How far the segments' ends are from the lines through their middles and the vanishing points, root mean square, px.
+    /// How far the segments' ends are from the lines through their middles and the vanishing points, root
+    /// mean square, px.
     pub rms_px: T,
-    /// Standard deviations of the rotation about the camera's axes for segments whose ends are off by one px, radians per px.
+    /// Standard deviations of the rotation about the camera's axes for segments whose ends are off by one
+    /// px, radians per px.
     pub sigma_rad_per_px: Vector3<T>,
     /// The same of the focal length, px per px; zero where it was known.
     pub focal_sigma_per_px: T,
@@ -38,7 +40,8 @@ pub enum WallsError {
     Line,
     /// Two bundles have one direction, or their directions are nearer to each other than to orthogonal ones.
     NotOrthogonal,
-    /// The focal length is open: of every two bundles, one is parallel to the image, or no focal length makes them orthogonal.
+    /// The focal length is open: of every two bundles, one is parallel to the image, or no focal length makes
+    /// them orthogonal.
     Focal,
 }
 
@@ -75,11 +78,15 @@ const MOST_STEPS: usize = 16;
 impl<T: Real> Walls<T> {
     /// The orientation of a known camera.
     ///
-    /// `bundles` are segments along the building's X, Y and Z, undistorted px; two of them need two segments each, the third
-    /// may be empty. `expected` is about what R is. The vanishing point of direction k is `K R e_k` (Hartley & Zisserman
-    /// 2004, 8.6); the rotation is the one for which the segments' ends are least away from the lines through their
-    /// middles and these points.
-    pub fn orientation(camera: &Camera<T>, bundles: Bundles<'_, T>, expected: &Matrix3<T>) -> Result<Self, WallsError> {
+    /// `bundles` are segments along the building's X, Y and Z, undistorted px; two of them need two segments
+    /// each, the third may be empty. `expected` is about what R is. The vanishing point of direction k is
+    /// `K R e_k` (Hartley & Zisserman 2004, 8.6); the rotation is the one for which the segments' ends
+    /// are least away from the lines through their middles and these points.
+    pub fn orientation(
+        camera: &Camera<T>,
+        bundles: Bundles<'_, T>,
+        expected: &Matrix3<T>,
+    ) -> Result<Self, WallsError> {
         finite(bundles, expected)?;
         // In the camera's own plane, where K is one; the focal length makes px of the distances.
         let (k, (fx, fy)) = (camera.inverse_matrix(), camera.focal_px());
@@ -93,11 +100,12 @@ impl<T: Real> Walls<T> {
         Ok(refined(bundles, plane, start, T::ONE, false, scale))
     }
 
-    /// The orientation and the focal length of a camera with square pixels of which only the principal point (column, row,
-    /// px) is known: often the middle of the image.
+    /// The orientation and the focal length of a camera with square pixels of which only the principal point
+    /// (column, row, px) is known: often the middle of the image.
     ///
-    /// Of two orthogonal directions with vanishing points v and w, seen from the principal point, `f^2 = -v . w` (Hartley &
-    /// Zisserman 2004, 8.8): two bundles that both converge fix it, the third makes it surer.
+    /// Of two orthogonal directions with vanishing points v and w, seen from the principal point, `f^2 = -v .
+    /// w` (Hartley & Zisserman 2004, 8.8): two bundles that both converge fix it, the third makes it
+    /// surer.
     pub fn orientation_and_focal(
         principal_point: &Point2<T>,
         bundles: Bundles<'_, T>,
@@ -109,7 +117,11 @@ impl<T: Real> Walls<T> {
         }
         let (_, scale) = extent(bundles.into_iter().flatten());
         if !(scale > T::ZERO) {
-            return Err(if bundles.iter().any(|b| b.len() > 1) { WallsError::Line } else { WallsError::TooFew });
+            return Err(if bundles.iter().any(|b| b.len() > 1) {
+                WallsError::Line
+            } else {
+                WallsError::TooFew
+            });
         }
         let plane = move |segment: &Segment<T>| segment.scaled(principal_point, scale);
         let vanishing = vanishing_points(bundles, plane)?;
@@ -117,14 +129,17 @@ impl<T: Real> Walls<T> {
         let directions = vanishing.map(|v| v.map(|v| Vector3::new(v.x, v.y, v.z * focal)));
         let start = orthogonal(directions, expected)?;
         let walls = refined(bundles, plane, start, focal, true, scale);
-        let found = walls.focal_px.is_finite() && walls.focal_px > T::ZERO && walls.focal_sigma_per_px < walls.focal_px;
+        let found = walls.focal_px.is_finite()
+            && walls.focal_px > T::ZERO
+            && walls.focal_sigma_per_px < walls.focal_px;
         if found { Ok(walls) } else { Err(WallsError::Focal) }
     }
 }
 
 /// That all numbers are finite.
 fn finite<T: Real>(bundles: Bundles<'_, T>, expected: &Matrix3<T>) -> Result<(), WallsError> {
-    let finite = bundles.into_iter().flatten().all(Segment::is_finite) && expected.iter().all(|x| x.is_finite());
+    let finite =
+        bundles.into_iter().flatten().all(Segment::is_finite) && expected.iter().all(|x| x.is_finite());
     if finite { Ok(()) } else { Err(WallsError::NotFinite) }
 }
 
@@ -142,7 +157,8 @@ fn vanishing_points<T: Real>(
     if points.iter().flatten().count() < 2 { Err(WallsError::TooFew) } else { Ok(points) }
 }
 
-/// f of the pairs of vanishing points, weighted by how much each says of it; in the unit that they are given in.
+/// f of the pairs of vanishing points, weighted by how much each says of it; in the unit that they are given
+/// in.
 fn focal<T: Real>(points: &[Option<Vector3<T>>; 3]) -> Option<T> {
     let (mut squares, mut weights) = (T::ZERO, T::ZERO);
     let [a, b, c] = points;
@@ -152,11 +168,15 @@ fn focal<T: Real>(points: &[Option<Vector3<T>>; 3]) -> Option<T> {
         weights += weight * weight;
     }
     // Points of 1000 units away in both directions say nothing any more.
-    (weights > T::of(1e-12).max(T::EPSILON * T::EPSILON) && squares > T::ZERO).then(|| (squares / weights).sqrt())
+    (weights > T::of(1e-12).max(T::EPSILON * T::EPSILON) && squares > T::ZERO)
+        .then(|| (squares / weights).sqrt())
 }
 
 /// The rotation whose columns are nearest to two or three directions of any sense and length.
-fn orthogonal<T: Real>(directions: [Option<Vector3<T>>; 3], expected: &Matrix3<T>) -> Result<Matrix3<T>, WallsError> {
+fn orthogonal<T: Real>(
+    directions: [Option<Vector3<T>>; 3],
+    expected: &Matrix3<T>,
+) -> Result<Matrix3<T>, WallsError> {
     let mut columns = [Vector3::zeros(); 3];
     for ((column, direction), expected) in columns.iter_mut().zip(directions).zip(expected.column_iter()) {
         if let Some(direction) = direction {
@@ -235,8 +255,8 @@ impl<T: Real> Equations<T> {
     }
 }
 
-/// The rotation (and focal length, if it is `free`) near the first one with the least squares of distances; Levenberg and
-/// Marquardt. `scale` is the px of a unit.
+/// The rotation (and focal length, if it is `free`) near the first one with the least squares of distances;
+/// Levenberg and Marquardt. `scale` is the px of a unit.
 fn refined<T: Real>(
     bundles: Bundles<'_, T>,
     plane: impl Fn(&Segment<T>) -> Scaled<T> + Copy,

@@ -4,8 +4,8 @@ use super::Ldl;
 use crate::geometry::Real;
 use nalgebra::Matrix6;
 
-/// The covariance of six numbers of this information, its inverse; a direction in which nothing is known is as wide as
-/// [`Real::EPSILON`] of what is known along the axes makes it.
+/// The covariance of six numbers of this information, its inverse; a direction in which nothing is known is
+/// as wide as [`Real::EPSILON`] of what is known along the axes makes it.
 pub(crate) fn covariance6<T: Real>(information: &[[T; 6]; 6]) -> Matrix6<T> {
     // At size one along every axis: turns and steps have units of their own.
     let mut m = *information;
@@ -44,7 +44,8 @@ mod tests {
         // [4 2; 2 3] has the inverse [3 -2; -2 4] / 8.
         (information[0][0], information[0][1], information[1][0], information[1][1]) = (4.0, 2.0, 2.0, 3.0);
         let c = covariance6(&information);
-        for (value, expected) in [(c.m11, 0.375), (c.m12, -0.25), (c.m21, -0.25), (c.m22, 0.5), (c.m33, 1e-6)] {
+        for (value, expected) in [(c.m11, 0.375), (c.m12, -0.25), (c.m21, -0.25), (c.m22, 0.5), (c.m33, 1e-6)]
+        {
             assert!((value - expected).abs() < 1e-15, "{value} {expected}");
         }
     }

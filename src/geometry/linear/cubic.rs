@@ -2,16 +2,17 @@
 
 use crate::geometry::Real;
 
-/// Steps to the root of largest size, at most. The bound they begin at is rarely ten times the root, and where the root is
-/// double they are halved with each.
+/// Steps to the root of largest size, at most. The bound they begin at is rarely ten times the root, and
+/// where the root is double they are halved with each.
 const MOST_STEPS: usize = 60;
 
-/// The real roots x of `c0 + c1 x + c2 x^2 + c3 x^3`, one or three. None where c3 is zero or a root is not a finite number.
+/// The real roots x of `c0 + c1 x + c2 x^2 + c3 x^3`, one or three. None where c3 is zero or a root is not a
+/// finite number.
 ///
-/// Without its square term the cubic is `t^3 - 3 q t + 2 r` (Press et al. 2007, 5.6). Its root of largest size has the sign
-/// of -r, and from a bound beyond it Newton's method falls to it without a turn, for the cubic is convex there; what remains
-/// is a quadratic. So roots need no angles, which on cores without `f64` are the dearest part of them. Each is then corrected
-/// by two steps on the cubic as given.
+/// Without its square term the cubic is `t^3 - 3 q t + 2 r` (Press et al. 2007, 5.6). Its root of largest
+/// size has the sign of -r, and from a bound beyond it Newton's method falls to it without a turn, for the
+/// cubic is convex there; what remains is a quadratic. So roots need no angles, which on cores without `f64`
+/// are the dearest part of them. Each is then corrected by two steps on the cubic as given.
 pub(crate) fn cubic_roots<T: Real>([c0, c1, c2, c3]: [T; 4]) -> ([T; 3], usize) {
     let none = ([T::ZERO; 3], 0);
     if c3 == T::ZERO {
@@ -53,7 +54,8 @@ pub(crate) fn cubic_roots<T: Real>([c0, c1, c2, c3]: [T; 4]) -> ([T; 3], usize) 
 
 /// The root that is not negative of `t^3 - q t - r`, r not negative.
 fn largest_root<T: Real>(q: T, r: T) -> T {
-    // Above it (Fujiwara 1916), with a root that is easier than the cubic one and larger on both sides of one.
+    // Above it (Fujiwara 1916), with a root that is easier than the cubic one and larger on both sides of
+    // one.
     let root = r.sqrt();
     let mut t = T::of(2.0) * q.abs().sqrt().max(if r > T::ONE { root } else { root.sqrt() });
     for _ in 0..MOST_STEPS {

@@ -3,13 +3,15 @@
 use super::{combine, dot, unit};
 use crate::geometry::Real;
 
-/// x with `A x = 0` for M = N - 1 rows of N numbers, of length one, by elimination: the largest element of each row in
-/// turn is its pivot. The second result are the pivots: next to nothing where a row depends on those before it
-/// ([`rank`]).
+/// x with `A x = 0` for M = N - 1 rows of N numbers, of length one, by elimination: the largest element of
+/// each row in turn is its pivot. The second result are the pivots: next to nothing where a row depends on
+/// those before it ([`rank`]).
 ///
-/// `rows` is what the elimination makes of them. A is not squared on the way, as it is in normal equations: half as many
-/// digits are lost.
-pub(crate) fn null_of_rows<T: Real, const M: usize, const N: usize>(rows: &mut [[T; N]; M]) -> ([T; N], [T; M]) {
+/// `rows` is what the elimination makes of them. A is not squared on the way, as it is in normal equations:
+/// half as many digits are lost.
+pub(crate) fn null_of_rows<T: Real, const M: usize, const N: usize>(
+    rows: &mut [[T; N]; M],
+) -> ([T; N], [T; M]) {
     const { assert!(M + 1 == N, "one row less than unknowns") };
     let (mut pivots, mut places) = ([T::ZERO; M], [0; M]);
     eliminate(rows, &mut pivots, &mut places);
@@ -20,7 +22,9 @@ pub(crate) fn null_of_rows<T: Real, const M: usize, const N: usize>(rows: &mut [
 }
 
 /// Two vectors of length one that span what M = N - 2 rows leave free, and the pivots.
-pub(crate) fn pencil_of_rows<T: Real, const M: usize, const N: usize>(rows: &mut [[T; N]; M]) -> ([[T; N]; 2], [T; M]) {
+pub(crate) fn pencil_of_rows<T: Real, const M: usize, const N: usize>(
+    rows: &mut [[T; N]; M],
+) -> ([[T; N]; 2], [T; M]) {
     const { assert!(M + 2 == N, "two rows less than unknowns") };
     let (mut pivots, mut places) = ([T::ZERO; M], [0; M]);
     eliminate(rows, &mut pivots, &mut places);
@@ -35,7 +39,8 @@ pub(crate) fn pencil_of_rows<T: Real, const M: usize, const N: usize>(rows: &mut
     (both, pivots)
 }
 
-/// Makes every row's largest element its pivot and zero in all rows below. Nothing is swapped: whole rows are worked on.
+/// Makes every row's largest element its pivot and zero in all rows below. Nothing is swapped: whole rows are
+/// worked on.
 #[inline(never)]
 fn eliminate<T: Real, const N: usize>(rows: &mut [[T; N]], pivots: &mut [T], places: &mut [usize]) {
     let mut rest = rows;
@@ -70,7 +75,8 @@ fn solve<T: Real, const N: usize>(rows: &[[T; N]], pivots: &[T], places: &[usize
     unit(x);
 }
 
-/// What a row is divided by. In one that depends on the others any number will do: the caller is told by the pivot.
+/// What a row is divided by. In one that depends on the others any number will do: the caller is told by the
+/// pivot.
 fn inverse_of<T: Real>(pivot: T) -> T {
     if pivot == T::ZERO { T::ZERO } else { T::ONE / pivot }
 }
@@ -109,7 +115,10 @@ mod tests {
         let ([a, b], pivots) = pencil_of_rows::<f64, 1, 3>(&mut [[1.0, 2.0, -2.0]]);
         assert_eq!(pivots, [2.0]);
         for x in [a, b] {
-            assert!((x[0] + 2.0 * x[1] - 2.0 * x[2]).abs() < 1e-15 && x.iter().map(|x| x * x).sum::<f64>() > 0.999);
+            assert!(
+                (x[0] + 2.0 * x[1] - 2.0 * x[2]).abs() < 1e-15
+                    && x.iter().map(|x| x * x).sum::<f64>() > 0.999
+            );
         }
         assert!(a[0] != 0.0 && b[0] == 0.0);
     }

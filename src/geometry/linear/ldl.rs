@@ -3,9 +3,9 @@
 use super::{combine, dot, unit};
 use crate::geometry::Real;
 
-/// A symmetric, positive semi-definite N x N matrix M as a sum `r r^T / d` of one term for each unknown: `L D L^T` with the
-/// largest remaining diagonal element d as the next pivot, so that the pivots fall and their number over a threshold is the
-/// rank (Golub & Van Loan 2013, 4.2.8).
+/// A symmetric, positive semi-definite N x N matrix M as a sum `r r^T / d` of one term for each unknown: `L D
+/// L^T` with the largest remaining diagonal element d as the next pivot, so that the pivots fall and their
+/// number over a threshold is the rank (Golub & Van Loan 2013, 4.2.8).
 ///
 /// Nothing is swapped: r is zero where the pivots before it are, so that whole rows can be worked on.
 pub(crate) struct Ldl<T, const N: usize> {
@@ -15,8 +15,9 @@ pub(crate) struct Ldl<T, const N: usize> {
     places: [usize; N],
 }
 
-/// Steps to the null vector at most, of two solutions each. One is enough where M is singular, three to six where the
-/// smallest eigenvalue is a tenth of the next; where the two are nearly one, both eigenvectors are as good.
+/// Steps to the null vector at most, of two solutions each. One is enough where M is singular, three to six
+/// where the smallest eigenvalue is a tenth of the next; where the two are nearly one, both eigenvectors are
+/// as good.
 const MOST_STEPS: usize = 16;
 
 impl<T: Real, const N: usize> Ldl<T, N> {
@@ -58,7 +59,8 @@ impl<T: Real, const N: usize> Ldl<T, N> {
         &self.pivots
     }
 
-    /// x of `M x = b`. Where M is singular, the pivots that are rounding count as [`Real::EPSILON`] of the largest.
+    /// x of `M x = b`. Where M is singular, the pivots that are rounding count as [`Real::EPSILON`] of the
+    /// largest.
     pub(crate) fn solve(&self, b: &[T; N]) -> [T; N] {
         let mut b = *b;
         let mut y = [T::ZERO; N];
@@ -87,9 +89,10 @@ impl<T: Real, const N: usize> Ldl<T, N> {
 
     /// The eigenvector of the smallest eigenvalue, of length one: what minimises `x^T M x` with `|x| = 1`.
     ///
-    /// Inverse iteration, of which every step takes the best of all that x and `M^-1 x` span, by a 2x2 eigenproblem
-    /// (Lanczos' method on `M^-1`, begun anew after two vectors; Golub & Van Loan 2013, 10.1). Plain inverse iteration
-    /// takes 44 steps per digit where two eigenvalues are within 5 %, as they are with few noisy rows.
+    /// Inverse iteration, of which every step takes the best of all that x and `M^-1 x` span, by a 2x2
+    /// eigenproblem (Lanczos' method on `M^-1`, begun anew after two vectors; Golub & Van Loan 2013,
+    /// 10.1). Plain inverse iteration takes 44 steps per digit where two eigenvalues are within 5 %, as
+    /// they are with few noisy rows.
     pub(crate) fn null_vector(&self) -> [T; N] {
         // Backwards from the last pivot alone: the null vector itself when that pivot is zero.
         let mut last = [T::ZERO; N];

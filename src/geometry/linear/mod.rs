@@ -2,15 +2,19 @@
 //!
 //! nalgebra's decompositions iterate without a bound, and leave panics in a binary; these do not.
 //!
-//! * [`Ldl`]: `L D L^T` of a symmetric, positive semi-definite matrix, and its null vector by inverse iteration.
-//! * [`null_of_rows`]: the one vector that N - 1 rows leave free, by elimination; [`pencil_of_rows`]: the two that
-//!   N - 2 do. [`rank`]: how many pivots count.
+//! * [`Ldl`]: `L D L^T` of a symmetric, positive semi-definite matrix, and its null vector by inverse
+//!   iteration.
+//! * [`null_of_rows`]: the one vector that N - 1 rows leave free, by elimination; [`pencil_of_rows`]: the two
+//!   that N - 2 do. [`rank`]: how many pivots count.
 //! * [`covariance6`]: the inverse of an information of six numbers.
 //! * [`cubic_roots`]: the real roots of a cubic.
 //! * [`Projective`]: the normal equations of `p ~ M q`.
 //! * [`Svd3`]: singular values of a 3x3 matrix, by Jacobi rotations of its columns.
 
-#![allow(clippy::needless_range_loop, reason = "an element is named by its row and column, as in the equations")]
+#![allow(
+    clippy::needless_range_loop,
+    reason = "an element is named by its row and column, as in the equations"
+)]
 
 mod covariance;
 mod cubic;

@@ -3,8 +3,8 @@
 use crate::geometry::Real;
 
 /// The normal equations of `p ~ M q` for the elements of M, 3 x K, row by row: of every pair the two rows
-/// `(q, 0, -x q)` and `(0, q, -y q)`, whose squares sum up to `[S 0 -U; 0 S -V; -U -V W]` with S, U, V and W the sums of 1,
-/// x, y and `x^2 + y^2` times `q q^T` (Hartley & Zisserman 2004, 4.1 and 7.1).
+/// `(q, 0, -x q)` and `(0, q, -y q)`, whose squares sum up to `[S 0 -U; 0 S -V; -U -V W]` with S, U, V and W
+/// the sums of 1, x, y and `x^2 + y^2` times `q q^T` (Hartley & Zisserman 2004, 4.1 and 7.1).
 pub(crate) struct Projective<T, const K: usize> {
     sums: [[[T; K]; K]; 4],
 }

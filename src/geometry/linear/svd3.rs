@@ -6,15 +6,17 @@ use nalgebra::{Matrix3, Vector3};
 
 /// `A = U diag(s) V^T` with U and V rotations, `s0 >= s1 >= |s2|`; s2 has the sign of A's determinant.
 ///
-/// Hestenes' one-sided Jacobi method: rotations from the right make the columns of A orthogonal (Golub & Van Loan 2013,
-/// 8.6.3). A is not squared, so that small values keep their digits. Where s1 is zero, U and V are not defined.
+/// Hestenes' one-sided Jacobi method: rotations from the right make the columns of A orthogonal (Golub & Van
+/// Loan 2013, 8.6.3). A is not squared, so that small values keep their digits. Where s1 is zero, U and V are
+/// not defined.
 pub(crate) struct Svd3<T> {
     pub(crate) u: Matrix3<T>,
     pub(crate) values: [T; 3],
     pub(crate) v: Matrix3<T>,
 }
 
-/// Sweeps over the three pairs of columns, at most: five are enough for any 3x3 matrix of `f64` that was tried.
+/// Sweeps over the three pairs of columns, at most: five are enough for any 3x3 matrix of `f64` that was
+/// tried.
 const MOST_SWEEPS: usize = 12;
 
 impl<T: Real> Svd3<T> {
@@ -37,7 +39,11 @@ impl<T: Real> Svd3<T> {
         // The third column as it came out, but for the sign of V's third.
         let s2 = (matrix * v2).dot(&u2);
         let s2 = if s2 < T::ZERO { -a2.norm() } else { a2.norm() };
-        Self { u: Matrix3::from_columns(&[u0, u1, u2]), values: [s0, s1, s2], v: Matrix3::from_columns(&[v0, v1, v2]) }
+        Self {
+            u: Matrix3::from_columns(&[u0, u1, u2]),
+            values: [s0, s1, s2],
+            v: Matrix3::from_columns(&[v0, v1, v2]),
+        }
     }
 }
 

@@ -4,12 +4,12 @@ use super::{Axis, RectifyError};
 use crate::geometry::{Pose, Real, skew};
 use nalgebra::{Matrix3, Vector3};
 
-/// Rotations of the first and of the second camera into their shared frame, whose X (or Y) is along the baseline, and
-/// that axis.
+/// Rotations of the first and of the second camera into their shared frame, whose X (or Y) is along the
+/// baseline, and that axis.
 ///
-/// Each camera turns half of R, then both turn by the smallest rotation that lays the axis along the baseline (Bouguet's
-/// way: both images are altered alike, and as little as can be). All is done with products and roots, so that every core
-/// gives the same bits.
+/// Each camera turns half of R, then both turn by the smallest rotation that lays the axis along the baseline
+/// (Bouguet's way: both images are altered alike, and as little as can be). All is done with products and
+/// roots, so that every core gives the same bits.
 pub(super) fn aligned<T: Real>(pose: &Pose<T>) -> Result<([Matrix3<T>; 2], Axis), RectifyError> {
     let half = half_of(pose.rotation())?;
     // From the first camera to the second, in the frame between them.
@@ -46,8 +46,8 @@ fn half_of<T: Real>(r: &Matrix3<T>) -> Result<Matrix3<T>, RectifyError> {
     Ok(Matrix3::identity() + cross * (two * w) + cross * cross * two)
 }
 
-/// The smallest rotation that turns a unit vector to another that is not opposite (Rodrigues, without an angle):
-/// `1 + [v]x + [v]x^2 / (1 + c)` with `v = from x to`, `c = from . to`.
+/// The smallest rotation that turns a unit vector to another that is not opposite (Rodrigues, without an
+/// angle): `1 + [v]x + [v]x^2 / (1 + c)` with `v = from x to`, `c = from . to`.
 fn smallest_turn<T: Real>(from: &Vector3<T>, to: &Vector3<T>) -> Matrix3<T> {
     let cross = skew(&from.cross(to));
     Matrix3::identity() + cross + cross * cross / (T::ONE + from.dot(to))

@@ -1,24 +1,27 @@
-//! Whether a rig is still what was calibrated: rows that no longer agree, and the small rotation that explains them.
+//! Whether a rig is still what was calibrated: rows that no longer agree, and the small rotation that
+//! explains them.
 
 use super::{Rectification, Warp};
 use crate::geometry::linear::Ldl;
 use crate::geometry::{Camera, Correspondence, ImageSize, Real};
 use nalgebra::{Matrix3, Vector3};
 
-/// Gathers correspondences of rectified images, frame by frame, and tells by what rotation the second camera was turned since it
-/// was calibrated.
+/// Gathers correspondences of rectified images, frame by frame, and tells by what rotation the second camera
+/// was turned since it was calibrated.
 ///
-/// A camera that turns by a small `w = (pitch, yaw, roll)` about X, Y and Z moves the row of what it sees, in units of the focal
-/// length and whatever the depth is, by (Longuet-Higgins & Prazdny 1980, the rotational flow)
+/// A camera that turns by a small `w = (pitch, yaw, roll)` about X, Y and Z moves the row of what it sees, in
+/// units of the focal length and whatever the depth is, by (Longuet-Higgins & Prazdny 1980, the rotational
+/// flow)
 ///
 /// `v' - v = w_x (-1 - y^2) + w_y x y + w_z x`, with `(x, y)` of the plane Z = 1.
 ///
-/// The least weighted sum of squares over a frame's correspondences gives w. Wrong ones are weighted down by how far they are from
-/// it, `1 / (1 + (r / c)^2)^2` (Geman & McClure 1987), where c falls from 8 px to 1 px from step to step; the work is the same for
-/// every frame. Frames add up, each older one counting nine tenths of the next.
+/// The least weighted sum of squares over a frame's correspondences gives w. Wrong ones are weighted down by
+/// how far they are from it, `1 / (1 + (r / c)^2)^2` (Geman & McClure 1987), where c falls from 8 px to 1 px
+/// from step to step; the work is the same for every frame. Frames add up, each older one counting nine
+/// tenths of the next.
 ///
-/// A turn about Y is seen in the image's corners alone, and a step along the baseline is not seen at all: neither moves rows by
-/// much, and both change depths. [`RowAlignment::sigma_rad`] says how little is known.
+/// A turn about Y is seen in the image's corners alone, and a step along the baseline is not seen at all:
+/// neither moves rows by much, and both change depths. [`RowAlignment::sigma_rad`] says how little is known.
 ///
 /// ```
 /// use stereopsis::geometry::{Camera, Correspondence, RowMeter};
@@ -73,8 +76,8 @@ impl core::error::Error for RowMeterError {}
 /// How the second camera stands, as far as rows tell.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct RowAlignment<T: Real> {
-    /// By how much it was turned about X (pitch), Y (yaw) and Z (roll) of the rectified frame, radians: what it should see at P it
-    /// sees at `P + w x P`.
+    /// By how much it was turned about X (pitch), Y (yaw) and Z (roll) of the rectified frame, radians: what
+    /// it should see at P it sees at `P + w x P`.
     pub turn_rad: [T; 3],
     /// Their standard deviations.
     pub sigma_rad: [T; 3],
@@ -86,8 +89,8 @@ pub struct RowAlignment<T: Real> {
 pub enum RowHealth {
     /// Under a quarter of a pixel: nothing that matching would show.
     Good,
-    /// Up to half a pixel. Half a row off, the block methods miss two fifths more answers and the methods along paths a third more
-    /// (the README's table of altered pairs): correct the remap.
+    /// Up to half a pixel. Half a row off, the block methods miss two fifths more answers and the methods
+    /// along paths a third more (the README's table of altered pairs): correct the remap.
     Worn,
     /// More: answers are lost, and those that are left are worse. Correct the remap, and calibrate anew.
     Bad,
@@ -111,7 +114,8 @@ impl<T: Real> RowMeter<T> {
         Self { information: [[T::ZERO; 3]; 3], vector: [T::ZERO; 3] }
     }
 
-    /// Adds a frame: points of the left and the right rectified image, px, of which some may be wrong. `camera` is the rectified one.
+    /// Adds a frame: points of the left and the right rectified image, px, of which some may be wrong.
+    /// `camera` is the rectified one.
     pub fn add(&mut self, camera: &Camera<T>, seen: &[Correspondence<T>]) -> Result<(), RowMeterError> {
         let too_few = RowMeterError::TooFew { needed: Self::FEWEST };
         if seen.len() < Self::FEWEST {
@@ -173,7 +177,8 @@ struct Normal<T> {
 }
 
 impl<T: Real> Normal<T> {
-    const ZERO: Self = Self { matrix: [[T::ZERO; 3]; 3], vector: [T::ZERO; 3], weights: T::ZERO, squares: T::ZERO };
+    const ZERO: Self =
+        Self { matrix: [[T::ZERO; 3]; 3], vector: [T::ZERO; 3], weights: T::ZERO, squares: T::ZERO };
 
     /// The sums, with weights by what `turn` leaves.
     fn of(camera: &Camera<T>, seen: &[Correspondence<T>], turn: &[T; 3], scale: T) -> Self {
@@ -214,12 +219,13 @@ fn row_moves<T: Real>(camera: &Camera<T>, u: T, v: T) -> [T; 3] {
 }
 
 impl<T: Real> RowAlignment<T> {
-    /// The root mean square of how far rows are off, px, over images of `size` of the rectified `camera`: as a lattice of 9 x 9
-    /// places has it.
+    /// The root mean square of how far rows are off, px, over images of `size` of the rectified `camera`: as
+    /// a lattice of 9 x 9 places has it.
     pub fn row_error_px(&self, camera: &Camera<T>, size: ImageSize) -> T {
         const PLACES: usize = 9;
-        let place =
-            |i: usize, side: u16| T::count(i) * T::count(usize::from(side.saturating_sub(1))) / T::count(PLACES - 1);
+        let place = |i: usize, side: u16| {
+            T::count(i) * T::count(usize::from(side.saturating_sub(1))) / T::count(PLACES - 1)
+        };
         let mut squares = T::ZERO;
         for (i, j) in (0..PLACES).flat_map(|j| (0..PLACES).map(move |i| (i, j))) {
             let [x, y, z] = row_moves(camera, place(i, size.width), place(j, size.height));
@@ -254,8 +260,8 @@ impl<T: Real> Rectification<T> {
     }
 }
 
-/// The rotation by a small vector w, as the unit quaternion along `(1, w / 2)` has it: its angle is `2 atan(|w| / 2)`, 1e-5 off at
-/// 3 degrees.
+/// The rotation by a small vector w, as the unit quaternion along `(1, w / 2)` has it: its angle is `2
+/// atan(|w| / 2)`, 1e-5 off at 3 degrees.
 fn small_turn<T: Real>(w: &Vector3<T>) -> Matrix3<T> {
     let half = w * T::of(0.5);
     let length = (T::ONE + half.norm_squared()).sqrt();

@@ -27,9 +27,10 @@ struct Rectangle<T> {
 
 /// The camera that both rectified images are of.
 ///
-/// The focal length is the mean of both across the baseline; the principal point puts the middle of the four corners in the
-/// middle of the image, on average. Then the focal length is scaled as [`Crop`] has it, between the least with which all of
-/// both images is seen and the least with which nothing else is (OpenCV's alpha, whose way this is).
+/// The focal length is the mean of both across the baseline; the principal point puts the middle of the four
+/// corners in the middle of the image, on average. Then the focal length is scaled as [`Crop`] has it,
+/// between the least with which all of both images is seen and the least with which nothing else is (OpenCV's
+/// alpha, whose way this is).
 pub(super) fn shared_camera<T: Real>(
     turned: &[Turned<'_, T>; 2],
     axis: Axis,
@@ -78,15 +79,15 @@ pub(super) fn shared_camera<T: Real>(
 }
 
 impl<T: Real> Rectangle<T> {
-    /// For each side: the pixels between the principal point and the image's side, and how far the rectangle reaches from the
-    /// axis on the plane Z = 1.
+    /// For each side: the pixels between the principal point and the image's side, and how far the rectangle
+    /// reaches from the axis on the plane Z = 1.
     fn rooms(&self, cx: T, cy: T, w: T, h: T) -> [(T, T); 4] {
         [(cx, -self.left), (w - cx, self.right), (cy, -self.top), (h - cy, self.bottom)]
     }
 }
 
-/// Where the rectified frame sees a place of the raw outline, on the plane Z = 1. Where the lens has no sight for it, the
-/// nearest on the way to the principal point that has one.
+/// Where the rectified frame sees a place of the raw outline, on the plane Z = 1. Where the lens has no sight
+/// for it, the nearest on the way to the principal point that has one.
 fn seen<T: Real>(t: &Turned<'_, T>, place: Point2<T>) -> Result<Vector2<T>, RectifyError> {
     let (cx, cy) = t.camera.principal_point();
     let to_middle = Vector2::new(cx - place.x, cy - place.y) / T::count(STEPS_IN);

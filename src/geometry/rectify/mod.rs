@@ -6,7 +6,8 @@
 //! 2. `crop`: the camera that both rectified images are of.
 //! 3. [`Warp`]: where each rectified pixel comes from.
 //! 4. [`RectificationReport`]: what is left and what it costs.
-//! 5. [`RowMeter`]: while the cameras run, whether the rows still agree, and [`Rectification::corrected`] where they do not.
+//! 5. [`RowMeter`]: while the cameras run, whether the rows still agree, and [`Rectification::corrected`]
+//!    where they do not.
 //!
 //! [`UncalibratedRectification`]: the same from matches alone, without metric depth.
 

@@ -43,7 +43,8 @@ pub enum RectifyError {
     Forward,
     /// The cameras are turned against each other by more than 104 degrees.
     Apart,
-    /// The rectified images would show nothing of one of the cameras, or its lens model has no sight for most of its image.
+    /// The rectified images would show nothing of one of the cameras, or its lens model has no sight for most
+    /// of its image.
     NothingShared,
     /// Alpha is not from 0 to 1.
     Alpha,
@@ -56,8 +57,12 @@ pub enum RectifyError {
 impl core::fmt::Display for RectifyError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
-            Self::Swapped(Axis::Horizontal) => "the second camera stands left of the first: the cameras are swapped",
-            Self::Swapped(Axis::Vertical) => "the second camera stands above the first: the cameras are swapped",
+            Self::Swapped(Axis::Horizontal) => {
+                "the second camera stands left of the first: the cameras are swapped"
+            }
+            Self::Swapped(Axis::Vertical) => {
+                "the second camera stands above the first: the cameras are swapped"
+            }
             Self::Forward => "one camera stands before the other, not beside it",
             Self::Apart => "the cameras are turned away from each other",
             Self::NothingShared => "the rectified images would show nothing of one of the cameras",
@@ -70,7 +75,8 @@ impl core::fmt::Display for RectifyError {
 
 impl core::error::Error for RectifyError {}
 
-/// Two warps into images whose rows (or columns, below each other) are aligned, and the cameras that those images are of.
+/// Two warps into images whose rows (or columns, below each other) are aligned, and the cameras that those
+/// images are of.
 ///
 /// ```
 /// use stereopsis::geometry::{Camera, Crop, ImageSize, Pose, Rectification, StereoRig};
@@ -152,8 +158,8 @@ impl<T: Real> Rectification<T> {
         RectifiedRig::new(f, b, along, across)
     }
 
-    /// The re-projection matrix Q: `(X Y Z W)^T = Q (u v d 1)^T` in the first rectified camera, metres, with the
-    /// disparity of [`Axis`]; the images are not transposed.
+    /// The re-projection matrix Q: `(X Y Z W)^T = Q (u v d 1)^T` in the first rectified camera, metres, with
+    /// the disparity of [`Axis`]; the images are not transposed.
     pub fn q(&self) -> Matrix4<T> {
         let (f, (cx, cy)) = (self.camera.focal_px().0, self.camera.principal_point());
         let mut q = Matrix4::identity();

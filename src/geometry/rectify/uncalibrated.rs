@@ -4,13 +4,15 @@ use crate::geometry::linear::Ldl;
 use crate::geometry::{Correspondence, Fundamental, Homography, HomographyError, ImageSize, Real};
 use nalgebra::{Matrix3, Point2, RowVector3, Vector3};
 
-/// Two homographies into images whose rows are aligned, for a pair of which nothing but F and some matches is known.
+/// Two homographies into images whose rows are aligned, for a pair of which nothing but F and some matches is
+/// known.
 ///
-/// The second image's sends its epipole e' to infinity along the rows (Hartley 1999): e' is turned onto the row through the image's
-/// middle, then `[1 0 0; 0 1 0; -1/e 0 1]`, which leaves the middle as it is. The first image's follows but for its first row,
-/// because `p'^T F^T p = 0` must become `v' = v`: with `A = H'^-T F^T` its second row is A's third and its third is less A's second.
-/// The first row is that which brings matches nearest to their partners' columns; then it is moved so that no match has a
-/// disparity under a pixel.
+/// The second image's sends its epipole e' to infinity along the rows (Hartley 1999): e' is turned onto the
+/// row through the image's middle, then `[1 0 0; 0 1 0; -1/e 0 1]`, which leaves the middle as it is. The
+/// first image's follows but for its first row, because `p'^T F^T p = 0` must become `v' = v`: with `A =
+/// H'^-T F^T` its second row is A's third and its third is less A's second. The first row is that which
+/// brings matches nearest to their partners' columns; then it is moved so that no match has a disparity under
+/// a pixel.
 ///
 /// What comes out has no metric depth. Lenses are not in it: matches of undistorted pixels are meant.
 ///
@@ -47,8 +49,8 @@ pub enum UncalibratedError {
     TooFew,
     /// A match is infinite or not a number.
     NotFinite,
-    /// An epipole is in its image or near it, nearer to the middle than the image's diagonal: one camera stands before the other,
-    /// and rows would be torn apart there.
+    /// An epipole is in its image or near it, nearer to the middle than the image's diagonal: one camera
+    /// stands before the other, and rows would be torn apart there.
     EpipoleInside,
     /// All matches are on a line.
     Line,
@@ -72,7 +74,11 @@ impl core::error::Error for UncalibratedError {}
 
 impl<T: Real> UncalibratedRectification<T> {
     /// Rectifies images of `size` px by their fundamental matrix and matches that agree with it.
-    pub fn new(f: &Fundamental<T>, seen: &[Correspondence<T>], size: ImageSize) -> Result<Self, UncalibratedError> {
+    pub fn new(
+        f: &Fundamental<T>,
+        seen: &[Correspondence<T>],
+        size: ImageSize,
+    ) -> Result<Self, UncalibratedError> {
         if seen.len() < 3 {
             return Err(UncalibratedError::TooFew);
         }
@@ -80,7 +86,8 @@ impl<T: Real> UncalibratedRectification<T> {
             return Err(UncalibratedError::NotFinite);
         }
         let half = T::of(0.5);
-        let [cx, cy] = [size.width, size.height].map(|side| T::count(usize::from(side).saturating_sub(1)) * half);
+        let [cx, cy] =
+            [size.width, size.height].map(|side| T::count(usize::from(side).saturating_sub(1)) * half);
         // Columns and rows from the middle, in halves of the diagonal: all numbers are of one size.
         let scale = (cx * cx + cy * cy).sqrt().max(T::ONE);
         let by = T::ONE / scale;

@@ -3,8 +3,8 @@
 use crate::geometry::{Camera, ImageSize, ProjectionError, Real};
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
-/// One camera's map from rectified pixels to raw ones: the sight of the rectified pixel, turned into the camera, through
-/// its lens: `p_raw = K distort(R^T K_new^-1 p)`.
+/// One camera's map from rectified pixels to raw ones: the sight of the rectified pixel, turned into the
+/// camera, through its lens: `p_raw = K distort(R^T K_new^-1 p)`.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Warp<T: Real> {
     camera: Camera<T>,
@@ -20,14 +20,14 @@ pub struct Warp<T: Real> {
 pub struct WarpSource<T: Real> {
     /// Raw px; it may be outside the image.
     pub pixel: Point2<T>,
-    /// Whether the lens model describes the sight: beyond where its radius stops growing it gives places that other
-    /// sights have too.
+    /// Whether the lens model describes the sight: beyond where its radius stops growing it gives places
+    /// that other sights have too.
     pub is_described: bool,
 }
 
 impl<T: Real> Warp<T> {
-    /// The warp of a camera with raw images of `raw` px, by the rotation of its frame into that of the camera `new`,
-    /// which has no lens and images of `size` px.
+    /// The warp of a camera with raw images of `raw` px, by the rotation of its frame into that of the camera
+    /// `new`, which has no lens and images of `size` px.
     pub(super) fn new(
         camera: Camera<T>,
         raw: ImageSize,
@@ -65,7 +65,8 @@ impl<T: Real> Warp<T> {
         self.size
     }
 
-    /// Where a rectified pixel is in the raw image; [`ProjectionError::Behind`] when its sight is behind the camera.
+    /// Where a rectified pixel is in the raw image; [`ProjectionError::Behind`] when its sight is behind the
+    /// camera.
     pub fn source(&self, rectified: &Point2<T>) -> Result<WarpSource<T>, ProjectionError> {
         let (fx, fy) = self.new.focal_px();
         let (cx, cy) = self.new.principal_point();
@@ -84,6 +85,7 @@ impl<T: Real> Warp<T> {
     /// Whether a place is in the raw image, on or between its pixels' centres.
     pub fn is_in_raw(&self, place: &Point2<T>) -> bool {
         let most = |side: u16| T::count(usize::from(side).saturating_sub(1));
-        (T::ZERO..=most(self.raw.width)).contains(&place.x) && (T::ZERO..=most(self.raw.height)).contains(&place.y)
+        (T::ZERO..=most(self.raw.width)).contains(&place.x)
+            && (T::ZERO..=most(self.raw.height)).contains(&place.y)
     }
 }

@@ -9,17 +9,18 @@ pub enum Sampling {
     /// All alike.
     #[default]
     Uniform,
-    /// The first ones first: the correspondences come in order, those that are most likely right before the others.
-    /// Samples are drawn from a pool that grows from the front until it holds all (PROSAC; Chum & Matas 2005).
+    /// The first ones first: the correspondences come in order, those that are most likely right before the
+    /// others. Samples are drawn from a pool that grows from the front until it holds all (PROSAC; Chum &
+    /// Matas 2005).
     Ordered,
 }
 
 /// What is asked of [`robust_fundamental`](super::robust_fundamental).
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct RobustConfig<T: Real> {
-    /// Sampson's distance up to which a correspondence counts as right, px, greater than zero. It has to be more than
-    /// the noise of right ones, three to six deviations: what is nearer gets more weight, the noise itself need not be
-    /// known.
+    /// Sampson's distance up to which a correspondence counts as right, px, greater than zero. It has to be
+    /// more than the noise of right ones, three to six deviations: what is nearer gets more weight, the
+    /// noise itself need not be known.
     pub threshold_px: T,
     /// The probability with which a better estimate may be missed, between zero and one.
     pub miss_probability: T,
@@ -34,6 +35,12 @@ pub struct RobustConfig<T: Real> {
 impl<T: Real> RobustConfig<T> {
     /// With a threshold in px; 0.1 % for the miss, 10 000 samples, seed 0, all correspondences alike.
     pub fn new(threshold_px: T) -> Self {
-        Self { threshold_px, miss_probability: T::of(1e-3), most_samples: 10_000, seed: 0, sampling: Sampling::Uniform }
+        Self {
+            threshold_px,
+            miss_probability: T::of(1e-3),
+            most_samples: 10_000,
+            seed: 0,
+            sampling: Sampling::Uniform,
+        }
     }
 }

@@ -10,12 +10,13 @@ use crate::geometry::{Camera, Correspondence, Essential, EssentialError, Real};
 const STEPS: usize = 20;
 
 impl<T: Real> Essential<T> {
-    /// The essential matrix near this one that makes Sampson's distances least, px, over the five numbers that it has;
-    /// at most twenty steps of Levenberg's and Marquardt's method.
+    /// The essential matrix near this one that makes Sampson's distances least, px, over the five numbers
+    /// that it has; at most twenty steps of Levenberg's and Marquardt's method.
     ///
-    /// `seen` are undistorted px ([`Camera::undistort`]), wrong ones among them: weights fall with the distance, to zero
-    /// at one and a half times the threshold, as in [`robust_fundamental`](crate::geometry::robust_fundamental).
-    /// A correspondence that is not finite has no weight. The error is that of a matrix that is no estimate at all.
+    /// `seen` are undistorted px ([`Camera::undistort`]), wrong ones among them: weights fall with the
+    /// distance, to zero at one and a half times the threshold, as in
+    /// [`robust_fundamental`](crate::geometry::robust_fundamental). A correspondence that is not finite
+    /// has no weight. The error is that of a matrix that is no estimate at all.
     pub fn refined(
         &self,
         seen: &[Correspondence<T>],
@@ -27,7 +28,8 @@ impl<T: Real> Essential<T> {
         let start = Factored::new(self.matrix()).ok_or(EssentialError::Rank)?.essential();
         let loss = Loss::new(threshold_px);
         // From far to near: the start may come from a matrix that knew nothing of the cameras.
-        let (wide, _) = refine(start, Matrix::Essential, seen, &frames, loss.widened(T::of(2.5)), (1, STEPS / 2));
+        let (wide, _) =
+            refine(start, Matrix::Essential, seen, &frames, loss.widened(T::of(2.5)), (1, STEPS / 2));
         let (near, _) = refine(wide, Matrix::Essential, seen, &frames, loss, (1, STEPS / 2));
         Self::nearest(&near.matrix())
     }

@@ -5,9 +5,9 @@ use crate::geometry::linear::{Svd3, columns3, product};
 use crate::geometry::skew::turn;
 use nalgebra::{Matrix3, Vector3};
 
-/// `F = U diag(c, s, 0) V^T` with rotations U and V and `c^2 + s^2 = 1`: three numbers turn U, three V, one moves (c, s)
-/// along the circle (Bartoli & Sturm 2004). Whatever the step, the matrix stays singular and of size one, and with
-/// `c = s` it stays an essential one.
+/// `F = U diag(c, s, 0) V^T` with rotations U and V and `c^2 + s^2 = 1`: three numbers turn U, three V, one
+/// moves (c, s) along the circle (Bartoli & Sturm 2004). Whatever the step, the matrix stays singular and of
+/// size one, and with `c = s` it stays an essential one.
 #[derive(Clone, Copy)]
 pub(super) struct Factored<T: Real> {
     pub(super) u: Matrix3<T>,
@@ -20,7 +20,8 @@ pub(super) struct Factored<T: Real> {
 pub(super) const FREE: usize = 7;
 
 impl<T: Real> Factored<T> {
-    /// The nearest singular matrix, at size one; `None` for a matrix of rank one, or with a number that is not finite.
+    /// The nearest singular matrix, at size one; `None` for a matrix of rank one, or with a number that is
+    /// not finite.
     pub(super) fn new(matrix: &Matrix3<T>) -> Option<Self> {
         let size = matrix.norm();
         if !(size > T::ZERO && size.is_finite()) {

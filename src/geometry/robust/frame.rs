@@ -21,13 +21,15 @@ impl<T: Real> Frame<T> {
         Self { a: inverse.m11, b: inverse.m12, d: inverse.m22, cx, cy }
     }
 
-    /// The frames of both images, with the means of their points at the origin and one scale for both, so that a
-    /// distance is the same number of pixels in either: the root mean square of all points from their mean is the root of
-    /// two. `None` when the points of an image are one point to rounding, or when the sums overflow.
+    /// The frames of both images, with the means of their points at the origin and one scale for both, so
+    /// that a distance is the same number of pixels in either: the root mean square of all points from
+    /// their mean is the root of two. `None` when the points of an image are one point to rounding, or
+    /// when the sums overflow.
     pub(super) fn of_points(seen: &[Correspondence<T>]) -> Option<[Self; 2]> {
         let per_point = T::ONE / T::count(seen.len());
         let zero = Vector2::zeros();
-        let (first, second) = seen.iter().fold((zero, zero), |(p, q), s| (p + s.first.coords, q + s.second.coords));
+        let (first, second) =
+            seen.iter().fold((zero, zero), |(p, q), s| (p + s.first.coords, q + s.second.coords));
         let (first, second) = (first * per_point, second * per_point);
         let (p, q) = seen.iter().fold((T::ZERO, T::ZERO), |(p, q), s| {
             (p + (s.first.coords - first).norm_squared(), q + (s.second.coords - second).norm_squared())
@@ -55,7 +57,8 @@ impl<T: Real> Frame<T> {
         Point2::new(self.a * u + self.b * v, self.d * v)
     }
 
-    /// The slope of a function by (x, y), as its slope by (u, v), and that again as a step of (x, y): `M M^T slope`.
+    /// The slope of a function by (x, y), as its slope by (u, v), and that again as a step of (x, y): `M M^T
+    /// slope`.
     #[inline(always)]
     pub(super) fn steepest(&self, x: T, y: T) -> (T, T) {
         let (u, v) = (self.a * x, self.b * x + self.d * y);

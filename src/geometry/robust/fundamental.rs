@@ -24,11 +24,11 @@ pub enum RobustError {
     NoSamples,
     /// The slice for the inliers is shorter than the correspondences; this many are needed.
     Inliers(usize),
-    /// No sample of seven gave an estimate that more than seven correspondences agree with: all are wrong, or the same,
-    /// or the ones of an image are on a line.
+    /// No sample of seven gave an estimate that more than seven correspondences agree with: all are wrong, or
+    /// the same, or the ones of an image are on a line.
     NoAgreement,
-    /// What agrees is on a plane, or the camera has only turned: a homography is the answer. The inliers say which those
-    /// are.
+    /// What agrees is on a plane, or the camera has only turned: a homography is the answer. The inliers say
+    /// which those are.
     Plane,
 }
 
@@ -42,7 +42,9 @@ impl core::fmt::Display for RobustError {
             Self::NoSamples => "one sample at least is needed",
             Self::Inliers(needed) => return write!(f, "the inliers need a slice of {needed}"),
             Self::NoAgreement => "no fundamental matrix has more than seven correspondences agree with it",
-            Self::Plane => "what agrees is on a plane, or the camera has only turned: a homography is the answer",
+            Self::Plane => {
+                "what agrees is on a plane, or the camera has only turned: a homography is the answer"
+            }
         })
     }
 }
@@ -60,27 +62,30 @@ pub struct RobustFundamental<T: Real> {
     pub rms_px: T,
     /// Samples of seven that were drawn.
     pub samples: u32,
-    /// The probability that an estimate with as many inliers was missed: `(1 - w^7)^k` for the share w of inliers and k
-    /// samples. More than was asked when the samples ran out.
+    /// The probability that an estimate with as many inliers was missed: `(1 - w^7)^k` for the share w of
+    /// inliers and k samples. More than was asked when the samples ran out.
     pub miss_probability: T,
 }
 
-/// The fundamental matrix of correspondences of which some are wrong, px; `inliers` is filled with which agree with it.
+/// The fundamental matrix of correspondences of which some are wrong, px; `inliers` is filled with which
+/// agree with it.
 ///
-/// Samples of seven give candidates, a sequential test drops the bad ones after a few correspondences, each best one so
-/// far is refined, and the last is the one that makes the sum of a loss of Sampson's distances least: the weight of a
-/// correspondence falls as `(1 - d^2 / w^2)^2` to zero at one and a half thresholds w, so that neither the noise nor a
-/// sharp limit has to be known (Barath et al. 2020 arrive at nearly the same weights). Where most of what agrees is on
-/// one plane, F is looked for by what is off it.
+/// Samples of seven give candidates, a sequential test drops the bad ones after a few correspondences, each
+/// best one so far is refined, and the last is the one that makes the sum of a loss of Sampson's distances
+/// least: the weight of a correspondence falls as `(1 - d^2 / w^2)^2` to zero at one and a half thresholds w,
+/// so that neither the noise nor a sharp limit has to be known (Barath et al. 2020 arrive at nearly the same
+/// weights). Where most of what agrees is on one plane, F is looked for by what is off it.
 ///
-/// Bounded by [`RobustConfig::most_samples`], and stopped before that by [`RobustConfig::miss_probability`]. A sample has
-/// three candidates at most. Each costs n distances at most, of which a bad one needs a few; one that is nearly as good as
-/// the best is refined, by eight passes over 300 correspondences at most and n distances; one that is on a plane too tries
-/// a hundred others, of n + 200 distances each. So a sample costs no more than 330 n + 80 000 distances, usually some
-/// dozens, and the end of the search once more as much; the number of samples is what counts. With the share w of right
-/// matches it is about `7 / w^7` for a miss of 0.1 %: 85 for w = 0.7, 4 300 for 0.4, where 10 000 are drawn below 0.35.
+/// Bounded by [`RobustConfig::most_samples`], and stopped before that by [`RobustConfig::miss_probability`].
+/// A sample has three candidates at most. Each costs n distances at most, of which a bad one needs a few; one
+/// that is nearly as good as the best is refined, by eight passes over 300 correspondences at most and n
+/// distances; one that is on a plane too tries a hundred others, of n + 200 distances each. So a sample costs
+/// no more than 330 n + 80 000 distances, usually some dozens, and the end of the search once more as much;
+/// the number of samples is what counts. With the share w of right matches it is about `7 / w^7` for a miss
+/// of 0.1 %: 85 for w = 0.7, 4 300 for 0.4, where 10 000 are drawn below 0.35.
 ///
-/// The same input and seed give the same bits. Stack only, besides the slices. `f32` errs as `f64` does from 0.1 px of noise on.
+/// The same input and seed give the same bits. Stack only, besides the slices. `f32` errs as `f64` does from
+/// 0.1 px of noise on.
 ///
 /// ```
 /// use stereopsis::geometry::{Correspondence, RobustConfig, robust_fundamental};

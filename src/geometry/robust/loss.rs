@@ -7,11 +7,12 @@ const WIDTH: f64 = 1.5;
 
 /// A threshold, marginalised: the number that is small when an estimate is good.
 ///
-/// With a hard threshold t a correspondence gains `max(0, 1 - d^2 / t^2)` (MSAC; Torr & Zisserman 2000), d being
-/// Sampson's distance. The noise, and with it the right t, is not known: averaged over all t^2 up to a largest one, w^2,
-/// with a density that falls linearly to zero there, the weight in least squares is `(1 - d^2 / w^2)^2` (Tukey's
-/// biweight) and the gain `(1 - d^2 / w^2)^3`. MAGSAC++ (Barath et al. 2020) averages over deviations of the noise and
-/// gets an incomplete gamma function that differs from this by less than a tenth: this one needs no table.
+/// With a hard threshold t a correspondence gains `max(0, 1 - d^2 / t^2)` (MSAC; Torr & Zisserman 2000), d
+/// being Sampson's distance. The noise, and with it the right t, is not known: averaged over all t^2 up to a
+/// largest one, w^2, with a density that falls linearly to zero there, the weight in least squares is `(1 -
+/// d^2 / w^2)^2` (Tukey's biweight) and the gain `(1 - d^2 / w^2)^3`. MAGSAC++ (Barath et al. 2020) averages
+/// over deviations of the noise and gets an incomplete gamma function that differs from this by less than a
+/// tenth: this one needs no table.
 #[derive(Clone, Copy)]
 pub(super) struct Loss<T: Real> {
     /// w^2, px^2.

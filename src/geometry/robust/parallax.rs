@@ -20,8 +20,8 @@ impl<T: Real> Search<'_, T> {
         self.loss.width_squared * T::of(ON_PLANE * ON_PLANE)
     }
 
-    /// The best of the estimates that a plane gives with two correspondences off it, if it is better than the best so
-    /// far.
+    /// The best of the estimates that a plane gives with two correspondences off it, if it is better than the
+    /// best so far.
     pub(super) fn leave(&mut self, plane: &Plane<T>) {
         let px2 = self.on_plane_px2();
         let (plane, _) = plane.fitted(self.seen, &self.frames, px2);
@@ -53,8 +53,8 @@ impl<T: Real> Search<'_, T> {
         })
     }
 
-    /// Tries whether most of what the best estimate keeps is on one plane, and if so, leaves it; the plane, when there
-    /// is nothing off it that the best estimate after that explains and chance does not.
+    /// Tries whether most of what the best estimate keeps is on one plane, and if so, leaves it; the plane,
+    /// when there is nothing off it that the best estimate after that explains and chance does not.
     pub(super) fn only_plane(&mut self) -> Option<Plane<T>> {
         let px2 = self.on_plane_px2();
         let f = self.in_pixels(&self.best?.matrix());
@@ -76,8 +76,8 @@ impl<T: Real> Search<'_, T> {
         let off = self.seen.iter().filter(|s| plane.distance_squared_px2(s) > px2);
         let all = off.clone().count();
         let kept = off.filter(|s| self.agrees(&f, s)).count();
-        // Any two fit some F of the plane's family, and so do those that happen to lie on the lines of two: bands as wide
-        // as the loss across a picture of about four units, times two.
+        // Any two fit some F of the plane's family, and so do those that happen to lie on the lines of two:
+        // bands as wide as the loss across a picture of about four units, times two.
         let by_chance = T::count(all) * self.loss.width_squared.sqrt() * self.frames[0].scale();
         (T::count(kept) <= T::count(MINIMUM) + by_chance).then_some(plane)
     }

@@ -1,8 +1,9 @@
 //! Samples that lie on a plane, and the way out.
 //!
-//! Of seven correspondences five or more may lie on one plane of a scene that has depth besides. F is then one of a
-//! family that fits the whole plane and nothing else, and in a scene with a large plane that is a lot. But its plane is
-//! known now, and with it two correspondences off the plane give F (Chum, Werner & Matas 2005).
+//! Of seven correspondences five or more may lie on one plane of a scene that has depth besides. F is then
+//! one of a family that fits the whole plane and nothing else, and in a scene with a large plane that is a
+//! lot. But its plane is known now, and with it two correspondences off the plane give F (Chum, Werner &
+//! Matas 2005).
 
 use super::MINIMUM;
 use super::frame::Frame;
@@ -27,7 +28,8 @@ impl<T: Real> Plane<T> {
         Self { matrix, adjugate: Matrix3::from_rows(&rows) }
     }
 
-    /// The plane of five correspondences or more of a sample, to within `px2` px squared, for the F of that sample.
+    /// The plane of five correspondences or more of a sample, to within `px2` px squared, for the F of that
+    /// sample.
     pub(super) fn of_sample(f: &Matrix3<T>, sample: &[Correspondence<T>; MINIMUM], px2: T) -> Option<Self> {
         TRIPLETS.iter().find_map(|triplet| {
             let [Some(x), Some(y), Some(z)] = triplet.map(|i| sample.get(i).copied()) else { return None };
@@ -36,8 +38,8 @@ impl<T: Real> Plane<T> {
         })
     }
 
-    /// The plane of three correspondences, for an F that they agree with: of the pencil `H = [e]x F - e v^T` the one that
-    /// maps the three (Hartley & Zisserman 2004, 13.6). `None` when F has no epipole.
+    /// The plane of three correspondences, for an F that they agree with: of the pencil `H = [e]x F - e v^T`
+    /// the one that maps the three (Hartley & Zisserman 2004, 13.6). `None` when F has no epipole.
     pub(super) fn through(f: &Matrix3<T>, three: [Correspondence<T>; 3]) -> Option<Self> {
         let epipole = left_null(f)?;
         let base = product(&skew(&epipole), f);
@@ -54,7 +56,8 @@ impl<T: Real> Plane<T> {
         Some(Self::new(base - epipole * v.transpose()))
     }
 
-    /// The plane by least squares of all that are on this one to within `px2` px squared, and how many those are.
+    /// The plane by least squares of all that are on this one to within `px2` px squared, and how many those
+    /// are.
     pub(super) fn fitted(&self, seen: &[Correspondence<T>], frames: &[Frame<T>; 2], px2: T) -> (Self, usize) {
         let count = self.count(seen, 1, px2);
         // Four are no more than determine it.
@@ -107,8 +110,8 @@ pub(super) fn left_null<T: Real>(f: &Matrix3<T>) -> Option<Vector3<T>> {
     (size > T::ZERO && size.is_finite()).then(|| best / size)
 }
 
-/// Whether all correspondences of a sample are before both cameras, or can be: the line `F p'` and the one from the
-/// epipole to p have the same sense for all of them (Chum, Werner & Matas 2004).
+/// Whether all correspondences of a sample are before both cameras, or can be: the line `F p'` and the one
+/// from the epipole to p have the same sense for all of them (Chum, Werner & Matas 2004).
 pub(super) fn one_sense<T: Real>(f: &Matrix3<T>, sample: &[Correspondence<T>; MINIMUM]) -> bool {
     let Some(epipole) = left_null(f) else { return false };
     let senses = sample.map(|s| {

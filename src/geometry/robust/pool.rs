@@ -7,8 +7,8 @@ use super::{MINIMUM, Sample};
 /// After how many samples the pool of [`Sampling::Ordered`] would be as likely drawn as one of all.
 const GROWN: f32 = 10_000.0;
 
-/// Draws samples: of all correspondences, or of a pool of the first ones that grows (Chum & Matas 2005, equations 2 to
-/// 4).
+/// Draws samples: of all correspondences, or of a pool of the first ones that grows (Chum & Matas 2005,
+/// equations 2 to 4).
 pub(super) struct Pool {
     random: Random,
     all: usize,
@@ -65,7 +65,9 @@ mod tests {
         for drawn in 1..20 {
             let sample = pool.next(drawn);
             // Every sample so far has brought one new.
-            assert!(sample.contains(&(6 + drawn as usize)) && sample.iter().all(|&i| i <= 6 + drawn as usize));
+            assert!(
+                sample.contains(&(6 + drawn as usize)) && sample.iter().all(|&i| i <= 6 + drawn as usize)
+            );
         }
         (20..40_000).for_each(|drawn| {
             pool.next(drawn);

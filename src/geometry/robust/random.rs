@@ -1,7 +1,7 @@
 //! Random choices that a seed repeats.
 
-/// Numbers by SplitMix64 (Steele, Lea & Flood 2014): a counter in steps of the golden ratio, its bits mixed. One
-/// multiplication of 64 bits twice a number, eight bytes of state, every seed is as good as any other.
+/// Numbers by SplitMix64 (Steele, Lea & Flood 2014): a counter in steps of the golden ratio, its bits mixed.
+/// One multiplication of 64 bits twice a number, eight bytes of state, every seed is as good as any other.
 pub(super) struct Random(u64);
 
 impl Random {
@@ -18,14 +18,14 @@ impl Random {
         ((z ^ (z >> 31)) >> 32) as u32
     }
 
-    /// A number below `n` (below 2^32), by the upper half of a product (Lemire 2019); one of them is more likely than
-    /// another by at most n / 2^32.
+    /// A number below `n` (below 2^32), by the upper half of a product (Lemire 2019); one of them is more
+    /// likely than another by at most n / 2^32.
     pub(super) fn below(&mut self, n: usize) -> usize {
         ((u64::from(self.bits()) * n as u64) >> 32) as usize
     }
 
-    /// K different numbers below `n`, which is K at least: Floyd's method, one number for each (Bentley & Floyd
-    /// 1987).
+    /// K different numbers below `n`, which is K at least: Floyd's method, one number for each (Bentley &
+    /// Floyd 1987).
     pub(super) fn sample<const K: usize>(&mut self, n: usize) -> [usize; K] {
         let mut chosen = [usize::MAX; K];
         for k in 0..K {

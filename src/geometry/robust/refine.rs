@@ -1,6 +1,9 @@
 //! The estimate that makes the geometric error least.
 
-#![allow(clippy::needless_range_loop, reason = "an element is named by its row and column, as in the equations")]
+#![allow(
+    clippy::needless_range_loop,
+    reason = "an element is named by its row and column, as in the equations"
+)]
 
 use super::factored::{FREE, Factored};
 use super::frame::Frame;
@@ -29,10 +32,12 @@ struct Equations<T: Real> {
 /// Estimates at which equations are set up, at most.
 const MOST_STEPS: usize = 20;
 
-/// Levenberg's and Marquardt's method, `steps` at most, on the sum of the loss of Sampson's distances, by the seven or
-/// five numbers of the matrix; the estimate and its gain. Of the correspondences every `every`th is used.
+/// Levenberg's and Marquardt's method, `steps` at most, on the sum of the loss of Sampson's distances, by the
+/// seven or five numbers of the matrix; the estimate and its gain. Of the correspondences every `every`th is
+/// used.
 ///
-/// One pass over the correspondences a step: about 150 operations for each that has a weight, 40 for one that has none.
+/// One pass over the correspondences a step: about 150 operations for each that has a weight, 40 for one that
+/// has none.
 #[inline(never)]
 pub(super) fn refine<T: Real>(
     start: Factored<T>,
@@ -105,8 +110,8 @@ impl<T: Real> Equations<T> {
             let left = T::ONE - squared * per_steep * per_width;
             let weight = left * left;
             gain += weight * left;
-            // The derivative of Sampson's distance is the residual's at the corrected points, to within the square of
-            // the correction over the size of the picture.
+            // The derivative of Sampson's distance is the residual's at the corrected points, to within the
+            // square of the correction over the size of the picture.
             let by = residual * per_steep;
             let p = Vector3::new(p.x - by * gx, p.y - by * gy, T::ONE);
             let q = Vector3::new(q.x - by * hx, q.y - by * hy, T::ONE);

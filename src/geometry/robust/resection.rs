@@ -50,13 +50,14 @@ impl core::error::Error for RobustResectionError {}
 pub struct RobustResection<T: Real> {
     /// Carries a point of the camera into the world.
     pub pose: Pose<T>,
-    /// The covariance of the pose to first order, if the inliers' coordinates have the deviation [`Self::rms_px`]: a turn
-    /// (radians) and a step, both along the camera's axes, `P = R exp([w]x) (P' + d) + t`. Infinite where the landmarks leave
-    /// the pose open.
+    /// The covariance of the pose to first order, if the inliers' coordinates have the deviation
+    /// [`Self::rms_px`]: a turn (radians) and a step, both along the camera's axes, `P = R exp([w]x) (P'
+    /// + d) + t`. Infinite where the landmarks leave the pose open.
     pub covariance: Matrix6<T>,
     /// How many landmarks are within the threshold.
     pub inliers: usize,
-    /// Root mean square of a coordinate's re-projection error among them, px, corrected for the six numbers of the pose.
+    /// Root mean square of a coordinate's re-projection error among them, px, corrected for the six numbers
+    /// of the pose.
     pub rms_px: T,
     /// Samples of three that were drawn.
     pub samples: u32,
@@ -68,12 +69,14 @@ const MINIMUM: usize = 3;
 const QUICK: usize = 4;
 const LAST: usize = 12;
 
-/// The pose of a camera from landmarks of which some are wrong (undistorted px); `inliers` is filled with which agree.
+/// The pose of a camera from landmarks of which some are wrong (undistorted px); `inliers` is filled with
+/// which agree.
 ///
-/// Samples of three give up to four poses each ([`p3p()`]); each best one so far is refined over all landmarks by
-/// least squares with weights that fall to zero at one and a half thresholds, as in
-/// [`robust_fundamental`](crate::geometry::robust_fundamental). Bounded by [`RobustConfig::most_samples`], each sample by
-/// four passes over the landmarks, each best one by four more; [`RobustConfig::sampling`] does not count here.
+/// Samples of three give up to four poses each ([`p3p()`]); each best one so far is refined over all
+/// landmarks by least squares with weights that fall to zero at one and a half thresholds, as in
+/// [`robust_fundamental`](crate::geometry::robust_fundamental). Bounded by [`RobustConfig::most_samples`],
+/// each sample by four passes over the landmarks, each best one by four more; [`RobustConfig::sampling`] does
+/// not count here.
 pub fn robust_resection<T: Real>(
     landmarks: &[Landmark<T>],
     camera: &Camera<T>,
@@ -89,7 +92,9 @@ pub fn robust_resection<T: Real>(
     while samples < needed {
         samples += 1;
         for pose in problem.sample(&mut random) {
-            let Some(gain) = problem.gain(&pose, loss, best.map_or(T::ZERO, |(_, gain)| gain)) else { continue };
+            let Some(gain) = problem.gain(&pose, loss, best.map_or(T::ZERO, |(_, gain)| gain)) else {
+                continue;
+            };
             // The refinement of a pose by its own landmarks makes it better, or it is as it was.
             let (refined, _) = problem.refined(pose, loss, QUICK);
             let better = problem.gain(&refined, loss, gain);
@@ -106,7 +111,8 @@ pub fn robust_resection<T: Real>(
         return Err(RobustResectionError::NoAgreement);
     }
     for (inlier, landmark) in inliers.iter_mut().zip(landmarks) {
-        *inlier = problem.squared(&pose, landmark).is_some_and(|e| e <= config.threshold_px * config.threshold_px);
+        *inlier =
+            problem.squared(&pose, landmark).is_some_and(|e| e <= config.threshold_px * config.threshold_px);
     }
     let free = T::count((2 * count).saturating_sub(6).max(1));
     let rms_px = (squares / free).sqrt();
@@ -137,7 +143,8 @@ fn check<T: Real>(
     }
 }
 
-/// After so many samples of three, with a share of right landmarks, the chance that each had a wrong one is as asked.
+/// After so many samples of three, with a share of right landmarks, the chance that each had a wrong one is
+/// as asked.
 fn enough<T: Real>(share: T, config: &RobustConfig<T>) -> u32 {
     let all_right = share * share * share;
     if !(all_right < T::ONE) {
@@ -206,8 +213,8 @@ impl<T: Real> Problem<'_, T> {
         near.fold((0, T::ZERO), |(count, sum), e| (count + 1, sum + e))
     }
 
-    /// The pose after some steps of Gauss and Newton's method with weights `(1 - e^2 / w^2)^2`, each held to a step that
-    /// makes the gain larger; and the weighted information at it, px^-2.
+    /// The pose after some steps of Gauss and Newton's method with weights `(1 - e^2 / w^2)^2`, each held to
+    /// a step that makes the gain larger; and the weighted information at it, px^-2.
     fn refined(&self, start: Pose<T>, loss: Loss<T>, steps: usize) -> (Pose<T>, [[T; 6]; 6]) {
         let mut pose = start;
         let mut gain = self.gain(&pose, loss, -T::ONE).unwrap_or(T::ZERO);

@@ -14,8 +14,8 @@ use crate::geometry::seven_point::seven_point;
 use crate::geometry::{Correspondence, Real};
 use nalgebra::{Matrix3, Point2};
 
-/// What a candidate has to be worth to be refined, over the best candidate before it: refined ones end in different
-/// minima, and the best candidate's need not be the best.
+/// What a candidate has to be worth to be refined, over the best candidate before it: refined ones end in
+/// different minima, and the best candidate's need not be the best.
 const NEARLY: f64 = 0.7;
 /// How many correspondences refine an estimate on the way.
 pub(super) const ENOUGH: usize = 150;
@@ -42,7 +42,11 @@ pub(super) struct Search<'a, T: Real> {
 
 impl<'a, T: Real> Search<'a, T> {
     /// Eight correspondences at least.
-    pub(super) fn new(seen: &'a [Correspondence<T>], frames: [Frame<T>; 2], config: &RobustConfig<T>) -> Self {
+    pub(super) fn new(
+        seen: &'a [Correspondence<T>],
+        frames: [Frame<T>; 2],
+        config: &RobustConfig<T>,
+    ) -> Self {
         Self {
             seen,
             frames,
@@ -60,7 +64,9 @@ impl<'a, T: Real> Search<'a, T> {
 
     /// Draws samples until a better estimate is as unlikely as asked, or their number is.
     pub(super) fn run(&mut self, config: &RobustConfig<T>) {
-        while self.drawn < config.most_samples && (self.drawn < FEWEST || self.missed > config.miss_probability) {
+        while self.drawn < config.most_samples
+            && (self.drawn < FEWEST || self.missed > config.miss_probability)
+        {
             let sample = self.pool.next(self.drawn);
             self.drawn += 1;
             self.try_sample(&sample);
@@ -68,10 +74,11 @@ impl<'a, T: Real> Search<'a, T> {
         }
     }
 
-    /// `(1 - w^7)^k`: the probability that none of k samples held correspondences of the best estimate alone, w being
-    /// their share.
+    /// `(1 - w^7)^k`: the probability that none of k samples held correspondences of the best estimate alone,
+    /// w being their share.
     fn miss(&self) -> T {
-        let (mut kept, mut all, mut all_good) = (T::count(self.worth.kept), T::count(self.seen.len()), T::ONE);
+        let (mut kept, mut all, mut all_good) =
+            (T::count(self.worth.kept), T::count(self.seen.len()), T::ONE);
         for _ in 0..MINIMUM {
             all_good *= kept.max(T::ZERO) / all;
             (kept, all) = (kept - T::ONE, all - T::ONE);
@@ -124,10 +131,12 @@ impl<'a, T: Real> Search<'a, T> {
         (self.pool.below(self.seen.len()), self.stride)
     }
 
-    /// Makes an estimate (px) the best one, after it was refined, when it is better than that before; whether it is.
+    /// Makes an estimate (px) the best one, after it was refined, when it is better than that before; whether
+    /// it is.
     fn consider(&mut self, f: &Matrix3<T>) -> bool {
         let order = self.order();
-        let Some(worth) = self.test.judge(f, self.seen, self.loss, self.raw_gain * T::of(NEARLY), order) else {
+        let Some(worth) = self.test.judge(f, self.seen, self.loss, self.raw_gain * T::of(NEARLY), order)
+        else {
             return false;
         };
         self.raw_gain = self.raw_gain.max(worth.gain);
@@ -137,18 +146,22 @@ impl<'a, T: Real> Search<'a, T> {
 
     /// Refines an estimate (px) and makes it the best one if it is then; whether it is.
     pub(super) fn improve(&mut self, f: &Matrix3<T>) -> bool {
-        let in_frames = product(&product(&self.frames[0].inverse().transpose(), f), &self.frames[1].inverse());
+        let in_frames =
+            product(&product(&self.frames[0].inverse().transpose(), f), &self.frames[1].inverse());
         let Some(mut refined) = Factored::new(&in_frames) else { return false };
-        // From far to near: what a sample of seven makes of its noise is a few thresholds off elsewhere. Some of the
-        // correspondences are enough for that: the last estimate is refined by all.
+        // From far to near: what a sample of seven makes of its noise is a few thresholds off elsewhere. Some
+        // of the correspondences are enough for that: the last estimate is refined by all.
         let every = self.seen.len() / ENOUGH;
         for (wider, steps) in [(T::of(2.5), 3), (T::ONE, 3)] {
             let loss = self.loss.widened(wider);
-            (refined, _) = refine(refined, Matrix::Fundamental, self.seen, &self.frames, loss, (every, steps));
+            (refined, _) =
+                refine(refined, Matrix::Fundamental, self.seen, &self.frames, loss, (every, steps));
         }
         let (f, order) = (self.in_pixels(&refined.matrix()), self.order());
         // Without a best one nothing is dropped.
-        let Some(worth) = Test::new().judge(&f, self.seen, self.loss, self.worth.gain, order) else { return false };
+        let Some(worth) = Test::new().judge(&f, self.seen, self.loss, self.worth.gain, order) else {
+            return false;
+        };
         (self.best, self.worth) = (Some(refined), worth);
         true
     }

@@ -4,12 +4,13 @@ use super::loss::Loss;
 use crate::geometry::{Correspondence, Real};
 use nalgebra::{Matrix3, Vector3};
 
-/// How many times as likely a bad estimate has to be as a good one to be dropped: of the good ones one in so many is
-/// dropped at most.
+/// How many times as likely a bad estimate has to be as a good one to be dropped: of the good ones one in so
+/// many is dropped at most.
 const DROP: f64 = 100.0;
 
-/// Wald's sequential test of estimates against the best so far (Matas & Chum 2005): correspondence after correspondence
-/// the odds change by how often a good and a bad estimate keep one, and a bad one is dropped after a few.
+/// Wald's sequential test of estimates against the best so far (Matas & Chum 2005): correspondence after
+/// correspondence the odds change by how often a good and a bad estimate keep one, and a bad one is dropped
+/// after a few.
 pub(super) struct Test<T: Real> {
     /// Shares of the correspondences that the best estimate keeps, and that a wrong one does.
     good: T,
@@ -55,8 +56,9 @@ impl<T: Real> Test<T> {
         };
     }
 
-    /// What F (in px) is worth, or `None` as soon as it is clear that it is not better than `best`. The correspondences
-    /// are taken `stride` apart from `start` on, a whole round when `stride` and their number have no common divisor.
+    /// What F (in px) is worth, or `None` as soon as it is clear that it is not better than `best`. The
+    /// correspondences are taken `stride` apart from `start` on, a whole round when `stride` and their
+    /// number have no common divisor.
     #[inline(never)]
     pub(super) fn judge(
         &mut self,

@@ -8,12 +8,13 @@ use core::cell::Cell;
 
 /// One camera's raw lines, rectified.
 ///
-/// `W` is the capacity for columns, of the raw and of the rectified image. `N` lines are held, one of which is a copy of another, so that a line and
-/// the next one always stand together: raw rows are remapped that need [`RemapTable::rows`] of at most `N - 1`. The state is
-/// `N W` bytes, the table, and a few words.
+/// `W` is the capacity for columns, of the raw and of the rectified image. `N` lines are held, one of which
+/// is a copy of another, so that a line and the next one always stand together: raw rows are remapped that
+/// need [`RemapTable::rows`] of at most `N - 1`. The state is `N W` bytes, the table, and a few words.
 ///
-/// A pixel between four raw ones is their mean, weighted in 256ths of a pixel along both directions (bilinear). A pixel whose
-/// place is outside the raw image, or not described by the lens model, is 0 and not valid.
+/// A pixel between four raw ones is their mean, weighted in 256ths of a pixel along both directions
+/// (bilinear). A pixel whose place is outside the raw image, or not described by the lens model, is 0 and not
+/// valid.
 ///
 /// ```
 /// use stereopsis::geometry::{Camera, Crop, ImageSize, Pose, Rectification, StereoRig};
@@ -73,7 +74,8 @@ pub enum RemapError {
         /// How many raw lines are needed.
         needed: u16,
     },
-    /// A raw line that the next rectified line needs was overwritten: more raw lines were accepted than it waited for.
+    /// A raw line that the next rectified line needs was overwritten: more raw lines were accepted than it
+    /// waited for.
     Late {
         /// The row of the rectified line.
         row: u16,
@@ -89,7 +91,9 @@ impl core::fmt::Display for RemapError {
         match self {
             Self::Lines { needed } => write!(f, "the remap must hold {needed} raw lines at once"),
             Self::Width { needed } => write!(f, "the remap must have room for lines of {needed} px"),
-            Self::BufferTooShort { needed } => write!(f, "the line's and the mask's buffers must hold {needed} bytes"),
+            Self::BufferTooShort { needed } => {
+                write!(f, "the line's and the mask's buffers must hold {needed} bytes")
+            }
             Self::Early { needed } => write!(f, "the next rectified line needs {needed} raw lines"),
             Self::Late { row } => write!(f, "a raw line that rectified row {row} needs is no longer held"),
             Self::Table(error) => error.fmt(f),
@@ -179,8 +183,8 @@ impl<const W: usize, const N: usize, const SLOTS: usize> Remap<W, N, SLOTS> {
         self.next
     }
 
-    /// Whether the next rectified line waits for a raw line. Take all that do not before the next raw line is accepted: what
-    /// they need would be overwritten.
+    /// Whether the next rectified line waits for a raw line. Take all that do not before the next raw line is
+    /// accepted: what they need would be overwritten.
     pub fn wants_line(&self) -> bool {
         let last = self.needs.map_or(0, |(_, last)| last + 1);
         self.next < self.table.size().height && self.came < last

@@ -37,7 +37,8 @@ impl<const W: usize, const N: usize, const SLOTS: usize> RemapPair<W, N, SLOTS> 
     }
 }
 
-/// A stereo source of rectified lines over one of raw lines: what stands between two cameras and the pipeline.
+/// A stereo source of rectified lines over one of raw lines: what stands between two cameras and the
+/// pipeline.
 ///
 /// Raw lines are taken in pairs, as they come, until both cameras have what their next rectified line needs.
 #[derive(Debug)]
@@ -89,10 +90,16 @@ impl<E> From<RemapError> for CameraError<RectifiedPairError<E>> {
     }
 }
 
-impl<'a, S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> RectifiedPair<'a, S, W, N, SLOTS> {
-    /// Rectifies what a source gives; refused where raw lines and remaps do not fit each other, or the bands are too small for
-    /// both cameras in step: a camera's lines are held until the other one's next line has come, too.
-    pub fn new(source: S, pair: &'a mut RemapPair<W, N, SLOTS>) -> Result<Self, RectifiedPairError<S::Error>> {
+impl<'a, S: StereoSource, const W: usize, const N: usize, const SLOTS: usize>
+    RectifiedPair<'a, S, W, N, SLOTS>
+{
+    /// Rectifies what a source gives; refused where raw lines and remaps do not fit each other, or the bands
+    /// are too small for both cameras in step: a camera's lines are held until the other one's next line
+    /// has come, too.
+    pub fn new(
+        source: S,
+        pair: &'a mut RemapPair<W, N, SLOTS>,
+    ) -> Result<Self, RectifiedPairError<S::Error>> {
         let [left, right] = pair.remaps();
         let format = source.format();
         let raws = [left.table().raw_size(), right.table().raw_size()];
@@ -158,7 +165,11 @@ impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> Stereo
         Ok(start)
     }
 
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Self::Error>> {
+    fn next_lines(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<Self::Error>> {
         let RemapPair { left: first, right: second, valid: [first_valid, second_valid] } = &mut *self.pair;
         // Each turn takes a raw line; an image has at most 4096.
         while first.wants_line() || second.wants_line() {

@@ -19,15 +19,16 @@ pub(super) struct Band<'a, const W: usize, const N: usize> {
 }
 
 impl<'a, const W: usize, const N: usize> Band<'a, W, N> {
-    /// Lines of a raw image of that size, with its row `top` in the first, for segments in pieces of `2^piece` pixels.
+    /// Lines of a raw image of that size, with its row `top` in the first, for segments in pieces of
+    /// `2^piece` pixels.
     pub fn new(lines: &'a [[u8; W]; N], top: u16, raw: ImageSize, piece: u32) -> Self {
         Self { lines: lines.as_flattened(), top: i32::from(top) << BITS, raw, piece }
     }
 
     /// The pixels of a segment; unless all of it is inside the raw image, it is at an `EDGE`.
     ///
-    /// They go into cells: what is written may be what is read next as far as the compiler knows, so that it finishes a pixel
-    /// before it begins another, and all that a pixel takes stays in registers.
+    /// They go into cells: what is written may be what is read next as far as the compiler knows, so that it
+    /// finishes a pixel before it begins another, and all that a pixel takes stays in registers.
     #[inline(never)]
     pub fn segment<const EDGE: bool>(&self, segment: &Segment, out: &[Cell<u8>], valid: &[u8]) {
         let (mut x, mut y) = (segment.column.start, segment.row.start.wrapping_sub(self.top));
@@ -51,8 +52,8 @@ impl<'a, const W: usize, const N: usize> Band<'a, W, N> {
                 }
                 x = x.wrapping_add(right << 2);
                 y = end;
-                // Says no more than is known, places being less than 2^29 apart, and keeps the compiler from counting multiples of
-                // the steps along.
+                // Says no more than is known, places being less than 2^29 apart, and keeps the compiler from
+                // counting multiples of the steps along.
                 right = right.wrapping_add(more_right) & NARROW;
                 down = down.wrapping_add(more_down) << 4 >> 4;
             }
@@ -108,7 +109,15 @@ impl<'a, const W: usize, const N: usize> Band<'a, W, N> {
 
     /// The pixels of a piece, wherever they are.
     #[inline(never)]
-    fn piece<const EDGE: bool>(&self, mut x: i32, mut y: i32, right: i32, down: i32, out: &[Cell<u8>], valid: &[u8]) {
+    fn piece<const EDGE: bool>(
+        &self,
+        mut x: i32,
+        mut y: i32,
+        right: i32,
+        down: i32,
+        out: &[Cell<u8>],
+        valid: &[u8],
+    ) {
         for (out, &valid) in out.iter().zip(valid) {
             let at = Self::index(x, y);
             out.set(match self.lines.get(at..at.wrapping_add(W + 2)) {
@@ -156,7 +165,8 @@ fn two(pixels: &[u8], at: usize) -> u16 {
     pixels.get(at..at + 2).and_then(|two| two.first_chunk()).map_or(0, |two| u16::from_le_bytes(*two))
 }
 
-/// A place as a pixel that has another after it, and 256ths of the way to that: all of it on the image's last one.
+/// A place as a pixel that has another after it, and 256ths of the way to that: all of it on the image's last
+/// one.
 fn split(place: i32, side: u16) -> (i32, u32) {
     let whole = (place >> BITS).clamp(0, i32::from(side.saturating_sub(2)));
     (whole, (place >> (BITS - 8)).wrapping_sub(whole << 8) as u32)
@@ -168,10 +178,11 @@ fn fraction(place: i32) -> u32 {
     (place >> (BITS - 8)) as u32 & 0xff
 }
 
-/// The mean of two pixels and the two below them, weighted by 256ths of a pixel to the right and down, to the nearest.
+/// The mean of two pixels and the two below them, weighted by 256ths of a pixel to the right and down, to the
+/// nearest.
 ///
-/// The two rows are weighted together, in the halves of a word: each is at most 255 * 256, and half of a 256th is added for
-/// rounding, so that neither leaves its half.
+/// The two rows are weighted together, in the halves of a word: each is at most 255 * 256, and half of a
+/// 256th is added for rounding, so that neither leaves its half.
 #[inline(always)]
 fn mean(upper: u16, lower: u16, right: u32, down: u32) -> u8 {
     let four = u32::from(upper) | u32::from(lower) << 16;
@@ -187,7 +198,9 @@ mod tests {
 
     #[test]
     fn a_mean_of_four() {
-        let mean = |upper, lower, right, down| mean(u16::from_le_bytes(upper), u16::from_le_bytes(lower), right, down);
+        let mean = |upper, lower, right, down| {
+            mean(u16::from_le_bytes(upper), u16::from_le_bytes(lower), right, down)
+        };
         assert_eq!(mean([10, 20], [30, 40], 0, 0), 10);
         assert_eq!(mean([10, 20], [30, 40], 128, 0), 15);
         assert_eq!(mean([10, 20], [30, 40], 128, 128), 25);

@@ -9,7 +9,8 @@ use core::slice::Iter;
 pub(super) const BITS: u32 = 16;
 /// Half of the finest step that pixels are weighted in, 1/256 px.
 const HALF: i32 = 1 << (BITS - 9);
-/// The greatest step of pieces that are looked up in one window, less than 2 px: its four pixels begin in 7 columns.
+/// The greatest step of pieces that are looked up in one window, less than 2 px: its four pixels begin in 7
+/// columns.
 pub(super) const NARROW: i32 = (2 << BITS) - 1;
 /// Fractional bits of the weights between rows of the lattice.
 const WEIGHT_BITS: u32 = 20;
@@ -33,8 +34,9 @@ pub(super) struct Segment {
     pub part: Part,
 }
 
-/// One coordinate of a segment's pixels, px with [`BITS`] fractional bits, half a 256th added: along straight pieces of as many
-/// pixels as the table has it, from `start`, by `step` a pixel in the first piece and `bend` more in each next one.
+/// One coordinate of a segment's pixels, px with [`BITS`] fractional bits, half a 256th added: along straight
+/// pieces of as many pixels as the table has it, from `start`, by `step` a pixel in the first piece and
+/// `bend` more in each next one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run {
     pub start: i32,
@@ -82,7 +84,8 @@ impl Segment {
     fn mask_pieces(&self, raw: ImageSize, piece: u32, valid: &mut [u8]) {
         let (mut column, mut row) = (self.column, self.row);
         // From 0 to the last pixel, to a 256th.
-        let [right, bottom] = [raw.width, raw.height].map(|side| ((u32::from(side) - 1) << BITS) + 2 * HALF as u32);
+        let [right, bottom] =
+            [raw.width, raw.height].map(|side| ((u32::from(side) - 1) << BITS) + 2 * HALF as u32);
         let is_in = |x: i32, y: i32| x.cast_unsigned() < right && y.cast_unsigned() < bottom;
         let mut begins_in = is_in(column.start, row.start);
         for valid in valid.chunks_mut(1 << piece) {
@@ -103,9 +106,9 @@ impl Segment {
 }
 
 impl Run {
-    /// Along the parabola through two places of the lattice that is bent as the cubic through these and the two beside them is
-    /// halfway, in pieces of 1 or 4 pixels. A straight line between two places of it is off by up to half of `bend` in the
-    /// middle of four pixels: all are moved by a quarter.
+    /// Along the parabola through two places of the lattice that is bent as the cubic through these and the
+    /// two beside them is halfway, in pieces of 1 or 4 pixels. A straight line between two places of it
+    /// is off by up to half of `bend` in the middle of four pixels: all are moved by a quarter.
     #[inline(always)]
     fn between([before, from, to, after]: [i32; 4], cell: &Cell) -> Self {
         let bend = rounded(before + after - from - to, cell.bend_shift);
@@ -140,7 +143,8 @@ impl Run {
         self.start.wrapping_add(self.step.wrapping_mul(k))
     }
 
-    /// Whether each of that many pieces of four pixels goes to the right, by less than 8 px from the first pixel's column to the last one's.
+    /// Whether each of that many pieces of four pixels goes to the right, by less than 8 px from the first
+    /// pixel's column to the last one's.
     #[inline(always)]
     pub fn is_narrow(&self, pieces: usize) -> bool {
         // The step grows or shrinks all along: its ends tell.
@@ -179,7 +183,8 @@ pub(super) struct Segments<'a> {
 }
 
 /// Four rows side by side.
-type Columns<'a> = Zip<Zip<Iter<'a, [i32; 2]>, Iter<'a, [i32; 2]>>, Zip<Iter<'a, [i32; 2]>, Iter<'a, [i32; 2]>>>;
+type Columns<'a> =
+    Zip<Zip<Iter<'a, [i32; 2]>, Iter<'a, [i32; 2]>>, Zip<Iter<'a, [i32; 2]>, Iter<'a, [i32; 2]>>>;
 
 impl<'a> Segments<'a> {
     /// Those of a line, all of which are in the raw image if it is known to be `whole`.

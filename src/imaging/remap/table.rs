@@ -4,22 +4,24 @@ use super::segment::{BITS, Cell, Part, Run, Segments};
 use crate::geometry::{ImageSize, Real, Warp};
 use nalgebra::Point2;
 
-/// Where the pixels of a rectified image are in the raw one: a lattice of places every 8, 16, 32 or 64 px, in 1/65536 px.
+/// Where the pixels of a rectified image are in the raw one: a lattice of places every 8, 16, 32 or 64 px, in
+/// 1/65536 px.
 ///
-/// Between the lattice's rows a place is on the cubic through four of them, between its columns on a parabola that is bent as
-/// that cubic, drawn as straight lines of four pixels where these do; all in integers, so that every core finds the same places. The widest lattice is taken with which the places stay
-/// within [`Self::TOLERANCE_PX`] of the warp's own, which is looked at in every fourth row and every second column. It takes 8 bytes for a
-/// slot, which [`Self::slots`] counts.
+/// Between the lattice's rows a place is on the cubic through four of them, between its columns on a parabola
+/// that is bent as that cubic, drawn as straight lines of four pixels where these do; all in integers, so
+/// that every core finds the same places. The widest lattice is taken with which the places stay
+/// within [`Self::TOLERANCE_PX`] of the warp's own, which is looked at in every fourth row and every second
+/// column. It takes 8 bytes for a slot, which [`Self::slots`] counts.
 ///
 /// [`Self::raw_rows`] of every row follow the lattice, two in the room of a place.
 ///
-/// Made from the same warp in the same type, `f32` or `f64`, it is the same on every core: it takes products, quotients and
-/// roots alone.
+/// Made from the same warp in the same type, `f32` or `f64`, it is the same on every core: it takes products,
+/// quotients and roots alone.
 #[derive(Clone, Debug)]
 pub struct RemapTable<const SLOTS: usize> {
-    /// The lattice, row by row: column and row, where the lowest bit of the column says that the lens model does not describe
-    /// the place. Then the raw rows that each rectified row needs: the first and, 16 bits higher, the last; and whether
-    /// all of the row is in the raw image.
+    /// The lattice, row by row: column and row, where the lowest bit of the column says that the lens model
+    /// does not describe the place. Then the raw rows that each rectified row needs: the first and, 16
+    /// bits higher, the last; and whether all of the row is in the raw image.
     slots: [[i32; 2]; SLOTS],
     shift: u8,
     piece: u8,
@@ -62,8 +64,8 @@ const NO_PIXELS: ImageSize = ImageSize { width: 0, height: 0 };
 const WHOLE: u32 = 1 << 31;
 /// What is noted of a row that shows nothing of the raw image: its first raw row is after the last.
 const NOWHERE: u32 = 0xffff;
-/// Places farther outside the raw image than this on the left and above, and farther than that on the right and below, say
-/// no more than that they are outside. Sums of four fit a word.
+/// Places farther outside the raw image than this on the left and above, and farther than that on the right
+/// and below, say no more than that they are outside. Sums of four fit a word.
 const FARTHEST: (f64, f64) = (-2048.0, 6143.0);
 
 impl<const SLOTS: usize> RemapTable<SLOTS> {
@@ -72,7 +74,14 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
 
     /// A table of an image without pixels, to be [`set`](Self::set) where it stands.
     pub const fn empty() -> Self {
-        Self { slots: [[1, 0]; SLOTS], shift: FINEST as u8, piece: 0, size: NO_PIXELS, raw: NO_PIXELS, rows: 0 }
+        Self {
+            slots: [[1, 0]; SLOTS],
+            shift: FINEST as u8,
+            piece: 0,
+            size: NO_PIXELS,
+            raw: NO_PIXELS,
+            rows: 0,
+        }
     }
 
     /// The table of a warp.
@@ -157,7 +166,9 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
                 let length = cell.min(usize::from(self.size.width) - x);
                 // At the ends and in the middle of each four.
                 for k in (0..length).step_by(2) {
-                    let Ok(source) = warp.source(&Point2::new(T::count(x + k), T::count(y.into()))) else { continue };
+                    let Ok(source) = warp.source(&Point2::new(T::count(x + k), T::count(y.into()))) else {
+                        continue;
+                    };
                     let found = Point2::new(one(&segment.column, k), one(&segment.row, k));
                     let is_asked = source.is_described && warp.is_in_raw(&source.pixel);
                     // A place that is not described takes its cell with it: small ones only.
@@ -192,23 +203,27 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         u32::from(self.shift)
     }
 
-    /// How many pixels along a line lie on a straight piece, as a power of two: 4, or 1 where the warp is bent a lot.
+    /// How many pixels along a line lie on a straight piece, as a power of two: 4, or 1 where the warp is
+    /// bent a lot.
     pub fn piece(&self) -> u32 {
         u32::from(self.piece)
     }
 
-    /// Raw rows that have to be held at once, when raw lines come one after the other and rectified lines are taken in order.
+    /// Raw rows that have to be held at once, when raw lines come one after the other and rectified lines are
+    /// taken in order.
     pub fn rows(&self) -> u16 {
         self.rows
     }
 
-    /// The lattice's places, row by row, the first a cell left of and above the image; column and row in 1/65536 px, where the
-    /// lowest bit of the column is set when the lens model does not describe the place.
+    /// The lattice's places, row by row, the first a cell left of and above the image; column and row in
+    /// 1/65536 px, where the lowest bit of the column is set when the lens model does not describe the
+    /// place.
     pub fn places(&self) -> &[[i32; 2]] {
         self.slots.get(..Self::nodes(self.size, self.shift())).unwrap_or(&[])
     }
 
-    /// The first and the last raw row that a rectified row needs; none where it shows nothing of the raw image.
+    /// The first and the last raw row that a rectified row needs; none where it shows nothing of the raw
+    /// image.
     pub fn raw_rows(&self, row: u16) -> Option<(u16, u16)> {
         let noted = self.noted(row);
         let (first, last) = (noted as u16, (noted >> 16) as u16 & !(WHOLE >> 16) as u16);

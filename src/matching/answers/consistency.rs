@@ -1,15 +1,18 @@
 //! The left-right check, from the left winners alone.
 //!
-//! Each column of the right image keeps the cheapest of the left pixels that chose it. A left pixel whose disparity is
-//! far from what its partner kept was beaten there: it is occluded or wrong. Nothing is searched a second time, and on
-//! real pairs the check refuses fewer right answers than one against the right image's own winners.
+//! Each column of the right image keeps the cheapest of the left pixels that chose it. A left pixel whose
+//! disparity is far from what its partner kept was beaten there: it is occluded or wrong. Nothing is searched
+//! a second time, and on real pairs the check refuses fewer right answers than one against the right image's
+//! own winners.
 //!
-//! A right column keeps the cost above 8 bits of the winner, over the smallest disparity; all ones while nobody offered.
+//! A right column keeps the cost above 8 bits of the winner, over the smallest disparity; all ones while
+//! nobody offered.
 
 use crate::units::PixelFlags;
 
-/// Offers every winner to its partner, each by its cost above 8 bits of its disparity, and that disparity. The first of equal
-/// costs stays. The first winner is that of the first column that has a candidate, whose partner is the first right column.
+/// Offers every winner to its partner, each by its cost above 8 bits of its disparity, and that disparity.
+/// The first of equal costs stays. The first winner is that of the first column that has a candidate, whose
+/// partner is the first right column.
 #[cfg(not(stereopsis_dsp))]
 #[inline(always)]
 pub(super) fn offer(winners: impl Iterator<Item = (u32, u8)>, right: &mut [u16]) {

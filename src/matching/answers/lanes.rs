@@ -37,7 +37,8 @@ pub(super) fn answer<S: Scheme>(
     answers: &mut [Disparity],
     flags: &mut [PixelFlags],
 ) {
-    let [below, costs, above, disparities] = [&*winners.below, &*winners.costs, &*winners.above, &*winners.disparities];
+    let [below, costs, above, disparities] =
+        [&*winners.below, &*winners.costs, &*winners.above, &*winners.disparities];
     let sides = below.iter().zip(costs).zip(above);
     for (fraction, ((&below, &cost), &above)) in fractions.iter_mut().zip(sides) {
         *fraction = signed_fraction(below - cost, above - cost, S::STEP);
@@ -45,7 +46,8 @@ pub(super) fn answer<S: Scheme>(
     // Two byte loops: one with all of these rows has more of them than there are registers.
     let partners = disparities.iter().zip(kept);
     let rises = below.iter().zip(costs).zip(above);
-    for ((flags, (&disparity, &kept)), ((&below, &cost), &above)) in flags.iter_mut().zip(partners).zip(rises) {
+    for ((flags, (&disparity, &kept)), ((&below, &cost), &above)) in flags.iter_mut().zip(partners).zip(rises)
+    {
         *flags = flags
             .union(consistency::mismatch(disparity, kept, rules.tolerance))
             .union(rules.flat.when((below == cost) & (above == cost)))
@@ -59,7 +61,8 @@ pub(super) fn answer<S: Scheme>(
     }
 }
 
-/// The fraction of [`super::subpixel::refine`] with its sign, from the rises below and above: a division bit by bit.
+/// The fraction of [`super::subpixel::refine`] with its sign, from the rises below and above: a division bit
+/// by bit.
 #[inline(always)]
 fn signed_fraction(below: u8, above: u8, step: u8) -> u8 {
     const { assert!(Disparity::ONE == 32, "half a pixel is four bits and the one for all of it") };

@@ -47,8 +47,8 @@ struct Rules {
     refused: PixelFlags,
 }
 
-/// Makes answers of the winners, none of those that the checks contradict, and tells why: of `flags` those stay that are
-/// said already.
+/// Makes answers of the winners, none of those that the checks contradict, and tells why: of `flags` those
+/// stay that are said already.
 pub(super) fn answer<S: Scheme>(
     kernel: Kernel,
     config: &Config,

@@ -1,22 +1,23 @@
 //! The winner between whole pixels.
 //!
-//! A census cost grows about linearly to both sides of its minimum, so that two lines of opposite slope fit it better
-//! than a parabola: the equiangular fit (Shimizu & Okutomi 2002, for sums of absolute differences). With a and b the
-//! rise to the disparity below and above,
+//! A census cost grows about linearly to both sides of its minimum, so that two lines of opposite slope fit
+//! it better than a parabola: the equiangular fit (Shimizu & Okutomi 2002, for sums of absolute differences).
+//! With a and b the rise to the disparity below and above,
 //!
 //! `f = (a - b) / (2 max(a, b))`
 //!
-//! Along paths a disparity beside the winner costs a step more wherever a surface is slanted, which would pull answers to whole
-//! pixels: so much of the steeper rise is not counted ([`Scheme::STEP`](crate::matching::Scheme::STEP)).
+//! Along paths a disparity beside the winner costs a step more wherever a surface is slanted, which would
+//! pull answers to whole pixels: so much of the steeper rise is not counted
+//! ([`Scheme::STEP`](crate::matching::Scheme::STEP)).
 //!
-//! On a rendered slanted plane the parabola's error was half again as large, for both windows, and its answers crowded
-//! to whole pixels.
+//! On a rendered slanted plane the parabola's error was half again as large, for both windows, and its
+//! answers crowded to whole pixels.
 
 use crate::matching::kernels::Winner;
 use crate::units::Disparity;
 
-/// The disparity of a winner whose search began at `min_disparity` px, rounded to the nearest 1/32 px; `step` of the steeper
-/// rise is not counted.
+/// The disparity of a winner whose search began at `min_disparity` px, rounded to the nearest 1/32 px; `step`
+/// of the steeper rise is not counted.
 #[inline(always)]
 pub(super) fn refine(winner: Winner, min_disparity: u32, step: u32) -> Disparity {
     let whole = (min_disparity + winner.disparity()) * u32::from(Disparity::ONE);

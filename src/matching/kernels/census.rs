@@ -1,8 +1,8 @@
 //! Census rows in 32-bit words: four pixels' comparisons at once.
 //!
-//! A neighbour `n` is not darker than the centre `c` where the average of `n` and `255 - c`, rounded up, has its highest
-//! bit: `n + 255 - c + 1 >= 256`. Averages of bytes need no room beside them, `(a | b) - ((a ^ b) >> 1)` (Warren 2012,
-//! 2-5).
+//! A neighbour `n` is not darker than the centre `c` where the average of `n` and `255 - c`, rounded up, has
+//! its highest bit: `n + 255 - c + 1 >= 256`. Averages of bytes need no room beside them, `(a | b) - ((a ^ b)
+//! >> 1)` (Warren 2012, 2-5).
 
 #[cfg(not(stereopsis_dsp))]
 use super::scratch::{words_mut, words_of};
@@ -62,7 +62,8 @@ fn census_of_words<S: Windowed>(lines: [&[u32]; 3], out: &mut [u32]) {
     let mut centre = lines.map(|line| line.first().copied().unwrap_or(0));
     let last = lines.map(|line| line.last().map_or(0, |last| (last >> 24) * 0x0101_0101));
     let mut next = |after: Three| {
-        let places = |i: usize| [centre[i] << 16 | before[i] >> 16, centre[i], centre[i] >> 16 | after[i] << 16];
+        let places =
+            |i: usize| [centre[i] << 16 | before[i] >> 16, centre[i], centre[i] >> 16 | after[i] << 16];
         let codes = S::codes(&[places(0), places(1), places(2)]);
         (before, centre) = (centre, after);
         codes
@@ -77,7 +78,10 @@ fn census_of_words<S: Windowed>(lines: [&[u32]; 3], out: &mut [u32]) {
 
 /// The codes of four pixels, bit `i` from the neighbour `neighbours[i]`: its row and column among `around`.
 #[inline(always)]
-pub(in crate::matching) fn codes<const BITS: usize>(around: &[Three; 3], neighbours: &[(usize, usize); BITS]) -> u32 {
+pub(in crate::matching) fn codes<const BITS: usize>(
+    around: &[Three; 3],
+    neighbours: &[(usize, usize); BITS],
+) -> u32 {
     #[cfg(not(stereopsis_dsp))]
     let inverse = !around[1][1];
     let mut not_darker = 0;

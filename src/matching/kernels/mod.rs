@@ -6,16 +6,18 @@
 //! * `planes`: bit planes in plain 32-bit words, for cores without vectors.
 //! * `bytes`: four bytes in a word, for cores that have Arm's instructions for that.
 //! * `groups`: bytes side by side, in the registers of larger processors and in words.
-//! * `windows`: sums over windows, for groups. `x86`: the same compiled for AVX2 and for AVX-512, chosen when the processor has it.
+//! * `windows`: sums over windows, for groups. `x86`: the same compiled for AVX2 and for AVX-512, chosen when
+//!   the processor has it.
 //! * `paths`: costs along paths, for groups, and for Arm's instructions on four bytes.
-//! * `helium`: what stages do for a row, in assembly for the vectors of a Cortex-M55; `lanes`: safe Rust over fixed lanes for what
-//!   is not there, which the compiler turns into vectors.
+//! * `helium`: what stages do for a row, in assembly for the vectors of a Cortex-M55; `lanes`: safe Rust over
+//!   fixed lanes for what is not there, which the compiler turns into vectors.
 //! * `winner`: what all of them give.
 //!
-//! A 32-bit core gets `planes` alone, unless it is compiled with `--cfg stereopsis_dsp`, which says that it has instructions
-//! on four bytes (Cortex-M4, M7, M33); then it gets `bytes` alone; or with `--cfg stereopsis_vectors`, which says that its
-//! vectors are on (Helium on a Cortex-M55: `-C target-cpu=cortex-m55`); then it gets `helium` and `lanes` alone.
-//! Larger processors have `planes`, and `windows` in the vectors that there are.
+//! A 32-bit core gets `planes` alone, unless it is compiled with `--cfg stereopsis_dsp`, which says that it
+//! has instructions on four bytes (Cortex-M4, M7, M33); then it gets `bytes` alone; or with `--cfg
+//! stereopsis_vectors`, which says that its vectors are on (Helium on a Cortex-M55: `-C
+//! target-cpu=cortex-m55`); then it gets `helium` and `lanes` alone. Larger processors have `planes`, and
+//! `windows` in the vectors that there are.
 //!
 //! Every kernel gives the same bits. A new one is a variant of [`Kernel`] and an arm in [`Kernel::row`].
 
@@ -140,13 +142,14 @@ impl Kernel {
         }
     }
 
-    /// The candidates of a column that it works on for so many `disparities`, of which there is room for `most`, in whole
-    /// [`STEP`]s.
+    /// The candidates of a column that it works on for so many `disparities`, of which there is room for
+    /// `most`, in whole [`STEP`]s.
     #[inline]
     pub(super) fn candidates(self, disparities: usize, most: usize) -> usize {
         #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
         if self == Self::Planes && most.is_multiple_of(32) {
-            // Whole words, in a form that lets the compiler see it: a firmware is linked without what cannot be asked for.
+            // Whole words, in a form that lets the compiler see it: a firmware is linked without what cannot
+            // be asked for.
             return disparities.next_multiple_of(32).min(most) & !31;
         }
         #[cfg(any(stereopsis_vectors, stereopsis_dsp))]
@@ -157,7 +160,8 @@ impl Kernel {
         disparities.next_multiple_of(STEP).min(most) & !(STEP - 1)
     }
 
-    /// The census row of five lines in both images, in the form in which [`Self::row`] takes it: two bytes a pixel.
+    /// The census row of five lines in both images, in the form in which [`Self::row`] takes it: two bytes a
+    /// pixel.
     #[inline]
     pub(super) fn codes<S: Windowed>(
         self,
@@ -210,9 +214,10 @@ impl Kernel {
         }
     }
 
-    /// Moves the window to the next row and selects its winners, unless the row is only gathered (`select` is `None`).
-    // Where there is one kernel it is inlined, so that the compiler sees which numbers of candidates can be asked for, and
-    // a firmware is linked without the code for others.
+    /// Moves the window to the next row and selects its winners, unless the row is only gathered (`select` is
+    /// `None`).
+    // Where there is one kernel it is inlined, so that the compiler sees which numbers of candidates can be
+    // asked for, and a firmware is linked without the code for others.
     #[cfg_attr(target_pointer_width = "64", inline)]
     #[cfg_attr(not(target_pointer_width = "64"), inline(always))]
     pub(super) fn row<S: Windowed>(self, work: RowWork<'_>, select: Option<Select<'_>>) {
@@ -234,7 +239,8 @@ impl Kernel {
     }
 }
 
-/// How near a disparity may be to the winner and still be of it: what costs little there does not make it ambiguous.
+/// How near a disparity may be to the winner and still be of it: what costs little there does not make it
+/// ambiguous.
 pub(super) const BESIDE: usize = 2;
 
 /// 256 lanes of ones, then 256 of zero: a slice of it masks the lanes before any one.
@@ -251,8 +257,8 @@ const MASKS: &[u8; 512] = &{
 
 /// What a kernel works on.
 ///
-/// Candidate `d` of column `x` is the right image's column `x - min_disparity - d`. Where that lies left of the image,
-/// kernels gather the cost against its first column and do not select it.
+/// Candidate `d` of column `x` is the right image's column `x - min_disparity - d`. Where that lies left of
+/// the image, kernels gather the cost against its first column and do not select it.
 pub(super) struct RowWork<'a> {
     /// Pixels in the row.
     pub width: usize,
@@ -264,14 +270,15 @@ pub(super) struct RowWork<'a> {
     pub enter: Option<&'a [u8]>,
     /// The row that leaves it above, once there is one.
     pub leave: Option<&'a [u8]>,
-    /// Matching costs summed over the window's height, where a word may stand: `stride` bytes for each of the
-    /// image's columns, and for each of [`OUTSIDE`] columns before and after that stay zero.
+    /// Matching costs summed over the window's height, where a word may stand: `stride` bytes for each of
+    /// the image's columns, and for each of [`OUTSIDE`] columns before and after that stay zero.
     pub columns: &'a mut [u8],
     /// Room to work in.
     pub scratch: &'a mut [u32],
 }
 
-/// Words that the tables of the kernel in bytes take, where codes have up to four bits, and four that rows are read beyond.
+/// Words that the tables of the kernel in bytes take, where codes have up to four bits, and four that rows
+/// are read beyond.
 pub const TABLE_WORDS: usize = 2 * 16 * 96 / size_of::<u32>() + 4;
 
 /// Columns of zero sums before the image's first and after its last, to stand for those outside.

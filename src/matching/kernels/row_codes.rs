@@ -13,8 +13,8 @@ pub(super) fn pixels(row: RowCodes<'_>, stride: usize) -> impl Iterator<Item = (
     row.left.iter().zip(row.right.windows(stride))
 }
 
-/// The row with more before its right codes: column x is compared with `stride` of them from x on. The first code is
-/// repeated for those that lie left of the image.
+/// The row with more before its right codes: column x is compared with `stride` of them from x on. The first
+/// code is repeated for those that lie left of the image.
 #[cfg_attr(stereopsis_vectors, inline(never))]
 #[cfg_attr(not(stereopsis_vectors), inline(always))]
 pub(super) fn with_more_before<'a>(

@@ -6,8 +6,9 @@ use super::{COLUMNS_OFF, OUTSIDE};
 
 /// What a kernel works with while a row lasts. No kernel finds anything in it from the row before.
 ///
-/// `2 W + 3 D` bytes: room for window sums of all disparities beside the codes of the right image's rows, in the order in
-/// which the kernel reads them, each with as many before as there are disparities. Beside that `TABLES` words.
+/// `2 W + 3 D` bytes: room for window sums of all disparities beside the codes of the right image's rows, in
+/// the order in which the kernel reads them, each with as many before as there are disparities. Beside that
+/// `TABLES` words.
 #[repr(C, align(8))]
 pub struct Scratch<const TABLES: usize, const W: usize, const D: usize> {
     tables: [u32; TABLES],
@@ -26,8 +27,8 @@ impl<const TABLES: usize, const W: usize, const D: usize> Scratch<TABLES, W, D> 
     pub fn words(&mut self) -> &mut [u32] {
         let bytes = size_of_val(&self.sums) + size_of_val(&self.before) + size_of_val(&self.codes);
         let words = TABLES + (bytes + size_of_val(&self.rest)) / size_of::<u32>();
-        // SAFETY: the fields are integers without a gap between them (`repr(C)`, the first a whole number of half-words),
-        // any of whose values is a word, and `words` does not reach beyond the last one.
+        // SAFETY: the fields are integers without a gap between them (`repr(C)`, the first a whole number of
+        // half-words), any of whose values is a word, and `words` does not reach beyond the last one.
         unsafe { core::slice::from_raw_parts_mut(core::ptr::from_mut(self).cast(), words) }
     }
 }
@@ -79,8 +80,8 @@ pub struct Room<const W: usize, const D: usize> {
 }
 
 impl Room<0, 0> {
-    /// Bytes a pixel: three features of the left row, four of the right one and the ends of a range; or the winner, what the
-    /// right column keeps, the length of its surface, and two to work on answers.
+    /// Bytes a pixel: three features of the left row, four of the right one and the ends of a range; or the
+    /// winner, what the right column keeps, the length of its surface, and two to work on answers.
     pub const PER_PIXEL: usize = if 3 + 4 + 2 > 4 + 2 + 2 + 2 { 3 + 4 + 2 } else { 4 + 2 + 2 + 2 };
     /// Bytes a disparity: what the right features have before them.
     pub const PER_DISPARITY: usize = 4 + 2;
@@ -88,8 +89,10 @@ impl Room<0, 0> {
 
 impl<const W: usize, const D: usize> Room<W, D> {
     /// All zero.
-    pub const ZERO: Self =
-        Self { pixels: [[0; W]; Room::<0, 0>::PER_PIXEL], disparities: [[0; D]; Room::<0, 0>::PER_DISPARITY] };
+    pub const ZERO: Self = Self {
+        pixels: [[0; W]; Room::<0, 0>::PER_PIXEL],
+        disparities: [[0; D]; Room::<0, 0>::PER_DISPARITY],
+    };
 
     /// Its first bytes, to read.
     pub fn bytes(&self) -> &[u8] {
@@ -99,8 +102,8 @@ impl<const W: usize, const D: usize> Room<W, D> {
     /// All of it as words, but for the last bytes if they are not a whole one.
     pub fn words(&mut self) -> &mut [u32] {
         let words = (size_of_val(&self.pixels) + size_of_val(&self.disparities)) / size_of::<u32>();
-        // SAFETY: the fields are bytes without a gap between them (`repr(C)`), any four of which are a word, the first
-        // stands where a word may, and `words` does not reach beyond the last one.
+        // SAFETY: the fields are bytes without a gap between them (`repr(C)`), any four of which are a word,
+        // the first stands where a word may, and `words` does not reach beyond the last one.
         unsafe { core::slice::from_raw_parts_mut(core::ptr::from_mut(self).cast(), words) }
     }
 }
@@ -109,7 +112,8 @@ impl<const W: usize, const D: usize> Room<W, D> {
 #[repr(C, align(8))]
 pub struct Aligned<T>(pub T);
 
-/// Bytes as words, as far as they are whole ones at a word's place; all of them if the slice begins at such a place.
+/// Bytes as words, as far as they are whole ones at a word's place; all of them if the slice begins at such a
+/// place.
 pub(super) fn words_mut(bytes: &mut [u8]) -> &mut [u32] {
     // SAFETY: every value of four bytes is a word and the other way round.
     unsafe { bytes.align_to_mut().1 }
@@ -117,7 +121,8 @@ pub(super) fn words_mut(bytes: &mut [u8]) -> &mut [u32] {
 
 /// Winners as bytes, four for each.
 pub(in crate::matching) fn bytes_of(winners: &mut [Winner]) -> &mut [u8] {
-    // SAFETY: a winner is a word (`repr(transparent)`), every value of which is four bytes and the other way round.
+    // SAFETY: a winner is a word (`repr(transparent)`), every value of which is four bytes and the other way
+    // round.
     unsafe { winners.align_to_mut().1 }
 }
 

@@ -8,22 +8,24 @@ use crate::units::PixelFlags;
 pub(in crate::matching) struct Select<'a> {
     /// Disparities searched.
     pub disparities: usize,
-    /// The best disparity of each pixel; left of the smallest disparity they mean nothing. Kernels in vectors leave them as
-    /// [`WinnerRows`].
+    /// The best disparity of each pixel; left of the smallest disparity they mean nothing. Kernels in
+    /// vectors leave them as [`WinnerRows`].
     pub winners: &'a mut [Winner],
     /// What is asked of the others.
     pub unique: Unique<'a>,
 }
 
-/// What is asked of the second best: the least cost of the candidates over two px beside the winner, `u8::MAX` where there
-/// is none. A kernel that is asked for nothing ([`Unique::is_asked`]) need not look for it; [`Unique::judge`] and
-/// [`Unique::starting_at`] look where it is asked for.
+/// What is asked of the second best: the least cost of the candidates over two px beside the winner,
+/// `u8::MAX` where there is none. A kernel that is asked for nothing ([`Unique::is_asked`]) need not look for
+/// it; [`Unique::judge`] and [`Unique::starting_at`] look where it is asked for.
 pub(in crate::matching) struct Unique<'a> {
     share: Share,
     /// The flags of pixels whose second best is too near:
-    /// [`Checks::uniqueness_percent`](crate::matching::Checks::uniqueness_percent). Empty where that is not asked.
+    /// [`Checks::uniqueness_percent`](crate::matching::Checks::uniqueness_percent). Empty where that is not
+    /// asked.
     flags: &'a mut [PixelFlags],
-    /// How much more the second best costs, for [`confidence`](crate::matching::confidence). Empty where that is not asked.
+    /// How much more the second best costs, for [`confidence`](crate::matching::confidence). Empty where
+    /// that is not asked.
     margins: &'a mut [u8],
 }
 
@@ -40,8 +42,8 @@ impl Share {
 }
 
 impl<'a> Unique<'a> {
-    /// Flags the pixels of a row, none of them where no `percent` is asked for, and gives their margins, as far as there are
-    /// places for them.
+    /// Flags the pixels of a row, none of them where no `percent` is asked for, and gives their margins, as
+    /// far as there are places for them.
     pub fn new(percent: Option<u8>, flags: &'a mut [PixelFlags], margins: &'a mut [u8]) -> Self {
         match percent {
             Some(percent) => Self { share: Share(100 - u32::from(percent.min(99))), flags, margins },
@@ -55,8 +57,8 @@ impl<'a> Unique<'a> {
         !self.flags.is_empty() | !self.margins.is_empty()
     }
 
-    /// Judges the pixel in column `x`: it is given the winner's cost, and what finds the second best, which is asked where it
-    /// is wanted.
+    /// Judges the pixel in column `x`: it is given the winner's cost, and what finds the second best, which
+    /// is asked where it is wanted.
     #[inline(always)]
     pub fn judge(&mut self, x: usize, cost: u8, second: impl FnOnce() -> u8) {
         if self.is_asked() {
@@ -99,8 +101,8 @@ pub(in crate::matching) struct Found {
     pub beside: (u8, u8),
 }
 
-/// The costs one below a winner and one above it, of those in so many lanes. At an end of the candidates it is the one that
-/// there is; beside an only candidate, itself.
+/// The costs one below a winner and one above it, of those in so many lanes. At an end of the candidates it
+/// is the one that there is; beside an only candidate, itself.
 #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
 #[inline(always)]
 pub(super) fn beside(lanes: usize, disparity: u8, candidates: usize, at: impl Fn(usize) -> u8) -> (u8, u8) {
@@ -114,8 +116,8 @@ pub(super) fn beside(lanes: usize, disparity: u8, candidates: usize, at: impl Fn
     }
 }
 
-/// The best disparity of a pixel, in a word: from the lowest byte up the cost below it, its own, the cost above it, and
-/// the disparity.
+/// The best disparity of a pixel, in a word: from the lowest byte up the cost below it, its own, the cost
+/// above it, and the disparity.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(transparent)]
 pub struct Winner(u32);
@@ -124,8 +126,8 @@ impl Winner {
     /// Where there is no candidate.
     pub const NONE: Self = Self(0);
 
-    /// A winner over the smallest disparity, with the costs one below and one above. Where one of these is no candidate,
-    /// the other stands for it; where none is, the winner does.
+    /// A winner over the smallest disparity, with the costs one below and one above. Where one of these is no
+    /// candidate, the other stands for it; where none is, the winner does.
     #[cfg(not(stereopsis_vectors))]
     #[inline(always)]
     pub fn new(cost: u8, disparity: u8, (below, above): (u8, u8)) -> Self {
@@ -153,8 +155,8 @@ impl Winner {
         Self::new(self.cost(), self.disparity() as u8, beside)
     }
 
-    /// Its disparity over the smallest one searched: of those with the least cost the smallest. Means nothing in columns
-    /// without a candidate, as all the rest.
+    /// Its disparity over the smallest one searched: of those with the least cost the smallest. Means nothing
+    /// in columns without a candidate, as all the rest.
     #[inline(always)]
     pub fn disparity(self) -> u32 {
         self.0 >> 24
@@ -181,7 +183,8 @@ impl Winner {
     }
 }
 
-/// Winners as the kernels in vectors leave them: a row of bytes for each part, one after the other in the same memory.
+/// Winners as the kernels in vectors leave them: a row of bytes for each part, one after the other in the
+/// same memory.
 #[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
 pub(in crate::matching) struct WinnerRows<'a> {
     pub below: &'a mut [u8],
@@ -195,7 +198,8 @@ impl<'a> WinnerRows<'a> {
     /// The rows from column `begin` on.
     pub fn of(winners: &'a mut [Winner], begin: usize) -> Self {
         let width = winners.len().max(1);
-        let mut rows = bytes_of(winners).chunks_exact_mut(width).map(|row| row.get_mut(begin..).unwrap_or_default());
+        let mut rows =
+            bytes_of(winners).chunks_exact_mut(width).map(|row| row.get_mut(begin..).unwrap_or_default());
         let mut row = || rows.next().unwrap_or_default();
         Self { below: row(), costs: row(), above: row(), disparities: row() }
     }

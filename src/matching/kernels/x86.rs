@@ -7,8 +7,8 @@ use crate::matching::window::Windowed;
 use core::arch::x86_64::__cpuid;
 
 cpufeatures::new!(avx2, "avx2");
-// Level 4 of x86-64, and what counts and moves bytes of 512 bits: Ice Lake, Zen 4 and what came after. Registers of 512 bits
-// slow older processors down.
+// Level 4 of x86-64, and what counts and moves bytes of 512 bits: Ice Lake, Zen 4 and what came after.
+// Registers of 512 bits slow older processors down.
 cpufeatures::new!(
     avx512,
     "avx2",
@@ -23,8 +23,8 @@ cpufeatures::new!(
 
 /// Whether the processor counts leading zeros; `cpufeatures` does not know that one.
 fn counts_zeros() -> bool {
-    // SAFETY: every processor of 64 bits has the instruction and this leaf. To compilers later than the oldest that is supported the
-    // call is safe without it.
+    // SAFETY: every processor of 64 bits has the instruction and this leaf. To compilers later than the
+    // oldest that is supported the call is safe without it.
     #[allow(unused_unsafe)]
     let leaf = unsafe { __cpuid(0x8000_0001) };
     leaf.ecx & 1 << 5 != 0
@@ -43,14 +43,16 @@ impl Avx2 {
     /// Does something that is compiled for AVX2 as far as it is inlined.
     #[inline(always)]
     pub(super) fn run(self, work: impl FnOnce()) {
-        // SAFETY: `self` is the proof that the processor has the one feature that the function is compiled for.
+        // SAFETY: `self` is the proof that the processor has the one feature that the function is compiled
+        // for.
         unsafe { run(work) }
     }
 
     /// A row whose columns are whole registers: of 32 lanes.
     #[inline]
     pub(super) fn row<S: Windowed>(self, work: RowWork<'_>, select: Option<Select<'_>>) {
-        // SAFETY: `self` is the proof that the processor has the one feature that the function is compiled for.
+        // SAFETY: `self` is the proof that the processor has the one feature that the function is compiled
+        // for.
         unsafe { row::<S>(work, select) }
     }
 }
@@ -71,15 +73,16 @@ fn row<S: Windowed>(work: RowWork<'_>, select: Option<Select<'_>>) {
     }
 }
 
-/// Each number of groups in a function of its own: the compiler's passes take far longer over one function of all of them.
+/// Each number of groups in a function of its own: the compiler's passes take far longer over one function of
+/// all of them.
 #[target_feature(enable = "avx2,lzcnt")]
 #[inline(never)]
 fn in_wide<S: Windowed, const CELLS: usize, const ALL: bool>(work: RowWork<'_>, select: Option<Select<'_>>) {
     windows::row::<S, Wide, CELLS, ALL>(work, select);
 }
 
-/// Proof that the processor has AVX-512, with operations on bytes, and that its registers are kept: only [`Avx512::detect`]
-/// makes one.
+/// Proof that the processor has AVX-512, with operations on bytes, and that its registers are kept: only
+/// [`Avx512::detect`] makes one.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Avx512(());
@@ -123,6 +126,9 @@ fn row_512<S: Windowed>(work: RowWork<'_>, select: Option<Select<'_>>) {
 /// [`in_wide`] in registers of AVX-512.
 #[target_feature(enable = "avx2,lzcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,avx512bitalg")]
 #[inline(never)]
-fn in_widest<S: Windowed, const CELLS: usize, const ALL: bool>(work: RowWork<'_>, select: Option<Select<'_>>) {
+fn in_widest<S: Windowed, const CELLS: usize, const ALL: bool>(
+    work: RowWork<'_>,
+    select: Option<Select<'_>>,
+) {
     windows::row::<S, Widest, CELLS, ALL>(work, select);
 }

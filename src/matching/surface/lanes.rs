@@ -9,7 +9,8 @@ pub(super) const LANES: usize = 16;
 /// How far the answers around a pixel reach, to each side.
 const REACH: usize = ROOM / 2;
 
-/// By how much the reciprocals of 3, 5, 7 and so on differ from the one before, the first from 0; modulo 2^16.
+/// By how much the reciprocals of 3, 5, 7 and so on differ from the one before, the first from 0; modulo
+/// 2^16.
 const CHANGES: [u16; REACH] = {
     let mut changes = [RECIPROCALS[1] as u16; REACH];
     let mut reach = 2;
@@ -48,11 +49,17 @@ pub(super) fn average(answers: &mut [Disparity], lengths: &mut [u16], room: &mut
     }
 }
 
-/// The averages of the answers in the middle. `RADIUS` is the radius where it is known when the crate is compiled, which
-/// lets the compiler unroll the pairs; 0 where it is not.
+/// The averages of the answers in the middle. `RADIUS` is the radius where it is known when the crate is
+/// compiled, which lets the compiler unroll the pairs; 0 where it is not.
 #[inline(always)]
-fn averaged<const RADIUS: usize>(around: &[u16; LANES + ROOM], step: Disparity, radius: usize) -> [u16; LANES] {
-    let at = |place: usize| around.get(place..).and_then(|a| a.first_chunk::<LANES>()).copied().unwrap_or([0; LANES]);
+fn averaged<const RADIUS: usize>(
+    around: &[u16; LANES + ROOM],
+    step: Disparity,
+    radius: usize,
+) -> [u16; LANES] {
+    let at = |place: usize| {
+        around.get(place..).and_then(|a| a.first_chunk::<LANES>()).copied().unwrap_or([0; LANES])
+    };
     let centre = at(REACH);
     let (mut left, mut right) = (centre, centre);
     // All ones as long as the pair belongs to the surface.
@@ -93,7 +100,9 @@ fn count(answers: &[u16], lengths: &mut [u16], step: Disparity) {
     // Of a group and the answer before it: which are not of one surface with the one before.
     let pairs = answers.windows(LANES + 1).step_by(LANES);
     for (x, group) in (1..).step_by(LANES).zip(pairs) {
-        let Some((before, here)) = group.first_chunk::<LANES>().zip(group.last_chunk::<LANES>()) else { break };
+        let Some((before, here)) = group.first_chunk::<LANES>().zip(group.last_chunk::<LANES>()) else {
+            break;
+        };
         let mut ends = 0;
         for i in 0..LANES {
             ends |= u32::from(!of_one(here[i], before[i], step)) << i;

@@ -1,9 +1,9 @@
 //! Answers of one surface along the row: how many there are, and their average.
 //!
-//! Two neighbours are of one surface when both are answers within [`Checks::surface_step`] of each other. The error of a
-//! sub-pixel answer changes from pixel to pixel faster than a surface does, so an answer becomes the average of those
-//! around it: as many to the left as to the right, so that a slanted surface keeps its own value, and none beyond the
-//! surface's ends, so that depth edges stay where they are.
+//! Two neighbours are of one surface when both are answers within [`Checks::surface_step`] of each other. The
+//! error of a sub-pixel answer changes from pixel to pixel faster than a surface does, so an answer becomes
+//! the average of those around it: as many to the left as to the right, so that a slanted surface keeps its
+//! own value, and none beyond the surface's ends, so that depth edges stay where they are.
 //!
 //! * `runs`: pixel by pixel, from the sums up to each.
 //! * `lanes`: pixels side by side, for the kernels in vectors; in assembly in `kernels/helium` and
@@ -24,8 +24,9 @@ use super::kernels::bytes as assembly;
 use super::kernels::helium as assembly;
 use crate::units::Disparity;
 
-/// Makes every answer of a row the average of up to [`Checks::smoothing_radius`] pairs around it, and gives for each how
-/// many its surface has along the row; in assembly these are bytes. `room` has [`ROOM`] numbers more than there are answers.
+/// Makes every answer of a row the average of up to [`Checks::smoothing_radius`] pairs around it, and gives
+/// for each how many its surface has along the row; in assembly these are bytes. `room` has [`ROOM`] numbers
+/// more than there are answers.
 pub(super) fn average(
     kernel: Kernel,
     answers: &mut [Disparity],
@@ -88,7 +89,13 @@ mod tests {
         for (answer, &raw) in answers.iter_mut().zip(row) {
             *answer = Disparity::from_raw(raw);
         }
-        average(Kernel::FIRST, &mut answers[..row.len()], &mut lengths[..row.len()], &mut room, &Checks::DEFAULT);
+        average(
+            Kernel::FIRST,
+            &mut answers[..row.len()],
+            &mut lengths[..row.len()],
+            &mut room,
+            &Checks::DEFAULT,
+        );
         (answers.map(Disparity::raw), lengths)
     }
 
@@ -97,9 +104,15 @@ mod tests {
     #[test]
     fn a_slope_keeps_its_values_and_a_step_its_place() {
         let slope = [320, 322, 324, 326, 328];
-        assert_eq!(averages(&slope), ([320, 322, 324, 326, 328, NONE, NONE, NONE, NONE], [5, 5, 5, 5, 5, 0, 0, 0, 0]));
+        assert_eq!(
+            averages(&slope),
+            ([320, 322, 324, 326, 328, NONE, NONE, NONE, NONE], [5, 5, 5, 5, 5, 0, 0, 0, 0])
+        );
         let step = [320, 320, 320, 640, 640];
-        assert_eq!(averages(&step), ([320, 320, 320, 640, 640, NONE, NONE, NONE, NONE], [3, 3, 3, 2, 2, 0, 0, 0, 0]));
+        assert_eq!(
+            averages(&step),
+            ([320, 320, 320, 640, 640, NONE, NONE, NONE, NONE], [3, 3, 3, 2, 2, 0, 0, 0, 0])
+        );
     }
 
     const NONE: u16 = u16::MAX;

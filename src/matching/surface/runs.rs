@@ -3,8 +3,8 @@
 use super::RECIPROCALS;
 use crate::units::Disparity;
 
-/// The pass to the right: for every answer how many of its surface there are up to it, and the sum of all raw disparities
-/// left of it, modulo 2^16.
+/// The pass to the right: for every answer how many of its surface there are up to it, and the sum of all raw
+/// disparities left of it, modulo 2^16.
 #[inline(never)]
 pub(super) fn count(answers: &[Disparity], lengths: &mut [u16], sums: &mut [u16], step: Disparity) {
     let step = u32::from(step.raw());
@@ -42,7 +42,8 @@ pub(super) fn average(answers: &mut [Disparity], lengths: &mut [u16], sums: &[u1
     }
 }
 
-/// The average of `2 reach + 1` answers whose raw sum is `sum` modulo 2^16, of which `centre` is the middle one.
+/// The average of `2 reach + 1` answers whose raw sum is `sum` modulo 2^16, of which `centre` is the middle
+/// one.
 #[inline(always)]
 fn averaged(centre: Disparity, sum: u16, reach: usize) -> Disparity {
     let count = 2 * reach as u16 + 1;
@@ -65,7 +66,10 @@ mod tests {
             for difference in -most..=most {
                 let exact = (2 * difference + count).div_euclid(2 * count);
                 let sum = (1000 * count + difference) as u16;
-                assert_eq!(averaged(Disparity::from_raw(1000), sum, reach as usize).raw(), (1000 + exact) as u16);
+                assert_eq!(
+                    averaged(Disparity::from_raw(1000), sum, reach as usize).raw(),
+                    (1000 + exact) as u16
+                );
             }
         }
     }

@@ -20,7 +20,8 @@ pub struct BundleConfig<T> {
     pub most_iterations: u32,
     /// A step that lowers the cost by less than this share of it is the last one.
     pub cost_tolerance: T,
-    /// A step that moves no centre and no point by more than this share of its distance from the origin, or of one, is the last.
+    /// A step that moves no centre and no point by more than this share of its distance from the origin, or
+    /// of one, is the last.
     pub step_tolerance: T,
     /// The damping to begin with, as a share of the diagonal.
     pub damping: T,
@@ -87,7 +88,10 @@ impl<T: Real> BundleConfig<T> {
 
     fn is_sound(&self) -> bool {
         let positive = |x: T| x > T::ZERO && x.is_finite();
-        positive(self.cost_tolerance) && positive(self.step_tolerance) && positive(self.damping) && self.loss.is_sound()
+        positive(self.cost_tolerance)
+            && positive(self.step_tolerance)
+            && positive(self.damping)
+            && self.loss.is_sound()
     }
 }
 
@@ -119,7 +123,8 @@ impl<T: Real> Adjustment<T> {
             return Err(BundleError::NotSeen(unseen(problem)));
         }
         let rounding = T::EPSILON * T::of(4.0);
-        let pixels = problem.sights.iter().fold(T::ZERO, |sum, sight| sum + sight.pixel.coords.norm_squared());
+        let pixels =
+            problem.sights.iter().fold(T::ZERO, |sum, sight| sum + sight.pixel.coords.norm_squared());
         let floor = T::of(0.5) * pixels * rounding * rounding;
         let damping = config.damping;
         Ok(Self {
@@ -136,7 +141,8 @@ impl<T: Real> Adjustment<T> {
 
     /// Tries a step, and takes it when it lowers the cost. Its work depends on the problem alone.
     ///
-    /// The damping follows Nielsen (1999; Madsen, Nielsen & Tingleff 2004, 3.2): with the ratio of gain to promise.
+    /// The damping follows Nielsen (1999; Madsen, Nielsen & Tingleff 2004, 3.2): with the ratio of gain to
+    /// promise.
     pub fn iterate<V: View<T, N>, const N: usize>(
         &mut self,
         problem: &mut Problem<'_, V, T>,
@@ -195,7 +201,11 @@ impl<T: Real> Adjustment<T> {
     fn back_off(&mut self) -> ControlFlow<Stop> {
         self.damping *= self.growth;
         self.growth *= T::of(2.0);
-        if self.damping > T::of(1e16) { ControlFlow::Break(Stop::NoDescent) } else { ControlFlow::Continue(()) }
+        if self.damping > T::of(1e16) {
+            ControlFlow::Break(Stop::NoDescent)
+        } else {
+            ControlFlow::Continue(())
+        }
     }
 
     /// What has come of it so far, if it stopped for this reason.

@@ -5,9 +5,9 @@ use super::view::{Slope, View, chained, moved};
 use crate::geometry::{Camera, Pose, ProjectionError, Real};
 use nalgebra::{Point2, Point3, Vector3};
 
-/// A calibrated camera that may be the left one of a rectified pair: eye 0 sees pixels, eye 1 sees `(d, 0)`, the disparity in px,
-/// `d = f b / Z`. What found a disparity began at the very pixel in the left picture, so that the two have errors of their own; two
-/// pixels would share one.
+/// A calibrated camera that may be the left one of a rectified pair: eye 0 sees pixels, eye 1 sees `(d, 0)`,
+/// the disparity in px, `d = f b / Z`. What found a disparity began at the very pixel in the left picture, so
+/// that the two have errors of their own; two pixels would share one.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct AlignedView<T: Real> {
     /// The camera.

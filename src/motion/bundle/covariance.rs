@@ -11,11 +11,12 @@ use super::workspace::Workspace;
 use crate::geometry::Real;
 use nalgebra::Matrix3;
 
-/// The covariances of a problem's views and points to first order, where every coordinate of a sight has the same standard
-/// deviation: blocks of `sigma^2 (J^T W J)^-1` (Hartley & Zisserman 2004, A6.4 and 18.1), in the frame and the scale that the
-/// gauge holds. What is held has none.
+/// The covariances of a problem's views and points to first order, where every coordinate of a sight has the
+/// same standard deviation: blocks of `sigma^2 (J^T W J)^-1` (Hartley & Zisserman 2004, A6.4 and 18.1), in
+/// the frame and the scale that the gauge holds. What is held has none.
 ///
-/// Each block costs the solution of the reduced equations once per row. In `f32` a view is good to some percent.
+/// Each block costs the solution of the reduced equations once per row. In `f32` a view is good to some
+/// percent.
 pub struct Covariances<'a, V, T: Real, const N: usize> {
     problem: Problem<'a, V, T>,
     reduced: Workspace<'a, V, T, N>,
@@ -31,7 +32,8 @@ pub struct Covariances<'a, V, T: Real, const N: usize> {
 pub enum CovarianceError {
     /// The problem is none.
     Problem(BundleError),
-    /// The views are not determined: the gauge leaves the frame or the scale open, or there are too few sights.
+    /// The views are not determined: the gauge leaves the frame or the scale open, or there are too few
+    /// sights.
     Undetermined,
     /// The sights of this point do not determine it.
     Point(usize),
@@ -52,7 +54,8 @@ impl core::fmt::Display for CovarianceError {
 impl core::error::Error for CovarianceError {}
 
 impl<'a, V: View<T, N>, T: Real, const N: usize> Covariances<'a, V, T, N> {
-    /// Factors the equations of the problem as it is, without damping. `sigma_px` is the standard deviation of a coordinate.
+    /// Factors the equations of the problem as it is, without damping. `sigma_px` is the standard deviation
+    /// of a coordinate.
     pub fn new(
         problem: Problem<'a, V, T>,
         mut workspace: Workspace<'a, V, T, N>,
@@ -61,7 +64,8 @@ impl<'a, V: View<T, N>, T: Real, const N: usize> Covariances<'a, V, T, N> {
         sigma_px: T,
     ) -> Result<Self, CovarianceError> {
         prepare(&problem, &gauge, &mut workspace).map_err(CovarianceError::Problem)?;
-        // What is left of a pivot that should be zero may, in `f32`, be more than one that counts: asked of the gauge first.
+        // What is left of a pivot that should be zero may, in `f32`, be more than one that counts: asked of
+        // the gauge first.
         let lengths = problem.sights.iter().any(|sight| sight.eye > 0);
         if !gauge.is_complete(lengths) {
             return Err(CovarianceError::Undetermined);
@@ -104,8 +108,8 @@ impl<'a, V: View<T, N>, T: Real, const N: usize> Covariances<'a, V, T, N> {
         reduced.backward();
     }
 
-    /// The covariance of a view's step, rows and columns in its order: turn in radians, centre in the scene's unit, lens.
-    /// Zeros for a view that there is not.
+    /// The covariance of a view's step, rows and columns in its order: turn in radians, centre in the scene's
+    /// unit, lens. Zeros for a view that there is not.
     pub fn view(&mut self, view: u16) -> [[T; N]; N] {
         let freedom = self.freedom(view);
         let (at, variance) = (usize::from(view), self.variance);
@@ -132,7 +136,8 @@ impl<'a, V: View<T, N>, T: Real, const N: usize> Covariances<'a, V, T, N> {
     ///
     /// `V^-1 + V^-1 W^T S^-1 W V^-1`.
     pub fn point(&mut self, point: usize) -> Result<Matrix3<T>, CovarianceError> {
-        let track = tracks(self.problem.sights).find(|track| track.first().is_some_and(|s| s.point as usize == point));
+        let track = tracks(self.problem.sights)
+            .find(|track| track.first().is_some_and(|s| s.point as usize == point));
         let (mut equations, mut used) = (PointEquations::ZERO, 0);
         for sight in track.ok_or(CovarianceError::Point(point))? {
             let Some(linear) = Linear::of(&self.problem, sight, &self.gauge, &self.loss) else { continue };

@@ -6,9 +6,10 @@ use crate::geometry::Real;
 /// One block. Of row i and column j it holds the transpose, so that every loop inside runs along memory.
 pub(super) type Block<T, const N: usize> = [[T; N]; N];
 
-/// The lower triangle of a matrix of blocks. Row i begins with the first view that has a point in common with view i or with one
-/// before it that reaches over i, and has every block from there to the diagonal: what Cholesky's method fills (George & Liu
-/// 1981, the envelope). A sequence in which views far apart have nothing in common takes its length times that reach.
+/// The lower triangle of a matrix of blocks. Row i begins with the first view that has a point in common with
+/// view i or with one before it that reaches over i, and has every block from there to the diagonal: what
+/// Cholesky's method fills (George & Liu 1981, the envelope). A sequence in which views far apart have
+/// nothing in common takes its length times that reach.
 pub(super) struct Envelope<'a, V, T, const N: usize> {
     pub slots: &'a mut [Slot<V, T, N>],
     pub blocks: &'a mut [Block<T, N>],
@@ -30,13 +31,18 @@ impl<V, T: Real, const N: usize> Envelope<'_, V, T, N> {
         self.blocks.get_mut(slot.offset + j.checked_sub(slot.first)?)
     }
 
-    /// `L L^T`, in place. Refuses a pivot that is not more than `least` of the diagonal that the slot remembers.
+    /// `L L^T`, in place. Refuses a pivot that is not more than `least` of the diagonal that the slot
+    /// remembers.
     pub fn factor(&mut self, least: T) -> Result<(), Indefinite> {
         for (i, slot) in self.slots.iter().enumerate() {
-            let Some((before, rest)) = self.blocks.split_at_mut_checked(slot.offset) else { return Err(Indefinite) };
+            let Some((before, rest)) = self.blocks.split_at_mut_checked(slot.offset) else {
+                return Err(Indefinite);
+            };
             let Some(own) = rest.get_mut(..i - slot.first.min(i) + 1) else { return Err(Indefinite) };
             for (at, other) in self.slots.iter().enumerate().take(i).skip(slot.first) {
-                let Some((done, block)) = own.split_at_mut_checked(at - slot.first) else { return Err(Indefinite) };
+                let Some((done, block)) = own.split_at_mut_checked(at - slot.first) else {
+                    return Err(Indefinite);
+                };
                 let Some(block) = block.first_mut() else { return Err(Indefinite) };
                 let theirs = row(before, other.offset, other.first, at);
                 let Some((diagonal, theirs)) = theirs.split_last() else { return Err(Indefinite) };
@@ -65,7 +71,9 @@ impl<V, T: Real, const N: usize> Envelope<'_, V, T, N> {
         for i in from..self.slots.len() {
             let Some((before, rest)) = self.slots.split_at_mut_checked(i) else { return };
             let Some(slot) = rest.first_mut() else { return };
-            let Some((diagonal, row)) = row(self.blocks, slot.offset, slot.first, i).split_last() else { return };
+            let Some((diagonal, row)) = row(self.blocks, slot.offset, slot.first, i).split_last() else {
+                return;
+            };
             let mut x = slot.step;
             for (block, other) in row.iter().zip(before.iter().skip(slot.first)) {
                 for (line, &y) in block.iter().zip(&other.step) {
@@ -89,7 +97,9 @@ impl<V, T: Real, const N: usize> Envelope<'_, V, T, N> {
         for i in (0..self.slots.len()).rev() {
             let Some((before, rest)) = self.slots.split_at_mut_checked(i) else { return };
             let Some(slot) = rest.first_mut() else { return };
-            let Some((diagonal, row)) = row(self.blocks, slot.offset, slot.first, i).split_last() else { return };
+            let Some((diagonal, row)) = row(self.blocks, slot.offset, slot.first, i).split_last() else {
+                return;
+            };
             let x = &mut slot.step;
             for k in (0..N).rev() {
                 for a in k + 1..N {
@@ -139,7 +149,11 @@ fn solve_rows<T: Real, const N: usize>(u: &Block<T, N>, b: &mut Block<T, N>) {
 }
 
 /// `B = U` with `U^T U = B`.
-fn cholesky<T: Real, const N: usize>(b: &mut Block<T, N>, sizes: &[T; N], least: T) -> Result<(), Indefinite> {
+fn cholesky<T: Real, const N: usize>(
+    b: &mut Block<T, N>,
+    sizes: &[T; N],
+    least: T,
+) -> Result<(), Indefinite> {
     for k in 0..N {
         let pivot = b[k][k];
         if !(pivot > sizes[k] * least && pivot > T::ZERO && pivot.is_finite()) {

@@ -10,9 +10,11 @@ use nalgebra::Vector3;
 pub enum Gauge {
     /// Nothing: the damping keeps steps short, and the scene drifts. There is no covariance.
     Free,
-    /// These views are held where they are. One fixes the frame, and with rigs of two cameras all; two fix the scale as well.
+    /// These views are held where they are. One fixes the frame, and with rigs of two cameras all; two fix
+    /// the scale as well.
     Views(Range<u16>),
-    /// The view `held` is held, and `other` keeps its distance from it: seven numbers, as many as the images leave open.
+    /// The view `held` is held, and `other` keeps its distance from it: seven numbers, as many as the images
+    /// leave open.
     Baseline {
         /// The view that is the frame.
         held: u16,
@@ -50,7 +52,12 @@ impl Gauge {
     }
 
     /// What view `at` may do, where `pose` is its own and `of` that of another.
-    pub(super) fn freedom<T: Real>(&self, at: u16, pose: &Pose<T>, of: impl FnOnce(u16) -> Pose<T>) -> Freedom<T> {
+    pub(super) fn freedom<T: Real>(
+        &self,
+        at: u16,
+        pose: &Pose<T>,
+        of: impl FnOnce(u16) -> Pose<T>,
+    ) -> Freedom<T> {
         match self {
             Self::Views(held) if held.contains(&at) => Freedom::None,
             Self::Baseline { held, .. } if *held == at => Freedom::None,
@@ -82,7 +89,8 @@ impl<T: Real> Freedom<T> {
         }
     }
 
-    /// Makes a view's block, empty in what is held, one that can be factored: the step there is zero. `size` is of the block.
+    /// Makes a view's block, empty in what is held, one that can be factored: the step there is zero. `size`
+    /// is of the block.
     pub(super) fn fill<const N: usize>(&self, block: &mut [[T; N]; N], size: T) {
         match self {
             Self::All => {}

@@ -2,13 +2,14 @@
 
 use crate::geometry::Real;
 
-/// The loss of a sight's squared residual s, px^2; the cost of a problem is half the sum of it over all sights.
+/// The loss of a sight's squared residual s, px^2; the cost of a problem is half the sum of it over all
+/// sights.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Loss<T> {
     /// s: least squares.
     Squares,
-    /// Huber's with this width w, px: s up to `w^2`, `2 w sqrt(s) - w^2` beyond it, so that what is far off pulls with a force
-    /// that does not grow (Huber 1964).
+    /// Huber's with this width w, px: s up to `w^2`, `2 w sqrt(s) - w^2` beyond it, so that what is far off
+    /// pulls with a force that does not grow (Huber 1964).
     Huber(T),
 }
 

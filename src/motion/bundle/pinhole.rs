@@ -17,7 +17,8 @@ pub struct CameraView<T: Real> {
 
 /// Two calibrated cameras that are mounted to each other: six numbers move them both.
 ///
-/// Eye 0 is the first camera; every other is the second. The distance between the two gives the scene its scale.
+/// Eye 0 is the first camera; every other is the second. The distance between the two gives the scene its
+/// scale.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct RigView<T: Real> {
     /// Both cameras.

@@ -45,7 +45,8 @@ pub enum BundleError {
     Unsorted(usize),
     /// A coordinate of this sight is infinite or not a number.
     NotFinite(usize),
-    /// What this sight shows cannot be seen there: the point is behind the camera, or it or the view is not finite.
+    /// What this sight shows cannot be seen there: the point is behind the camera, or it or the view is not
+    /// finite.
     NotSeen(usize),
     /// The gauge names a view that there is not, or one twice, or none.
     Gauge,
@@ -77,7 +78,9 @@ impl core::fmt::Display for BundleError {
             Self::Point(at) => write!(f, "observation {at} names a point that there is not"),
             Self::Unsorted(at) => write!(f, "observation {at} stands behind one of a later point"),
             Self::NotFinite(at) => write!(f, "a coordinate of observation {at} is not finite"),
-            Self::NotSeen(at) => write!(f, "the point of observation {at} is not before its camera, or not finite"),
+            Self::NotSeen(at) => {
+                write!(f, "the point of observation {at} is not before its camera, or not finite")
+            }
             Self::Gauge => f.write_str("the gauge must name views that there are"),
             Self::Config => f.write_str("tolerances, damping and the loss's width must be greater than zero"),
             Self::Workspace(need) => write!(
@@ -145,7 +148,8 @@ pub(super) fn prepare<V: View<T, N>, T: Real, const N: usize>(
         return Err(BundleError::Gauge);
     }
     let longest = tracks(problem.sights).map(<[_]>::len).max().unwrap_or(0).min(problem.views.len());
-    let mut need = Need { slots: problem.views.len(), terms: longest, points: problem.points.len(), blocks: 0 };
+    let mut need =
+        Need { slots: problem.views.len(), terms: longest, points: problem.points.len(), blocks: 0 };
     let short = workspace.terms.len() < need.terms || workspace.trial_points.len() < need.points;
     let slots = match workspace.slots.get_mut(..need.slots) {
         Some(slots) if !short => slots,

@@ -4,12 +4,13 @@ use super::view::{Slope, View, chained, moved};
 use crate::geometry::{Pose, ProjectionError, Real};
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
-/// A camera with square pixels, the origin of pixels at its centre, and a lens `q = 1 + k1 r^2 + k2 r^4` (Agarwal et al. 2010,
-/// "Bundle Adjustment in the Large"): `(u, v) = f q (x, y)`, `(x, y) = (X / Z, Y / Z)`. Nine numbers move.
+/// A camera with square pixels, the origin of pixels at its centre, and a lens `q = 1 + k1 r^2 + k2 r^4`
+/// (Agarwal et al. 2010, "Bundle Adjustment in the Large"): `(u, v) = f q (x, y)`, `(x, y) = (X / Z, Y / Z)`.
+/// Nine numbers move.
 ///
-/// X is right, Y down and Z forward, as everywhere here; there Y is up and Z backward, so that v and the second and third
-/// row of the rotation change their sign. As there, a point behind the camera is seen through its centre; none is in the
-/// plane of the centre itself.
+/// X is right, Y down and Z forward, as everywhere here; there Y is up and Z backward, so that v and the
+/// second and third row of the rotation change their sign. As there, a point behind the camera is seen
+/// through its centre; none is in the plane of the centre itself.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct RadialView<T: Real> {
     /// Where it stands: from the camera into the world.
@@ -52,7 +53,8 @@ impl<T: Real> View<T, 9> for RadialView<T> {
         let across = f * two * x * y * dq;
         let rows = [row(f * (q + two * x * x * dq), across), row(across, f * (q + two * y * y * dq))];
         let [(u, du), (v, dv)] = chained(rows, &own, &self.pose);
-        let with_lens = |[a, b, c, d, e, g]: [T; 6], x: T| [a, b, c, d, e, g, q * x, f * r2 * x, f * r2 * r2 * x];
+        let with_lens =
+            |[a, b, c, d, e, g]: [T; 6], x: T| [a, b, c, d, e, g, q * x, f * r2 * x, f * r2 * r2 * x];
         Ok(Slope {
             pixel: Point2::new(f * q * x, f * q * y),
             by_view: [with_lens(u, x), with_lens(v, y)],

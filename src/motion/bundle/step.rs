@@ -15,7 +15,8 @@ pub(super) struct Proposal<T> {
     pub cost: T,
     /// By how much the linear model says that the cost falls.
     pub predicted: T,
-    /// The largest part of the step beside the size of what it moves, squared: of a view's centre and of a point.
+    /// The largest part of the step beside the size of what it moves, squared: of a view's centre and of a
+    /// point.
     pub moved: T,
 }
 
@@ -30,9 +31,9 @@ pub(super) fn cost<V: View<T, N>, T: Real, const N: usize>(problem: &Problem<'_,
     sum * T::of(0.5)
 }
 
-/// Fills the reduced matrix and its right side, the points eliminated: for every point with the views i and j,
-/// `S_ij = U_ij - W_i V^-1 W_j^T` and `b_i = -(g_i - W_i V^-1 g_p)` (Triggs et al. 2000, 6.1; Brown 1958), where U and V have been
-/// damped. Hands each point's terms, `W_i L^-T` with `V = L L^T`, to `each`.
+/// Fills the reduced matrix and its right side, the points eliminated: for every point with the views i and
+/// j, `S_ij = U_ij - W_i V^-1 W_j^T` and `b_i = -(g_i - W_i V^-1 g_p)` (Triggs et al. 2000, 6.1; Brown 1958),
+/// where U and V have been damped. Hands each point's terms, `W_i L^-T` with `V = L L^T`, to `each`.
 pub(super) fn reduce<V: View<T, N>, T: Real, const N: usize>(
     problem: &Problem<'_, V, T>,
     workspace: &mut Workspace<'_, V, T, N>,
@@ -190,7 +191,8 @@ pub(super) fn propose<V: View<T, N>, T: Real, const N: usize>(
         *to = from + nalgebra::Vector3::new(x, y, z);
         moved = moved.max((*to - from).norm_squared() / (from.coords.norm_squared() + T::ONE));
         for sight in track {
-            let seen = reduced.slots.get(usize::from(sight.view)).map(|slot| slot.trial.project(sight.eye, to));
+            let seen =
+                reduced.slots.get(usize::from(sight.view)).map(|slot| slot.trial.project(sight.eye, to));
             cost += match seen {
                 Some(Ok(seen)) => loss.of((seen - sight.pixel).norm_squared()),
                 _ => T::ONE / T::ZERO,

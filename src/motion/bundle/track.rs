@@ -7,7 +7,8 @@ use super::view::View;
 use super::workspace::Term;
 use crate::geometry::Real;
 
-/// A sight's residual and its derivatives, weighted by the root of the loss's slope, and limited to what the gauge lets move.
+/// A sight's residual and its derivatives, weighted by the root of the loss's slope, and limited to what the
+/// gauge lets move.
 pub(super) struct Linear<T, const N: usize> {
     pub view: usize,
     pub residual: [T; 2],
@@ -16,7 +17,8 @@ pub(super) struct Linear<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Linear<T, N> {
-    /// `None` when the sight cannot be: [`prepare`](super::problem::prepare) and every step taken since made sure that it can.
+    /// `None` when the sight cannot be: [`prepare`](super::problem::prepare) and every step taken since made
+    /// sure that it can.
     #[inline(always)]
     pub fn of<V: View<T, N>>(
         problem: &Problem<'_, V, T>,
@@ -62,7 +64,8 @@ pub(super) struct PointFactor<T> {
     inverse: [T; 3],
 }
 
-/// What is added to a diagonal element, in units of the damping: the element itself, within what a number can bear (Marquardt 1963).
+/// What is added to a diagonal element, in units of the damping: the element itself, within what a number can
+/// bear (Marquardt 1963).
 pub(super) fn damper<T: Real>(diagonal: T) -> T {
     diagonal.max(T::of(1e-6)).min(T::of(1e30))
 }
@@ -146,10 +149,14 @@ impl<T: Real> PointFactor<T> {
     }
 }
 
-/// Adds a sight to the term of its view, among the first `used`; how many there are then. More than there is room for are
-/// not kept: [`prepare`](super::problem::prepare) made sure that there is.
+/// Adds a sight to the term of its view, among the first `used`; how many there are then. More than there is
+/// room for are not kept: [`prepare`](super::problem::prepare) made sure that there is.
 #[inline(always)]
-pub(super) fn add_term<T: Real, const N: usize>(terms: &mut [Term<T, N>], used: usize, sight: &Linear<T, N>) -> usize {
+pub(super) fn add_term<T: Real, const N: usize>(
+    terms: &mut [Term<T, N>],
+    used: usize,
+    sight: &Linear<T, N>,
+) -> usize {
     let known = terms.iter().take(used).position(|term| term.view == sight.view);
     let Some(term) = terms.get_mut(known.unwrap_or(used)) else { return used };
     if known.is_none() {

@@ -3,13 +3,13 @@
 use crate::geometry::{Pose, ProjectionError, Real, turn};
 use nalgebra::{Point2, Point3, Vector3};
 
-/// A place from which points are seen, with N numbers that may move: the first three turn it, the next three move its
-/// centre, what follows is the lens's.
+/// A place from which points are seen, with N numbers that may move: the first three turn it, the next three
+/// move its centre, what follows is the lens's.
 ///
-/// A step w of the first three makes the rotation `R C(w)`, a turn about the camera's own axes, where C is Cayley's map
-/// `C(w) = I + 2 / (1 + |w/2|^2) ([w/2]x + [w/2]x^2)`: a rotation for every w, without a sine, which turns by `|w|` radians to
-/// the second order (Hartley & Zisserman 2004, A4.3; Bauchau & Trainelli 2003). Of the next three, in the world's axes, the
-/// centre is moved.
+/// A step w of the first three makes the rotation `R C(w)`, a turn about the camera's own axes, where C is
+/// Cayley's map `C(w) = I + 2 / (1 + |w/2|^2) ([w/2]x + [w/2]x^2)`: a rotation for every w, without a sine,
+/// which turns by `|w|` radians to the second order (Hartley & Zisserman 2004, A4.3; Bauchau & Trainelli
+/// 2003). Of the next three, in the world's axes, the centre is moved.
 pub trait View<T: Real, const N: usize>: Copy {
     /// What fills a slot that is not in use: zeros.
     const EMPTY: Self;
@@ -20,7 +20,8 @@ pub trait View<T: Real, const N: usize>: Copy {
     /// The same elsewhere.
     fn with_pose(&self, pose: Pose<T>) -> Self;
 
-    /// Where a point of the world is seen by an eye (0, or 1 for the second camera of a rig), px, with the derivatives.
+    /// Where a point of the world is seen by an eye (0, or 1 for the second camera of a rig), px, with the
+    /// derivatives.
     fn slope(&self, eye: u16, world: &Point3<T>) -> Result<Slope<T, N>, ProjectionError>;
 
     /// Where a point of the world is seen, px.
@@ -47,10 +48,15 @@ pub(super) fn moved<T: Real>(pose: &Pose<T>, by: [T; 3], shift: [T; 3]) -> Pose<
     Pose::of_parts(turned, pose.translation() + Vector3::from(shift)).orthonormal()
 }
 
-/// The derivatives of a pixel by a step of the pose and by the point, of those by the point in the camera's frame.
+/// The derivatives of a pixel by a step of the pose and by the point, of those by the point in the camera's
+/// frame.
 ///
 /// `P' = C(w)^T R^T (P - t)`: by w it is `[P']x`, by the centre `-R^T`, by P `R^T`.
-pub(super) fn chained<T: Real>(slope: [Vector3<T>; 2], own: &Point3<T>, pose: &Pose<T>) -> [([T; 6], [T; 3]); 2] {
+pub(super) fn chained<T: Real>(
+    slope: [Vector3<T>; 2],
+    own: &Point3<T>,
+    pose: &Pose<T>,
+) -> [([T; 6], [T; 3]); 2] {
     slope.map(|row| {
         let turn = row.cross(&own.coords);
         let place = pose.rotation() * row;

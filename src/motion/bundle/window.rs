@@ -12,9 +12,11 @@ use crate::geometry::Real;
 use core::ops::ControlFlow;
 use nalgebra::{Point2, Point3};
 
-/// A problem of up to so many views, points and sights, and all that adjusting it takes, for a `static`: all zeros at first.
+/// A problem of up to so many views, points and sights, and all that adjusting it takes, for a `static`: all
+/// zeros at first.
 ///
-/// Views come first, then each point with its sights. With `CameraView<f32>`, 2 views, 128 points and 256 sights are 8 KB.
+/// Views come first, then each point with its sights. With `CameraView<f32>`, 2 views, 128 points and 256
+/// sights are 8 KB.
 ///
 /// ```
 /// use nalgebra::{Matrix3, Point2, Point3, Vector3};
@@ -143,7 +145,8 @@ where
         if usize::from(view) >= *views {
             return Err(WindowError::NoView);
         }
-        *self.sights.get_mut(*sights).ok_or(WindowError::Sights(*sights + 1))? = Sight { point, view, eye, pixel };
+        *self.sights.get_mut(*sights).ok_or(WindowError::Sights(*sights + 1))? =
+            Sight { point, view, eye, pixel };
         *sights += 1;
         Ok(())
     }

@@ -57,7 +57,9 @@ impl<T: Real, const N: usize> Odometry<T, N> {
             self.told_turn(if state == State::Still { told } else { turned.pose }, &turned, state, shown)
         } else {
             let wide = Problem { pairings: &self.pairings, baseline: T::ZERO };
-            if let Some(pose) = two_views::<T, N>(rig, &wide, &turned.pose, self.config.seed, &mut self.inliers) {
+            if let Some(pose) =
+                two_views::<T, N>(rig, &wide, &turned.pose, self.config.seed, &mut self.inliers)
+            {
                 return self.begun(rig, frame, &pose, sigma, shown);
             }
             shown
@@ -90,7 +92,8 @@ impl<T: Real, const N: usize> Odometry<T, N> {
             let aligned = track.template.align(&frame.left, &UPRIGHT, at, 3.0).filter(|a| a.likeness > ALIKE);
             let now = aligned.map_or(at, |a| [a.x_px, a.y_px]);
             track.now = Some(now);
-            let Ok(sight) = rig.camera.unproject(&Point2::new(T::of(now[0].into()), T::of(now[1].into()))) else {
+            let Ok(sight) = rig.camera.unproject(&Point2::new(T::of(now[0].into()), T::of(now[1].into())))
+            else {
                 continue;
             };
             // A corner is three times as far off as what its pixels say.
@@ -101,7 +104,14 @@ impl<T: Real, const N: usize> Odometry<T, N> {
     }
 
     /// The unit of length is the way to this frame.
-    fn begun(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>, pose: &Pose<T>, sigma: T, shown: Step<T>) -> Step<T> {
+    fn begun(
+        &mut self,
+        rig: &OdometryRig<T>,
+        frame: &Frame<'_>,
+        pose: &Pose<T>,
+        sigma: T,
+        shown: Step<T>,
+    ) -> Step<T> {
         for pairing in self.pairings.iter_mut() {
             let sight = Vector3::new(pairing.point.at.x, pairing.point.at.y, T::ONE);
             pairing.point = super::engine::unknown(sight, T::of(USUAL), sigma);
@@ -114,7 +124,8 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         for (number, track) in (0_u16..).zip(self.tracks.iter_mut()) {
             track.used = track.used && self.pairings.iter().any(|p| p.owner == number);
         }
-        let judged = |pairings: &[Pairing<T>]| Problem { pairings, baseline: T::ZERO }.solve(*pose, Free::Nothing);
+        let judged =
+            |pairings: &[Pairing<T>]| Problem { pairings, baseline: T::ZERO }.solve(*pose, Free::Nothing);
         let solved = judged(&self.pairings);
         let motion = self.told.inverse().then(pose);
         self.carry(rig, frame, &solved, &Matrix6::zeros());

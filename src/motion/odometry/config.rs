@@ -87,8 +87,9 @@ impl OdometryConfig {
         seed: 0,
     };
 
-    /// For pictures of so many columns: a sixth of them as far as motion goes that is not known, a twentieth where it is, a
-    /// quarter as the largest disparity, 0.3 px of noise, 7 px from point to point, 300 samples.
+    /// For pictures of so many columns: a sixth of them as far as motion goes that is not known, a twentieth
+    /// where it is, a quarter as the largest disparity, 0.3 px of noise, 7 px from point to point, 300
+    /// samples.
     pub const fn new(width: u16) -> Self {
         let wide = width as f32;
         Self {

@@ -15,8 +15,8 @@ use nalgebra::{Matrix3, Matrix6, Point3, Vector3};
 
 /// Follows up to `N` points from frame to frame, of one camera or of a rectified pair.
 ///
-/// [`StereoOdometry`](super::StereoOdometry) and [`MonocularOdometry`](super::MonocularOdometry) say in their types what the
-/// unit of length is.
+/// [`StereoOdometry`](super::StereoOdometry) and [`MonocularOdometry`](super::MonocularOdometry) say in their
+/// types what the unit of length is.
 #[derive(Debug)]
 pub struct Odometry<T: Real, const N: usize> {
     /// The rig, when there is one. An `Option` of it would not be all zeros.
@@ -50,7 +50,8 @@ const WRONG: u8 = 2;
 /// Templates are cut anew when they look so much larger or smaller, or so little like they did.
 const GROWN: [f32; 2] = [0.6, 1.6];
 const ALIKE: f32 = 0.9;
-/// The share of a step's covariance that each point's own is widened by: errors of the pose are in all of them.
+/// The share of a step's covariance that each point's own is widened by: errors of the pose are in all of
+/// them.
 const DOUBT: f64 = 1.0;
 
 impl<T: Real, const N: usize> Odometry<T, N> {
@@ -95,9 +96,9 @@ impl<T: Real, const N: usize> Odometry<T, N> {
 
     /// The next frame.
     ///
-    /// The work is bounded: N points times the features that are looked at, [`OdometryConfig::most_samples`] samples, some
-    /// twenty passes over the points, ten steps of alignment for each in each picture, and one search along the row for each
-    /// new one.
+    /// The work is bounded: N points times the features that are looked at, [`OdometryConfig::most_samples`]
+    /// samples, some twenty passes over the points, ten steps of alignment for each in each picture, and
+    /// one search along the row for each new one.
     pub fn step(&mut self, frame: &Frame<'_>) -> Result<Step<T>, OdometryError> {
         let rig = *self.rig.first().ok_or(OdometryError::NotStarted)?;
         let size = (frame.left.width(), frame.left.height());
@@ -186,14 +187,23 @@ impl<T: Real, const N: usize> Odometry<T, N> {
     }
 
     /// What was seen makes the points surer, and they move into the new camera's frame.
-    pub(super) fn carry(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>, solved: &Solved<T>, of_pose: &Matrix6<T>) {
+    pub(super) fn carry(
+        &mut self,
+        rig: &OdometryRig<T>,
+        frame: &Frame<'_>,
+        solved: &Solved<T>,
+        of_pose: &Matrix6<T>,
+    ) {
         let pose = &solved.pose;
         let most = T::of(WIDTH * WIDTH);
         let baseline = rig.baseline();
         for pairing in &self.pairings {
             let Some(track) = self.tracks.get_mut(usize::from(pairing.owner)) else { continue };
             let squared = Problem { pairings: &[], baseline }.squared(pose, pairing);
-            match squared.filter(|&d| d < most).and_then(|_| track.point.updated(pose, &pairing.sight, baseline)) {
+            match squared
+                .filter(|&d| d < most)
+                .and_then(|_| track.point.updated(pose, &pairing.sight, baseline))
+            {
                 Some(point) => {
                     track.point = point;
                     track.wrong = 0;
@@ -249,7 +259,9 @@ impl<T: Real, const N: usize> Odometry<T, N> {
     /// The median of the inverse depths that are known.
     pub(super) fn usual_depth(&self) -> Option<T> {
         // By halves of a range, for there is nowhere to sort.
-        let deep = || self.tracks.iter().filter(|track| track.used && track.is_deep(0.3)).map(|track| track.point.at.z);
+        let deep = || {
+            self.tracks.iter().filter(|track| track.used && track.is_deep(0.3)).map(|track| track.point.at.z)
+        };
         let count = deep().count();
         if count < 4 {
             return None;

@@ -37,8 +37,8 @@ impl<T: Real, const N: usize> Odometry<T, N> {
             self.recognise(rig, frame.features, &self.told.clone(), self.config.far_px);
             pose = self.resect(rig);
         }
-        // Where too few have a depth it is a turn at least; where too few are recognised by their descriptors, pixels may still be
-        // where they are expected.
+        // Where too few have a depth it is a turn at least; where too few are recognised by their
+        // descriptors, pixels may still be where they are expected.
         let mut pose = pose.or_else(|| self.turned(rig)).or(self.velocity.map(|_| predicted))?;
         self.pairings.clear();
         self.pair(rig, frame, &pose, true);
@@ -51,8 +51,15 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         Some(pose)
     }
 
-    /// Looks for each point's descriptor among the features near its predicted place, as far as it is the best of both.
-    pub(super) fn recognise(&mut self, rig: &OdometryRig<T>, features: &[Feature], pose: &Pose<T>, near_px: f32) {
+    /// Looks for each point's descriptor among the features near its predicted place, as far as it is the
+    /// best of both.
+    pub(super) fn recognise(
+        &mut self,
+        rig: &OdometryRig<T>,
+        features: &[Feature],
+        pose: &Pose<T>,
+        near_px: f32,
+    ) {
         let features = features.get(..N).unwrap_or(features);
         self.partners.fill((Descriptor::BITS + 1, 0));
         for (number, track) in (0_u16..).zip(self.tracks.iter_mut()) {
@@ -68,7 +75,8 @@ impl<T: Real, const N: usize> Odometry<T, N> {
                     continue;
                 }
                 let different = track.descriptor.distance(&feature.descriptor);
-                let apart = (feature.x_px - at[0]).abs() >= APART_PX || (feature.y_px - at[1]).abs() >= APART_PX;
+                let apart =
+                    (feature.x_px - at[0]).abs() >= APART_PX || (feature.y_px - at[1]).abs() >= APART_PX;
                 if different < best {
                     if apart && best < second {
                         second = best;
@@ -106,7 +114,9 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         for track in self.tracks.iter().filter(|track| track.used && track.is_deep(0.3)) {
             let Some([x, y]) = track.now else { continue };
             let (a, r) = (track.point.at, T::ONE / track.point.at.z);
-            let Ok(pixel) = rig.camera.undistort(&Point2::new(T::of(x.into()), T::of(y.into()))) else { continue };
+            let Ok(pixel) = rig.camera.undistort(&Point2::new(T::of(x.into()), T::of(y.into()))) else {
+                continue;
+            };
             let _ = self.landmarks.push(Landmark { world: Point3::new(a.x * r, a.y * r, r), pixel });
         }
         let config = RobustConfig {
@@ -124,16 +134,19 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         let sigma = T::of(COARSE_PX) / rig.focal();
         for (owner, track) in (0_u16..).zip(self.tracks.iter()) {
             let Some([x, y]) = track.now.filter(|_| track.used) else { continue };
-            let Ok(at) = rig.camera.unproject(&Point2::new(T::of(x.into()), T::of(y.into()))) else { continue };
+            let Ok(at) = rig.camera.unproject(&Point2::new(T::of(x.into()), T::of(y.into()))) else {
+                continue;
+            };
             let sight = Sight { at, in_right: false, sigma };
             let _ = self.pairings.push(Pairing { point: track.point, sight, owner });
         }
-        let found = Problem { pairings: &self.pairings, baseline: rig.baseline() }.solve(self.told, Free::Turn);
+        let found =
+            Problem { pairings: &self.pairings, baseline: rig.baseline() }.solve(self.told, Free::Turn);
         (found.kept >= 2 * FEWEST && 2 * found.kept >= self.pairings.len()).then_some(found.pose)
     }
 
-    /// Finds points by their pixels around where the pose puts them, and in the right picture: those that were recognised, or the
-    /// others.
+    /// Finds points by their pixels around where the pose puts them, and in the right picture: those that
+    /// were recognised, or the others.
     fn pair(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>, pose: &Pose<T>, recognised: bool) {
         let sigma = T::of(self.config.sigma_px.into()) / rig.focal();
         for (owner, track) in (0_u16..).zip(self.tracks.iter_mut()) {
@@ -141,12 +154,17 @@ impl<T: Real, const N: usize> Odometry<T, N> {
                 continue;
             }
             let recognised = track.now.take();
-            let (Some(place), Some(moved)) = (expected(track, rig, pose), track.point.moved(pose)) else { continue };
+            let (Some(place), Some(moved)) = (expected(track, rig, pose), track.point.moved(pose)) else {
+                continue;
+            };
             let of = |x: T| x.to_f64() as f32;
             let spread = moved.by_point * track.point.covariance * moved.by_point.transpose();
             let deviation = of((spread.m11.max(spread.m22)).sqrt() * rig.focal());
             let start = match recognised {
-                Some(at) if (at[0] - place[0]).abs().max((at[1] - place[1]).abs()) < ALIGN_PX + 3.0 * deviation => {
+                Some(at)
+                    if (at[0] - place[0]).abs().max((at[1] - place[1]).abs())
+                        < ALIGN_PX + 3.0 * deviation =>
+                {
                     track.descriptor = track.fresh;
                     at
                 }
@@ -167,7 +185,8 @@ impl<T: Real, const N: usize> Odometry<T, N> {
             let expected = rig.baseline() * moved.at.z * rig.focal();
             let disparity = disparity(rig, frame, now, of(expected));
             let third = disparity.map_or(T::ZERO, |d| T::of(d.into()) / rig.focal());
-            let sight = Sight { at: Vector3::new(sight.x, sight.y, third), in_right: disparity.is_some(), sigma };
+            let sight =
+                Sight { at: Vector3::new(sight.x, sight.y, third), in_right: disparity.is_some(), sigma };
             let _ = self.pairings.push(Pairing { point: track.point, sight, owner });
         }
     }

@@ -5,8 +5,9 @@ use crate::geometry::linear::columns3;
 use crate::geometry::{Pose, Real, skew};
 use nalgebra::{ArrayStorage, Matrix3, Matrix6, SMatrix, Vector3};
 
-/// What a point is seen at: x and y of the sight `(x, y, 1)`, and its disparity `x - x'` over the focal length, if there is a
-/// right camera. A disparity is found from the very place in the left picture, and so has an error of its own.
+/// What a point is seen at: x and y of the sight `(x, y, 1)`, and its disparity `x - x'` over the focal
+/// length, if there is a right camera. A disparity is found from the very place in the left picture, and so
+/// has an error of its own.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Sight<T: Real> {
     pub at: Vector3<T>,
@@ -23,8 +24,9 @@ impl<T: Real> Sight<T> {
     }
 }
 
-/// A point as `(x, y, r) = (X / Z, Y / Z, 1 / Z)`, which is finite for points at infinity, and in which what both cameras of a
-/// rectified pair see is linear (Civera, Davison & Montiel 2008 have the same with a point of reference); with its covariance.
+/// A point as `(x, y, r) = (X / Z, Y / Z, 1 / Z)`, which is finite for points at infinity, and in which what
+/// both cameras of a rectified pair see is linear (Civera, Davison & Montiel 2008 have the same with a point
+/// of reference); with its covariance.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct InversePoint<T: Real> {
     pub at: Vector3<T>,
@@ -48,10 +50,12 @@ const LEAST_FORWARD: f64 = 0.125;
 impl<T: Real> InversePoint<T> {
     /// The point as a camera sees it that stands at `pose` (P = R P' + t); `None` behind it.
     ///
-    /// `h = R^T ((x, y, 1) - r t)` is the point over its old depth: `x' = h_x / h_z`, `y' = h_y / h_z`, `r' = r / h_z`. The
-    /// camera's turn w and step d are `P' = exp(-[w]x) P' - d`, so that `dh/dw = [h]x` and `dh/dd = -r`.
+    /// `h = R^T ((x, y, 1) - r t)` is the point over its old depth: `x' = h_x / h_z`, `y' = h_y / h_z`, `r' =
+    /// r / h_z`. The camera's turn w and step d are `P' = exp(-[w]x) P' - d`, so that `dh/dw = [h]x` and
+    /// `dh/dd = -r`.
     ///
-    /// Where the depth is no more than noise the step has no slope: squares of noise would look like knowledge of it.
+    /// Where the depth is no more than noise the step has no slope: squares of noise would look like
+    /// knowledge of it.
     pub fn moved(&self, pose: &Pose<T>) -> Option<Moved<T>> {
         let (x, y, r) = (self.at.x, self.at.y, self.at.z);
         let back = pose.rotation().transpose();
@@ -64,13 +68,15 @@ impl<T: Real> InversePoint<T> {
         let at = Vector3::new(h.x * by, h.y * by, r * by);
         let o = T::ZERO;
         let by_h = Matrix3::new(by, o, -at.x * by, o, by, -at.y * by, o, o, -at.z * by);
-        let columns =
-            Matrix3::new(back.m11, back.m12, -step.x, back.m21, back.m22, -step.y, back.m31, back.m32, -step.z);
+        let columns = Matrix3::new(
+            back.m11, back.m12, -step.x, back.m21, back.m22, -step.y, back.m31, back.m32, -step.z,
+        );
         let mut by_point = by_h * columns;
         by_point.m33 += by;
         let step = if self.is_near() { by_h * -r } else { Matrix3::zeros() };
         let ([a, b, c], [d, e, f]) = (columns3(&(by_h * skew(&h))), columns3(&step));
-        let by_pose = SMatrix::<T, 3, 6>::from_array_storage(ArrayStorage([a, b, c, d, e, f].map(|v| [v.x, v.y, v.z])));
+        let by_pose =
+            SMatrix::<T, 3, 6>::from_array_storage(ArrayStorage([a, b, c, d, e, f].map(|v| [v.x, v.y, v.z])));
         Some(Moved { at, by_point, by_pose })
     }
 
@@ -88,8 +94,9 @@ impl<T: Real> InversePoint<T> {
         Some(Self { at: moved.at, covariance })
     }
 
-    /// The point after it was seen from a camera whose pose is taken for exact: the likeliest one by Gauss and Newton's
-    /// method on both what was known and what is seen (an iterated Kalman update; Bell & Cathey 1993), three steps.
+    /// The point after it was seen from a camera whose pose is taken for exact: the likeliest one by Gauss
+    /// and Newton's method on both what was known and what is seen (an iterated Kalman update; Bell &
+    /// Cathey 1993), three steps.
     pub fn updated(&self, pose: &Pose<T>, sight: &Sight<T>, baseline: T) -> Option<Self> {
         let mut at = self.at;
         let mut covariance = self.covariance;
@@ -150,7 +157,8 @@ mod tests {
 
     #[test]
     fn two_that_are_as_sure_meet_in_the_middle() {
-        // The point and the sight have a variance of 4e-4: half the way, half the variance, and 4e-8 for rounding.
+        // The point and the sight have a variance of 4e-4: half the way, half the variance, and 4e-8 for
+        // rounding.
         let sight = Sight { at: Vector3::new(0.27, 0.0, 0.0), in_right: false, sigma: 0.02 };
         let point = point([4e-4, 4e-4, 1e-4]).updated(&Pose::identity(), &sight, 0.0).expect("numbers");
         near(point.at.x, 0.26);

@@ -3,15 +3,18 @@
 use super::config::OdometryRig;
 use super::seen::SeenPoint;
 use crate::geometry::{Pose, Real};
-use crate::motion::bundle::{AlignedView, BundleConfig, BundleError, BundleReport, Gauge, Loss, View, Window};
+use crate::motion::bundle::{
+    AlignedView, BundleConfig, BundleError, BundleReport, Gauge, Loss, View, Window,
+};
 use heapless::Vec;
 use nalgebra::{Point2, Point3};
 
 /// The last `VIEWS` views at most, with up to `POINTS` of the points that they saw.
 ///
-/// An odometry says of each frame what is known when it comes. What comes after it says more: here the last views and points are
-/// adjusted together with each new one ([`bundle`](crate::motion::bundle)), and [`Self::poses`] are better than the steps
-/// that were told. It stands beside the odometry, and who does not want it does not pay for it.
+/// An odometry says of each frame what is known when it comes. What comes after it says more: here the last
+/// views and points are adjusted together with each new one ([`bundle`](crate::motion::bundle)), and
+/// [`Self::poses`] are better than the steps that were told. It stands beside the odometry, and who does not
+/// want it does not pay for it.
 #[derive(Debug)]
 pub struct Refinement<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize> {
     config: RefinementConfig<T>,
@@ -80,7 +83,9 @@ impl<T: Real, const VIEWS: usize> Row<T, VIEWS> {
     }
 }
 
-impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize> Refinement<T, VIEWS, POINTS, SIGHTS> {
+impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize>
+    Refinement<T, VIEWS, POINTS, SIGHTS>
+{
     /// Empty: waits for [`Self::start`].
     pub const fn new() -> Self {
         const { assert!(VIEWS >= 2 && VIEWS <= 16, "2 to 16 views are adjusted together") };
@@ -103,7 +108,11 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize> Refi
     /// Begins with a rig, without a view.
     pub fn start(&mut self, rig: &OdometryRig<T>, config: RefinementConfig<T>) {
         self.view.clear();
-        let _ = self.view.push(AlignedView { camera: rig.camera, baseline: rig.baseline(), pose: Pose::identity() });
+        let _ = self.view.push(AlignedView {
+            camera: rig.camera,
+            baseline: rig.baseline(),
+            pose: Pose::identity(),
+        });
         self.config = config;
         self.clear();
     }
@@ -119,8 +128,8 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize> Refi
         &self.poses
     }
 
-    /// Takes the next view, which stands at about `motion` from the last one, and adjusts; `None` of a first view, or of one that
-    /// has fewer than 16 points in common with those before it and so begins anew.
+    /// Takes the next view, which stands at about `motion` from the last one, and adjusts; `None` of a first
+    /// view, or of one that has fewer than 16 points in common with those before it and so begins anew.
     ///
     /// The work is bounded: `POINTS` times what is seen, and the iterations.
     pub fn push(
@@ -214,8 +223,9 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize> Refi
                 let expected = rig.with_pose(*pose).project(eye, &row.point);
                 expected.is_ok_and(|expected| (expected - sight).norm_squared() < most)
             };
-            let good =
-                |view: usize, pose: &Pose<T>, eye: u16| row.sight(view, eye).filter(|sight| near(pose, eye, sight));
+            let good = |view: usize, pose: &Pose<T>, eye: u16| {
+                row.sight(view, eye).filter(|sight| near(pose, eye, sight))
+            };
             let views = || self.poses.iter().enumerate();
             // Two sights without a disparity agree with nearly any motion, also with one of the point's own.
             let enough = if row.deep != 0 { 2 } else { self.poses.len().min(3) };

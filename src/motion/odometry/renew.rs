@@ -27,8 +27,9 @@ impl<T: Real, const N: usize> Odometry<T, N> {
             let Some(feature) = features.get(at) else { break };
             let place = [feature.x_px, feature.y_px];
             let spacing = self.config.spacing_px;
-            let near =
-                |t: &Track<T>| (t.pixel[0] - place[0]).abs() < spacing && (t.pixel[1] - place[1]).abs() < spacing;
+            let near = |t: &Track<T>| {
+                (t.pixel[0] - place[0]).abs() < spacing && (t.pixel[1] - place[1]).abs() < spacing
+            };
             if self.tracks.iter().any(|track| track.used && near(track)) {
                 continue;
             }

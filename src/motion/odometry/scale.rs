@@ -15,12 +15,14 @@ pub struct StereoOdometry<T: Real, const N: usize>(Odometry<T, N>);
 #[derive(Debug, Default)]
 pub struct MonocularOdometry<T: Real, const N: usize>(Odometry<T, N>);
 
-/// What has lengths whose unit is not known: as a whole it may be any times as large. Only a length from elsewhere says.
+/// What has lengths whose unit is not known: as a whole it may be any times as large. Only a length from
+/// elsewhere says.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Unscaled<V>(V);
 
 impl<V> Unscaled<V> {
-    /// The value in units of the first baseline: the way from the first frame to that with which the unit begins.
+    /// The value in units of the first baseline: the way from the first frame to that with which the unit
+    /// begins.
     pub const fn in_first_baselines(&self) -> &V {
         &self.0
     }

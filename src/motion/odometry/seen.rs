@@ -8,11 +8,13 @@ use nalgebra::{Point2, Vector3};
 /// A point that the last frame saw.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct SeenPoint<T: Real> {
-    /// Its place in the odometry's memory, and how often that was given to a point before: together they name it.
+    /// Its place in the odometry's memory, and how often that was given to a point before: together they
+    /// name it.
     pub name: (u16, u16),
     /// Where it is seen, px.
     pub pixel: Point2<T>,
-    /// Its disparity u - u' without the offset of the principal points, px, where the right picture shows it.
+    /// Its disparity u - u' without the offset of the principal points, px, where the right picture shows
+    /// it.
     pub disparity_px: Option<T>,
     /// `(X / Z, Y / Z, 1 / Z)` in this camera's frame, after all that was seen of it.
     pub inverse: Vector3<T>,
@@ -29,15 +31,14 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         };
         let is_seen = |track: &&Track<T>| track.used && track.missed == 0;
         let followed = self.pairings.iter().filter_map(move |pairing| {
-            let track = self.tracks.get(usize::from(pairing.owner)).filter(is_seen).filter(|track| track.seen > 1)?;
+            let track =
+                self.tracks.get(usize::from(pairing.owner)).filter(is_seen).filter(|track| track.seen > 1)?;
             Some(point(pairing.owner, track, pairing.sight.in_right.then_some(pairing.sight.at.z)))
         });
         let fresh = (0_u16..).zip(&self.tracks).filter(move |(_, track)| is_seen(track) && track.seen == 1);
         // Their depths are what the right picture says.
-        followed.chain(
-            fresh.map(move |(slot, track)| {
-                point(slot, track, (baseline > T::ZERO).then(|| track.point.at.z * baseline))
-            }),
-        )
+        followed.chain(fresh.map(move |(slot, track)| {
+            point(slot, track, (baseline > T::ZERO).then(|| track.point.at.z * baseline))
+        }))
     }
 }

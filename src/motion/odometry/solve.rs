@@ -34,7 +34,8 @@ pub(super) struct Solved<T: Real> {
     pub information: [[T; 6]; 6],
     /// The sum of the robust loss `w^2 / 3 (1 - (1 - d^2 / w^2)^3)`, which is d^2 for small distances d.
     pub cost: T,
-    /// Pairings within the loss's width, the numbers in their sights, and the sum of their squared distances.
+    /// Pairings within the loss's width, the numbers in their sights, and the sum of their squared
+    /// distances.
     pub kept: usize,
     pub numbers: usize,
     pub squares: T,
@@ -53,8 +54,9 @@ pub(super) struct Problem<'a, T: Real> {
 }
 
 impl<T: Real> Problem<'_, T> {
-    /// The likeliest pose near a start: each pairing's distance is in units of the sight's noise and the point's own
-    /// uncertainty together, which to first order is as if points and pose were found together.
+    /// The likeliest pose near a start: each pairing's distance is in units of the sight's noise and the
+    /// point's own uncertainty together, which to first order is as if points and pose were found
+    /// together.
     pub fn solve(&self, start: Pose<T>, free: Free) -> Solved<T> {
         let mut best = self.judge(start, T::of(WIDTHS[0]));
         if free != Free::Nothing {
@@ -113,7 +115,8 @@ impl<T: Real> Problem<'_, T> {
 
     fn normal(&self, pose: Pose<T>, width: T) -> (Solved<T>, [T; 6]) {
         let none = [[T::ZERO; 6]; 6];
-        let mut sum = Solved { pose, information: none, cost: T::ZERO, kept: 0, numbers: 0, squares: T::ZERO };
+        let mut sum =
+            Solved { pose, information: none, cost: T::ZERO, kept: 0, numbers: 0, squares: T::ZERO };
         let mut slope = [T::ZERO; 6];
         let width_squared = width * width;
         let most = width_squared * T::of(1.0 / 3.0);
@@ -185,7 +188,11 @@ mod tests {
             let point = InversePoint { at, covariance: Matrix3::identity() * 1e-12 };
             let there = point.moved(pose).map_or(at, |moved| moved.at);
             let off = if n < wrong { 0.2 } else { 0.0 };
-            let sight = Sight { at: Vector3::new(there.x + off, there.y, 0.5 * there.z), in_right: true, sigma: 1e-3 };
+            let sight = Sight {
+                at: Vector3::new(there.x + off, there.y, 0.5 * there.z),
+                in_right: true,
+                sigma: 1e-3,
+            };
             Pairing { point, sight, owner: 0 }
         })
     }

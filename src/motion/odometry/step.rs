@@ -10,26 +10,27 @@ use nalgebra::Matrix6;
 pub enum State {
     /// The first frame: the others stand beside it.
     First,
-    /// Of one camera: there is no unit of length yet, for nothing but turns could be told from what was seen so far. The motion
-    /// is what is known of the turn; the next frame that is [`State::Tracked`] has the whole motion since.
+    /// Of one camera: there is no unit of length yet, for nothing but turns could be told from what was seen
+    /// so far. The motion is what is known of the turn; the next frame that is [`State::Tracked`] has the
+    /// whole motion since.
     Waiting,
     /// The pose is measured.
     Tracked,
     /// The pictures are the same to their noise: the motion is none.
     Still,
-    /// The turn is measured. There may be a step, which cannot be told from none: of one camera it has no direction. The
-    /// motion has none.
+    /// The turn is measured. There may be a step, which cannot be told from none: of one camera it has no
+    /// direction. The motion has none.
     Turned,
-    /// The turn is measured. What is seen is too far away to tell a step by, or there is too little of it: the step is not
-    /// known, and the motion has none.
+    /// The turn is measured. What is seen is too far away to tell a step by, or there is too little of it:
+    /// the step is not known, and the motion has none.
     StepUnknown,
-    /// Too little was found again: the motion is not known, and is none. The next frame that is [`State::Found`] has the whole
-    /// motion since.
+    /// Too little was found again: the motion is not known, and is none. The next frame that is
+    /// [`State::Found`] has the whole motion since.
     Lost,
     /// Found again, by points that were known before.
     Found,
-    /// Begun anew, for what was known before did not come back: the motion since the last pose that was known is not known,
-    /// and is none.
+    /// Begun anew, for what was known before did not come back: the motion since the last pose that was known
+    /// is not known, and is none.
     Restarted,
 }
 
@@ -45,8 +46,8 @@ impl State {
 pub struct Step<T: Real> {
     /// Carries a point of this camera into the one before, `P = R P' + t`: t is where this one stands.
     pub motion: Pose<T>,
-    /// The covariance of the motion: a turn (radians) and a step (the unit of the motion), both along this camera's axes,
-    /// `P = R exp([w]x) (P' + d) + t`. Very large where nothing is known.
+    /// The covariance of the motion: a turn (radians) and a step (the unit of the motion), both along this
+    /// camera's axes, `P = R exp([w]x) (P' + d) + t`. Very large where nothing is known.
     pub covariance: Matrix6<T>,
     /// What is known.
     pub state: State,
@@ -56,7 +57,8 @@ pub struct Step<T: Real> {
     pub found: usize,
     /// Those that agree with the pose.
     pub inliers: usize,
-    /// The root mean square of what is left of their sights, in units of what was expected: 1 where the noise is as configured.
+    /// The root mean square of what is left of their sights, in units of what was expected: 1 where the
+    /// noise is as configured.
     pub residual: T,
 }
 

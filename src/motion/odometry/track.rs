@@ -41,7 +41,10 @@ impl<T: Real> Track<T> {
     pub const EMPTY: Self = {
         let o = T::ZERO;
         Self {
-            point: InversePoint { at: Vector3::new(o, o, o), covariance: Matrix3::new(o, o, o, o, o, o, o, o, o) },
+            point: InversePoint {
+                at: Vector3::new(o, o, o),
+                covariance: Matrix3::new(o, o, o, o, o, o, o, o, o),
+            },
             template: Template::NONE,
             warp: [[0.0; 2]; 2],
             descriptor: Descriptor::NONE,

@@ -16,8 +16,8 @@ pub(super) enum Verdict<T: Real> {
     Known(Solved<T>, State),
 }
 
-/// By how much, in squared deviations, a motion of six numbers, and a step of three, has to explain the sights better than none
-/// does: with noise alone it is more once in 10 000 times.
+/// By how much, in squared deviations, a motion of six numbers, and a step of three, has to explain the
+/// sights better than none does: with noise alone it is more once in 10 000 times.
 const SIX: f64 = 28.0;
 const THREE: f64 = 21.0;
 /// The share of what was found that has to agree.

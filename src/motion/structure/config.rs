@@ -34,8 +34,8 @@ pub enum PairFault {
     NoAgreement,
     /// The camera has not moved: what agrees is where it was, within the threshold.
     NoMotion,
-    /// The camera has turned about its centre, or all that both see is far away beside the motion: a turn explains what
-    /// agrees.
+    /// The camera has turned about its centre, or all that both see is far away beside the motion: a turn
+    /// explains what agrees.
     PureRotation,
     /// What both see is on a plane, and two motions explain it.
     Plane,

@@ -29,10 +29,11 @@ pub struct StructureReport<T> {
     pub bundle: BundleReport<T>,
 }
 
-/// Finds views and points from sights of which some are wrong (sorted by point, px with the lens's distortion).
+/// Finds views and points from sights of which some are wrong (sorted by point, px with the lens's
+/// distortion).
 ///
-/// Bounded: robust estimates for all pairs of views, then at most one resection, one triangulation of every point and one
-/// adjustment for every view.
+/// Bounded: robust estimates for all pairs of views, then at most one resection, one triangulation of every
+/// point and one adjustment for every view.
 pub fn structure<'a, T: Real>(
     mut memory: SceneMemory<'a, T>,
     sights: &[Sight<T>],
@@ -139,9 +140,12 @@ fn settle<T: Real>(
 ) -> Result<BundleReport<T>, StructureError> {
     for track in tracks(sights) {
         let at = track.first().map_or(0, |sight| sight.point as usize);
-        let (Some(point), Some(state)) = (memory.points.get_mut(at), memory.states.get_mut(at)) else { continue };
+        let (Some(point), Some(state)) = (memory.points.get_mut(at), memory.states.get_mut(at)) else {
+            continue;
+        };
         let placements = &*memory.placements;
-        let placed = move |sight: &Sight<T>| placements.get(usize::from(sight.view)) == Some(&Placement::Placed);
+        let placed =
+            move |sight: &Sight<T>| placements.get(usize::from(sight.view)) == Some(&Placement::Placed);
         let track = track.iter().copied().filter(placed);
         match triangulate(memory.views, track, config.threshold_px, config.min_angle_rad) {
             Ok(found) => (*point, *state) = (found, PointState::Known),
@@ -162,9 +166,12 @@ fn keep<T: Real>(memory: &mut SceneMemory<'_, T>, sights: &[Sight<T>], threshold
     let mut kept = 0;
     for track in tracks(sights) {
         let at = track.first().map_or(0, |sight| sight.point as usize);
-        let (Some(point), Some(PointState::Known)) = (memory.points.get(at), memory.states.get(at)) else { continue };
+        let (Some(point), Some(PointState::Known)) = (memory.points.get(at), memory.states.get(at)) else {
+            continue;
+        };
         let placements = &*memory.placements;
-        let placed = move |sight: &Sight<T>| placements.get(usize::from(sight.view)) == Some(&Placement::Placed);
+        let placed =
+            move |sight: &Sight<T>| placements.get(usize::from(sight.view)) == Some(&Placement::Placed);
         for sight in agreeing(memory.views, track.iter().copied().filter(placed), point, threshold_px) {
             if let Some(slot) = memory.kept.get_mut(kept) {
                 *slot = sight;
@@ -176,7 +183,11 @@ fn keep<T: Real>(memory: &mut SceneMemory<'_, T>, sights: &[Sight<T>], threshold
 }
 
 /// Places the view that sees most known points; whether there was one to try.
-fn next_view<T: Real>(memory: &mut SceneMemory<'_, T>, sights: &[Sight<T>], config: &StructureConfig<T>) -> bool {
+fn next_view<T: Real>(
+    memory: &mut SceneMemory<'_, T>,
+    sights: &[Sight<T>],
+    config: &StructureConfig<T>,
+) -> bool {
     let known = |memory: &SceneMemory<'_, T>, sight: &Sight<T>| {
         memory.states.get(sight.point as usize) == Some(&PointState::Known)
     };
@@ -208,8 +219,11 @@ fn next_view<T: Real>(memory: &mut SceneMemory<'_, T>, sights: &[Sight<T>], conf
         }
     }
     let landmarks = memory.landmarks.get(..count).unwrap_or(&[]);
-    let robust =
-        RobustConfig { most_samples: config.most_samples, seed: config.seed, ..RobustConfig::new(config.threshold_px) };
+    let robust = RobustConfig {
+        most_samples: config.most_samples,
+        seed: config.seed,
+        ..RobustConfig::new(config.threshold_px)
+    };
     let camera = memory.views.get(next).map(|view| pinhole(&view.camera));
     let found = camera.and_then(|camera| robust_resection(landmarks, &camera, &robust, memory.inliers).ok());
     match found.filter(|found| found.inliers >= FEWEST_LANDMARKS) {

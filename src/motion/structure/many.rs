@@ -9,11 +9,11 @@ use nalgebra::{Matrix3, Point3, Vector3};
 /// Steps to the least re-projection error, at most.
 const MOST_STEPS: usize = 5;
 
-/// The point that most of these sights agree with, to a threshold, and least squares of those that do; refused when no half of
-/// them, and no two, do: two wrong ones of many meet by chance.
+/// The point that most of these sights agree with, to a threshold, and least squares of those that do;
+/// refused when no half of them, and no two, do: two wrong ones of many meet by chance.
 ///
-/// Every pair of sights that has the least angle between its rays is a candidate, by the midpoint; the one with most sights within
-/// the threshold is refined by Gauss and Newton's method.
+/// Every pair of sights that has the least angle between its rays is a candidate, by the midpoint; the one
+/// with most sights within the threshold is refined by Gauss and Newton's method.
 pub(super) fn triangulate<T: Real>(
     views: &[CameraView<T>],
     track: impl Iterator<Item = Sight<T>> + Clone,
@@ -46,7 +46,9 @@ pub(super) fn triangulate<T: Real>(
             }
             let point = Point3::from((from + p * depth + to + q * other) * T::of(0.5));
             let count = agreeing(views, track.clone(), &point, threshold_px).count();
-            if count >= 2 && best.is_none_or(|(most, widest, _)| count > most || count == most && angle > widest) {
+            if count >= 2
+                && best.is_none_or(|(most, widest, _)| count > most || count == most && angle > widest)
+            {
                 best = Some((count, angle, point));
             }
         }
@@ -107,8 +109,8 @@ fn refined<T: Real>(
     if count(&after) >= count(&before) { after } else { before }
 }
 
-/// The turn that carries sights of the second view onto those of the first best (Horn's problem by Newton's method on Cayley's
-/// turn, from none); weights fall with the distance beyond the threshold.
+/// The turn that carries sights of the second view onto those of the first best (Horn's problem by Newton's
+/// method on Cayley's turn, from none); weights fall with the distance beyond the threshold.
 pub(super) fn turn_alone<T: Real>(
     rays: impl Iterator<Item = (Vector3<T>, Vector3<T>)> + Clone,
     threshold_rad: T,

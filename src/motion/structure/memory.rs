@@ -5,7 +5,8 @@ use crate::geometry::{Correspondence, Landmark, Real};
 use crate::motion::bundle::{CameraView, Sight, Workspace};
 use nalgebra::Point3;
 
-/// Memory for m views, n points and s sights, the owner's. The views' cameras are given in it; everything else is overwritten.
+/// Memory for m views, n points and s sights, the owner's. The views' cameras are given in it; everything
+/// else is overwritten.
 #[derive(Debug)]
 pub struct SceneMemory<'a, T: Real> {
     /// The cameras: m. Their poses come out.

@@ -32,7 +32,9 @@ pub struct StructureRoom<T: Real, const VIEWS: usize, const POINTS: usize, const
     blocks: [[[[T; 6]; 6]; VIEWS]; VIEWS],
 }
 
-impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize> StructureRoom<T, VIEWS, POINTS, SIGHTS> {
+impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize>
+    StructureRoom<T, VIEWS, POINTS, SIGHTS>
+{
     /// Empty.
     pub const fn new() -> Self {
         const { assert!(VIEWS >= 2 && VIEWS <= 1 << 16, "structure is of 2 to 65536 views") };

@@ -5,8 +5,8 @@ use crate::geometry::{Pose, Real, ScaleError};
 use crate::motion::bundle::CameraView;
 use nalgebra::Point3;
 
-/// Views and points in an unknown unit of length: the images are the same of a scene twice as large, seen from places twice as far
-/// apart. The frame is that of the first view of the pair it began with.
+/// Views and points in an unknown unit of length: the images are the same of a scene twice as large, seen
+/// from places twice as far apart. The frame is that of the first view of the pair it began with.
 #[derive(Debug)]
 pub struct Structure<'a, T: Real>(Scene<'a, T>);
 
@@ -74,8 +74,13 @@ impl<'a, T: Real> Structure<'a, T> {
         self.0.point(point)
     }
 
-    /// The structure in metres, where these two views stand so far apart in truth: a known baseline, or a step of an odometry.
-    pub fn with_baseline(mut self, (a, b): (usize, usize), metres: T) -> Result<MetricStructure<'a, T>, ScaleError> {
+    /// The structure in metres, where these two views stand so far apart in truth: a known baseline, or a
+    /// step of an odometry.
+    pub fn with_baseline(
+        mut self,
+        (a, b): (usize, usize),
+        metres: T,
+    ) -> Result<MetricStructure<'a, T>, ScaleError> {
         let units = match (self.pose(a), self.pose(b)) {
             (Ok(a), Ok(b)) => (a.translation() - b.translation()).norm(),
             _ => return Err(ScaleError::SamePoint),
@@ -85,7 +90,11 @@ impl<'a, T: Real> Structure<'a, T> {
     }
 
     /// The structure in metres, where these two points are so far apart in truth.
-    pub fn with_length(mut self, (a, b): (usize, usize), metres: T) -> Result<MetricStructure<'a, T>, ScaleError> {
+    pub fn with_length(
+        mut self,
+        (a, b): (usize, usize),
+        metres: T,
+    ) -> Result<MetricStructure<'a, T>, ScaleError> {
         let units = match (self.point(a), self.point(b)) {
             (Ok(a), Ok(b)) => (a - b).norm(),
             _ => return Err(ScaleError::SamePoint),

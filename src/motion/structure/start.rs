@@ -3,8 +3,8 @@
 use super::config::{PairFault, StructureConfig};
 use super::many::turn_alone;
 use crate::geometry::{
-    Camera, Correspondence, Essential, Homography, Real, RelativePose, RobustConfig, RobustError, TwoViewModel,
-    TwoViews, choose, robust_fundamental,
+    Camera, Correspondence, Essential, Homography, Real, RelativePose, RobustConfig, RobustError,
+    TwoViewModel, TwoViews, choose, robust_fundamental,
 };
 use nalgebra::{Point2, Vector3};
 
@@ -33,8 +33,11 @@ pub(super) fn pair<T: Real>(
         return Err(PairFault::TooFew);
     }
     still(first, second, seen, config)?;
-    let robust =
-        RobustConfig { most_samples: config.most_samples, seed: config.seed, ..RobustConfig::new(config.threshold_px) };
+    let robust = RobustConfig {
+        most_samples: config.most_samples,
+        seed: config.seed,
+        ..RobustConfig::new(config.threshold_px)
+    };
     let found = match robust_fundamental(seen, &robust, inliers) {
         Ok(found) => Some(found.fundamental),
         Err(RobustError::Plane) => None,
@@ -66,21 +69,27 @@ pub(super) fn pair<T: Real>(
     let pose = match (planar, found) {
         (Some(h), _) => before_plane(&h, first, second, seen)?,
         (None, Some(f)) => {
-            let essential = Essential::from_fundamental(&f, first, second).map_err(|_| PairFault::NoAgreement)?;
+            let essential =
+                Essential::from_fundamental(&f, first, second).map_err(|_| PairFault::NoAgreement)?;
             let essential = essential.refined(seen, first, second, config.threshold_px);
             let essential = essential.map_err(|_| PairFault::NoAgreement)?;
-            essential.recover_pose(seen.iter().copied(), first, second).map_err(|_| PairFault::SmallAngle)?.pose
+            essential
+                .recover_pose(seen.iter().copied(), first, second)
+                .map_err(|_| PairFault::SmallAngle)?
+                .pose
         }
         (None, None) => return Err(PairFault::NoAgreement),
     };
     let views = TwoViews::new(*first, *second, pose.in_baselines()).map_err(|_| PairFault::NoAgreement)?;
     let views = views.with_min_angle(config.min_angle_rad);
-    let angled = seen.iter().filter(|seen| views.optimal(seen).is_ok_and(|p| p.residual_px <= config.threshold_px));
+    let angled =
+        seen.iter().filter(|seen| views.optimal(seen).is_ok_and(|p| p.residual_px <= config.threshold_px));
     let angled = angled.count();
     if angled < FEWEST { Err(PairFault::SmallAngle) } else { Ok(Pair { pose, angled, plane }) }
 }
 
-/// Names what is no motion, and what a turn explains: four fifths of what is within ten thresholds of it is within one.
+/// Names what is no motion, and what a turn explains: four fifths of what is within ten thresholds of it is
+/// within one.
 fn still<T: Real>(
     first: &Camera<T>,
     second: &Camera<T>,
@@ -119,7 +128,8 @@ fn before_plane<T: Real>(
     second: &Camera<T>,
     seen: &[Correspondence<T>],
 ) -> Result<RelativePose<T>, PairFault> {
-    let motions = h.recover_motions(seen.iter().copied(), first, second).map_err(|_| PairFault::PureRotation)?;
+    let motions =
+        h.recover_motions(seen.iter().copied(), first, second).map_err(|_| PairFault::PureRotation)?;
     let [(motion, votes), (_, others)] = motions;
     if 10 * others >= 9 * votes {
         return Err(PairFault::Plane);

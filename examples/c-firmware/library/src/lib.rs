@@ -1,7 +1,8 @@
 //! `libstereopsis.a`: the functions of `stereopsis.h` for one method and one capacity.
 //!
-//! `STEREOPSIS_METHOD`, `STEREOPSIS_WIDTH` and `STEREOPSIS_DISPARITIES` choose them when this is built; a product may
-//! write the one line of `instance.rs` here instead, `stereopsis::instantiate_c_api!(Block, width = 320, disparities = 64);`.
+//! `STEREOPSIS_METHOD`, `STEREOPSIS_WIDTH` and `STEREOPSIS_DISPARITIES` choose them when this is built; a
+//! product may write the one line of `instance.rs` here instead, `stereopsis::instantiate_c_api!(Block, width
+//! = 320, disparities = 64);`.
 
 #![no_std]
 
@@ -11,8 +12,9 @@ extern crate std;
 
 include!(concat!(env!("OUT_DIR"), "/instance.rs"));
 
-/// Cannot be linked: it calls a function that nobody has. A program that links this library therefore holds no path that
-/// leads to a panic; the linker has dropped this function (`--gc-sections`), because nothing refers to it.
+/// Cannot be linked: it calls a function that nobody has. A program that links this library therefore holds
+/// no path that leads to a panic; the linker has dropped this function (`--gc-sections`), because nothing
+/// refers to it.
 #[cfg(target_os = "none")]
 #[panic_handler]
 #[allow(unsafe_code, reason = "the declaration of a function that does not exist")]

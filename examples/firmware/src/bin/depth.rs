@@ -1,8 +1,10 @@
-//! Rows in, depth rows out: the pipeline stands in a `static`, a camera gives lines, rows of disparity come out.
+//! Rows in, depth rows out: the pipeline stands in a `static`, a camera gives lines, rows of disparity come
+//! out.
 //!
-//! `cargo run --release` runs it in QEMU. It takes `left.pgm` and `right.pgm` from the working directory, or the built-in
-//! scene when neither is there, writes `rows.bin` and `log.defmt`, and prints figures. The exit status is 0 when the
-//! frame came through. `cargo xtask firmware` runs it on any pictures and compares every bit with the host.
+//! `cargo run --release` runs it in QEMU. It takes `left.pgm` and `right.pgm` from the working directory, or
+//! the built-in scene when neither is there, writes `rows.bin` and `log.defmt`, and prints figures. The exit
+//! status is 0 when the frame came through. `cargo xtask firmware` runs it on any pictures and compares every
+//! bit with the host.
 #![no_std]
 #![no_main]
 
@@ -101,6 +103,9 @@ fn begin(pipeline: &mut BoardPipeline, camera: &mut Timed<'_, Camera>) -> Result
 }
 
 #[inline(never)]
-fn next<'p>(pipeline: &'p mut BoardPipeline, camera: &mut Timed<'_, Camera>) -> Result<Option<Row<'p>>, Failure> {
+fn next<'p>(
+    pipeline: &'p mut BoardPipeline,
+    camera: &mut Timed<'_, Camera>,
+) -> Result<Option<Row<'p>>, Failure> {
     pipeline.next_row(camera).map_err(Failure::Frame)
 }

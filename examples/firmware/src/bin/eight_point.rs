@@ -1,7 +1,7 @@
 //! The eight-point algorithm alone: what it takes on eight correspondences, in instructions and in flash.
 //!
-//! That there are eight is known when it is compiled: for any number the normal equations come on top. Its flash is the
-//! difference to the same program without it, which the feature `bare` makes.
+//! That there are eight is known when it is compiled: for any number the normal equations come on top. Its
+//! flash is the difference to the same program without it, which the feature `bare` makes.
 
 #![no_std]
 #![no_main]
@@ -36,7 +36,8 @@ fn main() -> ! {
     let mut solved = 0;
     let start = clock.now();
     for _ in 0..ROUNDS {
-        // Hidden from the compiler, which might do it once; the number of them too, which it might make a constant.
+        // Hidden from the compiler, which might do it once; the number of them too, which it might make a
+        // constant.
         solved += u64::from(solve(black_box(&seen)));
     }
     let ticks = clock.now() - start;

@@ -1,4 +1,5 @@
-//! What two cameras see to matches: corners with descriptors, found line by line in both pictures, and which is which.
+//! What two cameras see to matches: corners with descriptors, found line by line in both pictures, and which
+//! is which.
 //!
 //! 1. [`SceneCamera`]: lines of the built-in scene, 160x120.
 //! 2. [`TwoPictures`]: features of both pictures, their matches.
@@ -84,9 +85,9 @@ fn run(Memory { pictures, left, right }: &mut Memory) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What was found, the low byte first: the features of the left picture, of the right one, the matches; before each list
-/// how many there are in two bytes. A feature is x and y in `f32`, score, level, the words of its descriptor; a match is
-/// the places of its features and how many bits differ.
+/// What was found, the low byte first: the features of the left picture, of the right one, the matches;
+/// before each list how many there are in two bytes. A feature is x and y in `f32`, score, level, the words
+/// of its descriptor; a match is the places of its features and how many bits differ.
 fn write(pictures: &TwoPictures) -> Result<(), HostError> {
     let file = HostFile::create(c"features.bin")?;
     for features in [&pictures.left.features, &pictures.right.features] {

@@ -1,6 +1,8 @@
-//! Depth from focus by one camera whose lens moves: nine frames of 160x120 to the one in which each tile is sharpest.
+//! Depth from focus by one camera whose lens moves: nine frames of 160x120 to the one in which each tile is
+//! sharpest.
 //!
-//! 1. [`Sweep`]: a slope that is in focus in one frame at the left and in another at the right, and its `FocusMap`.
+//! 1. [`Sweep`]: a slope that is in focus in one frame at the left and in another at the right, and its
+//!    `FocusMap`.
 //! 2. What it took on the console, what was found in `focus.bin`.
 
 #![no_std]
@@ -61,8 +63,8 @@ fn run(sweep: &mut Sweep) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What was found, the low byte first: for every tile, row by row, the frame and its deviation in 1/256 in four bytes each,
-/// and the confidence in one; all ones where none is sharpest. How many are in focus.
+/// What was found, the low byte first: for every tile, row by row, the frame and its deviation in 1/256 in
+/// four bytes each, and the confidence in one; all ones where none is sharpest. How many are in focus.
 fn write(map: &Map) -> Result<u64, HostError> {
     let file = HostFile::create(c"focus.bin")?;
     let mut in_focus = 0;

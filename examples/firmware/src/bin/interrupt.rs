@@ -1,11 +1,16 @@
-//! Lines that an interrupt brings while the matcher works: a timer stands for a sensor's DMA, a line of both cameras each time.
+//! Lines that an interrupt brings while the matcher works: a timer stands for a sensor's DMA, a line of both
+//! cameras each time.
 //!
-//! 1. The built-in scene is rendered into memory, and matched from there without an interrupt: the rows, and the ticks that they take.
-//! 2. The timer brings a line as often as those ticks allow, through [`LineSlots`]: frames of which no line may be lost.
-//! 3. Twice as often: lines are lost, which has to be told, and every row without a flag has to be right all the same.
+//! 1. The built-in scene is rendered into memory, and matched from there without an interrupt: the rows, and
+//!    the ticks that they take.
+//! 2. The timer brings a line as often as those ticks allow, through [`LineSlots`]: frames of which no line
+//!    may be lost.
+//! 3. Twice as often: lines are lost, which has to be told, and every row without a flag has to be right all
+//!    the same.
 //! 4. The rows of a frame of step 2 in `interrupt.bin`, what it took on the console.
 //!
-//! The sensor does not wait: between two frames there are so many lines' times as a sensor's vertical blanking has.
+//! The sensor does not wait: between two frames there are so many lines' times as a sensor's vertical
+//! blanking has.
 #![no_std]
 #![no_main]
 
@@ -13,8 +18,8 @@ use core::cell::RefCell;
 use critical_section::Mutex;
 use static_cell::ConstStaticCell;
 use stereopsis::camera::{
-    FrameStart, HandedLines, LineFormat, LineProducer, LineSlots, LineStart, PixelFormat, SideBySide, StereoSource,
-    StreamError,
+    FrameStart, HandedLines, LineFormat, LineProducer, LineSlots, LineStart, PixelFormat, SideBySide,
+    StereoSource, StreamError,
 };
 use stereopsis::matching::{Block, Config, ConfigError, Filter, Row};
 use stereopsis::pipeline::{Guarded, PipelineError};
@@ -63,7 +68,10 @@ static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory {
     slots: [[0; LINE]; SLOTS],
     queues: LineSlots::new(),
     pipeline: Guarded::new(),
-    rows: Rows { disparities: [[Disparity::ZERO; WIDTH]; HEIGHT], flags: [[PixelFlags::CLEAR; WIDTH]; HEIGHT] },
+    rows: Rows {
+        disparities: [[Disparity::ZERO; WIDTH]; HEIGHT],
+        flags: [[PixelFlags::CLEAR; WIDTH]; HEIGHT],
+    },
 });
 
 /// The interrupt's own: where it is in its frame, and where lines go.
@@ -163,7 +171,8 @@ fn run(memory: &'static mut Memory) -> Result<(), Failure> {
     let Memory { picture, slots, queues, pipeline, rows } = memory;
     let mut scene = SceneCamera::new(Scene { width: WIDTH as u16, height: HEIGHT as u16 });
     render(&mut scene, picture)?;
-    let config = Config::new(WIDTH as u16, HEIGHT as u16, DISPARITIES as u16).with_filter::<Block>(Filter::Default);
+    let config =
+        Config::new(WIDTH as u16, HEIGHT as u16, DISPARITIES as u16).with_filter::<Block>(Filter::Default);
     let calibration = clock.calibrate();
 
     // Without an interrupt: what the rows are, and how long they take.
@@ -177,7 +186,8 @@ fn run(memory: &'static mut Memory) -> Result<(), Failure> {
         y += 1;
     }
     let ticks = clock.now() - start;
-    // As many lines' times as a frame has, and one in eight more for the interrupt and the copies that it causes.
+    // As many lines' times as a frame has, and one in eight more for the interrupt and the copies that it
+    // causes.
     let line_ticks = (ticks + ticks / 8) / (HEIGHT + BLANKING) as u64;
     defmt::info!("{=u64} ticks a frame on {=str}, a line every {=u64}", ticks, BOARD.core, line_ticks);
 

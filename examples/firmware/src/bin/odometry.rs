@@ -1,4 +1,5 @@
-//! Where a pair of cameras goes: both pictures of a moment in memory, the left one's features, and the motion since the last.
+//! Where a pair of cameras goes: both pictures of a moment in memory, the left one's features, and the motion
+//! since the last.
 //!
 //! 1. [`Walk`]: pictures of the built-in scene, features, and the odometry.
 //! 2. What it took on the console, the motions in `odometry.bin`.
@@ -54,7 +55,12 @@ fn run(walk: &mut Walk) -> Result<(), Failure> {
         let step = walk.step()?;
         let took = clock.now() - start;
         (ticks, worst) = (ticks + took, took.max(worst));
-        defmt::info!("{=usize} points, {=usize} found, {=usize} agree", step.points, step.found, step.inliers);
+        defmt::info!(
+            "{=usize} points, {=usize} found, {=usize} agree",
+            step.points,
+            step.found,
+            step.inliers
+        );
         // There is room for all frames.
         let _ = steps.push(step);
     }

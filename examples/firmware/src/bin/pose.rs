@@ -1,5 +1,5 @@
-//! From matches with wrong ones among them to the pose of a second camera and the points that both see, timed and held to
-//! the truth.
+//! From matches with wrong ones among them to the pose of a second camera and the points that both see, timed
+//! and held to the truth.
 //!
 //! 1. [`World::fill`]: 128 matches of a world that is known, a third of them wrong.
 //! 2. [`eight_point()`] on eight right ones, for its cost alone.
@@ -128,9 +128,13 @@ fn solve(seen: &[Correspondence<f32>; 8]) -> Result<Fundamental<f32>, EightPoint
     eight_point(seen)
 }
 
-/// What was found: F, R and t row by row (nalgebra goes column by column), `f32` with the low byte first; then for every match a byte, whether it agrees,
-/// and its point, zeros when it has none.
-fn write(found: &Found, inliers: &[bool; MATCHES], points: &[Option<Point3<f32>>; MATCHES]) -> Result<(), HostError> {
+/// What was found: F, R and t row by row (nalgebra goes column by column), `f32` with the low byte first;
+/// then for every match a byte, whether it agrees, and its point, zeros when it has none.
+fn write(
+    found: &Found,
+    inliers: &[bool; MATCHES],
+    points: &[Option<Point3<f32>>; MATCHES],
+) -> Result<(), HostError> {
     let file = HostFile::create(c"pose.bin")?;
     numbers(&file, found.robust.fundamental.matrix().transpose().as_slice())?;
     numbers(&file, found.recovered.pose.rotation().transpose().as_slice())?;

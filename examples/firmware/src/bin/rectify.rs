@@ -1,5 +1,5 @@
-//! Raw lines of two cameras of 320x240, rectified as they come: what that costs behind three lenses, and a frame of depth from
-//! them in one loop over the rows.
+//! Raw lines of two cameras of 320x240, rectified as they come: what that costs behind three lenses, and a
+//! frame of depth from them in one loop over the rows.
 //!
 //! 1. [`RawPair`]: the remaps, a pipeline, and the cameras' geometry.
 //! 2. What it took on the console, the lines and the depth in `rectify.bin`.
@@ -73,7 +73,9 @@ fn run(pair: &mut RawPair) -> Result<(), Failure> {
     let calibration = clock.calibrate();
     let file = HostFile::create(c"rectify.bin").map_err(Failure::Host)?;
     let mut console = Console::open();
-    for (name, lens) in [("none_ticks", Lens::None), ("mild_ticks", Lens::Mild), ("strong_ticks", Lens::Strong)] {
+    for (name, lens) in
+        [("none_ticks", Lens::None), ("mild_ticks", Lens::Mild), ("strong_ticks", Lens::Strong)]
+    {
         let mut camera = Timed::new(SceneCamera::new(SCENE), &clock);
         let take = |lines: [&[u8]; 4]| lines.iter().try_for_each(|line| file.write(line));
         let ticks = pair.remap(lens, &mut camera, || clock.now(), take)?;

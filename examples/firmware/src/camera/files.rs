@@ -3,7 +3,9 @@
 use super::pgm::{self, HeaderError};
 use crate::host::HostFile;
 use core::ffi::CStr;
-use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource};
+use stereopsis::camera::{
+    CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource,
+};
 
 /// The left picture.
 const LEFT: &CStr = c"left.pgm";

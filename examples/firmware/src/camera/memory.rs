@@ -1,7 +1,9 @@
 //! A picture in memory as a pair of cameras, at once: what lines cost without an interrupt.
 
 use core::convert::Infallible;
-use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource};
+use stereopsis::camera::{
+    CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource,
+};
 
 /// What two cameras see, line by line, the left one's half first.
 pub struct Picture<const LINE: usize, const HEIGHT: usize>(pub [[u8; LINE]; HEIGHT]);
@@ -38,7 +40,11 @@ impl<const LINE: usize, const HEIGHT: usize> StereoSource for Direct<'_, LINE, H
         Ok(FrameStart { sequence: self.sequence, ..FrameStart::default() })
     }
 
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Infallible>> {
+    fn next_lines(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<Infallible>> {
         let line = self.picture.0.get(self.row).ok_or(CameraError::NoLineLeft)?;
         let (l, r) = line.split_at_checked(LINE / 2).ok_or(CameraError::NoLineLeft)?;
         left.iter_mut().zip(l).for_each(|(to, &from)| *to = from);

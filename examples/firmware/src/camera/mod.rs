@@ -1,7 +1,7 @@
 //! Where lines come from: a scene that is computed, or two files on the host.
 //!
-//! * [`scene`]: the built-in scene. [`pgm`]: the header of a picture. [`files`]: two pictures, read line by line.
-//!   [`memory`]: a picture in memory.
+//! * [`scene`]: the built-in scene. [`pgm`]: the header of a picture. [`files`]: two pictures, read line by
+//!   line. [`memory`]: a picture in memory.
 //! * [`Camera`]: one of the two, as a program takes it. [`timed`]: any camera, its own time measured.
 
 pub mod files;

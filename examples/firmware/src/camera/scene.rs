@@ -1,11 +1,15 @@
-//! A pair of cameras without hardware: they look at a floor that tilts away and a square board in front of it.
+//! A pair of cameras without hardware: they look at a floor that tilts away and a square board in front of
+//! it.
 //!
-//! Everything is integer arithmetic on row and column, so that every core sees the same pixels. In a product this file
-//! is the driver: `start_frame` waits for the sensors' frame sync, `next_lines` copies what the DMA brought.
+//! Everything is integer arithmetic on row and column, so that every core sees the same pixels. In a product
+//! this file is the driver: `start_frame` waits for the sensors' frame sync, `next_lines` copies what the DMA
+//! brought.
 
 use core::convert::Infallible;
 use core::ops::Range;
-use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource};
+use stereopsis::camera::{
+    CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource,
+};
 
 /// Fractional bits of a position in a texture: disparities of the floor are multiples of 1/16 px.
 const FRACTION_BITS: i32 = 4;
@@ -48,7 +52,8 @@ impl Scene {
         height / 4..height * 2 / 3
     }
 
-    /// The disparity of the floor in row `v`, 1/16 px: a fortieth of the width at the top, under three at the bottom.
+    /// The disparity of the floor in row `v`, 1/16 px: a fortieth of the width at the top, under three at the
+    /// bottom.
     pub const fn floor_disparity(self, v: i32) -> i32 {
         let (width, height) = (self.width as u32, if self.height == 0 { 1 } else { self.height as u32 });
         (width * 16 / 40 + v as u32 * (width * 3 / 4) / height) as i32
@@ -106,7 +111,11 @@ impl StereoSource for SceneCamera {
         Ok(FrameStart { sequence: self.frames, timestamp_us: self.frame_us(), exposure_us: 8_000 })
     }
 
-    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<Infallible>> {
+    fn next_lines(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<Infallible>> {
         let row = self.next_row.filter(|&row| row < self.scene.height).ok_or(CameraError::NoLineLeft)?;
         let needed = usize::from(self.scene.width);
         let (Some(left), Some(right)) = (left.get_mut(..needed), right.get_mut(..needed)) else {

@@ -136,9 +136,11 @@ fn squares_of(problem: &BalProblem) -> f64 {
 
 /// A bar for what takes more than a moment.
 fn progress(iterations: u16, observations: usize) -> ProgressBar {
-    let target = if observations < 5000 { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let target =
+        if observations < 5000 { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
     let bar = ProgressBar::with_draw_target(Some(iterations.into()), target);
-    if let Ok(style) = ProgressStyle::with_template("adjusting {bar:40} {pos} of at most {len} iterations, cost {msg}")
+    if let Ok(style) =
+        ProgressStyle::with_template("adjusting {bar:40} {pos} of at most {len} iterations, cost {msg}")
     {
         bar.set_style(style);
     }

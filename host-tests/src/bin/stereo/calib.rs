@@ -16,7 +16,9 @@ pub fn run(args: &CalibArgs) -> Result<(), Failure> {
 
 fn open(args: &FileArgs) -> Result<RawCalibration, Failure> {
     if args.calib.len() > 2 {
-        return Err(Failure::new("--calib: is given more than twice; a file of both cameras or one of each is needed"));
+        return Err(Failure::new(
+            "--calib: is given more than twice; a file of both cameras or one of each is needed",
+        ));
     }
     Ok(RawCalibration::open(&args.calib, args.size, args.unit.map(Unit::metres))?)
 }
@@ -32,7 +34,11 @@ fn convert(args: &ConvertArgs) -> Result<(), Failure> {
     let calibration = open(&args.file)?;
     let rig = &calibration.rig;
     let name = calibration.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let notes = [format!("A stereo rig, from {} ({}), by stereo calib convert.", one_line(&name), calibration.format)];
+    let notes = [format!(
+        "A stereo rig, from {} ({}), by stereo calib convert.",
+        one_line(&name),
+        calibration.format
+    )];
     let bytes = match args.to {
         Format::Record => rig.to_record().to_vec(),
         Format::Rust => write_rust(rig, &notes).into_bytes(),

@@ -44,8 +44,8 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
         let last = notes.last().map(|note| format!("; {note}")).unwrap_or_default();
         Failure::new(format!("--left and --right: {e}{last}"))
     };
-    let result =
-        solve(args.lens.into(), args.pattern, args.square_mm / 1000.0, size, &views).map_err(|e| failed(&e))?;
+    let result = solve(args.lens.into(), args.pattern, args.square_mm / 1000.0, size, &views)
+        .map_err(|e| failed(&e))?;
     let rectified = Rectification::new(&result.rig, Crop::Natural, size).map_err(|e| failed(&e))?;
 
     for i in result.outliers() {
@@ -80,9 +80,14 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
     }
     let _ = writeln!(text, "{} of {count} views, {} x {} px", views.len(), size.width, size.height);
     let [left, right] = result.alone_px;
-    let _ = writeln!(text, "re-projection {:.3} px (by themselves: left {left:.3}, right {right:.3})", result.rms_px);
-    for (name, camera, sigma) in [("left", 0, result.focal_sigma_px[0]), ("right", 1, result.focal_sigma_px[1])]
-        .map(|(n, i, s)| (n, &result.rig.cameras()[i], s))
+    let _ = writeln!(
+        text,
+        "re-projection {:.3} px (by themselves: left {left:.3}, right {right:.3})",
+        result.rms_px
+    );
+    for (name, camera, sigma) in
+        [("left", 0, result.focal_sigma_px[0]), ("right", 1, result.focal_sigma_px[1])]
+            .map(|(n, i, s)| (n, &result.rig.cameras()[i], s))
     {
         let ((fx, fy), (cx, cy)) = (camera.focal_px(), camera.principal_point());
         let _ = writeln!(text, "{name:<13} f {fx:.2} x {fy:.2} px (+- {sigma:.2}), centre {cx:.2}, {cy:.2}");
@@ -128,7 +133,8 @@ fn doubts(result: &Calibrated) -> Vec<String> {
 fn pairs(left: &[String], right: &[String], notes: &mut Vec<String>) -> Result<Vec<[PathBuf; 2]>, Failure> {
     let (left, right) = (files("--left", left)?, files("--right", right)?);
     let numbered = |paths: &[PathBuf]| -> Option<BTreeMap<u64, PathBuf>> {
-        let found: BTreeMap<_, _> = paths.iter().filter_map(|path| Some((number(path)?, path.clone()))).collect();
+        let found: BTreeMap<_, _> =
+            paths.iter().filter_map(|path| Some((number(path)?, path.clone()))).collect();
         // Some may have none, but no two the same.
         let count = paths.iter().filter(|path| number(path).is_some()).count();
         (found.len() == count && count > 0).then_some(found)
@@ -138,8 +144,12 @@ fn pairs(left: &[String], right: &[String], notes: &mut Vec<String>) -> Result<V
     {
         let alone = |path: &PathBuf| format!("{} has no partner; it is left out", path.display());
         notes.extend(left.iter().chain(&right).filter(|path| number(path).is_none()).map(alone));
-        notes.extend(of_left.iter().filter(|(key, _)| !of_right.contains_key(key)).map(|(_, path)| alone(path)));
-        notes.extend(of_right.iter().filter(|(key, _)| !of_left.contains_key(key)).map(|(_, path)| alone(path)));
+        notes.extend(
+            of_left.iter().filter(|(key, _)| !of_right.contains_key(key)).map(|(_, path)| alone(path)),
+        );
+        notes.extend(
+            of_right.iter().filter(|(key, _)| !of_left.contains_key(key)).map(|(_, path)| alone(path)),
+        );
         let keys: Vec<_> = of_left.keys().copied().collect();
         let pair = |key: u64| Some([of_left.remove(&key)?, of_right.remove(&key)?]);
         return Ok(keys.into_iter().filter_map(pair).collect());
@@ -224,7 +234,9 @@ fn boards(
             continue;
         }
         match (left.board, right.board) {
-            (Ok(left), Ok(right)) => found.push(Found { paths, view: View { corners: [left.corners, right.corners] } }),
+            (Ok(left), Ok(right)) => {
+                found.push(Found { paths, view: View { corners: [left.corners, right.corners] } })
+            }
             (Err(e), _) => notes.push(format!("{}: {e}; the pair is left out", paths[0].display())),
             (_, Err(e)) => notes.push(format!("{}: {e}; the pair is left out", paths[1].display())),
         }

@@ -15,7 +15,9 @@ use crate::odometry::{self, OdometryArgs};
 use crate::record::{self, RecordArgs};
 use crate::replay::{self, ReplayArgs};
 use crate::structure::{self, StructureArgs};
-use crate::two_view::{FEATURES_EXAMPLE, FUNDAMENTAL_EXAMPLE, FeaturesArgs, FundamentalArgs, POSE_EXAMPLE, PoseArgs};
+use crate::two_view::{
+    FEATURES_EXAMPLE, FUNDAMENTAL_EXAMPLE, FeaturesArgs, FundamentalArgs, POSE_EXAMPLE, PoseArgs,
+};
 use crate::walk::{self, WalkArgs};
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
@@ -54,7 +56,11 @@ Printed is one JSON object: frame_ms (a time for each frame, after one that is l
 thread), kernel, width, height, disparities, state_bytes, noise.";
 
 #[derive(Debug, Parser)]
-#[command(name = "stereo", version, about = "Depth from two images, by the code that runs on the microcontroller")]
+#[command(
+    name = "stereo",
+    version,
+    about = "Depth from two images, by the code that runs on the microcontroller"
+)]
 #[command(after_help = EXAMPLES, arg_required_else_help = false)]
 struct Cli {
     #[command(subcommand)]
@@ -92,7 +98,8 @@ pub enum Command {
     /// Tell depth by focus: frames of one scene with the lens in different positions
     #[command(after_help = focus::EXAMPLE)]
     Focus(FocusArgs),
-    /// Refine cameras and points until they agree best with what was seen: bundle adjustment of a problem in BAL's format
+    /// Refine cameras and points until they agree best with what was seen: bundle adjustment of a problem in
+    /// BAL's format
     #[command(after_help = bundle::EXAMPLE)]
     Bundle(BundleArgs),
     /// Make a recording of a camera from images, with faults if they are wanted
@@ -131,8 +138,9 @@ pub struct MatchArgs {
     pub way: WayArgs,
     #[command(flatten)]
     pub balance: BalanceArgs,
-    /// Calibration of the pair, for depths: a Middlebury or KITTI calib.txt, what OpenCV or ROS (twice) say of rectified images,
-    /// or rectified.json; with --rectify how the cameras are mounted, as for the command rectify
+    /// Calibration of the pair, for depths: a Middlebury or KITTI calib.txt, what OpenCV or ROS (twice) say
+    /// of rectified images, or rectified.json; with --rectify how the cameras are mounted, as for the
+    /// command rectify
     #[arg(long, value_name = "FILE")]
     pub calib: Vec<PathBuf>,
     /// Take the images raw, as the cameras give them, and rectify them line by line before they are matched
@@ -180,13 +188,15 @@ pub struct RangeArgs {
 
 #[derive(Debug, Args)]
 pub struct WayArgs {
-    /// fast (4-bit census, 9x7 window), block (8-bit census, 9x9 window), or along paths sgm-lean, sgm and sgm-edge
+    /// fast (4-bit census, 9x7 window), block (8-bit census, 9x9 window), or along paths sgm-lean, sgm and
+    /// sgm-edge
     #[arg(long, value_name = "METHOD", default_value = "block", value_parser = method)]
     pub method: Method,
     /// dense (an answer wherever there is a candidate), default, or strict (sure answers only)
     #[arg(long, value_name = "FILTER", default_value = "default", value_parser = filter)]
     pub filter: Filter,
-    /// How noisy the images are: none, low (a deviation of about 2 grey levels), high (3 and more), or auto, which measures it
+    /// How noisy the images are: none, low (a deviation of about 2 grey levels), high (3 and more), or auto,
+    /// which measures it
     #[arg(long, value_name = "NOISE", default_value = "auto", value_parser = noise)]
     pub noise: NoiseChoice,
     /// The kernel that does the work, by default the fastest of this processor; all give the same bits
@@ -206,8 +216,8 @@ impl WayArgs {
 
 #[derive(Debug, Args)]
 pub struct BalanceArgs {
-    /// Whether the right image is brought to the left one's exposure: auto, where they clearly differ and the method compares
-    /// brightness (sgm-lean, sgm, sgm-edge), or none
+    /// Whether the right image is brought to the left one's exposure: auto, where they clearly differ and
+    /// the method compares brightness (sgm-lean, sgm, sgm-edge), or none
     #[arg(long, value_name = "BALANCE", default_value = "auto", value_parser = balance)]
     balance: BalanceChoice,
 }
@@ -239,7 +249,10 @@ pub fn noise(text: &str) -> Result<NoiseChoice, String> {
 }
 
 pub fn filter(text: &str) -> Result<Filter, &'static str> {
-    Filter::ALL.into_iter().find(|filter| filter.name() == text).ok_or("the filters are dense, default and strict")
+    Filter::ALL
+        .into_iter()
+        .find(|filter| filter.name() == text)
+        .ok_or("the filters are dense, default and strict")
 }
 
 fn kernel(text: &str) -> Result<Kernel, String> {

@@ -58,7 +58,9 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
     let calibration = write_middlebury(scale.rig(), config.width, config.height, config.disparities);
     staging.write("calib.txt", |out| out.write_all(calibration.as_bytes()))?;
     staging.write(TRUE_DEPTH, |out| pfm::write(out, truth.width, &truth.depth_m))?;
-    staging.write("true_disparity.pfm", |out| pfm::write(out, truth.width, &Accuracy::true_disparity_px(&truth)))?;
+    staging.write("true_disparity.pfm", |out| {
+        pfm::write(out, truth.width, &Accuracy::true_disparity_px(&truth))
+    })?;
     let errors = Accuracy::errors_px(&outcome.map, &truth);
     staging.write("error.pfm", |out| pfm::write(out, truth.width, &errors))?;
     staging.write("error.png", |out| png(out, &error_picture(truth.width, &errors, ERROR_LIMIT_PX)))?;

@@ -38,7 +38,13 @@ pub fn run(args: &FeaturesArgs) -> Result<(), Failure> {
     for note in [left.note, right.note].iter().flatten() {
         let _ = writeln!(text, "note: {}", one_line(note));
     }
-    let _ = writeln!(text, "{} and {} corners, {} matches", found.left.len(), found.right.len(), found.matches.len());
+    let _ = writeln!(
+        text,
+        "{} and {} corners, {} matches",
+        found.left.len(),
+        found.right.len(),
+        found.matches.len()
+    );
     let _ = writeln!(text, "results are in {}", one_line(&args.out.display().to_string()));
     print(&text)
 }

@@ -22,7 +22,8 @@ pub const WITH_DEPTH: [&str; 3] = ["depth.pfm", "depth.png", "cloud.ply"];
 
 /// Writes one file, whole or not at all: `value` as JSON.
 pub fn json_file(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
-    let no_file = || Failure::new(format!("--out {}: is not a file; name a file for the result", path.display()));
+    let no_file =
+        || Failure::new(format!("--out {}: is not a file; name a file for the result", path.display()));
     let name = path.file_name().and_then(OsStr::to_str).filter(|_| !path.is_dir()).ok_or_else(no_file)?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut staging = Staging::new(folder)?;
@@ -31,11 +32,17 @@ pub fn json_file(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
 }
 
 /// Writes all files of a run but those of the truth.
-pub fn write(staging: &mut Staging, report: &Report<'_>, scale: Option<&DepthScale>) -> Result<(), OutputError> {
+pub fn write(
+    staging: &mut Staging,
+    report: &Report<'_>,
+    scale: Option<&DepthScale>,
+) -> Result<(), OutputError> {
     let map = report.map;
     let pixels = map.pixels();
     staging.write("disparity.pfm", |out| pfm::write(out, map.width, &pixels))?;
-    staging.write("disparity.png", |out| png(out, &grey16(map, map.disparity.iter().map(|&d| disparity_sample(d)))))?;
+    staging.write("disparity.png", |out| {
+        png(out, &grey16(map, map.disparity.iter().map(|&d| disparity_sample(d))))
+    })?;
     let colour = ColourScale::of(map).picture(map.width, &pixels);
     staging.write("disparity_colour.png", |out| png(out, &colour))?;
     staging.write("flags.png", |out| png(out, &flags_raw(map)))?;
@@ -70,8 +77,8 @@ pub fn json(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
     out.write_all(b"\n")
 }
 
-/// Disparity x 256 in 16 bits, where 0 says that there is none: an answer of 0 px becomes 1, and one of 256 px and more
-/// the largest sample.
+/// Disparity x 256 in 16 bits, where 0 says that there is none: an answer of 0 px becomes 1, and one of 256
+/// px and more the largest sample.
 fn disparity_sample(disparity: Disparity) -> u16 {
     const STEP: u32 = 256 / Disparity::ONE as u32;
     let sample = u32::from(disparity.raw()) * STEP;
@@ -99,7 +106,8 @@ mod tests {
 
     #[test]
     fn an_answer_of_nothing_is_not_no_answer() {
-        let samples = [Disparity::NONE, Disparity::from_raw(0), Disparity::from_raw(33), Disparity::from_pixels(255)];
+        let samples =
+            [Disparity::NONE, Disparity::from_raw(0), Disparity::from_raw(33), Disparity::from_pixels(255)];
         assert_eq!(samples.map(disparity_sample), [0, 1, 264, 65280]);
         assert_eq!(disparity_sample(Disparity::from_pixels(256)), u16::MAX);
         assert_eq!(disparity_sample(Disparity::MAX), u16::MAX);

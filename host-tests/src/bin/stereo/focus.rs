@@ -84,8 +84,10 @@ pub fn run(args: &FocusArgs) -> Result<(), Failure> {
     staging.commit(&WITH_DEPTH)?;
 
     let share = 100.0 * result.answers() as f64 / result.peaks.len().max(1) as f64;
-    let mut text =
-        format!("{} frames of {width} x {height} pixels, {share:.1} % in focus in one of them\n", stack.len());
+    let mut text = format!(
+        "{} frames of {width} x {height} pixels, {share:.1} % in focus in one of them\n",
+        stack.len()
+    );
     if scale.is_some() {
         let grow = if is_breathing {
             "grow as the lens says: corrected"

@@ -71,19 +71,25 @@ pub fn run(args: &FundamentalArgs) -> Result<(), Failure> {
 }
 
 /// The images of the matches, for display; refused when a match is outside of its image.
-fn images_of(seen: &[Correspondence<f64>], left: &Path, right: &Path) -> Result<(RgbImage, RgbImage), Failure> {
+fn images_of(
+    seen: &[Correspondence<f64>],
+    left: &Path,
+    right: &Path,
+) -> Result<(RgbImage, RgbImage), Failure> {
     let images = (MockCamera::open(left)?.picture(), MockCamera::open(right)?.picture());
     let inside = |p: &Point2<f64>, image: &RgbImage| {
         let within = |x: f64, side: u32| (-0.5..=f64::from(side) - 0.5).contains(&x);
         within(p.x, image.width()) && within(p.y, image.height())
     };
     for (s, number) in seen.iter().zip(1..) {
-        for (option, path, p, image) in [("--left", left, s.first, &images.0), ("--right", right, s.second, &images.1)]
+        for (option, path, p, image) in
+            [("--left", left, s.first, &images.0), ("--right", right, s.second, &images.1)]
         {
             if !inside(&p, image) {
                 let (name, (width, height)) = (path.display(), image.dimensions());
-                let why =
-                    format!("{option} {name}: match {number} is outside of its {width} x {height} px; name its image");
+                let why = format!(
+                    "{option} {name}: match {number} is outside of its {width} x {height} px; name its image"
+                );
                 return Err(Failure::new(why));
             }
         }

@@ -40,13 +40,15 @@ impl Pair {
     }
 }
 
-/// The search in images of that size, as the method and its filter have it, or which option does not fit them. The noise is
-/// still to be told: [`with_noise`].
+/// The search in images of that size, as the method and its filter have it, or which option does not fit
+/// them. The noise is still to be told: [`with_noise`].
 pub fn config(range: &RangeArgs, way: &WayArgs, width: u16, height: u16) -> Result<Config, Failure> {
     let RangeArgs { disparities, min_disparity } = *range;
     if width < Config::FEWEST_DISPARITIES {
         let least = Config::FEWEST_DISPARITIES;
-        return Err(Failure::new(format!("--left: the images are {width} pixels wide; at least {least} are needed")));
+        return Err(Failure::new(format!(
+            "--left: the images are {width} pixels wide; at least {least} are needed"
+        )));
     }
     if disparities > width {
         return Err(Failure::new(format!(

@@ -2,8 +2,9 @@
 //!
 //! * `cli`, `two_view`: what is asked for. `failure`: what is said when it cannot be done.
 //! * `input`: the images and the search, checked against each other. `progress`: how far it is.
-//! * `matching`, `bench`, `demo`, `calibrate`, `calib`, `rectify`, `features`, `focus`, `fundamental`, `pose`, `bundle`,
-//!   `odometry`, `walk`, `record`, `replay`: the commands. `files`, `place`: the results as files.
+//! * `matching`, `bench`, `demo`, `calibrate`, `calib`, `rectify`, `features`, `focus`, `fundamental`,
+//!   `pose`, `bundle`, `odometry`, `walk`, `record`, `replay`: the commands. `files`, `place`: the results as
+//!   files.
 
 mod bench;
 mod bundle;

@@ -147,7 +147,8 @@ fn raw(args: &MatchArgs, config: Config, pair: &mut Pair) -> Result<(Scene, Matc
     .map_err(|e| named(&e))?;
     let told = raw_pair::Summary::new(calibration.format, &rectification, rows, &rectification.report());
     let grey = rectify(&rectification, &mut pair.camera).map_err(|e| named(&e))?;
-    let rows = Rows::measure(grey.pictures.each_ref(), Some(grey.valid.each_ref()), Some(rectification.camera()));
+    let rows =
+        Rows::measure(grey.pictures.each_ref(), Some(grey.valid.each_ref()), Some(rectification.camera()));
     Ok((Scene { left, right, scale: Some(scale), rectified: Some(told), rows }, matched?))
 }
 
@@ -163,7 +164,9 @@ fn scale(args: &MatchArgs, pair: &Pair) -> Result<Option<DepthScale>, Failure> {
         return Err(Failure::new("--alpha: is for raw images; give --rectify too"));
     }
     match args.calib.len() {
-        0 if args.options.unit.is_some() => return Err(Failure::new("--unit: is that of --calib, which is missing")),
+        0 if args.options.unit.is_some() => {
+            return Err(Failure::new("--unit: is that of --calib, which is missing"));
+        }
         0 => return Ok(None),
         1 | 2 => {}
         _ => {
@@ -172,7 +175,8 @@ fn scale(args: &MatchArgs, pair: &Pair) -> Result<Option<DepthScale>, Failure> {
             ));
         }
     }
-    let calibration = Calibration::open_all(&args.calib, &args.pair.left, args.options.unit.map(Unit::metres))?;
+    let calibration =
+        Calibration::open_all(&args.calib, &args.pair.left, args.options.unit.map(Unit::metres))?;
     calibration.check_size(pair.width, pair.height)?;
     let scale = DepthScale::new(&calibration.rig);
     scale.map(Some).map_err(|e| Failure::new(format!("{}: {e}", calibration.path.display())))
@@ -210,7 +214,10 @@ pub fn figures(summary: &Summary) -> String {
         s.time_ms, s.kernel, s.state_bytes, s.latency_lines
     );
     if let Some(Exposure { gain, offset }) = s.balance {
-        let _ = writeln!(text, "exposure     right image x {gain:.2} {offset:+.1} grey levels, as the left one has it");
+        let _ = writeln!(
+            text,
+            "exposure     right image x {gain:.2} {offset:+.1} grey levels, as the left one has it"
+        );
     }
     text
 }

@@ -39,13 +39,15 @@ pub struct OdometryArgs {
     /// Folder with the frames: left and right, or left alone
     #[arg(long, value_name = "DIR")]
     pub sequence: PathBuf,
-    /// Calibration: KITTI's or Middlebury's calib.txt, or OpenCV's, Kalibr's, ROS's (twice, a file for each camera)
+    /// Calibration: KITTI's or Middlebury's calib.txt, or OpenCV's, Kalibr's, ROS's (twice, a file for each
+    /// camera)
     #[arg(long, value_name = "FILE", required = true)]
     pub calib: Vec<PathBuf>,
     /// The unit of lengths in OpenCV's files, which do not say it: m where none is given
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<Unit>,
-    /// Frames that are adjusted together, the last of them, 0 to 12; with 0 or 1 every pose stays as it was told when its frame came
+    /// Frames that are adjusted together, the last of them, 0 to 12; with 0 or 1 every pose stays as it was
+    /// told when its frame came
     #[arg(long, value_name = "N", default_value_t = VIEWS as u16, value_parser = window, allow_negative_numbers = true)]
     pub window: u16,
     /// File for the poses
@@ -54,7 +56,8 @@ pub struct OdometryArgs {
     /// Also draw the way, from above and from the side
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,
-    /// Also write what is known of each frame: its state, points, and how sure turn and step are, lines of CSV
+    /// Also write what is known of each frame: its state, points, and how sure turn and step are, lines of
+    /// CSV
     #[arg(long, value_name = "FILE.csv")]
     pub states: Option<PathBuf>,
     /// True poses in the same form: errors are printed, and they are drawn
@@ -88,7 +91,10 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
     let truth = args.truth.as_deref().map(poses::read).transpose()?;
     let (place, picture) = Place::with_picture(&args.out, args.picture.as_deref())?;
     let states = args.states.as_deref().map(|path| Place::of("--states", path)).transpose()?;
-    if states.as_ref().is_some_and(|states| states.is(&place) || picture.as_ref().is_some_and(|p| p.is(states))) {
+    if states
+        .as_ref()
+        .is_some_and(|states| states.is(&place) || picture.as_ref().is_some_and(|p| p.is(states)))
+    {
         let what = args.states.as_deref().unwrap_or(Path::new("")).display().to_string();
         return Err(Failure::new(format!("--states: {what} is the file of another option; name another")));
     }
@@ -116,7 +122,9 @@ fn cameras(args: &OdometryArgs, sequence: &Sequence) -> Result<Cams, Failure> {
     let size = ImageSize { width: sequence.size().0 as u16, height: sequence.size().1 as u16 };
     let [path, ..] = args.calib.as_slice() else { return Err(Failure::new("--calib: a file is needed")) };
     if args.calib.len() > 2 {
-        return Err(Failure::new("--calib: is given more than twice; a file of both cameras or one of each is needed"));
+        return Err(Failure::new(
+            "--calib: is given more than twice; a file of both cameras or one of each is needed",
+        ));
     }
     if !sequence.is_stereo() {
         // The first camera of whatever the file describes.
@@ -132,7 +140,9 @@ fn cameras(args: &OdometryArgs, sequence: &Sequence) -> Result<Cams, Failure> {
             let named = |e: &dyn std::fmt::Display| Failure::new(format!("{}: {e}", path.display()));
             let rectification = Rectification::new(&raw.rig, Crop::Natural, size).map_err(|e| named(&e))?;
             if !rectification.axis().is_horizontal() {
-                return Err(named(&"the cameras are one above the other; an odometry needs them side by side"));
+                return Err(named(
+                    &"the cameras are one above the other; an odometry needs them side by side",
+                ));
             }
             let rig = rectification.rig().map_err(|e| named(&e))?;
             Ok(Cams { rig: Rig::Stereo(rig), rectification: Some(rectification), format: raw.format })
@@ -140,7 +150,9 @@ fn cameras(args: &OdometryArgs, sequence: &Sequence) -> Result<Cams, Failure> {
         raw => {
             let calibration = match (Calibration::open_all(&args.calib, Path::new(pair), unit_m), raw) {
                 // What is wrong with the cameras as they are mounted says more.
-                (Err(error), Err(raw)) if matches!(error.fault, Fault::NotRectified | Fault::Unknown) => Err(raw)?,
+                (Err(error), Err(raw)) if matches!(error.fault, Fault::NotRectified | Fault::Unknown) => {
+                    Err(raw)?
+                }
                 (found, _) => found?,
             };
             calibration.check_size(size.width, size.height)?;
@@ -151,7 +163,8 @@ fn cameras(args: &OdometryArgs, sequence: &Sequence) -> Result<Cams, Failure> {
     }
 }
 
-/// Files of KITTI do not say for which size they are: a principal point in the outer tenth of the pictures is of another one.
+/// Files of KITTI do not say for which size they are: a principal point in the outer tenth of the pictures is
+/// of another one.
 fn fits(path: &Path, (cx, cy): (f64, f64), size: ImageSize) -> Result<(), Failure> {
     let (width, height) = (f64::from(size.width), f64::from(size.height));
     let inside = |c: f64, length: f64| (0.1 * length..=0.9 * length).contains(&c);
@@ -185,7 +198,8 @@ fn frame(
 fn beside(trajectory: &Trajectory, truth: &[Pose<f64>], is_stereo: bool) -> Vec<Pose<f64>> {
     let Some(s) = align(truth, &trajectory.poses, alignment(is_stereo)) else { return Vec::new() };
     let moved = |p: &Pose<f64>| {
-        Pose::new(s.rotation * p.rotation(), s.rotation * p.translation() * s.scale + s.translation).unwrap_or(*p)
+        Pose::new(s.rotation * p.rotation(), s.rotation * p.translation() * s.scale + s.translation)
+            .unwrap_or(*p)
     };
     truth.iter().map(moved).collect()
 }
@@ -203,8 +217,11 @@ fn summary(
 ) -> String {
     let (width, height) = sequence.size();
     let kind = if sequence.is_stereo() { "a pair" } else { "one camera" };
-    let mut text =
-        format!("{} frames of {width} x {height} px, {kind}, {} calibration\n", sequence.len(), cameras.format);
+    let mut text = format!(
+        "{} frames of {width} x {height} px, {kind}, {} calibration\n",
+        sequence.len(),
+        cameras.format
+    );
     let states = [
         (State::Tracked, "tracked"),
         (State::Still, "still"),
@@ -233,7 +250,8 @@ fn summary(
 
 fn errors(text: &mut String, trajectory: &Trajectory, truth: &[Pose<f64>], is_stereo: bool) {
     if truth.len() != trajectory.poses.len() {
-        let _ = writeln!(text, "note: the truth has {} poses; as many as both have are compared", truth.len());
+        let _ =
+            writeln!(text, "note: the truth has {} poses; as many as both have are compared", truth.len());
     }
     let alignment = alignment(is_stereo);
     let Some(found) = align(&trajectory.poses, truth, alignment) else { return };

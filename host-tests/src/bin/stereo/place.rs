@@ -29,7 +29,8 @@ impl Place {
             _ => PathBuf::from("."),
         };
         Staging::probe(&folder)?;
-        // One folder has one spelling, so that two options that mean one file are seen to; a new one keeps its own.
+        // One folder has one spelling, so that two options that mean one file are seen to; a new one keeps
+        // its own.
         let folder = folder.canonicalize().unwrap_or(folder);
         Ok(Self { folder, name })
     }
@@ -39,7 +40,10 @@ impl Place {
         let place = Self::of("--out", out)?;
         let picture = picture.map(|path| Self::of("--picture", path)).transpose()?;
         if picture.as_ref().is_some_and(|picture| picture.is(&place)) {
-            return Err(Failure::new(format!("--picture: {} is the file of --out; name another", out.display())));
+            return Err(Failure::new(format!(
+                "--picture: {} is the file of --out; name another",
+                out.display()
+            )));
         }
         Ok((place, picture))
     }

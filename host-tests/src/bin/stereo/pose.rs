@@ -7,8 +7,8 @@ use crate::print;
 use crate::two_view::{PoseArgs, RobustArgs, TwoViewMethod};
 use serde::Serialize;
 use stereopsis::geometry::{
-    Camera, Correspondence, EightPointError, Essential, Fundamental, Homography, PlaneMotionError, RobustConfig,
-    RobustError, TwoViewModel, TwoViews, choose, eight_point, robust_fundamental,
+    Camera, Correspondence, EightPointError, Essential, Fundamental, Homography, PlaneMotionError,
+    RobustConfig, RobustError, TwoViewModel, TwoViews, choose, eight_point, robust_fundamental,
 };
 use stereopsis_host::calibration::Cameras;
 use stereopsis_host::matches::read_matches;
@@ -38,7 +38,8 @@ pub fn run(args: &PoseArgs) -> Result<(), Failure> {
     // A zero's sign says nothing.
     answer.translation.iter_mut().for_each(|x| *x += 0.0);
     json_file(&args.out, &answer)?;
-    let (kept, points) = (answer.inliers.iter().filter(|&&i| i).count(), answer.points.iter().flatten().count());
+    let (kept, points) =
+        (answer.inliers.iter().filter(|&&i| i).count(), answer.points.iter().flatten().count());
     let n = seen.len();
     print(&format!(
         "{kept} of {n} matches within {} px ({rms:.3} px RMS), {points} points, by the {} matrix\n",
@@ -46,7 +47,11 @@ pub fn run(args: &PoseArgs) -> Result<(), Failure> {
     ))
 }
 
-fn solve(seen: &[Correspondence<f64>], cameras: &Cameras, args: &RobustArgs) -> Result<(Answer, f64), String> {
+fn solve(
+    seen: &[Correspondence<f64>],
+    cameras: &Cameras,
+    args: &RobustArgs,
+) -> Result<(Answer, f64), String> {
     let (first, second) = (pinhole(&cameras.first)?, pinhole(&cameras.second)?);
     let seen = undistorted(seen, cameras)?;
     let Start { essential, model } = start(&seen, &first, &second, args)?;
@@ -133,11 +138,14 @@ fn start(
         (None, None) => Err("no model fits".to_owned()),
         (Some(h), _) => {
             let motions = h.recover_motions(kept, first, second).map_err(|e| match e {
-                PlaneMotionError::NoBaseline => "the camera has only turned: there is no translation".to_owned(),
+                PlaneMotionError::NoBaseline => {
+                    "the camera has only turned: there is no translation".to_owned()
+                }
                 e => e.to_string(),
             })?;
             let poses = motions.iter().filter_map(|(motion, _)| motion.relative_pose());
-            let essential = poses.filter_map(|pose| Essential::from_pose(&pose.in_baselines()).ok()).collect();
+            let essential =
+                poses.filter_map(|pose| Essential::from_pose(&pose.in_baselines()).ok()).collect();
             Ok(Start { essential, model: "homography" })
         }
     }
@@ -153,7 +161,8 @@ fn undistorted(seen: &[Correspondence<f64>], cameras: &Cameras) -> Result<Vec<Co
     let both = seen.iter().zip(1..).map(|(s, number)| {
         let first = cameras.first.undistort(&s.first);
         let second = cameras.second.undistort(&s.second);
-        let (first, second) = first.and_then(|p| Ok((p, second?))).map_err(|e| format!("match {number}: {e}"))?;
+        let (first, second) =
+            first.and_then(|p| Ok((p, second?))).map_err(|e| format!("match {number}: {e}"))?;
         Ok(Correspondence { first, second })
     });
     both.collect()

@@ -7,8 +7,8 @@ use stereopsis::matching::Config;
 /// Disparity evaluations that take about a second on a slow core.
 const LONG: u64 = 200_000_000;
 
-/// A bar over the rows of a frame, or over frames, on standard error. It is hidden when the work is short or standard error is no
-/// terminal, and gone when dropped.
+/// A bar over the rows of a frame, or over frames, on standard error. It is hidden when the work is short or
+/// standard error is no terminal, and gone when dropped.
 pub struct Progress(ProgressBar);
 
 impl Progress {
@@ -21,7 +21,11 @@ impl Progress {
 
     /// Over the frames of a sequence.
     pub fn over_frames(frames: usize) -> Self {
-        Self::new(frames as u64, ProgressDrawTarget::stderr(), "following {bar:40} {pos}/{len} frames, {eta} left")
+        Self::new(
+            frames as u64,
+            ProgressDrawTarget::stderr(),
+            "following {bar:40} {pos}/{len} frames, {eta} left",
+        )
     }
 
     fn new(length: u64, target: ProgressDrawTarget, template: &str) -> Self {

@@ -69,9 +69,12 @@ pub fn run(args: &RectifyArgs) -> Result<(), Failure> {
     let mut staging = Staging::new(&args.out)?;
     let [left, right] = &result.pictures;
     let [valid_left, valid_right] = &result.valid;
-    for (name, picture) in
-        [("left.png", left), ("right.png", right), ("valid_left.png", valid_left), ("valid_right.png", valid_right)]
-    {
+    for (name, picture) in [
+        ("left.png", left),
+        ("right.png", right),
+        ("valid_left.png", valid_left),
+        ("valid_right.png", valid_right),
+    ] {
         staging.write(name, |out| png(out, picture))?;
     }
     let summary = Summary::new(calibration.format, &rectification, result.rows, &report);
@@ -82,7 +85,11 @@ pub fn run(args: &RectifyArgs) -> Result<(), Failure> {
     for note in &pair.notes {
         let _ = writeln!(text, "note: {}", one_line(note));
     }
-    let _ = writeln!(text, "{} x {} px, {}, {} calibration", size.width, size.height, summary.axis, calibration.format);
+    let _ = writeln!(
+        text,
+        "{} x {} px, {}, {} calibration",
+        size.width, size.height, summary.axis, calibration.format
+    );
     text += &summary.figures();
     let _ = writeln!(text, "results are in {}", one_line(&args.out.display().to_string()));
     print(&text)
@@ -95,7 +102,9 @@ pub fn open(
     size: ImageSize,
 ) -> Result<(RawCalibration, Rectification<f64>), Failure> {
     if calib.len() > 2 {
-        return Err(Failure::new("--calib: is given more than twice; a file of both cameras or one of each is needed"));
+        return Err(Failure::new(
+            "--calib: is given more than twice; a file of both cameras or one of each is needed",
+        ));
     }
     let calibration = RawCalibration::open(calib, Some(size), options.unit.map(Unit::metres))?;
     let crop = options.alpha.map_or(Crop::Natural, Crop::Alpha);

@@ -42,8 +42,8 @@ pub struct ReplayArgs {
     /// dense, default or strict
     #[arg(long, value_name = "FILTER", default_value = "default", value_parser = crate::cli::filter)]
     pub filter: Filter,
-    /// How noisy the images are: none, low (a deviation of about 2 grey levels), high (3 and more), or auto, which measures each
-    /// frame
+    /// How noisy the images are: none, low (a deviation of about 2 grey levels), high (3 and more), or auto,
+    /// which measures each frame
     #[arg(long, value_name = "NOISE", default_value = "auto", value_parser = crate::cli::noise)]
     pub noise: NoiseChoice,
     #[command(flatten)]
@@ -172,9 +172,13 @@ fn recorded(pictures: &mut Pictures) -> Result<Recording, Failure> {
 fn config(args: &ReplayArgs, header: Header) -> Result<Config, Failure> {
     if header.width < Config::FEWEST_DISPARITIES {
         let (from, least) = (args.from.display(), Config::FEWEST_DISPARITIES);
-        return Err(Failure::new(format!("{from}: lines of {} pixels; at least {least} are needed", header.width)));
+        return Err(Failure::new(format!(
+            "{from}: lines of {} pixels; at least {least} are needed",
+            header.width
+        )));
     }
-    let way = WayArgs { method: args.method, filter: args.filter, noise: args.noise, kernel: None, threads: 1 };
+    let way =
+        WayArgs { method: args.method, filter: args.filter, noise: args.noise, kernel: None, threads: 1 };
     input::config(&args.range, &way, header.width, header.height)
 }
 
@@ -250,7 +254,8 @@ fn line(number: usize, frame: &GuardedFrame) -> String {
     let sequence = or_empty(frame.start.map(|start| start.sequence));
     let timestamp_us = or_empty(frame.start.map(|start| start.timestamp_us));
     let error = frame.error.as_deref().unwrap_or_default().replace(',', ";");
-    let (rows, damaged, lost, answers) = (frame.rows, frame.damaged_rows, frame.lost_lines, frame.map.answers());
+    let (rows, damaged, lost, answers) =
+        (frame.rows, frame.damaged_rows, frame.lost_lines, frame.map.answers());
     format!("{number},{sequence},{timestamp_us},{rows},{damaged},{lost},{answers},{}\n", one_line(&error))
 }
 
@@ -287,8 +292,10 @@ fn told(s: &Summary, out: &Path) -> String {
         text += "note: the recording ends within a record; what is before it was played\n";
     }
     if let Some(frame) = s.time_went_back_at {
-        let _ =
-            writeln!(text, "note: time stamps go back at frame {frame}; frames were played in the order of the file");
+        let _ = writeln!(
+            text,
+            "note: time stamps go back at frame {frame}; frames were played in the order of the file"
+        );
     }
     let _ = writeln!(text, "results are in {}", one_line(&out.display().to_string()));
     text

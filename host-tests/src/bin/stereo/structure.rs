@@ -140,7 +140,10 @@ fn images(args: &StructureArgs) -> Result<Images, Failure> {
     let paths = files("--images", &args.images)?;
     if !(2..=MOST).contains(&paths.len()) {
         let given = args.images.join(" ");
-        return Err(Failure::new(format!("--images {given}: {} images; 2 to {MOST} are needed", paths.len())));
+        return Err(Failure::new(format!(
+            "--images {given}: {} images; 2 to {MOST} are needed",
+            paths.len()
+        )));
     }
     let mut images = Images { names: Vec::new(), grey: Vec::new(), colours: Vec::new() };
     for path in &paths {

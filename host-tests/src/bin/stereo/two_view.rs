@@ -55,8 +55,8 @@ pub struct FeaturesArgs {
     /// How many rows partners may lie apart, px; anywhere by default
     #[arg(long, value_name = "PX", value_parser = apart, allow_negative_numbers = true)]
     pub rows_apart: Option<u16>,
-    /// upright, turned (the images may be turned against each other by any angle), or auto, which tries turned when few
-    /// corners match upright
+    /// upright, turned (the images may be turned against each other by any angle), or auto, which tries
+    /// turned when few corners match upright
     #[arg(long, value_name = "WAY", default_value = "auto")]
     pub orientation: OrientationChoice,
 }
@@ -95,8 +95,9 @@ pub struct PoseArgs {
     /// The matches: lines of x1,y1,x2,y2 in px under that header
     #[arg(long, value_name = "FILE")]
     pub matches: PathBuf,
-    /// Calibration of the two cameras, which need not be rectified, or of the one that took both images: OpenCV's YAML, XML or
-    /// JSON, ROS's camera_info (twice for two cameras), Kalibr's camchain, a Middlebury or KITTI calib.txt
+    /// Calibration of the two cameras, which need not be rectified, or of the one that took both images:
+    /// OpenCV's YAML, XML or JSON, ROS's camera_info (twice for two cameras), Kalibr's camchain, a
+    /// Middlebury or KITTI calib.txt
     #[arg(long, value_name = "FILE", required = true)]
     pub calib: Vec<PathBuf>,
     #[command(flatten)]

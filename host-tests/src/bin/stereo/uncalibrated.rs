@@ -48,18 +48,26 @@ pub fn run(pair: &Pair, matches: &Path, out: &Path) -> Result<(), Failure> {
     let size = ImageSize { width: pair.width, height: pair.height };
     let failed = |why: &dyn std::fmt::Display| Failure::new(format!("{}: {why}", matches.display()));
     let seen = read_matches(matches)?;
-    let is_inside =
-        |p: &Point2<f64>| (-0.5..f64::from(size.width)).contains(&p.x) && (-0.5..f64::from(size.height)).contains(&p.y);
+    let is_inside = |p: &Point2<f64>| {
+        (-0.5..f64::from(size.width)).contains(&p.x) && (-0.5..f64::from(size.height)).contains(&p.y)
+    };
     if let Some(at) = seen.iter().position(|s| !(is_inside(&s.first) && is_inside(&s.second))) {
         let (number, w, h) = (at + 1, size.width, size.height);
-        return Err(failed(&format!("match {number} is outside of the images of {w} x {h} px; name their matches")));
+        return Err(failed(&format!(
+            "match {number} is outside of the images of {w} x {h} px; name their matches"
+        )));
     }
     let mut inliers = vec![false; seen.len()];
-    let found = robust_fundamental(&seen, &RobustConfig::new(THRESHOLD_PX), &mut inliers).map_err(|e| failed(&e))?;
-    let right: Vec<_> = seen.iter().zip(&inliers).filter(|(_, is_right)| **is_right).map(|(s, _)| *s).collect();
+    let found =
+        robust_fundamental(&seen, &RobustConfig::new(THRESHOLD_PX), &mut inliers).map_err(|e| failed(&e))?;
+    let right: Vec<_> =
+        seen.iter().zip(&inliers).filter(|(_, is_right)| **is_right).map(|(s, _)| *s).collect();
     if right.len() < FEWEST {
         let count = right.len();
-        return Err(failed(&format!("{count} of {} matches agree with each other; {FEWEST} are needed", seen.len())));
+        return Err(failed(&format!(
+            "{count} of {} matches agree with each other; {FEWEST} are needed",
+            seen.len()
+        )));
     }
     let both = UncalibratedRectification::new(&found.fundamental, &right, size).map_err(|e| failed(&e))?;
     Staging::probe(out)?;
@@ -67,7 +75,9 @@ pub fn run(pair: &Pair, matches: &Path, out: &Path) -> Result<(), Failure> {
     let grey = [&pair.left, &pair.right].map(imageops::grayscale);
     let pictures: Vec<_> = grey.iter().zip(both.to_raw()).map(|(raw, to_raw)| warped(raw, to_raw)).collect();
     let share = |valid: &GrayImage| {
-        valid.iter().filter(|&&seen| seen != 0).count() as f64 / f64::from(size.width) / f64::from(size.height)
+        valid.iter().filter(|&&seen| seen != 0).count() as f64
+            / f64::from(size.width)
+            / f64::from(size.height)
     };
     let (row_error_px, disparity_px) = figures(&both, &right);
     let summary = Summary {
@@ -95,11 +105,15 @@ pub fn run(pair: &Pair, matches: &Path, out: &Path) -> Result<(), Failure> {
     for note in &pair.notes {
         let _ = writeln!(text, "note: {}", one_line(note));
     }
-    let _ =
-        writeln!(text, "{} x {} px, horizontal, without a calibration: nothing is in metres", size.width, size.height);
+    let _ = writeln!(
+        text,
+        "{} x {} px, horizontal, without a calibration: nothing is in metres",
+        size.width, size.height
+    );
     let _ = writeln!(text, "matches      {} of {} agree within {THRESHOLD_PX} px", right.len(), seen.len());
     let _ = writeln!(text, "rows         {row_error_px:.2} px apart");
-    let _ = writeln!(text, "disparity    {:.1} to {:.1} px of these matches", disparity_px[0], disparity_px[1]);
+    let _ =
+        writeln!(text, "disparity    {:.1} to {:.1} px of these matches", disparity_px[0], disparity_px[1]);
     let _ = writeln!(text, "results are in {}", one_line(&out.display().to_string()));
     print(&text)
 }

@@ -52,13 +52,15 @@ pub struct WalkArgs {
     /// How many frames, 2 to 2000
     #[arg(long, value_name = "N", default_value_t = 12, value_parser = frames, allow_negative_numbers = true)]
     pub frames: u16,
-    /// Columns of a picture, 160 to 1280; it has half as many rows, on a road three tenths, in a room two thirds
+    /// Columns of a picture, 160 to 1280; it has half as many rows, on a road three tenths, in a room two
+    /// thirds
     #[arg(long, value_name = "PX", default_value_t = 320, value_parser = width, allow_negative_numbers = true)]
     pub width: u16,
     /// Deviation of the sensors' noise, grey levels, 0 to 50
     #[arg(long, value_name = "GREY", default_value_t = 2, value_parser = noise, allow_negative_numbers = true)]
     pub noise: u16,
-    /// Percent of the time between frames that the shutter is open, 0 to 100: motion blurs, and takes four times as long to draw
+    /// Percent of the time between frames that the shutter is open, 0 to 100: motion blurs, and takes four
+    /// times as long to draw
     #[arg(long, value_name = "PERCENT", default_value_t = 0, value_parser = percent, allow_negative_numbers = true)]
     pub shutter: u16,
     /// Percent by which the pictures' brightness changes from frame to frame and back, 0 to 80

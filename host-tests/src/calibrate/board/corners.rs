@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Corner {
     pub place: Point2<f64>,
-    /// The four edges that leave it, in order of their angles (clockwise on the screen). They begin with one behind which it is
-    /// bright, and go on with one behind which it is dark, and so on.
+    /// The four edges that leave it, in order of their angles (clockwise on the screen). They begin with one
+    /// behind which it is bright, and go on with one behind which it is dark, and so on.
     pub edges: [Vector2<f64>; 4],
     /// Half of the difference between bright and dark.
     pub contrast: f32,
@@ -17,8 +17,8 @@ pub(super) struct Corner {
 
 /// Places around a corner that are looked at.
 const AROUND: usize = 40;
-/// Radii at which they are, px: the first that shows four sectors tells the edges, and smaller ones are for small squares and
-/// corners near the border.
+/// Radii at which they are, px: the first that shows four sectors tells the edges, and smaller ones are for
+/// small squares and corners near the border.
 const RADII: [f64; 4] = [5.0, 4.0, 3.0, 2.2];
 /// The least contrast, grey levels.
 const LEAST_CONTRAST: f32 = 4.0;
@@ -69,7 +69,8 @@ fn sectors(level: &Level, place: Point2<f64>, radius: f64) -> Option<Corner> {
     }
     let towards = |angle: f64| Vector2::new(angle.cos(), angle.sin());
     let angle = |i: f64| i * TAU / AROUND as f64;
-    let ring: [f32; AROUND] = std::array::from_fn(|i| level.value(&(place + radius * towards(angle(i as f64)))));
+    let ring: [f32; AROUND] =
+        std::array::from_fn(|i| level.value(&(place + radius * towards(angle(i as f64)))));
     let (least, most) = ring.iter().fold((f32::MAX, f32::MIN), |(a, b), &v| (a.min(v), b.max(v)));
     let (middle, contrast) = ((least + most) / 2.0, (most - least) / 2.0);
     if contrast < LEAST_CONTRAST {

@@ -83,7 +83,8 @@ impl Grid {
         for _ in 0..4 {
             let mut found = Vec::new();
             let beside = self.nodes.keys().flat_map(|at| STEPS.map(|step| (at.0 + step.0, at.1 + step.1)));
-            let gaps: std::collections::BTreeSet<_> = beside.filter(|at| !self.nodes.contains_key(at)).collect();
+            let gaps: std::collections::BTreeSet<_> =
+                beside.filter(|at| !self.nodes.contains_key(at)).collect();
             for at in gaps {
                 let Some((expected, spacing, is_bright)) = self.expected(at) else { continue };
                 let near = corners.iter().map(|c| c.place).filter(|p| (p - expected).norm() < 0.25 * spacing);
@@ -94,7 +95,8 @@ impl Grid {
                 let weak = || level.saddle(&expected, 0.2 * spacing).filter(|_| is_within);
                 let Some(place) = nearest.or_else(weak) else { continue };
                 let is_free = self.nodes.values().all(|node| (node.place - place).norm() > 0.4 * spacing);
-                let looks_right = corners::look(level, place).is_some_and(|corner| self.fits(at, &corner, is_bright));
+                let looks_right =
+                    corners::look(level, place).is_some_and(|corner| self.fits(at, &corner, is_bright));
                 if is_free && (looks_right || is_within) {
                     found.push((at, Node { place, is_bright }));
                 }
@@ -106,13 +108,18 @@ impl Grid {
         }
     }
 
-    /// Where a corner is expected, of three in a row beside it on one side, or of those on both; with their spacing.
+    /// Where a corner is expected, of three in a row beside it on one side, or of those on both; with their
+    /// spacing.
     fn expected(&self, at: (i32, i32)) -> Option<(Point2<f64>, f64, bool)> {
         let node = |step: (i32, i32), k: i32| self.nodes.get(&(at.0 + k * step.0, at.1 + k * step.1));
         let mut places = Vec::new();
         for step in STEPS {
             if let (Some(a), Some(b)) = (node(step, 1), node(step, -1)) {
-                places.push((a.place + (b.place - a.place) / 2.0, (b.place - a.place).norm() / 2.0, !a.is_bright));
+                places.push((
+                    a.place + (b.place - a.place) / 2.0,
+                    (b.place - a.place).norm() / 2.0,
+                    !a.is_bright,
+                ));
             } else if let (Some(a), Some(b), Some(c)) = (node(step, 1), node(step, 2), node(step, 3)) {
                 // The steps change evenly.
                 let (first, second) = (a.place - b.place, b.place - c.place);
@@ -135,8 +142,8 @@ impl Grid {
         })
     }
 
-    /// The block of the pattern's size, either way round; or `Err` of the size of a grid that has room for several, or of
-    /// nothing.
+    /// The block of the pattern's size, either way round; or `Err` of the size of a grid that has room for
+    /// several, or of nothing.
     pub fn block(&self, pattern: Pattern) -> Result<Block, Option<(usize, usize)>> {
         let (c, r) = (pattern.columns() as i32, pattern.rows() as i32);
         let mut ways = vec![(c, r)];

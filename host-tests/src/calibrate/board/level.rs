@@ -99,7 +99,8 @@ impl Level {
     /// Second derivatives xx, xy, yy at a pixel.
     pub fn bends(&self, x: isize, y: isize) -> [f32; 3] {
         let twice = 2.0 * self.at(x, y);
-        let xy = self.at(x + 1, y + 1) + self.at(x - 1, y - 1) - self.at(x + 1, y - 1) - self.at(x - 1, y + 1);
+        let xy =
+            self.at(x + 1, y + 1) + self.at(x - 1, y - 1) - self.at(x + 1, y - 1) - self.at(x - 1, y + 1);
         let xx = self.at(x + 1, y) + self.at(x - 1, y) - twice;
         let yy = self.at(x, y + 1) + self.at(x, y - 1) - twice;
         [xx, xy / 4.0, yy]

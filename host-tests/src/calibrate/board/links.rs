@@ -4,7 +4,8 @@ use super::corners::Corner;
 use super::level::Level;
 use nalgebra::Vector2;
 
-/// For each corner and each of its four edges the corner at the edge's other end, and which of its edges leads back.
+/// For each corner and each of its four edges the corner at the edge's other end, and which of its edges
+/// leads back.
 pub(super) type Links = Vec<[Option<(usize, usize)>; 4]>;
 
 /// How far the other end may be from where the edge points at first: the cosine of 25 degrees.
@@ -35,7 +36,8 @@ fn other_end(level: &Level, corners: &[Corner], i: usize, edge: usize) -> Option
             continue;
         }
         // The edge that leads back has dark and bright on the other sides, as seen from there.
-        let back = (0..4).find(|back| to.edges[*back].dot(&way) < -TOWARDS * length && (back + edge) % 2 == 1);
+        let back =
+            (0..4).find(|back| to.edges[*back].dot(&way) < -TOWARDS * length && (back + edge) % 2 == 1);
         if let Some(back) = back {
             ahead.push((length, j, back));
         }

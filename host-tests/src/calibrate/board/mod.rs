@@ -1,12 +1,13 @@
 //! A chessboard's inner corners in a picture.
 //!
-//! In: a grey picture and a [`Pattern`]. Out: the corners in the board's order, to a small part of a pixel, or
-//! [`BoardError`]. In running order, at several sizes of the picture until the board is found at one:
+//! In: a grey picture and a [`Pattern`]. Out: the corners in the board's order, to a small part of a pixel,
+//! or [`BoardError`]. In running order, at several sizes of the picture until the board is found at one:
 //!
 //! * `level`: the picture made smaller or larger, smoothed, with its derivatives.
 //! * `corners`: places where brightness is a saddle, and where two dark and two bright sectors meet.
 //! * `links`: corners that an edge joins, dark on the right side of it and bright on the other all along.
-//! * `grid`: corners with whole coordinates, from link to link; gaps filled, and the block that is the pattern.
+//! * `grid`: corners with whole coordinates, from link to link; gaps filled, and the block that is the
+//!   pattern.
 //! * `order`: which of its corners is the first.
 //! * `refine`: the corners again in the picture itself, where all gradients around point across them.
 
@@ -54,7 +55,8 @@ impl Pattern {
         (0..self.rows).flat_map(move |y| (0..self.columns).map(move |x| Point2::new(x as f64, y as f64)))
     }
 
-    /// Whether the board looks the same when it is turned by half a turn: then its first corner cannot be told from its last.
+    /// Whether the board looks the same when it is turned by half a turn: then its first corner cannot be
+    /// told from its last.
     pub fn is_ambiguous(self) -> bool {
         (self.columns + self.rows).is_multiple_of(2)
     }
@@ -94,8 +96,8 @@ pub enum BoardError {
 /// The largest side of a picture that is searched at once, px: more makes the search slow and no surer.
 const LARGEST: u32 = 1100;
 
-/// Finds the board. Of a pattern that [is ambiguous](Pattern::is_ambiguous) the first row points to the right, or as it does in
-/// `like`, another camera's picture of the same moment.
+/// Finds the board. Of a pattern that [is ambiguous](Pattern::is_ambiguous) the first row points to the
+/// right, or as it does in `like`, another camera's picture of the same moment.
 pub fn find(picture: &GrayImage, pattern: Pattern, like: Option<&Board>) -> Result<Board, BoardError> {
     let side = picture.width().max(picture.height());
     let mut base = 1.0;
@@ -105,7 +107,8 @@ pub fn find(picture: &GrayImage, pattern: Pattern, like: Option<&Board>) -> Resu
     let (mut most, mut larger) = (0, None);
     for scale in [1.0, 0.5, 2.0, 0.25, 0.125] {
         let scale = scale * base;
-        if scale > 2.0 || f64::from(side) * scale < 60.0 || f64::from(side) * scale > 2.0 * f64::from(LARGEST) {
+        if scale > 2.0 || f64::from(side) * scale < 60.0 || f64::from(side) * scale > 2.0 * f64::from(LARGEST)
+        {
             continue;
         }
         let level = level::Level::new(picture, scale);

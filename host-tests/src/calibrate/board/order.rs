@@ -4,10 +4,12 @@ use super::grid::Block;
 use super::{Board, Pattern};
 use nalgebra::{Point2, Vector2};
 
-/// The block's corners in the pattern's order: row by row, clockwise from a row to a column, so that a board is never mirrored.
+/// The block's corners in the pattern's order: row by row, clockwise from a row to a column, so that a board
+/// is never mirrored.
 ///
-/// Where a board with an odd sum of columns and rows is turned by half a turn, bright and dark change places: its first corner is
-/// that behind whose first edge it is bright. Of other boards the first row points as it does in `like`, or to the right.
+/// Where a board with an odd sum of columns and rows is turned by half a turn, bright and dark change places:
+/// its first corner is that behind whose first edge it is bright. Of other boards the first row points as it
+/// does in `like`, or to the right.
 pub(super) fn order(block: &Block, pattern: Pattern, like: Option<&Board>) -> Vec<Point2<f64>> {
     let at = |x: usize, y: usize| block.places[y * block.columns + x];
     let (last_x, last_y) = (block.columns - 1, block.rows - 1);
@@ -32,7 +34,8 @@ pub(super) fn order(block: &Block, pattern: Pattern, like: Option<&Board>) -> Ve
         block.is_bright ^ !(steps + quarters).is_multiple_of(2)
     };
     let fits = |quarters: &usize| {
-        (block.columns, block.rows) == if quarters.is_multiple_of(2) { (columns, rows) } else { (rows, columns) }
+        (block.columns, block.rows)
+            == if quarters.is_multiple_of(2) { (columns, rows) } else { (rows, columns) }
     };
     let along = |corners: &[Point2<f64>]| (corners[columns - 1] - corners[0]).normalize();
     let wanted = like.map_or(Vector2::x(), |board| along(&board.corners));

@@ -5,17 +5,22 @@ use super::level::Level;
 use image::GrayImage;
 use nalgebra::{Matrix2, Point2, Vector2};
 
-/// The window's half side, as a share of the way to the nearest corner, the largest that will do; and its bounds, px.
+/// The window's half side, as a share of the way to the nearest corner, the largest that will do; and its
+/// bounds, px.
 const SHARES: [f64; 3] = [0.32, 0.25, 0.2];
 const BOUNDS: (f64, f64) = (2.5, 12.0);
 /// Squares of fewer px are small.
 const SMALL: f64 = 12.0;
 const STEPS: usize = 40;
 
-/// Moves each corner to where all gradients around it point across the line to it (Förstner & Gülch 1987): the least
-/// `sum w (g . (p - q))^2` over pixels q with gradients g, in a window that reaches to no other corner. `None` when one goes
-/// astray.
-pub(super) fn refine(picture: &GrayImage, pattern: Pattern, corners: Vec<Point2<f64>>) -> Option<Vec<Point2<f64>>> {
+/// Moves each corner to where all gradients around it point across the line to it (Förstner & Gülch 1987):
+/// the least `sum w (g . (p - q))^2` over pixels q with gradients g, in a window that reaches to no other
+/// corner. `None` when one goes astray.
+pub(super) fn refine(
+    picture: &GrayImage,
+    pattern: Pattern,
+    corners: Vec<Point2<f64>>,
+) -> Option<Vec<Point2<f64>>> {
     let level = Level::new(picture, 1.0);
     let columns = pattern.columns();
     let refined = corners.iter().enumerate().map(|(i, corner)| {

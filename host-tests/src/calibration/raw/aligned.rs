@@ -1,4 +1,5 @@
-//! Rectified cameras from the files of the programs that calibrate: what they say of the images after rectification.
+//! Rectified cameras from the files of the programs that calibrate: what they say of the images after
+//! rectification.
 //!
 //! * OpenCV: `P1` and `P2` of stereoRectify, or `Q`.
 //! * ROS: the projection matrices of both camera_infos.
@@ -11,7 +12,8 @@ use crate::calibration::{Calibration, Fault, Intrinsics, rig};
 use nalgebra::Matrix3;
 use std::path::PathBuf;
 
-/// How far an element of the rotation between rectified cameras may be from the identity's: their files round it.
+/// How far an element of the rotation between rectified cameras may be from the identity's: their files round
+/// it.
 const ROTATION_TOLERANCE: f64 = 1e-5;
 
 /// The rectified rig, or nothing where the files are of none of these formats.
@@ -26,8 +28,13 @@ pub(in crate::calibration) fn read(
         && ros::is_one(one)
         && ros::is_one(two)
     {
-        return projections("ROS", ["projection_matrix"; 2], [ros::projection(one)?, ros::projection(two)?], 1.0)
-            .map(Some);
+        return projections(
+            "ROS",
+            ["projection_matrix"; 2],
+            [ros::projection(one)?, ros::projection(two)?],
+            1.0,
+        )
+        .map(Some);
     }
     if let Some(tree) = trees.iter().find(|tree| tree.get("focal_px").is_some() && tree.get("q").is_some()) {
         return of_q("rectified.json", "q", tree, 1.0).map(Some);
@@ -47,7 +54,12 @@ pub(in crate::calibration) fn read(
 }
 
 /// `P = K [1 | t]`, the second with `-f b` in its fourth column.
-fn projections(format: &'static str, keys: [&str; 2], p: [[f64; 12]; 2], unit_m: f64) -> Result<Calibration, Fault> {
+fn projections(
+    format: &'static str,
+    keys: [&str; 2],
+    p: [[f64; 12]; 2],
+    unit_m: f64,
+) -> Result<Calibration, Fault> {
     // In whatever order they were given.
     let [left, right] = if p[0][3] < 0.0 && p[1][3] == 0.0 { [1, 0] } else { [0, 1] };
     if p[right][7] != p[left][7] {
@@ -66,8 +78,10 @@ fn of_q(format: &'static str, key: &str, tree: &Tree, unit_m: f64) -> Result<Cal
         return Err(Fault::Below);
     }
     let q: [f64; 16] = numbers(key, tree.get(key).ok_or_else(wrong)?)?;
-    let is_one =
-        q[0] == 1.0 && q[5] == 1.0 && q[14] != 0.0 && [1, 2, 4, 6, 8, 9, 10, 12, 13].iter().all(|&i| q[i] == 0.0);
+    let is_one = q[0] == 1.0
+        && q[5] == 1.0
+        && q[14] != 0.0
+        && [1, 2, 4, 6, 8, 9, 10, 12, 13].iter().all(|&i| q[i] == 0.0);
     if !is_one {
         return Err(wrong());
     }

@@ -2,13 +2,16 @@
 //!
 //! In: one file, or two of ROS. Out: a [`RawCalibration`], in metres. The formats are told apart by content:
 //!
-//! * `opencv`: FileStorage as YAML, XML or JSON, with K1, D1, K2, D2, R and T by their usual names; `P' = R P + T`.
-//! * `ros`: a camera_info for each camera; where the second stands is in its rectification and projection matrices.
+//! * `opencv`: FileStorage as YAML, XML or JSON, with K1, D1, K2, D2, R and T by their usual names; `P' = R P
+//!   + T`.
+//! * `ros`: a camera_info for each camera; where the second stands is in its rectification and projection
+//!   matrices.
 //! * `kalibr`: a camchain with `cam0`, `cam1` and `T_cn_cnm1`, which carries a point of cam0 into cam1.
 //! * `record`: the core's own, as it stands in flash.
 //! * Middlebury's and KITTI's calib.txt, whose cameras are rectified.
 //!
-//! `tree` reads the first three's syntax; `aligned` reads what they say of rectified images, [`cameras`] of the cameras alone.
+//! `tree` reads the first three's syntax; `aligned` reads what they say of rectified images, [`cameras`] of
+//! the cameras alone.
 
 mod aligned;
 mod kalibr;
@@ -54,15 +57,20 @@ struct Found {
 }
 
 impl RawCalibration {
-    /// Reads a rig for images of `images` px, or of the size that the file says where none is given. Lengths of OpenCV's files
-    /// are in units of `unit_m` metres where the file does not say `length_unit`, and in metres where neither does; the other
-    /// formats say theirs.
-    pub fn open(paths: &[PathBuf], images: Option<ImageSize>, unit_m: Option<f64>) -> Result<Self, CalibrationError> {
+    /// Reads a rig for images of `images` px, or of the size that the file says where none is given. Lengths
+    /// of OpenCV's files are in units of `unit_m` metres where the file does not say `length_unit`, and
+    /// in metres where neither does; the other formats say theirs.
+    pub fn open(
+        paths: &[PathBuf],
+        images: Option<ImageSize>,
+        unit_m: Option<f64>,
+    ) -> Result<Self, CalibrationError> {
         let path = paths.first().cloned().unwrap_or_default();
         if let [one] = paths
             && let Some(record) = record::read(one)
         {
-            let read = record.and_then(|rig| Self::checked(path.clone(), "record", rig, images, "the record"));
+            let read =
+                record.and_then(|rig| Self::checked(path.clone(), "record", rig, images, "the record"));
             return read.map_err(|fault| CalibrationError { path: path.clone(), fault });
         }
         let texts = load_all(paths)?;
@@ -101,7 +109,8 @@ impl RawCalibration {
         }
         likely(format, baseline_key, rig.baseline_m())?;
         // All else that rectification may refuse is fine elsewhere.
-        if let Err(error @ RectifyError::Swapped(_)) = Rectification::new(&rig, Crop::Natural, rig.sizes()[0]) {
+        if let Err(error @ RectifyError::Swapped(_)) = Rectification::new(&rig, Crop::Natural, rig.sizes()[0])
+        {
             return Err(Fault::Swapped(error));
         }
         Ok(Self { path, format, rig })
@@ -134,8 +143,8 @@ fn trees(texts: &[String]) -> Result<Vec<Tree>, Fault> {
     Ok(trees)
 }
 
-/// The cameras alone, wherever they stand; one twice where the files say of one only. Nothing where the files are of none of
-/// these formats.
+/// The cameras alone, wherever they stand; one twice where the files say of one only. Nothing where the files
+/// are of none of these formats.
 pub(super) fn cameras(texts: &[String]) -> Result<Option<[Camera<f64>; 2]>, Fault> {
     let trees = trees(texts)?;
     let both = match trees.as_slice() {
@@ -167,7 +176,9 @@ fn find(paths: &[PathBuf], texts: &[String], unit_m: Option<f64>) -> Result<Foun
         [one, ..] if kalibr::is_one(one) => kalibr::read(one),
         [one, two] if ros::is_one(one) && ros::is_one(two) => ros::read(one, two),
         [one, ..] if ros::is_one(one) => Err(Fault::OneOfTwo),
-        [one, rest @ ..] if opencv::is_one(one) || rest.iter().any(opencv::is_one) => opencv::read(&trees, unit_m),
+        [one, rest @ ..] if opencv::is_one(one) || rest.iter().any(opencv::is_one) => {
+            opencv::read(&trees, unit_m)
+        }
         _ => Err(fault.map_or(Fault::UnknownRaw, Fault::Syntax)),
     }
 }

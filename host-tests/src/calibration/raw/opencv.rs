@@ -5,7 +5,8 @@ use super::{Fault, Found, Model, camera, pose_of};
 use serde_json::{Value, json};
 use stereopsis::geometry::Camera;
 
-/// Names of a camera's matrix without its number or side, and of its lens, in small letters without signs between.
+/// Names of a camera's matrix without its number or side, and of its lens, in small letters without signs
+/// between.
 const MATRIX: [&str; 7] = ["m", "k", "a", "cameramatrix", "cammatrix", "intrinsicmatrix", "mtx"];
 const LENS: [&str; 7] =
     ["d", "dist", "distcoeffs", "distcoeff", "distortioncoefficients", "distortioncoeffs", "distortion"];
@@ -21,7 +22,8 @@ const SIZE: [&str; 3] = ["imagesize", "imgsize", "size"];
 pub(super) fn is_one(tree: &Tree) -> bool {
     let names = MATRIX.iter().chain(&LENS);
     let mut both = names.flat_map(|name| SIDES.map(|side| sided(tree, name, side)));
-    both.any(|found| found.is_some()) || (plain(tree, &ROTATION).is_some() && plain(tree, &TRANSLATION).is_some())
+    both.any(|found| found.is_some())
+        || (plain(tree, &ROTATION).is_some() && plain(tree, &TRANSLATION).is_some())
 }
 
 /// Whether the matrix of a camera without a number or a side is there.
@@ -31,7 +33,8 @@ pub(super) fn is_one_camera(tree: &Tree) -> bool {
 
 /// That camera.
 pub(super) fn camera_of(tree: &Tree) -> Result<Camera<f64>, Fault> {
-    let needed = |names: &[&str], key: &str, form| plain(tree, names).ok_or_else(|| Fault::Missing(key.into(), form));
+    let needed =
+        |names: &[&str], key: &str, form| plain(tree, names).ok_or_else(|| Fault::Missing(key.into(), form));
     let matrix = needed(&MATRIX, "camera_matrix", MATRIX_FORM)?;
     one(matrix, needed(&LENS, "distortion_coefficients", LENS_FORM)?, model(std::slice::from_ref(tree)))
 }
@@ -40,7 +43,8 @@ pub(super) fn camera_of(tree: &Tree) -> Result<Camera<f64>, Fault> {
 pub(super) fn cameras(trees: &[Tree]) -> Result<[Camera<f64>; 2], Fault> {
     let model = model(trees);
     let of_camera = |names: &[&str], side: usize, key: &'static str, form| {
-        let found = trees.iter().flat_map(|tree| names.iter().filter_map(|name| sided(tree, name, SIDES[side])));
+        let found =
+            trees.iter().flat_map(|tree| names.iter().filter_map(|name| sided(tree, name, SIDES[side])));
         found.into_iter().next().ok_or_else(|| Fault::Missing(key.into(), form))
     };
     let both = [("K1", "D1"), ("K2", "D2")];
@@ -52,10 +56,17 @@ pub(super) fn cameras(trees: &[Tree]) -> Result<[Camera<f64>; 2], Fault> {
     Ok([camera(0)?, camera(1)?])
 }
 
-fn one((key, matrix): (&str, &Value), (lens_key, lens): (&str, &Value), model: Model) -> Result<Camera<f64>, Fault> {
+fn one(
+    (key, matrix): (&str, &Value),
+    (lens_key, lens): (&str, &Value),
+    model: Model,
+) -> Result<Camera<f64>, Fault> {
     let [fx, _, cx, _, fy, cy, _, _, scale] = numbers::<9>(key, matrix)?;
     if scale != 1.0 {
-        return Err(Fault::Key { key: key.into(), problem: "the last element of a camera matrix is 1".into() });
+        return Err(Fault::Key {
+            key: key.into(),
+            problem: "the last element of a camera matrix is 1".into(),
+        });
     }
     camera(key, [fx, fy, cx, cy], model, &list(lens_key, lens)?)
 }
@@ -63,9 +74,11 @@ fn one((key, matrix): (&str, &Value), (lens_key, lens): (&str, &Value), model: M
 /// As OpenCV's own program of calibration marks its files, and as others name the model.
 fn model(trees: &[Tree]) -> Model {
     let is_fisheye = trees.iter().any(|tree| {
-        let flag = plain(tree, &["fisheyemodel", "fisheye"])
-            .is_some_and(|(_, flag)| flag.as_bool().or_else(|| flag.as_f64().map(|flag| flag != 0.0)).unwrap_or(false));
-        let name = plain(tree, &["model", "distortionmodel", "cameramodel"]).and_then(|(_, name)| name.as_str());
+        let flag = plain(tree, &["fisheyemodel", "fisheye"]).is_some_and(|(_, flag)| {
+            flag.as_bool().or_else(|| flag.as_f64().map(|flag| flag != 0.0)).unwrap_or(false)
+        });
+        let name =
+            plain(tree, &["model", "distortionmodel", "cameramodel"]).and_then(|(_, name)| name.as_str());
         flag || name.is_some_and(|name| ["fisheye", "equidistant"].contains(&name.to_lowercase().as_str()))
     });
     if is_fisheye { Model::Fisheye } else { Model::BrownConrady }

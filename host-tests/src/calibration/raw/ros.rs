@@ -5,17 +5,17 @@ use super::{Fault, Found, Model, camera, pose_of};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::json;
 
-const FORM: &str =
-    "a camera_info has image_width, camera_matrix, distortion_coefficients, rectification_matrix, projection_matrix";
+const FORM: &str = "a camera_info has image_width, camera_matrix, distortion_coefficients, rectification_matrix, projection_matrix";
 
 pub(super) fn is_one(tree: &Tree) -> bool {
     tree.get("camera_matrix").is_some() && tree.get("projection_matrix").is_some()
 }
 
-/// The second camera's projection has `P[0, 3] = -f b` (or `P[1, 3]`, below each other), and both rectification matrices turn
-/// into one frame, so `R = R2^T R1` and `T = R2^T (P[0, 3] / f, P[1, 3] / f, 0)`.
+/// The second camera's projection has `P[0, 3] = -f b` (or `P[1, 3]`, below each other), and both
+/// rectification matrices turn into one frame, so `R = R2^T R1` and `T = R2^T (P[0, 3] / f, P[1, 3] / f, 0)`.
 pub(super) fn read(first: &Tree, second: &Tree) -> Result<Found, Fault> {
-    let [shift, other] = [projection(first)?, projection(second)?].map(|p| Vector3::new(p[3] / p[0], p[7] / p[5], 0.0));
+    let [shift, other] =
+        [projection(first)?, projection(second)?].map(|p| Vector3::new(p[3] / p[0], p[7] / p[5], 0.0));
     // In whatever order they were given: the first is the one that the projection counts from.
     if shift.norm() > 0.0 && other.norm() == 0.0 {
         return read(second, first);
@@ -27,8 +27,15 @@ pub(super) fn read(first: &Tree, second: &Tree) -> Result<Found, Fault> {
     Ok(Found {
         format: "ROS",
         cameras: [one("the first camera", first)?, one("the second camera", second)?],
-        pose: pose_of("rectification_matrix", r.transpose().as_slice().try_into().unwrap_or([0.0; 9]), t.into())?,
-        size: first.get("image_width").map(|_| size("image_width and image_height", &json!([w, h]))).transpose()?,
+        pose: pose_of(
+            "rectification_matrix",
+            r.transpose().as_slice().try_into().unwrap_or([0.0; 9]),
+            t.into(),
+        )?,
+        size: first
+            .get("image_width")
+            .map(|_| size("image_width and image_height", &json!([w, h])))
+            .transpose()?,
         baseline_key: "projection_matrix",
     })
 }
@@ -58,8 +65,9 @@ fn one(which: &str, tree: &Tree) -> Result<stereopsis::geometry::Camera<f64>, Fa
         "plumb_bob" | "rational_polynomial" | "none" | "" => Model::BrownConrady,
         "equidistant" | "fisheye" => Model::Fisheye,
         found => {
-            let problem =
-                format!("'{found}' is not supported; calibrate with plumb_bob, rational_polynomial or equidistant");
+            let problem = format!(
+                "'{found}' is not supported; calibrate with plumb_bob, rational_polynomial or equidistant"
+            );
             return Err(Fault::Key { key: "distortion_model".into(), problem });
         }
     };

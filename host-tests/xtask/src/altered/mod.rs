@@ -2,7 +2,8 @@
 //!
 //! * `opencv`: the other columns. `table`: what is printed and written.
 //!
-//! The alterations and the score are the host's: [`stereopsis_host::real`]. OpenCV gets the very same altered images.
+//! The alterations and the score are the host's: [`stereopsis_host::real`]. OpenCV gets the very same altered
+//! images.
 
 mod opencv;
 mod table;
@@ -48,7 +49,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
     // What cannot be done shows before the long work.
     let out = arguments.out.as_deref().map(prepared).transpose()?;
     let scenes = RealScene::all(&arguments.data).map_err(|e| Failure::new(format!("--data: {e}")))?;
-    let opencv = if arguments.without_opencv { None } else { Some(OpenCv::find(arguments.python.as_deref())?) };
+    let opencv =
+        if arguments.without_opencv { None } else { Some(OpenCv::find(arguments.python.as_deref())?) };
     let columns = columns(&scenes, opencv.as_ref())?;
     let version = opencv.as_ref().map(|opencv| opencv.version.as_str());
     let page = table::page(&columns, scenes.len(), version, opencv::PARAMETERS);
@@ -66,8 +68,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
 /// A file beside the one that is asked for, whose place it takes when it is complete.
 fn prepared(path: &Path) -> Outcome<(NamedTempFile, &Path)> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let failed =
-        |e: &dyn std::fmt::Display| Failure::new(format!("--out: {}: {e}; name a file in a folder", path.display()));
+    let failed = |e: &dyn std::fmt::Display| {
+        Failure::new(format!("--out: {}: {e}; name a file in a folder", path.display()))
+    };
     if path.is_dir() {
         return Err(failed(&"is a folder"));
     }
@@ -122,8 +125,9 @@ fn columns(scenes: &[RealScene], opencv: Option<&OpenCv>) -> Outcome<Vec<Column>
 fn answers(method: Method, scene: &RealScene, [left, right]: &[GrayImage; 2]) -> Outcome<Vec<f32>> {
     let failed = |e: &dyn std::fmt::Display| Failure::new(format!("{}, {method}: {e}", scene.name));
     let (width, height) = (left.width() as u16, left.height() as u16);
-    let pair =
-        |right: Vec<u8>| MemoryPair::new(width, left.to_vec(), right).ok_or_else(|| failed(&"the pictures are empty"));
+    let pair = |right: Vec<u8>| {
+        MemoryPair::new(width, left.to_vec(), right).ok_or_else(|| failed(&"the pictures are empty"))
+    };
     let mut right = right.to_vec();
     if method.compares_brightness() {
         // As `stereo match` does it.

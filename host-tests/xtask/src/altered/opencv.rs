@@ -26,7 +26,8 @@ pub struct OpenCv {
 }
 
 impl OpenCv {
-    /// That of the Python that is named, else of one of our own in the folder of build products, made when it is missing.
+    /// That of the Python that is named, else of one of our own in the folder of build products, made when it
+    /// is missing.
     pub fn find(python: Option<&Path>) -> Outcome<Self> {
         let python = match python {
             Some(python) => python.to_owned(),
@@ -66,7 +67,8 @@ fn own() -> Outcome<PathBuf> {
         return Ok(python);
     }
     let missing = |e: Failure| {
-        let advice = "install Python with venv and pip, give --python a Python that has OpenCV, or --without-opencv";
+        let advice =
+            "install Python with venv and pip, give --python a Python that has OpenCV, or --without-opencv";
         Failure::new(format!("OpenCV is not to be had: {e}; {advice}"))
     };
     run_command(command("python3", &["-m", "venv"]).arg(&folder)).map_err(missing)?;
@@ -81,7 +83,9 @@ mod tests {
 
     #[test]
     fn a_python_that_is_none_is_named_with_advice() {
-        let Err(failure) = OpenCv::find(Some(Path::new("no-such-python"))) else { panic!("there is such a Python") };
+        let Err(failure) = OpenCv::find(Some(Path::new("no-such-python"))) else {
+            panic!("there is such a Python")
+        };
         let told = failure.to_string();
         assert!(told.starts_with("no-such-python -c ") && told.ends_with("or --without-opencv"), "{told}");
     }
@@ -92,9 +96,14 @@ mod tests {
             assert!(SCRIPT.contains(&format!("(\"{matcher}\", ")), "the script knows no {matcher}");
         }
         // What PARAMETERS says.
-        for given in ["StereoBM_create(disparities, 9)", "window = 3", "P1=8 * window**2, P2=32 * window**2"] {
+        for given in ["StereoBM_create(disparities, 9)", "window = 3", "P1=8 * window**2, P2=32 * window**2"]
+        {
             assert!(SCRIPT.contains(given), "the script has no {given}");
         }
-        assert!(SCRIPT.contains("disp12MaxDiff=1, uniquenessRatio=10,\n        speckleWindowSize=100, speckleRange=2"));
+        assert!(
+            SCRIPT.contains(
+                "disp12MaxDiff=1, uniquenessRatio=10,\n        speckleWindowSize=100, speckleRange=2"
+            )
+        );
     }
 }

@@ -16,7 +16,10 @@ pub fn of(columns: &[Column], share: fn(&Score) -> f64) -> String {
         let cells: String = columns
             .iter()
             .map(|column| {
-                column.scores.get(at).map_or(" |".to_owned(), |score| format!(" {:.2} |", 100.0 * share(score)))
+                column
+                    .scores
+                    .get(at)
+                    .map_or(" |".to_owned(), |score| format!(" {:.2} |", 100.0 * share(score)))
             })
             .collect();
         table += &format!("| {} |{cells}\n", alteration.name());
@@ -43,7 +46,8 @@ mod tests {
 
     #[test]
     fn a_line_for_each_alteration() {
-        let scores = (0..6).map(|i| Score { density: 1.0, bad2: 0.0, missed: f64::from(i) / 100.0 }).collect();
+        let scores =
+            (0..6).map(|i| Score { density: 1.0, bad2: 0.0, missed: f64::from(i) / 100.0 }).collect();
         let table = of(&[Column { name: "`sgm`".into(), scores }], |score| score.missed);
         let expected = "| images | `sgm` |\n| --- | ---: |\n| as taken | 0.00 |\n| noise, sigma 2 | 1.00 |\n\
                         | noise, sigma 5 | 2.00 |\n| right x 1.2 + 15 | 3.00 |\n| right, gamma 0.75 | 4.00 |\n\

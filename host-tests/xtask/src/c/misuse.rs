@@ -29,7 +29,8 @@ pub fn statuses() -> Outcome {
 pub fn panicking_library() -> Outcome {
     let build = folder().join("panicking");
     // The profile that checks its own arithmetic panics where the check fails.
-    let choices = ["-DSTEREOPSIS_PROFILE=checked", "-DCMAKE_TOOLCHAIN_FILE=board/m4.cmake", &cargo_in(Core::M4)];
+    let choices =
+        ["-DSTEREOPSIS_PROFILE=checked", "-DCMAKE_TOOLCHAIN_FILE=board/m4.cmake", &cargo_in(Core::M4)];
     let choices = choices.map(str::to_owned);
     remove(&build)?;
     configure("examples/c-firmware", &build, &choices, "-Werror")?;
@@ -37,9 +38,15 @@ pub fn panicking_library() -> Outcome {
     let built = command("cmake", &["--build"]).arg(&build).env("LC_ALL", "C").output();
     let built = built.map_err(|e| Failure::new(format!("cmake --build: {e}")))?;
     let told = String::from_utf8_lossy(&built.stderr).into_owned();
-    match told.lines().find(|line| line.contains("undefined reference to `the_stereopsis_library_can_panic'")) {
+    match told.lines().find(|line| line.contains("undefined reference to `the_stereopsis_library_can_panic'"))
+    {
         Some(line) if !built.status.success() => println!("a library that can panic is refused: {line}"),
-        _ => return Err(Failure::new(format!("a library that can panic was not refused for that: {}", told.trim()))),
+        _ => {
+            return Err(Failure::new(format!(
+                "a library that can panic was not refused for that: {}",
+                told.trim()
+            )));
+        }
     }
     Ok(())
 }

@@ -1,5 +1,5 @@
-//! The C interface: the header, every misuse under sanitizers, and `examples/c-firmware` with the host's bits on a desktop
-//! and on two boards in QEMU.
+//! The C interface: the header, every misuse under sanitizers, and `examples/c-firmware` with the host's bits
+//! on a desktop and on two boards in QEMU.
 //!
 //! Everything is built by CMake, as a user's project is. The desktop's programs run under the address and
 //! undefined-behaviour sanitizers, with a library that checks its own arithmetic and pointers.
@@ -25,8 +25,8 @@ pub fn run() -> Outcome {
     header::run(true)?;
     misuse::statuses()?;
     misuse::panicking_library()?;
-    let frames =
-        FRAMES.map(|(width, height, disparities)| Ok((Pictures::of_scene(Scene { width, height })?, disparities)));
+    let frames = FRAMES
+        .map(|(width, height, disparities)| Ok((Pictures::of_scene(Scene { width, height })?, disparities)));
     let frames: Vec<_> = frames.into_iter().collect::<Outcome<_>>()?;
     let runs: Vec<_> = frames
         .iter()
@@ -35,7 +35,10 @@ pub fn run() -> Outcome {
     for (&(pictures, method, disparities), found) in runs.iter().zip(crc32s(&runs)?) {
         let expected = pictures.crc32(method, disparities)?;
         for (core, found) in CORES.iter().zip(found) {
-            let what = format!("{method}, {}x{}, {disparities} disparities, {core}", pictures.width, pictures.height);
+            let what = format!(
+                "{method}, {}x{}, {disparities} disparities, {core}",
+                pictures.width, pictures.height
+            );
             if found != expected {
                 let line = format!("{what}: crc32 {found:08x}, the host's pipeline has {expected:08x}");
                 return Err(Failure::new(line));

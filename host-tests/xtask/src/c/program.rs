@@ -60,11 +60,14 @@ impl std::fmt::Display for Core {
 /// Cargo in the library's folder.
 pub fn cargo(words: &str) -> Command {
     let mut cargo = command("cargo", &words.split_whitespace().collect::<Vec<_>>());
-    cargo.current_dir(root().join("examples/c-firmware/library")).env("CARGO_TARGET_DIR", cargo_folder(Core::M4));
+    cargo
+        .current_dir(root().join("examples/c-firmware/library"))
+        .env("CARGO_TARGET_DIR", cargo_folder(Core::M4));
     cargo
 }
 
-/// The CRC-32 of all disparities and flags that the example in C finds in pairs of pictures, on each of [`CORES`].
+/// The CRC-32 of all disparities and flags that the example in C finds in pairs of pictures, on each of
+/// [`CORES`].
 ///
 /// A board's program is looked through for panics and allocations as well.
 pub fn crc32s(runs: &[(&Pictures, Method, u16)]) -> Outcome<Vec<[u32; 3]>> {
@@ -84,7 +87,10 @@ fn crc32(core: Core, pictures: &Pictures, method: Method, disparities: u16) -> O
     let program = program(core, method, pictures.width.max(disparities), disparities)?;
     let mut run = command(&program, &[]);
     if let Some(machine) = core.machine() {
-        run = command(QEMU_ARM, &["-machine", machine, "-nographic", "-semihosting-config", "enable=on,target=native"]);
+        run = command(
+            QEMU_ARM,
+            &["-machine", machine, "-nographic", "-semihosting-config", "enable=on,target=native"],
+        );
         run.arg("-kernel").arg(&program);
     }
     // It reads the current folder's left.pgm and right.pgm.
@@ -119,10 +125,9 @@ pub fn program(core: Core, method: Method, width: u16, disparities: u16) -> Outc
     };
     // The first build of a core in a run starts anew, those after it have a compiler that CMake knows.
     let build = folder().join(core.name());
-    if !built()
-        .iter()
-        .any(|program| program.file_name().is_some_and(|name| name.to_string_lossy().starts_with(core.name())))
-    {
+    if !built().iter().any(|program| {
+        program.file_name().is_some_and(|name| name.to_string_lossy().starts_with(core.name()))
+    }) {
         remove(&build)?;
     }
     configure("examples/c-firmware", &build, &choices, flags)?;
@@ -146,7 +151,9 @@ pub fn configure(source: &str, build: &Path, choices: &[String], flags: &str) ->
 /// Takes a folder away if it is there.
 pub fn remove(folder: &Path) -> Outcome {
     match fs::remove_dir_all(folder) {
-        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(Failure::new(format!("{}: {e}", folder.display()))),
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+            Err(Failure::new(format!("{}: {e}", folder.display())))
+        }
         _ => Ok(()),
     }
 }

@@ -59,8 +59,8 @@ pub fn run(readme: tables::Readme) -> Outcome {
     checksums::compare(&results, &real)
 }
 
-/// What is built, in the order of the tables. Of a sample the larger size is on two cores only, one that works in words and
-/// one that works in vectors.
+/// What is built, in the order of the tables. Of a sample the larger size is on two cores only, one that
+/// works in words and one that works in vectors.
 fn programs(readme: tables::Readme) -> Outcome<Vec<Program>> {
     let is_whole = |board| readme != tables::Readme::Sample || [M7, M55].contains(&board);
     let sizes = |board: Board| match board {
@@ -69,13 +69,18 @@ fn programs(readme: tables::Readme) -> Outcome<Vec<Program>> {
         _ => &SIZES[..1],
     };
     let all = board::ALL.into_iter().flat_map(|board| {
-        Method::ALL.into_iter().flat_map(move |method| sizes(board).iter().map(move |&size| (board, method, size)))
+        Method::ALL
+            .into_iter()
+            .flat_map(move |method| sizes(board).iter().map(move |&size| (board, method, size)))
     });
-    all.map(|(board, method, (width, height, disparities))| Program::new(board, method, width, height, disparities))
-        .collect()
+    all.map(|(board, method, (width, height, disparities))| {
+        Program::new(board, method, width, height, disparities)
+    })
+    .collect()
 }
 
-/// The programs with their places, those of the one folder and those of the other in turn: two are built at a time.
+/// The programs with their places, those of the one folder and those of the other in turn: two are built at a
+/// time.
 fn in_turn(programs: Vec<Program>) -> Vec<(usize, Program)> {
     let mut built = [0; 2];
     let mut jobs: Vec<_> = programs
@@ -120,13 +125,18 @@ fn spread_over(built: &Built, real: &[(String, Pictures)]) -> Outcome<Vec<(&'sta
         ("noise", Pictures::drawn(width, height, noise)),
         (
             "stripes",
-            Pictures::drawn(width, height, |u, _, right| if (u + u32::from(right)) & 4 == 0 { 40 } else { 215 }),
+            Pictures::drawn(
+                width,
+                height,
+                |u, _, right| if (u + u32::from(right)) & 4 == 0 { 40 } else { 215 },
+            ),
         ),
     ];
     if let Some((_, pair)) = real.first() {
         pictures.push(("real", pair.scaled(width, height)?));
     }
-    let count = |(name, pictures): (_, Pictures)| Ok((name, frame::run(built, &pictures, false)?.instructions));
+    let count =
+        |(name, pictures): (_, Pictures)| Ok((name, frame::run(built, &pictures, false)?.instructions));
     pictures.into_iter().map(count).collect()
 }
 
@@ -144,11 +154,15 @@ fn held(result: &Result) -> Outcome {
     let failed = |what: String| Err(Failure::new(format!("{}: {what}", frame.program)));
     if !counts.is_empty() && spread(counts) > MOST_SPREAD {
         let (found, most) = (100.0 * spread(counts), 100.0 * MOST_SPREAD);
-        return failed(format!("instructions over the pictures {counts:?} differ by {found:.1} %, {most} % at most"));
+        return failed(format!(
+            "instructions over the pictures {counts:?} differ by {found:.1} %, {most} % at most"
+        ));
     }
     let beside = frame.sizes.static_ram.saturating_sub(frame.pipeline);
     if beside > budget("the camera")? {
-        return failed(format!("{beside} bytes of RAM beside the pipeline are more than the comment of memory.x says"));
+        return failed(format!(
+            "{beside} bytes of RAM beside the pipeline are more than the comment of memory.x says"
+        ));
     }
     if budget("the stack")? != MOST_STACK {
         return failed(format!("memory.x does not leave {MOST_STACK} bytes to the stack"));
@@ -158,7 +172,8 @@ fn held(result: &Result) -> Outcome {
 
 /// The number of memory.x that stands before what it is for.
 fn budget(what: &str) -> Outcome<u64> {
-    let text = fs::read_to_string(root().join("memory.x")).map_err(|e| Failure::new(format!("memory.x: {e}")))?;
+    let text =
+        fs::read_to_string(root().join("memory.x")).map_err(|e| Failure::new(format!("memory.x: {e}")))?;
     let mut lines = text.lines().filter(|line| line.contains(what));
     let number = lines.find_map(|line| line.split_whitespace().find_map(|word| word.parse().ok()));
     number.ok_or_else(|| Failure::new(format!("memory.x has no number for {what}")))

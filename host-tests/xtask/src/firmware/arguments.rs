@@ -12,9 +12,9 @@ use stereopsis_host::run::{Method, NoiseChoice, UnknownNoise};
 /// The options of `firmware`.
 #[derive(Args)]
 pub struct Arguments {
-    /// The program: depth, rows of disparity; pose, two views; bundle, their adjustment; features, corners of two pictures and
-    /// their matches; focus, a lens that moves; odometry, where a pair goes; rectify, raw lines; or interrupt, lines
-    /// that a timer brings
+    /// The program: depth, rows of disparity; pose, two views; bundle, their adjustment; features, corners
+    /// of two pictures and their matches; focus, a lens that moves; odometry, where a pair goes;
+    /// rectify, raw lines; or interrupt, lines that a timer brings
     #[arg(long, default_value = "depth", value_parser = ["depth", "pose", "bundle", "features", "focus", "odometry", "rectify", "interrupt"])]
     program: String,
     /// With a program other than depth: made for size, not for speed
@@ -35,7 +35,8 @@ pub struct Arguments {
     /// The matching method
     #[arg(long, default_value = "block", value_parser = method)]
     method: Method,
-    /// How noisy the images are: none, low, high, or auto, which measures it; the built-in scene is taken to have none
+    /// How noisy the images are: none, low, high, or auto, which measures it; the built-in scene is taken to
+    /// have none
     #[arg(long, default_value = "auto", value_parser = noise)]
     noise: NoiseChoice,
     /// Folder for the results; made when it is missing
@@ -110,13 +111,17 @@ impl Arguments {
         if self.program != "depth" {
             let name = &self.program;
             if board == board::M0 {
-                return Err(Failure::new(format!("--core m0: {name} needs more RAM than QEMU's microbit has")));
+                return Err(Failure::new(format!(
+                    "--core m0: {name} needs more RAM than QEMU's microbit has"
+                )));
             }
             if board == board::RV32 && name == "interrupt" {
                 return Err(Failure::new("--core rv32: interrupt needs the timer of a Cortex-M"));
             }
             if self.small && name == "rectify" {
-                return Err(Failure::new("--small: rectify has the dense path in it, which is made for speed"));
+                return Err(Failure::new(
+                    "--small: rectify has the dense path in it, which is made for speed",
+                ));
             }
             if pair.is_some() || self.disparities.is_some() {
                 return Err(Failure::new(format!(
@@ -136,7 +141,9 @@ impl Arguments {
             });
         }
         if self.small {
-            return Err(Failure::new("--small is for the programs other than depth, which is made for speed"));
+            return Err(Failure::new(
+                "--small is for the programs other than depth, which is made for speed",
+            ));
         }
         let disparities = self
             .disparities

@@ -1,5 +1,5 @@
-//! Noisy cameras that are exposed unequally: the firmware's disparities are the file that `stereo match` writes of the same pair, to
-//! the bit.
+//! Noisy cameras that are exposed unequally: the firmware's disparities are the file that `stereo match`
+//! writes of the same pair, to the bit.
 
 use super::arguments::One;
 use super::board::M4;
@@ -21,7 +21,8 @@ pub fn check(stereo: &Path) -> Outcome {
     let scene = Scene::boxes(160).with_noise(4.0, 7);
     pair(&scene).write(folder.path())?;
 
-    let mut matching = command(stereo, &["match", "--method", "sgm", "--disparities", &DISPARITIES.to_string()]);
+    let mut matching =
+        command(stereo, &["match", "--method", "sgm", "--disparities", &DISPARITIES.to_string()]);
     for (option, name) in [("--left", "left.pgm"), ("--right", "right.pgm"), ("--out", "match")] {
         matching.arg(option).arg(at(name));
     }
@@ -35,7 +36,9 @@ pub fn check(stereo: &Path) -> Outcome {
         .map_err(|e| Failure::new(format!("match/summary.json: {e}")))?;
     if summary["noise"] != "high" || summary["balance"].is_null() {
         let (noise, balance) = (&summary["noise"], &summary["balance"]);
-        return Err(Failure::new(format!("`stereo match` takes the pair for one of noise {noise}, balance {balance}")));
+        return Err(Failure::new(format!(
+            "`stereo match` takes the pair for one of noise {noise}, balance {balance}"
+        )));
     }
     if read("match/disparity.pfm")? != read("firmware/disparity.pfm")? {
         return Err(Failure::new(

@@ -1,5 +1,5 @@
-//! Lines that fill no vector, and disparities that fill no group of lanes, on the core whose rows are in assembly: equal to the
-//! host's to the bit, as all frames are.
+//! Lines that fill no vector, and disparities that fill no group of lanes, on the core whose rows are in
+//! assembly: equal to the host's to the bit, as all frames are.
 
 use super::board::M55;
 use super::frame;
@@ -8,7 +8,8 @@ use crate::pictures::Pictures;
 use crate::steps::Outcome;
 use stereopsis_host::run::Method;
 
-/// Pixels in a line at most, and disparities: of 32 and of 64 lanes, and of a number that there is no assembly for.
+/// Pixels in a line at most, and disparities: of 32 and of 64 lanes, and of a number that there is no
+/// assembly for.
 const PROGRAMS: [(u16, u16); 3] = [(67, 29), (161, 53), (97, 47)];
 /// Pixels in a line less than the most.
 const NARROWER: [u16; 4] = [0, 1, 37, 50];
@@ -23,7 +24,11 @@ pub fn check() -> Outcome {
             for (less, height) in NARROWER.into_iter().flat_map(|less| HEIGHTS.map(|height| (less, height))) {
                 frame::run(&built, &Pictures::drawn(most - less, height, pixel), false)?;
             }
-            println!("{}: {} awkward sizes are equal to the host's", built.program, NARROWER.len() * HEIGHTS.len());
+            println!(
+                "{}: {} awkward sizes are equal to the host's",
+                built.program,
+                NARROWER.len() * HEIGHTS.len()
+            );
         }
     }
     Ok(())

@@ -1,4 +1,5 @@
-//! The program `bundle` on one core: two views and 128 points from a guess to the truth, measured, and held to the host's own run.
+//! The program `bundle` on one core: two views and 128 points from a guess to the truth, measured, and held
+//! to the host's own run.
 
 use super::board::Board;
 use super::plain::Tabled;
@@ -32,13 +33,16 @@ pub struct Bundle {
     turned_off_urad: u64,
 }
 
-/// Builds the program and runs it; fails when what it finds is not what the host finds, to the bit, or not the truth, and
-/// when it takes more than it may.
+/// Builds the program and runs it; fails when what it finds is not what the host finds, to the bit, or not
+/// the truth, and when it takes more than it may.
 pub fn run(board: Board, optimised: Optimised) -> Outcome<Bundle> {
     let (window, _) = of_host()?;
     let ran = Ran::of(board, "bundle", optimised, &bytes(&window))?;
     let state_bytes = ran.figure("state_bytes")?;
-    ran.within(&[("bytes of state", state_bytes, MOST_STATE), ("bytes of stack", ran.taken.stack_bytes, MOST_STACK)])?;
+    ran.within(&[
+        ("bytes of state", state_bytes, MOST_STATE),
+        ("bytes of stack", ran.taken.stack_bytes, MOST_STACK),
+    ])?;
     let (instructions, iterations) = (ran.instructions("ticks")?, ran.figure("iterations")?);
     Ok(Bundle {
         views: window.views().len(),
@@ -58,7 +62,8 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Bundle> {
 /// The window as the host adjusts it.
 fn of_host() -> Outcome<(Box<TwoViews>, Adjustment)> {
     let mut memory = Box::new(Adjusted::new());
-    let (found, _) = memory.run(|| 0).map_err(|e| Failure::new(format!("the host adjusts nothing: {e:?}")))?;
+    let (found, _) =
+        memory.run(|| 0).map_err(|e| Failure::new(format!("the host adjusts nothing: {e:?}")))?;
     if !found.is_good() {
         return Err(Failure::new("what the host finds is not the truth"));
     }
@@ -104,7 +109,8 @@ mod tests {
     fn the_truth_is_found() {
         let (window, found) = of_host().expect("a window");
         assert_eq!(bytes(&window).len(), 4 * (12 + 3 * 128));
-        // chi^2 / 2 of 512 numbers less 5 + 384 unknowns, a third of the second sights without noise: below 123 / 2 x 0.09.
+        // chi^2 / 2 of 512 numbers less 5 + 384 unknowns, a third of the second sights without noise: below
+        // 123 / 2 x 0.09.
         assert!(found.report.cost < 6.0 && found.report.initial_cost > 1000.0, "{:?}", found.report);
     }
 }

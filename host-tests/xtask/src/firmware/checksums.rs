@@ -53,14 +53,17 @@ pub fn compare(results: &[Result], pairs: &[(String, Pictures)]) -> Outcome {
         }
     }
     let scaled = |&(pair, method, width, height, disparities): &(&String, &str, u16, u16, u16)| {
-        let of = pairs.iter().find(|(name, _)| name == pair).map(|(_, pictures)| pictures.scaled(width, height));
+        let of =
+            pairs.iter().find(|(name, _)| name == pair).map(|(_, pictures)| pictures.scaled(width, height));
         let pictures = of.ok_or_else(|| Failure::new(format!("{pair}: no such pair")))??;
         let method: Method = method.parse().map_err(|e| Failure::new(format!("{e}")))?;
         Ok((pictures, method, disparities))
     };
     let frames = rows.keys().map(scaled).collect::<Outcome<Vec<_>>>()?;
-    let runs: Vec<_> = frames.iter().map(|(pictures, method, disparities)| (pictures, *method, *disparities)).collect();
-    for ((row, &(pictures, method, disparities)), in_c) in rows.values_mut().zip(&runs).zip(c::crc32s(&runs)?) {
+    let runs: Vec<_> =
+        frames.iter().map(|(pictures, method, disparities)| (pictures, *method, *disparities)).collect();
+    for ((row, &(pictures, method, disparities)), in_c) in rows.values_mut().zip(&runs).zip(c::crc32s(&runs)?)
+    {
         row.push(("host", pictures.crc32(method, disparities)?));
         row.extend(IN_C.into_iter().zip(in_c));
     }

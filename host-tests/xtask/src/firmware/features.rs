@@ -1,4 +1,5 @@
-//! The program `features` on one core: two pictures to features and their matches, measured, and held to the host's own run.
+//! The program `features` on one core: two pictures to features and their matches, measured, and held to the
+//! host's own run.
 
 use super::board::Board;
 use super::plain::Tabled;
@@ -42,8 +43,8 @@ pub struct Features {
     crc32: String,
 }
 
-/// Builds the program and runs it; fails when what it finds is not what the host finds, to the bit, or not what the scene
-/// shows, and when it takes more than it may.
+/// Builds the program and runs it; fails when what it finds is not what the host finds, to the bit, or not
+/// what the scene shows, and when it takes more than it may.
 pub fn run(board: Board, optimised: Optimised) -> Outcome<Features> {
     let pictures = of_host()?;
     let found = bytes(&pictures);
@@ -114,7 +115,9 @@ fn bytes(pictures: &TwoPictures) -> Vec<u8> {
         }
     }
     bytes.extend((pictures.matches.len() as u16).to_le_bytes());
-    bytes.extend(pictures.matches.iter().flat_map(|m| [m.left, m.right, m.different]).flat_map(u16::to_le_bytes));
+    bytes.extend(
+        pictures.matches.iter().flat_map(|m| [m.left, m.right, m.different]).flat_map(u16::to_le_bytes),
+    );
     bytes
 }
 
@@ -169,7 +172,8 @@ mod tests {
     #[test]
     fn a_match_elsewhere_is_wrong() {
         let mut pictures = of_host().expect("features");
-        let right = |pictures: &TwoPictures| pictures.matches.iter().filter(|m| is_right(pictures, m)).count();
+        let right =
+            |pictures: &TwoPictures| pictures.matches.iter().filter(|m| is_right(pictures, m)).count();
         let before = right(&pictures);
         assert!(before > 0);
         pictures.right.features.iter_mut().for_each(|feature| feature.y_px += 2.0 * NEAR_PX + 0.1);

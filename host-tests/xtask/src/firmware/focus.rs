@@ -1,5 +1,5 @@
-//! The program `focus` on one core: frames of a lens that moves to where each tile is in focus, measured, and held to the host's
-//! own run.
+//! The program `focus` on one core: frames of a lens that moves to where each tile is in focus, measured, and
+//! held to the host's own run.
 
 use super::board::Board;
 use super::plain::Tabled;
@@ -39,8 +39,8 @@ pub struct Focus {
     crc32: String,
 }
 
-/// Builds the program and runs it; fails when what it finds is not what the host finds, to the bit, or far from the truth, and
-/// when it takes more than it may.
+/// Builds the program and runs it; fails when what it finds is not what the host finds, to the bit, or far
+/// from the truth, and when it takes more than it may.
 pub fn run(board: Board, optimised: Optimised) -> Outcome<Focus> {
     let sweep = of_host()?;
     let found = bytes(&sweep.map);
@@ -56,7 +56,8 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Focus> {
     let instructions_per_pixel = instructions as f64 / ran.figure("pixels")?.max(1) as f64;
     let is_held = HELD.contains(&board.core) && optimised == Optimised::Speed;
     if is_held && instructions_per_pixel > MOST_PER_PIXEL {
-        let what = format!("{instructions_per_pixel:.1} instructions for a pixel, at most {MOST_PER_PIXEL} may be");
+        let what =
+            format!("{instructions_per_pixel:.1} instructions for a pixel, at most {MOST_PER_PIXEL} may be");
         return Err(ran.failed(what));
     }
     Ok(Focus {
@@ -86,7 +87,8 @@ fn tiles() -> impl Iterator<Item = (usize, usize)> {
     (0..CONFIG.rows()).flat_map(|row| (0..CONFIG.columns()).map(move |column| (column, row)))
 }
 
-/// The bytes of `focus.bin`: of every tile the frame, its deviation and the confidence; all ones where none is sharpest.
+/// The bytes of `focus.bin`: of every tile the frame, its deviation and the confidence; all ones where none
+/// is sharpest.
 fn bytes(map: &Map) -> Vec<u8> {
     let one = |(column, row)| match map.peak(column, row) {
         Ok(peak) => {
@@ -102,8 +104,9 @@ fn bytes(map: &Map) -> Vec<u8> {
 /// The median of the tiles' distances from the frame in which their middle is in focus, in 1/256.
 fn median_error_q8(map: &Map) -> Option<u32> {
     let side = usize::from(CONFIG.cell_px);
-    let error =
-        |(column, row)| Some(map.peak(column, row).ok()?.position_q8.abs_diff(in_focus_q8(column * side + side / 2)));
+    let error = |(column, row)| {
+        Some(map.peak(column, row).ok()?.position_q8.abs_diff(in_focus_q8(column * side + side / 2)))
+    };
     let mut errors: Vec<u32> = tiles().filter_map(error).collect();
     errors.sort_unstable();
     errors.get(errors.len() / 2).copied()

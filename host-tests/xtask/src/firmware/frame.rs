@@ -40,13 +40,15 @@ pub struct Frame {
     pub log: Vec<String>,
 }
 
-/// Runs a frame, compares it with the host's, and holds its stack to the limit. `is_scene` leaves the pictures to the
-/// firmware's own scene.
+/// Runs a frame, compares it with the host's, and holds its stack to the limit. `is_scene` leaves the
+/// pictures to the firmware's own scene.
 pub fn run(built: &Built, pictures: &Pictures, is_scene: bool) -> Outcome<Frame> {
     let frame = with_any_stack(built, pictures, is_scene)?;
     if frame.stack > MOST_STACK {
         let (program, stack) = (frame.program, frame.stack);
-        return Err(Failure::new(format!("{program}: {stack} bytes of stack are in use, at most {MOST_STACK} may be")));
+        return Err(Failure::new(format!(
+            "{program}: {stack} bytes of stack are in use, at most {MOST_STACK} may be"
+        )));
     }
     Ok(frame)
 }
@@ -61,7 +63,8 @@ pub fn with_any_stack(built: &Built, pictures: &Pictures, is_scene: bool) -> Out
     }
     let printed = emulate::run(built, folder.path())?;
     let figures = figures(&printed);
-    let figure = |name: &str| figures.get(name).copied().ok_or_else(|| failed(format!("it prints no {name}")));
+    let figure =
+        |name: &str| figures.get(name).copied().ok_or_else(|| failed(format!("it prints no {name}")));
     let log = log::read(&built.elf, &program.to_string(), folder.path())?;
     let rows = fs::read(folder.path().join("rows.bin")).map_err(|e| failed(format!("rows.bin: {e}")))?;
 
@@ -71,7 +74,10 @@ pub fn with_any_stack(built: &Built, pictures: &Pictures, is_scene: bool) -> Out
     }
     let crc32 = crc32fast::hash(&rows);
     if u64::from(crc32) != figure("crc32")? {
-        return Err(failed(format!("its checksum is {:08x}, that of its rows {crc32:08x}", figure("crc32")?)));
+        return Err(failed(format!(
+            "its checksum is {:08x}, that of its rows {crc32:08x}",
+            figure("crc32")?
+        )));
     }
     calibrated(program.board, figure("calibration_ticks")?).map_err(failed)?;
     let stack = figure("stack_bytes")?;

@@ -1,5 +1,5 @@
-//! The program `interrupt` on one core: lines that a timer brings while the matcher works, held to the host's own rows; none lost
-//! at the rate that the matcher's instructions allow, and losses told at twice that rate.
+//! The program `interrupt` on one core: lines that a timer brings while the matcher works, held to the host's
+//! own rows; none lost at the rate that the matcher's instructions allow, and losses told at twice that rate.
 
 use super::board::Board;
 use super::program::Optimised;
@@ -29,7 +29,8 @@ pub struct Interrupt {
     instructions_per_line: u64,
     rows: u64,
     lost_lines: u64,
-    /// At twice the rate: rows, lines that found no slot, rows flagged for that, and rows that are wrong without a flag.
+    /// At twice the rate: rows, lines that found no slot, rows flagged for that, and rows that are wrong
+    /// without a flag.
     rows_at_twice: u64,
     lost_lines_at_twice: u64,
     damaged_rows_at_twice: u64,
@@ -37,8 +38,8 @@ pub struct Interrupt {
     crc32: String,
 }
 
-/// Builds the program and runs it; fails when its rows are not the host's, to the bit, when a line is lost that need not be, and when
-/// one is lost untold.
+/// Builds the program and runs it; fails when its rows are not the host's, to the bit, when a line is lost
+/// that need not be, and when one is lost untold.
 pub fn run(board: Board, optimised: Optimised) -> Outcome<Interrupt> {
     let found = of_host()?;
     let ran = Ran::of(board, "interrupt", optimised, &found)?;
@@ -51,10 +52,12 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Interrupt> {
         ("rows were wrong there", figure("wrong_allowed")?, 0),
         ("rows were wrong without a flag at twice the rate", figure("wrong_twice")?, 0),
     ])?;
-    let (overruns, lost, damaged) = (figure("overruns_twice")?, figure("lost_twice")?, figure("damaged_twice")?);
+    let (overruns, lost, damaged) =
+        (figure("overruns_twice")?, figure("lost_twice")?, figure("damaged_twice")?);
     if overruns == 0 || lost == 0 || damaged == 0 {
-        let told =
-            format!("{overruns} overruns, {lost} lines lost, {damaged} rows flagged at twice the rate: none may be 0");
+        let told = format!(
+            "{overruns} overruns, {lost} lines lost, {damaged} rows flagged at twice the rate: none may be 0"
+        );
         return Err(ran.failed(told));
     }
     Ok(Interrupt {
@@ -76,7 +79,8 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Interrupt> {
 
 /// The bytes of `interrupt.bin`: of every pixel the disparity's steps, the low byte first, and the flags.
 fn of_host() -> Outcome<Vec<u8>> {
-    let config = Method::Block.with_filter(Filter::Default, Config::new(SCENE.width, SCENE.height, DISPARITIES));
+    let config =
+        Method::Block.with_filter(Filter::Default, Config::new(SCENE.width, SCENE.height, DISPARITIES));
     let map = match_frame(Method::Block, &config, &mut SceneCamera::new(SCENE), |_| ())
         .map_err(|e| Failure::new(format!("the host finds no rows: {e}")))?
         .map;

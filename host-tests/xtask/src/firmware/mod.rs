@@ -1,7 +1,7 @@
 //! `cargo xtask firmware`: the firmware example, built, run in QEMU and compared with the host.
 //!
-//! * [`arguments`]: what is asked for. [`program`]: one build of the example. [`emulate`]: QEMU. [`log`]: the firmware's log as
-//!   text.
+//! * [`arguments`]: what is asked for. [`program`]: one build of the example. [`emulate`]: QEMU. [`log`]: the
+//!   firmware's log as text.
 //! * [`frame`]: one frame on one core, held to the host. [`summary`]: the files that are written of it.
 //! * [`all`]: every core, method and size; [`tables`] of it for README.md; [`checksums`] on real pictures.
 //! * [`as_match`]: noisy cameras that are exposed unequally, beside `stereo match`.
@@ -9,8 +9,8 @@
 //! * [`pose`]: two views on one core, held to the host; [`two_views_all`]: on every core.
 //! * [`bundle`]: their adjustment, likewise.
 //! * [`features`]: features of two pictures and their matches, on one core and on those of the table.
-//! * [`focus`]: a lens that moves, likewise. [`odometry`]: where a pair of cameras goes. [`interrupt`]: lines that an
-//!   interrupt brings.
+//! * [`focus`]: a lens that moves, likewise. [`odometry`]: where a pair of cameras goes. [`interrupt`]: lines
+//!   that an interrupt brings.
 //! * [`rectify`]: raw lines, and depth from them, likewise.
 //! * [`results`]: the run of such a program, and what it leaves; [`plain`]: the table of it.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
@@ -106,8 +106,8 @@ fn run_all(readme: Readme) -> Outcome {
     Ok(())
 }
 
-/// Every core and method and a part of the sizes and programs, compared with README.md; and a frame with what the program `stereo`
-/// at that path makes of it.
+/// Every core and method and a part of the sizes and programs, compared with README.md; and a frame with what
+/// the program `stereo` at that path makes of it.
 pub fn check_sample(stereo: &Path) -> Outcome {
     run_all(Readme::Sample)?;
     as_match::check(stereo)

@@ -1,4 +1,5 @@
-//! The program `odometry` on one core: the motion of a pair from frame to frame, measured, and held to the host's own run.
+//! The program `odometry` on one core: the motion of a pair from frame to frame, measured, and held to the
+//! host's own run.
 
 use super::board::Board;
 use super::plain::Tabled;
@@ -29,8 +30,8 @@ pub struct Odometry {
     turned_urad: u64,
 }
 
-/// Builds the program and runs it; fails when what it finds is not what the host finds, to the bit, or not the motion, and when
-/// it takes more than it may.
+/// Builds the program and runs it; fails when what it finds is not what the host finds, to the bit, or not
+/// the motion, and when it takes more than it may.
 pub fn run(board: Board, optimised: Optimised) -> Outcome<Odometry> {
     let ran = Ran::of(board, "odometry", optimised, &bytes(&of_host()?))?;
     ran.within(&[
@@ -75,7 +76,9 @@ impl Tabled for Odometry {
     const COLUMNS: &'static [&'static str] = &["instructions for a frame", "at most", "state"];
 
     fn cells(&self) -> Vec<String> {
-        [self.instructions_per_frame, self.worst_frame_instructions, self.state_bytes].map(|n| n.to_string()).into()
+        [self.instructions_per_frame, self.worst_frame_instructions, self.state_bytes]
+            .map(|n| n.to_string())
+            .into()
     }
 
     fn taken(&self) -> &Taken {

@@ -1,4 +1,5 @@
-//! The tables in README.md of the programs without sizes to choose: a line for each core that one is measured on.
+//! The tables in README.md of the programs without sizes to choose: a line for each core that one is measured
+//! on.
 
 use super::board::{self, Board};
 use super::program::Optimised;
@@ -23,11 +24,16 @@ pub trait Tabled: Send {
 }
 
 /// Measures a program; writes its table into README.md, or compares it.
-pub fn run_all<T: Tabled>(readme: Readme, run: fn(Board, Optimised) -> Outcome<T>, told: fn(&T) -> String) -> Outcome {
+pub fn run_all<T: Tabled>(
+    readme: Readme,
+    run: fn(Board, Optimised) -> Outcome<T>,
+    told: fn(&T) -> String,
+) -> Outcome {
     into_readme::<T>(&table(&measured(readme, run, told)?), readme)
 }
 
-/// Runs a program on all of its cases and says what came of each. Cores with the same instructions are as one in a sample.
+/// Runs a program on all of its cases and says what came of each. Cores with the same instructions are as one
+/// in a sample.
 pub fn measured<T: Tabled>(
     readme: Readme,
     run: fn(Board, Optimised) -> Outcome<T>,
@@ -53,7 +59,8 @@ pub fn table<T: Tabled>(all: &[T]) -> String {
     let mut table = line(&[names, numbers].concat()) + &line(&rule);
     for one in all {
         let taken = one.taken();
-        let takes = [taken.static_ram_bytes, taken.stack_bytes, taken.flash_bytes, taken.panic_symbols as u64];
+        let takes =
+            [taken.static_ram_bytes, taken.stack_bytes, taken.flash_bytes, taken.panic_symbols as u64];
         let numbers: Vec<_> = one.cells().into_iter().chain(takes.map(|n| n.to_string())).collect();
         let names = [taken.core].into_iter().chain(made_for(taken.made_for()));
         table += &line(&names.chain(numbers.iter().map(String::as_str)).collect::<Vec<_>>());

@@ -45,12 +45,13 @@ pub struct Pose {
     points_off_ppm: u64,
 }
 
-/// Builds the program and runs it; fails when what it finds is not what the host finds, to the bit, or not the truth, and
-/// when it takes more than it may.
+/// Builds the program and runs it; fails when what it finds is not what the host finds, to the bit, or not
+/// the truth, and when it takes more than it may.
 pub fn run(board: Board, optimised: Optimised) -> Outcome<Pose> {
     let ran = Ran::of(board, "pose", optimised, &of_host()?)?;
     let (stack, ram, flash) = (ran.taken.stack_bytes, ran.taken.static_ram_bytes, ran.taken.flash_bytes);
-    let eight_point_instructions = ran.instructions("eight_point_ticks")? / ran.figure("eight_point_rounds")?.max(1);
+    let eight_point_instructions =
+        ran.instructions("eight_point_ticks")? / ran.figure("eight_point_rounds")?.max(1);
     ran.within(&[("bytes of stack", stack, MOST_STACK), ("bytes of static RAM", ram, MOST_RAM)])?;
     if WITH_FLOATS.contains(&board.core) {
         ran.within(&[match optimised {
@@ -75,7 +76,8 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Pose> {
     })
 }
 
-/// The bytes of `pose.bin` by the host: F, R and t row by row, then of every match whether it agrees, and its point.
+/// The bytes of `pose.bin` by the host: F, R and t row by row, then of every match whether it agrees, and its
+/// point.
 fn of_host() -> Outcome<Vec<u8>> {
     let (mut world, mut inliers, mut points) = (Box::new(World::new()), [false; MATCHES], [None; MATCHES]);
     let mut find = || {
@@ -104,7 +106,8 @@ fn of_host() -> Outcome<Vec<u8>> {
 
 impl Tabled for Pose {
     const NAME: &'static str = "pose";
-    /// The smallest board, which has too little RAM, left out. One core of each kind made for size is enough: the others take as much.
+    /// The smallest board, which has too little RAM, left out. One core of each kind made for size is enough:
+    /// the others take as much.
     const CASES: &'static [(Board, Optimised)] = &[
         (board::M3, Optimised::Speed),
         (board::M4, Optimised::Speed),
@@ -117,7 +120,9 @@ impl Tabled for Pose {
     const COLUMNS: &'static [&'static str] = &["F of 8", "F of 128, a third wrong", "and pose and points"];
 
     fn cells(&self) -> Vec<String> {
-        [self.eight_point_instructions, self.robust_instructions, self.instructions].map(|n| n.to_string()).into()
+        [self.eight_point_instructions, self.robust_instructions, self.instructions]
+            .map(|n| n.to_string())
+            .into()
     }
 
     fn taken(&self) -> &Taken {

@@ -126,8 +126,12 @@ impl Optimised {
 pub fn build_plain(board: Board, bin: &str, optimised: Optimised, features: &str) -> Outcome<PathBuf> {
     let _turn = FOLDERS[folder_of(board)].lock().unwrap_or_else(PoisonError::into_inner);
     let (profile, core) = (optimised.profile(), board.core);
-    let name =
-        [core, bin, profile, features].iter().filter(|part| !part.is_empty()).copied().collect::<Vec<_>>().join("-");
+    let name = [core, bin, profile, features]
+        .iter()
+        .filter(|part| !part.is_empty())
+        .copied()
+        .collect::<Vec<_>>()
+        .join("-");
     let mut cargo = cargo_for(board, "build --locked --quiet");
     for other in ["METHOD", "NOISE", "WIDTH", "HEIGHT", "DISPARITIES"] {
         cargo.env_remove(format!("STEREO_{other}"));
@@ -140,7 +144,8 @@ pub fn build_plain(board: Board, bin: &str, optimised: Optimised, features: &str
 }
 
 impl Program {
-    /// A program for frames of that size from cameras with little noise; the failure names the option that asks for too much.
+    /// A program for frames of that size from cameras with little noise; the failure names the option that
+    /// asks for too much.
     pub fn new(board: Board, method: Method, width: u16, height: u16, disparities: u16) -> Outcome<Self> {
         let least = Config::FEWEST_DISPARITIES;
         if width < least {
@@ -162,7 +167,15 @@ impl Program {
                 board.core, board.machine
             )));
         }
-        Ok(Self { board, method, width, height, disparities, noise: Noise::None, all_memory: needed > BUDGET })
+        Ok(Self {
+            board,
+            method,
+            width,
+            height,
+            disparities,
+            noise: Noise::None,
+            all_memory: needed > BUDGET,
+        })
     }
 
     /// The folder that it is built in: all programs of a target in one, and about as many programs in each.
@@ -182,7 +195,9 @@ impl Program {
     pub fn cargo(&self, words: &str) -> Command {
         let mut cargo = cargo_for(self.board, words);
         cargo.env("STEREO_METHOD", self.method.name()).env("STEREO_NOISE", self.noise.name());
-        for (name, value) in [("WIDTH", self.width), ("HEIGHT", self.height), ("DISPARITIES", self.disparities)] {
+        for (name, value) in
+            [("WIDTH", self.width), ("HEIGHT", self.height), ("DISPARITIES", self.disparities)]
+        {
             cargo.env(format!("STEREO_{name}"), value.to_string());
         }
         cargo.env("STEREO_MEMORY", if self.all_memory { "board" } else { "budget" });

@@ -1,5 +1,5 @@
-//! The program `rectify` on one core: raw lines rectified behind three lenses, and depth from them, measured, and held to the host's
-//! own run.
+//! The program `rectify` on one core: raw lines rectified behind three lenses, and depth from them, measured,
+//! and held to the host's own run.
 
 use super::board::{self, Board};
 use super::plain::Tabled;
@@ -41,18 +41,24 @@ pub struct Rectify {
     right_percent: f64,
 }
 
-/// Builds the program and runs it; fails when what it finds is not what the host finds, to the bit, or far from the truth, and
-/// when it takes more than it may.
+/// Builds the program and runs it; fails when what it finds is not what the host finds, to the bit, or far
+/// from the truth, and when it takes more than it may.
 pub fn run(board: Board, optimised: Optimised) -> Outcome<Rectify> {
     let ran = Ran::of(board, "rectify", optimised, &of_host()?)?;
     let state_bytes = ran.figure("state_bytes")?;
-    ran.within(&[("bytes of state", state_bytes, MOST_STATE), ("bytes of stack", ran.taken.stack_bytes, MOST_STACK)])?;
+    ran.within(&[
+        ("bytes of state", state_bytes, MOST_STATE),
+        ("bytes of stack", ran.taken.stack_bytes, MOST_STACK),
+    ])?;
     let pixels = 2.0 * f64::from(SCENE.width) * f64::from(SCENE.height);
     let mut instructions_per_pixel = [0.0; 3];
-    for (per_pixel, ticks) in instructions_per_pixel.iter_mut().zip(["none_ticks", "mild_ticks", "strong_ticks"]) {
+    for (per_pixel, ticks) in
+        instructions_per_pixel.iter_mut().zip(["none_ticks", "mild_ticks", "strong_ticks"])
+    {
         *per_pixel = ran.instructions(ticks)? as f64 / pixels;
         if HELD.contains(&board.core) && *per_pixel > MOST_PER_PIXEL {
-            let what = format!("{ticks}: {per_pixel:.1} instructions for a pixel, at most {MOST_PER_PIXEL} may be");
+            let what =
+                format!("{ticks}: {per_pixel:.1} instructions for a pixel, at most {MOST_PER_PIXEL} may be");
             return Err(ran.failed(what));
         }
     }
@@ -68,8 +74,8 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Rectify> {
     })
 }
 
-/// The bytes of `rectify.bin`: behind each lens the left and the right line of each row and which of their pixels are valid; then the
-/// disparity and the flags of each pixel.
+/// The bytes of `rectify.bin`: behind each lens the left and the right line of each row and which of their
+/// pixels are valid; then the disparity and the flags of each pixel.
 fn of_host() -> Outcome<Vec<u8>> {
     let mut pair = Box::new(RawPair::new());
     let failed = |e: Broken<Infallible>| Failure::new(format!("the host rectifies nothing: {e:?}"));
@@ -101,8 +107,10 @@ fn of_host() -> Outcome<Vec<u8>> {
 impl Tabled for Rectify {
     const NAME: &'static str = "rectify";
     /// The dense path is made for speed.
-    const CASES: &'static [(Board, Optimised)] = &[(board::M4, Optimised::Speed), (board::M7, Optimised::Speed)];
-    const COLUMNS: &'static [&'static str] = &["no lens", "mild lens", "strong lens", "depth", "state", "raw lines"];
+    const CASES: &'static [(Board, Optimised)] =
+        &[(board::M4, Optimised::Speed), (board::M7, Optimised::Speed)];
+    const COLUMNS: &'static [&'static str] =
+        &["no lens", "mild lens", "strong lens", "depth", "state", "raw lines"];
 
     fn cells(&self) -> Vec<String> {
         let numbers = [self.depth_instructions, self.state_bytes, self.band_bytes].map(|n| n.to_string());

@@ -1,5 +1,5 @@
-//! What the firmware refuses: a panic when it is linked, a bad file when it runs. The checks that every other build and
-//! run of it passes can fail.
+//! What the firmware refuses: a panic when it is linked, a bad file when it runs. The checks that every other
+//! build and run of it passes can fail.
 
 use super::board::{M4, RV32};
 use super::emulate;
@@ -40,7 +40,9 @@ fn a_panic_does_not_link() -> Outcome {
     }
     if !told.contains(MISSING) {
         eprint!("{told}");
-        return Err(Failure::new(format!("examples/firmware with a panic in it fails, but not for {MISSING}")));
+        return Err(Failure::new(format!(
+            "examples/firmware with a panic in it fails, but not for {MISSING}"
+        )));
     }
     println!("with a panic in it examples/firmware does not link: {MISSING} is undefined");
     Ok(())

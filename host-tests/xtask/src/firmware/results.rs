@@ -1,5 +1,5 @@
-//! A program without sizes to choose, run on one core: what it prints, what it takes, and what it leaves: a file that has to be
-//! the host's, and `summary.json`.
+//! A program without sizes to choose, run on one core: what it prints, what it takes, and what it leaves: a
+//! file that has to be the host's, and `summary.json`.
 
 use super::board::Board;
 use super::frame::{calibrated, figures, instructions};
@@ -13,7 +13,8 @@ use std::fs;
 use std::path::Path;
 use stereopsis_host::output::{OutputError, Staging};
 
-/// What every such program takes. Names and units of the fields are a contract with programs that read `summary.json`.
+/// What every such program takes. Names and units of the fields are a contract with programs that read
+/// `summary.json`.
 #[derive(Serialize)]
 pub struct Taken {
     pub core: &'static str,
@@ -51,8 +52,8 @@ pub struct Ran {
 }
 
 impl Ran {
-    /// Builds the program of this name and runs it; fails when the file `NAME.bin` is not, to the bit, what the host has for it,
-    /// when its clock is another, and when it can panic.
+    /// Builds the program of this name and runs it; fails when the file `NAME.bin` is not, to the bit, what
+    /// the host has for it, when its clock is another, and when it can panic.
     pub fn of(board: Board, program: &str, optimised: Optimised, host: &[u8]) -> Outcome<Self> {
         let name = format!("{}-{program}-{}", board.core, optimised.profile());
         let failed = |what: String| Failure::new(format!("{name}: {what}"));
@@ -65,8 +66,10 @@ impl Ran {
         let file = format!("{program}.bin");
         let there = fs::read(folder.path().join(&file)).map_err(|e| failed(format!("{file}: {e}")))?;
         same(&file, &there, host).map_err(failed)?;
-        let figures: HashMap<_, _> = figures(&printed).into_iter().map(|(name, n)| (name.to_owned(), n)).collect();
-        let figure = |name: &str| figures.get(name).copied().ok_or_else(|| failed(format!("it prints no {name}")));
+        let figures: HashMap<_, _> =
+            figures(&printed).into_iter().map(|(name, n)| (name.to_owned(), n)).collect();
+        let figure =
+            |name: &str| figures.get(name).copied().ok_or_else(|| failed(format!("it prints no {name}")));
         calibrated(board, figure("calibration_ticks")?).map_err(failed)?;
         let sizes = Sizes::of(&elf)?;
         sizes.without_panics()?;

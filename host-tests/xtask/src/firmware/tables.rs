@@ -20,7 +20,8 @@ pub enum Readme {
     Write,
     /// All is measured, and README.md has to say it.
     Compare,
-    /// A part is measured that every kind of core has a share in, for the sake of time, and README.md has to say it.
+    /// A part is measured that every kind of core has a share in, for the sake of time, and README.md has to
+    /// say it.
     Sample,
 }
 
@@ -34,7 +35,8 @@ impl Readme {
 /// That of `cargo xtask firmware --all`.
 pub const FIRMWARE: Part = Part { name: "firmware", command: "cargo xtask firmware --all" };
 
-/// How far a figure may lie from README.md's: another folder moves a constant, another compiler makes other code.
+/// How far a figure may lie from README.md's: another folder moves a constant, another compiler makes other
+/// code.
 const WITHIN: f64 = 0.01;
 const WITHIN_OF_ANOTHER_COMPILER: f64 = 0.15;
 
@@ -88,10 +90,15 @@ fn spreads(results: &[Result]) -> String {
     table += "\n";
     for result in results.iter().filter(|result| !result.spread.is_empty()) {
         let program = &result.frame.program;
-        let shown: Vec<_> = result.spread.iter().copied().filter(|(name, _)| PICTURES.contains(name)).collect();
+        let shown: Vec<_> =
+            result.spread.iter().copied().filter(|(name, _)| PICTURES.contains(name)).collect();
         let counts: String = shown.iter().map(|(_, count)| format!(" {count} |")).collect();
-        table +=
-            &format!("| {} | `{}` |{counts} {:.2} |\n", program.board.core, program.method, 100.0 * spread(&shown));
+        table += &format!(
+            "| {} | `{}` |{counts} {:.2} |\n",
+            program.board.core,
+            program.method,
+            100.0 * spread(&shown)
+        );
     }
     table
 }
@@ -123,7 +130,8 @@ impl Part {
     /// README.md, and where the part stands in it.
     fn find(&self) -> Outcome<(String, Range<usize>)> {
         let failed = |what: String| Failure::new(format!("README.md: {what}"));
-        let (begin, end) = (format!("<!-- generated: {} -->\n", self.name), format!("<!-- end: {} -->", self.name));
+        let (begin, end) =
+            (format!("<!-- generated: {} -->\n", self.name), format!("<!-- end: {} -->", self.name));
         let readme = fs::read_to_string(readme_path()).map_err(|e| failed(e.to_string()))?;
         let missing = |line: &str| failed(format!("there is no line {}", line.trim()));
         let first = readme.find(&begin).ok_or_else(|| missing(&begin))? + begin.len();
@@ -132,8 +140,8 @@ impl Part {
     }
 }
 
-/// How two parts differ, if they do: in words, or in figures by more than they may. Of a sample, each line has to be in the
-/// old part.
+/// How two parts differ, if they do: in words, or in figures by more than they may. Of a sample, each line
+/// has to be in the old part.
 fn difference(old: &str, new: &str, is_sample: bool) -> Option<String> {
     let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
     let compiler = |text: &str| text.lines().find(|line| line.starts_with("Compiler: ")).map(str::to_owned);
@@ -148,7 +156,9 @@ fn difference(old: &str, new: &str, is_sample: bool) -> Option<String> {
     }
     let is_near = |a: &str, b: &str| match (a.parse::<f64>(), b.parse::<f64>()) {
         // Shares of a percent and small counts may differ by a little in themselves.
-        (Ok(a), Ok(b)) => (a - b).abs() <= within * a.abs().max(b.abs()) || (a - b).abs() <= 0.5 && a.fract() != 0.0,
+        (Ok(a), Ok(b)) => {
+            (a - b).abs() <= within * a.abs().max(b.abs()) || (a - b).abs() <= 0.5 && a.fract() != 0.0
+        }
         _ => a == b,
     };
     let is_same = |a: &str, b: &str| {

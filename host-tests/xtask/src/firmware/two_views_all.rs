@@ -40,8 +40,9 @@ fn eight_point() -> Outcome<EightPoint> {
     let folder = tempfile::tempdir().map_err(|e| Failure::new(e.to_string()))?;
     let printed = emulate::run_elf(board::M7, &with, "m7-eight_point-small", folder.path())?;
     let figures = figures(&printed);
-    let figure =
-        |name: &str| figures.get(name).copied().ok_or_else(|| Failure::new(format!("eight_point prints no {name}")));
+    let figure = |name: &str| {
+        figures.get(name).copied().ok_or_else(|| Failure::new(format!("eight_point prints no {name}")))
+    };
     let instructions = instructions(board::M7, figure("ticks")?) / figure("rounds")?.max(1);
     let sizes = Sizes::of(&with)?;
     sizes.without_panics()?;

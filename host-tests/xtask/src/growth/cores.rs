@@ -24,10 +24,11 @@ const WIDTHS: [u16; 5] = [80, 160, 319, 320, 640];
 const HEIGHTS: [u16; 4] = [30, 60, 120, 240];
 const DISPARITIES: [u16; 7] = [16, 32, 48, 64, 96, 128, 256];
 
-/// How many times as much an evaluation may cost as at a smaller size: lines that are no whole words long cost more, and so
-/// do more disparities than the windows of a Cortex-M55 are in assembly for.
+/// How many times as much an evaluation may cost as at a smaller size: lines that are no whole words long
+/// cost more, and so do more disparities than the windows of a Cortex-M55 are in assembly for.
 const MOST: f64 = 1.75;
-/// The same where the disparities are no multiple of 32: kernels that keep 32 of them in a word work in halves then.
+/// The same where the disparities are no multiple of 32: kernels that keep 32 of them in a word work in
+/// halves then.
 const MOST_IN_HALVES: f64 = 2.0;
 
 /// The part of README.md.
@@ -52,7 +53,11 @@ fn measured(cores: &[Board], disparities: &[u16]) -> Outcome<String> {
     let columns = parallel::work(jobs, |(board, method)| column(board, method, &series, disparities))?;
     let text = table::text(&series, &columns);
     println!("{text}");
-    table::held(&series, &columns, |size| if size.disparities.is_multiple_of(32) { MOST } else { MOST_IN_HALVES })?;
+    table::held(
+        &series,
+        &columns,
+        |size| if size.disparities.is_multiple_of(32) { MOST } else { MOST_IN_HALVES },
+    )?;
     Ok(text)
 }
 
@@ -64,12 +69,16 @@ fn column(board: Board, method: Method, series: &[Series], searches: &[u16]) -> 
     for &disparities in searches {
         let built = Program::new(board, method, widest, highest, disparities)?.build()?;
         let mut stack = 0;
-        for (cost, &size) in costs.iter_mut().zip(&sizes).filter(|(_, size)| size.disparities == disparities) {
+        for (cost, &size) in costs.iter_mut().zip(&sizes).filter(|(_, size)| size.disparities == disparities)
+        {
             let frame = frame_of(&built, size)?;
             *cost = frame.instructions as f64 / size.evaluations() as f64;
             stack = frame.stack;
         }
-        println!("{} `{method}` with {disparities} disparities is measured, {stack} bytes of stack", board.core);
+        println!(
+            "{} `{method}` with {disparities} disparities is measured, {stack} bytes of stack",
+            board.core
+        );
     }
     Ok(Column { on: board.core.to_owned(), method, costs })
 }

@@ -19,8 +19,10 @@ const FEWEST: u64 = 3;
 pub fn run() -> Outcome {
     let series = series(&WIDTHS, &HEIGHTS, &DISPARITIES);
     let sizes: Vec<Size> = series.iter().flat_map(|(_, sizes)| sizes.iter().copied()).collect();
-    let ways: Vec<(Method, Kernel)> =
-        Method::ALL.into_iter().flat_map(|method| Kernel::available().map(move |kernel| (method, kernel))).collect();
+    let ways: Vec<(Method, Kernel)> = Method::ALL
+        .into_iter()
+        .flat_map(|method| Kernel::available().map(move |kernel| (method, kernel)))
+        .collect();
     let mut columns: Vec<Column> = ways
         .iter()
         .map(|(method, kernel)| Column { on: kernel.name().to_owned(), method: *method, costs: Vec::new() })
@@ -30,7 +32,8 @@ pub fn run() -> Outcome {
         let camera = MemoryPair::new(size.width, left.into_raw(), right.into_raw());
         let mut camera = camera.ok_or_else(|| Failure::new("the pictures are empty"))?;
         for (column, &(method, kernel)) in columns.iter_mut().zip(&ways) {
-            let config = method.with_filter(Filter::Default, Config::new(size.width, size.height, size.disparities));
+            let config =
+                method.with_filter(Filter::Default, Config::new(size.width, size.height, size.disparities));
             let way = Way { kernel: Some(kernel), ..method.into() };
             let frames = (EVALUATIONS / size.evaluations()).max(FEWEST);
             let timed = time_frames(way, &config, &mut camera, frames as usize);

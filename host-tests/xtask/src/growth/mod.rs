@@ -5,8 +5,8 @@
 //! * `host`: nanoseconds on this machine, for each of its kernels: printed only.
 //! * `table`: both as tables, and where an evaluation costs more than the limit allows.
 //!
-//! Linear growth is a cost that does not rise. A frame has costs of its own, a row and a pixel too, which larger ones share
-//! among more evaluations: so the cost falls.
+//! Linear growth is a cost that does not rise. A frame has costs of its own, a row and a pixel too, which
+//! larger ones share among more evaluations: so the cost falls.
 
 mod cores;
 mod host;

@@ -1,13 +1,17 @@
-//! Costs as a table: a line for each size, a column for each method on each core; and the limit that they are held to.
+//! Costs as a table: a line for each size, a column for each method on each core; and the limit that they are
+//! held to.
 
 use super::sizes::{Column, Series, Size};
 use crate::steps::{Failure, Outcome};
 
 /// The whole table. Down a part of it the work grows.
 pub fn text(series: &[Series], columns: &[Column]) -> String {
-    let heads: String = columns.iter().map(|column| format!(" {} `{}` |", column.on, column.method)).collect();
-    let mut text =
-        format!("| what grows | pixels, disparities |{heads}\n| --- | --- |{}\n", " ---: |".repeat(columns.len()));
+    let heads: String =
+        columns.iter().map(|column| format!(" {} `{}` |", column.on, column.method)).collect();
+    let mut text = format!(
+        "| what grows | pixels, disparities |{heads}\n| --- | --- |{}\n",
+        " ---: |".repeat(columns.len())
+    );
     let mut place = 0;
     for (grows, sizes) in series {
         for size in sizes {
@@ -22,7 +26,8 @@ pub fn text(series: &[Series], columns: &[Column]) -> String {
     text
 }
 
-/// Fails where an evaluation costs over `most` times of its size what it costs at a smaller size of the same series.
+/// Fails where an evaluation costs over `most` times of its size what it costs at a smaller size of the same
+/// series.
 pub fn held(series: &[Series], columns: &[Column], most: impl Fn(Size) -> f64) -> Outcome {
     for Column { on, method, costs } in columns {
         let mut costs = costs.iter();
@@ -74,7 +79,9 @@ mod tests {
         let series = sizes::series(&[8, 16], &[4, 8], &[16, 32]);
         let table = text(&series, &columns(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
         assert_eq!(table.lines().count(), 2 + 6);
-        assert!(table.starts_with("| what grows | pixels, disparities | m4 `fast` |\n| --- | --- | ---: |\n"));
+        assert!(
+            table.starts_with("| what grows | pixels, disparities | m4 `fast` |\n| --- | --- | ---: |\n")
+        );
         assert!(table.contains("| width | 16x8, 32 | 2.00 |\n| height | 16x4, 32 | 3.00 |\n"));
         assert!(table.ends_with("| disparities | 16x8, 32 | 6.00 |\n"));
     }

@@ -1,13 +1,15 @@
 //! onsemi's MT9V034: 752x480 pixels of 10 bits behind a global shutter, on a parallel port.
 //!
-//! Registers have 16 bits at addresses of 8, the high byte first. Their names, numbers, limits and bits are those of Linux's driver
-//! (`drivers/media/i2c/mt9v032.c`) and of OpenMV's (`drivers/sensors/mt9v0xx_regs.h`); the timing is that of the data sheet of
-//! its twin for cars, MT9V024/D, tables 4 and 5.
+//! Registers have 16 bits at addresses of 8, the high byte first. Their names, numbers, limits and bits are
+//! those of Linux's driver (`drivers/media/i2c/mt9v032.c`) and of OpenMV's
+//! (`drivers/sensors/mt9v0xx_regs.h`); the timing is that of the data sheet of its twin for cars, MT9V024/D,
+//! tables 4 and 5.
 //!
 //! A row takes `width + horizontal blanking` clocks of the master clock, 704 at least, and a frame
-//! `max(rows + vertical blanking, exposure + 2)` rows and 4 clocks. The exposure is whole rows. Of binned rows only a half or
-//! a fourth are read out; binned columns are clocked out slower by as much and save no time (MT9V024/D, "Row Binning" and
-//! "Column Binning", page 25; that of the MT9V032, page 46, says the same).
+//! `max(rows + vertical blanking, exposure + 2)` rows and 4 clocks. The exposure is whole rows. Of binned
+//! rows only a half or a fourth are read out; binned columns are clocked out slower by as much and save no
+//! time (MT9V024/D, "Row Binning" and "Column Binning", page 25; that of the MT9V032, page 46, says the
+//! same).
 
 mod settings;
 
@@ -38,10 +40,12 @@ const CONTROL: u16 = 1 << 7 | 1 << 8 | 1 << 9;
 /// Bits of the read mode that have to be one.
 const READ: u16 = 0x0300;
 /// Values of reserved registers that the data sheet recommends.
-const RECOMMENDED: [(u8, u16); 5] = [(0x13, 0x2d2e), (0x20, 0x03c7), (0x24, 0x001b), (0x2b, 0x0003), (0x2f, 0x0003)];
+const RECOMMENDED: [(u8, u16); 5] =
+    [(0x13, 0x2d2e), (0x20, 0x03c7), (0x24, 0x001b), (0x2b, 0x0003), (0x2f, 0x0003)];
 const LEAST_ROW_CLOCKS: u16 = 704;
 
-/// The driver, over a bus that blocks or one that is waited for: `async` and `.await`, or nothing in their places.
+/// The driver, over a bus that blocks or one that is waited for: `async` and `.await`, or nothing in their
+/// places.
 macro_rules! driver {
     ($driver:ident, $about:literal, $i2c:path, $delay:path, [$($async:ident)?], [$($wait:tt)*]) => {
     #[doc = $about]

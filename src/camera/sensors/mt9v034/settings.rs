@@ -7,8 +7,8 @@ pub enum Mt9v034Mode {
     /// The sensor, one frame after the other.
     #[default]
     Master,
-    /// A pulse on its pin EXPOSURE: both sensors of a pair on one pin ([`Triggered`](crate::camera::Triggered)) expose together,
-    /// for as long as the register says.
+    /// A pulse on its pin EXPOSURE: both sensors of a pair on one pin
+    /// ([`Triggered`](crate::camera::Triggered)) expose together, for as long as the register says.
     Snapshot,
     /// Pulses on EXPOSURE and STFRM_OUT, which say when the exposure begins and ends.
     Slave,

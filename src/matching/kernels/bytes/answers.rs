@@ -1,5 +1,5 @@
-//! Winners become answers: what `answers::pixels` does, of methods whose costs rise for nothing but the disparity
-//! ([`Scheme::STEP`](crate::matching::Scheme::STEP) is 0).
+//! Winners become answers: what `answers::pixels` does, of methods whose costs rise for nothing but the
+//! disparity ([`Scheme::STEP`](crate::matching::Scheme::STEP) is 0).
 #![allow(unsafe_code)]
 
 use crate::matching::kernels::Winner;
@@ -49,9 +49,10 @@ pub fn offer(winners: &[Winner], right: &mut [u16]) {
     if count == 0 {
         return;
     }
-    // SAFETY: nobody has offered anything yet: eight at a time from the first to the last. Then the loop counts `x` up to
-    // `count`, by two but for one in the first round if `count` is odd. It reads winner `x`, of which there are so many, and
-    // reads and writes the right column `x - disparity`, or the first one if that is less than 0: one before `count`.
+    // SAFETY: nobody has offered anything yet: eight at a time from the first to the last. Then the loop
+    // counts `x` up to `count`, by two but for one in the first round if `count` is odd. It reads winner
+    // `x`, of which there are so many, and reads and writes the right column `x - disparity`, or the
+    // first one if that is less than 0: one before `count`.
     unsafe {
         asm!(
             "cmp {t}, {w}",
@@ -106,8 +107,8 @@ macro_rules! answer_one {
             "cmp r1, r12, lsr #24\n",
             "adc r2, r7, r2, lsl #3\n",
             "orr r6, r6, r2, lsl #1\n",
-            // The rises to the disparities below and above, of which the winner costs least; 16 times their difference, and half
-            // of the steeper one more.
+            // The rises to the disparities below and above, of which the winner costs least; 16 times their
+            // difference, and half of the steeper one more.
             "uxtb r3, r0, ror #8\n",
             "orr r3, r3, r3, lsl #16\n",
             "sub r0, r0, r3\n",
@@ -152,12 +153,15 @@ pub fn answer(
     const { assert!(Disparity::ONE == 1 << 5) };
     const { assert!(PixelFlags::MISMATCH.bits() == 16 && PixelFlags::CEILING.bits() == 2) };
     // A flag is or-ed in with what stands above it: these bits are in no other flag's place.
-    let flags_and_ceiling =
-        u32::from(refused.flags.bits()) | u32::from(refused.flat.bits()) << 8 | u32::from(refused.ceiling) << 24;
-    let least_and_too_far = u32::from(refused.min_disparity) << 5 & 0xffff | (u32::from(refused.tolerance) + 1) << 16;
-    // SAFETY: the loop counts `x` up to `count`, which all four slices have, as above: it reads winner `x`, what the right column
-    // `x - disparity` keeps, or the first one if that is less than 0, and changes flag and answer `x`. The divisor is not 0. The
-    // stack and the two registers that no operand may be are left as they were.
+    let flags_and_ceiling = u32::from(refused.flags.bits())
+        | u32::from(refused.flat.bits()) << 8
+        | u32::from(refused.ceiling) << 24;
+    let least_and_too_far =
+        u32::from(refused.min_disparity) << 5 & 0xffff | (u32::from(refused.tolerance) + 1) << 16;
+    // SAFETY: the loop counts `x` up to `count`, which all four slices have, as above: it reads winner `x`,
+    // what the right column `x - disparity` keeps, or the first one if that is less than 0, and changes
+    // flag and answer `x`. The divisor is not 0. The stack and the two registers that no operand may be
+    // are left as they were.
     unsafe {
         asm!(
             "push {{r6, r7}}",

@@ -8,8 +8,8 @@ use core::arch::asm;
 /// The fewest pixels of a row that has whole words at both ends.
 const FEWEST: usize = 8;
 
-/// The census row of five lines; or of the right ones, whose codes have four bits, into the high halves of bytes whose low halves
-/// are the left ones.
+/// The census row of five lines; or of the right ones, whose codes have four bits, into the high halves of
+/// bytes whose low halves are the left ones.
 #[inline(never)]
 pub(super) fn census<S: Windowed>(rows: &Around<'_>, of_right: bool, out: &mut [u8]) {
     let width = out.len();
@@ -40,11 +40,13 @@ pub(super) fn census<S: Windowed>(rows: &Around<'_>, of_right: bool, out: &mut [
     let words = |at: usize| words(at).map(|bytes| bytes.map_or(0, u32::from_le_bytes));
     let edge = |places: [[u32; 3]; 3]| S::codes(&places).to_le_bytes();
     let (first, second) = (words(0), words(2));
-    let first =
-        edge([0, 1, 2].map(|row| [(first[row] << 16) | ((first[row] & 0xff) * 0x0101), first[row], second[row]]));
+    let first = edge(
+        [0, 1, 2].map(|row| [(first[row] << 16) | ((first[row] & 0xff) * 0x0101), first[row], second[row]]),
+    );
     let (before, last) = (words(width - 6), words(width - 4));
-    let last =
-        edge([0, 1, 2].map(|row| [before[row], last[row], (last[row] >> 16) | ((last[row] >> 24) * 0x0101_0000)]));
+    let last = edge(
+        [0, 1, 2].map(|row| [before[row], last[row], (last[row] >> 16) | ((last[row] >> 24) * 0x0101_0000)]),
+    );
     let codes = [(0, first[0]), (1, first[1]), (width - 2, last[2]), (width - 1, last[3])];
     for (x, code) in codes {
         if let Some(out) = out.get_mut(x) {

@@ -16,8 +16,8 @@ use crate::matching::window::Windowed;
 /// Candidates that tables serve at a time, at most.
 const MOST: usize = 64;
 
-/// Moves the sums of all columns from `begin` on one row down, by tables. `STRIDE` is the number of candidates where it is a
-/// usual one; else 0.
+/// Moves the sums of all columns from `begin` on one row down, by tables. `STRIDE` is the number of
+/// candidates where it is a usual one; else 0.
 #[inline(never)]
 pub(super) fn update_by_tables<const STRIDE: usize>(
     row: &Rows<'_>,
@@ -25,13 +25,15 @@ pub(super) fn update_by_tables<const STRIDE: usize>(
     scratch: &mut [u32],
     columns: &mut [u32],
 ) {
-    let Some((tables, scratch)) = scratch.split_at_mut_checked(size_of::<[Table; 2]>() / size_of::<u32>()) else {
+    let Some((tables, scratch)) = scratch.split_at_mut_checked(size_of::<[Table; 2]>() / size_of::<u32>())
+    else {
         return;
     };
     let tables = tables.as_chunks_mut().0.as_chunks_mut().0.first_chunk_mut::<2>();
     let (Some(tables), Some(any)) = (tables, row.enter.or(row.leave)) else { return };
     // The right codes alone.
-    let [new, old] = reversed(row, [row.enter, row.leave].map(|codes| codes.unwrap_or(&[])), 0xf0f0_f0f0, scratch);
+    let [new, old] =
+        reversed(row, [row.enter, row.leave].map(|codes| codes.unwrap_or(&[])), 0xf0f0_f0f0, scratch);
     // Nothing differs in a row that is not there.
     if row.enter.is_none() {
         tables::fill(&mut tables[0], 0);
@@ -60,8 +62,10 @@ pub(super) fn update_by_tables<const STRIDE: usize>(
             if row.leave.is_some() {
                 tables::make_equal(&mut tables[1], old.get(first..).unwrap_or(&[]), half, piece.len());
             }
-            let codes = [row.enter, row.leave].map(|codes| codes.unwrap_or(any).get(piece.clone()).unwrap_or(&[]));
-            let columns = columns.get_mut((OUTSIDE + from) * words..(OUTSIDE + piece.end) * words).unwrap_or_default();
+            let codes =
+                [row.enter, row.leave].map(|codes| codes.unwrap_or(any).get(piece.clone()).unwrap_or(&[]));
+            let columns =
+                columns.get_mut((OUTSIDE + from) * words..(OUTSIDE + piece.end) * words).unwrap_or_default();
             match STRIDE {
                 16 => rows::by_tables_16(tables, codes, columns.as_chunks_mut().0),
                 32 => rows::by_tables_32(tables, codes, columns.as_chunks_mut().0),
@@ -82,9 +86,14 @@ fn add_costs(
     columns: &mut [u32],
 ) {
     let places = (0..enters.len()).rev();
-    for (((sums, place), enters), leaves) in columns.chunks_exact_mut(words).zip(places).zip(enters).zip(leaves) {
-        let costs = [(new, enters), (old, leaves)].map(|(table, code)| tables::costs(table, code & 15, place, half));
-        let Some((near, far)) = sums.get_mut(from..).and_then(|s| s.split_at_mut_checked(half / 4)) else { return };
+    for (((sums, place), enters), leaves) in
+        columns.chunks_exact_mut(words).zip(places).zip(enters).zip(leaves)
+    {
+        let costs =
+            [(new, enters), (old, leaves)].map(|(table, code)| tables::costs(table, code & 15, place, half));
+        let Some((near, far)) = sums.get_mut(from..).and_then(|s| s.split_at_mut_checked(half / 4)) else {
+            return;
+        };
         let costs = costs[0].as_chunks::<4>().0.iter().zip(costs[1].as_chunks::<4>().0);
         for ((near, far), (&new, &old)) in near.iter_mut().zip(far).zip(costs) {
             let costs = u32::from_le_bytes(new) + u32::from_le_bytes(old);
@@ -94,8 +103,8 @@ fn add_costs(
     }
 }
 
-/// Moves the sums of all columns from `begin` on one row down, bit by bit. `STRIDE` is the number of candidates where that is
-/// known when the crate is compiled; 0 where it is not.
+/// Moves the sums of all columns from `begin` on one row down, bit by bit. `STRIDE` is the number of
+/// candidates where that is known when the crate is compiled; 0 where it is not.
 #[inline(never)]
 pub(super) fn update<S: Windowed, const STRIDE: usize>(
     row: &Rows<'_>,
@@ -106,14 +115,16 @@ pub(super) fn update<S: Windowed, const STRIDE: usize>(
     // Never none.
     let stride = if STRIDE > 0 { STRIDE } else { row.stride.max(STEP) };
     let halves = [row.enter, row.leave].map(|codes| codes.map(|row| row.split_at(row.len() / 2)));
-    let [new, old] = reversed(row, halves.map(|row| row.map_or(&[][..], |(_, right)| right)), u32::MAX, scratch);
+    let [new, old] =
+        reversed(row, halves.map(|row| row.map_or(&[][..], |(_, right)| right)), u32::MAX, scratch);
     // The codes of a row that is not there are 0 on both sides.
     let lefts = [halves[0].map_or(new, |(left, _)| left), halves[1].map_or(old, |(left, _)| left)];
     let [enters, leaves] = lefts.map(|left| left.get(begin..).unwrap_or(&[]));
     // The first column has the last places.
     let last = row.width - begin + stride - 1;
     let words = stride / 4;
-    let columns = columns.get_mut((OUTSIDE + begin) * words..(OUTSIDE + row.width) * words).unwrap_or_default();
+    let columns =
+        columns.get_mut((OUTSIDE + begin) * words..(OUTSIDE + row.width) * words).unwrap_or_default();
     match STRIDE {
         16 => return rows::by_bits_16([enters, leaves], [new, old], columns.as_chunks_mut().0),
         32 => return rows::by_bits_32([enters, leaves], [new, old], columns.as_chunks_mut().0),
@@ -122,15 +133,17 @@ pub(super) fn update<S: Windowed, const STRIDE: usize>(
         _ => {}
     }
     let [new, old] = [new, old].map(|row| row.get(..last).unwrap_or(&[]).windows(stride).rev());
-    let codes =
-        enters.iter().zip(leaves).map(|(&enters, &leaves)| [u32::from(enters) * ONE, !(u32::from(leaves) * ONE)]);
+    let codes = enters
+        .iter()
+        .zip(leaves)
+        .map(|(&enters, &leaves)| [u32::from(enters) * ONE, !(u32::from(leaves) * ONE)]);
     for (((sums, codes), new), old) in columns.chunks_exact_mut(stride / 4).zip(codes).zip(new).zip(old) {
         add_bits::<S>(codes, new, old, sums);
     }
 }
 
-/// The right codes of both rows from the partner of the last column's first candidate back, with those of all candidates of
-/// the first column; of each the bits of a mask.
+/// The right codes of both rows from the partner of the last column's first candidate back, with those of all
+/// candidates of the first column; of each the bits of a mask.
 fn reversed<'a>(row: &Rows<'_>, right: [&[u8]; 2], mask: u32, room: &'a mut [u32]) -> [&'a [u8]; 2] {
     // Tables read up to seven bytes more, and pieces begin between words.
     let words = ((row.width + row.stride).div_ceil(4) + 2).min(room.len() / 2);

@@ -1,5 +1,5 @@
-//! The kernel in bytes, for cores with Arm's instructions on four bytes in a word (Cortex-M4, M7, M33): a word is four
-//! candidates of a column, the smallest disparity lowest.
+//! The kernel in bytes, for cores with Arm's instructions on four bytes in a word (Cortex-M4, M7, M33): a
+//! word is four candidates of a column, the smallest disparity lowest.
 //!
 //! In running order:
 //!
@@ -7,17 +7,20 @@
 //! * `tables`: what every left code costs against a row's right codes, where codes have four bits.
 //! * `columns`: costs into the columns under the window.
 //! * `windows`: columns into windows, windows into winners.
-//! * `rows`: the right codes from right to left, and the loops of both over the pixels of a row, in assembly for the usual numbers
-//!   of candidates.
-//! * `answers`: winners into answers; `surface`: these averaged; `speckle`: their support counted, which all methods share.
+//! * `rows`: the right codes from right to left, and the loops of both over the pixels of a row, in assembly
+//!   for the usual numbers of candidates.
+//! * `answers`: winners into answers; `surface`: these averaged; `speckle`: their support counted, which all
+//!   methods share.
 //! * `word`: what is done to four bytes.
 //!
-//! The compiler has no instructions on four bytes, and keeps too little in registers: the loops over pixels are in assembly. A
-//! loop over two pixels in a round is entered in its middle where their number is odd. Each loop is a function that stands alone
-//! (`inline(never)`). Where a loop needs more registers than operands may be, or such that one instruction loads, all of them are
-//! named, and the two that are not the assembly's (r6, r7) are kept on the stack.
+//! The compiler has no instructions on four bytes, and keeps too little in registers: the loops over pixels
+//! are in assembly. A loop over two pixels in a round is entered in its middle where their number is odd.
+//! Each loop is a function that stands alone (`inline(never)`). Where a loop needs more registers than
+//! operands may be, or such that one instruction loads, all of them are named, and the two that are not the
+//! assembly's (r6, r7) are kept on the stack.
 //!
-//! The work is the same for every picture, but for a few instructions where a winner is at an end of the search.
+//! The work is the same for every picture, but for a few instructions where a winner is at an end of the
+//! search.
 
 mod answers;
 mod census;
@@ -51,8 +54,8 @@ struct Rows<'a> {
     leave: Option<&'a [u8]>,
 }
 
-/// [`super::Kernel::codes`] for bytes: where codes have four bits a pixel's two are one byte, the left one low; else the
-/// left ones are before the right ones.
+/// [`super::Kernel::codes`] for bytes: where codes have four bits a pixel's two are one byte, the left one
+/// low; else the left ones are before the right ones.
 #[inline]
 pub(super) fn codes_of<S: Windowed>([left, right]: [&Around<'_>; 2], out: &mut [u8]) {
     if S::BITS > 4 {

@@ -1,8 +1,8 @@
 //! Support counted and speckle dropped, four answers at a time: what `speckle.rs` of the stages does.
 //!
-//! Of four columns is kept a word of support, then one of bits, in which the second byte and the third have changed places: so
-//! that what comes of two half-words of answers, and of the next two, goes to bytes and comes back without being sorted. The
-//! last columns, fewer than four, have a half-word each.
+//! Of four columns is kept a word of support, then one of bits, in which the second byte and the third have
+//! changed places: so that what comes of two half-words of answers, and of the next two, goes to bytes and
+//! comes back without being sorted. The last columns, fewer than four, have a half-word each.
 #![allow(unsafe_code)]
 
 use crate::matching::kernels::scratch::bytes_of_halves;
@@ -26,8 +26,12 @@ pub fn judge(work: Judged<'_>, step: Disparity, pixels: u8) {
         drop_speckle(lengths, answers, finished, flags, four);
     }
     for x in four..count {
-        let (Some(&here), Some(&above), Some(&length)) = (here.get(x), above.get(x), lengths.get(x)) else { return };
-        let (Some(kept), Some(flags), Some(finished)) = (kept.get_mut(x), flags.get_mut(x), finished.get_mut(x)) else {
+        let (Some(&here), Some(&above), Some(&length)) = (here.get(x), above.get(x), lengths.get(x)) else {
+            return;
+        };
+        let (Some(kept), Some(flags), Some(finished)) =
+            (kept.get_mut(x), flags.get_mut(x), finished.get_mut(x))
+        else {
             return;
         };
         let joined = u16::from(here.raw().abs_diff(above.raw()) <= step.raw());
@@ -42,8 +46,8 @@ pub fn judge(work: Judged<'_>, step: Disparity, pixels: u8) {
     }
 }
 
-/// Counts the support of `four` columns, a multiple of four and not 0, and leaves where their lengths stood the highest bit set
-/// of those whose row that waited has enough. 43 instructions for four.
+/// Counts the support of `four` columns, a multiple of four and not 0, and leaves where their lengths stood
+/// the highest bit set of those whose row that waited has enough. 43 instructions for four.
 #[inline(never)]
 fn join(
     here: &[Disparity],
@@ -53,9 +57,9 @@ fn join(
     (four, step, pixels): (usize, Disparity, u8),
 ) {
     let (here, lengths) = (here.as_ptr(), lengths.as_mut_ptr());
-    // SAFETY: of every slice `four` elements are read, and of the last two written, four in every round: `judge` asked for so
-    // many. They are integers, or integers' own types, any of which is one. The stack
-    // and the two registers that no operand may be are left as they were.
+    // SAFETY: of every slice `four` elements are read, and of the last two written, four in every round:
+    // `judge` asked for so many. They are integers, or integers' own types, any of which is one. The
+    // stack and the two registers that no operand may be are left as they were.
     unsafe {
         asm!(
             "push {{r6, r7}}",
@@ -124,7 +128,8 @@ fn join(
     }
 }
 
-/// Finishes `four` answers, a multiple of four and not 0, that [`join`] has marked if they stay. 25 instructions for four.
+/// Finishes `four` answers, a multiple of four and not 0, that [`join`] has marked if they stay. 25
+/// instructions for four.
 #[inline(never)]
 fn drop_speckle(
     marks: &[u8],

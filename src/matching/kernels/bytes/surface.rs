@@ -9,8 +9,8 @@ use core::arch::asm;
 /// How far averages reach at most, to each side.
 const MOST: usize = RECIPROCALS.len() - 1;
 
-/// By how far an average reaches: the reciprocal of how many answers that are by 2^16, and above it how many less than none they
-/// are. The reciprocal of one, which nothing is multiplied by, is left out.
+/// By how far an average reaches: the reciprocal of how many answers that are by 2^16, and above it how many
+/// less than none they are. The reciprocal of one, which nothing is multiplied by, is left out.
 static COUNTS: [u32; MOST + 1] = {
     let mut counts = [0; MOST + 1];
     let mut reach = 0;
@@ -21,10 +21,16 @@ static COUNTS: [u32; MOST + 1] = {
     counts
 };
 
-/// [`crate::matching::surface::average`]; a length is a byte, that of the answer `x` the byte `x`: one less than it is, and 255
-/// for all above.
+/// [`crate::matching::surface::average`]; a length is a byte, that of the answer `x` the byte `x`: one less
+/// than it is, and 255 for all above.
 #[inline(never)]
-pub fn average(answers: &mut [Disparity], lengths: &mut [u16], sums: &mut [u16], step: Disparity, radius: u8) {
+pub fn average(
+    answers: &mut [Disparity],
+    lengths: &mut [u16],
+    sums: &mut [u16],
+    step: Disparity,
+    radius: u8,
+) {
     let lengths = bytes_of_halves(lengths);
     if answers.is_empty() || lengths.len() < answers.len() || sums.len() < answers.len() + 1 {
         return;
@@ -59,8 +65,8 @@ macro_rules! count_one {
     };
 }
 
-/// The pass to the right: for every answer how many of its surface there are before it, and the sum of all raw disparities up to
-/// it, modulo 2^16, after one for none. 11 instructions an answer.
+/// The pass to the right: for every answer how many of its surface there are before it, and the sum of all
+/// raw disparities up to it, modulo 2^16, after one for none. 11 instructions an answer.
 #[inline(never)]
 fn count(answers: &[Disparity], lengths: &mut [u8], sums: &mut [u16], step: Disparity) {
     let count = answers.len();
@@ -69,8 +75,8 @@ fn count(answers: &[Disparity], lengths: &mut [u8], sums: &mut [u16], step: Disp
     }
     // No answer is near what stands before the row.
     let before = u32::MAX / 2;
-    // SAFETY: `count` answers are read, two in a round but for one in the first if `count` is odd; as many lengths are written,
-    // and a sum more.
+    // SAFETY: `count` answers are read, two in a round but for one in the first if `count` is odd; as many
+    // lengths are written, and a sum more.
     unsafe {
         asm!(
             "strh {sum}, [{sums}]",
@@ -128,7 +134,8 @@ macro_rules! average_one {
     };
 }
 
-/// The pass back: makes every answer the average, and every length that of the whole surface. 24 instructions an answer.
+/// The pass back: makes every answer the average, and every length that of the whole surface. 24 instructions
+/// an answer.
 #[inline(never)]
 fn average_back(answers: &mut [Disparity], lengths: &mut [u8], sums: &[u16], radius: u8) {
     let count = answers.len();
@@ -136,10 +143,10 @@ fn average_back(answers: &mut [Disparity], lengths: &mut [u8], sums: &[u16], rad
         return;
     }
     let first = lengths.as_mut_ptr();
-    // SAFETY: from the last of `count` answers and lengths back to the first, they are read and written, two in a round but for
-    // one in the first if `count` is odd. The number `reach` is no more than how many of the surface there are before an answer,
-    // no more than how many there are after it, and no more than COUNTS has. So sums are read between the first and the one
-    // that stands `count` after it.
+    // SAFETY: from the last of `count` answers and lengths back to the first, they are read and written, two
+    // in a round but for one in the first if `count` is odd. The number `reach` is no more than how many
+    // of the surface there are before an answer, no more than how many there are after it, and no more
+    // than COUNTS has. So sums are read between the first and the one that stands `count` after it.
     unsafe {
         asm!(
             "tst {t}, #1",

@@ -1,8 +1,9 @@
 //! What every left code costs against the right codes of a row.
 //!
-//! A code of four bits is one of sixteen: so few that the costs of all of them are made once a row, in order of the right
-//! pixels. The candidates of a left pixel are then a piece of its code's line. From code to code, in an order in which one
-//! bit changes at a time (Gray's), every cost changes by one: an addition for eight of them.
+//! A code of four bits is one of sixteen: so few that the costs of all of them are made once a row, in order
+//! of the right pixels. The candidates of a left pixel are then a piece of its code's line. From code to
+//! code, in an order in which one bit changes at a time (Gray's), every cost changes by one: an addition for
+//! eight of them.
 //!
 //! ```text
 //! place p   of the reversed row: right pixel p in the low half of a byte, p + apart in the high one

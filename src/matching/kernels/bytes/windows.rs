@@ -15,8 +15,8 @@ use crate::matching::window::Windowed;
 /// The lane numbers.
 const LANES: u32 = 0x0302_0100;
 
-/// The winners of a row. `STRIDE` is the number of candidates where that is known when the crate is compiled, which lets the
-/// compiler unroll the work on them; 0 where it is not.
+/// The winners of a row. `STRIDE` is the number of candidates where that is known when the crate is compiled,
+/// which lets the compiler unroll the work on them; 0 where it is not.
 #[inline(never)]
 pub(super) fn select<S: Windowed, const STRIDE: usize>(
     row: &Rows<'_>,
@@ -43,7 +43,8 @@ pub(super) fn select<S: Windowed, const STRIDE: usize>(
     begin_with::<S>(none, from(first + 1), words, (0, fewest / 4), room);
     let judged = unique.is_asked();
     let mut judge = unique.starting_at(begin);
-    let Some((winner, winners)) = winners.get_mut(begin..).and_then(|winners| winners.split_first_mut()) else {
+    let Some((winner, winners)) = winners.get_mut(begin..).and_then(|winners| winners.split_first_mut())
+    else {
         return;
     };
     // The first pixel has one candidate.
@@ -81,9 +82,16 @@ const fn fewest_of(stride: usize) -> usize {
     if stride == 64 { 32 } else { 16 }
 }
 
-/// The sums of the window under the first columns, in words from one to another, from what a window of `none` has.
+/// The sums of the window under the first columns, in words from one to another, from what a window of `none`
+/// has.
 #[inline(always)]
-fn begin_with<S: Windowed>(none: u32, columns: &[u32], words: usize, (from, to): (usize, usize), room: &mut [u32]) {
+fn begin_with<S: Windowed>(
+    none: u32,
+    columns: &[u32],
+    words: usize,
+    (from, to): (usize, usize),
+    room: &mut [u32],
+) {
     let sums = room.get_mut(1 + from..1 + to).unwrap_or_default();
     for (four, sums) in (from..).step_by(4).zip(sums.as_chunks_mut().0) {
         let columns = columns.get(four..).unwrap_or(&[]);
@@ -95,8 +103,9 @@ fn begin_with<S: Windowed>(none: u32, columns: &[u32], words: usize, (from, to):
     }
 }
 
-/// The winners of pixels of which the first has so many candidates, each one more than the one before it, and whether they
-/// have no more than the fewest; or if it is `None`, of pixels for which all are candidates. Whether there is such a loop.
+/// The winners of pixels of which the first has so many candidates, each one more than the one before it, and
+/// whether they have no more than the fewest; or if it is `None`, of pixels for which all are candidates.
+/// Whether there is such a loop.
 #[inline(always)]
 fn run<S: Windowed, const STRIDE: usize>(
     few: Option<(usize, bool)>,
@@ -183,8 +192,8 @@ fn winner_of(key: u32, candidates: usize, room: &[u32]) -> Winner {
     Winner::of_costs(u32::from_le_bytes(around), disparity as u8)
 }
 
-/// The winner that is the first or the last candidate: where there is none beside it the one on its other side stands for it,
-/// beside an only one itself.
+/// The winner that is the first or the last candidate: where there is none beside it the one on its other
+/// side stands for it, beside an only one itself.
 #[inline(never)]
 fn at_an_end(key: u32, candidates: usize, bytes: &[u8]) -> Winner {
     let (disparity, cost) = ((key & 0xff) as usize, (key >> 8) as u8);
@@ -199,7 +208,8 @@ fn at_an_end(key: u32, candidates: usize, bytes: &[u8]) -> Winner {
 /// The least sum of the candidates over [`BESIDE`] px beside the winner; `u8::MAX` where there is none.
 #[inline(never)]
 fn second_of(disparity: usize, candidates: usize, room: &mut [u32]) -> u8 {
-    // The winner and those beside it are raised while the others are looked at. Of the room's words the first is no sum.
+    // The winner and those beside it are raised while the others are looked at. Of the room's words the first
+    // is no sum.
     let nearest = 4 + disparity.saturating_sub(BESIDE)..5 + disparity + BESIDE;
     let mut kept = [u8::MAX; 2 * BESIDE + 1];
     for (kept, sum) in kept.iter_mut().zip(bytes_mut(room).get_mut(nearest.clone()).unwrap_or_default()) {

@@ -52,7 +52,8 @@ pub(in super::super) fn not_less(a: u32, b: u32) -> u32 {
     out
 }
 
-/// In bytes where `new` is less than `least`: `new` and `place`; in the others `least` and `places`. Three instructions.
+/// In bytes where `new` is less than `least`: `new` and `place`; in the others `least` and `places`. Three
+/// instructions.
 #[inline(always)]
 pub(super) fn take_less(least: &mut u32, places: &mut u32, new: u32, place: u32) {
     // SAFETY: as above.

@@ -13,8 +13,8 @@ pub(in crate::matching) struct Wide(__m256i);
 /// Calls of intrinsics.
 macro_rules! safely {
     ($work:expr) => {
-        // SAFETY: only code that runs behind the proof that the processor has AVX2 is given groups of this kind; the
-        // pointers are to arrays of a register's size, without alignment.
+        // SAFETY: only code that runs behind the proof that the processor has AVX2 is given groups of this
+        // kind; the pointers are to arrays of a register's size, without alignment.
         unsafe { $work }
     };
 }
@@ -91,7 +91,10 @@ impl Group for Wide {
 
     #[inline(always)]
     fn average_down(self, other: Self) -> Self {
-        safely!(Self(_mm256_and_si256(_mm256_srli_epi16(_mm256_add_epi8(self.0, other.0), 1), _mm256_set1_epi8(0x7f))))
+        safely!(Self(_mm256_and_si256(
+            _mm256_srli_epi16(_mm256_add_epi8(self.0, other.0), 1),
+            _mm256_set1_epi8(0x7f)
+        )))
     }
 
     #[inline(always)]
@@ -104,7 +107,8 @@ impl Group for Wide {
         safely!({
             // The bits of a nibble, looked up.
             let bits = _mm256_setr_epi8(
-                0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4, 0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4,
+                0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4, 0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3,
+                4,
             );
             let nibble = _mm256_set1_epi8(0x0f);
             let apart = _mm256_xor_si256(self.0, other.0);
@@ -157,7 +161,8 @@ impl Wide {
                 0u64,
                 #[inline(always)]
                 |bits, cell| {
-                    bits << 32 | u64::from(safely!(_mm256_movemask_epi8(_mm256_cmpeq_epi8(cell.0, number.0))) as u32)
+                    bits << 32
+                        | u64::from(safely!(_mm256_movemask_epi8(_mm256_cmpeq_epi8(cell.0, number.0))) as u32)
                 },
             );
             let last = (first | 63usize).wrapping_sub(equal.leading_zeros() as usize);

@@ -13,8 +13,8 @@ pub(in crate::matching) struct Widest(__m512i);
 /// Calls of intrinsics.
 macro_rules! safely {
     ($work:expr) => {
-        // SAFETY: only code that runs behind the proof that the processor has AVX-512 is given groups of this kind; the
-        // pointers are to arrays of a register's size, without alignment.
+        // SAFETY: only code that runs behind the proof that the processor has AVX-512 is given groups of this
+        // kind; the pointers are to arrays of a register's size, without alignment.
         unsafe { $work }
     };
 }
@@ -112,7 +112,10 @@ impl Group for Widest {
 
     #[inline(always)]
     fn average_down(self, other: Self) -> Self {
-        safely!(Self(_mm512_and_si512(_mm512_srli_epi16(_mm512_add_epi8(self.0, other.0), 1), _mm512_set1_epi8(0x7f))))
+        safely!(Self(_mm512_and_si512(
+            _mm512_srli_epi16(_mm512_add_epi8(self.0, other.0), 1),
+            _mm512_set1_epi8(0x7f)
+        )))
     }
 
     #[inline(always)]

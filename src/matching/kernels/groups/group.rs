@@ -1,7 +1,7 @@
 //! Bytes side by side, which the code along paths is written for.
 
-/// So many bytes in a register. None of the operations but those that say so lets a lane overflow: numbers have seven bits
-/// unless more are allowed.
+/// So many bytes in a register. None of the operations but those that say so lets a lane overflow: numbers
+/// have seven bits unless more are allowed.
 pub trait Group: Copy + 'static {
     /// Bytes in a group.
     const LANES: usize;
@@ -63,6 +63,7 @@ pub trait Group: Copy + 'static {
     fn last_least(cells: &[Self]) -> (u8, usize);
     /// The number in one of the lanes of all cells.
     fn lane(cells: &[Self], lane: usize) -> u8;
-    /// Puts 255 in one of the lanes of all cells and in [`BESIDE`](crate::matching::kernels::BESIDE) to each side of it.
+    /// Puts 255 in one of the lanes of all cells and in [`BESIDE`](crate::matching::kernels::BESIDE) to each
+    /// side of it.
     fn raise_around(cells: &mut [Self], lane: usize);
 }

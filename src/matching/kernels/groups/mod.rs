@@ -1,9 +1,10 @@
-//! Bytes side by side, whose lanes run over the disparities of one pixel: what the passes along paths and under windows are
-//! written for.
+//! Bytes side by side, whose lanes run over the disparities of one pixel: what the passes along paths and
+//! under windows are written for.
 //!
 //! * `group`: what all of them can do.
 //! * `words`: four bytes in a word.
-//! * `sse2`, `avx2`, `avx512`, `neon`: registers of larger processors, with what they have alike from `registers`.
+//! * `sse2`, `avx2`, `avx512`, `neon`: registers of larger processors, with what they have alike from
+//!   `registers`.
 
 mod group;
 

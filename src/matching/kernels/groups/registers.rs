@@ -2,8 +2,9 @@
 
 use crate::matching::kernels::BESIDE;
 
-/// Items of an `impl Group` for a register of so many bytes. Beside them it needs `last_lane_of(cells, number)`: the last
-/// lane of all cells that has the number which is in all lanes of `number` and in one of the cells.
+/// Items of an `impl Group` for a register of so many bytes. Beside them it needs `last_lane_of(cells,
+/// number)`: the last lane of all cells that has the number which is in all lanes of `number` and in one of
+/// the cells.
 macro_rules! register {
     ($lanes:literal) => {
         const LANES: usize = $lanes;

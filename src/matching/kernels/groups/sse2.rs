@@ -13,7 +13,8 @@ pub(in crate::matching) struct Vector(__m128i);
 /// Calls of intrinsics.
 macro_rules! safely {
     ($work:expr) => {
-        // SAFETY: every x86-64 processor has SSE2; the pointers are to arrays of a register's size, without alignment.
+        // SAFETY: every x86-64 processor has SSE2; the pointers are to arrays of a register's size, without
+        // alignment.
         unsafe { $work }
     };
 }
@@ -121,7 +122,10 @@ impl Group for Vector {
             let mask = |bits: i8| _mm_set1_epi8(bits);
             let bits = _mm_xor_si128(self.0, others.0);
             let pairs = _mm_sub_epi8(bits, _mm_and_si128(_mm_srli_epi16(bits, 1), mask(0x05)));
-            Self(_mm_add_epi8(_mm_and_si128(pairs, mask(0x03)), _mm_and_si128(_mm_srli_epi16(pairs, 2), mask(0x03))))
+            Self(_mm_add_epi8(
+                _mm_and_si128(pairs, mask(0x03)),
+                _mm_and_si128(_mm_srli_epi16(pairs, 2), mask(0x03)),
+            ))
         })
     }
 
@@ -160,7 +164,8 @@ impl Vector {
                 0u64,
                 #[inline(always)]
                 |bits, cell| {
-                    bits << 16 | u64::from(safely!(_mm_movemask_epi8(_mm_cmpeq_epi8(cell.0, number.0))) as u32)
+                    bits << 16
+                        | u64::from(safely!(_mm_movemask_epi8(_mm_cmpeq_epi8(cell.0, number.0))) as u32)
                 },
             );
             let last = (first | 63usize) - (equal | 1).leading_zeros() as usize;

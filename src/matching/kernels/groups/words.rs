@@ -1,8 +1,8 @@
 //! Four bytes in a 32-bit word.
 //!
-//! The lanes have a spare bit at the top of each. It is set before a subtraction and tells then whether the lane is
-//! not smaller: differences that end at 0 are made of that, and minima of those, in six operations. (Arm's instructions on four
-//! bytes take two: see `dsp`.)
+//! The lanes have a spare bit at the top of each. It is set before a subtraction and tells then whether the
+//! lane is not smaller: differences that end at 0 are made of that, and minima of those, in six operations.
+//! (Arm's instructions on four bytes take two: see `dsp`.)
 
 use super::group::Group;
 use crate::matching::kernels::BESIDE;
@@ -173,7 +173,9 @@ impl Group for Word {
             let mut place = 0x007f_007fu32;
             for cell in cells {
                 rolled();
-                for (least, costs) in least.iter_mut().zip([(cell.0 & 0x00ff_00ff) << 7, cell.0 >> 1 & 0x7f80_7f80]) {
+                for (least, costs) in
+                    least.iter_mut().zip([(cell.0 & 0x00ff_00ff) << 7, cell.0 >> 1 & 0x7f80_7f80])
+                {
                     let key = costs | place;
                     let difference = (*least | HALVES) - key;
                     let not_less = difference & HALVES;

@@ -25,15 +25,16 @@ pub fn census_plus4(rows: &Around<'_>, room: &mut [u8], out: &mut [u8]) {
     compare(above, room, below, out);
 }
 
-/// [`census_plus4`] with the centre row in `centre`, from [`REACH`] columns before the first. Sixteen instructions for 16 pixels.
+/// [`census_plus4`] with the centre row in `centre`, from [`REACH`] columns before the first. Sixteen
+/// instructions for 16 pixels.
 #[inline(never)]
 fn compare(above: &[u8], centre: &[u8], below: &[u8], out: &mut [u8]) {
     let count = out.len();
     if count == 0 || above.len() < count || below.len() < count || centre.len() < count + 2 * REACH {
         return;
     }
-    // SAFETY: `count` bytes are read of `above` and `below` and written of `out`, and of `centre` up to `REACH` more on both
-    // sides, as asked for above: the loop is one for so many lanes of bytes.
+    // SAFETY: `count` bytes are read of `above` and `below` and written of `out`, and of `centre` up to
+    // `REACH` more on both sides, as asked for above: the loop is one for so many lanes of bytes.
     unsafe {
         asm!(
             "dlstp.8 lr, {count}",

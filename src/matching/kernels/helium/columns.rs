@@ -14,20 +14,22 @@ const fn table<const LOWEST: u32>() -> [u8; 256] {
     let mut byte = 0;
     while byte < 256u32 {
         let upper = byte >> LOWEST;
-        table[byte as usize] = ((byte ^ upper << LOWEST).count_ones() as u8).wrapping_sub(upper.count_ones() as u8);
+        table[byte as usize] =
+            ((byte ^ upper << LOWEST).count_ones() as u8).wrapping_sub(upper.count_ones() as u8);
         byte += 1;
     }
     table
 }
 
-/// Codes: of the left image, and of the right one with more before, so that column x is compared with those from x on.
+/// Codes: of the left image, and of the right one with more before, so that column x is compared with those
+/// from x on.
 struct Codes<'a> {
     left: &'a [u8],
     right: &'a [u8],
 }
 
-/// Moves the sums of the `columns` one row down, for codes of up to four bits: `rows` are the row that enters below and the
-/// one that leaves above. `room` holds two bytes a column, and a column.
+/// Moves the sums of the `columns` one row down, for codes of up to four bits: `rows` are the row that enters
+/// below and the one that leaves above. `room` holds two bytes a column, and a column.
 #[inline(never)]
 pub(super) fn of_four_bits<const STRIDE: usize>(
     rows: [Option<&[u8]>; 2],
@@ -66,8 +68,10 @@ pub(super) fn of_eight_bits<const STRIDE: usize>(
     let width = columns.len() / STRIDE;
     let [enter, leave] = rows;
     let (new, old) = room.split_at_mut_checked(width + STRIDE - 1).unwrap_or_default();
-    let (enter, leave) =
-        (codes::<STRIDE>(enter, width, min_disparity, new), codes::<STRIDE>(leave, width, min_disparity, old));
+    let (enter, leave) = (
+        codes::<STRIDE>(enter, width, min_disparity, new),
+        codes::<STRIDE>(leave, width, min_disparity, old),
+    );
     move_rows::<STRIDE>(enter, leave, columns);
 }
 
@@ -91,8 +95,8 @@ fn codes<'a, const STRIDE: usize>(
     Codes { left, right }
 }
 
-/// The right codes, which `put` makes, with so many before that every column finds `STRIDE`: the first one is repeated for
-/// those that lie left of the image.
+/// The right codes, which `put` makes, with so many before that every column finds `STRIDE`: the first one is
+/// repeated for those that lie left of the image.
 #[inline(always)]
 fn with_more_before<const STRIDE: usize>(
     width: usize,
@@ -117,8 +121,9 @@ fn move_packed<const STRIDE: usize>(codes: Codes<'_>, columns: &mut [u8]) {
     if count == 0 || right.len() < count + STRIDE - 1 || columns.len() < count * STRIDE {
         return;
     }
-    // SAFETY: the lengths asked for above are what is read and written: of column `x` `left[x]`, `right[x..x + STRIDE]` and
-    // `columns[x * STRIDE..][..STRIDE]`. A byte's entry of the table is in the table. `count` is not 0.
+    // SAFETY: the lengths asked for above are what is read and written: of column `x` `left[x]`, `right[x..x
+    // + STRIDE]` and `columns[x * STRIDE..][..STRIDE]`. A byte's entry of the table is in the table.
+    // `count` is not 0.
     unsafe {
         asm!(
             "dls lr, {count}",

@@ -1,5 +1,5 @@
-//! The row in Helium, the vectors of a Cortex-M55, in assembly: what `lanes` does for 32 and for 64 candidates of a column
-//! (other numbers are left to the compiler), and the stages before and after it.
+//! The row in Helium, the vectors of a Cortex-M55, in assembly: what `lanes` does for 32 and for 64
+//! candidates of a column (other numbers are left to the compiler), and the stages before and after it.
 //!
 //! * [`census`]: the codes of `fast`.
 //! * [`columns`]: costs of a row added to the columns under the window, and others subtracted.
@@ -8,18 +8,21 @@
 //! * [`surface`]: answers averaged within their surface, and its length.
 //! * [`speckle`]: support counted.
 //!
-//! Of `lanes` the compiler makes two or three instructions where one is needed: it loads and stores the sums of a window
-//! for every pixel, counts bits in nine instructions, and looks for the winner in a loop of its own. Here
+//! Of `lanes` the compiler makes two or three instructions where one is needed: it loads and stores the sums
+//! of a window for every pixel, counts bits in nine instructions, and looks for the winner in a loop of its
+//! own. Here
 //!
 //! * the window's sums stay in registers along the row;
-//! * how many bits differ is looked up, by one load that takes a place for each of 16 lanes (one instruction, though a
-//!   core may spend a cycle on each place). The codes of `fast` have four bits: a byte holds those of the row that enters
-//!   and of the one that leaves, and the table has the difference;
-//! * a loop ends with `le`, which counts and jumps, or with `letp`, which leaves out the lanes that are too many as well.
+//! * how many bits differ is looked up, by one load that takes a place for each of 16 lanes (one instruction,
+//!   though a core may spend a cycle on each place). The codes of `fast` have four bits: a byte holds those
+//!   of the row that enters and of the one that leaves, and the table has the difference;
+//! * a loop ends with `le`, which counts and jumps, or with `letp`, which leaves out the lanes that are too
+//!   many as well.
 //!
-//! Vectors are no operands of `asm!`: it names them, and says that they are overwritten. Of their predicate the compiler
-//! cannot be told. So every function with assembly stands alone (`inline(never)`), as no predicate outlives a call.
-//! Addresses of loads that widen and of stores that narrow have to be in one of the first registers, which are named too.
+//! Vectors are no operands of `asm!`: it names them, and says that they are overwritten. Of their predicate
+//! the compiler cannot be told. So every function with assembly stands alone (`inline(never)`), as no
+//! predicate outlives a call. Addresses of loads that widen and of stores that narrow have to be in one of
+//! the first registers, which are named too.
 
 mod census;
 mod columns;

@@ -6,14 +6,15 @@ use core::arch::asm;
 /// Pixels in a turn of the loop that offers.
 const TURN: usize = 4;
 
-/// Offers every winner, by its cost above its disparity, to its partner among the columns `right`, which keep the least; then
-/// gives in `kept` the disparity that each one's partner keeps.
+/// Offers every winner, by its cost above its disparity, to its partner among the columns `right`, which keep
+/// the least; then gives in `kept` the disparity that each one's partner keeps.
 #[inline(never)]
 pub fn keep(costs: &[u8], disparities: &[u8], right: &mut [u16], kept: &mut [u8]) {
     let count = disparities.len().min(costs.len()).min(right.len()).min(kept.len());
     let (Some(costs), Some(kept)) = (costs.get(..count), kept.get_mut(..count)) else { return };
     right.fill(u16::MAX);
-    // No partner lies left of the first column. That is so of winners, but the assembly has to be able to rely on it.
+    // No partner lies left of the first column. That is so of winners, but the assembly has to be able to
+    // rely on it.
     for (x, (kept, &disparity)) in (0u16..).zip(kept.iter_mut().zip(disparities)) {
         *kept = disparity.min(x.min(255) as u8);
     }
@@ -40,8 +41,8 @@ fn take_turns(turns: usize, costs: &[u8], disparities: &[u8], right: &mut [u16])
     if turns == 0 || costs.len() < pixels || disparities.len() < pixels || right.len() < pixels {
         return;
     }
-    // SAFETY: the lengths asked for above are what is read; the number of `right` that is read and written for pixel `x` is
-    // `x - disparities[x]`, which is none before the first (`keep`). `turns` is not 0.
+    // SAFETY: the lengths asked for above are what is read; the number of `right` that is read and written
+    // for pixel `x` is `x - disparities[x]`, which is none before the first (`keep`). `turns` is not 0.
     unsafe {
         asm!(
             "dls lr, {turns}",
@@ -65,15 +66,17 @@ fn take_turns(turns: usize, costs: &[u8], disparities: &[u8], right: &mut [u16])
     }
 }
 
-/// The second half: six instructions for eight pixels. Of none is `disparities` over its index; what is kept takes its place.
+/// The second half: six instructions for eight pixels. Of none is `disparities` over its index; what is kept
+/// takes its place.
 #[inline(never)]
 fn look(disparities: &mut [u8], right: &[u16]) {
     let count = disparities.len();
     if count == 0 || right.len() < count {
         return;
     }
-    // SAFETY: `count` bytes are read and written; the number of `right` that is read for pixel `x` is `x - disparities[x]`,
-    // which is none before the first (`keep`). The loop is one for so many lanes of half-words.
+    // SAFETY: `count` bytes are read and written; the number of `right` that is read for pixel `x` is `x -
+    // disparities[x]`, which is none before the first (`keep`). The loop is one for so many lanes of
+    // half-words.
     unsafe {
         asm!(
             "dlstp.16 lr, {count}",

@@ -5,8 +5,8 @@ use crate::matching::speckle::Judged;
 use crate::units::{Disparity, PixelFlags};
 use core::arch::asm;
 
-/// Judges the row with support of at least `pixels`, where a surface changes by up to `step`. What is kept is two rows of bytes:
-/// the support so far, and the bits.
+/// Judges the row with support of at least `pixels`, where a surface changes by up to `step`. What is kept is
+/// two rows of bytes: the support so far, and the bits.
 ///
 /// 29 instructions for eight answers.
 #[inline(never)]
@@ -20,9 +20,9 @@ pub fn judge(work: Judged<'_>, step: Disparity, pixels: u8) {
     let finished = finished.as_mut_ptr();
     let answers = answers.map_or(finished.cast_const(), <[_]>::as_ptr);
     let counts = kept.as_mut_ptr().cast::<u8>();
-    // SAFETY: `count` of each are read and written, which all have, of `lengths` one byte for each and of `kept` two: the
-    // loop is one for so many lanes of half-words. A `Disparity` is a half-word and a `PixelFlags` a byte, every value of
-    // which is one.
+    // SAFETY: `count` of each are read and written, which all have, of `lengths` one byte for each and of
+    // `kept` two: the loop is one for so many lanes of half-words. A `Disparity` is a half-word and a
+    // `PixelFlags` a byte, every value of which is one.
     unsafe {
         asm!(
             "vdup.16 q7, {step}",

@@ -20,9 +20,16 @@ static HALVES: [u16; REACH + 1] = {
     halves
 };
 
-/// [`crate::matching::surface::average`]; a length is a byte, that of the answer `x` the byte `x`, and 255 for all above.
+/// [`crate::matching::surface::average`]; a length is a byte, that of the answer `x` the byte `x`, and 255
+/// for all above.
 #[inline(never)]
-pub fn average(answers: &mut [Disparity], lengths: &mut [u16], room: &mut [u16], step: Disparity, radius: u8) {
+pub fn average(
+    answers: &mut [Disparity],
+    lengths: &mut [u16],
+    room: &mut [u16],
+    step: Disparity,
+    radius: u8,
+) {
     let width = answers.len();
     let Some(room) = room.get_mut(..width + ROOM) else { return };
     // The answers as they were, with none outside.
@@ -37,8 +44,8 @@ pub fn average(answers: &mut [Disparity], lengths: &mut [u16], room: &mut [u16],
     count(room, lengths, width);
 }
 
-/// Averages the answers, which `room` holds with [`REACH`] before and after; leaves in the `room`, from its beginning, a byte
-/// for each: all ones where a surface begins.
+/// Averages the answers, which `room` holds with [`REACH`] before and after; leaves in the `room`, from its
+/// beginning, a byte for each: all ones where a surface begins.
 ///
 /// For eight answers 15 instructions, and 12 for each pair.
 #[inline(never)]
@@ -48,10 +55,10 @@ fn pairs(answers: &mut [Disparity], room: &mut [u16], step: Disparity, radius: u
         return;
     }
     let room = room.as_mut_ptr();
-    // SAFETY: of the `room` there is read from `REACH` before to `REACH` after each answer. The bytes are written behind what is
-    // still to be read: with answers from `x` on, up to `x + 8`, where the next ones read from byte `2 * (x + 8)` on. As many
-    // `answers` are written as there are: the loop is one for so many lanes of half-words. `HALVES` are read at twice the
-    // number of pairs, in bytes.
+    // SAFETY: of the `room` there is read from `REACH` before to `REACH` after each answer. The bytes are
+    // written behind what is still to be read: with answers from `x` on, up to `x + 8`, where the next
+    // ones read from byte `2 * (x + 8)` on. As many `answers` are written as there are: the loop is one
+    // for so many lanes of half-words. `HALVES` are read at twice the number of pairs, in bytes.
     unsafe {
         asm!(
             "vdup.16 q7, {step}",
@@ -132,8 +139,9 @@ static BACK: [u8; LANES] = [16, 15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 
 
 /// For every answer how many its surface has, from the bytes that say where one begins.
 ///
-/// How far the beginning is from each lane is a maximum over the lanes up to it, made in four steps; from one vector to the
-/// next a number is carried. Then the same backwards with the end. 20 and 27 instructions for 16 answers.
+/// How far the beginning is from each lane is a maximum over the lanes up to it, made in four steps; from one
+/// vector to the next a number is carried. Then the same backwards with the end. 20 and 27 instructions for
+/// 16 answers.
 #[inline(never)]
 fn count(begins: &mut [u16], lengths: &mut [u16], width: usize) {
     let groups = width.div_ceil(LANES);
@@ -143,8 +151,9 @@ fn count(begins: &mut [u16], lengths: &mut [u16], width: usize) {
         return;
     }
     let begins = begins.as_mut_ptr().cast::<u8>();
-    // SAFETY: `begins` has a byte for each lane of the groups and one more, as asked for above, and `lengths` one for each of
-    // `width`: the last stores are of the lanes up to there. `shift` is read up to eight bytes before and after its middle.
+    // SAFETY: `begins` has a byte for each lane of the groups and one more, as asked for above, and `lengths`
+    // one for each of `width`: the last stores are of the lanes up to there. `shift` is read up to eight
+    // bytes before and after its middle.
     unsafe {
         // What lies outside is no surface, on both sides.
         begins.write(u8::MAX);

@@ -24,8 +24,8 @@ pub(super) struct Windows<'a, const STRIDE: usize> {
     pub enters: &'a [u8],
     /// The sums, with a byte before them and one after.
     pub sums: &'a mut [u8],
-    /// From the next pixel on: the cost below it. `width` bytes after it stands its own cost, then the cost above it, then
-    /// the disparity.
+    /// From the next pixel on: the cost below it. `width` bytes after it stands its own cost, then the cost
+    /// above it, then the disparity.
     pub rows: &'a mut [u8],
     /// Pixels in a row.
     pub width: usize,
@@ -38,8 +38,9 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
         (at(self.width - 1), at(3 * self.width - 1))
     }
 
-    /// Selects the winners of the next `count` pixels. Lanes with ones in the `mask` are not selected; for each pixel it
-    /// moves on by `step`. Where there is no disparity below or above the winner, what is said of it means nothing.
+    /// Selects the winners of the next `count` pixels. Lanes with ones in the `mask` are not selected; for
+    /// each pixel it moves on by `step`. Where there is no disparity below or above the winner, what is
+    /// said of it means nothing.
     ///
     /// Eight instructions for 16 candidates, two more where there is a mask, and ten for a pixel.
     #[inline(never)]
@@ -55,8 +56,8 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
         if count == 0 || !is_there {
             return;
         }
-        // SAFETY: the lengths asked for above are what is read and written; `count` is not 0. The winner is one of the lanes,
-        // and the bytes beside a lane are of `self.sums`.
+        // SAFETY: the lengths asked for above are what is read and written; `count` is not 0. The winner is
+        // one of the lanes, and the bytes beside a lane are of `self.sums`.
         unsafe {
             asm!(
                 "dls lr, {count}",
@@ -134,8 +135,9 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
     }
 }
 
-/// The other side for the side that a winner lacks which is the smallest or the last of the pixel's candidates: of these
-/// the first pixel has one, the next one two, and so on up to `disparities`. Twelve instructions for 16 pixels.
+/// The other side for the side that a winner lacks which is the smallest or the last of the pixel's
+/// candidates: of these the first pixel has one, the next one two, and so on up to `disparities`. Twelve
+/// instructions for 16 pixels.
 #[inline(never)]
 pub(super) fn complete(rows: [&mut [u8]; 4], disparities: usize) {
     let [below, costs, above, winners] = rows;

@@ -29,7 +29,9 @@ pub(super) fn update<S: Windowed, const N: usize>(
         }
         (Some(enter), None) => {
             for (column, (&code, candidates)) in columns.zip(enter) {
-                for (sums, &new) in column.as_chunks_mut::<N>().0.iter_mut().zip(candidates.as_chunks::<N>().0) {
+                for (sums, &new) in
+                    column.as_chunks_mut::<N>().0.iter_mut().zip(candidates.as_chunks::<N>().0)
+                {
                     let mut group = *sums;
                     for i in 0..N {
                         group[i] = group[i].wrapping_add(S::hamming(code, new[i]));
@@ -40,7 +42,9 @@ pub(super) fn update<S: Windowed, const N: usize>(
         }
         (None, Some(leave)) => {
             for (column, (&code, candidates)) in columns.zip(leave) {
-                for (sums, &old) in column.as_chunks_mut::<N>().0.iter_mut().zip(candidates.as_chunks::<N>().0) {
+                for (sums, &old) in
+                    column.as_chunks_mut::<N>().0.iter_mut().zip(candidates.as_chunks::<N>().0)
+                {
                     let mut group = *sums;
                     for i in 0..N {
                         group[i] = group[i].wrapping_sub(S::hamming(code, old[i]));

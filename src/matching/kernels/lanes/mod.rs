@@ -1,6 +1,6 @@
-//! The kernel in vectors. Lanes run over the disparities of one pixel, `N` of them in an array of fixed size, which the
-//! compiler keeps in the target's vector registers. The largest disparity has the first lane: so a pixel's candidates stand
-//! in memory as they do in the right image.
+//! The kernel in vectors. Lanes run over the disparities of one pixel, `N` of them in an array of fixed size,
+//! which the compiler keeps in the target's vector registers. The largest disparity has the first lane: so a
+//! pixel's candidates stand in memory as they do in the right image.
 //!
 //! A pixel's work, `d` over all lanes:
 //!
@@ -10,7 +10,8 @@
 //! winner x:      least of sum[d] | mask[d], and the last lane that holds it
 //! ```
 //!
-//! The work is the same for every picture, but for a few instructions where a winner is at an end of the search.
+//! The work is the same for every picture, but for a few instructions where a winner is at an end of the
+//! search.
 
 mod columns;
 
@@ -42,9 +43,9 @@ pub(in crate::matching) fn row<S: Windowed>(work: RowWork<'_>, select: Option<Se
     }
 }
 
-/// A row whose lanes are worked on in groups of `N`. `STRIDE` is the number of lanes where it is known when the crate
-/// is compiled, which lets the compiler unroll the groups and keep them in registers; 0 where it is not. `nearest` is
-/// [`nearest_with`] or does the same.
+/// A row whose lanes are worked on in groups of `N`. `STRIDE` is the number of lanes where it is known when
+/// the crate is compiled, which lets the compiler unroll the groups and keep them in registers; 0 where it is
+/// not. `nearest` is [`nearest_with`] or does the same.
 #[inline(always)]
 pub(in crate::matching) fn row_in_groups<S: Windowed, const N: usize, const STRIDE: usize>(
     work: RowWork<'_>,
@@ -59,8 +60,8 @@ pub(in crate::matching) fn row_in_groups<S: Windowed, const N: usize, const STRI
     let Some((new, old)) = codes.split_at_mut_checked(codes.len() / 2) else { return };
     let enter = enter.map(|row| with_more_before(row, min_disparity, stride, new));
     let leave = leave.map(|row| with_more_before(row, min_disparity, stride, old));
-    // Columns first, then windows: a processor that looks ahead finds more independent work in two short loops than in
-    // a long one.
+    // Columns first, then windows: a processor that looks ahead finds more independent work in two short
+    // loops than in a long one.
     if let Some(inside) = columns.get_mut(OUTSIDE * stride..) {
         columns::update::<S, N>(stride, enter, leave, inside);
     }
@@ -69,12 +70,14 @@ pub(in crate::matching) fn row_in_groups<S: Windowed, const N: usize, const STRI
     // Left of here no pixel has a candidate.
     let begin = min_disparity.min(width);
     let WinnerRows { below, costs, above, disparities: found } = WinnerRows::of(winners, begin);
-    let mut winners =
-        below.iter_mut().zip(costs).zip(above.iter_mut().zip(found)).map(|((below, cost), (above, disparity))| {
+    let mut winners = below.iter_mut().zip(costs).zip(above.iter_mut().zip(found)).map(
+        |((below, cost), (above, disparity))| {
             move |winner: Found| {
-                (*below, *cost, *above, *disparity) = (winner.beside.0, winner.cost, winner.beside.1, winner.disparity);
+                (*below, *cost, *above, *disparity) =
+                    (winner.beside.0, winner.cost, winner.beside.1, winner.disparity);
             }
-        });
+        },
+    );
     let judged = unique.is_asked();
     let mut judge = unique.starting_at(begin);
     sums.fill(0);
@@ -85,7 +88,8 @@ pub(in crate::matching) fn row_in_groups<S: Windowed, const N: usize, const STRI
     }
     let from = |column: usize| columns.get(column * stride..).unwrap_or(&[]).chunks_exact(stride);
     let mut columns = from(OUTSIDE + begin + S::RADIUS_X).zip(from(OUTSIDE + begin - S::RADIUS_X - 1));
-    // The first pixels have fewer candidates than there are lanes; where there are more lanes than candidates, all have.
+    // The first pixels have fewer candidates than there are lanes; where there are more lanes than
+    // candidates, all have.
     let few = if disparities < stride { width } else { stride - 1 };
     for (x, (enters, leaves)) in columns.by_ref().take(few).enumerate() {
         let Some(mut put) = winners.next() else { return };
@@ -168,12 +172,15 @@ fn slide_to_winner<S: Windowed, const N: usize, const MASKED: bool>(
 }
 
 /// The smallest disparity with the least sum. Masked lanes may have it too, but are of larger ones.
-// Helium: of groups of lanes beside other work the compiler makes single ones, of a function of its own one vector loop.
+// Helium: of groups of lanes beside other work the compiler makes single ones, of a function of its own one
+// vector loop.
 #[inline(never)]
 pub(in crate::matching) fn nearest_with<const STRIDE: usize>(least: u8, sums: &[u8]) -> usize {
     match sums.first_chunk::<STRIDE>() {
         Some(sums) if STRIDE > 0 => nearest_among(least, sums, const { &disparities::<STRIDE>() }),
-        _ => nearest_among(least, sums, const { &disparities::<256>() }.get(256 - sums.len()..).unwrap_or(&[])),
+        _ => {
+            nearest_among(least, sums, const { &disparities::<256>() }.get(256 - sums.len()..).unwrap_or(&[]))
+        }
     }
 }
 

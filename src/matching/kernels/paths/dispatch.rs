@@ -1,5 +1,6 @@
-//! Which groups of bytes a kernel works on, and how many of them are a column: known when the crate is compiled for the
-//! usual numbers of disparities, which lets the compiler unroll them and keep them in registers.
+//! Which groups of bytes a kernel works on, and how many of them are a column: known when the crate is
+//! compiled for the usual numbers of disparities, which lets the compiler unroll them and keep them in
+//! registers.
 
 #[cfg(target_pointer_width = "64")]
 use super::super::groups::{Group, Vector};
@@ -14,13 +15,14 @@ use crate::matching::scheme::Around;
 
 /// Words of so many bytes' candidates.
 #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
-type Words<const CELLS: usize, const ALL: bool> = super::passes::Groups<super::super::groups::Word, CELLS, ALL>;
+type Words<const CELLS: usize, const ALL: bool> =
+    super::passes::Groups<super::super::groups::Word, CELLS, ALL>;
 /// The same; that all of them are in use does not help there.
 #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
 type Words<const CELLS: usize, const ALL: bool> = super::dsp::Words<CELLS, ALL>;
 
-/// Calls a pass with words, of which there is room for so many in a column. Each is a function of its own, so that a firmware
-/// is linked without those for numbers of disparities that cannot be asked for.
+/// Calls a pass with words, of which there is room for so many in a column. Each is a function of its own, so
+/// that a firmware is linked without those for numbers of disparities that cannot be asked for.
 #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
 macro_rules! in_words {
     ($work:ident, $pass:ident, [$($more:tt)?], $($argument:expr),*) => {
@@ -73,12 +75,17 @@ mod words {
     }
 
     #[inline(never)]
-    pub(super) fn select<P: Passes, const ROWS: bool>(work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+    pub(super) fn select<P: Passes, const ROWS: bool>(
+        work: PathWork<'_>,
+        guide: Guide<'_>,
+        select: Select<'_>,
+    ) {
         super::super::select::<P, ROWS>(work, guide, select);
     }
 }
 
-/// Groups of the target's own vectors in the widest column; where these are words, one more, for which there must be room.
+/// Groups of the target's own vectors in the widest column; where these are words, one more, for which there
+/// must be room.
 #[cfg(target_pointer_width = "64")]
 const MOST: usize = 256 / Vector::LANES + if Vector::LANES == size_of::<u32>() { 1 } else { 0 };
 

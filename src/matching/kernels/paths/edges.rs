@@ -1,7 +1,8 @@
 //! A row's costs, averaged with those above and below as far as no edge is crossed.
 //!
-//! An edge is where the left image's brightness changes much from a row to the next one of the column, and the ends of the
-//! image are edges: beyond them there may be another surface. With p the costs of a row's pixels:
+//! An edge is where the left image's brightness changes much from a row to the next one of the column, and
+//! the ends of the image are edges: beyond them there may be another surface. With p the costs of a row's
+//! pixels:
 //!
 //! ```text
 //! above[d] = average(above of row y - 1, p[d] of row y)         p[d] of row y alone below an edge
@@ -9,7 +10,8 @@
 //! cost[d]  = average(above[d], below[d])                        above[d] alone above an edge
 //! ```
 //!
-//! No branch looks at the picture: masks choose what is averaged, and the average of a number with itself is that number.
+//! No branch looks at the picture: masks choose what is averaged, and the average of a number with itself is
+//! that number.
 
 /// What the costs of a row are averaged with, and how far.
 pub(in crate::matching) struct EdgeWork<'a> {
@@ -22,8 +24,8 @@ pub(in crate::matching) struct EdgeWork<'a> {
     pub below: &'a mut [u8],
 }
 
-/// Whether in a column there is an edge between the row and the next one, and between that and the last. Brightness changes
-/// `much` there, or one of them is outside of the image.
+/// Whether in a column there is an edge between the row and the next one, and between that and the last.
+/// Brightness changes `much` there, or one of them is outside of the image.
 #[inline(always)]
 pub(super) fn edges_at(guides: &[Option<&[u8]>; 3], x: usize, much: u8) -> [bool; 2] {
     let [here, next, last] = guides.map(|row| row.and_then(|row| row.get(x)));

@@ -18,10 +18,11 @@ use crate::matching::scheme::Around;
 pub(super) struct Features<'a> {
     /// Of the left image, by column.
     pub left: Looks<'a>,
-    /// Of the right image, `count` bytes for each one after the other: along the line, across it, census, brightness halved,
-    /// and the least and the greatest of a column's gradient along the line and of those halfway to its neighbours (of no
-    /// meaning where nothing is compared between pixels; doubled in `dsp`). Column `x` is compared with `stride` of them from
-    /// `x` on. The first column is repeated for those that lie left of the image.
+    /// Of the right image, `count` bytes for each one after the other: along the line, across it, census,
+    /// brightness halved, and the least and the greatest of a column's gradient along the line and of
+    /// those halfway to its neighbours (of no meaning where nothing is compared between pixels; doubled
+    /// in `dsp`). Column `x` is compared with `stride` of them from `x` on. The first column is repeated
+    /// for those that lie left of the image.
     pub right: &'a [u8],
     pub count: usize,
 }
@@ -57,7 +58,8 @@ pub(super) fn of<'a, S: Along>(
     let of_right = of_right.get_mut(..6 * count)?;
     let [along, across, census, brightness, least, greatest]: [_; 6] = rows(of_right, count);
     let outside = count.min(work.stride - 1 + work.min_disparity);
-    let inside = [&mut *along, &mut *across, &mut *census].map(|row| row.get_mut(outside..).unwrap_or_default());
+    let inside =
+        [&mut *along, &mut *across, &mut *census].map(|row| row.get_mut(outside..).unwrap_or_default());
     looks_of(&right, most, shift, inside);
     halve(right[2], brightness.get_mut(outside..).unwrap_or_default());
     // The first column on its own, with the next one: the row may begin behind it.
@@ -91,8 +93,8 @@ fn rows<const N: usize>(room: &mut [u8], length: usize) -> [&mut [u8]; N] {
     core::array::from_fn(|_| rows.next().unwrap_or_default())
 }
 
-/// The features of as many columns as there is a place for. Gradients are cut off before they are shifted, which is the same
-/// as after.
+/// The features of as many columns as there is a place for. Gradients are cut off before they are shifted,
+/// which is the same as after.
 #[cfg_attr(target_pointer_width = "32", inline(never))]
 #[cfg_attr(not(target_pointer_width = "32"), inline(always))]
 fn looks_of(lines: &Around<'_>, gradient: u8, shift: u32, [along, across, census]: [&mut [u8]; 3]) {
@@ -145,8 +147,8 @@ fn repeat(row: &mut [u8], first: u8, outside: usize) {
     row.get_mut(..outside).unwrap_or_default().fill(first);
 }
 
-/// The least and the greatest of each number and those halfway to its neighbours, rounded down, of all but the two at the
-/// ends.
+/// The least and the greatest of each number and those halfway to its neighbours, rounded down, of all but
+/// the two at the ends.
 #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
 #[inline(always)]
 fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {

@@ -12,14 +12,14 @@ use super::plane::{Plane, add_pair, of_bit, two_bits};
 use crate::matching::window::Windowed;
 use core::sync::atomic::{Ordering, compiler_fence};
 
-/// Where the bits of the row that enters begin in a column's word, and those of the row that leaves: two for each bit of
-/// the code, as [`prepare`] gives them.
+/// Where the bits of the row that enters begin in a column's word, and those of the row that leaves: two for
+/// each bit of the code, as [`prepare`] gives them.
 const NEW: usize = 0;
 const OLD: usize = 16;
 
-/// Makes of the codes of a row what the columns are moved with, a half-word a pixel: for each bit of the left code whether it
-/// is another one than in the column before, and beside it whether it is another one than in the partner of the first
-/// candidate.
+/// Makes of the codes of a row what the columns are moved with, a half-word a pixel: for each bit of the left
+/// code whether it is another one than in the column before, and beside it whether it is another one than in
+/// the partner of the first candidate.
 #[inline(never)]
 pub(super) fn prepare<S: Windowed>(left: &[u8], right: &[u8], min_disparity: usize, out: &mut [u16]) {
     let begin = first_column::<S>(min_disparity);
@@ -67,7 +67,8 @@ pub(super) fn update<'a, S: Windowed, P: Plane, const GROUPS: usize>(
     room: &mut [P],
     columns: &mut [Column<P>],
 ) {
-    // A row that is not there has no bit that is another one. Of the row that leaves the bits that are equal are counted.
+    // A row that is not there has no bit that is another one. Of the row that leaves the bits that are equal
+    // are counted.
     let Some(any) = enter.or(leave) else { return };
     let present = if enter.is_some() { 0xffff } else { 0 } | if leave.is_some() { 0xffff_0000 } else { 0 };
     let (enter, leave) = (enter.unwrap_or(any), leave.unwrap_or(any));
@@ -116,10 +117,14 @@ pub(super) fn update<'a, S: Windowed, P: Plane, const GROUPS: usize>(
     }
 }
 
-/// Moves the words of both rows one column on and counts them into the sums. `moved` gets a word's place among [`NEW`] and
-/// [`OLD`].
+/// Moves the words of both rows one column on and counts them into the sums. `moved` gets a word's place
+/// among [`NEW`] and [`OLD`].
 #[inline(always)]
-fn move_on<S: Windowed, P: Plane>(sums: &mut Column<P>, words: &mut [[P; 2]; 8], moved: impl Fn(usize, &mut P) -> P) {
+fn move_on<S: Windowed, P: Plane>(
+    sums: &mut Column<P>,
+    words: &mut [[P; 2]; 8],
+    moved: impl Fn(usize, &mut P) -> P,
+) {
     let mut here = *sums;
     count_into::<S, P>(&mut here, |i| {
         let [new, old] = &mut words[i];
@@ -137,7 +142,8 @@ fn count_into<S: Windowed, P: Plane>(sums: &mut Column<P>, mut bits: impl FnMut(
     // Carries that wait for another of their weight.
     let mut waiting = [P::NONE; 4];
     for i in 0..S::BITS {
-        // Half of it at a time: the compiler for ARM otherwise keeps all bits for later, in more than its registers.
+        // Half of it at a time: the compiler for ARM otherwise keeps all bits for later, in more than its
+        // registers.
         if cfg!(target_arch = "arm") && i == S::BITS / 2 {
             compiler_fence(Ordering::SeqCst);
         }

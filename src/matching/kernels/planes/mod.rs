@@ -1,12 +1,14 @@
-//! The kernel in bit planes, for cores without vectors: 32 candidates are the bits of a word, and a number for each of them
-//! is as many words as it has bits. Additions are chains of full adders, bit by bit; comparisons go from the highest plane
-//! down. Safe Rust; the arithmetic is that of plain words.
+//! The kernel in bit planes, for cores without vectors: 32 candidates are the bits of a word, and a number
+//! for each of them is as many words as it has bits. Additions are chains of full adders, bit by bit;
+//! comparisons go from the highest plane down. Safe Rust; the arithmetic is that of plain words.
 //!
-//! * `columns`: what changes from code to code; the bits in which codes differ, counted into the columns under the window.
+//! * `columns`: what changes from code to code; the bits in which codes differ, counted into the columns
+//!   under the window.
 //! * `windows`: columns into windows, windows into winners.
 //! * `plane`: the word itself.
 //!
-//! The work is the same for every picture, but for some ten instructions where a winner is at an end of the search.
+//! The work is the same for every picture, but for some ten instructions where a winner is at an end of the
+//! search.
 
 mod columns;
 mod plane;
@@ -19,7 +21,8 @@ use crate::matching::window::Windowed;
 use plane::Plane;
 use windows::{Judge, WINDOW, Windows};
 
-/// The sums of a column, lowest plane first: a place for each eighth of its bytes, of which the last are free.
+/// The sums of a column, lowest plane first: a place for each eighth of its bytes, of which the last are
+/// free.
 type Column<P> = [P; 8];
 
 /// [`super::Kernel::codes`] for planes.
@@ -32,8 +35,9 @@ pub(super) fn codes_of<S: Windowed>(
 ) {
     let width = out.len() / 2;
     // Both begin where a word may stand.
-    let mut codes =
-        bytes_mut(scratch).chunks_mut(width.next_multiple_of(4).max(1)).filter_map(|row| row.get_mut(..width));
+    let mut codes = bytes_mut(scratch)
+        .chunks_mut(width.next_multiple_of(4).max(1))
+        .filter_map(|row| row.get_mut(..width));
     let (Some(of_left), Some(of_right)) = (codes.next(), codes.next()) else { return };
     census::census::<S>(left, of_left);
     census::census::<S>(right, of_right);
@@ -54,7 +58,8 @@ pub(super) fn row<S: Windowed>(work: RowWork<'_>, select: Option<Select<'_>>) {
     }
 }
 
-/// A row whose candidates are `GROUPS` words of them; 0 where the number is not known when the crate is compiled.
+/// A row whose candidates are `GROUPS` words of them; 0 where the number is not known when the crate is
+/// compiled.
 #[inline(always)]
 fn row_of<S: Windowed, P: Plane, const GROUPS: usize>(work: RowWork<'_>, select: Option<Select<'_>>) {
     let RowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;

@@ -5,7 +5,13 @@ use core::ops::{BitAnd, BitOr, BitXor, Not};
 
 /// One bit of a number for each of several candidates, the first candidate's lowest.
 pub trait Plane:
-    Copy + Eq + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> + Not<Output = Self> + 'static
+    Copy
+    + Eq
+    + BitAnd<Output = Self>
+    + BitOr<Output = Self>
+    + BitXor<Output = Self>
+    + Not<Output = Self>
+    + 'static
 {
     /// How many candidates.
     const CANDIDATES: usize;

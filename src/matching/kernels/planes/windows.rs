@@ -43,7 +43,8 @@ impl<'a, P: Plane> Windows<'a, P> {
         }
     }
 
-    /// The winners of the pixels from the first that has a candidate, with the columns that enter and leave at each.
+    /// The winners of the pixels from the first that has a candidate, with the columns that enter and leave
+    /// at each.
     #[inline(never)]
     pub(super) fn winners<S: Windowed, const GROUPS: usize>(
         self,
@@ -75,7 +76,8 @@ impl<'a, P: Plane> Windows<'a, P> {
             let disparity = group * P::CANDIDATES + lane;
             if GROUPS > 1 {
                 let last = lane + 1 == P::CANDIDATES;
-                let above = if last { candidates[(group + 1) % GROUPS] } else { candidates[group] & !P::one(0) };
+                let above =
+                    if last { candidates[(group + 1) % GROUPS] } else { candidates[group] & !P::one(0) };
                 let is_above = above != P::NONE && (!last || group + 1 < GROUPS);
                 look_beyond(&windows, disparity, is_above, winner);
             }
@@ -102,7 +104,8 @@ impl<'a, P: Plane> Windows<'a, P> {
             let candidates = self.disparities.min(x + 1);
             let among = |group: usize| P::first(candidates.saturating_sub(group * P::CANDIDATES));
             let mut least = (u32::MAX, 0, 0);
-            for (group, (window, (enters, leaves))) in self.groups.iter_mut().zip(enters.iter().zip(leaves)).enumerate()
+            for (group, (window, (enters, leaves))) in
+                self.groups.iter_mut().zip(enters.iter().zip(leaves)).enumerate()
             {
                 slide::<S, P>(window, enters, leaves);
                 let [best] = best(core::array::from_ref(window), [among(group)]);
@@ -135,12 +138,13 @@ fn winner_of<P: Plane>(windows: &[Window<P>], group: usize, lane: usize, candida
     Winner::new(cost, (group * P::CANDIDATES + lane) as u8, (below, above))
 }
 
-/// The sums around a winner of which the word lacks the candidate below, or that above, or both: of a word's first two or
-/// last three.
+/// The sums around a winner of which the word lacks the candidate below, or that above, or both: of a word's
+/// first two or last three.
 #[inline(always)]
 fn at_an_end(costs: u32, lane: usize, is_above: bool) -> u32 {
     let [first, second, ..] = costs.to_le_bytes();
-    let (here, beside) = if lane > 0 { (second, first) } else { (first, if is_above { second } else { first }) };
+    let (here, beside) =
+        if lane > 0 { (second, first) } else { (first, if is_above { second } else { first }) };
     u32::from_le_bytes([beside, here, beside, 0])
 }
 
@@ -183,7 +187,8 @@ fn best_of_the_rest<P: Plane>(windows: &[Window<P>], disparity: usize, candidate
 /// Moves a group one column on.
 #[inline(always)]
 fn slide<S: Windowed, P: Plane>(window: &mut Window<P>, enters: &Column<P>, leaves: &Column<P>) {
-    // The window is a complement: what leaves is added. The difference is a number with a sign, of one plane more.
+    // The window is a complement: what leaves is added. The difference is a number with a sign, of one plane
+    // more.
     let (mut borrow, mut carry) = (P::NONE, P::NONE);
     for (i, sum) in window.iter_mut().enumerate() {
         let digit = i + S::COLUMN_SHIFT;
@@ -205,7 +210,10 @@ fn slide<S: Windowed, P: Plane>(window: &mut Window<P>, enters: &Column<P>, leav
 
 /// Those of the `candidates` that have the least sum.
 #[inline(always)]
-fn best<P: Plane, const GROUPS: usize>(windows: &[Window<P>; GROUPS], candidates: [P; GROUPS]) -> [P; GROUPS] {
+fn best<P: Plane, const GROUPS: usize>(
+    windows: &[Window<P>; GROUPS],
+    candidates: [P; GROUPS],
+) -> [P; GROUPS] {
     let mut best = candidates;
     for i in (0..WINDOW).rev() {
         let better: [P; GROUPS] = core::array::from_fn(|group| best[group] & windows[group][i]);
@@ -225,7 +233,8 @@ fn cost_of<P: Plane>(window: &Window<P>, candidates: P) -> u8 {
 /// The sums of three candidates in a word, from the `first` on: a byte for each, the lowest first.
 #[inline(always)]
 fn three<P: Plane>(window: &Window<P>, first: usize) -> u32 {
-    // Two planes at a time, half a sum apart. The product has their bits three times, each time in place for one byte.
+    // Two planes at a time, half a sum apart. The product has their bits three times, each time in place for
+    // one byte.
     const HALF: usize = WINDOW / 2;
     let mut bytes = 0;
     for i in (0..HALF).rev() {

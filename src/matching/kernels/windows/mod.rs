@@ -1,5 +1,5 @@
-//! Costs summed over windows, and their winners, for groups of bytes whose lanes run over the disparities of one pixel, the
-//! largest first: so a pixel's candidates stand in memory as they do in the right image.
+//! Costs summed over windows, and their winners, for groups of bytes whose lanes run over the disparities of
+//! one pixel, the largest first: so a pixel's candidates stand in memory as they do in the right image.
 //!
 //! A pixel's work, `d` over all lanes:
 //!
@@ -9,7 +9,8 @@
 //! winner x:      the least sum[d] | mask[d], and the last lane that holds it
 //! ```
 //!
-//! The work is the same for every picture, but for a few instructions where a winner is at an end of the search.
+//! The work is the same for every picture, but for a few instructions where a winner is at an end of the
+//! search.
 
 mod columns;
 
@@ -30,13 +31,15 @@ pub(super) fn in_vectors<S: Windowed>(work: RowWork<'_>, select: Option<Select<'
     }
 }
 
-/// Each number of groups in a function of its own: the compiler's passes take far longer over one function of all of them.
+/// Each number of groups in a function of its own: the compiler's passes take far longer over one function of
+/// all of them.
 #[inline(never)]
 fn whole<S: Windowed, const CELLS: usize>(work: RowWork<'_>, select: Option<Select<'_>>) {
     row::<S, Vector, CELLS, true>(work, select);
 }
 
-/// [`super::Kernel::row`] in columns of up to `CELLS` groups, all of them in use if `ALL`: then the compiler knows how many.
+/// [`super::Kernel::row`] in columns of up to `CELLS` groups, all of them in use if `ALL`: then the compiler
+/// knows how many.
 #[inline(always)]
 pub(super) fn row<S: Windowed, G: Group, const CELLS: usize, const ALL: bool>(
     work: RowWork<'_>,
@@ -72,7 +75,8 @@ pub(super) fn row<S: Windowed, G: Group, const CELLS: usize, const ALL: bool>(
     for (x, (((below, cost), (above, disparity)), (enters, leaves))) in pixels.zip(ends).enumerate() {
         sums.slide::<S>(enters, leaves);
         let mut judged = sums;
-        // The first pixels have fewer candidates than there are lanes; where there are more lanes than candidates, all have.
+        // The first pixels have fewer candidates than there are lanes; where there are more lanes than
+        // candidates, all have.
         let candidates = disparities.min(x + 1);
         if candidates < stride {
             let mask = MASKS.get(256 - (stride - candidates)..).and_then(|m| m.get(..stride)).unwrap_or(&[]);

@@ -70,7 +70,9 @@ fn square(text: &str) -> Result<f64, &'static str> {
     let value: Option<f64> = text.parse().ok();
     match value {
         Some(mm) if (1.0..=1000.0).contains(&mm) => Ok(mm),
-        Some(mm) if (0.001..1.0).contains(&mm) => Err("less than a millimetre: is it in metres? 0.025 m are 25 mm"),
+        Some(mm) if (0.001..1.0).contains(&mm) => {
+            Err("less than a millimetre: is it in metres? 0.025 m are 25 mm")
+        }
         _ => Err("a length from 1 to 1000 millimetres is needed"),
     }
 }

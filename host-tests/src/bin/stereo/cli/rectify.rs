@@ -18,13 +18,15 @@ Without a calibration matches of the command features align the rows (--matches)
 pub struct RectifyArgs {
     #[command(flatten)]
     pub pair: PairArgs,
-    /// Calibration of the two cameras: OpenCV's YAML or XML, Kalibr's camchain, a Middlebury or KITTI calib.txt; twice for
-    /// ROS's camera_info, the left camera's and the right one's, or for OpenCV's intrinsics and extrinsics
+    /// Calibration of the two cameras: OpenCV's YAML or XML, Kalibr's camchain, a Middlebury or KITTI
+    /// calib.txt; twice for ROS's camera_info, the left camera's and the right one's, or for OpenCV's
+    /// intrinsics and extrinsics
     #[arg(long, value_name = "FILE", required_unless_present = "matches")]
     pub calib: Vec<PathBuf>,
     #[command(flatten)]
     pub rectify: RectifyOptions,
-    /// Instead of a calibration: matches of the two images, lines of x1,y1,x2,y2 in px under that header, some of them wrong
+    /// Instead of a calibration: matches of the two images, lines of x1,y1,x2,y2 in px under that header,
+    /// some of them wrong
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["calib", "alpha", "unit"])]
     pub matches: Option<PathBuf>,
     /// Folder for the results; made when it is missing
@@ -35,7 +37,8 @@ pub struct RectifyArgs {
 /// How rigs are rectified.
 #[derive(Debug, Args)]
 pub struct RectifyOptions {
-    /// What is shown: from 0, nothing but what both cameras see, to 1, all of both images; by default at their own scale
+    /// What is shown: from 0, nothing but what both cameras see, to 1, all of both images; by default at
+    /// their own scale
     #[arg(long, value_name = "ALPHA", value_parser = alpha, allow_negative_numbers = true)]
     pub alpha: Option<f64>,
     /// The unit of lengths in OpenCV's files, which do not say it: m where none is given

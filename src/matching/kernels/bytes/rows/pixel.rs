@@ -1,7 +1,7 @@
 //! A pixel of `super::windows`: its sums, and the least of them.
 //!
-//! Sums and columns go through registers by sixteen candidates, which one instruction loads and one stores. Of four words the
-//! least are found two and two, which needs fewer places named than one after the other.
+//! Sums and columns go through registers by sixteen candidates, which one instruction loads and one stores.
+//! Of four words the least are found two and two, which needs fewer places named than one after the other.
 //!
 //! ```text
 //! r0-r3   sums, then the least of them      r8, r9     of every lane the least so far, and its place
@@ -11,8 +11,8 @@
 //!         winner, the disparity before the last candidate, and the masks of those that are none
 //! ```
 
-/// Sixteen window sums one column on: 12 instructions, and 8 more where only some digits of the columns count. `$from` and `$to`
-/// say where the sums are.
+/// Sixteen window sums one column on: 12 instructions, and 8 more where only some digits of the columns
+/// count. `$from` and `$to` say where the sums are.
 macro_rules! slide {
     (all, $from:literal, $to:literal) => {
         concat!(
@@ -128,8 +128,8 @@ macro_rules! take_less {
     };
 }
 
-/// The least of the four lanes, and of equal ones the one with the first place: 10 instructions. Above its place in `r0` is
-/// more.
+/// The least of the four lanes, and of equal ones the one with the first place: 10 instructions. Above its
+/// place in `r0` is more.
 macro_rules! of_lanes {
     () => {
         concat!(
@@ -148,11 +148,15 @@ macro_rules! of_lanes {
     };
 }
 
-/// The sums beside it, and whether it is at an end; what changes from pixel to pixel. 5 instructions, one more where the
-/// candidates are no power of two, and 5 more where they change.
+/// The sums beside it, and whether it is at an end; what changes from pixel to pixel. 5 instructions, one
+/// more where the candidates are no power of two, and 5 more where they change.
 macro_rules! beside {
     (power, $back:literal) => {
-        concat!("uxtab r1, r12, r0\nldr r2, [r1, #{beside}]\n", $back, "add r1, r0, #1\ntst r1, #{ends}\nbeq ")
+        concat!(
+            "uxtab r1, r12, r0\nldr r2, [r1, #{beside}]\n",
+            $back,
+            "add r1, r0, #1\ntst r1, #{ends}\nbeq "
+        )
     };
     (other, $back:literal) => {
         concat!(

@@ -2,15 +2,16 @@
 
 use core::arch::asm;
 
-/// The bytes of a row from `last` back, of each the bits of a mask; before the row its first stands for them, and where there is
-/// no row, 0. 16 instructions for sixteen.
+/// The bytes of a row from `last` back, of each the bits of a mask; before the row its first stands for them,
+/// and where there is no row, 0. 16 instructions for sixteen.
 #[inline(never)]
 pub(in super::super) fn reverse(row: &[u8], last: i32, mask: u32, out: &mut [u32]) {
     let begin = row.get(..(last + 1).max(0) as usize).unwrap_or(&[]);
     let count = (begin.len() / 16).min(out.len() / 4);
     let rest = begin.get(..begin.len() - 16 * count).unwrap_or(&[]);
     if count > 0 {
-        // SAFETY: of sixteen bytes `count` times, the last ones first, as many words are made: the row has so many, and `out`.
+        // SAFETY: of sixteen bytes `count` times, the last ones first, as many words are made: the row has so
+        // many, and `out`.
         unsafe {
             asm!(
                 "2:",

@@ -6,7 +6,8 @@ use core::arch::asm;
 /// The bytes from one table to the next.
 const OLD: usize = size_of::<Table>();
 
-/// Where the costs of a pixel's codes are, the entering one's and the leaving one's, in `r4` and `r8`: 7 instructions.
+/// Where the costs of a pixel's codes are, the entering one's and the leaving one's, in `r4` and `r8`: 7
+/// instructions.
 macro_rules! lines_of_codes {
     () => {
         concat!(

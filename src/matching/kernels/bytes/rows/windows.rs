@@ -126,9 +126,10 @@ macro_rules! few_winners {
     };
 }
 
-/// The loops for so many candidates: for all of them, and for the first pixels. For each of them: how many bytes after the first
-/// sum `r12` stands before a pixel, and how many once its sums are read; what makes up for what the pointers moved otherwise
-/// than they should; where the places of later blocks stand; and the blocks.
+/// The loops for so many candidates: for all of them, and for the first pixels. For each of them: how many
+/// bytes after the first sum `r12` stands before a pixel, and how many once its sums are read; what makes up
+/// for what the pointers moved otherwise than they should; where the places of later blocks stand; and the
+/// blocks.
 macro_rules! winners_of {
     (16, $digits:ident: $all:ident, $few:ident) => {
         winners!($all, 2, $digits, 16 power, (0, 0, ""), [], [all "ldmia r12" "stmia r12"]);

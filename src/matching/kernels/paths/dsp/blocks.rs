@@ -1,5 +1,6 @@
-//! The loops over a pixel's words. Each works on four words at a time, for a column has whole [`STEP`](super::super::STEP)s
-//! of bytes. The instructions of a word are counted with each; the loop adds half of one.
+//! The loops over a pixel's words. Each works on four words at a time, for a column has whole
+//! [`STEP`](super::super::STEP)s of bytes. The instructions of a word are counted with each; the loop adds
+//! half of one.
 #![allow(unsafe_code)]
 
 use crate::matching::paths::Along;
@@ -26,8 +27,8 @@ macro_rules! least_of_four {
 
 /// The least of a column's sums and the last byte that has it. 5 instructions.
 ///
-/// The loop finds the least of each byte of a word and the word where it is, of equal ones the last. Then the least of the
-/// four goes to all bytes, and the greatest place of those that have it.
+/// The loop finds the least of each byte of a word and the word where it is, of equal ones the last. Then the
+/// least of the four goes to all bytes, and the greatest place of those that have it.
 ///
 /// # Safety
 /// `fours` times four words, 64 at the most and one at least, can be read from `sums`.
@@ -71,8 +72,8 @@ pub(super) unsafe fn least(sums: *const u32, fours: usize) -> (u8, usize) {
     (least as u8, (place & 0xff) as usize)
 }
 
-/// A pixel of the left image, but for its gradient along the line, four times in a word each; and the most that its cost
-/// may be.
+/// A pixel of the left image, but for its gradient along the line, four times in a word each; and the most
+/// that its cost may be.
 pub(super) struct Rest {
     pub across: u32,
     pub census: u32,
@@ -82,8 +83,9 @@ pub(super) struct Rest {
 
 /// A cost's loop, in which the lines at the beginning put the share of the gradient along the line in `a`.
 ///
-/// The rest are 22 instructions, and two that average: how far apart two numbers are is the greater of their two differences, the other of which
-/// is 0; the bits of a byte are counted by twos, fours and eights; masks are such as an instruction holds.
+/// The rest are 22 instructions, and two that average: how far apart two numbers are is the greater of their
+/// two differences, the other of which is 0; the bits of a byte are counted by twos, fours and eights; masks
+/// are such as an instruction holds.
 macro_rules! cost {
     ($costs:ident, $rows:ident, $count:ident, $along:ident, $rest:ident, [$($line:literal)*], [$($average:literal)*]) => {
         asm!(
@@ -129,11 +131,18 @@ macro_rules! cost {
     };
 }
 
-/// Averages a pixel's agreements into `costs`, or puts them there within edges. Its gradient `along` the line is compared with
-/// all between the right ones and halfway to their neighbours: how far it is from `least` to `greatest`. `rows` begins with
-/// the first candidate in the features' rows, so many bytes to a row. Those numbers are doubled.
+/// Averages a pixel's agreements into `costs`, or puts them there within edges. Its gradient `along` the line
+/// is compared with all between the right ones and halfway to their neighbours: how far it is from `least` to
+/// `greatest`. `rows` begins with the first candidate in the features' rows, so many bytes to a row. Those
+/// numbers are doubled.
 #[inline(always)]
-pub(super) fn between_pixels<S: Along>(costs: &mut [u32], rows: &[u8], count: usize, along: u32, rest: &Rest) {
+pub(super) fn between_pixels<S: Along>(
+    costs: &mut [u32],
+    rows: &[u8],
+    count: usize,
+    along: u32,
+    rest: &Rest,
+) {
     if costs.len() < 4 || rows.len() < 5 * count + 4 * costs.len() {
         return;
     }
@@ -149,8 +158,8 @@ pub(super) fn between_pixels<S: Along>(costs: &mut [u32], rows: &[u8], count: us
             ], $average)
         };
     }
-    // SAFETY: `costs.len() / 4` times four words are read from six rows, the last of which begins after five of them, and
-    // read from `costs` and written to it.
+    // SAFETY: `costs.len() / 4` times four words are read from six rows, the last of which begins after five
+    // of them, and read from `costs` and written to it.
     unsafe {
         if S::WITHIN_EDGES {
             between_pixels!([])

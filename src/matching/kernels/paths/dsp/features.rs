@@ -1,5 +1,5 @@
-//! What a pixel's cost compares, of four pixels at a time: gradients in half-words, of the even and the odd pixels; all else
-//! in bytes.
+//! What a pixel's cost compares, of four pixels at a time: gradients in half-words, of the even and the odd
+//! pixels; all else in bytes.
 
 #![allow(unsafe_code)]
 
@@ -23,7 +23,8 @@ pub(in super::super) fn looks(lines: &Around<'_>, gradient: u8, [along, across, 
     // The groups of four that see nothing outside the line and have all places.
     let groups = (width.saturating_sub(NEAR - COLUMNS) / COLUMNS).min(count.saturating_sub(REACH) / COLUMNS);
     let [above2, above, here, below, below2] = lines.map(<[u8]>::as_ptr);
-    // SAFETY: what `groups` groups see from the first column on is in the lines, and from `REACH` on they have places.
+    // SAFETY: what `groups` groups see from the first column on is in the lines, and from `REACH` on they
+    // have places.
     unsafe {
         let place = |row: &mut [u8]| row.as_mut_ptr().wrapping_add(REACH).cast();
         codes([above2, here, below2], place(census), groups);
@@ -33,10 +34,12 @@ pub(in super::super) fn looks(lines: &Around<'_>, gradient: u8, [along, across, 
     for x in core::iter::once(0).chain((after..count.min(width)).step_by(COLUMNS)) {
         let near = lines.map(|line| {
             [0, 1, 2].map(|word| {
-                let inside =
-                    (x + word * COLUMNS).checked_sub(REACH).and_then(|x| line.get(x..width)?.first_chunk::<COLUMNS>());
+                let inside = (x + word * COLUMNS)
+                    .checked_sub(REACH)
+                    .and_then(|x| line.get(x..width)?.first_chunk::<COLUMNS>());
                 // Columns outside the line are the nearest inside.
-                let column = |i: usize| (x + word * COLUMNS + i).saturating_sub(REACH).min(width.saturating_sub(1));
+                let column =
+                    |i: usize| (x + word * COLUMNS + i).saturating_sub(REACH).min(width.saturating_sub(1));
                 let outside = || core::array::from_fn(|i| line.get(column(i)).copied().unwrap_or(0));
                 inside.copied().unwrap_or_else(outside)
             })
@@ -63,8 +66,8 @@ fn put(row: &mut [u8], word: u32) {
     }
 }
 
-/// The codes of groups of four pixels, from the rows two above, here, and two below: each group sees [`NEAR`] columns of a
-/// row, which are four further with each.
+/// The codes of groups of four pixels, from the rows two above, here, and two below: each group sees [`NEAR`]
+/// columns of a row, which are four further with each.
 ///
 /// # Safety
 /// They can be read, and the codes written.
@@ -151,7 +154,8 @@ pub(in super::super) fn halve(numbers: &[u8], halves: &mut [u8]) {
     }
 }
 
-/// The range of one number: the least and the greatest of it and those halfway to its neighbours, rounded down; doubled.
+/// The range of one number: the least and the greatest of it and those halfway to its neighbours, rounded
+/// down; doubled.
 pub(in super::super) fn between(before: u8, here: u8, next: u8) -> (u8, u8) {
     let (least, greatest) = ranges([before, here, next].map(u32::from));
     (least as u8, greatest as u8)
@@ -167,15 +171,17 @@ fn ranges([before, here, next]: [u32; 3]) -> (u32, u32) {
 /// The ranges of all numbers but the two at the ends.
 pub(in super::super) fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
     let count = numbers.len().saturating_sub(2);
-    let word = |x: usize| numbers.get(x..).and_then(|n| n.first_chunk()).map(|&four| u32::from_le_bytes(four));
+    let word =
+        |x: usize| numbers.get(x..).and_then(|n| n.first_chunk()).map(|&four| u32::from_le_bytes(four));
     let inside = |row| <[u8]>::get_mut(row, 1..=count).unwrap_or_default().chunks_mut(COLUMNS);
     for (group, (least, greatest)) in inside(least).zip(inside(greatest)).enumerate() {
         let x = group * COLUMNS;
         let near = if let (Some(before), Some(here), Some(next)) = (word(x), word(x + 1), word(x + 2)) {
             [before, here, next]
         } else {
-            [x, x + 1, x + 2]
-                .map(|x| u32::from_le_bytes(core::array::from_fn(|i| numbers.get(x + i).copied().unwrap_or(0))))
+            [x, x + 1, x + 2].map(|x| {
+                u32::from_le_bytes(core::array::from_fn(|i| numbers.get(x + i).copied().unwrap_or(0)))
+            })
         };
         let (low, high) = ranges(near);
         put(least, low);

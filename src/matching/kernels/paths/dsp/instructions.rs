@@ -28,7 +28,8 @@ two_operands!(
     uqsub16
 );
 
-/// A subtraction marks the bytes that do not borrow, and `sel` picks by the marks: those of the first, or of the second.
+/// A subtraction marks the bytes that do not borrow, and `sel` picks by the marks: those of the first, or of
+/// the second.
 macro_rules! pick {
     ($(#[$doc:meta])* $name:ident, $first:literal, $second:literal) => {
         $(#[$doc])*

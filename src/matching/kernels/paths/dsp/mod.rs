@@ -1,10 +1,10 @@
-//! The passes on cores with Arm's instructions on four bytes (`--cfg stereopsis_dsp`: Cortex-M4, M7, and M33 with its
-//! extension; M55): the same numbers as words in `groups` have, in fewer instructions.
+//! The passes on cores with Arm's instructions on four bytes (`--cfg stereopsis_dsp`: Cortex-M4, M7, and M33
+//! with its extension; M55): the same numbers as words in `groups` have, in fewer instructions.
 //!
-//! * A path stays in memory, between two words that no path comes from: what stands beside a disparity is the same word one
-//!   byte off. A path's two pixels take turns in two places.
-//! * Of a cost there is the agreement, the most that it may be less what it is: a saturating subtraction cuts it off, and the
-//!   halving addition, which rounds down, rounds the cost up.
+//! * A path stays in memory, between two words that no path comes from: what stands beside a disparity is the
+//!   same word one byte off. A path's two pixels take turns in two places.
+//! * Of a cost there is the agreement, the most that it may be less what it is: a saturating subtraction cuts
+//!   it off, and the halving addition, which rounds down, rounds the cost up.
 //! * Lanes beyond the search agree so little that no path from there is the least.
 //!
 //! * `rows`: the paths through a row; `walk`: their loops, in assembler.
@@ -34,7 +34,8 @@ use rows::Way;
 
 pub(super) use features::{between, halve, looks, range};
 
-/// The passes over columns of up to `WORDS` words, all of them in use if `ALL`: then the compiler knows how many.
+/// The passes over columns of up to `WORDS` words, all of them in use if `ALL`: then the compiler knows how
+/// many.
 pub(super) struct Words<const WORDS: usize, const ALL: bool>;
 
 impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
@@ -54,7 +55,12 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
         for (column, (x, (&along, (&brightness, (&across, &census))))) in
             words_mut(work.costs).chunks_exact_mut(stride / 4).zip(pixels)
         {
-            let rest = Rest { across: splat(across), census: splat(census), brightness: splat(brightness >> 1), most };
+            let rest = Rest {
+                across: splat(across),
+                census: splat(census),
+                brightness: splat(brightness >> 1),
+                most,
+            };
             let candidates = right.get(x..).unwrap_or(&[]);
             if S::BETWEEN_PIXELS {
                 blocks::between_pixels::<S>(column, candidates, count, splat(2 * along), &rest);

@@ -20,8 +20,9 @@ fn is_whole(work: &PathWork<'_>, stride: usize) -> bool {
 
 /// Moves the path from above down to the row.
 ///
-/// It takes no room of its own: the paths of an odd row stand two columns further to the right than those of an even row.
-/// So each goes where one of the two was that it comes from, if odd rows are taken from right to left.
+/// It takes no room of its own: the paths of an odd row stand two columns further to the right than those of
+/// an even row. So each goes where one of the two was that it comes from, if odd rows are taken from right to
+/// left.
 #[inline(always)]
 pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>, guide: Guide<'_>) {
     let (width, stride) = (work.width, stride::<WORDS, ALL>(work));
@@ -38,7 +39,8 @@ pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>,
     let last = width - 1;
     let column = |x: usize| top.wrapping_add(x * stride / 4);
     let (pixel, on, gap) = if is_odd { (last, -1, -2) } else { (0, 1, 0) };
-    let (costs, kept) = if is_odd { (costs.wrapping_add(last * stride / 4), column(width + 1)) } else { (costs, top) };
+    let (costs, kept) =
+        if is_odd { (costs.wrapping_add(last * stride / 4), column(width + 1)) } else { (costs, top) };
     let above = if is_odd { [top, column(last)] } else { [column(COLUMNS_OFF), column(width + 1)] };
     let (here, column_bytes) = (guide.here.as_ptr(), stride as isize);
     let mut frame = Frame {
@@ -53,14 +55,19 @@ pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>,
         above: if guide.above.is_some() { above } else { [core::ptr::null_mut(); 2] },
         other: on * 2 * COLUMNS_OFF as isize * column_bytes,
     };
-    // SAFETY: `width` columns are in the volume of the costs and two more in that of the paths; so many pixels are in both
-    // lines; and a column has `4 * fours` words, `WORDS` at the most, as the average has room for.
+    // SAFETY: `width` columns are in the volume of the costs and two more in that of the paths; so many
+    // pixels are in both lines; and a column has `4 * fours` words, `WORDS` at the most, as the average
+    // has room for.
     unsafe { go_down(&raw mut frame, costs, kept) };
 }
 
 /// Takes a path along the row, and adds it to the path from above, or the second one to both.
 #[inline(always)]
-pub(super) fn along<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>, guide: Guide<'_>, way: Way) {
+pub(super) fn along<const WORDS: usize, const ALL: bool>(
+    work: &mut PathWork<'_>,
+    guide: Guide<'_>,
+    way: Way,
+) {
     let (width, stride) = (work.width, stride::<WORDS, ALL>(work));
     if !is_whole(work, stride) || width <= work.min_disparity || guide.here.len() < width {
         return;
@@ -91,9 +98,14 @@ pub(super) fn along<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>
         above: [core::ptr::null_mut(); 2],
         other: 0,
     };
-    // SAFETY: `columns` columns from column `x` on are in the volumes, and so many pixels in the line; and a column has
-    // `4 * fours` words, `WORDS` at the most, as the paths have room for.
+    // SAFETY: `columns` columns from column `x` on are in the volumes, and so many pixels in the line; and a
+    // column has `4 * fours` words, `WORDS` at the most, as the paths have room for.
     unsafe {
-        go_along(&raw mut frame, costs.wrapping_add(first), from.wrapping_add(first), sums.wrapping_add(first));
+        go_along(
+            &raw mut frame,
+            costs.wrapping_add(first),
+            from.wrapping_add(first),
+            sums.wrapping_add(first),
+        );
     }
 }

@@ -1,9 +1,9 @@
-//! The loops of a path over the pixels of a row, in assembler: between two loops over a pixel's words the compiler has more to
-//! hold than there are registers.
+//! The loops of a path over the pixels of a row, in assembler: between two loops over a pixel's words the
+//! compiler has more to hold than there are registers.
 //!
-//! With m the least that it costs to come from beside, and j the least cost and a jump, a path's cost at a pixel is
-//! `most - agreement - (j - m, at least 0)`: one saturating subtraction does for the minimum of m and j and for taking the
-//! least off. The least is found on the way, of each byte of a word first.
+//! With m the least that it costs to come from beside, and j the least cost and a jump, a path's cost at a
+//! pixel is `most - agreement - (j - m, at least 0)`: one saturating subtraction does for the minimum of m
+//! and j and for taking the least off. The least is found on the way, of each byte of a word first.
 #![allow(unsafe_code)]
 
 use super::{far, splat};
@@ -70,8 +70,8 @@ pub(super) struct Frame {
     /// 0: the pixel's place in the line, and 4: how far it is to the next.
     pub pixel: *const u8,
     pub on: isize,
-    /// 8: along the row, the brightness of the pixel that the path comes from, which the first may have any of. Down, how far
-    /// it is to that pixel.
+    /// 8: along the row, the brightness of the pixel that the path comes from, which the first may have any
+    /// of. Down, how far it is to that pixel.
     pub from: isize,
     /// 12, 16: a path before and after, which take turns; or the average and nothing.
     pub paths: [*mut u32; 2],
@@ -83,7 +83,8 @@ pub(super) struct Frame {
     pub fours: usize,
     /// 32
     pub steps: *const Steps,
-    /// 36, 40: the first and the last column of the row above, 44: bytes to that on the other side of the pixel.
+    /// 36, 40: the first and the last column of the row above, 44: bytes to that on the other side of the
+    /// pixel.
     pub above: [*mut u32; 2],
     pub other: isize,
 }
@@ -110,9 +111,9 @@ macro_rules! least_of_four {
     };
 }
 
-/// Goes on to the next pixel, and puts what it costs to come into this one in `r6` to `r8`: step, jump from the least cost,
-/// most. `$from`: along the row, keeps this pixel's brightness in `r10` for the next; down, looks up where `r11` says. 17
-/// instructions.
+/// Goes on to the next pixel, and puts what it costs to come into this one in `r6` to `r8`: step, jump from
+/// the least cost, most. `$from`: along the row, keeps this pixel's brightness in `r10` for the next; down,
+/// looks up where `r11` says. 17 instructions.
 macro_rules! choose_step {
     ($from:literal) => {
         concat!(
@@ -157,12 +158,12 @@ macro_rules! step {
     };
 }
 
-/// Takes a path along a row with agreements `costs`: what is in `from` and the path's cost are the `sums`, 255 at the most.
-/// 18 instructions a word and 36 a pixel.
+/// Takes a path along a row with agreements `costs`: what is in `from` and the path's cost are the `sums`,
+/// 255 at the most. 18 instructions a word and 36 a pixel.
 ///
 /// # Safety
-/// The frame's columns, `fours` times four words each, can be read from `costs` and `from` on, and written from `sums` on;
-/// a pixel for each from its place on; and the paths have a word more before and after.
+/// The frame's columns, `fours` times four words each, can be read from `costs` and `from` on, and written
+/// from `sums` on; a pixel for each from its place on; and the paths have a word more before and after.
 #[inline(never)]
 pub(super) unsafe fn go_along(frame: *mut Frame, costs: *const u32, from: *const u32, sums: *mut u32) {
     // SAFETY: as the function's. `r6` and `r7`, which are the compiler's, are put back.
@@ -201,8 +202,9 @@ pub(super) unsafe fn go_along(frame: *mut Frame, costs: *const u32, from: *const
     }
 }
 
-/// Takes the path from above into a row with agreements `costs`, from the average of two columns, rounded down, or from
-/// nothing if there are none. `kept` begins with what was one of the two. 19 instructions a word and 51 a pixel.
+/// Takes the path from above into a row with agreements `costs`, from the average of two columns, rounded
+/// down, or from nothing if there are none. `kept` begins with what was one of the two. 19 instructions a
+/// word and 51 a pixel.
 ///
 /// # Safety
 /// As for [`go_along`]; and the frame's columns of the row above can be read.

@@ -6,7 +6,8 @@ use super::blocks;
 use crate::matching::kernels::BESIDE;
 use crate::matching::kernels::winner::{Found, Unique};
 
-/// Selects the winner of every pixel that has a candidate. A column has `stride` bytes, a multiple of 16 and 256 at the most.
+/// Selects the winner of every pixel that has a candidate. A column has `stride` bytes, a multiple of 16 and
+/// 256 at the most.
 #[inline(always)]
 pub(super) fn select(
     work: &mut PathWork<'_>,
@@ -31,8 +32,10 @@ pub(super) fn select(
         let (below, above) = (at(lane + 1), at(lane.saturating_sub(1)));
         let disparity = (stride - 1).wrapping_sub(lane);
         let (is_below, is_above) = (disparity > 0, disparity + 1 < candidates);
-        // At an end the one beside it that there is; beside an only candidate, itself (which `below` is then).
-        let beside = (if is_below || !is_above { below } else { above }, if is_above { above } else { below });
+        // At an end the one beside it that there is; beside an only candidate, itself (which `below` is
+        // then).
+        let beside =
+            (if is_below || !is_above { below } else { above }, if is_above { above } else { below });
         put(x, Found { disparity: disparity as u8, cost, beside });
         unique.judge(
             x,

@@ -28,15 +28,23 @@ pub(super) fn enter<G: Group, S: Along, const CELLS: usize, const ALL: bool>(
         columns.zip(candidates).zip(ranges).zip(pixels)
     {
         let along = G::splat(along);
-        let rest =
-            Rest { brightness: G::splat(brightness >> 1), across: G::splat(across), census: G::splat(census), most };
+        let rest = Rest {
+            brightness: G::splat(brightness >> 1),
+            across: G::splat(across),
+            census: G::splat(census),
+            most,
+        };
         let ((alongs, brightness), (across, census)) = candidates;
         let others = groups::<G>(brightness).zip(groups::<G>(across).zip(groups::<G>(census)));
         if S::BETWEEN_PIXELS {
             let ranges = groups::<G>(range.0).zip(groups::<G>(range.1));
             for (cell, (others, (least, greatest))) in column.iter_mut().zip(others.zip(ranges)) {
                 rolled();
-                rest.put::<S>(cell, along.minus_saturating(greatest).or(least.minus_saturating(along)), others);
+                rest.put::<S>(
+                    cell,
+                    along.minus_saturating(greatest).or(least.minus_saturating(along)),
+                    others,
+                );
             }
         } else {
             for (cell, (others, other)) in column.iter_mut().zip(others.zip(groups::<G>(alongs))) {
@@ -58,9 +66,15 @@ struct Rest<G> {
 impl<G: Group> Rest<G> {
     /// Averages the cost of some candidates into what there is of the rows above.
     #[inline(always)]
-    fn put<S: Along>(&self, cell: &mut G::Cell, along: G, (of_brightness, (of_across, of_census)): (G, (G, G))) {
+    fn put<S: Along>(
+        &self,
+        cell: &mut G::Cell,
+        along: G,
+        (of_brightness, (of_across, of_census)): (G, (G, G)),
+    ) {
         let brightness = self.brightness.apart(of_brightness);
-        let rest = self.across.apart(of_across).plus(brightness.quarter()).plus(self.census.bits_apart(of_census));
+        let rest =
+            self.across.apart(of_across).plus(brightness.quarter()).plus(self.census.bits_apart(of_census));
         let cost = along.plus(along).plus(rest).min(self.most);
         *cell = if S::WITHIN_EDGES { cost } else { G::of(*cell).average_up(cost) }.cell();
     }

@@ -20,7 +20,12 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Decide<G, CELLS, ALL> {
 
     /// Goes on to the next column, which has this brightness and these costs.
     #[inline(always)]
-    pub(super) fn next(&mut self, steps: &Steps<G, CELLS, ALL>, here: u8, costs: &[G::Cell]) -> Path<G, CELLS, ALL> {
+    pub(super) fn next(
+        &mut self,
+        steps: &Steps<G, CELLS, ALL>,
+        here: u8,
+        costs: &[G::Cell],
+    ) -> Path<G, CELLS, ALL> {
         if let Some(after) = self.after {
             self.left = self.left.step(steps, steps.between(here, after), costs);
         }

@@ -5,8 +5,8 @@ use super::{PathWork, stride};
 use crate::matching::kernels::groups::Group;
 use crate::matching::rolled::rolled;
 
-/// Makes the costs of the row of those that stand in their place before: of the pixels two rows below, or of no meaning
-/// where that is outside of the image.
+/// Makes the costs of the row of those that stand in their place before: of the pixels two rows below, or of
+/// no meaning where that is outside of the image.
 #[inline(always)]
 pub(super) fn within_edges<G: Group, const CELLS: usize, const ALL: bool>(
     work: &mut PathWork<'_>,

@@ -12,7 +12,8 @@ pub(super) struct Gather<'a, G: Group, const CELLS: usize, const ALL: bool> {
     x: usize,
     /// The paths from above: of the row above, and where the column is passed of this one.
     tops: &'a mut [G::Cell],
-    /// What stood above columns that are overwritten already: two before, one before. Before the first there is the first.
+    /// What stood above columns that are overwritten already: two before, one before. Before the first there
+    /// is the first.
     passed: [Path<G, CELLS, ALL>; COLUMNS_OFF],
     right: Path<G, CELLS, ALL>,
     before: u8,
@@ -26,8 +27,8 @@ impl<'a, G: Group, const CELLS: usize, const ALL: bool> Gather<'a, G, CELLS, ALL
         Self { count, last, x: 0, tops, passed, right: Path::of(first), before: 0 }
     }
 
-    /// Goes on to the next column, which has this brightness, the one above it (none in the first row) that one, and these
-    /// costs; and adds the two up.
+    /// Goes on to the next column, which has this brightness, the one above it (none in the first row) that
+    /// one, and these costs; and adds the two up.
     #[inline(always)]
     pub(super) fn next(
         &mut self,

@@ -1,6 +1,7 @@
 //! The passes, written once for groups of bytes whose lanes run over the disparities of one pixel.
 //!
-//! * `cost`, `edges`, `select`: the passes; `gather` and `decide`: the two ends of the last one; `turns`: the same for words.
+//! * `cost`, `edges`, `select`: the passes; `gather` and `decide`: the two ends of the last one; `turns`: the
+//!   same for words.
 
 mod cost;
 mod decide;
@@ -16,7 +17,8 @@ use crate::matching::kernels::winner::{Found, Unique};
 use crate::matching::kernels::{MASKS, STEP};
 use crate::matching::paths::Along;
 use core::marker::PhantomData;
-/// The passes over columns of up to `CELLS` groups, all of them in use if `ALL`: then the compiler knows how many.
+/// The passes over columns of up to `CELLS` groups, all of them in use if `ALL`: then the compiler knows how
+/// many.
 pub(super) struct Groups<G, const CELLS: usize, const ALL: bool>(PhantomData<G>);
 
 impl<G: Group, const CELLS: usize, const ALL: bool> Passes for Groups<G, CELLS, ALL> {
@@ -49,8 +51,8 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Passes for Groups<G, CELLS, 
     }
 }
 
-/// Whether groups are small, so that a column has many: loops over them take little flash if they are not unrolled, and little
-/// longer.
+/// Whether groups are small, so that a column has many: loops over them take little flash if they are not
+/// unrolled, and little longer.
 #[inline(always)]
 const fn is_word<G: Group>() -> bool {
     G::LANES == size_of::<u32>()
@@ -76,7 +78,10 @@ fn column<C, const CELLS: usize, const ALL: bool>(volume: &[C], x: usize, count:
 #[inline(always)]
 fn column_mut<C, const CELLS: usize, const ALL: bool>(volume: &mut [C], x: usize, count: usize) -> &mut [C] {
     if ALL {
-        volume.get_mut(x * CELLS..).and_then(|rest| rest.first_chunk_mut::<CELLS>()).map_or(&mut [], |column| column)
+        volume
+            .get_mut(x * CELLS..)
+            .and_then(|rest| rest.first_chunk_mut::<CELLS>())
+            .map_or(&mut [], |column| column)
     } else {
         volume.get_mut(x * count..).and_then(|rest| rest.get_mut(..count)).unwrap_or_default()
     }
@@ -142,7 +147,8 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
         let (step, jump) = (G::of(change[0]), least.plus(G::of(change[1])));
         let (mut before, mut here) = (steps.far, self.0.first().copied().unwrap_or(steps.far));
         for (i, &cost) in costs.iter().enumerate().take(CELLS) {
-            let next = if i + 1 < costs.len() { self.0.get(i + 1).copied().unwrap_or(steps.far) } else { steps.far };
+            let next =
+                if i + 1 < costs.len() { self.0.get(i + 1).copied().unwrap_or(steps.far) } else { steps.far };
             let beside = here.after(before).min(here.before(next)).plus(step);
             let message = here.min(beside).min(jump).minus(least);
             if let Some(cell) = self.0.get_mut(i) {
@@ -158,7 +164,8 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
 struct Steps<G: Group, const CELLS: usize, const ALL: bool> {
     /// A cost so high that no path comes from there: beside the search's ends.
     far: G,
-    /// What a step and a jump cost where the left image's brightness changes little, more and much; the last one twice.
+    /// What a step and a jump cost where the left image's brightness changes little, more and much; the last
+    /// one twice.
     changes: [[G::Cell; 2]; 4],
     /// The changes of brightness at which it is more, and much.
     edges: [u8; 2],
@@ -181,8 +188,10 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Steps<G, CELLS, ALL> {
         } else {
             None
         };
-        let [little, more, much] =
-            work.penalties.changes().map(|change| [change.step, change.jump].map(|cost| G::splat(cost).cell()));
+        let [little, more, much] = work
+            .penalties
+            .changes()
+            .map(|change| [change.step, change.jump].map(|cost| G::splat(cost).cell()));
         Self { far: G::splat(far), changes: [little, more, much, much], edges: work.penalties.edges, beyond }
     }
 

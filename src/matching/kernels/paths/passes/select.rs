@@ -1,5 +1,5 @@
-//! The paths through a row, one after the other: each step of a path waits for the step before, and one path at a time stays in
-//! registers.
+//! The paths through a row, one after the other: each step of a path waits for the step before, and one path
+//! at a time stays in registers.
 
 use super::decide::{Decide, Judge};
 use super::gather::Gather;

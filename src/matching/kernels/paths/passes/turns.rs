@@ -1,5 +1,6 @@
-//! The paths through a row where registers hold a few cells only: one cell after the other, and a path's costs in memory. A loop
-//! does at once all that there is to do with a cell, and finds the least cost for the path's next step on its way.
+//! The paths through a row where registers hold a few cells only: one cell after the other, and a path's
+//! costs in memory. A loop does at once all that there is to do with a cell, and finds the least cost for the
+//! path's next step on its way.
 
 use super::decide::Judge;
 use super::{COLUMNS_OFF, Guide, Path, PathWork, Steps, column, column_mut, stride};
@@ -8,8 +9,8 @@ use crate::matching::kernels::winner::{Found, Unique};
 use crate::matching::rolled::rolled;
 use core::cell::Cell;
 
-/// Selects the winner of every pixel that has a candidate, by the sum of its three paths. There is room for one cell more than
-/// a column has.
+/// Selects the winner of every pixel that has a candidate, by the sum of its three paths. There is room for
+/// one cell more than a column has.
 #[inline(always)]
 pub(super) fn select<G: Group, const CELLS: usize>(
     work: &mut PathWork<'_>,
@@ -30,7 +31,8 @@ pub(super) fn select<G: Group, const CELLS: usize>(
     right.begin(count);
     let mut between = Walk::new(&steps);
     between.begin(count);
-    // What stood above the last two columns, which is overwritten already. Before the first there is the first.
+    // What stood above the last two columns, which is overwritten already. Before the first there is the
+    // first.
     let mut passed = [[steps.far; CELLS]; COLUMNS_OFF];
     for passed in &mut passed {
         for (passed, &first) in passed.iter_mut().zip(column::<_, CELLS, false>(tops, 0, count)) {
@@ -63,10 +65,17 @@ pub(super) fn select<G: Group, const CELLS: usize>(
         let kept = column_mut::<_, CELLS, false>(tops, x, count);
         let least = between.least;
         let both = kept.iter_mut().zip(&right.cells).zip(sums);
-        step(between.cells(count), least, (steps.far, change), costs, both, |_, ((kept, right), sum), top| {
-            *kept = top.cell();
-            *sum = right.plus(top).cell();
-        });
+        step(
+            between.cells(count),
+            least,
+            (steps.far, change),
+            costs,
+            both,
+            |_, ((kept, right), sum), top| {
+                *kept = top.cell();
+                *sum = right.plus(top).cell();
+            },
+        );
         if let Some(beyond) = &steps.beyond {
             for (kept, &beyond) in kept.iter_mut().zip(&beyond.0) {
                 rolled();
@@ -149,8 +158,8 @@ impl<G: Group, const CELLS: usize> Walk<G, CELLS> {
     }
 }
 
-/// What a path costs at the next pixel, cell by cell: `far` is a cost that no path comes from, `change` what a step and a jump
-/// cost.
+/// What a path costs at the next pixel, cell by cell: `far` is a cost that no path comes from, `change` what
+/// a step and a jump cost.
 #[inline(always)]
 fn step<G: Group, T>(
     path: &[Cell<G>],

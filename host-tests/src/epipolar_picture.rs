@@ -3,7 +3,7 @@
 use crate::colour::viridis;
 use crate::matches_picture::{side_by_side, square};
 use image::{Rgb, RgbImage};
-use stereopsis::geometry::{Correspondence, Fundamental, Line};
+use stereopsis::geometry::two_view::{Correspondence, Fundamental, Line};
 
 /// How many matches have their lines drawn; the others have their points only.
 const LINES: usize = 24;

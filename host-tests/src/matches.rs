@@ -2,7 +2,7 @@
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 use std::path::{Path, PathBuf};
-use stereopsis::geometry::Correspondence;
+use stereopsis::geometry::two_view::Correspondence;
 
 /// The columns of a correspondence: p in the first image, p' in the second, px.
 pub const COLUMNS: [&str; 4] = ["x1", "y1", "x2", "y2"];

@@ -3,7 +3,7 @@
 use crate::run::MemoryPair;
 use image::{GrayImage, RgbImage};
 use stereopsis::camera::{CameraError, StereoSource};
-use stereopsis::geometry::Rectification;
+use stereopsis::geometry::rectify::Rectification;
 use stereopsis::imaging::{
     RectifiedPair, RectifiedPairError, Remap, RemapError, RemapPair, RemapTable, RemapTableError,
 };

@@ -6,7 +6,11 @@ use image::GrayImage;
 use nalgebra::Point2;
 use serde::Serialize;
 use stereopsis::features::Orientation;
-use stereopsis::geometry::{Camera, Correspondence, ImageSize, RowAlignment, RowHealth, RowMeter};
+use stereopsis::geometry::{
+    camera::{Camera, ImageSize},
+    rectify::{RowAlignment, RowHealth, RowMeter},
+    two_view::Correspondence,
+};
 
 /// Corners that are looked for: enough for a few hundredths of a pixel, in a few milliseconds.
 const CORNERS: u16 = 600;

@@ -6,7 +6,10 @@
 
 use crate::scene::Random;
 use nalgebra::{Matrix3, Point2, Point3, Rotation3, Vector3};
-use stereopsis::geometry::{Camera, Correspondence, Fundamental, Pose};
+use stereopsis::geometry::{
+    camera::{Camera, Pose},
+    two_view::{Correspondence, Fundamental},
+};
 
 /// Two cameras of 640 x 480 pixels, and what both see.
 #[derive(Clone, Debug)]

@@ -12,7 +12,7 @@ mod rigs;
 mod uncalibrated;
 
 use nalgebra::{Rotation3, Vector3};
-use stereopsis::geometry::{Camera, Distortion, ImageSize, Pose, StereoRig};
+use stereopsis::geometry::camera::{Camera, Distortion, ImageSize, Pose, StereoRig};
 use stereopsis_host::calibrate::board::Pattern;
 
 const SIZE: ImageSize = ImageSize { width: 320, height: 240 };

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use stereopsis::geometry::RectifiedRig;
+use stereopsis::geometry::camera::RectifiedRig;
 use stereopsis_host::calibration::{Calibration, CalibrationError, Fault, write_middlebury};
 
 const MIDDLEBURY: &str = "cam0=[999.421 0 294.182; 0 999.421 252.932; 0 0 1]

@@ -4,7 +4,7 @@ use nalgebra::Vector4;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use stereopsis::depth::{DepthError, DepthScale, DepthTable, TableError};
-use stereopsis::geometry::{RectifiedRig, RigError};
+use stereopsis::geometry::camera::{RectifiedRig, RigError};
 use stereopsis::matching::Config;
 use stereopsis::units::{Disparity, Metres, Millimetres};
 

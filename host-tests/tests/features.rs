@@ -13,7 +13,7 @@ mod twins;
 use image::GrayImage;
 use nalgebra::Matrix3;
 use stereopsis::features::{Feature, FeatureConfig, FeatureCounts, FeatureDetector, Match, Matcher, Search};
-use stereopsis::geometry::Fundamental;
+use stereopsis::geometry::two_view::Fundamental;
 
 /// The capacity of the detectors here: lines, and corners in a row of cells.
 const W: usize = 330;

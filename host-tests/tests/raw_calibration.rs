@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use std::path::PathBuf;
-use stereopsis::geometry::{Distortion, Fisheye, ImageSize, Lens};
+use stereopsis::geometry::camera::{Distortion, Fisheye, ImageSize, Lens};
 use stereopsis_host::calibration::RawCalibration;
 use tempfile::TempDir;
 

@@ -5,7 +5,10 @@
 use image::GrayImage;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use stereopsis::geometry::{Crop, ImageSize, Rectification};
+use stereopsis::geometry::{
+    camera::ImageSize,
+    rectify::{Crop, Rectification},
+};
 use stereopsis_host::calibrate::board::{Board, Pattern, find};
 use stereopsis_host::calibrate::{Calibrated, LensModel, View, solve};
 use stereopsis_host::calibration::RawCalibration;

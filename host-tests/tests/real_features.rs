@@ -8,7 +8,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
-use stereopsis::geometry::Pose;
+use stereopsis::geometry::camera::Pose;
 use stereopsis_host::correspond::{Plan, correspond};
 use stereopsis_host::two_view::off_degrees;
 

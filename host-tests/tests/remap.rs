@@ -5,7 +5,10 @@ use image::GrayImage;
 use nalgebra::{Point2, Rotation3, Vector3};
 use proptest::prelude::*;
 use stereopsis::camera::{CameraPair, LineSource, StereoSource};
-use stereopsis::geometry::{Camera, Crop, Distortion, ImageSize, Pose, Rectification, StereoRig, Warp};
+use stereopsis::geometry::{
+    camera::{Camera, Distortion, ImageSize, Pose, StereoRig},
+    rectify::{Crop, Rectification, Warp},
+};
 use stereopsis::imaging::{
     RectifiedPair, RectifiedPairError, Remap, RemapError, RemapPair, RemapTable, RemapTableError,
 };

@@ -4,7 +4,7 @@
 
 use image::GrayImage;
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
-use stereopsis::geometry::{Pose, RectifiedRig};
+use stereopsis::geometry::camera::{Pose, RectifiedRig};
 use stereopsis_host::scene::{Object, Scene, Shape, Texture, Truth};
 
 type Pair = (GrayImage, GrayImage);

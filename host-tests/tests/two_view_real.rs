@@ -5,7 +5,9 @@
 use nalgebra::{Matrix3, Point2, Vector3};
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::{
-    Camera, Correspondence, Essential, Fundamental, RobustConfig, eight_point, robust_fundamental,
+    camera::Camera,
+    robust::{RobustConfig, robust_fundamental},
+    two_view::{Correspondence, Essential, Fundamental, eight_point},
 };
 use stereopsis_host::matches::read_matches;
 use stereopsis_host::scene::Random;

@@ -1,6 +1,6 @@
 //! One disparity as a depth.
 
-use crate::geometry::RectifiedRig;
+use crate::geometry::camera::RectifiedRig;
 use crate::math::round;
 use crate::units::{Disparity, Metres, Millimetres};
 use core::fmt;
@@ -9,7 +9,7 @@ use nalgebra::Point3;
 /// Depths for one rig, `Z = f b / (d + doffs)`.
 ///
 /// ```
-/// use stereopsis::{depth::DepthScale, geometry::RectifiedRig, units::{Disparity, Metres, Millimetres}};
+/// use stereopsis::{depth::DepthScale, geometry::camera::RectifiedRig, units::{Disparity, Metres, Millimetres}};
 /// let rig = RectifiedRig::new(500.0, 0.1, 160.0, 120.0)?;
 /// let scale = DepthScale::new(&rig)?;
 /// let d = Disparity::from_pixels(25);

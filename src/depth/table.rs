@@ -14,7 +14,7 @@ use heapless::Vec;
 /// `N` is at least `32 disparities + 1`, the steps from the smallest disparity to the largest.
 ///
 /// ```
-/// use stereopsis::{depth::{DepthScale, DepthTable}, geometry::RectifiedRig, matching::Config, units::Disparity};
+/// use stereopsis::{depth::{DepthScale, DepthTable}, geometry::camera::RectifiedRig, matching::Config, units::Disparity};
 /// let scale = DepthScale::new(&RectifiedRig::new(100.0, 0.05, 48.0, 32.0)?)?;
 /// let table = DepthTable::<513>::new(&scale, &Config::new(96, 64, 16))?;
 /// let d = Disparity::from_raw(100);

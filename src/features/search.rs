@@ -1,7 +1,7 @@
 //! Which features may match, and how much better than others a match has to be.
 
 use super::{Feature, SearchError};
-use crate::geometry::{Fundamental, Line};
+use crate::geometry::two_view::{Fundamental, Line};
 use nalgebra::Point2;
 
 /// Lines on which partners lie, when it is known how the cameras stand to each other.

@@ -3,7 +3,7 @@
 
 use super::Status;
 use crate::depth::{DepthError, DepthScale};
-use crate::geometry::{RectifiedRig, RigError};
+use crate::geometry::camera::{RectifiedRig, RigError};
 use crate::units::Disparity;
 
 /// Two cameras after rectification: rows are aligned, both have one focal length.

@@ -1,28 +1,20 @@
-//! Pure maths on fixed-size nalgebra types: no pixels come in.
+//! Camera models, two-view geometry, absolute pose, robust estimation and rectification, without pixels.
 //!
 //! In: calibrated numbers, and correspondences that somebody found. Out: types that have checked them once,
-//! so that nobody after them has to.
+//! so that nobody after them has to. All of it is generic over [`Real`], `f32` or `f64`, on fixed-size
+//! nalgebra types, bounded in time and without allocation.
 //!
-//! * [`Real`]: `f32` or `f64`. `linear`: factors and null vectors that are bounded and cannot panic.
-//! * [`Camera`] with its [`Lens`] ([`Distortion`] or [`Fisheye`]); [`Pose`] of a second camera beside the
-//!   first; [`RectifiedRig`]: two cameras whose rows are aligned, and its re-projection matrix Q.
-//! * [`StereoRig`]: two cameras as they are mounted; [`Rectification`] aligns their rows, a [`Warp`] for
-//!   each, with a [`RectificationReport`]; a [`RowMeter`] tells while the cameras run whether they still
-//!   agree. [`StereoRig::to_record`] and [`StereoRig::from_record`]: the rig in flash.
-//! * [`Essential`] and [`Fundamental`]: two views, in the cameras' frames and in px, with lines, epipoles and
-//!   distances.
-//! * [`Correspondence`]s to [`Fundamental`]: [`eight_point()`]. To [`Homography`]: its direct linear
-//!   transform. [`choose`] says which of the two it is.
-//! * Correspondences of which some are wrong: [`robust_fundamental`], and [`Essential::refined`] for cameras
-//!   that are known.
-//! * [`Essential::recover_pose`] and [`Homography::recover_motions`]: the pose, without its scale
-//!   ([`RelativePose`]).
-//! * [`TwoViews`]: points from two sights, with their residual, angle and covariance.
-//! * [`Projection`]: a camera in the world as one matrix, to and from its parts, and from [`Landmark`]s.
-//! * Where a camera stands among known points: [`p3p()`] of three, [`robust_resection`] of many, some of them
-//!   wrong.
-//! * One camera before something of known shape: [`Sighting`] of an object of known size, the poses of a
-//!   [`SquareMark`], the orientation between [`Walls`].
+//! The modules stand in the order of use: each one uses only what stands above it.
+//!
+//! | module | in | out |
+//! | --- | --- | --- |
+//! | `linear` | small matrices, equations | factors, null vectors, rotations, least squares |
+//! | [`camera`] | calibrated numbers | [`Camera`], [`Lens`], [`Pose`], [`StereoRig`], [`RectifiedRig`] |
+//! | [`two_view`] | [`Correspondence`]s | [`Fundamental`], [`Essential`], [`Homography`], [`TwoViews`] |
+//! | [`absolute`] | [`Landmark`]s | the camera's pose: [`p3p()`], [`Projection`] by the DLT |
+//! | [`robust`] | both with outliers | [`robust_fundamental`], [`robust_resection`] (PnP) |
+//! | [`rectify`] | a rig, or matches alone | [`Rectification`], [`Warp`], [`RowMeter`] |
+//! | [`known_shape`] | one picture | [`Sighting`], [`SquareMark`], [`VanishingPoint`], [`ManhattanFrame`] |
 //!
 //! R and t carry a point of camera 2 into camera 1, `P = R P' + t`, and `p^T F p' = 0`; what OpenCV writes
 //! the other way round is converted by functions that say so.
@@ -36,10 +28,10 @@
 //! | --- | --- |
 //! | `p ~ M P`, `M = K [R^T \| -R^T t]` | [`Projection::new`], [`Projection::project`] |
 //! | `Z = f S / s`, an object of known size | [`Sighting::of_length`] |
-//! | `z = b f / (p_u - p'_u)`, sights of a rectified pair | [`RectifiedRig::depth_m`] |
+//! | `z = b f / (p_u - p'_u)`, rays of a rectified pair | [`RectifiedRig::depth_m`] |
 //! | 6.2: least `d(p, M P)^2 + d(p', M' P)^2` | [`TwoViews::optimal`], its value [`Triangulated::residual_px`] |
 //! | `p . [t x (R p')] = 0`, three vectors in the epipolar plane | [`Essential::residual`] |
-//! | `[a]x b = a x b` | [`skew()`] |
+//! | `[a]x b = a x b` | `linear::skew` |
 //! | `E = [t]x R`, `p^T E p' = 0` | [`Essential::from_pose`], [`Essential::residual`] |
 //! | `E` has the singular values `(s, s, 0)` | [`Essential::nearest`] |
 //! | `F = K^-T E K'^-1`, `p^T F p' = 0` | [`Fundamental::from_essential`], [`Fundamental::residual`] |
@@ -50,78 +42,70 @@
 //! | `E = K^T F K'` and its four poses | [`Essential::from_fundamental`], [`Essential::poses`] |
 //! | rows of a rectified pair: `F ~ [0 0 0; 0 0 -1; 0 1 0]` | [`Fundamental::from_cameras`] of such a pair |
 //! | disparity to a point, `P ~ Q (u v d 1)^T` | [`RectifiedRig::reproject`] |
+//!
+//! [`Camera`]: camera::Camera
+//! [`Correspondence`]: two_view::Correspondence
+//! [`Essential`]: two_view::Essential
+//! [`Essential::from_fundamental`]: two_view::Essential::from_fundamental
+//! [`Essential::from_pose`]: two_view::Essential::from_pose
+//! [`Essential::nearest`]: two_view::Essential::nearest
+//! [`Essential::poses`]: two_view::Essential::poses
+//! [`Essential::residual`]: two_view::Essential::residual
+//! [`Fundamental`]: two_view::Fundamental
+//! [`Fundamental::epipole_in_first`]: two_view::Fundamental::epipole_in_first
+//! [`Fundamental::epipole_in_second`]: two_view::Fundamental::epipole_in_second
+//! [`Fundamental::from_cameras`]: two_view::Fundamental::from_cameras
+//! [`Fundamental::from_essential`]: two_view::Fundamental::from_essential
+//! [`Fundamental::from_matrix`]: two_view::Fundamental::from_matrix
+//! [`Fundamental::line_in_first`]: two_view::Fundamental::line_in_first
+//! [`Fundamental::line_in_second`]: two_view::Fundamental::line_in_second
+//! [`Fundamental::residual`]: two_view::Fundamental::residual
+//! [`Homography`]: two_view::Homography
+//! [`Landmark`]: absolute::Landmark
+//! [`Lens`]: camera::Lens
+//! [`ManhattanFrame`]: known_shape::ManhattanFrame
+//! [`Pose`]: camera::Pose
+//! [`Projection`]: absolute::Projection
+//! [`Projection::new`]: absolute::Projection::new
+//! [`Projection::project`]: absolute::Projection::project
+//! [`Rectification`]: rectify::Rectification
+//! [`RectifiedRig`]: camera::RectifiedRig
+//! [`RectifiedRig::depth_m`]: camera::RectifiedRig::depth_m
+//! [`RectifiedRig::reproject`]: camera::RectifiedRig::reproject
+//! [`RowMeter`]: rectify::RowMeter
+//! [`Sighting`]: known_shape::Sighting
+//! [`Sighting::of_length`]: known_shape::Sighting::of_length
+//! [`SquareMark`]: known_shape::SquareMark
+//! [`StereoRig`]: camera::StereoRig
+//! [`Triangulated::residual_px`]: two_view::Triangulated::residual_px
+//! [`TwoViews`]: two_view::TwoViews
+//! [`TwoViews::optimal`]: two_view::TwoViews::optimal
+//! [`VanishingPoint`]: known_shape::VanishingPoint
+//! [`Warp`]: rectify::Warp
+//! [`eight_point()`]: two_view::eight_point()
+//! [`p3p()`]: absolute::p3p()
+//! [`robust_fundamental`]: robust::robust_fundamental
+//! [`robust_resection`]: robust::robust_resection
 
 #![allow(
     clippy::neg_cmp_op_on_partial_ord,
     reason = "`!(a > b)` refuses what is not a number together with what is too small"
 )]
 
-mod camera;
-mod correspondence;
-mod degenerate;
-mod distance;
-mod distortion;
-mod eight_point;
-mod essential;
-mod fisheye;
-mod fundamental;
-mod homography;
-mod landmarks;
-mod lens;
-mod line;
-pub(crate) mod linear;
-mod model;
-mod normalise;
-mod p3p;
-mod plane;
-mod pose;
-mod projection;
 mod real;
-mod record;
-mod recover;
-mod rectify;
-mod relative;
-mod rig;
-mod robust;
-mod seven_point;
-mod skew;
-mod stereo_rig;
-mod triangulate;
-mod weighted;
 
-pub use camera::{Camera, CameraError, ProjectionError};
-pub use correspondence::Correspondence;
-pub use distortion::Distortion;
-pub use eight_point::{EightPointError, eight_point, eight_point_weighted};
-pub use essential::{Essential, EssentialError};
-pub use fisheye::Fisheye;
-pub use fundamental::{Fundamental, FundamentalError};
-pub use homography::{Homography, HomographyError};
-pub use landmarks::{
-    MarkPose, MarkPoses, Segment, Sighting, SightingError, SquareMark, SquareMarkError, VanishingPoint,
-    VanishingPointError, Walls, WallsError,
-};
-pub use lens::Lens;
-pub use line::{Epipole, Line};
-pub use model::{ModelChoice, TwoViewModel, choose, gric};
-pub use p3p::{P3pError, P3pPoses, p3p};
-pub use plane::{PlaneMotion, PlaneMotionError};
-pub use pose::{Pose, PoseError};
-pub use projection::{Landmark, Projection, ResectionError};
+pub(crate) mod linear;
+
+pub mod camera;
+
+pub mod two_view;
+
+pub mod absolute;
+
+pub mod robust;
+
+pub mod rectify;
+
+pub mod known_shape;
+
 pub use real::Real;
-pub use record::RecordError;
-pub use recover::{RecoverError, RecoveredPose};
-pub use rectify::{
-    Axis, Crop, Rectification, RectificationReport, RectifyError, RowAlignment, RowHealth, RowMeter,
-    RowMeterError, UncalibratedError, UncalibratedRectification, Warp, WarpSource,
-};
-pub use relative::{RelativePose, ScaleError};
-pub use rig::{RectifiedRig, RigError};
-pub use robust::{
-    RobustConfig, RobustError, RobustFundamental, RobustResection, RobustResectionError, Sampling,
-    robust_fundamental, robust_resection,
-};
-pub use skew::skew;
-pub(crate) use skew::turn;
-pub use stereo_rig::{ImageSize, StereoRig, StereoRigError};
-pub use triangulate::{Triangulated, TriangulationError, TwoViews};

@@ -9,7 +9,8 @@ use core::convert::Infallible;
 use nalgebra::{Matrix3, Vector3};
 use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, StereoSource};
 use stereopsis::geometry::{
-    Camera, Crop, Distortion, ImageSize, Pose, Rectification, RectifyError, StereoRig,
+    camera::{Camera, Distortion, ImageSize, Pose, StereoRig},
+    rectify::{Crop, Rectification, RectifyError},
 };
 use stereopsis::imaging::{RectifiedPair, RectifiedPairError, RemapError, RemapPair, RemapTable};
 use stereopsis::matching::{Block, Config, ConfigError, Row};

@@ -6,8 +6,9 @@
 
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 use stereopsis::geometry::{
-    Camera, Correspondence, Essential, Pose, RecoveredPose, RobustConfig, RobustError, RobustFundamental,
-    TwoViews, robust_fundamental,
+    camera::{Camera, Pose},
+    robust::{RobustConfig, RobustError, RobustFundamental, robust_fundamental},
+    two_view::{Correspondence, Essential, RecoveredPose, TwoViews},
 };
 
 /// Matches.

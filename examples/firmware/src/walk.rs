@@ -8,7 +8,7 @@ use core::convert::Infallible;
 use heapless::Vec;
 use stereopsis::camera::{CameraError, StereoSource};
 use stereopsis::features::{Feature, FeatureConfig, FeatureConfigError, FeatureDetector, FeatureLineError};
-use stereopsis::geometry::{RectifiedRig, RigError};
+use stereopsis::geometry::camera::{RectifiedRig, RigError};
 use stereopsis::imaging::{Picture, PictureError};
 use stereopsis::motion::odometry::{
     Frame, OdometryConfig, OdometryError, OdometryRigError, State, Step, StereoOdometry,

@@ -6,7 +6,7 @@
 use super::two_views::{Cameras, MATCHES, Missing, World, is_right};
 use core::ops::ControlFlow;
 use nalgebra::{Matrix3, Vector3};
-use stereopsis::geometry::{Pose, PoseError, ProjectionError};
+use stereopsis::geometry::camera::{Pose, PoseError, ProjectionError};
 use stereopsis::motion::bundle::{
     BundleConfig, BundleError, BundleReport, CameraView, Gauge, View, Window, WindowError,
 };

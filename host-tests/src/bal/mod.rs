@@ -19,7 +19,7 @@ pub use solve::Running;
 
 use nalgebra::{Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
 use std::io::{self, Write};
-use stereopsis::geometry::Pose;
+use stereopsis::geometry::camera::Pose;
 use stereopsis::motion::bundle::{Loss, RadialView, Sight, View};
 
 /// Cameras, points and what the cameras see of them.

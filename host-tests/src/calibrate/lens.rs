@@ -2,7 +2,7 @@
 
 use super::bundle::INNER;
 use nalgebra::Vector2;
-use stereopsis::geometry::{Distortion, Fisheye, Lens};
+use stereopsis::geometry::camera::{Distortion, Fisheye, Lens};
 
 /// The models of lenses.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

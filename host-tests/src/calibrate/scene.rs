@@ -4,7 +4,7 @@ use super::board::Pattern;
 use crate::scene::Random;
 use image::{GrayImage, Luma};
 use nalgebra::{Point2, Point3, Vector3};
-use stereopsis::geometry::{Camera, ImageSize, Pose, StereoRig};
+use stereopsis::geometry::camera::{Camera, ImageSize, Pose, StereoRig};
 
 /// Samples along a pixel's side.
 const SAMPLES: usize = 4;

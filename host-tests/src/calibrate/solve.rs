@@ -5,7 +5,7 @@ use super::bundle::{Bundle, INNER, Inner, Outer};
 use super::lens::LensModel;
 use super::start;
 use nalgebra::{Matrix3, Point2, Point3, Rotation3, Vector2, Vector3};
-use stereopsis::geometry::{Camera, ImageSize, StereoRig, StereoRigError};
+use stereopsis::geometry::camera::{Camera, ImageSize, StereoRig, StereoRigError};
 
 /// The corners of one board in both pictures of a moment, in the order of [`Pattern::places`], px.
 #[derive(Clone, PartialEq, Debug)]

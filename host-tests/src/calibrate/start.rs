@@ -2,7 +2,7 @@
 
 use super::bundle::{INNER, Inner, Outer};
 use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3};
-use stereopsis::geometry::{Correspondence, Homography};
+use stereopsis::geometry::two_view::{Correspondence, Homography};
 
 /// The homography from the board's plane to the picture.
 pub(super) fn homography(board: &[Point3<f64>], seen: &[Point2<f64>]) -> Option<Matrix3<f64>> {

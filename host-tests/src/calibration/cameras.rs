@@ -2,7 +2,7 @@
 
 use super::{CalibrationError, Fault, kitti, load_all, middlebury, raw};
 use std::path::PathBuf;
-use stereopsis::geometry::Camera;
+use stereopsis::geometry::camera::Camera;
 
 /// The two cameras of a calibration file, by themselves: neither where they stand nor whether they are
 /// rectified.

@@ -70,16 +70,16 @@ pub enum Fault {
     },
     /// The second camera stands on the other side of the first.
     #[error("{0}; exchange them in the file, or --left and --right")]
-    Swapped(stereopsis::geometry::RectifyError),
+    Swapped(stereopsis::geometry::rectify::RectifyError),
     /// A record of the core's is refused by it.
     #[error("{0}")]
-    Record(stereopsis::geometry::RecordError),
+    Record(stereopsis::geometry::camera::RecordError),
     /// Neither the file nor the caller says how large the images are.
     #[error("does not say how large the images are; give --size, as 640x480")]
     NoSize,
     /// The rig is refused by the core.
     #[error("{0}")]
-    StereoRig(stereopsis::geometry::StereoRigError),
+    StereoRig(stereopsis::geometry::camera::StereoRigError),
     /// A key that is needed is not there.
     #[error("{0} is missing; {1} is needed")]
     Missing(String, &'static str),
@@ -183,11 +183,11 @@ pub enum Fault {
         /// The camera's key.
         key: String,
         /// Why.
-        error: stereopsis::geometry::CameraError,
+        error: stereopsis::geometry::camera::CameraModelError,
     },
     /// The rig is refused by the core.
     #[error("{0}")]
-    Rig(stereopsis::geometry::RigError),
+    Rig(stereopsis::geometry::camera::RigError),
     /// The images are not of the calibrated size.
     #[error(
         "{which} says {calibrated}, but the images have {image} pixels; the calibration of these images is needed"

@@ -3,7 +3,7 @@
 
 use super::{Calibration, Fault, Intrinsics, PIXEL_TOLERANCE, numbers, rig};
 use std::path::PathBuf;
-use stereopsis::geometry::RectifiedRig;
+use stereopsis::geometry::camera::RectifiedRig;
 
 const KEYS: [&str; 7] = ["cam0", "cam1", "doffs", "baseline", "width", "height", "ndisp"];
 

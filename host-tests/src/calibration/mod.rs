@@ -29,7 +29,7 @@ pub use write::{write_c, write_opencv, write_rust};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use stereopsis::geometry::RectifiedRig;
+use stereopsis::geometry::camera::RectifiedRig;
 
 /// The longest calibration file that is read.
 const MOST_BYTES: u64 = 1 << 20;

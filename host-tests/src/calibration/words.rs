@@ -3,7 +3,10 @@
 use super::RawCalibration;
 use nalgebra::{Point2, Vector2};
 use std::fmt::Write;
-use stereopsis::geometry::{Camera, Crop, ImageSize, Rectification, RectifyError};
+use stereopsis::geometry::{
+    camera::{Camera, ImageSize},
+    rectify::{Crop, Rectification, RectifyError},
+};
 
 /// The standard deviation of a disparity that depths are told with, px: that of the methods, away from depth
 /// edges.

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 use std::fmt::Write;
-use stereopsis::geometry::{Camera, Lens, StereoRig};
+use stereopsis::geometry::camera::{Camera, Lens, StereoRig};
 
 /// A rig as OpenCV's FileStorage writes it, in YAML: K1, D1, K2, D2, R, T, E and F with `P' = R P + T` and
 /// `p'^T F p = 0`, as `stereoCalibrate` gives them. T is in metres, which `length_unit` says. `notes` become
@@ -43,7 +43,7 @@ pub fn write_opencv(rig: &StereoRig<f64>, notes: &[String]) -> String {
 pub fn write_rust(rig: &StereoRig<f64>, notes: &[String]) -> String {
     let record = rig.to_record();
     let mut text = comments("//", notes);
-    let _ = writeln!(text, "// Read by stereopsis::geometry::StereoRig::from_record.");
+    let _ = writeln!(text, "// Read by stereopsis::geometry::camera::StereoRig::from_record.");
     let _ = writeln!(text, "#[rustfmt::skip]\npub const STEREO_RIG: [u8; {}] = [", record.len());
     text + &bytes(&record) + "];\n"
 }

@@ -1,7 +1,7 @@
 //! How far a trajectory is off a known one.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use stereopsis::geometry::Pose;
+use stereopsis::geometry::camera::Pose;
 
 /// What a trajectory may be moved by before it is compared.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -3,7 +3,7 @@
 use super::run::Trajectory;
 use nalgebra::Vector3;
 use std::fmt::Write;
-use stereopsis::geometry::Pose;
+use stereopsis::geometry::camera::Pose;
 
 /// Sides of a view and its margin, px of the drawing.
 const SIDE: f64 = 480.0;

@@ -4,7 +4,7 @@
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use stereopsis::geometry::Pose;
+use stereopsis::geometry::camera::Pose;
 use stereopsis::motion::odometry::{State, Step};
 
 /// Why a file is no trajectory.

@@ -4,7 +4,7 @@ use super::poses::between;
 use crate::correspond::{CorrespondError, Plan, features};
 use image::GrayImage;
 use stereopsis::features::Orientation;
-use stereopsis::geometry::{Camera, Pose, RectifiedRig};
+use stereopsis::geometry::camera::{Camera, Pose, RectifiedRig};
 use stereopsis::imaging::{Picture, PictureError};
 use stereopsis::motion::odometry::{
     Frame, MonocularOdometry, OdometryConfig, OdometryError, OdometryRig, OdometryRigError, Refinement,

@@ -19,7 +19,7 @@ use crate::scene::Truth;
 use image::RgbImage;
 use page::{Kind, caption, escape, figure, table};
 use std::io::{self, Write};
-use stereopsis::geometry::RectifiedRig;
+use stereopsis::geometry::camera::RectifiedRig;
 use stereopsis::units::PixelFlags;
 
 /// What the page shows.

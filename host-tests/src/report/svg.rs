@@ -5,7 +5,7 @@ use crate::map::DisparityMap;
 use crate::sparsification::{Judged, curves};
 use image::Rgb;
 use std::fmt::Write;
-use stereopsis::geometry::RectifiedRig;
+use stereopsis::geometry::camera::RectifiedRig;
 
 /// The colours of disparities with numbers: px above, metres below where there is a rig. `id` names the
 /// drawing in the page.

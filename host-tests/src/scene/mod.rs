@@ -34,7 +34,7 @@ pub use texture::{Points, SAMPLES, Texture};
 use image::GrayImage;
 use nalgebra::{Point3, Rotation3};
 use render::Eye;
-use stereopsis::geometry::{Pose, RectifiedRig};
+use stereopsis::geometry::camera::{Pose, RectifiedRig};
 
 /// Bodies before a rectified rig, with a lamp.
 ///

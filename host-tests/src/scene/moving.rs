@@ -4,7 +4,7 @@
 use super::{Object, Random, Scene, Shape, Texture};
 use image::GrayImage;
 use nalgebra::{Point3, Rotation3, Vector3};
-use stereopsis::geometry::{Pose, RectifiedRig};
+use stereopsis::geometry::camera::{Pose, RectifiedRig};
 
 /// A scene, and where the rig's left camera stands in each frame.
 #[derive(Clone, Debug)]

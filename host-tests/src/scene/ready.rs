@@ -2,7 +2,7 @@
 
 use super::{Object, Scene, Shape, Texture};
 use nalgebra::{Point3, Rotation3, Vector3};
-use stereopsis::geometry::RectifiedRig;
+use stereopsis::geometry::camera::RectifiedRig;
 
 /// The room's camera: metres above the floor, and radians that it looks down.
 const CAMERA_HEIGHT: f64 = 0.55;

@@ -2,7 +2,7 @@
 
 use super::{MovingScene, Object, Random, Scene, Shape, Texture};
 use nalgebra::{Point3, Rotation3, Vector3};
-use stereopsis::geometry::{Pose, RectifiedRig};
+use stereopsis::geometry::camera::{Pose, RectifiedRig};
 
 /// A place along the road, and which way it goes there.
 #[derive(Clone, Copy)]

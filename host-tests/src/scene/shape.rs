@@ -2,7 +2,7 @@
 
 use super::texture::Texture;
 use nalgebra::{Point2, Point3, Rotation3, Vector3};
-use stereopsis::geometry::Pose;
+use stereopsis::geometry::camera::Pose;
 
 /// A body in its own coordinates, metres: the origin is its middle.
 #[derive(Clone, Debug, PartialEq)]

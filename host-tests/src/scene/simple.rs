@@ -3,7 +3,7 @@
 
 use super::{MovingScene, Object, Scene, Shape, Texture};
 use nalgebra::{Point3, Rotation3, Vector3};
-use stereopsis::geometry::{Pose, RectifiedRig};
+use stereopsis::geometry::camera::{Pose, RectifiedRig};
 
 /// Metres from frame to frame where the camera moves, and its turn, radians.
 const STEP_M: f64 = 0.12;

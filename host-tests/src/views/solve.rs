@@ -2,7 +2,11 @@
 
 use super::link::Links;
 use nalgebra::{Point2, Point3};
-use stereopsis::geometry::{Camera, Correspondence, Landmark, Pose, ScaleError};
+use stereopsis::geometry::{
+    absolute::Landmark,
+    camera::{Camera, Pose},
+    two_view::{Correspondence, ScaleError},
+};
 use stereopsis::motion::bundle::{CameraView, Sight, Slot, Term, View, Workspace};
 use stereopsis::motion::structure::{
     Placement, PointState, SceneMemory, StructureConfig, StructureError, StructureReport, structure,

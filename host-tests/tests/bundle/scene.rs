@@ -2,7 +2,10 @@
 
 use nalgebra::{Matrix3, Point2, Point3, Rotation3, Vector3};
 use proptest::prelude::*;
-use stereopsis::geometry::{Camera, Distortion, Pose, Real};
+use stereopsis::geometry::{
+    Real,
+    camera::{Camera, Distortion, Pose},
+};
 use stereopsis::motion::bundle::{CameraView, RadialView, RigView, Sight, View, Window};
 use stereopsis_host::scene::Random;
 

@@ -3,7 +3,7 @@
 use crate::scene::{calibrated, placed, radial, rig};
 use nalgebra::{Point3, Vector3};
 use proptest::prelude::*;
-use stereopsis::geometry::{Camera, Pose};
+use stereopsis::geometry::camera::{Camera, Pose};
 use stereopsis::motion::bundle::{AlignedView, View};
 
 /// Central differences err by the square of the step, and by roundings over it: of pixels in thousands, a
@@ -84,7 +84,7 @@ fn a_disparity_by_its_definition() {
 
 #[test]
 fn what_is_behind_is_not_seen() {
-    use stereopsis::geometry::ProjectionError::Behind;
+    use stereopsis::geometry::camera::ProjectionError::Behind;
     let point = Point3::new(0.0, 0.0, -1.0);
     assert_eq!(calibrated::<f64>(0).slope(0, &point).err(), Some(Behind));
     assert_eq!(rig::<f64>(0).slope(1, &point).err(), Some(Behind));

@@ -3,7 +3,7 @@
 use crate::scene::{Scene, calibrated, pose, scene};
 use crate::twin::Room;
 use nalgebra::{Point2, Point3};
-use stereopsis::geometry::{Correspondence, Landmark, Pose};
+use stereopsis::geometry::{absolute::Landmark, camera::Pose, two_view::Correspondence};
 use stereopsis::motion::bundle::{CameraView, Sight, View};
 use stereopsis::motion::structure::{
     MetricStructure, PairFault, Placement, PointState, SceneMemory, StructureConfig, StructureError,

@@ -6,8 +6,9 @@ use nalgebra::{Matrix3, Point2, Vector3};
 use proptest::prelude::*;
 use stereopsis::features::Orientation;
 use stereopsis::geometry::{
-    Camera, Correspondence, Crop, ImageSize, Pose, Rectification, RowAlignment, RowHealth, RowMeter,
-    RowMeterError, StereoRig,
+    camera::{Camera, ImageSize, Pose, StereoRig},
+    rectify::{Crop, Rectification, RowAlignment, RowHealth, RowMeter, RowMeterError},
+    two_view::Correspondence,
 };
 use stereopsis::matching::{Config, Filter};
 use stereopsis_host::correspond::{Plan, correspond};

@@ -2,8 +2,8 @@
 
 use super::rig;
 use proptest::prelude::*;
-use stereopsis::geometry::{
-    CameraError, Distortion, Fisheye, ImageSize, Lens, PoseError, RecordError, StereoRig, StereoRigError,
+use stereopsis::geometry::camera::{
+    CameraModelError, Distortion, Fisheye, ImageSize, Lens, PoseError, RecordError, StereoRig, StereoRigError,
 };
 use stereopsis_host::calibration::{RawCalibration, write_c, write_opencv, write_rust};
 
@@ -79,9 +79,9 @@ fn what_is_no_record_is_refused_by_name() {
     assert_eq!(read(&newer), Err(RecordError::Version { found: 2, known: 1 }));
     assert_eq!(read(&sealed(newer)), Err(RecordError::Version { found: 2, known: 1 }));
     for (number, value, why) in [
-        (0, f64::NAN, RecordError::Camera(0, CameraError::NotFinite)),
-        (0, -500.0, RecordError::Camera(0, CameraError::FocalLength)),
-        (18, f64::INFINITY, RecordError::Camera(1, CameraError::NotFinite)),
+        (0, f64::NAN, RecordError::Camera(0, CameraModelError::NotFinite)),
+        (0, -500.0, RecordError::Camera(0, CameraModelError::FocalLength)),
+        (18, f64::INFINITY, RecordError::Camera(1, CameraModelError::NotFinite)),
         (26, 2.0, RecordError::Rig(StereoRigError::Pose(PoseError::NotARotation))),
         (35, f64::NAN, RecordError::Rig(StereoRigError::Pose(PoseError::NotFinite))),
     ] {

@@ -2,7 +2,7 @@
 
 use super::{SIZE, STANDS, pattern, rig, stand};
 use nalgebra::Vector2;
-use stereopsis::geometry::{Distortion, Fisheye, Lens};
+use stereopsis::geometry::camera::{Distortion, Fisheye, Lens};
 use stereopsis_host::calibrate::board::find;
 use stereopsis_host::calibrate::scene::BoardCamera;
 use stereopsis_host::calibrate::{LensModel, SolveError, View, solve};

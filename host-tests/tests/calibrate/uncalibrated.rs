@@ -4,7 +4,9 @@ use super::{SIZE, turn};
 use nalgebra::{Point2, Vector3};
 use proptest::prelude::*;
 use stereopsis::geometry::{
-    Camera, Correspondence, Fundamental, Pose, UncalibratedError, UncalibratedRectification,
+    camera::{Camera, Pose},
+    rectify::{UncalibratedError, UncalibratedRectification},
+    two_view::{Correspondence, Fundamental},
 };
 use stereopsis_host::scene::Random;
 

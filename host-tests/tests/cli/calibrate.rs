@@ -3,7 +3,7 @@
 use super::support::{Bench, encode, names, stereo, text};
 use image::ImageFormat;
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use stereopsis::geometry::{Camera, Distortion, ImageSize, Pose, StereoRig};
+use stereopsis::geometry::camera::{Camera, Distortion, ImageSize, Pose, StereoRig};
 use stereopsis_host::calibrate::board::Pattern;
 use stereopsis_host::calibrate::scene::BoardCamera;
 use stereopsis_host::scene::Random;

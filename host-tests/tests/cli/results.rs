@@ -8,7 +8,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use stereopsis::depth::DepthScale;
-use stereopsis::geometry::RectifiedRig;
+use stereopsis::geometry::camera::RectifiedRig;
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{Config, Filter, Kernel};
 use stereopsis::units::PixelFlags;

@@ -5,7 +5,9 @@ use image::{GrayImage, Luma, imageops};
 use nalgebra::{Point2, Rotation3, Vector3};
 use stereopsis::features::{Descriptor, Epipolar, Feature, FeatureConfig, Match, Orientation, Search};
 use stereopsis::geometry::{
-    Camera, Correspondence, Essential, Fundamental, Pose, RobustConfig, robust_fundamental,
+    camera::{Camera, Pose},
+    robust::{RobustConfig, robust_fundamental},
+    two_view::{Correspondence, Essential, Fundamental},
 };
 use stereopsis_host::correspond::{Plan, correspond};
 use stereopsis_host::scene::Scene;

@@ -4,7 +4,7 @@ use image::GrayImage;
 use proptest::prelude::*;
 use stereopsis::depth::{Depth, DepthScale, fuse};
 use stereopsis::focus::{Breathing, FocusConfig, FocusScale, ThinLens};
-use stereopsis::geometry::RectifiedRig;
+use stereopsis::geometry::camera::RectifiedRig;
 use stereopsis::matching::{Block, Config};
 use stereopsis::pipeline::Pipeline;
 use stereopsis_host::focus::run::run;

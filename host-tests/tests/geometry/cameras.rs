@@ -4,8 +4,8 @@ use crate::views::{any_pose, seeded};
 use nalgebra::{Matrix3x4, Point2, Point3, Rotation3, Vector3};
 use proptest::prelude::*;
 use stereopsis::geometry::{
-    Camera, Distortion, Fisheye, Landmark, Lens, Pose, Projection, ProjectionError, RectifiedRig,
-    ResectionError,
+    absolute::{Landmark, Projection, ResectionError},
+    camera::{Camera, Distortion, Fisheye, Lens, Pose, ProjectionError, RectifiedRig},
 };
 use stereopsis_host::scene::Random;
 

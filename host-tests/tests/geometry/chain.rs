@@ -2,7 +2,10 @@
 
 use crate::views::{Views, mixed, off_degrees, seeded};
 use proptest::prelude::*;
-use stereopsis::geometry::{Essential, RobustConfig, TwoViews, robust_fundamental};
+use stereopsis::geometry::{
+    robust::{RobustConfig, robust_fundamental},
+    two_view::{Essential, TwoViews},
+};
 
 const THRESHOLD: f64 = 1.5;
 

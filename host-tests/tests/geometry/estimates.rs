@@ -4,7 +4,9 @@ use crate::twin;
 use crate::views::{Views, anywhere, narrow, nearby, noisy, rms_sampson, wide};
 use nalgebra::{Point3, Rotation3, Vector3};
 use stereopsis::geometry::{
-    Correspondence, EightPointError, Fundamental, Pose, Real, eight_point, eight_point_weighted,
+    Real,
+    camera::Pose,
+    two_view::{Correspondence, EightPointError, Fundamental, eight_point, eight_point_weighted},
 };
 use stereopsis_host::scene::Random;
 

@@ -5,8 +5,11 @@ use crate::views::seeded;
 use nalgebra::{Matrix3, Point2, Point3, Rotation3, Vector3};
 use proptest::prelude::*;
 use stereopsis::geometry::{
-    Camera, Distortion, Pose, Segment, Sighting, SquareMark, SquareMarkError, VanishingPoint, Walls,
-    WallsError,
+    camera::{Camera, Distortion, Pose},
+    known_shape::{
+        LineSegment, ManhattanFrame, ManhattanFrameError, Sighting, SquareMark, SquareMarkError,
+        VanishingPoint,
+    },
 };
 use stereopsis_host::scene::Random;
 
@@ -87,15 +90,15 @@ proptest! {
         let truth = rotation(turn) * rotation(Vector3::new(0.6, 0.0, 0.0)) * rotation(Vector3::new(0.0, 0.7, 0.0));
         let bundles = room(&square(), &truth, 0.0, seed);
         let of = [&bundles[0][..], &bundles[1], &bundles[2]];
-        let walls = Walls::orientation(&square(), of, &truth).expect("an orientation");
+        let walls = ManhattanFrame::orientation(&square(), of, &truth).expect("an orientation");
         prop_assert!(apart(&walls.rotation, &truth) < 1e-8, "{:?}", walls);
         prop_assert!(walls.rms_px < 1e-8 && walls.focal_sigma_per_px == 0.0);
-        let walls = Walls::orientation_and_focal(&Point2::new(320.0, 240.0), of, &truth).expect("an orientation");
+        let walls = ManhattanFrame::orientation_and_focal(&Point2::new(320.0, 240.0), of, &truth).expect("an orientation");
         prop_assert!(apart(&walls.rotation, &truth) < 1e-7, "{:?}", walls);
         prop_assert!((walls.focal_px - 600.0).abs() < 1e-4, "{}", walls.focal_px);
         // Lines have no sense: expected the other way round, it is turned by half a turn.
         let half = Matrix3::from_diagonal(&Vector3::new(-1.0, 1.0, -1.0));
-        let other = Walls::orientation(&square(), of, &(truth * half)).expect("an orientation");
+        let other = ManhattanFrame::orientation(&square(), of, &(truth * half)).expect("an orientation");
         prop_assert!(apart(&other.rotation, &(truth * half)) < 1e-8);
         let point = VanishingPoint::of(of[1]).expect("a point");
         let direction = point.direction(&square()).into_inner();
@@ -108,7 +111,7 @@ fn square() -> Camera<f64> {
 }
 
 /// Ten segments in each of three directions, as far as the image of 640 x 480 shows them.
-fn room(camera: &Camera<f64>, truth: &Matrix3<f64>, sigma: f64, seed: u64) -> [Vec<Segment<f64>>; 3] {
+fn room(camera: &Camera<f64>, truth: &Matrix3<f64>, sigma: f64, seed: u64) -> [Vec<LineSegment<f64>>; 3] {
     let mut random = Random::new(seed);
     core::array::from_fn(|k| {
         let direction: Vector3<f64> = truth.column(k).into();
@@ -120,7 +123,10 @@ fn room(camera: &Camera<f64>, truth: &Matrix3<f64>, sigma: f64, seed: u64) -> [V
             let [Ok(a), Ok(b)] = ends.map(|end| camera.project(&Point3::from(end))) else { continue };
             let inside = |p: &Point2<f64>| (0.0..640.0).contains(&p.x) && (0.0..480.0).contains(&p.y);
             if inside(&a) && inside(&b) && (a - b).norm() > 20.0 {
-                bundle.push(Segment { from: moved(a, sigma, &mut random), to: moved(b, sigma, &mut random) });
+                bundle.push(LineSegment {
+                    from: moved(a, sigma, &mut random),
+                    to: moved(b, sigma, &mut random),
+                });
             }
         }
         bundle
@@ -188,13 +194,13 @@ fn walls_know_their_deviation() {
     for seed in 0..200 {
         let bundles = room(&square(), &truth, sigma, seed);
         let of = [&bundles[0][..], &bundles[1], &bundles[2]];
-        let walls = Walls::orientation(&square(), of, &truth).expect("an orientation");
+        let walls = ManhattanFrame::orientation(&square(), of, &truth).expect("an orientation");
         let turn = Rotation3::from_matrix_unchecked(walls.rotation * truth.transpose()).scaled_axis();
         turns.extend(
             turn.iter().zip(&walls.sigma_rad_per_px).map(|(turn, deviation)| turn / (deviation * sigma)),
         );
-        let walls =
-            Walls::orientation_and_focal(&Point2::new(320.0, 240.0), of, &truth).expect("an orientation");
+        let walls = ManhattanFrame::orientation_and_focal(&Point2::new(320.0, 240.0), of, &truth)
+            .expect("an orientation");
         focals.push((walls.focal_px - 600.0) / (walls.focal_sigma_per_px * sigma));
     }
     let (turns, focals) = (rms(turns.into_iter()), rms(focals.into_iter()));
@@ -207,20 +213,20 @@ fn walls_that_say_nothing_are_refused() {
     let truth = rotation(Vector3::new(0.3, 0.4, 0.0));
     let bundles = room(&square(), &truth, 0.0, 1);
     let (a, b) = (&bundles[0][..], &bundles[1][..]);
-    let of = |bundles| Walls::orientation(&square(), bundles, &truth);
-    assert_eq!(of([a, &[], &[]]), Err(WallsError::TooFew));
-    assert_eq!(of([a, a, &[]]), Err(WallsError::NotOrthogonal));
+    let of = |bundles| ManhattanFrame::orientation(&square(), bundles, &truth);
+    assert_eq!(of([a, &[], &[]]), Err(ManhattanFrameError::TooFew));
+    assert_eq!(of([a, a, &[]]), Err(ManhattanFrameError::NotOrthogonal));
     assert!(of([a, b, &[]]).is_ok());
-    let line = [a[0], Segment { from: a[0].to, to: a[0].to + (a[0].to - a[0].from) }];
-    assert_eq!(of([&line, b, &[]]), Err(WallsError::Line));
-    let nan = [Segment::new((f64::NAN, 0.0), (1.0, 1.0)), a[0]];
-    assert_eq!(of([&nan, b, &[]]), Err(WallsError::NotFinite));
+    let line = [a[0], LineSegment { from: a[0].to, to: a[0].to + (a[0].to - a[0].from) }];
+    assert_eq!(of([&line, b, &[]]), Err(ManhattanFrameError::Line));
+    let nan = [LineSegment::new((f64::NAN, 0.0), (1.0, 1.0)), a[0]];
+    assert_eq!(of([&nan, b, &[]]), Err(ManhattanFrameError::NotFinite));
     // Right before a wall: two directions are parallel to the image, and the third is with each of them.
     let bundles = room(&square(), &Matrix3::identity(), 0.0, 1);
     let of = [&bundles[0][..], &bundles[1], &bundles[2]];
-    let focal = Walls::orientation_and_focal(&Point2::new(320.0, 240.0), of, &Matrix3::identity());
-    assert_eq!(focal, Err(WallsError::Focal));
-    let known = Walls::orientation(&square(), of, &Matrix3::identity()).expect("an orientation");
+    let focal = ManhattanFrame::orientation_and_focal(&Point2::new(320.0, 240.0), of, &Matrix3::identity());
+    assert_eq!(focal, Err(ManhattanFrameError::Focal));
+    let known = ManhattanFrame::orientation(&square(), of, &Matrix3::identity()).expect("an orientation");
     assert!(apart(&known.rotation, &Matrix3::identity()) < 1e-8);
 }
 
@@ -241,11 +247,11 @@ fn single_precision() {
     let bundles = room(&square(), &truth, 0.0, 3);
     let narrow = |p: Point2<f64>| (p.x as f32, p.y as f32);
     let bundles =
-        bundles.map(|b| b.iter().map(|s| Segment::new(narrow(s.from), narrow(s.to))).collect::<Vec<_>>());
+        bundles.map(|b| b.iter().map(|s| LineSegment::new(narrow(s.from), narrow(s.to))).collect::<Vec<_>>());
     let expected = truth.map(|x| x as f32);
     let of = [&bundles[0][..], &bundles[1], &bundles[2]];
-    let walls =
-        Walls::orientation_and_focal(&Point2::new(320.0, 240.0), of, &expected).expect("an orientation");
+    let walls = ManhattanFrame::orientation_and_focal(&Point2::new(320.0, 240.0), of, &expected)
+        .expect("an orientation");
     assert!((walls.rotation - expected).amax() < 1e-4 && (walls.focal_px - 600.0).abs() < 0.1, "{walls:?}");
 }
 

@@ -3,7 +3,10 @@
 use crate::views::{Views, any_pose, seeded};
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use stereopsis::geometry::{Camera, Correspondence, Essential, Fundamental, skew};
+use stereopsis::geometry::{
+    camera::Camera,
+    two_view::{Correspondence, Essential, Fundamental},
+};
 
 proptest! {
     #![proptest_config(seeded())]
@@ -15,7 +18,7 @@ proptest! {
         values.as_mut_slice().sort_by(f64::total_cmp);
         prop_assert!((values - Vector3::new(0.0, 1.0, 1.0)).amax() < 1e-12, "{values}");
         // [t]x R, but for its scale.
-        let plain = skew(pose.translation()) * pose.rotation() / pose.translation().norm();
+        let plain = pose.translation().cross_matrix() * pose.rotation() / pose.translation().norm();
         prop_assert!((e.matrix() - plain).amax() < 1e-14);
     }
 
@@ -58,7 +61,7 @@ proptest! {
         prop_assert!((again.matrix() - f.matrix()).amax() < 1e-12);
         // OpenCV: E = [T]x R with P' = R P + T.
         let (r, t) = pose.to_opencv();
-        let theirs = skew(&t) * r / t.norm();
+        let theirs = t.cross_matrix() * r / t.norm();
         let ours = Essential::from_pose(&pose).expect("a baseline").to_opencv();
         prop_assert!((theirs - ours).amax().min((theirs + ours).amax()) < 1e-12);
     }

@@ -3,7 +3,10 @@
 use crate::views::{Views, anywhere, nearby, noisy, seeded};
 use nalgebra::{Point2, Point3, Rotation3, Vector3};
 use proptest::prelude::*;
-use stereopsis::geometry::{EightPointError, Homography, HomographyError, Pose, TwoViewModel, choose};
+use stereopsis::geometry::{
+    camera::Pose,
+    two_view::{EightPointError, Homography, HomographyError, TwoViewModel, choose},
+};
 use stereopsis_host::scene::Random;
 
 /// A tilted wall: `n^T P = d` in camera 1.

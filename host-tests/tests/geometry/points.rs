@@ -5,7 +5,8 @@ use crate::views::{Views, noisy, seeded};
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use proptest::prelude::*;
 use stereopsis::geometry::{
-    Camera, Correspondence, Distortion, Pose, Triangulated, TriangulationError, TwoViews,
+    camera::{Camera, Distortion, Pose},
+    two_view::{Correspondence, Triangulated, TriangulationError, TwoViews},
 };
 
 fn views(of: &Views) -> TwoViews<f64> {

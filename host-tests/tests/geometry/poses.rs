@@ -3,7 +3,10 @@
 use crate::views::{Views, any_pose, noisy, seeded};
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
-use stereopsis::geometry::{Camera, Correspondence, Essential, RecoverError, TwoViews, eight_point};
+use stereopsis::geometry::{
+    camera::Camera,
+    two_view::{Correspondence, Essential, RecoverError, TwoViews, eight_point},
+};
 
 /// The angle between two rotations, radians.
 fn between(a: &Matrix3<f64>, b: &Matrix3<f64>) -> f64 {
@@ -18,7 +21,7 @@ proptest! {
     fn one_of_the_four_is_the_pose(pose in any_pose()) {
         let e = Essential::from_pose(&pose).expect("a baseline");
         let poses = e.poses();
-        let right = |p: &&stereopsis::geometry::RelativePose<f64>| {
+        let right = |p: &&stereopsis::geometry::two_view::RelativePose<f64>| {
             (p.rotation() - pose.rotation()).amax() < 1e-9
                 && (p.direction().into_inner() - pose.translation().normalize()).amax() < 1e-9
         };
@@ -75,7 +78,7 @@ fn a_vote_without_a_winner_is_refused() {
     // As many that are behind both cameras, and as many that are between.
     let mixed: Vec<_> = scene.seen.iter().flat_map(|s| [*s, s.swapped()]).collect();
     let straight = Essential::from_pose(
-        &stereopsis::geometry::Pose::new(Matrix3::identity(), Vector3::x()).expect("a pose"),
+        &stereopsis::geometry::camera::Pose::new(Matrix3::identity(), Vector3::x()).expect("a pose"),
     );
     let straight = straight.expect("a baseline");
     let level: Vec<_> =

@@ -4,7 +4,8 @@ use crate::views::seeded;
 use nalgebra::{Matrix3, Point2, Point3, Rotation3, Vector3};
 use proptest::prelude::*;
 use stereopsis::geometry::{
-    Axis, Camera, Crop, Distortion, ImageSize, Pose, Rectification, RectifyError, StereoRig,
+    camera::{Camera, Distortion, ImageSize, Pose, StereoRig},
+    rectify::{Axis, Crop, Rectification, RectifyError},
 };
 
 fn camera([fx, fy, cx, cy]: [f64; 4], lens: [f64; 5]) -> Camera<f64> {

@@ -4,7 +4,10 @@ use crate::views::{any_pose, seeded};
 use nalgebra::{Matrix6, Point2, Point3, Rotation3, Vector3, Vector6};
 use proptest::prelude::*;
 use stereopsis::geometry::{
-    Camera, Landmark, P3pError, Pose, Real, RobustConfig, RobustResectionError, p3p, robust_resection,
+    Real,
+    absolute::{Landmark, P3pError, p3p},
+    camera::{Camera, Pose},
+    robust::{RobustConfig, RobustResectionError, robust_resection},
 };
 use stereopsis_host::scene::Random;
 

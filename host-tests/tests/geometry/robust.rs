@@ -4,8 +4,9 @@ use crate::views::{Views, anywhere, mixed, narrow, nearby, noisy, seeded};
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 use proptest::prelude::*;
 use stereopsis::geometry::{
-    Correspondence, Essential, Fundamental, Pose, RobustConfig, RobustError, RobustFundamental, Sampling,
-    robust_fundamental,
+    camera::Pose,
+    robust::{RobustConfig, RobustError, RobustFundamental, Sampling, robust_fundamental},
+    two_view::{Correspondence, Essential, Fundamental},
 };
 use stereopsis_host::scene::Random;
 

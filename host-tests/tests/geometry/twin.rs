@@ -2,7 +2,7 @@
 //! steps.
 
 use nalgebra::{DMatrix, Matrix3, Matrix3x4, Matrix4x3, Point2, Point3, Vector3, Vector4};
-use stereopsis::geometry::{Correspondence, Fundamental, TwoViews};
+use stereopsis::geometry::two_view::{Correspondence, Fundamental, TwoViews};
 
 /// The similarity that brings points to the origin, at a root mean square distance of root two.
 fn similarity(points: &[Point2<f64>]) -> Matrix3<f64> {

@@ -3,7 +3,7 @@
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use stereopsis::geometry::Pose;
+use stereopsis::geometry::camera::Pose;
 pub use stereopsis_host::two_view::*;
 
 /// Poses with a baseline, turned up to half a turn about any axis.

@@ -3,7 +3,7 @@
 use crate::support::{frames, mono, pose, rig, room, stereo, turned_deg, wall};
 use image::GrayImage;
 use stereopsis::features::Feature;
-use stereopsis::geometry::Pose;
+use stereopsis::geometry::camera::Pose;
 use stereopsis::imaging::Picture;
 use stereopsis::motion::odometry::{Frame, OdometryConfig, OdometryError, State, StereoOdometry};
 

@@ -2,7 +2,7 @@
 
 use crate::support::pose;
 use nalgebra::{Point2, Point3, Vector3};
-use stereopsis::geometry::{Camera, Pose, RectifiedRig};
+use stereopsis::geometry::camera::{Camera, Pose, RectifiedRig};
 use stereopsis::motion::bundle::{
     AlignedView, BundleConfig, BundleReport, Gauge, Loss, Problem, Sight, Slot, Term, View, Workspace, adjust,
 };

@@ -3,7 +3,7 @@
 use image::GrayImage;
 use nalgebra::{Rotation3, Vector3};
 use std::convert::Infallible;
-use stereopsis::geometry::{Camera, Pose, RectifiedRig};
+use stereopsis::geometry::camera::{Camera, Pose, RectifiedRig};
 use stereopsis_host::odometry::run::{Rig, Trajectory, VIEWS, run};
 use stereopsis_host::scene::{MovingScene, Scene};
 

@@ -2,7 +2,7 @@
 
 use crate::support::pose;
 use nalgebra::Vector3;
-use stereopsis::geometry::Pose;
+use stereopsis::geometry::camera::Pose;
 use stereopsis_host::odometry::error::{Alignment, align, ate, drift, rpe};
 use stereopsis_host::odometry::poses;
 

@@ -1,6 +1,6 @@
 //! From what is known to how sure it is.
 
-use super::Ldl;
+use super::ldl::Ldl;
 use crate::geometry::Real;
 use nalgebra::Matrix6;
 

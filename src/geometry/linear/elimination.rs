@@ -1,6 +1,6 @@
 //! The vector that N - 1 equations leave free.
 
-use super::{combine, dot, unit};
+use super::vector::{combine, dot, unit};
 use crate::geometry::Real;
 
 /// x with `A x = 0` for M = N - 1 rows of N numbers, of length one, by elimination: the largest element of

@@ -1,6 +1,6 @@
 //! `L D L^T` with the largest pivot first, and the null vector.
 
-use super::{combine, dot, unit};
+use super::vector::{combine, dot, unit};
 use crate::geometry::Real;
 
 /// A symmetric, positive semi-definite N x N matrix M as a sum `r r^T / d` of one term for each unknown: `L D

@@ -1,6 +1,6 @@
 //! Singular values of a 3x3 matrix.
 
-use super::columns3;
+use super::matrix::columns3;
 use crate::geometry::Real;
 use nalgebra::{Matrix3, Vector3};
 
@@ -26,7 +26,11 @@ impl<T: Real> Svd3<T> {
         for _ in 0..MOST_SWEEPS {
             let [a0, a1, a2] = &mut a;
             let [v0, v1, v2] = &mut v;
-            let turned = [turn(a0, a1, v0, v1), turn(a0, a2, v0, v2), turn(a1, a2, v1, v2)];
+            let turned = [
+                rotate_columns(a0, a1, v0, v1),
+                rotate_columns(a0, a2, v0, v2),
+                rotate_columns(a1, a2, v1, v2),
+            ];
             if !turned.contains(&true) {
                 break;
             }
@@ -48,7 +52,12 @@ impl<T: Real> Svd3<T> {
 }
 
 /// Makes two columns orthogonal, the same rotation in V; whether they were not.
-fn turn<T: Real>(a: &mut Vector3<T>, b: &mut Vector3<T>, v: &mut Vector3<T>, w: &mut Vector3<T>) -> bool {
+fn rotate_columns<T: Real>(
+    a: &mut Vector3<T>,
+    b: &mut Vector3<T>,
+    v: &mut Vector3<T>,
+    w: &mut Vector3<T>,
+) -> bool {
     let (aa, bb, ab) = (a.norm_squared(), b.norm_squared(), a.dot(b));
     // The square of the cosine, at the rounding of a dot product.
     let rounding = T::EPSILON * T::of(2.0);

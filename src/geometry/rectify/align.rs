@@ -1,7 +1,9 @@
 //! The rotations that align the rows of two cameras.
 
-use super::{Axis, RectifyError};
-use crate::geometry::{Pose, Real, skew};
+use super::rectification::{Axis, RectifyError};
+use crate::geometry::Real;
+use crate::geometry::camera::Pose;
+use crate::geometry::linear::skew;
 use nalgebra::{Matrix3, Vector3};
 
 /// Rotations of the first and of the second camera into their shared frame, whose X (or Y) is along the

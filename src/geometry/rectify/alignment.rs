@@ -1,9 +1,12 @@
 //! Whether a rig is still what was calibrated: rows that no longer agree, and the small rotation that
 //! explains them.
 
-use super::{Rectification, Warp};
+use super::rectification::Rectification;
+use super::warp::Warp;
+use crate::geometry::Real;
+use crate::geometry::camera::{Camera, ImageSize};
 use crate::geometry::linear::Ldl;
-use crate::geometry::{Camera, Correspondence, ImageSize, Real};
+use crate::geometry::two_view::Correspondence;
 use nalgebra::{Matrix3, Vector3};
 
 /// Gathers correspondences of rectified images, frame by frame, and tells by what rotation the second camera
@@ -24,7 +27,7 @@ use nalgebra::{Matrix3, Vector3};
 /// neither moves rows by much, and both change depths. [`RowAlignment::sigma_rad`] says how little is known.
 ///
 /// ```
-/// use stereopsis::geometry::{Camera, Correspondence, RowMeter};
+/// use stereopsis::geometry::{camera::Camera, rectify::RowMeter, two_view::Correspondence};
 /// use nalgebra::Point2;
 /// let camera = Camera::new(300.0_f64, 300.0, 160.0, 120.0)?;
 /// let mut meter = RowMeter::new();
@@ -266,7 +269,7 @@ fn small_turn<T: Real>(w: &Vector3<T>) -> Matrix3<T> {
     let half = w * T::of(0.5);
     let length = (T::ONE + half.norm_squared()).sqrt();
     let (w, v) = (T::ONE / length, half / length);
-    let cross = crate::geometry::skew(&v);
+    let cross = crate::geometry::linear::skew(&v);
     let two = T::of(2.0);
     Matrix3::identity() + cross * (two * w) + cross * cross * two
 }

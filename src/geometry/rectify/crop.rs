@@ -1,7 +1,8 @@
 //! What the new cameras see: their shared focal length and principal point.
 
-use super::{Axis, Crop, RectifyError};
-use crate::geometry::{Camera, ImageSize, Real};
+use super::rectification::{Axis, Crop, RectifyError};
+use crate::geometry::Real;
+use crate::geometry::camera::{Camera, ImageSize};
 use nalgebra::{Matrix3, Point2, Vector2};
 
 /// Points of an image's outline on each side, its corners with them.

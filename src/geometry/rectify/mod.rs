@@ -1,6 +1,6 @@
 //! From two cameras as they are mounted to two whose rows are aligned.
 //!
-//! In: a [`StereoRig`](super::StereoRig). Out: a [`Rectification`] of it.
+//! In: a [`StereoRig`](super::camera::StereoRig). Out: a [`Rectification`] of it.
 //!
 //! 1. `align`: the rotations of both cameras into one frame.
 //! 2. `crop`: the camera that both rectified images are of.
@@ -11,13 +11,19 @@
 //!
 //! [`UncalibratedRectification`]: the same from matches alone, without metric depth.
 
-mod align;
-mod alignment;
-mod crop;
-mod rectification;
-mod report;
-mod uncalibrated;
 mod warp;
+
+mod align;
+
+mod crop;
+
+mod rectification;
+
+mod report;
+
+mod alignment;
+
+mod uncalibrated;
 
 pub use alignment::{RowAlignment, RowHealth, RowMeter, RowMeterError};
 pub use rectification::{Axis, Crop, Rectification, RectifyError};

@@ -1,9 +1,10 @@
 //! A stereo rig with its rows aligned.
 
-use super::Warp;
 use super::align::aligned;
 use super::crop::{Turned, shared_camera};
-use crate::geometry::{Camera, CameraError, ImageSize, Real, RectifiedRig, RigError, StereoRig};
+use super::warp::Warp;
+use crate::geometry::Real;
+use crate::geometry::camera::{Camera, CameraModelError, ImageSize, RectifiedRig, RigError, StereoRig};
 use nalgebra::Matrix4;
 
 /// Along which direction of the images the second camera stands beside the first.
@@ -51,7 +52,7 @@ pub enum RectifyError {
     /// A side of the rectified images is not from 2 to 4096 px.
     Size,
     /// The shared camera's numbers are out of range.
-    Camera(CameraError),
+    Camera(CameraModelError),
 }
 
 impl core::fmt::Display for RectifyError {
@@ -79,7 +80,7 @@ impl core::error::Error for RectifyError {}
 /// images are of.
 ///
 /// ```
-/// use stereopsis::geometry::{Camera, Crop, ImageSize, Pose, Rectification, StereoRig};
+/// use stereopsis::geometry::{camera::{Camera, ImageSize, Pose, StereoRig}, rectify::{Crop, Rectification}};
 /// use nalgebra::{Matrix3, Point2, Vector3};
 /// // The right camera sees everything one row higher.
 /// let (left, right) = (Camera::new(500.0_f64, 500.0, 320.0, 240.0)?, Camera::new(500.0, 500.0, 320.0, 239.0)?);

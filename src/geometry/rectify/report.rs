@@ -1,6 +1,7 @@
 //! How good a rectification is.
 
-use super::{Rectification, Warp};
+use super::rectification::Rectification;
+use super::warp::Warp;
 use crate::geometry::Real;
 use nalgebra::Point2;
 

@@ -1,7 +1,9 @@
 //! Rows aligned without a calibration: from matches alone.
 
+use crate::geometry::Real;
+use crate::geometry::camera::ImageSize;
 use crate::geometry::linear::Ldl;
-use crate::geometry::{Correspondence, Fundamental, Homography, HomographyError, ImageSize, Real};
+use crate::geometry::two_view::{Correspondence, Fundamental, Homography, HomographyError};
 use nalgebra::{Matrix3, Point2, RowVector3, Vector3};
 
 /// Two homographies into images whose rows are aligned, for a pair of which nothing but F and some matches is
@@ -17,7 +19,7 @@ use nalgebra::{Matrix3, Point2, RowVector3, Vector3};
 /// What comes out has no metric depth. Lenses are not in it: matches of undistorted pixels are meant.
 ///
 /// ```
-/// use stereopsis::geometry::{Camera, Correspondence, Fundamental, ImageSize, Pose, UncalibratedRectification};
+/// use stereopsis::geometry::{camera::{Camera, ImageSize, Pose}, rectify::UncalibratedRectification, two_view::{Correspondence, Fundamental}};
 /// use nalgebra::{Matrix3, Point3, Vector3};
 /// let camera = Camera::new(300.0_f64, 300.0, 160.0, 120.0)?;
 /// let pose = Pose::new(Matrix3::identity(), Vector3::new(0.1, 0.02, 0.0))?;

@@ -1,6 +1,7 @@
 //! Where a rectified pixel comes from, exactly.
 
-use crate::geometry::{Camera, ImageSize, ProjectionError, Real};
+use crate::geometry::Real;
+use crate::geometry::camera::{Camera, ImageSize, ProjectionError};
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
 /// One camera's map from rectified pixels to raw ones: the sight of the rectified pixel, turned into the

@@ -4,7 +4,9 @@ use super::factored::Factored;
 use super::frame::Frame;
 use super::loss::Loss;
 use super::refine::{Matrix, refine};
-use crate::geometry::{Camera, Correspondence, Essential, EssentialError, Real};
+use crate::geometry::Real;
+use crate::geometry::camera::Camera;
+use crate::geometry::two_view::{Correspondence, Essential, EssentialError};
 
 /// Steps of the refinement at most.
 const STEPS: usize = 20;
@@ -15,8 +17,8 @@ impl<T: Real> Essential<T> {
     ///
     /// `seen` are undistorted px ([`Camera::undistort`]), wrong ones among them: weights fall with the
     /// distance, to zero at one and a half times the threshold, as in
-    /// [`robust_fundamental`](crate::geometry::robust_fundamental). A correspondence that is not finite
-    /// has no weight. The error is that of a matrix that is no estimate at all.
+    /// [`robust_fundamental`](crate::geometry::robust::robust_fundamental). A correspondence that is not
+    /// finite has no weight. The error is that of a matrix that is no estimate at all.
     pub fn refined(
         &self,
         seen: &[Correspondence<T>],

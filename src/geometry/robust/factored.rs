@@ -1,8 +1,7 @@
 //! F by the seven numbers that it has, and E by its five.
 
 use crate::geometry::Real;
-use crate::geometry::linear::{Svd3, columns3, product};
-use crate::geometry::skew::turn;
+use crate::geometry::linear::{Svd3, cayley, columns3, product};
 use nalgebra::{Matrix3, Vector3};
 
 /// `F = U diag(c, s, 0) V^T` with rotations U and V and `c^2 + s^2 = 1`: three numbers turn U, three V, one
@@ -66,8 +65,8 @@ impl<T: Real> Factored<T> {
         let by = T::ONE / (T::ONE + half * half);
         let (sine, cosine) = (along * by, (T::ONE - half * half) * by);
         Self {
-            u: product(&self.u, &turn(&Vector3::new(u0, u1, u2))),
-            v: product(&self.v, &turn(&Vector3::new(v0, v1, v2))),
+            u: product(&self.u, &cayley(&Vector3::new(u0, u1, u2))),
+            v: product(&self.v, &cayley(&Vector3::new(v0, v1, v2))),
             c: self.c * cosine - self.s * sine,
             s: self.s * cosine + self.c * sine,
         }

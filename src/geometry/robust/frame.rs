@@ -1,6 +1,8 @@
 //! From pixels to the coordinates that an estimate is made in, and back.
 
-use crate::geometry::{Camera, Correspondence, Real};
+use crate::geometry::Real;
+use crate::geometry::camera::Camera;
+use crate::geometry::two_view::Correspondence;
 use nalgebra::{Matrix3, Point2, Vector2};
 
 /// `x = a (u - cx) + b (v - cy)`, `y = d (v - cy)`: an upper triangular matrix before homogeneous pixels.

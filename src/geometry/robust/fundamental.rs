@@ -5,7 +5,8 @@ use super::frame::Frame;
 use super::loss::Loss;
 use super::refine::{Matrix, refine};
 use super::search::Search;
-use crate::geometry::{Correspondence, Fundamental, Real};
+use crate::geometry::Real;
+use crate::geometry::two_view::{Correspondence, Fundamental};
 
 /// Why correspondences give no fundamental matrix, however many of them are left out.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -88,7 +89,7 @@ pub struct RobustFundamental<T: Real> {
 /// 0.1 px of noise on.
 ///
 /// ```
-/// use stereopsis::geometry::{Correspondence, RobustConfig, robust_fundamental};
+/// use stereopsis::geometry::{robust::{RobustConfig, robust_fundamental}, two_view::Correspondence};
 /// // A rectified pair: rows are equal, but for the last match, which is 40 rows off.
 /// let at = [(0, 0, 8), (90, 0, 9), (0, 70, 6), (90, 70, 17), (20, 20, 4), (60, 10, 13), (30, 50, 12), (70, 60, 5),
 ///     (45, 33, 7), (12, 64, 19), (81, 25, 3), (38, 5, 10), (55, 47, 15), (5, 38, 16), (66, 35, 40)];
@@ -99,7 +100,7 @@ pub struct RobustFundamental<T: Real> {
 /// assert_eq!(found.inliers, 14);
 /// assert!(inliers[..14].iter().all(|&inlier| inlier) && !inliers[14]);
 /// assert!(found.rms_px < 1e-6 && found.miss_probability <= 1e-3);
-/// # Ok::<(), stereopsis::geometry::RobustError>(())
+/// # Ok::<(), stereopsis::geometry::robust::RobustError>(())
 /// ```
 pub fn robust_fundamental<T: Real>(
     seen: &[Correspondence<T>],
@@ -146,7 +147,7 @@ pub fn robust_fundamental<T: Real>(
             sum += squared;
         }
     }
-    if count <= super::MINIMUM {
+    if count <= super::prosac::MINIMUM {
         return Err(RobustError::NoAgreement);
     }
     Ok(RobustFundamental {

@@ -9,33 +9,40 @@
 //!   correspondences.
 //! * `frame`, `factored`, `refine`: the estimate whose geometric error is least, also of an essential matrix.
 //! * `search`: the loop over samples. `fundamental`: its beginning and end. `essential`: the refinement when
-//!   the cameras are known. `resection`: a camera's pose from [`Landmark`](super::Landmark)s, by samples of
-//!   three.
+//!   the cameras are known. `resection`: a camera's pose from [`Landmark`](super::absolute::Landmark)s, by
+//!   samples of three.
 //!
 //! Every loop is bounded, nothing is allocated; what is held besides the caller's slices is a few hundred
 //! bytes.
 
 mod config;
-mod essential;
-mod factored;
-mod frame;
-mod fundamental;
-mod loss;
-mod parallax;
-mod plane;
-mod pool;
+
 mod random;
+
+mod prosac;
+
+mod loss;
+
+mod sprt;
+
+mod plane;
+
+mod frame;
+
+mod factored;
+
 mod refine;
-mod resection;
+
 mod search;
-mod verdict;
+
+mod parallax;
+
+mod fundamental;
+
+mod essential;
+
+mod resection;
 
 pub use config::{RobustConfig, Sampling};
 pub use fundamental::{RobustError, RobustFundamental, robust_fundamental};
 pub use resection::{RobustResection, RobustResectionError, robust_resection};
-
-/// Correspondences of a sample.
-const MINIMUM: usize = 7;
-
-/// Places of a sample's correspondences.
-type Sample = [usize; MINIMUM];

@@ -1,10 +1,11 @@
 //! From a plane to the rest of the scene.
 
-use super::MINIMUM;
 use super::plane::Plane;
+use super::prosac::MINIMUM;
 use super::search::{ENOUGH, Search};
-use super::verdict::{Test, sampson};
-use crate::geometry::{Correspondence, Real};
+use super::sprt::{Test, sampson};
+use crate::geometry::Real;
+use crate::geometry::two_view::Correspondence;
 use nalgebra::Matrix3;
 
 /// Pairs off a plane that are tried every time that an estimate lies on one.

@@ -5,10 +5,11 @@
 //! lot. But its plane is known now, and with it two correspondences off the plane give F (Chum, Werner &
 //! Matas 2005).
 
-use super::MINIMUM;
 use super::frame::Frame;
-use crate::geometry::linear::{columns3, product};
-use crate::geometry::{Correspondence, Real, homography, skew};
+use super::prosac::MINIMUM;
+use crate::geometry::Real;
+use crate::geometry::linear::{columns3, product, skew};
+use crate::geometry::two_view::{Correspondence, least_squares};
 use nalgebra::{Matrix3, Vector3};
 
 /// Triplets of a sample of seven: any five of the seven hold one of them.
@@ -66,7 +67,7 @@ impl<T: Real> Plane<T> {
         }
         let on = seen.iter().filter(|s| self.distance_squared_px2(s) < px2);
         let [first, second] = frames;
-        let (h, _) = homography::least_squares(on.map(|s| (first.apply(s.first), second.apply(s.second))));
+        let (h, _) = least_squares(on.map(|s| (first.apply(s.first), second.apply(s.second))));
         let fitted = Self::new(product(&product(&first.inverse(), &h), &second.matrix()));
         let again = fitted.count(seen, 1, px2);
         if again >= count { (fitted, again) } else { (*self, count) }

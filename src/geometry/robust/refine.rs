@@ -8,8 +8,9 @@
 use super::factored::{FREE, Factored};
 use super::frame::Frame;
 use super::loss::Loss;
+use crate::geometry::Real;
 use crate::geometry::linear::Ldl;
-use crate::geometry::{Correspondence, Real};
+use crate::geometry::two_view::Correspondence;
 use nalgebra::Vector3;
 
 /// Which of the seven numbers may move.

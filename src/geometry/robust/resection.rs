@@ -3,9 +3,10 @@
 use super::config::RobustConfig;
 use super::loss::Loss;
 use super::random::Random;
-use crate::geometry::linear::{Ldl, covariance6};
-use crate::geometry::skew::{skew, turn};
-use crate::geometry::{Camera, Landmark, Pose, Real, p3p};
+use crate::geometry::Real;
+use crate::geometry::absolute::{Landmark, p3p};
+use crate::geometry::camera::{Camera, Pose};
+use crate::geometry::linear::{Ldl, cayley, covariance6, skew};
 use nalgebra::{Matrix3, Matrix6, Point3, Vector3};
 
 /// Why landmarks give no pose, however many of them are left out.
@@ -51,8 +52,8 @@ pub struct RobustResection<T: Real> {
     /// Carries a point of the camera into the world.
     pub pose: Pose<T>,
     /// The covariance of the pose to first order, if the inliers' coordinates have the deviation
-    /// [`Self::rms_px`]: a turn (radians) and a step, both along the camera's axes, `P = R exp([w]x) (P'
-    /// + d) + t`. Infinite where the landmarks leave the pose open.
+    /// [`Self::rms_px`]: a rotation (radians) and a step, both along the camera's axes,
+    /// `P = R exp([w]x) (P' + d) + t`. Infinite where the landmarks leave the pose open.
     pub covariance: Matrix6<T>,
     /// How many landmarks are within the threshold.
     pub inliers: usize,
@@ -74,9 +75,9 @@ const LAST: usize = 12;
 ///
 /// Samples of three give up to four poses each ([`p3p()`]); each best one so far is refined over all
 /// landmarks by least squares with weights that fall to zero at one and a half thresholds, as in
-/// [`robust_fundamental`](crate::geometry::robust_fundamental). Bounded by [`RobustConfig::most_samples`],
-/// each sample by four passes over the landmarks, each best one by four more; [`RobustConfig::sampling`] does
-/// not count here.
+/// [`robust_fundamental`](crate::geometry::robust::robust_fundamental). Bounded by
+/// [`RobustConfig::most_samples`], each sample by four passes over the landmarks, each best one by four more;
+/// [`RobustConfig::sampling`] does not count here.
 pub fn robust_resection<T: Real>(
     landmarks: &[Landmark<T>],
     camera: &Camera<T>,
@@ -274,6 +275,6 @@ impl<T: Real> Problem<'_, T> {
 
 /// A pose after a turn and a step along the camera's axes.
 fn moved<T: Real>(pose: &Pose<T>, by: &Vector3<T>, step: &Vector3<T>) -> Pose<T> {
-    let rotation = pose.rotation() * turn(by);
+    let rotation = pose.rotation() * cayley(by);
     Pose::of_parts(rotation, pose.translation() + rotation * step)
 }

@@ -5,13 +5,12 @@ use super::factored::Factored;
 use super::frame::Frame;
 use super::loss::Loss;
 use super::plane::{Plane, one_sense};
-use super::pool::Pool;
+use super::prosac::{MINIMUM, Pool, Sample};
 use super::refine::{Matrix, refine};
-use super::verdict::{Test, Worth};
-use super::{MINIMUM, Sample};
+use super::sprt::{Test, Worth};
+use crate::geometry::Real;
 use crate::geometry::linear::product;
-use crate::geometry::seven_point::seven_point;
-use crate::geometry::{Correspondence, Real};
+use crate::geometry::two_view::{Correspondence, seven_point};
 use nalgebra::{Matrix3, Point2};
 
 /// What a candidate has to be worth to be refined, over the best candidate before it: refined ones end in

@@ -3,7 +3,7 @@
 use super::sample::Band;
 use super::segment::{Part, Segments};
 use super::{RemapTable, RemapTableError};
-use crate::geometry::{Real, Warp};
+use crate::geometry::{Real, rectify::Warp};
 use core::cell::Cell;
 
 /// One camera's raw lines, rectified.
@@ -17,7 +17,7 @@ use core::cell::Cell;
 /// valid.
 ///
 /// ```
-/// use stereopsis::geometry::{Camera, Crop, ImageSize, Pose, Rectification, StereoRig};
+/// use stereopsis::geometry::{camera::{Camera, ImageSize, Pose, StereoRig}, rectify::{Crop, Rectification}};
 /// use stereopsis::imaging::{Remap, RemapTable};
 /// use nalgebra::{Matrix3, Vector3};
 /// let size = ImageSize { width: 64, height: 8 };

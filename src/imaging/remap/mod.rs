@@ -1,7 +1,7 @@
 //! Raw lines in, rectified lines out, with no more of the raw image held than the warp needs.
 //!
-//! In: a [`Warp`](crate::geometry::Warp), and raw lines as they come. Out: rectified lines, each pixel with
-//! whether it is one.
+//! In: a [`Warp`](crate::geometry::rectify::Warp), and raw lines as they come. Out: rectified lines, each
+//! pixel with whether it is one.
 //!
 //! 1. [`RemapTable`]: the warp as a coarse lattice of places in the raw image, made once from real numbers.
 //! 2. `segment`: the places along a rectified line, between two columns of the lattice by two additions a

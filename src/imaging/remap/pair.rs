@@ -2,7 +2,7 @@
 
 use super::{Remap, RemapError};
 use crate::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource};
-use crate::geometry::{Real, Rectification};
+use crate::geometry::{Real, rectify::Rectification};
 use core::fmt;
 
 /// The remaps of two cameras, and which pixels of their last lines are valid: what stands in a static.

@@ -1,7 +1,7 @@
 //! Pixels between four raw ones of the band.
 
 use super::segment::{BITS, NARROW, Segment};
-use crate::geometry::ImageSize;
+use crate::geometry::camera::ImageSize;
 use core::cell::Cell;
 
 /// Columns of the raw image that a piece may span to be looked up at once.

@@ -1,7 +1,7 @@
 //! The places of a rectified line's pixels in the raw image, piece by piece.
 
 use super::RemapTable;
-use crate::geometry::ImageSize;
+use crate::geometry::camera::ImageSize;
 use core::iter::Zip;
 use core::slice::Iter;
 

@@ -1,7 +1,7 @@
 //! A warp as a coarse lattice of places.
 
 use super::segment::{BITS, Cell, Part, Run, Segments};
-use crate::geometry::{ImageSize, Real, Warp};
+use crate::geometry::{Real, camera::ImageSize, rectify::Warp};
 use nalgebra::Point2;
 
 /// Where the pixels of a rectified image are in the raw one: a lattice of places every 8, 16, 32 or 64 px, in

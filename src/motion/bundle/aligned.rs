@@ -2,7 +2,10 @@
 
 use super::pinhole::slope_of;
 use super::view::{Slope, View, chained, moved};
-use crate::geometry::{Camera, Pose, ProjectionError, Real};
+use crate::geometry::{
+    Real,
+    camera::{Camera, Pose, ProjectionError},
+};
 use nalgebra::{Point2, Point3, Vector3};
 
 /// A calibrated camera that may be the left one of a rectified pair: eye 0 sees pixels, eye 1 sees `(d, 0)`,

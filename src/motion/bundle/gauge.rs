@@ -1,6 +1,6 @@
 //! What is held still: the images do not say where the scene is, nor how large.
 
-use crate::geometry::{Pose, Real};
+use crate::geometry::{Real, camera::Pose};
 use core::ops::Range;
 use nalgebra::Vector3;
 

@@ -1,7 +1,10 @@
 //! Views through lenses that are known: one camera, or a rig of two.
 
 use super::view::{Slope, View, chained, moved};
-use crate::geometry::{Camera, Pose, ProjectionError, Real};
+use crate::geometry::{
+    Real,
+    camera::{Camera, Pose, ProjectionError},
+};
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 /// A calibrated camera: six numbers move, its lens does not.

@@ -1,7 +1,10 @@
 //! A view whose lens moves too: f, k1 and k2, as the data sets of bundle adjustment have it.
 
 use super::view::{Slope, View, chained, moved};
-use crate::geometry::{Pose, ProjectionError, Real};
+use crate::geometry::{
+    Real,
+    camera::{Pose, ProjectionError},
+};
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
 /// A camera with square pixels, the origin of pixels at its centre, and a lens `q = 1 + k1 r^2 + k2 r^4`

@@ -1,6 +1,10 @@
 //! A camera at a place, as bundle adjustment sees it.
 
-use crate::geometry::{Pose, ProjectionError, Real, turn};
+use crate::geometry::{
+    Real,
+    camera::{Pose, ProjectionError},
+    linear::cayley,
+};
 use nalgebra::{Point2, Point3, Vector3};
 
 /// A place from which points are seen, with N numbers that may move: the first three turn it, the next three
@@ -44,7 +48,7 @@ pub struct Slope<T: Real, const N: usize> {
 
 /// The pose after a step of three numbers that turn and three that move.
 pub(super) fn moved<T: Real>(pose: &Pose<T>, by: [T; 3], shift: [T; 3]) -> Pose<T> {
-    let turned = pose.rotation() * turn(&Vector3::from(by));
+    let turned = pose.rotation() * cayley(&Vector3::from(by));
     Pose::of_parts(turned, pose.translation() + Vector3::from(shift)).orthonormal()
 }
 

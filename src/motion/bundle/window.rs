@@ -20,7 +20,7 @@ use nalgebra::{Point2, Point3};
 ///
 /// ```
 /// use nalgebra::{Matrix3, Point2, Point3, Vector3};
-/// use stereopsis::geometry::{Camera, Pose};
+/// use stereopsis::geometry::camera::{Camera, Pose};
 /// use stereopsis::motion::bundle::{BundleConfig, CameraView, Gauge, View, Window};
 ///
 /// let camera = Camera::new(500.0, 500.0, 320.0, 240.0)?;

@@ -10,7 +10,10 @@ use super::step::{State, Step};
 use super::track::UPRIGHT;
 use crate::geometry::linear::covariance6;
 use crate::geometry::{
-    Camera, Correspondence, Essential, Homography, Pose, Real, RobustConfig, RobustError, robust_fundamental,
+    Real,
+    camera::{Camera, Pose},
+    robust::{RobustConfig, RobustError, robust_fundamental},
+    two_view::{Correspondence, Essential, Homography},
 };
 use heapless::Vec;
 use nalgebra::{Matrix6, Point2, Vector3};

@@ -1,6 +1,9 @@
 //! The cameras, and what is asked.
 
-use crate::geometry::{Camera, Real, RectifiedRig};
+use crate::geometry::{
+    Real,
+    camera::{Camera, RectifiedRig},
+};
 
 /// One camera, or a pair whose rows are aligned.
 #[derive(Clone, Copy, PartialEq, Debug)]

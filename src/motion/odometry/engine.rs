@@ -9,7 +9,7 @@ use super::track::{Track, UPRIGHT};
 use super::verdict::Verdict;
 use crate::features::Template;
 use crate::geometry::linear::covariance6;
-use crate::geometry::{Landmark, Pose, Real};
+use crate::geometry::{Real, absolute::Landmark, camera::Pose};
 use heapless::Vec;
 use nalgebra::{Matrix3, Matrix6, Point3, Vector3};
 

@@ -7,7 +7,12 @@ use super::point::Sight;
 use super::solve::{Free, Pairing, Problem};
 use super::track::{Track, UPRIGHT};
 use crate::features::{Descriptor, Feature, Template};
-use crate::geometry::{Landmark, Pose, Real, RobustConfig, robust_resection};
+use crate::geometry::{
+    Real,
+    absolute::Landmark,
+    camera::Pose,
+    robust::{RobustConfig, robust_resection},
+};
 use nalgebra::{Point2, Point3, Vector3};
 
 /// The bits that the best feature may differ in, and of the second best the percent.

@@ -10,8 +10,8 @@
 //!    `point`.
 //! 2. `follow`: each point is looked for where the predicted motion puts it, first by its descriptor among
 //!    the new features; a robust resection of three points each
-//!    ([`robust_resection`](crate::geometry::robust_resection)) tells which are right; then by its pixels, to
-//!    a small part of a pixel, in the left picture and in the right one.
+//!    ([`robust_resection`](crate::geometry::robust::robust_resection)) tells which are right; then by its
+//!    pixels, to a small part of a pixel, in the left picture and in the right one.
 //! 3. `solve`: the pose that all sights together make likeliest, each with its point's uncertainty
 //!    (`whiten`).
 //! 4. `verdict`: whether that is a motion: a camera that stands still, that only turns, or whose points are

@@ -2,7 +2,7 @@
 
 use super::whiten::Whitener;
 use crate::geometry::linear::columns3;
-use crate::geometry::{Pose, Real, skew};
+use crate::geometry::{Real, camera::Pose, linear::skew};
 use nalgebra::{ArrayStorage, Matrix3, Matrix6, SMatrix, Vector3};
 
 /// What a point is seen at: x and y of the sight `(x, y, 1)`, and its disparity `x - x'` over the focal

@@ -2,7 +2,7 @@
 
 use super::config::OdometryRig;
 use super::seen::SeenPoint;
-use crate::geometry::{Pose, Real};
+use crate::geometry::{Real, camera::Pose};
 use crate::motion::bundle::{
     AlignedView, BundleConfig, BundleError, BundleReport, Gauge, Loss, View, Window,
 };

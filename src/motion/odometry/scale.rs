@@ -5,7 +5,10 @@ use super::engine::Odometry;
 use super::frame::{Frame, OdometryError};
 use super::seen::SeenPoint;
 use super::step::Step;
-use crate::geometry::{Camera, Pose, Real, RectifiedRig};
+use crate::geometry::{
+    Real,
+    camera::{Camera, Pose, RectifiedRig},
+};
 
 /// A rectified pair's odometry: lengths are metres.
 #[derive(Debug, Default)]

@@ -3,7 +3,7 @@
 use super::point::{InversePoint, Sight, seen};
 use super::whiten::Whitener;
 use crate::geometry::linear::Ldl;
-use crate::geometry::{Pose, Real, turn};
+use crate::geometry::{Real, camera::Pose, linear::cayley};
 use nalgebra::{SMatrix, Vector3};
 
 /// A point and where the new camera sees it.
@@ -171,7 +171,7 @@ impl<T: Real> Problem<'_, T> {
 
 /// A pose after a turn and a step along the camera's axes.
 pub(super) fn moved<T: Real>(pose: &Pose<T>, &[a, b, c, d, e, f]: &[T; 6]) -> Pose<T> {
-    let rotation = pose.rotation() * turn(&Vector3::new(a, b, c));
+    let rotation = pose.rotation() * cayley(&Vector3::new(a, b, c));
     Pose::of_parts(rotation, pose.translation() + rotation * Vector3::new(d, e, f))
 }
 

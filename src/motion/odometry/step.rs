@@ -1,6 +1,6 @@
 //! What comes out.
 
-use crate::geometry::{Pose, Real};
+use crate::geometry::{Real, camera::Pose};
 use nalgebra::Matrix6;
 
 /// What is known of a frame's pose.

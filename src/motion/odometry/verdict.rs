@@ -5,7 +5,7 @@ use super::engine::{FEWEST, Odometry};
 use super::solve::{Free, Problem, Solved};
 use super::step::State;
 use crate::geometry::linear::covariance6;
-use crate::geometry::{Pose, Real};
+use crate::geometry::{Real, camera::Pose};
 
 /// What a frame's sights say.
 #[derive(Clone, Copy, Debug)]

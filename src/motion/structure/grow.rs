@@ -5,7 +5,13 @@ use super::many::{agreeing, triangulate};
 use super::memory::SceneMemory;
 use super::scaled::Structure;
 use super::start::{Pair, pair};
-use crate::geometry::{Camera, Correspondence, Landmark, Pose, Real, RobustConfig, robust_resection};
+use crate::geometry::{
+    Real,
+    absolute::Landmark,
+    camera::{Camera, Pose},
+    robust::{RobustConfig, robust_resection},
+    two_view::Correspondence,
+};
 use crate::motion::bundle::{BundleConfig, BundleReport, Gauge, Loss, Problem, Sight, adjust, tracks};
 use nalgebra::Point2;
 

@@ -2,7 +2,10 @@
 
 use super::config::PointState;
 use crate::geometry::linear::Ldl;
-use crate::geometry::{Real, skew, turn};
+use crate::geometry::{
+    Real,
+    linear::{cayley, skew},
+};
 use crate::motion::bundle::{CameraView, Sight, View};
 use nalgebra::{Matrix3, Point3, Vector3};
 
@@ -129,7 +132,7 @@ pub(super) fn turn_alone<T: Real>(
         }
         let [x, y, z] = Ldl::<T, 3>::new(&mut normal.into()).solve(&gradient.into());
         let step = Vector3::new(x, y, z);
-        rotation = turn(&step) * rotation;
+        rotation = cayley(&step) * rotation;
         if step.norm_squared() <= T::EPSILON * T::EPSILON * T::of(64.0) {
             break;
         }

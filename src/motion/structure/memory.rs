@@ -1,7 +1,7 @@
 //! What a structure is made in.
 
 use super::config::{Placement, PointState};
-use crate::geometry::{Correspondence, Landmark, Real};
+use crate::geometry::{Real, absolute::Landmark, two_view::Correspondence};
 use crate::motion::bundle::{CameraView, Sight, Workspace};
 use nalgebra::Point3;
 

@@ -11,8 +11,8 @@
 //!   cannot give a pose is named ([`PairFault`]): no motion, a turn alone (or nothing but what is far away,
 //!   which looks the same), a plane that two motions explain.
 //! * `grow`: of all pairs the best one, then view after view by resection
-//!   ([`robust_resection`](crate::geometry::robust_resection)), its new points by `many`, and a bundle
-//!   adjustment of what there is.
+//!   ([`robust_resection`](crate::geometry::robust::robust_resection)), its new points by `many`, and a
+//!   bundle adjustment of what there is.
 //! * `many`: a point from all that see it, some of them wrongly.
 //! * [`Structure`]: the result, without a scale. [`SceneMemory`]: what it is made in; [`StructureRoom`]: that
 //!   in one `static`.

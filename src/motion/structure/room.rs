@@ -4,7 +4,12 @@ use super::config::{Placement, PointState, StructureConfig, StructureError};
 use super::grow::{StructureReport, structure};
 use super::memory::SceneMemory;
 use super::scaled::Structure;
-use crate::geometry::{Camera, Correspondence, Landmark, Pose, Real};
+use crate::geometry::{
+    Real,
+    absolute::Landmark,
+    camera::{Camera, Pose},
+    two_view::Correspondence,
+};
 use crate::motion::bundle::{CameraView, Sight, Slot, Term, View, Workspace};
 use nalgebra::{Point2, Point3};
 

@@ -1,7 +1,7 @@
 //! A structure without its scale, and with it.
 
 use super::config::{Placement, PointState};
-use crate::geometry::{Pose, Real, ScaleError};
+use crate::geometry::{Real, camera::Pose, two_view::ScaleError};
 use crate::motion::bundle::CameraView;
 use nalgebra::Point3;
 

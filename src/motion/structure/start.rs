@@ -3,8 +3,10 @@
 use super::config::{PairFault, StructureConfig};
 use super::many::turn_alone;
 use crate::geometry::{
-    Camera, Correspondence, Essential, Homography, Real, RelativePose, RobustConfig, RobustError,
-    TwoViewModel, TwoViews, choose, robust_fundamental,
+    Real,
+    camera::Camera,
+    robust::{RobustConfig, RobustError, robust_fundamental},
+    two_view::{Correspondence, Essential, Homography, RelativePose, TwoViewModel, TwoViews, choose},
 };
 use nalgebra::{Point2, Vector3};
 

@@ -7,7 +7,7 @@
 #![no_main]
 
 use static_cell::ConstStaticCell;
-use stereopsis::geometry::{PoseError, ProjectionError};
+use stereopsis::geometry::camera::{PoseError, ProjectionError};
 use stereopsis::motion::bundle::{BundleError, WindowError};
 use stereopsis_firmware::choice::BOARD;
 use stereopsis_firmware::clock::Clock;

@@ -7,7 +7,7 @@
 #![no_main]
 
 use core::hint::black_box;
-use stereopsis::geometry::Correspondence;
+use stereopsis::geometry::two_view::Correspondence;
 use stereopsis_firmware::clock::Clock;
 use stereopsis_firmware::console::Console;
 use stereopsis_firmware::{log, runtime, stack};
@@ -54,7 +54,7 @@ fn main() -> ! {
 #[inline(never)]
 fn solve(seen: &[Correspondence<f32>; 8]) -> bool {
     #[cfg(not(feature = "bare"))]
-    return stereopsis::geometry::eight_point(seen).map(black_box).is_ok();
+    return stereopsis::geometry::two_view::eight_point(seen).map(black_box).is_ok();
     // The smallest use of them.
     #[cfg(feature = "bare")]
     return seen.len() == 8;

@@ -11,7 +11,10 @@
 
 use nalgebra::Point3;
 use static_cell::ConstStaticCell;
-use stereopsis::geometry::{Correspondence, EightPointError, Fundamental, RobustError, eight_point};
+use stereopsis::geometry::{
+    robust::RobustError,
+    two_view::{Correspondence, EightPointError, Fundamental, eight_point},
+};
 use stereopsis_firmware::choice::BOARD;
 use stereopsis_firmware::clock::Clock;
 use stereopsis_firmware::console::Console;

@@ -10,7 +10,7 @@
 use core::convert::Infallible;
 use static_cell::ConstStaticCell;
 use stereopsis::camera::CameraError;
-use stereopsis::geometry::RectifyError;
+use stereopsis::geometry::rectify::RectifyError;
 use stereopsis::imaging::{RectifiedPairError, RemapError};
 use stereopsis::matching::{ConfigError, Row};
 use stereopsis::pipeline::PipelineError;

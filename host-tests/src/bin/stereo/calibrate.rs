@@ -10,7 +10,10 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use stereopsis::camera::LineSource;
-use stereopsis::geometry::{Crop, ImageSize, Rectification};
+use stereopsis::geometry::{
+    camera::ImageSize,
+    rectify::{Crop, Rectification},
+};
 use stereopsis_host::calibrate::board::{self, Board, BoardError, Pattern};
 use stereopsis_host::calibrate::{Calibrated, View, report, solve};
 use stereopsis_host::calibration::write_opencv;

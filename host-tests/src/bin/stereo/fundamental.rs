@@ -11,7 +11,10 @@ use serde::Serialize;
 use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
-use stereopsis::geometry::{Correspondence, Fundamental, RobustConfig, eight_point, robust_fundamental};
+use stereopsis::geometry::{
+    robust::{RobustConfig, robust_fundamental},
+    two_view::{Correspondence, Fundamental, eight_point},
+};
 use stereopsis_host::epipolar_picture::epipolar_picture;
 use stereopsis_host::matches::read_matches;
 use stereopsis_host::mock::MockCamera;

@@ -11,7 +11,7 @@ use std::io::Write as _;
 use std::path::Path;
 use stereopsis::camera::StereoSource;
 use stereopsis::depth::DepthScale;
-use stereopsis::geometry::{Camera, ImageSize, RectifiedRig};
+use stereopsis::geometry::camera::{Camera, ImageSize, RectifiedRig};
 use stereopsis::imaging::{Balance, BalancedPair, NoiseMeter};
 use stereopsis::matching::Config;
 use stereopsis_host::calibration::Calibration;

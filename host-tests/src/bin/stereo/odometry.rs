@@ -10,7 +10,10 @@ use image::GrayImage;
 use std::fmt::Write;
 use std::io;
 use std::path::{Path, PathBuf};
-use stereopsis::geometry::{Crop, ImageSize, Pose, Rectification};
+use stereopsis::geometry::{
+    camera::{ImageSize, Pose},
+    rectify::{Crop, Rectification},
+};
 use stereopsis::motion::odometry::State;
 use stereopsis_host::calibration::{Calibration, Cameras, Fault, RawCalibration};
 use stereopsis_host::command_line::one_line;

@@ -7,8 +7,12 @@ use crate::print;
 use crate::two_view::{PoseArgs, RobustArgs, TwoViewMethod};
 use serde::Serialize;
 use stereopsis::geometry::{
-    Camera, Correspondence, EightPointError, Essential, Fundamental, Homography, PlaneMotionError,
-    RobustConfig, RobustError, TwoViewModel, TwoViews, choose, eight_point, robust_fundamental,
+    camera::Camera,
+    robust::{RobustConfig, RobustError, robust_fundamental},
+    two_view::{
+        Correspondence, EightPointError, Essential, Fundamental, Homography, PlaneMotionError, TwoViewModel,
+        TwoViews, choose, eight_point,
+    },
 };
 use stereopsis_host::calibration::Cameras;
 use stereopsis_host::matches::read_matches;

@@ -10,7 +10,10 @@ use nalgebra::{DMatrix, Matrix3};
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
-use stereopsis::geometry::{Crop, ImageSize, Rectification, RectificationReport};
+use stereopsis::geometry::{
+    camera::ImageSize,
+    rectify::{Crop, Rectification, RectificationReport},
+};
 use stereopsis_host::calibration::RawCalibration;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;

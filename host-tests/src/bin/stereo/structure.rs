@@ -169,7 +169,7 @@ fn images(args: &StructureArgs) -> Result<Images, Failure> {
 
 fn answer(found: &Found, images: &Images, unit: &str) -> Answer {
     let view = |((name, place), pose): ((&String, &Result<_, Placement>), &Option<_>)| {
-        let pose: &Option<stereopsis::geometry::Pose<f64>> = pose;
+        let pose: &Option<stereopsis::geometry::camera::Pose<f64>> = pose;
         ViewAnswer {
             image: name.clone(),
             state: match place {

@@ -11,7 +11,10 @@ use serde::Serialize;
 use std::fmt::Write;
 use std::path::Path;
 use stereopsis::geometry::{
-    Correspondence, Homography, ImageSize, RobustConfig, UncalibratedRectification, robust_fundamental,
+    camera::ImageSize,
+    rectify::UncalibratedRectification,
+    robust::{RobustConfig, robust_fundamental},
+    two_view::{Correspondence, Homography},
 };
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::matches::read_matches;

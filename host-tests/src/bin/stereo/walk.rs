@@ -7,7 +7,7 @@ use crate::print;
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use stereopsis::geometry::RectifiedRig;
+use stereopsis::geometry::camera::RectifiedRig;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::odometry::poses;
 use stereopsis_host::odometry::sequence::numbered;

@@ -2,7 +2,7 @@
 
 use super::tree::{Tree, list, need, numbers, size};
 use super::{Fault, Found, Model, camera, pose_of};
-use stereopsis::geometry::Camera;
+use stereopsis::geometry::camera::Camera;
 
 const CAMERA: &str = "a camera with camera_model, intrinsics, distortion_model and distortion_coeffs";
 

@@ -24,7 +24,8 @@ use super::{Calibration, CalibrationError, Fault, kitti, load_all, middlebury};
 use nalgebra::{Matrix3, Vector3};
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::{
-    Camera, Crop, Distortion, Fisheye, ImageSize, Lens, Pose, Rectification, RectifyError, StereoRig,
+    camera::{Camera, Distortion, Fisheye, ImageSize, Lens, Pose, StereoRig},
+    rectify::{Crop, Rectification, RectifyError},
 };
 use tree::Tree;
 

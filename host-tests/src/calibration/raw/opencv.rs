@@ -3,7 +3,7 @@
 use super::tree::{Tree, list, numbers, size};
 use super::{Fault, Found, Model, camera, pose_of};
 use serde_json::{Value, json};
-use stereopsis::geometry::Camera;
+use stereopsis::geometry::camera::Camera;
 
 /// Names of a camera's matrix without its number or side, and of its lens, in small letters without signs
 /// between.

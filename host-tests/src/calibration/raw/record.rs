@@ -4,7 +4,7 @@ use super::Fault;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
-use stereopsis::geometry::StereoRig;
+use stereopsis::geometry::camera::StereoRig;
 
 /// The rig of a file that begins as a record does; nothing of other files, also of those that cannot be read.
 pub(in crate::calibration) fn read(path: &Path) -> Option<Result<StereoRig<f64>, Fault>> {

@@ -56,11 +56,11 @@ fn rotation(tree: &Tree) -> Result<Matrix3<f64>, Fault> {
 }
 
 /// The camera of a camera_info.
-pub(super) fn camera_of(tree: &Tree) -> Result<stereopsis::geometry::Camera<f64>, Fault> {
+pub(super) fn camera_of(tree: &Tree) -> Result<stereopsis::geometry::camera::Camera<f64>, Fault> {
     one("the camera", tree)
 }
 
-fn one(which: &str, tree: &Tree) -> Result<stereopsis::geometry::Camera<f64>, Fault> {
+fn one(which: &str, tree: &Tree) -> Result<stereopsis::geometry::camera::Camera<f64>, Fault> {
     let model = match tree.get("distortion_model").and_then(Tree::as_str).unwrap_or("plumb_bob") {
         "plumb_bob" | "rational_polynomial" | "none" | "" => Model::BrownConrady,
         "equidistant" | "fisheye" => Model::Fisheye,

@@ -3,7 +3,7 @@
 use super::rectify::Unit;
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
-use stereopsis::geometry::ImageSize;
+use stereopsis::geometry::camera::ImageSize;
 
 pub const EXAMPLE: &str = "Examples:
   stereo calib check --calib stereo.yml

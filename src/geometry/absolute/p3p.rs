@@ -1,0 +1,329 @@
+//! The pose of a calibrated camera from three points of known position.
+
+use crate::geometry::Real;
+use crate::geometry::camera::Pose;
+use crate::geometry::linear::{columns3, cubic_roots};
+use nalgebra::{Matrix3, Point3, Vector3};
+
+/// The poses with which a camera sees three points where it does: up to four.
+///
+/// Each carries a point of the camera into the world, `P = R P' + t`, as everywhere.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct P3pPoses<T: Real> {
+    poses: [Pose<T>; 4],
+    count: usize,
+}
+
+impl<T: Real> P3pPoses<T> {
+    /// The poses, one at least.
+    pub fn as_slice(&self) -> &[Pose<T>] {
+        self.poses.get(..self.count).unwrap_or(&[])
+    }
+}
+
+/// Why three points give no pose.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum P3pError {
+    /// A coordinate is infinite or not a number.
+    NotFinite,
+    /// The points are on a line, or two of them are one.
+    Line,
+    /// Two sights are one.
+    SameSight,
+    /// No camera sees these points in these directions.
+    NoPose,
+}
+
+impl core::fmt::Display for P3pError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::NotFinite => "a coordinate is not finite",
+            Self::Line => "the three points are on a line",
+            Self::SameSight => "two of the three sights are one",
+            Self::NoPose => "no camera sees these points in these directions",
+        })
+    }
+}
+
+impl core::error::Error for P3pError {}
+
+/// The sine of the angle between edges, and between sights, that counts as none.
+const NO_ANGLE: f64 = 1e-5;
+/// Newton's steps on the three distances.
+const STEPS: usize = 4;
+
+/// All poses of a camera that sees `points` (the world, any unit) along `sights` (the camera's frame, any
+/// length).
+///
+/// The distances l of the points fulfil `|l_i y_i - l_j y_j|^2 = |x_i - x_j|^2` for the three pairs: three
+/// quadratic forms. Two combinations of them vanish, and a combination of those two is a pair of planes,
+/// found by one root of a cubic; each plane leaves a quadratic equation (Persson & Nordberg, "Lambda Twist",
+/// ECCV 2018). The distances are then corrected by Newton's method on the three equations, at most four
+/// steps. Every solution has all points before the camera.
+///
+/// ```
+/// use stereopsis::geometry::absolute::p3p;
+/// use nalgebra::{Point3, Vector3};
+/// let points = [Point3::new(0.0, 0.0, 4.0), Point3::new(1.0, 0.0, 5.0), Point3::new(0.0, 1.0, 6.0_f64)];
+/// // A camera one unit before the origin.
+/// let sights = points.map(|p| p.coords + Vector3::z());
+/// let poses = p3p(&sights, &points)?;
+/// assert!(poses.as_slice().iter().any(|pose| (pose.translation() + Vector3::z()).norm() < 1e-12));
+/// # Ok::<(), stereopsis::geometry::absolute::P3pError>(())
+/// ```
+pub fn p3p<T: Real>(sights: &[Vector3<T>; 3], points: &[Point3<T>; 3]) -> Result<P3pPoses<T>, P3pError> {
+    let [x1, x2, x3] = points.map(|p| p.coords);
+    if !sights.iter().chain(&[x1, x2, x3]).all(|v| v.iter().all(|x| x.is_finite())) {
+        return Err(P3pError::NotFinite);
+    }
+    let y = sights.map(|y| y / y.norm());
+    let [y1, y2, y3] = y;
+    let none = T::of(NO_ANGLE);
+    if [(y1, y2), (y1, y3), (y2, y3)].iter().any(|(a, b)| !(a.cross(b).norm() > none)) {
+        return Err(P3pError::SameSight);
+    }
+    let (e12, e13, e23) = (x1 - x2, x1 - x3, x2 - x3);
+    if !(e12.cross(&e13).norm() > none * e12.norm() * e13.norm()) || !(e23.norm() > none * e12.norm()) {
+        return Err(P3pError::Line);
+    }
+    // Lengths in units of the triangle.
+    let size = T::ONE / (e12.norm_squared() + e13.norm_squared() + e23.norm_squared());
+    let equations = Equations {
+        squares: [e12, e13, e23].map(|e| e.norm_squared() * size),
+        cosines: [y1.dot(&y2), y1.dot(&y3), y2.dot(&y3)],
+    };
+    let frame = triad(&e12, &e13).ok_or(P3pError::Line)?;
+    let unit = size.sqrt();
+    let mut found = P3pPoses { poses: [Pose::identity(); 4], count: 0 };
+    for distances in equations.distances().into_iter().flatten() {
+        let l = distances / unit;
+        let [c1, c2, c3] = [y1 * l.x, y2 * l.y, y3 * l.z];
+        let Some(seen) = triad(&(c1 - c2), &(c1 - c3)) else { continue };
+        let rotation = frame * seen.transpose();
+        let translation = (x1 + x2 + x3 - rotation * (c1 + c2 + c3)) * T::of(1.0 / 3.0);
+        if !translation.iter().all(|x| x.is_finite()) {
+            continue;
+        }
+        if let Some(slot) = found.poses.get_mut(found.count) {
+            *slot = Pose::of_parts(rotation, translation);
+            found.count += 1;
+        }
+    }
+    if found.count == 0 { Err(P3pError::NoPose) } else { Ok(found) }
+}
+
+/// Three directions at right angles: along `a`, in the plane of both, across it.
+fn triad<T: Real>(a: &Vector3<T>, b: &Vector3<T>) -> Option<Matrix3<T>> {
+    let across = a.cross(b);
+    let (length, size) = (a.norm(), across.norm());
+    if !(length > T::ZERO && size > T::ZERO) {
+        return None;
+    }
+    let (first, third) = (a / length, across / size);
+    Some(Matrix3::from_columns(&[first, third.cross(&first), third]))
+}
+
+/// `l_i^2 + l_j^2 - 2 c_ij l_i l_j = a_ij` for the pairs 12, 13, 23.
+struct Equations<T: Real> {
+    squares: [T; 3],
+    cosines: [T; 3],
+}
+
+impl<T: Real> Equations<T> {
+    /// The forms on the left.
+    fn forms(&self) -> [Matrix3<T>; 3] {
+        let [c12, c13, c23] = self.cosines;
+        let (o, l) = (T::ZERO, T::ONE);
+        [
+            Matrix3::new(l, -c12, o, -c12, l, o, o, o, o),
+            Matrix3::new(l, o, -c13, o, o, o, -c13, o, l),
+            Matrix3::new(o, o, o, o, l, -c23, o, -c23, l),
+        ]
+    }
+
+    /// The distances that are positive, up to four.
+    fn distances(&self) -> [Option<Vector3<T>>; 4] {
+        let [m12, m13, m23] = self.forms();
+        let [a12, a13, a23] = self.squares;
+        let (d1, d2) = (m12 * a23 - m23 * a12, m13 * a23 - m23 * a13);
+        let mut found = [None; 4];
+        let Some(degenerate) = singular_combination(&d1, &d2) else { return found };
+        let Some(planes) = planes(&degenerate) else { return found };
+        // One of the two vanishes on a plane when it is the pair of planes itself.
+        let mut slots = found.iter_mut();
+        for plane in planes {
+            let other = if on_plane(&plane, &d1) > on_plane(&plane, &d2) { &d1 } else { &d2 };
+            for direction in directions(&plane, other).into_iter().flatten() {
+                let scale = direction.dot(&((m12 + m13 + m23) * direction));
+                if !(scale > T::ZERO) {
+                    continue;
+                }
+                let size = ((a12 + a13 + a23) / scale).sqrt();
+                let start = direction * if direction.sum() < T::ZERO { -size } else { size };
+                if let (Some(l), Some(slot)) = (self.corrected(start), slots.next()) {
+                    *slot = Some(l);
+                }
+            }
+        }
+        found
+    }
+
+    /// Newton's method from there, while it makes the equations better; `None` when a distance is not
+    /// positive or they are not fulfilled.
+    fn corrected(&self, start: Vector3<T>) -> Option<Vector3<T>> {
+        let [c12, c13, c23] = self.cosines;
+        let [a12, a13, a23] = self.squares;
+        let two = T::of(2.0);
+        let residual = |l: &Vector3<T>| {
+            Vector3::new(
+                l.x * l.x + l.y * l.y - two * c12 * l.x * l.y - a12,
+                l.x * l.x + l.z * l.z - two * c13 * l.x * l.z - a13,
+                l.y * l.y + l.z * l.z - two * c23 * l.y * l.z - a23,
+            )
+        };
+        let mut l = start;
+        let mut error = residual(&l);
+        for _ in 0..STEPS {
+            let (x, y, z) = (l.x, l.y, l.z);
+            let [p, q, r] = [
+                Vector3::new(x - c12 * y, y - c12 * x, T::ZERO),
+                Vector3::new(x - c13 * z, T::ZERO, z - c13 * x),
+                Vector3::new(T::ZERO, y - c23 * z, z - c23 * y),
+            ];
+            // The inverse by cross products of the rows.
+            let determinant = p.dot(&q.cross(&r)) * two;
+            let step = (q.cross(&r) * error.x + r.cross(&p) * error.y + p.cross(&q) * error.z) / determinant;
+            let next = l - step;
+            let then = residual(&next);
+            if !(then.norm_squared() < error.norm_squared()) {
+                break;
+            }
+            (l, error) = (next, then);
+        }
+        // The triangle has size one.
+        let good = T::EPSILON.sqrt() * T::of(0.1);
+        (l.min() > T::ZERO && error.amax() < good).then_some(l)
+    }
+}
+
+/// A combination of two symmetric matrices without a determinant: the first plus the second times the root of
+/// a cubic.
+fn singular_combination<T: Real>(a: &Matrix3<T>, b: &Matrix3<T>) -> Option<Matrix3<T>> {
+    let mixed = |p: &Matrix3<T>, q: &Matrix3<T>| {
+        let ([p0, p1, p2], [q0, q1, q2]) = (columns3(p), columns3(q));
+        q0.dot(&p1.cross(&p2)) + q1.dot(&p2.cross(&p0)) + q2.dot(&p0.cross(&p1))
+    };
+    let cubic = [a.determinant(), mixed(a, b), mixed(b, a), b.determinant()];
+    // The matrix whose determinant is larger stands at the cube, so that roots are small numbers.
+    let swapped = cubic[0].abs() > cubic[3].abs();
+    let [c0, c1, c2, c3] = cubic;
+    let (roots, count) = cubic_roots(if swapped { [c3, c2, c1, c0] } else { cubic });
+    let combined = |root: T| if swapped { a * root + b } else { a + b * root };
+    // Of the roots the one whose matrix is a pair of real planes most clearly.
+    let planarity = |m: &Matrix3<T>| second_minor(m) / m.norm_squared();
+    let candidates = roots.iter().take(count).map(|&root| combined(root));
+    candidates.fold(None, |best: Option<Matrix3<T>>, next| match best {
+        Some(best) if planarity(&best) <= planarity(&next) => Some(best),
+        _ => Some(next),
+    })
+}
+
+/// The sum of the principal minors of a symmetric matrix.
+fn second_minor<T: Real>(m: &Matrix3<T>) -> T {
+    m.m11 * m.m22 - m.m12 * m.m12 + m.m11 * m.m33 - m.m13 * m.m13 + m.m22 * m.m33 - m.m23 * m.m23
+}
+
+/// The normals of the two planes of a symmetric matrix with eigenvalues `s > 0 > s'` and zero; `None` where
+/// it has none.
+fn planes<T: Real>(m: &Matrix3<T>) -> Option<[Vector3<T>; 2]> {
+    let half = (m.m11 + m.m22 + m.m33) * T::of(0.5);
+    let product = second_minor(m);
+    if !(product < T::ZERO) {
+        return None;
+    }
+    let root = (half * half - product).sqrt();
+    let (high, low) = (half + root, half - root);
+    let null = null_vector(m)?;
+    let first = null_vector(&(m - Matrix3::identity() * high))?;
+    let second = null.cross(&first);
+    let slope = (-low / high).sqrt();
+    Some([first + second * slope, first - second * slope])
+}
+
+/// The direction that a matrix of rank two leaves: the longest cross product of two of its rows.
+fn null_vector<T: Real>(m: &Matrix3<T>) -> Option<Vector3<T>> {
+    let [a, b, c] = columns3(m);
+    let crosses = [a.cross(&b), b.cross(&c), c.cross(&a)];
+    let longest =
+        crosses.iter().fold(crosses[0], |l, c| if c.norm_squared() > l.norm_squared() { *c } else { l });
+    let norm = longest.norm();
+    (norm > T::ZERO).then(|| longest / norm)
+}
+
+/// Two directions in a plane.
+fn basis<T: Real>(normal: &Vector3<T>) -> [Vector3<T>; 2] {
+    let [x, y, z] = [normal.x.abs(), normal.y.abs(), normal.z.abs()];
+    let least = if x <= y && x <= z {
+        Vector3::x()
+    } else if y <= z {
+        Vector3::y()
+    } else {
+        Vector3::z()
+    };
+    let one = normal.cross(&least);
+    let one = one / one.norm();
+    let other = normal.cross(&one);
+    [one, other / other.norm()]
+}
+
+/// How large a form is on a plane, as a share of its size.
+fn on_plane<T: Real>(normal: &Vector3<T>, form: &Matrix3<T>) -> T {
+    let [p, q] = basis(normal);
+    let (pp, pq, qq) = (p.dot(&(form * p)), p.dot(&(form * q)), q.dot(&(form * q)));
+    pp.abs().max(pq.abs()).max(qq.abs()) / form.amax()
+}
+
+/// The directions of a plane in which a form vanishes.
+fn directions<T: Real>(normal: &Vector3<T>, form: &Matrix3<T>) -> [Option<Vector3<T>>; 2] {
+    let [p, q] = basis(normal);
+    let (a, b, c) = (p.dot(&(form * p)), p.dot(&(form * q)), q.dot(&(form * q)));
+    let mut discriminant = b * b - a * c;
+    // A double root that rounding has made none.
+    if discriminant < T::ZERO && discriminant > -(b * b + a.abs() * c.abs()) * T::EPSILON.sqrt() {
+        discriminant = T::ZERO;
+    }
+    if !(discriminant >= T::ZERO) {
+        return [None; 2];
+    }
+    let root = discriminant.sqrt();
+    // u : v of a u^2 + 2 b u v + c v^2, without cancellation: (-h : a) and (c : -h) with h of b's sign.
+    let h = if b < T::ZERO { b - root } else { b + root };
+    [p * -h + q * a, p * c - q * h].map(|v| (v.norm_squared() > T::ZERO).then(|| v / v.norm()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_camera_at_the_origin() {
+        let points =
+            [Point3::new(1.0, 0.0, 4.0), Point3::new(-1.0, 0.5, 5.0), Point3::new(0.0, -1.0, 3.0_f64)];
+        let sights = points.map(|p| p.coords);
+        let poses = p3p(&sights, &points).expect("poses");
+        let best = poses.as_slice().iter().map(|p| p.translation().norm()).fold(f64::INFINITY, f64::min);
+        assert!(best < 1e-12, "{best}");
+    }
+
+    #[test]
+    fn what_has_no_pose_is_named() {
+        let o = Point3::new(0.0, 0.0, 2.0_f64);
+        let on_line = [o, o + Vector3::x(), o + Vector3::x() * 2.0];
+        assert_eq!(p3p(&on_line.map(|p| p.coords), &on_line), Err(P3pError::Line));
+        let apart = [o, o + Vector3::x(), o + Vector3::y()];
+        assert_eq!(p3p(&[Vector3::z(); 3], &apart), Err(P3pError::SameSight));
+        assert_eq!(p3p(&[Vector3::z() * f64::NAN; 3], &apart), Err(P3pError::NotFinite));
+    }
+}

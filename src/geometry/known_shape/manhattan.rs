@@ -1,0 +1,312 @@
+//! The camera's orientation in a building.
+
+use super::pencil::{LineSegment, PencilError, Scaled, vanishing_point};
+use super::vanishing::extent;
+use crate::geometry::Real;
+use crate::geometry::camera::Camera;
+use crate::geometry::linear::{Ldl, Svd3, cayley};
+use nalgebra::{Matrix3, Point2, Vector3};
+
+/// How a camera stands in a building, from lines along its three orthogonal directions.
+///
+/// Lines have no sense: of the 24 orientations that fit them as well it is the one that is nearest to what
+/// the caller expects.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct ManhattanFrame<T: Real> {
+    /// R carries a direction of the building into the camera's frame: its columns are the three directions.
+    pub rotation: Matrix3<T>,
+    /// Focal length, px: the camera's, or what was estimated.
+    pub focal_px: T,
+    /// How far the segments' ends are from the lines through their middles and the vanishing points, root
+    /// mean square, px.
+    pub rms_px: T,
+    /// Standard deviations of the rotation about the camera's axes for segments whose ends are off by one
+    /// px, radians per px.
+    pub sigma_rad_per_px: Vector3<T>,
+    /// The same of the focal length, px per px; zero where it was known.
+    pub focal_sigma_per_px: T,
+}
+
+/// Why lines give no orientation.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum ManhattanFrameError {
+    /// A number is infinite or not a number.
+    NotFinite,
+    /// Fewer than two of the bundles have two segments.
+    TooFew,
+    /// All segments of a bundle are on one line.
+    Line,
+    /// Two bundles have one direction, or their directions are nearer to each other than to orthogonal ones.
+    NotOrthogonal,
+    /// The focal length is open: of every two bundles, one is parallel to the image, or no focal length makes
+    /// them orthogonal.
+    Focal,
+}
+
+impl core::fmt::Display for ManhattanFrameError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::NotFinite => "a number is not finite",
+            Self::TooFew => "two bundles of two segments or more are needed",
+            Self::Line => "all segments of a bundle are on one line",
+            Self::NotOrthogonal => "the bundles' directions are not orthogonal",
+            Self::Focal => "the vanishing points leave the focal length open",
+        })
+    }
+}
+
+impl core::error::Error for ManhattanFrameError {}
+
+impl From<PencilError> for ManhattanFrameError {
+    fn from(error: PencilError) -> Self {
+        match error {
+            PencilError::NotFinite => Self::NotFinite,
+            PencilError::TooFew => Self::TooFew,
+            PencilError::Line => Self::Line,
+        }
+    }
+}
+
+/// Three bundles of segments: along the building's X, Y and Z.
+type Bundles<'a, T> = [&'a [LineSegment<T>]; 3];
+
+/// Steps of the refinement at most.
+const MOST_STEPS: usize = 16;
+
+impl<T: Real> ManhattanFrame<T> {
+    /// The orientation of a known camera.
+    ///
+    /// `bundles` are segments along the building's X, Y and Z, undistorted px; two of them need two segments
+    /// each, the third may be empty. `expected` is about what R is. The vanishing point of direction k is
+    /// `K R e_k` (Hartley & Zisserman 2004, 8.6); the rotation is the one for which the segments' ends
+    /// are least away from the lines through their middles and these points.
+    pub fn orientation(
+        camera: &Camera<T>,
+        bundles: Bundles<'_, T>,
+        expected: &Matrix3<T>,
+    ) -> Result<Self, ManhattanFrameError> {
+        finite(bundles, expected)?;
+        // In the camera's own plane, where K is one; the focal length makes px of the distances.
+        let (k, (fx, fy)) = (camera.inverse_matrix(), camera.focal_px());
+        let plane = move |segment: &LineSegment<T>| {
+            let at = |p: &Point2<T>| Point2::from((k * p.to_homogeneous()).xy());
+            LineSegment { from: at(&segment.from), to: at(&segment.to) }.scaled(&Point2::origin(), T::ONE)
+        };
+        let vanishing = vanishing_points(bundles, plane)?;
+        let start = orthogonal(vanishing, expected)?;
+        let scale = (fx * fy).sqrt();
+        Ok(refined(bundles, plane, start, T::ONE, false, scale))
+    }
+
+    /// The orientation and the focal length of a camera with square pixels of which only the principal point
+    /// (column, row, px) is known: often the middle of the image.
+    ///
+    /// Of two orthogonal directions with vanishing points v and w, seen from the principal point, `f^2 = -v .
+    /// w` (Hartley & Zisserman 2004, 8.8): two bundles that both converge fix it, the third makes it
+    /// surer.
+    pub fn orientation_and_focal(
+        principal_point: &Point2<T>,
+        bundles: Bundles<'_, T>,
+        expected: &Matrix3<T>,
+    ) -> Result<Self, ManhattanFrameError> {
+        finite(bundles, expected)?;
+        if !principal_point.iter().all(|x| x.is_finite()) {
+            return Err(ManhattanFrameError::NotFinite);
+        }
+        let (_, scale) = extent(bundles.into_iter().flatten());
+        if !(scale > T::ZERO) {
+            return Err(if bundles.iter().any(|b| b.len() > 1) {
+                ManhattanFrameError::Line
+            } else {
+                ManhattanFrameError::TooFew
+            });
+        }
+        let plane = move |segment: &LineSegment<T>| segment.scaled(principal_point, scale);
+        let vanishing = vanishing_points(bundles, plane)?;
+        let focal = focal(&vanishing).ok_or(ManhattanFrameError::Focal)?;
+        let directions = vanishing.map(|v| v.map(|v| Vector3::new(v.x, v.y, v.z * focal)));
+        let start = orthogonal(directions, expected)?;
+        let walls = refined(bundles, plane, start, focal, true, scale);
+        let found = walls.focal_px.is_finite()
+            && walls.focal_px > T::ZERO
+            && walls.focal_sigma_per_px < walls.focal_px;
+        if found { Ok(walls) } else { Err(ManhattanFrameError::Focal) }
+    }
+}
+
+/// That all numbers are finite.
+fn finite<T: Real>(bundles: Bundles<'_, T>, expected: &Matrix3<T>) -> Result<(), ManhattanFrameError> {
+    let finite =
+        bundles.into_iter().flatten().all(LineSegment::is_finite) && expected.iter().all(|x| x.is_finite());
+    if finite { Ok(()) } else { Err(ManhattanFrameError::NotFinite) }
+}
+
+/// The vanishing points of the bundles that have two segments.
+fn vanishing_points<T: Real>(
+    bundles: Bundles<'_, T>,
+    plane: impl Fn(&LineSegment<T>) -> Scaled<T> + Copy,
+) -> Result<[Option<Vector3<T>>; 3], ManhattanFrameError> {
+    let mut points = [None; 3];
+    for (point, bundle) in points.iter_mut().zip(bundles) {
+        if bundle.len() > 1 {
+            *point = Some(vanishing_point(bundle.iter().map(plane))?.0);
+        }
+    }
+    if points.iter().flatten().count() < 2 { Err(ManhattanFrameError::TooFew) } else { Ok(points) }
+}
+
+/// f of the pairs of vanishing points, weighted by how much each says of it; in the unit that they are given
+/// in.
+fn focal<T: Real>(points: &[Option<Vector3<T>>; 3]) -> Option<T> {
+    let (mut squares, mut weights) = (T::ZERO, T::ZERO);
+    let [a, b, c] = points;
+    for (v, w) in [(a, b), (b, c), (c, a)].into_iter().filter_map(|(v, w)| Some(((*v)?, (*w)?))) {
+        let weight = v.z * w.z;
+        squares -= weight * v.xy().dot(&w.xy());
+        weights += weight * weight;
+    }
+    // Points of 1000 units away in both directions say nothing any more.
+    (weights > T::of(1e-12).max(T::EPSILON * T::EPSILON) && squares > T::ZERO)
+        .then(|| (squares / weights).sqrt())
+}
+
+/// The rotation whose columns are nearest to two or three directions of any sense and length.
+fn orthogonal<T: Real>(
+    directions: [Option<Vector3<T>>; 3],
+    expected: &Matrix3<T>,
+) -> Result<Matrix3<T>, ManhattanFrameError> {
+    let mut columns = [Vector3::zeros(); 3];
+    for ((column, direction), expected) in columns.iter_mut().zip(directions).zip(expected.column_iter()) {
+        if let Some(direction) = direction {
+            let unit = direction / direction.norm();
+            *column = if unit.dot(&expected) < T::ZERO { -unit } else { unit };
+        }
+    }
+    let [x, y, z] = columns;
+    let filled = match directions {
+        [None, _, _] => [y.cross(&z), y, z],
+        [_, None, _] => [x, z.cross(&x), z],
+        [_, _, None] => [x, y, x.cross(&y)],
+        _ => columns,
+    };
+    let matrix = Matrix3::from_columns(&filled);
+    let volume = matrix.determinant();
+    // Half of what orthogonal directions enclose: two at 45 degrees, and one at right angles to them.
+    if !(volume.abs() > T::of(0.5)) {
+        return Err(ManhattanFrameError::NotOrthogonal);
+    }
+    // Seen from the other side: the sense that is least sure is the other one.
+    let matrix = if volume < T::ZERO {
+        let agree = |k: usize| filled.get(k).map_or(T::ONE, |column| column.dot(&expected.column(k)).abs());
+        let least = (1..3).fold(0, |least, k| if agree(k) < agree(least) { k } else { least });
+        let mut other = matrix;
+        other.column_mut(least).neg_mut();
+        other
+    } else {
+        matrix
+    };
+    let svd = Svd3::new(&matrix);
+    Ok(svd.u * svd.v.transpose())
+}
+
+/// The normal equations over a turn in the camera's frame and the logarithm of the focal length.
+struct Equations<T> {
+    normal: [[T; 4]; 4],
+    right: [T; 4],
+    squares: T,
+    count: usize,
+}
+
+impl<T: Real> Equations<T> {
+    fn of(
+        bundles: Bundles<'_, T>,
+        plane: impl Fn(&LineSegment<T>) -> Scaled<T>,
+        rotation: &Matrix3<T>,
+        focal: T,
+        free: bool,
+    ) -> Self {
+        let mut all = Self { normal: [[T::ZERO; 4]; 4], right: [T::ZERO; 4], squares: T::ZERO, count: 0 };
+        for (bundle, direction) in bundles.into_iter().zip(rotation.column_iter()) {
+            let v = Vector3::new(focal * direction.x, focal * direction.y, direction.z);
+            for segment in bundle {
+                let gradient = plane(segment).gradient(&v);
+                let error = -gradient.dot(&v);
+                let by_direction = Vector3::new(focal * gradient.x, focal * gradient.y, gradient.z);
+                // dv = K (w x d), d(log f) moves v's first two.
+                let by_turn = direction.cross(&by_direction);
+                let by_focal = if free { gradient.x * v.x + gradient.y * v.y } else { T::ZERO };
+                let slopes = [by_turn.x, by_turn.y, by_turn.z, by_focal];
+                for ((row, right), &a) in all.normal.iter_mut().zip(&mut all.right).zip(&slopes) {
+                    for (element, &b) in row.iter_mut().zip(&slopes) {
+                        *element += a * b;
+                    }
+                    *right += a * error;
+                }
+                all.squares += error * error;
+                all.count += 1;
+            }
+        }
+        if !free {
+            all.normal[3][3] = T::ONE;
+        }
+        all
+    }
+}
+
+/// The rotation (and focal length, if it is `free`) near the first one with the least squares of distances;
+/// Levenberg and Marquardt. `scale` is the px of a unit.
+fn refined<T: Real>(
+    bundles: Bundles<'_, T>,
+    plane: impl Fn(&LineSegment<T>) -> Scaled<T> + Copy,
+    rotation: Matrix3<T>,
+    focal: T,
+    free: bool,
+    scale: T,
+) -> ManhattanFrame<T> {
+    let (mut rotation, mut focal) = (rotation, focal);
+    let mut equations = Equations::of(bundles, plane, &rotation, focal, free);
+    let mut damping = T::of(1e-4);
+    for _ in 0..MOST_STEPS {
+        let mut matrix = equations.normal;
+        for (i, row) in matrix.iter_mut().enumerate() {
+            if let Some(diagonal) = row.get_mut(i) {
+                *diagonal *= T::ONE + damping;
+            }
+        }
+        let [x, y, z, along] = Ldl::new(&mut matrix).solve(&equations.right);
+        let there = cayley(&Vector3::new(x, y, z)) * rotation;
+        let farther = focal * (T::ONE + along.max(-T::of(0.5)).min(T::ONE));
+        let better = Equations::of(bundles, plane, &there, farther, free);
+        if better.squares <= equations.squares {
+            let gain = equations.squares - better.squares;
+            (rotation, focal, damping) = (there, farther, damping * T::of(0.1));
+            equations = better;
+            if gain <= equations.squares * T::EPSILON.sqrt() {
+                break;
+            }
+        } else {
+            damping *= T::of(10.0);
+        }
+    }
+    // The steps' products are a rotation but for rounding.
+    let svd = Svd3::new(&rotation);
+    let ldl = Ldl::new(&mut equations.normal);
+    let deviation = |k: usize| {
+        let mut unit = [T::ZERO; 4];
+        if let Some(one) = unit.get_mut(k) {
+            *one = T::ONE;
+        }
+        ldl.solve(&unit).get(k).map_or(T::ZERO, |variance| variance.max(T::ZERO).sqrt() / scale)
+    };
+    // Both ends move a segment's: half of the variance.
+    let half = T::of(core::f64::consts::FRAC_1_SQRT_2);
+    ManhattanFrame {
+        rotation: svd.u * svd.v.transpose(),
+        focal_px: focal * scale,
+        rms_px: (equations.squares / T::count(equations.count.max(1))).sqrt() * scale,
+        sigma_rad_per_px: Vector3::new(deviation(0), deviation(1), deviation(2)) * half,
+        focal_sigma_per_px: if free { deviation(3) * focal * scale * half } else { T::ZERO },
+    }
+}

@@ -1,0 +1,281 @@
+//! The pose of a flat square of known side.
+
+use super::tilts::rotations;
+use crate::geometry::Real;
+use crate::geometry::camera::{Camera, Pose, ProjectionError};
+use crate::geometry::linear::{Ldl, cayley};
+use crate::geometry::two_view::{Correspondence, Homography, HomographyError};
+use nalgebra::{Point2, Point3, Vector2, Vector3};
+
+/// A flat square: a marker, a tile, a board.
+///
+/// Its frame has the origin in its middle, X to the right and Y down for who looks at it, and Z into it: a
+/// camera right before it has the same axes.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct SquareMark<T: Real> {
+    side_m: T,
+}
+
+/// A pose that a mark may have.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct MarkPose<T: Real> {
+    /// R and t carry a point of the mark's frame into the camera, m.
+    pub pose: Pose<T>,
+    /// The re-projection error: the root mean square of the four corners' distances, undistorted px.
+    pub rms_px: T,
+}
+
+/// The poses that a picture of a mark may mean.
+///
+/// A small or distant square has nearly the same picture when it is tilted the other way about its line of
+/// sight.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct MarkPoses<T: Real> {
+    /// The pose with the smaller re-projection error.
+    pub best: MarkPose<T>,
+    /// The other one; `None` where both are the same to a milliradian, or the other one is not before the
+    /// camera.
+    pub other: Option<MarkPose<T>>,
+}
+
+/// Why a mark has no pose.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum SquareMarkError {
+    /// A number is infinite or not a number.
+    NotFinite,
+    /// The side is not positive.
+    Side,
+    /// Three corners are on a line, or two are the same.
+    Line,
+    /// The corners are no convex quadrilateral.
+    NotConvex,
+    /// The corners go round against the clock: the mark is seen from behind, or they are in another order.
+    Mirrored,
+    /// No pose is before the camera.
+    Behind,
+    /// A pixel has no sight.
+    Pixel(ProjectionError),
+}
+
+impl core::fmt::Display for SquareMarkError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::NotFinite => "a number is not finite",
+            Self::Side => "the side must be positive",
+            Self::Line => "three corners are on a line",
+            Self::NotConvex => "the corners are no convex quadrilateral",
+            Self::Mirrored => "the corners go round against the clock",
+            Self::Behind => "no pose is before the camera",
+            Self::Pixel(error) => return error.fmt(f),
+        })
+    }
+}
+
+impl core::error::Error for SquareMarkError {}
+
+/// Steps of the refinement at most; three or four are enough for any corners that were tried.
+const MOST_STEPS: usize = 12;
+
+impl<T: Real> SquareMark<T> {
+    /// A square of this side, m.
+    pub fn new(side_m: T) -> Result<Self, SquareMarkError> {
+        if !side_m.is_finite() {
+            return Err(SquareMarkError::NotFinite);
+        }
+        if !(side_m > T::ZERO) {
+            return Err(SquareMarkError::Side);
+        }
+        Ok(Self { side_m })
+    }
+
+    /// The corners in the mark's frame, m: top left, top right, bottom right, bottom left.
+    pub fn corners(&self) -> [Point3<T>; 4] {
+        let half = self.side_m * T::of(0.5);
+        [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| Point3::new(x, y, T::ZERO))
+    }
+
+    /// The pose of the mark whose corners are seen at four pixels, in the order of [`Self::corners`], px as
+    /// the camera gives them.
+    ///
+    /// Both poses come in closed form from the homography's derivative at the mark's middle (Collins &
+    /// Bartoli 2014, "Infinitesimal plane-based pose estimation", 4.1); each is refined to the least
+    /// re-projection error by Levenberg's and Marquardt's method, and that error tells them apart.
+    pub fn locate(
+        &self,
+        camera: &Camera<T>,
+        corners: &[Point2<T>; 4],
+    ) -> Result<MarkPoses<T>, SquareMarkError> {
+        if !corners.iter().all(|p| p.x.is_finite() && p.y.is_finite()) {
+            return Err(SquareMarkError::NotFinite);
+        }
+        let mut seen = [Point2::origin(); 4];
+        for (seen, corner) in seen.iter_mut().zip(corners) {
+            *seen = camera.undistort(corner).map_err(SquareMarkError::Pixel)?;
+        }
+        goes_round(&seen)?;
+        let (two, k) = (T::of(2.0), camera.inverse_matrix());
+        let [a, b, c, d] = seen.map(|p| (k * p.to_homogeneous()).xy());
+        // In half sides, which the homography is best conditioned in.
+        let at = |p: Vector2<T>, x: T, y: T| Correspondence::new(p.x, p.y, x, y);
+        let (minus, one) = (-T::ONE, T::ONE);
+        let seen_at = [at(a, minus, minus), at(b, one, minus), at(c, one, one), at(d, minus, one)];
+        let homography = Homography::from_correspondences(&seen_at).map_err(|error| match error {
+            HomographyError::NotFinite => SquareMarkError::NotFinite,
+            _ => SquareMarkError::Line,
+        })?;
+        let (scale, rotations) = rotations(homography.matrix()).ok_or(SquareMarkError::Mirrored)?;
+        let middle = homography.to_first(&Point2::origin()).ok_or(SquareMarkError::Behind)?;
+        // In half sides: the depth of the middle is one over the scale of the picture there.
+        let start = middle.to_homogeneous() / scale;
+        let refine =
+            |rotation| self.refined(camera, &seen, Pose::of_parts(rotation, start * (self.side_m / two)));
+        match rotations.map(refine) {
+            [Some(one), Some(two)] => {
+                let (best, other) = if one.rms_px <= two.rms_px { (one, two) } else { (two, one) };
+                let apart = best.pose.inverse().then(&other.pose).angle_rad();
+                Ok(MarkPoses { best, other: (apart > T::of(1e-3)).then_some(other) })
+            }
+            [Some(best), None] | [None, Some(best)] => Ok(MarkPoses { best, other: None }),
+            [None, None] => Err(SquareMarkError::Behind),
+        }
+    }
+
+    /// The pose near `pose` with the least re-projection error; `None` where a corner is behind the camera.
+    fn refined(&self, camera: &Camera<T>, seen: &[Point2<T>; 4], pose: Pose<T>) -> Option<MarkPose<T>> {
+        let mut pose = pose;
+        let mut equations = self.equations(camera, seen, &pose)?;
+        let mut damping = T::of(1e-4);
+        for _ in 0..MOST_STEPS {
+            let mut matrix = equations.normal;
+            for (i, row) in matrix.iter_mut().enumerate() {
+                if let Some(diagonal) = row.get_mut(i) {
+                    *diagonal *= T::ONE + damping;
+                }
+            }
+            let [a, b, c, x, y, z] = Ldl::new(&mut matrix).solve(&equations.right);
+            let there = Pose::of_parts(
+                cayley(&Vector3::new(a, b, c)) * pose.rotation(),
+                pose.translation() + Vector3::new(x, y, z) * self.side_m,
+            );
+            match self.equations(camera, seen, &there) {
+                Some(better) if better.squares <= equations.squares => {
+                    let gain = equations.squares - better.squares;
+                    (pose, damping) = (there, damping * T::of(0.1));
+                    equations = better;
+                    if gain <= equations.squares * T::EPSILON.sqrt() {
+                        break;
+                    }
+                }
+                _ => damping *= T::of(10.0),
+            }
+        }
+        Some(MarkPose { pose, rms_px: (equations.squares * T::of(0.25)).sqrt() })
+    }
+
+    /// The normal equations of the corners' errors, over a rotation (in the camera's frame, about the mark's
+    /// middle) and a translation in sides.
+    fn equations(&self, camera: &Camera<T>, seen: &[Point2<T>; 4], pose: &Pose<T>) -> Option<Equations<T>> {
+        let k = camera.matrix();
+        let mut equations = Equations { normal: [[T::ZERO; 6]; 6], right: [T::ZERO; 6], squares: T::ZERO };
+        for (corner, seen) in self.corners().iter().zip(seen) {
+            let arm = pose.rotation() * corner.coords;
+            let p = arm + pose.translation();
+            if !(p.z > T::ZERO) {
+                return None;
+            }
+            let by = T::ONE / p.z;
+            let pixel = (k * p * by).xy();
+            let error = seen.coords - pixel;
+            // d(u, v)/dP = (K - pixel (0 0 1)) / Z, row by row.
+            for (row, (value, error)) in [(pixel.x, error.x), (pixel.y, error.y)].into_iter().enumerate() {
+                let slope = Vector3::new(k[(row, 0)], k[(row, 1)], k[(row, 2)] - value) * by;
+                // dP = w x arm + t: slope . (w x arm) = w . (arm x slope)
+                let (turn, moved) = (arm.cross(&slope), slope * self.side_m);
+                equations.add(&[turn.x, turn.y, turn.z, moved.x, moved.y, moved.z], error);
+            }
+        }
+        Some(equations)
+    }
+}
+
+/// Least-squares equations of six unknowns.
+struct Equations<T> {
+    normal: [[T; 6]; 6],
+    right: [T; 6],
+    squares: T,
+}
+
+impl<T: Real> Equations<T> {
+    fn add(&mut self, slopes: &[T; 6], error: T) {
+        for ((row, right), &a) in self.normal.iter_mut().zip(&mut self.right).zip(slopes) {
+            for (element, &b) in row.iter_mut().zip(slopes) {
+                *element += a * b;
+            }
+            *right += a * error;
+        }
+        self.squares += error * error;
+    }
+}
+
+impl<T: Real> MarkPoses<T> {
+    /// The better pose's re-projection error over the other's, 0 to 1: near one the picture does not tell
+    /// which of the two it is; 0 where there is one pose only.
+    pub fn ambiguity(&self) -> T {
+        self.other.map_or(T::ZERO, |other| {
+            if other.rms_px > T::ZERO { self.best.rms_px / other.rms_px } else { T::ONE }
+        })
+    }
+}
+
+/// That four corners are convex and go round with the clock (v is down).
+fn goes_round<T: Real>([a, b, c, d]: &[Point2<T>; 4]) -> Result<(), SquareMarkError> {
+    let turn = |a: &Point2<T>, b: &Point2<T>, c: &Point2<T>| (b - a).perp(&(c - b));
+    let turns = [turn(a, b, c), turn(b, c, d), turn(c, d, a), turn(d, a, b)];
+    let size = (c - a).norm_squared().max((d - b).norm_squared());
+    if turns.iter().any(|turn| turn.abs() <= size * T::EPSILON * T::of(32.0)) {
+        return Err(SquareMarkError::Line);
+    }
+    match turns.iter().filter(|&&turn| turn > T::ZERO).count() {
+        4 => Ok(()),
+        0 => Err(SquareMarkError::Mirrored),
+        _ => Err(SquareMarkError::NotConvex),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Matrix3;
+
+    fn camera() -> Camera<f64> {
+        Camera::new(500.0, 500.0, 320.0, 240.0).expect("a camera")
+    }
+
+    #[test]
+    fn right_before_the_camera() {
+        // 0.2 m at 1 m: 100 px.
+        let corners =
+            [(270.0, 190.0), (370.0, 190.0), (370.0, 290.0), (270.0, 290.0)].map(|(u, v)| Point2::new(u, v));
+        let poses = SquareMark::new(0.2).and_then(|mark| mark.locate(&camera(), &corners)).expect("a pose");
+        assert!((poses.best.pose.rotation() - Matrix3::identity()).amax() < 1e-6, "{:?}", poses.best);
+        assert!((poses.best.pose.translation() - Vector3::new(0.0, 0.0, 1.0)).amax() < 1e-9);
+        assert!(poses.best.rms_px < 1e-9);
+        assert_eq!((poses.other, poses.ambiguity()), (None, 0.0));
+    }
+
+    #[test]
+    fn what_is_no_square_is_refused() {
+        let mark = SquareMark::new(0.2).expect("a mark");
+        let of = |corners: [(f64, f64); 4]| mark.locate(&camera(), &corners.map(|(u, v)| Point2::new(u, v)));
+        assert_eq!(of([(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (0.0, 2.0)]), Err(SquareMarkError::Line));
+        assert_eq!(of([(0.0, 0.0), (0.0, 9.0), (9.0, 9.0), (9.0, 0.0)]), Err(SquareMarkError::Mirrored));
+        assert_eq!(of([(0.0, 0.0), (9.0, 9.0), (9.0, 0.0), (0.0, 9.0)]), Err(SquareMarkError::NotConvex));
+        assert_eq!(
+            of([(0.0, 0.0), (9.0, 0.0), (f64::NAN, 9.0), (0.0, 9.0)]),
+            Err(SquareMarkError::NotFinite)
+        );
+        assert_eq!(SquareMark::new(0.0_f32), Err(SquareMarkError::Side));
+    }
+}

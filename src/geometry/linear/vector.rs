@@ -1,0 +1,26 @@
+//! Vectors of any length, as slices: in a small program once.
+
+use crate::geometry::Real;
+
+/// `a^T b`.
+#[inline]
+pub(crate) fn dot<T: Real>(a: &[T], b: &[T]) -> T {
+    a.iter().zip(b).fold(T::ZERO, |sum, (&a, &b)| sum + a * b)
+}
+
+/// `a = a s + b t`.
+#[inline]
+pub(crate) fn combine<T: Real>(a: &mut [T], s: T, b: &[T], t: T) {
+    for (a, &b) in a.iter_mut().zip(b) {
+        *a = *a * s + b * t;
+    }
+}
+
+/// Brings `x` to length one.
+pub(crate) fn unit<T: Real>(x: &mut [T]) {
+    // By the largest element first: its square may be more than a number holds.
+    let by = T::ONE / x.iter().fold(T::ZERO, |most, &v| most.max(v.abs()));
+    x.iter_mut().for_each(|v| *v *= by);
+    let by = T::ONE / dot(x, x).sqrt();
+    x.iter_mut().for_each(|v| *v *= by);
+}

@@ -1,0 +1,105 @@
+//! A pose without its scale.
+
+use crate::geometry::Real;
+use crate::geometry::camera::Pose;
+use nalgebra::{Matrix3, Point3, Unit, Vector3};
+
+/// R and the direction of t: all that two views tell of a pose. How far apart the cameras are is not in the
+/// images; a scene twice as large seen by cameras twice as far apart looks the same.
+///
+/// With a baseline or a length in the scene it becomes a [`Pose`] in metres.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct RelativePose<T: Real> {
+    rotation: Matrix3<T>,
+    direction: Unit<Vector3<T>>,
+}
+
+/// Why a length gives no scale.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum ScaleError {
+    /// The length is not greater than zero, or not finite.
+    Length,
+    /// The two points are one, or not finite.
+    SamePoint,
+}
+
+impl core::fmt::Display for ScaleError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Length => "the known length must be greater than zero and finite",
+            Self::SamePoint => "the two points of the known length must be different and finite",
+        })
+    }
+}
+
+impl core::error::Error for ScaleError {}
+
+impl<T: Real> RelativePose<T> {
+    /// Of a rotation and a direction of length one.
+    pub(crate) fn new(rotation: Matrix3<T>, direction: Unit<Vector3<T>>) -> Self {
+        Self { rotation, direction }
+    }
+
+    /// What is left of a pose when lengths are not known; `None` when the cameras stand in one place.
+    pub fn of(pose: &Pose<T>) -> Option<Self> {
+        let size = pose.translation().amax();
+        let direction = Unit::try_new(pose.translation() / size, T::ZERO)?;
+        Some(Self::new(*pose.rotation(), direction))
+    }
+
+    /// R, from camera 2 into camera 1.
+    pub fn rotation(&self) -> &Matrix3<T> {
+        &self.rotation
+    }
+
+    /// The direction of t: from camera 1 to camera 2, in camera 1. Length one, which is not a metre.
+    pub fn direction(&self) -> &Unit<Vector3<T>> {
+        &self.direction
+    }
+
+    /// The pose whose unit of length is the baseline: what is triangulated with it is in baselines, not in
+    /// metres.
+    pub fn in_baselines(&self) -> Pose<T> {
+        Pose::of_parts(self.rotation, self.direction.into_inner())
+    }
+
+    /// The pose in metres of cameras that are `baseline_m` apart.
+    pub fn with_baseline(&self, baseline_m: T) -> Result<Pose<T>, ScaleError> {
+        if !(baseline_m > T::ZERO && baseline_m.is_finite()) {
+            return Err(ScaleError::Length);
+        }
+        Ok(Pose::of_parts(self.rotation, self.direction.into_inner() * baseline_m))
+    }
+
+    /// The pose in metres, of two points that were triangulated in baselines ([`Self::in_baselines`]) and are
+    /// `length_m` apart in truth.
+    pub fn with_length(&self, a: &Point3<T>, b: &Point3<T>, length_m: T) -> Result<Pose<T>, ScaleError> {
+        let baselines = (a - b).norm();
+        if !(baselines > T::ZERO && baselines.is_finite()) {
+            return Err(ScaleError::SamePoint);
+        }
+        self.with_baseline(length_m / baselines)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scaled_by_what_is_known() {
+        let pose = Pose::new(Matrix3::identity(), Vector3::new(0.0, 3.0, 4.0)).expect("a pose");
+        let relative = RelativePose::of(&pose).expect("a baseline");
+        assert_eq!(relative.direction().into_inner(), Vector3::new(0.0, 0.6, 0.8_f64));
+        assert_eq!(relative.with_baseline(5.0), Ok(pose));
+        // Two baselines apart and 10 m in truth.
+        let (a, b) = (Point3::new(1.0, 0.0, 3.0), Point3::new(1.0, 2.0, 3.0));
+        assert_eq!(relative.with_length(&a, &b, 10.0), Ok(pose));
+        assert_eq!(relative.with_length(&a, &a, 10.0), Err(ScaleError::SamePoint));
+        assert_eq!(relative.with_baseline(-1.0), Err(ScaleError::Length));
+        assert_eq!(relative.with_baseline(f64::NAN), Err(ScaleError::Length));
+        assert_eq!(RelativePose::of(&Pose::<f64>::identity()), None);
+    }
+}

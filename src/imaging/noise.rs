@@ -38,7 +38,7 @@ impl Noise {
 /// places: of the first 128th of all sums in ascending order, `sigma = S / 45.5` for Gaussian noise, measured
 /// on a slope. Places with a pixel of 0 or 255 are left out: there noise is cut off. Where nothing is smooth,
 /// it says too much: 2.8 grey levels at most on 15 real pairs without added noise, under 1.9 on all but one
-/// of them; with 2 grey levels added 2.2 at least (`tests/real_data.rs` of the host package prints them).
+/// of them; with 2 grey levels added 2.2 at least (`tests/real/dense.rs` of the host package prints them).
 ///
 /// Each line costs the same whatever it shows; a meter takes 256 bytes and a word.
 ///

@@ -9,7 +9,7 @@
 //!   since a surface that goes on through so many rows has them.
 //!
 //! Along paths ([`Method::is_exact_in_bands`](super::Method::is_exact_in_bands) says no) a band's first rows
-//! lack what a path from above has gathered farther up: `tests/threads.rs` measures how many answers that
+//! lack what a path from above has gathered farther up: `tests/matching/threads.rs` measures how many answers that
 //! changes.
 //!
 //! The lines that are worked on twice are the price: 34 above and 10 below with `block` and the default

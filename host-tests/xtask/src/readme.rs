@@ -6,8 +6,16 @@ use crate::steps::{Outcome, cargo, run as run_command};
 
 /// Writes the parts, or compares them only.
 pub fn run(check: bool) -> Outcome {
-    let mut test =
-        cargo(&["test", "--locked", "--quiet", "-p", "stereopsis-host", "--test", "readme", "generated"]);
+    let mut test = cargo(&[
+        "test",
+        "--locked",
+        "--quiet",
+        "-p",
+        "stereopsis-host",
+        "--test",
+        "repo",
+        "readme::generated",
+    ]);
     if !check {
         test.env("STEREOPSIS_README", "write");
     }

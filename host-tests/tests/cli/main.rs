@@ -1,0 +1,15 @@
+//! The program `stereo` as its users run it: what it writes, and what it says when it cannot.
+
+mod as_match;
+mod bundle;
+mod calibrate;
+mod features;
+mod focus;
+mod odometry;
+mod output;
+mod rectify;
+mod refused;
+mod replay;
+mod results;
+mod support;
+mod two_view;

@@ -1,0 +1,9 @@
+//! The harness itself: mock cameras, rendered scenes, altered pairs, files of calibration, and calibration from
+//! pictures of boards.
+
+mod altered;
+mod calibrate;
+mod calibration;
+mod mock_camera;
+mod raw_calibration;
+mod scene;

@@ -1,0 +1,9 @@
+//! Real pictures of the folder in `STEREO_DATA`, one file a kind; built with the feature `real-data`.
+
+mod bundle;
+mod calibration;
+mod dense;
+mod features;
+mod focus;
+mod odometry;
+mod two_view;

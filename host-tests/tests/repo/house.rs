@@ -1,0 +1,170 @@
+//! The house rules that a machine can read: short files, no panics in the core, nothing of one machine, a
+//! tidy root.
+
+use crate::source::{self, inside, is_sign, line, tokens, word};
+use proc_macro2::{Delimiter, TokenTree};
+
+/// Lines of a Rust file without its tests, at most.
+const MOST_LINES: usize = 300;
+
+/// What the root may hold.
+const ROOT: [&str; 16] = [
+    ".cargo",
+    ".ci",
+    ".gitattributes",
+    ".github",
+    ".gitignore",
+    "CHANGELOG.md",
+    "Cargo.lock",
+    "Cargo.toml",
+    "LICENSE-APACHE",
+    "LICENSE-MIT",
+    "README.md",
+    "examples",
+    "host-tests",
+    "memory.x",
+    "rustfmt.toml",
+    "src",
+];
+
+/// Text that belongs to one machine or one mirror of packages. Written in two halves, so that this file
+/// passes.
+const FOREIGN: [&str; 11] = [
+    concat!("/wo", "rk/"),
+    concat!("/tm", "p/"),
+    concat!("/ro", "ot/"),
+    concat!("/fa", "rm/"),
+    concat!("/ho", "me/"),
+    concat!("crates", ".io"),
+    concat!("static.rust", "-lang.org"),
+    concat!("pypi", ".org"),
+    concat!("pythonhosted", ".org"),
+    concat!("npmjs", ".org"),
+    concat!("deb.debian", ".org"),
+];
+
+/// Methods and macros that end in a panic.
+const PANICKING_METHODS: [&str; 2] = ["unwrap", "expect"];
+const PANICKING_MACROS: [&str; 5] = ["panic", "todo", "unimplemented", "unreachable", "dbg"];
+
+/// How many lines a Rust file has before its tests.
+fn lines_without_tests(text: &str) -> usize {
+    text.lines().take_while(|line| line.trim() != "#[cfg(test)]").count()
+}
+
+/// Lines of `text` with something of one machine in them.
+fn foreign(name: &str, text: &str) -> Vec<String> {
+    // The lock file names where packages are indexed; cargo writes it.
+    if name.ends_with("Cargo.lock") {
+        return Vec::new();
+    }
+    let found = |line: &str| FOREIGN.iter().find(|what| line.contains(**what)).copied();
+    let lines = text.lines().zip(1..);
+    lines.filter_map(|(line, n)| found(line).map(|what| format!("{name}:{n}: {what}"))).collect()
+}
+
+/// Calls that can panic, outside `#[cfg(test)]`.
+fn panics(name: &str, tokens: &[TokenTree]) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut i = 0;
+    while let Some(token) = tokens.get(i) {
+        if is_sign(Some(token), '#') && is_test_attribute(tokens.get(i + 1)) {
+            // What the attribute stands on ends with its braces or a semicolon.
+            let ends = |t: &TokenTree| inside(Some(t), Delimiter::Brace).is_some() || is_sign(Some(t), ';');
+            i += 2 + tokens[i + 2..].iter().position(ends).unwrap_or(tokens.len()) + 1;
+            continue;
+        }
+        let name_here = word(Some(token));
+        let is_method =
+            i > 0 && is_sign(tokens.get(i - 1), '.') && PANICKING_METHODS.contains(&name_here.as_str());
+        let is_macro = is_sign(tokens.get(i + 1), '!') && PANICKING_MACROS.contains(&name_here.as_str());
+        if is_method || is_macro {
+            found.push(format!("{name}:{}: {name_here}", line(token)));
+        }
+        if let TokenTree::Group(group) = token {
+            found.extend(panics(name, &group.stream().into_iter().collect::<Vec<_>>()));
+        }
+        i += 1;
+    }
+    found
+}
+
+/// Whether a token is the bracket of `#[cfg(test)]`.
+fn is_test_attribute(token: Option<&TokenTree>) -> bool {
+    let Some(attribute) = inside(token, Delimiter::Bracket) else { return false };
+    let arguments = inside(attribute.get(1), Delimiter::Parenthesis).unwrap_or_default();
+    word(attribute.first()) == "cfg" && arguments.len() == 1 && word(arguments.first()) == "test"
+}
+
+#[test]
+fn files_are_short() {
+    let long = |name: &String| {
+        let lines = lines_without_tests(&source::text(name));
+        (lines > MOST_LINES).then(|| format!("{name}: {lines} lines without its tests, {MOST_LINES} at most"))
+    };
+    let files = source::files();
+    let wrong: Vec<_> = files.iter().filter(|name| name.ends_with(".rs")).filter_map(long).collect();
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn nothing_of_one_machine_is_written_down() {
+    let wrong: Vec<_> = source::files().iter().flat_map(|name| foreign(name, &source::text(name))).collect();
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_core_does_not_panic_on_its_own() {
+    let files = source::core_files();
+    let wrong: Vec<_> = files.iter().flat_map(|(name, text)| panics(name, &tokens(name, text))).collect();
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_root_is_tidy() {
+    let files = source::files();
+    let stray: Vec<_> =
+        files.iter().filter(|name| !ROOT.contains(&name.split('/').next().unwrap_or(name))).collect();
+    assert!(stray.is_empty(), "at the root, without a place there: {stray:?}");
+}
+
+/// The checks above, on text that breaks the rules.
+mod shown_to_fail {
+    use super::*;
+
+    fn count(text: &str) -> usize {
+        panics("src/x.rs", &tokens("src/x.rs", text)).len()
+    }
+
+    #[test]
+    fn panics_are_found_in_code_alone() {
+        assert_eq!(count("fn f() { a.unwrap(); b.expect(\"b\"); todo!() }"), 3);
+        assert_eq!(
+            count("fn f() { g(|| panic!(\"x\")); if a { unreachable!() } else { unimplemented!() } }"),
+            3
+        );
+        assert_eq!(count("/// a.unwrap()\nfn f() { a.unwrap_or(0); } // todo!()"), 0);
+        assert_eq!(count("#[cfg(test)]\nmod tests { fn f() { a.unwrap() } }\nfn g() { a.unwrap() }"), 1);
+        assert_eq!(count("#[cfg(test)]\nuse x::y;\nfn g() { a.unwrap() }"), 1);
+        assert_eq!(count("#[cfg(not(test))]\nfn g() { a.unwrap() }"), 1);
+        assert_eq!(count("#[expect(dead_code)]\nfn expect() {}"), 0);
+    }
+
+    #[test]
+    fn foreign_text_is_found() {
+        for what in FOREIGN {
+            assert_eq!(
+                foreign("README.md", &format!("one\nsee {what}here")),
+                [format!("README.md:2: {what}")]
+            );
+        }
+        assert!(foreign("README.md", "a workshop, a root, a home").is_empty());
+        assert!(foreign("Cargo.lock", FOREIGN[5]).is_empty());
+    }
+
+    #[test]
+    fn lines_are_counted_up_to_the_tests() {
+        let text = format!("{}#[cfg(test)]\nmod tests {{\n{}}}\n", "// a\n".repeat(301), "// b\n".repeat(50));
+        assert_eq!(lines_without_tests(&text), 301);
+    }
+}

@@ -1,0 +1,230 @@
+//! Data moves down the list of modules in `src/lib.rs`: a file uses only what stands above it.
+
+use crate::source::{self, inside, is_sign, line, tokens, word};
+use proc_macro2::{Delimiter, TokenTree};
+
+/// The modules of the finished crate, in running order.
+const HOUSE: [&str; 12] = [
+    "units", "math", "geometry", "camera", "imaging", "matching", "depth", "focus", "features", "motion",
+    "pipeline", "ffi",
+];
+
+/// The modules that `lib.rs` declares, in its order.
+fn declared(lib: &str) -> Vec<String> {
+    let tokens = tokens("src/lib.rs", lib);
+    let ends = |i: usize| is_sign(tokens.get(i + 2), ';');
+    (0..tokens.len())
+        .filter(|&i| word(tokens.get(i)) == "mod" && ends(i))
+        .map(|i| word(tokens.get(i + 1)))
+        .collect()
+}
+
+/// Where a file stands in the module tree: `src/a/b.rs` is `a::b`, `src/a/mod.rs` is `a`, `src/lib.rs`
+/// nothing.
+fn module_of(name: &str) -> Vec<String> {
+    let path = name.trim_start_matches("src/").trim_end_matches(".rs");
+    path.split('/').filter(|part| !matches!(*part, "mod" | "lib")).map(str::to_owned).collect()
+}
+
+/// A path in the source that begins at the crate's root: the line, and the first name after it (`*` for a
+/// glob).
+struct Reference {
+    line: usize,
+    top: String,
+}
+
+/// Collects what `tokens` in `module` name by `crate::` or `super::`, macros' arguments and `use` groups
+/// included.
+fn references(tokens: &[TokenTree], module: &[String], found: &mut Vec<Reference>) {
+    let mut i = 0;
+    while let Some(token) = tokens.get(i) {
+        match word(Some(token)).as_str() {
+            "mod" => {
+                if let Some(body) = inside(tokens.get(i + 2), Delimiter::Brace) {
+                    let inner: Vec<_> = module.iter().cloned().chain([word(tokens.get(i + 1))]).collect();
+                    references(&body, &inner, found);
+                    i += 3;
+                    continue;
+                }
+            }
+            "crate" => i = path(tokens, i + 1, &[], found),
+            "super" => i = path(tokens, i + 1, parent(module), found),
+            _ => {
+                if let TokenTree::Group(group) = token {
+                    references(&group.stream().into_iter().collect::<Vec<_>>(), module, found);
+                }
+            }
+        }
+        i += 1;
+    }
+}
+
+/// The module around `module`.
+fn parent(module: &[String]) -> &[String] {
+    module.split_last().map_or(module, |(_, rest)| rest)
+}
+
+/// Reads on after `crate` or `super`, which named `base`; the last index that was read.
+fn path(tokens: &[TokenTree], mut i: usize, base: &[String], found: &mut Vec<Reference>) -> usize {
+    let mut base = base.to_vec();
+    // `pub(crate)` and the like name no item.
+    while is_sign(tokens.get(i), ':') && is_sign(tokens.get(i + 1), ':') {
+        let Some(next) = tokens.get(i + 2) else { break };
+        if word(Some(next)) == "super" {
+            base.pop();
+            i += 3;
+            continue;
+        }
+        let entries = match inside(Some(next), Delimiter::Brace) {
+            Some(group) => group.split(|token| is_sign(Some(token), ',')).map(<[_]>::to_vec).collect(),
+            None => vec![vec![next.clone()]],
+        };
+        for entry in entries.iter().filter(|entry| !entry.is_empty()) {
+            let name = if is_sign(entry.first(), '*') { "*".to_owned() } else { word(entry.first()) };
+            found.push(Reference { line: line(next), top: base.first().cloned().unwrap_or(name) });
+        }
+        return i + 2;
+    }
+    i - 1
+}
+
+/// What a file does that the order of modules forbids.
+fn upward(order: &[String], name: &str, text: &str) -> Vec<String> {
+    let module = module_of(name);
+    let Some(own) = module.first() else { return Vec::new() };
+    let Some(own_place) = order.iter().position(|m| m == own) else {
+        return vec![format!("{name}: the module {own} is not declared in src/lib.rs")];
+    };
+    let mut found = Vec::new();
+    references(&tokens(name, text), &module, &mut found);
+    let judge = |r: Reference| match order.iter().position(|m| *m == r.top) {
+        Some(place) if place <= own_place => None,
+        Some(_) => Some(format!("{name}:{}: {own} uses {}, which stands below it", r.line, r.top)),
+        None => {
+            Some(format!("{name}:{}: crate::{} is no module: name the module that has it", r.line, r.top))
+        }
+    };
+    found.into_iter().filter_map(judge).collect()
+}
+
+/// The lines of a file that name `wanted` as an identifier.
+fn lines_naming(name: &str, text: &str, wanted: &str) -> Vec<String> {
+    fn search(tokens: &[TokenTree], wanted: &str, lines: &mut Vec<usize>) {
+        for token in tokens {
+            match token {
+                TokenTree::Group(group) => {
+                    search(&group.stream().into_iter().collect::<Vec<_>>(), wanted, lines)
+                }
+                TokenTree::Ident(ident) if ident == wanted => lines.push(line(token)),
+                _ => {}
+            }
+        }
+    }
+    let mut lines = Vec::new();
+    search(&tokens(name, text), wanted, &mut lines);
+    lines.into_iter().map(|line| format!("{name}:{line}: names {wanted}")).collect()
+}
+
+/// Whether `unsafe` is allowed in a file.
+fn may_be_unsafe(name: &str) -> bool {
+    name.starts_with("src/matching/kernels") || name.starts_with("src/ffi")
+}
+
+#[test]
+fn modules_stand_in_running_order() {
+    let order = declared(&source::text("src/lib.rs"));
+    assert!(order.len() >= 8, "src/lib.rs declares {order:?}");
+    let places: Vec<_> = order.iter().map(|m| HOUSE.iter().position(|h| h == m)).collect();
+    assert!(places.iter().all(Option::is_some), "a module of {order:?} is not one of {HOUSE:?}");
+    assert!(places.is_sorted(), "src/lib.rs declares {order:?}, the order is {HOUSE:?}");
+}
+
+#[test]
+fn no_file_uses_what_stands_below_it() {
+    let order = declared(&source::text("src/lib.rs"));
+    let wrong: Vec<_> =
+        source::core_files().iter().flat_map(|(name, text)| upward(&order, name, text)).collect();
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn one_file_names_libm() {
+    let files = source::core_files();
+    let others = files.iter().filter(|(name, _)| name != "src/math.rs");
+    let wrong: Vec<_> = others.flat_map(|(name, text)| lines_naming(name, text, "libm")).collect();
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn unsafe_stays_in_the_kernels_and_the_c_interface() {
+    let files = source::core_files();
+    let others = files.iter().filter(|(name, _)| !may_be_unsafe(name));
+    let wrong: Vec<_> = others.flat_map(|(name, text)| lines_naming(name, text, "unsafe")).collect();
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+/// The checks above, on files that break the rules.
+mod shown_to_fail {
+    use super::*;
+
+    fn order() -> Vec<String> {
+        declared(
+            "//! Map.\npub mod units;\nmod math;\npub mod camera;\n#[cfg(feature = \"x\")]\npub mod matching;",
+        )
+    }
+
+    fn count(name: &str, text: &str) -> usize {
+        upward(&order(), name, text).len()
+    }
+
+    #[test]
+    fn order_is_read_from_the_declarations() {
+        assert_eq!(order(), ["units", "math", "camera", "matching"]);
+    }
+
+    #[test]
+    fn downward_and_sideways_edges_pass() {
+        assert_eq!(
+            count("src/matching/row.rs", "use crate::{units::Disparity, camera::{self, LineFormat}};"),
+            0
+        );
+        assert_eq!(
+            count("src/matching/row.rs", "use super::config::Config; use super::super::units::Px;"),
+            0
+        );
+        assert_eq!(count("src/camera/mod.rs", "pub(crate) mod pair; pub(in crate::camera) fn f() {}"), 0);
+        assert_eq!(
+            count("src/camera/mod.rs", "/// [`crate::matching::Config`]\nfn f() {} // crate::matching"),
+            0
+        );
+    }
+
+    #[test]
+    fn upward_edges_are_found_in_every_form() {
+        let name = "src/camera/pair.rs";
+        assert_eq!(count(name, "use crate::matching::Config;"), 1);
+        assert_eq!(count(name, "use crate::{units::Px, matching::{Config, Checks}};"), 1);
+        assert_eq!(count(name, "use super::super::matching::Config;"), 1);
+        assert_eq!(count(name, "mod tests { use super::super::super::matching::Config; }"), 1);
+        assert_eq!(count(name, "fn f(c: crate::matching::Config) {}"), 1);
+        assert_eq!(count(name, "fn f() { assert!(crate::matching::state_bytes(1) > 0); }"), 1);
+        assert_eq!(count(name, "macro_rules! m { () => { $crate::matching::f() } }"), 1);
+        assert_eq!(count("src/math.rs", "use super::camera::LineFormat;"), 1);
+    }
+
+    #[test]
+    fn names_at_the_root_hide_no_edge() {
+        assert_eq!(count("src/units.rs", "use crate::Config;"), 1);
+        assert_eq!(count("src/units.rs", "use crate::*;"), 1);
+        assert_eq!(count("src/units.rs", "use super::*;"), 1);
+        assert_eq!(count("src/elsewhere.rs", ""), 1);
+    }
+
+    #[test]
+    fn names_are_found_in_code_alone() {
+        let text = "//! libm, unsafe\nfn f() { let s = \"libm\"; unsafe { g(libm::sqrtf(1.0)) } }";
+        assert_eq!(lines_naming("src/x.rs", text, "libm"), ["src/x.rs:2: names libm"]);
+        assert_eq!(lines_naming("src/x.rs", text, "unsafe"), ["src/x.rs:2: names unsafe"]);
+        assert!(may_be_unsafe("src/matching/kernels/x86.rs") && !may_be_unsafe("src/matching/row.rs"));
+    }
+}

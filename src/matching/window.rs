@@ -34,9 +34,6 @@ pub trait Windowed: Scheme {
     /// the right.
     #[cfg(not(stereopsis_vectors))]
     fn codes(around: &[[u32; 3]; 3]) -> u32;
-    /// How many bits of two codes differ.
-    #[cfg(stereopsis_vectors)]
-    fn hamming(a: u8, b: u8) -> u8;
     /// What a code is compared by with [`Self::apart`].
     #[cfg(target_pointer_width = "64")]
     fn key<G: Group>(code: u8) -> G;
@@ -159,15 +156,6 @@ impl Windowed for Fast {
         codes(around, &PLUS4)
     }
 
-    #[cfg(stereopsis_vectors)]
-    #[inline(always)]
-    fn hamming(a: u8, b: u8) -> u8 {
-        // Four bits need half of a byte's bit count: pairs, then the two pairs.
-        let x = a ^ b;
-        let pairs = x - ((x >> 1) & 0b0101);
-        (pairs & 0b0011) + (pairs >> 2)
-    }
-
     #[cfg(target_pointer_width = "64")]
     #[inline(always)]
     fn key<G: Group>(code: u8) -> G {
@@ -221,16 +209,6 @@ impl Windowed for Block {
     #[inline(always)]
     fn codes(around: &[[u32; 3]; 3]) -> u32 {
         codes(around, &RING8)
-    }
-
-    #[cfg(stereopsis_vectors)]
-    #[inline(always)]
-    fn hamming(a: u8, b: u8) -> u8 {
-        // Those vectors have no bit count.
-        let x = a ^ b;
-        let pairs = x - ((x >> 1) & 0x55);
-        let fours = (pairs & 0x33) + ((pairs >> 2) & 0x33);
-        (fours + (fours >> 4)) & 0x0f
     }
 
     #[cfg(target_pointer_width = "64")]

@@ -9,14 +9,13 @@
 //! * `windows`: sums over windows, for groups. `x86`: the same compiled for AVX2 and for AVX-512, chosen when
 //!   the processor has it.
 //! * `paths`: costs along paths, for groups, and for Arm's instructions on four bytes.
-//! * `helium`: what stages do for a row, in assembly for the vectors of a Cortex-M55; `lanes`: safe Rust over
-//!   fixed lanes for what is not there, which the compiler turns into vectors.
+//! * `helium`: what stages do for a row, in assembly for the vectors of a Cortex-M55.
 //! * `winner`: what all of them give.
 //!
 //! A 32-bit core gets `planes` alone, unless it is compiled with `--cfg stereopsis_dsp`, which says that it
 //! has instructions on four bytes (Cortex-M4, M7, M33); then it gets `bytes` alone; or with `--cfg
 //! stereopsis_vectors`, which says that its vectors are on (Helium on a Cortex-M55: `-C
-//! target-cpu=cortex-m55`); then it gets `helium` and `lanes` alone. Larger processors have `planes`, and
+//! target-cpu=cortex-m55`); then it gets `helium` alone. Larger processors have `planes`, and
 //! `windows` in the vectors that there are.
 //!
 //! Every kernel gives the same bits. A new one is a variant of [`Kernel`] and an arm in [`Kernel::row`].
@@ -29,12 +28,10 @@ mod census;
 mod groups;
 #[cfg(stereopsis_vectors)]
 pub mod helium;
-#[cfg(stereopsis_vectors)]
-mod lanes;
 mod paths;
 #[cfg(not(any(stereopsis_vectors, stereopsis_dsp)))]
 mod planes;
-#[cfg(any(target_pointer_width = "64", stereopsis_vectors))]
+#[cfg(target_pointer_width = "64")]
 mod row_codes;
 mod scratch;
 #[cfg(target_pointer_width = "64")]
@@ -234,7 +231,7 @@ impl Kernel {
             #[cfg(target_pointer_width = "64")]
             _ => windows::in_vectors::<S>(work, select),
             #[cfg(stereopsis_vectors)]
-            Self::Lanes => lanes::row::<S>(work, select),
+            Self::Lanes => helium::row::<S>(work, select),
         }
     }
 }

@@ -15,8 +15,7 @@ pub(super) fn pixels(row: RowCodes<'_>, stride: usize) -> impl Iterator<Item = (
 
 /// The row with more before its right codes: column x is compared with `stride` of them from x on. The first
 /// code is repeated for those that lie left of the image.
-#[cfg_attr(stereopsis_vectors, inline(never))]
-#[cfg_attr(not(stereopsis_vectors), inline(always))]
+#[inline(always)]
 pub(super) fn with_more_before<'a>(
     codes: &'a [u8],
     min_disparity: usize,

@@ -1,6 +1,7 @@
 //! The costs of a row, added to the columns under the window, and those of the row that leaves it subtracted.
 #![allow(unsafe_code)]
 
+use super::LANES;
 use core::arch::asm;
 
 /// By how much more bits the lower four of a byte differ than the upper four, modulo 2^8.
@@ -28,12 +29,14 @@ struct Codes<'a> {
     right: &'a [u8],
 }
 
-/// Moves the sums of the `columns` one row down, for codes of up to four bits: `rows` are the row that enters
-/// below and the one that leaves above. `room` holds two bytes a column, and a column.
+/// Moves the sums of the `columns` of `stride` candidates one row down, for codes of up to four bits: `rows`
+/// are the row that enters below and the one that leaves above. `room` holds two bytes a column, and a
+/// column. `STRIDE` is the number of candidates where there is a loop for it alone, else 0.
 #[inline(never)]
 pub(super) fn of_four_bits<const STRIDE: usize>(
     rows: [Option<&[u8]>; 2],
     min_disparity: usize,
+    stride: usize,
     room: &mut [u8],
     columns: &mut [u8],
 ) {
@@ -45,8 +48,8 @@ pub(super) fn of_four_bits<const STRIDE: usize>(
     let (left, right) = room.split_at_mut_checked(width).unwrap_or_default();
     pack(new, old, keep, left);
     let (new, old) = (new.get(width..).unwrap_or(&[]), old.get(width..).unwrap_or(&[]));
-    let right = with_more_before::<STRIDE>(width, min_disparity, right, |right| pack(new, old, keep, right));
-    move_packed::<STRIDE>(Codes { left, right }, columns);
+    let right = with_more_before(width, min_disparity, stride, right, |right| pack(new, old, keep, right));
+    move_packed::<STRIDE>(Codes { left, right }, stride, columns);
 }
 
 /// The codes of two rows in the halves of a byte, of each what is to be kept.
@@ -62,32 +65,31 @@ fn pack(new: &[u8], old: &[u8], keep: (u8, u8), out: &mut [u8]) {
 pub(super) fn of_eight_bits<const STRIDE: usize>(
     rows: [Option<&[u8]>; 2],
     min_disparity: usize,
+    stride: usize,
     room: &mut [u8],
     columns: &mut [u8],
 ) {
-    let width = columns.len() / STRIDE;
+    let width = columns.len() / stride;
     let [enter, leave] = rows;
-    let (new, old) = room.split_at_mut_checked(width + STRIDE - 1).unwrap_or_default();
-    let (enter, leave) = (
-        codes::<STRIDE>(enter, width, min_disparity, new),
-        codes::<STRIDE>(leave, width, min_disparity, old),
-    );
-    move_rows::<STRIDE>(enter, leave, columns);
+    let (new, old) = room.split_at_mut_checked(width + stride - 1).unwrap_or_default();
+    let codes = |row, room| codes(row, width, min_disparity, stride, room);
+    move_rows::<STRIDE>(codes(enter, new), codes(leave, old), stride, columns);
 }
 
 /// The codes of a row; of none, codes that do not differ.
 #[inline(never)]
-fn codes<'a, const STRIDE: usize>(
+fn codes<'a>(
     row: Option<&'a [u8]>,
     width: usize,
     min_disparity: usize,
+    stride: usize,
     room: &'a mut [u8],
 ) -> Codes<'a> {
     let Some((left, from)) = row.and_then(|row| row.split_at_checked(width)) else {
         room.fill(0);
         return Codes { left: room, right: room };
     };
-    let right = with_more_before::<STRIDE>(width, min_disparity, room, |right| {
+    let right = with_more_before(width, min_disparity, stride, room, |right| {
         for (right, &from) in right.iter_mut().zip(from) {
             *right = from;
         }
@@ -95,17 +97,18 @@ fn codes<'a, const STRIDE: usize>(
     Codes { left, right }
 }
 
-/// The right codes, which `put` makes, with so many before that every column finds `STRIDE`: the first one is
+/// The right codes, which `put` makes, with so many before that every column finds `stride`: the first one is
 /// repeated for those that lie left of the image.
 #[inline(always)]
-fn with_more_before<const STRIDE: usize>(
+fn with_more_before(
     width: usize,
     min_disparity: usize,
+    stride: usize,
     room: &mut [u8],
     put: impl FnOnce(&mut [u8]),
 ) -> &[u8] {
-    let room = room.get_mut(..width + STRIDE - 1).unwrap_or_default();
-    let outside = room.len().min(STRIDE - 1 + min_disparity);
+    let room = room.get_mut(..width + stride - 1).unwrap_or_default();
+    let outside = room.len().min(stride - 1 + min_disparity);
     // One more is put, and repeated.
     put(room.get_mut(outside..).unwrap_or_default());
     let first = room.get(outside).copied().unwrap_or(0);
@@ -113,19 +116,22 @@ fn with_more_before<const STRIDE: usize>(
     room
 }
 
-/// [`of_four_bits`] of codes that hold both rows: six instructions for 16 candidates, and three for a column.
+/// [`of_four_bits`] of codes that hold both rows: six instructions for 16 candidates, and three for a column;
+/// of any number of candidates one more for 16, and four.
 #[inline(never)]
-fn move_packed<const STRIDE: usize>(codes: Codes<'_>, columns: &mut [u8]) {
+fn move_packed<const STRIDE: usize>(codes: Codes<'_>, stride: usize, columns: &mut [u8]) {
     let Codes { left, right } = codes;
-    let count = left.len();
-    if count == 0 || right.len() < count + STRIDE - 1 || columns.len() < count * STRIDE {
+    let (count, groups) = (left.len(), stride / LANES);
+    let is_whole = right.len() >= count + stride - 1 && columns.len() >= count * stride;
+    if count == 0 || groups == 0 || !is_whole || STRIDE > 0 && STRIDE != stride {
         return;
     }
     // SAFETY: the lengths asked for above are what is read and written: of column `x` `left[x]`, `right[x..x
-    // + STRIDE]` and `columns[x * STRIDE..][..STRIDE]`. A byte's entry of the table is in the table.
-    // `count` is not 0.
+    // + stride]` and `columns[x * stride..][..stride]`, in whole vectors. A byte's entry of the table is in
+    // it. `count` is not 0.
     unsafe {
         asm!(
+            ".if {stride}",
             "dls lr, {count}",
             "2:",
             "ldrb {code}, [{left}], #1",
@@ -149,25 +155,45 @@ fn move_packed<const STRIDE: usize>(codes: Codes<'_>, columns: &mut [u8]) {
             ".endif",
             ".endr",
             "le lr, 2b",
-            count = in(reg) count, code = out(reg) _, left = inout(reg) left.as_ptr() => _,
+            ".else",
+            "2:",
+            "ldrb {code}, [{left}], #1",
+            "vdup.8 q2, {code}",
+            "mov {code}, {right}",
+            "add {right}, {right}, #1",
+            "dls lr, {groups}",
+            "3:",
+            "vldrb.u8 q0, [{code}], #16",
+            "veor q0, q0, q2",
+            "vldrb.u8 q1, [{less}, q0]",
+            "vldrb.u8 q0, [{columns}]",
+            "vadd.i8 q0, q0, q1",
+            "vstrb.8 q0, [{columns}], #16",
+            "le lr, 3b",
+            "subs {count}, {count}, #1",
+            "bne 2b",
+            ".endif",
+            count = inout(reg) count => _, code = out(reg) _, left = inout(reg) left.as_ptr() => _,
             right = inout(reg) right.as_ptr() => _, columns = inout(reg) columns.as_mut_ptr() => _,
-            less = in(reg) LESS.as_ptr(), stride = const STRIDE,
+            groups = in(reg) groups, less = in(reg) LESS.as_ptr(), stride = const STRIDE,
             out("lr") _, out("q0") _, out("q1") _, out("q2") _, options(nostack),
         );
     }
 }
 
-/// [`of_eight_bits`] of both rows: ten instructions for 16 candidates, and eight for a column.
+/// [`of_eight_bits`] of both rows: ten instructions for 16 candidates, and eight for a column; of any number
+/// of candidates one more for 16, and four.
 #[inline(never)]
-fn move_rows<const STRIDE: usize>(enter: Codes<'_>, leave: Codes<'_>, columns: &mut [u8]) {
-    let count = columns.len() / STRIDE;
-    let is_whole = |codes: &Codes<'_>| codes.left.len() >= count && codes.right.len() >= count + STRIDE - 1;
-    if count == 0 || !is_whole(&enter) || !is_whole(&leave) {
+fn move_rows<const STRIDE: usize>(enter: Codes<'_>, leave: Codes<'_>, stride: usize, columns: &mut [u8]) {
+    let (count, groups) = (columns.len() / stride.max(1), stride / LANES);
+    let is_whole = |codes: &Codes<'_>| codes.left.len() >= count && codes.right.len() >= count + stride - 1;
+    if count == 0 || groups == 0 || !is_whole(&enter) || !is_whole(&leave) || STRIDE > 0 && STRIDE != stride {
         return;
     }
     // SAFETY: as for `move_packed`, of two rows.
     unsafe {
         asm!(
+            ".if {stride}",
             "dls lr, {count}",
             "2:",
             "ldrb {code}, [{left}], #1",
@@ -192,7 +218,34 @@ fn move_rows<const STRIDE: usize>(enter: Codes<'_>, leave: Codes<'_>, columns: &
             "add {old_right}, {old_right}, #1",
             "add {columns}, {columns}, #{stride}",
             "le lr, 2b",
-            count = in(reg) count, code = out(reg) _, left = inout(reg) enter.left.as_ptr() => _,
+            ".else",
+            "2:",
+            "ldrb {code}, [{left}], #1",
+            "vdup.8 q2, {code}",
+            "ldrb {code}, [{old_left}], #1",
+            "vdup.8 q3, {code}",
+            "mov {code}, {right}",
+            "mov {old_code}, {old_right}",
+            "add {right}, {right}, #1",
+            "add {old_right}, {old_right}, #1",
+            "dls lr, {groups}",
+            "3:",
+            "vldrb.u8 q0, [{code}], #16",
+            "veor q0, q0, q2",
+            "vldrb.u8 q1, [{bits}, q0]",
+            "vldrb.u8 q0, [{columns}]",
+            "vadd.i8 q1, q1, q0",
+            "vldrb.u8 q0, [{old_code}], #16",
+            "veor q0, q0, q3",
+            "vldrb.u8 q4, [{bits}, q0]",
+            "vsub.i8 q1, q1, q4",
+            "vstrb.8 q1, [{columns}], #16",
+            "le lr, 3b",
+            "subs {count}, {count}, #1",
+            "bne 2b",
+            ".endif",
+            count = inout(reg) count => _, groups = in(reg) groups, code = out(reg) _, old_code = out(reg) _,
+            left = inout(reg) enter.left.as_ptr() => _,
             right = inout(reg) enter.right.as_ptr() => _, old_left = inout(reg) leave.left.as_ptr() => _,
             old_right = inout(reg) leave.right.as_ptr() => _, columns = inout(reg) columns.as_mut_ptr() => _,
             bits = in(reg) BITS.as_ptr(), stride = const STRIDE,

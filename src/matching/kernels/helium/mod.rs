@@ -1,5 +1,6 @@
-//! The row in Helium, the vectors of a Cortex-M55, in assembly: what `lanes` does for 32 and for 64
-//! candidates of a column (other numbers are left to the compiler), and the stages before and after it.
+//! The row in Helium, the vectors of a Cortex-M55, in assembly, and the stages before and after it. Lanes
+//! run over the disparities of one pixel, the largest first: so a pixel's candidates stand in memory as they
+//! do in the right image.
 //!
 //! * [`census`]: the codes of `fast`.
 //! * [`columns`]: costs of a row added to the columns under the window, and others subtracted.
@@ -8,11 +9,11 @@
 //! * [`surface`]: answers averaged within their surface, and its length.
 //! * [`speckle`]: support counted.
 //!
-//! Of `lanes` the compiler makes two or three instructions where one is needed: it loads and stores the sums
-//! of a window for every pixel, counts bits in nine instructions, and looks for the winner in a loop of its
-//! own. Here
+//! Of safe Rust over fixed lanes the compiler makes two or three instructions where one is needed: it counts
+//! bits in nine instructions, and looks for the winner in a loop of its own. Here
 //!
-//! * the window's sums stay in registers along the row;
+//! * the window's sums of 32 and of 64 candidates stay in registers along the row, those of any other number
+//!   are loaded and stored 16 at a time;
 //! * how many bits differ is looked up, by one load that takes a place for each of 16 lanes (one instruction,
 //!   though a core may spend a cycle on each place). The codes of `fast` have four bits: a byte holds those
 //!   of the row that enters and of the one that leaves, and the table has the difference;
@@ -36,31 +37,43 @@ pub use partners::keep;
 pub use speckle::judge;
 pub use surface::average;
 
-use super::lanes::best_of_the_rest;
 use super::scratch::{bytes_mut, bytes_of};
 use super::winner::{Select, WinnerRows};
-use super::{MASKS, OUTSIDE, RowWork};
+use super::{BESIDE, MASKS, OUTSIDE, RowWork, STEP};
 use crate::matching::window::Windowed;
 use windows::{Windows, complete};
 
 /// Bytes in a vector.
 const LANES: usize = 16;
 
-/// [`super::Kernel::row`] for `STRIDE` candidates of a column.
+/// [`super::Kernel::row`] in Helium.
 #[inline(always)]
-pub(super) fn row<S: Windowed, const STRIDE: usize>(work: RowWork<'_>, select: Option<Select<'_>>) {
-    const { assert!(S::RADIUS_X < OUTSIDE) };
-    let RowWork { width, min_disparity, enter, leave, columns, scratch, .. } = work;
+pub(super) fn row<S: Windowed>(work: RowWork<'_>, select: Option<Select<'_>>) {
+    // The usual numbers of candidates, then any number of them.
+    match work.stride {
+        32 => row_of::<S, 32>(work, select),
+        64 => row_of::<S, 64>(work, select),
+        _ => row_of::<S, 0>(work, select),
+    }
+}
+
+#[inline(always)]
+fn row_of<S: Windowed, const STRIDE: usize>(work: RowWork<'_>, select: Option<Select<'_>>) {
+    const { assert!(S::RADIUS_X < OUTSIDE && STEP == LANES) };
+    let RowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
+    // At least one vector, for the compiler to see that no column is empty.
+    let stride = if STRIDE > 0 { STRIDE } else { stride.max(LANES) };
     let room = bytes_mut(scratch);
-    if let Some(inside) = columns.get_mut(OUTSIDE * STRIDE..(OUTSIDE + width) * STRIDE) {
+    if let Some(inside) = columns.get_mut(OUTSIDE * stride..(OUTSIDE + width) * stride) {
         if S::BITS <= 4 {
-            columns::of_four_bits::<STRIDE>([enter, leave], min_disparity, room, inside);
+            columns::of_four_bits::<STRIDE>([enter, leave], min_disparity, stride, room, inside);
         } else {
-            columns::of_eight_bits::<STRIDE>([enter, leave], min_disparity, room, inside);
+            columns::of_eight_bits::<STRIDE>([enter, leave], min_disparity, stride, room, inside);
         }
     }
-    if let (Some(select), Some(sums)) = (select, room.get_mut(..STRIDE + 2)) {
-        winners::<S, STRIDE>(columns, width, min_disparity.min(width), sums, select);
+    if let (Some(select), Some(sums)) = (select, room.get_mut(..stride + 2)) {
+        let begin = min_disparity.min(width);
+        winners::<S, STRIDE>(columns, stride, begin, width, sums, select);
     }
 }
 
@@ -68,30 +81,42 @@ pub(super) fn row<S: Windowed, const STRIDE: usize>(work: RowWork<'_>, select: O
 #[inline(never)]
 fn winners<S: Windowed, const STRIDE: usize>(
     columns: &[u8],
-    width: usize,
+    stride: usize,
     begin: usize,
+    width: usize,
     sums: &mut [u8],
     select: Select<'_>,
 ) {
+    let stride = if STRIDE > 0 { STRIDE } else { stride };
     let Select { disparities, winners, unique } = select;
     let rows = bytes_of(winners).get_mut(begin..).unwrap_or_default();
     // The column that leaves at the first pixel is among them.
-    let from = |column: usize| columns.get(column * STRIDE..).unwrap_or(&[]);
+    let from = |column: usize| columns.get(column * stride..).unwrap_or(&[]);
     let (leaves, enters) = (from(OUTSIDE + begin - S::RADIUS_X - 1), from(OUTSIDE + begin + S::RADIUS_X));
-    let inside = sums.get_mut(1..=STRIDE).and_then(|sums| sums.first_chunk_mut::<STRIDE>());
-    let columns = leaves.as_chunks::<STRIDE>().0.iter().take(2 * S::RADIUS_X + 1);
-    if let Some(sums) = inside {
-        let mut first = [0u8; STRIDE];
-        for column in columns {
-            for lane in 0..STRIDE {
-                first[lane] = first[lane].wrapping_add(column[lane] >> S::COLUMN_SHIFT);
+    let columns = leaves.chunks_exact(stride).take(2 * S::RADIUS_X + 1);
+    let inside = sums.get_mut(1..=stride).unwrap_or_default();
+    match inside.first_chunk_mut::<STRIDE>() {
+        Some(sums) if STRIDE > 0 => {
+            let mut first = [0u8; STRIDE];
+            for column in columns.filter_map(|column| column.first_chunk::<STRIDE>()) {
+                for lane in 0..STRIDE {
+                    first[lane] = first[lane].wrapping_add(column[lane] >> S::COLUMN_SHIFT);
+                }
+            }
+            *sums = first;
+        }
+        _ => {
+            inside.fill(0);
+            for column in columns {
+                for (sum, column) in inside.iter_mut().zip(column) {
+                    *sum = sum.wrapping_add(column >> S::COLUMN_SHIFT);
+                }
             }
         }
-        *sums = first;
     }
     let judged = unique.is_asked();
     let mut judge = unique.starting_at(begin);
-    let mut windows = Windows::<STRIDE> { leaves, enters, sums, rows, width };
+    let mut windows = Windows::<STRIDE> { stride, leaves, enters, sums, rows, width };
     // The first pixels have fewer candidates than the others.
     let few = (disparities - 1).min(width - begin);
     let mut done = 0;
@@ -99,8 +124,8 @@ fn winners<S: Windowed, const STRIDE: usize>(
         let alike = if done < few { few - done } else { width - begin - done };
         let count = if judged { 1 } else { alike };
         let candidates = (done + 1).min(disparities);
-        let mask = MASKS.get(256 - (STRIDE - candidates)..).unwrap_or(&[]);
-        if candidates < STRIDE {
+        let mask = MASKS.get(256 - (stride - candidates)..).unwrap_or(&[]);
+        if STRIDE == 0 || candidates < stride {
             windows.select::<S, true>(count, mask, usize::from(done < few));
         } else {
             windows.select::<S, false>(count, mask, 0);
@@ -109,11 +134,33 @@ fn winners<S: Windowed, const STRIDE: usize>(
         if judged {
             let (cost, disparity) = windows.last();
             judge(cost, &mut || {
-                let (mask, sums) = (mask.get(..STRIDE).unwrap_or(&[]), windows.sums.get_mut(1..=STRIDE));
-                best_of_the_rest::<LANES>(usize::from(disparity), mask, sums.unwrap_or_default())
+                let (mask, sums) = (mask.get(..stride).unwrap_or(&[]), windows.sums.get_mut(1..=stride));
+                best_of_the_rest(usize::from(disparity), mask, sums.unwrap_or_default())
             });
         }
     }
     let WinnerRows { below, costs, above, disparities: found } = WinnerRows::of(winners, begin);
     complete([below, costs, above, found], disparities);
+}
+
+/// The least cost of the candidates over [`BESIDE`] px beside the winner; `u8::MAX` where there is none.
+#[inline(never)]
+fn best_of_the_rest(disparity: usize, mask: &[u8], sums: &mut [u8]) -> u8 {
+    // The winner and those beside it are raised while the others are looked at.
+    let lane = (sums.len() - 1).saturating_sub(disparity);
+    let nearest = lane.saturating_sub(BESIDE)..sums.len().min(lane + BESIDE + 1);
+    let mut kept = [u8::MAX; 2 * BESIDE + 1];
+    for (kept, sum) in kept.iter_mut().zip(sums.get_mut(nearest.clone()).unwrap_or_default()) {
+        *kept = core::mem::replace(sum, u8::MAX);
+    }
+    let mut least = [u8::MAX; LANES];
+    for (sums, mask) in sums.as_chunks::<LANES>().0.iter().zip(mask.as_chunks::<LANES>().0) {
+        for i in 0..LANES {
+            least[i] = least[i].min(sums[i] | mask[i]);
+        }
+    }
+    for (kept, sum) in kept.iter().zip(sums.get_mut(nearest).unwrap_or_default()) {
+        *sum = *kept;
+    }
+    least.iter().fold(u8::MAX, |least, &lane| least.min(lane))
 }

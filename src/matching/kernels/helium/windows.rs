@@ -18,6 +18,8 @@ static DISPARITIES: [u8; 64] = {
 
 /// Windows that move along a row.
 pub(super) struct Windows<'a, const STRIDE: usize> {
+    /// Candidates of a column: `STRIDE`, unless that is 0.
+    pub stride: usize,
     /// From the column on that leaves at the next pixel.
     pub leaves: &'a [u8],
     /// From the column on that enters there.
@@ -41,23 +43,34 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
     /// Selects the winners of the next `count` pixels. Lanes with ones in the `mask` are not selected; for
     /// each pixel it moves on by `step`. Where there is no disparity below or above the winner, what is
     /// said of it means nothing.
-    ///
-    /// Eight instructions for 16 candidates, two more where there is a mask, and ten for a pixel.
     #[inline(never)]
     pub fn select<S: Windowed, const MASKED: bool>(&mut self, count: usize, mask: &[u8], step: usize) {
-        const { assert!(STRIDE.is_multiple_of(LANES) && STRIDE >= 2 * LANES && STRIDE <= DISPARITIES.len()) };
-        let columns = count * STRIDE;
+        let stride = if STRIDE > 0 { STRIDE } else { self.stride };
+        let columns = count * stride;
         let is_there = self.leaves.len() >= columns
             && self.enters.len() >= columns
-            && self.sums.len() == STRIDE + 2
+            && self.sums.len() == stride + 2
             && self.rows.len() >= 3 * self.width + count
-            && (!MASKED || mask.len() >= STRIDE + count * step);
-        let Some(lanes) = DISPARITIES.last_chunk::<STRIDE>() else { return };
-        if count == 0 || !is_there {
+            && (!MASKED || mask.len() >= stride + count * step);
+        if count == 0 || stride < LANES || !is_there {
             return;
         }
-        // SAFETY: the lengths asked for above are what is read and written; `count` is not 0. The winner is
-        // one of the lanes, and the bytes beside a lane are of `self.sums`.
+        if STRIDE > 0 {
+            self.select_among::<S, MASKED>(count, mask, step);
+        } else {
+            self.select_among_any::<S>(count, mask, step);
+        }
+        self.move_on(count);
+    }
+
+    /// [`Self::select`] among `STRIDE` candidates: eight instructions for 16 of them, two more where there is
+    /// a mask, and ten for a pixel.
+    #[inline(always)]
+    fn select_among<S: Windowed, const MASKED: bool>(&mut self, count: usize, mask: &[u8], step: usize) {
+        const { assert!(STRIDE.is_multiple_of(LANES) && STRIDE != LANES && STRIDE <= DISPARITIES.len()) };
+        let Some(lanes) = DISPARITIES.last_chunk::<STRIDE>() else { return };
+        // SAFETY: [`Self::select`] asked for the lengths of what is read and written; `count` is not 0. The
+        // winner is one of the lanes, and the bytes beside a lane are of `self.sums`.
         unsafe {
             asm!(
                 "dls lr, {count}",
@@ -121,15 +134,83 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
                 count = in(reg) count, enters = inout(reg) self.enters.as_ptr() => _,
                 leaves = inout(reg) self.leaves.as_ptr() => _, sums = in(reg) self.sums.as_mut_ptr().add(1),
                 mask = inout(reg) mask.as_ptr() => _, step = in(reg) step, disparities = in(reg) lanes.as_ptr(),
-                row = inout(reg) self.rows.as_mut_ptr() => _, width = in(reg) self.width, widths = in(reg) 3 * self.width,
+                row = inout(reg) self.rows.as_mut_ptr() => _, width = in(reg) self.width,
+                widths = in(reg) 3 * self.width,
                 least = out(reg) _, nearest = out(reg) _,
-                stride = const STRIDE, groups = const STRIDE / LANES, shift = const S::COLUMN_SHIFT, masked = const MASKED as u32,
+                stride = const STRIDE, groups = const STRIDE / LANES, shift = const S::COLUMN_SHIFT,
+                masked = const MASKED as u32,
                 out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, out("q4") _, out("q5") _, out("q6") _,
                 out("q7") _, options(nostack),
             );
         }
-        self.leaves = self.leaves.get(columns..).unwrap_or(&[]);
-        self.enters = self.enters.get(columns..).unwrap_or(&[]);
+    }
+
+    /// [`Self::select`] among any number of candidates, with a mask: 17 instructions for 16 of them, two more
+    /// where only some digits of the columns count, and 21 for a pixel.
+    #[inline(always)]
+    fn select_among_any<S: Windowed>(&mut self, count: usize, mask: &[u8], step: usize) {
+        // SAFETY: as for `select_among`.
+        unsafe {
+            asm!(
+                "2:",
+                "mov {least}, #255",
+                "lsr r4, {stride}, #4",
+                "dls lr, r4",
+                "3:",
+                "vldrb.u8 q1, [{enters}], #16",
+                "vldrb.u8 q2, [{leaves}], #16",
+                ".if {shift}",
+                "vshr.u8 q1, q1, #{shift}",
+                "vshr.u8 q2, q2, #{shift}",
+                ".endif",
+                "vldrb.u8 q0, [{sums}]",
+                "vadd.i8 q0, q0, q1",
+                "vsub.i8 q0, q0, q2",
+                "vldrb.u8 q1, [{mask}], #16",
+                "vstrb.8 q0, [{sums}], #16",
+                "vorr q1, q1, q0",
+                "vminv.u8 {least}, q1",
+                "le lr, 3b",
+                "sub {mask}, {mask}, {stride}",
+                "add {mask}, {mask}, {step}",
+                "sub {sums}, {sums}, {stride}",
+                // The least of the disparities that have it.
+                "mov {nearest}, #255",
+                "dls lr, r4",
+                "sub r4, {stride}, #1",
+                "3:",
+                "vldrb.u8 q0, [{sums}], #16",
+                "vddup.u8 q1, r4, #1",
+                "vpt.i8 eq, q0, {least}",
+                "vminvt.u8 {nearest}, q1",
+                "le lr, 3b",
+                "add r4, {width}, {width}, lsl #1",
+                "strb {least}, [{row}, {width}]",
+                "strb {nearest}, [{row}, r4]",
+                "sub r4, {sums}, {nearest}",
+                "sub {sums}, {sums}, {stride}",
+                "ldrb {least}, [r4, #-2]",
+                "strb {least}, [{row}, {width}, lsl #1]",
+                "ldrb {least}, [r4]",
+                "strb {least}, [{row}], #1",
+                "subs {count}, {count}, #1",
+                "bne 2b",
+                count = inout(reg) count => _, enters = inout(reg) self.enters.as_ptr() => _,
+                leaves = inout(reg) self.leaves.as_ptr() => _,
+                sums = inout(reg) self.sums.as_mut_ptr().add(1) => _,
+                mask = inout(reg) mask.as_ptr() => _, step = in(reg) step, stride = in(reg) self.stride,
+                row = inout(reg) self.rows.as_mut_ptr() => _, width = in(reg) self.width,
+                least = out(reg) _, nearest = out(reg) _, shift = const S::COLUMN_SHIFT,
+                out("r4") _, out("lr") _, out("q0") _, out("q1") _, out("q2") _, options(nostack),
+            );
+        }
+    }
+
+    /// Goes to the pixel that is so many after the next one.
+    #[inline(always)]
+    fn move_on(&mut self, count: usize) {
+        self.leaves = self.leaves.get(count * self.stride..).unwrap_or(&[]);
+        self.enters = self.enters.get(count * self.stride..).unwrap_or(&[]);
         let rows = core::mem::take(&mut self.rows);
         self.rows = rows.get_mut(count..).unwrap_or_default();
     }

@@ -1,0 +1,33 @@
+//! Lines of Rust files have at most 110 columns: code, comments, strings and tables alike.
+
+use crate::source;
+
+/// Columns of a line, at most.
+const MOST_COLUMNS: usize = 110;
+
+/// Files and folders whose long lines are still to be wrapped.
+const NOT_YET: [&str; 3] = ["examples/", "host-tests/", "src/"];
+
+/// Lines of `text` that are too long.
+fn long_lines(name: &str, text: &str) -> Vec<String> {
+    let columns = text.lines().map(|line| line.chars().count()).zip(1..);
+    columns
+        .filter(|(n, _)| *n > MOST_COLUMNS)
+        .map(|(n, line)| format!("{name}:{line}: {n} columns"))
+        .collect()
+}
+
+#[test]
+fn lines_have_at_most_110_columns() {
+    let files = source::files();
+    let is_checked = |name: &&String| name.ends_with(".rs") && !NOT_YET.iter().any(|at| name.starts_with(at));
+    let wrong: Vec<_> =
+        files.iter().filter(is_checked).flat_map(|name| long_lines(name, &source::text(name))).collect();
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_long_line_is_found() {
+    let text = format!("{}\n{}\n// {}\n", "a".repeat(110), "é".repeat(110), "b".repeat(108));
+    assert_eq!(long_lines("src/x.rs", &text), ["src/x.rs:3: 111 columns"]);
+}

@@ -1,8 +1,8 @@
 //! The house rules that a machine can read: short files, no panics in the core, nothing of one machine, a
 //! tidy root.
 
-use crate::source::{self, inside, is_sign, line, tokens, word};
-use proc_macro2::{Delimiter, TokenTree};
+use crate::source::{self, end_of_item, is_sign, is_test_attribute, line, tokens, word};
+use proc_macro2::TokenTree;
 
 /// Lines of a Rust file without its tests, at most.
 const MOST_LINES: usize = 300;
@@ -69,9 +69,7 @@ fn panics(name: &str, tokens: &[TokenTree]) -> Vec<String> {
     let mut i = 0;
     while let Some(token) = tokens.get(i) {
         if is_sign(Some(token), '#') && is_test_attribute(tokens.get(i + 1)) {
-            // What the attribute stands on ends with its braces or a semicolon.
-            let ends = |t: &TokenTree| inside(Some(t), Delimiter::Brace).is_some() || is_sign(Some(t), ';');
-            i += 2 + tokens[i + 2..].iter().position(ends).unwrap_or(tokens.len()) + 1;
+            i = end_of_item(tokens, i + 2);
             continue;
         }
         let name_here = word(Some(token));
@@ -87,13 +85,6 @@ fn panics(name: &str, tokens: &[TokenTree]) -> Vec<String> {
         i += 1;
     }
     found
-}
-
-/// Whether a token is the bracket of `#[cfg(test)]`.
-fn is_test_attribute(token: Option<&TokenTree>) -> bool {
-    let Some(attribute) = inside(token, Delimiter::Bracket) else { return false };
-    let arguments = inside(attribute.get(1), Delimiter::Parenthesis).unwrap_or_default();
-    word(attribute.first()) == "cfg" && arguments.len() == 1 && word(arguments.first()) == "test"
 }
 
 #[test]

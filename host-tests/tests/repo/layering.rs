@@ -1,7 +1,8 @@
 //! Data moves down the list of modules in `src/lib.rs`: a file uses only what stands above it.
 
-use crate::source::{self, inside, is_sign, line, tokens, word};
-use proc_macro2::{Delimiter, TokenTree};
+use crate::paths::{Named, module_of, named};
+use crate::source::{self, is_sign, line, tokens, word};
+use proc_macro2::TokenTree;
 
 /// The modules of the finished crate, in running order.
 const HOUSE: [&str; 12] = [
@@ -19,92 +20,24 @@ fn declared(lib: &str) -> Vec<String> {
         .collect()
 }
 
-/// Where a file stands in the module tree: `src/a/b.rs` is `a::b`, `src/a/mod.rs` is `a`, `src/lib.rs`
-/// nothing.
-fn module_of(name: &str) -> Vec<String> {
-    let path = name.trim_start_matches("src/").trim_end_matches(".rs");
-    path.split('/').filter(|part| !matches!(*part, "mod" | "lib")).map(str::to_owned).collect()
-}
-
-/// A path in the source that begins at the crate's root: the line, and the first name after it (`*` for a
-/// glob).
-struct Reference {
-    line: usize,
-    top: String,
-}
-
-/// Collects what `tokens` in `module` name by `crate::` or `super::`, macros' arguments and `use` groups
-/// included.
-fn references(tokens: &[TokenTree], module: &[String], found: &mut Vec<Reference>) {
-    let mut i = 0;
-    while let Some(token) = tokens.get(i) {
-        match word(Some(token)).as_str() {
-            "mod" => {
-                if let Some(body) = inside(tokens.get(i + 2), Delimiter::Brace) {
-                    let inner: Vec<_> = module.iter().cloned().chain([word(tokens.get(i + 1))]).collect();
-                    references(&body, &inner, found);
-                    i += 3;
-                    continue;
-                }
-            }
-            "crate" => i = path(tokens, i + 1, &[], found),
-            "super" => i = path(tokens, i + 1, parent(module), found),
-            _ => {
-                if let TokenTree::Group(group) = token {
-                    references(&group.stream().into_iter().collect::<Vec<_>>(), module, found);
-                }
-            }
-        }
-        i += 1;
-    }
-}
-
-/// The module around `module`.
-fn parent(module: &[String]) -> &[String] {
-    module.split_last().map_or(module, |(_, rest)| rest)
-}
-
-/// Reads on after `crate` or `super`, which named `base`; the last index that was read.
-fn path(tokens: &[TokenTree], mut i: usize, base: &[String], found: &mut Vec<Reference>) -> usize {
-    let mut base = base.to_vec();
-    // `pub(crate)` and the like name no item.
-    while is_sign(tokens.get(i), ':') && is_sign(tokens.get(i + 1), ':') {
-        let Some(next) = tokens.get(i + 2) else { break };
-        if word(Some(next)) == "super" {
-            base.pop();
-            i += 3;
-            continue;
-        }
-        let entries = match inside(Some(next), Delimiter::Brace) {
-            Some(group) => group.split(|token| is_sign(Some(token), ',')).map(<[_]>::to_vec).collect(),
-            None => vec![vec![next.clone()]],
-        };
-        for entry in entries.iter().filter(|entry| !entry.is_empty()) {
-            let name = if is_sign(entry.first(), '*') { "*".to_owned() } else { word(entry.first()) };
-            found.push(Reference { line: line(next), top: base.first().cloned().unwrap_or(name) });
-        }
-        return i + 2;
-    }
-    i - 1
-}
-
 /// What a file does that the order of modules forbids.
 fn upward(order: &[String], name: &str, text: &str) -> Vec<String> {
-    let module = module_of(name);
+    let module = module_of("src", name);
     let Some(own) = module.first() else { return Vec::new() };
     let Some(own_place) = order.iter().position(|m| m == own) else {
         return vec![format!("{name}: the module {own} is not declared in src/lib.rs")];
     };
-    let mut found = Vec::new();
-    references(&tokens(name, text), &module, &mut found);
-    let judge = |r: Reference| match order.iter().position(|m| *m == r.top) {
-        Some(place) if place <= own_place => None,
-        Some(_) => Some(format!("{name}:{}: {own} uses {}, which stands below it", r.line, r.top)),
-        None => {
-            Some(format!("{name}:{}: crate::{} is no module: name the module that has it", r.line, r.top))
+    let judge = |Named { line, path, .. }: Named| {
+        let top = path.first()?;
+        match order.iter().position(|m| m == top) {
+            Some(place) if place <= own_place => None,
+            Some(_) => Some(format!("{name}:{line}: {own} uses {top}, which stands below it")),
+            None => Some(format!("{name}:{line}: crate::{top} is no module: name the module that has it")),
         }
     };
-    found.into_iter().filter_map(judge).collect()
+    let mut found: Vec<_> = named(&tokens(name, text), &module, &[]).into_iter().filter_map(judge).collect();
+    found.dedup();
+    found
 }
 
 /// The lines of a file that name `wanted` as an identifier.

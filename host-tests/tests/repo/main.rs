@@ -1,17 +1,20 @@
 //! The repository's own rules.
 //!
-//! * `house`: short files, no panics, a tidy root. `layering`: data moves down the list of modules.
+//! * `house`: short files, no panics, a tidy root.
+//! * `layering`: data moves down the list of modules. `circles`: no circle and no upward arrow inside a module.
 //! * `readme`: its commands work and its figures are current. `firmware`: the example's parts without
 //!   hardware.
 //! * `lines`, `comments`, `names`: what a reader meets: line lengths, doc comments that stand alone, unique
 //!   public names.
-//! * `source`: the files, for the others.
+//! * `source`: the files, for the others. `paths`: what a file names.
 
+mod circles;
 mod comments;
 mod firmware;
 mod house;
 mod layering;
 mod lines;
 mod names;
+mod paths;
 mod readme;
 mod source;

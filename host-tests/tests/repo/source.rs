@@ -31,11 +31,16 @@ pub fn text(name: &str) -> String {
 }
 
 /// The core's files: name and text.
-#[allow(dead_code, reason = "each test target uses a part of this module")]
 pub fn core_files() -> Vec<(String, String)> {
-    let names = files().into_iter().filter(|name| name.starts_with("src/") && name.ends_with(".rs"));
-    let files: Vec<_> = names.map(|name| (name.clone(), text(&name))).collect();
-    assert!(files.len() > 5, "the core's files were not found");
+    rust_files("src")
+}
+
+/// The Rust files below a folder: name and text.
+pub fn rust_files(folder: &str) -> Vec<(String, String)> {
+    let is_below = |name: &String| name.starts_with(&format!("{folder}/")) && name.ends_with(".rs");
+    let files: Vec<_> =
+        files().into_iter().filter(is_below).map(|name| (name.clone(), text(&name))).collect();
+    assert!(files.len() > 5, "the files of {folder} were not found");
     files
 }
 
@@ -71,4 +76,17 @@ pub fn inside(token: Option<&TokenTree>, delimiter: Delimiter) -> Option<Vec<Tok
 /// The line that a token begins in.
 pub fn line(token: &TokenTree) -> usize {
     token.span().start().line
+}
+
+/// Whether a token is the bracket of `#[cfg(test)]`.
+pub fn is_test_attribute(token: Option<&TokenTree>) -> bool {
+    let Some(attribute) = inside(token, Delimiter::Bracket) else { return false };
+    let arguments = inside(attribute.get(1), Delimiter::Parenthesis).unwrap_or_default();
+    word(attribute.first()) == "cfg" && arguments.len() == 1 && word(arguments.first()) == "test"
+}
+
+/// The place behind an item: it ends with its braces or a semicolon.
+pub fn end_of_item(tokens: &[TokenTree], start: usize) -> usize {
+    let ends = |t: &TokenTree| inside(Some(t), Delimiter::Brace).is_some() || is_sign(Some(t), ';');
+    tokens[start..].iter().position(ends).map_or(tokens.len(), |at| start + at + 1)
 }

@@ -1,0 +1,257 @@
+//! Inside a module, too, data moves one way: in every folder, no files or folders use each other in a circle.
+//! Where a `mod.rs` lists its modules in running order, an arrow goes only to what stands above.
+//!
+//! A name is followed through re-exports to the file that has it: `pub use` hides no arrow and is none.
+
+mod shown_to_fail;
+
+use crate::paths::{Named, module_of, named};
+use crate::source::{self, is_sign, tokens, word};
+use proc_macro2::TokenTree;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The core's modules without a circle, with all folders in them.
+const NO_CIRCLE: [&str; 4] = ["camera", "depth", "focus", "pipeline"];
+
+/// Folders whose `mod.rs` lists the modules in running order.
+const IN_ORDER: [&str; 6] =
+    ["geometry", "geometry/absolute", "geometry/camera", "geometry/known_shape", "geometry/linear", "motion"];
+
+/// The program `stereo`.
+const PROGRAM: &str = "host-tests/src/bin/stereo";
+
+/// The node of what a `mod.rs` has itself.
+const OWN: &str = "mod.rs";
+
+/// A file of the tree of modules.
+#[derive(Default)]
+struct Module {
+    file: String,
+    children: Vec<String>,
+    named: Vec<Named>,
+    /// Macros that the file calls, with the lines.
+    calls: Vec<(String, usize)>,
+    /// What it defines at its top.
+    defines: BTreeSet<String>,
+}
+
+/// An arrow between two files: from, to, where.
+type Arrow = (Vec<String>, Vec<String>, String);
+
+#[derive(Default)]
+struct Tree(BTreeMap<Vec<String>, Module>);
+
+impl Tree {
+    fn new(root: &str, files: &[(String, String)]) -> Self {
+        let mut tree = Self::default();
+        for (file, text) in files {
+            let (path, tokens) = (module_of(root, file), without_tests(&tokens(file, text)));
+            let children = declared(&tokens);
+            let named = named(&tokens, &path, &children);
+            let mut module = Module { file: file.clone(), children, named, ..Module::default() };
+            definitions(&tokens, &mut module.defines);
+            calls(&tokens, &mut module.calls);
+            tree.0.insert(path, module);
+        }
+        tree
+    }
+
+    /// The files that have what a path names.
+    fn owners(&self, path: &[String], depth: usize, found: &mut BTreeSet<Vec<String>>) {
+        let at = (0..=path.len()).rev().find(|&n| self.0.contains_key(&path[..n]));
+        let Some((at, module)) = at.and_then(|n| Some((n, self.0.get(&path[..n])?))) else { return };
+        let (here, rest) = path.split_at(at);
+        let Some(name) = rest.first() else {
+            found.insert(here.to_vec());
+            return;
+        };
+        let before = found.len();
+        let passed_on = module.named.iter().filter(|_| depth < 8 && !module.defines.contains(name));
+        for one in passed_on.filter(|one| one.path != path) {
+            let target = match one.used_as.as_deref() {
+                Some("*") => one.path[..one.path.len() - 1].iter().cloned().chain([name.clone()]).collect(),
+                Some(used_as) if used_as == name => one.path.clone(),
+                _ => continue,
+            };
+            if one.used_as.as_deref() == Some("*") && !self.has(&target) {
+                continue;
+            }
+            self.owners(&[target, rest[1..].to_vec()].concat(), depth + 1, found);
+        }
+        if found.len() == before {
+            found.insert(here.to_vec());
+        }
+    }
+
+    /// Whether the module before the last name defines that.
+    fn has(&self, path: &[String]) -> bool {
+        let Some((name, module)) = path.split_last() else { return false };
+        self.0
+            .get(module)
+            .is_some_and(|module| module.defines.contains(name) || module.children.contains(name))
+    }
+
+    /// All arrows, re-exports left out.
+    fn arrows(&self) -> Vec<Arrow> {
+        let mut arrows = Vec::new();
+        for (from, module) in &self.0 {
+            for one in module.named.iter().filter(|one| !one.public) {
+                let path = if one.used_as.as_deref() == Some("*") {
+                    &one.path[..one.path.len() - 1]
+                } else {
+                    one.path.as_slice()
+                };
+                let mut owners = BTreeSet::new();
+                self.owners(path, 0, &mut owners);
+                let place = format!("{}:{}: {}", module.file, one.line, one.path.join("::"));
+                arrows.extend(owners.into_iter().map(|to| (from.clone(), to, place.clone())));
+            }
+            for (name, line) in &module.calls {
+                let definers = self.0.iter().filter(|(_, other)| other.defines.contains(&format!("{name}!")));
+                let definers: Vec<_> = definers.map(|(path, _)| path.clone()).collect();
+                if let ([to], false) = (definers.as_slice(), definers.contains(from)) {
+                    arrows.push((from.clone(), to.clone(), format!("{}:{line}: {name}!", module.file)));
+                }
+            }
+        }
+        arrows
+    }
+
+    /// The arrows among what stands in `folder`: names of its modules, and a place for each.
+    fn inside(&self, folder: &[String]) -> BTreeMap<(String, String), String> {
+        let node = |path: &[String]| path.get(folder.len()).cloned().unwrap_or_else(|| OWN.to_owned());
+        let here = |arrow: &Arrow| arrow.0.starts_with(folder) && arrow.1.starts_with(folder);
+        let arrows = self.arrows().into_iter().filter(here);
+        let between = arrows.map(|(from, to, place)| ((node(&from), node(&to)), place));
+        between.filter(|((from, to), _)| from != to).collect()
+    }
+
+    /// The folders at and below `top`.
+    fn folders<'a>(&'a self, top: &'a [String]) -> impl Iterator<Item = &'a Vec<String>> {
+        let folders =
+            self.0.iter().filter(|(path, module)| path.starts_with(top) && !module.children.is_empty());
+        folders.map(|(path, _)| path)
+    }
+
+    /// The circles at and below a folder, with a line for each arrow in one.
+    fn circles(&self, top: &str) -> Vec<String> {
+        let top = module_of("", top);
+        assert!(self.folders(&top).count() > 0, "{top:?} is no module with modules");
+        let mut found = Vec::new();
+        for folder in self.folders(&top) {
+            let arrows = self.inside(folder);
+            let reached = |start: &str| {
+                let mut reached = BTreeSet::from([start.to_owned()]);
+                loop {
+                    let next =
+                        arrows.keys().filter(|(from, to)| reached.contains(from) && !reached.contains(to));
+                    let next: Vec<_> = next.map(|(_, to)| to.clone()).collect();
+                    if next.is_empty() {
+                        return reached;
+                    }
+                    reached.extend(next);
+                }
+            };
+            let in_circle = arrows.iter().filter(|((from, to), _)| reached(to).contains(from));
+            let name = folder.join("::");
+            found.extend(in_circle.map(|((from, to), place)| format!("{name}: {from} -> {to}: {place}")));
+        }
+        found
+    }
+
+    /// The arrows of a folder that go up: to what is declared below.
+    fn upward(&self, folder: &str) -> Vec<String> {
+        let folder = &module_of("", folder);
+        let Some(module) = self.0.get(folder) else { return vec![format!("{folder:?} is no module")] };
+        let place = |name: &String| module.children.iter().position(|child| child == name);
+        let up = |(from, to): &(String, String)| match (place(from), place(to)) {
+            (Some(from), Some(to)) => from < to,
+            _ => false,
+        };
+        let arrows = self.inside(folder).into_iter().filter(|(ends, _)| up(ends));
+        arrows.map(|((from, to), place)| format!("{}: {from} -> {to}: {place}", folder.join("::"))).collect()
+    }
+}
+
+/// Tokens without what stands behind `#[cfg(test)]`.
+fn without_tests(tokens: &[TokenTree]) -> Vec<TokenTree> {
+    let mut kept = Vec::new();
+    let mut i = 0;
+    while let Some(token) = tokens.get(i) {
+        if is_sign(Some(token), '#') && source::is_test_attribute(tokens.get(i + 1)) {
+            i = source::end_of_item(tokens, i + 2);
+            continue;
+        }
+        kept.push(token.clone());
+        i += 1;
+    }
+    kept
+}
+
+/// The modules that a file declares, in its order.
+pub fn declared(tokens: &[TokenTree]) -> Vec<String> {
+    let ends = |i: usize| is_sign(tokens.get(i + 2), ';');
+    let mods = (0..tokens.len()).filter(|&i| word(tokens.get(i)) == "mod" && ends(i));
+    mods.map(|i| word(tokens.get(i + 1))).collect()
+}
+
+/// The names of a file's items; of macros with a `!`.
+fn definitions(tokens: &[TokenTree], found: &mut BTreeSet<String>) {
+    const ITEMS: [&str; 8] = ["fn", "struct", "enum", "trait", "type", "const", "static", "union"];
+    for (i, token) in tokens.iter().enumerate() {
+        let name = word(tokens.get(i + 1));
+        if ITEMS.contains(&word(Some(token)).as_str()) {
+            found.insert(name);
+        } else if word(Some(token)) == "macro_rules" {
+            found.insert(format!("{}!", word(tokens.get(i + 2))));
+            found.insert(word(tokens.get(i + 2)));
+        }
+    }
+}
+
+/// The macros that are called by a plain name.
+fn calls(tokens: &[TokenTree], found: &mut Vec<(String, usize)>) {
+    for (i, token) in tokens.iter().enumerate() {
+        if let TokenTree::Group(group) = token {
+            calls(&group.stream().into_iter().collect::<Vec<_>>(), found);
+        }
+        let is_call =
+            is_sign(tokens.get(i + 1), '!') && matches!(tokens.get(i + 2), Some(TokenTree::Group(_)));
+        let of_path = i >= 1 && is_sign(tokens.get(i - 1), ':');
+        if is_call && !of_path {
+            found.push((word(Some(token)), source::line(token)));
+        }
+    }
+}
+
+fn core() -> Tree {
+    Tree::new("src", &source::core_files())
+}
+
+#[test]
+fn no_circle_inside_a_module() {
+    let tree = core();
+    let wrong: Vec<_> = NO_CIRCLE.iter().flat_map(|folder| tree.circles(folder)).collect();
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn arrows_inside_a_module_go_up_its_list() {
+    let tree = core();
+    let wrong: Vec<_> = IN_ORDER.iter().flat_map(|folder| tree.upward(folder)).collect();
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+/// `cargo test --test repo circles -- --ignored --nocapture` prints what is left to do.
+#[test]
+#[ignore = "prints every circle and the number of upward arrows of each folder"]
+fn what_is_left() {
+    let print = |tree: Tree| {
+        tree.circles("").iter().for_each(|line| println!("{line}"));
+        for folder in tree.folders(&[]) {
+            println!("{}: {} upward", folder.join("::"), tree.upward(&folder.join("/")).len());
+        }
+    };
+    print(core());
+    print(Tree::new(PROGRAM, &source::rust_files(PROGRAM)));
+}

@@ -199,9 +199,3 @@ impl Millimetres {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(transparent)]
 pub struct Metres(pub f32);
-
-/// A length in the image, in pixels.
-#[derive(Clone, Copy, PartialEq, PartialOrd, Default, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(transparent)]
-pub struct Px(pub f32);

@@ -28,7 +28,7 @@ pub const STEREOPSIS_NOISE_HIGH: u8 = 2;
 /// that.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(C)]
-pub struct Config {
+pub struct CConfig {
     /// Pixels in a line: 1 to `stereopsis_max_width()`.
     pub width: u16,
     /// Lines in a frame, at least 1.
@@ -113,7 +113,7 @@ pub(super) const fn noise_number(level: Noise) -> u8 {
     }
 }
 
-impl From<matching::Config> for Config {
+impl From<matching::Config> for CConfig {
     fn from(config: matching::Config) -> Self {
         let matching::Config {
             width,
@@ -155,7 +155,7 @@ impl From<matching::Config> for Config {
     }
 }
 
-impl Config {
+impl CConfig {
     /// The same search with the checks of a preset and the penalties of the method for so much noise.
     fn with_filter<S: Scheme>(self, filter: Filter, noise: Noise) -> Self {
         let search = matching::Config::new(self.width, self.height, self.disparities);
@@ -227,7 +227,7 @@ pub unsafe fn config_default<S: Scheme>(
     height: u16,
     disparities: u16,
     preset: i32,
-    config: *mut Config,
+    config: *mut CConfig,
 ) -> Status {
     if config.is_null() {
         return Status::Null;
@@ -245,7 +245,7 @@ pub unsafe fn config_default<S: Scheme>(
 /// # Safety
 ///
 /// `config` is null or points to a configuration.
-pub unsafe fn config_noise<S: Scheme>(preset: i32, noise: u8, config: *mut Config) -> Status {
+pub unsafe fn config_noise<S: Scheme>(preset: i32, noise: u8, config: *mut CConfig) -> Status {
     if config.is_null() {
         return Status::Null;
     }

@@ -14,7 +14,7 @@ pub const STEREOPSIS_LOST_STALE: i32 = 3;
 /// Counts since `stereopsis_start`, each of which stays at its largest value when it is reached.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[repr(C)]
-pub struct Counters {
+pub struct CCounters {
     /// Frames begun.
     pub frames: u32,
     /// Frames of which every line came, and every row went out.
@@ -39,7 +39,7 @@ pub struct Counters {
     pub lines_stale: u32,
 }
 
-impl From<&FaultCounters> for Counters {
+impl From<&FaultCounters> for CCounters {
     fn from(counters: &FaultCounters) -> Self {
         Self {
             frames: counters.frames,

@@ -3,7 +3,7 @@
 
 use super::state::{State, share_bytes};
 use super::{
-    Config, Counters, Handle, Row, STEREOPSIS_LOST_DROPPED, STEREOPSIS_LOST_LATE, STEREOPSIS_LOST_STALE,
+    CConfig, CCounters, CRow, Handle, STEREOPSIS_LOST_DROPPED, STEREOPSIS_LOST_LATE, STEREOPSIS_LOST_STALE,
     STEREOPSIS_LOST_TORN, Status,
 };
 use crate::camera::LineFault;
@@ -28,10 +28,10 @@ pub(super) fn either(result: Result<Status, Status>) -> Status {
 /// # Safety
 ///
 /// `to` points to a row's bytes.
-unsafe fn give(to: *mut Row, row: Option<matching::Row<'_>>, without: Status) -> Status {
+unsafe fn give(to: *mut CRow, row: Option<matching::Row<'_>>, without: Status) -> Status {
     let status = if row.is_some() { Status::Ok } else { without };
     // SAFETY: the caller's promise; no alignment is asked for.
-    unsafe { to.write_unaligned(row.map_or(Row::NONE, Row::from)) };
+    unsafe { to.write_unaligned(row.map_or(CRow::NONE, CRow::from)) };
     status
 }
 
@@ -101,7 +101,7 @@ impl<S: Scheme, const W: usize, const D: usize> Instance<S, W, D> {
     /// # Safety
     ///
     /// As [`Self::deinit`]; `config` is null or points to a configuration.
-    pub unsafe fn start(handle: *mut Handle, config: *const Config, keeps_counters: bool) -> Status {
+    pub unsafe fn start(handle: *mut Handle, config: *const CConfig, keeps_counters: bool) -> Status {
         if config.is_null() {
             return Status::Null;
         }
@@ -141,7 +141,7 @@ impl<S: Scheme, const W: usize, const D: usize> Instance<S, W, D> {
         left: *const u8,
         right: *const u8,
         length: usize,
-        row: *mut Row,
+        row: *mut CRow,
     ) -> Status {
         if left.is_null() || right.is_null() || row.is_null() {
             return Status::Null;
@@ -178,7 +178,7 @@ impl<S: Scheme, const W: usize, const D: usize> Instance<S, W, D> {
     /// # Safety
     ///
     /// As [`Self::deinit`]; `row` is null or points to a row's bytes.
-    pub unsafe fn push_lost(handle: *mut Handle, fault: i32, row: *mut Row) -> Status {
+    pub unsafe fn push_lost(handle: *mut Handle, fault: i32, row: *mut CRow) -> Status {
         if row.is_null() {
             return Status::Null;
         }
@@ -240,7 +240,7 @@ impl<S: Scheme, const W: usize, const D: usize> Instance<S, W, D> {
     /// # Safety
     ///
     /// As [`Self::deinit`]; `counters` is null or points to counters' bytes.
-    pub unsafe fn counters(handle: *mut Handle, counters: *mut Counters) -> Status {
+    pub unsafe fn counters(handle: *mut Handle, counters: *mut CCounters) -> Status {
         if counters.is_null() {
             return Status::Null;
         }
@@ -260,7 +260,7 @@ impl<S: Scheme, const W: usize, const D: usize> Instance<S, W, D> {
     /// # Safety
     ///
     /// As [`Self::deinit`]; `row` is null or points to a row's bytes.
-    pub unsafe fn flush(handle: *mut Handle, row: *mut Row) -> Status {
+    pub unsafe fn flush(handle: *mut Handle, row: *mut CRow) -> Status {
         if row.is_null() {
             return Status::Null;
         }

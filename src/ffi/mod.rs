@@ -10,7 +10,7 @@
 //!
 //! `examples/c-firmware` is such a package with a program in C. In running order:
 //!
-//! * [`Config`], [`Row`], [`Rig`], [`Counters`], [`NoiseMeter`] and the constants: what crosses the border,
+//! * [`CConfig`], [`CRow`], [`CRig`], [`CCounters`], [`CNoiseMeter`] and the constants: what crosses the border,
 //!   laid out as C has it.
 //! * [`Status`]: what every call answers.
 //! * [`Instance`]: the functions for one method and one capacity; [`Handle`] is what C holds.
@@ -42,20 +42,20 @@ mod state;
 mod status;
 
 pub use config::{
-    Config, STEREOPSIS_NOISE_HIGH, STEREOPSIS_NOISE_LOW, STEREOPSIS_NOISE_NONE, STEREOPSIS_NOT_CHECKED,
+    CConfig, STEREOPSIS_NOISE_HIGH, STEREOPSIS_NOISE_LOW, STEREOPSIS_NOISE_NONE, STEREOPSIS_NOT_CHECKED,
     STEREOPSIS_PRESET_DEFAULT, STEREOPSIS_PRESET_DENSE, STEREOPSIS_PRESET_STRICT, config_default,
     config_noise,
 };
 pub use faults::{
-    Counters, STEREOPSIS_LOST_DROPPED, STEREOPSIS_LOST_LATE, STEREOPSIS_LOST_STALE, STEREOPSIS_LOST_TORN,
+    CCounters, STEREOPSIS_LOST_DROPPED, STEREOPSIS_LOST_LATE, STEREOPSIS_LOST_STALE, STEREOPSIS_LOST_TORN,
 };
 pub use instance::Instance;
-pub use noise::{NoiseMeter, noise_clear, noise_level, noise_line};
-pub use rig::{Rig, millimetres};
+pub use noise::{CNoiseMeter, noise_clear, noise_level, noise_line};
+pub use rig::{CRig, millimetres};
 pub use row::{
-    Row, STEREOPSIS_FLAG_AMBIGUOUS, STEREOPSIS_FLAG_CEILING, STEREOPSIS_FLAG_DAMAGED, STEREOPSIS_FLAG_FILLED,
-    STEREOPSIS_FLAG_MISMATCH, STEREOPSIS_FLAG_OUTSIDE, STEREOPSIS_FLAG_SPECKLE, STEREOPSIS_FLAG_UNTEXTURED,
-    STEREOPSIS_NONE, STEREOPSIS_STEPS_PER_PX,
+    CRow, STEREOPSIS_FLAG_AMBIGUOUS, STEREOPSIS_FLAG_CEILING, STEREOPSIS_FLAG_DAMAGED,
+    STEREOPSIS_FLAG_FILLED, STEREOPSIS_FLAG_MISMATCH, STEREOPSIS_FLAG_OUTSIDE, STEREOPSIS_FLAG_SPECKLE,
+    STEREOPSIS_FLAG_UNTEXTURED, STEREOPSIS_NONE, STEREOPSIS_STEPS_PER_PX,
 };
-pub use state::{Handle, STEREOPSIS_ALIGN, state_bytes};
+pub use state::{Handle, STEREOPSIS_ALIGN, memory_bytes};
 pub use status::{STEREOPSIS_ABI, Status, status_text, version_text};

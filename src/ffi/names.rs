@@ -23,7 +23,7 @@ macro_rules! instantiate_c_api {
         pub mod stereopsis_c {
             use super::StereopsisInstance;
             use core::ffi::{c_char, c_void};
-            use $crate::ffi::{Config, Counters, Handle, NoiseMeter, Rig, Row, Status};
+            use $crate::ffi::{CConfig, CCounters, CNoiseMeter, CRig, CRow, Handle, Status};
 
             /// The library's interface: a program that was compiled with another `STEREOPSIS_ABI` must not go
             /// on.
@@ -107,7 +107,7 @@ macro_rules! instantiate_c_api {
                 height: u16,
                 disparities: u16,
                 preset: i32,
-                config: *mut Config,
+                config: *mut CConfig,
             ) -> Status {
                 // SAFETY: as above.
                 unsafe {
@@ -128,7 +128,7 @@ macro_rules! instantiate_c_api {
             pub unsafe extern "C" fn stereopsis_config_noise(
                 preset: i32,
                 noise: u8,
-                config: *mut Config,
+                config: *mut CConfig,
             ) -> Status {
                 // SAFETY: as above.
                 unsafe { $crate::ffi::config_noise::<$crate::matching::$method>(preset, noise, config) }
@@ -138,7 +138,7 @@ macro_rules! instantiate_c_api {
             /// again, for another configuration; a frame that is under way is lost, and counters go to
             /// zero.
             #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn stereopsis_start(handle: *mut Handle, config: *const Config) -> Status {
+            pub unsafe extern "C" fn stereopsis_start(handle: *mut Handle, config: *const CConfig) -> Status {
                 // SAFETY: as above.
                 unsafe { StereopsisInstance::start(handle, config, false) }
             }
@@ -149,7 +149,7 @@ macro_rules! instantiate_c_api {
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_restart(
                 handle: *mut Handle,
-                config: *const Config,
+                config: *const CConfig,
             ) -> Status {
                 // SAFETY: as above.
                 unsafe { StereopsisInstance::start(handle, config, true) }
@@ -173,7 +173,7 @@ macro_rules! instantiate_c_api {
                 left: *const u8,
                 right: *const u8,
                 length: usize,
-                row: *mut Row,
+                row: *mut CRow,
             ) -> Status {
                 // SAFETY: as above.
                 unsafe { StereopsisInstance::push(handle, left, right, length, row) }
@@ -188,7 +188,7 @@ macro_rules! instantiate_c_api {
             pub unsafe extern "C" fn stereopsis_push_lost(
                 handle: *mut Handle,
                 fault: i32,
-                row: *mut Row,
+                row: *mut CRow,
             ) -> Status {
                 // SAFETY: as above.
                 unsafe { StereopsisInstance::push_lost(handle, fault, row) }
@@ -214,7 +214,7 @@ macro_rules! instantiate_c_api {
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_counters(
                 handle: *mut Handle,
-                counters: *mut Counters,
+                counters: *mut CCounters,
             ) -> Status {
                 // SAFETY: as above.
                 unsafe { StereopsisInstance::counters(handle, counters) }
@@ -223,7 +223,7 @@ macro_rules! instantiate_c_api {
             /// Gives the next row when all lines are in: `STEREOPSIS_STATUS_OK` with a row, or
             /// `STEREOPSIS_STATUS_FRAME_DONE` with an empty one when all are out.
             #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn stereopsis_flush(handle: *mut Handle, row: *mut Row) -> Status {
+            pub unsafe extern "C" fn stereopsis_flush(handle: *mut Handle, row: *mut CRow) -> Status {
                 // SAFETY: as above.
                 unsafe { StereopsisInstance::flush(handle, row) }
             }
@@ -244,7 +244,7 @@ macro_rules! instantiate_c_api {
             /// A meter that has seen no line; it needs no matcher. As often as light may change: measure a
             /// frame, and give what it says to the configuration of the next ones.
             #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn stereopsis_noise_clear(meter: *mut NoiseMeter) -> Status {
+            pub unsafe extern "C" fn stereopsis_noise_clear(meter: *mut CNoiseMeter) -> Status {
                 // SAFETY: as above.
                 unsafe { $crate::ffi::noise_clear(meter) }
             }
@@ -252,7 +252,7 @@ macro_rules! instantiate_c_api {
             /// Measures a line of either camera, 8-bit grey, 65535 bytes at most.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_noise_line(
-                meter: *mut NoiseMeter,
+                meter: *mut CNoiseMeter,
                 line: *const u8,
                 length: usize,
             ) -> Status {
@@ -264,7 +264,7 @@ macro_rules! instantiate_c_api {
             /// `sigma_16ths` is null the deviation in 1/16 grey level; none and 0 before the first line.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_noise_level(
-                meter: *mut NoiseMeter,
+                meter: *mut CNoiseMeter,
                 noise: *mut u8,
                 sigma_16ths: *mut u16,
             ) -> Status {
@@ -276,7 +276,7 @@ macro_rules! instantiate_c_api {
             /// or beyond 65.535 m. Both may be one array.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_millimetres(
-                rig: *const Rig,
+                rig: *const CRig,
                 disparities: *const u16,
                 millimetres: *mut u16,
                 count: usize,

@@ -9,15 +9,15 @@ use crate::imaging;
 /// follows it. The words are the library's.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(C)]
-pub struct NoiseMeter {
+pub struct CNoiseMeter {
     /// Counters.
     pub words: [u32; 65],
 }
 
 /// Both are 65 words in a row, and every bit pattern is a meter: one of anything says anything, and no more.
 const _: () = assert!(
-    size_of::<NoiseMeter>() == size_of::<imaging::NoiseMeter>()
-        && align_of::<NoiseMeter>() == align_of::<imaging::NoiseMeter>()
+    size_of::<CNoiseMeter>() == size_of::<imaging::NoiseMeter>()
+        && align_of::<CNoiseMeter>() == align_of::<imaging::NoiseMeter>()
 );
 
 /// The meter at a pointer.
@@ -25,7 +25,7 @@ const _: () = assert!(
 /// # Safety
 ///
 /// `meter` is null or points to a meter that nothing else uses for `'a`.
-unsafe fn open<'a>(meter: *mut NoiseMeter) -> Result<&'a mut imaging::NoiseMeter, Status> {
+unsafe fn open<'a>(meter: *mut CNoiseMeter) -> Result<&'a mut imaging::NoiseMeter, Status> {
     if meter.is_null() {
         return Err(Status::Null);
     }
@@ -41,7 +41,7 @@ unsafe fn open<'a>(meter: *mut NoiseMeter) -> Result<&'a mut imaging::NoiseMeter
 /// # Safety
 ///
 /// `meter` is null or points to a meter's bytes, which need no content.
-pub unsafe fn noise_clear(meter: *mut NoiseMeter) -> Status {
+pub unsafe fn noise_clear(meter: *mut CNoiseMeter) -> Status {
     if meter.is_null() {
         return Status::Null;
     }
@@ -49,7 +49,7 @@ pub unsafe fn noise_clear(meter: *mut NoiseMeter) -> Status {
         return Status::Misaligned;
     }
     // SAFETY: the caller's promise.
-    unsafe { meter.write(NoiseMeter { words: [0; 65] }) };
+    unsafe { meter.write(CNoiseMeter { words: [0; 65] }) };
     Status::Ok
 }
 
@@ -58,14 +58,14 @@ pub unsafe fn noise_clear(meter: *mut NoiseMeter) -> Status {
 /// # Safety
 ///
 /// `meter` is null or points to a meter, `line` is null or points to `length` bytes beside it.
-pub unsafe fn noise_line(meter: *mut NoiseMeter, line: *const u8, length: usize) -> Status {
+pub unsafe fn noise_line(meter: *mut CNoiseMeter, line: *const u8, length: usize) -> Status {
     if line.is_null() {
         return Status::Null;
     }
     if length > usize::from(u16::MAX) {
         return Status::TooMany;
     }
-    if super::state::share_bytes(meter.cast(), size_of::<NoiseMeter>(), line.cast(), length) {
+    if super::state::share_bytes(meter.cast(), size_of::<CNoiseMeter>(), line.cast(), length) {
         return Status::Overlap;
     }
     // SAFETY: the caller's promise, and both stand beside each other.
@@ -81,7 +81,7 @@ pub unsafe fn noise_line(meter: *mut NoiseMeter, line: *const u8, length: usize)
 /// # Safety
 ///
 /// `meter` is null or points to a meter, `noise` and `sigma_16ths` are null or point to numbers.
-pub unsafe fn noise_level(meter: *mut NoiseMeter, noise: *mut u8, sigma_16ths: *mut u16) -> Status {
+pub unsafe fn noise_level(meter: *mut CNoiseMeter, noise: *mut u8, sigma_16ths: *mut u16) -> Status {
     if noise.is_null() {
         return Status::Null;
     }

@@ -9,7 +9,7 @@ use crate::units::Disparity;
 /// Two cameras after rectification: rows are aligned, both have one focal length.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[repr(C)]
-pub struct Rig {
+pub struct CRig {
     /// Focal length, px.
     pub focal_px: f32,
     /// Distance between the optical centres, m.
@@ -22,7 +22,7 @@ pub struct Rig {
     pub cx_right: f32,
 }
 
-impl Rig {
+impl CRig {
     /// Depths for this rig.
     pub(super) fn scale(&self) -> Result<DepthScale, Status> {
         let rig = RectifiedRig::with_offset(self.focal_px, self.baseline_m, self.cx, self.cy, self.cx_right)?;
@@ -56,7 +56,7 @@ impl From<DepthError> for Status {
 ///
 /// `rig` is null or points to a rig; `disparities` and `millimetres` are null or point to `count` words each.
 pub unsafe fn millimetres(
-    rig: *const Rig,
+    rig: *const CRig,
     disparities: *const u16,
     millimetres: *mut u16,
     count: usize,

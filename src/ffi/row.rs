@@ -42,7 +42,7 @@ const _: () = {
 /// A row of results. The arrays stand in the matcher's memory and hold until the next call with its handle.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(C)]
-pub struct Row {
+pub struct CRow {
     /// The row in the image, from 0.
     pub index: u16,
     /// Pixels in the row: the length of the arrays.
@@ -57,7 +57,7 @@ pub struct Row {
     pub confidences: *const u8,
 }
 
-impl Row {
+impl CRow {
     /// No row.
     pub(super) const NONE: Self = Self {
         index: 0,
@@ -68,7 +68,7 @@ impl Row {
     };
 }
 
-impl From<matching::Row<'_>> for Row {
+impl From<matching::Row<'_>> for CRow {
     fn from(row: matching::Row<'_>) -> Self {
         let (disparities, flags, confidences) = (row.disparities(), row.flags(), row.confidences());
         Self {

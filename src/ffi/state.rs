@@ -31,7 +31,7 @@ const FIXED_BYTES: usize = 352;
 /// Bytes of memory that a matcher takes on any target, at most: what the macros of `stereopsis.h` say.
 ///
 /// `disparities` is a multiple of 16, and `width` at least as large.
-pub const fn state_bytes<S: Scheme>(width: usize, disparities: usize) -> usize {
+pub const fn memory_bytes<S: Scheme>(width: usize, disparities: usize) -> usize {
     // Five lines of two cameras.
     matching::state_bytes::<S>(width, disparities) + 2 * 5 * width + FIXED_BYTES
 }
@@ -39,7 +39,7 @@ pub const fn state_bytes<S: Scheme>(width: usize, disparities: usize) -> usize {
 impl<S: Scheme, const W: usize, const D: usize> State<S, W, D> {
     const CHECKED: () = {
         assert!(align_of::<Self>() <= STEREOPSIS_ALIGN, "STEREOPSIS_ALIGN must be enough");
-        assert!(size_of::<Self>() <= state_bytes::<S>(W, D), "state_bytes must cover the state");
+        assert!(size_of::<Self>() <= memory_bytes::<S>(W, D), "memory_bytes must cover the state");
     };
 
     fn mark_of(state: *const Self) -> usize {

@@ -69,7 +69,8 @@
 
 
 /**
- * The version of this interface. It changes when a program that was compiled with another header would go wrong.
+ * The version of this interface. It changes when a program that was compiled with another header would go
+ * wrong.
  */
 #define STEREOPSIS_ABI 5
 
@@ -342,7 +343,8 @@ typedef int32_t stereopsis_status;
 typedef struct stereopsis stereopsis;
 
 /**
- * Frame size, search range and checks. `stereopsis_config_default` fills it, fields may be changed after that.
+ * Frame size, search range and checks. `stereopsis_config_default` fills it, fields may be changed after
+ * that.
  */
 typedef struct stereopsis_config {
   /**
@@ -362,11 +364,13 @@ typedef struct stereopsis_config {
    */
   uint16_t min_disparity;
   /**
-   * Left-right check: the largest difference of the two answers, 0 to 255 px, or `STEREOPSIS_NOT_CHECKED`.
+   * Left-right check: the largest difference of the two answers, 0 to 255 px, or
+   * `STEREOPSIS_NOT_CHECKED`.
    */
   int16_t left_right_px;
   /**
-   * Uniqueness: by how much the second best has to cost more, 0 to 99 percent, or `STEREOPSIS_NOT_CHECKED`.
+   * Uniqueness: by how much the second best has to cost more, 0 to 99 percent, or
+   * `STEREOPSIS_NOT_CHECKED`.
    */
   int16_t uniqueness_percent;
   /**
@@ -410,13 +414,14 @@ typedef struct stereopsis_config {
    */
   uint8_t cost;
   /**
-   * Methods along paths: what a change of the disparity by one px costs where the brightness changes little, and more;
-   * at least 1, and the second at most the first.
+   * Methods along paths: what a change of the disparity by one px costs where the brightness changes
+   * little, and more; at least 1, and the second at most the first.
    */
   uint8_t step[2];
   /**
-   * Methods along paths: what a larger change costs where the brightness changes little, more, and much; each at least
-   * the first step. `cost + step + jump` is at most 127 and `3 cost + 2 jump` at most 254.
+   * Methods along paths: what a larger change costs where the brightness changes little, more, and much;
+   * each at least the first step. `cost + step + jump` is at most 127 and `3 cost + 2 jump` at most
+   * 254.
    */
   uint8_t jump[3];
   /**
@@ -424,8 +429,8 @@ typedef struct stereopsis_config {
    */
   uint8_t edges[2];
   /**
-   * Fill: gaps along the row of at most this many pixels, between two answers, get the farther of the two and
-   * `STEREOPSIS_FLAG_FILLED`; with 0 none does.
+   * Fill: gaps along the row of at most this many pixels, between two answers, get the farther of the two
+   * and `STEREOPSIS_FLAG_FILLED`; with 0 none does.
    */
   uint8_t fill_pixels;
   /**
@@ -437,8 +442,8 @@ typedef struct stereopsis_config {
    */
   uint16_t fill_step;
   /**
-   * How noisy both cameras are, a `STEREOPSIS_NOISE_`: what is compared is smoothed accordingly. `stereopsis_config_noise`
-   * sets it with the checks and penalties that suit it.
+   * How noisy both cameras are, a `STEREOPSIS_NOISE_`: what is compared is smoothed accordingly.
+   * `stereopsis_config_noise` sets it with the checks and penalties that suit it.
    */
   uint8_t noise;
 } stereopsis_config;
@@ -464,8 +469,9 @@ typedef struct stereopsis_row {
    */
   const uint8_t *flags;
   /**
-   * How sure the answer of each column is, 1 to 207, 0 for no answer; null unless the configuration's `confidence` asked
-   * for it. The number puts answers in order, the wrong ones first; it is no probability.
+   * How sure the answer of each column is, 1 to 207, 0 for no answer; null unless the configuration's
+   * `confidence` asked for it. The number puts answers in order, the wrong ones first; it is no
+   * probability.
    */
   const uint8_t *confidences;
 } stereopsis_row;
@@ -521,8 +527,8 @@ typedef struct stereopsis_counts {
 } stereopsis_counts;
 
 /**
- * How noisy the lines are that it was given: the caller's memory, for `stereopsis_noise_clear` and what follows it. The words are
- * the library's.
+ * How noisy the lines are that it was given: the caller's memory, for `stereopsis_noise_clear` and what
+ * follows it. The words are the library's.
  */
 typedef struct stereopsis_noise_meter {
   /**
@@ -562,7 +568,8 @@ extern "C" {
 #endif // __cplusplus
 
 /**
- * The library's interface: a program that was compiled with another `STEREOPSIS_ABI` must not go on.
+ * The library's interface: a program that was compiled with another `STEREOPSIS_ABI` must not go
+ * on.
  */
 uint32_t stereopsis_abi(void);
 
@@ -597,16 +604,18 @@ size_t stereopsis_max_width(void);
 size_t stereopsis_max_disparities(void);
 
 /**
- * Row y comes out when line y + `stereopsis_latency()` goes in; the last rows come by `stereopsis_flush`.
+ * Row y comes out when line y + `stereopsis_latency()` goes in; the last rows come by
+ * `stereopsis_flush`.
  */
 size_t stereopsis_latency(void);
 
 /**
- * Makes a matcher in the caller's memory of `length` bytes, and gives the handle for all other calls; a
- * null handle on an error, unless `handle` itself is what is wrong.
+ * Makes a matcher in the caller's memory of `length` bytes, and gives the handle for all other
+ * calls; a null handle on an error, unless `handle` itself is what is wrong.
  *
- * The memory needs no content, and is the matcher's alone until `stereopsis_deinit`. Memory that still
- * holds a matcher, such as RAM that a warm start does not clear, is refused as already initialised.
+ * The memory needs no content, and is the matcher's alone until `stereopsis_deinit`. Memory that
+ * still holds a matcher, such as RAM that a warm start does not clear, is refused as already
+ * initialised.
  */
 stereopsis_status stereopsis_init(void *memory, size_t length, struct stereopsis **handle);
 
@@ -616,8 +625,9 @@ stereopsis_status stereopsis_init(void *memory, size_t length, struct stereopsis
 stereopsis_status stereopsis_deinit(struct stereopsis *handle);
 
 /**
- * Fills a configuration: frames of `width` x `height` pixels, a search over `disparities` from 0, the checks
- * of a `STEREOPSIS_PRESET_`, and the method's penalties. Sizes are checked by `stereopsis_start`.
+ * Fills a configuration: frames of `width` x `height` pixels, a search over `disparities` from
+ * 0, the checks of a `STEREOPSIS_PRESET_`, and the method's penalties. Sizes are checked by
+ * `stereopsis_start`.
  */
 stereopsis_status stereopsis_config_default(uint16_t width,
                                             uint16_t height,
@@ -626,24 +636,25 @@ stereopsis_status stereopsis_config_default(uint16_t width,
                                             struct stereopsis_config *config);
 
 /**
- * Makes a configuration one for cameras with `noise`, a `STEREOPSIS_NOISE_` such as `stereopsis_noise_level`
- * tells: sets that, and the checks of a `STEREOPSIS_PRESET_` and the method's penalties for it. Size, search
- * and `confidence` stay as they are.
+ * Makes a configuration one for cameras with `noise`, a `STEREOPSIS_NOISE_` such as
+ * `stereopsis_noise_level` tells: sets that, and the checks of a `STEREOPSIS_PRESET_` and
+ * the method's penalties for it. Size, search and `confidence` stay as they are.
  */
 stereopsis_status stereopsis_config_noise(int32_t preset, uint8_t noise, struct stereopsis_config *config);
 
 /**
- * Checks a configuration, which is copied, and gets ready for the first frame. It can be called again, for
- * another configuration; a frame that is under way is lost, and counters go to zero.
+ * Checks a configuration, which is copied, and gets ready for the first frame. It can be called
+ * again, for another configuration; a frame that is under way is lost, and counters go to
+ * zero.
  */
 stereopsis_status stereopsis_start(struct stereopsis *handle, const struct stereopsis_config *config);
 
 /**
- * `stereopsis_start` between two frames, for the noise of the one before as it may be: counters go on, and a frame
- * that is under way counts as broken off. A configuration that is refused changes nothing.
+ * `stereopsis_start` between two frames, for the noise of the one before as it may be: counters
+ * go on, and a frame that is under way counts as broken off. A configuration that is refused
+ * changes nothing.
  */
-stereopsis_status stereopsis_restart(struct stereopsis *handle,
-                                     const struct stereopsis_config *config);
+stereopsis_status stereopsis_restart(struct stereopsis *handle, const struct stereopsis_config *config);
 
 /**
  * Begins a frame and forgets the one before.
@@ -651,11 +662,11 @@ stereopsis_status stereopsis_restart(struct stereopsis *handle,
 stereopsis_status stereopsis_begin_frame(struct stereopsis *handle);
 
 /**
- * Takes the next line of both cameras, 8-bit grey, `length` bytes each: the configuration's width. The
- * lines are copied; both may be one array.
+ * Takes the next line of both cameras, 8-bit grey, `length` bytes each: the configuration's
+ * width. The lines are copied; both may be one array.
  *
- * `STEREOPSIS_STATUS_OK` with a row, or `STEREOPSIS_STATUS_NO_ROW_YET` with an empty one for the first
- * lines of a frame. On an error the row is left as it is.
+ * `STEREOPSIS_STATUS_OK` with a row, or `STEREOPSIS_STATUS_NO_ROW_YET` with an empty one for the
+ * first lines of a frame. On an error the row is left as it is.
  */
 stereopsis_status stereopsis_push(struct stereopsis *handle,
                                   const uint8_t *left,
@@ -664,20 +675,20 @@ stereopsis_status stereopsis_push(struct stereopsis *handle,
                                   struct stereopsis_row *row);
 
 /**
- * In place of `stereopsis_push`, of a line that did not come, for a reason of the `STEREOPSIS_LOST_` numbers: the
- * line above stands in. Rows whose matching window saw it have no answers and `STEREOPSIS_FLAG_DAMAGED` on every
- * pixel, rows that it can have touched otherwise keep theirs and have the flag, and every other row is
- * what it would be without the loss. Answers as `stereopsis_push` does.
+ * In place of `stereopsis_push`, of a line that did not come, for a reason of the
+ * `STEREOPSIS_LOST_` numbers: the line above stands in. Rows whose matching window saw it
+ * have no answers and `STEREOPSIS_FLAG_DAMAGED` on every pixel, rows that it can have
+ * touched otherwise keep theirs and have the flag, and every other row is what it would be
+ * without the loss. Answers as `stereopsis_push` does.
  */
-stereopsis_status stereopsis_push_lost(struct stereopsis *handle,
-                                       int32_t fault,
-                                       struct stereopsis_row *row);
+stereopsis_status stereopsis_push_lost(struct stereopsis *handle, int32_t fault, struct stereopsis_row *row);
 
 /**
- * Takes answers of the row that came out last away where a camera did not see, such as the black border of a
- * rectified image: masks of the left and of the right image's row, `length` bytes each, 0 for a pixel that was
- * not seen; null where all were. An answer goes, and has `STEREOPSIS_FLAG_OUTSIDE`, where its own pixel or its
- * partner was not seen. The row's arrays change in place.
+ * Takes answers of the row that came out last away where a camera did not see, such as the black
+ * border of a rectified image: masks of the left and of the right image's row, `length`
+ * bytes each, 0 for a pixel that was not seen; null where all were. An answer goes, and has
+ * `STEREOPSIS_FLAG_OUTSIDE`, where its own pixel or its partner was not seen. The row's
+ * arrays change in place.
  */
 stereopsis_status stereopsis_mask(struct stereopsis *handle,
                                   const uint8_t *left,
@@ -696,15 +707,15 @@ stereopsis_status stereopsis_counters(struct stereopsis *handle, struct stereops
 stereopsis_status stereopsis_flush(struct stereopsis *handle, struct stereopsis_row *row);
 
 /**
- * Standard deviations of the row that came out last, in px, for `count` columns: all of the row. Infinite
- * where there is no answer. Before a frame's first row it is `STEREOPSIS_STATUS_NO_ROW_YET`, and nothing is
- * written.
+ * Standard deviations of the row that came out last, in px, for `count` columns: all of the row.
+ * Infinite where there is no answer. Before a frame's first row it is
+ * `STEREOPSIS_STATUS_NO_ROW_YET`, and nothing is written.
  */
 stereopsis_status stereopsis_sigma_px(struct stereopsis *handle, float *sigma_px, size_t count);
 
 /**
- * A meter that has seen no line; it needs no matcher. As often as light may change: measure a frame, and give
- * what it says to the configuration of the next ones.
+ * A meter that has seen no line; it needs no matcher. As often as light may change: measure a
+ * frame, and give what it says to the configuration of the next ones.
  */
 stereopsis_status stereopsis_noise_clear(struct stereopsis_noise_meter *meter);
 
@@ -716,16 +727,16 @@ stereopsis_status stereopsis_noise_line(struct stereopsis_noise_meter *meter,
                                         size_t length);
 
 /**
- * The `STEREOPSIS_NOISE_` number of the lines so far, for `stereopsis_config_noise`, and unless `sigma_16ths` is
- * null the deviation in 1/16 grey level; none and 0 before the first line.
+ * The `STEREOPSIS_NOISE_` number of the lines so far, for `stereopsis_config_noise`, and unless
+ * `sigma_16ths` is null the deviation in 1/16 grey level; none and 0 before the first line.
  */
 stereopsis_status stereopsis_noise_level(struct stereopsis_noise_meter *meter,
                                          uint8_t *noise,
                                          uint16_t *sigma_16ths);
 
 /**
- * Depths of `count` disparities to the nearest millimetre, 0 for none: no answer, at infinity, or beyond
- * 65.535 m. Both may be one array.
+ * Depths of `count` disparities to the nearest millimetre, 0 for none: no answer, at infinity,
+ * or beyond 65.535 m. Both may be one array.
  */
 stereopsis_status stereopsis_millimetres(const struct stereopsis_rig *rig,
                                          const uint16_t *disparities,

@@ -6,25 +6,16 @@
 //! disagree.
 //!
 //! ```text
-//!        plus4             ring8             full24
-//!    . . 0 . .         0 . 1 . 2         0  1  2  3  4
-//!    . . . . .         . . . . .         5  6  7  8  9
-//!    1 . x . 2         3 . x . 4        10 11  x 12 13
-//!    . . . . .         . . . . .        14 15 16 17 18
-//!    . . 3 . .         5 . 6 . 7        19 20 21 22 23
-//!
-//!              wide8
-//!    0 . . . 1 . . . 2
-//!    . . . . . . . . .
-//!    . . 3 . x . 4 . .
-//!    . . . . . . . . .
-//!    5 . . . 6 . . . 7
+//!      plus4          ring8              wide8
+//!    . . 0 . .      0 . 1 . 2      0 . . . 1 . . . 2
+//!    . . . . .      . . . . .      . . . . . . . . .
+//!    1 . x . 2      3 . x . 4      . . 3 . x . 4 . .
+//!    . . . . .      . . . . .      . . . . . . . . .
+//!    . . 3 . .      5 . 6 . 7      5 . . . 6 . . . 7
 //! ```
 //!
 //! The numbers are the bits of the code. Columns outside the line are the nearest one inside it; rows outside
 //! the image are the caller's to repeat ([`LineWindow`](super::LineWindow) does).
-
-use core::ops::{BitOrAssign, Shl};
 
 /// A neighbour: row of the window (0 to 4, the centre's is 2) and column (likewise, or 0 to 8 where the
 /// centre's is 4).
@@ -34,29 +25,18 @@ const PLUS4: [Neighbour; 4] = [(0, 2), (2, 0), (2, 4), (4, 2)];
 
 const RING8: [Neighbour; 8] = [(0, 0), (0, 2), (0, 4), (2, 0), (2, 4), (4, 0), (4, 2), (4, 4)];
 
-const FULL24: [Neighbour; 24] = {
-    let mut all = [(0, 0); 24];
-    let mut i = 0;
-    while i < 24 {
-        let place = if i < 12 { i } else { i + 1 };
-        all[i] = (place / 5, place % 5);
-        i += 1;
-    }
-    all
-};
-
 const WIDE8: [Neighbour; 8] = [(0, 0), (0, 4), (0, 8), (2, 2), (2, 6), (4, 0), (4, 4), (4, 8)];
 
 /// Four bits a pixel: up, left, right and down at distance 2. `rows` are the five rows around the centre row;
 /// every code of `out` is written for which all of them have a pixel. A line ends where the shortest of them
 /// does.
 pub fn census_plus4(rows: &[&[u8]; 5], out: &mut [u8]) {
-    census::<_, 4, NARROW>(rows, &PLUS4, out);
+    census::<4, NARROW>(rows, &PLUS4, out);
 }
 
 /// Eight bits a pixel: the corners and edge centres of the 5x5 square. As [`census_plus4`].
 pub fn census_ring8(rows: &[&[u8]; 5], out: &mut [u8]) {
-    census::<_, 8, NARROW>(rows, &RING8, out);
+    census::<8, NARROW>(rows, &RING8, out);
 }
 
 /// Eight bits a pixel: corners and edge centres of 9x5 pixels, and along the line at distance 2. As
@@ -64,12 +44,7 @@ pub fn census_ring8(rows: &[&[u8]; 5], out: &mut [u8]) {
 // Where there are vectors it is compiled with the kernel's instructions.
 #[cfg_attr(target_pointer_width = "64", inline(always))]
 pub fn census_wide8(rows: &[&[u8]; 5], out: &mut [u8]) {
-    census::<_, 8, WIDE>(rows, &WIDE8, out);
-}
-
-/// Twenty-four bits a pixel: the whole 5x5 square. As [`census_plus4`].
-pub fn census_full24(rows: &[&[u8]; 5], out: &mut [u32]) {
-    census::<_, 24, NARROW>(rows, &FULL24, out);
+    census::<8, WIDE>(rows, &WIDE8, out);
 }
 
 /// Columns worked on at a time: as lanes, or as many as a loop is unrolled for.
@@ -79,13 +54,11 @@ const NARROW: usize = LANES + 2 * 2;
 const WIDE: usize = LANES + 2 * 4;
 
 #[inline(always)]
-fn census<C, const BITS: usize, const AROUND: usize>(
+fn census<const BITS: usize, const AROUND: usize>(
     rows: &[&[u8]; 5],
     neighbours: &[Neighbour; BITS],
-    out: &mut [C],
-) where
-    C: Copy + From<bool> + BitOrAssign + Shl<u32, Output = C>,
-{
+    out: &mut [u8],
+) {
     // Columns to each side that a code looks at.
     let reach = (AROUND - LANES) / 2;
     let width = rows.iter().fold(usize::MAX, |w, row| w.min(row.len()));
@@ -107,11 +80,11 @@ fn census<C, const BITS: usize, const AROUND: usize>(
             pixels.copied().unwrap_or([0; LANES])
         };
         let centre = group(2, reach);
-        let mut codes = [C::from(false); LANES];
+        let mut codes = [0; LANES];
         for (bit, &(row, column)) in (0u32..).zip(neighbours) {
             let beside = group(row, column);
             for i in 0..LANES {
-                codes[i] |= C::from(beside[i] < centre[i]) << bit;
+                codes[i] |= u8::from(beside[i] < centre[i]) << bit;
             }
         }
         if let Some(out) = out.get_mut(begin + reach..).and_then(|out| out.first_chunk_mut::<LANES>()) {
@@ -125,9 +98,9 @@ fn census<C, const BITS: usize, const AROUND: usize>(
             let x = (x + column).saturating_sub(reach).min(width - 1);
             rows.get(row).and_then(|r| r.get(x)).copied().unwrap_or(0)
         };
-        let mut code = C::from(false);
+        let mut code = 0;
         for (bit, &(row, column)) in (0u32..).zip(neighbours) {
-            code |= C::from(pixel(row, column) < pixel(2, reach)) << bit;
+            code |= u8::from(pixel(row, column) < pixel(2, reach)) << bit;
         }
         if let Some(out) = out.get_mut(x) {
             *out = code;
@@ -143,13 +116,13 @@ mod tests {
     fn a_bright_point_is_brighter_than_all_and_all_are_darker() {
         let (dark, bright) = ([10; 5], [10, 10, 90, 10, 10]);
         let rows = [&dark[..], &dark, &bright, &dark, &dark];
-        let (mut plus, mut ring, mut full) = ([0; 5], [0; 5], [0; 5]);
+        let (mut plus, mut ring, mut wide) = ([0; 5], [0; 5], [0; 5]);
         census_plus4(&rows, &mut plus);
         census_ring8(&rows, &mut ring);
-        census_full24(&rows, &mut full);
+        census_wide8(&rows, &mut wide);
         assert_eq!(plus, [0, 0, 0b1111, 0, 0]);
         assert_eq!(ring, [0, 0, 0xff, 0, 0]);
-        assert_eq!(full, [0, 0, 0xff_ffff, 0, 0]);
+        assert_eq!(wide, [0, 0, 0xff, 0, 0]);
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //!
 //! 1. [`GreyLines`]: any pixel format as 8-bit grey lines; [`BayerLines`]: a mosaic of colours as well.
 //! 2. [`LineBand`]: the last lines, as the rows around a centre; [`LineWindow`] holds five.
-//! 3. [`census_plus4`], [`census_ring8`], [`census_wide8`], [`census_full24`]: the codes of one row.
+//! 3. [`census_plus4`], [`census_ring8`], [`census_wide8`]: the codes of one row.
 //!    [`gradients`]: how its brightness changes along the line and across it.
 //! 4. [`RectifiedPair`]: raw lines as rectified ones, by a [`Remap`] for each camera with its [`RemapTable`].
 //! 5. [`PairMonitor`]: what the pictures tell of the cameras' health, with a [`Histogram`] of each;
@@ -32,7 +32,7 @@ mod window;
 
 pub use balance::{Balance, BalancedPair};
 pub use bayer::BayerLines;
-pub use census::{census_full24, census_plus4, census_ring8, census_wide8};
+pub use census::{census_plus4, census_ring8, census_wide8};
 pub use exposure::{AutoExposure, ExposureCommand, ExposureLimits};
 pub use gradient::gradients;
 pub use grey::GreyLines;

@@ -11,18 +11,6 @@ pub const RING8: [(isize, isize); 8] = [(-2, -2), (-2, 0), (-2, 2), (0, -2), (0,
 /// Eight, wide along the row.
 pub const WIDE8: [(isize, isize); 8] = [(-2, -4), (-2, 0), (-2, 4), (0, -2), (0, 2), (2, -4), (2, 0), (2, 4)];
 
-/// All of the 5 x 5 neighbourhood, in reading order, without its middle.
-pub const FULL24: [(isize, isize); 24] = {
-    let mut neighbours = [(0, 0); 24];
-    let mut i = 0;
-    while i < 24 {
-        let place = (i + (i >= 12) as usize) as isize;
-        neighbours[i] = (place / 5 - 2, place % 5 - 2);
-        i += 1;
-    }
-    neighbours
-};
-
 /// The census of the pixel (x, y): bit i is set when the i-th neighbour is darker. Neighbours outside of the
 /// picture are the nearest pixel inside.
 pub fn census_at(picture: &Seen<'_>, neighbours: &[(isize, isize)], x: usize, y: usize) -> u32 {

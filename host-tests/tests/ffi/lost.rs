@@ -4,7 +4,7 @@ use super::*;
 use stereopsis::camera::{
     CameraError, ErrorType, FrameStart, LineFault, LineFormat, LineStart, PixelFormat, StereoSource,
 };
-use stereopsis::ffi::{Counters, STEREOPSIS_LOST_LATE, STEREOPSIS_NOISE_HIGH};
+use stereopsis::ffi::{CCounters, STEREOPSIS_LOST_LATE, STEREOPSIS_NOISE_HIGH};
 use stereopsis::pipeline::Guarded;
 
 /// A source that loses some lines and says so.
@@ -73,7 +73,7 @@ fn lost_lines_are_those_of_a_guarded_pipeline() {
         let (_, handle) = init(&mut memory, 0, stereopsis_size());
         let config = config(width, height, 32);
         let mut found = Vec::new();
-        let mut counters = Counters::default();
+        let mut counters = CCounters::default();
         // SAFETY: the handle is from `init`, lines have their length, and rows are read before the next call.
         unsafe {
             assert_eq!(stereopsis_start(handle, &raw const config), Status::Ok);
@@ -108,18 +108,19 @@ fn lost_lines_are_those_of_a_guarded_pipeline() {
             }
             assert_eq!(stereopsis_counters(handle, &raw mut counters), Status::Ok);
             // Another configuration leaves them, and begins no frame.
-            let (noisy, mut after) = (Config { noise: STEREOPSIS_NOISE_HIGH, ..config }, Counters::default());
+            let (noisy, mut after) =
+                (CConfig { noise: STEREOPSIS_NOISE_HIGH, ..config }, CCounters::default());
             assert_eq!(stereopsis_restart(handle, &raw const noisy), Status::Ok);
             assert_eq!(stereopsis_flush(handle, &raw mut row), Status::NotBegun);
             assert_eq!(stereopsis_counters(handle, &raw mut after), Status::Ok);
             assert_eq!(after, counters);
             assert_eq!(stereopsis_start(handle, &raw const noisy), Status::Ok);
             assert_eq!(stereopsis_counters(handle, &raw mut after), Status::Ok);
-            assert_eq!(after, Counters::default());
+            assert_eq!(after, CCounters::default());
             assert_eq!(stereopsis_deinit(handle), Status::Ok);
         }
         assert!(found == expected, "{lost:?}");
-        assert_eq!(counters, Counters::from(guarded.counters()), "{lost:?}");
+        assert_eq!(counters, CCounters::from(guarded.counters()), "{lost:?}");
         assert_eq!(counters.lines_late as usize, lost.len());
     }
 }

@@ -11,8 +11,8 @@ use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 use std::slice;
 use stereopsis::ffi::{
-    Config, Handle, Instance, Rig, Row, STEREOPSIS_ALIGN, STEREOPSIS_NOISE_LOW, STEREOPSIS_PRESET_DEFAULT,
-    Status, state_bytes,
+    CConfig, CRig, CRow, Handle, Instance, STEREOPSIS_ALIGN, STEREOPSIS_NOISE_LOW, STEREOPSIS_PRESET_DEFAULT,
+    Status, memory_bytes,
 };
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{self, Block, Checks, Scheme};
@@ -42,7 +42,7 @@ fn init(memory: &mut [u64], offset: usize, length: usize) -> (Status, *mut Handl
 }
 
 /// A configuration of the default preset.
-fn config(width: u16, height: u16, disparities: u16) -> Config {
+fn config(width: u16, height: u16, disparities: u16) -> CConfig {
     let mut config = MaybeUninit::uninit();
     let filled = config.as_mut_ptr();
     // SAFETY: the pointer is to memory for a configuration, all of which is filled.
@@ -53,7 +53,7 @@ fn config(width: u16, height: u16, disparities: u16) -> Config {
     }
 }
 
-const NO_ROW: Row = Row { index: 0, width: 0, disparities: null(), flags: null(), confidences: null() };
+const NO_ROW: CRow = CRow { index: 0, width: 0, disparities: null(), flags: null(), confidences: null() };
 
 /// The lines of both cameras.
 type Lines = [Vec<Vec<u8>>; 2];
@@ -99,7 +99,7 @@ fn rows<S: Scheme>(config: &matching::Config, [left, right]: &Lines) -> Vec<Foun
 }
 
 /// The rows of the functions for C.
-fn c_rows<S: Scheme>(config: &Config, [left, right]: &Lines) -> Vec<Found> {
+fn c_rows<S: Scheme>(config: &CConfig, [left, right]: &Lines) -> Vec<Found> {
     type C<S> = Instance<S, WIDTH, DISPARITIES>;
     let mut memory = vec![0xA5A5_A5A5_A5A5_A5A5_u64; C::<S>::size().div_ceil(8)];
     let mut handle = null_mut();
@@ -156,8 +156,8 @@ fn rows_are_those_of_the_pipeline() {
         let asked = matching::Config { checks, confidence, ..matching::Config::new(width, height, 32) };
         let asked = matching::Config { noise: Noise::Low, ..asked };
         let config =
-            Config { median: 1, fill_pixels: 3, confidence: confidence.into(), ..config(width, height, 32) };
-        let config = Config { noise: STEREOPSIS_NOISE_LOW, ..config };
+            CConfig { median: 1, fill_pixels: 3, confidence: confidence.into(), ..config(width, height, 32) };
+        let config = CConfig { noise: STEREOPSIS_NOISE_LOW, ..config };
         let found = c_rows::<Block>(&config, &lines);
         assert_eq!(found.len(), usize::from(height));
         assert!(found == rows::<Block>(&asked, &lines), "{width}x{height}");
@@ -239,13 +239,13 @@ fn sizes_are_as_stated() {
     assert_eq!(stereopsis_max_width(), WIDTH);
     assert_eq!(stereopsis_max_disparities(), DISPARITIES);
     assert_eq!(stereopsis_latency(), Pipeline::<Block, WIDTH, DISPARITIES>::LATENCY);
-    assert!(stereopsis_size() <= state_bytes::<Block>(WIDTH, DISPARITIES));
+    assert!(stereopsis_size() <= memory_bytes::<Block>(WIDTH, DISPARITIES));
     assert!(STEREOPSIS_ALIGN.is_multiple_of(stereopsis_align()));
 }
 
 #[test]
 fn depths_are_the_scales() {
-    let rig = Rig { focal_px: 500.0, baseline_m: 0.1, cx: 160.0, cy: 120.0, cx_right: 160.0 };
+    let rig = CRig { focal_px: 500.0, baseline_m: 0.1, cx: 160.0, cy: 120.0, cx_right: 160.0 };
     let disparities = [25 * 32, 50 * 32, 0, u16::MAX];
     let mut millimetres = [1; 4];
     // SAFETY: both arrays have the length that is said.

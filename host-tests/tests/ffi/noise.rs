@@ -19,8 +19,8 @@ const LEVELS: [(u8, Noise); 3] = [
 ];
 
 /// A configuration in which every field is another than any preset's.
-fn odd(width: u16, height: u16) -> Config {
-    Config {
+fn odd(width: u16, height: u16) -> CConfig {
+    CConfig {
         min_disparity: 2,
         left_right_px: 77,
         uniqueness_percent: 77,

@@ -1,22 +1,22 @@
 //! The core's census rows against the twin's, at all small widths and heights.
 
 use image::GrayImage;
-use stereopsis::imaging::{LineWindow, Noise, census_full24, census_plus4, census_ring8, census_wide8};
+use stereopsis::imaging::{LineWindow, Noise, census_plus4, census_ring8, census_wide8};
 use stereopsis_host::scene::Random;
 use stereopsis_host::scene::pattern::Pattern;
 use stereopsis_host::twin::Picture;
-use stereopsis_host::twin::census::{FULL24, PLUS4, RING8, WIDE8, census};
+use stereopsis_host::twin::census::{PLUS4, RING8, WIDE8, census};
 use stereopsis_host::twin::smooth::Seen;
 
 const WIDEST: usize = 70;
 
-/// All four codes of the whole picture, each as 32 bits, through the core's line window.
-fn core_census(image: &GrayImage) -> [Vec<u32>; 4] {
+/// All three codes of the whole picture, each as 32 bits, through the core's line window.
+fn core_census(image: &GrayImage) -> [Vec<u32>; 3] {
     let (width, height) = (image.width() as usize, image.height() as usize);
     let mut window = LineWindow::<WIDEST>::new();
     window.begin(width);
     let mut lines = image.as_raw().chunks_exact(width);
-    let mut codes = [Vec::new(), Vec::new(), Vec::new(), Vec::new()];
+    let mut codes = [Vec::new(), Vec::new(), Vec::new()];
     for y in 0..height {
         while window.count() < (y + 3).min(height) {
             window.next_line().copy_from_slice(lines.next().expect("a line for every count"));
@@ -25,28 +25,24 @@ fn core_census(image: &GrayImage) -> [Vec<u32>; 4] {
         let rows = window.around(y);
         // What was in the buffer must not shine through, and what lies behind the line must stay.
         let (mut plus, mut ring, mut wide) = ([0xa5_u8; WIDEST], [0x5a_u8; WIDEST], [0x96_u8; WIDEST]);
-        let mut full = [0xdead_beef_u32; WIDEST];
         census_plus4(&rows, &mut plus);
         census_ring8(&rows, &mut ring);
         census_wide8(&rows, &mut wide);
-        census_full24(&rows, &mut full);
         assert!(plus[width..].iter().all(|&c| c == 0xa5));
         assert!(ring[width..].iter().all(|&c| c == 0x5a));
         assert!(wide[width..].iter().all(|&c| c == 0x96));
-        assert!(full[width..].iter().all(|&c| c == 0xdead_beef));
         codes[0].extend(plus[..width].iter().map(|&c| u32::from(c)));
         codes[1].extend(ring[..width].iter().map(|&c| u32::from(c)));
         codes[2].extend(wide[..width].iter().map(|&c| u32::from(c)));
-        codes[3].extend(&full[..width]);
     }
     codes
 }
 
-fn compare(image: &GrayImage, what: &str) -> [Vec<u32>; 4] {
+fn compare(image: &GrayImage, what: &str) -> [Vec<u32>; 3] {
     let picture = Seen::new(Picture::new(image), Noise::None);
     let core = core_census(image);
-    let twins = [&PLUS4[..], &RING8, &WIDE8, &FULL24].map(|neighbours| census(&picture, neighbours));
-    for ((core, twin), name) in core.iter().zip(&twins).zip(["plus4", "ring8", "wide8", "full24"]) {
+    let twins = [&PLUS4[..], &RING8, &WIDE8].map(|neighbours| census(&picture, neighbours));
+    for ((core, twin), name) in core.iter().zip(&twins).zip(["plus4", "ring8", "wide8"]) {
         let (width, height) = image.dimensions();
         let at = core.iter().zip(twin).position(|(a, b)| a != b);
         assert_eq!(at, None, "{name}, {what}, {width} x {height}: codes differ first at this place");
@@ -111,7 +107,7 @@ fn neighbours_one_grey_level_apart_are_told_apart_everywhere_in_the_range() {
             let image =
                 GrayImage::from_fn(9, 7, |x, y| image::Luma([if (x + 2 * y) % 3 == 0 { low } else { high }]));
             let codes = compare(&image, &format!("{low} and {high}"));
-            assert!(codes[3].iter().any(|&code| code != 0));
+            assert!(codes[2].iter().any(|&code| code != 0));
         }
     }
 }

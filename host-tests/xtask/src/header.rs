@@ -9,7 +9,7 @@ use crate::steps::{Failure, Outcome, root};
 use cbindgen::{Builder, Config, DocumentationLength, DocumentationStyle, Language, RenameRule, Style};
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use std::fs;
-use stereopsis::ffi::state_bytes;
+use stereopsis::ffi::memory_bytes;
 use stereopsis::matching::{Block, Fast, Scheme, Sgm, SgmEdge, SgmLean};
 
 /// The header, from the repository's root.
@@ -30,11 +30,11 @@ const FILES: [&str; 7] = [
 const NAMES: [(&str, &str); 7] = [
     ("Handle", "stereopsis"),
     ("Status", "stereopsis_status"),
-    ("Config", "stereopsis_config"),
-    ("Row", "stereopsis_row"),
-    ("Counters", "stereopsis_counts"),
-    ("NoiseMeter", "stereopsis_noise_meter"),
-    ("Rig", "stereopsis_rig"),
+    ("CConfig", "stereopsis_config"),
+    ("CRow", "stereopsis_row"),
+    ("CCounters", "stereopsis_counts"),
+    ("CNoiseMeter", "stereopsis_noise_meter"),
+    ("CRig", "stereopsis_rig"),
 ];
 
 const TOP: &str = "/* Depth from two cameras, line by line: the functions of libstereopsis.a.
@@ -123,7 +123,7 @@ fn config() -> Outcome<Config> {
 
 /// How many bytes a method takes, as a macro: `a + b width + c disparities + d width disparities`, by trying.
 fn bytes_macro<S: Scheme>() -> Outcome<String> {
-    let bytes = |width: usize, disparities: usize| state_bytes::<S>(width, disparities) as i64;
+    let bytes = |width: usize, disparities: usize| memory_bytes::<S>(width, disparities) as i64;
     let [w, d, step_w, step_d] = [256, 16, 256, 16];
     let (by_w, by_d) = (bytes(512, 16) - bytes(256, 16), bytes(256, 32) - bytes(256, 16));
     let both = (bytes(512, 32) - bytes(256, 16) - by_w - by_d) / (step_w * step_d);
@@ -133,7 +133,7 @@ fn bytes_macro<S: Scheme>() -> Outcome<String> {
         let (w, d) = (width as i64, disparities as i64);
         if fixed + by_w * w + by_d * d + both * w * d != bytes(width, disparities) {
             return Err(Failure::new(format!(
-                "{}: state_bytes is no sum of products at {width}x{disparities}",
+                "{}: memory_bytes is no sum of products at {width}x{disparities}",
                 S::NAME
             )));
         }

@@ -3,8 +3,8 @@
 
 use image::GrayImage;
 use stereopsis::features::{
-    Feature, FeatureConfig, FeatureCounts, FeatureDetector, Level, Match, Matcher, Orientation, Search,
-    Shrink, drop_repeats,
+    Downsample, Feature, FeatureConfig, FeatureCounts, FeatureDetector, FeatureMatcher, Level, Match,
+    MatchConfig, Orientation, drop_duplicates,
 };
 
 /// The longest line, px.
@@ -36,7 +36,7 @@ pub struct Plan {
     /// matches.
     pub orientation: Option<Orientation>,
     /// What a match has to be.
-    pub search: Search,
+    pub search: MatchConfig,
 }
 
 impl Plan {
@@ -58,7 +58,7 @@ impl Plan {
 impl Default for Plan {
     fn default() -> Self {
         // Partners may be on any two levels: the pictures may be taken from near and from far.
-        let search = Search { levels_apart: u8::MAX, ..Search::new() };
+        let search = MatchConfig { levels_apart: u8::MAX, ..MatchConfig::new() };
         Self { corners: 4000, threshold: 8, levels: 4, orientation: None, search }
     }
 }
@@ -96,7 +96,7 @@ pub enum CorrespondError {
     Line(#[from] stereopsis::features::FeatureLineError),
     /// The matcher does not take the plan.
     #[error(transparent)]
-    Search(#[from] stereopsis::features::SearchError),
+    Search(#[from] stereopsis::features::MatchConfigError),
     /// A picture has more features than there is room for.
     #[error("{dropped} features have no room; ask for fewer corners")]
     Room {
@@ -137,12 +137,12 @@ fn described(
 /// Which features of two pictures are the same, a corner that was found on several levels once.
 pub fn matches(plan: &Plan, left: &[Feature], right: &[Feature]) -> Result<Vec<Match>, CorrespondError> {
     let mut matches = Box::new(heapless::Vec::<Match, MOST>::new());
-    let mut matcher = Box::new(Matcher::<MOST>::new());
+    let mut matcher = Box::new(FeatureMatcher::<MOST>::new());
     let dropped = matcher.run(left, right, &plan.search, matches.as_mut_view())?;
     if dropped > 0 {
         return Err(CorrespondError::Room { dropped });
     }
-    drop_repeats(left, right, matches.as_mut_view(), REPEATED_PX);
+    drop_duplicates(left, right, matches.as_mut_view(), REPEATED_PX);
     Ok(matches.to_vec())
 }
 
@@ -173,20 +173,20 @@ pub fn features(
         }
         let FeatureCounts { dropped: of_level, .. } = detector.counts();
         dropped += of_level;
-        (picture, level) = (shrunk::<SHRINK>(&picture), level.shrunk::<SHRINK>());
+        (picture, level) = (shrunk::<SHRINK>(&picture), level.downsampled::<SHRINK>());
     }
     if dropped > 0 { Err(CorrespondError::Room { dropped }) } else { Ok(list.to_vec()) }
 }
 
 /// The picture made smaller by the core, `N - 1` pixels of every `N`.
 pub fn shrunk<const N: usize>(picture: &GrayImage) -> GrayImage {
-    let mut shrink = Box::new(Shrink::<WIDEST, N>::new());
+    let mut shrink = Box::new(Downsample::<WIDEST, N>::new());
     shrink.start(picture.width() as usize);
     let mut pixels = Vec::new();
     for line in lines(picture) {
         pixels.extend_from_slice(shrink.push(line).unwrap_or_default());
     }
-    let (width, height) = (shrink.width(), Shrink::<WIDEST, N>::height(picture.height() as usize));
+    let (width, height) = (shrink.width(), Downsample::<WIDEST, N>::height(picture.height() as usize));
     GrayImage::from_raw(width as u32, height as u32, pixels).unwrap_or_default()
 }
 

@@ -1,7 +1,7 @@
 //! A patch in 256 bits: which of two points is darker, for 256 pairs of points.
 
+use super::orientation::PatchOrientation;
 use super::pattern::{PATCH_RADIUS, PATTERN};
-use super::turn::Turn;
 
 /// What a corner's surroundings look like: bit `i` says whether in the `i`-th pair of points the first is
 /// darker.
@@ -27,7 +27,7 @@ impl Descriptor {
     }
 
     /// The descriptor of a patch whose points are taken from a picture turned by `turn`.
-    pub fn of(patch: &Patch, turn: Turn) -> Self {
+    pub fn of(patch: &Patch, turn: PatchOrientation) -> Self {
         let mut words = [0; 8];
         for (word, pairs) in words.iter_mut().zip(PATTERN.as_chunks::<32>().0) {
             for (bit, pair) in pairs.iter().enumerate() {
@@ -72,7 +72,7 @@ impl Patch {
 
     /// In which direction the patch is brighter, seen from its middle: that of the first moments `sum of x I`
     /// and `sum of y I` of a circle of the radius (Rosin 1999, as in ORB).
-    pub fn direction(&self) -> Turn {
+    pub fn direction(&self) -> PatchOrientation {
         let (mut right, mut down) = (0, 0);
         for y in -PATCH_RADIUS..=PATCH_RADIUS {
             let mut row = 0;
@@ -85,6 +85,6 @@ impl Patch {
             }
             down += y * row;
         }
-        Turn::towards(right, down)
+        PatchOrientation::towards(right, down)
     }
 }

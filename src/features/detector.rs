@@ -1,10 +1,10 @@
 //! Lines of a picture to its features, while the lines come in.
 
-use super::cells::{self, Slot};
+use super::grid::{self, Slot};
 use super::pattern::PATCH_RADIUS;
 use super::{
     Corner, Descriptor, Feature, FeatureConfig, FeatureConfigError, FeatureLineError, Orientation, Patch,
-    Turn, fast_scores, refine, smooth_row,
+    PatchOrientation, binomial5_row, fast_scores, refine,
 };
 use crate::imaging::LineBand;
 use core::num::NonZero;
@@ -37,8 +37,8 @@ pub struct FeatureCounts {
 /// Finds a picture's features line by line: the strongest corners of every cell, with their descriptors.
 ///
 /// `W` is the longest line, px; `C` is how many corners a row of cells keeps: [`FeatureConfig::slots`]. The
-/// detector takes [`Self::BYTES`]: 42 bytes for every pixel of a line, and 80 for every corner that is kept. The work for a line is bounded
-/// by its length, but for its corners: a descriptor for each slot at most.
+/// detector takes [`Self::BYTES`]: 42 bytes for every pixel of a line, and 80 for every corner that is kept.
+/// The work for a line is bounded by its length, but for its corners: a descriptor for each slot at most.
 ///
 /// In running order, with what each waits for: a row is smoothed (2 lines), scored (3), its local maxima
 /// become corners (4) and are put into their cells; those still there when the patch is whole (17) are
@@ -125,7 +125,7 @@ impl<const W: usize, const C: usize> FeatureDetector<W, C> {
         let newest = usize::from(self.taken);
         self.taken += 1;
         if let Some(row) = newest.checked_sub(SMOOTHING) {
-            smooth_row(&self.raw.around(row), self.smooth.next_line());
+            binomial5_row(&self.raw.around(row), self.smooth.next_line());
             self.smooth.accept();
         }
         if let Some(row) = newest.checked_sub(CIRCLE) {
@@ -172,7 +172,7 @@ impl<const W: usize, const C: usize> FeatureDetector<W, C> {
             let first = column / cell_px * per_cell;
             self.counts.corners += 1;
             if let Some(cell) = cells.get_mut(first..first + per_cell) {
-                self.counts.crowded_out += u32::from(cells::insert(cell, corner));
+                self.counts.crowded_out += u32::from(grid::insert(cell, corner));
             }
         }
     }
@@ -187,7 +187,7 @@ impl<const W: usize, const C: usize> FeatureDetector<W, C> {
         for slot in waiting {
             let Some(patch) = Patch::cut(&rows, slot.corner.column.into()) else { continue };
             let turn = match self.config.orientation {
-                Orientation::Upright => Turn::NONE,
+                Orientation::Upright => PatchOrientation::NONE,
                 Orientation::Centroid => patch.direction(),
             };
             [slot.corner.right, slot.corner.down] = refine(&patch);
@@ -211,7 +211,7 @@ impl<const W: usize, const C: usize> FeatureDetector<W, C> {
             let mut waiting = cells.as_mut_slice();
             while let Some((cell, others)) = waiting.split_at_mut_checked(per_cell) {
                 waiting = others;
-                while let Some(slot) = cells::take_strongest(cell) {
+                while let Some(slot) = grid::take_strongest(cell) {
                     let feature = Feature::new(&slot.corner, level, slot.descriptor);
                     self.counts.dropped += u32::from(out.push(feature).is_err());
                 }

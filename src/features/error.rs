@@ -65,7 +65,7 @@ impl core::error::Error for FeatureLineError {}
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum SearchError {
+pub enum MatchConfigError {
     /// The ratio is not 1 to 100 percent.
     Ratio,
     /// A distance is negative or not a number.
@@ -79,7 +79,7 @@ pub enum SearchError {
     },
 }
 
-impl fmt::Display for SearchError {
+impl fmt::Display for MatchConfigError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Ratio => write!(f, "the ratio is not 1 to 100 percent"),
@@ -90,4 +90,4 @@ impl fmt::Display for SearchError {
     }
 }
 
-impl core::error::Error for SearchError {}
+impl core::error::Error for MatchConfigError {}

@@ -17,9 +17,9 @@ impl Level {
     /// No picture.
     pub(super) const NONE: Self = Self { index: 0, scale: 0.0 };
 
-    /// The level of a picture that [`Shrink`](super::Shrink) makes of this level's, `N - 1` pixels of every
-    /// `N`.
-    pub fn shrunk<const N: usize>(self) -> Self {
+    /// The level of a picture that [`Downsample`](super::Downsample) makes of this level's, `N - 1` pixels of
+    /// every `N`.
+    pub fn downsampled<const N: usize>(self) -> Self {
         const { assert!(2 <= N && N <= 16, "2 to 16 pixels become one less") };
         Self { index: self.index.saturating_add(1), scale: self.scale * N as f32 / (N - 1) as f32 }
     }

@@ -8,13 +8,13 @@ pub const PAIRS: usize = 256;
 
 /// Where the points of a pair lie from the patch's middle, px: to the right and down, of one and of the
 /// other.
-pub type Pair = [[i8; 2]; 2];
+pub type PointPair = [[i8; 2]; 2];
 
 /// The pairs. All their coordinates are drawn independently from a sum of three even distributions of -7 to 7
 /// px (of deviation 7.5 px, about half the radius: the geometry G II of Calonder, Lepetit, Strecha & Fua,
 /// "BRIEF", ECCV 2010); a pair is drawn again when a point is outside of the circle or both points are nearer
 /// to each other than 3 px, which the smoothing makes alike.
-pub const PATTERN: [Pair; PAIRS] = {
+pub const PATTERN: [PointPair; PAIRS] = {
     let mut pattern = [[[0; 2]; 2]; PAIRS];
     let mut state = SEED;
     let mut i = 0;

@@ -28,23 +28,23 @@ pub struct Template {
 
 /// Where a template was found.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Aligned {
+pub struct TemplateMatch {
     /// The column of its place, px.
     pub x_px: f32,
     /// The row, px.
     pub y_px: f32,
     /// How alike the pixels are, whatever their brightness and contrast: the correlation coefficient, 1 at
     /// most.
-    pub likeness: f32,
+    pub correlation: f32,
 }
 
 /// Where a template fits along a row.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct AlongRow {
+pub struct RowMatch {
     /// The column of its place, to whole steps from it, px.
     pub x_px: f32,
     /// The correlation coefficient there.
-    pub likeness: f32,
+    pub correlation: f32,
     /// The largest one three columns away and farther.
     pub elsewhere: f32,
 }
@@ -83,7 +83,7 @@ impl Template {
         warp: &[[f32; 2]; 2],
         start: [f32; 2],
         farthest_px: f32,
-    ) -> Option<Aligned> {
+    ) -> Option<TemplateMatch> {
         let (values, slopes) = self.values_and_slopes();
         let (mut xx, mut xy, mut yy, mut own) = (0.0, 0.0, 0.0, 0.0);
         for (value, [x, y]) in values.iter().zip(&slopes) {
@@ -98,7 +98,7 @@ impl Template {
             return None;
         }
         let [mut x, mut y] = start;
-        let mut likeness = -1.0;
+        let mut correlation = -1.0;
         for _ in 0..STEPS {
             let mut seen = [0.0; COUNT];
             self.look(picture, warp, [x, y], &mut seen)?;
@@ -110,7 +110,7 @@ impl Template {
             if !(other > 0.0) {
                 return None;
             }
-            likeness = cross / ComplexField::sqrt(own * other);
+            correlation = cross / ComplexField::sqrt(own * other);
             let gain = cross / other;
             let (mut a, mut b) = (0.0, 0.0);
             for ((seen, value), slope) in seen.iter().zip(&values).zip(&slopes) {
@@ -130,18 +130,18 @@ impl Template {
                 break;
             }
         }
-        Some(Aligned { x_px: x, y_px: y, likeness })
+        Some(TemplateMatch { x_px: x, y_px: y, correlation })
     }
 
     /// The column of `row` from `least` to `most` around which the other picture is most like the template,
     /// as it is and to whole pixels; `None` where no column is inside.
-    pub fn along_row(
+    pub fn match_row(
         &self,
         picture: &Picture<'_>,
         row: usize,
         least: usize,
         most: usize,
-    ) -> Option<AlongRow> {
+    ) -> Option<RowMatch> {
         let mut own = [[0_i32; SIDE]; SIDE];
         let (mut sum, mut squares) = (0, 0);
         for (to, line) in own.iter_mut().zip(self.pixels.iter().skip(1)) {
@@ -159,7 +159,7 @@ impl Template {
         for (line, row) in lines.iter_mut().zip(first_row..) {
             *line = picture.run(0, row, picture.width())?;
         }
-        let likeness = |column: usize| {
+        let correlation = |column: usize| {
             let (mut other, mut other_squares, mut cross) = (0, 0, 0);
             for (line, own) in lines.iter().zip(&own) {
                 let Some(run) = line.get(column - REACH..=column + REACH) else { return -1.0 };
@@ -180,7 +180,7 @@ impl Template {
         let mut before = [-1.0_f32; 2];
         let mut far_before = -1.0_f32;
         for column in least..=most {
-            let here = likeness(column);
+            let here = correlation(column);
             if best_column.is_none() || here > best {
                 (best, best_column, elsewhere) = (here, Some(column), far_before);
             } else if best_column.is_some_and(|best: usize| column - best >= 3) {
@@ -191,7 +191,11 @@ impl Template {
             far_before = far_before.max(oldest);
             before = [last, here];
         }
-        best_column.map(|column| AlongRow { x_px: column as f32 + self.part[0], likeness: best, elsewhere })
+        best_column.map(|column| RowMatch {
+            x_px: column as f32 + self.part[0],
+            correlation: best,
+            elsewhere,
+        })
     }
 
     /// The pixels without their mean, and their slopes without theirs.

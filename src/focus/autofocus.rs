@@ -1,7 +1,7 @@
 //! Autofocus as values: it returns commands and takes events, and calls no hardware.
 
 use super::ActuatorLimits;
-use super::search::{FocusSearch, Next};
+use super::peak_search::{FocusSearch, FocusSearchStep};
 use core::fmt;
 
 /// What the caller is to do next.
@@ -186,12 +186,12 @@ impl Autofocus {
     /// Asks the search where to measure.
     fn next(&mut self) {
         match self.search.next() {
-            Next::Measure(position) => self.set_out(position),
-            Next::Best(position) => {
+            FocusSearchStep::Measure(position) => self.set_out(position),
+            FocusSearchStep::Best(position) => {
                 self.end = Some(Focused { position, frames: self.search.frames() });
                 self.set_out(position);
             }
-            Next::Flat => self.asked = LensCommand::Failed(AutofocusError::Untextured),
+            FocusSearchStep::Flat => self.asked = LensCommand::Failed(AutofocusError::Untextured),
         }
     }
 

@@ -1,6 +1,6 @@
 //! What a focus map is made of.
 
-use super::boxes::MOST_RADIUS;
+use super::box_filter::MOST_RADIUS;
 use core::fmt;
 
 /// Size and cells of a focus map.

@@ -1,10 +1,10 @@
 //! Frames of a focus sweep to where each cell is in focus, line by line.
 
-use super::boxes::Boxes;
-use super::cell::BIAS;
+use super::box_filter::BoxFilter;
 use super::logarithm::log2;
+use super::peak::BIAS;
 use super::{
-    Breathing, FocusCell, FocusConfig, FocusConfigError, FocusLineError, FocusPeak, NoFocus, SharperRow,
+    AllInFocusRow, Breathing, FocusCell, FocusConfig, FocusConfigError, FocusLineError, FocusPeak, NoFocus,
     binomial, modified_laplacian,
 };
 use crate::imaging::LineBand;
@@ -51,7 +51,7 @@ pub struct FocusMap<const W: usize, const C: usize, S> {
     smooth: [[u16; W]; 3],
     /// The measure of the last two rows, the newest first.
     lines: [[u16; W]; 2],
-    boxes: [Boxes<C>; 2],
+    boxes: [BoxFilter<C>; 2],
     sums: [u32; C],
     sharper: [bool; C],
     cells: S,
@@ -85,7 +85,7 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
             raw: LineBand::new(),
             smooth: [[0; W]; 3],
             lines: [[0; W]; 2],
-            boxes: [const { Boxes::new() }; 2],
+            boxes: [const { BoxFilter::new() }; 2],
             sums: [0; C],
             sharper: [false; C],
             cells,
@@ -162,7 +162,11 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
     }
 
     /// The next line of grey pixels. Rows of cells that are complete are told to `row`.
-    pub fn push(&mut self, line: &[u8], mut row: impl FnMut(SharperRow<'_>)) -> Result<(), FocusLineError> {
+    pub fn push(
+        &mut self,
+        line: &[u8],
+        mut row: impl FnMut(AllInFocusRow<'_>),
+    ) -> Result<(), FocusLineError> {
         if !self.is_running || self.frames == 0 || self.taken >= self.config.height {
             return Err(FocusLineError::NoLineDue);
         }
@@ -191,7 +195,7 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
 
     /// Smooths row `centre`, below which a line has come if the picture has one; then the row above it can be
     /// measured.
-    fn smooth(&mut self, centre: usize, row: &mut impl FnMut(SharperRow<'_>)) {
+    fn smooth(&mut self, centre: usize, row: &mut impl FnMut(AllInFocusRow<'_>)) {
         let width = usize::from(self.config.width);
         if let Some(out) = self.smooth.get_mut(centre % 3).and_then(|out| out.get_mut(..width)) {
             binomial(self.raw.around(centre), out);
@@ -203,7 +207,7 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
 
     /// Measures row `centre`, of which rows down to `newest` are smoothed, and adds it to the rows of the
     /// reference that show it.
-    fn measure(&mut self, centre: usize, newest: usize, row: &mut impl FnMut(SharperRow<'_>)) {
+    fn measure(&mut self, centre: usize, newest: usize, row: &mut impl FnMut(AllInFocusRow<'_>)) {
         let (width, height) = (usize::from(self.config.width), usize::from(self.config.height));
         let rows = [centre.saturating_sub(1), centre, (centre + 1).min(newest)];
         let rows = rows.map(|y| self.smooth.get(y % 3).and_then(|row| row.get(..width)).unwrap_or(&[]));
@@ -221,7 +225,7 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
 
     /// Adds the next row of the reference to its cells: it lies by `part` of 256 between the last two
     /// measured rows, if it is not the last one.
-    fn add_row(&mut self, part: u32, row: &mut impl FnMut(SharperRow<'_>)) {
+    fn add_row(&mut self, part: u32, row: &mut impl FnMut(AllInFocusRow<'_>)) {
         let (width, side) = (usize::from(self.config.width), usize::from(self.config.cell_px).max(1));
         let [newest, before] = self.lines.each_ref().map(|line| line.get(..width).unwrap_or(&[]));
         if self.breathing.is_none() {
@@ -252,7 +256,7 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
     }
 
     /// Passes a row of cells, or what is below the picture, through the first window.
-    fn first_window(&mut self, is_inside: bool, row: &mut impl FnMut(SharperRow<'_>)) {
+    fn first_window(&mut self, is_inside: bool, row: &mut impl FnMut(AllInFocusRow<'_>)) {
         let sums = self.sums.get(..self.config.columns()).unwrap_or(&[]);
         let mut out = [0; C];
         if self.config.radius == 0 {
@@ -264,7 +268,7 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
     }
 
     /// Passes a row of the first window's sums, or what is below the picture, through the second one.
-    fn second_window(&mut self, sums: Option<&[u32; C]>, row: &mut impl FnMut(SharperRow<'_>)) {
+    fn second_window(&mut self, sums: Option<&[u32; C]>, row: &mut impl FnMut(AllInFocusRow<'_>)) {
         let mut out = [0; C];
         if self.boxes[1].push(sums.map(<[u32; C]>::as_slice), &mut out) {
             self.cells(&out, row);
@@ -272,7 +276,7 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
     }
 
     /// Passes the sharpness of the next row of cells through them.
-    fn cells(&mut self, sharpness: &[u32; C], row: &mut impl FnMut(SharperRow<'_>)) {
+    fn cells(&mut self, sharpness: &[u32; C], row: &mut impl FnMut(AllInFocusRow<'_>)) {
         let (columns, index) = (self.config.columns(), self.rows_out);
         self.rows_out += 1;
         let cells = self.cells.as_mut().chunks_exact_mut(columns.max(1)).nth(index).unwrap_or_default();
@@ -280,7 +284,7 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
         for ((cell, &sum), sharper) in cells.iter_mut().zip(sharpness).zip(&mut self.sharper) {
             *sharper = cell.push(frame, sum + self.floor, self.shift);
         }
-        row(SharperRow { index, sharper: self.sharper.get(..columns).unwrap_or(&[]) });
+        row(AllInFocusRow { index, sharper: self.sharper.get(..columns).unwrap_or(&[]) });
     }
 
     /// Ends the stack: then all peaks are known.

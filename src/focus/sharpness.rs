@@ -1,7 +1,7 @@
 //! Measures of sharpness over windows, row by row.
 
 use super::config::FocusLineError;
-use super::rows::{binomial, laplacian, modified_laplacian, tenengrad};
+use super::focus_measures::{binomial, laplacian, modified_laplacian, tenengrad};
 use crate::imaging::LineBand;
 
 /// Radius of the widest window.

@@ -1,7 +1,7 @@
 //! How cameras move, and what they see on the way.
 //!
 //! In: pictures of one camera or of a rectified pair, one moment after the other, with their features; or
-//! sights of points that somebody matched. Out: where the cameras stand, and where the points are.
+//! observations of points that somebody matched. Out: where the cameras stand, and where the points are.
 //!
 //! * [`bundle`]: bundle adjustment: views and points until what was seen agrees with them best.
 //! * [`odometry`]: from frame to frame, as they come.

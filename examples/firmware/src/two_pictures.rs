@@ -4,8 +4,8 @@
 
 use heapless::Vec;
 use stereopsis::features::{
-    Feature, FeatureConfig, FeatureConfigError, FeatureDetector, FeatureLineError, Match, Matcher, Search,
-    SearchError,
+    Feature, FeatureConfig, FeatureConfigError, FeatureDetector, FeatureLineError, FeatureMatcher, Match,
+    MatchConfig, MatchConfigError,
 };
 
 /// Pixels in a line.
@@ -30,7 +30,7 @@ pub struct TwoPictures {
     pub left: Eye,
     /// The right camera.
     pub right: Eye,
-    matcher: Matcher<MOST>,
+    matcher: FeatureMatcher<MOST>,
     /// Which feature is which.
     pub matches: Vec<Match, MOST>,
 }
@@ -53,7 +53,7 @@ impl Eye {
 impl TwoPictures {
     /// Nothing came yet.
     pub const fn new() -> Self {
-        Self { left: Eye::new(), right: Eye::new(), matcher: Matcher::new(), matches: Vec::new() }
+        Self { left: Eye::new(), right: Eye::new(), matcher: FeatureMatcher::new(), matches: Vec::new() }
     }
 
     /// Begins a frame.
@@ -78,10 +78,10 @@ impl TwoPictures {
     ///
     /// # Errors
     /// When the search is wrong or there are too many features; which it is not and there are not.
-    pub fn pair(&mut self) -> Result<(), SearchError> {
+    pub fn pair(&mut self) -> Result<(), MatchConfigError> {
         self.matches.clear();
         let matches = self.matches.as_mut_view();
-        self.matcher.run(&self.left.features, &self.right.features, &Search::new(), matches)?;
+        self.matcher.run(&self.left.features, &self.right.features, &MatchConfig::new(), matches)?;
         Ok(())
     }
 }

@@ -77,7 +77,7 @@ impl Adjusted {
         let config = BundleConfig::new(Gauge::Baseline { held: 0, other: 1 });
         let most = config.most_iterations;
         let mut adjustment = self.window.start(config).map_err(Broken::Bundle)?;
-        let mut report = adjustment.report(stereopsis::motion::bundle::Stop::Iterations);
+        let mut report = adjustment.report(stereopsis::motion::bundle::StopReason::Iterations);
         for _ in 0..=most {
             if let ControlFlow::Break(stop) = self.window.iterate(&mut adjustment) {
                 report = adjustment.report(stop);
@@ -113,8 +113,8 @@ impl Adjusted {
             // A wrong match is not what is adjusted: it is where it should be.
             let there =
                 if is_right(at) { seen.second } else { second.project(0, point).map_err(Broken::NotSeen)? };
-            window.add_sight(0, 0, seen.first).map_err(Broken::Window)?;
-            window.add_sight(1, 0, there).map_err(Broken::Window)?;
+            window.add_observation(0, 0, seen.first).map_err(Broken::Window)?;
+            window.add_observation(1, 0, there).map_err(Broken::Window)?;
         }
         Ok(())
     }

@@ -20,7 +20,7 @@ pub use solve::Running;
 use nalgebra::{Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
 use std::io::{self, Write};
 use stereopsis::geometry::camera::Pose;
-use stereopsis::motion::bundle::{Loss, RadialView, Sight, View};
+use stereopsis::motion::bundle::{Loss, Observation, RadialView, View};
 
 /// Cameras, points and what the cameras see of them.
 #[derive(Clone, PartialEq, Debug)]
@@ -30,7 +30,7 @@ pub struct BalProblem {
     /// The points.
     pub points: Vec<Point3<f64>>,
     /// The observations, those of a point together, rows downward.
-    pub sights: Vec<Sight<f64>>,
+    pub observations: Vec<Observation<f64>>,
     /// Which line of the file each was, from 0.
     order: Vec<u32>,
 }
@@ -62,31 +62,40 @@ fn numbers(view: &RadialView<f64>) -> [f64; 9] {
 
 impl BalProblem {
     /// A problem of parts; observations in any order.
-    pub fn new(views: Vec<RadialView<f64>>, points: Vec<Point3<f64>>, sights: &[Sight<f64>]) -> Self {
-        let mut order: Vec<u32> = (0..sights.len() as u32).collect();
-        order.sort_by_key(|&at| sights[at as usize].point);
-        let sights = order.iter().map(|&at| sights[at as usize]).collect();
-        Self { views, points, sights, order }
+    pub fn new(
+        views: Vec<RadialView<f64>>,
+        points: Vec<Point3<f64>>,
+        observations: &[Observation<f64>],
+    ) -> Self {
+        let mut order: Vec<u32> = (0..observations.len() as u32).collect();
+        order.sort_by_key(|&at| observations[at as usize].point);
+        let observations = order.iter().map(|&at| observations[at as usize]).collect();
+        Self { views, points, observations, order }
     }
 
     /// Half the loss of all observations, px^2; infinite where a point is not seen.
     pub fn cost(&self, loss: &Loss<f64>) -> f64 {
-        let of = |sight: &Sight<f64>| {
-            let seen = self.views[usize::from(sight.view)].project(0, &self.points[sight.point as usize]);
-            seen.map_or(f64::INFINITY, |seen| loss.of((seen - sight.pixel).norm_squared()))
+        let of = |observation: &Observation<f64>| {
+            let seen = self.views[usize::from(observation.view)]
+                .project(0, &self.points[observation.point as usize]);
+            seen.map_or(f64::INFINITY, |seen| loss.of((seen - observation.pixel).norm_squared()))
         };
-        0.5 * self.sights.iter().map(of).sum::<f64>()
+        0.5 * self.observations.iter().map(of).sum::<f64>()
     }
 
     /// Writes the problem in the file's format, the observations as and where they were read.
     pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
-        writeln!(out, "{} {} {}", self.views.len(), self.points.len(), self.sights.len())?;
-        let mut lines = vec![&self.sights[..0]; self.sights.len()];
+        writeln!(out, "{} {} {}", self.views.len(), self.points.len(), self.observations.len())?;
+        let mut lines = vec![&self.observations[..0]; self.observations.len()];
         for (n, &at) in self.order.iter().enumerate() {
-            lines[at as usize] = &self.sights[n..=n];
+            lines[at as usize] = &self.observations[n..=n];
         }
-        for sight in lines.into_iter().flatten() {
-            writeln!(out, "{} {} {:e} {:e}", sight.view, sight.point, sight.pixel.x, -sight.pixel.y)?;
+        for observation in lines.into_iter().flatten() {
+            writeln!(
+                out,
+                "{} {} {:e} {:e}",
+                observation.view, observation.point, observation.pixel.x, -observation.pixel.y
+            )?;
         }
         for number in
             self.views.iter().flat_map(numbers).chain(self.points.iter().flat_map(|p| [p.x, p.y, p.z]))

@@ -3,7 +3,7 @@
 use super::{BalError, BalFault, BalProblem, view};
 use nalgebra::{Point2, Point3};
 use std::path::Path;
-use stereopsis::motion::bundle::Sight;
+use stereopsis::motion::bundle::Observation;
 
 /// Cameras at most: an observation names one in 16 bits.
 const MOST_CAMERAS: usize = 1 << 16;
@@ -79,12 +79,12 @@ fn parse(text: &str) -> Result<BalProblem, BalFault> {
         words.counts[k] = words.whole(|| (*name).to_owned(), 1, most)?;
     }
     let [cameras, points, observations] = words.counts;
-    let mut sights = Vec::new();
+    let mut read = Vec::new();
     for n in 0..observations {
         let view = words.whole(|| format!("the camera of observation {n}"), 0, cameras - 1)?;
         let point = words.whole(|| format!("the point of observation {n}"), 0, points - 1)?;
         let [x, y] = words.numbers(|| format!("observation {n}"))?;
-        sights.push(Sight { point: point as u32, view: view as u16, eye: 0, pixel: Point2::new(x, -y) });
+        read.push(Observation { point: point as u32, view: view as u16, eye: 0, pixel: Point2::new(x, -y) });
     }
     let views =
         (0..cameras).map(|n| words.numbers(|| format!("camera {n}")).map(view)).collect::<Result<_, _>>()?;
@@ -93,7 +93,7 @@ fn parse(text: &str) -> Result<BalProblem, BalFault> {
     if let Some((line, found)) = words.words.next() {
         return Err(BalFault::TooMany { line, found: found.into(), cameras, points, observations });
     }
-    Ok(BalProblem::new(views, places, &sights))
+    Ok(BalProblem::new(views, places, &read))
 }
 
 #[cfg(test)]
@@ -112,7 +112,7 @@ mod tests {
         let mut written = Vec::new();
         problem.write(&mut written).expect("to memory");
         let again = parse(&String::from_utf8(written).expect("text")).expect("a problem");
-        assert_eq!(again.sights, problem.sights);
+        assert_eq!(again.observations, problem.observations);
         assert_eq!(again.points, problem.points);
         let off = again.views[0].pose.translation() - problem.views[0].pose.translation();
         assert!(off.amax() < 1e-14, "{off}");

@@ -153,7 +153,7 @@ impl Smoother {
             // Nothing joins what was before and what comes.
             State::First | State::Restarted => self.refinement.clear(),
             // Where there may have been a step that is not known there is none to adjust.
-            State::Turned | State::StepUnknown => return self.refinement.clear(),
+            State::RotationOnly | State::TranslationUnknown => return self.refinement.clear(),
             _ => return,
         }
         let motion = match (self.refinement.poses(), self.frames.last()) {
@@ -161,8 +161,8 @@ impl Smoother {
             (_, Some(&before)) => trajectory.poses[before].inverse().then(&trajectory.poses[last]),
         };
         let adjusted = match odometry {
-            Either::Stereo(odometry) => self.refinement.push(&motion, odometry.seen()),
-            Either::Mono(odometry) => self.refinement.push(&motion, odometry.seen()),
+            Either::Stereo(odometry) => self.refinement.push(&motion, odometry.observed_points()),
+            Either::Mono(odometry) => self.refinement.push(&motion, odometry.observed_points()),
         };
         self.frames.push(last);
         // What cannot be adjusted stays as it was told.

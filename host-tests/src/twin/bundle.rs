@@ -1,7 +1,7 @@
 //! The step of a bundle adjustment, with all unknowns in one matrix and derivatives by differences.
 
 use nalgebra::{DMatrix, DVector, Point3, Vector3};
-use stereopsis::motion::bundle::{Loss, Sight, View};
+use stereopsis::motion::bundle::{Loss, Observation, View};
 
 /// A problem, and which views are held.
 pub struct Dense<'a, V> {
@@ -9,8 +9,8 @@ pub struct Dense<'a, V> {
     pub views: &'a [V],
     /// The points.
     pub points: &'a [Point3<f64>],
-    /// The sights, in any order.
-    pub sights: &'a [Sight<f64>],
+    /// The observations, in any order.
+    pub observations: &'a [Observation<f64>],
     /// How much a residual counts.
     pub loss: Loss<f64>,
     /// The numbers that a view's step may have, as columns of N rows: none for a view that is held.
@@ -25,17 +25,19 @@ impl<V> Dense<'_, V> {
         V: View<f64, N>,
     {
         let columns: usize = self.free.iter().map(DMatrix::ncols).sum();
-        let mut residuals = DVector::zeros(2 * self.sights.len());
+        let mut residuals = DVector::zeros(2 * self.observations.len());
         let mut slopes = DMatrix::zeros(residuals.len(), columns + 3 * self.points.len());
-        for (n, sight) in self.sights.iter().enumerate() {
-            let (view, point) = (&self.views[usize::from(sight.view)], &self.points[sight.point as usize]);
-            let seen =
-                |view: &V, point: &Point3<f64>| view.project(sight.eye, point).expect("seen") - sight.pixel;
+        for (n, observation) in self.observations.iter().enumerate() {
+            let (view, point) =
+                (&self.views[usize::from(observation.view)], &self.points[observation.point as usize]);
+            let seen = |view: &V, point: &Point3<f64>| {
+                view.project(observation.eye, point).expect("seen") - observation.pixel
+            };
             let off = seen(view, point);
             let weight = self.loss.weight(off.norm_squared()).sqrt();
             residuals.rows_mut(2 * n, 2).copy_from(&(off * weight));
-            let free = &self.free[usize::from(sight.view)];
-            let before: usize = self.free[..usize::from(sight.view)].iter().map(DMatrix::ncols).sum();
+            let free = &self.free[usize::from(observation.view)];
+            let before: usize = self.free[..usize::from(observation.view)].iter().map(DMatrix::ncols).sum();
             for (k, direction) in free.column_iter().enumerate() {
                 let by = |h: f64| seen(&view.moved(&std::array::from_fn(|i| h * direction[i])), point);
                 let h = 1e-5;
@@ -47,7 +49,9 @@ impl<V> Dense<'_, V> {
                 let mut shift = Vector3::zeros();
                 shift[k] = 1e-6;
                 let off = (seen(view, &(point + shift)) - seen(view, &(point - shift))) * (weight / 2e-6);
-                slopes.view_mut((2 * n, columns + 3 * sight.point as usize + k), (2, 1)).copy_from(&off);
+                slopes
+                    .view_mut((2 * n, columns + 3 * observation.point as usize + k), (2, 1))
+                    .copy_from(&off);
             }
         }
         (residuals, slopes)

@@ -2,7 +2,9 @@
 
 use super::Picture;
 use image::GrayImage;
-use stereopsis::features::{Corner, Descriptor, Feature, FeatureConfig, Match, Orientation, PATTERN, Search};
+use stereopsis::features::{
+    Corner, Descriptor, Feature, FeatureConfig, Match, MatchConfig, Orientation, PATTERN,
+};
 
 /// The circle of radius 3: (dx, dy), clockwise from above.
 const CIRCLE: [(isize, isize); 16] = [
@@ -160,7 +162,7 @@ pub fn features(config: &FeatureConfig, image: &GrayImage) -> (Vec<Feature>, u32
 }
 
 /// The matches of two lists.
-pub fn matches(left: &[Feature], right: &[Feature], search: &Search) -> Vec<Match> {
+pub fn matches(left: &[Feature], right: &[Feature], search: &MatchConfig) -> Vec<Match> {
     let bits = |a: &Feature, b: &Feature| {
         let pairs = a.descriptor.0.into_iter().zip(b.descriptor.0);
         pairs.map(|(a, b)| (0..32).filter(|i| (a >> i & 1) != (b >> i & 1)).count()).sum::<usize>()

@@ -4,7 +4,7 @@ use crate::correspond::{CorrespondError, Plan, features, matches};
 use image::GrayImage;
 use nalgebra::Point2;
 use stereopsis::features::{Feature, Orientation};
-use stereopsis::motion::bundle::Sight;
+use stereopsis::motion::bundle::Observation;
 
 /// Pictures that are compared with one: those up to so many before it.
 const REACH: usize = 4;
@@ -13,7 +13,7 @@ const REACH: usize = 4;
 #[derive(Clone, Debug, Default)]
 pub struct Links {
     /// Where they are seen, sorted by point.
-    pub sights: Vec<Sight<f64>>,
+    pub observations: Vec<Observation<f64>>,
     /// How many points there are.
     pub points: usize,
 }
@@ -53,8 +53,9 @@ pub fn link(plan: &Plan, pictures: &[GrayImage], told: impl Fn()) -> Result<Link
         }
         let point = links.points as u32;
         links.points += 1;
-        let sight = |(view, pixel): (usize, Point2<f64>)| Sight { point, view: view as u16, eye: 0, pixel };
-        links.sights.extend(chain.into_iter().map(sight));
+        let observation =
+            |(view, pixel): (usize, Point2<f64>)| Observation { point, view: view as u16, eye: 0, pixel };
+        links.observations.extend(chain.into_iter().map(observation));
     }
     Ok(links)
 }

@@ -7,9 +7,10 @@ use stereopsis::geometry::{
     camera::{Camera, Pose},
     two_view::{Correspondence, ScaleError},
 };
-use stereopsis::motion::bundle::{CameraView, Sight, Slot, Term, View, Workspace};
+use stereopsis::motion::bundle::{CameraView, CrossBlock, Observation, View, ViewSlot, Workspace};
 use stereopsis::motion::structure::{
-    Placement, PointState, SceneMemory, StructureConfig, StructureError, StructureReport, structure,
+    PointState, StructureConfig, StructureError, StructureReport, StructureWorkspaceView, ViewState,
+    structure,
 };
 
 /// The distance of two views, which is known, metres.
@@ -25,10 +26,10 @@ pub struct Length {
 #[derive(Clone, Debug)]
 pub struct Found {
     /// The poses, or why there is none.
-    pub poses: Vec<Result<Pose<f64>, Placement>>,
+    pub poses: Vec<Result<Pose<f64>, ViewState>>,
     /// The points, in the order of their numbers, or why there is none.
     pub points: Vec<Result<Point3<f64>, PointState>>,
-    /// The sights that agree with them: root mean square of what is left, px.
+    /// The observations that agree with them: root mean square of what is left, px.
     pub rms_px: f64,
     /// How.
     pub report: StructureReport<f64>,
@@ -55,16 +56,16 @@ pub fn solve(
     threshold_px: f64,
     length: Option<Length>,
 ) -> Result<Found, SolveError> {
-    let (n, sights) = (links.points, links.sights.as_slice());
+    let (n, observations) = (links.points, links.observations.as_slice());
     let mut places = vec![CameraView { camera: *camera, pose: Pose::identity() }; views];
-    let (mut placements, mut states) = (vec![Placement::Unknown; views], vec![PointState::Unknown; n]);
-    let (mut points, mut kept) = (vec![Point3::origin(); n], vec![Sight::EMPTY; sights.len()]);
+    let (mut placements, mut states) = (vec![ViewState::Unknown; views], vec![PointState::Unknown; n]);
+    let (mut points, mut kept) = (vec![Point3::origin(); n], vec![Observation::EMPTY; observations.len()]);
     let mut matches = vec![Correspondence::new(0.0, 0.0, 0.0, 0.0); n];
     let mut landmarks = vec![Landmark { world: Point3::origin(), pixel: Point2::origin() }; n];
     let mut inliers = vec![false; n];
-    let memory = SceneMemory {
+    let memory = StructureWorkspaceView {
         views: &mut places,
-        placements: &mut placements,
+        view_states: &mut placements,
         points: &mut points,
         states: &mut states,
         kept: &mut kept,
@@ -72,13 +73,13 @@ pub fn solve(
         landmarks: &mut landmarks,
         inliers: &mut inliers,
         workspace: Workspace {
-            slots: &mut vec![Slot::EMPTY; views],
-            terms: &mut vec![Term::EMPTY; views],
+            slots: &mut vec![ViewSlot::EMPTY; views],
+            terms: &mut vec![CrossBlock::EMPTY; views],
             trial_points: &mut vec![Point3::origin(); n],
             blocks: &mut vec![[[0.0; 6]; 6]; views * (views + 1) / 2],
         },
     };
-    let (found, report) = structure(memory, sights, &StructureConfig::new(threshold_px))?;
+    let (found, report) = structure(memory, observations, &StructureConfig::new(threshold_px))?;
     let (poses, points) = match length {
         None => (
             (0..views).map(|view| found.pose(view).copied()).collect(),
@@ -93,21 +94,22 @@ pub fn solve(
         }
     };
     let mut found = Found { poses, points, rms_px: 0.0, report };
-    found.rms_px = found.residual(camera, sights, threshold_px);
+    found.rms_px = found.residual(camera, observations, threshold_px);
     Ok(found)
 }
 
 impl Found {
     /// The root mean square of the residuals within the threshold, px.
-    fn residual(&self, camera: &Camera<f64>, sights: &[Sight<f64>], threshold_px: f64) -> f64 {
-        let squared = |sight: &Sight<f64>| {
-            let pose = (*self.poses.get(usize::from(sight.view))?).ok()?;
-            let point = (*self.points.get(sight.point as usize)?).ok()?;
+    fn residual(&self, camera: &Camera<f64>, observations: &[Observation<f64>], threshold_px: f64) -> f64 {
+        let squared = |observation: &Observation<f64>| {
+            let pose = (*self.poses.get(usize::from(observation.view))?).ok()?;
+            let point = (*self.points.get(observation.point as usize)?).ok()?;
             let seen = CameraView { camera: *camera, pose }.project(0, &point).ok()?;
-            Some((seen - sight.pixel).norm_squared())
+            Some((seen - observation.pixel).norm_squared())
                 .filter(|&squared| squared <= threshold_px * threshold_px)
         };
-        let (sum, count) = sights.iter().filter_map(squared).fold((0.0, 0), |(sum, n), x| (sum + x, n + 1));
+        let (sum, count) =
+            observations.iter().filter_map(squared).fold((0.0, 0), |(sum, n), x| (sum + x, n + 1));
         (sum / f64::from(count.max(1))).sqrt()
     }
 

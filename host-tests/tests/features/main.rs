@@ -9,7 +9,9 @@ mod twins;
 
 use image::GrayImage;
 use nalgebra::Matrix3;
-use stereopsis::features::{Feature, FeatureConfig, FeatureCounts, FeatureDetector, Match, Matcher, Search};
+use stereopsis::features::{
+    Feature, FeatureConfig, FeatureCounts, FeatureDetector, FeatureMatcher, Match, MatchConfig,
+};
 use stereopsis::geometry::two_view::Fundamental;
 
 /// The capacity of the detectors here: lines, and corners in a row of cells.
@@ -28,9 +30,9 @@ fn detect(config: &FeatureConfig, image: &GrayImage) -> (Vec<Feature>, FeatureCo
 }
 
 /// Their matches by the core.
-fn matched(left: &[Feature], right: &[Feature], search: &Search) -> Vec<Match> {
+fn matched(left: &[Feature], right: &[Feature], search: &MatchConfig) -> Vec<Match> {
     let mut list = Box::new(heapless::Vec::<Match, 4096>::new());
-    let mut matcher = Box::new(Matcher::<4096>::new());
+    let mut matcher = Box::new(FeatureMatcher::<4096>::new());
     let dropped = matcher.run(left, right, search, list.as_mut_view());
     assert_eq!(dropped, Ok(0));
     list.to_vec()

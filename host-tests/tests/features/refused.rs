@@ -2,8 +2,8 @@
 
 use super::{config, detect, rows_aligned};
 use stereopsis::features::{
-    Epipolar, FeatureConfig, FeatureConfigError, FeatureDetector, FeatureLineError, Matcher, Search,
-    SearchError,
+    Epipolar, FeatureConfig, FeatureConfigError, FeatureDetector, FeatureLineError, FeatureMatcher,
+    MatchConfig, MatchConfigError,
 };
 use stereopsis_host::scene::pattern::Pattern;
 
@@ -22,7 +22,7 @@ fn a_full_list_counts_what_it_leaves_out() {
     assert_eq!(detector.counts().dropped as usize, all.len() - 7);
 
     let mut matches = heapless::Vec::<_, 3>::new();
-    let dropped = Matcher::<200>::new().run(&all, &all, &Search::new(), matches.as_mut_view());
+    let dropped = FeatureMatcher::<200>::new().run(&all, &all, &MatchConfig::new(), matches.as_mut_view());
     assert_eq!((matches.len(), dropped), (3, Ok(all.len() as u32 - 3)));
     assert!(matches.iter().all(|m| m.left == m.right && m.different == 0));
 }
@@ -83,24 +83,24 @@ fn a_frame_that_was_cut_off_leaves_nothing() {
 
 #[test]
 fn a_search_that_makes_no_sense() {
-    let run = |search: Search| {
-        Matcher::<4>::new().run(&[], &[], &search, heapless::Vec::<_, 1>::new().as_mut_view())
+    let run = |search: MatchConfig| {
+        FeatureMatcher::<4>::new().run(&[], &[], &search, heapless::Vec::<_, 1>::new().as_mut_view())
     };
-    let every = Search::new();
+    let every = MatchConfig::new();
     assert_eq!(run(every), Ok(0));
     for ratio_percent in [0, 101] {
-        assert_eq!(run(Search { ratio_percent, ..every }), Err(SearchError::Ratio));
+        assert_eq!(run(MatchConfig { ratio_percent, ..every }), Err(MatchConfigError::Ratio));
     }
     for bad in [f32::NAN, -1.0] {
-        assert_eq!(run(Search { along_px: bad, ..every }), Err(SearchError::Range));
-        assert_eq!(run(Search { across_px: bad, ..every }), Err(SearchError::Range));
-        assert_eq!(run(Search { apart_px: bad, ..every }), Err(SearchError::Range));
+        assert_eq!(run(MatchConfig { along_px: bad, ..every }), Err(MatchConfigError::Range));
+        assert_eq!(run(MatchConfig { across_px: bad, ..every }), Err(MatchConfigError::Range));
+        assert_eq!(run(MatchConfig { apart_px: bad, ..every }), Err(MatchConfigError::Range));
         let epipolar = Some(Epipolar { fundamental: rows_aligned(), tolerance_px: bad });
-        assert_eq!(run(Search { epipolar, ..every }), Err(SearchError::Epipolar));
+        assert_eq!(run(MatchConfig { epipolar, ..every }), Err(MatchConfigError::Epipolar));
     }
     let image = Pattern::Noise.pair(120, 90, 1).0;
     let (all, _) = detect(&config(&image), &image);
     let mut matches = heapless::Vec::<_, 3>::new();
-    let refused = Matcher::<4>::new().run(&all[..2], &all[..5], &every, matches.as_mut_view());
-    assert_eq!(refused, Err(SearchError::TooMany { needed: 5 }));
+    let refused = FeatureMatcher::<4>::new().run(&all[..2], &all[..5], &every, matches.as_mut_view());
+    assert_eq!(refused, Err(MatchConfigError::TooMany { needed: 5 }));
 }

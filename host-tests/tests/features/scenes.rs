@@ -3,7 +3,7 @@
 use super::{config, detect, matched, rows_aligned};
 use image::{GrayImage, Luma, imageops};
 use nalgebra::{Point2, Rotation3, Vector3};
-use stereopsis::features::{Descriptor, Epipolar, Feature, FeatureConfig, Match, Orientation, Search};
+use stereopsis::features::{Descriptor, Epipolar, Feature, FeatureConfig, Match, MatchConfig, Orientation};
 use stereopsis::geometry::{
     camera::{Camera, Pose},
     robust::{RobustConfig, robust_fundamental},
@@ -98,7 +98,7 @@ fn matches_follow_turns() {
     ] {
         let lists = [scene.clone(), turned(&scene, degrees)]
             .map(|image| detect(&FeatureConfig { orientation, ..config(&image) }, &image).0);
-        let matches = matched(&lists[0], &lists[1], &Search::new());
+        let matches = matched(&lists[0], &lists[1], &MatchConfig::new());
         let (sine, cosine) = degrees.to_radians().sin_cos();
         let motion = |x: f32, y: f32| {
             let (x, y) = (x - 159.5, y - 159.5);
@@ -125,13 +125,13 @@ fn matches_in_a_scene_have_its_disparity() {
         let at = y.round() as usize * truth.width + x.round() as usize;
         [x - truth.disparity[at], y]
     };
-    let everywhere = matched(lists[0], lists[1], &Search::new());
+    let everywhere = matched(lists[0], lists[1], &MatchConfig::new());
     let (share, count) = follow(lists, &everywhere, 1.0, true_place);
     assert!(share >= 0.85 && count >= 170, "{share} of {count}");
 
-    let along = Search {
+    let along = MatchConfig {
         epipolar: Some(Epipolar { fundamental: rows_aligned(), tolerance_px: 1.0 }),
-        ..Search::new()
+        ..MatchConfig::new()
     };
     let in_rows = matched(lists[0], lists[1], &along);
     let (share_in_rows, count_in_rows) = follow(lists, &in_rows, 1.0, true_place);

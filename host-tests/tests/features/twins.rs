@@ -5,7 +5,7 @@ use image::GrayImage;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use stereopsis::features::{
-    Epipolar, FeatureConfig, Level, Match, Orientation, Search, drop_repeats, fast_scores,
+    Epipolar, FeatureConfig, Level, Match, MatchConfig, Orientation, drop_duplicates, fast_scores,
 };
 use stereopsis_host::correspond::shrunk;
 use stereopsis_host::scene::Random;
@@ -110,18 +110,18 @@ fn matches_under_every_search() {
     right.iter_mut().step_by(3).for_each(|feature| feature.level = 2);
     // Rows differ by whole 64ths of a pixel: no distance is so near to these that rounding could decide.
     let along_rows = |tolerance_px| Some(Epipolar { fundamental: rows_aligned(), tolerance_px });
-    let every = Search::new();
+    let every = MatchConfig::new();
     let searches = [
         every,
-        Search { ratio_percent: 100, ..every },
-        Search { ratio_percent: 1, ..every },
-        Search { apart_px: 0.0, ..every },
-        Search { apart_px: 50.0, most_different: 256, ..every },
-        Search { most_different: 0, ..every },
-        Search { levels_apart: 2, ..every },
-        Search { along_px: 5.0, across_px: 0.5, ..every },
-        Search { epipolar: along_rows(0.507), ..every },
-        Search { epipolar: along_rows(0.007), ..every },
+        MatchConfig { ratio_percent: 100, ..every },
+        MatchConfig { ratio_percent: 1, ..every },
+        MatchConfig { apart_px: 0.0, ..every },
+        MatchConfig { apart_px: 50.0, most_different: 256, ..every },
+        MatchConfig { most_different: 0, ..every },
+        MatchConfig { levels_apart: 2, ..every },
+        MatchConfig { along_px: 5.0, across_px: 0.5, ..every },
+        MatchConfig { epipolar: along_rows(0.507), ..every },
+        MatchConfig { epipolar: along_rows(0.007), ..every },
     ];
     let mut found = Vec::new();
     for search in searches {
@@ -140,17 +140,20 @@ fn matches_without_repeats() {
     let lists = [left, right].map(|image| {
         let smaller = shrunk::<4>(&image);
         let mut list = detect(&config(&image), &image).0;
-        let level = Level::FULL.shrunk::<4>();
+        let level = Level::FULL.downsampled::<4>();
         list.extend(detect(&FeatureConfig { level, ..config(&smaller) }, &smaller).0);
         list
     });
-    let matches =
-        matched(&lists[0], &lists[1], &Search { ratio_percent: 100, most_different: 256, ..Search::new() });
+    let matches = matched(
+        &lists[0],
+        &lists[1],
+        &MatchConfig { ratio_percent: 100, most_different: 256, ..MatchConfig::new() },
+    );
     let mut left_over = Vec::new();
     for apart_px in [f32::NAN, 0.0, 0.5, 1.5, 6.0, 1e9] {
         let mut core = Box::new(heapless::Vec::<Match, 4096>::new());
         core.extend_from_slice(&matches).expect("room for all");
-        let dropped = drop_repeats(&lists[0], &lists[1], core.as_mut_view(), apart_px);
+        let dropped = drop_duplicates(&lists[0], &lists[1], core.as_mut_view(), apart_px);
         let expected = twin::without_repeats(&lists[0], &lists[1], &matches, apart_px);
         assert_eq!((&core[..], dropped), (&expected[..], matches.len() - expected.len()), "{apart_px} px");
         left_over.push(core.len());
@@ -178,7 +181,7 @@ proptest! {
         let orientation = if centroid { Orientation::Centroid } else { Orientation::Upright };
         let threshold = threshold / 4;
         let config = FeatureConfig {
-            threshold, cell_px, per_cell, orientation, level: Level::FULL.shrunk::<3>(), ..config(&image)
+            threshold, cell_px, per_cell, orientation, level: Level::FULL.downsampled::<3>(), ..config(&image)
         };
         prop_assume!(config.slots() <= C);
         compare(&config, &image);

@@ -1,7 +1,7 @@
 //! The thin lens: each way and back, in floats and whole micrometres, and what it refuses.
 
 use proptest::prelude::*;
-use stereopsis::focus::{Far, FocusPeak, FocusScale, FocusScaleError, LensError, MicroLens, ThinLens};
+use stereopsis::focus::{FarLimit, FocusPeak, FocusScale, FocusScaleError, LensError, MicroLens, ThinLens};
 
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
@@ -124,8 +124,8 @@ proptest! {
             prop_assert!((at(field.near) / blur - 1.0).abs() < 1e-6);
         }
         match field.far {
-            Far::At(far) => prop_assert!(far >= focused && (at(far) / blur - 1.0).abs() < 1e-6),
-            Far::Infinity => prop_assert!(at(1e12) <= blur * (1.0 + 1e-6)),
+            FarLimit::At(far) => prop_assert!(far >= focused && (at(far) / blur - 1.0).abs() < 1e-6),
+            FarLimit::Infinity => prop_assert!(at(1e12) <= blur * (1.0 + 1e-6)),
         }
     }
 

@@ -12,7 +12,7 @@ fn a_camera_that_stands_still_stands_still() {
     let frames = frames(room(), vec![Pose::identity(); 4]);
     for trajectory in [stereo(rig(), &frames), mono(rig(), &frames)] {
         let states: Vec<_> = trajectory.steps.iter().map(|step| step.state).collect();
-        assert_eq!(states, [State::First, State::Still, State::Still, State::Still]);
+        assert_eq!(states, [State::First, State::Stationary, State::Stationary, State::Stationary]);
         assert!(trajectory.poses.iter().all(|pose| *pose == Pose::identity()), "{:?}", trajectory.poses);
     }
 }
@@ -23,7 +23,7 @@ fn one_camera_that_only_turns_has_no_step() {
         (0..5).map(|i| pose([0.004 * f64::from(i), 0.02 * f64::from(i), 0.0], [0.0; 3])).collect();
     let trajectory = mono(rig(), &frames(room(), path.clone()));
     for ((found, truth), step) in trajectory.poses.iter().zip(&path).zip(&trajectory.steps).skip(1) {
-        assert_eq!(step.state, State::Turned);
+        assert_eq!(step.state, State::RotationOnly);
         assert_eq!(found.translation().norm(), 0.0);
         assert!(turned_deg(found, truth) < 0.05, "{}", turned_deg(found, truth));
         // What is not known of the step says so.
@@ -50,13 +50,13 @@ fn points_at_infinity_tell_the_turn_alone() {
     let frames = frames(wall(3000.0, 0.0), path.clone());
     let trajectory = stereo(rig(), &frames);
     for ((found, truth), step) in trajectory.poses.iter().zip(&path).zip(&trajectory.steps).skip(1) {
-        assert_eq!(step.state, State::StepUnknown);
+        assert_eq!(step.state, State::TranslationUnknown);
         assert_eq!(found.translation().norm(), 0.0);
         assert!(turned_deg(found, truth) < 0.1, "{}", turned_deg(found, truth));
     }
     // To one camera it is as if it only turned.
     let trajectory = mono(rig(), &frames);
-    assert!(trajectory.steps.iter().skip(1).all(|step| step.state == State::Turned));
+    assert!(trajectory.steps.iter().skip(1).all(|step| step.state == State::RotationOnly));
 }
 
 #[test]

@@ -4,9 +4,10 @@ use crate::support::pose;
 use nalgebra::{Point2, Point3, Vector3};
 use stereopsis::geometry::camera::{Camera, Pose, RectifiedRig};
 use stereopsis::motion::bundle::{
-    AlignedView, BundleConfig, BundleReport, Gauge, Loss, Problem, Sight, Slot, Term, View, Workspace, adjust,
+    BundleConfig, BundleReport, CrossBlock, Gauge, Loss, Observation, Problem, RectifiedView, View, ViewSlot,
+    Workspace, adjust,
 };
-use stereopsis::motion::odometry::{OdometryRig, Refinement, RefinementConfig, SeenPoint};
+use stereopsis::motion::odometry::{ObservedPoint, OdometryRig, Refinement, RefinementConfig};
 use stereopsis_host::scene::Random;
 
 const VIEWS: usize = 4;
@@ -31,8 +32,8 @@ fn rig() -> OdometryRig<f64> {
     OdometryRig::stereo(&RectifiedRig::new(400.0, 0.3, 320.0, 240.0).expect("a rig")).expect("cameras")
 }
 
-fn view() -> AlignedView<f64> {
-    AlignedView {
+fn view() -> RectifiedView<f64> {
+    RectifiedView {
         camera: Camera::new(400.0, 400.0, 320.0, 240.0).expect("a camera"),
         baseline: f64::from(0.3_f32),
         pose: Pose::identity(),
@@ -46,8 +47,8 @@ fn points() -> Vec<Point3<f64>> {
     (0..90).map(|_| at()).collect()
 }
 
-/// What a view sees: each point for five views of seven, every fourth sight without its disparity.
-fn seen(n: usize, noise_px: f64, in_right: bool) -> Vec<SeenPoint<f64>> {
+/// What a view sees: each point for five views of seven, every fourth observation without its disparity.
+fn seen(n: usize, noise_px: f64, in_right: bool) -> Vec<ObservedPoint<f64>> {
     let mut random = Random::new(100 + n as u64);
     let view = view().with_pose(path(n));
     let mut noise = || noise_px * random.gauss();
@@ -60,7 +61,7 @@ fn seen(n: usize, noise_px: f64, in_right: bool) -> Vec<SeenPoint<f64>> {
         let pixel = view.project(0, point).expect("before it") + Vector3::new(noise(), noise(), 0.0).xy();
         let disparity = view.project(1, point).expect("before it").x + noise();
         let guess = own * 1.02;
-        seen.push(SeenPoint {
+        seen.push(ObservedPoint {
             name: (i as u16, 3),
             pixel,
             disparity_px: (in_right && !(i + n).is_multiple_of(4)).then_some(disparity),
@@ -85,7 +86,7 @@ fn anew(from: usize, noise_px: f64) -> (Vec<Pose<f64>>, BundleReport<f64>) {
     let mut views: Vec<_> = (0..VIEWS).map(|n| view().with_pose(base.then(&path(from + n)))).collect();
     let mut places: Vec<_> = points().iter().map(|point| path(from).inverse_transform(point)).collect();
     let all: Vec<_> = (0..VIEWS).map(|n| seen(from + n, noise_px, true)).collect();
-    let mut sights = Vec::new();
+    let mut observations = Vec::new();
     for i in 0..places.len() {
         let of = |n: usize| all[n].iter().find(|seen| usize::from(seen.name.0) == i);
         if (0..VIEWS).filter(|&n| of(n).is_some()).count() < 2 {
@@ -93,16 +94,16 @@ fn anew(from: usize, noise_px: f64) -> (Vec<Pose<f64>>, BundleReport<f64>) {
         }
         for n in 0..VIEWS {
             let Some(seen) = of(n) else { continue };
-            let sight = |eye, pixel| Sight { point: i as u32, view: n as u16, eye, pixel };
-            sights.push(sight(0, seen.pixel));
-            sights.extend(seen.disparity_px.map(|d| sight(1, Point2::new(d, 0.0))));
+            let observation = |eye, pixel| Observation { point: i as u32, view: n as u16, eye, pixel };
+            observations.push(observation(0, seen.pixel));
+            observations.extend(seen.disparity_px.map(|d| observation(1, Point2::new(d, 0.0))));
         }
     }
     let count = places.len();
-    let mut problem = Problem { views: &mut views, points: &mut places, sights: &sights };
+    let mut problem = Problem { views: &mut views, points: &mut places, observations: &observations };
     let mut workspace = Workspace {
-        slots: &mut [Slot::EMPTY; VIEWS],
-        terms: &mut [Term::EMPTY; 2 * VIEWS],
+        slots: &mut [ViewSlot::EMPTY; VIEWS],
+        terms: &mut [CrossBlock::EMPTY; 2 * VIEWS],
         trial_points: &mut vec![Point3::origin(); count],
         blocks: &mut [[[0.0; 6]; 6]; VIEWS * VIEWS],
     };
@@ -166,8 +167,9 @@ fn what_has_nothing_in_common_begins_anew() {
     }
     // The same places in memory, given to other points.
     let others = || {
-        (3..5)
-            .map(|n| seen(n, 0.0, true).into_iter().map(|seen| SeenPoint { name: (seen.name.0, 4), ..seen }))
+        (3..5).map(|n| {
+            seen(n, 0.0, true).into_iter().map(|seen| ObservedPoint { name: (seen.name.0, 4), ..seen })
+        })
     };
     let mut others = others();
     let found = refined.push(&told(3), others.next().expect("two"));

@@ -34,7 +34,7 @@ fn a_small_part_of_a_pixel() {
         let found = template.align(&view(&second), &warp, [40.3, 29.6], 4.0).expect("it is there");
         let off = (f64::from(found.x_px) - truth[0]).hypot(f64::from(found.y_px) - truth[1]);
         // Interpolation of rounded pixels costs some hundredths.
-        assert!(off < 0.05 && found.likeness > 0.98, "{off} {found:?}");
+        assert!(off < 0.05 && found.correlation > 0.98, "{off} {found:?}");
     }
 }
 
@@ -73,16 +73,16 @@ fn along_a_row_as_by_definition() {
     let (first, second) = (picture(0.0, 0.0, 1.0, (1.0, 120.0)), picture(-9.0, 0.0, 1.0, (0.8, 90.0)));
     for (x, y) in [(40, 30), (30, 12), (20, 40)] {
         let template = Template::cut(&view(&first), x as f32, y as f32).expect("inside");
-        let found = template.along_row(&view(&second), y, 0, 79).expect("columns");
+        let found = template.match_row(&view(&second), y, 0, 79).expect("columns");
         let all: Vec<(usize, f64)> = (5..=74).map(|c| (c, naive(&first, &second, (x, y), c))).collect();
         let best = all.iter().fold(all[0], |best, &one| if one.1 > best.1 { one } else { best });
         assert_eq!(found.x_px, best.0 as f32);
-        assert!((f64::from(found.likeness) - best.1).abs() < 1e-5);
+        assert!((f64::from(found.correlation) - best.1).abs() < 1e-5);
         let apart = all.iter().filter(|(c, _)| c.abs_diff(best.0) >= 3).map(|one| one.1);
         let elsewhere = apart.fold(-1.0_f64, f64::max);
         assert!((f64::from(found.elsewhere) - elsewhere).abs() < 1e-5, "{} {elsewhere}", found.elsewhere);
     }
     let template = Template::cut(&view(&first), 40.0, 30.0).expect("inside");
-    assert_eq!(template.along_row(&view(&second), 30, 0, 4), None);
-    assert_eq!(template.along_row(&view(&second), 57, 0, 79), None);
+    assert_eq!(template.match_row(&view(&second), 30, 0, 4), None);
+    assert_eq!(template.match_row(&view(&second), 57, 0, 79), None);
 }

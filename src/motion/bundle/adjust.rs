@@ -3,7 +3,7 @@
 use super::gauge::Gauge;
 use super::loss::Loss;
 use super::problem::{BundleError, Problem, prepare};
-use super::step::{cost, propose, reduce};
+use super::schur::{cost, propose, reduce};
 use super::view::View;
 use super::workspace::Workspace;
 use crate::geometry::Real;
@@ -31,7 +31,7 @@ pub struct BundleConfig<T> {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum Stop {
+pub enum StopReason {
     /// Nothing is left of the cost, or of what a step could take from it, but rounding.
     Exact,
     /// The last step lowered the cost by less than the tolerance.
@@ -44,7 +44,8 @@ pub enum Stop {
     Iterations,
 }
 
-/// What came of an adjustment. A cost is half the sum of the losses of all sights' squared residuals, px^2.
+/// What came of an adjustment. A cost is half the sum of the losses of all observations' squared residuals,
+/// px^2.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct BundleReport<T> {
     /// Before the first step.
@@ -56,7 +57,7 @@ pub struct BundleReport<T> {
     /// Steps that were taken.
     pub steps: u32,
     /// Why there was no further one.
-    pub stop: Stop,
+    pub stop: StopReason,
 }
 
 /// An adjustment that is done a step at a time.
@@ -95,7 +96,7 @@ impl<T: Real> BundleConfig<T> {
     }
 }
 
-impl core::fmt::Display for Stop {
+impl core::fmt::Display for StopReason {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
             Self::Exact => "nothing but rounding is left to gain",
@@ -123,8 +124,10 @@ impl<T: Real> Adjustment<T> {
             return Err(BundleError::NotSeen(unseen(problem)));
         }
         let rounding = T::EPSILON * T::of(4.0);
-        let pixels =
-            problem.sights.iter().fold(T::ZERO, |sum, sight| sum + sight.pixel.coords.norm_squared());
+        let pixels = problem
+            .observations
+            .iter()
+            .fold(T::ZERO, |sum, observation| sum + observation.pixel.coords.norm_squared());
         let floor = T::of(0.5) * pixels * rounding * rounding;
         let damping = config.damping;
         Ok(Self {
@@ -147,12 +150,12 @@ impl<T: Real> Adjustment<T> {
         &mut self,
         problem: &mut Problem<'_, V, T>,
         workspace: &mut Workspace<'_, V, T, N>,
-    ) -> ControlFlow<Stop> {
+    ) -> ControlFlow<StopReason> {
         if self.iterations >= self.config.most_iterations {
-            return ControlFlow::Break(Stop::Iterations);
+            return ControlFlow::Break(StopReason::Iterations);
         }
         if self.cost <= self.floor {
-            return ControlFlow::Break(Stop::Exact);
+            return ControlFlow::Break(StopReason::Exact);
         }
         self.iterations += 1;
         let BundleConfig { gauge, loss, .. } = &self.config;
@@ -164,7 +167,7 @@ impl<T: Real> Adjustment<T> {
         let gain = self.cost - proposal.cost;
         let rounding = self.cost * T::EPSILON * T::of(4.0);
         if proposal.predicted <= rounding {
-            return ControlFlow::Break(Stop::Exact);
+            return ControlFlow::Break(StopReason::Exact);
         }
         let ratio = gain / proposal.predicted;
         // A cost that is not a number is no gain either.
@@ -174,8 +177,8 @@ impl<T: Real> Adjustment<T> {
         for (view, slot) in problem.views.iter_mut().zip(workspace.slots.iter()) {
             *view = slot.trial;
         }
-        for track in super::problem::tracks(problem.sights) {
-            let at = track.first().map_or(0, |sight| sight.point as usize);
+        for track in super::problem::tracks(problem.observations) {
+            let at = track.first().map_or(0, |observation| observation.point as usize);
             if let (Some(point), Some(trial)) = (problem.points.get_mut(at), workspace.trial_points.get(at)) {
                 *point = *trial;
             }
@@ -187,43 +190,43 @@ impl<T: Real> Adjustment<T> {
         self.damping = self.damping.max(T::of(1e-12));
         self.growth = T::of(2.0);
         if self.cost <= self.floor {
-            ControlFlow::Break(Stop::Exact)
+            ControlFlow::Break(StopReason::Exact)
         } else if gain <= before * self.config.cost_tolerance {
-            ControlFlow::Break(Stop::Cost)
+            ControlFlow::Break(StopReason::Cost)
         } else if proposal.moved <= self.config.step_tolerance * self.config.step_tolerance {
-            ControlFlow::Break(Stop::Step)
+            ControlFlow::Break(StopReason::Step)
         } else {
             ControlFlow::Continue(())
         }
     }
 
     /// A shorter step next time.
-    fn back_off(&mut self) -> ControlFlow<Stop> {
+    fn back_off(&mut self) -> ControlFlow<StopReason> {
         self.damping *= self.growth;
         self.growth *= T::of(2.0);
         if self.damping > T::of(1e16) {
-            ControlFlow::Break(Stop::NoDescent)
+            ControlFlow::Break(StopReason::NoDescent)
         } else {
             ControlFlow::Continue(())
         }
     }
 
     /// What has come of it so far, if it stopped for this reason.
-    pub fn report(&self, stop: Stop) -> BundleReport<T> {
+    pub fn report(&self, stop: StopReason) -> BundleReport<T> {
         let Self { initial_cost, cost, iterations, steps, .. } = *self;
         BundleReport { initial_cost, cost, iterations, steps, stop }
     }
 }
 
-/// The first sight whose point is not seen.
+/// The first observation whose point is not seen.
 fn unseen<V: View<T, N>, T: Real, const N: usize>(problem: &Problem<'_, V, T>) -> usize {
-    let seen = |sight: &super::problem::Sight<T>| {
-        let view = problem.views.get(usize::from(sight.view));
-        let point = problem.points.get(sight.point as usize);
-        let pixel = view.zip(point).and_then(|(view, point)| view.project(sight.eye, point).ok());
-        pixel.is_some_and(|pixel| (pixel - sight.pixel).norm_squared().is_finite())
+    let seen = |observation: &super::problem::Observation<T>| {
+        let view = problem.views.get(usize::from(observation.view));
+        let point = problem.points.get(observation.point as usize);
+        let pixel = view.zip(point).and_then(|(view, point)| view.project(observation.eye, point).ok());
+        pixel.is_some_and(|pixel| (pixel - observation.pixel).norm_squared().is_finite())
     };
-    problem.sights.iter().position(|sight| !seen(sight)).unwrap_or(0)
+    problem.observations.iter().position(|observation| !seen(observation)).unwrap_or(0)
 }
 
 /// Adjusts a problem until there is a reason to stop.
@@ -239,5 +242,5 @@ pub fn adjust<V: View<T, N>, T: Real, const N: usize>(
             return Ok(adjustment.report(stop));
         }
     }
-    Ok(adjustment.report(Stop::Iterations))
+    Ok(adjustment.report(StopReason::Iterations))
 }

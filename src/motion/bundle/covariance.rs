@@ -3,17 +3,17 @@
 use super::envelope::Envelope;
 use super::gauge::{Freedom, Gauge};
 use super::loss::Loss;
+use super::point_equations::{Linear, PointEquations, add_term};
 use super::problem::{BundleError, Problem, prepare, tracks};
-use super::step::reduce;
-use super::track::{Linear, PointEquations, add_term};
+use super::schur::reduce;
 use super::view::View;
 use super::workspace::Workspace;
 use crate::geometry::Real;
 use nalgebra::Matrix3;
 
-/// The covariances of a problem's views and points to first order, where every coordinate of a sight has the
-/// same standard deviation: blocks of `sigma^2 (J^T W J)^-1` (Hartley & Zisserman 2004, A6.4 and 18.1), in
-/// the frame and the scale that the gauge holds. What is held has none.
+/// The covariances of a problem's views and points to first order, where every coordinate of an observation
+/// has the same standard deviation: blocks of `sigma^2 (J^T W J)^-1` (Hartley & Zisserman 2004, A6.4 and
+/// 18.1), in the frame and the scale that the gauge holds. What is held has none.
 ///
 /// Each block costs the solution of the reduced equations once per row. In `f32` a view is good to some
 /// percent.
@@ -33,9 +33,9 @@ pub enum CovarianceError {
     /// The problem is none.
     Problem(BundleError),
     /// The views are not determined: the gauge leaves the frame or the scale open, or there are too few
-    /// sights.
+    /// observations.
     Undetermined,
-    /// The sights of this point do not determine it.
+    /// The observations of this point do not determine it.
     Point(usize),
 }
 
@@ -44,9 +44,9 @@ impl core::fmt::Display for CovarianceError {
         match self {
             Self::Problem(error) => error.fmt(f),
             Self::Undetermined => {
-                f.write_str("the views are not determined: hold a view and a distance, or add sights")
+                f.write_str("the views are not determined: hold a view and a distance, or add observations")
             }
-            Self::Point(at) => write!(f, "point {at} is not determined by its sights"),
+            Self::Point(at) => write!(f, "point {at} is not determined by its observations"),
         }
     }
 }
@@ -66,19 +66,21 @@ impl<'a, V: View<T, N>, T: Real, const N: usize> Covariances<'a, V, T, N> {
         prepare(&problem, &gauge, &mut workspace).map_err(CovarianceError::Problem)?;
         // What is left of a pivot that should be zero may, in `f32`, be more than one that counts: asked of
         // the gauge first.
-        let lengths = problem.sights.iter().any(|sight| sight.eye > 0);
+        let lengths = problem.observations.iter().any(|observation| observation.eye > 0);
         if !gauge.is_complete(lengths) {
             return Err(CovarianceError::Undetermined);
         }
-        for track in tracks(problem.sights) {
+        for track in tracks(problem.observations) {
             let mut point = PointEquations::ZERO;
-            for sight in track {
-                if let Some(linear) = Linear::of(&problem, sight, &gauge, &loss) {
+            for observation in track {
+                if let Some(linear) = Linear::of(&problem, observation, &gauge, &loss) {
                     point.add(&linear.by_point, linear.residual);
                 }
             }
             if !point.factor(T::ZERO).is_whole() {
-                return Err(CovarianceError::Point(track.first().map_or(0, |sight| sight.point as usize)));
+                return Err(CovarianceError::Point(
+                    track.first().map_or(0, |observation| observation.point as usize),
+                ));
             }
         }
         reduce(&problem, &mut workspace, &gauge, &loss, T::ZERO);
@@ -132,15 +134,17 @@ impl<'a, V: View<T, N>, T: Real, const N: usize> Covariances<'a, V, T, N> {
         covariance
     }
 
-    /// The covariance of a point, in the scene's unit squared; refused when it has no sight.
+    /// The covariance of a point, in the scene's unit squared; refused when it has no observation.
     ///
     /// `V^-1 + V^-1 W^T S^-1 W V^-1`.
     pub fn point(&mut self, point: usize) -> Result<Matrix3<T>, CovarianceError> {
-        let track = tracks(self.problem.sights)
+        let track = tracks(self.problem.observations)
             .find(|track| track.first().is_some_and(|s| s.point as usize == point));
         let (mut equations, mut used) = (PointEquations::ZERO, 0);
-        for sight in track.ok_or(CovarianceError::Point(point))? {
-            let Some(linear) = Linear::of(&self.problem, sight, &self.gauge, &self.loss) else { continue };
+        for observation in track.ok_or(CovarianceError::Point(point))? {
+            let Some(linear) = Linear::of(&self.problem, observation, &self.gauge, &self.loss) else {
+                continue;
+            };
             equations.add(&linear.by_point, linear.residual);
             used = add_term(self.reduced.terms, used, &linear);
         }

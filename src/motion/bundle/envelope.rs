@@ -1,6 +1,6 @@
 //! A symmetric matrix of N x N blocks, and its Cholesky factor in the same place.
 
-use super::workspace::Slot;
+use super::workspace::ViewSlot;
 use crate::geometry::Real;
 
 /// One block. Of row i and column j it holds the transpose, so that every loop inside runs along memory.
@@ -11,7 +11,7 @@ pub(super) type Block<T, const N: usize> = [[T; N]; N];
 /// Cholesky's method fills (George & Liu 1981, the envelope). A sequence in which views far apart have
 /// nothing in common takes its length times that reach.
 pub(super) struct Envelope<'a, V, T, const N: usize> {
-    pub slots: &'a mut [Slot<V, T, N>],
+    pub slots: &'a mut [ViewSlot<V, T, N>],
     pub blocks: &'a mut [Block<T, N>],
 }
 

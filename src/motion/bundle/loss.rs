@@ -2,8 +2,8 @@
 
 use crate::geometry::Real;
 
-/// The loss of a sight's squared residual s, px^2; the cost of a problem is half the sum of it over all
-/// sights.
+/// The loss of an observation's squared residual s, px^2; the cost of a problem is half the sum of it over
+/// all observations.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Loss<T> {
     /// s: least squares.
@@ -22,7 +22,7 @@ impl<T: Real> Loss<T> {
         }
     }
 
-    /// Its derivative, from 1 down: the weight of a sight in the equations of the next step.
+    /// Its derivative, from 1 down: the weight of an observation in the equations of the next step.
     pub fn weight(&self, squared: T) -> T {
         match *self {
             Self::Huber(width) if squared > width * width => width / squared.sqrt(),
@@ -47,7 +47,7 @@ mod tests {
     fn far_off_counts_by_its_distance() {
         let loss = Loss::Huber(2.0_f64);
         assert_eq!((loss.of(4.0), loss.weight(4.0)), (4.0, 1.0));
-        // 5 px: 2 (2 * 5 - 2) = 16, and the slope of 2 w sqrt(s) is w / sqrt(s).
+        // 5 px: 2 (2 * 5 - 2) = 16, and the jacobian of 2 w sqrt(s) is w / sqrt(s).
         assert_eq!((loss.of(25.0), loss.weight(25.0)), (16.0, 0.4));
         assert_eq!((Loss::Squares.of(25.0), Loss::Squares.weight(25.0)), (25.0, 1.0));
     }

@@ -1,14 +1,14 @@
-//! What is adjusted: views, points and sights.
+//! What is adjusted: views, points and observations.
 
 use super::gauge::Gauge;
 use super::view::View;
-use super::workspace::{Slot, Workspace};
+use super::workspace::{ViewSlot, Workspace};
 use crate::geometry::Real;
 use nalgebra::{Point2, Point3};
 
 /// Where a view sees a point.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Sight<T: Real> {
+pub struct Observation<T: Real> {
     /// Which point.
     pub point: u32,
     /// Which view.
@@ -19,15 +19,15 @@ pub struct Sight<T: Real> {
     pub pixel: Point2<T>,
 }
 
-/// Views and points that move until the sights agree with them.
+/// Views and points that move until the observations agree with them.
 #[derive(Debug)]
 pub struct Problem<'a, V, T: Real> {
     /// The views.
     pub views: &'a mut [V],
     /// The points, in the world.
     pub points: &'a mut [Point3<T>],
-    /// The sights, those of point 0 first, then those of point 1, and so on.
-    pub sights: &'a [Sight<T>],
+    /// The observations, those of point 0 first, then those of point 1, and so on.
+    pub observations: &'a [Observation<T>],
 }
 
 /// Why there is nothing to adjust.
@@ -35,31 +35,31 @@ pub struct Problem<'a, V, T: Real> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum BundleError {
-    /// There is no sight.
+    /// There is no observation.
     Empty,
-    /// This sight names a view that there is not.
+    /// This observation names a view that there is not.
     View(usize),
-    /// This sight names a point that there is not.
+    /// This observation names a point that there is not.
     Point(usize),
-    /// This sight stands behind one of a later point.
+    /// This observation stands behind one of a later point.
     Unsorted(usize),
-    /// A coordinate of this sight is infinite or not a number.
+    /// A coordinate of this observation is infinite or not a number.
     NotFinite(usize),
-    /// What this sight shows cannot be seen there: the point is behind the camera, or it or the view is not
-    /// finite.
+    /// What this observation shows cannot be seen there: the point is behind the camera, or it or the view is
+    /// not finite.
     NotSeen(usize),
     /// The gauge names a view that there is not, or one twice, or none.
     Gauge,
     /// A tolerance, the damping or the width of the loss is not greater than zero.
     Config,
     /// The workspace is too small; so much is needed.
-    Workspace(Need),
+    Workspace(WorkspaceSize),
 }
 
 /// The sizes of a [`Workspace`] for a problem.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Need {
+pub struct WorkspaceSize {
     /// Slots: one for each view.
     pub slots: usize,
     /// Terms.
@@ -94,19 +94,24 @@ impl core::fmt::Display for BundleError {
 
 impl core::error::Error for BundleError {}
 
-impl<T: Real> Sight<T> {
+impl<T: Real> Observation<T> {
     /// Not in use.
     pub const EMPTY: Self = Self { point: 0, view: 0, eye: 0, pixel: Point2::new(T::ZERO, T::ZERO) };
 }
 
-/// The sights of each point in turn.
-pub(crate) fn tracks<T: Real>(mut sights: &[Sight<T>]) -> impl Iterator<Item = &[Sight<T>]> {
+/// The observations of each point in turn.
+pub(crate) fn tracks<T: Real>(
+    mut observations: &[Observation<T>],
+) -> impl Iterator<Item = &[Observation<T>]> {
     // (`chunk_by` leaves a panic in a small program.)
     core::iter::from_fn(move || {
-        let point = sights.first()?.point;
-        let end = sights.iter().position(|sight| sight.point != point).unwrap_or(sights.len());
-        let (track, rest) = sights.split_at_checked(end)?;
-        sights = rest;
+        let point = observations.first()?.point;
+        let end = observations
+            .iter()
+            .position(|observation| observation.point != point)
+            .unwrap_or(observations.len());
+        let (track, rest) = observations.split_at_checked(end)?;
+        observations = rest;
         Some(track)
     })
 }
@@ -114,22 +119,22 @@ pub(crate) fn tracks<T: Real>(mut sights: &[Sight<T>]) -> impl Iterator<Item = &
 impl<V, T: Real> Problem<'_, V, T> {
     /// Refuses indices and numbers that cannot be.
     fn check(&self) -> Result<(), BundleError> {
-        if self.sights.is_empty() {
+        if self.observations.is_empty() {
             return Err(BundleError::Empty);
         }
         let mut last = 0;
-        for (at, sight) in self.sights.iter().enumerate() {
-            if usize::from(sight.view) >= self.views.len() {
+        for (at, observation) in self.observations.iter().enumerate() {
+            if usize::from(observation.view) >= self.views.len() {
                 return Err(BundleError::View(at));
             }
-            if sight.point as usize >= self.points.len() {
+            if observation.point as usize >= self.points.len() {
                 return Err(BundleError::Point(at));
             }
-            if sight.point < last {
+            if observation.point < last {
                 return Err(BundleError::Unsorted(at));
             }
-            last = sight.point;
-            if !(sight.pixel.x.is_finite() && sight.pixel.y.is_finite()) {
+            last = observation.point;
+            if !(observation.pixel.x.is_finite() && observation.pixel.y.is_finite()) {
                 return Err(BundleError::NotFinite(at));
             }
         }
@@ -147,21 +152,21 @@ pub(super) fn prepare<V: View<T, N>, T: Real, const N: usize>(
     if !gauge.is_sound(problem.views.len()) {
         return Err(BundleError::Gauge);
     }
-    let longest = tracks(problem.sights).map(<[_]>::len).max().unwrap_or(0).min(problem.views.len());
+    let longest = tracks(problem.observations).map(<[_]>::len).max().unwrap_or(0).min(problem.views.len());
     let mut need =
-        Need { slots: problem.views.len(), terms: longest, points: problem.points.len(), blocks: 0 };
+        WorkspaceSize { slots: problem.views.len(), terms: longest, points: problem.points.len(), blocks: 0 };
     let short = workspace.terms.len() < need.terms || workspace.trial_points.len() < need.points;
     let slots = match workspace.slots.get_mut(..need.slots) {
         Some(slots) if !short => slots,
         _ => return Err(BundleError::Workspace(need)),
     };
     for (i, (slot, view)) in slots.iter_mut().zip(problem.views.iter()).enumerate() {
-        *slot = Slot { first: i, trial: *view, ..Slot::EMPTY };
+        *slot = ViewSlot { first: i, trial: *view, ..ViewSlot::EMPTY };
     }
-    for track in tracks(problem.sights) {
-        let least = track.iter().map(|sight| usize::from(sight.view)).min().unwrap_or(0);
-        for sight in track {
-            if let Some(slot) = slots.get_mut(usize::from(sight.view)) {
+    for track in tracks(problem.observations) {
+        let least = track.iter().map(|observation| usize::from(observation.view)).min().unwrap_or(0);
+        for observation in track {
+            if let Some(slot) = slots.get_mut(usize::from(observation.view)) {
                 slot.first = slot.first.min(least);
             }
         }

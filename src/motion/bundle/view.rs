@@ -26,7 +26,7 @@ pub trait View<T: Real, const N: usize>: Copy {
 
     /// Where a point of the world is seen by an eye (0, or 1 for the second camera of a rig), px, with the
     /// derivatives.
-    fn slope(&self, eye: u16, world: &Point3<T>) -> Result<Slope<T, N>, ProjectionError>;
+    fn jacobian(&self, eye: u16, world: &Point3<T>) -> Result<ProjectionJacobian<T, N>, ProjectionError>;
 
     /// Where a point of the world is seen, px.
     fn project(&self, eye: u16, world: &Point3<T>) -> Result<Point2<T>, ProjectionError>;
@@ -37,7 +37,7 @@ pub trait View<T: Real, const N: usize>: Copy {
 
 /// Where a point is seen, and how that moves.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Slope<T: Real, const N: usize> {
+pub struct ProjectionJacobian<T: Real, const N: usize> {
     /// px.
     pub pixel: Point2<T>,
     /// The derivative of u and of v by the view's N numbers, at a step of zero.
@@ -56,12 +56,12 @@ pub(super) fn moved<T: Real>(pose: &Pose<T>, by: [T; 3], shift: [T; 3]) -> Pose<
 /// frame.
 ///
 /// `P' = C(w)^T R^T (P - t)`: by w it is `[P']x`, by the centre `-R^T`, by P `R^T`.
-pub(super) fn chained<T: Real>(
-    slope: [Vector3<T>; 2],
+pub(super) fn chain_rule<T: Real>(
+    jacobian: [Vector3<T>; 2],
     own: &Point3<T>,
     pose: &Pose<T>,
 ) -> [([T; 6], [T; 3]); 2] {
-    slope.map(|row| {
+    jacobian.map(|row| {
         let turn = row.cross(&own.coords);
         let place = pose.rotation() * row;
         ([turn.x, turn.y, turn.z, -place.x, -place.y, -place.z], [place.x, place.y, place.z])

@@ -5,18 +5,18 @@ use super::covariance::{CovarianceError, Covariances};
 use super::envelope::Block;
 use super::gauge::Gauge;
 use super::loss::Loss;
-use super::problem::{BundleError, Problem, Sight};
+use super::problem::{BundleError, Observation, Problem};
 use super::view::View;
-use super::workspace::{Slot, Term, Workspace};
+use super::workspace::{CrossBlock, ViewSlot, Workspace};
 use crate::geometry::Real;
 use core::ops::ControlFlow;
 use nalgebra::{Point2, Point3};
 
-/// A problem of up to so many views, points and sights, and all that adjusting it takes, for a `static`: all
-/// zeros at first.
+/// A problem of up to so many views, points and observations, and all that adjusting it takes, for a
+/// `static`: all zeros at first.
 ///
-/// Views come first, then each point with its sights. With `CameraView<f32>`, 2 views, 128 points and 256
-/// sights are 8 KB.
+/// Views come first, then each point with its observations. With `CameraView<f32>`, 2 views, 128 points and
+/// 256 observations are 8 KB.
 ///
 /// ```
 /// use nalgebra::{Matrix3, Point2, Point3, Vector3};
@@ -34,7 +34,7 @@ use nalgebra::{Point2, Point3};
 ///     let point = Point3::new(x, y, z);
 ///     window.add_point(point)?;
 ///     for (view, at) in (0..).zip(&views) {
-///         window.add_sight(view, 0, at.project(0, &point)?)?;
+///         window.add_observation(view, 0, at.project(0, &point)?)?;
 ///     }
 /// }
 /// // The first view is the frame; the half metre between the two is known.
@@ -45,14 +45,21 @@ use nalgebra::{Point2, Point3};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
-pub struct Window<V, T: Real, const N: usize, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize> {
+pub struct Window<
+    V,
+    T: Real,
+    const N: usize,
+    const VIEWS: usize,
+    const POINTS: usize,
+    const OBSERVATIONS: usize,
+> {
     views: [V; VIEWS],
     points: [Point3<T>; POINTS],
-    sights: [Sight<T>; SIGHTS],
-    /// Views, points and sights in use.
+    observations: [Observation<T>; OBSERVATIONS],
+    /// Views, points and observations in use.
     counts: [usize; 3],
-    slots: [Slot<V, T, N>; VIEWS],
-    terms: [Term<T, N>; VIEWS],
+    slots: [ViewSlot<V, T, N>; VIEWS],
+    terms: [CrossBlock<T, N>; VIEWS],
     trial_points: [Point3<T>; POINTS],
     blocks: [[Block<T, N>; VIEWS]; VIEWS],
 }
@@ -66,9 +73,9 @@ pub enum WindowError {
     Views(usize),
     /// There are as many points as it holds; so many are needed.
     Points(usize),
-    /// There are as many sights as it holds; so many are needed.
-    Sights(usize),
-    /// The sight's view has not been added.
+    /// There are as many observations as it holds; so many are needed.
+    Observations(usize),
+    /// The observation's view has not been added.
     NoView,
     /// No point has been added that could be seen.
     NoPoint,
@@ -79,17 +86,17 @@ impl core::fmt::Display for WindowError {
         match self {
             Self::Views(needed) => write!(f, "the window needs room for {needed} views"),
             Self::Points(needed) => write!(f, "the window needs room for {needed} points"),
-            Self::Sights(needed) => write!(f, "the window needs room for {needed} sights"),
-            Self::NoView => f.write_str("the sight's view has not been added"),
-            Self::NoPoint => f.write_str("a point must be added before its sights"),
+            Self::Observations(needed) => write!(f, "the window needs room for {needed} observations"),
+            Self::NoView => f.write_str("the observation's view has not been added"),
+            Self::NoPoint => f.write_str("a point must be added before its observations"),
         }
     }
 }
 
 impl core::error::Error for WindowError {}
 
-impl<V, T, const N: usize, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize>
-    Window<V, T, N, VIEWS, POINTS, SIGHTS>
+impl<V, T, const N: usize, const VIEWS: usize, const POINTS: usize, const OBSERVATIONS: usize>
+    Window<V, T, N, VIEWS, POINTS, OBSERVATIONS>
 where
     V: View<T, N>,
     T: Real,
@@ -97,15 +104,15 @@ where
     /// Empty.
     pub const fn new() -> Self {
         const { assert!(VIEWS > 0 && VIEWS <= 1 << 16, "a window holds 1 to 65536 views") };
-        const { assert!(POINTS > 0 && SIGHTS > 0, "a window holds points and sights") };
+        const { assert!(POINTS > 0 && OBSERVATIONS > 0, "a window holds points and observations") };
         let origin = Point3::new(T::ZERO, T::ZERO, T::ZERO);
         Self {
             views: [V::EMPTY; VIEWS],
             points: [origin; POINTS],
-            sights: [Sight::EMPTY; SIGHTS],
+            observations: [Observation::EMPTY; OBSERVATIONS],
             counts: [0; 3],
-            slots: [Slot::EMPTY; VIEWS],
-            terms: [Term::EMPTY; VIEWS],
+            slots: [ViewSlot::EMPTY; VIEWS],
+            terms: [CrossBlock::EMPTY; VIEWS],
             trial_points: [origin; POINTS],
             blocks: [[[[T::ZERO; N]; N]; VIEWS]; VIEWS],
         }
@@ -139,15 +146,15 @@ where
     }
 
     /// Adds where a view sees the point that was added last, px; `eye` is 1 for the second camera of a rig.
-    pub fn add_sight(&mut self, view: u16, eye: u16, pixel: Point2<T>) -> Result<(), WindowError> {
-        let [views, points, sights] = &mut self.counts;
+    pub fn add_observation(&mut self, view: u16, eye: u16, pixel: Point2<T>) -> Result<(), WindowError> {
+        let [views, points, observations] = &mut self.counts;
         let point = points.checked_sub(1).ok_or(WindowError::NoPoint)? as u32;
         if usize::from(view) >= *views {
             return Err(WindowError::NoView);
         }
-        *self.sights.get_mut(*sights).ok_or(WindowError::Sights(*sights + 1))? =
-            Sight { point, view, eye, pixel };
-        *sights += 1;
+        *self.observations.get_mut(*observations).ok_or(WindowError::Observations(*observations + 1))? =
+            Observation { point, view, eye, pixel };
+        *observations += 1;
         Ok(())
     }
 
@@ -161,18 +168,18 @@ where
         self.points.get(..self.counts[1]).unwrap_or(&[])
     }
 
-    /// The sights.
-    pub fn sights(&self) -> &[Sight<T>] {
-        self.sights.get(..self.counts[2]).unwrap_or(&[])
+    /// The observations.
+    pub fn observations(&self) -> &[Observation<T>] {
+        self.observations.get(..self.counts[2]).unwrap_or(&[])
     }
 
     /// What is adjusted, and the memory for it.
     fn parts(&mut self) -> (Problem<'_, V, T>, Workspace<'_, V, T, N>) {
-        let [views, points, sights] = self.counts;
+        let [views, points, observations] = self.counts;
         let problem = Problem {
             views: self.views.get_mut(..views).unwrap_or(&mut []),
             points: self.points.get_mut(..points).unwrap_or(&mut []),
-            sights: self.sights.get(..sights).unwrap_or(&[]),
+            observations: self.observations.get(..observations).unwrap_or(&[]),
         };
         let workspace = Workspace {
             slots: &mut self.slots,
@@ -196,12 +203,12 @@ where
     }
 
     /// A step of an adjustment that [`Self::start`] began; nothing may have been added since.
-    pub fn iterate(&mut self, adjustment: &mut Adjustment<T>) -> ControlFlow<super::Stop> {
+    pub fn iterate(&mut self, adjustment: &mut Adjustment<T>) -> ControlFlow<super::StopReason> {
         let (mut problem, mut workspace) = self.parts();
         adjustment.iterate(&mut problem, &mut workspace)
     }
 
-    /// How sure views and points are, where every coordinate of a sight has a deviation of `sigma_px`.
+    /// How sure views and points are, where every coordinate of an observation has a deviation of `sigma_px`.
     pub fn covariances(
         &mut self,
         gauge: Gauge,
@@ -213,8 +220,8 @@ where
     }
 }
 
-impl<V, T, const N: usize, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize> Default
-    for Window<V, T, N, VIEWS, POINTS, SIGHTS>
+impl<V, T, const N: usize, const VIEWS: usize, const POINTS: usize, const OBSERVATIONS: usize> Default
+    for Window<V, T, N, VIEWS, POINTS, OBSERVATIONS>
 where
     V: View<T, N>,
     T: Real,

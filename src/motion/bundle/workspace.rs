@@ -7,7 +7,7 @@ use nalgebra::Point3;
 
 /// What is kept for each view during a step.
 #[derive(Clone, Copy, Debug)]
-pub struct Slot<V, T, const N: usize> {
+pub struct ViewSlot<V, T, const N: usize> {
     /// The view after the step.
     pub(super) trial: V,
     /// The first view that its row of the reduced matrix reaches, and where the row begins.
@@ -22,12 +22,12 @@ pub struct Slot<V, T, const N: usize> {
 
 /// What is kept for each view that sees the point in hand: `J_view^T J_point`, transposed.
 #[derive(Clone, Copy, Debug)]
-pub struct Term<T, const N: usize> {
+pub struct CrossBlock<T, const N: usize> {
     pub(super) view: usize,
     pub(super) cross: [[T; N]; 3],
 }
 
-impl<V: View<T, N>, T: Real, const N: usize> Slot<V, T, N> {
+impl<V: View<T, N>, T: Real, const N: usize> ViewSlot<V, T, N> {
     /// Not in use.
     pub const EMPTY: Self = Self {
         trial: V::EMPTY,
@@ -39,18 +39,18 @@ impl<V: View<T, N>, T: Real, const N: usize> Slot<V, T, N> {
     };
 }
 
-impl<T: Real, const N: usize> Term<T, N> {
+impl<T: Real, const N: usize> CrossBlock<T, N> {
     /// Not in use.
     pub const EMPTY: Self = Self { view: 0, cross: [[T::ZERO; N]; 3] };
 }
 
-/// Memory for problems up to a size: [`Need`](super::Need) says how much.
+/// Memory for problems up to a size: [`Need`](super::WorkspaceSize) says how much.
 #[derive(Debug)]
 pub struct Workspace<'a, V, T: Real, const N: usize> {
     /// One for each view.
-    pub slots: &'a mut [Slot<V, T, N>],
+    pub slots: &'a mut [ViewSlot<V, T, N>],
     /// As many as the largest number of views that see a point.
-    pub terms: &'a mut [Term<T, N>],
+    pub terms: &'a mut [CrossBlock<T, N>],
     /// The points after a step.
     pub trial_points: &'a mut [Point3<T>],
     /// The lower triangle of the reduced matrix.

@@ -2,11 +2,11 @@
 
 use super::config::{OdometryConfig, OdometryRig};
 use super::frame::{Frame, OdometryError};
-use super::point::InversePoint;
-use super::solve::{Pairing, Problem, Solved, WIDTH};
+use super::inverse_depth::InversePoint;
+use super::motion_test::MotionTest;
+use super::pose_estimate::{PointMatch, Problem, Solved, WIDTH};
 use super::step::{State, Step};
 use super::track::{Track, UPRIGHT};
-use super::verdict::Verdict;
 use crate::features::Template;
 use crate::geometry::linear::covariance6;
 use crate::geometry::{Real, absolute::Landmark, camera::Pose};
@@ -24,7 +24,7 @@ pub struct Odometry<T: Real, const N: usize> {
     pub(super) config: OdometryConfig,
     pub(super) size: (usize, usize),
     pub(super) tracks: [Track<T>; N],
-    pub(super) pairings: Vec<Pairing<T>, N>,
+    pub(super) matches: Vec<PointMatch<T>, N>,
     pub(super) landmarks: Vec<Landmark<T>, N>,
     pub(super) inliers: [bool; N],
     /// The track that each feature is most like, and by how many bits it differs.
@@ -32,7 +32,7 @@ pub struct Odometry<T: Real, const N: usize> {
     /// The motion of the last frame, if it is known.
     pub(super) velocity: Option<Pose<T>>,
     /// The last pose that was told, in the frame of the points.
-    pub(super) told: Pose<T>,
+    pub(super) reported_pose: Pose<T>,
     /// Frames since something was known.
     pub(super) lost: u8,
     /// Whether there is a unit of length.
@@ -63,13 +63,13 @@ impl<T: Real, const N: usize> Odometry<T, N> {
             config: OdometryConfig::NONE,
             size: (0, 0),
             tracks: [Track::EMPTY; N],
-            pairings: Vec::new(),
+            matches: Vec::new(),
             landmarks: Vec::new(),
             inliers: [false; N],
             partners: [(0, 0); N],
             velocity: None,
             // The first frame sets it.
-            told: Pose::NOTHING,
+            reported_pose: Pose::NOTHING,
             lost: 0,
             begun: false,
             frames: 0,
@@ -89,7 +89,7 @@ impl<T: Real, const N: usize> Odometry<T, N> {
     fn forget(&mut self) {
         self.tracks.iter_mut().for_each(|track| track.used = false);
         self.velocity = None;
-        self.told = Pose::identity();
+        self.reported_pose = Pose::identity();
         self.lost = 0;
         self.begun = self.rig.first().is_some_and(|rig| rig.right.is_some());
     }
@@ -116,14 +116,14 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         self.frames = self.frames.saturating_add(1);
         if is_first {
             self.forget();
-            self.renew(&rig, frame);
+            self.add_new_points(&rig, frame);
             let nothing_moved = Step { covariance: Matrix6::zeros(), ..Step::none(State::First) };
             return Ok(Step { points: self.points(), ..nothing_moved });
         }
         if !self.begun {
-            return Ok(self.begin(&rig, frame));
+            return Ok(self.initialize(&rig, frame));
         }
-        Ok(self.follow_on(&rig, frame))
+        Ok(self.track_frame(&rig, frame))
     }
 
     /// The rig, if there is one.
@@ -136,51 +136,53 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         self.tracks.iter().filter(|track| track.used).count()
     }
 
-    fn follow_on(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>) -> Step<T> {
-        let start = self.follow(rig, frame);
-        let verdict = self.verdict(rig, start);
-        let found = self.pairings.len();
-        let (solved, state) = match verdict {
-            Verdict::Lost => return self.lose(rig, frame, found),
-            Verdict::Known(solved, state) => (solved, state),
+    fn track_frame(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>) -> Step<T> {
+        let start = self.track(rig, frame);
+        let test_motion = self.test_motion(rig, start);
+        let found = self.matches.len();
+        let (solved, state) = match test_motion {
+            MotionTest::Lost => return self.report_lost(rig, frame, found),
+            MotionTest::Known(solved, state) => (solved, state),
         };
         let points = self.points();
         let residual = (solved.squares / T::count(solved.numbers.saturating_sub(6).max(1))).sqrt();
         // The noise may be more than was configured, and is then all over.
         let covariance = covariance6(&solved.information) * (residual * residual).max(T::ONE);
-        let telling = self.telling(&solved.pose, state);
-        let motion = self.told.inverse().then(&telling);
-        self.told = telling;
-        if state == State::Still {
+        let reported = self.reported(&solved.pose, state);
+        let motion = self.reported_pose.inverse().then(&reported);
+        self.reported_pose = reported;
+        if state == State::Stationary {
             // The points stay where they are: a motion that is too small to be seen adds up until it is seen.
             self.tracks.iter_mut().filter(|track| track.used).for_each(|track| track.now = None);
             self.velocity = Some(Pose::identity());
         } else {
             self.carry(rig, frame, &solved, &covariance);
-            self.told = solved.pose.inverse().then(&self.told);
+            self.reported_pose = solved.pose.inverse().then(&self.reported_pose);
             self.velocity = Some(motion);
-            self.renew(rig, frame);
+            self.add_new_points(rig, frame);
         }
         self.lost = 0;
         Step { motion, covariance, state, points, found, inliers: solved.kept, residual }
     }
 
-    /// The pose that is told: what is not known is none.
-    fn telling(&self, pose: &Pose<T>, state: State) -> Pose<T> {
+    /// The pose that is reported_pose: what is not known is none.
+    fn reported(&self, pose: &Pose<T>, state: State) -> Pose<T> {
         match state {
-            State::Still => self.told,
-            State::Turned | State::StepUnknown => Pose::of_parts(*pose.rotation(), *self.told.translation()),
+            State::Stationary => self.reported_pose,
+            State::RotationOnly | State::TranslationUnknown => {
+                Pose::of_parts(*pose.rotation(), *self.reported_pose.translation())
+            }
             _ => *pose,
         }
     }
 
-    fn lose(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>, found: usize) -> Step<T> {
+    fn report_lost(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>, found: usize) -> Step<T> {
         self.lost = self.lost.saturating_add(1);
         self.velocity = None;
         let mut state = State::Lost;
         if self.lost > PATIENCE {
             self.forget();
-            self.renew(rig, frame);
+            self.add_new_points(rig, frame);
             state = State::Restarted;
         }
         Step { points: self.points(), found, ..Step::none(state) }
@@ -197,12 +199,12 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         let pose = &solved.pose;
         let most = T::of(WIDTH * WIDTH);
         let baseline = rig.baseline();
-        for pairing in &self.pairings {
-            let Some(track) = self.tracks.get_mut(usize::from(pairing.owner)) else { continue };
-            let squared = Problem { pairings: &[], baseline }.squared(pose, pairing);
+        for point_match in &self.matches {
+            let Some(track) = self.tracks.get_mut(usize::from(point_match.owner)) else { continue };
+            let squared = Problem { matches: &[], baseline }.squared(pose, point_match);
             match squared
                 .filter(|&d| d < most)
-                .and_then(|_| track.point.updated(pose, &pairing.sight, baseline))
+                .and_then(|_| track.point.updated(pose, &point_match.observation, baseline))
             {
                 Some(point) => {
                     track.point = point;
@@ -235,7 +237,7 @@ impl<T: Real, const N: usize> Odometry<T, N> {
                     track.missed = 0;
                     let [[a, b], [c, d]] = track.warp;
                     let grown = (a * d - b * c).abs();
-                    let fits = grown > GROWN[0] && grown < GROWN[1] && track.likeness > ALIKE;
+                    let fits = grown > GROWN[0] && grown < GROWN[1] && track.correlation > ALIKE;
                     if !fits && let Some(template) = Template::cut(&frame.left, pixel[0], pixel[1]) {
                         track.template = template;
                         track.warp = UPRIGHT;
@@ -281,10 +283,10 @@ impl<T: Real, const N: usize> Odometry<T, N> {
 }
 
 /// A point whose depth is not known.
-pub(super) fn unknown<T: Real>(sight: Vector3<T>, usual: T, sigma: T) -> InversePoint<T> {
+pub(super) fn unknown<T: Real>(observation: Vector3<T>, usual: T, sigma: T) -> InversePoint<T> {
     let variance = sigma * sigma;
     let covariance = Matrix3::from_diagonal(&Vector3::new(variance, variance, usual * usual));
-    InversePoint { at: Vector3::new(sight.x, sight.y, usual), covariance }
+    InversePoint { at: Vector3::new(observation.x, observation.y, usual), covariance }
 }
 
 /// The point as if it were at infinity.

@@ -3,7 +3,7 @@
 use super::config::{OdometryConfig, OdometryRig, OdometryRigError};
 use super::engine::Odometry;
 use super::frame::{Frame, OdometryError};
-use super::seen::SeenPoint;
+use super::observed::ObservedPoint;
 use super::step::Step;
 use crate::geometry::{
     Real,
@@ -56,9 +56,9 @@ impl<T: Real, const N: usize> StereoOdometry<T, N> {
         self.0.step(frame)
     }
 
-    /// What the last frame saw, as [`Odometry::seen`]: metres.
-    pub fn seen(&self) -> impl Iterator<Item = SeenPoint<T>> {
-        self.0.seen()
+    /// What the last frame saw, as [`Odometry::observed_points`]: metres.
+    pub fn observed_points(&self) -> impl Iterator<Item = ObservedPoint<T>> {
+        self.0.observed_points()
     }
 }
 
@@ -78,8 +78,8 @@ impl<T: Real, const N: usize> MonocularOdometry<T, N> {
         self.0.step(frame).map(Unscaled)
     }
 
-    /// What the last frame saw, as [`Odometry::seen`]: first baselines.
-    pub fn seen(&self) -> impl Iterator<Item = SeenPoint<T>> {
-        self.0.seen()
+    /// What the last frame saw, as [`Odometry::observed_points`]: first baselines.
+    pub fn observed_points(&self) -> impl Iterator<Item = ObservedPoint<T>> {
+        self.0.observed_points()
     }
 }

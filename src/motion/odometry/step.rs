@@ -17,13 +17,13 @@ pub enum State {
     /// The pose is measured.
     Tracked,
     /// The pictures are the same to their noise: the motion is none.
-    Still,
+    Stationary,
     /// The turn is measured. There may be a step, which cannot be told from none: of one camera it has no
     /// direction. The motion has none.
-    Turned,
+    RotationOnly,
     /// The turn is measured. What is seen is too far away to tell a step by, or there is too little of it:
     /// the step is not known, and the motion has none.
-    StepUnknown,
+    TranslationUnknown,
     /// Too little was found again: the motion is not known, and is none. The next frame that is
     /// [`State::Found`] has the whole motion since.
     Lost,
@@ -37,7 +37,7 @@ pub enum State {
 impl State {
     /// Whether turn and step are known.
     pub const fn is_known(self) -> bool {
-        matches!(self, Self::First | Self::Tracked | Self::Still | Self::Found)
+        matches!(self, Self::First | Self::Tracked | Self::Stationary | Self::Found)
     }
 }
 
@@ -57,8 +57,8 @@ pub struct Step<T: Real> {
     pub found: usize,
     /// Those that agree with the pose.
     pub inliers: usize,
-    /// The root mean square of what is left of their sights, in units of what was expected: 1 where the
-    /// noise is as configured.
+    /// The root mean square of what is left of their observations, in units of what was expected: 1 where
+    /// the noise is as configured.
     pub residual: T,
 }
 

@@ -1,6 +1,6 @@
 //! What is followed from frame to frame.
 
-use super::point::InversePoint;
+use super::inverse_depth::InversePoint;
 use crate::features::{Descriptor, Template};
 use crate::geometry::Real;
 use nalgebra::{Matrix3, Vector3};
@@ -16,10 +16,11 @@ pub(super) struct Track<T: Real> {
     pub descriptor: Descriptor,
     /// Where it was seen last, px.
     pub pixel: [f32; 2],
-    /// Where it is seen in this frame, if it is, and the likeness of the pixels; refilled with each frame.
+    /// Where it is seen in this frame, if it is, and the correlation of the pixels; refilled with each
+    /// frame.
     pub now: Option<[f32; 2]>,
     /// How alike its pixels were.
-    pub likeness: f32,
+    pub correlation: f32,
     /// The descriptor of the feature that it was recognised by in this frame.
     pub fresh: Descriptor,
     /// Frames in which it was found.
@@ -50,7 +51,7 @@ impl<T: Real> Track<T> {
             descriptor: Descriptor::NONE,
             pixel: [0.0; 2],
             now: None,
-            likeness: 0.0,
+            correlation: 0.0,
             fresh: Descriptor::NONE,
             seen: 0,
             missed: 0,

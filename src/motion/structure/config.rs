@@ -6,9 +6,9 @@ use crate::motion::bundle::BundleError;
 /// How a structure is found.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct StructureConfig<T> {
-    /// Residual up to which a sight counts as right, px.
+    /// Residual up to which an observation counts as right, px.
     pub threshold_px: T,
-    /// The least angle between two sights of a point, radians.
+    /// The least angle between two observations of a point, radians.
     pub min_angle_rad: T,
     /// Samples at most of each robust estimate.
     pub most_samples: u32,
@@ -27,7 +27,7 @@ impl<T: Real> StructureConfig<T> {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum PairFault {
+pub enum InitialPairError {
     /// They have fewer than twelve points in common.
     TooFew,
     /// What they have in common agrees on nothing.
@@ -53,10 +53,10 @@ pub enum StructureError {
     /// The threshold or the angle is not greater than zero, or no sample is allowed.
     Config,
     /// No two views give a pose; this is why, of those with most in common.
-    NoPair(PairFault),
-    /// The sights are none, or the memory is too small.
+    NoPair(InitialPairError),
+    /// The observations are none, or the memory is too small.
     Bundle(BundleError),
-    /// The slices for matches, landmarks, inliers or sights are too short; so many are needed.
+    /// The slices for matches, landmarks, inliers or observations are too short; so many are needed.
     Memory(usize),
 }
 
@@ -64,11 +64,11 @@ pub enum StructureError {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum Placement {
+pub enum ViewState {
     /// Not yet anything.
     Unknown,
     /// Where it stands.
-    Placed,
+    Registered,
     /// It sees fewer than six points that are known.
     TooFew,
     /// What it sees agrees on no pose.
@@ -83,14 +83,14 @@ pub enum PointState {
     /// Fewer than two views that stand somewhere see it.
     Unknown,
     /// Where it is.
-    Known,
-    /// Its sights are nearly parallel: it is far away, or at infinity.
+    Triangulated,
+    /// Its observations are nearly parallel: it is far away, or at infinity.
     Far,
-    /// Its sights do not meet before the cameras, or fewer than half of them do.
-    Apart,
+    /// Its observations do not meet before the cameras, or fewer than half of them do.
+    Inconsistent,
 }
 
-impl core::fmt::Display for PairFault {
+impl core::fmt::Display for InitialPairError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
             Self::TooFew => "fewer than twelve points are seen by both views",
@@ -115,5 +115,5 @@ impl core::fmt::Display for StructureError {
     }
 }
 
-impl core::error::Error for PairFault {}
+impl core::error::Error for InitialPairError {}
 impl core::error::Error for StructureError {}

@@ -11,7 +11,7 @@
 use core::convert::Infallible;
 use static_cell::ConstStaticCell;
 use stereopsis::camera::{CameraError, StereoSource};
-use stereopsis::features::{Feature, FeatureConfigError, FeatureLineError, SearchError};
+use stereopsis::features::{Feature, FeatureConfigError, FeatureLineError, MatchConfigError};
 use stereopsis_firmware::camera::scene::{Scene, SceneCamera};
 use stereopsis_firmware::choice::BOARD;
 use stereopsis_firmware::clock::Clock;
@@ -48,7 +48,7 @@ enum Failure {
     /// A line is not what is due.
     Line(FeatureLineError),
     /// The features cannot be matched.
-    Search(SearchError),
+    Match(MatchConfigError),
     /// The host did not take the results.
     Host(HostError),
 }
@@ -68,7 +68,7 @@ fn run(Memory { pictures, left, right }: &mut Memory) -> Result<(), Failure> {
         detection += clock.now() - start;
     }
     let start = clock.now();
-    pictures.pair().map_err(Failure::Search)?;
+    pictures.pair().map_err(Failure::Match)?;
     let matching = clock.now() - start;
 
     let stack = stack::used();

@@ -77,7 +77,7 @@ pub fn run(args: &BundleArgs) -> Result<(), Failure> {
         cost_tolerance: args.tolerance,
         ..BundleConfig::new(Gauge::Free)
     };
-    let sizes = (problem.views.len(), problem.points.len(), problem.sights.len());
+    let sizes = (problem.views.len(), problem.points.len(), problem.observations.len());
     let squares = squares_of(&problem);
     let start = Instant::now();
     let fault = |fault| BalError { path: args.problem.clone(), fault };

@@ -8,7 +8,7 @@ use image::{GrayImage, RgbImage};
 use std::fmt::Write;
 use std::path::Path;
 use stereopsis::camera::LineSource;
-use stereopsis::features::{Orientation, Search};
+use stereopsis::features::{MatchConfig, Orientation};
 use stereopsis::imaging::GreyLines;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::correspond::{Correspondences, Plan, correspond};
@@ -63,7 +63,7 @@ fn plan(args: &FeaturesArgs) -> Plan {
             OrientationChoice::Upright => Some(Orientation::Upright),
             OrientationChoice::Turned => Some(Orientation::Centroid),
         },
-        search: Search {
+        search: MatchConfig {
             ratio_percent: byte(args.ratio),
             along_px: px(args.columns_apart),
             across_px: px(args.rows_apart),

@@ -227,9 +227,9 @@ fn summary(
     );
     let states = [
         (State::Tracked, "tracked"),
-        (State::Still, "still"),
-        (State::Turned, "turned, step not told from none"),
-        (State::StepUnknown, "turned, step not known"),
+        (State::Stationary, "still"),
+        (State::RotationOnly, "turned, step not told from none"),
+        (State::TranslationUnknown, "turned, step not known"),
         (State::Waiting, "waiting for a baseline, laid between others"),
         (State::Lost, "lost, laid between others"),
         (State::Found, "found again"),

@@ -9,7 +9,7 @@ use clap::Args;
 use image::{GrayImage, RgbImage};
 use serde::Serialize;
 use std::path::PathBuf;
-use stereopsis::motion::structure::Placement;
+use stereopsis::motion::structure::ViewState;
 use stereopsis_host::calibration::Cameras;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::correspond::Plan;
@@ -42,7 +42,7 @@ pub struct StructureArgs {
     /// The distance of the first two images' cameras in truth, m: gives the scale
     #[arg(long, value_name = "M", value_parser = baseline, allow_negative_numbers = true)]
     pub baseline: Option<f64>,
-    /// Residual up to which a sight counts as right, px, 0.1 to 20
+    /// Residual up to which an observation counts as right, px, 0.1 to 20
     #[arg(long, value_name = "PX", default_value_t = 1.5, value_parser = threshold, allow_negative_numbers = true)]
     pub threshold: f64,
     /// Folder for the results; made when it is missing
@@ -72,7 +72,7 @@ struct Answer {
     began_with: [String; 2],
     plane: bool,
     points: usize,
-    sights: usize,
+    observations: usize,
     rms_px: f64,
 }
 
@@ -123,7 +123,7 @@ pub fn run(args: &StructureArgs) -> Result<(), Failure> {
         "{} of {count} views stand somewhere, {} points, {} sights, {:.3} px RMS\n",
         names(true).count(),
         answer.points,
-        answer.sights,
+        answer.observations,
         answer.rms_px
     );
     for view in names(false) {
@@ -168,14 +168,14 @@ fn images(args: &StructureArgs) -> Result<Images, Failure> {
 }
 
 fn answer(found: &Found, images: &Images, unit: &str) -> Answer {
-    let view = |((name, place), pose): ((&String, &Result<_, Placement>), &Option<_>)| {
+    let view = |((name, place), pose): ((&String, &Result<_, ViewState>), &Option<_>)| {
         let pose: &Option<stereopsis::geometry::camera::Pose<f64>> = pose;
         ViewAnswer {
             image: name.clone(),
             state: match place {
                 Ok(_) => "placed",
-                Err(Placement::TooFew) => "too few points in common with the others",
-                Err(Placement::NoAgreement) => "what it sees agrees on no pose",
+                Err(ViewState::TooFew) => "too few points in common with the others",
+                Err(ViewState::NoAgreement) => "what it sees agrees on no pose",
                 Err(_) => "unknown",
             },
             rotation: pose.map(|pose| crate::fundamental::rows(pose.rotation())),
@@ -191,7 +191,7 @@ fn answer(found: &Found, images: &Images, unit: &str) -> Answer {
         began_with: [name(a), name(b)],
         plane: found.report.plane,
         points: found.report.points,
-        sights: found.report.sights,
+        observations: found.report.observations,
         rms_px: found.rms_px,
     }
 }
@@ -199,10 +199,11 @@ fn answer(found: &Found, images: &Images, unit: &str) -> Answer {
 /// The points with the colour of the first picture that shows them.
 fn cloud(found: &Found, images: &Images, links: &Links) -> Vec<ColouredPoint> {
     let coloured = found.known().into_iter().filter_map(|(number, point)| {
-        let at = links.sights.partition_point(|sight| sight.point < number);
-        let sight = links.sights.get(at)?;
-        let colours = &images.colours[usize::from(sight.view)];
-        let colour = colours.get_pixel_checked(sight.pixel.x.round() as u32, sight.pixel.y.round() as u32)?;
+        let at = links.observations.partition_point(|observation| observation.point < number);
+        let observation = links.observations.get(at)?;
+        let colours = &images.colours[usize::from(observation.view)];
+        let colour = colours
+            .get_pixel_checked(observation.pixel.x.round() as u32, observation.pixel.y.round() as u32)?;
         Some(ColouredPoint { position_m: [point.x, point.y, point.z].map(|x| x as f32), colour: colour.0 })
     });
     coloured.collect()

@@ -16,14 +16,14 @@ fn same<V: View<f64, 6>>(truth: &Scene<V, f64>, gauge: &Gauge, free: Vec<DMatrix
     let dense = Dense {
         views: &truth.views,
         points: &truth.points,
-        sights: &truth.sights,
+        observations: &truth.observations,
         loss: Loss::Squares,
         free,
     };
     let whole = dense.covariance();
     let (mut views, mut points) = (truth.views.clone(), truth.points.clone());
     let mut room = Room::new(views.len(), points.len());
-    let problem = Problem { views: &mut views, points: &mut points, sights: &truth.sights };
+    let problem = Problem { views: &mut views, points: &mut points, observations: &truth.observations };
     let mut found =
         Covariances::new(problem, room.workspace(), gauge.clone(), Loss::Squares, 0.5).expect("determined");
     let mut at = 0;
@@ -100,6 +100,6 @@ fn what_is_not_determined_is_refused() {
     assert!(window.covariances(baseline.clone(), Loss::Squares, 1.0).is_ok());
     let ahead = Point3::new(0.0, 0.0, 5.0);
     window.add_point(ahead).expect("room");
-    window.add_sight(0, 0, truth.views[0].project(0, &ahead).expect("seen")).expect("room");
+    window.add_observation(0, 0, truth.views[0].project(0, &ahead).expect("seen")).expect("room");
     assert_eq!(window.covariances(baseline, Loss::Squares, 1.0).err(), Some(CovarianceError::Point(12)));
 }

@@ -1,17 +1,17 @@
 //! Problems in BAL's format, through a file and the core.
 
 use super::scene::{radial, scene};
-use stereopsis::motion::bundle::{BundleConfig, Gauge, Loss, Stop};
+use stereopsis::motion::bundle::{BundleConfig, Gauge, Loss, StopReason};
 use stereopsis_host::bal::{BalFault, BalProblem, read_problem};
 
 /// The problem of a scene that has been disturbed.
 fn problem() -> BalProblem {
     let truth = scene((0..5).map(radial).collect(), 40, 1, 0.5, |view, point| (view + point) % 4 != 0);
     let start = truth.disturbed(0, 0.005, 0.02);
-    let mut sights = start.sights;
+    let mut observations = start.observations;
     // In an order of the file's own.
-    sights.sort_by_key(|sight| (sight.view, sight.point));
-    BalProblem::new(start.views, start.points, &sights)
+    observations.sort_by_key(|observation| (observation.view, observation.point));
+    BalProblem::new(start.views, start.points, &observations)
 }
 
 #[test]
@@ -37,7 +37,7 @@ fn files_come_back_and_costs_with_them() {
     let report = running.report();
     // chi^2 / 2 of 300 numbers less 45 + 120 unknowns, and seven that are free, at a variance of 1/4: 17.8
     // with a deviation of 2.1.
-    assert!((report.cost - 17.8).abs() < 4.0 * 2.1 && report.stop == Stop::Cost, "{report:?}");
+    assert!((report.cost - 17.8).abs() < 4.0 * 2.1 && report.stop == StopReason::Cost, "{report:?}");
     assert!((running.problem().cost(&Loss::Squares) - report.cost).abs() < 1e-9 * report.cost);
     write(running.problem());
     let again = read_problem(&path).expect("a problem");
@@ -48,8 +48,9 @@ fn files_come_back_and_costs_with_them() {
 #[test]
 fn a_point_in_the_plane_of_a_centre_is_named() {
     let mut problem = problem();
-    let at = problem.sights.iter().position(|sight| sight.point == 7).expect("a sight");
-    let centre = *problem.views[usize::from(problem.sights[at].view)].pose.translation();
+    let at =
+        problem.observations.iter().position(|observation| observation.point == 7).expect("an observation");
+    let centre = *problem.views[usize::from(problem.observations[at].view)].pose.translation();
     problem.points[7] = centre.into();
     let fault = problem.start(&BundleConfig::new(Gauge::Free)).err();
     assert!(matches!(fault, Some(BalFault::NotSeen(_))), "{fault:?}");

@@ -1,5 +1,5 @@
 //! Bundle adjustment: derivatives against differences, steps against the naive twin, results against the
-//! truth; structure from sights alone.
+//! truth; structure from observations alone.
 
 mod covariance;
 mod files;

@@ -4,7 +4,8 @@ use super::scene::{Scene, calibrated, scene};
 use super::twin::Room;
 use nalgebra::{Point2, Point3};
 use stereopsis::motion::bundle::{
-    BundleConfig, BundleError, CameraView, Gauge, Loss, Need, Problem, Window, WindowError, Workspace, adjust,
+    BundleConfig, BundleError, CameraView, Gauge, Loss, Problem, Window, WindowError, Workspace,
+    WorkspaceSize, adjust,
 };
 
 fn good() -> Scene<CameraView<f64>, f64> {
@@ -14,7 +15,7 @@ fn good() -> Scene<CameraView<f64>, f64> {
 fn refusal(scene: &Scene<CameraView<f64>, f64>, config: BundleConfig<f64>) -> Option<BundleError> {
     let (mut views, mut points) = (scene.views.clone(), scene.points.clone());
     let mut room = Room::new(3, 5);
-    let mut problem = Problem { views: &mut views, points: &mut points, sights: &scene.sights };
+    let mut problem = Problem { views: &mut views, points: &mut points, observations: &scene.observations };
     let error = adjust(&mut problem, &mut room.workspace(), config).err();
     assert!(error.is_none() || (views == scene.views && points == scene.points), "{error:?}");
     error
@@ -29,11 +30,11 @@ fn with(change: impl FnOnce(&mut Scene<CameraView<f64>, f64>)) -> Option<BundleE
 #[test]
 fn indices_and_numbers() {
     assert_eq!(with(|_| ()), None);
-    assert_eq!(with(|s| s.sights.clear()), Some(BundleError::Empty));
-    assert_eq!(with(|s| s.sights[4].view = 3), Some(BundleError::View(4)));
-    assert_eq!(with(|s| s.sights[14].point = 5), Some(BundleError::Point(14)));
-    assert_eq!(with(|s| s.sights.swap(2, 3)), Some(BundleError::Unsorted(3)));
-    assert_eq!(with(|s| s.sights[7].pixel.y = f64::NAN), Some(BundleError::NotFinite(7)));
+    assert_eq!(with(|s| s.observations.clear()), Some(BundleError::Empty));
+    assert_eq!(with(|s| s.observations[4].view = 3), Some(BundleError::View(4)));
+    assert_eq!(with(|s| s.observations[14].point = 5), Some(BundleError::Point(14)));
+    assert_eq!(with(|s| s.observations.swap(2, 3)), Some(BundleError::Unsorted(3)));
+    assert_eq!(with(|s| s.observations[7].pixel.y = f64::NAN), Some(BundleError::NotFinite(7)));
     assert_eq!(with(|s| s.points[1].z = -5.0), Some(BundleError::NotSeen(3)));
     assert_eq!(with(|s| s.points[2].x = f64::INFINITY), Some(BundleError::NotSeen(6)));
 }
@@ -60,30 +61,30 @@ fn configurations() {
 fn memory_that_is_too_small_says_how_much() {
     let scene = good();
     let (mut views, mut points) = (scene.views.clone(), scene.points.clone());
-    let mut problem = Problem { views: &mut views, points: &mut points, sights: &scene.sights };
+    let mut problem = Problem { views: &mut views, points: &mut points, observations: &scene.observations };
     let mut room = Room::<CameraView<f64>, 6>::new(3, 5);
     let config = BundleConfig::new(Gauge::Free);
     let Workspace { slots, terms, trial_points, blocks } = room.workspace();
     let mut small = Workspace { slots: &mut slots[..2], terms, trial_points, blocks };
-    let need = Need { slots: 3, terms: 3, points: 5, blocks: 0 };
+    let need = WorkspaceSize { slots: 3, terms: 3, points: 5, blocks: 0 };
     let refused = adjust(&mut problem, &mut small, config.clone());
     assert_eq!(refused, Err(BundleError::Workspace(need)));
     let Workspace { slots, terms, trial_points, blocks } = room.workspace();
     let mut small = Workspace { slots, terms, trial_points, blocks: &mut blocks[..5] };
     let refused = adjust(&mut problem, &mut small, config);
-    assert_eq!(refused, Err(BundleError::Workspace(Need { blocks: 6, ..need })));
+    assert_eq!(refused, Err(BundleError::Workspace(WorkspaceSize { blocks: 6, ..need })));
 }
 
 #[test]
 fn windows_that_are_full() {
     let mut window = Window::<CameraView<f32>, f32, 6, 1, 1, 1>::new();
     let pixel = Point2::new(0.0, 0.0);
-    assert_eq!(window.add_sight(0, 0, pixel), Err(WindowError::NoPoint));
+    assert_eq!(window.add_observation(0, 0, pixel), Err(WindowError::NoPoint));
     assert_eq!(window.add_point(Point3::origin()), Ok(0));
-    assert_eq!(window.add_sight(0, 0, pixel), Err(WindowError::NoView));
+    assert_eq!(window.add_observation(0, 0, pixel), Err(WindowError::NoView));
     assert_eq!(window.add_view(calibrated(0)), Ok(0));
-    assert_eq!(window.add_sight(0, 0, pixel), Ok(()));
-    assert_eq!(window.add_sight(0, 0, pixel), Err(WindowError::Sights(2)));
+    assert_eq!(window.add_observation(0, 0, pixel), Ok(()));
+    assert_eq!(window.add_observation(0, 0, pixel), Err(WindowError::Observations(2)));
     assert_eq!(window.add_view(calibrated(1)), Err(WindowError::Views(2)));
     assert_eq!(window.add_point(Point3::origin()), Err(WindowError::Points(2)));
     window.clear();

@@ -6,7 +6,7 @@ use stereopsis::geometry::{
     Real,
     camera::{Camera, Distortion, Pose},
 };
-use stereopsis::motion::bundle::{CameraView, RadialView, RigView, Sight, View, Window};
+use stereopsis::motion::bundle::{CameraView, Observation, RadialView, RigView, View, Window};
 use stereopsis_host::scene::Random;
 
 /// Views, points and what is seen of them, in any numbers.
@@ -14,7 +14,7 @@ use stereopsis_host::scene::Random;
 pub struct Scene<V, T: Real> {
     pub views: Vec<V>,
     pub points: Vec<Point3<T>>,
-    pub sights: Vec<Sight<T>>,
+    pub observations: Vec<Observation<T>>,
 }
 
 pub fn camera<T: Real>() -> Camera<T> {
@@ -60,7 +60,7 @@ pub fn scene<V: View<T, N>, T: Real, const N: usize>(
     sees: impl Fn(usize, usize) -> bool,
 ) -> Scene<V, T> {
     let mut random = Random::new(11);
-    let (mut places, mut sights) = (Vec::new(), Vec::new());
+    let (mut places, mut observations) = (Vec::new(), Vec::new());
     for point in 0..points {
         let [x, y, z] = [(); 3].map(|()| random.unit());
         let place = Point3::from([3.0 * x - 1.0, 2.4 * y - 1.2, 3.0 + 4.0 * z].map(T::of));
@@ -70,11 +70,11 @@ pub fn scene<V: View<T, N>, T: Real, const N: usize>(
                 let seen = view.project(eye, &place).expect("before the camera");
                 let off = [random.gauss(), random.gauss()].map(|x| T::of(noise_px * x));
                 let pixel = Point2::new(seen.x + off[0], seen.y + off[1]);
-                sights.push(Sight { point: point as u32, view: n as u16, eye, pixel });
+                observations.push(Observation { point: point as u32, view: n as u16, eye, pixel });
             }
         }
     }
-    Scene { views, points: places, sights }
+    Scene { views, points: places, observations }
 }
 
 /// A window of up to eight views, filled from a scene.
@@ -88,8 +88,8 @@ pub fn filled<V: View<T, N>, T: Real, const N: usize>(scene: &Scene<V, T>) -> Bo
     }
     for (n, point) in scene.points.iter().enumerate() {
         window.add_point(*point).expect("room");
-        for sight in scene.sights.iter().filter(|sight| sight.point as usize == n) {
-            window.add_sight(sight.view, sight.eye, sight.pixel).expect("room");
+        for observation in scene.observations.iter().filter(|observation| observation.point as usize == n) {
+            window.add_observation(observation.view, observation.eye, observation.pixel).expect("room");
         }
     }
     window
@@ -121,8 +121,8 @@ impl<V, T: Real> Scene<V, T> {
 prop_compose! {
     /// A step of a view's pose, and a point.
     pub fn placed()(turn in prop::array::uniform3(-1.0..1.0_f64), centre in prop::array::uniform3(-1.0..1.0_f64),
-        sight in prop::array::uniform2(-0.6..0.6_f64), depth in 0.5..20.0_f64) -> (Pose<f64>, Point3<f64>) {
+        observation in prop::array::uniform2(-0.6..0.6_f64), depth in 0.5..20.0_f64) -> (Pose<f64>, Point3<f64>) {
         let pose = pose(turn, centre);
-        (pose, pose.transform(&Point3::new(sight[0] * depth, sight[1] * depth, depth)))
+        (pose, pose.transform(&Point3::new(observation[0] * depth, observation[1] * depth, depth)))
     }
 }

@@ -4,16 +4,16 @@ use super::scene::{calibrated, placed, radial, rig};
 use nalgebra::{Point3, Vector3};
 use proptest::prelude::*;
 use stereopsis::geometry::camera::{Camera, Pose};
-use stereopsis::motion::bundle::{AlignedView, View};
+use stereopsis::motion::bundle::{RectifiedView, View};
 
 /// Central differences err by the square of the step, and by roundings over it: of pixels in thousands, a
 /// millionth or so.
 const STEP: f64 = 1e-5;
 
 fn holds<V: View<f64, N>, const N: usize>(view: &V, eye: u16, point: &Point3<f64>, sizes: [f64; N]) {
-    let slope = view.slope(eye, point).expect("seen");
+    let jacobian = view.jacobian(eye, point).expect("seen");
     let seen = view.project(eye, point).expect("seen");
-    assert!((slope.pixel - seen).amax() <= 1e-9 * (1.0 + seen.coords.amax()), "{} {seen}", slope.pixel);
+    assert!((jacobian.pixel - seen).amax() <= 1e-9 * (1.0 + seen.coords.amax()), "{} {seen}", jacobian.pixel);
     let by = |k: usize, h: f64| {
         let mut step = [0.0; N];
         step[k] = h * sizes[k];
@@ -21,14 +21,22 @@ fn holds<V: View<f64, N>, const N: usize>(view: &V, eye: u16, point: &Point3<f64
     };
     for (k, size) in sizes.iter().enumerate() {
         let off = (by(k, STEP) - by(k, -STEP)) / (2.0 * STEP * size);
-        near(&[slope.by_view[0][k], slope.by_view[1][k]], &[off.x, off.y], &format!("view's number {k}"));
+        near(
+            &[jacobian.by_view[0][k], jacobian.by_view[1][k]],
+            &[off.x, off.y],
+            &format!("view's number {k}"),
+        );
     }
     for k in 0..3 {
         let mut shift = Vector3::zeros();
         shift[k] = STEP * 0.1;
         let at = |shift| view.project(eye, &(point + shift)).expect("seen");
         let off = (at(shift) - at(-shift)) / (2.0 * shift[k]);
-        near(&[slope.by_point[0][k], slope.by_point[1][k]], &[off.x, off.y], &format!("point's number {k}"));
+        near(
+            &[jacobian.by_point[0][k], jacobian.by_point[1][k]],
+            &[off.x, off.y],
+            &format!("point's number {k}"),
+        );
     }
 }
 
@@ -68,8 +76,8 @@ proptest! {
     }
 }
 
-fn aligned(pose: Pose<f64>) -> AlignedView<f64> {
-    AlignedView { camera: Camera::new(500.0, 500.0, 320.0, 240.0).expect("a camera"), baseline: 0.12, pose }
+fn aligned(pose: Pose<f64>) -> RectifiedView<f64> {
+    RectifiedView { camera: Camera::new(500.0, 500.0, 320.0, 240.0).expect("a camera"), baseline: 0.12, pose }
 }
 
 #[test]
@@ -86,9 +94,9 @@ fn a_disparity_by_its_definition() {
 fn what_is_behind_is_not_seen() {
     use stereopsis::geometry::camera::ProjectionError::Behind;
     let point = Point3::new(0.0, 0.0, -1.0);
-    assert_eq!(calibrated::<f64>(0).slope(0, &point).err(), Some(Behind));
-    assert_eq!(rig::<f64>(0).slope(1, &point).err(), Some(Behind));
+    assert_eq!(calibrated::<f64>(0).jacobian(0, &point).err(), Some(Behind));
+    assert_eq!(rig::<f64>(0).jacobian(1, &point).err(), Some(Behind));
     assert_eq!(rig::<f64>(0).project(1, &point), Err(Behind));
     let centre = Point3::from(*radial::<f64>(1).pose.translation());
-    assert_eq!(radial::<f64>(1).slope(0, &centre).err(), Some(Behind));
+    assert_eq!(radial::<f64>(1).jacobian(0, &centre).err(), Some(Behind));
 }

@@ -1,13 +1,13 @@
-//! Structure from sights alone, some of them wrong, held to the truth; what gives none is named.
+//! Structure from observations alone, some of them wrong, held to the truth; what gives none is named.
 
 use super::scene::{Scene, calibrated, pose, scene};
 use super::twin::Room;
 use nalgebra::{Point2, Point3};
 use stereopsis::geometry::{absolute::Landmark, camera::Pose, two_view::Correspondence};
-use stereopsis::motion::bundle::{CameraView, Sight, View};
+use stereopsis::motion::bundle::{CameraView, Observation, View};
 use stereopsis::motion::structure::{
-    MetricStructure, PairFault, Placement, PointState, SceneMemory, StructureConfig, StructureError,
-    StructureReport, StructureRoom, structure,
+    InitialPairError, MetricStructure, PointState, StructureConfig, StructureError, StructureReport,
+    StructureWorkspace, StructureWorkspaceView, ViewState, structure,
 };
 use stereopsis_host::scene::Random;
 
@@ -21,14 +21,15 @@ fn found<R>(
 ) -> Result<R, StructureError> {
     let (m, n) = (seen.views.len(), seen.points.len());
     let mut views: Vec<_> = seen.views.iter().map(|view| view.with_pose(Pose::identity())).collect();
-    let (mut placements, mut states) = (vec![Placement::Unknown; m], vec![PointState::Unknown; n]);
-    let (mut points, mut kept) = (vec![Point3::origin(); n], vec![Sight::EMPTY; seen.sights.len()]);
+    let (mut placements, mut states) = (vec![ViewState::Unknown; m], vec![PointState::Unknown; n]);
+    let (mut points, mut kept) =
+        (vec![Point3::origin(); n], vec![Observation::EMPTY; seen.observations.len()]);
     let mut matches = vec![Correspondence::new(0.0, 0.0, 0.0, 0.0); n];
     let mut landmarks = vec![Landmark { world: Point3::origin(), pixel: Point2::origin() }; n];
     let (mut inliers, mut room) = (vec![false; n], Room::new(m, n));
-    let memory = SceneMemory {
+    let memory = StructureWorkspaceView {
         views: &mut views,
-        placements: &mut placements,
+        view_states: &mut placements,
         points: &mut points,
         states: &mut states,
         kept: &mut kept,
@@ -37,7 +38,7 @@ fn found<R>(
         inliers: &mut inliers,
         workspace: room.workspace(),
     };
-    let (found, report) = structure(memory, &seen.sights, &StructureConfig::new(1.5))?;
+    let (found, report) = structure(memory, &seen.observations, &StructureConfig::new(1.5))?;
     let (a, b) = (usize::from(report.pair.0), usize::from(report.pair.1));
     let metres = (seen.views[a].pose.translation() - seen.views[b].pose.translation()).norm();
     let metric = found.with_baseline((a, b), metres).expect("both stand somewhere");
@@ -65,12 +66,12 @@ fn errors(
     (centres, points, known)
 }
 
-/// Some of the sights put anywhere.
+/// Some of the observations put anywhere.
 fn with_wrong(mut seen: Seen, share: f64) -> Seen {
     let mut random = Random::new(3);
-    for sight in &mut seen.sights {
+    for observation in &mut seen.observations {
         if random.unit() < share {
-            sight.pixel = Point2::new(640.0 * random.unit(), 480.0 * random.unit());
+            observation.pixel = Point2::new(640.0 * random.unit(), 480.0 * random.unit());
         }
     }
     seen
@@ -104,9 +105,10 @@ fn a_plane_is_named_and_solved() {
     for point in &mut seen.points {
         point.z = 5.0 + 0.3 * point.x - 0.2 * point.y;
     }
-    for sight in &mut seen.sights {
-        let (view, point) = (&seen.views[usize::from(sight.view)], &seen.points[sight.point as usize]);
-        sight.pixel = view.project(0, point).expect("before the camera");
+    for observation in &mut seen.observations {
+        let (view, point) =
+            (&seen.views[usize::from(observation.view)], &seen.points[observation.point as usize]);
+        observation.pixel = view.project(0, point).expect("before the camera");
     }
     let (plane, off) =
         found(&seen, |metric, report| (report.plane, errors(&seen, metric, report))).expect("a structure");
@@ -125,18 +127,25 @@ fn what_gives_no_pose_is_named() {
     };
     for share in [0.0, 0.2] {
         let of = |views| found(&with_wrong(scene(views, 60, 1, 0.2, |_, _| true), share), |_, _| ()).err();
-        assert_eq!(of(at(0.0, 0.0)), Some(StructureError::NoPair(PairFault::NoMotion)), "{share}");
-        assert_eq!(of(at(1.0, 0.0)), Some(StructureError::NoPair(PairFault::PureRotation)), "{share}");
+        assert_eq!(of(at(0.0, 0.0)), Some(StructureError::NoPair(InitialPairError::NoMotion)), "{share}");
+        assert_eq!(of(at(1.0, 0.0)), Some(StructureError::NoPair(InitialPairError::PureRotation)), "{share}");
         // A millimetre beside metres.
-        assert_eq!(of(at(1.0, 0.001)), Some(StructureError::NoPair(PairFault::PureRotation)), "{share}");
+        assert_eq!(
+            of(at(1.0, 0.001)),
+            Some(StructureError::NoPair(InitialPairError::PureRotation)),
+            "{share}"
+        );
     }
     let few = scene(views(3), 11, 1, 0.0, |_, _| true);
-    assert_eq!(found(&few, |_, _| ()).err(), Some(StructureError::NoPair(PairFault::TooFew)));
+    assert_eq!(found(&few, |_, _| ()).err(), Some(StructureError::NoPair(InitialPairError::TooFew)));
     let mut random = scene(views(2), 60, 1, 0.0, |_, _| true);
     random = with_wrong(random, 1.1);
     let fault = found(&random, |_, _| ()).err();
     assert!(
-        matches!(fault, Some(StructureError::NoPair(PairFault::NoAgreement | PairFault::SmallAngle))),
+        matches!(
+            fault,
+            Some(StructureError::NoPair(InitialPairError::NoAgreement | InitialPairError::SmallAngle))
+        ),
         "{fault:?}"
     );
 }
@@ -147,9 +156,10 @@ fn points_at_infinity_are_far() {
     for point in seen.points.iter_mut().step_by(4) {
         point.coords *= 1e4;
     }
-    for sight in &mut seen.sights {
-        let (view, point) = (&seen.views[usize::from(sight.view)], &seen.points[sight.point as usize]);
-        sight.pixel = view.project(0, point).expect("before the camera");
+    for observation in &mut seen.observations {
+        let (view, point) =
+            (&seen.views[usize::from(observation.view)], &seen.points[observation.point as usize]);
+        observation.pixel = view.project(0, point).expect("before the camera");
     }
     let states =
         |metric: &MetricStructure<'_, f64>| (0..60).map(|n| metric.point(n).err()).collect::<Vec<_>>();
@@ -162,15 +172,15 @@ fn points_at_infinity_are_far() {
 fn a_view_that_sees_nothing_known_is_named() {
     let seen = scene(views(4), 40, 1, 0.0, |view, point| view < 3 || point < 5);
     let missing = found(&seen, |metric, report| (metric.pose(3).err(), report.views)).expect("a structure");
-    assert_eq!(missing, (Some(Placement::TooFew), 3));
-    // One whose sights are all wrong.
+    assert_eq!(missing, (Some(ViewState::TooFew), 3));
+    // One whose observations are all wrong.
     let mut seen = scene(views(4), 40, 1, 0.0, |_, _| true);
     let mut random = Random::new(8);
-    for sight in seen.sights.iter_mut().filter(|sight| sight.view == 2) {
-        sight.pixel = Point2::new(640.0 * random.unit(), 480.0 * random.unit());
+    for observation in seen.observations.iter_mut().filter(|observation| observation.view == 2) {
+        observation.pixel = Point2::new(640.0 * random.unit(), 480.0 * random.unit());
     }
     let missing = found(&seen, |metric, _| metric.pose(2).err()).expect("a structure");
-    assert_eq!(missing, Some(Placement::NoAgreement));
+    assert_eq!(missing, Some(ViewState::NoAgreement));
 }
 
 #[test]
@@ -178,9 +188,9 @@ fn no_views_or_sights_are_refused() {
     let one = scene(views(1), 20, 1, 0.0, |_, _| true);
     assert_eq!(found(&one, |_, _| ()).err(), Some(StructureError::Views));
     let mut none = scene(views(2), 20, 1, 0.0, |_, _| true);
-    none.sights.clear();
+    none.observations.clear();
     let error = found(&none, |_, _| ()).err();
-    assert_eq!(error, Some(StructureError::NoPair(PairFault::TooFew)));
+    assert_eq!(error, Some(StructureError::NoPair(InitialPairError::TooFew)));
 }
 
 #[test]
@@ -188,9 +198,9 @@ fn a_room_gives_what_slices_give() {
     let seen = with_wrong(scene(views(4), 50, 1, 0.3, |_, _| true), 0.1);
     let cameras: Vec<_> = seen.views.iter().map(|view| view.camera).collect();
     let config = StructureConfig::new(1.5);
-    let mut room = Box::new(StructureRoom::<f64, 5, 60, 250>::new());
+    let mut room = Box::new(StructureWorkspace::<f64, 5, 60, 250>::new());
     let (of_room, report) =
-        room.find(&cameras, seen.points.len(), &seen.sights, &config).expect("a structure");
+        room.find(&cameras, seen.points.len(), &seen.observations, &config).expect("a structure");
     let pose = |n| *of_room.pose(n).expect("placed");
     let poses: Vec<_> = (0..4).map(pose).collect();
     let (a, b) = (usize::from(report.pair.0), usize::from(report.pair.1));
@@ -203,10 +213,13 @@ fn a_room_gives_what_slices_give() {
         assert_eq!(one.rotation(), other.rotation());
     }
     // What has no room says how much would do.
-    let mut small = StructureRoom::<f64, 3, 60, 250>::new();
-    assert_eq!(small.find(&cameras, 50, &seen.sights, &config).err(), Some(StructureError::Memory(4)));
-    let mut small = StructureRoom::<f64, 5, 49, 250>::new();
-    assert_eq!(small.find(&cameras, 50, &seen.sights, &config).err(), Some(StructureError::Memory(50)));
-    let mut small = StructureRoom::<f64, 5, 60, 199>::new();
-    assert_eq!(small.find(&cameras, 50, &seen.sights, &config).err(), Some(StructureError::Memory(200)));
+    let mut small = StructureWorkspace::<f64, 3, 60, 250>::new();
+    assert_eq!(small.find(&cameras, 50, &seen.observations, &config).err(), Some(StructureError::Memory(4)));
+    let mut small = StructureWorkspace::<f64, 5, 49, 250>::new();
+    assert_eq!(small.find(&cameras, 50, &seen.observations, &config).err(), Some(StructureError::Memory(50)));
+    let mut small = StructureWorkspace::<f64, 5, 60, 199>::new();
+    assert_eq!(
+        small.find(&cameras, 50, &seen.observations, &config).err(),
+        Some(StructureError::Memory(200))
+    );
 }

@@ -2,13 +2,15 @@
 
 use super::scene::{Scene, calibrated, radial, rig, scene};
 use nalgebra::{DMatrix, Point3};
-use stereopsis::motion::bundle::{BundleConfig, Gauge, Loss, Problem, Slot, Term, View, Workspace, adjust};
+use stereopsis::motion::bundle::{
+    BundleConfig, CrossBlock, Gauge, Loss, Problem, View, ViewSlot, Workspace, adjust,
+};
 use stereopsis_host::twin::bundle::Dense;
 
 /// Memory enough for anything here.
 pub struct Room<V, const N: usize> {
-    slots: Vec<Slot<V, f64, N>>,
-    terms: Vec<Term<f64, N>>,
+    slots: Vec<ViewSlot<V, f64, N>>,
+    terms: Vec<CrossBlock<f64, N>>,
     points: Vec<Point3<f64>>,
     blocks: Vec<[[f64; N]; N]>,
 }
@@ -16,8 +18,8 @@ pub struct Room<V, const N: usize> {
 impl<V: View<f64, N>, const N: usize> Room<V, N> {
     pub fn new(views: usize, points: usize) -> Self {
         Self {
-            slots: vec![Slot::EMPTY; views],
-            terms: vec![Term::EMPTY; views],
+            slots: vec![ViewSlot::EMPTY; views],
+            terms: vec![CrossBlock::EMPTY; views],
             points: vec![Point3::origin(); points],
             blocks: vec![[[0.0; N]; N]; views * (views + 1) / 2],
         }
@@ -33,7 +35,7 @@ impl<V: View<f64, N>, const N: usize> Room<V, N> {
 fn same_step<V: View<f64, N>, const N: usize>(start: &Scene<V, f64>, held: u16, loss: Loss<f64>) {
     let (mut views, mut points) = (start.views.clone(), start.points.clone());
     let mut room = Room::new(views.len(), points.len());
-    let mut problem = Problem { views: &mut views, points: &mut points, sights: &start.sights };
+    let mut problem = Problem { views: &mut views, points: &mut points, observations: &start.observations };
     let gauge = if held > 0 { Gauge::Views(0..held) } else { Gauge::Free };
     let config = BundleConfig { loss, most_iterations: 1, damping: 0.01, ..BundleConfig::new(gauge) };
     let report = adjust(&mut problem, &mut room.workspace(), config).expect("a problem");
@@ -42,8 +44,8 @@ fn same_step<V: View<f64, N>, const N: usize>(start: &Scene<V, f64>, held: u16, 
         let columns = if n < usize::from(held) { 0 } else { N };
         DMatrix::identity(N, columns)
     });
-    let (sights, free) = (&start.sights, free.collect());
-    let step = Dense { views: &start.views, points: &start.points, sights, loss, free }.step(0.01);
+    let (observations, free) = (&start.observations, free.collect());
+    let step = Dense { views: &start.views, points: &start.points, observations, loss, free }.step(0.01);
     // Differences err by a ten-thousandth of a step at most: it is their error by the condition of the
     // equations.
     let size = step.amax();

@@ -4,7 +4,7 @@
 ///
 /// `rows` are the two above, the row, and the two below. As many are written as the rows and `out` have, but
 /// for the two columns at either end, which are left as they are: no patch reaches them.
-pub fn smooth_row(rows: &[&[u8]; 5], out: &mut [u8]) {
+pub fn binomial5_row(rows: &[&[u8]; 5], out: &mut [u8]) {
     let width = rows.iter().fold(out.len(), |least, row| least.min(row.len()));
     let [a, b, c, d, e] = rows.map(|row| row.get(..width).unwrap_or(&[]).iter());
     let mut columns =
@@ -33,9 +33,9 @@ mod tests {
     #[test]
     fn white_stays_white_and_a_point_spreads() {
         let mut out = [7; 7];
-        smooth_row(&[&[255; 7]; 5], &mut out);
+        binomial5_row(&[&[255; 7]; 5], &mut out);
         assert_eq!(out, [7, 7, 255, 255, 255, 7, 7]);
-        smooth_row(&[&[0; 7], &[0; 7], &[0, 0, 0, 160, 0, 0, 0], &[0; 7], &[0; 7]], &mut out);
+        binomial5_row(&[&[0; 7], &[0; 7], &[0, 0, 0, 160, 0, 0, 0], &[0; 7], &[0; 7]], &mut out);
         // 160 x 6 x 4 / 256 and 160 x 6 x 6 / 256.
         assert_eq!(out, [7, 7, 15, 23, 15, 7, 7]);
     }

@@ -2,10 +2,10 @@
 
 use super::config::OdometryRig;
 use super::engine::Odometry;
-use super::follow::{ALIKE, disparity};
 use super::frame::Frame;
-use super::point::InversePoint;
+use super::inverse_depth::InversePoint;
 use super::track::{Track, UPRIGHT};
+use super::tracking::{ALIKE, disparity};
 use crate::features::{Feature, Template};
 use crate::geometry::Real;
 use nalgebra::{Matrix3, Point2, Vector3};
@@ -15,7 +15,7 @@ const CLEAR: f32 = 0.8;
 
 impl<T: Real, const N: usize> Odometry<T, N> {
     /// Makes points of features that are far enough from all others, as long as there is room.
-    pub(super) fn renew(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>) {
+    pub(super) fn add_new_points(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>) {
         let usual = self.usual_depth().unwrap_or(T::of(0.1));
         let features = frame.features;
         let count = features.len();
@@ -53,17 +53,18 @@ fn fresh<T: Real>(
 ) -> Option<Track<T>> {
     let pixel = [feature.x_px, feature.y_px];
     let template = Template::cut(&frame.left, pixel[0], pixel[1])?;
-    let sight = rig.camera.unproject(&Point2::new(T::of(pixel[0].into()), T::of(pixel[1].into()))).ok()?;
+    let observation =
+        rig.camera.unproject(&Point2::new(T::of(pixel[0].into()), T::of(pixel[1].into()))).ok()?;
     let point = match rig.right {
-        None => super::engine::unknown(sight, usual, sigma),
+        None => super::engine::unknown(observation, usual, sigma),
         Some((baseline, right_cx)) => {
             let offset = (right_cx - rig.camera.principal_point().0).to_f64() as f32;
             let here = pixel[0] + offset;
             let row = (pixel[1] + 0.5) as usize;
             let (least, last) = ((here - f32::from(most)).max(0.0) as usize, (here + 2.0).max(0.0) as usize);
-            let along = template.along_row(&frame.right?, row, least, last)?;
-            let clear = 1.0 - along.likeness < CLEAR * (1.0 - along.elsewhere);
-            if along.likeness < ALIKE || !clear {
+            let along = template.match_row(&frame.right?, row, least, last)?;
+            let clear = 1.0 - along.correlation < CLEAR * (1.0 - along.elsewhere);
+            if along.correlation < ALIKE || !clear {
                 return None;
             }
             let disparity = disparity(rig, frame, pixel, here - along.x_px)?;
@@ -71,7 +72,7 @@ fn fresh<T: Real>(
             let variance = sigma * sigma;
             let of_depth = variance / (baseline * baseline);
             let covariance = Matrix3::from_diagonal(&Vector3::new(variance, variance, of_depth));
-            InversePoint { at: Vector3::new(sight.x, sight.y, r), covariance }
+            InversePoint { at: Vector3::new(observation.x, observation.y, r), covariance }
         }
     };
     Some(Track {
@@ -80,7 +81,7 @@ fn fresh<T: Real>(
         descriptor: feature.descriptor,
         pixel,
         warp: UPRIGHT,
-        likeness: 1.0,
+        correlation: 1.0,
         seen: 1,
         used: true,
         ..Track::EMPTY

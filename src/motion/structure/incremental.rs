@@ -1,10 +1,10 @@
 //! From two views to all.
 
-use super::config::{PairFault, Placement, PointState, StructureConfig, StructureError};
-use super::many::{agreeing, triangulate};
-use super::memory::SceneMemory;
-use super::scaled::Structure;
-use super::start::{Pair, pair};
+use super::config::{InitialPairError, PointState, StructureConfig, StructureError, ViewState};
+use super::initial_pair::{Pair, pair};
+use super::metric::Structure;
+use super::triangulation::{agreeing, triangulate};
+use super::workspace_view::StructureWorkspaceView;
 use crate::geometry::{
     Real,
     absolute::Landmark,
@@ -12,7 +12,7 @@ use crate::geometry::{
     robust::{RobustConfig, robust_resection},
     two_view::Correspondence,
 };
-use crate::motion::bundle::{BundleConfig, BundleReport, Gauge, Loss, Problem, Sight, adjust, tracks};
+use crate::motion::bundle::{BundleConfig, BundleReport, Gauge, Loss, Observation, Problem, adjust, tracks};
 use nalgebra::Point2;
 
 /// Known points that a view must see.
@@ -29,20 +29,20 @@ pub struct StructureReport<T> {
     pub views: usize,
     /// Points that are known.
     pub points: usize,
-    /// Sights that agree with them.
-    pub sights: usize,
+    /// Observations that agree with them.
+    pub observations: usize,
     /// The last adjustment; its cost is half the sum of Huber's loss, px^2.
     pub bundle: BundleReport<T>,
 }
 
-/// Finds views and points from sights of which some are wrong (sorted by point, px with the lens's
+/// Finds views and points from observations of which some are wrong (sorted by point, px with the lens's
 /// distortion).
 ///
 /// Bounded: robust estimates for all pairs of views, then at most one resection, one triangulation of every
 /// point and one adjustment for every view.
 pub fn structure<'a, T: Real>(
-    mut memory: SceneMemory<'a, T>,
-    sights: &[Sight<T>],
+    mut memory: StructureWorkspaceView<'a, T>,
+    observations: &[Observation<T>],
     config: &StructureConfig<T>,
 ) -> Result<(Structure<'a, T>, StructureReport<T>), StructureError> {
     let positive = |x: T| x > T::ZERO && x.is_finite();
@@ -52,40 +52,40 @@ pub fn structure<'a, T: Real>(
     if memory.views.len() < 2 {
         return Err(StructureError::Views);
     }
-    if let Some(needed) = memory.missing(sights.len()) {
+    if let Some(needed) = memory.missing(observations.len()) {
         return Err(StructureError::Memory(needed));
     }
-    memory.placements.fill(Placement::Unknown);
+    memory.view_states.fill(ViewState::Unknown);
     memory.states.fill(PointState::Unknown);
-    let (first, second, found) = best_pair(&mut memory, sights, config)?;
+    let (first, second, found) = best_pair(&mut memory, observations, config)?;
     place(&mut memory, first, Pose::identity());
     place(&mut memory, second, found.pose.in_baselines());
     let gauge = Gauge::Baseline { held: first, other: second };
-    let mut bundle = settle(&mut memory, sights, config, &gauge)?;
+    let mut bundle = settle(&mut memory, observations, config, &gauge)?;
     for _ in 2..memory.views.len() {
-        if !next_view(&mut memory, sights, config) {
+        if !next_view(&mut memory, observations, config) {
             break;
         }
-        bundle = settle(&mut memory, sights, config, &gauge)?;
+        bundle = settle(&mut memory, observations, config, &gauge)?;
     }
-    let kept = keep(&mut memory, sights, config.threshold_px);
+    let kept = keep(&mut memory, observations, config.threshold_px);
     let report = StructureReport {
         pair: (first, second),
         plane: found.plane,
-        views: memory.placements.iter().filter(|&&p| p == Placement::Placed).count(),
-        points: memory.states.iter().filter(|&&s| s == PointState::Known).count(),
-        sights: kept,
+        views: memory.view_states.iter().filter(|&&p| p == ViewState::Registered).count(),
+        points: memory.states.iter().filter(|&&s| s == PointState::Triangulated).count(),
+        observations: kept,
         bundle,
     };
-    let SceneMemory { views, placements, points, states, .. } = memory;
-    Ok((Structure::new(views, placements, points, states), report))
+    let StructureWorkspaceView { views, view_states, points, states, .. } = memory;
+    Ok((Structure::new(views, view_states, points, states), report))
 }
 
-fn place<T: Real>(memory: &mut SceneMemory<'_, T>, at: u16, pose: Pose<T>) {
+fn place<T: Real>(memory: &mut StructureWorkspaceView<'_, T>, at: u16, pose: Pose<T>) {
     let at = usize::from(at);
-    if let (Some(view), Some(placement)) = (memory.views.get_mut(at), memory.placements.get_mut(at)) {
+    if let (Some(view), Some(placement)) = (memory.views.get_mut(at), memory.view_states.get_mut(at)) {
         view.pose = pose;
-        *placement = Placement::Placed;
+        *placement = ViewState::Registered;
     }
 }
 
@@ -95,25 +95,28 @@ fn pinhole<T: Real>(camera: &Camera<T>) -> Camera<T> {
     Camera::from_matrix(&camera.matrix()).unwrap_or(*camera)
 }
 
-/// A view's sight without its lens.
-fn undistorted<T: Real>(memory: &SceneMemory<'_, T>, sight: &Sight<T>) -> Option<Point2<T>> {
-    memory.views.get(usize::from(sight.view))?.camera.undistort(&sight.pixel).ok()
+/// A view's observation without its lens.
+fn undistorted<T: Real>(
+    memory: &StructureWorkspaceView<'_, T>,
+    observation: &Observation<T>,
+) -> Option<Point2<T>> {
+    memory.views.get(usize::from(observation.view))?.camera.undistort(&observation.pixel).ok()
 }
 
 /// The pair with most points at an angle.
 fn best_pair<T: Real>(
-    memory: &mut SceneMemory<'_, T>,
-    sights: &[Sight<T>],
+    memory: &mut StructureWorkspaceView<'_, T>,
+    observations: &[Observation<T>],
     config: &StructureConfig<T>,
 ) -> Result<(u16, u16, Pair<T>), StructureError> {
     let mut best: Option<(u16, u16, Pair<T>)> = None;
-    let mut worst = (0, PairFault::TooFew);
+    let mut worst = (0, InitialPairError::TooFew);
     let views = memory.views.len().min(usize::from(u16::MAX)) as u16;
     for second in 1..views {
         for first in 0..second {
             let mut count = 0;
-            for track in tracks(sights) {
-                let of = |view: u16| track.iter().find(|sight| sight.view == view);
+            for track in tracks(observations) {
+                let of = |view: u16| track.iter().find(|observation| observation.view == view);
                 let (Some(a), Some(b)) = (of(first), of(second)) else { continue };
                 let (Some(a), Some(b)) = (undistorted(memory, a), undistorted(memory, b)) else { continue };
                 if let Some(slot) = memory.matches.get_mut(count) {
@@ -139,48 +142,55 @@ fn best_pair<T: Real>(
 
 /// Triangulates all points anew, and adjusts what agrees.
 fn settle<T: Real>(
-    memory: &mut SceneMemory<'_, T>,
-    sights: &[Sight<T>],
+    memory: &mut StructureWorkspaceView<'_, T>,
+    observations: &[Observation<T>],
     config: &StructureConfig<T>,
     gauge: &Gauge,
 ) -> Result<BundleReport<T>, StructureError> {
-    for track in tracks(sights) {
-        let at = track.first().map_or(0, |sight| sight.point as usize);
+    for track in tracks(observations) {
+        let at = track.first().map_or(0, |observation| observation.point as usize);
         let (Some(point), Some(state)) = (memory.points.get_mut(at), memory.states.get_mut(at)) else {
             continue;
         };
-        let placements = &*memory.placements;
-        let placed =
-            move |sight: &Sight<T>| placements.get(usize::from(sight.view)) == Some(&Placement::Placed);
+        let view_states = &*memory.view_states;
+        let placed = move |observation: &Observation<T>| {
+            view_states.get(usize::from(observation.view)) == Some(&ViewState::Registered)
+        };
         let track = track.iter().copied().filter(placed);
         match triangulate(memory.views, track, config.threshold_px, config.min_angle_rad) {
-            Ok(found) => (*point, *state) = (found, PointState::Known),
+            Ok(found) => (*point, *state) = (found, PointState::Triangulated),
             Err(why) => *state = why,
         }
     }
-    let kept = keep(memory, sights, config.threshold_px);
-    let SceneMemory { views, points, kept: slice, workspace, .. } = memory;
-    let sights = slice.get(..kept).unwrap_or(&[]);
-    let mut problem = Problem { views, points, sights };
+    let kept = keep(memory, observations, config.threshold_px);
+    let StructureWorkspaceView { views, points, kept: slice, workspace, .. } = memory;
+    let observations = slice.get(..kept).unwrap_or(&[]);
+    let mut problem = Problem { views, points, observations };
     let loss = Loss::Huber(config.threshold_px * T::of(0.5));
     let config = BundleConfig { loss, ..BundleConfig::new(gauge.clone()) };
     adjust(&mut problem, workspace, config).map_err(StructureError::Bundle)
 }
 
-/// Collects the sights that agree; how many they are.
-fn keep<T: Real>(memory: &mut SceneMemory<'_, T>, sights: &[Sight<T>], threshold_px: T) -> usize {
+/// Collects the observations that agree; how many they are.
+fn keep<T: Real>(
+    memory: &mut StructureWorkspaceView<'_, T>,
+    observations: &[Observation<T>],
+    threshold_px: T,
+) -> usize {
     let mut kept = 0;
-    for track in tracks(sights) {
-        let at = track.first().map_or(0, |sight| sight.point as usize);
-        let (Some(point), Some(PointState::Known)) = (memory.points.get(at), memory.states.get(at)) else {
+    for track in tracks(observations) {
+        let at = track.first().map_or(0, |observation| observation.point as usize);
+        let (Some(point), Some(PointState::Triangulated)) = (memory.points.get(at), memory.states.get(at))
+        else {
             continue;
         };
-        let placements = &*memory.placements;
-        let placed =
-            move |sight: &Sight<T>| placements.get(usize::from(sight.view)) == Some(&Placement::Placed);
-        for sight in agreeing(memory.views, track.iter().copied().filter(placed), point, threshold_px) {
+        let view_states = &*memory.view_states;
+        let placed = move |observation: &Observation<T>| {
+            view_states.get(usize::from(observation.view)) == Some(&ViewState::Registered)
+        };
+        for observation in agreeing(memory.views, track.iter().copied().filter(placed), point, threshold_px) {
             if let Some(slot) = memory.kept.get_mut(kept) {
-                *slot = sight;
+                *slot = observation;
                 kept += 1;
             }
         }
@@ -190,22 +200,22 @@ fn keep<T: Real>(memory: &mut SceneMemory<'_, T>, sights: &[Sight<T>], threshold
 
 /// Places the view that sees most known points; whether there was one to try.
 fn next_view<T: Real>(
-    memory: &mut SceneMemory<'_, T>,
-    sights: &[Sight<T>],
+    memory: &mut StructureWorkspaceView<'_, T>,
+    observations: &[Observation<T>],
     config: &StructureConfig<T>,
 ) -> bool {
-    let known = |memory: &SceneMemory<'_, T>, sight: &Sight<T>| {
-        memory.states.get(sight.point as usize) == Some(&PointState::Known)
+    let known = |memory: &StructureWorkspaceView<'_, T>, observation: &Observation<T>| {
+        memory.states.get(observation.point as usize) == Some(&PointState::Triangulated)
     };
     let (mut most, mut next) = (0, None);
     for at in 0..memory.views.len() {
-        if !matches!(memory.placements.get(at), Some(Placement::Unknown | Placement::TooFew)) {
+        if !matches!(memory.view_states.get(at), Some(ViewState::Unknown | ViewState::TooFew)) {
             continue;
         }
-        let count = sights.iter().filter(|s| usize::from(s.view) == at && known(memory, s)).count();
+        let count = observations.iter().filter(|s| usize::from(s.view) == at && known(memory, s)).count();
         if count < FEWEST_LANDMARKS {
-            if let Some(placement) = memory.placements.get_mut(at) {
-                *placement = Placement::TooFew;
+            if let Some(placement) = memory.view_states.get_mut(at) {
+                *placement = ViewState::TooFew;
             }
         } else if count > most {
             (most, next) = (count, Some(at));
@@ -213,12 +223,12 @@ fn next_view<T: Real>(
     }
     let Some(next) = next else { return false };
     let mut count = 0;
-    for sight in sights.iter().filter(|sight| usize::from(sight.view) == next) {
-        let Some(pixel) = undistorted(memory, sight) else { continue };
-        if !known(memory, sight) {
+    for observation in observations.iter().filter(|observation| usize::from(observation.view) == next) {
+        let Some(pixel) = undistorted(memory, observation) else { continue };
+        if !known(memory, observation) {
             continue;
         }
-        let point = memory.points.get(sight.point as usize).copied();
+        let point = memory.points.get(observation.point as usize).copied();
         if let (Some(world), Some(slot)) = (point, memory.landmarks.get_mut(count)) {
             *slot = Landmark { world, pixel };
             count += 1;
@@ -235,8 +245,8 @@ fn next_view<T: Real>(
     match found.filter(|found| found.inliers >= FEWEST_LANDMARKS) {
         Some(found) => place(memory, next as u16, found.pose),
         None => {
-            if let Some(placement) = memory.placements.get_mut(next) {
-                *placement = Placement::NoAgreement;
+            if let Some(placement) = memory.view_states.get_mut(next) {
+                *placement = ViewState::NoAgreement;
             }
         }
     }

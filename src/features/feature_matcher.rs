@@ -1,6 +1,6 @@
 //! Which features of two pictures are the same: everyone is compared with everyone.
 
-use super::{Descriptor, Feature, Search, SearchError};
+use super::{Descriptor, Feature, MatchConfig, MatchConfigError};
 use heapless::VecView;
 
 /// A feature of the left picture and one of the right, by their places in the lists.
@@ -47,27 +47,27 @@ impl Best {
 /// best partner of the right one. Of partners that are equally good, the first in the list is the best one.
 ///
 /// ```
-/// use stereopsis::features::{Descriptor, Feature, Matcher, Search};
+/// use stereopsis::features::{Descriptor, Feature, FeatureMatcher, MatchConfig};
 /// let feature = |x_px, word| {
 ///     Feature { x_px, y_px: 9.0, score: 20, level: 0, descriptor: Descriptor([word; 8]) }
 /// };
 /// let left = [feature(20.0, 0x00ff), feature(40.0, 0xff00)];
 /// let right = [feature(35.0, 0xff01), feature(16.0, 0x00ff)];
 /// let mut matches = heapless::Vec::<_, 4>::new();
-/// let dropped = Matcher::<8>::new().run(&left, &right, &Search::new(), matches.as_mut_view())?;
+/// let dropped = FeatureMatcher::<8>::new().run(&left, &right, &MatchConfig::new(), matches.as_mut_view())?;
 /// assert_eq!(dropped, 0);
 /// assert_eq!(matches.iter().map(|m| (m.left, m.right, m.different)).collect::<Vec<_>>(), [(0, 1, 0), (1, 0, 8)]);
-/// # Ok::<(), stereopsis::features::SearchError>(())
+/// # Ok::<(), stereopsis::features::MatchConfigError>(())
 /// ```
 #[derive(Debug)]
-pub struct Matcher<const N: usize> {
+pub struct FeatureMatcher<const N: usize> {
     of_left: [Best; N],
     of_right: [Best; N],
     /// Bits in which one left feature differs from every right one.
     different: [u16; N],
 }
 
-impl<const N: usize> Matcher<N> {
+impl<const N: usize> FeatureMatcher<N> {
     /// A matcher.
     pub const fn new() -> Self {
         // Counting in 16 bits ends one beyond the last place.
@@ -81,15 +81,15 @@ impl<const N: usize> Matcher<N> {
         &mut self,
         left: &[Feature],
         right: &[Feature],
-        search: &Search,
+        search: &MatchConfig,
         out: &mut VecView<Match>,
-    ) -> Result<u32, SearchError> {
+    ) -> Result<u32, MatchConfigError> {
         search.check()?;
         let needed = left.len().max(right.len());
         let scratch = self.of_left.get_mut(..left.len()).zip(self.of_right.get_mut(..right.len()));
         let (Some((of_left, of_right)), Some(different)) = (scratch, self.different.get_mut(..right.len()))
         else {
-            return Err(SearchError::TooMany { needed });
+            return Err(MatchConfigError::TooMany { needed });
         };
         of_right.fill(Best::NONE);
         for ((here, feature), best) in (0..).zip(left).zip(of_left.iter_mut()) {
@@ -113,7 +113,7 @@ fn best_partner(
     here: u16,
     feature: &Feature,
     right: &[Feature],
-    search: &Search,
+    search: &MatchConfig,
     of_right: &mut [Best],
     different: &mut [u16],
 ) -> Best {
@@ -139,7 +139,7 @@ fn best_partner(
     if clear && best.different <= search.most_different { best } else { Best::NONE }
 }
 
-impl<const N: usize> Default for Matcher<N> {
+impl<const N: usize> Default for FeatureMatcher<N> {
     fn default() -> Self {
         Self::new()
     }

@@ -2,14 +2,14 @@
 
 use super::config::OdometryRig;
 use super::engine::{FEWEST, Odometry};
-use super::solve::{Free, Problem, Solved};
+use super::pose_estimate::{Free, Problem, Solved};
 use super::step::State;
 use crate::geometry::linear::covariance6;
 use crate::geometry::{Real, camera::Pose};
 
-/// What a frame's sights say.
+/// What a frame's observations say.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Verdict<T: Real> {
+pub(super) enum MotionTest<T: Real> {
     /// Too few agree.
     Lost,
     /// The pose, and how much of it is known.
@@ -17,7 +17,7 @@ pub(super) enum Verdict<T: Real> {
 }
 
 /// By how much, in squared deviations, a motion of six numbers, and a step of three, has to explain the
-/// sights better than none does: with noise alone it is more once in 10 000 times.
+/// observations better than none does: with noise alone it is more once in 10 000 times.
 const SIX: f64 = 28.0;
 const THREE: f64 = 21.0;
 /// The share of what was found that has to agree.
@@ -28,30 +28,33 @@ const UNKNOWN: f64 = 0.1;
 const OPEN: f64 = 100.0;
 
 impl<T: Real, const N: usize> Odometry<T, N> {
-    pub(super) fn verdict(&self, rig: &OdometryRig<T>, start: Option<Pose<T>>) -> Verdict<T> {
-        let problem = Problem { pairings: &self.pairings, baseline: rig.baseline() };
-        let Some(start) = start else { return Verdict::Lost };
+    pub(super) fn test_motion(&self, rig: &OdometryRig<T>, start: Option<Pose<T>>) -> MotionTest<T> {
+        let problem = Problem { matches: &self.matches, baseline: rig.baseline() };
+        let Some(start) = start else { return MotionTest::Lost };
         let all = problem.solve(start, Free::All);
         // Where much moves by itself the start may be near a pose of that; as fast as before is another one.
-        let all = match self.velocity.map(|velocity| problem.solve(self.told.then(&velocity), Free::All)) {
+        let all = match self
+            .velocity
+            .map(|velocity| problem.solve(self.reported_pose.then(&velocity), Free::All))
+        {
             Some(other) if other.cost < all.cost => other,
             _ => all,
         };
-        let found = self.pairings.len();
+        let found = self.matches.len();
         if all.kept < FEWEST || T::count(all.kept) < T::count(found) * T::of(SHARE) {
-            return Verdict::Lost;
+            return MotionTest::Lost;
         }
         // In units of the noise that there is.
         let scale = (all.squares / T::count(all.numbers.saturating_sub(6).max(1))).max(T::of(0.05));
         let gain = |other: &Solved<T>| (other.cost - all.cost) / scale;
-        let still = problem.solve(self.told, Free::Nothing);
+        let still = problem.solve(self.reported_pose, Free::Nothing);
         if gain(&still) < T::of(SIX) {
-            return Verdict::Known(still, State::Still);
+            return MotionTest::Known(still, State::Stationary);
         }
         let was_lost = self.lost > 0;
         let state = if was_lost { State::Found } else { State::Tracked };
-        let turn = Pose::of_parts(*all.pose.rotation(), *self.told.translation());
-        let turned = problem.solve(turn, Free::Turn);
+        let turn = Pose::of_parts(*all.pose.rotation(), *self.reported_pose.translation());
+        let turned = problem.solve(turn, Free::Rotation);
         let deviation = step_deviation(&all);
         let unit = match rig.right {
             Some((baseline, _)) => baseline,
@@ -60,12 +63,12 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         };
         let is_none = gain(&turned) < T::of(THREE);
         if deviation > unit * T::of(OPEN) || (is_none && deviation > unit * T::of(UNKNOWN)) {
-            return Verdict::Known(turned, State::StepUnknown);
+            return MotionTest::Known(turned, State::TranslationUnknown);
         }
         if is_none && rig.right.is_none() {
-            return Verdict::Known(turned, State::Turned);
+            return MotionTest::Known(turned, State::RotationOnly);
         }
-        Verdict::Known(all, state)
+        MotionTest::Known(all, state)
     }
 }
 

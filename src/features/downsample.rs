@@ -4,13 +4,14 @@
 /// covers, rounded.
 ///
 /// `W` is the longest line that comes in, px; it takes `5 W` bytes. What is left over at the right, less than
-/// `N` pixels, is left out. `Shrink<W, 2>` halves a picture; `Shrink<W, 3>` makes two pixels of three.
+/// `N` pixels, is left out. `Downsample<W, 2>` halves a picture; `Downsample<W, 3>` makes two pixels of
+/// three.
 ///
 /// Pixel `j` of the `N - 1` is `((N - 1 - j) p[j] + (j + 1) p[j + 1]) / N`, along both axes.
 ///
 /// ```
-/// use stereopsis::features::Shrink;
-/// let mut shrink = Shrink::<8, 3>::new();
+/// use stereopsis::features::Downsample;
+/// let mut shrink = Downsample::<8, 3>::new();
 /// shrink.start(7);
 /// assert_eq!(shrink.width(), 4);
 /// assert_eq!(shrink.push(&[30, 60, 90, 0, 0, 30, 255]), None);
@@ -18,7 +19,7 @@
 /// assert_eq!(shrink.push(&[0; 7]), Some(&[13, 27, 0, 7][..]));
 /// ```
 #[derive(Debug)]
-pub struct Shrink<const W: usize, const N: usize> {
+pub struct Downsample<const W: usize, const N: usize> {
     width: usize,
     /// Lines of the current `N` that came.
     phase: u16,
@@ -29,7 +30,7 @@ pub struct Shrink<const W: usize, const N: usize> {
     out: [u8; W],
 }
 
-impl<const W: usize, const N: usize> Shrink<W, N> {
+impl<const W: usize, const N: usize> Downsample<W, N> {
     /// Nothing came yet; [`Self::start`] says how long lines are.
     pub const fn new() -> Self {
         const { assert!(2 <= N && N <= 16, "2 to 16 pixels become one less") };
@@ -80,7 +81,7 @@ impl<const W: usize, const N: usize> Shrink<W, N> {
     }
 }
 
-impl<const W: usize, const N: usize> Default for Shrink<W, N> {
+impl<const W: usize, const N: usize> Default for Downsample<W, N> {
     fn default() -> Self {
         Self::new()
     }

@@ -1,6 +1,6 @@
 //! A structure without its scale, and with it.
 
-use super::config::{Placement, PointState};
+use super::config::{PointState, ViewState};
 use crate::geometry::{Real, camera::Pose, two_view::ScaleError};
 use crate::motion::bundle::CameraView;
 use nalgebra::Point3;
@@ -17,22 +17,22 @@ pub struct MetricStructure<'a, T: Real>(Scene<'a, T>);
 #[derive(Debug)]
 struct Scene<'a, T: Real> {
     views: &'a mut [CameraView<T>],
-    placements: &'a [Placement],
+    view_states: &'a [ViewState],
     points: &'a mut [Point3<T>],
     states: &'a [PointState],
 }
 
 impl<T: Real> Scene<'_, T> {
-    fn pose(&self, view: usize) -> Result<&Pose<T>, Placement> {
-        match self.placements.get(view).copied().unwrap_or(Placement::Unknown) {
-            Placement::Placed => self.views.get(view).map(|view| &view.pose).ok_or(Placement::Unknown),
+    fn pose(&self, view: usize) -> Result<&Pose<T>, ViewState> {
+        match self.view_states.get(view).copied().unwrap_or(ViewState::Unknown) {
+            ViewState::Registered => self.views.get(view).map(|view| &view.pose).ok_or(ViewState::Unknown),
             other => Err(other),
         }
     }
 
     fn point(&self, point: usize) -> Result<&Point3<T>, PointState> {
         match self.states.get(point).copied().unwrap_or(PointState::Unknown) {
-            PointState::Known => self.points.get(point).ok_or(PointState::Unknown),
+            PointState::Triangulated => self.points.get(point).ok_or(PointState::Unknown),
             other => Err(other),
         }
     }
@@ -57,15 +57,15 @@ impl<T: Real> Scene<'_, T> {
 impl<'a, T: Real> Structure<'a, T> {
     pub(super) fn new(
         views: &'a mut [CameraView<T>],
-        placements: &'a [Placement],
+        view_states: &'a [ViewState],
         points: &'a mut [Point3<T>],
         states: &'a [PointState],
     ) -> Self {
-        Self(Scene { views, placements, points, states })
+        Self(Scene { views, view_states, points, states })
     }
 
     /// Where a view stands, lengths in no known unit; or why that is not known.
-    pub fn pose(&self, view: usize) -> Result<&Pose<T>, Placement> {
+    pub fn pose(&self, view: usize) -> Result<&Pose<T>, ViewState> {
         self.0.pose(view)
     }
 
@@ -106,7 +106,7 @@ impl<'a, T: Real> Structure<'a, T> {
 
 impl<T: Real> MetricStructure<'_, T> {
     /// Where a view stands, metres; or why that is not known.
-    pub fn pose(&self, view: usize) -> Result<&Pose<T>, Placement> {
+    pub fn pose(&self, view: usize) -> Result<&Pose<T>, ViewState> {
         self.0.pose(view)
     }
 

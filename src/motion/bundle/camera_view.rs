@@ -1,6 +1,6 @@
 //! Views through lenses that are known: one camera, or a rig of two.
 
-use super::view::{Slope, View, chained, moved};
+use super::view::{ProjectionJacobian, View, chain_rule, moved};
 use crate::geometry::{
     Real,
     camera::{Camera, Pose, ProjectionError},
@@ -33,7 +33,7 @@ pub struct RigView<T: Real> {
 }
 
 /// The pixel of a point in the camera's frame, and the derivatives of u and v by it.
-pub(super) fn slope_of<T: Real>(
+pub(super) fn pixel_jacobian<T: Real>(
     camera: &Camera<T>,
     own: &Point3<T>,
 ) -> Result<(Point2<T>, [Vector3<T>; 2]), ProjectionError> {
@@ -61,11 +61,11 @@ impl<T: Real> View<T, 6> for CameraView<T> {
         Self { pose, ..*self }
     }
 
-    fn slope(&self, _: u16, world: &Point3<T>) -> Result<Slope<T, 6>, ProjectionError> {
+    fn jacobian(&self, _: u16, world: &Point3<T>) -> Result<ProjectionJacobian<T, 6>, ProjectionError> {
         let own = self.pose.inverse_transform(world);
-        let (pixel, rows) = slope_of(&self.camera, &own)?;
-        let [(u, du), (v, dv)] = chained(rows, &own, &self.pose);
-        Ok(Slope { pixel, by_view: [u, v], by_point: [du, dv] })
+        let (pixel, rows) = pixel_jacobian(&self.camera, &own)?;
+        let [(u, du), (v, dv)] = chain_rule(rows, &own, &self.pose);
+        Ok(ProjectionJacobian { pixel, by_view: [u, v], by_point: [du, dv] })
     }
 
     fn project(&self, _: u16, world: &Point3<T>) -> Result<Point2<T>, ProjectionError> {
@@ -96,16 +96,16 @@ impl<T: Real> View<T, 6> for RigView<T> {
         Self { pose, ..*self }
     }
 
-    fn slope(&self, eye: u16, world: &Point3<T>) -> Result<Slope<T, 6>, ProjectionError> {
+    fn jacobian(&self, eye: u16, world: &Point3<T>) -> Result<ProjectionJacobian<T, 6>, ProjectionError> {
         let own = self.pose.inverse_transform(world);
         let (pixel, rows) = if eye == 0 {
-            slope_of(self.camera(0), &own)?
+            pixel_jacobian(self.camera(0), &own)?
         } else {
-            let (pixel, rows) = slope_of(self.camera(eye), &self.second.inverse_transform(&own))?;
+            let (pixel, rows) = pixel_jacobian(self.camera(eye), &self.second.inverse_transform(&own))?;
             (pixel, rows.map(|row| self.second.rotation() * row))
         };
-        let [(u, du), (v, dv)] = chained(rows, &own, &self.pose);
-        Ok(Slope { pixel, by_view: [u, v], by_point: [du, dv] })
+        let [(u, du), (v, dv)] = chain_rule(rows, &own, &self.pose);
+        Ok(ProjectionJacobian { pixel, by_view: [u, v], by_point: [du, dv] })
     }
 
     fn project(&self, eye: u16, world: &Point3<T>) -> Result<Point2<T>, ProjectionError> {

@@ -1,16 +1,16 @@
 //! The pose of the new camera from points that it sees, each with its uncertainty.
 
-use super::point::{InversePoint, Sight, seen};
-use super::whiten::Whitener;
+use super::inverse_depth::{InversePoint, PointObservation, seen};
+use super::whitening::Whitener;
 use crate::geometry::linear::Ldl;
 use crate::geometry::{Real, camera::Pose, linear::cayley};
 use nalgebra::{SMatrix, Vector3};
 
 /// A point and where the new camera sees it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pairing<T: Real> {
+pub(super) struct PointMatch<T: Real> {
     pub point: InversePoint<T>,
-    pub sight: Sight<T>,
+    pub observation: PointObservation<T>,
     /// Whose point it is.
     pub owner: u16,
 }
@@ -21,27 +21,27 @@ pub(super) enum Free {
     /// Turn and step.
     All,
     /// The turn alone.
-    Turn,
+    Rotation,
     /// Nothing: the pose is judged.
     Nothing,
 }
 
-/// A pose, and what the pairings say of it.
+/// A pose, and what the matches say of it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Solved<T: Real> {
     pub pose: Pose<T>,
-    /// The information in units of the sights' deviations.
+    /// The information in units of the observations' deviations.
     pub information: [[T; 6]; 6],
     /// The sum of the robust loss `w^2 / 3 (1 - (1 - d^2 / w^2)^3)`, which is d^2 for small distances d.
     pub cost: T,
-    /// Pairings within the loss's width, the numbers in their sights, and the sum of their squared
+    /// Matches within the loss's width, the numbers in their observations, and the sum of their squared
     /// distances.
     pub kept: usize,
     pub numbers: usize,
     pub squares: T,
 }
 
-/// Distances, in deviations, at which a pairing has no weight any more: from far to near.
+/// Distances, in deviations, at which a point_match has no weight any more: from far to near.
 const WIDTHS: [f64; 3] = [12.0, 7.0, 4.5];
 /// Steps for each width at most.
 const STEPS: usize = 6;
@@ -49,13 +49,13 @@ const STEPS: usize = 6;
 pub(super) const WIDTH: f64 = WIDTHS[2];
 
 pub(super) struct Problem<'a, T: Real> {
-    pub pairings: &'a [Pairing<T>],
+    pub matches: &'a [PointMatch<T>],
     pub baseline: T,
 }
 
 impl<T: Real> Problem<'_, T> {
-    /// The likeliest pose near a start: each pairing's distance is in units of the sight's noise and the
-    /// point's own uncertainty together, which to first order is as if points and pose were found
+    /// The likeliest pose near a start: each point_match's distance is in units of the observation's noise
+    /// and the point's own uncertainty together, which to first order is as if points and pose were found
     /// together.
     pub fn solve(&self, start: Pose<T>, free: Free) -> Solved<T> {
         let mut best = self.judge(start, T::of(WIDTHS[0]));
@@ -79,7 +79,7 @@ impl<T: Real> Problem<'_, T> {
                     *d += *d * damping + T::of(1e-3);
                 }
             }
-            if free == Free::Turn {
+            if free == Free::Rotation {
                 for (i, row) in m.iter_mut().enumerate() {
                     for (j, x) in row.iter_mut().enumerate() {
                         if i >= 3 || j >= 3 {
@@ -120,8 +120,8 @@ impl<T: Real> Problem<'_, T> {
         let mut slope = [T::ZERO; 6];
         let width_squared = width * width;
         let most = width_squared * T::of(1.0 / 3.0);
-        for pairing in self.pairings {
-            let Some((off, by_pose)) = self.residual(&pose, pairing) else {
+        for point_match in self.matches {
+            let Some((off, by_pose)) = self.residual(&pose, point_match) else {
                 sum.cost += most;
                 continue;
             };
@@ -133,7 +133,7 @@ impl<T: Real> Problem<'_, T> {
             }
             sum.cost += most * (T::ONE - left * left * left);
             sum.kept += 1;
-            sum.numbers += pairing.sight.rows();
+            sum.numbers += point_match.observation.rows();
             sum.squares += squared;
             let weight = left * left;
             let columns = &by_pose.data.0;
@@ -154,18 +154,23 @@ impl<T: Real> Problem<'_, T> {
         (sum, slope)
     }
 
-    /// How far off a sight is, in deviations, and the slopes of what is expected.
-    fn residual(&self, pose: &Pose<T>, pairing: &Pairing<T>) -> Option<(Vector3<T>, SMatrix<T, 3, 6>)> {
-        let moved = pairing.point.moved(pose)?;
+    /// How far off an observation is, in deviations, and the slopes of what is expected.
+    fn residual(
+        &self,
+        pose: &Pose<T>,
+        point_match: &PointMatch<T>,
+    ) -> Option<(Vector3<T>, SMatrix<T, 3, 6>)> {
+        let moved = point_match.point.moved(pose)?;
         let seen = seen(self.baseline);
-        let whitener = Whitener::of(&(seen * moved.by_point), &pairing.point.covariance, &pairing.sight)?;
-        let off = pairing.sight.at - seen * moved.at;
+        let whitener =
+            Whitener::of(&(seen * moved.by_point), &point_match.point.covariance, &point_match.observation)?;
+        let off = point_match.observation.at - seen * moved.at;
         Some((whitener.apply(&off), whitener.apply(&(seen * moved.by_pose))))
     }
 
-    /// The squared distance of a pairing, in deviations.
-    pub fn squared(&self, pose: &Pose<T>, pairing: &Pairing<T>) -> Option<T> {
-        self.residual(pose, pairing).map(|(off, _)| off.norm_squared())
+    /// The squared distance of a point_match, in deviations.
+    pub fn squared(&self, pose: &Pose<T>, point_match: &PointMatch<T>) -> Option<T> {
+        self.residual(pose, point_match).map(|(off, _)| off.norm_squared())
     }
 }
 
@@ -181,19 +186,19 @@ mod tests {
     use nalgebra::Matrix3;
 
     /// What a camera at a pose sees of points that are sure.
-    fn seen(pose: &Pose<f64>, wrong: usize) -> [Pairing<f64>; 12] {
+    fn seen(pose: &Pose<f64>, wrong: usize) -> [PointMatch<f64>; 12] {
         core::array::from_fn(|n| {
             let k = n as f64;
             let at = Vector3::new(0.4 * (k * 1.3).sin(), 0.3 * (k * 2.1).cos(), 0.1 + 0.03 * k);
             let point = InversePoint { at, covariance: Matrix3::identity() * 1e-12 };
             let there = point.moved(pose).map_or(at, |moved| moved.at);
             let off = if n < wrong { 0.2 } else { 0.0 };
-            let sight = Sight {
+            let observation = PointObservation {
                 at: Vector3::new(there.x + off, there.y, 0.5 * there.z),
                 in_right: true,
                 sigma: 1e-3,
             };
-            Pairing { point, sight, owner: 0 }
+            PointMatch { point, observation, owner: 0 }
         })
     }
 
@@ -201,8 +206,8 @@ mod tests {
     fn the_pose_that_was_and_what_is_wrong_left_out() {
         let truth = moved(&Pose::identity(), &[0.01, -0.02, 0.005, 0.1, -0.05, 0.3]);
         for wrong in [0, 2] {
-            let pairings = seen(&truth, wrong);
-            let problem = Problem { pairings: &pairings, baseline: 0.5 };
+            let matches = seen(&truth, wrong);
+            let problem = Problem { matches: &matches, baseline: 0.5 };
             let near = moved(&truth, &[0.002, 0.001, 0.0, 0.005, 0.0, -0.01]);
             let solved = problem.solve(near, Free::All);
             let off = truth.inverse().then(&solved.pose);
@@ -217,9 +222,9 @@ mod tests {
     fn a_turn_alone_leaves_the_step() {
         // Within the widest reach, twelve deviations.
         let truth = moved(&Pose::identity(), &[0.004, -0.003, 0.002, 0.0, 0.0, 0.0]);
-        let pairings = seen(&truth, 0);
-        let problem = Problem { pairings: &pairings, baseline: 0.5 };
-        let solved = problem.solve(Pose::identity(), Free::Turn);
+        let matches = seen(&truth, 0);
+        let problem = Problem { matches: &matches, baseline: 0.5 };
+        let solved = problem.solve(Pose::identity(), Free::Rotation);
         assert!(truth.inverse().then(&solved.pose).angle_rad() < 1e-7);
         assert_eq!(solved.pose.translation().norm(), 0.0);
     }

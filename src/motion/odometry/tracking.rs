@@ -3,8 +3,8 @@
 use super::config::OdometryRig;
 use super::engine::{FEWEST, Odometry, product};
 use super::frame::Frame;
-use super::point::Sight;
-use super::solve::{Free, Pairing, Problem};
+use super::inverse_depth::PointObservation;
+use super::pose_estimate::{Free, PointMatch, Problem};
 use super::track::{Track, UPRIGHT};
 use crate::features::{Descriptor, Feature, Template};
 use crate::geometry::{
@@ -32,24 +32,25 @@ pub(super) const ALIKE: f32 = 0.8;
 const ROWS_PX: f32 = 1.5;
 
 impl<T: Real, const N: usize> Odometry<T, N> {
-    /// Fills the pairings with the points that are seen, and says near which pose, if there is one.
-    pub(super) fn follow(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>) -> Option<Pose<T>> {
-        let predicted = self.velocity.map_or(self.told, |velocity| self.told.then(&velocity));
+    /// Fills the matches with the points that are seen, and says near which pose, if there is one.
+    pub(super) fn track(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>) -> Option<Pose<T>> {
+        let predicted =
+            self.velocity.map_or(self.reported_pose, |velocity| self.reported_pose.then(&velocity));
         let near = if self.velocity.is_some() { self.config.near_px } else { self.config.far_px };
         self.recognise(rig, frame.features, &predicted, near);
         let mut pose = self.resect(rig);
         if pose.is_none() && near < self.config.far_px {
-            self.recognise(rig, frame.features, &self.told.clone(), self.config.far_px);
+            self.recognise(rig, frame.features, &self.reported_pose.clone(), self.config.far_px);
             pose = self.resect(rig);
         }
         // Where too few have a depth it is a turn at least; where too few are recognised by their
         // descriptors, pixels may still be where they are expected.
         let mut pose = pose.or_else(|| self.turned(rig)).or(self.velocity.map(|_| predicted))?;
-        self.pairings.clear();
+        self.matches.clear();
         self.pair(rig, frame, &pose, true);
         // What was recognised says by its pixels more exactly where the others are.
-        let solved = Problem { pairings: &self.pairings, baseline: rig.baseline() }.solve(pose, Free::All);
-        if solved.kept >= 2 * FEWEST && 2 * solved.kept >= self.pairings.len() {
+        let solved = Problem { matches: &self.matches, baseline: rig.baseline() }.solve(pose, Free::All);
+        if solved.kept >= 2 * FEWEST && 2 * solved.kept >= self.matches.len() {
             pose = solved.pose;
         }
         self.pair(rig, frame, &pose, false);
@@ -135,19 +136,19 @@ impl<T: Real, const N: usize> Odometry<T, N> {
 
     /// The turn that most of what was recognised agrees with, as if all were far away; `None` of too few.
     fn turned(&mut self, rig: &OdometryRig<T>) -> Option<Pose<T>> {
-        self.pairings.clear();
+        self.matches.clear();
         let sigma = T::of(COARSE_PX) / rig.focal();
         for (owner, track) in (0_u16..).zip(self.tracks.iter()) {
             let Some([x, y]) = track.now.filter(|_| track.used) else { continue };
             let Ok(at) = rig.camera.unproject(&Point2::new(T::of(x.into()), T::of(y.into()))) else {
                 continue;
             };
-            let sight = Sight { at, in_right: false, sigma };
-            let _ = self.pairings.push(Pairing { point: track.point, sight, owner });
+            let observation = PointObservation { at, in_right: false, sigma };
+            let _ = self.matches.push(PointMatch { point: track.point, observation, owner });
         }
-        let found =
-            Problem { pairings: &self.pairings, baseline: rig.baseline() }.solve(self.told, Free::Turn);
-        (found.kept >= 2 * FEWEST && 2 * found.kept >= self.pairings.len()).then_some(found.pose)
+        let found = Problem { matches: &self.matches, baseline: rig.baseline() }
+            .solve(self.reported_pose, Free::Rotation);
+        (found.kept >= 2 * FEWEST && 2 * found.kept >= self.matches.len()).then_some(found.pose)
     }
 
     /// Finds points by their pixels around where the pose puts them, and in the right picture: those that
@@ -180,19 +181,22 @@ impl<T: Real, const N: usize> Odometry<T, N> {
             let by = &moved.by_point;
             let warp = product(&[[of(by.m11), of(by.m12)], [of(by.m21), of(by.m22)]], &track.warp);
             let Some(found) = track.template.align(&frame.left, &warp, start, ALIGN_PX) else { continue };
-            if found.likeness < ALIKE {
+            if found.correlation < ALIKE {
                 continue;
             }
             let now = [found.x_px, found.y_px];
             let pixel = Point2::new(T::of(now[0].into()), T::of(now[1].into()));
-            let Ok(sight) = rig.camera.unproject(&pixel) else { continue };
-            (track.now, track.likeness) = (Some(now), found.likeness);
+            let Ok(observation) = rig.camera.unproject(&pixel) else { continue };
+            (track.now, track.correlation) = (Some(now), found.correlation);
             let expected = rig.baseline() * moved.at.z * rig.focal();
             let disparity = disparity(rig, frame, now, of(expected));
             let third = disparity.map_or(T::ZERO, |d| T::of(d.into()) / rig.focal());
-            let sight =
-                Sight { at: Vector3::new(sight.x, sight.y, third), in_right: disparity.is_some(), sigma };
-            let _ = self.pairings.push(Pairing { point: track.point, sight, owner });
+            let observation = PointObservation {
+                at: Vector3::new(observation.x, observation.y, third),
+                in_right: disparity.is_some(),
+                sigma,
+            };
+            let _ = self.matches.push(PointMatch { point: track.point, observation, owner });
         }
     }
 }
@@ -216,6 +220,6 @@ pub(super) fn disparity<T: Real>(
     let offset = (right_cx - rig.camera.principal_point().0).to_f64() as f32;
     let template = Template::cut(&frame.left, x, y)?;
     let found = template.align(&right, &UPRIGHT, [x - expected + offset, y], ALIGN_PX)?;
-    let good = found.likeness > ALIKE && (found.y_px - y).abs() < ROWS_PX;
+    let good = found.correlation > ALIKE && (found.y_px - y).abs() < ROWS_PX;
     good.then_some(x - found.x_px + offset)
 }

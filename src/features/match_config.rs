@@ -1,6 +1,6 @@
 //! Which features may match, and how much better than others a match has to be.
 
-use super::{Feature, SearchError};
+use super::{Feature, MatchConfigError};
 use crate::geometry::two_view::{Fundamental, Line};
 use nalgebra::Point2;
 
@@ -16,7 +16,7 @@ pub struct Epipolar {
 
 /// What a match has to be.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Search {
+pub struct MatchConfig {
     /// A match has fewer different bits than so many percent of the second best partner (Lowe 2004, 7.1): 1
     /// to 100.
     pub ratio_percent: u8,
@@ -35,7 +35,7 @@ pub struct Search {
     pub epipolar: Option<Epipolar>,
 }
 
-impl Search {
+impl MatchConfig {
     /// 80 % of the second best, which lies 4 px from the best; at most a quarter of the bits different; one
     /// level apart at most; everywhere in the picture.
     pub const fn new() -> Self {
@@ -51,16 +51,16 @@ impl Search {
     }
 
     /// Whether the numbers make sense.
-    pub(super) fn check(&self) -> Result<(), SearchError> {
+    pub(super) fn check(&self) -> Result<(), MatchConfigError> {
         if !(1..=100).contains(&self.ratio_percent) {
-            return Err(SearchError::Ratio);
+            return Err(MatchConfigError::Ratio);
         }
         // Not a number compares as false.
         if !(self.along_px >= 0.0 && self.across_px >= 0.0 && self.apart_px >= 0.0) {
-            return Err(SearchError::Range);
+            return Err(MatchConfigError::Range);
         }
         match &self.epipolar {
-            Some(e) if e.tolerance_px.is_nan() || e.tolerance_px < 0.0 => Err(SearchError::Epipolar),
+            Some(e) if e.tolerance_px.is_nan() || e.tolerance_px < 0.0 => Err(MatchConfigError::Epipolar),
             _ => Ok(()),
         }
     }
@@ -86,7 +86,7 @@ impl Search {
     }
 }
 
-impl Default for Search {
+impl Default for MatchConfig {
     fn default() -> Self {
         Self::new()
     }

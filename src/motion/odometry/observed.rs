@@ -7,7 +7,7 @@ use nalgebra::{Point2, Vector3};
 
 /// A point that the last frame saw.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct SeenPoint<T: Real> {
+pub struct ObservedPoint<T: Real> {
     /// Its place in the odometry's memory, and how often that was given to a point before: together they
     /// name it.
     pub name: (u16, u16),
@@ -22,18 +22,25 @@ pub struct SeenPoint<T: Real> {
 
 impl<T: Real, const N: usize> Odometry<T, N> {
     /// The points that the last frame saw and that agree with its pose, then its new ones.
-    pub fn seen(&self) -> impl Iterator<Item = SeenPoint<T>> {
+    pub fn observed_points(&self) -> impl Iterator<Item = ObservedPoint<T>> {
         let (focal, baseline) = self.rig().map_or((T::ONE, T::ZERO), |rig| (rig.focal(), rig.baseline()));
         let point = move |slot: u16, track: &Track<T>, disparity: Option<T>| {
             let [x, y] = track.pixel.map(|x| T::of(x.into()));
             let (name, pixel) = ((slot, track.lives), Point2::new(x, y));
-            SeenPoint { name, pixel, disparity_px: disparity.map(|d| d * focal), inverse: track.point.at }
+            ObservedPoint { name, pixel, disparity_px: disparity.map(|d| d * focal), inverse: track.point.at }
         };
         let is_seen = |track: &&Track<T>| track.used && track.missed == 0;
-        let followed = self.pairings.iter().filter_map(move |pairing| {
-            let track =
-                self.tracks.get(usize::from(pairing.owner)).filter(is_seen).filter(|track| track.seen > 1)?;
-            Some(point(pairing.owner, track, pairing.sight.in_right.then_some(pairing.sight.at.z)))
+        let followed = self.matches.iter().filter_map(move |point_match| {
+            let track = self
+                .tracks
+                .get(usize::from(point_match.owner))
+                .filter(is_seen)
+                .filter(|track| track.seen > 1)?;
+            Some(point(
+                point_match.owner,
+                track,
+                point_match.observation.in_right.then_some(point_match.observation.at.z),
+            ))
         });
         let fresh = (0_u16..).zip(&self.tracks).filter(move |(_, track)| is_seen(track) && track.seen == 1);
         // Their depths are what the right picture says.

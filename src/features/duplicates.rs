@@ -12,16 +12,16 @@ use heapless::VecView;
 /// of features that are not in the lists repeats nothing.
 ///
 /// ```
-/// use stereopsis::features::{Descriptor, Feature, Match, drop_repeats};
+/// use stereopsis::features::{Descriptor, Feature, Match, drop_duplicates};
 /// let feature = |x_px, level| Feature { x_px, y_px: 9.0, score: 20, level, descriptor: Descriptor::NONE };
 /// let left = [feature(20.0, 0), feature(40.0, 0), feature(20.5, 1)];
 /// let right = [feature(35.0, 0), feature(14.2, 1), feature(15.0, 0)];
 /// let of = |left, right| Match { left, right, different: 3 };
 /// let mut matches = heapless::Vec::<_, 4>::from([of(0, 2), of(1, 0), of(2, 1)]);
-/// assert_eq!(drop_repeats(&left, &right, matches.as_mut_view(), 1.5), 1);
+/// assert_eq!(drop_duplicates(&left, &right, matches.as_mut_view(), 1.5), 1);
 /// assert_eq!(matches, [of(0, 2), of(1, 0)]);
 /// ```
-pub fn drop_repeats(
+pub fn drop_duplicates(
     left: &[Feature],
     right: &[Feature],
     matches: &mut VecView<Match>,

@@ -2,12 +2,12 @@
 
 use super::config::OdometryRig;
 use super::engine::{FEWEST, Odometry};
-use super::follow::ALIKE;
 use super::frame::Frame;
-use super::point::Sight;
-use super::solve::{Free, Pairing, Problem, Solved};
+use super::inverse_depth::PointObservation;
+use super::pose_estimate::{Free, PointMatch, Problem, Solved};
 use super::step::{State, Step};
 use super::track::UPRIGHT;
+use super::tracking::ALIKE;
 use crate::geometry::linear::covariance6;
 use crate::geometry::{
     Real,
@@ -24,7 +24,7 @@ const THRESHOLD_PX: f64 = 1.5;
 const PARALLAX_PX: f64 = 3.0;
 /// The share that has to agree with the two views, and to be in front of both.
 const AGREE: f64 = 0.6;
-/// The most that is left of a turn's sights, squared deviations.
+/// The most that is left of a turn's observations, squared deviations.
 const MOST_SCALE: f64 = 1.4;
 /// The share of the points that have to be left in view; below it the first view is another one.
 const LEFT: f64 = 0.4;
@@ -32,19 +32,19 @@ const LEFT: f64 = 0.4;
 const USUAL: f64 = 0.1;
 
 impl<T: Real, const N: usize> Odometry<T, N> {
-    pub(super) fn begin(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>) -> Step<T> {
+    pub(super) fn initialize(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>) -> Step<T> {
         let points = self.points();
         let sigma = T::of(self.config.sigma_px.into()) / rig.focal();
         // Inverse depths of nothing until there is a unit: a turn alone moves the points.
         for track in self.tracks.iter_mut().filter(|track| track.used) {
             track.point = super::engine::at_infinity(&track.point, sigma);
         }
-        let told = self.told;
+        let told = self.reported_pose;
         self.recognise(rig, frame.features, &told, self.config.far_px);
         self.pair_in_picture(rig, frame, sigma);
-        let found = self.pairings.len();
-        let problem = Problem { pairings: &self.pairings, baseline: T::ZERO };
-        let turned = problem.solve(told, Free::Turn);
+        let found = self.matches.len();
+        let problem = Problem { matches: &self.matches, baseline: T::ZERO };
+        let turned = problem.solve(told, Free::Rotation);
         let enough = T::count(points) * T::of(LEFT);
         let shown = Step { points, found, ..Step::none(State::Waiting) };
         if found < 2 * FEWEST {
@@ -56,10 +56,15 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         let of_turn = T::count(turned.kept) >= T::count(found) * T::of(0.85) && scale < T::of(MOST_SCALE);
         let step = if of_turn {
             let no_turn = (still.cost - turned.cost) / scale < T::of(21.0);
-            let state = if no_turn && scale < T::of(2.0) { State::Still } else { State::Turned };
-            self.told_turn(if state == State::Still { told } else { turned.pose }, &turned, state, shown)
+            let state = if no_turn && scale < T::of(2.0) { State::Stationary } else { State::RotationOnly };
+            self.report_rotation(
+                if state == State::Stationary { told } else { turned.pose },
+                &turned,
+                state,
+                shown,
+            )
         } else {
-            let wide = Problem { pairings: &self.pairings, baseline: T::ZERO };
+            let wide = Problem { matches: &self.matches, baseline: T::ZERO };
             if let Some(pose) =
                 two_views::<T, N>(rig, &wide, &turned.pose, self.config.seed, &mut self.inliers)
             {
@@ -74,13 +79,19 @@ impl<T: Real, const N: usize> Odometry<T, N> {
     }
 
     /// A turn that is known, since the last frame.
-    fn told_turn(&mut self, pose: Pose<T>, solved: &Solved<T>, state: State, shown: Step<T>) -> Step<T> {
-        let motion = self.told.inverse().then(&pose);
-        self.told = pose;
+    fn report_rotation(
+        &mut self,
+        pose: Pose<T>,
+        solved: &Solved<T>,
+        state: State,
+        shown: Step<T>,
+    ) -> Step<T> {
+        let motion = self.reported_pose.inverse().then(&pose);
+        self.reported_pose = pose;
         let mut of_turn = Matrix6::identity() * T::of(1e12);
         let all = covariance6(&solved.information);
         of_turn.fixed_view_mut::<3, 3>(0, 0).copy_from(&all.fixed_view::<3, 3>(0, 0));
-        if state == State::Still {
+        if state == State::Stationary {
             of_turn = all;
         }
         let residual = (solved.squares / T::count(solved.numbers.max(1))).sqrt();
@@ -89,20 +100,22 @@ impl<T: Real, const N: usize> Odometry<T, N> {
 
     /// Finds each recognised point by its pixels.
     fn pair_in_picture(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>, sigma: T) {
-        self.pairings.clear();
+        self.matches.clear();
         for (owner, track) in (0_u16..).zip(self.tracks.iter_mut()) {
             let Some(at) = track.now.filter(|_| track.used) else { continue };
-            let aligned = track.template.align(&frame.left, &UPRIGHT, at, 3.0).filter(|a| a.likeness > ALIKE);
+            let aligned =
+                track.template.align(&frame.left, &UPRIGHT, at, 3.0).filter(|a| a.correlation > ALIKE);
             let now = aligned.map_or(at, |a| [a.x_px, a.y_px]);
             track.now = Some(now);
-            let Ok(sight) = rig.camera.unproject(&Point2::new(T::of(now[0].into()), T::of(now[1].into())))
+            let Ok(observation) =
+                rig.camera.unproject(&Point2::new(T::of(now[0].into()), T::of(now[1].into())))
             else {
                 continue;
             };
             // A corner is three times as far off as what its pixels say.
             let sigma = if aligned.is_some() { sigma } else { sigma * T::of(3.0) };
-            let sight = Sight { at: sight, in_right: false, sigma };
-            let _ = self.pairings.push(Pairing { point: track.point, sight, owner });
+            let observation = PointObservation { at: observation, in_right: false, sigma };
+            let _ = self.matches.push(PointMatch { point: track.point, observation, owner });
         }
     }
 
@@ -115,34 +128,34 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         sigma: T,
         shown: Step<T>,
     ) -> Step<T> {
-        for pairing in self.pairings.iter_mut() {
-            let sight = Vector3::new(pairing.point.at.x, pairing.point.at.y, T::ONE);
-            pairing.point = super::engine::unknown(sight, T::of(USUAL), sigma);
-            pairing.point.covariance.m33 *= T::of(9.0);
-            if let Some(track) = self.tracks.get_mut(usize::from(pairing.owner)) {
-                track.point = pairing.point;
+        for point_match in self.matches.iter_mut() {
+            let observation = Vector3::new(point_match.point.at.x, point_match.point.at.y, T::ONE);
+            point_match.point = super::engine::unknown(observation, T::of(USUAL), sigma);
+            point_match.point.covariance.m33 *= T::of(9.0);
+            if let Some(track) = self.tracks.get_mut(usize::from(point_match.owner)) {
+                track.point = point_match.point;
             }
         }
         // Points that were not found have no depth.
         for (number, track) in (0_u16..).zip(self.tracks.iter_mut()) {
-            track.used = track.used && self.pairings.iter().any(|p| p.owner == number);
+            track.used = track.used && self.matches.iter().any(|p| p.owner == number);
         }
         let judged =
-            |pairings: &[Pairing<T>]| Problem { pairings, baseline: T::ZERO }.solve(*pose, Free::Nothing);
-        let solved = judged(&self.pairings);
-        let motion = self.told.inverse().then(pose);
+            |matches: &[PointMatch<T>]| Problem { matches, baseline: T::ZERO }.solve(*pose, Free::Nothing);
+        let solved = judged(&self.matches);
+        let motion = self.reported_pose.inverse().then(pose);
         self.carry(rig, frame, &solved, &Matrix6::zeros());
         // The pose by the points that it has given a depth.
-        for pairing in self.pairings.iter_mut() {
-            if let Some(point) = pairing.point.updated(pose, &pairing.sight, T::ZERO) {
-                pairing.point = point;
+        for point_match in self.matches.iter_mut() {
+            if let Some(point) = point_match.point.updated(pose, &point_match.observation, T::ZERO) {
+                point_match.point = point;
             }
         }
-        let solved = judged(&self.pairings);
+        let solved = judged(&self.matches);
         self.begun = true;
-        self.told = Pose::identity();
+        self.reported_pose = Pose::identity();
         self.velocity = Some(*pose);
-        self.renew(rig, frame);
+        self.add_new_points(rig, frame);
         let covariance = covariance6(&solved.information);
         let residual = (solved.squares / T::count(solved.numbers.max(1))).sqrt();
         Step { motion, covariance, state: State::Tracked, inliers: solved.kept, residual, ..shown }
@@ -151,8 +164,8 @@ impl<T: Real, const N: usize> Odometry<T, N> {
     /// This view becomes the first one.
     fn again(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>, step: Step<T>) -> Step<T> {
         self.tracks.iter_mut().for_each(|track| track.used = false);
-        self.told = Pose::identity();
-        self.renew(rig, frame);
+        self.reported_pose = Pose::identity();
+        self.add_new_points(rig, frame);
         let state = if step.state == State::Waiting { State::Restarted } else { step.state };
         Step { points: self.points(), state, ..step }
     }
@@ -170,11 +183,11 @@ fn two_views<T: Real, const N: usize>(
     let pinhole = Camera::new(focal, focal, T::ZERO, T::ZERO).ok()?;
     let mut seen: Vec<Correspondence<T>, N> = Vec::new();
     let mut off = T::ZERO;
-    for pairing in problem.pairings {
-        let (a, b) = (pairing.point.at * focal, pairing.sight.at * focal);
+    for point_match in problem.matches {
+        let (a, b) = (point_match.point.at * focal, point_match.observation.at * focal);
         let _ = seen.push(Correspondence::new(a.x, a.y, b.x, b.y));
-        if let Some(moved) = pairing.point.moved(turn) {
-            off += ((moved.at - pairing.sight.at).xy() * focal).norm().min(T::of(20.0));
+        if let Some(moved) = point_match.point.moved(turn) {
+            off += ((moved.at - point_match.observation.at).xy() * focal).norm().min(T::of(20.0));
         }
     }
     if off < T::count(seen.len()) * T::of(PARALLAX_PX) {

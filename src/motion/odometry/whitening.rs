@@ -1,6 +1,6 @@
 //! Residuals in units of their own uncertainty.
 
-use super::point::Sight;
+use super::inverse_depth::PointObservation;
 use crate::geometry::Real;
 use nalgebra::{Matrix3, SMatrix};
 
@@ -11,9 +11,13 @@ pub(super) struct Whitener<T: Real> {
 }
 
 impl<T: Real> Whitener<T> {
-    /// Of a sight whose slope by a point of covariance C is J; `None` where S is not positive.
-    pub fn of(slope: &Matrix3<T>, covariance: &Matrix3<T>, sight: &Sight<T>) -> Option<Self> {
-        let noise = Matrix3::identity() * (sight.sigma * sight.sigma);
+    /// Of an observation whose slope by a point of covariance C is J; `None` where S is not positive.
+    pub fn of(
+        slope: &Matrix3<T>,
+        covariance: &Matrix3<T>,
+        observation: &PointObservation<T>,
+    ) -> Option<Self> {
+        let noise = Matrix3::identity() * (observation.sigma * observation.sigma);
         let s = slope * covariance * slope.transpose() + noise;
         let o = T::ZERO;
         // Cholesky's factor by hand: nalgebra's leaves a panic.
@@ -24,8 +28,8 @@ impl<T: Real> Whitener<T> {
         let f = (s.m33 - c * c - e * e).sqrt();
         let l = Matrix3::new(a, o, o, b, d, o, c, e, f);
         // Not a number is not greater either.
-        let good = a > o && d > o && (f > o || !sight.in_right);
-        good.then_some(Self { l, rows: sight.rows() })
+        let good = a > o && d > o && (f > o || !observation.in_right);
+        good.then_some(Self { l, rows: observation.rows() })
     }
 
     /// `L^-1 M`; a row that does not count is zero.

@@ -3,12 +3,12 @@
 /// A turn by a multiple of 1/32 of a circle, from the right downwards.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Turn(u8);
+pub struct PatchOrientation(u8);
 
 /// `2^14 sin` of 0 to 8 steps.
 const SINE: [i32; 9] = [0, 3196, 6270, 9102, 11585, 13623, 15137, 16069, 16384];
 
-impl Turn {
+impl PatchOrientation {
     /// Steps in a circle: 11.25 degrees each.
     pub const STEPS: u8 = 32;
     /// No turn.
@@ -68,10 +68,10 @@ mod tests {
 
     #[test]
     fn an_eighth_of_a_circle() {
-        assert_eq!(Turn::new(4).of(10, 0), (7, 7));
-        assert_eq!(Turn::new(8).of(10, -3), (3, 10));
-        assert_eq!(Turn::new(28).of(10, 0), (7, -7));
-        assert_eq!(Turn::towards(-5, 5), Turn::new(12));
-        assert_eq!(Turn::towards(0, 0), Turn::NONE);
+        assert_eq!(PatchOrientation::new(4).of(10, 0), (7, 7));
+        assert_eq!(PatchOrientation::new(8).of(10, -3), (3, 10));
+        assert_eq!(PatchOrientation::new(28).of(10, 0), (7, -7));
+        assert_eq!(PatchOrientation::towards(-5, 5), PatchOrientation::new(12));
+        assert_eq!(PatchOrientation::towards(0, 0), PatchOrientation::NONE);
     }
 }

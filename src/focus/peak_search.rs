@@ -8,7 +8,7 @@ const COARSE: u32 = 7;
 /// Where to measure next.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Next {
+pub enum FocusSearchStep {
     /// At that position.
     Measure(u16),
     /// Nowhere: this is the sharpest.
@@ -61,17 +61,19 @@ impl FocusSearch {
     }
 
     /// What to do next. Without new measurements the answer is the same.
-    pub fn next(&self) -> Next {
+    pub fn next(&self) -> FocusSearchStep {
         let range = u32::from(self.most.saturating_sub(self.least));
         let taken = u32::from(self.count);
         if taken < COARSE {
-            return Next::Measure(self.least.saturating_add((range * taken / (COARSE - 1)) as u16));
+            return FocusSearchStep::Measure(
+                self.least.saturating_add((range * taken / (COARSE - 1)) as u16),
+            );
         }
         let known = self.samples.get(..usize::from(self.count)).unwrap_or(&[]);
         let values = known.iter().map(|(_, sharpness)| *sharpness);
         let (least, most) = (values.clone().min().unwrap_or(0), values.max().unwrap_or(0));
         if most == 0 || 100 * u64::from(most) < Self::LEAST_RISE * u64::from(least) {
-            return Next::Flat;
+            return FocusSearchStep::Flat;
         }
         let place = known.iter().position(|(_, sharpness)| *sharpness == most).unwrap_or(0);
         let at = |place: usize| known.get(place).copied().unwrap_or((0, 0));
@@ -84,13 +86,17 @@ impl FocusSearch {
             (top.0.saturating_sub(spacing).max(self.least), top.0.saturating_add(spacing).min(self.most));
         let (place, width) = vertex(known, top, bounds);
         if self.count >= Self::MOST_FRAMES {
-            return Next::Best(place);
+            return FocusSearchStep::Best(place);
         }
         let falls = |side: (u16, u32)| side.0 == top.0 || 2 * u64::from(top.1) > 3 * u64::from(side.1);
         if falls(before) && falls(after) && left.max(right) > step {
             // 0.382 of the larger part, from the sharpest position.
             let part = |length: u16| ((u32::from(length) * 25_033) >> 16).max(1) as u16;
-            return Next::Measure(if left > right { top.0 - part(left) } else { top.0 + part(right) });
+            return FocusSearchStep::Measure(if left > right {
+                top.0 - part(left)
+            } else {
+                top.0 + part(right)
+            });
         }
         // To either side in turn, farther and nearer; to the other one at an end of the range.
         let width = width.clamp(step, spacing.max(step));
@@ -104,7 +110,7 @@ impl FocusSearch {
         };
         let inside = i32::from(self.least)..=i32::from(self.most);
         let to = if inside.contains(&(place + off)) { place + off } else { place - off * 2 / 3 };
-        Next::Measure(to.clamp(*inside.start(), *inside.end()) as u16)
+        FocusSearchStep::Measure(to.clamp(*inside.start(), *inside.end()) as u16)
     }
 }
 

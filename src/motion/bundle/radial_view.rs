@@ -1,6 +1,6 @@
 //! A view whose lens moves too: f, k1 and k2, as the data sets of bundle adjustment have it.
 
-use super::view::{Slope, View, chained, moved};
+use super::view::{ProjectionJacobian, View, chain_rule, moved};
 use crate::geometry::{
     Real,
     camera::{Pose, ProjectionError},
@@ -41,7 +41,7 @@ impl<T: Real> View<T, 9> for RadialView<T> {
         Self { pose, ..*self }
     }
 
-    fn slope(&self, _: u16, world: &Point3<T>) -> Result<Slope<T, 9>, ProjectionError> {
+    fn jacobian(&self, _: u16, world: &Point3<T>) -> Result<ProjectionJacobian<T, 9>, ProjectionError> {
         let own = self.pose.inverse_transform(world);
         if own.z == T::ZERO {
             return Err(ProjectionError::Behind);
@@ -55,10 +55,10 @@ impl<T: Real> View<T, 9> for RadialView<T> {
         let row = |by_x: T, by_y: T| Vector3::new(by_x * by, by_y * by, -(by_x * x + by_y * y) * by);
         let across = f * two * x * y * dq;
         let rows = [row(f * (q + two * x * x * dq), across), row(across, f * (q + two * y * y * dq))];
-        let [(u, du), (v, dv)] = chained(rows, &own, &self.pose);
+        let [(u, du), (v, dv)] = chain_rule(rows, &own, &self.pose);
         let with_lens =
             |[a, b, c, d, e, g]: [T; 6], x: T| [a, b, c, d, e, g, q * x, f * r2 * x, f * r2 * r2 * x];
-        Ok(Slope {
+        Ok(ProjectionJacobian {
             pixel: Point2::new(f * q * x, f * q * y),
             by_view: [with_lens(u, x), with_lens(v, y)],
             by_point: [du, dv],

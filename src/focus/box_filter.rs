@@ -7,7 +7,7 @@ const RING: usize = 2 * MOST_RADIUS + 1;
 /// Rows of numbers to rows of their sums over windows of `2 r + 1` by `2 r + 1`; what lies outside the
 /// picture counts as 0.
 #[derive(Debug)]
-pub(super) struct Boxes<const C: usize> {
+pub(super) struct BoxFilter<const C: usize> {
     rows: [[u32; C]; RING],
     columns: [u32; C],
     width: usize,
@@ -15,7 +15,7 @@ pub(super) struct Boxes<const C: usize> {
     taken: usize,
 }
 
-impl<const C: usize> Boxes<C> {
+impl<const C: usize> BoxFilter<C> {
     pub(super) const fn new() -> Self {
         Self { rows: [[0; C]; RING], columns: [0; C], width: 0, radius: 0, taken: 0 }
     }

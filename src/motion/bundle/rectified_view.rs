@@ -1,7 +1,7 @@
 //! A camera, or the left one of a pair with aligned rows, of which disparities are seen.
 
-use super::pinhole::slope_of;
-use super::view::{Slope, View, chained, moved};
+use super::camera_view::pixel_jacobian;
+use super::view::{ProjectionJacobian, View, chain_rule, moved};
 use crate::geometry::{
     Real,
     camera::{Camera, Pose, ProjectionError},
@@ -12,7 +12,7 @@ use nalgebra::{Point2, Point3, Vector3};
 /// the disparity in px, `d = f b / Z`. What found a disparity began at the very pixel in the left picture, so
 /// that the two have errors of their own; two pixels would share one.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct AlignedView<T: Real> {
+pub struct RectifiedView<T: Real> {
     /// The camera.
     pub camera: Camera<T>,
     /// The pair's baseline, zero of one camera.
@@ -21,8 +21,8 @@ pub struct AlignedView<T: Real> {
     pub pose: Pose<T>,
 }
 
-impl<T: Real> AlignedView<T> {
-    /// `f b / Z`, and its slope by Z.
+impl<T: Real> RectifiedView<T> {
+    /// `f b / Z`, and its jacobian by Z.
     fn disparity(&self, own: &Point3<T>) -> Result<(T, T), ProjectionError> {
         if !(own.z > T::ZERO) {
             return Err(ProjectionError::Behind);
@@ -33,7 +33,7 @@ impl<T: Real> AlignedView<T> {
     }
 }
 
-impl<T: Real> View<T, 6> for AlignedView<T> {
+impl<T: Real> View<T, 6> for RectifiedView<T> {
     const EMPTY: Self = Self { camera: Camera::EMPTY, baseline: T::ZERO, pose: Pose::NOTHING };
 
     fn pose(&self) -> &Pose<T> {
@@ -44,16 +44,16 @@ impl<T: Real> View<T, 6> for AlignedView<T> {
         Self { pose, ..*self }
     }
 
-    fn slope(&self, eye: u16, world: &Point3<T>) -> Result<Slope<T, 6>, ProjectionError> {
+    fn jacobian(&self, eye: u16, world: &Point3<T>) -> Result<ProjectionJacobian<T, 6>, ProjectionError> {
         let own = self.pose.inverse_transform(world);
         let (pixel, rows) = if eye == 0 {
-            slope_of(&self.camera, &own)?
+            pixel_jacobian(&self.camera, &own)?
         } else {
             let (disparity, by_z) = self.disparity(&own)?;
             (Point2::new(disparity, T::ZERO), [Vector3::new(T::ZERO, T::ZERO, by_z), Vector3::zeros()])
         };
-        let [(u, du), (v, dv)] = chained(rows, &own, &self.pose);
-        Ok(Slope { pixel, by_view: [u, v], by_point: [du, dv] })
+        let [(u, du), (v, dv)] = chain_rule(rows, &own, &self.pose);
+        Ok(ProjectionJacobian { pixel, by_view: [u, v], by_point: [du, dv] })
     }
 
     fn project(&self, eye: u16, world: &Point3<T>) -> Result<Point2<T>, ProjectionError> {

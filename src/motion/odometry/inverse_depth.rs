@@ -1,15 +1,15 @@
 //! A point of the scene in the camera's own frame, near or at infinity, and how sure it is.
 
-use super::whiten::Whitener;
+use super::whitening::Whitener;
 use crate::geometry::linear::columns3;
 use crate::geometry::{Real, camera::Pose, linear::skew};
 use nalgebra::{ArrayStorage, Matrix3, Matrix6, SMatrix, Vector3};
 
-/// What a point is seen at: x and y of the sight `(x, y, 1)`, and its disparity `x - x'` over the focal
+/// What a point is seen at: x and y of the observation `(x, y, 1)`, and its disparity `x - x'` over the focal
 /// length, if there is a right camera. A disparity is found from the very place in the left picture, and so
 /// has an error of its own.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Sight<T: Real> {
+pub(super) struct PointObservation<T: Real> {
     pub at: Vector3<T>,
     /// Whether the third number counts.
     pub in_right: bool,
@@ -17,7 +17,7 @@ pub(super) struct Sight<T: Real> {
     pub sigma: T,
 }
 
-impl<T: Real> Sight<T> {
+impl<T: Real> PointObservation<T> {
     /// How many numbers count.
     pub fn rows(&self) -> usize {
         if self.in_right { 3 } else { 2 }
@@ -44,7 +44,7 @@ pub(super) struct Moved<T: Real> {
     pub by_pose: SMatrix<T, 3, 6>,
 }
 
-/// Points whose sight would be wider than this are not followed: 1/8 is 83 degrees from the axis.
+/// Points whose observation would be wider than this are not followed: 1/8 is 83 degrees from the axis.
 const LEAST_FORWARD: f64 = 0.125;
 
 impl<T: Real> InversePoint<T> {
@@ -97,15 +97,15 @@ impl<T: Real> InversePoint<T> {
     /// The point after it was seen from a camera whose pose is taken for exact: the likeliest one by Gauss
     /// and Newton's method on both what was known and what is seen (an iterated Kalman update; Bell &
     /// Cathey 1993), three steps.
-    pub fn updated(&self, pose: &Pose<T>, sight: &Sight<T>, baseline: T) -> Option<Self> {
+    pub fn updated(&self, pose: &Pose<T>, observation: &PointObservation<T>, baseline: T) -> Option<Self> {
         let mut at = self.at;
         let mut covariance = self.covariance;
         for _ in 0..3 {
             let moved = Self { at, covariance }.moved(pose)?;
             let slope = seen(baseline) * moved.by_point;
-            let whitener = Whitener::of(&slope, &self.covariance, sight)?;
+            let whitener = Whitener::of(&slope, &self.covariance, observation)?;
             // The innovation around the point that was known.
-            let off = sight.at - seen(baseline) * moved.at - slope * (self.at - at);
+            let off = observation.at - seen(baseline) * moved.at - slope * (self.at - at);
             // C J^T S^-1 = (L^-1 J C)^T L^-1.
             let gain = whitener.apply(&(slope * self.covariance));
             at = self.at + gain.tr_mul(&whitener.apply(&off));
@@ -113,7 +113,7 @@ impl<T: Real> InversePoint<T> {
         }
         // What rounding left of the two triangles, and of the diagonal.
         covariance = (covariance + covariance.transpose()) * T::of(0.5);
-        let floor = sight.sigma * sight.sigma * T::of(1e-4);
+        let floor = observation.sigma * observation.sigma * T::of(1e-4);
         covariance += Matrix3::identity() * floor;
         at.iter().all(|x| x.is_finite()).then_some(Self { at, covariance })
     }
@@ -157,10 +157,10 @@ mod tests {
 
     #[test]
     fn two_that_are_as_sure_meet_in_the_middle() {
-        // The point and the sight have a variance of 4e-4: half the way, half the variance, and 4e-8 for
-        // rounding.
-        let sight = Sight { at: Vector3::new(0.27, 0.0, 0.0), in_right: false, sigma: 0.02 };
-        let point = point([4e-4, 4e-4, 1e-4]).updated(&Pose::identity(), &sight, 0.0).expect("numbers");
+        // The point and the observation have a variance of 4e-4: half the way, half the variance, and 4e-8
+        // for rounding.
+        let observation = PointObservation { at: Vector3::new(0.27, 0.0, 0.0), in_right: false, sigma: 0.02 };
+        let point = point([4e-4, 4e-4, 1e-4]).updated(&Pose::identity(), &observation, 0.0).expect("numbers");
         near(point.at.x, 0.26);
         near(point.at.z, 0.25);
         near(point.covariance.m11, 2e-4 + 4e-8);
@@ -169,9 +169,11 @@ mod tests {
 
     #[test]
     fn a_disparity_tells_the_depth() {
-        // b r = 0.125 of a variance of 0.5^2 x 16e-4 = 4e-4, as the sight's: r by half of 0.01 / 0.5.
-        let sight = Sight { at: Vector3::new(0.25, 0.0, 0.135), in_right: true, sigma: 0.02 };
-        let point = point([4e-4, 4e-4, 16e-4]).updated(&Pose::identity(), &sight, 0.5).expect("numbers");
+        // b r = 0.125 of a variance of 0.5^2 x 16e-4 = 4e-4, as the observation's: r by half of 0.01 / 0.5.
+        let observation =
+            PointObservation { at: Vector3::new(0.25, 0.0, 0.135), in_right: true, sigma: 0.02 };
+        let point =
+            point([4e-4, 4e-4, 16e-4]).updated(&Pose::identity(), &observation, 0.5).expect("numbers");
         near(point.at.z, 0.26);
         near(point.covariance.m33, 8e-4 + 4e-8);
     }

@@ -2,7 +2,7 @@
 
 /// What a row of cells is told to the caller while a frame comes in.
 #[derive(Clone, Copy, Debug)]
-pub struct SharperRow<'a> {
+pub struct AllInFocusRow<'a> {
     /// The row of cells, from the top.
     pub index: usize,
     /// Whether each cell is sharper in this frame than in all before: who copies those pixels has, in the

@@ -3,10 +3,10 @@
 use super::envelope::{Envelope, Indefinite};
 use super::gauge::{Freedom, Gauge};
 use super::loss::Loss;
+use super::point_equations::{Linear, PointEquations, PointFactor, add_term, damper};
 use super::problem::{Problem, tracks};
-use super::track::{Linear, PointEquations, PointFactor, add_term, damper};
 use super::view::View;
-use super::workspace::{Term, Workspace};
+use super::workspace::{CrossBlock, Workspace};
 use crate::geometry::Real;
 
 /// What a step promises and gives.
@@ -20,14 +20,17 @@ pub(super) struct Proposal<T> {
     pub moved: T,
 }
 
-/// Half the loss of all sights; infinite where a point is not seen.
+/// Half the loss of all observations; infinite where a point is not seen.
 pub(super) fn cost<V: View<T, N>, T: Real, const N: usize>(problem: &Problem<'_, V, T>, loss: &Loss<T>) -> T {
-    let of = |sight: &super::problem::Sight<T>| {
-        let view = problem.views.get(usize::from(sight.view))?;
-        let seen = view.project(sight.eye, problem.points.get(sight.point as usize)?).ok()?;
-        Some(loss.of((seen - sight.pixel).norm_squared()))
+    let of = |observation: &super::problem::Observation<T>| {
+        let view = problem.views.get(usize::from(observation.view))?;
+        let seen = view.project(observation.eye, problem.points.get(observation.point as usize)?).ok()?;
+        Some(loss.of((seen - observation.pixel).norm_squared()))
     };
-    let sum = problem.sights.iter().fold(T::ZERO, |sum, sight| sum + of(sight).unwrap_or(T::ONE / T::ZERO));
+    let sum = problem
+        .observations
+        .iter()
+        .fold(T::ZERO, |sum, observation| sum + of(observation).unwrap_or(T::ONE / T::ZERO));
     sum * T::of(0.5)
 }
 
@@ -48,11 +51,11 @@ pub(super) fn reduce<V: View<T, N>, T: Real, const N: usize>(
     }
     blocks.as_flattened_mut().as_flattened_mut().fill(T::ZERO);
     let mut reduced = Envelope { slots, blocks };
-    for track in tracks(problem.sights) {
+    for track in tracks(problem.observations) {
         let mut point = PointEquations::ZERO;
         let mut used = 0;
-        for sight in track {
-            let Some(linear) = Linear::of(problem, sight, gauge, loss) else { continue };
+        for observation in track {
+            let Some(linear) = Linear::of(problem, observation, gauge, loss) else { continue };
             point.add(&linear.by_point, linear.residual);
             used = add_term(terms, used, &linear);
             add_view(&mut reduced, &linear);
@@ -77,7 +80,7 @@ pub(super) fn reduce<V: View<T, N>, T: Real, const N: usize>(
     }
 }
 
-/// Adds a sight to its view's block of `J^T J` and to its gradient.
+/// Adds an observation to its view's block of `J^T J` and to its gradient.
 #[inline(always)]
 fn add_view<V, T: Real, const N: usize>(reduced: &mut Envelope<'_, V, T, N>, linear: &Linear<T, N>) {
     let Some(slot) = reduced.slots.get_mut(linear.view) else { return };
@@ -101,7 +104,7 @@ fn add_view<V, T: Real, const N: usize>(reduced: &mut Envelope<'_, V, T, N>, lin
 #[inline(always)]
 fn eliminate<V, T: Real, const N: usize>(
     reduced: &mut Envelope<'_, V, T, N>,
-    terms: &mut [Term<T, N>],
+    terms: &mut [CrossBlock<T, N>],
     factor: &PointFactor<T>,
     gradient: &[T; 3],
 ) {
@@ -167,11 +170,11 @@ pub(super) fn propose<V: View<T, N>, T: Real, const N: usize>(
         let (from, to) = (view.pose().translation(), slot.trial.pose().translation());
         moved = moved.max((to - from).norm_squared() / (from.norm_squared() + T::ONE));
     }
-    for track in tracks(problem.sights) {
+    for track in tracks(problem.observations) {
         let mut free = PointEquations::ZERO;
         let mut shifted = PointEquations::ZERO;
-        for sight in track {
-            let Some(linear) = Linear::of(problem, sight, gauge, loss) else { continue };
+        for observation in track {
+            let Some(linear) = Linear::of(problem, observation, gauge, loss) else { continue };
             let Some(slot) = reduced.slots.get(linear.view) else { continue };
             free.add(&linear.by_point, linear.residual);
             let mut residual = linear.residual;
@@ -185,16 +188,18 @@ pub(super) fn propose<V: View<T, N>, T: Real, const N: usize>(
         for ((&x, &gradient), diagonal) in step.iter().zip(&free.gradient).zip(free.diagonal()) {
             promise(x, gradient, diagonal);
         }
-        let at = track.first().map_or(0, |sight| sight.point as usize);
+        let at = track.first().map_or(0, |observation| observation.point as usize);
         let (Some(from), Some(to)) = (problem.points.get(at), trial_points.get_mut(at)) else { continue };
         let [x, y, z] = step;
         *to = from + nalgebra::Vector3::new(x, y, z);
         moved = moved.max((*to - from).norm_squared() / (from.coords.norm_squared() + T::ONE));
-        for sight in track {
-            let seen =
-                reduced.slots.get(usize::from(sight.view)).map(|slot| slot.trial.project(sight.eye, to));
+        for observation in track {
+            let seen = reduced
+                .slots
+                .get(usize::from(observation.view))
+                .map(|slot| slot.trial.project(observation.eye, to));
             cost += match seen {
-                Some(Ok(seen)) => loss.of((seen - sight.pixel).norm_squared()),
+                Some(Ok(seen)) => loss.of((seen - observation.pixel).norm_squared()),
                 _ => T::ONE / T::ZERO,
             };
         }

@@ -1,10 +1,10 @@
 //! The last views, adjusted together.
 
 use super::config::OdometryRig;
-use super::seen::SeenPoint;
+use super::observed::ObservedPoint;
 use crate::geometry::{Real, camera::Pose};
 use crate::motion::bundle::{
-    AlignedView, BundleConfig, BundleError, BundleReport, Gauge, Loss, View, Window,
+    BundleConfig, BundleError, BundleReport, Gauge, Loss, RectifiedView, View, Window,
 };
 use heapless::Vec;
 use nalgebra::{Point2, Point3};
@@ -16,16 +16,16 @@ use nalgebra::{Point2, Point3};
 /// [`Self::poses`] are better than the steps that were told. It stands beside the odometry, and who does not
 /// want it does not pay for it.
 #[derive(Debug)]
-pub struct Refinement<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize> {
+pub struct Refinement<T: Real, const VIEWS: usize, const POINTS: usize, const OBSERVATIONS: usize> {
     config: RefinementConfig<T>,
     /// The rig at the origin, when there is one.
-    view: Vec<AlignedView<T>, 1>,
+    view: Vec<RectifiedView<T>, 1>,
     /// Where the views stand in the frame of the oldest.
     poses: Vec<Pose<T>, VIEWS>,
     rows: [Row<T, VIEWS>; POINTS],
     /// The row of each point that is adjusted.
     owners: Vec<u16, POINTS>,
-    window: Window<AlignedView<T>, T, 6, VIEWS, POINTS, SIGHTS>,
+    window: Window<RectifiedView<T>, T, 6, VIEWS, POINTS, OBSERVATIONS>,
 }
 
 /// How views are refined.
@@ -35,7 +35,7 @@ pub struct RefinementConfig<T> {
     pub views: usize,
     /// How many of them, the oldest ones, are held where they are, one at least.
     pub held: usize,
-    /// From this residual on a sight counts less (Huber's loss), px.
+    /// From this residual on an observation counts less (Huber's loss), px.
     pub width_px: T,
     /// Steps at most.
     pub most_iterations: u32,
@@ -55,7 +55,7 @@ struct Row<T: Real, const VIEWS: usize> {
     /// In the frame of the oldest view.
     point: Point3<T>,
     /// Column, row and disparity, px.
-    sights: [[T; 3]; VIEWS],
+    observations: [[T; 3]; VIEWS],
     /// Bit by bit the views that see it, and those with a disparity.
     seen: u16,
     deep: u16,
@@ -71,20 +71,20 @@ const FAR: f64 = 1e4;
 impl<T: Real, const VIEWS: usize> Row<T, VIEWS> {
     const EMPTY: Self = {
         let o = T::ZERO;
-        Self { name: (0, 0), point: Point3::new(o, o, o), sights: [[o; 3]; VIEWS], seen: 0, deep: 0 }
+        Self { name: (0, 0), point: Point3::new(o, o, o), observations: [[o; 3]; VIEWS], seen: 0, deep: 0 }
     };
 
     /// What a view's eye sees, if it does.
-    fn sight(&self, view: usize, eye: u16) -> Option<Point2<T>> {
-        let [u, v, d] = *self.sights.get(view)?;
+    fn observation(&self, view: usize, eye: u16) -> Option<Point2<T>> {
+        let [u, v, d] = *self.observations.get(view)?;
         let (mask, pixel) =
             if eye == 0 { (self.seen, Point2::new(u, v)) } else { (self.deep, Point2::new(d, T::ZERO)) };
         (mask >> view & 1 == 1).then_some(pixel)
     }
 }
 
-impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize>
-    Refinement<T, VIEWS, POINTS, SIGHTS>
+impl<T: Real, const VIEWS: usize, const POINTS: usize, const OBSERVATIONS: usize>
+    Refinement<T, VIEWS, POINTS, OBSERVATIONS>
 {
     /// Empty: waits for [`Self::start`].
     pub const fn new() -> Self {
@@ -108,7 +108,7 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize>
     /// Begins with a rig, without a view.
     pub fn start(&mut self, rig: &OdometryRig<T>, config: RefinementConfig<T>) {
         self.view.clear();
-        let _ = self.view.push(AlignedView {
+        let _ = self.view.push(RectifiedView {
             camera: rig.camera,
             baseline: rig.baseline(),
             pose: Pose::identity(),
@@ -135,7 +135,7 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize>
     pub fn push(
         &mut self,
         motion: &Pose<T>,
-        seen: impl Iterator<Item = SeenPoint<T>>,
+        seen: impl Iterator<Item = ObservedPoint<T>>,
     ) -> Result<Option<BundleReport<T>>, BundleError> {
         if self.poses.len() >= self.config.views.clamp(2, VIEWS) {
             self.drop_oldest();
@@ -171,7 +171,7 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize>
         for row in self.rows.iter_mut().filter(|row| row.seen != 0) {
             row.point = base.inverse_transform(&row.point);
             (row.seen, row.deep) = (row.seen >> 1, row.deep >> 1);
-            row.sights.rotate_left(1);
+            row.observations.rotate_left(1);
         }
     }
 
@@ -183,12 +183,12 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize>
         for row in &mut self.rows {
             (row.seen, row.deep) = (row.seen >> last & 1, row.deep >> last & 1);
             row.point = pose.inverse_transform(&row.point);
-            row.sights.rotate_left(last.min(VIEWS));
+            row.observations.rotate_left(last.min(VIEWS));
         }
     }
 
     /// Keeps what the view sees of a point, if there is room; whether it was seen before.
-    fn note(&mut self, view: usize, pose: &Pose<T>, point: &SeenPoint<T>) -> bool {
+    fn note(&mut self, view: usize, pose: &Pose<T>, point: &ObservedPoint<T>) -> bool {
         let known = self.rows.iter().position(|row| row.seen != 0 && row.name == point.name);
         let place = known.or_else(|| self.rows.iter().position(|row| row.seen == 0));
         let Some(row) = place.and_then(|place| self.rows.get_mut(place)) else { return false };
@@ -201,8 +201,8 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize>
             let own = Point3::new(point.inverse.x * depth, point.inverse.y * depth, depth);
             row.point = pose.transform(&own);
         }
-        if let Some(sight) = row.sights.get_mut(view) {
-            *sight = [point.pixel.x, point.pixel.y, point.disparity_px.unwrap_or(T::ZERO)];
+        if let Some(observation) = row.observations.get_mut(view) {
+            *observation = [point.pixel.x, point.pixel.y, point.disparity_px.unwrap_or(T::ZERO)];
             row.seen |= 1 << view;
             row.deep |= u16::from(point.disparity_px.is_some()) << view;
         }
@@ -219,15 +219,16 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize>
         let most = T::of(OFF_PX * OFF_PX);
         let mut has_unit = false;
         for (number, row) in (0_u16..).zip(&self.rows) {
-            let near = |pose: &Pose<T>, eye: u16, sight: &Point2<T>| {
+            let near = |pose: &Pose<T>, eye: u16, observation: &Point2<T>| {
                 let expected = rig.with_pose(*pose).project(eye, &row.point);
-                expected.is_ok_and(|expected| (expected - sight).norm_squared() < most)
+                expected.is_ok_and(|expected| (expected - observation).norm_squared() < most)
             };
             let good = |view: usize, pose: &Pose<T>, eye: u16| {
-                row.sight(view, eye).filter(|sight| near(pose, eye, sight))
+                row.observation(view, eye).filter(|observation| near(pose, eye, observation))
             };
             let views = || self.poses.iter().enumerate();
-            // Two sights without a disparity agree with nearly any motion, also with one of the point's own.
+            // Two observations without a disparity agree with nearly any motion, also with one of the point's
+            // own.
             let enough = if row.deep != 0 { 2 } else { self.poses.len().min(3) };
             if views().filter(|&(view, pose)| good(view, pose, 0).is_some()).count() < enough {
                 continue;
@@ -238,9 +239,9 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize>
             let _ = self.owners.push(number);
             for (view, pose) in views() {
                 for eye in 0..2 {
-                    let Some(sight) = good(view, pose, eye) else { continue };
+                    let Some(observation) = good(view, pose, eye) else { continue };
                     has_unit |= eye == 1;
-                    let _ = self.window.add_sight(view as u16, eye, sight);
+                    let _ = self.window.add_observation(view as u16, eye, observation);
                 }
             }
         }
@@ -271,8 +272,8 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize>
     }
 }
 
-impl<T: Real, const VIEWS: usize, const POINTS: usize, const SIGHTS: usize> Default
-    for Refinement<T, VIEWS, POINTS, SIGHTS>
+impl<T: Real, const VIEWS: usize, const POINTS: usize, const OBSERVATIONS: usize> Default
+    for Refinement<T, VIEWS, POINTS, OBSERVATIONS>
 {
     fn default() -> Self {
         Self::new()

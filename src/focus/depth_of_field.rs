@@ -6,7 +6,7 @@ use crate::geometry::Real;
 
 /// The far end of the depth of field.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub enum Far<T> {
+pub enum FarLimit<T> {
     /// At that distance.
     At(T),
     /// Everything behind the near end is sharp enough: the lens is focused at the hyperfocal distance or
@@ -20,7 +20,7 @@ pub struct DepthOfField<T> {
     /// The nearest distance.
     pub near: T,
     /// The farthest.
-    pub far: Far<T>,
+    pub far: FarLimit<T>,
 }
 
 impl<T: Real> ThinLens<T> {
@@ -40,10 +40,10 @@ impl<T: Real> ThinLens<T> {
     /// / (H - Zf)`, where [`Self::circle_of_confusion`] is `blur`.
     ///
     /// ```
-    /// use stereopsis::focus::{Far, ThinLens};
+    /// use stereopsis::focus::{FarLimit, ThinLens};
     /// let lens = ThinLens::new(0.05_f64)?;
     /// let field = lens.depth_of_field(2.0, 5.0, 25e-6)?;
-    /// let Far::At(far) = field.far else { panic!("infinity is not sharp") };
+    /// let FarLimit::At(far) = field.far else { panic!("infinity is not sharp") };
     /// for edge in [field.near, far] {
     ///     assert!((lens.circle_of_confusion(0.025, 5.0, edge)? - 25e-6).abs() < 1e-9);
     /// }
@@ -57,9 +57,9 @@ impl<T: Real> ThinLens<T> {
         let over = hyperfocal - self.focal();
         let near = finite(over / (over + (focused - self.focal())) * focused)?;
         let far = if focused < hyperfocal {
-            Far::At(finite(over / (hyperfocal - focused) * focused)?)
+            FarLimit::At(finite(over / (hyperfocal - focused) * focused)?)
         } else {
-            Far::Infinity
+            FarLimit::Infinity
         };
         Ok(DepthOfField { near, far })
     }

@@ -2,13 +2,13 @@
 
 use super::gauge::{Freedom, Gauge};
 use super::loss::Loss;
-use super::problem::{Problem, Sight};
+use super::problem::{Observation, Problem};
 use super::view::View;
-use super::workspace::Term;
+use super::workspace::CrossBlock;
 use crate::geometry::Real;
 
-/// A sight's residual and its derivatives, weighted by the root of the loss's slope, and limited to what the
-/// gauge lets move.
+/// An observation's residual and its derivatives, weighted by the root of the loss's jacobian, and limited to
+/// what the gauge lets move.
 pub(super) struct Linear<T, const N: usize> {
     pub view: usize,
     pub residual: [T; 2],
@@ -17,22 +17,23 @@ pub(super) struct Linear<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Linear<T, N> {
-    /// `None` when the sight cannot be: [`prepare`](super::problem::prepare) and every step taken since made
-    /// sure that it can.
+    /// `None` when the observation cannot be: [`prepare`](super::problem::prepare) and every step taken since
+    /// made sure that it can.
     #[inline(always)]
     pub fn of<V: View<T, N>>(
         problem: &Problem<'_, V, T>,
-        sight: &Sight<T>,
+        observation: &Observation<T>,
         gauge: &Gauge,
         loss: &Loss<T>,
     ) -> Option<Self> {
-        let view = problem.views.get(usize::from(sight.view))?;
-        let slope = view.slope(sight.eye, problem.points.get(sight.point as usize)?).ok()?;
-        let mut by_view = slope.by_view;
-        let (u, v) = (slope.pixel.x - sight.pixel.x, slope.pixel.y - sight.pixel.y);
-        let (mut residual, mut by_point) = ([u, v], slope.by_point);
+        let view = problem.views.get(usize::from(observation.view))?;
+        let jacobian =
+            view.jacobian(observation.eye, problem.points.get(observation.point as usize)?).ok()?;
+        let mut by_view = jacobian.by_view;
+        let (u, v) = (jacobian.pixel.x - observation.pixel.x, jacobian.pixel.y - observation.pixel.y);
+        let (mut residual, mut by_point) = ([u, v], jacobian.by_point);
         let other = |at: u16| problem.views.get(usize::from(at)).map_or(*view.pose(), |other| *other.pose());
-        let freedom = gauge.freedom(sight.view, view.pose(), other);
+        let freedom = gauge.freedom(observation.view, view.pose(), other);
         if freedom != Freedom::All {
             by_view.iter_mut().for_each(|row| freedom.restrict(row));
         }
@@ -43,7 +44,7 @@ impl<T: Real, const N: usize> Linear<T, N> {
             by_view.as_flattened_mut().iter_mut().for_each(|x| *x *= root);
             by_point.as_flattened_mut().iter_mut().for_each(|x| *x *= root);
         }
-        Some(Self { view: usize::from(sight.view), residual, by_view, by_point })
+        Some(Self { view: usize::from(observation.view), residual, by_view, by_point })
     }
 }
 
@@ -73,7 +74,7 @@ pub(super) fn damper<T: Real>(diagonal: T) -> T {
 impl<T: Real> PointEquations<T> {
     pub const ZERO: Self = Self { matrix: [T::ZERO; 6], gradient: [T::ZERO; 3] };
 
-    /// Adds a sight, its residual after the views' step.
+    /// Adds an observation, its residual after the views' step.
     #[inline(always)]
     pub fn add(&mut self, rows: &[[T; 3]; 2], residual: [T; 2]) {
         for (&[x, y, z], r) in rows.iter().zip(residual) {
@@ -149,20 +150,20 @@ impl<T: Real> PointFactor<T> {
     }
 }
 
-/// Adds a sight to the term of its view, among the first `used`; how many there are then. More than there is
-/// room for are not kept: [`prepare`](super::problem::prepare) made sure that there is.
+/// Adds an observation to the term of its view, among the first `used`; how many there are then. More than
+/// there is room for are not kept: [`prepare`](super::problem::prepare) made sure that there is.
 #[inline(always)]
 pub(super) fn add_term<T: Real, const N: usize>(
-    terms: &mut [Term<T, N>],
+    terms: &mut [CrossBlock<T, N>],
     used: usize,
-    sight: &Linear<T, N>,
+    observation: &Linear<T, N>,
 ) -> usize {
-    let known = terms.iter().take(used).position(|term| term.view == sight.view);
+    let known = terms.iter().take(used).position(|term| term.view == observation.view);
     let Some(term) = terms.get_mut(known.unwrap_or(used)) else { return used };
     if known.is_none() {
-        *term = Term { view: sight.view, ..Term::EMPTY };
+        *term = CrossBlock { view: observation.view, ..CrossBlock::EMPTY };
     }
-    for (by_view, by_point) in sight.by_view.iter().zip(&sight.by_point) {
+    for (by_view, by_point) in observation.by_view.iter().zip(&observation.by_point) {
         for (line, &by) in term.cross.iter_mut().zip(by_point) {
             for (x, &y) in line.iter_mut().zip(by_view) {
                 *x += by * y;

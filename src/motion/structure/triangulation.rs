@@ -6,28 +6,28 @@ use crate::geometry::{
     Real,
     linear::{cayley, skew},
 };
-use crate::motion::bundle::{CameraView, Sight, View};
+use crate::motion::bundle::{CameraView, Observation, View};
 use nalgebra::{Matrix3, Point3, Vector3};
 
 /// Steps to the least re-projection error, at most.
 const MOST_STEPS: usize = 5;
 
-/// The point that most of these sights agree with, to a threshold, and least squares of those that do;
+/// The point that most of these observations agree with, to a threshold, and least squares of those that do;
 /// refused when no half of them, and no two, do: two wrong ones of many meet by chance.
 ///
-/// Every pair of sights that has the least angle between its rays is a candidate, by the midpoint; the one
-/// with most sights within the threshold is refined by Gauss and Newton's method.
+/// Every pair of observations that has the least angle between its rays is a candidate, by the midpoint; the
+/// one with most observations within the threshold is refined by Gauss and Newton's method.
 pub(super) fn triangulate<T: Real>(
     views: &[CameraView<T>],
-    track: impl Iterator<Item = Sight<T>> + Clone,
+    track: impl Iterator<Item = Observation<T>> + Clone,
     threshold_px: T,
     min_angle_rad: T,
 ) -> Result<Point3<T>, PointState> {
-    let ray = |sight: &Sight<T>| {
-        let view = views.get(usize::from(sight.view))?;
-        let sight = view.camera.unproject(&sight.pixel).ok()?;
-        let sight = view.pose.rotation() * sight;
-        Some((*view.pose.translation(), sight * (T::ONE / sight.norm())))
+    let ray = |observation: &Observation<T>| {
+        let view = views.get(usize::from(observation.view))?;
+        let observation = view.camera.unproject(&observation.pixel).ok()?;
+        let observation = view.pose.rotation() * observation;
+        Some((*view.pose.translation(), observation * (T::ONE / observation.norm())))
     };
     let mut best: Option<(usize, T, Point3<T>)> = None;
     let (mut seen, mut angled) = (0, false);
@@ -60,39 +60,41 @@ pub(super) fn triangulate<T: Real>(
         return Err(match (seen, angled) {
             (0 | 1, _) => PointState::Unknown,
             (_, false) => PointState::Far,
-            (_, true) => PointState::Apart,
+            (_, true) => PointState::Inconsistent,
         });
     };
     Ok(refined(views, track, point, threshold_px))
 }
 
-/// The sights whose residual is within the threshold.
+/// The observations whose residual is within the threshold.
 pub(super) fn agreeing<T: Real>(
     views: &[CameraView<T>],
-    track: impl Iterator<Item = Sight<T>>,
+    track: impl Iterator<Item = Observation<T>>,
     point: &Point3<T>,
     threshold_px: T,
-) -> impl Iterator<Item = Sight<T>> {
-    track.filter(move |sight| {
-        let seen = views.get(usize::from(sight.view)).and_then(|view| view.project(sight.eye, point).ok());
-        seen.is_some_and(|seen| (seen - sight.pixel).norm_squared() <= threshold_px * threshold_px)
+) -> impl Iterator<Item = Observation<T>> {
+    track.filter(move |observation| {
+        let seen = views
+            .get(usize::from(observation.view))
+            .and_then(|view| view.project(observation.eye, point).ok());
+        seen.is_some_and(|seen| (seen - observation.pixel).norm_squared() <= threshold_px * threshold_px)
     })
 }
 
 fn refined<T: Real>(
     views: &[CameraView<T>],
-    track: impl Iterator<Item = Sight<T>> + Clone,
+    track: impl Iterator<Item = Observation<T>> + Clone,
     start: Point3<T>,
     threshold_px: T,
 ) -> Point3<T> {
     let mut point = start;
     for _ in 0..MOST_STEPS {
         let (mut normal, mut gradient) = (Matrix3::<T>::zeros(), Vector3::<T>::zeros());
-        for sight in agreeing(views, track.clone(), &start, threshold_px) {
-            let Some(view) = views.get(usize::from(sight.view)) else { continue };
-            let Ok(slope) = view.slope(sight.eye, &point) else { return start };
-            let off = slope.pixel - sight.pixel;
-            for (row, r) in slope.by_point.iter().zip([off.x, off.y]) {
+        for observation in agreeing(views, track.clone(), &start, threshold_px) {
+            let Some(view) = views.get(usize::from(observation.view)) else { continue };
+            let Ok(jacobian) = view.jacobian(observation.eye, &point) else { return start };
+            let off = jacobian.pixel - observation.pixel;
+            for (row, r) in jacobian.by_point.iter().zip([off.x, off.y]) {
                 let [x, y, z] = *row;
                 let row = Vector3::new(x, y, z);
                 normal += row * row.transpose();
@@ -112,9 +114,9 @@ fn refined<T: Real>(
     if count(&after) >= count(&before) { after } else { before }
 }
 
-/// The turn that carries sights of the second view onto those of the first best (Horn's problem by Newton's
-/// method on Cayley's turn, from none); weights fall with the distance beyond the threshold.
-pub(super) fn turn_alone<T: Real>(
+/// The turn that carries observations of the second view onto those of the first best (Horn's problem by
+/// Newton's method on Cayley's turn, from none); weights fall with the distance beyond the threshold.
+pub(super) fn rotation_only<T: Real>(
     rays: impl Iterator<Item = (Vector3<T>, Vector3<T>)> + Clone,
     threshold_rad: T,
 ) -> Matrix3<T> {
@@ -126,9 +128,9 @@ pub(super) fn turn_alone<T: Real>(
             let off = p - turned;
             let weight = threshold_rad / off.norm().max(threshold_rad);
             // p = (I + [w]x) R q: by w it is -[R q]x.
-            let slope = -skew(&turned);
-            normal += slope.tr_mul(&slope) * weight;
-            gradient += slope.tr_mul(&off) * weight;
+            let jacobian = -skew(&turned);
+            normal += jacobian.tr_mul(&jacobian) * weight;
+            gradient += jacobian.tr_mul(&off) * weight;
         }
         let [x, y, z] = Ldl::<T, 3>::new(&mut normal.into()).solve(&gradient.into());
         let step = Vector3::new(x, y, z);

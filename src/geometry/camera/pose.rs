@@ -1,7 +1,7 @@
 //! Where one camera stands beside another.
 
 use crate::geometry::Real;
-use crate::geometry::linear::Svd3;
+use crate::geometry::linear::{Svd3, cayley};
 use nalgebra::{Matrix3, Point3, Vector3};
 
 /// R and t, which carry a point of camera 2 into camera 1: `P = R P' + t`. So t is the centre of camera 2 in
@@ -112,6 +112,13 @@ impl<T: Real> Pose<T> {
             rotation: self.rotation * next.rotation,
             translation: self.rotation * next.translation + self.translation,
         }
+    }
+
+    /// The pose after a step in its tangent space: three numbers that rotate it about the camera's own axes
+    /// (radians to first order, Cayley's map) and three that move it along them.
+    pub(crate) fn moved(&self, &[a, b, c, x, y, z]: &[T; 6]) -> Self {
+        let rotation = self.rotation * cayley(&Vector3::new(a, b, c));
+        Self { rotation, translation: self.translation + rotation * Vector3::new(x, y, z) }
     }
 
     /// What many products of rotations have drifted to, as a rotation again (Gram and Schmidt).

@@ -4,7 +4,7 @@ use super::pencil::{LineSegment, PencilError, Scaled, vanishing_point};
 use super::vanishing::extent;
 use crate::geometry::Real;
 use crate::geometry::camera::Camera;
-use crate::geometry::linear::{Ldl, Svd3, cayley};
+use crate::geometry::linear::{Ldl, LeastSquares, NormalEquations, Svd3, cayley, levenberg_marquardt};
 use nalgebra::{Matrix3, Point2, Vector3};
 
 /// How a camera stands in a building, from lines along its three orthogonal directions.
@@ -128,11 +128,11 @@ impl<T: Real> ManhattanFrame<T> {
         let focal = focal(&vanishing).ok_or(ManhattanFrameError::Focal)?;
         let directions = vanishing.map(|v| v.map(|v| Vector3::new(v.x, v.y, v.z * focal)));
         let start = orthogonal(directions, expected)?;
-        let walls = refined(bundles, plane, start, focal, true, scale);
-        let found = walls.focal_px.is_finite()
-            && walls.focal_px > T::ZERO
-            && walls.focal_sigma_per_px < walls.focal_px;
-        if found { Ok(walls) } else { Err(ManhattanFrameError::Focal) }
+        let frame = refined(bundles, plane, start, focal, true, scale);
+        let found = frame.focal_px.is_finite()
+            && frame.focal_px > T::ZERO
+            && frame.focal_sigma_per_px < frame.focal_px;
+        if found { Ok(frame) } else { Err(ManhattanFrameError::Focal) }
     }
 }
 
@@ -211,88 +211,69 @@ fn orthogonal<T: Real>(
     Ok(svd.u * svd.v.transpose())
 }
 
-/// The normal equations over a turn in the camera's frame and the logarithm of the focal length.
-struct Equations<T> {
-    normal: [[T; 4]; 4],
-    right: [T; 4],
-    squares: T,
-    count: usize,
+/// The distances of the segments' ends, over a rotation in the camera's frame and the logarithm of the focal
+/// length.
+struct Ends<'a, T: Real, F> {
+    bundles: Bundles<'a, T>,
+    /// The line through a segment, in the unit of the estimate.
+    plane: F,
+    /// Whether the focal length is looked for.
+    free: bool,
 }
 
-impl<T: Real> Equations<T> {
-    fn of(
-        bundles: Bundles<'_, T>,
-        plane: impl Fn(&LineSegment<T>) -> Scaled<T>,
-        rotation: &Matrix3<T>,
-        focal: T,
-        free: bool,
-    ) -> Self {
-        let mut all = Self { normal: [[T::ZERO; 4]; 4], right: [T::ZERO; 4], squares: T::ZERO, count: 0 };
-        for (bundle, direction) in bundles.into_iter().zip(rotation.column_iter()) {
+impl<T: Real, F: Fn(&LineSegment<T>) -> Scaled<T>> LeastSquares<T, 4> for Ends<'_, T, F> {
+    /// The rotation and the focal length.
+    type Estimate = (Matrix3<T>, T);
+
+    fn equations(
+        &self,
+        &(rotation, focal): &(Matrix3<T>, T),
+        _bound: Option<T>,
+    ) -> Option<NormalEquations<T, 4>> {
+        let mut equations = NormalEquations::new();
+        for (bundle, direction) in self.bundles.into_iter().zip(rotation.column_iter()) {
             let v = Vector3::new(focal * direction.x, focal * direction.y, direction.z);
             for segment in bundle {
-                let gradient = plane(segment).gradient(&v);
+                let gradient = (self.plane)(segment).gradient(&v);
                 let error = -gradient.dot(&v);
                 let by_direction = Vector3::new(focal * gradient.x, focal * gradient.y, gradient.z);
                 // dv = K (w x d), d(log f) moves v's first two.
                 let by_turn = direction.cross(&by_direction);
-                let by_focal = if free { gradient.x * v.x + gradient.y * v.y } else { T::ZERO };
-                let slopes = [by_turn.x, by_turn.y, by_turn.z, by_focal];
-                for ((row, right), &a) in all.normal.iter_mut().zip(&mut all.right).zip(&slopes) {
-                    for (element, &b) in row.iter_mut().zip(&slopes) {
-                        *element += a * b;
-                    }
-                    *right += a * error;
-                }
-                all.squares += error * error;
-                all.count += 1;
+                let by_focal = if self.free { gradient.x * v.x + gradient.y * v.y } else { T::ZERO };
+                equations.add(&[by_turn.x, by_turn.y, by_turn.z, by_focal], error);
+                equations.cost += error * error;
             }
         }
-        if !free {
-            all.normal[3][3] = T::ONE;
+        if !self.free {
+            equations.matrix[3][3] = T::ONE;
         }
-        all
+        Some(equations)
+    }
+
+    fn moved(&self, (rotation, focal): &(Matrix3<T>, T), &[x, y, z, along]: &[T; 4]) -> (Matrix3<T>, T) {
+        let along = along.max(-T::of(0.5)).min(T::ONE);
+        (cayley(&Vector3::new(x, y, z)) * rotation, *focal * (T::ONE + along))
     }
 }
 
-/// The rotation (and focal length, if it is `free`) near the first one with the least squares of distances;
-/// Levenberg and Marquardt. `scale` is the px of a unit.
+/// The rotation (and focal length, if it is `free`) near the first one with the least squares of distances,
+/// by Levenberg-Marquardt. `scale` is the px of a unit.
 fn refined<T: Real>(
     bundles: Bundles<'_, T>,
-    plane: impl Fn(&LineSegment<T>) -> Scaled<T> + Copy,
+    plane: impl Fn(&LineSegment<T>) -> Scaled<T>,
     rotation: Matrix3<T>,
     focal: T,
     free: bool,
     scale: T,
 ) -> ManhattanFrame<T> {
-    let (mut rotation, mut focal) = (rotation, focal);
-    let mut equations = Equations::of(bundles, plane, &rotation, focal, free);
-    let mut damping = T::of(1e-4);
-    for _ in 0..MOST_STEPS {
-        let mut matrix = equations.normal;
-        for (i, row) in matrix.iter_mut().enumerate() {
-            if let Some(diagonal) = row.get_mut(i) {
-                *diagonal *= T::ONE + damping;
-            }
-        }
-        let [x, y, z, along] = Ldl::new(&mut matrix).solve(&equations.right);
-        let there = cayley(&Vector3::new(x, y, z)) * rotation;
-        let farther = focal * (T::ONE + along.max(-T::of(0.5)).min(T::ONE));
-        let better = Equations::of(bundles, plane, &there, farther, free);
-        if better.squares <= equations.squares {
-            let gain = equations.squares - better.squares;
-            (rotation, focal, damping) = (there, farther, damping * T::of(0.1));
-            equations = better;
-            if gain <= equations.squares * T::EPSILON.sqrt() {
-                break;
-            }
-        } else {
-            damping *= T::of(10.0);
-        }
-    }
+    let start = (rotation, focal);
+    let found = levenberg_marquardt(&Ends { bundles, plane, free }, start, MOST_STEPS);
+    // Every estimate has a cost.
+    let ((rotation, focal), mut equations) = found.unwrap_or((start, NormalEquations::new()));
+    let count: usize = bundles.iter().map(|bundle| bundle.len()).sum();
     // The steps' products are a rotation but for rounding.
     let svd = Svd3::new(&rotation);
-    let ldl = Ldl::new(&mut equations.normal);
+    let ldl = Ldl::new(&mut equations.matrix);
     let deviation = |k: usize| {
         let mut unit = [T::ZERO; 4];
         if let Some(one) = unit.get_mut(k) {
@@ -305,7 +286,7 @@ fn refined<T: Real>(
     ManhattanFrame {
         rotation: svd.u * svd.v.transpose(),
         focal_px: focal * scale,
-        rms_px: (equations.squares / T::count(equations.count.max(1))).sqrt() * scale,
+        rms_px: (equations.cost / T::count(count.max(1))).sqrt() * scale,
         sigma_rad_per_px: Vector3::new(deviation(0), deviation(1), deviation(2)) * half,
         focal_sigma_per_px: if free { deviation(3) * focal * scale * half } else { T::ZERO },
     }

@@ -3,9 +3,9 @@
 use super::tilts::rotations;
 use crate::geometry::Real;
 use crate::geometry::camera::{Camera, Pose, ProjectionError};
-use crate::geometry::linear::{Ldl, cayley};
+use crate::geometry::linear::{LeastSquares, NormalEquations, cayley, levenberg_marquardt};
 use crate::geometry::two_view::{Correspondence, Homography, HomographyError};
-use nalgebra::{Point2, Point3, Vector2, Vector3};
+use nalgebra::{Matrix3, Point2, Point3, Vector2, Vector3};
 
 /// A flat square: a marker, a tile, a board.
 ///
@@ -142,44 +142,29 @@ impl<T: Real> SquareMark<T> {
         }
     }
 
-    /// The pose near `pose` with the least re-projection error; `None` where a corner is behind the camera.
-    fn refined(&self, camera: &Camera<T>, seen: &[Point2<T>; 4], pose: Pose<T>) -> Option<MarkPose<T>> {
-        let mut pose = pose;
-        let mut equations = self.equations(camera, seen, &pose)?;
-        let mut damping = T::of(1e-4);
-        for _ in 0..MOST_STEPS {
-            let mut matrix = equations.normal;
-            for (i, row) in matrix.iter_mut().enumerate() {
-                if let Some(diagonal) = row.get_mut(i) {
-                    *diagonal *= T::ONE + damping;
-                }
-            }
-            let [a, b, c, x, y, z] = Ldl::new(&mut matrix).solve(&equations.right);
-            let there = Pose::of_parts(
-                cayley(&Vector3::new(a, b, c)) * pose.rotation(),
-                pose.translation() + Vector3::new(x, y, z) * self.side_m,
-            );
-            match self.equations(camera, seen, &there) {
-                Some(better) if better.squares <= equations.squares => {
-                    let gain = equations.squares - better.squares;
-                    (pose, damping) = (there, damping * T::of(0.1));
-                    equations = better;
-                    if gain <= equations.squares * T::EPSILON.sqrt() {
-                        break;
-                    }
-                }
-                _ => damping *= T::of(10.0),
-            }
-        }
-        Some(MarkPose { pose, rms_px: (equations.squares * T::of(0.25)).sqrt() })
+    /// The pose near `start` with the least re-projection error; `None` where a corner is behind the camera.
+    fn refined(&self, camera: &Camera<T>, seen: &[Point2<T>; 4], start: Pose<T>) -> Option<MarkPose<T>> {
+        let problem = Corners { mark: self, k: camera.matrix(), seen };
+        let (pose, equations) = levenberg_marquardt(&problem, start, MOST_STEPS)?;
+        Some(MarkPose { pose, rms_px: (equations.cost * T::of(0.25)).sqrt() })
     }
+}
 
-    /// The normal equations of the corners' errors, over a rotation (in the camera's frame, about the mark's
-    /// middle) and a translation in sides.
-    fn equations(&self, camera: &Camera<T>, seen: &[Point2<T>; 4], pose: &Pose<T>) -> Option<Equations<T>> {
-        let k = camera.matrix();
-        let mut equations = Equations { normal: [[T::ZERO; 6]; 6], right: [T::ZERO; 6], squares: T::ZERO };
-        for (corner, seen) in self.corners().iter().zip(seen) {
+/// The corners' re-projection errors, over a rotation (in the camera's frame, about the mark's middle) and a
+/// translation in sides.
+struct Corners<'a, T: Real> {
+    mark: &'a SquareMark<T>,
+    k: Matrix3<T>,
+    seen: &'a [Point2<T>; 4],
+}
+
+impl<T: Real> LeastSquares<T, 6> for Corners<'_, T> {
+    type Estimate = Pose<T>;
+
+    fn equations(&self, pose: &Pose<T>, _bound: Option<T>) -> Option<NormalEquations<T, 6>> {
+        let k = &self.k;
+        let mut equations = NormalEquations::new();
+        for (corner, seen) in self.mark.corners().iter().zip(self.seen) {
             let arm = pose.rotation() * corner.coords;
             let p = arm + pose.translation();
             if !(p.z > T::ZERO) {
@@ -190,32 +175,19 @@ impl<T: Real> SquareMark<T> {
             let error = seen.coords - pixel;
             // d(u, v)/dP = (K - pixel (0 0 1)) / Z, row by row.
             for (row, (value, error)) in [(pixel.x, error.x), (pixel.y, error.y)].into_iter().enumerate() {
-                let slope = Vector3::new(k[(row, 0)], k[(row, 1)], k[(row, 2)] - value) * by;
-                // dP = w x arm + t: slope . (w x arm) = w . (arm x slope)
-                let (turn, moved) = (arm.cross(&slope), slope * self.side_m);
+                let by_point = Vector3::new(k[(row, 0)], k[(row, 1)], k[(row, 2)] - value) * by;
+                // dP = w x arm + t: by_point . (w x arm) = w . (arm x by_point)
+                let (turn, moved) = (arm.cross(&by_point), by_point * self.mark.side_m);
                 equations.add(&[turn.x, turn.y, turn.z, moved.x, moved.y, moved.z], error);
+                equations.cost += error * error;
             }
         }
         Some(equations)
     }
-}
 
-/// Least-squares equations of six unknowns.
-struct Equations<T> {
-    normal: [[T; 6]; 6],
-    right: [T; 6],
-    squares: T,
-}
-
-impl<T: Real> Equations<T> {
-    fn add(&mut self, slopes: &[T; 6], error: T) {
-        for ((row, right), &a) in self.normal.iter_mut().zip(&mut self.right).zip(slopes) {
-            for (element, &b) in row.iter_mut().zip(slopes) {
-                *element += a * b;
-            }
-            *right += a * error;
-        }
-        self.squares += error * error;
+    fn moved(&self, from: &Pose<T>, &[a, b, c, x, y, z]: &[T; 6]) -> Pose<T> {
+        let rotation = cayley(&Vector3::new(a, b, c)) * from.rotation();
+        Pose::of_parts(rotation, from.translation() + Vector3::new(x, y, z) * self.mark.side_m)
     }
 }
 

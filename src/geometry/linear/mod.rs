@@ -6,6 +6,7 @@
 //!   iteration.
 //! * [`null_of_rows`]: the one vector that N - 1 rows leave free, by elimination; [`pencil_of_rows`]: the two
 //!   that N - 2 do. [`rank`]: how many pivots count.
+//! * [`levenberg_marquardt`]: the loop of damped least squares, over any [`LeastSquares`] problem.
 //! * [`covariance6`]: the inverse of an information of six numbers.
 //! * [`cubic_roots`]: the real roots of a cubic.
 //! * [`Projective`]: the normal equations of `p ~ M q`.
@@ -28,6 +29,8 @@ mod elimination;
 
 mod ldl;
 
+mod levenberg_marquardt;
+
 mod covariance;
 
 mod projective;
@@ -38,6 +41,7 @@ pub(crate) use covariance::covariance6;
 pub(crate) use cubic::cubic_roots;
 pub(crate) use elimination::{null_of_rows, pencil_of_rows, rank};
 pub(crate) use ldl::Ldl;
+pub(crate) use levenberg_marquardt::{LeastSquares, NormalEquations, levenberg_marquardt};
 pub(crate) use matrix::{columns3, matrix3, product, rows3, times_transposed3, transposed3};
 pub(crate) use projective::Projective;
 pub(crate) use rotation::{cayley, skew};

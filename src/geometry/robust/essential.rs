@@ -2,7 +2,7 @@
 
 use super::factored::Factored;
 use super::frame::Frame;
-use super::loss::Loss;
+use super::loss::Biweight;
 use super::refine::{Matrix, refine};
 use crate::geometry::Real;
 use crate::geometry::camera::Camera;
@@ -28,11 +28,10 @@ impl<T: Real> Essential<T> {
     ) -> Result<Self, EssentialError> {
         let frames = [Frame::of_camera(first), Frame::of_camera(second)];
         let start = Factored::new(self.matrix()).ok_or(EssentialError::Rank)?.essential();
-        let loss = Loss::new(threshold_px);
+        let loss = Biweight::new(threshold_px);
         // From far to near: the start may come from a matrix that knew nothing of the cameras.
-        let (wide, _) =
-            refine(start, Matrix::Essential, seen, &frames, loss.widened(T::of(2.5)), (1, STEPS / 2));
-        let (near, _) = refine(wide, Matrix::Essential, seen, &frames, loss, (1, STEPS / 2));
+        let wide = refine(start, Matrix::Essential, seen, &frames, loss.widened(T::of(2.5)), (1, STEPS / 2));
+        let near = refine(wide, Matrix::Essential, seen, &frames, loss, (1, STEPS / 2));
         Self::nearest(&near.matrix())
     }
 }

@@ -2,9 +2,10 @@
 
 use super::config::RobustConfig;
 use super::frame::Frame;
-use super::loss::Loss;
+use super::loss::Biweight;
+use super::ransac::ransac;
 use super::refine::{Matrix, refine};
-use super::search::Search;
+use super::search::{MINIMUM, Search};
 use crate::geometry::Real;
 use crate::geometry::two_view::{Correspondence, Fundamental};
 
@@ -126,7 +127,7 @@ pub fn robust_fundamental<T: Real>(
     }
     let frames = Frame::of_points(seen).ok_or(RobustError::NoAgreement)?;
     let mut search = Search::new(seen, frames, config);
-    search.run(config);
+    let samples = ransac(&mut search, config.most_samples);
     if let Some(plane) = search.only_plane() {
         for (inlier, s) in inliers.iter_mut().zip(seen) {
             *inlier = plane.distance_squared_px2(s) <= search.on_plane_px2();
@@ -134,8 +135,8 @@ pub fn robust_fundamental<T: Real>(
         return Err(RobustError::Plane);
     }
     let best = search.best.ok_or(RobustError::NoAgreement)?;
-    let loss = Loss::new(config.threshold_px);
-    let (best, _) = refine(best, Matrix::Fundamental, seen, &frames, loss, (1, 20));
+    let loss = Biweight::new(config.threshold_px);
+    let best = refine(best, Matrix::Fundamental, seen, &frames, loss, (1, 20));
     let fundamental = Fundamental::of_singular(&search.in_pixels(&best.matrix()));
     let most = config.threshold_px * config.threshold_px;
     let (mut count, mut sum) = (0, T::ZERO);
@@ -147,14 +148,14 @@ pub fn robust_fundamental<T: Real>(
             sum += squared;
         }
     }
-    if count <= super::prosac::MINIMUM {
+    if count <= MINIMUM {
         return Err(RobustError::NoAgreement);
     }
     Ok(RobustFundamental {
         fundamental,
         inliers: count,
         rms_px: (sum / T::count(count)).sqrt(),
-        samples: search.drawn,
+        samples,
         miss_probability: search.missed,
     })
 }

@@ -21,6 +21,8 @@ mod random;
 
 mod prosac;
 
+mod ransac;
+
 mod loss;
 
 mod sprt;

@@ -1,9 +1,8 @@
 //! From a plane to the rest of the scene.
 
 use super::plane::Plane;
-use super::prosac::MINIMUM;
-use super::search::{ENOUGH, Search};
-use super::sprt::{Test, sampson};
+use super::search::{ENOUGH, MINIMUM, Search};
+use super::sprt::{Sprt, sampson};
 use crate::geometry::Real;
 use crate::geometry::two_view::Correspondence;
 use nalgebra::Matrix3;
@@ -37,8 +36,8 @@ impl<T: Real> Search<'_, T> {
             let order = self.order();
             // The plane is in all of them: what tells them apart is off it, which a wide loss sees better.
             let loss = self.loss.widened(T::of(ON_PLANE));
-            if let Some(worth) = Test::new().judge(&f, self.seen, loss, gain, order) {
-                (best, gain) = (Some(f), worth.gain);
+            if let Some(score) = Sprt::new().score(&f, self.seen, loss, gain, order) {
+                (best, gain) = (Some(f), score.gain);
             }
         }
         if let Some(f) = best {
@@ -49,7 +48,7 @@ impl<T: Real> Search<'_, T> {
     /// A correspondence that is not on the plane, of the first few that chance finds.
     fn off(&mut self, plane: &Plane<T>, px2: T) -> Option<Correspondence<T>> {
         (0..PAIRS).find_map(|_| {
-            let s = *self.seen.get(self.pool.below(self.seen.len()))?;
+            let s = *self.seen.get(self.sampler.below(self.seen.len()))?;
             (plane.distance_squared_px2(&s) > px2).then_some(s)
         })
     }
@@ -69,7 +68,7 @@ impl<T: Real> Search<'_, T> {
             }
         }
         let (plane, most) = plane?.fitted(self.seen, &self.frames, px2);
-        if 2 * most < self.worth.kept {
+        if 2 * most < self.score.inliers {
             return None;
         }
         self.leave(&plane);
@@ -86,7 +85,7 @@ impl<T: Real> Search<'_, T> {
     /// A correspondence that an estimate keeps, of the first few that chance finds.
     fn agreeing(&mut self, f: &Matrix3<T>) -> Option<Correspondence<T>> {
         (0..PAIRS).find_map(|_| {
-            let s = *self.seen.get(self.pool.below(self.seen.len()))?;
+            let s = *self.seen.get(self.sampler.below(self.seen.len()))?;
             self.agrees(f, &s).then_some(s)
         })
     }

@@ -6,7 +6,6 @@
 //! Matas 2005).
 
 use super::frame::Frame;
-use super::prosac::MINIMUM;
 use crate::geometry::Real;
 use crate::geometry::linear::{columns3, product, skew};
 use crate::geometry::two_view::{Correspondence, least_squares};
@@ -31,7 +30,7 @@ impl<T: Real> Plane<T> {
 
     /// The plane of five correspondences or more of a sample, to within `px2` px squared, for the F of that
     /// sample.
-    pub(super) fn of_sample(f: &Matrix3<T>, sample: &[Correspondence<T>; MINIMUM], px2: T) -> Option<Self> {
+    pub(super) fn of_sample(f: &Matrix3<T>, sample: &[Correspondence<T>; 7], px2: T) -> Option<Self> {
         TRIPLETS.iter().find_map(|triplet| {
             let [Some(x), Some(y), Some(z)] = triplet.map(|i| sample.get(i).copied()) else { return None };
             let plane = Self::through(f, [x, y, z])?;
@@ -113,7 +112,7 @@ pub(super) fn left_null<T: Real>(f: &Matrix3<T>) -> Option<Vector3<T>> {
 
 /// Whether all correspondences of a sample are before both cameras, or can be: the line `F p'` and the one
 /// from the epipole to p have the same sense for all of them (Chum, Werner & Matas 2004).
-pub(super) fn one_sense<T: Real>(f: &Matrix3<T>, sample: &[Correspondence<T>; MINIMUM]) -> bool {
+pub(super) fn one_sense<T: Real>(f: &Matrix3<T>, sample: &[Correspondence<T>; 7]) -> bool {
     let Some(epipole) = left_null(f) else { return false };
     let senses = sample.map(|s| {
         let line = f * s.second.to_homogeneous();

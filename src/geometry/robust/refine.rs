@@ -1,4 +1,4 @@
-//! The estimate that makes the geometric error least.
+//! F or E by the least robust loss of Sampson's distances (Hartley & Zisserman 2004, 11.4.3), by Levenberg-Marquardt.
 
 #![allow(
     clippy::needless_range_loop,
@@ -7,9 +7,9 @@
 
 use super::factored::{FREE, Factored};
 use super::frame::Frame;
-use super::loss::Loss;
+use super::loss::{Biweight, weight_and_gain};
 use crate::geometry::Real;
-use crate::geometry::linear::Ldl;
+use crate::geometry::linear::{LeastSquares, NormalEquations, levenberg_marquardt};
 use crate::geometry::two_view::Correspondence;
 use nalgebra::Vector3;
 
@@ -22,20 +22,21 @@ pub(super) enum Matrix {
     Essential,
 }
 
-/// The normal equations of weighted least squares about an estimate.
-struct Equations<T: Real> {
-    /// The sum of `(1 - d^2 / w^2)^3`: more is better.
-    gain: T,
-    matrix: [[T; FREE]; FREE],
-    slope: [T; FREE],
+/// The loss of Sampson's distances, over the seven or five numbers of the matrix.
+struct SampsonLoss<'a, T: Real> {
+    kind: Matrix,
+    seen: &'a [Correspondence<T>],
+    frames: &'a [Frame<T>; 2],
+    loss: Biweight<T>,
+    /// Of the correspondences every so manyth is used.
+    every: usize,
 }
 
-/// Estimates at which equations are set up, at most.
+/// Steps at most.
 const MOST_STEPS: usize = 20;
 
-/// Levenberg's and Marquardt's method, `steps` at most, on the sum of the loss of Sampson's distances, by the
-/// seven or five numbers of the matrix; the estimate and its gain. Of the correspondences every `every`th is
-/// used.
+/// The estimate near `start` with the least loss of Sampson's distances, by Levenberg-Marquardt, `steps` at
+/// most. Of the correspondences every `every`th is used.
 ///
 /// One pass over the correspondences a step: about 150 operations for each that has a weight, 40 for one that
 /// has none.
@@ -45,55 +46,26 @@ pub(super) fn refine<T: Real>(
     kind: Matrix,
     seen: &[Correspondence<T>],
     frames: &[Frame<T>; 2],
-    loss: Loss<T>,
+    loss: Biweight<T>,
     (every, steps): (usize, usize),
-) -> (Factored<T>, T) {
-    let mut best = start;
-    let mut equations = Equations::about(&best, kind, seen.iter().step_by(every.max(1)), frames, loss);
-    let mut damping = T::of(1e-4);
-    for _ in 0..steps.min(MOST_STEPS) {
-        let step = equations.step(damping);
-        let size = step.iter().fold(T::ZERO, |sum, &x| sum.max(x.abs()));
-        if !size.is_finite() {
-            break;
-        }
-        let moved = best.moved(&step);
-        let there = Equations::about(&moved, kind, seen.iter().step_by(every.max(1)), frames, loss);
-        if there.gain > equations.gain {
-            let better = there.gain - equations.gain;
-            let settled = better <= there.gain * T::of(1e-7).max(T::EPSILON * T::of(4.0));
-            (best, equations) = (moved, there);
-            damping = (damping * T::of(0.1)).max(T::of(1e-6));
-            if settled {
-                break;
-            }
-        } else {
-            // In f32 the gain may be the same to rounding; a larger damping does not make it better.
-            if size <= T::EPSILON.sqrt() * T::of(1e-2) {
-                break;
-            }
-            damping *= T::of(16.0);
-        }
-    }
-    (best, equations.gain)
+) -> Factored<T> {
+    let problem = SampsonLoss { kind, seen, frames, loss, every: every.max(1) };
+    levenberg_marquardt(&problem, start, steps.min(MOST_STEPS)).map_or(start, |(best, _)| best)
 }
 
-impl<T: Real> Equations<T> {
+impl<T: Real> LeastSquares<T, FREE> for SampsonLoss<'_, T> {
+    type Estimate = Factored<T>;
+
     #[inline(never)]
-    fn about<'a>(
-        f: &Factored<T>,
-        kind: Matrix,
-        seen: impl Iterator<Item = &'a Correspondence<T>>,
-        [first, second]: &[Frame<T>; 2],
-        loss: Loss<T>,
-    ) -> Self {
+    fn equations(&self, f: &Factored<T>, _bound: Option<T>) -> Option<NormalEquations<T, FREE>> {
+        let Self { kind, seen, frames: [first, second], loss, every } = *self;
         let mut gain = T::ZERO;
         let mut matrix = [[T::ZERO; FREE]; FREE];
-        let mut slope = [T::ZERO; FREE];
+        let mut right = [T::ZERO; FREE];
         let (u, v) = (f.u, f.v);
         let m = f.matrix();
         let per_width = T::ONE / loss.width_squared;
-        for s in seen {
+        for s in seen.iter().step_by(every) {
             let (p, q) = (first.apply(s.first), second.apply(s.second));
             let (p, q) = (Vector3::new(p.x, p.y, T::ONE), Vector3::new(q.x, q.y, T::ONE));
             // The lines, and what a step of a pixel along their normals is in the frame.
@@ -108,9 +80,8 @@ impl<T: Real> Equations<T> {
                 continue;
             }
             let per_steep = T::ONE / steep;
-            let left = T::ONE - squared * per_steep * per_width;
-            let weight = left * left;
-            gain += weight * left;
+            let (weight, worth) = weight_and_gain(squared * per_steep * per_width);
+            gain += worth;
             // The derivative of Sampson's distance is the residual's at the corrected points, to within the
             // square of the correction over the size of the picture.
             let by = residual * per_steep;
@@ -120,7 +91,7 @@ impl<T: Real> Equations<T> {
             let w = weight * per_steep;
             for i in 0..FREE {
                 let wd = w * d[i];
-                slope[i] += wd * residual;
+                right[i] -= wd * residual;
                 for j in i..FREE {
                     matrix[i][j] += wd * d[j];
                 }
@@ -133,25 +104,41 @@ impl<T: Real> Equations<T> {
             }
         }
         if kind == Matrix::Essential {
-            let [.., fifth, sixth] = &mut slope;
-            (*fifth, *sixth) = (T::ZERO, T::ZERO);
+            let [.., sixth, seventh] = &mut right;
+            (*sixth, *seventh) = (T::ZERO, T::ZERO);
             for (k, row) in matrix.iter_mut().enumerate() {
                 for (j, element) in row.iter_mut().enumerate().filter(|(j, _)| k.max(*j) >= 5) {
                     *element = if j == k { T::ONE } else { T::ZERO };
                 }
             }
         }
-        Self { gain, matrix, slope }
+        Some(NormalEquations { matrix, right, cost: -gain })
     }
 
-    /// `-(A + damping diag A)^-1 slope`.
-    fn step(&self, damping: T) -> [T; FREE] {
-        let mut damped = self.matrix;
-        for (k, row) in damped.iter_mut().enumerate() {
-            if let Some(diagonal) = row.get_mut(k) {
-                *diagonal += *diagonal * damping;
-            }
-        }
-        Ldl::new(&mut damped).solve(&self.slope).map(|x| -x)
+    fn moved(&self, from: &Factored<T>, step: &[T; FREE]) -> Factored<T> {
+        from.moved(step)
+    }
+
+    fn damped(&self, diagonal: T, damping: T) -> T {
+        diagonal + diagonal * damping
+    }
+
+    fn is_better(&self, before: T, after: T) -> bool {
+        after < before
+    }
+
+    fn is_settled(&self, before: T, after: T) -> bool {
+        before - after <= -after * T::of(1e-7).max(T::EPSILON * T::of(4.0))
+    }
+
+    fn after_taken(&self, damping: T) -> T {
+        (damping * T::of(0.1)).max(T::of(1e-6))
+    }
+
+    fn after_refused(&self, damping: T, step: &[T; FREE]) -> Option<T> {
+        // In f32 the gain may be the same to rounding; a larger damping does not make it better.
+        let least = T::EPSILON.sqrt() * T::of(1e-2);
+        let size = step.iter().fold(T::ZERO, |sum, &x| sum.max(x.abs()));
+        (size > least && size.is_finite()).then(|| damping * T::of(16.0))
     }
 }

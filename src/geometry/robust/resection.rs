@@ -1,12 +1,13 @@
-//! Where a camera stands, from points of known position of which some are wrong.
+//! PnP with outliers: a camera's pose from points of known position, by RANSAC over P3P.
 
-use super::config::RobustConfig;
-use super::loss::Loss;
-use super::random::Random;
+use super::config::{RobustConfig, Sampling};
+use super::loss::{Biweight, weight_and_gain};
+use super::prosac::Sampler;
+use super::ransac::{Estimator, ransac};
 use crate::geometry::Real;
 use crate::geometry::absolute::{Landmark, p3p};
 use crate::geometry::camera::{Camera, Pose};
-use crate::geometry::linear::{Ldl, cayley, covariance6, skew};
+use crate::geometry::linear::{LeastSquares, NormalEquations, covariance6, levenberg_marquardt, skew};
 use nalgebra::{Matrix3, Matrix6, Point3, Vector3};
 
 /// Why landmarks give no pose, however many of them are left out.
@@ -85,28 +86,22 @@ pub fn robust_resection<T: Real>(
     inliers: &mut [bool],
 ) -> Result<RobustResection<T>, RobustResectionError> {
     check(landmarks, config, inliers.len())?;
-    let problem = Problem { landmarks, k: camera.matrix(), inverse: camera.inverse_matrix() };
-    let loss = Loss::new(config.threshold_px);
-    let mut random = Random::new(config.seed);
-    let mut best: Option<(Pose<T>, T)> = None;
-    let (mut samples, mut needed) = (0, config.most_samples);
-    while samples < needed {
-        samples += 1;
-        for pose in problem.sample(&mut random) {
-            let Some(gain) = problem.gain(&pose, loss, best.map_or(T::ZERO, |(_, gain)| gain)) else {
-                continue;
-            };
-            // The refinement of a pose by its own landmarks makes it better, or it is as it was.
-            let (refined, _) = problem.refined(pose, loss, QUICK);
-            let better = problem.gain(&refined, loss, gain);
-            let (pose, gain) = better.map_or((pose, gain), |better| (refined, better));
-            best = Some((pose, gain));
-            let share = T::count(problem.within(&pose, config.threshold_px).0) / T::count(landmarks.len());
-            needed = needed.min(enough(share, config));
-        }
-    }
-    let (pose, _) = best.ok_or(RobustResectionError::NoAgreement)?;
-    let (pose, information) = problem.refined(pose, loss, LAST);
+    let problem = Problem {
+        landmarks,
+        k: camera.matrix(),
+        inverse: camera.inverse_matrix(),
+        loss: Biweight::new(config.threshold_px),
+    };
+    let mut search = Search {
+        problem: &problem,
+        config,
+        sampler: Sampler::new(Sampling::Uniform, config.seed, landmarks.len()),
+        best: None,
+        needed: config.most_samples,
+    };
+    let samples = ransac(&mut search, config.most_samples);
+    let (pose, _) = search.best.ok_or(RobustResectionError::NoAgreement)?;
+    let (pose, information) = problem.refined(pose, LAST);
     let (count, squares) = problem.within(&pose, config.threshold_px);
     if count <= MINIMUM {
         return Err(RobustResectionError::NoAgreement);
@@ -156,29 +151,64 @@ fn enough<T: Real>(share: T, config: &RobustConfig<T>) -> u32 {
     if samples < T::of(f64::from(u32::MAX)) { samples.to_f64() as u32 + 1 } else { u32::MAX }
 }
 
-struct Problem<'a, T: Real> {
-    landmarks: &'a [Landmark<T>],
-    k: Matrix3<T>,
-    inverse: Matrix3<T>,
+/// The RANSAC search, and the best pose so far with its gain.
+struct Search<'a, T: Real> {
+    problem: &'a Problem<'a, T>,
+    config: &'a RobustConfig<T>,
+    sampler: Sampler<MINIMUM>,
+    best: Option<(Pose<T>, T)>,
+    /// Samples after which a better pose is as unlikely as asked.
+    needed: u32,
 }
 
-impl<T: Real> Problem<'_, T> {
-    /// The poses of a random sample.
-    fn sample(&self, random: &mut Random) -> impl Iterator<Item = Pose<T>> {
-        let chosen: [usize; MINIMUM] = random.sample(self.landmarks.len());
-        let mut sights = [Vector3::z(); MINIMUM];
+impl<'a, T: Real> Estimator<MINIMUM> for Search<'a, T> {
+    type Model = Pose<T>;
+
+    fn draw(&mut self, drawn: u32) -> [usize; MINIMUM] {
+        self.sampler.next(drawn)
+    }
+
+    fn models(&self, sample: &[usize; MINIMUM]) -> impl Iterator<Item = Pose<T>> + use<'a, T> {
+        let mut rays = [Vector3::z(); MINIMUM];
         let mut points = [Point3::origin(); MINIMUM];
-        for ((sight, point), &place) in sights.iter_mut().zip(&mut points).zip(&chosen) {
-            if let Some(landmark) = self.landmarks.get(place) {
-                *sight = self.inverse * landmark.pixel.to_homogeneous();
+        for ((ray, point), &place) in rays.iter_mut().zip(&mut points).zip(sample) {
+            if let Some(landmark) = self.problem.landmarks.get(place) {
+                *ray = self.problem.inverse * landmark.pixel.to_homogeneous();
                 *point = landmark.world;
             }
         }
-        let poses = p3p(&sights, &points).ok();
+        let poses = p3p(&rays, &points).ok();
         let at = move |i: usize| poses.as_ref().and_then(|p| p.as_slice().get(i).copied());
         (0..4).map_while(at)
     }
 
+    fn consider(&mut self, model: &Pose<T>, _sample: &[usize; MINIMUM]) {
+        let Self { problem, config, .. } = *self;
+        let Some(gain) = problem.gain(model, self.best.map_or(T::ZERO, |(_, gain)| gain)) else { return };
+        // The refinement of a pose by its own landmarks makes it better, or it is as it was.
+        let (refined, _) = problem.refined(*model, QUICK);
+        let better = problem.gain(&refined, gain);
+        let (pose, gain) = better.map_or((*model, gain), |better| (refined, better));
+        self.best = Some((pose, gain));
+        let inliers = problem.within(&pose, config.threshold_px).0;
+        let share = T::count(inliers) / T::count(problem.landmarks.len());
+        self.needed = self.needed.min(enough(share, config));
+    }
+
+    fn is_enough(&mut self, drawn: u32) -> bool {
+        drawn >= self.needed
+    }
+}
+
+/// The re-projection errors of landmarks, over a rotation and a step along the camera's axes.
+struct Problem<'a, T: Real> {
+    landmarks: &'a [Landmark<T>],
+    k: Matrix3<T>,
+    inverse: Matrix3<T>,
+    loss: Biweight<T>,
+}
+
+impl<T: Real> Problem<'_, T> {
     /// The squared distance of a landmark's projection from its pixel, px^2; `None` behind the camera.
     #[inline(always)]
     fn squared(&self, pose: &Pose<T>, landmark: &Landmark<T>) -> Option<T> {
@@ -192,14 +222,13 @@ impl<T: Real> Problem<'_, T> {
     }
 
     /// The sum of the loss's gains, if it is more than `best`.
-    fn gain(&self, pose: &Pose<T>, loss: Loss<T>, best: T) -> Option<T> {
-        let per_width = T::ONE / loss.width_squared;
+    fn gain(&self, pose: &Pose<T>, best: T) -> Option<T> {
+        let per_width = T::ONE / self.loss.width_squared;
         let mut ahead = T::count(self.landmarks.len());
         let mut gain = T::ZERO;
         for landmark in self.landmarks {
             ahead -= T::ONE;
-            let left = T::ONE - self.squared(pose, landmark).map_or(T::ONE, |e| (e * per_width).min(T::ONE));
-            gain += left * left * left;
+            gain += self.squared(pose, landmark).map_or(T::ZERO, |e| gain_of(e * per_width));
             if gain + ahead <= best {
                 return None;
             }
@@ -214,67 +243,82 @@ impl<T: Real> Problem<'_, T> {
         near.fold((0, T::ZERO), |(count, sum), e| (count + 1, sum + e))
     }
 
-    /// The pose after some steps of Gauss and Newton's method with weights `(1 - e^2 / w^2)^2`, each held to
-    /// a step that makes the gain larger; and the weighted information at it, px^-2.
-    fn refined(&self, start: Pose<T>, loss: Loss<T>, steps: usize) -> (Pose<T>, [[T; 6]; 6]) {
-        let mut pose = start;
-        let mut gain = self.gain(&pose, loss, -T::ONE).unwrap_or(T::ZERO);
-        for _ in 0..steps {
-            let (information, slope) = self.normal(&pose, loss);
-            let [a, b, c, d, e, f] = Ldl::<T, 6>::new(&mut { information }).solve(&slope);
-            let next = moved(&pose, &Vector3::new(a, b, c), &Vector3::new(d, e, f));
-            let Some(then) = self.gain(&next, loss, gain) else { break };
-            let little = then - gain <= gain * T::EPSILON.sqrt();
-            (pose, gain) = (next, then);
-            if little {
-                break;
-            }
-        }
-        let (information, _) = self.normal(&pose, loss);
-        (pose, information)
-    }
-
-    /// The normal equations of a turn and a step along the camera's axes.
-    fn normal(&self, pose: &Pose<T>, loss: Loss<T>) -> ([[T; 6]; 6], [T; 6]) {
-        let (mut information, mut slope) = ([[T::ZERO; 6]; 6], [T::ZERO; 6]);
-        for landmark in self.landmarks {
-            let p = pose.inverse_transform(&landmark.world).coords;
-            let seen = self.k * p;
-            if !(seen.z > T::ZERO) {
-                continue;
-            }
-            let by = T::ONE / seen.z;
-            let (u, v) = (seen.x * by, seen.y * by);
-            let (du, dv) = (landmark.pixel.x - u, landmark.pixel.y - v);
-            let left = T::ONE - (du * du + dv * dv) / loss.width_squared;
-            if !(left > T::ZERO) {
-                continue;
-            }
-            let weight = left * left;
-            // P' = exp(-[w]x) P' - d, so that the slopes by w and d are [P']x and -1.
-            let turned = skew(&p);
-            let k = &self.k;
-            for (across, at, error) in [
-                (Vector3::new(k.m11, k.m12, k.m13), u, du), //
-                (Vector3::new(k.m21, k.m22, k.m23), v, dv),
-            ] {
-                let by_point = (across - Vector3::new(k.m31, k.m32, k.m33) * at) * by;
-                let by_turn = turned.tr_mul(&by_point);
-                let j = [by_turn.x, by_turn.y, by_turn.z, -by_point.x, -by_point.y, -by_point.z];
-                for ((line, slope), &a) in information.iter_mut().zip(&mut slope).zip(&j) {
-                    *slope += a * error * weight;
-                    for (sum, &b) in line.iter_mut().zip(&j) {
-                        *sum += a * b * weight;
-                    }
-                }
-            }
-        }
-        (information, slope)
+    /// The pose after some steps of Gauss-Newton, each of which makes the gain larger, and the weighted
+    /// information at it, px^-2.
+    fn refined(&self, start: Pose<T>, steps: usize) -> (Pose<T>, [[T; 6]; 6]) {
+        let none = [[T::ZERO; 6]; 6];
+        let found = levenberg_marquardt(self, start, steps);
+        found.map_or((start, none), |(pose, equations)| (pose, equations.matrix))
     }
 }
 
-/// A pose after a turn and a step along the camera's axes.
-fn moved<T: Real>(pose: &Pose<T>, by: &Vector3<T>, step: &Vector3<T>) -> Pose<T> {
-    let rotation = pose.rotation() * cayley(by);
-    Pose::of_parts(rotation, pose.translation() + rotation * step)
+/// The gain of a landmark with this share of the squared width.
+fn gain_of<T: Real>(share: T) -> T {
+    weight_and_gain(share.min(T::ONE)).1
+}
+
+impl<T: Real> LeastSquares<T, 6> for Problem<'_, T> {
+    type Estimate = Pose<T>;
+
+    const FIRST_DAMPING: f64 = 0.0;
+
+    fn equations(&self, pose: &Pose<T>, bound: Option<T>) -> Option<NormalEquations<T, 6>> {
+        let per_width = T::ONE / self.loss.width_squared;
+        let mut ahead = T::count(self.landmarks.len());
+        let mut gain = T::ZERO;
+        let (mut matrix, mut right) = ([[T::ZERO; 6]; 6], [T::ZERO; 6]);
+        for landmark in self.landmarks {
+            ahead -= T::ONE;
+            let p = pose.inverse_transform(&landmark.world).coords;
+            let seen = self.k * p;
+            if seen.z > T::ZERO {
+                let by = T::ONE / seen.z;
+                let (u, v) = (seen.x * by, seen.y * by);
+                let (du, dv) = (landmark.pixel.x - u, landmark.pixel.y - v);
+                let squared = du * du + dv * dv;
+                gain += gain_of(squared * per_width);
+                let share = squared / self.loss.width_squared;
+                if share < T::ONE {
+                    let (weight, _) = weight_and_gain(share);
+                    // P' = exp(-[w]x) P' - d, so that its Jacobian by w and d is [P']x and -1.
+                    let cross = skew(&p);
+                    let k = &self.k;
+                    for (across, at, error) in [
+                        (Vector3::new(k.m11, k.m12, k.m13), u, du), //
+                        (Vector3::new(k.m21, k.m22, k.m23), v, dv),
+                    ] {
+                        let by_point = (across - Vector3::new(k.m31, k.m32, k.m33) * at) * by;
+                        let by_turn = cross.tr_mul(&by_point);
+                        let j = [by_turn.x, by_turn.y, by_turn.z, -by_point.x, -by_point.y, -by_point.z];
+                        for ((row, right), &a) in matrix.iter_mut().zip(&mut right).zip(&j) {
+                            *right += a * error * weight;
+                            for (sum, &b) in row.iter_mut().zip(&j) {
+                                *sum += a * b * weight;
+                            }
+                        }
+                    }
+                }
+            }
+            if bound.is_some_and(|bound| gain + ahead <= -bound) {
+                return None;
+            }
+        }
+        Some(NormalEquations { matrix, right, cost: -gain })
+    }
+
+    fn moved(&self, from: &Pose<T>, step: &[T; 6]) -> Pose<T> {
+        from.moved(step)
+    }
+
+    fn is_better(&self, before: T, after: T) -> bool {
+        after < before
+    }
+
+    fn is_settled(&self, before: T, after: T) -> bool {
+        before - after <= -before * T::EPSILON.sqrt()
+    }
+
+    fn after_refused(&self, _damping: T, _step: &[T; 6]) -> Option<T> {
+        None
+    }
 }

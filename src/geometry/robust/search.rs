@@ -1,17 +1,21 @@
-//! The loop over samples.
+//! The fundamental matrix of correspondences with outliers by RANSAC: DEGENSAC (Chum, Werner & Matas 2005).
 
 use super::config::RobustConfig;
 use super::factored::Factored;
 use super::frame::Frame;
-use super::loss::Loss;
+use super::loss::Biweight;
 use super::plane::{Plane, one_sense};
-use super::prosac::{MINIMUM, Pool, Sample};
+use super::prosac::Sampler;
+use super::ransac::Estimator;
 use super::refine::{Matrix, refine};
-use super::sprt::{Test, Worth};
+use super::sprt::{Score, Sprt};
 use crate::geometry::Real;
 use crate::geometry::linear::product;
 use crate::geometry::two_view::{Correspondence, seven_point};
-use nalgebra::{Matrix3, Point2};
+use nalgebra::Matrix3;
+
+/// Correspondences of a sample.
+pub(super) const MINIMUM: usize = 7;
 
 /// What a candidate has to be worth to be refined, over the best candidate before it: refined ones end in
 /// different minima, and the best candidate's need not be the best.
@@ -25,16 +29,15 @@ const FEWEST: u32 = 16;
 pub(super) struct Search<'a, T: Real> {
     pub(super) seen: &'a [Correspondence<T>],
     pub(super) frames: [Frame<T>; 2],
-    pub(super) loss: Loss<T>,
-    pub(super) pool: Pool,
-    pub(super) test: Test<T>,
+    pub(super) loss: Biweight<T>,
+    pub(super) sampler: Sampler<MINIMUM>,
+    sprt: Sprt<T>,
     stride: usize,
-    /// What the best candidate was worth before it was refined.
+    miss_probability: T,
+    /// The gain of the best candidate before it was refined.
     raw_gain: T,
     pub(super) best: Option<Factored<T>>,
-    pub(super) worth: Worth<T>,
-    /// Samples drawn.
-    pub(super) drawn: u32,
+    pub(super) score: Score<T>,
     /// The probability that a better estimate was missed.
     pub(super) missed: T,
 }
@@ -49,41 +52,29 @@ impl<'a, T: Real> Search<'a, T> {
         Self {
             seen,
             frames,
-            loss: Loss::new(config.threshold_px),
-            pool: Pool::new(config.sampling, config.seed, seen.len()),
-            test: Test::new(),
+            loss: Biweight::new(config.threshold_px),
+            sampler: Sampler::new(config.sampling, config.seed, seen.len()),
+            sprt: Sprt::new(),
             stride: stride(seen.len()),
+            miss_probability: config.miss_probability,
             raw_gain: T::ZERO,
             best: None,
-            worth: Worth { gain: T::ZERO, kept: 0 },
-            drawn: 0,
+            score: Score { gain: T::ZERO, inliers: 0 },
             missed: T::ONE,
-        }
-    }
-
-    /// Draws samples until a better estimate is as unlikely as asked, or their number is.
-    pub(super) fn run(&mut self, config: &RobustConfig<T>) {
-        while self.drawn < config.most_samples
-            && (self.drawn < FEWEST || self.missed > config.miss_probability)
-        {
-            let sample = self.pool.next(self.drawn);
-            self.drawn += 1;
-            self.try_sample(&sample);
-            self.missed = self.miss();
         }
     }
 
     /// `(1 - w^7)^k`: the probability that none of k samples held correspondences of the best estimate alone,
     /// w being their share.
-    fn miss(&self) -> T {
+    fn miss(&self, drawn: u32) -> T {
         let (mut kept, mut all, mut all_good) =
-            (T::count(self.worth.kept), T::count(self.seen.len()), T::ONE);
+            (T::count(self.score.inliers), T::count(self.seen.len()), T::ONE);
         for _ in 0..MINIMUM {
             all_good *= kept.max(T::ZERO) / all;
             (kept, all) = (kept - T::ONE, all - T::ONE);
         }
         // A good estimate is dropped unseen once in a hundred times.
-        let (mut base, mut missed, mut left) = (T::ONE - all_good * T::of(0.99), T::ONE, self.drawn);
+        let (mut base, mut missed, mut left) = (T::ONE - all_good * T::of(0.99), T::ONE, drawn);
         while left > 0 {
             if left & 1 == 1 {
                 missed *= base;
@@ -94,24 +85,8 @@ impl<'a, T: Real> Search<'a, T> {
         missed
     }
 
-    fn try_sample(&mut self, places: &Sample) {
-        let Some(sample) = self.at(places) else { return };
-        let [first, second] = self.frames;
-        let normalised: [(Point2<T>, Point2<T>); MINIMUM] =
-            sample.map(|s| (first.apply(s.first), second.apply(s.second)));
-        for candidate in &seven_point(&normalised) {
-            let f = self.in_pixels(candidate);
-            if !one_sense(&f, &sample) || !self.consider(&f) {
-                continue;
-            }
-            if let Some(plane) = Plane::of_sample(&f, &sample, self.on_plane_px2()) {
-                self.leave(&plane);
-            }
-        }
-    }
-
     /// The correspondences at those places.
-    fn at(&self, places: &Sample) -> Option<[Correspondence<T>; MINIMUM]> {
+    fn at(&self, places: &[usize; MINIMUM]) -> Option<[Correspondence<T>; MINIMUM]> {
         let mut sample = [*self.seen.first()?; MINIMUM];
         for (slot, &place) in sample.iter_mut().zip(places) {
             *slot = *self.seen.get(place)?;
@@ -127,19 +102,19 @@ impl<'a, T: Real> Search<'a, T> {
 
     /// Where an evaluation of the correspondences begins, and the step by which it goes on.
     pub(super) fn order(&mut self) -> (usize, usize) {
-        (self.pool.below(self.seen.len()), self.stride)
+        (self.sampler.below(self.seen.len()), self.stride)
     }
 
     /// Makes an estimate (px) the best one, after it was refined, when it is better than that before; whether
     /// it is.
-    fn consider(&mut self, f: &Matrix3<T>) -> bool {
+    fn compare(&mut self, f: &Matrix3<T>) -> bool {
         let order = self.order();
-        let Some(worth) = self.test.judge(f, self.seen, self.loss, self.raw_gain * T::of(NEARLY), order)
+        let Some(score) = self.sprt.score(f, self.seen, self.loss, self.raw_gain * T::of(NEARLY), order)
         else {
             return false;
         };
-        self.raw_gain = self.raw_gain.max(worth.gain);
-        self.test.learn(T::count(worth.kept) / T::count(self.seen.len()));
+        self.raw_gain = self.raw_gain.max(score.gain);
+        self.sprt.learn(T::count(score.inliers) / T::count(self.seen.len()));
         self.improve(f)
     }
 
@@ -153,16 +128,45 @@ impl<'a, T: Real> Search<'a, T> {
         let every = self.seen.len() / ENOUGH;
         for (wider, steps) in [(T::of(2.5), 3), (T::ONE, 3)] {
             let loss = self.loss.widened(wider);
-            (refined, _) =
-                refine(refined, Matrix::Fundamental, self.seen, &self.frames, loss, (every, steps));
+            refined = refine(refined, Matrix::Fundamental, self.seen, &self.frames, loss, (every, steps));
         }
         let (f, order) = (self.in_pixels(&refined.matrix()), self.order());
         // Without a best one nothing is dropped.
-        let Some(worth) = Test::new().judge(&f, self.seen, self.loss, self.worth.gain, order) else {
+        let Some(score) = Sprt::new().score(&f, self.seen, self.loss, self.score.gain, order) else {
             return false;
         };
-        (self.best, self.worth) = (Some(refined), worth);
+        (self.best, self.score) = (Some(refined), score);
         true
+    }
+}
+
+impl<'a, T: Real> Estimator<MINIMUM> for Search<'a, T> {
+    type Model = Matrix3<T>;
+
+    fn draw(&mut self, drawn: u32) -> [usize; MINIMUM] {
+        self.sampler.next(drawn)
+    }
+
+    fn models(&self, sample: &[usize; MINIMUM]) -> impl Iterator<Item = Matrix3<T>> + use<'a, T> {
+        let [first, second] = self.frames;
+        let sample = self.at(sample).map(|seen| seen.map(|s| (first.apply(s.first), second.apply(s.second))));
+        sample.map(|normalised| seven_point(&normalised)).into_iter().flatten()
+    }
+
+    fn consider(&mut self, model: &Matrix3<T>, sample: &[usize; MINIMUM]) {
+        let Some(sample) = self.at(sample) else { return };
+        let f = self.in_pixels(model);
+        if !one_sense(&f, &sample) || !self.compare(&f) {
+            return;
+        }
+        if let Some(plane) = Plane::of_sample(&f, &sample, self.on_plane_px2()) {
+            self.leave(&plane);
+        }
+    }
+
+    fn is_enough(&mut self, drawn: u32) -> bool {
+        self.missed = self.miss(drawn);
+        drawn >= FEWEST && !(self.missed > self.miss_probability)
     }
 }
 

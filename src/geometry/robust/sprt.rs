@@ -1,6 +1,6 @@
-//! Whether an estimate is good, from as few correspondences as say so.
+//! Randomised RANSAC with the sequential probability ratio test, SPRT (Matas & Chum 2005).
 
-use super::loss::Loss;
+use super::loss::{Biweight, weight_and_gain};
 use crate::geometry::Real;
 use crate::geometry::two_view::Correspondence;
 use nalgebra::{Matrix3, Vector3};
@@ -9,67 +9,73 @@ use nalgebra::{Matrix3, Vector3};
 /// many is dropped at most.
 const DROP: f64 = 100.0;
 
-/// Wald's sequential test of estimates against the best so far (Matas & Chum 2005): correspondence after
-/// correspondence the odds change by how often a good and a bad estimate keep one, and a bad one is dropped
+/// Wald's sequential probability ratio test (SPRT) of estimates against the best so far (Matas & Chum 2005): correspondence after
+/// correspondence the odds change by how often one is an inlier of a good and of a bad estimate, and a bad one is dropped
 /// after a few.
-pub(super) struct Test<T: Real> {
-    /// Shares of the correspondences that the best estimate keeps, and that a wrong one does.
+pub(super) struct Sprt<T: Real> {
+    /// Shares of inliers of the best estimate, and of a wrong one.
     good: T,
     bad: T,
-    /// What the odds are multiplied by when a correspondence is kept, and when not.
-    kept: T,
-    lost: T,
-    /// Correspondences that dropped estimates have kept, and all that they were tried on.
+    /// The likelihood ratios of an inlier and of an outlier, by which the odds are multiplied.
+    inlier_ratio: T,
+    outlier_ratio: T,
+    /// Inliers of dropped estimates, and all correspondences that those were tried on.
     chance: (T, T),
 }
 
-/// What an estimate is worth.
+/// The score of an estimate.
 #[derive(Clone, Copy)]
-pub(super) struct Worth<T: Real> {
+pub(super) struct Score<T: Real> {
     /// The sum of the loss's gains.
     pub(super) gain: T,
     /// How many correspondences are within the loss's width.
-    pub(super) kept: usize,
+    pub(super) inliers: usize,
 }
 
-impl<T: Real> Test<T> {
+impl<T: Real> Sprt<T> {
     pub(super) fn new() -> Self {
         // Until something is known: nothing is dropped.
         let one = T::ONE;
-        Self { good: T::ZERO, bad: T::of(0.05), kept: one, lost: one, chance: (T::of(2.0), T::of(40.0)) }
+        Self {
+            good: T::ZERO,
+            bad: T::of(0.05),
+            inlier_ratio: one,
+            outlier_ratio: one,
+            chance: (T::of(2.0), T::of(40.0)),
+        }
     }
 
-    /// The best estimate keeps this share of the correspondences.
+    /// Takes note of the share of inliers of the best estimate.
     pub(super) fn learn(&mut self, good: T) {
         self.good = good;
-        self.settle();
+        self.update_ratios();
     }
 
-    fn settle(&mut self) {
+    fn update_ratios(&mut self) {
         let (least, most) = (T::of(0.005), T::of(0.999));
         self.bad = (self.chance.0 / self.chance.1).max(least);
         let good = self.good.min(most);
-        // Where chance keeps nearly as many as the best estimate, nothing can be told by counting.
-        (self.kept, self.lost) = if good > self.bad * T::of(1.2) {
+        // Where a wrong estimate has nearly as many inliers as the best, nothing can be told by counting.
+        (self.inlier_ratio, self.outlier_ratio) = if good > self.bad * T::of(1.2) {
             (self.bad / good, (T::ONE - self.bad) / (T::ONE - good))
         } else {
             (T::ONE, T::ONE)
         };
     }
 
-    /// What F (in px) is worth, or `None` as soon as it is clear that it is not better than `best`. The
+    /// The score of F (in px), or `None` as soon as it is clear that it is not better than `best`. The
     /// correspondences are taken `stride` apart from `start` on, a whole round when `stride` and their
     /// number have no common divisor.
     #[inline(never)]
-    pub(super) fn judge(
+    pub(super) fn score(
         &mut self,
         f: &Matrix3<T>,
         seen: &[Correspondence<T>],
-        loss: Loss<T>,
+        loss: Biweight<T>,
         best: T,
         (start, stride): (usize, usize),
-    ) -> Option<Worth<T>> {
-        let mut worth = Worth { gain: T::ZERO, kept: 0 };
+    ) -> Option<Score<T>> {
+        let mut score = Score { gain: T::ZERO, inliers: 0 };
         let (mut odds, most) = (T::ONE, T::of(DROP));
         let per_width = T::ONE / loss.width_squared;
         let mut at = start;
@@ -83,23 +89,23 @@ impl<T: Real> Test<T> {
             ahead -= T::ONE;
             let (squared, steep) = sampson(f, s);
             if squared < steep * loss.width_squared {
-                let left = T::ONE - squared / steep * per_width;
-                worth.gain += left * left * left;
-                worth.kept += 1;
-                odds *= self.kept;
+                let (_, gain) = weight_and_gain(squared / steep * per_width);
+                score.gain += gain;
+                score.inliers += 1;
+                odds *= self.inlier_ratio;
             } else {
-                odds *= self.lost;
-                if odds > most || worth.gain + ahead <= best {
-                    self.chance.0 += T::count(worth.kept);
+                odds *= self.outlier_ratio;
+                if odds > most || score.gain + ahead <= best {
+                    self.chance.0 += T::count(score.inliers);
                     self.chance.1 += T::count(tried);
                     if odds > most {
-                        self.settle();
+                        self.update_ratios();
                     }
                     return None;
                 }
             }
         }
-        (worth.gain > best).then_some(worth)
+        (score.gain > best).then_some(score)
     }
 }
 

@@ -1,44 +1,42 @@
-//! What is known about a frame and its lines.
+//! Frame and line formats: size, pixel layout, time stamps.
 
-/// How the pixels of a line lie in memory.
+/// Memory layout of the pixels of a line.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum PixelFormat {
-    /// One byte of brightness a pixel: what the matchers take.
+    /// 8-bit grey, the format that the matchers take.
     Grey8,
-    /// Two bytes a pixel, low byte first, of which the low `bits` (8 to 16) carry brightness.
+    /// Grey in two bytes per pixel, low byte first, of which the low `bits` (8 to 16) are significant.
     Grey16 {
-        /// Significant bits: 10 for a sensor that gives 0 to 1023.
+        /// Significant bits: 10 for a sensor with levels 0 to 1023.
         bits: u8,
     },
-    /// 10 bits a pixel, four pixels in five bytes as MIPI CSI-2 has them (RAW10): the high eight bits of
-    /// each, then the low two of all, the first pixel's lowest.
+    /// MIPI CSI-2 RAW10, four pixels in five bytes: the high eight bits of each, then the low two of all
+    /// four, the first pixel's lowest.
     Grey10Packed,
-    /// 12 bits a pixel, two pixels in three bytes (RAW12): the high eight bits of each, then the low four of
-    /// both.
+    /// MIPI CSI-2 RAW12, two pixels in three bytes: the high eight bits of each, then the low four of both.
     Grey12Packed,
-    /// Two pixels in four bytes, Y U Y V: brightness, with colour between (YUY2).
+    /// YUV 4:2:2, two pixels in four bytes, Y U Y V (YUY2).
     Yuyv,
-    /// Two pixels in four bytes, U Y V Y.
+    /// YUV 4:2:2, two pixels in four bytes, U Y V Y.
     Uyvy,
-    /// Two bytes a pixel, 5 bits of red, 6 of green, 5 of blue from the high bit down.
+    /// RGB in two bytes per pixel: 5 bits of red, 6 of green, 5 of blue from the high bit down.
     Rgb565 {
-        /// Whether the high byte comes first, as parallel sensors send it; else the low one does, as a
-        /// framebuffer has it.
+        /// Whether the high byte comes first, as from parallel sensors; a framebuffer has the low byte first.
         high_byte_first: bool,
     },
-    /// One byte a pixel under a mosaic of colours, of any of the four Bayer patterns.
+    /// Bayer mosaic of any of the four patterns, one byte per pixel.
     Bayer8,
-    /// Two bytes a pixel, low byte first, of which the low `bits` (8 to 16) carry brightness, under a Bayer
-    /// mosaic.
+    /// Bayer mosaic in two bytes per pixel, low byte first, of which the low `bits` (8 to 16) are
+    /// significant.
     Bayer16 {
         /// Significant bits.
         bits: u8,
     },
     /// Red, green, blue, one byte each.
     Rgb8,
-    /// Red, green, blue, two bytes each, low byte first, of which the low `bits` (8 to 16) carry brightness.
+    /// Red, green, blue, two bytes each, low byte first, of which the low `bits` (8 to 16) are significant.
     Rgb16 {
         /// Significant bits.
         bits: u8,
@@ -46,13 +44,13 @@ pub enum PixelFormat {
 }
 
 impl PixelFormat {
-    /// Bytes of one pixel, rounded up where pixels share them.
+    /// Bytes per pixel, rounded up where pixels share bytes.
     pub const fn bytes_per_pixel(self) -> usize {
         let (pixels, bytes) = self.group();
         bytes.div_ceil(pixels)
     }
 
-    /// How many pixels stand together in how many bytes: a line is whole groups.
+    /// Pixels and bytes of the smallest whole group of pixels; a line is whole groups.
     pub const fn group(self) -> (usize, usize) {
         match self {
             Self::Grey8 | Self::Bayer8 => (1, 1),
@@ -66,7 +64,7 @@ impl PixelFormat {
     }
 }
 
-/// The shape of a frame.
+/// Size and pixel layout of a frame.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LineFormat {
@@ -74,37 +72,37 @@ pub struct LineFormat {
     pub width: u16,
     /// Lines in a frame.
     pub height: u16,
-    /// The pixels' layout.
+    /// Layout of the pixels.
     pub pixel: PixelFormat,
 }
 
 impl LineFormat {
-    /// Bytes of one line: what the buffer given to `next_line` has to hold.
+    /// Bytes of one line, the least size of a buffer for `next_line`.
     pub const fn line_bytes(self) -> usize {
         let (pixels, bytes) = self.pixel.group();
         (self.width as usize).div_ceil(pixels) * bytes
     }
 }
 
-/// What is known when a frame begins.
+/// Sequence number and time of a frame that begins.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FrameStart {
-    /// Counts the frames that the sensor began, dropped ones too: a gap tells of a loss. It wraps.
+    /// Number of the frame, counting dropped ones too, so that a gap is a loss. Wraps around.
     pub sequence: u32,
-    /// When the exposure of the first line ended, in microseconds of the source's clock.
+    /// End of the first line's exposure, microseconds of the source's clock.
     pub timestamp_us: u64,
-    /// How long each line was exposed, microseconds; 0 where the source does not know.
+    /// Exposure of each line, microseconds; 0 where the source does not know it.
     pub exposure_us: u32,
 }
 
-/// What is known about a line that was handed out.
+/// Row and time of a line that a source delivered.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LineStart {
     /// The row in the frame, from 0.
     pub row: u16,
-    /// When the line was read out, microseconds of the source's clock; equals the frame's time stamp where
-    /// the source has no clock by line.
+    /// Time of read-out, microseconds of the source's clock; the frame's time stamp where the source has no
+    /// clock by line.
     pub timestamp_us: u64,
 }

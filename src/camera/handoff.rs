@@ -1,15 +1,14 @@
-//! Lines from an interrupt to the matcher.
+//! Line hand-off from an interrupt to the matcher: a lock-free single-producer, single-consumer queue of
+//! slots.
 
 use super::{CameraError, ErrorType, FrameStart, LineFormat, LineSource, LineStart};
 use core::convert::Infallible;
 use heapless::spsc::{Consumer, Producer, Queue};
 
-/// The slots through which lines go from one producer, an interrupt or DMA, to one consumer, with `B` bytes
-/// each.
+/// Slots of `B` bytes through which lines go from one producer, an interrupt or DMA, to one consumer.
 ///
-/// A slot is in one place: free, being filled, waiting, or being read. Filling and reading own it, and hand
-/// it on by value: a line is read once, whole, and nobody writes into it meanwhile. There is no lock; either
-/// side may interrupt the other.
+/// A slot is free, being filled, waiting, or being read. It is handed on by value, so that a line is read
+/// once, whole, and nobody writes into it meanwhile. There is no lock; either side may interrupt the other.
 ///
 /// ```text
 ///              begin              finish               next
@@ -18,8 +17,7 @@ use heapless::spsc::{Consumer, Producer, Queue};
 ///    └─────────────────────┴──────────────────────────────────────┘
 /// ```
 ///
-/// `N` is the length of the queues: they take `N - 1` slots. A slot that is dropped instead of handed on is
-/// lost.
+/// The queues of length `N` take `N - 1` slots. A slot that is dropped instead of handed on is lost.
 ///
 /// ```
 /// use stereopsis::camera::{FrameStart, LineSlots, LineStart};
@@ -45,12 +43,12 @@ pub struct LineSlots<'b, const B: usize, const N: usize> {
 }
 
 impl<'b, const B: usize, const N: usize> LineSlots<'b, B, N> {
-    /// Queues without slots.
+    /// Creates queues without slots.
     pub const fn new() -> Self {
         Self { free: Queue::new(), waiting: Queue::new() }
     }
 
-    /// The two ends, with `slots` to go between them, of which the first `N - 1` are used.
+    /// Splits the queue into producer and consumer; the first `N - 1` of `slots` go between them.
     pub fn split<'a>(
         &'a mut self,
         slots: &'b mut [[u8; B]],
@@ -80,13 +78,13 @@ impl<const B: usize, const N: usize> Default for LineSlots<'_, B, N> {
 pub struct EmptyLine<'b, const B: usize>(&'b mut [u8; B]);
 
 impl<const B: usize> EmptyLine<'_, B> {
-    /// Where the line goes.
+    /// Returns the buffer for the line.
     pub fn bytes(&mut self) -> &mut [u8; B] {
         self.0
     }
 }
 
-/// A line that is whole.
+/// A slot with a whole line.
 #[derive(Debug)]
 #[must_use = "a slot that is dropped is lost"]
 pub struct FilledLine<'b, const B: usize> {
@@ -97,28 +95,28 @@ pub struct FilledLine<'b, const B: usize> {
 }
 
 impl<const B: usize> FilledLine<'_, B> {
-    /// The line.
+    /// Returns the line's bytes.
     pub fn bytes(&self) -> &[u8; B] {
         self.bytes
     }
 
-    /// The frame that it is of.
+    /// Returns the frame that the line belongs to.
     pub fn frame(&self) -> FrameStart {
         self.frame
     }
 
-    /// Its row and time.
+    /// Returns the line's row and time.
     pub fn start(&self) -> LineStart {
         self.start
     }
 
-    /// Lines for which there had been no slot when this one was finished, in all.
+    /// Total number of lines that had found no slot when this one was finished.
     pub fn overruns(&self) -> u32 {
         self.overruns
     }
 }
 
-/// The end of the interrupt.
+/// The interrupt's end of the queue.
 pub struct LineProducer<'a, 'b, const B: usize> {
     free: Consumer<'a, &'b mut [u8; B]>,
     waiting: Producer<'a, FilledLine<'b, B>>,
@@ -126,7 +124,7 @@ pub struct LineProducer<'a, 'b, const B: usize> {
 }
 
 impl<'b, const B: usize> LineProducer<'_, 'b, B> {
-    /// A slot for the line that comes now; with none the line is lost, which is counted.
+    /// Takes a slot for the line that comes now; with none the line is lost, which is counted.
     pub fn begin(&mut self) -> Option<EmptyLine<'b, B>> {
         let slot = take(&mut self.free).map(EmptyLine);
         if slot.is_none() {
@@ -135,56 +133,56 @@ impl<'b, const B: usize> LineProducer<'_, 'b, B> {
         slot
     }
 
-    /// The line is whole: it waits for the consumer.
+    /// Hands a whole line to the consumer.
     pub fn finish(&mut self, line: EmptyLine<'b, B>, frame: FrameStart, start: LineStart) {
         // There are no more slots than the queue has room for.
         put(&mut self.waiting, FilledLine { bytes: line.0, frame, start, overruns: self.overruns });
     }
 
-    /// Lines that found no slot.
+    /// Number of lines that found no slot.
     pub fn overruns(&self) -> u32 {
         self.overruns
     }
 }
 
-/// The matcher's end.
+/// The matcher's end of the queue.
 pub struct LineConsumer<'a, 'b, const B: usize> {
     waiting: Consumer<'a, FilledLine<'b, B>>,
     free: Producer<'a, &'b mut [u8; B]>,
 }
 
 impl<'b, const B: usize> LineConsumer<'_, 'b, B> {
-    /// The line that has waited longest.
+    /// Takes the line that has waited longest.
     #[allow(clippy::should_implement_trait, reason = "an iterator's items need not be given back")]
     pub fn next(&mut self) -> Option<FilledLine<'b, B>> {
         take(&mut self.waiting)
     }
 
-    /// The line was read: its slot is free.
+    /// Frees the slot of a line that was read.
     pub fn done(&mut self, line: FilledLine<'b, B>) {
         // There are no more slots than the queue has room for.
         put(&mut self.free, line.bytes);
     }
 }
 
-/// Takes the oldest of a queue. A queue's length, by which its ends divide, is not 0: said here, the compiler
-/// sees it and leaves no panic.
+/// Takes the oldest item of a queue. The check tells the compiler that the queue's length, by which its ends
+/// divide, is not 0, which removes a panic.
 fn take<T>(queue: &mut Consumer<'_, T>) -> Option<T> {
     if queue.capacity().wrapping_add(1) == 0 { None } else { queue.dequeue() }
 }
 
-/// Puts one more into a queue that has room for it.
+/// Puts an item into a queue that has room for it.
 fn put<T>(queue: &mut Producer<'_, T>, item: T) {
     if queue.capacity().wrapping_add(1) != 0 {
         let _ = queue.enqueue(item);
     }
 }
 
-/// The camera that an interrupt feeds through [`LineSlots`].
+/// The line source that an interrupt feeds through [`LineSlots`].
 ///
-/// `wait` is called while no line waits, to sleep until the next interrupt; it says false when the time is
-/// over, which is [`CameraError::TimedOut`], and has to say so some time. A line that is lost on the way is
-/// seen by the next one's row.
+/// `wait` is called while no line waits, to sleep until the next interrupt. It returns false when the time is
+/// over, which it must do eventually: [`CameraError::TimedOut`]. A line lost on the way shows in the next
+/// one's row.
 pub struct HandedLines<'a, 'b, F, const B: usize> {
     consumer: LineConsumer<'a, 'b, B>,
     format: LineFormat,
@@ -198,7 +196,7 @@ pub struct HandedLines<'a, 'b, F, const B: usize> {
 }
 
 impl<'a, 'b, F: FnMut() -> bool, const B: usize> HandedLines<'a, 'b, F, B> {
-    /// A camera of that format; refused when its lines are longer than a slot.
+    /// Creates a source of this format; refused when its lines are longer than a slot.
     pub fn new(
         consumer: LineConsumer<'a, 'b, B>,
         format: LineFormat,
@@ -211,12 +209,12 @@ impl<'a, 'b, F: FnMut() -> bool, const B: usize> HandedLines<'a, 'b, F, B> {
         Ok(Self { consumer, format, wait, pending: None, frame: None, is_over: true, overruns: 0 })
     }
 
-    /// Lines that found no slot, up to the newest one that came.
+    /// Number of lines that found no slot, up to the newest one that came.
     pub fn overruns(&self) -> u32 {
         self.overruns
     }
 
-    /// The next line, of whichever frame.
+    /// Takes the next line of any frame.
     fn take(&mut self) -> Result<FilledLine<'b, B>, CameraError<Infallible>> {
         loop {
             if let Some(line) = self.pending.take().or_else(|| self.consumer.next()) {

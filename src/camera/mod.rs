@@ -1,48 +1,47 @@
-//! Where lines come from: the traits that a camera implements, what joins two cameras into a stereo source,
-//! and the sensors' drivers.
+//! Cameras: the traits that a line source implements, adapters that make one stereo source of two cameras,
+//! and sensor drivers.
 //!
 //! In: hardware, a file or a rendered scene. Out: lines of pixels in the caller's buffer, one by one.
 //!
-//! * [`LineFormat`], [`FrameStart`], [`LineStart`]: what is known about lines and frames.
+//! * [`LineFormat`], [`FrameStart`], [`LineStart`]: the description of frames and lines.
 //! * [`LineSource`]: one camera. [`StereoSource`]: a rectified pair.
-//! * [`LineSlots`]: lines from an interrupt or DMA to the matcher, by value; [`HandedLines`] is the camera on
-//!   the matcher's side. [`PingPong`]: the halves of a circular DMA buffer.
+//! * [`LineSlots`]: a queue of lines from an interrupt or DMA to the matcher; [`HandedLines`] is the line
+//!   source at its end. [`PingPong`]: the halves of a circular DMA buffer.
 //! * [`CameraPair`]: two line sources as a stereo source, checked row by row, with its [`RowSkew`].
-//! * [`SideBySide`], [`Interleaved`]: one stream that carries both cameras, in halves of a line or line by
-//!   line. [`Mirrored`]: lines from right to left.
+//! * [`SideBySide`], [`Interleaved`]: one stream that carries both cameras. [`Mirrored`]: lines reversed.
 //! * [`Triggered`]: pulses the sensors' common trigger pin before every frame.
-//! * [`Mt9v034`], [`Hm01b0`]: sensors over I2C. [`ExposureControl`]: what an automatic exposure asks of one.
+//! * [`Mt9v034`], [`Hm01b0`]: sensors over I2C. [`ExposureControl`]: a sensor's exposure and gain.
 //!
-//! # Who writes a camera
+//! # Writing a camera
 //!
-//! implements [`LineSource`], or [`StereoSource`] where one piece of hardware brings both lines. The contract
-//! stands at the trait. What hardware does decides how:
+//! Implement [`LineSource`], or [`StereoSource`] where one piece of hardware delivers both lines. The
+//! contract stands at the trait; the hardware decides how:
 //!
-//! | hardware | way |
+//! | hardware | implementation |
 //! | --- | --- |
-//! | parallel port with DMA, a line to a transfer | in the transfer's interrupt, [`LineProducer::begin`] gives the next slot to the DMA and [`LineProducer::finish`] hands the last one on; [`HandedLines`] is the source |
+//! | parallel port, DMA per line | [`LineProducer::begin`] and `finish` in the interrupt; [`HandedLines`] |
 //! | circular DMA over two lines | [`PingPong::take`] in both interrupts, into a slot |
-//! | PIO of an RP2040 or RP2350 | as the first, with the DMA of the state machine; of both sensors on one program, [`SideBySide`] |
+//! | PIO of an RP2040 or RP2350 | DMA as above; two sensors on one program are [`SideBySide`] |
 //! | SPI sensor | `next_line` reads a line; nothing waits |
-//! | an FPGA that writes lines into memory | `next_line` looks at its counter and copies; the counter is [`LineStart::row`] |
+//! | FPGA that writes lines into memory | `next_line` copies; the FPGA's counter is [`LineStart::row`] |
 //!
-//! Tell faults by their names ([`CameraError`], [`LineFault`]): a line that is known to be lost is
-//! [`CameraError::LineLost`], and the frame goes on; a wait that is over is [`CameraError::TimedOut`], never
-//! a wait without an end. Give rows the numbers that the sensor gave them, and frames theirs: whatever is not
-//! said, `pipeline::Guarded` finds by these and by time stamps.
+//! Report faults by name ([`CameraError`], [`LineFault`]): a line known to be lost is
+//! [`CameraError::LineLost`], and the frame goes on; a wait ends with [`CameraError::TimedOut`]. Number rows
+//! and frames as the sensor does: `pipeline::Guarded` finds unreported faults by these numbers and by time
+//! stamps.
 //!
-//! # Who writes a driver of a sensor
+//! # Writing a sensor driver
 //!
-//! looks at [`Mt9v034`] and [`Hm01b0`]: the bus by value, delay and reset pin where they are needed, limits
-//! looked at before the bus is touched, the identity asked first, errors with the bus's own inside
-//! ([`SensorError`]). A driver says what the sensor does and when a setting counts; it has no part in where
-//! pixels go. With [`ExposureControl`] it takes part in one exposure for both cameras.
+//! Follow [`Mt9v034`] and [`Hm01b0`]: the bus by value, delay and reset pin where they are needed, limits
+//! checked before the bus is touched, the identity read first, the bus's own error inside [`SensorError`]. A
+//! driver configures the sensor and has no part in where pixels go. [`ExposureControl`] lets both cameras
+//! share one exposure.
 //!
-//! # Who writes the application
+//! # Writing the application
 //!
-//! joins a source to a pipeline: see there. Two sensors on one trigger pin are `Triggered<CameraPair<...>>`;
-//! sensors that run freely are paired by time stamps ([`Pairing::TimeStamp`]) and their row skew is measured
-//! ([`CameraPair::row_skew`]).
+//! Connect a source to a [`pipeline`](crate::pipeline). Two sensors on one trigger pin are
+//! `Triggered<CameraPair<...>>`; free-running sensors are paired by time stamps ([`Pairing::TimeStamp`]) and
+//! their row skew is measured ([`CameraPair::row_skew`]).
 
 mod format;
 mod handoff;

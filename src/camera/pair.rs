@@ -1,16 +1,16 @@
-//! Two line sources as one stereo source.
+//! A stereo source of two line sources: frames paired by sequence number or time stamp, rows checked.
 
 use super::{CameraError, ErrorType, FrameStart, LineFault, LineFormat, LineSource, LineStart, StereoSource};
 use core::fmt;
 
-/// Two rectified cameras, taken row by row and checked: one row number, time stamps within the bound on row
-/// skew.
+/// Two rectified cameras read row by row: both lines have one row number, and time stamps within the row-skew
+/// bound.
 ///
-/// When one camera lost a frame, [`start_frame`](StereoSource::start_frame) starts frames of the camera that
-/// is behind until they are of one [`Pairing`], at most [`CameraPair::MAX_CATCH_UP`] of them. When one lost a
-/// line, the pair fails once and goes on with the row below it: the camera that is behind gives up the lines
-/// that the other one has passed. An old line or frame of one of them, told by its time stamp or number, is
-/// refused: the caller sees the left camera's alone.
+/// When one camera lost a frame, [`start_frame`](StereoSource::start_frame) skips frames of the camera that
+/// is behind until their [`Pairing`] agrees, at most [`CameraPair::MAX_CATCH_UP`] of them. When one lost a
+/// line, the pair fails once and goes on with the row below, for which the camera that is behind skips lines.
+/// A stale line or frame of either, shown by its time stamp or number, is refused. The caller sees the left
+/// camera's time stamps.
 #[derive(Debug)]
 pub struct CameraPair<L, R> {
     left: L,
@@ -27,7 +27,7 @@ pub struct CameraPair<L, R> {
     newest_us: [u64; 2],
 }
 
-/// What says that two frames are of one moment.
+/// How frames of two cameras are paired.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Pairing {
@@ -39,16 +39,15 @@ pub enum Pairing {
     TimeStamp,
 }
 
-/// The row skew of a frame so far: how much later than the left camera the right one read out its row, by the
-/// time stamps.
+/// Row skew of a frame so far: how much later than the left camera the right one read out its rows.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct RowSkew {
-    /// Rows that it was measured on; with none the other fields are 0.
+    /// Number of rows measured; with none the other fields are 0.
     pub rows: u16,
-    /// The least, microseconds; negative where the right camera was first.
+    /// Least skew, microseconds; negative where the right camera was first.
     pub least_us: i64,
-    /// The most, microseconds.
+    /// Largest skew, microseconds.
     pub most_us: i64,
 }
 
@@ -63,7 +62,7 @@ impl RowSkew {
     }
 }
 
-/// Why two cameras did not give a pair.
+/// Why two cameras delivered no pair of lines.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -74,23 +73,23 @@ pub enum PairError<L, R> {
     Right(R),
     /// The two cameras' frames differ in size or pixel format.
     Formats {
-        /// The left camera's.
+        /// Format of the left camera.
         left: LineFormat,
-        /// The right camera's.
+        /// Format of the right camera.
         right: LineFormat,
     },
-    /// The sequence numbers stayed apart.
+    /// The sequence numbers stayed different.
     Sequence {
-        /// The left camera's.
+        /// Sequence number of the left camera.
         left: u32,
-        /// The right camera's.
+        /// Sequence number of the right camera.
         right: u32,
     },
     /// The two lines are of different rows.
     Rows {
-        /// The left camera's.
+        /// Row of the left camera.
         left: u16,
-        /// The right camera's.
+        /// Row of the right camera.
         right: u16,
     },
     /// The frames' time stamps stayed apart.
@@ -153,12 +152,12 @@ impl<L: LineSource, R: LineSource> CameraPair<L, R> {
         })
     }
 
-    /// The same with another way to tell which frames belong together.
+    /// Sets how frames are paired.
     pub fn paired_by(self, pairing: Pairing) -> Self {
         Self { pairing, ..self }
     }
 
-    /// The row skew measured on this frame's rows, those included that were refused for it.
+    /// Row skew of this frame's rows so far, including rows that were refused for it.
     pub fn row_skew(&self) -> RowSkew {
         self.skew
     }

@@ -1,20 +1,20 @@
-//! The halves of a circular DMA buffer.
+//! Ping-pong buffering: the halves of a circular DMA buffer.
 
 use super::LineFault;
 
-/// A half of a DMA buffer.
+/// One half of a circular DMA buffer.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Half {
-    /// Filled first; the half-transfer interrupt tells.
+    /// First half, complete at the half-transfer interrupt.
     #[default]
     First,
-    /// Filled second; the transfer-complete interrupt tells.
+    /// Second half, complete at the transfer-complete interrupt.
     Second,
 }
 
 impl Half {
-    /// The other one.
+    /// Returns the other half.
     pub const fn other(self) -> Self {
         match self {
             Self::First => Self::Second,
@@ -23,7 +23,7 @@ impl Half {
     }
 }
 
-/// Takes lines out of a circular DMA buffer of two lines, and knows when one was missed or torn.
+/// Copies lines out of a circular DMA buffer of two lines, and detects missed and torn ones.
 ///
 /// ```text
 /// DMA        first   │ second  │ first   │ second  │ ...
@@ -33,8 +33,8 @@ impl Half {
 /// ```
 ///
 /// The interrupt of a half calls [`Self::take`], which copies the line into a slot of
-/// [`LineSlots`](super::LineSlots). The DMA does not wait: after the copy its position tells whether it has
-/// come back into the half meanwhile.
+/// [`LineSlots`](super::LineSlots). The DMA does not wait: its position after the copy shows whether it has
+/// come back into that half.
 #[derive(Clone, Copy, Default, Debug)]
 pub struct PingPong {
     due: Half,
@@ -43,22 +43,22 @@ pub struct PingPong {
 }
 
 impl PingPong {
-    /// Before the first half of a transfer.
+    /// Creates the state before a transfer's first half.
     pub const fn new() -> Self {
         Self { due: Half::First, missed: 0, torn: 0 }
     }
 
-    /// The transfer begins anew, with its first half.
+    /// Restarts with the first half of a new transfer.
     pub fn restart(&mut self) {
         self.due = Half::First;
     }
 
-    /// Copies the half that is `done` into `line`, as many bytes as both have. `writing` is asked afterwards
-    /// which half the DMA is in: it is compared by its remaining count, as in `if ndtr > length / 2 {
-    /// Half::First } else { Half::Second }`.
+    /// Copies the half that is `done` into `line`, as many bytes as both have, and returns how many lines
+    /// were missed before it: 0 unless an interrupt was lost.
     ///
-    /// [`LineFault::Torn`]: the DMA is in the half that was copied; what was copied is of two lines. Lines that were missed
-    /// before this one come as [`Self::take`]'s number: it is 0 unless an interrupt was lost.
+    /// `writing` is called after the copy and returns the half that the DMA is in, by its remaining count:
+    /// `if ndtr > length / 2 { Half::First } else { Half::Second }`. Where that is the copied half, the copy
+    /// mixes two lines: [`LineFault::Torn`].
     pub fn take(
         &mut self,
         done: Half,
@@ -78,12 +78,12 @@ impl PingPong {
         Ok(missed)
     }
 
-    /// Lines whose interrupt was lost.
+    /// Number of lines whose interrupt was lost.
     pub fn missed(&self) -> u32 {
         self.missed
     }
 
-    /// Lines that the DMA came back into while they were copied.
+    /// Number of lines that the DMA overwrote while they were copied.
     pub fn torn(&self) -> u32 {
         self.torn
     }

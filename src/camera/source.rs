@@ -1,11 +1,11 @@
-//! The two traits that a camera implements.
+//! Line sources: the traits that one camera and a stereo camera implement.
 
 use super::{FrameStart, LineFormat, LineStart};
 use core::fmt;
 
-/// The error of the hardware below, stated once for all traits of a source.
+/// Hardware error type shared by the traits of a source.
 pub trait ErrorType {
-    /// What the bus, the DMA or the file says when it fails.
+    /// Error of the bus, the DMA or the file.
     type Error: fmt::Debug;
 }
 
@@ -13,7 +13,7 @@ impl<T: ErrorType + ?Sized> ErrorType for &mut T {
     type Error = T::Error;
 }
 
-/// Why a source gave no line.
+/// Why a source delivered no line.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -25,29 +25,29 @@ pub enum CameraError<E> {
         /// Bytes that would have been enough.
         needed: usize,
     },
-    /// A line was asked for before a frame was started, or after its last line: before the frame's height is
-    /// reached, the sensor gave a short frame.
+    /// No frame was started, or its last line is out; before the frame's height is reached, the frame was
+    /// short.
     NoLineLeft,
     /// The next line is lost. The frame goes on: the next call gives the line below it.
     LineLost(LineFault),
-    /// Nothing came within the time that the source waits.
+    /// Nothing came within the source's time-out.
     TimedOut,
-    /// Where the sensor is in its frame is not known, or it began another frame: this one is over.
+    /// The position in the frame is unknown, or the sensor began another frame: this frame is over.
     LostSync,
 }
 
-/// What happened to a line that its source knows to be lost.
+/// What happened to a line that its source reports as lost.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum LineFault {
-    /// It did not come: sync was seen and no pixels, or it came to no free buffer.
+    /// The line did not arrive, or found no free buffer.
     Dropped,
-    /// It was overwritten while it was read, or has fewer or more pixels than a line.
+    /// The line was overwritten while it was read, or has too few or too many pixels.
     Torn,
-    /// It came after the time at which it was of use.
+    /// The line arrived too late to be used.
     Late,
-    /// The buffer holds a line of before: nobody has filled it since.
+    /// The buffer still holds an earlier line.
     Stale,
 }
 
@@ -63,11 +63,10 @@ impl fmt::Display for LineFault {
 }
 
 impl<E> CameraError<E> {
-    /// The same error with what the hardware said put into another type: for sources that stand on other
-    /// sources.
-    pub fn map_hardware<F>(self, inside: impl FnOnce(E) -> F) -> CameraError<F> {
+    /// Converts the hardware error, for sources that wrap other sources.
+    pub fn map_hardware<F>(self, convert: impl FnOnce(E) -> F) -> CameraError<F> {
         match self {
-            Self::Hardware(e) => CameraError::Hardware(inside(e)),
+            Self::Hardware(e) => CameraError::Hardware(convert(e)),
             Self::BufferTooShort { needed } => CameraError::BufferTooShort { needed },
             Self::NoLineLeft => CameraError::NoLineLeft,
             Self::LineLost(fault) => CameraError::LineLost(fault),
@@ -113,27 +112,25 @@ impl<E: fmt::Display + fmt::Debug> core::error::Error for CameraError<E> {}
 ///
 /// Contract:
 /// * [`format`](Self::format) does not change between two frames unless the caller asks the driver for it.
-/// * [`start_frame`](Self::start_frame) may be called at any time; lines not taken from the frame before are
+/// * [`start_frame`](Self::start_frame) may be called at any time; lines left of the frame before are
 ///   dropped.
 /// * [`next_line`](Self::next_line) blocks until the line is whole, for a bounded time. It fills the first
-///   [`LineFormat::line_bytes`] bytes of the buffer and leaves the rest. On an error the buffer's content
-///   means nothing.
-/// * [`LineStart::row`] is the row that the sensor read out, not how many lines were asked for: after a lost
-///   line the number jumps, and who takes the lines sees that. It grows within a frame, until the next
-///   `start_frame`.
-/// * A line is of the frame that was started. When the sensor begins another one before the last row,
-///   `next_line` is [`CameraError::LostSync`], or [`CameraError::NoLineLeft`] where the frame was short:
-///   never a line of the other frame.
-/// * [`FrameStart::sequence`] grows with every frame, and time stamps do not run backwards. A buffer that
-///   nobody filled since is told by that, when it is handed out again.
+///   [`LineFormat::line_bytes`] bytes of the buffer and leaves the rest. After an error the buffer's content
+///   is meaningless.
+/// * [`LineStart::row`] is the row that the sensor read out: after a lost line the number jumps. It grows
+///   within a frame.
+/// * A line belongs to the frame that was started. When the sensor begins another one before the last row,
+///   `next_line` is [`CameraError::LostSync`], or [`CameraError::NoLineLeft`] where the frame was short.
+/// * [`FrameStart::sequence`] grows with every frame, and time stamps do not run backwards: that exposes a
+///   buffer which is delivered twice.
 /// * After the last line, `next_line` is [`CameraError::NoLineLeft`] until a frame is started.
 /// * After an error the caller may start the next frame, or ask for the next line. A source that can go on
-///   within the frame says where by the row's number; one that cannot fails again.
+///   within the frame reports the row; one that cannot fails again.
 ///
-/// What a source knows and does not say, nobody behind it can tell: a torn line looks like a line. What can
-/// be told from outside, `pipeline::Guarded` counts by name.
+/// A fault that a source does not report may stay unseen: a torn line looks like any other. What shows from
+/// outside, `pipeline::Guarded` counts by name.
 pub trait LineSource: ErrorType {
-    /// The shape of the frames.
+    /// Size and pixel layout of the frames.
     fn format(&self) -> LineFormat;
 
     /// Waits for the start of the next frame.
@@ -157,8 +154,8 @@ impl<T: LineSource + ?Sized> LineSource for &mut T {
     }
 }
 
-/// Two cameras whose rows are aligned: a point seen in row v of the left image is seen in row v of the right
-/// one, at or left of its column.
+/// Two cameras with aligned rows: a point in row v of the left image is in row v of the right one, at or left
+/// of its column.
 ///
 /// ```text
 ///            start_frame      next_lines       next_lines
@@ -170,17 +167,15 @@ impl<T: LineSource + ?Sized> LineSource for &mut T {
 ///           |<->| row skew: at most max_row_skew_us
 /// ```
 ///
-/// The contract of [`LineSource`] holds for the pair: both lines are of one row, or there is an error.
+/// The contract of [`LineSource`] holds for the pair; both lines are of one row.
 pub trait StereoSource: ErrorType {
-    /// The shape of both frames.
+    /// Size and pixel layout of both frames.
     fn format(&self) -> LineFormat;
 
-    /// The bound on the row skew: how many microseconds may lie between the read-outs of one row by the two
-    /// cameras.
+    /// Upper bound on the time between the two cameras' read-outs of one row, microseconds.
     ///
-    /// A point that moves across the image at s px/s can be displaced by this time times s between the two
-    /// images, which is an error of its disparity; 0 for global-shutter cameras on one trigger, and for
-    /// files.
+    /// A point that moves at s px/s is displaced by at most s times this bound between the images, which is
+    /// an error of its disparity. The bound is 0 for global-shutter cameras on one trigger, and for files.
     fn max_row_skew_us(&self) -> u32;
 
     /// Waits for the start of the next pair of frames.
@@ -193,9 +188,9 @@ pub trait StereoSource: ErrorType {
         right: &mut [u8],
     ) -> Result<LineStart, CameraError<Self::Error>>;
 
-    /// Writes which pixels of a row the left and the right camera saw, 1 or 0 for each, and says that it did;
-    /// or says that they saw all, as cameras do by themselves. Rectified lines have borders that nothing
-    /// was seen of ([`RectifiedPair`](crate::imaging::RectifiedPair)).
+    /// Writes the valid-pixel masks of a row, left and right, 1 or 0 per pixel, and returns whether it did;
+    /// without masks, as by default, all pixels are valid. Rectified lines have invalid borders
+    /// ([`RectifiedPair`](crate::imaging::RectifiedPair)).
     fn mask(&self, row: u16, masks: [&mut [u8]; 2]) -> bool {
         let _ = (row, masks);
         false

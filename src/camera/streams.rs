@@ -1,19 +1,19 @@
-//! One stream that carries two cameras, and lines the other way round.
+//! Streams that carry two cameras, side by side or interleaved; mirrored lines.
 
 use super::{CameraError, ErrorType, FrameStart, LineFault, LineFormat, LineSource, LineStart, StereoSource};
 use core::fmt;
 
-/// Why a stream does not carry two cameras.
+/// Why a stream cannot be split or mirrored.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum StreamError {
-    /// A line must have two halves of whole groups of pixels.
+    /// A line has no two halves of whole groups of pixels.
     OddWidth {
         /// Pixels in a line.
         width: u16,
     },
-    /// The lines must be pairs.
+    /// The number of lines is odd.
     OddHeight {
         /// Lines in a frame.
         height: u16,
@@ -23,7 +23,7 @@ pub enum StreamError {
         /// Bytes that would have been enough.
         needed: usize,
     },
-    /// Pixels that share bytes cannot be turned round.
+    /// Pixels that share bytes cannot be mirrored.
     SharedBytes,
 }
 
@@ -33,16 +33,16 @@ impl fmt::Display for StreamError {
             Self::OddWidth { width } => write!(f, "a line of {width} pixels has no two halves"),
             Self::OddHeight { height } => write!(f, "a frame of {height} lines is no pairs of lines"),
             Self::BufferTooShort { needed } => write!(f, "the buffer must hold {needed} bytes"),
-            Self::SharedBytes => f.write_str("pixels that share bytes cannot be turned round"),
+            Self::SharedBytes => f.write_str("pixels that share bytes cannot be mirrored"),
         }
     }
 }
 
 impl core::error::Error for StreamError {}
 
-/// Two cameras side by side in one stream: the first half of each line is the left one's.
+/// Two cameras side by side in one stream: the first half of each line is the left camera's.
 ///
-/// `RAW` is the size of the buffer for one line of the stream, bytes.
+/// `RAW` is the capacity for one line of the stream, bytes.
 #[derive(Debug)]
 pub struct SideBySide<S, const RAW: usize> {
     source: S,
@@ -50,7 +50,7 @@ pub struct SideBySide<S, const RAW: usize> {
 }
 
 impl<S: LineSource, const RAW: usize> SideBySide<S, RAW> {
-    /// Takes the two cameras from a stream.
+    /// Splits a stream into two cameras.
     pub fn new(source: S) -> Result<Self, StreamError> {
         let LineFormat { width, pixel, .. } = source.format();
         if !usize::from(width).is_multiple_of(2 * pixel.group().0) {
@@ -64,12 +64,12 @@ impl<S: LineSource, const RAW: usize> SideBySide<S, RAW> {
         }
     }
 
-    /// The stream.
+    /// Returns the stream.
     pub fn source(&self) -> &S {
         &self.source
     }
 
-    /// Gives the stream back.
+    /// Releases the stream.
     pub fn release(self) -> S {
         self.source
     }
@@ -85,7 +85,7 @@ impl<S: LineSource, const RAW: usize> StereoSource for SideBySide<S, RAW> {
         LineFormat { width: both.width / 2, ..both }
     }
 
-    /// A row of both is one line.
+    /// The skew is 0: a row of both cameras is one line.
     fn max_row_skew_us(&self) -> u32 {
         0
     }
@@ -105,7 +105,8 @@ impl<S: LineSource, const RAW: usize> StereoSource for SideBySide<S, RAW> {
     }
 }
 
-/// Two cameras in one stream, line by line: line 2 v is the left one's row v, line 2 v + 1 the right one's.
+/// Two cameras interleaved in one stream: line 2 v is row v of the left one, line 2 v + 1 that of the right
+/// one.
 #[derive(Debug)]
 pub struct Interleaved<S> {
     source: S,
@@ -115,8 +116,8 @@ pub struct Interleaved<S> {
 }
 
 impl<S: LineSource> Interleaved<S> {
-    /// Takes the two cameras from a stream whose lines come `line_us` microseconds apart: so far are the rows
-    /// of the two. For cameras that exposed together and are only sent one after the other, that is 0.
+    /// Splits a stream whose lines were exposed `line_us` microseconds apart: 0 for cameras that exposed
+    /// together and are sent one after the other.
     pub fn new(source: S, line_us: u32) -> Result<Self, StreamError> {
         let height = source.format().height;
         if !height.is_multiple_of(2) {
@@ -126,7 +127,7 @@ impl<S: LineSource> Interleaved<S> {
         }
     }
 
-    /// Gives the stream back.
+    /// Releases the stream.
     pub fn release(self) -> S {
         self.source
     }
@@ -159,8 +160,8 @@ impl<S: LineSource> StereoSource for Interleaved<S> {
         // After a fault the stream may stand on a right line: one more is taken, and the row is lost once.
         let first = self.source.next_line(left).inspect_err(|_| self.lost = true)?;
         if first.row % 2 != 0 {
-            let was_told = core::mem::take(&mut self.lost);
-            if !was_told {
+            let was_reported = core::mem::take(&mut self.lost);
+            if !was_reported {
                 return Err(CameraError::LineLost(LineFault::Dropped));
             }
             return self.next_lines_of_row(left, right);
@@ -182,7 +183,7 @@ impl<S: LineSource> Interleaved<S> {
         self.second(first, right)
     }
 
-    /// The right camera's line to the left one's.
+    /// Reads the right camera's line of the row of `first`.
     fn second(&mut self, first: LineStart, right: &mut [u8]) -> Result<LineStart, CameraError<S::Error>> {
         self.lost = false;
         let second = self.source.next_line(right)?;
@@ -195,18 +196,18 @@ impl<S: LineSource> Interleaved<S> {
     }
 }
 
-/// A camera whose lines run from right to left, as behind a mirror: turned round.
+/// A camera with mirrored lines, each reversed as it comes.
 ///
-/// Rows cannot be turned round without a frame's memory: a sensor that stands on its head is told to read out
-/// so ([`Mt9v034::set_flips`](super::Mt9v034::set_flips)). Two cameras that stand on their heads together
-/// need nothing: the picture is upside down, and the disparities are right.
+/// The order of rows cannot be reversed without a frame's memory: a sensor that is mounted upside down is set
+/// to read out in reverse ([`Mt9v034::set_flips`](super::Mt9v034::set_flips)). Two cameras that are both
+/// upside down need nothing: the disparities are right.
 #[derive(Debug)]
 pub struct Mirrored<S> {
     source: S,
 }
 
 impl<S: LineSource> Mirrored<S> {
-    /// Turns the lines of a source round, whose pixels have whole bytes of their own.
+    /// Mirrors a source; refused where pixels share bytes.
     pub fn new(source: S) -> Result<Self, StreamError> {
         match source.format().pixel.group() {
             (1, _) => Ok(Self { source }),
@@ -214,7 +215,7 @@ impl<S: LineSource> Mirrored<S> {
         }
     }
 
-    /// Gives the source back.
+    /// Releases the source.
     pub fn release(self) -> S {
         self.source
     }

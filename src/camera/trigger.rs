@@ -1,13 +1,13 @@
-//! A common trigger for sensors that expose on a pulse.
+//! A common hardware trigger for sensors that expose on a pulse.
 
 use super::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, StereoSource};
 use core::fmt;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::OutputPin;
 
-/// A stereo source whose sensors wait for a pulse on one pin: both expose at the same moment.
+/// A stereo source whose sensors expose together on a pulse of one pin.
 ///
-/// [`start_frame`](StereoSource::start_frame) pulls the pin high for the pulse's length, then waits for the
+/// [`start_frame`](StereoSource::start_frame) holds the pin high for the pulse's length, then waits for the
 /// frame.
 ///
 /// ```text
@@ -24,14 +24,14 @@ pub struct Triggered<S, P, D> {
     pulse_us: u32,
 }
 
-/// The trigger pin failed, or the source behind it did.
+/// Failure of the trigger pin or of the source.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum TriggerError<S, P> {
-    /// The stereo source's own error.
+    /// Error of the stereo source.
     Source(S),
-    /// The pin's own error.
+    /// Error of the pin.
     Pin(P),
 }
 
@@ -45,12 +45,12 @@ impl<S: fmt::Display, P: fmt::Debug> fmt::Display for TriggerError<S, P> {
 }
 
 impl<S: StereoSource, P: OutputPin, D: DelayNs> Triggered<S, P, D> {
-    /// Puts a trigger of `pulse_us` microseconds before every frame of `source`.
+    /// Triggers every frame of `source` by a pulse of `pulse_us` microseconds.
     pub fn new(source: S, pin: P, delay: D, pulse_us: u32) -> Self {
         Self { source, pin, delay, pulse_us }
     }
 
-    /// Gives the source, the pin and the delay back.
+    /// Releases the source, the pin and the delay.
     pub fn release(self) -> (S, P, D) {
         (self.source, self.pin, self.delay)
     }

@@ -6,7 +6,18 @@ use crate::source;
 const MOST_COLUMNS: usize = 110;
 
 /// Files and folders whose long lines are still to be wrapped.
-const NOT_YET: [&str; 3] = ["examples/", "host-tests/", "src/"];
+const NOT_YET: &[&str] = &[
+    "examples/",
+    "host-tests/",
+    "src/depth/",
+    "src/features/",
+    "src/focus/",
+    "src/geometry/",
+    "src/lib.rs",
+    "src/matching/",
+    "src/motion/",
+    "src/pipeline/",
+];
 
 /// Lines of `text` that are too long.
 fn long_lines(name: &str, text: &str) -> Vec<String> {

@@ -11,7 +11,7 @@ const KINDS: [&str; 8] = ["struct", "enum", "trait", "fn", "const", "static", "t
 const QUALIFIERS: [&str; 4] = ["fn", "unsafe", "extern", "async"];
 
 /// Names that are still to be told apart.
-const NOT_YET: [&str; 1] = ["Matcher"];
+const NOT_YET: &[&str] = &["Matcher"];
 
 /// The public names of a module and of the public ones in it, each with the modules that it stands in. `read`
 /// gives the text of `a/b`, in `a/b.rs` or `a/b/mod.rs`.

@@ -1,14 +1,13 @@
 //! Himax's HM01B0: 324x324 pixels of 8 bits behind a rolling shutter, a few milliwatts.
 //!
-//! Registers have 8 bits at addresses of 16, the high byte first. Their names, numbers and values are those
-//! of OpenMV's driver (`drivers/sensors/hm01b0.c` and `.h`, MIT). Some are reserved in the data sheet, and
+//! Registers have 8 bits at 16-bit addresses, the high byte first. Their names, numbers and values are those
+//! of OpenMV's driver (`drivers/sensors/hm01b0.c` and `.h`, MIT); some are reserved in the data sheet, but
 //! the picture is bad without them.
 //!
-//! A line takes 376 clocks, the frame as many lines as it is told. The exposure is whole lines, two fewer
-//! than the frame's at most. What is written after [`Hm01b0::initialise`] counts from the frame after the
-//! group's command.
+//! A line takes 376 clocks. The exposure is whole lines, at most two fewer than the frame has. What is
+//! written after [`Hm01b0::initialise`] takes effect with the frame after the group command.
 
-use super::{ExposureControl, SensorError, within};
+use super::{ExposureControl, Outcome, SensorError, within};
 
 const MODEL_ID_HIGH: u16 = 0x0000;
 const MODEL_ID_LOW: u16 = 0x0001;
@@ -27,70 +26,46 @@ const TEST_PATTERN: u16 = 0x0601;
 const AUTO_EXPOSURE: u16 = 0x2100;
 const QVGA_WINDOW: u16 = 0x3010;
 
-/// How often a sensor that comes up is asked.
+/// Number of polls for the end of a reset.
 const ATTEMPTS: u8 = 10;
 const CLOCKS_A_LINE: u16 = 0x0178;
 
 /// Analog settings, black level, and defect correction for a sensor without colours.
+#[rustfmt::skip]
 const SETTINGS: [(u16, u8); 29] = [
-    (0x1003, 0x08),
-    (0x1007, 0x08),
-    (0x3044, 0x0a),
-    (0x3045, 0x00),
-    (0x3047, 0x0a),
-    (0x3050, 0xc0),
-    (0x3051, 0x42),
-    (0x3052, 0x50),
-    (0x3053, 0x00),
-    (0x3054, 0x03),
-    (0x3055, 0xf7),
-    (0x3056, 0xf8),
-    (0x3057, 0x29),
-    (0x3058, 0x1f),
-    (0x3064, 0x00),
-    (0x3065, 0x04),
-    (0x3067, 0x00),
-    (0x1000, 0x43),
-    (0x1001, 0x43),
-    (0x1002, 0x43),
-    (0x0350, 0x7f),
-    (0x1006, 0x01),
-    (0x1008, 0x01),
-    (0x1009, 0xa0),
-    (0x100a, 0x60),
-    (0x100b, 0x90),
-    (0x100c, 0x40),
-    (0x1012, 0x00),
-    (0x3059, 0x02),
+    (0x1003, 0x08), (0x1007, 0x08), (0x3044, 0x0a), (0x3045, 0x00), (0x3047, 0x0a), (0x3050, 0xc0),
+    (0x3051, 0x42), (0x3052, 0x50), (0x3053, 0x00), (0x3054, 0x03), (0x3055, 0xf7), (0x3056, 0xf8),
+    (0x3057, 0x29), (0x3058, 0x1f), (0x3064, 0x00), (0x3065, 0x04), (0x3067, 0x00), (0x1000, 0x43),
+    (0x1001, 0x43), (0x1002, 0x43), (0x0350, 0x7f), (0x1006, 0x01), (0x1008, 0x01), (0x1009, 0xa0),
+    (0x100a, 0x60), (0x100b, 0x90), (0x100c, 0x40), (0x1012, 0x00), (0x3059, 0x02),
 ];
 
-/// The part of the array that is read out.
+/// Region of the pixel array that is read out.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Hm01b0Size {
-    /// All of it: 324x324.
+    /// Whole array: 324x324.
     Whole,
-    /// Its middle: 324x244.
+    /// Middle of the array: 324x244.
     #[default]
     Qvga,
-    /// The middle, two by two pixels as one: 162x122.
+    /// Middle of the array in bins of 2x2 pixels: 162x122.
     Qqvga,
 }
 
 impl Hm01b0Size {
-    /// Lines of a frame, blanking included, at least.
+    /// Least lines of a frame, blanking included.
     const fn least_lines(self) -> u16 {
         match self {
-            // Open drivers write 265, fewer than its own rows. Zephyr's (`drivers/video/hm01b0.c`) says that
-            // there are at most 45 frames a second, and 60 of the window, whose 260 lines so are
-            // 346 here.
+            // Open drivers write 265, fewer than its rows. By Zephyr's driver (`drivers/video/hm01b0.c`) the
+            // whole array has at most 45 frames a second and the window 60, so that its 260 lines are 346.
             Self::Whole => 346,
             Self::Qvga => 0x0104,
             Self::Qqvga => 0x0084,
         }
     }
 
-    /// Pixels in a line, lines in a frame.
+    /// Pixels in a line and lines in a frame.
     pub const fn pixels(self) -> (u16, u16) {
         match self {
             Self::Whole => (324, 324),
@@ -100,11 +75,11 @@ impl Hm01b0Size {
     }
 }
 
-/// What the sensor does.
+/// Operating mode of the sensor.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Hm01b0Mode {
-    /// Nothing.
+    /// Standby without frames.
     Standby,
     /// One frame after the other.
     Streaming,
@@ -112,35 +87,34 @@ pub enum Hm01b0Mode {
     Triggered,
 }
 
-/// The driver, over a bus that blocks or one that is waited for: `async` and `.await`, or nothing in their
-/// places.
+/// The driver over a blocking or an asynchronous bus: with `async` and `.await`, or nothing in their places.
 macro_rules! driver {
     ($driver:ident, $about:literal, $i2c:path, $delay:path, [$($async:ident)?], [$($wait:tt)*]) => {
     #[doc = $about]
     #[derive(Debug)]
     pub struct $driver<I> {
         bus: I,
-        /// Of the clock that the lines are counted in, hertz.
+        /// Clock in which lines are counted, Hz.
         clock_hz: u32,
         frame_lines: u16,
         size: Hm01b0Size,
     }
 
     impl<I: $i2c> $driver<I> {
-        /// Its address on the bus, 7 bits.
+        /// Address on the bus, 7 bits.
         pub const ADDRESS: u8 = 0x24;
-        /// What it says that it is.
+        /// Model number that the chip reports.
         pub const IDENTITY: u16 = 0x01b0;
 
-        /// A sensor on that bus, whose lines are counted in a clock of so many hertz: the master clock by what the register OSC_CLK_DIV
-        /// divides it, 8 after a reset. Nothing is sent.
+        /// Creates a driver without touching the bus. `clock_hz` is the clock in which lines are counted: the
+        /// master clock divided by the register OSC_CLK_DIV, 8 after a reset.
         pub const fn new(bus: I, clock_hz: u32) -> Self {
             let size = Hm01b0Size::Qvga;
             Self { bus, clock_hz, frame_lines: size.least_lines(), size }
         }
 
-        /// Resets the sensor by its register, waits for it, asks who it is, and sets it up, without automatic exposure, in standby.
-        pub $($async)? fn initialise<D: $delay>(&mut self, delay: &mut D) -> Result<(), SensorError<I::Error>> {
+        /// Resets the sensor, checks its identity, and sets it up in standby without automatic exposure.
+        pub $($async)? fn initialise<D: $delay>(&mut self, delay: &mut D) -> Outcome<I> {
             self.write(SOFTWARE_RESET, 1)$($wait)*?;
             delay.delay_ms(1)$($wait)*;
             let mut is_ready = false;
@@ -163,14 +137,15 @@ macro_rules! driver {
             self.set_size(Hm01b0Size::Qvga)$($wait)*
         }
 
-        /// Asks the chip who it is.
-        pub $($async)? fn identify(&mut self) -> Result<(), SensorError<I::Error>> {
-            let found = u16::from_be_bytes([self.read(MODEL_ID_HIGH)$($wait)*?, self.read(MODEL_ID_LOW)$($wait)*?]);
+        /// Checks the chip's identity.
+        pub $($async)? fn identify(&mut self) -> Outcome<I> {
+            let (high, low) = (self.read(MODEL_ID_HIGH)$($wait)*?, self.read(MODEL_ID_LOW)$($wait)*?);
+            let found = u16::from_be_bytes([high, low]);
             if found == Self::IDENTITY { Ok(()) } else { Err(SensorError::Identity { found }) }
         }
 
-        /// Starts or stops frames.
-        pub $($async)? fn set_mode(&mut self, mode: Hm01b0Mode) -> Result<(), SensorError<I::Error>> {
+        /// Sets the operating mode.
+        pub $($async)? fn set_mode(&mut self, mode: Hm01b0Mode) -> Outcome<I> {
             self.write(
                 MODE_SELECT,
                 match mode {
@@ -181,8 +156,8 @@ macro_rules! driver {
             )$($wait)*
         }
 
-        /// Reads out that part of the array, at the highest frame rate of the clock.
-        pub $($async)? fn set_size(&mut self, size: Hm01b0Size) -> Result<(), SensorError<I::Error>> {
+        /// Sets the region that is read out, at the clock's highest frame rate.
+        pub $($async)? fn set_size(&mut self, size: Hm01b0Size) -> Outcome<I> {
             let (readout, binning) = if size == Hm01b0Size::Qqvga { (3, 3) } else { (1, 0) };
             self.write(READOUT_X, readout)$($wait)*?;
             self.write(READOUT_Y, readout)$($wait)*?;
@@ -194,8 +169,8 @@ macro_rules! driver {
             Ok(())
         }
 
-        /// Sets the time between two frames, to the next whole line.
-        pub $($async)? fn set_frame_time(&mut self, frame_us: u32) -> Result<(), SensorError<I::Error>> {
+        /// Sets the time between two frames, rounded to whole lines.
+        pub $($async)? fn set_frame_time(&mut self, frame_us: u32) -> Outcome<I> {
             within(frame_us, self.lines_us(self.size.least_lines()), self.lines_us(u16::MAX))?;
             let lines = self.lines_in(frame_us).max(self.size.least_lines());
             self.write_pair(FRAME_LINES, lines)$($wait)*?;
@@ -204,31 +179,30 @@ macro_rules! driver {
             Ok(())
         }
 
-        /// The time between two frames, microseconds.
+        /// Returns the time between two frames, microseconds.
         pub fn frame_time_us(&self) -> u32 {
             self.lines_us(self.frame_lines)
         }
 
-        /// Reads columns from the right, rows from below.
-        pub $($async)? fn set_flips(&mut self, rows: bool, columns: bool) -> Result<(), SensorError<I::Error>> {
+        /// Sets whether rows are read from below and columns from the right.
+        pub $($async)? fn set_flips(&mut self, rows: bool, columns: bool) -> Outcome<I> {
             self.write(ORIENTATION, u8::from(columns) | u8::from(rows) << 1)$($wait)*?;
             self.write(GROUP, 1)$($wait)*
         }
 
-        /// Sends a pattern of bars instead of what the sensor sees.
-        pub $($async)? fn set_test_pattern(&mut self, is_on: bool) -> Result<(), SensorError<I::Error>> {
+        /// Sets whether bars are sent instead of the picture.
+        pub $($async)? fn set_test_pattern(&mut self, is_on: bool) -> Outcome<I> {
             self.write(TEST_PATTERN, u8::from(is_on))$($wait)*
         }
 
-        /// The least and the most exposure that leave the frame rate as it is, microseconds.
+        /// Returns the shortest and the longest exposure that keep the frame rate, microseconds.
         pub fn exposure_limits_us(&self) -> (u32, u32) {
             (self.lines_us(2), self.lines_us(self.frame_lines.saturating_sub(2)))
         }
 
-        /// Sets exposure, rounded to what the sensor has, and gain in sixteenths.
-        ///
-        /// The gain is 1, 2, 4 or 8: the next one below.
-        pub $($async)? fn set_exposure(&mut self, exposure_us: u32, gain_16ths: u16) -> Result<(), SensorError<I::Error>> {
+        /// Sets the exposure, rounded to whole lines, and the gain in sixteenths, rounded down to 1, 2, 4 or
+        /// 8.
+        pub $($async)? fn set_exposure(&mut self, exposure_us: u32, gain_16ths: u16) -> Outcome<I> {
             within(gain_16ths.into(), 16, 128)?;
             let lines = self.lines_in(exposure_us).clamp(2, self.frame_lines.saturating_sub(2).max(2));
             let doublings = (gain_16ths / 16).checked_ilog2().unwrap_or(0) as u8;
@@ -237,7 +211,7 @@ macro_rules! driver {
             self.write(GROUP, 1)$($wait)*
         }
 
-        /// Gives the bus back.
+        /// Releases the bus.
         pub fn release(self) -> I {
             self.bus
         }
@@ -252,21 +226,22 @@ macro_rules! driver {
             (clocks / u64::from(CLOCKS_A_LINE)).min(u16::MAX.into()) as u16
         }
 
-        $($async)? fn write(&mut self, register: u16, value: u8) -> Result<(), SensorError<I::Error>> {
+        $($async)? fn write(&mut self, register: u16, value: u8) -> Outcome<I> {
             let [high, low] = register.to_be_bytes();
             self.bus.write(Self::ADDRESS, &[high, low, value])$($wait)*.map_err(SensorError::Bus)
         }
 
-        /// Two registers beside each other, the high byte's first.
-        $($async)? fn write_pair(&mut self, register: u16, value: u16) -> Result<(), SensorError<I::Error>> {
+        /// Writes two adjacent registers, the high byte first.
+        $($async)? fn write_pair(&mut self, register: u16, value: u16) -> Outcome<I> {
             let [high, low] = value.to_be_bytes();
             self.write(register, high)$($wait)*?;
             self.write(register + 1, low)$($wait)*
         }
 
-        $($async)? fn read(&mut self, register: u16) -> Result<u8, SensorError<I::Error>> {
+        $($async)? fn read(&mut self, register: u16) -> Outcome<I, u8> {
             let mut value = [0];
-            self.bus.write_read(Self::ADDRESS, &register.to_be_bytes(), &mut value)$($wait)*.map_err(SensorError::Bus)?;
+            let read = self.bus.write_read(Self::ADDRESS, &register.to_be_bytes(), &mut value)$($wait)*;
+            read.map_err(SensorError::Bus)?;
             let [value] = value;
             Ok(value)
         }
@@ -274,11 +249,19 @@ macro_rules! driver {
     };
 }
 
-driver!(Hm01b0, "A HM01B0 on an I2C bus.", embedded_hal::i2c::I2c, embedded_hal::delay::DelayNs, [], []);
+driver!(
+    Hm01b0,
+    "Driver of the HM01B0 on an I2C bus.",
+    embedded_hal::i2c::I2c,
+    embedded_hal::delay::DelayNs,
+    [],
+    []
+);
 #[cfg(feature = "async")]
 driver!(
     AsyncHm01b0,
-    "A HM01B0 on an I2C bus that is waited for: [`Hm01b0`], call for call. A call whose future is dropped leaves the sensor as one that failed.",
+    "Driver of the HM01B0 on an asynchronous I2C bus, with the calls of [`Hm01b0`].\n\n\
+     A call whose future is dropped leaves the sensor as a failed one does.",
     embedded_hal_async::i2c::I2c,
     embedded_hal_async::delay::DelayNs,
     [async],

@@ -1,23 +1,16 @@
-//! Drivers of image sensors over I2C: what they are told. Where their pixels go, a
-//! [`LineSource`](super::LineSource) says, over the port of the chip at hand.
+//! Image sensor drivers over I2C. Pixels come through a [`LineSource`](super::LineSource) over the chip's
+//! port.
 //!
-//! * [`Mt9v034`]: global shutter, 752x480, the classic of embedded stereo. [`Hm01b0`]: rolling shutter,
-//!   324x324, milliwatts.
-//! * [`ExposureControl`]: what an automatic exposure asks of a sensor. [`SensorError`]: why a sensor did not
-//!   do what it was told.
+//! * [`Mt9v034`]: global shutter, 752x480. [`Hm01b0`]: rolling shutter, 324x324, milliwatts.
+//! * [`ExposureControl`]: exposure and gain for an automatic exposure. [`SensorError`]: why a call failed.
 //!
-//! A driver owns its bus by value; a shared one comes by `embedded-hal-bus` or `&mut`. Delay and reset pin
-//! are asked for where they are needed. All of it blocks, for the time that the bus takes; with the feature
-//! `async` there is each driver over a bus that is waited for as well (`AsyncMt9v034`, `AsyncHm01b0`), made
-//! of the same text. A write that fails leaves the sensor between two settings: the call may be repeated as
-//! it is, and [`Mt9v034::initialise`] or [`Hm01b0::initialise`] begins anew.
+//! A driver owns its bus by value; a shared bus comes by `embedded-hal-bus` or `&mut`. Calls block while the
+//! bus transfers; with the feature `async`, `AsyncMt9v034` and `AsyncHm01b0` await it instead. A write that
+//! fails leaves the sensor between two settings: repeat the call, or start over with [`Mt9v034::initialise`]
+//! or [`Hm01b0::initialise`].
 //!
-//! Other sensors come with drivers of their own, which need no adapter: they configure, over the same traits.
-//! For the OV7670 there is the crate `ov7670` 0.1.0, over `embedded-hal` 1.0: it sets size, format, gain and
-//! exposure, but neither frame rate, windows, test pattern nor clock, and looks at no identity, so that an
-//! adapter could give an [`ExposureControl`] and no more; its only version is its first. The crate
-//! `hm01b0` 0.1.0 has exposure, trigger and test pattern; as it neither windows nor bins, there is a driver
-//! here.
+//! Other sensors' drivers need no adapter, as they only configure: for example the crates `ov7670` and
+//! `hm01b0`, of which the second neither windows nor bins.
 
 mod hm01b0;
 mod mt9v034;
@@ -31,7 +24,7 @@ pub use mt9v034::{Mt9v034, Mt9v034Mode, Mt9v034Pattern, Mt9v034Window};
 
 use core::fmt;
 
-/// Why a sensor did not do what it was told.
+/// Why a call to a sensor driver failed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -40,18 +33,18 @@ pub enum SensorError<B> {
     Bus(B),
     /// The reset pin failed.
     ResetPin,
-    /// Another chip answers at the address.
+    /// A different chip answers at the address.
     Identity {
-        /// What the chip says that it is.
+        /// Identity that the chip reports.
         found: u16,
     },
-    /// The sensor did not come out of its reset.
+    /// The sensor did not come out of reset.
     NoReset,
-    /// The sensor has no such value.
+    /// The sensor does not support the value.
     OutOfRange {
-        /// The least that it has.
+        /// Least supported value.
         least: u32,
-        /// The most that it has.
+        /// Largest supported value.
         most: u32,
     },
 }
@@ -70,24 +63,27 @@ impl<B: fmt::Debug> fmt::Display for SensorError<B> {
 
 impl<B: fmt::Debug> core::error::Error for SensorError<B> {}
 
-/// `value`, if the sensor has it.
+/// Result of a driver's call on the bus `I`.
+type Outcome<I, T = ()> = Result<T, SensorError<<I as embedded_hal::i2c::ErrorType>::Error>>;
+
+/// Returns `value` if it is within the sensor's limits.
 fn within<B>(value: u32, least: u32, most: u32) -> Result<u32, SensorError<B>> {
     if (least..=most).contains(&value) { Ok(value) } else { Err(SensorError::OutOfRange { least, most }) }
 }
 
-/// What an automatic exposure asks of a sensor.
+/// Exposure and gain of a sensor, for an automatic exposure.
 pub trait ExposureControl {
-    /// The sensor's error.
+    /// Error of the sensor driver.
     type Error: fmt::Debug;
 
-    /// The least and the most exposure that leave the frame rate as it is, microseconds.
+    /// Shortest and longest exposure that keep the frame rate, microseconds.
     fn exposure_limits_us(&self) -> (u32, u32);
 
-    /// The most gain, in sixteenths: 64 is fourfold. The least is 16.
+    /// Largest gain in sixteenths: 64 is fourfold. The least is 16.
     fn most_gain_16ths(&self) -> u16;
 
-    /// Sets both for a coming frame: which one, the sensor says. The exposure is rounded to what the sensor
-    /// has.
+    /// Sets exposure and gain for a coming frame, which the sensor determines. The exposure is rounded to a
+    /// supported value.
     fn set_exposure(&mut self, exposure_us: u32, gain_16ths: u16) -> Result<(), Self::Error>;
 }
 

@@ -1,21 +1,19 @@
 //! onsemi's MT9V034: 752x480 pixels of 10 bits behind a global shutter, on a parallel port.
 //!
-//! Registers have 16 bits at addresses of 8, the high byte first. Their names, numbers, limits and bits are
+//! Registers have 16 bits at 8-bit addresses, the high byte first. Their names, numbers, limits and bits are
 //! those of Linux's driver (`drivers/media/i2c/mt9v032.c`) and of OpenMV's
-//! (`drivers/sensors/mt9v0xx_regs.h`); the timing is that of the data sheet of its twin for cars, MT9V024/D,
+//! (`drivers/sensors/mt9v0xx_regs.h`); the timing is that of its automotive twin's data sheet, MT9V024/D,
 //! tables 4 and 5.
 //!
-//! A row takes `width + horizontal blanking` clocks of the master clock, 704 at least, and a frame
-//! `max(rows + vertical blanking, exposure + 2)` rows and 4 clocks. The exposure is whole rows. Of binned
-//! rows only a half or a fourth are read out; binned columns are clocked out slower by as much and save no
-//! time (MT9V024/D, "Row Binning" and "Column Binning", page 25; that of the MT9V032, page 46, says the
-//! same).
+//! A row takes `width + horizontal blanking` clocks of the master clock, at least 704, and a frame
+//! `max(rows + vertical blanking, exposure + 2)` rows and 4 clocks. The exposure is whole rows. Row binning
+//! shortens a frame; column binning slows the pixel clock and saves no time (MT9V024/D, page 25).
 
 mod settings;
 
 pub use settings::{Mt9v034Mode, Mt9v034Pattern, Mt9v034Window};
 
-use super::{ExposureControl, SensorError, within};
+use super::{ExposureControl, Outcome, SensorError, within};
 use embedded_hal::digital::OutputPin;
 
 const CHIP_VERSION: u8 = 0x00;
@@ -44,8 +42,7 @@ const RECOMMENDED: [(u8, u16); 5] =
     [(0x13, 0x2d2e), (0x20, 0x03c7), (0x24, 0x001b), (0x2b, 0x0003), (0x2f, 0x0003)];
 const LEAST_ROW_CLOCKS: u16 = 704;
 
-/// The driver, over a bus that blocks or one that is waited for: `async` and `.await`, or nothing in their
-/// places.
+/// The driver over a blocking or an asynchronous bus: with `async` and `.await`, or nothing in their places.
 macro_rules! driver {
     ($driver:ident, $about:literal, $i2c:path, $delay:path, [$($async:ident)?], [$($wait:tt)*]) => {
     #[doc = $about]
@@ -60,24 +57,25 @@ macro_rules! driver {
     }
 
     impl<I: $i2c> $driver<I> {
-        /// Its addresses on the bus, 7 bits, by its pins S_CTRL_ADR1 and S_CTRL_ADR0: 00, 01, 10, 11.
+        /// Addresses on the bus, 7 bits, for the pins S_CTRL_ADR1 and S_CTRL_ADR0 at 00, 01, 10, 11.
         pub const ADDRESSES: [u8; 4] = [0x48, 0x4c, 0x58, 0x5c];
-        /// What it says that it is.
+        /// Version number that the chip reports.
         pub const IDENTITY: u16 = 0x1324;
 
-        /// A sensor on that bus, with a master clock of so many hertz: 26.6 MHz as a rule. Nothing is sent.
+        /// Creates a driver without touching the bus. `clock_hz` is the master clock, typically 26.6 MHz.
         pub const fn new(bus: I, address: u8, clock_hz: u32) -> Self {
             let window = Mt9v034Window::WHOLE;
             Self { bus, address, clock_hz, window, row_clocks: 752 + 94, vertical_blanking: 45 }
         }
 
-        /// Resets the sensor by its pin RESET_BAR, which is low for a reset, and by its register, asks who it is, and sets what the data
-        /// sheet recommends: the whole array, no automatic exposure or gain, no high dynamic range, free-running.
+        /// Resets the sensor by its active-low pin RESET_BAR and by register, checks its identity, and
+        /// configures the whole array, free-running, without automatic exposure, automatic gain or high
+        /// dynamic range.
         pub $($async)? fn initialise<P: OutputPin, D: $delay>(
             &mut self,
             reset: &mut P,
             delay: &mut D,
-        ) -> Result<(), SensorError<I::Error>> {
+        ) -> Outcome<I> {
             reset.set_low().map_err(|_| SensorError::ResetPin)?;
             // At least 20 clocks, and 10 before the bus.
             delay.delay_us(10)$($wait)*;
@@ -95,16 +93,16 @@ macro_rules! driver {
             self.set_mode(Mt9v034Mode::Master)$($wait)*
         }
 
-        /// Asks the chip who it is.
-        pub $($async)? fn identify(&mut self) -> Result<(), SensorError<I::Error>> {
+        /// Checks the chip's identity.
+        pub $($async)? fn identify(&mut self) -> Outcome<I> {
             match self.read(CHIP_VERSION)$($wait)*? {
                 Self::IDENTITY => Ok(()),
                 found => Err(SensorError::Identity { found }),
             }
         }
 
-        /// Says who tells the sensor when to expose.
-        pub $($async)? fn set_mode(&mut self, mode: Mt9v034Mode) -> Result<(), SensorError<I::Error>> {
+        /// Sets who triggers the exposure.
+        pub $($async)? fn set_mode(&mut self, mode: Mt9v034Mode) -> Outcome<I> {
             let bits = match mode {
                 Mt9v034Mode::Slave => 0,
                 Mt9v034Mode::Master => 1 << 3,
@@ -113,9 +111,9 @@ macro_rules! driver {
             self.write(CHIP_CONTROL, CONTROL | bits)$($wait)*
         }
 
-        /// Reads out that part of the array, with the shortest rows; flips go. Lines have `width / binning` pixels, frames `height / binning`
-        /// lines.
-        pub $($async)? fn set_window(&mut self, window: Mt9v034Window) -> Result<(), SensorError<I::Error>> {
+        /// Sets the window that is read out, with the shortest rows, and clears the flips. Lines have
+        /// `width / binning` pixels, frames `height / binning` lines.
+        pub $($async)? fn set_window(&mut self, window: Mt9v034Window) -> Outcome<I> {
             let Mt9v034Window { left, top, width, height, binning } = window;
             // The least blanking grows by ten clocks for each binned column.
             let (bits, least_blanking) = match binning {
@@ -138,15 +136,16 @@ macro_rules! driver {
             Ok(())
         }
 
-        /// Reads rows from below, columns from the right: for a sensor that stands on its head.
-        pub $($async)? fn set_flips(&mut self, rows: bool, columns: bool) -> Result<(), SensorError<I::Error>> {
+        /// Sets whether rows are read from below and columns from the right, for a sensor mounted upside
+        /// down.
+        pub $($async)? fn set_flips(&mut self, rows: bool, columns: bool) -> Outcome<I> {
             let bits = u16::from(self.window.binning.trailing_zeros() as u8);
             let flips = u16::from(rows) << 4 | u16::from(columns) << 5;
             self.write(READ_MODE, READ | flips | bits << 2 | bits)$($wait)*
         }
 
-        /// Sets the time between two frames by the vertical blanking, to the next whole row.
-        pub $($async)? fn set_frame_time(&mut self, frame_us: u32) -> Result<(), SensorError<I::Error>> {
+        /// Sets the time between two frames by the vertical blanking, rounded to whole rows.
+        pub $($async)? fn set_frame_time(&mut self, frame_us: u32) -> Outcome<I> {
             let rows = self.rows_in(frame_us);
             let read = self.rows_read();
             let least = self.rows_us(read + 2);
@@ -158,35 +157,35 @@ macro_rules! driver {
             Ok(())
         }
 
-        /// The time between two frames, as long as no exposure is longer, microseconds.
+        /// Returns the time between two frames while no exposure is longer, microseconds.
         pub fn frame_time_us(&self) -> u32 {
             self.rows_us(self.rows_read() + u32::from(self.vertical_blanking))
         }
 
-        /// How long a row takes to be read out, nanoseconds.
+        /// Returns the read-out time of a row, nanoseconds.
         pub fn row_time_ns(&self) -> u32 {
             (u64::from(self.row_clocks) * 1_000_000_000 / u64::from(self.clock_hz.max(1))) as u32
         }
 
-        /// Exposes for so many rows' time: 0 to 32765. More than a frame's makes the frame longer.
-        pub $($async)? fn set_exposure_rows(&mut self, rows: u16) -> Result<(), SensorError<I::Error>> {
+        /// Sets the exposure in rows, 0 to 32765. More rows than a frame has make the frame longer.
+        pub $($async)? fn set_exposure_rows(&mut self, rows: u16) -> Outcome<I> {
             within(rows.into(), 0, 32_765)?;
             self.write(TOTAL_SHUTTER_WIDTH, rows)$($wait)*
         }
 
         /// Sets the analog gain in sixteenths: 16 to 64.
-        pub $($async)? fn set_gain(&mut self, gain_16ths: u16) -> Result<(), SensorError<I::Error>> {
+        pub $($async)? fn set_gain(&mut self, gain_16ths: u16) -> Outcome<I> {
             within(gain_16ths.into(), 16, 64)?;
             self.write(ANALOG_GAIN, gain_16ths)$($wait)*
         }
 
-        /// Samples on the falling edge of the pixel clock instead of the rising one.
-        pub $($async)? fn set_inverted_pixel_clock(&mut self, inverted: bool) -> Result<(), SensorError<I::Error>> {
+        /// Sets whether pixels are sampled on the falling edge of the pixel clock.
+        pub $($async)? fn set_inverted_pixel_clock(&mut self, inverted: bool) -> Outcome<I> {
             self.write(PIXEL_CLOCK, u16::from(inverted) << 4)$($wait)*
         }
 
-        /// Sends a pattern.
-        pub $($async)? fn set_test_pattern(&mut self, pattern: Mt9v034Pattern) -> Result<(), SensorError<I::Error>> {
+        /// Sets a test pattern.
+        pub $($async)? fn set_test_pattern(&mut self, pattern: Mt9v034Pattern) -> Outcome<I> {
             const ON: u16 = 1 << 13;
             let bits = match pattern {
                 Mt9v034Pattern::Off => 0,
@@ -198,22 +197,21 @@ macro_rules! driver {
             self.write(TEST_PATTERN, bits)$($wait)*
         }
 
-        /// The least and the most exposure that leave the frame rate as it is, microseconds.
+        /// Returns the shortest and the longest exposure that keep the frame rate, microseconds.
         pub fn exposure_limits_us(&self) -> (u32, u32) {
             // Two rows fewer than a frame has, blanking included.
             let most = (self.rows_read() + u32::from(self.vertical_blanking)).saturating_sub(2);
             (self.rows_us(1), self.rows_us(most))
         }
 
-        /// Sets exposure, rounded to what the sensor has, and gain in sixteenths.
-        ///
-        /// The gain counts for the next frame, and the exposure for the one after it: its exposure has not begun.
-        pub $($async)? fn set_exposure(&mut self, exposure_us: u32, gain_16ths: u16) -> Result<(), SensorError<I::Error>> {
+        /// Sets the exposure, rounded to whole rows, and the gain in sixteenths. The gain takes effect with
+        /// the next frame, the exposure with the one after it.
+        pub $($async)? fn set_exposure(&mut self, exposure_us: u32, gain_16ths: u16) -> Outcome<I> {
             self.set_exposure_rows(self.rows_in(exposure_us).clamp(1, 32_765) as u16)$($wait)*?;
             self.set_gain(gain_16ths)$($wait)*
         }
 
-        /// Gives the bus back.
+        /// Releases the bus.
         pub fn release(self) -> I {
             self.bus
         }
@@ -223,24 +221,24 @@ macro_rules! driver {
             u32::from(self.window.height) / u32::from(self.window.binning.max(1))
         }
 
-        /// The time of so many rows, rounded up.
+        /// Duration of rows, rounded up, microseconds.
         fn rows_us(&self, rows: u32) -> u32 {
             let clocks = u64::from(rows) * u64::from(self.row_clocks) + 4;
             (clocks * 1_000_000).div_ceil(u64::from(self.clock_hz.max(1))).min(u32::MAX.into()) as u32
         }
 
-        /// Whole rows in that time.
+        /// Whole rows in a time.
         fn rows_in(&self, time_us: u32) -> u32 {
             let clocks = u64::from(time_us) * u64::from(self.clock_hz) / 1_000_000;
             (clocks / u64::from(self.row_clocks.max(1))).min(u32::MAX.into()) as u32
         }
 
-        $($async)? fn write(&mut self, register: u8, value: u16) -> Result<(), SensorError<I::Error>> {
+        $($async)? fn write(&mut self, register: u8, value: u16) -> Outcome<I> {
             let [high, low] = value.to_be_bytes();
             self.bus.write(self.address, &[register, high, low])$($wait)*.map_err(SensorError::Bus)
         }
 
-        $($async)? fn read(&mut self, register: u8) -> Result<u16, SensorError<I::Error>> {
+        $($async)? fn read(&mut self, register: u8) -> Outcome<I, u16> {
             let mut value = [0; 2];
             self.bus.write_read(self.address, &[register], &mut value)$($wait)*.map_err(SensorError::Bus)?;
             Ok(u16::from_be_bytes(value))
@@ -249,11 +247,19 @@ macro_rules! driver {
     };
 }
 
-driver!(Mt9v034, "A MT9V034 on an I2C bus.", embedded_hal::i2c::I2c, embedded_hal::delay::DelayNs, [], []);
+driver!(
+    Mt9v034,
+    "Driver of the MT9V034 on an I2C bus.",
+    embedded_hal::i2c::I2c,
+    embedded_hal::delay::DelayNs,
+    [],
+    []
+);
 #[cfg(feature = "async")]
 driver!(
     AsyncMt9v034,
-    "A MT9V034 on an I2C bus that is waited for: [`Mt9v034`], call for call. A call whose future is dropped leaves the sensor as one that failed.",
+    "Driver of the MT9V034 on an asynchronous I2C bus, with the calls of [`Mt9v034`].\n\n\
+     A call whose future is dropped leaves the sensor as a failed one does.",
     embedded_hal_async::i2c::I2c,
     embedded_hal_async::delay::DelayNs,
     [async],

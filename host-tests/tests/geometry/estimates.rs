@@ -74,7 +74,7 @@ fn noise_costs_both_precisions_the_same() {
 
 /// What OpenCV 5.0.0 reaches on the same correspondences, `findFundamentalMat(first, second, FM_8POINT)` in
 /// `f64`: how many correspondences, and the mean over sixty scenes of the root mean square Sampson distance,
-/// px, of the exact points.
+/// px, of the exact points. `opencv.py` beside this file makes the scenes and prints the figures.
 const OPENCV: [(usize, f64); 4] = [(8, 1.947494), (20, 0.329060), (50, 0.200196), (200, 0.098837)];
 
 #[test]
@@ -88,7 +88,7 @@ fn noise_costs_no_more_than_it_costs_opencv() {
             single += rms_sampson(&wide(&eight_point(&narrow(&seen)).expect("a scene")), &views.seen) / 60.0;
         }
         for ours in [double, single] {
-            assert!((ours / theirs - 1.0).abs() < 0.02, "{n} points: {ours} px, OpenCV {theirs} px");
+            assert!(ours < 1.02 * theirs, "{n} points: {ours} px, OpenCV {theirs} px");
         }
     }
 }

@@ -136,20 +136,6 @@ proptest! {
     }
 
     #[test]
-    fn known_cameras_make_it_better(seed in any::<u64>()) {
-        let mixed = Mixed::new(seed, 60, 0.3);
-        let camera = mixed.views.camera;
-        let (found, _) = solve(&mixed.seen, &config(seed)).expect("an estimate");
-        let start = Essential::from_fundamental(&found.fundamental, &camera, &camera).expect("rank 2");
-        let e = start.refined(&mixed.seen, &camera, &camera, THRESHOLD).expect("rank 2");
-        let refined = Fundamental::from_essential(&e, &camera, &camera);
-        prop_assert!(mixed.error(&refined) < 1.5, "{} px off", mixed.error(&refined));
-        let truth = Essential::from_pose(&mixed.views.pose).expect("a baseline");
-        let off = (e.matrix() - truth.matrix()).amax().min((e.matrix() + truth.matrix()).amax());
-        prop_assert!(off < 0.6, "{off}");
-    }
-
-    #[test]
     fn a_wall_does_not_hide_the_scene(seed in any::<u64>()) {
         // Eight of ten points on a wall, and a third of the matches wrong.
         let pose = nearby(&mut Random::new(seed));
@@ -178,6 +164,32 @@ proptest! {
         let kept = mixed.right.iter().zip(&inliers).filter(|&(&right, &inlier)| right && inlier).count();
         prop_assert!(kept >= 98, "{kept}");
     }
+}
+
+#[test]
+fn known_cameras_make_it_better() {
+    // The refined essential matrix beside F, and beside the essential matrix nearest to F, from which it starts.
+    let (mut refined, mut start, mut plain) = (0.0, 0.0, 0.0);
+    let (mut than_start, mut than_plain) = (0, 0);
+    for seed in 0..100 {
+        let mixed = Mixed::new(seed, 60, 0.3);
+        let camera = mixed.views.camera;
+        let error = |e: &Essential<f64>| mixed.error(&Fundamental::from_essential(e, &camera, &camera));
+        let (found, _) = solve(&mixed.seen, &config(seed)).expect("an estimate");
+        let nearest = Essential::from_fundamental(&found.fundamental, &camera, &camera).expect("rank 2");
+        let e = nearest.refined(&mixed.seen, &camera, &camera, THRESHOLD).expect("rank 2");
+        assert!(error(&e) < 1.5, "seed {seed}: {} px off", error(&e));
+        let truth = Essential::from_pose(&mixed.views.pose).expect("a baseline");
+        let off = (e.matrix() - truth.matrix()).amax().min((e.matrix() + truth.matrix()).amax());
+        assert!(off < 0.6, "seed {seed}: {off}");
+        let f = mixed.error(&found.fundamental);
+        than_start += usize::from(error(&e) < error(&nearest));
+        than_plain += usize::from(error(&e) < f);
+        (refined, start, plain) = (refined + error(&e), start + error(&nearest), plain + f);
+    }
+    assert!(refined < 0.2 * start && than_start >= 95, "{refined} {start}, {than_start} of 100 better");
+    // F bends to what the cameras cannot do, where few points say otherwise: to the points it is as near.
+    assert!(refined < 1.1 * plain && than_plain > 50, "{refined} {plain}, {than_plain} of 100 better");
 }
 
 #[test]
@@ -245,10 +257,12 @@ fn a_camera_that_only_turned_is_told() {
 #[test]
 fn samples_are_bounded() {
     let mixed = Mixed::new(5, 40, 0.6);
-    let few = RobustConfig { most_samples: 3, ..config(0) };
     // Whatever three samples find, they are no more, and it is said how unsure that is.
-    if let Ok((found, _)) = solve(&mixed.seen, &few) {
-        assert!(found.samples == 3 && found.miss_probability > 0.5);
+    let few = (0..20).map(|seed| solve(&mixed.seen, &RobustConfig { most_samples: 3, ..config(seed) }));
+    let found: Vec<_> = few.filter_map(Result::ok).map(|(found, _)| found).collect();
+    assert!(found.len() >= 5, "three samples find something {} times", found.len());
+    for found in found {
+        assert!(found.samples == 3 && found.miss_probability > 0.5, "{found:?}");
     }
     let (found, _) = solve(&mixed.seen, &config(0)).expect("an estimate");
     assert!(found.samples > 16 && found.miss_probability <= 1e-3);

@@ -1,7 +1,9 @@
-//! Accuracy on the real rectified pairs of the folder in `STEREO_DATA`: both methods, default filter, every
-//! scene.
+//! Accuracy on rectified pairs of the folder in `STEREO_DATA`: every method, default filter, every scene.
 //!
-//! Built by the feature `real-data`, which `cargo xtask test` sets when `STEREO_DATA` is.
+//! On all pairs of `stereo/` the recipes, penalties and checks were chosen ([`TUNED_ON`]): the bounds of these tests
+//! say that nothing gets worse, not how good the answers are on other pairs. Pairs that nothing was chosen on
+//! may stand in `stereo_held_back/`, in the same form; a test of their own, which is ignored as long as nobody
+//! has any, holds them to what such pairs gave once.
 
 use image::GrayImage;
 use std::fmt::Write;
@@ -14,11 +16,32 @@ use stereopsis_host::real::{Alteration, RealScene, Score};
 use stereopsis_host::run::{MemoryPair, Method, measure_balance, measure_noise, run};
 use stereopsis_host::sparsification::Sparsification;
 
+/// The pairs that something was chosen on: all there are.
+const TUNED_ON: [&str; 15] = [
+    "cones",
+    "mb2006_Aloe",
+    "mb2006_Baby1",
+    "mb2006_Bowling1",
+    "mb2006_Cloth1",
+    "mb2006_Cloth3",
+    "mb2006_Lampshade1",
+    "mb2006_Midd1",
+    "mb2006_Monopoly",
+    "mb2006_Rocks1",
+    "mb2006_Wood2",
+    "mb2014q_Motorcycle",
+    "sceneflow_dmb_0",
+    "tsukuba",
+    "venus",
+];
+
 /// The scenes, read once.
-static SCENES: LazyLock<Vec<RealScene>> = LazyLock::new(|| {
+static SCENES: LazyLock<Vec<RealScene>> = LazyLock::new(|| scenes("stereo"));
+
+fn scenes(folder: &str) -> Vec<RealScene> {
     let data = std::env::var_os("STEREO_DATA").expect("set STEREO_DATA to the folder that holds stereo/");
-    RealScene::all(&Path::new(&data).join("stereo")).unwrap_or_else(|e| panic!("STEREO_DATA: {e}"))
-});
+    RealScene::all(&Path::new(&data).join(folder)).unwrap_or_else(|e| panic!("STEREO_DATA: {e}"))
+}
 
 fn camera([left, right]: [&GrayImage; 2]) -> MemoryPair {
     MemoryPair::new(left.width() as u16, left.to_vec(), right.to_vec()).expect("two images of one size")
@@ -79,6 +102,10 @@ fn mean_over_scenes(method: Method) -> Score {
 }
 
 fn mean_with(method: Method, filter: Filter) -> Score {
+    mean_of(&SCENES, method, filter)
+}
+
+fn mean_of(scenes: &[RealScene], method: Method, filter: Filter) -> Score {
     let mut table = format!(
         "{:24}{:>9}{:>9}{:>9}\n",
         format!("{method}, {}", filter.name()),
@@ -91,7 +118,7 @@ fn mean_with(method: Method, filter: Filter) -> Score {
             .expect("to a string");
     };
     let mut scores = Vec::new();
-    for scene in SCENES.iter() {
+    for scene in scenes {
         let answers = match_with(scene, method, filter).disparity;
         assert_eq!(answers.len(), scene.truth.len(), "{}", scene.name);
         let score = Score::of(answers.iter().map(|d| d.to_f32()), &scene.truth).expect("scored pixels");
@@ -102,6 +129,31 @@ fn mean_with(method: Method, filter: Filter) -> Score {
     row("mean", mean);
     println!("{table}");
     mean
+}
+
+#[test]
+fn the_pairs_are_those_that_were_tuned_on() {
+    let names: Vec<_> = SCENES.iter().map(|scene| scene.name.as_str()).collect();
+    assert_eq!(names, TUNED_ON, "a pair that nothing was chosen on belongs to stereo_held_back/");
+}
+
+/// 18 pairs that none of it was chosen on once gave the recipe of [`Method::Sgm`] 8.3 % missed and 6.2 % of the
+/// answers over 2 px off, of [`Method::SgmLean`] 8.6 and 6.5, of [`Method::SgmEdge`] 7.7 and 5.9, and OpenCV's
+/// StereoSGBM 13.6 and 7.2.
+#[test]
+#[ignore = "needs pairs that nothing was chosen on, in the folder stereo_held_back/ of STEREO_DATA"]
+fn held_back_pairs() {
+    let scenes = scenes("stereo_held_back");
+    assert!(scenes.iter().all(|scene| !TUNED_ON.contains(&scene.name.as_str())), "a pair was tuned on");
+    for method in [Method::Sgm, Method::SgmLean, Method::SgmEdge] {
+        let mean = mean_of(&scenes, method, Filter::Default);
+        assert!(
+            mean.missed <= 0.136 && mean.bad2 <= 0.072,
+            "{method}: missed {}, bad2 {}",
+            mean.missed,
+            mean.bad2
+        );
+    }
 }
 
 #[test]

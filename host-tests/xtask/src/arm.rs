@@ -2,17 +2,20 @@
 //! the assembler of 32 bits, the instructions that Cortex-M4, M7 and M33 have on four bytes.
 
 use crate::packages;
+use crate::parallel;
 use crate::setup;
 use crate::steps::{Outcome, cargo, run as run_command};
+use std::process::Command;
+use std::time::Instant;
 
 /// Tests that are long and see nothing on 64-bit Arm that the other tests do not: the rows of the block
 /// methods are the same safe code as on the host.
 const SAME_AS_HOST: &[&str] = &["fast_equals_its_twin_at_all_sizes", "block_equals_its_twin_at_all_sizes"];
 
 /// A processor that the tests are built for.
+#[derive(Clone, Copy)]
 pub struct Arm {
-    /// Its name in the list of steps.
-    pub name: &'static str,
+    name: &'static str,
     target: &'static str,
     linker: &'static str,
     emulator: &'static str,
@@ -50,6 +53,29 @@ pub fn others() -> impl Iterator<Item = Arm> {
     [ARM64, ARM32].into_iter().filter(|arm| !(cfg!(target_arch = "aarch64") && arm.target == ARM64.target))
 }
 
+/// Builds the tests for all of them at once, then runs them side by side.
+pub fn run() -> Outcome {
+    let arms: Vec<_> = others().collect();
+    run_command(&mut tests(&arms, &["--no-run"]))?;
+    parallel::work(arms, |arm| arm.run()).map(drop)
+}
+
+/// Cargo with the tests that hold every kernel to the twins.
+fn tests(arms: &[Arm], arguments: &[&str]) -> Command {
+    let mut tests = cargo(&["test", "--locked", "-p", "stereopsis-host", "--test", "matching"]);
+    tests.args(arms.iter().flat_map(|arm| ["--target", arm.target])).args(arguments);
+    for arm in arms {
+        let variable =
+            |what: &str| format!("CARGO_TARGET_{}_{what}", arm.target.replace('-', "_").to_uppercase());
+        tests.env(variable("LINKER"), arm.linker);
+        tests.env(variable("RUNNER"), format!("{} -L {}", arm.emulator, arm.libraries));
+        tests.env(variable("RUSTFLAGS"), arm.flags);
+    }
+    // The long lists take their share: the host has run all of them.
+    tests.env("STEREOPSIS_EMULATED", "1");
+    tests
+}
+
 impl Arm {
     /// Adds the target and the programs that are missing.
     pub fn set_up(&self) -> Outcome {
@@ -57,27 +83,14 @@ impl Arm {
         packages::install(&[self.linker, self.emulator])
     }
 
-    /// Runs the tests that hold every kernel to the twins.
-    pub fn run(&self) -> Outcome {
-        let mut tests = cargo(&[
-            "test",
-            "--locked",
-            "--target",
-            self.target,
-            "-p",
-            "stereopsis-host",
-            "--test",
-            "matching",
-        ]);
-        tests.args(["--", "twin::"]);
-        tests.args(self.skipped.iter().flat_map(|test| ["--skip", test]));
-        let variable =
-            |what: &str| format!("CARGO_TARGET_{}_{what}", self.target.replace('-', "_").to_uppercase());
-        tests.env(variable("LINKER"), self.linker);
-        tests.env(variable("RUNNER"), format!("{} -L {}", self.emulator, self.libraries));
-        tests.env(variable("RUSTFLAGS"), self.flags);
-        // The long lists take their share: the host has run all of them.
-        tests.env("STEREOPSIS_EMULATED", "1");
-        run_command(&mut tests)
+    /// Runs the tests, which are built.
+    fn run(&self) -> Outcome {
+        let skip = self.skipped.iter().flat_map(|test| ["--skip", test]);
+        // Each has a processor.
+        let arguments: Vec<_> = ["--", "twin::", "--test-threads", "1"].into_iter().chain(skip).collect();
+        let started = Instant::now();
+        run_command(&mut tests(&[*self], &arguments))?;
+        println!("{} took {:.1} s", self.name, started.elapsed().as_secs_f64());
+        Ok(())
     }
 }

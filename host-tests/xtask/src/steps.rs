@@ -2,6 +2,7 @@
 
 use std::ffi::OsStr;
 use std::fmt;
+use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
@@ -30,20 +31,27 @@ pub type Outcome<T = ()> = Result<T, Failure>;
 /// Runs steps one after another, says which and how long each took, and ends at the first failure.
 #[derive(Default)]
 pub struct Steps {
-    taken: Vec<(String, f64)>,
+    taken: Vec<Taken>,
+}
+
+/// A step that is done: seconds on the clock and of processors.
+struct Taken {
+    name: String,
+    seconds: f64,
+    of_processors: f64,
 }
 
 impl Steps {
     /// Runs a step.
     pub fn step<T>(&mut self, name: &str, work: impl FnOnce() -> Outcome<T>) -> Outcome<T> {
         println!("\n==> {name}");
-        let start = Instant::now();
+        let (start, processors) = (Instant::now(), processor_seconds());
         let done = work();
-        let seconds = start.elapsed().as_secs_f64();
+        let (seconds, of_processors) = (start.elapsed().as_secs_f64(), processor_seconds() - processors);
         match done {
             Ok(value) => {
-                println!("<== {name}: {seconds:.1} s");
-                self.taken.push((name.to_owned(), seconds));
+                println!("<== {name}: {seconds:.1} s, {of_processors:.1} s of processors");
+                self.taken.push(Taken { name: name.to_owned(), seconds, of_processors });
                 Ok(value)
             }
             Err(Failure(line)) => {
@@ -54,12 +62,27 @@ impl Steps {
 
     /// Prints every step with its time.
     pub fn summary(&self) {
+        let line = |seconds: f64, of_processors: f64, name: &str| {
+            println!("{seconds:7.1} s {of_processors:7.1} s of processors  {name}");
+        };
         println!();
-        for (name, seconds) in &self.taken {
-            println!("{seconds:7.1} s  {name}");
+        for taken in &self.taken {
+            line(taken.seconds, taken.of_processors, &taken.name);
         }
-        println!("{:7.1} s  in all", self.taken.iter().map(|(_, seconds)| seconds).sum::<f64>());
+        let sum = |of: fn(&Taken) -> f64| self.taken.iter().map(of).sum::<f64>();
+        line(sum(|taken| taken.seconds), sum(|taken| taken.of_processors), "in all");
     }
+}
+
+/// Seconds that processors have worked for this program and those that it waited for; 0 where the operating
+/// system does not say it as Linux does.
+fn processor_seconds() -> f64 {
+    const TICKS_A_SECOND: f64 = 100.0;
+    let text = fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    // Behind the program's name: the state is the third field; user and system ticks, its own and its
+    // children's, are the fourteenth to the seventeenth.
+    let fields = text.rsplit(')').next().unwrap_or_default().split_whitespace();
+    fields.skip(11).take(4).filter_map(|ticks| ticks.parse::<f64>().ok()).sum::<f64>() / TICKS_A_SECOND
 }
 
 /// The repository's root.

@@ -20,6 +20,9 @@ use stereopsis_host::run::Method;
 /// Frames that the cores have to agree on: width, height, disparities.
 const FRAMES: [(u16, u16, u16); 2] = [(160, 120, 32), (320, 240, 64)];
 
+/// One method over windows and one along paths: the same macro makes all functions of the interface.
+const IN_THE_LARGER: [Method; 2] = [Method::Block, Method::Sgm];
+
 /// The test step.
 pub fn run() -> Outcome {
     header::run(true)?;
@@ -31,6 +34,7 @@ pub fn run() -> Outcome {
     let runs: Vec<_> = frames
         .iter()
         .flat_map(|(pictures, disparities)| Method::ALL.map(|method| (pictures, method, *disparities)))
+        .filter(|&(pictures, method, _)| pictures.width == FRAMES[0].0 || IN_THE_LARGER.contains(&method))
         .collect();
     for (&(pictures, method, disparities), found) in runs.iter().zip(crc32s(&runs)?) {
         let expected = pictures.crc32(method, disparities)?;

@@ -1,6 +1,6 @@
 //! `cargo xtask firmware --all`: every core, method and size, two at a time.
 
-use super::board::{self, Board, M0, M7, M55};
+use super::board::{self, Board, M0, M4, M7, M55};
 use super::checksums::{self, Checksum};
 use super::frame::{self, Frame, MOST_STACK};
 use super::program::{Built, Program};
@@ -59,24 +59,36 @@ pub fn run(readme: tables::Readme) -> Outcome {
     checksums::compare(&results, &real)
 }
 
-/// What is built, in the order of the tables. Of a sample the larger size is on two cores only, one that
-/// works in words and one that works in vectors.
+/// What is built, in the order of the tables.
 fn programs(readme: tables::Readme) -> Outcome<Vec<Program>> {
-    let is_whole = |board| readme != tables::Readme::Sample || [M7, M55].contains(&board);
-    let sizes = |board: Board| match board {
-        M0 => SMALLEST.as_slice(),
-        board if is_whole(board) => SIZES.as_slice(),
-        _ => &SIZES[..1],
+    let sizes = |board: Board| if board == M0 { SMALLEST.as_slice() } else { SIZES.as_slice() };
+    let is_built = |board: Board, method: Method, size: (u16, u16, u16)| {
+        readme != tables::Readme::Sample || is_sampled(board, method, size == SIZES[1])
     };
     let all = board::ALL.into_iter().flat_map(|board| {
         Method::ALL
             .into_iter()
             .flat_map(move |method| sizes(board).iter().map(move |&size| (board, method, size)))
     });
-    all.map(|(board, method, (width, height, disparities))| {
-        Program::new(board, method, width, height, disparities)
-    })
-    .collect()
+    all.filter(|&(board, method, size)| is_built(board, method, size))
+        .map(|(board, method, (width, height, disparities))| {
+            Program::new(board, method, width, height, disparities)
+        })
+        .collect()
+}
+
+/// What `cargo xtask test` builds. Every method is on two cores, one that works in words and one that works in
+/// vectors, and a method over windows and one along paths there in the larger size and on all other cores: with
+/// a Cortex-M4, which runs the M7's code, `growth` and [`as_match`](super::as_match) have those two, so it has
+/// another one here. The smallest has room for windows.
+fn is_sampled(board: Board, method: Method, is_large: bool) -> bool {
+    let is_one_of_a_kind = matches!(method, Method::Block | Method::Sgm);
+    match board {
+        M7 | M55 => !is_large || is_one_of_a_kind,
+        M4 => !is_large && method == Method::Fast,
+        M0 => method == Method::Block,
+        _ => !is_large && is_one_of_a_kind,
+    }
 }
 
 /// The programs with their places, those of the one folder and those of the other in turn: two are built at a

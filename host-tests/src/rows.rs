@@ -81,17 +81,17 @@ impl Rows {
     ) -> Self {
         // What each angle's deviation alone would be in rows.
         let alone = |axis: usize| {
-            let mut turn_rad = [0.0; 3];
-            turn_rad[axis] = found.sigma_rad[axis];
-            RowAlignment { turn_rad, sigma_rad: [0.0; 3] }.row_error_px(camera, size)
+            let mut rotation_rad = [0.0; 3];
+            rotation_rad[axis] = found.sigma_rad[axis];
+            RowAlignment { rotation_rad, sigma_rad: [0.0; 3] }.row_error_px(camera, size)
         };
         let degrees = |rad: f64| is_calibrated.then(|| rad.to_degrees());
         Self {
             error_px: found.row_error_px(camera, size),
             sigma_px: (0..3).map(|axis| alone(axis).powi(2)).sum::<f64>().sqrt(),
-            pitch_deg: degrees(found.turn_rad[0]),
+            pitch_deg: degrees(found.rotation_rad[0]),
             pitch_sigma_deg: degrees(found.sigma_rad[0]),
-            roll_deg: found.turn_rad[2].to_degrees(),
+            roll_deg: found.rotation_rad[2].to_degrees(),
             roll_sigma_deg: found.sigma_rad[2].to_degrees(),
             matches,
             health: match found.health(camera, size) {

@@ -29,7 +29,7 @@
 //! | `p ~ M P`, `M = K [R^T \| -R^T t]` | [`Projection::new`], [`Projection::project`] |
 //! | `Z = f S / s`, an object of known size | [`Sighting::of_length`] |
 //! | `z = b f / (p_u - p'_u)`, rays of a rectified pair | [`RectifiedRig::depth_m`] |
-//! | 6.2: least `d(p, M P)^2 + d(p', M' P)^2` | [`TwoViews::optimal`], its value [`Triangulated::residual_px`] |
+//! | 6.2: least `d(p, M P)^2 + d(p', M' P)^2` | [`TwoViews::optimal`], [`Triangulated::residual_px`] |
 //! | `p . [t x (R p')] = 0`, three vectors in the epipolar plane | [`Essential::residual`] |
 //! | `[a]x b = a x b` | `linear::skew` |
 //! | `E = [t]x R`, `p^T E p' = 0` | [`Essential::from_pose`], [`Essential::residual`] |

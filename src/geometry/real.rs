@@ -1,4 +1,4 @@
-//! The numbers that geometry is done in.
+//! The number type of geometry: `f32` or `f64`.
 
 use crate::math::{atan, atan_f64};
 use nalgebra::RealField;
@@ -21,7 +21,7 @@ pub trait Real: RealField + Copy + sealed::Sealed {
     /// How many, as a number; exact to 2^24 in `f32`.
     fn count(n: usize) -> Self;
 
-    /// The same number as `f64`.
+    /// This number as `f64`.
     fn to_f64(self) -> f64;
 
     /// The angle in radians whose tangent it is: the same bits on every machine, which an operating system's

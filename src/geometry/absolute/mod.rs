@@ -1,4 +1,4 @@
-//! Where a camera stands among points of known position.
+//! Absolute pose: where a camera stands among points of known position.
 //!
 //! * [`p3p()`]: the poses of a calibrated camera from three points.
 //! * [`Projection`]: a camera in the world as one matrix, to and from its parts, and from six [`Landmark`]s

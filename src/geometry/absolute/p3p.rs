@@ -1,4 +1,4 @@
-//! The pose of a calibrated camera from three points of known position.
+//! P3P: the pose of a calibrated camera from three points of known position (Persson & Nordberg 2018).
 
 use crate::geometry::Real;
 use crate::geometry::camera::Pose;
@@ -30,8 +30,8 @@ pub enum P3pError {
     NotFinite,
     /// The points are on a line, or two of them are one.
     Line,
-    /// Two sights are one.
-    SameSight,
+    /// Two rays are one.
+    SameRay,
     /// No camera sees these points in these directions.
     NoPose,
 }
@@ -41,7 +41,7 @@ impl core::fmt::Display for P3pError {
         f.write_str(match self {
             Self::NotFinite => "a coordinate is not finite",
             Self::Line => "the three points are on a line",
-            Self::SameSight => "two of the three sights are one",
+            Self::SameRay => "two of the three rays are one",
             Self::NoPose => "no camera sees these points in these directions",
         })
     }
@@ -49,12 +49,12 @@ impl core::fmt::Display for P3pError {
 
 impl core::error::Error for P3pError {}
 
-/// The sine of the angle between edges, and between sights, that counts as none.
+/// The sine of the angle between edges, and between rays, that counts as none.
 const NO_ANGLE: f64 = 1e-5;
 /// Newton's steps on the three distances.
 const STEPS: usize = 4;
 
-/// All poses of a camera that sees `points` (the world, any unit) along `sights` (the camera's frame, any
+/// All poses of a camera that sees `points` (the world, any unit) along `rays` (the camera's frame, any
 /// length).
 ///
 /// The distances l of the points fulfil `|l_i y_i - l_j y_j|^2 = |x_i - x_j|^2` for the three pairs: three
@@ -68,21 +68,21 @@ const STEPS: usize = 4;
 /// use nalgebra::{Point3, Vector3};
 /// let points = [Point3::new(0.0, 0.0, 4.0), Point3::new(1.0, 0.0, 5.0), Point3::new(0.0, 1.0, 6.0_f64)];
 /// // A camera one unit before the origin.
-/// let sights = points.map(|p| p.coords + Vector3::z());
-/// let poses = p3p(&sights, &points)?;
+/// let rays = points.map(|p| p.coords + Vector3::z());
+/// let poses = p3p(&rays, &points)?;
 /// assert!(poses.as_slice().iter().any(|pose| (pose.translation() + Vector3::z()).norm() < 1e-12));
 /// # Ok::<(), stereopsis::geometry::absolute::P3pError>(())
 /// ```
-pub fn p3p<T: Real>(sights: &[Vector3<T>; 3], points: &[Point3<T>; 3]) -> Result<P3pPoses<T>, P3pError> {
+pub fn p3p<T: Real>(rays: &[Vector3<T>; 3], points: &[Point3<T>; 3]) -> Result<P3pPoses<T>, P3pError> {
     let [x1, x2, x3] = points.map(|p| p.coords);
-    if !sights.iter().chain(&[x1, x2, x3]).all(|v| v.iter().all(|x| x.is_finite())) {
+    if !rays.iter().chain(&[x1, x2, x3]).all(|v| v.iter().all(|x| x.is_finite())) {
         return Err(P3pError::NotFinite);
     }
-    let y = sights.map(|y| y / y.norm());
+    let y = rays.map(|y| y / y.norm());
     let [y1, y2, y3] = y;
     let none = T::of(NO_ANGLE);
     if [(y1, y2), (y1, y3), (y2, y3)].iter().any(|(a, b)| !(a.cross(b).norm() > none)) {
-        return Err(P3pError::SameSight);
+        return Err(P3pError::SameRay);
     }
     let (e12, e13, e23) = (x1 - x2, x1 - x3, x2 - x3);
     if !(e12.cross(&e13).norm() > none * e12.norm() * e13.norm()) || !(e23.norm() > none * e12.norm()) {
@@ -311,8 +311,8 @@ mod tests {
     fn a_camera_at_the_origin() {
         let points =
             [Point3::new(1.0, 0.0, 4.0), Point3::new(-1.0, 0.5, 5.0), Point3::new(0.0, -1.0, 3.0_f64)];
-        let sights = points.map(|p| p.coords);
-        let poses = p3p(&sights, &points).expect("poses");
+        let rays = points.map(|p| p.coords);
+        let poses = p3p(&rays, &points).expect("poses");
         let best = poses.as_slice().iter().map(|p| p.translation().norm()).fold(f64::INFINITY, f64::min);
         assert!(best < 1e-12, "{best}");
     }
@@ -323,7 +323,7 @@ mod tests {
         let on_line = [o, o + Vector3::x(), o + Vector3::x() * 2.0];
         assert_eq!(p3p(&on_line.map(|p| p.coords), &on_line), Err(P3pError::Line));
         let apart = [o, o + Vector3::x(), o + Vector3::y()];
-        assert_eq!(p3p(&[Vector3::z(); 3], &apart), Err(P3pError::SameSight));
+        assert_eq!(p3p(&[Vector3::z(); 3], &apart), Err(P3pError::SameRay));
         assert_eq!(p3p(&[Vector3::z() * f64::NAN; 3], &apart), Err(P3pError::NotFinite));
     }
 }

@@ -1,4 +1,4 @@
-//! Projection matrices: a camera at a place in the world, as one matrix.
+//! Projection matrices, and resection by the direct linear transform, DLT (Hartley & Zisserman 2004, 7.1).
 
 use crate::geometry::Real;
 use crate::geometry::camera::{Camera, CameraModelError, Pose};
@@ -247,8 +247,8 @@ mod tests {
         let camera =
             Camera::new(500.0, 400.0, 320.0, 240.0_f64).and_then(|c| c.with_skew(2.0)).expect("a camera");
         // A quarter turn about Y, and two metres back: the camera's Z is the world's X.
-        let turn = Matrix3::new(0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0);
-        let pose = Pose::new(turn, Vector3::new(-2.0, 0.0, 0.0)).expect("a pose");
+        let rotation = Matrix3::new(0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0);
+        let pose = Pose::new(rotation, Vector3::new(-2.0, 0.0, 0.0)).expect("a pose");
         let projection = Projection::new(&camera, &pose);
         // (2, 1, 0) is 4 m ahead, 1 m down: x = 0, y = 1/4.
         let point = Point3::new(2.0, 1.0, 0.0);
@@ -258,7 +258,7 @@ mod tests {
         let (inner, place) = projection.decompose().expect("a camera");
         assert!((inner.matrix() - camera.matrix()).amax() < 1e-12);
         assert!(
-            (place.rotation() - turn).amax() < 1e-15
+            (place.rotation() - rotation).amax() < 1e-15
                 && (place.translation() - pose.translation()).amax() < 1e-12
         );
         // Neither scale nor sign matters.

@@ -1,4 +1,4 @@
-//! Lens distortion after Brown and Conrady.
+//! Radial and tangential lens distortion (Conrady 1919; Brown 1971), with the rational model of OpenCV.
 
 use crate::geometry::Real;
 use nalgebra::{Matrix2, Vector2};
@@ -46,7 +46,7 @@ impl<T: Real> Distortion<T> {
         Self { k1, k2, p1, p2, k3, k4, k5, k6 }
     }
 
-    /// k1, k2, p1, p2, k3, k4, k5, k6, as OpenCV orders them.
+    /// The coefficients k1, k2, p1, p2, k3, k4, k5, k6, as OpenCV orders them.
     pub const fn to_opencv(&self) -> [T; 8] {
         [self.k1, self.k2, self.p1, self.p2, self.k3, self.k4, self.k5, self.k6]
     }
@@ -90,7 +90,7 @@ impl<T: Real> Distortion<T> {
         q + T::of(2.0) * r * r * dq > T::ZERO
     }
 
-    /// q and dq / d(r^2).
+    /// The radial factor q and dq / d(r^2).
     fn radial(&self, r2: T) -> (T, T) {
         let series = |a: T, b: T, c: T| {
             let slope = a + r2 * (T::of(2.0) * b + r2 * T::of(3.0) * c);

@@ -1,25 +1,25 @@
-//! Wide lenses after Kannala and Brandt.
+//! Fisheye lenses: the equidistant model (Kannala & Brandt 2006).
 
 use crate::geometry::Real;
 use nalgebra::{Matrix2, Vector2};
 
-/// Coefficients of a fisheye lens, without a unit: they act on the angle between a sight and the optical
+/// Coefficients of a fisheye lens, without a unit: they act on the angle between a ray and the optical
 /// axis.
 ///
 /// `theta = atan(r)`, `r^2 = x^2 + y^2` with `(x, y) = (X / Z, Y / Z)`,
 /// `theta_d = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8)`, `(x_d, y_d) = theta_d / r (x,
 /// y)` (Kannala & Brandt 2006; OpenCV's `fisheye`, Kalibr's and ROS's `equidistant`).
 ///
-/// Sights of 90 degrees and more have no place on the plane Z = 1, so that they are left out here.
+/// Rays of 90 degrees and more have no place on the plane Z = 1, so that they are left out here.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Fisheye<T: Real> {
-    /// theta^3.
+    /// The coefficient of theta^3.
     pub k1: T,
-    /// theta^5.
+    /// The coefficient of theta^5.
     pub k2: T,
-    /// theta^7.
+    /// The coefficient of theta^7.
     pub k3: T,
-    /// theta^9.
+    /// The coefficient of theta^9.
     pub k4: T,
 }
 
@@ -29,7 +29,7 @@ impl<T: Real> Fisheye<T> {
         Self { k1, k2, k3, k4 }
     }
 
-    /// k1, k2, k3, k4, as OpenCV orders them.
+    /// The coefficients k1, k2, k3, k4, as OpenCV orders them.
     pub const fn to_opencv(&self) -> [T; 4] {
         [self.k1, self.k2, self.k3, self.k4]
     }
@@ -55,7 +55,7 @@ impl<T: Real> Fisheye<T> {
         self.angle(r).1 > T::ZERO
     }
 
-    /// theta_d of a radius on the plane Z = 1, and its derivative by theta.
+    /// The angle theta_d of a radius on the plane Z = 1, and its derivative by theta.
     fn angle(&self, r: T) -> (T, T) {
         let theta = r.arc_tangent();
         let s = theta * theta;

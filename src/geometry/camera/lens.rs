@@ -1,4 +1,4 @@
-//! The lens before a camera: where it puts what the plane Z = 1 shows.
+//! The lens model of a camera: distortion of the plane Z = 1, and its inverse by Newton's method.
 
 use super::distortion::Distortion;
 use super::fisheye::Fisheye;

@@ -1,4 +1,4 @@
-//! A pinhole camera with a lens that distorts.
+//! The pinhole camera (Hartley & Zisserman 2004, 6.1) with a lens.
 
 use super::lens::Lens;
 use crate::geometry::Real;
@@ -53,7 +53,7 @@ impl core::fmt::Display for CameraModelError {
 
 impl core::error::Error for CameraModelError {}
 
-/// Why a point is not seen, or a pixel has no sight.
+/// Why a point is not seen, or a pixel has no ray.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -101,7 +101,7 @@ impl<T: Real> Camera<T> {
         Self::new(k.m11 * by, k.m22 * by, k.m13 * by, k.m23 * by)?.with_skew(k.m12 * by)
     }
 
-    /// The same with pixels that are no rectangles: `skew` px of u for every unit of y.
+    /// The camera with pixels that are no rectangles: `skew` px of u for every unit of y.
     pub fn with_skew(self, skew: T) -> Result<Self, CameraModelError> {
         if !skew.is_finite() {
             return Err(CameraModelError::NotFinite);
@@ -112,7 +112,7 @@ impl<T: Real> Camera<T> {
         Ok(Self { skew, ..self })
     }
 
-    /// The same behind another lens.
+    /// The camera behind another lens.
     pub fn with_distortion(self, lens: impl Into<Lens<T>>) -> Result<Self, CameraModelError> {
         let lens = lens.into();
         if !lens.is_finite() {
@@ -164,7 +164,7 @@ impl<T: Real> Camera<T> {
         Ok(self.pixel_of(&self.lens.distort(&Vector2::new(point.x * by, point.y * by))))
     }
 
-    /// The sight of a pixel: the direction `(x, y, 1)` in the camera's frame of all that is seen there.
+    /// The ray of a pixel: the direction `(x, y, 1)` in the camera's frame of all that is seen there.
     ///
     /// Exact without distortion; with it, to a thousandth of a pixel or ten roundings of the column,
     /// whichever is more.
@@ -182,8 +182,8 @@ impl<T: Real> Camera<T> {
 
     /// Where the pixel would be without the lens's distortion, px.
     pub fn undistort(&self, pixel: &Point2<T>) -> Result<Point2<T>, ProjectionError> {
-        let sight = self.unproject(pixel)?;
-        Ok(self.pixel_of(&sight.xy()))
+        let ray = self.unproject(pixel)?;
+        Ok(self.pixel_of(&ray.xy()))
     }
 
     /// From the plane Z = 1, after the lens, to pixels.

@@ -1,4 +1,4 @@
-//! Where one camera stands beside another.
+//! The pose of one camera beside another: a rigid motion of SE(3), and its increment.
 
 use crate::geometry::Real;
 use crate::geometry::linear::{Svd3, cayley};
@@ -80,12 +80,12 @@ impl<T: Real> Pose<T> {
         (rotation, translation)
     }
 
-    /// R.
+    /// The rotation R.
     pub fn rotation(&self) -> &Matrix3<T> {
         &self.rotation
     }
 
-    /// t, the centre of camera 2 in camera 1.
+    /// The translation t, the centre of camera 2 in camera 1.
     pub fn translation(&self) -> &Vector3<T> {
         &self.translation
     }

@@ -1,4 +1,4 @@
-//! A stereo rig as bytes for flash.
+//! The calibration record: a stereo rig as bytes for flash.
 
 use super::distortion::Distortion;
 use super::fisheye::Fisheye;
@@ -13,7 +13,7 @@ use nalgebra::{Matrix3, Vector3};
 const MAGIC: [u8; 4] = *b"STRG";
 /// The version that is written, and the only one that is read.
 const VERSION: u16 = 1;
-/// fx, fy, cx, cy, skew and eight coefficients of both cameras; R row by row; t.
+/// The numbers: fx, fy, cx, cy, skew and eight coefficients of both cameras; R row by row; t.
 const NUMBERS: usize = 2 * (5 + 8) + 9 + 3;
 /// Where the numbers begin: behind the magic, the version, the length, both images' columns and rows and both
 /// lenses' models.
@@ -37,7 +37,7 @@ pub enum RecordError {
     NotARecord,
     /// The record is of a version that this build does not know.
     Version {
-        /// Its version.
+        /// The version of the record.
         found: u16,
         /// The version that is read.
         known: u16,
@@ -88,10 +88,13 @@ impl<T: Real> StereoRig<T> {
     /// | 6, 7 | bytes in all, 328 |
     /// | 8 to 15 | columns and rows of the first camera's images, then of the second's |
     /// | 16 to 19 | the model of the first lens, then of the second: 0 [`Distortion`], 1 [`Fisheye`] |
-    /// | 20 to 227 | fx, fy, cx, cy, skew (px) and eight coefficients of the first camera, then of the second, `f64`: k1, k2, p1, p2, k3, k4, k5, k6, or k1 to k4 and zeros |
+    /// | 20 to 227 | fx, fy, cx, cy, skew (px), eight coefficients; first camera, then second, `f64` |
     /// | 228 to 299 | R, row by row, and |
     /// | 300 to 323 | t (m), with `P = R P' + t` from the second camera into the first |
     /// | 324 to 327 | CRC-32 of all before (ISO-HDLC: reversed 0x04C11DB7, as in Ethernet and zip) |
+    ///
+    /// The coefficients are k1, k2, p1, p2, k3, k4, k5, k6 of a [`Distortion`], k1 to k4 and zeros of a
+    /// [`Fisheye`].
     ///
     /// ```
     /// use stereopsis::geometry::camera::{Camera, ImageSize, Pose, RecordError, StereoRig};

@@ -1,4 +1,4 @@
-//! A rectified stereo rig: one focal length, one baseline, rows aligned.
+//! A rectified stereo rig: depth from disparity, and the re-projection matrix Q.
 
 use crate::math::atan;
 use nalgebra::{Matrix4, Point3, Vector4};

@@ -1,4 +1,4 @@
-//! Two calibrated cameras as they are mounted, before rectification.
+//! A calibrated stereo rig as it is mounted, before rectification.
 
 use super::pinhole::Camera;
 use super::pose::{Pose, PoseError};

@@ -1,4 +1,4 @@
-//! Distance and bearing of an object of known size.
+//! Distance and bearing of an object of known size (Siegwart, Nourbakhsh & Scaramuzza 2011, 4.2.5).
 
 use crate::geometry::Real;
 use crate::geometry::camera::{Camera, ProjectionError};
@@ -29,7 +29,7 @@ pub enum SightingError {
     Size,
     /// The two pixels are no more than a deviation apart, or ten roundings: the distance is anything.
     TooSmall,
-    /// A pixel has no sight.
+    /// A pixel has no ray.
     Pixel(ProjectionError),
 }
 
@@ -54,9 +54,9 @@ impl<T: Real> Sighting<T> {
     /// An object of known length across the line of sight, a pole or the height of a door, whose two ends are
     /// seen.
     ///
-    /// With the angle `a` between the two sights, `d = L / (2 tan(a / 2))`; in the middle of the image and
+    /// With the angle `a` between the two rays, `d = L / (2 tan(a / 2))`; in the middle of the image and
     /// far away that is the thin law `Z = f L / l` for `l` px (Siegwart, Nourbakhsh & Scaramuzza 2011,
-    /// 4.2.5). An object that leans along the sight by an angle looks shorter by its cosine, and farther.
+    /// 4.2.5). An object that leans along the ray by an angle looks shorter by its cosine, and farther.
     ///
     /// `ends` are px as the camera gives them, each with the standard deviation `sigma_px` along the object.
     ///
@@ -84,7 +84,7 @@ impl<T: Real> Sighting<T> {
     }
 
     /// A ball of known diameter, of which two opposite points of the outline are seen: `d = D / (2 sin(a /
-    /// 2))`, for the sights touch it. The bearing is that of the middle between the two sights, which is
+    /// 2))`, for the rays touch it. The bearing is that of the middle between the two rays, which is
     /// the ball's centre.
     pub fn of_ball(
         camera: &Camera<T>,
@@ -116,7 +116,7 @@ impl<T: Real> Sighting<T> {
     }
 }
 
-/// The angle between two sights, with its deviation.
+/// The angle between two rays, with its deviation.
 struct Angle<T: Real> {
     radians: T,
     half_tangent: T,
@@ -144,23 +144,23 @@ impl<T: Real> Angle<T> {
         if !(apart > sigma_px.max(rounding)) {
             return Err(SightingError::TooSmall);
         }
-        let sight = |pixel: &Point2<T>| -> Result<Vector3<T>, SightingError> {
-            let sight = camera.unproject(pixel).map_err(SightingError::Pixel)?;
-            Ok(sight / sight.norm())
+        let ray = |pixel: &Point2<T>| -> Result<Vector3<T>, SightingError> {
+            let ray = camera.unproject(pixel).map_err(SightingError::Pixel)?;
+            Ok(ray / ray.norm())
         };
-        let (first, second) = (sight(a)?, sight(b)?);
+        let (first, second) = (ray(a)?, ray(b)?);
         let (sum, difference) = (first + second, first - second);
         // The half angle's tangent, exact for small angles too.
         let half_tangent = difference.norm() / sum.norm();
         let two = T::of(2.0);
-        // How far a sight turns when its pixel moves along the object: over a pixel, or as far as the object
-        // is long.
+        // By what angle a ray moves when its pixel moves along the object: over a pixel, or as far as the
+        // object is long.
         let step = along * (T::ONE.min(apart) / (apart * two));
-        let turn = |pixel: &Point2<T>| -> Result<T, SightingError> {
-            let around = sight(&(pixel + step))? - sight(&(pixel - step))?;
+        let angle = |pixel: &Point2<T>| -> Result<T, SightingError> {
+            let around = ray(&(pixel + step))? - ray(&(pixel - step))?;
             Ok(around.norm() / (step.norm() * two))
         };
-        let (at_first, at_second) = (turn(a)?, turn(b)?);
+        let (at_first, at_second) = (angle(a)?, angle(b)?);
         Ok(Self {
             radians: two * half_tangent.atan(),
             half_tangent,
@@ -195,14 +195,14 @@ mod tests {
         let seen = seen.expect("a distance");
         assert!((seen.distance_m - 10.0).abs() < 1e-12);
         assert!((seen.angle_rad - 2.0 * 0.1_f64.atan()).abs() < 1e-15);
-        // l = 100 px, with sqrt(2) / 2 px: 0.0707 m; a little less, for sights at the side turn less.
+        // l = 100 px, with sqrt(2) / 2 px: 0.0707 m; a little less, for rays at the side turn less.
         assert!((seen.sigma_m - 10.0 * 0.5_f64.sqrt() / 100.0).abs() < 1e-6, "{}", seen.sigma_m);
         assert!((seen.point() - Point3::new(0.0, 0.0, 10.0)).norm() < 1e-12);
     }
 
     #[test]
     fn a_ball_at_the_side() {
-        // Centre (3, -4, 12), 13 m away, radius 1.3: the tangent sights are asin(0.1) off the bearing.
+        // Centre (3, -4, 12), 13 m away, radius 1.3: the tangent rays are asin(0.1) off the bearing.
         let centre = Vector3::new(3.0, -4.0, 12.0);
         let up = centre.cross(&Vector3::x()).normalize();
         let turned = |sine: f64| centre / 13.0 * (1.0 - sine * sine).sqrt() + up * sine;

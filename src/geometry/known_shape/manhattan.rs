@@ -1,4 +1,4 @@
-//! The camera's orientation in a building.
+//! The Manhattan frame: a camera's orientation in a building by vanishing points (Coughlan & Yuille 1999).
 
 use super::pencil::{LineSegment, PencilError, Scaled, vanishing_point};
 use super::vanishing::extent;
@@ -23,7 +23,8 @@ pub struct ManhattanFrame<T: Real> {
     /// Standard deviations of the rotation about the camera's axes for segments whose ends are off by one
     /// px, radians per px.
     pub sigma_rad_per_px: Vector3<T>,
-    /// The same of the focal length, px per px; zero where it was known.
+    /// Standard deviation of the focal length for segments whose ends are off by one px, px per px; zero
+    /// where it was known.
     pub focal_sigma_per_px: T,
 }
 
@@ -157,8 +158,8 @@ fn vanishing_points<T: Real>(
     if points.iter().flatten().count() < 2 { Err(ManhattanFrameError::TooFew) } else { Ok(points) }
 }
 
-/// f of the pairs of vanishing points, weighted by how much each says of it; in the unit that they are given
-/// in.
+/// The focal length f of the pairs of vanishing points, weighted by how much each says of it; in the unit
+/// that they are given in.
 fn focal<T: Real>(points: &[Option<Vector3<T>>; 3]) -> Option<T> {
     let (mut squares, mut weights) = (T::ZERO, T::ZERO);
     let [a, b, c] = points;

@@ -1,4 +1,4 @@
-//! Where a camera is beside something whose shape is known.
+//! One camera and a known shape: distance, pose and orientation.
 //!
 //! In: pixels of one camera. Out: distances in metres and orientations, for a known shape fixes the scale.
 //!

@@ -1,4 +1,4 @@
-//! Segments of lines that converge.
+//! Line segments that converge, and their vanishing point by least squares.
 
 use crate::geometry::Real;
 use crate::geometry::linear::Ldl;

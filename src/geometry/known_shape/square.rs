@@ -1,4 +1,4 @@
-//! The pose of a flat square of known side.
+//! The pose of a square marker: infinitesimal plane-based pose estimation, IPPE (Collins & Bartoli 2014).
 
 use super::tilts::rotations;
 use crate::geometry::Real;
@@ -28,7 +28,7 @@ pub struct MarkPose<T: Real> {
 /// The poses that a picture of a mark may mean.
 ///
 /// A small or distant square has nearly the same picture when it is tilted the other way about its line of
-/// sight.
+/// ray.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct MarkPoses<T: Real> {
     /// The pose with the smaller re-projection error.
@@ -55,7 +55,7 @@ pub enum SquareMarkError {
     Mirrored,
     /// No pose is before the camera.
     Behind,
-    /// A pixel has no sight.
+    /// A pixel has no ray.
     Pixel(ProjectionError),
 }
 
@@ -101,7 +101,7 @@ impl<T: Real> SquareMark<T> {
     ///
     /// Both poses come in closed form from the homography's derivative at the mark's middle (Collins &
     /// Bartoli 2014, "Infinitesimal plane-based pose estimation", 4.1); each is refined to the least
-    /// re-projection error by Levenberg's and Marquardt's method, and that error tells them apart.
+    /// re-projection error by Levenberg-Marquardt, and that error tells them apart.
     pub fn locate(
         &self,
         camera: &Camera<T>,
@@ -177,8 +177,9 @@ impl<T: Real> LeastSquares<T, 6> for Corners<'_, T> {
             for (row, (value, error)) in [(pixel.x, error.x), (pixel.y, error.y)].into_iter().enumerate() {
                 let by_point = Vector3::new(k[(row, 0)], k[(row, 1)], k[(row, 2)] - value) * by;
                 // dP = w x arm + t: by_point . (w x arm) = w . (arm x by_point)
-                let (turn, moved) = (arm.cross(&by_point), by_point * self.mark.side_m);
-                equations.add(&[turn.x, turn.y, turn.z, moved.x, moved.y, moved.z], error);
+                let (by_rotation, moved) = (arm.cross(&by_point), by_point * self.mark.side_m);
+                equations
+                    .add(&[by_rotation.x, by_rotation.y, by_rotation.z, moved.x, moved.y, moved.z], error);
                 equations.cost += error * error;
             }
         }
@@ -192,7 +193,7 @@ impl<T: Real> LeastSquares<T, 6> for Corners<'_, T> {
 }
 
 impl<T: Real> MarkPoses<T> {
-    /// The better pose's re-projection error over the other's, 0 to 1: near one the picture does not tell
+    /// The better pose's re-projection error over the other's, 0 to 1: near one the picture does not show
     /// which of the two it is; 0 where there is one pose only.
     pub fn ambiguity(&self) -> T {
         self.other.map_or(T::ZERO, |other| {
@@ -203,13 +204,13 @@ impl<T: Real> MarkPoses<T> {
 
 /// That four corners are convex and go round with the clock (v is down).
 fn goes_round<T: Real>([a, b, c, d]: &[Point2<T>; 4]) -> Result<(), SquareMarkError> {
-    let turn = |a: &Point2<T>, b: &Point2<T>, c: &Point2<T>| (b - a).perp(&(c - b));
-    let turns = [turn(a, b, c), turn(b, c, d), turn(c, d, a), turn(d, a, b)];
+    let cross = |a: &Point2<T>, b: &Point2<T>, c: &Point2<T>| (b - a).perp(&(c - b));
+    let crosses = [cross(a, b, c), cross(b, c, d), cross(c, d, a), cross(d, a, b)];
     let size = (c - a).norm_squared().max((d - b).norm_squared());
-    if turns.iter().any(|turn| turn.abs() <= size * T::EPSILON * T::of(32.0)) {
+    if crosses.iter().any(|cross| cross.abs() <= size * T::EPSILON * T::of(32.0)) {
         return Err(SquareMarkError::Line);
     }
-    match turns.iter().filter(|&&turn| turn > T::ZERO).count() {
+    match crosses.iter().filter(|&&cross| cross > T::ZERO).count() {
         4 => Ok(()),
         0 => Err(SquareMarkError::Mirrored),
         _ => Err(SquareMarkError::NotConvex),

@@ -1,4 +1,4 @@
-//! The two ways in which a plane may be tilted that looks as a homography says.
+//! IPPE: the two rotations of a plane that have the same homography Jacobian (Collins & Bartoli 2014).
 
 use crate::geometry::Real;
 use crate::geometry::linear::skew;
@@ -9,19 +9,19 @@ use nalgebra::{Matrix2, Matrix3, Matrix3x2, Vector2, Vector3};
 pub(super) fn rotations<T: Real>(h: &Matrix3<T>) -> Option<(T, [Matrix3<T>; 2])> {
     let h = h / h.m33;
     let p = Vector2::new(h.m13, h.m23);
-    let slope =
+    let jacobian =
         Matrix2::new(h.m11 - h.m31 * p.x, h.m12 - h.m32 * p.x, h.m21 - h.m31 * p.y, h.m22 - h.m32 * p.y);
-    // The frame whose Z is the sight of the origin.
+    // The frame whose Z is the ray of the origin.
     let (far, length) = ((T::ONE + p.norm_squared()).sqrt(), p.norm());
     let axis = Vector3::new(-p.y, p.x, T::ZERO) / if length > T::ZERO { length } else { T::ONE };
     let (sine, cosine) = (length / far, T::ONE / far);
     let cross = skew(&axis);
-    let sight = Matrix3::identity() + cross * sine + cross * cross * (T::ONE - cosine);
+    let ray = Matrix3::identity() + cross * sine + cross * cross * (T::ONE - cosine);
     // [1 | -p] of its X and Y.
-    let b = sight.fixed_view::<2, 2>(0, 0).into_owned() - p * sight.fixed_view::<1, 2>(2, 0);
+    let b = ray.fixed_view::<2, 2>(0, 0).into_owned() - p * ray.fixed_view::<1, 2>(2, 0);
     let determinant = b.m11 * b.m22 - b.m12 * b.m21;
     let inverse = Matrix2::new(b.m22, -b.m12, -b.m21, b.m11) / determinant;
-    let a = inverse * slope;
+    let a = inverse * jacobian;
     if !(a.m11 * a.m22 - a.m12 * a.m21 > T::ZERO) {
         return None;
     }
@@ -41,7 +41,7 @@ pub(super) fn rotations<T: Real>(h: &Matrix3<T>) -> Option<(T, [Matrix3<T>; 2])>
         let x = x / x.norm();
         let z = x.cross(&y);
         let z = z / z.norm();
-        sight * Matrix3::from_columns(&[x, z.cross(&x), z])
+        ray * Matrix3::from_columns(&[x, z.cross(&x), z])
     };
     Some((scale, [with(row), with(-row)]))
 }

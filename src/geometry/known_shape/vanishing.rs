@@ -1,4 +1,4 @@
-//! Where the picture of parallel lines converges.
+//! Vanishing points of parallel lines (Hartley & Zisserman 2004, 8.6).
 
 use super::pencil::{LineSegment, PencilError, vanishing_point};
 use crate::geometry::Real;
@@ -70,7 +70,8 @@ impl<T: Real> VanishingPoint<T> {
         Ok(Self { homogeneous: v / v.norm(), rms_px })
     }
 
-    /// (x, y, w) with length one: the point is at (x / w, y / w) px; where w = 0, in the direction (x, y).
+    /// The homogeneous point (x, y, w) of length one: the point is at (x / w, y / w) px; where w = 0, in the
+    /// direction (x, y).
     pub fn homogeneous(&self) -> &Vector3<T> {
         &self.homogeneous
     }

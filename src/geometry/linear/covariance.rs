@@ -1,4 +1,4 @@
-//! From what is known to how sure it is.
+//! The covariance of six numbers as the inverse of their information matrix.
 
 use super::ldl::Ldl;
 use crate::geometry::Real;
@@ -7,7 +7,7 @@ use nalgebra::Matrix6;
 /// The covariance of six numbers of this information, its inverse; a direction in which nothing is known is
 /// as wide as [`Real::EPSILON`] of what is known along the axes makes it.
 pub(crate) fn covariance6<T: Real>(information: &[[T; 6]; 6]) -> Matrix6<T> {
-    // At size one along every axis: turns and steps have units of their own.
+    // At size one along every axis: rotations and steps have units of their own.
     let mut m = *information;
     let mut scale = [T::ONE; 6];
     for (i, (scale, row)) in scale.iter_mut().zip(information).enumerate() {

@@ -1,4 +1,4 @@
-//! The real roots of a cubic.
+//! The real roots of a cubic, by Newton's method.
 
 use crate::geometry::Real;
 
@@ -38,8 +38,8 @@ pub(crate) fn cubic_roots<T: Real>([c0, c1, c2, c3]: [T; 4]) -> ([T; 3], usize) 
     for x in roots.iter_mut().take(count) {
         for _ in 0..2 {
             let value = ((*x + a) * *x + b) * *x + c;
-            let slope = (T::of(3.0) * *x + a + a) * *x + b;
-            let step = value / slope;
+            let derivative = (T::of(3.0) * *x + a + a) * *x + b;
+            let step = value / derivative;
             // At a double root both are next to zero, and the root is what it is.
             if step.is_finite() && step.abs() <= x.abs().max(T::ONE) * T::of(1e-2) {
                 *x -= step;

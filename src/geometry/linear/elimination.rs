@@ -1,11 +1,11 @@
-//! The vector that N - 1 equations leave free.
+//! Null vectors of N - 1 and N - 2 equations by Gaussian elimination, and rank.
 
 use super::vector::{combine, dot, unit};
 use crate::geometry::Real;
 
-/// x with `A x = 0` for M = N - 1 rows of N numbers, of length one, by elimination: the largest element of
-/// each row in turn is its pivot. The second result are the pivots: next to nothing where a row depends on
-/// those before it ([`rank`]).
+/// The vector x with `A x = 0` for M = N - 1 rows of N numbers, of length one, by elimination: the largest
+/// element of each row in turn is its pivot. The second result are the pivots: next to nothing where a row
+/// depends on those before it ([`rank`]).
 ///
 /// `rows` is what the elimination makes of them. A is not squared on the way, as it is in normal equations:
 /// half as many digits are lost.

@@ -1,4 +1,4 @@
-//! `L D L^T` with the largest pivot first, and the null vector.
+//! Pivoted Cholesky factors `L D L^T`, and the null vector by inverse iteration (Golub & Van Loan 2013).
 
 use super::vector::{combine, dot, unit};
 use crate::geometry::Real;
@@ -59,8 +59,8 @@ impl<T: Real, const N: usize> Ldl<T, N> {
         &self.pivots
     }
 
-    /// x of `M x = b`. Where M is singular, the pivots that are rounding count as [`Real::EPSILON`] of the
-    /// largest.
+    /// The solution x of `M x = b`. Where M is singular, the pivots that are rounding count as
+    /// [`Real::EPSILON`] of the largest.
     pub(crate) fn solve(&self, b: &[T; N]) -> [T; N] {
         let mut b = *b;
         let mut y = [T::ZERO; N];
@@ -71,7 +71,7 @@ impl<T: Real, const N: usize> Ldl<T, N> {
         self.back(&y)
     }
 
-    /// x with `r^T x = y` for all rows r.
+    /// The vector x with `r^T x = y` for all rows r.
     fn back(&self, y: &[T; N]) -> [T; N] {
         let mut x = [T::ZERO; N];
         for ((row, &pivot, place), &y) in self.terms().zip(y).rev() {
@@ -80,7 +80,7 @@ impl<T: Real, const N: usize> Ldl<T, N> {
         x
     }
 
-    /// r, d and the place of d for each term.
+    /// The row r, the pivot d and the place of d for each term.
     fn terms(&self) -> impl DoubleEndedIterator<Item = (&[T; N], &T, usize)> + ExactSizeIterator {
         // At most N - 1 anyway; the compiler cannot know.
         let terms = self.rows.iter().zip(&self.pivots).zip(&self.places);

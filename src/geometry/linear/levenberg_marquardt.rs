@@ -6,9 +6,9 @@ use crate::geometry::Real;
 /// The normal equations `A x = b` of weighted least squares about an estimate: `A = J^T W J` and
 /// `b = -J^T W r`, of the residuals r, their Jacobian J and their weights W.
 pub(crate) struct NormalEquations<T, const N: usize> {
-    /// A, the information of the N numbers.
+    /// The left side A, the information of the N numbers.
     pub(crate) matrix: [[T; N]; N],
-    /// b, downhill.
+    /// The right side b, downhill.
     pub(crate) right: [T; N],
     /// What is made least.
     pub(crate) cost: T,
@@ -31,7 +31,7 @@ impl<T: Real, const N: usize> NormalEquations<T, N> {
     }
 }
 
-/// What is estimated by [`levenberg_marquardt`]: N numbers that move an estimate, and the rules of the search.
+/// What [`levenberg_marquardt`] estimates: N numbers that move an estimate, and the rules of the search.
 pub(crate) trait LeastSquares<T: Real, const N: usize> {
     type Estimate: Copy;
 

@@ -4,12 +4,12 @@ use super::vector::dot;
 use crate::geometry::Real;
 use nalgebra::{Matrix3, Vector3};
 
-/// The matrix of three rows. (nalgebra's own leaves a panic in small code.)
+/// The matrix of three rows; nalgebra's own leaves a panic in small code.
 pub(crate) fn matrix3<T: Real>(&[[a, b, c], [d, e, f], [g, h, i]]: &[[T; 3]; 3]) -> Matrix3<T> {
     Matrix3::new(a, b, c, d, e, f, g, h, i)
 }
 
-/// The columns. (nalgebra's own conversion leaves a panic in small code.)
+/// The columns of a matrix; nalgebra's own conversion leaves a panic in small code.
 pub(crate) fn columns3<T: Real>(m: &Matrix3<T>) -> [Vector3<T>; 3] {
     [
         Vector3::new(m.m11, m.m21, m.m31), //

@@ -1,4 +1,4 @@
-//! The equations of a matrix that maps points to pixels up to scale.
+//! The equations of the direct linear transform, DLT: `p ~ M q` (Hartley & Zisserman 2004, 4.1).
 
 use crate::geometry::Real;
 

@@ -1,4 +1,4 @@
-//! The cross product as a matrix.
+//! The cross product as a matrix, and Cayley's map from a vector to a rotation.
 
 use super::matrix::product;
 use crate::geometry::Real;

@@ -1,4 +1,4 @@
-//! Singular values of a 3x3 matrix.
+//! The singular value decomposition of a 3x3 matrix, by one-sided Jacobi rotations (Hestenes 1958).
 
 use super::matrix::columns3;
 use crate::geometry::Real;
@@ -26,12 +26,12 @@ impl<T: Real> Svd3<T> {
         for _ in 0..MOST_SWEEPS {
             let [a0, a1, a2] = &mut a;
             let [v0, v1, v2] = &mut v;
-            let turned = [
+            let rotated = [
                 rotate_columns(a0, a1, v0, v1),
                 rotate_columns(a0, a2, v0, v2),
                 rotate_columns(a1, a2, v1, v2),
             ];
-            if !turned.contains(&true) {
+            if !rotated.contains(&true) {
                 break;
             }
         }
@@ -96,8 +96,8 @@ mod tests {
     fn a_turned_diagonal_comes_back() {
         // diag(1, 2, -3) with the rows one place on, and a rotation by 3-4-5 about z from the right.
         let shift = Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0_f64);
-        let turn = Matrix3::new(0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, 1.0);
-        let matrix = shift * Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, -3.0)) * turn;
+        let rotation = Matrix3::new(0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, 1.0);
+        let matrix = shift * Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, -3.0)) * rotation;
         let Svd3 { u, values, v } = Svd3::new(&matrix);
         for (value, expected) in values.iter().zip([3.0, 2.0, -1.0]) {
             assert!((value - expected).abs() < 1e-15, "{values:?}");

@@ -1,4 +1,4 @@
-//! Vectors of any length, as slices: in a small program once.
+//! Vectors of any length, as slices, so that their code stands in a small program once.
 
 use crate::geometry::Real;
 

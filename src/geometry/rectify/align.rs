@@ -1,6 +1,6 @@
-//! The rotations that align the rows of two cameras.
+//! The rotations of both cameras into the rectified frame (Bouguet).
 
-use super::rectification::{Axis, RectifyError};
+use super::config::{Axis, RectifyError};
 use crate::geometry::Real;
 use crate::geometry::camera::Pose;
 use crate::geometry::linear::skew;
@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 /// Rotations of the first and of the second camera into their shared frame, whose X (or Y) is along the
 /// baseline, and that axis.
 ///
-/// Each camera turns half of R, then both turn by the smallest rotation that lays the axis along the baseline
+/// Each camera rotates by half of R, then both by the smallest rotation that lays the axis along the baseline
 /// (Bouguet's way: both images are altered alike, and as little as can be). All is done with products and
 /// roots, so that every core gives the same bits.
 pub(super) fn aligned<T: Real>(pose: &Pose<T>) -> Result<([Matrix3<T>; 2], Axis), RectifyError> {
@@ -28,8 +28,8 @@ pub(super) fn aligned<T: Real>(pose: &Pose<T>) -> Result<([Matrix3<T>; 2], Axis)
     if component < T::ZERO {
         return Err(RectifyError::Swapped(axis));
     }
-    let turn = smallest_turn(&along, &unit);
-    Ok(([turn * half.transpose(), turn * half], axis))
+    let smallest = smallest_rotation(&along, &unit);
+    Ok(([smallest * half.transpose(), smallest * half], axis))
 }
 
 /// H with `H H = R`, by the rotation's quaternion: half the angle is the mean of it and of no rotation.
@@ -48,9 +48,9 @@ fn half_of<T: Real>(r: &Matrix3<T>) -> Result<Matrix3<T>, RectifyError> {
     Ok(Matrix3::identity() + cross * (two * w) + cross * cross * two)
 }
 
-/// The smallest rotation that turns a unit vector to another that is not opposite (Rodrigues, without an
+/// The smallest rotation of a unit vector to another that is not opposite (Rodrigues, without an
 /// angle): `1 + [v]x + [v]x^2 / (1 + c)` with `v = from x to`, `c = from . to`.
-fn smallest_turn<T: Real>(from: &Vector3<T>, to: &Vector3<T>) -> Matrix3<T> {
+fn smallest_rotation<T: Real>(from: &Vector3<T>, to: &Vector3<T>) -> Matrix3<T> {
     let cross = skew(&from.cross(to));
     Matrix3::identity() + cross + cross * cross / (T::ONE + from.dot(to))
 }
@@ -70,8 +70,8 @@ mod tests {
     #[test]
     fn one_axis_goes_to_another() {
         let from = Vector3::new(0.6, 0.8, 0.0_f64);
-        let turn = smallest_turn(&from, &Vector3::x());
-        assert!((turn * from - Vector3::x()).amax() < 1e-15);
-        assert!((turn.m33 - 1.0).abs() < 1e-15);
+        let smallest = smallest_rotation(&from, &Vector3::x());
+        assert!((smallest * from - Vector3::x()).amax() < 1e-15);
+        assert!((smallest.m33 - 1.0).abs() < 1e-15);
     }
 }

@@ -1,4 +1,4 @@
-//! Whether a rig is still what was calibrated: rows that no longer agree, and the small rotation that
+//! Self-calibration of a rig that runs: rows that no longer agree, and the small rotation that
 //! explains them.
 
 use super::rectification::Rectification;
@@ -10,10 +10,10 @@ use crate::geometry::two_view::Correspondence;
 use nalgebra::{Matrix3, Vector3};
 
 /// Gathers correspondences of rectified images, frame by frame, and tells by what rotation the second camera
-/// was turned since it was calibrated.
+/// was rotated since it was calibrated.
 ///
-/// A camera that turns by a small `w = (pitch, yaw, roll)` about X, Y and Z moves the row of what it sees, in
-/// units of the focal length and whatever the depth is, by (Longuet-Higgins & Prazdny 1980, the rotational
+/// A camera that rotates by a small `w = (pitch, yaw, roll)` about X, Y and Z moves the row of what it sees,
+/// in units of the focal length and whatever the depth is, by (Longuet-Higgins & Prazdny 1980, the rotational
 /// flow)
 ///
 /// `v' - v = w_x (-1 - y^2) + w_y x y + w_z x`, with `(x, y)` of the plane Z = 1.
@@ -23,7 +23,7 @@ use nalgebra::{Matrix3, Vector3};
 /// from step to step; the work is the same for every frame. Frames add up, each older one counting nine
 /// tenths of the next.
 ///
-/// A turn about Y is seen in the image's corners alone, and a step along the baseline is not seen at all:
+/// A rotation about Y is seen in the image's corners alone, and a step along the baseline is not seen at all:
 /// neither moves rows by much, and both change depths. [`RowAlignment::sigma_rad`] says how little is known.
 ///
 /// ```
@@ -38,7 +38,7 @@ use nalgebra::{Matrix3, Vector3};
 /// });
 /// meter.add(&camera, &seen)?;
 /// let found = meter.alignment()?;
-/// assert!((found.turn_rad[0].to_degrees() + 0.28).abs() < 0.03);
+/// assert!((found.rotation_rad[0].to_degrees() + 0.28).abs() < 0.03);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -48,7 +48,7 @@ pub struct RowMeter<T: Real> {
     vector: [T; 3],
 }
 
-/// Why rows tell nothing.
+/// Why rows give no alignment.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -76,13 +76,13 @@ impl core::fmt::Display for RowMeterError {
 
 impl core::error::Error for RowMeterError {}
 
-/// How the second camera stands, as far as rows tell.
+/// How the second camera stands, as far as rows show.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct RowAlignment<T: Real> {
-    /// By how much it was turned about X (pitch), Y (yaw) and Z (roll) of the rectified frame, radians: what
-    /// it should see at P it sees at `P + w x P`.
-    pub turn_rad: [T; 3],
-    /// Their standard deviations.
+    /// By how much it was rotated about X (pitch), Y (yaw) and Z (roll) of the rectified frame, radians:
+    /// what it should see at P it sees at `P + w x P`.
+    pub rotation_rad: [T; 3],
+    /// Standard deviations of the three angles, radians.
     pub sigma_rad: [T; 3],
 }
 
@@ -127,11 +127,11 @@ impl<T: Real> RowMeter<T> {
         if !seen.iter().all(Correspondence::is_finite) {
             return Err(RowMeterError::NotFinite);
         }
-        let mut turn = [T::ZERO; 3];
+        let mut rotation = [T::ZERO; 3];
         let mut normal = Normal::ZERO;
         for scale in SCALES {
-            normal = Normal::of(camera, seen, &turn, T::of(scale));
-            turn = normal.solved();
+            normal = Normal::of(camera, seen, &rotation, T::of(scale));
+            rotation = normal.solved();
         }
         // Weights add up to a number of correspondences.
         if !(normal.weights > T::count(Self::FEWEST / 2)) {
@@ -155,13 +155,13 @@ impl<T: Real> RowMeter<T> {
         let prior = T::ONE / T::of(PRIOR_RAD * PRIOR_RAD);
         (0..3).for_each(|i| matrix[i][i] += prior);
         let factors = Ldl::new(&mut matrix);
-        let turn_rad = factors.solve(&self.vector);
+        let rotation_rad = factors.solve(&self.vector);
         let column = |i: usize| {
             let mut unit = [T::ZERO; 3];
             unit[i] = T::ONE;
             factors.solve(&unit)[i].max(T::ZERO).sqrt()
         };
-        Ok(RowAlignment { turn_rad, sigma_rad: [column(0), column(1), column(2)] })
+        Ok(RowAlignment { rotation_rad, sigma_rad: [column(0), column(1), column(2)] })
     }
 }
 
@@ -183,13 +183,13 @@ impl<T: Real> Normal<T> {
     const ZERO: Self =
         Self { matrix: [[T::ZERO; 3]; 3], vector: [T::ZERO; 3], weights: T::ZERO, squares: T::ZERO };
 
-    /// The sums, with weights by what `turn` leaves.
-    fn of(camera: &Camera<T>, seen: &[Correspondence<T>], turn: &[T; 3], scale: T) -> Self {
+    /// The sums, with weights by what `rotation` leaves.
+    fn of(camera: &Camera<T>, seen: &[Correspondence<T>], rotation: &[T; 3], scale: T) -> Self {
         let mut sums = Self::ZERO;
         for seen in seen {
             let a = row_moves(camera, seen.second.x, seen.second.y);
             let moved = seen.second.y - seen.first.y;
-            let [x, y, z] = [a[0] * turn[0], a[1] * turn[1], a[2] * turn[2]];
+            let [x, y, z] = [a[0] * rotation[0], a[1] * rotation[1], a[2] * rotation[2]];
             let rest = moved - (x + y + z);
             let ratio = rest / scale;
             let weight = T::ONE / (T::ONE + ratio * ratio);
@@ -204,9 +204,9 @@ impl<T: Real> Normal<T> {
         sums
     }
 
-    /// The turn with the least sum; what the frame leaves open stays small.
+    /// The rotation with the least sum; what the frame leaves open stays small.
     fn solved(&self) -> [T; 3] {
-        // An angle of `PRIOR_RAD` is worth a residual of a pixel.
+        // An angle of `PRIOR_RAD` weighs as much as a residual of a pixel.
         let prior = T::ONE / T::of(PRIOR_RAD * PRIOR_RAD);
         let mut matrix = self.matrix;
         (0..3).for_each(|i| matrix[i][i] += prior);
@@ -214,7 +214,7 @@ impl<T: Real> Normal<T> {
     }
 }
 
-/// By how many px a row moves for a turn about X, Y and Z, for each radian.
+/// By how many px a row moves for a rotation about X, Y and Z, for each radian.
 fn row_moves<T: Real>(camera: &Camera<T>, u: T, v: T) -> [T; 3] {
     let ((fx, fy), (cx, cy)) = (camera.focal_px(), camera.principal_point());
     let (x, y) = ((u - cx) / fx, (v - cy) / fy);
@@ -232,7 +232,7 @@ impl<T: Real> RowAlignment<T> {
         let mut squares = T::ZERO;
         for (i, j) in (0..PLACES).flat_map(|j| (0..PLACES).map(move |i| (i, j))) {
             let [x, y, z] = row_moves(camera, place(i, size.width), place(j, size.height));
-            let moved = x * self.turn_rad[0] + y * self.turn_rad[1] + z * self.turn_rad[2];
+            let moved = x * self.rotation_rad[0] + y * self.rotation_rad[1] + z * self.rotation_rad[2];
             squares += moved * moved;
         }
         (squares / T::count(PLACES * PLACES)).sqrt()
@@ -253,11 +253,12 @@ impl<T: Real> RowAlignment<T> {
 }
 
 impl<T: Real> Rectification<T> {
-    /// The rectification for a second camera that was turned as `found` says: its warp takes the turn back.
+    /// The rectification for a second camera that was rotated as `found` says: its warp takes the rotation
+    /// back.
     pub fn corrected(&self, found: &RowAlignment<T>) -> Self {
         let [first, second] = self.warps();
-        let back = -Vector3::from(found.turn_rad);
-        let rotation = small_turn(&back) * second.rotation();
+        let back = -Vector3::from(found.rotation_rad);
+        let rotation = quaternion_rotation(&back) * second.rotation();
         let second = Warp::new(*second.camera(), second.raw_size(), rotation, *self.camera(), self.size());
         self.with_warps([*first, second])
     }
@@ -265,7 +266,7 @@ impl<T: Real> Rectification<T> {
 
 /// The rotation by a small vector w, as the unit quaternion along `(1, w / 2)` has it: its angle is `2
 /// atan(|w| / 2)`, 1e-5 off at 3 degrees.
-fn small_turn<T: Real>(w: &Vector3<T>) -> Matrix3<T> {
+fn quaternion_rotation<T: Real>(w: &Vector3<T>) -> Matrix3<T> {
     let half = w * T::of(0.5);
     let length = (T::ONE + half.norm_squared()).sqrt();
     let (w, v) = (T::ONE / length, half / length);
@@ -284,8 +285,8 @@ mod tests {
         // (0.5, 0.2, 1) + w x it, of w = (0.01, 0, 0.02): (0.496, 0.2, 1.002).
         let [x, _, z] = row_moves(&camera, 50.0, 20.0);
         assert!((0.01 * x + 0.02 * z - (100.0 * 0.2 / 1.002 - 20.0)).abs() < 2e-2);
-        let turn = small_turn(&Vector3::new(0.01, 0.0, 0.02));
-        let moved = turn * Vector3::new(0.5, 0.2, 1.0);
+        let rotation = quaternion_rotation(&Vector3::new(0.01, 0.0, 0.02));
+        let moved = rotation * Vector3::new(0.5, 0.2, 1.0);
         assert!((moved - Vector3::new(0.496, 0.2, 1.002)).amax() < 3e-4);
     }
 }

@@ -1,17 +1,17 @@
-//! What the new cameras see: their shared focal length and principal point.
+//! The camera of the rectified images: the shared focal length and principal point.
 
-use super::rectification::{Axis, Crop, RectifyError};
+use super::config::{Axis, Crop, RectifyError};
 use crate::geometry::Real;
 use crate::geometry::camera::{Camera, ImageSize};
 use nalgebra::{Matrix3, Point2, Vector2};
 
 /// Points of an image's outline on each side, its corners with them.
 const PER_SIDE: usize = 33;
-/// How often a point of the outline without a sight goes to the image's middle, each time a 32nd of the way.
+/// How often a point of the outline without a ray goes to the image's middle, each time a 32nd of the way.
 const STEPS_IN: usize = 32;
 
-/// One camera as it is turned.
-pub(super) struct Turned<'a, T: Real> {
+/// One camera and its rotation into the rectified frame.
+pub(super) struct Rotated<'a, T: Real> {
     pub camera: &'a Camera<T>,
     pub size: ImageSize,
     pub rotation: &'a Matrix3<T>,
@@ -33,18 +33,18 @@ struct Rectangle<T> {
 /// between the least with which all of both images is seen and the least with which nothing else is (OpenCV's
 /// alpha, whose way this is).
 pub(super) fn shared_camera<T: Real>(
-    turned: &[Turned<'_, T>; 2],
+    rotated: &[Rotated<'_, T>; 2],
     axis: Axis,
     crop: Crop<T>,
     size: ImageSize,
 ) -> Result<Camera<T>, RectifyError> {
     let half = T::of(0.5);
     let share = |new: u16, raw: u16| T::count(new.into()) / T::count(raw.into());
-    let focal = |t: &Turned<'_, T>| match axis {
+    let focal = |t: &Rotated<'_, T>| match axis {
         Axis::Horizontal => t.camera.focal_px().1 * share(size.height, t.size.height),
         Axis::Vertical => t.camera.focal_px().0 * share(size.width, t.size.width),
     };
-    let [first, second] = turned;
+    let [first, second] = rotated;
     let f = (focal(first) + focal(second)) * half;
     let middles = [middle_of_corners(first)?, middle_of_corners(second)?];
     let middle = (middles[0] + middles[1]) * half;
@@ -57,14 +57,14 @@ pub(super) fn shared_camera<T: Real>(
                 return Err(RectifyError::Alpha);
             }
             let (mut all_valid, mut all_seen) = (T::ZERO, T::of(1e9));
-            for t in turned {
+            for t in rotated {
                 let (inner, outer) = outline(t)?;
                 for (rectangle, is_inner) in [(inner, true), (outer, false)] {
-                    for (room, reach) in rectangle.rooms(cx, cy, w, h) {
-                        if !(room > T::ZERO && reach > T::ZERO) {
+                    for (pixels, reach) in rectangle.extents(cx, cy, w, h) {
+                        if !(pixels > T::ZERO && reach > T::ZERO) {
                             return Err(RectifyError::NothingShared);
                         }
-                        let scale = room / (reach * f);
+                        let scale = pixels / (reach * f);
                         if is_inner {
                             all_valid = all_valid.max(scale);
                         } else {
@@ -82,20 +82,20 @@ pub(super) fn shared_camera<T: Real>(
 impl<T: Real> Rectangle<T> {
     /// For each side: the pixels between the principal point and the image's side, and how far the rectangle
     /// reaches from the axis on the plane Z = 1.
-    fn rooms(&self, cx: T, cy: T, w: T, h: T) -> [(T, T); 4] {
+    fn extents(&self, cx: T, cy: T, w: T, h: T) -> [(T, T); 4] {
         [(cx, -self.left), (w - cx, self.right), (cy, -self.top), (h - cy, self.bottom)]
     }
 }
 
-/// Where the rectified frame sees a place of the raw outline, on the plane Z = 1. Where the lens has no sight
+/// Where the rectified frame sees a place of the raw outline, on the plane Z = 1. Where the lens has no ray
 /// for it, the nearest on the way to the principal point that has one.
-fn seen<T: Real>(t: &Turned<'_, T>, place: Point2<T>) -> Result<Vector2<T>, RectifyError> {
+fn seen<T: Real>(t: &Rotated<'_, T>, place: Point2<T>) -> Result<Vector2<T>, RectifyError> {
     let (cx, cy) = t.camera.principal_point();
     let to_middle = Vector2::new(cx - place.x, cy - place.y) / T::count(STEPS_IN);
     for step in 0..STEPS_IN {
         let place = place + to_middle * T::count(step);
-        let Ok(sight) = t.camera.unproject(&place) else { continue };
-        let there = t.rotation * sight;
+        let Ok(ray) = t.camera.unproject(&place) else { continue };
+        let there = t.rotation * ray;
         // Within 84 degrees of the axis.
         if there.z > T::of(0.1) * there.xy().norm() {
             return Ok(there.xy() / there.z);
@@ -104,7 +104,7 @@ fn seen<T: Real>(t: &Turned<'_, T>, place: Point2<T>) -> Result<Vector2<T>, Rect
     Err(RectifyError::NothingShared)
 }
 
-fn middle_of_corners<T: Real>(t: &Turned<'_, T>) -> Result<Vector2<T>, RectifyError> {
+fn middle_of_corners<T: Real>(t: &Rotated<'_, T>) -> Result<Vector2<T>, RectifyError> {
     let [w, h] = [t.size.width, t.size.height].map(|side| T::count(usize::from(side).saturating_sub(1)));
     let mut sum = Vector2::zeros();
     for (x, y) in [(T::ZERO, T::ZERO), (w, T::ZERO), (T::ZERO, h), (w, h)] {
@@ -114,7 +114,7 @@ fn middle_of_corners<T: Real>(t: &Turned<'_, T>) -> Result<Vector2<T>, RectifyEr
 }
 
 /// The largest rectangle, about, within the raw image's outline, and the smallest around it.
-fn outline<T: Real>(t: &Turned<'_, T>) -> Result<(Rectangle<T>, Rectangle<T>), RectifyError> {
+fn outline<T: Real>(t: &Rotated<'_, T>) -> Result<(Rectangle<T>, Rectangle<T>), RectifyError> {
     let [w, h] = [t.size.width, t.size.height].map(|side| T::count(usize::from(side).saturating_sub(1)));
     let (low, high) = (-T::of(1e9), T::of(1e9));
     let mut inner = Rectangle { left: low, right: high, top: low, bottom: high };

@@ -1,4 +1,4 @@
-//! From two cameras as they are mounted to two whose rows are aligned.
+//! Rectification: from two cameras as they are mounted to two whose rows are aligned.
 //!
 //! In: a [`StereoRig`](super::camera::StereoRig). Out: a [`Rectification`] of it.
 //!
@@ -13,6 +13,8 @@
 
 mod warp;
 
+mod config;
+
 mod align;
 
 mod crop;
@@ -26,7 +28,8 @@ mod alignment;
 mod uncalibrated;
 
 pub use alignment::{RowAlignment, RowHealth, RowMeter, RowMeterError};
-pub use rectification::{Axis, Crop, Rectification, RectifyError};
+pub use config::{Axis, Crop, RectifyError};
+pub use rectification::Rectification;
 pub use report::RectificationReport;
 pub use uncalibrated::{UncalibratedError, UncalibratedRectification};
 pub use warp::{Warp, WarpSource};

@@ -1,92 +1,27 @@
-//! A stereo rig with its rows aligned.
+//! A rectified stereo rig: two warps and the camera that they lead into.
 
 use super::align::aligned;
-use super::crop::{Turned, shared_camera};
+use super::config::{Axis, Crop, RectifyError};
+use super::crop::{Rotated, shared_camera};
 use super::warp::Warp;
 use crate::geometry::Real;
-use crate::geometry::camera::{Camera, CameraModelError, ImageSize, RectifiedRig, RigError, StereoRig};
+use crate::geometry::camera::{Camera, ImageSize, RectifiedRig, RigError, StereoRig};
 use nalgebra::Matrix4;
-
-/// Along which direction of the images the second camera stands beside the first.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Axis {
-    /// To the right: rows are aligned, `d = u - u'`.
-    Horizontal,
-    /// Below: columns are aligned, `d = v - v'`. Matching wants both images transposed.
-    Vertical,
-}
-
-impl Axis {
-    /// Whether it is [`Axis::Horizontal`].
-    pub const fn is_horizontal(self) -> bool {
-        matches!(self, Self::Horizontal)
-    }
-}
-
-/// How much of the raw images the rectified ones show.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub enum Crop<T: Real> {
-    /// At the scale of the raw images: their mean focal length is kept. OpenCV's default, -1.
-    Natural,
-    /// From 0, nothing but what both cameras see, to 1, all of both raw images: OpenCV's alpha.
-    Alpha(T),
-}
-
-/// Why a rig cannot be rectified.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum RectifyError {
-    /// The second camera stands on the other side: left of the first, or above it.
-    Swapped(Axis),
-    /// One camera stands before the other, more than 60 degrees from beside it.
-    Forward,
-    /// The cameras are turned against each other by more than 104 degrees.
-    Apart,
-    /// The rectified images would show nothing of one of the cameras, or its lens model has no sight for most
-    /// of its image.
-    NothingShared,
-    /// Alpha is not from 0 to 1.
-    Alpha,
-    /// A side of the rectified images is not from 2 to 4096 px.
-    Size,
-    /// The shared camera's numbers are out of range.
-    Camera(CameraModelError),
-}
-
-impl core::fmt::Display for RectifyError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::Swapped(Axis::Horizontal) => {
-                "the second camera stands left of the first: the cameras are swapped"
-            }
-            Self::Swapped(Axis::Vertical) => {
-                "the second camera stands above the first: the cameras are swapped"
-            }
-            Self::Forward => "one camera stands before the other, not beside it",
-            Self::Apart => "the cameras are turned away from each other",
-            Self::NothingShared => "the rectified images would show nothing of one of the cameras",
-            Self::Alpha => "alpha must be from 0 to 1",
-            Self::Size => "the rectified images' columns and rows must be from 2 to 4096",
-            Self::Camera(error) => return error.fmt(f),
-        })
-    }
-}
-
-impl core::error::Error for RectifyError {}
 
 /// Two warps into images whose rows (or columns, below each other) are aligned, and the cameras that those
 /// images are of.
 ///
 /// ```
-/// use stereopsis::geometry::{camera::{Camera, ImageSize, Pose, StereoRig}, rectify::{Crop, Rectification}};
+/// use stereopsis::geometry::camera::{Camera, ImageSize, Pose, StereoRig};
+/// use stereopsis::geometry::rectify::{Crop, Rectification};
 /// use nalgebra::{Matrix3, Point2, Vector3};
 /// // The right camera sees everything one row higher.
-/// let (left, right) = (Camera::new(500.0_f64, 500.0, 320.0, 240.0)?, Camera::new(500.0, 500.0, 320.0, 239.0)?);
+/// let left = Camera::new(500.0_f64, 500.0, 320.0, 240.0)?;
+/// let right = Camera::new(500.0, 500.0, 320.0, 239.0)?;
 /// let size = ImageSize { width: 641, height: 481 };
 /// let pose = Pose::new(Matrix3::identity(), Vector3::new(0.06, 0.0, 0.0))?;
-/// let rectified = Rectification::new(&StereoRig::new([left, right], pose, [size; 2])?, Crop::Natural, size)?;
+/// let rig = StereoRig::new([left, right], pose, [size; 2])?;
+/// let rectified = Rectification::new(&rig, Crop::Natural, size)?;
 /// let [first, second] = rectified.warps();
 /// let (cx, cy) = rectified.camera().principal_point();
 /// let middle = Point2::new(cx, cy);
@@ -112,16 +47,16 @@ impl<T: Real> Rectification<T> {
         }
         let ([first, second], axis) = aligned(rig.pose())?;
         let ([left, right], [left_size, right_size]) = (rig.cameras(), rig.sizes());
-        let turned = [
-            Turned { camera: left, size: left_size, rotation: &first },
-            Turned { camera: right, size: right_size, rotation: &second },
+        let rotated = [
+            Rotated { camera: left, size: left_size, rotation: &first },
+            Rotated { camera: right, size: right_size, rotation: &second },
         ];
-        let camera = shared_camera(&turned, axis, crop, size)?;
-        let warps = turned.map(|t| Warp::new(*t.camera, t.size, *t.rotation, camera, size));
+        let camera = shared_camera(&rotated, axis, crop, size)?;
+        let warps = rotated.map(|t| Warp::new(*t.camera, t.size, *t.rotation, camera, size));
         Ok(Self { warps, axis, camera, baseline_m: rig.baseline_m(), size })
     }
 
-    /// The same with other warps, into the same camera.
+    /// A rectification with other warps, into the same camera.
     pub(super) fn with_warps(&self, warps: [Warp<T>; 2]) -> Self {
         Self { warps, ..*self }
     }

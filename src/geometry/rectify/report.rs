@@ -1,4 +1,4 @@
-//! How good a rectification is.
+//! The report on a rectification: what is left of row errors, and what the warps cost.
 
 use super::rectification::Rectification;
 use super::warp::Warp;

@@ -1,4 +1,4 @@
-//! Rows aligned without a calibration: from matches alone.
+//! Rectification without calibration, from a fundamental matrix and matches (Hartley 1999).
 
 use crate::geometry::Real;
 use crate::geometry::camera::ImageSize;
@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Point2, RowVector3, Vector3};
 /// Two homographies into images whose rows are aligned, for a pair of which nothing but F and some matches is
 /// known.
 ///
-/// The second image's sends its epipole e' to infinity along the rows (Hartley 1999): e' is turned onto the
+/// The second image's sends its epipole e' to infinity along the rows (Hartley 1999): e' is rotated onto the
 /// row through the image's middle, then `[1 0 0; 0 1 0; -1/e 0 1]`, which leaves the middle as it is. The
 /// first image's follows but for its first row, because `p'^T F^T p = 0` must become `v' = v`: with `A =
 /// H'^-T F^T` its second row is A's third and its third is less A's second. The first row is that which
@@ -19,7 +19,9 @@ use nalgebra::{Matrix3, Point2, RowVector3, Vector3};
 /// What comes out has no metric depth. Lenses are not in it: matches of undistorted pixels are meant.
 ///
 /// ```
-/// use stereopsis::geometry::{camera::{Camera, ImageSize, Pose}, rectify::UncalibratedRectification, two_view::{Correspondence, Fundamental}};
+/// use stereopsis::geometry::camera::{Camera, ImageSize, Pose};
+/// use stereopsis::geometry::rectify::UncalibratedRectification;
+/// use stereopsis::geometry::two_view::{Correspondence, Fundamental};
 /// use nalgebra::{Matrix3, Point3, Vector3};
 /// let camera = Camera::new(300.0_f64, 300.0, 160.0, 120.0)?;
 /// let pose = Pose::new(Matrix3::identity(), Vector3::new(0.1, 0.02, 0.0))?;
@@ -147,17 +149,17 @@ impl<T: Real> UncalibratedRectification<T> {
     }
 }
 
-/// The epipole turned onto the X axis by the smaller of the two angles, and from there to infinity.
+/// The epipole rotated onto the X axis by the smaller of the two angles, and from there to infinity.
 fn to_infinity<T: Real>(e: &Vector3<T>) -> Matrix3<T> {
     let along = e.xy().norm();
     let (c, s) = (e.x / along, e.y / along);
     let sign = T::ONE.copysign(c);
     let (c, s) = (c * sign, s * sign);
     let (o, l) = (T::ZERO, T::ONE);
-    let turn = Matrix3::new(c, s, o, -s, c, o, o, o, l);
+    let rotation = Matrix3::new(c, s, o, -s, c, o, o, o, l);
     // `-1 / e` with e = sign along / z.
     let tilt = -e.z / (along * sign);
-    Matrix3::new(l, o, o, o, l, o, tilt, o, l) * turn
+    Matrix3::new(l, o, o, o, l, o, tilt, o, l) * rotation
 }
 
 /// The row h with the least `sum (h p / w - column)^2`, where `w = third p`.

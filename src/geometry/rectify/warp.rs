@@ -1,10 +1,10 @@
-//! Where a rectified pixel comes from, exactly.
+//! The rectifying warp: the raw pixel of a rectified one.
 
 use crate::geometry::Real;
 use crate::geometry::camera::{Camera, ImageSize, ProjectionError};
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
-/// One camera's map from rectified pixels to raw ones: the sight of the rectified pixel, turned into the
+/// One camera's map from rectified pixels to raw ones: the ray of the rectified pixel, rotated into the
 /// camera, through its lens: `p_raw = K distort(R^T K_new^-1 p)`.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Warp<T: Real> {
@@ -21,8 +21,8 @@ pub struct Warp<T: Real> {
 pub struct WarpSource<T: Real> {
     /// Raw px; it may be outside the image.
     pub pixel: Point2<T>,
-    /// Whether the lens model describes the sight: beyond where its radius stops growing it gives places
-    /// that other sights have too.
+    /// Whether the lens model describes the ray: beyond where its radius stops growing it gives places
+    /// that other rays have too.
     pub is_described: bool,
 }
 
@@ -66,13 +66,13 @@ impl<T: Real> Warp<T> {
         self.size
     }
 
-    /// Where a rectified pixel is in the raw image; [`ProjectionError::Behind`] when its sight is behind the
+    /// Where a rectified pixel is in the raw image; [`ProjectionError::Behind`] when its ray is behind the
     /// camera.
     pub fn source(&self, rectified: &Point2<T>) -> Result<WarpSource<T>, ProjectionError> {
         let (fx, fy) = self.new.focal_px();
         let (cx, cy) = self.new.principal_point();
-        let sight = Vector3::new((rectified.x - cx) / fx, (rectified.y - cy) / fy, T::ONE);
-        let there = Point3::from(self.rotation.tr_mul(&sight));
+        let ray = Vector3::new((rectified.x - cx) / fx, (rectified.y - cy) / fy, T::ONE);
+        let there = Point3::from(self.rotation.tr_mul(&ray));
         let pixel = self.camera.project(&there)?;
         let r2 = (there.x * there.x + there.y * there.y) / (there.z * there.z);
         Ok(WarpSource { pixel, is_described: r2 <= self.reach_r2 })

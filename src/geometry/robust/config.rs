@@ -1,4 +1,4 @@
-//! What is asked of a robust estimate.
+//! The configuration of a RANSAC estimate.
 
 use crate::geometry::Real;
 
@@ -10,7 +10,7 @@ pub enum Sampling {
     #[default]
     Uniform,
     /// The first ones first: the correspondences come in order, those that are most likely right before the
-    /// others. Samples are drawn from a pool that grows from the front until it holds all (PROSAC; Chum &
+    /// others. Samples are drawn from a set that grows from the front until it holds all (PROSAC; Chum &
     /// Matas 2005).
     Ordered,
 }

@@ -1,4 +1,4 @@
-//! E by the geometric error.
+//! The essential matrix by the least robust loss of Sampson's distances.
 
 use super::factored::Factored;
 use super::frame::Frame;
@@ -15,7 +15,7 @@ impl<T: Real> Essential<T> {
     /// The essential matrix near this one that makes Sampson's distances least, px, over the five numbers
     /// that it has; at most twenty steps of Levenberg's and Marquardt's method.
     ///
-    /// `seen` are undistorted px ([`Camera::undistort`]), wrong ones among them: weights fall with the
+    /// `seen` are undistorted px ([`Camera::undistort`]), outliers among them: weights fall with the
     /// distance, to zero at one and a half times the threshold, as in
     /// [`robust_fundamental`](crate::geometry::robust::robust_fundamental). A correspondence that is not
     /// finite has no weight. The error is that of a matrix that is no estimate at all.

@@ -1,10 +1,10 @@
-//! F by the seven numbers that it has, and E by its five.
+//! Minimal parameters of F and E: the orthonormal representation (Bartoli & Sturm 2004).
 
 use crate::geometry::Real;
 use crate::geometry::linear::{Svd3, cayley, columns3, product};
 use nalgebra::{Matrix3, Vector3};
 
-/// `F = U diag(c, s, 0) V^T` with rotations U and V and `c^2 + s^2 = 1`: three numbers turn U, three V, one
+/// `F = U diag(c, s, 0) V^T` with rotations U and V and `c^2 + s^2 = 1`: three numbers rotate U, three V, one
 /// moves (c, s) along the circle (Bartoli & Sturm 2004). Whatever the step, the matrix stays singular and of
 /// size one, and with `c = s` it stays an essential one.
 #[derive(Clone, Copy)]
@@ -31,7 +31,7 @@ impl<T: Real> Factored<T> {
         (s > c * T::EPSILON * T::of(16.0)).then(|| Self { u, v, c: c / norm, s: s / norm })
     }
 
-    /// The same with both singular values alike: the nearest essential matrix, over the root of two.
+    /// The nearest essential matrix, over the root of two: both singular values are made alike.
     pub(super) fn essential(self) -> Self {
         let half = T::of(core::f64::consts::FRAC_1_SQRT_2);
         Self { c: half, s: half, ..self }
@@ -92,8 +92,8 @@ mod tests {
                 step[k] = by;
                 p.dot(&(f.moved(&step).matrix() * q))
             };
-            let slope = (at(1e-6) - at(-1e-6)) / 2e-6;
-            assert!((slope - derivative).abs() < 1e-9, "{k}: {slope} {derivative}");
+            let difference = (at(1e-6) - at(-1e-6)) / 2e-6;
+            assert!((difference - derivative).abs() < 1e-9, "{k}: {difference} {derivative}");
         }
     }
 

@@ -1,4 +1,4 @@
-//! From pixels to the coordinates that an estimate is made in, and back.
+//! Normalised coordinates for an estimate, of the points (Hartley 1997) or of a camera.
 
 use crate::geometry::Real;
 use crate::geometry::camera::Camera;
@@ -52,15 +52,15 @@ impl<T: Real> Frame<T> {
         self.d
     }
 
-    /// (x, y) of a pixel.
+    /// The coordinates (x, y) of a pixel.
     #[inline(always)]
     pub(super) fn apply(&self, pixel: Point2<T>) -> Point2<T> {
         let (u, v) = (pixel.x - self.cx, pixel.y - self.cy);
         Point2::new(self.a * u + self.b * v, self.d * v)
     }
 
-    /// The slope of a function by (x, y), as its slope by (u, v), and that again as a step of (x, y): `M M^T
-    /// slope`.
+    /// The gradient of a function by (x, y), as its gradient by (u, v), and that again as a step of (x, y):
+    /// `M M^T gradient`.
     #[inline(always)]
     pub(super) fn steepest(&self, x: T, y: T) -> (T, T) {
         let (u, v) = (self.a * x, self.b * x + self.d * y);

@@ -1,4 +1,4 @@
-//! F from correspondences of which some are wrong.
+//! The fundamental matrix from correspondences with outliers.
 
 use super::config::RobustConfig;
 use super::frame::Frame;
@@ -29,7 +29,7 @@ pub enum RobustError {
     /// No sample of seven gave an estimate that more than seven correspondences agree with: all are wrong, or
     /// the same, or the ones of an image are on a line.
     NoAgreement,
-    /// What agrees is on a plane, or the camera has only turned: a homography is the answer. The inliers say
+    /// What agrees is on a plane, or the camera has only rotated: a homography is the answer. The inliers say
     /// which those are.
     Plane,
 }
@@ -45,7 +45,7 @@ impl core::fmt::Display for RobustError {
             Self::Inliers(needed) => return write!(f, "the inliers need a slice of {needed}"),
             Self::NoAgreement => "no fundamental matrix has more than seven correspondences agree with it",
             Self::Plane => {
-                "what agrees is on a plane, or the camera has only turned: a homography is the answer"
+                "what agrees is on a plane, or the camera has only rotated: a homography is the answer"
             }
         })
     }
@@ -92,9 +92,12 @@ pub struct RobustFundamental<T: Real> {
 /// ```
 /// use stereopsis::geometry::{robust::{RobustConfig, robust_fundamental}, two_view::Correspondence};
 /// // A rectified pair: rows are equal, but for the last match, which is 40 rows off.
-/// let at = [(0, 0, 8), (90, 0, 9), (0, 70, 6), (90, 70, 17), (20, 20, 4), (60, 10, 13), (30, 50, 12), (70, 60, 5),
-///     (45, 33, 7), (12, 64, 19), (81, 25, 3), (38, 5, 10), (55, 47, 15), (5, 38, 16), (66, 35, 40)];
-/// let mut seen = at.map(|(u, v, d)| Correspondence::new(f64::from(u), f64::from(v), f64::from(u - d), f64::from(v)));
+/// let at = [
+///     (0, 0, 8), (90, 0, 9), (0, 70, 6), (90, 70, 17), (20, 20, 4), (60, 10, 13), (30, 50, 12), (70, 60, 5),
+///     (45, 33, 7), (12, 64, 19), (81, 25, 3), (38, 5, 10), (55, 47, 15), (5, 38, 16), (66, 35, 40),
+/// ];
+/// let px = |x: i32| f64::from(x);
+/// let mut seen = at.map(|(u, v, d)| Correspondence::new(px(u), px(v), px(u - d), px(v)));
 /// seen[14].second.y += 40.0;
 /// let mut inliers = [false; 15];
 /// let found = robust_fundamental(&seen, &RobustConfig::new(0.5), &mut inliers)?;

@@ -1,4 +1,4 @@
-//! Tukey's biweight as the loss of RANSAC and least squares (Beaton & Tukey 1974): an MSAC of no fixed threshold.
+//! Tukey's biweight as the loss of RANSAC and least squares (Beaton & Tukey 1974): a soft MSAC.
 
 use crate::geometry::Real;
 
@@ -15,7 +15,7 @@ const WIDTH: f64 = 1.5;
 /// than a tenth: this one needs no table.
 #[derive(Clone, Copy)]
 pub(crate) struct Biweight<T: Real> {
-    /// w^2, px^2.
+    /// The squared width w^2, px^2.
     pub(crate) width_squared: T,
 }
 

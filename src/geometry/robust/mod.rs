@@ -1,16 +1,14 @@
-//! Two views, or a view of known points, when some of the correspondences are wrong.
+//! Robust estimation of F, E and a camera's pose from observations with outliers: RANSAC.
 //!
-//! In: correspondences, a threshold and a seed. Out: [`RobustFundamental`], and which correspondences agree
-//! with it.
+//! In: correspondences or [`Landmark`](super::absolute::Landmark)s, a threshold and a seed. Out: the
+//! estimate, and which observations are its inliers.
 //!
-//! * `config`: what is asked. `random`, `pool`: samples of seven, uniform or the likely ones first.
-//! * `plane`, `parallax`: samples that cannot be, and what to do about those that lie on a plane.
-//! * `loss`: what a distance is worth. `verdict`: whether an estimate is worth anything, from a few
-//!   correspondences.
-//! * `frame`, `factored`, `refine`: the estimate whose geometric error is least, also of an essential matrix.
-//! * `search`: the loop over samples. `fundamental`: its beginning and end. `essential`: the refinement when
-//!   the cameras are known. `resection`: a camera's pose from [`Landmark`](super::absolute::Landmark)s, by
-//!   samples of three.
+//! * `config`: what is asked. `random`, `prosac`: samples, uniform or the likely observations first.
+//! * `ransac`: the loop over samples, for any estimator. `sprt`: the test that drops a bad estimate early.
+//! * `loss`: the weight and the gain of a residual (Tukey's biweight).
+//! * `frame`, `factored`, `refine`: F or E with the least robust loss, by Levenberg-Marquardt.
+//! * `plane`, `search`, `parallax`: the search for F in scenes with a dominant plane (DEGENSAC).
+//! * `fundamental`, `essential`, `resection`: F, E of known cameras, and the pose from landmarks (PnP).
 //!
 //! Every loop is bounded, nothing is allocated; what is held besides the caller's slices is a few hundred
 //! bytes.
@@ -27,9 +25,9 @@ mod loss;
 
 mod sprt;
 
-mod plane;
-
 mod frame;
+
+mod plane;
 
 mod factored;
 

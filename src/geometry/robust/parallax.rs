@@ -1,4 +1,4 @@
-//! From a plane to the rest of the scene.
+//! Plane and parallax: from a dominant plane to the rest of the scene (Chum, Werner & Matas 2005).
 
 use super::plane::Plane;
 use super::search::{ENOUGH, MINIMUM, Search};
@@ -34,7 +34,7 @@ impl<T: Real> Search<'_, T> {
             }
             let f = plane.with_parallax(&one, &two);
             let order = self.order();
-            // The plane is in all of them: what tells them apart is off it, which a wide loss sees better.
+            // The plane is in all of them: what distinguishes them is off it, which a wide loss sees better.
             let loss = self.loss.widened(T::of(ON_PLANE));
             if let Some(score) = Sprt::new().score(&f, self.seen, loss, gain, order) {
                 (best, gain) = (Some(f), score.gain);

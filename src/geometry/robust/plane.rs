@@ -1,4 +1,4 @@
-//! Samples that lie on a plane, and the way out.
+//! Degenerate samples of F: a dominant plane (DEGENSAC; Chum, Werner & Matas 2005).
 //!
 //! Of seven correspondences five or more may lie on one plane of a scene that has depth besides. F is then
 //! one of a family that fits the whole plane and nothing else, and in a scene with a large plane that is a
@@ -97,7 +97,7 @@ impl<T: Real> Plane<T> {
     }
 }
 
-/// e with `F^T e = 0`, at length one: the largest of the cross products of F's columns.
+/// The epipole e with `F^T e = 0`, at length one: the largest of the cross products of F's columns.
 pub(super) fn left_null<T: Real>(f: &Matrix3<T>) -> Option<Vector3<T>> {
     let [a, b, c] = columns3(f);
     let mut best = a.cross(&b);

@@ -1,4 +1,4 @@
-//! Random choices that a seed repeats.
+//! SplitMix64: random numbers that a seed repeats (Steele, Lea & Flood 2014).
 
 /// Numbers by SplitMix64 (Steele, Lea & Flood 2014): a counter in steps of the golden ratio, its bits mixed.
 /// One multiplication of 64 bits twice a number, eight bytes of state, every seed is as good as any other.

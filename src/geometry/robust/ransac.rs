@@ -11,8 +11,8 @@ pub(super) trait Estimator<const K: usize> {
     /// The models of a sample, by the minimal solver.
     fn models(&self, sample: &[usize; K]) -> impl Iterator<Item = Self::Model> + use<Self, K>;
 
-    /// Scores a model, and if it is worth it, refines it (LO-RANSAC; Chum, Matas & Kittler 2003) and makes it
-    /// the best one.
+    /// Scores a model and, where it is better than the best, refines it (LO-RANSAC; Chum, Matas & Kittler
+    /// 2003) and keeps it.
     fn consider(&mut self, model: &Self::Model, sample: &[usize; K]);
 
     /// Whether a better estimate is as unlikely after `drawn` samples as was asked.

@@ -1,4 +1,4 @@
-//! F or E by the least robust loss of Sampson's distances (Hartley & Zisserman 2004, 11.4.3), by Levenberg-Marquardt.
+//! F or E by the least robust loss of Sampson's distances (Hartley & Zisserman 2004, 11.4.3).
 
 #![allow(
     clippy::needless_range_loop,
@@ -18,7 +18,7 @@ use nalgebra::Vector3;
 pub(super) enum Matrix {
     /// All: a fundamental matrix.
     Fundamental,
-    /// Five: U's turn about its last axis stands for V's too, and the singular values stay alike.
+    /// Five: U's rotation about its last axis stands for V's too, and the singular values stay alike.
     Essential,
 }
 
@@ -80,8 +80,8 @@ impl<T: Real> LeastSquares<T, FREE> for SampsonLoss<'_, T> {
                 continue;
             }
             let per_steep = T::ONE / steep;
-            let (weight, worth) = weight_and_gain(squared * per_steep * per_width);
-            gain += worth;
+            let (weight, gained) = weight_and_gain(squared * per_steep * per_width);
+            gain += gained;
             // The derivative of Sampson's distance is the residual's at the corrected points, to within the
             // square of the correction over the size of the picture.
             let by = residual * per_steep;

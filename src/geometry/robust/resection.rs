@@ -119,12 +119,12 @@ pub fn robust_resection<T: Real>(
 fn check<T: Real>(
     landmarks: &[Landmark<T>],
     config: &RobustConfig<T>,
-    room: usize,
+    inliers: usize,
 ) -> Result<(), RobustResectionError> {
     let finite = |l: &Landmark<T>| l.world.iter().chain(l.pixel.iter()).all(|x| x.is_finite());
     if landmarks.len() <= MINIMUM {
         Err(RobustResectionError::TooFew)
-    } else if room < landmarks.len() {
+    } else if inliers < landmarks.len() {
         Err(RobustResectionError::Inliers(landmarks.len()))
     } else if !(config.threshold_px > T::ZERO) {
         Err(RobustResectionError::Threshold)

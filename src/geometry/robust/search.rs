@@ -1,4 +1,4 @@
-//! The fundamental matrix of correspondences with outliers by RANSAC: DEGENSAC (Chum, Werner & Matas 2005).
+//! DEGENSAC: the RANSAC search for F in scenes with a dominant plane (Chum, Werner & Matas 2005).
 
 use super::config::RobustConfig;
 use super::factored::Factored;
@@ -17,8 +17,8 @@ use nalgebra::Matrix3;
 /// Correspondences of a sample.
 pub(super) const MINIMUM: usize = 7;
 
-/// What a candidate has to be worth to be refined, over the best candidate before it: refined ones end in
-/// different minima, and the best candidate's need not be the best.
+/// The gain that a candidate needs to be refined, over that of the best candidate before it: refined ones end
+/// in different minima, and the best candidate's need not be the best.
 const NEARLY: f64 = 0.7;
 /// How many correspondences refine an estimate on the way.
 pub(super) const ENOUGH: usize = 150;

@@ -9,9 +9,10 @@ use nalgebra::{Matrix3, Vector3};
 /// many is dropped at most.
 const DROP: f64 = 100.0;
 
-/// Wald's sequential probability ratio test (SPRT) of estimates against the best so far (Matas & Chum 2005): correspondence after
-/// correspondence the odds change by how often one is an inlier of a good and of a bad estimate, and a bad one is dropped
-/// after a few.
+/// Wald's sequential probability ratio test (SPRT) of estimates against the best so far (Matas & Chum 2005).
+///
+/// Correspondence after correspondence the odds change by how often one is an inlier of a good and of a bad
+/// estimate, and a bad one is dropped after a few.
 pub(super) struct Sprt<T: Real> {
     /// Shares of inliers of the best estimate, and of a wrong one.
     good: T,
@@ -55,7 +56,7 @@ impl<T: Real> Sprt<T> {
         let (least, most) = (T::of(0.005), T::of(0.999));
         self.bad = (self.chance.0 / self.chance.1).max(least);
         let good = self.good.min(most);
-        // Where a wrong estimate has nearly as many inliers as the best, nothing can be told by counting.
+        // Where a wrong estimate has nearly as many inliers as the best, counting decides nothing.
         (self.inlier_ratio, self.outlier_ratio) = if good > self.bad * T::of(1.2) {
             (self.bad / good, (T::ONE - self.bad) / (T::ONE - good))
         } else {

@@ -1,4 +1,4 @@
-//! The same point of the world, seen twice.
+//! A correspondence: one point of the world in two images.
 
 use crate::geometry::Real;
 use nalgebra::Point2;
@@ -6,9 +6,9 @@ use nalgebra::Point2;
 /// Where one point of the world is in two images: p in the first, p' in the second, px.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Correspondence<T: Real> {
-    /// p, in the first (left) image: column, row.
+    /// The point p in the first (left) image: column, row.
     pub first: Point2<T>,
-    /// p', in the second (right) image: column, row.
+    /// The point p' in the second (right) image: column, row.
     pub second: Point2<T>,
 }
 
@@ -18,7 +18,7 @@ impl<T: Real> Correspondence<T> {
         Self { first: Point2::new(u, v), second: Point2::new(u2, v2) }
     }
 
-    /// The same with the images exchanged.
+    /// The correspondence with the images exchanged.
     pub fn swapped(&self) -> Self {
         Self { first: self.second, second: self.first }
     }

@@ -1,8 +1,44 @@
-//! Why correspondences leave F open.
+//! Degenerate configurations, which leave F open (Hartley & Zisserman 2004, 11.9).
 
-use super::eight_point::EightPointError;
 use super::weighted::Weighted;
 use crate::geometry::Real;
+
+/// Why correspondences give no fundamental matrix.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum EightPointError {
+    /// Fewer than eight correspondences.
+    TooFew,
+    /// A number is infinite or not a number.
+    NotFinite,
+    /// Fewer than eight correspondences that are not the same.
+    Repeated,
+    /// In one of the images all points are on a line.
+    Line,
+    /// One homography maps all points: they are on a plane, or the camera has only rotated.
+    Plane,
+    /// Two or more matrices fit, for no reason of the above: all points and both camera centres are on one
+    /// quadric, such as a sphere, a cylinder or a pair of planes.
+    Undetermined,
+}
+
+impl core::fmt::Display for EightPointError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::TooFew => "a fundamental matrix needs eight correspondences",
+            Self::NotFinite => "a coordinate is not finite",
+            Self::Repeated => "a fundamental matrix needs eight correspondences that are not the same",
+            Self::Line => "the points of an image are on a line",
+            Self::Plane => {
+                "the points are on a plane, or the camera has only rotated: a homography is the answer"
+            }
+            Self::Undetermined => "more than one fundamental matrix fits the points",
+        })
+    }
+}
+
+impl core::error::Error for EightPointError {}
 
 /// How far points may be off a line or a plane, normalised, and still count as on it: 0.0007 px in an image
 /// of 640 x 480 (in `f32` more, for the rounding).

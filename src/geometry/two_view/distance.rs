@@ -1,4 +1,4 @@
-//! How far a correspondence is from a fundamental matrix.
+//! Distances of a correspondence from a fundamental matrix: Sampson's, symmetric, algebraic.
 
 use super::correspondence::Correspondence;
 use super::fundamental::Fundamental;
@@ -36,15 +36,15 @@ impl<T: Real> Fundamental<T> {
     #[inline]
     pub fn sampson_squared_px2(&self, seen: &Correspondence<T>) -> T {
         let Parts { residual, first, second } = self.parts(seen);
-        let slope = first.x * first.x + first.y * first.y + second.x * second.x + second.y * second.y;
-        if slope > T::ZERO { residual * residual / slope } else { T::ZERO }
+        let gradient = first.x * first.x + first.y * first.y + second.x * second.x + second.y * second.y;
+        if gradient > T::ZERO { residual * residual / gradient } else { T::ZERO }
     }
 
     /// Sampson's distance, px: the root of the above with the residual's sign.
     pub fn sampson_px(&self, seen: &Correspondence<T>) -> T {
         let Parts { residual, first, second } = self.parts(seen);
-        let slope = (first.xy().norm_squared() + second.xy().norm_squared()).sqrt();
-        if slope > T::ZERO { residual / slope } else { T::ZERO }
+        let gradient = (first.xy().norm_squared() + second.xy().norm_squared()).sqrt();
+        if gradient > T::ZERO { residual / gradient } else { T::ZERO }
     }
 
     /// The distances of p and p' to their epipolar lines in the first and the second image, px, not negative.
@@ -52,8 +52,8 @@ impl<T: Real> Fundamental<T> {
     pub fn line_distances_px(&self, seen: &Correspondence<T>) -> (T, T) {
         let Parts { residual, first, second } = self.parts(seen);
         let distance = |line: Vector3<T>| {
-            let slope = line.xy().norm();
-            if slope > T::ZERO { residual.abs() / slope } else { T::ZERO }
+            let gradient = line.xy().norm();
+            if gradient > T::ZERO { residual.abs() / gradient } else { T::ZERO }
         };
         (distance(first), distance(second))
     }

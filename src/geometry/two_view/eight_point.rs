@@ -1,49 +1,12 @@
-//! F from eight correspondences or more.
+//! The normalised eight-point algorithm (Longuet-Higgins 1981; Hartley 1997).
 
 use super::correspondence::Correspondence;
-use super::degenerate;
+use super::degenerate::{self, EightPointError};
 use super::fundamental::Fundamental;
 use super::normalise::Both;
 use super::weighted::Weighted;
 use crate::geometry::Real;
 use crate::geometry::linear::{Ldl, dot, null_of_rows, rank, rows3, times_transposed3, transposed3};
-
-/// Why correspondences give no fundamental matrix.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum EightPointError {
-    /// Fewer than eight correspondences.
-    TooFew,
-    /// A number is infinite or not a number.
-    NotFinite,
-    /// Fewer than eight correspondences that are not the same.
-    Repeated,
-    /// In one of the images all points are on a line.
-    Line,
-    /// One homography maps all points: they are on a plane, or the camera has only turned.
-    Plane,
-    /// Two or more matrices fit, for no reason of the above: all points and both camera centres are on one
-    /// quadric, such as a sphere, a cylinder or a pair of planes.
-    Undetermined,
-}
-
-impl core::fmt::Display for EightPointError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::TooFew => "a fundamental matrix needs eight correspondences",
-            Self::NotFinite => "a coordinate is not finite",
-            Self::Repeated => "a fundamental matrix needs eight correspondences that are not the same",
-            Self::Line => "the points of an image are on a line",
-            Self::Plane => {
-                "the points are on a plane, or the camera has only turned: a homography is the answer"
-            }
-            Self::Undetermined => "more than one fundamental matrix fits the points",
-        })
-    }
-}
-
-impl core::error::Error for EightPointError {}
 
 /// Squarings at most: of a second singular value that is a thousandth more than the smallest e^-8 is left
 /// after them, and where the two are nearer than that, either matrix is as near.
@@ -63,13 +26,14 @@ const MOST_SQUARINGS: usize = 12;
 ///
 /// A set that is degenerate to 0.0007 px is refused by name; in `f32` to 0.02 px for eight and to 0.3 px for
 /// more. Points that are on a plane only to within their noise are not refused here, for the noise is not
-/// known: [`choose`](super::choose) tells those.
+/// known: [`choose`](super::choose) finds those.
 ///
 /// ```
 /// use stereopsis::geometry::two_view::{Correspondence, EightPointError, eight_point};
 /// // The corners of a box, seen by a rectified pair: rows are equal.
 /// let corners = [(0, 0, 8), (9, 0, 9), (0, 7, 6), (9, 7, 7), (2, 2, 4), (6, 1, 3), (3, 5, 2), (7, 6, 5)];
-/// let seen = corners.map(|(u, v, d)| Correspondence::new(f64::from(u), f64::from(v), f64::from(u - d), f64::from(v)));
+/// let px = |x: i32| f64::from(x);
+/// let seen = corners.map(|(u, v, d)| Correspondence::new(px(u), px(v), px(u - d), px(v)));
 /// let f = eight_point(&seen)?;
 /// assert!(seen.iter().all(|s| f.sampson_px(s).abs() < 1e-12));
 /// assert_eq!(eight_point(&seen[..7]), Err(EightPointError::TooFew));
@@ -79,8 +43,9 @@ pub fn eight_point<T: Real>(seen: &[Correspondence<T>]) -> Result<Fundamental<T>
     solve(Weighted::alike(seen))
 }
 
-/// The same with each squared residual times its weight: `sum w (p^T F p')^2`. A weight of zero leaves a
-/// correspondence out altogether, and so does a negative one; correspondences without a weight are left out.
+/// The fundamental matrix of eight correspondences or more with weights: it minimises `sum w (p^T F p')^2`. A
+/// weight of zero leaves a correspondence out altogether, and so does a negative one; correspondences without
+/// a weight are left out.
 pub fn eight_point_weighted<T: Real>(
     seen: &[Correspondence<T>],
     weights: &[T],

@@ -1,11 +1,11 @@
-//! The essential matrix: two views in the cameras' own frames.
+//! The essential matrix (Longuet-Higgins 1981): two views in the cameras' own frames.
 
 use crate::geometry::Real;
 use crate::geometry::camera::Pose;
 use crate::geometry::linear::{Svd3, columns3, product, skew};
 use nalgebra::{Matrix3, Vector3};
 
-/// `E = [t]x R`, with `p^T E p' = 0` for sights p of camera 1 and p' of camera 2, and `P = R P' + t`
+/// `E = [t]x R`, with `p^T E p' = 0` for rays p of camera 1 and p' of camera 2, and `P = R P' + t`
 /// (Longuet-Higgins 1981; Hartley & Zisserman 2004, 9.6).
 ///
 /// Its scale says nothing; it is held with singular values (1, 1, 0), which stands for |t| = 1.
@@ -87,7 +87,7 @@ impl<T: Real> Essential<T> {
         &self.matrix
     }
 
-    /// `p^T E p'` of two sights: zero when they meet.
+    /// `p^T E p'` of two rays: zero when they meet.
     pub fn residual(&self, first: &Vector3<T>, second: &Vector3<T>) -> T {
         first.dot(&(self.matrix * second))
     }

@@ -1,4 +1,4 @@
-//! The fundamental matrix: two views in pixels.
+//! The fundamental matrix (Hartley & Zisserman 2004, 9.2): two views in pixels.
 
 use super::essential::{Essential, EssentialError};
 use super::line::{Epipole, Line};
@@ -66,7 +66,7 @@ impl<T: Real> Fundamental<T> {
         Self { matrix: scaled / scaled.norm() }
     }
 
-    /// The same, of its rows.
+    /// The matrix at size one, of the rows of what is known to be singular and finite.
     pub(crate) fn of_rows(mut rows: [[T; 3]; 3]) -> Self {
         linear::unit(rows.as_flattened_mut());
         Self { matrix: linear::matrix3(&rows) }
@@ -104,7 +104,7 @@ impl<T: Real> Fundamental<T> {
         &self.matrix
     }
 
-    /// The same with the images exchanged.
+    /// The fundamental matrix with the images exchanged: the transpose.
     pub fn swapped(&self) -> Self {
         Self { matrix: self.matrix.transpose() }
     }
@@ -119,18 +119,18 @@ impl<T: Real> Fundamental<T> {
         if line.x.abs().max(line.y.abs()) <= rounding { None } else { Line::new(&line) }
     }
 
-    /// `l' = F^T p`: the line of the second image on which what the first shows at `first` is seen. `None` as
-    /// above.
+    /// `l' = F^T p`: the line of the second image on which what the first shows at `first` is seen. `None`
+    /// where [`Self::line_in_first`] has none.
     pub fn line_in_second(&self, first: &Point2<T>) -> Option<Line<T>> {
         self.swapped().line_in_first(first)
     }
 
-    /// e, the second camera's centre in the first image: `F^T e = 0`.
+    /// The epipole e, the second camera's centre in the first image: `F^T e = 0`.
     pub fn epipole_in_first(&self) -> Epipole<T> {
         orthogonal(linear::columns3(&self.matrix))
     }
 
-    /// e', the first camera's centre in the second image: `F e' = 0`.
+    /// The epipole e', the first camera's centre in the second image: `F e' = 0`.
     pub fn epipole_in_second(&self) -> Epipole<T> {
         self.swapped().epipole_in_first()
     }

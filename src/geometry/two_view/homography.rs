@@ -1,4 +1,4 @@
-//! The homography: two views of a plane, or of anything from one place.
+//! The homography of a plane or a rotation, by the direct linear transform, DLT.
 
 use super::correspondence::Correspondence;
 use super::degenerate;
@@ -9,8 +9,8 @@ use crate::geometry::camera::{Camera, Pose};
 use crate::geometry::linear::{Ldl, Projective, columns3, matrix3, null_of_rows, rank, rows3};
 use nalgebra::{Matrix3, Point2, Vector3};
 
-/// H, with `p ~ H p'`: from a pixel of the second image to that of the first, homogeneous px. (OpenCV's goes
-/// from the first to the second, `x2 ~ H x1`: the inverse.)
+/// The homography H, with `p ~ H p'`: from a pixel of the second image to that of the first, homogeneous px.
+/// OpenCV's goes from the first to the second, `x2 ~ H x1`: the inverse.
 ///
 /// For cameras `K (P = R P' + t)` and the plane `n^T P' = d` of camera 2: `H = K (R + t n^T / d) K'^-1`
 /// (Hartley & Zisserman 2004, 13.1). Held with |H| = 1.
@@ -137,12 +137,12 @@ impl<T: Real> Homography<T> {
         Self { matrix: self.inverse / size, inverse: self.matrix * size }
     }
 
-    /// p of a p', px; `None` where the homography puts it at infinity.
+    /// The point p of a p', px; `None` where the homography puts it at infinity.
     pub fn to_first(&self, second: &Point2<T>) -> Option<Point2<T>> {
         Point2::from_homogeneous(self.matrix * second.to_homogeneous())
     }
 
-    /// p' of a p, px; `None` where the homography puts it at infinity.
+    /// The point p' of a p, px; `None` where the homography puts it at infinity.
     pub fn to_second(&self, first: &Point2<T>) -> Option<Point2<T>> {
         Point2::from_homogeneous(self.inverse * first.to_homogeneous())
     }

@@ -1,4 +1,4 @@
-//! Lines of an image, and the epipoles.
+//! Epipolar lines and epipoles.
 
 use crate::geometry::Real;
 use nalgebra::{Point2, Vector3};
@@ -22,7 +22,7 @@ impl<T: Real> Line<T> {
         Some(Self { coefficients: scaled / scaled.xy().norm() })
     }
 
-    /// (a, b, c): no unit, no unit, px.
+    /// The coefficients (a, b, c): no unit, no unit, px.
     pub fn coefficients(&self) -> &Vector3<T> {
         &self.coefficients
     }
@@ -57,7 +57,8 @@ impl<T: Real> Epipole<T> {
         Self { homogeneous: scaled / scaled.norm() }
     }
 
-    /// (x, y, w) with length one: the epipole is at (x / w, y / w) px; where w = 0, in the direction (x, y).
+    /// The homogeneous point (x, y, w) of length one: the epipole is at (x / w, y / w) px; where w = 0, in
+    /// the direction (x, y).
     pub fn homogeneous(&self) -> &Vector3<T> {
         &self.homogeneous
     }

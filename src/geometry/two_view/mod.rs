@@ -42,7 +42,8 @@ mod plane_motion;
 mod triangulate;
 
 pub use correspondence::Correspondence;
-pub use eight_point::{EightPointError, eight_point, eight_point_weighted};
+pub use degenerate::EightPointError;
+pub use eight_point::{eight_point, eight_point_weighted};
 pub use essential::{Essential, EssentialError};
 pub use fundamental::{Fundamental, FundamentalError};
 pub(crate) use homography::least_squares;

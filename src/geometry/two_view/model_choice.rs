@@ -1,7 +1,8 @@
-//! Fundamental matrix or homography: which of the two the correspondences call for.
+//! GRIC: the choice between a fundamental matrix and a homography (Torr 1998).
 
 use super::correspondence::Correspondence;
-use super::eight_point::{EightPointError, eight_point};
+use super::degenerate::EightPointError;
+use super::eight_point::eight_point;
 use super::fundamental::Fundamental;
 use super::homography::Homography;
 use crate::geometry::Real;
@@ -13,7 +14,7 @@ use nalgebra::Matrix2x4;
 pub enum TwoViewModel<T: Real> {
     /// A scene with depth, seen from two places.
     General(Fundamental<T>),
-    /// A plane, or a camera that only turned: F would be any of a family.
+    /// A plane, or a camera that only rotated: F would be any of a family.
     Planar(Homography<T>),
 }
 
@@ -59,17 +60,17 @@ impl<T: Real> Homography<T> {
         let h = self.matrix();
         let (p, q) = (seen.first, h * seen.second.to_homogeneous());
         let off = p.coords * q.z - q.xy();
-        let slope = |row: usize, column: usize, x: T| x * h[(2, column)] - h[(row, column)];
+        let derivative = |row: usize, column: usize, x: T| x * h[(2, column)] - h[(row, column)];
         let o = T::ZERO;
         let j = Matrix2x4::new(
             q.z,
             o,
-            slope(0, 0, p.x),
-            slope(0, 1, p.x), //
+            derivative(0, 0, p.x),
+            derivative(0, 1, p.x), //
             o,
             q.z,
-            slope(1, 0, p.y),
-            slope(1, 1, p.y),
+            derivative(1, 0, p.y),
+            derivative(1, 1, p.y),
         );
         let s = j * j.transpose();
         let determinant = s.m11 * s.m22 - s.m12 * s.m21;

@@ -1,4 +1,4 @@
-//! Hartley's normalisation: what makes an estimate from pixels well conditioned.
+//! Hartley's normalisation of pixels (Hartley 1997).
 
 use super::correspondence::Correspondence;
 use super::weighted::{Image, Weighted};
@@ -37,7 +37,7 @@ impl<T: Real> Normalisation<T> {
         Some(Self { scale: (T::of(2.0) / variance).sqrt(), cx, cy })
     }
 
-    /// (x, y) of a pixel.
+    /// The normalised (x, y) of a pixel.
     #[inline(always)]
     pub(crate) fn apply(&self, pixel: Point2<T>) -> Point2<T> {
         Point2::new((pixel.x - self.cx) * self.scale, (pixel.y - self.cy) * self.scale)

@@ -1,4 +1,4 @@
-//! The pose in a homography.
+//! The motions in a homography (Faugeras & Lustman 1988).
 
 use super::correspondence::Correspondence;
 use super::homography::Homography;
@@ -23,7 +23,7 @@ pub struct PlaneMotion<T: Real> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum PlaneMotionError {
-    /// The camera has turned but not moved, to 64 roundings: the plane is not in the homography.
+    /// The camera has rotated but not moved, to 64 roundings: the plane is not in the homography.
     /// [`Homography::rotation`] has what there is.
     NoBaseline,
 }
@@ -31,7 +31,7 @@ pub enum PlaneMotionError {
 impl core::fmt::Display for PlaneMotionError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
-            Self::NoBaseline => "the camera has turned but not moved",
+            Self::NoBaseline => "the camera has rotated but not moved",
         })
     }
 }
@@ -44,12 +44,12 @@ impl<T: Real> PlaneMotion<T> {
         &self.rotation
     }
 
-    /// t over the distance d of the plane: no unit.
+    /// The translation t over the distance d of the plane: no unit.
     pub fn translation_per_distance(&self) -> &Vector3<T> {
         &self.translation
     }
 
-    /// n, of length one, in camera 2: the plane is `n^T P' = d` with d > 0.
+    /// The normal n, of length one, in camera 2: the plane is `n^T P' = d` with d > 0.
     pub fn normal(&self) -> &Vector3<T> {
         &self.normal
     }
@@ -64,7 +64,7 @@ impl<T: Real> PlaneMotion<T> {
         Pose::of_parts(self.rotation, self.translation * distance_m)
     }
 
-    /// Whether the plane, where a sight of camera 2 meets it, is in front of both cameras.
+    /// Whether the plane, where a ray of camera 2 meets it, is in front of both cameras.
     pub fn in_front(&self, second: &Vector3<T>) -> bool {
         let along = self.normal.dot(second);
         // P' = p' / (n^T p'), in plane distances.
@@ -84,7 +84,7 @@ impl<T: Real> Homography<T> {
         (matrix / by, Svd3 { values, ..svd })
     }
 
-    /// The rotation nearest to `K^-1 H K'`: the whole answer when the camera has only turned.
+    /// The rotation nearest to `K^-1 H K'`: the whole answer when the camera has only rotated.
     pub fn rotation(&self, first: &Camera<T>, second: &Camera<T>) -> Matrix3<T> {
         let (matrix, _) = self.euclidean(first, second);
         let svd = Svd3::new(&matrix);
@@ -140,9 +140,9 @@ impl<T: Real> Homography<T> {
     ) -> Result<[(PlaneMotion<T>, usize); 2], PlaneMotionError> {
         let mut ranked = self.motions(first, second)?.map(|motion| (motion, 0_usize));
         for seen in seen {
-            let Ok(sight) = second.unproject(&seen.second) else { continue };
+            let Ok(ray) = second.unproject(&seen.second) else { continue };
             for (motion, votes) in &mut ranked {
-                *votes += usize::from(motion.in_front(&sight));
+                *votes += usize::from(motion.in_front(&ray));
             }
         }
         // Insertion: stable, so that equals stay in the order above.

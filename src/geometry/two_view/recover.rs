@@ -1,4 +1,4 @@
-//! The pose in an essential matrix.
+//! The pose in an essential matrix, by the points in front of both cameras (Hartley & Zisserman 2004, 9.6).
 
 use super::correspondence::Correspondence;
 use super::essential::Essential;
@@ -15,7 +15,7 @@ pub struct RecoveredPose<T: Real> {
     pub pose: RelativePose<T>,
     /// How many correspondences are in front of both cameras with it.
     pub in_front: usize,
-    /// How many could vote: what is left out has parallel sights, or is outside of what the lens model
+    /// How many could vote: what is left out has parallel rays, or is outside of what the lens model
     /// describes.
     pub voters: usize,
 }
@@ -25,9 +25,9 @@ pub struct RecoveredPose<T: Real> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum RecoverError {
-    /// No correspondence has two sights.
+    /// No correspondence has two rays.
     NoCorrespondence,
-    /// All sights are parallel, to 0.0001 rad, with either rotation: they are in front of any camera.
+    /// All rays are parallel, to 0.0001 rad, with either rotation: they are in front of any camera.
     SmallAngle,
     /// With none of the four poses more than half of the correspondences are in front of both cameras.
     Cheirality,
@@ -37,7 +37,7 @@ impl core::fmt::Display for RecoverError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
             Self::NoCorrespondence => "no correspondence to tell the four poses apart",
-            Self::SmallAngle => "the sights are parallel: too far away to tell the four poses apart",
+            Self::SmallAngle => "the rays are parallel: too far away to tell the four poses apart",
             Self::Cheirality => "with none of the four poses most points are in front of both cameras",
         })
     }
@@ -65,7 +65,7 @@ impl<T: Real> Essential<T> {
     }
 
     /// The one of [`Self::poses`] with which most correspondences are in front of both cameras, more than
-    /// half of those whose sights are not parallel.
+    /// half of those whose rays are not parallel.
     pub fn recover_pose(
         &self,
         seen: impl IntoIterator<Item = Correspondence<T>>,
@@ -112,7 +112,7 @@ impl<T: Real> Essential<T> {
     }
 }
 
-/// Whether two sights come nearest to each other in front of both cameras; `None` when they are parallel.
+/// Whether two rays come nearest to each other in front of both cameras; `None` when they are parallel.
 fn in_front<T: Real>(pose: &RelativePose<T>, first: &Vector3<T>, second: &Vector3<T>) -> Option<bool> {
     let (p, q, t) = (first, pose.rotation() * second, pose.direction().into_inner());
     let across = p.cross(&q);

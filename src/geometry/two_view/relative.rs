@@ -1,4 +1,4 @@
-//! A pose without its scale.
+//! The relative pose of two views: a rotation and a direction, without scale.
 
 use crate::geometry::Real;
 use crate::geometry::camera::Pose;

@@ -1,4 +1,4 @@
-//! F from seven correspondences, as few as determine it.
+//! The seven-point algorithm for F (Hartley & Zisserman 2004, 11.1.2).
 
 use crate::geometry::Real;
 use crate::geometry::linear::{columns3, cubic_roots, matrix3, pencil_of_rows, rank, rows3};
@@ -31,10 +31,10 @@ pub(crate) fn seven_point<T: Real>(seen: &[(Point2<T>, Point2<T>); 7]) -> Candid
     let (c0, c3) = (determinant(&g, &of_g), determinant(&h, &of_h));
     let (c1, c2) = (of_g.dot(&h), of_h.dot(&g));
     // The leading coefficient is the larger one, so that no root is at infinity.
-    let turned = c3.abs() < c0.abs();
-    let (roots, count) = cubic_roots(if turned { [c3, c2, c1, c0] } else { [c0, c1, c2, c3] });
+    let swapped = c3.abs() < c0.abs();
+    let (roots, count) = cubic_roots(if swapped { [c3, c2, c1, c0] } else { [c0, c1, c2, c3] });
     for &x in roots.iter().take(count) {
-        let f = if turned { h + g * x } else { g + h * x };
+        let f = if swapped { h + g * x } else { g + h * x };
         // There are no more than three.
         let _ = candidates.push(f / f.norm());
     }

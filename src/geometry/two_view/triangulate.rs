@@ -1,4 +1,4 @@
-//! The point of the world that two sights show.
+//! Triangulation of a point from two rays (Hartley & Sturm 1997; Lindstrom 2010).
 
 use super::correspondence::Correspondence;
 use super::essential::{Essential, EssentialError};
@@ -30,11 +30,11 @@ pub struct Triangulated<T: Real> {
     pub point: Point3<T>,
     /// What is left of the re-projection error, px: the root of the sum of both images' squared distances.
     pub residual_px: T,
-    /// The angle between the two sights, radians.
+    /// The angle between the two rays, radians.
     pub angle_rad: T,
 }
 
-/// Why two sights give no point.
+/// Why two rays give no point.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -43,9 +43,9 @@ pub enum TriangulationError {
     NotFinite,
     /// Undistortion did not converge: a pixel is outside of what its lens model describes.
     NotConverged,
-    /// The sights are too nearly parallel to say where they meet.
+    /// The rays are too nearly parallel to say where they meet.
     SmallAngle,
-    /// The sights meet behind a camera.
+    /// The rays meet behind a camera.
     Behind,
 }
 
@@ -54,19 +54,19 @@ impl core::fmt::Display for TriangulationError {
         f.write_str(match self {
             Self::NotFinite => "a coordinate is not finite",
             Self::NotConverged => "the lens model has no undistorted place for a pixel",
-            Self::SmallAngle => "the angle between the sights is too small",
-            Self::Behind => "the sights meet behind a camera",
+            Self::SmallAngle => "the angle between the rays is too small",
+            Self::Behind => "the rays meet behind a camera",
         })
     }
 }
 
 impl core::error::Error for TriangulationError {}
 
-/// Both sights in camera 1, and the undistorted pixels they came from.
-struct Sights<T: Real> {
-    /// p, and R p'.
+/// Both rays in camera 1, and the undistorted pixels they came from.
+struct Rays<T: Real> {
+    /// The rays p, and R p'.
     first: Vector3<T>,
-    turned: Vector3<T>,
+    rotated: Vector3<T>,
     second: Vector3<T>,
     pixels: Correspondence<T>,
     angle_rad: T,
@@ -77,7 +77,7 @@ struct Sights<T: Real> {
 const MOST_STEPS: usize = 10;
 
 impl<T: Real> TwoViews<T> {
-    /// Refuses sights that meet at less than a milliradian, 0.06 degrees; [`Self::with_min_angle`] moves
+    /// Refuses rays that meet at less than a milliradian, 0.06 degrees; [`Self::with_min_angle`] moves
     /// that.
     pub fn new(first: Camera<T>, second: Camera<T>, pose: Pose<T>) -> Result<Self, EssentialError> {
         let essential = Essential::from_pose(&pose)?;
@@ -85,7 +85,7 @@ impl<T: Real> TwoViews<T> {
         Ok(Self { first, second, pose, fundamental, min_angle_rad: T::of(1e-3) })
     }
 
-    /// The same, refusing sights that meet at less than this angle, radians.
+    /// Two views that refuse rays which meet at less than this angle, radians.
     pub fn with_min_angle(self, min_angle_rad: T) -> Self {
         Self { min_angle_rad, ..self }
     }
@@ -100,24 +100,24 @@ impl<T: Real> TwoViews<T> {
         &self.pose
     }
 
-    /// The midpoint of the shortest segment between the sights (Hartley & Sturm 1997, 5.3): the cheapest, and
+    /// The midpoint of the shortest segment between the rays (Hartley & Sturm 1997, 5.3): the cheapest, and
     /// not what the images say best where the two depths differ.
     pub fn midpoint(&self, seen: &Correspondence<T>) -> Result<Triangulated<T>, TriangulationError> {
-        let sights = self.sights(seen)?;
-        let point = self.meet(&sights)?;
-        self.judged(point, &sights)
+        let rays = self.rays(seen)?;
+        let point = self.meet(&rays)?;
+        self.checked(point, &rays)
     }
 
     /// The homogeneous least squares of `p x (M P) = 0`, four equations with the focal lengths taken out
     /// (Hartley & Zisserman 2004, 12.2).
     pub fn linear(&self, seen: &Correspondence<T>) -> Result<Triangulated<T>, TriangulationError> {
-        let sights = self.sights(seen)?;
+        let rays = self.rays(seen)?;
         // Lengths in baselines, so that the fourth unknown has the size of the others.
         let baseline = self.pose.translation().norm();
         let to_second = self.pose.rotation().transpose();
         let t = to_second * (self.pose.translation() / -baseline);
         let mut squared = [[T::ZERO; 4]; 4];
-        let (p, q, r) = (&sights.first, &sights.second, &to_second);
+        let (p, q, r) = (&rays.first, &rays.second, &to_second);
         let second_row = |k: usize, x: T| {
             [x * r[(2, 0)] - r[(k, 0)], x * r[(2, 1)] - r[(k, 1)], x * r[(2, 2)] - r[(k, 2)], x * t[2] - t[k]]
         };
@@ -133,7 +133,7 @@ impl<T: Real> TwoViews<T> {
         if w == T::ZERO {
             return Err(TriangulationError::SmallAngle);
         }
-        self.judged(Point3::new(x, y, z) * (baseline / w), &sights)
+        self.checked(Point3::new(x, y, z) * (baseline / w), &rays)
     }
 
     /// The optimum of the lecture's equation 6.2: the point with the least re-projection error
@@ -141,15 +141,15 @@ impl<T: Real> TwoViews<T> {
     /// are normally distributed and alike.
     ///
     /// The pair of points nearest to `p, p'` that fulfils `p^T F p' = 0` is found by Lindstrom's iteration
-    /// (Lindstrom 2010), at most ten steps of which each fulfils it; their sights meet.
+    /// (Lindstrom 2010), at most ten steps of which each fulfils it; their rays meet.
     pub fn optimal(&self, seen: &Correspondence<T>) -> Result<Triangulated<T>, TriangulationError> {
-        let sights = self.sights(seen)?;
-        let nearest = self.nearest_possible(&sights.pixels);
+        let rays = self.rays(seen)?;
+        let nearest = self.nearest_possible(&rays.pixels);
         let first = self.first.inverse_matrix() * nearest.first.to_homogeneous();
         let second = self.second.inverse_matrix() * nearest.second.to_homogeneous();
-        let turned = self.pose.rotation() * second;
-        let point = self.meet(&Sights { first, second, turned, ..sights })?;
-        self.judged(point, &sights)
+        let rotated = self.pose.rotation() * second;
+        let point = self.meet(&Rays { first, second, rotated, ..rays })?;
+        self.checked(point, &rays)
     }
 
     /// The covariance of a triangulated point in camera 1, in the pose's unit squared, to first order, when
@@ -158,9 +158,9 @@ impl<T: Real> TwoViews<T> {
     ///
     /// In `f32` its smallest direction is lost where the largest deviation is over 2000 times the smallest.
     pub fn covariance(&self, point: &Point3<T>, sigma_px: T) -> Matrix3<T> {
-        let first = slope(&self.first, point);
-        let second =
-            slope(&self.second, &self.pose.inverse_transform(point)) * self.pose.rotation().transpose();
+        let first = pixel_jacobian(&self.first, point);
+        let second = pixel_jacobian(&self.second, &self.pose.inverse_transform(point))
+            * self.pose.rotation().transpose();
         let information = first.tr_mul(&first) + second.tr_mul(&second);
         // At size one: squares of px per unit are large.
         let size = information.amax();
@@ -171,7 +171,7 @@ impl<T: Real> TwoViews<T> {
         (inverse + inverse.transpose()) * (T::of(0.5) * sigma_px * sigma_px / size)
     }
 
-    /// The correspondence nearest to `seen` (undistorted px, in both images together) whose sights meet.
+    /// The correspondence nearest to `seen` (undistorted px, in both images together) whose rays meet.
     pub fn nearest_possible(&self, seen: &Correspondence<T>) -> Correspondence<T> {
         let f = self.fundamental.matrix();
         let square = Matrix2::new(f.m11, f.m12, f.m21, f.m22);
@@ -203,28 +203,28 @@ impl<T: Real> TwoViews<T> {
         Correspondence { first: seen.first - by_first, second: seen.second - by_second }
     }
 
-    /// Both sights, if they have an angle.
-    fn sights(&self, seen: &Correspondence<T>) -> Result<Sights<T>, TriangulationError> {
+    /// Both rays, if they have an angle.
+    fn rays(&self, seen: &Correspondence<T>) -> Result<Rays<T>, TriangulationError> {
         if !seen.is_finite() {
             return Err(TriangulationError::NotFinite);
         }
-        let sight =
+        let ray =
             |camera: &Camera<T>, pixel| camera.unproject(pixel).map_err(|_| TriangulationError::NotConverged);
-        let (first, second) = (sight(&self.first, &seen.first)?, sight(&self.second, &seen.second)?);
-        let turned = self.pose.rotation() * second;
-        let angle_rad = first.cross(&turned).norm().atan2(first.dot(&turned));
+        let (first, second) = (ray(&self.first, &seen.first)?, ray(&self.second, &seen.second)?);
+        let rotated = self.pose.rotation() * second;
+        let angle_rad = first.cross(&rotated).norm().atan2(first.dot(&rotated));
         if !(angle_rad >= self.min_angle_rad && angle_rad > T::ZERO) {
             return Err(TriangulationError::SmallAngle);
         }
-        let pixel = |camera: &Camera<T>, sight: &Vector3<T>| Point2::from((camera.matrix() * sight).xy());
+        let pixel = |camera: &Camera<T>, ray: &Vector3<T>| Point2::from((camera.matrix() * ray).xy());
         let pixels =
             Correspondence { first: pixel(&self.first, &first), second: pixel(&self.second, &second) };
-        Ok(Sights { first, turned, second, pixels, angle_rad })
+        Ok(Rays { first, rotated, second, pixels, angle_rad })
     }
 
-    /// Halfway between the two points in which the sights come nearest to each other.
-    fn meet(&self, sights: &Sights<T>) -> Result<Point3<T>, TriangulationError> {
-        let (p, q, t) = (&sights.first, &sights.turned, self.pose.translation());
+    /// Halfway between the two points in which the rays come nearest to each other.
+    fn meet(&self, rays: &Rays<T>) -> Result<Point3<T>, TriangulationError> {
+        let (p, q, t) = (&rays.first, &rays.rotated, self.pose.translation());
         let across = p.cross(q);
         let size = across.norm_squared();
         if !(size > T::ZERO) {
@@ -238,7 +238,7 @@ impl<T: Real> TwoViews<T> {
     }
 
     /// The point with its residual, if both cameras have it in front.
-    fn judged(&self, point: Point3<T>, sights: &Sights<T>) -> Result<Triangulated<T>, TriangulationError> {
+    fn checked(&self, point: Point3<T>, rays: &Rays<T>) -> Result<Triangulated<T>, TriangulationError> {
         let other = self.pose.inverse_transform(&point);
         if !(point.z > T::ZERO && other.z > T::ZERO) {
             return Err(TriangulationError::Behind);
@@ -248,13 +248,13 @@ impl<T: Real> TwoViews<T> {
             (seen.xy() - pixel.coords).norm_squared()
         };
         let squared =
-            off(&self.first, &point, &sights.pixels.first) + off(&self.second, &other, &sights.pixels.second);
-        Ok(Triangulated { point, residual_px: squared.sqrt(), angle_rad: sights.angle_rad })
+            off(&self.first, &point, &rays.pixels.first) + off(&self.second, &other, &rays.pixels.second);
+        Ok(Triangulated { point, residual_px: squared.sqrt(), angle_rad: rays.angle_rad })
     }
 }
 
 /// The derivative of the (distorted) pixel by the point in the camera's own frame, px per unit.
-fn slope<T: Real>(camera: &Camera<T>, point: &Point3<T>) -> Matrix2x3<T> {
+fn pixel_jacobian<T: Real>(camera: &Camera<T>, point: &Point3<T>) -> Matrix2x3<T> {
     let (o, l) = (T::ZERO, T::ONE);
     let by = l / point.z;
     let (x, y) = (point.x * by, point.y * by);

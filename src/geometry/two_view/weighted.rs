@@ -1,4 +1,4 @@
-//! Correspondences and what each of them counts.
+//! Correspondences with weights.
 
 use super::correspondence::Correspondence;
 use crate::geometry::Real;

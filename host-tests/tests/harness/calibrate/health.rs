@@ -71,10 +71,10 @@ proptest! {
         let found = meter.alignment().expect("five frames");
         let other = single.alignment().expect("five frames");
         for (axis, truth) in turned.into_iter().enumerate() {
-            let (off, sigma) = ((found.turn_rad[axis] - truth).abs(), found.sigma_rad[axis]);
+            let (off, sigma) = ((found.rotation_rad[axis] - truth).abs(), found.sigma_rad[axis]);
             // A hundredth of the angle is what a small one leaves out.
             prop_assert!(off < 5.0 * sigma + 3e-4, "{axis}: {off} {sigma}");
-            prop_assert!((f64::from(other.turn_rad[axis]) - found.turn_rad[axis]).abs() < 0.1 * sigma + 1e-5);
+            prop_assert!((f64::from(other.rotation_rad[axis]) - found.rotation_rad[axis]).abs() < 0.1 * sigma + 1e-5);
         }
         prop_assert!(found.sigma_rad[0] < 4e-4 && found.sigma_rad[2] < 8e-4, "{:?}", found.sigma_rad);
         prop_assert!(found.sigma_rad[1] > 2.0 * found.sigma_rad[0], "a turn about Y is seen least: {:?}", found.sigma_rad);
@@ -100,8 +100,10 @@ fn what_tells_nothing_is_refused() {
     meter.add(&camera(), &seen).expect("enough");
     let found = meter.alignment().expect("a frame");
     assert_eq!(found.health(&camera(), SIZE), RowHealth::Good);
-    let told =
-        |pitch_deg: f64| RowAlignment { turn_rad: [pitch_deg.to_radians(), 0.0, 0.0], sigma_rad: [0.0; 3] };
+    let told = |pitch_deg: f64| RowAlignment {
+        rotation_rad: [pitch_deg.to_radians(), 0.0, 0.0],
+        sigma_rad: [0.0; 3],
+    };
     // 300 px by a tenth of a degree is half a pixel.
     assert_eq!(told(0.07).health(&camera(), SIZE), RowHealth::Worn);
     assert_eq!(told(0.1).health(&camera(), SIZE), RowHealth::Bad);
@@ -162,11 +164,11 @@ fn a_knock_is_told_and_taken_back() {
         }
         let found = meter.alignment().expect("ten frames");
         for axis in [0, 2] {
-            let off = (found.turn_rad[axis] - turned[axis]).to_degrees();
+            let off = (found.rotation_rad[axis] - turned[axis]).to_degrees();
             assert!(
                 off.abs() < 0.05,
                 "{degrees:?}, axis {axis}: {off} {:?}",
-                found.turn_rad.map(f64::to_degrees)
+                found.rotation_rad.map(f64::to_degrees)
             );
         }
         assert_eq!(found.health(calibrated.camera(), SIZE), RowHealth::Bad, "{degrees:?}");

@@ -1,6 +1,6 @@
-//! Real-valued functions that `core` does not have: the one file that names `libm`.
+//! Real functions that `core` lacks: the one file that names `libm`.
 
-/// The nearest integer, halves away from zero.
+/// Rounds to the nearest integer, halves away from zero.
 #[inline]
 pub(crate) fn round(x: f32) -> f32 {
     libm::roundf(x)

@@ -1,4 +1,4 @@
-//! The words of the crate: what a number means and in which unit is in its type.
+//! Units: types that carry the meaning and the unit of a number.
 
 use core::fmt;
 
@@ -27,44 +27,44 @@ impl Disparity {
     pub const ONE_PIXEL: Self = Self(Self::ONE);
     /// Infinitely far, for cameras with parallel axes.
     pub const ZERO: Self = Self(0);
-    /// No answer.
+    /// The value that means "no answer".
     pub const NONE: Self = Self(u16::MAX);
-    /// The largest disparity that can be said: just under 2048 px.
+    /// The largest disparity that can be represented: just under 2048 px.
     pub const MAX: Self = Self(u16::MAX - 1);
     /// The largest whole disparity, px.
     pub const MAX_PIXELS: u16 = Self::MAX.0 >> Self::FRACTION_BITS;
 
-    /// A disparity of whole pixels; more than [`Self::MAX_PIXELS`] gives [`Self::MAX`].
+    /// Converts whole pixels; more than [`Self::MAX_PIXELS`] gives [`Self::MAX`].
     pub const fn from_pixels(pixels: u16) -> Self {
         if pixels > Self::MAX_PIXELS { Self::MAX } else { Self(pixels << Self::FRACTION_BITS) }
     }
 
-    /// A disparity from its steps of 1/32 px; `u16::MAX` is [`Self::NONE`].
+    /// Converts steps of 1/32 px; `u16::MAX` is [`Self::NONE`].
     pub const fn from_raw(steps: u16) -> Self {
         Self(steps)
     }
 
-    /// The steps of 1/32 px; `u16::MAX` for [`Self::NONE`].
+    /// Returns the steps of 1/32 px; `u16::MAX` for [`Self::NONE`].
     pub const fn raw(self) -> u16 {
         self.0
     }
 
-    /// Whether there is an answer.
+    /// Returns whether there is an answer.
     pub const fn is_some(self) -> bool {
         self.0 != Self::NONE.0
     }
 
-    /// Whether there is no answer.
+    /// Returns whether there is no answer.
     pub const fn is_none(self) -> bool {
         !self.is_some()
     }
 
-    /// The disparity in px, exactly; `None` when there is no answer.
+    /// Returns the exact disparity in px; `None` when there is no answer.
     pub fn to_f32(self) -> Option<f32> {
         self.is_some().then(|| f32::from(self.0) / f32::from(Self::ONE))
     }
 
-    /// The distance to another answer in steps of 1/32 px; `None` when one of the two is no answer.
+    /// Returns the distance to another answer in steps of 1/32 px; `None` unless both are answers.
     pub const fn distance(self, other: Self) -> Option<u16> {
         if self.is_some() && other.is_some() { Some(self.0.abs_diff(other.0)) } else { None }
     }
@@ -85,23 +85,22 @@ impl fmt::Display for Disparity {
     }
 }
 
-/// Why a pixel has no answer, and what is to be known about one that has: one byte, a bit for each reason.
+/// Why a pixel has no answer, or a reservation about its answer: one byte, one bit per reason.
 ///
-/// A pixel without an answer has at least one bit set. [`PixelFlags::CEILING`] can stand on a pixel with an
-/// answer, when the checks let such answers through, and [`PixelFlags::DAMAGED`] when a camera lost a line.
-/// [`PixelFlags::FILLED`] stands on pixels with an answer alone, beside the bits that say why they had none
-/// of their own.
+/// A pixel without an answer has at least one bit set. A pixel with an answer can have
+/// [`PixelFlags::CEILING`], when the checks accept such answers, [`PixelFlags::DAMAGED`], when a camera lost
+/// a line, and [`PixelFlags::FILLED`] beside the bits that say why it had no answer of its own.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(transparent)]
 pub struct PixelFlags(u8);
 
 impl PixelFlags {
-    /// Nothing to say.
+    /// No bit set.
     pub const CLEAR: Self = Self(0);
     /// No candidate lies inside the right image, or the pixel is outside the valid area.
     pub const OUTSIDE: Self = Self(1);
-    /// The winner is the largest disparity searched: the surface may be nearer than the range can tell.
+    /// The winner is the largest disparity searched: the surface may be nearer.
     pub const CEILING: Self = Self(1 << 1);
     /// The winner costs as much as both its neighbours, or too few pixels of the window have a gradient.
     pub const UNTEXTURED: Self = Self(1 << 2);
@@ -109,16 +108,15 @@ impl PixelFlags {
     pub const AMBIGUOUS: Self = Self(1 << 3);
     /// The right image's pixel found a better partner elsewhere: occluded or mismatched.
     pub const MISMATCH: Self = Self(1 << 4);
-    /// Too few answers around it are of its surface.
+    /// Too few answers around the pixel belong to its surface.
     pub const SPECKLE: Self = Self(1 << 5);
-    /// The answer is not the pixel's own but the farther one of those on both sides of a small gap in the
-    /// row.
+    /// The answer is the farther one of those on both sides of a small gap in the row.
     pub const FILLED: Self = Self(1 << 6);
-    /// A line that the pixel rests on was lost, and another one stood in for it: an answer may be wrong, and
-    /// there is none where the matching window saw the lost line itself.
+    /// A line that the pixel depends on was lost and replaced: an answer may be wrong, and there is none
+    /// where the matching window contains the lost line.
     pub const DAMAGED: Self = Self(1 << 7);
 
-    /// Every flag with its name, in order of the bits.
+    /// All flags with their names, in the order of the bits.
     pub const NAMES: [(Self, &'static str); 8] = [
         (Self::OUTSIDE, "outside"),
         (Self::CEILING, "ceiling"),
@@ -130,48 +128,49 @@ impl PixelFlags {
         (Self::DAMAGED, "damaged"),
     ];
 
-    /// The byte, for storage.
+    /// Returns the bits as a byte.
     pub const fn bits(self) -> u8 {
         self.0
     }
 
-    /// From a stored byte; bits without a name are kept.
+    /// Converts a byte; bits without a name are kept.
     pub const fn from_bits(bits: u8) -> Self {
         Self(bits)
     }
 
-    /// Whether all bits of `other` are set.
+    /// Returns whether all bits of `other` are set.
     pub const fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
 
-    /// Both sets of bits.
+    /// Returns the bits of both.
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// The bits without those of `other`.
+    /// Returns the bits without those of `other`.
     pub const fn without(self, other: Self) -> Self {
         Self(self.0 & !other.0)
     }
 
-    /// Whether any bit of `other` is set.
+    /// Returns whether any bit of `other` is set.
     pub const fn intersects(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 
-    /// `self` if `condition`, else nothing; branch-free where the compiler can.
+    /// Returns `self` if `condition`, else no bit, without a branch where the compiler can.
     pub const fn when(self, condition: bool) -> Self {
         Self(self.0 * condition as u8)
     }
 
-    /// Whether no bit is set.
+    /// Returns whether no bit is set.
     pub const fn is_clear(self) -> bool {
         self.0 == 0
     }
 }
 
-/// Depth along the optical axis in whole millimetres, for cores without a floating-point unit; 0 is "none".
+/// Depth along the optical axis in whole millimetres, for cores without a floating-point unit; 0 means
+/// "none".
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Debug, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(transparent)]
@@ -180,15 +179,15 @@ pub struct Millimetres(pub u16);
 impl Millimetres {
     /// No depth: no answer, at or behind infinity, or beyond [`Self::MAX`].
     pub const NONE: Self = Self(0);
-    /// The farthest depth that can be said: 65.535 m.
+    /// The farthest depth that can be represented: 65.535 m.
     pub const MAX: Self = Self(u16::MAX);
 
-    /// Whether there is a depth.
+    /// Returns whether there is a depth.
     pub const fn is_some(self) -> bool {
         self.0 != 0
     }
 
-    /// The same depth in metres; `None` for [`Self::NONE`].
+    /// Returns the depth in metres; `None` for [`Self::NONE`].
     pub fn to_metres(self) -> Option<Metres> {
         self.is_some().then(|| Metres(f32::from(self.0) / 1000.0))
     }

@@ -1,13 +1,13 @@
-//! Rows of disparity made smaller.
+//! Decimation: disparity rows downsampled by the median of blocks.
 
 use crate::units::Disparity;
 
-/// Makes one pixel of `N x N`, `N` from 2 to 8, row by row: the median of the block's answers, the nearer one
-/// of two, where at least half of its pixels have one.
+/// Downsamples `N x N` pixels to one, `N` from 2 to 8, row by row: the median of the block's answers, the
+/// nearer of two middle ones, where at least half of its pixels have one.
 ///
-/// The mean of two surfaces is none of them; a median is one of the answers. The disparity is still in pixels
-/// of the full picture: [`DepthScale`](super::DepthScale) gives the same depth, and a point has the columns
-/// and rows of the block's middle, `N u + (N - 1) / 2`. `W` is the room for a full row: `2 W N` bytes.
+/// A median is one of the answers, while the mean of two surfaces is neither. Disparities stay in pixels of
+/// the full image, so that [`DepthScale`](super::DepthScale) applies; a pixel stands for the block's middle,
+/// `N u + (N - 1) / 2`. The capacity `W` is in full-size columns: `2 W N` bytes.
 ///
 /// ```
 /// use stereopsis::depth::Decimator;
@@ -26,23 +26,23 @@ pub struct Decimator<const W: usize, const N: usize> {
     taken: usize,
 }
 
-/// Pixels of the largest block.
+/// Number of pixels of the largest block.
 const MOST: usize = 64;
 
 impl<const W: usize, const N: usize> Decimator<W, N> {
-    /// Before a frame's first row.
+    /// Creates a decimator that awaits a frame's first row.
     pub const fn new() -> Self {
         const { assert!(N >= 2 && N <= 8, "blocks have 2 to 8 pixels a side") };
         Self { rows: [[Disparity::NONE; W]; N], width: 0, taken: 0 }
     }
 
-    /// Forgets the frame before.
+    /// Begins a frame.
     pub fn begin(&mut self) {
         self.taken = 0;
     }
 
-    /// Takes the next row; with each `N`th writes a smaller one and says which. Columns and rows that fill no
-    /// block are left out.
+    /// Takes the next row; every `N`th call writes a downsampled row and returns its index. Columns and rows
+    /// that fill no block are left out.
     pub fn push(&mut self, row: &[Disparity], out: &mut [Disparity]) -> Option<usize> {
         let slot = self.rows.get_mut(self.taken % N)?;
         slot.iter_mut().zip(row).for_each(|(to, &from)| *to = from);
@@ -72,7 +72,7 @@ impl<const W: usize, const N: usize> Default for Decimator<W, N> {
     }
 }
 
-/// The median of the first `count`, the larger one of two; they are put in order.
+/// Sorts the first `count` values and returns their median, the larger of two middle ones.
 fn median(values: &mut [u16; MOST], count: usize) -> Option<Disparity> {
     let values = values.get_mut(..count)?;
     // By insertion: 64 of them at most.

@@ -1,4 +1,4 @@
-//! Rows of disparity on a display, with the feature `embedded-graphics`.
+//! Disparity rows on a display, with the feature `embedded-graphics`.
 
 use crate::units::Disparity;
 use embedded_graphics_core::draw_target::DrawTarget;
@@ -6,8 +6,7 @@ use embedded_graphics_core::geometry::{Point, Size};
 use embedded_graphics_core::pixelcolor::{PixelColor, Rgb888};
 use embedded_graphics_core::primitives::Rectangle;
 
-/// Viridis (van der Walt & Smith 2015) at equal steps, far to near: it is read by those who see colours
-/// otherwise, and in grey.
+/// Viridis (van der Walt & Smith 2015) at equal steps, far to near: legible to the colour-blind, and in grey.
 const VIRIDIS: [[u8; 3]; 9] = [
     [0x44, 0x01, 0x54],
     [0x47, 0x2c, 0x7a],
@@ -20,7 +19,7 @@ const VIRIDIS: [[u8; 3]; 9] = [
     [0xfd, 0xe7, 0x25],
 ];
 
-/// Colours for the disparities of a range: near is bright, no answer is black.
+/// Colour map of a disparity range: near is bright, no answer is black.
 ///
 /// ```
 /// use embedded_graphics_core::pixelcolor::Rgb888;
@@ -37,13 +36,13 @@ pub struct DisparityColours {
 }
 
 impl DisparityColours {
-    /// What is farther than `far` has its colour, and so has what is nearer than `near`.
+    /// Creates a colour map from `far` to `near`; disparities outside take the nearest end's colour.
     pub const fn new(far: Disparity, near: Disparity) -> Self {
         let (far, near) = (far.raw(), near.raw());
         Self { far, near: if near > far { near } else { far.saturating_add(1) } }
     }
 
-    /// The colour of a disparity.
+    /// Returns the colour of a disparity.
     pub fn colour(&self, disparity: Disparity) -> Rgb888 {
         if disparity.is_none() {
             return Rgb888::new(0, 0, 0);
@@ -60,7 +59,7 @@ impl DisparityColours {
         Rgb888::new(mix(r0, r1), mix(g0, g1), mix(b0, b1))
     }
 
-    /// Draws a row of answers with its left end at `at`: one call to the display.
+    /// Draws a row with its left end at `at`, in one call to the display.
     pub fn draw_row<T>(&self, target: &mut T, at: Point, row: &[Disparity]) -> Result<(), T::Error>
     where
         T: DrawTarget<Color: PixelColor + From<Rgb888>>,

@@ -1,9 +1,9 @@
-//! A depth with its deviation, whatever it was measured by, and two of them as one.
+//! Depth estimates with standard deviations, and their fusion by inverse variance.
 
 use super::DepthScale;
 use crate::units::{Disparity, Metres};
 
-/// A depth along the optical axis and how uncertain it is: of stereo, of focus, of both.
+/// Depth along the optical axis with its standard deviation, from stereo, from focus or from both.
 ///
 /// ```
 /// use stereopsis::depth::Depth;
@@ -16,20 +16,19 @@ use crate::units::{Disparity, Metres};
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Depth {
-    /// The depth, m; positive.
+    /// Depth, m; positive.
     pub depth_m: f32,
-    /// Its deviation, m; positive.
+    /// Standard deviation, m; positive.
     pub sigma_m: f32,
 }
 
 impl Depth {
-    /// Two depths that differ by more than so many deviations of their difference are of different surfaces.
+    /// Largest difference of two depths of one surface, in standard deviations of the difference.
     pub const SAME_SURFACE: f32 = 3.0;
 
-    /// What both say together, weighted by one over their variances: the estimate of least variance if their
-    /// errors have nothing to do with each other. It is taken of `1 / Z`, in which the errors of
-    /// disparity and of focus are even; its deviation is `sigma_Z / Z^2`. Where they contradict each
-    /// other the surer one stands alone.
+    /// Fuses two depths by inverse variance: the estimate of least variance for independent errors. It is
+    /// taken in `1 / Z`, where the errors of disparity and of focus are symmetric, with deviation `sigma_Z /
+    /// Z^2`. Of two depths of different surfaces, the one with the smaller deviation is kept.
     pub fn fused(self, other: Self) -> Self {
         let [a, b] = [self, other].map(|d| (1.0 / d.depth_m, d.sigma_m / (d.depth_m * d.depth_m)));
         let (variance_a, variance_b) = (a.1 * a.1, b.1 * b.1);
@@ -44,16 +43,16 @@ impl Depth {
 }
 
 impl DepthScale {
-    /// The depth of a disparity that is uncertain by `sigma_px`; `None` for no answer and at or behind
-    /// infinity.
+    /// Returns the depth of a disparity with standard deviation `sigma_px`; `None` for no answer and at or
+    /// behind infinity.
     pub fn depth(&self, disparity: Disparity, sigma_px: f32) -> Option<Depth> {
         let (Metres(depth_m), Metres(sigma_m)) = (self.metres(disparity)?, self.sigma(disparity, sigma_px)?);
         Some(Depth { depth_m, sigma_m })
     }
 }
 
-/// Two maps of one view as one, pixel by pixel: [`Depth::fused`] where both have an answer, else the answer
-/// of the one that has it. Those pixels are written that all three have.
+/// Fuses two depth maps of one view: [`Depth::fused`] where both have an answer, else the one that is there.
+/// As many pixels are written as all three slices have.
 pub fn fuse(first: &[Option<Depth>], second: &[Option<Depth>], out: &mut [Option<Depth>]) {
     for ((first, second), out) in first.iter().zip(second).zip(out) {
         *out = match (*first, *second) {

@@ -1,21 +1,21 @@
-//! Disparity to depth, with its uncertainty.
+//! Depth from disparity, with its standard deviation.
 //!
 //! In: disparities and a rectified rig. Out: millimetres without a floating-point unit, metres, points in the
 //! left camera's frame.
 //!
 //! * [`DepthScale`]: `Z = f b / (d + doffs)` and `sigma_Z = Z^2 / (f b) sigma_d`.
-//! * [`DepthRange`]: the nearest and the farthest depth that a search range can tell, and the error there.
-//! * [`DepthTable`]: depths looked up, for cores that cannot divide.
-//! * [`TemporalFilter`]: answers averaged over frames, and held where they fail, each with its
+//! * [`DepthRange`]: the nearest and the farthest depth of a search range, with their standard deviations.
+//! * [`DepthTable`]: a look-up table of depths, for cores that cannot divide.
+//! * [`TemporalFilter`]: answers averaged over frames, and held where they are missing, each with its
 //!   [`Provenance`].
-//! * [`Decimator`]: rows made smaller by medians of blocks.
+//! * [`Decimator`]: rows downsampled by the median of blocks.
 //! * `DisparityColours`, with the feature `embedded-graphics`: rows on a display.
-//! * [`Depth`]: a depth with its deviation, also by focus; [`fuse`]: two maps as one.
+//! * [`Depth`]: a depth with its standard deviation, from stereo or focus; [`fuse`]: two depth maps as one.
 //!
-//! How sure a depth is has two parts. [`DepthScale::sigma`] is how exact it is if the answer is right, of
-//! [`Row::sigma_px`](crate::matching::Row::sigma_px). Whether it is right is what
-//! [`Row::confidences`](crate::matching::Row::confidences) tell: leave out the least sure, and believe the
-//! deviations of the others.
+//! Uncertainty has two parts. [`DepthScale::sigma`] is the precision of a right answer, from
+//! [`Row::sigma_px`](crate::matching::Row::sigma_px); [`Row::confidences`](crate::matching::Row::confidences)
+//! rank answers by how likely they are right. Leave out the least confident, and trust the deviations of the
+//! others.
 
 mod decimate;
 #[cfg(feature = "embedded-graphics")]

@@ -1,27 +1,27 @@
-//! What a rig and a search range can tell.
+//! Depth range of a rig and a search range.
 
 use super::DepthScale;
 use crate::matching::Config;
 use crate::units::{Disparity, Metres};
 
-/// The depths that a search range covers.
+/// Depths that a search range covers.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct DepthRange {
     /// Depth at the largest disparity that is no ceiling, `min_disparity + disparities - 2`.
     pub nearest: Metres,
-    /// Standard deviation there.
+    /// Standard deviation at [`Self::nearest`].
     pub sigma_nearest: Metres,
-    /// Depth at the smallest disparity searched, or at one px of parallax where that lies at or behind
-    /// infinity: beyond, an error of a pixel cannot be told from infinity.
+    /// Depth at the smallest disparity searched, but at no less than one px of parallax: beyond, an error of
+    /// a pixel cannot be told from infinity.
     pub farthest: Metres,
-    /// Standard deviation there.
+    /// Standard deviation at [`Self::farthest`].
     pub sigma_farthest: Metres,
 }
 
 impl DepthScale {
-    /// The depths that a search covers, with the error of an answer that is uncertain by `sigma_px`. `None`
-    /// when the whole search lies at or behind infinity.
+    /// Returns the depths that a search covers, for answers with standard deviation `sigma_px`; `None` when
+    /// the whole search lies at or behind infinity.
     pub fn range(&self, config: &Config, sigma_px: f32) -> Option<DepthRange> {
         let last = config.min_disparity.saturating_add(config.disparities).saturating_sub(2);
         let (nearest, sigma_nearest) = self.depth_and_sigma(f32::from(last), sigma_px)?;
@@ -38,7 +38,7 @@ impl DepthScale {
     }
 }
 
-/// The largest disparity that a search can answer with, for tables.
+/// Largest disparity that a search can return.
 pub(super) fn largest(config: &Config) -> Disparity {
     Disparity::from_pixels(config.min_disparity.saturating_add(config.disparities))
 }

@@ -1,4 +1,4 @@
-//! One disparity as a depth.
+//! Depth of a disparity by triangulation of a rectified pair, `Z = f b / (d + doffs)`.
 
 use crate::geometry::camera::RectifiedRig;
 use crate::math::round;
@@ -6,10 +6,11 @@ use crate::units::{Disparity, Metres, Millimetres};
 use core::fmt;
 use nalgebra::Point3;
 
-/// Depths for one rig, `Z = f b / (d + doffs)`.
+/// Conversion of disparities to depths for one rig, `Z = f b / (d + doffs)`.
 ///
 /// ```
-/// use stereopsis::{depth::DepthScale, geometry::camera::RectifiedRig, units::{Disparity, Metres, Millimetres}};
+/// use stereopsis::units::{Disparity, Metres, Millimetres};
+/// use stereopsis::{depth::DepthScale, geometry::camera::RectifiedRig};
 /// let rig = RectifiedRig::new(500.0, 0.1, 160.0, 120.0)?;
 /// let scale = DepthScale::new(&rig)?;
 /// let d = Disparity::from_pixels(25);
@@ -22,13 +23,13 @@ use nalgebra::Point3;
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct DepthScale {
     rig: RectifiedRig,
-    /// Millimetres times steps of disparity: `f b` in these units.
+    /// `f b` in millimetres times steps of disparity.
     millimetre_steps: u32,
     /// `doffs` in steps of disparity.
     offset_steps: i32,
 }
 
-/// Why a rig has no integer depths.
+/// Why a rig's depths do not fit integers.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -54,7 +55,7 @@ impl fmt::Display for DepthError {
 impl core::error::Error for DepthError {}
 
 impl DepthScale {
-    /// The scale of a rig.
+    /// Creates the scale of a rig.
     pub fn new(rig: &RectifiedRig) -> Result<Self, DepthError> {
         let steps = f32::from(Disparity::ONE);
         let millimetre_steps = round(rig.focal_px() * rig.baseline_m() * 1000.0 * steps);
@@ -72,13 +73,13 @@ impl DepthScale {
         Ok(Self { rig: *rig, millimetre_steps: millimetre_steps as u32, offset_steps: offset_steps as i32 })
     }
 
-    /// The rig.
+    /// Returns the rig.
     pub fn rig(&self) -> &RectifiedRig {
         &self.rig
     }
 
-    /// Depth to the nearest millimetre, in integers: one division. [`Millimetres::NONE`] for no answer, at or
-    /// behind infinity, nearer than half a millimetre or beyond 65.535 m.
+    /// Returns the depth to the nearest millimetre, by one integer division; [`Millimetres::NONE`] for no
+    /// answer, at or behind infinity, nearer than half a millimetre or beyond 65.535 m.
     ///
     /// The offset `doffs` is rounded to 1/32 px, which moves the depth by at most `Z^2 / (f b) / 64`.
     pub fn millimetres(&self, disparity: Disparity) -> Millimetres {
@@ -93,19 +94,19 @@ impl DepthScale {
         u16::try_from(rounded).map_or(Millimetres::NONE, Millimetres)
     }
 
-    /// Depth in metres; `None` for no answer and at or behind infinity.
+    /// Returns the depth in metres; `None` for no answer and at or behind infinity.
     pub fn metres(&self, disparity: Disparity) -> Option<Metres> {
         self.rig.depth_m(disparity.to_f32()?).map(Metres)
     }
 
-    /// Standard deviation of the depth of a disparity that is uncertain by `sigma_px`:
-    /// `sigma_Z = Z^2 / (f b) sigma_d`, the first-order propagation of Z's equation.
+    /// Returns the depth's standard deviation for a disparity with standard deviation `sigma_px`, by
+    /// first-order propagation: `sigma_Z = Z^2 / (f b) sigma_d`.
     pub fn sigma(&self, disparity: Disparity, sigma_px: f32) -> Option<Metres> {
         let Metres(z) = self.metres(disparity)?;
         Some(Metres(z * z / (self.rig.focal_px() * self.rig.baseline_m()) * sigma_px))
     }
 
-    /// The point in the left camera's frame, metres, that column `u` and row `v` show.
+    /// Returns the point that column `u` and row `v` show, in the left camera's frame, m.
     pub fn point(&self, u: u16, v: u16, disparity: Disparity) -> Option<Point3<f32>> {
         self.rig.reproject(f32::from(u), f32::from(v), disparity.to_f32()?)
     }

@@ -1,4 +1,4 @@
-//! Depths looked up instead of divided for: cores without a divider (Cortex-M0+) take some 60 instructions a
+//! Look-up table of depths, for cores without a divider: a Cortex-M0+ takes some 60 instructions per
 //! division.
 
 use super::DepthScale;
@@ -8,13 +8,13 @@ use crate::units::{Disparity, Millimetres};
 use core::fmt;
 use heapless::Vec;
 
-/// The depth of every disparity of a search range, in `2 N` bytes: [`DepthScale::millimetres`] without a
-/// division.
+/// Depth of every disparity of a search range, [`DepthScale::millimetres`] without a division.
 ///
-/// `N` is at least `32 disparities + 1`, the steps from the smallest disparity to the largest.
+/// The capacity `N` is at least `32 disparities + 1`, one entry per step: `2 N` bytes.
 ///
 /// ```
-/// use stereopsis::{depth::{DepthScale, DepthTable}, geometry::camera::RectifiedRig, matching::Config, units::Disparity};
+/// use stereopsis::depth::{DepthScale, DepthTable};
+/// use stereopsis::{geometry::camera::RectifiedRig, matching::Config, units::Disparity};
 /// let scale = DepthScale::new(&RectifiedRig::new(100.0, 0.05, 48.0, 32.0)?)?;
 /// let table = DepthTable::<513>::new(&scale, &Config::new(96, 64, 16))?;
 /// let d = Disparity::from_raw(100);
@@ -31,7 +31,7 @@ pub struct DepthTable<const N: usize> {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TableError {
-    /// Entries that would have been enough.
+    /// Number of entries that would have been enough.
     pub needed: usize,
 }
 
@@ -44,7 +44,7 @@ impl fmt::Display for TableError {
 impl core::error::Error for TableError {}
 
 impl<const N: usize> DepthTable<N> {
-    /// The depths of all disparities that a search can answer with.
+    /// Tabulates the depths of all disparities that a search can return.
     pub fn new(scale: &DepthScale, config: &Config) -> Result<Self, TableError> {
         let first = Disparity::from_pixels(config.min_disparity).raw();
         let last = largest(config).raw();
@@ -56,7 +56,8 @@ impl<const N: usize> DepthTable<N> {
         Ok(Self { first, depths })
     }
 
-    /// The depth of an answer; [`Millimetres::NONE`] for no answer and for disparities outside the search.
+    /// Returns the depth of an answer; [`Millimetres::NONE`] for no answer and for disparities outside the
+    /// search.
     pub fn millimetres(&self, disparity: Disparity) -> Millimetres {
         let place = usize::from(disparity.raw().wrapping_sub(self.first));
         self.depths.get(place).copied().unwrap_or(Millimetres::NONE)

@@ -1,51 +1,50 @@
-//! Disparities held steady over frames.
+//! Temporal filter: a running average of disparities per pixel, which holds answers over short gaps.
 
 use crate::units::Disparity;
 
-/// Where a filtered disparity comes from.
+/// Origin of a filtered disparity.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum Provenance {
-    /// There is none, neither now nor in the last frames.
+    /// There is no answer, neither now nor in the last frames.
     #[default]
     Nothing,
-    /// This frame's own: the first one here, or far from what was there.
+    /// The answer is this frame's alone: the first here, or far from the average.
     New,
-    /// This frame's and those of frames before, averaged.
+    /// The answer is the average of this frame's and earlier ones.
     Averaged,
-    /// This frame has none: it is of a frame before.
+    /// The answer is of an earlier frame, as this one has none.
     Held,
 }
 
-/// How much a filter smooths, and how long it holds.
+/// Smoothing and holding of a [`TemporalFilter`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TemporalConfig {
-    /// Answers that differ by at most this are of one surface, steps of 1/32 px.
+    /// Largest difference of answers of one surface, steps of 1/32 px.
     pub most_step: u16,
-    /// A new answer counts `1 / 2^shift` of the average: 0 does not smooth. At most 4.
+    /// Weight `1 / 2^shift` of a new answer in the average: 0 does not smooth, at most 4.
     pub shift: u8,
-    /// For so many frames an answer is held where there is none: 0 holds none.
+    /// Number of frames for which an answer is held where there is none.
     pub most_held: u8,
 }
 
 impl Default for TemporalConfig {
-    /// Within a pixel, a fourth, held for two frames.
+    /// Averages within one pixel with weight 1/4, and holds for two frames.
     fn default() -> Self {
         Self { most_step: Disparity::ONE, shift: 2, most_held: 2 }
     }
 }
 
-/// An average over frames for every pixel, row by row as rows come out of the pipeline: `3 W H` bytes.
+/// Running average over frames for every pixel, row by row as rows leave the pipeline: `3 W H` bytes.
 ///
-/// With `d` the new answer, `a` the average and `s` the shift: `a <- a + round((d - a) / 2^s)` where `|d -
-/// a|` is at most [`TemporalConfig::most_step`], else `a <- d`. For answers with independent errors of
-/// deviation `sigma` that comes to `sigma sqrt(1 / (2^(s + 1) - 1))`: with `s = 2` three eighths, but for the
-/// steps of 1/32 px.
+/// With `d` the new answer, `a` the average and `s` the shift, `a <- a + round((d - a) / 2^s)` where `|d -
+/// a|` is at most [`TemporalConfig::most_step`], else `a <- d`. Independent errors of standard deviation
+/// `sigma` shrink to `sigma sqrt(1 / (2^(s + 1) - 1))`: 3/8 of it with `s = 2`, apart from rounding to 1/32
+/// px.
 ///
-/// What is held is no answer of this frame, and [`Provenance::Held`] says so. A row that did not come is
-/// passed as one without answers.
+/// A missing row is passed as one without answers.
 #[derive(Debug)]
 pub struct TemporalFilter<const W: usize, const H: usize> {
     average: [[Disparity; W]; H],
@@ -54,18 +53,17 @@ pub struct TemporalFilter<const W: usize, const H: usize> {
 }
 
 impl<const W: usize, const H: usize> TemporalFilter<W, H> {
-    /// A filter that has seen nothing.
+    /// Creates a filter without history.
     pub const fn new(config: TemporalConfig) -> Self {
         Self { average: [[Disparity::NONE; W]; H], age: [[0; W]; H], config }
     }
 
-    /// Forgets all frames: after a cut, or when the cameras were moved.
+    /// Forgets all frames, after a cut or when the cameras were moved.
     pub fn forget(&mut self) {
         self.average.as_flattened_mut().fill(Disparity::NONE);
     }
 
-    /// Takes row `y` of a frame's answers and gives what is steady of it, as many columns as all of them
-    /// have.
+    /// Filters row `y` of a frame, for as many columns as all slices have.
     pub fn row(
         &mut self,
         y: usize,

@@ -10,8 +10,8 @@
 //!
 //! `examples/c-firmware` is such a package with a program in C. In running order:
 //!
-//! * [`CConfig`], [`CRow`], [`CRig`], [`CCounters`], [`CNoiseMeter`] and the constants: what crosses the border,
-//!   laid out as C has it.
+//! * [`CConfig`], [`CRow`], [`CRig`], [`CCounters`], [`CNoiseMeter`] and the constants: what crosses the
+//!   border, laid out as C has it.
 //! * [`Status`]: what every call answers.
 //! * [`Instance`]: the functions for one method and one capacity; [`Handle`] is what C holds.
 //! * [`instantiate_c_api`](crate::instantiate_c_api): their names in C, from which `cargo xtask header` makes

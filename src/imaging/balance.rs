@@ -1,41 +1,40 @@
-//! The right camera's lines as the left one would have exposed them.
+//! Photometric balance: the right camera's grey levels mapped to the left one's by gain and offset.
 
 use super::histogram::Histogram;
 use crate::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource};
 
-/// What makes grey levels of the right camera those of the left one: `grey <- (gain grey + offset) / 256`,
-/// rounded and cut off at 0 and 255.
+/// Map from the right camera's grey levels to the left one's: `grey <- (gain grey + offset) / 256`, rounded
+/// and clamped to 0..=255.
 ///
-/// The methods along paths compare brightness and gradients, which other exposures change. Both cameras see
-/// about the same, so the levels under which 1/16, 2/16 and so on of the pixels are belong together, where
-/// both are 8 to 248: beyond, levels are cut off. The gain is that of their mean deviations, 1/2 to 2, and
-/// the offset that of their means. Views differ as well: where these levels differ by under
-/// [`Balance::LEAST`] in the mean, there is nothing to balance. On 15 real pairs as they were taken it is 12
-/// at most. What the brighter camera cut off stays lost.
+/// Semi-global matching compares brightness and gradients, which differ with exposure. Both cameras see about
+/// the same scene, so that corresponding 16-quantiles of their histograms correspond, where both are 8 to
+/// 248. The gain is the ratio of their mean deviations, 1/2 to 2, and the offset matches their means. Where
+/// the quantiles differ by less than [`Balance::LEAST`] in the mean (12 at most on 15 real pairs as taken),
+/// nothing is balanced. Saturated pixels stay saturated.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Balance {
-    /// The gain in 256ths.
+    /// Gain in 256ths.
     pub gain_256ths: u16,
-    /// The offset in 256ths of a grey level.
+    /// Offset in 256ths of a grey level.
     pub offset_256ths: i32,
 }
 
-/// Levels are in 16ths of a grey level.
+/// Steps of a level: 16ths of a grey level.
 const GREY: u32 = 16;
 /// The width of a histogram's bin.
 const BIN: u32 = 16 * GREY;
-/// Levels that tell something.
+/// Levels that are far enough from black and white.
 const INSIDE: core::ops::RangeInclusive<u32> = 8 * GREY..=248 * GREY;
 
 impl Balance {
-    /// Both cameras are exposed alike.
+    /// The identity, for cameras with equal exposure.
     pub const NONE: Self = Self { gain_256ths: 256, offset_256ths: 0 };
 
-    /// From this difference on there is something to balance, grey levels.
+    /// Least mean difference that is balanced, grey levels.
     pub const LEAST: u8 = 16;
 
-    /// Of the histograms of a frame.
+    /// Estimates the balance from the histograms of a frame.
     pub fn between(left: &Histogram, right: &Histogram) -> Self {
         // How many levels count, their sums, and how far they are apart.
         let (mut count, mut sums, mut apart) = (0, [0; 2], 0);
@@ -73,14 +72,13 @@ impl Balance {
     }
 }
 
-/// The levels of both cameras that belong together, 16ths of a grey level, as far as they tell something.
+/// Corresponding quantiles of both cameras within [`INSIDE`], 16ths of a grey level.
 fn inside(left: &Histogram, right: &Histogram) -> impl Iterator<Item = [u32; 2]> {
     let levels = (1..16).map(|k| [level(left, k), level(right, k)]);
     levels.filter(|levels| levels.iter().all(|level| INSIDE.contains(level)))
 }
 
-/// The level under which `k` 16ths of the pixels are, which are taken to lie evenly within a bin; 0 of no
-/// pixels.
+/// The `k`-th 16-quantile, interpolated within its bin; 0 without pixels.
 fn level(histogram: &Histogram, k: u32) -> u32 {
     let mut wanted = u64::from(histogram.count()) * u64::from(k);
     for (bin, &count) in (0..).zip(histogram.bins()) {
@@ -94,8 +92,8 @@ fn level(histogram: &Histogram, k: u32) -> u32 {
     0
 }
 
-/// A pair whose right camera's lines are [balanced](Balance), each frame by what the one before showed: the
-/// first one is as it came. 8-bit grey; other lines stay as they are.
+/// A stereo source whose right lines are [balanced](Balance) by the histograms of the frame before; the first
+/// frame is unchanged. Only 8-bit grey lines are balanced.
 ///
 /// ```
 /// use stereopsis::imaging::BalancedPair;
@@ -111,17 +109,17 @@ pub struct BalancedPair<S> {
 }
 
 impl<S: StereoSource> BalancedPair<S> {
-    /// A pair that has shown nothing.
+    /// Wraps a source.
     pub const fn new(source: S) -> Self {
         Self { source, histograms: [Histogram::new(); 2], balance: Balance::NONE, lines: 0 }
     }
 
-    /// What is done to the right lines of the frame that was started last.
+    /// Returns the balance of the frame that was started last.
     pub const fn balance(&self) -> Balance {
         self.balance
     }
 
-    /// Gives the source back.
+    /// Releases the source.
     pub fn release(self) -> S {
         self.source
     }

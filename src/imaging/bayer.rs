@@ -1,4 +1,4 @@
-//! A mosaic of colours as grey.
+//! Grey lines of a Bayer mosaic, by the mean of 2x2 pixels.
 
 use super::grey::to_grey;
 use crate::camera::{
@@ -7,44 +7,42 @@ use crate::camera::{
 
 /// Grey lines of [`PixelFormat::Grey8`] over a source of [`PixelFormat::Bayer8`] or [`PixelFormat::Bayer16`].
 ///
-/// A grey pixel is the mean of four, its own and those right of, below and diagonally below it:
-/// `g(x, y) = (p(x, y) + p(x + 1, y) + p(x, y + 1) + p(x + 1, y + 1) + 2) / 4`. Whatever the pattern, these
-/// are one red, two green and one blue: `(R + 2 G + B) / 4`, half a pixel right and below. Both cameras shift
-/// alike, and a disparity does not change. The last column takes the one before it, and the last row the row
-/// above.
+/// A grey pixel is the mean of 2x2 raw ones: `g(x, y) = (p(x, y) + p(x + 1, y) + p(x, y + 1) + p(x + 1, y +
+/// 1) + 2) / 4`. In every Bayer pattern these are one red, two green and one blue, `(R + 2 G + B) / 4`, half
+/// a pixel to the right and below. Both cameras shift alike, which leaves disparities unchanged. The last
+/// column and the last row repeat the means before them.
 ///
-/// A row needs the line below: the source is one line ahead. Where that one is lost, the row is lost as well.
-/// `W` is the room for a line's pixels, `RAW` for its bytes.
+/// A row needs the line below, so that the source is one line ahead; where that line is lost, so is the row.
+/// The capacities are `W` pixels and `RAW` bytes.
 #[derive(Debug)]
 pub struct BayerLines<S, const W: usize, const RAW: usize> {
     source: S,
     raw: [u8; RAW],
-    /// The line ahead, and the one above it, both with 8 bits a pixel.
+    /// The line ahead and the one above it, 8 bits per pixel.
     ahead: [u8; W],
     above: [u8; W],
-    /// What is known about the line ahead; nothing before the first and after the last line of a frame.
+    /// Row and time of the line ahead; `None` before the first and after the last line of a frame.
     start: Option<LineStart>,
 }
 
 impl<S: LineSource, const W: usize, const RAW: usize> BayerLines<S, W, RAW> {
-    /// Wraps a source; refused when its lines are longer than `RAW` bytes or have more than `W` pixels:
-    /// `needed` is of the raw line where that is too long, else of the pixels.
+    /// Wraps a source; refused when its lines have more than `RAW` bytes, or more than `W` pixels.
     pub fn new(source: S) -> Result<Self, CameraError<S::Error>> {
         let format = source.format();
-        for (needed, room) in [(format.line_bytes(), RAW), (usize::from(format.width), W)] {
-            if needed > room {
+        for (needed, capacity) in [(format.line_bytes(), RAW), (usize::from(format.width), W)] {
+            if needed > capacity {
                 return Err(CameraError::BufferTooShort { needed });
             }
         }
         Ok(Self { source, raw: [0; RAW], ahead: [0; W], above: [0; W], start: None })
     }
 
-    /// Gives the source back.
+    /// Releases the source.
     pub fn release(self) -> S {
         self.source
     }
 
-    /// Takes the next line of the source; the one ahead before is the one above.
+    /// Reads the next line of the source; the line that was ahead becomes the one above.
     fn fetch(&mut self, format: &LineFormat) -> Result<LineStart, CameraError<S::Error>> {
         core::mem::swap(&mut self.ahead, &mut self.above);
         let start = self.source.next_line(&mut self.raw)?;
@@ -90,7 +88,7 @@ impl<S: LineSource, const W: usize, const RAW: usize> LineSource for BayerLines<
     }
 }
 
-/// The means of two lines' 2x2 blocks.
+/// Means of 2x2 pixels of two lines.
 fn mean_of_four(above: &[u8], below: &[u8], out: &mut [u8]) {
     let last = out.len().saturating_sub(1);
     let first = last.saturating_sub(1);

@@ -1,9 +1,7 @@
-//! The census transform: each pixel as the signs of its differences to its neighbours (Zabih & Woodfill
-//! 1994).
+//! Census transform: each pixel as the signs of its differences to its neighbours (Zabih & Woodfill 1994).
 //!
-//! A bit is 1 where the neighbour is darker than the centre. A code does not change when brightness or
-//! contrast of the whole neighbourhood does, and the Hamming distance of two codes counts the neighbours that
-//! disagree.
+//! A bit is 1 where the neighbour is darker than the centre. Codes are invariant to brightness and contrast
+//! of the neighbourhood; the Hamming distance of two codes counts the neighbours that disagree.
 //!
 //! ```text
 //!      plus4          ring8              wide8
@@ -14,11 +12,10 @@
 //!    . . 3 . .      5 . 6 . 7      5 . . . 6 . . . 7
 //! ```
 //!
-//! The numbers are the bits of the code. Columns outside the line are the nearest one inside it; rows outside
-//! the image are the caller's to repeat ([`LineWindow`](super::LineWindow) does).
+//! The numbers are the bits of the code. Columns outside the line repeat the nearest one inside it; the
+//! caller repeats rows outside the image, as [`LineWindow`](super::LineWindow) does.
 
-/// A neighbour: row of the window (0 to 4, the centre's is 2) and column (likewise, or 0 to 8 where the
-/// centre's is 4).
+/// Row and column of a neighbour in a window of 5 rows and 5 or 9 columns.
 type Neighbour = (usize, usize);
 
 const PLUS4: [Neighbour; 4] = [(0, 2), (2, 0), (2, 4), (4, 2)];
@@ -27,29 +24,30 @@ const RING8: [Neighbour; 8] = [(0, 0), (0, 2), (0, 4), (2, 0), (2, 4), (4, 0), (
 
 const WIDE8: [Neighbour; 8] = [(0, 0), (0, 4), (0, 8), (2, 2), (2, 6), (4, 0), (4, 4), (4, 8)];
 
-/// Four bits a pixel: up, left, right and down at distance 2. `rows` are the five rows around the centre row;
-/// every code of `out` is written for which all of them have a pixel. A line ends where the shortest of them
-/// does.
+/// Computes census codes of 4 bits: up, left, right and down at distance 2.
+///
+/// `rows` are the five rows around the centre row. A code is written for every column of `out` that all of
+/// them have.
 pub fn census_plus4(rows: &[&[u8]; 5], out: &mut [u8]) {
     census::<4, NARROW>(rows, &PLUS4, out);
 }
 
-/// Eight bits a pixel: the corners and edge centres of the 5x5 square. As [`census_plus4`].
+/// Computes census codes of 8 bits from the corners and edge centres of 5x5 pixels, as [`census_plus4`] does.
 pub fn census_ring8(rows: &[&[u8]; 5], out: &mut [u8]) {
     census::<8, NARROW>(rows, &RING8, out);
 }
 
-/// Eight bits a pixel: corners and edge centres of 9x5 pixels, and along the line at distance 2. As
-/// [`census_plus4`].
+/// Computes census codes of 8 bits from six border pixels of 9x5 and two along the line at distance 2, as
+/// [`census_plus4`] does.
 // Where there are vectors it is compiled with the kernel's instructions.
 #[cfg_attr(target_pointer_width = "64", inline(always))]
 pub fn census_wide8(rows: &[&[u8]; 5], out: &mut [u8]) {
     census::<8, WIDE>(rows, &WIDE8, out);
 }
 
-/// Columns worked on at a time: as lanes, or as many as a loop is unrolled for.
+/// Number of columns computed at a time, as vector lanes or in an unrolled loop.
 const LANES: usize = if cfg!(any(target_pointer_width = "64", stereopsis_vectors)) { 16 } else { 4 };
-/// Columns that so many codes look at.
+/// Number of columns that a group of codes reads.
 const NARROW: usize = LANES + 2 * 2;
 const WIDE: usize = LANES + 2 * 4;
 

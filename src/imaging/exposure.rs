@@ -1,64 +1,61 @@
-//! One exposure for two cameras.
+//! Automatic exposure: one exposure and gain for both cameras of a pair.
 
 use super::histogram::Histogram;
 
-/// What both sensors are to be set to.
+/// Exposure and gain for both sensors.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ExposureCommand {
-    /// The exposure, microseconds.
+    /// Exposure, microseconds.
     pub exposure_us: u32,
-    /// The gain in sixteenths.
+    /// Gain in sixteenths.
     pub gain_16ths: u16,
 }
 
-/// What the exposure may be.
+/// Limits of exposure and gain.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ExposureLimits {
-    /// The shortest exposure, microseconds; 1 at least.
+    /// Shortest exposure, microseconds; at least 1.
     pub least_us: u32,
-    /// The longest.
+    /// Longest exposure, microseconds.
     pub most_us: u32,
-    /// The most gain, in sixteenths; 16 is none.
+    /// Largest gain in sixteenths; 16 is no gain.
     pub most_gain_16ths: u16,
 }
 
-/// Chooses one exposure for both cameras of a pair, from the histograms of their frames.
+/// Controller of one exposure for both cameras of a pair, from the histograms of their frames.
 ///
-/// The brighter camera is looked at, so that neither saturates. What counts is `light = exposure x gain`: the
-/// exposure goes first, up to its limit, and then the gain. With `m` the mean grey and
-/// [`AutoExposure::TARGET`] where it is to be, `light <- light x clamp(TARGET / m, 1/2, 2)`; where more than
-/// [`AutoExposure::MOST_SATURATED`] of 1000 pixels are saturated the mean says too little, and the light is
-/// halved at most and goes down by a quarter at least.
+/// The brighter camera counts, so that neither saturates. The controlled variable is `light = exposure x
+/// gain`, with the exposure raised to its limit before the gain. With mean grey `m`, `light <- light x
+/// clamp(TARGET / m, 1/2, 2)`; where more than [`AutoExposure::MOST_SATURATED`] per mille of the pixels are
+/// saturated, the light decreases by a quarter to a half.
 ///
-/// A sensor takes a frame or two until a setting counts: after a change, [`AutoExposure::DELAY`] frames are
-/// waited for, so that none is corrected twice. Within [`AutoExposure::DEAD_BAND`] of the target nothing
-/// changes. With these, a response that is linear reaches the band in as many steps as the light has
-/// doublings, and stays: each step either doubles or halves, or lands on the target.
+/// After a change, [`AutoExposure::DELAY`] frames are ignored, as sensors apply settings late. Within
+/// [`AutoExposure::DEAD_BAND`] of the target nothing changes. A linear response therefore reaches the band in
+/// as many steps as the light has doublings, and stays.
 ///
-/// The result is a command, a value: whoever has the sensors gives it to both
+/// The caller passes the resulting [`ExposureCommand`] to both sensors
 /// ([`ExposureControl`](crate::camera::ExposureControl)).
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct AutoExposure {
     limits: ExposureLimits,
     current: ExposureCommand,
-    /// Frames that show the setting of before.
+    /// Number of frames to ignore.
     waiting: u8,
 }
 
 impl AutoExposure {
-    /// Where the mean is to be: grey levels.
+    /// Target of the mean, grey levels.
     pub const TARGET: u16 = 100;
-    /// How far from it nothing changes: grey levels.
+    /// Deviation from the target that is tolerated, grey levels.
     pub const DEAD_BAND: u16 = 12;
-    /// Frames that do not show a change yet.
+    /// Number of frames that do not show a change yet.
     pub const DELAY: u8 = 2;
-    /// Saturated pixels of 1000 that are too many.
+    /// Largest share of saturated pixels, per mille.
     pub const MOST_SATURATED: u16 = 100;
 
-    /// Begins with the middle of the exposures, and no gain. Limits that contradict themselves are put in
-    /// order.
+    /// Starts with the middle of the exposures and no gain. Contradictory limits are put in order.
     pub const fn new(limits: ExposureLimits) -> Self {
         let least_us = if limits.least_us == 0 { 1 } else { limits.least_us };
         let most_us = if limits.most_us < least_us { least_us } else { limits.most_us };
@@ -67,12 +64,12 @@ impl AutoExposure {
         Self { limits: ExposureLimits { least_us, most_us, most_gain_16ths }, current, waiting: 0 }
     }
 
-    /// What the sensors are set to.
+    /// Returns the current setting.
     pub fn current(&self) -> ExposureCommand {
         self.current
     }
 
-    /// Takes a frame's histograms, left and right, and says what to set, if anything.
+    /// Takes a frame's histograms, left and right, and returns the new setting if it changes.
     pub fn frame(&mut self, histograms: [&Histogram; 2]) -> Option<ExposureCommand> {
         if let Some(left) = self.waiting.checked_sub(1) {
             self.waiting = left;
@@ -100,7 +97,7 @@ impl AutoExposure {
         Some(next)
     }
 
-    /// Light as exposure and gain: as long an exposure as there is, and what is missing as gain.
+    /// Splits light into exposure and gain, the exposure as long as its limit.
     fn split(&self, light: u64) -> ExposureCommand {
         let ExposureLimits { least_us, most_us, most_gain_16ths } = self.limits;
         let exposure_us = (light / 16).clamp(least_us.into(), most_us.into());

@@ -1,12 +1,10 @@
-//! Gradients of brightness, cut off: what is left is which way the brightness goes, and how steeply where it
-//! is flat.
+//! Sobel gradients, truncated as the cost of Birchfield and Tomasi wants them in semi-global matching.
 
-/// Sobel's gradients of a row along the line and across it, in eighths of a grey level per pixel, cut off at
-/// `most` (up to 127) to each side, plus `most`: 0 to 2 `most`.
+/// Computes Sobel gradients of a row, `along` and `across` the line, in eighths of a grey level per pixel,
+/// clamped to `-most..=most` (at most 127) and offset by `most`.
 ///
-/// `rows` are the rows above, here and below; those numbers are written for which all of them have a pixel
-/// and both places. A line ends where
-/// the shortest of them does, and columns outside it are the nearest inside.
+/// `rows` are the row above, the row itself and the row below. Gradients are written for every column that
+/// all slices have; columns outside the line repeat the nearest one inside.
 // Where there are vectors it is compiled with the kernel's instructions.
 #[cfg_attr(target_pointer_width = "64", inline(always))]
 pub fn gradients(rows: &[&[u8]; 3], most: u8, along: &mut [u8], across: &mut [u8]) {
@@ -43,12 +41,12 @@ pub fn gradients(rows: &[&[u8]; 3], most: u8, along: &mut [u8], across: &mut [u8
     }
 }
 
-/// Columns worked on at a time: as lanes, or as many as a loop is unrolled for.
+/// Number of columns computed at a time, as vector lanes or in an unrolled loop.
 const LANES: usize = if cfg!(any(target_pointer_width = "64", stereopsis_vectors)) { 16 } else { 4 };
-/// Columns that so many gradients look at.
+/// Number of columns that a group of gradients reads.
 const AROUND: usize = LANES + 2;
 
-/// The gradients of `N` columns, of which `M` = `N + 2` are given.
+/// Gradients of `N` columns from `M` = `N + 2` pixels.
 #[inline(always)]
 fn group<const N: usize, const M: usize>(around: [&[u8; M]; 3], most: i16) -> ([u8; N], [u8; N]) {
     const { assert!(M == N + 2) };

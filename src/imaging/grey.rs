@@ -1,13 +1,13 @@
-//! Any pixel format as 8-bit grey.
+//! Grey conversion: lines of any pixel format as 8-bit grey.
 
 use crate::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineSource, LineStart, PixelFormat};
 
-/// A line source whose lines are [`PixelFormat::Grey8`], over one that gives another format.
+/// Line source of [`PixelFormat::Grey8`] over a source of any pixel format.
 ///
-/// `RAW` is the size of the buffer for one raw line, bytes. Samples of more than 8 bits lose their low bits;
-/// colour becomes luma with the weights of ITU-R BT.601, `(4899 R + 9617 G + 1868 B + 2^13) / 2^14`. Fewer
-/// than 8 bits are spread over eight by repeating the high ones, so that white is 255. Of a mosaic, pixels of
-/// one line are taken as they are; [`BayerLines`](super::BayerLines) makes grey of two.
+/// `RAW` is the capacity for one raw line, bytes. Samples of more than 8 bits lose their low bits; those of
+/// fewer are widened by repeating the high bits, so that white is 255. Colour becomes luma by ITU-R BT.601,
+/// `(4899 R + 9617 G + 1868 B + 2^13) / 2^14`. Pixels of a Bayer mosaic are taken as they are;
+/// [`BayerLines`](super::BayerLines) converts them to grey.
 #[derive(Debug)]
 pub struct GreyLines<S, const RAW: usize> {
     source: S,
@@ -24,7 +24,7 @@ impl<S: LineSource, const RAW: usize> GreyLines<S, RAW> {
         Ok(Self { source, raw: [0; RAW] })
     }
 
-    /// Gives the source back.
+    /// Releases the source.
     pub fn release(self) -> S {
         self.source
     }
@@ -57,7 +57,7 @@ impl<S: LineSource, const RAW: usize> LineSource for GreyLines<S, RAW> {
     }
 }
 
-/// One line of raw pixels as grey, as many as both have.
+/// Converts a line of raw pixels to grey, as many as both have.
 pub(super) fn to_grey(pixel: PixelFormat, raw: &[u8], out: &mut [u8]) {
     match pixel {
         PixelFormat::Grey8 | PixelFormat::Bayer8 => out.iter_mut().zip(raw).for_each(|(o, &r)| *o = r),
@@ -86,14 +86,14 @@ pub(super) fn to_grey(pixel: PixelFormat, raw: &[u8], out: &mut [u8]) {
     }
 }
 
-/// Groups of `B` raw bytes to `P` pixels each; of the last group as many as there is room for.
+/// Converts groups of `B` raw bytes to `P` pixels each, as many as fit.
 fn groups<const B: usize, const P: usize>(raw: &[u8], out: &mut [u8], grey: impl Fn([u8; B]) -> [u8; P]) {
     for (out, &raw) in out.chunks_mut(P).zip(raw.as_chunks().0) {
         out.iter_mut().zip(grey(raw)).for_each(|(o, g)| *o = g);
     }
 }
 
-/// Red, green and blue of 5, 6 and 5 bits as bytes.
+/// Widens red, green and blue of 5, 6 and 5 bits to bytes.
 fn rgb565(pixel: u16) -> [u8; 3] {
     let (r, g, b) = (pixel >> 11, pixel >> 5 & 0x3f, pixel & 0x1f);
     [(r << 3 | r >> 2) as u8, (g << 2 | g >> 4) as u8, (b << 3 | b >> 2) as u8]
@@ -103,7 +103,7 @@ fn shift(bits: u8) -> u32 {
     u32::from(bits.clamp(8, 16)) - 8
 }
 
-/// The top eight of the significant bits; a sample that uses more than it said saturates.
+/// Top eight of the significant bits; a sample with more bits saturates.
 fn top(sample: [u8; 2], shift: u32) -> u8 {
     (u16::from_le_bytes(sample) >> shift).min(255) as u8
 }

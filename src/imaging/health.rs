@@ -1,35 +1,30 @@
-//! What a pair's pictures tell of its cameras.
+//! Camera health: black, saturated, flat or repeating pictures, swapped cameras, unequal gain.
 
 use super::histogram::Histogram;
 
-/// What is wrong with a camera, by what its frame looks like.
+/// Condition of a camera, judged by its frame.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum CameraHealth {
-    /// Nothing that can be told.
+    /// No fault shows.
     Good,
-    /// No light: 99 of 100 pixels are black. Dark, covered, or dead.
+    /// At least 99 % of the pixels are black: dark, covered or dead.
     Black,
-    /// Too much light: half of the pixels are saturated.
+    /// At least half of the pixels are saturated.
     Saturated,
-    /// All pixels counted are within 16 levels: no picture, as of a port that is stuck.
+    /// All pixels are within 16 levels, as from a stuck port.
     Flat,
-    /// Line after line is the same, to the last bit: the sensor's noise is missing. A line that hangs, or a
-    /// test pattern.
+    /// At least half of the lines equal the one above bit for bit: a hanging line or a test pattern.
     Repeating,
 }
 
-/// Watches the lines of two cameras, a frame at a time.
+/// Monitor of two cameras' health, frame by frame, in 240 bytes.
 ///
-/// What is told here is no fault of single lines, and no row is flagged for it: a picture may be dark because
-/// it is night. A frame whose cameras are not [`CameraHealth::Good`] has few answers or none, and those that
-/// it has are as sure as others. Stuck columns and swapped cameras give wrong answers: [`Self::are_swapped`]
-/// tells these, from the lines themselves.
-///
-/// To find swapped cameras, each 8th line is compared with the other camera's, moved left and moved right by
-/// up to `most` columns: of a rectified pair the one that is moved the right way fits better. Votes are
-/// counted over a frame. 240 bytes.
+/// No row is flagged by it: a picture may be dark because it is night, and then has few answers. Swapped
+/// cameras give wrong answers. To detect them, every 8th line is compared with the other camera's, shifted
+/// left and shifted right by up to `most_disparity` columns: in a rectified pair the right direction fits
+/// better. The votes of a frame are counted.
 #[derive(Clone, Copy, Debug)]
 pub struct PairMonitor {
     sides: [Side; 2],
@@ -44,7 +39,7 @@ struct Side {
     histogram: Histogram,
     repeated: u32,
     lines: u32,
-    /// A sum over the line above that tells whether the next is the same.
+    /// Checksum of the line above.
     before: u32,
 }
 
@@ -81,16 +76,16 @@ impl Side {
 }
 
 impl PairMonitor {
-    /// Fewer votes say nothing.
+    /// Least number of votes for a decision.
     const FEWEST_VOTES: u32 = 4;
 
-    /// For disparities up to `most_disparity`. Trying them costs, for each pixel of a frame, `most_disparity
-    /// / 4` differences.
+    /// Creates a monitor that tries disparities up to `most_disparity`, at `most_disparity / 4` differences
+    /// per pixel of a frame.
     pub const fn new(most_disparity: u16) -> Self {
         Self { sides: [Side::NEW; 2], most_disparity, row: 0, right_way: 0, wrong_way: 0 }
     }
 
-    /// Forgets the frame before.
+    /// Begins a frame.
     pub fn begin(&mut self) {
         *self = Self::new(self.most_disparity);
     }
@@ -115,7 +110,7 @@ impl PairMonitor {
         }
     }
 
-    /// The least mean of differences between `a` and `b` moved right, in 256ths, over disparities from 1 on.
+    /// Least mean absolute difference of `a` and `b` shifted right, in 256ths, over disparities from 1 on.
     fn least(&self, a: &[u8], b: &[u8]) -> u32 {
         let tried = 1..=usize::from(self.most_disparity);
         let fit = |d: usize| {
@@ -129,24 +124,24 @@ impl PairMonitor {
         tried.map(fit).min().unwrap_or(u32::MAX)
     }
 
-    /// What the two cameras' pictures tell, left and right.
+    /// Returns the health of the left and the right camera.
     pub fn health(&self) -> [CameraHealth; 2] {
         self.sides.map(|side| side.health())
     }
 
-    /// Whether the left camera's lines come as the right one's, and the other way round.
+    /// Returns whether the two cameras are swapped.
     pub fn are_swapped(&self) -> bool {
         self.wrong_way >= Self::FEWEST_VOTES && self.wrong_way > 3 * self.right_way
     }
 
-    /// The histograms, left and right: of them the exposure is made ([`AutoExposure`](super::AutoExposure)).
+    /// Returns the histograms, left and right, for [`AutoExposure`](super::AutoExposure).
     pub fn histograms(&self) -> [&Histogram; 2] {
         let [left, right] = &self.sides;
         [&left.histogram, &right.histogram]
     }
 
-    /// How much brighter the right camera sees than the left one, in 256ths: 256 is equally. Of pictures that
-    /// are not black or saturated it is the ratio of their gains; 256 where one is.
+    /// Returns the ratio of mean brightness, right to left, in 256ths; 256 where a picture is black or
+    /// saturated.
     pub fn gain_ratio_256ths(&self) -> u16 {
         let [left, right] = self.histograms().map(|h| u32::from(h.mean_16ths()));
         if self.health().iter().any(|health| matches!(health, CameraHealth::Black | CameraHealth::Saturated))

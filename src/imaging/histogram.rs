@@ -1,7 +1,6 @@
-//! How bright a picture is.
+//! Grey-level histogram of a frame.
 
-/// Counts of grey levels over the lines of a frame: 16 bins of 16 levels each, with the pixels that are black
-/// and those that are saturated beside them. 80 bytes.
+/// Histogram of a frame's grey levels in 16 bins, with counts of black and saturated pixels, in 80 bytes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Histogram {
     bins: [u32; 16],
@@ -11,23 +10,22 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// At most this is black.
+    /// Largest grey level that counts as black.
     pub const BLACK: u8 = 2;
-    /// At least this is saturated.
+    /// Least grey level that counts as saturated.
     pub const SATURATED: u8 = 253;
 
-    /// Nothing counted.
+    /// Creates an empty histogram.
     pub const fn new() -> Self {
         Self { bins: [0; 16], black: 0, saturated: 0, sum: 0 }
     }
 
-    /// Forgets the frame before.
+    /// Begins a frame.
     pub fn begin(&mut self) {
         *self = Self::new();
     }
 
-    /// Counts a line's pixels, of each eight columns one: which one goes round with `row`. Some thousands of
-    /// pixels tell the light of a frame, and a line of 320 costs 40 look-ups.
+    /// Counts every eighth pixel of a line, from column `row % 8` on: a line of 320 costs 40 look-ups.
     pub fn line(&mut self, row: usize, line: &[u8]) {
         for &grey in line.iter().skip(row % 8).step_by(8) {
             if let Some(bin) = self.bins.get_mut(usize::from(grey >> 4)) {
@@ -39,27 +37,27 @@ impl Histogram {
         }
     }
 
-    /// Pixels counted.
+    /// Returns the number of pixels counted.
     pub fn count(&self) -> u32 {
         self.bins.iter().fold(0, |sum, &bin| sum.saturating_add(bin))
     }
 
-    /// The counts of levels 0 to 15, 16 to 31, and so on.
+    /// Returns the counts of levels 0 to 15, 16 to 31, and so on.
     pub fn bins(&self) -> &[u32; 16] {
         &self.bins
     }
 
-    /// The mean grey in 16ths; 0 where nothing was counted.
+    /// Returns the mean grey level in 16ths; 0 of an empty histogram.
     pub fn mean_16ths(&self) -> u16 {
         (16 * self.sum).checked_div(self.count().into()).unwrap_or(0) as u16
     }
 
-    /// Black pixels in 1000.
+    /// Returns the share of black pixels, per mille.
     pub fn black_per_mille(&self) -> u16 {
         self.per_mille(self.black)
     }
 
-    /// Saturated pixels in 1000.
+    /// Returns the share of saturated pixels, per mille.
     pub fn saturated_per_mille(&self) -> u16 {
         self.per_mille(self.saturated)
     }

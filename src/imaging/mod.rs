@@ -1,20 +1,19 @@
-//! Lines of pixels: held in windows, brought to grey, turned into census codes.
+//! Image lines: grey conversion, line windows, census, gradients, rectification, exposure, noise.
 //!
-//! In: lines from a camera. Out: census rows.
+//! In: lines from a camera. Out: census and gradient rows, rectified lines.
 //!
-//! 1. [`GreyLines`]: any pixel format as 8-bit grey lines; [`BayerLines`]: a mosaic of colours as well.
+//! 1. [`GreyLines`]: any pixel format as 8-bit grey; [`BayerLines`]: a Bayer mosaic as grey.
 //! 2. [`LineBand`]: the last lines, as the rows around a centre; [`LineWindow`] holds five.
 //! 3. [`census_plus4`], [`census_ring8`], [`census_wide8`]: the codes of one row.
-//!    [`gradients`]: how its brightness changes along the line and across it.
-//! 4. [`RectifiedPair`]: raw lines as rectified ones, by a [`Remap`] for each camera with its [`RemapTable`].
-//! 5. [`PairMonitor`]: what the pictures tell of the cameras' health, with a [`Histogram`] of each;
-//!    [`AutoExposure`]: one exposure for both.
-//! 6. [`BalancedPair`]: the right camera's lines as the left one would have exposed them.
-//! 7. [`NoiseMeter`]: how noisy the lines are, in levels of [`Noise`]; [`smooth()`]: a row of a window with
-//!    less of it.
+//!    [`gradients`]: Sobel gradients of a row.
+//! 4. [`RectifiedPair`]: rectified lines of raw ones, by a [`Remap`] for each camera with its [`RemapTable`].
+//! 5. [`PairMonitor`]: health of the cameras, by a [`Histogram`] of each; [`AutoExposure`]: one exposure for
+//!    both.
+//! 6. [`BalancedPair`]: the right camera's lines with the brightness of the left one's.
+//! 7. [`NoiseMeter`]: noise of the lines as a level of [`Noise`]; [`smooth()`]: a binomial filter against it.
 //!
-//! Borders, but of remapped lines: a row or column outside the image is the nearest one inside it, everywhere
-//! in this module.
+//! Everywhere in this module but in remapped lines, borders repeat the nearest row or column inside the
+//! image.
 
 mod balance;
 mod bayer;

@@ -1,25 +1,25 @@
-//! How noisy a sensor is: measured on the lines of a frame, said in levels for the next one.
+//! Noise estimation from image lines by a difference mask (Immerkær 1996).
 
-/// How much noise the lines are taken to have, and so how much they are smoothed before they are compared
+/// Noise level of the lines, which selects how much they are smoothed before matching
 /// ([`Config::noise`](crate::matching::Config::noise)).
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Noise {
-    /// Little: pixels are compared as they are.
+    /// Little noise: pixels are compared as they are.
     #[default]
     None,
-    /// A deviation of about 2 grey levels: lines are smoothed ([`smooth()`](super::smooth())).
+    /// Standard deviation of about 2 grey levels: lines are smoothed by [`smooth()`](super::smooth()).
     Low,
-    /// A deviation from about 3 grey levels on: lines are smoothed, and gradients count half as much as with
-    /// [`Noise::Low`].
+    /// Standard deviation from about 3 grey levels on: lines are smoothed, and gradients count half as much
+    /// as with [`Noise::Low`].
     High,
 }
 
 impl Noise {
-    /// All of them, from the least noise to the most.
+    /// All levels, from the least noise to the most.
     pub const ALL: [Self; 3] = [Self::None, Self::Low, Self::High];
 
-    /// The name, as the programs spell it.
+    /// Returns the name that the programs use.
     pub const fn name(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -29,18 +29,17 @@ impl Noise {
     }
 }
 
-/// Estimates the noise of a frame from its lines, those of one camera or of both, as they come.
+/// Estimator of a frame's noise from the lines of one camera or both.
 ///
-/// A mask that neither a constant, nor a slope, nor a bend gets through is laid over a line, `(1, -4, 6, -4,
-/// 1)`, as Immerkær does with `(1, -2, 1)` along and across ("Fast noise variance estimation", 1996); along
-/// the line alone it needs no other line. What it leaves is noise where the picture is smooth, and texture
-/// elsewhere. So 16 columns at a time are summed up, `S = sum |mask|`, and the noise is that of the quietest
-/// places: of the first 128th of all sums in ascending order, `sigma = S / 45.5` for Gaussian noise, measured
-/// on a slope. Places with a pixel of 0 or 255 are left out: there noise is cut off. Where nothing is smooth,
-/// it says too much: 2.8 grey levels at most on 15 real pairs without added noise, under 1.9 on all but one
-/// of them; with 2 grey levels added 2.2 at least (`tests/real/dense.rs` of the host package prints them).
+/// The mask `(1, -4, 6, -4, 1)` along the line removes constants, slopes and curvature, as Immerkær's `(1,
+/// -2, 1)` along and across does ("Fast noise variance estimation", 1996). It leaves noise where the picture
+/// is smooth, and texture elsewhere. Sums `S = sum |mask|` over 16 columns are counted, and the noise is
+/// taken from the 1/128 quantile of these sums: `sigma = S / 45.5` for Gaussian noise, measured on a slope.
+/// Columns near a pixel of 0 or 255 are left out, as noise is clipped there. Without any smooth area the
+/// estimate is too large: at most 2.8 grey levels on 15 real pairs without added noise, under 1.9 on all but
+/// one of them; with 2 grey levels added at least 2.2 (printed by `tests/real/dense.rs` of the host package).
 ///
-/// Each line costs the same whatever it shows; a meter takes 256 bytes and a word.
+/// The time per line is constant; a meter takes 256 bytes and a word.
 ///
 /// ```
 /// use stereopsis::imaging::{Noise, NoiseMeter};
@@ -54,34 +53,34 @@ impl Noise {
 // As the interface for C has it.
 #[repr(C)]
 pub struct NoiseMeter {
-    /// How many sums there are from `BIN` times the index on; the last one counts all beyond it.
+    /// Histogram of the sums in bins of `BIN`; the last bin counts all beyond it.
     counts: [u32; 64],
     sums: u32,
 }
 
-/// Columns whose masks are summed up.
+/// Number of columns in a sum.
 const RUN: usize = 16;
-/// Columns that they look at.
+/// Number of columns that a sum reads.
 const AROUND: usize = RUN + 4;
-/// The width of a counter's range.
+/// Width of a bin.
 const BIN: u32 = 16;
-/// The share of the sums that is quieter than what is taken for noise: one in so many.
+/// Reciprocal of the quantile that is taken for noise.
 const QUIETEST: u32 = 128;
-/// Twice the sum that a deviation of one grey level has there.
+/// Twice the sum of noise with a standard deviation of one grey level at that quantile.
 const TWICE_PER_GREY: u32 = 91;
 
 impl NoiseMeter {
-    /// From this deviation on noise is [`Noise::Low`], in 16ths of a grey level: most textures are taken for
-    /// less.
+    /// Least standard deviation of [`Noise::Low`], 16ths of a grey level: most textures are taken for less.
     pub const LOW_16THS: u16 = 30;
-    /// And from this on [`Noise::High`].
+    /// Least standard deviation of [`Noise::High`], 16ths of a grey level.
     pub const HIGH_16THS: u16 = 48;
-    /// How many times as loud as the noise a quarter of a picture may be at least: with noise of 2 grey
-    /// levels it is up to 2.6 on 15 real pairs, 2.9 where they are made 96 to 320 pixels wide but for
-    /// one, and without 3.1 to 4.5 on those of them that seem noisy at 160 pixels but for one.
+    /// Largest ratio of the lower quartile to the noise at which the estimate counts as noise. With noise of
+    /// 2 grey levels the ratio is up to 2.6 on 15 real pairs, and 2.9 on all but one of them when downsampled
+    /// to 96 to 320 columns; without noise it is 3.1 to 4.5 on all but one of those that look noisy at 160
+    /// columns.
     pub const TEXTURE: u16 = 3;
 
-    /// A meter that has seen no line.
+    /// Creates a meter without lines.
     pub const fn new() -> Self {
         Self { counts: [0; 64], sums: 0 }
     }
@@ -91,7 +90,7 @@ impl NoiseMeter {
         *self = Self::new();
     }
 
-    /// Takes a line of 8-bit grey: as many whole runs of 16 columns as it has, with the two beside them.
+    /// Takes a line of 8-bit grey, in whole runs of 16 columns with two on either side.
     pub fn line(&mut self, line: &[u8]) {
         for run in 0..line.len().saturating_sub(AROUND - RUN) / RUN {
             let Some(pixels) = line.get(run * RUN..).and_then(|line| line.first_chunk::<AROUND>()) else {
@@ -114,16 +113,15 @@ impl NoiseMeter {
         }
     }
 
-    /// The deviation of the noise in 16ths of a grey level, up to 359; `None` before the first run of
-    /// columns. It is as sure as there are many of them: a frame of 96 x 64 pixels has 320.
+    /// Returns the standard deviation of the noise, 16ths of a grey level, up to 359; `None` before the first
+    /// run of columns. More runs make it more precise: a frame of 96 x 64 pixels has 320.
     pub fn sigma_16ths(&self) -> Option<u16> {
         self.deviation(QUIETEST)
     }
 
-    /// The level for the next frame; [`Noise::None`] before the first run of columns, and where noise matters
-    /// little beside the picture: where less than a quarter of all places is within [`Self::TEXTURE`]
-    /// times the noise. That is texture without a quiet place as a rule, as of pictures that were made
-    /// small.
+    /// Returns the level for the next frame; [`Noise::None`] before the first run of columns, and where the
+    /// lower quartile of the sums exceeds [`Self::TEXTURE`] times the noise, as in textured, downsampled
+    /// pictures.
     pub fn level(&self) -> Noise {
         let (Some(sigma), Some(quarter)) = (self.sigma_16ths(), self.deviation(4)) else {
             return Noise::None;
@@ -136,7 +134,7 @@ impl NoiseMeter {
         }
     }
 
-    /// The sum that one in `share` is less than, as a deviation in 16ths of a grey level.
+    /// The `1 / share` quantile of the sums as a standard deviation, 16ths of a grey level.
     fn deviation(&self, share: u32) -> Option<u16> {
         let mut before = self.sums.checked_sub(1)? / share;
         for (bin, &count) in (0..).zip(&self.counts) {

@@ -1,6 +1,6 @@
-//! A whole grey picture in memory, where it is there.
+//! A whole grey image in memory, with bilinear interpolation.
 
-/// A picture of `width` x `height` grey pixels, row by row, that somebody else holds.
+/// Borrowed image of `width` x `height` grey pixels, row by row.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture<'a> {
     pixels: &'a [u8],
@@ -8,14 +8,14 @@ pub struct Picture<'a> {
     height: usize,
 }
 
-/// Why pixels are no picture.
+/// Why pixels are not an image of the given size.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum PictureError {
-    /// There are fewer or more pixels than columns times rows; this many are needed.
+    /// The number of pixels is not columns times rows.
     Pixels {
-        /// Columns times rows.
+        /// Number of pixels that are needed.
         needed: usize,
     },
 }
@@ -31,7 +31,7 @@ impl core::fmt::Display for PictureError {
 impl core::error::Error for PictureError {}
 
 impl<'a> Picture<'a> {
-    /// The picture of these pixels.
+    /// Wraps the pixels of an image.
     pub const fn new(pixels: &'a [u8], width: u16, height: u16) -> Result<Self, PictureError> {
         let needed = width as usize * height as usize;
         if pixels.len() != needed {
@@ -40,17 +40,17 @@ impl<'a> Picture<'a> {
         Ok(Self { pixels, width: width as usize, height: height as usize })
     }
 
-    /// Columns.
+    /// Returns the number of columns.
     pub const fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Returns the number of rows.
     pub const fn height(&self) -> usize {
         self.height
     }
 
-    /// So many pixels of a row from a column on; `None` where the picture has not as many.
+    /// Returns `length` pixels of a row from a column on; `None` where the image has fewer.
     #[inline]
     pub fn run(&self, column: usize, row: usize, length: usize) -> Option<&'a [u8]> {
         if column + length > self.width || row >= self.height {
@@ -60,8 +60,7 @@ impl<'a> Picture<'a> {
         self.pixels.get(from..from + length)
     }
 
-    /// The brightness between the centres of four pixels, by their distances along the row and the column;
-    /// `None` outside.
+    /// Returns the brightness at (`x`, `y`) by bilinear interpolation; `None` outside.
     #[inline]
     pub fn sample(&self, x: f32, y: f32) -> Option<f32> {
         // What is not a number is outside, too.

@@ -1,14 +1,12 @@
-//! Lines smoothed against the noise of a sensor.
+//! Binomial 3x3 smoothing against sensor noise.
 
 use core::ops::Range;
 
-/// One of five rows, smoothed down the columns, then along the line, each time with its two neighbours, which
-/// count half as much: `(a + 2 b + c + 2) / 4`. It keeps 3/8 of the deviation of noise that has nothing to do
-/// with its neighbours'.
+/// Smooths row `row` of five with the binomial filter `(a + 2 b + c + 2) / 4`, first vertically, then
+/// horizontally, which leaves 3/8 of the standard deviation of independent noise.
 ///
-/// Above the first row and below the last stands the nearest of the five, and columns outside a line are the
-/// nearest inside. Those numbers are written for which the rows have a pixel and `out` a place; without such
-/// a row, none.
+/// Rows outside the five and columns outside the line repeat the nearest ones inside. Pixels are written for
+/// every column that the rows and `out` have.
 ///
 /// ```
 /// use stereopsis::imaging::smooth;
@@ -42,10 +40,10 @@ pub fn smooth(rows: &[&[u8]; 5], row: usize, out: &mut [u8]) {
     }
 }
 
-/// Whether four columns at a time are in a word; else the compiler takes many into a vector.
+/// Whether four columns at a time are packed in a word; else the compiler vectorises.
 const WORDS: bool = cfg!(all(target_pointer_width = "32", not(stereopsis_vectors)));
 
-/// Smoothes the columns that have one on both sides, and says which these are.
+/// Smooths the columns with neighbours on both sides, and returns their range.
 fn by_columns(near: [&[u8]; 3], out: &mut [u8]) -> Range<usize> {
     let [above, middle, below] = near.map(|row| row.windows(3));
     let inner = out.get_mut(1..).unwrap_or(&mut []).iter_mut();
@@ -58,10 +56,7 @@ fn by_columns(near: [&[u8]; 3], out: &mut [u8]) -> Range<usize> {
     1..end
 }
 
-/// Smoothes the first columns that stand in whole words, with a whole word after them, and says which these
-/// are.
-///
-/// Every word is smoothed down the columns once.
+/// Smooths the columns in whole words that are followed by another, and returns their range.
 fn by_words(near: [&[u8]; 3], out: &mut [u8]) -> Range<usize> {
     let [above, middle, below] =
         near.map(|row| row.as_chunks::<4>().0.iter().map(|four| u32::from_le_bytes(*four)));
@@ -88,7 +83,7 @@ fn quarter(a: u8, b: u8, c: u8) -> u8 {
     (b | down) - ((b ^ down) >> 1)
 }
 
-/// [`quarter`] of four bytes: averages of bytes need no room beside them (Warren 2012, 2-5).
+/// [`quarter`] of four packed bytes, by byte averages without carry (Warren 2012, 2-5).
 #[inline(always)]
 fn quarters(a: u32, b: u32, c: u32) -> u32 {
     let half_of_difference = |a: u32, b: u32| (a ^ b) >> 1 & 0x7f7f_7f7f;

@@ -1,11 +1,12 @@
-//! The last lines of a stream.
+//! Line buffers: the last lines of a stream as rows around a centre.
 
-/// The last five lines: the rows around a centre.
+/// Buffer of the last five lines.
 pub type LineWindow<const W: usize> = LineBand<W, 5>;
 
-/// `N` lines over fixed storage: as line `n` comes in, line `n - N` goes.
+/// Ring buffer of the last `N` lines.
 ///
-/// `W` is the capacity; the real width is set per frame. A band takes `N W` bytes and a few words.
+/// The capacity is `W` columns; [`Self::begin`] sets the real width per frame. A band takes `N W` bytes and a
+/// few words. Every line is word-aligned, so that four pixels can be read at a time.
 ///
 /// ```
 /// use stereopsis::imaging::LineWindow;
@@ -15,10 +16,9 @@ pub type LineWindow<const W: usize> = LineBand<W, 5>;
 ///     window.next_line().fill(brightness);
 ///     window.accept();
 /// }
-/// // Row 0 with the rows above it repeated from row 0, and the two below.
+/// // Rows above row 0 repeat it.
 /// assert_eq!(window.around(0).map(|row| row[0]), [10, 10, 10, 20, 30]);
 /// ```
-/// Each line begins where a word may stand: those who look at it can take four pixels at a time.
 #[derive(Debug)]
 pub struct LineBand<const W: usize, const N: usize> {
     lines: [Line<W>; N],
@@ -26,25 +26,25 @@ pub struct LineBand<const W: usize, const N: usize> {
     count: usize,
 }
 
-/// One line, in whole words.
+/// One word-aligned line.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(4))]
 struct Line<const W: usize>([u8; W]);
 
 impl<const W: usize, const N: usize> LineBand<W, N> {
-    /// An empty band.
+    /// Creates an empty band.
     pub const fn new() -> Self {
         const { assert!(N > 0, "a band holds at least one line") };
         Self { lines: [const { Line([0; W]) }; N], width: 0, count: 0 }
     }
 
-    /// Forgets all lines; the next ones have `width` pixels (at most the capacity).
+    /// Begins a frame with lines of `width` pixels, at most the capacity.
     pub fn begin(&mut self, width: usize) {
         self.width = width.min(W);
         self.count = 0;
     }
 
-    /// Where the next line goes. It counts once [`Self::accept`] is called.
+    /// Returns the buffer for the next line, which counts once [`Self::accept`] is called.
     pub fn next_line(&mut self) -> &mut [u8] {
         let width = self.width;
         match self.lines.get_mut(self.count % N) {
@@ -53,13 +53,12 @@ impl<const W: usize, const N: usize> LineBand<W, N> {
         }
     }
 
-    /// The line is whole.
+    /// Accepts the line in [`Self::next_line`].
     pub fn accept(&mut self) {
         self.count += 1;
     }
 
-    /// Puts a copy of the newest line, of zeros where there is none, where the next line goes: it stands in
-    /// for one that is lost.
+    /// Copies the newest line, or zeros where there is none, to the next one: a substitute for a lost line.
     pub fn repeat(&mut self) {
         let (newest, next) = (self.count.wrapping_sub(1), self.count);
         if self.count == 0 {
@@ -69,14 +68,13 @@ impl<const W: usize, const N: usize> LineBand<W, N> {
         }
     }
 
-    /// Lines accepted since [`Self::begin`].
+    /// Returns the number of lines accepted since [`Self::begin`].
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// The `M` rows around `centre`, of an odd number: two above to two below where `M` is 5. Rows above the
-    /// image are row 0; rows that did not come yet, the last one that did. The caller asks for a centre
-    /// whose rows are still held.
+    /// Returns the `M` rows around `centre`, `M` odd. Rows above the image repeat row 0, and rows below the
+    /// newest line repeat it. The rows must still be in the band.
     // Asked for once in a row of each camera.
     #[cfg_attr(target_pointer_width = "32", inline(never))]
     pub fn around<const M: usize>(&self, centre: usize) -> [&[u8]; M] {

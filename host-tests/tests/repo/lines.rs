@@ -9,7 +9,6 @@ const MOST_COLUMNS: usize = 110;
 const NOT_YET: &[&str] = &[
     "examples/",
     "host-tests/",
-    "src/depth/",
     "src/features/",
     "src/focus/",
     "src/geometry/",

@@ -3,7 +3,7 @@
 use criterion::{BenchmarkId, Criterion, Throughput};
 use std::process::ExitCode;
 use stereopsis::camera::StereoSource;
-use stereopsis::matching::{Block, Config, Fast, Scheme, Sgm, SgmEdge, SgmLean};
+use stereopsis::matching::{Block, Config, Fast, Method, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::Pipeline;
 use stereopsis_host::run::MemoryPair;
 use stereopsis_host::scene::Scene;
@@ -15,7 +15,7 @@ const DISPARITIES: u16 = 64;
 type Sized<S> = Pipeline<S, { WIDTH as usize }, { DISPARITIES as usize }>;
 
 /// One frame through a pipeline of just this size, as firmware holds it.
-fn frame<S: Scheme>(pipeline: &mut Sized<S>, camera: &mut impl StereoSource) -> usize {
+fn frame<S: Method>(pipeline: &mut Sized<S>, camera: &mut impl StereoSource) -> usize {
     let mut answers = 0;
     if pipeline.begin_frame(camera).is_ok() {
         while let Ok(Some(row)) = pipeline.next_row(camera) {
@@ -25,7 +25,7 @@ fn frame<S: Scheme>(pipeline: &mut Sized<S>, camera: &mut impl StereoSource) -> 
     answers
 }
 
-fn method<S: Scheme>(criterion: &mut Criterion, camera: &mut MemoryPair) -> Result<(), String> {
+fn method<S: Method>(criterion: &mut Criterion, camera: &mut MemoryPair) -> Result<(), String> {
     let mut pipeline = Box::new(Sized::<S>::new());
     pipeline.start(&Config::new(WIDTH, HEIGHT, DISPARITIES)).map_err(|e| e.to_string())?;
     if frame(&mut pipeline, camera) == 0 {

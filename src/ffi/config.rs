@@ -4,7 +4,7 @@
 use super::Status;
 use super::instance::either;
 use crate::imaging::Noise;
-use crate::matching::{self, Checks, ConfigError, Filter, Penalties, Scheme};
+use crate::matching::{self, Checks, ConfigError, Filter, Penalties, Method};
 use crate::units::Disparity;
 
 /// `stereopsis_config_default` and `_noise`: an answer wherever there is a candidate.
@@ -157,7 +157,7 @@ impl From<matching::Config> for CConfig {
 
 impl CConfig {
     /// The same search with the checks of a preset and the penalties of the method for so much noise.
-    fn with_filter<S: Scheme>(self, filter: Filter, noise: Noise) -> Self {
+    fn with_filter<S: Method>(self, filter: Filter, noise: Noise) -> Self {
         let search = matching::Config::new(self.width, self.height, self.disparities);
         let config = matching::Config { noise, ..search }.with_filter::<S>(filter);
         Self { min_disparity: self.min_disparity, confidence: self.confidence, ..config.into() }
@@ -222,7 +222,7 @@ impl From<ConfigError> for Status {
 /// # Safety
 ///
 /// `config` is null or points to a configuration's bytes.
-pub unsafe fn config_default<S: Scheme>(
+pub unsafe fn config_default<S: Method>(
     width: u16,
     height: u16,
     disparities: u16,
@@ -245,7 +245,7 @@ pub unsafe fn config_default<S: Scheme>(
 /// # Safety
 ///
 /// `config` is null or points to a configuration.
-pub unsafe fn config_noise<S: Scheme>(preset: i32, noise: u8, config: *mut CConfig) -> Status {
+pub unsafe fn config_noise<S: Method>(preset: i32, noise: u8, config: *mut CConfig) -> Status {
     if config.is_null() {
         return Status::Null;
     }

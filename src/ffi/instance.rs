@@ -7,7 +7,7 @@ use super::{
     STEREOPSIS_LOST_TORN, Status,
 };
 use crate::camera::LineFault;
-use crate::matching::{self, MatchError, Scheme};
+use crate::matching::{self, MatchError, Method};
 use crate::pipeline::Pipeline;
 use core::ffi::c_void;
 use core::marker::PhantomData;
@@ -16,7 +16,7 @@ use core::marker::PhantomData;
 ///
 /// [`instantiate_c_api`](crate::instantiate_c_api) gives them their names in C and says what each of them
 /// does and needs.
-pub struct Instance<S: Scheme, const W: usize, const D: usize>(PhantomData<S>);
+pub struct Instance<S: Method, const W: usize, const D: usize>(PhantomData<S>);
 
 /// Both ways out of a call are a status.
 pub(super) fn either(result: Result<Status, Status>) -> Status {
@@ -35,7 +35,7 @@ unsafe fn give(to: *mut CRow, row: Option<matching::Row<'_>>, without: Status) -
     status
 }
 
-impl<S: Scheme, const W: usize, const D: usize> Instance<S, W, D> {
+impl<S: Method, const W: usize, const D: usize> Instance<S, W, D> {
     /// Bytes that a matcher takes.
     pub const fn size() -> usize {
         size_of::<State<S, W, D>>()

@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::Status;
-use crate::matching::{self, Scheme};
+use crate::matching::{self, Method};
 use crate::pipeline::Guarded;
 use core::ffi::c_void;
 
@@ -16,7 +16,7 @@ pub struct Handle {
 
 /// What stands in the memory.
 #[repr(C)]
-pub(super) struct State<S: Scheme, const W: usize, const D: usize> {
+pub(super) struct State<S: Method, const W: usize, const D: usize> {
     /// [`MARK`] and the state's own address: memory that was moved or never initialised does not have it.
     mark: usize,
     pub(super) pipeline: Guarded<S, W, D>,
@@ -31,12 +31,12 @@ const FIXED_BYTES: usize = 352;
 /// Bytes of memory that a matcher takes on any target, at most: what the macros of `stereopsis.h` say.
 ///
 /// `disparities` is a multiple of 16, and `width` at least as large.
-pub const fn memory_bytes<S: Scheme>(width: usize, disparities: usize) -> usize {
+pub const fn memory_bytes<S: Method>(width: usize, disparities: usize) -> usize {
     // Five lines of two cameras.
     matching::state_bytes::<S>(width, disparities) + 2 * 5 * width + FIXED_BYTES
 }
 
-impl<S: Scheme, const W: usize, const D: usize> State<S, W, D> {
+impl<S: Method, const W: usize, const D: usize> State<S, W, D> {
     const CHECKED: () = {
         assert!(align_of::<Self>() <= STEREOPSIS_ALIGN, "STEREOPSIS_ALIGN must be enough");
         assert!(size_of::<Self>() <= memory_bytes::<S>(W, D), "memory_bytes must cover the state");

@@ -1,8 +1,7 @@
 //! What a matcher is asked to do, checked once before the first line.
 
-use super::filter::Filter;
-use super::penalties::Penalties;
-use super::scheme::Scheme;
+use super::kernel::Kernel;
+use super::penalties::{Penalties, PenaltiesError};
 use crate::imaging::Noise;
 use crate::units::Disparity;
 use core::fmt;
@@ -43,38 +42,6 @@ impl Config {
     /// Where every search ends, px: its largest disparity lies below, so that no answer is near
     /// [`Disparity::NONE`].
     pub const END: u16 = Disparity::MAX_PIXELS;
-
-    /// A search from disparity 0 with the default checks of the block methods and the penalties of
-    /// [`Sgm`](super::Sgm): [`Self::with_filter`] has those of a method. Without confidences, for cameras
-    /// with little noise.
-    pub const fn new(width: u16, height: u16, disparities: u16) -> Self {
-        Self {
-            width,
-            height,
-            disparities,
-            min_disparity: 0,
-            checks: Checks::DEFAULT,
-            penalties: Penalties::DEFAULT,
-            confidence: false,
-            noise: Noise::None,
-        }
-    }
-
-    /// The same search with the checks of an operating point of a method, and its penalties: those for
-    /// cameras that have as much [noise](Self::noise) as it says so far.
-    ///
-    /// ```
-    /// use stereopsis::{imaging::Noise, matching::{Config, Filter, Sgm}};
-    /// let config = Config { noise: Noise::High, ..Config::new(320, 240, 64) }.with_filter::<Sgm>(Filter::Default);
-    /// assert_eq!(config.checks.uniqueness_percent, Some(12));
-    /// ```
-    pub const fn with_filter<S: Scheme>(self, filter: Filter) -> Self {
-        let penalties = match self.noise {
-            Noise::None => S::PENALTIES,
-            Noise::Low | Noise::High => S::PENALTIES_IN_NOISE,
-        };
-        Self { checks: filter.checks::<S>(self.noise), penalties, ..self }
-    }
 
     /// All zero: a matcher that was not started, which so takes no place in flash when it is a static.
     pub(crate) const UNSET: Self = Self {
@@ -124,7 +91,10 @@ impl Config {
         if self.checks.surface_step.raw() > Disparity::ONE {
             return Err(ConfigError::SurfaceStep);
         }
-        self.penalties.check()
+        self.penalties.check().map_err(|error| match error {
+            PenaltiesError::Gradient => ConfigError::Gradient,
+            PenaltiesError::Order => ConfigError::Penalties,
+        })
     }
 }
 
@@ -157,7 +127,7 @@ pub struct Checks {
     pub surface_step: Disparity,
     /// Answers are averaged along the line with up to this many pairs of neighbours, left and right alike,
     /// of their surface; 0 to [`Checks::MOST_SMOOTHING`], 0 for none. With the methods along paths they
-    /// are then smoothed down the columns as well ([`Scheme::SMOOTH_DOWN`]).
+    /// are then smoothed down the columns as well ([`Method::VERTICAL_FILTER`](super::Method::VERTICAL_FILTER)).
     pub smoothing_radius: u8,
     /// Speckle: answers are dropped that have fewer of their surface, themselves included, on a cross: in
     /// their column, down to four rows below, and along the rows of these. 0: none is.
@@ -266,6 +236,11 @@ pub enum ConfigError {
     Gradient,
     /// The penalties are not in order, or a sum of them is over its byte.
     Penalties,
+    /// This processor does not run the kernel that was chosen.
+    Kernel {
+        /// The kernel.
+        given: Kernel,
+    },
 }
 
 impl fmt::Display for ConfigError {
@@ -283,6 +258,7 @@ impl fmt::Display for ConfigError {
             Self::Penalties => f.write_str(
                 "penalties: cost >= 1, steps falling, jumps above them, edges rising, cost + step + jump < 128, 3 cost + 2 jump < 255",
             ),
+            Self::Kernel { given } => write!(f, "kernel {}: this processor does not run it", given.name()),
             Self::Smoothing => write!(f, "smoothing radius: at most {}", Checks::MOST_SMOOTHING),
         }
     }

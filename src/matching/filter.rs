@@ -1,7 +1,7 @@
-//! Operating points of the methods.
+//! Operating points of the methods, and configurations made of them.
 
-use super::config::Checks;
-use super::scheme::Scheme;
+use super::config::{Checks, Config};
+use super::method::Method;
 use crate::imaging::Noise;
 
 /// An operating point: how many answers, and how sure. What it is made of depends on the method.
@@ -30,7 +30,7 @@ impl Filter {
     }
 
     /// What it is for a method, with cameras that have so much noise.
-    pub const fn checks<S: Scheme>(self, noise: Noise) -> Checks {
+    pub const fn checks<S: Method>(self, noise: Noise) -> Checks {
         match (self, noise) {
             (Self::Dense, _) => Checks::DENSE,
             (Self::Default, Noise::None) => S::DEFAULT,
@@ -38,5 +38,36 @@ impl Filter {
             (Self::Default, Noise::High) => S::DEFAULT_IN_NOISE[1],
             (Self::Strict, _) => S::STRICT,
         }
+    }
+}
+
+impl Config {
+    /// A search from disparity 0 with the default checks and the penalties of the method `M`, without
+    /// confidences, for cameras with little noise.
+    ///
+    /// ```
+    /// use stereopsis::matching::{Config, Method, Sgm};
+    /// let config = Config::for_method::<Sgm>(320, 240, 64);
+    /// assert_eq!((config.checks, config.penalties), (Sgm::DEFAULT, Sgm::PENALTIES));
+    /// ```
+    pub const fn for_method<M: Method>(width: u16, height: u16, disparities: u16) -> Self {
+        Self { width, height, disparities, ..Self::UNSET }.with_filter::<M>(Filter::Default)
+    }
+
+    /// This search with the checks of an operating point of the method `M`, and its penalties: those for
+    /// cameras that have as much [noise](Self::noise) as it says so far.
+    ///
+    /// ```
+    /// use stereopsis::{imaging::Noise, matching::{Config, Filter, Sgm}};
+    /// let config = Config { noise: Noise::High, ..Config::for_method::<Sgm>(320, 240, 64) };
+    /// let config = config.with_filter::<Sgm>(Filter::Default);
+    /// assert_eq!(config.checks.uniqueness_percent, Some(12));
+    /// ```
+    pub const fn with_filter<M: Method>(self, filter: Filter) -> Self {
+        let penalties = match self.noise {
+            Noise::None => M::PENALTIES,
+            Noise::Low | Noise::High => M::PENALTIES_IN_NOISE,
+        };
+        Self { checks: filter.checks::<M>(self.noise), penalties, ..self }
     }
 }

@@ -1,20 +1,15 @@
-//! The memory of a block matcher and its stages, in running order.
+//! A matcher: its memory, and one row after another through the stages.
 
-use super::kernels::{Kernel, STEP};
-use super::mask;
-#[cfg(target_pointer_width = "64")]
-use super::memory::before_line;
-use super::memory::{AfterRow, Bytes, Memory, Parts, first};
-use super::row::{HISTORY, Row};
-use super::scheme::{Around, Scheme};
-use super::speckle::{BAND, LOOK_AHEAD, Support};
-use super::stages::{Stages, slot_mut};
-use super::surface::ROOM;
-use super::texture::Texture;
-use super::{Config, ConfigError};
+use super::backend::{Backend, Isa, SMOOTH_MARGIN, STEP, columns_begin};
+use super::config::{Config, ConfigError};
+use super::kernel::Kernel;
+use super::memory::rings::{BAND, HISTORY, LOOK_AHEAD, first, row_mut};
+use super::memory::{AfterRow, Bytes, Memory, Parts, Rows5};
+use super::method::{Frame, Method};
+use super::row::Row;
+use super::stages::{self, mask};
 use crate::units::{Disparity, PixelFlags};
 use core::fmt;
-use core::marker::PhantomData;
 
 /// Bytes of matcher state beside the arrays: counters, the configuration, padding.
 const FIXED_BYTES: usize = 64;
@@ -25,7 +20,7 @@ const FIXED_BYTES: usize = 64;
 /// [`Pipeline`](crate::pipeline::Pipeline) feeds it from a camera.
 ///
 /// `D` is a multiple of 16, at most 256, and `W` at least `D`; another choice does not compile.
-pub struct Matcher<S: Scheme, const W: usize, const D: usize> {
+pub struct Matcher<S: Method, const W: usize, const D: usize> {
     memory: S::Memory<W, D>,
     texture: [u16; W],
     textured: [u8; W],
@@ -34,13 +29,12 @@ pub struct Matcher<S: Scheme, const W: usize, const D: usize> {
     support: [u16; W],
     finished: [[Disparity; W]; HISTORY],
     config: Config,
-    kernel: Kernel,
-    /// The kernel of the next frame, once one is chosen.
-    next_kernel: Kernel,
-    kernel_chosen: bool,
+    backend: Backend,
+    /// The backend of the next frame, once one is chosen.
+    next_backend: Backend,
+    backend_chosen: bool,
     /// Where a frame's columns begin in their room, the same from line to line wherever the matcher is moved
     /// to.
-    #[cfg(target_pointer_width = "64")]
     columns_begin: u8,
     /// Lines taken, counting on below the image.
     taken: usize,
@@ -54,7 +48,7 @@ pub struct Matcher<S: Scheme, const W: usize, const D: usize> {
 /// assert!(state_bytes::<Block>(320, 64) <= 43_000);
 /// assert!(state_bytes::<Fast>(320, 64) <= 43_000);
 /// ```
-pub const fn state_bytes<S: Scheme>(width: usize, disparities: usize) -> usize {
+pub const fn state_bytes<S: Method>(width: usize, disparities: usize) -> usize {
     let lanes = disparities.next_multiple_of(STEP);
     let width = if width < lanes { lanes } else { width };
     let Bytes { fixed, per_pixel, per_candidate, per_disparity } = S::BYTES;
@@ -90,7 +84,7 @@ impl fmt::Display for MatchError {
 
 impl core::error::Error for MatchError {}
 
-impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
+impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     /// How many lines after the one at its centre a row comes out: the window's lower half and the speckle
     /// filter's look-ahead.
     pub const DELAY: usize = S::RADIUS_Y + LOOK_AHEAD;
@@ -100,7 +94,7 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
         assert!(W >= D, "W must be at least D");
         assert!(W <= u16::MAX as usize, "W must be at most 65535");
         assert!(
-            3 * D >= 2 * ROOM + size_of::<u32>(),
+            3 * D >= 2 * SMOOTH_MARGIN + size_of::<u32>(),
             "the scratch must hold a row of answers and what is around it"
         );
         assert!(size_of::<Self>() <= state_bytes::<S>(W, D), "state_bytes must cover the state");
@@ -119,10 +113,9 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             support: [0; W],
             finished: [[Disparity::ZERO; W]; HISTORY],
             config: Config::UNSET,
-            kernel: Kernel::FIRST,
-            next_kernel: Kernel::FIRST,
-            kernel_chosen: false,
-            #[cfg(target_pointer_width = "64")]
+            backend: Backend::FIRST,
+            next_backend: Backend::FIRST,
+            backend_chosen: false,
             columns_begin: 0,
             taken: 0,
         }
@@ -133,8 +126,8 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     pub fn start(&mut self, config: &Config) -> Result<(), ConfigError> {
         config.check(W, D)?;
         self.config = *config;
-        if !self.kernel_chosen {
-            self.set_kernel(Kernel::detect());
+        if !self.backend_chosen {
+            (self.next_backend, self.backend_chosen) = (Backend::detect(), true);
         }
         self.begin_frame();
         Ok(())
@@ -142,14 +135,17 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
 
     /// Chooses the kernel from the next frame on: within a frame kernels keep their own form of what they
     /// have seen. Every kernel gives the same bits.
-    pub fn set_kernel(&mut self, kernel: Kernel) {
-        self.next_kernel = kernel;
-        self.kernel_chosen = true;
+    ///
+    /// Fails with [`ConfigError::Kernel`] where the processor does not run it, and leaves the kernel as it is.
+    pub fn set_kernel(&mut self, kernel: Kernel) -> Result<(), ConfigError> {
+        let backend = Backend::of(kernel).ok_or(ConfigError::Kernel { given: kernel })?;
+        (self.next_backend, self.backend_chosen) = (backend, true);
+        Ok(())
     }
 
     /// The kernel in use, once started.
     pub fn kernel(&self) -> Kernel {
-        self.kernel
+        self.backend.kernel()
     }
 
     /// What was asked for.
@@ -160,14 +156,11 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     /// Forgets the frame before.
     pub fn begin_frame(&mut self) {
         self.taken = 0;
-        self.kernel = self.next_kernel;
-        #[cfg(target_pointer_width = "64")]
-        {
-            let (width, stride) = self.size();
-            let columns = self.memory.parts(width).columns;
-            self.columns_begin = before_line(columns, S::Memory::<W, D>::column_bytes(width, stride));
-        }
-        self.stages().begin();
+        self.backend = self.next_backend;
+        let (width, stride) = self.size();
+        let columns = self.memory.parts(width).columns;
+        self.columns_begin = columns_begin(columns, S::Memory::<W, D>::column_bytes(width, stride));
+        stages::begin(self.frame());
     }
 
     /// Takes the next row of the image, as the five lines around it in both cameras.
@@ -214,8 +207,8 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             return;
         }
         let row = mask::Masked {
-            answers: slot_mut(self.finished.as_flattened_mut(), index % HISTORY, width),
-            flags: slot_mut(self.band_flags.as_flattened_mut(), index % BAND, width),
+            answers: row_mut(self.finished.as_flattened_mut(), index % HISTORY, width),
+            flags: row_mut(self.band_flags.as_flattened_mut(), index % BAND, width),
             confidences: if self.config.confidence { confidences } else { &mut [] },
         };
         row.take_away(left, right);
@@ -225,11 +218,11 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
     /// `keeps_answers`.
     pub(crate) fn mark_damaged(&mut self, keeps_answers: bool) {
         if let Some(index) = self.taken.checked_sub(Self::DELAY + 1) {
-            self.stages().mark_damaged(index, keeps_answers);
+            stages::mark_damaged(self.frame(), index, keeps_answers);
         }
     }
 
-    fn step(&mut self, lines: Option<[&Around<'_>; 2]>) -> Result<(), MatchError> {
+    fn step(&mut self, lines: Option<[&Rows5<'_>; 2]>) -> Result<(), MatchError> {
         let height = usize::from(self.config.height);
         if height == 0 {
             return Err(MatchError::NotStarted);
@@ -243,47 +236,44 @@ impl<S: Scheme, const W: usize, const D: usize> Matcher<S, W, D> {
             return Err(MatchError::LineTooShort { needed });
         }
         self.taken += 1;
-        S::step(self.stages(), y, lines);
+        S::step(self.frame(), y, lines);
         Ok(())
     }
 
     /// The width of a frame, and how many candidates of a column the kernel works on.
     fn size(&self) -> (usize, usize) {
         let disparities = usize::from(self.config.disparities);
-        (usize::from(self.config.width).min(W), self.kernel.candidates(disparities, D))
+        (usize::from(self.config.width).min(W), self.backend.candidates(disparities, D))
     }
 
-    /// The memory as slices of the frame's real size: what follows is compiled once for each scheme.
-    fn stages(&mut self) -> Stages<'_, S> {
+    /// The memory as slices of the frame's real size: what follows is compiled once for each method.
+    fn frame(&mut self) -> Frame<'_> {
         let (width, stride) = self.size();
-        let Parts { codes, columns, winners, right, lengths, scratch } = self.memory.parts(width);
-        #[cfg(target_pointer_width = "64")]
+        let Parts { codes, columns, winners, right, lengths, workspace } = self.memory.parts(width);
         let columns = columns.get_mut(usize::from(self.columns_begin)..).unwrap_or_default();
         let columns = first(columns, S::Memory::<W, D>::column_bytes(width, stride));
-        Stages {
-            scheme: PhantomData,
+        Frame {
             width,
             stride,
-            kernel: self.kernel,
+            backend: self.backend,
             config: &self.config,
             codes,
             columns,
-            scratch,
-            texture: Texture {
-                history: first(&mut self.texture, width),
-                counts: first(&mut self.textured, width),
-            },
+            workspace,
+            texture: first(&mut self.texture, width),
+            textured: first(&mut self.textured, width),
             winners,
             right,
+            lengths,
+            support: first(&mut self.support, width),
             band: first(self.band.as_flattened_mut(), width * BAND),
             flags: first(self.band_flags.as_flattened_mut(), width * BAND),
-            support: Support { lengths, kept: first(&mut self.support, width) },
             finished: first(self.finished.as_flattened_mut(), width * HISTORY),
         }
     }
 }
 
-impl<S: Scheme, const W: usize, const D: usize> Default for Matcher<S, W, D> {
+impl<S: Method, const W: usize, const D: usize> Default for Matcher<S, W, D> {
     fn default() -> Self {
         Self::new()
     }

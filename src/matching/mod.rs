@@ -2,7 +2,7 @@
 //!
 //! One row through the stages, in running order:
 //!
-//! 1. [`scheme`](Scheme): what a method is. `window`: [`Fast`] and [`Block`], census codes compared over a
+//! 1. [`scheme`](Method): what a method is. `window`: [`Fast`] and [`Block`], census codes compared over a
 //!    window. `paths`: [`Sgm`], [`SgmLean`] and [`SgmEdge`], gradients, brightness and a census compared
 //!    along paths, by [`Penalties`]. If asked for, `quiet`: lines smoothed against noise before.
 //! 2. `kernels`: the cost of every candidate, its sum, the winner of every pixel. The only stage whose work
@@ -31,35 +31,22 @@
 //! the whole gradient along beside them make it 8.7 %, but 18.8 % in place of 16.5 % where the right image is
 //! x 1.2 + 15. A window's sum no longer fits a byte then, and takes twice the registers.
 
-mod answers;
-mod confidence;
+mod kernel;
 mod config;
-mod down;
-mod fill;
-mod filter;
-mod kernels;
-mod mask;
-mod matcher;
-mod median;
-mod memory;
-mod paths;
 mod penalties;
-mod quiet;
-mod rolled;
-mod row;
-mod scheme;
-mod speckle;
+mod memory;
+mod backend;
+mod method;
+mod filter;
 mod stages;
-mod surface;
-mod texture;
-mod window;
+mod row;
+mod matcher;
 
+pub use backend::MethodParameters;
 pub use config::{Checks, Config, ConfigError};
 pub use filter::Filter;
-pub use kernels::Kernel;
+pub use kernel::Kernel;
 pub use matcher::{MatchError, Matcher, state_bytes};
-pub use paths::{Sgm, SgmEdge, SgmLean};
+pub use method::{Block, Fast, Method, Sgm, SgmEdge, SgmLean};
 pub use penalties::Penalties;
 pub use row::Row;
-pub use scheme::Scheme;
-pub use window::{Block, Fast};

@@ -20,11 +20,9 @@
 //!   answers as a prior (13 pairs, noise of 2): 1 misses 8.8 % of 8.6 % in the first frame, 2 11.6 %, 4 19.9
 //!   %, and 15.3 % of 9.0 % in the third. It takes a frame of answers in memory.
 
-use super::config::ConfigError;
-
 /// The numbers of the methods along paths, [`Sgm`](super::Sgm), [`SgmLean`](super::SgmLean) and
 /// [`SgmEdge`](super::SgmEdge); the block methods do not look at them. Each method's own,
-/// [`Scheme::PENALTIES`](super::Scheme::PENALTIES), are what measured best on real pairs.
+/// [`Method::PENALTIES`](super::Method::PENALTIES), are what measured best on real pairs.
 ///
 /// A path's cost at a pixel and disparity is the pixel's own cost and the least of its predecessor's costs:
 /// at the same disparity for nothing, at the next one for a `step`, at any other for a `jump` (Hirschmüller
@@ -57,7 +55,7 @@ impl Penalties {
     pub const DEFAULT: Self =
         Self { gradient: 7, cost: 16, step: [18, 9], jump: [88, 44, 26], edges: [8, 20] };
 
-    /// The same for smoothed lines, whose edges are fainter; gradients may be larger before they are cut off.
+    /// Penalties for smoothed lines, whose edges are fainter; gradients may be larger before they are cut off.
     ///
     /// What [`Sgm`](super::Sgm) misses on 15 real pairs with noise of 2 and of 5 grey levels, percent, the
     /// checks being those without noise (`cargo xtask altered` measures any others):
@@ -78,23 +76,23 @@ impl Penalties {
     pub(super) const UNSET: Self = Self { gradient: 0, cost: 0, step: [0; 2], jump: [0; 3], edges: [0; 2] };
 
     /// Whether all sums stay within their bytes.
-    pub(super) const fn check(&self) -> Result<(), ConfigError> {
+    pub(super) const fn check(&self) -> Result<(), PenaltiesError> {
         let Self { gradient, cost, step: [step, small_step], jump: [little, more, much], edges } = *self;
         let most = if little > more { little } else { more };
         let most = if most > much { most } else { much };
         let least = if little < more { little } else { more };
         let least = if least < much { least } else { much };
         if gradient < 1 || gradient > Self::MOST_GRADIENT {
-            return Err(ConfigError::Gradient);
+            return Err(PenaltiesError::Gradient);
         }
         if cost < 1 || small_step < 1 || small_step > step || step > least || edges[0] > edges[1] {
-            return Err(ConfigError::Penalties);
+            return Err(PenaltiesError::Order);
         }
         // A path's cost and the step from it take seven bits; and where three paths agree least, their sum is
         // still under 255, so that a winner's cost is none that was cut off.
         let (cost, step, jump) = (cost as u16, step as u16, most as u16);
         if cost + step + jump > 127 || cost + 2 * (cost + jump) >= 255 {
-            return Err(ConfigError::Penalties);
+            return Err(PenaltiesError::Order);
         }
         Ok(())
     }
@@ -109,6 +107,15 @@ impl Penalties {
             Change { step: small_step, jump: much },
         ]
     }
+}
+
+/// What is wrong with [`Penalties`].
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum PenaltiesError {
+    /// The range of gradients is 0 or over [`Penalties::MOST_GRADIENT`].
+    Gradient,
+    /// The penalties are not in order, or a sum of them is over its byte.
+    Order,
 }
 
 /// What changes of the disparity cost between two pixels.

@@ -1,7 +1,7 @@
 //! One row of results.
 
-use super::confidence::{AGREEMENT, MOST_MARGIN};
-use super::speckle::BAND;
+use super::memory::rings::{BAND, HISTORY, row as slot};
+use super::stages::confidence::{AGREEMENT, MOST_MARGIN};
 use crate::units::{Disparity, PixelFlags};
 
 /// The least standard deviation of an answer that was filled in, px.
@@ -9,8 +9,7 @@ const FILLED_SIGMA_PX: f32 = 1.0;
 
 /// Pixels on each side that the uncertainty looks at: the reach of the matching window.
 const REACH: usize = 4;
-/// Finished rows that are kept: the row itself and those that the uncertainty looks back at.
-pub(super) const HISTORY: usize = REACH + 1;
+const _: () = assert!(HISTORY == REACH + 1, "the row itself and those that the uncertainty looks back at");
 
 /// A row of disparities, with why a pixel has none and how sure the others are.
 #[derive(Clone, Copy)]
@@ -71,7 +70,7 @@ impl<'a> Row<'a> {
 
     /// Standard deviation of the answer at column `x`, px; `None` where there is no answer.
     ///
-    /// Away from depth edges it is the method's own ([`Scheme::SIGMA_PX`](super::Scheme::SIGMA_PX)). Near an
+    /// Away from depth edges it is the method's own ([`Method::SIGMA_PX`](super::Method::SIGMA_PX)). Near an
     /// edge the window sees two surfaces and may answer with either one's disparity, so the answers up to
     /// four pixels left, right, above and below are looked at: three sigma reach to the farthest of them,
     /// `sigma = max(SIGMA_PX, spread / 3)`. Those above are as they came out, but for what was filled; the
@@ -110,11 +109,4 @@ impl<'a> Row<'a> {
         let spread_px = f32::from(spread) / f32::from(Disparity::ONE);
         Some(least_px.max(spread_px / 3.0))
     }
-}
-
-/// Row `index` of rows of `width`.
-// A stage asks for a row or two: once in flash it is smaller, and no slower to speak of.
-#[cfg_attr(all(target_pointer_width = "32", not(stereopsis_dsp)), inline(never))]
-pub(super) fn slot<T>(rows: &[T], index: usize, width: usize) -> &[T] {
-    rows.get(index * width..).and_then(|r| r.get(..width)).unwrap_or(&[])
 }

@@ -4,7 +4,7 @@ use super::counters::{FaultCounters, count};
 use super::lines::LineGuard;
 use super::{Pipeline, PipelineError, PushError};
 use crate::camera::{ErrorType, FrameStart, LineFault, StereoSource};
-use crate::matching::{Config, ConfigError, Kernel, MatchError, Row, Scheme};
+use crate::matching::{Config, ConfigError, Kernel, MatchError, Row, Method};
 
 /// A [`Pipeline`] that goes on when lines get lost, flags what they touch and counts every fault by name.
 ///
@@ -42,7 +42,7 @@ use crate::matching::{Config, ConfigError, Kernel, MatchError, Row, Scheme};
 /// its sequence number, not 0, is that of the one before, or when its number and its stamp, not 0, are.
 ///
 /// [`PixelFlags::DAMAGED`]: crate::units::PixelFlags::DAMAGED
-pub struct Guarded<S: Scheme, const W: usize, const D: usize> {
+pub struct Guarded<S: Method, const W: usize, const D: usize> {
     pipeline: Pipeline<S, W, D>,
     lines: LineGuard,
     before: Option<FrameStart>,
@@ -51,7 +51,7 @@ pub struct Guarded<S: Scheme, const W: usize, const D: usize> {
 
 type Guard<T, C> = Result<T, PipelineError<<C as ErrorType>::Error>>;
 
-impl<S: Scheme, const W: usize, const D: usize> Guarded<S, W, D> {
+impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
     /// A pipeline that waits for [`Self::start`]. Every byte of it is zero: a static of it takes RAM and no
     /// flash.
     pub const fn new() -> Self {
@@ -105,7 +105,7 @@ impl<S: Scheme, const W: usize, const D: usize> Guarded<S, W, D> {
     pub fn reach_down(&self) -> usize {
         // Answers that are smoothed down the columns rest on the row above as it came out, and so does a
         // path.
-        if S::SMOOTH_DOWN {
+        if S::VERTICAL_FILTER {
             return usize::MAX;
         }
         let checks = &self.config().checks;
@@ -256,7 +256,7 @@ impl<S: Scheme, const W: usize, const D: usize> Guarded<S, W, D> {
     }
 }
 
-impl<S: Scheme, const W: usize, const D: usize> Default for Guarded<S, W, D> {
+impl<S: Method, const W: usize, const D: usize> Default for Guarded<S, W, D> {
     fn default() -> Self {
         Self::new()
     }

@@ -3,7 +3,7 @@
 use super::counters::{FaultCounters, count};
 use super::{Pipeline, PipelineError};
 use crate::camera::{CameraError, FrameStart, LineFault, LineStart, StereoSource};
-use crate::matching::Scheme;
+use crate::matching::Method;
 
 /// What is known about the lines of a frame, and the faults so far.
 pub(super) struct LineGuard {
@@ -64,7 +64,7 @@ impl LineGuard {
     }
 
     /// Takes the lines that the next row needs.
-    pub(super) fn take<S: Scheme, C: StereoSource, const W: usize, const D: usize>(
+    pub(super) fn take<S: Method, C: StereoSource, const W: usize, const D: usize>(
         &mut self,
         pipeline: &mut Pipeline<S, W, D>,
         camera: &mut C,
@@ -75,7 +75,7 @@ impl LineGuard {
         Ok(())
     }
 
-    fn take_one<S: Scheme, C: StereoSource, const W: usize, const D: usize>(
+    fn take_one<S: Method, C: StereoSource, const W: usize, const D: usize>(
         &mut self,
         pipeline: &mut Pipeline<S, W, D>,
         camera: &mut C,
@@ -166,7 +166,7 @@ impl LineGuard {
     }
 
     /// Puts the line above in the place of the one that is due, if so many may be lost.
-    fn stand_in<E, S: Scheme, const W: usize, const D: usize>(
+    fn stand_in<E, S: Method, const W: usize, const D: usize>(
         &mut self,
         pipeline: &mut Pipeline<S, W, D>,
         due: usize,
@@ -186,7 +186,7 @@ impl LineGuard {
     }
 
     /// The lines that stand where the next ones go are those of `due`, or stand in for them.
-    fn accept<E, S: Scheme, const W: usize, const D: usize>(
+    fn accept<E, S: Method, const W: usize, const D: usize>(
         &mut self,
         pipeline: &mut Pipeline<S, W, D>,
         is_own: bool,

@@ -3,7 +3,7 @@
 use super::{PipelineError, PushError};
 use crate::camera::{FrameStart, LineFormat, PixelFormat, StereoSource};
 use crate::imaging::LineWindow;
-use crate::matching::{Config, ConfigError, Kernel, MatchError, Matcher, Row, Scheme};
+use crate::matching::{Config, ConfigError, Kernel, MatchError, Matcher, Row, Method};
 
 /// Rows of disparities from a stereo source, in memory of its own and of fixed size: it fits a `static`.
 ///
@@ -19,7 +19,7 @@ use crate::matching::{Config, ConfigError, Kernel, MatchError, Matcher, Row, Sch
 #[doc = "assert!(size_of_val(&PIPELINE) < 46_000);"]
 #[doc = "assert_eq!(Pipeline::<Block, 320, 64>::LATENCY, 10);"]
 #[doc = "```"]
-pub struct Pipeline<S: Scheme, const W: usize, const D: usize> {
+pub struct Pipeline<S: Method, const W: usize, const D: usize> {
     pub(super) left: LineWindow<W>,
     pub(super) right: LineWindow<W>,
     pub(super) matcher: Matcher<S, W, D>,
@@ -28,7 +28,7 @@ pub struct Pipeline<S: Scheme, const W: usize, const D: usize> {
     height: usize,
 }
 
-impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
+impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
     /// Lines below a census code that it looks at.
     pub(super) const CENSUS_REACH: usize = 2;
 
@@ -257,7 +257,7 @@ impl<S: Scheme, const W: usize, const D: usize> Pipeline<S, W, D> {
     }
 }
 
-impl<S: Scheme, const W: usize, const D: usize> Default for Pipeline<S, W, D> {
+impl<S: Method, const W: usize, const D: usize> Default for Pipeline<S, W, D> {
     fn default() -> Self {
         Self::new()
     }

@@ -22,7 +22,7 @@ use std::ops::Range;
 use std::sync::Barrier;
 use std::thread::{Builder, scope};
 use std::time::Instant;
-use stereopsis::matching::{Config, ConfigError, Kernel, Row, Scheme};
+use stereopsis::matching::{Config, ConfigError, Kernel, Row, Method};
 
 /// A thread's stack: it holds a pipeline.
 const STACK: usize = 16 << 20;
@@ -132,7 +132,7 @@ impl Bands {
 /// Matches a frame and hands its rows on: the kernel, and the time in milliseconds.
 type Frame<'a> = dyn FnMut(&mut dyn FnMut(Row<'_>)) -> Result<(Kernel, f64), ConfigError> + 'a;
 
-fn with_pipeline<S: Scheme, T>(
+fn with_pipeline<S: Method, T>(
     way: Way,
     config: &Config,
     band: &Band,

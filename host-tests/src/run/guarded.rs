@@ -5,7 +5,7 @@ use super::{MOST_DISPARITIES, MOST_WIDTH, Method};
 use crate::map::DisparityMap;
 use std::fmt::Display;
 use stereopsis::camera::{FrameStart, StereoSource};
-use stereopsis::matching::{Config, ConfigError, Scheme};
+use stereopsis::matching::{Config, ConfigError, Method};
 use stereopsis::pipeline::{FaultCounters, Guarded};
 
 /// A thread's stack: it holds a pipeline.
@@ -46,7 +46,7 @@ pub fn run_guarded<C: StereoSource<Error: Display> + Send>(
     })
 }
 
-fn frames<S: Scheme, C: StereoSource<Error: Display>>(
+fn frames<S: Method, C: StereoSource<Error: Display>>(
     config: &Config,
     most_lost: Option<u16>,
     source: &mut C,

@@ -3,7 +3,7 @@
 use super::Host;
 use std::fmt;
 use std::str::FromStr;
-use stereopsis::matching::{Config, Filter, Scheme, state_bytes};
+use stereopsis::matching::{Config, Filter, Method, state_bytes};
 
 /// A matching method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

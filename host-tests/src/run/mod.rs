@@ -30,7 +30,7 @@ use std::fmt;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use stereopsis::camera::StereoSource;
-use stereopsis::matching::{Block, Config, ConfigError, Fast, Kernel, Row, Scheme, Sgm, SgmEdge, SgmLean};
+use stereopsis::matching::{Block, Config, ConfigError, Fast, Kernel, Row, Method, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::{Pipeline, PipelineError};
 
 /// Pixels in a line that the pipelines here have room for.
@@ -42,7 +42,7 @@ type Host<S> = Pipeline<S, MOST_WIDTH, MOST_DISPARITIES>;
 
 /// A method whose pipeline lives in a static, as in firmware: over a megabyte each, which no thread's stack
 /// has to hold.
-trait Held: Scheme {
+trait Held: Method {
     /// The pipeline.
     fn pipeline() -> &'static Mutex<Host<Self>>;
 }
@@ -113,7 +113,7 @@ impl From<Method> for Way {
 }
 
 impl Way {
-    fn start<S: Scheme>(self, pipeline: &mut Host<S>, config: &Config) -> Result<(), ConfigError> {
+    fn start<S: Method>(self, pipeline: &mut Host<S>, config: &Config) -> Result<(), ConfigError> {
         // The pipeline may have run on another one before.
         pipeline.set_kernel(self.kernel.unwrap_or_else(Kernel::detect));
         pipeline.start(config)
@@ -145,7 +145,7 @@ pub fn run<C: StereoSource<Error: fmt::Display>>(
 }
 
 /// One frame through a pipeline: the kernel that did it, and its time in milliseconds without that of `keep`.
-fn frame<S: Scheme, C: StereoSource<Error: fmt::Display>>(
+fn frame<S: Method, C: StereoSource<Error: fmt::Display>>(
     way: Way,
     pipeline: &mut Host<S>,
     config: &Config,
@@ -181,7 +181,7 @@ pub fn time_frames<C: StereoSource<Error: fmt::Display>>(
         let pair = MemoryPair::record(camera).map_err(PipelineError::from)?;
         return Bands::new(way, config, &pair).time(frames).map_err(RunError::Config);
     }
-    fn time<S: Scheme, C: StereoSource<Error: fmt::Display>>(
+    fn time<S: Method, C: StereoSource<Error: fmt::Display>>(
         way: Way,
         pipeline: &mut Host<S>,
         config: &Config,

@@ -1,6 +1,6 @@
 //! The cost of every disparity at every pixel, and its sum over the window.
 
-use super::Scheme;
+use super::Method;
 use super::census::census;
 use super::smooth::Seen;
 use stereopsis::matching::Config;
@@ -52,7 +52,7 @@ pub fn costs(neighbours: &[(isize, isize)], config: &Config, left: &Seen<'_>, ri
 
 /// The sum over the part of the window that lies inside the picture: first along columns, of which only whole
 /// units count, then along rows.
-pub fn window_sums(scheme: &Scheme, unit: u16, costs: &Volume) -> Volume {
+pub fn window_sums(scheme: &Method, unit: u16, costs: &Volume) -> Volume {
     let (width, height) = (costs.width, costs.height);
     let mut columns = Volume::filled(width, height, costs.disparities);
     for y in 0..height {
@@ -83,7 +83,7 @@ fn add(sum: &mut [u16], values: &[u16]) {
 }
 
 /// The same sums by the definition, one window after the other: slow, to hold [`window_sums`] to.
-pub fn window_sums_plain(scheme: &Scheme, unit: u16, costs: &Volume) -> Volume {
+pub fn window_sums_plain(scheme: &Method, unit: u16, costs: &Volume) -> Volume {
     let (width, height) = (costs.width as isize, costs.height as isize);
     let (radius_x, radius_y) = (scheme.radius_x as isize, scheme.radius_y as isize);
     let mut sums = Volume::filled(costs.width, costs.height, costs.disparities);

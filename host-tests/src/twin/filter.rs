@@ -1,7 +1,7 @@
 //! What happens to answers after they are chosen: smoothing along the row, the median, the speckle filter,
 //! smoothing down the columns, filling, the deviation.
 
-use super::{Answers, Scheme};
+use super::{Answers, Method};
 use std::ops::Range;
 use stereopsis::matching::{Checks, Config};
 use stereopsis::units::{Disparity, PixelFlags};
@@ -144,7 +144,7 @@ pub(super) fn fill_gaps(checks: &Checks, mut map: Answers) -> Answers {
 /// and speckle filter, in rows above those `after`. A filled pixel of the `map` looks at both sides of its
 /// gap as well, and has at least 1 px.
 pub(super) fn sigmas(
-    scheme: &Scheme,
+    scheme: &Method,
     config: &Config,
     before: &[Disparity],
     after: &[Disparity],

@@ -38,7 +38,7 @@ use stereopsis::units::{Disparity, PixelFlags};
 
 /// What tells one matching method from another.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scheme {
+pub struct Method {
     /// Where its costs come from.
     pub cost: Cost,
     /// An answer rests on this many columns to each side, which texture is counted in.
@@ -72,7 +72,7 @@ pub enum Cost {
     },
 }
 
-impl Scheme {
+impl Method {
     /// The twin of [`stereopsis::matching::Fast`]: 4-bit census, 9 x 7 window.
     pub const FAST: Self = Self {
         cost: Cost::Window { neighbours: &census::PLUS4, unit: 1 },
@@ -158,7 +158,7 @@ pub struct Answers {
 /// # Panics
 ///
 /// When the pictures are not of the configuration's size.
-pub fn match_pair(scheme: &Scheme, config: &Config, left: &GrayImage, right: &GrayImage) -> Answers {
+pub fn match_pair(scheme: &Method, config: &Config, left: &GrayImage, right: &GrayImage) -> Answers {
     let size = (u32::from(config.width), u32::from(config.height));
     assert_eq!(
         (left.dimensions(), right.dimensions()),

@@ -1,7 +1,7 @@
 //! Which disparity wins at a pixel, and what is to be said about it.
 
 use super::cost::Volume;
-use super::{Picture, Scheme};
+use super::{Picture, Method};
 use stereopsis::matching::{Checks, Config};
 use stereopsis::units::{Disparity, PixelFlags};
 
@@ -16,7 +16,7 @@ struct Winner {
 
 /// The answers and flags of row `y`, before smoothing and the speckle filter, and the margins of its winners.
 pub(super) fn select_row(
-    scheme: &Scheme,
+    scheme: &Method,
     config: &Config,
     left: &Picture<'_>,
     sums: &Volume,
@@ -93,7 +93,7 @@ fn held_by_right_columns(winners: &[Option<Winner>], smallest: usize) -> Vec<Opt
 
 /// Steps of 1/32 px from the winner to the tip of the two equally steep lines through its cost and its
 /// neighbours'.
-fn fraction(scheme: &Scheme, candidates: &[u16], best: Winner) -> i32 {
+fn fraction(scheme: &Method, candidates: &[u16], best: Winner) -> i32 {
     if best.d == 0 || best.d + 1 >= candidates.len() {
         return 0;
     }
@@ -132,7 +132,7 @@ fn flat(candidates: &[u16], best: Winner) -> bool {
 }
 
 /// Whether too few pixels of the window have a gradient along the row.
-fn untextured(scheme: &Scheme, checks: &Checks, left: &Picture<'_>, x: usize, y: usize) -> bool {
+fn untextured(scheme: &Method, checks: &Checks, left: &Picture<'_>, x: usize, y: usize) -> bool {
     if checks.texture_pixels == 0 {
         return false;
     }

@@ -15,7 +15,7 @@ use stereopsis::ffi::{
     Status, memory_bytes,
 };
 use stereopsis::imaging::Noise;
-use stereopsis::matching::{self, Block, Checks, Scheme};
+use stereopsis::matching::{self, Block, Checks, Method};
 use stereopsis::pipeline::Pipeline;
 use stereopsis_host::scene::pattern::Pattern;
 
@@ -75,7 +75,7 @@ struct Found {
 }
 
 /// The rows of a pipeline in Rust.
-fn rows<S: Scheme>(config: &matching::Config, [left, right]: &Lines) -> Vec<Found> {
+fn rows<S: Method>(config: &matching::Config, [left, right]: &Lines) -> Vec<Found> {
     let mut pipeline = Box::new(Pipeline::<S, WIDTH, DISPARITIES>::new());
     pipeline.start(config).expect("the configuration is valid");
     pipeline.begin().expect("it is started");
@@ -99,7 +99,7 @@ fn rows<S: Scheme>(config: &matching::Config, [left, right]: &Lines) -> Vec<Foun
 }
 
 /// The rows of the functions for C.
-fn c_rows<S: Scheme>(config: &CConfig, [left, right]: &Lines) -> Vec<Found> {
+fn c_rows<S: Method>(config: &CConfig, [left, right]: &Lines) -> Vec<Found> {
     type C<S> = Instance<S, WIDTH, DISPARITIES>;
     let mut memory = vec![0xA5A5_A5A5_A5A5_A5A5_u64; C::<S>::size().div_ceil(8)];
     let mut handle = null_mut();

@@ -46,7 +46,7 @@ fn odd(width: u16, height: u16) -> CConfig {
 }
 
 /// The rows with every preset and level of a method, which are those of the pipeline in Rust.
-fn rows_of<S: Scheme>() -> Vec<Vec<Found>> {
+fn rows_of<S: Method>() -> Vec<Vec<Found>> {
     let (width, height) = (70, 40);
     let lines = lines(width, height);
     let search =

@@ -5,7 +5,7 @@
 use image::GrayImage;
 use std::sync::OnceLock;
 use stereopsis::depth::DepthScale;
-use stereopsis::matching::{Block, Checks, Config, Fast, Scheme, Sgm, SgmEdge, SgmLean};
+use stereopsis::matching::{Block, Checks, Config, Fast, Method, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::Pipeline;
 use stereopsis::units::PixelFlags;
 use stereopsis_host::scene::{Scene, SceneCamera, Truth};
@@ -42,7 +42,7 @@ fn demo_pair() -> &'static (Scene, Pair) {
     })
 }
 
-fn find<S: Scheme>(scene: &Scene, pair: &Pair, checks: Checks) -> Found {
+fn find<S: Method>(scene: &Scene, pair: &Pair, checks: Checks) -> Found {
     let search = Config::new(scene.width(), scene.height(), scene.disparities());
     let config = Config { checks, penalties: S::PENALTIES, ..search };
     let mut pipeline = Box::new(Pipeline::<S, 640, 64>::new());
@@ -116,7 +116,7 @@ fn share_by_fraction(found: &Found) -> [f64; 16] {
 }
 
 /// Most RMS and most mean error in a bin of fractions, px; the share that the fullest bin may have.
-fn sub_pixel<S: Scheme>(rms_bound: f64, locking_bound: f64, share_bound: f64) {
+fn sub_pixel<S: Method>(rms_bound: f64, locking_bound: f64, share_bound: f64) {
     let scene = Scene::slanted_plane();
     let found = find::<S>(&scene, &scene.render(), S::DEFAULT);
     let error = rms(found.errors().map(|(e, _)| e));
@@ -160,7 +160,7 @@ fn sgm_is_accurate_to_a_fraction_of_a_pixel() {
 
 /// Bounds in percent: answers within three sigma in depth, answers over 2 px off, visible points without a
 /// right answer.
-fn demo<S: Scheme>(within_bound: f64, bad2_bound: f64, missed_bound: f64) {
+fn demo<S: Method>(within_bound: f64, bad2_bound: f64, missed_bound: f64) {
     let (scene, pair) = demo_pair();
     let found = find::<S>(scene, pair, S::DEFAULT);
     let within = |sigmas: f32| {

@@ -1,7 +1,7 @@
 //! A camera of two pictures by turns, and what comes of them without a fault.
 
 use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, StereoSource};
-use stereopsis::matching::{Checks, Config, Filter, Row, Scheme};
+use stereopsis::matching::{Checks, Config, Filter, Row, Method};
 use stereopsis::pipeline::Pipeline;
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::scene::SceneCamera;
@@ -91,7 +91,7 @@ impl StereoSource for Changing {
     }
 }
 
-pub fn config<S: Scheme>() -> Config {
+pub fn config<S: Method>() -> Config {
     // Little speckle is asked for: the flag's reach down is that many rows.
     let config = Config::new(WIDTH, HEIGHT, 16).with_filter::<S>(Filter::Default);
     let checks = Checks { speckle_pixels: 4, ..config.checks };
@@ -99,7 +99,7 @@ pub fn config<S: Scheme>() -> Config {
 }
 
 /// The rows of both pictures without a fault: of odd frames, of even frames.
-pub fn reference<S: Scheme>() -> [Vec<Kept>; 2] {
+pub fn reference<S: Method>() -> [Vec<Kept>; 2] {
     let mut source = Changing::new();
     let mut pipeline = Box::new(Pipeline::<S, 32, 16>::new());
     pipeline.start(&config::<S>()).expect("the configuration fits");

@@ -7,7 +7,7 @@ use stereopsis::camera::{
     CameraError, CameraPair, ErrorType, FrameStart, LineFormat, LineSource, LineStart, StereoSource,
 };
 use stereopsis::imaging::Noise;
-use stereopsis::matching::{Block, Config, ConfigError, Fast, Scheme, Sgm};
+use stereopsis::matching::{Block, Config, ConfigError, Fast, Method, Sgm};
 use stereopsis::pipeline::{FaultCounters, Guarded, Pipeline, PipelineError};
 use stereopsis::units::PixelFlags;
 use stereopsis_host::fault::{Fault, Faulty, Record};
@@ -51,7 +51,7 @@ fn expect(counters: &mut FaultCounters, record: &Record, begun: bool) {
 
 /// Frames of `faults` at a rate: every row that is not flagged is right, those flagged are those that the
 /// record names, the counters are the record's, and a frame without a fault is whole.
-fn guarded<S: Scheme>(
+fn guarded<S: Method>(
     faults: &[Fault],
     rate: f64,
     frames: usize,

@@ -2,7 +2,7 @@
 //! error.
 
 use image::GrayImage;
-use stereopsis::matching::{Block, Checks, Config, Fast, MatchError, Row, Scheme, Sgm, SgmEdge, SgmLean};
+use stereopsis::matching::{Block, Checks, Config, Fast, MatchError, Row, Method, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::{Pipeline, PushError};
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::scene::SceneCamera;
@@ -39,13 +39,13 @@ fn pair(width: u16, height: u16) -> (GrayImage, GrayImage) {
     Pattern::Shifted { most: 12, noise_grey: 4.0 }.pair(width.into(), height.into(), 5)
 }
 
-fn started<S: Scheme>(config: &Config) -> Box<Any<S>> {
+fn started<S: Method>(config: &Config) -> Box<Any<S>> {
     let mut pipeline = Box::new(Any::<S>::new());
     pipeline.start(config).expect("the configuration is valid");
     pipeline
 }
 
-fn pulled<S: Scheme>(pipeline: &mut Any<S>, pair: &(GrayImage, GrayImage)) -> Vec<Kept> {
+fn pulled<S: Method>(pipeline: &mut Any<S>, pair: &(GrayImage, GrayImage)) -> Vec<Kept> {
     let mut camera = SceneCamera::new(pair.0.clone(), pair.1.clone());
     pipeline.begin_frame(&mut camera).expect("a frame");
     let mut rows = Vec::new();
@@ -61,7 +61,7 @@ fn lines(pair: &(GrayImage, GrayImage)) -> impl Iterator<Item = (&[u8], &[u8])> 
     pair.0.as_raw().chunks(width).zip(pair.1.as_raw().chunks(width))
 }
 
-fn pushed<S: Scheme>(pipeline: &mut Any<S>, pair: &(GrayImage, GrayImage)) -> Vec<Kept> {
+fn pushed<S: Method>(pipeline: &mut Any<S>, pair: &(GrayImage, GrayImage)) -> Vec<Kept> {
     pipeline.begin().expect("it is started");
     let mut rows = Vec::new();
     for (y, (left, right)) in lines(pair).enumerate() {
@@ -76,7 +76,7 @@ fn pushed<S: Scheme>(pipeline: &mut Any<S>, pair: &(GrayImage, GrayImage)) -> Ve
     rows
 }
 
-fn compare<S: Scheme>(width: u16, height: u16, checks: Checks) {
+fn compare<S: Method>(width: u16, height: u16, checks: Checks) {
     let config = Config { checks, confidence: true, ..Config::new(width, height, 16) };
     let pair = pair(width, height);
     let mut pipeline = started::<S>(&config);

@@ -10,7 +10,7 @@ use cbindgen::{Builder, Config, DocumentationLength, DocumentationStyle, Languag
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use std::fs;
 use stereopsis::ffi::memory_bytes;
-use stereopsis::matching::{Block, Fast, Scheme, Sgm, SgmEdge, SgmLean};
+use stereopsis::matching::{Block, Fast, Method, Sgm, SgmEdge, SgmLean};
 
 /// The header, from the repository's root.
 const HEADER: &str = "src/ffi/stereopsis.h";
@@ -122,7 +122,7 @@ fn config() -> Outcome<Config> {
 }
 
 /// How many bytes a method takes, as a macro: `a + b width + c disparities + d width disparities`, by trying.
-fn bytes_macro<S: Scheme>() -> Outcome<String> {
+fn bytes_macro<S: Method>() -> Outcome<String> {
     let bytes = |width: usize, disparities: usize| memory_bytes::<S>(width, disparities) as i64;
     let [w, d, step_w, step_d] = [256, 16, 256, 16];
     let (by_w, by_d) = (bytes(512, 16) - bytes(256, 16), bytes(256, 32) - bytes(256, 16));

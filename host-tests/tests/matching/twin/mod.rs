@@ -13,7 +13,7 @@ mod moved;
 use image::GrayImage;
 use stereopsis::camera::StereoSource;
 use stereopsis::imaging::Noise;
-use stereopsis::matching::{Block, Config, Fast, Kernel, Scheme, Sgm, SgmEdge, SgmLean};
+use stereopsis::matching::{Block, Config, Fast, Kernel, Method, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::{Pipeline, PipelineError};
 use stereopsis_host::scene::SceneCamera;
 use stereopsis_host::scene::pattern::Pattern;
@@ -29,32 +29,32 @@ const HALVES: usize = 240;
 type Any<S> = Pipeline<S, W, D>;
 
 /// A method of the core with the twin's description of it.
-trait Method: Scheme {
-    const TWIN: twin::Scheme;
+trait Method: Method {
+    const TWIN: twin::Method;
 }
 
 impl Method for Fast {
-    const TWIN: twin::Scheme = twin::Scheme::FAST;
+    const TWIN: twin::Method = twin::Method::FAST;
 }
 
 impl Method for Block {
-    const TWIN: twin::Scheme = twin::Scheme::BLOCK;
+    const TWIN: twin::Method = twin::Method::BLOCK;
 }
 
 impl Method for Sgm {
-    const TWIN: twin::Scheme = twin::Scheme::SGM;
+    const TWIN: twin::Method = twin::Method::SGM;
 }
 
 impl Method for SgmEdge {
-    const TWIN: twin::Scheme = twin::Scheme::SGM_EDGE;
+    const TWIN: twin::Method = twin::Method::SGM_EDGE;
 }
 
 impl Method for SgmLean {
-    const TWIN: twin::Scheme = twin::Scheme::SGM_LEAN;
+    const TWIN: twin::Method = twin::Method::SGM_LEAN;
 }
 
 /// All rows of the camera's next frame.
-fn rows<S: Scheme, C: StereoSource, const D: usize>(
+fn rows<S: Method, C: StereoSource, const D: usize>(
     pipeline: &mut Pipeline<S, W, D>,
     camera: &mut C,
 ) -> Result<Answers, PipelineError<C::Error>> {
@@ -132,14 +132,14 @@ fn long<T>(list: impl IntoIterator<Item = T>, nth: usize) -> impl Iterator<Item 
     list.into_iter().step_by(if emulated() { nth } else { 1 })
 }
 
-fn pipeline<S: Scheme>() -> Box<Any<S>> {
+fn pipeline<S: Method>() -> Box<Any<S>> {
     Box::new(Pipeline::new())
 }
 
 #[test]
 fn the_twins_window_sums_are_the_plain_ones() {
     let (left, right) = Pattern::Noise.pair(23, 17, 3);
-    for scheme in [twin::Scheme::FAST, twin::Scheme::BLOCK] {
+    for scheme in [twin::Method::FAST, twin::Method::BLOCK] {
         let twin::Cost::Window { neighbours, unit } = scheme.cost else { panic!("a window") };
         for (config, left, right) in [
             (Config::new(23, 17, 20), &left, &right),

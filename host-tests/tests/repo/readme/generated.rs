@@ -10,7 +10,7 @@ use image::imageops::{FilterType, replace, resize};
 use image::{DynamicImage, RgbImage};
 use std::sync::LazyLock;
 use stereopsis::depth::{Decimator, DepthScale, DisparityColours};
-use stereopsis::matching::{Block, Config, Fast, Filter, Scheme, Sgm, SgmEdge, SgmLean, state_bytes};
+use stereopsis::matching::{Block, Config, Fast, Filter, Method, Sgm, SgmEdge, SgmLean, state_bytes};
 use stereopsis::pipeline::Pipeline;
 use stereopsis::units::Disparity;
 use stereopsis_host::colour::ColourScale;
@@ -67,7 +67,7 @@ fn splice_parts(readme: &str, parts: &[Part]) -> Result<String, String> {
 
 /// Memory and delay of all methods in four sizes.
 fn state_table() -> String {
-    fn row<S: Scheme, const W: usize, const D: usize>() -> String {
+    fn row<S: Method, const W: usize, const D: usize>() -> String {
         let (state, whole) = (state_bytes::<S>(W, D), size_of::<Pipeline<S, W, D>>());
         format!("| `{}` | {W} | {D} | {state} | {whole} | {} |\n", S::NAME, Pipeline::<S, W, D>::LATENCY)
     }
@@ -75,7 +75,7 @@ fn state_table() -> String {
         "| method | pixels in a line | disparities | matcher, bytes | pipeline, bytes | delay, lines |\n\
                      | --- | ---: | ---: | ---: | ---: | ---: |\n"
             .to_owned();
-    fn rows<S: Scheme>() -> String {
+    fn rows<S: Method>() -> String {
         [row::<S, 160, 32>(), row::<S, 320, 64>(), row::<S, 640, 64>(), row::<S, 640, 128>()].concat()
     }
     table + &[rows::<Fast>(), rows::<Block>(), rows::<SgmLean>(), rows::<Sgm>(), rows::<SgmEdge>()].concat()

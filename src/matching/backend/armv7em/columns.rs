@@ -1,0 +1,186 @@
+//! The costs of a row that enters and of one that leaves, added to the columns under the window.
+//!
+//! ```text
+//! fast    column x, d   += cost of the entering codes, + 4 - cost of the leaving ones, both from tables: half a byte each,
+//!                       so that eight candidates are one addition, and two more where they come into the sums. So every
+//!                       row adds four too many, modulo 256, which windows take off again
+//! block   column x, d   += bits that differ in the entering codes, + bits that are equal in the leaving ones, - 8
+//! ```
+
+use super::tables::{self, LINE, Table};
+use super::word::{ONE, add};
+use super::{Rows, rows};
+use crate::matching::backend::work::STEP;
+use crate::matching::memory::layout::OUTSIDE;
+use crate::matching::memory::views::view;
+use crate::matching::backend::parameters::WindowParameters;
+
+/// Candidates that tables serve at a time, at most.
+const MOST: usize = 64;
+
+/// Moves the sums of all columns from `begin` on one row down, by tables. `STRIDE` is the number of
+/// candidates where it is a usual one; else 0.
+#[inline(never)]
+pub(super) fn update_by_tables<const STRIDE: usize>(
+    row: &Rows<'_>,
+    begin: usize,
+    scratch: &mut [u32],
+    columns: &mut [u32],
+) {
+    let Some((tables, scratch)) = scratch.split_at_mut_checked(size_of::<[Table; 2]>() / size_of::<u32>())
+    else {
+        return;
+    };
+    let tables = tables.as_chunks_mut().0.as_chunks_mut().0.first_chunk_mut::<2>();
+    let (Some(tables), Some(any)) = (tables, row.enter.or(row.leave)) else { return };
+    // The right codes alone.
+    let [new, old] =
+        reversed(row, [row.enter, row.leave].map(|codes| codes.unwrap_or(&[])), 0xf0f0_f0f0, scratch);
+    // Nothing differs in a row that is not there.
+    if row.enter.is_none() {
+        tables::fill(&mut tables[0], 0);
+    }
+    if row.leave.is_none() {
+        tables::fill(&mut tables[1], 4);
+    }
+    // Never none.
+    let stride = if STRIDE > 0 { STRIDE } else { row.stride.max(STEP) };
+    let words = stride / 4;
+    // Beside the columns that windows have is what windows beyond the ends have: of them nothing differs.
+    for outside in [begin, OUTSIDE + row.width] {
+        let sums = columns.get_mut(outside * words..(outside + OUTSIDE) * words).unwrap_or_default();
+        // They are all the same, and whole steps of them.
+        let sum = add(sums.first().copied().unwrap_or(0), 4 * ONE);
+        sums.as_chunks_mut().0.iter_mut().for_each(|sums| *sums = [sum; STEP / 4]);
+    }
+    for chunk in (0..stride).step_by(MOST) {
+        let half = MOST.min(stride - chunk) / 2;
+        for from in (begin..row.width).step_by(LINE - half) {
+            let piece = from..row.width.min(from + LINE - half);
+            let first = row.width - piece.end + chunk;
+            if row.enter.is_some() {
+                tables::make(&mut tables[0], new.get(first..).unwrap_or(&[]), half, piece.len());
+            }
+            if row.leave.is_some() {
+                tables::make_equal(&mut tables[1], old.get(first..).unwrap_or(&[]), half, piece.len());
+            }
+            let codes =
+                [row.enter, row.leave].map(|codes| codes.unwrap_or(any).get(piece.clone()).unwrap_or(&[]));
+            let columns =
+                columns.get_mut((OUTSIDE + from) * words..(OUTSIDE + piece.end) * words).unwrap_or_default();
+            match STRIDE {
+                16 => rows::by_tables_16(tables, codes, columns.as_chunks_mut().0),
+                32 => rows::by_tables_32(tables, codes, columns.as_chunks_mut().0),
+                48 => rows::by_tables_48(tables, codes, columns.as_chunks_mut().0),
+                64 => rows::by_tables_64(tables, codes, columns.as_chunks_mut().0),
+                _ => add_costs(tables, codes, half, (words, chunk / 4), columns),
+            }
+        }
+    }
+}
+
+/// Adds the costs of a piece of a row to so many words of its columns, from a word on.
+fn add_costs(
+    [new, old]: &[Table; 2],
+    [enters, leaves]: [&[u8]; 2],
+    half: usize,
+    (words, from): (usize, usize),
+    columns: &mut [u32],
+) {
+    let places = (0..enters.len()).rev();
+    for (((sums, place), enters), leaves) in
+        columns.chunks_exact_mut(words).zip(places).zip(enters).zip(leaves)
+    {
+        let costs =
+            [(new, enters), (old, leaves)].map(|(table, code)| tables::costs(table, code & 15, place, half));
+        let Some((near, far)) = sums.get_mut(from..).and_then(|s| s.split_at_mut_checked(half / 4)) else {
+            return;
+        };
+        let costs = costs[0].as_chunks::<4>().0.iter().zip(costs[1].as_chunks::<4>().0);
+        for ((near, far), (&new, &old)) in near.iter_mut().zip(far).zip(costs) {
+            let costs = u32::from_le_bytes(new) + u32::from_le_bytes(old);
+            *near = add(*near, costs & 0x0f0f_0f0f);
+            *far = add(*far, costs >> 4 & 0x0f0f_0f0f);
+        }
+    }
+}
+
+/// Moves the sums of all columns from `begin` on one row down, bit by bit. `STRIDE` is the number of
+/// candidates where that is known when the crate is compiled; 0 where it is not.
+#[inline(never)]
+pub(super) fn update<S: WindowParameters, const STRIDE: usize>(
+    row: &Rows<'_>,
+    begin: usize,
+    scratch: &mut [u32],
+    columns: &mut [u32],
+) {
+    // Never none.
+    let stride = if STRIDE > 0 { STRIDE } else { row.stride.max(STEP) };
+    let halves = [row.enter, row.leave].map(|codes| codes.map(|row| row.split_at(row.len() / 2)));
+    let [new, old] =
+        reversed(row, halves.map(|row| row.map_or(&[][..], |(_, right)| right)), u32::MAX, scratch);
+    // The codes of a row that is not there are 0 on both sides.
+    let lefts = [halves[0].map_or(new, |(left, _)| left), halves[1].map_or(old, |(left, _)| left)];
+    let [enters, leaves] = lefts.map(|left| left.get(begin..).unwrap_or(&[]));
+    // The first column has the last places.
+    let last = row.width - begin + stride - 1;
+    let words = stride / 4;
+    let columns =
+        columns.get_mut((OUTSIDE + begin) * words..(OUTSIDE + row.width) * words).unwrap_or_default();
+    match STRIDE {
+        16 => return rows::by_bits_16([enters, leaves], [new, old], columns.as_chunks_mut().0),
+        32 => return rows::by_bits_32([enters, leaves], [new, old], columns.as_chunks_mut().0),
+        48 => return rows::by_bits_48([enters, leaves], [new, old], columns.as_chunks_mut().0),
+        64 => return rows::by_bits_64([enters, leaves], [new, old], columns.as_chunks_mut().0),
+        _ => {}
+    }
+    let [new, old] = [new, old].map(|row| row.get(..last).unwrap_or(&[]).windows(stride).rev());
+    let codes = enters
+        .iter()
+        .zip(leaves)
+        .map(|(&enters, &leaves)| [u32::from(enters) * ONE, !(u32::from(leaves) * ONE)]);
+    for (((sums, codes), new), old) in columns.chunks_exact_mut(stride / 4).zip(codes).zip(new).zip(old) {
+        add_bits::<S>(codes, new, old, sums);
+    }
+}
+
+/// The right codes of both rows from the partner of the last column's first candidate back, with those of all
+/// candidates of the first column; of each the bits of a mask.
+fn reversed<'a>(row: &Rows<'_>, right: [&[u8]; 2], mask: u32, room: &'a mut [u32]) -> [&'a [u8]; 2] {
+    // Tables read up to seven bytes more, and pieces begin between words.
+    let words = ((row.width + row.stride).div_ceil(4) + 2).min(room.len() / 2);
+    let Some((new, old)) = room.split_at_mut_checked(words) else { return [&[]; 2] };
+    let last = row.width as i32 - 1 - row.min_disparity as i32;
+    for (right, out) in right.into_iter().zip([&mut *new, old.get_mut(..words).unwrap_or_default()]) {
+        rows::reverse(right, last, mask, out);
+    }
+    [view::<u32, u8>(new), view::<u32, u8>(old)]
+}
+
+/// Adds the bits of four candidates at a time.
+#[inline(always)]
+fn add_bits<S: WindowParameters>([enters, leaves]: [u32; 2], new: &[u8], old: &[u8], sums: &mut [u32]) {
+    let codes = new.as_chunks::<4>().0.iter().zip(old.as_chunks::<4>().0);
+    for (sums, (&new, &old)) in sums.iter_mut().zip(codes) {
+        let bits = bits_of_two::<S>(enters ^ u32::from_le_bytes(new), leaves ^ u32::from_le_bytes(old));
+        // Bytes are no less than 0 after it.
+        *sums = (*sums + bits).wrapping_sub(8 * ONE);
+    }
+}
+
+/// How many bits are set in each byte of two words together, of the bits that a code has.
+#[inline(always)]
+fn bits_of_two<S: WindowParameters>(a: u32, b: u32) -> u32 {
+    if S::BITS <= 4 {
+        // The two times four bits fill a byte.
+        let bits = (a & 0x0f0f_0f0f) | (b & 0x0f0f_0f0f) << 4;
+        let pairs = bits - (bits >> 1 & 0x5555_5555);
+        let fours = (pairs & 0x3333_3333) + (pairs >> 2 & 0x3333_3333);
+        return (fours + (fours >> 4)) & 0x0f0f_0f0f;
+    }
+    let pairs = |bits: u32| bits - (bits >> 1 & 0x5555_5555);
+    let fours = |pairs: u32| (pairs & 0x3333_3333) + (pairs >> 2 & 0x3333_3333);
+    // Up to eight in four bits, up to sixteen in a byte.
+    let fours = fours(pairs(a)) + fours(pairs(b));
+    (fours & 0x0f0f_0f0f) + (fours >> 4 & 0x0f0f_0f0f)
+}

@@ -1,0 +1,218 @@
+//! The kernel in bytes, for cores with Arm's instructions on four bytes in a word (Cortex-M4, M7, M33): a
+//! word is four candidates of a column, the smallest disparity lowest.
+//!
+//! In running order:
+//!
+//! * `census`: the codes of a row.
+//! * `tables`: what every left code costs against a row's right codes, where codes have four bits.
+//! * `columns`: costs into the columns under the window.
+//! * `windows`: columns into windows, windows into winners.
+//! * `rows`: the right codes from right to left, and the loops of both over the pixels of a row, in assembly
+//!   for the usual numbers of candidates.
+//! * `left_right`: winners into answers; `smooth`: these averaged; `speckle`: their support counted, which all
+//!   methods share.
+//! * `sgm`: costs along paths.
+//! * `word`: what is done to four bytes.
+//!
+//! The compiler has no instructions on four bytes, and keeps too little in registers: the loops over pixels
+//! are in assembly. A loop over two pixels in a round is entered in its middle where their number is odd.
+//! Each loop is a function that stands alone (`inline(never)`). Where a loop needs more registers than
+//! operands may be, or such that one instruction loads, all of them are named, and the two that are not the
+//! assembly's (r6, r7) are kept on the stack.
+//!
+//! The work is the same for every picture, but for a few instructions where a winner is at an end of the
+//! search.
+
+mod census;
+mod columns;
+mod left_right;
+mod rows;
+pub(super) mod sgm;
+mod smooth;
+mod speckle;
+mod tables;
+mod windows;
+mod word;
+
+use super::TABLE_WORDS;
+use super::isa::Isa;
+use crate::matching::kernel::Kernel;
+use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
+use super::portable;
+use super::work::{EdgeWork, Guide, PathWork, Rules, STEP, SpeckleWork, WindowWork, WinnerWork};
+use crate::matching::memory::Rows5;
+use crate::matching::memory::views::view_mut;
+use crate::matching::memory::winners::Select;
+use crate::units::{Disparity, PixelFlags};
+
+pub(in crate::matching) use portable::columns_begin;
+
+/// Whether the two codes of a pixel share a byte where codes have up to four bits.
+pub(in crate::matching) const CODES_SHARE_A_BYTE: bool = true;
+
+/// Arm's instructions on four bytes, which the compilation was told that the core has.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(in crate::matching) struct Backend;
+
+impl Backend {
+    /// What a matcher is made with before it is started.
+    pub(in crate::matching) const FIRST: Self = Self;
+
+    /// The fastest code that this processor runs.
+    pub(in crate::matching) fn detect() -> Self {
+        Self
+    }
+
+    /// The code of a kernel, if this processor runs it.
+    pub(in crate::matching) fn of(kernel: Kernel) -> Option<Self> {
+        (kernel == Kernel::Dsp).then_some(Self)
+    }
+}
+
+impl Isa for Backend {
+    #[inline(always)]
+    fn kernel(self) -> Kernel {
+        Kernel::Dsp
+    }
+
+    #[inline(always)]
+    fn candidates(self, disparities: usize, most: usize) -> usize {
+        candidates(disparities, most)
+    }
+
+    #[inline(always)]
+    fn census<P: WindowParameters>(
+        self,
+        lines: [&Rows5<'_>; 2],
+        _: usize,
+        _: &mut [u32],
+        out: &mut [u8],
+    ) {
+        codes_of::<P>(lines, out);
+    }
+
+    #[inline(always)]
+    fn window<P: WindowParameters>(self, work: WindowWork<'_>, select: Option<Select<'_>>) {
+        row::<P>(work, select);
+    }
+
+    #[inline(always)]
+    fn sgm_cost<P: SgmParameters>(
+        self,
+        work: &mut PathWork<'_>,
+        is_first: bool,
+        lines: [&Rows5<'_>; 2],
+        workspace: &mut [u8],
+    ) {
+        sgm::cost::<P>(work, is_first, lines, workspace);
+    }
+
+    #[inline(always)]
+    fn sgm_within_edges(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+        sgm::within_edges(work, edges);
+    }
+
+    #[inline(always)]
+    fn sgm_select(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+        sgm::select::<false>(work, guide, select);
+    }
+
+    #[inline(always)]
+    fn left_right<P: MethodParameters>(
+        self,
+        work: WinnerWork<'_>,
+        rules: &Rules,
+        answers: &mut [Disparity],
+        flags: &mut [PixelFlags],
+    ) {
+        let winners = work.winners.get(work.begin..).unwrap_or(&[]);
+        left_right::offer(winners, work.right);
+        if P::SLANT_COST == 0 {
+            left_right::answer(winners, work.right, rules, answers, flags);
+        } else {
+            portable::left_right::answer::<P>(winners, work.right, rules, answers, flags);
+        }
+    }
+
+    #[inline(always)]
+    fn smooth(
+        self,
+        answers: &mut [Disparity],
+        lengths: &mut [u16],
+        workspace: &mut [u16],
+        step: Disparity,
+        radius: u8,
+    ) {
+        smooth::smooth(answers, lengths, workspace, step, radius);
+    }
+
+    #[inline(always)]
+    fn speckle(self, work: SpeckleWork<'_>) {
+        speckle::speckle(work);
+    }
+}
+
+/// As many candidates as there is assembly for, never none: a firmware is linked without what cannot be asked
+/// for.
+#[inline(always)]
+pub(super) fn candidates(disparities: usize, most: usize) -> usize {
+    if let Some(group) = [64, 32].into_iter().find(|&group| most.is_multiple_of(group)) {
+        return (disparities.next_multiple_of(group).min(most) & !(group - 1)).max(group);
+    }
+    disparities.next_multiple_of(STEP).min(most) & !(STEP - 1)
+}
+
+const _: () = assert!(TABLE_WORDS == size_of::<[tables::Table; 2]>() / size_of::<u32>() + 4);
+
+/// A row's columns and what enters and leaves them.
+struct Rows<'a> {
+    width: usize,
+    stride: usize,
+    min_disparity: usize,
+    enter: Option<&'a [u8]>,
+    leave: Option<&'a [u8]>,
+}
+
+/// The codes of a row: where codes have four bits a pixel's two are one byte, the left one
+/// low; else the left ones are before the right ones.
+#[inline]
+fn codes_of<S: WindowParameters>([left, right]: [&Rows5<'_>; 2], out: &mut [u8]) {
+    if S::BITS > 4 {
+        let (of_left, of_right) = out.split_at_mut_checked(out.len() / 2).unwrap_or_default();
+        census::census::<S>(left, false, of_left);
+        census::census::<S>(right, false, of_right);
+        return;
+    }
+    census::census::<S>(left, false, out);
+    census::census::<S>(right, true, out);
+}
+
+/// [`Isa::window`] for the usual numbers of candidates, and any other.
+#[inline(always)]
+fn row<S: WindowParameters>(work: WindowWork<'_>, select: Option<Select<'_>>) {
+    // The usual numbers of candidates, then any number of them.
+    match work.stride {
+        16 => row_of::<S, 16>(work, select),
+        32 => row_of::<S, 32>(work, select),
+        48 => row_of::<S, 48>(work, select),
+        64 => row_of::<S, 64>(work, select),
+        _ => row_of::<S, 0>(work, select),
+    }
+}
+
+#[inline(always)]
+fn row_of<S: WindowParameters, const STRIDE: usize>(work: WindowWork<'_>, select: Option<Select<'_>>) {
+    let WindowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
+    let rows = Rows { width, stride, min_disparity, enter, leave };
+    let columns = view_mut::<u8, u32>(columns);
+    // The first column that a window with a candidate has.
+    let begin = min_disparity.min(width).saturating_sub(S::RADIUS_X);
+    if S::BITS > 4 {
+        columns::update::<S, STRIDE>(&rows, begin, scratch, columns);
+    } else {
+        columns::update_by_tables::<STRIDE>(&rows, begin, scratch, columns);
+    }
+    if let Some(select) = select {
+        windows::select::<S, STRIDE>(&rows, scratch, columns, select);
+    }
+}

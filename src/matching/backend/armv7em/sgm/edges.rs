@@ -1,0 +1,27 @@
+//! A row's agreements, averaged within edges.
+
+use super::instructions::uhadd8;
+use crate::matching::backend::portable::sgm::edges::edges_at;
+use crate::matching::backend::work::{EdgeWork, PathWork};
+use crate::matching::memory::views::view_mut;
+
+/// As in `groups`, with agreements for costs: their averages are rounded down.
+#[inline(always)]
+pub(super) fn within_edges(work: &mut PathWork<'_>, stride: usize, edges: EdgeWork<'_>) {
+    let count = stride / 4;
+    let much = work.penalties.edges[1];
+    let above = view_mut::<u8, u32>(edges.above).chunks_exact_mut(count);
+    let below = view_mut::<u8, u32>(edges.below).chunks_exact_mut(count);
+    let columns = view_mut::<u8, u32>(work.costs).chunks_exact_mut(count).zip(above.zip(below));
+    for (x, (costs, (above, below))) in columns.enumerate() {
+        let [at_next, at_last] = edges_at(&edges.guides, x, much).map(|edge| u32::from(edge).wrapping_neg());
+        let choose = |first: u32, second: u32, mask: u32| second ^ (first ^ second) & mask;
+        for (cost, (above, below)) in costs.iter_mut().zip(above.iter_mut().zip(below)) {
+            let (row, one, two) = (*above, *below, *cost);
+            let both = uhadd8(one, choose(one, two, at_last));
+            *cost = uhadd8(row, choose(row, both, at_next));
+            *above = uhadd8(one, choose(one, row, at_next));
+            *below = two;
+        }
+    }
+}

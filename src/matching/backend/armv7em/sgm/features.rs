@@ -1,0 +1,217 @@
+//! What a pixel's cost compares, of four pixels at a time: gradients in half-words, of the even and the odd
+//! pixels; all else in bytes.
+
+#![allow(unsafe_code)]
+
+use super::instructions::{bits_where_less, max8, min8, uhadd8, uqsub16};
+use super::splat;
+use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::portable::sgm::features::FeatureRows;
+use crate::matching::memory::Rows5;
+
+
+/// Columns in a word.
+const COLUMNS: usize = 4;
+/// Columns to each side that a code looks at.
+const REACH: usize = 4;
+/// Columns that four pixels look at.
+const NEAR: usize = COLUMNS + 2 * REACH;
+
+/// The features of as many columns as there is a place for: [`gradients`](crate::imaging::gradients) and
+/// [`census_wide8`](crate::imaging::census_wide8). Behind the line it goes on.
+fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
+    let width = lines.iter().fold(usize::MAX, |width, line| width.min(line.len()));
+    let count = along.len().min(across.len()).min(census.len());
+    // The groups of four that see nothing outside the line and have all places.
+    let groups = (width.saturating_sub(NEAR - COLUMNS) / COLUMNS).min(count.saturating_sub(REACH) / COLUMNS);
+    let [above2, above, here, below, below2] = lines.map(<[u8]>::as_ptr);
+    // SAFETY: what `groups` groups see from the first column on is in the lines, and from `REACH` on they
+    // have places.
+    unsafe {
+        let place = |row: &mut [u8]| row.as_mut_ptr().wrapping_add(REACH).cast();
+        codes([above2, here, below2], place(census), groups);
+        gradients([above, here, below], gradient, [place(along), place(across)], groups);
+    }
+    let after = REACH + groups * COLUMNS;
+    for x in core::iter::once(0).chain((after..count.min(width)).step_by(COLUMNS)) {
+        let near = lines.map(|line| {
+            [0, 1, 2].map(|word| {
+                let inside = (x + word * COLUMNS)
+                    .checked_sub(REACH)
+                    .and_then(|x| line.get(x..width)?.first_chunk::<COLUMNS>());
+                // Columns outside the line are the nearest inside.
+                let column =
+                    |i: usize| (x + word * COLUMNS + i).saturating_sub(REACH).min(width.saturating_sub(1));
+                let outside = || core::array::from_fn(|i| line.get(column(i)).copied().unwrap_or(0));
+                inside.copied().unwrap_or_else(outside)
+            })
+        });
+        let [above2, above, here, below, below2] = near.each_ref().map(|near| near.as_flattened().as_ptr());
+        let [mut code, mut one, mut other] = [0; 3];
+        // SAFETY: a group sees `NEAR` columns.
+        unsafe {
+            codes([above2, here, below2], &raw mut code, 1);
+            gradients([above, here, below], gradient, [&raw mut one, &raw mut other], 1);
+        }
+        for (row, word) in [(&mut *along, one), (&mut *across, other), (&mut *census, code)] {
+            put(row.get_mut(x..).unwrap_or_default(), word);
+        }
+    }
+}
+
+/// As many bytes of a word as there is a place for.
+#[inline(always)]
+fn put(row: &mut [u8], word: u32) {
+    match row.first_chunk_mut() {
+        Some(four) => *four = word.to_le_bytes(),
+        None => row.iter_mut().zip(word.to_le_bytes()).for_each(|(to, from)| *to = from),
+    }
+}
+
+/// The codes of groups of four pixels, from the rows two above, here, and two below: each group sees [`NEAR`]
+/// columns of a row, which are four further with each.
+///
+/// # Safety
+/// They can be read, and the codes written.
+#[inline(never)]
+unsafe fn codes(near: [*const u8; 3], out: *mut u32, groups: usize) {
+    for group in 0..groups {
+        // SAFETY: the last columns that are read are those from 8 on.
+        let word = |row: usize, column: usize| unsafe {
+            near[row].add(COLUMNS * group + column).cast::<u32>().read_unaligned()
+        };
+        let here = word(1, REACH);
+        let mut codes = 0;
+        for (bit, (row, column)) in
+            [(0, 0), (0, 4), (0, 8), (1, 2), (1, 6), (2, 0), (2, 4), (2, 8)].into_iter().enumerate()
+        {
+            codes |= bits_where_less(word(row, column), here, splat(1 << bit));
+        }
+        // SAFETY: as the function's.
+        unsafe { out.add(group).write_unaligned(codes) };
+    }
+}
+
+/// The gradients along the line and across it, likewise, from the rows above, here, and below.
+///
+/// # Safety
+/// As for [`codes`].
+#[inline(never)]
+unsafe fn gradients(near: [*const u8; 3], most: u8, [along, across]: [*mut u32; 2], groups: usize) {
+    // Sobel's sums: the middle one twice.
+    let sum = |a: u32, b: u32, c: u32| [even(a) + 2 * even(b) + even(c), odd(a) + 2 * odd(b) + odd(c)];
+    for group in 0..groups {
+        // SAFETY: the last columns that are read are those from 5 on.
+        let word = |row: usize, column: usize| unsafe {
+            near[row].add(COLUMNS * group + column).cast::<u32>().read_unaligned()
+        };
+        let sides = |column: usize| sum(word(0, column), word(1, column), word(2, column));
+        let ends = |row: usize| sum(word(row, REACH - 1), word(row, REACH), word(row, REACH + 1));
+        // SAFETY: as the function's.
+        unsafe {
+            along.add(group).write_unaligned(cut(sides(REACH + 1), sides(REACH - 1), most));
+            across.add(group).write_unaligned(cut(ends(2), ends(0), most));
+        }
+    }
+}
+
+#[inline(always)]
+fn even(word: u32) -> u32 {
+    word & 0x00ff_00ff
+}
+
+#[inline(always)]
+fn odd(word: u32) -> u32 {
+    word >> 8 & 0x00ff_00ff
+}
+
+/// The differences of even and odd half-words, cut off at `most` to each side, plus `most`.
+#[inline(always)]
+fn cut(a: [u32; 2], b: [u32; 2], most: u8) -> u32 {
+    /// More than any sum.
+    const BIAS: u32 = 1 << 10;
+    let halves = |number: u32| number * 0x0001_0001;
+    let most = u32::from(most);
+    // What the difference lacks of the greatest, 0 to 2 most: one saturating subtraction for each end.
+    let lacks = |a: u32, b: u32| {
+        let from_least = uqsub16(a + halves(BIAS + most) - b, halves(BIAS));
+        uqsub16(halves(2 * most), from_least)
+    };
+    let [even, odd] = [lacks(a[0], b[0]), lacks(a[1], b[1])];
+    splat(2 * most as u8) - (even | odd << 8)
+}
+
+/// Half of each number.
+fn halve(numbers: &[u8], halves: &mut [u8]) {
+    let count = numbers.len().min(halves.len());
+    let (groups, rest) = numbers.get(..count).unwrap_or(&[]).as_chunks::<COLUMNS>();
+    let (of_groups, of_rest) = halves.get_mut(..count).unwrap_or_default().as_chunks_mut::<COLUMNS>();
+    for (to, &from) in of_groups.iter_mut().zip(groups) {
+        keep_loop();
+        *to = (u32::from_le_bytes(from) >> 1 & splat(0x7f)).to_le_bytes();
+    }
+    for (to, from) in of_rest.iter_mut().zip(rest) {
+        keep_loop();
+        *to = from >> 1;
+    }
+}
+
+/// The range of one number: the least and the greatest of it and those halfway to its neighbours, rounded
+/// down; doubled.
+fn between(before: u8, here: u8, next: u8) -> (u8, u8) {
+    let (least, greatest) = ranges([before, here, next].map(u32::from));
+    (least as u8, greatest as u8)
+}
+
+/// The ranges of four numbers.
+#[inline(always)]
+fn ranges([before, here, next]: [u32; 3]) -> (u32, u32) {
+    let (a, b) = (uhadd8(before, here), uhadd8(here, next));
+    (2 * min8(here, min8(a, b)), 2 * max8(here, max8(a, b)))
+}
+
+/// The ranges of all numbers but the two at the ends.
+fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
+    let count = numbers.len().saturating_sub(2);
+    let word =
+        |x: usize| numbers.get(x..).and_then(|n| n.first_chunk()).map(|&four| u32::from_le_bytes(four));
+    let inside = |row| <[u8]>::get_mut(row, 1..=count).unwrap_or_default().chunks_mut(COLUMNS);
+    for (group, (least, greatest)) in inside(least).zip(inside(greatest)).enumerate() {
+        let x = group * COLUMNS;
+        let near = if let (Some(before), Some(here), Some(next)) = (word(x), word(x + 1), word(x + 2)) {
+            [before, here, next]
+        } else {
+            [x, x + 1, x + 2].map(|x| {
+                u32::from_le_bytes(core::array::from_fn(|i| numbers.get(x + i).copied().unwrap_or(0)))
+            })
+        };
+        let (low, high) = ranges(near);
+        put(least, low);
+        put(greatest, high);
+    }
+}
+
+/// Features in Arm's instructions on four bytes.
+pub(super) struct DspRows;
+
+impl FeatureRows for DspRows {
+    #[inline(always)]
+    fn looks(lines: &Rows5<'_>, gradient: u8, rows: [&mut [u8]; 3]) {
+        looks(lines, gradient, rows);
+    }
+
+    #[inline(always)]
+    fn halve(numbers: &[u8], halves: &mut [u8]) {
+        halve(numbers, halves);
+    }
+
+    #[inline(always)]
+    fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
+        range(numbers, least, greatest);
+    }
+
+    #[inline(always)]
+    fn between(before: u8, here: u8, next: u8) -> (u8, u8) {
+        between(before, here, next)
+    }
+}

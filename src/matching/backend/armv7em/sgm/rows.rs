@@ -1,0 +1,112 @@
+//! The paths through a row.
+#![allow(unsafe_code)]
+
+use super::stride;
+use super::walk::{Frame, Padded, Steps, go_along, go_down};
+use crate::matching::backend::work::{Guide, PathWork};
+use crate::matching::memory::layout::COLUMNS_OFF;
+use crate::matching::memory::views::{view, view_mut};
+
+/// Where a path along the row goes.
+pub(super) enum Way {
+    Left,
+    Right,
+}
+
+/// Whether there are all columns that the paths go through.
+fn is_whole(work: &PathWork<'_>, stride: usize) -> bool {
+    let bytes = work.width * stride;
+    work.costs.len() >= bytes && work.sums.len() >= bytes && work.top.len() >= bytes + COLUMNS_OFF * stride
+}
+
+/// Moves the path from above down to the row.
+///
+/// It takes no room of its own: the paths of an odd row stand two columns further to the right than those of
+/// an even row. So each goes where one of the two was that it comes from, if odd rows are taken from right to
+/// left.
+#[inline(always)]
+pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>, guide: Guide<'_>) {
+    let (width, stride) = (work.width, stride::<WORDS, ALL>(work));
+    // In the first row nothing is above.
+    let line = guide.above.unwrap_or(guide.here);
+    if !is_whole(work, stride) || width == 0 || guide.here.len() < width || line.len() < width {
+        return;
+    }
+    let steps = Steps::new(work.penalties);
+    let mut between = Padded::<WORDS>::new(stride / 4, work.penalties);
+    let top = view_mut::<u8, u32>(work.top).as_mut_ptr();
+    let costs = view::<u8, u32>(work.costs).as_ptr();
+    let is_odd = !guide.row.is_multiple_of(2);
+    let last = width - 1;
+    let column = |x: usize| top.wrapping_add(x * stride / 4);
+    let (pixel, on, gap) = if is_odd { (last, -1, -2) } else { (0, 1, 0) };
+    let (costs, kept) =
+        if is_odd { (costs.wrapping_add(last * stride / 4), column(width + 1)) } else { (costs, top) };
+    let above = if is_odd { [top, column(last)] } else { [column(COLUMNS_OFF), column(width + 1)] };
+    let (here, column_bytes) = (guide.here.as_ptr(), stride as isize);
+    let mut frame = Frame {
+        pixel: here.wrapping_add(pixel),
+        on,
+        from: (line.as_ptr() as isize).wrapping_sub(here as isize),
+        paths: [between.place(), core::ptr::null_mut()],
+        gap: gap * column_bytes,
+        end: column(if is_odd { 1 } else { width }).cast_const(),
+        fours: stride / 16,
+        steps: &steps,
+        above: if guide.above.is_some() { above } else { [core::ptr::null_mut(); 2] },
+        other: on * 2 * COLUMNS_OFF as isize * column_bytes,
+    };
+    // SAFETY: `width` columns are in the volume of the costs and two more in that of the paths; so many
+    // pixels are in both lines; and a column has `4 * fours` words, `WORDS` at the most, as the average
+    // has room for.
+    unsafe { go_down(&raw mut frame, costs, kept) };
+}
+
+/// Takes a path along the row, and adds it to the path from above, or the second one to both.
+#[inline(always)]
+pub(super) fn along<const WORDS: usize, const ALL: bool>(
+    work: &mut PathWork<'_>,
+    guide: Guide<'_>,
+    way: Way,
+) {
+    let (width, stride) = (work.width, stride::<WORDS, ALL>(work));
+    if !is_whole(work, stride) || width <= work.min_disparity || guide.here.len() < width {
+        return;
+    }
+    let steps = Steps::new(work.penalties);
+    let mut paths = [Padded::<WORDS>::new(stride / 4, work.penalties); 2];
+    let shift = if !guide.row.is_multiple_of(2) { COLUMNS_OFF } else { 0 };
+    let top = view::<u8, u32>(work.top).as_ptr().wrapping_add(shift * stride / 4);
+    let (costs, sums) = (view::<u8, u32>(work.costs).as_ptr(), view_mut::<u8, u32>(work.sums).as_mut_ptr());
+    let from = match way {
+        Way::Right => top,
+        Way::Left => sums.cast_const(),
+    };
+    let (x, on, gap, columns) = match way {
+        Way::Right => (0, 1, 0, width),
+        Way::Left => (width - 1, -1, -2, width - work.min_disparity),
+    };
+    let first = x * stride / 4;
+    let mut frame = Frame {
+        pixel: guide.here.as_ptr().wrapping_add(x),
+        on,
+        from: 0,
+        paths: paths.each_mut().map(Padded::place),
+        gap: gap * stride as isize,
+        end: sums.wrapping_add(first).wrapping_offset(on * (columns * stride / 4) as isize).cast_const(),
+        fours: stride / 16,
+        steps: &steps,
+        above: [core::ptr::null_mut(); 2],
+        other: 0,
+    };
+    // SAFETY: `columns` columns from column `x` on are in the volumes, and so many pixels in the line; and a
+    // column has `4 * fours` words, `WORDS` at the most, as the paths have room for.
+    unsafe {
+        go_along(
+            &raw mut frame,
+            costs.wrapping_add(first),
+            from.wrapping_add(first),
+            sums.wrapping_add(first),
+        );
+    }
+}

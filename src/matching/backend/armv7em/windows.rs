@@ -1,0 +1,226 @@
+//! Columns into windows, windows into winners.
+//!
+//! ```text
+//! window x   sum[d] += digits(column[x + r][d]) - digits(column[x - r - 1][d])
+//! winner x   of every lane the least sum and the first word that has it; of the lanes the least, and the first of equal ones
+//! ```
+
+use super::rows;
+use super::word::{ONE, add, min, min_halves, sub, take_less};
+use super::Rows;
+use crate::matching::memory::views::{view, view_mut};
+use crate::matching::memory::layout::OUTSIDE;
+use crate::matching::memory::winners::{BESIDE, Select, Winner};
+use crate::matching::backend::parameters::WindowParameters;
+
+/// The lane numbers.
+const LANES: u32 = 0x0302_0100;
+
+/// The winners of a row. `STRIDE` is the number of candidates where that is known when the crate is compiled,
+/// which lets the compiler unroll the work on them; 0 where it is not.
+#[inline(never)]
+pub(super) fn select<S: WindowParameters, const STRIDE: usize>(
+    row: &Rows<'_>,
+    scratch: &mut [u32],
+    columns: &[u32],
+    select: Select<'_>,
+) {
+    const { assert!(2 * S::RADIUS_X + 1 == rows::ACROSS) };
+    let Select { disparities, winners, unique } = select;
+    // Never none.
+    let words = if STRIDE > 0 { STRIDE / 4 } else { (row.stride / 4).max(1) };
+    // Before and after the sums stand those that are no candidate's.
+    let Some(room) = scratch.get_mut(..words + 2) else { return };
+    // Left of here no pixel has a candidate.
+    let begin = row.min_disparity.min(row.width);
+    let from = |column: usize| columns.get(column * words..).unwrap_or(&[]);
+    let first = OUTSIDE + begin - S::RADIUS_X - 1;
+    // All columns have the same sum too many, those outside nothing else, and a window as many columns.
+    let bias = if S::BITS > 4 { 0 } else { from(first).first().copied().unwrap_or(0) & 0xff };
+    let none = (0u32.wrapping_sub(rows::ACROSS as u32 * bias) & 0xff) * ONE;
+    let in_assembly = STRIDE > 0 && disparities == row.stride;
+    // As far as here pixels have few candidates, and sums of no others.
+    let fewest = if in_assembly { fewest_of(STRIDE) } else { 4 * words };
+    begin_with::<S>(none, from(first + 1), words, (0, fewest / 4), room);
+    let judged = unique.is_asked();
+    let mut judge = unique.starting_at(begin);
+    let Some((winner, winners)) = winners.get_mut(begin..).and_then(|winners| winners.split_first_mut())
+    else {
+        return;
+    };
+    // The first pixel has one candidate.
+    *winner = at_an_end(room.get(1).map_or(0, |sum| sum << 8 & 0xff00), 1, view::<u32, u8>(room));
+    if judged {
+        judge(winner.cost(), &mut || second_of(0, 1, room));
+    }
+    if in_assembly && !judged {
+        let (next, winners) = winners.split_at_mut(winners.len().min(fewest - 1));
+        run::<S, STRIDE>(Some((2, true)), room, from(first + 1), next);
+        begin_with::<S>(none, from(first + fewest), words, (fewest / 4, words), room);
+        let (next, winners) = winners.split_at_mut(winners.len().min(disparities - fewest));
+        run::<S, STRIDE>(Some((fewest + 1, false)), room, from(first + fewest), next);
+        run::<S, STRIDE>(None, room, from(first + disparities), winners);
+        return;
+    }
+    // One by one where they are judged, for their sums are looked at.
+    for (winner, x) in winners.iter_mut().zip(1..) {
+        if x == fewest {
+            begin_with::<S>(none, from(first + x), words, (fewest / 4, words), room);
+        }
+        let candidates = disparities.min(x + 1);
+        let few = (x < disparities).then_some((candidates, x < fewest));
+        if !in_assembly || !run::<S, STRIDE>(few, room, from(first + x), core::slice::from_mut(winner)) {
+            *winner = next_among::<S>(candidates, from(first + x + rows::ACROSS), from(first + x), room);
+        }
+        if judged {
+            judge(winner.cost(), &mut || second_of(winner.disparity() as usize, candidates, room));
+        }
+    }
+}
+
+/// How many candidates the first pixels have sums of, in assembly.
+const fn fewest_of(stride: usize) -> usize {
+    if stride == 64 { 32 } else { 16 }
+}
+
+/// The sums of the window under the first columns, in words from one to another, from what a window of `none`
+/// has.
+#[inline(always)]
+fn begin_with<S: WindowParameters>(
+    none: u32,
+    columns: &[u32],
+    words: usize,
+    (from, to): (usize, usize),
+    room: &mut [u32],
+) {
+    let sums = room.get_mut(1 + from..1 + to).unwrap_or_default();
+    for (four, sums) in (from..).step_by(4).zip(sums.as_chunks_mut().0) {
+        let columns = columns.get(four..).unwrap_or(&[]);
+        if S::COLUMN_SHIFT == 0 {
+            rows::begin_fast(none, columns, words, sums);
+        } else {
+            rows::begin_block(none, columns, words, sums);
+        }
+    }
+}
+
+/// The winners of pixels of which the first has so many candidates, each one more than the one before it, and
+/// whether they have no more than the fewest; or if it is `None`, of pixels for which all are candidates.
+/// Whether there is such a loop.
+#[inline(always)]
+fn run<S: WindowParameters, const STRIDE: usize>(
+    few: Option<(usize, bool)>,
+    room: &mut [u32],
+    columns: &[u32],
+    winners: &mut [Winner],
+) -> bool {
+    macro_rules! run {
+        ($all:ident, $fewest:ident, $few:ident) => {{
+            let Some(sums) = room.first_chunk_mut() else { return false };
+            let columns = columns.as_chunks().0;
+            match few {
+                None => rows::$all(sums, columns, winners),
+                Some((first, true)) => rows::$fewest(sums, columns, winners, first),
+                Some((first, false)) => rows::$few(sums, columns, winners, first),
+            }
+            true
+        }};
+    }
+    match (S::COLUMN_SHIFT, STRIDE) {
+        (0, 16) => run!(fast_16, fast_few_of_16, fast_few_of_16),
+        (0, 32) => run!(fast_32, fast_fewest_of_32, fast_few_of_32),
+        (0, 48) => run!(fast_48, fast_fewest_of_48, fast_few_of_48),
+        (0, 64) => run!(fast_64, fast_fewest_of_64, fast_few_of_64),
+        (2, 16) => run!(block_16, block_few_of_16, block_few_of_16),
+        (2, 32) => run!(block_32, block_fewest_of_32, block_few_of_32),
+        (2, 48) => run!(block_48, block_fewest_of_48, block_few_of_48),
+        (2, 64) => run!(block_64, block_fewest_of_64, block_few_of_64),
+        _ => false,
+    }
+}
+
+/// Moves the window one column on; the winner of so many candidates.
+#[inline(never)]
+fn next_among<S: WindowParameters>(candidates: usize, enters: &[u32], leaves: &[u32], room: &mut [u32]) -> Winner {
+    let words = room.len() - 2;
+    for (sum, (&enters, &leaves)) in room.iter_mut().skip(1).take(words).zip(enters.iter().zip(leaves)) {
+        *sum = sub(add(*sum, digits::<S>(enters)), digits::<S>(leaves));
+    }
+    winner_of(least_of(room.get(1..).unwrap_or(&[]), candidates), candidates, room)
+}
+
+/// The digits of columns' sums that windows are made of.
+#[inline(always)]
+fn digits<S: WindowParameters>(column: u32) -> u32 {
+    (column >> S::COLUMN_SHIFT) & ((0xff >> S::COLUMN_SHIFT) * ONE)
+}
+
+/// The least sum of so many candidates.
+#[inline(always)]
+fn least_of(sums: &[u32], candidates: usize) -> u32 {
+    let (mut least, mut places, mut place) = (u32::MAX, 0, 0u32);
+    for &sum in sums.iter().take(candidates / 4) {
+        take_less(&mut least, &mut places, sum, place);
+        place = place.wrapping_add(4 * ONE);
+    }
+    // Of the last word the first lanes.
+    if let Some(&last) = sums.get(candidates / 4) {
+        let others = u32::MAX << (candidates % 4 * 8);
+        take_less(&mut least, &mut places, last | others, place);
+    }
+    of_lanes(least, places)
+}
+
+/// The least of the lanes above 8 bits of its place.
+#[inline(always)]
+fn of_lanes(least: u32, places: u32) -> u32 {
+    let places = places + LANES;
+    let even = (least & 0x00ff_00ff) << 8 | places & 0x00ff_00ff;
+    let odd = least & 0xff00_ff00 | places >> 8 & 0x00ff_00ff;
+    let two = min_halves(even, odd);
+    (two & 0xffff).min(two >> 16)
+}
+
+/// The winner of a key among so many candidates.
+#[inline(always)]
+fn winner_of(key: u32, candidates: usize, room: &[u32]) -> Winner {
+    let disparity = (key & 0xff) as usize;
+    let bytes = view::<u32, u8>(room);
+    if disparity == 0 || disparity + 1 == candidates {
+        return at_an_end(key, candidates, bytes);
+    }
+    let around = bytes.get(3 + disparity..).and_then(|bytes| bytes.first_chunk()).copied().unwrap_or([0; 4]);
+    Winner::of_costs(u32::from_le_bytes(around), disparity as u8)
+}
+
+/// The winner that is the first or the last candidate: where there is none beside it the one on its other
+/// side stands for it, beside an only one itself.
+#[inline(never)]
+fn at_an_end(key: u32, candidates: usize, bytes: &[u8]) -> Winner {
+    let (disparity, cost) = ((key & 0xff) as usize, (key >> 8) as u8);
+    let beside = match disparity {
+        0 if candidates > 1 => 1,
+        _ => disparity.saturating_sub(1),
+    };
+    let beside = bytes.get(4 + beside).copied().unwrap_or(0);
+    Winner::new(cost, disparity as u8, (beside, beside))
+}
+
+/// The least sum of the candidates over [`BESIDE`] px beside the winner; `u8::MAX` where there is none.
+#[inline(never)]
+fn second_of(disparity: usize, candidates: usize, room: &mut [u32]) -> u8 {
+    // The winner and those beside it are raised while the others are looked at. Of the room's words the first
+    // is no sum.
+    let nearest = 4 + disparity.saturating_sub(BESIDE)..5 + disparity + BESIDE;
+    let mut kept = [u8::MAX; 2 * BESIDE + 1];
+    for (kept, sum) in kept.iter_mut().zip(view_mut::<u32, u8>(room).get_mut(nearest.clone()).unwrap_or_default()) {
+        *kept = core::mem::replace(sum, u8::MAX);
+    }
+    let sums = room.get(1..).unwrap_or(&[]);
+    let others = sums.get(candidates / 4).map_or(u32::MAX, |last| last | u32::MAX << (candidates % 4 * 8));
+    let least = sums.iter().take(candidates / 4).fold(others, |least, &sum| min(least, sum));
+    for (kept, sum) in kept.iter().zip(view_mut::<u32, u8>(room).get_mut(nearest).unwrap_or_default()) {
+        *sum = *kept;
+    }
+    (of_lanes(least, 0) >> 8) as u8
+}

@@ -1,0 +1,19 @@
+//! Loops that the compiler leaves as they are written.
+
+/// In the body of a loop: on 32-bit cores the loop is neither unrolled nor turned into vectors. Where a row's
+/// work is little, that would take more flash than it saves instructions.
+///
+/// It is no instruction, but what is in memory is read anew in each round: what does not change belongs in a
+/// variable.
+#[inline(always)]
+pub(in crate::matching) fn keep_loop() {
+    #[cfg(target_pointer_width = "32")]
+    core::hint::black_box(());
+}
+
+/// In the body of a loop: [`keep_loop`] on cores without vectors.
+#[inline(always)]
+pub(in crate::matching) fn keep_scalar_loop() {
+    #[cfg(not(stereopsis_vectors))]
+    keep_loop();
+}

@@ -1,0 +1,64 @@
+//! The instructions that the dense path runs on: the choice among targets, and nothing else.
+//!
+//! * `isa`: what the stages ask of a target. `parameters`, `work`: what they hand to it.
+//! * `portable`: all of it in plain Rust; bit planes and words for cores without vectors.
+//! * `simd`: vectors of 64-bit processors.
+//! * `armv7em`: Arm's instructions on four bytes in a word (Cortex-M4, M7, M33), with `--cfg stereopsis_dsp`.
+//! * `mve`: the vectors of a Cortex-M55, with `--cfg stereopsis_vectors`.
+//!
+//! A new core's code is a folder with an [`Isa`] of its own, and an arm here.
+
+mod isa;
+pub(in crate::matching) mod loops;
+mod parameters;
+#[cfg_attr(any(stereopsis_dsp, stereopsis_vectors), allow(dead_code, reason = "the target has its own"))]
+mod portable;
+mod work;
+
+#[cfg(any(stereopsis_dsp, stereopsis_vectors))]
+#[cfg_attr(stereopsis_vectors, allow(dead_code, reason = "vectors do the most of it"))]
+mod armv7em;
+#[cfg(stereopsis_vectors)]
+mod mve;
+#[cfg(target_pointer_width = "64")]
+mod simd;
+
+#[cfg(all(stereopsis_dsp, stereopsis_vectors))]
+compile_error!("stereopsis_dsp and stereopsis_vectors exclude each other: a Cortex-M55 takes the second alone");
+#[cfg(all(any(stereopsis_dsp, stereopsis_vectors), not(target_arch = "arm")))]
+compile_error!("stereopsis_dsp and stereopsis_vectors are for Arm's 32-bit cores");
+
+#[cfg(stereopsis_dsp)]
+use armv7em as target;
+#[cfg(stereopsis_vectors)]
+use mve as target;
+#[cfg(not(any(stereopsis_dsp, stereopsis_vectors, target_pointer_width = "64")))]
+use portable as target;
+#[cfg(target_pointer_width = "64")]
+use simd as target;
+
+pub(super) use isa::Isa;
+use super::kernel::Kernel;
+pub use parameters::MethodParameters;
+pub(super) use parameters::{SgmParameters, WindowParameters};
+pub(super) use portable::smooth::MARGIN as SMOOTH_MARGIN;
+pub(super) use target::{Backend, CODES_SHARE_A_BYTE, columns_begin};
+pub(super) use work::{
+    EdgeWork, Guide, PathWork, Rules, STEP, SpeckleWork, WindowWork, WinnerWork,
+};
+
+/// Words that the tables of a target take beside the workspace of a window whose codes have up to four bits,
+/// and four that rows are read beyond. A matcher's bytes are told for all targets alike.
+pub(super) const TABLE_WORDS: usize = 2 * 16 * 96 / size_of::<u32>() + 4;
+
+impl Kernel {
+    /// The fastest kernel that this processor runs.
+    pub fn detect() -> Self {
+        Backend::detect().kernel()
+    }
+
+    /// The kernels that this processor runs, the fastest last.
+    pub fn available() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().filter(|&kernel| Backend::of(kernel).is_some())
+    }
+}

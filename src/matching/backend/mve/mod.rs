@@ -1,0 +1,302 @@
+//! The row in Helium, the vectors of a Cortex-M55, in assembly, and the stages before and after it. Lanes
+//! run over the disparities of one pixel, the largest first: so a pixel's candidates stand in memory as they
+//! do in the right image.
+//!
+//! * [`census`]: the codes of `fast`.
+//! * [`columns`]: costs of a row added to the columns under the window, and others subtracted.
+//! * [`windows`]: sums along the row, and the winner of each pixel.
+//! * [`left_right`]: the left-right check.
+//! * [`mod@smooth`]: answers averaged within their surface, and its length.
+//! * [`mod@speckle`]: support counted.
+//!
+//! Of safe Rust over fixed lanes the compiler makes two or three instructions where one is needed: it counts
+//! bits in nine instructions, and looks for the winner in a loop of its own. Here
+//!
+//! * the window's sums of 32 and of 64 candidates stay in registers along the row, those of any other number
+//!   are loaded and stored 16 at a time;
+//! * how many bits differ is looked up, by one load that takes a place for each of 16 lanes (one instruction,
+//!   though a core may spend a cycle on each place). The codes of `fast` have four bits: a byte holds those
+//!   of the row that enters and of the one that leaves, and the table has the difference;
+//! * a loop ends with `le`, which counts and jumps, or with `letp`, which leaves out the lanes that are too
+//!   many as well.
+//!
+//! Vectors are no operands of `asm!`: it names them, and says that they are overwritten. Of their predicate
+//! the compiler cannot be told. So every function with assembly stands alone (`inline(never)`), as no
+//! predicate outlives a call. Addresses of loads that widen and of stores that narrow have to be in one of
+//! the first registers, which are named too.
+
+mod census;
+mod columns;
+mod left_right;
+mod smooth;
+mod speckle;
+mod windows;
+
+use super::armv7em::{self, sgm};
+use super::isa::Isa;
+use crate::matching::kernel::Kernel;
+use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
+use super::portable::{self, left_right_rows};
+use super::work::{EdgeWork, Guide, MASKS, PathWork, Rules, STEP, SpeckleWork, WindowWork, WinnerWork};
+use crate::imaging::census_ring8;
+use crate::matching::memory::Rows5;
+use crate::matching::memory::layout::OUTSIDE;
+use crate::matching::memory::views::view_mut;
+use crate::matching::memory::winners::{BESIDE, Select, Winner, WinnerRows};
+use crate::units::{Disparity, PixelFlags};
+use windows::{Windows, complete};
+
+pub(in crate::matching) use portable::{CODES_SHARE_A_BYTE, columns_begin};
+
+/// The vectors of a Cortex-M55, which the compilation was told that the core has.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(in crate::matching) struct Backend;
+
+impl Backend {
+    /// What a matcher is made with before it is started.
+    pub(in crate::matching) const FIRST: Self = Self;
+
+    /// The fastest code that this processor runs.
+    pub(in crate::matching) fn detect() -> Self {
+        Self
+    }
+
+    /// The code of a kernel, if this processor runs it.
+    pub(in crate::matching) fn of(kernel: Kernel) -> Option<Self> {
+        (kernel == Kernel::Helium).then_some(Self)
+    }
+}
+
+impl Isa for Backend {
+    #[inline(always)]
+    fn kernel(self) -> Kernel {
+        Kernel::Helium
+    }
+
+    #[inline(always)]
+    fn candidates(self, disparities: usize, most: usize) -> usize {
+        armv7em::candidates(disparities, most)
+    }
+
+    #[inline]
+    fn census<P: WindowParameters>(
+        self,
+        lines: [&Rows5<'_>; 2],
+        _: usize,
+        workspace: &mut [u32],
+        out: &mut [u8],
+    ) {
+        let (left, right) = out.split_at_mut_checked(out.len() / 2).unwrap_or_default();
+        for (lines, codes) in lines.into_iter().zip([left, right]) {
+            if P::BITS <= 4 {
+                census::census_plus4(lines, view_mut::<u32, u8>(workspace), codes);
+            } else {
+                census_ring8(lines, codes);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn window<P: WindowParameters>(self, work: WindowWork<'_>, select: Option<Select<'_>>) {
+        row::<P>(work, select);
+    }
+
+    #[inline(always)]
+    fn sgm_cost<P: SgmParameters>(
+        self,
+        work: &mut PathWork<'_>,
+        is_first: bool,
+        lines: [&Rows5<'_>; 2],
+        workspace: &mut [u8],
+    ) {
+        sgm::cost::<P>(work, is_first, lines, workspace);
+    }
+
+    #[inline(always)]
+    fn sgm_within_edges(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+        sgm::within_edges(work, edges);
+    }
+
+    #[inline(always)]
+    fn sgm_select(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+        sgm::select::<true>(work, guide, select);
+    }
+
+    #[inline(always)]
+    fn left_right<P: MethodParameters>(
+        self,
+        work: WinnerWork<'_>,
+        rules: &Rules,
+        answers: &mut [Disparity],
+        flags: &mut [PixelFlags],
+    ) {
+        let WinnerWork { winners, right, workspace, begin } = work;
+        let width = winners.len();
+        let winners = WinnerRows::of(winners, begin);
+        let (kept, fractions) =
+            view_mut::<u32, u8>(workspace).split_at_mut_checked(width).unwrap_or_default();
+        left_right::keep(winners.costs, winners.disparities, right, kept);
+        answer::<P>(&winners, kept, rules, fractions, answers, flags);
+    }
+
+    #[inline(always)]
+    fn smooth(
+        self,
+        answers: &mut [Disparity],
+        lengths: &mut [u16],
+        workspace: &mut [u16],
+        step: Disparity,
+        radius: u8,
+    ) {
+        smooth::smooth(answers, lengths, workspace, step, radius);
+    }
+
+    #[inline(always)]
+    fn median(self, rows: [&[Disparity]; 3], out: &mut [Disparity]) {
+        median(rows, out);
+    }
+
+    #[inline(always)]
+    fn speckle(self, work: SpeckleWork<'_>) {
+        speckle::speckle(work);
+    }
+}
+
+#[inline(never)]
+fn answer<P: MethodParameters>(
+    winners: &WinnerRows<'_>,
+    kept: &[u8],
+    rules: &Rules,
+    fractions: &mut [u8],
+    answers: &mut [Disparity],
+    flags: &mut [PixelFlags],
+) {
+    left_right_rows::answer::<P>(winners, kept, rules, fractions, answers, flags);
+}
+
+#[inline(never)]
+fn median(rows: [&[Disparity]; 3], out: &mut [Disparity]) {
+    portable::median::median_in_rows(rows, out);
+}
+
+/// Bytes in a vector.
+const LANES: usize = 16;
+
+/// [`Isa::window`] in Helium.
+#[inline(always)]
+fn row<S: WindowParameters>(work: WindowWork<'_>, select: Option<Select<'_>>) {
+    // The usual numbers of candidates, then any number of them.
+    match work.stride {
+        32 => row_of::<S, 32>(work, select),
+        64 => row_of::<S, 64>(work, select),
+        _ => row_of::<S, 0>(work, select),
+    }
+}
+
+#[inline(always)]
+fn row_of<S: WindowParameters, const STRIDE: usize>(work: WindowWork<'_>, select: Option<Select<'_>>) {
+    const { assert!(S::RADIUS_X < OUTSIDE && STEP == LANES) };
+    let WindowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
+    // At least one vector, for the compiler to see that no column is empty.
+    let stride = if STRIDE > 0 { STRIDE } else { stride.max(LANES) };
+    let room = view_mut::<u32, u8>(scratch);
+    if let Some(inside) = columns.get_mut(OUTSIDE * stride..(OUTSIDE + width) * stride) {
+        if S::BITS <= 4 {
+            columns::of_four_bits::<STRIDE>([enter, leave], min_disparity, stride, room, inside);
+        } else {
+            columns::of_eight_bits::<STRIDE>([enter, leave], min_disparity, stride, room, inside);
+        }
+    }
+    if let (Some(select), Some(sums)) = (select, room.get_mut(..stride + 2)) {
+        let begin = min_disparity.min(width);
+        winners::<S, STRIDE>(columns, stride, begin, width, sums, select);
+    }
+}
+
+/// The winners from column `begin` on. `sums` has room for a byte beside them on both sides.
+#[inline(never)]
+fn winners<S: WindowParameters, const STRIDE: usize>(
+    columns: &[u8],
+    stride: usize,
+    begin: usize,
+    width: usize,
+    sums: &mut [u8],
+    select: Select<'_>,
+) {
+    let stride = if STRIDE > 0 { STRIDE } else { stride };
+    let Select { disparities, winners, unique } = select;
+    let rows = view_mut::<Winner, u8>(winners).get_mut(begin..).unwrap_or_default();
+    // The column that leaves at the first pixel is among them.
+    let from = |column: usize| columns.get(column * stride..).unwrap_or(&[]);
+    let (leaves, enters) = (from(OUTSIDE + begin - S::RADIUS_X - 1), from(OUTSIDE + begin + S::RADIUS_X));
+    let columns = leaves.chunks_exact(stride).take(2 * S::RADIUS_X + 1);
+    let inside = sums.get_mut(1..=stride).unwrap_or_default();
+    match inside.first_chunk_mut::<STRIDE>() {
+        Some(sums) if STRIDE > 0 => {
+            let mut first = [0u8; STRIDE];
+            for column in columns.filter_map(|column| column.first_chunk::<STRIDE>()) {
+                for lane in 0..STRIDE {
+                    first[lane] = first[lane].wrapping_add(column[lane] >> S::COLUMN_SHIFT);
+                }
+            }
+            *sums = first;
+        }
+        _ => {
+            inside.fill(0);
+            for column in columns {
+                for (sum, column) in inside.iter_mut().zip(column) {
+                    *sum = sum.wrapping_add(column >> S::COLUMN_SHIFT);
+                }
+            }
+        }
+    }
+    let judged = unique.is_asked();
+    let mut judge = unique.starting_at(begin);
+    let mut windows = Windows::<STRIDE> { stride, leaves, enters, sums, rows, width };
+    // The first pixels have fewer candidates than the others.
+    let few = (disparities - 1).min(width - begin);
+    let mut done = 0;
+    while done < width - begin {
+        let alike = if done < few { few - done } else { width - begin - done };
+        let count = if judged { 1 } else { alike };
+        let candidates = (done + 1).min(disparities);
+        let mask = MASKS.get(256 - (stride - candidates)..).unwrap_or(&[]);
+        if STRIDE == 0 || candidates < stride {
+            windows.select::<S, true>(count, mask, usize::from(done < few));
+        } else {
+            windows.select::<S, false>(count, mask, 0);
+        }
+        done += count;
+        if judged {
+            let (cost, disparity) = windows.last();
+            judge(cost, &mut || {
+                let (mask, sums) = (mask.get(..stride).unwrap_or(&[]), windows.sums.get_mut(1..=stride));
+                best_of_the_rest(usize::from(disparity), mask, sums.unwrap_or_default())
+            });
+        }
+    }
+    let WinnerRows { below, costs, above, disparities: found } = WinnerRows::of(winners, begin);
+    complete([below, costs, above, found], disparities);
+}
+
+/// The least cost of the candidates over [`BESIDE`] px beside the winner; `u8::MAX` where there is none.
+#[inline(never)]
+fn best_of_the_rest(disparity: usize, mask: &[u8], sums: &mut [u8]) -> u8 {
+    // The winner and those beside it are raised while the others are looked at.
+    let lane = (sums.len() - 1).saturating_sub(disparity);
+    let nearest = lane.saturating_sub(BESIDE)..sums.len().min(lane + BESIDE + 1);
+    let mut kept = [u8::MAX; 2 * BESIDE + 1];
+    for (kept, sum) in kept.iter_mut().zip(sums.get_mut(nearest.clone()).unwrap_or_default()) {
+        *kept = core::mem::replace(sum, u8::MAX);
+    }
+    let mut least = [u8::MAX; LANES];
+    for (sums, mask) in sums.as_chunks::<LANES>().0.iter().zip(mask.as_chunks::<LANES>().0) {
+        for i in 0..LANES {
+            least[i] = least[i].min(sums[i] | mask[i]);
+        }
+    }
+    for (kept, sum) in kept.iter().zip(sums.get_mut(nearest).unwrap_or_default()) {
+        *sum = *kept;
+    }
+    least.iter().fold(u8::MAX, |least, &lane| least.min(lane))
+}

@@ -1,0 +1,37 @@
+//! The left-right check, from the left winners alone.
+//!
+//! Each column of the right image keeps the cheapest of the left pixels that chose it. A left pixel whose
+//! disparity is far from what its partner kept was beaten there: it is occluded or wrong. Nothing is searched
+//! a second time, and on real pairs the check refuses fewer right answers than one against the right image's
+//! own winners.
+//!
+//! A right column keeps the cost above 8 bits of the winner, over the smallest disparity; all ones while
+//! nobody offered.
+
+use crate::units::PixelFlags;
+
+/// Offers every winner to its partner, each by its cost above 8 bits of its disparity, and that disparity.
+/// The first of equal costs stays. The first winner is that of the first column that has a candidate, whose
+/// partner is the first right column.
+#[inline(always)]
+pub(super) fn offer(winners: impl Iterator<Item = (u32, u8)>, right: &mut [u16]) {
+    right.fill(u16::MAX);
+    for (x, (key, disparity)) in winners.enumerate() {
+        if let Some(kept) = right.get_mut(x.wrapping_sub(usize::from(disparity))) {
+            // Of one partner, those who come later are farther away: their disparity is larger.
+            *kept = key.min(u32::from(*kept)) as u16;
+        }
+    }
+}
+
+/// The disparity that the partner of winner `x` keeps.
+#[inline(always)]
+pub(super) fn kept(x: usize, disparity: u8, right: &[u16]) -> u8 {
+    right.get(x.wrapping_sub(usize::from(disparity))).map_or(disparity, |&kept| kept as u8)
+}
+
+/// Whether a winner's partner keeps something else by over `tolerance` px.
+#[inline(always)]
+pub(super) fn mismatch(disparity: u8, kept: u8, tolerance: u8) -> PixelFlags {
+    PixelFlags::MISMATCH.when(disparity.max(kept) - disparity.min(kept) > tolerance)
+}

@@ -1,0 +1,49 @@
+//! The left-right check and the sub-pixel fit, pixel by pixel.
+
+use super::{consistency, subpixel};
+use crate::matching::backend::parameters::MethodParameters;
+use crate::matching::backend::work::{Rules, WinnerWork};
+use crate::matching::memory::winners::Winner;
+use crate::units::{Disparity, PixelFlags};
+
+/// Makes answers of a row of winners: [`Isa::left_right`](crate::matching::backend::Isa::left_right).
+#[inline(always)]
+pub(in crate::matching::backend) fn left_right<S: MethodParameters>(
+    work: WinnerWork<'_>,
+    rules: &Rules,
+    answers: &mut [Disparity],
+    flags: &mut [PixelFlags],
+) {
+    let winners = work.winners.get(work.begin..).unwrap_or(&[]);
+    offer(winners, work.right);
+    answer::<S>(winners, work.right, rules, answers, flags);
+}
+
+/// [`consistency::offer`] of all winners.
+#[inline(never)]
+fn offer(winners: &[Winner], right: &mut [u16]) {
+    consistency::offer(winners.iter().map(|winner| (winner.key(), winner.disparity() as u8)), right);
+}
+
+/// The answers and flags of the columns that have a candidate.
+#[inline(never)]
+pub(in crate::matching::backend) fn answer<S: MethodParameters>(
+    winners: &[Winner],
+    right: &[u16],
+    rules: &Rules,
+    answers: &mut [Disparity],
+    flags: &mut [PixelFlags],
+) {
+    let min_disparity = u32::from(rules.min_disparity);
+    for (x, ((answer, flags), &winner)) in answers.iter_mut().zip(flags).zip(winners).enumerate() {
+        let disparity = winner.disparity() as u8;
+        let said = flags
+            .union(consistency::mismatch(disparity, consistency::kept(x, disparity, right), rules.tolerance))
+            .union(rules.flat.when(winner.rises() == (0, 0)))
+            .union(PixelFlags::CEILING.when(disparity == rules.ceiling));
+        let none = 0u16.wrapping_sub(u16::from(said.intersects(rules.refused)));
+        *answer =
+            Disparity::from_raw(subpixel::refine(winner, min_disparity, u32::from(S::SLANT_COST)).raw() | none);
+        *flags = said;
+    }
+}

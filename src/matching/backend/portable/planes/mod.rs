@@ -1,0 +1,101 @@
+//! The kernel in bit planes, for cores without vectors: 32 candidates are the bits of a word, and a number
+//! for each of them is as many words as it has bits. Additions are chains of full adders, bit by bit;
+//! comparisons go from the highest plane down. Safe Rust; the arithmetic is that of plain words.
+//!
+//! * `columns`: what changes from code to code; the bits in which codes differ, counted into the columns
+//!   under the window.
+//! * `windows`: columns into windows, windows into winners.
+//! * `plane`: the word itself.
+//!
+//! The work is the same for every picture, but for some ten instructions where a winner is at an end of the
+//! search.
+
+mod columns;
+mod plane;
+mod windows;
+
+use super::census as rows;
+use crate::matching::backend::work::WindowWork;
+use crate::matching::memory::layout::OUTSIDE;
+use crate::matching::memory::views::{view, view_mut};
+use crate::matching::memory::winners::Select;
+use crate::matching::memory::Rows5;
+use crate::matching::backend::parameters::WindowParameters;
+use plane::Plane;
+use windows::{Judge, WINDOW, Windows};
+
+/// The sums of a column, lowest plane first: a place for each eighth of its bytes, of which the last are
+/// free.
+type Column<P> = [P; 8];
+
+/// [`Isa::census`](crate::matching::backend::Isa::census) in planes.
+#[inline]
+pub(in crate::matching::backend) fn census<S: WindowParameters>(
+    [left, right]: [&Rows5<'_>; 2],
+    min_disparity: usize,
+    scratch: &mut [u32],
+    out: &mut [u8],
+) {
+    let width = out.len() / 2;
+    // Both begin where a word may stand.
+    let mut codes = view_mut::<u32, u8>(scratch)
+        .chunks_mut(width.next_multiple_of(4).max(1))
+        .filter_map(|row| row.get_mut(..width));
+    let (Some(of_left), Some(of_right)) = (codes.next(), codes.next()) else { return };
+    rows::census::<S>(left, of_left);
+    rows::census::<S>(right, of_right);
+    columns::prepare::<S>(of_left, of_right, min_disparity, view_mut::<u8, u16>(out));
+}
+
+/// [`Isa::window`](crate::matching::backend::Isa::window) in planes.
+#[inline(always)]
+pub(in crate::matching::backend) fn window<S: WindowParameters>(work: WindowWork<'_>, select: Option<Select<'_>>) {
+    // The usual numbers of candidates, then any number of words of them, or of half-words.
+    match work.stride {
+        16 => row_of::<S, u16, 1>(work, select),
+        32 => row_of::<S, u32, 1>(work, select),
+        64 => row_of::<S, u32, 2>(work, select),
+        stride if !stride.is_multiple_of(32) && stride > 32 => row_of::<S, u16, 0>(work, select),
+        stride if stride > 64 => row_of::<S, u32, 0>(work, select),
+        _ => {}
+    }
+}
+
+/// A row whose candidates are `GROUPS` words of them; 0 where the number is not known when the crate is
+/// compiled.
+#[inline(always)]
+fn row_of<S: WindowParameters, P: Plane, const GROUPS: usize>(work: WindowWork<'_>, select: Option<Select<'_>>) {
+    let WindowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
+    // At least one, for the compiler to see that no column is empty.
+    let groups = if GROUPS > 0 { GROUPS } else { (stride / P::CANDIDATES).max(1) };
+    let columns = P::of_bytes(columns).as_chunks_mut::<8>().0;
+    let scratch = P::of_words(scratch);
+    if let Some(inside) = columns.get_mut(OUTSIDE * groups..) {
+        let rows = [enter, leave].map(|row| row.map(view::<u8, u16>));
+        columns::update::<S, P, GROUPS>(groups, min_disparity, rows, scratch, inside);
+    }
+    let Some(Select { disparities, winners, unique }) = select else { return };
+
+    // Left of here no pixel has a candidate.
+    let begin = min_disparity.min(width);
+    let winners = winners.get_mut(begin..).unwrap_or_default();
+    // Nothing of it stands in the loops' registers where nothing is asked.
+    let is_asked = unique.is_asked();
+    let mut judge = unique.starting_at(begin);
+    let mut judge = |cost, second| judge(cost, &mut || second);
+    let judge: Option<&mut Judge<'_>> = if is_asked { Some(&mut judge) } else { None };
+    let Some(windows) = scratch.as_chunks_mut::<WINDOW>().0.get_mut(..groups) else { return };
+    let mut windows = Windows::new(windows, disparities);
+    // What is farther to the left is no candidate's: its sums are zero.
+    let (before, after) = (begin.saturating_sub(S::RADIUS_X), begin + S::RADIUS_X);
+    for column in columns.chunks_exact(groups).take(OUTSIDE + after).skip(OUTSIDE + before) {
+        windows.slide::<S>(column, columns);
+    }
+    let from = |column: usize| columns.get(column * groups..).unwrap_or(&[]);
+    let (entering, leaving) = (from(OUTSIDE + after), from(OUTSIDE + begin - S::RADIUS_X - 1));
+    if GROUPS > 0 {
+        windows.winners::<S, GROUPS>(entering, leaving, winners, judge);
+    } else {
+        windows.winners_of_many::<S>(entering, leaving, winners, judge);
+    }
+}

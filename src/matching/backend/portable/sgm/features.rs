@@ -1,0 +1,179 @@
+//! What a pixel's cost compares, of a row of both images:
+//!
+//! * the gradients along the line and across it, cut off;
+//! * the brightness, halved;
+//! * a census of eight neighbours, wide along the line.
+
+use crate::imaging::{census_wide8, gradients};
+use crate::matching::backend::parameters::SgmParameters;
+use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::work::PathWork;
+use crate::matching::memory::Rows5;
+
+/// Rows of numbers, a byte a pixel.
+#[derive(Clone, Copy)]
+pub(in crate::matching::backend) struct Features<'a> {
+    /// Of the left image, by column.
+    pub left: Looks<'a>,
+    /// Of the right image, `count` bytes for each one after the other: along the line, across it, census,
+    /// brightness halved, and the least and the greatest of a column's gradient along the line and of
+    /// those halfway to its neighbours (of no meaning where nothing is compared between pixels; doubled
+    /// in `armv7em`). Column `x` is compared with `stride` of them from `x` on. The first column is repeated
+    /// for those that lie left of the image.
+    pub right: &'a [u8],
+    pub count: usize,
+}
+
+/// What the left pixels look like.
+#[derive(Clone, Copy)]
+pub(in crate::matching::backend) struct Looks<'a> {
+    pub along: &'a [u8],
+    pub across: &'a [u8],
+    pub census: &'a [u8],
+    pub brightness: &'a [u8],
+}
+
+/// The features of a row, in the workspace.
+// In vectors they are compiled with the kernel's instructions; in words once for all numbers of disparities.
+#[cfg_attr(target_pointer_width = "64", inline(always))]
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
+pub(super) fn of<'a, R: FeatureRows, S: SgmParameters>(
+    work: &PathWork<'_>,
+    lines: [&Rows5<'a>; 2],
+    workspace: &'a mut [u8],
+) -> Option<Features<'a>> {
+    let width = work.width;
+    let (most, shift) = (work.penalties.gradient, work.gradient_shift);
+    let [left, right] = lines.map(|lines| lines.map(|line| line.get(..width).unwrap_or(&[])));
+    let (of_left, of_right) = workspace.split_at_mut_checked(3 * width)?;
+    let [along, across, census] = rows(of_left, width);
+    looks_of::<R>(&left, most, shift, [&mut *along, &mut *across, &mut *census]);
+    let of_left = Looks { along, across, census, brightness: left[2] };
+
+    // One more than is compared, for the numbers halfway to the last.
+    let count = width + work.stride;
+    let of_right = of_right.get_mut(..6 * count)?;
+    let [along, across, census, brightness, least, greatest]: [_; 6] = rows(of_right, count);
+    let outside = count.min(work.stride - 1 + work.min_disparity);
+    let inside =
+        [&mut *along, &mut *across, &mut *census].map(|row| row.get_mut(outside..).unwrap_or_default());
+    looks_of::<R>(&right, most, shift, inside);
+    R::halve(right[2], brightness.get_mut(outside..).unwrap_or_default());
+    // The first column on its own, with the next one: the row may begin behind it.
+    let mut first = [[0; 2]; 3];
+    let places = first.each_mut().map(|first| first.get_mut(..width.min(2)).unwrap_or_default());
+    looks_of::<R>(&right, most, shift, places);
+    let [first_along, first_across, first_census] = first;
+    let first_brightness = [0, 1].map(|x| right[2].get(x).map_or(0, |pixel| pixel >> 1));
+    for (row, [first, _]) in [
+        (&mut *along, first_along),
+        (&mut *across, first_across),
+        (&mut *census, first_census),
+        (&mut *brightness, first_brightness),
+    ] {
+        go_on(row, first, outside, outside + width);
+    }
+    if S::BETWEEN_PIXELS {
+        R::range(along, least, greatest);
+        let [first, next] = first_along;
+        let range = R::between(first, first, if width > 1 { next } else { first });
+        repeat(least, range.0, outside);
+        repeat(greatest, range.1, outside);
+    }
+    Some(Features { left: of_left, right: of_right, count })
+}
+
+/// Rows of so many bytes; what there is no room for is empty.
+#[inline(always)]
+fn rows<const N: usize>(room: &mut [u8], length: usize) -> [&mut [u8]; N] {
+    let mut rows = room.chunks_exact_mut(length.max(1));
+    core::array::from_fn(|_| rows.next().unwrap_or_default())
+}
+
+/// The features of as many columns as there is a place for. Gradients are cut off before they are shifted,
+/// which is the same as after.
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+#[cfg_attr(not(target_pointer_width = "32"), inline(always))]
+fn looks_of<R: FeatureRows>(lines: &Rows5<'_>, gradient: u8, shift: u32, [along, across, census]: [&mut [u8]; 3]) {
+    R::looks(lines, gradient << shift, [&mut *along, &mut *across, census]);
+    if shift > 0 {
+        shift_down(along, shift);
+        shift_down(across, shift);
+    }
+}
+
+/// Numbers, shifted to the right.
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+fn shift_down(numbers: &mut [u8], shift: u32) {
+    for number in numbers {
+        keep_loop();
+        *number >>= shift;
+    }
+}
+
+/// Repeats the first column before the image, and behind it what stands in its last one, before `end`.
+#[cfg_attr(target_pointer_width = "64", inline(always))]
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
+fn go_on(row: &mut [u8], first: u8, outside: usize, end: usize) {
+    repeat(row, first, outside);
+    let last = row.get(end.wrapping_sub(1)).copied().unwrap_or(0);
+    row.get_mut(end..).unwrap_or_default().fill(last);
+}
+
+/// Repeats the first column before the image.
+#[inline(always)]
+fn repeat(row: &mut [u8], first: u8, outside: usize) {
+    row.get_mut(..outside).unwrap_or_default().fill(first);
+}
+
+/// What a row's features are made with.
+pub(in crate::matching::backend) trait FeatureRows {
+    /// The gradients along the line and across it, cut off, and the census, of as many columns as there is a
+    /// place for.
+    fn looks(lines: &Rows5<'_>, gradient: u8, looks: [&mut [u8]; 3]);
+    /// Half of each number.
+    fn halve(numbers: &[u8], halves: &mut [u8]);
+    /// The least and the greatest of each number and those halfway to its neighbours, rounded down, of all but
+    /// the two at the ends.
+    fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]);
+    /// The range of one number.
+    fn between(before: u8, here: u8, next: u8) -> (u8, u8);
+}
+
+/// Features in plain Rust, of which the compiler makes vectors where there are some.
+pub(in crate::matching::backend) struct PlainRows;
+
+impl FeatureRows for PlainRows {
+    #[inline(always)]
+    fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
+        gradients(&[lines[1], lines[2], lines[3]], gradient, along, across);
+        census_wide8(lines, census);
+    }
+
+    #[inline(always)]
+    fn halve(numbers: &[u8], halves: &mut [u8]) {
+        for (to, from) in halves.iter_mut().zip(numbers) {
+            keep_loop();
+            *to = from >> 1;
+        }
+    }
+
+    #[inline(always)]
+    fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
+        let inner = least.iter_mut().zip(greatest.iter_mut()).skip(1);
+        let next = numbers.iter().skip(2);
+        for ((least, greatest), ((&before, &here), &next)) in
+            inner.zip(numbers.iter().zip(numbers.iter().skip(1)).zip(next))
+        {
+            keep_loop();
+            (*least, *greatest) = Self::between(before, here, next);
+        }
+    }
+
+    #[inline(always)]
+    fn between(before: u8, here: u8, next: u8) -> (u8, u8) {
+        // Seven bits each.
+        let (a, b) = (before.wrapping_add(here) >> 1, here.wrapping_add(next) >> 1);
+        (here.min(a).min(b), here.max(a).max(b))
+    }
+}

@@ -1,0 +1,90 @@
+//! A row's costs, averaged into those of the rows above.
+
+use super::super::features::Features;
+use super::{PathWork, stride};
+use crate::matching::backend::portable::group::Group;
+use crate::matching::backend::parameters::SgmParameters;
+use crate::matching::backend::loops::keep_loop;
+
+/// Adds a row.
+#[inline(always)]
+pub(super) fn enter<G: Group, S: SgmParameters, const CELLS: usize, const ALL: bool>(
+    work: &mut PathWork<'_>,
+    features: &Features<'_>,
+) {
+    let Features { left, right, count } = *features;
+    let mut rows = right.chunks_exact(count.max(1));
+    let [alongs, acrosses, censuses, brightnesses, least, greatest] =
+        core::array::from_fn(|_| rows.next().unwrap_or(&[]));
+    let most = G::splat(work.penalties.cost);
+    let stride = stride::<G, CELLS, ALL>(work);
+    let columns = G::cells_mut(work.costs).chunks_exact_mut(stride / G::LANES);
+    let candidates = alongs.windows(stride).zip(brightnesses.windows(stride));
+    let candidates = candidates.zip(acrosses.windows(stride).zip(censuses.windows(stride)));
+    let ranges = least.windows(stride).zip(greatest.windows(stride));
+    let pixels = left.brightness.iter().zip(left.across.iter().zip(left.census));
+    let pixels = left.along.iter().zip(pixels);
+    for (((column, candidates), range), (&along, (&brightness, (&across, &census)))) in
+        columns.zip(candidates).zip(ranges).zip(pixels)
+    {
+        let along = G::splat(along);
+        let rest = Rest {
+            brightness: G::splat(brightness >> 1),
+            across: G::splat(across),
+            census: G::splat(census),
+            most,
+        };
+        let ((alongs, brightness), (across, census)) = candidates;
+        let others = groups::<G>(brightness).zip(groups::<G>(across).zip(groups::<G>(census)));
+        if S::BETWEEN_PIXELS {
+            let ranges = groups::<G>(range.0).zip(groups::<G>(range.1));
+            for (cell, (others, (least, greatest))) in column.iter_mut().zip(others.zip(ranges)) {
+                keep_loop();
+                rest.put::<S>(
+                    cell,
+                    along.minus_saturating(greatest).or(least.minus_saturating(along)),
+                    others,
+                );
+            }
+        } else {
+            for (cell, (others, other)) in column.iter_mut().zip(others.zip(groups::<G>(alongs))) {
+                keep_loop();
+                rest.put::<S>(cell, along.apart(other), others);
+            }
+        }
+    }
+}
+
+/// A pixel of the left image, but for what is compared between pixels.
+struct Rest<G> {
+    brightness: G,
+    across: G,
+    census: G,
+    most: G,
+}
+
+impl<G: Group> Rest<G> {
+    /// Averages the cost of some candidates into what there is of the rows above.
+    #[inline(always)]
+    fn put<S: SgmParameters>(
+        &self,
+        cell: &mut G::Cell,
+        along: G,
+        (of_brightness, (of_across, of_census)): (G, (G, G)),
+    ) {
+        let brightness = self.brightness.apart(of_brightness);
+        let rest =
+            self.across.apart(of_across).plus(brightness.quarter()).plus(self.census.bits_apart(of_census));
+        let cost = along.plus(along).plus(rest).min(self.most);
+        *cell = if S::WITHIN_EDGES { cost } else { G::of(*cell).average_up(cost) }.cell();
+    }
+}
+
+/// The groups of a pixel's candidates.
+#[inline(always)]
+fn groups<G: Group>(candidates: &[u8]) -> impl Iterator<Item = G> {
+    G::groups(candidates).iter().map(
+        #[inline(always)]
+        |&bytes| G::of_bytes(bytes),
+    )
+}

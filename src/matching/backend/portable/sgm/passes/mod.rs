@@ -1,0 +1,229 @@
+//! The passes, written once for groups of bytes whose lanes run over the disparities of one pixel.
+//!
+//! * `cost`, `edges`, `select`: the passes; `gather` and `decide`: the two ends of the last one; `alternate`: the
+//!   paths where registers hold a few cells only.
+
+mod alternate;
+mod cost;
+mod decide;
+mod edges;
+mod gather;
+mod select;
+
+
+use super::Passes;
+use super::features::{Features, PlainRows};
+use crate::matching::backend::work::{EdgeWork, Guide, PathWork};
+use crate::matching::memory::layout::COLUMNS_OFF;
+use crate::matching::backend::portable::group::Group;
+use crate::matching::memory::winners::{Found, Unique};
+use crate::matching::backend::work::{MASKS, STEP};
+use crate::matching::backend::parameters::SgmParameters;
+use core::marker::PhantomData;
+
+/// The passes over columns of up to `CELLS` groups, all of them in use if `ALL`: then the compiler knows how
+/// many.
+pub(in crate::matching::backend) struct Groups<G, const CELLS: usize, const ALL: bool>(PhantomData<G>);
+
+impl<G: Group, const CELLS: usize, const ALL: bool> Passes for Groups<G, CELLS, ALL> {
+    type Rows = PlainRows;
+
+    #[inline(always)]
+    fn clear(work: &mut PathWork<'_>) {
+        work.costs.fill(0);
+    }
+
+    #[inline(always)]
+    fn enter<S: SgmParameters>(work: &mut PathWork<'_>, features: &Features<'_>) {
+        cost::enter::<G, S, CELLS, ALL>(work, features);
+    }
+
+    #[inline(always)]
+    fn within_edges(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+        if is_word::<G>() {
+            edges::within_edges::<G, CELLS, false>(work, edges);
+        } else {
+            edges::within_edges::<G, CELLS, ALL>(work, edges);
+        }
+    }
+
+    #[inline(always)]
+    fn select(work: &mut PathWork<'_>, guide: Guide<'_>, unique: Unique<'_>, put: impl FnMut(usize, Found)) {
+        if is_word::<G>() && !ALL {
+            alternate::select::<G, CELLS>(work, guide, unique, put);
+        } else {
+            select::select::<G, CELLS, ALL>(work, guide, unique, put);
+        }
+    }
+}
+
+/// Whether groups are small, so that a column has many: loops over them take little flash if they are not
+/// unrolled, and little longer.
+#[inline(always)]
+const fn is_word<G: Group>() -> bool {
+    G::LANES == size_of::<u32>()
+}
+
+/// Lanes of a column, known to the compiler if `ALL` the cells of a path are in use.
+#[inline(always)]
+fn stride<G: Group, const CELLS: usize, const ALL: bool>(work: &PathWork<'_>) -> usize {
+    if ALL { CELLS * G::LANES } else { work.stride.max(STEP) }
+}
+
+/// A column of a volume; none where there is none.
+#[inline(always)]
+fn column<C, const CELLS: usize, const ALL: bool>(volume: &[C], x: usize, count: usize) -> &[C] {
+    if ALL {
+        volume.get(x * CELLS..).and_then(|rest| rest.first_chunk::<CELLS>()).map_or(&[], |column| column)
+    } else {
+        volume.get(x * count..).and_then(|rest| rest.get(..count)).unwrap_or(&[])
+    }
+}
+
+/// The same, to write.
+#[inline(always)]
+fn column_mut<C, const CELLS: usize, const ALL: bool>(volume: &mut [C], x: usize, count: usize) -> &mut [C] {
+    if ALL {
+        volume
+            .get_mut(x * CELLS..)
+            .and_then(|rest| rest.first_chunk_mut::<CELLS>())
+            .map_or(&mut [], |column| column)
+    } else {
+        volume.get_mut(x * count..).and_then(|rest| rest.get_mut(..count)).unwrap_or_default()
+    }
+}
+
+/// A path at a pixel: its costs, of `CELLS` cells, all of them in use if `ALL`.
+#[derive(Clone, Copy)]
+struct Path<G, const CELLS: usize, const ALL: bool>([G; CELLS]);
+
+impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
+    /// What stands in memory.
+    #[inline(always)]
+    fn of(cells: &[G::Cell]) -> Self {
+        let mut path = Self([G::splat(0); CELLS]);
+        for (to, &from) in path.0.iter_mut().zip(cells) {
+            *to = G::of(from);
+        }
+        path
+    }
+
+    /// Those in use.
+    #[inline(always)]
+    fn cells(&self, count: usize) -> &[G] {
+        if ALL { &self.0 } else { self.0.get(..count).unwrap_or(&[]) }
+    }
+
+    /// Puts it in memory.
+    #[inline(always)]
+    fn put(&self, cells: &mut [G::Cell]) {
+        for (to, from) in cells.iter_mut().zip(&self.0) {
+            *to = from.cell();
+        }
+    }
+
+    /// The sum with another one, at most 255 in each lane.
+    #[inline(always)]
+    fn plus_saturating(mut self, other: &Self) -> Self {
+        for (cell, &other) in self.0.iter_mut().zip(&other.0) {
+            *cell = cell.plus_saturating(other);
+        }
+        self
+    }
+
+    /// The average with another one, rounded down.
+    #[inline(always)]
+    fn average(mut self, other: &[G::Cell]) -> Self {
+        for (cell, &other) in self.0.iter_mut().zip(other) {
+            *cell = cell.average_down(G::of(other));
+        }
+        self
+    }
+
+    /// Goes on to a pixel that has these costs.
+    #[inline(always)]
+    fn step(mut self, steps: &Steps<G, CELLS, ALL>, change: &[G::Cell; 2], costs: &[G::Cell]) -> Self {
+        let (&first, rest) = self.cells(costs.len()).split_first().unwrap_or((&steps.far, &[]));
+        let least = rest.iter().fold(
+            first,
+            #[inline(always)]
+            |least, &cell| least.min(cell),
+        );
+        let least = least.least();
+        let (step, jump) = (G::of(change[0]), least.plus(G::of(change[1])));
+        let (mut before, mut here) = (steps.far, self.0.first().copied().unwrap_or(steps.far));
+        for (i, &cost) in costs.iter().enumerate().take(CELLS) {
+            let next =
+                if i + 1 < costs.len() { self.0.get(i + 1).copied().unwrap_or(steps.far) } else { steps.far };
+            let beside = here.after(before).min(here.before(next)).plus(step);
+            let message = here.min(beside).min(jump).minus(least);
+            if let Some(cell) = self.0.get_mut(i) {
+                *cell = message.plus(G::of(cost));
+            }
+            (before, here) = (here, next);
+        }
+        self
+    }
+}
+
+/// What every step of a path needs.
+struct Steps<G: Group, const CELLS: usize, const ALL: bool> {
+    /// A cost so high that no path comes from there: beside the search's ends.
+    far: G,
+    /// What a step and a jump cost where the left image's brightness changes little, more and much; the last
+    /// one twice.
+    changes: [[G::Cell; 2]; 4],
+    /// The changes of brightness at which it is more, and much.
+    edges: [u8; 2],
+    /// `far` where lanes are beyond the search, and 0 where they are not, if there are such lanes.
+    beyond: Option<Path<G, CELLS, ALL>>,
+}
+
+impl<G: Group, const CELLS: usize, const ALL: bool> Steps<G, CELLS, ALL> {
+    #[inline(always)]
+    fn new(work: &PathWork<'_>) -> Self {
+        // No path costs more: `Penalties::check`.
+        let far = 127u8.saturating_sub(work.penalties.step[0]);
+        let stride = stride::<G, CELLS, ALL>(work);
+        let beyond = if work.disparities < stride {
+            let mut beyond = Path([G::splat(0); CELLS]);
+            for (cell, &mask) in beyond.0.iter_mut().zip(G::groups(mask(stride, work.disparities))) {
+                *cell = G::of_bytes(mask).and(G::splat(far));
+            }
+            Some(beyond)
+        } else {
+            None
+        };
+        let [little, more, much] = work
+            .penalties
+            .changes()
+            .map(|change| [change.step, change.jump].map(|cost| G::splat(cost).cell()));
+        Self { far: G::splat(far), changes: [little, more, much, much], edges: work.penalties.edges, beyond }
+    }
+
+    /// What a step and a jump cost between two pixels of the left image.
+    #[inline(always)]
+    fn between(&self, a: u8, b: u8) -> &[G::Cell; 2] {
+        let change = a.abs_diff(b);
+        // The first edge is no greater than the second.
+        let grade = usize::from(change >= self.edges[0]) + usize::from(change >= self.edges[1]);
+        &self.changes[grade & 3]
+    }
+
+    /// Closes a path's lanes that are beyond the search.
+    #[inline(always)]
+    fn close(&self, path: &mut Path<G, CELLS, ALL>) {
+        if let Some(beyond) = &self.beyond {
+            for (cell, &beyond) in path.0.iter_mut().zip(&beyond.0) {
+                *cell = cell.max(beyond);
+            }
+        }
+    }
+}
+
+/// Masks the lanes of a column but the last `candidates`.
+#[inline(always)]
+fn mask(stride: usize, candidates: usize) -> &'static [u8] {
+    let masked = stride.saturating_sub(candidates);
+    MASKS.get(256usize.saturating_sub(masked)..).and_then(|mask| mask.get(..stride)).unwrap_or(&[])
+}

@@ -1,0 +1,173 @@
+//! AVX2 registers. Only the code that is compiled for AVX2, behind its proof, makes one.
+#![allow(unsafe_code)]
+
+use super::registers::{AROUND, BITS_APART_OF_FOUR, register};
+use crate::matching::backend::portable::group::Group;
+use core::arch::x86_64::*;
+
+/// 32 bytes in a register.
+#[derive(Clone, Copy)]
+#[repr(transparent)]
+pub(in crate::matching) struct Wide(__m256i);
+
+/// Calls of intrinsics.
+macro_rules! safely {
+    ($work:expr) => {
+        // SAFETY: only code that runs behind the proof that the processor has AVX2 is given groups of this
+        // kind; the pointers are to arrays of a register's size, without alignment.
+        unsafe { $work }
+    };
+}
+
+impl Group for Wide {
+    register!(32);
+
+    #[inline(always)]
+    fn of(cell: Self::Cell) -> Self {
+        safely!(Self(_mm256_loadu_si256(cell.as_ptr().cast())))
+    }
+
+    #[inline(always)]
+    fn cell(self) -> Self::Cell {
+        let mut cell = [0; 32];
+        safely!(_mm256_storeu_si256(cell.as_mut_ptr().cast(), self.0));
+        cell
+    }
+
+    #[inline(always)]
+    fn splat(number: u8) -> Self {
+        safely!(Self(_mm256_set1_epi8(number as i8)))
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        safely!(Self(_mm256_add_epi8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn minus(self, other: Self) -> Self {
+        safely!(Self(_mm256_sub_epi8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn plus_saturating(self, other: Self) -> Self {
+        safely!(Self(_mm256_adds_epu8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn minus_saturating(self, other: Self) -> Self {
+        safely!(Self(_mm256_subs_epu8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        safely!(Self(_mm256_min_epu8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        safely!(Self(_mm256_max_epu8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn average_up(self, other: Self) -> Self {
+        safely!(Self(_mm256_avg_epu8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        safely!(Self(_mm256_or_si256(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        safely!(Self(_mm256_and_si256(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn apart(self, other: Self) -> Self {
+        self.minus_saturating(other).or(other.minus_saturating(self))
+    }
+
+    #[inline(always)]
+    fn average_down(self, other: Self) -> Self {
+        safely!(Self(_mm256_and_si256(
+            _mm256_srli_epi16(_mm256_add_epi8(self.0, other.0), 1),
+            _mm256_set1_epi8(0x7f)
+        )))
+    }
+
+    #[inline(always)]
+    fn quarter(self) -> Self {
+        safely!(Self(_mm256_and_si256(_mm256_srli_epi16(self.0, 2), _mm256_set1_epi8(0x3f))))
+    }
+
+    #[inline(always)]
+    fn bits_apart(self, other: Self) -> Self {
+        safely!({
+            // The bits of a nibble, looked up.
+            let bits = _mm256_setr_epi8(
+                0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4, 0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3,
+                4,
+            );
+            let nibble = _mm256_set1_epi8(0x0f);
+            let apart = _mm256_xor_si256(self.0, other.0);
+            let low = _mm256_shuffle_epi8(bits, _mm256_and_si256(apart, nibble));
+            let high = _mm256_shuffle_epi8(bits, _mm256_and_si256(_mm256_srli_epi16(apart, 4), nibble));
+            Self(_mm256_add_epi8(low, high))
+        })
+    }
+
+    #[inline(always)]
+    fn key_of_four(code: u8) -> Self {
+        let bits = BITS_APART_OF_FOUR.get(usize::from(code)).unwrap_or(&[0; 16]);
+        safely!(Self(_mm256_broadcastsi128_si256(_mm_loadu_si128(bits.as_ptr().cast()))))
+    }
+
+    #[inline(always)]
+    fn four_bits_apart(self, others: Self) -> Self {
+        safely!(Self(_mm256_shuffle_epi8(self.0, others.0)))
+    }
+
+    #[inline(always)]
+    fn after(self, before: Self) -> Self {
+        safely!(Self(_mm256_alignr_epi8(self.0, _mm256_permute2x128_si256(before.0, self.0, 0x21), 15)))
+    }
+
+    #[inline(always)]
+    fn before(self, next: Self) -> Self {
+        safely!(Self(_mm256_alignr_epi8(_mm256_permute2x128_si256(self.0, next.0, 0x21), self.0, 1)))
+    }
+
+    #[inline(always)]
+    fn least(self) -> Self {
+        safely!({
+            let half = _mm_min_epu8(_mm256_castsi256_si128(self.0), _mm256_extracti128_si256(self.0, 1));
+            // The lesser byte of each half-word, of which one instruction finds the least.
+            let halves = _mm_min_epu8(half, _mm_srli_epi16(half, 8));
+            Self(_mm256_broadcastb_epi8(_mm_minpos_epu16(halves)))
+        })
+    }
+}
+
+impl Wide {
+    /// The last lane that has a number, which one has: see [`register`].
+    #[inline(always)]
+    fn last_lane_of(cells: &[Self], number: Self) -> usize {
+        // A bit for each lane that has it, of 64 at a time.
+        let mut place = 0;
+        for (first, pair) in (0..).step_by(64).zip(cells.chunks(2)) {
+            let equal = pair.iter().rev().fold(
+                0u64,
+                #[inline(always)]
+                |bits, cell| {
+                    bits << 32
+                        | u64::from(safely!(_mm256_movemask_epi8(_mm256_cmpeq_epi8(cell.0, number.0))) as u32)
+                },
+            );
+            let last = (first | 63usize).wrapping_sub(equal.leading_zeros() as usize);
+            place = if equal != 0 || cells.len() <= 2 { last } else { place };
+        }
+        place
+    }
+}

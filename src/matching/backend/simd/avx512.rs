@@ -1,0 +1,177 @@
+//! AVX-512 registers. Only the code that is compiled for AVX-512, behind its proof, makes one.
+#![allow(unsafe_code)]
+
+use super::registers::{AROUND, BITS_APART_OF_FOUR, register};
+use crate::matching::backend::portable::group::Group;
+use core::arch::x86_64::*;
+
+/// 64 bytes in a register.
+#[derive(Clone, Copy)]
+#[repr(transparent)]
+pub(in crate::matching) struct Widest(__m512i);
+
+/// Calls of intrinsics.
+macro_rules! safely {
+    ($work:expr) => {
+        // SAFETY: only code that runs behind the proof that the processor has AVX-512 is given groups of this
+        // kind; the pointers are to arrays of a register's size, without alignment.
+        unsafe { $work }
+    };
+}
+
+/// Of two registers' lanes, each one's place before it; before the first one the last of the second register.
+const AFTER: &[u8; 64] = &{
+    let mut lanes = [127; 64];
+    let mut lane = 1;
+    while lane < 64 {
+        lanes[lane] = lane as u8 - 1;
+        lane += 1;
+    }
+    lanes
+};
+/// Each one's place after it; after the last one the first of the second register.
+const BEFORE: &[u8; 64] = &{
+    let mut lanes = [64; 64];
+    let mut lane = 0;
+    while lane < 63 {
+        lanes[lane] = lane as u8 + 1;
+        lane += 1;
+    }
+    lanes
+};
+
+impl Group for Widest {
+    register!(64);
+
+    #[inline(always)]
+    fn of(cell: Self::Cell) -> Self {
+        safely!(Self(_mm512_loadu_si512(cell.as_ptr().cast())))
+    }
+
+    #[inline(always)]
+    fn cell(self) -> Self::Cell {
+        let mut cell = [0; 64];
+        safely!(_mm512_storeu_si512(cell.as_mut_ptr().cast(), self.0));
+        cell
+    }
+
+    #[inline(always)]
+    fn splat(number: u8) -> Self {
+        safely!(Self(_mm512_set1_epi8(number as i8)))
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        safely!(Self(_mm512_add_epi8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn minus(self, other: Self) -> Self {
+        safely!(Self(_mm512_sub_epi8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn plus_saturating(self, other: Self) -> Self {
+        safely!(Self(_mm512_adds_epu8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn minus_saturating(self, other: Self) -> Self {
+        safely!(Self(_mm512_subs_epu8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        safely!(Self(_mm512_min_epu8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        safely!(Self(_mm512_max_epu8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn average_up(self, other: Self) -> Self {
+        safely!(Self(_mm512_avg_epu8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        safely!(Self(_mm512_or_si512(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        safely!(Self(_mm512_and_si512(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn apart(self, other: Self) -> Self {
+        self.minus_saturating(other).or(other.minus_saturating(self))
+    }
+
+    #[inline(always)]
+    fn average_down(self, other: Self) -> Self {
+        safely!(Self(_mm512_and_si512(
+            _mm512_srli_epi16(_mm512_add_epi8(self.0, other.0), 1),
+            _mm512_set1_epi8(0x7f)
+        )))
+    }
+
+    #[inline(always)]
+    fn quarter(self) -> Self {
+        safely!(Self(_mm512_and_si512(_mm512_srli_epi16(self.0, 2), _mm512_set1_epi8(0x3f))))
+    }
+
+    #[inline(always)]
+    fn bits_apart(self, other: Self) -> Self {
+        safely!(Self(_mm512_popcnt_epi8(_mm512_xor_si512(self.0, other.0))))
+    }
+
+    #[inline(always)]
+    fn key_of_four(code: u8) -> Self {
+        let bits = BITS_APART_OF_FOUR.get(usize::from(code)).unwrap_or(&[0; 16]);
+        safely!(Self(_mm512_broadcast_i32x4(_mm_loadu_si128(bits.as_ptr().cast()))))
+    }
+
+    #[inline(always)]
+    fn four_bits_apart(self, others: Self) -> Self {
+        safely!(Self(_mm512_shuffle_epi8(self.0, others.0)))
+    }
+
+    #[inline(always)]
+    fn after(self, before: Self) -> Self {
+        safely!(Self(_mm512_permutex2var_epi8(self.0, _mm512_loadu_si512(AFTER.as_ptr().cast()), before.0)))
+    }
+
+    #[inline(always)]
+    fn before(self, next: Self) -> Self {
+        safely!(Self(_mm512_permutex2var_epi8(self.0, _mm512_loadu_si512(BEFORE.as_ptr().cast()), next.0)))
+    }
+
+    #[inline(always)]
+    fn least(self) -> Self {
+        safely!({
+            let half = _mm256_min_epu8(_mm512_castsi512_si256(self.0), _mm512_extracti64x4_epi64(self.0, 1));
+            let quarter = _mm_min_epu8(_mm256_castsi256_si128(half), _mm256_extracti128_si256(half, 1));
+            // The lesser byte of each half-word, of which one instruction finds the least.
+            let halves = _mm_min_epu8(quarter, _mm_srli_epi16(quarter, 8));
+            Self(_mm512_broadcastb_epi8(_mm_minpos_epu16(halves)))
+        })
+    }
+}
+
+impl Widest {
+    /// The last lane that has a number, which one has: see [`register`].
+    #[inline(always)]
+    fn last_lane_of(cells: &[Self], number: Self) -> usize {
+        let mut place = 0;
+        for (first, cell) in (0..).step_by(64).zip(cells) {
+            // A bit for each lane that has it.
+            let equal = safely!(_mm512_cmpeq_epi8_mask(cell.0, number.0));
+            let last = (first | 63usize).wrapping_sub(equal.leading_zeros() as usize);
+            place = if equal != 0 || cells.len() == 1 { last } else { place };
+        }
+        place
+    }
+}

@@ -1,0 +1,227 @@
+//! The dense path in the vectors of 64-bit processors.
+//!
+//! * `sse2`, `avx2`, `avx512`, `neon`: registers, with what they have alike from `registers`.
+//! * `windows`, `columns`: sums over windows; `sgm`: costs along paths; `smooth`: answers averaged.
+//! * `x86`: code compiled for AVX2 and for AVX-512, chosen when the processor has it.
+
+mod columns;
+mod row_codes;
+mod sgm;
+mod smooth;
+mod windows;
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+#[cfg(target_arch = "aarch64")]
+mod neon;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod registers;
+#[cfg(target_arch = "x86_64")]
+mod sse2;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+#[cfg(not(target_arch = "x86_64"))]
+#[path = "no_x86.rs"]
+mod x86;
+
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+use super::portable::words::Word as Vector;
+#[cfg(target_arch = "aarch64")]
+use neon::Vector;
+#[cfg(target_arch = "x86_64")]
+use sse2::Vector;
+use x86::{Avx2, Avx512, Wide, Widest};
+
+use super::isa::Isa;
+use crate::matching::kernel::Kernel;
+use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
+use super::portable::{self, left_right_rows};
+use super::work::{EdgeWork, Guide, PathWork, Rules, STEP, WindowWork, WinnerWork};
+use crate::imaging::{census_plus4, census_ring8};
+use crate::matching::memory::Rows5;
+use crate::matching::memory::views::view_mut;
+use crate::matching::memory::winners::{Select, WinnerRows};
+use crate::units::{Disparity, PixelFlags};
+
+/// The kernels of a 64-bit processor.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(in crate::matching) enum Backend {
+    /// The portable code.
+    Planes,
+    /// The vectors that every processor of the target has.
+    Lanes,
+    /// 256-bit vectors of x86-64.
+    Avx2(Avx2),
+    /// 512-bit vectors of x86-64.
+    Avx512(Avx512),
+}
+
+impl Backend {
+    /// What a matcher is made with before it is started: its bytes are zero.
+    pub(in crate::matching) const FIRST: Self = Self::Planes;
+
+    /// The fastest code that this processor runs.
+    pub(in crate::matching) fn detect() -> Self {
+        let avx512 = Avx512::detect().map(Self::Avx512);
+        avx512.or_else(|| Avx2::detect().map(Self::Avx2)).unwrap_or(Self::Lanes)
+    }
+
+    /// The code of a kernel, if this processor runs it.
+    pub(in crate::matching) fn of(kernel: Kernel) -> Option<Self> {
+        match kernel {
+            Kernel::Planes => Some(Self::Planes),
+            Kernel::Lanes => Some(Self::Lanes),
+            Kernel::Avx2 => Avx2::detect().map(Self::Avx2),
+            Kernel::Avx512 => Avx512::detect().map(Self::Avx512),
+            Kernel::Dsp | Kernel::Helium => None,
+        }
+    }
+
+    /// Does something with the kernel's vectors, if it is inlined.
+    #[inline(always)]
+    fn in_vectors(self, work: impl FnOnce()) {
+        match self {
+            Self::Avx2(avx2) => avx2.run(work),
+            Self::Avx512(avx512) => avx512.run(work),
+            Self::Planes | Self::Lanes => work(),
+        }
+    }
+}
+
+impl Isa for Backend {
+    fn kernel(self) -> Kernel {
+        match self {
+            Self::Planes => Kernel::Planes,
+            Self::Lanes => Kernel::Lanes,
+            Self::Avx2(_) => Kernel::Avx2,
+            Self::Avx512(_) => Kernel::Avx512,
+        }
+    }
+
+    #[inline]
+    fn candidates(self, disparities: usize, most: usize) -> usize {
+        match self {
+            Self::Planes => portable::Backend.candidates(disparities, most),
+            _ => disparities.next_multiple_of(STEP).min(most) & !(STEP - 1),
+        }
+    }
+
+    #[inline]
+    fn census<P: WindowParameters>(
+        self,
+        lines: [&Rows5<'_>; 2],
+        min_disparity: usize,
+        workspace: &mut [u32],
+        out: &mut [u8],
+    ) {
+        if self == Self::Planes {
+            return portable::Backend.census::<P>(lines, min_disparity, workspace, out);
+        }
+        let (left, right) = out.split_at_mut_checked(out.len() / 2).unwrap_or_default();
+        let census = if P::BITS <= 4 { census_plus4 } else { census_ring8 };
+        for (lines, codes) in lines.into_iter().zip([left, right]) {
+            census(lines, codes);
+        }
+    }
+
+    #[inline]
+    fn window<P: WindowParameters>(self, work: WindowWork<'_>, select: Option<Select<'_>>) {
+        match self {
+            Self::Planes => portable::Backend.window::<P>(work, select),
+            Self::Avx2(avx2) if work.stride.is_multiple_of(32) => avx2.row::<P>(work, select),
+            Self::Avx512(avx512) if work.stride.is_multiple_of(32) => avx512.row::<P>(work, select),
+            // Of registers that would not be full there is nothing to gain.
+            _ => windows::in_vectors::<P>(work, select),
+        }
+    }
+
+    #[inline(always)]
+    fn sgm_cost<P: SgmParameters>(
+        self,
+        work: &mut PathWork<'_>,
+        is_first: bool,
+        lines: [&Rows5<'_>; 2],
+        workspace: &mut [u8],
+    ) {
+        sgm::cost::<P>(self, work, is_first, lines, workspace);
+    }
+
+    #[inline(always)]
+    fn sgm_within_edges(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+        sgm::within_edges(self, work, edges);
+    }
+
+    #[inline(always)]
+    fn sgm_select(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+        sgm::select(self, work, guide, select);
+    }
+
+    fn left_right<P: MethodParameters>(
+        self,
+        work: WinnerWork<'_>,
+        rules: &Rules,
+        answers: &mut [Disparity],
+        flags: &mut [PixelFlags],
+    ) {
+        if self == Self::Planes {
+            return portable::Backend.left_right::<P>(work, rules, answers, flags);
+        }
+        let WinnerWork { winners, right, workspace, begin } = work;
+        let width = winners.len();
+        let winners = WinnerRows::of(winners, begin);
+        let (kept, fractions) =
+            view_mut::<u32, u8>(workspace).split_at_mut_checked(width).unwrap_or_default();
+        left_right_rows::keep(winners.costs, winners.disparities, right, kept);
+        self.in_vectors(
+            #[inline(always)]
+            || left_right_rows::answer::<P>(&winners, kept, rules, fractions, answers, flags),
+        );
+    }
+
+    fn smooth(
+        self,
+        answers: &mut [Disparity],
+        lengths: &mut [u16],
+        workspace: &mut [u16],
+        step: Disparity,
+        radius: u8,
+    ) {
+        if self == Self::Planes || answers.len() < smooth::LANES {
+            return portable::Backend.smooth(answers, lengths, workspace, step, radius);
+        }
+        self.in_vectors(
+            #[inline(always)]
+            || smooth::smooth(answers, lengths, workspace, step, radius),
+        );
+    }
+
+    fn median(self, rows: [&[Disparity]; 3], out: &mut [Disparity]) {
+        if self == Self::Planes {
+            return portable::Backend.median(rows, out);
+        }
+        self.in_vectors(
+            #[inline(always)]
+            || portable::median::median_in_rows(rows, out),
+        );
+    }
+
+    fn vertical(self, here: &mut [Disparity], above: &[Disparity], below: &[Disparity]) {
+        self.in_vectors(
+            #[inline(always)]
+            || portable::vertical::vertical(here, above, below),
+        );
+    }
+}
+
+/// Whether the two codes of a pixel share a byte where codes have up to four bits.
+pub(in crate::matching) const CODES_SHARE_A_BYTE: bool = false;
+
+/// How many bytes before the first line of the cache in a memory where `count` bytes still have their place:
+/// vectors as long as a line are then read and written at once. Where there is no such place, none.
+pub(in crate::matching) fn columns_begin(memory: &[u8], count: usize) -> u8 {
+    const LINE: usize = 64;
+    let before = memory.as_ptr().align_offset(LINE);
+    if before < LINE && before + count <= memory.len() { before as u8 } else { 0 }
+}

@@ -1,0 +1,149 @@
+//! NEON registers, which every 64-bit Arm processor has.
+#![allow(unsafe_code)]
+
+use super::registers::{AROUND, BITS_APART_OF_FOUR, register};
+use crate::matching::backend::portable::group::Group;
+use core::arch::aarch64::*;
+
+/// 16 bytes in a register.
+#[derive(Clone, Copy)]
+#[repr(transparent)]
+pub(in crate::matching) struct Vector(uint8x16_t);
+
+/// Calls of intrinsics.
+macro_rules! safely {
+    ($work:expr) => {
+        // SAFETY: every 64-bit Arm processor has NEON; the pointers are to arrays of a register's size.
+        unsafe { $work }
+    };
+}
+
+impl Group for Vector {
+    register!(16);
+
+    #[inline(always)]
+    fn of(cell: Self::Cell) -> Self {
+        safely!(Self(vld1q_u8(cell.as_ptr())))
+    }
+
+    #[inline(always)]
+    fn cell(self) -> Self::Cell {
+        let mut cell = [0; 16];
+        safely!(vst1q_u8(cell.as_mut_ptr(), self.0));
+        cell
+    }
+
+    #[inline(always)]
+    fn splat(number: u8) -> Self {
+        safely!(Self(vdupq_n_u8(number)))
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        safely!(Self(vaddq_u8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn minus(self, other: Self) -> Self {
+        safely!(Self(vsubq_u8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn plus_saturating(self, other: Self) -> Self {
+        safely!(Self(vqaddq_u8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn minus_saturating(self, other: Self) -> Self {
+        safely!(Self(vqsubq_u8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        safely!(Self(vminq_u8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        safely!(Self(vmaxq_u8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn apart(self, other: Self) -> Self {
+        safely!(Self(vabdq_u8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn average_up(self, other: Self) -> Self {
+        safely!(Self(vrhaddq_u8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn average_down(self, other: Self) -> Self {
+        safely!(Self(vhaddq_u8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        safely!(Self(vorrq_u8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        safely!(Self(vandq_u8(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn quarter(self) -> Self {
+        safely!(Self(vshrq_n_u8(self.0, 2)))
+    }
+
+    #[inline(always)]
+    fn bits_apart(self, other: Self) -> Self {
+        safely!(Self(vcntq_u8(veorq_u8(self.0, other.0))))
+    }
+
+    #[inline(always)]
+    fn key_of_four(code: u8) -> Self {
+        let bits = BITS_APART_OF_FOUR.get(usize::from(code)).unwrap_or(&[0; 16]);
+        safely!(Self(vld1q_u8(bits.as_ptr())))
+    }
+
+    #[inline(always)]
+    fn four_bits_apart(self, others: Self) -> Self {
+        safely!(Self(vqtbl1q_u8(self.0, others.0)))
+    }
+
+    #[inline(always)]
+    fn after(self, before: Self) -> Self {
+        safely!(Self(vextq_u8(before.0, self.0, 15)))
+    }
+
+    #[inline(always)]
+    fn before(self, next: Self) -> Self {
+        safely!(Self(vextq_u8(self.0, next.0, 1)))
+    }
+
+    #[inline(always)]
+    fn least(self) -> Self {
+        safely!(Self(vdupq_n_u8(vminvq_u8(self.0))))
+    }
+}
+
+impl Vector {
+    /// The last lane that has a number, which one has: see [`register`].
+    #[inline(always)]
+    fn last_lane_of(cells: &[Self], number: Self) -> usize {
+        let mut place = 0;
+        for (first, cell) in (0..).step_by(Self::LANES).zip(cells) {
+            // Four bits for each lane that has it.
+            let equal = safely!({
+                let lanes = vreinterpretq_u16_u8(vceqq_u8(cell.0, number.0));
+                vget_lane_u64(vreinterpret_u64_u8(vshrn_n_u16(lanes, 4)), 0)
+            });
+            let last = (first + 15usize).wrapping_sub(equal.leading_zeros() as usize / 4);
+            place = if equal != 0 { last } else { place };
+        }
+        place
+    }
+}

@@ -1,0 +1,135 @@
+//! Windows in the registers of AVX2 and AVX-512, unrolled for the usual numbers of disparities.
+#![allow(unsafe_code)]
+
+pub(super) use super::avx2::Wide;
+pub(super) use super::avx512::Widest;
+use super::windows;
+use crate::matching::backend::parameters::WindowParameters;
+use crate::matching::backend::work::WindowWork;
+use crate::matching::memory::winners::Select;
+use core::arch::x86_64::__cpuid;
+
+cpufeatures::new!(avx2, "avx2");
+// Level 4 of x86-64, and what counts and moves bytes of 512 bits: Ice Lake, Zen 4 and what came after.
+// Registers of 512 bits slow older processors down.
+cpufeatures::new!(
+    avx512,
+    "avx2",
+    "avx512f",
+    "avx512bw",
+    "avx512cd",
+    "avx512dq",
+    "avx512vl",
+    "avx512vbmi",
+    "avx512bitalg"
+);
+
+/// Whether the processor counts leading zeros; `cpufeatures` does not know that one.
+fn counts_zeros() -> bool {
+    // SAFETY: every processor of 64 bits has the instruction and this leaf. To compilers later than the
+    // oldest that is supported the call is safe without it.
+    #[allow(unused_unsafe)]
+    let leaf = unsafe { __cpuid(0x8000_0001) };
+    leaf.ecx & 1 << 5 != 0
+}
+
+/// Proof that the processor has AVX2: only [`Avx2::detect`] makes one.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(in crate::matching) struct Avx2(());
+
+impl Avx2 {
+    pub(super) fn detect() -> Option<Self> {
+        (avx2::get() && counts_zeros()).then_some(Self(()))
+    }
+
+    /// Does something that is compiled for AVX2 as far as it is inlined.
+    #[inline(always)]
+    pub(super) fn run(self, work: impl FnOnce()) {
+        // SAFETY: `self` is the proof that the processor has the one feature that the function is compiled
+        // for.
+        unsafe { run(work) }
+    }
+
+    /// A row whose columns are whole registers: of 32 lanes.
+    #[inline]
+    pub(super) fn row<S: WindowParameters>(self, work: WindowWork<'_>, select: Option<Select<'_>>) {
+        // SAFETY: `self` is the proof that the processor has the one feature that the function is compiled
+        // for.
+        unsafe { row::<S>(work, select) }
+    }
+}
+
+#[target_feature(enable = "avx2,lzcnt")]
+fn run(work: impl FnOnce()) {
+    work();
+}
+
+#[target_feature(enable = "avx2,lzcnt")]
+fn row<S: WindowParameters>(work: WindowWork<'_>, select: Option<Select<'_>>) {
+    match work.stride {
+        32 => in_wide::<S, 1, true>(work, select),
+        64 => in_wide::<S, 2, true>(work, select),
+        128 => in_wide::<S, 4, true>(work, select),
+        256 => in_wide::<S, 8, true>(work, select),
+        _ => in_wide::<S, 8, false>(work, select),
+    }
+}
+
+/// Each number of groups in a function of its own: the compiler's passes take far longer over one function of
+/// all of them.
+#[target_feature(enable = "avx2,lzcnt")]
+#[inline(never)]
+fn in_wide<S: WindowParameters, const CELLS: usize, const ALL: bool>(work: WindowWork<'_>, select: Option<Select<'_>>) {
+    windows::row::<S, Wide, CELLS, ALL>(work, select);
+}
+
+/// Proof that the processor has AVX-512, with operations on bytes, and that its registers are kept: only
+/// [`Avx512::detect`] makes one.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(in crate::matching) struct Avx512(());
+
+impl Avx512 {
+    pub(super) fn detect() -> Option<Self> {
+        (avx512::get() && counts_zeros()).then_some(Self(()))
+    }
+
+    /// Does something that is compiled for AVX-512 as far as it is inlined.
+    #[inline(always)]
+    pub(super) fn run(self, work: impl FnOnce()) {
+        // SAFETY: `self` is the proof that the processor has the features that the function is compiled for.
+        unsafe { run_512(work) }
+    }
+
+    /// A row whose columns are whole registers of AVX2.
+    #[inline]
+    pub(super) fn row<S: WindowParameters>(self, work: WindowWork<'_>, select: Option<Select<'_>>) {
+        // SAFETY: `self` is the proof that the processor has the features that the function is compiled for.
+        unsafe { row_512::<S>(work, select) }
+    }
+}
+
+#[target_feature(enable = "avx2,lzcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,avx512bitalg")]
+fn run_512(work: impl FnOnce()) {
+    work();
+}
+
+#[target_feature(enable = "avx2,lzcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,avx512bitalg")]
+fn row_512<S: WindowParameters>(work: WindowWork<'_>, select: Option<Select<'_>>) {
+    match work.stride {
+        64 => in_widest::<S, 1, true>(work, select),
+        128 => in_widest::<S, 2, true>(work, select),
+        256 => in_widest::<S, 4, true>(work, select),
+        stride if stride % 64 == 0 => in_widest::<S, 4, false>(work, select),
+        _ => row::<S>(work, select),
+    }
+}
+
+/// [`in_wide`] in registers of AVX-512.
+#[target_feature(enable = "avx2,lzcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,avx512bitalg")]
+#[inline(never)]
+fn in_widest<S: WindowParameters, const CELLS: usize, const ALL: bool>(
+    work: WindowWork<'_>,
+    select: Option<Select<'_>>,
+) {
+    windows::row::<S, Widest, CELLS, ALL>(work, select);
+}

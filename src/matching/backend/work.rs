@@ -1,0 +1,135 @@
+//! What the stages hand to a target's code: slices of a row and plain numbers.
+
+use crate::matching::memory::winners::Winner;
+use crate::matching::penalties::Penalties;
+use crate::units::{Disparity, PixelFlags};
+
+/// Disparities are worked on in whole groups of this many.
+pub(in crate::matching) const STEP: usize = 16;
+
+/// 256 lanes of ones, then 256 of zero: a slice of it masks the lanes before any one.
+pub(in crate::matching) const MASKS: &[u8; 512] = &{
+    let mut masks = [0; 512];
+    let mut i = 0;
+    while i < 256 {
+        masks[i] = u8::MAX;
+        i += 1;
+    }
+    masks
+};
+
+/// What a kernel works on.
+///
+/// Candidate `d` of column `x` is the right image's column `x - min_disparity - d`. Where that lies left of
+/// the image, kernels gather the cost against its first column and do not select it.
+pub(in crate::matching) struct WindowWork<'a> {
+    /// Pixels in the row.
+    pub width: usize,
+    /// Candidates of a column: [`Isa::candidates`](super::isa::Isa::candidates).
+    pub stride: usize,
+    /// The smallest disparity, px.
+    pub min_disparity: usize,
+    /// The row of [`Isa::census`](super::isa::Isa::census) that enters the window below, while there is one.
+    pub enter: Option<&'a [u8]>,
+    /// The row that leaves it above, once there is one.
+    pub leave: Option<&'a [u8]>,
+    /// Matching costs summed over the window's height, where a word may stand: `stride` bytes for each of
+    /// the image's columns, and for each of [`OUTSIDE`](crate::matching::memory::layout::OUTSIDE) columns before and after that stay zero.
+    pub columns: &'a mut [u8],
+    /// Room to work in.
+    pub scratch: &'a mut [u32],
+}
+
+/// What the passes work on.
+///
+/// Candidate `d` of column `x` is the right image's column `x - min_disparity - d`, where that lies left of
+/// the image its first column. Lanes beyond the disparities that are searched stand where no path comes from.
+pub(in crate::matching) struct PathWork<'a> {
+    /// Pixels in the row.
+    pub width: usize,
+    /// Lanes of a column: [`Isa::candidates`](super::isa::Isa::candidates).
+    pub stride: usize,
+    /// Disparities searched.
+    pub disparities: usize,
+    /// The smallest disparity, px.
+    pub min_disparity: usize,
+    pub penalties: &'a Penalties,
+    /// How far gradients are shifted to the right.
+    pub gradient_shift: u32,
+    /// Costs, paths from above, and sums of paths: each `stride` bytes for each column, where a word may
+    /// stand. The paths from above have [`COLUMNS_OFF`](crate::matching::memory::layout::COLUMNS_OFF) columns more.
+    pub costs: &'a mut [u8],
+    pub top: &'a mut [u8],
+    pub sums: &'a mut [u8],
+}
+
+/// What the passes that decide look at beside.
+#[derive(Clone, Copy)]
+pub(in crate::matching) struct Guide<'a> {
+    /// The left image's row.
+    pub here: &'a [u8],
+    /// The row above, if there is one.
+    pub above: Option<&'a [u8]>,
+    /// Its number.
+    pub row: usize,
+}
+
+/// What the costs of a row are averaged with, and how far.
+pub(in crate::matching) struct EdgeWork<'a> {
+    /// The left image's row and the two below it, as far as they are inside of the image.
+    pub guides: [Option<&'a [u8]>; 3],
+    /// The average of the row's costs and those above; afterwards that of the next row. As the volumes of
+    /// [`PathWork`].
+    pub above: &'a mut [u8],
+    /// The costs of the next row's pixels; afterwards those of the row after it.
+    pub below: &'a mut [u8],
+}
+
+/// A row of winners on its way to answers. The first two slices have the row's width.
+pub(in crate::matching) struct WinnerWork<'a> {
+    /// The winners; left of the smallest disparity they mean nothing.
+    pub winners: &'a mut [Winner],
+    /// Workspace for what each right column keeps.
+    pub right: &'a mut [u16],
+    /// Workspace of two bytes a pixel.
+    pub workspace: &'a mut [u32],
+    /// The first column that has a candidate.
+    pub begin: usize,
+}
+
+/// Which winners are refused.
+pub(in crate::matching) struct Rules {
+    /// The smallest disparity searched, px.
+    pub min_disparity: u16,
+    /// The last candidate.
+    pub ceiling: u8,
+    /// How far from the disparity that the partner keeps, px.
+    pub tolerance: u8,
+    /// The flag of winners that are flat.
+    pub flat: PixelFlags,
+    /// The flags that refuse.
+    pub refused: PixelFlags,
+}
+
+/// A row of the band, the one above it, and the row that waited for it.
+pub(in crate::matching) struct SpeckleWork<'a> {
+    /// The newest row of the band.
+    pub here: &'a [Disparity],
+    /// The row above it.
+    pub above: &'a [Disparity],
+    /// Of each answer of the newest row, how many its surface has along the row, in the form that the
+    /// target's [`smooth`](super::isa::Isa::smooth) leaves; they are done with.
+    pub lengths: &'a mut [u16],
+    /// All zero when a frame begins, then in the target's own form: the support of each column.
+    pub kept: &'a mut [u16],
+    /// The flags of the row that waited.
+    pub flags: &'a mut [PixelFlags],
+    /// The row that waited; where there is none, it is in `finished`.
+    pub answers: Option<&'a [Disparity]>,
+    /// Where the row that waited is finished.
+    pub finished: &'a mut [Disparity],
+    /// By how much two neighbours of one surface may differ.
+    pub step: Disparity,
+    /// The least support of an answer that stays.
+    pub pixels: u8,
+}

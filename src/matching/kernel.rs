@@ -1,0 +1,39 @@
+//! The kernels by name: which instructions the dense path runs on.
+
+/// An implementation of the dense path. All give the same bits; which of them there are depends on the target
+/// that the crate is compiled for and on the processor that it runs on ([`Kernel::available`]).
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Kernel {
+    /// Bit planes in plain 32-bit words: on every core without another kernel, and on 64-bit processors.
+    Planes,
+    /// Arm's instructions on four bytes in a word (Cortex-M4, M7 and M33, with `--cfg stereopsis_dsp`).
+    Dsp,
+    /// The vectors of a Cortex-M55 (with `--cfg stereopsis_vectors`).
+    Helium,
+    /// The vectors that every processor of a 64-bit target has: SSE2 or NEON.
+    Lanes,
+    /// 256-bit vectors of x86-64.
+    Avx2,
+    /// 512-bit vectors of x86-64.
+    Avx512,
+}
+
+impl Kernel {
+    /// Every kernel of the crate, whether it is available or not.
+    pub const ALL: [Self; 6] =
+        [Self::Planes, Self::Dsp, Self::Helium, Self::Lanes, Self::Avx2, Self::Avx512];
+
+    /// The kernel's name in reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Planes => "planes",
+            Self::Dsp => "dsp",
+            Self::Helium => "helium",
+            Self::Lanes => "lanes",
+            Self::Avx2 => "avx2",
+            Self::Avx512 => "avx512",
+        }
+    }
+}

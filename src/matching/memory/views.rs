@@ -1,0 +1,38 @@
+//! One memory looked at as numbers of another width.
+//!
+//! A stage's workspace is lent as words; rows of bytes, half-words and winners stand in it. All of these are
+//! integers without padding, any value of which is valid, so that each is a view of the others.
+#![allow(unsafe_code)]
+
+use super::winners::Winner;
+
+/// A type that is nothing but an integer: without padding, and valid whatever its bits are.
+///
+/// # Safety
+///
+/// Every bit pattern of the type's size is a value of the type, and every value has all of its bytes set.
+pub(in crate::matching) unsafe trait Plain: Copy + 'static {}
+
+// SAFETY: an integer.
+unsafe impl Plain for u8 {}
+// SAFETY: an integer.
+unsafe impl Plain for u16 {}
+// SAFETY: an integer.
+unsafe impl Plain for u32 {}
+// SAFETY: a `u32` (`repr(transparent)`).
+unsafe impl Plain for Winner {}
+
+/// The part of `numbers` that stands at places of `To` and is a whole number of them: all of it where the
+/// slice begins at such a place and has whole ones.
+#[inline(always)]
+pub(in crate::matching) fn view<From: Plain, To: Plain>(numbers: &[From]) -> &[To] {
+    // SAFETY: both are plain: every value of the one's bytes is a value of the other.
+    unsafe { numbers.align_to().1 }
+}
+
+/// Mutable access to what [`view`] shows.
+#[inline(always)]
+pub(in crate::matching) fn view_mut<From: Plain, To: Plain>(numbers: &mut [From]) -> &mut [To] {
+    // SAFETY: both are plain: every value of the one's bytes is a value of the other, and the other way round.
+    unsafe { numbers.align_to_mut().1 }
+}

@@ -1,0 +1,42 @@
+//! The lines around a row, smoothed as the configuration asks for.
+//!
+//! It is done again for every row, in room that its other stages do not need yet: keeping smoothed lines
+//! would take two more lines of each camera. So no row waits longer, and a row depends on the same lines as
+//! without.
+
+use crate::matching::memory::Rows5;
+use crate::imaging::{Noise, smooth};
+
+/// How far gradients are shifted to the right.
+pub(super) const fn gradient_shift(noise: Noise) -> u32 {
+    match noise {
+        Noise::None => 0,
+        Noise::Low => 1,
+        Noise::High => 2,
+    }
+}
+
+/// The lines of both images, of which `rows` are smoothed, each in one of the places.
+pub(super) fn denoise<'a>(
+    lines: [&Rows5<'a>; 2],
+    rows: &[usize],
+    mut places: impl Iterator<Item = &'a mut [u8]>,
+) -> [Rows5<'a>; 2] {
+    let mut smoothed = lines.map(|lines| *lines);
+    for lines in &mut smoothed {
+        denoise_lines(lines, rows, &mut places);
+    }
+    smoothed
+}
+
+/// Those of one image.
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+fn denoise_lines<'a>(smoothed: &mut Rows5<'a>, rows: &[usize], places: &mut impl Iterator<Item = &'a mut [u8]>) {
+    let lines = *smoothed;
+    for &row in rows {
+        if let (Some(to), Some(place)) = (smoothed.get_mut(row), places.next()) {
+            smooth(&lines, row, place);
+            *to = place;
+        }
+    }
+}

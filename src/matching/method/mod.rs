@@ -1,0 +1,101 @@
+//! What a matching method is made of: numbers, its memory, and how a row gets its winners.
+//!
+//! * `window`: [`Fast`] and [`Block`], census codes compared over a window.
+//! * `sgm`: [`Sgm`], [`SgmLean`] and [`SgmEdge`], gradients, brightness and a census aggregated along paths by
+//!   [`Penalties`].
+
+mod denoise;
+mod sgm;
+mod window;
+
+pub use sgm::{Sgm, SgmEdge, SgmLean};
+pub use window::{Block, Fast};
+
+use super::backend::{Backend, MethodParameters};
+use super::config::{Checks, Config};
+use super::memory::winners::Winner;
+use super::memory::{Bytes, Memory, Rows5};
+use super::penalties::Penalties;
+#[cfg(doc)]
+use crate::imaging::Noise;
+use crate::units::{Disparity, PixelFlags};
+
+/// A matching method. The crate's own types implement it: [`Fast`], [`Block`], [`SgmLean`], [`Sgm`] and
+/// [`SgmEdge`].
+pub trait Method: MethodParameters + Costs + Steps + Sized + 'static {
+    /// Standard deviation of an answer away from depth edges, px: so that on rendered scenes, with sensor
+    /// noise of up to two grey levels, three of it hold 99 % of the answers.
+    const SIGMA_PX: f32;
+    /// Whether answers that are averaged along the row are filtered down the columns as well: d += 5/8 (d_above
+    /// - d) + 5/32 (d_below - d), where both are within 1 px of d, the row above has come out, and the one
+    /// below is four rows away.
+    const VERTICAL_FILTER: bool = false;
+    /// The checks of [`Filter::Default`](super::Filter::Default).
+    const DEFAULT: Checks = Checks::DEFAULT;
+    /// The checks of [`Filter::Default`](super::Filter::Default) where cameras have noise, [`Noise::Low`] and
+    /// [`Noise::High`].
+    const DEFAULT_IN_NOISE: [Checks; 2] = [Self::DEFAULT; 2];
+    /// The checks of [`Filter::Strict`](super::Filter::Strict).
+    const STRICT: Checks = Checks::STRICT;
+    /// What changes of the disparity are worth; of no meaning to the block methods.
+    ///
+    /// ```
+    /// use stereopsis::matching::{Config, Filter, Method, SgmEdge};
+    /// let config = Config::for_method::<SgmEdge>(320, 240, 64).with_filter::<SgmEdge>(Filter::Default);
+    /// assert_eq!(config.penalties, SgmEdge::PENALTIES);
+    /// ```
+    const PENALTIES: Penalties = Penalties::DEFAULT;
+    /// What changes of the disparity are worth where cameras have noise.
+    const PENALTIES_IN_NOISE: Penalties = Self::PENALTIES;
+    /// The method's name, as the programs spell it.
+    const NAME: &'static str;
+}
+
+/// How a method comes to the winners of a row, and the memory that it takes. Only this crate's methods have it.
+pub trait Costs: Sized {
+    /// What the method keeps from row to row, and its workspace.
+    type Memory<const W: usize, const D: usize>: Memory;
+    /// How many bytes that is.
+    const BYTES: Bytes;
+    /// Takes row `y` of both images, before [`Self::select`].
+    fn enter(frame: &mut Frame<'_>, y: usize, lines: [&Rows5<'_>; 2]);
+    /// Adds row `bottom` to the costs, while there are `lines`, and selects the winners of `row`, where there
+    /// is one. Called for every row: after it, the slices of the frame stand for what they say.
+    fn select(
+        frame: &mut Frame<'_>,
+        bottom: usize,
+        lines: Option<[&Rows5<'_>; 2]>,
+        row: Option<usize>,
+    );
+}
+
+/// The stages of a method. Each method has them for itself, so that they are compiled with this crate, once,
+/// and not with every crate that chooses a capacity.
+pub trait Steps {
+    /// Takes row `y` of both images (`None` below the last one) and finishes the row that is due with it.
+    fn step(frame: Frame<'_>, y: usize, lines: Option<[&Rows5<'_>; 2]>);
+}
+
+/// The matcher's memory, cut to the frame's size.
+pub struct Frame<'a> {
+    pub(super) width: usize,
+    /// Candidates of a column that the backend works on.
+    pub(super) stride: usize,
+    pub(super) backend: Backend,
+    pub(super) config: &'a Config,
+    pub(super) codes: &'a mut [u8],
+    pub(super) columns: &'a mut [u8],
+    pub(super) workspace: &'a mut [u32],
+    /// Of each column, whether its pixels in the last 16 rows have texture, and how many in the window's rows do.
+    pub(super) texture: &'a mut [u16],
+    pub(super) textured: &'a mut [u8],
+    pub(super) winners: &'a mut [Winner],
+    pub(super) right: &'a mut [u16],
+    /// Of each column, how many answers its surface has along the row.
+    pub(super) lengths: &'a mut [u16],
+    /// Of each column, the support of its answers so far.
+    pub(super) support: &'a mut [u16],
+    pub(super) band: &'a mut [Disparity],
+    pub(super) flags: &'a mut [PixelFlags],
+    pub(super) finished: &'a mut [Disparity],
+}

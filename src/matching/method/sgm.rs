@@ -1,0 +1,266 @@
+//! The methods whose costs are sums along paths: semi-global matching (Hirschmüller 2008) on lines as they
+//! come.
+//!
+//! A row's costs are averaged with those of the rows above it and of the one below, each half as much as the
+//! next; or, at the price of two more bytes for every pixel and disparity, with those above and of the two
+//! below as far as no edge of the left image is crossed. Then paths bring together what the pixels of a
+//! surface have in common: from the left, from the right, and from above. No frame is kept, and no path comes
+//! from below: that path measured least, and it would take the frame.
+
+use super::{Costs, Frame, Method};
+use crate::imaging::{Noise, smooth};
+use crate::matching::backend::{EdgeWork, Guide, Isa, MethodParameters, PathWork, SgmParameters};
+use crate::matching::config::Checks;
+use super::denoise::{denoise, gradient_shift};
+use crate::matching::memory::layout::{COLUMNS_OFF, PathWorkspace, Volumes};
+use crate::matching::memory::rings::{BAND, first, row as slot, row_mut};
+use crate::matching::memory::views::view_mut;
+use crate::matching::memory::winners::{Select, Unique, Winner};
+use crate::matching::memory::{AfterRow, Bytes, Memory, Parts, Rows5, margins};
+use crate::matching::penalties::Penalties;
+use crate::units::PixelFlags;
+
+/// Method `sgm`: gradients, brightness and a wide census along three paths; gradients are compared between
+/// pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Sgm;
+
+/// Method `sgm-lean`: as [`Sgm`], with gradients compared at pixels only.
+#[derive(Clone, Copy, Debug)]
+pub struct SgmLean;
+
+/// Method `sgm-edge`: as [`Sgm`], with costs averaged down the columns as far as no edge is crossed.
+#[derive(Clone, Copy, Debug)]
+pub struct SgmEdge;
+
+impl SgmParameters for Sgm {
+    const BETWEEN_PIXELS: bool = true;
+    const WITHIN_EDGES: bool = false;
+}
+
+impl SgmParameters for SgmLean {
+    const BETWEEN_PIXELS: bool = false;
+    const WITHIN_EDGES: bool = false;
+}
+
+impl SgmParameters for SgmEdge {
+    const BETWEEN_PIXELS: bool = true;
+    const WITHIN_EDGES: bool = true;
+}
+
+/// What a method along paths is, but for its [`SgmParameters`].
+macro_rules! along_paths {
+    ($method:ty, $name:literal, $penalties:expr) => {
+        const _: () = assert!(
+            $penalties.check().is_ok() && $penalties.in_noise().check().is_ok(),
+            "the default is a good choice"
+        );
+
+        impl MethodParameters for $method {
+            const RADIUS_X: usize = 4;
+            const RADIUS_Y: usize = <Self as SgmParameters>::ROWS_BELOW;
+            const SLANT_COST: u8 = SLANT_COST;
+        }
+
+        impl Method for $method {
+            const SIGMA_PX: f32 = 0.15;
+            const VERTICAL_FILTER: bool = true;
+            const DEFAULT: Checks = DEFAULT;
+            const DEFAULT_IN_NOISE: [Checks; 2] = DEFAULT_IN_NOISE;
+            const STRICT: Checks = STRICT;
+            const PENALTIES: Penalties = $penalties;
+            const PENALTIES_IN_NOISE: Penalties = $penalties.in_noise();
+            const NAME: &'static str = $name;
+        }
+
+        impl Costs for $method {
+            type Memory<const W: usize, const D: usize> =
+                PathMemory<{ guides::<$method>() }, { <$method as SgmParameters>::VOLUMES }, W, D>;
+            const BYTES: Bytes =
+                PathMemory::<{ guides::<$method>() }, { <$method as SgmParameters>::VOLUMES }, 0, 0>::BYTES;
+
+            #[inline(always)]
+            fn enter(_: &mut Frame<'_>, _: usize, _: [&Rows5<'_>; 2]) {}
+
+            // Inlined for the reason that `Isa::window` is.
+            #[inline(always)]
+            fn select(
+                frame: &mut Frame<'_>,
+                bottom: usize,
+                lines: Option<[&Rows5<'_>; 2]>,
+                row: Option<usize>,
+            ) {
+                select::<Self>(frame, bottom, lines, row);
+            }
+        }
+    };
+}
+
+/// Rows of the left image that are held: the one whose winners are due, the one above it and those below that
+/// are in.
+const fn guides<S: SgmParameters>() -> usize {
+    S::ROWS_BELOW + 1
+}
+
+/// What measured best.
+const SLANT_COST: u8 = 12;
+/// Costs along paths leave small gaps inside of surfaces, which are filled.
+const DEFAULT: Checks =
+    Checks { smoothing_radius: 8, speckle_pixels: 20, fill_pixels: 16, ..Checks::DEFAULT };
+/// Noise makes wrong answers whose cost others come near to, and that few others agree with.
+const DEFAULT_IN_NOISE: [Checks; 2] = [
+    Checks { uniqueness_percent: Some(5), ..DEFAULT },
+    Checks { uniqueness_percent: Some(12), speckle_pixels: 60, ..DEFAULT },
+];
+/// They are least sure where another disparity costs little more; texture says less than that, for paths
+/// bridge what has none.
+const STRICT: Checks = Checks {
+    uniqueness_percent: Some(30),
+    speckle_pixels: 20,
+    median: true,
+    fill_pixels: 8,
+    ..Checks::DEFAULT
+};
+/// Costs of more rows are surer, so that smaller jumps will do.
+const WITHIN_EDGES: Penalties = Penalties { jump: [80, 40, 20], ..Penalties::DEFAULT };
+
+along_paths!(Sgm, "sgm", Penalties::DEFAULT);
+along_paths!(SgmLean, "sgm-lean", Penalties::DEFAULT);
+along_paths!(SgmEdge, "sgm-edge", WITHIN_EDGES);
+
+/// The memory of a method along paths.
+pub struct PathMemory<const GUIDES: usize, const VOLUMES: usize, const W: usize, const D: usize> {
+    /// The left image's last rows, row `y` in slot `y % GUIDES`.
+    guides: [[u8; W]; GUIDES],
+    /// Costs, paths from above, sums; within edges also the average of the rows above and the costs of the
+    /// row below.
+    volumes: Volumes<VOLUMES, W, D>,
+    /// Room for the features of a row; when they are done with, for its winners.
+    room: PathWorkspace<W, D>,
+}
+
+impl<const GUIDES: usize, const VOLUMES: usize> PathMemory<GUIDES, VOLUMES, 0, 0> {
+    pub const BYTES: Bytes = Bytes {
+        fixed: 0,
+        per_pixel: GUIDES + PathWorkspace::<0, 0>::PER_PIXEL,
+        per_candidate: VOLUMES,
+        per_disparity: COLUMNS_OFF + PathWorkspace::<0, 0>::PER_DISPARITY,
+    };
+}
+
+impl<const GUIDES: usize, const VOLUMES: usize, const W: usize, const D: usize> Memory
+    for PathMemory<GUIDES, VOLUMES, W, D>
+{
+    const EMPTY: Self = Self { guides: [[0; W]; GUIDES], volumes: Volumes::ZERO, room: PathWorkspace::ZERO };
+
+    fn parts(&mut self, width: usize) -> Parts<'_> {
+        Parts {
+            codes: first(self.guides.as_flattened_mut(), GUIDES * width),
+            columns: self.volumes.flat(),
+            winners: &mut [],
+            right: &mut [],
+            lengths: &mut [],
+            workspace: self.room.words(),
+        }
+    }
+
+    fn column_bytes(width: usize, stride: usize) -> usize {
+        (VOLUMES * width + COLUMNS_OFF) * stride
+    }
+
+    // The winners are the first in the room.
+    fn after_winners(&self, width: usize) -> &[u8] {
+        self.room.bytes().get(..width).unwrap_or(&[])
+    }
+
+    // What the right columns keep stands behind the winners, two bytes for each.
+    fn after_row(&mut self, width: usize) -> AfterRow<'_> {
+        let room = view_mut::<u32, u8>(self.room.words());
+        let (winners, masks) = room.split_at_mut_checked(size_of::<Winner>() * width).unwrap_or_default();
+        let (left, right) = first(masks, 2 * width).split_at_mut_checked(width).unwrap_or_default();
+        AfterRow { confidences: first(winners, width), masks: [left, right] }
+    }
+}
+
+/// Adds row `bottom` to the costs of the row above it, and selects the winners of that one.
+#[inline(always)]
+fn select<S: SgmParameters>(
+    frame: &mut Frame<'_>,
+    bottom: usize,
+    lines: Option<[&Rows5<'_>; 2]>,
+    row: Option<usize>,
+) {
+    let (width, stride, config) = (frame.width, frame.stride, frame.config);
+    let (costs, rest) = frame.columns.split_at_mut_checked(width * stride).unwrap_or_default();
+    let (top, rest) = rest.split_at_mut_checked((width + COLUMNS_OFF) * stride).unwrap_or_default();
+    let (sums, rest) = rest.split_at_mut_checked(width * stride).unwrap_or_default();
+    let mut work = PathWork {
+        width,
+        stride,
+        disparities: usize::from(config.disparities),
+        min_disparity: usize::from(config.min_disparity),
+        penalties: &config.penalties,
+        gradient_shift: gradient_shift(config.noise),
+        costs,
+        top,
+        sums: &mut [],
+    };
+    let guide = |y: usize| slot(frame.codes, y % guides::<S>(), width);
+    let has_noise = config.noise != Noise::None;
+    // Where sums will be, ten smoothed lines have room: a column has sixteen sums at least.
+    let smoothed;
+    let seen = match lines {
+        Some(lines) if has_noise => {
+            smoothed = denoise(lines, &[0, 1, 2, 3, 4], sums.chunks_exact_mut(width.max(1)));
+            Some(smoothed.each_ref())
+        }
+        lines => lines,
+    };
+    if let Some(lines) = seen {
+        frame.backend.sgm_cost::<S>(&mut work, bottom == 0, lines, view_mut::<u32, u8>(frame.workspace));
+    }
+    if S::WITHIN_EDGES {
+        let (above, below) = rest.split_at_mut_checked(width * stride).unwrap_or_default();
+        let inside = |y: &usize| *y < usize::from(config.height);
+        let [here, next] = [2, 1].map(|up| bottom.checked_sub(up).filter(inside).map(guide));
+        let guides = [here, next, seen.map(|[left, _]| left[2])];
+        frame.backend.sgm_within_edges(&mut work, EdgeWork { guides, above, below });
+    }
+    // The features are done with, and the smoothed lines.
+    work.sums = sums;
+    let room = core::mem::take(&mut frame.workspace);
+    let (winners, room) = room.split_at_mut_checked(width).unwrap_or_default();
+    let (right, room) = room.split_at_mut_checked(width.div_ceil(2)).unwrap_or_default();
+    let (lengths, room) = room.split_at_mut_checked(width.div_ceil(2)).unwrap_or_default();
+    frame.winners = view_mut::<u32, Winner>(winners);
+    frame.right = first(view_mut::<u32, u16>(right), width);
+    frame.lengths = first(view_mut::<u32, u16>(lengths), width);
+    frame.workspace = room;
+    if let Some(row) = row {
+        let flags = row_mut(frame.flags, row % BAND, width);
+        flags.fill(PixelFlags::CLEAR);
+        let guide = Guide {
+            here: guide(row),
+            above: row.checked_sub(1).map(guide),
+            row,
+        };
+        let select = Select {
+            disparities: work.disparities,
+            winners: frame.winners,
+            unique: Unique::new(
+                config.checks.uniqueness_percent,
+                flags,
+                margins(config, frame.lengths),
+            ),
+        };
+        frame.backend.sgm_select(work, guide, select);
+    }
+    if let Some([left, _]) = lines {
+        let kept = row_mut(frame.codes, bottom % guides::<S>(), width);
+        if has_noise {
+            smooth(left, 2, kept);
+        } else if let Some(line) = left[2].get(..kept.len()) {
+            kept.copy_from_slice(line);
+        }
+    }
+}

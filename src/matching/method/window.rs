@@ -1,0 +1,169 @@
+//! The two methods whose costs are sums of Hamming distances over a window: their census and the window.
+
+use super::{Costs, Frame, Method};
+use crate::imaging::Noise;
+use crate::matching::backend::{
+    CODES_SHARE_A_BYTE, Isa, MethodParameters, TABLE_WORDS, WindowParameters, WindowWork,
+};
+use crate::matching::memory::rings::{BAND, row as slot, row_mut};
+use crate::matching::memory::views::view_mut;
+use crate::matching::memory::winners::{Select, Unique, Winner};
+use crate::matching::memory::{Bytes, Rows5, WindowMemory, margins};
+use super::denoise::denoise;
+use crate::units::PixelFlags;
+
+/// Census rows that are held: those under the window and the one that leaves it, row `y` in slot `y % rows`.
+const fn rows<S: WindowParameters>() -> usize {
+    2 * S::RADIUS_Y + 2
+}
+
+/// Bytes that a pixel's two codes take: one, where no kernel wants more.
+const fn code_bytes<S: WindowParameters>() -> usize {
+    if CODES_SHARE_A_BYTE && S::BITS <= 4 { 1 } else { 2 }
+}
+
+/// Words for the tables of the kernel that has some.
+const fn table_words<S: WindowParameters>() -> usize {
+    if CODES_SHARE_A_BYTE { most_table_words::<S>() } else { 0 }
+}
+
+/// Words for the tables of any target: a matcher's bytes are told for all processors alike.
+const fn most_table_words<S: WindowParameters>() -> usize {
+    if S::BITS <= 4 { TABLE_WORDS } else { 0 }
+}
+
+/// What the arithmetic relies on.
+const fn check<S: WindowParameters>() {
+    let column = S::BITS * (2 * S::RADIUS_Y + 1);
+    assert!(
+        column < 1 << S::COLUMN_BITS && S::COLUMN_BITS <= 8,
+        "a column's sum must fit its bits, and a byte"
+    );
+    let window = (column >> S::COLUMN_SHIFT) * (2 * S::RADIUS_X + 1);
+    assert!(window < u8::MAX as usize, "a window's sum must fit a byte, and be no 255");
+}
+
+/// [`Costs`] of a window.
+macro_rules! window_costs {
+    ($method:ty) => {
+        const _: () = check::<$method>();
+
+        impl Costs for $method {
+            type Memory<const W: usize, const D: usize> = WindowMemory<
+                { code_bytes::<$method>() },
+                { rows::<$method>() },
+                { table_words::<$method>() },
+                W,
+                D,
+            >;
+            const BYTES: Bytes =
+                WindowMemory::<2, { rows::<$method>() }, { most_table_words::<$method>() }, 0, 0>::BYTES;
+
+            #[inline(always)]
+            fn enter(frame: &mut Frame<'_>, y: usize, lines: [&Rows5<'_>; 2]) {
+                enter::<Self>(frame, y, lines);
+            }
+
+            // Inlined for the reason that `Isa::window` is.
+            #[inline(always)]
+            fn select(
+                frame: &mut Frame<'_>,
+                bottom: usize,
+                lines: Option<[&Rows5<'_>; 2]>,
+                row: Option<usize>,
+            ) {
+                if lines.is_some() || row.is_some() {
+                    select::<Self>(frame, bottom, lines.is_some(), row);
+                }
+            }
+        }
+    };
+}
+
+window_costs!(Fast);
+window_costs!(Block);
+
+/// Method `fast`: a 4-bit census (up, down, left, right at distance 2) summed over 9x7 pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Fast;
+
+impl MethodParameters for Fast {
+    const RADIUS_X: usize = 4;
+    const RADIUS_Y: usize = 3;
+}
+
+impl Method for Fast {
+    const SIGMA_PX: f32 = 0.15;
+    const NAME: &'static str = "fast";
+}
+
+impl WindowParameters for Fast {
+    const BITS: usize = 4;
+    const COLUMN_BITS: usize = 5;
+    const COLUMN_SHIFT: usize = 0;
+}
+
+/// Method `block`: an 8-bit census in 5x5 summed over 9x9 pixels, in quarters.
+#[derive(Clone, Copy, Debug)]
+pub struct Block;
+
+impl MethodParameters for Block {
+    const RADIUS_X: usize = 4;
+    const RADIUS_Y: usize = 4;
+}
+
+impl Method for Block {
+    const SIGMA_PX: f32 = 0.15;
+    const NAME: &'static str = "block";
+}
+
+impl WindowParameters for Block {
+    const BITS: usize = 8;
+    const COLUMN_BITS: usize = 7;
+    const COLUMN_SHIFT: usize = 2;
+}
+
+/// Turns the lines around row `y` into its codes.
+fn enter<S: WindowParameters>(frame: &mut Frame<'_>, y: usize, lines: [&Rows5<'_>; 2]) {
+    let row = row_mut(frame.codes, y % rows::<S>(), code_bytes::<S>() * frame.width);
+    let smoothed;
+    let lines = if frame.config.noise == Noise::None {
+        lines
+    } else {
+        // The row has no winners yet. Codes look at three rows of the five.
+        let (winners, of_right) = (view_mut::<Winner, u8>(frame.winners), view_mut::<u16, u8>(frame.right));
+        let places = [winners, of_right].map(|row| row.chunks_exact_mut(frame.width.max(1)));
+        smoothed = denoise(lines, &[0, 2, 4], places.into_iter().flatten());
+        smoothed.each_ref()
+    };
+    frame.backend.census::<S>(lines, usize::from(frame.config.min_disparity), frame.workspace, row);
+}
+
+/// Moves the window; without a `row`, costs are only gathered.
+// Inlined for the reason that `Isa::window` is.
+#[inline(always)]
+fn select<S: WindowParameters>(frame: &mut Frame<'_>, bottom: usize, enters: bool, row: Option<usize>) {
+    let (width, config) = (frame.width, frame.config);
+    let leaves = bottom.checked_sub(2 * S::RADIUS_Y + 1);
+    let codes = |y: usize| slot(frame.codes, y % rows::<S>(), code_bytes::<S>() * width);
+    let work = WindowWork {
+        width,
+        stride: frame.stride,
+        min_disparity: usize::from(config.min_disparity),
+        enter: enters.then(|| codes(bottom)),
+        leave: leaves.map(codes),
+        columns: frame.columns,
+        scratch: frame.workspace,
+    };
+    let flags = row_mut(frame.flags, row.unwrap_or(0) % BAND, width);
+    let margins = margins(config, frame.lengths);
+    let select = row.map(|_| {
+        flags.fill(PixelFlags::CLEAR);
+        Select {
+            disparities: usize::from(config.disparities),
+            winners: frame.winners,
+            unique: Unique::new(config.checks.uniqueness_percent, flags, margins),
+        }
+    });
+    frame.backend.window::<S>(work, select);
+}

@@ -1,0 +1,64 @@
+//! Answers taken away where a camera did not see: outside of the valid area of a rectified image.
+
+use crate::units::{Disparity, PixelFlags};
+
+/// A row that is out. All slices have the row's width, but where no confidences were asked for.
+pub(in crate::matching) struct Masked<'a> {
+    pub answers: &'a mut [Disparity],
+    pub flags: &'a mut [PixelFlags],
+    pub confidences: &'a mut [u8],
+}
+
+impl Masked<'_> {
+    /// Takes away what the masks say was not seen. In the right image an answer's partner is the nearest
+    /// pixel; one left of it was not seen.
+    pub(in crate::matching) fn take_away(self, left: &[u8], right: &[u8]) {
+        const HALF: u32 = Disparity::ONE as u32 / 2;
+        let mut confidences = self.confidences.iter_mut();
+        let row = self.answers.iter_mut().zip(self.flags).zip(left).enumerate();
+        for (x, ((answer, flags), &seen)) in row {
+            let confidence = confidences.next();
+            let away = (u32::from(answer.raw()) + HALF) >> Disparity::FRACTION_BITS;
+            let partner = x.checked_sub(away as usize).and_then(|partner| right.get(partner));
+            let is_lost = seen == 0 || (answer.is_some() && partner.is_none_or(|&seen| seen == 0));
+            if is_lost {
+                (*answer, *flags) = (Disparity::NONE, PixelFlags::OUTSIDE);
+                if let Some(confidence) = confidence {
+                    *confidence = 0;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_ends_of_an_answer_have_to_be_seen() {
+        const NONE: Disparity = Disparity::NONE;
+        let d = Disparity::from_raw;
+        // Partners: -, 1, 0 (1.5 px, rounded up), 1 (1.47 px, rounded down), left of the image.
+        let mut answers = [NONE, d(0), d(64), d(47), d(160)];
+        answers[2] = d(48);
+        let mut flags = [
+            PixelFlags::SPECKLE,
+            PixelFlags::CLEAR,
+            PixelFlags::FILLED,
+            PixelFlags::CEILING,
+            PixelFlags::CLEAR,
+        ];
+        let mut confidences = [0, 9, 9, 9, 9];
+        let row = Masked { answers: &mut answers, flags: &mut flags, confidences: &mut confidences };
+        row.take_away(&[1, 1, 1, 1, 1], &[1, 0, 1, 1, 1]);
+        let outside = PixelFlags::OUTSIDE;
+        assert_eq!(answers, [NONE, NONE, d(48), d(47), NONE]);
+        assert_eq!(flags, [PixelFlags::SPECKLE, outside, PixelFlags::FILLED, PixelFlags::CEILING, outside]);
+        assert_eq!(confidences, [0, 0, 9, 9, 0]);
+        let row = Masked { answers: &mut answers, flags: &mut flags, confidences: &mut [] };
+        row.take_away(&[0, 1, 1, 0, 1], &[1; 5]);
+        assert_eq!(answers, [NONE, NONE, d(48), NONE, NONE]);
+        assert_eq!(flags, [outside, outside, PixelFlags::FILLED, outside, outside]);
+    }
+}

@@ -1,0 +1,73 @@
+//! How many pixels of a window have texture.
+//!
+//! A pixel has texture when its left and right neighbour differ by a few grey levels: along the line, because
+//! only there does texture tell disparities apart. One bit a pixel is kept, 16 rows of them in a word a
+//! column.
+
+use crate::matching::backend::MethodParameters;
+use crate::matching::backend::loops::{keep_loop, keep_scalar_loop};
+use crate::matching::config::Checks;
+use crate::units::PixelFlags;
+
+/// Rows of texture bits: bit `k` of a column's word is the row `k` before the newest.
+pub(in crate::matching) struct Texture<'a> {
+    /// One word for each column.
+    pub history: &'a mut [u16],
+    /// Textured pixels of each column in the window's rows.
+    pub counts: &'a mut [u8],
+}
+
+impl Texture<'_> {
+    /// Forgets all rows.
+    pub(in crate::matching) fn clear(self) {
+        self.history.fill(0);
+        self.counts.fill(0);
+    }
+
+    /// Moves one row on; `line` is the new row, or `None` below the image.
+    pub(in crate::matching) fn push<S: MethodParameters>(&mut self, line: Option<&[u8]>, checks: &Checks) {
+        let go_on = |word: &mut u16, count: &mut u8, textured: bool| {
+            *count = *count - ((*word >> (2 * S::RADIUS_Y)) as u8 & 1) + u8::from(textured);
+            *word = *word << 1 | u16::from(textured);
+        };
+        let Some(line) = line else {
+            for (word, count) in self.history.iter_mut().zip(self.counts.iter_mut()) {
+                keep_loop();
+                go_on(word, count, false);
+            }
+            return;
+        };
+        let gradient = checks.texture_gradient;
+        let beside = line.iter().zip(line.iter().skip(2));
+        let inner = self.history.iter_mut().zip(self.counts.iter_mut()).skip(1);
+        for ((word, count), (&left, &right)) in inner.zip(beside) {
+            keep_scalar_loop();
+            go_on(word, count, left.abs_diff(right) >= gradient);
+        }
+        // At the two ends the pixel itself stands for the neighbour outside.
+        let last = line.len().saturating_sub(1);
+        let ends = [(0, 0, 1.min(last)), (last, last.saturating_sub(1), last)];
+        // A line of one pixel has one end.
+        for &(x, left, right) in ends.iter().take(line.len().min(2)) {
+            keep_loop();
+            let pixels = line.get(left).zip(line.get(right));
+            let place = self.history.get_mut(x).zip(self.counts.get_mut(x));
+            if let (Some((&left, &right)), Some((word, count))) = (pixels, place) {
+                go_on(word, count, left.abs_diff(right) >= gradient);
+            }
+        }
+    }
+
+    /// Flags the pixels of the window's centre row whose window has fewer than `pixels` textured ones.
+    pub(in crate::matching) fn mark<S: MethodParameters>(&self, pixels: u16, flags: &mut [PixelFlags]) {
+        // Columns outside the image have no texture; left of it the place wraps.
+        let column = |x: usize| self.counts.get(x).map_or(0, |&count| u16::from(count));
+        let mut count: u16 = (0..S::RADIUS_X).map(column).sum();
+        for (x, flags) in flags.iter_mut().enumerate() {
+            keep_loop();
+            count += column(x + S::RADIUS_X);
+            count -= column(x.wrapping_sub(S::RADIUS_X + 1));
+            *flags = flags.union(PixelFlags::UNTEXTURED.when(count < pixels));
+        }
+    }
+}

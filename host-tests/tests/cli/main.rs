@@ -3,11 +3,13 @@
 mod as_match;
 mod bundle;
 mod calibrate;
+mod demo;
 mod features;
 mod focus;
 mod odometry;
 mod output;
 mod rectify;
+mod rectify_refused;
 mod refused;
 mod replay;
 mod results;

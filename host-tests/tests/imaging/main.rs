@@ -10,3 +10,4 @@ mod exposure;
 mod gradient;
 mod noise;
 mod remap;
+mod remap_pair;

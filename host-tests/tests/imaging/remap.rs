@@ -4,37 +4,29 @@
 use image::GrayImage;
 use nalgebra::{Point2, Rotation3, Vector3};
 use proptest::prelude::*;
-use stereopsis::camera::{CameraPair, LineSource, StereoSource};
 use stereopsis::geometry::{
     camera::{Camera, Distortion, ImageSize, Pose, StereoRig},
     rectify::{Crop, Rectification, Warp},
 };
-use stereopsis::imaging::{
-    RectifiedPair, RectifiedPairError, Remap, RemapError, RemapPair, RemapTable, RemapTableError,
-};
-use stereopsis::matching::{Config, Filter};
-use stereopsis::units::{Disparity, PixelFlags};
-use stereopsis_host::mock::MockCamera;
-use stereopsis_host::rectify::{rectify, with_rectified};
-use stereopsis_host::run::{MemoryPair, Method, Way, run};
+use stereopsis::imaging::{Remap, RemapError, RemapTable, RemapTableError};
 use stereopsis_host::scene::Random;
 use stereopsis_host::twin::remap as twin;
 
-const SLOTS: usize = 4096;
-type Table = RemapTable<SLOTS>;
+pub const SLOTS: usize = 4096;
+pub type Table = RemapTable<SLOTS>;
 
-fn noise(size: ImageSize, seed: u64) -> GrayImage {
+pub fn noise(size: ImageSize, seed: u64) -> GrayImage {
     let mut random = Random::new(seed);
     GrayImage::from_fn(size.width.into(), size.height.into(), |_, _| image::Luma([random.below(256) as u8]))
 }
 
-fn camera(size: ImageSize, focal: f64, lens: [f64; 5]) -> Camera<f64> {
+pub fn camera(size: ImageSize, focal: f64, lens: [f64; 5]) -> Camera<f64> {
     let (cx, cy) = (f64::from(size.width) / 2.0 + 1.7, f64::from(size.height) / 2.0 - 2.3);
     let camera = Camera::new(focal, focal * 1.01, cx, cy).expect("a camera");
     camera.with_distortion(Distortion::from_opencv(lens)).expect("a lens")
 }
 
-fn rectified(
+pub fn rectified(
     size: ImageSize,
     cameras: [Camera<f64>; 2],
     turn: [f64; 3],
@@ -93,7 +85,7 @@ fn farthest(table: &Table, warp: &Warp<f64>) -> f64 {
     most
 }
 
-const QVGA: ImageSize = ImageSize { width: 320, height: 240 };
+pub const QVGA: ImageSize = ImageSize { width: 320, height: 240 };
 
 #[test]
 fn one_degree_works_in_sixteen_rows() {
@@ -166,115 +158,6 @@ fn a_strong_lens_stays_within_a_twentieth_of_a_pixel() {
             let raw = noise(QVGA, 7);
             assert_eq!(whole::<320, 242>(&table, &raw).expect("enough rows"), twin::remap(&table, &raw));
         }
-    }
-}
-
-/// A pair of cameras on noise, rectified line by line, as the matcher would take it.
-#[test]
-fn a_pair_is_taken_in_step() {
-    let left = camera(QVGA, 300.0, [-0.1, 0.02, 0.0, 0.0, 0.0]);
-    let right = camera(QVGA, 310.0, [-0.12, 0.02, 0.0, 0.0, 0.0]);
-    let both = rectified(QVGA, [left, right], [0.02, 0.01, 0.02], Crop::Alpha(1.0));
-    let raw = [noise(QVGA, 8), noise(QVGA, 9)];
-    let tables = both.warps().map(|warp| Table::new(&warp).expect("a table"));
-    let source = || {
-        let [left, right] = raw.clone().map(|raw| MockCamera::from_image(raw.into()).expect("an image"));
-        CameraPair::new(left, right, 0).expect("of one size")
-    };
-    let remaps = || tables.clone().map(|table| Remap::<320, 40, SLOTS>::new(table).expect("enough rows"));
-    // Set where they stand, they are what they are when they are made.
-    let mut set = Box::new(RemapPair::<320, 40, SLOTS>::empty());
-    set.set(&both).expect("enough rows");
-    let [left, right] = remaps();
-    let mut made = Box::new(RemapPair::new(left, right));
-    assert_eq!(format!("{set:?}"), format!("{made:?}"));
-    let mut pair = RectifiedPair::new(source(), &mut set).expect("enough rows for both");
-    let expected = [twin::remap(&tables[0], &raw[0]), twin::remap(&tables[1], &raw[1])];
-    for frame in 0..2 {
-        assert_eq!(pair.start_frame().expect("a frame").sequence, frame);
-        for row in 0..QVGA.height {
-            let mut lines = [[0; 320]; 2];
-            let [left, right] = &mut lines;
-            assert_eq!(pair.next_lines(left, right).expect("a row").row, row);
-            let here = usize::from(row) * 320..usize::from(row + 1) * 320;
-            for camera in 0..2 {
-                assert_eq!(lines[camera][..], expected[camera].0.as_raw()[here.clone()], "row {row}");
-                assert_eq!(pair.valid()[camera], &expected[camera].1[here.clone()], "row {row}");
-                let mut mask = [9; 320];
-                tables[camera].mask(row, &mut mask);
-                assert_eq!(mask[..], expected[camera].1[here.clone()]);
-            }
-        }
-    }
-    // Each alone needs fewer rows than both in step.
-    let most = tables.iter().map(Table::rows).max().expect("two");
-    assert!(usize::from(most) < 39);
-    let small =
-        MockCamera::from_image(noise(ImageSize { width: 64, height: 240 }, 1).into()).expect("an image");
-    let format = small.format();
-    let small = CameraPair::new(small.clone(), small, 0).expect("of one size");
-    let refused = RectifiedPair::new(small, &mut made).map(|_| ());
-    assert_eq!(refused, Err(RectifiedPairError::Raw(format)));
-}
-
-/// Raw lines through remap, census and matching in one loop: what rectified pictures give, without the
-/// answers that have not been seen by both cameras.
-#[test]
-fn nothing_that_was_not_seen_becomes_an_answer() {
-    let size = ImageSize { width: 160, height: 64 };
-    let lens = |k1: f64| camera(size, 150.0, [k1, 0.02, 0.0, 0.0, 0.0]);
-    let both = rectified(size, [lens(-0.2), lens(-0.15)], [0.02, -0.01, 0.03], Crop::Alpha(1.0));
-    // The right camera sees all six px farther left.
-    let left = noise(size, 11);
-    let right = GrayImage::from_fn(160, 64, |x, y| *left.get_pixel((x + 6).min(159), y));
-    let raw = || MemoryPair::new(160, left.to_vec(), right.to_vec()).expect("a pair");
-    let whole = rectify(&both, raw()).expect("rectified");
-    let [valid_left, valid_right] = whole.valid.each_ref().map(|mask| mask.as_raw());
-    let outside = valid_left.iter().filter(|&&seen| seen == 0).count();
-    assert!(outside > 500, "{outside}");
-    for (method, threads) in [
-        (Method::Fast, 1),
-        (Method::Fast, 3),
-        (Method::Block, 1),
-        (Method::Sgm, 1),
-        (Method::SgmLean, 2),
-        (Method::SgmEdge, 1),
-    ] {
-        let config = method.with_filter(Filter::Default, Config::new(160, 64, 32));
-        let config = Config { confidence: true, ..config };
-        let way = Way { threads, ..method.into() };
-        let found =
-            with_rectified(&both, raw(), |source| run(way, &config, source, |_| ()).expect("a map").map);
-        let found = found.expect("remaps");
-        assert!(found.answers() > 300, "{method}: {}", found.answers());
-        let pictures = whole.pictures.each_ref().map(|picture| picture.to_vec());
-        let [left, right] = pictures;
-        let mut pair = MemoryPair::new(160, left, right).expect("a pair");
-        let plain = run(way, &config, &mut pair, |_| ()).expect("a map").map;
-        let mut lost = 0;
-        for (i, (&d, &flags)) in plain.disparity.iter().zip(&plain.flags).enumerate() {
-            let (x, row) = (i % 160, i / 160 * 160);
-            let partner = d.to_f32().map(|d| x as i32 - (d + 0.5).floor() as i32);
-            let is_seen = |column: i32| column >= 0 && valid_right[row + column as usize] != 0;
-            let is_lost = valid_left[i] == 0 || partner.is_some_and(|column| !is_seen(column));
-            lost += usize::from(is_lost && d.is_some());
-            if is_lost {
-                let (none, outside) = (Disparity::NONE, PixelFlags::OUTSIDE);
-                assert!(
-                    (found.flags[i].contains(outside) && found.disparity[i] == none) || valid_left[i] != 0
-                );
-            }
-            // Along paths an answer that is gone draws none of those below it.
-            if matches!(method, Method::Fast | Method::Block) {
-                let expected = if is_lost { (Disparity::NONE, PixelFlags::OUTSIDE) } else { (d, flags) };
-                assert_eq!((found.disparity[i], found.flags[i]), expected, "{method}, {x}, {}", row / 160);
-            }
-            let d = found.disparity[i];
-            let partner = d.to_f32().map(|d| x as i32 - (d + 0.5).floor() as i32);
-            assert!(partner.is_none_or(|column| valid_left[i] != 0 && is_seen(column)), "{method}");
-            assert_eq!(found.confidence[i] == 0, d.is_none(), "{method}");
-        }
-        assert!(lost > 20, "{method}: {lost}");
     }
 }
 

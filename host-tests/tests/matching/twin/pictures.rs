@@ -1,0 +1,119 @@
+//! Every kind of picture, rendered scenes, and what looks beyond a row: gaps, medians and surfaces.
+
+use super::list::PATTERNS;
+use super::{Any, Method, W, compare, long, pipeline};
+use image::GrayImage;
+use stereopsis::matching::{Block, Checks, Config, Fast, Sgm, SgmEdge, SgmLean};
+use stereopsis::units::{Disparity, PixelFlags};
+use stereopsis_host::scene::Scene;
+use stereopsis_host::scene::pattern::Pattern;
+use stereopsis_host::twin::match_pair;
+
+/// Checks of which every stage does something.
+const ALL_STAGES: Checks =
+    Checks { median: true, fill_pixels: 16, fill_step: Disparity::NONE, ..Checks::STRICT };
+
+/// Every picture with each of the ready-made checks, at a size that has all kinds of borders.
+fn every_pattern<S: Method>() {
+    let mut pipeline = pipeline::<S>();
+    for (i, pattern) in PATTERNS.into_iter().enumerate() {
+        let pair = pattern.pair(71, 22, i as u64);
+        let mut presets = [Checks::DENSE, Checks::DEFAULT, Checks::STRICT, ALL_STAGES];
+        presets.rotate_left(i % 4);
+        for checks in long(presets, 4) {
+            let config = Config { checks, confidence: true, ..Config::new(71, 22, 32) };
+            compare(&mut pipeline, &config, &pair).unwrap_or_else(|e| panic!("{pattern:?}: {e}"));
+        }
+    }
+}
+
+#[test]
+fn every_pattern_with_every_preset() {
+    every_pattern::<Fast>();
+    every_pattern::<Block>();
+    every_pattern::<SgmLean>();
+    every_pattern::<Sgm>();
+    every_pattern::<SgmEdge>();
+}
+
+fn rendered<S: Method>(pipeline: &mut Any<S>, scene: &Scene, pair: &(GrayImage, GrayImage)) {
+    for checks in long([ALL_STAGES, Checks::DENSE, Checks::DEFAULT, Checks::STRICT], 4) {
+        for min_disparity in long([5, 0], 2) {
+            let config = Config {
+                checks,
+                min_disparity,
+                confidence: true,
+                ..Config::new(scene.width(), scene.height(), scene.disparities())
+            };
+            let map = compare(pipeline, &config, pair).unwrap_or_else(|e| panic!("{e}"));
+            let answers = map.disparity.iter().filter(|d| d.is_some()).count();
+            assert!(answers * 3 > map.disparity.len(), "{answers} answers");
+        }
+    }
+}
+
+#[test]
+fn a_rendered_scene_equals_the_twin() {
+    let scene = Scene::small(200, 150);
+    let pair = scene.render();
+    rendered::<Fast>(&mut pipeline(), &scene, &pair);
+    rendered::<Block>(&mut pipeline(), &scene, &pair);
+    rendered::<SgmLean>(&mut pipeline(), &scene, &pair);
+    rendered::<Sgm>(&mut pipeline(), &scene, &pair);
+    rendered::<SgmEdge>(&mut pipeline(), &scene, &pair);
+}
+
+/// The median and the filling at every width around that of a group of lanes, and every height around that of
+/// the band; gaps of all lengths around those that are filled.
+fn filtered<S: Method>() {
+    let mut pipeline = pipeline::<S>();
+    // Such that gaps are many and short.
+    let gaps = Checks { uniqueness_percent: Some(20), speckle_pixels: 4, ..Checks::DEFAULT };
+    let (mut filled, mut moved) = (0, 0);
+    for (width, height) in (1..=40).flat_map(|width| [1, 2, 3, 5, 6, 9].map(|height| (width, height))) {
+        let pair = Pattern::Shifted { most: 9, noise_grey: 9.0 }.pair(width, height, u64::from(width));
+        let config =
+            |checks| Config { checks, confidence: true, ..Config::new(width as u16, height as u16, 16) };
+        let plain = match_pair(&S::TWIN, &config(gaps), &pair.0, &pair.1);
+        let mut stages = [(true, 2), (false, 1), (true, u8::MAX), (false, 5), (true, 0)];
+        stages.rotate_left((width + height) as usize % 5);
+        for (median, fill_pixels) in long(stages, 3) {
+            let fill_step = if fill_pixels > 1 { Disparity::NONE } else { Disparity::ONE_PIXEL };
+            let checks = Checks { median, fill_pixels, fill_step, ..gaps };
+            let map = compare(&mut pipeline, &config(checks), &pair).unwrap_or_else(|e| panic!("{e}"));
+            for (i, (flags, disparity)) in map.flags.iter().zip(&map.disparity).enumerate() {
+                filled += usize::from(flags.contains(PixelFlags::FILLED));
+                moved += usize::from(plain.disparity[i].is_some() && *disparity != plain.disparity[i]);
+            }
+        }
+    }
+    assert!(filled > 100 && moved > 1000, "{filled} filled, {moved} moved");
+}
+
+#[test]
+fn median_and_filling_equal_the_twins_at_all_borders() {
+    filtered::<Fast>();
+    filtered::<Block>();
+    filtered::<Sgm>();
+    filtered::<SgmEdge>();
+}
+
+/// One surface over the whole picture, against thresholds around its size and around the powers of two.
+fn whole_surface<S: Method>() {
+    let mut pipeline = pipeline::<S>();
+    let same = Pattern::Shifted { most: 0, noise_grey: 0.0 }.pair(W as u32, 60, 1);
+    for speckle_pixels in long([128, 127, 129, 255, 254], 3) {
+        let checks = Checks { speckle_pixels, ..Checks::DENSE };
+        let config = Config { checks, ..Config::new(W as u16, 60, 16) };
+        compare(&mut pipeline, &config, &same).unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+#[test]
+fn surfaces_of_any_size_are_counted() {
+    whole_surface::<Fast>();
+    whole_surface::<Block>();
+    whole_surface::<SgmLean>();
+    whole_surface::<Sgm>();
+    whole_surface::<SgmEdge>();
+}

@@ -4,7 +4,7 @@
 use super::Status;
 use super::instance::either;
 use crate::imaging::Noise;
-use crate::matching::{self, Checks, ConfigError, Filter, Penalties, Method};
+use crate::matching::{self, Checks, ConfigError, Filter, Method, Penalties};
 use crate::units::Disparity;
 
 /// `stereopsis_config_default` and `_noise`: an answer wherever there is a candidate.

@@ -22,8 +22,7 @@ pub enum Kernel {
 
 impl Kernel {
     /// Every kernel of the crate, whether it is available or not.
-    pub const ALL: [Self; 6] =
-        [Self::Planes, Self::Dsp, Self::Helium, Self::Lanes, Self::Avx2, Self::Avx512];
+    pub const ALL: [Self; 6] = [Self::Planes, Self::Dsp, Self::Helium, Self::Lanes, Self::Avx2, Self::Avx512];
 
     /// The kernel's name in reports.
     pub const fn name(self) -> &'static str {

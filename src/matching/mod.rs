@@ -31,16 +31,16 @@
 //! the whole gradient along beside them make it 8.7 %, but 18.8 % in place of 16.5 % where the right image is
 //! x 1.2 + 15. A window's sum no longer fits a byte then, and takes twice the registers.
 
-mod kernel;
-mod config;
-mod penalties;
-mod memory;
 mod backend;
-mod method;
+mod config;
 mod filter;
-mod stages;
-mod row;
+mod kernel;
 mod matcher;
+mod memory;
+mod method;
+mod penalties;
+mod row;
+mod stages;
 
 pub use backend::MethodParameters;
 pub use config::{Checks, Config, ConfigError};

@@ -4,7 +4,7 @@ use super::counters::{FaultCounters, count};
 use super::lines::LineGuard;
 use super::{Pipeline, PipelineError, PushError};
 use crate::camera::{ErrorType, FrameStart, LineFault, StereoSource};
-use crate::matching::{Config, ConfigError, Kernel, MatchError, Row, Method};
+use crate::matching::{Config, ConfigError, Kernel, MatchError, Method, Row};
 
 /// A [`Pipeline`] that goes on when lines get lost, flags what they touch and counts every fault by name.
 ///

@@ -3,7 +3,7 @@
 use super::{PipelineError, PushError};
 use crate::camera::{FrameStart, LineFormat, PixelFormat, StereoSource};
 use crate::imaging::LineWindow;
-use crate::matching::{Config, ConfigError, Kernel, MatchError, Matcher, Row, Method};
+use crate::matching::{Config, ConfigError, Kernel, MatchError, Matcher, Method, Row};
 
 /// Rows of disparities from a stereo source, in memory of its own and of fixed size: it fits a `static`.
 ///

@@ -22,7 +22,7 @@ use std::ops::Range;
 use std::sync::Barrier;
 use std::thread::{Builder, scope};
 use std::time::Instant;
-use stereopsis::matching::{Config, ConfigError, Kernel, Row, Method};
+use stereopsis::matching::{Config, ConfigError, Kernel, Method, Row};
 
 /// A thread's stack: it holds a pipeline.
 const STACK: usize = 16 << 20;

@@ -30,7 +30,7 @@ use std::fmt;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use stereopsis::camera::StereoSource;
-use stereopsis::matching::{Block, Config, ConfigError, Fast, Kernel, Row, Method, Sgm, SgmEdge, SgmLean};
+use stereopsis::matching::{Block, Config, ConfigError, Fast, Kernel, Method, Row, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::{Pipeline, PipelineError};
 
 /// Pixels in a line that the pipelines here have room for.

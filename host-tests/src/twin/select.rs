@@ -1,7 +1,7 @@
 //! Which disparity wins at a pixel, and what is to be said about it.
 
 use super::cost::Volume;
-use super::{Picture, Method};
+use super::{Method, Picture};
 use stereopsis::matching::{Checks, Config};
 use stereopsis::units::{Disparity, PixelFlags};
 

@@ -1,7 +1,7 @@
 //! A camera of two pictures by turns, and what comes of them without a fault.
 
 use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, StereoSource};
-use stereopsis::matching::{Checks, Config, Filter, Row, Method};
+use stereopsis::matching::{Checks, Config, Filter, Method, Row};
 use stereopsis::pipeline::Pipeline;
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::scene::SceneCamera;

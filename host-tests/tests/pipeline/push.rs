@@ -2,7 +2,7 @@
 //! error.
 
 use image::GrayImage;
-use stereopsis::matching::{Block, Checks, Config, Fast, MatchError, Row, Method, Sgm, SgmEdge, SgmLean};
+use stereopsis::matching::{Block, Checks, Config, Fast, MatchError, Method, Row, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::{Pipeline, PushError};
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::scene::SceneCamera;

@@ -2,10 +2,10 @@
 //!
 //! Every method has a portable body. A target overrides what it does better; all give the same bits.
 
-use crate::matching::kernel::Kernel;
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::portable;
 use super::work::{EdgeWork, Guide, PathWork, Rules, STEP, SpeckleWork, WindowWork, WinnerWork};
+use crate::matching::kernel::Kernel;
 use crate::matching::memory::Rows5;
 use crate::matching::memory::winners::Select;
 use crate::units::{Disparity, PixelFlags};

@@ -24,7 +24,9 @@ mod mve;
 mod simd;
 
 #[cfg(all(stereopsis_dsp, stereopsis_vectors))]
-compile_error!("stereopsis_dsp and stereopsis_vectors exclude each other: a Cortex-M55 takes the second alone");
+compile_error!(
+    "stereopsis_dsp and stereopsis_vectors exclude each other: a Cortex-M55 takes the second alone"
+);
 #[cfg(all(any(stereopsis_dsp, stereopsis_vectors), not(target_arch = "arm")))]
 compile_error!("stereopsis_dsp and stereopsis_vectors are for Arm's 32-bit cores");
 
@@ -37,15 +39,13 @@ use portable as target;
 #[cfg(target_pointer_width = "64")]
 use simd as target;
 
-pub(super) use isa::Isa;
 use super::kernel::Kernel;
+pub(super) use isa::Isa;
 pub use parameters::MethodParameters;
 pub(super) use parameters::{SgmParameters, WindowParameters};
 pub(super) use portable::smooth::MARGIN as SMOOTH_MARGIN;
 pub(super) use target::{Backend, CODES_SHARE_A_BYTE, columns_begin};
-pub(super) use work::{
-    EdgeWork, Guide, PathWork, Rules, STEP, SpeckleWork, WindowWork, WinnerWork,
-};
+pub(super) use work::{EdgeWork, Guide, PathWork, Rules, STEP, SpeckleWork, WindowWork, WinnerWork};
 
 /// Words that the tables of a target take beside the workspace of a window whose codes have up to four bits,
 /// and four that rows are read beyond. A matcher's bytes are told for all targets alike.

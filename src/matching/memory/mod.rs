@@ -124,7 +124,10 @@ impl<const CODES: usize, const ROWS: usize, const TABLES: usize, const W: usize,
     fn after_row(&mut self, width: usize) -> AfterRow<'_> {
         let masks = view_mut::<u16, u8>(first(&mut self.right, width));
         let (left, right) = masks.split_at_mut_checked(width).unwrap_or_default();
-        AfterRow { confidences: first(view_mut::<Winner, u8>(&mut self.winners), width), masks: [left, right] }
+        AfterRow {
+            confidences: first(view_mut::<Winner, u8>(&mut self.winners), width),
+            masks: [left, right],
+        }
     }
 }
 

@@ -108,7 +108,12 @@ pub(in crate::matching) struct Found {
 /// The costs one below a winner and one above it, of those in so many lanes. At an end of the candidates it
 /// is the one that there is; beside an only candidate, itself.
 #[inline(always)]
-pub(in crate::matching) fn beside(lanes: usize, disparity: u8, candidates: usize, at: impl Fn(usize) -> u8) -> (u8, u8) {
+pub(in crate::matching) fn beside(
+    lanes: usize,
+    disparity: u8,
+    candidates: usize,
+    at: impl Fn(usize) -> u8,
+) -> (u8, u8) {
     let disparity = usize::from(disparity);
     let lane = (lanes - 1).wrapping_sub(disparity);
     if disparity > 0 && disparity + 1 < candidates {
@@ -131,25 +136,25 @@ impl Winner {
 
     /// A winner over the smallest disparity, with the costs one below and one above. Where one of these is no
     /// candidate, the other stands for it; where none is, the winner does.
-        #[inline(always)]
+    #[inline(always)]
     pub fn new(cost: u8, disparity: u8, (below, above): (u8, u8)) -> Self {
         Self(u32::from_le_bytes([below, cost, above, disparity]))
     }
 
     /// [`Self::new`] of a word with the three costs from the lowest byte up, whatever its highest byte is.
-        #[inline(always)]
+    #[inline(always)]
     pub fn of_costs(costs: u32, disparity: u8) -> Self {
         Self(costs & 0x00ff_ffff | u32::from(disparity) << 24)
     }
 
     /// The costs one below and one above.
-        #[inline(always)]
+    #[inline(always)]
     pub fn beside(self) -> (u8, u8) {
         (self.0 as u8, (self.0 >> 16) as u8)
     }
 
     /// The same winner with other costs beside it.
-        #[inline(always)]
+    #[inline(always)]
     pub fn with_beside(self, beside: (u8, u8)) -> Self {
         Self::new(self.cost(), self.disparity() as u8, beside)
     }
@@ -195,8 +200,9 @@ impl<'a> WinnerRows<'a> {
     /// The rows from column `begin` on.
     pub fn of(winners: &'a mut [Winner], begin: usize) -> Self {
         let width = winners.len().max(1);
-        let mut rows =
-            view_mut::<Winner, u8>(winners).chunks_exact_mut(width).map(|row| row.get_mut(begin..).unwrap_or_default());
+        let mut rows = view_mut::<Winner, u8>(winners)
+            .chunks_exact_mut(width)
+            .map(|row| row.get_mut(begin..).unwrap_or_default());
         let mut row = || rows.next().unwrap_or_default();
         Self { below: row(), costs: row(), above: row(), disparities: row() }
     }

@@ -4,8 +4,8 @@
 //! would take two more lines of each camera. So no row waits longer, and a row depends on the same lines as
 //! without.
 
-use crate::matching::memory::Rows5;
 use crate::imaging::{Noise, smooth};
+use crate::matching::memory::Rows5;
 
 /// How far gradients are shifted to the right.
 pub(super) const fn gradient_shift(noise: Noise) -> u32 {
@@ -31,7 +31,11 @@ pub(super) fn denoise<'a>(
 
 /// Those of one image.
 #[cfg_attr(target_pointer_width = "32", inline(never))]
-fn denoise_lines<'a>(smoothed: &mut Rows5<'a>, rows: &[usize], places: &mut impl Iterator<Item = &'a mut [u8]>) {
+fn denoise_lines<'a>(
+    smoothed: &mut Rows5<'a>,
+    rows: &[usize],
+    places: &mut impl Iterator<Item = &'a mut [u8]>,
+) {
     let lines = *smoothed;
     for &row in rows {
         if let (Some(to), Some(place)) = (smoothed.get_mut(row), places.next()) {

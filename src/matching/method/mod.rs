@@ -61,12 +61,7 @@ pub trait Costs: Sized {
     fn enter(frame: &mut Frame<'_>, y: usize, lines: [&Rows5<'_>; 2]);
     /// Adds row `bottom` to the costs, while there are `lines`, and selects the winners of `row`, where there
     /// is one. Called for every row: after it, the slices of the frame stand for what they say.
-    fn select(
-        frame: &mut Frame<'_>,
-        bottom: usize,
-        lines: Option<[&Rows5<'_>; 2]>,
-        row: Option<usize>,
-    );
+    fn select(frame: &mut Frame<'_>, bottom: usize, lines: Option<[&Rows5<'_>; 2]>, row: Option<usize>);
 }
 
 /// The stages of a method. Each method has them for itself, so that they are compiled with this crate, once,

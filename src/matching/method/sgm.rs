@@ -7,11 +7,11 @@
 //! surface have in common: from the left, from the right, and from above. No frame is kept, and no path comes
 //! from below: that path measured least, and it would take the frame.
 
+use super::denoise::{denoise, gradient_shift};
 use super::{Costs, Frame, Method};
 use crate::imaging::{Noise, smooth};
 use crate::matching::backend::{EdgeWork, Guide, Isa, MethodParameters, PathWork, SgmParameters};
 use crate::matching::config::Checks;
-use super::denoise::{denoise, gradient_shift};
 use crate::matching::memory::layout::{COLUMNS_OFF, PathWorkspace, Volumes};
 use crate::matching::memory::rings::{BAND, first, row as slot, row_mut};
 use crate::matching::memory::views::view_mut;
@@ -239,19 +239,11 @@ fn select<S: SgmParameters>(
     if let Some(row) = row {
         let flags = row_mut(frame.flags, row % BAND, width);
         flags.fill(PixelFlags::CLEAR);
-        let guide = Guide {
-            here: guide(row),
-            above: row.checked_sub(1).map(guide),
-            row,
-        };
+        let guide = Guide { here: guide(row), above: row.checked_sub(1).map(guide), row };
         let select = Select {
             disparities: work.disparities,
             winners: frame.winners,
-            unique: Unique::new(
-                config.checks.uniqueness_percent,
-                flags,
-                margins(config, frame.lengths),
-            ),
+            unique: Unique::new(config.checks.uniqueness_percent, flags, margins(config, frame.lengths)),
         };
         frame.backend.sgm_select(work, guide, select);
     }

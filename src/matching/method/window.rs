@@ -1,5 +1,6 @@
 //! The two methods whose costs are sums of Hamming distances over a window: their census and the window.
 
+use super::denoise::denoise;
 use super::{Costs, Frame, Method};
 use crate::imaging::Noise;
 use crate::matching::backend::{
@@ -9,7 +10,6 @@ use crate::matching::memory::rings::{BAND, row as slot, row_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::{Select, Unique, Winner};
 use crate::matching::memory::{Bytes, Rows5, WindowMemory, margins};
-use super::denoise::denoise;
 use crate::units::PixelFlags;
 
 /// Census rows that are held: those under the window and the one that leaves it, row `y` in slot `y % rows`.

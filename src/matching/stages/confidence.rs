@@ -37,7 +37,12 @@ const FILLED: u8 = 1;
 
 /// Puts the margins of a row's answers where their flags are.
 #[inline(never)]
-pub(super) fn store_margins(config: &Config, margins: &[u8], answers: &[Disparity], flags: &mut [PixelFlags]) {
+pub(super) fn store_margins(
+    config: &Config,
+    margins: &[u8],
+    answers: &[Disparity],
+    flags: &mut [PixelFlags],
+) {
     // The columns before may have no candidate over two px from the winner, and so nothing to be sure by.
     let enough = usize::from(config.min_disparity) + 2 * BESIDE + 1;
     for (x, flags) in flags.iter_mut().enumerate() {
@@ -70,7 +75,8 @@ pub(super) fn confidences(neighbours: &Neighbours<'_>, flags: &mut [PixelFlags],
         let shared = flags.bits();
         // Beside the row there is no answer, which says nothing.
         let beside = COLUMNS.map(|off| [x.wrapping_sub(off), x + off]);
-        let s = beside.as_flattened().iter().fold(0, |most, &x| apart(*here, neighbours.row.get(x)).max(most));
+        let s =
+            beside.as_flattened().iter().fold(0, |most, &x| apart(*here, neighbours.row.get(x)).max(most));
         let t = neighbours.columns.iter().fold(0, |most, row| apart(*here, row.get(x)).max(most));
         let agreement = |apart: u16| AGREEMENT.saturating_sub((apart / 4).min(255) as u8);
         *confidence = (shared & MOST_MARGIN) + agreement(s) + agreement(t);

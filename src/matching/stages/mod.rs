@@ -115,10 +115,7 @@ const fn waiting(newest: usize) -> usize {
 }
 
 /// The flags and the answers of the row that waits for `newest`.
-fn waiting_row<'a>(
-    frame: &'a mut Frame<'_>,
-    newest: usize,
-) -> (&'a mut [PixelFlags], &'a mut [Disparity]) {
+fn waiting_row<'a>(frame: &'a mut Frame<'_>, newest: usize) -> (&'a mut [PixelFlags], &'a mut [Disparity]) {
     let row = waiting(newest);
     (row_mut(frame.flags, row % BAND, frame.width), row_mut(frame.finished, row % HISTORY, frame.width))
 }
@@ -229,8 +226,11 @@ pub(super) fn mark_damaged(frame: Frame<'_>, index: usize, keeps_answers: bool) 
         row_mut(frame.finished, index % HISTORY, frame.width).fill(Disparity::NONE);
         if frame.config.confidence {
             // Where the winners share the workspace, they are the first in it.
-            let winners =
-                if frame.winners.is_empty() { view_mut::<u32, Winner>(frame.workspace) } else { frame.winners };
+            let winners = if frame.winners.is_empty() {
+                view_mut::<u32, Winner>(frame.workspace)
+            } else {
+                frame.winners
+            };
             first(view_mut::<Winner, u8>(winners), frame.width).fill(0);
         }
     }

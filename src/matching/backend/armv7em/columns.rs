@@ -10,10 +10,10 @@
 use super::tables::{self, LINE, Table};
 use super::word::{ONE, add};
 use super::{Rows, rows};
+use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::work::STEP;
 use crate::matching::memory::layout::OUTSIDE;
 use crate::matching::memory::views::view;
-use crate::matching::backend::parameters::WindowParameters;
 
 /// Candidates that tables serve at a time, at most.
 const MOST: usize = 64;

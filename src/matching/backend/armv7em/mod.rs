@@ -36,10 +36,10 @@ mod word;
 
 use super::TABLE_WORDS;
 use super::isa::Isa;
-use crate::matching::kernel::Kernel;
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::portable;
 use super::work::{EdgeWork, Guide, PathWork, Rules, STEP, SpeckleWork, WindowWork, WinnerWork};
+use crate::matching::kernel::Kernel;
 use crate::matching::memory::Rows5;
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::Select;
@@ -81,13 +81,7 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
-    fn census<P: WindowParameters>(
-        self,
-        lines: [&Rows5<'_>; 2],
-        _: usize,
-        _: &mut [u32],
-        out: &mut [u8],
-    ) {
+    fn census<P: WindowParameters>(self, lines: [&Rows5<'_>; 2], _: usize, _: &mut [u32], out: &mut [u8]) {
         codes_of::<P>(lines, out);
     }
 

@@ -1,8 +1,8 @@
 //! The surfaces along a row, and answers averaged within them: what `surface/runs.rs` does.
 #![allow(unsafe_code)]
 
-use crate::matching::memory::views::view_mut;
 use crate::matching::backend::portable::smooth::RECIPROCALS;
+use crate::matching::memory::views::view_mut;
 use crate::units::Disparity;
 use core::arch::asm;
 

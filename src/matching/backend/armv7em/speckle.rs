@@ -5,9 +5,9 @@
 //! comes back without being sorted. The last columns, fewer than four, have a half-word each.
 #![allow(unsafe_code)]
 
-use crate::matching::memory::views::view_mut;
 use crate::matching::backend::portable::speckle::ROWS;
 use crate::matching::backend::work::SpeckleWork;
+use crate::matching::memory::views::view_mut;
 use crate::units::{Disparity, PixelFlags};
 use core::arch::asm;
 

@@ -5,13 +5,13 @@
 //! winner x   of every lane the least sum and the first word that has it; of the lanes the least, and the first of equal ones
 //! ```
 
+use super::Rows;
 use super::rows;
 use super::word::{ONE, add, min, min_halves, sub, take_less};
-use super::Rows;
-use crate::matching::memory::views::{view, view_mut};
-use crate::matching::memory::layout::OUTSIDE;
-use crate::matching::memory::winners::{BESIDE, Select, Winner};
 use crate::matching::backend::parameters::WindowParameters;
+use crate::matching::memory::layout::OUTSIDE;
+use crate::matching::memory::views::{view, view_mut};
+use crate::matching::memory::winners::{BESIDE, Select, Winner};
 
 /// The lane numbers.
 const LANES: u32 = 0x0302_0100;
@@ -141,7 +141,12 @@ fn run<S: WindowParameters, const STRIDE: usize>(
 
 /// Moves the window one column on; the winner of so many candidates.
 #[inline(never)]
-fn next_among<S: WindowParameters>(candidates: usize, enters: &[u32], leaves: &[u32], room: &mut [u32]) -> Winner {
+fn next_among<S: WindowParameters>(
+    candidates: usize,
+    enters: &[u32],
+    leaves: &[u32],
+    room: &mut [u32],
+) -> Winner {
     let words = room.len() - 2;
     for (sum, (&enters, &leaves)) in room.iter_mut().skip(1).take(words).zip(enters.iter().zip(leaves)) {
         *sum = sub(add(*sum, digits::<S>(enters)), digits::<S>(leaves));
@@ -213,7 +218,9 @@ fn second_of(disparity: usize, candidates: usize, room: &mut [u32]) -> u8 {
     // is no sum.
     let nearest = 4 + disparity.saturating_sub(BESIDE)..5 + disparity + BESIDE;
     let mut kept = [u8::MAX; 2 * BESIDE + 1];
-    for (kept, sum) in kept.iter_mut().zip(view_mut::<u32, u8>(room).get_mut(nearest.clone()).unwrap_or_default()) {
+    for (kept, sum) in
+        kept.iter_mut().zip(view_mut::<u32, u8>(room).get_mut(nearest.clone()).unwrap_or_default())
+    {
         *kept = core::mem::replace(sum, u8::MAX);
     }
     let sums = room.get(1..).unwrap_or(&[]);

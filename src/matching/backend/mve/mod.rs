@@ -34,11 +34,11 @@ mod windows;
 
 use super::armv7em::{self, sgm};
 use super::isa::Isa;
-use crate::matching::kernel::Kernel;
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::portable::{self, left_right_rows};
 use super::work::{EdgeWork, Guide, MASKS, PathWork, Rules, STEP, SpeckleWork, WindowWork, WinnerWork};
 use crate::imaging::census_ring8;
+use crate::matching::kernel::Kernel;
 use crate::matching::memory::Rows5;
 use crate::matching::memory::layout::OUTSIDE;
 use crate::matching::memory::views::view_mut;

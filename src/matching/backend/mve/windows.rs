@@ -44,7 +44,12 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
     /// each pixel it moves on by `step`. Where there is no disparity below or above the winner, what is
     /// said of it means nothing.
     #[inline(never)]
-    pub fn select<S: WindowParameters, const MASKED: bool>(&mut self, count: usize, mask: &[u8], step: usize) {
+    pub fn select<S: WindowParameters, const MASKED: bool>(
+        &mut self,
+        count: usize,
+        mask: &[u8],
+        step: usize,
+    ) {
         let stride = if STRIDE > 0 { STRIDE } else { self.stride };
         let columns = count * stride;
         let is_there = self.leaves.len() >= columns
@@ -66,7 +71,12 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
     /// [`Self::select`] among `STRIDE` candidates: eight instructions for 16 of them, two more where there is
     /// a mask, and ten for a pixel.
     #[inline(always)]
-    fn select_among<S: WindowParameters, const MASKED: bool>(&mut self, count: usize, mask: &[u8], step: usize) {
+    fn select_among<S: WindowParameters, const MASKED: bool>(
+        &mut self,
+        count: usize,
+        mask: &[u8],
+        step: usize,
+    ) {
         const { assert!(STRIDE.is_multiple_of(LANES) && STRIDE != LANES && STRIDE <= DISPARITIES.len()) };
         let Some(lanes) = DISPARITIES.last_chunk::<STRIDE>() else { return };
         // SAFETY: [`Self::select`] asked for the lengths of what is read and written; `count` is not 0. The

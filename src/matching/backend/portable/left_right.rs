@@ -42,8 +42,9 @@ pub(in crate::matching::backend) fn answer<S: MethodParameters>(
             .union(rules.flat.when(winner.rises() == (0, 0)))
             .union(PixelFlags::CEILING.when(disparity == rules.ceiling));
         let none = 0u16.wrapping_sub(u16::from(said.intersects(rules.refused)));
-        *answer =
-            Disparity::from_raw(subpixel::refine(winner, min_disparity, u32::from(S::SLANT_COST)).raw() | none);
+        *answer = Disparity::from_raw(
+            subpixel::refine(winner, min_disparity, u32::from(S::SLANT_COST)).raw() | none,
+        );
         *flags = said;
     }
 }

@@ -8,7 +8,12 @@ use crate::units::{Disparity, PixelFlags};
 
 /// [`consistency::offer`] of all winners, then the disparity that each one's partner keeps.
 #[inline(never)]
-pub(in crate::matching::backend) fn keep(costs: &[u8], disparities: &[u8], right: &mut [u16], kept: &mut [u8]) {
+pub(in crate::matching::backend) fn keep(
+    costs: &[u8],
+    disparities: &[u8],
+    right: &mut [u16],
+    kept: &mut [u8],
+) {
     let keys = costs.iter().zip(disparities).map(|(&cost, &d)| (u32::from(cost) << 8 | u32::from(d), d));
     consistency::offer(keys, right);
     for (x, (kept, &disparity)) in kept.iter_mut().zip(disparities).enumerate() {

@@ -45,7 +45,6 @@ pub(in crate::matching::backend) const RECIPROCALS: [i32; 16] = {
     table
 };
 
-
 /// The pass to the right: for every answer how many of its surface there are up to it, and the sum of all raw
 /// disparities left of it, modulo 2^16.
 #[inline(never)]

@@ -26,7 +26,12 @@ pub(in crate::matching::backend) fn speckle(work: SpeckleWork<'_>) {
     match answers {
         Some(answers) => {
             let out = answers.iter().zip(flags).zip(finished);
-            drop_speckle(columns, out.map(|((&answer, flags), finished)| (answer, flags, finished)), step, pixels);
+            drop_speckle(
+                columns,
+                out.map(|((&answer, flags), finished)| (answer, flags, finished)),
+                step,
+                pixels,
+            );
         }
         None => {
             let out = flags.iter_mut().zip(finished);

@@ -14,7 +14,11 @@ const ROUNDED: u32 = (1 << (SHIFT - 1)) + (REACH << SHIFT) - SHARE * (LOOK_AHEAD
 
 /// Filters the answers `here` by those above, which have come out, and those [`LOOK_AHEAD`] rows below.
 #[inline(always)]
-pub(in crate::matching::backend) fn vertical(here: &mut [Disparity], above: &[Disparity], below: &[Disparity]) {
+pub(in crate::matching::backend) fn vertical(
+    here: &mut [Disparity],
+    above: &[Disparity],
+    below: &[Disparity],
+) {
     for (here, (above, below)) in here.iter_mut().zip(above.iter().zip(below)) {
         // From what is 1 px less, differences within reach are no less than 0, and all of their bits are
         // below that of 2 px.
@@ -27,4 +31,3 @@ pub(in crate::matching::backend) fn vertical(here: &mut [Disparity], above: &[Di
         *here = Disparity::from_raw(select_unpredictable((up | down) < 2 * REACH, moved, x) as u16);
     }
 }
-

@@ -5,9 +5,9 @@
 //! (Arm's instructions on four bytes take two: see `armv7em`.)
 
 use super::group::Group;
-use crate::matching::memory::winners::BESIDE;
-use crate::matching::memory::views::{view, view_mut};
 use crate::matching::backend::loops::keep_loop;
+use crate::matching::memory::views::{view, view_mut};
+use crate::matching::memory::winners::BESIDE;
 
 /// The top bit of each lane.
 const TOP: u32 = 0x8080_8080;

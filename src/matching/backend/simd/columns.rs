@@ -1,8 +1,8 @@
 //! The costs of a row, added to the columns under the window.
 
-use crate::matching::backend::portable::group::Group;
 use super::row_codes::{RowCodes, pixels};
 use crate::matching::backend::parameters::WindowParameters;
+use crate::matching::backend::portable::group::Group;
 
 /// Moves the sums of all columns one row down.
 #[inline(always)]
@@ -18,7 +18,8 @@ pub(super) fn update<S: WindowParameters, G: Group>(
             for (column, ((&new_code, new), (&old_code, old))) in columns.zip(enter.zip(leave)) {
                 let (more, less) = (key::<S, G>(new_code), key::<S, G>(old_code));
                 for (sum, (&new, &old)) in column.iter_mut().zip(G::groups(new).iter().zip(G::groups(old))) {
-                    let (more, less) = (apart::<S, G>(more, G::of_bytes(new)), apart::<S, G>(less, G::of_bytes(old)));
+                    let (more, less) =
+                        (apart::<S, G>(more, G::of_bytes(new)), apart::<S, G>(less, G::of_bytes(old)));
                     *sum = G::of(*sum).minus(less).plus(more).cell();
                 }
             }

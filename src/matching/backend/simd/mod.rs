@@ -35,11 +35,11 @@ use sse2::Vector;
 use x86::{Avx2, Avx512, Wide, Widest};
 
 use super::isa::Isa;
-use crate::matching::kernel::Kernel;
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::portable::{self, left_right_rows};
 use super::work::{EdgeWork, Guide, PathWork, Rules, STEP, WindowWork, WinnerWork};
 use crate::imaging::{census_plus4, census_ring8};
+use crate::matching::kernel::Kernel;
 use crate::matching::memory::Rows5;
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::{Select, WinnerRows};

@@ -79,11 +79,7 @@ pub(super) fn cost<S: SgmParameters>(
 
 /// [`Isa::sgm_within_edges`](crate::matching::backend::Isa::sgm_within_edges) on each of the kernels.
 #[inline(always)]
-pub(super) fn within_edges(
-    backend: Backend,
-    work: &mut PathWork<'_>,
-    edges: EdgeWork<'_>,
-) {
+pub(super) fn within_edges(backend: Backend, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
     match backend {
         Backend::Planes => sgm::within_edges_in_words(work, edges),
         Backend::Lanes => in_vectors!(work, within_edges, [], edges),
@@ -100,12 +96,7 @@ pub(super) fn within_edges(
 
 /// [`Isa::sgm_select`](crate::matching::backend::Isa::sgm_select) on each of the kernels.
 #[inline(always)]
-pub(super) fn select(
-    backend: Backend,
-    work: PathWork<'_>,
-    guide: Guide<'_>,
-    select: Select<'_>,
-) {
+pub(super) fn select(backend: Backend, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
     match backend {
         Backend::Planes => sgm::select_in_words(work, guide, select),
         Backend::Lanes => in_vectors!(work, select, [true], guide, select),

@@ -12,14 +12,14 @@
 //! The work is the same for every picture, but for a few instructions where a winner is at an end of the
 //! search.
 
-use super::{Vector, columns};
-use crate::matching::backend::portable::group::Group;
 use super::row_codes::with_more_before;
+use super::{Vector, columns};
+use crate::matching::backend::parameters::WindowParameters;
+use crate::matching::backend::portable::group::Group;
 use crate::matching::backend::work::{MASKS, STEP, WindowWork};
 use crate::matching::memory::layout::OUTSIDE;
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::{Select, WinnerRows, beside};
-use crate::matching::backend::parameters::WindowParameters;
 
 /// [`Isa::window`](crate::matching::backend::Isa::window) in vectors of the compilation's own target.
 pub(super) fn in_vectors<S: WindowParameters>(work: WindowWork<'_>, select: Option<Select<'_>>) {
@@ -114,7 +114,9 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Sums<G, CELLS, ALL> {
     #[inline(always)]
     fn slide<S: WindowParameters>(&mut self, enters: &[G::Cell], leaves: &[G::Cell]) {
         for (sum, (&enters, &leaves)) in self.0.iter_mut().zip(enters.iter().zip(leaves)) {
-            *sum = sum.minus(columns::digits::<S, G>(G::of(leaves))).plus(columns::digits::<S, G>(G::of(enters)));
+            *sum = sum
+                .minus(columns::digits::<S, G>(G::of(leaves)))
+                .plus(columns::digits::<S, G>(G::of(enters)));
         }
     }
 }

@@ -79,7 +79,10 @@ fn row<S: WindowParameters>(work: WindowWork<'_>, select: Option<Select<'_>>) {
 /// all of them.
 #[target_feature(enable = "avx2,lzcnt")]
 #[inline(never)]
-fn in_wide<S: WindowParameters, const CELLS: usize, const ALL: bool>(work: WindowWork<'_>, select: Option<Select<'_>>) {
+fn in_wide<S: WindowParameters, const CELLS: usize, const ALL: bool>(
+    work: WindowWork<'_>,
+    select: Option<Select<'_>>,
+) {
     windows::row::<S, Wide, CELLS, ALL>(work, select);
 }
 

@@ -9,7 +9,6 @@ use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::portable::sgm::features::FeatureRows;
 use crate::matching::memory::Rows5;
 
-
 /// Columns in a word.
 const COLUMNS: usize = 4;
 /// Columns to each side that a code looks at.

@@ -15,12 +15,12 @@ mod plane;
 mod windows;
 
 use super::census as rows;
+use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::work::WindowWork;
+use crate::matching::memory::Rows5;
 use crate::matching::memory::layout::OUTSIDE;
 use crate::matching::memory::views::{view, view_mut};
 use crate::matching::memory::winners::Select;
-use crate::matching::memory::Rows5;
-use crate::matching::backend::parameters::WindowParameters;
 use plane::Plane;
 use windows::{Judge, WINDOW, Windows};
 
@@ -49,7 +49,10 @@ pub(in crate::matching::backend) fn census<S: WindowParameters>(
 
 /// [`Isa::window`](crate::matching::backend::Isa::window) in planes.
 #[inline(always)]
-pub(in crate::matching::backend) fn window<S: WindowParameters>(work: WindowWork<'_>, select: Option<Select<'_>>) {
+pub(in crate::matching::backend) fn window<S: WindowParameters>(
+    work: WindowWork<'_>,
+    select: Option<Select<'_>>,
+) {
     // The usual numbers of candidates, then any number of words of them, or of half-words.
     match work.stride {
         16 => row_of::<S, u16, 1>(work, select),
@@ -64,7 +67,10 @@ pub(in crate::matching::backend) fn window<S: WindowParameters>(work: WindowWork
 /// A row whose candidates are `GROUPS` words of them; 0 where the number is not known when the crate is
 /// compiled.
 #[inline(always)]
-fn row_of<S: WindowParameters, P: Plane, const GROUPS: usize>(work: WindowWork<'_>, select: Option<Select<'_>>) {
+fn row_of<S: WindowParameters, P: Plane, const GROUPS: usize>(
+    work: WindowWork<'_>,
+    select: Option<Select<'_>>,
+) {
     let WindowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
     // At least one, for the compiler to see that no column is empty.
     let groups = if GROUPS > 0 { GROUPS } else { (stride / P::CANDIDATES).max(1) };

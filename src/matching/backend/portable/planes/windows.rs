@@ -8,8 +8,8 @@
 
 use super::Column;
 use super::plane::Plane;
-use crate::matching::memory::winners::{BESIDE, Winner};
 use crate::matching::backend::parameters::WindowParameters;
+use crate::matching::memory::winners::{BESIDE, Winner};
 
 /// Planes of a window's sum.
 pub(super) const WINDOW: usize = 8;

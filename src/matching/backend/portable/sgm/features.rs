@@ -5,8 +5,8 @@
 //! * a census of eight neighbours, wide along the line.
 
 use crate::imaging::{census_wide8, gradients};
-use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::work::PathWork;
 use crate::matching::memory::Rows5;
 
@@ -94,7 +94,12 @@ fn rows<const N: usize>(room: &mut [u8], length: usize) -> [&mut [u8]; N] {
 /// which is the same as after.
 #[cfg_attr(target_pointer_width = "32", inline(never))]
 #[cfg_attr(not(target_pointer_width = "32"), inline(always))]
-fn looks_of<R: FeatureRows>(lines: &Rows5<'_>, gradient: u8, shift: u32, [along, across, census]: [&mut [u8]; 3]) {
+fn looks_of<R: FeatureRows>(
+    lines: &Rows5<'_>,
+    gradient: u8,
+    shift: u32,
+    [along, across, census]: [&mut [u8]; 3],
+) {
     R::looks(lines, gradient << shift, [&mut *along, &mut *across, census]);
     if shift > 0 {
         shift_down(along, shift);

@@ -78,26 +78,29 @@ pub(in crate::matching::backend) fn within_edges<P: Passes>(work: &mut PathWork<
 /// Selects the winners of the row whose costs there are, and puts them in `ROWS` for each of their parts as
 /// kernels in vectors have them, or one by one.
 #[inline(always)]
-pub(in crate::matching::backend) fn select<P: Passes, const ROWS: bool>(mut work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+pub(in crate::matching::backend) fn select<P: Passes, const ROWS: bool>(
+    mut work: PathWork<'_>,
+    guide: Guide<'_>,
+    select: Select<'_>,
+) {
     let Select { winners, unique, .. } = select;
     if ROWS {
-            let begin = work.min_disparity.min(work.width);
-            let WinnerRows { below, costs, above, disparities } = WinnerRows::of(winners, begin);
-            P::select(
-                &mut work,
-                guide,
-                unique,
-                #[inline(always)]
-                |x, found| {
-                    let x = x - begin;
-                    let places =
-                        (below.get_mut(x), costs.get_mut(x), above.get_mut(x), disparities.get_mut(x));
-                    if let (Some(below), Some(cost), Some(above), Some(disparity)) = places {
-                        (*below, *cost, *above, *disparity) =
-                            (found.beside.0, found.cost, found.beside.1, found.disparity);
-                    }
-                },
-            );
+        let begin = work.min_disparity.min(work.width);
+        let WinnerRows { below, costs, above, disparities } = WinnerRows::of(winners, begin);
+        P::select(
+            &mut work,
+            guide,
+            unique,
+            #[inline(always)]
+            |x, found| {
+                let x = x - begin;
+                let places = (below.get_mut(x), costs.get_mut(x), above.get_mut(x), disparities.get_mut(x));
+                if let (Some(below), Some(cost), Some(above), Some(disparity)) = places {
+                    (*below, *cost, *above, *disparity) =
+                        (found.beside.0, found.cost, found.beside.1, found.disparity);
+                }
+            },
+        );
     } else {
         P::select(
             &mut work,
@@ -147,7 +150,11 @@ pub(in crate::matching::backend) fn within_edges_in_words(work: &mut PathWork<'_
 
 /// [`Isa::sgm_select`](crate::matching::backend::Isa::sgm_select) in words.
 #[inline(always)]
-pub(in crate::matching::backend) fn select_in_words(work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+pub(in crate::matching::backend) fn select_in_words(
+    work: PathWork<'_>,
+    guide: Guide<'_>,
+    select: Select<'_>,
+) {
     in_words!(work, select, [false], guide, select);
 }
 
@@ -166,7 +173,10 @@ pub(in crate::matching::backend) mod words {
     }
 
     #[inline(never)]
-    pub(in crate::matching::backend) fn within_edges<P: Passes>(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+    pub(in crate::matching::backend) fn within_edges<P: Passes>(
+        work: &mut PathWork<'_>,
+        edges: EdgeWork<'_>,
+    ) {
         super::within_edges::<P>(work, edges);
     }
 

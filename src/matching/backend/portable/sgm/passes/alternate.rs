@@ -4,9 +4,9 @@
 
 use super::decide::Judge;
 use super::{COLUMNS_OFF, Guide, Path, PathWork, Steps, column, column_mut, stride};
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::portable::group::Group;
 use crate::matching::memory::winners::{Found, Unique};
-use crate::matching::backend::loops::keep_loop;
 use core::cell::Cell;
 
 /// Selects the winner of every pixel that has a candidate, by the sum of its three paths. There is room for

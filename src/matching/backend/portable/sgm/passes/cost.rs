@@ -2,9 +2,9 @@
 
 use super::super::features::Features;
 use super::{PathWork, stride};
-use crate::matching::backend::portable::group::Group;
-use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::parameters::SgmParameters;
+use crate::matching::backend::portable::group::Group;
 
 /// Adds a row.
 #[inline(always)]

@@ -1,10 +1,10 @@
 //! A row's costs, averaged within edges.
 
 use super::super::edges::edges_at;
-use crate::matching::backend::work::EdgeWork;
 use super::{PathWork, stride};
-use crate::matching::backend::portable::group::Group;
 use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::portable::group::Group;
+use crate::matching::backend::work::EdgeWork;
 
 /// Makes the costs of the row of those that stand in their place before: of the pixels two rows below, or of
 /// no meaning where that is outside of the image.

@@ -10,15 +10,14 @@ mod edges;
 mod gather;
 mod select;
 
-
 use super::Passes;
 use super::features::{Features, PlainRows};
-use crate::matching::backend::work::{EdgeWork, Guide, PathWork};
-use crate::matching::memory::layout::COLUMNS_OFF;
-use crate::matching::backend::portable::group::Group;
-use crate::matching::memory::winners::{Found, Unique};
-use crate::matching::backend::work::{MASKS, STEP};
 use crate::matching::backend::parameters::SgmParameters;
+use crate::matching::backend::portable::group::Group;
+use crate::matching::backend::work::{EdgeWork, Guide, PathWork};
+use crate::matching::backend::work::{MASKS, STEP};
+use crate::matching::memory::layout::COLUMNS_OFF;
+use crate::matching::memory::winners::{Found, Unique};
 use core::marker::PhantomData;
 
 /// The passes over columns of up to `CELLS` groups, all of them in use if `ALL`: then the compiler knows how

@@ -25,7 +25,6 @@ const NOT_YET: &[&str] = &[
     "src/features/",
     "src/ffi/",
     "src/focus/",
-    "src/geometry/",
     "src/matching/",
     "src/motion/",
     "src/pipeline/",

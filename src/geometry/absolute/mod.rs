@@ -6,6 +6,8 @@
 //!
 //! Of many landmarks of which some are wrong: [`robust_resection`](super::robust::robust_resection) (PnP).
 
+mod plane_pair;
+
 mod p3p;
 
 mod projection;

@@ -101,7 +101,7 @@ impl<T: Real> SquareMark<T> {
     ///
     /// Both poses come in closed form from the homography's derivative at the mark's middle (Collins &
     /// Bartoli 2014, "Infinitesimal plane-based pose estimation", 4.1); each is refined to the least
-    /// re-projection error by Levenberg-Marquardt, and that error tells them apart.
+    /// re-projection error by Levenberg-Marquardt, and that error decides between them.
     pub fn locate(
         &self,
         camera: &Camera<T>,

@@ -75,7 +75,7 @@ fn solve<T: Real, const N: usize>(rows: &[[T; N]], pivots: &[T], places: &[usize
     unit(x);
 }
 
-/// What a row is divided by. In one that depends on the others any number will do: the caller is told by the
+/// What a row is divided by. In one that depends on the others any number will do: the caller sees it by the
 /// pivot.
 fn inverse_of<T: Real>(pivot: T) -> T {
     if pivot == T::ZERO { T::ZERO } else { T::ONE / pivot }

@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 /// baseline, and that axis.
 ///
 /// Each camera rotates by half of R, then both by the smallest rotation that lays the axis along the baseline
-/// (Bouguet's way: both images are altered alike, and as little as can be). All is done with products and
+/// (Bouguet's method: both images are altered alike, and as little as can be). All is done with products and
 /// roots, so that every core gives the same bits.
 pub(super) fn aligned<T: Real>(pose: &Pose<T>) -> Result<([Matrix3<T>; 2], Axis), RectifyError> {
     let half = half_of(pose.rotation())?;

@@ -9,8 +9,8 @@ use crate::geometry::linear::Ldl;
 use crate::geometry::two_view::Correspondence;
 use nalgebra::{Matrix3, Vector3};
 
-/// Gathers correspondences of rectified images, frame by frame, and tells by what rotation the second camera
-/// was rotated since it was calibrated.
+/// Gathers correspondences of rectified images, frame by frame, and estimates by what rotation the second
+/// camera was rotated since it was calibrated.
 ///
 /// A camera that rotates by a small `w = (pitch, yaw, roll)` about X, Y and Z moves the row of what it sees,
 /// in units of the focal length and whatever the depth is, by (Longuet-Higgins & Prazdny 1980, the rotational

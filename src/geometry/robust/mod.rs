@@ -8,7 +8,8 @@
 //! * `loss`: the weight and the gain of a residual (Tukey's biweight).
 //! * `frame`, `factored`, `refine`: F or E with the least robust loss, by Levenberg-Marquardt.
 //! * `plane`, `search`, `parallax`: the search for F in scenes with a dominant plane (DEGENSAC).
-//! * `fundamental`, `essential`, `resection`: F, E of known cameras, and the pose from landmarks (PnP).
+//! * `fundamental`, `essential`: F, and E of known cameras.
+//! * `reprojection`, `resection`: the pose from landmarks (PnP).
 //!
 //! Every loop is bounded, nothing is allocated; what is held besides the caller's slices is a few hundred
 //! bytes.
@@ -40,6 +41,8 @@ mod parallax;
 mod fundamental;
 
 mod essential;
+
+mod reprojection;
 
 mod resection;
 

@@ -53,7 +53,7 @@ impl<T: Real> Search<'_, T> {
         })
     }
 
-    /// Tries whether most of what the best estimate keeps is on one plane, and if so, leaves it; the plane,
+    /// Tries whether most inliers of the best estimate are on one plane, and if so, leaves it; the plane,
     /// when there is nothing off it that the best estimate after that explains and chance does not.
     pub(super) fn only_plane(&mut self) -> Option<Plane<T>> {
         let px2 = self.on_plane_px2();
@@ -82,7 +82,7 @@ impl<T: Real> Search<'_, T> {
         (T::count(kept) <= T::count(MINIMUM) + by_chance).then_some(plane)
     }
 
-    /// A correspondence that an estimate keeps, of the first few that chance finds.
+    /// An inlier of an estimate, of the first few that chance finds.
     fn agreeing(&mut self, f: &Matrix3<T>) -> Option<Correspondence<T>> {
         (0..PAIRS).find_map(|_| {
             let s = *self.seen.get(self.sampler.below(self.seen.len()))?;

@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 
 /// What a homography can mean: a pose and the plane that both cameras see.
 ///
-/// The unit of length is the distance of the plane from camera 2, which the images do not tell.
+/// The unit of length is the distance of the plane from camera 2, which the images do not show.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct PlaneMotion<T: Real> {
     rotation: Matrix3<T>,

@@ -4,7 +4,7 @@ use crate::geometry::Real;
 use crate::geometry::camera::Pose;
 use nalgebra::{Matrix3, Point3, Unit, Vector3};
 
-/// R and the direction of t: all that two views tell of a pose. How far apart the cameras are is not in the
+/// R and the direction of t: all that two views say of a pose. How far apart the cameras are is not in the
 /// images; a scene twice as large seen by cameras twice as far apart looks the same.
 ///
 /// With a baseline or a length in the scene it becomes a [`Pose`] in metres.

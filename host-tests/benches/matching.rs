@@ -27,7 +27,7 @@ fn frame<S: Method>(pipeline: &mut Sized<S>, camera: &mut impl StereoSource) -> 
 
 fn method<S: Method>(criterion: &mut Criterion, camera: &mut MemoryPair) -> Result<(), String> {
     let mut pipeline = Box::new(Sized::<S>::new());
-    pipeline.start(&Config::new(WIDTH, HEIGHT, DISPARITIES)).map_err(|e| e.to_string())?;
+    pipeline.start(&Config::for_method::<Block>(WIDTH, HEIGHT, DISPARITIES)).map_err(|e| e.to_string())?;
     if frame(&mut pipeline, camera) == 0 {
         return Err(format!("{}: no answers: there is nothing to time", S::NAME));
     }

@@ -14,9 +14,9 @@ use heapless::Vec;
 ///
 /// ```
 /// use stereopsis::depth::{DepthScale, DepthTable};
-/// use stereopsis::{geometry::camera::RectifiedRig, matching::Config, units::Disparity};
+/// use stereopsis::{geometry::camera::RectifiedRig, matching::{Block, Config}, units::Disparity};
 /// let scale = DepthScale::new(&RectifiedRig::new(100.0, 0.05, 48.0, 32.0)?)?;
-/// let table = DepthTable::<513>::new(&scale, &Config::new(96, 64, 16))?;
+/// let table = DepthTable::<513>::new(&scale, &Config::for_method::<Block>(96, 64, 16))?;
 /// let d = Disparity::from_raw(100);
 /// assert_eq!(table.millimetres(d), scale.millimetres(d));
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -158,7 +158,7 @@ impl From<matching::Config> for CConfig {
 impl CConfig {
     /// The same search with the checks of a preset and the penalties of the method for so much noise.
     fn with_filter<S: Method>(self, filter: Filter, noise: Noise) -> Self {
-        let search = matching::Config::new(self.width, self.height, self.disparities);
+        let search = matching::Config::for_method::<S>(self.width, self.height, self.disparities);
         let config = matching::Config { noise, ..search }.with_filter::<S>(filter);
         Self { min_disparity: self.min_disparity, confidence: self.confidence, ..config.into() }
     }
@@ -233,7 +233,7 @@ pub unsafe fn config_default<S: Method>(
         return Status::Null;
     }
     either(filter(preset).map(|filter| {
-        let search = matching::Config::new(width, height, disparities);
+        let search = matching::Config::for_method::<S>(width, height, disparities);
         // SAFETY: the caller's promise; no alignment is asked for.
         unsafe { config.write_unaligned(search.with_filter::<S>(filter).into()) };
         Status::Ok

@@ -1,6 +1,5 @@
 //! What a matcher is asked to do, checked once before the first line.
 
-use super::kernel::Kernel;
 use super::penalties::{Penalties, PenaltiesError};
 use crate::imaging::Noise;
 use crate::units::Disparity;
@@ -236,11 +235,6 @@ pub enum ConfigError {
     Gradient,
     /// The penalties are not in order, or a sum of them is over its byte.
     Penalties,
-    /// This processor does not run the kernel that was chosen.
-    Kernel {
-        /// The kernel.
-        given: Kernel,
-    },
 }
 
 impl fmt::Display for ConfigError {
@@ -258,7 +252,6 @@ impl fmt::Display for ConfigError {
             Self::Penalties => f.write_str(
                 "penalties: cost >= 1, steps falling, jumps above them, edges rising, cost + step + jump < 128, 3 cost + 2 jump < 255",
             ),
-            Self::Kernel { given } => write!(f, "kernel {}: this processor does not run it", given.name()),
             Self::Smoothing => write!(f, "smoothing radius: at most {}", Checks::MOST_SMOOTHING),
         }
     }

@@ -1,5 +1,7 @@
 //! The kernels by name: which instructions the dense path runs on.
 
+use core::fmt;
+
 /// An implementation of the dense path. All give the same bits; which of them there are depends on the target
 /// that the crate is compiled for and on the processor that it runs on ([`Kernel::available`]).
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -36,3 +38,24 @@ impl Kernel {
         }
     }
 }
+
+/// Why a kernel cannot be chosen.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum KernelError {
+    /// The crate was compiled for another target, or the processor lacks the instructions.
+    Unavailable(Kernel),
+}
+
+impl fmt::Display for KernelError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unavailable(kernel) => {
+                write!(f, "kernel {}: this processor does not run it", kernel.name())
+            }
+        }
+    }
+}
+
+impl core::error::Error for KernelError {}

@@ -2,7 +2,7 @@
 
 use super::backend::{Backend, Isa, SMOOTH_MARGIN, STEP, columns_begin};
 use super::config::{Config, ConfigError};
-use super::kernel::Kernel;
+use super::kernel::{Kernel, KernelError};
 use super::memory::rings::{BAND, HISTORY, LOOK_AHEAD, first, row_mut};
 use super::memory::{AfterRow, Bytes, Memory, Parts, Rows5};
 use super::method::{Frame, Method};
@@ -136,9 +136,9 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     /// Chooses the kernel from the next frame on: within a frame kernels keep their own form of what they
     /// have seen. Every kernel gives the same bits.
     ///
-    /// Fails with [`ConfigError::Kernel`] where the processor does not run it, and leaves the kernel as it is.
-    pub fn set_kernel(&mut self, kernel: Kernel) -> Result<(), ConfigError> {
-        let backend = Backend::of(kernel).ok_or(ConfigError::Kernel { given: kernel })?;
+    /// Fails where the processor does not run it, and leaves the kernel as it is.
+    pub fn set_kernel(&mut self, kernel: Kernel) -> Result<(), KernelError> {
+        let backend = Backend::of(kernel).ok_or(KernelError::Unavailable(kernel))?;
         (self.next_backend, self.backend_chosen) = (backend, true);
         Ok(())
     }

@@ -45,7 +45,7 @@ mod stages;
 pub use backend::MethodParameters;
 pub use config::{Checks, Config, ConfigError};
 pub use filter::Filter;
-pub use kernel::Kernel;
+pub use kernel::{Kernel, KernelError};
 pub use matcher::{MatchError, Matcher, state_bytes};
 pub use method::{Block, Fast, Method, Sgm, SgmEdge, SgmLean};
 pub use penalties::Penalties;

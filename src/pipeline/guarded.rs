@@ -4,7 +4,7 @@ use super::counters::{FaultCounters, count};
 use super::lines::LineGuard;
 use super::{Pipeline, PipelineError, PushError};
 use crate::camera::{ErrorType, FrameStart, LineFault, StereoSource};
-use crate::matching::{Config, ConfigError, Kernel, MatchError, Method, Row};
+use crate::matching::{Config, ConfigError, Kernel, KernelError, MatchError, Method, Row};
 
 /// A [`Pipeline`] that goes on when lines get lost, flags what they touch and counts every fault by name.
 ///
@@ -82,8 +82,8 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
     }
 
     /// Chooses the kernel from the next frame on; every kernel gives the same bits.
-    pub fn set_kernel(&mut self, kernel: Kernel) {
-        self.pipeline.set_kernel(kernel);
+    pub fn set_kernel(&mut self, kernel: Kernel) -> Result<(), KernelError> {
+        self.pipeline.set_kernel(kernel)
     }
 
     /// What went wrong so far.

@@ -3,7 +3,7 @@
 use super::{PipelineError, PushError};
 use crate::camera::{FrameStart, LineFormat, PixelFormat, StereoSource};
 use crate::imaging::LineWindow;
-use crate::matching::{Config, ConfigError, Kernel, MatchError, Matcher, Method, Row};
+use crate::matching::{Config, ConfigError, Kernel, KernelError, MatchError, Matcher, Method, Row};
 
 /// Rows of disparities from a stereo source, in memory of its own and of fixed size: it fits a `static`.
 ///
@@ -56,8 +56,8 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
     }
 
     /// Chooses the kernel from the next frame on; every kernel gives the same bits.
-    pub fn set_kernel(&mut self, kernel: Kernel) {
-        self.matcher.set_kernel(kernel);
+    pub fn set_kernel(&mut self, kernel: Kernel) -> Result<(), KernelError> {
+        self.matcher.set_kernel(kernel)
     }
 
     /// The kernel in use.

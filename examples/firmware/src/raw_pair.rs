@@ -125,7 +125,7 @@ impl RawPair {
     ) -> Result<u64, Broken<E>> {
         self.remaps.set(&level()?).map_err(Broken::Remap)?;
         let mut pair = Source::new(camera, &mut self.remaps).map_err(Broken::Pair)?;
-        let config = Config::new(SCENE.width, SCENE.height, DISPARITIES as u16);
+        let config = Config::for_method::<Block>(SCENE.width, SCENE.height, DISPARITIES as u16);
         self.pipeline.start(&config).map_err(Broken::Config)?;
         let start = clock();
         self.pipeline.begin_frame(&mut pair).map_err(Broken::Frame)?;

@@ -3,7 +3,7 @@
 use super::Accuracy;
 use crate::map::{DisparityMap, quantile};
 use crate::rows::Rows;
-use crate::run::{Method, Outcome};
+use crate::run::{MethodName, Outcome};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use stereopsis::depth::DepthScale;
@@ -123,7 +123,7 @@ pub struct Depth {
 }
 
 impl Depth {
-    fn of(scale: &DepthScale, config: &Config, method: Method, map: &DisparityMap) -> Self {
+    fn of(scale: &DepthScale, config: &Config, method: MethodName, map: &DisparityMap) -> Self {
         let range = scale.range(config, method.sigma_px());
         let mut depths: Vec<f32> = map.depth_m(scale).into_iter().filter(|z| z.is_finite()).collect();
         depths.sort_by(f32::total_cmp);
@@ -150,7 +150,7 @@ fn confidences(map: &DisparityMap) -> Vec<f32> {
 impl Summary {
     /// The figures of `outcome`.
     pub fn new(
-        method: Method,
+        method: MethodName,
         filter: &'static str,
         config: &Config,
         outcome: &Outcome,

@@ -3,12 +3,12 @@
 //! With the block methods every row is bit-equal to that of one pipeline over the whole frame, because each
 //! band sees more lines than it gives rows:
 //!
-//! * below, as many as a row waits for: [`Method::latency_lines`](super::Method::latency_lines);
+//! * below, as many as a row waits for: [`MethodName::latency_lines`](super::MethodName::latency_lines);
 //! * above, as many again, for windows and for the uncertainty, which looks back at finished rows; one for
 //!   the median, which looks at the row above; and one for each answer that the speckle filter asks for,
 //!   since a surface that goes on through so many rows has them.
 //!
-//! Along paths ([`Method::is_exact_in_bands`](super::Method::is_exact_in_bands) says no) a band's first rows
+//! Along paths ([`MethodName::is_exact_in_bands`](super::MethodName::is_exact_in_bands) says no) a band's first rows
 //! lack what a path from above has gathered farther up: `tests/matching/threads.rs` measures how many answers that
 //! changes.
 //!
@@ -150,13 +150,16 @@ fn with_pipeline<S: Method, T>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::Method;
+    use super::super::MethodName;
     use super::*;
+    use stereopsis::matching::Block;
 
     #[test]
     fn bands_cover_the_frame() {
-        let way = Way { threads: 3, ..Method::Block.into() };
-        let ranges = |height| bands(way, &Config::new(64, height, 16)).into_iter().map(|b| (b.rows, b.lines));
+        let way = Way { threads: 3, ..MethodName::Block.into() };
+        let ranges = |height| {
+            bands(way, &Config::for_method::<Block>(64, height, 16)).into_iter().map(|b| (b.rows, b.lines))
+        };
         assert!(ranges(100).eq([(0..33, 0..43), (33..66, 0..76), (66..100, 32..100)]));
         assert!(ranges(2).eq([(0..1, 0..2), (1..2, 0..2)]));
     }

@@ -1,7 +1,7 @@
 //! Frames of a source that may fail, through the core's guarded pipeline.
 
 use super::method::with_scheme;
-use super::{MOST_DISPARITIES, MOST_WIDTH, Method};
+use super::{MOST_DISPARITIES, MOST_WIDTH, MethodName};
 use crate::map::DisparityMap;
 use std::fmt::Display;
 use stereopsis::camera::{FrameStart, StereoSource};
@@ -31,7 +31,7 @@ pub struct GuardedFrame {
 /// Takes frames of `source` as long as `next` has a configuration for each, and gives them to `keep`. The
 /// first one is begun with `config`.
 pub fn run_guarded<C: StereoSource<Error: Display> + Send>(
-    method: Method,
+    method: MethodName,
     config: &Config,
     most_lost: Option<u16>,
     source: &mut C,

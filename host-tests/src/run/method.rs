@@ -7,7 +7,7 @@ use stereopsis::matching::{Config, Filter, Method, state_bytes};
 
 /// A matching method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Method {
+pub enum MethodName {
     /// [`Fast`](stereopsis::matching::Fast): 4-bit census, 9x7 window.
     Fast,
     /// [`Block`](stereopsis::matching::Block): 8-bit census, 9x9 window.
@@ -24,23 +24,23 @@ pub enum Method {
 macro_rules! with_scheme {
     ($method:expr, $scheme:ident => $work:expr) => {
         match $method {
-            $crate::run::Method::Fast => {
+            $crate::run::MethodName::Fast => {
                 type $scheme = stereopsis::matching::Fast;
                 $work
             }
-            $crate::run::Method::Block => {
+            $crate::run::MethodName::Block => {
                 type $scheme = stereopsis::matching::Block;
                 $work
             }
-            $crate::run::Method::SgmLean => {
+            $crate::run::MethodName::SgmLean => {
                 type $scheme = stereopsis::matching::SgmLean;
                 $work
             }
-            $crate::run::Method::Sgm => {
+            $crate::run::MethodName::Sgm => {
                 type $scheme = stereopsis::matching::Sgm;
                 $work
             }
-            $crate::run::Method::SgmEdge => {
+            $crate::run::MethodName::SgmEdge => {
                 type $scheme = stereopsis::matching::SgmEdge;
                 $work
             }
@@ -49,7 +49,7 @@ macro_rules! with_scheme {
 }
 pub(super) use with_scheme;
 
-impl Method {
+impl MethodName {
     /// The methods of this build.
     pub const ALL: [Self; 5] = [Self::Fast, Self::Block, Self::SgmLean, Self::Sgm, Self::SgmEdge];
 
@@ -91,7 +91,7 @@ impl Method {
     }
 }
 
-impl fmt::Display for Method {
+impl fmt::Display for MethodName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
     }
@@ -102,7 +102,7 @@ impl fmt::Display for Method {
 #[error("the methods of this build are fast, block, sgm-lean, sgm and sgm-edge")]
 pub struct UnknownMethod;
 
-impl FromStr for Method {
+impl FromStr for MethodName {
     type Err = UnknownMethod;
 
     fn from_str(name: &str) -> Result<Self, UnknownMethod> {

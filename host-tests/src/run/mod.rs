@@ -2,7 +2,7 @@
 //!
 //! In: any [`StereoSource`] of 8-bit grey lines. Out: a whole [`DisparityMap`], or the times of frames.
 //!
-//! * [`Method`]: the methods of this build. [`Way`]: a method, on a kernel, in so many threads.
+//! * [`MethodName`]: the methods of this build. [`Way`]: a method, on a kernel, in so many threads.
 //! * [`run`]: one frame into a map. [`time_frames`]: several, timed.
 //! * [`measure_noise`]: a frame for that alone, if [`NoiseChoice`] asks for it.
 //! * [`measure_balance`]: the same for the cameras' exposures.
@@ -20,7 +20,7 @@ mod noise;
 pub use balance::measure_balance;
 pub use guarded::{GuardedFrame, run_guarded};
 pub use memory::MemoryPair;
-pub use method::{Method, UnknownMethod};
+pub use method::{MethodName, UnknownMethod};
 pub use noise::{NoiseChoice, UnknownNoise, measure_noise};
 
 use self::bands::Bands;
@@ -99,15 +99,15 @@ pub struct Outcome {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Way {
     /// The method.
-    pub method: Method,
+    pub method: MethodName,
     /// The kernel; `None` is the fastest that this processor runs.
     pub kernel: Option<Kernel>,
     /// Threads, each with a band of the frame.
     pub threads: u16,
 }
 
-impl From<Method> for Way {
-    fn from(method: Method) -> Self {
+impl From<MethodName> for Way {
+    fn from(method: MethodName) -> Self {
         Self { method, kernel: None, threads: 1 }
     }
 }
@@ -115,7 +115,8 @@ impl From<Method> for Way {
 impl Way {
     fn start<S: Method>(self, pipeline: &mut Host<S>, config: &Config) -> Result<(), ConfigError> {
         // The pipeline may have run on another one before.
-        pipeline.set_kernel(self.kernel.unwrap_or_else(Kernel::detect));
+        let kernel = self.kernel.unwrap_or_else(Kernel::detect);
+        pipeline.set_kernel(kernel).expect("a way names one of the available kernels");
         pipeline.start(config)
     }
 }

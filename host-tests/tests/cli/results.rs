@@ -8,18 +8,19 @@ use std::path::Path;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::RectifiedRig;
 use stereopsis::imaging::Noise;
-use stereopsis::matching::{Config, Filter, Kernel};
+use stereopsis::matching::{Block, Config, Filter, Kernel};
 use stereopsis::units::PixelFlags;
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::pfm::{self, FloatMap};
-use stereopsis_host::run::{MemoryPair, Method, NoiseChoice, run};
+use stereopsis_host::run::{MemoryPair, MethodName, NoiseChoice, run};
 
 /// What the library says of the pair.
-fn in_process(method: Method, filter: Filter, noise: NoiseChoice) -> DisparityMap {
+fn in_process(method: MethodName, filter: Filter, noise: NoiseChoice) -> DisparityMap {
     let (left, right) = pair();
     let mut camera = MemoryPair::new(WIDTH as u16, left.into_raw(), right.into_raw()).expect("one size");
     let (noise, _) = noise.level(&mut camera).expect("a source that cannot fail");
-    let search = Config { confidence: true, noise, ..Config::new(WIDTH as u16, HEIGHT as u16, 32) };
+    let search =
+        Config { confidence: true, noise, ..Config::for_method::<Block>(WIDTH as u16, HEIGHT as u16, 32) };
     let config = method.with_filter(filter, search);
     run(method, &config, &mut camera, |_| {}).expect("a source that cannot fail").map
 }
@@ -76,7 +77,7 @@ fn every_kernel_and_number_of_threads_writes_the_same() {
 fn the_files_hold_what_the_library_says() {
     let bench = Bench::new();
     let out = bench.path("out");
-    for method in Method::ALL {
+    for method in MethodName::ALL {
         for filter in Filter::ALL {
             let map = in_process(method, filter, NoiseChoice::Auto);
             let (name, filter) = (method.name(), filter.name());
@@ -129,7 +130,7 @@ fn noise_is_measured_or_told() {
     for noise in Noise::ALL {
         bench.matched(&[("--method", "sgm"), ("--noise", noise.name())]);
         let map = float_map(&bench.path("out/disparity.pfm")).values;
-        let expected = in_process(Method::Sgm, Filter::Default, NoiseChoice::Told(noise));
+        let expected = in_process(MethodName::Sgm, Filter::Default, NoiseChoice::Told(noise));
         assert_eq!(map, expected.pixels(), "{noise:?}");
         assert_eq!(summary()["noise"], noise.name());
         assert!(summary()["noise_sigma"].is_null());
@@ -193,7 +194,7 @@ fn a_calibration_adds_depth_in_metres_and_millimetres_and_a_cloud() {
     let out = bench.path("out");
     let rig = RectifiedRig::with_offset(100.0, 0.2, 47.5, 23.5, 48.5).expect("a rig");
     let scale = DepthScale::new(&rig).expect("in range");
-    let map = in_process(Method::Block, Filter::Default, NoiseChoice::Auto);
+    let map = in_process(MethodName::Block, Filter::Default, NoiseChoice::Auto);
     let depth = float_map(&out.join("depth.pfm"));
     assert_eq!(depth.values, map.depth_m(&scale));
     let DynamicImage::ImageLuma16(millimetres) = picture(&out.join("depth.png")) else {

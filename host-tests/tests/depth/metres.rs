@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use stereopsis::depth::{DepthError, DepthScale, DepthTable, TableError};
 use stereopsis::geometry::camera::{RectifiedRig, RigError};
-use stereopsis::matching::Config;
+use stereopsis::matching::{Block, Config};
 use stereopsis::units::{Disparity, Metres, Millimetres};
 
 fn rig(focal_px: f32, baseline_m: f32, doffs_px: f32) -> RectifiedRig {
@@ -105,20 +105,22 @@ fn rigs_without_depths_are_refused() {
 fn the_range_is_the_depth_at_its_ends() {
     let rig = rig(500.0, 0.08, 0.0);
     let scale = DepthScale::new(&rig).expect("the rig has depths");
-    let range = scale.range(&Config::new(640, 480, 64), 0.15).expect("the range is before the camera");
+    let range = scale
+        .range(&Config::for_method::<Block>(640, 480, 64), 0.15)
+        .expect("the range is before the camera");
     // Disparity 63 is the ceiling, so 62 is the largest that is believed; the search begins at infinity.
     assert!(close(range.nearest.0, 40.0 / 62.0, 1e-6));
     assert!(close(range.farthest.0, 40.0, 1e-6), "one pixel of parallax");
     assert!(close(range.sigma_nearest.0, (40.0 / 62.0_f64).powi(2) / 40.0 * 0.15, 1e-6));
     assert!(close(range.sigma_farthest.0, 40.0 * 0.15, 1e-6));
     // From disparity 20 on, the far end is at 20.
-    let config = Config { min_disparity: 20, ..Config::new(640, 480, 32) };
+    let config = Config { min_disparity: 20, ..Config::for_method::<Block>(640, 480, 32) };
     let range = scale.range(&config, 0.15).expect("the range is before the camera");
     assert!(close(range.nearest.0, 40.0 / 50.0, 1e-6) && close(range.farthest.0, 2.0, 1e-6));
     assert!(range.nearest.0 < range.farthest.0 && range.sigma_nearest.0 < range.sigma_farthest.0);
     // The whole search at or behind infinity.
     let behind = DepthScale::new(&self::rig(500.0, 0.08, -62.0)).expect("the rig has depths");
-    assert!(behind.range(&Config::new(640, 480, 64), 0.15).is_none());
+    assert!(behind.range(&Config::for_method::<Block>(640, 480, 64), 0.15).is_none());
 }
 
 #[test]
@@ -235,7 +237,7 @@ proptest! {
     #[test]
     fn a_table_is_the_scale(focal in 50.0f32..2000.0, doffs in -20.0f32..20.0, first in 0u16..1900, count in 16u16..=64) {
         let scale = DepthScale::new(&rig(focal, 0.1, doffs)).expect("the rig has depths");
-        let config = Config { min_disparity: first, ..Config::new(640, 480, count) };
+        let config = Config { min_disparity: first, ..Config::for_method::<Block>(640, 480, count) };
         let table = DepthTable::<{ 64 * 32 + 1 }>::new(&scale, &config).expect("64 disparities fit");
         let last = first + count;
         for raw in 0..=u16::MAX {
@@ -263,11 +265,12 @@ proptest! {
 #[test]
 fn a_table_that_is_too_small_says_its_size() {
     let scale = DepthScale::new(&rig(500.0, 0.1, 0.0)).expect("the rig has depths");
-    let refused = DepthTable::<512>::new(&scale, &Config::new(640, 480, 16)).expect_err("one too few");
+    let refused =
+        DepthTable::<512>::new(&scale, &Config::for_method::<Block>(640, 480, 16)).expect_err("one too few");
     assert_eq!(refused, TableError { needed: 513 });
-    assert!(DepthTable::<513>::new(&scale, &Config::new(640, 480, 16)).is_ok());
+    assert!(DepthTable::<513>::new(&scale, &Config::for_method::<Block>(640, 480, 16)).is_ok());
     // The search that ends at the largest disparity of all.
-    let config = Config { min_disparity: 2032, ..Config::new(640, 480, 16) };
+    let config = Config { min_disparity: 2032, ..Config::for_method::<Block>(640, 480, 16) };
     let table = DepthTable::<513>::new(&scale, &config).expect("513 are enough");
     assert_eq!(table.millimetres(Disparity::MAX), scale.millimetres(Disparity::MAX));
     assert_eq!(table.millimetres(Disparity::NONE), Millimetres::NONE);

@@ -60,7 +60,9 @@ fn lost_lines_are_those_of_a_guarded_pipeline() {
     let [left, right] = lines(width, height);
     for lost in [&[][..], &[0], &[39], &[7, 8, 20], &[3, 31, 32, 33, 38]] {
         let mut guarded = Box::new(Guarded::<Block, WIDTH, DISPARITIES>::new());
-        guarded.start(&matching::Config::new(width, height, 32)).expect("the configuration is valid");
+        guarded
+            .start(&matching::Config::for_method::<matching::Block>(width, height, 32))
+            .expect("the configuration is valid");
         let mut source = Losing { lines: [&left, &right], lost, next: 0 };
         guarded.begin_frame(&mut source).expect("a frame");
         let mut expected = Vec::new();

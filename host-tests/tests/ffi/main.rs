@@ -153,7 +153,11 @@ fn rows_are_those_of_the_pipeline() {
         let checks = Checks { median: true, fill_pixels: 3, ..Checks::DEFAULT };
         // With and without.
         let confidence = width > 37;
-        let asked = matching::Config { checks, confidence, ..matching::Config::new(width, height, 32) };
+        let asked = matching::Config {
+            checks,
+            confidence,
+            ..matching::Config::for_method::<Block>(width, height, 32)
+        };
         let asked = matching::Config { noise: Noise::Low, ..asked };
         let config =
             CConfig { median: 1, fill_pixels: 3, confidence: confidence.into(), ..config(width, height, 32) };

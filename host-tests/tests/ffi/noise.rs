@@ -49,8 +49,11 @@ fn odd(width: u16, height: u16) -> CConfig {
 fn rows_of<S: Method>() -> Vec<Vec<Found>> {
     let (width, height) = (70, 40);
     let lines = lines(width, height);
-    let search =
-        matching::Config { min_disparity: 2, confidence: true, ..matching::Config::new(width, height, 24) };
+    let search = matching::Config {
+        min_disparity: 2,
+        confidence: true,
+        ..matching::Config::for_method::<matching::Block>(width, height, 24)
+    };
     let mut all = Vec::new();
     for (preset, filter) in PRESETS {
         for (number, noise) in LEVELS {

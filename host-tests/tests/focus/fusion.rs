@@ -50,7 +50,9 @@ fn stereo(left: &GrayImage, right: &GrayImage) -> Vec<Option<Depth>> {
     let rig = RectifiedRig::new(FOCAL_PX as f32, BASELINE_M as f32, 64.0, 32.0).expect("a rig");
     let scale = DepthScale::new(&rig).expect("depths");
     let mut pipeline = Box::new(Pipeline::<Block, 128, 16>::new());
-    pipeline.start(&Config::new(WIDTH as u16, HEIGHT as u16, 16)).expect("within the capacity");
+    pipeline
+        .start(&Config::for_method::<Block>(WIDTH as u16, HEIGHT as u16, 16))
+        .expect("within the capacity");
     pipeline.begin().expect("a frame is due");
     let mut depths = Vec::new();
     let mut keep = |row: stereopsis::matching::Row<'_>| {

@@ -3,9 +3,9 @@
 use image::GrayImage;
 use std::sync::LazyLock;
 use stereopsis::imaging::Noise;
-use stereopsis::matching::{Config, Filter};
+use stereopsis::matching::{Block, Config, Filter};
 use stereopsis_host::real::{Alteration, RealError, RealScene, Score};
-use stereopsis_host::run::{MemoryPair, Method, NoiseChoice, run};
+use stereopsis_host::run::{MemoryPair, MethodName, NoiseChoice, run};
 use stereopsis_host::scene::Scene;
 
 /// A rendered scene as a folder's files would give it.
@@ -22,21 +22,21 @@ fn altered(alteration: Alteration, seed: u64) -> [GrayImage; 2] {
     alteration.apply([&SCENE.left, &SCENE.right], seed)
 }
 
-fn missed(method: Method, alteration: Alteration) -> f64 {
+fn missed(method: MethodName, alteration: Alteration) -> f64 {
     missed_with(method, alteration, NoiseChoice::Told(Noise::None))
 }
 
-fn missed_with(method: Method, alteration: Alteration, noise: NoiseChoice) -> f64 {
+fn missed_with(method: MethodName, alteration: Alteration, noise: NoiseChoice) -> f64 {
     score(method, Filter::Default, alteration, noise).missed
 }
 
-fn score(method: Method, filter: Filter, alteration: Alteration, noise: NoiseChoice) -> Score {
+fn score(method: MethodName, filter: Filter, alteration: Alteration, noise: NoiseChoice) -> Score {
     let [left, right] = altered(alteration, 1);
     let (width, height) = (left.width() as u16, left.height() as u16);
     let mut camera =
         MemoryPair::new(width, left.into_raw(), right.into_raw()).expect("two pictures of one size");
     let (noise, _) = noise.level(&mut camera).expect("a frame");
-    let search = Config { noise, ..Config::new(width, height, SCENE.disparities) };
+    let search = Config { noise, ..Config::for_method::<Block>(width, height, SCENE.disparities) };
     let config = method.with_filter(filter, search);
     let map = run(method, &config, &mut camera, |_| ()).expect("a frame").map;
     Score::of(map.disparity.iter().map(|d| d.to_f32()), &SCENE.truth).expect("scored pixels")
@@ -89,12 +89,12 @@ fn the_truth_misses_nothing_and_what_is_off_misses_all() {
 
 #[test]
 fn altered_pairs_are_harder_and_paths_bear_another_exposure() {
-    for method in Method::ALL {
+    for method in MethodName::ALL {
         let (clean, noisy) = (missed(method, Alteration::Unaltered), missed(method, Alteration::Noise(5.0)));
         assert!(clean < 0.1, "{method} misses {clean} as taken");
         assert!(clean < noisy, "{method} misses {clean} as taken, {noisy} with noise");
     }
-    for method in [Method::SgmLean, Method::Sgm] {
+    for method in [MethodName::SgmLean, MethodName::Sgm] {
         let missed = missed(method, Alteration::Exposure { gain: 1.2, offset: 15.0 });
         assert!(missed < 0.1, "{method} misses {missed} with another exposure");
     }
@@ -102,7 +102,7 @@ fn altered_pairs_are_harder_and_paths_bear_another_exposure() {
 
 #[test]
 fn measured_noise_is_smoothed_and_what_has_little_is_left() {
-    for method in Method::ALL {
+    for method in MethodName::ALL {
         let noisy = |filter| {
             [NoiseChoice::Told(Noise::None), NoiseChoice::Auto]
                 .map(|noise| score(method, filter, Alteration::Noise(5.0), noise))
@@ -112,7 +112,7 @@ fn measured_noise_is_smoothed_and_what_has_little_is_left() {
             measured < 0.9 * as_told,
             "{method} misses {measured} of noisy pixels, {as_told} without smoothing"
         );
-        if [Method::SgmLean, Method::Sgm, Method::SgmEdge].contains(&method) {
+        if [MethodName::SgmLean, MethodName::Sgm, MethodName::SgmEdge].contains(&method) {
             let [as_told, measured] = noisy(Filter::Default).map(|score| score.bad2);
             assert!(
                 measured < 0.8 * as_told,

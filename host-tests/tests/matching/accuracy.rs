@@ -43,7 +43,7 @@ fn demo_pair() -> &'static (Scene, Pair) {
 }
 
 fn find<S: Method>(scene: &Scene, pair: &Pair, checks: Checks) -> Found {
-    let search = Config::new(scene.width(), scene.height(), scene.disparities());
+    let search = Config::for_method::<Block>(scene.width(), scene.height(), scene.disparities());
     let config = Config { checks, penalties: S::PENALTIES, ..search };
     let mut pipeline = Box::new(Pipeline::<S, 640, 64>::new());
     pipeline.start(&config).expect("the scene fits");

@@ -3,28 +3,31 @@
 //! The figures that the tests hold bounds to are printed: `cargo test --test matching confidence -- --nocapture`.
 
 use image::GrayImage;
-use stereopsis::matching::{Checks, Config, Filter};
+use stereopsis::matching::{Block, Checks, Config, Filter};
 use stereopsis::units::PixelFlags;
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::report::Accuracy;
-use stereopsis_host::run::{MemoryPair, Method, run};
+use stereopsis_host::run::{MemoryPair, MethodName, run};
 use stereopsis_host::scene::Scene;
 use stereopsis_host::sparsification::Sparsification;
 
-fn map(method: Method, config: &Config, (left, right): &(GrayImage, GrayImage)) -> DisparityMap {
+fn map(method: MethodName, config: &Config, (left, right): &(GrayImage, GrayImage)) -> DisparityMap {
     let mut pair = MemoryPair::new(config.width, left.to_vec(), right.to_vec()).expect("one size");
     run(method, config, &mut pair, |_| ()).expect("a source that cannot fail").map
 }
 
 fn config(scene: &Scene) -> Config {
-    Config { confidence: true, ..Config::new(scene.width(), scene.height(), scene.disparities()) }
+    Config {
+        confidence: true,
+        ..Config::for_method::<Block>(scene.width(), scene.height(), scene.disparities())
+    }
 }
 
 #[test]
 fn wrong_answers_are_the_least_sure() {
     let scene = Scene::demo();
     let (pair, truth) = (scene.render(), scene.truth());
-    for method in Method::ALL {
+    for method in MethodName::ALL {
         for filter in [Filter::Dense, Filter::Default] {
             let map = map(method, &method.with_filter(filter, config(&scene)), &pair);
             let judged = Accuracy::judged(&map, &truth);
@@ -41,7 +44,7 @@ fn wrong_answers_are_the_least_sure() {
 fn what_is_filled_is_the_least_sure_and_what_has_no_answer_has_none() {
     let scene = Scene::small(200, 150);
     let checks = Checks { fill_pixels: 16, median: true, ..Checks::STRICT };
-    let map = map(Method::Block, &Config { checks, ..config(&scene) }, &scene.render());
+    let map = map(MethodName::Block, &Config { checks, ..config(&scene) }, &scene.render());
     let mut filled = 0;
     for (i, (&confidence, flags)) in map.confidence.iter().zip(&map.flags).enumerate() {
         assert_eq!(confidence > 0, map.disparity[i].is_some());
@@ -57,7 +60,7 @@ fn what_is_filled_is_the_least_sure_and_what_has_no_answer_has_none() {
 fn nothing_else_changes_with_it() {
     let scene = Scene::small(120, 60);
     let pair = scene.render();
-    for method in Method::ALL {
+    for method in MethodName::ALL {
         for filter in Filter::ALL {
             let with = method.with_filter(filter, config(&scene));
             let (with, without) =

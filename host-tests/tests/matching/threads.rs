@@ -1,13 +1,13 @@
 //! A frame in bands, each in a thread of its own, is that of one thread.
 
-use stereopsis::matching::{Checks, Config, Filter};
+use stereopsis::matching::{Block, Checks, Config, Filter};
 use stereopsis::units::Disparity;
 use stereopsis_host::map::DisparityMap;
-use stereopsis_host::run::{MemoryPair, Method, Way, run};
+use stereopsis_host::run::{MemoryPair, MethodName, Way, run};
 use stereopsis_host::scene::Scene;
 
 /// The map of `threads` threads.
-fn map(method: Method, config: &Config, pair: &MemoryPair, threads: u16) -> DisparityMap {
+fn map(method: MethodName, config: &Config, pair: &MemoryPair, threads: u16) -> DisparityMap {
     let way = Way { threads, ..method.into() };
     run(way, config, &mut pair.clone(), |_| ()).expect("a source that cannot fail").map
 }
@@ -29,8 +29,8 @@ fn assert_same(one: &DisparityMap, bands: &DisparityMap, what: &str) {
 fn bands_differ_little_along_paths() {
     let (left, right) = Scene::small(200, 240).render();
     let pair = MemoryPair::new(200, left.into_raw(), right.into_raw()).expect("one size");
-    for method in Method::ALL.into_iter().filter(|method| !method.is_exact_in_bands()) {
-        let config = method.with_filter(Filter::Default, Config::new(200, 240, 32));
+    for method in MethodName::ALL.into_iter().filter(|method| !method.is_exact_in_bands()) {
+        let config = method.with_filter(Filter::Default, Config::for_method::<Block>(200, 240, 32));
         let (one, bands) = (map(method, &config, &pair, 1), map(method, &config, &pair, 4));
         let differ = |(a, b): (&Disparity, &Disparity)| match a.distance(*b) {
             Some(steps) => steps > Disparity::ONE,
@@ -55,9 +55,10 @@ fn bands_give_the_same_rows() {
     for (width, height) in [(160, 240), (96, 61), (64, 3), (48, 1)] {
         let (left, right) = Scene::small(width, height).render();
         let pair = MemoryPair::new(width, left.into_raw(), right.into_raw()).expect("one size");
-        for method in Method::ALL.into_iter().filter(|method| method.is_exact_in_bands()) {
+        for method in MethodName::ALL.into_iter().filter(|method| method.is_exact_in_bands()) {
             for checks in [Checks::DENSE, Checks::DEFAULT, Checks::STRICT, narrow, median, filled] {
-                let config = Config { checks, confidence: true, ..Config::new(width, height, 32) };
+                let config =
+                    Config { checks, confidence: true, ..Config::for_method::<Block>(width, height, 32) };
                 let one = map(method, &config, &pair, 1);
                 for threads in [2, 3, 4, 7] {
                     let what = format!("{width}x{height}, {}, {threads} threads, {checks:?}", method.name());

@@ -77,7 +77,7 @@ fn pushed<S: Method>(pipeline: &mut Any<S>, pair: &(GrayImage, GrayImage)) -> Ve
 }
 
 fn compare<S: Method>(width: u16, height: u16, checks: Checks) {
-    let config = Config { checks, confidence: true, ..Config::new(width, height, 16) };
+    let config = Config { checks, confidence: true, ..Config::for_method::<Block>(width, height, 16) };
     let pair = pair(width, height);
     let mut pipeline = started::<S>(&config);
     let expected = pulled(&mut pipeline, &pair);
@@ -111,14 +111,14 @@ fn pushed_rows_are_the_pulled_rows_at_every_width() {
 #[test]
 fn the_row_that_came_out_last_can_be_looked_at_again() {
     let pair = pair(40, 20);
-    let mut pipeline = started::<Fast>(&Config::new(40, 20, 16));
+    let mut pipeline = started::<Fast>(&Config::for_method::<Block>(40, 20, 16));
     assert!(pipeline.row().is_none(), "no frame was begun");
     pipeline.begin().expect("it is started");
     for (left, right) in lines(&pair) {
         let row = pipeline.push(left, right).expect("a line of the frame").map(Kept::from);
         assert_eq!(pipeline.row().map(Kept::from), row);
     }
-    assert_eq!(pipeline.config(), &Config::new(40, 20, 16));
+    assert_eq!(pipeline.config(), &Config::for_method::<Block>(40, 20, 16));
 }
 
 #[test]
@@ -130,7 +130,7 @@ fn every_misuse_has_its_error() {
     assert_eq!(pipeline.push(left, right).err(), Some(PushError::Matcher(not_started)));
     assert_eq!(pipeline.flush().err(), Some(PushError::Matcher(not_started)));
 
-    pipeline.start(&Config::new(40, 4, 16)).expect("the configuration is valid");
+    pipeline.start(&Config::for_method::<Block>(40, 4, 16)).expect("the configuration is valid");
     assert_eq!(pipeline.push(left, right).err(), Some(PushError::NotBegun));
     assert_eq!(pipeline.flush().err(), Some(PushError::NotBegun));
 
@@ -148,14 +148,14 @@ fn every_misuse_has_its_error() {
     assert_eq!(pipeline.push(left, right).err(), Some(PushError::NoLineLeft));
 
     // A start forgets the frame.
-    pipeline.start(&Config::new(40, 4, 16)).expect("the configuration is valid");
+    pipeline.start(&Config::for_method::<Block>(40, 4, 16)).expect("the configuration is valid");
     assert_eq!(pipeline.flush().err(), Some(PushError::NotBegun));
 }
 
 #[test]
 fn a_wrong_line_changes_nothing() {
     let pair = pair(50, 18);
-    let mut pipeline = started::<Block>(&Config::new(50, 18, 16));
+    let mut pipeline = started::<Block>(&Config::for_method::<Block>(50, 18, 16));
     let expected = pulled(&mut pipeline, &pair);
     pipeline.begin().expect("it is started");
     let mut rows = Vec::<Kept>::new();

@@ -10,10 +10,10 @@ use std::fmt::Write;
 use std::path::Path;
 use std::sync::LazyLock;
 use stereopsis::imaging::{Balance, Noise};
-use stereopsis::matching::{Config, Filter};
+use stereopsis::matching::{Block, Config, Filter};
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::real::{Alteration, RealScene, Score};
-use stereopsis_host::run::{MemoryPair, Method, measure_balance, measure_noise, run};
+use stereopsis_host::run::{MemoryPair, MethodName, measure_balance, measure_noise, run};
 use stereopsis_host::sparsification::Sparsification;
 
 /// The pairs that something was chosen on: all there are.
@@ -48,15 +48,21 @@ fn camera([left, right]: [&GrayImage; 2]) -> MemoryPair {
 }
 
 /// A scene as `stereo match` does it: noise is measured.
-fn match_with(scene: &RealScene, method: Method, filter: Filter) -> DisparityMap {
+fn match_with(scene: &RealScene, method: MethodName, filter: Filter) -> DisparityMap {
     match_images(scene, [&scene.left, &scene.right], method, filter)
 }
 
-fn match_images(scene: &RealScene, images: [&GrayImage; 2], method: Method, filter: Filter) -> DisparityMap {
+fn match_images(
+    scene: &RealScene,
+    images: [&GrayImage; 2],
+    method: MethodName,
+    filter: Filter,
+) -> DisparityMap {
     let (width, height) = (scene.left.width() as u16, scene.left.height() as u16);
     let mut camera = camera(images);
     let noise = measure_noise(&mut camera).expect("a frame").level();
-    let search = Config { confidence: true, noise, ..Config::new(width, height, scene.disparities) };
+    let search =
+        Config { confidence: true, noise, ..Config::for_method::<Block>(width, height, scene.disparities) };
     let config = method.with_filter(filter, search);
     run(method, &config, &mut camera, |_| ()).expect("a frame").map
 }
@@ -73,7 +79,7 @@ fn worth(scene: &RealScene, map: &DisparityMap) -> [Sparsification; 3] {
 
 /// The area under the sparsification curve of every scene, from the oracle's (0) to that of a random order
 /// (1): printed as such, and over the oracle's; for answers over 2 px off at most `bound`.
-fn confidence_on_real_pairs(method: Method, filter: Filter, bound: f64) {
+fn confidence_on_real_pairs(method: MethodName, filter: Filter, bound: f64) {
     let mut table =
         format!("{:24}{:>24}{:>24}{:>24}\n", format!("{method}, {}", filter.name()), "bad2", "bad1", "error");
     let mut worst = (0.0, String::new());
@@ -97,15 +103,15 @@ fn confidence_on_real_pairs(method: Method, filter: Filter, bound: f64) {
 }
 
 /// The mean over all scenes, printed under a table of them.
-fn mean_over_scenes(method: Method) -> Score {
+fn mean_over_scenes(method: MethodName) -> Score {
     mean_with(method, Filter::Default)
 }
 
-fn mean_with(method: Method, filter: Filter) -> Score {
+fn mean_with(method: MethodName, filter: Filter) -> Score {
     mean_of(&SCENES, method, filter)
 }
 
-fn mean_of(scenes: &[RealScene], method: Method, filter: Filter) -> Score {
+fn mean_of(scenes: &[RealScene], method: MethodName, filter: Filter) -> Score {
     let mut table = format!(
         "{:24}{:>9}{:>9}{:>9}\n",
         format!("{method}, {}", filter.name()),
@@ -137,15 +143,15 @@ fn the_pairs_are_those_that_were_tuned_on() {
     assert_eq!(names, TUNED_ON, "a pair that nothing was chosen on belongs to stereo_held_back/");
 }
 
-/// 18 pairs that none of it was chosen on once gave the recipe of [`Method::Sgm`] 8.3 % missed and 6.2 % of the
-/// answers over 2 px off, of [`Method::SgmLean`] 8.6 and 6.5, of [`Method::SgmEdge`] 7.7 and 5.9, and OpenCV's
+/// 18 pairs that none of it was chosen on once gave the recipe of [`MethodName::Sgm`] 8.3 % missed and 6.2 % of the
+/// answers over 2 px off, of [`MethodName::SgmLean`] 8.6 and 6.5, of [`MethodName::SgmEdge`] 7.7 and 5.9, and OpenCV's
 /// StereoSGBM 13.6 and 7.2.
 #[test]
 #[ignore = "needs pairs that nothing was chosen on, in the folder stereo_held_back/ of STEREO_DATA"]
 fn held_back_pairs() {
     let scenes = scenes("stereo_held_back");
     assert!(scenes.iter().all(|scene| !TUNED_ON.contains(&scene.name.as_str())), "a pair was tuned on");
-    for method in [Method::Sgm, Method::SgmLean, Method::SgmEdge] {
+    for method in [MethodName::Sgm, MethodName::SgmLean, MethodName::SgmEdge] {
         let mean = mean_of(&scenes, method, Filter::Default);
         assert!(
             mean.missed <= 0.136 && mean.bad2 <= 0.072,
@@ -158,45 +164,45 @@ fn held_back_pairs() {
 
 #[test]
 fn block_on_real_pairs() {
-    let mean = mean_over_scenes(Method::Block);
+    let mean = mean_over_scenes(MethodName::Block);
     assert!(mean.missed <= 0.129 && mean.bad2 <= 0.043, "missed {}, bad2 {}", mean.missed, mean.bad2);
 }
 
 #[test]
 fn fast_on_real_pairs() {
-    let mean = mean_over_scenes(Method::Fast);
+    let mean = mean_over_scenes(MethodName::Fast);
     assert!(mean.missed <= 0.138, "missed {}", mean.missed);
 }
 
 #[test]
 fn sgm_lean_on_real_pairs() {
-    let mean = mean_over_scenes(Method::SgmLean);
+    let mean = mean_over_scenes(MethodName::SgmLean);
     assert!(mean.missed <= 0.038 && mean.bad2 <= 0.025, "missed {}, bad2 {}", mean.missed, mean.bad2);
 }
 
 #[test]
 fn sgm_on_real_pairs() {
-    let mean = mean_over_scenes(Method::Sgm);
+    let mean = mean_over_scenes(MethodName::Sgm);
     assert!(mean.missed <= 0.036 && mean.bad2 <= 0.025, "missed {}, bad2 {}", mean.missed, mean.bad2);
 }
 
 #[test]
 fn sgm_edge_on_real_pairs() {
-    let mean = mean_over_scenes(Method::SgmEdge);
+    let mean = mean_over_scenes(MethodName::SgmEdge);
     assert!(mean.missed <= 0.033 && mean.bad2 <= 0.022, "missed {}, bad2 {}", mean.missed, mean.bad2);
 }
 
 #[test]
 fn strict_answers_of_sgm_are_sure() {
-    let mean = mean_with(Method::Sgm, Filter::Strict);
+    let mean = mean_with(MethodName::Sgm, Filter::Strict);
     assert!(mean.density >= 0.95 && mean.bad2 <= 0.014, "density {}, bad2 {}", mean.density, mean.bad2);
-    let mean = mean_with(Method::SgmEdge, Filter::Strict);
+    let mean = mean_with(MethodName::SgmEdge, Filter::Strict);
     assert!(mean.density >= 0.955 && mean.bad2 <= 0.012, "density {}, bad2 {}", mean.density, mean.bad2);
 }
 
 #[test]
 fn confidence_tells_wrong_answers_on_every_real_pair() {
-    for method in Method::ALL {
+    for method in MethodName::ALL {
         for filter in [Filter::Dense, Filter::Default] {
             confidence_on_real_pairs(method, filter, 0.15);
         }
@@ -234,7 +240,8 @@ fn sgm_on_noisy_real_pairs() {
             .zip(1..)
             .map(|(scene, seed)| {
                 let [left, right] = Alteration::Noise(sigma).apply([&scene.left, &scene.right], seed);
-                let answers = match_images(scene, [&left, &right], Method::Sgm, Filter::Default).disparity;
+                let answers =
+                    match_images(scene, [&left, &right], MethodName::Sgm, Filter::Default).disparity;
                 Score::of(answers.iter().map(|d| d.to_f32()), &scene.truth).expect("scored pixels")
             })
             .collect();
@@ -256,7 +263,7 @@ fn sgm_on_real_pairs_of_other_exposures() {
         let balance = balance(&right);
         println!("{:24}{balance:?}", scene.name);
         balance.line(&mut right);
-        let answers = match_images(scene, [&scene.left, &right], Method::Sgm, Filter::Default).disparity;
+        let answers = match_images(scene, [&scene.left, &right], MethodName::Sgm, Filter::Default).disparity;
         scores.push(Score::of(answers.iter().map(|d| d.to_f32()), &scene.truth).expect("scored pixels"));
     }
     let mean = Score::mean(&scores);

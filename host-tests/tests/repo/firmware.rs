@@ -10,18 +10,18 @@ mod scene;
 use pgm::{HeaderError, LONGEST};
 use scene::{Scene, SceneCamera};
 use stereopsis::camera::StereoSource;
-use stereopsis::matching::Config;
+use stereopsis::matching::{Block, Config};
 use stereopsis::pipeline::Pipeline;
 use stereopsis::units::Disparity;
 use stereopsis_host::map::DisparityMap;
-use stereopsis_host::run::{Method, run};
+use stereopsis_host::run::{MethodName, run};
 
 /// The sizes that the firmware is measured at, with their disparities.
 const SIZES: [(u16, u16, u16); 3] = [(96, 64, 16), (160, 120, 32), (320, 240, 64)];
 
 fn disparities_of(scene: Scene, disparities: u16) -> DisparityMap {
-    let config = Config::new(scene.width, scene.height, disparities);
-    run(Method::Block, &config, &mut SceneCamera::new(scene), |_| ()).expect("a frame").map
+    let config = Config::for_method::<Block>(scene.width, scene.height, disparities);
+    run(MethodName::Block, &config, &mut SceneCamera::new(scene), |_| ()).expect("a frame").map
 }
 
 #[test]
@@ -50,9 +50,9 @@ fn the_scene_is_matched_at_every_size() {
 #[test]
 fn every_frame_of_the_scene_is_the_same() {
     let mut camera = SceneCamera::new(Scene { width: 160, height: 120 });
-    let config = Config::new(160, 120, 32);
-    let first = run(Method::Fast, &config, &mut camera, |_| ()).expect("a frame").map;
-    let second = run(Method::Fast, &config, &mut camera, |_| ()).expect("another").map;
+    let config = Config::for_method::<Block>(160, 120, 32);
+    let first = run(MethodName::Fast, &config, &mut camera, |_| ()).expect("a frame").map;
+    let second = run(MethodName::Fast, &config, &mut camera, |_| ()).expect("another").map;
     assert_eq!(first.disparity, second.disparity);
     assert_eq!(camera.start_frame().expect("a third").sequence, 3);
 }

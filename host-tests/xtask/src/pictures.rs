@@ -9,10 +9,10 @@ use std::io::Write;
 use std::path::Path;
 use stereopsis::camera::{CameraPair, StereoSource};
 use stereopsis::imaging::{Balance, GreyLines, Noise};
-use stereopsis::matching::{Config, Filter};
+use stereopsis::matching::{Block, Config, Filter};
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::mock::MockCamera;
-use stereopsis_host::run::{MemoryPair, Method, NoiseChoice, measure_balance, run};
+use stereopsis_host::run::{MemoryPair, MethodName, NoiseChoice, measure_balance, run};
 
 /// Bytes of the longest raw line: RGB with 16 bits.
 const RAW: usize = MockCamera::MOST_PIXELS as usize * 6;
@@ -99,16 +99,16 @@ impl Pictures {
     }
 
     /// What the host's pipeline finds in them.
-    pub fn matched(&self, method: Method, disparities: u16, noise: Noise) -> Outcome<DisparityMap> {
+    pub fn matched(&self, method: MethodName, disparities: u16, noise: Noise) -> Outcome<DisparityMap> {
         let mut camera = self.camera()?;
-        let search = Config { noise, ..Config::new(self.width, self.height, disparities) };
+        let search = Config { noise, ..Config::for_method::<Block>(self.width, self.height, disparities) };
         let config = method.with_filter(Filter::Default, search);
         let outcome = run(method, &config, &mut camera, |_| ());
         outcome.map(|outcome| outcome.map).map_err(|e| Failure::new(format!("{method} on the host: {e}")))
     }
 
     /// The checksum of what the host's pipeline finds in them, as pictures with little noise, see [`crc32`].
-    pub fn crc32(&self, method: Method, disparities: u16) -> Outcome<u32> {
+    pub fn crc32(&self, method: MethodName, disparities: u16) -> Outcome<u32> {
         self.matched(method, disparities, Noise::None).map(|map| crc32(&map))
     }
 

@@ -11,12 +11,13 @@
 mod isa;
 pub(in crate::matching) mod loops;
 mod parameters;
-#[cfg_attr(any(stereopsis_dsp, stereopsis_vectors), allow(dead_code, reason = "the target has its own"))]
+#[allow(dead_code, reason = "a target has its own code for some of it")]
 mod portable;
+#[allow(dead_code, reason = "each target looks at what it needs")]
 mod work;
 
 #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
-#[cfg_attr(stereopsis_vectors, allow(dead_code, reason = "vectors do the most of it"))]
+#[allow(dead_code, reason = "on a Cortex-M55 vectors do the most of it")]
 mod armv7em;
 #[cfg(stereopsis_vectors)]
 mod mve;

@@ -10,7 +10,7 @@
 
 use static_cell::ConstStaticCell;
 use stereopsis::camera::{FrameStart, StereoSource};
-use stereopsis::matching::{Config, ConfigError, Filter, Row};
+use stereopsis::matching::{Block, Config, ConfigError, Filter, Row};
 use stereopsis::pipeline::PipelineError;
 use stereopsis_firmware::camera::files::FileError;
 use stereopsis_firmware::camera::scene::Scene;
@@ -52,7 +52,7 @@ fn run(pipeline: &mut BoardPipeline) -> Result<(), Failure> {
     let mut camera = Timed::new(camera, &clock);
     let format = camera.format();
     defmt::info!("{=str} on {=str}: {=u16}x{=u16}", METHOD, BOARD.core, format.width, format.height);
-    let config = Config { noise: NOISE, ..Config::new(format.width, format.height, DISPARITIES) };
+    let config = Config { noise: NOISE, ..Config::for_method::<Block>(format.width, format.height, DISPARITIES) };
     let config = config.with_filter::<Method>(Filter::Default);
     pipeline.start(&config).map_err(Failure::Config)?;
     let mut rows = Rows::create().map_err(Failure::Rows)?;

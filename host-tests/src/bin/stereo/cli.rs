@@ -25,7 +25,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use stereopsis::matching::{Config, Filter, Kernel};
 use stereopsis_host::command_line::usage_line;
-use stereopsis_host::run::{Method, NoiseChoice, UnknownMethod, UnknownNoise, Way};
+use stereopsis_host::run::{MethodName, NoiseChoice, UnknownMethod, UnknownNoise, Way};
 
 /// What is told to one who names another command.
 const COMMANDS: &str = "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental, pose, bundle, \
@@ -191,7 +191,7 @@ pub struct WayArgs {
     /// fast (4-bit census, 9x7 window), block (8-bit census, 9x9 window), or along paths sgm-lean, sgm and
     /// sgm-edge
     #[arg(long, value_name = "METHOD", default_value = "block", value_parser = method)]
-    pub method: Method,
+    pub method: MethodName,
     /// dense (an answer wherever there is a candidate), default, or strict (sure answers only)
     #[arg(long, value_name = "FILTER", default_value = "default", value_parser = filter)]
     pub filter: Filter,
@@ -224,7 +224,7 @@ pub struct BalanceArgs {
 
 impl BalanceArgs {
     /// Whether exposures are balanced for that method.
-    pub fn is_for(&self, method: Method) -> bool {
+    pub fn is_for(&self, method: MethodName) -> bool {
         self.balance == BalanceChoice::Auto && method.compares_brightness()
     }
 }
@@ -262,7 +262,7 @@ fn kernel(text: &str) -> Result<Kernel, String> {
     })
 }
 
-pub fn method(text: &str) -> Result<Method, String> {
+pub fn method(text: &str) -> Result<MethodName, String> {
     text.parse().map_err(|unknown: UnknownMethod| unknown.to_string())
 }
 

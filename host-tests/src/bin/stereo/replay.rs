@@ -19,7 +19,7 @@ use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
 use stereopsis_host::pfm;
 use stereopsis_host::recording::{Ahead, Header, Pictures, Playback, Recording, Seen};
-use stereopsis_host::run::{GuardedFrame, Method, NoiseChoice, run_guarded};
+use stereopsis_host::run::{GuardedFrame, MethodName, NoiseChoice, run_guarded};
 
 /// What follows the options in the command's help.
 pub const EXAMPLE: &str = "Example:
@@ -38,7 +38,7 @@ pub struct ReplayArgs {
     pub range: RangeArgs,
     /// fast, block, sgm-lean, sgm or sgm-edge
     #[arg(long, value_name = "METHOD", default_value = "block", value_parser = crate::cli::method)]
-    pub method: Method,
+    pub method: MethodName,
     /// dense, default or strict
     #[arg(long, value_name = "FILTER", default_value = "default", value_parser = crate::cli::filter)]
     pub filter: Filter,

@@ -105,7 +105,7 @@ fn colour_cameras_see_what_grey_cameras_see() {
 
 fn disparities(source: &mut impl StereoSource) -> Vec<Disparity> {
     let mut pipeline = Box::new(Pipeline::<Block, 64, 16>::new());
-    pipeline.start(&Config::new(64, 20, 16)).expect("the configuration fits");
+    pipeline.start(&Config::for_method::<Block>(64, 20, 16)).expect("the configuration fits");
     pipeline.begin_frame(source).unwrap_or_else(|_| panic!("the camera works"));
     let mut all = Vec::new();
     while let Some(row) = pipeline.next_row(source).unwrap_or_else(|_| panic!("the camera works")) {

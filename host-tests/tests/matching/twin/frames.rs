@@ -1,6 +1,6 @@
 //! One frame after the other, with faults and changes in between.
 
-use super::{Any, Method, difference, pipeline, rows};
+use super::{Any, MethodName, difference, pipeline, rows};
 use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, StereoSource};
 use stereopsis::matching::{Block, Checks, Config, Fast, Kernel, MatchError, Sgm, SgmEdge};
 use stereopsis::pipeline::PipelineError;
@@ -68,7 +68,8 @@ impl StereoSource for Faulty {
 
 #[test]
 fn a_frame_does_not_influence_the_next() {
-    let config = Config { checks: Checks::STRICT, confidence: true, ..Config::new(90, 30, 32) };
+    let config =
+        Config { checks: Checks::STRICT, confidence: true, ..Config::for_method::<Block>(90, 30, 32) };
     let mut pipeline = pipeline::<Block>();
     pipeline.start(&config).expect("the configuration is valid");
     let frames: Vec<_> = [LIVE, Pattern::Noise, Pattern::Constant(0), Pattern::Saturated, LIVE]
@@ -88,7 +89,7 @@ fn a_frame_does_not_influence_the_next() {
 
 #[test]
 fn a_frame_that_broke_off_leaves_nothing_behind() {
-    let config = Config::new(70, 26, 32);
+    let config = Config::for_method::<Block>(70, 26, 32);
     let mut pipeline = pipeline::<Fast>();
     pipeline.start(&config).expect("the configuration is valid");
     for at in 0..26 {
@@ -122,7 +123,7 @@ fn a_frame_or_a_size_may_change_at_any_row() {
         let config = Config {
             checks: Checks::STRICT,
             confidence: true,
-            ..Config::new(width, 25, if width == 120 { 64 } else { 16 })
+            ..Config::for_method::<Block>(width, 25, if width == 120 { 64 } else { 16 })
         };
         pipeline.start(&config).expect("the configuration is valid");
         let mut camera = camera(LIVE, u32::from(width), 25, 3);
@@ -145,12 +146,12 @@ fn a_frame_or_a_size_may_change_at_any_row() {
     }
 }
 
-fn frames_along_paths<S: Method>() {
+fn frames_along_paths<S: MethodName>() {
     let config = Config {
         checks: Checks::STRICT,
         penalties: S::PENALTIES,
         confidence: true,
-        ..Config::new(90, 30, 32)
+        ..Config::for_method::<Block>(90, 30, 32)
     };
     let mut pipeline = pipeline::<S>();
     pipeline.start(&config).expect("the configuration is valid");
@@ -179,19 +180,19 @@ fn paths_of_a_frame_do_not_reach_into_the_next() {
 #[test]
 fn a_kernel_chosen_within_a_frame_waits_for_the_next() {
     let (left, right) = LIVE.pair(90, 25, 12);
-    let config = Config::new(90, 25, 32);
+    let config = Config::for_method::<Block>(90, 25, 32);
     let expected = match_pair(&Block::TWIN, &config, &left, &right);
     let kernels: Vec<_> = Kernel::available().collect();
     let mut pipeline = pipeline::<Block>();
     for (&first, &then) in kernels.iter().flat_map(|first| kernels.iter().map(move |then| (first, then))) {
-        pipeline.set_kernel(first);
+        pipeline.set_kernel(first).expect("an available kernel");
         pipeline.start(&config).expect("a good configuration");
         let mut source = SceneCamera::new(left.clone(), right.clone());
         pipeline.begin_frame(&mut source).expect("a frame");
         let mut disparity = Vec::new();
         while let Some(row) = pipeline.next_row(&mut source).expect("no fault") {
             disparity.extend_from_slice(row.disparities());
-            pipeline.set_kernel(then);
+            pipeline.set_kernel(then).expect("an available kernel");
         }
         assert_eq!(pipeline.kernel(), first);
         assert_eq!(disparity, expected.disparity, "{} and then {}", first.name(), then.name());
@@ -207,7 +208,7 @@ fn what_cannot_run_says_why() {
     let mut source = camera(LIVE, 70, 26, 2);
     assert_eq!(pipeline.begin_frame(&mut source), Err(PipelineError::Matcher(MatchError::NotStarted)));
     assert!(matches!(pipeline.next_row(&mut source), Ok(None)));
-    pipeline.start(&Config::new(71, 26, 32)).expect("the configuration is valid");
+    pipeline.start(&Config::for_method::<Block>(71, 26, 32)).expect("the configuration is valid");
     assert!(matches!(pipeline.next_row(&mut source), Ok(None)), "no frame was begun");
     let refused = pipeline.begin_frame(&mut source).expect_err("the camera is 70 wide");
     assert_eq!(refused.to_string(), "the camera gives 70x26 in Grey8; needed is 71x26 in Grey8");
@@ -248,12 +249,12 @@ impl StereoSource for Counted {
     }
 }
 
-fn latency<S: Method>(height: u16) {
+fn latency<S: MethodName>(height: u16) {
     // Half of the census, half of the window, the look-ahead of the speckle filter.
     let lines_behind = 2 + S::TWIN.radius_y + 4;
     assert_eq!(Any::<S>::LATENCY, lines_behind);
     let mut pipeline = pipeline::<S>();
-    pipeline.start(&Config::new(40, height, 16)).expect("the configuration is valid");
+    pipeline.start(&Config::for_method::<Block>(40, height, 16)).expect("the configuration is valid");
     let mut camera = Counted { inner: camera(LIVE, 40, u32::from(height), 2), lines: 0 };
     pipeline.begin_frame(&mut camera).expect("the camera works");
     let height = usize::from(height);

@@ -120,14 +120,14 @@ fn list(rounds: usize) -> Vec<(Config, Pattern, u64)> {
             penalties,
             confidence: i % 4 > 0,
             noise: [Noise::None, Noise::Low, Noise::None, Noise::High][i / 2 % 4],
-            ..Config::new(width, height, DISPARITIES[i * 4 % DISPARITIES.len()])
+            ..Config::for_method::<Block>(width, height, DISPARITIES[i * 4 % DISPARITIES.len()])
         };
         cases.push((config, PATTERNS[i * 2 % PATTERNS.len()], random.bits()));
     }
     cases
 }
 
-fn run_list<S: Method>() {
+fn run_list<S: MethodName>() {
     // Each value of each list comes up in the first round.
     let (rounds, fewest, kinds_of_confidence) = if emulated() { (1, 5_000, 100) } else { (4, 100_000, 150) };
     let cases = list(rounds);

@@ -31,27 +31,27 @@ const HALVES: usize = 240;
 type Any<S> = Pipeline<S, W, D>;
 
 /// A method of the core with the twin's description of it.
-trait Method: Method {
+trait MethodName: Method {
     const TWIN: twin::Method;
 }
 
-impl Method for Fast {
+impl MethodName for Fast {
     const TWIN: twin::Method = twin::Method::FAST;
 }
 
-impl Method for Block {
+impl MethodName for Block {
     const TWIN: twin::Method = twin::Method::BLOCK;
 }
 
-impl Method for Sgm {
+impl MethodName for Sgm {
     const TWIN: twin::Method = twin::Method::SGM;
 }
 
-impl Method for SgmEdge {
+impl MethodName for SgmEdge {
     const TWIN: twin::Method = twin::Method::SGM_EDGE;
 }
 
-impl Method for SgmLean {
+impl MethodName for SgmLean {
     const TWIN: twin::Method = twin::Method::SGM_LEAN;
 }
 
@@ -105,14 +105,14 @@ fn difference(core: &Answers, twin: &Answers) -> Option<String> {
 
 /// Runs the pair through the pipeline with every kernel and compares with the twin, whose answers are
 /// returned.
-fn compare<S: Method, const D: usize>(
+fn compare<S: MethodName, const D: usize>(
     pipeline: &mut Pipeline<S, W, D>,
     config: &Config,
     pair: &(GrayImage, GrayImage),
 ) -> Result<Answers, String> {
     let expected = match_pair(&S::TWIN, config, &pair.0, &pair.1);
     for kernel in Kernel::available() {
-        pipeline.set_kernel(kernel);
+        pipeline.set_kernel(kernel).expect("an available kernel");
         pipeline.start(config).map_err(|e| format!("{config:?}: {e}"))?;
         assert_eq!(pipeline.kernel(), kernel);
         let mut camera = SceneCamera::new(pair.0.clone(), pair.1.clone());
@@ -144,8 +144,12 @@ fn the_twins_window_sums_are_the_plain_ones() {
     for scheme in [twin::Method::FAST, twin::Method::BLOCK] {
         let twin::Cost::Window { neighbours, unit } = scheme.cost else { panic!("a window") };
         for (config, left, right) in [
-            (Config::new(23, 17, 20), &left, &right),
-            (Config::new(3, 2, 16), &Pattern::Noise.pair(3, 2, 4).0, &Pattern::Noise.pair(3, 2, 5).1),
+            (Config::for_method::<Block>(23, 17, 20), &left, &right),
+            (
+                Config::for_method::<Block>(3, 2, 16),
+                &Pattern::Noise.pair(3, 2, 4).0,
+                &Pattern::Noise.pair(3, 2, 5).1,
+            ),
         ] {
             let seen = [left, right].map(|picture| Seen::new(Picture::new(picture), Noise::None));
             let costs = costs(neighbours, &config, &seen[0], &seen[1]);

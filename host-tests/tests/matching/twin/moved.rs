@@ -1,8 +1,8 @@
 //! A matcher that changes its place between two lines of a frame.
 
-use super::Method;
+use super::MethodName;
 use super::frames::LIVE;
-use stereopsis::matching::{Config, Fast, Matcher, Sgm};
+use stereopsis::matching::{Block, Config, Fast, Matcher, Sgm};
 
 /// Where a matcher stands: the two places are eight bytes apart, seen from the lines of a cache.
 #[repr(C, align(64))]
@@ -17,7 +17,7 @@ impl<const BEFORE: usize, M> Place<BEFORE, M> {
     }
 }
 
-fn moved_within_a_frame<S: Method>() {
+fn moved_within_a_frame<S: MethodName>() {
     type Size<S> = Matcher<S, 96, 64>;
     let (width, height) = (90, 24);
     let (left, right) = LIVE.pair(width, height, 5);
@@ -28,7 +28,7 @@ fn moved_within_a_frame<S: Method>() {
         })
     };
     let rows = |moves: bool| {
-        let config = Config::new(width as u16, height as u16, 32);
+        let config = Config::for_method::<Block>(width as u16, height as u16, 32);
         let mut one = Box::new(Place::<0, Size<S>>::new(Some(Matcher::new())));
         let mut other = Box::new(Place::<1, Size<S>>::new(None));
         one.matcher.as_mut().expect("it begins there").start(&config).expect("a valid configuration");

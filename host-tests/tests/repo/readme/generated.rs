@@ -16,7 +16,7 @@ use stereopsis::units::Disparity;
 use stereopsis_host::colour::ColourScale;
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::report::Accuracy;
-use stereopsis_host::run::{MemoryPair, Method, run};
+use stereopsis_host::run::{MemoryPair, MethodName, run};
 use stereopsis_host::scene::{Scene, Truth};
 
 /// Where the picture stands in the repository.
@@ -99,8 +99,9 @@ static DEMO: LazyLock<Demo> = LazyLock::new(|| {
 });
 
 impl Demo {
-    fn match_with(&self, method: Method, filter: Filter) -> DisparityMap {
-        let search = Config::new(self.scene.width(), self.scene.height(), self.scene.disparities());
+    fn match_with(&self, method: MethodName, filter: Filter) -> DisparityMap {
+        let search =
+            Config::for_method::<Block>(self.scene.width(), self.scene.height(), self.scene.disparities());
         let config = method.with_filter(filter, search);
         run(method, &config, &mut self.camera.clone(), |_| ()).expect("a frame").map
     }
@@ -113,7 +114,7 @@ fn accuracy_table() -> String {
         "| method | filter | answered | bad2 of the answers | missed | RMS of the good | within 3 sigma |\n\
                      | --- | --- | ---: | ---: | ---: | ---: | ---: |\n"
             .to_owned();
-    for method in Method::ALL {
+    for method in MethodName::ALL {
         for filter in Filter::ALL {
             let a = Accuracy::of(&DEMO.match_with(method, filter), &DEMO.truth, &scale);
             let filter = filter.name();
@@ -134,7 +135,7 @@ fn accuracy_table() -> String {
 
 /// The left image beside its disparity in colours, as `stereo demo` writes them, made smaller.
 pub fn picture() -> RgbImage {
-    let map = DEMO.match_with(Method::Block, Filter::Default);
+    let map = DEMO.match_with(MethodName::Block, Filter::Default);
     let colours = ColourScale::of(&map).picture(map.width, &map.pixels());
     let rows = HALF_COLUMNS * map.height as u32 / map.width as u32;
     let mut both = RgbImage::new(2 * HALF_COLUMNS, rows);
@@ -153,7 +154,7 @@ pub fn picture() -> RgbImage {
 /// a block of four by four to a pixel, row by row as on the device.
 pub fn display() -> RgbImage {
     const MOST: usize = 640;
-    let map = DEMO.match_with(Method::Block, Filter::Default);
+    let map = DEMO.match_with(MethodName::Block, Filter::Default);
     let mut display =
         SimulatorDisplay::<Rgb565>::new(Size::new((map.width / 4) as u32, (map.height / 4) as u32));
     let colours = DisparityColours::new(Disparity::from_pixels(4), Disparity::from_pixels(60));

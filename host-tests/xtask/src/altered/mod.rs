@@ -15,9 +15,9 @@ use image::GrayImage;
 use opencv::{MATCHERS, OpenCv};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use stereopsis::matching::{Config, Filter};
+use stereopsis::matching::{Block, Config, Filter};
 use stereopsis_host::real::{Alteration, RealScene, Score};
-use stereopsis_host::run::{MemoryPair, Method, measure_balance, measure_noise, run as match_pair};
+use stereopsis_host::run::{MemoryPair, MethodName, measure_balance, measure_noise, run as match_pair};
 use table::Column;
 use tempfile::NamedTempFile;
 
@@ -86,7 +86,7 @@ fn keep(mut file: NamedTempFile, path: &Path, text: &str) -> std::io::Result<()>
 fn columns(scenes: &[RealScene], opencv: Option<&OpenCv>) -> Outcome<Vec<Column>> {
     let theirs = if opencv.is_some() { MATCHERS.as_slice() } else { &[] };
     let names = theirs.iter().map(|name| format!("OpenCV {name}"));
-    let names = names.chain(Method::ALL.map(|method| format!("`{method}`")));
+    let names = names.chain(MethodName::ALL.map(|method| format!("`{method}`")));
     let mut columns: Vec<_> = names.map(|name| Column { name, scores: Vec::new() }).collect();
     for alteration in Alteration::ALL {
         let folder = tempfile::tempdir().map_err(|e| Failure::new(e.to_string()))?;
@@ -95,7 +95,7 @@ fn columns(scenes: &[RealScene], opencv: Option<&OpenCv>) -> Outcome<Vec<Column>
         // The seed tells the scenes apart: the same noise in all of them would count but once.
         for (scene, seed) in scenes.iter().zip(1..) {
             let pair = alteration.apply([&scene.left, &scene.right], seed);
-            for (scores, method) in of_methods.iter_mut().zip(Method::ALL) {
+            for (scores, method) in of_methods.iter_mut().zip(MethodName::ALL) {
                 scores.push(scored(scene, answers(method, scene, &pair)?)?);
             }
             for (image, side) in pair.iter().zip(["left", "right"]).filter(|_| opencv.is_some()) {
@@ -122,7 +122,7 @@ fn columns(scenes: &[RealScene], opencv: Option<&OpenCv>) -> Outcome<Vec<Column>
 }
 
 /// What a method finds, px; infinite where there is no answer.
-fn answers(method: Method, scene: &RealScene, [left, right]: &[GrayImage; 2]) -> Outcome<Vec<f32>> {
+fn answers(method: MethodName, scene: &RealScene, [left, right]: &[GrayImage; 2]) -> Outcome<Vec<f32>> {
     let failed = |e: &dyn std::fmt::Display| Failure::new(format!("{}, {method}: {e}", scene.name));
     let (width, height) = (left.width() as u16, left.height() as u16);
     let pair = |right: Vec<u8>| {
@@ -135,7 +135,7 @@ fn answers(method: Method, scene: &RealScene, [left, right]: &[GrayImage; 2]) ->
     }
     let mut camera = pair(right)?;
     let noise = measure_noise(&mut camera).map_err(|e| failed(&e))?.level();
-    let search = Config { noise, ..Config::new(width, height, scene.disparities) };
+    let search = Config { noise, ..Config::for_method::<Block>(width, height, scene.disparities) };
     let config = method.with_filter(Filter::Default, search);
     let outcome = match_pair(method, &config, &mut camera, |_| ());
     outcome.map(|outcome| outcome.map.pixels()).map_err(|e| failed(&e))

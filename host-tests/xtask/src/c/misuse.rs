@@ -5,7 +5,7 @@ use super::program::{
 };
 use crate::steps::{Failure, Outcome, command, ended_within, output_within, run as run_command};
 use std::fs;
-use stereopsis_host::run::Method;
+use stereopsis_host::run::MethodName;
 
 /// CMake's choice of the folder that cargo builds in.
 fn cargo_in(core: Core) -> String {
@@ -67,7 +67,7 @@ const BAD: [(&[u8], &str); 9] = [
 /// What the example and its build refuse, in a line that names what is wrong.
 pub fn refused() -> Outcome {
     let (width, _, disparities) = super::FRAMES[0];
-    let program = program(Core::Host, Method::Block, width, disparities)?;
+    let program = program(Core::Host, MethodName::Block, width, disparities)?;
     let folder = temporary_folder()?;
     let write = |name: &str, bytes: &[u8]| {
         fs::write(folder.path().join(name), bytes).map_err(|e| Failure::new(format!("{name}: {e}")))

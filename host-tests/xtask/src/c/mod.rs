@@ -15,13 +15,13 @@ use crate::firmware::scene::Scene;
 use crate::header;
 use crate::pictures::Pictures;
 use crate::steps::{Failure, Outcome};
-use stereopsis_host::run::Method;
+use stereopsis_host::run::MethodName;
 
 /// Frames that the cores have to agree on: width, height, disparities.
 const FRAMES: [(u16, u16, u16); 2] = [(160, 120, 32), (320, 240, 64)];
 
 /// One method over windows and one along paths: the same macro makes all functions of the interface.
-const IN_THE_LARGER: [Method; 2] = [Method::Block, Method::Sgm];
+const IN_THE_LARGER: [Method; 2] = [MethodName::Block, MethodName::Sgm];
 
 /// The test step.
 pub fn run() -> Outcome {
@@ -33,7 +33,7 @@ pub fn run() -> Outcome {
     let frames: Vec<_> = frames.into_iter().collect::<Outcome<_>>()?;
     let runs: Vec<_> = frames
         .iter()
-        .flat_map(|(pictures, disparities)| Method::ALL.map(|method| (pictures, method, *disparities)))
+        .flat_map(|(pictures, disparities)| MethodName::ALL.map(|method| (pictures, method, *disparities)))
         .filter(|&(pictures, method, _)| pictures.width == FRAMES[0].0 || IN_THE_LARGER.contains(&method))
         .collect();
     for (&(pictures, method, disparities), found) in runs.iter().zip(crc32s(&runs)?) {

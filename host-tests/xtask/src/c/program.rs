@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
-use stereopsis_host::run::Method;
+use stereopsis_host::run::MethodName;
 
 /// Where a program in C runs.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -70,7 +70,7 @@ pub fn cargo(words: &str) -> Command {
 /// [`CORES`].
 ///
 /// A board's program is looked through for panics and allocations as well.
-pub fn crc32s(runs: &[(&Pictures, Method, u16)]) -> Outcome<Vec<[u32; 3]>> {
+pub fn crc32s(runs: &[(&Pictures, MethodName, u16)]) -> Outcome<Vec<[u32; 3]>> {
     let all = |cores: &[Core]| {
         let one = |&(pictures, method, disparities): &_| {
             cores.iter().map(|&core| crc32(core, pictures, method, disparities)).collect::<Outcome<Vec<_>>>()
@@ -83,7 +83,7 @@ pub fn crc32s(runs: &[(&Pictures, Method, u16)]) -> Outcome<Vec<[u32; 3]>> {
     Ok(rows.collect())
 }
 
-fn crc32(core: Core, pictures: &Pictures, method: Method, disparities: u16) -> Outcome<u32> {
+fn crc32(core: Core, pictures: &Pictures, method: MethodName, disparities: u16) -> Outcome<u32> {
     let program = program(core, method, pictures.width.max(disparities), disparities)?;
     let mut run = command(&program, &[]);
     if let Some(machine) = core.machine() {
@@ -102,7 +102,7 @@ fn crc32(core: Core, pictures: &Pictures, method: Method, disparities: u16) -> O
 }
 
 /// The example, built for a core and a capacity: once in a run.
-pub fn program(core: Core, method: Method, width: u16, disparities: u16) -> Outcome<PathBuf> {
+pub fn program(core: Core, method: MethodName, width: u16, disparities: u16) -> Outcome<PathBuf> {
     static BUILT: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
     let built = || BUILT.lock().unwrap_or_else(PoisonError::into_inner);
     let programs = folder().join("programs");

@@ -12,7 +12,7 @@ use crate::setup;
 use crate::steps::{Failure, Outcome, root};
 use std::collections::BTreeMap;
 use std::fs;
-use stereopsis_host::run::Method;
+use stereopsis_host::run::MethodName;
 
 /// Width, height and disparities that everything is measured at.
 const SIZES: [(u16, u16, u16); 2] = [(160, 120, 32), (320, 240, 64)];
@@ -66,7 +66,7 @@ fn programs(readme: tables::Readme) -> Outcome<Vec<Program>> {
         readme != tables::Readme::Sample || is_sampled(board, method, size == SIZES[1])
     };
     let all = board::ALL.into_iter().flat_map(|board| {
-        Method::ALL
+        MethodName::ALL
             .into_iter()
             .flat_map(move |method| sizes(board).iter().map(move |&size| (board, method, size)))
     });

@@ -7,7 +7,7 @@ use crate::steps::{Failure, Outcome};
 use clap::Args;
 use std::path::PathBuf;
 use stereopsis::matching::Config;
-use stereopsis_host::run::{Method, NoiseChoice, UnknownNoise};
+use stereopsis_host::run::{MethodName, NoiseChoice, UnknownNoise};
 
 /// The options of `firmware`.
 #[derive(Args)]
@@ -34,7 +34,7 @@ pub struct Arguments {
     disparities: Option<u16>,
     /// The matching method
     #[arg(long, default_value = "block", value_parser = method)]
-    method: Method,
+    method: MethodName,
     /// How noisy the images are: none, low, high, or auto, which measures it; the built-in scene is taken to
     /// have none
     #[arg(long, default_value = "auto", value_parser = noise)]
@@ -59,7 +59,7 @@ pub struct One {
     /// Disparities that are searched.
     pub disparities: u16,
     /// The matching method.
-    pub method: Method,
+    pub method: MethodName,
     /// The images' noise.
     pub noise: NoiseChoice,
     /// Where the results go.
@@ -168,7 +168,7 @@ fn core(name: &str) -> Result<Board, String> {
     found.ok_or_else(|| format!("the cores are {}", board::ALL.map(|board| board.core).join(", ")))
 }
 
-fn method(name: &str) -> Result<Method, String> {
+fn method(name: &str) -> Result<MethodName, String> {
     name.parse().map_err(|unknown| format!("{unknown}"))
 }
 

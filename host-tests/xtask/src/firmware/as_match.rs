@@ -8,7 +8,7 @@ use crate::pictures::Pictures;
 use crate::steps::{Failure, Outcome, command, output_of};
 use std::fs;
 use std::path::Path;
-use stereopsis_host::run::{Method, NoiseChoice};
+use stereopsis_host::run::{MethodName, NoiseChoice};
 use stereopsis_host::scene::Scene;
 
 /// Disparities that are searched.
@@ -28,7 +28,7 @@ pub fn check(stereo: &Path) -> Outcome {
     }
     output_of(&mut matching)?;
     let pair = Some((at("left.pgm"), at("right.pgm")));
-    let (method, noise, out) = (Method::Sgm, NoiseChoice::Auto, at("firmware"));
+    let (method, noise, out) = (MethodName::Sgm, NoiseChoice::Auto, at("firmware"));
     run_one(&One { board: M4, pair, disparities: DISPARITIES, method, noise, out })?;
 
     let read = |name: &str| fs::read(at(name)).map_err(|e| Failure::new(format!("{name}: {e}")));

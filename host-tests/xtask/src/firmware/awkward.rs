@@ -6,7 +6,7 @@ use super::frame;
 use super::program::Program;
 use crate::pictures::Pictures;
 use crate::steps::Outcome;
-use stereopsis_host::run::Method;
+use stereopsis_host::run::MethodName;
 
 /// Pixels in a line at most, and disparities: of 32 and of 64 lanes, and of a number that there is no
 /// assembly for.
@@ -18,7 +18,7 @@ const HEIGHTS: [u16; 2] = [5, 21];
 
 /// Each method, program and size.
 pub fn check() -> Outcome {
-    for method in [Method::Fast, Method::Block] {
+    for method in [MethodName::Fast, MethodName::Block] {
         for (most, disparities) in PROGRAMS {
             let built = Program::new(M55, method, most, HEIGHTS[1], disparities)?.build()?;
             for (less, height) in NARROWER.into_iter().flat_map(|less| HEIGHTS.map(|height| (less, height))) {

@@ -8,7 +8,7 @@ use crate::pictures::Pictures;
 use crate::steps::{Failure, Outcome};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use stereopsis_host::run::Method;
+use stereopsis_host::run::MethodName;
 
 /// Pairs of the folder of real pictures.
 const PAIRS: [&str; 3] = ["cones", "venus", "mb2014q_Motorcycle"];
@@ -56,7 +56,7 @@ pub fn compare(results: &[Result], pairs: &[(String, Pictures)]) -> Outcome {
         let of =
             pairs.iter().find(|(name, _)| name == pair).map(|(_, pictures)| pictures.scaled(width, height));
         let pictures = of.ok_or_else(|| Failure::new(format!("{pair}: no such pair")))??;
-        let method: Method = method.parse().map_err(|e| Failure::new(format!("{e}")))?;
+        let method: MethodName = method.parse().map_err(|e| Failure::new(format!("{e}")))?;
         Ok((pictures, method, disparities))
     };
     let frames = rows.keys().map(scaled).collect::<Outcome<Vec<_>>>()?;

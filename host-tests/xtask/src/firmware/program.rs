@@ -8,7 +8,7 @@ use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 use stereopsis::imaging::Noise;
 use stereopsis::matching::Config;
-use stereopsis_host::run::Method;
+use stereopsis_host::run::MethodName;
 
 /// RAM that memory.x gives when nobody asks for more, bytes.
 const BUDGET: usize = 64 * 1024;
@@ -37,7 +37,7 @@ fn flags(board: Board) -> &'static str {
 #[derive(Clone, Copy, Debug)]
 pub struct Program {
     pub board: Board,
-    pub method: Method,
+    pub method: MethodName,
     pub width: u16,
     pub height: u16,
     pub disparities: u16,
@@ -146,7 +146,7 @@ pub fn build_plain(board: Board, bin: &str, optimised: Optimised, features: &str
 impl Program {
     /// A program for frames of that size from cameras with little noise; the failure names the option that
     /// asks for too much.
-    pub fn new(board: Board, method: Method, width: u16, height: u16, disparities: u16) -> Outcome<Self> {
+    pub fn new(board: Board, method: MethodName, width: u16, height: u16, disparities: u16) -> Outcome<Self> {
         let least = Config::FEWEST_DISPARITIES;
         if width < least {
             return Err(Failure::new(format!(

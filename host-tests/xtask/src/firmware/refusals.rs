@@ -6,7 +6,7 @@ use super::emulate;
 use super::program::Program;
 use crate::steps::{Failure, Outcome};
 use std::fs;
-use stereopsis_host::run::Method;
+use stereopsis_host::run::MethodName;
 
 /// The function that a panic calls and that does not exist.
 const MISSING: &str = "this_firmware_can_panic";
@@ -24,14 +24,14 @@ const BAD: [(&[u8], &[u8], &str); 5] = [
 pub fn check() -> Outcome {
     a_panic_does_not_link()?;
     for board in [M4, RV32] {
-        bad_files_are_named(Program::new(board, Method::Block, 160, 120, 32)?)?;
+        bad_files_are_named(Program::new(board, MethodName::Block, 160, 120, 32)?)?;
     }
     Ok(())
 }
 
 /// Builds the example with a panic in it and wants the linker to refuse it by name.
 fn a_panic_does_not_link() -> Outcome {
-    let program = Program::new(M4, Method::Block, 160, 120, 32)?;
+    let program = Program::new(M4, MethodName::Block, 160, 120, 32)?;
     let output = program.cargo("build --locked --release --quiet --bin depth --features panics").output();
     let output = output.map_err(|e| Failure::new(format!("cargo: {e}")))?;
     let told = String::from_utf8_lossy(&output.stderr);

@@ -11,13 +11,13 @@ use crate::parallel;
 use crate::pictures::Pictures;
 use crate::setup;
 use crate::steps::Outcome;
-use stereopsis_host::run::Method;
+use stereopsis_host::run::MethodName;
 
 /// A core that works in words and one that works in vectors.
 const CORES: [Board; 2] = [M4, M55];
 
 /// A method over windows and one along paths: others grow as they do.
-const METHODS: [Method; 2] = [Method::Block, Method::Sgm];
+const METHODS: [MethodName; 2] = [MethodName::Block, MethodName::Sgm];
 
 /// Sizes, an odd width and numbers of disparities that are no power of two among them.
 const WIDTHS: [u16; 5] = [80, 160, 319, 320, 640];
@@ -62,7 +62,7 @@ fn measured(cores: &[Board], disparities: &[u16]) -> Outcome<String> {
 }
 
 /// The instructions of one method on one core, for each evaluation, at all sizes.
-fn column(board: Board, method: Method, series: &[Series], searches: &[u16]) -> Outcome<Column> {
+fn column(board: Board, method: MethodName, series: &[Series], searches: &[u16]) -> Outcome<Column> {
     let sizes: Vec<Size> = series.iter().flat_map(|(_, sizes)| sizes.iter().copied()).collect();
     let (widest, highest) = (WIDTHS[WIDTHS.len() - 1], HEIGHTS[HEIGHTS.len() - 1]);
     let mut costs = vec![0.0; sizes.len()];

@@ -3,8 +3,8 @@
 use super::sizes::{Column, Size, series};
 use super::table;
 use crate::steps::{Failure, Outcome};
-use stereopsis::matching::{Config, Filter, Kernel};
-use stereopsis_host::run::{MemoryPair, Method, Way, time_frames};
+use stereopsis::matching::{Block, Config, Filter, Kernel};
+use stereopsis_host::run::{MemoryPair, MethodName, Way, time_frames};
 use stereopsis_host::scene::Scene;
 
 const WIDTHS: [u16; 6] = [160, 320, 639, 640, 1280, 2560];
@@ -19,7 +19,7 @@ const FEWEST: u64 = 3;
 pub fn run() -> Outcome {
     let series = series(&WIDTHS, &HEIGHTS, &DISPARITIES);
     let sizes: Vec<Size> = series.iter().flat_map(|(_, sizes)| sizes.iter().copied()).collect();
-    let ways: Vec<(Method, Kernel)> = Method::ALL
+    let ways: Vec<(MethodName, Kernel)> = MethodName::ALL
         .into_iter()
         .flat_map(|method| Kernel::available().map(move |kernel| (method, kernel)))
         .collect();
@@ -32,8 +32,10 @@ pub fn run() -> Outcome {
         let camera = MemoryPair::new(size.width, left.into_raw(), right.into_raw());
         let mut camera = camera.ok_or_else(|| Failure::new("the pictures are empty"))?;
         for (column, &(method, kernel)) in columns.iter_mut().zip(&ways) {
-            let config =
-                method.with_filter(Filter::Default, Config::new(size.width, size.height, size.disparities));
+            let config = method.with_filter(
+                Filter::Default,
+                Config::for_method::<Block>(size.width, size.height, size.disparities),
+            );
             let way = Way { kernel: Some(kernel), ..method.into() };
             let frames = (EVALUATIONS / size.evaluations()).max(FEWEST);
             let timed = time_frames(way, &config, &mut camera, frames as usize);

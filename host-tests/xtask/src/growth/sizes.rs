@@ -1,7 +1,7 @@
 //! What grows, and how far, while the rest stays.
 
 use std::fmt;
-use stereopsis_host::run::Method;
+use stereopsis_host::run::MethodName;
 
 /// What grows.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -65,6 +65,6 @@ pub fn series(widths: &[u16], heights: &[u16], disparities: &[u16]) -> [Series; 
 pub struct Column {
     /// The core or the kernel.
     pub on: String,
-    pub method: Method,
+    pub method: MethodName,
     pub costs: Vec<f64>,
 }

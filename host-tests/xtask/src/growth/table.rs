@@ -52,10 +52,10 @@ pub fn held(series: &[Series], columns: &[Column], most: impl Fn(Size) -> f64) -
 mod tests {
     use super::super::sizes;
     use super::*;
-    use stereopsis_host::run::Method;
+    use stereopsis_host::run::MethodName;
 
     fn columns(costs: &[f64]) -> Vec<Column> {
-        vec![Column { on: "m4".into(), method: Method::Fast, costs: costs.to_vec() }]
+        vec![Column { on: "m4".into(), method: MethodName::Fast, costs: costs.to_vec() }]
     }
 
     #[test]

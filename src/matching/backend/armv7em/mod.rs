@@ -45,6 +45,7 @@ use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::Select;
 use crate::units::{Disparity, PixelFlags};
 
+#[allow(unused_imports, reason = "on a Cortex-M55 vectors do the most of it")]
 pub(in crate::matching) use portable::columns_begin;
 
 /// Whether the two codes of a pixel share a byte where codes have up to four bits.

@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use crate::matching::backend::work::SpeckleWork;
-use crate::units::{Disparity, PixelFlags};
+use crate::units::PixelFlags;
 use core::arch::asm;
 
 /// Judges the row with support of at least `pixels`, where a surface changes by up to `step`. What is kept is

@@ -191,7 +191,7 @@ fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
 }
 
 /// Features in Arm's instructions on four bytes.
-pub(super) struct DspRows;
+pub(in crate::matching::backend) struct DspRows;
 
 impl FeatureRows for DspRows {
     #[inline(always)]

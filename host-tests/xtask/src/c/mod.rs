@@ -21,7 +21,7 @@ use stereopsis_host::run::MethodName;
 const FRAMES: [(u16, u16, u16); 2] = [(160, 120, 32), (320, 240, 64)];
 
 /// One method over windows and one along paths: the same macro makes all functions of the interface.
-const IN_THE_LARGER: [Method; 2] = [MethodName::Block, MethodName::Sgm];
+const IN_THE_LARGER: [MethodName; 2] = [MethodName::Block, MethodName::Sgm];
 
 /// The test step.
 pub fn run() -> Outcome {

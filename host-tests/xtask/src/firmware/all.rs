@@ -62,7 +62,7 @@ pub fn run(readme: tables::Readme) -> Outcome {
 /// What is built, in the order of the tables.
 fn programs(readme: tables::Readme) -> Outcome<Vec<Program>> {
     let sizes = |board: Board| if board == M0 { SMALLEST.as_slice() } else { SIZES.as_slice() };
-    let is_built = |board: Board, method: Method, size: (u16, u16, u16)| {
+    let is_built = |board: Board, method: MethodName, size: (u16, u16, u16)| {
         readme != tables::Readme::Sample || is_sampled(board, method, size == SIZES[1])
     };
     let all = board::ALL.into_iter().flat_map(|board| {
@@ -81,12 +81,12 @@ fn programs(readme: tables::Readme) -> Outcome<Vec<Program>> {
 /// vectors, and a method over windows and one along paths there in the larger size and on all other cores: with
 /// a Cortex-M4, which runs the M7's code, `growth` and [`as_match`](super::as_match) have those two, so it has
 /// another one here. The smallest has room for windows.
-fn is_sampled(board: Board, method: Method, is_large: bool) -> bool {
-    let is_one_of_a_kind = matches!(method, Method::Block | Method::Sgm);
+fn is_sampled(board: Board, method: MethodName, is_large: bool) -> bool {
+    let is_one_of_a_kind = matches!(method, MethodName::Block | MethodName::Sgm);
     match board {
         M7 | M55 => !is_large || is_one_of_a_kind,
-        M4 => !is_large && method == Method::Fast,
-        M0 => method == Method::Block,
+        M4 => !is_large && method == MethodName::Fast,
+        M0 => method == MethodName::Block,
         _ => !is_large && is_one_of_a_kind,
     }
 }

@@ -5,7 +5,7 @@ use super::support::{Bench, WIDTH, names, stereo, text};
 use serde_json::Value;
 use std::fs;
 use stereopsis_host::pfm;
-use stereopsis_host::run::Method;
+use stereopsis_host::run::MethodName;
 
 #[test]
 fn bench_prints_one_json_object() {
@@ -13,11 +13,11 @@ fn bench_prints_one_json_object() {
     let (left, right) = (bench.path("left.png"), bench.path("right.png"));
     let (left, right) = (left.to_str().expect("UTF-8"), right.to_str().expect("UTF-8"));
     for (method, name, threads) in [
-        (Method::Fast, "fast", "1"),
-        (Method::Block, "block", "1"),
-        (Method::Block, "block", "3"),
-        (Method::Sgm, "sgm", "2"),
-        (Method::SgmEdge, "sgm-edge", "1"),
+        (MethodName::Fast, "fast", "1"),
+        (MethodName::Block, "block", "1"),
+        (MethodName::Block, "block", "3"),
+        (MethodName::Sgm, "sgm", "2"),
+        (MethodName::SgmEdge, "sgm-edge", "1"),
     ] {
         let fixed = ["bench", "--left", left, "--right", right, "--disparities", "32", "--repeat", "3"];
         let run = stereo(fixed.into_iter().chain(["--method", name, "--threads", threads]));

@@ -5,11 +5,11 @@ use image::GrayImage;
 use stereopsis::camera::{CameraPair, LineSource, StereoSource};
 use stereopsis::geometry::{camera::ImageSize, rectify::Crop};
 use stereopsis::imaging::{RectifiedPair, RectifiedPairError, Remap, RemapPair};
-use stereopsis::matching::{Config, Filter};
+use stereopsis::matching::{Block, Config, Filter};
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::mock::MockCamera;
 use stereopsis_host::rectify::{rectify, with_rectified};
-use stereopsis_host::run::{MemoryPair, Method, Way, run};
+use stereopsis_host::run::{MemoryPair, MethodName, Way, run};
 use stereopsis_host::twin::remap as twin;
 
 /// A pair of cameras on noise, rectified line by line, as the matcher would take it.
@@ -76,14 +76,14 @@ fn nothing_that_was_not_seen_becomes_an_answer() {
     let outside = valid_left.iter().filter(|&&seen| seen == 0).count();
     assert!(outside > 500, "{outside}");
     for (method, threads) in [
-        (Method::Fast, 1),
-        (Method::Fast, 3),
-        (Method::Block, 1),
-        (Method::Sgm, 1),
-        (Method::SgmLean, 2),
-        (Method::SgmEdge, 1),
+        (MethodName::Fast, 1),
+        (MethodName::Fast, 3),
+        (MethodName::Block, 1),
+        (MethodName::Sgm, 1),
+        (MethodName::SgmLean, 2),
+        (MethodName::SgmEdge, 1),
     ] {
-        let config = method.with_filter(Filter::Default, Config::new(160, 64, 32));
+        let config = method.with_filter(Filter::Default, Config::for_method::<Block>(160, 64, 32));
         let config = Config { confidence: true, ..config };
         let way = Way { threads, ..method.into() };
         let found =
@@ -108,7 +108,7 @@ fn nothing_that_was_not_seen_becomes_an_answer() {
                 );
             }
             // Along paths an answer that is gone draws none of those below it.
-            if matches!(method, Method::Fast | Method::Block) {
+            if matches!(method, MethodName::Fast | MethodName::Block) {
                 let expected = if is_lost { (Disparity::NONE, PixelFlags::OUTSIDE) } else { (d, flags) };
                 assert_eq!((found.disparity[i], found.flags[i]), expected, "{method}, {x}, {}", row / 160);
             }

@@ -127,7 +127,7 @@ fn list(rounds: usize) -> Vec<(Config, Pattern, u64)> {
     cases
 }
 
-fn run_list<S: MethodName>() {
+fn run_list<S: Method>() {
     // Each value of each list comes up in the first round.
     let (rounds, fewest, kinds_of_confidence) = if emulated() { (1, 5_000, 100) } else { (4, 100_000, 150) };
     let cases = list(rounds);

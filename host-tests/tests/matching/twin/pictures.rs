@@ -21,7 +21,7 @@ fn every_pattern<S: Method>() {
         let mut presets = [Checks::DENSE, Checks::DEFAULT, Checks::STRICT, ALL_STAGES];
         presets.rotate_left(i % 4);
         for checks in long(presets, 4) {
-            let config = Config { checks, confidence: true, ..Config::new(71, 22, 32) };
+            let config = Config { checks, confidence: true, ..Config::for_method::<Block>(71, 22, 32) };
             compare(&mut pipeline, &config, &pair).unwrap_or_else(|e| panic!("{pattern:?}: {e}"));
         }
     }
@@ -43,7 +43,7 @@ fn rendered<S: Method>(pipeline: &mut Any<S>, scene: &Scene, pair: &(GrayImage, 
                 checks,
                 min_disparity,
                 confidence: true,
-                ..Config::new(scene.width(), scene.height(), scene.disparities())
+                ..Config::for_method::<Block>(scene.width(), scene.height(), scene.disparities())
             };
             let map = compare(pipeline, &config, pair).unwrap_or_else(|e| panic!("{e}"));
             let answers = map.disparity.iter().filter(|d| d.is_some()).count();
@@ -72,8 +72,11 @@ fn filtered<S: Method>() {
     let (mut filled, mut moved) = (0, 0);
     for (width, height) in (1..=40).flat_map(|width| [1, 2, 3, 5, 6, 9].map(|height| (width, height))) {
         let pair = Pattern::Shifted { most: 9, noise_grey: 9.0 }.pair(width, height, u64::from(width));
-        let config =
-            |checks| Config { checks, confidence: true, ..Config::new(width as u16, height as u16, 16) };
+        let config = |checks| Config {
+            checks,
+            confidence: true,
+            ..Config::for_method::<Block>(width as u16, height as u16, 16)
+        };
         let plain = match_pair(&S::TWIN, &config(gaps), &pair.0, &pair.1);
         let mut stages = [(true, 2), (false, 1), (true, u8::MAX), (false, 5), (true, 0)];
         stages.rotate_left((width + height) as usize % 5);
@@ -104,7 +107,7 @@ fn whole_surface<S: Method>() {
     let same = Pattern::Shifted { most: 0, noise_grey: 0.0 }.pair(W as u32, 60, 1);
     for speckle_pixels in long([128, 127, 129, 255, 254], 3) {
         let checks = Checks { speckle_pixels, ..Checks::DENSE };
-        let config = Config { checks, ..Config::new(W as u16, 60, 16) };
+        let config = Config { checks, ..Config::for_method::<Block>(W as u16, 60, 16) };
         compare(&mut pipeline, &config, &same).unwrap_or_else(|e| panic!("{e}"));
     }
 }

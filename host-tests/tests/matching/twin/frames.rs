@@ -1,6 +1,6 @@
 //! One frame after the other, with faults and changes in between.
 
-use super::{Any, MethodName, difference, pipeline, rows};
+use super::{Any, Twin, difference, pipeline, rows};
 use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, StereoSource};
 use stereopsis::matching::{Block, Checks, Config, Fast, Kernel, MatchError, Sgm, SgmEdge};
 use stereopsis::pipeline::PipelineError;
@@ -146,7 +146,7 @@ fn a_frame_or_a_size_may_change_at_any_row() {
     }
 }
 
-fn frames_along_paths<S: MethodName>() {
+fn frames_along_paths<S: Twin>() {
     let config = Config {
         checks: Checks::STRICT,
         penalties: S::PENALTIES,
@@ -249,7 +249,7 @@ impl StereoSource for Counted {
     }
 }
 
-fn latency<S: MethodName>(height: u16) {
+fn latency<S: Twin>(height: u16) {
     // Half of the census, half of the window, the look-ahead of the speckle filter.
     let lines_behind = 2 + S::TWIN.radius_y + 4;
     assert_eq!(Any::<S>::LATENCY, lines_behind);

@@ -1,6 +1,6 @@
 //! All sizes, ranges, pictures and checks.
 
-use super::{HALVES, Method, W, compare, emulated, pipeline};
+use super::{HALVES, Twin, W, compare, emulated, pipeline};
 use std::collections::BTreeSet;
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{Block, Checks, Config, Fast, Penalties, Row, Sgm, SgmEdge, SgmLean};
@@ -127,7 +127,7 @@ fn list(rounds: usize) -> Vec<(Config, Pattern, u64)> {
     cases
 }
 
-fn run_list<S: Method>() {
+fn run_list<S: Twin>() {
     // Each value of each list comes up in the first round.
     let (rounds, fewest, kinds_of_confidence) = if emulated() { (1, 5_000, 100) } else { (4, 100_000, 150) };
     let cases = list(rounds);

@@ -31,27 +31,27 @@ const HALVES: usize = 240;
 type Any<S> = Pipeline<S, W, D>;
 
 /// A method of the core with the twin's description of it.
-trait MethodName: Method {
+trait Twin: Method {
     const TWIN: twin::Method;
 }
 
-impl MethodName for Fast {
+impl Twin for Fast {
     const TWIN: twin::Method = twin::Method::FAST;
 }
 
-impl MethodName for Block {
+impl Twin for Block {
     const TWIN: twin::Method = twin::Method::BLOCK;
 }
 
-impl MethodName for Sgm {
+impl Twin for Sgm {
     const TWIN: twin::Method = twin::Method::SGM;
 }
 
-impl MethodName for SgmEdge {
+impl Twin for SgmEdge {
     const TWIN: twin::Method = twin::Method::SGM_EDGE;
 }
 
-impl MethodName for SgmLean {
+impl Twin for SgmLean {
     const TWIN: twin::Method = twin::Method::SGM_LEAN;
 }
 
@@ -105,7 +105,7 @@ fn difference(core: &Answers, twin: &Answers) -> Option<String> {
 
 /// Runs the pair through the pipeline with every kernel and compares with the twin, whose answers are
 /// returned.
-fn compare<S: MethodName, const D: usize>(
+fn compare<S: Twin, const D: usize>(
     pipeline: &mut Pipeline<S, W, D>,
     config: &Config,
     pair: &(GrayImage, GrayImage),

@@ -1,6 +1,6 @@
 //! A matcher that changes its place between two lines of a frame.
 
-use super::MethodName;
+use super::Twin;
 use super::frames::LIVE;
 use stereopsis::matching::{Block, Config, Fast, Matcher, Sgm};
 
@@ -17,7 +17,7 @@ impl<const BEFORE: usize, M> Place<BEFORE, M> {
     }
 }
 
-fn moved_within_a_frame<S: MethodName>() {
+fn moved_within_a_frame<S: Twin>() {
     type Size<S> = Matcher<S, 96, 64>;
     let (width, height) = (90, 24);
     let (left, right) = LIVE.pair(width, height, 5);

@@ -1,7 +1,7 @@
 //! Every kind of picture, rendered scenes, and what looks beyond a row: gaps, medians and surfaces.
 
 use super::list::PATTERNS;
-use super::{Any, Method, W, compare, long, pipeline};
+use super::{Any, Twin, W, compare, long, pipeline};
 use image::GrayImage;
 use stereopsis::matching::{Block, Checks, Config, Fast, Sgm, SgmEdge, SgmLean};
 use stereopsis::units::{Disparity, PixelFlags};
@@ -14,7 +14,7 @@ const ALL_STAGES: Checks =
     Checks { median: true, fill_pixels: 16, fill_step: Disparity::NONE, ..Checks::STRICT };
 
 /// Every picture with each of the ready-made checks, at a size that has all kinds of borders.
-fn every_pattern<S: Method>() {
+fn every_pattern<S: Twin>() {
     let mut pipeline = pipeline::<S>();
     for (i, pattern) in PATTERNS.into_iter().enumerate() {
         let pair = pattern.pair(71, 22, i as u64);
@@ -36,7 +36,7 @@ fn every_pattern_with_every_preset() {
     every_pattern::<SgmEdge>();
 }
 
-fn rendered<S: Method>(pipeline: &mut Any<S>, scene: &Scene, pair: &(GrayImage, GrayImage)) {
+fn rendered<S: Twin>(pipeline: &mut Any<S>, scene: &Scene, pair: &(GrayImage, GrayImage)) {
     for checks in long([ALL_STAGES, Checks::DENSE, Checks::DEFAULT, Checks::STRICT], 4) {
         for min_disparity in long([5, 0], 2) {
             let config = Config {
@@ -65,7 +65,7 @@ fn a_rendered_scene_equals_the_twin() {
 
 /// The median and the filling at every width around that of a group of lanes, and every height around that of
 /// the band; gaps of all lengths around those that are filled.
-fn filtered<S: Method>() {
+fn filtered<S: Twin>() {
     let mut pipeline = pipeline::<S>();
     // Such that gaps are many and short.
     let gaps = Checks { uniqueness_percent: Some(20), speckle_pixels: 4, ..Checks::DEFAULT };
@@ -102,7 +102,7 @@ fn median_and_filling_equal_the_twins_at_all_borders() {
 }
 
 /// One surface over the whole picture, against thresholds around its size and around the powers of two.
-fn whole_surface<S: Method>() {
+fn whole_surface<S: Twin>() {
     let mut pipeline = pipeline::<S>();
     let same = Pattern::Shifted { most: 0, noise_grey: 0.0 }.pair(W as u32, 60, 1);
     for speckle_pixels in long([128, 127, 129, 255, 254], 3) {

@@ -42,7 +42,11 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Chore {
     /// Sets up what the tests need and runs all of them; STEREO_DATA names the folder of real stereo pairs.
-    Test,
+    Test {
+        /// Runs only the steps with these words in their names, such as "clippy" or "firmware".
+        #[arg(long, value_name = "WORDS")]
+        step: Option<String>,
+    },
     /// Runs the firmware example in QEMU and holds it to the host, bit for bit.
     Firmware(firmware::Arguments),
     /// Measures what an evaluation costs while the work grows: instructions on two cores, or times on this
@@ -82,7 +86,7 @@ fn main() -> ExitCode {
         }
     };
     let done = match arguments.chore {
-        Chore::Test => test::run(),
+        Chore::Test { step } => test::run(step),
         Chore::Firmware(arguments) => firmware::run(&arguments),
         Chore::Growth(arguments) => growth::run(&arguments),
         Chore::Altered(arguments) => altered::run(&arguments),

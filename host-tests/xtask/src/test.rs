@@ -13,13 +13,13 @@ const REAL_DATA: &str = "stereopsis-host/real-data";
 /// What is printed when they are not run, so that nobody takes them for passed.
 const NOT_RUN: &str = "real data: NOT RUN, set STEREO_DATA to the folder that holds stereo/";
 
-/// Runs all steps.
-pub fn run() -> Outcome {
+/// Runs all steps, or those with words in their names.
+pub fn run(only: Option<String>) -> Outcome {
     let data = real_data()?;
     if data.is_none() {
         println!("{NOT_RUN}");
     }
-    let mut steps = Steps::default();
+    let mut steps = Steps::new(only);
     steps.step("set up", setup::run_all)?;
     steps.step("format", format)?;
     steps.step("clippy", clippy)?;
@@ -33,7 +33,7 @@ pub fn run() -> Outcome {
     steps.step("growth", growth::sample)?;
     steps.step("C interface", c::run)?;
     steps.step("README's commands", readme_commands)?;
-    steps.summary();
+    steps.summary()?;
     if data.is_none() {
         println!("{NOT_RUN}");
     }

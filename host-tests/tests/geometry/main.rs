@@ -1,4 +1,9 @@
-//! Two views of known geometry: what the types keep, what the estimates reach, what is refused by name.
+//! Pure maths of cameras: what the types keep, what the estimates reach, what is refused by name.
+//!
+//! * `cameras`, `chain`, `lecture`, `poses`, `points`: one and two cameras. `matrices`, `estimates`, `planes`: E, F and
+//!   homographies, beside the `twin`. `robust`: RANSAC.
+//! * `resection`, `landmarks`: a camera before known points.
+//! * `rectify`, `uncalibrated`, `row_health`: rows aligned, by cameras or by matches, and rows that no longer are.
 
 mod cameras;
 mod chain;
@@ -12,5 +17,7 @@ mod poses;
 mod rectify;
 mod resection;
 mod robust;
+mod row_health;
 mod twin;
+mod uncalibrated;
 mod views;

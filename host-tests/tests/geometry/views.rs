@@ -1,6 +1,6 @@
 //! Two views as properties need them.
 
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use stereopsis::geometry::camera::Pose;
@@ -23,4 +23,9 @@ pub fn seeded() -> ProptestConfig {
         failure_persistence: None,
         ..ProptestConfig::default()
     }
+}
+
+/// The rotation by a vector's length, radians, about it.
+pub fn rotation(axis: [f64; 3]) -> Matrix3<f64> {
+    Rotation3::new(Vector3::from(axis)).into_inner()
 }

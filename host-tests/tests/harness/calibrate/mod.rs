@@ -1,10 +1,8 @@
 //! From boards to a rig, and from a rig to its files and back.
 
 mod boards;
-mod health;
 mod record;
 mod rigs;
-mod uncalibrated;
 
 use nalgebra::{Rotation3, Vector3};
 use stereopsis::geometry::camera::{Camera, Distortion, ImageSize, Pose, StereoRig};

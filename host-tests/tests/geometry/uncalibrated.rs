@@ -1,14 +1,16 @@
 //! Rows aligned by matches alone.
 
-use super::{SIZE, turn};
+use crate::views::rotation;
 use nalgebra::{Point2, Vector3};
 use proptest::prelude::*;
 use stereopsis::geometry::{
-    camera::{Camera, Pose},
+    camera::{Camera, ImageSize, Pose},
     rectify::{UncalibratedError, UncalibratedRectification},
     two_view::{Correspondence, Fundamental},
 };
 use stereopsis_host::scene::Random;
+
+const SIZE: ImageSize = ImageSize { width: 320, height: 240 };
 
 fn camera() -> Camera<f64> {
     Camera::new(280.0, 285.0, 165.0, 112.0).expect("a camera")
@@ -43,7 +45,7 @@ proptest! {
     fn rows_agree(
         turned in [-0.15..0.15_f64, -0.15..0.15, -0.25..0.25], t in [0.05..0.1_f64, -0.03..0.03, -0.015..0.015], seed in any::<u64>(),
     ) {
-        let pose = Pose::new(turn(turned), Vector3::from(t)).expect("a pose");
+        let pose = Pose::new(rotation(turned), Vector3::from(t)).expect("a pose");
         let seen = seen(&pose, &mut Random::new(seed));
         prop_assume!(seen.len() >= 12);
         let both = match rectified(&pose, &seen) {
@@ -72,10 +74,10 @@ proptest! {
 #[test]
 fn what_cannot_be_rectified_is_named() {
     let mut random = Random::new(1);
-    let ahead = Pose::new(turn([0.0; 3]), Vector3::new(0.02, 0.0, 0.2)).expect("a pose");
+    let ahead = Pose::new(rotation([0.0; 3]), Vector3::new(0.02, 0.0, 0.2)).expect("a pose");
     let matches = seen(&ahead, &mut random);
     assert_eq!(rectified(&ahead, &matches), Err(UncalibratedError::EpipoleInside));
-    let beside = Pose::new(turn([0.01, 0.02, 0.0]), Vector3::new(0.1, 0.0, 0.0)).expect("a pose");
+    let beside = Pose::new(rotation([0.01, 0.02, 0.0]), Vector3::new(0.1, 0.0, 0.0)).expect("a pose");
     let mut matches = seen(&beside, &mut random);
     assert_eq!(rectified(&beside, &matches[..2]), Err(UncalibratedError::TooFew));
     let same = vec![matches[0]; 20];

@@ -1,6 +1,6 @@
 //! A rig that was knocked: told by its rows, and corrected.
 
-use super::turn;
+use crate::views::rotation;
 use image::{GrayImage, Luma};
 use nalgebra::{Matrix3, Point2, Vector3};
 use proptest::prelude::*;
@@ -32,7 +32,7 @@ fn points(
     wrong: usize,
     random: &mut Random,
 ) -> Vec<Correspondence<f64>> {
-    let rotation = turn(turned);
+    let rotation = rotation(turned);
     let point = |i: usize| {
         let first = Point2::new(random.unit() * 319.0, random.unit() * 239.0);
         let depth = 0.5 + 4.0 * random.unit();
@@ -149,7 +149,7 @@ fn a_knock_is_told_and_taken_back() {
     let signs = [[0.3, 0.0, 0.0], [-0.3, 0.0, 0.0], [0.0, 0.0, 0.3], [0.0, 0.0, -0.3]];
     for degrees in signs.into_iter().chain([[0.3, 0.1, 0.2]]) {
         let turned: [f64; 3] = degrees.map(f64::to_radians);
-        let bad = knocked(&right, &camera, &turn(turned));
+        let bad = knocked(&right, &camera, &rotation(turned));
         let mut meter = RowMeter::new();
         for _ in 0..10 {
             let pair = MemoryPair::new(SIZE.width, noisy(&left, &mut random), noisy(&bad, &mut random))
@@ -190,7 +190,7 @@ fn rows_of_a_pair_are_told_with_their_uncertainty() {
     let good = Rows::measure([&left, &right], None, Some(&camera)).expect("features");
     assert!(good.error_px < 0.15 && good.health == "good" && good.warning().is_none(), "{good:?}");
     for degrees in [[0.3, 0.0, 0.0], [-0.3, 0.0, 0.0], [0.0, 0.0, 0.5], [0.0, 0.0, -0.5]] {
-        let bad = knocked(&right, &camera, &turn(degrees.map(f64::to_radians)));
+        let bad = knocked(&right, &camera, &rotation(degrees.map(f64::to_radians)));
         let told = Rows::measure([&left, &bad], None, Some(&camera)).expect("features");
         let (pitch, sigma) = (told.pitch_deg.expect("calibrated"), told.pitch_sigma_deg.expect("calibrated"));
         assert!((pitch - degrees[0]).abs() < 0.05 + 4.0 * sigma, "{degrees:?}: {told:?}");

@@ -1,30 +1,30 @@
-//! Depth from two cameras, on a microcontroller: `no_std`, no allocation, line by line.
+//! Stereo depth on a microcontroller: `no_std`, no allocation, line by line.
 //!
-//! Lines of pixels go in, rows of disparity and depth come out a few lines later. The modules stand in the
-//! order in which data moves; each uses only what stands above it.
+//! Lines of pixels of two cameras go in, rows of disparity and depth come out a few lines later. The modules
+//! are in the order in which data moves; each uses only what stands above it.
 //!
 //! ```text
-//! units math     words: Disparity, Millimetres, PixelFlags; the one file that names libm
-//! geometry       pure maths on fixed-size nalgebra types, no pixels
-//! camera         traits for where lines come from; two cameras as one stereo source; sensor drivers, line hand-off
-//! imaging        lines, line windows, pixel formats, remap, census, gradients, noise
-//! matching       lines -> disparity row: census, costs, winner, checks, sub-pixel, speckle
-//! depth          disparity -> metres with its uncertainty, points; over frames, smaller, on a display
+//! units math     types with units: Disparity, Millimetres, PixelFlags; the one file that names libm
+//! geometry       camera models, two-view geometry, pose, robust estimation, rectification; no pixels
+//! camera         traits of line sources, two cameras as a stereo source, sensor drivers, line hand-off
+//! imaging        grey lines, line windows, census, gradients, rectifying remap, exposure, noise
+//! matching       lines -> disparity rows: costs, aggregation, winner-take-all, checks, sub-pixel, filters
+//! depth          disparity -> depth with its deviation, points; temporal filter, decimation, display
 //! focus          thin lens, sharpness, depth from focus, lens motors
-//! features       corners, descriptors, matches: which point of one picture is which of another
-//! motion         where cameras go and what they see on the way: odometry, structure of many views, bundle adjustment
-//! pipeline       the live path, row by row
-//! ffi            the same for C, with the feature `ffi`
+//! features       corners, descriptors, feature matches
+//! motion         odometry, structure from motion, bundle adjustment, self-calibration
+//! pipeline       the live path, row by row: camera -> imaging -> matching
+//! ffi            the pipeline for C, with the feature `ffi`
 //!
 //! camera -lines-> imaging -line windows-> matching -disparity row-> depth
 //!        '------------------------ pipeline -----------------------' -> ffi
-//! camera -lines-> imaging -line bands-> features -matches-> motion -poses
-//!                         |                          '-sights-> geometry, motion
-//!                         '-------------> focus -peaks-> depth by one lens
+//! camera -lines-> imaging -line bands-> features -matches-> motion, geometry -> poses, points
+//!                         '-------------> focus -> depth from one lens
 //! ```
 //!
-//! A way in: [`pipeline::Pipeline`] is what firmware holds, [`camera::StereoSource`] is what it implements,
-//! [`matching::Row`] is what it gets, [`depth::DepthScale`] is what turns that into millimetres.
+//! Start here: firmware implements [`camera::StereoSource`], or pushes lines itself, keeps a
+//! [`pipeline::Pipeline`] in a static, reads a [`matching::Row`] per line, and converts it to millimetres by
+//! a [`depth::DepthScale`].
 #![no_std]
 
 pub mod units;

@@ -1,4 +1,4 @@
-//! What a pipeline is asked to do, as C says it.
+//! Configuration of a matcher in C.
 #![allow(unsafe_code)]
 
 use super::Status;
@@ -7,25 +7,24 @@ use crate::imaging::Noise;
 use crate::matching::{self, Checks, ConfigError, Filter, Method, Penalties};
 use crate::units::Disparity;
 
-/// `stereopsis_config_default` and `_noise`: an answer wherever there is a candidate.
+/// Preset of checks: an answer wherever there is a candidate.
 pub const STEREOPSIS_PRESET_DENSE: i32 = 0;
-/// `stereopsis_config_default` and `_noise`: drops what the other image or the neighbourhood contradicts.
+/// Preset of checks: drops what the other image or the neighbourhood contradicts.
 pub const STEREOPSIS_PRESET_DEFAULT: i32 = 1;
-/// `stereopsis_config_default` and `_noise`: drops what is ambiguous or has little texture as well.
+/// Preset of checks: drops what is ambiguous or has little texture as well.
 pub const STEREOPSIS_PRESET_STRICT: i32 = 2;
 
-/// In `left_right_px` and `uniqueness_percent` of a configuration: not checked.
+/// Value of `left_right_px` and `uniqueness_percent` that disables the check.
 pub const STEREOPSIS_NOT_CHECKED: i16 = -1;
 
-/// In `noise` of a configuration: little, so that pixels are compared as they are.
+/// Noise level: little noise, so that pixels are compared as they are.
 pub const STEREOPSIS_NOISE_NONE: u8 = 0;
-/// In `noise` of a configuration: a deviation of about 2 grey levels.
+/// Noise level: a standard deviation of about 2 grey levels.
 pub const STEREOPSIS_NOISE_LOW: u8 = 1;
-/// In `noise` of a configuration: a deviation from about 3 grey levels on.
+/// Noise level: a standard deviation from about 3 grey levels on.
 pub const STEREOPSIS_NOISE_HIGH: u8 = 2;
 
-/// Frame size, search range and checks. `stereopsis_config_default` fills it, fields may be changed after
-/// that.
+/// Frame size, search range and checks, filled by `stereopsis_config_default` and then open to changes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(C)]
 pub struct CConfig {
@@ -33,58 +32,58 @@ pub struct CConfig {
     pub width: u16,
     /// Lines in a frame, at least 1.
     pub height: u16,
-    /// How many whole disparities are searched: 16 to `stereopsis_max_disparities()`.
+    /// Number of whole disparities searched: 16 to `stereopsis_max_disparities()`.
     pub disparities: u16,
-    /// The smallest disparity searched, px.
+    /// Smallest disparity searched, px.
     pub min_disparity: u16,
-    /// Left-right check: the largest difference of the two answers, 0 to 255 px, or
+    /// Left-right check: largest difference of the two answers, 0 to 255 px, or
     /// `STEREOPSIS_NOT_CHECKED`.
     pub left_right_px: i16,
-    /// Uniqueness: by how much the second best has to cost more, 0 to 99 percent, or
+    /// Uniqueness check: least extra cost of the second best, 0 to 99 percent, or
     /// `STEREOPSIS_NOT_CHECKED`.
     pub uniqueness_percent: i16,
-    /// Texture: a pixel counts when its neighbours left and right differ by this many grey levels.
+    /// Texture check: least difference of a textured pixel's left and right neighbours, grey levels.
     pub texture_gradient: u8,
-    /// Texture: how many such pixels the window of an answer holds at least; 0 is not checked.
+    /// Texture check: least number of textured pixels in the window of an answer; 0 disables it.
     pub texture_pixels: u8,
-    /// Whether a winner at the largest disparity searched is refused; 0 is no.
+    /// Whether a winner at the largest disparity searched is refused; 0 means no.
     pub refuse_ceiling: u8,
-    /// Whether a winner is refused that costs as much as both its neighbours; 0 is no.
+    /// Whether a winner that costs as much as both its neighbours is refused; 0 means no.
     pub refuse_flat: u8,
-    /// Answers are averaged along the line with this many pairs of neighbours of their surface, 0 to 8.
+    /// Smoothing: pairs of neighbours along the line that are averaged within a surface, 0 to 8.
     pub smoothing_radius: u8,
-    /// Whether every answer becomes the middle one of those in 3 x 3 pixels around it; 0 is no.
+    /// Whether a median filter of 3 x 3 pixels is applied; 0 means no.
     pub median: u8,
-    /// Neighbours are of one surface when they differ by at most this, in 1/32 px, 0 to 32.
+    /// Largest difference of neighbours of one surface, in 1/32 px, 0 to 32.
     pub surface_step: u16,
-    /// Speckle: answers with fewer of their surface on a cross around them are dropped; with 0 none is.
+    /// Speckle filter: least number of answers of one surface on a cross around an answer; 0 disables it.
     pub speckle_pixels: u8,
-    /// Methods along paths: gradients are cut off at this many eighths of a grey level per pixel, 1 to 14.
+    /// Semi-global matching: truncation of gradients, eighths of a grey level per pixel, 1 to 14.
     pub gradient: u8,
-    /// Methods along paths: a pixel's cost is cut off at this, at least 1.
+    /// Semi-global matching: truncation of a pixel's cost, at least 1.
     pub cost: u8,
-    /// Methods along paths: what a change of the disparity by one px costs where the brightness changes
-    /// little, and more; at least 1, and the second at most the first.
+    /// Semi-global matching: penalty P1 of a disparity change by one px, at small and larger changes of
+    /// brightness; at least 1, and the second at most the first.
     pub step: [u8; 2],
-    /// Methods along paths: what a larger change costs where the brightness changes little, more, and much;
-    /// each at least the first step. `cost + step + jump` is at most 127 and `3 cost + 2 jump` at most
-    /// 254.
+    /// Semi-global matching: penalty P2 of larger disparity changes, at small, larger and large changes of
+    /// brightness; each at least the first step. `cost + step + jump` is at most 127, `3 cost + 2 jump` at
+    /// most 254.
     pub jump: [u8; 3],
-    /// Methods along paths: the changes of brightness, in grey levels, at which it is more, and much.
+    /// Semi-global matching: least larger and least large change of brightness, grey levels.
     pub edges: [u8; 2],
-    /// Fill: gaps along the row of at most this many pixels, between two answers, get the farther of the two
-    /// and `STEREOPSIS_FLAG_FILLED`; with 0 none does.
+    /// Gap filling: longest gap in a row, pixels, that is filled with the farther of the answers at its ends
+    /// and flagged `STEREOPSIS_FLAG_FILLED`; 0 disables it.
     pub fill_pixels: u8,
-    /// Whether rows say how sure each answer is; 0 is no, and saves the search for each pixel's second best.
+    /// Whether rows have confidences; 0 means no, and saves the search for each pixel's second best.
     pub confidence: u8,
-    /// Fill: by how much the two answers may differ, in 1/32 px; 65535 for any two.
+    /// Gap filling: largest difference of the two answers, in 1/32 px; 65535 for no limit.
     pub fill_step: u16,
-    /// How noisy both cameras are, a `STEREOPSIS_NOISE_`: what is compared is smoothed accordingly.
-    /// `stereopsis_config_noise` sets it with the checks and penalties that suit it.
+    /// Noise level of both cameras, a `STEREOPSIS_NOISE_`, which selects the smoothing of compared pixels;
+    /// `stereopsis_config_noise` sets it with matching checks and penalties.
     pub noise: u8,
 }
 
-/// A filter by its `STEREOPSIS_PRESET_` number.
+/// Returns the filter of a `STEREOPSIS_PRESET_` number.
 fn filter(preset: i32) -> Result<Filter, Status> {
     match preset {
         STEREOPSIS_PRESET_DENSE => Ok(Filter::Dense),
@@ -94,7 +93,7 @@ fn filter(preset: i32) -> Result<Filter, Status> {
     }
 }
 
-/// A level of noise by its `STEREOPSIS_NOISE_` number.
+/// Returns the noise level of a `STEREOPSIS_NOISE_` number.
 fn level(noise: u8) -> Result<Noise, Status> {
     match noise {
         STEREOPSIS_NOISE_NONE => Ok(Noise::None),
@@ -104,7 +103,7 @@ fn level(noise: u8) -> Result<Noise, Status> {
     }
 }
 
-/// The `STEREOPSIS_NOISE_` number of a level.
+/// Returns the `STEREOPSIS_NOISE_` number of a noise level.
 pub(super) const fn noise_number(level: Noise) -> u8 {
     match level {
         Noise::None => STEREOPSIS_NOISE_NONE,
@@ -156,14 +155,14 @@ impl From<matching::Config> for CConfig {
 }
 
 impl CConfig {
-    /// The same search with the checks of a preset and the penalties of the method for so much noise.
+    /// Replaces the checks by a preset's and the penalties by the method's for a noise level.
     fn with_filter<S: Method>(self, filter: Filter, noise: Noise) -> Self {
         let search = matching::Config::for_method::<S>(self.width, self.height, self.disparities);
         let config = matching::Config { noise, ..search }.with_filter::<S>(filter);
         Self { min_disparity: self.min_disparity, confidence: self.confidence, ..config.into() }
     }
 
-    /// The same in the crate's own types, which check the rest.
+    /// Converts to the crate's own types, which check the rest.
     pub(super) fn checked(&self) -> Result<matching::Config, Status> {
         let limit = |value: i16, wrong: Status| match value {
             STEREOPSIS_NOT_CHECKED => Ok(None),
@@ -217,7 +216,7 @@ impl From<ConfigError> for Status {
     }
 }
 
-/// Fills a configuration: `stereopsis_config_default`.
+/// Fills a configuration, as `stereopsis_config_default`.
 ///
 /// # Safety
 ///
@@ -240,7 +239,7 @@ pub unsafe fn config_default<S: Method>(
     }))
 }
 
-/// Sets a configuration's checks and penalties for cameras with noise: `stereopsis_config_noise`.
+/// Sets a configuration's checks and penalties for a noise level, as `stereopsis_config_noise`.
 ///
 /// # Safety
 ///

@@ -1,41 +1,54 @@
-//! Lines that were lost, and what is counted of them, as C has it.
+//! Lost lines and fault counters in C.
 
+use super::Status;
+use crate::camera::LineFault;
 use crate::pipeline::FaultCounters;
 
-/// The line did not come, or no buffer was free for it.
+/// Fault: the line did not arrive, or found no free buffer.
 pub const STEREOPSIS_LOST_DROPPED: i32 = 0;
-/// The line was overwritten while it was read, or has fewer or more pixels than a line.
+/// Fault: the line was overwritten while it was read, or has too few or too many pixels.
 pub const STEREOPSIS_LOST_TORN: i32 = 1;
-/// The line came after the time at which it was of use.
+/// Fault: the line arrived too late to be used.
 pub const STEREOPSIS_LOST_LATE: i32 = 2;
-/// The buffer holds a line of before: nobody has filled it since.
+/// Fault: the buffer still holds an earlier line.
 pub const STEREOPSIS_LOST_STALE: i32 = 3;
 
-/// Counts since `stereopsis_start`, each of which stays at its largest value when it is reached.
+/// Returns the fault of a `STEREOPSIS_LOST_` number.
+pub(super) fn fault(number: i32) -> Result<LineFault, Status> {
+    match number {
+        STEREOPSIS_LOST_DROPPED => Ok(LineFault::Dropped),
+        STEREOPSIS_LOST_TORN => Ok(LineFault::Torn),
+        STEREOPSIS_LOST_LATE => Ok(LineFault::Late),
+        STEREOPSIS_LOST_STALE => Ok(LineFault::Stale),
+        _ => Err(Status::Fault),
+    }
+}
+
+/// Saturating counts since `stereopsis_start`.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[repr(C)]
 pub struct CCounters {
-    /// Frames begun.
+    /// Frames that began.
     pub frames: u32,
-    /// Frames of which every line came, and every row went out.
+    /// Frames of which every line came and every row was given.
     pub frames_whole: u32,
-    /// Frames of which every row went out, some of them flagged.
+    /// Frames of which every row was given, some of them flagged.
     pub frames_damaged: u32,
-    /// Frames that were given up after they had begun.
+    /// Frames that ended early.
     pub frames_broken: u32,
-    /// Rows that went out.
+    /// Rows that were given.
     pub rows: u32,
-    /// Rows of these with `STEREOPSIS_FLAG_DAMAGED`.
+    /// Rows with `STEREOPSIS_FLAG_DAMAGED`.
     pub rows_damaged: u32,
     /// Lines that came.
     pub lines: u32,
-    /// Lines told as `STEREOPSIS_LOST_DROPPED`.
+    /// Lines reported as `STEREOPSIS_LOST_DROPPED`.
     pub lines_dropped: u32,
-    /// Lines told as `STEREOPSIS_LOST_TORN`.
+    /// Lines reported as `STEREOPSIS_LOST_TORN`.
     pub lines_torn: u32,
-    /// Lines told as `STEREOPSIS_LOST_LATE`.
+    /// Lines reported as `STEREOPSIS_LOST_LATE`.
     pub lines_late: u32,
-    /// Lines told as `STEREOPSIS_LOST_STALE`.
+    /// Lines reported as `STEREOPSIS_LOST_STALE`.
     pub lines_stale: u32,
 }
 

@@ -1,12 +1,9 @@
-//! What the functions of `stereopsis.h` do, for one method and one capacity.
+//! Implementation of the functions of `stereopsis.h`, for one method and one capacity.
 #![allow(unsafe_code)]
 
+use super::faults::fault;
 use super::state::{State, share_bytes};
-use super::{
-    CConfig, CCounters, CRow, Handle, STEREOPSIS_LOST_DROPPED, STEREOPSIS_LOST_LATE, STEREOPSIS_LOST_STALE,
-    STEREOPSIS_LOST_TORN, Status,
-};
-use crate::camera::LineFault;
+use super::{CConfig, CCounters, CRow, Handle, Status};
 use crate::matching::{self, MatchError, Method};
 use crate::pipeline::Pipeline;
 use core::ffi::c_void;
@@ -14,16 +11,15 @@ use core::marker::PhantomData;
 
 /// The functions for method `S`, lines up to `W` pixels and `D` disparities.
 ///
-/// [`instantiate_c_api`](crate::instantiate_c_api) gives them their names in C and says what each of them
-/// does and needs.
+/// [`instantiate_c_api`](crate::instantiate_c_api) gives them their names in C and their full descriptions.
 pub struct Instance<S: Method, const W: usize, const D: usize>(PhantomData<S>);
 
-/// Both ways out of a call are a status.
+/// Merges both outcomes of a call into its status.
 pub(super) fn either(result: Result<Status, Status>) -> Status {
     result.unwrap_or_else(|status| status)
 }
 
-/// The result of a call that gives a row: the row is always written, empty where there is none.
+/// Writes the row of a call that gives one, empty where there is none.
 ///
 /// # Safety
 ///
@@ -36,32 +32,50 @@ unsafe fn give(to: *mut CRow, row: Option<matching::Row<'_>>, without: Status) -
 }
 
 impl<S: Method, const W: usize, const D: usize> Instance<S, W, D> {
-    /// Bytes that a matcher takes.
+    /// Returns the bytes that a matcher takes.
     pub const fn size() -> usize {
         size_of::<State<S, W, D>>()
     }
 
-    /// What their address is a multiple of.
+    /// Returns the alignment of a matcher's memory, bytes.
     pub const fn align() -> usize {
         align_of::<State<S, W, D>>()
     }
 
-    /// The longest line, pixels.
+    /// Returns the longest line, pixels.
     pub const fn max_width() -> usize {
         W
     }
 
-    /// The most disparities.
+    /// Returns the largest number of disparities.
     pub const fn max_disparities() -> usize {
         D
     }
 
-    /// How many lines after its own a row comes out.
+    /// Returns the delay of a row, lines.
     pub const fn latency() -> usize {
         Pipeline::<S, W, D>::LATENCY
     }
 
-    /// Makes a matcher in the caller's memory.
+    /// Returns the matcher behind a handle, apart from the `count` values at `argument`, which is not null.
+    ///
+    /// # Safety
+    ///
+    /// `handle` is as [`Self::deinit`] asks.
+    unsafe fn open_apart<'a, T>(
+        handle: *mut Handle,
+        argument: *const T,
+        count: usize,
+    ) -> Result<&'a mut State<S, W, D>, Status> {
+        if argument.is_null() {
+            return Err(Status::Null);
+        }
+        // SAFETY: the caller's promise.
+        let state = unsafe { State::<S, W, D>::open(handle) }?;
+        if state.overlaps(argument, count) { Err(Status::Overlap) } else { Ok(state) }
+    }
+
+    /// Creates a matcher in the caller's memory.
     ///
     /// # Safety
     ///
@@ -71,7 +85,7 @@ impl<S: Method, const W: usize, const D: usize> Instance<S, W, D> {
         if handle.is_null() {
             return Status::Null;
         }
-        // Nothing is written before the pointer to write to is known to be beside the memory.
+        // Nothing is written before the handle is known to be apart from the memory.
         if !memory.is_null() && share_bytes(memory, length, handle.cast(), size_of::<*mut Handle>()) {
             return Status::Overlap;
         }
@@ -95,12 +109,11 @@ impl<S: Method, const W: usize, const D: usize> Instance<S, W, D> {
         }))
     }
 
-    /// Checks a configuration and gets ready for the first frame; `keeps_counters` where it is for the next
-    /// one.
+    /// Checks a configuration and prepares for the next frame; counters go on if it `keeps_counters`.
     ///
     /// # Safety
     ///
-    /// As [`Self::deinit`]; `config` is null or points to a configuration.
+    /// `handle` is as [`Self::deinit`] asks; `config` is null or points to a configuration.
     pub unsafe fn start(handle: *mut Handle, config: *const CConfig, keeps_counters: bool) -> Status {
         if config.is_null() {
             return Status::Null;
@@ -123,7 +136,7 @@ impl<S: Method, const W: usize, const D: usize> Instance<S, W, D> {
     ///
     /// # Safety
     ///
-    /// As [`Self::deinit`].
+    /// `handle` is as [`Self::deinit`] asks.
     pub unsafe fn begin_frame(handle: *mut Handle) -> Status {
         // SAFETY: the caller's promise.
         let state = unsafe { State::<S, W, D>::open(handle) };
@@ -134,8 +147,8 @@ impl<S: Method, const W: usize, const D: usize> Instance<S, W, D> {
     ///
     /// # Safety
     ///
-    /// As [`Self::deinit`]; `left` and `right` are null or point to `length` bytes, `row` is null or points
-    /// to a row's bytes.
+    /// `handle` is as [`Self::deinit`] asks; `left` and `right` are null or point to `length` bytes, `row` is
+    /// null or points to a row's bytes.
     pub unsafe fn push(
         handle: *mut Handle,
         left: *const u8,
@@ -146,163 +159,131 @@ impl<S: Method, const W: usize, const D: usize> Instance<S, W, D> {
         if left.is_null() || right.is_null() || row.is_null() {
             return Status::Null;
         }
-        // SAFETY: the caller's promise.
-        let state = match unsafe { State::<S, W, D>::open(handle) } {
-            Ok(state) => state,
-            Err(status) => return status,
-        };
-        let width = usize::from(state.pipeline.config().width);
-        if width == 0 {
-            return MatchError::NotStarted.into();
-        }
-        // A slice is made of what has the right length only: any other might be longer than a slice can be.
-        if length != width {
-            return Status::LineLength;
-        }
-        if state.overlaps(left, length) || state.overlaps(right, length) || state.overlaps(row, 1) {
-            return Status::Overlap;
-        }
-        // SAFETY: the caller's promise, and neither stands in the state.
-        let (left, right) = unsafe {
-            (core::slice::from_raw_parts(left, length), core::slice::from_raw_parts(right, length))
-        };
-        match state.pipeline.push(left, right) {
-            // SAFETY: the caller's promise, and the row stands beside the state.
-            Ok(found) => unsafe { give(row, found, Status::NoRowYet) },
-            Err(e) => e.into(),
-        }
-    }
-
-    /// Takes the line above once more, for one that was lost.
-    ///
-    /// # Safety
-    ///
-    /// As [`Self::deinit`]; `row` is null or points to a row's bytes.
-    pub unsafe fn push_lost(handle: *mut Handle, fault: i32, row: *mut CRow) -> Status {
-        if row.is_null() {
-            return Status::Null;
-        }
-        // SAFETY: the caller's promise.
-        let state = match unsafe { State::<S, W, D>::open(handle) } {
-            Ok(state) if state.overlaps(row, 1) => return Status::Overlap,
-            Ok(state) => state,
-            Err(status) => return status,
-        };
-        let fault = match fault {
-            STEREOPSIS_LOST_DROPPED => LineFault::Dropped,
-            STEREOPSIS_LOST_TORN => LineFault::Torn,
-            STEREOPSIS_LOST_LATE => LineFault::Late,
-            STEREOPSIS_LOST_STALE => LineFault::Stale,
-            _ => return Status::Fault,
-        };
-        match state.pipeline.push_lost(fault) {
-            // SAFETY: the caller's promise, and the row stands beside the state.
-            Ok(found) => unsafe { give(row, found, Status::NoRowYet) },
-            Err(e) => e.into(),
-        }
-    }
-
-    /// Takes answers of the last row away where a camera did not see.
-    ///
-    /// # Safety
-    ///
-    /// As [`Self::deinit`]; `left` and `right` are null or point to `length` bytes.
-    pub unsafe fn mask(handle: *mut Handle, left: *const u8, right: *const u8, length: usize) -> Status {
-        // SAFETY: the caller's promise.
-        let state = match unsafe { State::<S, W, D>::open(handle) } {
-            Ok(state) => state,
-            Err(status) => return status,
-        };
-        let Some(row) = state.pipeline.row() else { return Status::NoRowYet };
-        if length != row.disparities().len() {
-            return Status::LineLength;
-        }
-        if state.overlaps(left, length) || state.overlaps(right, length) {
-            return Status::Overlap;
-        }
-        state.pipeline.mask(|_, masks| {
-            for (mask, given) in masks.into_iter().zip([left, right]) {
-                if given.is_null() {
-                    mask.fill(1);
-                } else {
-                    // SAFETY: the caller's promise, and the array does not stand in the state.
-                    let given = unsafe { core::slice::from_raw_parts(given, length) };
-                    mask.iter_mut().zip(given).for_each(|(mask, given)| *mask = *given);
-                }
+        let push = || {
+            // SAFETY: the caller's promise.
+            let state = unsafe { State::<S, W, D>::open(handle) }?;
+            let width = usize::from(state.pipeline.config().width);
+            if width == 0 {
+                return Err(MatchError::NotStarted.into());
             }
-            true
-        });
-        Status::Ok
+            // Only the right length makes a slice: any other might be longer than a slice can be.
+            if length != width {
+                return Err(Status::LineLength);
+            }
+            if state.overlaps(left, length) || state.overlaps(right, length) || state.overlaps(row, 1) {
+                return Err(Status::Overlap);
+            }
+            // SAFETY: the caller's promise, and neither is in the state.
+            let [left, right] =
+                unsafe { [left, right].map(|line| core::slice::from_raw_parts(line, length)) };
+            let found = state.pipeline.push(left, right)?;
+            // SAFETY: the caller's promise, and the row is apart from the state.
+            Ok(unsafe { give(row, found, Status::NoRowYet) })
+        };
+        either(push())
     }
 
-    /// What went wrong since the start.
+    /// Takes the line above again, in place of a lost one.
     ///
     /// # Safety
     ///
-    /// As [`Self::deinit`]; `counters` is null or points to counters' bytes.
+    /// `handle` is as [`Self::deinit`] asks; `row` is null or points to a row's bytes.
+    pub unsafe fn push_lost(handle: *mut Handle, number: i32, row: *mut CRow) -> Status {
+        let push = || {
+            // SAFETY: the caller's promise.
+            let state = unsafe { Self::open_apart(handle, row, 1) }?;
+            let found = state.pipeline.push_lost(fault(number)?)?;
+            // SAFETY: the caller's promise, and the row is apart from the state.
+            Ok(unsafe { give(row, found, Status::NoRowYet) })
+        };
+        either(push())
+    }
+
+    /// Removes answers of the last row at pixels that a camera did not see.
+    ///
+    /// # Safety
+    ///
+    /// `handle` is as [`Self::deinit`] asks; `left` and `right` are null or point to `length` bytes.
+    pub unsafe fn mask(handle: *mut Handle, left: *const u8, right: *const u8, length: usize) -> Status {
+        let mask = || {
+            // SAFETY: the caller's promise.
+            let state = unsafe { State::<S, W, D>::open(handle) }?;
+            let row = state.pipeline.row().ok_or(Status::NoRowYet)?;
+            if length != row.disparities().len() {
+                return Err(Status::LineLength);
+            }
+            if state.overlaps(left, length) || state.overlaps(right, length) {
+                return Err(Status::Overlap);
+            }
+            state.pipeline.mask(|_, masks| {
+                for (mask, given) in masks.into_iter().zip([left, right]) {
+                    if given.is_null() {
+                        mask.fill(1);
+                    } else {
+                        // SAFETY: the caller's promise, and the array is apart from the state.
+                        let given = unsafe { core::slice::from_raw_parts(given, length) };
+                        mask.iter_mut().zip(given).for_each(|(mask, given)| *mask = *given);
+                    }
+                }
+                true
+            });
+            Ok(Status::Ok)
+        };
+        either(mask())
+    }
+
+    /// Writes the counts since the start.
+    ///
+    /// # Safety
+    ///
+    /// `handle` is as [`Self::deinit`] asks; `counters` is null or points to counters' bytes.
     pub unsafe fn counters(handle: *mut Handle, counters: *mut CCounters) -> Status {
-        if counters.is_null() {
-            return Status::Null;
-        }
         // SAFETY: the caller's promise.
-        let state = match unsafe { State::<S, W, D>::open(handle) } {
-            Ok(state) if state.overlaps(counters, 1) => return Status::Overlap,
-            Ok(state) => state,
-            Err(status) => return status,
-        };
-        // SAFETY: the caller's promise; no alignment is asked for.
-        unsafe { counters.write_unaligned(state.pipeline.counters().into()) };
-        Status::Ok
+        either(unsafe { Self::open_apart(handle, counters, 1) }.map(|state| {
+            // SAFETY: the caller's promise; no alignment is asked for.
+            unsafe { counters.write_unaligned(state.pipeline.counters().into()) };
+            Status::Ok
+        }))
     }
 
-    /// Goes on below the last line.
+    /// Gives the next row after the last line.
     ///
     /// # Safety
     ///
-    /// As [`Self::deinit`]; `row` is null or points to a row's bytes.
+    /// `handle` is as [`Self::deinit`] asks; `row` is null or points to a row's bytes.
     pub unsafe fn flush(handle: *mut Handle, row: *mut CRow) -> Status {
-        if row.is_null() {
-            return Status::Null;
-        }
-        // SAFETY: the caller's promise.
-        let state = match unsafe { State::<S, W, D>::open(handle) } {
-            Ok(state) if state.overlaps(row, 1) => return Status::Overlap,
-            Ok(state) => state,
-            Err(status) => return status,
+        let flush = || {
+            // SAFETY: the caller's promise.
+            let state = unsafe { Self::open_apart(handle, row, 1) }?;
+            let found = state.pipeline.flush()?;
+            // SAFETY: the caller's promise, and the row is apart from the state.
+            Ok(unsafe { give(row, found, Status::FrameDone) })
         };
-        match state.pipeline.flush() {
-            // SAFETY: the caller's promise, and the row stands beside the state.
-            Ok(found) => unsafe { give(row, found, Status::FrameDone) },
-            Err(e) => e.into(),
-        }
+        either(flush())
     }
 
-    /// The deviations of the row that came out last.
+    /// Writes the standard deviations of the last row, px.
     ///
     /// # Safety
     ///
-    /// As [`Self::deinit`]; `sigma_px` is null or points to `count` floats.
+    /// `handle` is as [`Self::deinit`] asks; `sigma_px` is null or points to `count` floats.
     pub unsafe fn sigma_px(handle: *mut Handle, sigma_px: *mut f32, count: usize) -> Status {
-        if sigma_px.is_null() {
-            return Status::Null;
-        }
-        if !sigma_px.is_aligned() {
+        if !sigma_px.is_null() && !sigma_px.is_aligned() {
             return Status::Misaligned;
         }
-        // SAFETY: the caller's promise.
-        let state = match unsafe { State::<S, W, D>::open(handle) } {
-            Ok(state) if state.overlaps(sigma_px, count) => return Status::Overlap,
-            Ok(state) => state,
-            Err(status) => return status,
+        let write = || {
+            // SAFETY: the caller's promise.
+            let state = unsafe { Self::open_apart(handle, sigma_px, count) }?;
+            let row = state.pipeline.row().ok_or(Status::NoRowYet)?;
+            if count != row.disparities().len() {
+                return Err(Status::LineLength);
+            }
+            for x in 0..count {
+                // SAFETY: the caller's promise, and the floats are apart from the state.
+                unsafe { sigma_px.add(x).write(row.sigma_px(x).unwrap_or(f32::INFINITY)) };
+            }
+            Ok(Status::Ok)
         };
-        let Some(row) = state.pipeline.row() else { return Status::NoRowYet };
-        if count != row.disparities().len() {
-            return Status::LineLength;
-        }
-        for x in 0..count {
-            // SAFETY: the caller's promise, and none of the floats stands in the state.
-            unsafe { sigma_px.add(x).write(row.sigma_px(x).unwrap_or(f32::INFINITY)) };
-        }
-        Status::Ok
+        either(write())
     }
 }

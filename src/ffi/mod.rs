@@ -12,7 +12,7 @@
 //!
 //! * [`CConfig`], [`CRow`], [`CRig`], [`CCounters`], [`CNoiseMeter`] and the constants: what crosses the
 //!   border, laid out as C has it.
-//! * [`Status`]: what every call answers.
+//! * [`Status`]: the result of every call.
 //! * [`Instance`]: the functions for one method and one capacity; [`Handle`] is what C holds.
 //! * [`instantiate_c_api`](crate::instantiate_c_api): their names in C, from which `cargo xtask header` makes
 //!   `stereopsis.h` beside this file.

@@ -1,16 +1,16 @@
-//! The functions' names in C.
+//! C names of the functions, made by a macro.
 
-/// Makes the functions of `stereopsis.h` in this crate, for a method of [`matching`](crate::matching), the
-/// longest line and the most disparities: once in a `staticlib` or `cdylib`.
+/// Defines the functions of `stereopsis.h`, once in a `staticlib` or `cdylib`, for a method of
+/// [`matching`](crate::matching), the longest line and the largest number of disparities.
 ///
 /// ```
 /// stereopsis::instantiate_c_api!(Fast, width = 160, disparities = 32);
 /// # fn main() { assert_eq!(stereopsis_c::stereopsis_max_width(), 160); }
 /// ```
 ///
-/// They stand in the module `stereopsis_c`, for callers in Rust. `disparities` is a multiple of 16, at most
-/// 256, and `width` at least as large; another choice does not compile. The header is made from this macro's
-/// text by `cargo xtask header`, so it is written as plain items.
+/// Rust callers find them in the module `stereopsis_c`. `disparities` is a multiple of 16, at most 256, and
+/// `width` at least as large; another choice does not compile. `cargo xtask header` makes the header from
+/// this macro's text.
 #[macro_export]
 macro_rules! instantiate_c_api {
     ($method:ident, width = $width:expr, disparities = $disparities:expr $(,)?) => {
@@ -25,60 +25,60 @@ macro_rules! instantiate_c_api {
             use core::ffi::{c_char, c_void};
             use $crate::ffi::{CConfig, CCounters, CNoiseMeter, CRig, CRow, Handle, Status};
 
-            /// The library's interface: a program that was compiled with another `STEREOPSIS_ABI` must not go
-            /// on.
+            /// Returns the version of the library's interface: a program compiled with another
+            /// `STEREOPSIS_ABI` must not continue.
             #[unsafe(no_mangle)]
             pub extern "C" fn stereopsis_abi() -> u32 {
                 $crate::ffi::STEREOPSIS_ABI
             }
 
-            /// The library's version, such as "1.2.3".
+            /// Returns the library's version, such as "1.2.3".
             #[unsafe(no_mangle)]
             pub extern "C" fn stereopsis_version() -> *const c_char {
                 $crate::ffi::version_text().as_ptr()
             }
 
-            /// What a status says, in a line without an end; there is a text for every number.
+            /// Returns the text of any number as a status, one line without an end.
             #[unsafe(no_mangle)]
             pub extern "C" fn stereopsis_status_text(status: i32) -> *const c_char {
                 $crate::ffi::status_text(status).as_ptr()
             }
 
-            /// Bytes of memory that a matcher takes.
+            /// Returns the bytes of memory that a matcher takes.
             #[unsafe(no_mangle)]
             pub extern "C" fn stereopsis_size() -> usize {
                 StereopsisInstance::size()
             }
 
-            /// What the memory's address has to be a multiple of; `STEREOPSIS_ALIGN` at most.
+            /// Returns the alignment that a matcher's memory needs, at most `STEREOPSIS_ALIGN`.
             #[unsafe(no_mangle)]
             pub extern "C" fn stereopsis_align() -> usize {
                 StereopsisInstance::align()
             }
 
-            /// The longest line that this library was built for, in pixels.
+            /// Returns the longest line that this library was built for, in pixels.
             #[unsafe(no_mangle)]
             pub extern "C" fn stereopsis_max_width() -> usize {
                 StereopsisInstance::max_width()
             }
 
-            /// The most disparities that this library was built for.
+            /// Returns the largest number of disparities that this library was built for.
             #[unsafe(no_mangle)]
             pub extern "C" fn stereopsis_max_disparities() -> usize {
                 StereopsisInstance::max_disparities()
             }
 
-            /// Row y comes out when line y + `stereopsis_latency()` goes in; the last rows come by
-            /// `stereopsis_flush`.
+            /// Returns the delay in lines: row y comes out when line y + `stereopsis_latency()` goes in; the
+            /// last rows come by `stereopsis_flush`.
             #[unsafe(no_mangle)]
             pub extern "C" fn stereopsis_latency() -> usize {
                 StereopsisInstance::latency()
             }
 
-            /// Makes a matcher in the caller's memory of `length` bytes, and gives the handle for all other
-            /// calls; a null handle on an error, unless `handle` itself is what is wrong.
+            /// Creates a matcher in the caller's memory of `length` bytes, and writes the handle for all
+            /// other calls; a null handle on an error, unless `handle` itself is invalid.
             ///
-            /// The memory needs no content, and is the matcher's alone until `stereopsis_deinit`. Memory that
+            /// The memory needs no content, and belongs to the matcher until `stereopsis_deinit`. Memory that
             /// still holds a matcher, such as RAM that a warm start does not clear, is refused as already
             /// initialised.
             #[unsafe(no_mangle)]
@@ -91,7 +91,7 @@ macro_rules! instantiate_c_api {
                 unsafe { StereopsisInstance::init(memory, length, handle) }
             }
 
-            /// Ends a matcher; the memory is the caller's again. The handle is the memory's address.
+            /// Ends a matcher, whose memory returns to the caller. The handle is the memory's address.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_deinit(handle: *mut Handle) -> Status {
                 // SAFETY: as above.
@@ -121,9 +121,9 @@ macro_rules! instantiate_c_api {
                 }
             }
 
-            /// Makes a configuration one for cameras with `noise`, a `STEREOPSIS_NOISE_` such as
-            /// `stereopsis_noise_level` tells: sets that, and the checks of a `STEREOPSIS_PRESET_` and
-            /// the method's penalties for it. Size, search and `confidence` stay as they are.
+            /// Sets a configuration's `noise`, a `STEREOPSIS_NOISE_` as from `stereopsis_noise_level`, with
+            /// the checks of a `STEREOPSIS_PRESET_` and the method's penalties for it. Size, search and
+            /// `confidence` are kept.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_config_noise(
                 preset: i32,
@@ -134,17 +134,16 @@ macro_rules! instantiate_c_api {
                 unsafe { $crate::ffi::config_noise::<$crate::matching::$method>(preset, noise, config) }
             }
 
-            /// Checks a configuration, which is copied, and gets ready for the first frame. It can be called
-            /// again, for another configuration; a frame that is under way is lost, and counters go to
-            /// zero.
+            /// Checks a configuration, which is copied, and prepares for the first frame. Another call
+            /// changes the configuration, drops a frame that is under way, and clears the counters.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_start(handle: *mut Handle, config: *const CConfig) -> Status {
                 // SAFETY: as above.
                 unsafe { StereopsisInstance::start(handle, config, false) }
             }
 
-            /// `stereopsis_start` between two frames, for the noise of the one before as it may be: counters
-            /// go on, and a frame that is under way counts as broken off. A configuration that is refused
+            /// Changes the configuration between two frames, for instance for the noise of the last one:
+            /// counters continue, and a frame that is under way counts as broken. A refused configuration
             /// changes nothing.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_restart(
@@ -155,18 +154,18 @@ macro_rules! instantiate_c_api {
                 unsafe { StereopsisInstance::start(handle, config, true) }
             }
 
-            /// Begins a frame and forgets the one before.
+            /// Begins a frame, and drops the one before.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_begin_frame(handle: *mut Handle) -> Status {
                 // SAFETY: as above.
                 unsafe { StereopsisInstance::begin_frame(handle) }
             }
 
-            /// Takes the next line of both cameras, 8-bit grey, `length` bytes each: the configuration's
-            /// width. The lines are copied; both may be one array.
+            /// Takes the next line of both cameras, 8-bit grey, `length` bytes each, which is the
+            /// configuration's width. The lines are copied; both may be one array.
             ///
-            /// `STEREOPSIS_STATUS_OK` with a row, or `STEREOPSIS_STATUS_NO_ROW_YET` with an empty one for the
-            /// first lines of a frame. On an error the row is left as it is.
+            /// Returns `STEREOPSIS_STATUS_OK` with a row, or `STEREOPSIS_STATUS_NO_ROW_YET` with an empty one
+            /// for the first lines of a frame. An error leaves the row unchanged.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_push(
                 handle: *mut Handle,
@@ -179,11 +178,11 @@ macro_rules! instantiate_c_api {
                 unsafe { StereopsisInstance::push(handle, left, right, length, row) }
             }
 
-            /// In place of `stereopsis_push`, of a line that did not come, for a reason of the
-            /// `STEREOPSIS_LOST_` numbers: the line above stands in. Rows whose matching window saw it
-            /// have no answers and `STEREOPSIS_FLAG_DAMAGED` on every pixel, rows that it can have
-            /// touched otherwise keep theirs and have the flag, and every other row is what it would be
-            /// without the loss. Answers as `stereopsis_push` does.
+            /// Takes the line above in place of a lost one, with the `STEREOPSIS_LOST_` number of its fault,
+            /// where `stereopsis_push` would be called. Rows whose matching window contains the lost line
+            /// have no answers and `STEREOPSIS_FLAG_DAMAGED` on every pixel, rows that it affects otherwise
+            /// keep theirs and have the flag, and every other row is what it would be without the loss.
+            /// Returns what `stereopsis_push` returns.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_push_lost(
                 handle: *mut Handle,
@@ -194,11 +193,11 @@ macro_rules! instantiate_c_api {
                 unsafe { StereopsisInstance::push_lost(handle, fault, row) }
             }
 
-            /// Takes answers of the row that came out last away where a camera did not see, such as the black
-            /// border of a rectified image: masks of the left and of the right image's row, `length`
-            /// bytes each, 0 for a pixel that was not seen; null where all were. An answer goes, and has
-            /// `STEREOPSIS_FLAG_OUTSIDE`, where its own pixel or its partner was not seen. The row's
-            /// arrays change in place.
+            /// Removes answers of the last row at pixels that a camera did not see, such as the black border
+            /// of a rectified image. The masks of the left and the right image's row have `length` bytes
+            /// each, 0 for an unseen pixel; a null mask means that all were seen. An answer whose pixel or
+            /// partner was not seen is removed and flagged `STEREOPSIS_FLAG_OUTSIDE`. The row's arrays change
+            /// in place.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_mask(
                 handle: *mut Handle,
@@ -210,7 +209,7 @@ macro_rules! instantiate_c_api {
                 unsafe { StereopsisInstance::mask(handle, left, right, length) }
             }
 
-            /// What was counted since `stereopsis_start`.
+            /// Writes the counts since `stereopsis_start`.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_counters(
                 handle: *mut Handle,
@@ -220,16 +219,16 @@ macro_rules! instantiate_c_api {
                 unsafe { StereopsisInstance::counters(handle, counters) }
             }
 
-            /// Gives the next row when all lines are in: `STEREOPSIS_STATUS_OK` with a row, or
-            /// `STEREOPSIS_STATUS_FRAME_DONE` with an empty one when all are out.
+            /// Gives the next row after the last line: `STEREOPSIS_STATUS_OK` with a row, or
+            /// `STEREOPSIS_STATUS_FRAME_DONE` with an empty one after the last row.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_flush(handle: *mut Handle, row: *mut CRow) -> Status {
                 // SAFETY: as above.
                 unsafe { StereopsisInstance::flush(handle, row) }
             }
 
-            /// Standard deviations of the row that came out last, in px, for `count` columns: all of the row.
-            /// Infinite where there is no answer. Before a frame's first row it is
+            /// Writes the standard deviations of the last row, px, for all its `count` columns, infinite
+            /// where there is no answer. Before a frame's first row the result is
             /// `STEREOPSIS_STATUS_NO_ROW_YET`, and nothing is written.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_sigma_px(
@@ -241,8 +240,8 @@ macro_rules! instantiate_c_api {
                 unsafe { StereopsisInstance::sigma_px(handle, sigma_px, count) }
             }
 
-            /// A meter that has seen no line; it needs no matcher. As often as light may change: measure a
-            /// frame, and give what it says to the configuration of the next ones.
+            /// Clears a noise meter, which needs no matcher. Measure a frame as often as the light may
+            /// change, and set the level in the configuration of the next ones.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_noise_clear(meter: *mut CNoiseMeter) -> Status {
                 // SAFETY: as above.
@@ -260,8 +259,9 @@ macro_rules! instantiate_c_api {
                 unsafe { $crate::ffi::noise_line(meter, line, length) }
             }
 
-            /// The `STEREOPSIS_NOISE_` number of the lines so far, for `stereopsis_config_noise`, and unless
-            /// `sigma_16ths` is null the deviation in 1/16 grey level; none and 0 before the first line.
+            /// Writes the `STEREOPSIS_NOISE_` number of the lines so far, for `stereopsis_config_noise`, and
+            /// unless `sigma_16ths` is null the standard deviation in 1/16 grey level; none and 0 before the
+            /// first line.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_noise_level(
                 meter: *mut CNoiseMeter,
@@ -272,8 +272,8 @@ macro_rules! instantiate_c_api {
                 unsafe { $crate::ffi::noise_level(meter, noise, sigma_16ths) }
             }
 
-            /// Depths of `count` disparities to the nearest millimetre, 0 for none: no answer, at infinity,
-            /// or beyond 65.535 m. Both may be one array.
+            /// Converts `count` disparities to depths in whole millimetres, 0 for no answer, at infinity, or
+            /// beyond 65.535 m. Both arrays may be one.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn stereopsis_millimetres(
                 rig: *const CRig,

@@ -1,12 +1,11 @@
-//! The meter of noise, in memory of the caller's.
+//! Noise meter in memory of the caller.
 #![allow(unsafe_code)]
 
 use super::Status;
 use super::config::noise_number;
 use crate::imaging;
 
-/// How noisy the lines are that it was given: the caller's memory, for `stereopsis_noise_clear` and what
-/// follows it. The words are the library's.
+/// Noise meter in the caller's memory, for the `stereopsis_noise_` functions; its contents are private.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(C)]
 pub struct CNoiseMeter {
@@ -14,13 +13,13 @@ pub struct CNoiseMeter {
     pub words: [u32; 65],
 }
 
-/// Both are 65 words in a row, and every bit pattern is a meter: one of anything says anything, and no more.
+/// Both types are 65 words, and every bit pattern is a valid meter.
 const _: () = assert!(
     size_of::<CNoiseMeter>() == size_of::<imaging::NoiseMeter>()
         && align_of::<CNoiseMeter>() == align_of::<imaging::NoiseMeter>()
 );
 
-/// The meter at a pointer.
+/// Returns the meter at a pointer.
 ///
 /// # Safety
 ///
@@ -53,7 +52,7 @@ pub unsafe fn noise_clear(meter: *mut CNoiseMeter) -> Status {
     Status::Ok
 }
 
-/// Takes a line of 8-bit grey.
+/// Measures a line of 8-bit grey.
 ///
 /// # Safety
 ///
@@ -76,7 +75,7 @@ pub unsafe fn noise_line(meter: *mut CNoiseMeter, line: *const u8, length: usize
     }))
 }
 
-/// Says how noisy the lines are.
+/// Writes the noise level and the standard deviation.
 ///
 /// # Safety
 ///

@@ -1,4 +1,4 @@
-//! The rig that makes depths of disparities, as C has it.
+//! Rectified rig and depths in C.
 #![allow(unsafe_code)]
 
 use super::Status;
@@ -6,7 +6,7 @@ use crate::depth::{DepthError, DepthScale};
 use crate::geometry::camera::{RectifiedRig, RigError};
 use crate::units::Disparity;
 
-/// Two cameras after rectification: rows are aligned, both have one focal length.
+/// Rectified stereo rig: aligned rows and one focal length.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[repr(C)]
 pub struct CRig {
@@ -23,7 +23,7 @@ pub struct CRig {
 }
 
 impl CRig {
-    /// Depths for this rig.
+    /// Creates the depth scale of the rig.
     pub(super) fn scale(&self) -> Result<DepthScale, Status> {
         let rig = RectifiedRig::with_offset(self.focal_px, self.baseline_m, self.cx, self.cy, self.cx_right)?;
         Ok(DepthScale::new(&rig)?)
@@ -50,7 +50,7 @@ impl From<DepthError> for Status {
     }
 }
 
-/// Depths of disparities: `stereopsis_millimetres`.
+/// Converts disparities to depths, as `stereopsis_millimetres`.
 ///
 /// # Safety
 ///

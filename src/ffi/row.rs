@@ -1,31 +1,31 @@
-//! A row of results, as C has it.
+//! Row of results in C.
 
 use crate::matching;
 use crate::units::{Disparity, PixelFlags};
 
-/// The disparity that means "no answer".
+/// Disparity that means "no answer".
 pub const STEREOPSIS_NONE: u16 = 0xFFFF;
-/// Steps of a disparity in one pixel.
+/// Steps of a disparity per pixel.
 pub const STEREOPSIS_STEPS_PER_PX: u16 = 32;
 
-/// No candidate lies inside the right image.
+/// Flag: no candidate lies inside the right image, or a camera did not see the pixel.
 pub const STEREOPSIS_FLAG_OUTSIDE: u8 = 1;
-/// The winner is the largest disparity searched: the surface may be nearer.
+/// Flag: the winner is the largest disparity searched; the surface may be nearer.
 pub const STEREOPSIS_FLAG_CEILING: u8 = 2;
-/// The winner costs as much as both its neighbours, or too few pixels of the window have a gradient.
+/// Flag: the winner costs as much as both its neighbours, or too few pixels of the window have a gradient.
 pub const STEREOPSIS_FLAG_UNTEXTURED: u8 = 4;
-/// Another disparity matches nearly as well.
+/// Flag: another disparity matches nearly as well.
 pub const STEREOPSIS_FLAG_AMBIGUOUS: u8 = 8;
-/// The right image's pixel found a better partner elsewhere.
+/// Flag: the right image's pixel has a better partner elsewhere.
 pub const STEREOPSIS_FLAG_MISMATCH: u8 = 16;
-/// Too few answers around it are of its surface.
+/// Flag: too few answers around the pixel belong to its surface.
 pub const STEREOPSIS_FLAG_SPECKLE: u8 = 32;
-/// The answer is not the pixel's own but the farther one of those on both sides of a small gap in the row.
+/// Flag: the answer is the farther one of those on both sides of a small gap in the row.
 pub const STEREOPSIS_FLAG_FILLED: u8 = 64;
-/// A line near the row was lost (`stereopsis_push_lost`). Beside an answer: the line can have touched it.
+/// Flag: the pixel depends on a line that was lost (`stereopsis_push_lost`); an answer may be affected.
 pub const STEREOPSIS_FLAG_DAMAGED: u8 = 128;
 
-/// The constants are literals, so that the header has them; these are what they say.
+/// The constants are literals for the header; these assertions check their values.
 const _: () = {
     assert!(STEREOPSIS_NONE == Disparity::NONE.raw());
     assert!(STEREOPSIS_STEPS_PER_PX == Disparity::ONE);
@@ -39,26 +39,25 @@ const _: () = {
     assert!(STEREOPSIS_FLAG_DAMAGED == PixelFlags::DAMAGED.bits());
 };
 
-/// A row of results. The arrays stand in the matcher's memory and hold until the next call with its handle.
+/// Row of results, with arrays in the matcher's memory that hold until the next call with its handle.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(C)]
 pub struct CRow {
-    /// The row in the image, from 0.
+    /// Row in the image, from 0.
     pub index: u16,
-    /// Pixels in the row: the length of the arrays.
+    /// Number of pixels, the length of the arrays.
     pub width: u16,
-    /// A disparity for each column in 1/32 px, `STEREOPSIS_NONE` for no answer.
+    /// Disparities of the columns in 1/32 px, `STEREOPSIS_NONE` for no answer.
     pub disparities: *const u16,
-    /// The `STEREOPSIS_FLAG_` bits of each column: why there is no answer, or none of its own.
+    /// `STEREOPSIS_FLAG_` bits of the columns.
     pub flags: *const u8,
-    /// How sure the answer of each column is, 1 to 207, 0 for no answer; null unless the configuration's
-    /// `confidence` asked for it. The number puts answers in order, the wrong ones first; it is no
-    /// probability.
+    /// Confidences of the columns, 1 to 207, 0 for no answer; null unless the configuration's `confidence` is
+    /// set. They rank answers, likely wrong ones first, and are no probabilities.
     pub confidences: *const u8,
 }
 
 impl CRow {
-    /// No row.
+    /// The empty row.
     pub(super) const NONE: Self = Self {
         index: 0,
         width: 0,

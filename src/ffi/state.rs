@@ -1,4 +1,4 @@
-//! The memory behind a handle: whether it is one, and what it holds.
+//! The matcher's state in the caller's memory, with a mark that detects memory which holds none.
 #![allow(unsafe_code)]
 
 use super::Status;
@@ -6,18 +6,18 @@ use crate::matching::{self, Method};
 use crate::pipeline::Guarded;
 use core::ffi::c_void;
 
-/// Every matcher's memory may be aligned to this many bytes: `uint64_t` will do.
+/// Alignment that is enough for every matcher's memory, that of `uint64_t`.
 pub const STEREOPSIS_ALIGN: usize = 8;
 
-/// A matcher in memory that the caller gave.
+/// Matcher in the caller's memory.
 pub struct Handle {
     _opaque: [u8; 0],
 }
 
-/// What stands in the memory.
+/// Contents of the memory.
 #[repr(C)]
 pub(super) struct State<S: Method, const W: usize, const D: usize> {
-    /// [`MARK`] and the state's own address: memory that was moved or never initialised does not have it.
+    /// [`MARK`] combined with the state's own address, which moved or uninitialised memory does not have.
     mark: usize,
     pub(super) pipeline: Guarded<S, W, D>,
 }
@@ -25,10 +25,11 @@ pub(super) struct State<S: Method, const W: usize, const D: usize> {
 /// Bits that memory is unlikely to hold by chance.
 const MARK: usize = 0x57E2_E0D5;
 
-/// Bytes of lines and counters beside the matcher, at most.
+/// Largest number of bytes of counters and padding beside matcher and lines.
 const FIXED_BYTES: usize = 352;
 
-/// Bytes of memory that a matcher takes on any target, at most: what the macros of `stereopsis.h` say.
+/// Returns the bytes of memory that are enough for a matcher on any target, as the macros of `stereopsis.h`
+/// do.
 ///
 /// `disparities` is a multiple of 16, and `width` at least as large.
 pub const fn memory_bytes<S: Method>(width: usize, disparities: usize) -> usize {
@@ -46,7 +47,7 @@ impl<S: Method, const W: usize, const D: usize> State<S, W, D> {
         MARK ^ state.addr()
     }
 
-    /// Makes a matcher in the caller's memory, which holds none yet.
+    /// Creates a matcher in the caller's memory, which holds none yet.
     ///
     /// # Safety
     ///
@@ -79,7 +80,7 @@ impl<S: Method, const W: usize, const D: usize> State<S, W, D> {
         Ok(state.cast())
     }
 
-    /// The matcher behind a handle.
+    /// Returns the matcher behind a handle.
     ///
     /// # Safety
     ///
@@ -108,7 +109,7 @@ impl<S: Method, const W: usize, const D: usize> State<S, W, D> {
         unsafe { (&raw mut self.mark).write_volatile(0) };
     }
 
-    /// Whether `count` values at `data` share bytes with the state.
+    /// Returns whether `count` values at `data` share bytes with the state.
     pub(super) fn overlaps<T>(&self, data: *const T, count: usize) -> bool {
         share_bytes(
             (&raw const *self).cast(),
@@ -119,7 +120,7 @@ impl<S: Method, const W: usize, const D: usize> State<S, W, D> {
     }
 }
 
-/// Whether two runs of bytes share any.
+/// Returns whether two runs of bytes overlap.
 pub(super) fn share_bytes(a: *const c_void, a_length: usize, b: *const c_void, b_length: usize) -> bool {
     let (a, b) = (a.addr(), b.addr());
     a < b.saturating_add(b_length) && b < a.saturating_add(a_length)

@@ -1,19 +1,18 @@
-//! What a call answers, in a number and in words.
+//! Status codes of the C interface, and their texts.
 
 use crate::matching::MatchError;
 use crate::pipeline::PushError;
 use core::ffi::CStr;
 
-/// The version of this interface. It changes when a program that was compiled with another header would go
-/// wrong.
+/// Version of this interface, which changes when a program compiled with another header would go wrong.
 pub const STEREOPSIS_ABI: u32 = 5;
 
-/// What a call answers: below 0 it is an error, and nothing has changed.
+/// Result of a call; below 0 it is an error, and nothing has changed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(i32)]
 #[non_exhaustive]
 pub enum Status {
-    /// Done. Where the call gives a row, there is one.
+    /// Done; a call that gives a row gave one.
     Ok = 0,
     /// The line was taken; the first row comes some lines later.
     NoRowYet = 1,
@@ -84,94 +83,57 @@ pub enum Status {
 }
 
 impl Status {
-    /// What it says, in one line without an end.
-    pub const fn text(self) -> &'static CStr {
-        match self {
-            Self::Ok => c"done",
-            Self::NoRowYet => c"the first row comes some lines later",
-            Self::FrameDone => c"all rows of the frame are out",
-            Self::Null => c"a pointer is null",
-            Self::Misaligned => c"a pointer is misaligned",
-            Self::MemoryTooShort => c"the memory is too short: stereopsis_size() bytes are needed",
-            Self::AlreadyInitialised => c"the memory holds a matcher already",
-            Self::NotInitialised => c"the memory holds no matcher of this library",
-            Self::Overlap => c"an argument points into the matcher's memory",
-            Self::TooMany => c"there are too many elements",
-            Self::NotStarted => c"the matcher was not started",
-            Self::NotBegun => c"no frame was begun",
-            Self::LineLength => c"a line must have the width that the matcher was started for",
-            Self::NoLineLeft => c"all lines of the frame are in",
-            Self::LinesMissing => c"lines of the frame are missing",
-            Self::Preset => c"there is no such preset",
-            Self::Width => c"the width must be 1 to stereopsis_max_width()",
-            Self::Height => c"the height must be at least 1",
-            Self::Disparities => c"the disparities must be 16 to stereopsis_max_disparities()",
-            Self::MinDisparity => c"the search must end at 2046 px",
-            Self::LeftRight => c"the left-right check must be 0 to 255 px, or -1",
-            Self::Uniqueness => c"the uniqueness must be 0 to 99 percent, or -1",
-            Self::Smoothing => c"the smoothing radius must be at most 8",
-            Self::SurfaceStep => c"the step of a surface must be at most 32",
-            Self::RigNotFinite => c"a number of the rig is not finite",
-            Self::RigFocalLength => c"the focal length must be greater than zero",
-            Self::RigBaseline => c"the baseline must be greater than zero",
-            Self::RigTooLarge => c"focal length times baseline must be under 134000 px m",
-            Self::RigTooSmall => c"focal length times baseline must be over 0.0000156 px m",
-            Self::RigOffset => c"the principal points must be under 30000 px apart",
-            Self::Gradient => c"the range of gradients must be 1 to 14",
-            Self::Penalties => c"the penalties must be in order, and their sums within bytes",
-            Self::Noise => c"there is no such level of noise",
-            Self::Fault => c"there is no such fault of a line",
-        }
+    /// Returns the text of a status, one line without an end.
+    pub fn text(self) -> &'static CStr {
+        status_text(self as i32)
     }
-
-    /// Every status, for the way back from a number.
-    const ALL: [Self; 34] = [
-        Self::Ok,
-        Self::NoRowYet,
-        Self::FrameDone,
-        Self::Null,
-        Self::Misaligned,
-        Self::MemoryTooShort,
-        Self::AlreadyInitialised,
-        Self::NotInitialised,
-        Self::Overlap,
-        Self::TooMany,
-        Self::NotStarted,
-        Self::NotBegun,
-        Self::LineLength,
-        Self::NoLineLeft,
-        Self::LinesMissing,
-        Self::Preset,
-        Self::Width,
-        Self::Height,
-        Self::Disparities,
-        Self::MinDisparity,
-        Self::LeftRight,
-        Self::Uniqueness,
-        Self::Smoothing,
-        Self::SurfaceStep,
-        Self::RigNotFinite,
-        Self::RigFocalLength,
-        Self::RigBaseline,
-        Self::RigTooLarge,
-        Self::RigTooSmall,
-        Self::RigOffset,
-        Self::Gradient,
-        Self::Penalties,
-        Self::Noise,
-        Self::Fault,
-    ];
 }
 
-/// What a number says that may be a status.
+/// Text of every status.
+const TEXTS: [(Status, &CStr); 34] = [
+    (Status::Ok, c"done"),
+    (Status::NoRowYet, c"the first row comes some lines later"),
+    (Status::FrameDone, c"all rows of the frame are out"),
+    (Status::Null, c"a pointer is null"),
+    (Status::Misaligned, c"a pointer is misaligned"),
+    (Status::MemoryTooShort, c"the memory is too short: stereopsis_size() bytes are needed"),
+    (Status::AlreadyInitialised, c"the memory holds a matcher already"),
+    (Status::NotInitialised, c"the memory holds no matcher of this library"),
+    (Status::Overlap, c"an argument points into the matcher's memory"),
+    (Status::TooMany, c"there are too many elements"),
+    (Status::NotStarted, c"the matcher was not started"),
+    (Status::NotBegun, c"no frame was begun"),
+    (Status::LineLength, c"a line must have the width that the matcher was started for"),
+    (Status::NoLineLeft, c"all lines of the frame are in"),
+    (Status::LinesMissing, c"lines of the frame are missing"),
+    (Status::Preset, c"there is no such preset"),
+    (Status::Width, c"the width must be 1 to stereopsis_max_width()"),
+    (Status::Height, c"the height must be at least 1"),
+    (Status::Disparities, c"the disparities must be 16 to stereopsis_max_disparities()"),
+    (Status::MinDisparity, c"the search must end at 2046 px"),
+    (Status::LeftRight, c"the left-right check must be 0 to 255 px, or -1"),
+    (Status::Uniqueness, c"the uniqueness must be 0 to 99 percent, or -1"),
+    (Status::Smoothing, c"the smoothing radius must be at most 8"),
+    (Status::SurfaceStep, c"the step of a surface must be at most 32"),
+    (Status::RigNotFinite, c"a number of the rig is not finite"),
+    (Status::RigFocalLength, c"the focal length must be greater than zero"),
+    (Status::RigBaseline, c"the baseline must be greater than zero"),
+    (Status::RigTooLarge, c"focal length times baseline must be under 134000 px m"),
+    (Status::RigTooSmall, c"focal length times baseline must be over 0.0000156 px m"),
+    (Status::RigOffset, c"the principal points must be under 30000 px apart"),
+    (Status::Gradient, c"the range of gradients must be 1 to 14"),
+    (Status::Penalties, c"the penalties must be in order, and their sums within bytes"),
+    (Status::Noise, c"there is no such level of noise"),
+    (Status::Fault, c"there is no such fault of a line"),
+];
+
+/// Returns the text of a number that may be a status.
 pub fn status_text(code: i32) -> &'static CStr {
-    Status::ALL
-        .into_iter()
-        .find(|status| *status as i32 == code)
-        .map_or(c"no status of this library", Status::text)
+    let found = TEXTS.iter().find(|(status, _)| *status as i32 == code);
+    found.map_or(c"no status of this library", |(_, text)| text)
 }
 
-/// The version of the library.
+/// Returns the version of the library.
 pub const fn version_text() -> &'static CStr {
     match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
         Ok(text) => text,

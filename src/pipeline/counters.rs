@@ -1,60 +1,58 @@
-//! What went wrong, by name.
+//! Fault counters, one for each kind of fault.
 
-/// Faults since the start, each counted once, by what showed it. Every count stays at its largest value when
-/// it is reached.
+/// Saturating counts of frames, rows, lines and faults since the start. Every fault is counted once.
 ///
-/// A line that another one stood in for is one of `lines_dropped`, `lines_torn`, `lines_late`, `lines_stale`,
-/// `lines_failed`, `lines_timed_out` or `lines_short`, and so is the line that ended a frame because too many
-/// were lost. Of the lines that are due after that nothing is known: they count nowhere.
+/// A replaced line counts as `lines_dropped`, `lines_torn`, `lines_late`, `lines_stale`, `lines_failed`,
+/// `lines_timed_out` or `lines_short`, and so does the line that ended a frame because too many were lost.
+/// Lines that were due after that are not counted.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct FaultCounters {
-    /// Frames begun.
+    /// Frames that began.
     pub frames: u32,
-    /// Frames of which every line came, and every row went out.
+    /// Frames of which every line came and every row was given.
     pub frames_whole: u32,
-    /// Frames of which every row went out, some of them flagged.
+    /// Frames of which every row was given, some of them flagged.
     pub frames_damaged: u32,
-    /// Frames that ended with an error after they had begun.
+    /// Frames that ended early, by an error or by the next frame.
     pub frames_broken: u32,
     /// Frames that the camera could not begin.
     pub frames_failed: u32,
-    /// Frames that the sensor counted and nobody saw: gaps of the sequence numbers.
+    /// Frames that were skipped, by gaps in the sequence numbers.
     pub frames_skipped: u32,
-    /// Frames refused because they were the one before once more.
+    /// Frames refused as a repetition of the previous one.
     pub frames_stale: u32,
-    /// Sequence numbers that went back: the sensor began to count anew.
+    /// Restarts of the sensor, by sequence numbers that went back.
     pub restarts: u32,
-    /// Rows that went out.
+    /// Rows that were given.
     pub rows: u32,
-    /// Rows of these with [`PixelFlags::DAMAGED`](crate::units::PixelFlags::DAMAGED).
+    /// Rows with [`PixelFlags::DAMAGED`](crate::units::PixelFlags::DAMAGED).
     pub rows_damaged: u32,
     /// Lines that came.
     pub lines: u32,
-    /// Lines that row numbers passed over, or that the source said were dropped.
+    /// Lines that row numbers skipped, or that the source reported as dropped.
     pub lines_dropped: u32,
-    /// Lines that came once more, which are left out.
+    /// Lines that came again, which are ignored.
     pub lines_repeated: u32,
-    /// Lines that the source said were torn.
+    /// Lines that the source reported as torn.
     pub lines_torn: u32,
-    /// Lines that the source said came too late.
+    /// Lines that the source reported as late.
     pub lines_late: u32,
-    /// Lines with a time stamp of before the frame or of before the line above, or that the source said were
-    /// old.
+    /// Lines with a time stamp before the frame's or the line above's, or that the source reported as stale.
     pub lines_stale: u32,
-    /// Lines that the hardware failed to give.
+    /// Lines that the hardware failed to deliver.
     pub lines_failed: u32,
-    /// Lines that were waited for in vain.
+    /// Lines that timed out.
     pub lines_timed_out: u32,
-    /// Lines that a frame was short of.
+    /// Lines that were missing at the end of short frames.
     pub lines_short: u32,
-    /// Frames that broke off because the sensor lost sync, or its rows ran backwards.
+    /// Frames that ended because the sensor lost sync, or its rows ran backwards.
     pub syncs_lost: u32,
 }
 
 impl FaultCounters {
-    /// All zero, in a `const`.
+    /// All counts zero.
     pub(super) const NONE: Self = Self {
         frames: 0,
         frames_whole: 0,
@@ -79,7 +77,7 @@ impl FaultCounters {
     };
 }
 
-/// One more, or several.
+/// Adds to a counter, saturating.
 pub(super) fn count(counter: &mut u32, more: usize) {
     *counter = counter.saturating_add(u32::try_from(more).unwrap_or(u32::MAX));
 }

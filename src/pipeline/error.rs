@@ -1,43 +1,43 @@
-//! Why there is no row.
+//! Errors of the pipeline.
 
 use crate::camera::{CameraError, LineFormat};
 use crate::matching::MatchError;
 use core::fmt;
 
-/// Why a camera's lines gave no row.
+/// Why a pipeline that pulls lines from a camera gave no row.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum PipelineError<E> {
-    /// The camera failed; its own error is inside. The frame is lost, the next one may be begun.
+    /// The camera failed; its own error is inside. The frame is over, the next one may begin.
     Camera(CameraError<E>),
-    /// The camera's frames are not of the size that the pipeline was started for, or not
+    /// The camera's frames have another size than the pipeline was started for, or are not
     /// [`PixelFormat::Grey8`](crate::camera::PixelFormat::Grey8).
     Format {
-        /// What the camera gives.
+        /// Format of the camera.
         camera: LineFormat,
-        /// What the pipeline takes.
+        /// Format that the pipeline takes.
         needed: LineFormat,
     },
-    /// The camera gave another row than the next one.
+    /// The camera delivered a row out of order.
     RowOrder {
         /// The row that was due.
         expected: u16,
         /// The row that came.
         given: u16,
     },
-    /// The camera handed out the frame before once more: [`Guarded`](super::Guarded) tells.
+    /// The camera delivered the previous frame again, detected by [`Guarded`](super::Guarded).
     StaleFrame {
-        /// Its sequence number.
+        /// Sequence number of the frame.
         sequence: u32,
     },
-    /// The camera handed out a line of before this frame, or of before the line above:
-    /// [`Guarded`](super::Guarded) tells.
+    /// The camera delivered a line older than this frame or than the line above, detected by
+    /// [`Guarded`](super::Guarded).
     StaleLine {
-        /// The row that it said.
+        /// Row number that the camera reported.
         row: u16,
     },
-    /// No frame was begun.
+    /// The matcher refused a line; its own error is inside.
     Matcher(MatchError),
 }
 
@@ -74,26 +74,26 @@ impl<E> From<MatchError> for PipelineError<E> {
     }
 }
 
-/// Why lines that the caller brings give no row.
+/// Why a pipeline whose lines are pushed gave no row.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum PushError {
-    /// No frame was begun since the start, or the last one broke off.
+    /// No frame was begun since the start, or the last one was ended by an error.
     NotBegun,
-    /// A line has not the width that the pipeline was started for.
+    /// A line has another width than the pipeline was started for.
     LineLength {
-        /// Bytes that a line has.
+        /// Bytes of a line.
         needed: usize,
     },
-    /// All lines of the frame are in: flush, or begin the next one.
+    /// All lines of the frame are in: flush, or begin the next frame.
     NoLineLeft,
-    /// Lines have to be pushed before the frame can be flushed.
+    /// Lines must be pushed before the frame can be flushed.
     LinesMissing {
-        /// How many.
+        /// Number of missing lines.
         missing: usize,
     },
-    /// The pipeline was not started.
+    /// The matcher refused a line; its own error is inside.
     Matcher(MatchError),
 }
 

@@ -1,4 +1,4 @@
-//! The pipeline before cameras that fail.
+//! A pipeline that tolerates camera faults.
 
 use super::counters::{FaultCounters, count};
 use super::lines::LineGuard;
@@ -6,40 +6,40 @@ use super::{Pipeline, PipelineError, PushError};
 use crate::camera::{ErrorType, FrameStart, LineFault, StereoSource};
 use crate::matching::{Config, ConfigError, Kernel, KernelError, MatchError, Method, Row};
 
-/// A [`Pipeline`] that goes on when lines get lost, flags what they touch and counts every fault by name.
+/// A [`Pipeline`] that replaces lost lines, flags the rows that depend on them, and counts every fault by
+/// name.
 ///
-/// A [`Pipeline`] ends the frame with the first error. This one takes the line above in a lost line's place,
-/// in a frame as often as [`Self::set_most_lost`] allows, and says so in the rows:
+/// A [`Pipeline`] ends the frame at the first error. This one replaces a lost line by the line above, as
+/// often per frame as [`Self::set_most_lost`] allows:
 ///
-/// * rows whose matching window saw the lost line have no answers, and [`PixelFlags::DAMAGED`] on every
+/// * rows whose matching window contains the lost line have no answers, and [`PixelFlags::DAMAGED`] on every
 ///   pixel;
-/// * rows farther away that it can have touched, by the checks or along paths, keep their answers and have
-///   the flag;
-/// * every other row is, to the bit, what it would be without the fault.
+/// * rows that the lost line can affect through checks or along paths keep their answers and have the flag;
+/// * every other row is bit-equal to that without the fault.
 ///
-/// With [`Fast`](crate::matching::Fast) and [`Block`](crate::matching::Block) a lost line reaches
-/// [`Pipeline::LATENCY`] rows up, and [`Self::reach_down`] rows down; along paths it reaches to the end of
-/// the frame.
+/// With [`Fast`](crate::matching::Fast) and [`Block`](crate::matching::Block) a lost line affects
+/// [`Pipeline::LATENCY`] rows up and [`Self::reach_down`] rows down; along paths it affects the rest of the
+/// frame.
 ///
-/// What ends a frame, as a [`Pipeline`]'s does: more lost lines than allowed, sync lost, rows that run
-/// backwards. The next frame is as good as the first.
+/// A frame ends early after more lost lines than allowed, lost sync, or rows that run backwards. The next
+/// frame is as good as the first.
 ///
 /// ```text
-/// line              row told      what becomes of it
-/// as due            due           taken
-/// lost, told        -             the line above stands in            lines_dropped, _torn, _late, _failed, _timed_out
-/// passed over       > due         it stands in for those above it     lines_dropped
-/// once more         due - 1       left out, the next one is taken     lines_repeated
-/// of another frame  < due - 1     ends the frame                      syncs_lost
-/// old time stamp    due           the line above stands in            lines_stale
-/// none left         -             the line above stands in            lines_short
+/// line              reported row  treatment                         counter
+/// expected          due           taken                             lines
+/// reported lost     -             replaced by the line above        lines_dropped, lines_torn, lines_late,
+///                                                                   lines_failed, lines_timed_out
+/// skipped           > due         this line replaces those above    lines_dropped
+/// repeated          due - 1       ignored                           lines_repeated
+/// of another frame  < due - 1     ends the frame                    syncs_lost
+/// old time stamp    due           replaced by the line above        lines_stale
+/// none left         -             replaced by the line above        lines_short
 /// ```
 ///
-/// Lines that the caller brings ([`Self::push`]) are taken as they are, and one that did not come is told
-/// ([`Self::push_lost`]).
+/// Pushed lines ([`Self::push`]) are taken as they are, and lost ones are reported by [`Self::push_lost`].
 ///
-/// Time stamps are looked at where the source has them: 0 is none. A frame is the one before once more when
-/// its sequence number, not 0, is that of the one before, or when its number and its stamp, not 0, are.
+/// A time stamp of 0 means none. A frame repeats the previous one when both have one sequence number that is
+/// not 0, or one number and one time stamp that is not 0.
 ///
 /// [`PixelFlags::DAMAGED`]: crate::units::PixelFlags::DAMAGED
 pub struct Guarded<S: Method, const W: usize, const D: usize> {
@@ -52,31 +52,30 @@ pub struct Guarded<S: Method, const W: usize, const D: usize> {
 type Guard<T, C> = Result<T, PipelineError<<C as ErrorType>::Error>>;
 
 impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
-    /// A pipeline that waits for [`Self::start`]. Every byte of it is zero: a static of it takes RAM and no
+    /// Creates a pipeline that awaits [`Self::start`]. All its bytes are zero, so that a static takes no
     /// flash.
     pub const fn new() -> Self {
         Self { pipeline: Pipeline::new(), lines: LineGuard::new(), before: None, is_running: false }
     }
 
-    /// Checks the configuration and gets ready for the first frame. Counters go to zero.
+    /// Checks the configuration, prepares for the first frame, and clears the counters.
     pub fn start(&mut self, config: &Config) -> Result<(), ConfigError> {
         self.pipeline.start(config)?;
         (self.lines.counters, self.before, self.is_running) = (FaultCounters::NONE, None, false);
         Ok(())
     }
 
-    /// Another configuration from the next frame on: counters go on, and a frame under way is over. So a
-    /// frame can be matched for the [noise](Config::noise) that was measured in the one before. What is
-    /// refused changes nothing.
+    /// Changes the configuration from the next frame on, for instance for the [noise](Config::noise) measured
+    /// in the last frame. Counters continue, and a frame under way ends. A refused configuration changes
+    /// nothing.
     pub fn restart(&mut self, config: &Config) -> Result<(), ConfigError> {
         self.pipeline.start(config)?;
         self.give_up();
         Ok(())
     }
 
-    /// How many lines of a frame may be lost before it ends with an error; all of them where nothing is set.
-    /// With a camera that is dead each of them may cost the time that the source waits: a few are enough
-    /// where that matters.
+    /// Sets how many lines of a frame may be lost before it ends with an error; by default all of them. With
+    /// a dead camera every lost line may cost the source's time-out.
     pub fn set_most_lost(&mut self, lines: u16) {
         self.lines.most_lost = Some(lines);
     }
@@ -86,22 +85,22 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
         self.pipeline.set_kernel(kernel)
     }
 
-    /// What went wrong so far.
+    /// Returns the fault counters.
     pub fn counters(&self) -> &FaultCounters {
         &self.lines.counters
     }
 
-    /// Lines of this frame that another one stood in for.
+    /// Returns the number of replaced lines of this frame.
     pub fn lost_lines(&self) -> u16 {
         self.lines.lost
     }
 
-    /// What the pipeline was started for.
+    /// Returns the configuration.
     pub fn config(&self) -> &Config {
         self.pipeline.config()
     }
 
-    /// How many rows down from a lost line the flag stands; along paths it stands to the end of the frame.
+    /// Returns how many rows below a lost line are flagged; `usize::MAX` along paths.
     pub fn reach_down(&self) -> usize {
         // Answers that are smoothed down the columns rest on the row above as it came out, and so does a
         // path.
@@ -112,7 +111,7 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
         Pipeline::<S, W, D>::LATENCY + usize::from(checks.median) + usize::from(checks.speckle_pixels)
     }
 
-    /// Waits for the camera's next frame and forgets the one before.
+    /// Waits for the camera's next frame, and drops the one before.
     pub fn begin_frame<C: StereoSource>(&mut self, camera: &mut C) -> Guard<FrameStart, C> {
         self.give_up();
         let start = match self.pipeline.begin_frame(camera) {
@@ -150,8 +149,7 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
         Ok(start)
     }
 
-    /// The next row of disparities; `None` when all rows of the frame are out. After an error the frame is
-    /// over.
+    /// Returns the next row; `None` after the frame's last row. An error ends the frame.
     pub fn next_row<C: StereoSource>(&mut self, camera: &mut C) -> Guard<Option<Row<'_>>, C> {
         let Self { pipeline, lines, .. } = self;
         match pipeline.advance(|pipeline| lines.take(pipeline, camera)) {
@@ -171,7 +169,7 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
         }
     }
 
-    /// Begins a frame whose lines the caller brings, and forgets the one before.
+    /// Begins a frame whose lines are pushed, and drops the one before.
     pub fn begin(&mut self) -> Result<(), MatchError> {
         self.give_up();
         self.pipeline.begin()?;
@@ -181,15 +179,15 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
         Ok(())
     }
 
-    /// As [`Pipeline::push`], with the row flagged where it rests on a line that was lost.
+    /// Pushes a line as [`Pipeline::push`] does, and flags the row if it depends on a lost line.
     pub fn push(&mut self, left: &[u8], right: &[u8]) -> Result<Option<Row<'_>>, PushError> {
         let due = self.pipeline.left.count();
         let is_out = self.pipeline.push(left, right)?.is_some();
         Ok(self.pushed(None, due, is_out))
     }
 
-    /// In place of [`Self::push`], of a line that did not come: the line above stands in. It counts by its
-    /// fault. The caller says how many lines of a frame it bears.
+    /// Pushes the line above in place of a lost one, which is counted by its fault. The caller decides how
+    /// many lost lines of a frame to accept.
     pub fn push_lost(&mut self, fault: LineFault) -> Result<Option<Row<'_>>, PushError> {
         let due = self.pipeline.left.count();
         let is_out = self.pipeline.push_repeated()?.is_some();
@@ -204,7 +202,7 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
         self.pipeline.row()
     }
 
-    /// As [`Pipeline::flush`], with the row flagged.
+    /// Returns the next row as [`Pipeline::flush`] does, and flags it if it depends on a lost line.
     pub fn flush(&mut self) -> Result<Option<Row<'_>>, PushError> {
         if self.pipeline.flush()?.is_some() {
             self.mark();
@@ -214,17 +212,17 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
         Ok(None)
     }
 
-    /// The row that came out last, until the next line goes in; `None` before the first of a frame.
+    /// Returns the last row, until the next line goes in; `None` before a frame's first row.
     pub fn row(&self) -> Option<Row<'_>> {
         self.pipeline.row()
     }
 
-    /// Takes the answers of [`Self::row`] away where a camera did not see: [`Pipeline::mask`].
+    /// Removes answers of [`Self::row`] at pixels that a camera did not see, as [`Pipeline::mask`] does.
     pub fn mask(&mut self, valid: impl FnOnce(u16, [&mut [u8]; 2]) -> bool) {
         self.pipeline.mask(valid);
     }
 
-    /// Counts a frame of which all rows are out.
+    /// Counts a complete frame.
     fn end(&mut self) {
         if core::mem::take(&mut self.is_running) {
             let LineGuard { lost, counters, .. } = &mut self.lines;
@@ -232,7 +230,7 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
         }
     }
 
-    /// Counts the row that came out, and flags it where it rests on a lost line.
+    /// Counts the row that came out, and flags it if it depends on a lost line.
     fn mark(&mut self) {
         count(&mut self.lines.counters.rows, 1);
         let Some(row) = self.pipeline.row().map(|row| usize::from(row.index())) else { return };
@@ -242,12 +240,12 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
         let reach = S::RADIUS_Y + Pipeline::<S, W, D>::CENSUS_REACH;
         let newest = self.pipeline.left.count().saturating_sub(1);
         let mut seen = row.saturating_sub(reach)..=newest.min(row + reach);
-        let has_lost = seen.any(|line| self.lines.stood_in(newest - line));
+        let has_lost = seen.any(|line| self.lines.was_replaced(newest - line));
         self.pipeline.matcher.mark_damaged(!has_lost);
         count(&mut self.lines.counters.rows_damaged, 1);
     }
 
-    /// Ends a frame whose rows are not all out.
+    /// Ends an incomplete frame.
     fn give_up(&mut self) {
         if core::mem::take(&mut self.is_running) {
             count(&mut self.lines.counters.frames_broken, 1);

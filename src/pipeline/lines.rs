@@ -1,32 +1,32 @@
-//! Lines from a camera that fails, each judged before it goes in.
+//! Fault detection by line: each line of a camera is classified before it goes in.
 
 use super::counters::{FaultCounters, count};
 use super::{Pipeline, PipelineError};
 use crate::camera::{CameraError, FrameStart, LineFault, LineStart, StereoSource};
 use crate::matching::Method;
 
-/// What is known about the lines of a frame, and the faults so far.
+/// State of a frame's lines, and the fault counters.
 pub(super) struct LineGuard {
     pub(super) counters: FaultCounters,
-    /// Lines of a frame that may be lost; any number where that is not said.
+    /// Largest number of lost lines per frame; unlimited if `None`.
     pub(super) most_lost: Option<u16>,
-    /// Lines of this frame that another one stood in for.
+    /// Number of replaced lines of this frame.
     pub(super) lost: u16,
-    /// The lowest of them.
+    /// Lowest replaced line.
     pub(super) last_lost: usize,
-    /// Of the last 64 lines, the newest in bit 0: whether another one stood in.
-    stood_in: u64,
-    /// The newest time stamp of this frame, microseconds.
+    /// Whether each of the last 64 lines was replaced, the newest in bit 0.
+    replaced: u64,
+    /// Newest time stamp of this frame, microseconds.
     newest_us: u64,
-    /// Rows up to the last one that the camera told.
-    told: usize,
-    /// The newest line is this row's, and stands in for those above it.
+    /// One more than the last row that the camera reported.
+    reported: usize,
+    /// Row of the newest line while it replaces skipped lines above it.
     held: Option<usize>,
-    /// The camera said that no line is left.
+    /// Whether the camera reported that no line is left.
     is_short: bool,
 }
 
-/// What is to be done about a line that did not come.
+/// Counter of a lost line, and the error if it is one too many.
 type Lost<E> = (fn(&mut FaultCounters) -> &mut u32, PipelineError<E>);
 
 impl LineGuard {
@@ -36,21 +36,21 @@ impl LineGuard {
             most_lost: None,
             lost: 0,
             last_lost: 0,
-            stood_in: 0,
+            replaced: 0,
             newest_us: 0,
-            told: 0,
+            reported: 0,
             held: None,
             is_short: false,
         }
     }
 
-    /// Forgets the frame before.
+    /// Begins a frame.
     pub(super) fn begin(&mut self, start: &FrameStart) {
-        (self.lost, self.last_lost, self.stood_in) = (0, 0, 0);
-        (self.newest_us, self.told, self.held, self.is_short) = (start.timestamp_us, 0, None, false);
+        (self.lost, self.last_lost, self.replaced) = (0, 0, 0);
+        (self.newest_us, self.reported, self.held, self.is_short) = (start.timestamp_us, 0, None, false);
     }
 
-    /// Counts a line that the caller brought, or lost for a reason, as number `due` of its frame.
+    /// Counts line `due` of a frame, which the caller pushed or reported as lost.
     pub(super) fn pushed(&mut self, lost: Option<LineFault>, due: usize) {
         if let Some(fault) = lost {
             count(counter_of(fault)(&mut self.counters), 1);
@@ -58,12 +58,12 @@ impl LineGuard {
         self.note(lost.is_none(), due);
     }
 
-    /// Whether another line stood in for the one `back` lines above the newest.
-    pub(super) fn stood_in(&self, back: usize) -> bool {
-        back < 64 && self.stood_in >> back & 1 != 0
+    /// Returns whether the line `back` lines above the newest was replaced.
+    pub(super) fn was_replaced(&self, back: usize) -> bool {
+        back < 64 && self.replaced >> back & 1 != 0
     }
 
-    /// Takes the lines that the next row needs.
+    /// Reads the lines that the next row needs.
     pub(super) fn take<S: Method, C: StereoSource, const W: usize, const D: usize>(
         &mut self,
         pipeline: &mut Pipeline<S, W, D>,
@@ -93,23 +93,19 @@ impl LineGuard {
         // A camera may give a line again and again: a frame's worth of that is enough.
         for _ in 0..=height {
             if self.is_short {
-                return self.stand_in(
-                    pipeline,
-                    due,
-                    (|c| &mut c.lines_short, CameraError::NoLineLeft.into()),
-                );
+                return self.replace(pipeline, due, (|c| &mut c.lines_short, CameraError::NoLineLeft.into()));
             }
             let lost: Lost<C::Error> = match camera
                 .next_lines(pipeline.left.next_line(), pipeline.right.next_line())
             {
-                Ok(line) => match self.judge(line, due, height)? {
-                    Judged::Due => return self.accept(pipeline, true, due),
-                    Judged::Again => continue,
-                    Judged::Below(row) => {
+                Ok(line) => match self.classify(line, due, height)? {
+                    LineKind::Due => return self.accept(pipeline, true, due),
+                    LineKind::Repeated => continue,
+                    LineKind::Below(row) => {
                         self.held = Some(row);
                         return self.accept(pipeline, false, due);
                     }
-                    Judged::Old => (|c| &mut c.lines_stale, PipelineError::StaleLine { row: line.row }),
+                    LineKind::Stale => (|c| &mut c.lines_stale, PipelineError::StaleLine { row: line.row }),
                 },
                 Err(CameraError::LineLost(fault)) => (counter_of(fault), CameraError::LineLost(fault).into()),
                 Err(CameraError::TimedOut) => (|c| &mut c.lines_timed_out, CameraError::TimedOut.into()),
@@ -123,30 +119,35 @@ impl LineGuard {
                 }
                 Err(e) => (|c| &mut c.lines_failed, e.into()),
             };
-            return self.stand_in(pipeline, due, lost);
+            return self.replace(pipeline, due, lost);
         }
         count(&mut self.counters.syncs_lost, 1);
         Err(CameraError::LostSync.into())
     }
 
-    /// What a line that came is to the one that is due.
-    fn judge<E>(&mut self, line: LineStart, due: usize, height: usize) -> Result<Judged, PipelineError<E>> {
+    /// Classifies a line by its row number and time stamp.
+    fn classify<E>(
+        &mut self,
+        line: LineStart,
+        due: usize,
+        height: usize,
+    ) -> Result<LineKind, PipelineError<E>> {
         let row = usize::from(line.row);
-        if row + 1 == self.told {
+        if row + 1 == self.reported {
             count(&mut self.counters.lines_repeated, 1);
-            return Ok(Judged::Again);
+            return Ok(LineKind::Repeated);
         }
         let order = PipelineError::RowOrder { expected: due as u16, given: line.row };
-        if row < self.told || row >= height {
+        if row < self.reported || row >= height {
             count(&mut self.counters.syncs_lost, 1);
             return Err(order);
         }
-        self.told = row + 1;
-        // It came after all, and another one stands in its place.
+        self.reported = row + 1;
+        // A late line whose place is taken.
         if row < due {
-            return Ok(Judged::Again);
+            return Ok(LineKind::Repeated);
         }
-        // Rows passed over are lost, whatever the line below them is worth.
+        // Skipped rows are lost, even if this line is stale.
         let passed = row - due;
         if passed > 0 {
             count(&mut self.counters.lines_dropped, passed);
@@ -154,19 +155,19 @@ impl LineGuard {
         }
         if line.timestamp_us != 0 && line.timestamp_us < self.newest_us {
             if passed > 0 {
-                // The line that would stand in is none itself.
-                self.told = row;
+                // The line that would replace them is lost itself.
+                self.reported = row;
                 count(&mut self.counters.lines_stale, 1);
                 return Err(PipelineError::StaleLine { row: line.row });
             }
-            return Ok(Judged::Old);
+            return Ok(LineKind::Stale);
         }
         self.newest_us = self.newest_us.max(line.timestamp_us);
-        Ok(if passed > 0 { Judged::Below(row) } else { Judged::Due })
+        Ok(if passed > 0 { LineKind::Below(row) } else { LineKind::Due })
     }
 
-    /// Puts the line above in the place of the one that is due, if so many may be lost.
-    fn stand_in<E, S: Method, const W: usize, const D: usize>(
+    /// Replaces the due line by the one above, if so many lines may be lost.
+    fn replace<E, S: Method, const W: usize, const D: usize>(
         &mut self,
         pipeline: &mut Pipeline<S, W, D>,
         due: usize,
@@ -179,13 +180,13 @@ impl LineGuard {
         self.accept(pipeline, false, due)
     }
 
-    /// Whether so many more lines may be lost.
+    /// Checks that so many more lines may be lost.
     fn allow<E>(&self, more: usize, otherwise: PipelineError<E>) -> Result<(), PipelineError<E>> {
         let lost = usize::from(self.lost) + more;
         if self.most_lost.is_some_and(|most| lost > usize::from(most)) { Err(otherwise) } else { Ok(()) }
     }
 
-    /// The lines that stand where the next ones go are those of `due`, or stand in for them.
+    /// Accepts the lines in the windows as row `due`, its own or replacements.
     fn accept<E, S: Method, const W: usize, const D: usize>(
         &mut self,
         pipeline: &mut Pipeline<S, W, D>,
@@ -198,9 +199,9 @@ impl LineGuard {
         Ok(())
     }
 
-    /// Remembers whether the newest line is its row's own.
+    /// Records whether the newest line is its row's own.
     fn note(&mut self, is_own: bool, due: usize) {
-        self.stood_in = self.stood_in << 1 | u64::from(!is_own);
+        self.replaced = self.replaced << 1 | u64::from(!is_own);
         if is_own {
             count(&mut self.counters.lines, 1);
         } else {
@@ -209,7 +210,7 @@ impl LineGuard {
     }
 }
 
-/// Where a line is counted that its source knows to be lost.
+/// Counter of a reported fault.
 fn counter_of(fault: LineFault) -> fn(&mut FaultCounters) -> &mut u32 {
     match fault {
         LineFault::Dropped => |c| &mut c.lines_dropped,
@@ -219,14 +220,14 @@ fn counter_of(fault: LineFault) -> fn(&mut FaultCounters) -> &mut u32 {
     }
 }
 
-/// What a line is to the one that is due.
-enum Judged {
-    /// It is the one.
+/// Relation of a line to the due one.
+enum LineKind {
+    /// The line is the due one.
     Due,
-    /// It came before, or its place is taken.
-    Again,
-    /// It is of this row, below.
+    /// The line came before, or its place is taken.
+    Repeated,
+    /// The line is of this row below the due one.
     Below(usize),
-    /// It was left from before.
-    Old,
+    /// The line has an old time stamp.
+    Stale,
 }

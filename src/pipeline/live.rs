@@ -5,14 +5,13 @@ use crate::camera::{FrameStart, LineFormat, PixelFormat, StereoSource};
 use crate::imaging::LineWindow;
 use crate::matching::{Config, ConfigError, Kernel, KernelError, MatchError, Matcher, Method, Row};
 
-/// Rows of disparities from a stereo source, in memory of its own and of fixed size: it fits a `static`.
+/// Disparity rows from a stereo source, in fixed-size memory that fits a `static`.
 ///
-/// The row that comes out is [`Pipeline::LATENCY`] lines behind the line that goes in; the last rows come
-/// when the frame's lines are over.
+/// Row y comes out when line y + [`Pipeline::LATENCY`] is in; the last rows come after the frame's last line.
 ///
-/// Lines come in one of two ways. With [`Self::begin_frame`] and [`Self::next_row`] the pipeline takes them
-/// from a camera when it needs them. With [`Self::begin`], [`Self::push`] and [`Self::flush`] the caller
-/// brings them, from an interrupt's buffer or from C. Both give the same rows.
+/// Lines are pulled or pushed, with equal results: [`Self::begin_frame`] and [`Self::next_row`] read a camera
+/// as needed; with [`Self::begin`], [`Self::push`] and [`Self::flush`] the caller passes lines, from an
+/// interrupt's buffer or from C.
 #[doc = "```"]
 #[doc = "use stereopsis::{matching::{Block, Config}, pipeline::Pipeline};"]
 #[doc = "static PIPELINE: Pipeline<Block, 320, 64> = Pipeline::new();"]
@@ -23,19 +22,19 @@ pub struct Pipeline<S: Method, const W: usize, const D: usize> {
     pub(super) left: LineWindow<W>,
     pub(super) right: LineWindow<W>,
     pub(super) matcher: Matcher<S, W, D>,
-    /// Rows whose five lines went into the matcher.
+    /// Number of rows that the matcher took.
     taken: usize,
     height: usize,
 }
 
 impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
-    /// Lines below a census code that it looks at.
+    /// Number of lines below a row that its census reads.
     pub(super) const CENSUS_REACH: usize = 2;
 
-    /// Row y comes out when line y + `LATENCY` is in.
+    /// Delay in lines: row y comes out when line y + `LATENCY` is in.
     pub const LATENCY: usize = Self::CENSUS_REACH + Matcher::<S, W, D>::DELAY;
 
-    /// A pipeline that waits for [`Self::start`]. Every byte of it is zero: a static of it takes RAM and no
+    /// Creates a pipeline that awaits [`Self::start`]. All its bytes are zero, so that a static takes no
     /// flash.
     pub const fn new() -> Self {
         Self {
@@ -47,7 +46,7 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
         }
     }
 
-    /// Checks the configuration and gets ready for the first frame.
+    /// Checks the configuration and prepares for the first frame.
     pub fn start(&mut self, config: &Config) -> Result<(), ConfigError> {
         self.matcher.start(config)?;
         self.height = usize::from(config.height);
@@ -60,12 +59,12 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
         self.matcher.set_kernel(kernel)
     }
 
-    /// The kernel in use.
+    /// Returns the kernel in use.
     pub fn kernel(&self) -> Kernel {
         self.matcher.kernel()
     }
 
-    /// Waits for the camera's next frame and forgets the one before.
+    /// Waits for the camera's next frame, and drops the one before.
     pub fn begin_frame<C: StereoSource>(
         &mut self,
         camera: &mut C,
@@ -85,8 +84,8 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
         Ok(start)
     }
 
-    /// The next row of disparities, taking as many lines from the camera as it needs; `None` when all rows of
-    /// the frame are out. After an error the frame is over.
+    /// Returns the next row, reading as many lines from the camera as needed; `None` after the frame's last
+    /// row. An error ends the frame.
     pub fn next_row<C: StereoSource>(
         &mut self,
         camera: &mut C,
@@ -105,7 +104,7 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
         }
     }
 
-    /// Begins a frame whose lines the caller brings, and forgets the one before.
+    /// Begins a frame whose lines are pushed, and drops the one before.
     pub fn begin(&mut self) -> Result<(), MatchError> {
         self.stop();
         if self.height == 0 {
@@ -119,11 +118,11 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
         Ok(())
     }
 
-    /// Takes the next line of both cameras, which is copied, and gives the row that it brings out: `None` for
-    /// the first [`Self::LATENCY`] lines. When all lines are in, [`Self::flush`] gives the other rows.
+    /// Copies the next line of both cameras, and returns the row that it completes: `None` for the first
+    /// [`Self::LATENCY`] lines. After the last line, [`Self::flush`] returns the other rows.
     ///
-    /// A line has exactly the width that the pipeline was started for. After an error nothing has changed:
-    /// the right line may follow.
+    /// A line has exactly the width that the pipeline was started for. An error changes nothing: the correct
+    /// line may follow.
     pub fn push(&mut self, left: &[u8], right: &[u8]) -> Result<Option<Row<'_>>, PushError> {
         self.begun()?;
         if self.left.count() >= self.height {
@@ -142,7 +141,7 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
         Ok(self.pushed()?)
     }
 
-    /// As [`Self::push`], with the line above once more: for one that did not come.
+    /// Pushes a copy of the line above in place of a lost line.
     pub(super) fn push_repeated(&mut self) -> Result<Option<Row<'_>>, PushError> {
         self.begun()?;
         if self.left.count() >= self.height {
@@ -155,7 +154,7 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
         Ok(self.pushed()?)
     }
 
-    /// The row that the newest line brings out.
+    /// Returns the row that the newest line completes.
     fn pushed(&mut self) -> Result<Option<Row<'_>>, MatchError> {
         // The image's last line completes up to three rows; `flush` takes all but the first of them.
         if self.lines_needed() <= self.left.count() {
@@ -164,7 +163,7 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
         Ok(self.matcher.row())
     }
 
-    /// The next row below those that the lines brought out; `None` when all rows of the frame are out.
+    /// Returns the next row after the last line was pushed; `None` after the frame's last row.
     pub fn flush(&mut self) -> Result<Option<Row<'_>>, PushError> {
         self.begun()?;
         let missing = self.height.saturating_sub(self.left.count());
@@ -175,24 +174,24 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
         Ok(self.row().filter(|_| is_out))
     }
 
-    /// The row that came out last, until the next line goes in; `None` before the first of a frame.
+    /// Returns the last row, until the next line goes in; `None` before a frame's first row.
     pub fn row(&self) -> Option<Row<'_>> {
         self.matcher.row()
     }
 
-    /// Takes the answers of [`Self::row`] away where a camera did not see ([`Matcher::mask`]).
-    /// [`Self::next_row`] asks the camera itself; this is for who pushes lines that have such places.
+    /// Removes answers of [`Self::row`] at pixels that a camera did not see ([`Matcher::mask`]), for callers
+    /// that push lines; [`Self::next_row`] asks the camera.
     pub fn mask(&mut self, valid: impl FnOnce(u16, [&mut [u8]; 2]) -> bool) {
         self.matcher.mask(valid);
     }
 
-    /// What the pipeline was started for; all zero before.
+    /// Returns the configuration; all zero before [`Self::start`].
     pub fn config(&self) -> &Config {
         self.matcher.config()
     }
 
-    /// Takes rows through the matcher until one comes out, each after `lines` took what it needs; false when
-    /// all rows of the frame are out.
+    /// Steps until a row comes out, with `lines` reading the lines for each step; false after the frame's
+    /// last row.
     pub(super) fn advance<E: From<MatchError>>(
         &mut self,
         mut lines: impl FnMut(&mut Self) -> Result<(), E>,
@@ -211,7 +210,7 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
         Ok(true)
     }
 
-    /// Takes the lines up to two below the next row.
+    /// Reads the lines up to two below the next row.
     fn take_lines<C: StereoSource>(&mut self, camera: &mut C) -> Result<(), PipelineError<C::Error>> {
         for due in self.left.count()..self.lines_needed() {
             let start = camera.next_lines(self.left.next_line(), self.right.next_line())?;
@@ -224,7 +223,7 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
         Ok(())
     }
 
-    /// Takes the next row through the matcher.
+    /// Passes the next row to the matcher.
     fn step(&mut self) -> Result<(), MatchError> {
         if self.taken < self.height {
             self.matcher.push(&self.left.around(self.taken), &self.right.around(self.taken))?;
@@ -235,12 +234,12 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
         Ok(())
     }
 
-    /// Lines that have to be in before the next row can be taken.
+    /// Number of lines that the next step needs.
     pub(super) fn lines_needed(&self) -> usize {
         self.taken.saturating_add(Self::CENSUS_REACH + 1).min(self.height)
     }
 
-    /// Whether a frame was begun by [`Self::begin`], and not stopped.
+    /// Checks that a frame is under way.
     fn begun(&self) -> Result<(), PushError> {
         if self.height == 0 {
             Err(MatchError::NotStarted.into())
@@ -251,7 +250,7 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
         }
     }
 
-    /// No rows until the next frame.
+    /// Ends the frame.
     pub(super) fn stop(&mut self) {
         self.taken = usize::MAX;
     }

@@ -1,40 +1,50 @@
-//! The live path, row by row: camera, line windows, census, matching.
+//! The live path, row by row: camera, line windows, matcher.
 //!
 //! In: lines of two cameras, pulled from a [`StereoSource`](crate::camera::StereoSource) or pushed by the
-//! caller. Out: a [`Row`](crate::matching::Row) of disparities for every line, [`Pipeline::LATENCY`] lines
-//! later.
+//! caller. Out: a [`Row`](crate::matching::Row) of disparities per line, [`Pipeline::LATENCY`] lines later.
 //!
-//! * [`Pipeline`]: the memory and the order of the stages.
-//! * [`Guarded`]: the same before cameras that fail, with [`FaultCounters`].
+//! * [`Pipeline`]: line windows and matcher in one block of memory.
+//! * [`Guarded`]: a pipeline that tolerates camera faults, with [`FaultCounters`].
 //! * [`PipelineError`], [`PushError`]: why there is no row, when lines are pulled and when they are pushed.
 //!
-//! # With cameras that fail
+//! ```text
+//! for every row y of a frame, `next_row` (pulled) or `push` and `flush` (pushed):
+//!   1. lines up to y + 2   camera -> both line windows; a lost line is replaced by the one above (Guarded)
+//!   2. match row y         the five rows around y of both windows -> matcher
+//!   3. row y - DELAY       matcher -> Row of disparities, flags and confidences
+//!   4. mask                answers at pixels that a camera did not see are removed
+//!   5. mark                rows that depend on a lost line are flagged (Guarded)
+//! ```
 //!
-//! A [`Pipeline`] gives right rows up to the first error, and after an error the next frame. A [`Guarded`]
-//! goes on within the frame. What both promise, whatever the source does:
+//! # Camera faults
+//!
+//! A [`Pipeline`] gives correct rows up to the first error, and goes on with the next frame. A [`Guarded`]
+//! goes on within the frame. Whatever the source does, both guarantee:
 //!
 //! * no panic, and no wait but the source's own;
-//! * a row that comes out is, to the bit, what its lines give; a row that rests on a line that did not come
-//!   has a flag (from [`Guarded`]), or does not come out (from [`Pipeline`]);
+//! * a row is bit-exact for its lines; a row that depends on a lost line is flagged by [`Guarded`], and
+//!   withheld by [`Pipeline`];
 //! * the next whole frame is as good as the first;
-//! * every fault that can be seen is counted once, by its name ([`FaultCounters`]).
+//! * every detectable fault is counted once, by name ([`FaultCounters`]).
 //!
-//! | fault | how it is seen |
+//! | fault | detected by |
 //! | --- | --- |
-//! | dropped, torn, late line; bus error; time-out | the source says so |
-//! | line passed over, line once more, lost sync | the row's number |
-//! | line or frame of before | time stamp, sequence number (from [`Guarded`] and [`CameraPair`](crate::camera::CameraPair)) |
+//! | dropped, torn or late line; bus error; time-out | the source's report |
+//! | skipped or repeated line, lost sync | row number |
+//! | stale line or frame | time stamp, sequence number ([`Guarded`], [`CameraPair`]) |
 //! | short frame | no line is left |
-//! | dead camera | time-outs; [`Guarded::set_most_lost`] bounds them |
-//! | black, saturated, flat or hanging picture, swapped cameras, unequal gain | [`PairMonitor`](crate::imaging::PairMonitor), of a frame; no row is flagged |
-//! | torn line that nobody tells, single stuck pixels | not at all: the first looks like a line, the second like a dot |
+//! | dead camera | time-outs, bounded by [`Guarded::set_most_lost`] |
+//! | bad picture, swapped cameras, unequal gain | [`PairMonitor`], per frame; no row is flagged |
+//! | unreported torn line, single stuck pixels | not detected |
+//!
+//! [`CameraPair`]: crate::camera::CameraPair
+//! [`PairMonitor`]: crate::imaging::PairMonitor
 //!
 //! # In an application
 //!
-//! Optional stages stand before and after, row by row: [`RectifiedPair`](crate::imaging::RectifiedPair) for
-//! raw lines, [`PairMonitor`](crate::imaging::PairMonitor) and [`AutoExposure`](crate::imaging::AutoExposure)
-//! beside the lines; [`TemporalFilter`](crate::depth::TemporalFilter) and
-//! [`Decimator`](crate::depth::Decimator) on the rows.
+//! Optional stages stand before and after the pipeline: [`RectifiedPair`](crate::imaging::RectifiedPair) for
+//! raw lines, [`PairMonitor`] and [`AutoExposure`](crate::imaging::AutoExposure) beside the lines;
+//! [`TemporalFilter`](crate::depth::TemporalFilter) and [`Decimator`](crate::depth::Decimator) on the rows.
 //!
 //! ```
 //! use stereopsis::camera::StereoSource;
@@ -43,7 +53,7 @@
 //! use stereopsis::pipeline::{Guarded, PipelineError};
 //! use stereopsis::units::Disparity;
 //!
-//! /// A frame of a camera that may fail: held over a frame or two, a fourth as large.
+//! /// Shows a frame of a camera that may fail, filtered over time and downsampled.
 //! fn frame<C: StereoSource>(
 //!     camera: &mut C,
 //!     pipeline: &mut Guarded<Fast, 160, 32>,
@@ -66,10 +76,9 @@
 //! # let _ = TemporalFilter::<160, 120>::new(TemporalConfig::default());
 //! ```
 //!
-//! Two cores share a frame as two pipelines, a band of rows each, and every row is bit-equal to that of one:
-//! a band sees [`Pipeline::LATENCY`] lines more than it gives rows below, and above as many and one more for
-//! each answer that the speckle filter asks for
-//! ([`Checks::speckle_pixels`](crate::matching::Checks::speckle_pixels)).
+//! Two cores can share a frame as two pipelines with a band of rows each, bit-equal to one pipeline: a band
+//! takes [`Pipeline::LATENCY`] more lines below than it gives rows, and above as many and
+//! [`Checks::speckle_pixels`](crate::matching::Checks::speckle_pixels) more.
 
 mod counters;
 mod error;

@@ -1,11 +1,11 @@
-//! Two raw cameras as a rectified stereo source.
+//! Rectified stereo source over two raw cameras.
 
 use super::{Remap, RemapError};
 use crate::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource};
 use crate::geometry::{Real, rectify::Rectification};
 use core::fmt;
 
-/// The remaps of two cameras, and which pixels of their last lines are valid: what stands in a static.
+/// Remaps of two cameras with the masks of their last lines, for a static.
 #[derive(Clone, Debug)]
 pub struct RemapPair<const W: usize, const N: usize, const SLOTS: usize> {
     left: Remap<W, N, SLOTS>,
@@ -14,33 +14,32 @@ pub struct RemapPair<const W: usize, const N: usize, const SLOTS: usize> {
 }
 
 impl<const W: usize, const N: usize, const SLOTS: usize> RemapPair<W, N, SLOTS> {
-    /// Remaps to images without pixels: [`Self::set`] gives them their warps.
+    /// Creates remaps to images without pixels; [`Self::set`] gives them their warps.
     pub const fn empty() -> Self {
         Self { left: Remap::empty(), right: Remap::empty(), valid: [[0; W]; 2] }
     }
 
-    /// Of two remaps, of the left and of the right camera.
+    /// Joins the remaps of the left and the right camera.
     pub fn new(left: Remap<W, N, SLOTS>, right: Remap<W, N, SLOTS>) -> Self {
         Self { left, right, valid: [[0; W]; 2] }
     }
 
-    /// Makes them the remaps of a rectification where they stand.
+    /// Sets the warps of a rectification in place.
     pub fn set<T: Real>(&mut self, rectification: &Rectification<T>) -> Result<(), RemapError> {
         let [left, right] = rectification.warps();
         self.left.set(left)?;
         self.right.set(right)
     }
 
-    /// The remaps of the left and of the right camera.
+    /// Returns the remaps of the left and the right camera.
     pub fn remaps(&self) -> [&Remap<W, N, SLOTS>; 2] {
         [&self.left, &self.right]
     }
 }
 
-/// A stereo source of rectified lines over one of raw lines: what stands between two cameras and the
-/// pipeline.
+/// Stereo source of rectified lines over a source of raw lines.
 ///
-/// Raw lines are taken in pairs, as they come, until both cameras have what their next rectified line needs.
+/// Raw lines are read in pairs until both cameras have what their next rectified line needs.
 #[derive(Debug)]
 pub struct RectifiedPair<'a, S, const W: usize, const N: usize, const SLOTS: usize> {
     source: S,
@@ -48,7 +47,7 @@ pub struct RectifiedPair<'a, S, const W: usize, const N: usize, const SLOTS: usi
     last: LineStart,
 }
 
-/// Why there is no rectified pair of lines.
+/// Why there is no pair of rectified lines.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -93,9 +92,8 @@ impl<E> From<RemapError> for CameraError<RectifiedPairError<E>> {
 impl<'a, S: StereoSource, const W: usize, const N: usize, const SLOTS: usize>
     RectifiedPair<'a, S, W, N, SLOTS>
 {
-    /// Rectifies what a source gives; refused where raw lines and remaps do not fit each other, or the bands
-    /// are too small for both cameras in step: a camera's lines are held until the other one's next line
-    /// has come, too.
+    /// Rectifies a source; refused where raw lines and remaps do not match, or where the bands are too small
+    /// for both cameras in step, as a camera's lines are held until the other's next line is in.
     pub fn new(
         source: S,
         pair: &'a mut RemapPair<W, N, SLOTS>,
@@ -123,18 +121,18 @@ impl<'a, S: StereoSource, const W: usize, const N: usize, const SLOTS: usize>
         Ok(Self { source, pair, last })
     }
 
-    /// Which pixels of the left and of the right line that came last are valid (1 or 0).
+    /// Returns the masks of the last lines, left and right: 1 for a valid pixel, else 0.
     pub fn valid(&self) -> [&[u8]; 2] {
         let width = usize::from(self.pair.left.table().size().width);
         self.pair.valid.each_ref().map(|valid| valid.get(..width).unwrap_or(&[]))
     }
 
-    /// The remaps of the left and of the right camera.
+    /// Returns the remaps of the left and the right camera.
     pub fn remaps(&self) -> [&Remap<W, N, SLOTS>; 2] {
         self.pair.remaps()
     }
 
-    /// Gives the source back.
+    /// Releases the source.
     pub fn release(self) -> S {
         self.source
     }
@@ -171,7 +169,7 @@ impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> Stereo
         right: &mut [u8],
     ) -> Result<LineStart, CameraError<Self::Error>> {
         let RemapPair { left: first, right: second, valid: [first_valid, second_valid] } = &mut *self.pair;
-        // Each turn takes a raw line; an image has at most 4096.
+        // Each iteration reads a raw line; an image has at most 4096.
         while first.wants_line() || second.wants_line() {
             let lines = self.source.next_lines(first.next_line(), second.next_line());
             self.last = lines.map_err(|e| e.map_hardware(RectifiedPairError::Source))?;

@@ -1,34 +1,34 @@
-//! Pixels between four raw ones of the band.
+//! Bilinear interpolation in the band of raw lines.
 
 use super::segment::{BITS, NARROW, Segment};
 use crate::geometry::camera::ImageSize;
 use core::cell::Cell;
 
-/// Columns of the raw image that a piece may span to be looked up at once.
+/// Number of raw columns that a piece may span to be read in one window.
 const SPAN: usize = 8;
-/// A row of them, with the one to the right of the last.
+/// Length of such a row, with one pixel to the right.
 const ROW: usize = SPAN + 1;
 
-/// The raw lines that are held: `N` of `W` pixels, the last one a copy of the first.
+/// Band of `N` raw lines of `W` pixels, the last one a copy of the first.
 pub(super) struct Band<'a, const W: usize, const N: usize> {
     lines: &'a [u8],
-    /// The raw row in the first line, px with [`BITS`] fractional bits: rows of places count from it.
+    /// Raw row of the first line, px with [`BITS`] fractional bits.
     top: i32,
     raw: ImageSize,
     piece: u32,
 }
 
 impl<'a, const W: usize, const N: usize> Band<'a, W, N> {
-    /// Lines of a raw image of that size, with its row `top` in the first, for segments in pieces of
-    /// `2^piece` pixels.
+    /// Wraps the lines of a raw image, with row `top` in the first, for segments in pieces of `2^piece`
+    /// pixels.
     pub fn new(lines: &'a [[u8; W]; N], top: u16, raw: ImageSize, piece: u32) -> Self {
         Self { lines: lines.as_flattened(), top: i32::from(top) << BITS, raw, piece }
     }
 
-    /// The pixels of a segment; unless all of it is inside the raw image, it is at an `EDGE`.
+    /// Writes the pixels of a segment, which is at an `EDGE` unless it is wholly inside the raw image.
     ///
-    /// They go into cells: what is written may be what is read next as far as the compiler knows, so that it
-    /// finishes a pixel before it begins another, and all that a pixel takes stays in registers.
+    /// Writing to cells makes the compiler finish each pixel before the next, which keeps its values in
+    /// registers.
     #[inline(never)]
     pub fn segment<const EDGE: bool>(&self, segment: &Segment, out: &[Cell<u8>], valid: &[u8]) {
         let (mut x, mut y) = (segment.column.start, segment.row.start.wrapping_sub(self.top));
@@ -71,7 +71,7 @@ impl<'a, const W: usize, const N: usize> Band<'a, W, N> {
         }
     }
 
-    /// Four pixels that are between the same two rows; whether they are.
+    /// Interpolates four pixels between the same two rows; false if they are not.
     #[inline(always)]
     fn between_two(&self, x: i32, mut y: i32, right: i32, down: i32, out: &[Cell<u8>; 4]) -> bool {
         let at = Self::index(x, y);
@@ -86,7 +86,7 @@ impl<'a, const W: usize, const N: usize> Band<'a, W, N> {
         true
     }
 
-    /// Four pixels that are between the same two rows or the next two; whether they are.
+    /// Interpolates four pixels within three adjacent rows; false if they are not.
     #[inline(always)]
     fn between_three(&self, x: i32, mut y: i32, right: i32, down: i32, out: &[Cell<u8>; 4]) -> bool {
         let top = y.min(y.wrapping_add(down << 2));
@@ -107,7 +107,7 @@ impl<'a, const W: usize, const N: usize> Band<'a, W, N> {
         true
     }
 
-    /// The pixels of a piece, wherever they are.
+    /// Interpolates the pixels of a piece anywhere.
     #[inline(never)]
     fn piece<const EDGE: bool>(
         &self,
@@ -140,7 +140,7 @@ impl<'a, const W: usize, const N: usize> Band<'a, W, N> {
         mean(upper, lower, right, down)
     }
 
-    /// Where the pixel of a place that is inside is in the band.
+    /// Index in the band of the pixel of a position inside.
     #[inline(always)]
     fn index(column: i32, row: i32) -> usize {
         let (rows, row) = (N as u32 - 1, row.cast_unsigned() >> BITS);
@@ -150,7 +150,7 @@ impl<'a, const W: usize, const N: usize> Band<'a, W, N> {
         (line as usize).wrapping_mul(W).wrapping_add((column.cast_unsigned() >> BITS) as usize)
     }
 
-    /// Four pixels of the band: two neighbours, and the two below.
+    /// Two adjacent pixels of the band, and the two below.
     #[inline(always)]
     fn four(&self, column: i32, row: i32) -> [u16; 2] {
         let at = Self::index(column, row);
@@ -159,30 +159,29 @@ impl<'a, const W: usize, const N: usize> Band<'a, W, N> {
     }
 }
 
-/// Two neighbours, the left one in the low byte.
+/// Two adjacent pixels, the left one in the low byte.
 #[inline(always)]
 fn two(pixels: &[u8], at: usize) -> u16 {
     pixels.get(at..at + 2).and_then(|two| two.first_chunk()).map_or(0, |two| u16::from_le_bytes(*two))
 }
 
-/// A place as a pixel that has another after it, and 256ths of the way to that: all of it on the image's last
-/// one.
+/// Splits a position into a pixel with a successor and 256ths of the way to it: 256 on the image's last
+/// pixel.
 fn split(place: i32, side: u16) -> (i32, u32) {
     let whole = (place >> BITS).clamp(0, i32::from(side.saturating_sub(2)));
     (whole, (place >> (BITS - 8)).wrapping_sub(whole << 8) as u32)
 }
 
-/// 256ths of the way from a place's pixel to the next.
+/// Fraction of a position in 256ths.
 #[inline(always)]
 fn fraction(place: i32) -> u32 {
     (place >> (BITS - 8)) as u32 & 0xff
 }
 
-/// The mean of two pixels and the two below them, weighted by 256ths of a pixel to the right and down, to the
-/// nearest.
+/// Bilinear mean of two pixels and the two below them, with weights in 256ths to the right and down, rounded.
 ///
-/// The two rows are weighted together, in the halves of a word: each is at most 255 * 256, and half of a
-/// 256th is added for rounding, so that neither leaves its half.
+/// Both rows are weighted at once in the halves of a word: each is at most 255 * 256 plus a rounding half of
+/// 256.
 #[inline(always)]
 fn mean(upper: u16, lower: u16, right: u32, down: u32) -> u8 {
     let four = u32::from(upper) | u32::from(lower) << 16;

@@ -1,32 +1,31 @@
-//! The places of a rectified line's pixels in the raw image, piece by piece.
+//! Raw positions of a rectified line's pixels, by piecewise linear interpolation of the lattice.
 
 use super::RemapTable;
 use crate::geometry::camera::ImageSize;
 use core::iter::Zip;
 use core::slice::Iter;
 
-/// Fractional bits of a place.
+/// Fractional bits of a position.
 pub(super) const BITS: u32 = 16;
-/// Half of the finest step that pixels are weighted in, 1/256 px.
+/// Half of the step of the interpolation weights, 1/256 px.
 const HALF: i32 = 1 << (BITS - 9);
-/// The greatest step of pieces that are looked up in one window, less than 2 px: its four pixels begin in 7
-/// columns.
+/// Largest step of pieces that are read in one window, less than 2 px: four pixels begin within 7 columns.
 pub(super) const NARROW: i32 = (2 << BITS) - 1;
 /// Fractional bits of the weights between rows of the lattice.
 const WEIGHT_BITS: u32 = 20;
 
-/// What of a segment is in the raw image.
+/// Overlap of a segment with the raw image.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Part {
-    /// Nothing.
+    /// No pixel is inside.
     None,
-    /// To be asked for each pixel.
+    /// Each pixel has to be tested.
     Some,
-    /// All of it, and more than a pixel's fraction from the last column and row.
+    /// All pixels are inside, and before the last column and row.
     All,
 }
 
-/// The pixels between two columns of the lattice.
+/// Pixels between two columns of the lattice.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Segment {
     pub column: Run,
@@ -34,9 +33,8 @@ pub(super) struct Segment {
     pub part: Part,
 }
 
-/// One coordinate of a segment's pixels, px with [`BITS`] fractional bits, half a 256th added: along straight
-/// pieces of as many pixels as the table has it, from `start`, by `step` a pixel in the first piece and
-/// `bend` more in each next one.
+/// One coordinate of a segment's pixels, px with [`BITS`] fractional bits plus half a 256th: from `start`
+/// along straight pieces, by `step` per pixel in the first piece and `bend` more in each next one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run {
     pub start: i32,
@@ -44,21 +42,21 @@ pub(super) struct Run {
     pub bend: i32,
 }
 
-/// What all cells of a lattice have in common.
+/// Constants of all cells of a lattice.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell {
-    /// The side as a power of two.
+    /// Side as a power of two.
     shift: u32,
-    /// Whether places are on straight pieces of four pixels, not of one.
+    /// Whether straight pieces have four pixels, not one.
     is_fours: bool,
-    /// How far the sum of four places is shifted to be a bend.
+    /// Shift from a second difference of four positions to a bend.
     bend_shift: u32,
-    /// How many bends there are along a cell.
+    /// Number of bends along a cell.
     bent: i32,
 }
 
 impl Cell {
-    /// Cells of `2^shift` px in pieces of `2^piece`.
+    /// Creates the constants of cells of `2^shift` px in pieces of `2^piece`.
     pub fn new(shift: u32, piece: u32) -> Self {
         let pieces = 1 << (shift - piece);
         Self {
@@ -71,7 +69,7 @@ impl Cell {
 }
 
 impl Segment {
-    /// Whether its pixels are in the raw image: 1 or 0, for those that are 1.
+    /// Clears the mask of pixels outside the raw image.
     pub fn mask(&self, raw: ImageSize, piece: u32, valid: &mut [u8]) {
         match self.part {
             Part::None => valid.fill(0),
@@ -83,7 +81,7 @@ impl Segment {
     #[inline(never)]
     fn mask_pieces(&self, raw: ImageSize, piece: u32, valid: &mut [u8]) {
         let (mut column, mut row) = (self.column, self.row);
-        // From 0 to the last pixel, to a 256th.
+        // From 0 to the last pixel, within a 256th.
         let [right, bottom] =
             [raw.width, raw.height].map(|side| ((u32::from(side) - 1) << BITS) + 2 * HALF as u32);
         let is_in = |x: i32, y: i32| x.cast_unsigned() < right && y.cast_unsigned() < bottom;
@@ -106,9 +104,9 @@ impl Segment {
 }
 
 impl Run {
-    /// Along the parabola through two places of the lattice that is bent as the cubic through these and the
-    /// two beside them is halfway, in pieces of 1 or 4 pixels. A straight line between two places of it
-    /// is off by up to half of `bend` in the middle of four pixels: all are moved by a quarter.
+    /// Fits the parabola through two lattice points with the curvature of the cubic through these and their
+    /// two neighbours, in pieces of 1 or 4 pixels. A chord of four pixels is off by up to half of `bend` in
+    /// its middle, so that all are moved by a quarter.
     #[inline(always)]
     fn between([before, from, to, after]: [i32; 4], cell: &Cell) -> Self {
         let bend = rounded(before + after - from - to, cell.bend_shift);
@@ -118,7 +116,7 @@ impl Run {
         Self { start, step, bend }
     }
 
-    /// No place along a cell is less, and none is greater.
+    /// Bounds of the positions along a cell.
     pub fn reach(&self, cell: &Cell) -> (i32, i32) {
         let end = self.start + (self.step << cell.shift) + cell.bent * self.bend;
         // Where the tangents at both ends meet: a parabola stays between its ends and that (Bézier).
@@ -126,7 +124,7 @@ impl Run {
         (self.start.min(end).min(meet) - 1, self.start.max(end).max(meet) + 1)
     }
 
-    /// The places of the pixels.
+    /// Positions of the pixels.
     pub fn places(&self, piece: u32) -> impl Iterator<Item = i32> {
         let mut run = *self;
         let pieces = core::iter::from_fn(move || {
@@ -137,14 +135,13 @@ impl Run {
         pieces.flatten()
     }
 
-    /// The place of a pixel of the piece that it is at.
+    /// Position of pixel `k` of the current piece.
     #[inline(always)]
     pub fn at(&self, k: i32) -> i32 {
         self.start.wrapping_add(self.step.wrapping_mul(k))
     }
 
-    /// Whether each of that many pieces of four pixels goes to the right, by less than 8 px from the first
-    /// pixel's column to the last one's.
+    /// Whether each of that many pieces of four pixels advances by 0 to [`NARROW`] per pixel.
     #[inline(always)]
     pub fn is_narrow(&self, pieces: usize) -> bool {
         // The step grows or shrinks all along: its ends tell.
@@ -152,7 +149,7 @@ impl Run {
         is_small(self.step) && is_small(self.step.wrapping_add(self.bend.wrapping_mul(pieces as i32)))
     }
 
-    /// Moves on by a piece. Past its last one a run may go anywhere.
+    /// Advances by a piece; past the last one the run is meaningless.
     #[inline(always)]
     pub fn advance(&mut self, piece: u32) {
         self.start = self.start.wrapping_add(self.step << piece);
@@ -160,34 +157,34 @@ impl Run {
     }
 }
 
-/// `x / 2^shift`, to the nearest.
+/// `x / 2^shift`, rounded to nearest.
 fn rounded(x: i32, shift: u32) -> i32 {
     (x + (1 << (shift - 1))) >> shift
 }
 
-/// The segments of one rectified line, from the left.
+/// Segments of one rectified line, from the left.
 pub(super) struct Segments<'a> {
-    /// What is left of four rows of the lattice: the line is between the second and the third.
+    /// Remaining columns of four rows of the lattice; the line is between the second and the third.
     columns: Columns<'a>,
     weights: [i32; 4],
-    /// Places on the last three columns of the lattice.
+    /// Positions on the last three columns of the lattice.
     last: [[i32; 2]; 3],
-    /// A bit for each column so far, the last one's lowest: whether the lens model does not describe it.
+    /// Whether the lens model fails to describe each column so far, the last one in bit 0.
     beyond: u32,
     left: u16,
     cell: Cell,
-    /// The last column and row of the raw image, with fractional bits.
+    /// Last column and row of the raw image, with fractional bits.
     most: [i32; 2],
-    /// Whether all segments are known to be in the raw image.
+    /// Whether all segments are inside the raw image.
     is_whole: bool,
 }
 
-/// Four rows side by side.
+/// Four rows of the lattice in parallel.
 type Columns<'a> =
     Zip<Zip<Iter<'a, [i32; 2]>, Iter<'a, [i32; 2]>>, Zip<Iter<'a, [i32; 2]>, Iter<'a, [i32; 2]>>>;
 
 impl<'a> Segments<'a> {
-    /// Those of a line, all of which are in the raw image if it is known to be `whole`.
+    /// Segments of a line, which is wholly inside the raw image if `is_whole`.
     pub fn new<const SLOTS: usize>(table: &'a RemapTable<SLOTS>, row: u16, is_whole: bool) -> Self {
         let (shift, raw) = (table.shift(), table.raw_size());
         let [n0, n1, n2, n3] = table.rows_around(row);
@@ -205,7 +202,7 @@ impl<'a> Segments<'a> {
         segments
     }
 
-    /// The place on the next column of the lattice, in the line that the weights of its four rows give.
+    /// Position on the next column of the lattice, interpolated between its four rows.
     #[inline(always)]
     fn node(&mut self) -> [i32; 2] {
         // There is one for each cell, and three.
@@ -220,7 +217,7 @@ impl<'a> Segments<'a> {
         [at([n0[0], n1[0], n2[0], n3[0]]), at([n0[1], n1[1], n2[1], n3[1]])]
     }
 
-    /// What of a segment between two columns of the lattice is in the raw image.
+    /// Overlap of a segment with the raw image.
     fn part(&self, column: &Run, row: &Run) -> Part {
         let [last_column, last_row] = self.most;
         let ((left, right), (top, bottom)) = (column.reach(&self.cell), row.reach(&self.cell));
@@ -256,7 +253,7 @@ impl Iterator for Segments<'_> {
     }
 }
 
-/// Lagrange's weights of four rows of the lattice, for a line `k` pixels below the second of them.
+/// Lagrange weights of four rows of the lattice, for a line `k` pixels below the second of them.
 fn weights(k: i32, shift: u32) -> [i32; 4] {
     let s = 1 << shift;
     let scale = WEIGHT_BITS - 3 * shift;

@@ -1,27 +1,22 @@
-//! A warp as a coarse lattice of places.
+//! Remap table: a warp sampled on a coarse lattice, interpolated in integers.
 
+use super::RemapTableError;
 use super::segment::{BITS, Cell, Part, Run, Segments};
 use crate::geometry::{Real, camera::ImageSize, rectify::Warp};
 use nalgebra::Point2;
 
-/// Where the pixels of a rectified image are in the raw one: a lattice of places every 8, 16, 32 or 64 px, in
-/// 1/65536 px.
+/// Raw positions of the pixels of a rectified image: a lattice every 8, 16, 32 or 64 px, in 1/65536 px.
 ///
-/// Between the lattice's rows a place is on the cubic through four of them, between its columns on a parabola
-/// that is bent as that cubic, drawn as straight lines of four pixels where these do; all in integers, so
-/// that every core finds the same places. The widest lattice is taken with which the places stay
-/// within [`Self::TOLERANCE_PX`] of the warp's own, which is looked at in every fourth row and every second
-/// column. It takes 8 bytes for a slot, which [`Self::slots`] counts.
-///
-/// [`Self::raw_rows`] of every row follow the lattice, two in the room of a place.
-///
-/// Made from the same warp in the same type, `f32` or `f64`, it is the same on every core: it takes products,
-/// quotients and roots alone.
+/// Positions are interpolated by a cubic between rows and a parabola between columns, the latter in straight
+/// pieces of four pixels where these suffice; all in integers, so that every core finds the same ones. The
+/// widest lattice is taken that stays within [`Self::TOLERANCE_PX`] of the warp, checked in every fourth row
+/// and every second column. A slot takes 8 bytes; [`Self::slots`] counts them. A table of one warp in one
+/// type, `f32` or `f64`, is equal on every core: it takes products, quotients and roots alone.
 #[derive(Clone, Debug)]
 pub struct RemapTable<const SLOTS: usize> {
-    /// The lattice, row by row: column and row, where the lowest bit of the column says that the lens model
-    /// does not describe the place. Then the raw rows that each rectified row needs: the first and, 16
-    /// bits higher, the last; and whether all of the row is in the raw image.
+    /// The lattice, row by row: column and row, where the column's lowest bit means that the lens model does
+    /// not describe the position. Then two rectified rows per slot: first and, 16 bits higher, last raw row,
+    /// and [`WHOLE`].
     slots: [[i32; 2]; SLOTS],
     shift: u8,
     piece: u8,
@@ -30,49 +25,23 @@ pub struct RemapTable<const SLOTS: usize> {
     rows: u16,
 }
 
-/// Why a warp has no table.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum RemapTableError {
-    /// The table has too little room.
-    Slots {
-        /// How many slots would have been enough.
-        needed: usize,
-    },
-    /// The warp bends too much for the finest lattice, or most of the rectified image is behind the camera.
-    TooBent,
-}
-
-impl core::fmt::Display for RemapTableError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Slots { needed } => write!(f, "the remap table must have {needed} slots"),
-            Self::TooBent => f.write_str("the warp bends too much between 8 pixels"),
-        }
-    }
-}
-
-impl core::error::Error for RemapTableError {}
-
-/// The widest lattice and the finest: powers of two.
+/// Widest and finest lattice, as powers of two.
 const WIDEST: u32 = 6;
 const FINEST: u32 = 3;
-/// The size of no image.
+/// Size of an empty image.
 const NO_PIXELS: ImageSize = ImageSize { width: 0, height: 0 };
-/// Added to what is noted of a row when all of it is in the raw image: its last raw row is less than 4096.
+/// Bit of a row that is wholly inside the raw image.
 const WHOLE: u32 = 1 << 31;
-/// What is noted of a row that shows nothing of the raw image: its first raw row is after the last.
+/// Entry of a row outside the raw image: its first raw row is after the last.
 const NOWHERE: u32 = 0xffff;
-/// Places farther outside the raw image than this on the left and above, and farther than that on the right
-/// and below, say no more than that they are outside. Sums of four fit a word.
+/// Limits of a position, left and above, right and below, so that sums of four fit a word.
 const FARTHEST: (f64, f64) = (-2048.0, 6143.0);
 
 impl<const SLOTS: usize> RemapTable<SLOTS> {
-    /// How far a place that is looked at may be from the warp's, px: then all are within 0.05 px.
+    /// Largest error of a checked position, px; then all are within 0.05 px.
     pub const TOLERANCE_PX: f64 = 0.03;
 
-    /// A table of an image without pixels, to be [`set`](Self::set) where it stands.
+    /// Creates the table of an image without pixels, for [`Self::set`].
     pub const fn empty() -> Self {
         Self {
             slots: [[1, 0]; SLOTS],
@@ -84,26 +53,26 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         }
     }
 
-    /// The table of a warp.
+    /// Tabulates a warp.
     pub fn new<T: Real>(warp: &Warp<T>) -> Result<Self, RemapTableError> {
         let mut table = Self::empty();
         table.set(warp)?;
         Ok(table)
     }
 
-    /// Makes it the table of a warp, without another in between; [`Self::empty`] when there is none.
+    /// Tabulates a warp in place; a refused warp leaves [`Self::empty`].
     pub fn set<T: Real>(&mut self, warp: &Warp<T>) -> Result<(), RemapTableError> {
         (self.size, self.raw) = (warp.size(), warp.raw_size());
         self.make(warp).inspect_err(|_| self.clear())
     }
 
-    /// Leaves it [`Self::empty`].
+    /// Resets to [`Self::empty`].
     pub(super) fn clear(&mut self) {
         (self.size, self.raw, self.rows) = (NO_PIXELS, NO_PIXELS, 0);
     }
 
     fn make<T: Real>(&mut self, warp: &Warp<T>) -> Result<(), RemapTableError> {
-        // Four pixels at a time along a line are faster.
+        // Pieces of four pixels are faster.
         for piece in [2, 0] {
             for shift in (FINEST..=self.widest()).rev() {
                 self.fill(warp, shift)?;
@@ -117,17 +86,17 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         Err(RemapTableError::TooBent)
     }
 
-    /// How many slots the table of an image of that size takes with cells of `2^shift` px, shift 6 to 3.
+    /// Number of slots for an image of this size with cells of `2^shift` px, shift 3 to 6.
     pub const fn slots(size: ImageSize, shift: u32) -> usize {
         Self::nodes(size, shift) + (size.height as usize).div_ceil(2)
     }
 
-    /// How many of them are the lattice's places.
+    /// Number of lattice points.
     const fn nodes(size: ImageSize, shift: u32) -> usize {
         lattice(size.width, shift) * lattice(size.height, shift)
     }
 
-    /// The widest lattice whose cells are no wider than the image: places far outside say little about it.
+    /// Widest lattice whose cells are no wider than the image.
     fn widest(&self) -> u32 {
         let side = u32::from(self.size.width.min(self.size.height));
         (FINEST..=WIDEST).rev().find(|shift| 1 << shift <= side).unwrap_or(FINEST)
@@ -151,7 +120,7 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         Ok(())
     }
 
-    /// Whether the places are those of the warp, where they are in the raw image.
+    /// Whether the positions inside the raw image are those of the warp, within the tolerance.
     fn is_near<T: Real>(&self, warp: &Warp<T>) -> bool {
         let cell = 1 << self.shift;
         let scale = T::of(1.0 / 65536.0);
@@ -187,42 +156,39 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         true
     }
 
-    /// The size of the rectified image.
+    /// Returns the size of the rectified image.
     pub fn size(&self) -> ImageSize {
         self.size
     }
 
-    /// The size of the raw image.
+    /// Returns the size of the raw image.
     pub fn raw_size(&self) -> ImageSize {
         self.raw
     }
 
-    /// The side of a lattice cell as a power of two.
+    /// Returns the side of a lattice cell as a power of two, 3 to 6.
     pub fn shift(&self) -> u32 {
-        // 3 to 6.
         u32::from(self.shift)
     }
 
-    /// How many pixels along a line lie on a straight piece, as a power of two: 4, or 1 where the warp is
-    /// bent a lot.
+    /// Returns the number of pixels of a straight piece, as a power of two: 2, or 0 for a strongly curved
+    /// warp.
     pub fn piece(&self) -> u32 {
         u32::from(self.piece)
     }
 
-    /// Raw rows that have to be held at once, when raw lines come one after the other and rectified lines are
-    /// taken in order.
+    /// Returns the number of raw rows that must be held at once, with lines in order.
     pub fn rows(&self) -> u16 {
         self.rows
     }
 
-    /// The lattice's places, row by row, the first a cell left of and above the image; column and row in
-    /// 1/65536 px, where the lowest bit of the column is set when the lens model does not describe the
-    /// place.
+    /// Returns the lattice, row by row from one cell left of and above the image: column and row in 1/65536
+    /// px, with the column's lowest bit set where the lens model does not describe the position.
     pub fn places(&self) -> &[[i32; 2]] {
         self.slots.get(..Self::nodes(self.size, self.shift())).unwrap_or(&[])
     }
 
-    /// The first and the last raw row that a rectified row needs; none where it shows nothing of the raw
+    /// Returns the first and the last raw row that a rectified row needs; `None` where it is outside the raw
     /// image.
     pub fn raw_rows(&self, row: u16) -> Option<(u16, u16)> {
         let noted = self.noted(row);
@@ -230,21 +196,21 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         (first <= last).then_some((first, last))
     }
 
-    /// Whether all pixels of a row are in the raw image, and not on its last column or row.
+    /// Whether all pixels of a row are inside the raw image, before its last column and row.
     pub(super) fn is_whole(&self, row: u16) -> bool {
         self.noted(row) & WHOLE != 0
     }
 
-    /// What is noted of a row; of none that it is seen nowhere.
+    /// Entry of a row; [`NOWHERE`] outside the image.
     fn noted(&self, row: u16) -> u32 {
         let slot = self.slots.get(Self::nodes(self.size, self.shift()) + usize::from(row / 2));
         slot.and_then(|slot| slot.get(usize::from(row % 2))).map_or(NOWHERE, |noted| noted.cast_unsigned())
     }
 
-    /// Whether each pixel of a rectified row is seen: 1 or 0, as many as there is room for.
+    /// Writes the mask of a rectified row, 1 for a valid pixel, else 0, as many as fit.
     pub fn mask(&self, row: u16, valid: &mut [u8]) {
-        let room = valid.len().min(self.size.width.into());
-        let Some(valid) = valid.get_mut(..room) else { return };
+        let width = valid.len().min(self.size.width.into());
+        let Some(valid) = valid.get_mut(..width) else { return };
         let (cell, is_whole) = (1 << self.shift, self.is_whole(row));
         valid.fill(1);
         for (valid, segment) in valid.chunks_mut(cell).zip(Segments::new(self, row, is_whole)) {
@@ -252,7 +218,7 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         }
     }
 
-    /// Notes which raw rows each row needs, and how many are held at most.
+    /// Computes which raw rows each row needs, and how many must be held at once.
     fn note_rows(&mut self) {
         let begin = Self::nodes(self.size, self.shift());
         let last_row = i32::from(self.raw.height.saturating_sub(1));
@@ -282,12 +248,12 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         self.rows = most as u16;
     }
 
-    /// Cells in a row of the lattice that begin in the image.
+    /// Number of cells in a row of the lattice that begin in the image.
     pub(super) fn cells(&self) -> u16 {
         self.size.width.div_ceil(1 << self.shift)
     }
 
-    /// The four rows of the lattice around a rectified row.
+    /// Four rows of the lattice around a rectified row.
     pub(super) fn rows_around(&self, row: u16) -> [&[[i32; 2]]; 4] {
         let columns = lattice(self.size.width, self.shift());
         let above = usize::from(row >> self.shift);
@@ -298,12 +264,12 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
     }
 }
 
-/// Places along a side: those of the cells, one before and two after.
+/// Lattice points along a side: those of the cells, one before and two after.
 const fn lattice(side: u16, shift: u32) -> usize {
     (side as usize).div_ceil(1 << shift) + 3
 }
 
-/// A place in 1/65536 px, to the nearest.
+/// Rounds a position to 1/65536 px.
 fn fixed<T: Real>(place: &Point2<T>, is_described: bool) -> [i32; 2] {
     let is_near = |x: T| x >= T::of(FARTHEST.0) && x <= T::of(FARTHEST.1);
     let to_fixed = |x: T| {

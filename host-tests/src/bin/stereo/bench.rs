@@ -1,11 +1,35 @@
 //! `stereo bench`: how long the matching of a frame takes.
 
-use crate::cli::BenchArgs;
 use crate::failure::Failure;
 use crate::input::{self, Pair};
-use crate::print;
+use crate::shared::{PairArgs, RangeArgs, WayArgs, print, whole};
+use clap::Args;
 use serde::Serialize;
 use stereopsis_host::run::{MemoryPair, time_frames};
+
+/// What follows the options in the command's help.
+pub const EXAMPLE: &str = "Example:
+  stereo bench --left left.png --right right.png --disparities 64 --method fast --repeat 9
+
+Printed is one JSON object: frame_ms (a time for each frame, after one that is left out; files and start-up left out, one \
+thread), kernel, width, height, disparities, state_bytes, noise.";
+
+#[derive(Debug, Args)]
+pub struct BenchArgs {
+    #[command(flatten)]
+    pub pair: PairArgs,
+    #[command(flatten)]
+    pub range: RangeArgs,
+    #[command(flatten)]
+    pub way: WayArgs,
+    /// How many frames are timed, 1 to 10000
+    #[arg(long, value_name = "K", default_value_t = 5, value_parser = repeat, allow_negative_numbers = true)]
+    pub repeat: u16,
+}
+
+fn repeat(text: &str) -> Result<u16, String> {
+    whole(text, 1, 10_000)
+}
 
 /// What is printed. Names are a contract with programs that read them.
 #[derive(Serialize)]

@@ -1,9 +1,8 @@
 //! `stereo bundle`: a problem of bundle adjustment into its refined one.
 
-use crate::cli::whole;
 use crate::failure::Failure;
 use crate::place::Place;
-use crate::print;
+use crate::shared::{print, whole};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::ops::ControlFlow;

@@ -1,12 +1,11 @@
 //! `stereo calibrate`: pictures of a chessboard into a calibration file.
 
-use crate::cli::CalibrateArgs;
 use crate::failure::Failure;
-use crate::files::png;
-use crate::place::Place;
-use crate::print;
+use crate::image_files::pairs;
+use crate::place::{Place, png};
+use crate::shared::print;
+use clap::{Args, ValueEnum};
 use image::{DynamicImage, GrayImage, RgbImage};
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use stereopsis::camera::LineSource;
@@ -15,11 +14,84 @@ use stereopsis::geometry::{
     rectify::{Crop, Rectification},
 };
 use stereopsis_host::calibrate::board::{self, Board, BoardError, Pattern};
-use stereopsis_host::calibrate::{Calibrated, View, report, solve};
+use stereopsis_host::calibrate::{Calibrated, LensModel, View, report, solve};
 use stereopsis_host::calibration::write_opencv;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::mock::MockCamera;
 use stereopsis_host::output::Staging;
+
+/// What follows the options in the command's help.
+pub const EXAMPLE: &str = "Example:
+  stereo calibrate --left 'left*.png' --right 'right*.png' --pattern 9x6 --square-mm 25 --out stereo.yml --report report
+
+Ten to thirty pairs, in which the board is tilted and turned each time and reaches all corners of both images, are enough. \
+Left and right images belong together by the last number in their names, or, where these have none, by their order.
+
+The file is OpenCV's YAML (K1, D1, K2, D2, R, T, E, F) with lengths in metres; match, rectify and calib read it. The folder of \
+--report gets index.html and a picture of each view's residuals.";
+
+#[derive(Debug, Args)]
+pub struct CalibrateArgs {
+    /// The left camera's images, as files or as a pattern with * and ?
+    #[arg(long, value_name = "GLOB", required = true, num_args = 1..)]
+    pub left: Vec<String>,
+    /// The right camera's images
+    #[arg(long, value_name = "GLOB", required = true, num_args = 1..)]
+    pub right: Vec<String>,
+    /// The board's inner corners, where four squares meet, along and down: 3 to 64 each
+    #[arg(long, value_name = "COLUMNSxROWS", value_parser = pattern)]
+    pub pattern: Pattern,
+    /// The side of a square of the board, millimetres
+    #[arg(long, value_name = "MM", value_parser = square, allow_negative_numbers = true)]
+    pub square_mm: f64,
+    /// What the lenses are
+    #[arg(long, value_name = "MODEL", default_value = "brown")]
+    pub lens: LensChoice,
+    /// The calibration file
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Folder for the residuals, drawn
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
+}
+
+/// A model of lenses.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub enum LensChoice {
+    /// k1, k2, p1, p2, k3: most lenses
+    Brown,
+    /// k1, k2, p1, p2, k3, k4, k5, k6: wide lenses with a strong barrel, many views
+    Rational,
+    /// k1, k2, k3, k4 of the angle to the axis: lenses of more than some 100 degrees
+    Fisheye,
+}
+
+impl From<LensChoice> for LensModel {
+    fn from(choice: LensChoice) -> Self {
+        match choice {
+            LensChoice::Brown => Self::Brown,
+            LensChoice::Rational => Self::Rational,
+            LensChoice::Fisheye => Self::Fisheye,
+        }
+    }
+}
+
+fn pattern(text: &str) -> Result<Pattern, &'static str> {
+    let sides = text.split_once(['x', 'X']).and_then(|(c, r)| Some((c.parse().ok()?, r.parse().ok()?)));
+    let found = sides.and_then(|(columns, rows)| Pattern::new(columns, rows));
+    found.ok_or("the inner corners along and down are needed, 3 to 64 each, as 9x6")
+}
+
+fn square(text: &str) -> Result<f64, &'static str> {
+    let value: Option<f64> = text.parse().ok();
+    match value {
+        Some(mm) if (1.0..=1000.0).contains(&mm) => Ok(mm),
+        Some(mm) if (0.001..1.0).contains(&mm) => {
+            Err("less than a millimetre: is it in metres? 0.025 m are 25 mm")
+        }
+        _ => Err("a length from 1 to 1000 millimetres is needed"),
+    }
+}
 
 /// A pair in which the board was found in both images.
 struct Found {
@@ -130,74 +202,6 @@ fn doubts(result: &Calibrated) -> Vec<String> {
         );
     }
     doubts
-}
-
-/// Left and right images by the last number in their names; by their order where names have none.
-fn pairs(left: &[String], right: &[String], notes: &mut Vec<String>) -> Result<Vec<[PathBuf; 2]>, Failure> {
-    let (left, right) = (files("--left", left)?, files("--right", right)?);
-    let numbered = |paths: &[PathBuf]| -> Option<BTreeMap<u64, PathBuf>> {
-        let found: BTreeMap<_, _> =
-            paths.iter().filter_map(|path| Some((number(path)?, path.clone()))).collect();
-        // Some may have none, but no two the same.
-        let count = paths.iter().filter(|path| number(path).is_some()).count();
-        (found.len() == count && count > 0).then_some(found)
-    };
-    if let (Some(mut of_left), Some(mut of_right)) = (numbered(&left), numbered(&right))
-        && of_left.keys().any(|key| of_right.contains_key(key))
-    {
-        let alone = |path: &PathBuf| format!("{} has no partner; it is left out", path.display());
-        notes.extend(left.iter().chain(&right).filter(|path| number(path).is_none()).map(alone));
-        notes.extend(
-            of_left.iter().filter(|(key, _)| !of_right.contains_key(key)).map(|(_, path)| alone(path)),
-        );
-        notes.extend(
-            of_right.iter().filter(|(key, _)| !of_left.contains_key(key)).map(|(_, path)| alone(path)),
-        );
-        let keys: Vec<_> = of_left.keys().copied().collect();
-        let pair = |key: u64| Some([of_left.remove(&key)?, of_right.remove(&key)?]);
-        return Ok(keys.into_iter().filter_map(pair).collect());
-    }
-    if left.len() != right.len() {
-        return Err(Failure::new(format!(
-            "--left and --right: {} and {} images; as many of both are needed, or numbers in their names that say which belong \
-             together",
-            left.len(),
-            right.len()
-        )));
-    }
-    Ok(left.into_iter().zip(right).map(|(left, right)| [left, right]).collect())
-}
-
-/// The last number in a file's name.
-fn number(path: &Path) -> Option<u64> {
-    let name = path.file_stem()?.to_str()?;
-    let tail = name.trim_end_matches(|c: char| !c.is_ascii_digit());
-    tail.rsplit(|c: char| !c.is_ascii_digit()).next()?.parse().ok()
-}
-
-/// The files that patterns name, in order of their names.
-pub fn files(option: &str, patterns: &[String]) -> Result<Vec<PathBuf>, Failure> {
-    let mut found = Vec::new();
-    for pattern in patterns {
-        // A name with brackets in it may be a file's.
-        if Path::new(pattern).is_file() {
-            found.push(pattern.into());
-            continue;
-        }
-        let paths = glob::glob(pattern).map_err(|e| Failure::new(format!("{option} {pattern}: {e}")))?;
-        let before = found.len();
-        for path in paths {
-            found.push(path?);
-        }
-        if found.len() == before {
-            return Err(Failure::new(format!(
-                "{option} {pattern}: there is no such file; name the images, as 'left*.png'"
-            )));
-        }
-    }
-    found.sort();
-    found.dedup();
-    Ok(found)
 }
 
 /// The pairs with a board in both images, and the images' size.

@@ -1,13 +1,14 @@
 //! `stereo demo`: a scene of known depth, matched and compared with the truth.
 
-use crate::cli::DemoArgs;
 use crate::failure::Failure;
-use crate::files::{self, png};
-use crate::matching::{figures, place};
-use crate::{input, print};
+use crate::input;
+use crate::place::png;
+use crate::results::{self, figures, place};
+use crate::shared::{RangeArgs, WayArgs, print};
+use clap::Args;
 use image::{DynamicImage, GrayImage, RgbImage};
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use stereopsis::depth::DepthScale;
 use stereopsis::matching::Config;
 use stereopsis_host::calibration::write_middlebury;
@@ -18,6 +19,15 @@ use stereopsis_host::report::{Accuracy, ERROR_LIMIT_PX, Report, Summary};
 use stereopsis_host::run::{self, MemoryPair};
 use stereopsis_host::scene::Scene;
 
+#[derive(Debug, Args)]
+pub struct DemoArgs {
+    /// Folder for the results; made when it is missing
+    #[arg(long, value_name = "DIR", default_value = "demo-out")]
+    pub out: PathBuf,
+    #[command(flatten)]
+    pub way: WayArgs,
+}
+
 const IMAGES: [&str; 2] = ["left.png", "right.png"];
 const TRUE_DEPTH: &str = "true_depth.pfm";
 
@@ -27,7 +37,7 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
     let scene = Scene::demo();
     let (left, right) = scene.render();
     let truth = scene.truth();
-    let range = crate::cli::RangeArgs { disparities: scene.disparities(), min_disparity: 0 };
+    let range = RangeArgs { disparities: scene.disparities(), min_disparity: 0 };
     let config = input::config(&range, &args.way, scene.width(), scene.height())?;
     let config = Config { confidence: true, ..config };
     let no_pair = || Failure::new("the scene's two pictures differ in size");
@@ -52,7 +62,7 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
         truth: Some(&truth),
     };
     let mut staging = Staging::new(&args.out)?;
-    files::write(&mut staging, &report, Some(&scale))?;
+    results::write(&mut staging, &report, Some(&scale))?;
     staging.write(IMAGES[0], |out| png(out, &left))?;
     staging.write(IMAGES[1], |out| png(out, &right))?;
     let calibration = write_middlebury(scale.rig(), config.width, config.height, config.disparities);

@@ -1,12 +1,13 @@
 //! `stereo features`: points of one image found in another.
 
 use crate::failure::Failure;
+use crate::input::RAW;
 use crate::place::Place;
-use crate::print;
-use crate::two_view::{FeaturesArgs, OrientationChoice};
+use crate::shared::{PairArgs, print, whole};
+use clap::{Args, ValueEnum};
 use image::{GrayImage, RgbImage};
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use stereopsis::camera::LineSource;
 use stereopsis::features::{MatchConfig, Orientation};
 use stereopsis::imaging::GreyLines;
@@ -15,8 +16,74 @@ use stereopsis_host::correspond::{Correspondences, Plan, correspond};
 use stereopsis_host::matches_picture::matches_picture;
 use stereopsis_host::mock::MockCamera;
 
-/// Bytes of the longest raw line: RGB with 16 bits.
-const RAW: usize = MockCamera::MOST_PIXELS as usize * 6;
+/// What follows the options in the command's help.
+pub const EXAMPLE: &str = "Example:
+  stereo features --left first.png --right second.png --out matches.csv --picture matches.png
+
+Written is a line x1,y1,x2,y2 for every match, under that header: column and row in the left image, column and row in the \
+right one, in px. The images need not be rectified or of one size.";
+
+#[derive(Debug, Args)]
+pub struct FeaturesArgs {
+    #[command(flatten)]
+    pub pair: PairArgs,
+    /// File for the matches
+    #[arg(long, value_name = "FILE.csv")]
+    pub out: PathBuf,
+    /// File for a picture of the matches over the images
+    #[arg(long, value_name = "FILE.png")]
+    pub picture: Option<PathBuf>,
+    /// About how many corners are kept of each image, 50 to 12000, spread over it
+    #[arg(long, value_name = "N", default_value_t = 4000, value_parser = corners, allow_negative_numbers = true)]
+    pub corners: u16,
+    /// Grey levels by which a corner differs from its surroundings, 1 to 254
+    #[arg(long, value_name = "G", default_value_t = 8, value_parser = contrast, allow_negative_numbers = true)]
+    pub contrast: u16,
+    /// How many sizes of the images are searched, 1 to 8, each three quarters of the one before
+    #[arg(long, value_name = "L", default_value_t = 4, value_parser = levels, allow_negative_numbers = true)]
+    pub levels: u16,
+    /// A match differs in fewer bits than so many percent of the second best, 1 to 100
+    #[arg(long, value_name = "PERCENT", default_value_t = 80, value_parser = percent, allow_negative_numbers = true)]
+    pub ratio: u16,
+    /// How many columns partners may lie apart, px; anywhere by default
+    #[arg(long, value_name = "PX", value_parser = apart, allow_negative_numbers = true)]
+    pub columns_apart: Option<u16>,
+    /// How many rows partners may lie apart, px; anywhere by default
+    #[arg(long, value_name = "PX", value_parser = apart, allow_negative_numbers = true)]
+    pub rows_apart: Option<u16>,
+    /// upright, turned (the images may be turned against each other by any angle), or auto, which tries
+    /// turned when few corners match upright
+    #[arg(long, value_name = "WAY", default_value = "auto")]
+    pub orientation: OrientationChoice,
+}
+
+/// How corners are described.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub enum OrientationChoice {
+    Auto,
+    Upright,
+    Turned,
+}
+
+fn corners(text: &str) -> Result<u16, String> {
+    whole(text, Plan::FEWEST, Plan::MOST)
+}
+
+fn contrast(text: &str) -> Result<u16, String> {
+    whole(text, 1, 254)
+}
+
+fn levels(text: &str) -> Result<u16, String> {
+    whole(text, 1, 8)
+}
+
+fn percent(text: &str) -> Result<u16, String> {
+    whole(text, 1, 100)
+}
+
+fn apart(text: &str) -> Result<u16, String> {
+    whole(text, 0, 4096)
+}
 
 /// An image in grey, with its picture for display and what is to be known about the file.
 struct Image {

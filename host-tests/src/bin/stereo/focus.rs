@@ -1,8 +1,8 @@
 //! `stereo focus`: depth from a stack of frames with the lens in different positions.
 
 use crate::failure::Failure;
-use crate::files::png;
-use crate::print;
+use crate::place::png;
+use crate::shared::print;
 use clap::Args;
 use std::fmt::Write;
 use std::path::PathBuf;

@@ -1,15 +1,14 @@
 //! `stereo fundamental`: correspondences into a fundamental matrix.
 
 use crate::failure::Failure;
-use crate::files::json;
-use crate::place::Place;
-use crate::print;
-use crate::two_view::{FundamentalArgs, RobustArgs, TwoViewMethod};
+use crate::place::{Place, json};
+use crate::shared::{RobustArgs, TwoViewMethod, print, rows};
+use clap::Args;
 use image::RgbImage;
-use nalgebra::{Matrix3, Point2};
+use nalgebra::Point2;
 use serde::Serialize;
 use std::hint::black_box;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 use stereopsis::geometry::{
     robust::{RobustConfig, robust_fundamental},
@@ -18,6 +17,36 @@ use stereopsis::geometry::{
 use stereopsis_host::epipolar_picture::epipolar_picture;
 use stereopsis_host::matches::read_matches;
 use stereopsis_host::mock::MockCamera;
+
+/// What follows the options in the command's help.
+pub const EXAMPLE: &str = "Example:
+  stereo fundamental --matches matches.csv --out fundamental.json --left first.png --right second.png --picture lines.png
+
+Written is one JSON object: fundamental (3x3 in rows, p1^T F p2 = 0 for a point p1 of the first image and p2 of the second), \
+inliers (whether each match is within the threshold), time_us (the estimate alone, the best of five); with ransac also \
+samples and miss_probability, the probability that a better estimate was missed. The picture has both images with the points \
+of all matches, red where one does not agree, and for some of the others the lines on which they must lie.";
+
+#[derive(Debug, Args)]
+pub struct FundamentalArgs {
+    /// The matches: lines of x1,y1,x2,y2 in px under that header
+    #[arg(long, value_name = "FILE")]
+    pub matches: PathBuf,
+    #[command(flatten)]
+    pub robust: RobustArgs,
+    /// File for the result; its folder is made when it is missing
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// File for a picture of the epipolar lines over both images
+    #[arg(long, value_name = "FILE.png", requires_all = ["left", "right"])]
+    pub picture: Option<PathBuf>,
+    /// The image of x1,y1, for the picture
+    #[arg(long, value_name = "FILE", requires_all = ["right", "picture"])]
+    pub left: Option<PathBuf>,
+    /// The image of x2,y2, for the picture
+    #[arg(long, value_name = "FILE", requires_all = ["left", "picture"])]
+    pub right: Option<PathBuf>,
+}
 
 /// How often the solver is timed.
 const TIMED: usize = 5;
@@ -116,9 +145,4 @@ pub fn estimate(seen: &[Correspondence<f64>], args: &RobustArgs) -> Result<Estim
             Ok(Estimate { fundamental: found.fundamental, inliers, samples })
         }
     }
-}
-
-/// A matrix by its rows.
-pub fn rows(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
-    matrix.transpose().into()
 }

@@ -1,7 +1,7 @@
 //! The images and the search, checked against each other before any work.
 
-use crate::cli::{PairArgs, RangeArgs, WayArgs};
 use crate::failure::Failure;
+use crate::shared::{PairArgs, RangeArgs, WayArgs};
 use image::RgbImage;
 use std::fmt::Display;
 use stereopsis::camera::{CameraPair, LineSource, StereoSource};
@@ -10,7 +10,7 @@ use stereopsis::matching::{Block, Config};
 use stereopsis_host::mock::MockCamera;
 
 /// Bytes of the longest raw line: RGB with 16 bits.
-const RAW: usize = MockCamera::MOST_PIXELS as usize * 6;
+pub const RAW: usize = MockCamera::MOST_PIXELS as usize * 6;
 
 /// A camera on a file, as 8-bit grey.
 type Grey = GreyLines<MockCamera, RAW>;

@@ -1,41 +1,121 @@
 //! `stereo`: depth from two images by the code that runs on the microcontroller.
 //!
-//! * `cli`, `two_view`: what is asked for. `failure`: what is said when it cannot be done.
-//! * `input`: the images and the search, checked against each other. `progress`: how far it is.
-//! * `matching`, `bench`, `demo`, `calibrate`, `calib`, `rectify`, `features`, `focus`, `fundamental`,
-//!   `pose`, `bundle`, `odometry`, `walk`, `record`, `replay`: the commands. `files`, `place`: the results as
-//!   files.
+//! Here is the list of commands. Each has a file of its own with its options, its help and what it does. They use:
+//!
+//! * `shared`: the options that several have. `input`: images and search, checked against each other.
+//! * `image_files`: the images that a pattern names. `progress`: how far the work is.
+//! * `rectified`, `results`, `place`: what is written. `failure`: what is said when it cannot be done.
 
 mod bench;
 mod bundle;
 mod calib;
 mod calibrate;
-mod cli;
 mod demo;
 mod failure;
 mod features;
-mod files;
 mod focus;
 mod fundamental;
+mod image_files;
 mod input;
-mod matching;
+mod r#match;
 mod odometry;
 mod place;
 mod pose;
 mod progress;
 mod record;
+mod rectified;
 mod rectify;
 mod replay;
+mod results;
+mod shared;
 mod structure;
-mod two_view;
 mod uncalibrated;
 mod walk;
 
-use cli::Command;
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
 use failure::Failure;
+use shared::print;
+use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
-use stereopsis_host::command_line::one_line;
+use stereopsis_host::command_line::{one_line, usage_line};
+
+/// What is told to one who names another command.
+const COMMANDS: &str = "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental, pose, bundle, \
+                        odometry, structure, walk, record and replay";
+
+const EXAMPLES: &str = "Examples:
+  stereo demo --out demo-out
+  stereo match --left left.png --right right.png --disparities 64 --calib calib.txt --out out/scene
+  stereo bench --left left.png --right right.png --disparities 64 --method fast
+  stereo features --left first.png --right second.png --out matches.csv
+
+The images of match and bench are a rectified pair; all are PNG, JPEG, PGM/PPM or TIFF, 8 or 16 bit, grey or colour, up to 4096 x 4096.";
+
+#[derive(Debug, Parser)]
+#[command(
+    name = "stereo",
+    version,
+    about = "Depth from two images, by the code that runs on the microcontroller"
+)]
+#[command(after_help = EXAMPLES, arg_required_else_help = false)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Match a built-in ray-traced scene and compare the answers with its true depth
+    Demo(demo::DemoArgs),
+    /// Match a rectified pair of images: disparity, depth, a point cloud and a report
+    #[command(after_help = r#match::EXAMPLE)]
+    Match(r#match::MatchArgs),
+    /// Time the matching of a rectified pair of images
+    #[command(after_help = bench::EXAMPLE)]
+    Bench(bench::BenchArgs),
+    /// Align the rows of an unrectified pair of images, by a calibration of the two cameras
+    #[command(after_help = rectify::EXAMPLE)]
+    Rectify(rectify::RectifyArgs),
+    /// Find two cameras, their lenses and where they stand from images of a chessboard
+    #[command(after_help = calibrate::EXAMPLE)]
+    Calibrate(calibrate::CalibrateArgs),
+    /// Check a calibration file, or write it in another format
+    #[command(after_help = calib::EXAMPLE, arg_required_else_help = false, subcommand_required = true)]
+    Calib(calib::CalibArgs),
+    /// Estimate the fundamental matrix of two images from matches, some of them wrong
+    #[command(after_help = fundamental::EXAMPLE)]
+    Fundamental(fundamental::FundamentalArgs),
+    /// Estimate where the second of two known cameras stands from matches, and the points they show
+    #[command(after_help = pose::EXAMPLE)]
+    Pose(pose::PoseArgs),
+    /// Find points of one image in another: corners, matched by what they look like
+    #[command(after_help = features::EXAMPLE)]
+    Features(features::FeaturesArgs),
+    /// Tell depth by focus: frames of one scene with the lens in different positions
+    #[command(after_help = focus::EXAMPLE)]
+    Focus(focus::FocusArgs),
+    /// Refine cameras and points until they agree best with what was seen: bundle adjustment of a problem in
+    /// BAL's format
+    #[command(after_help = bundle::EXAMPLE)]
+    Bundle(bundle::BundleArgs),
+    /// Make a recording of a camera from images, with faults if they are wanted
+    #[command(after_help = record::EXAMPLE)]
+    Record(record::RecordArgs),
+    /// Play recorded lines, with the faults that they had, through the code that runs on the device
+    #[command(after_help = replay::EXAMPLE)]
+    Replay(replay::ReplayArgs),
+    /// Tell where a camera, or a pair, went: a sequence of frames into a trajectory
+    #[command(after_help = odometry::EXAMPLE)]
+    Odometry(odometry::OdometryArgs),
+    /// Tell where a camera stood and what it saw: pictures from several places into poses and points
+    #[command(after_help = structure::EXAMPLE)]
+    Structure(structure::StructureArgs),
+    /// Drive through a built-in street: a sequence of frames with true poses, for odometry
+    #[command(after_help = walk::EXAMPLE)]
+    Walk(walk::WalkArgs),
+}
 
 fn main() -> ExitCode {
     match start() {
@@ -49,9 +129,9 @@ fn main() -> ExitCode {
 }
 
 fn start() -> Result<(), Failure> {
-    match cli::parse(std::env::args_os()) {
+    match parse(std::env::args_os()) {
         Ok(Command::Demo(args)) => demo::run(&args),
-        Ok(Command::Match(args)) => matching::run(&args),
+        Ok(Command::Match(args)) => r#match::run(&args),
         Ok(Command::Bench(args)) => bench::run(&args),
         Ok(Command::Fundamental(args)) => fundamental::run(&args),
         Ok(Command::Pose(args)) => pose::run(&args),
@@ -66,16 +146,24 @@ fn start() -> Result<(), Failure> {
         Ok(Command::Odometry(args)) => odometry::run(&args),
         Ok(Command::Structure(args)) => structure::run(&args),
         Ok(Command::Walk(args)) => walk::run(&args),
-        Err(cli::Stop::Help(text)) => print(&text),
-        Err(cli::Stop::Usage(failure)) => Err(failure),
+        Err(Stop::Help(text)) => print(&text),
+        Err(Stop::Usage(failure)) => Err(failure),
     }
 }
 
-/// Writes to standard output. A reader that closed its end has what it wanted.
-fn print(text: &str) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(Failure::new(format!("standard output: {e}"))),
-        _ => Ok(()),
-    }
+/// Why there is no command to run.
+#[derive(Debug)]
+enum Stop {
+    /// Help or the version was asked for: what to print.
+    Help(String),
+    /// The command line is wrong.
+    Usage(Failure),
+}
+
+/// Reads the command line.
+fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, Stop> {
+    Cli::try_parse_from(args).map(|cli| cli.command).map_err(|error| match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => Stop::Help(error.render().to_string()),
+        _ => Stop::Usage(Failure::new(usage_line(&error, COMMANDS))),
+    })
 }

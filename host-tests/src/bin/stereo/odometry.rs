@@ -1,10 +1,9 @@
 //! `stereo odometry`: where a camera, or a pair, went, from what it saw.
 
-use crate::cli::{Unit, whole};
 use crate::failure::Failure;
 use crate::place::{Content, Place};
-use crate::print;
 use crate::progress::Progress;
+use crate::shared::{Unit, print, whole};
 use clap::Args;
 use image::GrayImage;
 use std::fmt::Write;

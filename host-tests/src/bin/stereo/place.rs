@@ -1,9 +1,12 @@
 //! Where results of a name go, and pairs of them that appear together.
 
 use crate::failure::Failure;
-use crate::files::png;
-use image::RgbImage;
+use image::codecs::png::PngEncoder;
+use image::{EncodableLayout, ImageBuffer, ImageError, Pixel, PixelWithColorType, RgbImage};
+use serde::Serialize;
+use std::ffi::OsStr;
 use std::io::{self, Write};
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use stereopsis_host::output::Staging;
 
@@ -89,4 +92,34 @@ impl Place {
         }
         Ok(staging.commit(&[])?)
     }
+}
+
+/// Writes one file, whole or not at all: `value` as JSON.
+pub fn json_file(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
+    let no_file =
+        || Failure::new(format!("--out {}: is not a file; name a file for the result", path.display()));
+    let name = path.file_name().and_then(OsStr::to_str).filter(|_| !path.is_dir()).ok_or_else(no_file)?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut staging = Staging::new(folder)?;
+    staging.write(name, |out| json(out, value))?;
+    Ok(staging.commit(&[])?)
+}
+
+/// A picture as PNG.
+pub fn png<P, C>(out: &mut dyn Write, picture: &ImageBuffer<P, C>) -> io::Result<()>
+where
+    P: Pixel + PixelWithColorType,
+    [P::Subpixel]: EncodableLayout,
+    C: Deref<Target = [P::Subpixel]>,
+{
+    picture.write_with_encoder(PngEncoder::new(out)).map_err(|error| match error {
+        ImageError::IoError(e) => e,
+        e => io::Error::other(e),
+    })
+}
+
+/// A value as JSON.
+pub fn json(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, value)?;
+    out.write_all(b"\n")
 }

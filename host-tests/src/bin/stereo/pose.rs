@@ -1,11 +1,11 @@
 //! `stereo pose`: correspondences of known cameras into where the second one stands, and points.
 
 use crate::failure::Failure;
-use crate::files::json_file;
-use crate::fundamental::rows;
-use crate::print;
-use crate::two_view::{PoseArgs, RobustArgs, TwoViewMethod};
+use crate::place::json_file;
+use crate::shared::{RobustArgs, TwoViewMethod, print, rows};
+use clap::Args;
 use serde::Serialize;
+use std::path::PathBuf;
 use stereopsis::geometry::{
     camera::Camera,
     robust::{RobustConfig, RobustError, robust_fundamental},
@@ -16,6 +16,32 @@ use stereopsis::geometry::{
 };
 use stereopsis_host::calibration::Cameras;
 use stereopsis_host::matches::read_matches;
+
+/// What follows the options in the command's help.
+pub const EXAMPLE: &str = "Example:
+  stereo pose --matches matches.csv --calib calib.txt --out pose.json
+
+Written is one JSON object: essential (3x3 in rows), rotation and translation (a point P' of the second camera is \
+R P' + t in the first; t has length one, for the scale is not in the matches), points (in the first camera, the baseline is \
+one; null where a match is wrong or its sights are parallel), inliers, and model: fundamental, or homography when what \
+was seen is on a plane.";
+
+#[derive(Debug, Args)]
+pub struct PoseArgs {
+    /// The matches: lines of x1,y1,x2,y2 in px under that header
+    #[arg(long, value_name = "FILE")]
+    pub matches: PathBuf,
+    /// Calibration of the two cameras, which need not be rectified, or of the one that took both images:
+    /// OpenCV's YAML, XML or JSON, ROS's camera_info (twice for two cameras), Kalibr's camchain, a
+    /// Middlebury or KITTI calib.txt
+    #[arg(long, value_name = "FILE", required = true)]
+    pub calib: Vec<PathBuf>,
+    #[command(flatten)]
+    pub robust: RobustArgs,
+    /// File for the result; its folder is made when it is missing
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
 
 /// What is written. Names are a contract with programs that read them.
 #[derive(Serialize)]

@@ -1,9 +1,8 @@
 //! `stereo record`: a recording from images, with faults if they are wanted.
 
-use crate::cli::whole;
 use crate::failure::Failure;
 use crate::place::Place;
-use crate::print;
+use crate::shared::{print, rate, whole};
 use clap::Args;
 use std::path::PathBuf;
 use stereopsis_host::command_line::one_line;
@@ -46,11 +45,6 @@ pub struct RecordArgs {
 
 fn frames(text: &str) -> Result<u16, String> {
     whole(text, 1, 60_000)
-}
-
-pub fn rate(text: &str) -> Result<f64, &'static str> {
-    let value = text.parse().ok().filter(|value| (0.01..=10_000.0).contains(value));
-    value.ok_or("a number from 0.01 to 10000 is needed")
 }
 
 fn probability(text: &str) -> Result<f64, &'static str> {

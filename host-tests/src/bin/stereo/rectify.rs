@@ -1,60 +1,48 @@
 //! `stereo rectify`: a raw pair and a calibration into a rectified pair.
 
-use crate::cli::{RectifyArgs, RectifyOptions, Unit};
 use crate::failure::Failure;
-use crate::files::{json, png};
 use crate::input::Pair;
-use crate::print;
+use crate::place::{json, png};
+use crate::rectified::{RectifiedCameras, open};
+use crate::shared::{PairArgs, RectifyOptions, print};
 use crate::uncalibrated;
-use nalgebra::{DMatrix, Matrix3};
-use serde::Serialize;
+use clap::Args;
 use std::fmt::Write;
 use std::path::PathBuf;
-use stereopsis::geometry::{
-    camera::ImageSize,
-    rectify::{Crop, Rectification, RectificationReport},
-};
-use stereopsis_host::calibration::RawCalibration;
+use stereopsis::geometry::camera::ImageSize;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
 use stereopsis_host::rectify::rectify;
 
-/// What `rectified.json` holds. Names are a contract with programs that read it.
-#[derive(Serialize)]
-pub struct Summary {
-    /// The calibration's format.
-    calibration: &'static str,
-    /// `horizontal`: rows are aligned; `vertical`: columns.
-    axis: &'static str,
-    width: u16,
-    height: u16,
-    /// The camera that both rectified images are of.
-    focal_px: f64,
-    cx: f64,
-    cy: f64,
-    baseline_m: f64,
-    /// `(X Y Z W)^T = Q (u v d 1)^T`, metres.
-    q: Vec<Vec<f64>>,
-    left: Side,
-    right: Side,
-    /// The share of the rectified image that both cameras see.
-    common: f64,
-    /// Across and down, of what both see.
-    field_of_view_deg: [f64; 2],
-}
+/// What follows the options in the command's help.
+pub const EXAMPLE: &str = "Example:
+  stereo rectify --left left.png --right right.png --calib stereo.yml --out rectified
+  stereo rectify --left left.png --right right.png --matches matches.csv --out aligned
 
-#[derive(Serialize)]
-struct Side {
-    /// `K [1 | t]` in the left rectified camera, as OpenCV's P1 and P2.
-    projection: Vec<Vec<f64>>,
-    /// From the raw camera's frame into the rectified one's, as OpenCV's R1 and R2.
-    rotation: Vec<Vec<f64>>,
-    /// Raw rows that the remap holds at once.
-    rows: u16,
-    /// The share of the rectified image that the camera sees.
-    seen: f64,
-    /// The largest way of a pixel, px.
-    largest_warp_px: f64,
+Written into the folder: left.png and right.png (grey, rows aligned), valid_left.png and valid_right.png (255 where the \
+raw image was seen, 0 elsewhere), and rectified.json (the new cameras, Q, the rows of input that the remap holds at \
+once). Cameras below each other get their columns aligned.
+
+Without a calibration matches of the command features align the rows (--matches): the same files, but rectified.json has two homographies instead of cameras, for nothing in metres is known then, and lenses are not straightened.";
+
+#[derive(Debug, Args)]
+pub struct RectifyArgs {
+    #[command(flatten)]
+    pub pair: PairArgs,
+    /// Calibration of the two cameras: OpenCV's YAML or XML, Kalibr's camchain, a Middlebury or KITTI
+    /// calib.txt; twice for ROS's camera_info, the left camera's and the right one's, or for OpenCV's
+    /// intrinsics and extrinsics
+    #[arg(long, value_name = "FILE", required_unless_present = "matches")]
+    pub calib: Vec<PathBuf>,
+    #[command(flatten)]
+    pub rectify: RectifyOptions,
+    /// Instead of a calibration: matches of the two images, lines of x1,y1,x2,y2 in px under that header,
+    /// some of them wrong
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["calib", "alpha", "unit"])]
+    pub matches: Option<PathBuf>,
+    /// Folder for the results; made when it is missing
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
 }
 
 pub fn run(args: &RectifyArgs) -> Result<(), Failure> {
@@ -80,7 +68,7 @@ pub fn run(args: &RectifyArgs) -> Result<(), Failure> {
     ] {
         staging.write(name, |out| png(out, picture))?;
     }
-    let summary = Summary::new(calibration.format, &rectification, result.rows, &report);
+    let summary = RectifiedCameras::new(calibration.format, &rectification, result.rows, &report);
     staging.write("rectified.json", |out| json(out, &summary))?;
     staging.commit(&[])?;
 
@@ -96,81 +84,4 @@ pub fn run(args: &RectifyArgs) -> Result<(), Failure> {
     text += &summary.figures();
     let _ = writeln!(text, "results are in {}", one_line(&args.out.display().to_string()));
     print(&text)
-}
-
-/// The rig of a calibration for images of that size, and its rectification.
-pub fn open(
-    calib: &[PathBuf],
-    options: &RectifyOptions,
-    size: ImageSize,
-) -> Result<(RawCalibration, Rectification<f64>), Failure> {
-    if calib.len() > 2 {
-        return Err(Failure::new(
-            "--calib: is given more than twice; a file of both cameras or one of each is needed",
-        ));
-    }
-    let calibration = RawCalibration::open(calib, Some(size), options.unit.map(Unit::metres))?;
-    let crop = options.alpha.map_or(Crop::Natural, Crop::Alpha);
-    let rectification = Rectification::new(&calibration.rig, crop, size)
-        .map_err(|e| Failure::new(format!("{}: {e}", calibration.path.display())))?;
-    Ok((calibration, rectification))
-}
-
-impl Summary {
-    /// The figures in a few lines.
-    pub fn figures(&self) -> String {
-        format!(
-            "camera       f {:.2} px, baseline {:.4} m\nboth see     {:.1} % of the image\n\
-             rows held    {} left, {} right\n",
-            self.focal_px,
-            self.baseline_m,
-            100.0 * self.common,
-            self.left.rows,
-            self.right.rows
-        )
-    }
-
-    pub fn new(
-        calibration: &'static str,
-        rectification: &Rectification<f64>,
-        rows: [u16; 2],
-        report: &RectificationReport<f64>,
-    ) -> Self {
-        let camera = rectification.camera();
-        let (focal_px, (cx, cy)) = (camera.focal_px().0, camera.principal_point());
-        let is_horizontal = rectification.axis().is_horizontal();
-        let side = |i: usize, away: f64| {
-            let mut projection = DMatrix::zeros(3, 4);
-            projection.view_mut((0, 0), (3, 3)).copy_from(&camera.matrix());
-            projection[(usize::from(!is_horizontal), 3)] = -focal_px * away;
-            let rotation: &Matrix3<f64> = rectification.warps()[i].rotation();
-            Side {
-                projection: rows_of(&projection),
-                rotation: rows_of(&DMatrix::from_fn(3, 3, |r, c| rotation[(r, c)])),
-                rows: rows[i],
-                seen: report.seen[i],
-                largest_warp_px: report.largest_warp_px[i],
-            }
-        };
-        let q = rectification.q();
-        Self {
-            calibration,
-            axis: if is_horizontal { "horizontal" } else { "vertical" },
-            width: rectification.size().width,
-            height: rectification.size().height,
-            focal_px,
-            cx,
-            cy,
-            baseline_m: rectification.baseline_m(),
-            q: rows_of(&DMatrix::from_fn(4, 4, |r, c| q[(r, c)])),
-            left: side(0, 0.0),
-            right: side(1, rectification.baseline_m()),
-            common: report.common,
-            field_of_view_deg: report.field_of_view_rad.map(f64::to_degrees),
-        }
-    }
-}
-
-fn rows_of(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
-    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
 }

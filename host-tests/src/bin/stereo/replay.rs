@@ -1,25 +1,25 @@
 //! `stereo replay`: recorded lines through the code that runs on the device.
 
-use crate::cli::{BalanceArgs, RangeArgs, WayArgs};
+mod summary;
+
 use crate::failure::Failure;
-use crate::files::{json, png};
-use crate::{input, print};
+use crate::input;
+use crate::place::{json, png};
+use crate::shared::{BalanceArgs, RangeArgs, WayArgs, filter, method, noise, print, rate};
 use clap::{Args, ValueEnum};
-use serde::Serialize;
-use std::fmt::{Display, Write as _};
+use std::fmt::Display;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{Config, Filter};
-use stereopsis::pipeline::FaultCounters;
-use stereopsis::units::PixelFlags;
 use stereopsis_host::colour::flags_raw;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
 use stereopsis_host::pfm;
 use stereopsis_host::recording::{Ahead, Header, Pictures, Playback, Recording, Seen};
 use stereopsis_host::run::{GuardedFrame, MethodName, NoiseChoice, run_guarded};
+use summary::Summary;
 
 /// What follows the options in the command's help.
 pub const EXAMPLE: &str = "Example:
@@ -37,14 +37,14 @@ pub struct ReplayArgs {
     #[command(flatten)]
     pub range: RangeArgs,
     /// fast, block, sgm-lean, sgm or sgm-edge
-    #[arg(long, value_name = "METHOD", default_value = "block", value_parser = crate::cli::method)]
+    #[arg(long, value_name = "METHOD", default_value = "block", value_parser = method)]
     pub method: MethodName,
     /// dense, default or strict
-    #[arg(long, value_name = "FILTER", default_value = "default", value_parser = crate::cli::filter)]
+    #[arg(long, value_name = "FILTER", default_value = "default", value_parser = filter)]
     pub filter: Filter,
     /// How noisy the images are: none, low (a deviation of about 2 grey levels), high (3 and more), or auto,
     /// which measures each frame
-    #[arg(long, value_name = "NOISE", default_value = "auto", value_parser = crate::cli::noise)]
+    #[arg(long, value_name = "NOISE", default_value = "auto", value_parser = noise)]
     pub noise: NoiseChoice,
     #[command(flatten)]
     pub balance: BalanceArgs,
@@ -52,7 +52,7 @@ pub struct ReplayArgs {
     #[arg(long, value_name = "TIMING", default_value = "fast")]
     pub timing: Timing,
     /// Frames per second, for a folder
-    #[arg(long, value_name = "F", default_value_t = 30.0, value_parser = crate::record::rate, allow_negative_numbers = true)]
+    #[arg(long, value_name = "F", default_value_t = 30.0, value_parser = rate, allow_negative_numbers = true)]
     pub fps: f64,
     /// How many lines of a frame may be lost before it is given up; by default all
     #[arg(long, value_name = "N")]
@@ -71,71 +71,6 @@ pub enum Timing {
     Fast,
     /// By the time stamps
     Recorded,
-}
-
-/// The replay in figures.
-#[derive(Serialize)]
-struct Summary {
-    width: u16,
-    height: u16,
-    method: &'static str,
-    disparities: u16,
-    min_disparity: u16,
-    frames: u32,
-    whole_frames: u32,
-    damaged_frames: u32,
-    broken_frames: u32,
-    failed_frames: u32,
-    /// Frames that were smoothed against noise.
-    noisy_frames: u32,
-    /// Frames whose right image was brought to the left one's exposure.
-    balanced_frames: u32,
-    recording_was_cut: bool,
-    /// The first frame, from 1, whose time stamp is of before that of the frame before.
-    time_went_back_at: Option<u32>,
-    counters: Counters,
-}
-
-/// [`FaultCounters`], by name.
-#[derive(Serialize)]
-struct Counters {
-    frames_skipped: u32,
-    frames_stale: u32,
-    restarts: u32,
-    rows: u32,
-    rows_damaged: u32,
-    lines: u32,
-    lines_dropped: u32,
-    lines_repeated: u32,
-    lines_torn: u32,
-    lines_late: u32,
-    lines_stale: u32,
-    lines_failed: u32,
-    lines_timed_out: u32,
-    lines_short: u32,
-    syncs_lost: u32,
-}
-
-impl From<FaultCounters> for Counters {
-    fn from(c: FaultCounters) -> Self {
-        Self {
-            frames_skipped: c.frames_skipped,
-            frames_stale: c.frames_stale,
-            restarts: c.restarts,
-            rows: c.rows,
-            rows_damaged: c.rows_damaged,
-            lines: c.lines,
-            lines_dropped: c.lines_dropped,
-            lines_repeated: c.lines_repeated,
-            lines_torn: c.lines_torn,
-            lines_late: c.lines_late,
-            lines_stale: c.lines_stale,
-            lines_failed: c.lines_failed,
-            lines_timed_out: c.lines_timed_out,
-            lines_short: c.lines_short,
-            syncs_lost: c.syncs_lost,
-        }
-    }
 }
 
 pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
@@ -240,7 +175,7 @@ fn play(
     staging.write("summary.json", |out| json(out, &summary))?;
     let stale = earlier_results(&args.out)?;
     staging.commit(&stale.iter().map(String::as_str).collect::<Vec<_>>())?;
-    print(&told(&summary, &args.out))
+    print(&summary.figures(&args.out))
 }
 
 /// The endings of a frame's files.
@@ -269,34 +204,4 @@ fn earlier_results(out: &Path) -> Result<Vec<String>, Failure> {
     };
     let entries = fs::read_dir(out).map_err(|e| Failure::new(format!("--out {}: {e}", out.display())))?;
     Ok(entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).filter(is_result).collect())
-}
-
-fn told(s: &Summary, out: &Path) -> String {
-    let mut text = format!("{} frames of {} x {} px, method {}\n", s.frames, s.width, s.height, s.method);
-    let _ = writeln!(
-        text,
-        "{} whole, {} with rows flagged as {}, {} broken off, {} that did not begin",
-        s.whole_frames,
-        s.damaged_frames,
-        PixelFlags::NAMES.last().map_or("", |(_, name)| name),
-        s.broken_frames,
-        s.failed_frames
-    );
-    if s.noisy_frames > 0 {
-        let _ = writeln!(text, "{} smoothed against noise", s.noisy_frames);
-    }
-    if s.balanced_frames > 0 {
-        let _ = writeln!(text, "{} with the right image in the left one's exposure", s.balanced_frames);
-    }
-    if s.recording_was_cut {
-        text += "note: the recording ends within a record; what is before it was played\n";
-    }
-    if let Some(frame) = s.time_went_back_at {
-        let _ = writeln!(
-            text,
-            "note: time stamps go back at frame {frame}; frames were played in the order of the file"
-        );
-    }
-    let _ = writeln!(text, "results are in {}", one_line(&out.display().to_string()));
-    text
 }

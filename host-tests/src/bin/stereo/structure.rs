@@ -1,10 +1,10 @@
 //! `stereo structure`: pictures of one camera from several places into where it stood, and points.
 
-use crate::calibrate::files;
 use crate::failure::Failure;
-use crate::files::json;
-use crate::print;
+use crate::image_files::files;
+use crate::place::json;
 use crate::progress::Progress;
+use crate::shared::{print, rows};
 use clap::Args;
 use image::{GrayImage, RgbImage};
 use serde::Serialize;
@@ -178,7 +178,7 @@ fn answer(found: &Found, images: &Images, unit: &str) -> Answer {
                 Err(ViewState::NoAgreement) => "what it sees agrees on no pose",
                 Err(_) => "unknown",
             },
-            rotation: pose.map(|pose| crate::fundamental::rows(pose.rotation())),
+            rotation: pose.map(|pose| rows(pose.rotation())),
             translation: pose.map(|pose| (*pose.translation()).into()),
         }
     };

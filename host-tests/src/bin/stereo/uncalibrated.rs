@@ -1,10 +1,9 @@
 //! `stereo rectify --matches`: a raw pair whose cameras nobody knows, its rows aligned by matches alone.
 
 use crate::failure::Failure;
-use crate::files::{json, png};
-use crate::fundamental::rows;
 use crate::input::Pair;
-use crate::print;
+use crate::place::{json, png};
+use crate::shared::{print, rows};
 use image::{GrayImage, Luma, imageops};
 use nalgebra::Point2;
 use serde::Serialize;

@@ -1,10 +1,9 @@
 //! `stereo walk`: the frames of a built-in street that a pair of cameras is driven through, with true poses.
 
-use crate::cli::whole;
 use crate::failure::Failure;
-use crate::files::png;
-use crate::print;
+use crate::place::png;
 use crate::progress::Progress;
+use crate::shared::{print, whole};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use stereopsis::geometry::camera::RectifiedRig;

@@ -1,35 +1,21 @@
-//! The files that `match` and `demo` write. Names and formats are a contract with programs that read them.
+//! What `match` and `demo` write and print. Names and formats are a contract with programs that read them.
 
-use crate::failure::Failure;
-use image::codecs::png::PngEncoder;
-use image::{EncodableLayout, ImageBuffer, ImageError, Luma, Pixel, PixelWithColorType, RgbImage};
-use serde::Serialize;
-use std::ffi::OsStr;
-use std::io::{self, Write};
-use std::ops::Deref;
+use crate::place::{json, png};
+use image::{ImageBuffer, Luma, RgbImage};
+use std::fmt::Write;
 use std::path::Path;
 use stereopsis::depth::DepthScale;
 use stereopsis::units::Disparity;
 use stereopsis_host::colour::{ColourScale, confidence_raw, flags_raw};
+use stereopsis_host::command_line::one_line;
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::output::{OutputError, Staging};
 use stereopsis_host::pfm;
 use stereopsis_host::ply::{self, ColouredPoint};
-use stereopsis_host::report::Report;
+use stereopsis_host::report::{Exposure, Report, Summary};
 
 /// What is written only with a calibration. A run without one takes the files of an earlier run with it away.
 pub const WITH_DEPTH: [&str; 3] = ["depth.pfm", "depth.png", "cloud.ply"];
-
-/// Writes one file, whole or not at all: `value` as JSON.
-pub fn json_file(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
-    let no_file =
-        || Failure::new(format!("--out {}: is not a file; name a file for the result", path.display()));
-    let name = path.file_name().and_then(OsStr::to_str).filter(|_| !path.is_dir()).ok_or_else(no_file)?;
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut staging = Staging::new(folder)?;
-    staging.write(name, |out| json(out, value))?;
-    Ok(staging.commit(&[])?)
-}
 
 /// Writes all files of a run but those of the truth.
 pub fn write(
@@ -58,23 +44,50 @@ pub fn write(
     staging.write("report.html", |out| report.write(out))
 }
 
-/// A picture as PNG.
-pub fn png<P, C>(out: &mut dyn Write, picture: &ImageBuffer<P, C>) -> io::Result<()>
-where
-    P: Pixel + PixelWithColorType,
-    [P::Subpixel]: EncodableLayout,
-    C: Deref<Target = [P::Subpixel]>,
-{
-    picture.write_with_encoder(PngEncoder::new(out)).map_err(|error| match error {
-        ImageError::IoError(e) => e,
-        e => io::Error::other(e),
-    })
+/// The figures of a run in a few lines.
+pub fn figures(summary: &Summary) -> String {
+    let s = summary;
+    let mut text = format!(
+        "{} x {} px, disparities {} to {}, method {}, filter {}\n",
+        s.width,
+        s.height,
+        s.min_disparity,
+        s.min_disparity + s.disparities - 1,
+        s.method,
+        s.filter
+    );
+    let _ = writeln!(text, "density      {:.1} % of the pixels", 100.0 * s.density);
+    let _ = match s.noise_sigma {
+        Some(sigma) => writeln!(text, "noise        {}, {sigma:.1} grey levels", s.noise),
+        None => writeln!(text, "noise        {}, as told", s.noise),
+    };
+    if let Some(rows) = &s.rows {
+        let _ = writeln!(text, "rows         {}", rows.told());
+    }
+    if let Some(d) = s.disparity_px {
+        let _ = writeln!(text, "disparity    {:.2} to {:.2} px, median {:.2} px", d.min, d.max, d.median);
+    }
+    if let Some(z) = s.depth.as_ref().and_then(|depth| depth.found_m) {
+        let _ = writeln!(text, "depth        {:.3} to {:.3} m, median {:.3} m", z.min, z.max, z.median);
+    }
+    let _ = writeln!(
+        text,
+        "cost         {:.1} ms on kernel {}, {} bytes of state, {} lines of delay",
+        s.time_ms, s.kernel, s.state_bytes, s.latency_lines
+    );
+    if let Some(Exposure { gain, offset }) = s.balance {
+        let _ = writeln!(
+            text,
+            "exposure     right image x {gain:.2} {offset:+.1} grey levels, as the left one has it"
+        );
+    }
+    text
 }
 
-/// A value as JSON.
-pub fn json(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
-    serde_json::to_writer_pretty(&mut *out, value)?;
-    out.write_all(b"\n")
+/// Where the results are and how to look at them.
+pub fn place(out: &Path) -> String {
+    let report = one_line(&out.join("report.html").display().to_string());
+    format!("results are in {}\nopen {report} in a browser\n", one_line(&out.display().to_string()))
 }
 
 /// Disparity x 256 in 16 bits, where 0 says that there is none: an answer of 0 px becomes 1, and one of 256

@@ -1,14 +1,17 @@
 //! `stereo match`: a pair, rectified or raw, into a folder of results.
 
-use crate::cli::{MatchArgs, Unit};
 use crate::failure::Failure;
 use crate::input::{self, Pair};
+use crate::place::{json, png};
 use crate::progress::Progress;
-use crate::{files, print, rectify as raw_pair};
+use crate::rectified::{self, RectifiedCameras};
+use crate::results::{self, figures, place};
+use crate::shared::{BalanceArgs, PairArgs, RangeArgs, RectifyOptions, Unit, WayArgs, print};
+use clap::Args;
 use image::{RgbImage, imageops};
 use std::fmt::{Display, Write};
 use std::io::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use stereopsis::camera::StereoSource;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::{Camera, ImageSize, RectifiedRig};
@@ -18,9 +21,45 @@ use stereopsis_host::calibration::Calibration;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
 use stereopsis_host::rectify::{rectify, rectify_colours, with_rectified};
-use stereopsis_host::report::{Exposure, Report, Summary};
+use stereopsis_host::report::{Report, Summary};
 use stereopsis_host::rows::Rows;
 use stereopsis_host::run::{self, Outcome, measure_noise};
+
+/// What follows the options in the command's help.
+pub const EXAMPLE: &str = "Example:
+  stereo match --left left.png --right right.png --disparities 64 --calib calib.txt --out out/scene
+  stereo match --left raw_left.png --right raw_right.png --disparities 64 --rectify --calib stereo.yml --out out/raw
+
+Written into the folder: disparity.pfm (px, infinity where there is no answer), disparity.png (16 bit, px x 256, 0 where \
+there is none), disparity_colour.png (near is bright), flags.png (a byte a pixel: 1 outside, 2 ceiling, 4 untextured, \
+8 ambiguous, 16 mismatch, 32 speckle, 64 filled), confidence.png (a byte a pixel: surer is more, 0 is no answer), summary.json and report.html; with --calib also depth.pfm (metres), depth.png \
+(16 bit, millimetres) and cloud.ply; with --rectify also rectified_left.png, rectified_right.png and rectified.json, the \
+cameras of all the others. The files appear together when all of them are complete.";
+
+#[derive(Debug, Args)]
+pub struct MatchArgs {
+    #[command(flatten)]
+    pub pair: PairArgs,
+    #[command(flatten)]
+    pub range: RangeArgs,
+    #[command(flatten)]
+    pub way: WayArgs,
+    #[command(flatten)]
+    pub balance: BalanceArgs,
+    /// Calibration of the pair, for depths: a Middlebury or KITTI calib.txt, what OpenCV or ROS (twice) say
+    /// of rectified images, or rectified.json; with --rectify how the cameras are mounted, as for the
+    /// command rectify
+    #[arg(long, value_name = "FILE")]
+    pub calib: Vec<PathBuf>,
+    /// Take the images raw, as the cameras give them, and rectify them line by line before they are matched
+    #[arg(long)]
+    pub rectify: bool,
+    #[command(flatten)]
+    pub options: RectifyOptions,
+    /// Folder for the results; made when it is missing
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
 
 /// What is written only of raw images.
 const RECTIFIED: [&str; 3] = ["rectified_left.png", "rectified_right.png", "rectified.json"];
@@ -30,7 +69,7 @@ struct Scene {
     left: RgbImage,
     right: RgbImage,
     scale: Option<DepthScale>,
-    rectified: Option<raw_pair::Summary>,
+    rectified: Option<RectifiedCameras>,
     rows: Option<Rows>,
 }
 
@@ -73,14 +112,14 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         truth: None,
     };
     let mut staging = Staging::new(&args.out)?;
-    files::write(&mut staging, &report, scale)?;
+    results::write(&mut staging, &report, scale)?;
     let [left, right, told] = RECTIFIED;
     if let Some(rectified) = &scene.rectified {
-        staging.write(left, |out| files::png(out, &scene.left))?;
-        staging.write(right, |out| files::png(out, &scene.right))?;
-        staging.write(told, |out| files::json(out, rectified))?;
+        staging.write(left, |out| png(out, &scene.left))?;
+        staging.write(right, |out| png(out, &scene.right))?;
+        staging.write(told, |out| json(out, rectified))?;
     }
-    let stale: Vec<_> = files::WITH_DEPTH.into_iter().chain(RECTIFIED).collect();
+    let stale: Vec<_> = results::WITH_DEPTH.into_iter().chain(RECTIFIED).collect();
     staging.commit(&stale)?;
 
     let mut text = String::new();
@@ -132,7 +171,7 @@ fn raw(args: &MatchArgs, config: Config, pair: &mut Pair) -> Result<(Scene, Matc
         return Err(Failure::new("--rectify: --calib is missing; give the calibration of the two cameras"));
     }
     let size = ImageSize { width: pair.width, height: pair.height };
-    let (calibration, rectification) = raw_pair::open(&args.calib, &args.options, size)?;
+    let (calibration, rectification) = rectified::open(&args.calib, &args.options, size)?;
     let named = |e: &dyn Display| Failure::new(format!("{}: {e}", calibration.path.display()));
     if !rectification.axis().is_horizontal() {
         return Err(named(&"the cameras stand below each other; match takes cameras beside each other"));
@@ -145,7 +184,7 @@ fn raw(args: &MatchArgs, config: Config, pair: &mut Pair) -> Result<(Scene, Matc
         (source.remaps().map(|remap| remap.table().rows()), matched(args, config, source))
     })
     .map_err(|e| named(&e))?;
-    let told = raw_pair::Summary::new(calibration.format, &rectification, rows, &rectification.report());
+    let told = RectifiedCameras::new(calibration.format, &rectification, rows, &rectification.report());
     let grey = rectify(&rectification, &mut pair.camera).map_err(|e| named(&e))?;
     let rows =
         Rows::measure(grey.pictures.each_ref(), Some(grey.valid.each_ref()), Some(rectification.camera()));
@@ -180,52 +219,6 @@ fn scale(args: &MatchArgs, pair: &Pair) -> Result<Option<DepthScale>, Failure> {
     calibration.check_size(pair.width, pair.height)?;
     let scale = DepthScale::new(&calibration.rig);
     scale.map(Some).map_err(|e| Failure::new(format!("{}: {e}", calibration.path.display())))
-}
-
-/// The figures of a run in a few lines.
-pub fn figures(summary: &Summary) -> String {
-    let s = summary;
-    let mut text = format!(
-        "{} x {} px, disparities {} to {}, method {}, filter {}\n",
-        s.width,
-        s.height,
-        s.min_disparity,
-        s.min_disparity + s.disparities - 1,
-        s.method,
-        s.filter
-    );
-    let _ = writeln!(text, "density      {:.1} % of the pixels", 100.0 * s.density);
-    let _ = match s.noise_sigma {
-        Some(sigma) => writeln!(text, "noise        {}, {sigma:.1} grey levels", s.noise),
-        None => writeln!(text, "noise        {}, as told", s.noise),
-    };
-    if let Some(rows) = &s.rows {
-        let _ = writeln!(text, "rows         {}", rows.told());
-    }
-    if let Some(d) = s.disparity_px {
-        let _ = writeln!(text, "disparity    {:.2} to {:.2} px, median {:.2} px", d.min, d.max, d.median);
-    }
-    if let Some(z) = s.depth.as_ref().and_then(|depth| depth.found_m) {
-        let _ = writeln!(text, "depth        {:.3} to {:.3} m, median {:.3} m", z.min, z.max, z.median);
-    }
-    let _ = writeln!(
-        text,
-        "cost         {:.1} ms on kernel {}, {} bytes of state, {} lines of delay",
-        s.time_ms, s.kernel, s.state_bytes, s.latency_lines
-    );
-    if let Some(Exposure { gain, offset }) = s.balance {
-        let _ = writeln!(
-            text,
-            "exposure     right image x {gain:.2} {offset:+.1} grey levels, as the left one has it"
-        );
-    }
-    text
-}
-
-/// Where the results are and how to look at them.
-pub fn place(out: &Path) -> String {
-    let report = one_line(&out.join("report.html").display().to_string());
-    format!("results are in {}\nopen {report} in a browser\n", one_line(&out.display().to_string()))
 }
 
 fn name(path: &Path) -> String {

@@ -1,0 +1,77 @@
+//! The images that patterns name, and which of two cameras belong together.
+
+use crate::failure::Failure;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Left and right images by the last number in their names; by their order where names have none.
+pub fn pairs(
+    left: &[String],
+    right: &[String],
+    notes: &mut Vec<String>,
+) -> Result<Vec<[PathBuf; 2]>, Failure> {
+    let (left, right) = (files("--left", left)?, files("--right", right)?);
+    let numbered = |paths: &[PathBuf]| -> Option<BTreeMap<u64, PathBuf>> {
+        let found: BTreeMap<_, _> =
+            paths.iter().filter_map(|path| Some((number(path)?, path.clone()))).collect();
+        // Some may have none, but no two the same.
+        let count = paths.iter().filter(|path| number(path).is_some()).count();
+        (found.len() == count && count > 0).then_some(found)
+    };
+    if let (Some(mut of_left), Some(mut of_right)) = (numbered(&left), numbered(&right))
+        && of_left.keys().any(|key| of_right.contains_key(key))
+    {
+        let alone = |path: &PathBuf| format!("{} has no partner; it is left out", path.display());
+        notes.extend(left.iter().chain(&right).filter(|path| number(path).is_none()).map(alone));
+        notes.extend(
+            of_left.iter().filter(|(key, _)| !of_right.contains_key(key)).map(|(_, path)| alone(path)),
+        );
+        notes.extend(
+            of_right.iter().filter(|(key, _)| !of_left.contains_key(key)).map(|(_, path)| alone(path)),
+        );
+        let keys: Vec<_> = of_left.keys().copied().collect();
+        let pair = |key: u64| Some([of_left.remove(&key)?, of_right.remove(&key)?]);
+        return Ok(keys.into_iter().filter_map(pair).collect());
+    }
+    if left.len() != right.len() {
+        return Err(Failure::new(format!(
+            "--left and --right: {} and {} images; as many of both are needed, or numbers in their names that say which belong \
+             together",
+            left.len(),
+            right.len()
+        )));
+    }
+    Ok(left.into_iter().zip(right).map(|(left, right)| [left, right]).collect())
+}
+
+/// The last number in a file's name.
+fn number(path: &Path) -> Option<u64> {
+    let name = path.file_stem()?.to_str()?;
+    let tail = name.trim_end_matches(|c: char| !c.is_ascii_digit());
+    tail.rsplit(|c: char| !c.is_ascii_digit()).next()?.parse().ok()
+}
+
+/// The files that patterns name, in order of their names.
+pub fn files(option: &str, patterns: &[String]) -> Result<Vec<PathBuf>, Failure> {
+    let mut found = Vec::new();
+    for pattern in patterns {
+        // A name with brackets in it may be a file's.
+        if Path::new(pattern).is_file() {
+            found.push(pattern.into());
+            continue;
+        }
+        let paths = glob::glob(pattern).map_err(|e| Failure::new(format!("{option} {pattern}: {e}")))?;
+        let before = found.len();
+        for path in paths {
+            found.push(path?);
+        }
+        if found.len() == before {
+            return Err(Failure::new(format!(
+                "{option} {pattern}: there is no such file; name the images, as 'left*.png'"
+            )));
+        }
+    }
+    found.sort();
+    found.dedup();
+    Ok(found)
+}

@@ -26,6 +26,7 @@ mod header;
 mod packages;
 mod parallel;
 mod pictures;
+mod quickstart;
 mod readme;
 mod setup;
 mod steps;

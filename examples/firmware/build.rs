@@ -13,10 +13,7 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::{env, fs};
 
-#[path = "src/board.rs"]
-mod board;
-
-use board::Board;
+use firmware_boards::{self as board, Board};
 
 /// The memory map, beside the crate's manifest; a copy of this folder has its own.
 const MEMORY: &str = "../../memory.x";
@@ -55,7 +52,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rustc-link-search={}", out.display());
     println!("cargo:rerun-if-changed={MEMORY}");
     println!("cargo:rerun-if-changed=build.rs");
-    println!("cargo:rerun-if-changed=src/board.rs");
 
     let all = match variable("STEREO_MEMORY", "budget").as_str() {
         "budget" => false,
@@ -92,7 +88,7 @@ fn board() -> Result<Board, Box<dyn Error>> {
     let found = board::ALL.iter().find(fits);
     found
         .copied()
-        .ok_or_else(|| format!("src/board.rs has no board with STEREO_CORE={core} for {target}").into())
+        .ok_or_else(|| format!("boards/src/lib.rs has no board with STEREO_CORE={core} for {target}").into())
 }
 
 /// The constants and types of `src/choice.rs`.

@@ -2,13 +2,8 @@
 //!
 //! `cargo xtask firmware` runs the whole of it in QEMU and compares every bit with the host.
 
-#[path = "../../../examples/firmware/src/camera/pgm.rs"]
-mod pgm;
-#[path = "../../../examples/firmware/src/camera/scene.rs"]
-mod scene;
-
-use pgm::{HeaderError, LONGEST};
-use scene::{Scene, SceneCamera};
+use firmware_scenes::pgm::{self, HeaderError, LONGEST};
+use firmware_scenes::scene::{Scene, SceneCamera};
 use stereopsis::camera::StereoSource;
 use stereopsis::matching::{Block, Config};
 use stereopsis::pipeline::Pipeline;

@@ -6,8 +6,7 @@
 
 pub mod files;
 pub mod memory;
-pub mod pgm;
-pub mod scene;
+pub use firmware_scenes::{pgm, scene};
 pub mod timed;
 
 use core::convert::Infallible;

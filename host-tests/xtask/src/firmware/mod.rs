@@ -38,22 +38,8 @@ mod summary;
 pub mod tables;
 mod two_views_all;
 
-#[path = "../../../../examples/firmware/src/board.rs"]
-pub mod board;
-#[path = "../../../../examples/firmware/src/raw_pair.rs"]
-pub mod raw_pair;
-#[path = "../../../../examples/firmware/src/camera/scene.rs"]
-pub mod scene;
-#[path = "../../../../examples/firmware/src/sweep.rs"]
-pub mod sweep;
-#[path = "../../../../examples/firmware/src/two_pictures.rs"]
-pub mod two_pictures;
-#[path = "../../../../examples/firmware/src/two_views.rs"]
-pub mod two_views;
-#[path = "../../../../examples/firmware/src/walk.rs"]
-pub mod walk;
-#[path = "../../../../examples/firmware/src/window.rs"]
-pub mod window;
+pub use firmware_boards as board;
+pub use firmware_scenes::{raw_pair, scene, sweep, two_pictures, two_views, walk, window};
 
 pub use arguments::Arguments;
 pub use program::{VECTORS, cargo};

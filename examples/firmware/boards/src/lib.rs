@@ -2,6 +2,7 @@
 //!
 //! `build.rs` tells the linker the addresses, `src/clock.rs` counts with the clock, and the task runner of
 //! the repository starts QEMU with the machine's name.
+#![no_std]
 
 /// An emulated board.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

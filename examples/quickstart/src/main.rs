@@ -48,7 +48,7 @@ fn main() -> ! {
     let Some(pipeline) = PIPELINE.try_take() else { process::exit(1) };
     let rig = RectifiedRig::new(140.0, 0.06, 79.5, 59.5).expect("a rig"); // px, m, principal point px
     let (scale, mut cameras) = (DepthScale::new(&rig).expect("a scale"), Cameras(0..0));
-    pipeline.start(&Config::new(160, 120, 32)).expect("a search that fits the pipeline");
+    pipeline.start(&Config::for_method::<Block>(160, 120, 32)).expect("a search that fits the pipeline");
     pipeline.begin_frame(&mut cameras).expect("a frame");
     let mut nearest = u16::MAX;
     while let Some(row) = pipeline.next_row(&mut cameras).expect("a row") {

@@ -52,7 +52,8 @@ fn run(pipeline: &mut BoardPipeline) -> Result<(), Failure> {
     let mut camera = Timed::new(camera, &clock);
     let format = camera.format();
     defmt::info!("{=str} on {=str}: {=u16}x{=u16}", METHOD, BOARD.core, format.width, format.height);
-    let config = Config { noise: NOISE, ..Config::for_method::<Block>(format.width, format.height, DISPARITIES) };
+    let config =
+        Config { noise: NOISE, ..Config::for_method::<Block>(format.width, format.height, DISPARITIES) };
     let config = config.with_filter::<Method>(Filter::Default);
     pipeline.start(&config).map_err(Failure::Config)?;
     let mut rows = Rows::create().map_err(Failure::Rows)?;

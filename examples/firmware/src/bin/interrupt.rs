@@ -171,8 +171,8 @@ fn run(memory: &'static mut Memory) -> Result<(), Failure> {
     let Memory { picture, slots, queues, pipeline, rows } = memory;
     let mut scene = SceneCamera::new(Scene { width: WIDTH as u16, height: HEIGHT as u16 });
     render(&mut scene, picture)?;
-    let config =
-        Config::for_method::<Block>(WIDTH as u16, HEIGHT as u16, DISPARITIES as u16).with_filter::<Block>(Filter::Default);
+    let config = Config::for_method::<Block>(WIDTH as u16, HEIGHT as u16, DISPARITIES as u16)
+        .with_filter::<Block>(Filter::Default);
     let calibration = clock.calibrate();
 
     // Without an interrupt: what the rows are, and how long they take.

@@ -1,7 +1,8 @@
 //! The instructions that the dense path runs on: the choice among targets, and nothing else.
 //!
 //! * `isa`: what the stages ask of a target. `parameters`, `work`: what they hand to it.
-//! * `portable`: all of it in plain Rust; bit planes and words for cores without vectors.
+//! * `portable`: all of it in plain Rust; bit planes and words for cores without vectors. `plain`: the target that
+//!   has no more than that.
 //! * `simd`: vectors of 64-bit processors.
 //! * `armv7em`: Arm's instructions on four bytes in a word (Cortex-M4, M7, M33), with `--cfg stereopsis_dsp`.
 //! * `mve`: the vectors of a Cortex-M55, with `--cfg stereopsis_vectors`.
@@ -11,6 +12,8 @@
 mod isa;
 pub(in crate::matching) mod loops;
 mod parameters;
+#[allow(dead_code, reason = "a target may have all of it itself")]
+mod plain;
 #[allow(dead_code, reason = "a target has its own code for some of it")]
 mod portable;
 #[allow(dead_code, reason = "each target looks at what it needs")]
@@ -36,7 +39,7 @@ use armv7em as target;
 #[cfg(stereopsis_vectors)]
 use mve as target;
 #[cfg(not(any(stereopsis_dsp, stereopsis_vectors, target_pointer_width = "64")))]
-use portable as target;
+use plain as target;
 #[cfg(target_pointer_width = "64")]
 use simd as target;
 

@@ -1,13 +1,14 @@
 //! What a method keeps from row to row, and its workspace.
 //!
 //! * `rings`: rows that are kept for a while.
-//! * `winners`: what the winner-take-all stage gives for each pixel.
+//! * `winner`, `winners`: what the winner-take-all stage gives for each pixel.
 //! * `views`: one memory looked at as numbers of another width.
 //! * `layout`: memory whose size depends on the capacity.
 
 pub(in crate::matching) mod layout;
 pub(in crate::matching) mod rings;
 pub(in crate::matching) mod views;
+pub(in crate::matching) mod winner;
 pub(in crate::matching) mod winners;
 
 pub use rings::Rows5;

@@ -4,7 +4,7 @@
 //! integers without padding, any value of which is valid, so that each is a view of the others.
 #![allow(unsafe_code)]
 
-use super::winners::Winner;
+use super::winner::Winner;
 
 /// A type that is nothing but an integer: without padding, and valid whatever its bits are.
 ///

@@ -46,7 +46,7 @@ use crate::matching::memory::winners::Select;
 use crate::units::{Disparity, PixelFlags};
 
 #[allow(unused_imports, reason = "on a Cortex-M55 vectors do the most of it")]
-pub(in crate::matching) use portable::columns_begin;
+pub(in crate::matching) use super::plain::columns_begin;
 
 /// Whether the two codes of a pixel share a byte where codes have up to four bits.
 pub(in crate::matching) const CODES_SHARE_A_BYTE: bool = true;

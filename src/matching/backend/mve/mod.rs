@@ -46,7 +46,7 @@ use crate::matching::memory::winners::{BESIDE, Select, Winner, WinnerRows};
 use crate::units::{Disparity, PixelFlags};
 use windows::{Windows, complete};
 
-pub(in crate::matching) use portable::{CODES_SHARE_A_BYTE, columns_begin};
+pub(in crate::matching) use super::plain::{CODES_SHARE_A_BYTE, columns_begin};
 
 /// The vectors of a Cortex-M55, which the compilation was told that the core has.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -36,6 +36,7 @@ use x86::{Avx2, Avx512, Wide, Widest};
 
 use super::isa::Isa;
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
+use super::plain;
 use super::portable::{self, left_right_rows};
 use super::work::{EdgeWork, Guide, PathWork, Rules, STEP, WindowWork, WinnerWork};
 use crate::imaging::{census_plus4, census_ring8};
@@ -103,7 +104,7 @@ impl Isa for Backend {
     #[inline]
     fn candidates(self, disparities: usize, most: usize) -> usize {
         match self {
-            Self::Planes => portable::Backend.candidates(disparities, most),
+            Self::Planes => plain::Backend.candidates(disparities, most),
             _ => disparities.next_multiple_of(STEP).min(most) & !(STEP - 1),
         }
     }
@@ -117,7 +118,7 @@ impl Isa for Backend {
         out: &mut [u8],
     ) {
         if self == Self::Planes {
-            return portable::Backend.census::<P>(lines, min_disparity, workspace, out);
+            return plain::Backend.census::<P>(lines, min_disparity, workspace, out);
         }
         let (left, right) = out.split_at_mut_checked(out.len() / 2).unwrap_or_default();
         let census = if P::BITS <= 4 { census_plus4 } else { census_ring8 };
@@ -129,7 +130,7 @@ impl Isa for Backend {
     #[inline]
     fn window<P: WindowParameters>(self, work: WindowWork<'_>, select: Option<Select<'_>>) {
         match self {
-            Self::Planes => portable::Backend.window::<P>(work, select),
+            Self::Planes => plain::Backend.window::<P>(work, select),
             Self::Avx2(avx2) if work.stride.is_multiple_of(32) => avx2.row::<P>(work, select),
             Self::Avx512(avx512) if work.stride.is_multiple_of(32) => avx512.row::<P>(work, select),
             // Of registers that would not be full there is nothing to gain.
@@ -166,7 +167,7 @@ impl Isa for Backend {
         flags: &mut [PixelFlags],
     ) {
         if self == Self::Planes {
-            return portable::Backend.left_right::<P>(work, rules, answers, flags);
+            return plain::Backend.left_right::<P>(work, rules, answers, flags);
         }
         let WinnerWork { winners, right, workspace, begin } = work;
         let width = winners.len();
@@ -189,7 +190,7 @@ impl Isa for Backend {
         radius: u8,
     ) {
         if self == Self::Planes || answers.len() < smooth::LANES {
-            return portable::Backend.smooth(answers, lengths, workspace, step, radius);
+            return plain::Backend.smooth(answers, lengths, workspace, step, radius);
         }
         self.in_vectors(
             #[inline(always)]
@@ -199,7 +200,7 @@ impl Isa for Backend {
 
     fn median(self, rows: [&[Disparity]; 3], out: &mut [Disparity]) {
         if self == Self::Planes {
-            return portable::Backend.median(rows, out);
+            return plain::Backend.median(rows, out);
         }
         self.in_vectors(
             #[inline(always)]

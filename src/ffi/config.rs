@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::Status;
-use super::instance::either;
+use super::status::either;
 use crate::imaging::Noise;
 use crate::matching::{self, Checks, ConfigError, Filter, Method, Penalties};
 use crate::units::Disparity;

@@ -3,6 +3,7 @@
 
 use super::faults::fault;
 use super::state::{State, share_bytes};
+use super::status::either;
 use super::{CConfig, CCounters, CRow, Handle, Status};
 use crate::matching::{self, MatchError, Method};
 use crate::pipeline::Pipeline;
@@ -13,11 +14,6 @@ use core::marker::PhantomData;
 ///
 /// [`instantiate_c_api`](crate::instantiate_c_api) gives them their names in C and their full descriptions.
 pub struct Instance<S: Method, const W: usize, const D: usize>(PhantomData<S>);
-
-/// Merges both outcomes of a call into its status.
-pub(super) fn either(result: Result<Status, Status>) -> Status {
-    result.unwrap_or_else(|status| status)
-}
 
 /// Writes the row of a call that gives one, empty where there is none.
 ///

@@ -69,7 +69,7 @@ pub unsafe fn noise_line(meter: *mut CNoiseMeter, line: *const u8, length: usize
     }
     // SAFETY: the caller's promise, and both stand beside each other.
     let (meter, line) = unsafe { (open(meter), core::slice::from_raw_parts(line, length)) };
-    super::instance::either(meter.map(|meter| {
+    super::status::either(meter.map(|meter| {
         meter.line(line);
         Status::Ok
     }))

@@ -162,3 +162,8 @@ impl From<MatchError> for Status {
         }
     }
 }
+
+/// Merges both outcomes of a call into its status.
+pub(super) fn either(result: Result<Status, Status>) -> Status {
+    result.unwrap_or_else(|status| status)
+}

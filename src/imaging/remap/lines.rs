@@ -1,7 +1,7 @@
 //! Rectification of one camera: a band of raw lines in, rectified lines out.
 
 use super::sample::Band;
-use super::segment::{Part, Segments};
+use super::segment::Part;
 use super::{RemapError, RemapTable};
 use crate::geometry::{Real, rectify::Warp};
 use core::cell::Cell;
@@ -155,7 +155,7 @@ impl<const W: usize, const N: usize, const SLOTS: usize> Remap<W, N, SLOTS> {
         let (raw, piece) = (self.table.raw_size(), self.table.piece());
         let band = Band::new(&self.lines, first - first % Self::ROWS, raw, piece);
         let cell = 1 << self.table.shift();
-        let mut segments = Segments::new(&self.table, row, self.table.is_whole(row));
+        let mut segments = self.table.segments(row, self.table.is_whole(row));
         valid.fill(1);
         for ((out, valid), segment) in out.chunks_mut(cell).zip(valid.chunks_mut(cell)).zip(&mut segments) {
             match segment.part {

@@ -1,6 +1,5 @@
 //! Raw positions of a rectified line's pixels, by piecewise linear interpolation of the lattice.
 
-use super::RemapTable;
 use crate::geometry::camera::ImageSize;
 use core::iter::Zip;
 use core::slice::Iter;
@@ -162,6 +161,17 @@ fn rounded(x: i32, shift: u32) -> i32 {
     (x + (1 << (shift - 1))) >> shift
 }
 
+/// What a table has around a line.
+#[derive(Clone, Copy)]
+pub(super) struct Lattice<'a> {
+    /// Four rows of the lattice; the line is between the second and the third.
+    pub rows: [&'a [[i32; 2]]; 4],
+    pub shift: u32,
+    pub piece: u32,
+    pub cells: u16,
+    pub raw: ImageSize,
+}
+
 /// Segments of one rectified line, from the left.
 pub(super) struct Segments<'a> {
     /// Remaining columns of four rows of the lattice; the line is between the second and the third.
@@ -185,16 +195,15 @@ type Columns<'a> =
 
 impl<'a> Segments<'a> {
     /// Segments of a line, which is wholly inside the raw image if `is_whole`.
-    pub fn new<const SLOTS: usize>(table: &'a RemapTable<SLOTS>, row: u16, is_whole: bool) -> Self {
-        let (shift, raw) = (table.shift(), table.raw_size());
-        let [n0, n1, n2, n3] = table.rows_around(row);
+    pub fn new(lattice: &Lattice<'a>, row: u16, is_whole: bool) -> Self {
+        let Lattice { rows: [n0, n1, n2, n3], shift, piece, cells, raw } = *lattice;
         let mut segments = Self {
             columns: n0.iter().zip(n1).zip(n2.iter().zip(n3)),
             weights: weights(i32::from(row) & ((1 << shift) - 1), shift),
             last: [[0; 2]; 3],
             beyond: 0,
-            left: table.cells(),
-            cell: Cell::new(shift, table.piece()),
+            left: cells,
+            cell: Cell::new(shift, piece),
             most: [raw.width, raw.height].map(|side| (i32::from(side) - 1) << BITS),
             is_whole,
         };

@@ -1,7 +1,7 @@
 //! Remap table: a warp sampled on a coarse lattice, interpolated in integers.
 
 use super::RemapTableError;
-use super::segment::{BITS, Cell, Part, Run, Segments};
+use super::segment::{BITS, Cell, Lattice, Part, Run, Segments};
 use crate::geometry::{Real, camera::ImageSize, rectify::Warp};
 use nalgebra::Point2;
 
@@ -131,7 +131,7 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         };
         let last = self.size.height.saturating_sub(1);
         for y in (0..last).step_by(4).chain([last]) {
-            for (segment, x) in Segments::new(self, y, false).zip((0..).step_by(cell)) {
+            for (segment, x) in self.segments(y, false).zip((0..).step_by(cell)) {
                 let length = cell.min(usize::from(self.size.width) - x);
                 // At the ends and in the middle of each four.
                 for k in (0..length).step_by(2) {
@@ -213,7 +213,7 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         let Some(valid) = valid.get_mut(..width) else { return };
         let (cell, is_whole) = (1 << self.shift, self.is_whole(row));
         valid.fill(1);
-        for (valid, segment) in valid.chunks_mut(cell).zip(Segments::new(self, row, is_whole)) {
+        for (valid, segment) in valid.chunks_mut(cell).zip(self.segments(row, is_whole)) {
             segment.mask(self.raw, self.piece(), valid);
         }
     }
@@ -227,7 +227,7 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         let (mut last_so_far, mut most) = (0, 0);
         for row in 0..self.size.height {
             let (mut first, mut last, mut whole) = (i32::from(u16::MAX), 0, true);
-            for segment in Segments::new(self, row, false) {
+            for segment in self.segments(row, false) {
                 whole &= segment.part == Part::All;
                 if segment.part != Part::None {
                     let (least, greatest) = segment.row.reach(&cell);
@@ -248,13 +248,17 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         self.rows = most as u16;
     }
 
-    /// Number of cells in a row of the lattice that begin in the image.
-    pub(super) fn cells(&self) -> u16 {
-        self.size.width.div_ceil(1 << self.shift)
+    /// Segments of a rectified row, which is wholly inside the raw image if `is_whole`.
+    #[inline]
+    pub(super) fn segments(&self, row: u16, is_whole: bool) -> Segments<'_> {
+        // Cells that begin in the image.
+        let cells = self.size.width.div_ceil(1 << self.shift);
+        let (rows, shift, piece) = (self.rows_around(row), self.shift(), self.piece());
+        Segments::new(&Lattice { rows, shift, piece, cells, raw: self.raw }, row, is_whole)
     }
 
     /// Four rows of the lattice around a rectified row.
-    pub(super) fn rows_around(&self, row: u16) -> [&[[i32; 2]]; 4] {
+    fn rows_around(&self, row: u16) -> [&[[i32; 2]]; 4] {
         let columns = lattice(self.size.width, self.shift());
         let above = usize::from(row >> self.shift);
         core::array::from_fn(|i| {

@@ -11,7 +11,8 @@ use proc_macro2::TokenTree;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The core's modules without a circle, with all folders in them.
-const NO_CIRCLE: [&str; 5] = ["geometry", "camera", "depth", "focus", "pipeline"];
+const NO_CIRCLE: [&str; 8] =
+    ["geometry", "camera", "imaging", "matching", "depth", "focus", "pipeline", "ffi"];
 
 /// Folders whose `mod.rs` lists the modules in running order.
 const IN_ORDER: [&str; 6] =

@@ -1,5 +1,8 @@
 //! The host harness of `stereopsis`: the same `no_std` core behind mock cameras.
 //!
+//! The harness, the program `stereo` and the tests are one package: cargo hands a program's path to the tests
+//! of its own package only, and the tests of the commands run the program. `xtask` is a package beside it.
+//!
 //! In running order:
 //!
 //! * [`mock`]: a camera that reads image files.

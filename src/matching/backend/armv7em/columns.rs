@@ -122,25 +122,15 @@ pub(super) fn update<S: WindowParameters, const STRIDE: usize>(
     // The codes of a row that is not there are 0 on both sides.
     let lefts = [halves[0].map_or(new, |(left, _)| left), halves[1].map_or(old, |(left, _)| left)];
     let [enters, leaves] = lefts.map(|left| left.get(begin..).unwrap_or(&[]));
-    // The first column has the last places.
-    let last = row.width - begin + stride - 1;
     let words = stride / 4;
     let columns =
         columns.get_mut((OUTSIDE + begin) * words..(OUTSIDE + row.width) * words).unwrap_or_default();
     match STRIDE {
-        16 => return rows::by_bits_16([enters, leaves], [new, old], columns.as_chunks_mut().0),
-        32 => return rows::by_bits_32([enters, leaves], [new, old], columns.as_chunks_mut().0),
-        48 => return rows::by_bits_48([enters, leaves], [new, old], columns.as_chunks_mut().0),
-        64 => return rows::by_bits_64([enters, leaves], [new, old], columns.as_chunks_mut().0),
-        _ => {}
-    }
-    let [new, old] = [new, old].map(|row| row.get(..last).unwrap_or(&[]).windows(stride).rev());
-    let codes = enters
-        .iter()
-        .zip(leaves)
-        .map(|(&enters, &leaves)| [u32::from(enters) * ONE, !(u32::from(leaves) * ONE)]);
-    for (((sums, codes), new), old) in columns.chunks_exact_mut(stride / 4).zip(codes).zip(new).zip(old) {
-        add_bits::<S>(codes, new, old, sums);
+        16 => rows::by_bits_16([enters, leaves], [new, old], columns.as_chunks_mut().0),
+        32 => rows::by_bits_32([enters, leaves], [new, old], columns.as_chunks_mut().0),
+        48 => rows::by_bits_48([enters, leaves], [new, old], columns.as_chunks_mut().0),
+        64 => rows::by_bits_64([enters, leaves], [new, old], columns.as_chunks_mut().0),
+        _ => rows::by_bits([enters, leaves], [new, old], stride, columns),
     }
 }
 
@@ -155,32 +145,4 @@ fn reversed<'a>(row: &Rows<'_>, right: [&[u8]; 2], mask: u32, room: &'a mut [u32
         rows::reverse(right, last, mask, out);
     }
     [view::<u32, u8>(new), view::<u32, u8>(old)]
-}
-
-/// Adds the bits of four candidates at a time.
-#[inline(always)]
-fn add_bits<S: WindowParameters>([enters, leaves]: [u32; 2], new: &[u8], old: &[u8], sums: &mut [u32]) {
-    let codes = new.as_chunks::<4>().0.iter().zip(old.as_chunks::<4>().0);
-    for (sums, (&new, &old)) in sums.iter_mut().zip(codes) {
-        let bits = bits_of_two::<S>(enters ^ u32::from_le_bytes(new), leaves ^ u32::from_le_bytes(old));
-        // Bytes are no less than 0 after it.
-        *sums = (*sums + bits).wrapping_sub(8 * ONE);
-    }
-}
-
-/// How many bits are set in each byte of two words together, of the bits that a code has.
-#[inline(always)]
-fn bits_of_two<S: WindowParameters>(a: u32, b: u32) -> u32 {
-    if S::BITS <= 4 {
-        // The two times four bits fill a byte.
-        let bits = (a & 0x0f0f_0f0f) | (b & 0x0f0f_0f0f) << 4;
-        let pairs = bits - (bits >> 1 & 0x5555_5555);
-        let fours = (pairs & 0x3333_3333) + (pairs >> 2 & 0x3333_3333);
-        return (fours + (fours >> 4)) & 0x0f0f_0f0f;
-    }
-    let pairs = |bits: u32| bits - (bits >> 1 & 0x5555_5555);
-    let fours = |pairs: u32| (pairs & 0x3333_3333) + (pairs >> 2 & 0x3333_3333);
-    // Up to eight in four bits, up to sixteen in a byte.
-    let fours = fours(pairs(a)) + fours(pairs(b));
-    (fours & 0x0f0f_0f0f) + (fours >> 4 & 0x0f0f_0f0f)
 }

@@ -7,8 +7,9 @@
 
 use super::Rows;
 use super::rows;
-use super::word::{ONE, add, min, min_halves, sub, take_less};
+use super::word::{ONE, min, min_halves, take_less};
 use crate::matching::backend::parameters::WindowParameters;
+use crate::matching::backend::work::STEP;
 use crate::matching::memory::layout::OUTSIDE;
 use crate::matching::memory::views::{view, view_mut};
 use crate::matching::memory::winners::{BESIDE, Select, Winner};
@@ -148,32 +149,22 @@ fn next_among<S: WindowParameters>(
     room: &mut [u32],
 ) -> Winner {
     let words = room.len() - 2;
-    for (sum, (&enters, &leaves)) in room.iter_mut().skip(1).take(words).zip(enters.iter().zip(leaves)) {
-        *sum = sub(add(*sum, digits::<S>(enters)), digits::<S>(leaves));
+    let sums = room.get_mut(1..=words).unwrap_or_default();
+    let rounds = candidates / STEP;
+    let (mut least, mut places) = rows::slide::<S>(sums, enters, leaves, rounds);
+    // Of the next round some lanes are no candidate's, of later ones all.
+    let from = rounds * STEP / 4;
+    if let Some((sums, (enters, leaves))) =
+        sums.get_mut(from..).zip(enters.get(from..).zip(leaves.get(from..)))
+    {
+        rows::slide::<S>(sums, enters, leaves, sums.len() / (STEP / 4));
+        for (word, sum) in (from..).zip(sums.iter().take(STEP / 4)) {
+            let lanes = candidates.saturating_sub(4 * word).min(4) as u32;
+            let others = u32::MAX.checked_shl(8 * lanes).unwrap_or(0);
+            take_less(&mut least, &mut places, *sum | others, (4 * word as u32).wrapping_mul(ONE));
+        }
     }
-    winner_of(least_of(room.get(1..).unwrap_or(&[]), candidates), candidates, room)
-}
-
-/// The digits of columns' sums that windows are made of.
-#[inline(always)]
-fn digits<S: WindowParameters>(column: u32) -> u32 {
-    (column >> S::COLUMN_SHIFT) & ((0xff >> S::COLUMN_SHIFT) * ONE)
-}
-
-/// The least sum of so many candidates.
-#[inline(always)]
-fn least_of(sums: &[u32], candidates: usize) -> u32 {
-    let (mut least, mut places, mut place) = (u32::MAX, 0, 0u32);
-    for &sum in sums.iter().take(candidates / 4) {
-        take_less(&mut least, &mut places, sum, place);
-        place = place.wrapping_add(4 * ONE);
-    }
-    // Of the last word the first lanes.
-    if let Some(&last) = sums.get(candidates / 4) {
-        let others = u32::MAX << (candidates % 4 * 8);
-        take_less(&mut least, &mut places, last | others, place);
-    }
-    of_lanes(least, places)
+    winner_of(of_lanes(least, places), candidates, room)
 }
 
 /// The least of the lanes above 8 bits of its place.

@@ -28,10 +28,6 @@ two_operands!(
     add: "uadd8 {out}, {a}, {b}"
 );
 two_operands!(
-    /// The differences of bytes, modulo 256.
-    sub: "usub8 {out}, {a}, {b}"
-);
-two_operands!(
     /// The lesser bytes: the subtraction marks the lanes that do not borrow, and `sel` picks by the marks.
     min: "usub8 {out}, {a}, {b}", "sel {out}, {b}, {a}"
 );

@@ -18,6 +18,7 @@ macro_rules! if_twice {
     };
 }
 
+mod any;
 mod begin;
 mod bits;
 #[macro_use]
@@ -26,6 +27,7 @@ mod reverse;
 mod tables;
 mod windows;
 
+pub(super) use any::{by_bits, slide};
 pub(super) use begin::{begin_block, begin_fast};
 pub(super) use bits::{by_bits_16, by_bits_32, by_bits_48, by_bits_64};
 pub(super) use reverse::reverse;

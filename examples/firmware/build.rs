@@ -3,7 +3,7 @@
 //! | variable | what it chooses | default |
 //! | --- | --- | --- |
 //! | `STEREO_METHOD` | `fast`, `block`, `sgm-lean`, `sgm` or `sgm-edge` | `block` |
-//! | `STEREO_WIDTH`, `STEREO_HEIGHT` | pixels in a line at most; with the height, the size of the built-in scene | 160, 120 |
+//! | `STEREO_WIDTH`, `STEREO_HEIGHT` | capacity in pixels; size of the built-in scene | 160, 120 |
 //! | `STEREO_DISPARITIES` | disparities that are searched, 16 to 256 | 32 |
 //! | `STEREO_NOISE` | how noisy the cameras are: `none`, `low` or `high` | `none` |
 //! | `STEREO_CORE` | the board's core, where the target leaves a choice | the target's first |
@@ -40,7 +40,8 @@ REGION_ALIAS(\"REGION_STACK\", RAM);
 ";
 
 /// A stack that is too small for the pipeline does not link.
-const STACK: &str = "ASSERT(_stack_start - __euninit >= 2048, \"ERROR: less than 2048 bytes of RAM are left to the stack\");\n";
+const STACK: &str = "ASSERT(_stack_start - __euninit >= 2048, \"ERROR: less than 2048 bytes of RAM are left \
+                     to the stack\");\n";
 
 fn main() -> Result<(), Box<dyn Error>> {
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set")?);
@@ -110,22 +111,13 @@ fn choice(board: &Board) -> Result<String, Box<dyn Error>> {
     };
     let lanes = disparities.next_multiple_of(16);
     Ok(format!(
-        "/// The matching method.\n\
-         pub type Method = {scheme};\n\
-         /// The matching method's name.\n\
-         pub const METHOD: &str = {method:?};\n\
-         /// Columns of the built-in scene, px.\n\
-         pub const WIDTH: u16 = {width};\n\
-         /// Rows of the built-in scene, px.\n\
-         pub const HEIGHT: u16 = {height};\n\
-         /// Disparities that are searched, px.\n\
-         pub const DISPARITIES: u16 = {disparities};\n\
-         /// How noisy the cameras are.\n\
-         pub const NOISE: stereopsis::imaging::Noise = stereopsis::imaging::Noise::{noise};\n\
-         /// The pipeline that has room for them.\n\
-         pub type BoardPipeline = stereopsis::pipeline::Pipeline<Method, {}, {lanes}>;\n\
-         /// The board.\n\
-         pub const BOARD: crate::board::Board = crate::board::{};\n",
+        "/// The matching method.\npub type Method = {scheme};\n/// The matching method's name.\npub const \
+         METHOD: &str = {method:?};\n/// Columns of the built-in scene, px.\npub const WIDTH: u16 = \
+         {width};\n/// Rows of the built-in scene, px.\npub const HEIGHT: u16 = {height};\n/// Disparities \
+         that are searched, px.\npub const DISPARITIES: u16 = {disparities};\n/// How noisy the cameras \
+         are.\npub const NOISE: stereopsis::imaging::Noise = stereopsis::imaging::Noise::{noise};\n/// The \
+         pipeline that has room for them.\npub type BoardPipeline = stereopsis::pipeline::Pipeline<Method, \
+         {}, {lanes}>;\n/// The board.\npub const BOARD: crate::board::Board = crate::board::{};\n",
         width.max(lanes),
         board.core.to_uppercase(),
     ))

@@ -28,7 +28,8 @@ pub enum OutputError {
         source: io::Error,
     },
     /// A result could not be written; none was kept.
-    #[error("{}: cannot be written ({source}); nothing was kept, make room or name another folder", path.display())]
+    #[error("{}: cannot be written ({source}); nothing was kept, make room or name another \
+        folder", path.display())]
     File {
         /// The file that was asked for.
         path: PathBuf,

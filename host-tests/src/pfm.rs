@@ -24,7 +24,8 @@ pub enum PfmError {
     Read(#[from] io::Error),
     /// The header is not `Pf`, two sizes and a scale.
     #[error(
-        "a one-channel PFM starts with the lines 'Pf', '<width> <height>' and a scale; line {line} is '{found}'"
+        "a one-channel PFM starts with the lines 'Pf', '<width> <height>' and a scale; line {line} is \
+         '{found}'"
     )]
     Header {
         /// The line, from 1.

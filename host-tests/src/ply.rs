@@ -23,9 +23,9 @@ pub fn write(out: &mut dyn Write, points: &[ColouredPoint]) -> io::Result<()> {
 pub fn write_in(out: &mut dyn Write, points: &[ColouredPoint], unit: &str) -> io::Result<()> {
     write!(
         out,
-        "ply\nformat binary_little_endian 1.0\ncomment {unit}; X right, Y down, Z forward from the left camera\n\
-         element vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
-         property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
+        "ply\nformat binary_little_endian 1.0\ncomment {unit}; X right, Y down, Z forward from the left \
+         camera\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nproperty uchar \
+         red\nproperty uchar green\nproperty uchar blue\nend_header\n",
         points.len()
     )?;
     for point in points {

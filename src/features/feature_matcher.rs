@@ -56,7 +56,8 @@ impl Best {
 /// let mut matches = heapless::Vec::<_, 4>::new();
 /// let dropped = FeatureMatcher::<8>::new().run(&left, &right, &MatchConfig::new(), matches.as_mut_view())?;
 /// assert_eq!(dropped, 0);
-/// assert_eq!(matches.iter().map(|m| (m.left, m.right, m.different)).collect::<Vec<_>>(), [(0, 1, 0), (1, 0, 8)]);
+/// let found: Vec<_> = matches.iter().map(|m| (m.left, m.right, m.different)).collect();
+/// assert_eq!(found, [(0, 1, 0), (1, 0, 8)]);
 /// # Ok::<(), stereopsis::features::MatchConfigError>(())
 /// ```
 #[derive(Debug)]

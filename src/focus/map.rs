@@ -35,7 +35,8 @@ use crate::imaging::LineBand;
 /// for contrast in [2, 10, 40, 10, 2] {
 ///     map.begin_frame(Breathing::NONE)?;
 ///     for y in 0..16 {
-///         let line = core::array::from_fn::<u8, 16, _>(|x| 100 + if (x / 2 + y / 2) % 2 == 0 { contrast } else { 0 });
+///         let brighter = |x| if (x / 2 + y / 2) % 2 == 0 { contrast } else { 0 };
+///         let line = core::array::from_fn::<u8, 16, _>(|x| 100 + brighter(x));
 ///         map.push(&line, |_| {})?;
 ///     }
 /// }

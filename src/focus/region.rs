@@ -25,7 +25,8 @@ pub struct Region {
 /// for line in [[0, 8, 0, 0], [0, 0, 8, 0]] {
 ///     meter.push(&line)?;
 /// }
-/// assert_eq!(meter.sharpness(), 12288); // (64 + 32 + 32 + 64) / 4 sixteenths of a grey level a pixel, in 1/4096
+/// // (64 + 32 + 32 + 64) / 4 sixteenths of a grey level per pixel, in 1/4096.
+/// assert_eq!(meter.sharpness(), 12288);
 /// # Ok::<(), stereopsis::focus::FocusLineError>(())
 /// ```
 #[derive(Debug)]

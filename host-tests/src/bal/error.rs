@@ -30,7 +30,8 @@ pub enum BalFault {
     Empty,
     /// The file ends too early.
     #[error(
-        "ends where {what} is due; {cameras} cameras, {points} points and {observations} observations need {needed} numbers, and it has {found}"
+        "ends where {what} is due; {cameras} cameras, {points} points and {observations} observations need \
+         {needed} numbers, and it has {found}"
     )]
     TooFew {
         /// What is missing.
@@ -48,7 +49,8 @@ pub enum BalFault {
     },
     /// The file goes on after the last point.
     #[error(
-        "line {line}: '{found}' stands behind the last point; the first line says {cameras} cameras, {points} points and {observations} observations"
+        "line {line}: '{found}' stands behind the last point; the first line says {cameras} cameras, \
+         {points} points and {observations} observations"
     )]
     TooMany {
         /// The line, from 1.
@@ -88,7 +90,8 @@ pub enum BalFault {
     },
     /// A point lies in the plane of a camera's centre.
     #[error(
-        "observation {0}: the point lies in the plane of the camera's centre or is too far off; move the camera or the point"
+        "observation {0}: the point lies in the plane of the camera's centre or is too far off; move the \
+         camera or the point"
     )]
     NotSeen(usize),
     /// The problem is too large for this machine.

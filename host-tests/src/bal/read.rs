@@ -134,7 +134,8 @@ mod tests {
             (
                 " -7",
                 "",
-                "ends where number 3 of point 0 is due; 1 cameras, 1 points and 1 observations need 19 numbers, and it has 18",
+                "ends where number 3 of point 0 is due; 1 cameras, 1 points and 1 observations need 19 \
+                 numbers, and it has 18",
             ),
             (" -7", " -7 8", "line 6: '8' stands behind the last point"),
             (SMALL, " \n", "the file is empty"),

@@ -32,16 +32,19 @@ pub fn page(found: &Calibrated, names: &[[String; 2]], files: &[String]) -> Stri
         text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
     };
     let mut text = format!(
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Calibration</title><style>\n{}</style></head>\
-         <body>\n<h1>Calibration from {} views</h1>\n<p>Re-projection error {:.3} px (root mean square of all corners); the left \
-         camera by itself {:.3} px, the right one {:.3} px. Residuals are drawn {LONGER} times as long as they are.</p>\n",
+        "<!doctype html>\n<html lang=\"en\"><head><meta \
+         charset=\"utf-8\"><title>Calibration</title><style>\n{}</style></head><body>\n<h1>Calibration from \
+         {} views</h1>\n<p>Re-projection error {:.3} px (root mean square of all corners); the left camera \
+         by itself {:.3} px, the right one {:.3} px. Residuals are drawn {LONGER} times as long as they \
+         are.</p>\n",
         include_str!("../report/style.css"),
         found.views.len(),
         found.rms_px,
         found.alone_px[0],
         found.alone_px[1],
     );
-    text += "<table><tr><th>left</th><th>right</th><th>left, px</th><th>right, px</th><th>distance, m</th><th></th></tr>\n";
+    text += "<table><tr><th>left</th><th>right</th><th>left, px</th><th>right, px</th><th>distance, \
+             m</th><th></th></tr>\n";
     let outliers = found.outliers();
     for (i, (view, [left, right])) in found.views.iter().zip(names).enumerate() {
         let remark = if outliers.contains(&i) { "fits badly" } else { "" };
@@ -60,7 +63,8 @@ pub fn page(found: &Calibrated, names: &[[String; 2]], files: &[String]) -> Stri
         let (file, left, right) = (escape(file), escape(left), escape(right));
         let _ = writeln!(
             text,
-            "<figure><img src=\"{file}\" alt=\"residuals of {left} and {right}\"><figcaption>{left}, {right}</figcaption></figure>"
+            "<figure><img src=\"{file}\" alt=\"residuals of {left} and {right}\"><figcaption>{left}, \
+             {right}</figcaption></figure>"
         );
     }
     text + "</body></html>\n"

@@ -58,7 +58,8 @@ pub enum SolveError {
     },
     /// No camera explains what the left or the right one saw.
     #[error(
-        "the {0} camera cannot be found from these views; turn the board more, about two axes, in some of them"
+        "the {0} camera cannot be found from these views; turn the board more, about two axes, in some of \
+         them"
     )]
     Camera(&'static str),
     /// The result is no rig.

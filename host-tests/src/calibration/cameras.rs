@@ -77,7 +77,8 @@ mod tests {
         let cameras = of("P0: 500 0 320 0 0 510 240 0 0 0 1 0\nP1: 500 0 320 -50 0 510 240 0 0 0 1 0\n");
         assert_eq!(cameras.expect("cameras").second.focal_px(), (500.0, 510.0));
         let one = "%YAML:1.0\n---\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   \
-                   data: [ 500., 0., 320., 0., 510., 240., 0., 0., 1. ]\ndistortion_coefficients: [ 0.5, 0, 0, 0, 0 ]\n";
+                   data: [ 500., 0., 320., 0., 510., 240., 0., 0., 1. ]\ndistortion_coefficients: [ 0.5, 0, \
+                   0, 0, 0 ]\n";
         let cameras = of(one).expect("one camera");
         assert_eq!(cameras.first.focal_px(), (500.0, 510.0));
         assert_eq!(cameras.first, cameras.second);

@@ -28,12 +28,14 @@ pub enum Fault {
     Empty,
     /// The content is of no format that is read.
     #[error(
-        "is neither a Middlebury calib.txt (cam0=[...]) nor a KITTI one (P0: and P1:, or two lines of 12 numbers), nor of OpenCV, ROS or Kalibr"
+        "is neither a Middlebury calib.txt (cam0=[...]) nor a KITTI one (P0: and P1:, or two lines of 12 \
+         numbers), nor of OpenCV, ROS or Kalibr"
     )]
     Unknown,
     /// The content is of no format of a rig that is not rectified.
     #[error(
-        "is no calibration of two cameras: OpenCV's YAML or XML, ROS's camera_info, Kalibr's camchain, Middlebury's or KITTI's calib.txt"
+        "is no calibration of two cameras: OpenCV's YAML or XML, ROS's camera_info, Kalibr's camchain, \
+         Middlebury's or KITTI's calib.txt"
     )]
     UnknownRaw,
     /// YAML, JSON or XML that is none.
@@ -44,7 +46,8 @@ pub enum Fault {
     OneOfTwo,
     /// A calibration of raw images where one of rectified ones is needed.
     #[error(
-        "says how the cameras are mounted, but not how their rectified images are (P1 and P2, or Q); give --rectify with raw images"
+        "says how the cameras are mounted, but not how their rectified images are (P1 and P2, or Q); give \
+         --rectify with raw images"
     )]
     NotRectified,
     /// Rectified cameras below each other.
@@ -142,7 +145,8 @@ pub enum Fault {
         focal_px: f64,
     },
     /// A camera's two focal lengths differ, or the two cameras' do.
-    #[error("{keys}: the focal lengths {0} px and {1} px differ; rectified cameras have one", focal_px.0, focal_px.1)]
+    #[error("{keys}: the focal lengths {0} px and {1} px differ; rectified cameras have \
+        one", focal_px.0, focal_px.1)]
     FocalLengths {
         /// The cameras' keys.
         keys: String,
@@ -150,7 +154,8 @@ pub enum Fault {
         focal_px: (f64, f64),
     },
     /// The rows of the two cameras are not aligned.
-    #[error("{keys}: the principal points are on the rows {0} and {1}; rectified cameras share the row", rows.0, rows.1)]
+    #[error("{keys}: the principal points are on the rows {0} and {1}; rectified cameras share the \
+        row", rows.0, rows.1)]
     Rows {
         /// The cameras' keys.
         keys: String,
@@ -159,7 +164,8 @@ pub enum Fault {
     },
     /// The baseline is zero or negative.
     #[error(
-        "{key}: the baseline is {baseline_m} m; it must be greater than zero, with the right camera on the right"
+        "{key}: the baseline is {baseline_m} m; it must be greater than zero, with the right camera on the \
+         right"
     )]
     Baseline {
         /// Where it comes from.
@@ -190,7 +196,8 @@ pub enum Fault {
     Rig(stereopsis::geometry::camera::RigError),
     /// The images are not of the calibrated size.
     #[error(
-        "{which} says {calibrated}, but the images have {image} pixels; the calibration of these images is needed"
+        "{which} says {calibrated}, but the images have {image} pixels; the calibration of these images is \
+         needed"
     )]
     Size {
         /// `width` or `height`.

@@ -32,8 +32,8 @@ pub fn write_middlebury(rig: &RectifiedRig, width: u16, height: u16, disparities
     let (f, (cx, cy)) = (rig.focal_px(), rig.principal_point());
     let doffs = rig.disparity_offset_px();
     format!(
-        "cam0=[{f} 0 {cx}; 0 {f} {cy}; 0 0 1]\ncam1=[{f} 0 {}; 0 {f} {cy}; 0 0 1]\ndoffs={doffs}\nbaseline={}\n\
-         width={width}\nheight={height}\nndisp={disparities}\n",
+        "cam0=[{f} 0 {cx}; 0 {f} {cy}; 0 0 1]\ncam1=[{f} 0 {}; 0 {f} {cy}; 0 0 \
+         1]\ndoffs={doffs}\nbaseline={}\nwidth={width}\nheight={height}\nndisp={disparities}\n",
         cx + doffs,
         rig.baseline_m() * 1000.0
     )

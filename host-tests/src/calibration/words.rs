@@ -42,7 +42,8 @@ pub fn describe(calibration: &RawCalibration, disparities: u16) -> Result<String
     let [across, down] = report.field_of_view_rad.map(f64::to_degrees);
     let _ = writeln!(
         text,
-        "rectified    f {f:.1} px, both see {:.0} % of the image: {across:.1} x {down:.1} degrees; a remap holds {} and {} rows",
+        "rectified    f {f:.1} px, both see {:.0} % of the image: {across:.1} x {down:.1} degrees; a remap \
+         holds {} and {} rows",
         100.0 * report.common,
         report.rows[0],
         report.rows[1]
@@ -50,7 +51,8 @@ pub fn describe(calibration: &RawCalibration, disparities: u16) -> Result<String
     let most = f64::from(disparities) - 1.0;
     let _ = writeln!(
         text,
-        "depths       from {:.3} m ({most} px, of a search of {disparities}) to about {:.1} m, where an error of {SIGMA_PX} px is a tenth",
+        "depths       from {:.3} m ({most} px, of a search of {disparities}) to about {:.1} m, where an \
+         error of {SIGMA_PX} px is a tenth",
         f * b / most,
         0.1 * f * b / SIGMA_PX
     );
@@ -124,7 +126,8 @@ fn one(name: &str, camera: &Camera<f64>, size: ImageSize, text: &mut String, war
     let off = Vector2::new((cx - w / 2.0) / w, (cy - h / 2.0) / h).amax();
     if off > 0.15 {
         warnings.push(format!(
-            "the {name} principal point ({cx:.0}, {cy:.0}) is far from the middle of {} x {} px: was it calibrated at another size?",
+            "the {name} principal point ({cx:.0}, {cy:.0}) is far from the middle of {} x {} px: was it \
+             calibrated at another size?",
             size.width, size.height
         ));
     }

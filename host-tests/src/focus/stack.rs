@@ -53,7 +53,8 @@ pub enum StackError {
     #[error(transparent)]
     Image(#[from] MockError),
     /// An image differs in size.
-    #[error("{}: is {} x {} and {} is {} x {}; all frames must have one size", path.display(), size.0, size.1, first.display(), first_size.0, first_size.1)]
+    #[error("{}: is {} x {} and {} is {} x {}; all frames must have one \
+        size", path.display(), size.0, size.1, first.display(), first_size.0, first_size.1)]
     Size {
         /// The image.
         path: PathBuf,

@@ -29,7 +29,8 @@ pub enum MockError {
         path: PathBuf,
     },
     /// The file is longer than any image of the largest size can be.
-    #[error("{}: the file has more than {most} bytes; give {WANTED} of at most {MOST} x {MOST} pixels", path.display())]
+    #[error("{}: the file has more than {most} bytes; give {WANTED} of at most {MOST} x {MOST} \
+        pixels", path.display())]
     FileTooLong {
         /// The file.
         path: PathBuf,
@@ -43,7 +44,8 @@ pub enum MockError {
         path: PathBuf,
     },
     /// The file ends before the picture does.
-    #[error("{}: the {format} file is truncated: it ends before the picture does; give the whole file", path.display())]
+    #[error("{}: the {format} file is truncated: it ends before the picture does; give the whole \
+        file", path.display())]
     Truncated {
         /// The file.
         path: PathBuf,
@@ -61,7 +63,8 @@ pub enum MockError {
         reason: String,
     },
     /// The samples are neither 8 nor 16 bits, or the colour model is not read.
-    #[error("{}: has samples of a kind that is not read ({found}); give 8 or 16 bits, grey or RGB", path.display())]
+    #[error("{}: has samples of a kind that is not read ({found}); give 8 or 16 bits, grey or \
+        RGB", path.display())]
     Samples {
         /// The file.
         path: PathBuf,

@@ -24,8 +24,9 @@ fn page(drawn: &Drawn<'_>, unit: &str) -> String {
     let width = 2.0 * SIDE + 3.0 * MARGIN;
     let height = SIDE + 2.0 * MARGIN;
     let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" \
-         font-size=\"13\"><rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
+         font-family=\"sans-serif\" font-size=\"13\"><rect width=\"{width}\" height=\"{height}\" \
+         fill=\"white\"/>\n"
     );
     let above = |p: &Vector3<f64>| [p.x, -p.z];
     let beside = |p: &Vector3<f64>| [p.z, p.y];
@@ -77,8 +78,8 @@ fn view(svg: &mut String, drawn: &Drawn<'_>, of: impl Fn(&Vector3<f64>) -> [f64;
     };
     let _ = writeln!(
         svg,
-        "<text x=\"{left}\" y=\"{}\">{title}</text><rect x=\"{left}\" y=\"{MARGIN}\" width=\"{SIDE}\" height=\"{SIDE}\" \
-         fill=\"none\" stroke=\"#ccc\"/>",
+        "<text x=\"{left}\" y=\"{}\">{title}</text><rect x=\"{left}\" y=\"{MARGIN}\" width=\"{SIDE}\" \
+         height=\"{SIDE}\" fill=\"none\" stroke=\"#ccc\"/>",
         MARGIN - 12.0
     );
     for place in &near {
@@ -112,7 +113,8 @@ fn view(svg: &mut String, drawn: &Drawn<'_>, of: impl Fn(&Vector3<f64>) -> [f64;
     let (x, y) = (left + 10.0, MARGIN + SIDE - 12.0);
     let _ = writeln!(
         svg,
-        "<path d=\"M{x} {y}h{:.2}\" stroke=\"black\" stroke-width=\"2\"/><text x=\"{x}\" y=\"{}\">{bar}</text>",
+        "<path d=\"M{x} {y}h{:.2}\" stroke=\"black\" stroke-width=\"2\"/><text x=\"{x}\" \
+         y=\"{}\">{bar}</text>",
         SIDE * 0.95 * bar / extent,
         y - 6.0
     );

@@ -23,7 +23,8 @@ pub struct Sequence {
 #[non_exhaustive]
 pub enum SequenceError {
     /// A folder cannot be read.
-    #[error("{}: cannot be read ({source}); give a folder with the frames in left and right, or in left alone", path.display())]
+    #[error("{}: cannot be read ({source}); give a folder with the frames in left and right, or in left \
+        alone", path.display())]
     Folder {
         /// The folder.
         path: PathBuf,
@@ -47,7 +48,8 @@ pub enum SequenceError {
         other: PathBuf,
     },
     /// The folders differ in the number of images.
-    #[error("{}: has {left} images and {} has {right}; every left image needs a right one", path.display(), other.display())]
+    #[error("{}: has {left} images and {} has {right}; every left image needs a right \
+        one", path.display(), other.display())]
     Counts {
         /// The left folder.
         path: PathBuf,
@@ -62,7 +64,8 @@ pub enum SequenceError {
     #[error(transparent)]
     Image(#[from] StackError),
     /// An image differs in size.
-    #[error("{}: is {} x {} and {} is {} x {}; all frames must have one size", path.display(), size.0, size.1, first.display(), first_size.0, first_size.1)]
+    #[error("{}: is {} x {} and {} is {} x {}; all frames must have one \
+        size", path.display(), size.0, size.1, first.display(), first_size.0, first_size.1)]
     Size {
         /// The image.
         path: PathBuf,

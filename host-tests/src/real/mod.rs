@@ -53,7 +53,8 @@ pub enum RealError {
         source: io::Error,
     },
     /// No folder in it has a `meta.json`.
-    #[error("{}: holds no scene; a scene is a folder with meta.json, left.png, right.png, gt.png and nonocc.png", path.display())]
+    #[error("{}: holds no scene; a scene is a folder with meta.json, left.png, right.png, gt.png and \
+        nonocc.png", path.display())]
     NoScene {
         /// The folder.
         path: PathBuf,

@@ -13,7 +13,9 @@
 //! | --- | --- |
 //! | frame | `F`, sequence (4), time stamp in us (8), exposure in us (4) |
 //! | line | `L`, row (2), time stamp in us (8), the left line, the right line: a byte a pixel |
-//! | fault | `E`, or `S` where a frame was to start; which (1): 1 dropped, 2 torn, 3 late, 4 stale, 5 hardware, 6 timed out, 7 sync lost |
+//! | fault | `E`, or `S` at the start of a frame; number of the fault (1) |
+//!
+//! Faults are 1 dropped, 2 torn, 3 late, 4 stale, 5 hardware, 6 timed out, 7 sync lost.
 //!
 //! A file that ends within a record is played up to there: what wrote it may have failed as well.
 
@@ -52,7 +54,8 @@ pub struct Header {
 #[non_exhaustive]
 pub enum RecordingError {
     /// The file cannot be read.
-    #[error("{}: cannot be read ({source}); give a recording by `stereo record`, or a folder with left and right", path.display())]
+    #[error("{}: cannot be read ({source}); give a recording by `stereo record`, or a folder with left and \
+        right", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -60,13 +63,15 @@ pub enum RecordingError {
         source: io::Error,
     },
     /// It does not begin as a recording.
-    #[error("{}: is no recording; give one by `stereo record`, or a folder with left and right", path.display())]
+    #[error("{}: is no recording; give one by `stereo record`, or a folder with left and \
+        right", path.display())]
     NotARecording {
         /// The file.
         path: PathBuf,
     },
     /// Its frames have no size that can be played.
-    #[error("{}: frames of {width} x {height}; 1 x 1 to {MOST_PIXELS} x {MOST_PIXELS} can be played", path.display())]
+    #[error("{}: frames of {width} x {height}; 1 x 1 to {MOST_PIXELS} x {MOST_PIXELS} can be \
+        played", path.display())]
     Size {
         /// The file.
         path: PathBuf,

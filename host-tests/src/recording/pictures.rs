@@ -29,7 +29,8 @@ pub enum PicturesError {
         source: io::Error,
     },
     /// The two sides are not the same number of images.
-    #[error("{} has {lefts} images and {} has {rights}; give one for each side of every frame", left.display(), right.display())]
+    #[error("{} has {lefts} images and {} has {rights}; give one for each side of every \
+        frame", left.display(), right.display())]
     Counts {
         /// The left side.
         left: PathBuf,

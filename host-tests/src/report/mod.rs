@@ -65,10 +65,10 @@ impl Report<'_> {
         let title = format!("{} and {}", self.left_name, self.right_name);
         writeln!(
             out,
-            "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
-             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
-             <title>Stereo: {0}</title><style>\n{1}</style></head><body>\n<h1>Stereo: {0}</h1>\n\
-             <p class=\"quiet\">{2} &#215; {3} px, disparities {4} to {5}, method {6}, filter {7}, kernel {8}</p>",
+            "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" \
+             content=\"width=device-width, initial-scale=1\"><title>Stereo: \
+             {0}</title><style>\n{1}</style></head><body>\n<h1>Stereo: {0}</h1>\n<p class=\"quiet\">{2} \
+             &#215; {3} px, disparities {4} to {5}, method {6}, filter {7}, kernel {8}</p>",
             escape(&title),
             include_str!("style.css"),
             s.width,
@@ -86,8 +86,8 @@ impl Report<'_> {
         out.write_all(svg::histogram(self.map, s.min_disparity, s.disparities).as_bytes())?;
         writeln!(out, "</figure>")?;
         if let Some(truth) = self.truth {
-            let note = "Of the answers more than 2 px off, while the least sure ones are taken away: what is left. Below: \
-                        taken away in the order of their error, the best there is.";
+            let note = "Of the answers more than 2 px off, while the least sure ones are taken away: what \
+                        is left. Below: taken away in the order of their error, the best there is.";
             let curves = svg::sparsification(&Accuracy::judged(self.map, truth));
             writeln!(out, "<h2>Confidence</h2><figure>{curves}{}</figure>", caption(note))?;
         }
@@ -118,7 +118,8 @@ impl Report<'_> {
         };
         show("Left image", Kind::Photograph, self.left, &caption(self.left_name))?;
         show("Right image", Kind::Photograph, self.right, &caption(self.right_name))?;
-        let note = "Near is bright; black: no answer. The colours run from the 2nd to the 98th percentile of the answers.";
+        let note = "Near is bright; black: no answer. The colours run from the 2nd to the 98th percentile \
+                    of the answers.";
         let disparity = colours.picture(self.map.width, &self.map.pixels());
         let bar = svg::disparity_bar("disparity", &colours, self.rig);
         show("Disparity", Kind::Map, &disparity, &(bar + &caption(note)))?;
@@ -133,7 +134,8 @@ impl Report<'_> {
             )?;
         }
         show("Why pixels have no answer", Kind::Map, &flags_picture(self.map, self.left), &self.legend())?;
-        let note = "Sure is bright: the second best candidate costs much more, and the answers around agree; black: no answer.";
+        let note = "Sure is bright: the second best candidate costs much more, and the answers around \
+                    agree; black: no answer.";
         show("Confidence", Kind::Map, &confidence_picture(self.map), &caption(note))?;
         if let Some(truth) = self.truth {
             let errors = Accuracy::errors_px(self.map, truth);

@@ -31,8 +31,8 @@ fn bar(
 ) -> String {
     let height = if below.is_some() { 66 } else { 46 };
     let mut svg = format!(
-        "<svg viewBox=\"0 0 460 {height}\" role=\"img\" aria-label=\"Colours and their values\"><defs>\
-         <linearGradient id=\"{id}\">"
+        "<svg viewBox=\"0 0 460 {height}\" role=\"img\" aria-label=\"Colours and their \
+         values\"><defs><linearGradient id=\"{id}\">"
     );
     for step in 0..=16 {
         let t = step as f32 / 16.0;
@@ -41,7 +41,8 @@ fn bar(
     }
     let _ = write!(
         svg,
-        "</linearGradient></defs><rect x=\"30\" y=\"20\" width=\"400\" height=\"20\" fill=\"url(#{id})\" rx=\"2\"/>"
+        "</linearGradient></defs><rect x=\"30\" y=\"20\" width=\"400\" height=\"20\" fill=\"url(#{id})\" \
+         rx=\"2\"/>"
     );
     for step in 0..=4 {
         let t = step as f32 / 4.0;
@@ -66,16 +67,16 @@ pub(super) fn histogram(map: &DisparityMap, min_disparity: u16, disparities: u16
         counts[at.min(bins - 1)] += 1;
     }
     let highest = counts.iter().copied().max().unwrap_or(0).max(1);
-    let mut svg =
-        "<svg class=\"wide\" viewBox=\"0 0 640 200\" role=\"img\" aria-label=\"Histogram of the disparities\">"
-            .to_owned();
+    let mut svg = "<svg class=\"wide\" viewBox=\"0 0 640 200\" role=\"img\" aria-label=\"Histogram of the \
+                   disparities\">"
+        .to_owned();
     let step = 580.0 / bins as f32;
     for (i, &count) in counts.iter().enumerate() {
         let height = 150.0 * count as f32 / highest as f32;
         let _ = write!(
             svg,
-            "<rect class=\"column\" x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{height:.1}\"><title>{:.1} px: {count} \
-             pixels</title></rect>",
+            "<rect class=\"column\" x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" \
+             height=\"{height:.1}\"><title>{:.1} px: {count} pixels</title></rect>",
             30.0 + step * i as f32,
             170.0 - height,
             step * 0.9,
@@ -108,9 +109,9 @@ pub(super) fn sparsification(answers: &[Judged]) -> String {
         };
         curve.iter().enumerate().map(point).collect()
     };
-    let mut svg =
-        "<svg class=\"wide\" viewBox=\"0 0 640 200\" role=\"img\" aria-label=\"Bad answers that are left\">"
-            .to_owned();
+    let mut svg = "<svg class=\"wide\" viewBox=\"0 0 640 200\" role=\"img\" aria-label=\"Bad answers that \
+                   are left\">"
+        .to_owned();
     for (curve, style) in [(&found, ""), (&oracle, " stroke-dasharray=\"4 3\"")] {
         let points = points(curve);
         let _ = write!(svg, "<polyline class=\"curve\"{style} points=\"{}\"/>", points.trim_end());

@@ -8,9 +8,9 @@
 //!   the median, which looks at the row above; and one for each answer that the speckle filter asks for,
 //!   since a surface that goes on through so many rows has them.
 //!
-//! Along paths ([`MethodName::is_exact_in_bands`](super::MethodName::is_exact_in_bands) says no) a band's first rows
-//! lack what a path from above has gathered farther up: `tests/matching/threads.rs` measures how many answers that
-//! changes.
+//! Along paths ([`MethodName::is_exact_in_bands`](super::MethodName::is_exact_in_bands) says no) a band's
+//! first rows lack what a path from above has gathered farther up: `tests/matching/threads.rs` measures how
+//! many answers that changes.
 //!
 //! The lines that are worked on twice are the price: 34 above and 10 below with `block` and the default
 //! checks.
@@ -119,8 +119,10 @@ impl Bands {
         let (way, config, work) = (self.way, &self.config, &work);
         scope(|scope| {
             let threads = self.parts.iter_mut().map(|(band, pair)| {
-                let in_thread =
-                    move || with_scheme!(way.method, S => with_pipeline::<S, T>(way, config, band, pair, work));
+                let in_thread = move || {
+                    with_scheme!(way.method, S => with_pipeline::<S,
+                        T>(way, config, band, pair, work))
+                };
                 Builder::new().stack_size(STACK).spawn_scoped(scope, in_thread).expect("a thread")
             });
             let threads: Vec<_> = threads.collect();

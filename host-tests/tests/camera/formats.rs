@@ -81,7 +81,8 @@ fn luma(r: u32, g: u32, b: u32) -> u8 {
 proptest! {
     #![proptest_config(config(300))]
 
-    /// Each format is packed from samples by arithmetic on whole numbers, and comes back as their top eight bits.
+    /// Each format is packed from samples by arithmetic on whole numbers, and comes back as their top eight
+    /// bits.
     #[test]
     fn samples_that_are_packed_come_back(samples in proptest::collection::vec(0u16..1024, 1..70)) {
         let width = samples.len() as u16;
@@ -123,7 +124,8 @@ proptest! {
         let low: Vec<u8> = pixels.iter().flat_map(|p| p.to_le_bytes()).collect();
         prop_assert_eq!(grey(width, PixelFormat::Rgb565 { high_byte_first: false }, low), expected.clone());
         for (grey, p) in expected.iter().zip(&pixels) {
-            let [r, g, b] = [(p >> 11, 31.0), (p >> 5 & 63, 63.0), (p & 31, 31.0)].map(|(v, most)| f64::from(v) / most * 255.0);
+            let [r, g, b] = [(p >> 11, 31.0), (p >> 5 & 63, 63.0), (p & 31, 31.0)]
+                .map(|(v, most)| f64::from(v) / most * 255.0);
             prop_assert!((f64::from(*grey) - (0.299 * r + 0.587 * g + 0.114 * b)).abs() <= 1.1);
         }
     }
@@ -131,7 +133,8 @@ proptest! {
     /// A mosaic's grey is the mean of the 2x2 block; at the right and lower edge that of the block before.
     #[test]
     fn a_mosaic_is_the_mean_of_four(width in 1usize..20, height in 1usize..9, seed: u64) {
-        let bytes: Vec<u8> = (0..width * height).map(|i| (seed.rotate_left(i as u32 * 7) >> (i % 9)) as u8).collect();
+        let bytes: Vec<u8> = (0..width * height).map(|i| (seed.rotate_left(i as u32 * 7) >> (i % 9)) as u8)
+            .collect();
         let at = |x: usize, y: usize| u32::from(bytes[y.min(height - 1) * width + x.min(width - 1)]);
         let source = Memory::new(width as u16, height as u16, PixelFormat::Bayer8, bytes.clone());
         let mut lines = BayerLines::<_, 20, 20>::new(source).expect("room");
@@ -156,7 +159,8 @@ proptest! {
     #[test]
     fn streams_carry_two_pictures(width in 1u16..20, height in 1u16..9, seed: u64) {
         let picture = |salt: u64| -> Vec<u8> {
-            (0..usize::from(width) * usize::from(height)).map(|i| ((seed ^ salt).rotate_left(i as u32) >> 3) as u8).collect()
+            (0..usize::from(width) * usize::from(height))
+                .map(|i| ((seed ^ salt).rotate_left(i as u32) >> 3) as u8).collect()
         };
         let (left, right) = (picture(0), picture(0x5555));
         let rows = || left.chunks(width.into()).zip(right.chunks(width.into()));
@@ -181,7 +185,8 @@ proptest! {
     }
 
     #[test]
-    fn a_mirrored_line_is_its_pixels_from_the_right(pixels in proptest::collection::vec(any::<[u8; 3]>(), 1..20)) {
+    fn a_mirrored_line_is_its_pixels_from_the_right(pixels in proptest::collection::vec(any::<[u8; 3]>(),
+        1..20)) {
         let bytes: Vec<u8> = pixels.concat();
         let source = Memory::new(pixels.len() as u16, 1, PixelFormat::Rgb8, bytes);
         let mut mirrored = Mirrored::new(source).expect("whole bytes");

@@ -11,13 +11,16 @@ const DOWN: u32 = 4;
 pub fn opencv() -> String {
     let camera = |n: u32, cy: f64| {
         format!(
-            "K{n}: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ 100., 0., 47.5, 0., 100., {cy}, 0., 0., 1. ]\n\
-             D{n}: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n   data: [ 0., 0., 0., 0., 0. ]\n"
+            "K{n}: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ 100., 0., 47.5, 0., 100., \
+             {cy}, 0., 0., 1. ]\nD{n}: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n   data: [ 0., \
+             0., 0., 0., 0. ]\n"
         )
     };
     format!(
-        "%YAML:1.0\n---\nimage_width: {WIDTH}\nimage_height: {HEIGHT}\n{}{}R: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n\
-         \x20  data: [ 1., 0., 0., 0., 1., 0., 0., 0., 1. ]\nT: !!opencv-matrix\n   rows: 3\n   cols: 1\n   dt: d\n\
+        "%YAML:1.0\n---\nimage_width: {WIDTH}\nimage_height: {HEIGHT}\n{}{}R: !!opencv-matrix\n   rows: 3\n \
+              cols: 3\n   dt: d\n\
+         \x20  data: [ 1., 0., 0., 0., 1., 0., 0., 0.,
+             1. ]\nT: !!opencv-matrix\n   rows: 3\n   cols: 1\n   dt: d\n\
          \x20  data: [ -0.2, 0., 0. ]\n",
         camera(1, 23.5),
         camera(2, 23.5 + f64::from(DOWN))

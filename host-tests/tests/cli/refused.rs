@@ -98,7 +98,8 @@ fn bad_options() {
     bench.refused::<&str>(&[], "subcommand");
     bench.refused(
         &["sharpen"],
-        "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental, pose, bundle, odometry, structure, walk, record and replay",
+        "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental, \
+         pose, bundle, odometry, structure, walk, record and replay",
     );
     bench.refused(&bench.arguments(&[("--left", "two\nlines.png")]), "two\\nlines.png");
 }

@@ -134,8 +134,8 @@ pub fn encode(image: &GrayImage, format: ImageFormat) -> Vec<u8> {
 /// A Middlebury calibration of the pair: 100 px, 200 mm.
 pub fn calibration(width: u32, height: u32) -> String {
     format!(
-        "cam0=[100 0 47.5; 0 100 23.5; 0 0 1]\ncam1=[100 0 48.5; 0 100 23.5; 0 0 1]\ndoffs=1\nbaseline=200\n\
-         width={width}\nheight={height}\nndisp=32\n"
+        "cam0=[100 0 47.5; 0 100 23.5; 0 0 1]\ncam1=[100 0 48.5; 0 100 23.5; 0 0 \
+         1]\ndoffs=1\nbaseline=200\nwidth={width}\nheight={height}\nndisp=32\n"
     )
 }
 

@@ -77,7 +77,8 @@ proptest! {
 
     /// A block's median by sorting all of it.
     #[test]
-    fn smaller_rows_are_medians_of_blocks(rows in proptest::collection::vec(proptest::collection::vec(disparity(), 11), 7)) {
+    fn smaller_rows_are_medians_of_blocks(
+        rows in proptest::collection::vec(proptest::collection::vec(disparity(), 11), 7)) {
         blocks::<2>(&rows)?;
         blocks::<3>(&rows)?;
         blocks::<5>(&rows)?;

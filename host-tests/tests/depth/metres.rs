@@ -153,7 +153,8 @@ proptest! {
 
     #[test]
     fn depths_and_deviations_are_those_of_f64(
-        focal in 20.0f32..8000.0, baseline in 0.005f32..3.0, doffs in -100.0f32..100.0, sigma_px in 0.01f32..4.0,
+        focal in 20.0f32..8000.0, baseline in 0.005f32..3.0, doffs in -100.0f32..100.0,
+            sigma_px in 0.01f32..4.0,
     ) {
         let rig = rig(focal, baseline, doffs);
         let scale = DepthScale::new(&rig).expect("the rig has depths");
@@ -168,8 +169,8 @@ proptest! {
             }
             let z = fb / shift;
             let depth = scale.metres(d).expect("before infinity").0;
-            // The sum d + doffs, the product f b and the quotient are each rounded to 2^-24; the sum's error counts
-            // more where the two terms cancel.
+            // The sum d + doffs, the product f b and the quotient are each rounded to 2^-24; the sum's error
+            // counts more where the two terms cancel.
             let cancel = (shift + 2.0 * doffs.abs()) / shift;
             let relative = 2f64.powi(-24) * (3.0 + cancel);
             prop_assert!(close(depth, z, relative), "{depth} {z}");
@@ -208,7 +209,8 @@ proptest! {
     /// A point projects back onto its pixels in both images, and lies where Q puts it.
     #[test]
     fn points_project_back(
-        focal in 100.0f32..2000.0, baseline in 0.02f32..0.5, doffs in -8.0f32..50.0, u in 0u16..4096, v in 0u16..4096,
+        focal in 100.0f32..2000.0, baseline in 0.02f32..0.5, doffs in -8.0f32..50.0, u in 0u16..4096,
+            v in 0u16..4096,
         steps in (10u16 * 32)..(500 * 32),
     ) {
         let rig = rig(focal, baseline, doffs);
@@ -235,7 +237,8 @@ proptest! {
 
     /// A table says what the scale says, for every disparity of the search and none outside of it.
     #[test]
-    fn a_table_is_the_scale(focal in 50.0f32..2000.0, doffs in -20.0f32..20.0, first in 0u16..1900, count in 16u16..=64) {
+    fn a_table_is_the_scale(focal in 50.0f32..2000.0, doffs in -20.0f32..20.0, first in 0u16..1900,
+        count in 16u16..=64) {
         let scale = DepthScale::new(&rig(focal, 0.1, doffs)).expect("the rig has depths");
         let config = Config { min_disparity: first, ..Config::for_method::<Block>(640, 480, count) };
         let table = DepthTable::<{ 64 * 32 + 1 }>::new(&scale, &config).expect("64 disparities fit");
@@ -256,7 +259,8 @@ proptest! {
         prop_assert_eq!(d.distance(e), Some(raw.abs_diff(other)));
         prop_assert_eq!(d.distance(Disparity::NONE), None);
         let whole = Disparity::from_pixels(pixels);
-        let expected = if pixels <= Disparity::MAX_PIXELS { u32::from(pixels) * 32 } else { u32::from(Disparity::MAX.raw()) };
+        let expected = if pixels <= Disparity::MAX_PIXELS { u32::from(pixels)
+            * 32 } else { u32::from(Disparity::MAX.raw()) };
         prop_assert_eq!(u32::from(whole.raw()), expected);
         prop_assert!(whole.is_some());
     }

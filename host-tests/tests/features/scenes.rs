@@ -149,7 +149,8 @@ fn matches_in_a_scene_have_its_disparity() {
     });
     let repeated = again.count() as f32 / lists[0].len() as f32;
     println!(
-        "{share} of {count}, in rows {share_in_rows} of {count_in_rows}, {off} px off, found again {repeated}"
+        "{share} of {count}, in rows {share_in_rows} of {count_in_rows}, {off} px off, found again \
+         {repeated}"
     );
     assert!(off <= 0.2 && repeated >= 0.55, "{off} px off, {repeated} found again");
 }

@@ -111,7 +111,8 @@ fn focus_answers_where_stereo_is_blind() {
 
 proptest! {
     #[test]
-    fn what_agrees_is_surer(z in 0.1..50.0_f32, a in 1e-4..0.1_f32, b in 1e-4..0.1_f32, off in -2.0..2.0_f32) {
+    fn what_agrees_is_surer(z in 0.1..50.0_f32, a in 1e-4..0.1_f32, b in 1e-4..0.1_f32,
+        off in -2.0..2.0_f32) {
         // Relative deviations, and how many of them the second is off.
         let first = Depth { depth_m: z, sigma_m: a * z };
         let other = z / (1.0 + off * b);
@@ -128,7 +129,8 @@ proptest! {
 
     #[test]
     fn of_what_contradicts_the_surer_stands(z in 0.1..50.0_f32, a in 1e-4..0.01_f32, b in 1e-4..0.01_f32) {
-        let [first, second] = [(z, a), (2.0 * z, b)].map(|(depth_m, part)| Depth { depth_m, sigma_m: part * depth_m });
+        let [first, second] = [(z, a), (2.0 * z, b)]
+            .map(|(depth_m, part)| Depth { depth_m, sigma_m: part * depth_m });
         let both = first.fused(second);
         prop_assert!(both == first || both == second);
         // Relative deviations are those of 1 / Z times Z.

@@ -92,9 +92,11 @@ proptest! {
         let image = lens.image_distance(object).expect("an image");
         prop_assert!((1.0 / image + 1.0 / object - 1.0 / focal).abs() < 1e-9 / focal);
         prop_assert!((lens.object_distance(image).expect("an object") / object - 1.0).abs() < 1e-10);
-        prop_assert!((ThinLens::from_distances(object, image).expect("a lens").focal() / focal - 1.0).abs() < 1e-12);
+        prop_assert!((ThinLens::from_distances(object, image).expect("a lens").focal() / focal - 1.0)
+            .abs() < 1e-12);
         prop_assert!((lens.magnification(object).expect("a ratio") * object / image - 1.0).abs() < 1e-12);
-        // f32: what is lost of z - f comes back (Z - f) / f times, 2^-23 of z each in z, f and their difference.
+        // f32: what is lost of z - f comes back (Z - f) / f times, 2^-23 of z each in z, f and their
+        // difference.
         let single = ThinLens::new(focal as f32).expect("a lens");
         let image = single.image_distance(object as f32).expect("an image");
         let back = f64::from(single.object_distance(image).expect("an object"));
@@ -106,7 +108,8 @@ proptest! {
         let lens = ThinLens::new(focal).expect("a lens");
         let image = lens.image_distance(focal * ratio).expect("an image");
         let step = (image - focal) * 1e-5;
-        let moved = lens.object_distance(image + step).expect("an object") - lens.object_distance(image - step).expect("one");
+        let moved = lens.object_distance(image + step)
+            .expect("an object") - lens.object_distance(image - step).expect("one");
         let sigma = lens.object_sigma(image, 2.0 * step).expect("a deviation");
         prop_assert!((sigma / moved.abs() - 1.0).abs() < 1e-5);
     }
@@ -130,7 +133,8 @@ proptest! {
     }
 
     #[test]
-    fn micrometres_are_the_nearest(focal in 500..100_000_u32, beyond in 1..200_000_000_u32, extension in 1..u32::MAX) {
+    fn micrometres_are_the_nearest(focal in 500..100_000_u32, beyond in 1..200_000_000_u32,
+        extension in 1..u32::MAX) {
         let lens = MicroLens::new(focal).expect("a lens");
         let object = focal + beyond;
         let exact = f64::from(focal) * f64::from(object) / f64::from(beyond);

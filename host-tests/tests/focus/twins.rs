@@ -75,7 +75,8 @@ proptest! {
     #[test]
     fn windows_are_their_twins(width in 1..20_u16, height in 1..12_u16, radius in 0..=3_u8, seed: u64) {
         let picture = noise(width.into(), height.into(), seed, 255);
-        for measure in [Measure::Robust, Measure::ModifiedLaplacian, Measure::Tenengrad, Measure::LaplacianVariance] {
+        for measure in [Measure::Robust, Measure::ModifiedLaplacian, Measure::Tenengrad,
+            Measure::LaplacianVariance] {
             let mut core = SharpnessRows::<20>::new();
             core.start(width, height, measure, radius);
             let mut all = Vec::new();
@@ -93,7 +94,8 @@ proptest! {
 
     #[test]
     fn peaks_are_their_twins(
-        (width, height) in (1..24_u16, 1..14_u16), cell_px in 1..9_u16, radius in 0..=3_u8, count in 3..20_usize,
+        (width, height) in (1..24_u16, 1..14_u16), cell_px in 1..9_u16, radius in 0..=3_u8,
+            count in 3..20_usize,
         exposure_varies: bool, breathing: bool, seed: u64,
     ) {
         let radius = if cell_px > 2 { radius.min(1) } else { radius };
@@ -101,9 +103,11 @@ proptest! {
         let mut random = Random::new(seed);
         let top = random.below(count) as i64;
         let frames: Vec<_> = (0..count as i64)
-            .map(|i| noise(width.into(), height.into(), seed ^ i as u64, (255 >> (i - top).abs().min(7)) as u8))
+            .map(|i| noise(width.into(), height.into(), seed ^ i as u64,
+                (255 >> (i - top).abs().min(7)) as u8))
             .collect();
-        let scales: Vec<f32> = (0..count).map(|_| if breathing { 0.8 + 0.5 * random.unit() as f32 } else { 1.0 }).collect();
+        let scales: Vec<f32> = (0..count)
+            .map(|_| if breathing { 0.8 + 0.5 * random.unit() as f32 } else { 1.0 }).collect();
         let (peaks, sharper) = map(&config, &frames, &scales);
         let expected = twin::peaks(&config, &frames, &scales);
         prop_assert_eq!(peaks.iter().map(plain).collect::<Vec<_>>(), expected.clone());
@@ -123,9 +127,12 @@ proptest! {
             plane_row(&peaks, columns, y, out);
         }
         for (found, exact) in medians.iter().zip(twin::planes(columns, &expected, &middle)) {
-            // Rounding to 1/256, and that of 49 sums of 24 bits in a system whose condition the ridge bounds by 1000.
-            let off = found.ok().map(|p| f64::from(p.position_q8)).zip(exact).map(|(found, exact)| (found - exact).abs());
-            prop_assert!(found.is_ok() == exact.is_some() && off.is_none_or(|off| off <= 1.0), "{:?} {:?}", found, exact);
+            // Rounding to 1/256, and that of 49 sums of 24 bits in a system whose condition the ridge bounds
+            // by 1000.
+            let off = found.ok().map(|p| f64::from(p.position_q8)).zip(exact)
+                .map(|(found, exact)| (found - exact).abs());
+            prop_assert!(found.is_ok() == exact.is_some() && off.is_none_or(|off| off <= 1.0), "{:?} {:?}",
+                found, exact);
         }
     }
 }

@@ -28,17 +28,20 @@ proptest! {
 
     #[test]
     fn a_pixel_there_and_back(lens in lenses(), x in -0.55..0.55_f64, y in -0.4..0.4_f64) {
-        let camera = Camera::new(600.0, 580.0, 321.0, 243.0).and_then(|c| c.with_skew(1.5)).expect("a camera");
+        let camera = Camera::new(600.0, 580.0, 321.0, 243.0).and_then(|c| c.with_skew(1.5))
+            .expect("a camera");
         let camera = camera.with_distortion(lens).expect("a lens");
         let pixel = camera.project(&Point3::new(2.0 * x, 2.0 * y, 2.0)).expect("in front");
         let sight = camera.unproject(&pixel).expect("it converges");
         prop_assert!((sight - Vector3::new(x, y, 1.0)).amax() < 1e-9, "{sight}");
         let straight = Camera::from_matrix(&camera.matrix()).expect("a camera");
         let undistorted = camera.undistort(&pixel).expect("it converges");
-        prop_assert!((undistorted - straight.project(&Point3::new(x, y, 1.0)).expect("in front")).norm() < 1e-6);
+        prop_assert!((undistorted - straight.project(&Point3::new(x, y, 1.0)).expect("in front"))
+            .norm() < 1e-6);
         // In f32 to two thousandths of a pixel.
         let narrow = Distortion::from_opencv_rational(lens.to_opencv().map(|k| k as f32));
-        let narrow = Camera::new(600.0, 580.0, 321.0, 243.0_f32).and_then(|c| c.with_skew(1.5)?.with_distortion(narrow));
+        let narrow = Camera::new(600.0, 580.0, 321.0, 243.0_f32)
+            .and_then(|c| c.with_skew(1.5)?.with_distortion(narrow));
         let again = narrow.expect("a camera").undistort(&pixel.map(|x| x as f32)).expect("it converges");
         prop_assert!((again.map(f64::from) - undistorted).norm() < 2e-3);
     }
@@ -46,19 +49,22 @@ proptest! {
     /// Up to 80 degrees from the axis.
     #[test]
     fn a_wide_pixel_there_and_back(lens in fisheyes(), angle in 0.0..1.4_f64, around in 0.0..6.3_f64) {
-        let camera = Camera::new(300.0, 290.0, 321.0, 243.0).and_then(|c| c.with_distortion(lens)).expect("a camera");
+        let camera = Camera::new(300.0, 290.0, 321.0, 243.0).and_then(|c| c.with_distortion(lens))
+            .expect("a camera");
         let point = Point3::new(angle.sin() * around.cos(), angle.sin() * around.sin(), angle.cos());
         let pixel = camera.project(&point).expect("in front");
         let sight = camera.unproject(&pixel).expect("it converges").normalize();
         prop_assert!((sight - point.coords).amax() < 1e-8, "{sight}");
         let narrow = Fisheye::from_opencv(lens.to_opencv().map(|k| k as f32));
-        let narrow = Camera::new(300.0, 290.0, 321.0, 243.0_f32).and_then(|c| c.with_distortion(narrow)).expect("a camera");
+        let narrow = Camera::new(300.0, 290.0, 321.0, 243.0_f32).and_then(|c| c.with_distortion(narrow))
+            .expect("a camera");
         let sight = narrow.unproject(&pixel.map(|x| x as f32)).expect("it converges").normalize();
         prop_assert!((sight.map(f64::from) - point.coords).amax() < 2e-5, "{sight}");
     }
 
     #[test]
-    fn composed_and_taken_apart(pose in any_pose(), fx in 100.0..2000.0_f64, fy in 100.0..2000.0_f64, skew in -5.0..5.0_f64) {
+    fn composed_and_taken_apart(pose in any_pose(), fx in 100.0..2000.0_f64, fy in 100.0..2000.0_f64,
+        skew in -5.0..5.0_f64) {
         let camera = Camera::new(fx, fy, 320.0, 240.0).and_then(|c| c.with_skew(skew)).expect("a camera");
         let (inner, place) = Projection::new(&camera, &pose).decompose().expect("a camera");
         prop_assert!((inner.matrix() - camera.matrix()).amax() < 1e-8);

@@ -48,7 +48,8 @@ proptest! {
 
     #[test]
     fn a_pole_across_the_sight_is_where_it_is(
-        (x, y, z) in (-1.5..1.5_f64, -1.0..1.0_f64, 2.0..8.0_f64), angle in 0.0..6.3_f64, length in 0.2..1.5_f64,
+        (x, y, z) in (-1.5..1.5_f64, -1.0..1.0_f64, 2.0..8.0_f64), angle in 0.0..6.3_f64,
+            length in 0.2..1.5_f64,
     ) {
         let middle = Vector3::new(x, y, z);
         let right = middle.cross(&Vector3::y()).normalize();
@@ -87,13 +88,15 @@ proptest! {
     #[test]
     fn walls_give_the_orientation_and_the_focal_length(turn in axis(0.35), seed in any::<u64>()) {
         // A corner of a room, seen from afar: all three directions are askew.
-        let truth = rotation(turn) * rotation(Vector3::new(0.6, 0.0, 0.0)) * rotation(Vector3::new(0.0, 0.7, 0.0));
+        let truth = rotation(turn) * rotation(Vector3::new(0.6, 0.0, 0.0))
+            * rotation(Vector3::new(0.0, 0.7, 0.0));
         let bundles = room(&square(), &truth, 0.0, seed);
         let of = [&bundles[0][..], &bundles[1], &bundles[2]];
         let walls = ManhattanFrame::orientation(&square(), of, &truth).expect("an orientation");
         prop_assert!(apart(&walls.rotation, &truth) < 1e-8, "{:?}", walls);
         prop_assert!(walls.rms_px < 1e-8 && walls.focal_sigma_per_px == 0.0);
-        let walls = ManhattanFrame::orientation_and_focal(&Point2::new(320.0, 240.0), of, &truth).expect("an orientation");
+        let walls = ManhattanFrame::orientation_and_focal(&Point2::new(320.0, 240.0), of, &truth)
+            .expect("an orientation");
         prop_assert!(apart(&walls.rotation, &truth) < 1e-7, "{:?}", walls);
         prop_assert!((walls.focal_px - 600.0).abs() < 1e-4, "{}", walls.focal_px);
         // Lines have no sense: expected the other way round, it is turned by half a turn.

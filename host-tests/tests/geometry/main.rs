@@ -1,9 +1,10 @@
 //! Pure maths of cameras: what the types keep, what the estimates reach, what is refused by name.
 //!
-//! * `cameras`, `chain`, `lecture`, `poses`, `points`: one and two cameras. `matrices`, `estimates`, `planes`: E, F and
-//!   homographies, beside the `twin`. `robust`: RANSAC.
+//! * `cameras`, `chain`, `lecture`, `poses`, `points`: one and two cameras. `matrices`, `estimates`,
+//!   `planes`: E, F and homographies, beside the `twin`. `robust`: RANSAC.
 //! * `resection`, `landmarks`: a camera before known points.
-//! * `rectify`, `uncalibrated`, `row_health`: rows aligned, by cameras or by matches, and rows that no longer are.
+//! * `rectify`, `uncalibrated`, `row_health`: rows aligned, by cameras or by matches, and rows that no longer
+//!   are.
 
 mod cameras;
 mod chain;

@@ -67,7 +67,8 @@ proptest! {
     }
 
     #[test]
-    fn distances_do_not_depend_on_which_image_is_first(seed in any::<u64>(), u in 0.0..640.0, v in 0.0..480.0) {
+    fn distances_do_not_depend_on_which_image_is_first(seed in any::<u64>(), u in 0.0..640.0,
+        v in 0.0..480.0) {
         let f = Views::scene(seed, 1).fundamental();
         let seen = Correspondence::new(u, v, 640.0 - u, v + 3.0);
         let (a, b) = (f.sampson_px(&seen), f.swapped().sampson_px(&seen.swapped()));
@@ -75,7 +76,8 @@ proptest! {
         prop_assert!((f.sampson_squared_px2(&seen) - a * a).abs() < 1e-9 * (1.0 + a * a));
         let (d, d2) = f.line_distances_px(&seen);
         prop_assert!(a.abs() <= d.min(d2) + 1e-12, "the nearest pair is no farther than a line");
-        prop_assert!((f.symmetric_squared_px2(&seen) - d * d - d2 * d2).abs() < 1e-9 * (1.0 + d * d + d2 * d2));
+        prop_assert!((f.symmetric_squared_px2(&seen) - d * d - d2 * d2)
+            .abs() < 1e-9 * (1.0 + d * d + d2 * d2));
     }
 }
 

@@ -49,7 +49,8 @@ proptest! {
         let d2 = distance - normal.dot(views.pose.translation());
         let h = Homography::from_plane(&views.pose, &views.camera, &views.camera, &n2, d2).expect("H");
         prop_assert!(views.seen.iter().all(|s| h.symmetric_squared_px2(s) < 1e-14));
-        let motions = h.recover_motions(views.seen.iter().copied(), &views.camera, &views.camera).expect("a baseline");
+        let motions = h.recover_motions(views.seen.iter().copied(), &views.camera, &views.camera)
+            .expect("a baseline");
         let right = motions.iter().find(|(m, _)| {
             (m.rotation() - views.pose.rotation()).amax() < 1e-7 && (m.normal() - n2).amax() < 1e-7
         });
@@ -63,7 +64,8 @@ proptest! {
     #[test]
     fn a_turn_is_a_rotation(seed in any::<u64>()) {
         let turn = *Rotation3::new(Vector3::new(0.02, 0.1, 0.01)).matrix();
-        let views = Views::of(&mut Random::new(seed), 20, Pose::new(turn, Vector3::zeros()).expect("a pose"), anywhere);
+        let views = Views::of(&mut Random::new(seed), 20, Pose::new(turn, Vector3::zeros()).expect("a pose"),
+            anywhere);
         let h = Homography::from_correspondences(&views.seen).expect("H");
         prop_assert!((h.rotation(&views.camera, &views.camera) - turn).amax() < 1e-9);
     }

@@ -28,7 +28,8 @@ proptest! {
         prop_assert_eq!(poses.iter().filter(right).count(), 1);
         for found in poses {
             prop_assert!((found.rotation().determinant() - 1.0).abs() < 1e-12);
-            prop_assert!((found.rotation().transpose() * found.rotation() - Matrix3::identity()).amax() < 1e-12);
+            prop_assert!((found.rotation().transpose() * found.rotation() - Matrix3::identity())
+                .amax() < 1e-12);
             let again = Essential::from_pose(&found.in_baselines()).expect("a baseline");
             let off = (again.matrix() - e.matrix()).amax().min((again.matrix() + e.matrix()).amax());
             prop_assert!(off < 1e-9, "{off}");

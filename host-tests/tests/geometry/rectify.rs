@@ -214,8 +214,8 @@ fn what_cannot_be_rectified_is_refused_by_name() {
 proptest! {
     #![proptest_config(seeded())]
 
-    /// A point of space is on one row of both rectified images, at the disparity of its depth, and warps lead to where the
-    /// cameras see it.
+    /// A point of space is on one row of both rectified images, at the disparity of its depth, and warps lead
+    /// to where the cameras see it.
     #[test]
     fn rows_are_aligned(
         turn in [-0.1..0.1_f64, -0.15..0.15, -0.1..0.1],
@@ -225,7 +225,8 @@ proptest! {
         vertical in any::<bool>(),
     ) {
         let size = ImageSize { width: 640, height: 480 };
-        let cameras = [camera([500.0, 510.0, 322.0, 236.0], lens), camera([505.0, 498.0, 317.0, 243.0], [0.05, 0.0, 0.0, 0.0, 0.0])];
+        let cameras = [camera([500.0, 510.0, 322.0, 236.0], lens),
+            camera([505.0, 498.0, 317.0, 243.0], [0.05, 0.0, 0.0, 0.0, 0.0])];
         let t = if vertical { Vector3::new(t.1, t.0, t.2) } else { Vector3::new(t.0, t.1, t.2) };
         let pose = Pose::new(Rotation3::new(Vector3::from(turn)).into_inner(), t).expect("a pose");
         let rig = StereoRig::new(cameras, pose, [size; 2]).expect("a rig");

@@ -52,8 +52,10 @@ proptest! {
         let points = [0, 1, 2].map(|i: usize| landmarks[i].world);
         let sights = points.map(|p| pose.inverse_transform(&p).coords);
         let poses = p3p(&sights, &points).expect("poses");
-        let nearest = poses.as_slice().iter().map(|p| difference(p, &pose).norm()).fold(f64::INFINITY, f64::min);
-        // A sight or an edge of a hundredth of the others costs two digits, the square root at a double solution half.
+        let nearest = poses.as_slice().iter().map(|p| difference(p, &pose).norm())
+            .fold(f64::INFINITY, f64::min);
+        // A sight or an edge of a hundredth of the others costs two digits, the square root at a double
+        // solution half.
         prop_assert!(nearest < 1e-5, "{nearest}");
         for p in poses.as_slice() {
             prop_assert!(solves(p, &sights, &points) < 1e-8, "{}", solves(p, &sights, &points));

@@ -108,7 +108,8 @@ proptest! {
         let (found, _) = solve(&mixed.seen, &config(seed)).expect("an estimate");
         let width = 1.5 * THRESHOLD;
         let gain = |f: &Fundamental<f64>| -> f64 {
-            mixed.seen.iter().map(|s| (1.0 - f.sampson_squared_px2(s) / (width * width)).max(0.0).powi(3)).sum()
+            mixed.seen.iter().map(|s| (1.0 - f.sampson_squared_px2(s) / (width * width)).max(0.0).powi(3))
+                .sum()
         };
         let best = gain(&found.fundamental);
         // A minimum, not always the least of all: the true matrix is hardly better.
@@ -160,7 +161,8 @@ proptest! {
         });
         let mixed = Mixed::of(wall, seed, share);
         let mut inliers = vec![false; mixed.seen.len()];
-        prop_assert_eq!(robust_fundamental(&mixed.seen, &config(seed), &mut inliers), Err(RobustError::Plane));
+        prop_assert_eq!(robust_fundamental(&mixed.seen, &config(seed), &mut inliers),
+            Err(RobustError::Plane));
         let kept = mixed.right.iter().zip(&inliers).filter(|&(&right, &inlier)| right && inlier).count();
         prop_assert!(kept >= 98, "{kept}");
     }
@@ -168,7 +170,8 @@ proptest! {
 
 #[test]
 fn known_cameras_make_it_better() {
-    // The refined essential matrix beside F, and beside the essential matrix nearest to F, from which it starts.
+    // The refined essential matrix beside F, and beside the essential matrix nearest to F, from which it
+    // starts.
     let (mut refined, mut start, mut plain) = (0.0, 0.0, 0.0);
     let (mut than_start, mut than_plain) = (0, 0);
     for seed in 0..100 {

@@ -51,8 +51,8 @@ fn points(
 proptest! {
     #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
 
-    /// Up to a degree about any axis, a quarter of the matches wrong, in both precisions: within five of its own deviations, which
-    /// are small.
+    /// Up to a degree about any axis, a quarter of the matches wrong, in both precisions: within five of its
+    /// own deviations, which are small.
     #[test]
     fn a_turn_is_told_with_its_uncertainty(
         turned in [-0.017..0.017_f64, -0.017..0.017, -0.017..0.017], seed in any::<u64>(),
@@ -74,10 +74,12 @@ proptest! {
             let (off, sigma) = ((found.rotation_rad[axis] - truth).abs(), found.sigma_rad[axis]);
             // A hundredth of the angle is what a small one leaves out.
             prop_assert!(off < 5.0 * sigma + 3e-4, "{axis}: {off} {sigma}");
-            prop_assert!((f64::from(other.rotation_rad[axis]) - found.rotation_rad[axis]).abs() < 0.1 * sigma + 1e-5);
+            prop_assert!((f64::from(other.rotation_rad[axis]) - found.rotation_rad[axis])
+                .abs() < 0.1 * sigma + 1e-5);
         }
         prop_assert!(found.sigma_rad[0] < 4e-4 && found.sigma_rad[2] < 8e-4, "{:?}", found.sigma_rad);
-        prop_assert!(found.sigma_rad[1] > 2.0 * found.sigma_rad[0], "a turn about Y is seen least: {:?}", found.sigma_rad);
+        prop_assert!(found.sigma_rad[1] > 2.0 * found.sigma_rad[0], "a turn about Y is seen least: {:?}",
+            found.sigma_rad);
     }
 }
 

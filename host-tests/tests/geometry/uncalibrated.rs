@@ -39,11 +39,12 @@ fn rectified(
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
 
-    /// Cameras beside each other, turned by up to 15 degrees: rows agree, every match has a disparity, images are not mirrored and
-    /// stay where they were, about.
+    /// Cameras beside each other, turned by up to 15 degrees: rows agree, every match has a disparity, images
+    /// are not mirrored and stay where they were, about.
     #[test]
     fn rows_agree(
-        turned in [-0.15..0.15_f64, -0.15..0.15, -0.25..0.25], t in [0.05..0.1_f64, -0.03..0.03, -0.015..0.015], seed in any::<u64>(),
+        turned in [-0.15..0.15_f64, -0.15..0.15, -0.25..0.25],
+            t in [0.05..0.1_f64, -0.03..0.03, -0.015..0.015], seed in any::<u64>(),
     ) {
         let pose = Pose::new(rotation(turned), Vector3::from(t)).expect("a pose");
         let seen = seen(&pose, &mut Random::new(seed));
@@ -55,7 +56,8 @@ proptest! {
             Err(error) => panic!("{error}"),
         };
         for s in &seen {
-            let (first, second) = (both.first(&s.first).expect("finite"), both.second(&s.second).expect("finite"));
+            let (first, second) =
+                (both.first(&s.first).expect("finite"), both.second(&s.second).expect("finite"));
             prop_assert!((first.y - second.y).abs() < 1e-6, "{first} {second}");
             prop_assert!(first.x - second.x > 1.0 - 1e-6, "{first} {second}");
             let back = both.to_raw()[0].to_first(&first).expect("finite");
@@ -64,7 +66,8 @@ proptest! {
         let middle = Point2::new(159.5, 119.5);
         prop_assert!((both.second(&middle).expect("finite") - middle).norm() < 1e-6);
         for map in [UncalibratedRectification::first, UncalibratedRectification::second] {
-            let [a, b, c] = [(0.0, 0.0), (8.0, 0.0), (0.0, 8.0)].map(|(x, y)| map(&both, &(middle + Vector3::new(x, y, 0.0).xy())));
+            let [a, b, c] = [(0.0, 0.0), (8.0, 0.0), (0.0, 8.0)]
+                .map(|(x, y)| map(&both, &(middle + Vector3::new(x, y, 0.0).xy())));
             let (a, b, c) = (a.expect("finite"), b.expect("finite"), c.expect("finite"));
             prop_assert!((b - a).perp(&(c - a)) > 0.0, "mirrored");
         }

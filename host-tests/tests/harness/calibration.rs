@@ -106,17 +106,15 @@ fn a_missing_key_is_named() {
 #[test]
 fn a_bad_number_is_named_with_its_line() {
     let bad = |from: &str, to: &str| fault(MIDDLEBURY.replace(from, to));
-    assert!(
-        matches!(bad("193.001", "wide"), Fault::NotANumber { key, line: 4, found } if key == "baseline" && found == "wide")
-    );
+    assert!(matches!(bad("193.001", "wide"), Fault::NotANumber { key, line: 4, found } if key == "baseline"
+            && found == "wide"));
     assert!(matches!(bad("193.001", "inf"), Fault::NotFinite { key, .. } if key == "baseline"));
     assert!(
         matches!(bad("doffs=32.778", "doffs=nan"), Fault::NotFinite { key, line: 3, .. } if key == "doffs")
     );
     assert!(matches!(bad("999.421 0 294", "1e300 0 294"), Fault::NotFinite { key, .. } if key == "cam0"));
-    assert!(
-        matches!(bad("0 0 1]\ncam1", "0 0]\ncam1"), Fault::Count { key, found: 8, needed: 9, .. } if key == "cam0")
-    );
+    assert!(matches!(bad("0 0 1]\ncam1", "0 0]\ncam1"),
+            Fault::Count { key, found: 8, needed: 9, .. } if key == "cam0"));
     assert!(matches!(bad("193.001", ""), Fault::Count { key, found: 0, .. } if key == "baseline"));
     assert!(matches!(bad("width=741", "width=0"), Fault::NotASize { key, line: 5, .. } if key == "width"));
     assert!(matches!(bad("height=497", "height=-1"), Fault::NotASize { .. }));
@@ -171,18 +169,19 @@ fn rectified_cameras_of_other_programs() {
     let q = matrix(
         "Q",
         4,
-        "1., 0., 0., -320., 0., 1., 0., -240., 0., 0., 0., 500., 0., 0., 0.016666666666666666, 0.16666666666666666",
+        "1., 0., 0., -320., 0., 1., 0., -240., 0., 0., 0., 500., 0., 0., 0.016666666666666666, \
+         0.16666666666666666",
     );
     let ros = |shift: &str, cx: &str| {
         format!(
-            "image_width: 640\ncamera_matrix: {{data: [510, 0, 300, 0, 510, 220, 0, 0, 1]}}\n\
-             projection_matrix: {{data: [500, 0, {cx}, {shift}, 0, 500, 240, 0, 0, 0, 1, 0]}}\n"
+            "image_width: 640\ncamera_matrix: {{data: [510, 0, 300, 0, 510, 220, 0, 0, \
+             1]}}\nprojection_matrix: {{data: [500, 0, {cx}, {shift}, 0, 500, 240, 0, 0, 0, 1, 0]}}\n"
         )
     };
-    let ours = "{\"axis\": \"horizontal\", \"focal_px\": 500, \"q\": [[1, 0, 0, -320], [0, 1, 0, -240], [0, 0, 0, 500], \
-                [0, 0, 16.666666666666668, 166.66666666666666]]}";
-    let mounted = "K1: [500, 0, 320, 0, 500, 240, 0, 0, 1]\nD1: [0, 0, 0, 0, 0]\nK2: [500, 0, 330, 0, 500, 240, 0, 0, 1]\n\
-                   D2: [0, 0, 0, 0, 0]\nR: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nT: [-60, 0, 0]\n";
+    let ours = "{\"axis\": \"horizontal\", \"focal_px\": 500, \"q\": [[1, 0, 0, -320], [0, 1, 0, -240], [0, \
+                0, 0, 500], [0, 0, 16.666666666666668, 166.66666666666666]]}";
+    let mounted = "K1: [500, 0, 320, 0, 500, 240, 0, 0, 1]\nD1: [0, 0, 0, 0, 0]\nK2: [500, 0, 330, 0, 500, \
+                   240, 0, 0, 1]\nD2: [0, 0, 0, 0, 0]\nR: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nT: [-60, 0, 0]\n";
     let of = |texts: &[&str], unit_m: f64| {
         let folder = tempfile::TempDir::new().expect("a temporary folder");
         let paths: Vec<_> = (0..texts.len()).map(|i| folder.path().join(format!("file{i}"))).collect();

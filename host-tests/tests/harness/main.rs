@@ -1,5 +1,5 @@
-//! The harness itself: mock cameras, rendered scenes, altered pairs, files of calibration, and calibration from
-//! pictures of boards.
+//! The harness itself: mock cameras, rendered scenes, altered pairs, files of calibration, and calibration
+//! from pictures of boards.
 
 mod altered;
 mod calibrate;

@@ -55,14 +55,16 @@ const XML: &str = "<?xml version=\"1.0\"?>
   <data>505. 0. 325. 0. 515. 245. 0. 0. 1.</data></cameraMatrixRight>
 <distCoeffsRight type_id=\"opencv-matrix\"><rows>1</rows><cols>5</cols><dt>d</dt>
   <data>-0.125 0.03125 0. 0. 0.</data></distCoeffsRight>
-<R type_id=\"opencv-matrix\"><rows>3</rows><cols>3</cols><dt>d</dt><data>0.8 -0.6 0. 0.6 0.8 0. 0. 0. 1.</data></R>
+<R type_id=\"opencv-matrix\"><rows>3</rows><cols>3</cols><dt>d</dt><data>0.8 -0.6 0. 0.6 0.8 0. 0. 0. \
+                   1.</data></R>
 <T type_id=\"opencv-matrix\"><rows>3</rows><cols>1</cols><dt>d</dt><data>-0.1 0.02 0.01</data></T>
 </opencv_storage>
 ";
 
 const JSON: &str = r#"{"image_size": [640, 480], "K1": [[500, 0, 320], [0, 510, 240], [0, 0, 1]],
 "D1": [-0.25, 0.0625, 0.001, -0.002, 0], "K2": [[505, 0, 325], [0, 515, 245], [0, 0, 1]],
-"D2": [[-0.125, 0.03125, 0, 0, 0]], "R": [[0.8, -0.6, 0], [0.6, 0.8, 0], [0, 0, 1]], "T": [-0.1, 0.02, 0.01]}"#;
+"D2": [[-0.125, 0.03125, 0, 0, 0]], "R": [[0.8, -0.6, 0], [0.6, 0.8, 0], [0, 0, 1]],
+    "T": [-0.1, 0.02, 0.01]}"#;
 
 const KALIBR: &str = "cam0:
   camera_model: pinhole
@@ -87,10 +89,11 @@ cam1:
 /// A camera_info: its rectification turns about Z, by a cosine and a sine.
 fn ros(k: &str, d: &str, [c, s]: [f64; 2], shift: f64) -> String {
     format!(
-        "image_width: 640\nimage_height: 480\ncamera_name: one\ncamera_matrix:\n  rows: 3\n  cols: 3\n  data: {k}\n\
-         distortion_model: plumb_bob\ndistortion_coefficients:\n  rows: 1\n  cols: 5\n  data: {d}\n\
-         rectification_matrix:\n  rows: 3\n  cols: 3\n  data: [{c}, {}, 0., {s}, {c}, 0., 0., 0., 1.]\n\
-         projection_matrix:\n  rows: 3\n  cols: 4\n  data: [400., 0., 300., {shift}, 0., 400., 200., 0., 0., 0., 1., 0.]\n",
+        "image_width: 640\nimage_height: 480\ncamera_name: one\ncamera_matrix:\n  rows: 3\n  cols: 3\n  \
+         data: {k}\ndistortion_model: plumb_bob\ndistortion_coefficients:\n  rows: 1\n  cols: 5\n  data: \
+         {d}\nrectification_matrix:\n  rows: 3\n  cols: 3\n  data: [{c}, {}, 0., {s}, {c}, 0., 0., 0., \
+         1.]\nprojection_matrix:\n  rows: 3\n  cols: 4\n  data: [400., 0., 300., {shift}, 0., 400., 200., \
+         0., 0., 0., 1., 0.]\n",
         -s
     )
 }
@@ -171,8 +174,8 @@ fn lenses_of_other_models() {
 
 #[test]
 fn rectified_formats_are_read_too() {
-    let middlebury = "cam0=[500 0 320; 0 500 240; 0 0 1]\ncam1=[500 0 330; 0 500 240; 0 0 1]\ndoffs=10\nbaseline=100\n\
-                      width=640\nheight=480\n";
+    let middlebury = "cam0=[500 0 320; 0 500 240; 0 0 1]\ncam1=[500 0 330; 0 500 240; 0 0 \
+                      1]\ndoffs=10\nbaseline=100\nwidth=640\nheight=480\n";
     let found = open(&[middlebury], 1.0).expect("Middlebury");
     assert_eq!((found.format, found.rig.cameras()[1].principal_point()), ("Middlebury", (330.0, 240.0)));
     assert!((found.rig.baseline_m() - 0.1).abs() < 1e-7);

@@ -56,7 +56,8 @@ proptest! {
         // Where the twin's floats stand on a half or on a whole number, they may round to the other side.
         prop_assert!(of_core.gain_256ths.abs_diff(of_twin.gain_256ths) <= 1, "{of_core:?}, twin {of_twin:?}");
         let most = 256 * u32::from(of_core.gain_256ths.abs_diff(of_twin.gain_256ths)) + 1;
-        prop_assert!(of_core.offset_256ths.abs_diff(of_twin.offset_256ths) <= most, "{of_core:?}, twin {of_twin:?}");
+        prop_assert!(of_core.offset_256ths.abs_diff(of_twin.offset_256ths) <= most,
+            "{of_core:?}, twin {of_twin:?}");
     }
 
     #[test]

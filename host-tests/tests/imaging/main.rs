@@ -1,8 +1,8 @@
 //! What is made of lines before they are matched.
 //!
 //! * `census`, `gradient`, `noise`, `remap`: stages against their naive twins.
-//! * `exposure`: one exposure for two cameras, and what their pictures say about their health. `balance`: pairs
-//!   whose cameras are exposed otherwise.
+//! * `exposure`: one exposure for two cameras, and what their pictures say about their health. `balance`:
+//!   pairs whose cameras are exposed otherwise.
 
 mod balance;
 mod census;

@@ -164,12 +164,14 @@ fn a_strong_lens_stays_within_a_twentieth_of_a_pixel() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
-    /// Any rig, any awkward size: the twin to the bit, near the warp, in as many rows as the table says and no fewer.
+    /// Any rig, any awkward size: the twin to the bit, near the warp, in as many rows as the table says and
+    /// no fewer.
     #[test]
     fn any_rig(
         width in 2..150_u16, height in 2..120_u16, wide in 0.6..2.0_f64,
         lens in [-0.25..0.1_f64, -0.02..0.05, -0.003..0.003, -0.003..0.003, 0.0..0.01],
-        turn in [-0.1..0.1_f64, -0.1..0.1, -0.1..0.1], alpha in prop::option::of(0.0..1.0_f64), seed in any::<u64>(),
+        turn in [-0.1..0.1_f64, -0.1..0.1, -0.1..0.1], alpha in prop::option::of(0.0..1.0_f64),
+            seed in any::<u64>(),
     ) {
         let size = ImageSize { width, height };
         // Up to 80 degrees along the longer side.
@@ -194,7 +196,8 @@ proptest! {
             prop_assert_eq!(whole::<150, 121>(&table, &raw).expect("enough rows"), twin::remap(&table, &raw));
             // Powers of two take another way through the band.
             if table.rows() <= 32 {
-                prop_assert_eq!(whole::<150, 33>(&table, &raw).expect("enough rows"), twin::remap(&table, &raw));
+                prop_assert_eq!(whole::<150, 33>(&table, &raw).expect("enough rows"),
+                    twin::remap(&table, &raw));
             }
         }
     }

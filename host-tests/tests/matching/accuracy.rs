@@ -1,6 +1,7 @@
 //! The core's answers against the scenes' true values.
 //!
-//! The figures that the tests hold bounds to are printed: `cargo test --test matching accuracy -- --nocapture`.
+//! The figures that the tests hold bounds to are printed: `cargo test --test matching accuracy --
+//! --nocapture`.
 
 use image::GrayImage;
 use std::sync::OnceLock;
@@ -128,8 +129,9 @@ fn sub_pixel<S: Method>(rms_bound: f64, locking_bound: f64, share_bound: f64) {
         shares.iter().fold((f64::MAX, 0.0), |(l, f): (f64, f64), s| (l.min(*s), f.max(*s)));
     let answered = percent(found.visible().filter(|(_, d)| d.is_some()).count(), found.visible().count());
     println!(
-        "slanted plane, {}: RMS {error:.4} px, mean {mean:+.4} px, {answered:.2} % answered; pixel locking: mean error \
-         by fraction up to {locking:.4} px, answers by fraction {least:.2} to {fullest:.2} of an even share",
+        "slanted plane, {}: RMS {error:.4} px, mean {mean:+.4} px, {answered:.2} % answered; pixel locking: \
+         mean error by fraction up to {locking:.4} px, answers by fraction {least:.2} to {fullest:.2} of an \
+         even share",
         S::NAME
     );
     println!("  mean error by sixteenths, 1/1000 px: {:?}", by_fraction.map(|e| (e * 1000.0).round() as i32));
@@ -174,8 +176,8 @@ fn demo<S: Method>(within_bound: f64, bad2_bound: f64, missed_bound: f64) {
     let missed_pixels = found.visible().filter(|(t, d)| d.is_none_or(|d| (d - t).abs() > 2.0)).count();
     let missed = percent(missed_pixels, found.visible().count());
     println!(
-        "demo, {}: {:.2} % of the answers within 1 sigma in depth, {:.2} % within 2, {:.2} % within 3; {bad2:.2} % over \
-         2 px off, {missed:.2} % of the visible points missed",
+        "demo, {}: {:.2} % of the answers within 1 sigma in depth, {:.2} % within 2, {:.2} % within 3; \
+         {bad2:.2} % over 2 px off, {missed:.2} % of the visible points missed",
         S::NAME,
         within(1.0),
         within(2.0),

@@ -1,6 +1,7 @@
 //! What the core's confidence is worth on rendered scenes.
 //!
-//! The figures that the tests hold bounds to are printed: `cargo test --test matching confidence -- --nocapture`.
+//! The figures that the tests hold bounds to are printed: `cargo test --test matching confidence --
+//! --nocapture`.
 
 use image::GrayImage;
 use stereopsis::matching::{Block, Checks, Config, Filter};

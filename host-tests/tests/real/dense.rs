@@ -1,9 +1,9 @@
 //! Accuracy on rectified pairs of the folder in `STEREO_DATA`: every method, default filter, every scene.
 //!
-//! On all pairs of `stereo/` the recipes, penalties and checks were chosen ([`TUNED_ON`]): the bounds of these tests
-//! say that nothing gets worse, not how good the answers are on other pairs. Pairs that nothing was chosen on
-//! may stand in `stereo_held_back/`, in the same form; a test of their own, which is ignored as long as nobody
-//! has any, holds them to what such pairs gave once.
+//! On all pairs of `stereo/` the recipes, penalties and checks were chosen ([`TUNED_ON`]): the bounds of
+//! these tests say that nothing gets worse, not how good the answers are on other pairs. Pairs that nothing
+//! was chosen on may stand in `stereo_held_back/`, in the same form; a test of their own, which is ignored as
+//! long as nobody has any, holds them to what such pairs gave once.
 
 use image::GrayImage;
 use std::fmt::Write;
@@ -143,9 +143,9 @@ fn the_pairs_are_those_that_were_tuned_on() {
     assert_eq!(names, TUNED_ON, "a pair that nothing was chosen on belongs to stereo_held_back/");
 }
 
-/// 18 pairs that none of it was chosen on once gave the recipe of [`MethodName::Sgm`] 8.3 % missed and 6.2 % of the
-/// answers over 2 px off, of [`MethodName::SgmLean`] 8.6 and 6.5, of [`MethodName::SgmEdge`] 7.7 and 5.9, and OpenCV's
-/// StereoSGBM 13.6 and 7.2.
+/// 18 pairs that none of it was chosen on once gave the recipe of [`MethodName::Sgm`] 8.3 % missed and 6.2 %
+/// of the answers over 2 px off, of [`MethodName::SgmLean`] 8.6 and 6.5, of [`MethodName::SgmEdge`] 7.7 and
+/// 5.9, and OpenCV's StereoSGBM 13.6 and 7.2.
 #[test]
 #[ignore = "needs pairs that nothing was chosen on, in the folder stereo_held_back/ of STEREO_DATA"]
 fn held_back_pairs() {

@@ -36,7 +36,8 @@ fn a_street_of_kitti_with_one_camera() {
     let [rotation, all_rotation] = [after, all].map(|d| d.rotation_rad.to_degrees());
     let worst = steps.worst_direction_rad.to_degrees();
     println!(
-        "ATE {error:.3} m, {rotation:.4} deg/m over 20 m ({all_rotation:.4} with the beginning), directions {worst:.2} deg"
+        "ATE {error:.3} m, {rotation:.4} deg/m over 20 m ({all_rotation:.4} with the beginning), directions \
+         {worst:.2} deg"
     );
     assert!(error < 0.1, "{error} m");
     assert!(worst < 3.0, "{worst} deg");

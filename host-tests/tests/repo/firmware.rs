@@ -69,7 +69,8 @@ fn the_budget_in_memory_x_adds_up() {
     let left = budget("in all").saturating_sub(expected + camera + stack);
     assert!(
         (pipeline_budget, application) == (expected, left),
-        "the pipeline takes {pipeline} bytes: write {expected} for it in memory.x, and {left} for the application"
+        "the pipeline takes {pipeline} bytes: write {expected} for it in memory.x, and {left} for the \
+         application"
     );
     assert_eq!(budget("in all"), 64 * 1024);
     assert_eq!(budget("the program"), 64 * 1024);

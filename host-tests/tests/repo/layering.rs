@@ -104,7 +104,8 @@ mod shown_to_fail {
 
     fn order() -> Vec<String> {
         declared(
-            "//! Map.\npub mod units;\nmod math;\npub mod camera;\n#[cfg(feature = \"x\")]\npub mod matching;",
+            "//! Map.\npub mod units;\nmod math;\npub mod camera;\n#[cfg(feature = \"x\")]\npub mod \
+             matching;",
         )
     }
 

@@ -1,7 +1,8 @@
 //! The repository's own rules.
 //!
 //! * `house`: short files, no panics, a tidy root.
-//! * `layering`: data moves down the list of modules. `circles`: no circle and no upward arrow inside a module.
+//! * `layering`: data moves down the list of modules. `circles`: no circle and no upward arrow inside a
+//!   module.
 //! * `readme`: its commands work and its figures are current. `firmware`: the example's parts without
 //!   hardware.
 //! * `lines`, `comments`, `names`: what a reader meets: line lengths, doc comments that stand alone, unique

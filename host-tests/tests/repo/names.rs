@@ -93,9 +93,9 @@ fn a_repeated_name_is_found() {
             "lib" => "pub mod a; pub mod b; mod c; pub use c::Top;",
             "a" => "pub mod inner { pub enum Row {} } mod d; pub use d::{Config, e::{Part as Piece, F}};",
             "b" => {
-                "pub struct Row { pub x: u8 } impl Row { pub const fn config() {} } \
-                 pub const unsafe fn row() {} pub extern \"C\" fn piece() {} pub trait Config {} \
-                 pub(crate) struct Top; pub const Part: u8 = 1;"
+                "pub struct Row { pub x: u8 } impl Row { pub const fn config() {} } pub const unsafe fn \
+                 row() {} pub extern \"C\" fn piece() {} pub trait Config {} pub(crate) struct Top; pub \
+                 const Part: u8 = 1;"
             }
             _ => return None,
         };

@@ -1,5 +1,5 @@
-//! What a file names by paths: the absolute paths behind `crate::`, `super::`, `self::` and the names of child
-//! modules, in `use` trees, expressions, types and macros.
+//! What a file names by paths: the absolute paths behind `crate::`, `super::`, `self::` and the names of
+//! child modules, in `use` trees, expressions, types and macros.
 
 use crate::source::{inside, is_sign, line, word};
 use proc_macro2::{Delimiter, TokenTree};
@@ -16,7 +16,8 @@ pub struct Named {
     pub public: bool,
 }
 
-/// Where a file stands in the tree of modules below `root`: `a/b.rs` is `a::b`, `a/mod.rs` is `a`, `lib.rs` nothing.
+/// Where a file stands in the tree of modules below `root`: `a/b.rs` is `a::b`, `a/mod.rs` is `a`, `lib.rs`
+/// nothing.
 pub fn module_of(root: &str, name: &str) -> Vec<String> {
     let path = name.strip_prefix(root).unwrap_or(name).trim_start_matches('/').trim_end_matches(".rs");
     path.split('/').filter(|part| !matches!(*part, "" | "mod" | "lib" | "main")).map(str::to_owned).collect()

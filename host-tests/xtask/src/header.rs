@@ -39,8 +39,10 @@ const NAMES: [(&str, &str); 7] = [
 
 const TOP: &str = "/* Depth from two cameras, line by line: the functions of libstereopsis.a.
 
-   The caller gives memory, a configuration and lines, and gets rows of disparities. Nothing is allocated, nothing is
-   kept of a caller's pointer but the memory given to stereopsis_init. Every function answers with a status; below 0 it
+   The caller gives memory, a configuration and lines, and gets rows of disparities. Nothing is allocated, \
+                   nothing is
+   kept of a caller's pointer but the memory given to stereopsis_init. Every function answers with a status; \
+                   below 0 it
    is an error and nothing has changed.
 
      static uint64_t memory[STEREOPSIS_BLOCK_BYTES(320, 64) / 8 + 1];
@@ -55,7 +57,8 @@ const TOP: &str = "/* Depth from two cameras, line by line: the functions of lib
        or, where it was lost: stereopsis_push_lost(matcher, STEREOPSIS_LOST_DROPPED, &row);
      until STEREOPSIS_STATUS_FRAME_DONE: stereopsis_flush(matcher, &row);
 
-   One call at a time for one handle. Pointers are checked for null, alignment and overlap; what cannot be checked is the
+   One call at a time for one handle. Pointers are checked for null, alignment and overlap; what cannot be \
+                   checked is the
    caller's promise: a pointer points to as many elements as the function says. */";
 
 /// Writes the header, or compares only.
@@ -140,11 +143,10 @@ fn bytes_macro<S: Method>() -> Outcome<String> {
     }
     let method = S::NAME.to_uppercase().replace('-', "_");
     Ok(format!(
-        "/**\n * Bytes that are enough for a matcher of method {}, on any target. `disparities` is a multiple of 16, and\n * \
-         `width` at least as large, as the library was built with.\n */\n\
-         #define STEREOPSIS_{method}_BYTES(width, disparities) \\\n  \
-         ((size_t){fixed} + (size_t){by_w} * (width) + (size_t){by_d} * (disparities) + \\\n   \
-         (size_t){both} * (width) * (disparities))\n",
+        "/**\n * Bytes that are enough for a matcher of method {}, on any target. `disparities` is a \
+         multiple of 16, and\n * `width` at least as large, as the library was built with.\n */\n#define \
+         STEREOPSIS_{method}_BYTES(width, disparities) \\\n  ((size_t){fixed} + (size_t){by_w} * (width) + \
+         (size_t){by_d} * (disparities) + \\\n   (size_t){both} * (width) * (disparities))\n",
         S::NAME
     ))
 }

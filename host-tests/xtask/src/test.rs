@@ -110,7 +110,8 @@ fn cross_checks() -> Outcome {
 /// Last, because the clone's programs take the places of this tree's.
 fn readme_commands() -> Outcome {
     run_cargo(
-        "test --locked -p stereopsis-host --test repo -- --ignored --exact readme::commands_work_in_a_fresh_clone",
+        "test --locked -p stereopsis-host --test repo -- --ignored --exact \
+         readme::commands_work_in_a_fresh_clone",
     )
 }
 

@@ -24,13 +24,15 @@ use nalgebra::{Point2, Point3};
 /// use stereopsis::motion::bundle::{BundleConfig, CameraView, Gauge, View, Window};
 ///
 /// let camera = Camera::new(500.0, 500.0, 320.0, 240.0)?;
-/// let at = |x, z| Pose::new(Matrix3::identity(), Vector3::new(x, 0.0, z)).map(|pose| CameraView { camera, pose });
+/// let pose = |x, z| Pose::new(Matrix3::identity(), Vector3::new(x, 0.0, z));
+/// let at = |x, z| pose(x, z).map(|pose| CameraView { camera, pose });
 /// let views = [at(0.0, 0.0)?, at(0.5, 0.1)?];
 /// let mut window = Window::<CameraView<f64>, f64, 6, 2, 8, 16>::new();
 /// window.add_view(views[0])?;
 /// // Where the second one is thought to be: 2 cm beside the truth.
 /// window.add_view(at(0.5, 0.12)?)?;
-/// for (x, y, z) in [(-1.0, 0.5, 4.0), (1.0, -0.5, 5.0), (0.3, 0.8, 3.0), (-0.6, -0.9, 6.0), (0.1, 0.2, 4.5), (0.9, 0.7, 7.0)] {
+/// let near = [(-1.0, 0.5, 4.0), (1.0, -0.5, 5.0), (0.3, 0.8, 3.0)];
+/// for (x, y, z) in near.into_iter().chain([(-0.6, -0.9, 6.0), (0.1, 0.2, 4.5), (0.9, 0.7, 7.0)]) {
 ///     let point = Point3::new(x, y, z);
 ///     window.add_point(point)?;
 ///     for (view, at) in (0..).zip(&views) {

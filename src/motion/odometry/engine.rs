@@ -57,7 +57,7 @@ const DOUBT: f64 = 1.0;
 impl<T: Real, const N: usize> Odometry<T, N> {
     /// An odometry that waits for [`Self::start`].
     pub const fn new() -> Self {
-        const { assert!(N < u16::MAX as usize && N >= 16, "points are told by 16 bits, and a few are needed") };
+        const { assert!(N < u16::MAX as usize && N >= 16, "points are numbered in 16 bits") };
         Self {
             rig: Vec::new(),
             config: OdometryConfig::NONE,

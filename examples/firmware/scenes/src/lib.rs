@@ -1,11 +1,11 @@
-//! What the firmware's programs see, and their work on it. Nothing here knows hardware: the host runs the same
-//! and compares every bit.
+//! What the firmware's programs see, and their work on it. Nothing here knows hardware: the host runs the
+//! same and compares every bit.
 //!
 //! * [`scene`]: a scene that is computed line by line. [`pgm`]: the header of a picture.
 //! * [`raw_pair`]: raw lines, rectified, and depth from them.
 //! * [`two_pictures`]: features of two cameras' lines, and their matches.
-//! * [`two_views`]: matches of a known world, and the pose and points that they give. [`window`]: two views and
-//!   their points, adjusted.
+//! * [`two_views`]: matches of a known world, and the pose and points that they give. [`window`]: two views
+//!   and their points, adjusted.
 //! * [`walk`]: a view that moves, and the motion from frame to frame.
 //! * [`sweep`]: frames of a lens that moves, and where each tile is in focus.
 #![no_std]

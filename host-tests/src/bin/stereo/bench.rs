@@ -11,8 +11,8 @@ use stereopsis_host::run::{MemoryPair, time_frames};
 pub const EXAMPLE: &str = "Example:
   stereo bench --left left.png --right right.png --disparities 64 --method fast --repeat 9
 
-Printed is one JSON object: frame_ms (a time for each frame, after one that is left out; files and start-up left out, one \
-thread), kernel, width, height, disparities, state_bytes, noise.";
+Printed is one JSON object: frame_ms (a time for each frame, after one that is left out; files and start-up \
+                           left out, one thread), kernel, width, height, disparities, state_bytes, noise.";
 
 #[derive(Debug, Args)]
 pub struct BenchArgs {

@@ -14,10 +14,12 @@ use stereopsis_host::bal::{BalError, BalProblem, Running, read_problem};
 pub const EXAMPLE: &str = "Example:
   stereo bundle --problem problem-49-7776-pre.txt --out refined.txt
 
-The problem is in BAL's format: the numbers of cameras, points and observations, then each observation (camera, point, x, y in \
-px), each camera (rotation vector, translation, f, k1, k2) and each point. Written is the same with cameras and points \
-refined. Printed is the cost before and after: half the sum of the squared residuals in px^2, as Ceres and SciPy say it; with \
---loss huber half the sum of Huber's loss, and the squares besides.";
+The problem is in BAL's format: the numbers of cameras, points and observations, then each observation \
+                           (camera, point, x, y in px), each camera (rotation vector, translation, f, k1, \
+                           k2) and each point. Written is the same with cameras and points refined. Printed \
+                           is the cost before and after: half the sum of the squared residuals in px^2, as \
+                           Ceres and SciPy say it; with --loss huber half the sum of Huber's loss, and the \
+                           squares besides.";
 
 #[derive(Debug, Args)]
 pub struct BundleArgs {
@@ -31,13 +33,16 @@ pub struct BundleArgs {
     #[arg(long, value_name = "LOSS", default_value = "squares")]
     pub loss: LossChoice,
     /// Residual from which on huber counts by distance, px, 0.001 to 1000
-    #[arg(long, value_name = "PX", default_value_t = 1.0, value_parser = width, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PX", default_value_t = 1.0, value_parser = width, allow_negative_numbers =
+        true)]
     pub width: f64,
     /// Iterations at most, 1 to 10000
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = iterations, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = iterations, allow_negative_numbers =
+        true)]
     pub iterations: u16,
     /// The share of the cost by which the last step lowers it, 1e-15 to 0.1
-    #[arg(long, value_name = "SHARE", default_value_t = 1e-6, value_parser = tolerance, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SHARE", default_value_t = 1e-6, value_parser = tolerance,
+        allow_negative_numbers = true)]
     pub tolerance: f64,
 }
 
@@ -114,9 +119,9 @@ fn told(
         ),
     };
     format!(
-        "{cameras} cameras, {points} points, {observations} observations\ninitial cost: {}\nfinal cost: {}\n\
-         cost: half the sum of squared residuals, px^2; from {:.4} to {:.4} px RMS of an observation\n{huber}\
-         {} iterations, {} of them steps, in {seconds:.3} s and {:.1} MB; stopped: {}\n",
+        "{cameras} cameras, {points} points, {observations} observations\ninitial cost: {}\nfinal cost: \
+         {}\ncost: half the sum of squared residuals, px^2; from {:.4} to {:.4} px RMS of an \
+         observation\n{huber}{} iterations, {} of them steps, in {seconds:.3} s and {:.1} MB; stopped: {}\n",
         plain(squares),
         plain(after),
         rms(squares),

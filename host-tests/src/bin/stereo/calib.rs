@@ -15,9 +15,10 @@ pub const EXAMPLE: &str = "Examples:
   stereo calib convert --calib camchain.yaml --to opencv --out stereo.yml
   stereo calib convert --calib left.yaml --calib right.yaml --to rust --out rig.rs
 
-Read are OpenCV's YAML, XML or JSON (K1, D1, K2, D2, R, T), ROS's camera_info (twice), Kalibr's camchain, Middlebury's and \
-KITTI's calib.txt, and the record that convert writes. Written are record (328 bytes for flash, with a checksum), rust and c \
-(the same as a constant and as a header), or opencv (YAML, metres).";
+Read are OpenCV's YAML, XML or JSON (K1, D1, K2, D2, R, T), ROS's camera_info (twice), Kalibr's camchain, \
+                           Middlebury's and KITTI's calib.txt, and the record that convert writes. Written \
+                           are record (328 bytes for flash, with a checksum), rust and c (the same as a \
+                           constant and as a header), or opencv (YAML, metres).";
 
 #[derive(Debug, Args)]
 pub struct CalibArgs {
@@ -51,7 +52,8 @@ pub struct CheckArgs {
     #[command(flatten)]
     pub file: FileArgs,
     /// How many whole disparities are searched, for the nearest depth: 16 to 256
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = disparities, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = disparities, allow_negative_numbers =
+        true)]
     pub disparities: u16,
 }
 

@@ -22,13 +22,16 @@ use stereopsis_host::output::Staging;
 
 /// What follows the options in the command's help.
 pub const EXAMPLE: &str = "Example:
-  stereo calibrate --left 'left*.png' --right 'right*.png' --pattern 9x6 --square-mm 25 --out stereo.yml --report report
+  stereo calibrate --left 'left*.png' --right 'right*.png' --pattern 9x6 --square-mm 25 --out stereo.yml \
+                           --report report
 
-Ten to thirty pairs, in which the board is tilted and turned each time and reaches all corners of both images, are enough. \
-Left and right images belong together by the last number in their names, or, where these have none, by their order.
+Ten to thirty pairs, in which the board is tilted and turned each time and reaches all corners of both \
+                           images, are enough. Left and right images belong together by the last number in \
+                           their names, or, where these have none, by their order.
 
-The file is OpenCV's YAML (K1, D1, K2, D2, R, T, E, F) with lengths in metres; match, rectify and calib read it. The folder of \
---report gets index.html and a picture of each view's residuals.";
+The file is OpenCV's YAML (K1, D1, K2, D2, R, T, E, F) with lengths in metres; match, rectify and calib read \
+                           it. The folder of --report gets index.html and a picture of each view's \
+                           residuals.";
 
 #[derive(Debug, Args)]
 pub struct CalibrateArgs {
@@ -127,7 +130,8 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
         let [left, right] = &found[i].paths;
         let [a, b] = result.views[i].rms_px;
         notes.push(format!(
-            "{} and {} fit badly: {a:.2} and {b:.2} px, most views {:.2} px; look at them, and leave them out if they are blurred",
+            "{} and {} fit badly: {a:.2} and {b:.2} px, most views {:.2} px; look at them, and leave them \
+             out if they are blurred",
             left.display(),
             right.display(),
             result.middle_rms_px()
@@ -198,7 +202,9 @@ fn doubts(result: &Calibrated) -> Vec<String> {
     let alone = result.alone_px[0].max(result.alone_px[1]);
     if result.rms_px > 1.5 * alone && result.rms_px > alone + 0.1 {
         doubts.push(
-            "each camera by itself fits much better than both together: are the images of a pair of one moment?".into(),
+            "each camera by itself fits much better than both together: are the images of a pair of one \
+             moment?"
+                .into(),
         );
     }
     doubts

@@ -20,8 +20,8 @@ use stereopsis_host::mock::MockCamera;
 pub const EXAMPLE: &str = "Example:
   stereo features --left first.png --right second.png --out matches.csv --picture matches.png
 
-Written is a line x1,y1,x2,y2 for every match, under that header: column and row in the left image, column and row in the \
-right one, in px. The images need not be rectified or of one size.";
+Written is a line x1,y1,x2,y2 for every match, under that header: column and row in the left image, column \
+                           and row in the right one, in px. The images need not be rectified or of one size.";
 
 #[derive(Debug, Args)]
 pub struct FeaturesArgs {
@@ -34,16 +34,19 @@ pub struct FeaturesArgs {
     #[arg(long, value_name = "FILE.png")]
     pub picture: Option<PathBuf>,
     /// About how many corners are kept of each image, 50 to 12000, spread over it
-    #[arg(long, value_name = "N", default_value_t = 4000, value_parser = corners, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 4000, value_parser = corners, allow_negative_numbers =
+        true)]
     pub corners: u16,
     /// Grey levels by which a corner differs from its surroundings, 1 to 254
-    #[arg(long, value_name = "G", default_value_t = 8, value_parser = contrast, allow_negative_numbers = true)]
+    #[arg(long, value_name = "G", default_value_t = 8, value_parser = contrast, allow_negative_numbers =
+        true)]
     pub contrast: u16,
     /// How many sizes of the images are searched, 1 to 8, each three quarters of the one before
     #[arg(long, value_name = "L", default_value_t = 4, value_parser = levels, allow_negative_numbers = true)]
     pub levels: u16,
     /// A match differs in fewer bits than so many percent of the second best, 1 to 100
-    #[arg(long, value_name = "PERCENT", default_value_t = 80, value_parser = percent, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PERCENT", default_value_t = 80, value_parser = percent,
+        allow_negative_numbers = true)]
     pub ratio: u16,
     /// How many columns partners may lie apart, px; anywhere by default
     #[arg(long, value_name = "PX", value_parser = apart, allow_negative_numbers = true)]

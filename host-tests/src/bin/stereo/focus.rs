@@ -19,12 +19,15 @@ use stereopsis_host::pfm;
 pub const EXAMPLE: &str = "Example:
   stereo focus --frames stack --focal-length-mm 4 --positions positions.csv --out depth
 
-Written into the folder: index.pfm (the frame in which each pixel is sharpest, from 1, with its fraction; infinity where there \
-is no answer), confidence.pfm (0 to 1), all_in_focus.png (each pixel as in that frame); with the lens's data also depth.pfm (metres).
+Written into the folder: index.pfm (the frame in which each pixel is sharpest, from 1, with its fraction; \
+                           infinity where there is no answer), confidence.pfm (0 to 1), all_in_focus.png \
+                           (each pixel as in that frame); with the lens's data also depth.pfm (metres).
 
-The positions are lines, one a frame in the order of the frames' names, under the header image_distance_mm (from lens to sensor) or \
-focus_distance_mm (from lens to what is in focus); without one of these, the last number of a line counts, in mm, as the distance to \
-the sensor if no line has more than two focal lengths. Frames that grow with the sensor's distance are brought to one size.";
+The positions are lines, one a frame in the order of the frames' names, under the header image_distance_mm \
+                           (from lens to sensor) or focus_distance_mm (from lens to what is in focus); \
+                           without one of these, the last number of a line counts, in mm, as the distance \
+                           to the sensor if no line has more than two focal lengths. Frames that grow with \
+                           the sensor's distance are brought to one size.";
 
 #[derive(Debug, Args)]
 pub struct FocusArgs {
@@ -32,7 +35,8 @@ pub struct FocusArgs {
     #[arg(long, value_name = "DIR")]
     pub frames: PathBuf,
     /// Focal length of the lens, mm; with --positions it gives depths
-    #[arg(long, value_name = "F", requires = "positions", value_parser = focal_length, allow_negative_numbers = true)]
+    #[arg(long, value_name = "F", requires = "positions", value_parser = focal_length,
+        allow_negative_numbers = true)]
     pub focal_length_mm: Option<f64>,
     /// Where the lens stood in each frame; with --focal-length-mm it gives depths
     #[arg(long, value_name = "FILE.csv", requires = "focal_length_mm")]

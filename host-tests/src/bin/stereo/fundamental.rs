@@ -20,12 +20,15 @@ use stereopsis_host::mock::MockCamera;
 
 /// What follows the options in the command's help.
 pub const EXAMPLE: &str = "Example:
-  stereo fundamental --matches matches.csv --out fundamental.json --left first.png --right second.png --picture lines.png
+  stereo fundamental --matches matches.csv --out fundamental.json --left first.png --right second.png \
+                           --picture lines.png
 
-Written is one JSON object: fundamental (3x3 in rows, p1^T F p2 = 0 for a point p1 of the first image and p2 of the second), \
-inliers (whether each match is within the threshold), time_us (the estimate alone, the best of five); with ransac also \
-samples and miss_probability, the probability that a better estimate was missed. The picture has both images with the points \
-of all matches, red where one does not agree, and for some of the others the lines on which they must lie.";
+Written is one JSON object: fundamental (3x3 in rows, p1^T F p2 = 0 for a point p1 of the first image and p2 \
+                           of the second), inliers (whether each match is within the threshold), time_us \
+                           (the estimate alone, the best of five); with ransac also samples and \
+                           miss_probability, the probability that a better estimate was missed. The picture \
+                           has both images with the points of all matches, red where one does not agree, \
+                           and for some of the others the lines on which they must lie.";
 
 #[derive(Debug, Args)]
 pub struct FundamentalArgs {

@@ -35,8 +35,8 @@ pub fn pairs(
     }
     if left.len() != right.len() {
         return Err(Failure::new(format!(
-            "--left and --right: {} and {} images; as many of both are needed, or numbers in their names that say which belong \
-             together",
+            "--left and --right: {} and {} images; as many of both are needed, or numbers in their names \
+             that say which belong together",
             left.len(),
             right.len()
         )));

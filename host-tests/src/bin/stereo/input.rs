@@ -59,8 +59,8 @@ pub fn config(range: &RangeArgs, way: &WayArgs, width: u16, height: u16) -> Resu
     let most = width.min(Config::END) - disparities;
     if min_disparity > most {
         return Err(Failure::new(format!(
-            "--min-disparity {min_disparity}: with --disparities {disparities} in images {width} pixels wide, at most \
-             {most} is possible"
+            "--min-disparity {min_disparity}: with --disparities {disparities} in images {width} pixels \
+             wide, at most {most} is possible"
         )));
     }
     let search = Config { min_disparity, ..Config::for_method::<Block>(width, height, disparities) };

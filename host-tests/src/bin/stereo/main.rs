@@ -1,6 +1,7 @@
 //! `stereo`: depth from two images by the code that runs on the microcontroller.
 //!
-//! Here is the list of commands. Each has a file of its own with its options, its help and what it does. They use:
+//! Here is the list of commands. Each has a file of its own with its options, its help and what it does. They
+//! use:
 //!
 //! * `shared`: the options that several have. `input`: images and search, checked against each other.
 //! * `image_files`: the images that a pattern names. `progress`: how far the work is.
@@ -42,8 +43,8 @@ use std::process::ExitCode;
 use stereopsis_host::command_line::{one_line, usage_line};
 
 /// What is told to one who names another command.
-const COMMANDS: &str = "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, fundamental, pose, bundle, \
-                        odometry, structure, walk, record and replay";
+const COMMANDS: &str = "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, \
+                        fundamental, pose, bundle, odometry, structure, walk, record and replay";
 
 const EXAMPLES: &str = "Examples:
   stereo demo --out demo-out
@@ -51,7 +52,8 @@ const EXAMPLES: &str = "Examples:
   stereo bench --left left.png --right right.png --disparities 64 --method fast
   stereo features --left first.png --right second.png --out matches.csv
 
-The images of match and bench are a rectified pair; all are PNG, JPEG, PGM/PPM or TIFF, 8 or 16 bit, grey or colour, up to 4096 x 4096.";
+The images of match and bench are a rectified pair; all are PNG, JPEG, PGM/PPM or TIFF, 8 or 16 bit, grey or \
+                        colour, up to 4096 x 4096.";
 
 #[derive(Debug, Parser)]
 #[command(

@@ -28,13 +28,17 @@ use stereopsis_host::run::{self, Outcome, measure_noise};
 /// What follows the options in the command's help.
 pub const EXAMPLE: &str = "Example:
   stereo match --left left.png --right right.png --disparities 64 --calib calib.txt --out out/scene
-  stereo match --left raw_left.png --right raw_right.png --disparities 64 --rectify --calib stereo.yml --out out/raw
+  stereo match --left raw_left.png --right raw_right.png --disparities 64 --rectify --calib stereo.yml --out \
+                           out/raw
 
-Written into the folder: disparity.pfm (px, infinity where there is no answer), disparity.png (16 bit, px x 256, 0 where \
-there is none), disparity_colour.png (near is bright), flags.png (a byte a pixel: 1 outside, 2 ceiling, 4 untextured, \
-8 ambiguous, 16 mismatch, 32 speckle, 64 filled), confidence.png (a byte a pixel: surer is more, 0 is no answer), summary.json and report.html; with --calib also depth.pfm (metres), depth.png \
-(16 bit, millimetres) and cloud.ply; with --rectify also rectified_left.png, rectified_right.png and rectified.json, the \
-cameras of all the others. The files appear together when all of them are complete.";
+Written into the folder: disparity.pfm (px, infinity where there is no answer), disparity.png (16 bit, px x \
+                           256, 0 where there is none), disparity_colour.png (near is bright), flags.png (a \
+                           byte a pixel: 1 outside, 2 ceiling, 4 untextured, 8 ambiguous, 16 mismatch, 32 \
+                           speckle, 64 filled), confidence.png (a byte a pixel: surer is more, 0 is no \
+                           answer), summary.json and report.html; with --calib also depth.pfm (metres), \
+                           depth.png (16 bit, millimetres) and cloud.ply; with --rectify also \
+                           rectified_left.png, rectified_right.png and rectified.json, the cameras of all \
+                           the others. The files appear together when all of them are complete.";
 
 #[derive(Debug, Args)]
 pub struct MatchArgs {

@@ -28,13 +28,15 @@ use stereopsis_host::scene::SceneCamera;
 pub const EXAMPLE: &str = "Example:
   stereo odometry --sequence street --calib street/calib.txt --out poses.txt --picture way.svg
 
-The frames are the images in street/left and street/right, in the order of their names; without street/right it is one camera. \
-Written is a line for each frame, as KITTI does: 12 numbers, the rows of [R | t], which carries a point of that frame's camera \
-into the first one's; metres for a pair, of one camera units of its first baseline. What is not known of a frame is laid between \
-those that are, and counted in what is printed. Places that come back are not recognised: errors add up along the way.
+The frames are the images in street/left and street/right, in the order of their names; without street/right \
+                           it is one camera. Written is a line for each frame, as KITTI does: 12 numbers, \
+                           the rows of [R | t], which carries a point of that frame's camera into the first \
+                           one's; metres for a pair, of one camera units of its first baseline. What is not \
+                           known of a frame is laid between those that are, and counted in what is printed. \
+                           Places that come back are not recognised: errors add up along the way.
 
-A pair that is not rectified (OpenCV's, Kalibr's and ROS's calibrations) is rectified first; its poses are those of the rectified \
-left camera.";
+A pair that is not rectified (OpenCV's, Kalibr's and ROS's calibrations) is rectified first; its poses are \
+                           those of the rectified left camera.";
 
 #[derive(Debug, Args)]
 pub struct OdometryArgs {
@@ -50,7 +52,8 @@ pub struct OdometryArgs {
     pub unit: Option<Unit>,
     /// Frames that are adjusted together, the last of them, 0 to 12; with 0 or 1 every pose stays as it was
     /// told when its frame came
-    #[arg(long, value_name = "N", default_value_t = VIEWS as u16, value_parser = window, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = VIEWS as u16, value_parser = window,
+        allow_negative_numbers = true)]
     pub window: u16,
     /// File for the poses
     #[arg(long, value_name = "poses.txt")]
@@ -174,8 +177,8 @@ fn fits(path: &Path, (cx, cy): (f64, f64), size: ImageSize) -> Result<(), Failur
         return Ok(());
     }
     Err(Failure::new(format!(
-        "{}: its principal point ({cx:.1}, {cy:.1}) is not near the middle of the frames, which are {width} x {height} px; give the \
-         calibration of frames of this size",
+        "{}: its principal point ({cx:.1}, {cy:.1}) is not near the middle of the frames, which are {width} \
+         x {height} px; give the calibration of frames of this size",
         path.display()
     )))
 }
@@ -264,7 +267,8 @@ fn errors(text: &mut String, trajectory: &Trajectory, truth: &[Pose<f64>], is_st
     if let Some(rpe) = rpe(&trajectory.poses, truth, 1, scale) {
         let _ = writeln!(
             text,
-            "RPE          {:.4} m, {:.4} deg RMS from frame to frame; direction {:.3} deg mean, {:.3} deg worst",
+            "RPE          {:.4} m, {:.4} deg RMS from frame to frame; direction {:.3} deg mean, {:.3} deg \
+             worst",
             rpe.translation,
             rpe.rotation_rad.to_degrees(),
             rpe.direction_rad.to_degrees(),

@@ -21,10 +21,11 @@ use stereopsis_host::matches::read_matches;
 pub const EXAMPLE: &str = "Example:
   stereo pose --matches matches.csv --calib calib.txt --out pose.json
 
-Written is one JSON object: essential (3x3 in rows), rotation and translation (a point P' of the second camera is \
-R P' + t in the first; t has length one, for the scale is not in the matches), points (in the first camera, the baseline is \
-one; null where a match is wrong or its sights are parallel), inliers, and model: fundamental, or homography when what \
-was seen is on a plane.";
+Written is one JSON object: essential (3x3 in rows), rotation and translation (a point P' of the second \
+                           camera is R P' + t in the first; t has length one, for the scale is not in the \
+                           matches), points (in the first camera, the baseline is one; null where a match \
+                           is wrong or its sights are parallel), inliers, and model: fundamental, or \
+                           homography when what was seen is on a plane.";
 
 #[derive(Debug, Args)]
 pub struct PoseArgs {

@@ -13,10 +13,12 @@ use stereopsis_host::recording::{Pictures, record};
 pub const EXAMPLE: &str = "Example:
   stereo record --left left.png --right right.png --frames 10 --faults 0.01 --out field.lines
 
---left and --right are an image each, or folders whose images belong together in the order of their names. With --faults each line \
-has a fault with that probability, as cameras have them: lines that are dropped, torn, late, old or repeated, bus errors, time-outs, \
-short frames, lost sync. A recording begins with two lines of text; the documentation of `stereopsis_host::recording` has its format, \
-which firmware can write as well.";
+--left and --right are an image each, or folders whose images belong together in the order of their names. \
+                           With --faults each line has a fault with that probability, as cameras have them: \
+                           lines that are dropped, torn, late, old or repeated, bus errors, time-outs, \
+                           short frames, lost sync. A recording begins with two lines of text; the \
+                           documentation of `stereopsis_host::recording` has its format, which firmware can \
+                           write as well.";
 
 #[derive(Debug, Args)]
 pub struct RecordArgs {
@@ -33,7 +35,8 @@ pub struct RecordArgs {
     #[arg(long, value_name = "F", default_value_t = 30.0, value_parser = rate, allow_negative_numbers = true)]
     pub fps: f64,
     /// The probability of a fault, for each line and frame
-    #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = probability, allow_negative_numbers = true)]
+    #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = probability, allow_negative_numbers =
+        true)]
     pub faults: f64,
     /// Where the faults' random numbers begin
     #[arg(long, value_name = "S", default_value_t = 1)]

@@ -71,8 +71,8 @@ impl RectifiedCameras {
     /// The figures in a few lines.
     pub fn figures(&self) -> String {
         format!(
-            "camera       f {:.2} px, baseline {:.4} m\nboth see     {:.1} % of the image\n\
-             rows held    {} left, {} right\n",
+            "camera       f {:.2} px, baseline {:.4} m\nboth see     {:.1} % of the image\nrows held    {} \
+             left, {} right\n",
             self.focal_px,
             self.baseline_m,
             100.0 * self.common,

@@ -19,11 +19,14 @@ pub const EXAMPLE: &str = "Example:
   stereo rectify --left left.png --right right.png --calib stereo.yml --out rectified
   stereo rectify --left left.png --right right.png --matches matches.csv --out aligned
 
-Written into the folder: left.png and right.png (grey, rows aligned), valid_left.png and valid_right.png (255 where the \
-raw image was seen, 0 elsewhere), and rectified.json (the new cameras, Q, the rows of input that the remap holds at \
-once). Cameras below each other get their columns aligned.
+Written into the folder: left.png and right.png (grey, rows aligned), valid_left.png and valid_right.png \
+                           (255 where the raw image was seen, 0 elsewhere), and rectified.json (the new \
+                           cameras, Q, the rows of input that the remap holds at once). Cameras below each \
+                           other get their columns aligned.
 
-Without a calibration matches of the command features align the rows (--matches): the same files, but rectified.json has two homographies instead of cameras, for nothing in metres is known then, and lenses are not straightened.";
+Without a calibration matches of the command features align the rows (--matches): the same files, but \
+                           rectified.json has two homographies instead of cameras, for nothing in metres is \
+                           known then, and lenses are not straightened.";
 
 #[derive(Debug, Args)]
 pub struct RectifyArgs {

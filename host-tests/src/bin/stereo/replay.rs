@@ -25,9 +25,11 @@ use summary::Summary;
 pub const EXAMPLE: &str = "Example:
   stereo replay --from field.lines --disparities 64 --out replayed
 
-Written into the folder: for each frame 000001-disparity.pfm (px, infinity where there is no answer) and 000001-flags.png (the bits of \
-`stereo match`, and 128 where a lost line was rested on); frames.csv, a line for each frame; summary.json with every fault counted \
-by name. A folder to play has the folders left and right in it, with images that belong together in the order of their names.";
+Written into the folder: for each frame 000001-disparity.pfm (px, infinity where there is no answer) and \
+                           000001-flags.png (the bits of `stereo match`, and 128 where a lost line was \
+                           rested on); frames.csv, a line for each frame; summary.json with every fault \
+                           counted by name. A folder to play has the folders left and right in it, with \
+                           images that belong together in the order of their names.";
 
 #[derive(Debug, Args)]
 pub struct ReplayArgs {

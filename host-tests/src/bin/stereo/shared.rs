@@ -24,7 +24,8 @@ pub struct RangeArgs {
     #[arg(long, value_name = "N", value_parser = disparities, allow_negative_numbers = true)]
     pub disparities: u16,
     /// The smallest disparity searched, px
-    #[arg(long, value_name = "M", default_value_t = 0, value_parser = min_disparity, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", default_value_t = 0, value_parser = min_disparity, allow_negative_numbers =
+        true)]
     pub min_disparity: u16,
 }
 
@@ -115,7 +116,8 @@ pub struct RobustArgs {
     #[arg(long, value_name = "METHOD", default_value = "ransac")]
     pub method: TwoViewMethod,
     /// Sampson distance up to which a match counts as right, px, 0.001 to 1000
-    #[arg(long, value_name = "PX", default_value_t = 1.0, value_parser = threshold, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PX", default_value_t = 1.0, value_parser = threshold, allow_negative_numbers =
+        true)]
     pub threshold: f64,
     /// What ransac's random choices begin with
     #[arg(long, value_name = "S", default_value_t = 0, value_parser = seed, allow_negative_numbers = true)]

@@ -24,12 +24,13 @@ use stereopsis_host::views::{Found, Length, Links, link, solve};
 pub const EXAMPLE: &str = "Example:
   stereo structure --images 'statue/*.jpg' --calib camera.yml --baseline 0.25 --out statue-out
 
-The images are of one camera, in the order of their names, each with something in common with those before it. Written are \
-structure.json, poses.txt (KITTI's form: a line for each image that stands somewhere, the rows of [R | t], which carries a point \
-of that camera into the first one's), cloud.ply, and views.svg from above and from the side.
+The images are of one camera, in the order of their names, each with something in common with those before \
+                           it. Written are structure.json, poses.txt (KITTI's form: a line for each image \
+                           that stands somewhere, the rows of [R | t], which carries a point of that camera \
+                           into the first one's), cloud.ply, and views.svg from above and from the side.
 
-Images alone do not say how large things are: without --baseline lengths are in units of the distance of the two views that it \
-began with, and the files say so.";
+Images alone do not say how large things are: without --baseline lengths are in units of the distance of the \
+                           two views that it began with, and the files say so.";
 
 #[derive(Debug, Args)]
 pub struct StructureArgs {
@@ -43,7 +44,8 @@ pub struct StructureArgs {
     #[arg(long, value_name = "M", value_parser = baseline, allow_negative_numbers = true)]
     pub baseline: Option<f64>,
     /// Residual up to which an observation counts as right, px, 0.1 to 20
-    #[arg(long, value_name = "PX", default_value_t = 1.5, value_parser = threshold, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PX", default_value_t = 1.5, value_parser = threshold, allow_negative_numbers =
+        true)]
     pub threshold: f64,
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR")]

@@ -18,7 +18,8 @@ pub const EXAMPLE: &str = "Example:
   stereo walk --out street
   stereo odometry --sequence street --calib street/calib.txt --truth street/poses.txt --out found.txt
 
-Written into the folder: left/000000.png and so on, right/000000.png, calib.txt and poses.txt in KITTI's formats.";
+Written into the folder: left/000000.png and so on, right/000000.png, calib.txt and poses.txt in KITTI's \
+                           formats.";
 
 /// What is driven through.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
@@ -53,17 +54,21 @@ pub struct WalkArgs {
     pub frames: u16,
     /// Columns of a picture, 160 to 1280; it has half as many rows, on a road three tenths, in a room two
     /// thirds
-    #[arg(long, value_name = "PX", default_value_t = 320, value_parser = width, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PX", default_value_t = 320, value_parser = width, allow_negative_numbers =
+        true)]
     pub width: u16,
     /// Deviation of the sensors' noise, grey levels, 0 to 50
-    #[arg(long, value_name = "GREY", default_value_t = 2, value_parser = noise, allow_negative_numbers = true)]
+    #[arg(long, value_name = "GREY", default_value_t = 2, value_parser = noise, allow_negative_numbers =
+        true)]
     pub noise: u16,
     /// Percent of the time between frames that the shutter is open, 0 to 100: motion blurs, and takes four
     /// times as long to draw
-    #[arg(long, value_name = "PERCENT", default_value_t = 0, value_parser = percent, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PERCENT", default_value_t = 0, value_parser = percent, allow_negative_numbers =
+        true)]
     pub shutter: u16,
     /// Percent by which the pictures' brightness changes from frame to frame and back, 0 to 80
-    #[arg(long, value_name = "PERCENT", default_value_t = 0, value_parser = exposure, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PERCENT", default_value_t = 0, value_parser = exposure,
+        allow_negative_numbers = true)]
     pub exposure: u16,
 }
 

@@ -74,7 +74,8 @@ pub struct Board {
 #[non_exhaustive]
 pub enum BoardError {
     /// No corners that belong together, or far fewer than the pattern has.
-    #[error("no board with {} x {} inner corners is seen; the most that belong together are {most}", pattern.columns, pattern.rows)]
+    #[error("no board with {} x {} inner corners is seen; the most that belong together are \
+        {most}", pattern.columns, pattern.rows)]
     NotFound {
         /// What was looked for.
         pattern: Pattern,
@@ -83,7 +84,8 @@ pub enum BoardError {
     },
     /// A grid that holds the pattern in more than one place.
     #[error(
-        "the board has more inner corners than the pattern, up to {columns} x {rows}; give the pattern as the board is"
+        "the board has more inner corners than the pattern, up to {columns} x {rows}; give the pattern as \
+         the board is"
     )]
     Larger {
         /// Corners along the grid.

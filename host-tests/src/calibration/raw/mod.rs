@@ -223,8 +223,8 @@ fn camera(key: &str, [fx, fy, cx, cy]: [f64; 4], model: Model, lens: &[f64]) -> 
         (Model::BrownConrady, lens) => {
             if lens.iter().skip(8).any(|&k| k != 0.0) {
                 return wrong(
-                    "a lens with thin prisms or a tilted sensor (coefficients from the ninth on) is not supported; \
-                     calibrate with k1, k2, p1, p2, k3, k4, k5, k6 at most",
+                    "a lens with thin prisms or a tilted sensor (coefficients from the ninth on) is not \
+                     supported; calibrate with k1, k2, p1, p2, k3, k4, k5, k6 at most",
                 );
             }
             let mut eight = [0.0; 8];

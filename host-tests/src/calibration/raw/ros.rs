@@ -5,7 +5,8 @@ use super::{Fault, Found, Model, camera, pose_of};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::json;
 
-const FORM: &str = "a camera_info has image_width, camera_matrix, distortion_coefficients, rectification_matrix, projection_matrix";
+const FORM: &str = "a camera_info has image_width, camera_matrix, distortion_coefficients, \
+                    rectification_matrix, projection_matrix";
 
 pub(super) fn is_one(tree: &Tree) -> bool {
     tree.get("camera_matrix").is_some() && tree.get("projection_matrix").is_some()

@@ -111,7 +111,8 @@ proptest! {
 
     /// Whatever the bytes are, nothing panics.
     #[test]
-    fn any_bytes_are_refused_or_a_rig(mut bytes in prop::collection::vec(any::<u8>(), 0..300), is_sealed in any::<bool>()) {
+    fn any_bytes_are_refused_or_a_rig(mut bytes in prop::collection::vec(any::<u8>(), 0..300),
+        is_sealed in any::<bool>()) {
         if let (true, Some(record)) = (is_sealed, bytes.first_chunk_mut::<328>()) {
             record[..8].copy_from_slice(b"STRG\x01\x00\x48\x01");
             *record = sealed(*record);

@@ -26,7 +26,8 @@ prop_compose! {
         fill_step in any::<u16>().prop_map(Disparity::from_raw),
     ) -> Checks {
         Checks {
-            left_right_px, uniqueness_percent, refuse_flat, texture_gradient, texture_pixels, refuse_ceiling, smoothing_radius,
+            left_right_px, uniqueness_percent, refuse_flat, texture_gradient, texture_pixels, refuse_ceiling,
+                smoothing_radius,
             speckle_pixels, surface_step, median, fill_pixels, fill_step,
         }
     }
@@ -35,7 +36,8 @@ prop_compose! {
 prop_compose! {
     fn any_config()(
         width in 1u16..=300, height in 1u16..=60, disparities in 16u16..=256, min_disparity in 0u16..60,
-        checks in any_checks(), confidence: bool, noise in proptest::sample::select(&Noise::ALL[..]), seed: u64,
+        checks in any_checks(), confidence: bool, noise in proptest::sample::select(&Noise::ALL[..]),
+            seed: u64,
     ) -> Config {
         let penalties = random_penalties(&mut Random::new(seed));
         Config { width, height, disparities, min_disparity, checks, penalties, confidence, noise }

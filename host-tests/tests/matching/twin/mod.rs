@@ -1,8 +1,8 @@
 //! The pipeline against its naive twin: every disparity, flag, deviation and confidence, to the bit, for
 //! every kernel.
 //!
-//! * `list`: all sizes, ranges, pictures and checks; `pictures`: every kind of picture. `any`: any combination of
-//!   them.
+//! * `list`: all sizes, ranges, pictures and checks; `pictures`: every kind of picture. `any`: any
+//!   combination of them.
 //! * `frames`: one frame after the other, faults and changes in between. `moved`: a matcher that changes its
 //!   place.
 

@@ -120,8 +120,10 @@ impl<V, T: Real> Scene<V, T> {
 
 prop_compose! {
     /// A step of a view's pose, and a point.
-    pub fn placed()(turn in prop::array::uniform3(-1.0..1.0_f64), centre in prop::array::uniform3(-1.0..1.0_f64),
-        observation in prop::array::uniform2(-0.6..0.6_f64), depth in 0.5..20.0_f64) -> (Pose<f64>, Point3<f64>) {
+    pub fn placed()(turn in prop::array::uniform3(-1.0..1.0_f64),
+        centre in prop::array::uniform3(-1.0..1.0_f64),
+        observation in prop::array::uniform2(-0.6..0.6_f64), depth in 0.5..20.0_f64) -> (Pose<f64>,
+            Point3<f64>) {
         let pose = pose(turn, centre);
         (pose, pose.transform(&Point3::new(observation[0] * depth, observation[1] * depth, depth)))
     }

@@ -69,8 +69,9 @@ pub fn promised_files(readme: &str) -> Vec<String> {
 mod on_a_small_readme {
     use super::*;
 
-    const README: &str = "Writes `a.png` and `Vec`.\n```sh\ngit clone https://example.org/x stereopsis\ncd stereopsis\n\
-        cargo run -- demo --out demo\n```\n```rust\nlet x = `b.png`;\n```\n```sh\ncargo xtask test\n```\n`c.json` `a.png`";
+    const README: &str = "Writes `a.png` and `Vec`.\n```sh\ngit clone https://example.org/x stereopsis\ncd \
+                          stereopsis\ncargo run -- demo --out demo\n```\n```rust\nlet x = \
+                          `b.png`;\n```\n```sh\ncargo xtask test\n```\n`c.json` `a.png`";
 
     #[test]
     fn what_is_run() {

@@ -71,10 +71,9 @@ fn state_table() -> String {
         let (state, whole) = (state_bytes::<S>(W, D), size_of::<Pipeline<S, W, D>>());
         format!("| `{}` | {W} | {D} | {state} | {whole} | {} |\n", S::NAME, Pipeline::<S, W, D>::LATENCY)
     }
-    let table =
-        "| method | pixels in a line | disparities | matcher, bytes | pipeline, bytes | delay, lines |\n\
-                     | --- | ---: | ---: | ---: | ---: | ---: |\n"
-            .to_owned();
+    let table = "| method | pixels in a line | disparities | matcher, bytes | pipeline, bytes | delay, \
+                 lines |\n| --- | ---: | ---: | ---: | ---: | ---: |\n"
+        .to_owned();
     fn rows<S: Method>() -> String {
         [row::<S, 160, 32>(), row::<S, 320, 64>(), row::<S, 640, 64>(), row::<S, 640, 128>()].concat()
     }
@@ -110,10 +109,9 @@ impl Demo {
 /// Figures of all methods with the three filters on the built-in scene.
 fn accuracy_table() -> String {
     let scale = DepthScale::new(&DEMO.scene.rig()).expect("the scene's rig");
-    let mut table =
-        "| method | filter | answered | bad2 of the answers | missed | RMS of the good | within 3 sigma |\n\
-                     | --- | --- | ---: | ---: | ---: | ---: | ---: |\n"
-            .to_owned();
+    let mut table = "| method | filter | answered | bad2 of the answers | missed | RMS of the good | within \
+                     3 sigma |\n| --- | --- | ---: | ---: | ---: | ---: | ---: |\n"
+        .to_owned();
     for method in MethodName::ALL {
         for filter in Filter::ALL {
             let a = Accuracy::of(&DEMO.match_with(method, filter), &DEMO.truth, &scale);
@@ -199,8 +197,8 @@ mod on_a_small_readme {
         let part = |name: &str| format!("<!-- generated: {name} -->\nold\n<!-- end: {name} -->\n");
         let readme = format!("before\n{}{}after\n", part("two"), part("one"));
         let made = splice_parts(&readme, &PARTS).expect("all parts are there");
-        let expected = "before\n<!-- generated: two -->\n\n| 2 |\n\n<!-- end: two -->\n\
-                        <!-- generated: one -->\n\n| 1 |\n\n<!-- end: one -->\nafter\n";
+        let expected = "before\n<!-- generated: two -->\n\n| 2 |\n\n<!-- end: two -->\n<!-- generated: one \
+                        -->\n\n| 1 |\n\n<!-- end: one -->\nafter\n";
         assert_eq!(made, expected);
         assert_eq!(splice_parts(&made, &PARTS), Ok(made));
         let with_firmware = format!("{readme}{}", part("firmware"));

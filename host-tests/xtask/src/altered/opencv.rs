@@ -11,8 +11,9 @@ use stereopsis_host::pfm;
 pub const MATCHERS: [&str; 2] = ["StereoBM", "StereoSGBM"];
 
 /// The matchers' parameters, in words.
-pub const PARAMETERS: &str = "StereoBM with windows of 9x9 pixels and otherwise its defaults; StereoSGBM in its 3-way mode \
-    with windows of 3x3, P1 = 8 x 9, P2 = 32 x 9, disp12MaxDiff 1, uniquenessRatio 10, speckleWindowSize 100, speckleRange 2";
+pub const PARAMETERS: &str = "StereoBM with windows of 9x9 pixels and otherwise its defaults; StereoSGBM in \
+                              its 3-way mode with windows of 3x3, P1 = 8 x 9, P2 = 32 x 9, disp12MaxDiff 1, \
+                              uniquenessRatio 10, speckleWindowSize 100, speckleRange 2";
 
 const SCRIPT: &str = include_str!("opencv.py");
 /// What pip installs.

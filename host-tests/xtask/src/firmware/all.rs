@@ -77,10 +77,10 @@ fn programs(readme: tables::Readme) -> Outcome<Vec<Program>> {
         .collect()
 }
 
-/// What `cargo xtask test` builds. Every method is on two cores, one that works in words and one that works in
-/// vectors, and a method over windows and one along paths there in the larger size and on all other cores: with
-/// a Cortex-M4, which runs the M7's code, `growth` and [`as_match`](super::as_match) have those two, so it has
-/// another one here. The smallest has room for windows.
+/// What `cargo xtask test` builds. Every method is on two cores, one that works in words and one that works
+/// in vectors, and a method over windows and one along paths there in the larger size and on all other cores:
+/// with a Cortex-M4, which runs the M7's code, `growth` and [`as_match`](super::as_match) have those two, so
+/// it has another one here. The smallest has room for windows.
 fn is_sampled(board: Board, method: MethodName, is_large: bool) -> bool {
     let is_one_of_a_kind = matches!(method, MethodName::Block | MethodName::Sgm);
     match board {

@@ -15,7 +15,8 @@ pub struct Arguments {
     /// The program: depth, rows of disparity; pose, two views; bundle, their adjustment; features, corners
     /// of two pictures and their matches; focus, a lens that moves; odometry, where a pair goes;
     /// rectify, raw lines; or interrupt, lines that a timer brings
-    #[arg(long, default_value = "depth", value_parser = ["depth", "pose", "bundle", "features", "focus", "odometry", "rectify", "interrupt"])]
+    #[arg(long, default_value = "depth", value_parser =
+        ["depth", "pose", "bundle", "features", "focus", "odometry", "rectify", "interrupt"])]
     program: String,
     /// With a program other than depth: made for size, not for speed
     #[arg(long)]
@@ -43,7 +44,8 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR", required_unless_present = "all")]
     out: Option<PathBuf>,
     /// Every core, method and size on the built-in scene: writes the table of README.md
-    #[arg(long, conflicts_with_all = ["program", "small", "core", "left", "right", "disparities", "method", "noise", "out"])]
+    #[arg(long, conflicts_with_all =
+        ["program", "small", "core", "left", "right", "disparities", "method", "noise", "out"])]
     all: bool,
     /// With --all: writes nothing, fails when README.md's table is another
     #[arg(long, requires = "all")]

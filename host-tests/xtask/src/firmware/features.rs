@@ -145,7 +145,8 @@ impl Features {
     /// In a line.
     pub fn told(&self) -> String {
         let told = format!(
-            "{:.1} instructions for a pixel, {} for matching {} with {} features; {} of {} matches are right, crc32 {}",
+            "{:.1} instructions for a pixel, {} for matching {} with {} features; {} of {} matches are \
+             right, crc32 {}",
             self.detection_instructions_per_pixel,
             self.matching_instructions,
             self.left,

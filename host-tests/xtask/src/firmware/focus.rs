@@ -129,8 +129,8 @@ impl Focus {
     /// In a line.
     pub fn told(&self) -> String {
         let told = format!(
-            "{:.1} instructions for a pixel of a frame; state {} bytes; {} of {} tiles are in focus, {:.3} frames from the truth in \
-             the median, crc32 {}",
+            "{:.1} instructions for a pixel of a frame; state {} bytes; {} of {} tiles are in focus, {:.3} \
+             frames from the truth in the median, crc32 {}",
             self.instructions_per_pixel,
             self.state_bytes,
             self.in_focus,

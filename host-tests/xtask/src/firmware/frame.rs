@@ -96,7 +96,8 @@ impl Frame {
     /// The frame in a line.
     pub fn told(&self) -> String {
         format!(
-            "{}: {} instructions, {:.2} for each of {} evaluations; RAM {} bytes, stack {}, flash {}, crc32 {:08x}",
+            "{}: {} instructions, {:.2} for each of {} evaluations; RAM {} bytes, stack {}, flash {}, crc32 \
+             {:08x}",
             self.program,
             self.instructions,
             self.per_evaluation(),

@@ -97,8 +97,8 @@ impl Interrupt {
     /// In a line.
     pub fn told(&self) -> String {
         let told = format!(
-            "a line every {} instructions, {} rows and no line lost; at twice the rate {} lines lost and told, {} of {} rows flagged, \
-             none wrong without a flag; crc32 {}",
+            "a line every {} instructions, {} rows and no line lost; at twice the rate {} lines lost and \
+             told, {} of {} rows flagged, none wrong without a flag; crc32 {}",
             self.instructions_per_line,
             self.rows,
             self.lost_lines_at_twice,

@@ -90,7 +90,8 @@ impl Odometry {
     /// In a line.
     pub fn told(&self) -> String {
         let told = format!(
-            "{} instructions for a frame, {} at most; {} points agree in the last, {} urad turned; state {} bytes",
+            "{} instructions for a frame, {} at most; {} points agree in the last, {} urad turned; state {} \
+             bytes",
             self.instructions_per_frame,
             self.worst_frame_instructions,
             self.inliers,

@@ -162,8 +162,8 @@ impl Program {
         let (needed, there) = (pipeline + BESIDE, board.ram.1 as usize);
         if needed > there {
             return Err(Failure::new(format!(
-                "--core {}: lines of {width} pixels and {disparities} disparities need {needed} bytes of RAM, QEMU's {} has \
-                 {there}; give smaller images or fewer disparities",
+                "--core {}: lines of {width} pixels and {disparities} disparities need {needed} bytes of \
+                 RAM, QEMU's {} has {there}; give smaller images or fewer disparities",
                 board.core, board.machine
             )));
         }

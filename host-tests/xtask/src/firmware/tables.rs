@@ -57,11 +57,10 @@ pub fn with_compiler(table: &str) -> Outcome<String> {
 
 /// A line for each program.
 fn figures(results: &[Result]) -> String {
-    let mut table =
-        "| core | method | pixels | disparities | instructions | for an evaluation | static RAM | stack | flash | \
-                     of it dense path | panic symbols |\n\
-                     | --- | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n"
-            .to_owned();
+    let mut table = "| core | method | pixels | disparities | instructions | for an evaluation | static RAM \
+                     | stack | flash | of it dense path | panic symbols |\n| --- | --- | --- | ---: | ---: \
+                     | ---: | ---: | ---: | ---: | ---: | ---: |\n"
+        .to_owned();
     for Result { frame, .. } in results {
         let (program, sizes) = (&frame.program, &frame.sizes);
         table += &format!(

@@ -28,7 +28,8 @@ pub fn run(readme: Readme) -> Outcome {
         )));
     }
     let alone = format!(
-        "\nThe eight-point algorithm alone, for eight and made for size, takes {flash} bytes of flash and {instructions} instructions on m7.\n"
+        "\nThe eight-point algorithm alone, for eight and made for size, takes {flash} bytes of flash and \
+         {instructions} instructions on m7.\n"
     );
     plain::into_readme::<Pose>(&(plain::table(&poses) + &alone), readme)
 }

@@ -37,8 +37,8 @@ pub fn held(series: &[Series], columns: &[Column], most: impl Fn(Size) -> f64) -
                 let most = most(*size);
                 if cost > most * least {
                     return Err(Failure::new(format!(
-                        "{method} on {on} at {size}: an evaluation costs {cost:.2}, over {most} times the {least:.2} at a \
-                         smaller size; what grows is the {grows}"
+                        "{method} on {on} at {size}: an evaluation costs {cost:.2}, over {most} times the \
+                         {least:.2} at a smaller size; what grows is the {grows}"
                     )));
                 }
                 least = least.min(cost);
@@ -68,8 +68,8 @@ mod tests {
             costs[at] = cost;
             held(&series, &columns(&costs), |_| 1.05).expect_err("a cliff").to_string()
         };
-        let expected = "fast on m4 at 32x8, 32: an evaluation costs 8.50, over 1.05 times the 8.00 at a smaller size; \
-             what grows is the width";
+        let expected = "fast on m4 at 32x8, 32: an evaluation costs 8.50, over 1.05 times the 8.00 at a \
+                        smaller size; what grows is the width";
         assert_eq!(told(2, 8.5), expected);
         assert!(told(6, 8.5).ends_with("the 8.00 at a smaller size; what grows is the disparities"));
     }

@@ -2,7 +2,7 @@
 //! be there.
 
 use crate::steps::{Failure, Outcome};
-use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SectionIndex, SectionKind};
+use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SectionIndex, SectionKind, SymbolKind};
 use rustc_demangle::demangle;
 use std::collections::{BTreeMap, HashMap};
 use std::fs;
@@ -94,6 +94,29 @@ impl Sizes {
     pub fn flash(&self) -> u64 {
         self.flash_sections.values().sum()
     }
+}
+
+/// A function in a linked file.
+pub struct Function {
+    /// Its path.
+    pub name: String,
+    /// Its first byte and how many there are.
+    pub place: (u64, u64),
+}
+
+/// The functions of the crate `stereopsis` in a linked file.
+pub fn functions_of_the_library(path: &Path) -> Outcome<Vec<Function>> {
+    let failed = |what: String| Failure::new(format!("{}: {what}", path.display()));
+    let bytes = fs::read(path).map_err(|e| failed(e.to_string()))?;
+    let file = object::File::parse(bytes.as_slice()).map_err(|e| failed(e.to_string()))?;
+    let functions = file.symbols().filter(|symbol| symbol.kind() == SymbolKind::Text && symbol.size() > 0);
+    let functions = functions.filter_map(|symbol| {
+        let name = format!("{:#}", demangle(symbol.name().ok()?));
+        // The lowest bit of an address in Thumb code says that it is.
+        let place = (symbol.address() & !1, symbol.size());
+        name.trim_start_matches('<').starts_with("stereopsis::").then_some(Function { name, place })
+    });
+    Ok(functions.collect())
 }
 
 /// Whether a symbol belongs to the dense path, from the camera's lines to checked rows. These do:

@@ -22,7 +22,7 @@ pub struct Arguments {
     #[arg(long)]
     small: bool,
     /// The core: m0, m3, m4, m7, m33, m55 or rv32
-    #[arg(long, value_parser = core, required_unless_present = "all")]
+    #[arg(long, value_parser = core, required_unless_present_any = ["all", "stages"])]
     core: Option<Board>,
     /// The left image, PNG, JPEG, PGM/PPM or TIFF; without images the cameras see the built-in scene
     #[arg(long, value_name = "FILE", requires = "right")]
@@ -41,14 +41,17 @@ pub struct Arguments {
     #[arg(long, default_value = "auto", value_parser = noise)]
     noise: NoiseChoice,
     /// Folder for the results; made when it is missing
-    #[arg(long, value_name = "DIR", required_unless_present = "all")]
+    #[arg(long, value_name = "DIR", required_unless_present_any = ["all", "stages"])]
     out: Option<PathBuf>,
     /// Every core, method and size on the built-in scene: writes the table of README.md
     #[arg(long, conflicts_with_all =
         ["program", "small", "core", "left", "right", "disparities", "method", "noise", "out"])]
     all: bool,
-    /// With --all: writes nothing, fails when README.md's table is another
-    #[arg(long, requires = "all")]
+    /// The instructions of a frame by stage, on cores whose code differs: writes the table of README.md
+    #[arg(long, conflicts_with_all = ["all", "program", "small", "core", "left", "right", "disparities", "method", "noise", "out"])]
+    stages: bool,
+    /// With --all or --stages: writes nothing, fails when README.md's table is another
+    #[arg(long)]
     pub check: bool,
 }
 
@@ -98,6 +101,8 @@ pub enum Asked {
     Interrupt(Plain),
     /// All cores.
     All,
+    /// Instructions by stage.
+    Stages,
 }
 
 impl Arguments {
@@ -105,6 +110,12 @@ impl Arguments {
     pub fn asked(&self) -> Outcome<Asked> {
         if self.all {
             return Ok(Asked::All);
+        }
+        if self.stages {
+            return Ok(Asked::Stages);
+        }
+        if self.check {
+            return Err(Failure::new("--check is for --all and --stages"));
         }
         let (Some(board), Some(out)) = (self.core, self.out.clone()) else {
             return Err(Failure::new("--core and --out are needed, or --all"));

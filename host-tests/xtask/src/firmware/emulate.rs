@@ -2,10 +2,13 @@
 
 use super::board::Board;
 use super::program::Built;
+use crate::elf::Function;
 use crate::setup;
 use crate::steps::{Ended, Failure, Outcome, command, ended_within};
+use std::collections::BTreeMap;
+use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
 /// How long a small frame may take: a second is usual, a firmware that hangs never ends.
@@ -30,6 +33,34 @@ pub fn run(built: &Built, folder: &Path) -> Outcome<String> {
     let program = &built.program;
     let limit = LIMIT + Duration::from_secs(program.evaluations() / SLOWEST);
     run_within(program.board, &built.elf, &program.to_string(), folder, limit)
+}
+
+/// How many instructions a program runs of each of these functions, as QEMU logs them, one in a block.
+pub fn instructions_of(built: &Built, functions: &[Function]) -> Outcome<Vec<u64>> {
+    let failed = |what: String| Failure::new(format!("{} in QEMU: {what}", built.program));
+    let ranges: Vec<_> = functions
+        .iter()
+        .map(|Function { place: (from, bytes), .. }| format!("{from:#x}+{bytes:#x}"))
+        .collect();
+    let folder = tempfile::tempdir().map_err(|e| failed(e.to_string()))?;
+    let mut qemu = qemu(built.program.board);
+    qemu.arg(&built.elf).args(["-singlestep", "-d", "exec,nochain", "-dfilter", &ranges.join(",")]);
+    let spawned = qemu.current_dir(folder.path()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
+    let mut child = spawned.map_err(|e| failed(e.to_string()))?;
+    let by_address: BTreeMap<_, _> =
+        functions.iter().enumerate().map(|(at, function)| (function.place.0, at)).collect();
+    let mut counts = vec![0; functions.len()];
+    for line in child.stderr.take().into_iter().flat_map(|log| BufReader::new(log).lines()) {
+        let line = line.map_err(|e| failed(e.to_string()))?;
+        // `Trace 0: 0x7f0000000000 [00000400/00001a2c/00000110/ff000201] symbol`
+        let Some(address) = line.split('/').nth(1).filter(|_| line.starts_with("Trace ")) else { continue };
+        let address = u64::from_str_radix(address, 16).map_err(|e| failed(format!("{line}: {e}")))?;
+        if let Some((_, &at)) = by_address.range(..=address).next_back() {
+            counts[at] += 1;
+        }
+    }
+    let status = child.wait().map_err(|e| failed(e.to_string()))?;
+    if status.success() { Ok(counts) } else { Err(failed(status.to_string())) }
 }
 
 /// [`run`] for any linked file, by its name in an error.

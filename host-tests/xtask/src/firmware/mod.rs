@@ -34,6 +34,7 @@ pub mod program;
 mod rectify;
 mod refusals;
 mod results;
+mod stages;
 mod summary;
 pub mod tables;
 mod two_views_all;
@@ -76,6 +77,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Asked::Rectify(plain) => run_plain(&plain, rectify::run, Rectify::told),
         Asked::Interrupt(plain) => run_plain(&plain, interrupt::run, Interrupt::told),
         Asked::All => run_all(Readme::of_check(arguments.check)),
+        Asked::Stages => stages::run(Readme::of_check(arguments.check)),
     }
 }
 

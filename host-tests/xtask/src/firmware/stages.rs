@@ -1,0 +1,111 @@
+//! `cargo xtask firmware --stages`: the instructions of a frame by stage, counted one by one in QEMU's log.
+
+use super::board::{Board, M3, M4, M55, RV32};
+use super::frame;
+use super::program::Program;
+use super::scene::Scene;
+use super::tables::{self, Part, Readme};
+use super::{emulate, setup};
+use crate::elf;
+use crate::parallel;
+use crate::pictures::Pictures;
+use crate::steps::{Failure, Outcome};
+use stereopsis_host::run::MethodName;
+
+/// Those whose code differs: an M7 and an M33 run an M4's.
+const CORES: [Board; 4] = [M3, M4, M55, RV32];
+/// Those whose stages differ.
+const METHODS: [MethodName; 3] = [MethodName::Fast, MethodName::Block, MethodName::Sgm];
+/// Width, height and disparities.
+const SIZE: (u16, u16, u16) = (160, 120, 32);
+
+/// The stages, with what is in the paths of their functions and in no path of a stage before.
+const STAGES: [(&str, &[&str]); 8] = [
+    ("denoise", &["denoise", "imaging::smooth"]),
+    ("census, features", &["census", "features"]),
+    ("cost", &["columns", "by_bits", "tables", "reverse", "enter", "cost", "within_edges"]),
+    ("aggregation, selection", &["windows", "begin_", "walk", "select", "winners"]),
+    ("left-right, sub-pixel", &["answers", "partners", "left_right", "subpixel", "consistency"]),
+    ("smoothing", &["surface", "smooth", "down", "vertical"]),
+    ("speckle", &["speckle"]),
+    ("fill", &["fill"]),
+];
+/// The most of a frame that may be in no stage: more of it, and [`STAGES`] does not know a function's name.
+const MOST_OUTSIDE: f64 = 0.25;
+
+/// The part of README.md.
+const PART: Part = Part { name: "stages", command: "cargo xtask firmware --stages" };
+
+/// The instructions of a frame.
+struct Counted {
+    program: Program,
+    all: u64,
+    stages: [u64; STAGES.len()],
+}
+
+/// Counts all of it and writes the table, or compares it.
+pub fn run(readme: Readme) -> Outcome {
+    setup::firmware(&CORES.map(|board| board.target))?;
+    let (width, height, disparities) = SIZE;
+    let programs = CORES
+        .into_iter()
+        .flat_map(|board| METHODS.map(|method| Program::new(board, method, width, height, disparities)));
+    let counted = parallel::work(programs.collect::<Outcome<_>>()?, count)?;
+    let table = tables::with_compiler(&table(&counted))?;
+    println!("{table}");
+    tables::into_readme(&PART, &table, readme)
+}
+
+/// One frame of the built-in scene.
+fn count(program: Program) -> Outcome<Counted> {
+    let built = program.build()?;
+    let scene = Pictures::of_scene(Scene { width: program.width, height: program.height })?;
+    let all = frame::run(&built, &scene, true)?.instructions;
+    let functions = elf::functions_of_the_library(&built.elf)?;
+    let mut stages = [0; STAGES.len()];
+    for (at, instructions) in emulate::instructions_of(&built, &functions)?.into_iter().enumerate() {
+        if let Some(stage) = stage(&functions[at].name) {
+            stages[stage] += instructions;
+        }
+    }
+    let outside = all.saturating_sub(stages.iter().sum()) as f64 / all as f64;
+    if outside > MOST_OUTSIDE {
+        let share = 100.0 * outside;
+        return Err(Failure::new(format!("{program}: {share:.1} % of its instructions are in no stage")));
+    }
+    println!("{program}: {all} instructions");
+    Ok(Counted { program, all, stages })
+}
+
+/// The stage that a function belongs to.
+fn stage(function: &str) -> Option<usize> {
+    STAGES.iter().position(|(_, names)| names.iter().any(|name| function.contains(name)))
+}
+
+/// A line for each program.
+fn table(counted: &[Counted]) -> String {
+    let names = STAGES.map(|(name, _)| name).join(", % | ");
+    let mut table = format!("| core | method | instructions | {names}, % | the rest, % |\n| --- | --- |");
+    table += &" ---: |".repeat(STAGES.len() + 2);
+    table += "\n";
+    for Counted { program, all, stages } in counted {
+        let share = |part: u64| format!(" {:.1} |", 100.0 * part as f64 / *all as f64);
+        let shares: String = stages.iter().map(|&part| share(part)).collect();
+        let rest = share(all.saturating_sub(stages.iter().sum()));
+        table += &format!("| {} | `{}` | {all} |{shares}{rest}\n", program.board.core, program.method);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn functions_have_a_stage() {
+        let name = |function| stage(function).map(|stage| STAGES[stage].0);
+        assert_eq!(name("stereopsis::matching::kernels::bytes::census::ring8"), Some("census, features"));
+        assert_eq!(name("stereopsis::matching::speckle::Support::count"), Some("speckle"));
+        assert_eq!(name("stereopsis::matching::matcher::Matcher<S,_,_>::step"), None);
+    }
+}

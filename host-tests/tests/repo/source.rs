@@ -50,10 +50,10 @@ pub fn tokens(name: &str, text: &str) -> Vec<TokenTree> {
     stream.into_iter().collect()
 }
 
-/// The word of an identifier; empty for any other token, or none.
+/// The word of an identifier, a raw one as a plain one; empty for any other token, or none.
 pub fn word(token: Option<&TokenTree>) -> String {
     match token {
-        Some(TokenTree::Ident(ident)) => ident.to_string(),
+        Some(TokenTree::Ident(ident)) => ident.to_string().trim_start_matches("r#").to_owned(),
         _ => String::new(),
     }
 }

@@ -6,7 +6,7 @@
 pub struct Corner {
     /// The column of the strongest pixel.
     pub column: u16,
-    /// Its row.
+    /// Row of the nearest pixel.
     pub row: u16,
     /// How far the corner lies to the right of that pixel's centre, 1/64 px; -112 to 112.
     pub right: i8,

@@ -25,7 +25,7 @@ pub struct Downsample<const W: usize, const N: usize> {
     phase: u16,
     /// `N` times the pixels of the line before this one.
     before: [u16; W],
-    /// And of this line.
+    /// Sums of the current line.
     here: [u16; W],
     out: [u8; W],
 }

@@ -10,7 +10,7 @@ use core::fmt;
 pub enum FeatureConfigError {
     /// Lines are longer than the detector's capacity.
     Width {
-        /// Its capacity, px.
+        /// Capacity, px.
         most: usize,
     },
     /// Cells are smaller than [`FeatureConfig::LEAST_CELL`], or none is to be kept in them.

@@ -14,7 +14,7 @@ impl PatchOrientation {
     /// No turn.
     pub const NONE: Self = Self(0);
 
-    /// So many steps.
+    /// Creates an orientation of `steps`, modulo a full turn.
     pub const fn new(steps: u8) -> Self {
         Self(steps % Self::STEPS)
     }

@@ -90,7 +90,7 @@ pub enum FocusConfigError {
     Empty,
     /// Lines are longer than the map's capacity.
     Width {
-        /// Its capacity, px.
+        /// Capacity, px.
         most: usize,
     },
     /// Cells have no side, the radius is over [`FocusConfig::MOST_RADIUS`], or a window counts more than

@@ -52,7 +52,7 @@ pub struct Dw9714<I> {
 }
 
 impl<I: I2c> Dw9714<I> {
-    /// Its address on the bus, 7 bits.
+    /// Address on the bus, 7 bits.
     pub const ADDRESS: u8 = 0x0c;
     /// The largest current.
     pub const MOST: u16 = 1023;

@@ -46,7 +46,7 @@ pub struct FocusCell {
 pub struct FocusPeak {
     /// The frame, counted from 0, in 1/256.
     pub position_q8: u32,
-    /// Its deviation, in 1/256 frame, of a peak that is the right one.
+    /// Standard deviation of a correct peak, in 1/256 frame.
     pub sigma_q8: u32,
     /// What noise has part in it, in 1/256 frame: what an average over neighbours makes smaller.
     pub noise_q8: u32,
@@ -62,7 +62,7 @@ impl FocusPeak {
         self.position_q8 as f32 / 256.0
     }
 
-    /// Its deviation in frames.
+    /// Returns the standard deviation in frames.
     pub fn sigma(&self) -> f32 {
         self.sigma_q8 as f32 / 256.0
     }

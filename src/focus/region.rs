@@ -6,9 +6,9 @@ use super::{FocusLineError, Measure, SharpnessRows};
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Region {
-    /// Its first column.
+    /// First column.
     pub left: u16,
-    /// Its first row.
+    /// First row.
     pub top: u16,
     /// Columns.
     pub width: u16,

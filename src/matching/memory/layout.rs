@@ -98,7 +98,7 @@ impl<const W: usize, const D: usize> PathWorkspace<W, D> {
         disparities: [[0; D]; PathWorkspace::<0, 0>::PER_DISPARITY],
     };
 
-    /// Its first bytes, to read.
+    /// Returns the bytes.
     pub fn bytes(&self) -> &[u8] {
         self.pixels.as_flattened()
     }

@@ -37,7 +37,7 @@ pub trait Memory {
     fn column_bytes(width: usize, stride: usize) -> usize;
     /// What stands where the winners of a row stood, a byte for each of its pixels, until the next row.
     fn after_winners(&self, width: usize) -> &[u8];
-    /// The same to change, and what nothing needs until the next row.
+    /// Mutable access to these bytes, and to what nothing needs until the next row.
     fn after_row(&mut self, width: usize) -> AfterRow<'_>;
 }
 

@@ -30,26 +30,26 @@ impl Winner {
         (self.0 as u8, (self.0 >> 16) as u8)
     }
 
-    /// The same winner with other costs beside it.
+    /// Returns the winner with other costs beside it.
     #[inline(always)]
     pub fn with_beside(self, beside: (u8, u8)) -> Self {
         Self::new(self.cost(), self.disparity() as u8, beside)
     }
 
-    /// Its disparity over the smallest one searched: of those with the least cost the smallest. Means nothing
-    /// in columns without a candidate, as all the rest.
+    /// Returns the disparity over the smallest one searched: of those with the least cost the smallest. Means
+    /// nothing in columns without a candidate, as all the rest.
     #[inline(always)]
     pub fn disparity(self) -> u32 {
         self.0 >> 24
     }
 
-    /// Its cost.
+    /// Returns the cost.
     #[inline(always)]
     pub fn cost(self) -> u8 {
         (self.0 >> 8) as u8
     }
 
-    /// Its cost above 8 bits of [`Self::disparity`].
+    /// Returns the cost above 8 bits of [`Self::disparity`].
     #[inline(always)]
     pub fn key(self) -> u32 {
         self.0 & 0xff00 | self.0 >> 24

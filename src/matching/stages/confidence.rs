@@ -60,7 +60,7 @@ pub(super) fn store_margins(
 pub(super) struct Neighbours<'a> {
     /// What is to be judged.
     pub answers: &'a [Disparity],
-    /// The same before the median.
+    /// Answers of the row before the median.
     pub row: &'a [Disparity],
     /// The rows above and below, [`ROWS`] off; empty where there is none.
     pub columns: [&'a [Disparity]; 2 * ROWS.len()],

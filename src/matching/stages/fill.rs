@@ -72,8 +72,8 @@ impl ToRight {
     }
 }
 
-/// And back: the answer on its right, if that is less. What the pass before left out is at the gap's right
-/// end, and so none of the gap is filled.
+/// Second pass, from the right: the answer on its right, if that is less. What the pass before left out is at
+/// the gap's right end, and so none of the gap is filled.
 struct ToLeft {
     right: u32,
     refused: u32,

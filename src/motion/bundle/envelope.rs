@@ -66,7 +66,7 @@ impl<V, T: Real, const N: usize> Envelope<'_, V, T, N> {
         Ok(())
     }
 
-    /// x of `L x = b`, in the slots' steps, of rows from `from` on: those before are zero.
+    /// Solves `L x = b`, in the slots' steps, of rows from `from` on: those before are zero.
     pub fn forward(&mut self, from: usize) {
         for i in from..self.slots.len() {
             let Some((before, rest)) = self.slots.split_at_mut_checked(i) else { return };
@@ -92,7 +92,7 @@ impl<V, T: Real, const N: usize> Envelope<'_, V, T, N> {
         }
     }
 
-    /// x of `L^T x = b`, in the slots' steps.
+    /// Solves `L^T x = b`, in the slots' steps.
     pub fn backward(&mut self) {
         for i in (0..self.slots.len()).rev() {
             let Some((before, rest)) = self.slots.split_at_mut_checked(i) else { return };

@@ -6,7 +6,7 @@ use crate::geometry::Real;
 /// all observations.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Loss<T> {
-    /// s: least squares.
+    /// Least squares: s itself.
     Squares,
     /// Huber's with this width w, px: s up to `w^2`, `2 w sqrt(s) - w^2` beyond it, so that what is far off
     /// pulls with a force that does not grow (Huber 1964).
@@ -22,7 +22,7 @@ impl<T: Real> Loss<T> {
         }
     }
 
-    /// Its derivative, from 1 down: the weight of an observation in the equations of the next step.
+    /// Derivative of the loss, from 1 down: the weight of an observation in the equations of the next step.
     pub fn weight(&self, squared: T) -> T {
         match *self {
             Self::Huber(width) if squared > width * width => width / squared.sqrt(),

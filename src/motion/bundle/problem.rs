@@ -15,7 +15,7 @@ pub struct Observation<T: Real> {
     pub view: u16,
     /// Which camera of the view: 0, or 1 for the second of a rig.
     pub eye: u16,
-    /// px.
+    /// Pixel, px.
     pub pixel: Point2<T>,
 }
 

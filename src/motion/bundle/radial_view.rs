@@ -18,7 +18,7 @@ use nalgebra::{Matrix3, Point2, Point3, Vector3};
 pub struct RadialView<T: Real> {
     /// Where it stands: from the camera into the world.
     pub pose: Pose<T>,
-    /// f, px.
+    /// Focal length, px.
     pub focal_px: T,
     /// Of r^2.
     pub k1: T,

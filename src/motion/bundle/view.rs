@@ -21,7 +21,7 @@ pub trait View<T: Real, const N: usize>: Copy {
     /// Where it stands: R and t carry a point of the camera into the world, t is its centre.
     fn pose(&self) -> &Pose<T>;
 
-    /// The same elsewhere.
+    /// Returns the view at another pose.
     fn with_pose(&self, pose: Pose<T>) -> Self;
 
     /// Where a point of the world is seen by an eye (0, or 1 for the second camera of a rig), px, with the
@@ -31,14 +31,14 @@ pub trait View<T: Real, const N: usize>: Copy {
     /// Where a point of the world is seen, px.
     fn project(&self, eye: u16, world: &Point3<T>) -> Result<Point2<T>, ProjectionError>;
 
-    /// The same after a step.
+    /// Returns the view after a step.
     fn moved(&self, step: &[T; N]) -> Self;
 }
 
 /// Where a point is seen, and how that moves.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct ProjectionJacobian<T: Real, const N: usize> {
-    /// px.
+    /// Pixel, px.
     pub pixel: Point2<T>,
     /// The derivative of u and of v by the view's N numbers, at a step of zero.
     pub by_view: [[T; N]; 2],

@@ -64,7 +64,7 @@ impl<T: Real> OdometryRig<T> {
 pub struct OdometryConfig {
     /// How far from its predicted place a feature is looked for while the motion is not known, px.
     pub far_px: f32,
-    /// And when it is known.
+    /// How far from its predicted place a feature is looked for while the motion is known, px.
     pub near_px: f32,
     /// The largest disparity of a new point, px.
     pub most_disparity_px: u16,

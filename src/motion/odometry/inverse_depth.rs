@@ -36,11 +36,11 @@ pub(super) struct InversePoint<T: Real> {
 /// A point from another camera.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moved<T: Real> {
-    /// Its three numbers there.
+    /// Three numbers of the point in the other camera.
     pub at: Vector3<T>,
-    /// Their slopes by the numbers here.
+    /// Jacobian by the numbers in this camera.
     pub by_point: Matrix3<T>,
-    /// Their slopes by a turn and a step of that camera along its own axes.
+    /// Jacobian by a rotation and a step of the other camera along its own axes.
     pub by_pose: SMatrix<T, 3, 6>,
 }
 

@@ -24,7 +24,7 @@ const THREE: f64 = 21.0;
 const SHARE: f64 = 0.3;
 /// Deviations of a step, in baselines, from which on one that cannot be told from none is not known.
 const UNKNOWN: f64 = 0.1;
-/// And from which on it is not, whatever it is.
+/// Deviations of a step, in baselines, from which on no step is known.
 const OPEN: f64 = 100.0;
 
 impl<T: Real, const N: usize> Odometry<T, N> {

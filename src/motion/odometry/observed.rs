@@ -8,12 +8,12 @@ use nalgebra::{Point2, Vector3};
 /// A point that the last frame saw.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct ObservedPoint<T: Real> {
-    /// Its place in the odometry's memory, and how often that was given to a point before: together they
+    /// Place in the odometry's memory, and how often that was given to a point before: together they
     /// name it.
     pub name: (u16, u16),
     /// Where it is seen, px.
     pub pixel: Point2<T>,
-    /// Its disparity u - u' without the offset of the principal points, px, where the right picture shows
+    /// Disparity u - u' without the offset of the principal points, px, where the right picture shows
     /// it.
     pub disparity_px: Option<T>,
     /// `(X / Z, Y / Z, 1 / Z)` in this camera's frame, after all that was seen of it.

@@ -84,9 +84,9 @@ pub enum PointState {
     Unknown,
     /// Where it is.
     Triangulated,
-    /// Its observations are nearly parallel: it is far away, or at infinity.
+    /// The observations are nearly parallel: the point is far away, or at infinity.
     Far,
-    /// Its observations do not meet before the cameras, or fewer than half of them do.
+    /// The observations do not meet before the cameras, or fewer than half of them do.
     Inconsistent,
 }
 

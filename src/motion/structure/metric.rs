@@ -10,7 +10,7 @@ use nalgebra::Point3;
 #[derive(Debug)]
 pub struct Structure<'a, T: Real>(Scene<'a, T>);
 
-/// The same in metres.
+/// Structure in metres.
 #[derive(Debug)]
 pub struct MetricStructure<'a, T: Real>(Scene<'a, T>);
 

@@ -90,8 +90,8 @@ macro_rules! census_of {
                 return;
             }
             let out = out.as_mut_ptr();
-            // SAFETY: `count` codes are written, four in every round, and of every line `count` pixels read and two beside them
-            // on both sides, which the lines have.
+            // SAFETY: `count` codes are written, four in every round, and of every line `count` pixels read
+            // and two beside them on both sides, which the lines have.
             unsafe {
                 asm!(
                     "2:",
@@ -115,14 +115,15 @@ macro_rules! census_of {
 
 // The first read of a line moves on by four pixels.
 census_of! {
-    /// [`crate::imaging::census_plus4`] of the pixels from the third one of each line on: 21 instructions for four.
+    /// [`crate::imaging::census_plus4`] of the pixels from the third one of each line on: 21 instructions for
+    /// four.
     plus4 from "mov {code}, #0":
     compare!("above", "], #4", "0x01010101"), compare!("here", ", #-6]", "0x02020202"),
     compare!("here", ", #-2]", "0x04040404"), compare!("below", "], #4", "0x08080808")
 }
 
 census_of! {
-    /// The same of right lines, into the high halves of bytes.
+    /// Census codes of right lines, into the high halves of bytes.
     plus4_of_right from "ldr {code}, [{out}]":
     compare!("above", "], #4", "0x10101010"), compare!("here", ", #-6]", "0x20202020"),
     compare!("here", ", #-2]", "0x40404040"), compare!("below", "], #4", "0x80808080")

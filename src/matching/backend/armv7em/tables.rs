@@ -58,9 +58,9 @@ macro_rules! make {
             if rounds == 0 || 8 * rounds > LINE || row.len() < apart + 8 * rounds {
                 return;
             }
-            // SAFETY: in each of the rounds eight bytes of the row are read from its beginning on and eight from `apart` on, and as many
-            // written of each line, of which there are `LINE`: `line` is in the one of code 8. What the registers held for the next
-            // round is below the stack's end meanwhile.
+            // SAFETY: in each of the rounds eight bytes of the row are read from its beginning on and eight
+            // from `apart` on, and as many written of each line, of which there are `LINE`: `line` is in the
+            // one of code 8. What the registers held for the next round is below the stack's end meanwhile.
             unsafe {
                 asm!(
                     "2:",
@@ -132,15 +132,15 @@ macro_rules! make {
 }
 
 make!(
-    /// Makes the costs of so many pixels, the last one first, with candidates `apart` apart in both halves of a byte: against a
-    /// reversed row whose right codes are the high halves of its bytes, with nothing in the low ones. Of the row as many bytes are
-    /// read as make whole rounds of eight.
+    /// Makes the costs of so many pixels, the last one first, with candidates `apart` apart in both halves of
+    /// a byte: against a reversed row whose right codes are the high halves of its bytes, with nothing in the
+    /// low ones. Of the row as many bytes are read as make whole rounds of eight.
     ///
     /// 79 instructions for sixteen costs of all codes.
     make, "and"
 );
 make!(
-    /// The same of what the costs leave of four: how many bits are equal.
+    /// Tables of what the costs leave of four: how many bits are equal.
     make_equal, "bic"
 );
 

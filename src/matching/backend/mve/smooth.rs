@@ -20,8 +20,8 @@ static HALVES: [u16; REACH + 1] = {
     halves
 };
 
-/// [`Isa::smooth`](crate::matching::backend::Isa::smooth); a length is a byte, that of the answer `x` the byte `x`, and 255
-/// for all above.
+/// [`Isa::smooth`](crate::matching::backend::Isa::smooth); a length is a byte, that of the answer `x` the
+/// byte `x`, and 255 for all above.
 #[inline(never)]
 pub(super) fn smooth(
     answers: &mut [Disparity],
@@ -134,7 +134,7 @@ type Shift = [u8; 3 * LANES];
 
 /// The numbers of the lanes from 1 on.
 static LANE: [u8; LANES] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16];
-/// And backwards.
+/// Lane numbers backwards.
 static BACK: [u8; LANES] = [16, 15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1];
 
 /// For every answer how many its surface has, from the bytes that say where one begins.

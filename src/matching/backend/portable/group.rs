@@ -1,6 +1,6 @@
 //! Bytes side by side, which the code along paths is written for.
 
-/// So many bytes in a register. None of the operations but those that say so lets a lane overflow: numbers
+/// Group of bytes in a register. None of the operations but those that say so lets a lane overflow: numbers
 /// have seven bits unless more are allowed.
 pub trait Group: Copy + 'static {
     /// Bytes in a group.
@@ -12,14 +12,14 @@ pub trait Group: Copy + 'static {
 
     /// The cells of a slice, as far as they are whole ones.
     fn cells(bytes: &[u8]) -> &[Self::Cell];
-    /// The same, to write.
+    /// Mutable access to the cells of a slice of bytes.
     fn cells_mut(bytes: &mut [u8]) -> &mut [Self::Cell];
     /// The groups of a slice that begins anywhere, as far as they are whole ones.
     fn groups(bytes: &[u8]) -> &[Self::Bytes];
     fn of(cell: Self::Cell) -> Self;
     fn of_bytes(bytes: Self::Bytes) -> Self;
     fn cell(self) -> Self::Cell;
-    /// The same number in all lanes, of eight bits.
+    /// Puts a number of eight bits in all lanes.
     fn splat(number: u8) -> Self;
 
     /// The sum, of eight bits.
@@ -61,7 +61,7 @@ pub trait Group: Copy + 'static {
     fn last_least(cells: &[Self]) -> (u8, usize);
     /// The number in one of the lanes of all cells.
     fn lane(cells: &[Self], lane: usize) -> u8;
-    /// Puts 255 in one of the lanes of all cells and in [`BESIDE`](crate::matching::memory::winners::BESIDE) to each
-    /// side of it.
+    /// Puts 255 in one of the lanes of all cells and in [`BESIDE`](crate::matching::memory::winners::BESIDE)
+    /// to each side of it.
     fn raise_around(cells: &mut [Self], lane: usize);
 }

@@ -77,9 +77,9 @@ macro_rules! winners {
 macro_rules! few_winners {
     ($name:ident, $digits:ident, $stride:literal, $most:literal, ($before:literal, $after:literal, $back:literal),
         [$($at:literal),*], $blocks:tt) => {
-        /// The same where the first winner has `first` candidates and each one more than the one before it, up to
-        #[doc = concat!("` ", stringify!($most), " `")]
-        /// of them, of which alone there are sums. 14 instructions a pixel more, and 9 for every sixteen that may be none.
+        /// Moves the window on where the first winner has `first` candidates and each one more than the one before it.
+        #[doc = concat!("There are at most `", stringify!($most), "`.")]
+        /// Only these have sums. It takes 14 instructions a pixel more, and 9 for every sixteen that may be none.
         #[inline(never)]
         pub(in super::super) fn $name(
             sums: &mut [u32; $stride / 4 + 2],

@@ -169,7 +169,7 @@ pub(super) fn between_pixels<S: SgmParameters>(
     }
 }
 
-/// The same with the right ones themselves, which are not doubled. Always averages.
+/// Costs at pixels against the right ones themselves, which are not doubled; always averaged.
 #[inline(always)]
 pub(super) fn at_pixels(costs: &mut [u32], rows: &[u8], count: usize, along: u32, rest: &Rest) {
     if costs.len() < 4 || rows.len() < 5 * count + 4 * costs.len() {

@@ -81,7 +81,7 @@ pub(super) struct Frame {
     pub end: *const u32,
     /// 28: a column's words, in fours.
     pub fours: usize,
-    /// 32
+    /// 32: the steps of the walk.
     pub steps: *const Steps,
     /// 36, 40: the first and the last column of the row above, 44: bytes to that on the other side of the
     /// pixel.

@@ -55,7 +55,7 @@ impl<P: FnMut(usize, Found)> Judge<'_, P> {
         self.decide_of(x, &mut total);
     }
 
-    /// The same, with sums that may be lost.
+    /// Decides as [`Self::decide`] does, with sums that may be overwritten.
     #[inline(always)]
     pub(super) fn decide_of<G: Group, const CELLS: usize, const ALL: bool>(
         &mut self,

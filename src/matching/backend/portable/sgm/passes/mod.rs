@@ -1,7 +1,7 @@
 //! The passes, written once for groups of bytes whose lanes run over the disparities of one pixel.
 //!
-//! * `cost`, `edges`, `select`: the passes; `gather` and `decide`: the two ends of the last one; `alternate`: the
-//!   paths where registers hold a few cells only.
+//! * `cost`, `edges`, `select`: the passes; `gather` and `decide`: the two ends of the last one; `alternate`:
+//!   the paths where registers hold a few cells only.
 
 mod alternate;
 mod cost;
@@ -79,7 +79,7 @@ fn column<C, const CELLS: usize, const ALL: bool>(volume: &[C], x: usize, count:
     }
 }
 
-/// The same, to write.
+/// Mutable access to the costs of column `x`.
 #[inline(always)]
 fn column_mut<C, const CELLS: usize, const ALL: bool>(volume: &mut [C], x: usize, count: usize) -> &mut [C] {
     if ALL {

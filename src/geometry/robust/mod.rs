@@ -48,4 +48,5 @@ mod resection;
 
 pub use config::{RobustConfig, Sampling};
 pub use fundamental::{RobustError, RobustFundamental, robust_fundamental};
+pub(crate) use loss::weight_and_gain;
 pub use resection::{RobustResection, RobustResectionError, robust_resection};

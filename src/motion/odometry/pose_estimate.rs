@@ -2,8 +2,10 @@
 
 use super::inverse_depth::{InversePoint, PointObservation, seen};
 use super::whitening::Whitener;
-use crate::geometry::linear::Ldl;
-use crate::geometry::{Real, camera::Pose, linear::cayley};
+use crate::geometry::Real;
+use crate::geometry::camera::Pose;
+use crate::geometry::linear::{LeastSquares, NormalEquations, levenberg_marquardt};
+use crate::geometry::robust::weight_and_gain;
 use nalgebra::{SMatrix, Vector3};
 
 /// A point and where the new camera sees it.
@@ -58,59 +60,14 @@ impl<T: Real> Problem<'_, T> {
     /// and the point's own uncertainty together, which to first order is as if points and pose were found
     /// together.
     pub fn solve(&self, start: Pose<T>, free: Free) -> Solved<T> {
-        let mut best = self.judge(start, T::of(WIDTHS[0]));
+        let mut pose = start;
         if free != Free::Nothing {
             for width in WIDTHS.map(T::of) {
-                best = self.descend(best.pose, width, free);
+                let descent = Descent { problem: self, width, free };
+                pose = levenberg_marquardt(&descent, pose, STEPS).map_or(pose, |(pose, _)| pose);
             }
         }
-        self.judge(best.pose, T::of(WIDTH))
-    }
-
-    /// Levenberg and Marquardt's method with one width.
-    fn descend(&self, start: Pose<T>, width: T, free: Free) -> Solved<T> {
-        let (mut best, mut slope) = self.normal(start, width);
-        let mut damping = T::of(1e-6);
-        for _ in 0..STEPS {
-            let mut m = best.information;
-            for (i, row) in m.iter_mut().enumerate() {
-                if let Some(d) = row.get_mut(i) {
-                    // A direction of which nothing is said stays as it is.
-                    *d += *d * damping + T::of(1e-3);
-                }
-            }
-            if free == Free::Rotation {
-                for (i, row) in m.iter_mut().enumerate() {
-                    for (j, x) in row.iter_mut().enumerate() {
-                        if i >= 3 || j >= 3 {
-                            *x = if i == j { T::ONE } else { T::ZERO };
-                        }
-                    }
-                }
-                slope.iter_mut().skip(3).for_each(|x| *x = T::ZERO);
-            }
-            let step = Ldl::<T, 6>::new(&mut m).solve(&slope);
-            let next = moved(&best.pose, &step);
-            let (then, next_slope) = self.normal(next, width);
-            if then.cost < best.cost {
-                let little = best.cost - then.cost <= best.cost * T::of(1e-6);
-                (best, slope) = (then, next_slope);
-                damping *= T::of(0.1);
-                if little {
-                    break;
-                }
-            } else {
-                damping = damping.max(T::of(1e-6)) * T::of(100.0);
-                if damping > T::of(1e3) {
-                    break;
-                }
-            }
-        }
-        best
-    }
-
-    fn judge(&self, pose: Pose<T>, width: T) -> Solved<T> {
-        self.normal(pose, width).0
+        self.normal(pose, T::of(WIDTH)).0
     }
 
     fn normal(&self, pose: Pose<T>, width: T) -> (Solved<T>, [T; 6]) {
@@ -126,16 +83,16 @@ impl<T: Real> Problem<'_, T> {
                 continue;
             };
             let squared = off.norm_squared();
-            let left = T::ONE - squared / width_squared;
-            if !(left > T::ZERO) {
+            let share = squared / width_squared;
+            if !(share < T::ONE) {
                 sum.cost += most;
                 continue;
             }
-            sum.cost += most * (T::ONE - left * left * left);
+            let (weight, gain) = weight_and_gain(share);
+            sum.cost += most * (T::ONE - gain);
             sum.kept += 1;
             sum.numbers += point_match.observation.rows();
             sum.squares += squared;
-            let weight = left * left;
             let columns = &by_pose.data.0;
             let rows = [
                 (off.x, columns.map(|[x, _, _]| x)),
@@ -174,10 +131,53 @@ impl<T: Real> Problem<'_, T> {
     }
 }
 
-/// A pose after a turn and a step along the camera's axes.
-pub(super) fn moved<T: Real>(pose: &Pose<T>, &[a, b, c, d, e, f]: &[T; 6]) -> Pose<T> {
-    let rotation = pose.rotation() * cayley(&Vector3::new(a, b, c));
-    Pose::of_parts(rotation, pose.translation() + rotation * Vector3::new(d, e, f))
+/// The descent to the likeliest pose with one width of the loss.
+struct Descent<'a, T: Real> {
+    problem: &'a Problem<'a, T>,
+    width: T,
+    free: Free,
+}
+
+impl<T: Real> LeastSquares<T, 6> for Descent<'_, T> {
+    type Estimate = Pose<T>;
+
+    const FIRST_DAMPING: f64 = 1e-6;
+
+    fn equations(&self, pose: &Pose<T>, _bound: Option<T>) -> Option<NormalEquations<T, 6>> {
+        let (Solved { information: mut matrix, cost, .. }, mut right) =
+            self.problem.normal(*pose, self.width);
+        if self.free == Free::Rotation {
+            for (i, row) in matrix.iter_mut().enumerate() {
+                for (j, x) in row.iter_mut().enumerate().filter(|(j, _)| i >= 3 || *j >= 3) {
+                    *x = if i == j { T::ONE } else { T::ZERO };
+                }
+            }
+            right.iter_mut().skip(3).for_each(|x| *x = T::ZERO);
+        }
+        Some(NormalEquations { matrix, right, cost })
+    }
+
+    fn moved(&self, from: &Pose<T>, step: &[T; 6]) -> Pose<T> {
+        from.moved(step)
+    }
+
+    fn damped(&self, diagonal: T, damping: T) -> T {
+        // A direction of which nothing is said stays as it is.
+        diagonal + (diagonal * damping + T::of(1e-3))
+    }
+
+    fn is_better(&self, before: T, after: T) -> bool {
+        after < before
+    }
+
+    fn is_settled(&self, before: T, after: T) -> bool {
+        before - after <= before * T::of(1e-6)
+    }
+
+    fn after_refused(&self, damping: T, _step: &[T; 6]) -> Option<T> {
+        let damping = damping.max(T::of(1e-6)) * T::of(100.0);
+        (damping <= T::of(1e3)).then_some(damping)
+    }
 }
 
 #[cfg(test)]
@@ -204,11 +204,11 @@ mod tests {
 
     #[test]
     fn the_pose_that_was_and_what_is_wrong_left_out() {
-        let truth = moved(&Pose::identity(), &[0.01, -0.02, 0.005, 0.1, -0.05, 0.3]);
+        let truth = Pose::identity().moved(&[0.01, -0.02, 0.005, 0.1, -0.05, 0.3]);
         for wrong in [0, 2] {
             let matches = seen(&truth, wrong);
             let problem = Problem { matches: &matches, baseline: 0.5 };
-            let near = moved(&truth, &[0.002, 0.001, 0.0, 0.005, 0.0, -0.01]);
+            let near = truth.moved(&[0.002, 0.001, 0.0, 0.005, 0.0, -0.01]);
             let solved = problem.solve(near, Free::All);
             let off = truth.inverse().then(&solved.pose);
             assert!(off.translation().norm() < 1e-6 && off.angle_rad() < 1e-7, "{wrong}: {off:?}");
@@ -221,7 +221,7 @@ mod tests {
     #[test]
     fn a_turn_alone_leaves_the_step() {
         // Within the widest reach, twelve deviations.
-        let truth = moved(&Pose::identity(), &[0.004, -0.003, 0.002, 0.0, 0.0, 0.0]);
+        let truth = Pose::identity().moved(&[0.004, -0.003, 0.002, 0.0, 0.0, 0.0]);
         let matches = seen(&truth, 0);
         let problem = Problem { matches: &matches, baseline: 0.5 };
         let solved = problem.solve(Pose::identity(), Free::Rotation);

@@ -55,3 +55,7 @@ pub mod ffi;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+#[cfg(doctest)]
+#[doc = include_str!("../docs/firmware.md")]
+struct FirmwarePage;

@@ -1,24 +1,4 @@
 //! What semi-global matching takes a pixel's cost and a step of the disparity to be worth.
-//!
-//! # What was tried and is not done
-//!
-//! Measured on 15 real pairs, of which [`Sgm`](super::Sgm) misses 3.40 % with default checks (4.34 % of
-//! slanted, faint surfaces):
-//!
-//! * Smaller steps for slanted floors: 12 in place of 18 misses 3.65 % (5.06 %), 9 4.06 %; only where texture
-//!   is low, no less.
-//! * A second order. A step of 12 in the direction of the path's last one at that disparity: 3.61 % (5.15 %);
-//!   in that of its cheapest one over 8 px: 3.44 % (5.04 %).
-//! * Paths that follow the slope of the row above (after Scharstein, Taniai & Sinha 2017): along and down,
-//!   with what does not follow it as cheap, 3.92 % (3.84 %), down alone 3.66 % (4.23 %). On faint rendered
-//!   planes the first misses 0.4 % of 2.3 %, steps of 12 miss 1.2 %. Down alone, Midd1 and Monopoly lose 2
-//!   points each.
-//! * The last frame's answers as a prior on the costs: any disparity over 1 px from them costs 1 more. It
-//!   pays while it is right: of still pairs with noise of 2 grey levels the third frame misses 7.2 % of 8.7
-//!   %, with 5.7 % of the answers wrong of 6.2 % (`TemporalFilter`: 7.6 %, 7.0 %); with noise of 5, 14.0 % of
-//!   16.3 %, but 9.5 % wrong of 8.9 % (13.5 %, 11.2 %). More than 1 has more answers wrong. Another pair's
-//!   answers as a prior (13 pairs, noise of 2): 1 misses 8.8 % of 8.6 % in the first frame, 2 11.6 %, 4 19.9
-//!   %, and 15.3 % of 9.0 % in the third. It takes a frame of answers in memory.
 
 /// The numbers of the methods along paths, [`Sgm`](super::Sgm), [`SgmLean`](super::SgmLean) and
 /// [`SgmEdge`](super::SgmEdge); the block methods do not look at them. Each method's own,

@@ -7,8 +7,11 @@ use proc_macro2::TokenTree;
 /// Lines of a Rust file without its tests, at most.
 const MOST_LINES: usize = 300;
 
+/// Lines of README.md, at most: what is more belongs in docs/.
+const MOST_README_LINES: usize = 130;
+
 /// What the root may hold.
-const ROOT: [&str; 16] = [
+const ROOT: [&str; 17] = [
     ".cargo",
     ".ci",
     ".gitattributes",
@@ -20,6 +23,7 @@ const ROOT: [&str; 16] = [
     "LICENSE-APACHE",
     "LICENSE-MIT",
     "README.md",
+    "docs",
     "examples",
     "host-tests",
     "memory.x",
@@ -96,6 +100,12 @@ fn files_are_short() {
     let files = source::files();
     let wrong: Vec<_> = files.iter().filter(|name| name.ends_with(".rs")).filter_map(long).collect();
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_readme_is_short() {
+    let lines = source::text("README.md").lines().count();
+    assert!(lines <= MOST_README_LINES, "README.md: {lines} lines, {MOST_README_LINES} at most");
 }
 
 #[test]

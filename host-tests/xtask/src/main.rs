@@ -4,7 +4,7 @@
 //! * `firmware` runs the firmware example in QEMU, on one core or on all.
 //! * `growth` measures how the cost grows with the work.
 //! * `altered` measures how right the methods are on altered real images, beside OpenCV.
-//! * `readme` writes the generated parts of README.md anew, or checks them.
+//! * `readme` writes the generated parts of docs/performance.md anew, or checks them.
 //! * `c` tests the C interface alone, one step of `test`.
 //! * `header` writes the header of the C interface anew, or checks it.
 //!
@@ -55,7 +55,7 @@ enum Chore {
     Growth(growth::Arguments),
     /// Measures how right the methods are on real pairs with noise and unequal cameras, beside OpenCV.
     Altered(altered::Arguments),
-    /// Writes the generated parts of README.md anew.
+    /// Writes the generated parts of docs/performance.md anew.
     Readme {
         /// Writes nothing; fails when a part differs from what would be written.
         #[arg(long)]

@@ -1,4 +1,4 @@
-//! `cargo xtask readme`: the generated parts of README.md.
+//! `cargo xtask readme`: the generated parts of docs/performance.md.
 //!
 //! The test `readme` of the host package makes them and compares; told to by a variable, it writes them.
 

@@ -1,4 +1,4 @@
-//! What README.md tells a user to type, and the files that it names.
+//! What README.md and docs/ tell a user to type, and the files that they name.
 
 /// The folder that `git clone` makes.
 pub const CLONE: &str = "stereopsis";

@@ -1,4 +1,5 @@
-//! README.md holds: its commands work word for word in a fresh clone, and its figures are those of this tree.
+//! README.md and docs/ hold: their commands work word for word in a fresh clone, and their figures are those of
+//! this tree.
 
 mod commands;
 mod generated;
@@ -16,25 +17,85 @@ fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
+/// README.md, then the pages of docs/ by name: each name with the text.
+fn pages(root: &Path) -> Vec<(String, String)> {
+    let folder = root.join("docs");
+    let entries = fs::read_dir(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+    let mut names: Vec<_> = entries
+        .map(|entry| format!("docs/{}", entry.expect("an entry").file_name().to_string_lossy()))
+        .filter(|name| name.ends_with(".md"))
+        .collect();
+    names.sort();
+    names.insert(0, "README.md".to_owned());
+    names.into_iter().map(|name| (name.clone(), read(&root.join(name)))).collect()
+}
+
+#[test]
+fn links_lead_to_files_and_headings() {
+    let pages = pages(root());
+    let anchors = |text: &str| {
+        let headings = text.lines().filter(|line| line.starts_with('#'));
+        let word = |c: char| c.is_alphanumeric() || c == '-';
+        let anchor = |line: &str| line.trim_start_matches('#').trim().to_lowercase().replace(' ', "-");
+        headings.map(|line| anchor(line).chars().filter(|&c| word(c)).collect()).collect::<Vec<String>>()
+    };
+    let mut found = 0;
+    for (name, text) in &pages {
+        let folder = Path::new(name).parent().expect("a folder");
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            if link.contains("://") {
+                continue;
+            }
+            found += 1;
+            let (file, heading) = link.split_once('#').unwrap_or((link, ""));
+            let path = if file.is_empty() { root().join(name) } else { root().join(folder).join(file) };
+            assert!(path.exists(), "{name}: the link {link} leads nowhere");
+            let has = || anchors(&read(&path)).iter().any(|anchor| anchor == heading);
+            assert!(heading.is_empty() || has(), "{name}: {link} names no heading");
+        }
+    }
+    assert!(found > 10, "{found} links in README.md and docs/");
+}
+
+#[test]
+fn the_glossary_names_files_that_are_there() {
+    let text = read(&root().join("docs/glossary.md"));
+    let rows: Vec<_> = text.lines().filter(|line| line.starts_with("| ") && line.contains(".rs`")).collect();
+    assert!(rows.len() > 30, "{} terms in docs/glossary.md", rows.len());
+    let term = |row: &str| row.split('|').nth(1).map(|term| term.trim().to_lowercase());
+    assert!(rows.windows(2).all(|pair| term(pair[0]) < term(pair[1])), "docs/glossary.md is not sorted");
+    for row in rows {
+        let file = row.rsplit('`').nth(1).expect("a file at the end of the row");
+        assert!(root().join("src").join(file).is_file(), "docs/glossary.md: there is no src/{file}");
+    }
+}
+
 /// `cargo xtask readme` runs this one with `STEREOPSIS_README=write`: then the parts are written instead.
 #[test]
 fn generated_parts_are_those_of_this_tree() {
-    let path = root().join("README.md");
-    let readme = read(&path);
-    let current = generated::splice(&readme).unwrap_or_else(|e| panic!("README.md: {e}"));
-    let pictures = [(generated::PICTURE, generated::picture()), (generated::DISPLAY, generated::display())];
+    let path = root().join("docs/performance.md");
+    let text = read(&path);
+    let current = generated::splice(&text).unwrap_or_else(|e| panic!("docs/performance.md: {e}"));
+    let pictures = [
+        ("README.md", "", generated::PICTURE, generated::picture()),
+        ("docs/firmware.md", "../", generated::DISPLAY, generated::display()),
+    ];
     if std::env::var("STEREOPSIS_README").as_deref() == Ok("write") {
-        for (place, picture) in &pictures {
+        for (_, _, place, picture) in &pictures {
             let path = root().join(place);
             fs::create_dir_all(path.parent().expect("a folder")).expect("the picture's folder");
             fs::write(&path, generated::as_png(picture)).expect("the picture");
         }
-        fs::write(&path, current).expect("README.md");
+        fs::write(&path, current).expect("docs/performance.md");
         return;
     }
-    let differs = readme.lines().zip(current.lines()).find(|(old, new)| old != new);
-    assert!(readme == current, "README.md is not current, run `cargo xtask readme`: {differs:?}");
-    for (place, picture) in &pictures {
+    let differs = text.lines().zip(current.lines()).find(|(old, new)| old != new);
+    assert!(text == current, "docs/performance.md is not current, run `cargo xtask readme`: {differs:?}");
+    for (page, to_root, place, picture) in &pictures {
+        assert!(
+            read(&root().join(page)).contains(&format!("]({to_root}{place})")),
+            "{page} does not show {place}"
+        );
         let path = root().join(place);
         let stored = image::open(&path).unwrap_or_else(|e| panic!("{place}: {e}")).into_rgb8();
         assert!(stored == *picture, "{place} is not current, run `cargo xtask readme`");
@@ -43,9 +104,9 @@ fn generated_parts_are_those_of_this_tree() {
     }
 }
 
-/// What is committed is cloned as a user would, and every `sh` block of its README is run there.
+/// What is committed is cloned as a user would, and every `sh` block of README.md and docs/ is run there.
 ///
-/// `cargo xtask test` runs it, which installs the programs that README.md names.
+/// `cargo xtask test` runs it, which installs the programs that they name.
 #[test]
 #[ignore = "builds a clone for the host and for boards; needs CMake, QEMU and compilers for C"]
 fn commands_work_in_a_fresh_clone() {
@@ -55,12 +116,12 @@ fn commands_work_in_a_fresh_clone() {
     git.args(["clone", "--quiet"]).arg(root()).arg(&clone);
     let status = git.status().expect("git is needed: the repository is cloned");
     assert!(status.success(), "git clone: {status}");
-    let readme = read(&clone.join("README.md"));
+    let pages: String = pages(&clone).into_iter().map(|(_, text)| text + "\n").collect();
 
-    let blocks = commands::blocks(&readme);
+    let blocks = commands::blocks(&pages);
     for program in commands::programs(&blocks.concat()) {
         let missing = "is not installed; `cargo xtask test` installs it";
-        assert!(is_installed(program), "README.md runs {program}, which {missing}");
+        assert!(is_installed(program), "README.md or docs/ run {program}, which {missing}");
     }
     assert!(read(&clone.join(".cargo/config.toml")).contains("run --locked --quiet --release "), "see run()");
     for block in &blocks {
@@ -69,15 +130,18 @@ fn commands_work_in_a_fresh_clone() {
     let all = blocks.concat();
     assert!(
         all.contains(" demo ") && all.contains(" match "),
-        "README.md runs neither demo nor match:\n{all}"
+        "README.md and docs/ run neither demo nor match:\n{all}"
     );
 
     let outs: Vec<PathBuf> = commands::out_folders(&all).iter().map(|out| clone.join(out)).collect();
-    let promised = commands::promised_files(&readme);
-    assert!(promised.len() > 5, "README.md names few files: {promised:?}");
+    let promised = commands::promised_files(&pages);
+    assert!(promised.len() > 5, "README.md and docs/ name few files: {promised:?}");
     let there = |name: &String| clone.join(name).is_file() || outs.iter().any(|out| out.join(name).is_file());
     let missing: Vec<_> = promised.iter().filter(|name| !there(name)).collect();
-    assert!(missing.is_empty(), "README.md names files that its commands do not write: {missing:?}");
+    assert!(
+        missing.is_empty(),
+        "README.md or docs/ name files that their commands do not write: {missing:?}"
+    );
 }
 
 /// Whether the shell finds a program.
@@ -97,5 +161,9 @@ fn run(block: &str, clone: &Path) {
     let output = shell.output().expect("sh");
     let told =
         format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-    assert!(output.status.success(), "a block of README.md failed, {}:\n{block}\n{told}", output.status);
+    assert!(
+        output.status.success(),
+        "a block of README.md or docs/ failed, {}:\n{block}\n{told}",
+        output.status
+    );
 }

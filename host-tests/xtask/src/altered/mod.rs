@@ -36,12 +36,12 @@ pub struct Arguments {
     /// The methods of this library alone
     #[arg(long, conflicts_with = "python")]
     without_opencv: bool,
-    /// Writes the first table into README.md
+    /// Writes the first table into docs/performance.md
     #[arg(long, conflicts_with = "without_opencv")]
     readme: bool,
 }
 
-/// The part of README.md.
+/// The part of docs/performance.md.
 const PART: Part = Part { name: "altered", command: "cargo xtask altered --data DIR --readme" };
 
 /// Measures, prints and writes.

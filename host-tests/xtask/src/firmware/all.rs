@@ -33,7 +33,7 @@ pub struct Result {
     pub checksums: Vec<Checksum>,
 }
 
-/// Runs all of it and prints it; writes the tables into README.md, or compares them.
+/// Runs all of it and prints it; writes the tables into docs/performance.md, or compares them.
 pub fn run(readme: tables::Readme) -> Outcome {
     setup::firmware(&board::ALL.map(|board| board.target))?;
     let real = checksums::pairs()?;

@@ -43,14 +43,14 @@ pub struct Arguments {
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR", required_unless_present_any = ["all", "stages"])]
     out: Option<PathBuf>,
-    /// Every core, method and size on the built-in scene: writes the table of README.md
+    /// Every core, method and size on the built-in scene: writes the table of docs/performance.md
     #[arg(long, conflicts_with_all =
         ["program", "small", "core", "left", "right", "disparities", "method", "noise", "out"])]
     all: bool,
-    /// The instructions of a frame by stage, on cores whose code differs: writes the table of README.md
+    /// The instructions of a frame by stage, on cores whose code differs: writes the table of docs/performance.md
     #[arg(long, conflicts_with_all = ["all", "program", "small", "core", "left", "right", "disparities", "method", "noise", "out"])]
     stages: bool,
-    /// With --all or --stages: writes nothing, fails when README.md's table is another
+    /// With --all or --stages: writes nothing, fails when the table in docs/performance.md is another
     #[arg(long)]
     pub check: bool,
 }

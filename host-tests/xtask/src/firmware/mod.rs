@@ -3,7 +3,7 @@
 //! * [`arguments`]: what is asked for. [`program`]: one build of the example. [`emulate`]: QEMU. [`log`]: the
 //!   firmware's log as text.
 //! * [`frame`]: one frame on one core, held to the host. [`summary`]: the files that are written of it.
-//! * [`all`]: every core, method and size; [`tables`] of it for README.md; [`checksums`] on real pictures.
+//! * [`all`]: every core, method and size; [`tables`] of it for docs/performance.md; [`checksums`] on real pictures.
 //! * [`as_match`]: noisy cameras that are exposed unequally, beside `stereo match`.
 //! * [`awkward`]: sizes that fill no vector, where the rows are in assembly.
 //! * [`pose`]: two views on one core, held to the host; [`two_views_all`]: on every core.
@@ -81,7 +81,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
 }
 
-/// Every core and program; writes README.md's tables, or compares them.
+/// Every core and program; writes the figures' tables, or compares them.
 fn run_all(readme: Readme) -> Outcome {
     all::run(readme)?;
     two_views_all::run(readme)?;
@@ -94,7 +94,7 @@ fn run_all(readme: Readme) -> Outcome {
     Ok(())
 }
 
-/// Every core and method and a part of the sizes and programs, compared with README.md; and a frame with what
+/// Every core and method and a part of the sizes and programs, compared with docs/performance.md; and a frame with what
 /// the program `stereo` at that path makes of it.
 pub fn check_sample(stereo: &Path) -> Outcome {
     run_all(Readme::Sample)?;

@@ -1,4 +1,4 @@
-//! The tables in README.md of the programs without sizes to choose: a line for each core that one is measured
+//! The tables in docs/performance.md of the programs without sizes to choose: a line for each core that one is measured
 //! on.
 
 use super::board::{self, Board};
@@ -10,7 +10,7 @@ use crate::steps::Outcome;
 
 /// What came of a program, as its table shows it.
 pub trait Tabled: Send {
-    /// The program's name, and that of its part of README.md.
+    /// The program's name, and that of its part of docs/performance.md.
     const NAME: &'static str;
     /// What it is measured on; most are on both cores that are built alike, and on one of them made for size.
     const CASES: &'static [(Board, Optimised)] =
@@ -23,7 +23,7 @@ pub trait Tabled: Send {
     fn taken(&self) -> &Taken;
 }
 
-/// Measures a program; writes its table into README.md, or compares it.
+/// Measures a program; writes its table into docs/performance.md, or compares it.
 pub fn run_all<T: Tabled>(
     readme: Readme,
     run: fn(Board, Optimised) -> Outcome<T>,
@@ -68,7 +68,7 @@ pub fn table<T: Tabled>(all: &[T]) -> String {
     table
 }
 
-/// Writes the text with a program's table into README.md, or compares it.
+/// Writes the text with a program's table into docs/performance.md, or compares it.
 pub fn into_readme<T: Tabled>(text: &str, readme: Readme) -> Outcome {
     let part = tables::with_compiler(text)?;
     println!("{part}");

@@ -1,4 +1,4 @@
-//! The parts of README.md that are made of the firmware's figures.
+//! The parts of docs/performance.md that are made of the firmware's figures.
 
 use super::all::{Result, spread};
 use crate::steps::{Failure, Outcome, command, output_of, root};
@@ -6,21 +6,21 @@ use std::fs;
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// A part of README.md, between lines that name it.
+/// A part of docs/performance.md, between lines that name it.
 pub struct Part {
     pub name: &'static str,
     /// What writes it.
     pub command: &'static str,
 }
 
-/// What is done with README.md's tables.
+/// What is done with the figures' tables.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Readme {
     /// All is measured and written.
     Write,
-    /// All is measured, and README.md has to say it.
+    /// All is measured, and docs/performance.md has to say it.
     Compare,
-    /// A part is measured that every kind of core has a share in, for the sake of time, and README.md has to
+    /// A part is measured that every kind of core has a share in, for the sake of time, and docs/performance.md has to
     /// say it.
     Sample,
 }
@@ -35,7 +35,7 @@ impl Readme {
 /// That of `cargo xtask firmware --all`.
 pub const FIRMWARE: Part = Part { name: "firmware", command: "cargo xtask firmware --all" };
 
-/// How far a figure may lie from README.md's: another folder moves a constant, another compiler makes other
+/// How far a figure may lie from the figures': another folder moves a constant, another compiler makes other
 /// code.
 const WITHIN: f64 = 0.01;
 const WITHIN_OF_ANOTHER_COMPILER: f64 = 0.15;
@@ -102,33 +102,33 @@ fn spreads(results: &[Result]) -> String {
     table
 }
 
-/// Writes a part's text into README.md, or only compares.
+/// Writes a part's text into docs/performance.md, or only compares.
 pub fn into_readme(part: &Part, text: &str, readme: Readme) -> Outcome {
     if readme == Readme::Write {
         return splice(part, text);
     }
     let (whole, place) = part.find()?;
     match difference(&whole[place], text, readme == Readme::Sample) {
-        Some(what) => Err(Failure::new(format!("README.md: {what}; run `{}`", part.command))),
+        Some(what) => Err(Failure::new(format!("docs/performance.md: {what}; run `{}`", part.command))),
         None => Ok(()),
     }
 }
 
-/// Writes a part's text into README.md.
+/// Writes a part's text into docs/performance.md.
 pub fn splice(part: &Part, text: &str) -> Outcome {
     let (mut readme, place) = part.find()?;
     readme.replace_range(place, &format!("\n{text}\n"));
-    fs::write(readme_path(), readme).map_err(|e| Failure::new(format!("README.md: {e}")))
+    fs::write(readme_path(), readme).map_err(|e| Failure::new(format!("docs/performance.md: {e}")))
 }
 
 fn readme_path() -> PathBuf {
-    root().join("README.md")
+    root().join("docs/performance.md")
 }
 
 impl Part {
-    /// README.md, and where the part stands in it.
+    /// docs/performance.md, and where the part stands in it.
     fn find(&self) -> Outcome<(String, Range<usize>)> {
-        let failed = |what: String| Failure::new(format!("README.md: {what}"));
+        let failed = |what: String| Failure::new(format!("docs/performance.md: {what}"));
         let (begin, end) =
             (format!("<!-- generated: {} -->\n", self.name), format!("<!-- end: {} -->", self.name));
         let readme = fs::read_to_string(readme_path()).map_err(|e| failed(e.to_string()))?;

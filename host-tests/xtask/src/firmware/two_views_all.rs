@@ -18,7 +18,7 @@ struct EightPoint {
     flash: u64,
 }
 
-/// Measures all of it; writes the table into README.md, or compares it.
+/// Measures all of it; writes the table into docs/performance.md, or compares it.
 pub fn run(readme: Readme) -> Outcome {
     let poses = plain::measured(readme, pose::run, Pose::told)?;
     let EightPoint { instructions, flash } = eight_point()?;

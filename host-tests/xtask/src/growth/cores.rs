@@ -31,16 +31,16 @@ const MOST: f64 = 1.75;
 /// halves then.
 const MOST_IN_HALVES: f64 = 2.0;
 
-/// The part of README.md.
+/// The part of docs/performance.md.
 const PART: tables::Part = tables::Part { name: "growth", command: "cargo xtask growth" };
 
-/// Measures all of it and prints it; writes the table into README.md, or compares it.
+/// Measures all of it and prints it; writes the table into docs/performance.md, or compares it.
 pub fn run(readme: Readme) -> Outcome {
     let text = measured(&CORES, &DISPARITIES)?;
     tables::into_readme(&PART, &tables::with_compiler(&text)?, readme)
 }
 
-/// Holds a few sizes on one core to the limits: columns are not lines of README.md.
+/// Holds a few sizes on one core to the limits: columns are not lines of docs/performance.md.
 pub fn sample() -> Outcome {
     measured(&CORES[..1], &[16, 32, 128]).map(drop)
 }

@@ -1,7 +1,7 @@
 //! `cargo xtask growth`: what an evaluation, one disparity of one pixel, costs while the work grows.
 //!
 //! * `sizes`: what grows, and how far.
-//! * `cores`: instructions on emulated cores, which are exact: the table of README.md, and a limit.
+//! * `cores`: instructions on emulated cores, which are exact: the table of docs/performance.md, and a limit.
 //! * `host`: nanoseconds on this machine, for each of its kernels: printed only.
 //! * `table`: both as tables, and where an evaluation costs more than the limit allows.
 //!
@@ -23,7 +23,7 @@ pub struct Arguments {
     /// Times all methods and kernels on this machine instead, in nanoseconds; nothing is written
     #[arg(long, conflicts_with = "check")]
     host: bool,
-    /// Writes nothing, fails when README.md's table is another
+    /// Writes nothing, fails when the figures' table is another
     #[arg(long)]
     check: bool,
 }

@@ -33,7 +33,7 @@ const STAGES: [(&str, &[&str]); 8] = [
 /// The most of a frame that may be in no stage: more of it, and [`STAGES`] does not know a function's name.
 const MOST_OUTSIDE: f64 = 0.25;
 
-/// The part of README.md.
+/// The part of docs/performance.md.
 const PART: Part = Part { name: "stages", command: "cargo xtask firmware --stages" };
 
 /// The instructions of a frame.

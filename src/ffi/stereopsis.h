@@ -69,123 +69,122 @@
 
 
 /**
- * The version of this interface. It changes when a program that was compiled with another header would go
- * wrong.
+ * Version of this interface, which changes when a program compiled with another header would go wrong.
  */
 #define STEREOPSIS_ABI 5
 
 /**
- * Every matcher's memory may be aligned to this many bytes: `uint64_t` will do.
+ * Alignment that is enough for every matcher's memory, that of `uint64_t`.
  */
 #define STEREOPSIS_ALIGN 8
 
 /**
- * `stereopsis_config_default` and `_noise`: an answer wherever there is a candidate.
+ * Preset of checks: an answer wherever there is a candidate.
  */
 #define STEREOPSIS_PRESET_DENSE 0
 
 /**
- * `stereopsis_config_default` and `_noise`: drops what the other image or the neighbourhood contradicts.
+ * Preset of checks: drops what the other image or the neighbourhood contradicts.
  */
 #define STEREOPSIS_PRESET_DEFAULT 1
 
 /**
- * `stereopsis_config_default` and `_noise`: drops what is ambiguous or has little texture as well.
+ * Preset of checks: drops what is ambiguous or has little texture as well.
  */
 #define STEREOPSIS_PRESET_STRICT 2
 
 /**
- * In `left_right_px` and `uniqueness_percent` of a configuration: not checked.
+ * Value of `left_right_px` and `uniqueness_percent` that disables the check.
  */
 #define STEREOPSIS_NOT_CHECKED -1
 
 /**
- * In `noise` of a configuration: little, so that pixels are compared as they are.
+ * Noise level: little noise, so that pixels are compared as they are.
  */
 #define STEREOPSIS_NOISE_NONE 0
 
 /**
- * In `noise` of a configuration: a deviation of about 2 grey levels.
+ * Noise level: a standard deviation of about 2 grey levels.
  */
 #define STEREOPSIS_NOISE_LOW 1
 
 /**
- * In `noise` of a configuration: a deviation from about 3 grey levels on.
+ * Noise level: a standard deviation from about 3 grey levels on.
  */
 #define STEREOPSIS_NOISE_HIGH 2
 
 /**
- * The disparity that means "no answer".
+ * Disparity that means "no answer".
  */
 #define STEREOPSIS_NONE 65535
 
 /**
- * Steps of a disparity in one pixel.
+ * Steps of a disparity per pixel.
  */
 #define STEREOPSIS_STEPS_PER_PX 32
 
 /**
- * No candidate lies inside the right image.
+ * Flag: no candidate lies inside the right image, or a camera did not see the pixel.
  */
 #define STEREOPSIS_FLAG_OUTSIDE 1
 
 /**
- * The winner is the largest disparity searched: the surface may be nearer.
+ * Flag: the winner is the largest disparity searched; the surface may be nearer.
  */
 #define STEREOPSIS_FLAG_CEILING 2
 
 /**
- * The winner costs as much as both its neighbours, or too few pixels of the window have a gradient.
+ * Flag: the winner costs as much as both its neighbours, or too few pixels of the window have a gradient.
  */
 #define STEREOPSIS_FLAG_UNTEXTURED 4
 
 /**
- * Another disparity matches nearly as well.
+ * Flag: another disparity matches nearly as well.
  */
 #define STEREOPSIS_FLAG_AMBIGUOUS 8
 
 /**
- * The right image's pixel found a better partner elsewhere.
+ * Flag: the right image's pixel has a better partner elsewhere.
  */
 #define STEREOPSIS_FLAG_MISMATCH 16
 
 /**
- * Too few answers around it are of its surface.
+ * Flag: too few answers around the pixel belong to its surface.
  */
 #define STEREOPSIS_FLAG_SPECKLE 32
 
 /**
- * The answer is not the pixel's own but the farther one of those on both sides of a small gap in the row.
+ * Flag: the answer is the farther one of those on both sides of a small gap in the row.
  */
 #define STEREOPSIS_FLAG_FILLED 64
 
 /**
- * A line near the row was lost (`stereopsis_push_lost`). Beside an answer: the line can have touched it.
+ * Flag: the pixel depends on a line that was lost (`stereopsis_push_lost`); an answer may be affected.
  */
 #define STEREOPSIS_FLAG_DAMAGED 128
 
 /**
- * The line did not come, or no buffer was free for it.
+ * Fault: the line did not arrive, or found no free buffer.
  */
 #define STEREOPSIS_LOST_DROPPED 0
 
 /**
- * The line was overwritten while it was read, or has fewer or more pixels than a line.
+ * Fault: the line was overwritten while it was read, or has too few or too many pixels.
  */
 #define STEREOPSIS_LOST_TORN 1
 
 /**
- * The line came after the time at which it was of use.
+ * Fault: the line arrived too late to be used.
  */
 #define STEREOPSIS_LOST_LATE 2
 
 /**
- * The buffer holds a line of before: nobody has filled it since.
+ * Fault: the buffer still holds an earlier line.
  */
 #define STEREOPSIS_LOST_STALE 3
 
 /**
- * What a call answers: below 0 it is an error, and nothing has changed.
+ * Result of a call; below 0 it is an error, and nothing has changed.
  */
 enum stereopsis_status
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -193,7 +192,7 @@ enum stereopsis_status
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
   /**
-   * Done. Where the call gives a row, there is one.
+   * Done; a call that gives a row gave one.
    */
   STEREOPSIS_STATUS_OK = 0,
   /**
@@ -338,13 +337,12 @@ typedef int32_t stereopsis_status;
 #endif // __cplusplus
 
 /**
- * A matcher in memory that the caller gave.
+ * Matcher in the caller's memory.
  */
 typedef struct stereopsis stereopsis;
 
 /**
- * Frame size, search range and checks. `stereopsis_config_default` fills it, fields may be changed after
- * that.
+ * Frame size, search range and checks, filled by `stereopsis_config_default` and then open to changes.
  */
 typedef struct stereopsis_config {
   /**
@@ -356,152 +354,151 @@ typedef struct stereopsis_config {
    */
   uint16_t height;
   /**
-   * How many whole disparities are searched: 16 to `stereopsis_max_disparities()`.
+   * Number of whole disparities searched: 16 to `stereopsis_max_disparities()`.
    */
   uint16_t disparities;
   /**
-   * The smallest disparity searched, px.
+   * Smallest disparity searched, px.
    */
   uint16_t min_disparity;
   /**
-   * Left-right check: the largest difference of the two answers, 0 to 255 px, or
+   * Left-right check: largest difference of the two answers, 0 to 255 px, or
    * `STEREOPSIS_NOT_CHECKED`.
    */
   int16_t left_right_px;
   /**
-   * Uniqueness: by how much the second best has to cost more, 0 to 99 percent, or
+   * Uniqueness check: least extra cost of the second best, 0 to 99 percent, or
    * `STEREOPSIS_NOT_CHECKED`.
    */
   int16_t uniqueness_percent;
   /**
-   * Texture: a pixel counts when its neighbours left and right differ by this many grey levels.
+   * Texture check: least difference of a textured pixel's left and right neighbours, grey levels.
    */
   uint8_t texture_gradient;
   /**
-   * Texture: how many such pixels the window of an answer holds at least; 0 is not checked.
+   * Texture check: least number of textured pixels in the window of an answer; 0 disables it.
    */
   uint8_t texture_pixels;
   /**
-   * Whether a winner at the largest disparity searched is refused; 0 is no.
+   * Whether a winner at the largest disparity searched is refused; 0 means no.
    */
   uint8_t refuse_ceiling;
   /**
-   * Whether a winner is refused that costs as much as both its neighbours; 0 is no.
+   * Whether a winner that costs as much as both its neighbours is refused; 0 means no.
    */
   uint8_t refuse_flat;
   /**
-   * Answers are averaged along the line with this many pairs of neighbours of their surface, 0 to 8.
+   * Smoothing: pairs of neighbours along the line that are averaged within a surface, 0 to 8.
    */
   uint8_t smoothing_radius;
   /**
-   * Whether every answer becomes the middle one of those in 3 x 3 pixels around it; 0 is no.
+   * Whether a median filter of 3 x 3 pixels is applied; 0 means no.
    */
   uint8_t median;
   /**
-   * Neighbours are of one surface when they differ by at most this, in 1/32 px, 0 to 32.
+   * Largest difference of neighbours of one surface, in 1/32 px, 0 to 32.
    */
   uint16_t surface_step;
   /**
-   * Speckle: answers with fewer of their surface on a cross around them are dropped; with 0 none is.
+   * Speckle filter: least number of answers of one surface on a cross around an answer; 0 disables it.
    */
   uint8_t speckle_pixels;
   /**
-   * Methods along paths: gradients are cut off at this many eighths of a grey level per pixel, 1 to 14.
+   * Semi-global matching: truncation of gradients, eighths of a grey level per pixel, 1 to 14.
    */
   uint8_t gradient;
   /**
-   * Methods along paths: a pixel's cost is cut off at this, at least 1.
+   * Semi-global matching: truncation of a pixel's cost, at least 1.
    */
   uint8_t cost;
   /**
-   * Methods along paths: what a change of the disparity by one px costs where the brightness changes
-   * little, and more; at least 1, and the second at most the first.
+   * Semi-global matching: penalty P1 of a disparity change by one px, at small and larger changes of
+   * brightness; at least 1, and the second at most the first.
    */
   uint8_t step[2];
   /**
-   * Methods along paths: what a larger change costs where the brightness changes little, more, and much;
-   * each at least the first step. `cost + step + jump` is at most 127 and `3 cost + 2 jump` at most
-   * 254.
+   * Semi-global matching: penalty P2 of larger disparity changes, at small, larger and large changes of
+   * brightness; each at least the first step. `cost + step + jump` is at most 127, `3 cost + 2 jump` at
+   * most 254.
    */
   uint8_t jump[3];
   /**
-   * Methods along paths: the changes of brightness, in grey levels, at which it is more, and much.
+   * Semi-global matching: least larger and least large change of brightness, grey levels.
    */
   uint8_t edges[2];
   /**
-   * Fill: gaps along the row of at most this many pixels, between two answers, get the farther of the two
-   * and `STEREOPSIS_FLAG_FILLED`; with 0 none does.
+   * Gap filling: longest gap in a row, pixels, that is filled with the farther of the answers at its ends
+   * and flagged `STEREOPSIS_FLAG_FILLED`; 0 disables it.
    */
   uint8_t fill_pixels;
   /**
-   * Whether rows say how sure each answer is; 0 is no, and saves the search for each pixel's second best.
+   * Whether rows have confidences; 0 means no, and saves the search for each pixel's second best.
    */
   uint8_t confidence;
   /**
-   * Fill: by how much the two answers may differ, in 1/32 px; 65535 for any two.
+   * Gap filling: largest difference of the two answers, in 1/32 px; 65535 for no limit.
    */
   uint16_t fill_step;
   /**
-   * How noisy both cameras are, a `STEREOPSIS_NOISE_`: what is compared is smoothed accordingly.
-   * `stereopsis_config_noise` sets it with the checks and penalties that suit it.
+   * Noise level of both cameras, a `STEREOPSIS_NOISE_`, which selects the smoothing of compared pixels;
+   * `stereopsis_config_noise` sets it with matching checks and penalties.
    */
   uint8_t noise;
 } stereopsis_config;
 
 /**
- * A row of results. The arrays stand in the matcher's memory and hold until the next call with its handle.
+ * Row of results, with arrays in the matcher's memory that hold until the next call with its handle.
  */
 typedef struct stereopsis_row {
   /**
-   * The row in the image, from 0.
+   * Row in the image, from 0.
    */
   uint16_t index;
   /**
-   * Pixels in the row: the length of the arrays.
+   * Number of pixels, the length of the arrays.
    */
   uint16_t width;
   /**
-   * A disparity for each column in 1/32 px, `STEREOPSIS_NONE` for no answer.
+   * Disparities of the columns in 1/32 px, `STEREOPSIS_NONE` for no answer.
    */
   const uint16_t *disparities;
   /**
-   * The `STEREOPSIS_FLAG_` bits of each column: why there is no answer, or none of its own.
+   * `STEREOPSIS_FLAG_` bits of the columns.
    */
   const uint8_t *flags;
   /**
-   * How sure the answer of each column is, 1 to 207, 0 for no answer; null unless the configuration's
-   * `confidence` asked for it. The number puts answers in order, the wrong ones first; it is no
-   * probability.
+   * Confidences of the columns, 1 to 207, 0 for no answer; null unless the configuration's `confidence` is
+   * set. They rank answers, likely wrong ones first, and are no probabilities.
    */
   const uint8_t *confidences;
 } stereopsis_row;
 
 /**
- * Counts since `stereopsis_start`, each of which stays at its largest value when it is reached.
+ * Saturating counts since `stereopsis_start`.
  */
 typedef struct stereopsis_counts {
   /**
-   * Frames begun.
+   * Frames that began.
    */
   uint32_t frames;
   /**
-   * Frames of which every line came, and every row went out.
+   * Frames of which every line came and every row was given.
    */
   uint32_t frames_whole;
   /**
-   * Frames of which every row went out, some of them flagged.
+   * Frames of which every row was given, some of them flagged.
    */
   uint32_t frames_damaged;
   /**
-   * Frames that were given up after they had begun.
+   * Frames that ended early.
    */
   uint32_t frames_broken;
   /**
-   * Rows that went out.
+   * Rows that were given.
    */
   uint32_t rows;
   /**
-   * Rows of these with `STEREOPSIS_FLAG_DAMAGED`.
+   * Rows with `STEREOPSIS_FLAG_DAMAGED`.
    */
   uint32_t rows_damaged;
   /**
@@ -509,26 +506,25 @@ typedef struct stereopsis_counts {
    */
   uint32_t lines;
   /**
-   * Lines told as `STEREOPSIS_LOST_DROPPED`.
+   * Lines reported as `STEREOPSIS_LOST_DROPPED`.
    */
   uint32_t lines_dropped;
   /**
-   * Lines told as `STEREOPSIS_LOST_TORN`.
+   * Lines reported as `STEREOPSIS_LOST_TORN`.
    */
   uint32_t lines_torn;
   /**
-   * Lines told as `STEREOPSIS_LOST_LATE`.
+   * Lines reported as `STEREOPSIS_LOST_LATE`.
    */
   uint32_t lines_late;
   /**
-   * Lines told as `STEREOPSIS_LOST_STALE`.
+   * Lines reported as `STEREOPSIS_LOST_STALE`.
    */
   uint32_t lines_stale;
 } stereopsis_counts;
 
 /**
- * How noisy the lines are that it was given: the caller's memory, for `stereopsis_noise_clear` and what
- * follows it. The words are the library's.
+ * Noise meter in the caller's memory, for the `stereopsis_noise_` functions; its contents are private.
  */
 typedef struct stereopsis_noise_meter {
   /**
@@ -538,7 +534,7 @@ typedef struct stereopsis_noise_meter {
 } stereopsis_noise_meter;
 
 /**
- * Two cameras after rectification: rows are aligned, both have one focal length.
+ * Rectified stereo rig: aligned rows and one focal length.
  */
 typedef struct stereopsis_rig {
   /**
@@ -568,59 +564,59 @@ extern "C" {
 #endif // __cplusplus
 
 /**
- * The library's interface: a program that was compiled with another `STEREOPSIS_ABI` must not go
- * on.
+ * Returns the version of the library's interface: a program compiled with another
+ * `STEREOPSIS_ABI` must not continue.
  */
 uint32_t stereopsis_abi(void);
 
 /**
- * The library's version, such as "1.2.3".
+ * Returns the library's version, such as "1.2.3".
  */
 const char *stereopsis_version(void);
 
 /**
- * What a status says, in a line without an end; there is a text for every number.
+ * Returns the text of any number as a status, one line without an end.
  */
 const char *stereopsis_status_text(int32_t status);
 
 /**
- * Bytes of memory that a matcher takes.
+ * Returns the bytes of memory that a matcher takes.
  */
 size_t stereopsis_size(void);
 
 /**
- * What the memory's address has to be a multiple of; `STEREOPSIS_ALIGN` at most.
+ * Returns the alignment that a matcher's memory needs, at most `STEREOPSIS_ALIGN`.
  */
 size_t stereopsis_align(void);
 
 /**
- * The longest line that this library was built for, in pixels.
+ * Returns the longest line that this library was built for, in pixels.
  */
 size_t stereopsis_max_width(void);
 
 /**
- * The most disparities that this library was built for.
+ * Returns the largest number of disparities that this library was built for.
  */
 size_t stereopsis_max_disparities(void);
 
 /**
- * Row y comes out when line y + `stereopsis_latency()` goes in; the last rows come by
- * `stereopsis_flush`.
+ * Returns the delay in lines: row y comes out when line y + `stereopsis_latency()` goes in; the
+ * last rows come by `stereopsis_flush`.
  */
 size_t stereopsis_latency(void);
 
 /**
- * Makes a matcher in the caller's memory of `length` bytes, and gives the handle for all other
- * calls; a null handle on an error, unless `handle` itself is what is wrong.
+ * Creates a matcher in the caller's memory of `length` bytes, and writes the handle for all
+ * other calls; a null handle on an error, unless `handle` itself is invalid.
  *
- * The memory needs no content, and is the matcher's alone until `stereopsis_deinit`. Memory that
+ * The memory needs no content, and belongs to the matcher until `stereopsis_deinit`. Memory that
  * still holds a matcher, such as RAM that a warm start does not clear, is refused as already
  * initialised.
  */
 stereopsis_status stereopsis_init(void *memory, size_t length, struct stereopsis **handle);
 
 /**
- * Ends a matcher; the memory is the caller's again. The handle is the memory's address.
+ * Ends a matcher, whose memory returns to the caller. The handle is the memory's address.
  */
 stereopsis_status stereopsis_deinit(struct stereopsis *handle);
 
@@ -636,37 +632,36 @@ stereopsis_status stereopsis_config_default(uint16_t width,
                                             struct stereopsis_config *config);
 
 /**
- * Makes a configuration one for cameras with `noise`, a `STEREOPSIS_NOISE_` such as
- * `stereopsis_noise_level` tells: sets that, and the checks of a `STEREOPSIS_PRESET_` and
- * the method's penalties for it. Size, search and `confidence` stay as they are.
+ * Sets a configuration's `noise`, a `STEREOPSIS_NOISE_` as from `stereopsis_noise_level`, with
+ * the checks of a `STEREOPSIS_PRESET_` and the method's penalties for it. Size, search and
+ * `confidence` are kept.
  */
 stereopsis_status stereopsis_config_noise(int32_t preset, uint8_t noise, struct stereopsis_config *config);
 
 /**
- * Checks a configuration, which is copied, and gets ready for the first frame. It can be called
- * again, for another configuration; a frame that is under way is lost, and counters go to
- * zero.
+ * Checks a configuration, which is copied, and prepares for the first frame. Another call
+ * changes the configuration, drops a frame that is under way, and clears the counters.
  */
 stereopsis_status stereopsis_start(struct stereopsis *handle, const struct stereopsis_config *config);
 
 /**
- * `stereopsis_start` between two frames, for the noise of the one before as it may be: counters
- * go on, and a frame that is under way counts as broken off. A configuration that is refused
+ * Changes the configuration between two frames, for instance for the noise of the last one:
+ * counters continue, and a frame that is under way counts as broken. A refused configuration
  * changes nothing.
  */
 stereopsis_status stereopsis_restart(struct stereopsis *handle, const struct stereopsis_config *config);
 
 /**
- * Begins a frame and forgets the one before.
+ * Begins a frame, and drops the one before.
  */
 stereopsis_status stereopsis_begin_frame(struct stereopsis *handle);
 
 /**
- * Takes the next line of both cameras, 8-bit grey, `length` bytes each: the configuration's
- * width. The lines are copied; both may be one array.
+ * Takes the next line of both cameras, 8-bit grey, `length` bytes each, which is the
+ * configuration's width. The lines are copied; both may be one array.
  *
- * `STEREOPSIS_STATUS_OK` with a row, or `STEREOPSIS_STATUS_NO_ROW_YET` with an empty one for the
- * first lines of a frame. On an error the row is left as it is.
+ * Returns `STEREOPSIS_STATUS_OK` with a row, or `STEREOPSIS_STATUS_NO_ROW_YET` with an empty one
+ * for the first lines of a frame. An error leaves the row unchanged.
  */
 stereopsis_status stereopsis_push(struct stereopsis *handle,
                                   const uint8_t *left,
@@ -675,20 +670,20 @@ stereopsis_status stereopsis_push(struct stereopsis *handle,
                                   struct stereopsis_row *row);
 
 /**
- * In place of `stereopsis_push`, of a line that did not come, for a reason of the
- * `STEREOPSIS_LOST_` numbers: the line above stands in. Rows whose matching window saw it
- * have no answers and `STEREOPSIS_FLAG_DAMAGED` on every pixel, rows that it can have
- * touched otherwise keep theirs and have the flag, and every other row is what it would be
- * without the loss. Answers as `stereopsis_push` does.
+ * Takes the line above in place of a lost one, with the `STEREOPSIS_LOST_` number of its fault,
+ * where `stereopsis_push` would be called. Rows whose matching window contains the lost line
+ * have no answers and `STEREOPSIS_FLAG_DAMAGED` on every pixel, rows that it affects otherwise
+ * keep theirs and have the flag, and every other row is what it would be without the loss.
+ * Returns what `stereopsis_push` returns.
  */
 stereopsis_status stereopsis_push_lost(struct stereopsis *handle, int32_t fault, struct stereopsis_row *row);
 
 /**
- * Takes answers of the row that came out last away where a camera did not see, such as the black
- * border of a rectified image: masks of the left and of the right image's row, `length`
- * bytes each, 0 for a pixel that was not seen; null where all were. An answer goes, and has
- * `STEREOPSIS_FLAG_OUTSIDE`, where its own pixel or its partner was not seen. The row's
- * arrays change in place.
+ * Removes answers of the last row at pixels that a camera did not see, such as the black border
+ * of a rectified image. The masks of the left and the right image's row have `length` bytes
+ * each, 0 for an unseen pixel; a null mask means that all were seen. An answer whose pixel or
+ * partner was not seen is removed and flagged `STEREOPSIS_FLAG_OUTSIDE`. The row's arrays change
+ * in place.
  */
 stereopsis_status stereopsis_mask(struct stereopsis *handle,
                                   const uint8_t *left,
@@ -696,26 +691,26 @@ stereopsis_status stereopsis_mask(struct stereopsis *handle,
                                   size_t length);
 
 /**
- * What was counted since `stereopsis_start`.
+ * Writes the counts since `stereopsis_start`.
  */
 stereopsis_status stereopsis_counters(struct stereopsis *handle, struct stereopsis_counts *counters);
 
 /**
- * Gives the next row when all lines are in: `STEREOPSIS_STATUS_OK` with a row, or
- * `STEREOPSIS_STATUS_FRAME_DONE` with an empty one when all are out.
+ * Gives the next row after the last line: `STEREOPSIS_STATUS_OK` with a row, or
+ * `STEREOPSIS_STATUS_FRAME_DONE` with an empty one after the last row.
  */
 stereopsis_status stereopsis_flush(struct stereopsis *handle, struct stereopsis_row *row);
 
 /**
- * Standard deviations of the row that came out last, in px, for `count` columns: all of the row.
- * Infinite where there is no answer. Before a frame's first row it is
+ * Writes the standard deviations of the last row, px, for all its `count` columns, infinite
+ * where there is no answer. Before a frame's first row the result is
  * `STEREOPSIS_STATUS_NO_ROW_YET`, and nothing is written.
  */
 stereopsis_status stereopsis_sigma_px(struct stereopsis *handle, float *sigma_px, size_t count);
 
 /**
- * A meter that has seen no line; it needs no matcher. As often as light may change: measure a
- * frame, and give what it says to the configuration of the next ones.
+ * Clears a noise meter, which needs no matcher. Measure a frame as often as the light may
+ * change, and set the level in the configuration of the next ones.
  */
 stereopsis_status stereopsis_noise_clear(struct stereopsis_noise_meter *meter);
 
@@ -727,16 +722,17 @@ stereopsis_status stereopsis_noise_line(struct stereopsis_noise_meter *meter,
                                         size_t length);
 
 /**
- * The `STEREOPSIS_NOISE_` number of the lines so far, for `stereopsis_config_noise`, and unless
- * `sigma_16ths` is null the deviation in 1/16 grey level; none and 0 before the first line.
+ * Writes the `STEREOPSIS_NOISE_` number of the lines so far, for `stereopsis_config_noise`, and
+ * unless `sigma_16ths` is null the standard deviation in 1/16 grey level; none and 0 before the
+ * first line.
  */
 stereopsis_status stereopsis_noise_level(struct stereopsis_noise_meter *meter,
                                          uint8_t *noise,
                                          uint16_t *sigma_16ths);
 
 /**
- * Depths of `count` disparities to the nearest millimetre, 0 for none: no answer, at infinity,
- * or beyond 65.535 m. Both may be one array.
+ * Converts `count` disparities to depths in whole millimetres, 0 for no answer, at infinity, or
+ * beyond 65.535 m. Both arrays may be one.
  */
 stereopsis_status stereopsis_millimetres(const struct stereopsis_rig *rig,
                                          const uint16_t *disparities,

@@ -48,4 +48,4 @@ pub use match_config::{Epipolar, MatchConfig};
 pub use orientation::PatchOrientation;
 pub use pattern::{PAIRS, PATCH_RADIUS, PATTERN, PointPair};
 pub use subpixel::refine;
-pub use template::{RowMatch, Template, TemplateMatch};
+pub use template::{RowMatch, Template, TemplateError, TemplateMatch};

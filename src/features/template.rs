@@ -49,41 +49,66 @@ pub struct RowMatch {
     pub elsewhere: f32,
 }
 
+/// Why a template could not be cut or found.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum TemplateError {
+    /// The place is too near the edge of the picture, or outside of it.
+    Edge,
+    /// The pixels hold no corner: along an edge or on an even surface the place could be anywhere.
+    Untextured,
+    /// The alignment went farther from its start than was allowed.
+    TooFar,
+}
+
+impl core::fmt::Display for TemplateError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Edge => "the place is too near the edge of the picture",
+            Self::Untextured => "the pixels hold no corner",
+            Self::TooFar => "the alignment went too far from its start",
+        })
+    }
+}
+
+impl core::error::Error for TemplateError {}
+
 impl Template {
     /// Pixels to either side that a template needs.
     pub const MARGIN: usize = REACH + 1;
     /// Nothing: finds nothing.
     pub const NONE: Self = Self { pixels: [[0; OUTER]; OUTER], part: [0.0; 2] };
 
-    /// What is around a place; `None` next to the picture's edge.
-    pub fn cut(picture: &Picture<'_>, x_px: f32, y_px: f32) -> Option<Self> {
+    /// Cuts the pixels around a place out of a picture; refused next to the picture's edge.
+    pub fn cut(picture: &Picture<'_>, x_px: f32, y_px: f32) -> Result<Self, TemplateError> {
         let (x, y) = (x_px + 0.5, y_px + 0.5);
         if !(x >= Self::MARGIN as f32 && y >= Self::MARGIN as f32) {
-            return None;
+            return Err(TemplateError::Edge);
         }
         let (column, row) = (x as usize, y as usize);
         let mut template = Self { part: [x_px - column as f32, y_px - row as f32], ..Self::NONE };
         for (line, row) in template.pixels.iter_mut().zip(row - Self::MARGIN..) {
             // By its length: a copy of two that may differ leaves a panic.
-            *line = *picture.run(column - Self::MARGIN, row, OUTER)?.first_chunk()?;
+            let run = picture.run(column - Self::MARGIN, row, OUTER).and_then(<[u8]>::first_chunk);
+            *line = *run.ok_or(TemplateError::Edge)?;
         }
-        Some(template)
+        Ok(template)
     }
 
-    /// The place in another picture that makes the squared differences least, brightness and contrast apart,
-    /// from a start on; `warp` carries a way from the place in this template's picture, px, into a way in
-    /// the other. `None` where there is nothing to hold on to, or it leaves the picture, or goes farther
-    /// than `farthest_px`.
+    /// Aligns the template with another picture: the place with the least squared differences, brightness and
+    /// contrast apart, from `start` on. `warp` carries offsets in the template's picture into the other one, px.
     ///
-    /// Gauss and Newton's method with the template's slopes (the inverse compositional algorithm; Baker &
-    /// Matthews 2004), at most ten steps.
+    /// The inverse compositional algorithm (Baker & Matthews 2004): Gauss-Newton with the template's gradients,
+    /// at most ten steps. Refused where the pixels hold no corner, at the picture's edge, and farther than
+    /// `farthest_px` from the start.
     pub fn align(
         &self,
         picture: &Picture<'_>,
         warp: &[[f32; 2]; 2],
         start: [f32; 2],
         farthest_px: f32,
-    ) -> Option<TemplateMatch> {
+    ) -> Result<TemplateMatch, TemplateError> {
         let (values, slopes) = self.values_and_slopes();
         let (mut xx, mut xy, mut yy, mut own) = (0.0, 0.0, 0.0, 0.0);
         for (value, [x, y]) in values.iter().zip(&slopes) {
@@ -95,20 +120,20 @@ impl Template {
         let determinant = xx * yy - xy * xy;
         // Along an edge it could be anywhere.
         if !(determinant > 1e-3 * (xx + yy) * (xx + yy)) {
-            return None;
+            return Err(TemplateError::Untextured);
         }
         let [mut x, mut y] = start;
         let mut correlation = -1.0;
         for _ in 0..STEPS {
             let mut seen = [0.0; COUNT];
-            self.look(picture, warp, [x, y], &mut seen)?;
+            self.look(picture, warp, [x, y], &mut seen).ok_or(TemplateError::Edge)?;
             let (mut cross, mut other) = (0.0, 0.0);
             for (seen, value) in seen.iter().zip(&values) {
                 cross += seen * value;
                 other += seen * seen;
             }
             if !(other > 0.0) {
-                return None;
+                return Err(TemplateError::Untextured);
             }
             correlation = cross / ComplexField::sqrt(own * other);
             let gain = cross / other;
@@ -124,24 +149,24 @@ impl Template {
             y -= warp[1][0] * right + warp[1][1] * down;
             let (dx, dy) = (x - start[0], y - start[1]);
             if !(dx * dx + dy * dy <= farthest_px * farthest_px) {
-                return None;
+                return Err(TemplateError::TooFar);
             }
             if right.abs().max(down.abs()) < LITTLE {
                 break;
             }
         }
-        Some(TemplateMatch { x_px: x, y_px: y, correlation })
+        Ok(TemplateMatch { x_px: x, y_px: y, correlation })
     }
 
-    /// The column of `row` from `least` to `most` around which the other picture is most like the template,
-    /// as it is and to whole pixels; `None` where no column is inside.
+    /// The column of `row` from `least` to `most` at which the template correlates best with the other picture,
+    /// unwarped and to whole pixels; refused where no column is far enough from the picture's edge.
     pub fn match_row(
         &self,
         picture: &Picture<'_>,
         row: usize,
         least: usize,
         most: usize,
-    ) -> Option<RowMatch> {
+    ) -> Result<RowMatch, TemplateError> {
         let mut own = [[0_i32; SIDE]; SIDE];
         let (mut sum, mut squares) = (0, 0);
         for (to, line) in own.iter_mut().zip(self.pixels.iter().skip(1)) {
@@ -153,11 +178,12 @@ impl Template {
         }
         let n = COUNT as i32;
         let own_spread = (n * squares - sum * sum) as f32;
-        let (least, most) = (least.max(REACH), most.min(picture.width().checked_sub(REACH + 1)?));
-        let first_row = row.checked_sub(REACH)?;
+        let (least, most) =
+            (least.max(REACH), most.min(picture.width().checked_sub(REACH + 1).ok_or(TemplateError::Edge)?));
+        let first_row = row.checked_sub(REACH).ok_or(TemplateError::Edge)?;
         let mut lines = [&[0_u8; 0][..]; SIDE];
         for (line, row) in lines.iter_mut().zip(first_row..) {
-            *line = picture.run(0, row, picture.width())?;
+            *line = picture.run(0, row, picture.width()).ok_or(TemplateError::Edge)?;
         }
         let correlation = |column: usize| {
             let (mut other, mut other_squares, mut cross) = (0, 0, 0);
@@ -191,11 +217,12 @@ impl Template {
             far_before = far_before.max(oldest);
             before = [last, here];
         }
-        best_column.map(|column| RowMatch {
+        let found = best_column.map(|column| RowMatch {
             x_px: column as f32 + self.part[0],
             correlation: best,
             elsewhere,
-        })
+        });
+        found.ok_or(TemplateError::Edge)
     }
 
     /// The pixels without their mean, and their slopes without theirs.

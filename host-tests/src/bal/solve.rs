@@ -5,8 +5,8 @@ use nalgebra::Point3;
 use std::mem::size_of_val;
 use std::ops::ControlFlow;
 use stereopsis::motion::bundle::{
-    Adjustment, BundleConfig, BundleError, BundleReport, CrossBlock, Problem, RadialView, StopReason,
-    ViewSlot, Workspace, WorkspaceSize,
+    Adjustment, BundleConfig, BundleError, BundleReport, BundleWorkspaceView, CrossBlock, Problem,
+    RadialView, StopReason, ViewSlot, WorkspaceSize,
 };
 
 /// A problem that is being adjusted.
@@ -40,9 +40,9 @@ impl Memory {
         to(&mut self.blocks, need.blocks, [[0.0; 9]; 9])
     }
 
-    fn workspace(&mut self) -> Workspace<'_, RadialView<f64>, f64, 9> {
+    fn workspace(&mut self) -> BundleWorkspaceView<'_, RadialView<f64>, f64, 9> {
         let Self { slots, terms, points, blocks } = self;
-        Workspace { slots, terms, trial_points: points, blocks }
+        BundleWorkspaceView { slots, terms, trial_points: points, blocks }
     }
 }
 

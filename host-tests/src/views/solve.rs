@@ -7,7 +7,7 @@ use stereopsis::geometry::{
     camera::{Camera, Pose},
     two_view::{Correspondence, ScaleError},
 };
-use stereopsis::motion::bundle::{CameraView, CrossBlock, Observation, View, ViewSlot, Workspace};
+use stereopsis::motion::bundle::{BundleWorkspaceView, CameraView, CrossBlock, Observation, View, ViewSlot};
 use stereopsis::motion::structure::{
     PointState, StructureConfig, StructureError, StructureReport, StructureWorkspaceView, ViewState,
     structure,
@@ -72,7 +72,7 @@ pub fn solve(
         matches: &mut matches,
         landmarks: &mut landmarks,
         inliers: &mut inliers,
-        workspace: Workspace {
+        bundle: BundleWorkspaceView {
             slots: &mut vec![ViewSlot::EMPTY; views],
             terms: &mut vec![CrossBlock::EMPTY; views],
             trial_points: &mut vec![Point3::origin(); n],

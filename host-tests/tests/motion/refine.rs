@@ -4,8 +4,8 @@ use crate::support::pose;
 use nalgebra::{Point2, Point3, Vector3};
 use stereopsis::geometry::camera::{Camera, Pose, RectifiedRig};
 use stereopsis::motion::bundle::{
-    BundleConfig, BundleReport, CrossBlock, Gauge, Loss, Observation, Problem, RectifiedView, View, ViewSlot,
-    Workspace, adjust,
+    BundleConfig, BundleReport, BundleWorkspaceView, CrossBlock, Gauge, Loss, Observation, Problem,
+    RectifiedView, View, ViewSlot, adjust,
 };
 use stereopsis::motion::odometry::{ObservedPoint, OdometryRig, Refinement, RefinementConfig};
 use stereopsis_host::scene::Random;
@@ -101,7 +101,7 @@ fn anew(from: usize, noise_px: f64) -> (Vec<Pose<f64>>, BundleReport<f64>) {
     }
     let count = places.len();
     let mut problem = Problem { views: &mut views, points: &mut places, observations: &observations };
-    let mut workspace = Workspace {
+    let mut workspace = BundleWorkspaceView {
         slots: &mut [ViewSlot::EMPTY; VIEWS],
         terms: &mut [CrossBlock::EMPTY; 2 * VIEWS],
         trial_points: &mut vec![Point3::origin(); count],

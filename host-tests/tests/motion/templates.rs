@@ -1,7 +1,7 @@
 //! Places found again by their pixels.
 
 use image::GrayImage;
-use stereopsis::features::Template;
+use stereopsis::features::{Template, TemplateError};
 use stereopsis::imaging::Picture;
 
 /// A smooth picture without a repetition, moved, scaled, and in another light.
@@ -43,15 +43,15 @@ fn what_holds_nothing_is_not_found() {
     let flat = GrayImage::from_pixel(80, 60, image::Luma([90]));
     let template = Template::cut(&view(&flat), 40.0, 30.0).expect("inside");
     let upright = [[1.0, 0.0], [0.0, 1.0]];
-    assert_eq!(template.align(&view(&flat), &upright, [40.0, 30.0], 4.0), None);
+    assert_eq!(template.align(&view(&flat), &upright, [40.0, 30.0], 4.0), Err(TemplateError::Untextured));
     // Along an edge it could be anywhere.
     let edge = GrayImage::from_fn(80, 60, |x, _| image::Luma([if x < 40 { 20 } else { 200 }]));
     let template = Template::cut(&view(&edge), 40.0, 30.0).expect("inside");
-    assert_eq!(template.align(&view(&edge), &upright, [40.0, 30.0], 4.0), None);
-    assert!(Template::cut(&view(&edge), 5.4, 30.0).is_none());
-    assert!(Template::cut(&view(&edge), 5.6, 30.0).is_some());
-    assert!(Template::cut(&view(&edge), 40.0, 53.6).is_none());
-    assert!(Template::cut(&view(&edge), f32::NAN, 30.0).is_none());
+    assert_eq!(template.align(&view(&edge), &upright, [40.0, 30.0], 4.0), Err(TemplateError::Untextured));
+    assert!(Template::cut(&view(&edge), 5.4, 30.0).is_err());
+    assert!(Template::cut(&view(&edge), 5.6, 30.0).is_ok());
+    assert!(Template::cut(&view(&edge), 40.0, 53.6).is_err());
+    assert!(Template::cut(&view(&edge), f32::NAN, 30.0).is_err());
 }
 
 /// Every column's correlation coefficient, by its definition.
@@ -83,6 +83,6 @@ fn along_a_row_as_by_definition() {
         assert!((f64::from(found.elsewhere) - elsewhere).abs() < 1e-5, "{} {elsewhere}", found.elsewhere);
     }
     let template = Template::cut(&view(&first), 40.0, 30.0).expect("inside");
-    assert_eq!(template.match_row(&view(&second), 30, 0, 4), None);
-    assert_eq!(template.match_row(&view(&second), 57, 0, 79), None);
+    assert_eq!(template.match_row(&view(&second), 30, 0, 4), Err(TemplateError::Edge));
+    assert_eq!(template.match_row(&view(&second), 57, 0, 79), Err(TemplateError::Edge));
 }

@@ -5,7 +5,7 @@ use super::loss::Loss;
 use super::problem::{BundleError, Problem, prepare};
 use super::schur::{cost, propose, reduce};
 use super::view::View;
-use super::workspace::Workspace;
+use super::workspace::BundleWorkspaceView;
 use crate::geometry::Real;
 use core::ops::ControlFlow;
 
@@ -112,7 +112,7 @@ impl<T: Real> Adjustment<T> {
     /// Checks the problem, the configuration and the memory.
     pub fn start<V: View<T, N>, const N: usize>(
         problem: &Problem<'_, V, T>,
-        workspace: &mut Workspace<'_, V, T, N>,
+        workspace: &mut BundleWorkspaceView<'_, V, T, N>,
         config: BundleConfig<T>,
     ) -> Result<Self, BundleError> {
         if !config.is_sound() {
@@ -149,7 +149,7 @@ impl<T: Real> Adjustment<T> {
     pub fn iterate<V: View<T, N>, const N: usize>(
         &mut self,
         problem: &mut Problem<'_, V, T>,
-        workspace: &mut Workspace<'_, V, T, N>,
+        workspace: &mut BundleWorkspaceView<'_, V, T, N>,
     ) -> ControlFlow<StopReason> {
         if self.iterations >= self.config.most_iterations {
             return ControlFlow::Break(StopReason::Iterations);
@@ -232,7 +232,7 @@ fn unseen<V: View<T, N>, T: Real, const N: usize>(problem: &Problem<'_, V, T>) -
 /// Adjusts a problem until there is a reason to stop.
 pub fn adjust<V: View<T, N>, T: Real, const N: usize>(
     problem: &mut Problem<'_, V, T>,
-    workspace: &mut Workspace<'_, V, T, N>,
+    workspace: &mut BundleWorkspaceView<'_, V, T, N>,
     config: BundleConfig<T>,
 ) -> Result<BundleReport<T>, BundleError> {
     let most = config.most_iterations;

@@ -7,7 +7,7 @@ use super::point_equations::{Linear, PointEquations, add_term};
 use super::problem::{BundleError, Problem, prepare, tracks};
 use super::schur::reduce;
 use super::view::View;
-use super::workspace::Workspace;
+use super::workspace::BundleWorkspaceView;
 use crate::geometry::Real;
 use nalgebra::Matrix3;
 
@@ -19,7 +19,7 @@ use nalgebra::Matrix3;
 /// percent.
 pub struct Covariances<'a, V, T: Real, const N: usize> {
     problem: Problem<'a, V, T>,
-    reduced: Workspace<'a, V, T, N>,
+    reduced: BundleWorkspaceView<'a, V, T, N>,
     gauge: Gauge,
     loss: Loss<T>,
     variance: T,
@@ -58,7 +58,7 @@ impl<'a, V: View<T, N>, T: Real, const N: usize> Covariances<'a, V, T, N> {
     /// of a coordinate.
     pub fn new(
         problem: Problem<'a, V, T>,
-        mut workspace: Workspace<'a, V, T, N>,
+        mut workspace: BundleWorkspaceView<'a, V, T, N>,
         gauge: Gauge,
         loss: Loss<T>,
         sigma_px: T,
@@ -90,7 +90,7 @@ impl<'a, V: View<T, N>, T: Real, const N: usize> Covariances<'a, V, T, N> {
     }
 
     fn envelope(&mut self) -> Envelope<'_, V, T, N> {
-        let Workspace { slots, blocks, .. } = &mut self.reduced;
+        let BundleWorkspaceView { slots, blocks, .. } = &mut self.reduced;
         let views = self.problem.views.len().min(slots.len());
         Envelope { slots: slots.get_mut(..views).unwrap_or(&mut []), blocks }
     }
@@ -160,7 +160,7 @@ impl<'a, V: View<T, N>, T: Real, const N: usize> Covariances<'a, V, T, N> {
         let mut columns = [solve([l, o, o]), solve([o, l, o]), solve([o, o, l])];
         for (c, column) in columns.iter_mut().enumerate() {
             let views = self.problem.views.len();
-            let Workspace { slots, blocks, terms, .. } = &mut self.reduced;
+            let BundleWorkspaceView { slots, blocks, terms, .. } = &mut self.reduced;
             let mut reduced = Envelope { slots: slots.get_mut(..views).unwrap_or(&mut []), blocks };
             reduced.slots.iter_mut().for_each(|slot| slot.step = [T::ZERO; N]);
             for term in terms.iter().take(used) {

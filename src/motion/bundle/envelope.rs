@@ -1,10 +1,7 @@
 //! A symmetric matrix of N x N blocks, and its Cholesky factor in the same place.
 
-use super::workspace::ViewSlot;
+use super::workspace::{Block, ViewSlot};
 use crate::geometry::Real;
-
-/// One block. Of row i and column j it holds the transpose, so that every loop inside runs along memory.
-pub(super) type Block<T, const N: usize> = [[T; N]; N];
 
 /// The lower triangle of a matrix of blocks. Row i begins with the first view that has a point in common with
 /// view i or with one before it that reaches over i, and has every block from there to the diagonal: what

@@ -9,7 +9,7 @@
 //! * [`CameraView`], [`RigView`], [`RectifiedView`], [`RadialView`]: a calibrated camera, two of them mounted
 //!   to each other, a rectified pair's left one with its disparities, or one whose focal length and radial
 //!   distortion are refined too. `view`: how a pixel moves with the view and with the point.
-//! * [`Problem`] with its [`Observation`]s, and the [`Workspace`] it takes; [`Window`] is both in one
+//! * [`Problem`] with its [`Observation`]s, and the [`BundleWorkspaceView`] it takes; [`Window`] is both in one
 //!   `static`. `problem`: indices and sizes are checked once.
 //! * `point_equations`: the equations of one point. `schur`: all points are taken out of the equations
 //!   (Schur's complement), what is left is solved for the views by `envelope`, then point by point.
@@ -56,4 +56,4 @@ pub use radial_view::RadialView;
 pub use rectified_view::RectifiedView;
 pub use view::{ProjectionJacobian, View};
 pub use window::{Window, WindowError};
-pub use workspace::{CrossBlock, ViewSlot, Workspace};
+pub use workspace::{BundleWorkspace, BundleWorkspaceView, CrossBlock, ViewSlot};

@@ -2,7 +2,7 @@
 
 use super::gauge::Gauge;
 use super::view::View;
-use super::workspace::{ViewSlot, Workspace};
+use super::workspace::{BundleWorkspaceView, ViewSlot};
 use crate::geometry::Real;
 use nalgebra::{Point2, Point3};
 
@@ -56,7 +56,7 @@ pub enum BundleError {
     Workspace(WorkspaceSize),
 }
 
-/// The sizes of a [`Workspace`] for a problem.
+/// The sizes of a [`BundleWorkspaceView`] for a problem.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct WorkspaceSize {
@@ -146,7 +146,7 @@ impl<V, T: Real> Problem<'_, V, T> {
 pub(super) fn prepare<V: View<T, N>, T: Real, const N: usize>(
     problem: &Problem<'_, V, T>,
     gauge: &Gauge,
-    workspace: &mut Workspace<'_, V, T, N>,
+    workspace: &mut BundleWorkspaceView<'_, V, T, N>,
 ) -> Result<(), BundleError> {
     problem.check()?;
     if !gauge.is_sound(problem.views.len()) {

@@ -6,7 +6,7 @@ use super::loss::Loss;
 use super::point_equations::{Linear, PointEquations, PointFactor, add_term, damper};
 use super::problem::{Problem, tracks};
 use super::view::View;
-use super::workspace::{CrossBlock, Workspace};
+use super::workspace::{BundleWorkspaceView, CrossBlock};
 use crate::geometry::Real;
 
 /// What a step promises and gives.
@@ -39,12 +39,12 @@ pub(super) fn cost<V: View<T, N>, T: Real, const N: usize>(problem: &Problem<'_,
 /// where U and V have been damped. Hands each point's terms, `W_i L^-T` with `V = L L^T`, to `each`.
 pub(super) fn reduce<V: View<T, N>, T: Real, const N: usize>(
     problem: &Problem<'_, V, T>,
-    workspace: &mut Workspace<'_, V, T, N>,
+    workspace: &mut BundleWorkspaceView<'_, V, T, N>,
     gauge: &Gauge,
     loss: &Loss<T>,
     damping: T,
 ) {
-    let Workspace { slots, terms, blocks, .. } = workspace;
+    let BundleWorkspaceView { slots, terms, blocks, .. } = workspace;
     let Some(slots) = slots.get_mut(..problem.views.len()) else { return };
     for slot in slots.iter_mut() {
         (slot.gradient, slot.diagonal, slot.step) = ([T::ZERO; N], [T::ZERO; N], [T::ZERO; N]);
@@ -139,12 +139,12 @@ fn eliminate<V, T: Real, const N: usize>(
 /// Solves what [`reduce`] filled, and writes views and points after the step into the workspace.
 pub(super) fn propose<V: View<T, N>, T: Real, const N: usize>(
     problem: &Problem<'_, V, T>,
-    workspace: &mut Workspace<'_, V, T, N>,
+    workspace: &mut BundleWorkspaceView<'_, V, T, N>,
     gauge: &Gauge,
     loss: &Loss<T>,
     damping: T,
 ) -> Result<Proposal<T>, Indefinite> {
-    let Workspace { slots, blocks, trial_points, .. } = workspace;
+    let BundleWorkspaceView { slots, blocks, trial_points, .. } = workspace;
     let slots = slots.get_mut(..problem.views.len()).ok_or(Indefinite)?;
     let mut reduced = Envelope { slots, blocks };
     reduced.factor(T::EPSILON)?;

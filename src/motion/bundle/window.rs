@@ -2,12 +2,11 @@
 
 use super::adjust::{Adjustment, BundleConfig, BundleReport, adjust};
 use super::covariance::{CovarianceError, Covariances};
-use super::envelope::Block;
 use super::gauge::Gauge;
 use super::loss::Loss;
 use super::problem::{BundleError, Observation, Problem};
 use super::view::View;
-use super::workspace::{CrossBlock, ViewSlot, Workspace};
+use super::workspace::{BundleWorkspace, BundleWorkspaceView};
 use crate::geometry::Real;
 use core::ops::ControlFlow;
 use nalgebra::{Point2, Point3};
@@ -60,10 +59,7 @@ pub struct Window<
     observations: [Observation<T>; OBSERVATIONS],
     /// Views, points and observations in use.
     counts: [usize; 3],
-    slots: [ViewSlot<V, T, N>; VIEWS],
-    terms: [CrossBlock<T, N>; VIEWS],
-    trial_points: [Point3<T>; POINTS],
-    blocks: [[Block<T, N>; VIEWS]; VIEWS],
+    workspace: BundleWorkspace<V, T, N, VIEWS, POINTS>,
 }
 
 /// Why something has no place in a window.
@@ -113,10 +109,7 @@ where
             points: [origin; POINTS],
             observations: [Observation::EMPTY; OBSERVATIONS],
             counts: [0; 3],
-            slots: [ViewSlot::EMPTY; VIEWS],
-            terms: [CrossBlock::EMPTY; VIEWS],
-            trial_points: [origin; POINTS],
-            blocks: [[[[T::ZERO; N]; N]; VIEWS]; VIEWS],
+            workspace: BundleWorkspace::EMPTY,
         }
     }
 
@@ -176,20 +169,14 @@ where
     }
 
     /// What is adjusted, and the memory for it.
-    fn parts(&mut self) -> (Problem<'_, V, T>, Workspace<'_, V, T, N>) {
+    fn parts(&mut self) -> (Problem<'_, V, T>, BundleWorkspaceView<'_, V, T, N>) {
         let [views, points, observations] = self.counts;
         let problem = Problem {
             views: self.views.get_mut(..views).unwrap_or(&mut []),
             points: self.points.get_mut(..points).unwrap_or(&mut []),
             observations: self.observations.get(..observations).unwrap_or(&[]),
         };
-        let workspace = Workspace {
-            slots: &mut self.slots,
-            terms: &mut self.terms,
-            trial_points: &mut self.trial_points,
-            blocks: self.blocks.as_flattened_mut(),
-        };
-        (problem, workspace)
+        (problem, self.workspace.as_mut_view())
     }
 
     /// Adjusts until there is a reason to stop.

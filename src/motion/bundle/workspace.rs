@@ -1,9 +1,11 @@
 //! The memory that an adjustment works in.
 
-use super::envelope::Block;
 use super::view::View;
 use crate::geometry::Real;
 use nalgebra::Point3;
+
+/// One block. Of row i and column j it holds the transpose, so that every loop inside runs along memory.
+pub(super) type Block<T, const N: usize> = [[T; N]; N];
 
 /// What is kept for each view during a step.
 #[derive(Clone, Copy, Debug)]
@@ -44,15 +46,49 @@ impl<T: Real, const N: usize> CrossBlock<T, N> {
     pub const EMPTY: Self = Self { view: 0, cross: [[T::ZERO; N]; 3] };
 }
 
-/// Memory for problems up to a size: [`Need`](super::WorkspaceSize) says how much.
+/// The memory that adjusting a problem of up to `VIEWS` views and `POINTS` points takes, for a `static`: all zeros.
 #[derive(Debug)]
-pub struct Workspace<'a, V, T: Real, const N: usize> {
-    /// One for each view.
+pub struct BundleWorkspace<V, T: Real, const N: usize, const VIEWS: usize, const POINTS: usize> {
+    slots: [ViewSlot<V, T, N>; VIEWS],
+    terms: [CrossBlock<T, N>; VIEWS],
+    trial_points: [Point3<T>; POINTS],
+    blocks: [[Block<T, N>; VIEWS]; VIEWS],
+}
+
+/// A borrowed [`BundleWorkspace`] of any size, or slices of the caller's own; [`WorkspaceSize`] says how long
+/// they have to be.
+///
+/// [`WorkspaceSize`]: super::WorkspaceSize
+#[derive(Debug)]
+pub struct BundleWorkspaceView<'a, V, T: Real, const N: usize> {
+    /// One slot for each view.
     pub slots: &'a mut [ViewSlot<V, T, N>],
-    /// As many as the largest number of views that see a point.
+    /// As many blocks as the largest number of views that see a point.
     pub terms: &'a mut [CrossBlock<T, N>],
     /// The points after a step.
     pub trial_points: &'a mut [Point3<T>],
-    /// The lower triangle of the reduced matrix.
+    /// The lower triangle of the reduced camera matrix (the Schur complement).
     pub blocks: &'a mut [Block<T, N>],
+}
+
+impl<V: View<T, N>, T: Real, const N: usize, const VIEWS: usize, const POINTS: usize>
+    BundleWorkspace<V, T, N, VIEWS, POINTS>
+{
+    /// A workspace that is not in use.
+    pub const EMPTY: Self = Self {
+        slots: [ViewSlot::EMPTY; VIEWS],
+        terms: [CrossBlock::EMPTY; VIEWS],
+        trial_points: [Point3::new(T::ZERO, T::ZERO, T::ZERO); POINTS],
+        blocks: [[[[T::ZERO; N]; N]; VIEWS]; VIEWS],
+    };
+
+    /// The view that the algorithms take, so that they are compiled once for all sizes.
+    pub fn as_mut_view(&mut self) -> BundleWorkspaceView<'_, V, T, N> {
+        BundleWorkspaceView {
+            slots: &mut self.slots,
+            terms: &mut self.terms,
+            trial_points: &mut self.trial_points,
+            blocks: self.blocks.as_flattened_mut(),
+        }
+    }
 }

@@ -238,7 +238,7 @@ impl<T: Real, const N: usize> Odometry<T, N> {
                     let [[a, b], [c, d]] = track.warp;
                     let grown = (a * d - b * c).abs();
                     let fits = grown > GROWN[0] && grown < GROWN[1] && track.correlation > ALIKE;
-                    if !fits && let Some(template) = Template::cut(&frame.left, pixel[0], pixel[1]) {
+                    if !fits && let Ok(template) = Template::cut(&frame.left, pixel[0], pixel[1]) {
                         track.template = template;
                         track.warp = UPRIGHT;
                     }

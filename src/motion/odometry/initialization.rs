@@ -104,7 +104,7 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         for (owner, track) in (0_u16..).zip(self.tracks.iter_mut()) {
             let Some(at) = track.now.filter(|_| track.used) else { continue };
             let aligned =
-                track.template.align(&frame.left, &UPRIGHT, at, 3.0).filter(|a| a.correlation > ALIKE);
+                track.template.align(&frame.left, &UPRIGHT, at, 3.0).ok().filter(|a| a.correlation > ALIKE);
             let now = aligned.map_or(at, |a| [a.x_px, a.y_px]);
             track.now = Some(now);
             let Ok(observation) =

@@ -52,7 +52,7 @@ fn fresh<T: Real>(
     sigma: T,
 ) -> Option<Track<T>> {
     let pixel = [feature.x_px, feature.y_px];
-    let template = Template::cut(&frame.left, pixel[0], pixel[1])?;
+    let template = Template::cut(&frame.left, pixel[0], pixel[1]).ok()?;
     let observation =
         rig.camera.unproject(&Point2::new(T::of(pixel[0].into()), T::of(pixel[1].into()))).ok()?;
     let point = match rig.right {
@@ -62,7 +62,7 @@ fn fresh<T: Real>(
             let here = pixel[0] + offset;
             let row = (pixel[1] + 0.5) as usize;
             let (least, last) = ((here - f32::from(most)).max(0.0) as usize, (here + 2.0).max(0.0) as usize);
-            let along = template.match_row(&frame.right?, row, least, last)?;
+            let along = template.match_row(&frame.right?, row, least, last).ok()?;
             let clear = 1.0 - along.correlation < CLEAR * (1.0 - along.elsewhere);
             if along.correlation < ALIKE || !clear {
                 return None;

@@ -180,7 +180,7 @@ impl<T: Real, const N: usize> Odometry<T, N> {
             };
             let by = &moved.by_point;
             let warp = product(&[[of(by.m11), of(by.m12)], [of(by.m21), of(by.m22)]], &track.warp);
-            let Some(found) = track.template.align(&frame.left, &warp, start, ALIGN_PX) else { continue };
+            let Ok(found) = track.template.align(&frame.left, &warp, start, ALIGN_PX) else { continue };
             if found.correlation < ALIKE {
                 continue;
             }
@@ -218,8 +218,8 @@ pub(super) fn disparity<T: Real>(
     let ((_, right_cx), right) = (rig.right?, frame.right?);
     // Columns of both pictures differ by the principal points, too.
     let offset = (right_cx - rig.camera.principal_point().0).to_f64() as f32;
-    let template = Template::cut(&frame.left, x, y)?;
-    let found = template.align(&right, &UPRIGHT, [x - expected + offset, y], ALIGN_PX)?;
+    let template = Template::cut(&frame.left, x, y).ok()?;
+    let found = template.align(&right, &UPRIGHT, [x - expected + offset, y], ALIGN_PX).ok()?;
     let good = found.correlation > ALIKE && (found.y_px - y).abs() < ROWS_PX;
     good.then_some(x - found.x_px + offset)
 }

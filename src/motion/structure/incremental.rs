@@ -4,7 +4,7 @@ use super::config::{InitialPairError, PointState, StructureConfig, StructureErro
 use super::initial_pair::{Pair, pair};
 use super::metric::Structure;
 use super::triangulation::{agreeing, triangulate};
-use super::workspace_view::StructureWorkspaceView;
+use super::workspace::StructureWorkspaceView;
 use crate::geometry::{
     Real,
     absolute::Landmark,
@@ -163,12 +163,12 @@ fn settle<T: Real>(
         }
     }
     let kept = keep(memory, observations, config.threshold_px);
-    let StructureWorkspaceView { views, points, kept: slice, workspace, .. } = memory;
+    let StructureWorkspaceView { views, points, kept: slice, bundle, .. } = memory;
     let observations = slice.get(..kept).unwrap_or(&[]);
     let mut problem = Problem { views, points, observations };
     let loss = Loss::Huber(config.threshold_px * T::of(0.5));
     let config = BundleConfig { loss, ..BundleConfig::new(gauge.clone()) };
-    adjust(&mut problem, workspace, config).map_err(StructureError::Bundle)
+    adjust(&mut problem, bundle, config).map_err(StructureError::Bundle)
 }
 
 /// Collects the observations that agree; how many they are.

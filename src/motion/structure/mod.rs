@@ -23,10 +23,8 @@ mod initial_pair;
 mod metric;
 mod triangulation;
 mod workspace;
-mod workspace_view;
 
 pub use config::{InitialPairError, PointState, StructureConfig, StructureError, ViewState};
 pub use incremental::{StructureReport, structure};
 pub use metric::{MetricStructure, Structure};
-pub use workspace::StructureWorkspace;
-pub use workspace_view::StructureWorkspaceView;
+pub use workspace::{StructureWorkspace, StructureWorkspaceView};

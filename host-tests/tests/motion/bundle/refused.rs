@@ -4,7 +4,7 @@ use super::scene::{Scene, calibrated, scene};
 use super::twin::Room;
 use nalgebra::{Point2, Point3};
 use stereopsis::motion::bundle::{
-    BundleConfig, BundleError, CameraView, Gauge, Loss, Problem, Window, WindowError, Workspace,
+    BundleConfig, BundleError, BundleWorkspaceView, CameraView, Gauge, Loss, Problem, Window, WindowError,
     WorkspaceSize, adjust,
 };
 
@@ -64,13 +64,13 @@ fn memory_that_is_too_small_says_how_much() {
     let mut problem = Problem { views: &mut views, points: &mut points, observations: &scene.observations };
     let mut room = Room::<CameraView<f64>, 6>::new(3, 5);
     let config = BundleConfig::new(Gauge::Free);
-    let Workspace { slots, terms, trial_points, blocks } = room.workspace();
-    let mut small = Workspace { slots: &mut slots[..2], terms, trial_points, blocks };
+    let BundleWorkspaceView { slots, terms, trial_points, blocks } = room.workspace();
+    let mut small = BundleWorkspaceView { slots: &mut slots[..2], terms, trial_points, blocks };
     let need = WorkspaceSize { slots: 3, terms: 3, points: 5, blocks: 0 };
     let refused = adjust(&mut problem, &mut small, config.clone());
     assert_eq!(refused, Err(BundleError::Workspace(need)));
-    let Workspace { slots, terms, trial_points, blocks } = room.workspace();
-    let mut small = Workspace { slots, terms, trial_points, blocks: &mut blocks[..5] };
+    let BundleWorkspaceView { slots, terms, trial_points, blocks } = room.workspace();
+    let mut small = BundleWorkspaceView { slots, terms, trial_points, blocks: &mut blocks[..5] };
     let refused = adjust(&mut problem, &mut small, config);
     assert_eq!(refused, Err(BundleError::Workspace(WorkspaceSize { blocks: 6, ..need })));
 }

@@ -36,7 +36,7 @@ fn found<R>(
         matches: &mut matches,
         landmarks: &mut landmarks,
         inliers: &mut inliers,
-        workspace: room.workspace(),
+        bundle: room.workspace(),
     };
     let (found, report) = structure(memory, &seen.observations, &StructureConfig::new(1.5))?;
     let (a, b) = (usize::from(report.pair.0), usize::from(report.pair.1));
@@ -199,8 +199,10 @@ fn a_room_gives_what_slices_give() {
     let cameras: Vec<_> = seen.views.iter().map(|view| view.camera).collect();
     let config = StructureConfig::new(1.5);
     let mut room = Box::new(StructureWorkspace::<f64, 5, 60, 250>::new());
-    let (of_room, report) =
-        room.find(&cameras, seen.points.len(), &seen.observations, &config).expect("a structure");
+    let (of_room, report) = room
+        .as_mut_view(&cameras, seen.points.len())
+        .and_then(|view| structure(view, &seen.observations, &config))
+        .expect("a structure");
     let pose = |n| *of_room.pose(n).expect("placed");
     let poses: Vec<_> = (0..4).map(pose).collect();
     let (a, b) = (usize::from(report.pair.0), usize::from(report.pair.1));
@@ -214,12 +216,18 @@ fn a_room_gives_what_slices_give() {
     }
     // What has no room says how much would do.
     let mut small = StructureWorkspace::<f64, 3, 60, 250>::new();
-    assert_eq!(small.find(&cameras, 50, &seen.observations, &config).err(), Some(StructureError::Memory(4)));
+    assert_eq!(
+        small.as_mut_view(&cameras, 50).and_then(|view| structure(view, &seen.observations, &config)).err(),
+        Some(StructureError::Memory(4))
+    );
     let mut small = StructureWorkspace::<f64, 5, 49, 250>::new();
-    assert_eq!(small.find(&cameras, 50, &seen.observations, &config).err(), Some(StructureError::Memory(50)));
+    assert_eq!(
+        small.as_mut_view(&cameras, 50).and_then(|view| structure(view, &seen.observations, &config)).err(),
+        Some(StructureError::Memory(50))
+    );
     let mut small = StructureWorkspace::<f64, 5, 60, 199>::new();
     assert_eq!(
-        small.find(&cameras, 50, &seen.observations, &config).err(),
+        small.as_mut_view(&cameras, 50).and_then(|view| structure(view, &seen.observations, &config)).err(),
         Some(StructureError::Memory(200))
     );
 }

@@ -3,7 +3,7 @@
 use super::scene::{Scene, calibrated, radial, rig, scene};
 use nalgebra::{DMatrix, Point3};
 use stereopsis::motion::bundle::{
-    BundleConfig, CrossBlock, Gauge, Loss, Problem, View, ViewSlot, Workspace, adjust,
+    BundleConfig, BundleWorkspaceView, CrossBlock, Gauge, Loss, Problem, View, ViewSlot, adjust,
 };
 use stereopsis_host::twin::bundle::Dense;
 
@@ -25,9 +25,9 @@ impl<V: View<f64, N>, const N: usize> Room<V, N> {
         }
     }
 
-    pub fn workspace(&mut self) -> Workspace<'_, V, f64, N> {
+    pub fn workspace(&mut self) -> BundleWorkspaceView<'_, V, f64, N> {
         let Self { slots, terms, points, blocks } = self;
-        Workspace { slots, terms, trial_points: points, blocks }
+        BundleWorkspaceView { slots, terms, trial_points: points, blocks }
     }
 }
 

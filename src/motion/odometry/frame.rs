@@ -1,6 +1,8 @@
 //! What comes in.
 
+use super::config::{OdometryConfig, OdometryRig};
 use crate::features::Feature;
+use crate::geometry::Real;
 use crate::imaging::Picture;
 
 /// A moment: the picture, its features, and what the right camera sees.
@@ -12,6 +14,23 @@ pub struct Frame<'a> {
     pub right: Option<Picture<'a>>,
     /// Features of the left picture. What is beyond the odometry's capacity is not looked at.
     pub features: &'a [Feature],
+}
+
+/// A frame with all that its parts are asked with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moment<'a, T: Real> {
+    pub rig: &'a OdometryRig<T>,
+    pub config: &'a OdometryConfig,
+    pub frame: &'a Frame<'a>,
+    /// The number of the frame, from 1.
+    pub number: u32,
+}
+
+impl<T: Real> Moment<'_, T> {
+    /// The standard deviation of a place found by its pixels, on the normalised image plane.
+    pub fn sigma(&self) -> T {
+        T::of(self.config.sigma_px.into()) / self.rig.focal()
+    }
 }
 
 /// Why a frame was not taken.

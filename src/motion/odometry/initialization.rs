@@ -1,13 +1,16 @@
 //! One camera's first two views.
 
 use super::config::OdometryRig;
-use super::engine::{FEWEST, Odometry};
-use super::frame::Frame;
-use super::inverse_depth::PointObservation;
-use super::pose_estimate::{Free, PointMatch, Problem, Solved};
+use super::disparity::CORRELATED;
+use super::frame::Moment;
+use super::inverse_depth::InversePoint;
+use super::motion_model::MotionModel;
+use super::point_map::PointMap;
+use super::pose_estimate::{FEWEST, Free, PointMatch, Problem, Solved};
 use super::step::{State, Step};
 use super::track::UPRIGHT;
-use super::tracking::ALIKE;
+use super::tracking::Tracker;
+use super::whitening::PointObservation;
 use crate::geometry::linear::covariance6;
 use crate::geometry::{
     Real,
@@ -16,7 +19,7 @@ use crate::geometry::{
     two_view::{Correspondence, Essential, Homography},
 };
 use heapless::Vec;
-use nalgebra::{Matrix6, Point2, Vector3};
+use nalgebra::{Matrix6, Point2};
 
 /// The threshold of the fundamental matrix, px.
 const THRESHOLD_PX: f64 = 1.5;
@@ -31,144 +34,140 @@ const LEFT: f64 = 0.4;
 /// Inverse depths that are expected, in baselines, and their deviation.
 const USUAL: f64 = 0.1;
 
-impl<T: Real, const N: usize> Odometry<T, N> {
-    pub(super) fn initialize(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>) -> Step<T> {
-        let points = self.points();
-        let sigma = T::of(self.config.sigma_px.into()) / rig.focal();
-        // Inverse depths of nothing until there is a unit: a turn alone moves the points.
-        for track in self.tracks.iter_mut().filter(|track| track.used) {
-            track.point = super::engine::at_infinity(&track.point, sigma);
-        }
-        let told = self.reported_pose;
-        self.recognise(rig, frame.features, &told, self.config.far_px);
-        self.pair_in_picture(rig, frame, sigma);
-        let found = self.matches.len();
-        let problem = Problem { matches: &self.matches, baseline: T::ZERO };
-        let turned = problem.solve(told, Free::Rotation);
-        let enough = T::count(points) * T::of(LEFT);
-        let shown = Step { points, found, ..Step::none(State::Waiting) };
-        if found < 2 * FEWEST {
-            return self.again(rig, frame, shown);
-        }
-        let still = problem.solve(told, Free::Nothing);
-        let scale = (turned.squares / T::count(turned.numbers.saturating_sub(3).max(1))).max(T::of(0.05));
-        // A wall that is passed moves nearly as by a turn: what is left has to be noise.
-        let of_turn = T::count(turned.kept) >= T::count(found) * T::of(0.85) && scale < T::of(MOST_SCALE);
-        let step = if of_turn {
-            let no_turn = (still.cost - turned.cost) / scale < T::of(21.0);
-            let state = if no_turn && scale < T::of(2.0) { State::Stationary } else { State::RotationOnly };
-            self.report_rotation(
-                if state == State::Stationary { told } else { turned.pose },
-                &turned,
-                state,
-                shown,
-            )
-        } else {
-            let wide = Problem { matches: &self.matches, baseline: T::ZERO };
-            if let Some(pose) =
-                two_views::<T, N>(rig, &wide, &turned.pose, self.config.seed, &mut self.inliers)
-            {
-                return self.begun(rig, frame, &pose, sigma, shown);
-            }
-            shown
-        };
-        if T::count(found) < enough {
-            return self.again(rig, frame, step);
-        }
-        step
+/// Takes a frame of one camera that has no unit of length yet: what is known of its motion, and the unit when
+/// the two views give their relative pose.
+pub(super) fn initialize<T: Real, const N: usize>(
+    now: &Moment<'_, T>,
+    map: &mut PointMap<T, N>,
+    tracker: &mut Tracker<T, N>,
+    motion: &mut MotionModel<T>,
+) -> Step<T> {
+    let points = map.len();
+    let sigma = now.sigma();
+    // Inverse depths of nothing until there is a unit: a rotation alone moves the points.
+    map.used_mut().for_each(|track| track.point = track.point.at_infinity(sigma));
+    let last = motion.reported_pose;
+    tracker.recognise(now, map, &last, now.config.far_px);
+    align(now, map, tracker);
+    let found = tracker.matches.len();
+    let shown = Step { points, found, ..Step::none(State::Waiting) };
+    if found < 2 * FEWEST {
+        return restart(now, map, motion, shown);
     }
+    let problem = tracker.problem(T::ZERO);
+    let rotated = problem.solve(last, Free::Rotation);
+    let still = problem.solve(last, Free::Nothing);
+    let scale = (rotated.squares / T::count(rotated.numbers.saturating_sub(3).max(1))).max(T::of(0.05));
+    // A wall that is passed moves nearly as by a rotation: what is left has to be noise.
+    let is_rotation = T::count(rotated.kept) >= T::count(found) * T::of(0.85) && scale < T::of(MOST_SCALE);
+    let step = if is_rotation {
+        let no_turn = (still.cost - rotated.cost) / scale < T::of(21.0);
+        let state = if no_turn && scale < T::of(2.0) { State::Stationary } else { State::RotationOnly };
+        report_rotation(motion, &rotated, state, shown)
+    } else {
+        let wide = Problem { matches: &tracker.matches, baseline: T::ZERO };
+        let (rig, seed) = (now.rig, now.config.seed);
+        if let Some(pose) = two_views::<T, N>(rig, &wide, &rotated.pose, seed, &mut tracker.inliers) {
+            return set_unit(now, map, tracker, motion, &pose, shown);
+        }
+        shown
+    };
+    if T::count(found) < T::count(points) * T::of(LEFT) { restart(now, map, motion, step) } else { step }
+}
 
-    /// A turn that is known, since the last frame.
-    fn report_rotation(
-        &mut self,
-        pose: Pose<T>,
-        solved: &Solved<T>,
-        state: State,
-        shown: Step<T>,
-    ) -> Step<T> {
-        let motion = self.reported_pose.inverse().then(&pose);
-        self.reported_pose = pose;
-        let mut of_turn = Matrix6::identity() * T::of(1e12);
-        let all = covariance6(&solved.information);
-        of_turn.fixed_view_mut::<3, 3>(0, 0).copy_from(&all.fixed_view::<3, 3>(0, 0));
-        if state == State::Stationary {
-            of_turn = all;
-        }
-        let residual = (solved.squares / T::count(solved.numbers.max(1))).sqrt();
-        Step { motion, covariance: of_turn, state, inliers: solved.kept, residual, ..shown }
+/// Reports a rotation, or no motion, since the last frame.
+fn report_rotation<T: Real>(
+    motion: &mut MotionModel<T>,
+    solved: &Solved<T>,
+    state: State,
+    shown: Step<T>,
+) -> Step<T> {
+    let pose = if state == State::Stationary { motion.reported_pose } else { solved.pose };
+    let since = motion.reported_pose.inverse().then(&pose);
+    motion.reported_pose = pose;
+    let all = covariance6(&solved.information);
+    let mut covariance = Matrix6::identity() * T::of(1e12);
+    covariance.fixed_view_mut::<3, 3>(0, 0).copy_from(&all.fixed_view::<3, 3>(0, 0));
+    if state == State::Stationary {
+        covariance = all;
     }
+    Step { motion: since, covariance, state, inliers: solved.kept, residual: solved.residual(0), ..shown }
+}
 
-    /// Finds each recognised point by its pixels.
-    fn pair_in_picture(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>, sigma: T) {
-        self.matches.clear();
-        for (owner, track) in (0_u16..).zip(self.tracks.iter_mut()) {
-            let Some(at) = track.now.filter(|_| track.used) else { continue };
-            let aligned =
-                track.template.align(&frame.left, &UPRIGHT, at, 3.0).ok().filter(|a| a.correlation > ALIKE);
-            let now = aligned.map_or(at, |a| [a.x_px, a.y_px]);
-            track.now = Some(now);
-            let Ok(observation) =
-                rig.camera.unproject(&Point2::new(T::of(now[0].into()), T::of(now[1].into())))
-            else {
-                continue;
-            };
-            // A corner is three times as far off as what its pixels say.
-            let sigma = if aligned.is_some() { sigma } else { sigma * T::of(3.0) };
-            let observation = PointObservation { at: observation, in_right: false, sigma };
-            let _ = self.matches.push(PointMatch { point: track.point, observation, owner });
-        }
+/// Finds each recognised point by its pixels.
+fn align<T: Real, const N: usize>(
+    now: &Moment<'_, T>,
+    map: &mut PointMap<T, N>,
+    tracker: &mut Tracker<T, N>,
+) {
+    let fine = now.sigma();
+    tracker.matches.clear();
+    for (owner, track) in (0_u16..).zip(map.tracks.iter_mut()) {
+        let Some(at) = track.now.filter(|_| track.used) else { continue };
+        let aligned = track.template.align(&now.frame.left, &UPRIGHT, at, 3.0).ok();
+        let aligned = aligned.filter(|found| found.correlation > CORRELATED);
+        let place = aligned.map_or(at, |found| [found.x_px, found.y_px]);
+        track.now = Some(place);
+        let pixel = Point2::new(T::of(place[0].into()), T::of(place[1].into()));
+        let Ok(at) = now.rig.camera.unproject(&pixel) else { continue };
+        // A corner is three times as far off as what its pixels say.
+        let sigma = if aligned.is_some() { fine } else { fine * T::of(3.0) };
+        let observation = PointObservation { at, in_right: false, sigma };
+        let _ = tracker.matches.push(PointMatch { point: track.point, observation, owner });
     }
+}
 
-    /// The unit of length is the way to this frame.
-    fn begun(
-        &mut self,
-        rig: &OdometryRig<T>,
-        frame: &Frame<'_>,
-        pose: &Pose<T>,
-        sigma: T,
-        shown: Step<T>,
-    ) -> Step<T> {
-        for point_match in self.matches.iter_mut() {
-            let observation = Vector3::new(point_match.point.at.x, point_match.point.at.y, T::ONE);
-            point_match.point = super::engine::unknown(observation, T::of(USUAL), sigma);
-            point_match.point.covariance.m33 *= T::of(9.0);
-            if let Some(track) = self.tracks.get_mut(usize::from(point_match.owner)) {
-                track.point = point_match.point;
-            }
+/// Makes the way to this frame the unit of length.
+fn set_unit<T: Real, const N: usize>(
+    now: &Moment<'_, T>,
+    map: &mut PointMap<T, N>,
+    tracker: &mut Tracker<T, N>,
+    motion: &mut MotionModel<T>,
+    pose: &Pose<T>,
+    shown: Step<T>,
+) -> Step<T> {
+    let matches = &mut tracker.matches;
+    for point_match in matches.iter_mut() {
+        let point = &mut point_match.point;
+        *point = InversePoint::of_unknown_depth(&point.at, T::of(USUAL), now.sigma());
+        point.covariance.m33 *= T::of(9.0);
+        if let Some(track) = map.tracks.get_mut(usize::from(point_match.owner)) {
+            track.point = *point;
         }
-        // Points that were not found have no depth.
-        for (number, track) in (0_u16..).zip(self.tracks.iter_mut()) {
-            track.used = track.used && self.matches.iter().any(|p| p.owner == number);
-        }
-        let judged =
-            |matches: &[PointMatch<T>]| Problem { matches, baseline: T::ZERO }.solve(*pose, Free::Nothing);
-        let solved = judged(&self.matches);
-        let motion = self.reported_pose.inverse().then(pose);
-        self.carry(rig, frame, &solved, &Matrix6::zeros());
-        // The pose by the points that it has given a depth.
-        for point_match in self.matches.iter_mut() {
-            if let Some(point) = point_match.point.updated(pose, &point_match.observation, T::ZERO) {
-                point_match.point = point;
-            }
-        }
-        let solved = judged(&self.matches);
-        self.begun = true;
-        self.reported_pose = Pose::identity();
-        self.velocity = Some(*pose);
-        self.add_new_points(rig, frame);
-        let covariance = covariance6(&solved.information);
-        let residual = (solved.squares / T::count(solved.numbers.max(1))).sqrt();
-        Step { motion, covariance, state: State::Tracked, inliers: solved.kept, residual, ..shown }
     }
+    // Points that were not found have no depth.
+    for (number, track) in (0_u16..).zip(map.tracks.iter_mut()) {
+        track.used = track.used && matches.iter().any(|p| p.owner == number);
+    }
+    let since = motion.reported_pose.inverse().then(pose);
+    map.update(now, matches, pose, &Matrix6::zeros());
+    // The pose by the points that it has given a depth.
+    for point_match in matches.iter_mut() {
+        if let Some(point) = point_match.point.updated(pose, &point_match.observation, T::ZERO) {
+            point_match.point = point;
+        }
+    }
+    let solved = Problem { matches: &*matches, baseline: T::ZERO }.solve(*pose, Free::Nothing);
+    motion.has_unit = true;
+    motion.reported_pose = Pose::identity();
+    motion.velocity = Some(*pose);
+    map.add_new(now);
+    let (covariance, residual) = (covariance6(&solved.information), solved.residual(0));
+    Step { motion: since, covariance, state: State::Tracked, inliers: solved.kept, residual, ..shown }
+}
 
-    /// This view becomes the first one.
-    fn again(&mut self, rig: &OdometryRig<T>, frame: &Frame<'_>, step: Step<T>) -> Step<T> {
-        self.tracks.iter_mut().for_each(|track| track.used = false);
-        self.reported_pose = Pose::identity();
-        self.add_new_points(rig, frame);
-        let state = if step.state == State::Waiting { State::Restarted } else { step.state };
-        Step { points: self.points(), state, ..step }
-    }
+/// Makes this view the first one.
+fn restart<T: Real, const N: usize>(
+    now: &Moment<'_, T>,
+    map: &mut PointMap<T, N>,
+    motion: &mut MotionModel<T>,
+    step: Step<T>,
+) -> Step<T> {
+    map.clear();
+    motion.reported_pose = Pose::identity();
+    map.add_new(now);
+    let state = if step.state == State::Waiting { State::Restarted } else { step.state };
+    Step { points: map.len(), state, ..step }
 }
 
 /// The pose of the second view in units of the baseline, if it is sure.

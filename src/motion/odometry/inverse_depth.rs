@@ -1,28 +1,9 @@
 //! A point of the scene in the camera's own frame, near or at infinity, and how sure it is.
 
-use super::whitening::Whitener;
+use super::whitening::{PointObservation, Whitener};
 use crate::geometry::linear::columns3;
 use crate::geometry::{Real, camera::Pose, linear::skew};
 use nalgebra::{ArrayStorage, Matrix3, Matrix6, SMatrix, Vector3};
-
-/// What a point is seen at: x and y of the observation `(x, y, 1)`, and its disparity `x - x'` over the focal
-/// length, if there is a right camera. A disparity is found from the very place in the left picture, and so
-/// has an error of its own.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct PointObservation<T: Real> {
-    pub at: Vector3<T>,
-    /// Whether the third number counts.
-    pub in_right: bool,
-    /// The deviation of each number.
-    pub sigma: T,
-}
-
-impl<T: Real> PointObservation<T> {
-    /// How many numbers count.
-    pub fn rows(&self) -> usize {
-        if self.in_right { 3 } else { 2 }
-    }
-}
 
 /// A point as `(x, y, r) = (X / Z, Y / Z, 1 / Z)`, which is finite for points at infinity, and in which what
 /// both cameras of a rectified pair see is linear (Civera, Davison & Montiel 2008 have the same with a point
@@ -48,6 +29,20 @@ pub(super) struct Moved<T: Real> {
 const LEAST_FORWARD: f64 = 0.125;
 
 impl<T: Real> InversePoint<T> {
+    /// A point of unknown depth on this ray: its inverse depth is `usual`, and uncertain by as much.
+    pub fn of_unknown_depth(ray: &Vector3<T>, usual: T, sigma: T) -> Self {
+        let variance = sigma * sigma;
+        let covariance = Matrix3::from_diagonal(&Vector3::new(variance, variance, usual * usual));
+        Self { at: Vector3::new(ray.x, ray.y, usual), covariance }
+    }
+
+    /// The point as if it were at infinity.
+    pub fn at_infinity(&self, sigma: T) -> Self {
+        let variance = sigma * sigma;
+        let covariance = Matrix3::from_diagonal(&Vector3::new(variance, variance, T::ZERO));
+        Self { at: Vector3::new(self.at.x, self.at.y, T::ZERO), covariance }
+    }
+
     /// The point as a camera sees it that stands at `pose` (P = R P' + t); `None` behind it.
     ///
     /// `h = R^T ((x, y, 1) - r t)` is the point over its old depth: `x' = h_x / h_z`, `y' = h_y / h_z`, `r' =

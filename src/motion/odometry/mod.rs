@@ -28,13 +28,15 @@
 //! of first baselines.
 
 mod config;
+mod disparity;
 mod engine;
 mod frame;
 mod initialization;
 mod inverse_depth;
+mod motion_model;
 mod motion_test;
-mod new_points;
 mod observed;
+mod point_map;
 mod pose_estimate;
 mod scale;
 mod sliding_window;

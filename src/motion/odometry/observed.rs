@@ -30,8 +30,9 @@ impl<T: Real, const N: usize> Odometry<T, N> {
             ObservedPoint { name, pixel, disparity_px: disparity.map(|d| d * focal), inverse: track.point.at }
         };
         let is_seen = |track: &&Track<T>| track.used && track.missed == 0;
-        let followed = self.matches.iter().filter_map(move |point_match| {
+        let followed = self.tracker.matches.iter().filter_map(move |point_match| {
             let track = self
+                .map
                 .tracks
                 .get(usize::from(point_match.owner))
                 .filter(is_seen)
@@ -42,7 +43,8 @@ impl<T: Real, const N: usize> Odometry<T, N> {
                 point_match.observation.in_right.then_some(point_match.observation.at.z),
             ))
         });
-        let fresh = (0_u16..).zip(&self.tracks).filter(move |(_, track)| is_seen(track) && track.seen == 1);
+        let fresh =
+            (0_u16..).zip(&self.map.tracks).filter(move |(_, track)| is_seen(track) && track.seen == 1);
         // Their depths are what the right picture says.
         followed.chain(fresh.map(move |(slot, track)| {
             point(slot, track, (baseline > T::ZERO).then(|| track.point.at.z * baseline))

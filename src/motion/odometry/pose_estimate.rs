@@ -1,7 +1,7 @@
 //! The pose of the new camera from points that it sees, each with its uncertainty.
 
-use super::inverse_depth::{InversePoint, PointObservation, seen};
-use super::whitening::Whitener;
+use super::inverse_depth::{InversePoint, seen};
+use super::whitening::{PointObservation, Whitener};
 use crate::geometry::Real;
 use crate::geometry::camera::Pose;
 use crate::geometry::linear::{LeastSquares, NormalEquations, levenberg_marquardt};
@@ -43,6 +43,8 @@ pub(super) struct Solved<T: Real> {
     pub squares: T,
 }
 
+/// The least number of inliers that make a pose.
+pub(super) const FEWEST: usize = 8;
 /// Distances, in deviations, at which a point_match has no weight any more: from far to near.
 const WIDTHS: [f64; 3] = [12.0, 7.0, 4.5];
 /// Steps for each width at most.
@@ -50,6 +52,14 @@ const STEPS: usize = 6;
 /// The last width.
 pub(super) const WIDTH: f64 = WIDTHS[2];
 
+impl<T: Real> Solved<T> {
+    /// The root mean square of the inliers' residuals in deviations, where `free` numbers were estimated.
+    pub fn residual(&self, free: usize) -> T {
+        (self.squares / T::count(self.numbers.saturating_sub(free).max(1))).sqrt()
+    }
+}
+
+/// The matches of a frame, and the baseline by which their disparities are measured.
 pub(super) struct Problem<'a, T: Real> {
     pub matches: &'a [PointMatch<T>],
     pub baseline: T,

@@ -37,6 +37,12 @@ pub(super) struct Track<T: Real> {
 /// As it was.
 pub(super) const UPRIGHT: [[f32; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 
+/// The product of two warps.
+pub(super) fn product(a: &[[f32; 2]; 2], b: &[[f32; 2]; 2]) -> [[f32; 2]; 2] {
+    let row = |[x, y]: [f32; 2]| [x * b[0][0] + y * b[1][0], x * b[0][1] + y * b[1][1]];
+    [row(a[0]), row(a[1])]
+}
+
 impl<T: Real> Track<T> {
     /// A place for one. All zeros: an odometry in a `static` takes RAM and no flash.
     pub const EMPTY: Self = {

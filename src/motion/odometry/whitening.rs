@@ -1,8 +1,26 @@
 //! Residuals in units of their own uncertainty.
 
-use super::inverse_depth::PointObservation;
 use crate::geometry::Real;
-use nalgebra::{Matrix3, SMatrix};
+use nalgebra::{Matrix3, SMatrix, Vector3};
+
+/// An observation of a point: x and y of its ray `(x, y, 1)`, and its disparity `x - x'` over the focal length
+/// where the right camera sees it. A disparity is measured from the very place in the left picture, and so has
+/// an error of its own.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct PointObservation<T: Real> {
+    pub at: Vector3<T>,
+    /// Whether the disparity counts.
+    pub in_right: bool,
+    /// The standard deviation of each number.
+    pub sigma: T,
+}
+
+impl<T: Real> PointObservation<T> {
+    /// How many numbers count.
+    pub fn rows(&self) -> usize {
+        if self.in_right { 3 } else { 2 }
+    }
+}
 
 /// The factor L of `S = J C J^T + sigma^2 = L L^T`, of two rows or three.
 pub(super) struct Whitener<T: Real> {

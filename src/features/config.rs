@@ -1,6 +1,7 @@
 //! What is looked for.
 
-use super::{FeatureConfigError, Level};
+use super::Level;
+use core::fmt;
 
 /// What corners are described by.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
@@ -82,3 +83,36 @@ impl FeatureConfig {
         Ok(())
     }
 }
+
+/// Why features cannot be looked for like that.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum FeatureConfigError {
+    /// Lines are longer than the detector's capacity.
+    Width {
+        /// Its capacity, px.
+        most: usize,
+    },
+    /// Cells are smaller than [`FeatureConfig::LEAST_CELL`], or none is to be kept in them.
+    Cells,
+    /// More corners are to be kept than the detector has slots for.
+    Slots {
+        /// How many would have been enough.
+        needed: usize,
+    },
+}
+
+impl fmt::Display for FeatureConfigError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Width { most } => write!(f, "lines have more than {most} pixels"),
+            Self::Cells => {
+                write!(f, "cells are smaller than {} px or hold no corner", FeatureConfig::LEAST_CELL)
+            }
+            Self::Slots { needed } => write!(f, "a row of cells needs {needed} slots"),
+        }
+    }
+}
+
+impl core::error::Error for FeatureConfigError {}

@@ -3,10 +3,11 @@
 use super::grid::{self, Slot};
 use super::pattern::PATCH_RADIUS;
 use super::{
-    Corner, Descriptor, Feature, FeatureConfig, FeatureConfigError, FeatureLineError, Orientation, Patch,
-    PatchOrientation, binomial5_row, fast_scores, refine,
+    Corner, Descriptor, Feature, FeatureConfig, FeatureConfigError, Orientation, Patch, PatchOrientation,
+    binomial5_row, fast_scores, refine,
 };
 use crate::imaging::LineBand;
+use core::fmt;
 use core::num::NonZero;
 use heapless::VecView;
 
@@ -21,6 +22,31 @@ const MARGIN: usize = FeatureConfig::MARGIN as usize;
 const _: () = assert!(MARGIN == PATCH_RADIUS as usize + SMOOTHING);
 /// Corners and the patches they wait for lie in two rows of cells at most.
 const _: () = assert!(FeatureConfig::LEAST_CELL as usize > MARGIN - NEIGHBOURS);
+
+/// Why a line was not taken.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum FeatureLineError {
+    /// The detector was not started, or all lines of the frame have come.
+    NoLineDue,
+    /// The line has another length than the configuration says.
+    Length {
+        /// What was due, px.
+        needed: usize,
+    },
+}
+
+impl fmt::Display for FeatureLineError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoLineDue => write!(f, "no line is due: start a frame"),
+            Self::Length { needed } => write!(f, "a line of {needed} pixels is due"),
+        }
+    }
+}
+
+impl core::error::Error for FeatureLineError {}
 
 /// What became of a frame's corners.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]

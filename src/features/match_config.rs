@@ -1,7 +1,8 @@
 //! Which features may match, and how much better than others a match has to be.
 
-use super::{Feature, MatchConfigError};
+use super::Feature;
 use crate::geometry::two_view::{Fundamental, Line};
+use core::fmt;
 use nalgebra::Point2;
 
 /// Lines on which partners lie, when it is known how the cameras stand to each other.
@@ -91,6 +92,37 @@ impl Default for MatchConfig {
         Self::new()
     }
 }
+
+/// Why there are no matches.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum MatchConfigError {
+    /// The ratio is not 1 to 100 percent.
+    Ratio,
+    /// A distance is negative or not a number.
+    Range,
+    /// The distance from the epipolar line is negative or not a number.
+    Epipolar,
+    /// A picture has more features than the matcher holds.
+    TooMany {
+        /// How many it would have to hold.
+        needed: usize,
+    },
+}
+
+impl fmt::Display for MatchConfigError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Ratio => write!(f, "the ratio is not 1 to 100 percent"),
+            Self::Range => write!(f, "a distance is negative or no number"),
+            Self::Epipolar => write!(f, "the distance from the epipolar line is negative or no number"),
+            Self::TooMany { needed } => write!(f, "the matcher would have to hold {needed} features"),
+        }
+    }
+}
+
+impl core::error::Error for MatchConfigError {}
 
 /// Where the partners of one feature may be.
 pub(super) struct Places {

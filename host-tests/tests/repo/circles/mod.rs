@@ -11,11 +11,11 @@ use proc_macro2::TokenTree;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The core's modules without a circle, with all folders in them.
-const NO_CIRCLE: [&str; 8] =
-    ["geometry", "camera", "imaging", "matching", "depth", "focus", "pipeline", "ffi"];
+const NO_CIRCLE: [&str; 10] =
+    ["geometry", "camera", "imaging", "matching", "depth", "focus", "features", "motion", "pipeline", "ffi"];
 
 /// Folders whose `mod.rs` lists the modules in running order.
-const IN_ORDER: [&str; 9] = [
+const IN_ORDER: [&str; 14] = [
     "geometry",
     "geometry/absolute",
     "geometry/camera",
@@ -25,6 +25,11 @@ const IN_ORDER: [&str; 9] = [
     "geometry/robust",
     "geometry/two_view",
     "motion",
+    "features",
+    "focus",
+    "motion/bundle",
+    "motion/odometry",
+    "motion/structure",
 ];
 
 /// The program `stereo`.

@@ -1,4 +1,4 @@
-//! Lines without the noise of single pixels, which a comparison of two pixels would follow.
+//! Binomial 5 x 5 smoothing before descriptors are sampled.
 
 /// A row smoothed by the weights `[1 4 6 4 1] / 16` along both axes, rounded to the nearest.
 ///

@@ -1,4 +1,4 @@
-//! What is looked for.
+//! Configuration of the feature detector.
 
 use super::Level;
 use core::fmt;
@@ -91,7 +91,7 @@ impl FeatureConfig {
 pub enum FeatureConfigError {
     /// Lines are longer than the detector's capacity.
     Width {
-        /// Its capacity, px.
+        /// The capacity of the detector, px.
         most: usize,
     },
     /// Cells are smaller than [`FeatureConfig::LEAST_CELL`], or none is to be kept in them.

@@ -1,4 +1,4 @@
-//! A corner: where it is, to a fraction of a pixel, and how strong.
+//! A corner: its place to a fraction of a pixel, and its score.
 
 /// A corner of a picture. Until its patch is whole, it lies at the centre of the strongest pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]

@@ -1,4 +1,4 @@
-//! A patch in 256 bits: which of two points is darker, for 256 pairs of points.
+//! BRIEF descriptors (Calonder, Lepetit, Strecha & Fua 2010): 256 comparisons of two pixels.
 
 use super::orientation::PatchOrientation;
 use super::pattern::{PATCH_RADIUS, PATTERN};

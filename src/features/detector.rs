@@ -1,4 +1,4 @@
-//! Lines of a picture to its features, while the lines come in.
+//! FAST corners with descriptors, spread over a grid, line by line.
 
 use super::grid::{self, Slot};
 use super::pattern::PATCH_RADIUS;

@@ -1,4 +1,4 @@
-//! Ever smaller pictures of a scene, line by line: what looks alike from nearer and from farther off.
+//! Image pyramid: downsampling by area, line by line.
 
 /// Makes `N - 1` pixels of every `N`, and `N - 1` lines of every `N`, each the mean of the area that it
 /// covers, rounded.

@@ -1,4 +1,4 @@
-//! One corner, found on several levels, is one match.
+//! Removal of matches found again on another pyramid level.
 
 use super::{Feature, Match};
 use heapless::VecView;

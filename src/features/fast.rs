@@ -1,4 +1,4 @@
-//! Corners by the segment test: nine neighbours in a row, on a circle of sixteen, all brighter or all darker.
+//! FAST-9 corners (Rosten & Drummond 2006): nine in a row on a circle of sixteen, all brighter or all darker.
 //!
 //! FAST-9 of Rosten & Drummond, "Machine learning for high-speed corner detection", ECCV 2006. The decision
 //! tree is not theirs: four comparisons refuse most pixels, and the score of the others is worked out the

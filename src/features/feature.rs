@@ -1,4 +1,4 @@
-//! A feature: a corner with what it looks like, in the pixels of the full picture.
+//! A feature: a corner with its descriptor, in the pixels of the full picture.
 
 use super::{Corner, Descriptor};
 

@@ -1,4 +1,4 @@
-//! Which features of two pictures are the same: everyone is compared with everyone.
+//! Brute-force matching with a ratio test (Lowe 2004) and a mutual check.
 
 use super::{Descriptor, Feature, MatchConfig, MatchConfigError};
 use heapless::VecView;

@@ -1,4 +1,4 @@
-//! The strongest corners of every cell in a row of cells.
+//! Grid of cells that keeps the strongest corners of each.
 
 use super::{Corner, Descriptor};
 

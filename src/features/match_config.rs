@@ -1,4 +1,4 @@
-//! Which features may match, and how much better than others a match has to be.
+//! Configuration of matching: ratio test, search range and epipolar constraint.
 
 use super::Feature;
 use crate::geometry::two_view::{Fundamental, Line};
@@ -24,9 +24,9 @@ pub struct MatchConfig {
     /// The second best partner is one that lies at least so far from the best, px along the row or the
     /// column: the same corner found once more, on another level, is no other one.
     pub apart_px: f32,
-    /// Bits that may be different, at most.
+    /// Largest Hamming distance accepted between two descriptors.
     pub most_different: u16,
-    /// By how many levels partners may differ.
+    /// Largest difference of pyramid level between partners.
     pub levels_apart: u8,
     /// How far partners may lie apart along the row, px.
     pub along_px: f32,

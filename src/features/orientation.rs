@@ -1,4 +1,4 @@
-//! Turns in whole steps, in integers.
+//! Orientation of a patch by its intensity centroid (Rosin 1999; ORB), in steps of 1/32 of a circle.
 
 /// A turn by a multiple of 1/32 of a circle, from the right downwards.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]

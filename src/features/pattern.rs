@@ -1,4 +1,4 @@
-//! The 256 pairs of points that a descriptor compares: made by the compiler, from a seed.
+//! Sampling pattern of the descriptor: 256 pairs of points, made by the compiler from a seed.
 
 /// Radius of the circle that a patch is cut from, px.
 pub const PATCH_RADIUS: i32 = 15;

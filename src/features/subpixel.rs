@@ -1,4 +1,4 @@
-//! Where a corner lies between the pixels.
+//! Sub-pixel corner position: the peak of the Harris response (Harris & Stephens 1988).
 
 use super::Patch;
 

@@ -1,4 +1,4 @@
-//! A few pixels of one picture, found again in another to a small part of a pixel.
+//! Template alignment: inverse compositional Lucas-Kanade (Baker & Matthews 2004).
 
 #![allow(
     clippy::neg_cmp_op_on_partial_ord,
@@ -97,11 +97,12 @@ impl Template {
     }
 
     /// Aligns the template with another picture: the place with the least squared differences, brightness and
-    /// contrast apart, from `start` on. `warp` carries offsets in the template's picture into the other one, px.
+    /// contrast apart, from `start` on. `warp` carries offsets in the template's picture into the other one,
+    /// px.
     ///
-    /// The inverse compositional algorithm (Baker & Matthews 2004): Gauss-Newton with the template's gradients,
-    /// at most ten steps. Refused where the pixels hold no corner, at the picture's edge, and farther than
-    /// `farthest_px` from the start.
+    /// The inverse compositional algorithm (Baker & Matthews 2004): Gauss-Newton with the template's
+    /// gradients, at most ten steps. Refused where the pixels hold no corner, at the picture's edge, and
+    /// farther than `farthest_px` from the start.
     pub fn align(
         &self,
         picture: &Picture<'_>,
@@ -158,8 +159,9 @@ impl Template {
         Ok(TemplateMatch { x_px: x, y_px: y, correlation })
     }
 
-    /// The column of `row` from `least` to `most` at which the template correlates best with the other picture,
-    /// unwarped and to whole pixels; refused where no column is far enough from the picture's edge.
+    /// The column of `row` from `least` to `most` at which the template correlates best with the other
+    /// picture, unwarped and to whole pixels; refused where no column is far enough from the picture's
+    /// edge.
     pub fn match_row(
         &self,
         picture: &Picture<'_>,

@@ -1,4 +1,4 @@
-//! What moves a lens.
+//! The trait of a lens actuator.
 
 /// What can go wrong with an actuator, kept apart so that wrappers can share it.
 pub trait ActuatorErrorType {

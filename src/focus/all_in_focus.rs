@@ -1,4 +1,4 @@
-//! What a frame tells while it comes in.
+//! Rows of the all-in-focus picture, told while a frame comes in.
 
 /// What a row of cells is told to the caller while a frame comes in.
 #[derive(Clone, Copy, Debug)]

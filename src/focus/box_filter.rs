@@ -1,4 +1,4 @@
-//! Sums over square windows, row by row.
+//! Box filter: running sums over square windows, row by row.
 
 /// The widest window's radius.
 pub(super) const MOST_RADIUS: usize = 3;

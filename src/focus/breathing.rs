@@ -1,4 +1,4 @@
-//! The magnification of a frame: which of its pixels shows what a pixel of the first shows.
+//! Focus breathing: the magnification of a frame beside the first.
 
 use super::FocusLineError;
 

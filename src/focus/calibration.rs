@@ -1,4 +1,4 @@
-//! Positions of an actuator to distances in focus.
+//! Calibration of a lens actuator: positions to distances in focus.
 
 use super::{LensError, ThinLens};
 use core::fmt;

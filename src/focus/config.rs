@@ -1,4 +1,4 @@
-//! What a focus map is made of.
+//! Configuration of a focus map.
 
 use super::box_filter::MOST_RADIUS;
 use core::fmt;

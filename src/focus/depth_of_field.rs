@@ -1,4 +1,4 @@
-//! Depth of field: between which distances the picture is sharp enough.
+//! Depth of field and the hyperfocal distance.
 
 use super::lens::finite;
 use super::{LensError, ThinLens};

@@ -1,4 +1,4 @@
-//! Why a lens has no answer.
+//! Errors of the thin lens equations.
 
 use core::fmt;
 

@@ -1,4 +1,4 @@
-//! What changes from pixel to pixel, a row at a time: what a blurred picture has less of.
+//! Focus measures: modified Laplacian (Nayar & Nakagawa 1994), Tenengrad (Krotkov 1987), Laplacian.
 //!
 //! Each looks at the rows above and below its own; the caller repeats the nearest row where there is none. A
 //! column outside the image is the nearest one inside. Those columns are written for which all rows have a

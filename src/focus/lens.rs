@@ -1,4 +1,4 @@
-//! The thin lens: which distance is sharp.
+//! The thin lens equation (Siegwart, Nourbakhsh & Scaramuzza 2011, 4.2.5).
 
 use super::LensError;
 use crate::geometry::Real;

@@ -1,4 +1,4 @@
-//! Frames of a focus sweep to where each cell is in focus, line by line.
+//! Shape from focus (Nayar & Nakagawa 1994): frames of a focus sweep to a map of peaks, line by line.
 
 use super::box_filter::BoxFilter;
 use super::logarithm::log2;

@@ -1,4 +1,4 @@
-//! Answers that differ from those around them.
+//! Median filter of a focus map.
 
 use super::{FocusPeak, NoFocus};
 

@@ -1,4 +1,4 @@
-//! The thin lens in whole micrometres, for cores without a floating-point unit.
+//! The thin lens equation in whole micrometres, for cores without a floating-point unit.
 
 use super::LensError;
 

@@ -1,4 +1,4 @@
-//! Answers that noise moves, from those around them.
+//! Moving least squares (Lancaster & Salkauskas 1981): smoothing of a focus map by local planes.
 
 use super::{FocusPeak, NoFocus};
 

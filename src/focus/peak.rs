@@ -1,4 +1,4 @@
-//! One cell of the picture through the frames: where its sharpness has its peak.
+//! The focus peak of a cell: a parabola fitted to the logarithms of its sharpness.
 
 use super::logarithm::{FRACTION, OCTAVE, log2};
 use core::fmt;

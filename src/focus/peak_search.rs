@@ -1,4 +1,4 @@
-//! The search for the sharpest position: coarse, then golden section, then beside the peak.
+//! Autofocus search: coarse steps, golden section (Kiefer 1953), then a parabola.
 
 use nalgebra::ComplexField;
 

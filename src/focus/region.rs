@@ -1,4 +1,4 @@
-//! The sharpness of a region of the picture: what autofocus makes largest.
+//! Sharpness of a region of interest, which autofocus maximizes.
 
 use super::{FocusLineError, Measure, SharpnessRows};
 
@@ -10,9 +10,9 @@ pub struct Region {
     pub left: u16,
     /// First row.
     pub top: u16,
-    /// Columns.
+    /// The number of columns.
     pub width: u16,
-    /// Rows.
+    /// The number of rows.
     pub height: u16,
 }
 

@@ -1,4 +1,4 @@
-//! Frames of a stack to depth: the lens and where it stood.
+//! Focus peaks to metric depth by the lens equation.
 
 use super::lens::finite;
 use super::{Breathing, FocusLineError, FocusPeak, LensError, ThinLens};

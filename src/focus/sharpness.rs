@@ -1,4 +1,4 @@
-//! Measures of sharpness over windows, row by row.
+//! Focus measures summed over windows, row by row.
 
 use super::config::FocusLineError;
 use super::focus_measures::{binomial, laplacian, modified_laplacian, tenengrad};

@@ -1,4 +1,4 @@
-//! Levenberg and Marquardt's method: steps, and when to stop.
+//! Levenberg-Marquardt for bundle adjustment: damping (Nielsen 1999) and the reasons to stop.
 
 use super::gauge::Gauge;
 use super::loss::Loss;

@@ -1,4 +1,4 @@
-//! Views through lenses that are known: one camera, or a rig of two.
+//! Projection of a calibrated camera, or a rig of two, with its Jacobian.
 
 use super::view::{ProjectionJacobian, View, chain_rule, moved};
 use crate::geometry::{

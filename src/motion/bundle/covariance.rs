@@ -1,4 +1,4 @@
-//! How sure the views and the points are.
+//! Covariances of views and points (Hartley & Zisserman 2004, A6.4).
 
 use super::envelope::Envelope;
 use super::gauge::{Freedom, Gauge};

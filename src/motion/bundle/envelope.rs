@@ -1,4 +1,4 @@
-//! A symmetric matrix of N x N blocks, and its Cholesky factor in the same place.
+//! Block Cholesky factorization within the envelope of the reduced camera matrix (George & Liu 1981).
 
 use super::workspace::{Block, ViewSlot};
 use crate::geometry::Real;

@@ -1,4 +1,4 @@
-//! What is held still: the images do not say where the scene is, nor how large.
+//! Gauge freedom: what is held still, as images tell neither the frame nor the scale.
 
 use crate::geometry::{Real, camera::Pose};
 use core::ops::Range;

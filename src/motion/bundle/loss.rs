@@ -1,4 +1,4 @@
-//! How much a residual counts.
+//! Robust loss of a residual (Huber 1964), and its weight.
 
 use crate::geometry::Real;
 

@@ -1,4 +1,4 @@
-//! Bundle adjustment: views and points move until what was seen agrees with them best.
+//! Bundle adjustment: the views and points of least re-projection error (Triggs et al. 2000).
 //!
 //! In: [`View`]s and points that are roughly known, [`Observation`]s that somebody matched. Out: the same
 //! views and points where half the sum of the [`Loss`] of the observations' squared residuals is least, with
@@ -9,8 +9,8 @@
 //! * [`CameraView`], [`RigView`], [`RectifiedView`], [`RadialView`]: a calibrated camera, two of them mounted
 //!   to each other, a rectified pair's left one with its disparities, or one whose focal length and radial
 //!   distortion are refined too. `view`: how a pixel moves with the view and with the point.
-//! * [`Problem`] with its [`Observation`]s, and the [`BundleWorkspaceView`] it takes; [`Window`] is both in one
-//!   `static`. `problem`: indices and sizes are checked once.
+//! * [`Problem`] with its [`Observation`]s, and the [`BundleWorkspaceView`] it takes; [`Window`] is both in
+//!   one `static`. `problem`: indices and sizes are checked once.
 //! * `point_equations`: the equations of one point. `schur`: all points are taken out of the equations
 //!   (Schur's complement), what is left is solved for the views by `envelope`, then point by point.
 //!   [`Gauge`]: what is held still meanwhile.

@@ -1,4 +1,4 @@
-//! One point's part of the normal equations.
+//! Normal equations of one point, and the Cholesky factor of their 3 x 3 block.
 
 use super::gauge::{Freedom, Gauge};
 use super::loss::Loss;

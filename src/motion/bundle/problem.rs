@@ -1,4 +1,4 @@
-//! What is adjusted: views, points and observations.
+//! The bundle adjustment problem: views, points and observations.
 
 use super::gauge::Gauge;
 use super::view::View;

@@ -1,4 +1,4 @@
-//! A view whose lens moves too: f, k1 and k2, as the data sets of bundle adjustment have it.
+//! Projection through a lens that is refined too: f, k1 and k2 (Agarwal et al. 2010).
 
 use super::view::{ProjectionJacobian, View, chain_rule, moved};
 use crate::geometry::{
@@ -20,9 +20,9 @@ pub struct RadialView<T: Real> {
     pub pose: Pose<T>,
     /// Focal length, px.
     pub focal_px: T,
-    /// Of r^2.
+    /// The coefficient of r^2.
     pub k1: T,
-    /// Of r^4.
+    /// The coefficient of r^4.
     pub k2: T,
 }
 

@@ -1,4 +1,4 @@
-//! A camera, or the left one of a pair with aligned rows, of which disparities are seen.
+//! Projection into the left camera of a rectified pair and to a disparity, with its Jacobian.
 
 use super::camera_view::pixel_jacobian;
 use super::view::{ProjectionJacobian, View, chain_rule, moved};

@@ -1,4 +1,4 @@
-//! One step: the equations of the views with the points eliminated, then the points.
+//! One damped step by the Schur complement: points eliminated, views solved, points back-substituted.
 
 use super::envelope::{Envelope, Indefinite};
 use super::gauge::{Freedom, Gauge};

@@ -1,4 +1,4 @@
-//! A camera at a place, as bundle adjustment sees it.
+//! The trait of a camera at a pose: projection, Jacobian and update.
 
 use crate::geometry::{
     Real,
@@ -18,7 +18,7 @@ pub trait View<T: Real, const N: usize>: Copy {
     /// What fills a slot that is not in use: zeros.
     const EMPTY: Self;
 
-    /// Where it stands: R and t carry a point of the camera into the world, t is its centre.
+    /// The pose of the view: R and t carry a point of the camera into the world, t is its centre.
     fn pose(&self) -> &Pose<T>;
 
     /// Returns the view at another pose.
@@ -35,7 +35,7 @@ pub trait View<T: Real, const N: usize>: Copy {
     fn moved(&self, step: &[T; N]) -> Self;
 }
 
-/// Where a point is seen, and how that moves.
+/// The projection of a point and its Jacobian.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct ProjectionJacobian<T: Real, const N: usize> {
     /// Pixel, px.

@@ -1,4 +1,4 @@
-//! The memory of a problem in one place.
+//! A bundle adjustment problem with its workspace, for a `static`.
 
 use super::adjust::{Adjustment, BundleConfig, BundleReport, adjust};
 use super::covariance::{CovarianceError, Covariances};

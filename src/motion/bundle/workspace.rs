@@ -1,4 +1,4 @@
-//! The memory that an adjustment works in.
+//! The workspace of bundle adjustment: owned, and the view of it that the algorithms take.
 
 use super::view::View;
 use crate::geometry::Real;
@@ -46,7 +46,8 @@ impl<T: Real, const N: usize> CrossBlock<T, N> {
     pub const EMPTY: Self = Self { view: 0, cross: [[T::ZERO; N]; 3] };
 }
 
-/// The memory that adjusting a problem of up to `VIEWS` views and `POINTS` points takes, for a `static`: all zeros.
+/// The memory that adjusting a problem of up to `VIEWS` views and `POINTS` points takes, for a `static`: all
+/// zeros.
 #[derive(Debug)]
 pub struct BundleWorkspace<V, T: Real, const N: usize, const VIEWS: usize, const POINTS: usize> {
     slots: [ViewSlot<V, T, N>; VIEWS],

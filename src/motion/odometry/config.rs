@@ -1,4 +1,4 @@
-//! The cameras, and what is asked.
+//! Configuration of the odometry and its cameras.
 
 use crate::geometry::{
     Real,
@@ -59,22 +59,22 @@ impl<T: Real> OdometryRig<T> {
     }
 }
 
-/// What is asked of an odometry.
+/// Configuration of the odometry.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct OdometryConfig {
-    /// How far from its predicted place a feature is looked for while the motion is not known, px.
+    /// Radius of the search around a predicted place while the motion is not known, px.
     pub far_px: f32,
     /// How far from its predicted place a feature is looked for while the motion is known, px.
     pub near_px: f32,
     /// The largest disparity of a new point, px.
     pub most_disparity_px: u16,
-    /// The deviation of a place found by its pixels, px.
+    /// Standard deviation of a place found by template alignment, px.
     pub sigma_px: f32,
-    /// New points keep so far from others, px.
+    /// Smallest distance of a new point from all others, px.
     pub spacing_px: f32,
-    /// Samples of the robust resection at most.
+    /// Largest number of RANSAC samples of the resection.
     pub most_samples: u32,
-    /// What random choices begin with.
+    /// Seed of the random samples.
     pub seed: u64,
 }
 

@@ -1,4 +1,4 @@
-//! The disparity of one point, by aligning its pixels with the right picture.
+//! Disparity of one point, by aligning its template with the right picture.
 
 use super::frame::Moment;
 use super::track::UPRIGHT;

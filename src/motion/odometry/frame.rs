@@ -1,4 +1,4 @@
-//! What comes in.
+//! A frame: pictures and features of one moment.
 
 use super::config::{OdometryConfig, OdometryRig};
 use crate::features::Feature;

@@ -1,4 +1,4 @@
-//! One camera's first two views.
+//! Two-view initialization of monocular odometry: essential matrix or homography.
 
 use super::config::OdometryRig;
 use super::disparity::CORRELATED;

@@ -1,4 +1,4 @@
-//! A point of the scene in the camera's own frame, near or at infinity, and how sure it is.
+//! Points by inverse depth with their covariance (Civera, Davison & Montiel 2008).
 
 use super::whitening::{PointObservation, Whitener};
 use crate::geometry::linear::columns3;

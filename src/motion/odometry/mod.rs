@@ -1,4 +1,4 @@
-//! Visual odometry: how a camera moves, frame by frame, from what it sees.
+//! Visual odometry: the motion of a camera, frame by frame, from what it sees.
 //!
 //! In: a [`Frame`], the picture with its features and, of a stereo pair, the right picture. Out: a [`Step`],
 //! the motion since the frame before, with its covariance and its [`State`].

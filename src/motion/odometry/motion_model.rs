@@ -1,4 +1,4 @@
-//! How the camera moves: constant velocity from frame to frame, and what was reported of it.
+//! Constant-velocity motion model, and the pose that was reported last.
 
 use super::step::State;
 use crate::geometry::{Real, camera::Pose};

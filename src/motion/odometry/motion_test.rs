@@ -1,4 +1,4 @@
-//! Whether what was found is a motion.
+//! Hypothesis tests of the motion: lost, stationary, rotation only, or rotation and translation.
 
 use super::config::OdometryRig;
 use super::motion_model::MotionModel;
@@ -8,7 +8,7 @@ use super::tracking::Tracker;
 use crate::geometry::linear::covariance6;
 use crate::geometry::{Real, camera::Pose};
 
-/// What a frame's observations say.
+/// The hypothesis that a frame's observations support.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum MotionTest<T: Real> {
     /// Too few agree.

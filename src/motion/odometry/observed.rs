@@ -1,4 +1,4 @@
-//! What a frame saw of the points, for who wants more of it than a pose.
+//! Observations of the last frame, for who wants more of it than a pose.
 
 use super::engine::Odometry;
 use super::track::Track;

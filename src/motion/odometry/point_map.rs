@@ -1,4 +1,4 @@
-//! The map: the points that are followed, each an inverse depth with its covariance in the camera's frame.
+//! The map: points by inverse depth in the frame of the camera, updated and added with each frame.
 
 use super::disparity::{CORRELATED, disparity};
 use super::frame::Moment;

@@ -1,4 +1,4 @@
-//! The pose of the new camera from points that it sees, each with its uncertainty.
+//! Pose of a frame by robust maximum likelihood: Levenberg-Marquardt with a biweight (Beaton & Tukey 1974).
 
 use super::inverse_depth::{InversePoint, seen};
 use super::whitening::{PointObservation, Whitener};

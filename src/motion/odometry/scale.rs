@@ -1,4 +1,4 @@
-//! What the unit of length is.
+//! Odometry in metres, of a pair, and without a scale, of one camera.
 
 use super::config::{OdometryConfig, OdometryRig, OdometryRigError};
 use super::engine::Odometry;

@@ -1,4 +1,4 @@
-//! The last views, adjusted together.
+//! Sliding-window bundle adjustment of the last views.
 
 use super::config::OdometryRig;
 use super::observed::ObservedPoint;

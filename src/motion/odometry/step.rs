@@ -1,4 +1,4 @@
-//! What comes out.
+//! The result of a frame: motion, covariance and state.
 
 use crate::geometry::{Real, camera::Pose};
 use nalgebra::Matrix6;

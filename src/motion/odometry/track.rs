@@ -1,4 +1,4 @@
-//! What is followed from frame to frame.
+//! A track: a point with its template, followed from frame to frame.
 
 use super::inverse_depth::InversePoint;
 use crate::features::{Descriptor, Template};

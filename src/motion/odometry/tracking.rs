@@ -1,4 +1,4 @@
-//! Where the points are in the new frame.
+//! Tracking: points found in a frame by descriptor, resection (PnP with RANSAC) and template alignment.
 
 use super::config::OdometryRig;
 use super::disparity::{ALIGN_PX, CORRELATED, disparity};

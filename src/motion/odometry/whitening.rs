@@ -1,11 +1,11 @@
-//! Residuals in units of their own uncertainty.
+//! Whitening: residuals in units of their own uncertainty.
 
 use crate::geometry::Real;
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
-/// An observation of a point: x and y of its ray `(x, y, 1)`, and its disparity `x - x'` over the focal length
-/// where the right camera sees it. A disparity is measured from the very place in the left picture, and so has
-/// an error of its own.
+/// An observation of a point: x and y of its ray `(x, y, 1)`, and its disparity `x - x'` over the focal
+/// length where the right camera sees it. A disparity is measured from the very place in the left picture,
+/// and so has an error of its own.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct PointObservation<T: Real> {
     pub at: Vector3<T>,

@@ -1,18 +1,18 @@
-//! What is asked of a structure, and why there is none.
+//! Configuration, states and errors of structure from motion.
 
 use crate::geometry::Real;
 use crate::motion::bundle::BundleError;
 
-/// How a structure is found.
+/// Configuration of structure from motion.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct StructureConfig<T> {
-    /// Residual up to which an observation counts as right, px.
+    /// Largest residual of an inlier, px.
     pub threshold_px: T,
-    /// The least angle between two observations of a point, radians.
+    /// Smallest angle between two rays to a point for its triangulation, radians.
     pub min_angle_rad: T,
-    /// Samples at most of each robust estimate.
+    /// Largest number of RANSAC samples of each robust estimate.
     pub most_samples: u32,
-    /// What the random choices begin with.
+    /// Seed of the random samples.
     pub seed: u64,
 }
 

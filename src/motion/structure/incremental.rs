@@ -1,4 +1,4 @@
-//! From two views to all.
+//! Incremental structure from motion: initial pair, resection, triangulation, bundle adjustment.
 
 use super::config::{InitialPairError, PointState, StructureConfig, StructureError, ViewState};
 use super::initial_pair::{Pair, pair};

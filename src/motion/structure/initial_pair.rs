@@ -1,4 +1,4 @@
-//! Two views to begin with.
+//! Relative pose of the initial pair, and the degenerate motions that have none.
 
 use super::config::{InitialPairError, StructureConfig};
 use super::triangulation::rotation_only;

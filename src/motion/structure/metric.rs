@@ -1,4 +1,4 @@
-//! A structure without its scale, and with it.
+//! Structure up to scale, and with its scale.
 
 use super::config::{PointState, ViewState};
 use crate::geometry::{Real, camera::Pose, two_view::ScaleError};

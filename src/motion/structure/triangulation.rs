@@ -1,4 +1,4 @@
-//! A point from all that see it.
+//! Robust triangulation of a point from many views.
 
 use super::config::PointState;
 use crate::geometry::linear::Ldl;

@@ -51,8 +51,8 @@ pub struct StructureWorkspaceView<'a, T: Real> {
     pub landmarks: &'a mut [Landmark<T>],
     /// The inliers of a robust estimate: n.
     pub inliers: &'a mut [bool],
-    /// The workspace of the bundle adjustment: as [`WorkspaceSize`](crate::motion::bundle::WorkspaceSize) says
-    /// for all observations.
+    /// The workspace of the bundle adjustment: as [`WorkspaceSize`](crate::motion::bundle::WorkspaceSize)
+    /// says for all observations.
     pub bundle: BundleWorkspaceView<'a, CameraView<T>, T, 6>,
 }
 

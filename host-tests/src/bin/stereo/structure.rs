@@ -74,7 +74,7 @@ struct Answer {
     began_with: [String; 2],
     plane: bool,
     points: usize,
-    observations: usize,
+    sights: usize,
     rms_px: f64,
 }
 
@@ -125,7 +125,7 @@ pub fn run(args: &StructureArgs) -> Result<(), Failure> {
         "{} of {count} views stand somewhere, {} points, {} sights, {:.3} px RMS\n",
         names(true).count(),
         answer.points,
-        answer.observations,
+        answer.sights,
         answer.rms_px
     );
     for view in names(false) {
@@ -193,7 +193,7 @@ fn answer(found: &Found, images: &Images, unit: &str) -> Answer {
         began_with: [name(a), name(b)],
         plane: found.report.plane,
         points: found.report.points,
-        observations: found.report.observations,
+        sights: found.report.observations,
         rms_px: found.rms_px,
     }
 }

@@ -27,24 +27,6 @@ use crate::imaging::LineBand;
 /// decide, and a frame's mean brightness is divided out. On rendered stacks (fine, coarse and photographed
 /// texture; slopes, steps, cones and waves; noise of 1 and 4 grey levels) a window of two sums of 7 by 7 has
 /// the least error; narrower ones follow the depth more closely, wider ones average more noise.
-///
-/// ```
-/// use stereopsis::focus::{Breathing, FocusCell, FocusConfig, FocusMap};
-/// let mut map = FocusMap::<16, 2, _>::new([FocusCell::EMPTY; 4]);
-/// map.start(&FocusConfig::tiles(16, 16))?;
-/// for contrast in [2, 10, 40, 10, 2] {
-///     map.begin_frame(Breathing::NONE)?;
-///     for y in 0..16 {
-///         let brighter = |x| if (x / 2 + y / 2) % 2 == 0 { contrast } else { 0 };
-///         let line = core::array::from_fn::<u8, 16, _>(|x| 100 + brighter(x));
-///         map.push(&line, |_| {})?;
-///     }
-/// }
-/// map.finish()?;
-/// let peak = map.peak(0, 0)?;
-/// assert_eq!((peak.position(), peak.confidence > 100), (2.0, true));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug)]
 pub struct FocusMap<const W: usize, const C: usize, S> {
     config: FocusConfig,

@@ -12,6 +12,26 @@
 //! * [`FocusScale`]: peaks to [`Depth`](crate::depth::Depth).
 //! * [`LensActuator`], [`Dw9714`]: what moves a lens. [`FocusCalibration`]: its positions to distances.
 //! * [`RegionSharpness`], [`Autofocus`] with its [`FocusSearch`]: a region brought into focus in few frames.
+//!
+//! A stack of five frames, of which the third is the sharpest:
+//!
+//! ```
+//! use stereopsis::focus::{Breathing, FocusCell, FocusConfig, FocusMap};
+//! let mut map = FocusMap::<16, 2, _>::new([FocusCell::EMPTY; 4]);
+//! map.start(&FocusConfig::tiles(16, 16))?;
+//! for contrast in [2, 10, 40, 10, 2] {
+//!     map.begin_frame(Breathing::NONE)?;
+//!     for y in 0..16 {
+//!         let brighter = |x| if (x / 2 + y / 2) % 2 == 0 { contrast } else { 0 };
+//!         let line = core::array::from_fn::<u8, 16, _>(|x| 100 + brighter(x));
+//!         map.push(&line, |_| {})?;
+//!     }
+//! }
+//! map.finish()?;
+//! let peak = map.peak(0, 0)?;
+//! assert_eq!((peak.position(), peak.confidence > 100), (2.0, true));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod actuator;
 mod all_in_focus;

@@ -42,9 +42,9 @@ use crate::matching::kernel::Kernel;
 use crate::matching::memory::Rows5;
 use crate::matching::memory::layout::OUTSIDE;
 use crate::matching::memory::views::view_mut;
-use crate::matching::memory::winners::{BESIDE, Select, Winner, WinnerRows};
+use crate::matching::memory::winners::{Select, Winner, WinnerRows};
 use crate::units::{Disparity, PixelFlags};
-use windows::{Windows, complete};
+use windows::{Windows, best_of_the_rest, complete};
 
 pub(in crate::matching) use super::plain::{CODES_SHARE_A_BYTE, columns_begin};
 
@@ -277,26 +277,4 @@ fn winners<S: WindowParameters, const STRIDE: usize>(
     }
     let WinnerRows { below, costs, above, disparities: found } = WinnerRows::of(winners, begin);
     complete([below, costs, above, found], disparities);
-}
-
-/// The least cost of the candidates over [`BESIDE`] px beside the winner; `u8::MAX` where there is none.
-#[inline(never)]
-fn best_of_the_rest(disparity: usize, mask: &[u8], sums: &mut [u8]) -> u8 {
-    // The winner and those beside it are raised while the others are looked at.
-    let lane = (sums.len() - 1).saturating_sub(disparity);
-    let nearest = lane.saturating_sub(BESIDE)..sums.len().min(lane + BESIDE + 1);
-    let mut kept = [u8::MAX; 2 * BESIDE + 1];
-    for (kept, sum) in kept.iter_mut().zip(sums.get_mut(nearest.clone()).unwrap_or_default()) {
-        *kept = core::mem::replace(sum, u8::MAX);
-    }
-    let mut least = [u8::MAX; LANES];
-    for (sums, mask) in sums.as_chunks::<LANES>().0.iter().zip(mask.as_chunks::<LANES>().0) {
-        for i in 0..LANES {
-            least[i] = least[i].min(sums[i] | mask[i]);
-        }
-    }
-    for (kept, sum) in kept.iter().zip(sums.get_mut(nearest).unwrap_or_default()) {
-        *sum = *kept;
-    }
-    least.iter().fold(u8::MAX, |least, &lane| least.min(lane))
 }

@@ -3,6 +3,7 @@
 
 use super::LANES;
 use crate::matching::backend::parameters::WindowParameters;
+use crate::matching::memory::winners::BESIDE;
 use core::arch::asm;
 
 /// The disparities of the lanes.
@@ -266,4 +267,26 @@ pub(super) fn complete(rows: [&mut [u8]; 4], disparities: usize) {
     if let (Some(below), Some(above), Some(&cost)) = (below.first_mut(), above.first_mut(), costs.first()) {
         (*below, *above) = (cost, cost);
     }
+}
+
+/// The least cost of the candidates over [`BESIDE`] px beside the winner; `u8::MAX` where there is none.
+#[inline(never)]
+pub(super) fn best_of_the_rest(disparity: usize, mask: &[u8], sums: &mut [u8]) -> u8 {
+    // The winner and those beside it are raised while the others are looked at.
+    let lane = (sums.len() - 1).saturating_sub(disparity);
+    let nearest = lane.saturating_sub(BESIDE)..sums.len().min(lane + BESIDE + 1);
+    let mut kept = [u8::MAX; 2 * BESIDE + 1];
+    for (kept, sum) in kept.iter_mut().zip(sums.get_mut(nearest.clone()).unwrap_or_default()) {
+        *kept = core::mem::replace(sum, u8::MAX);
+    }
+    let mut least = [u8::MAX; LANES];
+    for (sums, mask) in sums.as_chunks::<LANES>().0.iter().zip(mask.as_chunks::<LANES>().0) {
+        for i in 0..LANES {
+            least[i] = least[i].min(sums[i] | mask[i]);
+        }
+    }
+    for (kept, sum) in kept.iter().zip(sums.get_mut(nearest).unwrap_or_default()) {
+        *sum = *kept;
+    }
+    least.iter().fold(u8::MAX, |least, &lane| least.min(lane))
 }

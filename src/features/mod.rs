@@ -16,20 +16,35 @@
 //! and a search along epipolar lines compares them with lines.
 
 mod binomial;
-mod config;
+
 mod corner;
-mod descriptor;
-mod detector;
+
 mod downsample;
-mod duplicates;
+
 mod fast;
-mod feature;
-mod feature_matcher;
-mod grid;
-mod match_config;
+
 mod orientation;
+
 mod pattern;
+
+mod descriptor;
+
+mod feature;
+
+mod match_config;
+
+mod config;
+
+mod grid;
+
+mod feature_matcher;
+
+mod duplicates;
+
 mod subpixel;
+
+mod detector;
+
 mod template;
 
 pub use binomial::binomial5_row;

@@ -34,27 +34,48 @@
 //! ```
 
 mod actuator;
+
 mod all_in_focus;
-mod autofocus;
+
 mod box_filter;
-mod breathing;
-mod calibration;
+
 mod config;
-mod depth_of_field;
+
+mod breathing;
+
 mod dw9714;
+
 mod error;
+
 mod focus_measures;
+
 mod lens;
+
+mod calibration;
+
+mod depth_of_field;
+
 mod logarithm;
-mod map;
-mod median;
+
 mod micro_lens;
-mod moving_least_squares;
+
 mod peak;
+
+mod map;
+
+mod median;
+
+mod moving_least_squares;
+
 mod peak_search;
-mod region;
+
+mod autofocus;
+
 mod scale;
+
 mod sharpness;
+
+mod region;
 
 pub use actuator::{ActuatorErrorType, ActuatorLimits, LensActuator};
 pub use all_in_focus::AllInFocusRow;

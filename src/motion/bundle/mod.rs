@@ -30,20 +30,33 @@
     reason = "an element is named by its row and column, as in the equations"
 )]
 
-mod adjust;
-mod camera_view;
-mod covariance;
-mod envelope;
 mod gauge;
+
 mod loss;
-mod point_equations;
-mod problem;
-mod radial_view;
-mod rectified_view;
-mod schur;
+
 mod view;
-mod window;
+
+mod camera_view;
+
+mod radial_view;
+
+mod rectified_view;
+
 mod workspace;
+
+mod envelope;
+
+mod problem;
+
+mod point_equations;
+
+mod schur;
+
+mod adjust;
+
+mod covariance;
+
+mod window;
 
 pub use adjust::{Adjustment, BundleConfig, BundleReport, StopReason, adjust};
 pub use camera_view::{CameraView, RigView};

@@ -28,22 +28,38 @@
 //! of first baselines.
 
 mod config;
-mod disparity;
-mod engine;
+
 mod frame;
-mod initialization;
-mod inverse_depth;
-mod motion_model;
-mod motion_test;
-mod observed;
-mod point_map;
-mod pose_estimate;
-mod scale;
-mod sliding_window;
+
 mod step;
-mod track;
-mod tracking;
+
+mod motion_model;
+
 mod whitening;
+
+mod inverse_depth;
+
+mod track;
+
+mod disparity;
+
+mod pose_estimate;
+
+mod point_map;
+
+mod tracking;
+
+mod initialization;
+
+mod motion_test;
+
+mod engine;
+
+mod observed;
+
+mod sliding_window;
+
+mod scale;
 
 pub use config::{OdometryConfig, OdometryRig, OdometryRigError};
 pub use engine::Odometry;

@@ -18,11 +18,16 @@
 //!   [`StructureWorkspace`]: that in one `static`.
 
 mod config;
-mod incremental;
-mod initial_pair;
+
 mod metric;
+
 mod triangulation;
+
+mod initial_pair;
+
 mod workspace;
+
+mod incremental;
 
 pub use config::{InitialPairError, PointState, StructureConfig, StructureError, ViewState};
 pub use incremental::{StructureReport, structure};

@@ -17,10 +17,10 @@ pub fn opencv() -> String {
         )
     };
     format!(
-        "%YAML:1.0\n---\nimage_width: {WIDTH}\nimage_height: {HEIGHT}\n{}{}R: !!opencv-matrix\n   rows: 3\n \
-              cols: 3\n   dt: d\n\
-         \x20  data: [ 1., 0., 0., 0., 1., 0., 0., 0.,
-             1. ]\nT: !!opencv-matrix\n   rows: 3\n   cols: 1\n   dt: d\n\
+        "%YAML:1.0\n---\nimage_width: {WIDTH}\nimage_height: {HEIGHT}\n{}{}\
+         R: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n\
+         \x20  data: [ 1., 0., 0., 0., 1., 0., 0., 0., 1. ]\n\
+         T: !!opencv-matrix\n   rows: 3\n   cols: 1\n   dt: d\n\
          \x20  data: [ -0.2, 0., 0. ]\n",
         camera(1, 23.5),
         camera(2, 23.5 + f64::from(DOWN))

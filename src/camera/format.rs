@@ -23,7 +23,8 @@ pub enum PixelFormat {
     Uyvy,
     /// RGB in two bytes per pixel: 5 bits of red, 6 of green, 5 of blue from the high bit down.
     Rgb565 {
-        /// Whether the high byte comes first, as from parallel sensors; a framebuffer has the low byte first.
+        /// Whether the high byte comes first, as from parallel sensors; a framebuffer has the low byte
+        /// first.
         high_byte_first: bool,
     },
     /// Bayer mosaic of any of the four patterns, one byte per pixel.

@@ -4,8 +4,8 @@
 //!
 //! 1. [`GreyLines`]: any pixel format as 8-bit grey; [`BayerLines`]: a Bayer mosaic as grey.
 //! 2. [`LineBand`]: the last lines, as the rows around a centre; [`LineWindow`] holds five.
-//! 3. [`census_plus4`], [`census_ring8`], [`census_wide8`]: the codes of one row.
-//!    [`gradients`]: Sobel gradients of a row.
+//! 3. [`census_plus4`], [`census_ring8`], [`census_wide8`]: the codes of one row. [`gradients`]: Sobel
+//!    gradients of a row.
 //! 4. [`RectifiedPair`]: rectified lines of raw ones, by a [`Remap`] for each camera with its [`RemapTable`].
 //! 5. [`PairMonitor`]: health of the cameras, by a [`Histogram`] of each; [`AutoExposure`]: one exposure for
 //!    both.

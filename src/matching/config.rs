@@ -126,7 +126,8 @@ pub struct Checks {
     pub surface_step: Disparity,
     /// Answers are averaged along the line with up to this many pairs of neighbours, left and right alike,
     /// of their surface; 0 to [`Checks::MOST_SMOOTHING`], 0 for none. With the methods along paths they
-    /// are then smoothed down the columns as well ([`Method::VERTICAL_FILTER`](super::Method::VERTICAL_FILTER)).
+    /// are then smoothed down the columns as well
+    /// ([`Method::VERTICAL_FILTER`](super::Method::VERTICAL_FILTER)).
     pub smoothing_radius: u8,
     /// Speckle: answers are dropped that have fewer of their surface, themselves included, on a cross: in
     /// their column, down to four rows below, and along the rows of these. 0: none is.

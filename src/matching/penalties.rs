@@ -35,7 +35,8 @@ impl Penalties {
     pub const DEFAULT: Self =
         Self { gradient: 7, cost: 16, step: [18, 9], jump: [88, 44, 26], edges: [8, 20] };
 
-    /// Penalties for smoothed lines, whose edges are fainter; gradients may be larger before they are cut off.
+    /// Penalties for smoothed lines, whose edges are fainter; gradients may be larger before they are cut
+    /// off.
     ///
     /// What [`Sgm`](super::Sgm) misses on 15 real pairs with noise of 2 and of 5 grey levels, percent, the
     /// checks being those without noise (`cargo xtask altered` measures any others):

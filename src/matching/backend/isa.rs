@@ -27,8 +27,8 @@ pub(in crate::matching) trait Isa: Copy {
         disparities.next_multiple_of(STEP).min(most) & !(STEP - 1)
     }
 
-    /// The census row of five lines in both images, in the form in which [`Self::window`] takes it: at most two
-    /// bytes a pixel.
+    /// The census row of five lines in both images, in the form in which [`Self::window`] takes it: at most
+    /// two bytes a pixel.
     #[inline(always)]
     fn census<P: WindowParameters>(
         self,

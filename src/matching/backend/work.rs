@@ -33,9 +33,9 @@ pub(in crate::matching) struct WindowWork<'a> {
     pub enter: Option<&'a [u8]>,
     /// The row that leaves it above, once there is one.
     pub leave: Option<&'a [u8]>,
-    /// Matching costs summed over the window's height, where a word may stand: `stride` bytes for each of the
-    /// image's columns, and for each of [`OUTSIDE`](crate::matching::memory::layout::OUTSIDE) columns before
-    /// and after that stay zero.
+    /// Matching costs summed over the window's height, where a word may stand: `stride` bytes for each of
+    /// the image's columns, and for each of [`OUTSIDE`](crate::matching::memory::layout::OUTSIDE)
+    /// columns before and after that stay zero.
     pub columns: &'a mut [u8],
     /// Room to work in.
     pub scratch: &'a mut [u32],
@@ -58,8 +58,8 @@ pub(in crate::matching) struct PathWork<'a> {
     /// How far gradients are shifted to the right.
     pub gradient_shift: u32,
     /// Costs, paths from above, and sums of paths: each `stride` bytes for each column, where a word may
-    /// stand. The paths from above have [`COLUMNS_OFF`](crate::matching::memory::layout::COLUMNS_OFF) columns
-    /// more.
+    /// stand. The paths from above have [`COLUMNS_OFF`](crate::matching::memory::layout::COLUMNS_OFF)
+    /// columns more.
     pub costs: &'a mut [u8],
     pub top: &'a mut [u8],
     pub sums: &'a mut [u8],

@@ -33,6 +33,7 @@ pub(in crate::matching) fn view<From: Plain, To: Plain>(numbers: &[From]) -> &[T
 /// Mutable access to what [`view`] shows.
 #[inline(always)]
 pub(in crate::matching) fn view_mut<From: Plain, To: Plain>(numbers: &mut [From]) -> &mut [To] {
-    // SAFETY: both are plain: every value of the one's bytes is a value of the other, and the other way round.
+    // SAFETY: both are plain: every value of the one's bytes is a value of the other, and the other way
+    // round.
     unsafe { numbers.align_to_mut().1 }
 }

@@ -1,8 +1,8 @@
 //! What a matching method is made of: numbers, its memory, and how a row gets its winners.
 //!
 //! * `window`: [`Fast`] and [`Block`], census codes compared over a window.
-//! * `sgm`: [`Sgm`], [`SgmLean`] and [`SgmEdge`], gradients, brightness and a census aggregated along paths by
-//!   [`Penalties`].
+//! * `sgm`: [`Sgm`], [`SgmLean`] and [`SgmEdge`], gradients, brightness and a census aggregated along paths
+//!   by [`Penalties`].
 
 mod denoise;
 mod sgm;
@@ -26,7 +26,8 @@ pub trait Method: MethodParameters + Costs + Steps + Sized + 'static {
     /// Standard deviation of an answer away from depth edges, px: so that on rendered scenes, with sensor
     /// noise of up to two grey levels, three of it hold 99 % of the answers.
     const SIGMA_PX: f32;
-    /// Whether answers that are averaged along the row are filtered down the columns as well: d += 5/8 (d_above
+    /// Whether answers that are averaged along the row are filtered down the columns as well: d += 5/8
+    /// (d_above
     /// - d) + 5/32 (d_below - d), where both are within 1 px of d, the row above has come out, and the one
     /// below is four rows away.
     const VERTICAL_FILTER: bool = false;
@@ -51,7 +52,8 @@ pub trait Method: MethodParameters + Costs + Steps + Sized + 'static {
     const NAME: &'static str;
 }
 
-/// How a method comes to the winners of a row, and the memory that it takes. Only this crate's methods have it.
+/// How a method comes to the winners of a row, and the memory that it takes. Only this crate's methods have
+/// it.
 pub trait Costs: Sized {
     /// What the method keeps from row to row, and its workspace.
     type Memory<const W: usize, const D: usize>: Memory;
@@ -81,7 +83,8 @@ pub struct Frame<'a> {
     pub(super) codes: &'a mut [u8],
     pub(super) columns: &'a mut [u8],
     pub(super) workspace: &'a mut [u32],
-    /// Of each column, whether its pixels in the last 16 rows have texture, and how many in the window's rows do.
+    /// Of each column, whether its pixels in the last 16 rows have texture, and how many in the window's
+    /// rows do.
     pub(super) texture: &'a mut [u16],
     pub(super) textured: &'a mut [u8],
     pub(super) winners: &'a mut [Winner],

@@ -77,8 +77,8 @@ fn step<S: Method>(mut frame: Frame<'_>, y: usize, lines: Option<[&Rows5<'_>; 2]
     finish_row::<S>(&mut frame, y, lines);
 }
 
-/// Adds row `bottom`, makes the answers of the row that has its costs with it, and finishes the one that waited
-/// for those.
+/// Adds row `bottom`, makes the answers of the row that has its costs with it, and finishes the one that
+/// waited for those.
 fn finish_row<S: Method>(frame: &mut Frame<'_>, bottom: usize, lines: Option<[&Rows5<'_>; 2]>) {
     let height = usize::from(frame.config.height);
     let newest = bottom.checked_sub(S::RADIUS_Y);

@@ -15,7 +15,8 @@ const NO_CIRCLE: [&str; 10] =
     ["geometry", "camera", "imaging", "matching", "depth", "focus", "features", "motion", "pipeline", "ffi"];
 
 /// Folders whose `mod.rs` lists the modules in running order.
-const IN_ORDER: [&str; 14] = [
+const IN_ORDER: [&str; 15] = [
+    "matching",
     "geometry",
     "geometry/absolute",
     "geometry/camera",

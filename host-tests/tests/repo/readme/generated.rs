@@ -1,4 +1,5 @@
-//! The parts of docs/performance.md that are made from the code: tables of state and accuracy; and the pictures.
+//! The parts of docs/performance.md that are made from the code: tables of state and accuracy; and the
+//! pictures.
 //!
 //! A table stands between `<!-- generated: NAME -->` and `<!-- end: NAME -->`, each on a line of its own.
 

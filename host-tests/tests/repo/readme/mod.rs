@@ -1,5 +1,5 @@
-//! README.md and docs/ hold: their commands work word for word in a fresh clone, and their figures are those of
-//! this tree.
+//! README.md and docs/ hold: their commands work word for word in a fresh clone, and their figures are those
+//! of this tree.
 
 mod commands;
 mod generated;

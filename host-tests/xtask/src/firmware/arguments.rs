@@ -47,8 +47,10 @@ pub struct Arguments {
     #[arg(long, conflicts_with_all =
         ["program", "small", "core", "left", "right", "disparities", "method", "noise", "out"])]
     all: bool,
-    /// The instructions of a frame by stage, on cores whose code differs: writes the table of docs/performance.md
-    #[arg(long, conflicts_with_all = ["all", "program", "small", "core", "left", "right", "disparities", "method", "noise", "out"])]
+    /// The instructions of a frame by stage, on cores whose code differs: writes the table of
+    /// docs/performance.md
+    #[arg(long, conflicts_with_all =
+        ["all", "program", "small", "core", "left", "right", "disparities", "method", "noise", "out"])]
     stages: bool,
     /// With --all or --stages: writes nothing, fails when the table in docs/performance.md is another
     #[arg(long)]

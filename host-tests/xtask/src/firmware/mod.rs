@@ -3,7 +3,8 @@
 //! * [`arguments`]: what is asked for. [`program`]: one build of the example. [`emulate`]: QEMU. [`log`]: the
 //!   firmware's log as text.
 //! * [`frame`]: one frame on one core, held to the host. [`summary`]: the files that are written of it.
-//! * [`all`]: every core, method and size; [`tables`] of it for docs/performance.md; [`checksums`] on real pictures.
+//! * [`all`]: every core, method and size; [`tables`] of it for docs/performance.md; [`checksums`] on real
+//!   pictures.
 //! * [`as_match`]: noisy cameras that are exposed unequally, beside `stereo match`.
 //! * [`awkward`]: sizes that fill no vector, where the rows are in assembly.
 //! * [`pose`]: two views on one core, held to the host; [`two_views_all`]: on every core.
@@ -94,8 +95,8 @@ fn run_all(readme: Readme) -> Outcome {
     Ok(())
 }
 
-/// Every core and method and a part of the sizes and programs, compared with docs/performance.md; and a frame with what
-/// the program `stereo` at that path makes of it.
+/// Every core and method and a part of the sizes and programs, compared with docs/performance.md; and a frame
+/// with what the program `stereo` at that path makes of it.
 pub fn check_sample(stereo: &Path) -> Outcome {
     run_all(Readme::Sample)?;
     as_match::check(stereo)

@@ -1,5 +1,5 @@
-//! The tables in docs/performance.md of the programs without sizes to choose: a line for each core that one is measured
-//! on.
+//! The tables in docs/performance.md of the programs without sizes to choose: a line for each core that one
+//! is measured on.
 
 use super::board::{self, Board};
 use super::program::Optimised;

@@ -20,8 +20,8 @@ pub enum Readme {
     Write,
     /// All is measured, and docs/performance.md has to say it.
     Compare,
-    /// A part is measured that every kind of core has a share in, for the sake of time, and docs/performance.md has to
-    /// say it.
+    /// A part is measured that every kind of core has a share in, for the sake of time, and
+    /// docs/performance.md has to say it.
     Sample,
 }
 

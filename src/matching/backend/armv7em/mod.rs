@@ -9,8 +9,8 @@
 //! * `windows`: columns into windows, windows into winners.
 //! * `rows`: the right codes from right to left, and the loops of both over the pixels of a row, in assembly
 //!   for the usual numbers of candidates.
-//! * `left_right`: winners into answers; `smooth`: these averaged; `speckle`: their support counted, which all
-//!   methods share.
+//! * `left_right`: winners into answers; `smooth`: these averaged; `speckle`: their support counted, which
+//!   all methods share.
 //! * `sgm`: costs along paths.
 //! * `word`: what is done to four bytes.
 //!

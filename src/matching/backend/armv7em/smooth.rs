@@ -21,8 +21,8 @@ static COUNTS: [u32; MOST + 1] = {
     counts
 };
 
-/// [`Isa::smooth`](crate::matching::backend::Isa::smooth); a length is a byte, that of the answer `x` the byte `x`: one less
-/// than it is, and 255 for all above.
+/// [`Isa::smooth`](crate::matching::backend::Isa::smooth); a length is a byte, that of the answer `x` the
+/// byte `x`: one less than it is, and 255 for all above.
 #[inline(never)]
 pub(super) fn smooth(
     answers: &mut [Disparity],

@@ -1,4 +1,5 @@
-//! The left-right check and the sub-pixel fit, pixels side by side, in loops that the compiler turns into vectors: bytes as long as possible.
+//! The left-right check and the sub-pixel fit, pixels side by side, in loops that the compiler turns into
+//! vectors: bytes as long as possible.
 
 use super::consistency;
 use crate::matching::backend::parameters::MethodParameters;

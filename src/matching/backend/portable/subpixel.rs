@@ -6,8 +6,8 @@
 //!
 //! `f = (a - b) / (2 max(a, b))`
 //!
-//! SgmParameters paths a disparity beside the winner costs a step more wherever a surface is slanted, which would
-//! pull answers to whole pixels: so much of the steeper rise is not counted
+//! SgmParameters paths a disparity beside the winner costs a step more wherever a surface is slanted, which
+//! would pull answers to whole pixels: so much of the steeper rise is not counted
 //! ([`SLANT_COST`](crate::matching::backend::parameters::MethodParameters::SLANT_COST)).
 //!
 //! On a rendered slanted plane the parabola's error was half again as large, for both windows, and its

@@ -1,6 +1,6 @@
-//! Costs along paths in vectors: which groups of bytes a pass works on, and how many of them are a column. For
-//! the usual numbers of disparities that is known when the crate is compiled, which lets the compiler unroll
-//! them and keep them in registers.
+//! Costs along paths in vectors: which groups of bytes a pass works on, and how many of them are a column.
+//! For the usual numbers of disparities that is known when the crate is compiled, which lets the compiler
+//! unroll them and keep them in registers.
 
 use super::{Backend, Vector, Wide, Widest};
 use crate::matching::backend::parameters::SgmParameters;

@@ -38,8 +38,8 @@ fn whole<S: WindowParameters, const CELLS: usize>(work: WindowWork<'_>, select: 
     row::<S, Vector, CELLS, true>(work, select);
 }
 
-/// [`Isa::window`](crate::matching::backend::Isa::window) in columns of up to `CELLS` groups, all of them in use if `ALL`: then the compiler
-/// knows how many.
+/// [`Isa::window`](crate::matching::backend::Isa::window) in columns of up to `CELLS` groups, all of them in
+/// use if `ALL`: then the compiler knows how many.
 #[inline(always)]
 pub(super) fn row<S: WindowParameters, G: Group, const CELLS: usize, const ALL: bool>(
     work: WindowWork<'_>,

@@ -138,8 +138,8 @@ pub(in crate::matching::backend) trait FeatureRows {
     fn looks(lines: &Rows5<'_>, gradient: u8, looks: [&mut [u8]; 3]);
     /// Half of each number.
     fn halve(numbers: &[u8], halves: &mut [u8]);
-    /// The least and the greatest of each number and those halfway to its neighbours, rounded down, of all but
-    /// the two at the ends.
+    /// The least and the greatest of each number and those halfway to its neighbours, rounded down, of all
+    /// but the two at the ends.
     fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]);
     /// The range of one number.
     fn between(before: u8, here: u8, next: u8) -> (u8, u8);

@@ -15,8 +15,8 @@
 //! message(p)[d] = min(p[d], p[d - 1] + step, p[d + 1] + step, least p + jump) - least p
 //! ```
 //!
-//! Everything fits bytes: see [`Penalties`](crate::matching::Penalties). Kept from row to row are a, t and the room for s; within edges,
-//! two more.
+//! Everything fits bytes: see [`Penalties`](crate::matching::Penalties). Kept from row to row are a, t and
+//! the room for s; within edges, two more.
 //!
 //! * `features`: what a pixel's cost compares, of a row of both images.
 //! * `edges`: how far a row's costs are averaged with others.

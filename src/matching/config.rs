@@ -101,7 +101,8 @@ impl Config {
 ///
 /// Three operating points are ready made, those of the block methods here: [`Checks::DENSE`] answers wherever
 /// there is a candidate, [`Checks::DEFAULT`] drops what the other image or the neighbourhood contradicts,
-/// [`Checks::STRICT`] keeps what is well supported. [`Filter::checks`] has them for every method.
+/// [`Checks::STRICT`] keeps what is well supported. [`Filter::checks`](super::Filter::checks) has them for
+/// every method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Checks {

@@ -6,7 +6,7 @@
 //!   iteration.
 //! * [`null_of_rows`]: the one vector that N - 1 rows leave free, by elimination; [`pencil_of_rows`]: the two
 //!   that N - 2 do. [`rank`]: how many pivots count.
-//! * [`levenberg_marquardt`]: the loop of damped least squares, over any [`LeastSquares`] problem.
+//! * [`mod@levenberg_marquardt`]: the loop of damped least squares, over any [`LeastSquares`] problem.
 //! * [`covariance6`]: the inverse of an information of six numbers.
 //! * [`cubic_roots`]: the real roots of a cubic.
 //! * [`Projective`]: the normal equations of `p ~ M q`.

@@ -29,8 +29,8 @@ pub(in crate::matching) struct Unique<'a> {
     /// [`Checks::uniqueness_percent`](crate::matching::Checks::uniqueness_percent). Empty where that is not
     /// asked.
     flags: &'a mut [PixelFlags],
-    /// How much more the second best costs, for [`confidence`](crate::matching::confidence). Empty where
-    /// that is not asked.
+    /// How much more the second best costs, for [`confidence`](crate::matching::stages::confidence). Empty
+    /// where that is not asked.
     margins: &'a mut [u8],
 }
 

@@ -65,7 +65,8 @@ impl<T: Real> LeastSquares<T, FREE> for SampsonLoss<'_, T> {
         let (u, v) = (f.u, f.v);
         let m = f.matrix();
         let per_width = T::ONE / loss.width_squared;
-        for s in seen.iter().step_by(every) {
+        // Never 0, which the compiler has to see.
+        for s in seen.iter().step_by(every.max(1)) {
             let (p, q) = (first.apply(s.first), second.apply(s.second));
             let (p, q) = (Vector3::new(p.x, p.y, T::ONE), Vector3::new(q.x, q.y, T::ONE));
             // The lines, and what a step of a pixel along their normals is in the frame.

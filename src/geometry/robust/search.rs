@@ -150,7 +150,9 @@ impl<'a, T: Real> Estimator<MINIMUM> for Search<'a, T> {
     fn models(&self, sample: &[usize; MINIMUM]) -> impl Iterator<Item = Matrix3<T>> + use<'a, T> {
         let [first, second] = self.frames;
         let sample = self.at(sample).map(|seen| seen.map(|s| (first.apply(s.first), second.apply(s.second))));
-        sample.map(|normalised| seven_point(&normalised)).into_iter().flatten()
+        // By their places: the iterator of the vector itself can panic, as far as the compiler sees.
+        let candidates = sample.map(|normalised| seven_point(&normalised)).unwrap_or_default();
+        (0..candidates.len()).map_while(move |i| candidates.get(i).copied())
     }
 
     fn consider(&mut self, model: &Matrix3<T>, sample: &[usize; MINIMUM]) {

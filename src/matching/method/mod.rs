@@ -26,10 +26,9 @@ pub trait Method: MethodParameters + Costs + Steps + Sized + 'static {
     /// Standard deviation of an answer away from depth edges, px: so that on rendered scenes, with sensor
     /// noise of up to two grey levels, three of it hold 99 % of the answers.
     const SIGMA_PX: f32;
-    /// Whether answers that are averaged along the row are filtered down the columns as well: d += 5/8
-    /// (d_above
-    /// - d) + 5/32 (d_below - d), where both are within 1 px of d, the row above has come out, and the one
-    /// below is four rows away.
+    /// Whether answers that are averaged along the row are filtered down the columns as well:
+    /// `d += 5/8 (d_above - d) + 5/32 (d_below - d)`, where both are within 1 px of d, the row above has come
+    /// out, and the one below is four rows away.
     const VERTICAL_FILTER: bool = false;
     /// The checks of [`Filter::Default`](super::Filter::Default).
     const DEFAULT: Checks = Checks::DEFAULT;

@@ -9,9 +9,9 @@ use crate::camera::{
 ///
 /// A grey pixel is the mean of 2x2 raw ones:
 /// `g(x, y) = (p(x, y) + p(x + 1, y) + p(x, y + 1) + p(x + 1, y + 1) + 2) / 4`. In every Bayer pattern these
-/// are one red, two green and one blue, `(R + 2 G + B) / 4`, half a pixel to the right and below. Both cameras
-/// shift alike, which leaves disparities unchanged. The last column and the last row repeat the means before
-/// them.
+/// are one red, two green and one blue, `(R + 2 G + B) / 4`, half a pixel to the right and below. Both
+/// cameras shift alike, which leaves disparities unchanged. The last column and the last row repeat the means
+/// before them.
 ///
 /// A row needs the line below, so that the source is one line ahead; where that line is lost, so is the row.
 /// The capacities are `W` pixels and `RAW` bytes.

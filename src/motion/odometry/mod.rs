@@ -17,7 +17,7 @@
 //! 4. `motion_test`: whether that is a motion: a camera that stands still, that only turns, or whose points
 //!    are too far away to tell a step by is named.
 //! 5. `inverse_depth`: what was seen makes the points surer; they move into the new camera's frame.
-//! 6. `new_points`: new points where there are none, by the right picture at once, of one camera with a depth
+//! 6. `point_map`: new points where there are none, by the right picture at once, of one camera with a depth
 //!    that is not known yet.
 //! 7. `initialization`: of one camera, the first two views: their essential matrix, and with it the unit of
 //!    length.

@@ -3,11 +3,13 @@
 use super::backend::{Backend, Isa, SMOOTH_MARGIN, STEP, columns_begin};
 use super::config::{Config, ConfigError};
 use super::kernel::{Kernel, KernelError};
-use super::memory::rings::{BAND, HISTORY, LOOK_AHEAD, first, row_mut};
-use super::memory::{AfterRow, Bytes, Memory, Parts, Rows5};
+use super::memory::rings::{BAND, HISTORY, LOOK_AHEAD, Ring, row, row_mut};
+use super::memory::workspace::Finished;
+use super::memory::{Bytes, Memory, Parts, Rows5};
 use super::method::{Frame, Method};
 use super::row::Row;
 use super::stages::{self, mask};
+use crate::matching::memory::slices::part_mut;
 use crate::units::{Disparity, PixelFlags};
 use core::fmt;
 
@@ -95,7 +97,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
         assert!(W <= u16::MAX as usize, "W must be at most 65535");
         assert!(
             3 * D >= 2 * SMOOTH_MARGIN + size_of::<u32>(),
-            "the scratch must hold a row of answers and what is around it"
+            "the workspace must hold a row of answers and what is around it"
         );
         assert!(size_of::<Self>() <= state_bytes::<S>(W, D), "state_bytes must cover the state");
     };
@@ -177,8 +179,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     pub fn row(&self) -> Option<Row<'_>> {
         let width = usize::from(self.config.width);
         let index = self.taken.checked_sub(Self::DELAY + 1)?;
-        let flags =
-            self.band_flags.as_flattened().get((index % BAND) * width..).and_then(|f| f.get(..width))?;
+        let flags = row(self.band_flags.as_flattened(), index % BAND, width);
         Some(Row {
             index,
             width,
@@ -187,7 +188,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             finished: self.finished.as_flattened(),
             band: self.band.as_flattened(),
             sigma_px: S::SIGMA_PX,
-            confidences: if self.config.confidence { self.memory.after_winners(width) } else { &[] },
+            confidences: if self.config.confidence { self.memory.confidences(width) } else { &[] },
         })
     }
 
@@ -200,26 +201,32 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     // Nothing is left of it where the source has no mask.
     #[inline]
     pub fn mask(&mut self, valid: impl FnOnce(u16, [&mut [u8]; 2]) -> bool) {
-        let width = usize::from(self.config.width).min(W);
-        let Some(index) = self.taken.checked_sub(Self::DELAY + 1) else { return };
-        let AfterRow { confidences, masks: [left, right] } = self.memory.after_row(width);
-        if !valid(index as u16, [&mut *left, &mut *right]) {
-            return;
+        let Some((row, [left, right])) = self.last_row() else { return };
+        if valid(row.index, [&mut *left, &mut *right]) {
+            row.take_away(left, right);
         }
-        let row = mask::Masked {
-            answers: row_mut(self.finished.as_flattened_mut(), index % HISTORY, width),
-            flags: row_mut(self.band_flags.as_flattened_mut(), index % BAND, width),
-            confidences: if self.config.confidence { confidences } else { &mut [] },
-        };
-        row.take_away(left, right);
     }
 
     /// Flags every pixel of the row that came out last as [`PixelFlags::DAMAGED`]; its answers go unless
     /// `keeps_answers`.
     pub(crate) fn mark_damaged(&mut self, keeps_answers: bool) {
-        if let Some(index) = self.taken.checked_sub(Self::DELAY + 1) {
-            stages::mark_damaged(self.frame(), index, keeps_answers);
+        if let Some((row, _)) = self.last_row() {
+            row.mark_damaged(keeps_answers);
         }
+    }
+
+    /// The row that came out last, and places for the masks of both images.
+    fn last_row(&mut self) -> Option<(mask::Masked<'_>, [&mut [u8]; 2])> {
+        let width = usize::from(self.config.width).min(W);
+        let index = self.taken.checked_sub(Self::DELAY + 1)?;
+        let Finished { confidences, masks } = self.memory.finished(width).finished();
+        let row = mask::Masked {
+            index: index as u16,
+            answers: row_mut(self.finished.as_flattened_mut(), index % HISTORY, width),
+            flags: row_mut(self.band_flags.as_flattened_mut(), index % BAND, width),
+            confidences: if self.config.confidence { confidences } else { &mut [] },
+        };
+        Some((row, masks))
     }
 
     fn step(&mut self, lines: Option<[&Rows5<'_>; 2]>) -> Result<(), MatchError> {
@@ -249,9 +256,9 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     /// The memory as slices of the frame's real size: what follows is compiled once for each method.
     fn frame(&mut self) -> Frame<'_> {
         let (width, stride) = self.size();
-        let Parts { codes, columns, winners, right, lengths, workspace } = self.memory.parts(width);
-        let columns = columns.get_mut(usize::from(self.columns_begin)..).unwrap_or_default();
-        let columns = first(columns, S::Memory::<W, D>::column_bytes(width, stride));
+        let Parts { codes, columns, workspace } = self.memory.parts(width);
+        let columns = part_mut(columns, usize::from(self.columns_begin)..);
+        let columns = part_mut(columns, ..S::Memory::<W, D>::column_bytes(width, stride));
         Frame {
             width,
             stride,
@@ -260,15 +267,12 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             codes,
             columns,
             workspace,
-            texture: first(&mut self.texture, width),
-            textured: first(&mut self.textured, width),
-            winners,
-            right,
-            lengths,
-            support: first(&mut self.support, width),
-            band: first(self.band.as_flattened_mut(), width * BAND),
-            flags: first(self.band_flags.as_flattened_mut(), width * BAND),
-            finished: first(self.finished.as_flattened_mut(), width * HISTORY),
+            texture: part_mut(&mut self.texture, ..width),
+            textured: part_mut(&mut self.textured, ..width),
+            support: part_mut(&mut self.support, ..width),
+            band: Ring::new(self.band.as_flattened_mut(), width),
+            flags: Ring::new(self.band_flags.as_flattened_mut(), width),
+            finished: Ring::new(self.finished.as_flattened_mut(), width),
         }
     }
 }

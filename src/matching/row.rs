@@ -1,7 +1,8 @@
 //! One row of results.
 
+use super::memory::notes::Note;
 use super::memory::rings::{BAND, HISTORY, row as slot};
-use super::stages::confidence::{AGREEMENT, MOST_MARGIN};
+use super::stages::confidence::AGREEMENT;
 use crate::units::{Disparity, PixelFlags};
 
 /// The least standard deviation of an answer that was filled in, px.
@@ -45,7 +46,7 @@ impl<'a> Row<'a> {
     }
 
     /// The largest of [`Self::confidences`].
-    pub const MOST_CONFIDENCE: u8 = MOST_MARGIN + 2 * AGREEMENT;
+    pub const MOST_CONFIDENCE: u8 = Note::MOST_MARGIN + 2 * AGREEMENT;
 
     /// How sure the answer of each column is, from 1 to [`Self::MOST_CONFIDENCE`]; 0 where there is no
     /// answer. Empty unless [`Config::confidence`](super::Config::confidence) asked for them.

@@ -7,7 +7,7 @@ use super::portable;
 use super::work::{EdgeWork, Guide, PathWork, Rules, STEP, SpeckleWork, WindowWork, WinnerWork};
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::Rows5;
-use crate::matching::memory::winners::Select;
+use crate::matching::memory::winners::{Lengths, Select};
 use crate::units::{Disparity, PixelFlags};
 
 /// The code of a target for the stages that it may have instructions for.
@@ -92,12 +92,12 @@ pub(in crate::matching) trait Isa: Copy {
     fn smooth(
         self,
         answers: &mut [Disparity],
-        lengths: &mut [u16],
+        lengths: Lengths<'_>,
         workspace: &mut [u16],
         step: Disparity,
         radius: u8,
     ) {
-        portable::smooth::smooth(answers, lengths, workspace, step, radius);
+        portable::smooth::smooth(answers, lengths.half_words(), workspace, step, radius);
     }
 
     /// Makes `out` the medians of 3 x 3 answers, those of the second of three rows in the middle.

@@ -52,7 +52,7 @@ pub(super) use target::{Backend, CODES_SHARE_A_BYTE, columns_begin};
 pub(super) use work::{EdgeWork, Guide, PathWork, Rules, STEP, SpeckleWork, WindowWork, WinnerWork};
 
 /// Words that the tables of a target take beside the workspace of a window whose codes have up to four bits,
-/// and four that rows are read beyond. A matcher's bytes are told for all targets alike.
+/// and four that rows are read beyond. A matcher's bytes are given for all targets alike.
 pub(super) const TABLE_WORDS: usize = 2 * 16 * 96 / size_of::<u32>() + 4;
 
 impl Kernel {

@@ -1,6 +1,6 @@
 //! What the stages hand to a target's code: slices of a row and plain numbers.
 
-use crate::matching::memory::winners::Winner;
+use crate::matching::memory::winners::{Lengths, Winners};
 use crate::matching::penalties::Penalties;
 use crate::units::{Disparity, PixelFlags};
 
@@ -37,8 +37,8 @@ pub(in crate::matching) struct WindowWork<'a> {
     /// the image's columns, and for each of [`OUTSIDE`](crate::matching::memory::layout::OUTSIDE)
     /// columns before and after that stay zero.
     pub columns: &'a mut [u8],
-    /// Room to work in.
-    pub scratch: &'a mut [u32],
+    /// What a kernel works with.
+    pub workspace: &'a mut [u32],
 }
 
 /// What the passes work on.
@@ -65,7 +65,7 @@ pub(in crate::matching) struct PathWork<'a> {
     pub sums: &'a mut [u8],
 }
 
-/// What the passes that decide look at beside.
+/// What the passes that select winners look at besides the costs.
 #[derive(Clone, Copy)]
 pub(in crate::matching) struct Guide<'a> {
     /// The left image's row.
@@ -90,7 +90,7 @@ pub(in crate::matching) struct EdgeWork<'a> {
 /// A row of winners on its way to answers. The first two slices have the row's width.
 pub(in crate::matching) struct WinnerWork<'a> {
     /// The winners; left of the smallest disparity they mean nothing.
-    pub winners: &'a mut [Winner],
+    pub winners: Winners<'a>,
     /// Workspace for what each right column keeps.
     pub right: &'a mut [u16],
     /// Workspace of two bytes a pixel.
@@ -119,9 +119,8 @@ pub(in crate::matching) struct SpeckleWork<'a> {
     pub here: &'a [Disparity],
     /// The row above it.
     pub above: &'a [Disparity],
-    /// Of each answer of the newest row, how many its surface has along the row, in the form that the
-    /// target's [`smooth`](super::isa::Isa::smooth) leaves; they are done with.
-    pub lengths: &'a mut [u16],
+    /// How far each answer's surface goes along the newest row; they are done with.
+    pub lengths: Lengths<'a>,
     /// All zero when a frame begins, then in the target's own form: the support of each column.
     pub kept: &'a mut [u16],
     /// The flags of the row that waited.

@@ -1,23 +1,29 @@
 //! What a method keeps from row to row, and its workspace.
 //!
+//! * `slices`: parts of slices, whose sizes are asserted here and nowhere else.
+//! * `views`: one memory looked at as numbers of another width.
 //! * `rings`: rows that are kept for a while.
 //! * `winner`, `winners`: what the winner-take-all stage gives for each pixel.
-//! * `views`: one memory looked at as numbers of another width.
+//! * `notes`: flags and margins in one byte, while a row waits for its confidences.
+//! * `workspace`: what a row's stages share, and its phases.
 //! * `layout`: memory whose size depends on the capacity.
 
 pub(in crate::matching) mod layout;
+pub(in crate::matching) mod notes;
 pub(in crate::matching) mod rings;
+pub(in crate::matching) mod slices;
 pub(in crate::matching) mod views;
 pub(in crate::matching) mod winner;
 pub(in crate::matching) mod winners;
+pub(in crate::matching) mod workspace;
 
 pub use rings::Rows5;
 
-use super::config::Config;
 use layout::{Aligned, Columns, OUTSIDE, WindowWorkspace};
-use rings::first;
-use views::{view, view_mut};
+use slices::{part, part_mut};
+use views::view;
 use winners::Winner;
+use workspace::RowWorkspace;
 
 /// How much memory a method takes: always, and multiples of the width, of width x disparities, and of the
 /// disparities.
@@ -35,18 +41,12 @@ pub trait Memory {
     fn parts(&mut self, width: usize) -> Parts<'_>;
     /// Bytes of the columns that a frame of this width and so many candidates takes.
     fn column_bytes(width: usize, stride: usize) -> usize;
-    /// What stands where the winners of a row stood, a byte for each of its pixels, until the next row.
-    fn after_winners(&self, width: usize) -> &[u8];
-    /// Mutable access to these bytes, and to what nothing needs until the next row.
-    fn after_row(&mut self, width: usize) -> AfterRow<'_>;
-}
-
-/// A finished row's bytes, one for each pixel.
-pub struct AfterRow<'a> {
-    /// [`Memory::after_winners`].
-    pub confidences: &'a mut [u8],
-    /// Room for two masks.
-    pub masks: [&'a mut [u8]; 2],
+    /// The confidences of the row that is out, a byte for each pixel, where its workspace has them.
+    fn confidences(&self, width: usize) -> &[u8];
+    /// The workspace of the row that is out.
+    fn finished(&mut self, width: usize) -> RowWorkspace<'_> {
+        self.parts(width).workspace
+    }
 }
 
 /// The memory of a method as slices.
@@ -55,13 +55,8 @@ pub struct Parts<'a> {
     pub codes: &'a mut [u8],
     /// Room for what is summed for every candidate of every column, where a word may stand.
     pub columns: &'a mut [u8],
-    /// Of each column its winner, what the right one keeps, and how long its surface is along the row; empty
-    /// where these share the `workspace`.
-    pub winners: &'a mut [Winner],
-    pub right: &'a mut [u16],
-    pub lengths: &'a mut [u16],
-    /// Room to work in.
-    pub workspace: &'a mut [u32],
+    /// What the stages of a row work with.
+    pub workspace: RowWorkspace<'a>,
 }
 
 /// The memory of a window over `ROWS` rows of codes, with the one that leaves it: `CODES` bytes for the two
@@ -75,14 +70,14 @@ pub struct WindowMemory<
 > {
     codes: Aligned<[[[u8; CODES]; W]; ROWS]>,
     columns: Columns<W, D>,
-    scratch: WindowWorkspace<TABLES, W, D>,
+    workspace: WindowWorkspace<TABLES, W, D>,
     winners: [Winner; W],
     right: [u16; W],
     lengths: [u16; W],
 }
 
 impl<const CODES: usize, const ROWS: usize, const TABLES: usize> WindowMemory<CODES, ROWS, TABLES, 0, 0> {
-    /// The codes; the scratch's codes, the winner, what the right column keeps and the length.
+    /// The codes; the workspace's codes, the winner, what the right column keeps and the length.
     pub const BYTES: Bytes = Bytes {
         fixed: TABLES * size_of::<u32>(),
         per_pixel: CODES * ROWS + 2 + 4 + 2 + 2,
@@ -97,7 +92,7 @@ impl<const CODES: usize, const ROWS: usize, const TABLES: usize, const W: usize,
     const EMPTY: Self = Self {
         codes: Aligned([[[0; CODES]; W]; ROWS]),
         columns: Columns::ZERO,
-        scratch: WindowWorkspace::ZERO,
+        workspace: WindowWorkspace::ZERO,
         winners: [Winner::NONE; W],
         right: [0; W],
         lengths: [0; W],
@@ -105,12 +100,14 @@ impl<const CODES: usize, const ROWS: usize, const TABLES: usize, const W: usize,
 
     fn parts(&mut self, width: usize) -> Parts<'_> {
         Parts {
-            codes: first(self.codes.0.as_flattened_mut().as_flattened_mut(), CODES * width * ROWS),
+            codes: part_mut(self.codes.0.as_flattened_mut().as_flattened_mut(), ..CODES * width * ROWS),
             columns: self.columns.flat(),
-            winners: first(&mut self.winners, width),
-            right: first(&mut self.right, width),
-            lengths: first(&mut self.lengths, width),
-            workspace: self.scratch.words(),
+            workspace: RowWorkspace::of_rows(
+                part_mut(&mut self.winners, ..width),
+                part_mut(&mut self.right, ..width),
+                part_mut(&mut self.lengths, ..width),
+                self.workspace.words(),
+            ),
         }
     }
 
@@ -118,23 +115,7 @@ impl<const CODES: usize, const ROWS: usize, const TABLES: usize, const W: usize,
         (width + 2 * OUTSIDE) * stride
     }
 
-    fn after_winners(&self, width: usize) -> &[u8] {
-        view::<Winner, u8>(&self.winners).get(..width).unwrap_or(&[])
+    fn confidences(&self, width: usize) -> &[u8] {
+        part(view::<Winner, u8>(&self.winners), ..width)
     }
-
-    fn after_row(&mut self, width: usize) -> AfterRow<'_> {
-        let masks = view_mut::<u16, u8>(first(&mut self.right, width));
-        let (left, right) = masks.split_at_mut_checked(width).unwrap_or_default();
-        AfterRow {
-            confidences: first(view_mut::<Winner, u8>(&mut self.winners), width),
-            masks: [left, right],
-        }
-    }
-}
-
-/// Where the margins of a row's winners stand until the lengths of its surfaces are counted: a byte for each
-/// pixel. Empty where no confidences are asked for.
-#[inline(always)]
-pub(super) fn margins<'a>(config: &Config, lengths: &'a mut [u16]) -> &'a mut [u8] {
-    if config.confidence { first(view_mut::<u16, u8>(lengths), usize::from(config.width)) } else { &mut [] }
 }

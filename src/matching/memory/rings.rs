@@ -1,5 +1,7 @@
 //! Rows of a frame that are kept for a while, in rings: row `y` stands in slot `y % rows`.
 
+use super::slices::{part, part_mut, split_mut};
+
 /// Five lines of an image: a row with the two above it and the two below.
 pub type Rows5<'a> = [&'a [u8]; 5];
 
@@ -10,24 +12,63 @@ pub(in crate::matching) const BAND: usize = LOOK_AHEAD + 1;
 /// Rows of finished answers: the last one and the four above it that the uncertainty looks at.
 pub(in crate::matching) const HISTORY: usize = 5;
 
+/// A row whose slots are those of the row above row `y`.
+pub(in crate::matching) const fn above(y: usize) -> usize {
+    y + BAND - 1
+}
+
+/// A row whose slots are those of the row that waits for `newest`, [`LOOK_AHEAD`] above it.
+pub(in crate::matching) const fn waiting(newest: usize) -> usize {
+    newest + BAND - LOOK_AHEAD
+}
+
 /// Row `slot` of a ring of rows `width` pixels wide.
 // A stage asks for a row or two: once in flash it is smaller, and no slower to speak of.
 #[cfg_attr(all(target_pointer_width = "32", not(stereopsis_dsp)), inline(never))]
 pub(in crate::matching) fn row<T>(ring: &[T], slot: usize, width: usize) -> &[T] {
-    let row = ring.get(slot * width..).and_then(|rows| rows.get(..width));
-    debug_assert!(row.is_some(), "row {slot} of {width} is outside of a ring of {}", ring.len());
-    row.unwrap_or(&[])
+    part(ring, slot * width..(slot + 1) * width)
 }
 
 /// Mutable access to row `slot` of a ring of rows `width` pixels wide.
 #[cfg_attr(all(target_pointer_width = "32", not(stereopsis_dsp)), inline(never))]
 pub(in crate::matching) fn row_mut<T>(ring: &mut [T], slot: usize, width: usize) -> &mut [T] {
-    debug_assert!(ring.len() >= (slot + 1) * width, "row {slot} of {width} is outside of a ring");
-    ring.get_mut(slot * width..).and_then(|rows| rows.get_mut(..width)).unwrap_or_default()
+    part_mut(ring, slot * width..(slot + 1) * width)
 }
 
-/// The first `count` of a slice.
-pub(in crate::matching) fn first<T>(slice: &mut [T], count: usize) -> &mut [T] {
-    debug_assert!(slice.len() >= count, "{count} of {}", slice.len());
-    slice.get_mut(..count).unwrap_or_default()
+/// A ring of `ROWS` rows, each `width` pixels wide.
+pub struct Ring<'a, T, const ROWS: usize> {
+    rows: &'a mut [T],
+    width: usize,
+}
+
+impl<'a, T, const ROWS: usize> Ring<'a, T, ROWS> {
+    /// A ring in the first part of a memory.
+    #[inline(always)]
+    pub(in crate::matching) fn new(memory: &'a mut [T], width: usize) -> Self {
+        Self { rows: part_mut(memory, ..ROWS * width), width }
+    }
+
+    /// Row `y` of the frame, which the ring must still hold.
+    #[inline(always)]
+    pub(in crate::matching) fn row(&self, y: usize) -> &[T] {
+        row(self.rows, y % ROWS, self.width)
+    }
+
+    /// Mutable access to row `y` of the frame.
+    #[inline(always)]
+    pub(in crate::matching) fn row_mut(&mut self, y: usize) -> &mut [T] {
+        row_mut(self.rows, y % ROWS, self.width)
+    }
+
+    /// Mutable access to row `y` of the frame, and access to the one above it.
+    pub(in crate::matching) fn row_and_above(&mut self, y: usize) -> (&mut [T], &[T]) {
+        let slot = y % ROWS;
+        let (before, rest) = split_mut(self.rows, slot * self.width);
+        let (here, after) = split_mut(rest, self.width);
+        let above = match slot.checked_sub(1) {
+            Some(above) => row(before, above, self.width),
+            None => row(after, ROWS - 2, self.width),
+        };
+        (here, above)
+    }
 }

@@ -4,7 +4,9 @@
 //! integers without padding, any value of which is valid, so that each is a view of the others.
 #![allow(unsafe_code)]
 
+use super::notes::Note;
 use super::winner::Winner;
+use crate::units::PixelFlags;
 
 /// A type that is nothing but an integer: without padding, and valid whatever its bits are.
 ///
@@ -21,6 +23,10 @@ unsafe impl Plain for u16 {}
 unsafe impl Plain for u32 {}
 // SAFETY: a `u32` (`repr(transparent)`).
 unsafe impl Plain for Winner {}
+// SAFETY: a `u8` (`repr(transparent)`), any of whose values `PixelFlags::from_bits` takes.
+unsafe impl Plain for PixelFlags {}
+// SAFETY: a `u8` (`repr(transparent)`).
+unsafe impl Plain for Note {}
 
 /// The part of `numbers` that stands at places of `To` and is a whole number of them: all of it where the
 /// slice begins at such a place and has whole ones.

@@ -1,6 +1,7 @@
 //! The winner of each pixel, and what is asked of the second best (winner-take-all).
 #![allow(dead_code, reason = "each target uses the form that suits it")]
 
+use super::slices::{part_mut, split_mut};
 use super::views::view_mut;
 pub(in crate::matching) use super::winner::Winner;
 use crate::units::PixelFlags;
@@ -13,16 +14,15 @@ pub(in crate::matching) const BESIDE: usize = 2;
 pub(in crate::matching) struct Select<'a> {
     /// Disparities searched.
     pub disparities: usize,
-    /// The best disparity of each pixel; left of the smallest disparity they mean nothing. Kernels in
-    /// vectors leave them as [`WinnerRows`].
-    pub winners: &'a mut [Winner],
+    /// The best disparity of each pixel; left of the smallest disparity they mean nothing.
+    pub winners: Winners<'a>,
     /// What is asked of the others.
     pub unique: Unique<'a>,
 }
 
 /// What is asked of the second best: the least cost of the candidates over two px beside the winner,
 /// `u8::MAX` where there is none. A kernel that is asked for nothing ([`Unique::is_asked`]) need not look for
-/// it; [`Unique::judge`] and [`Unique::starting_at`] look where it is asked for.
+/// it; [`Unique::check`] and [`Unique::checks_from`] look where it is asked for.
 pub(in crate::matching) struct Unique<'a> {
     share: Share,
     /// The flags of pixels whose second best is too near:
@@ -62,34 +62,39 @@ impl<'a> Unique<'a> {
         !self.flags.is_empty() | !self.margins.is_empty()
     }
 
-    /// Judges the pixel in column `x`: it is given the winner's cost, and what finds the second best, which
-    /// is asked where it is wanted.
+    /// Checks the pixel in column `x`, given the winner's cost and what finds the second best, which is
+    /// called where it is wanted.
     #[inline(always)]
-    pub fn judge(&mut self, x: usize, cost: u8, second: impl FnOnce() -> u8) {
+    pub fn check(&mut self, x: usize, cost: u8, second: impl FnOnce() -> u8) {
         if self.is_asked() {
             let second = second();
-            judge(self.share, (self.flags.get_mut(x), self.margins.get_mut(x)), cost, second);
+            check_second(self.share, (self.flags.get_mut(x), self.margins.get_mut(x)), cost, second);
         }
     }
 
-    /// Judges the pixels from column `begin` on, one after the other: see [`Self::judge`].
+    /// [`Self::check`] for the pixels from column `begin` on, one after the other.
     #[inline(always)]
-    pub fn starting_at(self, begin: usize) -> impl FnMut(u8, &mut dyn FnMut() -> u8) {
+    pub fn checks_from(self, begin: usize) -> impl FnMut(u8, &mut dyn FnMut() -> u8) {
         let (share, is_asked) = (self.share, self.is_asked());
         let mut flags = self.flags.get_mut(begin..).unwrap_or_default().iter_mut();
         let mut margins = self.margins.get_mut(begin..).unwrap_or_default().iter_mut();
         move |cost, second| {
             if is_asked {
                 let second = second();
-                judge(share, (flags.next(), margins.next()), cost, second);
+                check_second(share, (flags.next(), margins.next()), cost, second);
             }
         }
     }
 }
 
-/// Says of a pixel what is asked.
+/// Flags a pixel whose second best is too near, and gives its margin.
 #[inline(always)]
-fn judge(share: Share, (flags, margin): (Option<&mut PixelFlags>, Option<&mut u8>), cost: u8, second: u8) {
+fn check_second(
+    share: Share,
+    (flags, margin): (Option<&mut PixelFlags>, Option<&mut u8>),
+    cost: u8,
+    second: u8,
+) {
     if let Some(flags) = flags {
         *flags = flags.union(PixelFlags::AMBIGUOUS.when(share.is_ambiguous(cost, second)));
     }
@@ -125,8 +130,42 @@ pub(in crate::matching) fn beside(
     }
 }
 
-/// Winners as the kernels in vectors leave them: a row of bytes for each part, one after the other in the
-/// same memory.
+/// The winners of a row, four bytes for each pixel, in the form that suits the target: words, or a row of
+/// bytes for each part. What finds them and what makes answers of them are of one target.
+pub(in crate::matching) struct Winners<'a>(pub(super) &'a mut [Winner]);
+
+impl<'a> Winners<'a> {
+    /// Pixels of the row.
+    pub fn width(&self) -> usize {
+        self.0.len()
+    }
+
+    /// A word for each pixel.
+    #[inline(always)]
+    pub fn words(self) -> &'a mut [Winner] {
+        self.0
+    }
+
+    /// All rows of bytes, one after the other.
+    #[inline(always)]
+    pub fn bytes(&mut self) -> &mut [u8] {
+        view_mut::<Winner, u8>(self.0)
+    }
+
+    /// A row of bytes for each part, from column `begin` on.
+    #[inline(always)]
+    pub fn rows(self, begin: usize) -> WinnerRows<'a> {
+        let width = self.0.len();
+        let (below, rest) = split_mut(view_mut::<Winner, u8>(self.0), width);
+        let (costs, rest) = split_mut(rest, width);
+        let (above, disparities) = split_mut(rest, width);
+        let [below, costs, above, disparities] =
+            [below, costs, above, disparities].map(|row| part_mut(row, begin..));
+        WinnerRows { below, costs, above, disparities }
+    }
+}
+
+/// The parts of a row's winners.
 pub(in crate::matching) struct WinnerRows<'a> {
     pub below: &'a mut [u8],
     pub costs: &'a mut [u8],
@@ -134,14 +173,21 @@ pub(in crate::matching) struct WinnerRows<'a> {
     pub disparities: &'a mut [u8],
 }
 
-impl<'a> WinnerRows<'a> {
-    /// The rows from column `begin` on.
-    pub fn of(winners: &'a mut [Winner], begin: usize) -> Self {
-        let width = winners.len().max(1);
-        let mut rows = view_mut::<Winner, u8>(winners)
-            .chunks_exact_mut(width)
-            .map(|row| row.get_mut(begin..).unwrap_or_default());
-        let mut row = || rows.next().unwrap_or_default();
-        Self { below: row(), costs: row(), above: row(), disparities: row() }
+/// Of each answer of a row, how many its surface has along the row, in the form that suits the target:
+/// half-words, or bytes at the front. What counts them and what sums them up are of one target.
+pub(in crate::matching) struct Lengths<'a>(pub(super) &'a mut [u16]);
+
+impl<'a> Lengths<'a> {
+    /// A half-word for each pixel.
+    #[inline(always)]
+    pub fn half_words(self) -> &'a mut [u16] {
+        self.0
+    }
+
+    /// A byte for each pixel, the length as far as it holds it.
+    #[inline(always)]
+    pub fn bytes(self) -> &'a mut [u8] {
+        let width = self.0.len();
+        part_mut(view_mut::<u16, u8>(self.0), ..width)
     }
 }

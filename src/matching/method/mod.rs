@@ -13,7 +13,8 @@ pub use window::{Block, Fast};
 
 use super::backend::{Backend, MethodParameters};
 use super::config::{Checks, Config};
-use super::memory::winners::Winner;
+use super::memory::rings::{BAND, HISTORY, Ring};
+use super::memory::workspace::RowWorkspace;
 use super::memory::{Bytes, Memory, Rows5};
 use super::penalties::Penalties;
 #[cfg(doc)]
@@ -61,7 +62,7 @@ pub trait Costs: Sized {
     /// Takes row `y` of both images, before [`Self::select`].
     fn enter(frame: &mut Frame<'_>, y: usize, lines: [&Rows5<'_>; 2]);
     /// Adds row `bottom` to the costs, while there are `lines`, and selects the winners of `row`, where there
-    /// is one. Called for every row: after it, the slices of the frame stand for what they say.
+    /// is one. Called for every row: after it, the workspace is divided.
     fn select(frame: &mut Frame<'_>, bottom: usize, lines: Option<[&Rows5<'_>; 2]>, row: Option<usize>);
 }
 
@@ -81,18 +82,17 @@ pub struct Frame<'a> {
     pub(super) config: &'a Config,
     pub(super) codes: &'a mut [u8],
     pub(super) columns: &'a mut [u8],
-    pub(super) workspace: &'a mut [u32],
+    pub(super) workspace: RowWorkspace<'a>,
     /// Of each column, whether its pixels in the last 16 rows have texture, and how many in the window's
     /// rows do.
     pub(super) texture: &'a mut [u16],
     pub(super) textured: &'a mut [u8],
-    pub(super) winners: &'a mut [Winner],
-    pub(super) right: &'a mut [u16],
-    /// Of each column, how many answers its surface has along the row.
-    pub(super) lengths: &'a mut [u16],
     /// Of each column, the support of its answers so far.
     pub(super) support: &'a mut [u16],
-    pub(super) band: &'a mut [Disparity],
-    pub(super) flags: &'a mut [PixelFlags],
-    pub(super) finished: &'a mut [Disparity],
+    /// Answers before the speckle filter.
+    pub(super) band: Ring<'a, Disparity, BAND>,
+    /// Flags of the band's rows, or [notes](super::memory::notes).
+    pub(super) flags: Ring<'a, PixelFlags, BAND>,
+    /// Answers after it.
+    pub(super) finished: Ring<'a, Disparity, HISTORY>,
 }

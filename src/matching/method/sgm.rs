@@ -13,10 +13,12 @@ use crate::imaging::{Noise, smooth};
 use crate::matching::backend::{EdgeWork, Guide, Isa, MethodParameters, PathWork, SgmParameters};
 use crate::matching::config::Checks;
 use crate::matching::memory::layout::{COLUMNS_OFF, PathWorkspace, Volumes};
-use crate::matching::memory::rings::{BAND, first, row as slot, row_mut};
+use crate::matching::memory::rings::{row as slot, row_mut};
+use crate::matching::memory::slices::{part, part_mut, split_mut};
 use crate::matching::memory::views::view_mut;
-use crate::matching::memory::winners::{Select, Unique, Winner};
-use crate::matching::memory::{AfterRow, Bytes, Memory, Parts, Rows5, margins};
+use crate::matching::memory::winners::{Select, Unique};
+use crate::matching::memory::workspace::{ForWinners, RowWorkspace};
+use crate::matching::memory::{Bytes, Memory, Parts, Rows5};
 use crate::matching::penalties::Penalties;
 use crate::units::PixelFlags;
 
@@ -135,8 +137,8 @@ pub struct PathMemory<const GUIDES: usize, const VOLUMES: usize, const W: usize,
     /// Costs, paths from above, sums; within edges also the average of the rows above and the costs of the
     /// row below.
     volumes: Volumes<VOLUMES, W, D>,
-    /// Room for the features of a row; when they are done with, for its winners.
-    room: PathWorkspace<W, D>,
+    /// The features of a row; when they are done with, its winners.
+    workspace: PathWorkspace<W, D>,
 }
 
 impl<const GUIDES: usize, const VOLUMES: usize> PathMemory<GUIDES, VOLUMES, 0, 0> {
@@ -151,16 +153,14 @@ impl<const GUIDES: usize, const VOLUMES: usize> PathMemory<GUIDES, VOLUMES, 0, 0
 impl<const GUIDES: usize, const VOLUMES: usize, const W: usize, const D: usize> Memory
     for PathMemory<GUIDES, VOLUMES, W, D>
 {
-    const EMPTY: Self = Self { guides: [[0; W]; GUIDES], volumes: Volumes::ZERO, room: PathWorkspace::ZERO };
+    const EMPTY: Self =
+        Self { guides: [[0; W]; GUIDES], volumes: Volumes::ZERO, workspace: PathWorkspace::ZERO };
 
     fn parts(&mut self, width: usize) -> Parts<'_> {
         Parts {
-            codes: first(self.guides.as_flattened_mut(), GUIDES * width),
+            codes: part_mut(self.guides.as_flattened_mut(), ..GUIDES * width),
             columns: self.volumes.flat(),
-            winners: &mut [],
-            right: &mut [],
-            lengths: &mut [],
-            workspace: self.room.words(),
+            workspace: RowWorkspace::of_rest(self.workspace.words()),
         }
     }
 
@@ -168,17 +168,15 @@ impl<const GUIDES: usize, const VOLUMES: usize, const W: usize, const D: usize> 
         (VOLUMES * width + COLUMNS_OFF) * stride
     }
 
-    // The winners are the first in the room.
-    fn after_winners(&self, width: usize) -> &[u8] {
-        self.room.bytes().get(..width).unwrap_or(&[])
+    // The winners are the first in the workspace.
+    fn confidences(&self, width: usize) -> &[u8] {
+        part(self.workspace.bytes(), ..width)
     }
 
-    // What the right columns keep stands behind the winners, two bytes for each.
-    fn after_row(&mut self, width: usize) -> AfterRow<'_> {
-        let room = view_mut::<u32, u8>(self.room.words());
-        let (winners, masks) = room.split_at_mut_checked(size_of::<Winner>() * width).unwrap_or_default();
-        let (left, right) = first(masks, 2 * width).split_at_mut_checked(width).unwrap_or_default();
-        AfterRow { confidences: first(winners, width), masks: [left, right] }
+    fn finished(&mut self, width: usize) -> RowWorkspace<'_> {
+        let mut workspace = self.parts(width).workspace;
+        workspace.divide(width);
+        workspace
     }
 }
 
@@ -191,9 +189,9 @@ fn select<S: SgmParameters>(
     row: Option<usize>,
 ) {
     let (width, stride, config) = (frame.width, frame.stride, frame.config);
-    let (costs, rest) = frame.columns.split_at_mut_checked(width * stride).unwrap_or_default();
-    let (top, rest) = rest.split_at_mut_checked((width + COLUMNS_OFF) * stride).unwrap_or_default();
-    let (sums, rest) = rest.split_at_mut_checked(width * stride).unwrap_or_default();
+    let (costs, rest) = split_mut(frame.columns, width * stride);
+    let (top, rest) = split_mut(rest, (width + COLUMNS_OFF) * stride);
+    let (sums, rest) = split_mut(rest, width * stride);
     let mut work = PathWork {
         width,
         stride,
@@ -217,10 +215,15 @@ fn select<S: SgmParameters>(
         lines => lines,
     };
     if let Some(lines) = seen {
-        frame.backend.sgm_cost::<S>(&mut work, bottom == 0, lines, view_mut::<u32, u8>(frame.workspace));
+        frame.backend.sgm_cost::<S>(
+            &mut work,
+            bottom == 0,
+            lines,
+            view_mut::<u32, u8>(frame.workspace.costs()),
+        );
     }
     if S::WITHIN_EDGES {
-        let (above, below) = rest.split_at_mut_checked(width * stride).unwrap_or_default();
+        let (above, below) = split_mut(rest, width * stride);
         let inside = |y: &usize| *y < usize::from(config.height);
         let [here, next] = [2, 1].map(|up| bottom.checked_sub(up).filter(inside).map(guide));
         let guides = [here, next, seen.map(|[left, _]| left[2])];
@@ -228,23 +231,14 @@ fn select<S: SgmParameters>(
     }
     // The features are done with, and the smoothed lines.
     work.sums = sums;
-    let room = core::mem::take(&mut frame.workspace);
-    let (winners, room) = room.split_at_mut_checked(width).unwrap_or_default();
-    let (right, room) = room.split_at_mut_checked(width.div_ceil(2)).unwrap_or_default();
-    let (lengths, room) = room.split_at_mut_checked(width.div_ceil(2)).unwrap_or_default();
-    frame.winners = view_mut::<u32, Winner>(winners);
-    frame.right = first(view_mut::<u32, u16>(right), width);
-    frame.lengths = first(view_mut::<u32, u16>(lengths), width);
-    frame.workspace = room;
+    frame.workspace.divide(width);
     if let Some(row) = row {
-        let flags = row_mut(frame.flags, row % BAND, width);
+        let flags = frame.flags.row_mut(row);
         flags.fill(PixelFlags::CLEAR);
         let guide = Guide { here: guide(row), above: row.checked_sub(1).map(guide), row };
-        let select = Select {
-            disparities: work.disparities,
-            winners: frame.winners,
-            unique: Unique::new(config.checks.uniqueness_percent, flags, margins(config, frame.lengths)),
-        };
+        let ForWinners { winners, margins, .. } = frame.workspace.for_winners(config.confidence);
+        let unique = Unique::new(config.checks.uniqueness_percent, flags, margins);
+        let select = Select { disparities: work.disparities, winners, unique };
         frame.backend.sgm_select(work, guide, select);
     }
     if let Some([left, _]) = lines {

@@ -6,10 +6,10 @@ use crate::imaging::Noise;
 use crate::matching::backend::{
     CODES_SHARE_A_BYTE, Isa, MethodParameters, TABLE_WORDS, WindowParameters, WindowWork,
 };
-use crate::matching::memory::rings::{BAND, row as slot, row_mut};
-use crate::matching::memory::views::view_mut;
-use crate::matching::memory::winners::{Select, Unique, Winner};
-use crate::matching::memory::{Bytes, Rows5, WindowMemory, margins};
+use crate::matching::memory::rings::{row as slot, row_mut};
+use crate::matching::memory::winners::{Select, Unique};
+use crate::matching::memory::workspace::ForWinners;
+use crate::matching::memory::{Bytes, Rows5, WindowMemory};
 use crate::units::PixelFlags;
 
 /// Census rows that are held: those under the window and the one that leaves it, row `y` in slot `y % rows`.
@@ -27,7 +27,7 @@ const fn table_words<S: WindowParameters>() -> usize {
     if CODES_SHARE_A_BYTE { most_table_words::<S>() } else { 0 }
 }
 
-/// Words for the tables of any target: a matcher's bytes are told for all processors alike.
+/// Words for the tables of any target: a matcher's bytes are given for all processors alike.
 const fn most_table_words<S: WindowParameters>() -> usize {
     if S::BITS <= 4 { TABLE_WORDS } else { 0 }
 }
@@ -126,17 +126,18 @@ impl WindowParameters for Block {
 /// Turns the lines around row `y` into its codes.
 fn enter<S: WindowParameters>(frame: &mut Frame<'_>, y: usize, lines: [&Rows5<'_>; 2]) {
     let row = row_mut(frame.codes, y % rows::<S>(), code_bytes::<S>() * frame.width);
-    let smoothed;
+    let (smoothed, workspace);
     let lines = if frame.config.noise == Noise::None {
+        workspace = frame.workspace.costs();
         lines
     } else {
-        // The row has no winners yet. Codes look at three rows of the five.
-        let (winners, of_right) = (view_mut::<Winner, u8>(frame.winners), view_mut::<u16, u8>(frame.right));
-        let places = [winners, of_right].map(|row| row.chunks_exact_mut(frame.width.max(1)));
-        smoothed = denoise(lines, &[0, 2, 4], places.into_iter().flatten());
+        // Codes look at three rows of the five.
+        let places;
+        (places, workspace) = frame.workspace.smoothed_lines(frame.width);
+        smoothed = denoise(lines, &[0, 2, 4], places);
         smoothed.each_ref()
     };
-    frame.backend.census::<S>(lines, usize::from(frame.config.min_disparity), frame.workspace, row);
+    frame.backend.census::<S>(lines, usize::from(frame.config.min_disparity), workspace, row);
 }
 
 /// Moves the window; without a `row`, costs are only gathered.
@@ -146,6 +147,16 @@ fn select<S: WindowParameters>(frame: &mut Frame<'_>, bottom: usize, enters: boo
     let (width, config) = (frame.width, frame.config);
     let leaves = bottom.checked_sub(2 * S::RADIUS_Y + 1);
     let codes = |y: usize| slot(frame.codes, y % rows::<S>(), code_bytes::<S>() * width);
+    let (workspace, select) = match row {
+        Some(row) => {
+            let flags = frame.flags.row_mut(row);
+            flags.fill(PixelFlags::CLEAR);
+            let ForWinners { winners, margins, workspace } = frame.workspace.for_winners(config.confidence);
+            let unique = Unique::new(config.checks.uniqueness_percent, flags, margins);
+            (workspace, Some(Select { disparities: usize::from(config.disparities), winners, unique }))
+        }
+        None => (frame.workspace.costs(), None),
+    };
     let work = WindowWork {
         width,
         stride: frame.stride,
@@ -153,17 +164,7 @@ fn select<S: WindowParameters>(frame: &mut Frame<'_>, bottom: usize, enters: boo
         enter: enters.then(|| codes(bottom)),
         leave: leaves.map(codes),
         columns: frame.columns,
-        scratch: frame.workspace,
+        workspace,
     };
-    let flags = row_mut(frame.flags, row.unwrap_or(0) % BAND, width);
-    let margins = margins(config, frame.lengths);
-    let select = row.map(|_| {
-        flags.fill(PixelFlags::CLEAR);
-        Select {
-            disparities: usize::from(config.disparities),
-            winners: frame.winners,
-            unique: Unique::new(config.checks.uniqueness_percent, flags, margins),
-        }
-    });
     frame.backend.window::<S>(work, select);
 }

@@ -2,7 +2,7 @@
 //!
 //! Two things tell right answers from wrong ones: by how much the best of the candidates over two px away
 //! costs more, and how far the answers around it are from it. With the margin `m = second best - winner` of
-//! the costs, up to [`MOST_MARGIN`], the greatest difference `s` to an answer 4 or 8 columns left or right,
+//! the costs, up to [`Note::MOST_MARGIN`], the greatest difference `s` to an answer 4 or 8 columns left or right,
 //! and `t` to one 2 or 4 rows above or below, in 1/32 px,
 //!
 //! `confidence = m + (K - min(s / 4, K)) + (K - min(t / 4, K))`, `K =` [`AGREEMENT`]
@@ -14,75 +14,92 @@
 //! sparsification curve: the share of wrong answers among those that are left, while the least sure ones are
 //! taken away.
 //!
-//! No memory is added for it. While a row waits to be judged, what is refused has flags and what is answered
-//! has a margin, and the two share a byte. Margins come where the kernel leaves them, in the room for the
-//! lengths of surfaces; confidences go to where the row's winners stood.
+//! No memory is added for it: [`notes`](crate::matching::memory::notes) and
+//! [`workspace`](crate::matching::memory::workspace) say where margins and confidences stand.
 
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::config::Config;
+use crate::matching::memory::notes::Note;
+use crate::matching::memory::rings::{LOOK_AHEAD, waiting};
+use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::BESIDE;
+use crate::matching::method::Frame;
 use crate::units::{Disparity, PixelFlags};
 
-/// The largest margin that is told apart: seven bits of the shared byte.
-pub(in crate::matching) const MOST_MARGIN: u8 = 127;
-/// The bit of the shared byte for [`PixelFlags::CEILING`], the one flag that stands with an answer.
-const CEILING: u8 = 0x80;
 /// What agreement with the answers beside it is worth, and as much that with those above and below.
 pub(in crate::matching) const AGREEMENT: u8 = 40;
 /// How far off the answers are that are looked at: columns to each side, rows above and below.
 const COLUMNS: [usize; 2] = [4, 8];
-pub(super) const ROWS: [usize; 2] = [2, 4];
+const ROWS: [usize; 2] = [2, 4];
 /// The confidence of an answer that was filled in, the least: it has no costs of its own.
 const FILLED: u8 = 1;
 
-/// Puts the margins of a row's answers where their flags are.
-#[inline(never)]
-pub(super) fn store_margins(
-    config: &Config,
-    margins: &[u8],
-    answers: &[Disparity],
-    flags: &mut [PixelFlags],
-) {
-    // The columns before may have no candidate over two px from the winner, and so nothing to be sure by.
-    let enough = usize::from(config.min_disparity) + 2 * BESIDE + 1;
-    for (x, flags) in flags.iter_mut().enumerate() {
-        keep_loop();
-        let (Some(&margin), Some(answer)) = (margins.get(x), answers.get(x)) else { return };
-        let margin = if x < enough { 0 } else { margin.min(MOST_MARGIN) };
-        if answer.is_some() {
-            *flags =
-                PixelFlags::from_bits(margin | (CEILING * u8::from(flags.contains(PixelFlags::CEILING))));
-        }
+/// Notes the margins of the winners of `newest`.
+pub(super) fn note_margins(frame: &mut Frame<'_>, newest: usize) {
+    if frame.config.confidence {
+        let notes = view_mut::<PixelFlags, Note>(frame.flags.row_mut(newest));
+        take_margins(frame.config, frame.workspace.margins(), frame.band.row(newest), notes);
     }
 }
 
-/// The rows around one that is to be judged.
-pub(super) struct Neighbours<'a> {
-    /// What is to be judged.
-    pub answers: &'a [Disparity],
-    /// Answers of the row before the median.
-    pub row: &'a [Disparity],
-    /// The rows above and below, [`ROWS`] off; empty where there is none.
-    pub columns: [&'a [Disparity]; 2 * ROWS.len()],
+/// Makes the confidences of the row that waits of its notes, which become flags again.
+pub(super) fn make_confidences(frame: &mut Frame<'_>, newest: usize) {
+    let Some(here) = newest.checked_sub(LOOK_AHEAD).filter(|_| frame.config.confidence) else { return };
+    let row = frame.band.row(here);
+    let answers = if frame.config.checks.median { frame.finished.row(here) } else { row };
+    let [near, far] = ROWS;
+    let above = |off: usize| here.checked_sub(off).map_or(&[][..], |y| frame.finished.row(y));
+    let below = |off: usize| frame.band.row(here + off);
+    let columns = [above(near), above(far), below(near), below(far)];
+    let notes = view_mut::<PixelFlags, Note>(frame.flags.row_mut(here));
+    let neighbours = Neighbours { answers, row, columns };
+    confidences(&neighbours, notes, frame.workspace.confidences());
 }
 
-/// Makes confidences of the margins of a row, and gives its flags back.
+/// Gives the row that waits its last confidences: none without an answer, the least where one was filled in.
+pub(super) fn finish_confidences(frame: &mut Frame<'_>, newest: usize) {
+    if frame.config.confidence {
+        let here = waiting(newest);
+        let (answers, flags) = (frame.finished.row(here), frame.flags.row(here));
+        finish(answers, flags, frame.workspace.confidences());
+    }
+}
+
+/// Notes the margins of a row's answers.
 #[inline(never)]
-pub(super) fn confidences(neighbours: &Neighbours<'_>, flags: &mut [PixelFlags], confidences: &mut [u8]) {
+fn take_margins(config: &Config, margins: &[u8], answers: &[Disparity], notes: &mut [Note]) {
+    // The columns before may have no candidate over two px from the winner, and so nothing to be sure by.
+    let enough = usize::from(config.min_disparity) + 2 * BESIDE + 1;
+    for (x, note) in notes.iter_mut().enumerate() {
+        keep_loop();
+        let (Some(&margin), Some(&answer)) = (margins.get(x), answers.get(x)) else { return };
+        note.take(if x < enough { 0 } else { margin }, answer);
+    }
+}
+
+/// The rows around one whose confidences are made.
+struct Neighbours<'a> {
+    /// Its answers.
+    answers: &'a [Disparity],
+    /// Answers of the row before the median.
+    row: &'a [Disparity],
+    /// The rows above and below, [`ROWS`] off; empty where there is none.
+    columns: [&'a [Disparity]; 2 * ROWS.len()],
+}
+
+/// Makes confidences of the notes of a row, which become flags again.
+#[inline(never)]
+fn confidences(neighbours: &Neighbours<'_>, notes: &mut [Note], confidences: &mut [u8]) {
     for (x, confidence) in confidences.iter_mut().enumerate() {
         keep_loop();
-        let (Some(flags), Some(here)) = (flags.get_mut(x), neighbours.answers.get(x)) else { return };
-        let shared = flags.bits();
+        let (Some(note), Some(here)) = (notes.get_mut(x), neighbours.answers.get(x)) else { return };
         // Beside the row there is no answer, which says nothing.
         let beside = COLUMNS.map(|off| [x.wrapping_sub(off), x + off]);
         let s =
             beside.as_flattened().iter().fold(0, |most, &x| apart(*here, neighbours.row.get(x)).max(most));
         let t = neighbours.columns.iter().fold(0, |most, row| apart(*here, row.get(x)).max(most));
         let agreement = |apart: u16| AGREEMENT.saturating_sub((apart / 4).min(255) as u8);
-        *confidence = (shared & MOST_MARGIN) + agreement(s) + agreement(t);
-        if here.is_some() {
-            *flags = PixelFlags::CEILING.when(shared & CEILING != 0);
-        }
+        *confidence = note.give_back(*here) + agreement(s) + agreement(t);
     }
 }
 
@@ -92,9 +109,9 @@ fn apart(here: Disparity, other: Option<&Disparity>) -> u16 {
     other.map_or(0, |other| if other.is_some() { other.raw().abs_diff(here.raw()) } else { 0 })
 }
 
-/// Says of a row that is judged and filled which of its pixels have no answer of their own.
+/// Says of a finished row which of its pixels have no answer of their own.
 #[inline(never)]
-pub(super) fn finish(finished: &[Disparity], flags: &[PixelFlags], confidences: &mut [u8]) {
+fn finish(finished: &[Disparity], flags: &[PixelFlags], confidences: &mut [u8]) {
     for (x, confidence) in confidences.iter_mut().enumerate() {
         keep_loop();
         let (Some(answer), Some(flags)) = (finished.get(x), flags.get(x)) else { return };

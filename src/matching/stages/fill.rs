@@ -10,11 +10,31 @@
 //! Two passes.
 
 use crate::matching::backend::loops::{keep_loop, keep_scalar_loop};
+use crate::matching::memory::rings::waiting;
+use crate::matching::method::Frame;
 use crate::units::{Disparity, PixelFlags};
+
+/// Takes what was filled out of the row that came out last: the history keeps it as it was decided.
+pub(super) fn undo_fill(frame: &mut Frame<'_>, newest: usize) {
+    if frame.config.checks.fill_pixels > 0 {
+        // Its slots are those of the newest row.
+        undo(frame.finished.row_mut(newest), frame.flags.row(newest));
+    }
+}
+
+/// Closes the small gaps of the row that waits.
+pub(super) fn fill_gaps(frame: &mut Frame<'_>, newest: usize) {
+    let checks = &frame.config.checks;
+    if checks.fill_pixels > 0 {
+        let here = waiting(newest);
+        let (answers, flags) = (frame.finished.row_mut(here), frame.flags.row_mut(here));
+        fill(answers, flags, checks.fill_pixels, checks.fill_step);
+    }
+}
 
 /// Fills the gaps of up to `most` pixels whose sides differ by up to `step`.
 #[inline(never)]
-pub(super) fn fill(answers: &mut [Disparity], flags: &mut [PixelFlags], most: u8, step: Disparity) {
+fn fill(answers: &mut [Disparity], flags: &mut [PixelFlags], most: u8, step: Disparity) {
     // On small cores the work is the same for every picture. Larger processors see at one look that a group
     // has no gap.
     if cfg!(target_pointer_width = "64") {
@@ -108,7 +128,7 @@ fn is_whole(answers: &[Disparity]) -> bool {
 
 /// Takes out what was filled: no answer again. The flags stay as they are.
 #[inline(never)]
-pub(super) fn undo(answers: &mut [Disparity], flags: &[PixelFlags]) {
+fn undo(answers: &mut [Disparity], flags: &[PixelFlags]) {
     for (answer, flags) in answers.iter_mut().zip(flags) {
         keep_scalar_loop();
         *answer = Disparity::from_raw(answer.raw() | if_filled(*flags) as u16);

@@ -6,30 +6,17 @@
 //! a second time, and on real pairs the check refuses fewer right answers than one against the right image's
 //! own winners. The work is the same for every row.
 
-use crate::matching::backend::{Backend, Isa, MethodParameters, Rules, WinnerWork};
-use crate::matching::config::Config;
-use crate::matching::memory::winners::Winner;
+use crate::matching::backend::{Isa, Rules, WinnerWork};
+use crate::matching::memory::slices::split_mut;
+use crate::matching::memory::workspace::ForAnswers;
+use crate::matching::method::{Frame, Method};
 use crate::units::{Disparity, PixelFlags};
 
-/// A row of winners, and the workspace to make answers of them. The first two slices have the row's width.
-pub(super) struct Winners<'a> {
-    /// The winners.
-    pub winners: &'a mut [Winner],
-    /// Workspace for what each right column keeps.
-    pub right: &'a mut [u16],
-    /// Workspace of two bytes a pixel.
-    pub workspace: &'a mut [u32],
-}
-
-/// Makes answers of the winners, none of those that the checks contradict, and says why: of `flags` those
-/// stay that are set already.
-pub(super) fn left_right<P: MethodParameters>(
-    backend: Backend,
-    config: &Config,
-    row: Winners<'_>,
-    answers: &mut [Disparity],
-    flags: &mut [PixelFlags],
-) {
+/// Turns the winners of `newest` into answers, none of those that the checks contradict, and says why: flags
+/// that are set already stay.
+pub(super) fn make_answers<S: Method>(frame: &mut Frame<'_>, newest: usize) {
+    let (answers, flags) = (frame.band.row_mut(newest), frame.flags.row_mut(newest));
+    let config = frame.config;
     let checks = &config.checks;
     let rules = Rules {
         min_disparity: config.min_disparity,
@@ -45,10 +32,11 @@ pub(super) fn left_right<P: MethodParameters>(
     // Left of here no pixel has a candidate.
     let width = answers.len();
     let begin = usize::from(config.min_disparity).min(width);
-    let (outside, answers) = answers.split_at_mut_checked(begin).unwrap_or_default();
+    let (outside, answers) = split_mut(answers, begin);
     outside.fill(Disparity::NONE);
-    let (outside, flags) = flags.split_at_mut_checked(begin).unwrap_or_default();
+    let (outside, flags) = split_mut(flags, begin);
     outside.fill(PixelFlags::OUTSIDE);
-    let Winners { winners, right, workspace } = row;
-    backend.left_right::<P>(WinnerWork { winners, right, workspace, begin }, &rules, answers, flags);
+    let ForAnswers { winners, right, workspace } = frame.workspace.for_answers();
+    let work = WinnerWork { winners, right, workspace, begin };
+    frame.backend.left_right::<S>(work, &rules, answers, flags);
 }

@@ -1,15 +1,29 @@
-//! Answers taken away where a camera did not see: outside of the valid area of a rectified image.
+//! Answers taken away where a camera did not see: outside of the valid area of a rectified image, or where a
+//! line was lost.
 
 use crate::units::{Disparity, PixelFlags};
 
-/// A row that is out. All slices have the row's width, but where no confidences were asked for.
+/// Row `index`, which is out. All slices have its width, but where no confidences were asked for.
 pub(in crate::matching) struct Masked<'a> {
+    pub index: u16,
     pub answers: &'a mut [Disparity],
     pub flags: &'a mut [PixelFlags],
     pub confidences: &'a mut [u8],
 }
 
 impl Masked<'_> {
+    /// Flags the row as one that rests on a lost line, and takes its answers away unless `keeps_answers`.
+    pub(in crate::matching) fn mark_damaged(self, keeps_answers: bool) {
+        for flags in self.flags {
+            let others = if keeps_answers { *flags } else { flags.without(PixelFlags::FILLED) };
+            *flags = others.union(PixelFlags::DAMAGED);
+        }
+        if !keeps_answers {
+            self.answers.fill(Disparity::NONE);
+            self.confidences.fill(0);
+        }
+    }
+
     /// Takes away what the masks say was not seen. In the right image an answer's partner is the nearest
     /// pixel; one left of it was not seen.
     pub(in crate::matching) fn take_away(self, left: &[u8], right: &[u8]) {
@@ -50,13 +64,14 @@ mod tests {
             PixelFlags::CLEAR,
         ];
         let mut confidences = [0, 9, 9, 9, 9];
-        let row = Masked { answers: &mut answers, flags: &mut flags, confidences: &mut confidences };
+        let row =
+            Masked { index: 0, answers: &mut answers, flags: &mut flags, confidences: &mut confidences };
         row.take_away(&[1, 1, 1, 1, 1], &[1, 0, 1, 1, 1]);
         let outside = PixelFlags::OUTSIDE;
         assert_eq!(answers, [NONE, NONE, d(48), d(47), NONE]);
         assert_eq!(flags, [PixelFlags::SPECKLE, outside, PixelFlags::FILLED, PixelFlags::CEILING, outside]);
         assert_eq!(confidences, [0, 0, 9, 9, 0]);
-        let row = Masked { answers: &mut answers, flags: &mut flags, confidences: &mut [] };
+        let row = Masked { index: 0, answers: &mut answers, flags: &mut flags, confidences: &mut [] };
         row.take_away(&[0, 1, 1, 0, 1], &[1; 5]);
         assert_eq!(answers, [NONE, NONE, d(48), NONE, NONE]);
         assert_eq!(flags, [outside, outside, PixelFlags::FILLED, outside, outside]);

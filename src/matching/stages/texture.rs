@@ -7,10 +7,37 @@
 use crate::matching::backend::MethodParameters;
 use crate::matching::backend::loops::{keep_loop, keep_scalar_loop};
 use crate::matching::config::Checks;
+use crate::matching::memory::Rows5;
+use crate::matching::memory::slices::part;
+use crate::matching::method::{Frame, Method};
 use crate::units::PixelFlags;
 
+/// Forgets the frame before.
+pub(super) fn begin(frame: &mut Frame<'_>) {
+    frame.texture.fill(0);
+    frame.textured.fill(0);
+}
+
+/// Takes the texture of the row that comes in.
+pub(super) fn take_texture<S: Method>(frame: &mut Frame<'_>, lines: Option<[&Rows5<'_>; 2]>) {
+    let checks = &frame.config.checks;
+    if checks.texture_pixels > 0 {
+        let line = lines.map(|[left, _]| part(left[2], ..frame.width));
+        Texture { history: frame.texture, counts: frame.textured }.push::<S>(line, checks);
+    }
+}
+
+/// Flags the answers of `newest` whose window has too little texture.
+pub(super) fn flag_untextured<S: Method>(frame: &mut Frame<'_>, newest: usize) {
+    let pixels = frame.config.checks.texture_pixels;
+    if pixels > 0 {
+        let texture = Texture { history: frame.texture, counts: frame.textured };
+        texture.mark::<S>(u16::from(pixels), frame.flags.row_mut(newest));
+    }
+}
+
 /// Rows of texture bits: bit `k` of a column's word is the row `k` before the newest.
-pub(in crate::matching) struct Texture<'a> {
+struct Texture<'a> {
     /// One word for each column.
     pub history: &'a mut [u16],
     /// Textured pixels of each column in the window's rows.
@@ -18,14 +45,8 @@ pub(in crate::matching) struct Texture<'a> {
 }
 
 impl Texture<'_> {
-    /// Forgets all rows.
-    pub(in crate::matching) fn clear(self) {
-        self.history.fill(0);
-        self.counts.fill(0);
-    }
-
     /// Moves one row on; `line` is the new row, or `None` below the image.
-    pub(in crate::matching) fn push<S: MethodParameters>(&mut self, line: Option<&[u8]>, checks: &Checks) {
+    fn push<S: MethodParameters>(&mut self, line: Option<&[u8]>, checks: &Checks) {
         let go_on = |word: &mut u16, count: &mut u8, textured: bool| {
             *count = *count - ((*word >> (2 * S::RADIUS_Y)) as u8 & 1) + u8::from(textured);
             *word = *word << 1 | u16::from(textured);
@@ -59,7 +80,7 @@ impl Texture<'_> {
     }
 
     /// Flags the pixels of the window's centre row whose window has fewer than `pixels` textured ones.
-    pub(in crate::matching) fn mark<S: MethodParameters>(&self, pixels: u16, flags: &mut [PixelFlags]) {
+    fn mark<S: MethodParameters>(&self, pixels: u16, flags: &mut [PixelFlags]) {
         // Columns outside the image have no texture; left of it the place wraps.
         let column = |x: usize| self.counts.get(x).map_or(0, |&count| u16::from(count));
         let mut count: u16 = (0..S::RADIUS_X).map(column).sum();

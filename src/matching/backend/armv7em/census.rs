@@ -4,6 +4,7 @@
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::portable::census::{census_of_bytes, codes};
 use crate::matching::memory::Rows5;
+use crate::matching::memory::slices::{part, part_mut};
 use core::arch::asm;
 
 /// The fewest pixels of a row that has whole words at both ends.
@@ -14,10 +15,10 @@ const FEWEST: usize = 8;
 #[inline(never)]
 pub(super) fn census<S: WindowParameters>(rows: &Rows5<'_>, of_right: bool, out: &mut [u8]) {
     let width = out.len();
-    let lines = [0, 2, 4].map(|row: usize| rows.get(row).and_then(|r| r.get(..width)).unwrap_or(&[]));
+    let lines = [0, 2, 4].map(|row: usize| part(rows[row], ..width));
     if width < FEWEST || lines.iter().any(|line| line.len() < width) {
         let mut codes = [0; FEWEST];
-        let codes = codes.get_mut(..width).unwrap_or_default();
+        let codes = part_mut(&mut codes, ..width);
         census_of_bytes::<S>(lines, codes);
         return out.iter_mut().zip(codes).for_each(|(out, code)| put(*code, of_right, out));
     }
@@ -25,8 +26,8 @@ pub(super) fn census<S: WindowParameters>(rows: &Rows5<'_>, of_right: bool, out:
         // The last group is moved back to end with the inner pixels.
         let last = inner.len() - 4;
         for (from, to) in [(0, inner.len() & !3), (last, inner.len())] {
-            let lines = lines.map(|line| line.get(from..).unwrap_or(&[]));
-            let out = inner.get_mut(from..to).unwrap_or_default();
+            let lines = lines.map(|line| part(line, from..));
+            let out = part_mut(inner, from..to);
             if of_right {
                 plus4_of_right(lines, out);
             } else if S::BITS <= 4 {

@@ -13,6 +13,7 @@ use super::{Rows, rows};
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::work::STEP;
 use crate::matching::memory::layout::OUTSIDE;
+use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::views::view;
 
 /// Candidates that tables serve at a time, at most.
@@ -24,10 +25,11 @@ const MOST: usize = 64;
 pub(super) fn update_by_tables<const STRIDE: usize>(
     row: &Rows<'_>,
     begin: usize,
-    scratch: &mut [u32],
+    workspace: &mut [u32],
     columns: &mut [u32],
 ) {
-    let Some((tables, scratch)) = scratch.split_at_mut_checked(size_of::<[Table; 2]>() / size_of::<u32>())
+    let Some((tables, workspace)) =
+        workspace.split_at_mut_checked(size_of::<[Table; 2]>() / size_of::<u32>())
     else {
         return;
     };
@@ -35,7 +37,7 @@ pub(super) fn update_by_tables<const STRIDE: usize>(
     let (Some(tables), Some(any)) = (tables, row.enter.or(row.leave)) else { return };
     // The right codes alone.
     let [new, old] =
-        reversed(row, [row.enter, row.leave].map(|codes| codes.unwrap_or(&[])), 0xf0f0_f0f0, scratch);
+        reversed(row, [row.enter, row.leave].map(|codes| codes.unwrap_or(&[])), 0xf0f0_f0f0, workspace);
     // Nothing differs in a row that is not there.
     if row.enter.is_none() {
         tables::fill(&mut tables[0], 0);
@@ -48,7 +50,7 @@ pub(super) fn update_by_tables<const STRIDE: usize>(
     let words = stride / 4;
     // Beside the columns that windows have is what windows beyond the ends have: of them nothing differs.
     for outside in [begin, OUTSIDE + row.width] {
-        let sums = columns.get_mut(outside * words..(outside + OUTSIDE) * words).unwrap_or_default();
+        let sums = part_mut(columns, outside * words..(outside + OUTSIDE) * words);
         // They are all the same, and whole steps of them.
         let sum = add(sums.first().copied().unwrap_or(0), 4 * ONE);
         sums.as_chunks_mut().0.iter_mut().for_each(|sums| *sums = [sum; STEP / 4]);
@@ -59,15 +61,13 @@ pub(super) fn update_by_tables<const STRIDE: usize>(
             let piece = from..row.width.min(from + LINE - half);
             let first = row.width - piece.end + chunk;
             if row.enter.is_some() {
-                tables::make(&mut tables[0], new.get(first..).unwrap_or(&[]), half, piece.len());
+                tables::make(&mut tables[0], part(new, first..), half, piece.len());
             }
             if row.leave.is_some() {
-                tables::make_equal(&mut tables[1], old.get(first..).unwrap_or(&[]), half, piece.len());
+                tables::make_equal(&mut tables[1], part(old, first..), half, piece.len());
             }
-            let codes =
-                [row.enter, row.leave].map(|codes| codes.unwrap_or(any).get(piece.clone()).unwrap_or(&[]));
-            let columns =
-                columns.get_mut((OUTSIDE + from) * words..(OUTSIDE + piece.end) * words).unwrap_or_default();
+            let codes = [row.enter, row.leave].map(|codes| part(codes.unwrap_or(any), piece.clone()));
+            let columns = part_mut(columns, (OUTSIDE + from) * words..(OUTSIDE + piece.end) * words);
             match STRIDE {
                 16 => rows::by_tables_16(tables, codes, columns.as_chunks_mut().0),
                 32 => rows::by_tables_32(tables, codes, columns.as_chunks_mut().0),
@@ -111,20 +111,19 @@ fn add_costs(
 pub(super) fn update<S: WindowParameters, const STRIDE: usize>(
     row: &Rows<'_>,
     begin: usize,
-    scratch: &mut [u32],
+    workspace: &mut [u32],
     columns: &mut [u32],
 ) {
     // Never none.
     let stride = if STRIDE > 0 { STRIDE } else { row.stride.max(STEP) };
     let halves = [row.enter, row.leave].map(|codes| codes.map(|row| row.split_at(row.len() / 2)));
     let [new, old] =
-        reversed(row, halves.map(|row| row.map_or(&[][..], |(_, right)| right)), u32::MAX, scratch);
+        reversed(row, halves.map(|row| row.map_or(&[][..], |(_, right)| right)), u32::MAX, workspace);
     // The codes of a row that is not there are 0 on both sides.
     let lefts = [halves[0].map_or(new, |(left, _)| left), halves[1].map_or(old, |(left, _)| left)];
-    let [enters, leaves] = lefts.map(|left| left.get(begin..).unwrap_or(&[]));
+    let [enters, leaves] = lefts.map(|left| part(left, begin..));
     let words = stride / 4;
-    let columns =
-        columns.get_mut((OUTSIDE + begin) * words..(OUTSIDE + row.width) * words).unwrap_or_default();
+    let columns = part_mut(columns, (OUTSIDE + begin) * words..(OUTSIDE + row.width) * words);
     match STRIDE {
         16 => rows::by_bits_16([enters, leaves], [new, old], columns.as_chunks_mut().0),
         32 => rows::by_bits_32([enters, leaves], [new, old], columns.as_chunks_mut().0),
@@ -141,7 +140,7 @@ fn reversed<'a>(row: &Rows<'_>, right: [&[u8]; 2], mask: u32, room: &'a mut [u32
     let words = ((row.width + row.stride).div_ceil(4) + 2).min(room.len() / 2);
     let Some((new, old)) = room.split_at_mut_checked(words) else { return [&[]; 2] };
     let last = row.width as i32 - 1 - row.min_disparity as i32;
-    for (right, out) in right.into_iter().zip([&mut *new, old.get_mut(..words).unwrap_or_default()]) {
+    for (right, out) in right.into_iter().zip([&mut *new, part_mut(old, ..words)]) {
         rows::reverse(right, last, mask, out);
     }
     [view::<u32, u8>(new), view::<u32, u8>(old)]

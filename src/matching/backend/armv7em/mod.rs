@@ -41,8 +41,9 @@ use super::portable;
 use super::work::{EdgeWork, Guide, PathWork, Rules, STEP, SpeckleWork, WindowWork, WinnerWork};
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::Rows5;
+use crate::matching::memory::slices::{part, split_mut};
 use crate::matching::memory::views::view_mut;
-use crate::matching::memory::winners::Select;
+use crate::matching::memory::winners::{Lengths, Select};
 use crate::units::{Disparity, PixelFlags};
 
 #[allow(unused_imports, reason = "on a Cortex-M55 vectors do the most of it")]
@@ -51,7 +52,7 @@ pub(in crate::matching) use super::plain::columns_begin;
 /// Whether the two codes of a pixel share a byte where codes have up to four bits.
 pub(in crate::matching) const CODES_SHARE_A_BYTE: bool = true;
 
-/// Arm's instructions on four bytes, which the compilation was told that the core has.
+/// Arm's instructions on four bytes, which the core has by what the compiler was given.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(in crate::matching) struct Backend;
 
@@ -120,7 +121,7 @@ impl Isa for Backend {
         answers: &mut [Disparity],
         flags: &mut [PixelFlags],
     ) {
-        let winners = work.winners.get(work.begin..).unwrap_or(&[]);
+        let winners = part(work.winners.words(), work.begin..);
         left_right::offer(winners, work.right);
         if P::SLANT_COST == 0 {
             left_right::answer(winners, work.right, rules, answers, flags);
@@ -133,12 +134,12 @@ impl Isa for Backend {
     fn smooth(
         self,
         answers: &mut [Disparity],
-        lengths: &mut [u16],
+        lengths: Lengths<'_>,
         workspace: &mut [u16],
         step: Disparity,
         radius: u8,
     ) {
-        smooth::smooth(answers, lengths, workspace, step, radius);
+        smooth::smooth(answers, lengths.bytes(), workspace, step, radius);
     }
 
     #[inline(always)]
@@ -173,7 +174,7 @@ struct Rows<'a> {
 #[inline]
 fn codes_of<S: WindowParameters>([left, right]: [&Rows5<'_>; 2], out: &mut [u8]) {
     if S::BITS > 4 {
-        let (of_left, of_right) = out.split_at_mut_checked(out.len() / 2).unwrap_or_default();
+        let (of_left, of_right) = split_mut(out, out.len() / 2);
         census::census::<S>(left, false, of_left);
         census::census::<S>(right, false, of_right);
         return;
@@ -197,17 +198,17 @@ fn row<S: WindowParameters>(work: WindowWork<'_>, select: Option<Select<'_>>) {
 
 #[inline(always)]
 fn row_of<S: WindowParameters, const STRIDE: usize>(work: WindowWork<'_>, select: Option<Select<'_>>) {
-    let WindowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
+    let WindowWork { width, stride, min_disparity, enter, leave, columns, workspace } = work;
     let rows = Rows { width, stride, min_disparity, enter, leave };
     let columns = view_mut::<u8, u32>(columns);
     // The first column that a window with a candidate has.
     let begin = min_disparity.min(width).saturating_sub(S::RADIUS_X);
     if S::BITS > 4 {
-        columns::update::<S, STRIDE>(&rows, begin, scratch, columns);
+        columns::update::<S, STRIDE>(&rows, begin, workspace, columns);
     } else {
-        columns::update_by_tables::<STRIDE>(&rows, begin, scratch, columns);
+        columns::update_by_tables::<STRIDE>(&rows, begin, workspace, columns);
     }
     if let Some(select) = select {
-        windows::select::<S, STRIDE>(&rows, scratch, columns, select);
+        windows::select::<S, STRIDE>(&rows, workspace, columns, select);
     }
 }

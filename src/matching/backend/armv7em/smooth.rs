@@ -2,7 +2,6 @@
 #![allow(unsafe_code)]
 
 use crate::matching::backend::portable::smooth::RECIPROCALS;
-use crate::matching::memory::views::view_mut;
 use crate::units::Disparity;
 use core::arch::asm;
 
@@ -26,12 +25,11 @@ static COUNTS: [u32; MOST + 1] = {
 #[inline(never)]
 pub(super) fn smooth(
     answers: &mut [Disparity],
-    lengths: &mut [u16],
+    lengths: &mut [u8],
     sums: &mut [u16],
     step: Disparity,
     radius: u8,
 ) {
-    let lengths = view_mut::<u16, u8>(lengths);
     if answers.is_empty() || lengths.len() < answers.len() || sums.len() < answers.len() + 1 {
         return;
     }

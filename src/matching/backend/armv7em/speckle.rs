@@ -7,17 +7,16 @@
 
 use crate::matching::backend::portable::speckle::ROWS;
 use crate::matching::backend::work::SpeckleWork;
-use crate::matching::memory::views::view_mut;
 use crate::units::{Disparity, PixelFlags};
 use core::arch::asm;
 
-/// Judges the row with support of at least `pixels`, where a surface changes by up to `step`.
+/// Drops the answers of the row that waited which have a support under `pixels`.
 #[inline(never)]
 pub(super) fn speckle(work: SpeckleWork<'_>) {
     let SpeckleWork { here, above, lengths, kept, flags, answers, finished, step, pixels } = work;
     let count = finished.len();
     let rows = [here.len(), above.len(), kept.len(), flags.len(), answers.map_or(count, <[_]>::len)];
-    let lengths = view_mut::<u16, u8>(lengths);
+    let lengths = lengths.bytes();
     if lengths.len() < count || rows.iter().any(|&length| length < count) {
         return;
     }

@@ -11,6 +11,7 @@
 
 #![allow(unsafe_code)]
 
+use crate::matching::memory::slices::part;
 use crate::matching::memory::views::view;
 use core::arch::asm;
 
@@ -148,5 +149,5 @@ make!(
 #[inline(always)]
 pub(super) fn costs(table: &Table, code: u8, place: usize, count: usize) -> &[u8] {
     let line = table.get(usize::from(code)).map_or(&[][..], |line| view::<u32, u8>(line));
-    line.get(place..).and_then(|line| line.get(..count)).unwrap_or(&[])
+    part(line, place..place + count)
 }

@@ -11,6 +11,7 @@ use super::word::{ONE, min, min_halves, take_less};
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::work::STEP;
 use crate::matching::memory::layout::OUTSIDE;
+use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::views::{view, view_mut};
 use crate::matching::memory::winners::{BESIDE, Select, Winner};
 
@@ -22,7 +23,7 @@ const LANES: u32 = 0x0302_0100;
 #[inline(never)]
 pub(super) fn select<S: WindowParameters, const STRIDE: usize>(
     row: &Rows<'_>,
-    scratch: &mut [u32],
+    workspace: &mut [u32],
     columns: &[u32],
     select: Select<'_>,
 ) {
@@ -31,10 +32,10 @@ pub(super) fn select<S: WindowParameters, const STRIDE: usize>(
     // Never none.
     let words = if STRIDE > 0 { STRIDE / 4 } else { (row.stride / 4).max(1) };
     // Before and after the sums stand those that are no candidate's.
-    let Some(room) = scratch.get_mut(..words + 2) else { return };
+    let Some(room) = workspace.get_mut(..words + 2) else { return };
     // Left of here no pixel has a candidate.
     let begin = row.min_disparity.min(row.width);
-    let from = |column: usize| columns.get(column * words..).unwrap_or(&[]);
+    let from = |column: usize| part(columns, column * words..);
     let first = OUTSIDE + begin - S::RADIUS_X - 1;
     // All columns have the same sum too many, those outside nothing else, and a window as many columns.
     let bias = if S::BITS > 4 { 0 } else { from(first).first().copied().unwrap_or(0) & 0xff };
@@ -43,18 +44,15 @@ pub(super) fn select<S: WindowParameters, const STRIDE: usize>(
     // As far as here pixels have few candidates, and sums of no others.
     let fewest = if in_assembly { fewest_of(STRIDE) } else { 4 * words };
     begin_with::<S>(none, from(first + 1), words, (0, fewest / 4), room);
-    let judged = unique.is_asked();
-    let mut judge = unique.starting_at(begin);
-    let Some((winner, winners)) = winners.get_mut(begin..).and_then(|winners| winners.split_first_mut())
-    else {
-        return;
-    };
+    let is_checked = unique.is_asked();
+    let mut check = unique.checks_from(begin);
+    let Some((winner, winners)) = part_mut(winners.words(), begin..).split_first_mut() else { return };
     // The first pixel has one candidate.
     *winner = at_an_end(room.get(1).map_or(0, |sum| sum << 8 & 0xff00), 1, view::<u32, u8>(room));
-    if judged {
-        judge(winner.cost(), &mut || second_of(0, 1, room));
+    if is_checked {
+        check(winner.cost(), &mut || second_of(0, 1, room));
     }
-    if in_assembly && !judged {
+    if in_assembly && !is_checked {
         let (next, winners) = winners.split_at_mut(winners.len().min(fewest - 1));
         run::<S, STRIDE>(Some((2, true)), room, from(first + 1), next);
         begin_with::<S>(none, from(first + fewest), words, (fewest / 4, words), room);
@@ -73,8 +71,8 @@ pub(super) fn select<S: WindowParameters, const STRIDE: usize>(
         if !in_assembly || !run::<S, STRIDE>(few, room, from(first + x), core::slice::from_mut(winner)) {
             *winner = next_among::<S>(candidates, from(first + x + rows::ACROSS), from(first + x), room);
         }
-        if judged {
-            judge(winner.cost(), &mut || second_of(winner.disparity() as usize, candidates, room));
+        if is_checked {
+            check(winner.cost(), &mut || second_of(winner.disparity() as usize, candidates, room));
         }
     }
 }
@@ -94,9 +92,9 @@ fn begin_with<S: WindowParameters>(
     (from, to): (usize, usize),
     room: &mut [u32],
 ) {
-    let sums = room.get_mut(1 + from..1 + to).unwrap_or_default();
+    let sums = part_mut(room, 1 + from..1 + to);
     for (four, sums) in (from..).step_by(4).zip(sums.as_chunks_mut().0) {
-        let columns = columns.get(four..).unwrap_or(&[]);
+        let columns = part(columns, four..);
         if S::COLUMN_SHIFT == 0 {
             rows::begin_fast(none, columns, words, sums);
         } else {
@@ -149,7 +147,7 @@ fn next_among<S: WindowParameters>(
     room: &mut [u32],
 ) -> Winner {
     let words = room.len() - 2;
-    let sums = room.get_mut(1..=words).unwrap_or_default();
+    let sums = part_mut(room, 1..=words);
     let rounds = candidates / STEP;
     let (mut least, mut places) = rows::slide::<S>(sums, enters, leaves, rounds);
     // Of the next round some lanes are no candidate's, of later ones all.
@@ -209,15 +207,13 @@ fn second_of(disparity: usize, candidates: usize, room: &mut [u32]) -> u8 {
     // is no sum.
     let nearest = 4 + disparity.saturating_sub(BESIDE)..5 + disparity + BESIDE;
     let mut kept = [u8::MAX; 2 * BESIDE + 1];
-    for (kept, sum) in
-        kept.iter_mut().zip(view_mut::<u32, u8>(room).get_mut(nearest.clone()).unwrap_or_default())
-    {
+    for (kept, sum) in kept.iter_mut().zip(part_mut(view_mut::<u32, u8>(room), nearest.clone())) {
         *kept = core::mem::replace(sum, u8::MAX);
     }
-    let sums = room.get(1..).unwrap_or(&[]);
+    let sums = part(room, 1..);
     let others = sums.get(candidates / 4).map_or(u32::MAX, |last| last | u32::MAX << (candidates % 4 * 8));
     let least = sums.iter().take(candidates / 4).fold(others, |least, &sum| min(least, sum));
-    for (kept, sum) in kept.iter().zip(view_mut::<u32, u8>(room).get_mut(nearest).unwrap_or_default()) {
+    for (kept, sum) in kept.iter().zip(part_mut(view_mut::<u32, u8>(room), nearest)) {
         *sum = *kept;
     }
     (of_lanes(least, 0) >> 8) as u8

@@ -2,6 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::LANES;
+use crate::matching::memory::slices::{part, part_mut, split_mut};
 use core::arch::asm;
 
 /// By how much more bits the lower four of a byte differ than the upper four, modulo 2^8.
@@ -45,9 +46,9 @@ pub(super) fn of_four_bits<const STRIDE: usize>(
     let keep = (0x0f * u8::from(enter.is_some()), 0xf0 * u8::from(leave.is_some()));
     let (new, old) = (enter.unwrap_or(either), leave.unwrap_or(either));
     let width = either.len() / 2;
-    let (left, right) = room.split_at_mut_checked(width).unwrap_or_default();
+    let (left, right) = split_mut(room, width);
     pack(new, old, keep, left);
-    let (new, old) = (new.get(width..).unwrap_or(&[]), old.get(width..).unwrap_or(&[]));
+    let (new, old) = (part(new, width..), part(old, width..));
     let right = with_more_before(width, min_disparity, stride, right, |right| pack(new, old, keep, right));
     move_packed::<STRIDE>(Codes { left, right }, stride, columns);
 }
@@ -71,7 +72,7 @@ pub(super) fn of_eight_bits<const STRIDE: usize>(
 ) {
     let width = columns.len() / stride;
     let [enter, leave] = rows;
-    let (new, old) = room.split_at_mut_checked(width + stride - 1).unwrap_or_default();
+    let (new, old) = split_mut(room, width + stride - 1);
     let codes = |row, room| codes(row, width, min_disparity, stride, room);
     move_rows::<STRIDE>(codes(enter, new), codes(leave, old), stride, columns);
 }
@@ -107,12 +108,12 @@ fn with_more_before(
     room: &mut [u8],
     put: impl FnOnce(&mut [u8]),
 ) -> &[u8] {
-    let room = room.get_mut(..width + stride - 1).unwrap_or_default();
+    let room = part_mut(room, ..width + stride - 1);
     let outside = room.len().min(stride - 1 + min_disparity);
     // One more is put, and repeated.
-    put(room.get_mut(outside..).unwrap_or_default());
+    put(part_mut(room, outside..));
     let first = room.get(outside).copied().unwrap_or(0);
-    room.get_mut(..outside).unwrap_or_default().fill(first);
+    part_mut(room, ..outside).fill(first);
     room
 }
 

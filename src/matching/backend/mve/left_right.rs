@@ -4,7 +4,7 @@
 use core::arch::asm;
 
 /// Pixels in a turn of the loop that offers.
-const TURN: usize = 4;
+const ROUND: usize = 4;
 
 /// Offers every winner, by its cost above its disparity, to its partner among the columns `right`, which keep
 /// the least; then gives in `kept` the disparity that each one's partner keeps.
@@ -24,11 +24,11 @@ pub(super) fn keep(costs: &[u8], disparities: &[u8], right: &mut [u16], kept: &m
 
 /// The first half: 34 instructions for four pixels. None of `disparities` is over its index.
 fn offer(costs: &[u8], disparities: &[u8], right: &mut [u16]) {
-    let turns = costs.len() / TURN;
-    if turns > 0 {
-        take_turns(turns, costs, disparities, right);
+    let rounds = costs.len() / ROUND;
+    if rounds > 0 {
+        offer_rounds(rounds, costs, disparities, right);
     }
-    for (x, (&cost, &disparity)) in costs.iter().zip(disparities).enumerate().skip(turns * TURN) {
+    for (x, (&cost, &disparity)) in costs.iter().zip(disparities).enumerate().skip(rounds * ROUND) {
         if let Some(kept) = right.get_mut(x.wrapping_sub(usize::from(disparity))) {
             *kept = (*kept).min(u16::from(cost) << 8 | u16::from(disparity));
         }
@@ -36,16 +36,16 @@ fn offer(costs: &[u8], disparities: &[u8], right: &mut [u16]) {
 }
 
 #[inline(never)]
-fn take_turns(turns: usize, costs: &[u8], disparities: &[u8], right: &mut [u16]) {
-    let pixels = turns * TURN;
-    if turns == 0 || costs.len() < pixels || disparities.len() < pixels || right.len() < pixels {
+fn offer_rounds(rounds: usize, costs: &[u8], disparities: &[u8], right: &mut [u16]) {
+    let pixels = rounds * ROUND;
+    if rounds == 0 || costs.len() < pixels || disparities.len() < pixels || right.len() < pixels {
         return;
     }
     // SAFETY: the lengths asked for above are what is read; the number of `right` that is read and written
-    // for pixel `x` is `x - disparities[x]`, which is none before the first (`keep`). `turns` is not 0.
+    // for pixel `x` is `x - disparities[x]`, which is none before the first (`keep`). `rounds` is not 0.
     unsafe {
         asm!(
-            "dls lr, {turns}",
+            "dls lr, {rounds}",
             "2:",
             ".irp at, 0, 2, 4, 6",
             "ldrb {disparity}, [{disparities}], #1",
@@ -59,7 +59,7 @@ fn take_turns(turns: usize, costs: &[u8], disparities: &[u8], right: &mut [u16])
             ".endr",
             "add {right}, {right}, #8",
             "le lr, 2b",
-            turns = in(reg) turns, disparities = inout(reg) disparities.as_ptr() => _,
+            rounds = in(reg) rounds, disparities = inout(reg) disparities.as_ptr() => _,
             costs = inout(reg) costs.as_ptr() => _, right = inout(reg) right.as_mut_ptr() => _,
             disparity = out(reg) _, cost = out(reg) _, to = out(reg) _, out("lr") _, options(nostack),
         );

@@ -41,14 +41,15 @@ use crate::imaging::census_ring8;
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::Rows5;
 use crate::matching::memory::layout::OUTSIDE;
+use crate::matching::memory::slices::{part, part_mut, split_mut};
 use crate::matching::memory::views::view_mut;
-use crate::matching::memory::winners::{Select, Winner, WinnerRows};
+use crate::matching::memory::winners::{Lengths, Select, WinnerRows};
 use crate::units::{Disparity, PixelFlags};
 use windows::{Windows, best_of_the_rest, complete};
 
 pub(in crate::matching) use super::plain::{CODES_SHARE_A_BYTE, columns_begin};
 
-/// The vectors of a Cortex-M55, which the compilation was told that the core has.
+/// The vectors of a Cortex-M55, which the core has by what the compiler was given.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(in crate::matching) struct Backend;
 
@@ -86,7 +87,7 @@ impl Isa for Backend {
         workspace: &mut [u32],
         out: &mut [u8],
     ) {
-        let (left, right) = out.split_at_mut_checked(out.len() / 2).unwrap_or_default();
+        let (left, right) = split_mut(out, out.len() / 2);
         for (lines, codes) in lines.into_iter().zip([left, right]) {
             if P::BITS <= 4 {
                 census::census_plus4(lines, view_mut::<u32, u8>(workspace), codes);
@@ -131,10 +132,9 @@ impl Isa for Backend {
         flags: &mut [PixelFlags],
     ) {
         let WinnerWork { winners, right, workspace, begin } = work;
-        let width = winners.len();
-        let winners = WinnerRows::of(winners, begin);
-        let (kept, fractions) =
-            view_mut::<u32, u8>(workspace).split_at_mut_checked(width).unwrap_or_default();
+        let width = winners.width();
+        let winners = winners.rows(begin);
+        let (kept, fractions) = split_mut(view_mut::<u32, u8>(workspace), width);
         left_right::keep(winners.costs, winners.disparities, right, kept);
         answer::<P>(&winners, kept, rules, fractions, answers, flags);
     }
@@ -143,12 +143,12 @@ impl Isa for Backend {
     fn smooth(
         self,
         answers: &mut [Disparity],
-        lengths: &mut [u16],
+        lengths: Lengths<'_>,
         workspace: &mut [u16],
         step: Disparity,
         radius: u8,
     ) {
-        smooth::smooth(answers, lengths, workspace, step, radius);
+        smooth::smooth(answers, lengths.bytes(), workspace, step, radius);
     }
 
     #[inline(always)]
@@ -196,10 +196,10 @@ fn row<S: WindowParameters>(work: WindowWork<'_>, select: Option<Select<'_>>) {
 #[inline(always)]
 fn row_of<S: WindowParameters, const STRIDE: usize>(work: WindowWork<'_>, select: Option<Select<'_>>) {
     const { assert!(S::RADIUS_X < OUTSIDE && STEP == LANES) };
-    let WindowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
+    let WindowWork { width, stride, min_disparity, enter, leave, columns, workspace } = work;
     // At least one vector, for the compiler to see that no column is empty.
     let stride = if STRIDE > 0 { STRIDE } else { stride.max(LANES) };
-    let room = view_mut::<u32, u8>(scratch);
+    let room = view_mut::<u32, u8>(workspace);
     if let Some(inside) = columns.get_mut(OUTSIDE * stride..(OUTSIDE + width) * stride) {
         if S::BITS <= 4 {
             columns::of_four_bits::<STRIDE>([enter, leave], min_disparity, stride, room, inside);
@@ -224,13 +224,13 @@ fn winners<S: WindowParameters, const STRIDE: usize>(
     select: Select<'_>,
 ) {
     let stride = if STRIDE > 0 { STRIDE } else { stride };
-    let Select { disparities, winners, unique } = select;
-    let rows = view_mut::<Winner, u8>(winners).get_mut(begin..).unwrap_or_default();
+    let Select { disparities, mut winners, unique } = select;
+    let rows = part_mut(winners.bytes(), begin..);
     // The column that leaves at the first pixel is among them.
-    let from = |column: usize| columns.get(column * stride..).unwrap_or(&[]);
+    let from = |column: usize| part(columns, column * stride..);
     let (leaves, enters) = (from(OUTSIDE + begin - S::RADIUS_X - 1), from(OUTSIDE + begin + S::RADIUS_X));
     let columns = leaves.chunks_exact(stride).take(2 * S::RADIUS_X + 1);
-    let inside = sums.get_mut(1..=stride).unwrap_or_default();
+    let inside = part_mut(sums, 1..=stride);
     match inside.first_chunk_mut::<STRIDE>() {
         Some(sums) if STRIDE > 0 => {
             let mut first = [0u8; STRIDE];
@@ -250,31 +250,31 @@ fn winners<S: WindowParameters, const STRIDE: usize>(
             }
         }
     }
-    let judged = unique.is_asked();
-    let mut judge = unique.starting_at(begin);
+    let is_checked = unique.is_asked();
+    let mut check = unique.checks_from(begin);
     let mut windows = Windows::<STRIDE> { stride, leaves, enters, sums, rows, width };
     // The first pixels have fewer candidates than the others.
     let few = (disparities - 1).min(width - begin);
     let mut done = 0;
     while done < width - begin {
         let alike = if done < few { few - done } else { width - begin - done };
-        let count = if judged { 1 } else { alike };
+        let count = if is_checked { 1 } else { alike };
         let candidates = (done + 1).min(disparities);
-        let mask = MASKS.get(256 - (stride - candidates)..).unwrap_or(&[]);
+        let mask = part(MASKS, 256 - (stride - candidates)..);
         if STRIDE == 0 || candidates < stride {
             windows.select::<S, true>(count, mask, usize::from(done < few));
         } else {
             windows.select::<S, false>(count, mask, 0);
         }
         done += count;
-        if judged {
+        if is_checked {
             let (cost, disparity) = windows.last();
-            judge(cost, &mut || {
-                let (mask, sums) = (mask.get(..stride).unwrap_or(&[]), windows.sums.get_mut(1..=stride));
-                best_of_the_rest(usize::from(disparity), mask, sums.unwrap_or_default())
+            check(cost, &mut || {
+                let (mask, sums) = (part(mask, ..stride), part_mut(windows.sums, 1..=stride));
+                best_of_the_rest(usize::from(disparity), mask, sums)
             });
         }
     }
-    let WinnerRows { below, costs, above, disparities: found } = WinnerRows::of(winners, begin);
+    let WinnerRows { below, costs, above, disparities: found } = winners.rows(begin);
     complete([below, costs, above, found], disparities);
 }

@@ -3,6 +3,7 @@
 
 use super::LANES;
 use crate::matching::backend::portable::smooth::{MARGIN, RECIPROCALS};
+use crate::matching::memory::slices::split_mut;
 use crate::units::Disparity;
 use core::arch::asm;
 
@@ -20,12 +21,11 @@ static HALVES: [u16; REACH + 1] = {
     halves
 };
 
-/// [`Isa::smooth`](crate::matching::backend::Isa::smooth); a length is a byte, that of the answer `x` the
-/// byte `x`, and 255 for all above.
+/// [`Isa::smooth`](crate::matching::backend::Isa::smooth); a length is at most 255.
 #[inline(never)]
 pub(super) fn smooth(
     answers: &mut [Disparity],
-    lengths: &mut [u16],
+    lengths: &mut [u8],
     room: &mut [u16],
     step: Disparity,
     radius: u8,
@@ -33,8 +33,8 @@ pub(super) fn smooth(
     let width = answers.len();
     let Some(room) = room.get_mut(..width + MARGIN) else { return };
     // The answers as they were, with none outside.
-    let (before, more) = room.split_at_mut_checked(REACH).unwrap_or_default();
-    let (inside, after) = more.split_at_mut_checked(width).unwrap_or_default();
+    let (before, more) = split_mut(room, REACH);
+    let (inside, after) = split_mut(more, width);
     before.fill(Disparity::NONE.raw());
     after.fill(Disparity::NONE.raw());
     for (inside, answer) in inside.iter_mut().zip(answers.iter()) {
@@ -143,11 +143,11 @@ static BACK: [u8; LANES] = [16, 15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 
 /// vector to the next a number is carried. Then the same backwards with the end. 20 and 27 instructions for
 /// 16 answers.
 #[inline(never)]
-fn count(begins: &mut [u16], lengths: &mut [u16], width: usize) {
+fn count(begins: &mut [u16], lengths: &mut [u8], width: usize) {
     let groups = width.div_ceil(LANES);
     let bytes = width..groups * LANES;
     let mut shift: Shift = [0; 3 * LANES];
-    if groups == 0 || 2 * begins.len() < groups * LANES + 1 || 2 * lengths.len() < width {
+    if groups == 0 || 2 * begins.len() < groups * LANES + 1 || lengths.len() < width {
         return;
     }
     let begins = begins.as_mut_ptr().cast::<u8>();
@@ -207,7 +207,7 @@ fn count(begins: &mut [u16], lengths: &mut [u16], width: usize) {
             "add {lanes}, {lanes}, #16",
             "le lr, 2b",
             groups = in(reg) groups, back = in(reg) BACK.as_ptr(), begins = inout(reg) begins.add(last) => _,
-            lengths = inout(reg) lengths.as_mut_ptr().cast::<u8>().add(last) => _, lanes = inout(reg) width - last => _,
+            lengths = inout(reg) lengths.as_mut_ptr().add(last) => _, lanes = inout(reg) width - last => _,
             shift = in(reg) shift.as_mut_ptr().add(LANES), carry = inout(reg) 0 => _, one = in(reg) 1,
             out("lr") _, out("q0") _, out("q1") _, out("q3") _, out("q4") _, options(nostack),
         );

@@ -5,7 +5,7 @@ use crate::matching::backend::work::SpeckleWork;
 use crate::units::PixelFlags;
 use core::arch::asm;
 
-/// Judges the row with support of at least `pixels`, where a surface changes by up to `step`. What is kept is
+/// Drops the answers of the row that waited which have a support under `pixels`. What is kept is
 /// two rows of bytes: the support so far, and the bits.
 ///
 /// 29 instructions for eight answers.
@@ -13,8 +13,9 @@ use core::arch::asm;
 pub(super) fn speckle(work: SpeckleWork<'_>) {
     let SpeckleWork { here, above, lengths, kept, flags, answers, finished, step, pixels } = work;
     let count = finished.len();
+    let lengths = lengths.bytes();
     let rows = [here.len(), above.len(), kept.len(), flags.len(), answers.map_or(count, <[_]>::len)];
-    if count == 0 || 2 * lengths.len() < count || rows.iter().any(|&length| length < count) {
+    if count == 0 || lengths.len() < count || rows.iter().any(|&length| length < count) {
         return;
     }
     let finished = finished.as_mut_ptr();

@@ -3,6 +3,7 @@
 
 use super::LANES;
 use crate::matching::backend::parameters::WindowParameters;
+use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::winners::BESIDE;
 use core::arch::asm;
 
@@ -220,10 +221,10 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
     /// Goes to the pixel that is so many after the next one.
     #[inline(always)]
     fn move_on(&mut self, count: usize) {
-        self.leaves = self.leaves.get(count * self.stride..).unwrap_or(&[]);
-        self.enters = self.enters.get(count * self.stride..).unwrap_or(&[]);
+        self.leaves = part(self.leaves, count * self.stride..);
+        self.enters = part(self.enters, count * self.stride..);
         let rows = core::mem::take(&mut self.rows);
-        self.rows = rows.get_mut(count..).unwrap_or_default();
+        self.rows = part_mut(rows, count..);
     }
 }
 
@@ -276,7 +277,7 @@ pub(super) fn best_of_the_rest(disparity: usize, mask: &[u8], sums: &mut [u8]) -
     let lane = (sums.len() - 1).saturating_sub(disparity);
     let nearest = lane.saturating_sub(BESIDE)..sums.len().min(lane + BESIDE + 1);
     let mut kept = [u8::MAX; 2 * BESIDE + 1];
-    for (kept, sum) in kept.iter_mut().zip(sums.get_mut(nearest.clone()).unwrap_or_default()) {
+    for (kept, sum) in kept.iter_mut().zip(part_mut(sums, nearest.clone())) {
         *kept = core::mem::replace(sum, u8::MAX);
     }
     let mut least = [u8::MAX; LANES];
@@ -285,7 +286,7 @@ pub(super) fn best_of_the_rest(disparity: usize, mask: &[u8], sums: &mut [u8]) -
             least[i] = least[i].min(sums[i] | mask[i]);
         }
     }
-    for (kept, sum) in kept.iter().zip(sums.get_mut(nearest).unwrap_or_default()) {
+    for (kept, sum) in kept.iter().zip(part_mut(sums, nearest)) {
         *sum = *kept;
     }
     least.iter().fold(u8::MAX, |least, &lane| least.min(lane))

@@ -6,6 +6,7 @@
 
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::memory::Rows5;
+use crate::matching::memory::slices::part;
 use crate::matching::memory::views::{view, view_mut};
 
 /// The highest bit of every byte.
@@ -18,7 +19,7 @@ pub(in crate::matching::backend) type Three = [u32; 3];
 #[inline(never)]
 pub(in crate::matching::backend) fn census<S: WindowParameters>(rows: &Rows5<'_>, out: &mut [u8]) {
     let width = out.len();
-    let lines = [0, 2, 4].map(|row: usize| rows.get(row).and_then(|r| r.get(..width)).unwrap_or(&[]));
+    let lines = [0, 2, 4].map(|row: usize| part(rows[row], ..width));
     let in_words = |bytes: &[u8]| view::<u8, u32>(bytes).len() * 4 == width;
     if in_words(out) && lines.into_iter().all(in_words) {
         census_of_words::<S>(lines.map(view::<u8, u32>), view_mut::<u8, u32>(out));
@@ -64,7 +65,7 @@ fn census_of_words<S: WindowParameters>(lines: [&[u32]; 3], out: &mut [u32]) {
         codes
     };
     let Some((out_last, out)) = out.split_last_mut() else { return };
-    let [above, here, below] = lines.map(|line| line.get(1..).unwrap_or(&[]));
+    let [above, here, below] = lines.map(|line| part(line, 1..));
     for (out, ((&above, &here), &below)) in out.iter_mut().zip(above.iter().zip(here).zip(below)) {
         *out = next([above, here, below]);
     }

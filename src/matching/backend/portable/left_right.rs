@@ -3,6 +3,7 @@
 use super::{consistency, subpixel};
 use crate::matching::backend::parameters::MethodParameters;
 use crate::matching::backend::work::{Rules, WinnerWork};
+use crate::matching::memory::slices::part;
 use crate::matching::memory::winners::Winner;
 use crate::units::{Disparity, PixelFlags};
 
@@ -14,7 +15,7 @@ pub(in crate::matching::backend) fn left_right<S: MethodParameters>(
     answers: &mut [Disparity],
     flags: &mut [PixelFlags],
 ) {
-    let winners = work.winners.get(work.begin..).unwrap_or(&[]);
+    let winners = part(work.winners.words(), work.begin..);
     offer(winners, work.right);
     answer::<S>(winners, work.right, rules, answers, flags);
 }

@@ -100,6 +100,48 @@ fn averaged(centre: Disparity, sum: u16, reach: usize) -> Disparity {
 mod tests {
     use super::*;
 
+    fn averages(row: &[u16]) -> (Vec9<u16>, Vec9<u16>) {
+        let mut answers = [Disparity::NONE; 9];
+        let (mut lengths, mut room) = ([0; 9], [0; 9 + MARGIN]);
+        for (answer, &raw) in answers.iter_mut().zip(row) {
+            *answer = Disparity::from_raw(raw);
+        }
+        let (row, lengths_of_row) = (&mut answers[..row.len()], &mut lengths[..row.len()]);
+        smooth(
+            row,
+            lengths_of_row,
+            &mut room,
+            Checks::DEFAULT.surface_step,
+            Checks::DEFAULT.smoothing_radius,
+        );
+        (answers.map(Disparity::raw), lengths)
+    }
+
+    type Vec9<T> = [T; 9];
+
+    #[test]
+    fn a_slope_keeps_its_values_and_a_step_its_place() {
+        let slope = [320, 322, 324, 326, 328];
+        assert_eq!(
+            averages(&slope),
+            ([320, 322, 324, 326, 328, NONE, NONE, NONE, NONE], [5, 5, 5, 5, 5, 0, 0, 0, 0])
+        );
+        let step = [320, 320, 320, 640, 640];
+        assert_eq!(
+            averages(&step),
+            ([320, 320, 320, 640, 640, NONE, NONE, NONE, NONE], [3, 3, 3, 2, 2, 0, 0, 0, 0])
+        );
+    }
+
+    const NONE: u16 = u16::MAX;
+
+    #[test]
+    fn a_bump_is_flattened_and_no_answer_stays_none() {
+        let row = [320, 329, 320, NONE, NONE, NONE, 65_488, 65_488, 65_456];
+        let smooth = [320, 323, 320, NONE, NONE, NONE, 65_488, 65_477, 65_456];
+        assert_eq!(averages(&row), (smooth, [3, 3, 3, 3, 3, 3, 3, 3, 3]));
+    }
+
     #[test]
     fn the_multiplication_divides() {
         for reach in 0..=8i32 {

@@ -22,7 +22,7 @@ type Word = u32;
 #[inline(always)]
 pub(in crate::matching::backend) fn speckle(work: SpeckleWork<'_>) {
     let SpeckleWork { here, above, lengths, kept, flags, answers, finished, step, pixels } = work;
-    let columns = here.iter().zip(above).zip(lengths.iter().zip(kept));
+    let columns = here.iter().zip(above).zip(lengths.half_words().iter().zip(kept));
     match answers {
         Some(answers) => {
             let out = answers.iter().zip(flags).zip(finished);

@@ -6,7 +6,7 @@
 //!
 //! `f = (a - b) / (2 max(a, b))`
 //!
-//! SgmParameters paths a disparity beside the winner costs a step more wherever a surface is slanted, which
+//! Along paths, a disparity beside the winner costs a step more wherever a surface is slanted, which
 //! would pull answers to whole pixels: so much of the steeper rise is not counted
 //! ([`SLANT_COST`](crate::matching::backend::parameters::MethodParameters::SLANT_COST)).
 //!

@@ -31,3 +31,33 @@ pub(in crate::matching::backend) fn vertical(
         *here = Disparity::from_raw(select_unpredictable((up | down) < 2 * REACH, moved, x) as u16);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slopes_stay_and_what_is_not_joined_stays() {
+        const NONE: u16 = u16::MAX;
+        // above, here, four rows below
+        let rows = [
+            ([320, 323, 335], 323),
+            ([320, 328, 328], 323),
+            ([328, 328, 359], 333),
+            ([320, 352, 352], 332),
+            ([320, 353, 353], 353),
+            ([320, 320, 351], 325),
+            ([320, 320, 352], 320),
+            ([320, 320, 288], 315),
+            ([NONE, 3, 3], 3),
+            ([3, 3, NONE], 3),
+            ([NONE, NONE, NONE], NONE),
+        ];
+        let raw = Disparity::from_raw;
+        for ([above, here, below], smoothed) in rows {
+            let mut row = [raw(here)];
+            vertical(&mut row, &[raw(above)], &[raw(below)]);
+            assert_eq!(row[0].raw(), smoothed, "{above} {here} {below}");
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! AVX2 registers. Only the code that is compiled for AVX2, behind its proof, makes one.
 #![allow(unsafe_code)]
 
-use super::registers::{AROUND, BITS_APART_OF_FOUR, register};
+use super::registers::{AROUND, BITS_APART_OF_FOUR, by_half_words, register};
 use crate::matching::backend::portable::group::Group;
 use core::arch::x86_64::*;
 
@@ -20,87 +20,17 @@ macro_rules! safely {
 }
 
 impl Group for Wide {
-    register!(32);
-
-    #[inline(always)]
-    fn of(cell: Self::Cell) -> Self {
-        safely!(Self(_mm256_loadu_si256(cell.as_ptr().cast())))
+    register! {
+        32 bytes, load _mm256_loadu_si256, store _mm256_storeu_si256, splat _mm256_set1_epi8,
+        plus _mm256_add_epi8, plus_saturating _mm256_adds_epu8,
+        minus _mm256_sub_epi8, minus_saturating _mm256_subs_epu8,
+        min _mm256_min_epu8, max _mm256_max_epu8,
+        average_up _mm256_avg_epu8,
+        or _mm256_or_si256, and _mm256_and_si256,
+        four_bits_apart _mm256_shuffle_epi8,
     }
 
-    #[inline(always)]
-    fn cell(self) -> Self::Cell {
-        let mut cell = [0; 32];
-        safely!(_mm256_storeu_si256(cell.as_mut_ptr().cast(), self.0));
-        cell
-    }
-
-    #[inline(always)]
-    fn splat(number: u8) -> Self {
-        safely!(Self(_mm256_set1_epi8(number as i8)))
-    }
-
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        safely!(Self(_mm256_add_epi8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn minus(self, other: Self) -> Self {
-        safely!(Self(_mm256_sub_epi8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn plus_saturating(self, other: Self) -> Self {
-        safely!(Self(_mm256_adds_epu8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn minus_saturating(self, other: Self) -> Self {
-        safely!(Self(_mm256_subs_epu8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        safely!(Self(_mm256_min_epu8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        safely!(Self(_mm256_max_epu8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn average_up(self, other: Self) -> Self {
-        safely!(Self(_mm256_avg_epu8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn or(self, other: Self) -> Self {
-        safely!(Self(_mm256_or_si256(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn and(self, other: Self) -> Self {
-        safely!(Self(_mm256_and_si256(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn apart(self, other: Self) -> Self {
-        self.minus_saturating(other).or(other.minus_saturating(self))
-    }
-
-    #[inline(always)]
-    fn average_down(self, other: Self) -> Self {
-        safely!(Self(_mm256_and_si256(
-            _mm256_srli_epi16(_mm256_add_epi8(self.0, other.0), 1),
-            _mm256_set1_epi8(0x7f)
-        )))
-    }
-
-    #[inline(always)]
-    fn quarter(self) -> Self {
-        safely!(Self(_mm256_and_si256(_mm256_srli_epi16(self.0, 2), _mm256_set1_epi8(0x3f))))
-    }
+    by_half_words!(shift _mm256_srli_epi16);
 
     #[inline(always)]
     fn bits_apart(self, other: Self) -> Self {
@@ -122,11 +52,6 @@ impl Group for Wide {
     fn key_of_four(code: u8) -> Self {
         let bits = BITS_APART_OF_FOUR.get(usize::from(code)).unwrap_or(&[0; 16]);
         safely!(Self(_mm256_broadcastsi128_si256(_mm_loadu_si128(bits.as_ptr().cast()))))
-    }
-
-    #[inline(always)]
-    fn four_bits_apart(self, others: Self) -> Self {
-        safely!(Self(_mm256_shuffle_epi8(self.0, others.0)))
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! AVX-512 registers. Only the code that is compiled for AVX-512, behind its proof, makes one.
 #![allow(unsafe_code)]
 
-use super::registers::{AROUND, BITS_APART_OF_FOUR, register};
+use super::registers::{AROUND, BITS_APART_OF_FOUR, by_half_words, register};
 use crate::matching::backend::portable::group::Group;
 use core::arch::x86_64::*;
 
@@ -41,87 +41,17 @@ const BEFORE: &[u8; 64] = &{
 };
 
 impl Group for Widest {
-    register!(64);
-
-    #[inline(always)]
-    fn of(cell: Self::Cell) -> Self {
-        safely!(Self(_mm512_loadu_si512(cell.as_ptr().cast())))
+    register! {
+        64 bytes, load _mm512_loadu_si512, store _mm512_storeu_si512, splat _mm512_set1_epi8,
+        plus _mm512_add_epi8, plus_saturating _mm512_adds_epu8,
+        minus _mm512_sub_epi8, minus_saturating _mm512_subs_epu8,
+        min _mm512_min_epu8, max _mm512_max_epu8,
+        average_up _mm512_avg_epu8,
+        or _mm512_or_si512, and _mm512_and_si512,
+        four_bits_apart _mm512_shuffle_epi8,
     }
 
-    #[inline(always)]
-    fn cell(self) -> Self::Cell {
-        let mut cell = [0; 64];
-        safely!(_mm512_storeu_si512(cell.as_mut_ptr().cast(), self.0));
-        cell
-    }
-
-    #[inline(always)]
-    fn splat(number: u8) -> Self {
-        safely!(Self(_mm512_set1_epi8(number as i8)))
-    }
-
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        safely!(Self(_mm512_add_epi8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn minus(self, other: Self) -> Self {
-        safely!(Self(_mm512_sub_epi8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn plus_saturating(self, other: Self) -> Self {
-        safely!(Self(_mm512_adds_epu8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn minus_saturating(self, other: Self) -> Self {
-        safely!(Self(_mm512_subs_epu8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        safely!(Self(_mm512_min_epu8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        safely!(Self(_mm512_max_epu8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn average_up(self, other: Self) -> Self {
-        safely!(Self(_mm512_avg_epu8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn or(self, other: Self) -> Self {
-        safely!(Self(_mm512_or_si512(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn and(self, other: Self) -> Self {
-        safely!(Self(_mm512_and_si512(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn apart(self, other: Self) -> Self {
-        self.minus_saturating(other).or(other.minus_saturating(self))
-    }
-
-    #[inline(always)]
-    fn average_down(self, other: Self) -> Self {
-        safely!(Self(_mm512_and_si512(
-            _mm512_srli_epi16(_mm512_add_epi8(self.0, other.0), 1),
-            _mm512_set1_epi8(0x7f)
-        )))
-    }
-
-    #[inline(always)]
-    fn quarter(self) -> Self {
-        safely!(Self(_mm512_and_si512(_mm512_srli_epi16(self.0, 2), _mm512_set1_epi8(0x3f))))
-    }
+    by_half_words!(shift _mm512_srli_epi16);
 
     #[inline(always)]
     fn bits_apart(self, other: Self) -> Self {
@@ -132,11 +62,6 @@ impl Group for Widest {
     fn key_of_four(code: u8) -> Self {
         let bits = BITS_APART_OF_FOUR.get(usize::from(code)).unwrap_or(&[0; 16]);
         safely!(Self(_mm512_broadcast_i32x4(_mm_loadu_si128(bits.as_ptr().cast()))))
-    }
-
-    #[inline(always)]
-    fn four_bits_apart(self, others: Self) -> Self {
-        safely!(Self(_mm512_shuffle_epi8(self.0, others.0)))
     }
 
     #[inline(always)]

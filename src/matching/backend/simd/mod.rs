@@ -42,8 +42,9 @@ use super::work::{EdgeWork, Guide, PathWork, Rules, STEP, WindowWork, WinnerWork
 use crate::imaging::{census_plus4, census_ring8};
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::Rows5;
+use crate::matching::memory::slices::split_mut;
 use crate::matching::memory::views::view_mut;
-use crate::matching::memory::winners::{Select, WinnerRows};
+use crate::matching::memory::winners::{Lengths, Select};
 use crate::units::{Disparity, PixelFlags};
 
 /// The kernels of a 64-bit processor.
@@ -120,7 +121,7 @@ impl Isa for Backend {
         if self == Self::Planes {
             return plain::Backend.census::<P>(lines, min_disparity, workspace, out);
         }
-        let (left, right) = out.split_at_mut_checked(out.len() / 2).unwrap_or_default();
+        let (left, right) = split_mut(out, out.len() / 2);
         let census = if P::BITS <= 4 { census_plus4 } else { census_ring8 };
         for (lines, codes) in lines.into_iter().zip([left, right]) {
             census(lines, codes);
@@ -170,10 +171,9 @@ impl Isa for Backend {
             return plain::Backend.left_right::<P>(work, rules, answers, flags);
         }
         let WinnerWork { winners, right, workspace, begin } = work;
-        let width = winners.len();
-        let winners = WinnerRows::of(winners, begin);
-        let (kept, fractions) =
-            view_mut::<u32, u8>(workspace).split_at_mut_checked(width).unwrap_or_default();
+        let width = winners.width();
+        let winners = winners.rows(begin);
+        let (kept, fractions) = split_mut(view_mut::<u32, u8>(workspace), width);
         left_right_rows::keep(winners.costs, winners.disparities, right, kept);
         self.in_vectors(
             #[inline(always)]
@@ -184,7 +184,7 @@ impl Isa for Backend {
     fn smooth(
         self,
         answers: &mut [Disparity],
-        lengths: &mut [u16],
+        lengths: Lengths<'_>,
         workspace: &mut [u16],
         step: Disparity,
         radius: u8,
@@ -194,7 +194,7 @@ impl Isa for Backend {
         }
         self.in_vectors(
             #[inline(always)]
-            || smooth::smooth(answers, lengths, workspace, step, radius),
+            || smooth::smooth(answers, lengths.half_words(), workspace, step, radius),
         );
     }
 

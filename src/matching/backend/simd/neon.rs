@@ -19,78 +19,15 @@ macro_rules! safely {
 }
 
 impl Group for Vector {
-    register!(16);
-
-    #[inline(always)]
-    fn of(cell: Self::Cell) -> Self {
-        safely!(Self(vld1q_u8(cell.as_ptr())))
-    }
-
-    #[inline(always)]
-    fn cell(self) -> Self::Cell {
-        let mut cell = [0; 16];
-        safely!(vst1q_u8(cell.as_mut_ptr(), self.0));
-        cell
-    }
-
-    #[inline(always)]
-    fn splat(number: u8) -> Self {
-        safely!(Self(vdupq_n_u8(number)))
-    }
-
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        safely!(Self(vaddq_u8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn minus(self, other: Self) -> Self {
-        safely!(Self(vsubq_u8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn plus_saturating(self, other: Self) -> Self {
-        safely!(Self(vqaddq_u8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn minus_saturating(self, other: Self) -> Self {
-        safely!(Self(vqsubq_u8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        safely!(Self(vminq_u8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        safely!(Self(vmaxq_u8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn apart(self, other: Self) -> Self {
-        safely!(Self(vabdq_u8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn average_up(self, other: Self) -> Self {
-        safely!(Self(vrhaddq_u8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn average_down(self, other: Self) -> Self {
-        safely!(Self(vhaddq_u8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn or(self, other: Self) -> Self {
-        safely!(Self(vorrq_u8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn and(self, other: Self) -> Self {
-        safely!(Self(vandq_u8(self.0, other.0)))
+    register! {
+        16 bytes, load vld1q_u8, store vst1q_u8, splat vdupq_n_u8,
+        plus vaddq_u8, plus_saturating vqaddq_u8,
+        minus vsubq_u8, minus_saturating vqsubq_u8,
+        min vminq_u8, max vmaxq_u8,
+        apart vabdq_u8,
+        average_up vrhaddq_u8, average_down vhaddq_u8,
+        or vorrq_u8, and vandq_u8,
+        four_bits_apart vqtbl1q_u8,
     }
 
     #[inline(always)]
@@ -107,11 +44,6 @@ impl Group for Vector {
     fn key_of_four(code: u8) -> Self {
         let bits = BITS_APART_OF_FOUR.get(usize::from(code)).unwrap_or(&[0; 16]);
         safely!(Self(vld1q_u8(bits.as_ptr())))
-    }
-
-    #[inline(always)]
-    fn four_bits_apart(self, others: Self) -> Self {
-        safely!(Self(vqtbl1q_u8(self.0, others.0)))
     }
 
     #[inline(always)]

@@ -2,11 +2,17 @@
 
 use crate::matching::memory::winners::BESIDE;
 
-/// Items of an `impl Group` for a register of so many bytes. Beside them it needs `last_lane_of(cells,
-/// number)`: the last lane of all cells that has the number which is in all lanes of `number` and in one of
-/// the cells.
+/// Items of an `impl Group` for a register of so many bytes, from a table: the instructions that load, store
+/// and fill a register, then those that make one register of two, by the operation that they are.
+///
+/// Where it is called, `safely!` says why the instructions may be used. Beside the items an `impl` needs
+/// `last_lane_of(cells, number)`: the last lane of all cells that has the number which is in all lanes of
+/// `number` and in one of the cells.
 macro_rules! register {
-    ($lanes:literal) => {
+    (
+        $lanes:literal bytes, load $load:ident, store $store:ident, splat $splat:ident,
+        $($operation:ident $instruction:ident),* $(,)?
+    ) => {
         const LANES: usize = $lanes;
         type Cell = [u8; $lanes];
         type Bytes = [u8; $lanes];
@@ -25,6 +31,30 @@ macro_rules! register {
         fn groups(bytes: &[u8]) -> &[Self::Bytes] {
             bytes.as_chunks().0
         }
+
+        #[inline(always)]
+        fn of(cell: Self::Cell) -> Self {
+            safely!(Self($load(cell.as_ptr().cast())))
+        }
+
+        #[inline(always)]
+        fn cell(self) -> Self::Cell {
+            let mut cell = [0; $lanes];
+            safely!($store(cell.as_mut_ptr().cast(), self.0));
+            cell
+        }
+
+        #[inline(always)]
+        fn splat(number: u8) -> Self {
+            safely!(Self($splat(number as _)))
+        }
+
+        $(
+            #[inline(always)]
+            fn $operation(self, other: Self) -> Self {
+                safely!(Self($instruction(self.0, other.0)))
+            }
+        )*
 
         #[inline(always)]
         fn of_bytes(bytes: Self::Bytes) -> Self {
@@ -53,7 +83,7 @@ macro_rules! register {
 
         #[inline(always)]
         fn raise_around(cells: &mut [Self], lane: usize) {
-            let ones = AROUND.get(256usize.wrapping_sub(lane)..).unwrap_or(&[]);
+            let ones = crate::matching::memory::slices::part(AROUND, 256usize.wrapping_sub(lane)..);
             for (cell, &ones) in cells.iter_mut().zip(Self::groups(ones)) {
                 *cell = cell.or(Self::of_bytes(ones));
             }
@@ -61,6 +91,30 @@ macro_rules! register {
     };
 }
 pub(super) use register;
+
+/// Items of an `impl Group` for what x86-64 has no instruction for, by the one that shifts half-words to the
+/// right.
+#[cfg(target_arch = "x86_64")]
+macro_rules! by_half_words {
+    (shift $shift:ident) => {
+        #[inline(always)]
+        fn apart(self, other: Self) -> Self {
+            self.minus_saturating(other).or(other.minus_saturating(self))
+        }
+
+        #[inline(always)]
+        fn average_down(self, other: Self) -> Self {
+            safely!(Self($shift::<1>(self.plus(other).0))).and(Self::splat(0x7f))
+        }
+
+        #[inline(always)]
+        fn quarter(self) -> Self {
+            safely!(Self($shift::<2>(self.0))).and(Self::splat(0x3f))
+        }
+    };
+}
+#[cfg(target_arch = "x86_64")]
+pub(super) use by_half_words;
 
 /// Ones in the lane 256 and as many beside it as belong to a winner.
 pub(super) const AROUND: &[u8; 512] = &{

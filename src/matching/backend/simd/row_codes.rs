@@ -1,5 +1,6 @@
 //! A row's codes, as kernels in vectors read them.
 
+use crate::matching::memory::slices::{part, part_mut, split_mut};
 /// The codes of a row in both images.
 #[derive(Clone, Copy)]
 pub(super) struct RowCodes<'a> {
@@ -22,14 +23,15 @@ pub(super) fn with_more_before<'a>(
     stride: usize,
     out: &'a mut [u8],
 ) -> RowCodes<'a> {
-    let (left, right) = codes.split_at_checked(codes.len() / 2).unwrap_or_default();
+    let half = codes.len() / 2;
+    let (left, right) = (part(codes, ..half), part(codes, half..));
     // One more than is wanted, so that words are copied to words' places.
-    let out = out.get_mut(..left.len() + stride).unwrap_or_default();
+    let out = part_mut(out, ..left.len() + stride);
     let outside = out.len().min(stride + min_disparity);
-    let (before, inside) = out.split_at_mut_checked(outside).unwrap_or_default();
+    let (before, inside) = split_mut(out, outside);
     before.fill(right.first().copied().unwrap_or(0));
     for (inside, code) in inside.iter_mut().zip(right) {
         *inside = *code;
     }
-    RowCodes { left, right: out.get(1..).unwrap_or(&[]) }
+    RowCodes { left, right: part(out, 1..) }
 }

@@ -2,6 +2,7 @@
 
 use crate::matching::backend::portable::smooth::{MARGIN, RECIPROCALS, of_one};
 use crate::matching::config::Checks;
+use crate::matching::memory::slices::{part, split_mut};
 use crate::units::Disparity;
 
 /// Pixels worked on at a time.
@@ -37,7 +38,7 @@ pub(super) fn smooth(
     for (before, answer) in before.iter_mut().skip(REACH).zip(answers.iter()) {
         *before = answer.raw();
     }
-    count(before.get(REACH..REACH + width).unwrap_or(&[]), lengths, step);
+    count(part(before, REACH..REACH + width), lengths, step);
     // The last group is moved back to end with the row.
     let begins = (0..width / LANES).map(|group| group * LANES).chain(width.checked_sub(LANES));
     for begin in begins {
@@ -98,7 +99,7 @@ fn averaged<const RADIUS: usize>(
 fn count(answers: &[u16], lengths: &mut [u16], step: Disparity) {
     let (mut begin, mut rest) = (0, lengths);
     let mut end_at = |x: usize| {
-        let (surface, after) = core::mem::take(&mut rest).split_at_mut_checked(x - begin).unwrap_or_default();
+        let (surface, after) = split_mut(core::mem::take(&mut rest), x - begin);
         surface.fill(surface.len() as u16);
         (begin, rest) = (x, after);
     };
@@ -118,7 +119,7 @@ fn count(answers: &[u16], lengths: &mut [u16], step: Disparity) {
         }
     }
     let grouped = answers.len().saturating_sub(1) / LANES * LANES;
-    for (x, pair) in (grouped + 1..).zip(answers.get(grouped..).unwrap_or(&[]).windows(2)) {
+    for (x, pair) in (grouped + 1..).zip(part(answers, grouped..).windows(2)) {
         if !of_one(pair[1], pair[0], step) {
             end_at(x);
         }

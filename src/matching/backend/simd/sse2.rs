@@ -1,7 +1,7 @@
 //! SSE2 registers, which every x86-64 processor has.
 #![allow(unsafe_code)]
 
-use super::registers::{AROUND, register};
+use super::registers::{AROUND, by_half_words, register};
 use crate::matching::backend::portable::group::Group;
 use core::arch::x86_64::*;
 
@@ -20,84 +20,16 @@ macro_rules! safely {
 }
 
 impl Group for Vector {
-    register!(16);
-
-    #[inline(always)]
-    fn of(cell: Self::Cell) -> Self {
-        safely!(Self(_mm_loadu_si128(cell.as_ptr().cast())))
+    register! {
+        16 bytes, load _mm_loadu_si128, store _mm_storeu_si128, splat _mm_set1_epi8,
+        plus _mm_add_epi8, plus_saturating _mm_adds_epu8,
+        minus _mm_sub_epi8, minus_saturating _mm_subs_epu8,
+        min _mm_min_epu8, max _mm_max_epu8,
+        average_up _mm_avg_epu8,
+        or _mm_or_si128, and _mm_and_si128,
     }
 
-    #[inline(always)]
-    fn cell(self) -> Self::Cell {
-        let mut cell = [0; 16];
-        safely!(_mm_storeu_si128(cell.as_mut_ptr().cast(), self.0));
-        cell
-    }
-
-    #[inline(always)]
-    fn splat(number: u8) -> Self {
-        safely!(Self(_mm_set1_epi8(number as i8)))
-    }
-
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        safely!(Self(_mm_add_epi8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn minus(self, other: Self) -> Self {
-        safely!(Self(_mm_sub_epi8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn plus_saturating(self, other: Self) -> Self {
-        safely!(Self(_mm_adds_epu8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn minus_saturating(self, other: Self) -> Self {
-        safely!(Self(_mm_subs_epu8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        safely!(Self(_mm_min_epu8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        safely!(Self(_mm_max_epu8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn average_up(self, other: Self) -> Self {
-        safely!(Self(_mm_avg_epu8(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn or(self, other: Self) -> Self {
-        safely!(Self(_mm_or_si128(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn and(self, other: Self) -> Self {
-        safely!(Self(_mm_and_si128(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    fn apart(self, other: Self) -> Self {
-        self.minus_saturating(other).or(other.minus_saturating(self))
-    }
-
-    #[inline(always)]
-    fn average_down(self, other: Self) -> Self {
-        safely!(Self(_mm_and_si128(_mm_srli_epi16(_mm_add_epi8(self.0, other.0), 1), _mm_set1_epi8(0x7f))))
-    }
-
-    #[inline(always)]
-    fn quarter(self) -> Self {
-        safely!(Self(_mm_and_si128(_mm_srli_epi16(self.0, 2), _mm_set1_epi8(0x3f))))
-    }
+    by_half_words!(shift _mm_srli_epi16);
 
     #[inline(always)]
     fn bits_apart(self, other: Self) -> Self {

@@ -18,6 +18,7 @@ use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::portable::group::Group;
 use crate::matching::backend::work::{MASKS, STEP, WindowWork};
 use crate::matching::memory::layout::OUTSIDE;
+use crate::matching::memory::slices::part;
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::{Select, WinnerRows, beside};
 
@@ -46,10 +47,10 @@ pub(super) fn row<S: WindowParameters, G: Group, const CELLS: usize, const ALL: 
     select: Option<Select<'_>>,
 ) {
     const { assert!(S::RADIUS_X < OUTSIDE) };
-    let WindowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
+    let WindowWork { width, stride, min_disparity, enter, leave, columns, workspace } = work;
     let stride = if ALL { CELLS * G::LANES } else { stride.max(STEP) };
     let count = stride / G::LANES;
-    let codes = view_mut::<u32, u8>(scratch);
+    let codes = view_mut::<u32, u8>(workspace);
     let Some((new, old)) = codes.split_at_mut_checked(codes.len() / 2) else { return };
     let enter = enter.map(|row| with_more_before(row, min_disparity, stride, new));
     let leave = leave.map(|row| with_more_before(row, min_disparity, stride, old));
@@ -60,9 +61,9 @@ pub(super) fn row<S: WindowParameters, G: Group, const CELLS: usize, const ALL: 
 
     // Left of here no pixel has a candidate.
     let begin = min_disparity.min(width);
-    let WinnerRows { below, costs, above, disparities: found } = WinnerRows::of(winners, begin);
+    let WinnerRows { below, costs, above, disparities: found } = winners.rows(begin);
     let cells = G::cells(columns);
-    let from = |column: usize| cells.get(column * count..).unwrap_or(&[]).chunks_exact(count);
+    let from = |column: usize| part(cells, column * count..).chunks_exact(count);
     let mut sums = Sums::<G, CELLS, ALL>([G::splat(0); CELLS]);
     // The column that leaves at the first pixel is among them.
     let before = begin.saturating_sub(S::RADIUS_X + 1);
@@ -74,26 +75,26 @@ pub(super) fn row<S: WindowParameters, G: Group, const CELLS: usize, const ALL: 
     let ends = from(OUTSIDE + begin + S::RADIUS_X).zip(from(OUTSIDE + begin - S::RADIUS_X - 1));
     for (x, (((below, cost), (above, disparity)), (enters, leaves))) in pixels.zip(ends).enumerate() {
         sums.slide::<S>(enters, leaves);
-        let mut judged = sums;
+        let mut masked = sums;
         // The first pixels have fewer candidates than there are lanes; where there are more lanes than
         // candidates, all have.
         let candidates = disparities.min(x + 1);
         if candidates < stride {
-            let mask = MASKS.get(256 - (stride - candidates)..).and_then(|m| m.get(..stride)).unwrap_or(&[]);
-            for (sum, &mask) in judged.0.iter_mut().zip(G::groups(mask)) {
+            let mask = part(part(MASKS, 256 - (stride - candidates)..), ..stride);
+            for (sum, &mask) in masked.0.iter_mut().zip(G::groups(mask)) {
                 *sum = sum.or(G::of_bytes(mask));
             }
         }
-        let (least, lane) = G::last_least(judged.cells(stride));
+        let (least, lane) = G::last_least(masked.cells(stride));
         (*cost, *disparity) = (least, (stride - 1).wrapping_sub(lane) as u8);
-        (*below, *above) = beside(stride, *disparity, candidates, |lane| G::lane(&judged.0, lane));
-        unique.judge(
+        (*below, *above) = beside(stride, *disparity, candidates, |lane| G::lane(&masked.0, lane));
+        unique.check(
             begin + x,
             least,
             #[inline(always)]
             || {
-                G::raise_around(&mut judged.0, lane);
-                G::last_least(judged.cells(stride)).0
+                G::raise_around(&mut masked.0, lane);
+                G::last_least(masked.cells(stride)).0
             },
         );
     }
@@ -107,7 +108,7 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Sums<G, CELLS, ALL> {
     /// Those in use.
     #[inline(always)]
     fn cells(&self, stride: usize) -> &[G] {
-        if ALL { &self.0 } else { self.0.get(..stride / G::LANES).unwrap_or(&[]) }
+        if ALL { &self.0 } else { part(&self.0, ..stride / G::LANES) }
     }
 
     /// Moves on a column.

@@ -1,14 +1,15 @@
 //! A row of codes from right to left.
 
+use crate::matching::memory::slices::{part, part_mut};
 use core::arch::asm;
 
 /// The bytes of a row from `last` back, of each the bits of a mask; before the row its first stands for them,
 /// and where there is no row, 0. 16 instructions for sixteen.
 #[inline(never)]
 pub(in super::super) fn reverse(row: &[u8], last: i32, mask: u32, out: &mut [u32]) {
-    let begin = row.get(..(last + 1).max(0) as usize).unwrap_or(&[]);
+    let begin = part(row, ..(last + 1).max(0) as usize);
     let count = (begin.len() / 16).min(out.len() / 4);
-    let rest = begin.get(..begin.len() - 16 * count).unwrap_or(&[]);
+    let rest = part(begin, ..begin.len() - 16 * count);
     if count > 0 {
         // SAFETY: of sixteen bytes `count` times, the last ones first, as many words are made: the row has so
         // many, and `out`.
@@ -42,11 +43,11 @@ pub(in super::super) fn reverse(row: &[u8], last: i32, mask: u32, out: &mut [u32
     }
     let (rest, words) = rest.as_rchunks::<4>();
     let first = (u32::from(row.first().copied().unwrap_or(0)) * 0x0101_0101) & mask;
-    let out = out.get_mut(4 * count..).unwrap_or_default();
+    let out = part_mut(out, 4 * count..);
     for (out, word) in out.iter_mut().zip(words.iter().rev()) {
         *out = u32::from_be_bytes(*word) & mask;
     }
-    let out = out.get_mut(words.len()..).unwrap_or_default();
+    let out = part_mut(out, words.len()..);
     if let Some((next, out)) = out.split_first_mut() {
         *next = rest.iter().fold(first, |word, &byte| word << 8 | u32::from(byte)) & mask;
         out.fill(first);

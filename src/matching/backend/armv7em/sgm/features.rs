@@ -8,6 +8,7 @@ use super::splat;
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::portable::sgm::features::FeatureRows;
 use crate::matching::memory::Rows5;
+use crate::matching::memory::slices::{part, part_mut};
 
 /// Columns in a word.
 const COLUMNS: usize = 4;
@@ -53,7 +54,7 @@ fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3
             gradients([above, here, below], gradient, [&raw mut one, &raw mut other], 1);
         }
         for (row, word) in [(&mut *along, one), (&mut *across, other), (&mut *census, code)] {
-            put(row.get_mut(x..).unwrap_or_default(), word);
+            put(part_mut(row, x..), word);
         }
     }
 }
@@ -143,8 +144,8 @@ fn cut(a: [u32; 2], b: [u32; 2], most: u8) -> u32 {
 /// Half of each number.
 fn halve(numbers: &[u8], halves: &mut [u8]) {
     let count = numbers.len().min(halves.len());
-    let (groups, rest) = numbers.get(..count).unwrap_or(&[]).as_chunks::<COLUMNS>();
-    let (of_groups, of_rest) = halves.get_mut(..count).unwrap_or_default().as_chunks_mut::<COLUMNS>();
+    let (groups, rest) = part(numbers, ..count).as_chunks::<COLUMNS>();
+    let (of_groups, of_rest) = part_mut(halves, ..count).as_chunks_mut::<COLUMNS>();
     for (to, &from) in of_groups.iter_mut().zip(groups) {
         keep_loop();
         *to = (u32::from_le_bytes(from) >> 1 & splat(0x7f)).to_le_bytes();
@@ -174,7 +175,7 @@ fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
     let count = numbers.len().saturating_sub(2);
     let word =
         |x: usize| numbers.get(x..).and_then(|n| n.first_chunk()).map(|&four| u32::from_le_bytes(four));
-    let inside = |row| <[u8]>::get_mut(row, 1..=count).unwrap_or_default().chunks_mut(COLUMNS);
+    let inside = |row| part_mut(row, 1..=count).chunks_mut(COLUMNS);
     for (group, (least, greatest)) in inside(least).zip(inside(greatest)).enumerate() {
         let x = group * COLUMNS;
         let near = if let (Some(before), Some(here), Some(next)) = (word(x), word(x + 1), word(x + 2)) {

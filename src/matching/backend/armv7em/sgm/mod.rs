@@ -27,6 +27,7 @@ use crate::matching::backend::portable::sgm::features::Features;
 use crate::matching::backend::portable::sgm::{Passes, words};
 use crate::matching::backend::work::{EdgeWork, Guide, PathWork, STEP};
 use crate::matching::memory::Rows5;
+use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::{Found, Select, Unique};
 use crate::matching::penalties::Penalties;
@@ -63,7 +64,7 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
                 brightness: splat(brightness >> 1),
                 most,
             };
-            let candidates = right.get(x..).unwrap_or(&[]);
+            let candidates = part(right, x..);
             if S::BETWEEN_PIXELS {
                 blocks::between_pixels::<S>(column, candidates, count, splat(2 * along), &rest);
             } else {
@@ -73,7 +74,7 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
         if beyond > 0 {
             let least = beyond_search(work.penalties);
             for column in work.costs.chunks_exact_mut(stride) {
-                column.get_mut(..beyond).unwrap_or_default().fill(least);
+                part_mut(column, ..beyond).fill(least);
             }
         }
     }

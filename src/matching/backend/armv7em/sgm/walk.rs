@@ -7,6 +7,7 @@
 #![allow(unsafe_code)]
 
 use super::{far, splat};
+use crate::matching::memory::slices::part_mut;
 use crate::matching::penalties::Penalties;
 use core::arch::asm;
 
@@ -24,7 +25,7 @@ impl<const WORDS: usize> Padded<WORDS> {
     pub fn new(words: usize, penalties: &Penalties) -> Self {
         let far = splat(far(penalties));
         let mut path = Self { before: far, words: [far; WORDS], after: far };
-        path.words.get_mut(..words).unwrap_or_default().fill(0);
+        part_mut(&mut path.words, ..words).fill(0);
         path
     }
 

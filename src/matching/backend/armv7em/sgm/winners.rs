@@ -3,6 +3,7 @@
 
 use super::blocks;
 use crate::matching::backend::work::PathWork;
+use crate::matching::memory::slices::part_mut;
 use crate::matching::memory::winners::BESIDE;
 use crate::matching::memory::winners::{Found, Unique};
 
@@ -16,14 +17,14 @@ pub(super) fn select(
     mut put: impl FnMut(usize, Found),
 ) {
     let (begin, fours) = (work.min_disparity, stride / 16);
-    let mut columns = work.sums.get_mut(begin * stride..).unwrap_or_default();
+    let mut columns = part_mut(work.sums, begin * stride..);
     for x in begin..work.width {
         let Some((sums, rest)) = columns.split_at_mut_checked(stride) else { return };
         columns = rest;
         // The first pixels have fewer candidates than there are lanes.
         let candidates = work.disparities.min(x + 1 - begin);
         if candidates < stride {
-            sums.get_mut(..stride - candidates).unwrap_or_default().fill(u8::MAX);
+            part_mut(sums, ..stride - candidates).fill(u8::MAX);
         }
         // SAFETY: that many words are the sums, and they stand where words may.
         let least = |sums: &[u8]| unsafe { blocks::least(sums.as_ptr().cast(), fours) };
@@ -37,13 +38,13 @@ pub(super) fn select(
         let beside =
             (if is_below || !is_above { below } else { above }, if is_above { above } else { below });
         put(x, Found { disparity: disparity as u8, cost, beside });
-        unique.judge(
+        unique.check(
             x,
             cost,
             #[inline(always)]
             || {
                 let beside = lane.saturating_sub(BESIDE)..(lane + BESIDE + 1).min(stride);
-                sums.get_mut(beside).unwrap_or_default().fill(u8::MAX);
+                part_mut(sums, beside).fill(u8::MAX);
                 least(sums).0
             },
         );

@@ -10,6 +10,7 @@
 use super::Column;
 use super::plane::{Plane, add_pair, of_bit, two_bits};
 use crate::matching::backend::parameters::WindowParameters;
+use crate::matching::memory::slices::{part, part_mut};
 use core::sync::atomic::{Ordering, compiler_fence};
 
 /// Where the bits of the row that enters begin in a column's word, and those of the row that leaves: two for
@@ -23,8 +24,8 @@ const OLD: usize = 16;
 #[inline(never)]
 pub(super) fn prepare<S: WindowParameters>(left: &[u8], right: &[u8], min_disparity: usize, out: &mut [u16]) {
     let begin = first_column::<S>(min_disparity);
-    let codes = left.get(begin..).unwrap_or(&[]);
-    let out = out.get_mut(begin..).unwrap_or_default();
+    let codes = part(left, begin..);
+    let out = part_mut(out, begin..);
     let mut before = codes.first().copied().unwrap_or(0);
     let mut changes = |code: u8, partner: u8| {
         let changes = interleaved(code ^ partner, code ^ before);
@@ -37,7 +38,7 @@ pub(super) fn prepare<S: WindowParameters>(left: &[u8], right: &[u8], min_dispar
     for (out, &code) in out.iter_mut().zip(codes).take(waiting) {
         *out = changes(code, first);
     }
-    let inside = (out.get_mut(waiting..).unwrap_or_default(), codes.get(waiting..).unwrap_or(&[]));
+    let inside = (part_mut(out, waiting..), part(codes, waiting..));
     for ((out, &code), &partner) in inside.0.iter_mut().zip(inside.1).zip(right) {
         *out = changes(code, partner);
     }
@@ -77,7 +78,7 @@ pub(super) fn update<'a, S: WindowParameters, P: Plane, const GROUPS: usize>(
     let codes = |enter: u16, leave: u16| (u32::from(enter) | u32::from(leave) << 16) & present ^ equal;
 
     let begin = first_column::<S>(min_disparity);
-    let from = |row: &'a [u16]| row.get(begin..).unwrap_or(&[]);
+    let from = |row: &'a [u16]| part(row, begin..);
     let all = || from(enter).iter().zip(from(leave)).map(|(&enter, &leave)| codes(enter, leave));
     let Some(first) = all().next() else { return };
     let Some(words) = room.as_chunks_mut::<2>().0.as_chunks_mut::<8>().0.get_mut(..groups) else { return };
@@ -86,7 +87,7 @@ pub(super) fn update<'a, S: WindowParameters, P: Plane, const GROUPS: usize>(
     words.fill(start);
     // One group's words are in registers, as far as there are some.
     let mut here = start.map(|words| words.map(P::doubled));
-    let mut columns = columns.get_mut(begin * groups..).unwrap_or_default().chunks_exact_mut(groups);
+    let mut columns = part_mut(columns, begin * groups..).chunks_exact_mut(groups);
     for codes in all() {
         let Some(column) = columns.next() else { return };
         if GROUPS == 1 {

@@ -19,10 +19,11 @@ use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::work::WindowWork;
 use crate::matching::memory::Rows5;
 use crate::matching::memory::layout::OUTSIDE;
+use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::views::{view, view_mut};
 use crate::matching::memory::winners::Select;
 use plane::Plane;
-use windows::{Judge, WINDOW, Windows};
+use windows::{Check, WINDOW, Windows};
 
 /// The sums of a column, lowest plane first: a place for each eighth of its bytes, of which the last are
 /// free.
@@ -33,12 +34,12 @@ type Column<P> = [P; 8];
 pub(in crate::matching::backend) fn census<S: WindowParameters>(
     [left, right]: [&Rows5<'_>; 2],
     min_disparity: usize,
-    scratch: &mut [u32],
+    workspace: &mut [u32],
     out: &mut [u8],
 ) {
     let width = out.len() / 2;
     // Both begin where a word may stand.
-    let mut codes = view_mut::<u32, u8>(scratch)
+    let mut codes = view_mut::<u32, u8>(workspace)
         .chunks_mut(width.next_multiple_of(4).max(1))
         .filter_map(|row| row.get_mut(..width));
     let (Some(of_left), Some(of_right)) = (codes.next(), codes.next()) else { return };
@@ -71,37 +72,37 @@ fn row_of<S: WindowParameters, P: Plane, const GROUPS: usize>(
     work: WindowWork<'_>,
     select: Option<Select<'_>>,
 ) {
-    let WindowWork { width, stride, min_disparity, enter, leave, columns, scratch } = work;
+    let WindowWork { width, stride, min_disparity, enter, leave, columns, workspace } = work;
     // At least one, for the compiler to see that no column is empty.
     let groups = if GROUPS > 0 { GROUPS } else { (stride / P::CANDIDATES).max(1) };
     let columns = P::of_bytes(columns).as_chunks_mut::<8>().0;
-    let scratch = P::of_words(scratch);
+    let workspace = P::of_words(workspace);
     if let Some(inside) = columns.get_mut(OUTSIDE * groups..) {
         let rows = [enter, leave].map(|row| row.map(view::<u8, u16>));
-        columns::update::<S, P, GROUPS>(groups, min_disparity, rows, scratch, inside);
+        columns::update::<S, P, GROUPS>(groups, min_disparity, rows, workspace, inside);
     }
     let Some(Select { disparities, winners, unique }) = select else { return };
 
     // Left of here no pixel has a candidate.
     let begin = min_disparity.min(width);
-    let winners = winners.get_mut(begin..).unwrap_or_default();
+    let winners = part_mut(winners.words(), begin..);
     // Nothing of it stands in the loops' registers where nothing is asked.
     let is_asked = unique.is_asked();
-    let mut judge = unique.starting_at(begin);
-    let mut judge = |cost, second| judge(cost, &mut || second);
-    let judge: Option<&mut Judge<'_>> = if is_asked { Some(&mut judge) } else { None };
-    let Some(windows) = scratch.as_chunks_mut::<WINDOW>().0.get_mut(..groups) else { return };
+    let mut check = unique.checks_from(begin);
+    let mut check = |cost, second| check(cost, &mut || second);
+    let check: Option<&mut Check<'_>> = if is_asked { Some(&mut check) } else { None };
+    let Some(windows) = workspace.as_chunks_mut::<WINDOW>().0.get_mut(..groups) else { return };
     let mut windows = Windows::new(windows, disparities);
     // What is farther to the left is no candidate's: its sums are zero.
     let (before, after) = (begin.saturating_sub(S::RADIUS_X), begin + S::RADIUS_X);
     for column in columns.chunks_exact(groups).take(OUTSIDE + after).skip(OUTSIDE + before) {
         windows.slide::<S>(column, columns);
     }
-    let from = |column: usize| columns.get(column * groups..).unwrap_or(&[]);
+    let from = |column: usize| part(columns, column * groups..);
     let (entering, leaving) = (from(OUTSIDE + after), from(OUTSIDE + begin - S::RADIUS_X - 1));
     if GROUPS > 0 {
-        windows.winners::<S, GROUPS>(entering, leaving, winners, judge);
+        windows.winners::<S, GROUPS>(entering, leaving, winners, check);
     } else {
-        windows.winners_of_many::<S>(entering, leaving, winners, judge);
+        windows.winners_of_many::<S>(entering, leaving, winners, check);
     }
 }

@@ -20,7 +20,7 @@ type Window<P> = [P; WINDOW];
 const MOST_GROUPS: usize = 16;
 
 /// Takes the cost of a winner and that of its second best.
-pub(super) type Judge<'a> = dyn FnMut(u8, u8) + 'a;
+pub(super) type Check<'a> = dyn FnMut(u8, u8) + 'a;
 
 /// The window of a pixel, in groups of candidates.
 pub(super) struct Windows<'a, P> {
@@ -51,7 +51,7 @@ impl<'a, P: Plane> Windows<'a, P> {
         entering: &[Column<P>],
         leaving: &[Column<P>],
         winners: &mut [Winner],
-        mut judge: Option<&mut Judge<'_>>,
+        mut check: Option<&mut Check<'_>>,
     ) {
         let of = |candidates: usize| -> [P; GROUPS] {
             core::array::from_fn(|group| P::first(candidates.saturating_sub(group * P::CANDIDATES)))
@@ -81,9 +81,9 @@ impl<'a, P: Plane> Windows<'a, P> {
                 let is_above = above != P::NONE && (!last || group + 1 < GROUPS);
                 look_beyond(&windows, disparity, is_above, winner);
             }
-            if let Some(judge) = &mut judge {
+            if let Some(check) = &mut check {
                 let (windows, candidates) = (windows, candidates);
-                judge(winner.cost(), best_of_the_rest(&windows, disparity, &candidates));
+                check(winner.cost(), best_of_the_rest(&windows, disparity, &candidates));
             }
         }
     }
@@ -95,7 +95,7 @@ impl<'a, P: Plane> Windows<'a, P> {
         entering: &[Column<P>],
         leaving: &[Column<P>],
         winners: &mut [Winner],
-        mut judge: Option<&mut Judge<'_>>,
+        mut check: Option<&mut Check<'_>>,
     ) {
         let groups = self.groups.len().max(1);
         let (mut entering, mut leaving) = (entering.chunks_exact(groups), leaving.chunks_exact(groups));
@@ -118,9 +118,9 @@ impl<'a, P: Plane> Windows<'a, P> {
             *winner = winner_of(self.groups, group, lane, among(group));
             let disparity = group * P::CANDIDATES + lane;
             look_beyond(self.groups, disparity, disparity + 1 < candidates, winner);
-            if let Some(judge) = &mut judge {
+            if let Some(check) = &mut check {
                 let candidates: [P; MOST_GROUPS] = core::array::from_fn(among);
-                judge(winner.cost(), best_of_the_rest(self.groups, disparity, &candidates));
+                check(winner.cost(), best_of_the_rest(self.groups, disparity, &candidates));
             }
         }
     }

@@ -9,6 +9,7 @@ use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::work::PathWork;
 use crate::matching::memory::Rows5;
+use crate::matching::memory::slices::{part, part_mut};
 
 /// Rows of numbers, a byte a pixel.
 #[derive(Clone, Copy)]
@@ -44,7 +45,7 @@ pub(super) fn of<'a, R: FeatureRows, S: SgmParameters>(
 ) -> Option<Features<'a>> {
     let width = work.width;
     let (most, shift) = (work.penalties.gradient, work.gradient_shift);
-    let [left, right] = lines.map(|lines| lines.map(|line| line.get(..width).unwrap_or(&[])));
+    let [left, right] = lines.map(|lines| lines.map(|line| part(line, ..width)));
     let (of_left, of_right) = workspace.split_at_mut_checked(3 * width)?;
     let [along, across, census] = rows(of_left, width);
     looks_of::<R>(&left, most, shift, [&mut *along, &mut *across, &mut *census]);
@@ -55,13 +56,12 @@ pub(super) fn of<'a, R: FeatureRows, S: SgmParameters>(
     let of_right = of_right.get_mut(..6 * count)?;
     let [along, across, census, brightness, least, greatest]: [_; 6] = rows(of_right, count);
     let outside = count.min(work.stride - 1 + work.min_disparity);
-    let inside =
-        [&mut *along, &mut *across, &mut *census].map(|row| row.get_mut(outside..).unwrap_or_default());
+    let inside = [&mut *along, &mut *across, &mut *census].map(|row| part_mut(row, outside..));
     looks_of::<R>(&right, most, shift, inside);
-    R::halve(right[2], brightness.get_mut(outside..).unwrap_or_default());
+    R::halve(right[2], part_mut(brightness, outside..));
     // The first column on its own, with the next one: the row may begin behind it.
     let mut first = [[0; 2]; 3];
-    let places = first.each_mut().map(|first| first.get_mut(..width.min(2)).unwrap_or_default());
+    let places = first.each_mut().map(|first| part_mut(first, ..width.min(2)));
     looks_of::<R>(&right, most, shift, places);
     let [first_along, first_across, first_census] = first;
     let first_brightness = [0, 1].map(|x| right[2].get(x).map_or(0, |pixel| pixel >> 1));
@@ -122,13 +122,13 @@ fn shift_down(numbers: &mut [u8], shift: u32) {
 fn go_on(row: &mut [u8], first: u8, outside: usize, end: usize) {
     repeat(row, first, outside);
     let last = row.get(end.wrapping_sub(1)).copied().unwrap_or(0);
-    row.get_mut(end..).unwrap_or_default().fill(last);
+    part_mut(row, end..).fill(last);
 }
 
 /// Repeats the first column before the image.
 #[inline(always)]
 fn repeat(row: &mut [u8], first: u8, outside: usize) {
-    row.get_mut(..outside).unwrap_or_default().fill(first);
+    part_mut(row, ..outside).fill(first);
 }
 
 /// What a row's features are made with.

@@ -86,7 +86,7 @@ pub(in crate::matching::backend) fn select<P: Passes, const ROWS: bool>(
     let Select { winners, unique, .. } = select;
     if ROWS {
         let begin = work.min_disparity.min(work.width);
-        let WinnerRows { below, costs, above, disparities } = WinnerRows::of(winners, begin);
+        let WinnerRows { below, costs, above, disparities } = winners.rows(begin);
         P::select(
             &mut work,
             guide,
@@ -102,6 +102,7 @@ pub(in crate::matching::backend) fn select<P: Passes, const ROWS: bool>(
             },
         );
     } else {
+        let winners = winners.words();
         P::select(
             &mut work,
             guide,

@@ -2,10 +2,11 @@
 //! costs in memory. A loop does at once all that there is to do with a cell, and finds the least cost for the
 //! path's next step on its way.
 
-use super::decide::Judge;
+use super::selection::Selection;
 use super::{COLUMNS_OFF, Guide, Path, PathWork, Steps, column, column_mut, stride};
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::portable::group::Group;
+use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::winners::{Found, Unique};
 use core::cell::Cell;
 
@@ -22,10 +23,10 @@ pub(super) fn select<G: Group, const CELLS: usize>(
     let steps = Steps::<G, CELLS, false>::new(work);
     let PathWork { width, disparities, min_disparity, .. } = *work;
     let (count, last) = (stride / G::LANES, width.saturating_sub(1));
-    let costs = G::cells(work.costs).get(..width * count).unwrap_or(&[]);
-    let sums = G::cells_mut(work.sums).get_mut(..width * count).unwrap_or_default();
+    let costs = part(G::cells(work.costs), ..width * count);
+    let sums = part_mut(G::cells_mut(work.sums), ..width * count);
     let tops = G::cells_mut(work.top);
-    let here = guide.here.get(..width).unwrap_or(&[]);
+    let here = part(guide.here, ..width);
 
     let mut right = Walk::new(&steps);
     right.begin(count);
@@ -43,7 +44,7 @@ pub(super) fn select<G: Group, const CELLS: usize>(
     let mut before = 0;
     let pixels = here.iter().zip(costs.chunks_exact(count)).zip(sums.chunks_exact_mut(count));
     for (x, ((&here, costs), sums)) in pixels.enumerate() {
-        right.go_on(&steps, steps.between(here, before), costs, costs.iter(), |_, _| ());
+        right.advance(&steps, steps.between(here, before), costs, costs.iter(), |_, _| ());
         before = here;
         let mut change = steps.between(here, here);
         if let Some(line) = guide.above {
@@ -88,15 +89,15 @@ pub(super) fn select<G: Group, const CELLS: usize>(
     left.begin(count);
     let mut total = Path::<G, CELLS, false>([G::splat(0); CELLS]);
     let mut after = 0;
-    let mut judge = Judge { stride, disparities, min_disparity, unique, put };
+    let mut selection = Selection { stride, disparities, min_disparity, unique, put };
     let pixels = here.iter().zip(costs.chunks_exact(count)).zip(sums.chunks_exact(count));
     for (x, ((&here, costs), sums)) in pixels.enumerate().skip(min_disparity).rev() {
         let both = total.0.iter_mut().zip(sums);
-        left.go_on(&steps, steps.between(here, after), costs, both, |(total, &sum), left| {
+        left.advance(&steps, steps.between(here, after), costs, both, |(total, &sum), left| {
             *total = G::of(sum).plus_saturating(left);
         });
         after = here;
-        judge.decide_of(x, &mut total);
+        selection.select_in_place(x, &mut total);
     }
 }
 
@@ -126,28 +127,29 @@ impl<G: Group, const CELLS: usize> Walk<G, CELLS> {
     /// The costs, and the cell behind them.
     #[inline(always)]
     fn cells(&mut self, count: usize) -> &[Cell<G>] {
-        Cell::from_mut(self.cells.get_mut(..=count).unwrap_or_default()).as_slice_of_cells()
+        Cell::from_mut(part_mut(&mut self.cells, ..=count)).as_slice_of_cells()
     }
 
-    /// Goes on to a pixel that has these costs. Each cell is told, with what there is to it.
+    /// Advances the path by one pixel, which has these `costs`, and gives `put` each cell of its aggregated
+    /// costs, beside an item of `with`.
     #[inline(always)]
-    fn go_on<T>(
+    fn advance<T>(
         &mut self,
         steps: &Steps<G, CELLS, false>,
         change: &[G::Cell; 2],
         costs: &[G::Cell],
         with: impl Iterator<Item = T>,
-        mut tell: impl FnMut(T, G),
+        mut put: impl FnMut(T, G),
     ) {
         let (before, mut least) = (self.least, steps.far);
         step(self.cells(costs.len()), before, (steps.far, change), costs, with, |cell, with, cost| {
             cell.set(cost);
             least = least.min(cost);
-            tell(with, cost);
+            put(with, cost);
         });
         if let Some(beyond) = &steps.beyond {
             least = steps.far;
-            let cells = self.cells.get_mut(..costs.len()).unwrap_or_default();
+            let cells = part_mut(&mut self.cells, ..costs.len());
             for (cell, &beyond) in cells.iter_mut().zip(&beyond.0) {
                 keep_loop();
                 *cell = cell.max(beyond);
@@ -173,7 +175,7 @@ fn step<G: Group, T>(
     let from_least = least.plus(jump);
     let (mut before, mut here) = (far, path.first().map_or(far, Cell::get));
     // Slices, which are asked for their ends once.
-    let cells = path.iter().zip(path.get(1..).unwrap_or(&[])).zip(costs);
+    let cells = path.iter().zip(part(path, 1..)).zip(costs);
     for (((cell, next), &cost), with) in cells.zip(with) {
         keep_loop();
         let next = next.get();

@@ -1,14 +1,14 @@
 //! The passes, written once for groups of bytes whose lanes run over the disparities of one pixel.
 //!
-//! * `cost`, `edges`, `select`: the passes; `gather` and `decide`: the two ends of the last one; `alternate`:
+//! * `cost`, `edges`, `select`: the passes; `gather` and `selection`: the two ends of the last one; `alternate`:
 //!   the paths where registers hold a few cells only.
 
 mod alternate;
 mod cost;
-mod decide;
 mod edges;
 mod gather;
 mod select;
+mod selection;
 
 use super::Passes;
 use super::features::{Features, PlainRows};
@@ -17,6 +17,7 @@ use crate::matching::backend::portable::group::Group;
 use crate::matching::backend::work::{EdgeWork, Guide, PathWork};
 use crate::matching::backend::work::{MASKS, STEP};
 use crate::matching::memory::layout::COLUMNS_OFF;
+use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::winners::{Found, Unique};
 use core::marker::PhantomData;
 
@@ -75,7 +76,7 @@ fn column<C, const CELLS: usize, const ALL: bool>(volume: &[C], x: usize, count:
     if ALL {
         volume.get(x * CELLS..).and_then(|rest| rest.first_chunk::<CELLS>()).map_or(&[], |column| column)
     } else {
-        volume.get(x * count..).and_then(|rest| rest.get(..count)).unwrap_or(&[])
+        part(volume, x * count..(x + 1) * count)
     }
 }
 
@@ -88,7 +89,7 @@ fn column_mut<C, const CELLS: usize, const ALL: bool>(volume: &mut [C], x: usize
             .and_then(|rest| rest.first_chunk_mut::<CELLS>())
             .map_or(&mut [], |column| column)
     } else {
-        volume.get_mut(x * count..).and_then(|rest| rest.get_mut(..count)).unwrap_or_default()
+        part_mut(volume, x * count..(x + 1) * count)
     }
 }
 
@@ -110,7 +111,7 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
     /// Those in use.
     #[inline(always)]
     fn cells(&self, count: usize) -> &[G] {
-        if ALL { &self.0 } else { self.0.get(..count).unwrap_or(&[]) }
+        if ALL { &self.0 } else { part(&self.0, ..count) }
     }
 
     /// Puts it in memory.
@@ -224,5 +225,6 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Steps<G, CELLS, ALL> {
 #[inline(always)]
 fn mask(stride: usize, candidates: usize) -> &'static [u8] {
     let masked = stride.saturating_sub(candidates);
-    MASKS.get(256usize.saturating_sub(masked)..).and_then(|mask| mask.get(..stride)).unwrap_or(&[])
+    let begin = 256usize.saturating_sub(masked);
+    part(MASKS, begin..begin + stride)
 }

@@ -1,10 +1,11 @@
 //! The paths through a row, one after the other: each step of a path waits for the step before, and one path
 //! at a time stays in registers.
 
-use super::decide::{Decide, Judge};
 use super::gather::Gather;
+use super::selection::{LeftwardPath, Selection};
 use super::{Guide, Path, PathWork, Steps, column, stride};
 use crate::matching::backend::portable::group::Group;
+use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::winners::{Found, Unique};
 
 /// Selects the winner of every pixel that has a candidate, by the sum of its three paths.
@@ -19,10 +20,10 @@ pub(super) fn select<G: Group, const CELLS: usize, const ALL: bool>(
     let steps = Steps::<G, CELLS, ALL>::new(work);
     let PathWork { width, disparities, min_disparity, .. } = *work;
     let (count, last) = (stride / G::LANES, width.saturating_sub(1));
-    let costs = G::cells(work.costs).get(..width * count).unwrap_or(&[]);
-    let sums = G::cells_mut(work.sums).get_mut(..width * count).unwrap_or_default();
+    let costs = part(G::cells(work.costs), ..width * count);
+    let sums = part_mut(G::cells_mut(work.sums), ..width * count);
     let end = |x| column::<_, CELLS, ALL>(costs, x, count);
-    let here = guide.here.get(..width).unwrap_or(&[]);
+    let here = part(guide.here, ..width);
 
     let mut right = Gather::<G, CELLS, ALL>::new(last, count, G::cells_mut(work.top), end(0));
     let pixels = here.iter().zip(costs.chunks_exact(count)).zip(sums.chunks_exact_mut(count));
@@ -31,10 +32,10 @@ pub(super) fn select<G: Group, const CELLS: usize, const ALL: bool>(
         right.next(&steps, (here, above), costs).put(sum);
     }
 
-    let mut left = Decide::<G, CELLS, ALL>::new(end(last));
-    let mut judge = Judge { stride, disparities, min_disparity, unique, put };
+    let mut left = LeftwardPath::<G, CELLS, ALL>::new(end(last));
+    let mut selection = Selection { stride, disparities, min_disparity, unique, put };
     let pixels = here.iter().zip(costs.chunks_exact(count)).zip(sums.chunks_exact(count));
     for (x, ((&here, costs), sum)) in pixels.enumerate().skip(min_disparity).rev() {
-        judge.decide(x, Path::of(sum).plus_saturating(&left.next(&steps, here, costs)));
+        selection.select(x, Path::of(sum).plus_saturating(&left.next(&steps, here, costs)));
     }
 }

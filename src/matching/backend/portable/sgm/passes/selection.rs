@@ -4,21 +4,22 @@ use super::{Path, Steps, mask};
 use crate::matching::backend::portable::group::Group;
 use crate::matching::memory::winners::{Found, Unique, beside};
 
-/// The path on its way.
-pub(super) struct Decide<G: Group, const CELLS: usize, const ALL: bool> {
+/// The path from the right, at a column.
+pub(super) struct LeftwardPath<G: Group, const CELLS: usize, const ALL: bool> {
     left: Path<G, CELLS, ALL>,
     /// The brightness of the column after, if there is one.
     after: Option<u8>,
 }
 
-impl<G: Group, const CELLS: usize, const ALL: bool> Decide<G, CELLS, ALL> {
+impl<G: Group, const CELLS: usize, const ALL: bool> LeftwardPath<G, CELLS, ALL> {
     /// Before the last column, whose costs these are.
     #[inline(always)]
     pub(super) fn new(last: &[G::Cell]) -> Self {
         Self { left: Path::of(last), after: None }
     }
 
-    /// Goes on to the next column, which has this brightness and these costs.
+    /// Advances the path by one column, which has this brightness and these costs, and returns its aggregated
+    /// costs.
     #[inline(always)]
     pub(super) fn next(
         &mut self,
@@ -35,8 +36,8 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Decide<G, CELLS, ALL> {
     }
 }
 
-/// What is asked of the sums of three paths.
-pub(super) struct Judge<'a, P> {
+/// Selects winners by the sums of three paths.
+pub(super) struct Selection<'a, P> {
     pub stride: usize,
     pub disparities: usize,
     pub min_disparity: usize,
@@ -44,20 +45,20 @@ pub(super) struct Judge<'a, P> {
     pub put: P,
 }
 
-impl<P: FnMut(usize, Found)> Judge<'_, P> {
+impl<P: FnMut(usize, Found)> Selection<'_, P> {
     /// Selects the winner of a pixel, which has a candidate, by the sums of its paths.
     #[inline(always)]
-    pub(super) fn decide<G: Group, const CELLS: usize, const ALL: bool>(
+    pub(super) fn select<G: Group, const CELLS: usize, const ALL: bool>(
         &mut self,
         x: usize,
         mut total: Path<G, CELLS, ALL>,
     ) {
-        self.decide_of(x, &mut total);
+        self.select_in_place(x, &mut total);
     }
 
-    /// Decides as [`Self::decide`] does, with sums that may be overwritten.
+    /// Selects as [`Self::select`] does, with sums that may be overwritten.
     #[inline(always)]
-    pub(super) fn decide_of<G: Group, const CELLS: usize, const ALL: bool>(
+    pub(super) fn select_in_place<G: Group, const CELLS: usize, const ALL: bool>(
         &mut self,
         x: usize,
         total: &mut Path<G, CELLS, ALL>,
@@ -75,7 +76,7 @@ impl<P: FnMut(usize, Found)> Judge<'_, P> {
         let disparity = (stride - 1).wrapping_sub(lane);
         let beside = beside(stride, disparity as u8, candidates, |lane| G::lane(&total.0, lane));
         put(x, Found { disparity: disparity as u8, cost, beside });
-        unique.judge(
+        unique.check(
             x,
             cost,
             #[inline(always)]

@@ -1,0 +1,196 @@
+//! Memory that the stages of a row share: what stands in it changes from phase to phase.
+//!
+//! ```text
+//! phase      winners: 4 B/pixel   right: 2 B/pixel      lengths: 2 B/pixel   rest
+//! Costs      smoothed lines       smoothed lines        -                    what a kernel works with
+//! Winners    winners              keys of right pixels  margins              kernel, then 2 B/pixel of left_right
+//! Surfaces   confidences          -                     surface lengths      sums along the row
+//! Finished   confidences          masks                 -                    -
+//! ```
+//!
+//! A row goes through the phases in this order. In the methods along paths the first three are nothing in
+//! phase `Costs`: there the rest is all of it, until [`RowWorkspace::divide`].
+//!
+//! In debug builds each access asserts its phase.
+
+use super::slices::{part, part_mut, split_mut};
+use super::views::{view, view_mut};
+use super::winner::Winner;
+use super::winners::{Lengths, Winners};
+
+/// What stands in the memory.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+enum Phase {
+    Costs,
+    Winners,
+    Surfaces,
+    Finished,
+}
+
+/// The memory that the stages of a row share.
+pub struct RowWorkspace<'a> {
+    winners: &'a mut [Winner],
+    right: &'a mut [u16],
+    lengths: &'a mut [u16],
+    rest: &'a mut [u32],
+    #[cfg(debug_assertions)]
+    phase: Phase,
+}
+
+/// Where winners go, and what is worked with.
+pub(in crate::matching) struct ForWinners<'a> {
+    pub winners: Winners<'a>,
+    /// A byte a pixel.
+    pub margins: &'a mut [u8],
+    /// What a kernel works with.
+    pub workspace: &'a mut [u32],
+}
+
+/// Winners, and what answers are made of them with.
+pub(in crate::matching) struct ForAnswers<'a> {
+    pub winners: Winners<'a>,
+    /// What each right pixel keeps.
+    pub right: &'a mut [u16],
+    /// At least two bytes a pixel.
+    pub workspace: &'a mut [u32],
+}
+
+/// What a finished row has, a byte a pixel.
+pub(in crate::matching) struct Finished<'a> {
+    pub confidences: &'a mut [u8],
+    /// Places for the masks of the left and of the right image.
+    pub masks: [&'a mut [u8]; 2],
+}
+
+impl<'a> RowWorkspace<'a> {
+    /// A workspace whose rows stand beside the rest.
+    pub(super) fn of_rows(
+        winners: &'a mut [Winner],
+        right: &'a mut [u16],
+        lengths: &'a mut [u16],
+        rest: &'a mut [u32],
+    ) -> Self {
+        Self {
+            winners,
+            right,
+            lengths,
+            rest,
+            #[cfg(debug_assertions)]
+            phase: Phase::Costs,
+        }
+    }
+
+    /// A workspace whose rows stand in the same memory as the rest, and come after it.
+    pub(in crate::matching) fn of_rest(rest: &'a mut [u32]) -> Self {
+        Self::of_rows(&mut [], &mut [], &mut [], rest)
+    }
+
+    /// Gives the rows of `width` pixels their places, where they have none yet: the costs are done with.
+    #[inline(always)]
+    pub(in crate::matching) fn divide(&mut self, width: usize) {
+        self.expect(Phase::Costs);
+        if self.winners.is_empty() {
+            let (winners, rest) = split_mut(core::mem::take(&mut self.rest), width);
+            let (right, rest) = split_mut(rest, width.div_ceil(2));
+            let (lengths, rest) = split_mut(rest, width.div_ceil(2));
+            self.winners = view_mut::<u32, Winner>(winners);
+            self.right = part_mut(view_mut::<u32, u16>(right), ..width);
+            self.lengths = part_mut(view_mut::<u32, u16>(lengths), ..width);
+            self.rest = rest;
+        }
+    }
+
+    /// What a kernel works with, before there are winners.
+    pub(in crate::matching) fn costs(&mut self) -> &mut [u32] {
+        self.expect(Phase::Costs);
+        self.rest
+    }
+
+    /// Places for six smoothed lines of `width` pixels, and what a kernel works with.
+    pub(in crate::matching) fn smoothed_lines(
+        &mut self,
+        width: usize,
+    ) -> (impl Iterator<Item = &mut [u8]>, &mut [u32]) {
+        self.expect(Phase::Costs);
+        let memory = [view_mut::<Winner, u8>(self.winners), view_mut::<u16, u8>(self.right)];
+        (memory.into_iter().flat_map(move |memory| memory.chunks_exact_mut(width.max(1))), self.rest)
+    }
+
+    /// Places for winners and, if wanted, margins.
+    #[inline(always)]
+    pub(in crate::matching) fn for_winners(&mut self, with_margins: bool) -> ForWinners<'_> {
+        self.enter(Phase::Winners);
+        let count = if with_margins { self.winners.len() } else { 0 };
+        ForWinners {
+            winners: Winners(self.winners),
+            margins: part_mut(view_mut::<u16, u8>(self.lengths), ..count),
+            workspace: self.rest,
+        }
+    }
+
+    /// The winners, and what answers are made of them with.
+    pub(in crate::matching) fn for_answers(&mut self) -> ForAnswers<'_> {
+        self.expect(Phase::Winners);
+        ForAnswers { winners: Winners(self.winners), right: self.right, workspace: self.rest }
+    }
+
+    /// The margins of the winners, a byte a pixel.
+    pub(in crate::matching) fn margins(&self) -> &[u8] {
+        self.expect(Phase::Winners);
+        part(view::<u16, u8>(self.lengths), ..self.winners.len())
+    }
+
+    /// Places for the lengths of surfaces and for sums along the row: the winners are done with.
+    pub(in crate::matching) fn for_smoothing(&mut self) -> (Lengths<'_>, &mut [u16]) {
+        self.enter(Phase::Surfaces);
+        (Lengths(self.lengths), view_mut::<u32, u16>(self.rest))
+    }
+
+    /// Says that a row below the image has neither winners nor surfaces.
+    pub(in crate::matching) fn skip_row(&mut self) {
+        self.enter(Phase::Surfaces);
+    }
+
+    /// The lengths of surfaces, as the target's smoothing leaves them.
+    pub(in crate::matching) fn lengths(&mut self) -> Lengths<'_> {
+        self.expect(Phase::Surfaces);
+        Lengths(self.lengths)
+    }
+
+    /// The confidences of the row that waited, a byte a pixel.
+    pub(in crate::matching) fn confidences(&mut self) -> &mut [u8] {
+        self.expect(Phase::Surfaces);
+        let count = self.winners.len();
+        part_mut(view_mut::<Winner, u8>(self.winners), ..count)
+    }
+
+    /// What stands in the workspace of a row that is out.
+    pub(in crate::matching) fn finished(mut self) -> Finished<'a> {
+        self.enter(Phase::Finished);
+        let width = self.winners.len();
+        let (left, right) = split_mut(part_mut(view_mut::<u16, u8>(self.right), ..2 * width), width);
+        Finished {
+            confidences: part_mut(view_mut::<Winner, u8>(self.winners), ..width),
+            masks: [left, right],
+        }
+    }
+
+    /// Asserts that the memory is in a phase.
+    #[inline(always)]
+    #[track_caller]
+    fn expect(&self, _phase: Phase) {
+        #[cfg(debug_assertions)]
+        assert_eq!(self.phase, _phase, "the workspace of a row");
+    }
+
+    /// Goes on to a later phase.
+    #[inline(always)]
+    #[track_caller]
+    fn enter(&mut self, _phase: Phase) {
+        #[cfg(debug_assertions)]
+        {
+            assert!(self.phase < _phase, "from {:?} to {_phase:?}", self.phase);
+            self.phase = _phase;
+        }
+    }
+}

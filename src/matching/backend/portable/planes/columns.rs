@@ -23,6 +23,7 @@ const OLD: usize = 16;
 /// the partner of the first candidate.
 #[inline(never)]
 pub(super) fn prepare<S: WindowParameters>(left: &[u8], right: &[u8], min_disparity: usize, out: &mut [u16]) {
+    let min_disparity = min_disparity.min(left.len());
     let begin = first_column::<S>(min_disparity);
     let codes = part(left, begin..);
     let out = part_mut(out, begin..);
@@ -77,7 +78,7 @@ pub(super) fn update<'a, S: WindowParameters, P: Plane, const GROUPS: usize>(
     let equal = core::hint::black_box(0x5555_0000);
     let codes = |enter: u16, leave: u16| (u32::from(enter) | u32::from(leave) << 16) & present ^ equal;
 
-    let begin = first_column::<S>(min_disparity);
+    let begin = first_column::<S>(min_disparity.min(enter.len()));
     let from = |row: &'a [u16]| part(row, begin..);
     let all = || from(enter).iter().zip(from(leave)).map(|(&enter, &leave)| codes(enter, leave));
     let Some(first) = all().next() else { return };

@@ -122,6 +122,7 @@ fn shift_down(numbers: &mut [u8], shift: u32) {
 fn go_on(row: &mut [u8], first: u8, outside: usize, end: usize) {
     repeat(row, first, outside);
     let last = row.get(end.wrapping_sub(1)).copied().unwrap_or(0);
+    let end = end.min(row.len());
     part_mut(row, end..).fill(last);
 }
 

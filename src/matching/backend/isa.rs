@@ -4,11 +4,12 @@
 
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::portable;
-use super::work::{EdgeWork, Guide, PathWork, Rules, STEP, SpeckleWork, WindowWork, WinnerWork};
+use super::work::{
+    AnswerWork, CensusWork, CostWork, EdgeWork, Guide, PathWork, STEP, SmoothWork, SpeckleWork, WindowWork,
+};
 use crate::matching::kernel::Kernel;
-use crate::matching::memory::Rows5;
-use crate::matching::memory::winners::{Lengths, Select};
-use crate::units::{Disparity, PixelFlags};
+use crate::matching::memory::winners::Select;
+use crate::units::Disparity;
 
 /// The code of a target for the stages that it may have instructions for.
 pub(in crate::matching) trait Isa: Copy {
@@ -27,17 +28,10 @@ pub(in crate::matching) trait Isa: Copy {
         disparities.next_multiple_of(STEP).min(most) & !(STEP - 1)
     }
 
-    /// The census row of five lines in both images, in the form in which [`Self::window`] takes it: at most
-    /// two bytes a pixel.
+    /// Makes the census codes of a row of both images.
     #[inline(always)]
-    fn census<P: WindowParameters>(
-        self,
-        lines: [&Rows5<'_>; 2],
-        min_disparity: usize,
-        workspace: &mut [u32],
-        out: &mut [u8],
-    ) {
-        portable::planes::census::<P>(lines, min_disparity, workspace, out);
+    fn census<P: WindowParameters>(self, work: CensusWork<'_>) {
+        portable::planes::census::<P>(work);
     }
 
     /// Moves the window to the next row and selects its winners, unless the row is only gathered (`select` is
@@ -49,16 +43,10 @@ pub(in crate::matching) trait Isa: Copy {
         portable::planes::window::<P>(work, select);
     }
 
-    /// Adds a row of both images to the costs of a method along paths, the first row of a frame to none.
+    /// Adds the costs of a row's pixels to those of a method along paths.
     #[inline(always)]
-    fn sgm_cost<P: SgmParameters>(
-        self,
-        work: &mut PathWork<'_>,
-        is_first: bool,
-        lines: [&Rows5<'_>; 2],
-        workspace: &mut [u8],
-    ) {
-        portable::sgm::cost_in_words::<P>(work, is_first, lines, workspace);
+    fn sgm_cost<P: SgmParameters>(self, work: &mut PathWork<'_>, row: CostWork<'_>) {
+        portable::sgm::cost_in_words::<P>(work, row);
     }
 
     /// Averages the costs of a row with those around it, within edges.
@@ -73,31 +61,17 @@ pub(in crate::matching) trait Isa: Copy {
         portable::sgm::select_in_words(work, guide, select);
     }
 
-    /// Makes answers of a row of winners, but of those that the right image or the rules refuse. Answers and
-    /// flags begin at the first column that has a candidate.
+    /// Makes answers of a row of winners, but of those that the right image or the rules refuse.
     #[inline(always)]
-    fn left_right<P: MethodParameters>(
-        self,
-        work: WinnerWork<'_>,
-        rules: &Rules,
-        answers: &mut [Disparity],
-        flags: &mut [PixelFlags],
-    ) {
-        portable::left_right::left_right::<P>(work, rules, answers, flags);
+    fn left_right<P: MethodParameters>(self, work: AnswerWork<'_>) {
+        portable::left_right::left_right::<P>(work);
     }
 
-    /// Averages a row of answers within their surfaces, with up to `radius` pairs around each, and counts how
-    /// many answers each one's surface has along the row.
+    /// Averages a row of answers within their surfaces, and counts how many answers each surface has along
+    /// the row.
     #[inline(always)]
-    fn smooth(
-        self,
-        answers: &mut [Disparity],
-        lengths: Lengths<'_>,
-        workspace: &mut [u16],
-        step: Disparity,
-        radius: u8,
-    ) {
-        portable::smooth::smooth(answers, lengths.half_words(), workspace, step, radius);
+    fn smooth(self, work: SmoothWork<'_>) {
+        portable::smooth::smooth(work);
     }
 
     /// Makes `out` the medians of 3 x 3 answers, those of the second of three rows in the middle.
@@ -118,3 +92,28 @@ pub(in crate::matching) trait Isa: Copy {
         portable::vertical::vertical(here, above, below);
     }
 }
+
+/// The `Backend` of a target that has one kernel.
+macro_rules! sole_kernel {
+    ($(#[$doc:meta])* $kernel:ident) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+        pub(in crate::matching) struct Backend;
+
+        impl Backend {
+            /// What a matcher is made with before it is started.
+            pub(in crate::matching) const FIRST: Self = Self;
+
+            /// The fastest code that this processor runs.
+            pub(in crate::matching) fn detect() -> Self {
+                Self
+            }
+
+            /// The code of a kernel, if this processor runs it.
+            pub(in crate::matching) fn of(kernel: Kernel) -> Option<Self> {
+                (kernel == Kernel::$kernel).then_some(Self)
+            }
+        }
+    };
+}
+pub(super) use sole_kernel;

@@ -49,7 +49,10 @@ pub use parameters::MethodParameters;
 pub(super) use parameters::{SgmParameters, WindowParameters};
 pub(super) use portable::smooth::MARGIN as SMOOTH_MARGIN;
 pub(super) use target::{Backend, CODES_SHARE_A_BYTE, columns_begin};
-pub(super) use work::{EdgeWork, Guide, PathWork, Rules, STEP, SpeckleWork, WindowWork, WinnerWork};
+pub(super) use work::{
+    AnswerWork, CensusWork, CostWork, EdgeWork, Guide, PathWork, Rules, STEP, SmoothWork, SpeckleWork,
+    WindowWork,
+};
 
 /// Words that the tables of a target take beside the workspace of a window whose codes have up to four bits,
 /// and four that rows are read beyond. A matcher's bytes are given for all targets alike.

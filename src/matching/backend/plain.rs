@@ -1,25 +1,11 @@
 //! A target without code of its own: every stage is the portable one.
 
-use super::isa::Isa;
+use super::isa::{Isa, sole_kernel};
 use crate::matching::kernel::Kernel;
 
-/// The portable code, for a target that has no other.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(in crate::matching) struct Backend;
-
-impl Backend {
-    /// What a matcher is made with before it is started.
-    pub(in crate::matching) const FIRST: Self = Self;
-
-    /// The fastest code that this processor runs.
-    pub(in crate::matching) fn detect() -> Self {
-        Self
-    }
-
-    /// The code of a kernel, if this processor runs it.
-    pub(in crate::matching) fn of(kernel: Kernel) -> Option<Self> {
-        (kernel == Kernel::Planes).then_some(Self)
-    }
+sole_kernel! {
+    /// The portable code, for a target that has no other.
+    Planes
 }
 
 impl Isa for Backend {

@@ -1,5 +1,6 @@
 //! What the stages hand to a target's code: slices of a row and plain numbers.
 
+use crate::matching::memory::Rows5;
 use crate::matching::memory::winners::{Lengths, Winners};
 use crate::matching::penalties::Penalties;
 use crate::units::{Disparity, PixelFlags};
@@ -18,7 +19,19 @@ pub(in crate::matching) const MASKS: &[u8; 512] = &{
     masks
 };
 
-/// What a kernel works on.
+/// The lines whose codes are made.
+pub(in crate::matching) struct CensusWork<'a> {
+    /// The five lines around the row, in both images.
+    pub lines: [&'a Rows5<'a>; 2],
+    /// The smallest disparity, px.
+    pub min_disparity: usize,
+    pub workspace: &'a mut [u32],
+    /// The codes, at most two bytes a pixel, in the form in which [`Isa::window`](super::isa::Isa::window)
+    /// takes them.
+    pub codes: &'a mut [u8],
+}
+
+/// A row of codes that enters the window, and the columns' costs.
 ///
 /// Candidate `d` of column `x` is the right image's column `x - min_disparity - d`. Where that lies left of
 /// the image, kernels gather the cost against its first column and do not select it.
@@ -41,7 +54,16 @@ pub(in crate::matching) struct WindowWork<'a> {
     pub workspace: &'a mut [u32],
 }
 
-/// What the passes work on.
+/// A row of both images whose pixels' costs come in.
+pub(in crate::matching) struct CostWork<'a> {
+    /// Whether it is the first row of a frame, which has none above it.
+    pub is_first: bool,
+    /// The five lines around the row, in both images.
+    pub lines: [&'a Rows5<'a>; 2],
+    pub workspace: &'a mut [u8],
+}
+
+/// A row's costs and the paths through it.
 ///
 /// Candidate `d` of column `x` is the right image's column `x - min_disparity - d`, where that lies left of
 /// the image its first column. Lanes beyond the disparities that are searched stand where no path comes from.
@@ -87,8 +109,8 @@ pub(in crate::matching) struct EdgeWork<'a> {
     pub below: &'a mut [u8],
 }
 
-/// A row of winners on its way to answers. The first two slices have the row's width.
-pub(in crate::matching) struct WinnerWork<'a> {
+/// A row of winners on its way to answers.
+pub(in crate::matching) struct AnswerWork<'a> {
     /// The winners; left of the smallest disparity they mean nothing.
     pub winners: Winners<'a>,
     /// Workspace for what each right column keeps.
@@ -97,6 +119,11 @@ pub(in crate::matching) struct WinnerWork<'a> {
     pub workspace: &'a mut [u32],
     /// The first column that has a candidate.
     pub begin: usize,
+    /// Which winners are refused.
+    pub rules: &'a Rules,
+    /// The answers and flags from that column on.
+    pub answers: &'a mut [Disparity],
+    pub flags: &'a mut [PixelFlags],
 }
 
 /// Which winners are refused.
@@ -111,6 +138,19 @@ pub(in crate::matching) struct Rules {
     pub flat: PixelFlags,
     /// The flags that refuse.
     pub refused: PixelFlags,
+}
+
+/// A row of answers that are averaged within their surfaces.
+pub(in crate::matching) struct SmoothWork<'a> {
+    pub answers: &'a mut [Disparity],
+    /// How many answers each one's surface has along the row.
+    pub lengths: Lengths<'a>,
+    /// Workspace of a number for each answer and `SMOOTH_MARGIN` more.
+    pub workspace: &'a mut [u16],
+    /// By how much two neighbours of one surface may differ.
+    pub step: Disparity,
+    /// Most pairs around each answer.
+    pub radius: u8,
 }
 
 /// A row of the band, the one above it, and the row that waited for it.

@@ -10,7 +10,7 @@
 use super::denoise::{denoise, gradient_shift};
 use super::{Costs, Frame, Method};
 use crate::imaging::{Noise, smooth};
-use crate::matching::backend::{EdgeWork, Guide, Isa, MethodParameters, PathWork, SgmParameters};
+use crate::matching::backend::{CostWork, EdgeWork, Guide, Isa, MethodParameters, PathWork, SgmParameters};
 use crate::matching::config::Checks;
 use crate::matching::memory::layout::{COLUMNS_OFF, PathWorkspace, Volumes};
 use crate::matching::memory::rings::{row as slot, row_mut};
@@ -215,12 +215,8 @@ fn select<S: SgmParameters>(
         lines => lines,
     };
     if let Some(lines) = seen {
-        frame.backend.sgm_cost::<S>(
-            &mut work,
-            bottom == 0,
-            lines,
-            view_mut::<u32, u8>(frame.workspace.costs()),
-        );
+        let workspace = view_mut::<u32, u8>(frame.workspace.costs());
+        frame.backend.sgm_cost::<S>(&mut work, CostWork { is_first: bottom == 0, lines, workspace });
     }
     if S::WITHIN_EDGES {
         let (above, below) = split_mut(rest, width * stride);

@@ -4,7 +4,7 @@ use super::denoise::denoise;
 use super::{Costs, Frame, Method};
 use crate::imaging::Noise;
 use crate::matching::backend::{
-    CODES_SHARE_A_BYTE, Isa, MethodParameters, TABLE_WORDS, WindowParameters, WindowWork,
+    CODES_SHARE_A_BYTE, CensusWork, Isa, MethodParameters, TABLE_WORDS, WindowParameters, WindowWork,
 };
 use crate::matching::memory::rings::{row as slot, row_mut};
 use crate::matching::memory::winners::{Select, Unique};
@@ -137,7 +137,8 @@ fn enter<S: WindowParameters>(frame: &mut Frame<'_>, y: usize, lines: [&Rows5<'_
         smoothed = denoise(lines, &[0, 2, 4], places);
         smoothed.each_ref()
     };
-    frame.backend.census::<S>(lines, usize::from(frame.config.min_disparity), workspace, row);
+    let min_disparity = usize::from(frame.config.min_disparity);
+    frame.backend.census::<S>(CensusWork { lines, min_disparity, workspace, codes: row });
 }
 
 /// Moves the window; without a `row`, costs are only gathered.

@@ -6,7 +6,7 @@
 //! a second time, and on real pairs the check refuses fewer right answers than one against the right image's
 //! own winners. The work is the same for every row.
 
-use crate::matching::backend::{Isa, Rules, WinnerWork};
+use crate::matching::backend::{AnswerWork, Isa, Rules};
 use crate::matching::memory::slices::split_mut;
 use crate::matching::memory::workspace::ForAnswers;
 use crate::matching::method::{Frame, Method};
@@ -37,6 +37,6 @@ pub(super) fn make_answers<S: Method>(frame: &mut Frame<'_>, newest: usize) {
     let (outside, flags) = split_mut(flags, begin);
     outside.fill(PixelFlags::OUTSIDE);
     let ForAnswers { winners, right, workspace } = frame.workspace.for_answers();
-    let work = WinnerWork { winners, right, workspace, begin };
-    frame.backend.left_right::<S>(work, &rules, answers, flags);
+    let rules = &rules;
+    frame.backend.left_right::<S>(AnswerWork { winners, right, workspace, begin, rules, answers, flags });
 }

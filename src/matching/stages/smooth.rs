@@ -7,13 +7,14 @@
 //!
 //! The work is the same for every row.
 
-use crate::matching::backend::Isa;
+use crate::matching::backend::{Isa, SmoothWork};
 use crate::matching::method::Frame;
 
 /// Averages the answers of `newest` within their surfaces.
 pub(super) fn smooth_along_row(frame: &mut Frame<'_>, newest: usize) {
     let checks = &frame.config.checks;
-    let (lengths, sums) = frame.workspace.for_smoothing();
+    let (lengths, workspace) = frame.workspace.for_smoothing();
     let answers = frame.band.row_mut(newest);
-    frame.backend.smooth(answers, lengths, sums, checks.surface_step, checks.smoothing_radius);
+    let (step, radius) = (checks.surface_step, checks.smoothing_radius);
+    frame.backend.smooth(SmoothWork { answers, lengths, workspace, step, radius });
 }

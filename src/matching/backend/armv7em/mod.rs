@@ -35,16 +35,17 @@ mod windows;
 mod word;
 
 use super::TABLE_WORDS;
-use super::isa::Isa;
+use super::isa::{Isa, sole_kernel};
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::portable;
-use super::work::{EdgeWork, Guide, PathWork, Rules, STEP, SpeckleWork, WindowWork, WinnerWork};
+use super::work::{
+    AnswerWork, CensusWork, CostWork, EdgeWork, Guide, PathWork, STEP, SmoothWork, SpeckleWork, WindowWork,
+};
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::{part, split_mut};
 use crate::matching::memory::views::view_mut;
-use crate::matching::memory::winners::{Lengths, Select};
-use crate::units::{Disparity, PixelFlags};
+use crate::matching::memory::winners::Select;
 
 #[allow(unused_imports, reason = "on a Cortex-M55 vectors do the most of it")]
 pub(in crate::matching) use super::plain::columns_begin;
@@ -52,23 +53,9 @@ pub(in crate::matching) use super::plain::columns_begin;
 /// Whether the two codes of a pixel share a byte where codes have up to four bits.
 pub(in crate::matching) const CODES_SHARE_A_BYTE: bool = true;
 
-/// Arm's instructions on four bytes, which the core has by what the compiler was given.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(in crate::matching) struct Backend;
-
-impl Backend {
-    /// What a matcher is made with before it is started.
-    pub(in crate::matching) const FIRST: Self = Self;
-
-    /// The fastest code that this processor runs.
-    pub(in crate::matching) fn detect() -> Self {
-        Self
-    }
-
-    /// The code of a kernel, if this processor runs it.
-    pub(in crate::matching) fn of(kernel: Kernel) -> Option<Self> {
-        (kernel == Kernel::Dsp).then_some(Self)
-    }
+sole_kernel! {
+    /// Arm's instructions on four bytes, which the core has by what the compiler was given.
+    Dsp
 }
 
 impl Isa for Backend {
@@ -83,8 +70,8 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
-    fn census<P: WindowParameters>(self, lines: [&Rows5<'_>; 2], _: usize, _: &mut [u32], out: &mut [u8]) {
-        codes_of::<P>(lines, out);
+    fn census<P: WindowParameters>(self, work: CensusWork<'_>) {
+        codes_of::<P>(work.lines, work.codes);
     }
 
     #[inline(always)]
@@ -93,14 +80,8 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
-    fn sgm_cost<P: SgmParameters>(
-        self,
-        work: &mut PathWork<'_>,
-        is_first: bool,
-        lines: [&Rows5<'_>; 2],
-        workspace: &mut [u8],
-    ) {
-        sgm::cost::<P>(work, is_first, lines, workspace);
+    fn sgm_cost<P: SgmParameters>(self, work: &mut PathWork<'_>, row: CostWork<'_>) {
+        sgm::cost::<P>(work, row);
     }
 
     #[inline(always)]
@@ -114,31 +95,20 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
-    fn left_right<P: MethodParameters>(
-        self,
-        work: WinnerWork<'_>,
-        rules: &Rules,
-        answers: &mut [Disparity],
-        flags: &mut [PixelFlags],
-    ) {
-        let winners = part(work.winners.words(), work.begin..);
-        left_right::offer(winners, work.right);
+    fn left_right<P: MethodParameters>(self, work: AnswerWork<'_>) {
+        let AnswerWork { winners, right, begin, rules, answers, flags, .. } = work;
+        let winners = part(winners.words(), begin..);
+        left_right::offer(winners, right);
         if P::SLANT_COST == 0 {
-            left_right::answer(winners, work.right, rules, answers, flags);
+            left_right::answer(winners, right, rules, answers, flags);
         } else {
-            portable::left_right::answer::<P>(winners, work.right, rules, answers, flags);
+            portable::left_right::answer::<P>(winners, right, rules, answers, flags);
         }
     }
 
     #[inline(always)]
-    fn smooth(
-        self,
-        answers: &mut [Disparity],
-        lengths: Lengths<'_>,
-        workspace: &mut [u16],
-        step: Disparity,
-        radius: u8,
-    ) {
+    fn smooth(self, work: SmoothWork<'_>) {
+        let SmoothWork { answers, lengths, workspace, step, radius } = work;
         smooth::smooth(answers, lengths.bytes(), workspace, step, radius);
     }
 

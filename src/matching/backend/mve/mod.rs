@@ -33,39 +33,27 @@ mod speckle;
 mod windows;
 
 use super::armv7em::{self, sgm};
-use super::isa::Isa;
+use super::isa::{Isa, sole_kernel};
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::portable::{self, left_right_rows};
-use super::work::{EdgeWork, Guide, MASKS, PathWork, Rules, STEP, SpeckleWork, WindowWork, WinnerWork};
+use super::work::{
+    AnswerWork, CensusWork, CostWork, EdgeWork, Guide, MASKS, PathWork, Rules, STEP, SmoothWork, SpeckleWork,
+    WindowWork,
+};
 use crate::imaging::census_ring8;
 use crate::matching::kernel::Kernel;
-use crate::matching::memory::Rows5;
 use crate::matching::memory::layout::OUTSIDE;
 use crate::matching::memory::slices::{part, part_mut, split_mut};
 use crate::matching::memory::views::view_mut;
-use crate::matching::memory::winners::{Lengths, Select, WinnerRows};
+use crate::matching::memory::winners::{Select, WinnerRows};
 use crate::units::{Disparity, PixelFlags};
 use windows::{Windows, best_of_the_rest, complete};
 
 pub(in crate::matching) use super::plain::{CODES_SHARE_A_BYTE, columns_begin};
 
-/// The vectors of a Cortex-M55, which the core has by what the compiler was given.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(in crate::matching) struct Backend;
-
-impl Backend {
-    /// What a matcher is made with before it is started.
-    pub(in crate::matching) const FIRST: Self = Self;
-
-    /// The fastest code that this processor runs.
-    pub(in crate::matching) fn detect() -> Self {
-        Self
-    }
-
-    /// The code of a kernel, if this processor runs it.
-    pub(in crate::matching) fn of(kernel: Kernel) -> Option<Self> {
-        (kernel == Kernel::Helium).then_some(Self)
-    }
+sole_kernel! {
+    /// The vectors of a Cortex-M55, which the core has by what the compiler was given.
+    Helium
 }
 
 impl Isa for Backend {
@@ -80,17 +68,11 @@ impl Isa for Backend {
     }
 
     #[inline]
-    fn census<P: WindowParameters>(
-        self,
-        lines: [&Rows5<'_>; 2],
-        _: usize,
-        workspace: &mut [u32],
-        out: &mut [u8],
-    ) {
-        let (left, right) = split_mut(out, out.len() / 2);
-        for (lines, codes) in lines.into_iter().zip([left, right]) {
+    fn census<P: WindowParameters>(self, work: CensusWork<'_>) {
+        let (left, right) = split_mut(work.codes, work.codes.len() / 2);
+        for (lines, codes) in work.lines.into_iter().zip([left, right]) {
             if P::BITS <= 4 {
-                census::census_plus4(lines, view_mut::<u32, u8>(workspace), codes);
+                census::census_plus4(lines, view_mut::<u32, u8>(work.workspace), codes);
             } else {
                 census_ring8(lines, codes);
             }
@@ -103,14 +85,8 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
-    fn sgm_cost<P: SgmParameters>(
-        self,
-        work: &mut PathWork<'_>,
-        is_first: bool,
-        lines: [&Rows5<'_>; 2],
-        workspace: &mut [u8],
-    ) {
-        sgm::cost::<P>(work, is_first, lines, workspace);
+    fn sgm_cost<P: SgmParameters>(self, work: &mut PathWork<'_>, row: CostWork<'_>) {
+        sgm::cost::<P>(work, row);
     }
 
     #[inline(always)]
@@ -124,14 +100,8 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
-    fn left_right<P: MethodParameters>(
-        self,
-        work: WinnerWork<'_>,
-        rules: &Rules,
-        answers: &mut [Disparity],
-        flags: &mut [PixelFlags],
-    ) {
-        let WinnerWork { winners, right, workspace, begin } = work;
+    fn left_right<P: MethodParameters>(self, work: AnswerWork<'_>) {
+        let AnswerWork { winners, right, workspace, begin, rules, answers, flags } = work;
         let width = winners.width();
         let winners = winners.rows(begin);
         let (kept, fractions) = split_mut(view_mut::<u32, u8>(workspace), width);
@@ -140,14 +110,8 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
-    fn smooth(
-        self,
-        answers: &mut [Disparity],
-        lengths: Lengths<'_>,
-        workspace: &mut [u16],
-        step: Disparity,
-        radius: u8,
-    ) {
+    fn smooth(self, work: SmoothWork<'_>) {
+        let SmoothWork { answers, lengths, workspace, step, radius } = work;
         smooth::smooth(answers, lengths.bytes(), workspace, step, radius);
     }
 

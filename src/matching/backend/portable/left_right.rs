@@ -2,22 +2,18 @@
 
 use super::{consistency, subpixel};
 use crate::matching::backend::parameters::MethodParameters;
-use crate::matching::backend::work::{Rules, WinnerWork};
+use crate::matching::backend::work::{AnswerWork, Rules};
 use crate::matching::memory::slices::part;
 use crate::matching::memory::winners::Winner;
 use crate::units::{Disparity, PixelFlags};
 
 /// Makes answers of a row of winners: [`Isa::left_right`](crate::matching::backend::Isa::left_right).
 #[inline(always)]
-pub(in crate::matching::backend) fn left_right<S: MethodParameters>(
-    work: WinnerWork<'_>,
-    rules: &Rules,
-    answers: &mut [Disparity],
-    flags: &mut [PixelFlags],
-) {
-    let winners = part(work.winners.words(), work.begin..);
-    offer(winners, work.right);
-    answer::<S>(winners, work.right, rules, answers, flags);
+pub(in crate::matching::backend) fn left_right<S: MethodParameters>(work: AnswerWork<'_>) {
+    let AnswerWork { winners, right, begin, rules, answers, flags, .. } = work;
+    let winners = part(winners.words(), begin..);
+    offer(winners, right);
+    answer::<S>(winners, right, rules, answers, flags);
 }
 
 /// [`consistency::offer`] of all winners.

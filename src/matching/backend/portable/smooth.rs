@@ -1,13 +1,21 @@
 //! Answers averaged within their surface, pixel by pixel: one pass to the right that counts and adds up, one
 //! back that averages.
 
+use crate::matching::backend::work::SmoothWork;
 use crate::matching::config::Checks;
 use crate::units::Disparity;
+
+/// [`Isa::smooth`](crate::matching::backend::Isa::smooth) in two passes.
+#[inline(always)]
+pub(in crate::matching::backend) fn smooth(work: SmoothWork<'_>) {
+    let SmoothWork { answers, lengths, workspace, step, radius } = work;
+    average_row(answers, lengths.half_words(), workspace, step, radius);
+}
 
 /// Makes every answer of a row the average of up to `radius` pairs around it, and gives for each how many its
 /// surface has along the row. The workspace has a number more than there are answers.
 #[inline(always)]
-pub(in crate::matching::backend) fn smooth(
+fn average_row(
     answers: &mut [Disparity],
     lengths: &mut [u16],
     workspace: &mut [u16],

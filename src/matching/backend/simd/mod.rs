@@ -38,14 +38,15 @@ use super::isa::Isa;
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::plain;
 use super::portable::{self, left_right_rows};
-use super::work::{EdgeWork, Guide, PathWork, Rules, STEP, WindowWork, WinnerWork};
+use super::work::{
+    AnswerWork, CensusWork, CostWork, EdgeWork, Guide, PathWork, STEP, SmoothWork, WindowWork,
+};
 use crate::imaging::{census_plus4, census_ring8};
 use crate::matching::kernel::Kernel;
-use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::split_mut;
 use crate::matching::memory::views::view_mut;
-use crate::matching::memory::winners::{Lengths, Select};
-use crate::units::{Disparity, PixelFlags};
+use crate::matching::memory::winners::Select;
+use crate::units::Disparity;
 
 /// The kernels of a 64-bit processor.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -111,19 +112,13 @@ impl Isa for Backend {
     }
 
     #[inline]
-    fn census<P: WindowParameters>(
-        self,
-        lines: [&Rows5<'_>; 2],
-        min_disparity: usize,
-        workspace: &mut [u32],
-        out: &mut [u8],
-    ) {
+    fn census<P: WindowParameters>(self, work: CensusWork<'_>) {
         if self == Self::Planes {
-            return plain::Backend.census::<P>(lines, min_disparity, workspace, out);
+            return plain::Backend.census::<P>(work);
         }
-        let (left, right) = split_mut(out, out.len() / 2);
+        let (left, right) = split_mut(work.codes, work.codes.len() / 2);
         let census = if P::BITS <= 4 { census_plus4 } else { census_ring8 };
-        for (lines, codes) in lines.into_iter().zip([left, right]) {
+        for (lines, codes) in work.lines.into_iter().zip([left, right]) {
             census(lines, codes);
         }
     }
@@ -140,14 +135,8 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
-    fn sgm_cost<P: SgmParameters>(
-        self,
-        work: &mut PathWork<'_>,
-        is_first: bool,
-        lines: [&Rows5<'_>; 2],
-        workspace: &mut [u8],
-    ) {
-        sgm::cost::<P>(self, work, is_first, lines, workspace);
+    fn sgm_cost<P: SgmParameters>(self, work: &mut PathWork<'_>, row: CostWork<'_>) {
+        sgm::cost::<P>(self, work, row);
     }
 
     #[inline(always)]
@@ -160,17 +149,11 @@ impl Isa for Backend {
         sgm::select(self, work, guide, select);
     }
 
-    fn left_right<P: MethodParameters>(
-        self,
-        work: WinnerWork<'_>,
-        rules: &Rules,
-        answers: &mut [Disparity],
-        flags: &mut [PixelFlags],
-    ) {
+    fn left_right<P: MethodParameters>(self, work: AnswerWork<'_>) {
         if self == Self::Planes {
-            return plain::Backend.left_right::<P>(work, rules, answers, flags);
+            return plain::Backend.left_right::<P>(work);
         }
-        let WinnerWork { winners, right, workspace, begin } = work;
+        let AnswerWork { winners, right, workspace, begin, rules, answers, flags } = work;
         let width = winners.width();
         let winners = winners.rows(begin);
         let (kept, fractions) = split_mut(view_mut::<u32, u8>(workspace), width);
@@ -181,17 +164,11 @@ impl Isa for Backend {
         );
     }
 
-    fn smooth(
-        self,
-        answers: &mut [Disparity],
-        lengths: Lengths<'_>,
-        workspace: &mut [u16],
-        step: Disparity,
-        radius: u8,
-    ) {
-        if self == Self::Planes || answers.len() < smooth::LANES {
-            return plain::Backend.smooth(answers, lengths, workspace, step, radius);
+    fn smooth(self, work: SmoothWork<'_>) {
+        if self == Self::Planes || work.answers.len() < smooth::LANES {
+            return plain::Backend.smooth(work);
         }
+        let SmoothWork { answers, lengths, workspace, step, radius } = work;
         self.in_vectors(
             #[inline(always)]
             || smooth::smooth(answers, lengths.half_words(), workspace, step, radius),

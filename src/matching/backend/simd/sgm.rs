@@ -7,8 +7,7 @@ use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::group::Group;
 use crate::matching::backend::portable::sgm;
 use crate::matching::backend::portable::sgm::passes::Groups;
-use crate::matching::backend::work::{EdgeWork, Guide, PathWork};
-use crate::matching::memory::Rows5;
+use crate::matching::backend::work::{CostWork, EdgeWork, Guide, PathWork};
 use crate::matching::memory::winners::Select;
 
 /// Groups of the target's own vectors in the widest column; where these are words, one more, for which there
@@ -56,23 +55,17 @@ macro_rules! in_widest {
 
 /// [`Isa::sgm_cost`](crate::matching::backend::Isa::sgm_cost) on each of the kernels.
 #[inline(always)]
-pub(super) fn cost<S: SgmParameters>(
-    backend: Backend,
-    work: &mut PathWork<'_>,
-    is_first: bool,
-    lines: [&Rows5<'_>; 2],
-    workspace: &mut [u8],
-) {
+pub(super) fn cost<S: SgmParameters>(backend: Backend, work: &mut PathWork<'_>, row: CostWork<'_>) {
     match backend {
-        Backend::Planes => sgm::cost_in_words::<S>(work, is_first, lines, workspace),
-        Backend::Lanes => in_vectors!(work, enter, [S], is_first, lines, workspace),
+        Backend::Planes => sgm::cost_in_words::<S>(work, row),
+        Backend::Lanes => in_vectors!(work, enter, [S], row),
         Backend::Avx2(avx2) => avx2.run(
             #[inline(always)]
-            || in_wide!(work, enter, [S], is_first, lines, workspace),
+            || in_wide!(work, enter, [S], row),
         ),
         Backend::Avx512(avx512) => avx512.run(
             #[inline(always)]
-            || in_widest!(work, enter, [S], is_first, lines, workspace),
+            || in_widest!(work, enter, [S], row),
         ),
     }
 }

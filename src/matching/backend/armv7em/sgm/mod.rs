@@ -25,8 +25,7 @@ mod winners;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::features::Features;
 use crate::matching::backend::portable::sgm::{Passes, words};
-use crate::matching::backend::work::{EdgeWork, Guide, PathWork, STEP};
-use crate::matching::memory::Rows5;
+use crate::matching::backend::work::{CostWork, EdgeWork, Guide, PathWork, STEP};
 use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::{Found, Select, Unique};
@@ -136,13 +135,8 @@ macro_rules! in_words {
 
 /// [`Isa::sgm_cost`](crate::matching::backend::Isa::sgm_cost) for each number of candidates.
 #[inline(always)]
-pub(in crate::matching::backend) fn cost<S: SgmParameters>(
-    work: &mut PathWork<'_>,
-    is_first: bool,
-    lines: [&Rows5<'_>; 2],
-    workspace: &mut [u8],
-) {
-    in_words!(work, enter, [S], is_first, lines, workspace);
+pub(in crate::matching::backend) fn cost<S: SgmParameters>(work: &mut PathWork<'_>, row: CostWork<'_>) {
+    in_words!(work, enter, [S], row);
 }
 
 /// [`Isa::sgm_within_edges`](crate::matching::backend::Isa::sgm_within_edges) for each number of candidates.

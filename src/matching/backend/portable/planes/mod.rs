@@ -16,8 +16,7 @@ mod windows;
 
 use super::census as rows;
 use crate::matching::backend::parameters::WindowParameters;
-use crate::matching::backend::work::WindowWork;
-use crate::matching::memory::Rows5;
+use crate::matching::backend::work::{CensusWork, WindowWork};
 use crate::matching::memory::layout::OUTSIDE;
 use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::views::{view, view_mut};
@@ -31,12 +30,8 @@ type Column<P> = [P; 8];
 
 /// [`Isa::census`](crate::matching::backend::Isa::census) in planes.
 #[inline]
-pub(in crate::matching::backend) fn census<S: WindowParameters>(
-    [left, right]: [&Rows5<'_>; 2],
-    min_disparity: usize,
-    workspace: &mut [u32],
-    out: &mut [u8],
-) {
+pub(in crate::matching::backend) fn census<S: WindowParameters>(work: CensusWork<'_>) {
+    let CensusWork { lines: [left, right], min_disparity, workspace, codes: out } = work;
     let width = out.len() / 2;
     // Both begin where a word may stand.
     let mut codes = view_mut::<u32, u8>(workspace)

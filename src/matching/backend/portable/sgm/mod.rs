@@ -31,8 +31,7 @@ pub(in crate::matching::backend) mod passes;
 
 use super::words::Word;
 use crate::matching::backend::parameters::SgmParameters;
-use crate::matching::backend::work::{EdgeWork, Guide, PathWork};
-use crate::matching::memory::Rows5;
+use crate::matching::backend::work::{CostWork, EdgeWork, Guide, PathWork};
 use crate::matching::memory::winners::{Found, Select, Unique, Winner, WinnerRows};
 use features::{FeatureRows, Features};
 use passes::Groups;
@@ -57,14 +56,12 @@ pub(in crate::matching::backend) trait Passes {
 #[inline(always)]
 pub(in crate::matching::backend) fn enter<P: Passes, S: SgmParameters>(
     work: &mut PathWork<'_>,
-    is_first: bool,
-    lines: [&Rows5<'_>; 2],
-    workspace: &mut [u8],
+    row: CostWork<'_>,
 ) {
-    if is_first {
+    if row.is_first {
         P::clear(work);
     }
-    if let Some(features) = features::of::<P::Rows, S>(work, lines, workspace) {
+    if let Some(features) = features::of::<P::Rows, S>(work, row.lines, row.workspace) {
         P::enter::<S>(work, &features);
     }
 }
@@ -136,11 +133,9 @@ macro_rules! in_words {
 #[inline(always)]
 pub(in crate::matching::backend) fn cost_in_words<S: SgmParameters>(
     work: &mut PathWork<'_>,
-    is_first: bool,
-    lines: [&Rows5<'_>; 2],
-    workspace: &mut [u8],
+    row: CostWork<'_>,
 ) {
-    in_words!(work, enter, [S], is_first, lines, workspace);
+    in_words!(work, enter, [S], row);
 }
 
 /// [`Isa::sgm_within_edges`](crate::matching::backend::Isa::sgm_within_edges) in words.
@@ -161,16 +156,14 @@ pub(in crate::matching::backend) fn select_in_words(
 
 /// The passes, each compiled once for a kind of path and called, not inlined.
 pub(in crate::matching::backend) mod words {
-    use super::{EdgeWork, Guide, Passes, PathWork, Rows5, Select, SgmParameters};
+    use super::{CostWork, EdgeWork, Guide, Passes, PathWork, Select, SgmParameters};
 
     #[inline(never)]
     pub(in crate::matching::backend) fn enter<P: Passes, S: SgmParameters>(
         work: &mut PathWork<'_>,
-        is_first: bool,
-        lines: [&Rows5<'_>; 2],
-        workspace: &mut [u8],
+        row: CostWork<'_>,
     ) {
-        super::enter::<P, S>(work, is_first, lines, workspace);
+        super::enter::<P, S>(work, row);
     }
 
     #[inline(never)]

@@ -7,7 +7,7 @@ use core::arch::asm;
 /// and where there is no row, 0. 16 instructions for sixteen.
 #[inline(never)]
 pub(in super::super) fn reverse(row: &[u8], last: i32, mask: u32, out: &mut [u32]) {
-    let begin = part(row, ..(last + 1).max(0) as usize);
+    let begin = part(row, ..((last + 1).max(0) as usize).min(row.len()));
     let count = (begin.len() / 16).min(out.len() / 4);
     let rest = part(begin, ..begin.len() - 16 * count);
     if count > 0 {

@@ -32,7 +32,7 @@ use crate::matching::memory::winners::{Found, Select, Unique};
 use crate::matching::penalties::Penalties;
 use blocks::Rest;
 use features::DspRows;
-use rows::Way;
+use rows::Direction;
 
 /// The passes over columns of up to `WORDS` words, all of them in use if `ALL`: then the compiler knows how
 /// many.
@@ -86,8 +86,8 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
     #[inline(always)]
     fn select(work: &mut PathWork<'_>, guide: Guide<'_>, unique: Unique<'_>, put: impl FnMut(usize, Found)) {
         rows::down::<WORDS, ALL>(work, guide);
-        rows::along::<WORDS, ALL>(work, guide, Way::Right);
-        rows::along::<WORDS, ALL>(work, guide, Way::Left);
+        rows::along::<WORDS, ALL>(work, guide, Direction::Right);
+        rows::along::<WORDS, ALL>(work, guide, Direction::Left);
         winners::select(work, stride::<WORDS, ALL>(work), unique, put);
     }
 }

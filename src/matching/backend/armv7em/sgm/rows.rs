@@ -7,8 +7,8 @@ use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::layout::COLUMNS_OFF;
 use crate::matching::memory::views::{view, view_mut};
 
-/// Where a path along the row goes.
-pub(super) enum Way {
+/// The direction of a path along the row.
+pub(super) enum Direction {
     Left,
     Right,
 }
@@ -67,7 +67,7 @@ pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>,
 pub(super) fn along<const WORDS: usize, const ALL: bool>(
     work: &mut PathWork<'_>,
     guide: Guide<'_>,
-    way: Way,
+    direction: Direction,
 ) {
     let (width, stride) = (work.width, stride::<WORDS, ALL>(work));
     if !is_whole(work, stride) || width <= work.min_disparity || guide.here.len() < width {
@@ -78,13 +78,13 @@ pub(super) fn along<const WORDS: usize, const ALL: bool>(
     let shift = if !guide.row.is_multiple_of(2) { COLUMNS_OFF } else { 0 };
     let top = view::<u8, u32>(work.top).as_ptr().wrapping_add(shift * stride / 4);
     let (costs, sums) = (view::<u8, u32>(work.costs).as_ptr(), view_mut::<u8, u32>(work.sums).as_mut_ptr());
-    let from = match way {
-        Way::Right => top,
-        Way::Left => sums.cast_const(),
+    let from = match direction {
+        Direction::Right => top,
+        Direction::Left => sums.cast_const(),
     };
-    let (x, on, gap, columns) = match way {
-        Way::Right => (0, 1, 0, width),
-        Way::Left => (width - 1, -1, -2, width - work.min_disparity),
+    let (x, on, gap, columns) = match direction {
+        Direction::Right => (0, 1, 0, width),
+        Direction::Left => (width - 1, -1, -2, width - work.min_disparity),
     };
     let first = x * stride / 4;
     let mut frame = Frame {

@@ -16,7 +16,7 @@ pub(super) fn select(
     mut unique: Unique<'_>,
     mut put: impl FnMut(usize, Found),
 ) {
-    let (begin, fours) = (work.min_disparity, stride / 16);
+    let (begin, fours) = (work.min_disparity.min(work.width), stride / 16);
     let mut columns = part_mut(work.sums, begin * stride..);
     for x in begin..work.width {
         let Some((sums, rest)) = columns.split_at_mut_checked(stride) else { return };

@@ -23,14 +23,13 @@ pub(in crate::matching) const fn waiting(newest: usize) -> usize {
 }
 
 /// Row `slot` of a ring of rows `width` pixels wide.
-// A stage asks for a row or two: once in flash it is smaller, and no slower to speak of.
-#[cfg_attr(all(target_pointer_width = "32", not(stereopsis_dsp)), inline(never))]
+#[inline(always)]
 pub(in crate::matching) fn row<T>(ring: &[T], slot: usize, width: usize) -> &[T] {
     part(ring, slot * width..(slot + 1) * width)
 }
 
 /// Mutable access to row `slot` of a ring of rows `width` pixels wide.
-#[cfg_attr(all(target_pointer_width = "32", not(stereopsis_dsp)), inline(never))]
+#[inline(always)]
 pub(in crate::matching) fn row_mut<T>(ring: &mut [T], slot: usize, width: usize) -> &mut [T] {
     part_mut(ring, slot * width..(slot + 1) * width)
 }
@@ -49,13 +48,14 @@ impl<'a, T, const ROWS: usize> Ring<'a, T, ROWS> {
     }
 
     /// Row `y` of the frame, which the ring must still hold.
-    #[inline(always)]
+    // A stage asks for a row or two: once in flash it is smaller, and no slower to speak of.
+    #[cfg_attr(all(target_pointer_width = "32", not(stereopsis_dsp)), inline(never))]
     pub(in crate::matching) fn row(&self, y: usize) -> &[T] {
         row(self.rows, y % ROWS, self.width)
     }
 
     /// Mutable access to row `y` of the frame.
-    #[inline(always)]
+    #[cfg_attr(all(target_pointer_width = "32", not(stereopsis_dsp)), inline(never))]
     pub(in crate::matching) fn row_mut(&mut self, y: usize) -> &mut [T] {
         row_mut(self.rows, y % ROWS, self.width)
     }

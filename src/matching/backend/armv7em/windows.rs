@@ -35,7 +35,7 @@ pub(super) fn select<S: WindowParameters, const STRIDE: usize>(
     let Some(room) = workspace.get_mut(..words + 2) else { return };
     // Left of here no pixel has a candidate.
     let begin = row.min_disparity.min(row.width);
-    let from = |column: usize| part(columns, column * words..);
+    let from = |column: usize| part(columns, (column * words).min(columns.len())..);
     let first = OUTSIDE + begin - S::RADIUS_X - 1;
     // All columns have the same sum too many, those outside nothing else, and a window as many columns.
     let bias = if S::BITS > 4 { 0 } else { from(first).first().copied().unwrap_or(0) & 0xff };

@@ -191,7 +191,7 @@ fn winners<S: WindowParameters, const STRIDE: usize>(
     let Select { disparities, mut winners, unique } = select;
     let rows = part_mut(winners.bytes(), begin..);
     // The column that leaves at the first pixel is among them.
-    let from = |column: usize| part(columns, column * stride..);
+    let from = |column: usize| part(columns, (column * stride).min(columns.len())..);
     let (leaves, enters) = (from(OUTSIDE + begin - S::RADIUS_X - 1), from(OUTSIDE + begin + S::RADIUS_X));
     let columns = leaves.chunks_exact(stride).take(2 * S::RADIUS_X + 1);
     let inside = part_mut(sums, 1..=stride);

@@ -88,7 +88,7 @@ impl<'a> RowWorkspace<'a> {
     /// Gives the rows of `width` pixels their places, where they have none yet: the costs are done with.
     #[inline(always)]
     pub(in crate::matching) fn divide(&mut self, width: usize) {
-        self.expect(Phase::Costs);
+        self.check(Phase::Costs);
         if self.winners.is_empty() {
             let (winners, rest) = split_mut(core::mem::take(&mut self.rest), width);
             let (right, rest) = split_mut(rest, width.div_ceil(2));
@@ -102,7 +102,7 @@ impl<'a> RowWorkspace<'a> {
 
     /// What a kernel works with, before there are winners.
     pub(in crate::matching) fn costs(&mut self) -> &mut [u32] {
-        self.expect(Phase::Costs);
+        self.check(Phase::Costs);
         self.rest
     }
 
@@ -111,7 +111,7 @@ impl<'a> RowWorkspace<'a> {
         &mut self,
         width: usize,
     ) -> (impl Iterator<Item = &mut [u8]>, &mut [u32]) {
-        self.expect(Phase::Costs);
+        self.check(Phase::Costs);
         let memory = [view_mut::<Winner, u8>(self.winners), view_mut::<u16, u8>(self.right)];
         (memory.into_iter().flat_map(move |memory| memory.chunks_exact_mut(width.max(1))), self.rest)
     }
@@ -130,13 +130,13 @@ impl<'a> RowWorkspace<'a> {
 
     /// The winners, and what answers are made of them with.
     pub(in crate::matching) fn for_answers(&mut self) -> ForAnswers<'_> {
-        self.expect(Phase::Winners);
+        self.check(Phase::Winners);
         ForAnswers { winners: Winners(self.winners), right: self.right, workspace: self.rest }
     }
 
     /// The margins of the winners, a byte a pixel.
     pub(in crate::matching) fn margins(&self) -> &[u8] {
-        self.expect(Phase::Winners);
+        self.check(Phase::Winners);
         part(view::<u16, u8>(self.lengths), ..self.winners.len())
     }
 
@@ -153,13 +153,13 @@ impl<'a> RowWorkspace<'a> {
 
     /// The lengths of surfaces, as the target's smoothing leaves them.
     pub(in crate::matching) fn lengths(&mut self) -> Lengths<'_> {
-        self.expect(Phase::Surfaces);
+        self.check(Phase::Surfaces);
         Lengths(self.lengths)
     }
 
     /// The confidences of the row that waited, a byte a pixel.
     pub(in crate::matching) fn confidences(&mut self) -> &mut [u8] {
-        self.expect(Phase::Surfaces);
+        self.check(Phase::Surfaces);
         let count = self.winners.len();
         part_mut(view_mut::<Winner, u8>(self.winners), ..count)
     }
@@ -178,7 +178,7 @@ impl<'a> RowWorkspace<'a> {
     /// Asserts that the memory is in a phase.
     #[inline(always)]
     #[track_caller]
-    fn expect(&self, _phase: Phase) {
+    fn check(&self, _phase: Phase) {
         #[cfg(debug_assertions)]
         assert_eq!(self.phase, _phase, "the workspace of a row");
     }

@@ -79,7 +79,7 @@ fn take_margins(config: &Config, margins: &[u8], answers: &[Disparity], notes: &
 
 /// The rows around one whose confidences are made.
 struct Neighbours<'a> {
-    /// Its answers.
+    /// The answers of the row.
     answers: &'a [Disparity],
     /// Answers of the row before the median.
     row: &'a [Disparity],

@@ -252,7 +252,8 @@ impl fmt::Display for ConfigError {
             Self::SurfaceStep => f.write_str("surface step: at most 1 px"),
             Self::Gradient => write!(f, "gradient: 1 to {}", Penalties::MOST_GRADIENT),
             Self::Penalties => f.write_str(
-                "penalties: cost >= 1, steps falling, jumps above them, edges rising, cost + step + jump < 128, 3 cost + 2 jump < 255",
+                "penalties: cost >= 1, steps falling, jumps above them, edges rising, \
+                 cost + step + jump < 128, 3 cost + 2 jump < 255",
             ),
             Self::Smoothing => write!(f, "smoothing radius: at most {}", Checks::MOST_SMOOTHING),
         }

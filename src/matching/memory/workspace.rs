@@ -3,7 +3,7 @@
 //! ```text
 //! phase      winners: 4 B/pixel   right: 2 B/pixel      lengths: 2 B/pixel   rest
 //! Costs      smoothed lines       smoothed lines        -                    what a kernel works with
-//! Winners    winners              keys of right pixels  margins              kernel, then 2 B/pixel of left_right
+//! Winners    winners              keys of right pixels  margins              kernel, then fractions
 //! Surfaces   confidences          -                     surface lengths      sums along the row
 //! Finished   confidences          masks                 -                    -
 //! ```

@@ -2,8 +2,8 @@
 //!
 //! Two things tell right answers from wrong ones: by how much the best of the candidates over two px away
 //! costs more, and how far the answers around it are from it. With the margin `m = second best - winner` of
-//! the costs, up to [`Note::MOST_MARGIN`], the greatest difference `s` to an answer 4 or 8 columns left or right,
-//! and `t` to one 2 or 4 rows above or below, in 1/32 px,
+//! the costs, up to [`Note::MOST_MARGIN`], the greatest difference `s` to an answer 4 or 8 columns left or
+//! right, and `t` to one 2 or 4 rows above or below, in 1/32 px,
 //!
 //! `confidence = m + (K - min(s / 4, K)) + (K - min(t / 4, K))`, `K =` [`AGREEMENT`]
 //!
@@ -79,9 +79,9 @@ fn take_margins(config: &Config, margins: &[u8], answers: &[Disparity], notes: &
 
 /// The rows around one whose confidences are made.
 struct Neighbours<'a> {
-    /// The answers of the row.
+    /// The row's answers, after the median where there is one.
     answers: &'a [Disparity],
-    /// Answers of the row before the median.
+    /// The row's answers before the median.
     row: &'a [Disparity],
     /// The rows above and below, [`ROWS`] off; empty where there is none.
     columns: [&'a [Disparity]; 2 * ROWS.len()],

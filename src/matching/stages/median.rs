@@ -4,9 +4,9 @@
 //! or lies outside of the image, counts as the answer in the middle; where there is none in the middle, there
 //! is none after.
 //!
-//! The nine are answers as the band holds them, averaged along the row and not yet checked for support: the medians go to
-//! where the row will be finished. So nothing is kept beside the band, and a pixel has to do with no row but
-//! its own and the two beside it.
+//! The nine are answers as the band holds them, averaged along the row and not yet checked for support: the
+//! medians go to where the row will be finished. So nothing is kept beside the band, and a pixel has to do
+//! with no row but its own and the two beside it.
 //!
 //! The work is the same for every picture: numbers change places in a fixed order, and nothing is asked of
 //! them.

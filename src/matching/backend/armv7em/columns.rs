@@ -1,10 +1,10 @@
 //! The costs of a row that enters and of one that leaves, added to the columns under the window.
 //!
 //! ```text
-//! fast    column x, d   += cost of the entering codes, + 4 - cost of the leaving ones, both from tables: half a byte each,
-//!                       so that eight candidates are one addition, and two more where they come into the sums. So every
-//!                       row adds four too many, modulo 256, which windows take off again
-//! block   column x, d   += bits that differ in the entering codes, + bits that are equal in the leaving ones, - 8
+//! fast    column x, d   += cost of the entering codes, + 4 - cost of the leaving ones, both from tables:
+//!                       half a byte each, so that eight candidates are one addition, and two more where they come
+//!                       into the sums. So every row adds four too many, modulo 256, which windows take off
+//! block   column x, d   += bits that differ in the entering codes, + bits equal in the leaving ones, - 8
 //! ```
 
 use super::tables::{self, LINE, Table};

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! window x   sum[d] += digits(column[x + r][d]) - digits(column[x - r - 1][d])
-//! winner x   of every lane the least sum and the first word that has it; of the lanes the least, and the first of equal ones
+//! winner x   of every lane the least sum and the first word that has it; of the lanes the least, and the
+//!            first of equal ones
 //! ```
 
 use super::Rows;

@@ -12,8 +12,8 @@ macro_rules! two_operands {
             #[inline(always)]
             pub(super) fn $name(a: u32, b: u32) -> u32 {
                 let out;
-                // SAFETY: instructions on registers alone, of the extension that `--cfg stereopsis_dsp` says is there. The
-                // marks of lanes are not said to be preserved.
+                // SAFETY: instructions on registers alone, of the extension that `--cfg stereopsis_dsp` says
+                // is there. The marks of lanes are not said to be preserved.
                 unsafe {
                     asm!($($instruction),*, out = out(reg) out, a = in(reg) a, b = in(reg) b,
                         options(pure, nomem, nostack));
@@ -42,7 +42,8 @@ pub(in super::super) fn not_less(a: u32, b: u32) -> u32 {
     let out;
     // SAFETY: as above.
     unsafe {
-        asm!("usub8 {out}, {a}, {b}", "sel {out}, {top}, {none}", out = out(reg) out, a = in(reg) a, b = in(reg) b,
+        asm!("usub8 {out}, {a}, {b}", "sel {out}, {top}, {none}", out = out(reg) out, a = in(reg) a,
+        b = in(reg) b,
                 top = in(reg) 0x8080_8080u32, none = in(reg) 0, options(pure, nomem, nostack));
     }
     out

@@ -88,7 +88,8 @@ fn look(disparities: &mut [u8], right: &[u16]) {
             "vstrb.16 q0, [r0], #8",
             "letp lr, 2b",
             count = in(reg) count, right = in(reg) right.as_ptr(),
-            inout("r0") disparities.as_mut_ptr() => _, inout("r4") 0 => _, out("lr") _, out("q0") _, out("q1") _,
+            inout("r0") disparities.as_mut_ptr() => _, inout("r4") 0 => _, out("lr") _, out("q0") _,
+            out("q1") _,
             options(nostack),
         );
     }

@@ -120,10 +120,12 @@ fn pairs(answers: &mut [Disparity], room: &mut [u16], step: Disparity, radius: u
             "4:",
             "vstrh.16 q0, [{answers}], #16",
             "letp lr, 2b",
-            count = in(reg) count, step = in(reg) u32::from(step.raw()), radius = in(reg) radius, two = in(reg) 2,
+            count = in(reg) count, step = in(reg) u32::from(step.raw()), radius = in(reg) radius,
+            two = in(reg) 2,
             at = inout(reg) room.add(REACH) => _,
             answers = inout(reg) answers.as_mut_ptr() => _, halves = in(reg) HALVES.as_ptr(),
-            inout("r0") room => _, out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, out("q4") _,
+            inout("r0") room => _, out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _,
+            out("q4") _,
             out("q5") _, out("q6") _, out("q7") _, options(nostack),
         );
     }

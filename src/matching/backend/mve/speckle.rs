@@ -69,7 +69,8 @@ pub(super) fn speckle(work: SpeckleWork<'_>) {
             answers = inout(reg) answers => _, finished = inout(reg) finished => _,
             speckle = const PixelFlags::SPECKLE.bits() as u32,
             inout("r0") lengths.as_ptr() => _, inout("r1") counts => _, inout("r2") counts.add(count) => _,
-            inout("r3") flags.as_mut_ptr() => _, out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _,
+            inout("r3") flags.as_mut_ptr() => _, out("lr") _, out("q0") _, out("q1") _, out("q2") _,
+            out("q3") _,
             out("q4") _, out("q5") _, out("q6") _, out("q7") _, options(nostack),
         );
     }

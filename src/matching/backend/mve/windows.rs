@@ -145,13 +145,15 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
                 "le lr, 2b",
                 count = in(reg) count, enters = inout(reg) self.enters.as_ptr() => _,
                 leaves = inout(reg) self.leaves.as_ptr() => _, sums = in(reg) self.sums.as_mut_ptr().add(1),
-                mask = inout(reg) mask.as_ptr() => _, step = in(reg) step, disparities = in(reg) lanes.as_ptr(),
+                mask = inout(reg) mask.as_ptr() => _, step = in(reg) step,
+                disparities = in(reg) lanes.as_ptr(),
                 row = inout(reg) self.rows.as_mut_ptr() => _, width = in(reg) self.width,
                 widths = in(reg) 3 * self.width,
                 least = out(reg) _, nearest = out(reg) _,
                 stride = const STRIDE, groups = const STRIDE / LANES, shift = const S::COLUMN_SHIFT,
                 masked = const MASKED as u32,
-                out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, out("q4") _, out("q5") _, out("q6") _,
+                out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, out("q4") _, out("q5") _,
+                out("q6") _,
                 out("q7") _, options(nostack),
             );
         }

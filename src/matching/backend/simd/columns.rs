@@ -59,6 +59,6 @@ fn apart<S: WindowParameters, G: Group>(key: G, others: G) -> G {
 /// The digits of columns' sums that a window adds up.
 #[inline(always)]
 pub(super) fn digits<S: WindowParameters, G: Group>(columns: G) -> G {
-    const { assert!(S::COLUMN_SHIFT == 0 || S::COLUMN_SHIFT == 2, "all digits of a column, or its quarters") };
+    const { assert!(S::COLUMN_SHIFT == 0 || S::COLUMN_SHIFT == 2, "all digits, or quarters") };
     if S::COLUMN_SHIFT == 0 { columns } else { columns.quarter() }
 }

@@ -18,9 +18,12 @@ const MOST: usize = 256 / Vector::LANES + if Vector::LANES == size_of::<u32>() {
 macro_rules! in_vectors {
     ($work:ident, $pass:ident, [$($more:tt)?], $($argument:expr),*) => {
         match $work.stride {
-            32 => sgm::$pass::<Groups<Vector, { 32 / Vector::LANES }, true>, $($more)?>($work, $($argument),*),
-            64 => sgm::$pass::<Groups<Vector, { 64 / Vector::LANES }, true>, $($more)?>($work, $($argument),*),
-            128 => sgm::$pass::<Groups<Vector, { 128 / Vector::LANES }, true>, $($more)?>($work, $($argument),*),
+            32 => sgm::$pass::<Groups<Vector, { 32 / Vector::LANES }, true>, $($more)?>($work,
+            $($argument),*),
+            64 => sgm::$pass::<Groups<Vector, { 64 / Vector::LANES }, true>, $($more)?>($work,
+            $($argument),*),
+            128 => sgm::$pass::<Groups<Vector, { 128 / Vector::LANES }, true>, $($more)?>($work,
+            $($argument),*),
             _ => sgm::$pass::<Groups<Vector, MOST, false>, $($more)?>($work, $($argument),*),
         }
     };
@@ -33,7 +36,8 @@ macro_rules! in_wide {
             32 => sgm::$pass::<Groups<Wide, 1, true>, $($more)?>($work, $($argument),*),
             64 => sgm::$pass::<Groups<Wide, 2, true>, $($more)?>($work, $($argument),*),
             128 => sgm::$pass::<Groups<Wide, 4, true>, $($more)?>($work, $($argument),*),
-            stride if stride % 32 == 0 => sgm::$pass::<Groups<Wide, 8, false>, $($more)?>($work, $($argument),*),
+            stride if stride % 32 == 0 => sgm::$pass::<Groups<Wide, 8, false>, $($more)?>($work,
+            $($argument),*),
             _ => sgm::$pass::<Groups<Vector, MOST, false>, $($more)?>($work, $($argument),*),
         }
     };
@@ -45,9 +49,11 @@ macro_rules! in_widest {
         match $work.stride {
             64 => sgm::$pass::<Groups<Widest, 1, true>, $($more)?>($work, $($argument),*),
             128 => sgm::$pass::<Groups<Widest, 2, true>, $($more)?>($work, $($argument),*),
-            stride if stride % 64 == 0 => sgm::$pass::<Groups<Widest, 4, false>, $($more)?>($work, $($argument),*),
+            stride if stride % 64 == 0 => sgm::$pass::<Groups<Widest, 4, false>, $($more)?>($work,
+            $($argument),*),
             32 => sgm::$pass::<Groups<Wide, 1, true>, $($more)?>($work, $($argument),*),
-            stride if stride % 32 == 0 => sgm::$pass::<Groups<Wide, 8, false>, $($more)?>($work, $($argument),*),
+            stride if stride % 32 == 0 => sgm::$pass::<Groups<Wide, 8, false>, $($more)?>($work,
+            $($argument),*),
             _ => sgm::$pass::<Groups<Vector, MOST, false>, $($more)?>($work, $($argument),*),
         }
     };

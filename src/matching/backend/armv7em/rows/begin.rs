@@ -5,8 +5,8 @@ use core::arch::asm;
 
 macro_rules! begin {
     ($name:ident, [$($digits:literal),*]) => {
-        /// The sums of a window under [`ACROSS`] columns, `words` apart, of sixteen candidates; of no column they are `none`. 9
-        /// instructions a column, and 8 more where only some digits count.
+        /// The sums of a window under [`ACROSS`] columns, `words` apart, of sixteen candidates; of no column
+        /// they are `none`. 9 instructions a column, and 8 more where only some digits count.
         #[inline(never)]
         pub(in super::super) fn $name(none: u32, columns: &[u32], words: usize, sums: &mut [u32; 4]) {
             if columns.len() < (ACROSS - 1) * words + 4 {
@@ -27,7 +27,8 @@ macro_rules! begin {
                     "add {column}, {column}, {words}, lsl #2",
                     "subs {count}, {count}, #1",
                     "bne 2b",
-                    column = inout(reg) columns.as_ptr() => _, words = in(reg) words, count = inout(reg) ACROSS => _,
+                    column = inout(reg) columns.as_ptr() => _, words = in(reg) words,
+                    count = inout(reg) ACROSS => _,
                     a = inout(reg) a, b = inout(reg) b, c = inout(reg) c, d = inout(reg) d,
                     s = out(reg) _, t = out(reg) _, u = out(reg) _, v = out(reg) _,
                     options(nostack),

@@ -45,9 +45,9 @@ macro_rules! four_by_bits {
 
 macro_rules! by_bits {
     ($name:ident, $stride:literal, [$(($even:literal, $odd:literal)),*]) => {
-        /// Adds to the columns the bits in which the entering codes differ, and those in which the leaving ones are equal, but
-        /// for eight: 21 instructions for four candidates, and 12 for a column. The first column has the last candidates of the
-        /// reversed rows `new` and `old`.
+        /// Adds to the columns the bits in which the entering codes differ, and those in which the leaving
+        /// ones are equal, but for eight: 21 instructions for four candidates, and 12 for a column. The first
+        /// column has the last candidates of the reversed rows `new` and `old`.
         #[inline(never)]
         pub(in super::super) fn $name(
             [enters, leaves]: [&[u8]; 2],
@@ -61,8 +61,8 @@ macro_rules! by_bits {
             if [new, old].iter().any(|row| row.len() < count - 1 + $stride) {
                 return;
             }
-            // SAFETY: of `count` columns the loop reads a code of either row and changes the sums, and reads `stride` codes of
-            // either reversed row from place `count - 1` on, for each column from one less.
+            // SAFETY: of `count` columns the loop reads a code of either row and changes the sums, and reads
+            // `stride` codes of either reversed row from place `count - 1` on, for each column from one less.
             unsafe {
                 asm!(
                     "2:",

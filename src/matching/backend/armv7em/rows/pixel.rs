@@ -6,9 +6,9 @@
 //! ```text
 //! r0-r3   sums, then the least of them      r8, r9     of every lane the least so far, and its place
 //! r4-r7   columns, then places              r10, r11   the next column that enters, and that leaves
-//! r12     where sums are                    lr         the next winner; or the mask of a column's digits, and the winner is below
-//! sp      eight bytes for every block: the places of its first word and of its second; then what ends the loop, the next
-//!         winner, the disparity before the last candidate, and the masks of those that are none
+//! r12     where sums are                    lr         the next winner; or the mask of a column's digits
+//! sp      eight bytes for every block: the places of its first word and of its second; then what ends the
+//!         loop, the next winner, the disparity before the last candidate, and masks of those that are none
 //! ```
 
 /// Sixteen window sums one column on: 12 instructions, and 8 more where only some digits of the columns
@@ -218,7 +218,8 @@ macro_rules! at_an_end {
 /// A pixel; `$rest` puts the pointers back that moved too far, or not far enough.
 macro_rules! pixel {
     ($digits:ident, $end:literal, $back:literal, $rest:literal,
-        [$first:ident $first_from:literal $first_to:literal $(, $which:ident $d:literal $from:literal $to:literal)*]
+        [$first:ident $first_from:literal $first_to:literal $(,
+        $which:ident $d:literal $from:literal $to:literal)*]
         $ends:ident) => {
         concat!(
             slide!($digits, $first_from, $first_to),

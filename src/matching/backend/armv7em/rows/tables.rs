@@ -145,8 +145,9 @@ macro_rules! column {
 
 macro_rules! by_tables {
     ($name:ident, $stride:tt, $rounds:tt) => {
-        /// Adds the costs of a piece of a row to its columns, by the tables of the row that enters and of the one that
-        /// leaves. 9 instructions a pixel, two more where a round has one, and 32 for each 32 of its candidates.
+        /// Adds the costs of a piece of a row to its columns, by the tables of the row that enters and of the
+        /// one that leaves. 9 instructions a pixel, two more where a round has one, and 32 for each 32 of its
+        /// candidates.
         #[inline(never)]
         pub(in super::super) fn $name(
             tables: &[Table; 2],
@@ -158,12 +159,15 @@ macro_rules! by_tables {
                 return;
             }
             // The first pixel has the last place. The last one of a round reads one byte before that.
-            let place = tables.as_ptr().cast::<u8>().wrapping_add(count - 1 + if $rounds == 2 { count % 2 } else { 1 });
+            let last = count - 1 + if $rounds == 2 { count % 2 } else { 1 };
+            let place = tables.as_ptr().cast::<u8>().wrapping_add(last);
             let sums = columns.as_mut_ptr();
-            // SAFETY: the loop reads a code of each of `count` pixels from either row and changes as many columns, which
-            // there are: one in a round; or two, but for one in the first if `count` is odd. From the tables it reads, for codes
-            // below 16, half as many bytes as there are candidates of the code's line from the pixel's place on, the last of which is
-            // `count - 1`: inside of the line. The stack and the two registers that no operand may be are left as they were.
+            // SAFETY: the loop reads a code of each of `count` pixels from either row and changes as many
+            // columns, which there are: one in a round; or two, but for one in the first if `count` is odd.
+            // From the tables it reads, for codes below 16, half as many bytes as there are candidates of the
+            // code's line from the pixel's place on, the last of which is
+            // `count - 1`: inside of the line. The stack and the two registers that no operand may be are
+            // left as they were.
             unsafe {
                 asm!(
                     "push {{r6, r7}}",

@@ -22,10 +22,10 @@ macro_rules! winners {
     ($name:ident, $rounds:tt, $digits:ident, $stride:literal $ends:ident,
         ($before:literal, $after:literal, $back:literal), [$($at:literal),*],
         $blocks:tt) => {
-        /// Moves the window on from column to column, and selects the winner of each, with all candidates. `columns` are those
-        /// that leave, one for each winner and [`ACROSS`] more that enter. 18 instructions a pixel, two more where a round has
-        /// one, 26 for every sixteen of its candidates less 3 for the first, and what `slide` says more; 7 more where a winner
-        /// is at an end.
+        /// Moves the window on from column to column, and selects the winner of each, with all candidates.
+        /// `columns` are those that leave, one for each winner and [`ACROSS`] more that enter. 18
+        /// instructions a pixel, two more where a round has one, 26 for every sixteen of its candidates less
+        /// 3 for the first, and what `slide` says more; 7 more where a winner is at an end.
         #[inline(never)]
         pub(in super::super) fn $name(
             sums: &mut [u32; $stride / 4 + 2],
@@ -37,10 +37,11 @@ macro_rules! winners {
             }
             let count = winners.len();
             let winners = winners.as_mut_ptr_range();
-            // SAFETY: the loop writes as many winners as there are, one in a round; or two, but for one in the first if their
-            // number is odd. For each it reads two columns, of which there are enough, and reads and writes the sums, of which
-            // the word before the first and the one after the last are read as neighbours of a winner. The stack and the two registers
-            // that no operand may be are left as they were.
+            // SAFETY: the loop writes as many winners as there are, one in a round; or two, but for one in
+            // the first if their number is odd. For each it reads two columns, of which there are enough, and
+            // reads and writes the sums, of which the word before the first and the one after the last are
+            // read as neighbours of a winner. The stack and the two registers that no operand may be are left
+            // as they were.
             unsafe {
                 asm!(
                     enter!($digits),
@@ -75,11 +76,14 @@ macro_rules! winners {
 
 /// [`winners_of`] for the first pixels, which have fewer candidates.
 macro_rules! few_winners {
-    ($name:ident, $digits:ident, $stride:literal, $most:literal, ($before:literal, $after:literal, $back:literal),
+    ($name:ident, $digits:ident, $stride:literal, $most:literal, ($before:literal, $after:literal,
+    $back:literal),
         [$($at:literal),*], $blocks:tt) => {
-        /// Moves the window on where the first winner has `first` candidates and each one more than the one before it.
+        /// Moves the window on where the first winner has `first` candidates and each one more than the one
+        /// before it.
         #[doc = concat!("There are at most `", stringify!($most), "`.")]
-        /// Only these have sums. It takes 14 instructions a pixel more, and 9 for every sixteen that may be none.
+        /// Only these have sums. It takes 14 instructions a pixel more, and 9 for every sixteen that may be
+        /// none.
         #[inline(never)]
         pub(in super::super) fn $name(
             sums: &mut [u32; $stride / 4 + 2],
@@ -94,8 +98,9 @@ macro_rules! few_winners {
                 return;
             }
             let winners = winners.as_mut_ptr_range();
-            // SAFETY: as above, but for a winner in every round. Masks begin as many bytes before their middle as there are
-            // candidates: fewer than half of all masks, which are more than sums that are read.
+            // SAFETY: as above, but for a winner in every round. Masks begin as many bytes before their
+            // middle as there are candidates: fewer than half of all masks, which are more than sums that are
+            // read.
             unsafe {
                 asm!(
                     enter!($digits),
@@ -145,20 +150,24 @@ macro_rules! winners_of {
     };
     (48, $digits:ident: $all:ident, $fewest:ident, $few:ident) => {
         winners!($all, 1, $digits, 48 other, (16, 32, "sub r12, r12, #16\n"), ["8", "16"],
-            [all "ldmdb r12" "stmdb r12", all "16" "ldmia r12" "stmia r12!", all "32" "ldmia r12" "stmia r12"]);
+            [all "ldmdb r12" "stmdb r12", all "16" "ldmia r12" "stmia r12!",
+            all "32" "ldmia r12" "stmia r12"]);
         few_winners!($fewest, $digits, 48, 16, (0, 0, "add r10, r10, #32\nadd r11, r11, #32\n"), [],
             [few "ldmia r12" "stmia r12"]);
         few_winners!($few, $digits, 48, 48, (16, 32, "sub r12, r12, #16\n"), ["8", "16"],
-            [all "ldmdb r12" "stmdb r12", few "16" "ldmia r12" "stmia r12!", few "32" "ldmia r12" "stmia r12"]);
+            [all "ldmdb r12" "stmdb r12", few "16" "ldmia r12" "stmia r12!",
+            few "32" "ldmia r12" "stmia r12"]);
     };
     (64, $digits:ident: $all:ident, $fewest:ident, $few:ident) => {
         winners!($all, 1, $digits, 64 power, (16, 48, "sub r12, r12, #32\n"), ["8", "16", "24"],
-            [all "ldmdb r12" "stmdb r12", all "16" "ldmia r12" "stmia r12!", all "32" "ldmia r12" "stmia r12!",
+            [all "ldmdb r12" "stmdb r12", all "16" "ldmia r12" "stmia r12!",
+            all "32" "ldmia r12" "stmia r12!",
             all "48" "ldmia r12" "stmia r12"]);
         few_winners!($fewest, $digits, 64, 32, (16, 16, "add r10, r10, #32\nadd r11, r11, #32\n"), ["8"],
             [few "ldmdb r12" "stmdb r12", few "16" "ldmia r12" "stmia r12"]);
         few_winners!($few, $digits, 64, 64, (16, 48, "sub r12, r12, #32\n"), ["8", "16", "24"],
-            [all "ldmdb r12" "stmdb r12", all "16" "ldmia r12" "stmia r12!", few "32" "ldmia r12" "stmia r12!",
+            [all "ldmdb r12" "stmdb r12", all "16" "ldmia r12" "stmia r12!",
+            few "32" "ldmia r12" "stmia r12!",
             few "48" "ldmia r12" "stmia r12"]);
     };
 }

@@ -9,7 +9,8 @@ use core::arch::asm;
 /// Four times the lines of a word, and around again until `n` is 0.
 macro_rules! four_words {
     ($($line:literal)*) => {
-        concat!("2:\n", $($line, "\n",)* $($line, "\n",)* $($line, "\n",)* $($line, "\n",)* "subs {n}, {n}, #1\n", "bne 2b")
+        concat!("2:\n", $($line, "\n",)* $($line, "\n",)* $($line, "\n",)* $($line, "\n",)*
+            "subs {n}, {n}, #1\n", "bne 2b")
     };
 }
 
@@ -87,7 +88,8 @@ pub(super) struct Rest {
 /// two differences, the other of which is 0; the bits of a byte are counted by twos, fours and eights; masks
 /// are such as an instruction holds.
 macro_rules! cost {
-    ($costs:ident, $rows:ident, $count:ident, $along:ident, $rest:ident, [$($line:literal)*], [$($average:literal)*]) => {
+    ($costs:ident, $rows:ident, $count:ident, $along:ident, $rest:ident, [$($line:literal)*],
+    [$($average:literal)*]) => {
         asm!(
             four_words!(
                 $($line)*

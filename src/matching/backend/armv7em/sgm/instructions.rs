@@ -9,7 +9,8 @@ macro_rules! two_operands {
         #[inline(always)]
         pub(super) fn $name(a: u32, b: u32) -> u32 {
             let out;
-            // SAFETY: one instruction on registers, of the extension that `--cfg stereopsis_dsp` says is there.
+            // SAFETY: one instruction on registers, of the extension that `--cfg stereopsis_dsp` says is
+            // there.
             unsafe {
                 asm!(concat!(stringify!($name), " {}, {}, {}"), lateout(reg) out, in(reg) a, in(reg) b,
                     options(pure, nomem, nostack, preserves_flags));
@@ -62,7 +63,8 @@ pub(super) fn bits_where_less(a: u32, b: u32, bits: u32) -> u32 {
     let out;
     // SAFETY: as for `min8`.
     unsafe {
-        asm!("usub8 {out}, {a}, {b}", "sel {out}, {none}, {bits}", out = out(reg) out, a = in(reg) a, b = in(reg) b,
+        asm!("usub8 {out}, {a}, {b}", "sel {out}, {none}, {bits}", out = out(reg) out, a = in(reg) a,
+        b = in(reg) b,
             none = in(reg) 0, bits = in(reg) bits, options(pure, nomem, nostack));
     }
     out

@@ -198,7 +198,8 @@ pub(super) unsafe fn go_along(frame: *mut Frame, costs: *const u32, from: *const
             "bne 1b",
             "pop {{r6, r7}}",
             inout("r2") costs => _, inout("r3") from => _, inout("r4") sums => _, inout("lr") frame => _,
-            out("r0") _, out("r1") _, out("r5") _, out("r8") _, out("r9") _, out("r10") _, out("r11") _, out("r12") _,
+            out("r0") _, out("r1") _, out("r5") _, out("r8") _, out("r9") _, out("r10") _, out("r11") _,
+            out("r12") _,
         );
     }
 }
@@ -266,7 +267,8 @@ pub(super) unsafe fn go_down(frame: *mut Frame, costs: *const u32, kept: *mut u3
             "bne 1b",
             "pop {{r6, r7}}",
             inout("r2") costs => _, inout("r3") kept => _, inout("lr") frame => _,
-            out("r0") _, out("r1") _, out("r5") _, out("r8") _, out("r9") _, out("r10") _, out("r11") _, out("r12") _,
+            out("r0") _, out("r1") _, out("r5") _, out("r8") _, out("r9") _, out("r10") _, out("r11") _,
+            out("r12") _,
         );
     }
 }

@@ -1,10 +1,11 @@
 //! The bits in which codes differ, counted into the columns under the window.
 //!
 //! ```text
-//! word of bit i  bit d: whether the left code of column x and the right one of column x - d differ in their bit i. From column
-//!                to column the word moves on by one candidate, and is turned over where the left bit is another one
-//! column x       += the bits of the entering row that differ, and those of the leaving row that are equal; the number of
-//!                bits in a code is taken off again
+//! word of bit i  bit d: whether the left code of column x and the right one of column x - d differ in their
+//!                bit i. From column to column the word moves on by one candidate, and is turned over where
+//!                the left bit is another one
+//! column x       += the bits of the entering row that differ, and those of the leaving row that are equal;
+//!                the number of bits in a code is taken off again
 //! ```
 
 use super::Column;

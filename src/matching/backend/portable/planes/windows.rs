@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! window x   the complement of its sum, so that the best candidate has the highest number
-//! winner x   of all candidates those with the highest bit set, if any; of these those with the next; what is left in the
-//!            end are the best, and the lowest bit is the first of them
+//! winner x   of all candidates those with the highest bit set, if any; of these those with the next; what is
+//!            left in the end are the best, and the lowest bit is the first of them
 //! ```
 
 use super::Column;

@@ -6,8 +6,8 @@
 //! memory as they do in the right image. A row takes these passes:
 //!
 //! ```text
-//! enter  (all columns):      a[d] = average(a[d], pixel cost[d])                                      with row y + 1
-//!   within edges (if so):    a[d] = average of the column's pixel costs around row y                  with row y + 2
+//! enter  (all columns):      a[d] = average(a[d], pixel cost[d]), with row y + 1
+//!   within edges (if so):    a[d] = average of the column's pixel costs around row y, with row y + 2
 //! select (to the right):     t[d] = a[d] + message(t of row y - 1)[d],  r[d] = a[d] + message(r)[d]
 //!        (to the left):      l[d] = a[d] + message(l)[d]
 //!        (where both were):  s[d] = r[d] + t[d] + l[d],  winner: the least s[d]

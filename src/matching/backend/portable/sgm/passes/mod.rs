@@ -1,6 +1,7 @@
 //! The passes, written once for groups of bytes whose lanes run over the disparities of one pixel.
 //!
-//! * `cost`, `edges`, `select`: the passes; `gather` and `selection`: the two ends of the last one; `alternate`:
+//! * `cost`, `edges`, `select`: the passes; `gather` and `selection`: the two ends of the last one;
+//!   `alternate`:
 //!   the paths where registers hold a few cells only.
 
 mod alternate;

@@ -13,11 +13,11 @@
 //! * [`Filter`]: operating points of the methods.
 //! * `stages`: the stages of a row, in running order:
 //!     1. denoise, if asked for: lines smoothed against noise (in `method`);
-//!     2. census and costs of the row that comes in (`method`, `backend`);
+//!     2. census of the row that comes in (`method`, `backend`);
 //!     3. texture of its pixels, if asked for;
 //!     4. what was filled in the row that came out last is taken out of the history;
 //!     5. median of 3 x 3 answers, if asked for;
-//!     6. aggregation of costs and winner-take-all (`method`, `backend`);
+//!     6. costs, their aggregation and winner-take-all (`method`, `backend`);
 //!     7. left-right check and sub-pixel fit;
 //!     8. smoothing along the row, within surfaces;
 //!     9. confidence, if asked for;

@@ -3,24 +3,28 @@
 //! ```text
 //! when row y comes in (r: rows that the method looks down; BAND = 5, LOOK_AHEAD = 4, HISTORY = 5)
 //!
-//! stage            reads                               writes
-//! method.enter     lines y - 2 .. y + 2                codes y
-//! texture          line y                              texture of y, counts of the window around y - r
-//! fill.undo        flags y - r - 5                     finished y - r - 5, without what was filled
-//! median           band y - r - 5 .. y - r - 3         finished y - r - 4
-//! method.select    codes to y                          costs, winners y - r, flags and margins y - r
-//! texture.mark     counts                              flags y - r
-//! left_right       winners, margins y - r              band y - r, flags y - r
-//! confidence       margins y - r                       flags y - r (shared with the margins)
-//! smooth           band y - r                          band y - r, surface lengths y - r
-//! confidence       band y - r - 4 +- 4, finished       confidences, flags y - r - 4
-//! speckle          band y - r, y - r - 1, y - r - 4    support, finished and flags y - r - 4
-//! vertical         finished y - r - 5, band y - r      finished y - r - 4
-//! fill             finished y - r - 4                  finished and flags y - r - 4
-//! confidence       finished, flags y - r - 4           confidences y - r - 4
+//! stage                       reads                               writes
+//! S::enter: denoise, if asked lines y - 2 .. y + 2                smoothed lines, for S::enter alone
+//! S::enter: census            lines y - 2 .. y + 2                codes y
+//! texture::take_texture       line y                              texture of y, counts of the window
+//! fill::undo_fill             flags y - r - 5                     finished y - r - 5, as before the fill
+//! median::take_medians        band y - r - 5 .. y - r - 3         finished y - r - 4
+//! S::select: costs, paths     codes to y, or lines around y       costs of y - r
+//! S::select: winner-take-all  costs                               winners, margins and flags y - r
+//! texture::flag_untextured    counts                              flags y - r
+//! left_right::make_answers    winners y - r                       band and flags y - r
+//! confidence::note_margins    margins y - r                       notes y - r, in place of the flags
+//! smooth::smooth_along_row    band y - r                          band y - r, surface lengths y - r
+//! confidence::make_confidences notes y - r - 4, band, finished    confidences and flags y - r - 4
+//! speckle::drop_speckle       band y - r, y - r - 1, y - r - 4    support; finished and flags y - r - 4
+//! vertical::filter_vertically finished y - r - 5, band y - r      finished y - r - 4
+//! fill::fill_gaps             finished y - r - 4                  finished and flags y - r - 4
+//! confidence::finish_confidences finished and flags y - r - 4     confidences y - r - 4
+//! mask, once the row is out   masks of both images                finished, flags, confidences y - r - 4
 //! ```
 //!
-//! The row that comes out is `y - r - LOOK_AHEAD`.
+//! The row that comes out is `y - r - LOOK_AHEAD`. What a workspace holds at each stage says
+//! [`workspace`](super::memory::workspace).
 
 pub(super) mod confidence;
 mod fill;

@@ -2,8 +2,9 @@
 //!
 //! ```text
 //! fast    column x, d   += cost of the entering codes, + 4 - cost of the leaving ones, both from tables:
-//!                       half a byte each, so that eight candidates are one addition, and two more where they come
-//!                       into the sums. So every row adds four too many, modulo 256, which windows take off
+//!                       half a byte each, so that eight candidates are one addition, and two more where
+//!                       they come into the sums. So every row adds four too many, modulo 256, which windows
+//!                       take off again
 //! block   column x, d   += bits that differ in the entering codes, + bits equal in the leaving ones, - 8
 //! ```
 

@@ -26,15 +26,23 @@
 //! The row that comes out is `y - r - LOOK_AHEAD`. What a workspace holds at each stage says
 //! [`workspace`](super::memory::workspace).
 
-pub(super) mod confidence;
-mod fill;
-mod left_right;
-pub(super) mod mask;
-mod median;
-mod smooth;
-mod speckle;
 mod texture;
+
+mod median;
+
+mod left_right;
+
+mod smooth;
+
+pub(super) mod confidence;
+
+mod speckle;
+
 mod vertical;
+
+mod fill;
+
+pub(super) mod mask;
 
 use super::memory::Rows5;
 use super::method::{Block, Fast, Frame, Method, Sgm, SgmEdge, SgmLean, Steps};

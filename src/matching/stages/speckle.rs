@@ -2,7 +2,7 @@
 //!
 //! An answer's support is counted along a cross (after Zhang, Lu & Lafruit 2009): from it straight up and
 //! down as far as the answers are of one surface, and from each of these along its row as far as that surface
-//! goes. Upwards every row counts, downwards the [`LOOK_AHEAD`] rows that have come when the row is decided.
+//! goes. Upwards every row counts, downwards the `LOOK_AHEAD` rows that have come when the row is decided.
 //! For a small patch that is its size or little less; counting a patch exactly (a union-find over the band)
 //! refuses the same answers to within a few in a hundred, but its work depends on the picture. This one's
 //! does not.

@@ -115,7 +115,7 @@ mod tests {
             *answer = Disparity::from_raw(raw);
         }
         let (row, lengths_of_row) = (&mut answers[..row.len()], &mut lengths[..row.len()]);
-        smooth(
+        average_row(
             row,
             lengths_of_row,
             &mut room,

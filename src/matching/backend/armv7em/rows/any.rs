@@ -16,7 +16,7 @@ pub(in super::super) fn by_bits(
     stride: usize,
     columns: &mut [u32],
 ) {
-    let count = if stride == 0 { 0 } else { 4 * columns.len() / stride };
+    let count = (4 * columns.len()).checked_div(stride).unwrap_or(0);
     if count == 0 || !stride.is_multiple_of(ROUND) {
         return;
     }

@@ -168,6 +168,7 @@ impl<T: Real> Camera<T> {
     ///
     /// Exact without distortion; with it, to a thousandth of a pixel or ten roundings of the column,
     /// whichever is more.
+    #[inline(never)]
     pub fn unproject(&self, pixel: &Point2<T>) -> Result<Vector3<T>, ProjectionError> {
         let y = (pixel.y - self.cy) / self.fy;
         let x = (pixel.x - self.cx - self.skew * y) / self.fx;

@@ -12,6 +12,7 @@ pub(crate) fn skew<T: Real>(a: &Vector3<T>) -> Matrix3<T> {
 }
 
 /// A rotation that is `1 + [w]x` to first order, by a quaternion: exact at every size, and without an angle.
+#[inline(never)]
 pub(crate) fn cayley<T: Real>(w: &Vector3<T>) -> Matrix3<T> {
     let half = w * T::of(0.5);
     let by = T::of(2.0) / (T::ONE + half.norm_squared());

@@ -38,6 +38,8 @@ impl<T: Real, const N: usize> PointMap<T, N> {
     }
 
     /// How many points are followed.
+    // Unrolled at every call it takes a kilobyte of flash each time.
+    #[inline(never)]
     pub fn len(&self) -> usize {
         self.tracks.iter().filter(|track| track.used).count()
     }

@@ -15,7 +15,7 @@
 //! The lines that are worked on twice are the price: 34 above and 10 below with `block` and the default
 //! checks.
 
-use super::method::with_scheme;
+use super::method::with_method;
 use super::{Host, MemoryPair, Outcome, RunError, Way, frame};
 use crate::map::DisparityMap;
 use std::ops::Range;
@@ -120,7 +120,7 @@ impl Bands {
         scope(|scope| {
             let threads = self.parts.iter_mut().map(|(band, pair)| {
                 let in_thread = move || {
-                    with_scheme!(way.method, S => with_pipeline::<S,
+                    with_method!(way.method, S => with_pipeline::<S,
                         T>(way, config, band, pair, work))
                 };
                 Builder::new().stack_size(STACK).spawn_scoped(scope, in_thread).expect("a thread")

@@ -1,6 +1,6 @@
 //! Frames of a source that may fail, through the core's guarded pipeline.
 
-use super::method::with_scheme;
+use super::method::with_method;
 use super::{MOST_DISPARITIES, MOST_WIDTH, MethodName};
 use crate::map::DisparityMap;
 use std::fmt::Display;
@@ -39,7 +39,7 @@ pub fn run_guarded<C: StereoSource<Error: Display> + Send>(
     keep: impl FnMut(GuardedFrame) + Send,
 ) -> Result<FaultCounters, ConfigError> {
     std::thread::scope(|scope| {
-        let work = move || with_scheme!(method, S => frames::<S, C>(config, most_lost, source, next, keep));
+        let work = move || with_method!(method, S => frames::<S, C>(config, most_lost, source, next, keep));
         let thread =
             std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work).expect("a thread");
         thread.join().expect("a thread without a panic")

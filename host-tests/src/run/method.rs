@@ -21,33 +21,33 @@ pub enum MethodName {
 }
 
 /// Does something with the core's type of a method, by the name it is given.
-macro_rules! with_scheme {
-    ($method:expr, $scheme:ident => $work:expr) => {
+macro_rules! with_method {
+    ($method:expr, $type:ident => $work:expr) => {
         match $method {
             $crate::run::MethodName::Fast => {
-                type $scheme = stereopsis::matching::Fast;
+                type $type = stereopsis::matching::Fast;
                 $work
             }
             $crate::run::MethodName::Block => {
-                type $scheme = stereopsis::matching::Block;
+                type $type = stereopsis::matching::Block;
                 $work
             }
             $crate::run::MethodName::SgmLean => {
-                type $scheme = stereopsis::matching::SgmLean;
+                type $type = stereopsis::matching::SgmLean;
                 $work
             }
             $crate::run::MethodName::Sgm => {
-                type $scheme = stereopsis::matching::Sgm;
+                type $type = stereopsis::matching::Sgm;
                 $work
             }
             $crate::run::MethodName::SgmEdge => {
-                type $scheme = stereopsis::matching::SgmEdge;
+                type $type = stereopsis::matching::SgmEdge;
                 $work
             }
         }
     };
 }
-pub(super) use with_scheme;
+pub(super) use with_method;
 
 impl MethodName {
     /// The methods of this build.
@@ -55,17 +55,22 @@ impl MethodName {
 
     /// The name on the command line and in files.
     pub const fn name(self) -> &'static str {
-        with_scheme!(self, S => S::NAME)
+        with_method!(self, S => S::NAME)
     }
 
     /// Bytes of state that firmware holds for lines of `width` and that many disparities.
     pub const fn state_bytes(self, width: u16, disparities: u16) -> usize {
-        with_scheme!(self, S => state_bytes::<S>(width as usize, disparities as usize))
+        with_method!(self, S => state_bytes::<S>(width as usize, disparities as usize))
+    }
+
+    /// A search from disparity 0 with the method's default checks and penalties.
+    pub const fn config(self, width: u16, height: u16, disparities: u16) -> Config {
+        with_method!(self, S => Config::for_method::<S>(width, height, disparities))
     }
 
     /// A search with the checks of an operating point of the method, and with its penalties.
     pub const fn with_filter(self, filter: Filter, search: Config) -> Config {
-        with_scheme!(self, S => search.with_filter::<S>(filter))
+        with_method!(self, S => search.with_filter::<S>(filter))
     }
 
     /// Whether a frame in bands is that of one pipeline to the bit: a window reaches so far and no farther, a
@@ -82,12 +87,12 @@ impl MethodName {
 
     /// How many lines after its own a row of disparities comes out.
     pub const fn latency_lines(self) -> usize {
-        with_scheme!(self, S => Host::<S>::LATENCY)
+        with_method!(self, S => Host::<S>::LATENCY)
     }
 
     /// Standard deviation of an answer away from depth edges, px.
     pub const fn sigma_px(self) -> f32 {
-        with_scheme!(self, S => S::SIGMA_PX)
+        with_method!(self, S => S::SIGMA_PX)
     }
 }
 

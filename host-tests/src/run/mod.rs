@@ -24,7 +24,7 @@ pub use method::{MethodName, UnknownMethod};
 pub use noise::{NoiseChoice, UnknownNoise, measure_noise};
 
 use self::bands::Bands;
-use self::method::with_scheme;
+use self::method::with_method;
 use crate::map::DisparityMap;
 use std::fmt;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -141,7 +141,7 @@ pub fn run<C: StereoSource<Error: fmt::Display>>(
         progress(row.index() + 1);
     };
     let (kernel, time_ms) =
-        with_scheme!(way.method, S => frame(way, &mut *hold::<S>(), config, camera, &mut keep)?);
+        with_method!(way.method, S => frame(way, &mut *hold::<S>(), config, camera, &mut keep)?);
     Ok(Outcome { map, kernel, time_ms })
 }
 
@@ -203,5 +203,5 @@ pub fn time_frames<C: StereoSource<Error: fmt::Display>>(
         }
         Ok((times_ms, pipeline.kernel()))
     }
-    with_scheme!(way.method, S => time(way, &mut *hold::<S>(), config, camera, frames))
+    with_method!(way.method, S => time(way, &mut *hold::<S>(), config, camera, frames))
 }

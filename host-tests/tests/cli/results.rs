@@ -8,7 +8,7 @@ use std::path::Path;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::RectifiedRig;
 use stereopsis::imaging::Noise;
-use stereopsis::matching::{Block, Config, Filter, Kernel};
+use stereopsis::matching::{Config, Filter, Kernel};
 use stereopsis::units::PixelFlags;
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::pfm::{self, FloatMap};
@@ -19,8 +19,7 @@ fn in_process(method: MethodName, filter: Filter, noise: NoiseChoice) -> Dispari
     let (left, right) = pair();
     let mut camera = MemoryPair::new(WIDTH as u16, left.into_raw(), right.into_raw()).expect("one size");
     let (noise, _) = noise.level(&mut camera).expect("a source that cannot fail");
-    let search =
-        Config { confidence: true, noise, ..Config::for_method::<Block>(WIDTH as u16, HEIGHT as u16, 32) };
+    let search = Config { confidence: true, noise, ..method.config(WIDTH as u16, HEIGHT as u16, 32) };
     let config = method.with_filter(filter, search);
     run(method, &config, &mut camera, |_| {}).expect("a source that cannot fail").map
 }

@@ -10,7 +10,6 @@ use stereopsis::geometry::{
     rectify::{Crop, Rectification, RowAlignment, RowHealth, RowMeter, RowMeterError},
     two_view::Correspondence,
 };
-use stereopsis::matching::{Block, Config, Filter};
 use stereopsis_host::correspond::{Plan, correspond};
 use stereopsis_host::rectify::{rectify, with_rectified};
 use stereopsis_host::rows::Rows;
@@ -136,8 +135,7 @@ fn a_knock_is_told_and_taken_back() {
         Pose::new(Matrix3::identity(), Vector3::new(rig.baseline_m().into(), 0.0, 0.0)).expect("a pose");
     let rig = StereoRig::new([camera; 2], beside, [SIZE; 2]).expect("a rig");
     let calibrated = Rectification::new(&rig, Crop::Natural, SIZE).expect("rectified");
-    let config = MethodName::Block
-        .with_filter(Filter::Default, Config::for_method::<Block>(SIZE.width, SIZE.height, 64));
+    let config = MethodName::Block.config(SIZE.width, SIZE.height, 64);
     let density = |rectification: &Rectification<f64>, right: &GrayImage| {
         let pair = MemoryPair::new(SIZE.width, left.to_vec(), right.to_vec()).expect("a pair");
         let map = with_rectified(rectification, pair, |source| {

@@ -3,7 +3,7 @@
 use image::GrayImage;
 use std::sync::LazyLock;
 use stereopsis::imaging::Noise;
-use stereopsis::matching::{Block, Config, Filter};
+use stereopsis::matching::{Config, Filter};
 use stereopsis_host::real::{Alteration, RealError, RealScene, Score};
 use stereopsis_host::run::{MemoryPair, MethodName, NoiseChoice, run};
 use stereopsis_host::scene::Scene;
@@ -36,7 +36,7 @@ fn score(method: MethodName, filter: Filter, alteration: Alteration, noise: Nois
     let mut camera =
         MemoryPair::new(width, left.into_raw(), right.into_raw()).expect("two pictures of one size");
     let (noise, _) = noise.level(&mut camera).expect("a frame");
-    let search = Config { noise, ..Config::for_method::<Block>(width, height, SCENE.disparities) };
+    let search = Config { noise, ..method.config(width, height, SCENE.disparities) };
     let config = method.with_filter(filter, search);
     let map = run(method, &config, &mut camera, |_| ()).expect("a frame").map;
     Score::of(map.disparity.iter().map(|d| d.to_f32()), &SCENE.truth).expect("scored pixels")

@@ -5,7 +5,7 @@ use image::GrayImage;
 use stereopsis::camera::{CameraPair, LineSource, StereoSource};
 use stereopsis::geometry::{camera::ImageSize, rectify::Crop};
 use stereopsis::imaging::{RectifiedPair, RectifiedPairError, Remap, RemapPair};
-use stereopsis::matching::{Block, Config, Filter};
+use stereopsis::matching::Config;
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::mock::MockCamera;
 use stereopsis_host::rectify::{rectify, with_rectified};
@@ -83,7 +83,7 @@ fn nothing_that_was_not_seen_becomes_an_answer() {
         (MethodName::SgmLean, 2),
         (MethodName::SgmEdge, 1),
     ] {
-        let config = method.with_filter(Filter::Default, Config::for_method::<Block>(160, 64, 32));
+        let config = method.config(160, 64, 32);
         let config = Config { confidence: true, ..config };
         let way = Way { threads, ..method.into() };
         let found =

@@ -1,6 +1,6 @@
 //! A frame in bands, each in a thread of its own, is that of one thread.
 
-use stereopsis::matching::{Block, Checks, Config, Filter};
+use stereopsis::matching::{Block, Checks, Config};
 use stereopsis::units::Disparity;
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::run::{MemoryPair, MethodName, Way, run};
@@ -30,7 +30,7 @@ fn bands_differ_little_along_paths() {
     let (left, right) = Scene::small(200, 240).render();
     let pair = MemoryPair::new(200, left.into_raw(), right.into_raw()).expect("one size");
     for method in MethodName::ALL.into_iter().filter(|method| !method.is_exact_in_bands()) {
-        let config = method.with_filter(Filter::Default, Config::for_method::<Block>(200, 240, 32));
+        let config = method.config(200, 240, 32);
         let (one, bands) = (map(method, &config, &pair, 1), map(method, &config, &pair, 4));
         let differ = |(a, b): (&Disparity, &Disparity)| match a.distance(*b) {
             Some(steps) => steps > Disparity::ONE,

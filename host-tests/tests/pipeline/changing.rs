@@ -1,7 +1,7 @@
 //! A camera of two pictures by turns, and what comes of them without a fault.
 
 use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, StereoSource};
-use stereopsis::matching::{Block, Checks, Config, Filter, Method, Row};
+use stereopsis::matching::{Checks, Config, Method, Row};
 use stereopsis::pipeline::Pipeline;
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::scene::SceneCamera;
@@ -93,7 +93,7 @@ impl StereoSource for Changing {
 
 pub fn config<S: Method>() -> Config {
     // Little speckle is asked for: the flag's reach down is that many rows.
-    let config = Config::for_method::<Block>(WIDTH, HEIGHT, 16).with_filter::<S>(Filter::Default);
+    let config = Config::for_method::<S>(WIDTH, HEIGHT, 16);
     let checks = Checks { speckle_pixels: 4, ..config.checks };
     Config { checks, confidence: true, ..config }
 }

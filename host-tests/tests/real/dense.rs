@@ -10,7 +10,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::sync::LazyLock;
 use stereopsis::imaging::{Balance, Noise};
-use stereopsis::matching::{Block, Config, Filter};
+use stereopsis::matching::{Config, Filter};
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::real::{Alteration, RealScene, Score};
 use stereopsis_host::run::{MemoryPair, MethodName, measure_balance, measure_noise, run};
@@ -61,8 +61,7 @@ fn match_images(
     let (width, height) = (scene.left.width() as u16, scene.left.height() as u16);
     let mut camera = camera(images);
     let noise = measure_noise(&mut camera).expect("a frame").level();
-    let search =
-        Config { confidence: true, noise, ..Config::for_method::<Block>(width, height, scene.disparities) };
+    let search = Config { confidence: true, noise, ..method.config(width, height, scene.disparities) };
     let config = method.with_filter(filter, search);
     run(method, &config, &mut camera, |_| ()).expect("a frame").map
 }

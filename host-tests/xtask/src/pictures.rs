@@ -9,7 +9,7 @@ use std::io::Write;
 use std::path::Path;
 use stereopsis::camera::{CameraPair, StereoSource};
 use stereopsis::imaging::{Balance, GreyLines, Noise};
-use stereopsis::matching::{Block, Config, Filter};
+use stereopsis::matching::{Config, Filter};
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::mock::MockCamera;
 use stereopsis_host::run::{MemoryPair, MethodName, NoiseChoice, measure_balance, run};
@@ -101,7 +101,7 @@ impl Pictures {
     /// What the host's pipeline finds in them.
     pub fn matched(&self, method: MethodName, disparities: u16, noise: Noise) -> Outcome<DisparityMap> {
         let mut camera = self.camera()?;
-        let search = Config { noise, ..Config::for_method::<Block>(self.width, self.height, disparities) };
+        let search = Config { noise, ..method.config(self.width, self.height, disparities) };
         let config = method.with_filter(Filter::Default, search);
         let outcome = run(method, &config, &mut camera, |_| ());
         outcome.map(|outcome| outcome.map).map_err(|e| Failure::new(format!("{method} on the host: {e}")))

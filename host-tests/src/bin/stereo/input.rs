@@ -6,7 +6,7 @@ use image::RgbImage;
 use std::fmt::Display;
 use stereopsis::camera::{CameraPair, LineSource, StereoSource};
 use stereopsis::imaging::{GreyLines, NoiseMeter};
-use stereopsis::matching::{Block, Config};
+use stereopsis::matching::Config;
 use stereopsis_host::mock::MockCamera;
 
 /// Bytes of the longest raw line: RGB with 16 bits.
@@ -63,7 +63,7 @@ pub fn config(range: &RangeArgs, way: &WayArgs, width: u16, height: u16) -> Resu
              wide, at most {most} is possible"
         )));
     }
-    let search = Config { min_disparity, ..Config::for_method::<Block>(width, height, disparities) };
+    let search = Config { min_disparity, ..way.method.config(width, height, disparities) };
     Ok(way.method.with_filter(way.filter, search))
 }
 

@@ -11,9 +11,7 @@ use image::imageops::{FilterType, replace, resize};
 use image::{DynamicImage, RgbImage};
 use std::sync::LazyLock;
 use stereopsis::depth::{Decimator, DepthScale, DisparityColours};
-use stereopsis::matching::{
-    Block, Config, Fast, Filter, Matcher, Method, Sgm, SgmEdge, SgmLean, state_bytes,
-};
+use stereopsis::matching::{Block, Fast, Filter, Matcher, Method, Sgm, SgmEdge, SgmLean, state_bytes};
 use stereopsis::pipeline::Pipeline;
 use stereopsis::units::Disparity;
 use stereopsis_host::colour::ColourScale;
@@ -101,8 +99,7 @@ static DEMO: LazyLock<Demo> = LazyLock::new(|| {
 
 impl Demo {
     fn match_with(&self, method: MethodName, filter: Filter) -> DisparityMap {
-        let search =
-            Config::for_method::<Block>(self.scene.width(), self.scene.height(), self.scene.disparities());
+        let search = method.config(self.scene.width(), self.scene.height(), self.scene.disparities());
         let config = method.with_filter(filter, search);
         run(method, &config, &mut self.camera.clone(), |_| ()).expect("a frame").map
     }

@@ -15,7 +15,7 @@ use image::GrayImage;
 use opencv::{MATCHERS, OpenCv};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use stereopsis::matching::{Block, Config, Filter};
+use stereopsis::matching::{Config, Filter};
 use stereopsis_host::real::{Alteration, RealScene, Score};
 use stereopsis_host::run::{MemoryPair, MethodName, measure_balance, measure_noise, run as match_pair};
 use table::Column;
@@ -135,7 +135,7 @@ fn answers(method: MethodName, scene: &RealScene, [left, right]: &[GrayImage; 2]
     }
     let mut camera = pair(right)?;
     let noise = measure_noise(&mut camera).map_err(|e| failed(&e))?.level();
-    let search = Config { noise, ..Config::for_method::<Block>(width, height, scene.disparities) };
+    let search = Config { noise, ..method.config(width, height, scene.disparities) };
     let config = method.with_filter(Filter::Default, search);
     let outcome = match_pair(method, &config, &mut camera, |_| ());
     outcome.map(|outcome| outcome.map.pixels()).map_err(|e| failed(&e))

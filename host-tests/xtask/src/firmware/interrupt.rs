@@ -7,7 +7,6 @@ use super::results::{Ran, Taken};
 use super::scene::{Scene, SceneCamera};
 use crate::steps::{Failure, Outcome};
 use serde::Serialize;
-use stereopsis::matching::{Block, Config, Filter};
 use stereopsis_host::run::{MethodName, run as match_frame};
 
 const SCENE: Scene = Scene { width: 160, height: 120 };
@@ -79,8 +78,7 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Interrupt> {
 
 /// The bytes of `interrupt.bin`: of every pixel the disparity's steps, the low byte first, and the flags.
 fn of_host() -> Outcome<Vec<u8>> {
-    let config = MethodName::Block
-        .with_filter(Filter::Default, Config::for_method::<Block>(SCENE.width, SCENE.height, DISPARITIES));
+    let config = MethodName::Block.config(SCENE.width, SCENE.height, DISPARITIES);
     let map = match_frame(MethodName::Block, &config, &mut SceneCamera::new(SCENE), |_| ())
         .map_err(|e| Failure::new(format!("the host finds no rows: {e}")))?
         .map;

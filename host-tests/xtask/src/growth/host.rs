@@ -3,7 +3,7 @@
 use super::sizes::{Column, Size, series};
 use super::table;
 use crate::steps::{Failure, Outcome};
-use stereopsis::matching::{Block, Config, Filter, Kernel};
+use stereopsis::matching::Kernel;
 use stereopsis_host::run::{MemoryPair, MethodName, Way, time_frames};
 use stereopsis_host::scene::Scene;
 
@@ -32,10 +32,7 @@ pub fn run() -> Outcome {
         let camera = MemoryPair::new(size.width, left.into_raw(), right.into_raw());
         let mut camera = camera.ok_or_else(|| Failure::new("the pictures are empty"))?;
         for (column, &(method, kernel)) in columns.iter_mut().zip(&ways) {
-            let config = method.with_filter(
-                Filter::Default,
-                Config::for_method::<Block>(size.width, size.height, size.disparities),
-            );
+            let config = method.config(size.width, size.height, size.disparities);
             let way = Way { kernel: Some(kernel), ..method.into() };
             let frames = (EVALUATIONS / size.evaluations()).max(FEWEST);
             let timed = time_frames(way, &config, &mut camera, frames as usize);

@@ -103,7 +103,7 @@ impl Rows {
     }
 
     /// In a line.
-    pub fn told(&self) -> String {
+    pub fn summary(&self) -> String {
         format!("{:.2} px off (+- {:.2}), {}", self.error_px, self.sigma_px, self.health)
     }
 

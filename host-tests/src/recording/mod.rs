@@ -248,18 +248,18 @@ pub fn record<S: StereoSource>(source: &mut S, frames: u32, out: &mut dyn Write)
         Header { width: format.width, height: format.height, max_row_skew_us: source.max_row_skew_us() };
     writeln!(out, "{TITLE}\n{}", serde_json::to_string(&header).map_err(io::Error::other)?)?;
     let (mut left, mut right) = (vec![0; format.width.into()], vec![0; format.width.into()]);
-    let mut told = Recorded::default();
+    let mut report = Recorded::default();
     for _ in 0..frames {
         match source.start_frame() {
             Ok(start) => {
-                told.frames += 1;
+                report.frames += 1;
                 out.write_all(b"F")?;
                 out.write_all(&start.sequence.to_le_bytes())?;
                 out.write_all(&start.timestamp_us.to_le_bytes())?;
                 out.write_all(&start.exposure_us.to_le_bytes())?;
             }
             Err(e) => {
-                told.faults += 1;
+                report.faults += 1;
                 out.write_all(&[b'S', RecordedFault::of(&e).code()])?;
                 continue;
             }
@@ -267,17 +267,17 @@ pub fn record<S: StereoSource>(source: &mut S, frames: u32, out: &mut dyn Write)
         for _ in 0..most_rows(format.height) {
             match source.next_lines(&mut left, &mut right) {
                 Ok(start) => {
-                    told.lines += 1;
+                    report.lines += 1;
                     out.write_all(b"L")?;
                     out.write_all(&start.row.to_le_bytes())?;
                     out.write_all(&start.timestamp_us.to_le_bytes())?;
                     out.write_all(&left)?;
                     out.write_all(&right)?;
                 }
-                // That no line is left is told by the frame that follows.
+                // That no line is left is said by the frame that follows.
                 Err(CameraError::NoLineLeft) => break,
                 Err(e) => {
-                    told.faults += 1;
+                    report.faults += 1;
                     out.write_all(&[b'E', RecordedFault::of(&e).code()])?;
                     if e.map_hardware(|_| ()) == CameraError::LostSync {
                         break;
@@ -287,7 +287,7 @@ pub fn record<S: StereoSource>(source: &mut S, frames: u32, out: &mut dyn Write)
         }
     }
     out.flush()?;
-    Ok(told)
+    Ok(report)
 }
 
 /// The faults of lines with their codes.

@@ -198,7 +198,7 @@ impl Report<'_> {
             add(&format!("Pixels with the flag '{name}'"), self.map.flagged(flag).to_string());
         }
         if let Some(rows) = &s.rows {
-            add("Rows of the images", rows.told());
+            add("Rows of the images", rows.summary());
         }
         add("Matcher state", format!("{} bytes", s.state_bytes));
         add("Delay", format!("{} lines", s.latency_lines));

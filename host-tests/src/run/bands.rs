@@ -16,7 +16,7 @@
 //! checks.
 
 use super::method::with_method;
-use super::{Host, MemoryPair, Outcome, RunError, Way, frame};
+use super::{Host, MemoryPair, Outcome, RunError, RunOptions, frame};
 use crate::map::DisparityMap;
 use std::ops::Range;
 use std::sync::Barrier;
@@ -35,10 +35,10 @@ struct Band {
 }
 
 /// The bands of a frame, as even as whole rows can be.
-fn bands(way: Way, config: &Config) -> Vec<Band> {
+fn bands(options: RunOptions, config: &Config) -> Vec<Band> {
     let height = usize::from(config.height);
-    let count = usize::from(way.threads).clamp(1, height);
-    let below = way.method.latency_lines();
+    let count = usize::from(options.threads).clamp(1, height);
+    let below = options.method.latency_lines();
     let above = below + usize::from(config.checks.median) + usize::from(config.checks.speckle_pixels);
     let band = |band: usize| {
         let rows = band * height / count..(band + 1) * height / count;
@@ -50,18 +50,18 @@ fn bands(way: Way, config: &Config) -> Vec<Band> {
 
 /// A pair of pictures in bands.
 pub(super) struct Bands {
-    way: Way,
+    options: RunOptions,
     config: Config,
     parts: Vec<(Band, MemoryPair)>,
 }
 
 impl Bands {
-    pub(super) fn new(way: Way, config: &Config, pair: &MemoryPair) -> Self {
+    pub(super) fn new(options: RunOptions, config: &Config, pair: &MemoryPair) -> Self {
         let part = |band: Band| {
             let lines = pair.rows(band.lines.clone());
             (band, lines)
         };
-        Self { way, config: *config, parts: bands(way, config).into_iter().map(part).collect() }
+        Self { options, config: *config, parts: bands(options, config).into_iter().map(part).collect() }
     }
 
     /// One frame into a map. The time is that of the band that took longest.
@@ -116,12 +116,12 @@ impl Bands {
 
     /// Does something with every band, in a thread each that has a pipeline.
     fn in_threads<T: Send>(&mut self, work: impl Fn(&Band, &mut Frame<'_>) -> T + Sync) -> Vec<T> {
-        let (way, config, work) = (self.way, &self.config, &work);
+        let (options, config, work) = (self.options, &self.config, &work);
         scope(|scope| {
             let threads = self.parts.iter_mut().map(|(band, pair)| {
                 let in_thread = move || {
-                    with_method!(way.method, S => with_pipeline::<S,
-                        T>(way, config, band, pair, work))
+                    with_method!(options.method, S => with_pipeline::<S,
+                        T>(options, config, band, pair, work))
                 };
                 Builder::new().stack_size(STACK).spawn_scoped(scope, in_thread).expect("a thread")
             });
@@ -135,7 +135,7 @@ impl Bands {
 type Frame<'a> = dyn FnMut(&mut dyn FnMut(Row<'_>)) -> Result<(Kernel, f64), ConfigError> + 'a;
 
 fn with_pipeline<S: Method, T>(
-    way: Way,
+    options: RunOptions,
     config: &Config,
     band: &Band,
     pair: &mut MemoryPair,
@@ -143,7 +143,7 @@ fn with_pipeline<S: Method, T>(
 ) -> T {
     let config = Config { height: band.lines.len() as u16, ..*config };
     let mut pipeline = Host::<S>::new();
-    work(band, &mut |keep| match frame(way, &mut pipeline, &config, pair, keep) {
+    work(band, &mut |keep| match frame(options, &mut pipeline, &config, pair, keep) {
         Ok(done) => Ok(done),
         Err(RunError::Config(e)) => Err(e),
         Err(RunError::Pipeline(e)) => panic!("a source that cannot fail: {e}"),
@@ -158,9 +158,11 @@ mod tests {
 
     #[test]
     fn bands_cover_the_frame() {
-        let way = Way { threads: 3, ..MethodName::Block.into() };
+        let options = RunOptions { threads: 3, ..MethodName::Block.into() };
         let ranges = |height| {
-            bands(way, &Config::for_method::<Block>(64, height, 16)).into_iter().map(|b| (b.rows, b.lines))
+            bands(options, &Config::for_method::<Block>(64, height, 16))
+                .into_iter()
+                .map(|b| (b.rows, b.lines))
         };
         assert!(ranges(100).eq([(0..33, 0..43), (33..66, 0..76), (66..100, 32..100)]));
         assert!(ranges(2).eq([(0..1, 0..2), (1..2, 0..2)]));

@@ -2,7 +2,7 @@
 //!
 //! In: any [`StereoSource`] of 8-bit grey lines. Out: a whole [`DisparityMap`], or the times of frames.
 //!
-//! * [`MethodName`]: the methods of this build. [`Way`]: a method, on a kernel, in so many threads.
+//! * [`MethodName`]: the methods of this build. [`RunOptions`]: a method, on a kernel, in so many threads.
 //! * [`run`]: one frame into a map. [`time_frames`]: several, timed.
 //! * [`measure_noise`]: a frame for that alone, if [`NoiseChoice`] asks for it.
 //! * [`measure_balance`]: the same for the cameras' exposures.
@@ -97,7 +97,7 @@ pub struct Outcome {
 
 /// What matches, and on what.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Way {
+pub struct RunOptions {
     /// The method.
     pub method: MethodName,
     /// The kernel; `None` is the fastest that this processor runs.
@@ -106,32 +106,32 @@ pub struct Way {
     pub threads: u16,
 }
 
-impl From<MethodName> for Way {
+impl From<MethodName> for RunOptions {
     fn from(method: MethodName) -> Self {
         Self { method, kernel: None, threads: 1 }
     }
 }
 
-impl Way {
+impl RunOptions {
     fn start<S: Method>(self, pipeline: &mut Host<S>, config: &Config) -> Result<(), ConfigError> {
         // The pipeline may have run on another one before.
         let kernel = self.kernel.unwrap_or_else(Kernel::detect);
-        pipeline.set_kernel(kernel).expect("a way names one of the available kernels");
+        pipeline.set_kernel(kernel).expect("the options name one of the available kernels");
         pipeline.start(config)
     }
 }
 
 /// One frame of `camera` into a map; `progress` is told how many rows are out after each.
 pub fn run<C: StereoSource<Error: fmt::Display>>(
-    way: impl Into<Way>,
+    options: impl Into<RunOptions>,
     config: &Config,
     camera: &mut C,
     mut progress: impl FnMut(u16),
 ) -> Result<Outcome, RunError<C::Error>> {
-    let way = way.into();
-    if way.threads > 1 {
+    let options = options.into();
+    if options.threads > 1 {
         let pair = MemoryPair::record(camera).map_err(PipelineError::from)?;
-        let outcome = Bands::new(way, config, &pair).run().map_err(RunError::Config)?;
+        let outcome = Bands::new(options, config, &pair).run().map_err(RunError::Config)?;
         progress(config.height);
         return Ok(outcome);
     }
@@ -141,19 +141,19 @@ pub fn run<C: StereoSource<Error: fmt::Display>>(
         progress(row.index() + 1);
     };
     let (kernel, time_ms) =
-        with_method!(way.method, S => frame(way, &mut *hold::<S>(), config, camera, &mut keep)?);
+        with_method!(options.method, S => frame(options, &mut *hold::<S>(), config, camera, &mut keep)?);
     Ok(Outcome { map, kernel, time_ms })
 }
 
 /// One frame through a pipeline: the kernel that did it, and its time in milliseconds without that of `keep`.
 fn frame<S: Method, C: StereoSource<Error: fmt::Display>>(
-    way: Way,
+    options: RunOptions,
     pipeline: &mut Host<S>,
     config: &Config,
     camera: &mut C,
     keep: &mut dyn FnMut(Row<'_>),
 ) -> Result<(Kernel, f64), RunError<C::Error>> {
-    way.start(pipeline, config).map_err(RunError::Config)?;
+    options.start(pipeline, config).map_err(RunError::Config)?;
     pipeline.begin_frame(camera)?;
     let mut time = Duration::ZERO;
     loop {
@@ -172,24 +172,24 @@ fn frame<S: Method, C: StereoSource<Error: fmt::Display>>(
 /// A frame's time is that of everything between asking the camera for it and its last row: with a
 /// [`MemoryPair`] that is copying the lines, census, matching and all checks.
 pub fn time_frames<C: StereoSource<Error: fmt::Display>>(
-    way: impl Into<Way>,
+    options: impl Into<RunOptions>,
     config: &Config,
     camera: &mut C,
     frames: usize,
 ) -> Result<(Vec<f64>, Kernel), RunError<C::Error>> {
-    let way = way.into();
-    if way.threads > 1 {
+    let options = options.into();
+    if options.threads > 1 {
         let pair = MemoryPair::record(camera).map_err(PipelineError::from)?;
-        return Bands::new(way, config, &pair).time(frames).map_err(RunError::Config);
+        return Bands::new(options, config, &pair).time(frames).map_err(RunError::Config);
     }
     fn time<S: Method, C: StereoSource<Error: fmt::Display>>(
-        way: Way,
+        options: RunOptions,
         pipeline: &mut Host<S>,
         config: &Config,
         camera: &mut C,
         frames: usize,
     ) -> Result<(Vec<f64>, Kernel), RunError<C::Error>> {
-        way.start(pipeline, config).map_err(RunError::Config)?;
+        options.start(pipeline, config).map_err(RunError::Config)?;
         let mut times_ms = Vec::with_capacity(frames);
         for frame in 0..=frames {
             let start = Instant::now();
@@ -203,5 +203,5 @@ pub fn time_frames<C: StereoSource<Error: fmt::Display>>(
         }
         Ok((times_ms, pipeline.kernel()))
     }
-    with_method!(way.method, S => time(way, &mut *hold::<S>(), config, camera, frames))
+    with_method!(options.method, S => time(options, &mut *hold::<S>(), config, camera, frames))
 }

@@ -1,4 +1,4 @@
-//! How noisy a camera's pictures are, told or measured.
+//! How noisy a camera's pictures are, given or measured.
 
 use std::str::FromStr;
 use stereopsis::camera::{CameraError, StereoSource};
@@ -24,8 +24,8 @@ pub enum NoiseChoice {
     /// It is measured.
     #[default]
     Auto,
-    /// It is told.
-    Told(Noise),
+    /// It is given.
+    Given(Noise),
 }
 
 impl NoiseChoice {
@@ -35,7 +35,7 @@ impl NoiseChoice {
         source: &mut C,
     ) -> Result<(Noise, Option<NoiseMeter>), CameraError<C::Error>> {
         match self {
-            Self::Told(noise) => Ok((noise, None)),
+            Self::Given(noise) => Ok((noise, None)),
             Self::Auto => measure_noise(source).map(|meter| (meter.level(), Some(meter))),
         }
     }
@@ -50,7 +50,7 @@ impl FromStr for NoiseChoice {
     type Err = UnknownNoise;
 
     fn from_str(name: &str) -> Result<Self, UnknownNoise> {
-        let told = Noise::ALL.into_iter().find(|noise| noise.name() == name).map(Self::Told);
-        told.or((name == "auto").then_some(Self::Auto)).ok_or(UnknownNoise)
+        let given = Noise::ALL.into_iter().find(|noise| noise.name() == name).map(Self::Given);
+        given.or((name == "auto").then_some(Self::Auto)).ok_or(UnknownNoise)
     }
 }

@@ -126,7 +126,7 @@ fn a_hm01b0_that_stays_in_reset_is_given_up() {
 }
 
 #[test]
-fn a_bus_error_at_any_step_of_a_start_is_told_and_the_next_start_works() {
+fn a_bus_error_at_any_step_of_a_start_is_reported_and_the_next_start_works() {
     fails_at_each_step(&hm01b0_start(), |bus| {
         Hm01b0::new(bus.clone(), 3_000_000).initialise(&mut NoopDelay::new())
     });

@@ -172,7 +172,7 @@ pub fn fails_at_each_step(
 }
 
 #[test]
-fn a_bus_error_at_any_step_of_a_start_is_told_and_the_next_start_works() {
+fn a_bus_error_at_any_step_of_a_start_is_reported_and_the_next_start_works() {
     fails_at_each_step(&mt9v034_start(), |bus| {
         let mut pin = reset_pin();
         let done = Mt9v034::new(bus.clone(), AT, CLOCK_HZ).initialise(&mut pin, &mut NoopDelay::new());
@@ -198,7 +198,7 @@ fn another_chip_at_the_address_is_named_and_left_alone() {
 }
 
 #[test]
-fn a_reset_pin_that_fails_is_told() {
+fn a_reset_pin_that_fails_is_reported() {
     let mut bus = Mock::new(&[]);
     let fault = MockError::Io(std::io::ErrorKind::NotConnected);
     let mut pin = PinMock::new(&[PinTransaction::set(State::Low).with_error(fault)]);

@@ -74,7 +74,7 @@ fn a_hm01b0_is_set_up_register_by_register() {
 }
 
 #[test]
-fn a_bus_error_at_any_step_of_a_start_is_told_and_the_next_start_works() {
+fn a_bus_error_at_any_step_of_a_start_is_reported_and_the_next_start_works() {
     fails_at_each_step(&mt9v034_start(), |bus| {
         let mut reset = reset_pin();
         let done =

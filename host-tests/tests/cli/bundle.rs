@@ -41,7 +41,7 @@ fn after(said: &str, word: &str) -> f64 {
 }
 
 #[test]
-fn costs_are_told_and_the_problem_is_refined() {
+fn costs_are_reported_and_the_problem_is_refined() {
     let bench = Bench::new();
     bench.put("p.txt", problem().as_bytes());
     for extra in [&[][..], &["--loss", "huber", "--width", "0.5"]] {

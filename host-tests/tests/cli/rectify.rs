@@ -55,7 +55,7 @@ fn keys(value: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn rows_are_aligned_and_the_new_cameras_told() {
+fn rows_are_aligned_and_the_new_cameras_reported() {
     let bench = Bench::new();
     let arguments = raw(&bench);
     let run = stereo(&arguments);

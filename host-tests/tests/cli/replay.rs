@@ -174,7 +174,7 @@ fn what_cannot_be_played_is_named() {
 }
 
 #[test]
-fn what_cannot_be_recorded_or_is_odd_is_told_by_name() {
+fn what_cannot_be_recorded_or_is_odd_is_reported_by_name() {
     let bench = Bench::new();
     let [left, right] = put_pair(&bench, true);
     let file = bench.path("a.lines");

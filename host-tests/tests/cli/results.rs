@@ -122,14 +122,14 @@ fn the_files_hold_what_the_library_says() {
 }
 
 #[test]
-fn noise_is_measured_or_told() {
+fn noise_is_measured_or_given() {
     let bench = Bench::new();
     let summary = || json(&bench.path("out/summary.json"));
     let mut maps = Vec::new();
     for noise in Noise::ALL {
         bench.matched(&[("--method", "sgm"), ("--noise", noise.name())]);
         let map = float_map(&bench.path("out/disparity.pfm")).values;
-        let expected = in_process(MethodName::Sgm, Filter::Default, NoiseChoice::Told(noise));
+        let expected = in_process(MethodName::Sgm, Filter::Default, NoiseChoice::Given(noise));
         assert_eq!(map, expected.pixels(), "{noise:?}");
         assert_eq!(summary()["noise"], noise.name());
         assert!(summary()["noise_sigma"].is_null());

@@ -100,7 +100,7 @@ fn a_thousand_scenes_come_into_focus_within_twelve_frames() {
 }
 
 #[test]
-fn a_scene_without_texture_is_told() {
+fn a_scene_without_texture_is_reported() {
     for seed in 0..50 {
         let (scene, _) = flat(seed, false);
         let (result, _) = follow(LIMITS, 1023, 300, |at| {

@@ -35,7 +35,7 @@ fn positions_are_two_bytes() {
 }
 
 #[test]
-fn slews_are_told_and_waited_for() {
+fn slews_are_reported_and_waited_for() {
     for (slew, bits, period_us) in [
         (Slew::Direct, 0, 0),
         (Slew::Linear(0), 0xc, 81),

@@ -200,7 +200,7 @@ fn breathing_is_corrected_by_the_lens() {
 }
 
 #[test]
-fn frames_that_grow_are_told_from_those_that_do_not() {
+fn frames_that_grow_are_reported_from_those_that_do_not() {
     let grey = texture(WIDTH, HEIGHT, 3.0, 160.0, 7);
     let seen = |scale: f64| {
         GrayImage::from_fn(WIDTH as u32, HEIGHT as u32, |x, y| {

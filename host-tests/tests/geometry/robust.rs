@@ -153,7 +153,7 @@ proptest! {
     }
 
     #[test]
-    fn a_wall_alone_is_told(seed in any::<u64>(), share in prop_oneof![Just(0.0), 0.1..0.4_f64]) {
+    fn a_wall_alone_is_reported(seed in any::<u64>(), share in prop_oneof![Just(0.0), 0.1..0.4_f64]) {
         let pose = nearby(&mut Random::new(seed));
         let wall = Views::of(&mut Random::new(seed), 100, pose, |random| {
             let p = anywhere(random);
@@ -250,7 +250,7 @@ fn what_cannot_be_is_refused_by_name() {
 }
 
 #[test]
-fn a_camera_that_only_turned_is_told() {
+fn a_camera_that_only_turned_is_reported() {
     let pose = nearby(&mut Random::new(8));
     let turned = Pose::new(*pose.rotation(), Vector3::zeros()).expect("a rotation");
     let views = Views::of(&mut Random::new(8), 80, turned, anywhere);

@@ -53,7 +53,7 @@ proptest! {
     /// Up to a degree about any axis, a quarter of the matches wrong, in both precisions: within five of its
     /// own deviations, which are small.
     #[test]
-    fn a_turn_is_told_with_its_uncertainty(
+    fn a_turn_is_reported_with_its_uncertainty(
         turned in [-0.017..0.017_f64, -0.017..0.017, -0.017..0.017], seed in any::<u64>(),
     ) {
         let mut random = Random::new(seed);
@@ -125,7 +125,7 @@ fn noisy(picture: &GrayImage, random: &mut Random) -> Vec<u8> {
 }
 
 #[test]
-fn a_knock_is_told_and_taken_back() {
+fn a_knock_is_reported_and_taken_back() {
     let scene = Scene::small(SIZE.width, SIZE.height);
     let (left, right) = scene.render();
     let rig = scene.rig();
@@ -181,7 +181,7 @@ fn a_knock_is_told_and_taken_back() {
 
 /// What the program says of one pair.
 #[test]
-fn rows_of_a_pair_are_told_with_their_uncertainty() {
+fn rows_of_a_pair_are_reported_with_their_uncertainty() {
     let scene = Scene::small(SIZE.width, SIZE.height);
     let (left, right) = scene.render();
     let rig = scene.rig();

@@ -23,7 +23,7 @@ fn altered(alteration: Alteration, seed: u64) -> [GrayImage; 2] {
 }
 
 fn missed(method: MethodName, alteration: Alteration) -> f64 {
-    missed_with(method, alteration, NoiseChoice::Told(Noise::None))
+    missed_with(method, alteration, NoiseChoice::Given(Noise::None))
 }
 
 fn missed_with(method: MethodName, alteration: Alteration, noise: NoiseChoice) -> f64 {
@@ -104,24 +104,24 @@ fn altered_pairs_are_harder_and_paths_bear_another_exposure() {
 fn measured_noise_is_smoothed_and_what_has_little_is_left() {
     for method in MethodName::ALL {
         let noisy = |filter| {
-            [NoiseChoice::Told(Noise::None), NoiseChoice::Auto]
+            [NoiseChoice::Given(Noise::None), NoiseChoice::Auto]
                 .map(|noise| score(method, filter, Alteration::Noise(5.0), noise))
         };
-        let [as_told, measured] = noisy(Filter::Dense).map(|score| score.missed);
+        let [as_given, measured] = noisy(Filter::Dense).map(|score| score.missed);
         assert!(
-            measured < 0.9 * as_told,
-            "{method} misses {measured} of noisy pixels, {as_told} without smoothing"
+            measured < 0.9 * as_given,
+            "{method} misses {measured} of noisy pixels, {as_given} without smoothing"
         );
         if [MethodName::SgmLean, MethodName::Sgm, MethodName::SgmEdge].contains(&method) {
-            let [as_told, measured] = noisy(Filter::Default).map(|score| score.bad2);
+            let [as_given, measured] = noisy(Filter::Default).map(|score| score.bad2);
             assert!(
-                measured < 0.8 * as_told,
-                "of its answers {method} has {measured} wrong, {as_told} as told"
+                measured < 0.8 * as_given,
+                "of its answers {method} has {measured} wrong, {as_given} as told"
             );
         }
-        let [as_told, measured] = [NoiseChoice::Told(Noise::None), NoiseChoice::Auto]
+        let [as_given, measured] = [NoiseChoice::Given(Noise::None), NoiseChoice::Auto]
             .map(|noise| missed_with(method, Alteration::Unaltered, noise));
-        assert_eq!(measured, as_told, "{method}: as taken");
+        assert_eq!(measured, as_given, "{method}: as taken");
     }
 }
 

@@ -100,7 +100,7 @@ fn borders_of_short_lines_in_black_and_white() {
 }
 
 #[test]
-fn neighbours_one_grey_level_apart_are_told_apart_everywhere_in_the_range() {
+fn neighbours_one_grey_level_apart_are_reported_apart_everywhere_in_the_range() {
     // A signed or saturating comparison would fail at one of the steps.
     for grey in 0..255 {
         for (low, high) in [(grey, grey + 1), (0, grey + 1), (grey, 255)] {

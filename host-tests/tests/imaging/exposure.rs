@@ -114,7 +114,7 @@ fn pictures_tell_what_is_wrong_with_a_camera() {
 }
 
 #[test]
-fn swapped_cameras_are_told_and_others_are_not() {
+fn swapped_cameras_are_reported_and_others_are_not() {
     let scenes = [Scene::small(160, 96), Scene::small(200, 120)].map(|scene| scene.render());
     let patterns = [1, 2, 3].map(|seed| Pattern::Shifted { most: 24, noise_grey: 3.0 }.pair(160, 96, seed));
     for (i, (left, right)) in scenes.iter().chain(&patterns).enumerate() {

@@ -9,7 +9,7 @@ use stereopsis::matching::Config;
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::mock::MockCamera;
 use stereopsis_host::rectify::{rectify, with_rectified};
-use stereopsis_host::run::{MemoryPair, MethodName, Way, run};
+use stereopsis_host::run::{MemoryPair, MethodName, RunOptions, run};
 use stereopsis_host::twin::remap as twin;
 
 /// A pair of cameras on noise, rectified line by line, as the matcher would take it.
@@ -85,15 +85,15 @@ fn nothing_that_was_not_seen_becomes_an_answer() {
     ] {
         let config = method.config(160, 64, 32);
         let config = Config { confidence: true, ..config };
-        let way = Way { threads, ..method.into() };
+        let options = RunOptions { threads, ..method.into() };
         let found =
-            with_rectified(&both, raw(), |source| run(way, &config, source, |_| ()).expect("a map").map);
+            with_rectified(&both, raw(), |source| run(options, &config, source, |_| ()).expect("a map").map);
         let found = found.expect("remaps");
         assert!(found.answers() > 300, "{method}: {}", found.answers());
         let pictures = whole.pictures.each_ref().map(|picture| picture.to_vec());
         let [left, right] = pictures;
         let mut pair = MemoryPair::new(160, left, right).expect("a pair");
-        let plain = run(way, &config, &mut pair, |_| ()).expect("a map").map;
+        let plain = run(options, &config, &mut pair, |_| ()).expect("a map").map;
         let mut lost = 0;
         for (i, (&d, &flags)) in plain.disparity.iter().zip(&plain.flags).enumerate() {
             let (x, row) = (i % 160, i / 160 * 160);

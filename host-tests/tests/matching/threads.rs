@@ -3,13 +3,13 @@
 use stereopsis::matching::{Block, Checks, Config};
 use stereopsis::units::Disparity;
 use stereopsis_host::map::DisparityMap;
-use stereopsis_host::run::{MemoryPair, MethodName, Way, run};
+use stereopsis_host::run::{MemoryPair, MethodName, RunOptions, run};
 use stereopsis_host::scene::Scene;
 
 /// The map of `threads` threads.
 fn map(method: MethodName, config: &Config, pair: &MemoryPair, threads: u16) -> DisparityMap {
-    let way = Way { threads, ..method.into() };
-    run(way, config, &mut pair.clone(), |_| ()).expect("a source that cannot fail").map
+    let options = RunOptions { threads, ..method.into() };
+    run(options, config, &mut pair.clone(), |_| ()).expect("a source that cannot fail").map
 }
 
 /// Not a number is no number's equal: the uncertainties are compared bit by bit.

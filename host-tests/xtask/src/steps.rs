@@ -137,8 +137,8 @@ pub fn run(command: &mut Command) -> Outcome {
 pub fn output_of(command: &mut Command) -> Outcome<String> {
     let output = command.output().map_err(|e| Failure(format!("{}: {e}", words(command))))?;
     if !output.status.success() {
-        let told = String::from_utf8_lossy(&output.stderr);
-        let last = told.lines().last().unwrap_or_default();
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        let last = stderr.lines().last().unwrap_or_default();
         return Err(Failure(format!("{}: {}: {last}", words(command), output.status)));
     }
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
@@ -149,9 +149,9 @@ pub struct Ended {
     /// How it ended.
     pub status: ExitStatus,
     /// What it wrote on standard output.
-    pub printed: String,
+    pub stdout: String,
     /// What it wrote on standard error.
-    pub told: String,
+    pub stderr: String,
 }
 
 /// Runs a program that prints little and may hang; fails when it does not end within `limit`.
@@ -171,21 +171,21 @@ pub fn ended_within(command: &mut Command, limit: Duration) -> Outcome<Ended> {
             }
         }
     };
-    let (mut printed, mut told) = (String::new(), String::new());
+    let (mut stdout, mut stderr) = (String::new(), String::new());
     if let (Some(mut out), Some(mut err)) = (child.stdout.take(), child.stderr.take()) {
-        let read = out.read_to_string(&mut printed).and_then(|_| err.read_to_string(&mut told));
+        let read = out.read_to_string(&mut stdout).and_then(|_| err.read_to_string(&mut stderr));
         read.map_err(|e| failed(e, command))?;
     }
-    Ok(Ended { status, printed, told })
+    Ok(Ended { status, stdout, stderr })
 }
 
 /// What a program printed that prints little and may hang, if it ended well within `limit`.
 pub fn output_within(command: &mut Command, limit: Duration) -> Outcome<String> {
-    let Ended { status, printed, told } = ended_within(command, limit)?;
+    let Ended { status, stdout, stderr } = ended_within(command, limit)?;
     if status.success() {
-        return Ok(printed);
+        return Ok(stdout);
     }
-    Err(Failure(format!("{}: {status}: {} {}", words(command), printed.trim(), told.trim())))
+    Err(Failure(format!("{}: {status}: {} {}", words(command), stdout.trim(), stderr.trim())))
 }
 
 /// A command's words, as typed.

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::input::{self, Pair};
-use crate::shared::{PairArgs, RangeArgs, WayArgs, print, whole};
+use crate::shared::{MethodArgs, PairArgs, RangeArgs, print, whole};
 use clap::Args;
 use serde::Serialize;
 use stereopsis_host::run::{MemoryPair, time_frames};
@@ -21,7 +21,7 @@ pub struct BenchArgs {
     #[command(flatten)]
     pub range: RangeArgs,
     #[command(flatten)]
-    pub way: WayArgs,
+    pub method: MethodArgs,
     /// How many frames are timed, 1 to 10000
     #[arg(long, value_name = "K", default_value_t = 5, value_parser = repeat, allow_negative_numbers = true)]
     pub repeat: u16,
@@ -45,18 +45,19 @@ struct Times {
 
 pub fn run(args: &BenchArgs) -> Result<(), Failure> {
     let mut pair = Pair::open(&args.pair)?;
-    let config = input::config(&args.range, &args.way, pair.width, pair.height)?;
+    let config = input::config(&args.range, &args.method, pair.width, pair.height)?;
     // Files and the conversion to grey are left out of the times.
     let mut camera = MemoryPair::record(&mut pair.camera)?;
-    let (config, _) = input::with_noise(&args.way, config, &mut camera)?;
-    let (frame_ms, kernel) = time_frames(args.way.way(), &config, &mut camera, usize::from(args.repeat))?;
+    let (config, _) = input::with_noise(&args.method, config, &mut camera)?;
+    let (frame_ms, kernel) =
+        time_frames(args.method.run_options(), &config, &mut camera, usize::from(args.repeat))?;
     let times = Times {
         frame_ms,
         kernel: kernel.name(),
         width: config.width,
         height: config.height,
         disparities: config.disparities,
-        state_bytes: args.way.method.state_bytes(config.width, config.disparities),
+        state_bytes: args.method.method.state_bytes(config.width, config.disparities),
         noise: config.noise.name(),
     };
     print(&(serde_json::to_string(&times)? + "\n"))

@@ -94,11 +94,11 @@ pub fn run(args: &BundleArgs) -> Result<(), Failure> {
     bar.finish_and_clear();
     let seconds = start.elapsed().as_secs_f64();
     place.write(|out| running.problem().write(out), None)?;
-    print(&told(args, sizes, squares, &running, seconds))
+    print(&summary(args, sizes, squares, &running, seconds))
 }
 
 /// The run in lines.
-fn told(
+fn summary(
     args: &BundleArgs,
     (cameras, points, observations): (usize, usize, usize),
     squares: f64,

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::input;
 use crate::place::png;
 use crate::results::{self, figures, place};
-use crate::shared::{RangeArgs, WayArgs, print};
+use crate::shared::{MethodArgs, RangeArgs, print};
 use clap::Args;
 use image::{DynamicImage, GrayImage, RgbImage};
 use std::fmt::Write as _;
@@ -25,7 +25,7 @@ pub struct DemoArgs {
     #[arg(long, value_name = "DIR", default_value = "demo-out")]
     pub out: PathBuf,
     #[command(flatten)]
-    pub way: WayArgs,
+    pub method: MethodArgs,
 }
 
 const IMAGES: [&str; 2] = ["left.png", "right.png"];
@@ -38,17 +38,17 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
     let (left, right) = scene.render();
     let truth = scene.truth();
     let range = RangeArgs { disparities: scene.disparities(), min_disparity: 0 };
-    let config = input::config(&range, &args.way, scene.width(), scene.height())?;
+    let config = input::config(&range, &args.method, scene.width(), scene.height())?;
     let config = Config { confidence: true, ..config };
     let no_pair = || Failure::new("the scene's two pictures differ in size");
     let mut camera = MemoryPair::new(config.width, left.to_vec(), right.to_vec()).ok_or_else(no_pair)?;
-    let (config, meter) = input::with_noise(&args.way, config, &mut camera)?;
-    let outcome = run::run(args.way.way(), &config, &mut camera, |_| {})?;
+    let (config, meter) = input::with_noise(&args.method, config, &mut camera)?;
+    let outcome = run::run(args.method.run_options(), &config, &mut camera, |_| {})?;
     let scale = DepthScale::new(&scene.rig())?;
 
     let accuracy = Accuracy::of(&outcome.map, &truth, &scale);
-    let filter = args.way.filter.name();
-    let summary = Summary::new(args.way.method, filter, &config, &outcome, Some(&scale), Some(accuracy));
+    let filter = args.method.filter.name();
+    let summary = Summary::new(args.method.method, filter, &config, &outcome, Some(&scale), Some(accuracy));
     let summary = summary.with_noise(meter.as_ref());
     let (left_rgb, right_rgb) = (colours(&left), colours(&right));
     let report = Report {

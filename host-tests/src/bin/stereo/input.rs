@@ -1,7 +1,7 @@
 //! The images and the search, checked against each other before any work.
 
 use crate::failure::Failure;
-use crate::shared::{PairArgs, RangeArgs, WayArgs};
+use crate::shared::{MethodArgs, PairArgs, RangeArgs};
 use image::RgbImage;
 use std::fmt::Display;
 use stereopsis::camera::{CameraPair, LineSource, StereoSource};
@@ -42,7 +42,7 @@ impl Pair {
 
 /// The search in images of that size, as the method and its filter have it, or which option does not fit
 /// them. The noise is still to be told: [`with_noise`].
-pub fn config(range: &RangeArgs, way: &WayArgs, width: u16, height: u16) -> Result<Config, Failure> {
+pub fn config(range: &RangeArgs, options: &MethodArgs, width: u16, height: u16) -> Result<Config, Failure> {
     let RangeArgs { disparities, min_disparity } = *range;
     if width < Config::FEWEST_DISPARITIES {
         let least = Config::FEWEST_DISPARITIES;
@@ -63,16 +63,16 @@ pub fn config(range: &RangeArgs, way: &WayArgs, width: u16, height: u16) -> Resu
              wide, at most {most} is possible"
         )));
     }
-    let search = Config { min_disparity, ..way.method.config(width, height, disparities) };
-    Ok(way.method.with_filter(way.filter, search))
+    let search = Config { min_disparity, ..options.method.config(width, height, disparities) };
+    Ok(options.method.with_filter(options.filter, search))
 }
 
 /// The search with the noise that is told or measured in the source's next frame, and what was measured.
 pub fn with_noise<C: StereoSource<Error: Display>>(
-    way: &WayArgs,
+    options: &MethodArgs,
     config: Config,
     source: &mut C,
 ) -> Result<(Config, Option<NoiseMeter>), Failure> {
-    let (noise, meter) = way.noise.level(source).map_err(|e| Failure::new(e.to_string()))?;
-    Ok((way.method.with_filter(way.filter, Config { noise, ..config }), meter))
+    let (noise, meter) = options.noise.level(source).map_err(|e| Failure::new(e.to_string()))?;
+    Ok((options.method.with_filter(options.filter, Config { noise, ..config }), meter))
 }

@@ -6,7 +6,7 @@ use crate::place::{json, png};
 use crate::progress::Progress;
 use crate::rectified::{self, RectifiedCameras};
 use crate::results::{self, figures, place};
-use crate::shared::{BalanceArgs, PairArgs, RangeArgs, RectifyOptions, Unit, WayArgs, print};
+use crate::shared::{BalanceArgs, MethodArgs, PairArgs, RangeArgs, RectifyOptions, Unit, print};
 use clap::Args;
 use image::{RgbImage, imageops};
 use std::fmt::{Display, Write};
@@ -47,7 +47,7 @@ pub struct MatchArgs {
     #[command(flatten)]
     pub range: RangeArgs,
     #[command(flatten)]
-    pub way: WayArgs,
+    pub method: MethodArgs,
     #[command(flatten)]
     pub balance: BalanceArgs,
     /// Calibration of the pair, for depths: a Middlebury or KITTI calib.txt, what OpenCV or ROS (twice) say
@@ -87,7 +87,7 @@ struct Matched {
 
 pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let mut pair = Pair::open(&args.pair)?;
-    let config = input::config(&args.range, &args.way, pair.width, pair.height)?;
+    let config = input::config(&args.range, &args.method, pair.width, pair.height)?;
     let config = Config { confidence: true, ..config };
     let (scene, matched) = if args.rectify {
         raw(args, config, &mut pair)?
@@ -103,7 +103,7 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
 
     let Matched { config, meter, balance, outcome } = matched;
     let scale = scene.scale.as_ref();
-    let summary = Summary::new(args.way.method, args.way.filter.name(), &config, &outcome, scale, None);
+    let summary = Summary::new(args.method.method, args.method.filter.name(), &config, &outcome, scale, None);
     let summary = summary.with_noise(meter.as_ref()).with_balance(balance).with_rows(scene.rows);
     let report = Report {
         left_name: &name(&args.pair.left),
@@ -147,7 +147,7 @@ fn matched<C: StereoSource<Error: Display>>(
     config: Config,
     source: &mut C,
 ) -> Result<Matched, Failure> {
-    if !args.balance.is_for(args.way.method) {
+    if !args.balance.is_for(args.method.method) {
         return matched_as_it_comes(args, config, source);
     }
     let mut balanced = BalancedPair::new(source);
@@ -162,9 +162,9 @@ fn matched_as_it_comes<C: StereoSource<Error: Display>>(
     config: Config,
     source: &mut C,
 ) -> Result<Matched, Failure> {
-    let (config, meter) = input::with_noise(&args.way, config, source)?;
+    let (config, meter) = input::with_noise(&args.method, config, source)?;
     let progress = Progress::over(&config);
-    let outcome = run::run(args.way.way(), &config, source, |rows| progress.rows(rows));
+    let outcome = run::run(args.method.run_options(), &config, source, |rows| progress.rows(rows));
     let outcome = outcome.map_err(|e| Failure::new(e.to_string()))?;
     Ok(Matched { config, meter, balance: Balance::NONE, outcome })
 }

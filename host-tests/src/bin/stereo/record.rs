@@ -75,7 +75,10 @@ pub fn run(args: &RecordArgs) -> Result<(), Failure> {
         return Err(error.into());
     }
     written?;
-    let told = recorded.unwrap_or_default();
+    let report = recorded.unwrap_or_default();
     let name = one_line(&args.out.display().to_string());
-    print(&format!("{} frames, {} lines, {} errors are in {name}\n", told.frames, told.lines, told.faults))
+    print(&format!(
+        "{} frames, {} lines, {} errors are in {name}\n",
+        report.frames, report.lines, report.faults
+    ))
 }

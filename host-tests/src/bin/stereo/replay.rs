@@ -5,7 +5,7 @@ mod summary;
 use crate::failure::Failure;
 use crate::input;
 use crate::place::{json, png};
-use crate::shared::{BalanceArgs, RangeArgs, WayArgs, filter, method, noise, print, rate};
+use crate::shared::{BalanceArgs, MethodArgs, RangeArgs, filter, method, noise, print, rate};
 use clap::{Args, ValueEnum};
 use std::fmt::Display;
 use std::fs;
@@ -114,9 +114,9 @@ fn config(args: &ReplayArgs, header: Header) -> Result<Config, Failure> {
             header.width
         )));
     }
-    let way =
-        WayArgs { method: args.method, filter: args.filter, noise: args.noise, kernel: None, threads: 1 };
-    input::config(&args.range, &way, header.width, header.height)
+    let options =
+        MethodArgs { method: args.method, filter: args.filter, noise: args.noise, kernel: None, threads: 1 };
+    input::config(&args.range, &options, header.width, header.height)
 }
 
 fn play(
@@ -133,7 +133,7 @@ fn play(
     let next = |source: &mut Playback<_>| {
         left = left.checked_sub(1).filter(|_| source.has_frame())?;
         let noise = match args.noise {
-            NoiseChoice::Told(noise) => noise,
+            NoiseChoice::Given(noise) => noise,
             NoiseChoice::Auto => seen.noise(),
         };
         noisy_frames += u32::from(noise != Noise::None);

@@ -62,7 +62,7 @@ pub fn figures(summary: &Summary) -> String {
         None => writeln!(text, "noise        {}, as told", s.noise),
     };
     if let Some(rows) = &s.rows {
-        let _ = writeln!(text, "rows         {}", rows.told());
+        let _ = writeln!(text, "rows         {}", rows.summary());
     }
     if let Some(d) = s.disparity_px {
         let _ = writeln!(text, "disparity    {:.2} to {:.2} px, median {:.2} px", d.min, d.max, d.median);

@@ -6,7 +6,7 @@ use nalgebra::Matrix3;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use stereopsis::matching::{Config, Filter, Kernel};
-use stereopsis_host::run::{MethodName, NoiseChoice, UnknownMethod, UnknownNoise, Way};
+use stereopsis_host::run::{MethodName, NoiseChoice, RunOptions, UnknownMethod, UnknownNoise};
 
 #[derive(Debug, Args)]
 pub struct PairArgs {
@@ -30,7 +30,7 @@ pub struct RangeArgs {
 }
 
 #[derive(Debug, Args)]
-pub struct WayArgs {
+pub struct MethodArgs {
     /// fast (4-bit census, 9x7 window), block (8-bit census, 9x9 window), or along paths sgm-lean, sgm and
     /// sgm-edge
     #[arg(long, value_name = "METHOD", default_value = "block", value_parser = method)]
@@ -50,10 +50,10 @@ pub struct WayArgs {
     pub threads: u16,
 }
 
-impl WayArgs {
+impl MethodArgs {
     /// The method, on the kernel, in the threads.
-    pub fn way(&self) -> Way {
-        Way { method: self.method, kernel: self.kernel, threads: self.threads }
+    pub fn run_options(&self) -> RunOptions {
+        RunOptions { method: self.method, kernel: self.kernel, threads: self.threads }
     }
 }
 

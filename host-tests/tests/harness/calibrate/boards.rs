@@ -100,7 +100,7 @@ fn what_is_not_there_is_not_found() {
 
 /// Of a board that looks the same both ways round, the right picture's order is the left one's.
 #[test]
-fn an_ambiguous_board_is_told_alike_in_both_pictures() {
+fn an_ambiguous_board_is_reported_alike_in_both_pictures() {
     let pattern = pattern(6, 6);
     assert!(pattern.is_ambiguous());
     let cameras = BoardCamera::pair(&rig());

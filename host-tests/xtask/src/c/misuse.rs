@@ -37,14 +37,16 @@ pub fn panicking_library() -> Outcome {
     // The linker's own words, not their translation.
     let built = command("cmake", &["--build"]).arg(&build).env("LC_ALL", "C").output();
     let built = built.map_err(|e| Failure::new(format!("cmake --build: {e}")))?;
-    let told = String::from_utf8_lossy(&built.stderr).into_owned();
-    match told.lines().find(|line| line.contains("undefined reference to `the_stereopsis_library_can_panic'"))
+    let stderr = String::from_utf8_lossy(&built.stderr).into_owned();
+    match stderr
+        .lines()
+        .find(|line| line.contains("undefined reference to `the_stereopsis_library_can_panic'"))
     {
         Some(line) if !built.status.success() => println!("a library that can panic is refused: {line}"),
         _ => {
             return Err(Failure::new(format!(
                 "a library that can panic was not refused for that: {}",
-                told.trim()
+                stderr.trim()
             )));
         }
     }
@@ -74,9 +76,9 @@ pub fn refused() -> Outcome {
     };
     let says = |arguments: &[&str], expected: &str| {
         let mut run = command(&program, arguments);
-        let told = ended_within(run.current_dir(folder.path()), LIMIT)?;
-        if told.status.success() || told.told.trim() != expected || !told.printed.is_empty() {
-            let line = format!("the example ends with {} and says \"{}\"", told.status, told.told.trim());
+        let ended = ended_within(run.current_dir(folder.path()), LIMIT)?;
+        if ended.status.success() || ended.stderr.trim() != expected || !ended.stdout.is_empty() {
+            let line = format!("the example ends with {} and says \"{}\"", ended.status, ended.stderr.trim());
             return Err(Failure::new(format!("{line}, expected \"{expected}\"")));
         }
         Ok(())
@@ -98,11 +100,11 @@ pub fn refused() -> Outcome {
         ("STEREOPSIS_DISPARITIES", "40", "STEREOPSIS_DISPARITIES is 40: it must be a multiple of 16"),
         ("STEREOPSIS_WIDTH", "32", "STEREOPSIS_WIDTH is 32: it must be 64 (the disparities) to 6553"),
     ] {
-        let told = cargo("build --locked --release")
+        let ended = cargo("build --locked --release")
             .env(name, value)
             .output()
             .map_err(|e| Failure::new(format!("cargo: {e}")))?;
-        if told.status.success() || !String::from_utf8_lossy(&told.stderr).contains(expected) {
+        if ended.status.success() || !String::from_utf8_lossy(&ended.stderr).contains(expected) {
             return Err(Failure::new(format!("{name}={value} was not refused with \"{expected}\"")));
         }
     }

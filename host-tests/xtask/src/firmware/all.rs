@@ -113,7 +113,7 @@ fn one(program: Program, real: &[(String, Pictures)]) -> Outcome<Result> {
     let built = program.build()?;
     let scene = Pictures::of_scene(Scene { width: program.width, height: program.height })?;
     let frame = frame::run(&built, &scene, true)?;
-    println!("{}", frame.told());
+    println!("{}", frame.summary());
     let mut spread = Vec::new();
     if program.width == SPREAD_WIDTH {
         spread = spread_over(&built, real)?;

@@ -92,12 +92,12 @@ impl Tabled for Bundle {
 
 impl Bundle {
     /// In a line.
-    pub fn told(&self) -> String {
-        let told = format!(
+    pub fn summary(&self) -> String {
+        let line = format!(
             "{} instructions for an iteration, {} of them; cost {:.3} from {:.3}; state {} bytes",
             self.instructions_per_iteration, self.iterations, self.cost, self.initial_cost, self.state_bytes
         );
-        self.taken.told("bundle", &told)
+        self.taken.summary("bundle", &line)
     }
 }
 

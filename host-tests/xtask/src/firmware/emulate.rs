@@ -69,11 +69,12 @@ pub fn run_elf(board: Board, elf: &Path, name: &str, folder: &Path) -> Outcome<S
 }
 
 fn run_within(board: Board, elf: &Path, name: &str, folder: &Path, limit: Duration) -> Outcome<String> {
-    let Ended { status, printed, told } = ended_within(qemu(board).arg(elf).current_dir(folder), limit)?;
+    let Ended { status, stdout: printed, stderr } =
+        ended_within(qemu(board).arg(elf).current_dir(folder), limit)?;
     if status.success() {
         return Ok(printed);
     }
     let lines = super::log::read(elf, name, folder).unwrap_or_default();
-    let last = lines.last().map_or(told.trim(), String::as_str);
+    let last = lines.last().map_or(stderr.trim(), String::as_str);
     Err(Failure::new(format!("{name} in QEMU: {status}: {last}")))
 }

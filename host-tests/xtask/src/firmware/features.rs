@@ -143,8 +143,8 @@ impl Tabled for Features {
 
 impl Features {
     /// In a line.
-    pub fn told(&self) -> String {
-        let told = format!(
+    pub fn summary(&self) -> String {
+        let line = format!(
             "{:.1} instructions for a pixel, {} for matching {} with {} features; {} of {} matches are \
              right, crc32 {}",
             self.detection_instructions_per_pixel,
@@ -155,7 +155,7 @@ impl Features {
             self.matches,
             self.crc32
         );
-        self.taken.told("features", &told)
+        self.taken.summary("features", &line)
     }
 }
 

@@ -127,8 +127,8 @@ impl Tabled for Focus {
 
 impl Focus {
     /// In a line.
-    pub fn told(&self) -> String {
-        let told = format!(
+    pub fn summary(&self) -> String {
+        let line = format!(
             "{:.1} instructions for a pixel of a frame; state {} bytes; {} of {} tiles are in focus, {:.3} \
              frames from the truth in the median, crc32 {}",
             self.instructions_per_pixel,
@@ -138,7 +138,7 @@ impl Focus {
             self.median_error_frames,
             self.crc32
         );
-        self.taken.told("focus", &told)
+        self.taken.summary("focus", &line)
     }
 }
 

@@ -94,7 +94,7 @@ impl Frame {
     }
 
     /// The frame in a line.
-    pub fn told(&self) -> String {
+    pub fn summary(&self) -> String {
         format!(
             "{}: {} instructions, {:.2} for each of {} evaluations; RAM {} bytes, stack {}, flash {}, crc32 \
              {:08x}",

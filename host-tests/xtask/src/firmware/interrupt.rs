@@ -1,5 +1,6 @@
 //! The program `interrupt` on one core: lines that a timer brings while the matcher works, held to the host's
-//! own rows; none lost at the rate that the matcher's instructions allow, and losses told at twice that rate.
+//! own rows; none lost at the rate that the matcher's instructions allow, and losses reported at twice that
+//! rate.
 
 use super::board::Board;
 use super::program::Optimised;
@@ -54,10 +55,10 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Interrupt> {
     let (overruns, lost, damaged) =
         (figure("overruns_twice")?, figure("lost_twice")?, figure("damaged_twice")?);
     if overruns == 0 || lost == 0 || damaged == 0 {
-        let told = format!(
+        let line = format!(
             "{overruns} overruns, {lost} lines lost, {damaged} rows flagged at twice the rate: none may be 0"
         );
-        return Err(ran.failed(told));
+        return Err(ran.failed(line));
     }
     Ok(Interrupt {
         width: SCENE.width,
@@ -93,8 +94,8 @@ fn of_host() -> Outcome<Vec<u8>> {
 
 impl Interrupt {
     /// In a line.
-    pub fn told(&self) -> String {
-        let told = format!(
+    pub fn summary(&self) -> String {
+        let line = format!(
             "a line every {} instructions, {} rows and no line lost; at twice the rate {} lines lost and \
              told, {} of {} rows flagged, none wrong without a flag; crc32 {}",
             self.instructions_per_line,
@@ -104,7 +105,7 @@ impl Interrupt {
             self.rows_at_twice,
             self.crc32
         );
-        self.taken.told("interrupt", &told)
+        self.taken.summary("interrupt", &line)
     }
 }
 

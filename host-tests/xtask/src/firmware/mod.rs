@@ -70,13 +70,13 @@ use tables::Readme;
 pub fn run(arguments: &Arguments) -> Outcome {
     match arguments.asked()? {
         Asked::Depth(one) => run_one(&one),
-        Asked::Pose(plain) => run_plain(&plain, pose::run, Pose::told),
-        Asked::Features(plain) => run_plain(&plain, features::run, Features::told),
-        Asked::Focus(plain) => run_plain(&plain, focus::run, Focus::told),
-        Asked::Bundle(plain) => run_plain(&plain, bundle::run, Bundle::told),
-        Asked::Odometry(plain) => run_plain(&plain, odometry::run, Odometry::told),
-        Asked::Rectify(plain) => run_plain(&plain, rectify::run, Rectify::told),
-        Asked::Interrupt(plain) => run_plain(&plain, interrupt::run, Interrupt::told),
+        Asked::Pose(plain) => run_plain(&plain, pose::run, Pose::summary),
+        Asked::Features(plain) => run_plain(&plain, features::run, Features::summary),
+        Asked::Focus(plain) => run_plain(&plain, focus::run, Focus::summary),
+        Asked::Bundle(plain) => run_plain(&plain, bundle::run, Bundle::summary),
+        Asked::Odometry(plain) => run_plain(&plain, odometry::run, Odometry::summary),
+        Asked::Rectify(plain) => run_plain(&plain, rectify::run, Rectify::summary),
+        Asked::Interrupt(plain) => run_plain(&plain, interrupt::run, Interrupt::summary),
         Asked::All => run_all(Readme::of_check(arguments.check)),
         Asked::Stages => stages::run(Readme::of_check(arguments.check)),
     }
@@ -86,12 +86,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
 fn run_all(readme: Readme) -> Outcome {
     all::run(readme)?;
     two_views_all::run(readme)?;
-    plain::run_all(readme, bundle::run, Bundle::told)?;
-    plain::run_all(readme, features::run, Features::told)?;
-    plain::run_all(readme, focus::run, Focus::told)?;
-    plain::run_all(readme, odometry::run, Odometry::told)?;
-    plain::run_all(readme, rectify::run, Rectify::told)?;
-    println!("{}", interrupt::run(board::M4, Optimised::Speed)?.told());
+    plain::run_all(readme, bundle::run, Bundle::summary)?;
+    plain::run_all(readme, features::run, Features::summary)?;
+    plain::run_all(readme, focus::run, Focus::summary)?;
+    plain::run_all(readme, odometry::run, Odometry::summary)?;
+    plain::run_all(readme, rectify::run, Rectify::summary)?;
+    println!("{}", interrupt::run(board::M4, Optimised::Speed)?.summary());
     Ok(())
 }
 
@@ -139,7 +139,7 @@ fn run_one(one: &One) -> Outcome {
         println!("{line}");
     }
     summary::write(&one.out, &frame)?;
-    println!("{}", frame.told());
+    println!("{}", frame.summary());
     println!("results are in {}, equal to the host's to the bit", one.out.display());
     Ok(())
 }

@@ -88,8 +88,8 @@ impl Tabled for Odometry {
 
 impl Odometry {
     /// In a line.
-    pub fn told(&self) -> String {
-        let told = format!(
+    pub fn summary(&self) -> String {
+        let line = format!(
             "{} instructions for a frame, {} at most; {} points agree in the last, {} urad turned; state {} \
              bytes",
             self.instructions_per_frame,
@@ -98,7 +98,7 @@ impl Odometry {
             self.turned_urad,
             self.state_bytes
         );
-        self.taken.told("odometry", &told)
+        self.taken.summary("odometry", &line)
     }
 }
 

@@ -50,8 +50,8 @@ pub fn measured<T: Tabled>(
 
 /// The table. What a line is made for stands in it where that is not the same for all.
 pub fn table<T: Tabled>(all: &[T]) -> String {
-    let is_told = T::CASES.iter().any(|&(_, optimised)| optimised == Optimised::Size);
-    let made_for = |words: &'static str| is_told.then_some(words);
+    let says_size = T::CASES.iter().any(|&(_, optimised)| optimised == Optimised::Size);
+    let made_for = |words: &'static str| says_size.then_some(words);
     let line = |cells: &[&str]| format!("| {} |\n", cells.join(" | "));
     let names: Vec<_> = ["core"].into_iter().chain(made_for("made for")).collect();
     let numbers = [T::COLUMNS, &["static RAM", "stack", "flash", "panic symbols"]].concat();

@@ -132,12 +132,12 @@ impl Tabled for Pose {
 
 impl Pose {
     /// In a line.
-    pub fn told(&self) -> String {
-        let told = format!(
+    pub fn summary(&self) -> String {
+        let line = format!(
             "{} instructions, of them {} for F with {} samples; {} for eight points alone",
             self.instructions, self.robust_instructions, self.samples, self.eight_point_instructions
         );
-        self.taken.told("pose", &told)
+        self.taken.summary("pose", &line)
     }
 }
 

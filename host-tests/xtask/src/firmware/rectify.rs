@@ -124,14 +124,14 @@ impl Tabled for Rectify {
 
 impl Rectify {
     /// In a line.
-    pub fn told(&self) -> String {
+    pub fn summary(&self) -> String {
         let [none, mild, strong] = self.instructions_per_pixel;
-        let told = format!(
+        let line = format!(
             "{none:.1} instructions for a pixel without a lens, {mild:.1} with a mild and {strong:.1} with \
              a strong one; {} for a frame of depth, {:.1} % right; state {} bytes beside {} of lines",
             self.depth_instructions, self.right_percent, self.state_bytes, self.band_bytes
         );
-        self.taken.told("rectify", &told)
+        self.taken.summary("rectify", &line)
     }
 }
 

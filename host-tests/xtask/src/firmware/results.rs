@@ -36,7 +36,7 @@ impl Taken {
     }
 
     /// What came of a program, and this, in a line.
-    pub fn told(&self, program: &str, found: &str) -> String {
+    pub fn summary(&self, program: &str, found: &str) -> String {
         let Self { core, profile, static_ram_bytes: ram, stack_bytes: stack, flash_bytes: flash, .. } = self;
         format!("{core}-{program}-{profile}: {found}; RAM {ram} bytes, stack {stack}, flash {flash}")
     }

@@ -20,7 +20,7 @@ struct EightPoint {
 
 /// Measures all of it; writes the table into docs/performance.md, or compares it.
 pub fn run(readme: Readme) -> Outcome {
-    let poses = plain::measured(readme, pose::run, Pose::told)?;
+    let poses = plain::measured(readme, pose::run, Pose::summary)?;
     let EightPoint { instructions, flash } = eight_point()?;
     if flash > MOST_EIGHT_POINT {
         return Err(Failure::new(format!(

@@ -4,7 +4,7 @@ use super::sizes::{Column, Size, series};
 use super::table;
 use crate::steps::{Failure, Outcome};
 use stereopsis::matching::Kernel;
-use stereopsis_host::run::{MemoryPair, MethodName, Way, time_frames};
+use stereopsis_host::run::{MemoryPair, MethodName, RunOptions, time_frames};
 use stereopsis_host::scene::Scene;
 
 const WIDTHS: [u16; 6] = [160, 320, 639, 640, 1280, 2560];
@@ -19,11 +19,11 @@ const FEWEST: u64 = 3;
 pub fn run() -> Outcome {
     let series = series(&WIDTHS, &HEIGHTS, &DISPARITIES);
     let sizes: Vec<Size> = series.iter().flat_map(|(_, sizes)| sizes.iter().copied()).collect();
-    let ways: Vec<(MethodName, Kernel)> = MethodName::ALL
+    let kernels: Vec<(MethodName, Kernel)> = MethodName::ALL
         .into_iter()
         .flat_map(|method| Kernel::available().map(move |kernel| (method, kernel)))
         .collect();
-    let mut columns: Vec<Column> = ways
+    let mut columns: Vec<Column> = kernels
         .iter()
         .map(|(method, kernel)| Column { on: kernel.name().to_owned(), method: *method, costs: Vec::new() })
         .collect();
@@ -31,11 +31,11 @@ pub fn run() -> Outcome {
         let (left, right) = Scene::small(size.width, size.height).render();
         let camera = MemoryPair::new(size.width, left.into_raw(), right.into_raw());
         let mut camera = camera.ok_or_else(|| Failure::new("the pictures are empty"))?;
-        for (column, &(method, kernel)) in columns.iter_mut().zip(&ways) {
+        for (column, &(method, kernel)) in columns.iter_mut().zip(&kernels) {
             let config = method.config(size.width, size.height, size.disparities);
-            let way = Way { kernel: Some(kernel), ..method.into() };
+            let options = RunOptions { kernel: Some(kernel), ..method.into() };
             let frames = (EVALUATIONS / size.evaluations()).max(FEWEST);
-            let timed = time_frames(way, &config, &mut camera, frames as usize);
+            let timed = time_frames(options, &config, &mut camera, frames as usize);
             let (times_ms, _) = timed.map_err(|e| Failure::new(format!("{method} on the host: {e}")))?;
             let best_ms = times_ms.into_iter().fold(f64::INFINITY, f64::min);
             column.costs.push(best_ms * 1e6 / size.evaluations() as f64);

@@ -22,7 +22,7 @@
 //! * [`views`]: pictures of one camera from several places through the core's structure from motion.
 //! * [`bal`]: problems of bundle adjustment through the core.
 //! * [`twin`]: each stage again, naively, to hold the core to.
-//! * [`map`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`], [`output`],
+//! * [`map`], [`depth_samples`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`], [`output`],
 //!   [`report`]: results as files. [`command_line`]: errors in one line.
 
 pub mod bal;
@@ -31,6 +31,7 @@ pub mod calibration;
 pub mod colour;
 pub mod command_line;
 pub mod correspond;
+pub mod depth_samples;
 pub mod epipolar_picture;
 pub mod fault;
 pub mod focus;

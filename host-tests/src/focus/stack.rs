@@ -1,6 +1,7 @@
 //! The frames of a focus stack: the images of a folder, in the order of their names.
 
 use crate::mock::{MockCamera, MockError};
+use alphanumeric_sort::sort_path_slice;
 use image::{GrayImage, RgbImage};
 use std::convert::Infallible;
 use std::io;
@@ -127,7 +128,7 @@ impl Stack {
     }
 }
 
-/// The images of a folder in the order of their names.
+/// The images of a folder in the order of their names, numbers by their value: `f2` comes before `f10`.
 pub(crate) fn images(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder)? {
@@ -138,7 +139,7 @@ pub(crate) fn images(folder: &Path) -> io::Result<Vec<PathBuf>> {
             files.push(path);
         }
     }
-    files.sort();
+    sort_path_slice(&mut files);
     Ok(files)
 }
 

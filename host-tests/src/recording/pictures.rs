@@ -1,6 +1,7 @@
 //! Images as a stereo source at a frame rate.
 
 use crate::mock::{MockCamera, MockError};
+use alphanumeric_sort::sort_path_slice;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -106,7 +107,7 @@ impl Pictures {
     }
 }
 
-/// The images of a folder by name, or the one image.
+/// The images of a folder in the order of their names, numbers by their value, or the one image.
 fn images(path: &Path) -> Result<Vec<PathBuf>, PicturesError> {
     let failed = |source| PicturesError::Read { path: path.into(), source };
     if !fs::metadata(path).map_err(failed)?.is_dir() {
@@ -119,7 +120,7 @@ fn images(path: &Path) -> Result<Vec<PathBuf>, PicturesError> {
     let entries = fs::read_dir(path).map_err(failed)?.map(|entry| entry.map(|entry| entry.path()));
     let mut images: Vec<_> = entries.collect::<Result<_, _>>().map_err(failed)?;
     images.retain(is_image);
-    images.sort();
+    sort_path_slice(&mut images);
     if images.is_empty() { Err(PicturesError::Empty { path: path.into() }) } else { Ok(images) }
 }
 

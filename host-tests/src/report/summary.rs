@@ -1,6 +1,7 @@
 //! The figures of a run, for `summary.json` and the report.
 
 use super::Accuracy;
+use crate::depth_samples::MILLIMETRE;
 use crate::map::{DisparityMap, quantile};
 use crate::rows::Rows;
 use crate::run::{MethodName, Outcome};
@@ -120,6 +121,14 @@ pub struct Depth {
     pub sigma_farthest_m: Option<f32>,
     /// The depths found, m; absent when there is none.
     pub found_m: Option<Spread>,
+    /// The unit of `depth.png`, m.
+    pub png_unit_m: f64,
+    /// Answers that are farther than `depth.png` can say, whose samples are its largest one.
+    pub png_clamped: usize,
+    /// The depth beyond which answers are no points of `cloud.ply`, m; absent when all are.
+    pub cloud_max_m: Option<f32>,
+    /// Answers that are so left out.
+    pub cloud_left_out: usize,
 }
 
 impl Depth {
@@ -136,6 +145,10 @@ impl Depth {
             farthest_m: range.map(|r| r.farthest.0),
             sigma_farthest_m: range.map(|r| r.sigma_farthest.0),
             found_m: Spread::of(&depths),
+            png_unit_m: MILLIMETRE,
+            png_clamped: 0,
+            cloud_max_m: range.map(|r| r.farthest.0),
+            cloud_left_out: 0,
         }
     }
 }

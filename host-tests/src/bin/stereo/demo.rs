@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::input;
 use crate::place::png;
-use crate::results::{self, figures, place};
+use crate::results::{self, DepthArgs, DepthFiles, figures, place};
 use crate::shared::{MethodArgs, RangeArgs, print};
 use clap::Args;
 use image::{DynamicImage, GrayImage, RgbImage};
@@ -49,8 +49,9 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
     let accuracy = Accuracy::of(&outcome.map, &truth, &scale);
     let filter = args.method.filter.name();
     let summary = Summary::new(args.method.method, filter, &config, &outcome, Some(&scale), Some(accuracy));
-    let summary = summary.with_noise(meter.as_ref());
+    let mut summary = summary.with_noise(meter.as_ref());
     let (left_rgb, right_rgb) = (colours(&left), colours(&right));
+    let depth = DepthFiles::new(&DepthArgs::default(), &outcome.map, &scale, &left_rgb, &mut summary);
     let report = Report {
         left_name: IMAGES[0],
         right_name: IMAGES[1],
@@ -62,7 +63,7 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
         truth: Some(&truth),
     };
     let mut staging = Staging::new(&args.out)?;
-    results::write(&mut staging, &report, Some(&scale))?;
+    results::write(&mut staging, &report, Some(&depth))?;
     staging.write(IMAGES[0], |out| png(out, &left))?;
     staging.write(IMAGES[1], |out| png(out, &right))?;
     let calibration = write_middlebury(scale.rig(), config.width, config.height, config.disparities);

@@ -1,6 +1,7 @@
 //! The images that patterns name, and which of two cameras belong together.
 
 use crate::failure::Failure;
+use alphanumeric_sort::sort_path_slice;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -51,7 +52,7 @@ fn number(path: &Path) -> Option<u64> {
     tail.rsplit(|c: char| !c.is_ascii_digit()).next()?.parse().ok()
 }
 
-/// The files that patterns name, in order of their names.
+/// The files that patterns name, in the order of their names, numbers by their value.
 pub fn files(option: &str, patterns: &[String]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for pattern in patterns {
@@ -71,7 +72,7 @@ pub fn files(option: &str, patterns: &[String]) -> Result<Vec<PathBuf>, Failure>
             )));
         }
     }
-    found.sort();
+    sort_path_slice(&mut found);
     found.dedup();
     Ok(found)
 }

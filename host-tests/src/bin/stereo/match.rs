@@ -5,7 +5,7 @@ use crate::input::{self, Pair};
 use crate::place::{json, png};
 use crate::progress::Progress;
 use crate::rectified::{self, RectifiedCameras};
-use crate::results::{self, figures, place};
+use crate::results::{self, DepthArgs, DepthFiles, figures, place};
 use crate::shared::{BalanceArgs, MethodArgs, PairArgs, RangeArgs, RectifyOptions, Unit, print};
 use clap::Args;
 use image::{RgbImage, imageops};
@@ -60,6 +60,8 @@ pub struct MatchArgs {
     pub rectify: bool,
     #[command(flatten)]
     pub options: RectifyOptions,
+    #[command(flatten)]
+    pub depth: DepthArgs,
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -104,7 +106,8 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let Matched { config, meter, balance, outcome } = matched;
     let scale = scene.scale.as_ref();
     let summary = Summary::new(args.method.method, args.method.filter.name(), &config, &outcome, scale, None);
-    let summary = summary.with_noise(meter.as_ref()).with_balance(balance).with_rows(scene.rows);
+    let mut summary = summary.with_noise(meter.as_ref()).with_balance(balance).with_rows(scene.rows);
+    let depth = scale.map(|s| DepthFiles::new(&args.depth, &outcome.map, s, &scene.left, &mut summary));
     let report = Report {
         left_name: &name(&args.pair.left),
         right_name: &name(&args.pair.right),
@@ -116,7 +119,7 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         truth: None,
     };
     let mut staging = Staging::new(&args.out)?;
-    results::write(&mut staging, &report, scale)?;
+    results::write(&mut staging, &report, depth.as_ref())?;
     let [left, right, told] = RECTIFIED;
     if let Some(rectified) = &scene.rectified {
         staging.write(left, |out| png(out, &scene.left))?;
@@ -207,6 +210,9 @@ fn scale(args: &MatchArgs, pair: &Pair) -> Result<Option<DepthScale>, Failure> {
         return Err(Failure::new("--alpha: is for raw images; give --rectify too"));
     }
     match args.calib.len() {
+        0 if args.depth.depth_unit.is_some() || args.depth.max_depth.is_some() => {
+            return Err(Failure::new("--depth-unit, --max-depth: are of depths; give --calib too"));
+        }
         0 if args.options.unit.is_some() => {
             return Err(Failure::new("--unit: is that of --calib, which is missing"));
         }

@@ -1,6 +1,7 @@
 //! What `match` and `demo` write and print. Names and formats are a contract with programs that read them.
 
 use crate::place::{json, png};
+use clap::Args;
 use image::{ImageBuffer, Luma, RgbImage};
 use std::fmt::Write;
 use std::path::Path;
@@ -8,6 +9,7 @@ use stereopsis::depth::DepthScale;
 use stereopsis::units::Disparity;
 use stereopsis_host::colour::{ColourScale, confidence_raw, flags_raw};
 use stereopsis_host::command_line::one_line;
+use stereopsis_host::depth_samples::{DepthSamples, MILLIMETRE};
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::output::{OutputError, Staging};
 use stereopsis_host::pfm;
@@ -17,11 +19,74 @@ use stereopsis_host::report::{Exposure, Report, Summary};
 /// What is written only with a calibration. A run without one takes the files of an earlier run with it away.
 pub const WITH_DEPTH: [&str; 3] = ["depth.pfm", "depth.png", "cloud.ply"];
 
+/// The options of the files of depths.
+#[derive(Debug, Default, Args)]
+pub struct DepthArgs {
+    /// Length of a step of depth.png, m: 0.001 where none is given, 1/256 as KITTI has it, 1/5000 as TUM has
+    /// it
+    #[arg(long, value_name = "M", value_parser = depth_unit, allow_negative_numbers = true)]
+    pub depth_unit: Option<f64>,
+    /// Depth beyond which answers are no points of cloud.ply, m: the farthest that the search can tell where
+    /// none is given (farthest_m of summary.json)
+    #[arg(long, value_name = "M", value_parser = max_depth, allow_negative_numbers = true)]
+    pub max_depth: Option<f32>,
+}
+
+/// Files of depths.
+pub struct DepthFiles {
+    metres: Vec<f32>,
+    samples: Vec<u16>,
+    points: Vec<ColouredPoint>,
+}
+
+impl DepthFiles {
+    /// Makes the files of a map, and says in the summary what they leave out.
+    pub fn new(
+        args: &DepthArgs,
+        map: &DisparityMap,
+        scale: &DepthScale,
+        left: &RgbImage,
+        summary: &mut Summary,
+    ) -> Self {
+        let unit_m = args.depth_unit.unwrap_or(MILLIMETRE);
+        let DepthSamples { samples, clamped } = DepthSamples::of(map, scale, unit_m);
+        let mut points = points(map, scale, left);
+        if let Some(depth) = &mut summary.depth {
+            let max_m = args.max_depth.or(depth.cloud_max_m);
+            let all = points.len();
+            points.retain(|point| max_m.is_none_or(|max_m| point.position_m[2] <= max_m));
+            depth.png_unit_m = unit_m;
+            depth.png_clamped = clamped;
+            depth.cloud_max_m = max_m;
+            depth.cloud_left_out = all - points.len();
+        }
+        Self { metres: map.depth_m(scale), samples, points }
+    }
+}
+
+/// A length in metres, as a number or a fraction.
+fn depth_unit(text: &str) -> Result<f64, &'static str> {
+    let value = match text.split_once('/') {
+        Some((above, below)) => {
+            above.parse::<f64>().ok().zip(below.parse().ok()).map(|(a, b): (f64, f64)| a / b)
+        }
+        None => text.parse().ok(),
+    };
+    value
+        .filter(|value| (1e-6..=1.0).contains(value))
+        .ok_or("a length from 0.000001 to 1 is needed, as 0.001 or 1/256")
+}
+
+fn max_depth(text: &str) -> Result<f32, &'static str> {
+    let value = text.parse().ok().filter(|value| (1e-3..=1e6).contains(value));
+    value.ok_or("a number from 0.001 to 1000000 is needed")
+}
+
 /// Writes all files of a run but those of the truth.
 pub fn write(
     staging: &mut Staging,
     report: &Report<'_>,
-    scale: Option<&DepthScale>,
+    depth: Option<&DepthFiles>,
 ) -> Result<(), OutputError> {
     let map = report.map;
     let pixels = map.pixels();
@@ -34,12 +99,11 @@ pub fn write(
     staging.write("flags.png", |out| png(out, &flags_raw(map)))?;
     staging.write("confidence.png", |out| png(out, &confidence_raw(map)))?;
     staging.write("summary.json", |out| json(out, report.summary))?;
-    if let Some(scale) = scale {
+    if let Some(DepthFiles { metres, samples, points }) = depth {
         let [depth_pfm, depth_png, cloud] = WITH_DEPTH;
-        staging.write(depth_pfm, |out| pfm::write(out, map.width, &map.depth_m(scale)))?;
-        let millimetres = map.disparity.iter().map(|&d| scale.millimetres(d).0);
-        staging.write(depth_png, |out| png(out, &grey16(map, millimetres)))?;
-        staging.write(cloud, |out| ply::write(out, &points(map, scale, report.left)))?;
+        staging.write(depth_pfm, |out| pfm::write(out, map.width, metres))?;
+        staging.write(depth_png, |out| png(out, &grey16(map, samples.iter().copied())))?;
+        staging.write(cloud, |out| ply::write(out, points))?;
     }
     staging.write("report.html", |out| report.write(out))
 }
@@ -69,6 +133,23 @@ pub fn figures(summary: &Summary) -> String {
     }
     if let Some(z) = s.depth.as_ref().and_then(|depth| depth.found_m) {
         let _ = writeln!(text, "depth        {:.3} to {:.3} m, median {:.3} m", z.min, z.max, z.median);
+    }
+    if let Some(depth) = s.depth.as_ref().filter(|depth| depth.png_clamped > 0) {
+        let most_m = depth.png_unit_m * f64::from(u16::MAX);
+        let _ = writeln!(
+            text,
+            "depth.png    {} answers beyond {most_m:.3} m are 65535 (--depth-unit)",
+            depth.png_clamped
+        );
+    }
+    if let Some((depth, most_m)) = s
+        .depth
+        .as_ref()
+        .filter(|depth| depth.cloud_left_out > 0)
+        .and_then(|depth| Some((depth, depth.cloud_max_m?)))
+    {
+        let left_out = depth.cloud_left_out;
+        let _ = writeln!(text, "cloud.ply    without {left_out} answers beyond {most_m:.3} m (--max-depth)");
     }
     let _ = writeln!(
         text,

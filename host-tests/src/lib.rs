@@ -18,7 +18,7 @@
 //!   known scene, with noise and wrong ones.
 //! * [`focus`]: focus stacks, a simulated lens, and stacks through the core's map.
 //! * [`odometry`]: sequences of pictures through the core's odometry, trajectories and their errors.
-//! * [`rectify`]: raw pictures through the core's remap.
+//! * [`rectify`]: raw pictures through the core's remap. [`pair`], [`rows`]: what is wrong with a pair.
 //! * [`views`]: pictures of one camera from several places through the core's structure from motion.
 //! * [`bal`]: problems of bundle adjustment through the core.
 //! * [`twin`]: each stage again, naively, to hold the core to.
@@ -41,6 +41,7 @@ pub mod matches_picture;
 pub mod mock;
 pub mod odometry;
 pub mod output;
+pub mod pair;
 pub mod pfm;
 pub mod ply;
 pub mod real;

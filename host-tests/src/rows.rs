@@ -1,23 +1,12 @@
 //! How well the rows of a pair agree: features of both pictures, and by how much the right camera is turned
 //! by them.
 
-use crate::correspond::{Plan, correspond};
-use image::GrayImage;
-use nalgebra::Point2;
+use crate::pair::PairMatches;
 use serde::Serialize;
-use stereopsis::features::Orientation;
 use stereopsis::geometry::{
     camera::{Camera, ImageSize},
     rectify::{RowAlignment, RowHealth, RowMeter},
-    two_view::Correspondence,
 };
-
-/// Corners that are looked for: enough for a few hundredths of a pixel, in a few milliseconds.
-const CORNERS: u16 = 600;
-/// Partners are at most so many rows apart, px: what is more is another corner, or no pair to be matched.
-const ROWS_APART: f64 = 12.0;
-/// Corners are so far from what a camera did not see, px: its border is none.
-const MARGIN: i64 = 6;
 
 /// How far rows are off. Names are those of `summary.json`.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
@@ -43,32 +32,15 @@ pub struct Rows {
 
 impl Rows {
     /// Measures a pair with aligned rows by the camera that both pictures are of, where a calibration tells
-    /// it; `valid` is 0 where a picture shows nothing. `None` where too few features match.
-    pub fn measure(
-        pictures: [&GrayImage; 2],
-        valid: Option<[&GrayImage; 2]>,
-        camera: Option<&Camera<f64>>,
-    ) -> Option<Self> {
-        let (width, height) = pictures[0].dimensions();
-        let size = ImageSize { width: u16::try_from(width).ok()?, height: u16::try_from(height).ok()? };
+    /// it. `None` where too few features match.
+    pub fn measure(matches: &PairMatches, size: ImageSize, camera: Option<&Camera<f64>>) -> Option<Self> {
         // Without a calibration: a field of view of 53 degrees. Rows and the roll are the same by any other.
-        let (w, h) = (f64::from(width), f64::from(height));
+        let (w, h) = (f64::from(size.width), f64::from(size.height));
         let assumed = Camera::new(w, w, (w - 1.0) / 2.0, (h - 1.0) / 2.0).ok()?;
         let by = camera.unwrap_or(&assumed);
-        let plan =
-            Plan { corners: CORNERS, levels: 1, orientation: Some(Orientation::Upright), ..Plan::default() };
-        let found = correspond(&plan, pictures[0], pictures[1]).ok()?;
-        let seen = found.points().map(|[x1, y1, x2, y2]| Correspondence {
-            first: Point2::new(x1, y1).cast::<f64>(),
-            second: Point2::new(x2, y2).cast(),
-        });
-        let is_shown = |s: &Correspondence<f64>| {
-            valid.is_none_or(|[left, right]| is_within(left, &s.first) && is_within(right, &s.second))
-        };
-        let seen: Vec<_> =
-            seen.filter(|s| (s.first.y - s.second.y).abs() < ROWS_APART && is_shown(s)).collect();
+        let seen = &matches.in_rows;
         let mut meter = RowMeter::new();
-        meter.add(by, &seen).ok()?;
+        meter.add(by, seen).ok()?;
         Some(Self::of(&meter.alignment().ok()?, by, camera.is_some(), size, seen.len()))
     }
 
@@ -122,16 +94,4 @@ impl Rows {
             )
         })
     }
-}
-
-/// Whether a place and what is around it is shown.
-fn is_within(valid: &GrayImage, place: &Point2<f64>) -> bool {
-    let at = |dx: i64, dy: i64| {
-        let (x, y) = (place.x.round() as i64 + dx, place.y.round() as i64 + dy);
-        let pixel = u32::try_from(x).ok().zip(u32::try_from(y).ok());
-        pixel.and_then(|(x, y)| valid.get_pixel_checked(x, y)).is_some_and(|pixel| pixel.0[0] != 0)
-    };
-    [(-MARGIN, -MARGIN), (MARGIN, -MARGIN), (-MARGIN, MARGIN), (MARGIN, MARGIN)]
-        .into_iter()
-        .all(|(x, y)| at(x, y))
 }

@@ -200,6 +200,12 @@ impl Report<'_> {
         if let Some(rows) = &s.rows {
             add("Rows of the images", rows.summary());
         }
+        if let Some(fault) = s.pair.as_ref().and_then(|pair| pair.fault) {
+            add("The pair", fault.to_string());
+        }
+        if let Some([first, last]) = s.pair.as_ref().and_then(|pair| pair.disparity_px) {
+            add("Disparities of matched features", format!("{first:.0} to {last:.0} px"));
+        }
         add("Matcher state", format!("{} bytes", s.state_bytes));
         add("Delay", format!("{} lines", s.latency_lines));
         add("Time", format!("{:.2} ms", s.time_ms));

@@ -3,6 +3,7 @@
 use super::Accuracy;
 use crate::depth_samples::MILLIMETRE;
 use crate::map::{DisparityMap, quantile};
+use crate::pair::PairCheck;
 use crate::rows::Rows;
 use crate::run::{MethodName, Outcome};
 use serde::Serialize;
@@ -57,6 +58,8 @@ pub struct Summary {
     pub depth: Option<Depth>,
     /// How well the images' rows agree; absent when too few features match.
     pub rows: Option<Rows>,
+    /// What features say of the pair and of the search; absent where nothing looked.
+    pub pair: Option<PairCheck>,
     /// How right the answers are, when the truth is known.
     pub accuracy: Option<Accuracy>,
 }
@@ -192,6 +195,7 @@ impl Summary {
             time_ms: outcome.time_ms,
             depth: scale.map(|scale| Depth::of(scale, config, method, map)),
             rows: None,
+            pair: None,
             accuracy,
         }
     }
@@ -199,6 +203,11 @@ impl Summary {
     /// The same with how well rows agree.
     pub fn with_rows(self, rows: Option<Rows>) -> Self {
         Self { rows, ..self }
+    }
+
+    /// The same with what features say of the pair.
+    pub fn with_pair(self, pair: Option<PairCheck>) -> Self {
+        Self { pair, ..self }
     }
 
     /// The same with the noise that a meter measured.

@@ -11,6 +11,7 @@ use stereopsis::geometry::{
     two_view::Correspondence,
 };
 use stereopsis_host::correspond::{Plan, correspond};
+use stereopsis_host::pair::PairMatches;
 use stereopsis_host::rectify::{rectify, with_rectified};
 use stereopsis_host::rows::Rows;
 use stereopsis_host::run::{MemoryPair, MethodName, run};
@@ -187,11 +188,11 @@ fn rows_of_a_pair_are_reported_with_their_uncertainty() {
     let rig = scene.rig();
     let (f, (cx, cy)) = (f64::from(rig.focal_px()), rig.principal_point());
     let camera = Camera::new(f, f, cx.into(), cy.into()).expect("a camera");
-    let good = Rows::measure([&left, &right], None, Some(&camera)).expect("features");
+    let good = measured([&left, &right], None, Some(&camera)).expect("features");
     assert!(good.error_px < 0.15 && good.health == "good" && good.warning().is_none(), "{good:?}");
     for degrees in [[0.3, 0.0, 0.0], [-0.3, 0.0, 0.0], [0.0, 0.0, 0.5], [0.0, 0.0, -0.5]] {
         let bad = knocked(&right, &camera, &rotation(degrees.map(f64::to_radians)));
-        let told = Rows::measure([&left, &bad], None, Some(&camera)).expect("features");
+        let told = measured([&left, &bad], None, Some(&camera)).expect("features");
         let (pitch, sigma) = (told.pitch_deg.expect("calibrated"), told.pitch_sigma_deg.expect("calibrated"));
         assert!((pitch - degrees[0]).abs() < 0.05 + 4.0 * sigma, "{degrees:?}: {told:?}");
         assert!(
@@ -201,10 +202,20 @@ fn rows_of_a_pair_are_reported_with_their_uncertainty() {
         assert!(told.sigma_px < 0.2 && told.health != "good", "{degrees:?}: {told:?}");
         assert!(told.warning().is_some_and(|line| line.contains("0.25 px")), "{degrees:?}: {told:?}");
         // Without a focal length rows and the roll are told, and no pitch.
-        let other = Rows::measure([&left, &bad], None, None).expect("features");
+        let other = measured([&left, &bad], None, None).expect("features");
         assert!((other.error_px - told.error_px).abs() < 0.2 && other.pitch_deg.is_none(), "{other:?}");
         // Where nothing is shown nothing is measured.
         let nothing = GrayImage::new(SIZE.width.into(), SIZE.height.into());
-        assert_eq!(Rows::measure([&left, &bad], Some([&nothing, &nothing]), None), None);
+        assert_eq!(measured([&left, &bad], Some([&nothing, &nothing]), None), None);
     }
+}
+
+/// Rows by the features of two pictures.
+fn measured(
+    pictures: [&GrayImage; 2],
+    valid: Option<[&GrayImage; 2]>,
+    camera: Option<&Camera<f64>>,
+) -> Option<Rows> {
+    let matches = PairMatches::find(pictures, valid).expect("features");
+    Rows::measure(&matches, SIZE, camera)
 }

@@ -8,7 +8,7 @@ use crate::rectified::{self, RectifiedCameras};
 use crate::results::{self, DepthArgs, DepthFiles, figures, place};
 use crate::shared::{BalanceArgs, MethodArgs, PairArgs, RangeArgs, RectifyOptions, Unit, print};
 use clap::Args;
-use image::{RgbImage, imageops};
+use image::{GrayImage, RgbImage, imageops};
 use std::fmt::{Display, Write};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -20,6 +20,7 @@ use stereopsis::matching::Config;
 use stereopsis_host::calibration::Calibration;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
+use stereopsis_host::pair::{PairCheck, PairFault, PairMatches};
 use stereopsis_host::rectify::{rectify, rectify_colours, with_rectified};
 use stereopsis_host::report::{Report, Summary};
 use stereopsis_host::rows::Rows;
@@ -62,6 +63,9 @@ pub struct MatchArgs {
     pub options: RectifyOptions,
     #[command(flatten)]
     pub depth: DepthArgs,
+    /// Match the images even if the cameras seem to be swapped
+    #[arg(long)]
+    pub force: bool,
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -77,6 +81,7 @@ struct Scene {
     scale: Option<DepthScale>,
     rectified: Option<RectifiedCameras>,
     rows: Option<Rows>,
+    check: Option<PairCheck>,
 }
 
 /// What came of the matching.
@@ -96,17 +101,18 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     } else {
         let scale = scale(args, &pair)?;
         Staging::probe(&args.out)?;
-        let matched = matched(args, config, &mut pair.camera)?;
         let [left, right] = [&pair.left, &pair.right].map(imageops::grayscale);
         let camera = scale.as_ref().and_then(|scale| camera(scale.rig()));
-        let rows = Rows::measure([&left, &right], None, camera.as_ref());
-        (Scene { left: pair.left, right: pair.right, scale, rectified: None, rows }, matched)
+        let (check, rows) = look(args, [&left, &right], None, &config, camera.as_ref())?;
+        let matched = matched(args, config, &mut pair.camera)?;
+        (Scene { left: pair.left, right: pair.right, scale, rectified: None, rows, check }, matched)
     };
 
     let Matched { config, meter, balance, outcome } = matched;
     let scale = scene.scale.as_ref();
     let summary = Summary::new(args.method.method, args.method.filter.name(), &config, &outcome, scale, None);
-    let mut summary = summary.with_noise(meter.as_ref()).with_balance(balance).with_rows(scene.rows);
+    let summary = summary.with_noise(meter.as_ref()).with_balance(balance).with_rows(scene.rows);
+    let mut summary = summary.with_pair(scene.check.clone());
     let depth = scale.map(|s| DepthFiles::new(&args.depth, &outcome.map, s, &scene.left, &mut summary));
     let report = Report {
         left_name: &name(&args.pair.left),
@@ -120,11 +126,11 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     };
     let mut staging = Staging::new(&args.out)?;
     results::write(&mut staging, &report, depth.as_ref())?;
-    let [left, right, told] = RECTIFIED;
+    let [left, right, cameras] = RECTIFIED;
     if let Some(rectified) = &scene.rectified {
         staging.write(left, |out| png(out, &scene.left))?;
         staging.write(right, |out| png(out, &scene.right))?;
-        staging.write(told, |out| json(out, rectified))?;
+        staging.write(cameras, |out| json(out, rectified))?;
     }
     let stale: Vec<_> = results::WITH_DEPTH.into_iter().chain(RECTIFIED).collect();
     staging.commit(&stale)?;
@@ -133,7 +139,12 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     for note in &pair.notes {
         let _ = writeln!(text, "note: {}", one_line(note));
     }
-    if let Some(warning) = scene.rows.as_ref().and_then(Rows::warning) {
+    let warnings = [
+        scene.check.as_ref().and_then(|check| check.fault).map(|fault| fault.to_string()),
+        scene.check.as_ref().and_then(|check| check.search_warning(&config)),
+        scene.rows.as_ref().and_then(Rows::warning),
+    ];
+    for warning in warnings.into_iter().flatten() {
         // Nobody is left to tell when standard error is closed.
         let _ = writeln!(std::io::stderr(), "stereo: warning: {warning}");
     }
@@ -143,6 +154,24 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     }
     text += &place(&args.out);
     print(&text)
+}
+
+/// What features say of a pair before it is matched, or that its cameras are swapped.
+fn look(
+    args: &MatchArgs,
+    pictures: [&GrayImage; 2],
+    valid: Option<[&GrayImage; 2]>,
+    config: &Config,
+    camera: Option<&Camera<f64>>,
+) -> Result<(Option<PairCheck>, Option<Rows>), Failure> {
+    // Pictures without features are matched as well as they can be.
+    let Ok(matches) = PairMatches::find(pictures, valid) else { return Ok((None, None)) };
+    let check = PairCheck::new(pictures, &matches, config);
+    if let Some(fault @ PairFault::Swapped) = check.fault.filter(|_| !args.force) {
+        return Err(Failure::new(format!("{fault}, or give --force")));
+    }
+    let size = ImageSize { width: config.width, height: config.height };
+    Ok((Some(check), Rows::measure(&matches, size, camera)))
 }
 
 fn matched<C: StereoSource<Error: Display>>(
@@ -187,15 +216,16 @@ fn raw(args: &MatchArgs, config: Config, pair: &mut Pair) -> Result<(Scene, Matc
     let scale = DepthScale::new(&rig).map_err(|e| named(&e))?;
     Staging::probe(&args.out)?;
     let (left, right) = rectify_colours(&rectification, &pair.left, &pair.right).map_err(|e| named(&e))?;
+    let grey = rectify(&rectification, &mut pair.camera).map_err(|e| named(&e))?;
+    let (valid, camera) = (grey.valid.each_ref(), rectification.camera());
+    let (check, aligned) = look(args, grey.pictures.each_ref(), Some(valid), &config, Some(camera))?;
     let (rows, matched) = with_rectified(&rectification, &mut pair.camera, |source| {
         (source.remaps().map(|remap| remap.table().rows()), matched(args, config, source))
     })
     .map_err(|e| named(&e))?;
-    let told = RectifiedCameras::new(calibration.format, &rectification, rows, &rectification.report());
-    let grey = rectify(&rectification, &mut pair.camera).map_err(|e| named(&e))?;
-    let rows =
-        Rows::measure(grey.pictures.each_ref(), Some(grey.valid.each_ref()), Some(rectification.camera()));
-    Ok((Scene { left, right, scale: Some(scale), rectified: Some(told), rows }, matched?))
+    let cameras = RectifiedCameras::new(calibration.format, &rectification, rows, &rectification.report());
+    let scene = Scene { left, right, scale: Some(scale), rectified: Some(cameras), rows: aligned, check };
+    Ok((scene, matched?))
 }
 
 /// The camera of a rectified pair.

@@ -1,0 +1,219 @@
+//! What is wrong with a pair of pictures, by the features that both show: cameras that are swapped, pictures
+//! that are turned, mirrored, the same or of two scenes, and a search that is too short.
+
+use crate::correspond::{CorrespondError, Plan, correspond};
+use image::{GrayImage, imageops};
+use nalgebra::Point2;
+use serde::Serialize;
+use std::fmt;
+use stereopsis::features::Orientation;
+use stereopsis::geometry::two_view::Correspondence;
+use stereopsis::matching::Config;
+
+/// Corners that are looked for: enough for a few hundredths of a pixel, in a few milliseconds.
+const CORNERS: u16 = 600;
+/// Partners in a pair to be matched are at most so many rows apart, px.
+const ROWS_APART: f64 = 12.0;
+/// Corners are so far from what a camera did not see, px: its border is none.
+const MARGIN: i64 = 6;
+/// With fewer matches nothing is said.
+const FEWEST: usize = 16;
+/// A disparity that is none for sure, px.
+const STILL: f64 = 1.5;
+
+/// Features that two pictures have in common.
+#[derive(Clone, Debug)]
+pub struct PairMatches {
+    /// All matches, wherever they are.
+    all: Vec<Correspondence<f64>>,
+    /// Those in about the same rows.
+    pub in_rows: Vec<Correspondence<f64>>,
+}
+
+impl PairMatches {
+    /// Matches two pictures; `valid` is 0 where a picture shows nothing.
+    pub fn find(pictures: [&GrayImage; 2], valid: Option<[&GrayImage; 2]>) -> Result<Self, CorrespondError> {
+        let plan =
+            Plan { corners: CORNERS, levels: 1, orientation: Some(Orientation::Upright), ..Plan::default() };
+        let found = correspond(&plan, pictures[0], pictures[1])?;
+        let is_shown = |s: &Correspondence<f64>| {
+            valid.is_none_or(|[left, right]| is_within(left, &s.first) && is_within(right, &s.second))
+        };
+        let all: Vec<_> = found
+            .points()
+            .map(|[x1, y1, x2, y2]| Correspondence {
+                first: Point2::new(x1, y1).cast::<f64>(),
+                second: Point2::new(x2, y2).cast(),
+            })
+            .filter(is_shown)
+            .collect();
+        let in_rows = all.iter().copied().filter(|s| (s.first.y - s.second.y).abs() < ROWS_APART).collect();
+        Ok(Self { all, in_rows })
+    }
+
+    /// Whether most matches are in rows, and there are enough of them.
+    fn is_aligned(&self) -> bool {
+        self.in_rows.len() >= FEWEST && 2 * self.in_rows.len() > self.all.len()
+    }
+
+    /// The disparities of the matches in rows, in ascending order, px.
+    fn disparities_px(&self) -> Vec<f64> {
+        let mut found: Vec<_> = self.in_rows.iter().map(|s| s.first.x - s.second.x).collect();
+        found.sort_by(f64::total_cmp);
+        found
+    }
+}
+
+/// What is wrong with a pair.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PairFault {
+    /// Nearly all disparities are negative.
+    Swapped,
+    /// Both pictures are the same.
+    Same,
+    /// Both pictures stand on their sides.
+    BothOnTheirSides,
+    /// The right picture stands on its head.
+    RightUpsideDown,
+    /// The right picture stands on its side.
+    RightOnItsSide,
+    /// The right picture is mirrored.
+    RightMirrored,
+    /// The pictures have next to nothing in common.
+    TwoScenes,
+}
+
+impl fmt::Display for PairFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Swapped => {
+                "nearly everything lies farther to the right in the right image: the cameras are swapped; \
+                 exchange --left and --right"
+            }
+            Self::Same => "the left and the right image are the same picture; give one of each camera",
+            Self::BothOnTheirSides => {
+                "what moves from image to image moves along columns: both images are turned by 90 degrees; \
+                 turn them upright"
+            }
+            Self::RightUpsideDown => "the right image is turned by 180 degrees; turn it as the left one is",
+            Self::RightOnItsSide => "the right image is turned by 90 degrees; turn it as the left one is",
+            Self::RightMirrored => "the right image is mirrored; mirror it back",
+            Self::TwoScenes => {
+                "the images have next to nothing in common: they show different scenes, or are far from \
+                 rectified; give a rectified pair, or --rectify with a calibration"
+            }
+        })
+    }
+}
+
+/// What features say of a pair and of its search. Names are those of `summary.json`.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct PairCheck {
+    /// Features that both pictures show.
+    pub matches: usize,
+    /// Those of them that are in about the same rows.
+    pub matches_in_rows: usize,
+    /// The range of their disparities, 2nd to 98th percentile, px; absent when there are too few.
+    pub disparity_px: Option<[f64; 2]>,
+    /// What is wrong; absent when nothing seems to be.
+    pub fault: Option<PairFault>,
+    /// The share of the matches that lie beyond the search.
+    pub beyond_search: f64,
+    /// A search that would hold nearly all of them: `--min-disparity` and `--disparities`.
+    pub search: Option<[u16; 2]>,
+}
+
+impl PairCheck {
+    /// Looks at a pair that is to be matched.
+    pub fn new(pictures: [&GrayImage; 2], matches: &PairMatches, config: &Config) -> Self {
+        let found = matches.disparities_px();
+        let at =
+            |share: f64| found.get((share * found.len().saturating_sub(1) as f64).round() as usize).copied();
+        let range = (found.len() >= FEWEST).then(|| Some([at(0.02)?, at(0.98)?])).flatten();
+        let fault = fault(pictures, matches);
+        let first = f64::from(config.min_disparity);
+        let last = first + f64::from(config.disparities) - 1.0;
+        let beyond = found.iter().filter(|&&d| d > last || d < first - STILL).count();
+        Self {
+            matches: matches.all.len(),
+            matches_in_rows: matches.in_rows.len(),
+            disparity_px: range,
+            fault,
+            beyond_search: if range.is_some() { beyond as f64 / found.len() as f64 } else { 0.0 },
+            search: range.filter(|_| fault.is_none()).and_then(|range| search(range, pictures[0].width())),
+        }
+    }
+
+    /// What is to be known about the search, with a cure, where it misses what features show.
+    pub fn search_warning(&self, config: &Config) -> Option<String> {
+        let ([first, last], [min_disparity, disparities]) = (self.disparity_px?, self.search?);
+        (self.beyond_search > 0.05).then(|| {
+            format!(
+                "{:.0} % of the features lie beyond disparities {} to {}, where they are from {first:.0} to \
+                 {last:.0} px; give --min-disparity {min_disparity} --disparities {disparities}",
+                100.0 * self.beyond_search,
+                config.min_disparity,
+                config.min_disparity + config.disparities - 1
+            )
+        })
+    }
+}
+
+/// A search that holds a range of disparities, with an eighth and 4 px more on either side: the smallest
+/// disparity and how many.
+fn search([first, last]: [f64; 2], width: u32) -> Option<[u16; 2]> {
+    let more = 4.0 + (last - first).max(0.0) / 8.0;
+    // From 0 on where that costs little: what is far has few features.
+    let first = if first - more < 24.0 { 0.0 } else { (first - more).floor() };
+    let count = ((last + more - first).max(1.0) as u16).next_multiple_of(16);
+    let most = Config::MOST_DISPARITIES.min(u16::try_from(width).ok()?);
+    Some([first as u16, count.clamp(Config::FEWEST_DISPARITIES, most & !15)])
+}
+
+/// What is wrong with the pictures, as far as features tell.
+fn fault(pictures: [&GrayImage; 2], matches: &PairMatches) -> Option<PairFault> {
+    let [left, right] = pictures;
+    if left.as_raw() == right.as_raw() {
+        return Some(PairFault::Same);
+    }
+    if matches.is_aligned() {
+        let moved: Vec<_> = matches.disparities_px().into_iter().filter(|d| d.abs() > STILL).collect();
+        let negative = moved.iter().filter(|&&d| d < 0.0).count();
+        return (moved.len() >= FEWEST && 20 * negative > 17 * moved.len()).then_some(PairFault::Swapped);
+    }
+    let in_columns = matches.all.iter().filter(|s| (s.first.x - s.second.x).abs() < ROWS_APART).count();
+    if in_columns >= FEWEST && 2 * in_columns > matches.all.len() {
+        return Some(PairFault::BothOnTheirSides);
+    }
+    let is_cured = |cured: &GrayImage| {
+        cured.dimensions() == left.dimensions()
+            && PairMatches::find([left, cured], None).is_ok_and(|found| found.is_aligned())
+    };
+    if is_cured(&imageops::rotate180(right)) {
+        return Some(PairFault::RightUpsideDown);
+    }
+    if is_cured(&imageops::rotate90(right)) || is_cured(&imageops::rotate270(right)) {
+        return Some(PairFault::RightOnItsSide);
+    }
+    if is_cured(&imageops::flip_horizontal(right)) || is_cured(&imageops::flip_vertical(right)) {
+        return Some(PairFault::RightMirrored);
+    }
+    // Pictures with texture that have nothing in common; without any, nothing is said.
+    let own = [left, right]
+        .map(|picture| PairMatches::find([picture, picture], None).map_or(0, |found| found.in_rows.len()));
+    (own[0].min(own[1]) >= 8 * FEWEST && 16 * matches.in_rows.len() < own[0].min(own[1]))
+        .then_some(PairFault::TwoScenes)
+}
+
+/// Whether a place and what is around it is shown.
+fn is_within(valid: &GrayImage, place: &Point2<f64>) -> bool {
+    let at = |dx: i64, dy: i64| {
+        let (x, y) = (place.x.round() as i64 + dx, place.y.round() as i64 + dy);
+        let pixel = u32::try_from(x).ok().zip(u32::try_from(y).ok());
+        pixel.and_then(|(x, y)| valid.get_pixel_checked(x, y)).is_some_and(|pixel| pixel.0[0] != 0)
+    };
+    [(-MARGIN, -MARGIN), (MARGIN, -MARGIN), (-MARGIN, MARGIN), (MARGIN, MARGIN)]
+        .into_iter()
+        .all(|(x, y)| at(x, y))
+}

@@ -6,7 +6,9 @@ use crate::place::{json, png};
 use crate::progress::Progress;
 use crate::rectified::{self, RectifiedCameras};
 use crate::results::{self, DepthArgs, DepthFiles, figures, place};
-use crate::shared::{BalanceArgs, MethodArgs, PairArgs, RangeArgs, RectifyOptions, Unit, print};
+use crate::shared::{
+    self, BalanceArgs, MethodArgs, PairArgs, RangeArgs, RectifyOptions, Unit, min_disparity, print,
+};
 use clap::Args;
 use image::{GrayImage, RgbImage, imageops};
 use std::fmt::{Display, Write};
@@ -20,7 +22,7 @@ use stereopsis::matching::Config;
 use stereopsis_host::calibration::Calibration;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
-use stereopsis_host::pair::{PairCheck, PairFault, PairMatches};
+use stereopsis_host::pair::{self, PairCheck, PairFault, PairMatches};
 use stereopsis_host::rectify::{rectify, rectify_colours, with_rectified};
 use stereopsis_host::report::{Report, Summary};
 use stereopsis_host::rows::Rows;
@@ -45,8 +47,13 @@ Written into the folder: disparity.pfm (px, infinity where there is no answer), 
 pub struct MatchArgs {
     #[command(flatten)]
     pub pair: PairArgs,
-    #[command(flatten)]
-    pub range: RangeArgs,
+    /// How many whole disparities are searched: 16 to 256, at most the images' width; or auto, as many as
+    /// the images show
+    #[arg(long, value_name = "N", value_parser = disparities, allow_negative_numbers = true)]
+    pub disparities: Disparities,
+    /// The smallest disparity searched, px; 0 where none is given, or what auto finds
+    #[arg(long, value_name = "M", value_parser = min_disparity, allow_negative_numbers = true)]
+    pub min_disparity: Option<u16>,
     #[command(flatten)]
     pub method: MethodArgs,
     #[command(flatten)]
@@ -69,6 +76,22 @@ pub struct MatchArgs {
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+}
+
+/// How many disparities are searched.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Disparities {
+    /// As many as the images show.
+    Auto,
+    /// That many.
+    Count(u16),
+}
+
+fn disparities(text: &str) -> Result<Disparities, String> {
+    if text == "auto" {
+        return Ok(Disparities::Auto);
+    }
+    shared::disparities(text).map(Disparities::Count).map_err(|needed| format!("{needed}, or auto"))
 }
 
 /// What is written only of raw images.
@@ -94,16 +117,19 @@ struct Matched {
 
 pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let mut pair = Pair::open(&args.pair)?;
-    let config = input::config(&args.range, &args.method, pair.width, pair.height)?;
-    let config = Config { confidence: true, ..config };
+    if let Disparities::Count(disparities) = args.disparities {
+        // What cannot be searched is said before any work.
+        let range = RangeArgs { disparities, min_disparity: args.min_disparity.unwrap_or(0) };
+        input::config(&range, &args.method, pair.width, pair.height)?;
+    }
     let (scene, matched) = if args.rectify {
-        raw(args, config, &mut pair)?
+        raw(args, &mut pair)?
     } else {
         let scale = scale(args, &pair)?;
         Staging::probe(&args.out)?;
         let [left, right] = [&pair.left, &pair.right].map(imageops::grayscale);
         let camera = scale.as_ref().and_then(|scale| camera(scale.rig()));
-        let (check, rows) = look(args, [&left, &right], None, &config, camera.as_ref())?;
+        let Look { config, check, rows } = look(args, [&left, &right], None, camera.as_ref())?;
         let matched = matched(args, config, &mut pair.camera)?;
         (Scene { left: pair.left, right: pair.right, scale, rectified: None, rows, check }, matched)
     };
@@ -156,22 +182,47 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     print(&text)
 }
 
-/// What features say of a pair before it is matched, or that its cameras are swapped.
+/// What is seen of a pair before it is matched.
+struct Look {
+    config: Config,
+    check: Option<PairCheck>,
+    rows: Option<Rows>,
+}
+
+/// Looks at a pair before it is matched: the search, and what is wrong. Swapped cameras are an error.
 fn look(
     args: &MatchArgs,
     pictures: [&GrayImage; 2],
     valid: Option<[&GrayImage; 2]>,
-    config: &Config,
     camera: Option<&Camera<f64>>,
-) -> Result<(Option<PairCheck>, Option<Rows>), Failure> {
+) -> Result<Look, Failure> {
+    // Pictures have at most 4096 columns and rows.
+    let (width, height) = (pictures[0].width() as u16, pictures[0].height() as u16);
     // Pictures without features are matched as well as they can be.
-    let Ok(matches) = PairMatches::find(pictures, valid) else { return Ok((None, None)) };
-    let check = PairCheck::new(pictures, &matches, config);
+    let matches = PairMatches::find(pictures, valid).ok();
+    let [first, count] = match (args.disparities, &matches) {
+        (Disparities::Count(count), _) => [args.min_disparity.unwrap_or(0), count],
+        (Disparities::Auto, matches) => {
+            let found = matches.as_ref().and_then(|matches| pair::search(pictures, matches));
+            let [first, count] = found.ok_or_else(|| {
+                Failure::new("--disparities auto: the images show too little to find a range; give a number")
+            })?;
+            // From another first disparity on to the same last one.
+            let last = first + count;
+            let first = args.min_disparity.unwrap_or(first);
+            [first, last.saturating_sub(first).max(1).next_multiple_of(16).min(Config::MOST_DISPARITIES)]
+        }
+    };
+    let range = RangeArgs { disparities: count, min_disparity: first };
+    let config = input::config(&range, &args.method, width, height)?;
+    let config = Config { confidence: true, ..config };
+    let Some(matches) = matches else { return Ok(Look { config, check: None, rows: None }) };
+    let check = PairCheck::new(pictures, &matches, &config);
     if let Some(fault @ PairFault::Swapped) = check.fault.filter(|_| !args.force) {
         return Err(Failure::new(format!("{fault}, or give --force")));
     }
-    let size = ImageSize { width: config.width, height: config.height };
-    Ok((Some(check), Rows::measure(&matches, size, camera)))
+    let rows = Rows::measure(&matches, ImageSize { width, height }, camera);
+    Ok(Look { config, check: Some(check), rows })
 }
 
 fn matched<C: StereoSource<Error: Display>>(
@@ -202,7 +253,7 @@ fn matched_as_it_comes<C: StereoSource<Error: Display>>(
 }
 
 /// Matches a raw pair: remap, census and matching in one loop over the rows.
-fn raw(args: &MatchArgs, config: Config, pair: &mut Pair) -> Result<(Scene, Matched), Failure> {
+fn raw(args: &MatchArgs, pair: &mut Pair) -> Result<(Scene, Matched), Failure> {
     if args.calib.is_empty() {
         return Err(Failure::new("--rectify: --calib is missing; give the calibration of the two cameras"));
     }
@@ -218,7 +269,8 @@ fn raw(args: &MatchArgs, config: Config, pair: &mut Pair) -> Result<(Scene, Matc
     let (left, right) = rectify_colours(&rectification, &pair.left, &pair.right).map_err(|e| named(&e))?;
     let grey = rectify(&rectification, &mut pair.camera).map_err(|e| named(&e))?;
     let (valid, camera) = (grey.valid.each_ref(), rectification.camera());
-    let (check, aligned) = look(args, grey.pictures.each_ref(), Some(valid), &config, Some(camera))?;
+    let seen = look(args, grey.pictures.each_ref(), Some(valid), Some(camera))?;
+    let Look { config, check, rows: aligned } = seen;
     let (rows, matched) = with_rectified(&rectification, &mut pair.camera, |source| {
         (source.remaps().map(|remap| remap.table().rows()), matched(args, config, source))
     })

@@ -33,7 +33,7 @@ pub struct RangeArgs {
 pub struct MethodArgs {
     /// fast (4-bit census, 9x7 window), block (8-bit census, 9x9 window), or along paths sgm-lean, sgm and
     /// sgm-edge
-    #[arg(long, value_name = "METHOD", default_value = "block", value_parser = method)]
+    #[arg(long, value_name = "METHOD", default_value = "sgm", value_parser = method)]
     pub method: MethodName,
     /// dense (an answer wherever there is a candidate), default, or strict (sure answers only)
     #[arg(long, value_name = "FILTER", default_value = "default", value_parser = filter)]
@@ -183,7 +183,7 @@ fn threads(text: &str) -> Result<u16, String> {
     whole(text, 1, 64)
 }
 
-fn min_disparity(text: &str) -> Result<u16, String> {
+pub fn min_disparity(text: &str) -> Result<u16, String> {
     whole(text, 0, Config::END - Config::FEWEST_DISPARITIES)
 }
 

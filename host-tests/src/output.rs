@@ -38,11 +38,33 @@ pub enum OutputError {
     },
 }
 
+/// What the name of the folder of unfinished files begins with.
+const UNFINISHED: &str = ".stereo-unfinished-";
+/// The file in it that is locked while its run lasts.
+const LOCK: &str = "lock";
+
+/// Removes what interrupted runs left in a folder. What cannot be removed stays: it is in nobody's way.
+fn remove_abandoned(target: &Path) {
+    for entry in fs::read_dir(target).into_iter().flatten().flatten() {
+        let is_unfinished = entry.file_name().to_string_lossy().starts_with(UNFINISHED);
+        if is_unfinished && is_abandoned(&entry.path().join(LOCK)) {
+            let _ = fs::remove_dir_all(entry.path());
+        }
+    }
+}
+
+/// Whether nobody holds a lock that was made.
+fn is_abandoned(lock: &Path) -> bool {
+    File::options().write(true).open(lock).is_ok_and(|lock| lock.try_lock().is_ok())
+}
+
 /// Results on their way into a folder. Dropped without [`Staging::commit`], it leaves nothing behind.
 #[derive(Debug)]
 pub struct Staging {
     // In order of dropping: the files first, then the folders made for them.
     files: TempDir,
+    /// Locked as long as this run writes its files.
+    _lock: File,
     target: PathBuf,
     names: Vec<String>,
     made: MadeFolders,
@@ -53,11 +75,13 @@ impl Staging {
     /// it.
     pub fn new(target: &Path) -> Result<Self, OutputError> {
         let made = MadeFolders::up_to(target)?;
-        let files = tempfile::Builder::new()
-            .prefix(".stereo-unfinished-")
-            .tempdir_in(target)
-            .map_err(|e| OutputError::Folder { path: target.into(), source: plain(e) })?;
-        Ok(Self { files, target: target.into(), names: Vec::new(), made })
+        remove_abandoned(target);
+        let failed = |source| OutputError::Folder { path: target.into(), source };
+        let files =
+            tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(target).map_err(|e| failed(plain(e)))?;
+        let lock = File::create(files.path().join(LOCK)).map_err(failed)?;
+        lock.lock().map_err(failed)?;
+        Ok(Self { files, _lock: lock, target: target.into(), names: Vec::new(), made })
     }
 
     /// Whether results could be written into `target`; leaves nothing behind. For asking before long work.

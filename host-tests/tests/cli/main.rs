@@ -8,6 +8,7 @@ mod features;
 mod focus;
 mod odometry;
 mod output;
+mod pair;
 mod rectify;
 mod rectify_refused;
 mod refused;

@@ -89,6 +89,22 @@ fn a_full_disk_leaves_an_earlier_run_as_it_was() {
 }
 
 #[test]
+fn what_an_interrupted_run_left_goes_and_what_is_being_written_stays() {
+    let bench = Bench::new();
+    let [left, held, other] =
+        [".stereo-unfinished-1", ".stereo-unfinished-2", "mine"].map(|name| bench.path("out").join(name));
+    for folder in [&left, &held, &other] {
+        std::fs::create_dir_all(folder).expect("a folder");
+        std::fs::write(folder.join("lock"), "").expect("a file");
+        std::fs::write(folder.join("depth.pfm"), "half").expect("a file");
+    }
+    let lock = std::fs::File::open(held.join("lock")).expect("the file");
+    lock.lock().expect("nobody else has it");
+    bench.matched(&[]);
+    assert!(!left.exists() && held.exists() && other.exists());
+}
+
+#[test]
 fn a_reader_that_closes_early_is_no_error() {
     let bench = Bench::new();
     let mut arguments = bench.arguments(&[]);

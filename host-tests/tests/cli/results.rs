@@ -193,28 +193,30 @@ fn a_calibration_adds_depth_in_metres_and_millimetres_and_a_cloud() {
     let out = bench.path("out");
     let rig = RectifiedRig::with_offset(100.0, 0.2, 47.5, 23.5, 48.5).expect("a rig");
     let scale = DepthScale::new(&rig).expect("in range");
-    let map = in_process(MethodName::Block, Filter::Default, NoiseChoice::Auto);
+    let map = in_process(MethodName::Sgm, Filter::Default, NoiseChoice::Auto);
     let depth = float_map(&out.join("depth.pfm"));
     assert_eq!(depth.values, map.depth_m(&scale));
     let DynamicImage::ImageLuma16(millimetres) = picture(&out.join("depth.png")) else {
         panic!("16-bit grey")
     };
-    for ((mm, m), d) in millimetres.iter().zip(&depth.values).zip(&map.disparity) {
-        assert_eq!(*mm, scale.millimetres(*d).0);
-        assert!(
-            if m.is_finite() { (f32::from(*mm) - m * 1000.0).abs() <= 1.0 } else { *mm == 0 },
-            "{mm} mm, {m} m"
-        );
+    for (mm, m) in millimetres.iter().zip(&depth.values) {
+        let nearest_mm = if m.is_finite() { (m * 1000.0).min(65535.0) } else { 0.0 };
+        assert!((f32::from(*mm) - nearest_mm).abs() <= 1.0, "{mm} mm, {m} m");
     }
+    let summary = json(&out.join("summary.json"));
+    let farthest_m = summary["depth"]["farthest_m"].as_f64().expect("a depth") as f32;
+    let points = depth.values.iter().filter(|m| **m <= farthest_m).count();
+    assert_eq!(summary["depth"]["cloud_left_out"], map.answers() - points);
+    let clamped = depth.values.iter().filter(|m| m.is_finite() && **m > 65.535).count();
+    assert!(summary["depth"]["png_clamped"].as_u64() >= Some(clamped as u64), "{clamped} are too far");
     let cloud = fs::read(out.join("cloud.ply")).expect("a cloud");
     let body = cloud.windows(11).position(|w| w == b"end_header\n").expect("a header") + 11;
     let header = text(&cloud[..body]);
     assert!(header.starts_with("ply\nformat binary_little_endian 1.0\n"), "{header}");
-    assert!(header.contains(&format!("element vertex {}\n", map.answers())), "{header}");
-    assert_eq!(cloud.len() - body, map.answers() * 15);
-    let first = depth.values.iter().find(|z| z.is_finite()).expect("an answer");
+    assert!(header.contains(&format!("element vertex {points}\n")), "{header}");
+    assert_eq!(cloud.len() - body, points * 15);
+    let first = depth.values.iter().find(|z| **z <= farthest_m).expect("an answer");
     assert_eq!(cloud[body + 8..body + 12], first.to_le_bytes(), "Z of the first point");
-    let summary = json(&out.join("summary.json"));
     assert_eq!(summary["depth"]["baseline_m"].as_f64().map(|b| b as f32), Some(0.2));
     assert!(summary["depth"]["nearest_m"].as_f64() < summary["depth"]["farthest_m"].as_f64());
 }

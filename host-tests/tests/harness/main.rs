@@ -5,5 +5,6 @@ mod altered;
 mod calibrate;
 mod calibration;
 mod mock_camera;
+mod pair;
 mod raw_calibration;
 mod scene;

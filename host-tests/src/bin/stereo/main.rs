@@ -119,37 +119,39 @@ enum Command {
     Walk(walk::WalkArgs),
 }
 
+/// The exit status of a wrong command line.
+const USAGE: u8 = 2;
+
 fn main() -> ExitCode {
-    match start() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            // When standard error is closed, too, there is nobody left to tell.
-            let _ = writeln!(io::stderr(), "stereo: {}", one_line(&failure.to_string()));
-            ExitCode::FAILURE
-        }
-    }
+    let (outcome, status) = match parse(std::env::args_os()) {
+        Ok(command) => (run(command), ExitCode::FAILURE),
+        Err(Stop::Help(text)) => (print(&text), ExitCode::FAILURE),
+        Err(Stop::Usage(failure)) => (Err(failure), ExitCode::from(USAGE)),
+    };
+    let Err(failure) = outcome else { return ExitCode::SUCCESS };
+    // When standard error is closed, too, there is nobody left to tell.
+    let _ = writeln!(io::stderr(), "stereo: {}", one_line(&failure.to_string()));
+    status
 }
 
-fn start() -> Result<(), Failure> {
-    match parse(std::env::args_os()) {
-        Ok(Command::Demo(args)) => demo::run(&args),
-        Ok(Command::Match(args)) => r#match::run(&args),
-        Ok(Command::Bench(args)) => bench::run(&args),
-        Ok(Command::Fundamental(args)) => fundamental::run(&args),
-        Ok(Command::Pose(args)) => pose::run(&args),
-        Ok(Command::Rectify(args)) => rectify::run(&args),
-        Ok(Command::Calibrate(args)) => calibrate::run(&args),
-        Ok(Command::Calib(args)) => calib::run(&args),
-        Ok(Command::Features(args)) => features::run(&args),
-        Ok(Command::Focus(args)) => focus::run(&args),
-        Ok(Command::Bundle(args)) => bundle::run(&args),
-        Ok(Command::Record(args)) => record::run(&args),
-        Ok(Command::Replay(args)) => replay::run(&args),
-        Ok(Command::Odometry(args)) => odometry::run(&args),
-        Ok(Command::Structure(args)) => structure::run(&args),
-        Ok(Command::Walk(args)) => walk::run(&args),
-        Err(Stop::Help(text)) => print(&text),
-        Err(Stop::Usage(failure)) => Err(failure),
+fn run(command: Command) -> Result<(), Failure> {
+    match command {
+        Command::Demo(args) => demo::run(&args),
+        Command::Match(args) => r#match::run(&args),
+        Command::Bench(args) => bench::run(&args),
+        Command::Fundamental(args) => fundamental::run(&args),
+        Command::Pose(args) => pose::run(&args),
+        Command::Rectify(args) => rectify::run(&args),
+        Command::Calibrate(args) => calibrate::run(&args),
+        Command::Calib(args) => calib::run(&args),
+        Command::Features(args) => features::run(&args),
+        Command::Focus(args) => focus::run(&args),
+        Command::Bundle(args) => bundle::run(&args),
+        Command::Record(args) => record::run(&args),
+        Command::Replay(args) => replay::run(&args),
+        Command::Odometry(args) => odometry::run(&args),
+        Command::Structure(args) => structure::run(&args),
+        Command::Walk(args) => walk::run(&args),
     }
 }
 

@@ -39,7 +39,7 @@ pub struct ReplayArgs {
     #[command(flatten)]
     pub range: RangeArgs,
     /// fast, block, sgm-lean, sgm or sgm-edge
-    #[arg(long, value_name = "METHOD", default_value = "block", value_parser = method)]
+    #[arg(long, value_name = "METHOD", default_value = "sgm", value_parser = method)]
     pub method: MethodName,
     /// dense, default or strict
     #[arg(long, value_name = "FILTER", default_value = "default", value_parser = filter)]

@@ -1,0 +1,69 @@
+//! What is wrong with a pair is found, and nothing where nothing is.
+
+use image::{GrayImage, imageops};
+use stereopsis_host::pair::{PairCheck, PairFault, PairMatches, search};
+use stereopsis_host::run::MethodName;
+use stereopsis_host::scene::Scene;
+
+/// What is found of two pictures and a search.
+fn check(left: &GrayImage, right: &GrayImage, disparities: u16) -> PairCheck {
+    let matches = PairMatches::find([left, right], None).expect("features");
+    let config = MethodName::Block.config(left.width() as u16, left.height() as u16, disparities);
+    let check = PairCheck::new([left, right], &matches, &config);
+    assert_eq!(check.search_warning(&config).is_some(), check.search.is_some() && check.beyond_search > 0.05);
+    check
+}
+
+/// A square of a picture, which may be turned by 90 degrees and keep its size.
+fn square(picture: &GrayImage) -> GrayImage {
+    let side = picture.width().min(picture.height());
+    imageops::crop_imm(picture, 0, 0, side, side).to_image()
+}
+
+#[test]
+fn a_pair_without_faults_has_none() {
+    let scene = Scene::demo();
+    let (left, right) = scene.render();
+    let found = check(&left, &right, scene.disparities());
+    assert_eq!(found.fault, None, "{found:?}");
+    assert!(found.beyond_search < 0.02, "{found:?}");
+}
+
+#[test]
+fn each_fault_is_found() {
+    let (left, right) = Scene::demo().render();
+    let turned = [&left, &right].map(imageops::rotate90);
+    let flat = GrayImage::from_pixel(left.width(), left.height(), image::Luma([99]));
+    let other = Scene::small(left.width() as u16, left.height() as u16).render().1;
+    for (first, second, fault) in [
+        (&right, &left, Some(PairFault::Swapped)),
+        (&left, &left, Some(PairFault::Same)),
+        (&turned[0], &turned[1], Some(PairFault::BothOnTheirSides)),
+        (&left, &imageops::rotate180(&right), Some(PairFault::RightUpsideDown)),
+        (&square(&left), &imageops::rotate90(&square(&right)), Some(PairFault::RightOnItsSide)),
+        (&left, &imageops::flip_horizontal(&right), Some(PairFault::RightMirrored)),
+        (&left, &other, Some(PairFault::TwoScenes)),
+        // Where nothing is to be seen nothing is said.
+        (&left, &flat, None),
+    ] {
+        let found = check(first, second, 64);
+        assert_eq!(found.fault, fault, "{found:?}");
+    }
+}
+
+#[test]
+fn a_search_that_is_too_short_has_a_cure() {
+    let scene = Scene::demo();
+    let (left, right) = scene.render();
+    let short = check(&left, &right, 16);
+    assert!(short.beyond_search > 0.2, "{short:?}");
+    let [first, count] = short.search.expect("a search");
+    let truth = scene.truth();
+    let seen = truth.disparity.iter().zip(&truth.depth_m).filter(|(_, depth)| depth.is_finite());
+    let inside = f32::from(first)..f32::from(first + count);
+    let (held, all) =
+        seen.fold((0, 0), |(held, all), (d, _)| (held + usize::from(inside.contains(d)), all + 1));
+    assert!(held as f64 > 0.995 * all as f64, "{held} of {all} are within {first} + {count}");
+    let matches = PairMatches::find([&left, &right], None).expect("features");
+    assert_eq!(search([&left, &right], &matches), Some([first, count]));
+}

@@ -22,8 +22,8 @@
 //! * [`views`]: pictures of one camera from several places through the core's structure from motion.
 //! * [`bal`]: problems of bundle adjustment through the core.
 //! * [`twin`]: each stage again, naively, to hold the core to.
-//! * [`map`], [`depth_samples`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`], [`output`],
-//!   [`report`]: results as files. [`command_line`]: errors in one line.
+//! * [`map`], [`depth_samples`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`],
+//!   [`output`], [`report`]: results as files. [`command_line`]: errors in one line.
 
 pub mod bal;
 pub mod calibrate;

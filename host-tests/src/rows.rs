@@ -8,6 +8,9 @@ use stereopsis::geometry::{
     rectify::{RowAlignment, RowHealth, RowMeter},
 };
 
+/// Standard deviations below its mean that a normal variable stays above with a probability of 95 %.
+const ONE_SIDED_95: f64 = 1.645;
+
 /// How far rows are off. Names are those of `summary.json`.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
 pub struct Rows {
@@ -76,12 +79,17 @@ impl Rows {
 
     /// In a line.
     pub fn summary(&self) -> String {
-        format!("{:.2} px off (+- {:.2}), {}", self.error_px, self.sigma_px, self.health)
+        let health = match self.health {
+            "worn" => "worn: some answers are lost",
+            "bad" => "bad: most answers are lost",
+            good => good,
+        };
+        format!("{:.2} px off (+- {:.2}), {health}", self.error_px, self.sigma_px)
     }
 
-    /// What is wrong, where it is surely more than matching bears.
+    /// What is wrong, where with a probability of 95 % it is more than matching bears.
     pub fn warning(&self) -> Option<String> {
-        let is_off = self.health != "good" && self.error_px - 3.0 * self.sigma_px > 0.25;
+        let is_off = self.health != "good" && self.error_px - ONE_SIDED_95 * self.sigma_px > 0.25;
         let turned = match self.pitch_deg {
             Some(pitch) => format!("pitch {pitch:+.2} degrees, roll {:+.2} degrees", self.roll_deg),
             None => format!("roll {:+.2} degrees", self.roll_deg),

@@ -3,6 +3,7 @@
 use super::integrity::{self, Integrity};
 use super::{MockCamera, MockError};
 use image::error::{ImageError, LimitErrorKind};
+use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::fs::File;
 use std::io::{self, Cursor, Read};
@@ -49,7 +50,7 @@ pub(super) fn read(path: &Path) -> Result<Picture, MockError> {
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(MOST_DECODER_BYTES);
     reader.limits(limits);
-    let decoder = match reader.into_decoder() {
+    let mut decoder = match reader.into_decoder() {
         Ok(decoder) => decoder,
         Err(_) if whole == Integrity::Truncated => {
             return Err(MockError::Truncated { path: path.into(), format: name });
@@ -69,9 +70,14 @@ pub(super) fn read(path: &Path) -> Result<Picture, MockError> {
         Integrity::Truncated => return Err(MockError::Truncated { path: path.into(), format: name }),
         Integrity::Corrupt(reason) => return Err(corrupt(reason)),
     }
+    // A file that says nothing of its orientation, or nothing that can be read, is upright.
+    let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
     match DynamicImage::from_decoder(decoder) {
-        Ok(image) => lines(image)
-            .ok_or_else(|| MockError::Samples { path: path.into(), found: "floating point".into() }),
+        Ok(mut image) => {
+            image.apply_orientation(orientation);
+            let samples = || MockError::Samples { path: path.into(), found: "floating point".into() };
+            lines(image).ok_or_else(samples)
+        }
         Err(ImageError::Limits(e)) if e.kind() == LimitErrorKind::InsufficientMemory => {
             Err(corrupt("it asks for more memory than its picture can need"))
         }

@@ -7,7 +7,7 @@
 //! * A file with 16 bits a sample may hold the 10 or 12 bits of a sensor. The camera's significant bits are
 //!   those of the largest sample, 8 at least; a pair opened by [`MockCamera::open_pair`] shares the larger of
 //!   both.
-//! * An orientation that a JPEG's metadata asks for is ignored: lines come as the sensor gave them.
+//! * A picture is turned as its metadata (EXIF) asks for: lines come as a viewer shows them.
 
 mod decode;
 mod error;

@@ -8,6 +8,7 @@ use crate::rows::Rows;
 use crate::run::{MethodName, Outcome};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::path::Path;
 use stereopsis::depth::DepthScale;
 use stereopsis::imaging::{Balance, NoiseMeter};
 use stereopsis::matching::Config;
@@ -16,6 +17,12 @@ use stereopsis::units::PixelFlags;
 /// What a run was asked for and what came out. Field names are those of `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
+    /// The program's version.
+    pub version: &'static str,
+    /// The command line, word by word.
+    pub command: Vec<String>,
+    /// The files that were read: the left image, the right one, then the calibration's.
+    pub inputs: Vec<String>,
     /// The method's name.
     pub method: &'static str,
     /// The name of the set of checks.
@@ -175,6 +182,9 @@ impl Summary {
     ) -> Self {
         let map = &outcome.map;
         Self {
+            version: env!("CARGO_PKG_VERSION"),
+            command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect(),
+            inputs: Vec::new(),
             method: method.name(),
             filter,
             kernel: outcome.kernel.name(),
@@ -203,6 +213,12 @@ impl Summary {
     /// The same with how well rows agree.
     pub fn with_rows(self, rows: Option<Rows>) -> Self {
         Self { rows, ..self }
+    }
+
+    /// The same with the files that were read.
+    pub fn with_inputs<'a>(self, inputs: impl IntoIterator<Item = &'a Path>) -> Self {
+        let inputs = inputs.into_iter().map(|path| path.display().to_string()).collect();
+        Self { inputs, ..self }
     }
 
     /// The same with what features say of the pair.

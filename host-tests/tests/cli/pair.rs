@@ -28,18 +28,18 @@ fn swapped_cameras_are_refused_unless_forced() {
 #[test]
 fn the_same_picture_twice_is_said() {
     let bench = Bench::new();
-    let run = stereo(&arguments(&bench, "a.png", "a.png", "64"));
+    let run = stereo(arguments(&bench, "a.png", "a.png", "64"));
     assert!(run.status.success() && text(&run.stderr).contains("same picture"), "{}", text(&run.stderr));
 }
 
 #[test]
 fn a_short_search_is_said_and_auto_finds_one() {
     let bench = Bench::new();
-    let run = stereo(&arguments(&bench, "a.png", "b.png", "16"));
+    let run = stereo(arguments(&bench, "a.png", "b.png", "16"));
     let said = text(&run.stderr);
     let needed = json(&bench.path("out/summary.json"))["pair"]["search"].clone();
     assert!(said.contains(&format!("--min-disparity {} --disparities {}", needed[0], needed[1])), "{said}");
-    let run = stereo(&arguments(&bench, "a.png", "b.png", "auto"));
+    let run = stereo(arguments(&bench, "a.png", "b.png", "auto"));
     assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
     let summary = json(&bench.path("out/summary.json"));
     assert_eq!((&summary["min_disparity"], &summary["disparities"]), (&needed[0], &needed[1]));

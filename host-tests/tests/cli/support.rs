@@ -90,7 +90,8 @@ impl Bench {
         run
     }
 
-    /// Runs the program and expects status 1, or 2 for a wrong command line, one line that names the culprit, and no trace in the folder.
+    /// Runs the program and expects status 1, or 2 for a wrong command line, one line that names the culprit,
+    /// and no trace in the folder.
     pub fn refused<S: AsRef<OsStr> + std::fmt::Debug>(&self, args: &[S], culprit: &str) {
         let before = self.everything();
         let run = stereo(args);

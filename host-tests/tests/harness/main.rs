@@ -5,6 +5,7 @@ mod altered;
 mod calibrate;
 mod calibration;
 mod mock_camera;
+mod orientation;
 mod pair;
 mod raw_calibration;
 mod scene;

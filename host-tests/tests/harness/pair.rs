@@ -34,7 +34,11 @@ fn each_fault_is_found() {
     let (left, right) = Scene::demo().render();
     let turned = [&left, &right].map(imageops::rotate90);
     let flat = GrayImage::from_pixel(left.width(), left.height(), image::Luma([99]));
-    let other = Scene::small(left.width() as u16, left.height() as u16).render().1;
+    // Tiles of eight pixels in another order: the texture of the scene, and nothing of the scene.
+    let (width, height) = right.dimensions();
+    let other = GrayImage::from_fn(width, height, |x, y| {
+        *right.get_pixel((x ^ 24).min(width - 1), (y ^ 24).min(height - 1))
+    });
     for (first, second, fault) in [
         (&right, &left, Some(PairFault::Swapped)),
         (&left, &left, Some(PairFault::Same)),

@@ -3,7 +3,8 @@
 //! Here is the list of commands. Each has a file of its own with its options, its help and what it does. They
 //! use:
 //!
-//! * `shared`: the options that several have. `input`: images and search, checked against each other.
+//! * `shared`: the options that several have. `input`: images and search, checked against each other. `look`:
+//!   what is seen of a pair before it is matched.
 //! * `image_files`: the images that a pattern names. `progress`: how far the work is.
 //! * `rectified`, `results`, `place`: what is written. `failure`: what is said when it cannot be done.
 
@@ -18,6 +19,7 @@ mod focus;
 mod fundamental;
 mod image_files;
 mod input;
+mod look;
 mod r#match;
 mod odometry;
 mod place;

@@ -2,15 +2,14 @@
 
 use crate::failure::Failure;
 use crate::input::{self, Pair};
+use crate::look::{Look, SearchArgs, look};
 use crate::place::{json, png};
 use crate::progress::Progress;
 use crate::rectified::{self, RectifiedCameras};
 use crate::results::{self, DepthArgs, DepthFiles, figures, place};
-use crate::shared::{
-    self, BalanceArgs, MethodArgs, PairArgs, RangeArgs, RectifyOptions, Unit, min_disparity, print,
-};
+use crate::shared::{BalanceArgs, MethodArgs, PairArgs, RectifyOptions, Unit, print};
 use clap::Args;
-use image::{GrayImage, RgbImage, imageops};
+use image::{RgbImage, imageops};
 use std::fmt::{Display, Write};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -22,7 +21,7 @@ use stereopsis::matching::Config;
 use stereopsis_host::calibration::Calibration;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
-use stereopsis_host::pair::{self, PairCheck, PairFault, PairMatches};
+use stereopsis_host::pair::PairCheck;
 use stereopsis_host::rectify::{rectify, rectify_colours, with_rectified};
 use stereopsis_host::report::{Report, Summary};
 use stereopsis_host::rows::Rows;
@@ -47,13 +46,8 @@ Written into the folder: disparity.pfm (px, infinity where there is no answer), 
 pub struct MatchArgs {
     #[command(flatten)]
     pub pair: PairArgs,
-    /// How many whole disparities are searched: 16 to 256, at most the images' width; or auto, as many as
-    /// the images show
-    #[arg(long, value_name = "N", value_parser = disparities, allow_negative_numbers = true)]
-    pub disparities: Disparities,
-    /// The smallest disparity searched, px; 0 where none is given, or what auto finds
-    #[arg(long, value_name = "M", value_parser = min_disparity, allow_negative_numbers = true)]
-    pub min_disparity: Option<u16>,
+    #[command(flatten)]
+    pub search: SearchArgs,
     #[command(flatten)]
     pub method: MethodArgs,
     #[command(flatten)]
@@ -70,28 +64,9 @@ pub struct MatchArgs {
     pub options: RectifyOptions,
     #[command(flatten)]
     pub depth: DepthArgs,
-    /// Match the images even if the cameras seem to be swapped
-    #[arg(long)]
-    pub force: bool,
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-}
-
-/// How many disparities are searched.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Disparities {
-    /// As many as the images show.
-    Auto,
-    /// That many.
-    Count(u16),
-}
-
-fn disparities(text: &str) -> Result<Disparities, String> {
-    if text == "auto" {
-        return Ok(Disparities::Auto);
-    }
-    shared::disparities(text).map(Disparities::Count).map_err(|needed| format!("{needed}, or auto"))
 }
 
 /// What is written only of raw images.
@@ -117,11 +92,7 @@ struct Matched {
 
 pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let mut pair = Pair::open(&args.pair)?;
-    if let Disparities::Count(disparities) = args.disparities {
-        // What cannot be searched is said before any work.
-        let range = RangeArgs { disparities, min_disparity: args.min_disparity.unwrap_or(0) };
-        input::config(&range, &args.method, pair.width, pair.height)?;
-    }
+    args.search.check(&args.method, pair.width, pair.height)?;
     let (scene, matched) = if args.rectify {
         raw(args, &mut pair)?
     } else {
@@ -129,7 +100,8 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         Staging::probe(&args.out)?;
         let [left, right] = [&pair.left, &pair.right].map(imageops::grayscale);
         let camera = scale.as_ref().and_then(|scale| camera(scale.rig()));
-        let Look { config, check, rows } = look(args, [&left, &right], None, camera.as_ref())?;
+        let Look { config, check, rows } =
+            look(&args.search, &args.method, [&left, &right], None, camera.as_ref())?;
         let matched = matched(args, config, &mut pair.camera)?;
         (Scene { left: pair.left, right: pair.right, scale, rectified: None, rows, check }, matched)
     };
@@ -138,7 +110,8 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let scale = scene.scale.as_ref();
     let summary = Summary::new(args.method.method, args.method.filter.name(), &config, &outcome, scale, None);
     let summary = summary.with_noise(meter.as_ref()).with_balance(balance).with_rows(scene.rows);
-    let mut summary = summary.with_pair(scene.check.clone());
+    let inputs = [&args.pair.left, &args.pair.right].into_iter().chain(&args.calib).map(PathBuf::as_path);
+    let mut summary = summary.with_pair(scene.check.clone()).with_inputs(inputs);
     let depth = scale.map(|s| DepthFiles::new(&args.depth, &outcome.map, s, &scene.left, &mut summary));
     let report = Report {
         left_name: &name(&args.pair.left),
@@ -180,49 +153,6 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     }
     text += &place(&args.out);
     print(&text)
-}
-
-/// What is seen of a pair before it is matched.
-struct Look {
-    config: Config,
-    check: Option<PairCheck>,
-    rows: Option<Rows>,
-}
-
-/// Looks at a pair before it is matched: the search, and what is wrong. Swapped cameras are an error.
-fn look(
-    args: &MatchArgs,
-    pictures: [&GrayImage; 2],
-    valid: Option<[&GrayImage; 2]>,
-    camera: Option<&Camera<f64>>,
-) -> Result<Look, Failure> {
-    // Pictures have at most 4096 columns and rows.
-    let (width, height) = (pictures[0].width() as u16, pictures[0].height() as u16);
-    // Pictures without features are matched as well as they can be.
-    let matches = PairMatches::find(pictures, valid).ok();
-    let [first, count] = match (args.disparities, &matches) {
-        (Disparities::Count(count), _) => [args.min_disparity.unwrap_or(0), count],
-        (Disparities::Auto, matches) => {
-            let found = matches.as_ref().and_then(|matches| pair::search(pictures, matches));
-            let [first, count] = found.ok_or_else(|| {
-                Failure::new("--disparities auto: the images show too little to find a range; give a number")
-            })?;
-            // From another first disparity on to the same last one.
-            let last = first + count;
-            let first = args.min_disparity.unwrap_or(first);
-            [first, last.saturating_sub(first).max(1).next_multiple_of(16).min(Config::MOST_DISPARITIES)]
-        }
-    };
-    let range = RangeArgs { disparities: count, min_disparity: first };
-    let config = input::config(&range, &args.method, width, height)?;
-    let config = Config { confidence: true, ..config };
-    let Some(matches) = matches else { return Ok(Look { config, check: None, rows: None }) };
-    let check = PairCheck::new(pictures, &matches, &config);
-    if let Some(fault @ PairFault::Swapped) = check.fault.filter(|_| !args.force) {
-        return Err(Failure::new(format!("{fault}, or give --force")));
-    }
-    let rows = Rows::measure(&matches, ImageSize { width, height }, camera);
-    Ok(Look { config, check: Some(check), rows })
 }
 
 fn matched<C: StereoSource<Error: Display>>(
@@ -269,7 +199,7 @@ fn raw(args: &MatchArgs, pair: &mut Pair) -> Result<(Scene, Matched), Failure> {
     let (left, right) = rectify_colours(&rectification, &pair.left, &pair.right).map_err(|e| named(&e))?;
     let grey = rectify(&rectification, &mut pair.camera).map_err(|e| named(&e))?;
     let (valid, camera) = (grey.valid.each_ref(), rectification.camera());
-    let seen = look(args, grey.pictures.each_ref(), Some(valid), Some(camera))?;
+    let seen = look(&args.search, &args.method, grey.pictures.each_ref(), Some(valid), Some(camera))?;
     let Look { config, check, rows: aligned } = seen;
     let (rows, matched) = with_rectified(&rectification, &mut pair.camera, |source| {
         (source.remaps().map(|remap| remap.table().rows()), matched(args, config, source))

@@ -1,0 +1,96 @@
+//! What `match` sees of a pair before it matches it: the search, swapped cameras, rows that are off.
+
+use crate::failure::Failure;
+use crate::input;
+use crate::shared::{self, MethodArgs, RangeArgs, min_disparity};
+use clap::Args;
+use image::GrayImage;
+use stereopsis::geometry::camera::{Camera, ImageSize};
+use stereopsis::matching::Config;
+use stereopsis_host::pair::{self, PairCheck, PairFault, PairMatches};
+use stereopsis_host::rows::Rows;
+
+#[derive(Debug, Args)]
+pub struct SearchArgs {
+    /// How many whole disparities are searched: 16 to 256, at most the images' width; or auto, as many as
+    /// the images show
+    #[arg(long, value_name = "N", value_parser = disparities, allow_negative_numbers = true)]
+    pub disparities: Disparities,
+    /// The smallest disparity searched, px; 0 where none is given, or what auto finds
+    #[arg(long, value_name = "M", value_parser = min_disparity, allow_negative_numbers = true)]
+    pub min_disparity: Option<u16>,
+    /// Match the images even if the cameras seem to be swapped
+    #[arg(long)]
+    pub force: bool,
+}
+
+impl SearchArgs {
+    /// Refuses what cannot be searched in images of that size, before any work.
+    pub fn check(&self, method: &MethodArgs, width: u16, height: u16) -> Result<(), Failure> {
+        if let Disparities::Count(disparities) = self.disparities {
+            let range = RangeArgs { disparities, min_disparity: self.min_disparity.unwrap_or(0) };
+            input::config(&range, method, width, height)?;
+        }
+        Ok(())
+    }
+}
+
+/// How many disparities are searched.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Disparities {
+    /// As many as the images show.
+    Auto,
+    /// That many.
+    Count(u16),
+}
+
+fn disparities(text: &str) -> Result<Disparities, String> {
+    if text == "auto" {
+        return Ok(Disparities::Auto);
+    }
+    shared::disparities(text).map(Disparities::Count).map_err(|needed| format!("{needed}, or auto"))
+}
+
+/// What is seen of a pair before it is matched.
+pub struct Look {
+    pub config: Config,
+    pub check: Option<PairCheck>,
+    pub rows: Option<Rows>,
+}
+
+/// Looks at a pair before it is matched: the search, and what is wrong. Swapped cameras are an error.
+pub fn look(
+    args: &SearchArgs,
+    method: &MethodArgs,
+    pictures: [&GrayImage; 2],
+    valid: Option<[&GrayImage; 2]>,
+    camera: Option<&Camera<f64>>,
+) -> Result<Look, Failure> {
+    // Pictures have at most 4096 columns and rows.
+    let (width, height) = (pictures[0].width() as u16, pictures[0].height() as u16);
+    // Pictures without features are matched as well as they can be.
+    let matches = PairMatches::find(pictures, valid).ok();
+    let [first, count] = match (args.disparities, &matches) {
+        (Disparities::Count(count), _) => [args.min_disparity.unwrap_or(0), count],
+        (Disparities::Auto, matches) => {
+            let found = matches.as_ref().and_then(|matches| pair::search(pictures, matches));
+            let [first, count] = found.ok_or_else(|| {
+                Failure::new("--disparities auto: the images show too little to find a range; give a number")
+            })?;
+            // From another first disparity on to the same last one.
+            let last = first + count;
+            let first = args.min_disparity.unwrap_or(first);
+            [first, last.saturating_sub(first).max(1).next_multiple_of(16).min(Config::MOST_DISPARITIES)]
+        }
+    };
+    let range = RangeArgs { disparities: count, min_disparity: first };
+    let config = input::config(&range, method, width, height)?;
+    let config = Config { confidence: true, ..config };
+    let Some(matches) = matches else { return Ok(Look { config, check: None, rows: None }) };
+    let check = PairCheck::new(pictures, &matches, &config);
+    if let Some(fault @ PairFault::Swapped) = check.fault.filter(|_| !args.force) {
+        return Err(Failure::new(format!("{fault}, or give --force")));
+    }
+    let rows = Rows::measure(&matches, ImageSize { width, height }, camera);
+    Ok(Look { config, check: Some(check), rows })
+}

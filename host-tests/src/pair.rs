@@ -93,7 +93,7 @@ impl fmt::Display for PairFault {
         f.write_str(match self {
             Self::Swapped => {
                 "nearly everything lies farther to the right in the right image: the cameras are swapped; \
-                 exchange --left and --right"
+                 exchange left and right"
             }
             Self::Same => "the left and the right image are the same picture; give one of each camera",
             Self::BothOnTheirSides => {
@@ -206,7 +206,7 @@ fn small_range(pictures: [&GrayImage; 2]) -> Option<[f64; 2]> {
 }
 
 /// What is wrong with the pictures, as far as features tell.
-fn fault(pictures: [&GrayImage; 2], matches: &PairMatches) -> Option<PairFault> {
+pub fn fault(pictures: [&GrayImage; 2], matches: &PairMatches) -> Option<PairFault> {
     let [left, right] = pictures;
     if left.as_raw() == right.as_raw() {
         return Some(PairFault::Same);

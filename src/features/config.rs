@@ -7,7 +7,7 @@ use core::fmt;
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Orientation {
-    /// The patch as it stands: tells most patches apart, and tolerates turns of about 15 degrees. For cameras
+    /// The patch as it stands: the most distinctive, for rotations of up to about 15 degrees. For cameras
     /// that are mounted alike.
     #[default]
     Upright,

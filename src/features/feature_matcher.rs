@@ -108,8 +108,8 @@ impl<const N: usize> FeatureMatcher<N> {
     }
 }
 
-/// The partner of a left feature in place `here`, [`Best::NONE`] if none is clearly the best; the right
-/// features are told of it, whatever comes out.
+/// The partner of a left feature in place `here`, [`Best::NONE`] if none is clearly the best. The
+/// right features keep its distance in either case.
 fn best_partner(
     here: u16,
     feature: &Feature,

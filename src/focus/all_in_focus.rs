@@ -1,6 +1,6 @@
-//! Rows of the all-in-focus picture, told while a frame comes in.
+//! Rows of the all-in-focus picture, reported while a frame comes in.
 
-/// What a row of cells is told to the caller while a frame comes in.
+/// A row of the all-in-focus picture, reported while a frame comes in.
 #[derive(Clone, Copy, Debug)]
 pub struct AllInFocusRow<'a> {
     /// The row of cells, from the top.

@@ -14,7 +14,7 @@ pub enum LensCommand {
     Measure,
     /// Nothing more: the lens stands where the region is sharpest.
     Focused(Focused),
-    /// Nothing more: it cannot be told where that is.
+    /// The search ends without knowing where the lens is in focus.
     Failed(AutofocusError),
 }
 
@@ -22,8 +22,8 @@ pub enum LensCommand {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum LensEvent {
-    /// The lens rests, as far as is known at this position: the one that was asked for if the hardware tells
-    /// none.
+    /// The lens rests, at this position as far as is known: the one that was asked for where the hardware
+    /// does not report its own.
     Arrived(u16),
     /// The command to move could not be given: the bus failed.
     MoveFailed,

@@ -144,7 +144,7 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
         self.shift = (BIAS + self.reference).saturating_sub(mean).min(2 * BIAS);
     }
 
-    /// The next line of grey pixels. Rows of cells that are complete are told to `row`.
+    /// Takes the next line of grey pixels, and calls `row` with every row of cells that it completes.
     pub fn push(
         &mut self,
         line: &[u8],

@@ -42,7 +42,7 @@ impl MicroLens {
 
     /// The distance of what is sharp on a sensor `image_um` behind the lens, to the nearest micrometre: `Z =
     /// f z / (z - f)`. A micrometre of `z` moves it by `((Z - f) / f)^2`: with a short lens
-    /// [`Self::object_distance_from_extension_um`] tells more.
+    /// [`Self::object_distance_from_extension_um`] is more precise.
     pub fn object_distance_um(self, image_um: u32) -> Result<u32, LensError> {
         self.conjugate(image_um).ok_or(LensError::ImageWithinFocus)?
     }

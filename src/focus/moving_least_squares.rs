@@ -15,12 +15,12 @@ const RIDGE: f32 = 1e-3;
 /// The answers of a row of cells, each the value at its own place of the plane that fits best to the answers
 /// around it, in proportion to one over their variance: moving least squares (Lancaster & Salkauskas 1981).
 /// `peaks` are all cells, row by row; `out` has the medians of that row ([`median_row`](super::median_row)),
-/// by which it is told which answers are of the same surface: those within a third of a frame and three
+/// which say what answers are of the same surface: those within a third of a frame and three
 /// deviations.
 ///
 /// An answer that noise moves by less than a tenth of a frame stays as it is; others see 7 by 7 answers
 /// around them, one, two or four cells apart, the more noise the farther. For a window's sharpness is shared
-/// by its neighbours, and only what lies farther away tells anything new. A plane and no mean, as weights are
+/// by its neighbours, and only what lies farther away adds anything new. A plane and no mean, as weights are
 /// not the same on both sides of a slope. A cell without an answer stays so, and one keeps its own deviation
 /// and confidence.
 pub fn plane_row(

@@ -21,8 +21,8 @@ pub enum FocusSearchStep {
 ///
 /// Seven positions over the range. Then golden section between the neighbours of the sharpest, which keeps
 /// 0.62 of them for each frame whatever the shape of the peak (Kiefer 1953), while these are much less sharp.
-/// On top of the peak differences are as small as noise: what tells where it is are its flanks, and the
-/// frames that are left go there. Last, the least squares of all.
+/// On top of the peak differences are as small as noise: its flanks locate it, and the frames that are
+/// left go there. Last, the least squares of all.
 #[derive(Clone, Debug)]
 pub struct FocusSearch {
     least: u16,

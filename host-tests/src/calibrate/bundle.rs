@@ -1,10 +1,8 @@
 //! The least sum of squares of re-projection errors.
 
-use super::lens::LensModel;
+use super::lens::{INNER, LensModel};
 use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3, Point2, Point3, Rotation3, Vector2, Vector3};
 
-/// Parameters of a camera: fx, fy, cx, cy and up to eight of its lens, in the order of [`LensModel`].
-pub(super) const INNER: usize = 4 + 8;
 /// Of a pose: a small turn and a way.
 const OUTER: usize = 6;
 

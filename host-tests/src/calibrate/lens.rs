@@ -1,8 +1,10 @@
 //! The models of lenses that a calibration finds.
 
-use super::bundle::INNER;
 use nalgebra::Vector2;
 use stereopsis::geometry::camera::{Distortion, Fisheye, Lens};
+
+/// Parameters of a camera: fx, fy, cx, cy and up to eight of its lens, in the order of [`LensModel`].
+pub(super) const INNER: usize = 4 + 8;
 
 /// The models of lenses.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -1,7 +1,8 @@
 //! From corners to a rig.
 
 use super::board::Pattern;
-use super::bundle::{Bundle, INNER, Inner, Outer};
+use super::bundle::{Bundle, Inner, Outer};
+use super::lens::INNER;
 use super::lens::LensModel;
 use super::start;
 use nalgebra::{Matrix3, Point2, Point3, Rotation3, Vector2, Vector3};

@@ -1,6 +1,7 @@
 //! Where the search for a camera begins.
 
-use super::bundle::{INNER, Inner, Outer};
+use super::bundle::{Inner, Outer};
+use super::lens::INNER;
 use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3};
 use stereopsis::geometry::two_view::{Correspondence, Homography};
 

@@ -1,6 +1,6 @@
 //! A rig in words.
 
-use super::RawCalibration;
+use super::{Calibration, RawCalibration};
 use nalgebra::{Point2, Vector2};
 use std::fmt::Write;
 use stereopsis::geometry::{
@@ -48,31 +48,8 @@ pub fn describe(calibration: &RawCalibration, disparities: u16) -> Result<String
         report.rows[0],
         report.rows[1]
     );
-    let most = f64::from(disparities) - 1.0;
-    let _ = writeln!(
-        text,
-        "depths       from {:.3} m ({most} px, of a search of {disparities}) to about {:.1} m, where an \
-         error of {SIGMA_PX} px is a tenth",
-        f * b / most,
-        0.1 * f * b / SIGMA_PX
-    );
-    for z in DISTANCES_M.into_iter().filter(|z| f * b / z <= most && f * b / z >= 1.0) {
-        let _ = writeln!(
-            text,
-            "  at {z:5.2} m  {:6.1} px, +- {:.1} mm for {SIGMA_PX} px",
-            f * b / z,
-            1000.0 * z * z / (f * b) * SIGMA_PX
-        );
-    }
-    if b > 0.6 {
-        warnings.push(format!(
-            "a baseline of {b:.2} m is long for a small rig: was T in another unit? say --unit mm or cm"
-        ));
-    }
-    if b < 0.005 {
-        warnings
-            .push(format!("a baseline of {:.2} mm is short: was T in another unit? say --unit", 1000.0 * b));
-    }
+    depths(f * b, 0.0, disparities, &mut text);
+    warnings.extend(baseline_warning(b));
     if angle > 10.0 {
         warnings.push(format!(
             "the cameras are turned against each other by {angle:.0} degrees: much of both images is lost"
@@ -85,13 +62,75 @@ pub fn describe(calibration: &RawCalibration, disparities: u16) -> Result<String
     if (left / right).max(right / left) > 1.1 {
         warnings.push(format!("the focal lengths of the two cameras differ: {left:.0} and {right:.0} px"));
     }
+    Ok(with_warnings(text, warnings))
+}
+
+/// What a calibration of rectified images says, and what they can tell with a search of so many disparities:
+/// lines of text, the last ones warnings.
+pub fn describe_rectified(calibration: &Calibration, disparities: u16) -> String {
+    let rig = &calibration.rig;
+    let (f, b) = (f64::from(rig.focal_px()), f64::from(rig.baseline_m()));
+    let (cx, cy) = rig.principal_point();
+    let offset = rig.disparity_offset_px();
+    let mut text = format!("{} calibration of rectified images", calibration.format);
+    if let (Some(width), Some(height)) = (calibration.width, calibration.height) {
+        let _ = write!(text, " of {width} x {height} px");
+    }
+    let _ = writeln!(text, "\nbaseline     {:.2} mm", 1000.0 * b);
+    let _ = writeln!(
+        text,
+        "rectified    f {f:.1} px, centre {cx:.1}, {cy:.1}; depth is f b / (d {offset:+.2} px)"
+    );
+    depths(f * b, offset.into(), disparities, &mut text);
+    with_warnings(text, baseline_warning(b).into_iter().collect())
+}
+
+/// The depths that a search of so many disparities can tell, where `z = fb_px_m / (d + offset_px)`.
+fn depths(fb_px_m: f64, offset_px: f64, disparities: u16, text: &mut String) {
+    let most = f64::from(disparities) - 1.0;
+    let parallax = most + offset_px;
+    if parallax <= 0.0 {
+        let _ =
+            writeln!(text, "depths       none: {most} px is at infinity or behind; search more disparities");
+        return;
+    }
+    let _ = writeln!(
+        text,
+        "depths       from {:.3} m ({most} px, of a search of {disparities}) to about {:.1} m, where an \
+         error of {SIGMA_PX} px is a tenth",
+        fb_px_m / parallax,
+        0.1 * fb_px_m / SIGMA_PX
+    );
+    for z in DISTANCES_M {
+        let disparity = fb_px_m / z - offset_px;
+        if (0.0..=most).contains(&disparity) && fb_px_m / z >= 1.0 {
+            let sigma_mm = 1000.0 * z * z / fb_px_m * SIGMA_PX;
+            let _ =
+                writeln!(text, "  at {z:5.2} m  {disparity:6.1} px, +- {sigma_mm:.1} mm for {SIGMA_PX} px");
+        }
+    }
+}
+
+/// What looks wrong with a baseline, m.
+fn baseline_warning(b: f64) -> Option<String> {
+    if b > 0.6 {
+        return Some(format!(
+            "a baseline of {b:.2} m is long for a small rig: was T in another unit? say --unit mm or cm"
+        ));
+    }
+    let mm = 1000.0 * b;
+    (b < 0.005).then(|| format!("a baseline of {mm:.2} mm is short: was T in another unit? say --unit"))
+}
+
+/// A text with its warnings, or that there are none.
+fn with_warnings(mut text: String, warnings: Vec<String>) -> String {
     if warnings.is_empty() {
         text += "nothing looks wrong\n";
     }
     for warning in warnings {
         let _ = writeln!(text, "warning: {warning}");
     }
-    Ok(text)
+    text
 }
 
 /// One camera.

@@ -180,7 +180,7 @@ fn send(producer: &mut LineProducer<'_, '_, BYTES>, sequence: u32, row: u16) {
 }
 
 #[test]
-fn handed_lines_are_a_camera_that_tells_what_it_lost() {
+fn handed_lines_are_a_camera_that_reports_what_it_lost() {
     let mut bytes = [[0; BYTES]; 8];
     let mut slots = LineSlots::<BYTES, 9>::new();
     let (mut producer, consumer) = slots.split(&mut bytes);

@@ -147,7 +147,7 @@ fn states(bench: &Bench, scene: &str, one_camera: bool) -> Vec<String> {
 }
 
 #[test]
-fn what_cannot_be_told_is_named() {
+fn what_is_undetermined_is_named() {
     let bench = Bench::new();
     assert_eq!(states(&bench, "still", false), ["first", "still", "still", "still"]);
     assert_eq!(states(&bench, "still", true), ["first", "still", "still", "still"]);
@@ -200,4 +200,25 @@ fn views_of_a_street_stand_where_they_stood() {
         "has not moved",
     );
     assert!(!bench.path("other").exists());
+}
+
+#[test]
+fn swapped_cameras_are_refused_unless_forced() {
+    let bench = Bench::new();
+    let street = walk(&bench, "2");
+    let swapped = bench.path("swapped");
+    for (from, to) in [("left", "right"), ("right", "left")] {
+        let to = swapped.join(to);
+        std::fs::create_dir_all(&to).expect("a folder");
+        for file in std::fs::read_dir(Path::new(&street).join(from)).expect("a folder") {
+            let file = file.expect("a file");
+            std::fs::copy(file.path(), to.join(file.file_name())).expect("a copy");
+        }
+    }
+    let (swapped, calib) = (swapped.display().to_string(), format!("{street}/calib.txt"));
+    let out = bench.path("found.txt").display().to_string();
+    let mut args = vec!["odometry", "--sequence", &swapped, "--calib", &calib, "--out", &out];
+    bench.refused(&args, "exchange left and right");
+    args.push("--force");
+    assert!(stereo(&args).status.success());
 }

@@ -18,7 +18,7 @@ fn arguments(bench: &Bench, left: &str, right: &str, disparities: &str) -> Vec<S
 fn swapped_cameras_are_refused_unless_forced() {
     let bench = Bench::new();
     let mut swapped = arguments(&bench, "b.png", "a.png", "64");
-    bench.refused(&swapped, "exchange --left and --right");
+    bench.refused(&swapped, "exchange left and right");
     swapped.push("--force".into());
     let run = stereo(&swapped);
     assert!(run.status.success() && text(&run.stderr).contains("swapped"), "{}", text(&run.stderr));
@@ -44,4 +44,31 @@ fn a_short_search_is_said_and_auto_finds_one() {
     let summary = json(&bench.path("out/summary.json"));
     assert_eq!((&summary["min_disparity"], &summary["disparities"]), (&needed[0], &needed[1]));
     assert!(summary["pair"]["fault"].is_null());
+}
+
+#[test]
+fn figures_are_printed_as_json_or_not_at_all() {
+    let bench = Bench::new();
+    let arguments = arguments(&bench, "a.png", "b.png", "64");
+    let with = |option: &str| stereo(arguments.iter().map(String::as_str).chain([option]));
+    let run = with("--json");
+    assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
+    let printed: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    assert_eq!(printed, json(&bench.path("out/summary.json")));
+    assert_eq!(printed["command"][1], "match");
+    assert_eq!(printed["inputs"].as_array().map(Vec::len), Some(2));
+    let run = with("--quiet");
+    assert!(run.status.success() && run.stdout.is_empty() && run.stderr.is_empty(), "{}", text(&run.stdout));
+}
+
+#[test]
+fn a_calibration_of_rectified_images_is_checked_as_match_takes_it() {
+    let bench = Bench::new();
+    let file = "cam0=[999.421 0 294.182; 0 999.421 252.932; 0 0 1]\ncam1=[999.421 0 326.96; 0 999.421 \
+                252.932; 0 0 1]\ndoffs=32.778\nbaseline=193.001\nwidth=741\nheight=497\n";
+    let file = bench.put("calib.txt", file.as_bytes()).display().to_string();
+    let run = stereo(["calib", "check", "--calib", &file, "--disparities", "64"]);
+    let said = text(&run.stdout);
+    // 999.421 px x 0.193001 m / (63 px + 32.778 px)
+    assert!(run.status.success() && said.contains("from 2.014 m (63 px"), "{said}");
 }

@@ -84,7 +84,7 @@ proptest! {
 }
 
 #[test]
-fn what_tells_nothing_is_refused() {
+fn what_determines_nothing_is_refused() {
     let mut random = Random::new(1);
     let mut meter = RowMeter::new();
     assert_eq!(meter.alignment(), Err(RowMeterError::Empty));

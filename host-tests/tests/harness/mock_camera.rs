@@ -208,7 +208,7 @@ fn half_a_file_is_an_error_wherever_it_ends() {
 }
 
 #[test]
-fn a_jpeg_with_a_thumbnail_in_its_metadata_is_judged_by_its_own_end() {
+fn a_jpeg_with_a_thumbnail_in_its_metadata_ends_with_its_own_end() {
     let files = Files::new();
     let mut whole = encode(&grey().into(), ImageFormat::Jpeg);
     // An application segment that holds a JPEG of its own, end mark included.

@@ -21,7 +21,7 @@ pub(crate) struct Ldl<T, const N: usize> {
 const MOST_STEPS: usize = 16;
 
 impl<T: Real, const N: usize> Ldl<T, N> {
-    /// Factors M, of which both triangles are filled, and overwrites it.
+    /// Factors M, both of whose triangles are filled, and overwrites it.
     pub(crate) fn new(m: &mut [[T; N]; N]) -> Self {
         let mut factor = Self { rows: [[T::ZERO; N]; N], pivots: [T::ZERO; N], places: [0; N] };
         // Below this a pivot is rounding, and may even be negative.
@@ -89,7 +89,7 @@ impl<T: Real, const N: usize> Ldl<T, N> {
 
     /// The eigenvector of the smallest eigenvalue, of length one: what minimises `x^T M x` with `|x| = 1`.
     ///
-    /// Inverse iteration, of which every step takes the best of all that x and `M^-1 x` span, by a 2x2
+    /// Inverse iteration; every step takes the best vector that x and `M^-1 x` span, by a 2x2
     /// eigenproblem (Lanczos' method on `M^-1`, begun anew after two vectors; Golub & Van Loan 2013,
     /// 10.1). Plain inverse iteration takes 44 steps per digit where two eigenvalues are within 5 %, as
     /// they are with few noisy rows.

@@ -69,8 +69,8 @@ pub struct RobustFundamental<T: Real> {
     pub miss_probability: T,
 }
 
-/// The fundamental matrix of correspondences of which some are wrong, px; `inliers` is filled with which
-/// agree with it.
+/// The fundamental matrix of correspondences in pixels, some of them wrong; `inliers` says which agree with
+/// it.
 ///
 /// Samples of seven give candidates, a sequential test drops the bad ones after a few correspondences, each
 /// best one so far is refined, and the last is the one that makes the sum of a loss of Sampson's distances

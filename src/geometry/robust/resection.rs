@@ -72,8 +72,7 @@ const MINIMUM: usize = 3;
 const QUICK: usize = 4;
 const LAST: usize = 12;
 
-/// The pose of a camera from landmarks of which some are wrong (undistorted px); `inliers` is filled with
-/// which agree.
+/// The pose of a camera from landmarks, some of them wrong (undistorted px); `inliers` says which agree.
 ///
 /// Samples of three give up to four poses each ([`p3p()`]); each best one so far is refined over all
 /// landmarks by least squares with weights that fall to zero at one and a half thresholds, as in

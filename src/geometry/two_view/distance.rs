@@ -48,7 +48,7 @@ impl<T: Real> Fundamental<T> {
     }
 
     /// The distances of p and p' to their epipolar lines in the first and the second image, px, not negative.
-    /// Zero for an epipole, of which all lines are.
+    /// Zero for an epipole, through which all epipolar lines pass.
     pub fn line_distances_px(&self, seen: &Correspondence<T>) -> (T, T) {
         let Parts { residual, first, second } = self.parts(seen);
         let distance = |line: Vector3<T>| {

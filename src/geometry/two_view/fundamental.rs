@@ -110,7 +110,7 @@ impl<T: Real> Fundamental<T> {
     }
 
     /// `l = F p'`: the line of the first image on which what the second shows at `second` is seen. `None` for
-    /// the epipole (to rounding), of which all lines are, and where the line is the one at infinity.
+    /// the epipole (to rounding), whose line is undetermined, and where the line is the one at infinity.
     pub fn line_in_first(&self, second: &Point2<T>) -> Option<Line<T>> {
         let line = self.matrix * second.to_homogeneous();
         // At the epipole nothing is left of the sums but their rounding.

@@ -90,7 +90,7 @@ impl Segment {
             column.advance(piece);
             row.advance(piece);
             let ends_in = is_in(column.start, row.start);
-            // A piece is straight: its ends tell.
+            // A piece is straight: its ends decide.
             if !begins_in || !ends_in {
                 for valid in valid {
                     *valid = is_in(x, y).into();
@@ -143,7 +143,7 @@ impl Run {
     /// Whether each of that many pieces of four pixels advances by 0 to [`NARROW`] per pixel.
     #[inline(always)]
     pub fn is_narrow(&self, pieces: usize) -> bool {
-        // The step grows or shrinks all along: its ends tell.
+        // The step grows or shrinks all along: its ends decide.
         let is_small = |step: i32| (0..=NARROW).contains(&step);
         is_small(self.step) && is_small(self.step.wrapping_add(self.bend.wrapping_mul(pieces as i32)))
     }

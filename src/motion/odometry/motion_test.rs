@@ -23,12 +23,12 @@ const SIX: f64 = 28.0;
 const THREE: f64 = 21.0;
 /// The share of what was found that has to agree.
 const SHARE: f64 = 0.3;
-/// Deviations of a step, in baselines, from which on one that cannot be told from none is not known.
+/// Deviation of a step, in baselines, from which on a step that may be none is not known.
 const UNKNOWN: f64 = 0.1;
-/// Deviations of a step, in baselines, from which on no step is known.
+/// Deviation of a step, in baselines, from which on no step is known.
 const OPEN: f64 = 100.0;
 
-/// Tells by tests of hypotheses what of the camera's motion the matches of a frame show.
+/// Decides by tests of hypotheses what the matches of a frame show of the camera's motion.
 pub(super) fn test_motion<T: Real, const N: usize>(
     tracker: &Tracker<T, N>,
     rig: &OdometryRig<T>,

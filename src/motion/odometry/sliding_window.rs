@@ -13,8 +13,8 @@ use nalgebra::{Point2, Point3};
 ///
 /// An odometry says of each frame what is known when it comes. What comes after it says more: here the last
 /// views and points are adjusted together with each new one ([`bundle`](crate::motion::bundle)), and
-/// [`Self::poses`] are better than the steps that were told. It stands beside the odometry, and who does not
-/// want it does not pay for it.
+/// [`Self::poses`] are better than the steps that were reported. It stands beside the odometry, which costs
+/// nothing more without it.
 #[derive(Debug)]
 pub struct Refinement<T: Real, const VIEWS: usize, const POINTS: usize, const OBSERVATIONS: usize> {
     config: RefinementConfig<T>,
@@ -187,7 +187,7 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const OBSERVATIONS: usize
         }
     }
 
-    /// Keeps what the view sees of a point, if there is room; whether it was seen before.
+    /// Keeps a view's observation of a point, if there is room, and returns whether the point was seen before.
     fn note(&mut self, view: usize, pose: &Pose<T>, point: &ObservedPoint<T>) -> bool {
         let known = self.rows.iter().position(|row| row.seen != 0 && row.name == point.name);
         let place = known.or_else(|| self.rows.iter().position(|row| row.seen == 0));

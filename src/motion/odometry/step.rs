@@ -10,16 +10,16 @@ use nalgebra::Matrix6;
 pub enum State {
     /// The first frame: the others stand beside it.
     First,
-    /// Of one camera: there is no unit of length yet, for nothing but turns could be told from what was seen
-    /// so far. The motion is what is known of the turn; the next frame that is [`State::Tracked`] has the
+    /// Of one camera: there is no unit of length yet, for what was seen so far shows nothing but a rotation.
+    /// The motion is that rotation; the next frame that is [`State::Tracked`] has the
     /// whole motion since.
     Waiting,
     /// The pose is measured.
     Tracked,
     /// The pictures are the same to their noise: the motion is none.
     Stationary,
-    /// The turn is measured. There may be a step, which cannot be told from none: of one camera it has no
-    /// direction. The motion has none.
+    /// The rotation is measured. A step is too small to be measured: of one camera it has no direction. The
+    /// motion has none.
     RotationOnly,
     /// The turn is measured. What is seen is too far away to tell a step by, or there is too little of it:
     /// the step is not known, and the motion has none.

@@ -4,9 +4,11 @@ use crate::failure::Failure;
 use crate::place::Place;
 use crate::shared::{Unit, disparities, print};
 use clap::{Args, Subcommand, ValueEnum};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use stereopsis::geometry::camera::ImageSize;
-use stereopsis_host::calibration::{RawCalibration, describe, write_c, write_opencv, write_rust};
+use stereopsis_host::calibration::{
+    Calibration, RawCalibration, describe, describe_rectified, write_c, write_opencv, write_rust,
+};
 use stereopsis_host::command_line::one_line;
 
 /// What follows the options in the command's help.
@@ -105,7 +107,16 @@ fn open(args: &FileArgs) -> Result<RawCalibration, Failure> {
 }
 
 fn check(args: &CheckArgs) -> Result<(), Failure> {
-    let calibration = open(&args.file)?;
+    let file = &args.file;
+    // What says of rectified images how they are is said of them: a shift of the columns is no mounting.
+    let rectified = Calibration::open_all(&file.calib, Path::new(""), file.unit.map(Unit::metres));
+    let raw = open(file);
+    if let Ok(rectified) = rectified
+        && (raw.is_err() || rectified.rig.disparity_offset_px() != 0.0)
+    {
+        return print(&describe_rectified(&rectified, args.disparities));
+    }
+    let calibration = raw?;
     let text = describe(&calibration, args.disparities);
     print(&text.map_err(|e| Failure::new(format!("{}: {e}", calibration.path.display())))?)
 }

@@ -51,6 +51,16 @@ fn disparities(text: &str) -> Result<Disparities, String> {
     shared::disparities(text).map(Disparities::Count).map_err(|needed| format!("{needed}, or auto"))
 }
 
+/// Refuses a pair of swapped cameras.
+pub fn refuse_swapped(pictures: [&GrayImage; 2]) -> Result<(), Failure> {
+    // Where nothing is found nothing is said.
+    let found = PairMatches::find(pictures, None).ok().and_then(|matches| pair::fault(pictures, &matches));
+    match found {
+        Some(fault @ PairFault::Swapped) => Err(Failure::new(format!("{fault}, or give --force"))),
+        _ => Ok(()),
+    }
+}
+
 /// What is seen of a pair before it is matched.
 pub struct Look {
     pub config: Config,

@@ -10,7 +10,7 @@ use crate::results::{self, DepthArgs, DepthFiles, figures, place};
 use crate::shared::{BalanceArgs, MethodArgs, PairArgs, RectifyOptions, Unit, print};
 use clap::Args;
 use image::{RgbImage, imageops};
-use std::fmt::{Display, Write};
+use std::fmt::Display;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use stereopsis::camera::StereoSource;
@@ -64,6 +64,12 @@ pub struct MatchArgs {
     pub options: RectifyOptions,
     #[command(flatten)]
     pub depth: DepthArgs,
+    /// Print summary.json in place of the figures
+    #[arg(long, conflicts_with = "quiet")]
+    pub json: bool,
+    /// Print no figures; warnings and notes are on standard error
+    #[arg(long)]
+    pub quiet: bool,
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -134,20 +140,24 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let stale: Vec<_> = results::WITH_DEPTH.into_iter().chain(RECTIFIED).collect();
     staging.commit(&stale)?;
 
-    let mut text = String::new();
-    for note in &pair.notes {
-        let _ = writeln!(text, "note: {}", one_line(note));
-    }
     let warnings = [
         scene.check.as_ref().and_then(|check| check.fault).map(|fault| fault.to_string()),
         scene.check.as_ref().and_then(|check| check.search_warning(&config)),
         scene.rows.as_ref().and_then(Rows::warning),
     ];
-    for warning in warnings.into_iter().flatten() {
+    let notes = pair.notes.iter().map(|note| format!("note: {}", one_line(note)));
+    let warnings = warnings.into_iter().flatten().map(|warning| format!("warning: {warning}"));
+    for line in notes.chain(warnings) {
         // Nobody is left to tell when standard error is closed.
-        let _ = writeln!(std::io::stderr(), "stereo: warning: {warning}");
+        let _ = writeln!(std::io::stderr(), "stereo: {line}");
     }
-    text += &figures(&summary);
+    if args.quiet {
+        return Ok(());
+    }
+    if args.json {
+        return print(&(serde_json::to_string_pretty(&summary)? + "\n"));
+    }
+    let mut text = figures(&summary);
     if let Some(rectified) = &scene.rectified {
         text += &rectified.figures();
     }

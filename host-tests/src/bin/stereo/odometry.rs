@@ -1,6 +1,7 @@
 //! `stereo odometry`: where a camera, or a pair, went, from what it saw.
 
 use crate::failure::Failure;
+use crate::look::refuse_swapped;
 use crate::place::{Content, Place};
 use crate::progress::Progress;
 use crate::shared::{Unit, print, whole};
@@ -58,6 +59,9 @@ pub struct OdometryArgs {
     /// File for the poses
     #[arg(long, value_name = "poses.txt")]
     pub out: PathBuf,
+    /// Follow a pair even if its cameras seem to be swapped
+    #[arg(long)]
+    pub force: bool,
     /// Also draw the way, from above and from the side
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,
@@ -104,6 +108,11 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
         return Err(Failure::new(format!("--states: {what} is the file of another option; name another")));
     }
 
+    if let (left, Some(right)) = frame(&sequence, cameras.rectification.as_ref(), 0)?
+        && !args.force
+    {
+        refuse_swapped([&left, &right])?;
+    }
     let progress = Progress::over_frames(sequence.len());
     let frames = (0..sequence.len()).map(|i| frame(&sequence, cameras.rectification.as_ref(), i));
     let trajectory = follow(&cameras.rig, frames, args.window.into(), |_| progress.one_more())?;

@@ -90,7 +90,7 @@ fn without_noise_it_is_the_truth() {
 }
 
 #[test]
-fn noise_and_wrong_sights_are_borne() {
+fn noise_and_wrong_observations_are_borne() {
     for share in [0.0, 0.2] {
         let seen = with_wrong(scene(views(6), 80, 1, 0.3, |_, _| true), share);
         let (centres, points, known) =
@@ -184,7 +184,7 @@ fn a_view_that_sees_nothing_known_is_named() {
 }
 
 #[test]
-fn no_views_or_sights_are_refused() {
+fn no_views_or_observations_are_refused() {
     let one = scene(views(1), 20, 1, 0.0, |_, _| true);
     assert_eq!(found(&one, |_, _| ()).err(), Some(StructureError::Views));
     let mut none = scene(views(2), 20, 1, 0.0, |_, _| true);

@@ -15,7 +15,7 @@
 //! * [`recording`]: lines as they came, in a file, and played again.
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
 //! * [`correspond`]: two pictures through the core's features and matcher. [`two_view`]: correspondences of a
-//!   known scene, with noise and wrong ones.
+//!   known scene, with noise and wrong ones. [`chance`]: whether matches agree by chance.
 //! * [`focus`]: focus stacks, a simulated lens, and stacks through the core's map.
 //! * [`odometry`]: sequences of pictures through the core's odometry, trajectories and their errors.
 //! * [`rectify`]: raw pictures through the core's remap. [`pair`], [`rows`]: what is wrong with a pair.
@@ -28,6 +28,7 @@
 pub mod bal;
 pub mod calibrate;
 pub mod calibration;
+pub mod chance;
 pub mod colour;
 pub mod command_line;
 pub mod correspond;

@@ -42,7 +42,7 @@ impl Slew {
 
 /// A DW9714 on an I2C bus.
 ///
-/// The chip does not report where the lens is; [`Dw9714::is_moving`] says whether the current still changes. A
+/// The chip does not report where the lens is; [`Dw9714::is_moving`] says if the current still changes. A
 /// coil has no friction to speak of and one position for each current; it rings after a move, which [`Slew`]
 /// makes less of.
 #[derive(Debug)]

@@ -96,8 +96,8 @@ impl<const W: usize> SharpnessRows<W> {
         self.squares.fill(0);
     }
 
-    /// Takes the next line of grey pixels, and calls `row` with every row of the measure that it completes and
-    /// its index; the last line completes all.
+    /// Takes the next line of grey pixels, and calls `row` with the index of every row of the measure that it
+    /// completes, and that row; the last line completes all.
     pub fn push(&mut self, line: &[u8], mut row: impl FnMut(usize, &[u32])) -> Result<(), FocusLineError> {
         if self.taken >= self.height {
             return Err(FocusLineError::NoLineDue);

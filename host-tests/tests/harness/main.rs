@@ -4,6 +4,7 @@
 mod altered;
 mod calibrate;
 mod calibration;
+mod chance;
 mod mock_camera;
 mod orientation;
 mod pair;

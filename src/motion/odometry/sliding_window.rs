@@ -187,7 +187,7 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const OBSERVATIONS: usize
         }
     }
 
-    /// Keeps a view's observation of a point, if there is room, and returns whether the point was seen before.
+    /// Keeps a view's observation of a point, if there is room, and says whether the point was seen before.
     fn note(&mut self, view: usize, pose: &Pose<T>, point: &ObservedPoint<T>) -> bool {
         let known = self.rows.iter().position(|row| row.seen != 0 && row.name == point.name);
         let place = known.or_else(|| self.rows.iter().position(|row| row.seen == 0));

@@ -14,6 +14,7 @@ use stereopsis::geometry::{
     robust::{RobustConfig, robust_fundamental},
     two_view::{Correspondence, Fundamental, eight_point},
 };
+use stereopsis_host::chance::log10_false_alarms;
 use stereopsis_host::epipolar_picture::epipolar_picture;
 use stereopsis_host::matches::read_matches;
 use stereopsis_host::mock::MockCamera;
@@ -64,6 +65,8 @@ struct Answer {
     samples: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     miss_probability: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    log10_false_alarms: Option<f64>,
 }
 
 /// A fundamental matrix, and what agrees with it.
@@ -88,6 +91,10 @@ pub fn run(args: &FundamentalArgs) -> Result<(), Failure> {
         black_box(again);
     }
     let kept = estimate.inliers.iter().filter(|&&inlier| inlier).count();
+    let log10_false_alarms = match args.robust.method {
+        TwoViewMethod::EightPoint => None,
+        TwoViewMethod::Ransac => Some(by_chance(&seen, kept, &args.robust).map_err(failed)?),
+    };
     let drawn = |(place, (left, right)): (_, &(RgbImage, RgbImage))| {
         let matches: Vec<_> = seen.iter().copied().zip(estimate.inliers.iter().copied()).collect();
         (place, epipolar_picture(left, right, &estimate.fundamental, &matches))
@@ -99,10 +106,25 @@ pub fn run(args: &FundamentalArgs) -> Result<(), Failure> {
         time_us: best,
         samples: estimate.samples.map(|(samples, _)| samples),
         miss_probability: estimate.samples.map(|(_, missed)| missed),
+        log10_false_alarms,
     };
     out.write(|out| json(out, &answer), drawn)?;
     let n = seen.len();
     print(&format!("{kept} of {n} matches within {} px, {best:.0} us\n", args.robust.threshold))
+}
+
+/// The logarithm of how often so many matches agree by chance, or that these do.
+pub fn by_chance(seen: &[Correspondence<f64>], kept: usize, args: &RobustArgs) -> Result<f64, String> {
+    let log10 = log10_false_alarms(seen, kept, args.threshold);
+    if log10 > 0.0 {
+        return Err(format!(
+            "{kept} of {} matches agree within {} px, as many as of unrelated ones by chance (1e{log10:.0} \
+             such matrices are expected); are these images of one scene?",
+            seen.len(),
+            args.threshold
+        ));
+    }
+    Ok(log10)
 }
 
 /// The images of the matches, for display; refused when a match is outside of its image.

@@ -1,6 +1,7 @@
 //! `stereo pose`: correspondences of known cameras into where the second one stands, and points.
 
 use crate::failure::Failure;
+use crate::fundamental::by_chance;
 use crate::place::json_file;
 use crate::shared::{RobustArgs, TwoViewMethod, print, rows};
 use clap::Args;
@@ -149,6 +150,9 @@ fn start(
         }
     };
     let kept: Vec<_> = seen.iter().zip(&inliers).filter(|&(_, &inlier)| inlier).map(|(s, _)| *s).collect();
+    if args.method == TwoViewMethod::Ransac && found.is_some() {
+        by_chance(seen, kept.len(), args)?;
+    }
     let homography = match found {
         None => Some(Homography::from_correspondences(&kept).map_err(|e| e.to_string())?),
         Some(f) => {

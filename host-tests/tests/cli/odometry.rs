@@ -192,6 +192,11 @@ fn views_of_a_street_stand_where_they_stood() {
     let one = format!("{street}/left/000000.png");
     let other = bench.path("other").display().to_string();
     bench.refused(&["structure", "--images", &one, "--calib", &calib, "--out", &other], "2 to 60 are needed");
+    // A calibration of images of another size.
+    let wide = b"cam0=[200 0 160; 0 200 90; 0 0 1]\ncam1=[200 0 160; 0 200 90; 0 0 1]\ndoffs=0\n\
+        baseline=100\nwidth=640\nheight=360\n";
+    let wide = bench.put("wide.txt", wide).display().to_string();
+    bench.refused(&["structure", "--images", &images, "--calib", &wide, "--out", &other], "wide.txt");
     // Twice the same picture.
     fs::copy(&one, bench.path("again.png")).expect("room");
     let again = bench.path("again.png").display().to_string();

@@ -72,3 +72,29 @@ fn a_calibration_of_rectified_images_is_checked_as_match_takes_it() {
     // 999.421 px x 0.193001 m / (63 px + 32.778 px)
     assert!(run.status.success() && said.contains("from 2.014 m (63 px"), "{said}");
 }
+
+#[test]
+fn depths_and_colours_come_without_a_file() {
+    let bench = Bench::new();
+    let mut args = arguments(&bench, "a.png", "b.png", "64");
+    args.extend(["--focal-px", "500", "--baseline-mm", "100", "--colour-range", "0:64"].map(String::from));
+    let run = stereo(&args);
+    assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
+    let depth = json(&bench.path("out/summary.json"))["depth"].clone();
+    assert_eq!((depth["focal_px"].as_f64(), depth["png_unit_m"].as_f64()), (Some(500.0), Some(0.001)));
+    // 500 px x 0.1 m / 62 px: the last disparity that is no ceiling
+    assert!((depth["nearest_m"].as_f64().expect("a depth") - 50.0 / 62.0).abs() < 1e-3, "{depth}");
+    let brightest = |args: &[String]| {
+        assert!(stereo(args).status.success());
+        let picture = image::open(bench.path("out/disparity_colour.png")).expect("a picture").into_rgb8();
+        picture.pixels().map(|p| p.0.map(u32::from).iter().sum::<u32>()).max()
+    };
+    // The nearest answer is in the middle of a wide range and at the end of its own.
+    let wide = brightest(&args);
+    args.truncate(args.len() - 2);
+    assert!(wide < brightest(&args));
+    for wrong in ["64:0", "1", "a:b", "0:0"] {
+        let wrong: Vec<_> = args.iter().cloned().chain(["--colour-range".into(), wrong.into()]).collect();
+        assert_eq!(stereo(&wrong).status.code(), Some(2));
+    }
+}

@@ -63,7 +63,7 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
         truth: Some(&truth),
     };
     let mut staging = Staging::new(&args.out)?;
-    results::write(&mut staging, &report, Some(&depth))?;
+    results::write(&mut staging, &report, Some(&depth), None)?;
     staging.write(IMAGES[0], |out| png(out, &left))?;
     staging.write(IMAGES[1], |out| png(out, &right))?;
     let calibration = write_middlebury(scale.rig(), config.width, config.height, config.disparities);

@@ -19,6 +19,7 @@ use stereopsis::geometry::camera::{Camera, ImageSize, RectifiedRig};
 use stereopsis::imaging::{Balance, BalancedPair, NoiseMeter};
 use stereopsis::matching::Config;
 use stereopsis_host::calibration::Calibration;
+use stereopsis_host::colour::ColourScale;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
 use stereopsis_host::pair::PairCheck;
@@ -62,8 +63,21 @@ pub struct MatchArgs {
     pub rectify: bool,
     #[command(flatten)]
     pub options: RectifyOptions,
+    /// Focal length of the rectified cameras, px, where there is no file: their centre is taken to be that of
+    /// the images
+    #[arg(long, value_name = "PX", conflicts_with = "calib", requires = "baseline_mm", value_parser = length,
+        allow_negative_numbers = true)]
+    pub focal_px: Option<f32>,
+    /// Distance of the two cameras, mm
+    #[arg(long, value_name = "MM", requires = "focal_px", value_parser = length, allow_negative_numbers =
+        true)]
+    pub baseline_mm: Option<f32>,
     #[command(flatten)]
     pub depth: DepthArgs,
+    /// Disparities from the darkest to the brightest colour of disparity_colour.png, px, as 0:64: those of
+    /// most answers where none are given
+    #[arg(long, value_name = "A:B", value_parser = colour_range, allow_negative_numbers = true)]
+    pub colour_range: Option<ColourScale>,
     /// Print summary.json in place of the figures
     #[arg(long, conflicts_with = "quiet")]
     pub json: bool,
@@ -130,7 +144,7 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         truth: None,
     };
     let mut staging = Staging::new(&args.out)?;
-    results::write(&mut staging, &report, depth.as_ref())?;
+    results::write(&mut staging, &report, depth.as_ref(), args.colour_range)?;
     let [left, right, cameras] = RECTIFIED;
     if let Some(rectified) = &scene.rectified {
         staging.write(left, |out| png(out, &scene.left))?;
@@ -226,10 +240,29 @@ fn camera(rig: &RectifiedRig) -> Option<Camera<f64>> {
     Camera::new(f, f, cx.into(), cy.into()).ok()
 }
 
+fn length(text: &str) -> Result<f32, &'static str> {
+    let value = text.parse().ok().filter(|value| (0.001..=100_000.0).contains(value));
+    value.ok_or("a number from 0.001 to 100000 is needed")
+}
+
+fn colour_range(text: &str) -> Result<ColourScale, &'static str> {
+    let ends = text.split_once(':').and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+    let scale = ends.map(|(far_px, near_px)| ColourScale { far_px, near_px });
+    let is_range = |s: &ColourScale| s.far_px.is_finite() && s.near_px.is_finite() && s.far_px < s.near_px;
+    scale.filter(is_range).ok_or("two disparities are needed, the smaller one first, as 0:64")
+}
+
 /// The scale of depths in images that are rectified already, where there is a calibration.
 fn scale(args: &MatchArgs, pair: &Pair) -> Result<Option<DepthScale>, Failure> {
     if args.options.alpha.is_some() {
         return Err(Failure::new("--alpha: is for raw images; give --rectify too"));
+    }
+    if let Some((focal_px, baseline_mm)) = args.focal_px.zip(args.baseline_mm) {
+        let [cx, cy] = [pair.width, pair.height].map(|side| (f32::from(side) - 1.0) / 2.0);
+        let rig = RectifiedRig::new(focal_px, baseline_mm / 1000.0, cx, cy);
+        let scale =
+            rig.map_err(|e| e.to_string()).and_then(|rig| DepthScale::new(&rig).map_err(|e| e.to_string()));
+        return scale.map(Some).map_err(|e| Failure::new(format!("--focal-px, --baseline-mm: {e}")));
     }
     match args.calib.len() {
         0 if args.depth.depth_unit.is_some() || args.depth.max_depth.is_some() => {

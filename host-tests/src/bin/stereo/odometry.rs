@@ -1,6 +1,7 @@
 //! `stereo odometry`: where a camera, or a pair, went, from what it saw.
 
 use crate::failure::Failure;
+use crate::input::fits;
 use crate::look::refuse_swapped;
 use crate::place::{Content, Place};
 use crate::progress::Progress;
@@ -175,21 +176,6 @@ fn cameras(args: &OdometryArgs, sequence: &Sequence) -> Result<Cams, Failure> {
             Ok(Cams { rig: Rig::Stereo(calibration.rig), rectification: None, format: calibration.format })
         }
     }
-}
-
-/// Files of KITTI do not say for which size they are: a principal point in the outer tenth of the pictures is
-/// of another one.
-fn fits(path: &Path, (cx, cy): (f64, f64), size: ImageSize) -> Result<(), Failure> {
-    let (width, height) = (f64::from(size.width), f64::from(size.height));
-    let inside = |c: f64, length: f64| (0.1 * length..=0.9 * length).contains(&c);
-    if inside(cx, width) && inside(cy, height) {
-        return Ok(());
-    }
-    Err(Failure::new(format!(
-        "{}: its principal point ({cx:.1}, {cy:.1}) is not near the middle of the frames, which are {width} \
-         x {height} px; give the calibration of frames of this size",
-        path.display()
-    )))
 }
 
 /// A frame, its rows aligned.

@@ -87,6 +87,7 @@ pub fn write(
     staging: &mut Staging,
     report: &Report<'_>,
     depth: Option<&DepthFiles>,
+    colours: Option<ColourScale>,
 ) -> Result<(), OutputError> {
     let map = report.map;
     let pixels = map.pixels();
@@ -94,7 +95,7 @@ pub fn write(
     staging.write("disparity.png", |out| {
         png(out, &grey16(map, map.disparity.iter().map(|&d| disparity_sample(d))))
     })?;
-    let colour = ColourScale::of(map).picture(map.width, &pixels);
+    let colour = colours.unwrap_or_else(|| ColourScale::of(map)).picture(map.width, &pixels);
     staging.write("disparity_colour.png", |out| png(out, &colour))?;
     staging.write("flags.png", |out| png(out, &flags_raw(map)))?;
     staging.write("confidence.png", |out| png(out, &confidence_raw(map)))?;

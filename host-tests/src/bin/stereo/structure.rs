@@ -2,15 +2,17 @@
 
 use crate::failure::Failure;
 use crate::image_files::files;
+use crate::input::fits;
 use crate::place::json;
 use crate::progress::Progress;
 use crate::shared::{print, rows};
 use clap::Args;
 use image::{GrayImage, RgbImage};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use stereopsis::geometry::camera::{Camera, ImageSize};
 use stereopsis::motion::structure::ViewState;
-use stereopsis_host::calibration::Cameras;
+use stereopsis_host::calibration::{Calibration, Cameras, Fault, RawCalibration};
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::correspond::Plan;
 use stereopsis_host::focus::stack::read;
@@ -94,7 +96,7 @@ struct Images {
 
 pub fn run(args: &StructureArgs) -> Result<(), Failure> {
     let images = images(args)?;
-    let camera = Cameras::open_first(&args.calib)?;
+    let camera = camera(args, &images)?;
     let mut staging = Staging::new(&args.out)?;
     let count = images.grey.len();
     let progress = Progress::over_frames(count);
@@ -136,6 +138,23 @@ pub fn run(args: &StructureArgs) -> Result<(), Failure> {
         text += "note: what it began with is on a plane\n";
     }
     print(&format!("{text}results are in {}\n", one_line(&args.out.display().to_string())))
+}
+
+/// The camera of the images, which the calibration must be of.
+fn camera(args: &StructureArgs, images: &Images) -> Result<Camera<f64>, Failure> {
+    let camera = Cameras::open_first(&args.calib)?;
+    // Images have at most 4096 columns and rows.
+    let size = images.grey.first().map_or((0, 0), GrayImage::dimensions);
+    let size = ImageSize { width: size.0 as u16, height: size.1 as u16 };
+    if let Ok(rectified) = Calibration::open_all(&args.calib, Path::new(""), None) {
+        rectified.check_size(size.width, size.height)?;
+    }
+    // Only of a rig do files say the size.
+    match RawCalibration::open(&args.calib, Some(size), None) {
+        Err(e) if matches!(e.fault, Fault::Size { .. }) => Err(e.into()),
+        _ => fits(args.calib.first().map_or(Path::new(""), PathBuf::as_path), camera.principal_point(), size)
+            .map(|()| camera),
+    }
 }
 
 fn images(args: &StructureArgs) -> Result<Images, Failure> {

@@ -11,6 +11,7 @@
 //! * [`calibration`]: rigs from and to the files of other programs.
 //! * [`calibrate`]: a rig from pictures of a chessboard.
 //! * [`mod@matches`]: correspondences from files.
+//! * [`masked`]: masks beside any source.
 //! * [`real`]: real pairs with a known truth, also altered, and scores on them.
 //! * [`recording`]: lines as they came, in a file, and played again.
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
@@ -37,6 +38,7 @@ pub mod epipolar_picture;
 pub mod fault;
 pub mod focus;
 pub mod map;
+pub mod masked;
 pub mod matches;
 pub mod matches_picture;
 pub mod mock;

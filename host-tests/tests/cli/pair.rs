@@ -98,3 +98,28 @@ fn depths_and_colours_come_without_a_file() {
         assert_eq!(stereo(&wrong).status.code(), Some(2));
     }
 }
+
+#[test]
+fn masks_take_answers_away() {
+    let bench = Bench::new();
+    let args = arguments(&bench, "a.png", "b.png", "64");
+    let scene = Scene::demo();
+    let (width, height) = (u32::from(scene.width()), u32::from(scene.height()));
+    let left = image::GrayImage::from_fn(width, height, |_, y| image::Luma([255 * u8::from(y >= 20)]));
+    left.save(bench.path("left.png")).expect("a mask");
+    image::GrayImage::from_pixel(width, height, image::Luma([255]))
+        .save(bench.path("right.png"))
+        .expect("a mask");
+    image::GrayImage::new(8, 8).save(bench.path("small.png")).expect("a mask");
+    let path = |name: &str| bench.path(name).display().to_string();
+    let with = |right: &str| {
+        let masks = ["--valid-left".to_owned(), path("left.png"), "--valid-right".to_owned(), path(right)];
+        args.iter().cloned().chain(masks).collect::<Vec<_>>()
+    };
+    bench.refused(&with("small.png"), "small.png");
+    let run = stereo(with("right.png"));
+    assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
+    let flags = image::open(bench.path("out/flags.png")).expect("flags").into_luma8();
+    assert!(flags.enumerate_pixels().all(|(_, y, flag)| y >= 20 || flag.0[0] == 1));
+    assert!(flags.enumerate_pixels().any(|(_, y, flag)| y >= 20 && flag.0[0] == 0));
+}

@@ -4,9 +4,11 @@ use crate::failure::Failure;
 use crate::input;
 use crate::shared::{self, MethodArgs, RangeArgs, min_disparity};
 use clap::Args;
-use image::GrayImage;
+use image::{GrayImage, imageops};
+use std::path::PathBuf;
 use stereopsis::geometry::camera::{Camera, ImageSize};
 use stereopsis::matching::Config;
+use stereopsis_host::mock::MockCamera;
 use stereopsis_host::pair::{self, PairCheck, PairFault, PairMatches};
 use stereopsis_host::rows::Rows;
 
@@ -32,6 +34,36 @@ impl SearchArgs {
             input::config(&range, method, width, height)?;
         }
         Ok(())
+    }
+}
+
+/// What the images show.
+#[derive(Debug, Args)]
+pub struct MaskArgs {
+    /// Mask of the left image, 0 where it shows nothing, as rectify writes it; without one, all is valid
+    #[arg(long, value_name = "FILE", requires = "valid_right", conflicts_with = "rectify")]
+    pub valid_left: Option<PathBuf>,
+    /// Mask of the right image
+    #[arg(long, value_name = "FILE", requires = "valid_left")]
+    pub valid_right: Option<PathBuf>,
+}
+
+impl MaskArgs {
+    /// The masks of both images, which must have their size.
+    pub fn read(&self, size: (u32, u32)) -> Result<Option<[GrayImage; 2]>, Failure> {
+        let Some((left, right)) = self.valid_left.as_ref().zip(self.valid_right.as_ref()) else {
+            return Ok(None);
+        };
+        let [left, right] = [left, right].map(|path| {
+            let mask = imageops::grayscale(&MockCamera::open(path)?.picture());
+            if mask.dimensions() == size {
+                return Ok(mask);
+            }
+            let ((w, h), (columns, rows)) = (mask.dimensions(), size);
+            let path = path.display();
+            Err(Failure::new(format!("{path}: is {w} x {h} px; a mask of {columns} x {rows} px is needed")))
+        });
+        Ok(Some([left?, right?]))
     }
 }
 

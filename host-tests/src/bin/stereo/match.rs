@@ -2,12 +2,12 @@
 
 use crate::failure::Failure;
 use crate::input::{self, Pair};
-use crate::look::{Look, SearchArgs, look};
+use crate::look::{Look, MaskArgs, SearchArgs, look};
 use crate::place::{json, png};
 use crate::progress::Progress;
 use crate::rectified::{self, RectifiedCameras};
 use crate::results::{self, DepthArgs, DepthFiles, figures, place};
-use crate::shared::{BalanceArgs, MethodArgs, PairArgs, RectifyOptions, Unit, print};
+use crate::shared::{BalanceArgs, MethodArgs, PairArgs, RectifyOptions, Unit, colour_range, length, print};
 use clap::Args;
 use image::{RgbImage, imageops};
 use std::fmt::Display;
@@ -21,6 +21,7 @@ use stereopsis::matching::Config;
 use stereopsis_host::calibration::Calibration;
 use stereopsis_host::colour::ColourScale;
 use stereopsis_host::command_line::one_line;
+use stereopsis_host::masked::MaskedPair;
 use stereopsis_host::output::Staging;
 use stereopsis_host::pair::PairCheck;
 use stereopsis_host::rectify::{rectify, rectify_colours, with_rectified};
@@ -61,6 +62,8 @@ pub struct MatchArgs {
     /// Take the images raw, as the cameras give them, and rectify them line by line before they are matched
     #[arg(long)]
     pub rectify: bool,
+    #[command(flatten)]
+    pub masks: MaskArgs,
     #[command(flatten)]
     pub options: RectifyOptions,
     /// Focal length of the rectified cameras, px, where there is no file: their centre is taken to be that of
@@ -120,9 +123,14 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         Staging::probe(&args.out)?;
         let [left, right] = [&pair.left, &pair.right].map(imageops::grayscale);
         let camera = scale.as_ref().and_then(|scale| camera(scale.rig()));
+        let masks = args.masks.read(left.dimensions())?;
+        let valid = masks.as_ref().map(|masks| masks.each_ref());
         let Look { config, check, rows } =
-            look(&args.search, &args.method, [&left, &right], None, camera.as_ref())?;
-        let matched = matched(args, config, &mut pair.camera)?;
+            look(&args.search, &args.method, [&left, &right], valid, camera.as_ref())?;
+        let matched = match masks {
+            Some(masks) => matched(args, config, &mut MaskedPair::new(&mut pair.camera, masks))?,
+            None => matched(args, config, &mut pair.camera)?,
+        };
         (Scene { left: pair.left, right: pair.right, scale, rectified: None, rows, check }, matched)
     };
 
@@ -238,18 +246,6 @@ fn raw(args: &MatchArgs, pair: &mut Pair) -> Result<(Scene, Matched), Failure> {
 fn camera(rig: &RectifiedRig) -> Option<Camera<f64>> {
     let (f, (cx, cy)) = (f64::from(rig.focal_px()), rig.principal_point());
     Camera::new(f, f, cx.into(), cy.into()).ok()
-}
-
-fn length(text: &str) -> Result<f32, &'static str> {
-    let value = text.parse().ok().filter(|value| (0.001..=100_000.0).contains(value));
-    value.ok_or("a number from 0.001 to 100000 is needed")
-}
-
-fn colour_range(text: &str) -> Result<ColourScale, &'static str> {
-    let ends = text.split_once(':').and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
-    let scale = ends.map(|(far_px, near_px)| ColourScale { far_px, near_px });
-    let is_range = |s: &ColourScale| s.far_px.is_finite() && s.near_px.is_finite() && s.far_px < s.near_px;
-    scale.filter(is_range).ok_or("two disparities are needed, the smaller one first, as 0:64")
 }
 
 /// The scale of depths in images that are rectified already, where there is a calibration.

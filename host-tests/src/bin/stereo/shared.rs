@@ -6,6 +6,7 @@ use nalgebra::Matrix3;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use stereopsis::matching::{Config, Filter, Kernel};
+use stereopsis_host::colour::ColourScale;
 use stereopsis_host::run::{MethodName, NoiseChoice, RunOptions, UnknownMethod, UnknownNoise};
 
 #[derive(Debug, Args)]
@@ -190,6 +191,18 @@ pub fn min_disparity(text: &str) -> Result<u16, String> {
 pub fn rate(text: &str) -> Result<f64, &'static str> {
     let value = text.parse().ok().filter(|value| (0.01..=10_000.0).contains(value));
     value.ok_or("a number from 0.01 to 10000 is needed")
+}
+
+pub fn length(text: &str) -> Result<f32, &'static str> {
+    let value = text.parse().ok().filter(|value| (0.001..=100_000.0).contains(value));
+    value.ok_or("a number from 0.001 to 100000 is needed")
+}
+
+pub fn colour_range(text: &str) -> Result<ColourScale, &'static str> {
+    let ends = text.split_once(':').and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+    let scale = ends.map(|(far_px, near_px)| ColourScale { far_px, near_px });
+    let is_range = |s: &ColourScale| s.far_px.is_finite() && s.near_px.is_finite() && s.far_px < s.near_px;
+    scale.filter(is_range).ok_or("two disparities are needed, the smaller one first, as 0:64")
 }
 
 /// A whole number within limits, or what is needed.

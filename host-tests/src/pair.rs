@@ -126,6 +126,15 @@ pub struct PairCheck {
     pub beyond_search: f64,
     /// A search that would hold nearly all of them: `--min-disparity` and `--disparities`.
     pub search: Option<[u16; 2]>,
+    /// The share of the left picture without texture: no grey level changes by 4 within 9 x 9 pixels.
+    pub untextured: f64,
+    /// The share of both pictures that is white: 254 and more.
+    pub over_exposed: f64,
+    /// The share of both pictures that is black: 1 and less.
+    pub under_exposed: f64,
+    /// About the share of the left picture that the right camera does not see, by the median disparity;
+    /// absent when too few features match.
+    pub out_of_view: Option<f64>,
 }
 
 impl PairCheck {
@@ -146,6 +155,10 @@ impl PairCheck {
             fault,
             beyond_search: if range.is_some() { beyond as f64 / found.len() as f64 } else { 0.0 },
             search: if fault.is_none() { search(pictures, matches) } else { None },
+            untextured: untextured(pictures[0]),
+            over_exposed: share(pictures, |pixel| pixel >= 254),
+            under_exposed: share(pictures, |pixel| pixel <= 1),
+            out_of_view: range.and(at(0.5)).map(|d| (d / f64::from(pictures[0].width())).clamp(0.0, 1.0)),
         }
     }
 
@@ -203,6 +216,39 @@ fn small_range(pictures: [&GrayImage; 2]) -> Option<[f64; 2]> {
     (found.len() >= 16 * FEWEST).then(|| {
         Some([by * f64::from(quantile(&found, 0.001)?), by * (f64::from(quantile(&found, 0.999)?) + 1.0)])
     })?
+}
+
+/// The share of the pixels of both pictures that are so.
+fn share(pictures: [&GrayImage; 2], is_so: impl Fn(u8) -> bool) -> f64 {
+    let pixels = || pictures.into_iter().flat_map(|picture| picture.iter());
+    pixels().filter(|&&pixel| is_so(pixel)).count() as f64 / pixels().count().max(1) as f64
+}
+
+/// The share of a picture around whose pixels nothing changes along the row.
+fn untextured(picture: &GrayImage) -> f64 {
+    const REACH: u32 = 4;
+    const CHANGE: u8 = 4;
+    let (width, height) = picture.dimensions();
+    let changes = |x: u32, y: u32| {
+        let [left, right] =
+            [x.saturating_sub(1), (x + 1).min(width - 1)].map(|x| picture.get_pixel(x, y).0[0]);
+        left.abs_diff(right) >= CHANGE
+    };
+    // Sums of all rows above and all columns to the left.
+    let stride = width as usize + 1;
+    let mut sums = vec![0u32; stride * (height as usize + 1)];
+    for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+        let at = (y as usize + 1) * stride + x as usize + 1;
+        sums[at] = u32::from(changes(x, y)) + sums[at - 1] + sums[at - stride] - sums[at - stride - 1];
+    }
+    let is_flat = |(y, x): &(u32, u32)| {
+        let [top, bottom] =
+            [y.saturating_sub(REACH), (y + REACH + 1).min(height)].map(|y| y as usize * stride);
+        let [first, end] = [x.saturating_sub(REACH), (x + REACH + 1).min(width)].map(|x| x as usize);
+        sums[bottom + end] + sums[top + first] == sums[bottom + first] + sums[top + end]
+    };
+    let flat = (0..height).flat_map(|y| (0..width).map(move |x| (y, x))).filter(is_flat).count();
+    flat as f64 / (f64::from(width) * f64::from(height)).max(1.0)
 }
 
 /// What is wrong with the pictures, as far as features tell.

@@ -215,6 +215,35 @@ impl Summary {
         Self { rows, ..self }
     }
 
+    /// Why there are few answers, where fewer than half of the pixels have one: what the pictures lack, and
+    /// the flags of the pixels without.
+    pub fn few_answers(&self) -> Option<String> {
+        let pair = self.pair.as_ref()?;
+        let pixels = f64::from(self.width) * f64::from(self.height);
+        let lacks = [
+            ("without texture", pair.untextured),
+            ("over-exposed", pair.over_exposed),
+            ("under-exposed", pair.under_exposed),
+            ("out of the right camera's view", pair.out_of_view.unwrap_or(0.0)),
+        ];
+        let flags = self.flags.iter().map(|(&name, &count)| (name, count as f64 / pixels));
+        let list = |shares: Vec<(&str, f64)>| {
+            let shares = shares.into_iter().filter(|(_, share)| *share >= 0.05);
+            shares
+                .map(|(name, share)| format!("{:.0} % {name}", 100.0 * share))
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        let (lacks, flags) = (list(lacks.to_vec()), list(flags.collect()));
+        (self.density < 0.5).then(|| {
+            let lacks = if lacks.is_empty() { "textured, exposed and in view".to_owned() } else { lacks };
+            format!(
+                "only {:.1} % of the pixels have an answer; the picture is {lacks}; flags: {flags}",
+                100.0 * self.density
+            )
+        })
+    }
+
     /// The same with the files that were read.
     pub fn with_inputs<'a>(self, inputs: impl IntoIterator<Item = &'a Path>) -> Self {
         let inputs = inputs.into_iter().map(|path| path.display().to_string()).collect();

@@ -123,3 +123,18 @@ fn masks_take_answers_away() {
     assert!(flags.enumerate_pixels().all(|(_, y, flag)| y >= 20 || flag.0[0] == 1));
     assert!(flags.enumerate_pixels().any(|(_, y, flag)| y >= 20 && flag.0[0] == 0));
 }
+
+#[test]
+fn few_answers_are_explained() {
+    let bench = Bench::new();
+    let args = arguments(&bench, "white.png", "whiter.png", "64");
+    for (name, grey) in [("white.png", 254), ("whiter.png", 255)] {
+        image::GrayImage::from_pixel(160, 120, image::Luma([grey]))
+            .save(bench.path(name))
+            .expect("a picture");
+    }
+    let run = stereo(&args);
+    let said = text(&run.stderr);
+    assert!(run.status.success() && said.contains("only 0.0 % of the pixels have an answer"), "{said}");
+    assert!(said.contains("100 % without texture, 100 % over-exposed"), "{said}");
+}

@@ -55,7 +55,9 @@ fn bad_ranges() {
         bench.refused(&bench.arguments(&[("--min-disparity", bad)]), "--min-disparity");
     }
     bench.matched(&[("--disparities", "96")]);
-    bench.matched(&[("--min-disparity", "64")]);
+    // Two thirds of the columns have no candidate then, which is said.
+    let run = stereo(bench.arguments(&[("--min-disparity", "64")]));
+    assert!(run.status.success() && text(&run.stderr).contains("% outside"), "{}", text(&run.stderr));
     let narrow =
         bench.put("narrow.png", &encode(&GrayImage::new(15, 8), ImageFormat::Png)).display().to_string();
     let arguments = bench.arguments(&[("--left", &narrow), ("--right", &narrow), ("--disparities", "16")]);

@@ -71,3 +71,24 @@ fn a_search_that_is_too_short_has_a_cure() {
     let matches = PairMatches::find([&left, &right], None).expect("features");
     assert_eq!(search([&left, &right], &matches), Some([first, count]));
 }
+
+#[test]
+fn what_a_picture_lacks_is_measured() {
+    let (left, right) = Scene::demo().render();
+    let (width, height) = left.dimensions();
+    let found = check(&left, &right, 64);
+    assert!(found.untextured < 0.2 && found.over_exposed < 0.05 && found.under_exposed < 0.05, "{found:?}");
+    let view = found.out_of_view.expect("features");
+    assert!((0.01..0.2).contains(&view), "{found:?}");
+    // Two fifths of it white, and a fifth black.
+    let painted = |picture: &GrayImage| {
+        GrayImage::from_fn(width, height, |x, y| match 5 * y / height {
+            0 | 1 => image::Luma([255]),
+            2 => image::Luma([0]),
+            _ => *picture.get_pixel(x, y),
+        })
+    };
+    let found = check(&painted(&left), &painted(&right), 64);
+    assert!((found.over_exposed - 0.4).abs() < 0.05 && (found.under_exposed - 0.2).abs() < 0.05, "{found:?}");
+    assert!((0.5..0.7).contains(&found.untextured), "{found:?}");
+}

@@ -166,6 +166,7 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         scene.check.as_ref().and_then(|check| check.fault).map(|fault| fault.to_string()),
         scene.check.as_ref().and_then(|check| check.search_warning(&config)),
         scene.rows.as_ref().and_then(Rows::warning),
+        summary.few_answers(),
     ];
     let notes = pair.notes.iter().map(|note| format!("note: {}", one_line(note)));
     let warnings = warnings.into_iter().flatten().map(|warning| format!("warning: {warning}"));

@@ -4,6 +4,7 @@
 //! * [`record()`]: a stereo source into a file. [`Recording`]: such a file. [`Playback`]: it as a stereo
 //!   source again.
 //! * [`Ahead`]: its records with both cameras of one exposure, each frame measured before it is played.
+//! * [`first_pair()`]: the pictures of its first frame, before it is played.
 //! * [`Pictures`]: images, or folders of them, as a stereo source at a frame rate.
 //!
 //! A recording begins with a line of text, `stereopsis recording 1`, and a line of JSON: `width`, `height`,
@@ -20,10 +21,12 @@
 //! A file that ends within a record is played up to there: what wrote it may have failed as well.
 
 mod ahead;
+mod first;
 mod pictures;
 mod playback;
 
 pub use ahead::{Ahead, Seen};
+pub use first::{FromStart, first_pair};
 pub use pictures::{Pictures, PicturesError};
 pub use playback::{Playback, RecordedFault};
 

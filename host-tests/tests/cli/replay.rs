@@ -4,6 +4,7 @@ use super::support::{Bench, names, stereo, text};
 use std::fs;
 use std::time::Instant;
 use stereopsis_host::pfm;
+use stereopsis_host::scene::Scene;
 use stereopsis_host::scene::pattern::Pattern;
 
 /// Two images of a bench, and their options.
@@ -212,4 +213,28 @@ fn what_cannot_be_recorded_or_is_odd_is_reported_by_name() {
         told.contains("2.png: is of another size than the first image") && !told.contains("a.lines"),
         "{told}"
     );
+}
+
+#[test]
+fn swapped_cameras_are_refused_unless_forced() {
+    let bench = Bench::new();
+    let (left, right) = Scene::demo().render();
+    for (side, picture) in [("left", &right), ("right", &left)] {
+        let folder = bench.path("swapped").join(side);
+        fs::create_dir_all(&folder).expect("a folder");
+        picture.save(folder.join("1.png")).expect("a file");
+    }
+    let [swapped, file, out] =
+        ["swapped", "a.lines", "out"].map(|name| bench.path(name).display().to_string());
+    let [l, r] = ["left", "right"].map(|side| format!("{swapped}/{side}"));
+    run(&["record", "--left", &l, "--right", &r, "--faults", "0.02", "--out", &file]);
+    for from in [&swapped, &file] {
+        let replay = ["replay", "--from", from, "--disparities", "64", "--method", "fast", "--out", &out];
+        bench.refused(&replay, "exchange left and right, or give --force");
+        run(&[&replay[..], &["--force"]].concat());
+        fs::remove_dir_all(&out).expect("results");
+    }
+    // The same cameras in their order.
+    run(&["record", "--left", &r, "--right", &l, "--faults", "0.02", "--out", &file]);
+    run(&["replay", "--from", &file, "--disparities", "64", "--method", "fast", "--out", &out]);
 }

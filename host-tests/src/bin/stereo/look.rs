@@ -1,4 +1,4 @@
-//! What `match` sees of a pair before it matches it: the search, swapped cameras, rows that are off.
+//! What is seen of a pair before it is matched: the search, swapped cameras, rows that are off.
 
 use crate::failure::Failure;
 use crate::input;

@@ -4,6 +4,7 @@ mod summary;
 
 use crate::failure::Failure;
 use crate::input;
+use crate::look::refuse_swapped;
 use crate::place::{json, png};
 use crate::shared::{BalanceArgs, MethodArgs, RangeArgs, filter, method, noise, print, rate};
 use clap::{Args, ValueEnum};
@@ -17,7 +18,7 @@ use stereopsis_host::colour::flags_raw;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
 use stereopsis_host::pfm;
-use stereopsis_host::recording::{Ahead, Header, Pictures, Playback, Recording, Seen};
+use stereopsis_host::recording::{Ahead, FromStart, Header, Pictures, Playback, Recording, Seen, first_pair};
 use stereopsis_host::run::{GuardedFrame, MethodName, NoiseChoice, run_guarded};
 use summary::Summary;
 
@@ -62,6 +63,9 @@ pub struct ReplayArgs {
     /// How many frames are played; by default all
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: Option<u32>,
+    /// Play the frames even if the cameras seem to be swapped
+    #[arg(long)]
+    pub force: bool,
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -78,8 +82,13 @@ pub enum Timing {
 pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
     let recording = if args.from.is_dir() { of_folder(args)? } else { Recording::open(&args.from)? };
     let (header, seen) = (recording.header(), Seen::default());
-    let ahead = Ahead::new(recording, header, args.balance.is_for(args.method), &seen);
-    play(args, header, &mut Playback::new(ahead, header, args.timing == Timing::Recorded), &seen)
+    let config = config(args, header)?;
+    let (pair, records) = first_pair(recording);
+    if let Some([left, right]) = pair.filter(|_| !args.force) {
+        refuse_swapped([&left, &right])?;
+    }
+    let ahead = Ahead::new(records, header, args.balance.is_for(args.method), &seen);
+    play(args, config, &mut Playback::new(ahead, header, args.timing == Timing::Recorded), &seen)
 }
 
 /// A folder's pictures, with those of each side in a folder.
@@ -121,11 +130,10 @@ fn config(args: &ReplayArgs, header: Header) -> Result<Config, Failure> {
 
 fn play(
     args: &ReplayArgs,
-    header: Header,
-    source: &mut Playback<Ahead<'_, Recording>>,
+    config: Config,
+    source: &mut Playback<Ahead<'_, FromStart>>,
     seen: &Seen,
 ) -> Result<(), Failure> {
-    let config = config(args, header)?;
     let mut staging = Staging::new(&args.out)?;
     let (mut written, mut table, mut names) = (Ok(()), TABLE.to_owned(), Vec::new());
     let mut left = args.frames.unwrap_or(u32::MAX);

@@ -84,15 +84,17 @@ fn depths_and_colours_come_without_a_file() {
     assert_eq!((depth["focal_px"].as_f64(), depth["png_unit_m"].as_f64()), (Some(500.0), Some(0.001)));
     // 500 px x 0.1 m / 62 px: the last disparity that is no ceiling
     assert!((depth["nearest_m"].as_f64().expect("a depth") - 50.0 / 62.0).abs() < 1e-3, "{depth}");
-    let brightest = |args: &[String]| {
+    let coloured = |args: &[String]| {
         assert!(stereo(args).status.success());
-        let picture = image::open(bench.path("out/disparity_colour.png")).expect("a picture").into_rgb8();
-        picture.pixels().map(|p| p.0.map(u32::from).iter().sum::<u32>()).max()
+        image::open(bench.path("out/disparity_colour.png")).expect("a picture").into_rgb8()
     };
-    // The nearest answer is in the middle of a wide range and at the end of its own.
-    let wide = brightest(&args);
+    let given = coloured(&args);
     args.truncate(args.len() - 2);
-    assert!(wide < brightest(&args));
+    // The search is the range where none is given, whatever the answers are.
+    assert!(given == coloured(&args));
+    let narrow: Vec<_> = args.iter().cloned().chain(["--colour-range".into(), "0:32".into()]).collect();
+    let light = |picture: &image::RgbImage| picture.iter().map(|&c| u64::from(c)).sum::<u64>();
+    assert!(light(&coloured(&narrow)) > light(&given));
     for wrong in ["64:0", "1", "a:b", "0:0"] {
         let wrong: Vec<_> = args.iter().cloned().chain(["--colour-range".into(), wrong.into()]).collect();
         assert_eq!(stereo(&wrong).status.code(), Some(2));

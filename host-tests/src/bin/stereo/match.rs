@@ -77,8 +77,8 @@ pub struct MatchArgs {
     pub baseline_mm: Option<f32>,
     #[command(flatten)]
     pub depth: DepthArgs,
-    /// Disparities from the darkest to the brightest colour of disparity_colour.png, px, as 0:64: those of
-    /// most answers where none are given
+    /// Disparities from the darkest to the brightest colour of disparity_colour.png, px, as 0:64: those
+    /// searched where none are given
     #[arg(long, value_name = "A:B", value_parser = colour_range, allow_negative_numbers = true)]
     pub colour_range: Option<ColourScale>,
     /// Print summary.json in place of the figures

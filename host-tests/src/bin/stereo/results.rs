@@ -95,7 +95,11 @@ pub fn write(
     staging.write("disparity.png", |out| {
         png(out, &grey16(map, map.disparity.iter().map(|&d| disparity_sample(d))))
     })?;
-    let colour = colours.unwrap_or_else(|| ColourScale::of(map)).picture(map.width, &pixels);
+    // Of the search, not of the answers, so that two runs with the same search compare by eye.
+    let first_px = f32::from(report.summary.min_disparity);
+    let searched =
+        ColourScale { far_px: first_px, near_px: first_px + f32::from(report.summary.disparities) };
+    let colour = colours.unwrap_or(searched).picture(map.width, &pixels);
     staging.write("disparity_colour.png", |out| png(out, &colour))?;
     staging.write("flags.png", |out| png(out, &flags_raw(map)))?;
     staging.write("confidence.png", |out| png(out, &confidence_raw(map)))?;

@@ -66,8 +66,8 @@ pub struct CConfig {
     /// brightness; at least 1, and the second at most the first.
     pub step: [u8; 2],
     /// Semi-global matching: penalty P2 of larger disparity changes, at small, larger and large changes of
-    /// brightness; each at least the first step. `cost + step + jump` is at most 127, `3 cost + 2 jump` at
-    /// most 254.
+    /// brightness; the first at least the first step, the others at least the second. `cost + step + jump` is
+    /// at most 127, `3 cost + 2 jump` at most 254.
     pub jump: [u8; 3],
     /// Semi-global matching: least larger and least large change of brightness, grey levels.
     pub edges: [u8; 2],
@@ -81,6 +81,11 @@ pub struct CConfig {
     /// Noise level of both cameras, a `STEREOPSIS_NOISE_`, which selects the smoothing of compared pixels;
     /// `stereopsis_config_noise` sets it with matching checks and penalties.
     pub noise: u8,
+    /// Speckle filter: most answers of one row of a surface that count; 0 for no limit.
+    pub speckle_run: u8,
+    /// Fattening check: by how much an answer may be nearer than others in its row, in 1/32 px for each pixel
+    /// between, where no edge of brightness lies between; 65535 disables it.
+    pub fattening_slope: u16,
 }
 
 /// Returns the filter of a `STEREOPSIS_PRESET_` number.
@@ -149,6 +154,8 @@ impl From<matching::Config> for CConfig {
             fill_pixels: checks.fill_pixels,
             confidence: confidence.into(),
             fill_step: checks.fill_step.raw(),
+            speckle_run: checks.speckle_run,
+            fattening_slope: checks.fattening_slope.raw(),
             noise: noise_number(noise),
         }
     }
@@ -186,6 +193,8 @@ impl CConfig {
                 median: self.median != 0,
                 fill_pixels: self.fill_pixels,
                 fill_step: Disparity::from_raw(self.fill_step),
+                speckle_run: self.speckle_run,
+                fattening_slope: Disparity::from_raw(self.fattening_slope),
             },
             penalties: Penalties {
                 gradient: self.gradient,

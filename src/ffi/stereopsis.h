@@ -32,7 +32,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_FAST_BYTES(width, disparities) \
-  ((size_t)3504 + (size_t)66 * (width) + (size_t)13 * (disparities) + \
+  ((size_t)3504 + (size_t)67 * (width) + (size_t)13 * (disparities) + \
    (size_t)1 * (width) * (disparities))
 
 /**
@@ -40,7 +40,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_BLOCK_BYTES(width, disparities) \
-  ((size_t)416 + (size_t)70 * (width) + (size_t)13 * (disparities) + \
+  ((size_t)416 + (size_t)71 * (width) + (size_t)13 * (disparities) + \
    (size_t)1 * (width) * (disparities))
 
 /**
@@ -48,7 +48,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_SGM_LEAN_BYTES(width, disparities) \
-  ((size_t)416 + (size_t)52 * (width) + (size_t)8 * (disparities) + \
+  ((size_t)416 + (size_t)53 * (width) + (size_t)8 * (disparities) + \
    (size_t)3 * (width) * (disparities))
 
 /**
@@ -56,7 +56,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_SGM_BYTES(width, disparities) \
-  ((size_t)416 + (size_t)52 * (width) + (size_t)8 * (disparities) + \
+  ((size_t)416 + (size_t)53 * (width) + (size_t)8 * (disparities) + \
    (size_t)3 * (width) * (disparities))
 
 /**
@@ -64,7 +64,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_SGM_EDGE_BYTES(width, disparities) \
-  ((size_t)416 + (size_t)53 * (width) + (size_t)8 * (disparities) + \
+  ((size_t)416 + (size_t)54 * (width) + (size_t)8 * (disparities) + \
    (size_t)5 * (width) * (disparities))
 
 
@@ -418,7 +418,7 @@ typedef struct stereopsis_config {
   uint8_t step[2];
   /**
    * Semi-global matching: penalty P2 of larger disparity changes, at small, larger and large changes of
-   * brightness; each at least the first step. `cost + step + jump` is at most 127, `3 cost + 2 jump` at
+   * brightness; the first at least the first step, the others at least the second. `cost + step + jump` is at most 127, `3 cost + 2 jump` at
    * most 254.
    */
   uint8_t jump[3];
@@ -444,6 +444,15 @@ typedef struct stereopsis_config {
    * `stereopsis_config_noise` sets it with matching checks and penalties.
    */
   uint8_t noise;
+  /**
+   * Speckle filter: most answers of one row of a surface that count; 0 for no limit.
+   */
+  uint8_t speckle_run;
+  /**
+   * Fattening check: by how much an answer may be nearer than others in its row, in 1/32 px for each pixel
+   * between, where no edge of brightness lies between; 65535 disables it.
+   */
+  uint16_t fattening_slope;
 } stereopsis_config;
 
 /**

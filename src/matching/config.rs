@@ -61,6 +61,8 @@ impl Config {
             median: false,
             fill_pixels: 0,
             fill_step: Disparity::ZERO,
+            speckle_run: 0,
+            fattening_slope: Disparity::ZERO,
         },
         penalties: Penalties::UNSET,
         confidence: false,
@@ -140,6 +142,12 @@ pub struct Checks {
     pub fill_pixels: u8,
     /// Fill: by how much the two answers beside a gap may differ: [`Disparity::NONE`] for any two.
     pub fill_step: Disparity,
+    /// Speckle: a row of a surface counts as at most this many answers, so that a streak of few rows is none
+    /// however long it is. 0: it counts as all it has.
+    pub speckle_run: u8,
+    /// Fattening: along a part of a row without edges an answer may be nearer than the others by 2 px, and by
+    /// this much for each pixel between. [`Disparity::NONE`]: not checked, and the pass is saved.
+    pub fattening_slope: Disparity,
 }
 
 impl Checks {
@@ -160,6 +168,8 @@ impl Checks {
         median: false,
         fill_pixels: 0,
         fill_step: Disparity::ONE_PIXEL,
+        speckle_run: 0,
+        fattening_slope: Disparity::NONE,
     };
 
     /// Most answers, few of them wrong.
@@ -176,6 +186,8 @@ impl Checks {
         median: false,
         fill_pixels: 0,
         fill_step: Disparity::ONE_PIXEL,
+        speckle_run: 0,
+        fattening_slope: Disparity::NONE,
     };
 
     /// Sure answers: fewer, and wrong only rarely.
@@ -192,6 +204,8 @@ impl Checks {
         median: false,
         fill_pixels: 0,
         fill_step: Disparity::ONE_PIXEL,
+        speckle_run: 0,
+        fattening_slope: Disparity::NONE,
     };
 }
 

@@ -26,6 +26,7 @@ pub struct Matcher<S: Method, const W: usize, const D: usize> {
     memory: S::Memory<W, D>,
     texture: [u16; W],
     textured: [u8; W],
+    edges: [u8; W],
     band: [[Disparity; W]; BAND],
     band_flags: [[PixelFlags; W]; BAND],
     support: [u16; W],
@@ -54,7 +55,7 @@ pub const fn state_bytes<S: Method>(width: usize, disparities: usize) -> usize {
     let lanes = disparities.next_multiple_of(STEP);
     let width = if width < lanes { lanes } else { width };
     let Bytes { fixed, per_pixel, per_candidate, per_disparity } = S::BYTES;
-    let per_column = per_pixel + per_candidate * lanes + 2 + 1 + 2 + (2 + 1) * BAND + 2 * HISTORY;
+    let per_column = per_pixel + per_candidate * lanes + 2 + 1 + 1 + 2 + (2 + 1) * BAND + 2 * HISTORY;
     width * per_column + per_disparity * lanes + fixed + FIXED_BYTES
 }
 
@@ -110,6 +111,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             memory: S::Memory::EMPTY,
             texture: [0; W],
             textured: [0; W],
+            edges: [0; W],
             band: [[Disparity::ZERO; W]; BAND],
             band_flags: [[PixelFlags::CLEAR; W]; BAND],
             support: [0; W],
@@ -269,6 +271,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             workspace,
             texture: part_mut(&mut self.texture, ..width),
             textured: part_mut(&mut self.textured, ..width),
+            edges: part_mut(&mut self.edges, ..width),
             support: part_mut(&mut self.support, ..width),
             band: Ring::new(self.band.as_flattened_mut(), width),
             flags: Ring::new(self.band_flags.as_flattened_mut(), width),

@@ -7,6 +7,7 @@
 //!
 //! * [`Shape`], [`Object`], [`Texture`]: what a scene is made of.
 //! * [`Scene`]: the scene; [`Scene::demo`], [`Scene::small`], [`Scene::slanted_plane`] are ready-made.
+//! * [`HardScene`]: scenes with a sky, a white wall, a glossy box and thin poles.
 //! * [`MovingScene`]: a scene that the rig moves through.
 //! * [`Truth`]: the true values, by ray casting at the pixel centres.
 //! * [`SceneCamera`]: pictures as a stereo source.
@@ -16,6 +17,7 @@
 pub mod pattern;
 
 mod camera;
+mod hard;
 mod moving;
 pub(crate) mod random;
 mod ready;
@@ -26,6 +28,7 @@ mod simple;
 mod texture;
 
 pub use camera::SceneCamera;
+pub use hard::{HardScene, Part};
 pub use moving::MovingScene;
 pub use random::Random;
 pub use shape::{Object, Shape};
@@ -38,7 +41,8 @@ use stereopsis::geometry::camera::{Pose, RectifiedRig};
 
 /// Bodies before a rectified rig, with a lamp.
 ///
-/// Surfaces are Lambertian: they look equally bright to both cameras, up to the noise of the sensors.
+/// Surfaces are Lambertian, but for those that are [`glossy`](Object::glossy): they look equally bright to
+/// both cameras, up to the noise of the sensors.
 #[derive(Clone, Debug)]
 pub struct Scene {
     pub(crate) rig: RectifiedRig,
@@ -66,6 +70,9 @@ pub struct Truth {
     /// Whether the right camera does not see the point: outside of its picture, or hidden by something
     /// nearer.
     pub occluded: Vec<bool>,
+    /// Number of the object that the pixel shows, in the order in which the scene was given them; `None`
+    /// where it shows nothing.
+    pub objects: Vec<Option<usize>>,
 }
 
 impl Scene {

@@ -12,6 +12,8 @@ const SIDE: usize = 4;
 /// A surface does not hide itself, nor the edge of a picture: what is hidden lies behind by more than this
 /// share of the ray, or this part of a pixel outside.
 const SLACK: f64 = 1e-6;
+/// How sharp highlights are: the exponent of Blinn's model (1977).
+const SHARPNESS: i32 = 30;
 
 /// One camera's pin-hole.
 #[derive(Clone, Copy)]
@@ -112,11 +114,13 @@ struct Patch {
     /// The light that falls on each point and goes towards the eye if it is white; 0 for what is not of the
     /// patch.
     light: [f32; SAMPLES],
+    /// The light that is mirrored towards the eye, summed over the samples.
+    highlight: f64,
 }
 
 impl Patch {
     fn new(object: usize, depth: f64) -> Self {
-        Self { object, depth, points: [[0.0; SAMPLES]; 3], light: [0.0; SAMPLES] }
+        Self { object, depth, points: [[0.0; SAMPLES]; 3], light: [0.0; SAMPLES], highlight: 0.0 }
     }
 
     /// Adds the point where the eye's ray along `along` meets the object.
@@ -145,6 +149,11 @@ impl Patch {
         let lit = facing > 0.0 && !lamp.shaded(&point);
         let light = scene.ambient + if lit { (1.0 - scene.ambient) * facing } else { 0.0 };
         self.light[sample] = light as f32;
+        let gloss = scene.objects[self.object].gloss;
+        if gloss > 0.0 && lit {
+            let half_way = (to_lamp.normalize() - along.normalize()).normalize();
+            self.highlight += gloss * normal.dot(&half_way).max(0.0).powi(SHARPNESS);
+        }
         for axis in 0..3 {
             self.points[axis][sample] = local[axis] as f32;
         }
@@ -153,7 +162,7 @@ impl Patch {
     /// The light that comes back, summed over the samples.
     fn brightness(&self, scene: &Scene, eye: &Eye) -> f64 {
         let albedos = scene.objects[self.object].texture.albedos(&self.points, self.depth / eye.focal_px);
-        albedos.iter().zip(&self.light).map(|(a, l)| f64::from(a * l)).sum()
+        albedos.iter().zip(&self.light).map(|(a, l)| f64::from(a * l)).sum::<f64>() + self.highlight
     }
 }
 
@@ -200,10 +209,19 @@ pub(super) fn truth(scene: &Scene) -> Truth {
     let everything = 0..scene.objects.len();
     let (width, height) = (usize::from(scene.width), usize::from(scene.height));
     let fb = f64::from(scene.rig.focal_px()) * f64::from(scene.rig.baseline_m());
-    let mut truth = Truth { width, height, disparity: Vec::new(), depth_m: Vec::new(), occluded: Vec::new() };
+    let mut truth = Truth {
+        width,
+        height,
+        disparity: Vec::new(),
+        depth_m: Vec::new(),
+        occluded: Vec::new(),
+        objects: Vec::new(),
+    };
     for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y as f64, x as f64))) {
         let along = left_eye.direction(x, y);
-        let depth = left.first(everything.clone(), &along).map_or(f64::INFINITY, |m| m.t);
+        let meeting = left.first(everything.clone(), &along);
+        let depth = meeting.as_ref().map_or(f64::INFINITY, |m| m.t);
+        truth.objects.push(meeting.map(|m| m.object));
         let disparity = fb / depth - f64::from(scene.rig.disparity_offset_px());
         let column = x - disparity;
         let outside = column < -SLACK || column > (width - 1) as f64 + SLACK;

@@ -131,12 +131,20 @@ pub struct Object {
     pub position: Point3<f64>,
     /// Turns its axes into the camera's.
     pub rotation: Rotation3<f64>,
+    /// Share of the lamp's light that is mirrored where the surface faces half-way between lamp and eye; 0
+    /// for a Lambertian surface.
+    pub gloss: f64,
 }
 
 impl Object {
     /// A body at `position` with its axes along the camera's.
     pub fn new(shape: Shape, texture: Texture, position: Point3<f64>) -> Self {
-        Self { shape, texture, position, rotation: Rotation3::identity() }
+        Self { shape, texture, position, rotation: Rotation3::identity(), gloss: 0.0 }
+    }
+
+    /// The same body with a highlight: each camera sees it at another place of the surface.
+    pub fn glossy(self, gloss: f64) -> Self {
+        Self { gloss, ..self }
     }
 
     /// The same body turned.

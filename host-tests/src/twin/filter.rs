@@ -64,7 +64,8 @@ pub(super) fn medians(width: usize, before: &[Disparity]) -> Vec<Disparity> {
 
 /// The rows after the speckle filter, which judges by the answers `before` the median. `lengths` is that of
 /// each answer's surface along its row. An answer needs support: the lengths in its column, as far up as the
-/// surface goes, and as far down but for at most four rows.
+/// surface goes, and as far down but for at most four rows; of a row no more than
+/// [`Checks::speckle_run`] count.
 pub(super) fn drop_speckles(
     checks: &Checks,
     before: &[Disparity],
@@ -76,11 +77,15 @@ pub(super) fn drop_speckles(
         below < before.len() && of_one_surface(checks, before[above], before[below])
     };
     for i in (0..before.len()).filter(|&i| before[i].is_some()) {
-        let mut support = lengths[i];
+        let counted = |i: usize| match checks.speckle_run {
+            0 => lengths[i],
+            most => lengths[i].min(usize::from(most)),
+        };
+        let mut support = counted(i);
         let mut up = i;
         while up >= map.width && goes_on(up - map.width) {
             up -= map.width;
-            support += lengths[up];
+            support += counted(up);
         }
         let mut down = i;
         for _ in 0..LOOK_AHEAD {
@@ -88,7 +93,7 @@ pub(super) fn drop_speckles(
                 break;
             }
             down += map.width;
-            support += lengths[down];
+            support += counted(down);
         }
         if support < usize::from(checks.speckle_pixels) {
             map.disparity[i] = Disparity::NONE;

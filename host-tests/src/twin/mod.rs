@@ -6,7 +6,7 @@
 //! * [`smooth`]: pictures with less noise, if asked for. [`census`](mod@census): darker neighbours as bits.
 //! * [`cost`]: bits that differ, per disparity, and their sum over the window. [`paths`]: differences of
 //!   pixels, and their sum along paths.
-//! * `select`: the cheapest disparity, its fraction, the checks.
+//! * `select`: the cheapest disparity, its fraction, the checks. `fattening`: what spreads where no edge is.
 //! * `filter`: smoothing along the row, the median, the speckle filter, smoothing down the columns, filling,
 //!   the deviation.
 //! * `confidence`: how sure an answer is.
@@ -28,6 +28,7 @@ pub mod remap;
 pub mod smooth;
 
 mod confidence;
+mod fattening;
 mod filter;
 mod select;
 
@@ -194,6 +195,7 @@ pub fn match_pair(scheme: &Method, config: &Config, left: &GrayImage, right: &Gr
     let (mut lengths, mut margins) = (Vec::new(), Vec::new());
     for y in 0..left.height {
         let (answers, flags, row_margins) = select::select_row(scheme, config, &left, &sums, y);
+        let (answers, flags) = fattening::refuse(config, &left, y, answers, flags);
         let (smooth, row_lengths) = filter::smooth_row(&config.checks, &answers);
         map.disparity.extend(smooth);
         lengths.extend(row_lengths);

@@ -176,27 +176,27 @@ fn fast_on_real_pairs() {
 #[test]
 fn sgm_lean_on_real_pairs() {
     let mean = mean_over_scenes(MethodName::SgmLean);
-    assert!(mean.missed <= 0.038 && mean.bad2 <= 0.025, "missed {}, bad2 {}", mean.missed, mean.bad2);
+    assert!(mean.missed <= 0.037 && mean.bad2 <= 0.018, "missed {}, bad2 {}", mean.missed, mean.bad2);
 }
 
 #[test]
 fn sgm_on_real_pairs() {
     let mean = mean_over_scenes(MethodName::Sgm);
-    assert!(mean.missed <= 0.036 && mean.bad2 <= 0.025, "missed {}, bad2 {}", mean.missed, mean.bad2);
+    assert!(mean.missed <= 0.034 && mean.bad2 <= 0.018, "missed {}, bad2 {}", mean.missed, mean.bad2);
 }
 
 #[test]
 fn sgm_edge_on_real_pairs() {
     let mean = mean_over_scenes(MethodName::SgmEdge);
-    assert!(mean.missed <= 0.033 && mean.bad2 <= 0.022, "missed {}, bad2 {}", mean.missed, mean.bad2);
+    assert!(mean.missed <= 0.033 && mean.bad2 <= 0.017, "missed {}, bad2 {}", mean.missed, mean.bad2);
 }
 
 #[test]
 fn strict_answers_of_sgm_are_sure() {
     let mean = mean_with(MethodName::Sgm, Filter::Strict);
-    assert!(mean.density >= 0.95 && mean.bad2 <= 0.014, "density {}, bad2 {}", mean.density, mean.bad2);
+    assert!(mean.density >= 0.95 && mean.bad2 <= 0.01, "density {}, bad2 {}", mean.density, mean.bad2);
     let mean = mean_with(MethodName::SgmEdge, Filter::Strict);
-    assert!(mean.density >= 0.955 && mean.bad2 <= 0.012, "density {}, bad2 {}", mean.density, mean.bad2);
+    assert!(mean.density >= 0.953 && mean.bad2 <= 0.01, "density {}, bad2 {}", mean.density, mean.bad2);
 }
 
 #[test]
@@ -233,7 +233,7 @@ fn noise_is_measured_on_every_real_pair() {
 #[test]
 fn sgm_on_noisy_real_pairs() {
     // OpenCV's StereoSGBM misses 0.13 and 0.25, and of its answers 0.06 and 0.088 are wrong.
-    for (sigma, most_missed, most_wrong) in [(2.0, 0.085, 0.06), (5.0, 0.17, 0.088)] {
+    for (sigma, most_missed, most_wrong) in [(2.0, 0.083, 0.052), (5.0, 0.157, 0.088)] {
         let scores: Vec<_> = SCENES
             .iter()
             .zip(1..)
@@ -267,6 +267,6 @@ fn sgm_on_real_pairs_of_other_exposures() {
     }
     let mean = Score::mean(&scores);
     println!("sgm, right x 1.2 + 15: {mean:?}");
-    // 0.111 as it comes. On three scenes too much is saturated.
-    assert!(mean.missed <= 0.1, "missed {}", mean.missed);
+    // On three scenes too much is saturated.
+    assert!(mean.missed <= 0.102 && mean.bad2 <= 0.068, "missed {}, bad2 {}", mean.missed, mean.bad2);
 }

@@ -173,4 +173,6 @@ pub(in crate::matching) struct SpeckleWork<'a> {
     pub step: Disparity,
     /// The least support of an answer that stays.
     pub pixels: u8,
+    /// The most that a row of a surface counts for; 0 for all that it has.
+    pub run: u8,
 }

@@ -87,6 +87,8 @@ pub struct Frame<'a> {
     /// rows do.
     pub(super) texture: &'a mut [u16],
     pub(super) textured: &'a mut [u8],
+    /// Of each column, whether its pixels in the last eight rows are edges, the newest row in the lowest bit.
+    pub(super) edges: &'a mut [u8],
     /// Of each column, the support of its answers so far.
     pub(super) support: &'a mut [u16],
     /// Answers before the speckle filter.

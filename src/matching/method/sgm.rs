@@ -20,7 +20,7 @@ use crate::matching::memory::winners::{Select, Unique};
 use crate::matching::memory::workspace::{ForWinners, RowWorkspace};
 use crate::matching::memory::{Bytes, Memory, Parts, Rows5};
 use crate::matching::penalties::Penalties;
-use crate::units::PixelFlags;
+use crate::units::{Disparity, PixelFlags};
 
 /// Method `sgm`: gradients, brightness and a wide census along three paths; gradients are compared between
 /// pixels.
@@ -50,14 +50,14 @@ impl SgmParameters for SgmEdge {
     const WITHIN_EDGES: bool = true;
 }
 
+const _: () = assert!(
+    Penalties::DEFAULT.check().is_ok() && Penalties::DEFAULT.in_noise().check().is_ok(),
+    "the default is a good choice"
+);
+
 /// What a method along paths is, but for its [`SgmParameters`].
 macro_rules! along_paths {
-    ($method:ty, $name:literal, $penalties:expr) => {
-        const _: () = assert!(
-            $penalties.check().is_ok() && $penalties.in_noise().check().is_ok(),
-            "the default is a good choice"
-        );
-
+    ($method:ty, $name:literal) => {
         impl MethodParameters for $method {
             const RADIUS_X: usize = 4;
             const RADIUS_Y: usize = <Self as SgmParameters>::ROWS_BELOW;
@@ -70,8 +70,7 @@ macro_rules! along_paths {
             const DEFAULT: Checks = DEFAULT;
             const DEFAULT_IN_NOISE: [Checks; 2] = DEFAULT_IN_NOISE;
             const STRICT: Checks = STRICT;
-            const PENALTIES: Penalties = $penalties;
-            const PENALTIES_IN_NOISE: Penalties = $penalties.in_noise();
+            const PENALTIES_IN_NOISE: Penalties = Penalties::DEFAULT.in_noise();
             const NAME: &'static str = $name;
         }
 
@@ -106,29 +105,44 @@ const fn guides<S: SgmParameters>() -> usize {
 
 /// What measured best.
 const SLANT_COST: u8 = 12;
-/// Costs along paths leave small gaps inside of surfaces, which are filled.
-const DEFAULT: Checks =
-    Checks { smoothing_radius: 8, speckle_pixels: 20, fill_pixels: 16, ..Checks::DEFAULT };
+/// Costs along paths leave gaps inside of surfaces, which are filled, and carry near surfaces on over places
+/// that say nothing, where they are refused.
+const DEFAULT: Checks = Checks {
+    left_right_px: Some(2),
+    smoothing_radius: 8,
+    speckle_pixels: 20,
+    speckle_run: 15,
+    fattening_slope: Disparity::from_raw(24),
+    fill_pixels: 32,
+    fill_step: Disparity::from_raw(4 * Disparity::ONE),
+    ..Checks::DEFAULT
+};
 /// Noise makes wrong answers whose cost others come near to, and that few others agree with.
 const DEFAULT_IN_NOISE: [Checks; 2] = [
-    Checks { uniqueness_percent: Some(5), ..DEFAULT },
-    Checks { uniqueness_percent: Some(12), speckle_pixels: 60, ..DEFAULT },
+    Checks { uniqueness_percent: Some(5), fattening_slope: Disparity::ONE_PIXEL, ..DEFAULT },
+    Checks {
+        uniqueness_percent: Some(12),
+        speckle_pixels: 30,
+        fattening_slope: Disparity::ONE_PIXEL,
+        ..DEFAULT
+    },
 ];
 /// They are least sure where another disparity costs little more; texture says less than that, for paths
 /// bridge what has none.
 const STRICT: Checks = Checks {
     uniqueness_percent: Some(30),
-    speckle_pixels: 20,
+    speckle_pixels: 36,
+    speckle_run: 15,
+    fattening_slope: Disparity::from_raw(16),
     median: true,
-    fill_pixels: 8,
+    fill_pixels: 16,
+    fill_step: Disparity::from_raw(2 * Disparity::ONE),
     ..Checks::DEFAULT
 };
-/// Costs of more rows are surer, so that smaller jumps will do.
-const WITHIN_EDGES: Penalties = Penalties { jump: [80, 40, 20], ..Penalties::DEFAULT };
 
-along_paths!(Sgm, "sgm", Penalties::DEFAULT);
-along_paths!(SgmLean, "sgm-lean", Penalties::DEFAULT);
-along_paths!(SgmEdge, "sgm-edge", WITHIN_EDGES);
+along_paths!(Sgm, "sgm");
+along_paths!(SgmLean, "sgm-lean");
+along_paths!(SgmEdge, "sgm-edge");
 
 /// The memory of a method along paths.
 pub struct PathMemory<const GUIDES: usize, const VOLUMES: usize, const W: usize, const D: usize> {

@@ -7,12 +7,14 @@
 //! S::enter: denoise, if asked lines y - 2 .. y + 2                smoothed lines, for S::enter alone
 //! S::enter: census            lines y - 2 .. y + 2                codes y
 //! texture::take_texture       line y                              texture of y, counts of the window
+//! fattening::take_edges       lines y - 1 .. y + 1                edges of y
 //! fill::undo_fill             flags y - r - 5                     finished y - r - 5, as before the fill
 //! median::take_medians        band y - r - 5 .. y - r - 3         finished y - r - 4
 //! S::select: costs, paths     codes to y, or lines around y       costs of y - r
 //! S::select: winner-take-all  costs                               winners, margins and flags y - r
 //! texture::flag_untextured    counts                              flags y - r
 //! left_right::make_answers    winners y - r                       band and flags y - r
+//! fattening::refuse_fattening band and edges y - r                band and flags y - r
 //! confidence::note_margins    margins y - r                       notes y - r, in place of the flags
 //! smooth::smooth_along_row    band y - r                          band y - r, surface lengths y - r
 //! confidence::make_confidences notes y - r - 4, band, finished    confidences and flags y - r - 4
@@ -31,6 +33,8 @@ mod texture;
 mod median;
 
 mod left_right;
+
+mod fattening;
 
 mod smooth;
 
@@ -65,6 +69,7 @@ steps!(Fast, Block, SgmLean, Sgm, SgmEdge);
 pub(super) fn begin(mut frame: Frame<'_>) {
     frame.columns.fill(0);
     texture::begin(&mut frame);
+    fattening::begin(&mut frame);
     speckle::begin(&mut frame);
 }
 
@@ -75,6 +80,7 @@ fn step<S: Method>(mut frame: Frame<'_>, y: usize, lines: Option<[&Rows5<'_>; 2]
         S::enter(&mut frame, y, lines);
     }
     texture::take_texture::<S>(&mut frame, lines);
+    fattening::take_edges(&mut frame, lines);
     finish_row::<S>(&mut frame, y, lines);
 }
 
@@ -92,6 +98,7 @@ fn finish_row<S: Method>(frame: &mut Frame<'_>, bottom: usize, lines: Option<[&R
     if newest < height {
         texture::flag_untextured::<S>(frame, newest);
         left_right::make_answers::<S>(frame, newest);
+        fattening::refuse_fattening::<S>(frame, newest);
         confidence::note_margins(frame, newest);
         smooth::smooth_along_row(frame, newest);
     } else {

@@ -38,6 +38,7 @@ pub(super) fn drop_speckle(frame: &mut Frame<'_>, newest: usize) {
         finished: frame.finished.row_mut(here),
         step: checks.surface_step,
         pixels: checks.speckle_pixels,
+        run: checks.speckle_run,
     });
 }
 

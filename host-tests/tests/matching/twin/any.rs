@@ -24,11 +24,14 @@ prop_compose! {
         median: bool,
         fill_pixels: u8,
         fill_step in any::<u16>().prop_map(Disparity::from_raw),
+        speckle_run: u8,
+        fattening_slope in prop_oneof![0u16..200, Just(u16::MAX)].prop_map(Disparity::from_raw),
     ) -> Checks {
         Checks {
             left_right_px, uniqueness_percent, refuse_flat, texture_gradient, texture_pixels, refuse_ceiling,
                 smoothing_radius,
             speckle_pixels, surface_step, median, fill_pixels, fill_step,
+            speckle_run, fattening_slope,
         }
     }
 }

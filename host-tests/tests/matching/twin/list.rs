@@ -74,6 +74,8 @@ fn random_checks(random: &mut Random) -> Checks {
         median: random.below(2) == 1,
         fill_pixels: *random.pick(&[0, 1, 2, 3, 16, 40, u8::MAX]),
         fill_step: Disparity::from_raw(*random.pick(&[0, 1, 32, 100, u16::MAX])),
+        speckle_run: *random.pick(&[0, 1, 2, 15, 100, u8::MAX]),
+        fattening_slope: Disparity::from_raw(*random.pick(&[0, 1, 16, 24, 100, 9000, u16::MAX, u16::MAX])),
     }
 }
 
@@ -84,9 +86,9 @@ pub(super) fn random_penalties(random: &mut Random) -> Penalties {
     // Cost + step + jump at most 127, three costs and two jumps at most 254.
     let most = (127 - cost - step).min((254 - 3 * cost) / 2).max(step);
     let step = step.min(most);
-    let mut jump = || step + random.below(usize::from(most - step) + 1) as u8;
-    let jump = [jump(), jump(), jump()];
     let step = [step, 1 + random.below(usize::from(step)) as u8];
+    let mut jump = |least: u8| least + random.below(usize::from(most - least) + 1) as u8;
+    let jump = [jump(step[0]), jump(step[1]), jump(step[1])];
     let edge = random.below(256) as u8;
     let edges = [edge, edge.saturating_add(random.below(60) as u8)];
     Penalties {

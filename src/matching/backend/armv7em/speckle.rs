@@ -13,7 +13,9 @@ use core::arch::asm;
 /// Drops the answers of the row that waited which have a support under `pixels`.
 #[inline(never)]
 pub(super) fn speckle(work: SpeckleWork<'_>) {
-    let SpeckleWork { here, above, lengths, kept, flags, answers, finished, step, pixels } = work;
+    let SpeckleWork { here, above, lengths, kept, flags, answers, finished, step, pixels, run } = work;
+    // Lengths are less by the answer itself; without a limit it is over all of them.
+    let run = run.wrapping_sub(1);
     let count = finished.len();
     let rows = [here.len(), above.len(), kept.len(), flags.len(), answers.map_or(count, <[_]>::len)];
     let lengths = lengths.bytes();
@@ -22,7 +24,7 @@ pub(super) fn speckle(work: SpeckleWork<'_>) {
     }
     let four = count & !3;
     if four > 0 {
-        join(here, above, lengths, kept, (four, step, pixels));
+        join(here, above, lengths, kept, (four, step, pixels, run));
         drop_speckle(lengths, answers, finished, flags, four);
     }
     for x in four..count {
@@ -36,7 +38,7 @@ pub(super) fn speckle(work: SpeckleWork<'_>) {
         };
         let joined = u16::from(here.raw().abs_diff(above.raw()) <= step.raw());
         let support = (*kept >> 8) * joined;
-        let support = (u16::from(length) + 1 + support).min(0xff);
+        let support = (u16::from(length.min(run)) + 1 + support).min(0xff);
         let mut bits = (*kept << 1 & 0b1_1110_1110) | joined;
         bits |= ((bits ^ (bits + 1)) << ROWS) * u16::from(support >= u16::from(pixels));
         *kept = support << 8 | (bits & 0xff);
@@ -47,14 +49,14 @@ pub(super) fn speckle(work: SpeckleWork<'_>) {
 }
 
 /// Counts the support of `four` columns, a multiple of four and not 0, and leaves where their lengths stood
-/// the highest bit set of those whose row that waited has enough. 43 instructions for four.
+/// the highest bit set of those whose row that waited has enough. 47 instructions for four.
 #[inline(never)]
 fn join(
     here: &[Disparity],
     above: &[Disparity],
     lengths: &mut [u8],
     kept: &mut [u16],
-    (four, step, pixels): (usize, Disparity, u8),
+    (four, step, pixels, run): (usize, Disparity, u8, u8),
 ) {
     let (here, lengths) = (here.as_ptr(), lengths.as_mut_ptr());
     // SAFETY: of every slice `four` elements are read, and of the last two written, four in every round:
@@ -72,7 +74,8 @@ fn join(
             "uqsub16 r1, r1, r0",
             "orr r2, r2, r1",
             "usub16 r2, r10, r2",
-            "sel r6, r12, lr",
+            "mov r1, #0",
+            "sel r6, r12, r1",
             "ldr r0, [r3], #4",
             "ldr r1, [r5], #4",
             "uqsub16 r2, r0, r1",
@@ -81,8 +84,10 @@ fn join(
             "usub16 r2, r10, r2",
             "orr r2, r6, #0xff00ff00",
             "sel r6, r2, r6",
-            // Lengths, the two in the middle changed.
+            // Lengths as far as they count, the two in the middle changed.
             "ldr r2, [r8]",
+            "uqsub8 r0, r2, lr",
+            "sub r2, r2, r0",
             "uxtb16 r0, r2",
             "uxtb16 r1, r2, ror #8",
             "pkhbt r2, r0, r1, lsl #16",
@@ -104,7 +109,8 @@ fn join(
             "add r6, r1, #0x01010101",
             "eor r6, r6, r1",
             "usub8 r0, r0, r11",
-            "sel r6, r6, lr",
+            "mov r0, #0",
+            "sel r6, r6, r0",
             "and r0, r6, #0x0f0f0f0f",
             "orr r1, r1, r0, lsl #4",
             "str r1, [r9], #4",
@@ -122,7 +128,7 @@ fn join(
             in("r10") u32::from(step.raw()) * 0x1_0001,
             in("r11") u32::from(pixels) * 0x0101_0101,
             in("r12") 0x00ff_00ff,
-            in("lr") 0,
+            in("lr") u32::from(run) * 0x0101_0101,
             out("r0") _, out("r1") _, out("r2") _,
         );
     }

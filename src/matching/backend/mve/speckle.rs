@@ -8,11 +8,12 @@ use core::arch::asm;
 /// Drops the answers of the row that waited which have a support under `pixels`. What is kept is
 /// two rows of bytes: the support so far, and the bits.
 ///
-/// 29 instructions for eight answers.
+/// 30 instructions for eight answers.
 #[inline(never)]
 pub(super) fn speckle(work: SpeckleWork<'_>) {
-    let SpeckleWork { here, above, lengths, kept, flags, answers, finished, step, pixels } = work;
+    let SpeckleWork { here, above, lengths, kept, flags, answers, finished, step, pixels, run } = work;
     let count = finished.len();
+    let run = if run == 0 { u32::from(u8::MAX) } else { u32::from(run) };
     let lengths = lengths.bytes();
     let rows = [here.len(), above.len(), kept.len(), flags.len(), answers.map_or(count, <[_]>::len)];
     if count == 0 || lengths.len() < count || rows.iter().any(|&length| length < count) {
@@ -26,11 +27,14 @@ pub(super) fn speckle(work: SpeckleWork<'_>) {
     // `PixelFlags` a byte, every value of which is one.
     unsafe {
         asm!(
-            "vdup.16 q7, {step}",
+            "vdup.16 q7, {limits}",
+            "lsr {limits}, {limits}, #16",
+            "vdup.16 q5, {limits}",
             "vmov.i16 q6, #255",
-            "vmov.i16 q5, #1",
             "vmov.i8 q4, #255",
             "dlstp.16 lr, {count}",
+            // There are no registers for more: the number of lanes is done with.
+            "mov {count}, #1",
             "2:",
             "vldrh.u16 q0, [{here}], #16",
             "vldrh.u16 q1, [{above}], #16",
@@ -40,6 +44,7 @@ pub(super) fn speckle(work: SpeckleWork<'_>) {
             "vshl.i16 q2, q2, #1",
             "vbic.i16 q2, #0x11",
             "vldrb.u16 q1, [r0], #8",
+            "vmin.u16 q1, q1, q5",
             "vptt.u16 cs, q7, q0",
             "vldrbt.u16 q3, [r1]",
             "vorrt.i16 q2, #1",
@@ -47,7 +52,7 @@ pub(super) fn speckle(work: SpeckleWork<'_>) {
             "vmin.u16 q1, q1, q6",
             "vstrb.16 q1, [r1], #8",
             // This row, and those above as far as they are joined.
-            "vadd.i16 q0, q2, q5",
+            "vadd.i16 q0, q2, {count}",
             "veor q0, q0, q2",
             "vshl.i16 q0, q0, #4",
             "vpt.u16 cs, q1, {pixels}",
@@ -64,7 +69,9 @@ pub(super) fn speckle(work: SpeckleWork<'_>) {
             "vstrh.16 q0, [{finished}], #16",
             "vstrb.16 q1, [r3], #8",
             "letp lr, 2b",
-            count = in(reg) count, step = in(reg) u32::from(step.raw()), pixels = in(reg) u32::from(pixels),
+            count = inout(reg) count => _,
+            limits = inout(reg) u32::from(step.raw()) | run << 16 => _,
+            pixels = in(reg) u32::from(pixels),
             here = inout(reg) here.as_ptr() => _, above = inout(reg) above.as_ptr() => _,
             answers = inout(reg) answers => _, finished = inout(reg) finished => _,
             speckle = const PixelFlags::SPECKLE.bits() as u32,

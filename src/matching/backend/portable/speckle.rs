@@ -21,7 +21,8 @@ type Word = u32;
 /// far, as far as a byte holds it.
 #[inline(always)]
 pub(in crate::matching::backend) fn speckle(work: SpeckleWork<'_>) {
-    let SpeckleWork { here, above, lengths, kept, flags, answers, finished, step, pixels } = work;
+    let SpeckleWork { here, above, lengths, kept, flags, answers, finished, step, pixels, run } = work;
+    let pixels = (pixels, if run == 0 { u16::MAX } else { run.into() });
     let columns = here.iter().zip(above).zip(lengths.half_words().iter().zip(kept));
     match answers {
         Some(answers) => {
@@ -49,7 +50,7 @@ fn drop_speckle<'a>(
     columns: impl Iterator<Item = Column<'a>>,
     out: impl Iterator<Item = (Disparity, &'a mut PixelFlags, &'a mut Disparity)>,
     step: Disparity,
-    pixels: u8,
+    (pixels, run): (u8, u16),
 ) {
     let pixels = Word::from(pixels);
     for (((here, above), (&length, kept)), (answer, flags, finished)) in columns.zip(out) {
@@ -57,7 +58,7 @@ fn drop_speckle<'a>(
         let joined = Word::from(of_one(here.raw(), above.raw(), step));
         let before = Word::from(*kept);
         let support = before >> (2 * ROWS) & Word::MIN.wrapping_sub(joined);
-        let count = Word::from(length).saturating_add(support).min(0xff);
+        let count = Word::from(length.min(run)).saturating_add(support).min(0xff);
         // Each bit stands for the row before now; the highest of both halves goes.
         let mut rows = (before << 1 & 0b1_1110_1110) | joined;
         // This row, and those above as far as they are joined.

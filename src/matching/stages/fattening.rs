@@ -1,0 +1,180 @@
+//! Answers refused that spread from a near surface over a place without edges (foreground fattening).
+//!
+//! Where depth jumps, brightness mostly does as well. Costs along paths carry the disparity of a near surface
+//! on over a wall or a sky that has little to say, up to where the wall's own disparity takes over: a jump
+//! without an edge. Along a part of a row without edges an answer is therefore refused that is nearer than
+//! another one by more than [`TOLERANCE_PX`] and
+//! [`fattening_slope`](crate::matching::Checks::fattening_slope) for each pixel between the two: so a slanted
+//! surface stays, and an answer far away refuses nothing.
+//!
+//! An edge is a pixel where Sobel's gradient along the row is large: it looks at three rows, so that noise
+//! makes few of them. The work is the same for every picture.
+
+use crate::imaging::Noise;
+use crate::matching::backend::MethodParameters;
+use crate::matching::backend::loops::keep_scalar_loop;
+use crate::matching::memory::Rows5;
+use crate::matching::memory::slices::part;
+use crate::matching::method::Frame;
+use crate::units::{Disparity, PixelFlags};
+use core::cell::Cell;
+
+/// How much nearer than another an answer may be in any case.
+const TOLERANCE_PX: u32 = 2;
+/// A bound that no answer is beyond.
+const NO_BOUND: u32 = 1 << 24;
+/// The bit of a column that marks the newest row's answer; those below are edges.
+const REFUSED: u8 = 0x80;
+
+/// The least Sobel gradient of an edge, eighths of a grey level per pixel: about three deviations of what
+/// noise makes.
+const fn least_gradient(noise: Noise) -> u16 {
+    match noise {
+        Noise::None => 16,
+        Noise::Low => 24,
+        Noise::High => 48,
+    }
+}
+
+/// Forgets the frame before.
+pub(super) fn begin(frame: &mut Frame<'_>) {
+    frame.edges.fill(0);
+}
+
+/// Takes the edges of the row that comes in; below the image there are none.
+pub(super) fn take_edges(frame: &mut Frame<'_>, lines: Option<[&Rows5<'_>; 2]>) {
+    if frame.config.checks.fattening_slope.is_none() {
+        return;
+    }
+    match lines {
+        Some([left, _]) => {
+            let [above, line, below] = [left[1], left[2], left[3]].map(|line| part(line, ..frame.width));
+            push_edges(frame.edges, [above, line, below], least_gradient(frame.config.noise));
+        }
+        None => frame.edges.iter_mut().for_each(|edges| *edges = *edges << 1 & !REFUSED),
+    }
+}
+
+/// Refuses the answers of `newest` that spread.
+pub(super) fn refuse_fattening<S: MethodParameters>(frame: &mut Frame<'_>, newest: usize) {
+    let slope = frame.config.checks.fattening_slope;
+    if slope.is_some() {
+        let (answers, flags) = (frame.band.row_mut(newest), frame.flags.row_mut(newest));
+        refuse_row(answers, flags, frame.edges, (1 << S::RADIUS_Y, slope));
+    }
+}
+
+/// Moves the columns' bits one row on and puts in those of the middle one of three lines. Beside a line its
+/// last pixel stands.
+#[inline(never)]
+fn push_edges(edges: &mut [u8], lines: [&[u8]; 3], least: u16) {
+    let last = edges.len().saturating_sub(1);
+    let sum = |[above, line, below]: [u8; 3]| u16::from(above) + 2 * u16::from(line) + u16::from(below);
+    let at = |x: usize| sum(lines.map(|line| line.get(x).copied().unwrap_or(0)));
+    let push = |edges: &mut u8, before: u16, after: u16| {
+        *edges = (*edges << 1 & !REFUSED) | u8::from(after.abs_diff(before) >= least);
+    };
+    let [above, line, below] = lines;
+    let columns =
+        above.iter().zip(line).zip(below).map(|((&above, &line), &below)| sum([above, line, below]));
+    let inner = edges.iter_mut().skip(1).take(last.saturating_sub(1));
+    for (edges, (before, after)) in inner.zip(columns.clone().zip(columns.skip(2))) {
+        keep_scalar_loop();
+        push(edges, before, after);
+    }
+    if let Some(edges) = edges.first_mut() {
+        push(edges, at(0), at(1.min(last)));
+    }
+    // A line of one pixel has one end.
+    if let Some(edges) = edges.get_mut(1..).and_then(<[u8]>::last_mut) {
+        push(edges, at(last - 1), at(last));
+    }
+}
+
+/// Refuses the answers of a row that spread; an edge is where `row` is set.
+#[inline(never)]
+fn refuse_row(
+    answers: &mut [Disparity],
+    flags: &mut [PixelFlags],
+    edges: &mut [u8],
+    (row, slope): (u8, Disparity),
+) {
+    mark(answers, Cell::from_mut(edges).as_slice_of_cells(), row, u32::from(slope.raw()));
+    for ((answer, flags), edges) in answers.iter_mut().zip(flags).zip(edges) {
+        keep_scalar_loop();
+        let refused = 0u16.wrapping_sub(u16::from(*edges >> REFUSED.trailing_zeros()));
+        // What has no answer is not refused.
+        *flags = flags.union(PixelFlags::UNTEXTURED.when(refused & !answer.raw() != 0));
+        *answer = Disparity::from_raw(answer.raw() | refused);
+    }
+}
+
+/// Marks the answers that are beyond the bound of those on their left or of those on their right. Both passes
+/// run side by side: each waits for its own step before, but not for the other's.
+fn mark(answers: &[Disparity], edges: &[Cell<u8>], row: u8, slope: u32) {
+    let (mut right, mut left) = (NO_BOUND, NO_BOUND);
+    let pixels = answers.iter().zip(edges);
+    for ((to_right, edge_right), (to_left, edge_left)) in pixels.clone().zip(pixels.rev()) {
+        keep_scalar_loop();
+        right |= if_edge(edge_right.get(), row);
+        mark_one(*to_right, edge_right, &mut right, slope);
+        mark_one(*to_left, edge_left, &mut left, slope);
+        left |= if_edge(edge_left.get(), row);
+    }
+}
+
+/// Marks an answer beyond the bound, and moves the bound one pixel on.
+#[inline(always)]
+fn mark_one(answer: Disparity, edges: &Cell<u8>, bound: &mut u32, slope: u32) {
+    // No answer is so far beyond all answers that it moves no bound below any.
+    let here = u32::from(answer.raw());
+    edges.set(edges.get() | (bound.wrapping_sub(here) >> 31 << REFUSED.trailing_zeros()) as u8);
+    *bound = (*bound + slope).min(here + TOLERANCE_PX * u32::from(Disparity::ONE));
+}
+
+/// [`NO_BOUND`] at an edge, nothing elsewhere.
+#[inline(always)]
+fn if_edge(edges: u8, row: u8) -> u32 {
+    u32::from(edges & row != 0) * NO_BOUND
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NONE: u16 = Disparity::NONE.raw();
+
+    #[test]
+    fn a_near_surface_ends_at_its_edge() {
+        // Near up to the fourth pixel, where the edge is; the wall's own disparity from the seventh on.
+        let row = [640, 640, 640, 640, 640, 640, 320, 320, 320, NONE];
+        let mut answers = row.map(Disparity::from_raw);
+        let mut flags = [PixelFlags::CLEAR; 10];
+        let mut edges = [0, 0, 0, 1, 0, 0, 0, 0, 0, 0];
+        refuse_row(&mut answers, &mut flags, &mut edges, (1, Disparity::from_raw(24)));
+        let refused = [640, 640, 640, NONE, NONE, NONE, 320, 320, 320, NONE];
+        assert_eq!(answers.map(Disparity::raw), refused);
+        for (x, flags) in flags.into_iter().enumerate() {
+            assert_eq!(flags, PixelFlags::UNTEXTURED.when((3..6).contains(&x)), "{x}");
+        }
+    }
+
+    #[test]
+    fn a_slope_stays() {
+        let row: [u16; 8] = core::array::from_fn(|x| 320 + 24 * x as u16);
+        let mut answers = row.map(Disparity::from_raw);
+        let slope = Disparity::from_raw(24);
+        refuse_row(&mut answers, &mut [PixelFlags::CLEAR; 8], &mut [0; 8], (1, slope));
+        assert_eq!(answers.map(Disparity::raw), row);
+    }
+
+    #[test]
+    fn a_step_of_brightness_is_an_edge_on_both_sides() {
+        let line = [100, 100, 100, 104, 104, 104];
+        let mut edges = [0b1; 6];
+        push_edges(&mut edges, [&line; 3], least_gradient(Noise::None));
+        assert_eq!(edges, [0b10, 0b10, 0b11, 0b11, 0b10, 0b10]);
+        push_edges(&mut edges, [&line; 3], least_gradient(Noise::Low));
+        assert_eq!(edges, [0b100, 0b100, 0b110, 0b110, 0b100, 0b100]);
+    }
+}

@@ -1,8 +1,9 @@
 //! Scenes with what matchers see surfaces in where there are none: a sky, a white wall, a glossy box, thin
 //! poles.
 
-use super::{Object, Scene, Shape, Texture};
-use nalgebra::{Point3, Vector3};
+use super::{Object, Scene, Shape, Texture, Truth};
+use crate::map::DisparityMap;
+use nalgebra::{Point3, Rotation3, Vector3};
 use stereopsis::geometry::camera::RectifiedRig;
 
 /// What of a hard scene a pixel shows.
@@ -39,6 +40,14 @@ impl HardScene {
         let mut parts = self.parts;
         parts.push(part);
         Self { scene: self.scene.with(object), parts, ..self }
+    }
+
+    /// The scene with a glossy body, turned so that it mirrors the lamp into the cameras.
+    fn with_glossy(self, object: Object) -> Self {
+        let to_lamp = (self.scene.lamp - object.position).normalize();
+        let half_way = to_lamp - object.position.coords.normalize();
+        let turn = Rotation3::rotation_between(&-Vector3::z(), &half_way).unwrap_or_default();
+        self.with(Part::Glossy, object.turned(turn).glossy(0.6))
     }
 
     /// What the object of this number is, as [`Truth::objects`](super::Truth::objects) has it; an empty place
@@ -106,10 +115,8 @@ impl HardScene {
             hard = hard.with(Part::Pole, body(post, texture, x, 2.4, z));
         }
         let car = Shape::Cuboid { half: Vector3::new(0.9, 0.7, 2.0) };
-        hard.with(
-            Part::Glossy,
-            body(car, Texture::new(91, 0.2, 0.04).with_octaves(0.5, 5), 1.2, 0.7, 9.5).glossy(0.7),
-        )
+        let paint = Texture::new(91, 0.2, 0.04).with_octaves(0.5, 5);
+        hard.with_glossy(body(car, paint, 1.2, 0.7, 9.5))
     }
 
     /// A room with a white wall: a lamp without texture, a box, a ball, a glossy box and two thin poles
@@ -172,18 +179,43 @@ impl HardScene {
                     1.7,
                 ),
             )
-            .with(
-                Part::Glossy,
-                body(
-                    Shape::Cuboid { half: Vector3::new(0.16, 0.3, 0.15) },
-                    Texture::new(47, 0.35, 0.03).with_octaves(0.1, 4),
-                    0.62,
-                    0.3,
-                    2.3,
-                )
-                .glossy(0.6),
-            )
+            .with_glossy(body(
+                Shape::Cuboid { half: Vector3::new(0.16, 0.3, 0.15) },
+                Texture::new(47, 0.35, 0.03).with_octaves(0.1, 4),
+                0.62,
+                0.3,
+                2.3,
+            ))
             .with(Part::Pole, body(pole.clone(), pole_texture(53), 0.2, 0.7, 2.4))
             .with(Part::Pole, body(pole, pole_texture(59), 0.36, 0.7, 2.0))
+    }
+}
+
+/// What a matcher says of a part of a scene, as shares of the part's pixels.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Shares {
+    /// Pixels that have an answer.
+    pub answered: f64,
+    /// Answers nearer than the truth, by over 2 px.
+    pub false_near: f64,
+    /// Answers farther than the truth, by over 2 px.
+    pub false_far: f64,
+}
+
+impl Shares {
+    /// What `map` says of all pixels of a `part` that both cameras see; `None` where there is no such pixel.
+    pub fn of(hard: &HardScene, truth: &Truth, map: &DisparityMap, part: Part) -> Option<Self> {
+        let seen =
+            (0..truth.disparity.len()).filter(|&i| !truth.occluded[i] && hard.part(truth.objects[i]) == part);
+        let errors: Vec<_> =
+            seen.map(|i| map.disparity[i].to_f32().map(|answer| answer - truth.disparity[i])).collect();
+        let share = |counts: fn(f32) -> bool| {
+            errors.iter().flatten().filter(|&&error| counts(error)).count() as f64 / errors.len() as f64
+        };
+        (!errors.is_empty()).then(|| Self {
+            answered: share(|_| true),
+            false_near: share(|error| error > 2.0),
+            false_far: share(|error| error < -2.0),
+        })
     }
 }

@@ -41,7 +41,7 @@ pub(super) fn confidences(
             }
         }
         let agreement = |others: Vec<Disparity>| {
-            let most = others.into_iter().filter_map(|other| answers[here].distance(other)).max();
+            let most = others.into_iter().map(|other| answers[here].distance(other).unwrap_or(4 * 32)).max();
             40u16.saturating_sub(most.unwrap_or(0) / 4)
         };
         (margins[here].min(127) + agreement(beside) + agreement(column)).max(1) as u8

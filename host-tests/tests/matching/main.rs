@@ -6,5 +6,6 @@
 
 mod accuracy;
 mod confidence;
+mod surfaces;
 mod threads;
 mod twin;

@@ -18,7 +18,7 @@ use stereopsis_host::colour::ColourScale;
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::report::Accuracy;
 use stereopsis_host::run::{MemoryPair, MethodName, run};
-use stereopsis_host::scene::{Scene, Truth};
+use stereopsis_host::scene::{self, HardScene, Scene, Shares, Truth};
 
 /// Where the picture stands in the repository.
 pub const PICTURE: &str = ".github/demo.png";
@@ -33,7 +33,7 @@ const HALF_COLUMNS: u32 = 320;
 type Part = (&'static str, fn() -> String);
 
 /// The parts of docs/performance.md that are made here.
-const PARTS: [Part; 2] = [("state", state_table), ("accuracy", accuracy_table)];
+const PARTS: [Part; 3] = [("state", state_table), ("accuracy", accuracy_table), ("hard", hard_table)];
 
 /// Parts that need an emulator or real pairs: `cargo xtask firmware --all`, `growth` and `altered` make them.
 const MADE_ELSEWHERE: [&str; 10] =
@@ -125,6 +125,52 @@ fn accuracy_table() -> String {
                 a.rms_good_px,
                 percent(a.within_3_sigma)
             );
+        }
+    }
+    table
+}
+
+/// What all methods say of a sky, a white wall, a glossy box and thin poles, with the filters that refuse.
+fn hard_table() -> String {
+    let mut table =
+        "| method | filter | sky: answered, near | wall: answered, near, far | glossy: near, far | \
+                     poles: answered, far |\n| --- | --- | ---: | ---: | ---: | ---: |\n"
+            .to_owned();
+    let scenes = [HardScene::street(1.0, 1), HardScene::white_room(1.0, 1)].map(|hard| {
+        let (left, right) = hard.scene.render();
+        let camera = MemoryPair::new(hard.scene.width(), left.to_vec(), right.to_vec())
+            .expect("two pictures of one size");
+        let truth = hard.scene.truth();
+        (hard, camera, truth)
+    });
+    for method in MethodName::ALL {
+        for filter in [Filter::Default, Filter::Strict] {
+            let maps = scenes.each_ref().map(|(hard, camera, _)| {
+                let search = method.config(hard.scene.width(), hard.scene.height(), hard.scene.disparities());
+                run(method, &method.with_filter(filter, search), &mut camera.clone(), |_| ())
+                    .expect("a frame")
+                    .map
+            });
+            // The mean over the scenes that show the part.
+            let shares = |part: scene::Part, of: fn(&Shares) -> f64| {
+                let of_scenes: Vec<_> = scenes
+                    .iter()
+                    .zip(&maps)
+                    .filter_map(|((hard, _, truth), map)| Shares::of(hard, truth, map, part))
+                    .collect();
+                format!("{:.1}", 100.0 * of_scenes.iter().map(of).sum::<f64>() / of_scenes.len() as f64)
+            };
+            let (answered, near, far): (fn(&Shares) -> f64, fn(&Shares) -> f64, fn(&Shares) -> f64) =
+                (|s| s.answered, |s| s.false_near, |s| s.false_far);
+            let cells: [(scene::Part, &[_]); 4] = [
+                (scene::Part::Sky, &[answered, near]),
+                (scene::Part::Wall, &[answered, near, far]),
+                (scene::Part::Glossy, &[near, far]),
+                (scene::Part::Pole, &[answered, far]),
+            ];
+            let cells =
+                cells.map(|(part, of)| of.iter().map(|&of| shares(part, of)).collect::<Vec<_>>().join(", "));
+            table += &format!("| `{method}` | `{}` | {} |\n", filter.name(), cells.join(" | "));
         }
     }
     table

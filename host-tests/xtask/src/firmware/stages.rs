@@ -20,12 +20,13 @@ const METHODS: [MethodName; 3] = [MethodName::Fast, MethodName::Block, MethodNam
 const SIZE: (u16, u16, u16) = (160, 120, 32);
 
 /// The stages, with what is in the paths of their functions and in no path of a stage before.
-const STAGES: [(&str, &[&str]); 8] = [
+const STAGES: [(&str, &[&str]); 9] = [
     ("denoise", &["denoise", "imaging::smooth"]),
     ("census, features", &["census", "features"]),
     ("cost", &["columns", "by_bits", "tables", "reverse", "enter", "cost", "within_edges"]),
     ("aggregation, selection", &["windows", "begin_", "walk", "select", "winners"]),
     ("left-right, sub-pixel", &["answers", "partners", "left_right", "subpixel", "consistency"]),
+    ("fattening", &["fattening"]),
     ("smoothing", &["surface", "smooth", "down", "vertical"]),
     ("speckle", &["speckle"]),
     ("fill", &["fill"]),

@@ -12,7 +12,7 @@ use stereopsis::imaging::GreyLines;
 /// Bytes of the longest raw line: RGB with 16 bits.
 const RAW: usize = MockCamera::MOST_PIXELS as usize * 6;
 /// Endings of files that are frames.
-const ENDINGS: [&str; 8] = ["png", "jpg", "jpeg", "pgm", "ppm", "pnm", "tif", "tiff"];
+const ENDINGS: [&str; 10] = ["png", "jpg", "jpeg", "pgm", "ppm", "pnm", "tif", "tiff", "bmp", "webp"];
 
 /// A frame in grey, as the core sees it, and in colour.
 #[derive(Clone, Debug)]

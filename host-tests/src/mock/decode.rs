@@ -35,6 +35,7 @@ pub(super) fn read(path: &Path) -> Result<Picture, MockError> {
     let whole = match format {
         ImageFormat::Png => integrity::png(&file),
         ImageFormat::Jpeg => integrity::jpeg(&file),
+        ImageFormat::WebP => integrity::webp(&file),
         // Their decoders read every byte that a picture needs, and say when one is missing.
         _ => Integrity::Whole,
     };
@@ -109,6 +110,8 @@ fn name(format: ImageFormat) -> Option<&'static str> {
         ImageFormat::Jpeg => Some("JPEG"),
         ImageFormat::Pnm => Some("PNM"),
         ImageFormat::Tiff => Some("TIFF"),
+        ImageFormat::Bmp => Some("BMP"),
+        ImageFormat::WebP => Some("WebP"),
         _ => None,
     }
 }

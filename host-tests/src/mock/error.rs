@@ -109,4 +109,4 @@ pub enum MockError {
 }
 
 const MOST: u16 = MockCamera::MOST_PIXELS;
-const WANTED: &str = "a PNG, JPEG, PGM/PPM or TIFF image";
+const WANTED: &str = "a PNG, JPEG, PGM/PPM, TIFF, BMP or WebP image";

@@ -35,6 +35,15 @@ pub(super) fn png(file: &[u8]) -> Integrity {
     }
 }
 
+/// Compares a WebP file with the length in its RIFF header.
+pub(super) fn webp(file: &[u8]) -> Integrity {
+    let length = file.get(4..).and_then(|rest| rest.first_chunk()).map(|&bytes| u32::from_le_bytes(bytes));
+    match length {
+        Some(length) if file.len() >= 8 && file.len() - 8 >= length as usize => Integrity::Whole,
+        _ => Integrity::Truncated,
+    }
+}
+
 /// Walks the segments of a JPEG file, through the entropy-coded data of every scan, up to the end-of-image
 /// mark.
 pub(super) fn jpeg(file: &[u8]) -> Integrity {

@@ -1,7 +1,7 @@
 //! A camera that reads image files: what the hardware is on a board, a file is on the desktop.
 //!
-//! In: PNG, JPEG, PGM/PPM or TIFF, told apart by content, with 8 or 16 bits a sample, grey or colour, up to
-//! 4096 x 4096. Out: lines in the file's own pixel format, frame after frame without an end.
+//! In: PNG, JPEG, PGM/PPM, TIFF, BMP or WebP, told apart by content, with 8 or 16 bits a sample, grey or
+//! colour, up to 4096 x 4096. Out: lines in the file's own pixel format, frame after frame without an end.
 //!
 //! * Alpha is dropped: a camera has none. The samples stay as they are, they are not multiplied by it.
 //! * A file with 16 bits a sample may hold the 10 or 12 bits of a sensor. The camera's significant bits are

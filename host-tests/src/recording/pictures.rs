@@ -43,7 +43,7 @@ pub enum PicturesError {
         rights: usize,
     },
     /// A folder has no image.
-    #[error("{}: has no PNG, JPEG, PGM/PPM or TIFF image", path.display())]
+    #[error("{}: has no PNG, JPEG, PGM/PPM, TIFF, BMP or WebP image", path.display())]
     Empty {
         /// The folder.
         path: PathBuf,
@@ -115,7 +115,7 @@ fn images(path: &Path) -> Result<Vec<PathBuf>, PicturesError> {
     }
     let is_image = |path: &PathBuf| {
         let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-        ["png", "jpg", "jpeg", "pgm", "ppm", "pnm", "tif", "tiff"].contains(&ending.as_str())
+        ["png", "jpg", "jpeg", "pgm", "ppm", "pnm", "tif", "tiff", "bmp", "webp"].contains(&ending.as_str())
     };
     let entries = fs::read_dir(path).map_err(failed)?.map(|entry| entry.map(|entry| entry.path()));
     let mut images: Vec<_> = entries.collect::<Result<_, _>>().map_err(failed)?;

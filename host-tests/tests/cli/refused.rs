@@ -3,11 +3,13 @@
 use super::support::{Bench, HEIGHT, WIDTH, calibration, encode, pair, program, stereo, text};
 use image::{GrayImage, ImageFormat};
 
-const FORMATS: [(ImageFormat, &str); 4] = [
+const FORMATS: [(ImageFormat, &str); 6] = [
     (ImageFormat::Png, "png"),
     (ImageFormat::Jpeg, "jpg"),
     (ImageFormat::Pnm, "pgm"),
     (ImageFormat::Tiff, "tiff"),
+    (ImageFormat::Bmp, "bmp"),
+    (ImageFormat::WebP, "webp"),
 ];
 
 #[test]

@@ -234,6 +234,10 @@ fn every_image_format_gives_the_same_answers() {
     let l = bench.put("left.pgm", &encode(&left, ImageFormat::Pnm)).display().to_string();
     bench.matched(&[("--left", &l), ("--right", &r)]);
     assert_eq!(float_map(&bench.path("out/disparity.pfm")), expected);
+    let l = bench.put("left.bmp", &encode(&left, ImageFormat::Bmp)).display().to_string();
+    let r = bench.put("right.webp", &encode(&right, ImageFormat::WebP)).display().to_string();
+    bench.matched(&[("--left", &l), ("--right", &r)]);
+    assert_eq!(float_map(&bench.path("out/disparity.pfm")), expected);
 }
 
 #[test]

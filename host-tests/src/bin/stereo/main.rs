@@ -54,8 +54,8 @@ const EXAMPLES: &str = "Examples:
   stereo bench --left left.png --right right.png --disparities 64 --method fast
   stereo features --left first.png --right second.png --out matches.csv
 
-The images of match and bench are a rectified pair; all are PNG, JPEG, PGM/PPM or TIFF, 8 or 16 bit, grey or \
-                        colour, up to 4096 x 4096.";
+The images of match and bench are a rectified pair; all are PNG, JPEG, PGM/PPM, TIFF, BMP or WebP, 8 or \
+                        16 bit, grey or colour, up to 4096 x 4096.";
 
 #[derive(Debug, Parser)]
 #[command(

@@ -7,8 +7,8 @@
 //!
 //! * [`Shape`], [`Object`], [`Texture`]: what a scene is made of.
 //! * [`Scene`]: the scene; [`Scene::demo`], [`Scene::small`], [`Scene::slanted_plane`] are ready-made.
-//! * [`HardScene`], [`Shares`]: scenes with a sky, a white wall, a glossy box and thin poles, and what a matcher
-//!   says of them.
+//! * [`HardScene`], [`Shares`]: scenes with a sky, a white wall, a glossy box and thin poles, and what a
+//!   matcher says of them.
 //! * [`MovingScene`]: a scene that the rig moves through.
 //! * [`Truth`]: the true values, by ray casting at the pixel centres.
 //! * [`SceneCamera`]: pictures as a stereo source.

@@ -130,6 +130,9 @@ fn accuracy_table() -> String {
     table
 }
 
+/// One of the shares.
+type Of = fn(&Shares) -> f64;
+
 /// What all methods say of a sky, a white wall, a glossy box and thin poles, with the filters that refuse.
 fn hard_table() -> String {
     let mut table =
@@ -152,7 +155,7 @@ fn hard_table() -> String {
                     .map
             });
             // The mean over the scenes that show the part.
-            let shares = |part: scene::Part, of: fn(&Shares) -> f64| {
+            let shares = |part: scene::Part, of: Of| {
                 let of_scenes: Vec<_> = scenes
                     .iter()
                     .zip(&maps)
@@ -160,8 +163,9 @@ fn hard_table() -> String {
                     .collect();
                 format!("{:.1}", 100.0 * of_scenes.iter().map(of).sum::<f64>() / of_scenes.len() as f64)
             };
-            let (answered, near, far): (fn(&Shares) -> f64, fn(&Shares) -> f64, fn(&Shares) -> f64) =
-                (|s| s.answered, |s| s.false_near, |s| s.false_far);
+            let answered: Of = |shares| shares.answered;
+            let near: Of = |shares| shares.false_near;
+            let far: Of = |shares| shares.false_far;
             let cells: [(scene::Part, &[_]); 4] = [
                 (scene::Part::Sky, &[answered, near]),
                 (scene::Part::Wall, &[answered, near, far]),

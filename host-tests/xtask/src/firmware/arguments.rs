@@ -24,7 +24,8 @@ pub struct Arguments {
     /// The core: m0, m3, m4, m7, m33, m55 or rv32
     #[arg(long, value_parser = core, required_unless_present_any = ["all", "stages"])]
     core: Option<Board>,
-    /// The left image, PNG, JPEG, PGM/PPM, TIFF, BMP or WebP; without images the cameras see the built-in scene
+    /// The left image, PNG, JPEG, PGM/PPM, TIFF, BMP or WebP; without images the cameras see the built-in
+    /// scene
     #[arg(long, value_name = "FILE", requires = "right")]
     left: Option<PathBuf>,
     /// The right image, of the same size

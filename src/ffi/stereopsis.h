@@ -418,8 +418,8 @@ typedef struct stereopsis_config {
   uint8_t step[2];
   /**
    * Semi-global matching: penalty P2 of larger disparity changes, at small, larger and large changes of
-   * brightness; the first at least the first step, the others at least the second. `cost + step + jump` is at most 127, `3 cost + 2 jump` at
-   * most 254.
+   * brightness; the first at least the first step, the others at least the second. `cost + step + jump` is
+   * at most 127, `3 cost + 2 jump` at most 254.
    */
   uint8_t jump[3];
   /**

@@ -8,12 +8,13 @@
 //! * `bundle`: the least sum of squares of all residuals, by Levenberg and Marquardt's method; first of each
 //!   camera by itself, lens coefficient by lens coefficient, then of both with one pose between them.
 //! * `lens`: the models of lenses. `solve`: these in order, and what their result is worth.
-//! * [`report`](mod@report): the residuals, drawn.
+//! * [`coverage`]: how much of the pictures the boards reached. [`report`](mod@report): the residuals, drawn.
 //!
 //! [`scene`] makes pictures of boards for tests.
 
 pub mod board;
 mod bundle;
+pub mod coverage;
 mod lens;
 pub mod report;
 pub mod scene;

@@ -6,7 +6,7 @@
 //!
 //! * [`Cameras`]: the two cameras alone, which need not be rectified.
 //! * [`RawCalibration`]: two cameras as they are mounted, also from OpenCV's, ROS's and Kalibr's files.
-//! * [`describe`], [`describe_rectified`]: a calibration in words. [`write_opencv`], [`write_rust`],
+//! * [`describe`], [`describe_rectified`], [`warnings`]: a calibration in words. [`write_opencv`], [`write_rust`],
 //!   [`write_c`]: as a file.
 //! * `middlebury`: `cam0=[f 0 cx; 0 f cy; 0 0 1]`, `cam1`, `doffs`, `baseline`, and optional sizes.
 //! * `kitti`: projection matrices of 12 numbers, labelled `P0:` to `P3:` or `P_rect_00:` to `P_rect_03:`, or
@@ -24,7 +24,7 @@ pub use cameras::Cameras;
 pub use error::{CalibrationError, Fault};
 pub use middlebury::write_middlebury;
 pub use raw::RawCalibration;
-pub use words::{describe, describe_rectified};
+pub use words::{describe, describe_rectified, warnings};
 pub use write::{write_c, write_opencv, write_rust};
 
 use std::fs::File;

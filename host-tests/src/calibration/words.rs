@@ -4,9 +4,10 @@ use super::{Calibration, RawCalibration};
 use nalgebra::{Point2, Vector2};
 use std::fmt::Write;
 use stereopsis::geometry::{
-    camera::{Camera, ImageSize},
+    camera::{Camera, ImageSize, StereoRig},
     rectify::{Crop, Rectification, RectifyError},
 };
+use stereopsis::matching::Config;
 
 /// The standard deviation of a disparity that depths are told with, px: that of the methods, away from depth
 /// edges.
@@ -17,14 +18,27 @@ const DISTANCES_M: [f64; 6] = [0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
 /// What a calibration says, what the rig can tell with a search of so many disparities, and what looks wrong:
 /// lines of text, the last ones warnings. A rig that cannot be rectified is refused.
 pub fn describe(calibration: &RawCalibration, disparities: u16) -> Result<String, RectifyError> {
-    let rig = &calibration.rig;
+    let (text, warnings) = described(&calibration.rig, calibration.format, disparities)?;
+    Ok(with_warnings(text, warnings))
+}
+
+/// What looks wrong with a rig, as [`describe`] says it. A rig that cannot be rectified is refused.
+pub fn warnings(rig: &StereoRig<f64>) -> Result<Vec<String>, RectifyError> {
+    Ok(described(rig, "", Config::FEWEST_DISPARITIES)?.1)
+}
+
+/// What a rig is in words, and what looks wrong with it.
+fn described(
+    rig: &StereoRig<f64>,
+    format: &str,
+    disparities: u16,
+) -> Result<(String, Vec<String>), RectifyError> {
     let size = rig.sizes()[0];
     let rectified = Rectification::new(rig, Crop::Natural, size)?;
     let (report, f, b) = (rectified.report(), rectified.camera().focal_px().0, rig.baseline_m());
     let mut text = String::new();
     let mut warnings = Vec::new();
-    let _ =
-        writeln!(text, "{} calibration, images of {} x {} px", calibration.format, size.width, size.height);
+    let _ = writeln!(text, "{format} calibration, images of {} x {} px", size.width, size.height);
     for (name, camera) in ["left", "right"].into_iter().zip(rig.cameras()) {
         one(name, camera, size, &mut text, &mut warnings);
     }
@@ -62,7 +76,7 @@ pub fn describe(calibration: &RawCalibration, disparities: u16) -> Result<String
     if (left / right).max(right / left) > 1.1 {
         warnings.push(format!("the focal lengths of the two cameras differ: {left:.0} and {right:.0} px"));
     }
-    Ok(with_warnings(text, warnings))
+    Ok((text, warnings))
 }
 
 /// What a calibration of rectified images says, and what they can tell with a search of so many disparities:

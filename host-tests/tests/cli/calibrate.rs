@@ -74,6 +74,17 @@ fn a_rig_is_calibrated_checked_and_converted() {
     // The sixth has no board.
     assert!(said.contains("left6.png: no board with 6 x 5 inner corners is seen"), "{said}");
     assert!(said.contains("5 of 6 views, 240 x 180 px\n"), "{said}");
+    // The boards stay near the middle of these pictures.
+    let covered: Vec<f64> = said
+        .lines()
+        .find_map(|line| line.strip_prefix("coverage"))
+        .expect("a line of the coverage")
+        .split_whitespace()
+        .filter_map(|word| word.parse().ok())
+        .collect();
+    assert!(covered[..2].iter().all(|&percent| (20.0..100.0).contains(&percent)), "{said}");
+    let is_little = covered[0].min(covered[1]) < 60.0;
+    assert_eq!(said.contains("note: the boards reach only"), is_little, "{said}");
     let baseline: f64 = said
         .lines()
         .find_map(|line| line.strip_prefix("baseline")?.trim().split(' ').next()?.parse().ok())

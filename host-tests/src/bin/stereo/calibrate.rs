@@ -14,8 +14,9 @@ use stereopsis::geometry::{
     rectify::{Crop, Rectification},
 };
 use stereopsis_host::calibrate::board::{self, Board, BoardError, Pattern};
+use stereopsis_host::calibrate::coverage::{self, coverage};
 use stereopsis_host::calibrate::{Calibrated, LensModel, View, report, solve};
-use stereopsis_host::calibration::write_opencv;
+use stereopsis_host::calibration::{warnings, write_opencv};
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::mock::MockCamera;
 use stereopsis_host::output::Staging;
@@ -125,6 +126,7 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
     let result = solve(args.lens.into(), args.pattern, args.square_mm / 1000.0, size, &views)
         .map_err(|e| failed(&e))?;
     let rectified = Rectification::new(&result.rig, Crop::Natural, size).map_err(|e| failed(&e))?;
+    let wrong = warnings(&result.rig).map_err(|e| failed(&e))?;
 
     for i in result.outliers() {
         let [left, right] = &found[i].paths;
@@ -137,7 +139,9 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
             result.middle_rms_px()
         ));
     }
-    notes.extend(doubts(&result));
+    let covered = coverage(&views, size).map(|share| 100.0 * share);
+    notes.extend(doubts(&result, covered));
+    notes.extend(wrong);
     let told = [
         format!(
             "stereo calibrate: {} views of {} x {} corners",
@@ -177,6 +181,11 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
         text,
         "baseline      {b:.2} mm (+- {sigma:.2}), cameras turned against each other by {angle:.2} degrees"
     );
+    let ([columns, rows], [left, right]) = (coverage::CELLS, covered);
+    let _ = writeln!(
+        text,
+        "coverage      left {left:.0} %, right {right:.0} % of {columns} x {rows} parts of the picture hold corners"
+    );
     let error = rectified.report().row_error_px(result.rms_px);
     let _ = writeln!(text, "row error     {error:.2} px expected after rectification");
     let _ = writeln!(text, "the calibration is in {}", one_line(&args.out.display().to_string()));
@@ -188,8 +197,15 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
 }
 
 /// What is to be known of a result that may be worth little.
-fn doubts(result: &Calibrated) -> Vec<String> {
+fn doubts(result: &Calibrated, covered_percent: [f64; 2]) -> Vec<String> {
     let mut doubts = Vec::new();
+    let least = covered_percent[0].min(covered_percent[1]);
+    if least < 60.0 {
+        doubts.push(format!(
+            "the boards reach only {least:.0} % of a picture: elsewhere the lens is a guess; bring the board to \
+             all borders and corners"
+        ));
+    }
     for (name, camera) in [("left", 0), ("right", 1)] {
         let share = result.focal_sigma_px[camera] / result.rig.cameras()[camera].focal_px().0;
         if share.is_nan() || share > 0.01 {

@@ -55,15 +55,30 @@ pub(super) fn read(text: &str, left_image: &Path) -> Result<Calibration, Fault> 
     let q: [f64; 12] = numbers(right.label, right.line, right.numbers)?;
     let camera = |key, p: &[f64; 12]| Intrinsics { key, fx: p[0], fy: p[5], cx: p[2], cy: p[6] };
     let keys = format!("{} and {}", left.label, right.label);
+    let size = size(text, left.label)?;
     Ok(Calibration {
         path: PathBuf::new(),
         format: "KITTI",
         // A focal length of 0 is refused by its name before the quotient counts.
         rig: rig(camera(left.label, &p), camera(right.label, &q), &keys, (q[3] - p[3]) / -p[0])?,
-        width: None,
-        height: None,
+        width: size.map(|[width, _]| width),
+        height: size.map(|[_, height]| height),
         disparities: None,
     })
+}
+
+/// Columns and rows of a camera's rectified images, which the raw recordings' `S_rect_00: ...` says of
+/// `P_rect_00`.
+fn size(text: &str, label: &str) -> Result<Option<[u16; 2]>, Fault> {
+    let Some(camera) = label.strip_prefix("P_rect_") else { return Ok(None) };
+    let wanted = format!("S_rect_{camera}");
+    let said = text.lines().zip(1..).find_map(|(content, line)| {
+        let (label, numbers) = content.split_once(':')?;
+        (label.trim() == wanted).then_some((line, numbers))
+    });
+    let Some((line, said)) = said else { return Ok(None) };
+    // A size that is no size fits no image, which is said when there is one.
+    Ok(Some(numbers::<2>(&wanted, line, said)?.map(|pixels| pixels as u16)))
 }
 
 /// fx, skew, cx, fy, cy of both cameras, with their labels.

@@ -71,8 +71,13 @@ fn kitti_chooses_the_pair_by_the_left_image() {
         near(grey.rig.baseline_m(), 375.0 / 700.0);
     }
     let labels = KITTI.replace("P0:", "P_rect_00:").replace("P1:", "P_rect_01:").replace("P2:", "P_rect_02:");
-    let raw = open_for(labels.replace("P3:", "P_rect_03:"), "left.png").expect("the raw data's labels");
+    let labels = labels.replace("P3:", "P_rect_03:");
+    let raw = open_for(&labels, "left.png").expect("the raw data's labels");
     near(raw.rig.baseline_m(), 384.0 / 720.0);
+    let sized = labels + "S_00: 1392 512\nS_rect_00: 100 50\nS_rect_02: 1.242000e+03 3.750000e+02\n";
+    let sized = open_for(sized, "left.png").expect("the raw data's sizes");
+    assert_eq!((sized.width, sized.height), (Some(1242), Some(375)));
+    assert!(sized.check_size(1242, 375).is_ok() && sized.check_size(1224, 370).is_err());
     let two: String = KITTI.lines().take(2).map(|line| format!("{line}\n")).collect();
     near(open_for(&two, "left.png").expect("grey cameras alone").rig.baseline_m(), 375.0 / 700.0);
     let bare = two.replace("P0: ", "").replace("P1: ", "");

@@ -6,8 +6,8 @@ use stereopsis::geometry::camera::ImageSize;
 /// The cells that a picture is divided into, along and down.
 pub const CELLS: [usize; 2] = [8, 6];
 
-/// The share of the cells of each camera's picture that hold a corner of a board in some view, left and right:
-/// where there is none, the lens is not measured.
+/// The share of the cells of each camera's picture that hold a corner of a board in some view, left and
+/// right: where there is none, the lens is not measured.
 pub fn coverage(views: &[View], size: ImageSize) -> [f64; 2] {
     [0, 1].map(|camera| {
         let mut reached = [[false; CELLS[0]]; CELLS[1]];

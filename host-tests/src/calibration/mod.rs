@@ -6,8 +6,8 @@
 //!
 //! * [`Cameras`]: the two cameras alone, which need not be rectified.
 //! * [`RawCalibration`]: two cameras as they are mounted, also from OpenCV's, ROS's and Kalibr's files.
-//! * [`describe`], [`describe_rectified`], [`warnings`]: a calibration in words. [`write_opencv`], [`write_rust`],
-//!   [`write_c`]: as a file.
+//! * [`describe`], [`describe_rectified`], [`warnings`]: a calibration in words. [`write_opencv`],
+//!   [`write_rust`], [`write_c`]: as a file.
 //! * `middlebury`: `cam0=[f 0 cx; 0 f cy; 0 0 1]`, `cam1`, `doffs`, `baseline`, and optional sizes.
 //! * `kitti`: projection matrices of 12 numbers, labelled `P0:` to `P3:` or `P_rect_00:` to `P_rect_03:`, or
 //!   two lines without labels for left and right.

@@ -184,7 +184,7 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
     let ([columns, rows], [left, right]) = (coverage::CELLS, covered);
     let _ = writeln!(
         text,
-        "coverage      left {left:.0} %, right {right:.0} % of {columns} x {rows} parts of the picture hold corners"
+        "coverage      left {left:.0} %, right {right:.0} % of {columns} x {rows} parts of the picture"
     );
     let error = rectified.report().row_error_px(result.rms_px);
     let _ = writeln!(text, "row error     {error:.2} px expected after rectification");
@@ -202,8 +202,8 @@ fn doubts(result: &Calibrated, covered_percent: [f64; 2]) -> Vec<String> {
     let least = covered_percent[0].min(covered_percent[1]);
     if least < 60.0 {
         doubts.push(format!(
-            "the boards reach only {least:.0} % of a picture: elsewhere the lens is a guess; bring the board to \
-             all borders and corners"
+            "the boards reach only {least:.0} % of a picture: elsewhere the lens is a guess; bring the board \
+             to all borders and corners"
         ));
     }
     for (name, camera) in [("left", 0), ("right", 1)] {

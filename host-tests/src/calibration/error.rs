@@ -21,7 +21,10 @@ pub enum Fault {
     #[error("cannot be read ({0}); give a calibration file")]
     Read(io::Error),
     /// Not UTF-8, longer than a calibration can be, or not a file.
-    #[error("is no text file (UTF-8) of at most {} bytes; give a calibration file", super::MOST_BYTES)]
+    #[error(
+        "is no text file (UTF-8) of at most {} bytes; give a calibration file",
+        super::source::MOST_BYTES
+    )]
     NotText,
     /// The file has no byte or only white space.
     #[error("the file is empty; give a calibration file")]

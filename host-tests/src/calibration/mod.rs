@@ -8,6 +8,7 @@
 //! * [`RawCalibration`]: two cameras as they are mounted, also from OpenCV's, ROS's and Kalibr's files.
 //! * [`describe`], [`describe_rectified`], [`warnings`]: a calibration in words. [`write_opencv`],
 //!   [`write_rust`], [`write_c`]: as a file.
+//! * `source`: the files' bytes.
 //! * `middlebury`: `cam0=[f 0 cx; 0 f cy; 0 0 1]`, `cam1`, `doffs`, `baseline`, and optional sizes.
 //! * `kitti`: projection matrices of 12 numbers, labelled `P0:` to `P3:` or `P_rect_00:` to `P_rect_03:`, or
 //!   two lines without labels for left and right.
@@ -17,6 +18,7 @@ mod error;
 mod kitti;
 mod middlebury;
 mod raw;
+mod source;
 mod words;
 mod write;
 
@@ -27,13 +29,8 @@ pub use raw::RawCalibration;
 pub use words::{describe, describe_rectified, warnings};
 pub use write::{write_c, write_opencv, write_rust};
 
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::camera::RectifiedRig;
-
-/// The longest calibration file that is read.
-const MOST_BYTES: u64 = 1 << 20;
 
 /// What a calibration file says.
 #[derive(Clone, PartialEq, Debug)]
@@ -124,16 +121,8 @@ fn load_all(paths: &[PathBuf]) -> Result<Vec<String>, CalibrationError> {
 }
 
 fn load(path: &Path) -> Result<String, Fault> {
-    if !std::fs::metadata(path).map_err(Fault::Read)?.is_file() {
-        return Err(Fault::NotText);
-    }
-    let mut bytes = Vec::new();
-    File::open(path)
-        .map_err(Fault::Read)?
-        .take(MOST_BYTES + 1)
-        .read_to_end(&mut bytes)
-        .map_err(Fault::Read)?;
-    if bytes.len() as u64 > MOST_BYTES || bytes.contains(&0) {
+    let bytes = source::bytes(path)?;
+    if bytes.len() > source::MOST_BYTES || bytes.contains(&0) {
         return Err(Fault::NotText);
     }
     String::from_utf8(bytes).map_err(|_| Fault::NotText)

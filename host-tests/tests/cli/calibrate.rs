@@ -1,8 +1,10 @@
 //! `stereo calibrate` and `stereo calib`: their files, and what they say when they cannot.
 
-use super::support::{Bench, encode, names, stereo, text};
+use super::support::{Bench, encode, names, program, stereo, text};
 use image::ImageFormat;
 use nalgebra::{Matrix3, Rotation3, Vector3};
+use std::io::Write;
+use std::process::Stdio;
 use stereopsis::geometry::camera::{Camera, Distortion, ImageSize, Pose, StereoRig};
 use stereopsis_host::calibrate::board::Pattern;
 use stereopsis_host::calibrate::scene::BoardCamera;
@@ -243,4 +245,26 @@ fn what_looks_wrong_is_said() {
     assert!(check(yaml("-0.06", "", 119.5, ""), &[]).contains("--size"));
     assert!(check(yaml("-0.06", "", 119.5, ""), &["--size", "240x180"]).contains("240 x 180"));
     assert!(check(yaml("-0.06", "", 119.5, size), &["--size", "240x181"]).contains("height says 180"));
+}
+
+/// A calibration through a pipe, which can be read once only.
+#[cfg(unix)]
+#[test]
+fn a_calibration_comes_through_a_pipe() {
+    const KITTI: &str = "P0: 700 0 600 0 0 700 180 0 0 0 1 0\nP1: 700 0 600 -350 0 700 180 0 0 0 1 0\n";
+    let piped = |bytes: &[u8]| {
+        let mut check = program();
+        check.args(["calib", "check", "--calib", "/dev/stdin"]);
+        check.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut check = check.spawn().expect("the program starts");
+        check.stdin.take().expect("a pipe").write_all(bytes).expect("the program reads");
+        check.wait_with_output().expect("the program ends")
+    };
+    let run = piped(KITTI.as_bytes());
+    assert!(run.status.success() && text(&run.stdout).contains("500.00 mm"), "{}", text(&run.stderr));
+    let record = rig().to_record();
+    let run = piped(&record);
+    assert!(run.status.success() && text(&run.stdout).contains("baseline"), "{}", text(&run.stderr));
+    let run = piped(b"");
+    assert!(!run.status.success() && text(&run.stderr).contains("/dev/stdin"), "{}", text(&run.stderr));
 }

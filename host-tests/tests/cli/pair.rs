@@ -124,6 +124,16 @@ fn masks_take_answers_away() {
     let flags = image::open(bench.path("out/flags.png")).expect("flags").into_luma8();
     assert!(flags.enumerate_pixels().all(|(_, y, flag)| y >= 20 || flag.0[0] == 1));
     assert!(flags.enumerate_pixels().any(|(_, y, flag)| y >= 20 && flag.0[0] == 0));
+
+    // Beside the cameras that rectify writes they are found.
+    let rectified = "{\"width\": 640, \"height\": 480, \"focal_px\": 500, \"cx\": 319.5, \"cy\": 239.5, \
+                     \"baseline_m\": 0.08, \"axis\": \"horizontal\"}";
+    let calib = bench.put("rectified.json", rectified.as_bytes()).display().to_string();
+    std::fs::copy(bench.path("left.png"), bench.path("valid_left.png")).expect("a mask");
+    std::fs::copy(bench.path("right.png"), bench.path("valid_right.png")).expect("a mask");
+    let run = stereo(args.iter().chain([&"--calib".to_owned(), &calib]));
+    assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
+    assert_eq!(image::open(bench.path("out/flags.png")).expect("flags").into_luma8(), flags);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::input;
+use crate::rectified::{CAMERAS, MASKS};
 use crate::shared::{self, MethodArgs, RangeArgs, min_disparity};
 use clap::Args;
 use image::{GrayImage, imageops};
@@ -40,7 +41,8 @@ impl SearchArgs {
 /// What the images show.
 #[derive(Debug, Args)]
 pub struct MaskArgs {
-    /// Mask of the left image, 0 where it shows nothing, as rectify writes it; without one, all is valid
+    /// Mask of the left image, 0 where it shows nothing, as rectify writes it; without one, that beside
+    /// rectified.json where --calib is that file, else all is valid
     #[arg(long, value_name = "FILE", requires = "valid_right", conflicts_with = "rectify")]
     pub valid_left: Option<PathBuf>,
     /// Mask of the right image
@@ -49,12 +51,21 @@ pub struct MaskArgs {
 }
 
 impl MaskArgs {
+    /// The files of the masks: those that are given, or those that `rectify` wrote beside the calibration.
+    pub fn files(&self, calib: &[PathBuf]) -> Option<[PathBuf; 2]> {
+        if let Some((left, right)) = self.valid_left.as_ref().zip(self.valid_right.as_ref()) {
+            return Some([left.clone(), right.clone()]);
+        }
+        let [calib] = calib else { return None };
+        let beside = MASKS.map(|name| calib.with_file_name(name));
+        let is_of_rectify = calib.file_name().is_some_and(|name| name == CAMERAS);
+        (is_of_rectify && beside.iter().all(|mask| mask.is_file())).then_some(beside)
+    }
+
     /// The masks of both images, which must have their size.
-    pub fn read(&self, size: (u32, u32)) -> Result<Option<[GrayImage; 2]>, Failure> {
-        let Some((left, right)) = self.valid_left.as_ref().zip(self.valid_right.as_ref()) else {
-            return Ok(None);
-        };
-        let [left, right] = [left, right].map(|path| {
+    pub fn read(&self, calib: &[PathBuf], size: (u32, u32)) -> Result<Option<[GrayImage; 2]>, Failure> {
+        let Some(files) = self.files(calib) else { return Ok(None) };
+        let [left, right] = files.each_ref().map(|path| {
             let mask = imageops::grayscale(&MockCamera::open(path)?.picture());
             if mask.dimensions() == size {
                 return Ok(mask);

@@ -123,7 +123,7 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         Staging::probe(&args.out)?;
         let [left, right] = [&pair.left, &pair.right].map(imageops::grayscale);
         let camera = scale.as_ref().and_then(|scale| camera(scale.rig()));
-        let masks = args.masks.read(left.dimensions())?;
+        let masks = args.masks.read(&args.calib, left.dimensions())?;
         let valid = masks.as_ref().map(|masks| masks.each_ref());
         let Look { config, check, rows } =
             look(&args.search, &args.method, [&left, &right], valid, camera.as_ref())?;
@@ -138,7 +138,9 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let scale = scene.scale.as_ref();
     let summary = Summary::new(args.method.method, args.method.filter.name(), &config, &outcome, scale, None);
     let summary = summary.with_noise(meter.as_ref()).with_balance(balance).with_rows(scene.rows);
-    let inputs = [&args.pair.left, &args.pair.right].into_iter().chain(&args.calib).map(PathBuf::as_path);
+    let masks = if args.rectify { None } else { args.masks.files(&args.calib) };
+    let inputs = [&args.pair.left, &args.pair.right].into_iter().chain(&args.calib);
+    let inputs = inputs.chain(masks.iter().flatten()).map(PathBuf::as_path);
     let mut summary = summary.with_pair(scene.check.clone()).with_inputs(inputs);
     let depth = scale.map(|s| DepthFiles::new(&args.depth, &outcome.map, s, &scene.left, &mut summary));
     let report = Report {

@@ -11,6 +11,10 @@ use stereopsis::geometry::{
 };
 use stereopsis_host::calibration::RawCalibration;
 
+/// What `rectify` calls the cameras that it writes, and the masks of what they see, left and right.
+pub const CAMERAS: &str = "rectified.json";
+pub const MASKS: [&str; 2] = ["valid_left.png", "valid_right.png"];
+
 /// What `rectified.json` holds. Names are a contract with programs that read it.
 #[derive(Serialize)]
 pub struct RectifiedCameras {

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::input::Pair;
 use crate::place::{json, png};
-use crate::rectified::{RectifiedCameras, open};
+use crate::rectified::{CAMERAS, MASKS, RectifiedCameras, open};
 use crate::shared::{PairArgs, RectifyOptions, print};
 use crate::uncalibrated;
 use clap::Args;
@@ -63,16 +63,13 @@ pub fn run(args: &RectifyArgs) -> Result<(), Failure> {
     let mut staging = Staging::new(&args.out)?;
     let [left, right] = &result.pictures;
     let [valid_left, valid_right] = &result.valid;
-    for (name, picture) in [
-        ("left.png", left),
-        ("right.png", right),
-        ("valid_left.png", valid_left),
-        ("valid_right.png", valid_right),
-    ] {
+    for (name, picture) in
+        [("left.png", left), ("right.png", right), (MASKS[0], valid_left), (MASKS[1], valid_right)]
+    {
         staging.write(name, |out| png(out, picture))?;
     }
     let summary = RectifiedCameras::new(calibration.format, &rectification, result.rows, &report);
-    staging.write("rectified.json", |out| json(out, &summary))?;
+    staging.write(CAMERAS, |out| json(out, &summary))?;
     staging.commit(&[])?;
 
     let mut text = String::new();

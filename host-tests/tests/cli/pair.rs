@@ -126,8 +126,8 @@ fn masks_take_answers_away() {
     assert!(flags.enumerate_pixels().any(|(_, y, flag)| y >= 20 && flag.0[0] == 0));
 
     // Beside the cameras that rectify writes they are found.
-    let rectified = "{\"width\": 640, \"height\": 480, \"focal_px\": 500, \"cx\": 319.5, \"cy\": 239.5, \
-                     \"baseline_m\": 0.08, \"axis\": \"horizontal\"}";
+    let rectified = "{\"width\": 640, \"height\": 480, \"focal_px\": 500, \"q\": [[1, 0, 0, -319.5], \
+                     [0, 1, 0, -239.5], [0, 0, 0, 500], [0, 0, 12.5, 0]]}";
     let calib = bench.put("rectified.json", rectified.as_bytes()).display().to_string();
     std::fs::copy(bench.path("left.png"), bench.path("valid_left.png")).expect("a mask");
     std::fs::copy(bench.path("right.png"), bench.path("valid_right.png")).expect("a mask");

@@ -36,12 +36,11 @@ pub(super) fn confidences(
             if y >= off {
                 column.push(after[here - off * width]);
             }
-            if y + off < height {
-                column.push(before[here + off * width]);
-            }
+            // No row below the image bears an answer out.
+            column.push(if y + off < height { before[here + off * width] } else { Disparity::NONE });
         }
         let agreement = |others: Vec<Disparity>| {
-            let most = others.into_iter().map(|other| answers[here].distance(other).unwrap_or(4 * 32)).max();
+            let most = others.into_iter().map(|other| answers[here].distance(other).unwrap_or(4 * 40)).max();
             40u16.saturating_sub(most.unwrap_or(0) / 4)
         };
         (margins[here].min(127) + agreement(beside) + agreement(column)).max(1) as u8

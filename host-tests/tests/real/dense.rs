@@ -196,14 +196,14 @@ fn strict_answers_of_sgm_are_sure() {
     let mean = mean_with(MethodName::Sgm, Filter::Strict);
     assert!(mean.density >= 0.95 && mean.bad2 <= 0.01, "density {}, bad2 {}", mean.density, mean.bad2);
     let mean = mean_with(MethodName::SgmEdge, Filter::Strict);
-    assert!(mean.density >= 0.953 && mean.bad2 <= 0.01, "density {}, bad2 {}", mean.density, mean.bad2);
+    assert!(mean.density >= 0.955 && mean.bad2 <= 0.01, "density {}, bad2 {}", mean.density, mean.bad2);
 }
 
 #[test]
 fn confidence_orders_answers_on_every_real_pair() {
     for method in MethodName::ALL {
         for filter in [Filter::Dense, Filter::Default] {
-            confidence_on_real_pairs(method, filter, 0.16);
+            confidence_on_real_pairs(method, filter, 0.155);
         }
     }
 }
@@ -268,5 +268,5 @@ fn sgm_on_real_pairs_of_other_exposures() {
     let mean = Score::mean(&scores);
     println!("sgm, right x 1.2 + 15: {mean:?}");
     // On three scenes too much is saturated.
-    assert!(mean.missed <= 0.102 && mean.bad2 <= 0.068, "missed {}, bad2 {}", mean.missed, mean.bad2);
+    assert!(mean.missed <= 0.101 && mean.bad2 <= 0.068, "missed {}, bad2 {}", mean.missed, mean.bad2);
 }

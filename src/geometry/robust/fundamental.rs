@@ -86,7 +86,7 @@ pub struct RobustFundamental<T: Real> {
 /// the number of samples is what counts. With the share w of right matches it is about `7 / w^7` for a miss
 /// of 0.1 %: 85 for w = 0.7, 4 300 for 0.4, where 10 000 are drawn below 0.35.
 ///
-/// The same input and seed give the same bits. Stack only, besides the slices. `f32` errs as `f64` does from
+/// Equal inputs and seeds give equal bits. Stack only, besides the slices. `f32` errs as `f64` does from
 /// 0.1 px of noise on.
 ///
 /// ```

@@ -8,7 +8,8 @@
 //! `confidence = m + (K - min(s / 4, K)) + (K - min(t / 4, K))`, `K =` [`AGREEMENT`]
 //!
 //! with `s` and `t` apart because they go wrong apart, and at few places because those between said no more.
-//! A pixel that was refused counts as 4 px off: where all around is refused an answer is hardly ever right.
+//! A pixel that was refused agrees with none: where all around is refused an answer is hardly ever right.
+//! Below the image all pixels count as refused, for no row below bears an answer of the last rows out.
 //! An answer that was filled in has [`FILLED`], a pixel without an answer 0.
 //!
 //! The number puts answers in order; it is no probability. What it is worth is the area under the
@@ -29,8 +30,8 @@ use crate::units::{Disparity, PixelFlags};
 
 /// What agreement with the answers beside it is worth, and as much that with those above and below.
 pub(in crate::matching) const AGREEMENT: u8 = 40;
-/// How far an answer that was refused counts as being.
-const MISSING: u16 = 4 * Disparity::ONE;
+/// How far a refused pixel counts as being: so far that nothing agrees.
+const MISSING: u16 = 4 * AGREEMENT as u16;
 /// How far off the answers are that are looked at: columns to each side, rows above and below.
 const COLUMNS: [usize; 2] = [4, 8];
 const ROWS: [usize; 2] = [2, 4];
@@ -52,8 +53,7 @@ pub(super) fn make_confidences(frame: &mut Frame<'_>, newest: usize) {
     let answers = if frame.config.checks.median { frame.finished.row(here) } else { row };
     let [near, far] = ROWS;
     let above = |off: usize| here.checked_sub(off).map_or(&[][..], |y| frame.finished.row(y));
-    let height = usize::from(frame.config.height);
-    let below = |off: usize| if here + off < height { frame.band.row(here + off) } else { &[] };
+    let below = |off: usize| frame.band.row(here + off);
     let columns = [above(near), above(far), below(near), below(far)];
     let notes = view_mut::<PixelFlags, Note>(frame.flags.row_mut(here));
     let neighbours = Neighbours { answers, row, columns };
@@ -107,7 +107,7 @@ fn confidences(neighbours: &Neighbours<'_>, notes: &mut [Note], confidences: &mu
     }
 }
 
-/// How far another answer is, 0 beside the image.
+/// How far another answer is, 0 above and beside the image.
 #[inline(always)]
 fn apart(here: Disparity, other: Option<&Disparity>) -> u16 {
     other.map_or(0, |other| if other.is_some() { other.raw().abs_diff(here.raw()) } else { MISSING })

@@ -126,7 +126,7 @@ fn mark(answers: &[Disparity], edges: &[Cell<u8>], row: u8, slope: u32) {
 /// Marks an answer beyond the bound, and moves the bound one pixel on.
 #[inline(always)]
 fn mark_one(answer: Disparity, edges: &Cell<u8>, bound: &mut u32, slope: u32) {
-    // No answer is so far beyond all answers that it moves no bound below any.
+    // The number of `Disparity::NONE` is over all answers: it lowers no bound to where answers are.
     let here = u32::from(answer.raw());
     edges.set(edges.get() | (bound.wrapping_sub(here) >> 31 << REFUSED.trailing_zeros()) as u8);
     *bound = (*bound + slope).min(here + TOLERANCE_PX * u32::from(Disparity::ONE));

@@ -1,9 +1,9 @@
 //! Line hand-off from an interrupt to the matcher: a lock-free single-producer, single-consumer queue of
 //! slots.
 
+use super::queue::{Queue, Receiver, Sender};
 use super::{CameraError, ErrorType, FrameStart, LineFormat, LineSource, LineStart};
 use core::convert::Infallible;
-use heapless::spsc::{Consumer, Producer, Queue};
 
 /// Slots of `B` bytes through which lines go from one producer, an interrupt or DMA, to one consumer.
 ///
@@ -54,14 +54,14 @@ impl<'b, const B: usize, const N: usize> LineSlots<'b, B, N> {
         slots: &'b mut [[u8; B]],
     ) -> (LineProducer<'a, 'b, B>, LineConsumer<'a, 'b, B>) {
         // What an earlier pair of ends left here goes.
-        while self.free.dequeue().is_some() {}
-        while self.waiting.dequeue().is_some() {}
-        for slot in slots.iter_mut().take(N.saturating_sub(1)) {
-            // It has room for these.
-            let _ = self.free.enqueue(slot);
-        }
-        let (give, free) = self.free.split();
+        self.free.clear();
+        self.waiting.clear();
+        let (mut give, free) = self.free.split();
         let (fill, waiting) = self.waiting.split();
+        for slot in slots {
+            // What is too many stays out.
+            let _ = give.send(slot);
+        }
         (LineProducer { free, waiting: fill, overruns: 0 }, LineConsumer { waiting, free: give })
     }
 }
@@ -118,15 +118,15 @@ impl<const B: usize> FilledLine<'_, B> {
 
 /// The interrupt's end of the queue.
 pub struct LineProducer<'a, 'b, const B: usize> {
-    free: Consumer<'a, &'b mut [u8; B]>,
-    waiting: Producer<'a, FilledLine<'b, B>>,
+    free: Receiver<'a, &'b mut [u8; B]>,
+    waiting: Sender<'a, FilledLine<'b, B>>,
     overruns: u32,
 }
 
 impl<'b, const B: usize> LineProducer<'_, 'b, B> {
     /// Takes a slot for the line that comes now; with none the line is lost, which is counted.
     pub fn begin(&mut self) -> Option<EmptyLine<'b, B>> {
-        let slot = take(&mut self.free).map(EmptyLine);
+        let slot = self.free.receive().map(EmptyLine);
         if slot.is_none() {
             self.overruns = self.overruns.saturating_add(1);
         }
@@ -136,7 +136,8 @@ impl<'b, const B: usize> LineProducer<'_, 'b, B> {
     /// Hands a whole line to the consumer.
     pub fn finish(&mut self, line: EmptyLine<'b, B>, frame: FrameStart, start: LineStart) {
         // There are no more slots than the queue has room for.
-        put(&mut self.waiting, FilledLine { bytes: line.0, frame, start, overruns: self.overruns });
+        let line = FilledLine { bytes: line.0, frame, start, overruns: self.overruns };
+        let _ = self.waiting.send(line);
     }
 
     /// Number of lines that found no slot.
@@ -147,34 +148,21 @@ impl<'b, const B: usize> LineProducer<'_, 'b, B> {
 
 /// The matcher's end of the queue.
 pub struct LineConsumer<'a, 'b, const B: usize> {
-    waiting: Consumer<'a, FilledLine<'b, B>>,
-    free: Producer<'a, &'b mut [u8; B]>,
+    waiting: Receiver<'a, FilledLine<'b, B>>,
+    free: Sender<'a, &'b mut [u8; B]>,
 }
 
 impl<'b, const B: usize> LineConsumer<'_, 'b, B> {
     /// Takes the line that has waited longest.
     #[allow(clippy::should_implement_trait, reason = "an iterator's items need not be given back")]
     pub fn next(&mut self) -> Option<FilledLine<'b, B>> {
-        take(&mut self.waiting)
+        self.waiting.receive()
     }
 
     /// Frees the slot of a line that was read.
     pub fn done(&mut self, line: FilledLine<'b, B>) {
         // There are no more slots than the queue has room for.
-        put(&mut self.free, line.bytes);
-    }
-}
-
-/// Takes the oldest item of a queue. The check tells the compiler that the queue's length, by which its ends
-/// divide, is not 0, which removes a panic.
-fn take<T>(queue: &mut Consumer<'_, T>) -> Option<T> {
-    if queue.capacity().wrapping_add(1) == 0 { None } else { queue.dequeue() }
-}
-
-/// Puts an item into a queue that has room for it.
-fn put<T>(queue: &mut Producer<'_, T>, item: T) {
-    if queue.capacity().wrapping_add(1) != 0 {
-        let _ = queue.enqueue(item);
+        let _ = self.free.send(line.bytes);
     }
 }
 

@@ -47,6 +47,7 @@ mod format;
 mod handoff;
 mod pair;
 mod ping_pong;
+mod queue;
 mod sensors;
 mod source;
 mod streams;

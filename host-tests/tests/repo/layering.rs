@@ -60,9 +60,9 @@ fn lines_naming(name: &str, text: &str, wanted: &str) -> Vec<String> {
 
 /// Whether `unsafe` is allowed in a file.
 fn may_be_unsafe(name: &str) -> bool {
-    ["src/matching/backend/", "src/matching/memory/", "src/ffi/"]
-        .iter()
-        .any(|folder| name.starts_with(folder))
+    const PLACES: [&str; 4] =
+        ["src/camera/queue.rs", "src/matching/backend/", "src/matching/memory/", "src/ffi/"];
+    PLACES.iter().any(|place| name.starts_with(place))
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn one_file_names_libm() {
 }
 
 #[test]
-fn unsafe_stays_in_the_kernels_and_the_c_interface() {
+fn unsafe_stays_where_it_is_allowed() {
     let files = source::core_files();
     let others = files.iter().filter(|(name, _)| !may_be_unsafe(name));
     let wrong: Vec<_> = others.flat_map(|(name, text)| lines_naming(name, text, "unsafe")).collect();

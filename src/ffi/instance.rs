@@ -5,7 +5,7 @@ use super::faults::fault;
 use super::state::{State, share_bytes};
 use super::status::either;
 use super::{CConfig, CCounters, CRow, Handle, Status};
-use crate::matching::{self, MatchError, Method};
+use crate::matching::{self, Capacity, MatchError, Method, Supported};
 use crate::pipeline::Pipeline;
 use core::ffi::c_void;
 use core::marker::PhantomData;
@@ -27,7 +27,10 @@ unsafe fn give(to: *mut CRow, row: Option<matching::Row<'_>>, without: Status) -
     status
 }
 
-impl<S: Method, const W: usize, const D: usize> Instance<S, W, D> {
+impl<S: Method, const W: usize, const D: usize> Instance<S, W, D>
+where
+    Capacity<D>: Supported,
+{
     /// Returns the bytes that a matcher takes.
     pub const fn size() -> usize {
         size_of::<State<S, W, D>>()

@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::Status;
-use crate::matching::{self, Method};
+use crate::matching::{self, Capacity, Method, Supported};
 use crate::pipeline::Guarded;
 use core::ffi::c_void;
 
@@ -37,7 +37,10 @@ pub const fn memory_bytes<S: Method>(width: usize, disparities: usize) -> usize 
     matching::state_bytes::<S>(width, disparities) + 2 * 5 * width + FIXED_BYTES
 }
 
-impl<S: Method, const W: usize, const D: usize> State<S, W, D> {
+impl<S: Method, const W: usize, const D: usize> State<S, W, D>
+where
+    Capacity<D>: Supported,
+{
     const CHECKED: () = {
         assert!(align_of::<Self>() <= STEREOPSIS_ALIGN, "STEREOPSIS_ALIGN must be enough");
         assert!(size_of::<Self>() <= memory_bytes::<S>(W, D), "memory_bytes must cover the state");

@@ -1,6 +1,7 @@
 //! A matcher: its memory, and one row after another through the stages.
 
 use super::backend::{Backend, Isa, SMOOTH_MARGIN, STEP, columns_begin};
+use super::capacity::{Capacity, Supported};
 use super::config::{Config, ConfigError};
 use super::kernel::{Kernel, KernelError};
 use super::memory::rings::{BAND, HISTORY, LOOK_AHEAD, Ring, row, row_mut};
@@ -93,7 +94,6 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     pub const DELAY: usize = S::RADIUS_Y + LOOK_AHEAD;
 
     const CHECKED: () = {
-        assert!(D.is_multiple_of(16) && D >= 16 && D <= 256, "D must be a multiple of 16, from 16 to 256");
         assert!(W >= D, "W must be at least D");
         assert!(W <= u16::MAX as usize, "W must be at most 65535");
         assert!(
@@ -105,7 +105,10 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
 
     /// A matcher that waits for [`Self::start`]. Every byte of it is zero: a static of it takes RAM and no
     /// flash.
-    pub const fn new() -> Self {
+    pub const fn new() -> Self
+    where
+        Capacity<D>: Supported,
+    {
         const { Self::CHECKED };
         Self {
             memory: S::Memory::EMPTY,
@@ -280,7 +283,10 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     }
 }
 
-impl<S: Method, const W: usize, const D: usize> Default for Matcher<S, W, D> {
+impl<S: Method, const W: usize, const D: usize> Default for Matcher<S, W, D>
+where
+    Capacity<D>: Supported,
+{
     fn default() -> Self {
         Self::new()
     }

@@ -4,7 +4,8 @@
 //! other; a stage calls its method or its target's code (`backend`), which returns to it. The rooms, each of
 //! which uses only those above it:
 //!
-//! * [`Kernel`]: the kernels by name. [`Penalties`] and [`Config`] with [`Checks`]: what is asked.
+//! * [`Kernel`]: the kernels by name. [`Capacity`]: how many disparities a matcher has room for.
+//!   [`Penalties`] and [`Config`] with [`Checks`]: what is asked.
 //! * `memory`: what is kept from row to row, the workspace, and the types of what stages hand on.
 //! * `backend`: the instructions that the dense path runs on, a folder for each target behind one seam; the
 //!   only place that knows targets.
@@ -19,17 +20,20 @@
 //!     5. median of 3 x 3 answers, if asked for;
 //!     6. costs, their aggregation and winner-take-all (`method`, `backend`);
 //!     7. left-right check and sub-pixel fit;
-//!     8. smoothing along the row, within surfaces;
-//!     9. confidence, if asked for;
-//!     10. speckle filter, in a band of five rows;
-//!     11. vertical filter, with the methods along paths;
-//!     12. fill of small gaps, if asked for;
-//!     13. mask: answers taken away where a camera did not see.
+//!     8. fattening: answers refused that carry a near surface on over a place without texture;
+//!     9. smoothing along the row, within surfaces;
+//!     10. confidence, if asked for;
+//!     11. speckle filter, in a band of five rows;
+//!     12. vertical filter, with the methods along paths;
+//!     13. fill of small gaps, if asked for;
+//!     14. mask: answers taken away where a camera did not see.
 //! * [`Row`]: what comes out, with the uncertainty of each answer.
 
 mod kernel;
 
 mod penalties;
+
+mod capacity;
 
 mod config;
 
@@ -48,6 +52,7 @@ mod row;
 mod matcher;
 
 pub use backend::MethodParameters;
+pub use capacity::{Capacity, Supported};
 pub use config::{Checks, Config, ConfigError};
 pub use filter::Filter;
 pub use kernel::{Kernel, KernelError};

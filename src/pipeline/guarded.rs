@@ -4,7 +4,9 @@ use super::counters::{FaultCounters, count};
 use super::lines::LineGuard;
 use super::{Pipeline, PipelineError, PushError};
 use crate::camera::{ErrorType, FrameStart, LineFault, StereoSource};
-use crate::matching::{Config, ConfigError, Kernel, KernelError, MatchError, Method, Row};
+use crate::matching::{
+    Capacity, Config, ConfigError, Kernel, KernelError, MatchError, Method, Row, Supported,
+};
 
 /// A [`Pipeline`] that replaces lost lines, flags the rows that depend on them, and counts every fault by
 /// name.
@@ -54,7 +56,10 @@ type Guard<T, C> = Result<T, PipelineError<<C as ErrorType>::Error>>;
 impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
     /// Creates a pipeline that awaits [`Self::start`]. All its bytes are zero, so that a static takes no
     /// flash.
-    pub const fn new() -> Self {
+    pub const fn new() -> Self
+    where
+        Capacity<D>: Supported,
+    {
         Self { pipeline: Pipeline::new(), lines: LineGuard::new(), before: None, is_running: false }
     }
 
@@ -254,7 +259,10 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
     }
 }
 
-impl<S: Method, const W: usize, const D: usize> Default for Guarded<S, W, D> {
+impl<S: Method, const W: usize, const D: usize> Default for Guarded<S, W, D>
+where
+    Capacity<D>: Supported,
+{
     fn default() -> Self {
         Self::new()
     }

@@ -3,7 +3,9 @@
 use super::{PipelineError, PushError};
 use crate::camera::{FrameStart, LineFormat, PixelFormat, StereoSource};
 use crate::imaging::LineWindow;
-use crate::matching::{Config, ConfigError, Kernel, KernelError, MatchError, Matcher, Method, Row};
+use crate::matching::{
+    Capacity, Config, ConfigError, Kernel, KernelError, MatchError, Matcher, Method, Row, Supported,
+};
 
 /// Disparity rows from a stereo source, in fixed-size memory that fits a `static`.
 ///
@@ -36,7 +38,10 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
 
     /// Creates a pipeline that awaits [`Self::start`]. All its bytes are zero, so that a static takes no
     /// flash.
-    pub const fn new() -> Self {
+    pub const fn new() -> Self
+    where
+        Capacity<D>: Supported,
+    {
         Self {
             left: LineWindow::new(),
             right: LineWindow::new(),
@@ -256,7 +261,10 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
     }
 }
 
-impl<S: Method, const W: usize, const D: usize> Default for Pipeline<S, W, D> {
+impl<S: Method, const W: usize, const D: usize> Default for Pipeline<S, W, D>
+where
+    Capacity<D>: Supported,
+{
     fn default() -> Self {
         Self::new()
     }

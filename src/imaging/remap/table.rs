@@ -41,16 +41,10 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
     /// Largest error of a checked position, px; then all are within 0.05 px.
     pub const TOLERANCE_PX: f64 = 0.03;
 
-    /// Creates the table of an image without pixels, for [`Self::set`].
+    /// Creates the table of an image without pixels, for [`Self::set`]. All its bytes are zero, so that a
+    /// static takes no flash.
     pub const fn empty() -> Self {
-        Self {
-            slots: [[1, 0]; SLOTS],
-            shift: FINEST as u8,
-            piece: 0,
-            size: NO_PIXELS,
-            raw: NO_PIXELS,
-            rows: 0,
-        }
+        Self { slots: [[0; 2]; SLOTS], shift: 0, piece: 0, size: NO_PIXELS, raw: NO_PIXELS, rows: 0 }
     }
 
     /// Tabulates a warp.

@@ -51,7 +51,7 @@ const AROUND: usize = LANES + 2;
 fn group<const N: usize, const M: usize>(around: [&[u8; M]; 3], most: i16) -> ([u8; N], [u8; N]) {
     const { assert!(M == N + 2) };
     let (mut along, mut across) = ([0; N], [0; N]);
-    let cut = |gradient: i16| (gradient.clamp(-most, most) + most) as u8;
+    let cut = |gradient: i16| (gradient.max(-most).min(most) + most) as u8;
     // Each from the pixels: sums kept for the next column would be vectors in memory, read across two of
     // them.
     let at = |row: usize, off: usize| {

@@ -36,16 +36,15 @@ impl Rows {
     /// # Errors
     /// When the host does not take all of it.
     pub fn write(&mut self, row: &Row<'_>) -> Result<(), HostError> {
-        let (disparities, flags) = (row.disparities().chunks(PIXELS), row.flags().chunks(PIXELS));
-        for (disparities, flags) in disparities.zip(flags) {
+        let mut pixels = row.disparities().iter().zip(row.flags());
+        for _ in 0..pixels.len().div_ceil(PIXELS) {
             let mut bytes = [[0; BYTES]; PIXELS];
-            let mut pixels = 0;
-            for ((pixel, disparity), flags) in bytes.iter_mut().zip(disparities).zip(flags) {
+            let count = pixels.len().min(PIXELS);
+            for (to, (disparity, flags)) in bytes.iter_mut().zip(pixels.by_ref()) {
                 let [low, high] = disparity.raw().to_le_bytes();
-                *pixel = [low, high, flags.bits()];
-                pixels += 1;
+                *to = [low, high, flags.bits()];
             }
-            let bytes = bytes.as_flattened().get(..pixels * BYTES).unwrap_or_default();
+            let bytes = bytes.as_flattened().get(..count * BYTES).unwrap_or_default();
             self.crc = bytes.iter().fold(self.crc, |crc, &byte| with_byte(crc, byte));
             self.file.write(bytes)?;
         }

@@ -8,6 +8,7 @@ use super::work::{
     AnswerWork, CensusWork, CostWork, EdgeWork, Guide, PathWork, STEP, SmoothWork, SpeckleWork, WindowWork,
 };
 use crate::matching::kernel::Kernel;
+use crate::matching::memory::slices::multiple_of;
 use crate::matching::memory::winners::Select;
 use crate::units::Disparity;
 
@@ -23,9 +24,9 @@ pub(in crate::matching) trait Isa: Copy {
         if most.is_multiple_of(32) {
             // Whole words, in a form that lets the compiler see it: a firmware is linked without what cannot
             // be asked for.
-            return disparities.next_multiple_of(32).min(most) & !31;
+            return multiple_of::<32>(disparities).min(most) & !31;
         }
-        disparities.next_multiple_of(STEP).min(most) & !(STEP - 1)
+        multiple_of::<STEP>(disparities).min(most) & !(STEP - 1)
     }
 
     /// Makes the census codes of a row of both images.

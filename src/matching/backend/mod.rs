@@ -27,6 +27,8 @@ mod mve;
 #[cfg(target_pointer_width = "64")]
 mod simd;
 
+#[cfg(target_endian = "big")]
+compile_error!("stereopsis is for little-endian processors: words of memory stand for rows of bytes");
 #[cfg(all(stereopsis_dsp, stereopsis_vectors))]
 compile_error!(
     "stereopsis_dsp and stereopsis_vectors exclude each other: a Cortex-M55 takes the second alone"

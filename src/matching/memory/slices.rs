@@ -34,3 +34,42 @@ pub(in crate::matching) fn split_mut<T>(slice: &mut [T], place: usize) -> (&mut 
     debug_assert!(place <= slice.len(), "{} numbers have no place {place}", slice.len());
     slice.split_at_mut_checked(place).unwrap_or_default()
 }
+
+/// The whole parts of `count` numbers, one after another; of one number where none are asked for.
+///
+/// As [`slice::chunks_exact`], which panics without a count: an optimiser that makes code for size leaves that
+/// panic in.
+#[inline(always)]
+pub(in crate::matching) fn chunks<T>(slice: &[T], count: usize) -> impl Iterator<Item = &[T]> {
+    let (mut rest, count) = (slice, count.max(1));
+    core::iter::from_fn(move || {
+        let (chunk, behind) = rest.split_at_checked(count)?;
+        rest = behind;
+        Some(chunk)
+    })
+}
+
+/// Mutable access to what [`chunks`] gives.
+#[inline(always)]
+pub(in crate::matching) fn chunks_mut<T>(slice: &mut [T], count: usize) -> impl Iterator<Item = &mut [T]> {
+    let (mut rest, count) = (slice, count.max(1));
+    core::iter::from_fn(move || {
+        let (chunk, behind) = core::mem::take(&mut rest).split_at_mut_checked(count)?;
+        rest = behind;
+        Some(chunk)
+    })
+}
+
+/// Copies numbers, as many as both have.
+#[inline(always)]
+pub(in crate::matching) fn copy<T: Copy>(from: &[T], to: &mut [T]) {
+    debug_assert_eq!(from.len(), to.len(), "copied to a place of another size");
+    to.iter_mut().zip(from).for_each(|(to, from)| *to = *from);
+}
+
+/// The least multiple of `TO` that is not less.
+#[inline(always)]
+pub(in crate::matching) const fn multiple_of<const TO: usize>(number: usize) -> usize {
+    const { assert!(TO > 0) };
+    number.saturating_add(TO - 1) / TO * TO
+}

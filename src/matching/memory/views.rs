@@ -7,6 +7,7 @@
 use super::notes::Note;
 use super::winner::Winner;
 use crate::units::PixelFlags;
+use core::slice;
 
 /// A type that is nothing but an integer: without padding, and valid whatever its bits are.
 ///
@@ -28,18 +29,31 @@ unsafe impl Plain for PixelFlags {}
 // SAFETY: a `u8` (`repr(transparent)`).
 unsafe impl Plain for Note {}
 
+/// The bytes before the first place where a `To` may stand, and how many whole ones there are from it on.
+///
+/// [`slice::align_to`] gives the same, with panics inside that an optimiser for size leaves in.
+#[inline(always)]
+fn whole<From: Plain, To: Plain>(numbers: &[From]) -> (usize, usize) {
+    let (bytes, align) = (size_of_val(numbers), align_of::<To>());
+    let skip =
+        if align > align_of::<From>() { numbers.as_ptr().addr().wrapping_neg() & (align - 1) } else { 0 };
+    if skip <= bytes { (skip, (bytes - skip) / size_of::<To>()) } else { (0, 0) }
+}
+
 /// The part of `numbers` that stands at places of `To` and is a whole number of them: all of it where the
 /// slice begins at such a place and has whole ones.
 #[inline(always)]
 pub(in crate::matching) fn view<From: Plain, To: Plain>(numbers: &[From]) -> &[To] {
-    // SAFETY: both are plain: every value of the one's bytes is a value of the other.
-    unsafe { numbers.align_to().1 }
+    let (skip, count) = whole::<From, To>(numbers);
+    // SAFETY: the places are inside of `numbers` and where a `To` may stand. Both types are plain: every value
+    // of the one's bytes is a value of the other.
+    unsafe { slice::from_raw_parts(numbers.as_ptr().byte_add(skip).cast(), count) }
 }
 
 /// Mutable access to what [`view`] shows.
 #[inline(always)]
 pub(in crate::matching) fn view_mut<From: Plain, To: Plain>(numbers: &mut [From]) -> &mut [To] {
-    // SAFETY: both are plain: every value of the one's bytes is a value of the other, and the other way
-    // round.
-    unsafe { numbers.align_to_mut().1 }
+    let (skip, count) = whole::<From, To>(numbers);
+    // SAFETY: as in `view`, and the other way round.
+    unsafe { slice::from_raw_parts_mut(numbers.as_mut_ptr().byte_add(skip).cast(), count) }
 }

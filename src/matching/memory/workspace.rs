@@ -13,7 +13,7 @@
 //!
 //! In debug builds each access asserts its phase.
 
-use super::slices::{part, part_mut, split_mut};
+use super::slices::{chunks_mut, part, part_mut, split_mut};
 use super::views::{view, view_mut};
 use super::winner::Winner;
 use super::winners::{Lengths, Winners};
@@ -113,7 +113,7 @@ impl<'a> RowWorkspace<'a> {
     ) -> (impl Iterator<Item = &mut [u8]>, &mut [u32]) {
         self.check(Phase::Costs);
         let memory = [view_mut::<Winner, u8>(self.winners), view_mut::<u16, u8>(self.right)];
-        (memory.into_iter().flat_map(move |memory| memory.chunks_exact_mut(width.max(1))), self.rest)
+        (memory.into_iter().flat_map(move |memory| chunks_mut(memory, width)), self.rest)
     }
 
     /// Places for winners and, if wanted, margins.

@@ -14,7 +14,7 @@ use crate::matching::backend::{CostWork, EdgeWork, Guide, Isa, MethodParameters,
 use crate::matching::config::Checks;
 use crate::matching::memory::layout::{COLUMNS_OFF, PathWorkspace, Volumes};
 use crate::matching::memory::rings::{row as slot, row_mut};
-use crate::matching::memory::slices::{part, part_mut, split_mut};
+use crate::matching::memory::slices::{chunks_mut, copy, part, part_mut, split_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::{Select, Unique};
 use crate::matching::memory::workspace::{ForWinners, RowWorkspace};
@@ -223,7 +223,7 @@ fn select<S: SgmParameters>(
     let smoothed;
     let seen = match lines {
         Some(lines) if has_noise => {
-            smoothed = denoise(lines, &[0, 1, 2, 3, 4], sums.chunks_exact_mut(width.max(1)));
+            smoothed = denoise(lines, &[0, 1, 2, 3, 4], chunks_mut(sums, width));
             Some(smoothed.each_ref())
         }
         lines => lines,
@@ -256,7 +256,7 @@ fn select<S: SgmParameters>(
         if has_noise {
             smooth(left, 2, kept);
         } else if let Some(line) = left[2].get(..kept.len()) {
-            kept.copy_from_slice(line);
+            copy(line, kept);
         }
     }
 }

@@ -15,7 +15,8 @@ const FEWEST: usize = 8;
 #[inline(never)]
 pub(super) fn census<S: WindowParameters>(rows: &Rows5<'_>, of_right: bool, out: &mut [u8]) {
     let width = out.len();
-    let lines = [0, 2, 4].map(|row: usize| part(rows[row], ..width));
+    let [above, _, here, _, below] = *rows;
+    let lines = [above, here, below].map(|line| part(line, ..width));
     if width < FEWEST || lines.iter().any(|line| line.len() < width) {
         let mut codes = [0; FEWEST];
         let codes = part_mut(&mut codes, ..width);
@@ -41,15 +42,13 @@ pub(super) fn census<S: WindowParameters>(rows: &Rows5<'_>, of_right: bool, out:
     let words = |at: usize| lines.map(|line| line.get(at..).and_then(|line| line.first_chunk().copied()));
     let words = |at: usize| words(at).map(|bytes| bytes.map_or(0, u32::from_le_bytes));
     let edge = |places: [[u32; 3]; 3]| codes::<S>(&places).to_le_bytes();
-    let (first, second) = (words(0), words(2));
-    let first = edge(
-        [0, 1, 2].map(|row| [(first[row] << 16) | ((first[row] & 0xff) * 0x0101), first[row], second[row]]),
-    );
-    let (before, last) = (words(width - 6), words(width - 4));
-    let last = edge(
-        [0, 1, 2].map(|row| [before[row], last[row], (last[row] >> 16) | ((last[row] >> 24) * 0x0101_0000)]),
-    );
-    let codes = [(0, first[0]), (1, first[1]), (width - 2, last[2]), (width - 1, last[3])];
+    let begin = |first: u32, second: u32| [first << 16 | (first & 0xff) * 0x0101, first, second];
+    let ([a, b, c], [d, e, f]) = (words(0), words(2));
+    let [first, second, ..] = edge([begin(a, d), begin(b, e), begin(c, f)]);
+    let end = |before: u32, last: u32| [before, last, last >> 16 | (last >> 24) * 0x0101_0000];
+    let ([a, b, c], [d, e, f]) = (words(width - 6), words(width - 4));
+    let [.., before_last, last] = edge([end(a, d), end(b, e), end(c, f)]);
+    let codes = [(0, first), (1, second), (width - 2, before_last), (width - 1, last)];
     for (x, code) in codes {
         if let Some(out) = out.get_mut(x) {
             put(code, of_right, out);

@@ -14,7 +14,7 @@ use super::{Rows, rows};
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::work::STEP;
 use crate::matching::memory::layout::OUTSIDE;
-use crate::matching::memory::slices::{part, part_mut};
+use crate::matching::memory::slices::{chunks_mut, part, part_mut};
 use crate::matching::memory::views::view;
 
 /// Candidates that tables serve at a time, at most.
@@ -56,9 +56,11 @@ pub(super) fn update_by_tables<const STRIDE: usize>(
         let sum = add(sums.first().copied().unwrap_or(0), 4 * ONE);
         sums.as_chunks_mut().0.iter_mut().for_each(|sums| *sums = [sum; STEP / 4]);
     }
-    for chunk in (0..stride).step_by(MOST) {
+    let mut chunk = 0;
+    while chunk < stride {
         let half = MOST.min(stride - chunk) / 2;
-        for from in (begin..row.width).step_by(LINE - half) {
+        let mut from = begin;
+        while from < row.width {
             let piece = from..row.width.min(from + LINE - half);
             let first = row.width - piece.end + chunk;
             if row.enter.is_some() {
@@ -76,7 +78,9 @@ pub(super) fn update_by_tables<const STRIDE: usize>(
                 64 => rows::by_tables_64(tables, codes, columns.as_chunks_mut().0),
                 _ => add_costs(tables, codes, half, (words, chunk / 4), columns),
             }
+            from = piece.end;
         }
+        chunk += MOST;
     }
 }
 
@@ -89,9 +93,7 @@ fn add_costs(
     columns: &mut [u32],
 ) {
     let places = (0..enters.len()).rev();
-    for (((sums, place), enters), leaves) in
-        columns.chunks_exact_mut(words).zip(places).zip(enters).zip(leaves)
-    {
+    for (((sums, place), enters), leaves) in chunks_mut(columns, words).zip(places).zip(enters).zip(leaves) {
         let costs =
             [(new, enters), (old, leaves)].map(|(table, code)| tables::costs(table, code & 15, place, half));
         let Some((near, far)) = sums.get_mut(from..).and_then(|s| s.split_at_mut_checked(half / 4)) else {
@@ -117,7 +119,8 @@ pub(super) fn update<S: WindowParameters, const STRIDE: usize>(
 ) {
     // Never none.
     let stride = if STRIDE > 0 { STRIDE } else { row.stride.max(STEP) };
-    let halves = [row.enter, row.leave].map(|codes| codes.map(|row| row.split_at(row.len() / 2)));
+    let halves =
+        [row.enter, row.leave].map(|codes| codes.and_then(|row| row.split_at_checked(row.len() / 2)));
     let [new, old] =
         reversed(row, halves.map(|row| row.map_or(&[][..], |(_, right)| right)), u32::MAX, workspace);
     // The codes of a row that is not there are 0 on both sides.

@@ -43,7 +43,7 @@ use super::work::{
 };
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::Rows5;
-use crate::matching::memory::slices::{part, split_mut};
+use crate::matching::memory::slices::{multiple_of, part, split_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::Select;
 
@@ -122,10 +122,13 @@ impl Isa for Backend {
 /// for.
 #[inline(always)]
 pub(super) fn candidates(disparities: usize, most: usize) -> usize {
-    if let Some(group) = [64, 32].into_iter().find(|&group| most.is_multiple_of(group)) {
-        return (disparities.next_multiple_of(group).min(most) & !(group - 1)).max(group);
+    if most.is_multiple_of(64) {
+        return (multiple_of::<64>(disparities).min(most) & !63).max(64);
     }
-    disparities.next_multiple_of(STEP).min(most) & !(STEP - 1)
+    if most.is_multiple_of(32) {
+        return (multiple_of::<32>(disparities).min(most) & !31).max(32);
+    }
+    multiple_of::<STEP>(disparities).min(most) & !(STEP - 1)
 }
 
 const _: () = assert!(TABLE_WORDS == size_of::<[tables::Table; 2]>() / size_of::<u32>() + 4);

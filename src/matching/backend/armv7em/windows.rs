@@ -12,7 +12,7 @@ use super::word::{ONE, min, min_halves, take_less};
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::work::STEP;
 use crate::matching::memory::layout::OUTSIDE;
-use crate::matching::memory::slices::{part, part_mut};
+use crate::matching::memory::slices::{part, part_mut, split_mut};
 use crate::matching::memory::views::{view, view_mut};
 use crate::matching::memory::winners::{BESIDE, Select, Winner};
 
@@ -54,10 +54,10 @@ pub(super) fn select<S: WindowParameters, const STRIDE: usize>(
         check(winner.cost(), &mut || second_of(0, 1, room));
     }
     if in_assembly && !is_checked {
-        let (next, winners) = winners.split_at_mut(winners.len().min(fewest - 1));
+        let (next, winners) = split_mut(winners, winners.len().min(fewest - 1));
         run::<S, STRIDE>(Some((2, true)), room, from(first + 1), next);
         begin_with::<S>(none, from(first + fewest), words, (fewest / 4, words), room);
-        let (next, winners) = winners.split_at_mut(winners.len().min(disparities - fewest));
+        let (next, winners) = split_mut(winners, winners.len().min(disparities - fewest));
         run::<S, STRIDE>(Some((fewest + 1, false)), room, from(first + fewest), next);
         run::<S, STRIDE>(None, room, from(first + disparities), winners);
         return;
@@ -94,8 +94,8 @@ fn begin_with<S: WindowParameters>(
     room: &mut [u32],
 ) {
     let sums = part_mut(room, 1 + from..1 + to);
-    for (four, sums) in (from..).step_by(4).zip(sums.as_chunks_mut().0) {
-        let columns = part(columns, four..);
+    for (four, sums) in sums.as_chunks_mut().0.iter_mut().enumerate() {
+        let columns = part(columns, from + 4 * four..);
         if S::COLUMN_SHIFT == 0 {
             rows::begin_fast(none, columns, words, sums);
         } else {

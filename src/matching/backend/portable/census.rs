@@ -19,7 +19,8 @@ pub(in crate::matching::backend) type Three = [u32; 3];
 #[inline(never)]
 pub(in crate::matching::backend) fn census<S: WindowParameters>(rows: &Rows5<'_>, out: &mut [u8]) {
     let width = out.len();
-    let lines = [0, 2, 4].map(|row: usize| part(rows[row], ..width));
+    let [above, _, here, _, below] = *rows;
+    let lines = [above, here, below].map(|line| part(line, ..width));
     let in_words = |bytes: &[u8]| view::<u8, u32>(bytes).len() * 4 == width;
     if in_words(out) && lines.into_iter().all(in_words) {
         census_of_words::<S>(lines.map(view::<u8, u32>), view_mut::<u8, u32>(out));
@@ -31,7 +32,8 @@ pub(in crate::matching::backend) fn census<S: WindowParameters>(rows: &Rows5<'_>
 /// The census row of lines that are not all in whole words, as those whose width is no multiple of four.
 #[inline(never)]
 pub(in crate::matching::backend) fn census_of_bytes<S: WindowParameters>(lines: [&[u8]; 3], out: &mut [u8]) {
-    for (x, out) in (0..).step_by(4).zip(out.chunks_mut(4)) {
+    for (group, out) in out.chunks_mut(4).enumerate() {
+        let x = 4 * group;
         let codes = codes::<S>(&lines.map(|line| [0, 2, 4].map(|place| word(line, x + place))));
         for (out, code) in out.iter_mut().zip(codes.to_le_bytes()) {
             *out = code;
@@ -57,10 +59,13 @@ fn census_of_words<S: WindowParameters>(lines: [&[u32]; 3], out: &mut [u32]) {
     let mut before = lines.map(|line| line.first().map_or(0, |first| (first & 0xff) * 0x0101_0101));
     let mut centre = lines.map(|line| line.first().copied().unwrap_or(0));
     let last = lines.map(|line| line.last().map_or(0, |last| (last >> 24) * 0x0101_0101));
+    // Rows are taken apart, not indexed: no optimiser has to prove that a row is there.
     let mut next = |after: Three| {
-        let places =
-            |i: usize| [centre[i] << 16 | before[i] >> 16, centre[i], centre[i] >> 16 | after[i] << 16];
-        let codes = codes::<S>(&[places(0), places(1), places(2)]);
+        let places = |before: u32, centre: u32, after: u32| {
+            [centre << 16 | before >> 16, centre, centre >> 16 | after << 16]
+        };
+        let ([b0, b1, b2], [c0, c1, c2], [a0, a1, a2]) = (before, centre, after);
+        let codes = codes::<S>(&[places(b0, c0, a0), places(b1, c1, a1), places(b2, c2, a2)]);
         (before, centre) = (centre, after);
         codes
     };
@@ -72,25 +77,21 @@ fn census_of_words<S: WindowParameters>(lines: [&[u32]; 3], out: &mut [u32]) {
     *out_last = next(last);
 }
 
-/// The neighbours of [`census_plus4`](crate::imaging::census_plus4) and
-/// [`census_ring8`](crate::imaging::census_ring8) in order of their bits, two rows and columns to a step.
-const PLUS4: [(usize, usize); 4] = [(0, 1), (1, 0), (1, 2), (2, 1)];
-const RING8: [(usize, usize); 8] = [(0, 0), (0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1), (2, 2)];
-
 /// The codes of four pixels, from the words around them: rows, and columns two to the left, here, two to the
-/// right.
+/// right. The neighbours are those of [`census_plus4`](crate::imaging::census_plus4) and
+/// [`census_ring8`](crate::imaging::census_ring8) in order of their bits, two rows and columns to a step.
 #[inline(always)]
 pub(in crate::matching::backend) fn codes<S: WindowParameters>(around: &[Three; 3]) -> u32 {
-    if S::BITS <= 4 { codes_of(around, &PLUS4) } else { codes_of(around, &RING8) }
+    let &[[a, b, c], [d, centre, e], [f, g, h]] = around;
+    if S::BITS <= 4 { codes_of(centre, [b, d, e, g]) } else { codes_of(centre, [a, b, c, d, e, f, g, h]) }
 }
 
-/// The codes of four pixels, bit `i` from the neighbour `neighbours[i]`: its row and column among `around`.
+/// The codes of four pixels, bit `i` from the neighbour `neighbours[i]`.
 #[inline(always)]
-fn codes_of<const BITS: usize>(around: &[Three; 3], neighbours: &[(usize, usize); BITS]) -> u32 {
-    let inverse = !around[1][1];
+fn codes_of<const BITS: usize>(centre: u32, neighbours: [u32; BITS]) -> u32 {
+    let inverse = !centre;
     let mut not_darker = 0;
-    for &(row, column) in neighbours {
-        let n = around[row][column];
+    for n in neighbours {
         let first = (n | inverse).wrapping_sub((n ^ inverse) >> 1 & !TOP) & TOP;
         not_darker = not_darker >> 1 | first;
     }

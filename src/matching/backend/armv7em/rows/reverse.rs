@@ -41,7 +41,8 @@ pub(in super::super) fn reverse(row: &[u8], last: i32, mask: u32, out: &mut [u32
             );
         }
     }
-    let (rest, words) = rest.as_rchunks::<4>();
+    let (rest, words) = rest.split_at_checked(rest.len() % 4).unwrap_or_default();
+    let words = words.as_chunks::<4>().0;
     let first = (u32::from(row.first().copied().unwrap_or(0)) * 0x0101_0101) & mask;
     let out = part_mut(out, 4 * count..);
     for (out, word) in out.iter_mut().zip(words.iter().rev()) {

@@ -3,6 +3,7 @@
 use super::instructions::uhadd8;
 use crate::matching::backend::portable::sgm::edges::edges_at;
 use crate::matching::backend::work::{EdgeWork, PathWork};
+use crate::matching::memory::slices::chunks_mut;
 use crate::matching::memory::views::view_mut;
 
 /// As in `groups`, with agreements for costs: their averages are rounded down.
@@ -10,9 +11,9 @@ use crate::matching::memory::views::view_mut;
 pub(super) fn within_edges(work: &mut PathWork<'_>, stride: usize, edges: EdgeWork<'_>) {
     let count = stride / 4;
     let much = work.penalties.edges[1];
-    let above = view_mut::<u8, u32>(edges.above).chunks_exact_mut(count);
-    let below = view_mut::<u8, u32>(edges.below).chunks_exact_mut(count);
-    let columns = view_mut::<u8, u32>(work.costs).chunks_exact_mut(count).zip(above.zip(below));
+    let above = chunks_mut(view_mut::<u8, u32>(edges.above), count);
+    let below = chunks_mut(view_mut::<u8, u32>(edges.below), count);
+    let columns = chunks_mut(view_mut::<u8, u32>(work.costs), count).zip(above.zip(below));
     for (x, (costs, (above, below))) in columns.enumerate() {
         let [at_next, at_last] = edges_at(&edges.guides, x, much).map(|edge| u32::from(edge).wrapping_neg());
         let choose = |first: u32, second: u32, mask: u32| second ^ (first ^ second) & mask;

@@ -33,7 +33,8 @@ fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3
         gradients([above, here, below], gradient, [place(along), place(across)], groups);
     }
     let after = REACH + groups * COLUMNS;
-    for x in core::iter::once(0).chain((after..count.min(width)).step_by(COLUMNS)) {
+    let behind = count.min(width).saturating_sub(after).div_ceil(COLUMNS);
+    for x in core::iter::once(0).chain((0..behind).map(|group| after + group * COLUMNS)) {
         let near = lines.map(|line| {
             [0, 1, 2].map(|word| {
                 let inside = (x + word * COLUMNS)
@@ -74,17 +75,25 @@ fn put(row: &mut [u8], word: u32) {
 /// # Safety
 /// They can be read, and the codes written.
 #[inline(never)]
-unsafe fn codes(near: [*const u8; 3], out: *mut u32, groups: usize) {
+unsafe fn codes([above, middle, below]: [*const u8; 3], out: *mut u32, groups: usize) {
     for group in 0..groups {
         // SAFETY: the last columns that are read are those from 8 on.
-        let word = |row: usize, column: usize| unsafe {
-            near[row].add(COLUMNS * group + column).cast::<u32>().read_unaligned()
+        let word = |row: *const u8, column: usize| unsafe {
+            row.add(COLUMNS * group + column).cast::<u32>().read_unaligned()
         };
-        let here = word(1, REACH);
+        let here = word(middle, REACH);
         let mut codes = 0;
-        for (bit, (row, column)) in
-            [(0, 0), (0, 4), (0, 8), (1, 2), (1, 6), (2, 0), (2, 4), (2, 8)].into_iter().enumerate()
-        {
+        let neighbours = [
+            (above, 0),
+            (above, 4),
+            (above, 8),
+            (middle, 2),
+            (middle, 6),
+            (below, 0),
+            (below, 4),
+            (below, 8),
+        ];
+        for (bit, (row, column)) in neighbours.into_iter().enumerate() {
             codes |= bits_where_less(word(row, column), here, splat(1 << bit));
         }
         // SAFETY: as the function's.
@@ -97,20 +106,25 @@ unsafe fn codes(near: [*const u8; 3], out: *mut u32, groups: usize) {
 /// # Safety
 /// As for [`codes`].
 #[inline(never)]
-unsafe fn gradients(near: [*const u8; 3], most: u8, [along, across]: [*mut u32; 2], groups: usize) {
+unsafe fn gradients(
+    [above, middle, below]: [*const u8; 3],
+    most: u8,
+    [along, across]: [*mut u32; 2],
+    groups: usize,
+) {
     // Sobel's sums: the middle one twice.
     let sum = |a: u32, b: u32, c: u32| [even(a) + 2 * even(b) + even(c), odd(a) + 2 * odd(b) + odd(c)];
     for group in 0..groups {
         // SAFETY: the last columns that are read are those from 5 on.
-        let word = |row: usize, column: usize| unsafe {
-            near[row].add(COLUMNS * group + column).cast::<u32>().read_unaligned()
+        let word = |row: *const u8, column: usize| unsafe {
+            row.add(COLUMNS * group + column).cast::<u32>().read_unaligned()
         };
-        let sides = |column: usize| sum(word(0, column), word(1, column), word(2, column));
-        let ends = |row: usize| sum(word(row, REACH - 1), word(row, REACH), word(row, REACH + 1));
+        let sides = |column: usize| sum(word(above, column), word(middle, column), word(below, column));
+        let ends = |row: *const u8| sum(word(row, REACH - 1), word(row, REACH), word(row, REACH + 1));
         // SAFETY: as the function's.
         unsafe {
             along.add(group).write_unaligned(cut(sides(REACH + 1), sides(REACH - 1), most));
-            across.add(group).write_unaligned(cut(ends(2), ends(0), most));
+            across.add(group).write_unaligned(cut(ends(below), ends(above), most));
         }
     }
 }
@@ -175,8 +189,7 @@ fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
     let count = numbers.len().saturating_sub(2);
     let word =
         |x: usize| numbers.get(x..).and_then(|n| n.first_chunk()).map(|&four| u32::from_le_bytes(four));
-    let inside = |row| part_mut(row, 1..=count).chunks_mut(COLUMNS);
-    for (group, (least, greatest)) in inside(least).zip(inside(greatest)).enumerate() {
+    for group in 0..count.div_ceil(COLUMNS) {
         let x = group * COLUMNS;
         let near = if let (Some(before), Some(here), Some(next)) = (word(x), word(x + 1), word(x + 2)) {
             [before, here, next]
@@ -186,8 +199,8 @@ fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
             })
         };
         let (low, high) = ranges(near);
-        put(least, low);
-        put(greatest, high);
+        put(part_mut(least, x + 1..=count), low);
+        put(part_mut(greatest, x + 1..=count), high);
     }
 }
 

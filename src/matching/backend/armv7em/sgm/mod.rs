@@ -26,7 +26,7 @@ use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::features::Features;
 use crate::matching::backend::portable::sgm::{Passes, words};
 use crate::matching::backend::work::{CostWork, EdgeWork, Guide, PathWork, STEP};
-use crate::matching::memory::slices::{part, part_mut};
+use crate::matching::memory::slices::{chunks_mut, part, part_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::{Found, Select, Unique};
 use crate::matching::penalties::Penalties;
@@ -55,7 +55,7 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
         let pixels = left.brightness.iter().zip(left.across.iter().zip(left.census));
         let pixels = left.along.iter().zip(pixels).enumerate();
         for (column, (x, (&along, (&brightness, (&across, &census))))) in
-            view_mut::<u8, u32>(work.costs).chunks_exact_mut(stride / 4).zip(pixels)
+            chunks_mut(view_mut::<u8, u32>(work.costs), stride / 4).zip(pixels)
         {
             let rest = Rest {
                 across: splat(across),
@@ -72,7 +72,7 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
         }
         if beyond > 0 {
             let least = beyond_search(work.penalties);
-            for column in work.costs.chunks_exact_mut(stride) {
+            for column in chunks_mut(work.costs, stride) {
                 part_mut(column, ..beyond).fill(least);
             }
         }
@@ -95,7 +95,7 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
 /// Bytes of a column.
 #[inline(always)]
 fn stride<const WORDS: usize, const ALL: bool>(work: &PathWork<'_>) -> usize {
-    if ALL { 4 * WORDS } else { work.stride.clamp(STEP, 4 * WORDS) }
+    if ALL { 4 * WORDS } else { work.stride.max(STEP).min(4 * WORDS) }
 }
 
 /// A byte four times.

@@ -11,7 +11,7 @@
 use super::Column;
 use super::plane::{Plane, add_pair, of_bit, two_bits};
 use crate::matching::backend::parameters::WindowParameters;
-use crate::matching::memory::slices::{part, part_mut};
+use crate::matching::memory::slices::{chunks_mut, part, part_mut};
 use core::sync::atomic::{Ordering, compiler_fence};
 
 /// Where the bits of the row that enters begin in a column's word, and those of the row that leaves: two for
@@ -89,7 +89,7 @@ pub(super) fn update<'a, S: WindowParameters, P: Plane, const GROUPS: usize>(
     words.fill(start);
     // One group's words are in registers, as far as there are some.
     let mut here = start.map(|words| words.map(P::doubled));
-    let mut columns = part_mut(columns, begin * groups..).chunks_exact_mut(groups);
+    let mut columns = chunks_mut(part_mut(columns, begin * groups..), groups);
     for codes in all() {
         let Some(column) = columns.next() else { return };
         if GROUPS == 1 {

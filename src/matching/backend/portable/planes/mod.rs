@@ -18,7 +18,7 @@ use super::census as rows;
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::work::{CensusWork, WindowWork};
 use crate::matching::memory::layout::OUTSIDE;
-use crate::matching::memory::slices::{part, part_mut};
+use crate::matching::memory::slices::{chunks, multiple_of, part, part_mut, split_mut};
 use crate::matching::memory::views::{view, view_mut};
 use crate::matching::memory::winners::Select;
 use plane::Plane;
@@ -34,10 +34,8 @@ pub(in crate::matching::backend) fn census<S: WindowParameters>(work: CensusWork
     let CensusWork { lines: [left, right], min_disparity, workspace, codes: out } = work;
     let width = out.len() / 2;
     // Both begin where a word may stand.
-    let mut codes = view_mut::<u32, u8>(workspace)
-        .chunks_mut(width.next_multiple_of(4).max(1))
-        .filter_map(|row| row.get_mut(..width));
-    let (Some(of_left), Some(of_right)) = (codes.next(), codes.next()) else { return };
+    let (of_left, rest) = split_mut(view_mut::<u32, u8>(workspace), multiple_of::<4>(width));
+    let (of_left, of_right) = (part_mut(of_left, ..width), part_mut(rest, ..width));
     rows::census::<S>(left, of_left);
     rows::census::<S>(right, of_right);
     columns::prepare::<S>(of_left, of_right, min_disparity, view_mut::<u8, u16>(out));
@@ -90,7 +88,7 @@ fn row_of<S: WindowParameters, P: Plane, const GROUPS: usize>(
     let mut windows = Windows::new(windows, disparities);
     // What is farther to the left is no candidate's: its sums are zero.
     let (before, after) = (begin.saturating_sub(S::RADIUS_X), begin + S::RADIUS_X);
-    for column in columns.chunks_exact(groups).take(OUTSIDE + after).skip(OUTSIDE + before) {
+    for column in chunks(columns, groups).take(OUTSIDE + after).skip(OUTSIDE + before) {
         windows.slide::<S>(column, columns);
     }
     let from = |column: usize| part(columns, column * groups..);

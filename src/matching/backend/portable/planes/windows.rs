@@ -9,6 +9,7 @@
 use super::Column;
 use super::plane::Plane;
 use crate::matching::backend::parameters::WindowParameters;
+use crate::matching::memory::slices::chunks;
 use crate::matching::memory::winners::{BESIDE, Winner};
 
 /// Planes of a window's sum.
@@ -62,24 +63,26 @@ impl<'a, P: Plane> Windows<'a, P> {
         let columns = entering.as_chunks::<GROUPS>().0.iter().zip(leaving.as_chunks::<GROUPS>().0);
         for (winner, (enters, leaves)) in winners.iter_mut().zip(columns) {
             let mut one_more = P::one(0);
-            for group in 0..GROUPS {
-                slide::<S, P>(&mut windows[group], &enters[group], &leaves[group]);
-                let before = candidates[group];
-                candidates[group] = (before.doubled() | one_more) & all[group];
+            let places = windows.iter_mut().zip(enters.iter().zip(leaves));
+            for ((window, (enters, leaves)), (candidates, &all)) in
+                places.zip(candidates.iter_mut().zip(&all))
+            {
+                slide::<S, P>(window, enters, leaves);
+                let before = *candidates;
+                *candidates = (before.doubled() | one_more) & all;
                 one_more = before.highest();
             }
             let best = best(&windows, candidates);
             // The first group with one of them.
-            let group = best.iter().position(|&best| best != P::NONE).unwrap_or(0);
-            let lane = best[group].lowest();
-            *winner = winner_of(&windows, group, lane, candidates[group]);
+            let first = best.iter().enumerate().find(|&(_, &best)| best != P::NONE);
+            let (group, lane) = first.map_or((0, 0), |(group, best)| (group, best.lowest()));
+            let candidates_of = |group: usize| candidates.get(group).copied().unwrap_or(P::NONE);
+            *winner = winner_of(&windows, group, lane, candidates_of(group));
             let disparity = group * P::CANDIDATES + lane;
             if GROUPS > 1 {
                 let last = lane + 1 == P::CANDIDATES;
-                let above =
-                    if last { candidates[(group + 1) % GROUPS] } else { candidates[group] & !P::one(0) };
-                let is_above = above != P::NONE && (!last || group + 1 < GROUPS);
-                look_beyond(&windows, disparity, is_above, winner);
+                let above = if last { candidates_of(group + 1) } else { candidates_of(group) & !P::one(0) };
+                look_beyond(&windows, disparity, above != P::NONE, winner);
             }
             if let Some(check) = &mut check {
                 let (windows, candidates) = (windows, candidates);
@@ -97,8 +100,8 @@ impl<'a, P: Plane> Windows<'a, P> {
         winners: &mut [Winner],
         mut check: Option<&mut Check<'_>>,
     ) {
-        let groups = self.groups.len().max(1);
-        let (mut entering, mut leaving) = (entering.chunks_exact(groups), leaving.chunks_exact(groups));
+        let groups = self.groups.len();
+        let (mut entering, mut leaving) = (chunks(entering, groups), chunks(leaving, groups));
         for (x, winner) in winners.iter_mut().enumerate() {
             let (Some(enters), Some(leaves)) = (entering.next(), leaving.next()) else { return };
             let candidates = self.disparities.min(x + 1);
@@ -192,8 +195,8 @@ fn slide<S: WindowParameters, P: Plane>(window: &mut Window<P>, enters: &Column<
     let (mut borrow, mut carry) = (P::NONE, P::NONE);
     for (i, sum) in window.iter_mut().enumerate() {
         let digit = i + S::COLUMN_SHIFT;
-        let difference = if digit < S::COLUMN_BITS {
-            let (enters, leaves) = (enters[digit], leaves[digit]);
+        let digits = enters.get(digit).zip(leaves.get(digit)).filter(|_| digit < S::COLUMN_BITS);
+        let difference = if let Some((&enters, &leaves)) = digits {
             let differ = enters ^ leaves;
             let difference = differ ^ borrow;
             borrow = borrow ^ (differ & (borrow ^ enters));
@@ -216,7 +219,10 @@ fn best<P: Plane, const GROUPS: usize>(
 ) -> [P; GROUPS] {
     let mut best = candidates;
     for i in (0..WINDOW).rev() {
-        let better: [P; GROUPS] = core::array::from_fn(|group| best[group] & windows[group][i]);
+        let mut better = best;
+        for (better, window) in better.iter_mut().zip(windows) {
+            *better = *better & window.get(i).copied().unwrap_or(P::NONE);
+        }
         if better.iter().fold(P::NONE, |any, &better| any | better) != P::NONE {
             best = better;
         }
@@ -236,10 +242,11 @@ fn three<P: Plane>(window: &Window<P>, first: usize) -> u32 {
     // Two planes at a time, half a sum apart. The product has their bits three times, each time in place for
     // one byte.
     const HALF: usize = WINDOW / 2;
+    let [low, high] = window.as_chunks::<HALF>().0 else { return 0 };
+    let bits = |plane: &P| plane.bits() >> (first % 32) & 7;
     let mut bytes = 0;
-    for i in (0..HALF).rev() {
-        let bits = |i: usize| window[i].bits() >> (first % 32) & 7;
-        let two = bits(i) | bits(i + HALF) << HALF;
+    for (low, high) in low.iter().zip(high).rev() {
+        let two = bits(low) | bits(high) << HALF;
         bytes = bytes << 1 | ((two * (1 | 1 << 7 | 1 << 14)) & 0x11_1111);
     }
     // The windows are complements.

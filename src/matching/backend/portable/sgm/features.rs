@@ -9,7 +9,7 @@ use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::work::PathWork;
 use crate::matching::memory::Rows5;
-use crate::matching::memory::slices::{part, part_mut};
+use crate::matching::memory::slices::{chunks_mut, part, part_mut};
 
 /// Rows of numbers, a byte a pixel.
 #[derive(Clone, Copy)]
@@ -86,7 +86,7 @@ pub(super) fn of<'a, R: FeatureRows, S: SgmParameters>(
 /// Rows of so many bytes; what there is no room for is empty.
 #[inline(always)]
 fn rows<const N: usize>(room: &mut [u8], length: usize) -> [&mut [u8]; N] {
-    let mut rows = room.chunks_exact_mut(length.max(1));
+    let mut rows = chunks_mut(room, length);
     core::array::from_fn(|_| rows.next().unwrap_or_default())
 }
 

@@ -6,7 +6,7 @@ use super::selection::Selection;
 use super::{COLUMNS_OFF, Guide, Path, PathWork, Steps, column, column_mut, stride};
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::portable::group::Group;
-use crate::matching::memory::slices::{part, part_mut};
+use crate::matching::memory::slices::{chunks, chunks_mut, part, part_mut};
 use crate::matching::memory::winners::{Found, Unique};
 use core::cell::Cell;
 
@@ -42,7 +42,7 @@ pub(super) fn select<G: Group, const CELLS: usize>(
         }
     }
     let mut before = 0;
-    let pixels = here.iter().zip(costs.chunks_exact(count)).zip(sums.chunks_exact_mut(count));
+    let pixels = here.iter().zip(chunks(costs, count)).zip(chunks_mut(sums, count));
     for (x, ((&here, costs), sums)) in pixels.enumerate() {
         right.advance(&steps, steps.between(here, before), costs, costs.iter(), |_, _| ());
         before = here;
@@ -90,8 +90,8 @@ pub(super) fn select<G: Group, const CELLS: usize>(
     let mut total = Path::<G, CELLS, false>([G::splat(0); CELLS]);
     let mut after = 0;
     let mut selection = Selection { stride, disparities, min_disparity, unique, put };
-    let pixels = here.iter().zip(costs.chunks_exact(count)).zip(sums.chunks_exact(count));
-    for (x, ((&here, costs), sums)) in pixels.enumerate().skip(min_disparity).rev() {
+    for (x, &here) in here.iter().enumerate().skip(min_disparity).rev() {
+        let [costs, sums] = [&*costs, &*sums].map(|volume| column::<_, CELLS, false>(volume, x, count));
         let both = total.0.iter_mut().zip(sums);
         left.advance(&steps, steps.between(here, after), costs, both, |(total, &sum), left| {
             *total = G::of(sum).plus_saturating(left);

@@ -5,6 +5,7 @@ use super::{PathWork, stride};
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::group::Group;
+use crate::matching::memory::slices::{chunks, chunks_mut};
 
 /// Adds a row.
 #[inline(always)]
@@ -13,12 +14,12 @@ pub(super) fn enter<G: Group, S: SgmParameters, const CELLS: usize, const ALL: b
     features: &Features<'_>,
 ) {
     let Features { left, right, count } = *features;
-    let mut rows = right.chunks_exact(count.max(1));
+    let mut rows = chunks(right, count);
     let [alongs, acrosses, censuses, brightnesses, least, greatest] =
         core::array::from_fn(|_| rows.next().unwrap_or(&[]));
     let most = G::splat(work.penalties.cost);
     let stride = stride::<G, CELLS, ALL>(work);
-    let columns = G::cells_mut(work.costs).chunks_exact_mut(stride / G::LANES);
+    let columns = chunks_mut(G::cells_mut(work.costs), stride / G::LANES);
     let candidates = alongs.windows(stride).zip(brightnesses.windows(stride));
     let candidates = candidates.zip(acrosses.windows(stride).zip(censuses.windows(stride)));
     let ranges = least.windows(stride).zip(greatest.windows(stride));

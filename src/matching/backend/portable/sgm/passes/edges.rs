@@ -5,6 +5,7 @@ use super::{PathWork, stride};
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::portable::group::Group;
 use crate::matching::backend::work::EdgeWork;
+use crate::matching::memory::slices::chunks_mut;
 
 /// Makes the costs of the row of those that stand in their place before: of the pixels two rows below, or of
 /// no meaning where that is outside of the image.
@@ -15,9 +16,9 @@ pub(super) fn within_edges<G: Group, const CELLS: usize, const ALL: bool>(
 ) {
     let count = stride::<G, CELLS, ALL>(work) / G::LANES;
     let much = work.penalties.edges[1];
-    let above = G::cells_mut(edges.above).chunks_exact_mut(count);
-    let below = G::cells_mut(edges.below).chunks_exact_mut(count);
-    let columns = G::cells_mut(work.costs).chunks_exact_mut(count).zip(above.zip(below));
+    let above = chunks_mut(G::cells_mut(edges.above), count);
+    let below = chunks_mut(G::cells_mut(edges.below), count);
+    let columns = chunks_mut(G::cells_mut(work.costs), count).zip(above.zip(below));
     for (x, (costs, (above, below))) in columns.enumerate() {
         let [at_next, at_last] = edges_at(&edges.guides, x, much).map(Choice::<G>::new);
         for (cost, (above, below)) in costs.iter_mut().zip(above.iter_mut().zip(below)) {

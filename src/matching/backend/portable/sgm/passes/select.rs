@@ -5,7 +5,7 @@ use super::gather::Gather;
 use super::selection::{LeftwardPath, Selection};
 use super::{Guide, Path, PathWork, Steps, column, stride};
 use crate::matching::backend::portable::group::Group;
-use crate::matching::memory::slices::{part, part_mut};
+use crate::matching::memory::slices::{chunks, chunks_mut, part, part_mut};
 use crate::matching::memory::winners::{Found, Unique};
 
 /// Selects the winner of every pixel that has a candidate, by the sum of its three paths.
@@ -26,7 +26,7 @@ pub(super) fn select<G: Group, const CELLS: usize, const ALL: bool>(
     let here = part(guide.here, ..width);
 
     let mut right = Gather::<G, CELLS, ALL>::new(last, count, G::cells_mut(work.top), end(0));
-    let pixels = here.iter().zip(costs.chunks_exact(count)).zip(sums.chunks_exact_mut(count));
+    let pixels = here.iter().zip(chunks(costs, count)).zip(chunks_mut(sums, count));
     for (x, ((&here, costs), sum)) in pixels.enumerate() {
         let above = guide.above.map(|line| line.get(x).copied().unwrap_or(0));
         right.next(&steps, (here, above), costs).put(sum);
@@ -34,8 +34,8 @@ pub(super) fn select<G: Group, const CELLS: usize, const ALL: bool>(
 
     let mut left = LeftwardPath::<G, CELLS, ALL>::new(end(last));
     let mut selection = Selection { stride, disparities, min_disparity, unique, put };
-    let pixels = here.iter().zip(costs.chunks_exact(count)).zip(sums.chunks_exact(count));
-    for (x, ((&here, costs), sum)) in pixels.enumerate().skip(min_disparity).rev() {
+    for (x, &here) in here.iter().enumerate().skip(min_disparity).rev() {
+        let [costs, sum] = [costs, &*sums].map(|volume| column::<_, CELLS, ALL>(volume, x, count));
         selection.select(x, Path::of(sum).plus_saturating(&left.next(&steps, here, costs)));
     }
 }

@@ -1,0 +1,53 @@
+//! Tells the crate which instructions a 32-bit Arm core has beyond those that every Cortex-M has: rustc does
+//! not say it to a crate. The target's name and `-C target-cpu` say it here.
+
+use std::env;
+
+/// Processors whose vectors (Helium) the crate has rows for.
+const WITH_VECTORS: [&str; 3] = ["cortex-m52", "cortex-m55", "cortex-m85"];
+/// Processors with the instructions on four bytes in a word, beside those of `thumbv7em`, which all have them.
+const WITH_DSP: [&str; 4] = ["cortex-m4", "cortex-m7", "cortex-m33", "cortex-m35p"];
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-env-changed=CARGO_ENCODED_RUSTFLAGS");
+    for name in ["dsp", "vectors", "portable"] {
+        println!("cargo::rustc-check-cfg=cfg(stereopsis_{name})");
+    }
+    let target = env::var("TARGET").unwrap_or_default();
+    let flags = env::var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default();
+    match choose(&target, &flags) {
+        Ok(Some(cfg)) => println!("cargo::rustc-cfg={cfg}"),
+        Ok(None) => {}
+        Err(line) => println!("cargo::error={line}"),
+    }
+}
+
+/// The kernel to choose for a target and the compiler's flags, or what is wrong with what the flags choose.
+fn choose(target: &str, flags: &str) -> Result<Option<&'static str>, String> {
+    let asked = |cfg: &str| flags.split('\u{1f}').any(|word| word.trim_start_matches("--cfg=") == cfg);
+    let has = |names: &[&str]| names.iter().any(|name| flags.contains(&format!("target-cpu={name}")));
+    let is_v8 = target.starts_with("thumbv8m.main");
+    let has_vectors = is_v8 && (has(&WITH_VECTORS) || flags.contains("+mve"));
+    let names_dsp = has(&WITH_DSP) || has(&WITH_VECTORS) || flags.contains("+dsp");
+    let is_a = ["armv7-", "armv7a", "thumbv7a", "thumbv7neon"].iter().any(|name| target.starts_with(name));
+    let has_dsp = target.starts_with("thumbv7em") || is_v8 && names_dsp;
+    if asked("stereopsis_vectors") && !has_vectors {
+        return Err(format!(
+            "stereopsis_vectors: {target} with these flags has no vectors: build for thumbv8m.main-none-eabihf \
+             with -C target-cpu=cortex-m55, which chooses them by itself"
+        ));
+    }
+    if asked("stereopsis_dsp") && !has_dsp && !is_a {
+        return Err(format!(
+            "stereopsis_dsp: {target} with these flags has no DSP instructions: leave it out, or on an M33 that \
+             has them build with -C target-cpu=cortex-m33, which chooses them by itself"
+        ));
+    }
+    let is_chosen = ["stereopsis_dsp", "stereopsis_vectors", "stereopsis_portable"].into_iter().any(asked);
+    Ok(match (is_chosen, has_vectors, has_dsp) {
+        (true, ..) | (_, false, false) => None,
+        (_, true, _) => Some("stereopsis_vectors"),
+        (_, _, true) => Some("stereopsis_dsp"),
+    })
+}

@@ -268,6 +268,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             width,
             stride,
             backend: self.backend,
+            select: S::select_for(D),
             config: &self.config,
             codes,
             columns,

@@ -22,8 +22,6 @@ pub(in crate::matching) trait Isa: Copy {
     #[inline(always)]
     fn candidates(self, disparities: usize, most: usize) -> usize {
         if most.is_multiple_of(32) {
-            // Whole words, in a form that lets the compiler see it: a firmware is linked without what cannot
-            // be asked for.
             return multiple_of::<32>(disparities).min(most) & !31;
         }
         multiple_of::<STEP>(disparities).min(most) & !(STEP - 1)
@@ -36,30 +34,33 @@ pub(in crate::matching) trait Isa: Copy {
     }
 
     /// Moves the window to the next row and selects its winners, unless the row is only gathered (`select` is
-    /// `None`).
-    // Inlined, so that the compiler sees which numbers of candidates can be asked for, and a firmware is
-    // linked without the code for others.
+    /// `None`). The matcher has room for `MOST` disparities, or any number for 0: code for numbers of
+    /// candidates that it never asks for is not compiled into it, here and in the other functions of a row.
     #[inline(always)]
-    fn window<P: WindowParameters>(self, work: WindowWork<'_>, select: Option<Select<'_>>) {
-        portable::planes::window::<P>(work, select);
+    fn window<P: WindowParameters, const MOST: usize>(
+        self,
+        work: WindowWork<'_>,
+        select: Option<Select<'_>>,
+    ) {
+        portable::planes::window::<P, MOST>(work, select);
     }
 
     /// Adds the costs of a row's pixels to those of a method along paths.
     #[inline(always)]
-    fn sgm_cost<P: SgmParameters>(self, work: &mut PathWork<'_>, row: CostWork<'_>) {
-        portable::sgm::cost_in_words::<P>(work, row);
+    fn sgm_cost<P: SgmParameters, const MOST: usize>(self, work: &mut PathWork<'_>, row: CostWork<'_>) {
+        portable::sgm::cost_in_words::<P, MOST>(work, row);
     }
 
     /// Averages the costs of a row with those around it, within edges.
     #[inline(always)]
-    fn sgm_within_edges(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
-        portable::sgm::within_edges_in_words(work, edges);
+    fn sgm_within_edges<const MOST: usize>(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+        portable::sgm::within_edges_in_words::<MOST>(work, edges);
     }
 
     /// Aggregates the costs of a row along paths and selects its winners.
     #[inline(always)]
-    fn sgm_select(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
-        portable::sgm::select_in_words(work, guide, select);
+    fn sgm_select<const MOST: usize>(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+        portable::sgm::select_in_words::<MOST>(work, guide, select);
     }
 
     /// Makes answers of a row of winners, but of those that the right image or the rules refuse.

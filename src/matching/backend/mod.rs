@@ -50,7 +50,7 @@ pub(super) use isa::Isa;
 pub use parameters::MethodParameters;
 pub(super) use parameters::{SgmParameters, WindowParameters};
 pub(super) use portable::smooth::MARGIN as SMOOTH_MARGIN;
-pub(super) use target::{Backend, CODES_SHARE_A_BYTE, columns_begin};
+pub(super) use target::{BY_CAPACITY, Backend, CODES_SHARE_A_BYTE, columns_begin};
 pub(super) use work::{
     AnswerWork, CensusWork, CostWork, EdgeWork, Guide, PathWork, Rules, STEP, SmoothWork, SpeckleWork,
     WindowWork,

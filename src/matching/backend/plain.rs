@@ -18,6 +18,9 @@ impl Isa for Backend {
 /// Whether the two codes of a pixel share a byte where codes have up to four bits.
 pub(in crate::matching) const CODES_SHARE_A_BYTE: bool = false;
 
+/// Whether a matcher's capacity chooses the code of its rows, so that a program is linked without the rest.
+pub(in crate::matching) const BY_CAPACITY: bool = true;
+
 /// Where a frame's columns begin in their memory: nothing is gained by another place than the first.
 #[inline(always)]
 pub(in crate::matching) const fn columns_begin(_: &[u8], _: usize) -> u8 {

@@ -8,6 +8,7 @@
 //! from below: that path measured least, and it would take the frame.
 
 use super::denoise::{denoise, gradient_shift};
+use super::select_for;
 use super::{Costs, Frame, Method};
 use crate::imaging::{Noise, smooth};
 use crate::matching::backend::{CostWork, EdgeWork, Guide, Isa, MethodParameters, PathWork, SgmParameters};
@@ -84,15 +85,7 @@ macro_rules! along_paths {
             fn enter(_: &mut Frame<'_>, _: usize, _: [&Rows5<'_>; 2]) {}
 
             // Inlined for the reason that `Isa::window` is.
-            #[inline(always)]
-            fn select(
-                frame: &mut Frame<'_>,
-                bottom: usize,
-                lines: Option<[&Rows5<'_>; 2]>,
-                row: Option<usize>,
-            ) {
-                select::<Self>(frame, bottom, lines, row);
-            }
+            select_for!($method);
         }
     };
 }
@@ -196,7 +189,7 @@ impl<const GUIDES: usize, const VOLUMES: usize, const W: usize, const D: usize> 
 
 /// Adds row `bottom` to the costs of the row above it, and selects the winners of that one.
 #[inline(always)]
-fn select<S: SgmParameters>(
+fn select<S: SgmParameters, const MOST: usize>(
     frame: &mut Frame<'_>,
     bottom: usize,
     lines: Option<[&Rows5<'_>; 2]>,
@@ -230,14 +223,14 @@ fn select<S: SgmParameters>(
     };
     if let Some(lines) = seen {
         let workspace = view_mut::<u32, u8>(frame.workspace.costs());
-        frame.backend.sgm_cost::<S>(&mut work, CostWork { is_first: bottom == 0, lines, workspace });
+        frame.backend.sgm_cost::<S, MOST>(&mut work, CostWork { is_first: bottom == 0, lines, workspace });
     }
     if S::WITHIN_EDGES {
         let (above, below) = split_mut(rest, width * stride);
         let inside = |y: &usize| *y < usize::from(config.height);
         let [here, next] = [2, 1].map(|up| bottom.checked_sub(up).filter(inside).map(guide));
         let guides = [here, next, seen.map(|[left, _]| left[2])];
-        frame.backend.sgm_within_edges(&mut work, EdgeWork { guides, above, below });
+        frame.backend.sgm_within_edges::<MOST>(&mut work, EdgeWork { guides, above, below });
     }
     // The features are done with, and the smoothed lines.
     work.sums = sums;
@@ -249,7 +242,7 @@ fn select<S: SgmParameters>(
         let ForWinners { winners, margins, .. } = frame.workspace.for_winners(config.confidence);
         let unique = Unique::new(config.checks.uniqueness_percent, flags, margins);
         let select = Select { disparities: work.disparities, winners, unique };
-        frame.backend.sgm_select(work, guide, select);
+        frame.backend.sgm_select::<MOST>(work, guide, select);
     }
     if let Some([left, _]) = lines {
         let kept = row_mut(frame.codes, bottom % guides::<S>(), width);

@@ -1,6 +1,7 @@
 //! The two methods whose costs are sums of Hamming distances over a window: their census and the window.
 
 use super::denoise::denoise;
+use super::select_for;
 use super::{Costs, Frame, Method};
 use crate::imaging::Noise;
 use crate::matching::backend::{
@@ -64,18 +65,7 @@ macro_rules! window_costs {
                 enter::<Self>(frame, y, lines);
             }
 
-            // Inlined for the reason that `Isa::window` is.
-            #[inline(always)]
-            fn select(
-                frame: &mut Frame<'_>,
-                bottom: usize,
-                lines: Option<[&Rows5<'_>; 2]>,
-                row: Option<usize>,
-            ) {
-                if lines.is_some() || row.is_some() {
-                    select::<Self>(frame, bottom, lines.is_some(), row);
-                }
-            }
+            select_for!($method);
         }
     };
 }
@@ -142,9 +132,16 @@ fn enter<S: WindowParameters>(frame: &mut Frame<'_>, y: usize, lines: [&Rows5<'_
 }
 
 /// Moves the window; without a `row`, costs are only gathered.
-// Inlined for the reason that `Isa::window` is.
 #[inline(always)]
-fn select<S: WindowParameters>(frame: &mut Frame<'_>, bottom: usize, enters: bool, row: Option<usize>) {
+fn select<S: WindowParameters, const MOST: usize>(
+    frame: &mut Frame<'_>,
+    bottom: usize,
+    lines: Option<[&Rows5<'_>; 2]>,
+    row: Option<usize>,
+) {
+    if lines.is_none() && row.is_none() {
+        return;
+    }
     let (width, config) = (frame.width, frame.config);
     let leaves = bottom.checked_sub(2 * S::RADIUS_Y + 1);
     let codes = |y: usize| slot(frame.codes, y % rows::<S>(), code_bytes::<S>() * width);
@@ -162,10 +159,10 @@ fn select<S: WindowParameters>(frame: &mut Frame<'_>, bottom: usize, enters: boo
         width,
         stride: frame.stride,
         min_disparity: usize::from(config.min_disparity),
-        enter: enters.then(|| codes(bottom)),
+        enter: lines.map(|_| codes(bottom)),
         leave: leaves.map(codes),
         columns: frame.columns,
         workspace,
     };
-    frame.backend.window::<S>(work, select);
+    frame.backend.window::<S, MOST>(work, select);
 }

@@ -10,8 +10,8 @@
 //! fattening::take_edges       lines y - 1 .. y + 1                edges of y
 //! fill::undo_fill             flags y - r - 5                     finished y - r - 5, as before the fill
 //! median::take_medians        band y - r - 5 .. y - r - 3         finished y - r - 4
-//! S::select: costs, paths     codes to y, or lines around y       costs of y - r
-//! S::select: winner-take-all  costs                               winners, margins and flags y - r
+//! select: costs, paths        codes to y, or lines around y       costs of y - r
+//! select: winner-take-all     costs                               winners, margins and flags y - r
 //! texture::flag_untextured    counts                              flags y - r
 //! left_right::make_answers    winners y - r                       band and flags y - r
 //! fattening::refuse_fattening band and edges y - r                band and flags y - r
@@ -93,7 +93,7 @@ fn finish_row<S: Method>(frame: &mut Frame<'_>, bottom: usize, lines: Option<[&R
         fill::undo_fill(frame, newest);
         median::take_medians(frame, newest);
     }
-    S::select(frame, bottom, lines, newest.filter(|&row| row < height));
+    (frame.select)(frame, bottom, lines, newest.filter(|&row| row < height));
     let Some(newest) = newest else { return };
     if newest < height {
         texture::flag_untextured::<S>(frame, newest);

@@ -48,7 +48,7 @@ use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::Select;
 
 #[allow(unused_imports, reason = "on a Cortex-M55 vectors do the most of it")]
-pub(in crate::matching) use super::plain::columns_begin;
+pub(in crate::matching) use super::plain::{BY_CAPACITY, columns_begin};
 
 /// Whether the two codes of a pixel share a byte where codes have up to four bits.
 pub(in crate::matching) const CODES_SHARE_A_BYTE: bool = true;
@@ -75,23 +75,27 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
-    fn window<P: WindowParameters>(self, work: WindowWork<'_>, select: Option<Select<'_>>) {
-        row::<P>(work, select);
+    fn window<P: WindowParameters, const MOST: usize>(
+        self,
+        work: WindowWork<'_>,
+        select: Option<Select<'_>>,
+    ) {
+        row::<P, MOST>(work, select);
     }
 
     #[inline(always)]
-    fn sgm_cost<P: SgmParameters>(self, work: &mut PathWork<'_>, row: CostWork<'_>) {
-        sgm::cost::<P>(work, row);
+    fn sgm_cost<P: SgmParameters, const MOST: usize>(self, work: &mut PathWork<'_>, row: CostWork<'_>) {
+        sgm::cost::<P, MOST>(work, row);
     }
 
     #[inline(always)]
-    fn sgm_within_edges(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
-        sgm::within_edges(work, edges);
+    fn sgm_within_edges<const MOST: usize>(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+        sgm::within_edges::<MOST>(work, edges);
     }
 
     #[inline(always)]
-    fn sgm_select(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
-        sgm::select::<false>(work, guide, select);
+    fn sgm_select<const MOST: usize>(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+        sgm::select::<false, MOST>(work, guide, select);
     }
 
     #[inline(always)]
@@ -118,8 +122,7 @@ impl Isa for Backend {
     }
 }
 
-/// As many candidates as there is assembly for, never none: a firmware is linked without what cannot be asked
-/// for.
+/// As many candidates as there is assembly for, never none.
 #[inline(always)]
 pub(super) fn candidates(disparities: usize, most: usize) -> usize {
     if most.is_multiple_of(64) {
@@ -158,14 +161,15 @@ fn codes_of<S: WindowParameters>([left, right]: [&Rows5<'_>; 2], out: &mut [u8])
 
 /// [`Isa::window`] for the usual numbers of candidates, and any other.
 #[inline(always)]
-fn row<S: WindowParameters>(work: WindowWork<'_>, select: Option<Select<'_>>) {
+fn row<S: WindowParameters, const MOST: usize>(work: WindowWork<'_>, select: Option<Select<'_>>) {
     // The usual numbers of candidates, then any number of them.
     match work.stride {
-        16 => row_of::<S, 16>(work, select),
-        32 => row_of::<S, 32>(work, select),
-        48 => row_of::<S, 48>(work, select),
-        64 => row_of::<S, 64>(work, select),
-        _ => row_of::<S, 0>(work, select),
+        16 if MOST == 0 || MOST == 16 => row_of::<S, 16>(work, select),
+        32 if MOST == 0 || MOST == 32 => row_of::<S, 32>(work, select),
+        48 if MOST == 0 => row_of::<S, 48>(work, select),
+        64 if MOST == 0 || MOST == 64 => row_of::<S, 64>(work, select),
+        _ if MOST == 0 => row_of::<S, 0>(work, select),
+        _ => {}
     }
 }
 

@@ -49,7 +49,7 @@ use crate::matching::memory::winners::{Select, WinnerRows};
 use crate::units::{Disparity, PixelFlags};
 use windows::{Windows, best_of_the_rest, complete};
 
-pub(in crate::matching) use super::plain::{CODES_SHARE_A_BYTE, columns_begin};
+pub(in crate::matching) use super::plain::{BY_CAPACITY, CODES_SHARE_A_BYTE, columns_begin};
 
 sole_kernel! {
     /// The vectors of a Cortex-M55, which the core has by what the compiler was given.
@@ -80,23 +80,27 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
-    fn window<P: WindowParameters>(self, work: WindowWork<'_>, select: Option<Select<'_>>) {
-        row::<P>(work, select);
+    fn window<P: WindowParameters, const MOST: usize>(
+        self,
+        work: WindowWork<'_>,
+        select: Option<Select<'_>>,
+    ) {
+        row::<P, MOST>(work, select);
     }
 
     #[inline(always)]
-    fn sgm_cost<P: SgmParameters>(self, work: &mut PathWork<'_>, row: CostWork<'_>) {
-        sgm::cost::<P>(work, row);
+    fn sgm_cost<P: SgmParameters, const MOST: usize>(self, work: &mut PathWork<'_>, row: CostWork<'_>) {
+        sgm::cost::<P, MOST>(work, row);
     }
 
     #[inline(always)]
-    fn sgm_within_edges(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
-        sgm::within_edges(work, edges);
+    fn sgm_within_edges<const MOST: usize>(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+        sgm::within_edges::<MOST>(work, edges);
     }
 
     #[inline(always)]
-    fn sgm_select(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
-        sgm::select::<true>(work, guide, select);
+    fn sgm_select<const MOST: usize>(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+        sgm::select::<true, MOST>(work, guide, select);
     }
 
     #[inline(always)]
@@ -148,12 +152,13 @@ const LANES: usize = 16;
 
 /// [`Isa::window`] in Helium.
 #[inline(always)]
-fn row<S: WindowParameters>(work: WindowWork<'_>, select: Option<Select<'_>>) {
+fn row<S: WindowParameters, const MOST: usize>(work: WindowWork<'_>, select: Option<Select<'_>>) {
     // The usual numbers of candidates, then any number of them.
     match work.stride {
-        32 => row_of::<S, 32>(work, select),
-        64 => row_of::<S, 64>(work, select),
-        _ => row_of::<S, 0>(work, select),
+        32 if MOST == 0 || MOST == 32 => row_of::<S, 32>(work, select),
+        64 if MOST == 0 || MOST == 64 => row_of::<S, 64>(work, select),
+        _ if MOST == 0 || MOST == 16 => row_of::<S, 0>(work, select),
+        _ => {}
     }
 }
 

@@ -124,9 +124,13 @@ impl Isa for Backend {
     }
 
     #[inline]
-    fn window<P: WindowParameters>(self, work: WindowWork<'_>, select: Option<Select<'_>>) {
+    fn window<P: WindowParameters, const MOST: usize>(
+        self,
+        work: WindowWork<'_>,
+        select: Option<Select<'_>>,
+    ) {
         match self {
-            Self::Planes => plain::Backend.window::<P>(work, select),
+            Self::Planes => plain::Backend.window::<P, MOST>(work, select),
             Self::Avx2(avx2) if work.stride.is_multiple_of(32) => avx2.row::<P>(work, select),
             Self::Avx512(avx512) if work.stride.is_multiple_of(32) => avx512.row::<P>(work, select),
             // Of registers that would not be full there is nothing to gain.
@@ -135,17 +139,17 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
-    fn sgm_cost<P: SgmParameters>(self, work: &mut PathWork<'_>, row: CostWork<'_>) {
+    fn sgm_cost<P: SgmParameters, const MOST: usize>(self, work: &mut PathWork<'_>, row: CostWork<'_>) {
         sgm::cost::<P>(self, work, row);
     }
 
     #[inline(always)]
-    fn sgm_within_edges(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+    fn sgm_within_edges<const MOST: usize>(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
         sgm::within_edges(self, work, edges);
     }
 
     #[inline(always)]
-    fn sgm_select(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+    fn sgm_select<const MOST: usize>(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
         sgm::select(self, work, guide, select);
     }
 
@@ -195,6 +199,9 @@ impl Isa for Backend {
 
 /// Whether the two codes of a pixel share a byte where codes have up to four bits.
 pub(in crate::matching) const CODES_SHARE_A_BYTE: bool = false;
+
+/// Whether a matcher's capacity chooses the code of its rows, so that a program is linked without the rest.
+pub(in crate::matching) const BY_CAPACITY: bool = false;
 
 /// How many bytes before the first line of the cache in a memory where `count` bytes still have their place:
 /// vectors as long as a line are then read and written at once. Where there is no such place, none.

@@ -63,7 +63,7 @@ macro_rules! in_widest {
 #[inline(always)]
 pub(super) fn cost<S: SgmParameters>(backend: Backend, work: &mut PathWork<'_>, row: CostWork<'_>) {
     match backend {
-        Backend::Planes => sgm::cost_in_words::<S>(work, row),
+        Backend::Planes => sgm::cost_in_words::<S, 0>(work, row),
         Backend::Lanes => in_vectors!(work, enter, [S], row),
         Backend::Avx2(avx2) => avx2.run(
             #[inline(always)]
@@ -80,7 +80,7 @@ pub(super) fn cost<S: SgmParameters>(backend: Backend, work: &mut PathWork<'_>, 
 #[inline(always)]
 pub(super) fn within_edges(backend: Backend, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
     match backend {
-        Backend::Planes => sgm::within_edges_in_words(work, edges),
+        Backend::Planes => sgm::within_edges_in_words::<0>(work, edges),
         Backend::Lanes => in_vectors!(work, within_edges, [], edges),
         Backend::Avx2(avx2) => avx2.run(
             #[inline(always)]
@@ -97,7 +97,7 @@ pub(super) fn within_edges(backend: Backend, work: &mut PathWork<'_>, edges: Edg
 #[inline(always)]
 pub(super) fn select(backend: Backend, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
     match backend {
-        Backend::Planes => sgm::select_in_words(work, guide, select),
+        Backend::Planes => sgm::select_in_words::<0>(work, guide, select),
         Backend::Lanes => in_vectors!(work, select, [true], guide, select),
         Backend::Avx2(avx2) => avx2.run(
             #[inline(always)]

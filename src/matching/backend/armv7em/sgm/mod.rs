@@ -121,33 +121,40 @@ macro_rules! in_words {
     ($work:ident, $pass:ident, [$($more:tt)?], $($argument:expr),*) => {
         match $work.stride {
             0 => (),
-            16 => words::$pass::<Words<4, true>, $($more)?>($work, $($argument),*),
-            32 => words::$pass::<Words<8, true>, $($more)?>($work, $($argument),*),
-            64 => words::$pass::<Words<16, true>, $($more)?>($work, $($argument),*),
-            128 => words::$pass::<Words<32, true>, $($more)?>($work, $($argument),*),
+            16 if MOST == 0 || MOST == 16 => words::$pass::<Words<4, true>, $($more)?>($work, $($argument),*),
+            32 if MOST == 0 || MOST == 32 => words::$pass::<Words<8, true>, $($more)?>($work, $($argument),*),
+            64 if MOST == 0 || MOST == 64 => words::$pass::<Words<16, true>, $($more)?>($work, $($argument),*),
+            128 if MOST == 0 => words::$pass::<Words<32, true>, $($more)?>($work, $($argument),*),
             // Room for as few as will do: a path's costs stand on the stack, several times.
-            ..64 => words::$pass::<Words<16, false>, $($more)?>($work, $($argument),*),
-            ..128 => words::$pass::<Words<32, false>, $($more)?>($work, $($argument),*),
-            _ => words::$pass::<Words<64, false>, $($more)?>($work, $($argument),*),
+            ..64 if MOST == 0 => words::$pass::<Words<16, false>, $($more)?>($work, $($argument),*),
+            ..128 if MOST == 0 => words::$pass::<Words<32, false>, $($more)?>($work, $($argument),*),
+            _ if MOST == 0 => words::$pass::<Words<64, false>, $($more)?>($work, $($argument),*),
+            _ => (),
         }
     };
 }
 
 /// [`Isa::sgm_cost`](crate::matching::backend::Isa::sgm_cost) for each number of candidates.
 #[inline(always)]
-pub(in crate::matching::backend) fn cost<S: SgmParameters>(work: &mut PathWork<'_>, row: CostWork<'_>) {
+pub(in crate::matching::backend) fn cost<S: SgmParameters, const MOST: usize>(
+    work: &mut PathWork<'_>,
+    row: CostWork<'_>,
+) {
     in_words!(work, enter, [S], row);
 }
 
 /// [`Isa::sgm_within_edges`](crate::matching::backend::Isa::sgm_within_edges) for each number of candidates.
 #[inline(always)]
-pub(in crate::matching::backend) fn within_edges(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+pub(in crate::matching::backend) fn within_edges<const MOST: usize>(
+    work: &mut PathWork<'_>,
+    edges: EdgeWork<'_>,
+) {
     in_words!(work, within_edges, [], edges);
 }
 
 /// [`Isa::sgm_select`](crate::matching::backend::Isa::sgm_select) for each number of candidates.
 #[inline(always)]
-pub(in crate::matching::backend) fn select<const ROWS: bool>(
+pub(in crate::matching::backend) fn select<const ROWS: bool, const MOST: usize>(
     work: PathWork<'_>,
     guide: Guide<'_>,
     select: Select<'_>,

@@ -43,17 +43,17 @@ pub(in crate::matching::backend) fn census<S: WindowParameters>(work: CensusWork
 
 /// [`Isa::window`](crate::matching::backend::Isa::window) in planes.
 #[inline(always)]
-pub(in crate::matching::backend) fn window<S: WindowParameters>(
+pub(in crate::matching::backend) fn window<S: WindowParameters, const MOST: usize>(
     work: WindowWork<'_>,
     select: Option<Select<'_>>,
 ) {
     // The usual numbers of candidates, then any number of words of them, or of half-words.
     match work.stride {
-        16 => row_of::<S, u16, 1>(work, select),
-        32 => row_of::<S, u32, 1>(work, select),
-        64 => row_of::<S, u32, 2>(work, select),
-        stride if !stride.is_multiple_of(32) && stride > 32 => row_of::<S, u16, 0>(work, select),
-        stride if stride > 64 => row_of::<S, u32, 0>(work, select),
+        16 if MOST == 0 || MOST == 16 => row_of::<S, u16, 1>(work, select),
+        32 if MOST != 16 => row_of::<S, u32, 1>(work, select),
+        64 if MOST == 0 || MOST == 64 => row_of::<S, u32, 2>(work, select),
+        stride if MOST == 0 && !stride.is_multiple_of(32) && stride > 32 => row_of::<S, u16, 0>(work, select),
+        stride if MOST == 0 && stride > 64 => row_of::<S, u32, 0>(work, select),
         _ => {}
     }
 }

@@ -120,18 +120,19 @@ macro_rules! in_words {
     ($work:ident, $pass:ident, [$($more:tt)?], $($argument:expr),*) => {
         match $work.stride {
             0 => (),
-            16 => words::$pass::<Groups<Word, 4, true>, $($more)?>($work, $($argument),*),
+            16 if MOST == 0 || MOST == 16 => words::$pass::<Groups<Word, 4, true>, $($more)?>($work, $($argument),*),
             // Room for as few as will do, and one more: a path's costs stand on the stack, several times.
-            ..=64 => words::$pass::<Groups<Word, 17, false>, $($more)?>($work, $($argument),*),
-            ..=128 => words::$pass::<Groups<Word, 33, false>, $($more)?>($work, $($argument),*),
-            _ => words::$pass::<Groups<Word, 65, false>, $($more)?>($work, $($argument),*),
+            ..=64 if MOST != 16 => words::$pass::<Groups<Word, 17, false>, $($more)?>($work, $($argument),*),
+            ..=128 if MOST == 0 => words::$pass::<Groups<Word, 33, false>, $($more)?>($work, $($argument),*),
+            _ if MOST == 0 => words::$pass::<Groups<Word, 65, false>, $($more)?>($work, $($argument),*),
+            _ => (),
         }
     };
 }
 
 /// [`Isa::sgm_cost`](crate::matching::backend::Isa::sgm_cost) in words.
 #[inline(always)]
-pub(in crate::matching::backend) fn cost_in_words<S: SgmParameters>(
+pub(in crate::matching::backend) fn cost_in_words<S: SgmParameters, const MOST: usize>(
     work: &mut PathWork<'_>,
     row: CostWork<'_>,
 ) {
@@ -140,13 +141,16 @@ pub(in crate::matching::backend) fn cost_in_words<S: SgmParameters>(
 
 /// [`Isa::sgm_within_edges`](crate::matching::backend::Isa::sgm_within_edges) in words.
 #[inline(always)]
-pub(in crate::matching::backend) fn within_edges_in_words(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+pub(in crate::matching::backend) fn within_edges_in_words<const MOST: usize>(
+    work: &mut PathWork<'_>,
+    edges: EdgeWork<'_>,
+) {
     in_words!(work, within_edges, [], edges);
 }
 
 /// [`Isa::sgm_select`](crate::matching::backend::Isa::sgm_select) in words.
 #[inline(always)]
-pub(in crate::matching::backend) fn select_in_words(
+pub(in crate::matching::backend) fn select_in_words<const MOST: usize>(
     work: PathWork<'_>,
     guide: Guide<'_>,
     select: Select<'_>,

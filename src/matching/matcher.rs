@@ -248,7 +248,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             return Err(MatchError::LineTooShort { needed });
         }
         self.taken += 1;
-        S::step(self.frame(), y, lines);
+        S::step_for(D)(self.frame(), y, lines);
         Ok(())
     }
 
@@ -268,7 +268,6 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             width,
             stride,
             backend: self.backend,
-            select: S::select_for(D),
             config: &self.config,
             codes,
             columns,

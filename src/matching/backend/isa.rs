@@ -27,6 +27,13 @@ pub(in crate::matching) trait Isa: Copy {
         multiple_of::<STEP>(disparities).min(most) & !(STEP - 1)
     }
 
+    /// The `candidates` of a column, as a constant where a matcher with room for `MOST` disparities has no
+    /// other number of them.
+    #[inline(always)]
+    fn known<const MOST: usize>(self, candidates: usize) -> usize {
+        if MOST == 16 || MOST == 32 { MOST } else { candidates }
+    }
+
     /// Makes the census codes of a row of both images.
     #[inline(always)]
     fn census<P: WindowParameters>(self, work: CensusWork<'_>) {
@@ -59,7 +66,7 @@ pub(in crate::matching) trait Isa: Copy {
 
     /// Aggregates the costs of a row along paths and selects its winners.
     #[inline(always)]
-    fn sgm_select<const MOST: usize>(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+    fn sgm_select<const MOST: usize>(self, work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
         portable::sgm::select_in_words::<MOST>(work, guide, select);
     }
 

@@ -61,47 +61,25 @@ pub trait Costs: Sized {
     const BYTES: Bytes;
     /// Takes row `y` of both images, before [`Self::select`].
     fn enter(frame: &mut Frame<'_>, y: usize, lines: [&Rows5<'_>; 2]);
-    /// What selects the winners of a row for a matcher that has room for `most` disparities.
-    fn select_for(most: usize) -> SelectRow;
+    /// Adds row `bottom` to the costs, while there are `lines`, and selects the winners of `row`, where there
+    /// is one. Called for every row: after it, the workspace is divided. `MOST` is as for
+    /// [`Isa::window`](super::backend::Isa::window).
+    fn select<const MOST: usize>(
+        frame: &mut Frame<'_>,
+        bottom: usize,
+        lines: Option<[&Rows5<'_>; 2]>,
+        row: Option<usize>,
+    );
 }
 
-/// Adds a row (`bottom`, the second argument) to the costs, while there are lines, and selects the winners of
-/// a row (the last argument), where there is one. Called for every row: after it, the workspace is divided.
-pub type SelectRow = fn(&mut Frame<'_>, usize, Option<[&Rows5<'_>; 2]>, Option<usize>);
-
-/// [`Costs::select_for`] of a method, by its `select::<_, MOST>`.
-macro_rules! select_for {
-    ($method:ty) => {
-        #[inline(always)]
-        fn select_for(most: usize) -> $crate::matching::method::SelectRow {
-            // Each is compiled once, with this crate, and linked where it is named: a firmware does without
-            // the code for numbers of candidates that its matcher has no room for, however it is optimised.
-            $crate::matching::method::select_for!(of_any, $method, 0);
-            $crate::matching::method::select_for!(of_16, $method, 16);
-            $crate::matching::method::select_for!(of_32, $method, 32);
-            $crate::matching::method::select_for!(of_64, $method, 64);
-            match most {
-                16 if $crate::matching::backend::BY_CAPACITY => of_16,
-                32 if $crate::matching::backend::BY_CAPACITY => of_32,
-                64 if $crate::matching::backend::BY_CAPACITY => of_64,
-                _ => of_any,
-            }
-        }
-    };
-    ($name:ident, $method:ty, $most:literal) => {
-        #[inline(never)]
-        fn $name(frame: &mut Frame<'_>, bottom: usize, lines: Option<[&Rows5<'_>; 2]>, row: Option<usize>) {
-            select::<$method, $most>(frame, bottom, lines, row);
-        }
-    };
-}
-use select_for;
+/// Takes row `y` of both images (`None` below the last one) and finishes the row that is due with it.
+pub type Step = fn(frame: Frame<'_>, y: usize, lines: Option<[&Rows5<'_>; 2]>);
 
 /// The stages of a method. Each method has them for itself, so that they are compiled with this crate, once,
 /// and not with every crate that chooses a capacity.
 pub trait Steps {
-    /// Takes row `y` of both images (`None` below the last one) and finishes the row that is due with it.
-    fn step(frame: Frame<'_>, y: usize, lines: Option<[&Rows5<'_>; 2]>);
+    /// The step of a matcher that has room for `most` disparities.
+    fn step_for(most: usize) -> Step;
 }
 
 /// The matcher's memory, cut to the frame's size.
@@ -110,8 +88,6 @@ pub struct Frame<'a> {
     /// Candidates of a column that the backend works on.
     pub(super) stride: usize,
     pub(super) backend: Backend,
-    /// The method's, for the matcher's capacity.
-    pub(super) select: SelectRow,
     pub(super) config: &'a Config,
     pub(super) codes: &'a mut [u8],
     pub(super) columns: &'a mut [u8],

@@ -8,7 +8,6 @@
 //! from below: that path measured least, and it would take the frame.
 
 use super::denoise::{denoise, gradient_shift};
-use super::select_for;
 use super::{Costs, Frame, Method};
 use crate::imaging::{Noise, smooth};
 use crate::matching::backend::{CostWork, EdgeWork, Guide, Isa, MethodParameters, PathWork, SgmParameters};
@@ -85,7 +84,15 @@ macro_rules! along_paths {
             fn enter(_: &mut Frame<'_>, _: usize, _: [&Rows5<'_>; 2]) {}
 
             // Inlined for the reason that `Isa::window` is.
-            select_for!($method);
+            #[inline(always)]
+            fn select<const MOST: usize>(
+                frame: &mut Frame<'_>,
+                bottom: usize,
+                lines: Option<[&Rows5<'_>; 2]>,
+                row: Option<usize>,
+            ) {
+                select::<Self, MOST>(frame, bottom, lines, row);
+            }
         }
     };
 }
@@ -195,7 +202,8 @@ fn select<S: SgmParameters, const MOST: usize>(
     lines: Option<[&Rows5<'_>; 2]>,
     row: Option<usize>,
 ) {
-    let (width, stride, config) = (frame.width, frame.stride, frame.config);
+    let (width, config) = (frame.width, frame.config);
+    let stride = frame.backend.known::<MOST>(frame.stride);
     let (costs, rest) = split_mut(frame.columns, width * stride);
     let (top, rest) = split_mut(rest, (width + COLUMNS_OFF) * stride);
     let (sums, rest) = split_mut(rest, width * stride);
@@ -242,7 +250,7 @@ fn select<S: SgmParameters, const MOST: usize>(
         let ForWinners { winners, margins, .. } = frame.workspace.for_winners(config.confidence);
         let unique = Unique::new(config.checks.uniqueness_percent, flags, margins);
         let select = Select { disparities: work.disparities, winners, unique };
-        frame.backend.sgm_select::<MOST>(work, guide, select);
+        frame.backend.sgm_select::<MOST>(&mut work, guide, select);
     }
     if let Some([left, _]) = lines {
         let kept = row_mut(frame.codes, bottom % guides::<S>(), width);

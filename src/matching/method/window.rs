@@ -1,7 +1,6 @@
 //! The two methods whose costs are sums of Hamming distances over a window: their census and the window.
 
 use super::denoise::denoise;
-use super::select_for;
 use super::{Costs, Frame, Method};
 use crate::imaging::Noise;
 use crate::matching::backend::{
@@ -65,7 +64,15 @@ macro_rules! window_costs {
                 enter::<Self>(frame, y, lines);
             }
 
-            select_for!($method);
+            #[inline(always)]
+            fn select<const MOST: usize>(
+                frame: &mut Frame<'_>,
+                bottom: usize,
+                lines: Option<[&Rows5<'_>; 2]>,
+                row: Option<usize>,
+            ) {
+                select::<Self, MOST>(frame, bottom, lines, row);
+            }
         }
     };
 }
@@ -157,7 +164,7 @@ fn select<S: WindowParameters, const MOST: usize>(
     };
     let work = WindowWork {
         width,
-        stride: frame.stride,
+        stride: frame.backend.known::<MOST>(frame.stride),
         min_disparity: usize::from(config.min_disparity),
         enter: lines.map(|_| codes(bottom)),
         leave: leaves.map(codes),

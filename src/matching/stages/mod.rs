@@ -10,8 +10,8 @@
 //! fattening::take_edges       lines y - 1 .. y + 1                edges of y
 //! fill::undo_fill             flags y - r - 5                     finished y - r - 5, as before the fill
 //! median::take_medians        band y - r - 5 .. y - r - 3         finished y - r - 4
-//! select: costs, paths        codes to y, or lines around y       costs of y - r
-//! select: winner-take-all     costs                               winners, margins and flags y - r
+//! S::select: costs, paths     codes to y, or lines around y       costs of y - r
+//! S::select: winner-take-all  costs                               winners, margins and flags y - r
 //! texture::flag_untextured    counts                              flags y - r
 //! left_right::make_answers    winners y - r                       band and flags y - r
 //! fattening::refuse_fattening band and edges y - r                band and flags y - r
@@ -48,18 +48,36 @@ mod fill;
 
 pub(super) mod mask;
 
+use super::backend::BY_CAPACITY;
 use super::memory::Rows5;
-use super::method::{Block, Fast, Frame, Method, Sgm, SgmEdge, SgmLean, Steps};
+use super::method::{Block, Fast, Frame, Method, Sgm, SgmEdge, SgmLean, Step, Steps};
 
-/// The stages of a method, compiled with this crate.
+/// The stages of a method, compiled with this crate, once for each capacity that has code of its own: a
+/// program is linked without the code for numbers of candidates that its matchers have no room for, however it
+/// is optimised.
 macro_rules! steps {
     ($($method:ty),*) => {$(
         impl Steps for $method {
-            fn step(frame: Frame<'_>, y: usize, lines: Option<[&Rows5<'_>; 2]>) {
-                step::<Self>(frame, y, lines);
+            #[inline(always)]
+            fn step_for(most: usize) -> Step {
+                steps!(of_any, $method, 0);
+                steps!(of_16, $method, 16);
+                steps!(of_32, $method, 32);
+                steps!(of_64, $method, 64);
+                match most {
+                    16 if BY_CAPACITY => of_16,
+                    32 if BY_CAPACITY => of_32,
+                    64 if BY_CAPACITY => of_64,
+                    _ => of_any,
+                }
             }
         }
     )*};
+    ($name:ident, $method:ty, $most:literal) => {
+        fn $name(frame: Frame<'_>, y: usize, lines: Option<[&Rows5<'_>; 2]>) {
+            step::<$method, $most>(frame, y, lines);
+        }
+    };
 }
 
 steps!(Fast, Block, SgmLean, Sgm, SgmEdge);
@@ -75,25 +93,29 @@ pub(super) fn begin(mut frame: Frame<'_>) {
 
 /// Takes row `y` of both images (`None` below the last one) and finishes the row that is due with it.
 #[inline(always)]
-fn step<S: Method>(mut frame: Frame<'_>, y: usize, lines: Option<[&Rows5<'_>; 2]>) {
+fn step<S: Method, const MOST: usize>(mut frame: Frame<'_>, y: usize, lines: Option<[&Rows5<'_>; 2]>) {
     if let Some(lines) = lines {
         S::enter(&mut frame, y, lines);
     }
     texture::take_texture::<S>(&mut frame, lines);
     fattening::take_edges(&mut frame, lines);
-    finish_row::<S>(&mut frame, y, lines);
+    finish_row::<S, MOST>(&mut frame, y, lines);
 }
 
 /// Adds row `bottom`, makes the answers of the row that has its costs with it, and finishes the one that
 /// waited for those.
-fn finish_row<S: Method>(frame: &mut Frame<'_>, bottom: usize, lines: Option<[&Rows5<'_>; 2]>) {
+fn finish_row<S: Method, const MOST: usize>(
+    frame: &mut Frame<'_>,
+    bottom: usize,
+    lines: Option<[&Rows5<'_>; 2]>,
+) {
     let height = usize::from(frame.config.height);
     let newest = bottom.checked_sub(S::RADIUS_Y);
     if let Some(newest) = newest {
         fill::undo_fill(frame, newest);
         median::take_medians(frame, newest);
     }
-    (frame.select)(frame, bottom, lines, newest.filter(|&row| row < height));
+    S::select::<MOST>(frame, bottom, lines, newest.filter(|&row| row < height));
     let Some(newest) = newest else { return };
     if newest < height {
         texture::flag_untextured::<S>(frame, newest);

@@ -15,19 +15,13 @@ const BUDGET: usize = 64 * 1024;
 /// RAM beside the pipeline: the stack, the camera, the log, bytes.
 const BESIDE: usize = 3072;
 
-/// Flags for the core with vector instructions: they, and the kernel that is made for them.
-pub const VECTORS: &str = "-C target-cpu=cortex-m55 --cfg stereopsis_vectors";
+/// Flags for the core with vector instructions.
+pub const VECTORS: &str = "-C target-cpu=cortex-m55";
 
-/// Flags for the cores with the instructions on four bytes, which a Cortex-M4 and an M7 always have.
-pub const DSP: &str = "--cfg stereopsis_dsp";
-/// The same for a Cortex-M33, which may lack them.
-pub const DSP_OF_M33: &str = "-C target-cpu=cortex-m33 --cfg stereopsis_dsp";
-
-/// The flags that tell the crate what a core has.
+/// The flags that tell the crate what a core has which its target does not say.
 fn flags(board: Board) -> &'static str {
     match board.core {
-        "m4" | "m7" => DSP,
-        "m33" => DSP_OF_M33,
+        "m33" => "-C target-cpu=cortex-m33",
         "m55" => VECTORS,
         _ => "",
     }

@@ -70,6 +70,11 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
+    fn known<const MOST: usize>(self, candidates: usize) -> usize {
+        if MOST > 0 { MOST } else { candidates }
+    }
+
+    #[inline(always)]
     fn census<P: WindowParameters>(self, work: CensusWork<'_>) {
         codes_of::<P>(work.lines, work.codes);
     }
@@ -94,7 +99,7 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
-    fn sgm_select<const MOST: usize>(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+    fn sgm_select<const MOST: usize>(self, work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
         sgm::select::<false, MOST>(work, guide, select);
     }
 

@@ -67,6 +67,11 @@ impl Isa for Backend {
         armv7em::candidates(disparities, most)
     }
 
+    #[inline(always)]
+    fn known<const MOST: usize>(self, candidates: usize) -> usize {
+        if MOST > 0 { MOST } else { candidates }
+    }
+
     #[inline]
     fn census<P: WindowParameters>(self, work: CensusWork<'_>) {
         let (left, right) = split_mut(work.codes, work.codes.len() / 2);
@@ -99,7 +104,7 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
-    fn sgm_select<const MOST: usize>(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+    fn sgm_select<const MOST: usize>(self, work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
         sgm::select::<true, MOST>(work, guide, select);
     }
 

@@ -149,7 +149,7 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
-    fn sgm_select<const MOST: usize>(self, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+    fn sgm_select<const MOST: usize>(self, work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
         sgm::select(self, work, guide, select);
     }
 

@@ -95,7 +95,7 @@ pub(super) fn within_edges(backend: Backend, work: &mut PathWork<'_>, edges: Edg
 
 /// [`Isa::sgm_select`](crate::matching::backend::Isa::sgm_select) on each of the kernels.
 #[inline(always)]
-pub(super) fn select(backend: Backend, work: PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+pub(super) fn select(backend: Backend, work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
     match backend {
         Backend::Planes => sgm::select_in_words::<0>(work, guide, select),
         Backend::Lanes => in_vectors!(work, select, [true], guide, select),

@@ -155,7 +155,7 @@ pub(in crate::matching::backend) fn within_edges<const MOST: usize>(
 /// [`Isa::sgm_select`](crate::matching::backend::Isa::sgm_select) for each number of candidates.
 #[inline(always)]
 pub(in crate::matching::backend) fn select<const ROWS: bool, const MOST: usize>(
-    work: PathWork<'_>,
+    work: &mut PathWork<'_>,
     guide: Guide<'_>,
     select: Select<'_>,
 ) {

@@ -76,7 +76,7 @@ pub(in crate::matching::backend) fn within_edges<P: Passes>(work: &mut PathWork<
 /// kernels in vectors have them, or one by one.
 #[inline(always)]
 pub(in crate::matching::backend) fn select<P: Passes, const ROWS: bool>(
-    mut work: PathWork<'_>,
+    work: &mut PathWork<'_>,
     guide: Guide<'_>,
     select: Select<'_>,
 ) {
@@ -85,7 +85,7 @@ pub(in crate::matching::backend) fn select<P: Passes, const ROWS: bool>(
         let begin = work.min_disparity.min(work.width);
         let WinnerRows { below, costs, above, disparities } = winners.rows(begin);
         P::select(
-            &mut work,
+            work,
             guide,
             unique,
             #[inline(always)]
@@ -101,7 +101,7 @@ pub(in crate::matching::backend) fn select<P: Passes, const ROWS: bool>(
     } else {
         let winners = winners.words();
         P::select(
-            &mut work,
+            work,
             guide,
             unique,
             #[inline(always)]
@@ -151,7 +151,7 @@ pub(in crate::matching::backend) fn within_edges_in_words<const MOST: usize>(
 /// [`Isa::sgm_select`](crate::matching::backend::Isa::sgm_select) in words.
 #[inline(always)]
 pub(in crate::matching::backend) fn select_in_words<const MOST: usize>(
-    work: PathWork<'_>,
+    work: &mut PathWork<'_>,
     guide: Guide<'_>,
     select: Select<'_>,
 ) {
@@ -180,7 +180,7 @@ pub(in crate::matching::backend) mod words {
 
     #[inline(never)]
     pub(in crate::matching::backend) fn select<P: Passes, const ROWS: bool>(
-        work: PathWork<'_>,
+        work: &mut PathWork<'_>,
         guide: Guide<'_>,
         select: Select<'_>,
     ) {

@@ -3,10 +3,10 @@
 //! path's next step on its way.
 
 use super::selection::Selection;
-use super::{COLUMNS_OFF, Guide, Path, PathWork, Steps, column, column_mut, stride};
+use super::{COLUMNS_OFF, Guide, Path, PathWork, Steps, stride};
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::portable::group::Group;
-use crate::matching::memory::slices::{chunks, chunks_mut, part, part_mut};
+use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::winners::{Found, Unique};
 use core::cell::Cell;
 
@@ -36,20 +36,23 @@ pub(super) fn select<G: Group, const CELLS: usize>(
     // first.
     let mut passed = [[steps.far; CELLS]; COLUMNS_OFF];
     for passed in &mut passed {
-        for (passed, &first) in passed.iter_mut().zip(column::<_, CELLS, false>(tops, 0, count)) {
+        for (passed, &first) in passed.iter_mut().zip(part(tops, ..count)) {
             keep_loop();
             *passed = G::of(first);
         }
     }
     let mut before = 0;
-    let pixels = here.iter().zip(chunks(costs, count)).zip(chunks_mut(sums, count));
-    for (x, ((&here, costs), sums)) in pixels.enumerate() {
+    for (x, &here) in here.iter().enumerate() {
+        let (Some(costs), Some(sums)) = (whole(costs, x, count), whole_mut(sums, x, count)) else { return };
         right.advance(&steps, steps.between(here, before), costs, costs.iter(), |_, _| ());
         before = here;
         let mut change = steps.between(here, here);
         if let Some(line) = guide.above {
-            let ahead = column::<_, CELLS, false>(tops, (x + COLUMNS_OFF).min(last), count);
-            let under = column::<_, CELLS, false>(tops, x, count);
+            let (Some(ahead), Some(under)) =
+                (whole(tops, (x + COLUMNS_OFF).min(last), count), whole(tops, x, count))
+            else {
+                return;
+            };
             let mut least = steps.far;
             let [even, odd] = &mut passed;
             let passed = if x.is_multiple_of(COLUMNS_OFF) { even } else { odd };
@@ -63,7 +66,7 @@ pub(super) fn select<G: Group, const CELLS: usize>(
             between.least = least.least();
             change = steps.between(here, line.get(x).copied().unwrap_or(0));
         }
-        let kept = column_mut::<_, CELLS, false>(tops, x, count);
+        let Some(kept) = whole_mut(tops, x, count) else { return };
         let least = between.least;
         let both = kept.iter_mut().zip(&right.cells).zip(sums);
         step(
@@ -91,7 +94,7 @@ pub(super) fn select<G: Group, const CELLS: usize>(
     let mut after = 0;
     let mut selection = Selection { stride, disparities, min_disparity, unique, put };
     for (x, &here) in here.iter().enumerate().skip(min_disparity).rev() {
-        let [costs, sums] = [&*costs, &*sums].map(|volume| column::<_, CELLS, false>(volume, x, count));
+        let (Some(costs), Some(sums)) = (whole(costs, x, count), whole(sums, x, count)) else { return };
         let both = total.0.iter_mut().zip(sums);
         left.advance(&steps, steps.between(here, after), costs, both, |(total, &sum), left| {
             *total = G::of(sum).plus_saturating(left);
@@ -99,6 +102,18 @@ pub(super) fn select<G: Group, const CELLS: usize>(
         after = here;
         selection.select_in_place(x, &mut total);
     }
+}
+
+/// A column of a volume, whole, so that the compiler knows its length; none where it is not there.
+#[inline(always)]
+fn whole<C>(volume: &[C], x: usize, count: usize) -> Option<&[C]> {
+    volume.get(x * count..)?.get(..count)
+}
+
+/// Mutable access to what [`whole`] gives.
+#[inline(always)]
+fn whole_mut<C>(volume: &mut [C], x: usize, count: usize) -> Option<&mut [C]> {
+    volume.get_mut(x * count..)?.get_mut(..count)
 }
 
 /// A path at a pixel: its costs, and behind them a cell that no path comes from.

@@ -10,9 +10,9 @@ use core::fmt;
 pub enum Kernel {
     /// Bit planes in plain 32-bit words: on every core without another kernel, and on 64-bit processors.
     Planes,
-    /// Arm's instructions on four bytes in a word (Cortex-M4, M7 and M33, with `--cfg stereopsis_dsp`).
+    /// Arm's instructions on four bytes in a word (Cortex-M4 and M7; M33 with `-C target-cpu`).
     Dsp,
-    /// The vectors of a Cortex-M55 (with `--cfg stereopsis_vectors`).
+    /// The vectors of a Cortex-M55 (with `-C target-cpu`).
     Helium,
     /// The vectors that every processor of a 64-bit target has: SSE2 or NEON.
     Lanes,

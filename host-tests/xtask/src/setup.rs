@@ -15,6 +15,17 @@ pub const TARGETS: [&str; 6] = [
     "aarch64-unknown-none",
 ];
 
+/// The targets that the core is checked for, beside those.
+pub const CHECKED: [&str; 5] = [
+    "riscv32imc-unknown-none-elf",
+    "riscv32i-unknown-none-elf",
+    "riscv64gc-unknown-none-elf",
+    "wasm32-unknown-unknown",
+    "x86_64-unknown-linux-gnu",
+];
+/// Those for which rustup may have no compiled `core`: its source is compiled for them.
+pub const FROM_SOURCE: [&str; 2] = ["thumbv8m.base-none-eabi", "armv7r-none-eabihf"];
+
 /// The emulators of the boards.
 pub const QEMU_ARM: &str = "qemu-system-arm";
 const QEMU_RISCV: &str = "qemu-system-riscv32";
@@ -26,7 +37,7 @@ pub fn qemu_of(target: &str) -> &'static str {
 
 /// Adds the targets, components and toolchain that are missing, then the packages.
 pub fn run_all() -> Outcome {
-    targets(&TARGETS)?;
+    targets(&[TARGETS.as_slice(), &CHECKED].concat())?;
     components()?;
     toolchain(&rust_version()?)?;
     packages::install(&[QEMU_ARM, QEMU_RISCV])?;
@@ -63,10 +74,10 @@ pub fn targets(needed: &[&str]) -> Outcome {
     run(&mut command("rustup", &[&["target", "add"], missing.as_slice()].concat()))
 }
 
-/// Adds rustfmt and clippy.
+/// Adds rustfmt, clippy and the source of `core`.
 fn components() -> Outcome {
     let components = installed("component")?;
-    for component in ["rustfmt", "clippy"] {
+    for component in ["rustfmt", "clippy", "rust-src"] {
         if !components.lines().any(|line| line.starts_with(component)) {
             run(&mut command("rustup", &["component", "add", component]))?;
         }

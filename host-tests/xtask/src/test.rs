@@ -5,7 +5,7 @@ use crate::c;
 use crate::firmware;
 use crate::growth;
 use crate::quickstart;
-use crate::setup::{self, TARGETS};
+use crate::setup::{self, CHECKED, FROM_SOURCE, TARGETS};
 use crate::steps::{Failure, Outcome, Steps, cargo, command, root, run as run_command, target_dir};
 use std::path::PathBuf;
 
@@ -96,13 +96,33 @@ fn documentation() -> Outcome {
     run_command(firmware::cargo("doc --locked --no-deps").env("RUSTDOCFLAGS", "-D warnings"))
 }
 
+/// The library's features.
+const FEATURES: [&str; 4] = ["async", "defmt", "embedded-graphics", "ffi"];
+
 /// The core for all targets, as generic as it was written. Machine code for them is made elsewhere: by the
 /// firmware's programs for boards and, for 64-bit Arm, by the tests of kernels.
 fn cross_checks() -> Outcome {
-    for features in [[].as_slice(), &["--features", "async,defmt,ffi"]] {
-        let mut check = cargo(&["check", "--locked", "--release", "-p", "stereopsis"]);
-        check.args(features).args(TARGETS.iter().flat_map(|target| ["--target", target]));
-        run_command(check.env("RUSTFLAGS", "-D warnings"))?;
+    let check = |features: &str, more: &[&str]| {
+        let mut check = cargo(&["check", "--locked", "-p", "stereopsis", "--features", features]);
+        check.args(more).env("RUSTFLAGS", "-D warnings");
+        check
+    };
+    let all = FEATURES.join(",");
+    let targets = [TARGETS.as_slice(), &CHECKED].concat();
+    let targets: Vec<_> = targets.into_iter().flat_map(|target| ["--target", target]).collect();
+    for features in ["", &all] {
+        run_command(&mut check(features, &targets))?;
+    }
+    for target in FROM_SOURCE {
+        let mut check = check(&all, &["-Z", "build-std=core", "--target", target]);
+        // The stable compiler takes the option as a nightly one does.
+        run_command(check.env("RUSTC_BOOTSTRAP", "1"))?;
+    }
+    // Features add code and take none away, so that one small core shows how they go together.
+    for chosen in 1..(1 << FEATURES.len()) - 1 {
+        let features = FEATURES.iter().enumerate().filter(|(i, _)| chosen >> i & 1 > 0);
+        let features: Vec<_> = features.map(|(_, feature)| *feature).collect();
+        run_command(&mut check(&features.join(","), &["--target", "riscv32imc-unknown-none-elf"]))?;
     }
     Ok(())
 }

@@ -22,7 +22,7 @@ pub struct Arguments {
     #[arg(long)]
     small: bool,
     /// The core: m0, m3, m4, m7, m33, m55 or rv32
-    #[arg(long, value_parser = core, required_unless_present_any = ["all", "stages"])]
+    #[arg(long, value_parser = core, required_unless_present_any = ["all", "stages", "profiles"])]
     core: Option<Board>,
     /// The left image, PNG, JPEG, PGM/PPM, TIFF, BMP or WebP; without images the cameras see the built-in
     /// scene
@@ -42,7 +42,7 @@ pub struct Arguments {
     #[arg(long, default_value = "auto", value_parser = noise)]
     noise: NoiseChoice,
     /// Folder for the results; made when it is missing
-    #[arg(long, value_name = "DIR", required_unless_present_any = ["all", "stages"])]
+    #[arg(long, value_name = "DIR", required_unless_present_any = ["all", "stages", "profiles"])]
     out: Option<PathBuf>,
     /// Every core, method and size on the built-in scene: writes the table of docs/performance.md
     #[arg(long, conflicts_with_all =
@@ -53,7 +53,14 @@ pub struct Arguments {
     #[arg(long, conflicts_with_all =
         ["all", "program", "small", "core", "left", "right", "disparities", "method", "noise", "out"])]
     stages: bool,
-    /// With --all or --stages: writes nothing, fails when the table in docs/performance.md is another
+    /// A program at each level of optimisation, with and without optimisation of the whole: writes the table
+    /// of docs/performance.md
+    #[arg(long, conflicts_with_all =
+        ["all", "stages", "program", "small", "core", "left", "right", "disparities", "method", "noise",
+         "out"])]
+    profiles: bool,
+    /// With --all, --stages or --profiles: writes nothing, fails when the table in docs/performance.md is
+    /// another
     #[arg(long)]
     pub check: bool,
 }
@@ -106,6 +113,8 @@ pub enum Asked {
     All,
     /// Instructions by stage.
     Stages,
+    /// Levels of optimisation.
+    Profiles,
 }
 
 impl Arguments {
@@ -117,8 +126,11 @@ impl Arguments {
         if self.stages {
             return Ok(Asked::Stages);
         }
+        if self.profiles {
+            return Ok(Asked::Profiles);
+        }
         if self.check {
-            return Err(Failure::new("--check is for --all and --stages"));
+            return Err(Failure::new("--check is for --all, --stages and --profiles"));
         }
         let (Some(board), Some(out)) = (self.core, self.out.clone()) else {
             return Err(Failure::new("--core and --out are needed, or --all"));

@@ -14,6 +14,7 @@
 //!   that an interrupt brings.
 //! * [`rectify`]: raw lines, and depth from them, likewise.
 //! * [`results`]: the run of such a program, and what it leaves; [`plain`]: the table of it.
+//! * [`stages`]: a frame's instructions by stage. [`profiles`]: a program by levels of optimisation.
 //! * [`refusals`]: a panic does not link, and a bad file is named.
 
 mod all;
@@ -31,6 +32,7 @@ mod log;
 mod odometry;
 mod plain;
 mod pose;
+mod profiles;
 pub mod program;
 mod rectify;
 mod refusals;
@@ -79,6 +81,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Asked::Interrupt(plain) => run_plain(&plain, interrupt::run, Interrupt::summary),
         Asked::All => run_all(Readme::of_check(arguments.check)),
         Asked::Stages => stages::run(Readme::of_check(arguments.check)),
+        Asked::Profiles => profiles::run(Readme::of_check(arguments.check)),
     }
 }
 
@@ -95,10 +98,11 @@ fn run_all(readme: Readme) -> Outcome {
     Ok(())
 }
 
-/// Every core and method and a part of the sizes and programs, compared with docs/performance.md; and a frame
+/// Every core and method and a part of the sizes, programs and profiles, compared with docs/performance.md; and a frame
 /// with what the program `stereo` at that path makes of it.
 pub fn check_sample(stereo: &Path) -> Outcome {
     run_all(Readme::Sample)?;
+    profiles::run(Readme::Sample)?;
     as_match::check(stereo)
 }
 

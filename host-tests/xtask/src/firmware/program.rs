@@ -116,6 +116,31 @@ impl Optimised {
     }
 }
 
+/// Optimisation over a whole program, as cargo spells it.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Lto {
+    /// All of it at once.
+    Fat,
+    /// By summaries of its parts.
+    Thin,
+    /// None.
+    Off,
+}
+
+impl Lto {
+    /// All there are.
+    pub const ALL: [Self; 3] = [Self::Fat, Self::Thin, Self::Off];
+
+    /// The name in a profile.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fat => "fat",
+            Self::Thin => "thin",
+            Self::Off => "off",
+        }
+    }
+}
+
 /// Builds a program that has no sizes to choose, with the features named; the linked file.
 pub fn build_plain(board: Board, bin: &str, optimised: Optimised, features: &str) -> Outcome<PathBuf> {
     let _turn = FOLDERS[folder_of(board)].lock().unwrap_or_else(PoisonError::into_inner);
@@ -182,6 +207,16 @@ impl Program {
         let _turn = FOLDERS[self.folder()].lock().unwrap_or_else(PoisonError::into_inner);
         let name = self.to_string();
         build(self.cargo("build --locked --release --quiet --bin depth"), &name)?;
+        Ok(Built { program: *self, elf: keep(self.board, "release/depth", &name)? })
+    }
+
+    /// Builds it at another level of optimisation.
+    pub fn build_as(&self, level: &str, lto: Lto) -> Outcome<Built> {
+        let _turn = FOLDERS[self.folder()].lock().unwrap_or_else(PoisonError::into_inner);
+        let name = format!("{self}-{level}-{}", lto.name());
+        let mut cargo = self.cargo("build --locked --release --quiet --bin depth");
+        cargo.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", level).env("CARGO_PROFILE_RELEASE_LTO", lto.name());
+        build(cargo, &name)?;
         Ok(Built { program: *self, elf: keep(self.board, "release/depth", &name)? })
     }
 

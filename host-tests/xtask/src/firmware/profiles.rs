@@ -1,0 +1,90 @@
+//! `cargo xtask firmware --profiles`: a firmware by what its optimiser is asked for. Every one links, so no
+//! panic is left in it, and none links what another number of disparities would need.
+
+use super::board::{Board, M4, RV32};
+use super::frame::{self, Frame};
+use super::program::{Lto, Program};
+use super::scene::Scene;
+use super::setup;
+use super::tables::{self, Part, Readme};
+use crate::parallel;
+use crate::pictures::Pictures;
+use crate::steps::{Failure, Outcome};
+use stereopsis_host::run::MethodName;
+
+/// A core with assembly and one without.
+const CORES: [Board; 2] = [M4, RV32];
+/// Levels of optimisation, as cargo spells them.
+const LEVELS: [&str; 3] = ["3", "s", "z"];
+/// Those of a sample.
+const SAMPLE: [(&str, Lto); 2] = [("3", Lto::Thin), ("z", Lto::Off)];
+/// Width, height and disparities.
+const SIZE: (u16, u16, u16) = (160, 120, 32);
+/// How much more flash than the least of its level a program may take.
+const MOST_GROWTH: f64 = 1.25;
+
+/// The part of docs/performance.md.
+const PART: Part = Part { name: "profiles", command: "cargo xtask firmware --profiles" };
+
+/// A program's figures.
+struct Measured {
+    level: &'static str,
+    lto: Lto,
+    frame: Frame,
+}
+
+/// Builds and runs all of it and writes the table, or compares it.
+pub fn run(readme: Readme) -> Outcome {
+    let is_sample = readme == Readme::Sample;
+    let cores = if is_sample { &CORES[..1] } else { &CORES };
+    setup::firmware(&CORES.map(|board| board.target))?;
+    let all = LEVELS.into_iter().flat_map(|level| Lto::ALL.map(|lto| (level, lto)));
+    let asked: Vec<_> = all.filter(|asked| !is_sample || SAMPLE.contains(asked)).collect();
+    let cases = cores.iter().flat_map(|&board| asked.iter().map(move |&(level, lto)| (board, level, lto)));
+    let measured = parallel::work(cases.collect(), measure)?;
+    for &board in cores {
+        for level in LEVELS {
+            let flash = |one: &Measured| one.frame.sizes.flash();
+            let of_level = || measured.iter().filter(|m| m.frame.program.board == board && m.level == level);
+            let least = of_level().map(flash).min().unwrap_or_default();
+            if let Some(large) = of_level().find(|one| flash(one) as f64 > MOST_GROWTH * least as f64) {
+                let (core, lto, flash) = (board.core, large.lto.name(), flash(large));
+                return Err(Failure::new(format!(
+                    "{core} at opt-level {level} with lto {lto}: {flash} bytes of flash, another has {least}"
+                )));
+            }
+        }
+    }
+    let table = tables::with_compiler(&table(&measured))?;
+    println!("{table}");
+    tables::into_readme(&PART, &table, readme)
+}
+
+/// One frame of the built-in scene.
+fn measure((board, level, lto): (Board, &'static str, Lto)) -> Outcome<Measured> {
+    let (width, height, disparities) = SIZE;
+    let program = Program::new(board, MethodName::Block, width, height, disparities)?;
+    let built = program.build_as(level, lto)?;
+    let scene = Pictures::of_scene(Scene { width, height })?;
+    Ok(Measured { level, lto, frame: frame::run(&built, &scene, true)? })
+}
+
+/// A line for each program.
+fn table(measured: &[Measured]) -> String {
+    let mut table = "| core | opt-level | lto | instructions | for an evaluation | stack | flash | panic \
+                     symbols |\n| --- | --- | --- | ---: | ---: | ---: | ---: | ---: |\n"
+        .to_owned();
+    for Measured { level, lto, frame } in measured {
+        table += &format!(
+            "| {} | {level} | {} | {} | {:.2} | {} | {} | {} |\n",
+            frame.program.board.core,
+            lto.name(),
+            frame.instructions,
+            frame.per_evaluation(),
+            frame.stack,
+            frame.sizes.flash(),
+            frame.sizes.panics.len()
+        );
+    }
+    table
+}

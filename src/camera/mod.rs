@@ -7,6 +7,7 @@
 //! * [`LineSource`]: one camera. [`StereoSource`]: a rectified pair.
 //! * [`LineSlots`]: a queue of lines from an interrupt or DMA to the matcher; [`HandedLines`] is the line
 //!   source at its end. [`PingPong`]: the halves of a circular DMA buffer.
+//! * [`LineSignal`]: wakes the task that awaits those lines; [`PolledLines`] is its line source.
 //! * [`CameraPair`]: two line sources as a stereo source, checked row by row, with its [`RowSkew`].
 //! * [`SideBySide`], [`Interleaved`]: one stream that carries both cameras. [`Mirrored`]: lines reversed.
 //! * [`Triggered`]: pulses the sensors' common trigger pin before every frame.
@@ -30,6 +31,11 @@
 //! and frames as the sensor does: `pipeline::Guarded` finds unreported faults by these numbers and by time
 //! stamps.
 //!
+//! A source that never blocks gives [`CameraError::WouldBlock`] where a line is still to come, so that a task
+//! can await rows (`Pipeline::next_row_async`). [`SideBySide`], [`Mirrored`], `BalancedPair` and
+//! `RectifiedPair` may stand above such a source. [`CameraPair`], [`Interleaved`] and [`Triggered`] do two
+//! things in one call and need sources that wait.
+//!
 //! # Writing a sensor driver
 //!
 //! Follow [`Mt9v034`] and [`Hm01b0`]: the bus by value, delay and reset pin where they are needed, limits
@@ -47,8 +53,10 @@ mod format;
 mod handoff;
 mod pair;
 mod ping_pong;
+mod polled;
 mod queue;
 mod sensors;
+mod signal;
 mod source;
 mod streams;
 mod trigger;
@@ -57,12 +65,14 @@ pub use format::{FrameStart, LineFormat, LineStart, PixelFormat};
 pub use handoff::{EmptyLine, FilledLine, HandedLines, LineConsumer, LineProducer, LineSlots};
 pub use pair::{CameraPair, PairError, Pairing, RowSkew};
 pub use ping_pong::{Half, PingPong};
+pub use polled::PolledLines;
 #[cfg(feature = "async")]
 pub use sensors::{AsyncHm01b0, AsyncMt9v034};
 pub use sensors::{
     ExposureControl, Hm01b0, Hm01b0Mode, Hm01b0Size, Mt9v034, Mt9v034Mode, Mt9v034Pattern, Mt9v034Window,
     SensorError,
 };
+pub use signal::{LineListener, LineNotifier, LineSignal};
 pub use source::{CameraError, ErrorType, LineFault, LineSource, StereoSource};
 pub use streams::{Interleaved, Mirrored, SideBySide, StreamError};
 pub use trigger::{TriggerError, Triggered};

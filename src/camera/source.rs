@@ -32,6 +32,9 @@ pub enum CameraError<E> {
     LineLost(LineFault),
     /// Nothing came within the source's time-out.
     TimedOut,
+    /// There is nothing yet, and the source does not wait ([`PolledLines`](super::PolledLines)). Nothing has
+    /// changed: ask again.
+    WouldBlock,
     /// The position in the frame is unknown, or the sensor began another frame: this frame is over.
     LostSync,
 }
@@ -71,6 +74,7 @@ impl<E> CameraError<E> {
             Self::NoLineLeft => CameraError::NoLineLeft,
             Self::LineLost(fault) => CameraError::LineLost(fault),
             Self::TimedOut => CameraError::TimedOut,
+            Self::WouldBlock => CameraError::WouldBlock,
             Self::LostSync => CameraError::LostSync,
         }
     }
@@ -84,6 +88,7 @@ impl<E: fmt::Display> fmt::Display for CameraError<E> {
             Self::NoLineLeft => f.write_str("no line is left in this frame"),
             Self::LineLost(fault) => write!(f, "{fault}"),
             Self::TimedOut => f.write_str("the camera gave nothing in time"),
+            Self::WouldBlock => f.write_str("the camera has nothing yet"),
             Self::LostSync => f.write_str("the sensor's frame broke off"),
         }
     }
@@ -124,6 +129,8 @@ impl<E: fmt::Display + fmt::Debug> core::error::Error for CameraError<E> {}
 /// * [`FrameStart::sequence`] grows with every frame, and time stamps do not run backwards: that exposes a
 ///   buffer which is delivered twice.
 /// * After the last line, `next_line` is [`CameraError::NoLineLeft`] until a frame is started.
+/// * A source that does not block gives [`CameraError::WouldBlock`] from both calls until the frame, or the
+///   line, is there.
 /// * After an error the caller may start the next frame, or ask for the next line. A source that can go on
 ///   within the frame reports the row; one that cannot fails again.
 ///

@@ -9,7 +9,8 @@ use core::fmt;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum PipelineError<E> {
-    /// The camera failed; its own error is inside. The frame is over, the next one may begin.
+    /// The camera failed; its own error is inside. The frame is over, the next one may begin; but after
+    /// [`CameraError::WouldBlock`] the frame goes on, and the call is to be repeated.
     Camera(CameraError<E>),
     /// The camera's frames have another size than the pipeline was started for, or are not
     /// [`PixelFormat::Grey8`](crate::camera::PixelFormat::Grey8).
@@ -61,6 +62,13 @@ impl<E: fmt::Display> fmt::Display for PipelineError<E> {
 }
 
 impl<E: fmt::Display + fmt::Debug> core::error::Error for PipelineError<E> {}
+
+impl<E> PipelineError<E> {
+    /// Whether the frame goes on, because the camera has nothing yet.
+    pub(super) const fn is_pause(&self) -> bool {
+        matches!(self, Self::Camera(CameraError::WouldBlock))
+    }
+}
 
 impl<E> From<CameraError<E>> for PipelineError<E> {
     fn from(e: CameraError<E>) -> Self {

@@ -122,7 +122,9 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
         let start = match self.pipeline.begin_frame(camera) {
             Ok(start) => start,
             Err(e) => {
-                if let PipelineError::Camera(_) = e {
+                if let PipelineError::Camera(_) = e
+                    && !e.is_pause()
+                {
                     count(&mut self.lines.counters.frames_failed, 1);
                 }
                 return Err(e);
@@ -159,7 +161,9 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
         let Self { pipeline, lines, .. } = self;
         match pipeline.advance(|pipeline| lines.take(pipeline, camera)) {
             Err(e) => {
-                self.give_up();
+                if !e.is_pause() {
+                    self.give_up();
+                }
                 Err(e)
             }
             Ok(false) => {

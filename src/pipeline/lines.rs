@@ -109,6 +109,7 @@ impl LineGuard {
                 },
                 Err(CameraError::LineLost(fault)) => (counter_of(fault), CameraError::LineLost(fault).into()),
                 Err(CameraError::TimedOut) => (|c| &mut c.lines_timed_out, CameraError::TimedOut.into()),
+                Err(CameraError::WouldBlock) => return Err(CameraError::WouldBlock.into()),
                 Err(CameraError::NoLineLeft) => {
                     self.is_short = true;
                     continue;

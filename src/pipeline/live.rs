@@ -103,7 +103,9 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
                 Ok(self.row().filter(|_| is_out))
             }
             Err(e) => {
-                self.stop();
+                if !e.is_pause() {
+                    self.stop();
+                }
                 Err(e)
             }
         }

@@ -40,6 +40,13 @@
 //! [`CameraPair`]: crate::camera::CameraPair
 //! [`PairMonitor`]: crate::imaging::PairMonitor
 //!
+//! # In a task
+//!
+//! With a source that does not block ([`PolledLines`](crate::camera::PolledLines)) a task of any executor
+//! awaits rows by [`Pipeline::next_row_async`] and [`Guarded::next_row_async`]. Without an executor, the
+//! blocking calls give [`CameraError::WouldBlock`](crate::camera::CameraError::WouldBlock), after which the
+//! frame goes on: the same call is repeated when a line is there.
+//!
 //! # In an application
 //!
 //! Optional stages stand before and after the pipeline: [`RectifiedPair`](crate::imaging::RectifiedPair) for
@@ -85,6 +92,7 @@ mod error;
 mod guarded;
 mod lines;
 mod live;
+mod waited;
 
 pub use counters::FaultCounters;
 pub use error::{PipelineError, PushError};

@@ -1,7 +1,7 @@
 //! What brings lines from sensors.
 //!
 //! * `scripted`: cameras that do what a test says, and what stands on cameras.
-//! * `handoff`: lines from an interrupt. `formats`: pixel formats and streams of two cameras.
+//! * `handoff`: lines from an interrupt; `signal`: the task that they wake. `formats`: pixel formats and streams of two cameras.
 //! * `sensors`, `hm01b0`: what is written to them; `waited`: the same over a bus that is waited for.
 
 mod formats;
@@ -9,4 +9,5 @@ mod handoff;
 mod hm01b0;
 mod scripted;
 mod sensors;
+mod signal;
 mod waited;

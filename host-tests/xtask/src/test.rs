@@ -2,9 +2,9 @@
 
 use crate::arm;
 use crate::c;
+use crate::examples;
 use crate::firmware;
 use crate::growth;
-use crate::quickstart;
 use crate::setup::{self, CHECKED, FROM_SOURCE, TARGETS};
 use crate::steps::{Failure, Outcome, Steps, cargo, command, root, run as run_command, target_dir};
 use std::path::PathBuf;
@@ -31,7 +31,8 @@ pub fn run(only: Option<String>) -> Outcome {
     let version = setup::rust_version()?;
     steps.step(&format!("stated rust-version {version}"), || rust_version(&version))?;
     steps.step("firmware", || firmware::check_sample(&stereo()))?;
-    steps.step("quickstart", quickstart::run)?;
+    steps.step("quickstart", || examples::QUICKSTART.run())?;
+    steps.step("async", || examples::ASYNC.run())?;
     steps.step("growth", growth::sample)?;
     steps.step("C interface", c::run)?;
     steps.step("README's commands", readme_commands)?;

@@ -1,0 +1,59 @@
+//! `examples/quickstart` and `examples/async`: linted, built as their reader builds them, and run in QEMU.
+
+use crate::setup;
+use crate::steps::{Failure, Outcome, command, ended_within, root, run as run_command, target_dir};
+use std::process::Command;
+use std::time::Duration;
+
+const TARGET: &str = "thumbv7em-none-eabihf";
+
+/// An example for the emulated Cortex-M4.
+pub struct Example {
+    /// Its folder's name, which is its program's too.
+    name: &'static str,
+    /// What it prints.
+    printed: &'static str,
+}
+
+/// The smallest firmware. It prints f b / d of the box, 140 px x 60 mm / 16 px, by its sub-pixel disparities.
+pub const QUICKSTART: Example = Example { name: "quickstart", printed: "nearest: 524 mm" };
+
+/// Rows that a task awaits. No line may be lost, and the other task may not starve.
+pub const ASYNC: Example = Example {
+    name: "async",
+    printed: "\
+frame 1: nearest mm 524, lines lost 0; the other task had turns
+frame 2: nearest mm 524, lines lost 0; the other task had turns
+frame 3: nearest mm 524, lines lost 0; the other task had turns",
+};
+
+impl Example {
+    /// Cargo in the example's folder, where its own configuration has the flags.
+    fn cargo(&self, words: &str) -> Command {
+        let mut cargo = command("cargo", &words.split_whitespace().collect::<Vec<_>>());
+        cargo.current_dir(root().join("examples").join(self.name));
+        cargo.env("CARGO_TARGET_DIR", target_dir().join(self.name));
+        cargo
+    }
+
+    /// The test step.
+    pub fn run(&self) -> Outcome {
+        run_command(&mut self.cargo("fmt --check"))?;
+        run_command(&mut self.cargo(&format!("clippy --locked --release --target {TARGET} -- -D warnings")))?;
+        run_command(&mut self.cargo(&format!("build --locked --release --target {TARGET}")))?;
+        let mut qemu = command(setup::qemu_of(TARGET), &["-machine", "mps2-an386", "-nographic"]);
+        // Time is instructions: a slow host loses no line of the timer's.
+        qemu.args(["-icount", "shift=0,align=off,sleep=off"]);
+        qemu.args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
+        qemu.arg(target_dir().join(self.name).join(TARGET).join("release").join(self.name));
+        // Text without a file is what QEMU writes on standard error.
+        let ended = ended_within(&mut qemu, Duration::from_secs(60))?;
+        let printed = format!("{}{}", ended.stdout, ended.stderr);
+        let (name, printed) = (self.name, printed.trim());
+        println!("{printed}");
+        if ended.status.success() && printed == self.printed {
+            return Ok(());
+        }
+        Err(Failure::new(format!("examples/{name} printed '{printed}', not '{}'", self.printed)))
+    }
+}

@@ -5,6 +5,7 @@
 //!
 //! * [`Pipeline`]: line windows and matcher in one block of memory.
 //! * [`Guarded`]: a pipeline that tolerates camera faults, with [`FaultCounters`].
+//! * [`Band`]: a frame in bands of rows, for pipelines on several cores.
 //! * [`PipelineError`], [`PushError`]: why there is no row, when lines are pulled and when they are pushed.
 //!
 //! ```text
@@ -83,10 +84,9 @@
 //! # let _ = TemporalFilter::<160, 120>::new(TemporalConfig::default());
 //! ```
 //!
-//! Two cores can share a frame as two pipelines with a band of rows each, bit-equal to one pipeline: a band
-//! takes [`Pipeline::LATENCY`] more lines below than it gives rows, and above as many and
-//! [`Checks::speckle_pixels`](crate::matching::Checks::speckle_pixels) more.
+//! Two cores can share a frame as two pipelines with a [`Band`] of rows each.
 
+mod band;
 mod counters;
 mod error;
 mod guarded;
@@ -94,6 +94,7 @@ mod lines;
 mod live;
 mod waited;
 
+pub use band::{Band, Bands};
 pub use counters::FaultCounters;
 pub use error::{PipelineError, PushError};
 pub use guarded::Guarded;

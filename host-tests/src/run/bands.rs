@@ -1,51 +1,26 @@
 //! A frame in bands of rows, one thread each: what a chip with two cores does with two pipelines.
 //!
-//! With the block methods every row is bit-equal to that of one pipeline over the whole frame, because each
-//! band sees more lines than it gives rows:
-//!
-//! * below, as many as a row waits for: [`MethodName::latency_lines`](super::MethodName::latency_lines);
-//! * above, as many again, for windows and for the uncertainty, which looks back at finished rows; one for
-//!   the median, which looks at the row above; and one for each answer that the speckle filter asks for,
-//!   since a surface that goes on through so many rows has them.
-//!
-//! Along paths ([`MethodName::is_exact_in_bands`](super::MethodName::is_exact_in_bands) says no) a band's
-//! first rows lack what a path from above has gathered farther up: `tests/matching/threads.rs` measures how
-//! many answers that changes.
-//!
-//! The lines that are worked on twice are the price: 34 above and 10 below with `block` and the default
-//! checks.
+//! The core splits the frame ([`Band::split`]): bands take the lines above and below that their rows need,
+//! and have as equally many lines as can be. Along paths
+//! ([`MethodName::is_exact_in_bands`](super::MethodName::is_exact_in_bands) says no) a band's first rows lack
+//! what a path from above has gathered farther up: `tests/matching/threads.rs` measures how many answers that
+//! changes.
 
 use super::method::with_method;
 use super::{Host, MemoryPair, Outcome, RunError, RunOptions, frame};
 use crate::map::DisparityMap;
-use std::ops::Range;
 use std::sync::Barrier;
 use std::thread::{Builder, scope};
 use std::time::Instant;
 use stereopsis::matching::{Config, ConfigError, Kernel, Method, Row};
+use stereopsis::pipeline::Band;
 
 /// A thread's stack: it holds a pipeline.
 const STACK: usize = 16 << 20;
 
-/// Rows that a thread gives, and the lines that it sees for them.
-#[derive(Clone, PartialEq, Eq, Debug)]
-struct Band {
-    rows: Range<usize>,
-    lines: Range<usize>,
-}
-
-/// The bands of a frame, as even as whole rows can be.
+/// The bands of a frame.
 fn bands(options: RunOptions, config: &Config) -> Vec<Band> {
-    let height = usize::from(config.height);
-    let count = usize::from(options.threads).clamp(1, height);
-    let below = options.method.latency_lines();
-    let above = below + usize::from(config.checks.median) + usize::from(config.checks.speckle_pixels);
-    let band = |band: usize| {
-        let rows = band * height / count..(band + 1) * height / count;
-        let lines = rows.start.saturating_sub(above)..height.min(rows.end + below);
-        Band { rows, lines }
-    };
-    (0..count).map(band).collect()
+    with_method!(options.method, S => Band::split::<S>(config, options.threads).collect())
 }
 
 /// A pair of pictures in bands.
@@ -58,7 +33,8 @@ pub(super) struct Bands {
 impl Bands {
     pub(super) fn new(options: RunOptions, config: &Config, pair: &MemoryPair) -> Self {
         let part = |band: Band| {
-            let lines = pair.rows(band.lines.clone());
+            let lines = band.lines();
+            let lines = pair.rows(lines.start.into()..lines.end.into());
             (band, lines)
         };
         Self { options, config: *config, parts: bands(options, config).into_iter().map(part).collect() }
@@ -68,11 +44,12 @@ impl Bands {
     pub(super) fn run(&mut self) -> Result<Outcome, ConfigError> {
         let width = usize::from(self.config.width);
         let results = self.in_threads(|band, frame| {
-            let mut map = DisparityMap::new(width, band.rows.len());
-            let first = band.rows.start - band.lines.start;
-            let (kernel, time_ms) = frame(&mut |row| match usize::from(row.index()).checked_sub(first) {
-                Some(y) if y < band.rows.len() => map.put(y, row),
-                _ => {}
+            let mut map = DisparityMap::new(width, band.rows().len());
+            let first = band.rows().start;
+            let (kernel, time_ms) = frame(&mut |row| {
+                if let Some(y) = band.row(row.index()) {
+                    map.put(usize::from(y - first), row);
+                }
             })?;
             Ok(Outcome { map, kernel, time_ms })
         });
@@ -141,30 +118,11 @@ fn with_pipeline<S: Method, T>(
     pair: &mut MemoryPair,
     work: &impl Fn(&Band, &mut Frame<'_>) -> T,
 ) -> T {
-    let config = Config { height: band.lines.len() as u16, ..*config };
+    let config = band.config(config);
     let mut pipeline = Host::<S>::new();
     work(band, &mut |keep| match frame(options, &mut pipeline, &config, pair, keep) {
         Ok(done) => Ok(done),
         Err(RunError::Config(e)) => Err(e),
         Err(RunError::Pipeline(e)) => panic!("a source that cannot fail: {e}"),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::MethodName;
-    use super::*;
-    use stereopsis::matching::Block;
-
-    #[test]
-    fn bands_cover_the_frame() {
-        let options = RunOptions { threads: 3, ..MethodName::Block.into() };
-        let ranges = |height| {
-            bands(options, &Config::for_method::<Block>(64, height, 16))
-                .into_iter()
-                .map(|b| (b.rows, b.lines))
-        };
-        assert!(ranges(100).eq([(0..33, 0..43), (33..66, 0..76), (66..100, 32..100)]));
-        assert!(ranges(2).eq([(0..1, 0..2), (1..2, 0..2)]));
-    }
 }

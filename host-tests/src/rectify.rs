@@ -2,8 +2,9 @@
 
 use crate::run::MemoryPair;
 use image::{GrayImage, RgbImage};
+use std::fmt;
 use stereopsis::camera::{CameraError, StereoSource};
-use stereopsis::geometry::rectify::Rectification;
+use stereopsis::geometry::{Real, rectify::Rectification};
 use stereopsis::imaging::{
     RectifiedPair, RectifiedPairError, Remap, RemapError, RemapPair, RemapTable, RemapTableError,
 };
@@ -12,6 +13,8 @@ use stereopsis::imaging::{
 const WIDTH: usize = 4096;
 const LINES: usize = 1025;
 const SLOTS: usize = 300_000;
+/// The fewest lines that a remap may have.
+const FEWEST_LINES: usize = 3;
 /// The remaps are made and moved on the stack.
 const STACK: usize = 256 << 20;
 
@@ -108,9 +111,60 @@ pub fn rectify_colours(
     Ok((new_left, new_right))
 }
 
+/// What a firmware's remaps take; shown as the type to write.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct RemapCapacity {
+    /// Columns of the raw and the rectified images.
+    pub width: usize,
+    /// Raw lines of each camera that are held at once, and the copy of one.
+    pub lines: usize,
+    /// Slots of the larger table.
+    pub slots: usize,
+}
+
+impl RemapCapacity {
+    /// The least that a rectification takes.
+    pub fn of<T: Real>(rectification: &Rectification<T>) -> Result<Self, RectifyPicturesError> {
+        std::thread::scope(|scope| {
+            let in_thread = || {
+                let pair = remaps(rectification)?;
+                let tables = pair.remaps().map(|remap| remap.table());
+                let sizes = tables.iter().flat_map(|table| [table.size().width, table.raw_size().width]);
+                let width = sizes.max().unwrap_or(0).into();
+                let slots = tables.map(RemapTable::slots_taken).into_iter().max().unwrap_or(0);
+                // A band of fewer lines is refused by the type.
+                Ok(Self { width, lines: pair.lines_needed().max(FEWEST_LINES), slots })
+            };
+            let builder = std::thread::Builder::new().stack_size(STACK);
+            let thread = builder.spawn_scoped(scope, in_thread).map_err(RectifyPicturesError::Thread)?;
+            thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        })
+    }
+
+    /// What two capacities take.
+    pub fn max(self, other: Self) -> Self {
+        Self {
+            width: self.width.max(other.width),
+            lines: self.lines.max(other.lines),
+            slots: self.slots.max(other.slots),
+        }
+    }
+
+    /// Bytes of the remaps and their masks, but for a few words.
+    pub const fn bytes(self) -> usize {
+        2 * (self.width * (self.lines + 1) + 8 * self.slots)
+    }
+}
+
+impl fmt::Display for RemapCapacity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "RemapPair<{}, {}, {}>", self.width, self.lines, self.slots)
+    }
+}
+
 /// The remaps of both cameras.
-fn remaps(
-    rectification: &Rectification<f64>,
+fn remaps<T: Real>(
+    rectification: &Rectification<T>,
 ) -> Result<Box<RemapPair<WIDTH, LINES, SLOTS>>, RectifyPicturesError> {
     let [first, second] = rectification.warps();
     let remap = |side, warp| {

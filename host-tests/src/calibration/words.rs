@@ -1,6 +1,7 @@
 //! A rig in words.
 
 use super::{Calibration, RawCalibration};
+use crate::rectify::RemapCapacity;
 use nalgebra::{Point2, Vector2};
 use std::fmt::Write;
 use stereopsis::geometry::{
@@ -25,6 +26,13 @@ pub fn describe(calibration: &RawCalibration, disparities: u16) -> Result<String
 /// What looks wrong with a rig, as [`describe`] says it. A rig that cannot be rectified is refused.
 pub fn warnings(rig: &StereoRig<f64>) -> Result<Vec<String>, RectifyError> {
     Ok(described(rig, "", Config::FEWEST_DISPARITIES)?.1)
+}
+
+/// What the firmware's remaps take, which has the rig in either type; `None` where a remap cannot be.
+fn remap_capacity(rig: &StereoRig<f64>, rectified: &Rectification<f64>) -> Option<RemapCapacity> {
+    let single = StereoRig::<f32>::from_record(&rig.to_record()).ok()?;
+    let single = Rectification::new(&single, Crop::Natural, rectified.size()).ok()?;
+    Some(RemapCapacity::of(rectified).ok()?.max(RemapCapacity::of(&single).ok()?))
 }
 
 /// What a rig is in words, and what looks wrong with it.
@@ -62,6 +70,10 @@ fn described(
         report.rows[0],
         report.rows[1]
     );
+    if let Some(capacity) = remap_capacity(rig, &rectified) {
+        let kilobytes = capacity.bytes().div_ceil(1024);
+        let _ = writeln!(text, "firmware     {capacity} for Crop::Natural at this size, {kilobytes} KB");
+    }
     depths(f * b, 0.0, disparities, &mut text);
     warnings.extend(baseline_warning(b));
     if angle > 10.0 {

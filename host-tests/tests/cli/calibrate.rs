@@ -107,6 +107,7 @@ fn a_rig_is_calibrated_checked_and_converted() {
         "{words}"
     );
     assert!(words.contains("nothing looks wrong"), "{words}");
+    assert!(words.contains("\nfirmware     RemapPair<240, "), "{words}");
     let convert = |from: &str, to: &str, out: &str| {
         let run = stereo(["calib", "convert", "--calib", &file(from), "--to", to, "--out", &file(out)]);
         assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));

@@ -4,11 +4,11 @@ use super::remap::{QVGA, SLOTS, Table, camera, noise, rectified};
 use image::GrayImage;
 use stereopsis::camera::{CameraPair, LineSource, StereoSource};
 use stereopsis::geometry::{camera::ImageSize, rectify::Crop};
-use stereopsis::imaging::{RectifiedPair, RectifiedPairError, Remap, RemapPair};
+use stereopsis::imaging::{RectifiedPair, RectifiedPairError, Remap, RemapError, RemapPair, RemapTable};
 use stereopsis::matching::Config;
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::mock::MockCamera;
-use stereopsis_host::rectify::{rectify, with_rectified};
+use stereopsis_host::rectify::{RemapCapacity, rectify, with_rectified};
 use stereopsis_host::run::{MemoryPair, MethodName, RunOptions, run};
 use stereopsis_host::twin::remap as twin;
 
@@ -49,6 +49,26 @@ fn a_pair_is_taken_in_step() {
             }
         }
     }
+    // What it says that it takes is enough, and one line fewer is refused.
+    let (lines, taken) = (set.lines_needed(), RemapCapacity::of(&both).expect("remaps"));
+    let slots = tables.iter().map(Table::slots_taken).max().expect("two");
+    assert_eq!(taken, RemapCapacity { width: 320, lines, slots });
+    assert_eq!(taken.to_string(), "RemapPair<320, 19, 263>");
+    let exact = Box::new(RemapPair::<320, 19, 263>::empty());
+    assert!(size_of_val(&*exact) <= taken.bytes() + 256);
+    let takes = |mut pair: Box<RemapPair<320, 19, 263>>| {
+        pair.set(&both).map_err(|e| e.to_string())?;
+        RectifiedPair::new(source(), &mut pair).map(|_| ()).map_err(|e| e.to_string())
+    };
+    assert_eq!(takes(exact), Ok(()));
+    let mut short = Box::new(RemapPair::<320, 18, 263>::empty());
+    let refused = match short.set(&both) {
+        Err(refused) => Err(RectifiedPairError::Remap(refused)),
+        Ok(()) => RectifiedPair::new(source(), &mut short).map(|_| ()),
+    };
+    assert_eq!(refused, Err(RectifiedPairError::Remap(RemapError::Lines { needed: lines })));
+    assert!(RemapPair::<320, 19, 262>::empty().set(&both).is_err());
+    assert!(slots <= RemapTable::<0>::most_slots(QVGA));
     // Each alone needs fewer rows than both in step.
     let most = tables.iter().map(Table::rows).max().expect("two");
     assert!(usize::from(most) < 39);

@@ -35,6 +35,20 @@ impl<const W: usize, const N: usize, const SLOTS: usize> RemapPair<W, N, SLOTS> 
     pub fn remaps(&self) -> [&Remap<W, N, SLOTS>; 2] {
         [&self.left, &self.right]
     }
+
+    /// Returns the least `N` for which a [`RectifiedPair`] takes these remaps: a camera's lines are held until
+    /// the other's next line is in, which may be more lines than each remap needs alone.
+    pub fn lines_needed(&self) -> usize {
+        let tables = self.remaps().map(Remap::table);
+        let height = tables.map(|table| table.size().height).into_iter().max().unwrap_or(0);
+        let (mut came, mut most) = (0, 0);
+        for row in 0..height {
+            let needs = tables.map(|table| table.raw_rows(row));
+            came = needs.iter().flatten().fold(came, |came, (_, last)| came.max(*last));
+            most = needs.iter().flatten().fold(most, |most, (first, _)| most.max(came - first + 1));
+        }
+        usize::from(most) + 1
+    }
 }
 
 /// Stereo source of rectified lines over a source of raw lines.
@@ -108,14 +122,9 @@ impl<'a, S: StereoSource, const W: usize, const N: usize, const SLOTS: usize>
         if left.table().size() != right.table().size() {
             return Err(RectifiedPairError::Sizes);
         }
-        let (mut came, mut most) = (0, 0);
-        for row in 0..left.table().size().height {
-            let needs = [left.table().raw_rows(row), right.table().raw_rows(row)];
-            came = needs.iter().flatten().fold(came, |came, (_, last)| came.max(*last));
-            most = needs.iter().flatten().fold(most, |most, (first, _)| most.max(came - first + 1));
-        }
-        if usize::from(most) + 1 > N {
-            return Err(RectifiedPairError::Remap(RemapError::Lines { needed: usize::from(most) + 1 }));
+        let needed = pair.lines_needed();
+        if needed > N {
+            return Err(RectifiedPairError::Remap(RemapError::Lines { needed }));
         }
         let last = LineStart { row: 0, timestamp_us: 0 };
         Ok(Self { source, pair, last })

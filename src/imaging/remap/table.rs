@@ -85,6 +85,25 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         Self::nodes(size, shift) + (size.height as usize).div_ceil(2)
     }
 
+    /// Number of slots that suffice for every warp to an image of this size. The slots of one warp may be a
+    /// tenth: `stereo calib check` says them for a rig, as a [`RemapPair`](super::RemapPair) to copy.
+    ///
+    /// ```
+    /// use stereopsis::{geometry::camera::ImageSize, imaging::{RemapPair, RemapTable}};
+    /// const SIZE: ImageSize = ImageSize { width: 160, height: 120 };
+    /// // Lines for rows that move by up to 30 px across the image, and a copy.
+    /// static REMAPS: RemapPair<160, 32, { RemapTable::<0>::most_slots(SIZE) }> = RemapPair::empty();
+    /// # assert!(size_of_val(&REMAPS) < 20 << 10);
+    /// ```
+    pub const fn most_slots(size: ImageSize) -> usize {
+        Self::slots(size, FINEST)
+    }
+
+    /// Returns the number of slots that this table takes.
+    pub const fn slots_taken(&self) -> usize {
+        Self::slots(self.size, self.shift as u32)
+    }
+
     /// Number of lattice points.
     const fn nodes(size: ImageSize, shift: u32) -> usize {
         lattice(size.width, shift) * lattice(size.height, shift)

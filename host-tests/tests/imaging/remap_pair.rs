@@ -2,7 +2,9 @@
 
 use super::remap::{QVGA, SLOTS, Table, camera, noise, rectified};
 use image::GrayImage;
-use stereopsis::camera::{CameraPair, LineSource, StereoSource};
+use stereopsis::camera::{
+    CameraError, CameraPair, ErrorType, FrameStart, LineFormat, LineSource, LineStart, StereoSource,
+};
 use stereopsis::geometry::{camera::ImageSize, rectify::Crop};
 use stereopsis::imaging::{RectifiedPair, RectifiedPairError, Remap, RemapError, RemapPair, RemapTable};
 use stereopsis::matching::Config;
@@ -139,4 +141,74 @@ fn nothing_that_was_not_seen_becomes_an_answer() {
         }
         assert!(lost > 20, "{method}: {lost}");
     }
+}
+
+/// A source that has nothing yet before every frame and line.
+struct Pausing<S>(S, bool);
+
+impl<S: StereoSource> Pausing<S> {
+    fn pause(&mut self) -> Result<(), CameraError<S::Error>> {
+        self.1 = !self.1;
+        if self.1 { Err(CameraError::WouldBlock) } else { Ok(()) }
+    }
+}
+
+impl<S: ErrorType> ErrorType for Pausing<S> {
+    type Error = S::Error;
+}
+
+impl<S: StereoSource> StereoSource for Pausing<S> {
+    fn format(&self) -> LineFormat {
+        self.0.format()
+    }
+
+    fn max_row_skew_us(&self) -> u32 {
+        self.0.max_row_skew_us()
+    }
+
+    fn start_frame(&mut self) -> Result<FrameStart, CameraError<S::Error>> {
+        self.pause()?;
+        self.0.start_frame()
+    }
+
+    fn next_lines(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<LineStart, CameraError<S::Error>> {
+        self.pause()?;
+        self.0.next_lines(left, right)
+    }
+}
+
+/// A source that does not block may stand below: a call is repeated, and goes on where it was.
+#[test]
+fn a_pair_goes_on_where_its_source_had_nothing_yet() {
+    let lens = camera(QVGA, 300.0, [-0.1, 0.02, 0.0, 0.0, 0.0]);
+    let both = rectified(QVGA, [lens.clone(), lens], [0.02, 0.01, 0.02], Crop::Alpha(1.0));
+    let raw = [noise(QVGA, 8), noise(QVGA, 9)];
+    let expected = both.warps().map(|warp| Table::new(&warp).expect("a table"));
+    let expected = [0, 1].map(|camera| twin::remap(&expected[camera], &raw[camera]).0);
+    let [left, right] = raw.map(GrayImage::into_raw);
+    let source = Pausing(MemoryPair::new(320, left, right).expect("of one size"), false);
+    let mut remaps = Box::new(RemapPair::<320, 40, SLOTS>::empty());
+    remaps.set(&both).expect("enough rows");
+    let mut pair = RectifiedPair::new(source, &mut remaps).expect("enough rows for both");
+    let mut pauses = 0;
+    while pair.start_frame() == Err(CameraError::WouldBlock) {
+        pauses += 1;
+    }
+    for row in 0..QVGA.height {
+        let [mut left, mut right] = [[0; 320]; 2];
+        let start = loop {
+            match pair.next_lines(&mut left, &mut right) {
+                Err(CameraError::WouldBlock) => pauses += 1,
+                start => break start.expect("a row"),
+            }
+        };
+        assert_eq!(start.row, row);
+        let here = usize::from(row) * 320..usize::from(row + 1) * 320;
+        assert_eq!(
+            [&left[..], &right[..]],
+            expected.each_ref().map(|e| &e.as_raw()[here.clone()]),
+            "row {row}"
+        );
+    }
+    assert!(pauses > 200, "{pauses}");
 }

@@ -1,4 +1,5 @@
 //! `examples/quickstart` and `examples/async`: linted, built as their reader builds them, and run in QEMU.
+//! `examples/boards`: built.
 
 use crate::setup;
 use crate::steps::{Failure, Outcome, command, ended_within, root, run as run_command, target_dir};
@@ -27,20 +28,37 @@ frame 2: nearest mm 524, lines lost 0; the other task had turns
 frame 3: nearest mm 524, lines lost 0; the other task had turns",
 };
 
-impl Example {
-    /// Cargo in the example's folder, where its own configuration has the flags.
-    fn cargo(&self, words: &str) -> Command {
-        let mut cargo = command("cargo", &words.split_whitespace().collect::<Vec<_>>());
-        cargo.current_dir(root().join("examples").join(self.name));
-        cargo.env("CARGO_TARGET_DIR", target_dir().join(self.name));
-        cargo
-    }
+/// Boards of vendors, which QEMU has not: folder and target.
+const BOARDS: [(&str, &str); 2] =
+    [("rp2350", "thumbv8m.main-none-eabihf"), ("stm32h743", "thumbv7em-none-eabihf")];
 
+/// The test step of the boards. Each has a folder of products, since they share few of them.
+pub fn boards() -> Outcome {
+    for (name, target) in BOARDS {
+        for words in ["fmt --check".to_owned(), format!("build --locked --release --target {target}")] {
+            run_command(&mut cargo(&format!("boards/{name}"), &words))?;
+        }
+    }
+    Ok(())
+}
+
+/// Cargo in a folder of the examples, where its own configuration has the flags.
+fn cargo(folder: &str, words: &str) -> Command {
+    let mut cargo = command("cargo", &words.split_whitespace().collect::<Vec<_>>());
+    cargo.current_dir(root().join("examples").join(folder));
+    cargo.env("CARGO_TARGET_DIR", target_dir().join(folder));
+    cargo
+}
+
+impl Example {
     /// The test step.
     pub fn run(&self) -> Outcome {
-        run_command(&mut self.cargo("fmt --check"))?;
-        run_command(&mut self.cargo(&format!("clippy --locked --release --target {TARGET} -- -D warnings")))?;
-        run_command(&mut self.cargo(&format!("build --locked --release --target {TARGET}")))?;
+        run_command(&mut cargo(self.name, "fmt --check"))?;
+        run_command(&mut cargo(
+            self.name,
+            &format!("clippy --locked --release --target {TARGET} -- -D warnings"),
+        ))?;
+        run_command(&mut cargo(self.name, &format!("build --locked --release --target {TARGET}")))?;
         let mut qemu = command(setup::qemu_of(TARGET), &["-machine", "mps2-an386", "-nographic"]);
         // Time is instructions: a slow host loses no line of the timer's.
         qemu.args(["-icount", "shift=0,align=off,sleep=off"]);

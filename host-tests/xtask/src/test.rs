@@ -33,6 +33,7 @@ pub fn run(only: Option<String>) -> Outcome {
     steps.step("firmware", || firmware::check_sample(&stereo()))?;
     steps.step("quickstart", || examples::QUICKSTART.run())?;
     steps.step("async", || examples::ASYNC.run())?;
+    steps.step("boards", examples::boards)?;
     steps.step("growth", growth::sample)?;
     steps.step("C interface", c::run)?;
     steps.step("README's commands", readme_commands)?;

@@ -1,7 +1,8 @@
 //! What brings lines from sensors.
 //!
 //! * `scripted`: cameras that do what a test says, and what stands on cameras.
-//! * `handoff`: lines from an interrupt; `signal`: the task that they wake. `formats`: pixel formats and streams of two cameras.
+//! * `handoff`: lines from an interrupt; `signal`: the task that they wake. `formats`: pixel formats and
+//!   streams of two cameras.
 //! * `sensors`, `hm01b0`: what is written to them; `waited`: the same over a bus that is waited for.
 
 mod formats;

@@ -4,7 +4,7 @@
 //! * `layering`: data moves down the list of modules. `circles`: no circle and no upward arrow inside a
 //!   module.
 //! * `readme`: its commands work and its figures are current. `firmware`: the example's parts without
-//!   hardware.
+//!   hardware. `pio`: a board's program for its pins.
 //! * `lines`, `comments`, `names`: what a reader meets: line lengths, doc comments that stand alone, unique
 //!   public names.
 //! * `source`: the files, for the others. `paths`: what a file names.
@@ -17,5 +17,6 @@ mod layering;
 mod lines;
 mod names;
 mod paths;
+mod pio;
 mod readme;
 mod source;

@@ -6,6 +6,14 @@ use crate::geometry::{Real, rectify::Rectification};
 use core::fmt;
 
 /// Remaps of two cameras with the masks of their last lines, for a static.
+///
+/// ```
+/// use stereopsis::{geometry::camera::ImageSize, imaging::{RemapPair, RemapTable}};
+/// const SIZE: ImageSize = ImageSize { width: 160, height: 120 };
+/// // Lines for rows that move by up to 30 px across the image, and a copy.
+/// static REMAPS: RemapPair<160, 32, { RemapTable::<0>::most_slots(SIZE) }> = RemapPair::empty();
+/// # assert!(size_of_val(&REMAPS) < 20 << 10);
+/// ```
 #[derive(Clone, Debug)]
 pub struct RemapPair<const W: usize, const N: usize, const SLOTS: usize> {
     left: Remap<W, N, SLOTS>,
@@ -36,8 +44,8 @@ impl<const W: usize, const N: usize, const SLOTS: usize> RemapPair<W, N, SLOTS> 
         [&self.left, &self.right]
     }
 
-    /// Returns the least `N` for which a [`RectifiedPair`] takes these remaps: a camera's lines are held until
-    /// the other's next line is in, which may be more lines than each remap needs alone.
+    /// Returns the least `N` for which a [`RectifiedPair`] takes these remaps: a camera's lines are held
+    /// until the other's next line is in, which may be more lines than each remap needs alone.
     pub fn lines_needed(&self) -> usize {
         let tables = self.remaps().map(Remap::table);
         let height = tables.map(|table| table.size().height).into_iter().max().unwrap_or(0);

@@ -87,14 +87,6 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
 
     /// Number of slots that suffice for every warp to an image of this size. The slots of one warp may be a
     /// tenth: `stereo calib check` says them for a rig, as a [`RemapPair`](super::RemapPair) to copy.
-    ///
-    /// ```
-    /// use stereopsis::{geometry::camera::ImageSize, imaging::{RemapPair, RemapTable}};
-    /// const SIZE: ImageSize = ImageSize { width: 160, height: 120 };
-    /// // Lines for rows that move by up to 30 px across the image, and a copy.
-    /// static REMAPS: RemapPair<160, 32, { RemapTable::<0>::most_slots(SIZE) }> = RemapPair::empty();
-    /// # assert!(size_of_val(&REMAPS) < 20 << 10);
-    /// ```
     pub const fn most_slots(size: ImageSize) -> usize {
         Self::slots(size, FINEST)
     }

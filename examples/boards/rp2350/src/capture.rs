@@ -5,7 +5,7 @@ use embassy_futures::join::join;
 use embassy_rp::dma::Channel;
 use embassy_rp::gpio::Output;
 use embassy_rp::peripherals::PIO0;
-use embassy_rp::pio::program::pio_asm;
+use embassy_rp::pio::program::pio_file;
 use embassy_rp::pio::{Common, Config, LoadedProgram, Pin, ShiftConfig, ShiftDirection, StateMachine};
 use embassy_rp::pwm::Pwm;
 use embassy_time::{Duration, Instant, Ticker, Timer, with_timeout};
@@ -21,38 +21,9 @@ const WORDS: usize = WIDTH as usize / 4;
 /// A line of a camera, as the DMA writes it.
 type Words = [u32; WORDS];
 
-/// Loads the program that both state machines run. Its pins are D0 to D3, PCLK, LVLD and FVLD.
-///
-/// The sensor gives 122 lines of 162 pixels, a border of one pixel around what is used, and a pixel as two
-/// halves, the low one first, each with a rising edge of PCLK.
+/// Loads the program that both state machines run.
 pub fn load(common: &mut Common<'static, PIO0>) -> LoadedProgram<'static, PIO0> {
-    let program = pio_asm!(
-        ".wrap_target",
-        "    pull block", // Lines - 1,
-        "    mov y, osr",
-        "    pull block", // and halves of pixels in a line - 1.
-        "    wait 0 pin 6",
-        "    wait 1 pin 6", // FVLD: the frame begins,
-        "    wait 1 pin 5", // with a line of the border.
-        "    wait 0 pin 5",
-        "line:",
-        "    wait 1 pin 5", // LVLD: a line begins,
-        "    set x, 1",     // with a pixel of the border.
-        "border:",
-        "    wait 1 pin 4",
-        "    wait 0 pin 4",
-        "    jmp x-- border",
-        "    mov x, osr",
-        "half:",
-        "    wait 1 pin 4", // PCLK rises.
-        "    in pins, 4",   // Eight halves are a word, which goes to the DMA by itself.
-        "    wait 0 pin 4",
-        "    jmp x-- half",
-        "    wait 0 pin 5",
-        "    jmp y-- line",
-        ".wrap",
-    );
-    common.load_program(&program.program)
+    common.load_program(&pio_file!("src/camera.pio").program)
 }
 
 /// A camera: its state machine, and the DMA channel that empties it.

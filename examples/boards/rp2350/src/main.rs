@@ -1,8 +1,8 @@
 //! Depth on both cores of an RP2350, from two HM01B0 over PIO and DMA: the README has the wiring.
 //!
 //! * [`sensors`]: both sensors set up alike, over an I2C bus each, on one master clock.
-//! * [`capture`]: on core 0, above all else: a trigger for every frame, a line of both cameras by PIO and DMA,
-//!   handed to the cores whose bands take it.
+//! * [`capture`]: on core 0, above all else: a trigger for every frame, a line of both cameras by PIO and
+//!   DMA, handed to the cores whose bands take it.
 //! * [`matching`]: on both cores, a band of rows each.
 //! * The nearest distance of every frame goes out by the UART.
 #![no_std]

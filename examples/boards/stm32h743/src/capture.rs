@@ -26,8 +26,8 @@ struct TwoLines(UnsafeCell<[u32; 2 * WORDS]>);
 unsafe impl Sync for TwoLines {}
 
 #[allow(unsafe_code)]
-// SAFETY: the section has room for them, and nothing else is in it but what the linker puts beside them. It is not
-// written at the start, which words allow: `run` writes them before they are read.
+// SAFETY: the section has room for them, and the linker puts nothing else over them. It is not written at the
+// start, which words allow: `run` writes them before they are read.
 #[unsafe(link_section = ".axiram")]
 static TWO_LINES: TwoLines = TwoLines(UnsafeCell::new([0; 2 * WORDS]));
 
@@ -139,8 +139,8 @@ pub async fn run(port: Port) -> ! {
         capture(false);
         clear(true);
         let options = TransferOptions::default();
-        // SAFETY: the port's data register is read by this channel alone, and the lines are in memory that the
-        // DMA reaches; they live as long as the program.
+        // SAFETY: the port's data register is read by this channel alone, and the lines are in memory that
+        // the DMA reaches; they live as long as the program.
         let mut ring =
             unsafe { ReadableRingBuffer::new(channel.reborrow(), request, data, &mut *two_lines, options) };
         ring.start();

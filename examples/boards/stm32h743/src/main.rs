@@ -1,5 +1,5 @@
-//! Depth on an STM32H743, from a stereo camera that sends both pictures side by side over DCMI: the README has
-//! the wiring.
+//! Depth on an STM32H743, from a stereo camera that sends both pictures side by side over DCMI: the README
+//! has the wiring.
 //!
 //! * [`capture`]: above all else, lines by DCMI and DMA into the queue.
 //! * The task here matches them, and says the nearest distance of every frame on the UART.
@@ -90,8 +90,8 @@ fn clocks() -> ChipConfig {
 #[cortex_m_rt::entry]
 fn main() -> ! {
     let mut core = cortex_m::Peripherals::take().expect("nobody took them before");
-    // The code is in flash. The data needs no cache: the matcher's is tightly coupled, and what the DMA writes
-    // is read once.
+    // The code is in flash. The data needs no cache: the matcher's is tightly coupled, and what the DMA
+    // writes is read once.
     core.SCB.enable_icache();
     let p = embassy_stm32::init(clocks());
 

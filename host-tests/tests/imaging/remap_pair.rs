@@ -181,7 +181,7 @@ impl<S: StereoSource> StereoSource for Pausing<S> {
 #[test]
 fn a_pair_goes_on_where_its_source_had_nothing_yet() {
     let lens = camera(QVGA, 300.0, [-0.1, 0.02, 0.0, 0.0, 0.0]);
-    let both = rectified(QVGA, [lens.clone(), lens], [0.02, 0.01, 0.02], Crop::Alpha(1.0));
+    let both = rectified(QVGA, [lens, lens], [0.02, 0.01, 0.02], Crop::Alpha(1.0));
     let raw = [noise(QVGA, 8), noise(QVGA, 9)];
     let expected = both.warps().map(|warp| Table::new(&warp).expect("a table"));
     let expected = [0, 1].map(|camera| twin::remap(&expected[camera], &raw[camera]).0);

@@ -8,11 +8,15 @@
 #   target_link_libraries(firmware PRIVATE stereopsis::stereopsis)
 #
 # Who links it finds stereopsis.h, and the macros STEREOPSIS_WIDTH, STEREOPSIS_DISPARITIES and STEREOPSIS_BYTES: the
-# memory of a matcher is STEREOPSIS_BYTES(STEREOPSIS_WIDTH, STEREOPSIS_DISPARITIES) bytes.
+# memory of a matcher is STEREOPSIS_BYTES(STEREOPSIS_WIDTH, STEREOPSIS_DISPARITIES) bytes. That of a rectifier is
+# STEREOPSIS_RECTIFIER_BYTES(STEREOPSIS_WIDTH, STEREOPSIS_HEIGHT, STEREOPSIS_LINES) bytes.
 
 set(STEREOPSIS_METHOD block CACHE STRING "How lines are matched: block, fast, sgm-lean, sgm or sgm-edge")
 set(STEREOPSIS_WIDTH 320 CACHE STRING "Pixels of the longest line, at least the disparities")
 set(STEREOPSIS_DISPARITIES 64 CACHE STRING "Disparities of the longest search, a multiple of 16")
+set(STEREOPSIS_HEIGHT 240 CACHE STRING "Rows of the largest rectified image, for rectifiers")
+set(STEREOPSIS_LINES 33 CACHE STRING "Raw lines of each camera that a rectifier holds, one of them twice")
+set(STEREOPSIS_PREFIX "" CACHE STRING "What the functions' names begin with: STEREOPSIS_FUNCTIONS(prefix); declares them")
 set(STEREOPSIS_RUST_TARGET "" CACHE STRING "Rust's name of the target; empty is this machine")
 set(STEREOPSIS_PROFILE release CACHE STRING "Cargo's profile: release, or checked under sanitizers")
 set(STEREOPSIS_TARGET_DIR "${CMAKE_CURRENT_BINARY_DIR}/stereopsis-target" CACHE PATH "Cargo's folder of build products")
@@ -35,6 +39,9 @@ add_custom_target(stereopsis_library
     STEREOPSIS_METHOD=${STEREOPSIS_METHOD}
     STEREOPSIS_WIDTH=${STEREOPSIS_WIDTH}
     STEREOPSIS_DISPARITIES=${STEREOPSIS_DISPARITIES}
+    STEREOPSIS_HEIGHT=${STEREOPSIS_HEIGHT}
+    STEREOPSIS_LINES=${STEREOPSIS_LINES}
+    STEREOPSIS_PREFIX=${STEREOPSIS_PREFIX}
     ${STEREOPSIS_CARGO} build --locked --quiet --profile ${STEREOPSIS_PROFILE}
     --manifest-path ${CMAKE_CURRENT_LIST_DIR}/library/Cargo.toml
     --target-dir ${STEREOPSIS_TARGET_DIR} ${STEREOPSIS_CARGO_TARGET}
@@ -52,7 +59,7 @@ set_target_properties(stereopsis::stereopsis PROPERTIES
   IMPORTED_LOCATION ${STEREOPSIS_LIBRARY}
   INTERFACE_INCLUDE_DIRECTORIES ${CMAKE_CURRENT_LIST_DIR}/../../src/ffi
   INTERFACE_COMPILE_DEFINITIONS
-    "STEREOPSIS_WIDTH=${STEREOPSIS_WIDTH};STEREOPSIS_DISPARITIES=${STEREOPSIS_DISPARITIES};STEREOPSIS_BYTES=STEREOPSIS_${STEREOPSIS_METHOD_MACRO}_BYTES")
+    "STEREOPSIS_WIDTH=${STEREOPSIS_WIDTH};STEREOPSIS_HEIGHT=${STEREOPSIS_HEIGHT};STEREOPSIS_LINES=${STEREOPSIS_LINES};STEREOPSIS_DISPARITIES=${STEREOPSIS_DISPARITIES};STEREOPSIS_BYTES=STEREOPSIS_${STEREOPSIS_METHOD_MACRO}_BYTES")
 
 if(STEREOPSIS_RUST_TARGET MATCHES "-none")
   # The library's panic handler cannot be linked: what nobody calls has to be dropped.

@@ -2,6 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::Status;
+use super::state::checked;
 use super::status::either;
 use crate::imaging::Noise;
 use crate::matching::{self, Checks, ConfigError, Filter, Method, Penalties};
@@ -237,13 +238,10 @@ pub unsafe fn config_default<S: Method>(
     preset: i32,
     config: *mut CConfig,
 ) -> Status {
-    if config.is_null() {
-        return Status::Null;
-    }
-    either(filter(preset).map(|filter| {
+    either(checked(config).and_then(|()| filter(preset)).map(|filter| {
         let search = matching::Config::for_method::<S>(width, height, disparities);
-        // SAFETY: the caller's promise; no alignment is asked for.
-        unsafe { config.write_unaligned(search.with_filter::<S>(filter).into()) };
+        // SAFETY: the caller's promise, and it is aligned.
+        unsafe { config.write(search.with_filter::<S>(filter).into()) };
         Status::Ok
     }))
 }
@@ -254,13 +252,10 @@ pub unsafe fn config_default<S: Method>(
 ///
 /// `config` is null or points to a configuration.
 pub unsafe fn config_noise<S: Method>(preset: i32, noise: u8, config: *mut CConfig) -> Status {
-    if config.is_null() {
-        return Status::Null;
-    }
-    either(filter(preset).and_then(|filter| {
+    either(checked(config).and_then(|()| filter(preset)).and_then(|filter| {
         let noise = level(noise)?;
-        // SAFETY: the caller's promise; no alignment is asked for.
-        unsafe { config.write_unaligned(config.read_unaligned().with_filter::<S>(filter, noise)) };
+        // SAFETY: the caller's promise, and it is aligned.
+        unsafe { config.write(config.read().with_filter::<S>(filter, noise)) };
         Ok(Status::Ok)
     }))
 }

@@ -2,11 +2,11 @@
 #![allow(unsafe_code)]
 
 use super::faults::fault;
-use super::state::{State, share_bytes};
+use super::state::{State, checked};
 use super::status::either;
 use super::{CConfig, CCounters, CRow, Handle, Status};
 use crate::matching::{self, Capacity, MatchError, Method, Supported};
-use crate::pipeline::Pipeline;
+use crate::pipeline::{Guarded, Pipeline};
 use core::ffi::c_void;
 use core::marker::PhantomData;
 
@@ -19,11 +19,11 @@ pub struct Instance<S: Method, const W: usize, const D: usize>(PhantomData<S>);
 ///
 /// # Safety
 ///
-/// `to` points to a row's bytes.
+/// `to` points to a row's bytes and is aligned.
 unsafe fn give(to: *mut CRow, row: Option<matching::Row<'_>>, without: Status) -> Status {
     let status = if row.is_some() { Status::Ok } else { without };
-    // SAFETY: the caller's promise; no alignment is asked for.
-    unsafe { to.write_unaligned(row.map_or(CRow::NONE, CRow::from)) };
+    // SAFETY: the caller's promise.
+    unsafe { to.write(row.map_or(CRow::NONE, CRow::from)) };
     status
 }
 
@@ -33,12 +33,12 @@ where
 {
     /// Returns the bytes that a matcher takes.
     pub const fn size() -> usize {
-        size_of::<State<S, W, D>>()
+        size_of::<State<Guarded<S, W, D>>>()
     }
 
     /// Returns the alignment of a matcher's memory, bytes.
     pub const fn align() -> usize {
-        align_of::<State<S, W, D>>()
+        align_of::<State<Guarded<S, W, D>>>()
     }
 
     /// Returns the longest line, pixels.
@@ -56,7 +56,8 @@ where
         Pipeline::<S, W, D>::LATENCY
     }
 
-    /// Returns the matcher behind a handle, apart from the `count` values at `argument`, which is not null.
+    /// Returns the matcher behind a handle, apart from the `count` values at `argument`, which is neither null
+    /// nor misaligned.
     ///
     /// # Safety
     ///
@@ -65,34 +66,22 @@ where
         handle: *mut Handle,
         argument: *const T,
         count: usize,
-    ) -> Result<&'a mut State<S, W, D>, Status> {
-        if argument.is_null() {
-            return Err(Status::Null);
-        }
+    ) -> Result<&'a mut State<Guarded<S, W, D>>, Status> {
+        checked(argument)?;
         // SAFETY: the caller's promise.
-        let state = unsafe { State::<S, W, D>::open(handle) }?;
+        let state = unsafe { State::<Guarded<S, W, D>>::open(handle) }?;
         if state.overlaps(argument, count) { Err(Status::Overlap) } else { Ok(state) }
     }
 
-    /// Creates a matcher in the caller's memory.
+    /// Creates a matcher in the caller's memory, which is read first unless it is `fresh`.
     ///
     /// # Safety
     ///
     /// `memory` is null or points to `length` bytes that nothing else uses until the matcher is given up;
     /// `handle` is null or points to a pointer.
-    pub unsafe fn init(memory: *mut c_void, length: usize, handle: *mut *mut Handle) -> Status {
-        if handle.is_null() {
-            return Status::Null;
-        }
-        // Nothing is written before the handle is known to be apart from the memory.
-        if !memory.is_null() && share_bytes(memory, length, handle.cast(), size_of::<*mut Handle>()) {
-            return Status::Overlap;
-        }
+    pub unsafe fn init(memory: *mut c_void, length: usize, fresh: bool, handle: *mut *mut Handle) -> Status {
         // SAFETY: the caller's promise.
-        let made = unsafe { State::<S, W, D>::init(memory, length) };
-        // SAFETY: the caller's promise; no alignment is asked for.
-        unsafe { handle.write_unaligned(made.unwrap_or(core::ptr::null_mut())) };
-        made.map_or_else(|status| status, |_| Status::Ok)
+        unsafe { State::<Guarded<S, W, D>>::init_handle(memory, length, !fresh, handle) }
     }
 
     /// Gives the memory up.
@@ -102,10 +91,7 @@ where
     /// `handle` is null or from [`Self::init`], and no other call uses it at the same time.
     pub unsafe fn deinit(handle: *mut Handle) -> Status {
         // SAFETY: the caller's promise.
-        either(unsafe { State::<S, W, D>::open(handle) }.map(|state| {
-            state.deinit();
-            Status::Ok
-        }))
+        unsafe { State::<Guarded<S, W, D>>::deinit(handle) }
     }
 
     /// Checks a configuration and prepares for the next frame; counters go on if it `keeps_counters`.
@@ -114,13 +100,13 @@ where
     ///
     /// `handle` is as [`Self::deinit`] asks; `config` is null or points to a configuration.
     pub unsafe fn start(handle: *mut Handle, config: *const CConfig, keeps_counters: bool) -> Status {
-        if config.is_null() {
-            return Status::Null;
+        if let Err(status) = checked(config) {
+            return status;
         }
-        // SAFETY: the caller's promise; no alignment is asked for, and every bit pattern is a configuration.
-        let (state, config) = unsafe { (State::<S, W, D>::open(handle), config.read_unaligned()) };
+        // SAFETY: the caller's promise, it is aligned, and every bit pattern is a configuration.
+        let (state, config) = unsafe { (State::<Guarded<S, W, D>>::open(handle), config.read()) };
         let start = || {
-            let (pipeline, config) = (&mut state?.pipeline, config.checked()?);
+            let (pipeline, config) = (&mut state?.content, config.checked()?);
             if keeps_counters {
                 pipeline.restart(&config)?
             } else {
@@ -138,8 +124,8 @@ where
     /// `handle` is as [`Self::deinit`] asks.
     pub unsafe fn begin_frame(handle: *mut Handle) -> Status {
         // SAFETY: the caller's promise.
-        let state = unsafe { State::<S, W, D>::open(handle) };
-        either(state.and_then(|state| Ok(state.pipeline.begin().map(|()| Status::Ok)?)))
+        let state = unsafe { State::<Guarded<S, W, D>>::open(handle) };
+        either(state.and_then(|state| Ok(state.content.begin().map(|()| Status::Ok)?)))
     }
 
     /// Takes a line of both cameras.
@@ -155,13 +141,14 @@ where
         length: usize,
         row: *mut CRow,
     ) -> Status {
-        if left.is_null() || right.is_null() || row.is_null() {
+        if left.is_null() || right.is_null() {
             return Status::Null;
         }
         let push = || {
+            checked(row)?;
             // SAFETY: the caller's promise.
-            let state = unsafe { State::<S, W, D>::open(handle) }?;
-            let width = usize::from(state.pipeline.config().width);
+            let state = unsafe { State::<Guarded<S, W, D>>::open(handle) }?;
+            let width = usize::from(state.content.config().width);
             if width == 0 {
                 return Err(MatchError::NotStarted.into());
             }
@@ -175,7 +162,7 @@ where
             // SAFETY: the caller's promise, and neither is in the state.
             let [left, right] =
                 unsafe { [left, right].map(|line| core::slice::from_raw_parts(line, length)) };
-            let found = state.pipeline.push(left, right)?;
+            let found = state.content.push(left, right)?;
             // SAFETY: the caller's promise, and the row is apart from the state.
             Ok(unsafe { give(row, found, Status::NoRowYet) })
         };
@@ -191,7 +178,7 @@ where
         let push = || {
             // SAFETY: the caller's promise.
             let state = unsafe { Self::open_apart(handle, row, 1) }?;
-            let found = state.pipeline.push_lost(fault(number)?)?;
+            let found = state.content.push_lost(fault(number)?)?;
             // SAFETY: the caller's promise, and the row is apart from the state.
             Ok(unsafe { give(row, found, Status::NoRowYet) })
         };
@@ -206,15 +193,18 @@ where
     pub unsafe fn mask(handle: *mut Handle, left: *const u8, right: *const u8, length: usize) -> Status {
         let mask = || {
             // SAFETY: the caller's promise.
-            let state = unsafe { State::<S, W, D>::open(handle) }?;
-            let row = state.pipeline.row().ok_or(Status::NoRowYet)?;
+            let state = unsafe { State::<Guarded<S, W, D>>::open(handle) }?;
+            if state.content.config().width == 0 {
+                return Err(Status::NotStarted);
+            }
+            let row = state.content.row().ok_or(Status::NoRowYet)?;
             if length != row.disparities().len() {
                 return Err(Status::LineLength);
             }
             if state.overlaps(left, length) || state.overlaps(right, length) {
                 return Err(Status::Overlap);
             }
-            state.pipeline.mask(|_, masks| {
+            state.content.mask(|_, masks| {
                 for (mask, given) in masks.into_iter().zip([left, right]) {
                     if given.is_null() {
                         mask.fill(1);
@@ -239,8 +229,8 @@ where
     pub unsafe fn counters(handle: *mut Handle, counters: *mut CCounters) -> Status {
         // SAFETY: the caller's promise.
         either(unsafe { Self::open_apart(handle, counters, 1) }.map(|state| {
-            // SAFETY: the caller's promise; no alignment is asked for.
-            unsafe { counters.write_unaligned(state.pipeline.counters().into()) };
+            // SAFETY: the caller's promise, and it is aligned.
+            unsafe { counters.write(state.content.counters().into()) };
             Status::Ok
         }))
     }
@@ -254,7 +244,7 @@ where
         let flush = || {
             // SAFETY: the caller's promise.
             let state = unsafe { Self::open_apart(handle, row, 1) }?;
-            let found = state.pipeline.flush()?;
+            let found = state.content.flush()?;
             // SAFETY: the caller's promise, and the row is apart from the state.
             Ok(unsafe { give(row, found, Status::FrameDone) })
         };
@@ -267,13 +257,13 @@ where
     ///
     /// `handle` is as [`Self::deinit`] asks; `sigma_px` is null or points to `count` floats.
     pub unsafe fn sigma_px(handle: *mut Handle, sigma_px: *mut f32, count: usize) -> Status {
-        if !sigma_px.is_null() && !sigma_px.is_aligned() {
-            return Status::Misaligned;
-        }
         let write = || {
             // SAFETY: the caller's promise.
             let state = unsafe { Self::open_apart(handle, sigma_px, count) }?;
-            let row = state.pipeline.row().ok_or(Status::NoRowYet)?;
+            if state.content.config().width == 0 {
+                return Err(Status::NotStarted);
+            }
+            let row = state.content.row().ok_or(Status::NoRowYet)?;
             if count != row.disparities().len() {
                 return Err(Status::LineLength);
             }

@@ -10,10 +10,11 @@
 //!
 //! `examples/c-firmware` is such a package with a program in C. In running order:
 //!
-//! * [`CConfig`], [`CRow`], [`CRig`], [`CCounters`], [`CNoiseMeter`] and the constants: what crosses the
-//!   border, laid out as C has it.
+//! * [`CConfig`], [`CRow`], [`CCameras`], [`CRig`], [`CPoint`], [`CCounters`], [`CNoiseMeter`] and the
+//!   constants: what crosses the border, laid out as C has it.
 //! * [`Status`]: the result of every call.
-//! * [`Instance`]: the functions for one method and one capacity; [`Handle`] is what C holds.
+//! * [`Rectifier`]: raw lines and a calibration record to rectified lines; C holds a [`RectifierHandle`].
+//! * [`Instance`]: rectified lines to rows, for one method and one capacity; C holds a [`Handle`].
 //! * [`instantiate_c_api`](crate::instantiate_c_api): their names in C, from which `cargo xtask header` makes
 //!   `stereopsis.h` beside this file.
 //!
@@ -21,9 +22,9 @@
 //!
 //! * Memory is the caller's. Nothing is allocated, nothing is kept of a caller's pointer but the memory that
 //!   was given to `stereopsis_init`. Lines are copied.
-//! * Every call checks its pointers for null, and those into arrays of words for alignment; the memory
-//!   carries a mark with its own address, so that memory that was not initialised, was moved or was given up
-//!   is noticed. What is wrong is answered by a status, and nothing has changed then.
+//! * Every call checks its pointers for null and alignment; the memory carries a mark with its own address,
+//!   method and capacity, so that memory that was not initialised, was moved, was given up or belongs to
+//!   another library is noticed. What is wrong is answered by a status, and nothing has changed then.
 //! * Numbers that choose something come as integers and are checked: no number is taken for an enum.
 //! * A call does not panic. On a bare-metal target the program that links the library proves it: see the
 //!   example's panic handler.
@@ -35,7 +36,13 @@ mod config;
 mod faults;
 mod instance;
 mod names;
+mod names_plain;
+mod names_rectifier;
 mod noise;
+mod points;
+mod record;
+mod rectifier;
+mod rectifying;
 mod rig;
 mod row;
 mod state;
@@ -50,7 +57,12 @@ pub use faults::{
     CCounters, STEREOPSIS_LOST_DROPPED, STEREOPSIS_LOST_LATE, STEREOPSIS_LOST_STALE, STEREOPSIS_LOST_TORN,
 };
 pub use instance::Instance;
+pub use names::first_of;
 pub use noise::{CNoiseMeter, noise_clear, noise_level, noise_line};
+pub use points::{CPoint, metres, points};
+pub use record::{CCameras, STEREOPSIS_ALPHA_NATURAL, STEREOPSIS_RECORD_BYTES, record_read};
+pub use rectifier::Rectifier;
+pub use rectifying::{RectifierHandle, rectifier_bytes, rectifier_slots, rectifier_width};
 pub use rig::{CRig, millimetres};
 pub use row::{
     CRow, STEREOPSIS_FLAG_AMBIGUOUS, STEREOPSIS_FLAG_CEILING, STEREOPSIS_FLAG_DAMAGED,

@@ -1,4 +1,4 @@
-//! C names of the functions, made by a macro.
+//! C names of the functions, made by a macro: those of the matcher here, the others in the files beside.
 
 /// Defines the functions of `stereopsis.h`, once in a `staticlib` or `cdylib`, for a method of
 /// [`matching`](crate::matching), the longest line and the largest number of disparities.
@@ -11,9 +11,35 @@
 /// Rust callers find them in the module `stereopsis_c`. `disparities` is a multiple of 16, at most 256, and
 /// `width` at least as large; another choice does not compile. `cargo xtask header` makes the header from
 /// this macro's text.
+///
+/// In this order, each may be left out: `height`, the rows of the largest rectified image (else `width`);
+/// `lines`, the raw lines of each camera that a rectifier holds, one of which is a copy (else 33); and
+/// `prefix`, which begins the functions' names in C, so that a program may have several instances:
+///
+/// ```
+/// mod near {
+///     stereopsis::instantiate_c_api!(Fast, width = 160, disparities = 64, prefix = "near_");
+/// }
+/// mod far {
+///     stereopsis::instantiate_c_api!(Sgm, width = 320, disparities = 32, height = 240, lines = 40, prefix = "far_");
+/// }
+/// # fn main() {
+/// assert!(near::stereopsis_c::stereopsis_size() < far::stereopsis_c::stereopsis_size());
+/// # }
+/// ```
 #[macro_export]
 macro_rules! instantiate_c_api {
-    ($method:ident, width = $width:expr, disparities = $disparities:expr $(,)?) => {
+    ($method:ident, width = $width:expr, disparities = $disparities:expr
+     $(, height = $height:expr)? $(, lines = $lines:expr)? $(, prefix = $prefix:literal)? $(,)?) => {
+        #[doc(hidden)]
+        type StereopsisRectifier = $crate::ffi::Rectifier<
+            { $crate::ffi::rectifier_width($width) },
+            { $crate::ffi::first_of([$($lines,)? 33]) },
+            { $crate::ffi::rectifier_slots($width, $crate::ffi::first_of([$($height,)? $width])) },
+        >;
+        $crate::instantiate_c_api!(@functions $method, $width, $disparities, [$($prefix)?]);
+    };
+    (@functions $method:ident, $width:expr, $disparities:expr, [$($prefix:literal)?]) => {
         #[doc(hidden)]
         type StereopsisInstance =
             $crate::ffi::Instance<$crate::matching::$method, { $width }, { $disparities }>;
@@ -21,56 +47,58 @@ macro_rules! instantiate_c_api {
         /// The functions of `stereopsis.h`.
         #[allow(unsafe_code, clippy::missing_safety_doc)]
         pub mod stereopsis_c {
-            use super::StereopsisInstance;
+            use super::{StereopsisInstance, StereopsisRectifier};
             use core::ffi::{c_char, c_void};
-            use $crate::ffi::{CConfig, CCounters, CNoiseMeter, CRig, CRow, Handle, Status};
+            use $crate::ffi::{
+                CCameras, CConfig, CCounters, CNoiseMeter, CPoint, CRig, CRow, Handle, RectifierHandle, Status,
+            };
 
             /// Returns the version of the library's interface: a program compiled with another
             /// `STEREOPSIS_ABI` must not continue.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_abi"))]
             pub extern "C" fn stereopsis_abi() -> u32 {
                 $crate::ffi::STEREOPSIS_ABI
             }
 
             /// Returns the library's version, such as "1.2.3".
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_version"))]
             pub extern "C" fn stereopsis_version() -> *const c_char {
                 $crate::ffi::version_text().as_ptr()
             }
 
             /// Returns the text of any number as a status, one line without an end.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_status_text"))]
             pub extern "C" fn stereopsis_status_text(status: i32) -> *const c_char {
                 $crate::ffi::status_text(status).as_ptr()
             }
 
             /// Returns the bytes of memory that a matcher takes.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_size"))]
             pub extern "C" fn stereopsis_size() -> usize {
                 StereopsisInstance::size()
             }
 
             /// Returns the alignment that a matcher's memory needs, at most `STEREOPSIS_ALIGN`.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_align"))]
             pub extern "C" fn stereopsis_align() -> usize {
                 StereopsisInstance::align()
             }
 
             /// Returns the longest line that this library was built for, in pixels.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_max_width"))]
             pub extern "C" fn stereopsis_max_width() -> usize {
                 StereopsisInstance::max_width()
             }
 
             /// Returns the largest number of disparities that this library was built for.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_max_disparities"))]
             pub extern "C" fn stereopsis_max_disparities() -> usize {
                 StereopsisInstance::max_disparities()
             }
 
             /// Returns the delay in lines: row y comes out when line y + `stereopsis_latency()` goes in; the
             /// last rows come by `stereopsis_flush`.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_latency"))]
             pub extern "C" fn stereopsis_latency() -> usize {
                 StereopsisInstance::latency()
             }
@@ -81,18 +109,31 @@ macro_rules! instantiate_c_api {
             /// The memory needs no content, and belongs to the matcher until `stereopsis_deinit`. Memory that
             /// still holds a matcher, such as RAM that a warm start does not clear, is refused as already
             /// initialised.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_init"))]
             pub unsafe extern "C" fn stereopsis_init(
                 memory: *mut c_void,
                 length: usize,
                 handle: *mut *mut Handle,
             ) -> Status {
                 // SAFETY: the caller keeps what the function's description asks for.
-                unsafe { StereopsisInstance::init(memory, length, handle) }
+                unsafe { StereopsisInstance::init(memory, length, false, handle) }
+            }
+
+            /// As `stereopsis_init`, for memory that was never written, such as that of `malloc`: it is not
+            /// read, and a matcher that it still holds is overwritten. Valgrind and sanitizers have nothing
+            /// to report.
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_init_fresh"))]
+            pub unsafe extern "C" fn stereopsis_init_fresh(
+                memory: *mut c_void,
+                length: usize,
+                handle: *mut *mut Handle,
+            ) -> Status {
+                // SAFETY: as above.
+                unsafe { StereopsisInstance::init(memory, length, true, handle) }
             }
 
             /// Ends a matcher, whose memory returns to the caller. The handle is the memory's address.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_deinit"))]
             pub unsafe extern "C" fn stereopsis_deinit(handle: *mut Handle) -> Status {
                 // SAFETY: as above.
                 unsafe { StereopsisInstance::deinit(handle) }
@@ -101,7 +142,7 @@ macro_rules! instantiate_c_api {
             /// Fills a configuration: frames of `width` x `height` pixels, a search over `disparities` from
             /// 0, the checks of a `STEREOPSIS_PRESET_`, and the method's penalties. Sizes are checked by
             /// `stereopsis_start`.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_config_default"))]
             pub unsafe extern "C" fn stereopsis_config_default(
                 width: u16,
                 height: u16,
@@ -124,7 +165,7 @@ macro_rules! instantiate_c_api {
             /// Sets a configuration's `noise`, a `STEREOPSIS_NOISE_` as from `stereopsis_noise_level`, with
             /// the checks of a `STEREOPSIS_PRESET_` and the method's penalties for it. Size, search and
             /// `confidence` are kept.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_config_noise"))]
             pub unsafe extern "C" fn stereopsis_config_noise(
                 preset: i32,
                 noise: u8,
@@ -136,7 +177,7 @@ macro_rules! instantiate_c_api {
 
             /// Checks a configuration, which is copied, and prepares for the first frame. Another call
             /// changes the configuration, drops a frame that is under way, and clears the counters.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_start"))]
             pub unsafe extern "C" fn stereopsis_start(handle: *mut Handle, config: *const CConfig) -> Status {
                 // SAFETY: as above.
                 unsafe { StereopsisInstance::start(handle, config, false) }
@@ -145,7 +186,7 @@ macro_rules! instantiate_c_api {
             /// Changes the configuration between two frames, for instance for the noise of the last one:
             /// counters continue, and a frame that is under way counts as broken. A refused configuration
             /// changes nothing.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_restart"))]
             pub unsafe extern "C" fn stereopsis_restart(
                 handle: *mut Handle,
                 config: *const CConfig,
@@ -155,7 +196,7 @@ macro_rules! instantiate_c_api {
             }
 
             /// Begins a frame, and drops the one before.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_begin_frame"))]
             pub unsafe extern "C" fn stereopsis_begin_frame(handle: *mut Handle) -> Status {
                 // SAFETY: as above.
                 unsafe { StereopsisInstance::begin_frame(handle) }
@@ -166,7 +207,7 @@ macro_rules! instantiate_c_api {
             ///
             /// Returns `STEREOPSIS_STATUS_OK` with a row, or `STEREOPSIS_STATUS_NO_ROW_YET` with an empty one
             /// for the first lines of a frame. An error leaves the row unchanged.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_push"))]
             pub unsafe extern "C" fn stereopsis_push(
                 handle: *mut Handle,
                 left: *const u8,
@@ -183,7 +224,7 @@ macro_rules! instantiate_c_api {
             /// have no answers and `STEREOPSIS_FLAG_DAMAGED` on every pixel, rows that it affects otherwise
             /// keep theirs and have the flag, and every other row is what it would be without the loss.
             /// Returns what `stereopsis_push` returns.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_push_lost"))]
             pub unsafe extern "C" fn stereopsis_push_lost(
                 handle: *mut Handle,
                 fault: i32,
@@ -197,8 +238,8 @@ macro_rules! instantiate_c_api {
             /// of a rectified image. The masks of the left and the right image's row have `length` bytes
             /// each, 0 for an unseen pixel; a null mask means that all were seen. An answer whose pixel or
             /// partner was not seen is removed and flagged `STEREOPSIS_FLAG_OUTSIDE`. The row's arrays change
-            /// in place.
-            #[unsafe(no_mangle)]
+            /// in place. Before a frame's first row the result is `STEREOPSIS_STATUS_NO_ROW_YET`.
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_mask"))]
             pub unsafe extern "C" fn stereopsis_mask(
                 handle: *mut Handle,
                 left: *const u8,
@@ -210,7 +251,7 @@ macro_rules! instantiate_c_api {
             }
 
             /// Writes the counts since `stereopsis_start`.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_counters"))]
             pub unsafe extern "C" fn stereopsis_counters(
                 handle: *mut Handle,
                 counters: *mut CCounters,
@@ -221,7 +262,7 @@ macro_rules! instantiate_c_api {
 
             /// Gives the next row after the last line: `STEREOPSIS_STATUS_OK` with a row, or
             /// `STEREOPSIS_STATUS_FRAME_DONE` with an empty one after the last row.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_flush"))]
             pub unsafe extern "C" fn stereopsis_flush(handle: *mut Handle, row: *mut CRow) -> Status {
                 // SAFETY: as above.
                 unsafe { StereopsisInstance::flush(handle, row) }
@@ -230,7 +271,7 @@ macro_rules! instantiate_c_api {
             /// Writes the standard deviations of the last row, px, for all its `count` columns, infinite
             /// where there is no answer. Before a frame's first row the result is
             /// `STEREOPSIS_STATUS_NO_ROW_YET`, and nothing is written.
-            #[unsafe(no_mangle)]
+            #[unsafe(export_name = concat!($($prefix,)? "stereopsis_sigma_px"))]
             pub unsafe extern "C" fn stereopsis_sigma_px(
                 handle: *mut Handle,
                 sigma_px: *mut f32,
@@ -240,50 +281,14 @@ macro_rules! instantiate_c_api {
                 unsafe { StereopsisInstance::sigma_px(handle, sigma_px, count) }
             }
 
-            /// Clears a noise meter, which needs no matcher. Measure a frame as often as the light may
-            /// change, and set the level in the configuration of the next ones.
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn stereopsis_noise_clear(meter: *mut CNoiseMeter) -> Status {
-                // SAFETY: as above.
-                unsafe { $crate::ffi::noise_clear(meter) }
-            }
-
-            /// Measures a line of either camera, 8-bit grey, 65535 bytes at most.
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn stereopsis_noise_line(
-                meter: *mut CNoiseMeter,
-                line: *const u8,
-                length: usize,
-            ) -> Status {
-                // SAFETY: as above.
-                unsafe { $crate::ffi::noise_line(meter, line, length) }
-            }
-
-            /// Writes the `STEREOPSIS_NOISE_` number of the lines so far, for `stereopsis_config_noise`, and
-            /// unless `sigma_16ths` is null the standard deviation in 1/16 grey level; none and 0 before the
-            /// first line.
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn stereopsis_noise_level(
-                meter: *mut CNoiseMeter,
-                noise: *mut u8,
-                sigma_16ths: *mut u16,
-            ) -> Status {
-                // SAFETY: as above.
-                unsafe { $crate::ffi::noise_level(meter, noise, sigma_16ths) }
-            }
-
-            /// Converts `count` disparities to depths in whole millimetres, 0 for no answer, at infinity, or
-            /// beyond 65.535 m. Both arrays may be one.
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn stereopsis_millimetres(
-                rig: *const CRig,
-                disparities: *const u16,
-                millimetres: *mut u16,
-                count: usize,
-            ) -> Status {
-                // SAFETY: as above.
-                unsafe { $crate::ffi::millimetres(rig, disparities, millimetres, count) }
-            }
+            $crate::c_api_of_rectification!([$($prefix)?]);
+            $crate::c_api_without_state!([$($prefix)?]);
         }
     };
+}
+
+/// Returns the first of one or two values: that of a macro's caller, or the default.
+pub const fn first_of<const N: usize>(values: [usize; N]) -> usize {
+    assert!(N > 0, "there is a default");
+    values[0]
 }

@@ -3,6 +3,8 @@
 
 use super::Status;
 use super::config::noise_number;
+use super::state::{checked, share_bytes};
+use super::status::either;
 use crate::imaging;
 
 /// Noise meter in the caller's memory, for the `stereopsis_noise_` functions; its contents are private.
@@ -25,12 +27,7 @@ const _: () = assert!(
 ///
 /// `meter` is null or points to a meter that nothing else uses for `'a`.
 unsafe fn open<'a>(meter: *mut CNoiseMeter) -> Result<&'a mut imaging::NoiseMeter, Status> {
-    if meter.is_null() {
-        return Err(Status::Null);
-    }
-    if !meter.is_aligned() {
-        return Err(Status::Misaligned);
-    }
+    checked(meter)?;
     // SAFETY: the caller's promise; the layouts are the same, and words have no bits that they must not have.
     Ok(unsafe { &mut *meter.cast::<imaging::NoiseMeter>() })
 }
@@ -41,11 +38,8 @@ unsafe fn open<'a>(meter: *mut CNoiseMeter) -> Result<&'a mut imaging::NoiseMete
 ///
 /// `meter` is null or points to a meter's bytes, which need no content.
 pub unsafe fn noise_clear(meter: *mut CNoiseMeter) -> Status {
-    if meter.is_null() {
-        return Status::Null;
-    }
-    if !meter.is_aligned() {
-        return Status::Misaligned;
+    if let Err(status) = checked(meter) {
+        return status;
     }
     // SAFETY: the caller's promise.
     unsafe { meter.write(CNoiseMeter { words: [0; 65] }) };
@@ -64,12 +58,12 @@ pub unsafe fn noise_line(meter: *mut CNoiseMeter, line: *const u8, length: usize
     if length > usize::from(u16::MAX) {
         return Status::TooMany;
     }
-    if super::state::share_bytes(meter.cast(), size_of::<CNoiseMeter>(), line.cast(), length) {
+    if share_bytes(meter.cast(), size_of::<CNoiseMeter>(), line.cast(), length) {
         return Status::Overlap;
     }
     // SAFETY: the caller's promise, and both stand beside each other.
     let (meter, line) = unsafe { (open(meter), core::slice::from_raw_parts(line, length)) };
-    super::status::either(meter.map(|meter| {
+    either(meter.map(|meter| {
         meter.line(line);
         Status::Ok
     }))
@@ -84,16 +78,19 @@ pub unsafe fn noise_level(meter: *mut CNoiseMeter, noise: *mut u8, sigma_16ths: 
     if noise.is_null() {
         return Status::Null;
     }
+    if !sigma_16ths.is_aligned() {
+        return Status::Misaligned;
+    }
     // SAFETY: the caller's promise.
     let (level, sigma) = match unsafe { open(meter) } {
         Ok(meter) => (noise_number(meter.level()), meter.sigma_16ths().unwrap_or(0)),
         Err(status) => return status,
     };
-    // SAFETY: the caller's promise; no alignment is asked for.
+    // SAFETY: the caller's promise, and both are aligned.
     unsafe {
-        noise.write_unaligned(level);
+        noise.write(level);
         if !sigma_16ths.is_null() {
-            sigma_16ths.write_unaligned(sigma);
+            sigma_16ths.write(sigma);
         }
     }
     Status::Ok

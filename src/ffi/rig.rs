@@ -2,6 +2,8 @@
 #![allow(unsafe_code)]
 
 use super::Status;
+use super::state::checked;
+use super::status::either;
 use crate::depth::{DepthError, DepthScale};
 use crate::geometry::camera::{RectifiedRig, RigError};
 use crate::units::Disparity;
@@ -24,7 +26,7 @@ pub struct CRig {
 
 impl CRig {
     /// Creates the depth scale of the rig.
-    pub(super) fn scale(&self) -> Result<DepthScale, Status> {
+    fn scale(&self) -> Result<DepthScale, Status> {
         let rig = RectifiedRig::with_offset(self.focal_px, self.baseline_m, self.cx, self.cy, self.cx_right)?;
         Ok(DepthScale::new(&rig)?)
     }
@@ -61,27 +63,33 @@ pub unsafe fn millimetres(
     millimetres: *mut u16,
     count: usize,
 ) -> Status {
-    if rig.is_null() || disparities.is_null() || millimetres.is_null() {
-        return Status::Null;
-    }
-    if !disparities.is_aligned() || !millimetres.is_aligned() {
-        return Status::Misaligned;
-    }
-    if count > isize::MAX as usize / size_of::<u16>() {
-        return Status::TooMany;
-    }
-    // SAFETY: the caller's promise; no alignment is asked for, and every bit pattern is a rig.
-    let rig = unsafe { rig.read_unaligned() };
-    let scale = match rig.scale() {
-        Ok(scale) => scale,
-        Err(status) => return status,
-    };
-    for i in 0..count {
-        // SAFETY: the caller's promise. No slices are made: both may be one array.
-        unsafe {
-            let disparity = Disparity::from_raw(disparities.add(i).read());
-            millimetres.add(i).write(scale.millimetres(disparity).0);
+    let convert = || {
+        // SAFETY: the caller's promise.
+        let scale = unsafe { scale_of(rig) }?;
+        checked(disparities)?;
+        checked(millimetres)?;
+        if count > isize::MAX as usize / size_of::<u16>() {
+            return Err(Status::TooMany);
         }
-    }
-    Status::Ok
+        for i in 0..count {
+            // SAFETY: the caller's promise. No slices are made: both may be one array.
+            unsafe {
+                let disparity = Disparity::from_raw(disparities.add(i).read());
+                millimetres.add(i).write(scale.millimetres(disparity).0);
+            }
+        }
+        Ok(Status::Ok)
+    };
+    either(convert())
+}
+
+/// Returns the depth scale of the rig at a pointer.
+///
+/// # Safety
+///
+/// `rig` is null or points to a rig.
+pub(super) unsafe fn scale_of(rig: *const CRig) -> Result<DepthScale, Status> {
+    checked(rig)?;
+    // SAFETY: the caller's promise, it is aligned, and every bit pattern is a rig.
+    unsafe { rig.read() }.scale()
 }

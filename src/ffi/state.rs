@@ -1,7 +1,8 @@
-//! The matcher's state in the caller's memory, with a mark that detects memory which holds none.
+//! State in the caller's memory, with a mark that detects memory which holds none.
 #![allow(unsafe_code)]
 
 use super::Status;
+use super::status::either;
 use crate::matching::{self, Capacity, Method, Supported};
 use crate::pipeline::Guarded;
 use core::ffi::c_void;
@@ -14,12 +15,35 @@ pub struct Handle {
     _opaque: [u8; 0],
 }
 
+/// What a caller's memory may hold: a matcher, or a rectifier.
+pub(super) trait Content {
+    /// What C holds of it.
+    type Handle;
+    /// The content before its start, all bytes of which are zero.
+    const NEW: Self;
+    /// Number of its kind and capacity, part of the mark.
+    const KIND: usize;
+    /// Bytes of memory that are said to be enough on any target.
+    const MOST_BYTES: usize;
+}
+
+impl<S: Method, const W: usize, const D: usize> Content for Guarded<S, W, D>
+where
+    Capacity<D>: Supported,
+{
+    type Handle = Handle;
+    const NEW: Self = Self::new();
+    const KIND: usize = kind(S::NAME, &[W, D]);
+    const MOST_BYTES: usize = memory_bytes::<S>(W, D);
+}
+
 /// Contents of the memory.
 #[repr(C)]
-pub(super) struct State<S: Method, const W: usize, const D: usize> {
-    /// [`MARK`] combined with the state's own address, which moved or uninitialised memory does not have.
+pub(super) struct State<C> {
+    /// [`MARK`] combined with the kind and the state's own address, which memory that was moved, was not
+    /// initialised, or holds something else does not have.
     mark: usize,
-    pub(super) pipeline: Guarded<S, W, D>,
+    pub(super) content: C,
 }
 
 /// Bits that memory is unlikely to hold by chance.
@@ -37,65 +61,100 @@ pub const fn memory_bytes<S: Method>(width: usize, disparities: usize) -> usize 
     matching::state_bytes::<S>(width, disparities) + 2 * 5 * width + FIXED_BYTES
 }
 
-impl<S: Method, const W: usize, const D: usize> State<S, W, D>
-where
-    Capacity<D>: Supported,
-{
+/// Hash (FNV-1a) of a name and sizes, so that handles of different libraries in one program differ.
+pub(super) const fn kind(name: &str, sizes: &[usize]) -> usize {
+    const PRIME: usize = 0x0100_0193;
+    let (mut hash, mut i) = (0x811C_9DC5, 0);
+    while i < name.len() {
+        hash = (hash ^ name.as_bytes()[i] as usize).wrapping_mul(PRIME);
+        i += 1;
+    }
+    i = 0;
+    while i < sizes.len() {
+        hash = (hash ^ sizes[i]).wrapping_mul(PRIME);
+        i += 1;
+    }
+    hash
+}
+
+impl<C: Content> State<C> {
     const CHECKED: () = {
         assert!(align_of::<Self>() <= STEREOPSIS_ALIGN, "STEREOPSIS_ALIGN must be enough");
-        assert!(size_of::<Self>() <= memory_bytes::<S>(W, D), "memory_bytes must cover the state");
+        assert!(size_of::<Self>() <= C::MOST_BYTES, "the stated bytes must cover the state");
     };
 
     fn mark_of(state: *const Self) -> usize {
-        MARK ^ state.addr()
+        MARK ^ C::KIND ^ state.addr()
     }
 
-    /// Creates a matcher in the caller's memory, which holds none yet.
+    /// Creates the content in the caller's memory; memory that `may_hold_one` already is read and refused.
     ///
     /// # Safety
     ///
-    /// `memory` is null or points to `length` bytes that nothing else uses until the matcher is given up.
-    pub(super) unsafe fn init(memory: *mut c_void, length: usize) -> Result<*mut Handle, Status> {
+    /// `memory` is null or points to `length` bytes that nothing else uses until the memory is given up; it
+    /// was written before if it `may_hold_one`, or is memory that the compiler knows nothing of.
+    pub(super) unsafe fn init(
+        memory: *mut c_void,
+        length: usize,
+        may_hold_one: bool,
+    ) -> Result<*mut C::Handle, Status> {
         const { Self::CHECKED };
         let state = memory.cast::<Self>();
-        if state.is_null() {
-            return Err(Status::Null);
-        }
-        if !state.is_aligned() {
-            return Err(Status::Misaligned);
-        }
+        checked(state)?;
         if length < size_of::<Self>() {
             return Err(Status::MemoryTooShort);
         }
-        // SAFETY: the state is aligned and inside of the caller's bytes. What it holds was written by C, or
-        // by nobody: a volatile read takes it as the machine has it, and every bit pattern is an
-        // integer.
-        let mark = unsafe { (&raw const (*state).mark).read_volatile() };
-        if mark == Self::mark_of(state) {
-            return Err(Status::AlreadyInitialised);
+        if may_hold_one {
+            // SAFETY: the state is aligned and inside of the caller's bytes. What it holds was written by C,
+            // or by nobody: a volatile read takes it as the machine has it, and every bit pattern is an
+            // integer.
+            let mark = unsafe { (&raw const (*state).mark).read_volatile() };
+            if mark == Self::mark_of(state) {
+                return Err(Status::AlreadyInitialised);
+            }
         }
         // SAFETY: as before; nothing refers to these bytes yet. The constant is all zero: the bytes are set
         // in place and no copy stands on the stack.
         unsafe {
-            (&raw mut (*state).pipeline).write(const { Guarded::new() });
+            (&raw mut (*state).content).write(const { C::NEW });
             (&raw mut (*state).mark).write_volatile(Self::mark_of(state));
         }
         Ok(state.cast())
     }
 
-    /// Returns the matcher behind a handle.
+    /// Creates the content, and writes the handle, null on an error unless `handle` itself is invalid.
+    ///
+    /// # Safety
+    ///
+    /// As [`Self::init`] asks; `handle` is null or points to a pointer.
+    pub(super) unsafe fn init_handle(
+        memory: *mut c_void,
+        length: usize,
+        may_hold_one: bool,
+        handle: *mut *mut C::Handle,
+    ) -> Status {
+        if let Err(status) = checked(handle) {
+            return status;
+        }
+        // Nothing is written before the handle is known to be apart from the memory.
+        if !memory.is_null() && share_bytes(memory, length, handle.cast(), size_of::<*mut C::Handle>()) {
+            return Status::Overlap;
+        }
+        // SAFETY: the caller's promise.
+        let made = unsafe { Self::init(memory, length, may_hold_one) };
+        // SAFETY: the caller's promise, and it is aligned.
+        unsafe { handle.write(made.unwrap_or(core::ptr::null_mut())) };
+        made.map_or_else(|status| status, |_| Status::Ok)
+    }
+
+    /// Returns the state behind a handle.
     ///
     /// # Safety
     ///
     /// `handle` is null or points to as many bytes as a state has, and for `'a` nothing else uses them.
-    pub(super) unsafe fn open<'a>(handle: *mut Handle) -> Result<&'a mut Self, Status> {
+    pub(super) unsafe fn open<'a>(handle: *mut C::Handle) -> Result<&'a mut Self, Status> {
         let state = handle.cast::<Self>();
-        if state.is_null() {
-            return Err(Status::Null);
-        }
-        if !state.is_aligned() {
-            return Err(Status::Misaligned);
-        }
+        checked(state)?;
         // SAFETY: the state is aligned and its bytes are there; every bit pattern is an integer.
         let mark = unsafe { (&raw const (*state).mark).read_volatile() };
         if mark != Self::mark_of(state) {
@@ -105,11 +164,19 @@ where
         Ok(unsafe { &mut *state })
     }
 
-    /// Gives the memory up.
-    pub(super) fn deinit(&mut self) {
-        // SAFETY: a reference is aligned and its bytes are there. The write is volatile as the reads are:
-        // nothing here looks at the mark again, and it has to go all the same.
-        unsafe { (&raw mut self.mark).write_volatile(0) };
+    /// Gives the memory behind a handle up.
+    ///
+    /// # Safety
+    ///
+    /// As [`Self::open`] asks.
+    pub(super) unsafe fn deinit(handle: *mut C::Handle) -> Status {
+        // SAFETY: the caller's promise.
+        either(unsafe { Self::open(handle) }.map(|state| {
+            // SAFETY: a reference is aligned and its bytes are there. The write is volatile as the reads are:
+            // nothing here looks at the mark again, and it has to go all the same.
+            unsafe { (&raw mut state.mark).write_volatile(0) };
+            Status::Ok
+        }))
     }
 
     /// Returns whether `count` values at `data` share bytes with the state.
@@ -120,6 +187,17 @@ where
             data.cast(),
             count.saturating_mul(size_of::<T>()),
         )
+    }
+}
+
+/// Checks that a pointer is not null and is aligned.
+pub(super) fn checked<T>(pointer: *const T) -> Result<(), Status> {
+    if pointer.is_null() {
+        Err(Status::Null)
+    } else if pointer.is_aligned() {
+        Ok(())
+    } else {
+        Err(Status::Misaligned)
     }
 }
 

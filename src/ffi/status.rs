@@ -22,21 +22,21 @@ pub enum Status {
     Null = -1,
     /// A pointer is not aligned as what it points to has to be.
     Misaligned = -2,
-    /// The memory is shorter than `stereopsis_size()`.
+    /// The memory is shorter than `stereopsis_size()`, or than `stereopsis_rectifier_size()`.
     MemoryTooShort = -3,
     /// The memory holds a matcher already: `stereopsis_deinit` gives it up.
     AlreadyInitialised = -4,
-    /// The handle's memory holds no matcher of this library.
+    /// The handle's memory holds no such matcher or rectifier of this library.
     NotInitialised = -5,
-    /// An argument points into the matcher's memory.
+    /// An argument points into the matcher's or rectifier's memory, or two results overlap.
     Overlap = -6,
     /// More elements than an address space holds.
     TooMany = -7,
-    /// `stereopsis_start` has to come first.
+    /// `stereopsis_start`, or `stereopsis_rectifier_start`, has to come first.
     NotStarted = -8,
-    /// `stereopsis_begin_frame` has to come first.
+    /// `stereopsis_begin_frame`, or `stereopsis_rectifier_begin_frame`, has to come first.
     NotBegun = -9,
-    /// The length is not the width that the matcher was started for.
+    /// The length is not the width that the matcher or rectifier was started for.
     LineLength = -10,
     /// All lines of the frame are in: flush, or begin the next one.
     NoLineLeft = -11,
@@ -80,6 +80,41 @@ pub enum Status {
     Noise = -30,
     /// The fault is none of the `STEREOPSIS_LOST_` numbers.
     Fault = -31,
+    /// Record: it has fewer than `STEREOPSIS_RECORD_BYTES` bytes.
+    RecordTooShort = -32,
+    /// Record: it begins with something else, such as erased flash.
+    NotARecord = -33,
+    /// Record: this library does not read its version.
+    RecordVersion = -34,
+    /// Record: a bit has changed, or it was written in part.
+    RecordChecksum = -35,
+    /// Record: this library does not know the model of a lens.
+    RecordLens = -36,
+    /// Record: its numbers are no cameras, or no rig.
+    RecordNumbers = -37,
+    /// Rectification: the raw images of the two cameras differ in size.
+    RawSizes = -38,
+    /// Rectification: the second camera stands left of the first one, or above it.
+    RectifySwapped = -39,
+    /// Rectification: the cameras stand one above the other, so that columns match, not rows.
+    RectifyVertical = -40,
+    /// Rectification: one camera stands before the other, or they look into different directions.
+    RectifyPose = -41,
+    /// Rectification: the rectified images would show nothing that both cameras see.
+    RectifyNothing = -42,
+    /// Rectification: `alpha` is neither from 0 to 1 nor `STEREOPSIS_ALPHA_NATURAL`.
+    RectifyAlpha = -43,
+    /// Rectification: raw or rectified images have over `stereopsis_max_width()` columns, the rectified ones
+    /// more rows than the library was built for, or under 2 of either.
+    RectifySize = -44,
+    /// Rectification: a lens bends too much for the tables.
+    RectifyBent = -45,
+    /// Rectification: more raw lines are needed at once than `stereopsis_rectifier_lines()`.
+    RectifyLines = -46,
+    /// Rectification: `stereopsis_rectifier_line` has to take the next line before another raw line.
+    LineWaiting = -47,
+    /// The row is not one of the image.
+    Row = -48,
 }
 
 impl Status {
@@ -90,20 +125,20 @@ impl Status {
 }
 
 /// Text of every status.
-const TEXTS: [(Status, &CStr); 34] = [
+const TEXTS: [(Status, &CStr); 51] = [
     (Status::Ok, c"done"),
     (Status::NoRowYet, c"the first row comes some lines later"),
     (Status::FrameDone, c"all rows of the frame are out"),
     (Status::Null, c"a pointer is null"),
     (Status::Misaligned, c"a pointer is misaligned"),
-    (Status::MemoryTooShort, c"the memory is too short: stereopsis_size() bytes are needed"),
+    (Status::MemoryTooShort, c"the memory is too short"),
     (Status::AlreadyInitialised, c"the memory holds a matcher already"),
-    (Status::NotInitialised, c"the memory holds no matcher of this library"),
-    (Status::Overlap, c"an argument points into the matcher's memory"),
+    (Status::NotInitialised, c"the memory holds no such matcher or rectifier of this library"),
+    (Status::Overlap, c"an argument points into the matcher's memory, or two results overlap"),
     (Status::TooMany, c"there are too many elements"),
-    (Status::NotStarted, c"the matcher was not started"),
+    (Status::NotStarted, c"the matcher or rectifier was not started"),
     (Status::NotBegun, c"no frame was begun"),
-    (Status::LineLength, c"a line must have the width that the matcher was started for"),
+    (Status::LineLength, c"a line must have the width that the matcher or rectifier was started for"),
     (Status::NoLineLeft, c"all lines of the frame are in"),
     (Status::LinesMissing, c"lines of the frame are missing"),
     (Status::Preset, c"there is no such preset"),
@@ -125,6 +160,23 @@ const TEXTS: [(Status, &CStr); 34] = [
     (Status::Penalties, c"the penalties must be in order, and their sums within bytes"),
     (Status::Noise, c"there is no such level of noise"),
     (Status::Fault, c"there is no such fault of a line"),
+    (Status::RecordTooShort, c"a record has 328 bytes; these are fewer"),
+    (Status::NotARecord, c"the bytes are no record of a rig, which begins with STRG"),
+    (Status::RecordVersion, c"the record is of another version"),
+    (Status::RecordChecksum, c"the record's checksum is wrong"),
+    (Status::RecordLens, c"the record has a lens of another model"),
+    (Status::RecordNumbers, c"the record's numbers are no stereo rig"),
+    (Status::RawSizes, c"the cameras' raw images differ in size"),
+    (Status::RectifySwapped, c"the cameras are swapped"),
+    (Status::RectifyVertical, c"the cameras stand one above the other"),
+    (Status::RectifyPose, c"the cameras do not stand side by side"),
+    (Status::RectifyNothing, c"the rectified images would show nothing of one of the cameras"),
+    (Status::RectifyAlpha, c"alpha must be from 0 to 1, or -1"),
+    (Status::RectifySize, c"the images are larger than the library was built for, or under 2 px"),
+    (Status::RectifyBent, c"a lens bends too much between 16 pixels"),
+    (Status::RectifyLines, c"more raw lines are needed than the library was built for"),
+    (Status::LineWaiting, c"a rectified line has to be taken first"),
+    (Status::Row, c"there is no such row"),
 ];
 
 /// Returns the text of a number that may be a status.

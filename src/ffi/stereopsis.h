@@ -67,6 +67,14 @@
   ((size_t)416 + (size_t)54 * (width) + (size_t)8 * (disparities) + \
    (size_t)5 * (width) * (disparities))
 
+/**
+ * Bytes that are enough for a rectifier, on any target, with the library's longest line, the rows of its largest
+ * rectified image, and the raw lines of each camera that it holds.
+ */
+#define STEREOPSIS_RECTIFIER_BYTES(width, height, lines) \
+  ((size_t)80 + (size_t)16 * ((((size_t)(width) + 15) / 16 + 3) * (((size_t)(height) + 15) / 16 + 3) + \
+    ((size_t)(height) + 1) / 2) + (size_t)2 * (width) * ((size_t)(lines) + 1))
+
 
 /**
  * Version of this interface, which changes when a program compiled with another header would go wrong.
@@ -184,13 +192,26 @@
 #define STEREOPSIS_LOST_STALE 3
 
 /**
+ * Bytes of a calibration record.
+ */
+#define STEREOPSIS_RECORD_BYTES 328
+
+/**
+ * Value of `alpha` that keeps the scale of the raw images.
+ */
+#define STEREOPSIS_ALPHA_NATURAL -1.0
+
+/**
  * Result of a call; below 0 it is an error, and nothing has changed.
  */
+#if defined(__cplusplus) ? __cplusplus >= 201103L : __STDC_VERSION__ >= 202311L
+enum stereopsis_status : int32_t
+#elif defined(__cplusplus)
+enum stereopsis_status_numbers
+#else
 enum stereopsis_status
-#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
-  : int32_t
-#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
- {
+#endif
+{
   /**
    * Done; a call that gives a row gave one.
    */
@@ -212,7 +233,7 @@ enum stereopsis_status
    */
   STEREOPSIS_STATUS_MISALIGNED = -2,
   /**
-   * The memory is shorter than `stereopsis_size()`.
+   * The memory is shorter than `stereopsis_size()`, or than `stereopsis_rectifier_size()`.
    */
   STEREOPSIS_STATUS_MEMORY_TOO_SHORT = -3,
   /**
@@ -220,11 +241,11 @@ enum stereopsis_status
    */
   STEREOPSIS_STATUS_ALREADY_INITIALISED = -4,
   /**
-   * The handle's memory holds no matcher of this library.
+   * The handle's memory holds no such matcher or rectifier of this library.
    */
   STEREOPSIS_STATUS_NOT_INITIALISED = -5,
   /**
-   * An argument points into the matcher's memory.
+   * An argument points into the matcher's or rectifier's memory, or two results overlap.
    */
   STEREOPSIS_STATUS_OVERLAP = -6,
   /**
@@ -232,15 +253,15 @@ enum stereopsis_status
    */
   STEREOPSIS_STATUS_TOO_MANY = -7,
   /**
-   * `stereopsis_start` has to come first.
+   * `stereopsis_start`, or `stereopsis_rectifier_start`, has to come first.
    */
   STEREOPSIS_STATUS_NOT_STARTED = -8,
   /**
-   * `stereopsis_begin_frame` has to come first.
+   * `stereopsis_begin_frame`, or `stereopsis_rectifier_begin_frame`, has to come first.
    */
   STEREOPSIS_STATUS_NOT_BEGUN = -9,
   /**
-   * The length is not the width that the matcher was started for.
+   * The length is not the width that the matcher or rectifier was started for.
    */
   STEREOPSIS_STATUS_LINE_LENGTH = -10,
   /**
@@ -327,19 +348,163 @@ enum stereopsis_status
    * The fault is none of the `STEREOPSIS_LOST_` numbers.
    */
   STEREOPSIS_STATUS_FAULT = -31,
+  /**
+   * Record: it has fewer than `STEREOPSIS_RECORD_BYTES` bytes.
+   */
+  STEREOPSIS_STATUS_RECORD_TOO_SHORT = -32,
+  /**
+   * Record: it begins with something else, such as erased flash.
+   */
+  STEREOPSIS_STATUS_NOT_A_RECORD = -33,
+  /**
+   * Record: this library does not read its version.
+   */
+  STEREOPSIS_STATUS_RECORD_VERSION = -34,
+  /**
+   * Record: a bit has changed, or it was written in part.
+   */
+  STEREOPSIS_STATUS_RECORD_CHECKSUM = -35,
+  /**
+   * Record: this library does not know the model of a lens.
+   */
+  STEREOPSIS_STATUS_RECORD_LENS = -36,
+  /**
+   * Record: its numbers are no cameras, or no rig.
+   */
+  STEREOPSIS_STATUS_RECORD_NUMBERS = -37,
+  /**
+   * Rectification: the raw images of the two cameras differ in size.
+   */
+  STEREOPSIS_STATUS_RAW_SIZES = -38,
+  /**
+   * Rectification: the second camera stands left of the first one, or above it.
+   */
+  STEREOPSIS_STATUS_RECTIFY_SWAPPED = -39,
+  /**
+   * Rectification: the cameras stand one above the other, so that columns match, not rows.
+   */
+  STEREOPSIS_STATUS_RECTIFY_VERTICAL = -40,
+  /**
+   * Rectification: one camera stands before the other, or they look into different directions.
+   */
+  STEREOPSIS_STATUS_RECTIFY_POSE = -41,
+  /**
+   * Rectification: the rectified images would show nothing that both cameras see.
+   */
+  STEREOPSIS_STATUS_RECTIFY_NOTHING = -42,
+  /**
+   * Rectification: `alpha` is neither from 0 to 1 nor `STEREOPSIS_ALPHA_NATURAL`.
+   */
+  STEREOPSIS_STATUS_RECTIFY_ALPHA = -43,
+  /**
+   * Rectification: raw or rectified images have over `stereopsis_max_width()` columns, the rectified ones
+   * more rows than the library was built for, or under 2 of either.
+   */
+  STEREOPSIS_STATUS_RECTIFY_SIZE = -44,
+  /**
+   * Rectification: a lens bends too much for the tables.
+   */
+  STEREOPSIS_STATUS_RECTIFY_BENT = -45,
+  /**
+   * Rectification: more raw lines are needed at once than `stereopsis_rectifier_lines()`.
+   */
+  STEREOPSIS_STATUS_RECTIFY_LINES = -46,
+  /**
+   * Rectification: `stereopsis_rectifier_line` has to take the next line before another raw line.
+   */
+  STEREOPSIS_STATUS_LINE_WAITING = -47,
+  /**
+   * The row is not one of the image.
+   */
+  STEREOPSIS_STATUS_ROW = -48
 };
-#ifndef __cplusplus
-#if __STDC_VERSION__ >= 202311L
-typedef enum stereopsis_status stereopsis_status;
-#else
+#if defined(__cplusplus) ? __cplusplus < 201103L : __STDC_VERSION__ < 202311L
 typedef int32_t stereopsis_status;
-#endif // __STDC_VERSION__ >= 202311L
-#endif // __cplusplus
+#elif !defined(__cplusplus)
+typedef enum stereopsis_status stereopsis_status;
+#endif
 
 /**
  * Matcher in the caller's memory.
  */
 typedef struct stereopsis stereopsis;
+
+/**
+ * Rectifier of raw lines in the caller's memory.
+ */
+typedef struct stereopsis_rectifier stereopsis_rectifier;
+
+/**
+ * What a calibration record says about the raw images.
+ */
+typedef struct stereopsis_cameras {
+  /**
+   * Columns of the left camera's raw images, and of the right one's, px.
+   */
+  uint16_t width[2];
+  /**
+   * Their rows, px.
+   */
+  uint16_t height[2];
+  /**
+   * Distance between the optical centres, m.
+   */
+  float baseline_m;
+} stereopsis_cameras;
+
+/**
+ * Rectified stereo rig: aligned rows and one focal length.
+ */
+typedef struct stereopsis_rig {
+  /**
+   * Focal length, px.
+   */
+  float focal_px;
+  /**
+   * Distance between the optical centres, m.
+   */
+  float baseline_m;
+  /**
+   * Principal point of the left camera, column, px.
+   */
+  float cx;
+  /**
+   * Principal point of both cameras, row, px.
+   */
+  float cy;
+  /**
+   * Principal point of the right camera, column, px.
+   */
+  float cx_right;
+} stereopsis_rig;
+
+/**
+ * Noise meter in the caller's memory, for the `stereopsis_noise_` functions; its contents are private.
+ */
+typedef struct stereopsis_noise_meter {
+  /**
+   * Counters.
+   */
+  uint32_t words[65];
+} stereopsis_noise_meter;
+
+/**
+ * Point in the left camera's frame: X to the right, Y down, Z forward.
+ */
+typedef struct stereopsis_point {
+  /**
+   * X, m.
+   */
+  float x_m;
+  /**
+   * Y, m.
+   */
+  float y_m;
+  /**
+   * Z, m; 0, as X and Y are, where there is no point.
+   */
+  float z_m;
+} stereopsis_point;
 
 /**
  * Frame size, search range and checks, filled by `stereopsis_config_default` and then open to changes.
@@ -532,45 +697,157 @@ typedef struct stereopsis_counts {
   uint32_t lines_stale;
 } stereopsis_counts;
 
-/**
- * Noise meter in the caller's memory, for the `stereopsis_noise_` functions; its contents are private.
- */
-typedef struct stereopsis_noise_meter {
-  /**
-   * Counters.
-   */
-  uint32_t words[65];
-} stereopsis_noise_meter;
-
-/**
- * Rectified stereo rig: aligned rows and one focal length.
- */
-typedef struct stereopsis_rig {
-  /**
-   * Focal length, px.
-   */
-  float focal_px;
-  /**
-   * Distance between the optical centres, m.
-   */
-  float baseline_m;
-  /**
-   * Principal point of the left camera, column, px.
-   */
-  float cx;
-  /**
-   * Principal point of both cameras, row, px.
-   */
-  float cy;
-  /**
-   * Principal point of the right camera, column, px.
-   */
-  float cx_right;
-} stereopsis_rig;
-
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
+
+/**
+ * Checks a calibration record, what `stereo calib convert --to c` writes, in the first
+ * `STEREOPSIS_RECORD_BYTES` of `length` bytes, which need no alignment, and writes what it says about the
+ * raw images.
+ */
+stereopsis_status stereopsis_record_read(const uint8_t *record,
+                                         size_t length,
+                                         struct stereopsis_cameras *cameras);
+
+/**
+ * Returns the bytes of memory that a rectifier takes.
+ */
+size_t stereopsis_rectifier_size(void);
+
+/**
+ * Returns the raw lines of each camera that a rectifier of this library holds, one of which is a copy.
+ */
+size_t stereopsis_rectifier_lines(void);
+
+/**
+ * Creates a rectifier in the caller's memory of `length` bytes, aligned to `STEREOPSIS_ALIGN`, and writes
+ * the handle for its other calls; a null handle on an error, unless `handle` itself is invalid.
+ *
+ * The memory is not read, and belongs to the rectifier until `stereopsis_rectifier_deinit`.
+ */
+stereopsis_status stereopsis_rectifier_init(void *memory,
+                                            size_t length,
+                                            struct stereopsis_rectifier **handle);
+
+/**
+ * Ends a rectifier, whose memory returns to the caller. The handle is the memory's address.
+ */
+stereopsis_status stereopsis_rectifier_deinit(struct stereopsis_rectifier *handle);
+
+/**
+ * Reads a calibration record and prepares its rectification, which is for lines of both cameras in step,
+ * into images of `width` x `height` pixels. `alpha` is OpenCV's: from 0, nothing but what both cameras see,
+ * to 1, all of both raw images; `STEREOPSIS_ALPHA_NATURAL` keeps the scale of the raw images. Writes the
+ * rectified rig for depths and, unless `lines` is null, how many lines a rectifier needs to hold for it, which
+ * is at least so many where the result is `STEREOPSIS_STATUS_RECTIFY_LINES`.
+ *
+ * It is in single precision: every core finds the same lines. A record or sizes that are refused leave the
+ * rectifier as it was; after `STEREOPSIS_STATUS_RECTIFY_LINES` or `STEREOPSIS_STATUS_RECTIFY_BENT` it is not
+ * started.
+ */
+stereopsis_status stereopsis_rectifier_start(struct stereopsis_rectifier *handle,
+                                             const uint8_t *record,
+                                             size_t length,
+                                             uint16_t width,
+                                             uint16_t height,
+                                             float alpha,
+                                             struct stereopsis_rig *rig,
+                                             size_t *lines);
+
+/**
+ * Begins a frame, and drops the one before.
+ */
+stereopsis_status stereopsis_rectifier_begin_frame(struct stereopsis_rectifier *handle);
+
+/**
+ * Takes the next raw line of both cameras, 8-bit grey, `length` bytes each, which is the record's width. The
+ * lines are copied; both may be one array.
+ *
+ * Returns `STEREOPSIS_STATUS_OK` where `stereopsis_rectifier_line` has lines, all of which have to be taken
+ * before the next raw line, else `STEREOPSIS_STATUS_NO_ROW_YET`; `STEREOPSIS_STATUS_FRAME_DONE` for raw lines
+ * below the last rectified one, which need not be pushed.
+ */
+stereopsis_status stereopsis_rectifier_push(struct stereopsis_rectifier *handle,
+                                            const uint8_t *left,
+                                            const uint8_t *right,
+                                            size_t length);
+
+/**
+ * Writes the next rectified line of both cameras, in the order of their rows, `length` bytes each, which is
+ * the rectified width, for `stereopsis_push`. A pixel that a camera does not see is 0.
+ *
+ * Returns `STEREOPSIS_STATUS_OK` with lines, `STEREOPSIS_STATUS_NO_ROW_YET` where raw lines are needed, and
+ * `STEREOPSIS_STATUS_FRAME_DONE` after the last row.
+ */
+stereopsis_status stereopsis_rectifier_line(struct stereopsis_rectifier *handle,
+                                            uint8_t *left,
+                                            uint8_t *right,
+                                            size_t length);
+
+/**
+ * Writes which pixels of a rectified row each camera sees, 1 or 0, `length` bytes each, for
+ * `stereopsis_mask` when that row of disparities comes out. It needs no frame.
+ */
+stereopsis_status stereopsis_rectifier_mask(struct stereopsis_rectifier *handle,
+                                            uint16_t row,
+                                            uint8_t *left,
+                                            uint8_t *right,
+                                            size_t length);
+
+/**
+ * Clears a noise meter, which needs no matcher. Measure a frame as often as the light may
+ * change, and set the level in the configuration of the next ones.
+ */
+stereopsis_status stereopsis_noise_clear(struct stereopsis_noise_meter *meter);
+
+/**
+ * Measures a line of either camera, 8-bit grey, 65535 bytes at most.
+ */
+stereopsis_status stereopsis_noise_line(struct stereopsis_noise_meter *meter,
+                                        const uint8_t *line,
+                                        size_t length);
+
+/**
+ * Writes the `STEREOPSIS_NOISE_` number of the lines so far, for `stereopsis_config_noise`, and
+ * unless `sigma_16ths` is null the standard deviation in 1/16 grey level; none and 0 before the
+ * first line.
+ */
+stereopsis_status stereopsis_noise_level(struct stereopsis_noise_meter *meter,
+                                         uint8_t *noise,
+                                         uint16_t *sigma_16ths);
+
+/**
+ * Converts `count` disparities to depths in whole millimetres, 0 for no answer, at infinity, or
+ * beyond 65.535 m. Both arrays may be one.
+ */
+stereopsis_status stereopsis_millimetres(const struct stereopsis_rig *rig,
+                                         const uint16_t *disparities,
+                                         uint16_t *millimetres,
+                                         size_t count);
+
+/**
+ * Converts `count` disparities, with standard deviations as from `stereopsis_sigma_px`, to depths in
+ * metres and their standard deviations: 0 and infinity for no answer, or at infinity. `sigma_px` and
+ * `sigma_m` may be one array, or both null: then depths alone are written. No other two may overlap.
+ */
+stereopsis_status stereopsis_metres(const struct stereopsis_rig *rig,
+                                    const uint16_t *disparities,
+                                    const float *sigma_px,
+                                    float *depth_m,
+                                    float *sigma_m,
+                                    size_t count);
+
+/**
+ * Converts the `count` disparities of row `row`, from its first column on, to points in the left
+ * camera's frame; all 0 for no answer, or at infinity. A row has at most 65535 of them. The arrays do
+ * not overlap.
+ */
+stereopsis_status stereopsis_points(const struct stereopsis_rig *rig,
+                                    uint16_t row,
+                                    const uint16_t *disparities,
+                                    struct stereopsis_point *points,
+                                    size_t count);
 
 /**
  * Returns the version of the library's interface: a program compiled with another
@@ -623,6 +900,13 @@ size_t stereopsis_latency(void);
  * initialised.
  */
 stereopsis_status stereopsis_init(void *memory, size_t length, struct stereopsis **handle);
+
+/**
+ * As `stereopsis_init`, for memory that was never written, such as that of `malloc`: it is not
+ * read, and a matcher that it still holds is overwritten. Valgrind and sanitizers have nothing
+ * to report.
+ */
+stereopsis_status stereopsis_init_fresh(void *memory, size_t length, struct stereopsis **handle);
 
 /**
  * Ends a matcher, whose memory returns to the caller. The handle is the memory's address.
@@ -692,7 +976,7 @@ stereopsis_status stereopsis_push_lost(struct stereopsis *handle, int32_t fault,
  * of a rectified image. The masks of the left and the right image's row have `length` bytes
  * each, 0 for an unseen pixel; a null mask means that all were seen. An answer whose pixel or
  * partner was not seen is removed and flagged `STEREOPSIS_FLAG_OUTSIDE`. The row's arrays change
- * in place.
+ * in place. Before a frame's first row the result is `STEREOPSIS_STATUS_NO_ROW_YET`.
  */
 stereopsis_status stereopsis_mask(struct stereopsis *handle,
                                   const uint8_t *left,
@@ -717,39 +1001,57 @@ stereopsis_status stereopsis_flush(struct stereopsis *handle, struct stereopsis_
  */
 stereopsis_status stereopsis_sigma_px(struct stereopsis *handle, float *sigma_px, size_t count);
 
-/**
- * Clears a noise meter, which needs no matcher. Measure a frame as often as the light may
- * change, and set the level in the configuration of the next ones.
- */
-stereopsis_status stereopsis_noise_clear(struct stereopsis_noise_meter *meter);
-
-/**
- * Measures a line of either camera, 8-bit grey, 65535 bytes at most.
- */
-stereopsis_status stereopsis_noise_line(struct stereopsis_noise_meter *meter,
-                                        const uint8_t *line,
-                                        size_t length);
-
-/**
- * Writes the `STEREOPSIS_NOISE_` number of the lines so far, for `stereopsis_config_noise`, and
- * unless `sigma_16ths` is null the standard deviation in 1/16 grey level; none and 0 before the
- * first line.
- */
-stereopsis_status stereopsis_noise_level(struct stereopsis_noise_meter *meter,
-                                         uint8_t *noise,
-                                         uint16_t *sigma_16ths);
-
-/**
- * Converts `count` disparities to depths in whole millimetres, 0 for no answer, at infinity, or
- * beyond 65.535 m. Both arrays may be one.
- */
-stereopsis_status stereopsis_millimetres(const struct stereopsis_rig *rig,
-                                         const uint16_t *disparities,
-                                         uint16_t *millimetres,
-                                         size_t count);
-
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus
+
+/**
+ * Declares all functions with `prefix` before their names, for a library that was built with it:
+ * `STEREOPSIS_FUNCTIONS(near_);` in a file makes `near_stereopsis_init` and the others known.
+ */
+#ifdef __cplusplus
+#define STEREOPSIS_EXTERN extern "C"
+#else
+#define STEREOPSIS_EXTERN extern
+#endif
+#define STEREOPSIS_FUNCTIONS(prefix) \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_record_read(const uint8_t *record, size_t length, struct stereopsis_cameras *cameras); \
+  STEREOPSIS_EXTERN size_t prefix##stereopsis_rectifier_size(void); \
+  STEREOPSIS_EXTERN size_t prefix##stereopsis_rectifier_lines(void); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_rectifier_init(void *memory, size_t length, struct stereopsis_rectifier **handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_rectifier_deinit(struct stereopsis_rectifier *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_rectifier_start(struct stereopsis_rectifier *handle, const uint8_t *record, size_t length, uint16_t width, uint16_t height, float alpha, struct stereopsis_rig *rig, size_t *lines); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_rectifier_begin_frame(struct stereopsis_rectifier *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_rectifier_push(struct stereopsis_rectifier *handle, const uint8_t *left, const uint8_t *right, size_t length); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_rectifier_line(struct stereopsis_rectifier *handle, uint8_t *left, uint8_t *right, size_t length); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_rectifier_mask(struct stereopsis_rectifier *handle, uint16_t row, uint8_t *left, uint8_t *right, size_t length); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_noise_clear(struct stereopsis_noise_meter *meter); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_noise_line(struct stereopsis_noise_meter *meter, const uint8_t *line, size_t length); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_noise_level(struct stereopsis_noise_meter *meter, uint8_t *noise, uint16_t *sigma_16ths); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_millimetres(const struct stereopsis_rig *rig, const uint16_t *disparities, uint16_t *millimetres, size_t count); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_metres(const struct stereopsis_rig *rig, const uint16_t *disparities, const float *sigma_px, float *depth_m, float *sigma_m, size_t count); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_points(const struct stereopsis_rig *rig, uint16_t row, const uint16_t *disparities, struct stereopsis_point *points, size_t count); \
+  STEREOPSIS_EXTERN uint32_t prefix##stereopsis_abi(void); \
+  STEREOPSIS_EXTERN const char *prefix##stereopsis_version(void); \
+  STEREOPSIS_EXTERN const char *prefix##stereopsis_status_text(int32_t status); \
+  STEREOPSIS_EXTERN size_t prefix##stereopsis_size(void); \
+  STEREOPSIS_EXTERN size_t prefix##stereopsis_align(void); \
+  STEREOPSIS_EXTERN size_t prefix##stereopsis_max_width(void); \
+  STEREOPSIS_EXTERN size_t prefix##stereopsis_max_disparities(void); \
+  STEREOPSIS_EXTERN size_t prefix##stereopsis_latency(void); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_init(void *memory, size_t length, struct stereopsis **handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_init_fresh(void *memory, size_t length, struct stereopsis **handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_deinit(struct stereopsis *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_config_default(uint16_t width, uint16_t height, uint16_t disparities, int32_t preset, struct stereopsis_config *config); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_config_noise(int32_t preset, uint8_t noise, struct stereopsis_config *config); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_start(struct stereopsis *handle, const struct stereopsis_config *config); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_restart(struct stereopsis *handle, const struct stereopsis_config *config); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_begin_frame(struct stereopsis *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_push(struct stereopsis *handle, const uint8_t *left, const uint8_t *right, size_t length, struct stereopsis_row *row); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_push_lost(struct stereopsis *handle, int32_t fault, struct stereopsis_row *row); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_mask(struct stereopsis *handle, const uint8_t *left, const uint8_t *right, size_t length); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_counters(struct stereopsis *handle, struct stereopsis_counts *counters); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_flush(struct stereopsis *handle, struct stereopsis_row *row); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_sigma_px(struct stereopsis *handle, float *sigma_px, size_t count)
 
 #endif  /* STEREOPSIS_H */

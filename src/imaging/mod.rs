@@ -40,7 +40,8 @@ pub use histogram::Histogram;
 pub use noise::{Noise, NoiseMeter};
 pub use picture::{Picture, PictureError};
 pub use remap::{
-    RectifiedPair, RectifiedPairError, Remap, RemapError, RemapPair, RemapTable, RemapTableError,
+    RectifiedPair, RectifiedPairError, Remap, RemapError, RemapPair, RemapPairError, RemapTable,
+    RemapTableError,
 };
 pub use smooth::smooth;
 pub use window::{LineBand, LineWindow};

@@ -1,12 +1,18 @@
-//! Takes the method and the sizes from three variables, which a build system sets, and writes the one line
+//! Takes the method, the sizes and the names' prefix from six variables, which a build system sets, and writes the one line
 //! that makes the functions.
 
 use std::path::PathBuf;
 use std::{env, fs};
 
 /// What the library is built for when nothing is said.
-const DEFAULTS: [(&str, &str); 3] =
-    [("STEREOPSIS_METHOD", "block"), ("STEREOPSIS_WIDTH", "320"), ("STEREOPSIS_DISPARITIES", "64")];
+const DEFAULTS: [(&str, &str); 6] = [
+    ("STEREOPSIS_METHOD", "block"),
+    ("STEREOPSIS_WIDTH", "320"),
+    ("STEREOPSIS_DISPARITIES", "64"),
+    ("STEREOPSIS_HEIGHT", "240"),
+    ("STEREOPSIS_LINES", "33"),
+    ("STEREOPSIS_PREFIX", ""),
+];
 
 /// Methods as users spell them, and as the crate does.
 const METHODS: [(&str, &str); 5] =
@@ -20,7 +26,7 @@ fn main() {
 }
 
 fn write() -> Result<(), String> {
-    let [method, width, disparities] = DEFAULTS.map(|(name, default)| {
+    let [method, width, disparities, height, lines, prefix] = DEFAULTS.map(|(name, default)| {
         println!("cargo::rerun-if-env-changed={name}");
         env::var(name).ok().filter(|value| !value.is_empty()).unwrap_or_else(|| default.to_owned())
     });
@@ -44,8 +50,22 @@ fn write() -> Result<(), String> {
             "STEREOPSIS_WIDTH is {width}: it must be {disparities} (the disparities) to 6553"
         ));
     }
-    let line =
-        format!("stereopsis::instantiate_c_api!({method}, width = {width}, disparities = {disparities});\n");
+    let (height, lines) = (number(3, &height)?, number(4, &lines)?);
+    if !(2..=4096).contains(&height) {
+        return Err(format!("STEREOPSIS_HEIGHT is {height}: it must be 2 to 4096"));
+    }
+    if !(3..=4097).contains(&lines) {
+        return Err(format!("STEREOPSIS_LINES is {lines}: it must be 3 to 4097"));
+    }
+    let is_letter = |c: char| c.is_ascii_alphabetic() || c == '_';
+    let is_name = prefix.chars().all(|c| is_letter(c) || c.is_ascii_digit());
+    if !is_name || !prefix.is_empty() && !prefix.starts_with(is_letter) {
+        return Err(format!("STEREOPSIS_PREFIX is \"{prefix}\": it must begin a name in C"));
+    }
+    let line = format!(
+        "stereopsis::instantiate_c_api!({method}, width = {width}, disparities = {disparities}, \
+         height = {height}, lines = {lines}, prefix = \"{prefix}\");\n"
+    );
     let folder = env::var_os("OUT_DIR").map(PathBuf::from).ok_or("OUT_DIR is not set")?;
     fs::write(folder.join("instance.rs"), line).map_err(|e| format!("instance.rs: {e}"))
 }

@@ -1,49 +1,11 @@
 /* Every misuse of the C interface has its status, and leaves everything else as it was. Ends with the number of failures;
    built with the address and undefined-behaviour sanitizers, as C and as C++. */
-#include "stereopsis.h"
-#include "stereopsis.h" /* twice: the guard holds */
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "check.h"
 
-#define EXPECT(call, status) expect(__LINE__, #call, (call), STEREOPSIS_STATUS_##status)
-#define CHECK(condition) check(__LINE__, #condition, (condition))
-
-enum { WIDTH = 40, HEIGHT = 4, GUARD = 64 };
-static int failures;
-
-static void check(int line, const char *what, int holds) {
-    if (holds) return;
-    printf("misuse.c:%d: %s does not hold\n", line, what);
-    failures++;
-}
-
-static void expect(int line, const char *call, int32_t found, int32_t expected) {
-    if (found == expected) return;
-    printf("misuse.c:%d: %s is %d (%s), expected %d (%s)\n", line, call, (int)found, stereopsis_status_text(found),
-           (int)expected, stereopsis_status_text(expected));
-    failures++;
-}
-
-/* Memory with guards around it, of just the size that is needed, filled with anything but zeros. */
-typedef struct {
-    unsigned char *all, *memory;
-    size_t size;
-} guarded;
+enum { WIDTH = 40, HEIGHT = 4 };
 
 static guarded take(void) {
-    guarded g;
-    g.size = stereopsis_size();
-    g.all = (unsigned char *)malloc(g.size + 2 * GUARD);
-    if (g.all == NULL) exit(100);
-    memset(g.all, 0xA5, g.size + 2 * GUARD);
-    g.memory = g.all + GUARD;
-    return g;
-}
-
-static void release(guarded g) {
-    for (size_t i = 0; i < GUARD; i++) CHECK(g.all[i] == 0xA5 && g.memory[g.size + i] == 0xA5);
-    free(g.all);
+    return guard(stereopsis_size());
 }
 
 static stereopsis_config config(void) {
@@ -96,6 +58,14 @@ static void memory(void) {
     EXPECT(stereopsis_deinit(s), OK);
     EXPECT(stereopsis_deinit(s), NOT_INITIALISED);
     EXPECT(stereopsis_init(g.memory, g.size, &s), OK);
+    /* One for memory that was never written makes a new one over it. */
+    EXPECT(stereopsis_init_fresh(g.memory, g.size, NULL), NULL);
+    EXPECT(stereopsis_init_fresh(NULL, g.size, &s), NULL);
+    EXPECT(stereopsis_init_fresh(g.memory + 1, g.size, &s), MISALIGNED);
+    EXPECT(stereopsis_init_fresh(g.memory, g.size - 1, &s), MEMORY_TOO_SHORT);
+    EXPECT(stereopsis_init_fresh(g.memory, g.size, (stereopsis **)(void *)(g.memory + align)), OVERLAP);
+    EXPECT(stereopsis_init_fresh(g.memory, g.size, (stereopsis **)MISALIGN(&s)), MISALIGNED);
+    EXPECT(stereopsis_init_fresh(g.memory, g.size, &s), OK);
     EXPECT(stereopsis_deinit(s), OK);
     release(g);
 }
@@ -121,6 +91,10 @@ static void configurations(void) {
     c = config();
     EXPECT(stereopsis_start(NULL, &c), NULL);
     EXPECT(stereopsis_start(s, NULL), NULL);
+    EXPECT(stereopsis_start(s, (stereopsis_config *)MISALIGN(&c)), MISALIGNED);
+    EXPECT(stereopsis_restart(s, (stereopsis_config *)MISALIGN(&c)), MISALIGNED);
+    EXPECT(stereopsis_config_default(1, 1, 16, STEREOPSIS_PRESET_STRICT, (stereopsis_config *)MISALIGN(&c)), MISALIGNED);
+    EXPECT(stereopsis_config_noise(STEREOPSIS_PRESET_STRICT, 0, (stereopsis_config *)MISALIGN(&c)), MISALIGNED);
     EXPECT(stereopsis_restart(NULL, &c), NULL);
     EXPECT(stereopsis_restart(s, NULL), NULL);
     REFUSED(width, 0, WIDTH);
@@ -198,8 +172,10 @@ static void lines(void) {
     EXPECT(stereopsis_begin_frame(s), NOT_STARTED);
     EXPECT(stereopsis_push(s, line, line, WIDTH, &row), NOT_STARTED);
     EXPECT(stereopsis_flush(s, &row), NOT_STARTED);
-    EXPECT(stereopsis_sigma_px(s, sigma, WIDTH), NO_ROW_YET);
+    EXPECT(stereopsis_sigma_px(s, sigma, WIDTH), NOT_STARTED);
+    EXPECT(stereopsis_mask(s, line, line, WIDTH), NOT_STARTED);
     EXPECT(stereopsis_start(s, &c), OK);
+    EXPECT(stereopsis_sigma_px(s, sigma, WIDTH), NO_ROW_YET);
     EXPECT(stereopsis_push(s, line, line, WIDTH, &row), NOT_BEGUN);
     EXPECT(stereopsis_flush(s, &row), NOT_BEGUN);
 
@@ -210,6 +186,9 @@ static void lines(void) {
         EXPECT(stereopsis_push(s, NULL, line, WIDTH, &row), NULL);
         EXPECT(stereopsis_push(s, line, NULL, WIDTH, &row), NULL);
         EXPECT(stereopsis_push(s, line, line, WIDTH, NULL), NULL);
+        EXPECT(stereopsis_push(s, line, line, WIDTH, (stereopsis_row *)MISALIGN(&row)), MISALIGNED);
+        EXPECT(stereopsis_push_lost(s, STEREOPSIS_LOST_TORN, (stereopsis_row *)MISALIGN(&row)), MISALIGNED);
+        EXPECT(stereopsis_flush(s, (stereopsis_row *)MISALIGN(&row)), MISALIGNED);
         EXPECT(stereopsis_push(s, line, line, 0, &row), LINE_LENGTH);
         EXPECT(stereopsis_push(s, line, line, WIDTH - 1, &row), LINE_LENGTH);
         EXPECT(stereopsis_push(s, line, line, SIZE_MAX, &row), LINE_LENGTH);
@@ -289,6 +268,7 @@ static void lost_lines(void) {
         damaged += (row.flags[0] & STEREOPSIS_FLAG_DAMAGED) != 0, rows++;
     CHECK(status == STEREOPSIS_STATUS_FRAME_DONE && rows == 40 && damaged > 1 && damaged < 40);
     EXPECT(stereopsis_counters(s, NULL), NULL);
+    EXPECT(stereopsis_counters(s, (stereopsis_counts *)MISALIGN(&counts)), MISALIGNED);
     EXPECT(stereopsis_counters(NULL, &counts), NULL);
     EXPECT(stereopsis_counters(s, (stereopsis_counts *)(void *)g.memory), OVERLAP);
     EXPECT(stereopsis_counters(s, &counts), OK);
@@ -337,6 +317,7 @@ static void noise(void) {
     EXPECT(stereopsis_noise_line(&meter, (const uint8_t *)&meter, WIDTH), OVERLAP);
     EXPECT(stereopsis_noise_level(&meter, NULL, &sigma), NULL);
     EXPECT(stereopsis_noise_level(NULL, &level, &sigma), NULL);
+    EXPECT(stereopsis_noise_level(&meter, &level, (uint16_t *)MISALIGN(&sigma)), MISALIGNED);
     /* Evenly spread over 16 levels: a deviation of 4.6. */
     for (int y = 0; y < 200; y++) {
         for (size_t i = 0; i < WIDTH; i++) {
@@ -368,6 +349,7 @@ static void depths(void) {
     EXPECT(stereopsis_millimetres(&rig, words, depth, 3), OK);
     CHECK(depth[0] == 2000 && depth[1] == 0 && depth[2] == 0);
     EXPECT(stereopsis_millimetres(NULL, words, depth, 3), NULL);
+    EXPECT(stereopsis_millimetres((stereopsis_rig *)MISALIGN(&rig), words, depth, 3), MISALIGNED);
     EXPECT(stereopsis_millimetres(&rig, NULL, depth, 3), NULL);
     EXPECT(stereopsis_millimetres(&rig, words, NULL, 3), NULL);
     EXPECT(stereopsis_millimetres(&rig, (uint16_t *)(void *)((char *)words + 1), depth, 2), MISALIGNED);

@@ -63,6 +63,14 @@ impl Pictures {
         Ok(Self { width, height, left, right })
     }
 
+    /// The same pictures with the right one moved down by some rows, below black ones.
+    pub fn with_right_lower(mut self, rows: usize) -> Self {
+        let moved = rows * usize::from(self.width);
+        self.right.splice(..0, std::iter::repeat_n(0, moved));
+        self.right.truncate(self.left.len());
+        self
+    }
+
     /// A frame of a camera with 8-bit grey lines.
     fn record<C: StereoSource<Error: fmt::Display>>(camera: &mut C) -> Outcome<Self> {
         let failed = |e| Failure::new(format!("camera: {e}"));
@@ -78,7 +86,7 @@ impl Pictures {
     }
 
     /// The pictures as a camera.
-    fn camera(&self) -> Outcome<MemoryPair> {
+    pub fn camera(&self) -> Outcome<MemoryPair> {
         let camera = MemoryPair::new(self.width, self.left.clone(), self.right.clone());
         camera.ok_or_else(|| Failure::new("the pictures are empty"))
     }

@@ -23,5 +23,5 @@ mod table;
 
 pub use error::{RemapError, RemapTableError};
 pub use lines::Remap;
-pub use pair::{RectifiedPair, RectifiedPairError, RemapPair};
+pub use pair::{RectifiedPair, RectifiedPairError, RemapPair, RemapPairError};
 pub use table::RemapTable;

@@ -57,7 +57,90 @@ impl<const W: usize, const N: usize, const SLOTS: usize> RemapPair<W, N, SLOTS> 
         }
         usize::from(most) + 1
     }
+
+    /// Returns [`Self::lines_needed`]; refused where the bands hold fewer, or the images differ in size.
+    pub fn lines_in_step(&self) -> Result<usize, RemapPairError> {
+        let [left, right] = self.remaps().map(Remap::table);
+        if left.size() != right.size() || left.raw_size() != right.raw_size() {
+            return Err(RemapPairError::Sizes);
+        }
+        let needed = self.lines_needed();
+        if needed > N { Err(RemapPairError::Lines { needed }) } else { Ok(needed) }
+    }
+
+    /// Begins a frame.
+    pub fn begin(&mut self) {
+        self.left.begin();
+        self.right.begin();
+    }
+
+    /// Returns the row that [`Self::row`] gives next; the height after the last one.
+    pub fn next_row(&self) -> u16 {
+        self.left.next_row()
+    }
+
+    /// Returns whether the next rectified lines need other raw lines. Take all rectified lines that do not
+    /// before accepting the next raw lines, which may overwrite what they need.
+    pub fn wants_lines(&self) -> bool {
+        self.left.wants_line() || self.right.wants_line()
+    }
+
+    /// Returns the buffers for the next raw lines, which count once [`Self::accept`] is called.
+    pub fn next_lines(&mut self) -> [&mut [u8]; 2] {
+        [self.left.next_line(), self.right.next_line()]
+    }
+
+    /// Accepts the raw lines in [`Self::next_lines`].
+    pub fn accept(&mut self) {
+        self.left.accept();
+        self.right.accept();
+    }
+
+    /// Writes the next rectified lines, and returns their row.
+    pub fn row(&mut self, left: &mut [u8], right: &mut [u8]) -> Result<u16, RemapError> {
+        let [left_valid, right_valid] = &mut self.valid;
+        let row = self.left.row(left, left_valid)?;
+        self.right.row(right, right_valid)?;
+        Ok(row)
+    }
+
+    /// Returns the masks of the last lines, left and right: 1 for a valid pixel, else 0.
+    pub fn valid(&self) -> [&[u8]; 2] {
+        let width = usize::from(self.left.table().size().width);
+        self.valid.each_ref().map(|valid| valid.get(..width).unwrap_or(&[]))
+    }
+
+    /// Writes the masks of a rectified row, 1 for a valid pixel, else 0, as many as fit.
+    pub fn mask(&self, row: u16, [left, right]: [&mut [u8]; 2]) {
+        self.left.table().mask(row, left);
+        self.right.table().mask(row, right);
+    }
 }
+
+/// Why two remaps cannot run in step.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum RemapPairError {
+    /// The raw images or the rectified images of the two cameras differ in size.
+    Sizes,
+    /// The bands hold too few lines for both cameras in step.
+    Lines {
+        /// Number of lines `N` that would have been enough.
+        needed: usize,
+    },
+}
+
+impl fmt::Display for RemapPairError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sizes => f.write_str("the two remaps take or make images of different sizes"),
+            Self::Lines { needed } => RemapError::Lines { needed: *needed }.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for RemapPairError {}
 
 /// Stereo source of rectified lines over a source of raw lines.
 ///
@@ -127,21 +210,17 @@ impl<'a, S: StereoSource, const W: usize, const N: usize, const SLOTS: usize>
         if !fits || format.pixel != PixelFormat::Grey8 {
             return Err(RectifiedPairError::Raw(format));
         }
-        if left.table().size() != right.table().size() {
-            return Err(RectifiedPairError::Sizes);
-        }
-        let needed = pair.lines_needed();
-        if needed > N {
-            return Err(RectifiedPairError::Remap(RemapError::Lines { needed }));
-        }
+        pair.lines_in_step().map_err(|error| match error {
+            RemapPairError::Sizes => RectifiedPairError::Sizes,
+            RemapPairError::Lines { needed } => RectifiedPairError::Remap(RemapError::Lines { needed }),
+        })?;
         let last = LineStart { row: 0, timestamp_us: 0 };
         Ok(Self { source, pair, last })
     }
 
     /// Returns the masks of the last lines, left and right: 1 for a valid pixel, else 0.
     pub fn valid(&self) -> [&[u8]; 2] {
-        let width = usize::from(self.pair.left.table().size().width);
-        self.pair.valid.each_ref().map(|valid| valid.get(..width).unwrap_or(&[]))
+        self.pair.valid()
     }
 
     /// Returns the remaps of the left and the right camera.
@@ -175,8 +254,7 @@ impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> Stereo
 
     fn start_frame(&mut self) -> Result<FrameStart, CameraError<Self::Error>> {
         let start = self.source.start_frame().map_err(|e| e.map_hardware(RectifiedPairError::Source))?;
-        self.pair.left.begin();
-        self.pair.right.begin();
+        self.pair.begin();
         Ok(start)
     }
 
@@ -185,22 +263,19 @@ impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> Stereo
         left: &mut [u8],
         right: &mut [u8],
     ) -> Result<LineStart, CameraError<Self::Error>> {
-        let RemapPair { left: first, right: second, valid: [first_valid, second_valid] } = &mut *self.pair;
         // Each iteration reads a raw line; an image has at most 4096.
-        while first.wants_line() || second.wants_line() {
-            let lines = self.source.next_lines(first.next_line(), second.next_line());
+        while self.pair.wants_lines() {
+            let [first, second] = self.pair.next_lines();
+            let lines = self.source.next_lines(first, second);
             self.last = lines.map_err(|e| e.map_hardware(RectifiedPairError::Source))?;
-            first.accept();
-            second.accept();
+            self.pair.accept();
         }
-        let row = first.row(left, first_valid)?;
-        second.row(right, second_valid)?;
+        let row = self.pair.row(left, right)?;
         Ok(LineStart { row, ..self.last })
     }
 
-    fn mask(&self, row: u16, [left, right]: [&mut [u8]; 2]) -> bool {
-        self.pair.left.table().mask(row, left);
-        self.pair.right.table().mask(row, right);
+    fn mask(&self, row: u16, masks: [&mut [u8]; 2]) -> bool {
+        self.pair.mask(row, masks);
         true
     }
 }

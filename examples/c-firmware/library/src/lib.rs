@@ -1,8 +1,9 @@
 //! `libstereopsis.a`: the functions of `stereopsis.h` for one method and one capacity.
 //!
-//! `STEREOPSIS_METHOD`, `STEREOPSIS_WIDTH` and `STEREOPSIS_DISPARITIES` choose them when this is built; a
-//! product may write the one line of `instance.rs` here instead, `stereopsis::instantiate_c_api!(Block, width
-//! = 320, disparities = 64);`.
+//! `STEREOPSIS_METHOD`, `STEREOPSIS_WIDTH`, `STEREOPSIS_DISPARITIES`, `STEREOPSIS_HEIGHT`, `STEREOPSIS_LINES`
+//! and `STEREOPSIS_PREFIX` choose them when this is built; a product may write the one line of `instance.rs`
+//! here instead, `stereopsis::instantiate_c_api!(Block, width = 320, disparities = 64);`, or several of them
+//! in modules of their own.
 
 #![no_std]
 

@@ -19,7 +19,7 @@ pub fn statuses() -> Outcome {
     remove(&build)?;
     configure("host-tests/tests/ffi", &build, &choices, SANITIZERS)?;
     run_command(command("cmake", &["--build"]).arg(&build))?;
-    for program in ["misuse", "misuse_cpp"] {
+    for program in ["misuse", "misuse_cpp", "misuse_raw", "misuse_raw_cpp"] {
         print!("{program}: {}", output_within(&mut command(build.join(program), &[]), LIMIT)?);
     }
     Ok(())
@@ -99,6 +99,9 @@ pub fn refused() -> Outcome {
         ),
         ("STEREOPSIS_DISPARITIES", "40", "STEREOPSIS_DISPARITIES is 40: it must be a multiple of 16"),
         ("STEREOPSIS_WIDTH", "32", "STEREOPSIS_WIDTH is 32: it must be 64 (the disparities) to 6553"),
+        ("STEREOPSIS_HEIGHT", "1", "STEREOPSIS_HEIGHT is 1: it must be 2 to 4096"),
+        ("STEREOPSIS_LINES", "2", "STEREOPSIS_LINES is 2: it must be 3 to 4097"),
+        ("STEREOPSIS_PREFIX", "1_", "STEREOPSIS_PREFIX is \"1_\": it must begin a name in C"),
     ] {
         let ended = cargo("build --locked --release")
             .env(name, value)

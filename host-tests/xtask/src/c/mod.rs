@@ -4,10 +4,12 @@
 //! Everything is built by CMake, as a user's project is. The desktop's programs run under the address and
 //! undefined-behaviour sanitizers, with a library that checks its own arithmetic and pointers.
 //!
-//! [`program`] builds and runs the example, [`misuse`] is what must be refused.
+//! [`program`] builds and runs the example, [`raw`] holds the one for raw pictures to the host's pipeline,
+//! [`misuse`] is what must be refused.
 
 mod misuse;
 mod program;
+mod raw;
 
 pub use program::{CORES, cargo, crc32s};
 
@@ -50,5 +52,6 @@ pub fn run() -> Outcome {
             println!("{what}: crc32 {found:08x}");
         }
     }
+    raw::run()?;
     misuse::refused()
 }

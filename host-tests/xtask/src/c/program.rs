@@ -85,13 +85,18 @@ pub fn crc32s(runs: &[(&Pictures, MethodName, u16)]) -> Outcome<Vec<[u32; 3]>> {
 
 fn crc32(core: Core, pictures: &Pictures, method: MethodName, disparities: u16) -> Outcome<u32> {
     let program = program(core, method, pictures.width.max(disparities), disparities)?;
-    let mut run = command(&program, &[]);
+    crc32_of(core, &program, pictures)
+}
+
+/// The checksum that a program prints for pictures.
+pub fn crc32_of(core: Core, program: &Path, pictures: &Pictures) -> Outcome<u32> {
+    let mut run = command(program, &[]);
     if let Some(machine) = core.machine() {
         run = command(
             QEMU_ARM,
             &["-machine", machine, "-nographic", "-semihosting-config", "enable=on,target=native"],
         );
-        run.arg("-kernel").arg(&program);
+        run.arg("-kernel").arg(program);
     }
     // It reads the current folder's left.pgm and right.pgm.
     let folder = temporary_folder()?;
@@ -132,14 +137,21 @@ pub fn program(core: Core, method: MethodName, width: u16, disparities: u16) -> 
     }
     configure("examples/c-firmware", &build, &choices, flags)?;
     run_command(command("cmake", &["--build"]).arg(&build))?;
-    let keep = || fs::create_dir_all(&programs).and_then(|()| fs::copy(build.join("depth"), &program));
-    keep().map_err(|e| Failure::new(format!("{}: {e}", program.display())))?;
-    if core != Core::Host {
-        let checked = Sizes::of(&program).and_then(|sizes| sizes.without_panics());
-        checked.map_err(|e| Failure::new(format!("{}: {e}", program.display())))?;
+    for (name, kept) in [("depth", &program), ("raw", &raw_beside(&program))] {
+        let keep = || fs::create_dir_all(&programs).and_then(|()| fs::copy(build.join(name), kept));
+        keep().map_err(|e| Failure::new(format!("{}: {e}", kept.display())))?;
+        if core != Core::Host {
+            let checked = Sizes::of(kept).and_then(|sizes| sizes.without_panics());
+            checked.map_err(|e| Failure::new(format!("{}: {e}", kept.display())))?;
+        }
     }
     built().push(program.clone());
     Ok(program)
+}
+
+/// The example for raw pictures that was built with a [`program`].
+pub fn raw_beside(program: &Path) -> PathBuf {
+    program.with_extension("raw")
 }
 
 /// Configures a project.

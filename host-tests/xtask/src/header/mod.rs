@@ -1,40 +1,55 @@
 //! `cargo xtask header`: `src/ffi/stereopsis.h`, made by cbindgen.
 //!
-//! cbindgen reads Rust files and expands no macros, and the functions stand in one: `instantiate_c_api`. So
-//! it is given the macro's own text as a file, with plain paths instead of `$crate`; types and constants it
+//! cbindgen reads Rust files and expands no macros, and the functions stand in macros: `instantiate_c_api`
+//! and those beside it. So it is given the macros' own text as a file, with plain paths instead of `$crate`; types and constants it
 //! reads from the files of `src/ffi`. How many bytes a method takes is worked out by the crate and put in as
 //! macros.
+//!
+//! [`portable`] makes it one for C++98, and adds the functions with a prefix.
+
+mod portable;
 
 use crate::steps::{Failure, Outcome, root};
 use cbindgen::{Builder, Config, DocumentationLength, DocumentationStyle, Language, RenameRule, Style};
+use portable::portable;
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use std::fs;
-use stereopsis::ffi::memory_bytes;
+use stereopsis::ffi::{memory_bytes, rectifier_bytes};
 use stereopsis::matching::{Block, Fast, Method, Sgm, SgmEdge, SgmLean};
 
 /// The header, from the repository's root.
 const HEADER: &str = "src/ffi/stereopsis.h";
-/// The file with the macro, and the macro.
-const MACRO: (&str, &str) = ("src/ffi/names.rs", "instantiate_c_api");
+/// The files with macros, and the macros, in the header's order.
+const MACROS: [(&str, &str); 3] = [
+    ("src/ffi/names.rs", "instantiate_c_api"),
+    ("src/ffi/names_rectifier.rs", "c_api_of_rectification"),
+    ("src/ffi/names_plain.rs", "c_api_without_state"),
+];
 /// The files that cbindgen reads as they are, in the header's order.
-const FILES: [&str; 7] = [
+const FILES: [&str; 10] = [
     "src/ffi/status.rs",
     "src/ffi/state.rs",
     "src/ffi/config.rs",
     "src/ffi/row.rs",
     "src/ffi/faults.rs",
     "src/ffi/noise.rs",
+    "src/ffi/rectifying.rs",
+    "src/ffi/record.rs",
     "src/ffi/rig.rs",
+    "src/ffi/points.rs",
 ];
 /// Names that Rust spells in its own way.
-const NAMES: [(&str, &str); 7] = [
+const NAMES: [(&str, &str); 10] = [
     ("Handle", "stereopsis"),
     ("Status", "stereopsis_status"),
     ("CConfig", "stereopsis_config"),
     ("CRow", "stereopsis_row"),
     ("CCounters", "stereopsis_counts"),
     ("CNoiseMeter", "stereopsis_noise_meter"),
+    ("RectifierHandle", "stereopsis_rectifier"),
+    ("CCameras", "stereopsis_cameras"),
     ("CRig", "stereopsis_rig"),
+    ("CPoint", "stereopsis_point"),
 ];
 
 const TOP: &str = "/* Depth from two cameras, line by line: the functions of libstereopsis.a.
@@ -92,7 +107,7 @@ fn generate() -> Outcome<String> {
         builder.with_src(functions).generate().map_err(|e| Failure::new(format!("cbindgen: {e}")))?;
     let mut text = Vec::new();
     bindings.write(&mut text);
-    String::from_utf8(text).map_err(|e| Failure::new(format!("cbindgen: {e}")))
+    portable(&String::from_utf8(text).map_err(|e| Failure::new(format!("cbindgen: {e}")))?)
 }
 
 fn config() -> Outcome<Config> {
@@ -105,12 +120,13 @@ fn config() -> Outcome<Config> {
         no_includes: true,
         sys_includes: vec!["stddef.h".to_owned(), "stdint.h".to_owned()],
         after_includes: Some(format!(
-            "\n{}\n{}\n{}\n{}\n{}",
+            "\n{}\n{}\n{}\n{}\n{}\n{}",
             bytes_macro::<Fast>()?,
             bytes_macro::<Block>()?,
             bytes_macro::<SgmLean>()?,
             bytes_macro::<Sgm>()?,
-            bytes_macro::<SgmEdge>()?
+            bytes_macro::<SgmEdge>()?,
+            rectifier_macro()?,
         )),
         usize_is_size_t: true,
         style: Style::Both,
@@ -151,9 +167,32 @@ fn bytes_macro<S: Method>() -> Outcome<String> {
     ))
 }
 
-/// The macro's body as plain Rust.
+/// How many bytes a rectifier takes, as a macro.
+fn rectifier_macro() -> Outcome<String> {
+    let expected = |width: usize, height: usize, lines: usize| {
+        let lattice = (width.div_ceil(16) + 3) * (height.div_ceil(16) + 3);
+        80 + 16 * (lattice + height.div_ceil(2)) + 2 * width * (lines + 1)
+    };
+    for (width, height, lines) in [(16, 2, 3), (160, 120, 33), (333, 241, 40), (4096, 4096, 4097)] {
+        if expected(width, height, lines) != rectifier_bytes(width, height, lines) {
+            return Err(Failure::new("rectifier_bytes is not what STEREOPSIS_RECTIFIER_BYTES says"));
+        }
+    }
+    Ok("/**\n * Bytes that are enough for a rectifier, on any target, with the library's longest line, the rows of \
+        its largest\n * rectified image, and the raw lines of each camera that it holds.\n */\n#define \
+        STEREOPSIS_RECTIFIER_BYTES(width, height, lines) \\\n  ((size_t)80 + (size_t)16 * \
+        ((((size_t)(width) + 15) / 16 + 3) * (((size_t)(height) + 15) / 16 + 3) + \\\n    ((size_t)(height) + \
+        1) / 2) + (size_t)2 * (width) * ((size_t)(lines) + 1))\n"
+        .to_owned())
+}
+
+/// The macros' bodies as plain Rust.
 fn functions_text() -> Outcome<String> {
-    let (file, name) = MACRO;
+    MACROS.into_iter().map(body_text).collect()
+}
+
+/// A macro's body as plain Rust.
+fn body_text((file, name): (&str, &str)) -> Outcome<String> {
     let wrong = |what: &str| Failure::new(format!("{file}: {what}"));
     let text = fs::read_to_string(root().join(file)).map_err(|e| wrong(&e.to_string()))?;
     let tokens: Vec<_> =
@@ -174,11 +213,16 @@ fn braces(token: &TokenTree) -> Option<TokenStream> {
     }
 }
 
-/// The tokens without `$`, and with the crate's name for `$crate`.
+/// The tokens without `$`, with the crate's name for `$crate`, and with functions' own names in C.
 fn plain(tokens: TokenStream) -> TokenStream {
     let not_dollar = |token: &TokenTree| !matches!(token, TokenTree::Punct(sign) if sign.as_char() == '$');
+    let word = |text: &str| TokenTree::from(Ident::new(text, Span::call_site()));
     let rename = |token: TokenTree| match token {
-        TokenTree::Ident(word) if word == "crate" => Ident::new("stereopsis", Span::call_site()).into(),
+        TokenTree::Ident(name) if name == "crate" => word("stereopsis"),
+        // `export_name = ...` in the parentheses of `unsafe`.
+        TokenTree::Group(group) if group.to_string().starts_with("(export_name") => {
+            Group::new(group.delimiter(), word("no_mangle").into()).into()
+        }
         TokenTree::Group(group) => Group::new(group.delimiter(), plain(group.stream())).into(),
         other => other,
     };

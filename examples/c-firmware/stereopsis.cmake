@@ -10,6 +10,13 @@
 # Who links it finds stereopsis.h, and the macros STEREOPSIS_WIDTH, STEREOPSIS_DISPARITIES and STEREOPSIS_BYTES: the
 # memory of a matcher is STEREOPSIS_BYTES(STEREOPSIS_WIDTH, STEREOPSIS_DISPARITIES) bytes. That of a rectifier is
 # STEREOPSIS_RECTIFIER_BYTES(STEREOPSIS_WIDTH, STEREOPSIS_HEIGHT, STEREOPSIS_LINES) bytes.
+#
+# A library may hold several instances, each with a prefix before its functions' names; Rust's libraries cannot be linked
+# twice. Choices have commas between them, one for each prefix or one for all; the macros describe the first instance:
+#
+#   set(STEREOPSIS_PREFIX near_,far_)
+#   set(STEREOPSIS_METHOD fast,sgm)
+#   set(STEREOPSIS_WIDTH 160,320)
 
 set(STEREOPSIS_METHOD block CACHE STRING "How lines are matched: block, fast, sgm-lean, sgm or sgm-edge")
 set(STEREOPSIS_WIDTH 320 CACHE STRING "Pixels of the longest line, at least the disparities")
@@ -51,7 +58,10 @@ add_custom_target(stereopsis_library
   COMMENT "libstereopsis.a: ${STEREOPSIS_METHOD}, ${STEREOPSIS_WIDTH} px, ${STEREOPSIS_DISPARITIES} disparities"
   VERBATIM)
 
-string(TOUPPER "${STEREOPSIS_METHOD}" STEREOPSIS_METHOD_MACRO)
+foreach(choice METHOD WIDTH DISPARITIES HEIGHT LINES)
+  string(REGEX REPLACE ",.*" "" STEREOPSIS_FIRST_${choice} "${STEREOPSIS_${choice}}")
+endforeach()
+string(TOUPPER "${STEREOPSIS_FIRST_METHOD}" STEREOPSIS_METHOD_MACRO)
 string(REPLACE "-" "_" STEREOPSIS_METHOD_MACRO "${STEREOPSIS_METHOD_MACRO}")
 add_library(stereopsis::stereopsis STATIC IMPORTED GLOBAL)
 add_dependencies(stereopsis::stereopsis stereopsis_library)
@@ -59,7 +69,7 @@ set_target_properties(stereopsis::stereopsis PROPERTIES
   IMPORTED_LOCATION ${STEREOPSIS_LIBRARY}
   INTERFACE_INCLUDE_DIRECTORIES ${CMAKE_CURRENT_LIST_DIR}/../../src/ffi
   INTERFACE_COMPILE_DEFINITIONS
-    "STEREOPSIS_WIDTH=${STEREOPSIS_WIDTH};STEREOPSIS_HEIGHT=${STEREOPSIS_HEIGHT};STEREOPSIS_LINES=${STEREOPSIS_LINES};STEREOPSIS_DISPARITIES=${STEREOPSIS_DISPARITIES};STEREOPSIS_BYTES=STEREOPSIS_${STEREOPSIS_METHOD_MACRO}_BYTES")
+    "STEREOPSIS_WIDTH=${STEREOPSIS_FIRST_WIDTH};STEREOPSIS_HEIGHT=${STEREOPSIS_FIRST_HEIGHT};STEREOPSIS_LINES=${STEREOPSIS_FIRST_LINES};STEREOPSIS_DISPARITIES=${STEREOPSIS_FIRST_DISPARITIES};STEREOPSIS_BYTES=STEREOPSIS_${STEREOPSIS_METHOD_MACRO}_BYTES")
 
 if(STEREOPSIS_RUST_TARGET MATCHES "-none")
   # The library's panic handler cannot be linked: what nobody calls has to be dropped.

@@ -371,8 +371,32 @@ static void depths(void) {
     EXPECT(stereopsis_millimetres(&rig, words, depth, 0), OK);
 }
 
+/* Another instance in the program has its own method and size, and takes no handle of this one. */
+STEREOPSIS_FUNCTIONS(far_);
+
+static void instances(void) {
+    guarded g = take(), far = guard(far_stereopsis_size());
+    stereopsis *s, *f;
+    stereopsis_config c = config();
+    CHECK(far_stereopsis_size() <= STEREOPSIS_SGM_BYTES(160, STEREOPSIS_DISPARITIES));
+    CHECK(far_stereopsis_max_width() == 160 && stereopsis_max_width() == 96);
+    CHECK(far_stereopsis_latency() != stereopsis_latency());
+    EXPECT(stereopsis_init_fresh(g.memory, g.size, &s), OK);
+    EXPECT(far_stereopsis_init_fresh(far.memory, far.size, &f), OK);
+    EXPECT(far_stereopsis_begin_frame(s), NOT_INITIALISED);
+    EXPECT(stereopsis_begin_frame(f), NOT_INITIALISED);
+    c.width = 160;
+    EXPECT(stereopsis_start(s, &c), WIDTH);
+    EXPECT(far_stereopsis_start(f, &c), OK);
+    EXPECT(stereopsis_deinit(s), OK);
+    EXPECT(far_stereopsis_deinit(f), OK);
+    release(g);
+    release(far);
+}
+
 int main(void) {
     constants();
+    instances();
     memory();
     configurations();
     lines();

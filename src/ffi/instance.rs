@@ -56,8 +56,8 @@ where
         Pipeline::<S, W, D>::LATENCY
     }
 
-    /// Returns the matcher behind a handle, apart from the `count` values at `argument`, which is neither null
-    /// nor misaligned.
+    /// Returns the matcher behind a handle, apart from the `count` values at `argument`, which is neither
+    /// null nor misaligned.
     ///
     /// # Safety
     ///

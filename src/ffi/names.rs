@@ -21,7 +21,7 @@
 ///     stereopsis::instantiate_c_api!(Fast, width = 160, disparities = 64, prefix = "near_");
 /// }
 /// mod far {
-///     stereopsis::instantiate_c_api!(Sgm, width = 320, disparities = 32, height = 240, lines = 40, prefix = "far_");
+///     stereopsis::instantiate_c_api!(Sgm, width = 320, disparities = 32, lines = 40, prefix = "far_");
 /// }
 /// # fn main() {
 /// assert!(near::stereopsis_c::stereopsis_size() < far::stereopsis_c::stereopsis_size());
@@ -50,7 +50,8 @@ macro_rules! instantiate_c_api {
             use super::{StereopsisInstance, StereopsisRectifier};
             use core::ffi::{c_char, c_void};
             use $crate::ffi::{
-                CCameras, CConfig, CCounters, CNoiseMeter, CPoint, CRig, CRow, Handle, RectifierHandle, Status,
+                CCameras, CConfig, CCounters, CNoiseMeter, CPoint, CRig, CRow, Handle, RectifierHandle,
+                Status,
             };
 
             /// Returns the version of the library's interface: a program compiled with another

@@ -5,8 +5,8 @@
 #[macro_export]
 macro_rules! c_api_without_state {
     ([$($prefix:literal)?]) => {
-        /// Clears a noise meter, which needs no matcher. Measure a frame as often as the light may
-        /// change, and set the level in the configuration of the next ones.
+        /// Clears a noise meter, which needs no matcher. Measure a frame as often as the light may change,
+        /// and set the level in the configuration of the next ones.
         #[unsafe(export_name = concat!($($prefix,)? "stereopsis_noise_clear"))]
         pub unsafe extern "C" fn stereopsis_noise_clear(meter: *mut CNoiseMeter) -> Status {
             // SAFETY: as above.
@@ -67,8 +67,8 @@ macro_rules! c_api_without_state {
         }
 
         /// Converts the `count` disparities of row `row`, from its first column on, to points in the left
-        /// camera's frame; all 0 for no answer, or at infinity. A row has at most 65535 of them. The arrays do
-        /// not overlap.
+        /// camera's frame; all 0 for no answer, or at infinity. A row has at most 65535 of them. The arrays
+        /// do not overlap.
         #[unsafe(export_name = concat!($($prefix,)? "stereopsis_points"))]
         pub unsafe extern "C" fn stereopsis_points(
             rig: *const CRig,

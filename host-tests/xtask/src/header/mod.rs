@@ -1,9 +1,9 @@
 //! `cargo xtask header`: `src/ffi/stereopsis.h`, made by cbindgen.
 //!
 //! cbindgen reads Rust files and expands no macros, and the functions stand in macros: `instantiate_c_api`
-//! and those beside it. So it is given the macros' own text as a file, with plain paths instead of `$crate`; types and constants it
-//! reads from the files of `src/ffi`. How many bytes a method takes is worked out by the crate and put in as
-//! macros.
+//! and those beside it. So it is given the macros' own text as a file, with plain paths instead of `$crate`;
+//! types and constants it reads from the files of `src/ffi`. How many bytes a method takes is worked out by
+//! the crate and put in as macros.
 //!
 //! [`portable`] makes it one for C++98, and adds the functions with a prefix.
 
@@ -167,6 +167,17 @@ fn bytes_macro<S: Method>() -> Outcome<String> {
     ))
 }
 
+/// The macro of a rectifier's bytes.
+const RECTIFIER_BYTES: &str = "/**
+ * Bytes that are enough for a rectifier, on any target, with the library's longest line, the rows of its
+ * largest rectified image, and the raw lines of each camera that it holds.
+ */
+#define STEREOPSIS_RECTIFIER_BYTES(width, height, lines) \\
+  ((size_t)80 + (size_t)2 * (width) * ((size_t)(lines) + 1) + \\
+   (size_t)16 * ((((size_t)(width) + 15) / 16 + 3) * (((size_t)(height) + 15) / 16 + 3) + \\
+                 ((size_t)(height) + 1) / 2))
+";
+
 /// How many bytes a rectifier takes, as a macro.
 fn rectifier_macro() -> Outcome<String> {
     let expected = |width: usize, height: usize, lines: usize| {
@@ -178,12 +189,7 @@ fn rectifier_macro() -> Outcome<String> {
             return Err(Failure::new("rectifier_bytes is not what STEREOPSIS_RECTIFIER_BYTES says"));
         }
     }
-    Ok("/**\n * Bytes that are enough for a rectifier, on any target, with the library's longest line, the rows of \
-        its largest\n * rectified image, and the raw lines of each camera that it holds.\n */\n#define \
-        STEREOPSIS_RECTIFIER_BYTES(width, height, lines) \\\n  ((size_t)80 + (size_t)16 * \
-        ((((size_t)(width) + 15) / 16 + 3) * (((size_t)(height) + 15) / 16 + 3) + \\\n    ((size_t)(height) + \
-        1) / 2) + (size_t)2 * (width) * ((size_t)(lines) + 1))\n"
-        .to_owned())
+    Ok(RECTIFIER_BYTES.to_owned())
 }
 
 /// The macros' bodies as plain Rust.

@@ -68,12 +68,13 @@
    (size_t)5 * (width) * (disparities))
 
 /**
- * Bytes that are enough for a rectifier, on any target, with the library's longest line, the rows of its largest
- * rectified image, and the raw lines of each camera that it holds.
+ * Bytes that are enough for a rectifier, on any target, with the library's longest line, the rows of its
+ * largest rectified image, and the raw lines of each camera that it holds.
  */
 #define STEREOPSIS_RECTIFIER_BYTES(width, height, lines) \
-  ((size_t)80 + (size_t)16 * ((((size_t)(width) + 15) / 16 + 3) * (((size_t)(height) + 15) / 16 + 3) + \
-    ((size_t)(height) + 1) / 2) + (size_t)2 * (width) * ((size_t)(lines) + 1))
+  ((size_t)80 + (size_t)2 * (width) * ((size_t)(lines) + 1) + \
+   (size_t)16 * ((((size_t)(width) + 15) / 16 + 3) * (((size_t)(height) + 15) / 16 + 3) + \
+                 ((size_t)(height) + 1) / 2))
 
 
 /**
@@ -703,8 +704,8 @@ extern "C" {
 
 /**
  * Checks a calibration record, what `stereo calib convert --to c` writes, in the first
- * `STEREOPSIS_RECORD_BYTES` of `length` bytes, which need no alignment, and writes what it says about the
- * raw images.
+ * `STEREOPSIS_RECORD_BYTES` of `length` bytes, which need no alignment, and writes what it says
+ * about the raw images.
  */
 stereopsis_status stereopsis_record_read(const uint8_t *record,
                                          size_t length,
@@ -716,13 +717,15 @@ stereopsis_status stereopsis_record_read(const uint8_t *record,
 size_t stereopsis_rectifier_size(void);
 
 /**
- * Returns the raw lines of each camera that a rectifier of this library holds, one of which is a copy.
+ * Returns the raw lines of each camera that a rectifier of this library holds, one of which is a
+ * copy.
  */
 size_t stereopsis_rectifier_lines(void);
 
 /**
- * Creates a rectifier in the caller's memory of `length` bytes, aligned to `STEREOPSIS_ALIGN`, and writes
- * the handle for its other calls; a null handle on an error, unless `handle` itself is invalid.
+ * Creates a rectifier in the caller's memory of `length` bytes, aligned to `STEREOPSIS_ALIGN`, and
+ * writes the handle for its other calls; a null handle on an error, unless `handle` itself is
+ * invalid.
  *
  * The memory is not read, and belongs to the rectifier until `stereopsis_rectifier_deinit`.
  */
@@ -736,15 +739,16 @@ stereopsis_status stereopsis_rectifier_init(void *memory,
 stereopsis_status stereopsis_rectifier_deinit(struct stereopsis_rectifier *handle);
 
 /**
- * Reads a calibration record and prepares its rectification, which is for lines of both cameras in step,
- * into images of `width` x `height` pixels. `alpha` is OpenCV's: from 0, nothing but what both cameras see,
- * to 1, all of both raw images; `STEREOPSIS_ALPHA_NATURAL` keeps the scale of the raw images. Writes the
- * rectified rig for depths and, unless `lines` is null, how many lines a rectifier needs to hold for it, which
- * is at least so many where the result is `STEREOPSIS_STATUS_RECTIFY_LINES`.
+ * Reads a calibration record and prepares its rectification, which is for lines of both cameras in
+ * step, into images of `width` x `height` pixels. `alpha` is OpenCV's: from 0, nothing but what both
+ * cameras see, to 1, all of both raw images; `STEREOPSIS_ALPHA_NATURAL` keeps the scale of the raw
+ * images. Writes the rectified rig for depths and, unless `lines` is null, how many lines a
+ * rectifier needs to hold for it, which is at least so many where the result is
+ * `STEREOPSIS_STATUS_RECTIFY_LINES`.
  *
- * It is in single precision: every core finds the same lines. A record or sizes that are refused leave the
- * rectifier as it was; after `STEREOPSIS_STATUS_RECTIFY_LINES` or `STEREOPSIS_STATUS_RECTIFY_BENT` it is not
- * started.
+ * It is in single precision: every core finds the same lines. A record or sizes that are refused
+ * leave the rectifier as it was; after `STEREOPSIS_STATUS_RECTIFY_LINES` or
+ * `STEREOPSIS_STATUS_RECTIFY_BENT` it is not started.
  */
 stereopsis_status stereopsis_rectifier_start(struct stereopsis_rectifier *handle,
                                              const uint8_t *record,
@@ -761,12 +765,13 @@ stereopsis_status stereopsis_rectifier_start(struct stereopsis_rectifier *handle
 stereopsis_status stereopsis_rectifier_begin_frame(struct stereopsis_rectifier *handle);
 
 /**
- * Takes the next raw line of both cameras, 8-bit grey, `length` bytes each, which is the record's width. The
- * lines are copied; both may be one array.
+ * Takes the next raw line of both cameras, 8-bit grey, `length` bytes each, which is the record's
+ * width. The lines are copied; both may be one array.
  *
- * Returns `STEREOPSIS_STATUS_OK` where `stereopsis_rectifier_line` has lines, all of which have to be taken
- * before the next raw line, else `STEREOPSIS_STATUS_NO_ROW_YET`; `STEREOPSIS_STATUS_FRAME_DONE` for raw lines
- * below the last rectified one, which need not be pushed.
+ * Returns `STEREOPSIS_STATUS_OK` where `stereopsis_rectifier_line` has lines, all of which have to
+ * be taken before the next raw line, else `STEREOPSIS_STATUS_NO_ROW_YET`;
+ * `STEREOPSIS_STATUS_FRAME_DONE` for raw lines below the last rectified one, which need not be
+ * pushed.
  */
 stereopsis_status stereopsis_rectifier_push(struct stereopsis_rectifier *handle,
                                             const uint8_t *left,
@@ -774,11 +779,11 @@ stereopsis_status stereopsis_rectifier_push(struct stereopsis_rectifier *handle,
                                             size_t length);
 
 /**
- * Writes the next rectified line of both cameras, in the order of their rows, `length` bytes each, which is
- * the rectified width, for `stereopsis_push`. A pixel that a camera does not see is 0.
+ * Writes the next rectified line of both cameras, in the order of their rows, `length` bytes each,
+ * which is the rectified width, for `stereopsis_push`. A pixel that a camera does not see is 0.
  *
- * Returns `STEREOPSIS_STATUS_OK` with lines, `STEREOPSIS_STATUS_NO_ROW_YET` where raw lines are needed, and
- * `STEREOPSIS_STATUS_FRAME_DONE` after the last row.
+ * Returns `STEREOPSIS_STATUS_OK` with lines, `STEREOPSIS_STATUS_NO_ROW_YET` where raw lines are
+ * needed, and `STEREOPSIS_STATUS_FRAME_DONE` after the last row.
  */
 stereopsis_status stereopsis_rectifier_line(struct stereopsis_rectifier *handle,
                                             uint8_t *left,
@@ -796,8 +801,8 @@ stereopsis_status stereopsis_rectifier_mask(struct stereopsis_rectifier *handle,
                                             size_t length);
 
 /**
- * Clears a noise meter, which needs no matcher. Measure a frame as often as the light may
- * change, and set the level in the configuration of the next ones.
+ * Clears a noise meter, which needs no matcher. Measure a frame as often as the light may change,
+ * and set the level in the configuration of the next ones.
  */
 stereopsis_status stereopsis_noise_clear(struct stereopsis_noise_meter *meter);
 
@@ -840,8 +845,8 @@ stereopsis_status stereopsis_metres(const struct stereopsis_rig *rig,
 
 /**
  * Converts the `count` disparities of row `row`, from its first column on, to points in the left
- * camera's frame; all 0 for no answer, or at infinity. A row has at most 65535 of them. The arrays do
- * not overlap.
+ * camera's frame; all 0 for no answer, or at infinity. A row has at most 65535 of them. The arrays
+ * do not overlap.
  */
 stereopsis_status stereopsis_points(const struct stereopsis_rig *rig,
                                     uint16_t row,

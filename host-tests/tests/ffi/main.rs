@@ -5,6 +5,7 @@
 
 mod lost;
 mod noise;
+mod raw;
 
 use std::ffi::{CStr, c_void};
 use std::mem::MaybeUninit;
@@ -107,7 +108,8 @@ fn c_rows<S: Method>(config: &CConfig, [left, right]: &Lines) -> Vec<Found> {
     // SAFETY: the memory outlives the handle, lines have their length, and rows are read before the next
     // call.
     unsafe {
-        let status = C::<S>::init(memory.as_mut_ptr().cast(), size_of_val(&memory[..]), &raw mut handle);
+        let length = size_of_val(&memory[..]);
+        let status = C::<S>::init(memory.as_mut_ptr().cast(), length, false, &raw mut handle);
         assert_eq!(status, Status::Ok);
         assert_eq!(C::<S>::start(handle, config, false), Status::Ok);
         assert_eq!(C::<S>::begin_frame(handle), Status::Ok);

@@ -73,7 +73,7 @@ fn declarations(functions: &str) -> String {
     let code = words.join(" ");
     let prefixed = code.split(';').map(str::trim).filter(|one| !one.is_empty()).map(|one| {
         let (head, arguments) = one.split_once('(').unwrap_or((one, "void)"));
-        let name = head.rfind(|c: char| c == ' ' || c == '*').map_or(0, |at| at + 1);
+        let name = head.rfind([' ', '*']).map_or(0, |at| at + 1);
         format!("  STEREOPSIS_EXTERN {}prefix##{}({arguments}", &head[..name], &head[name..])
     });
     prefixed.collect::<Vec<_>>().join("; \\\n")

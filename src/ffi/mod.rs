@@ -57,7 +57,12 @@ pub use faults::{
     CCounters, STEREOPSIS_LOST_DROPPED, STEREOPSIS_LOST_LATE, STEREOPSIS_LOST_STALE, STEREOPSIS_LOST_TORN,
 };
 pub use instance::Instance;
-pub use names::first_of;
+#[doc(hidden)]
+pub use names::{first_of, instantiate_c_api};
+#[doc(hidden)]
+pub use names_plain::c_api_without_state;
+#[doc(hidden)]
+pub use names_rectifier::c_api_of_rectification;
 pub use noise::{CNoiseMeter, noise_clear, noise_level, noise_line};
 pub use points::{CPoint, metres, points};
 pub use record::{CCameras, STEREOPSIS_ALPHA_NATURAL, STEREOPSIS_RECORD_BYTES, record_read};

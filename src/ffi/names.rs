@@ -37,7 +37,7 @@ macro_rules! instantiate_c_api {
             { $crate::ffi::first_of([$($lines,)? 33]) },
             { $crate::ffi::rectifier_slots($width, $crate::ffi::first_of([$($height,)? $width])) },
         >;
-        $crate::instantiate_c_api!(@functions $method, $width, $disparities, [$($prefix)?]);
+        $crate::ffi::instantiate_c_api!(@functions $method, $width, $disparities, [$($prefix)?]);
     };
     (@functions $method:ident, $width:expr, $disparities:expr, [$($prefix:literal)?]) => {
         #[doc(hidden)]
@@ -282,8 +282,8 @@ macro_rules! instantiate_c_api {
                 unsafe { StereopsisInstance::sigma_px(handle, sigma_px, count) }
             }
 
-            $crate::c_api_of_rectification!([$($prefix)?]);
-            $crate::c_api_without_state!([$($prefix)?]);
+            $crate::ffi::c_api_of_rectification!([$($prefix)?]);
+            $crate::ffi::c_api_without_state!([$($prefix)?]);
         }
     };
 }
@@ -293,3 +293,5 @@ pub const fn first_of<const N: usize>(values: [usize; N]) -> usize {
     assert!(N > 0, "there is a default");
     values[0]
 }
+
+pub use instantiate_c_api;

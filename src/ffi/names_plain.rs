@@ -82,3 +82,5 @@ macro_rules! c_api_without_state {
         }
     };
 }
+
+pub use c_api_without_state;

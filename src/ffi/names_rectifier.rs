@@ -134,3 +134,5 @@ macro_rules! c_api_of_rectification {
         }
     };
 }
+
+pub use c_api_of_rectification;

@@ -19,7 +19,7 @@ const _: () = assert!(STEREOPSIS_RECORD_BYTES == StereoRig::<f32>::RECORD_BYTES)
 pub struct CCameras {
     /// Columns of the left camera's raw images, and of the right one's, px.
     pub width: [u16; 2],
-    /// Their rows, px.
+    /// Rows of the left camera's raw images, and of the right one's, px.
     pub height: [u16; 2],
     /// Distance between the optical centres, m.
     pub baseline_m: f32,

@@ -444,7 +444,7 @@ typedef struct stereopsis_cameras {
    */
   uint16_t width[2];
   /**
-   * Their rows, px.
+   * Rows of the left camera's raw images, and of the right one's, px.
    */
   uint16_t height[2];
   /**

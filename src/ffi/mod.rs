@@ -15,7 +15,7 @@
 //! * [`Status`]: the result of every call.
 //! * [`Rectifier`]: raw lines and a calibration record to rectified lines; C holds a [`RectifierHandle`].
 //! * [`Instance`]: rectified lines to rows, for one method and one capacity; C holds a [`Handle`].
-//! * [`instantiate_c_api`](crate::instantiate_c_api): their names in C, from which `cargo xtask header` makes
+//! * [`instantiate_c_api`]: their names in C, from which `cargo xtask header` makes
 //!   `stereopsis.h` beside this file.
 //!
 //! The contract:

@@ -25,6 +25,8 @@ set(STEREOPSIS_HEIGHT 240 CACHE STRING "Rows of the largest rectified image, for
 set(STEREOPSIS_LINES 33 CACHE STRING "Raw lines of each camera that a rectifier holds, one of them twice")
 set(STEREOPSIS_PREFIX "" CACHE STRING "What the functions' names begin with: STEREOPSIS_FUNCTIONS(prefix); declares them")
 set(STEREOPSIS_RUST_TARGET "" CACHE STRING "Rust's name of the target; empty is this machine")
+set(STEREOPSIS_CPU "" CACHE STRING "Rust's name of the core where its target leaves one open, such as cortex-m33")
+option(STEREOPSIS_DSP "Assembly where the core has instructions on several bytes, as a Cortex-M4 and M7 have" ON)
 set(STEREOPSIS_PROFILE release CACHE STRING "Cargo's profile: release, or checked under sanitizers")
 set(STEREOPSIS_TARGET_DIR "${CMAKE_CURRENT_BINARY_DIR}/stereopsis-target" CACHE PATH "Cargo's folder of build products")
 
@@ -37,6 +39,18 @@ set(STEREOPSIS_CARGO_TARGET "")
 if(NOT STEREOPSIS_RUST_TARGET STREQUAL "")
   set(STEREOPSIS_CARGO_TARGET --target ${STEREOPSIS_RUST_TARGET})
 endif()
+set(STEREOPSIS_FLAGS "")
+if(NOT STEREOPSIS_CPU STREQUAL "")
+  string(APPEND STEREOPSIS_FLAGS " -C target-cpu=${STEREOPSIS_CPU}")
+endif()
+if(NOT STEREOPSIS_DSP)
+  string(APPEND STEREOPSIS_FLAGS " --cfg stereopsis_portable")
+endif()
+# Without flags of its own, cargo takes those of its configuration.
+set(STEREOPSIS_RUSTFLAGS "")
+if(NOT STEREOPSIS_FLAGS STREQUAL "")
+  set(STEREOPSIS_RUSTFLAGS "RUSTFLAGS=$ENV{RUSTFLAGS}${STEREOPSIS_FLAGS}")
+endif()
 set(STEREOPSIS_LIBRARY "${CMAKE_CURRENT_BINARY_DIR}/libstereopsis.a")
 
 # Cargo knows best what has changed, so it is always asked. Its folder may be shared by several configurations; the copy
@@ -48,7 +62,7 @@ add_custom_target(stereopsis_library
     STEREOPSIS_DISPARITIES=${STEREOPSIS_DISPARITIES}
     STEREOPSIS_HEIGHT=${STEREOPSIS_HEIGHT}
     STEREOPSIS_LINES=${STEREOPSIS_LINES}
-    STEREOPSIS_PREFIX=${STEREOPSIS_PREFIX}
+    STEREOPSIS_PREFIX=${STEREOPSIS_PREFIX} ${STEREOPSIS_RUSTFLAGS}
     ${STEREOPSIS_CARGO} build --locked --quiet --profile ${STEREOPSIS_PROFILE}
     --manifest-path ${CMAKE_CURRENT_LIST_DIR}/library/Cargo.toml
     --target-dir ${STEREOPSIS_TARGET_DIR} ${STEREOPSIS_CARGO_TARGET}

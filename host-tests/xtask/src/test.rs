@@ -126,6 +126,24 @@ fn cross_checks() -> Outcome {
         let features: Vec<_> = features.map(|(_, feature)| *feature).collect();
         run_command(&mut check(&features.join(","), &["--target", "riscv32imc-unknown-none-elf"]))?;
     }
+    // Instructions that a core lacks are refused in one line that says what to do.
+    for (flags, said) in [
+        (
+            "--cfg stereopsis_dsp",
+            "stereopsis_dsp: thumbv7m-none-eabi with these flags has no DSP instructions",
+        ),
+        (
+            "--cfg stereopsis_vectors",
+            "stereopsis_vectors: thumbv7m-none-eabi with these flags has no vectors",
+        ),
+    ] {
+        let mut check = check("", &["--target", "thumbv7m-none-eabi"]);
+        let output = check.env("RUSTFLAGS", flags).output();
+        let output = output.map_err(|e| Failure::new(format!("cargo: {e}")))?;
+        if output.status.success() || !String::from_utf8_lossy(&output.stderr).contains(said) {
+            return Err(Failure::new(format!("{flags} for thumbv7m-none-eabi is not refused as \"{said}\"")));
+        }
+    }
     Ok(())
 }
 

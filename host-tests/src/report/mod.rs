@@ -41,6 +41,9 @@ pub struct Report<'a> {
     pub rig: Option<&'a RectifiedRig>,
     /// The truth, when it is known.
     pub truth: Option<&'a Truth>,
+    /// The disparities of the darkest and the brightest colour, where they were asked for; else the answers'
+    /// 2nd and 98th percentile.
+    pub colours: Option<ColourScale>,
 }
 
 /// Errors are shown from minus to plus this, px.
@@ -112,14 +115,18 @@ impl Report<'_> {
     }
 
     fn pictures(&self, out: &mut dyn Write) -> io::Result<()> {
-        let colours = ColourScale::of(self.map);
+        let colours = self.colours.unwrap_or_else(|| ColourScale::of(self.map));
         let mut show = |title: &str, kind, picture: &RgbImage, below: &str| {
             out.write_all(figure(title, kind, picture, below)?.as_bytes())
         };
         show("Left image", Kind::Photograph, self.left, &caption(self.left_name))?;
         show("Right image", Kind::Photograph, self.right, &caption(self.right_name))?;
-        let note = "Near is bright; black: no answer. The colours run from the 2nd to the 98th percentile \
-                    of the answers.";
+        let note = if self.colours.is_some() {
+            "Near is bright; black: no answer."
+        } else {
+            "Near is bright; black: no answer. The colours run from the 2nd to the 98th percentile of the \
+             answers."
+        };
         let disparity = colours.picture(self.map.width, &self.map.pixels());
         let bar = svg::disparity_bar("disparity", &colours, self.rig);
         show("Disparity", Kind::Map, &disparity, &(bar + &caption(note)))?;

@@ -61,9 +61,10 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
         summary: &summary,
         rig: Some(scale.rig()),
         truth: Some(&truth),
+        colours: None,
     };
     let mut staging = Staging::new(&args.out)?;
-    results::write(&mut staging, &report, Some(&depth), None)?;
+    results::write(&mut staging, &report, Some(&depth))?;
     staging.write(IMAGES[0], |out| png(out, &left))?;
     staging.write(IMAGES[1], |out| png(out, &right))?;
     let calibration = write_middlebury(scale.rig(), config.width, config.height, config.disparities);

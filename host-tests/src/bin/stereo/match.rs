@@ -152,9 +152,10 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         summary: &summary,
         rig: scale.map(DepthScale::rig),
         truth: None,
+        colours: args.colour_range,
     };
     let mut staging = Staging::new(&args.out)?;
-    results::write(&mut staging, &report, depth.as_ref(), args.colour_range)?;
+    results::write(&mut staging, &report, depth.as_ref())?;
     let [left, right, cameras] = RECTIFIED;
     if let Some(rectified) = &scene.rectified {
         staging.write(left, |out| png(out, &scene.left))?;

@@ -28,6 +28,11 @@ impl Progress {
         )
     }
 
+    /// Over the frames of a recording, which does not say how many it has.
+    pub fn over_played() -> Self {
+        Self::new(0, ProgressDrawTarget::stderr(), "playing {spinner} {pos} frames in {elapsed}")
+    }
+
     fn new(length: u64, target: ProgressDrawTarget, template: &str) -> Self {
         let bar = ProgressBar::with_draw_target(Some(length), target);
         if let Ok(style) = ProgressStyle::with_template(template) {

@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::input;
 use crate::look::refuse_swapped;
 use crate::place::{json, png};
+use crate::progress::Progress;
 use crate::shared::{BalanceArgs, MethodArgs, RangeArgs, filter, method, noise, print, rate};
 use clap::{Args, ValueEnum};
 use std::fmt::Display;
@@ -147,7 +148,9 @@ fn play(
         noisy_frames += u32::from(noise != Noise::None);
         Some(args.method.with_filter(args.filter, Config { noise, ..config }))
     };
+    let progress = Progress::over_played();
     let keep = |frame: GuardedFrame| {
+        progress.one_more();
         let number = names.len() + 1;
         table += &line(number, &frame);
         let [disparity, flags] = KINDS.map(|kind| format!("{number:06}{kind}"));
@@ -160,6 +163,7 @@ fn play(
     };
     let counters = run_guarded(args.method, &config, args.most_lost, source, next, keep)
         .map_err(|e| Failure::new(format!("--disparities: {e}")))?;
+    drop(progress);
     written?;
     if let Some(e) = source.failed() {
         return Err(e.into());

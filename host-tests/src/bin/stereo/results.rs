@@ -87,7 +87,6 @@ pub fn write(
     staging: &mut Staging,
     report: &Report<'_>,
     depth: Option<&DepthFiles>,
-    colours: Option<ColourScale>,
 ) -> Result<(), OutputError> {
     let map = report.map;
     let pixels = map.pixels();
@@ -99,7 +98,7 @@ pub fn write(
     let first_px = f32::from(report.summary.min_disparity);
     let searched =
         ColourScale { far_px: first_px, near_px: first_px + f32::from(report.summary.disparities) };
-    let colour = colours.unwrap_or(searched).picture(map.width, &pixels);
+    let colour = report.colours.unwrap_or(searched).picture(map.width, &pixels);
     staging.write("disparity_colour.png", |out| png(out, &colour))?;
     staging.write("flags.png", |out| png(out, &flags_raw(map)))?;
     staging.write("confidence.png", |out| png(out, &confidence_raw(map)))?;

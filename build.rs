@@ -5,7 +5,7 @@ use std::env;
 
 /// Processors whose vectors (Helium) the crate has rows for.
 const WITH_VECTORS: [&str; 3] = ["cortex-m52", "cortex-m55", "cortex-m85"];
-/// Processors with the instructions on four bytes in a word, beside those of `thumbv7em`, which all have them.
+/// Processors with the instructions on four bytes in a word. Those of `thumbv7em` all have them.
 const WITH_DSP: [&str; 4] = ["cortex-m4", "cortex-m7", "cortex-m33", "cortex-m35p"];
 
 fn main() {
@@ -34,14 +34,14 @@ fn choose(target: &str, flags: &str) -> Result<Option<&'static str>, String> {
     let has_dsp = target.starts_with("thumbv7em") || is_v8 && names_dsp;
     if asked("stereopsis_vectors") && !has_vectors {
         return Err(format!(
-            "stereopsis_vectors: {target} with these flags has no vectors: build for thumbv8m.main-none-eabihf \
-             with -C target-cpu=cortex-m55, which chooses them by itself"
+            "stereopsis_vectors: {target} with these flags has no vectors: build for \
+             thumbv8m.main-none-eabihf with -C target-cpu=cortex-m55, which chooses them by itself"
         ));
     }
     if asked("stereopsis_dsp") && !has_dsp && !is_a {
         return Err(format!(
-            "stereopsis_dsp: {target} with these flags has no DSP instructions: leave it out, or on an M33 that \
-             has them build with -C target-cpu=cortex-m33, which chooses them by itself"
+            "stereopsis_dsp: {target} with these flags has no DSP instructions: leave it out, or on an M33 \
+             that has them build with -C target-cpu=cortex-m33, which chooses them by itself"
         ));
     }
     let is_chosen = ["stereopsis_dsp", "stereopsis_vectors", "stereopsis_portable"].into_iter().any(asked);

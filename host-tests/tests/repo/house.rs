@@ -11,7 +11,7 @@ const MOST_LINES: usize = 300;
 const MOST_README_LINES: usize = 130;
 
 /// What the root may hold.
-const ROOT: [&str; 17] = [
+const ROOT: [&str; 18] = [
     ".cargo",
     ".ci",
     ".gitattributes",
@@ -23,6 +23,7 @@ const ROOT: [&str; 17] = [
     "LICENSE-APACHE",
     "LICENSE-MIT",
     "README.md",
+    "build.rs",
     "docs",
     "examples",
     "host-tests",

@@ -4,7 +4,7 @@
 //! * `portable`: all of it in plain Rust; bit planes and words for cores without vectors. `plain`: the target
 //!   that has no more than that.
 //! * `simd`: vectors of 64-bit processors.
-//! * `armv7em`: Arm's instructions on four bytes in a word (Cortex-M4, M7, M33), which build.rs knows by the target.
+//! * `armv7em`: Arm's instructions on four bytes in a word (Cortex-M4, M7, M33), where build.rs finds them.
 //! * `mve`: the vectors of a Cortex-M55, likewise.
 //!
 //! A new core's code is a folder with an [`Isa`] of its own, and an arm here.

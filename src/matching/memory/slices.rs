@@ -37,8 +37,7 @@ pub(in crate::matching) fn split_mut<T>(slice: &mut [T], place: usize) -> (&mut 
 
 /// The whole parts of `count` numbers, one after another; of one number where none are asked for.
 ///
-/// As [`slice::chunks_exact`], which panics without a count: an optimiser that makes code for size leaves that
-/// panic in.
+/// [`slice::chunks_exact`] panics without a count, and an optimiser that makes code for size leaves that in.
 #[inline(always)]
 pub(in crate::matching) fn chunks<T>(slice: &[T], count: usize) -> impl Iterator<Item = &[T]> {
     let (mut rest, count) = (slice, count.max(1));

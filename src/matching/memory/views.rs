@@ -45,8 +45,8 @@ fn whole<From: Plain, To: Plain>(numbers: &[From]) -> (usize, usize) {
 #[inline(always)]
 pub(in crate::matching) fn view<From: Plain, To: Plain>(numbers: &[From]) -> &[To] {
     let (skip, count) = whole::<From, To>(numbers);
-    // SAFETY: the places are inside of `numbers` and where a `To` may stand. Both types are plain: every value
-    // of the one's bytes is a value of the other.
+    // SAFETY: the places are inside of `numbers` and where a `To` may stand. Both types are plain: every
+    // value of the one's bytes is a value of the other.
     unsafe { slice::from_raw_parts(numbers.as_ptr().byte_add(skip).cast(), count) }
 }
 

@@ -53,8 +53,8 @@ use super::memory::Rows5;
 use super::method::{Block, Fast, Frame, Method, Sgm, SgmEdge, SgmLean, Step, Steps};
 
 /// The stages of a method, compiled with this crate, once for each capacity that has code of its own: a
-/// program is linked without the code for numbers of candidates that its matchers have no room for, however it
-/// is optimised.
+/// program is linked without the code for numbers of candidates that its matchers have no room for, however
+/// it is optimised.
 macro_rules! steps {
     ($($method:ty),*) => {$(
         impl Steps for $method {

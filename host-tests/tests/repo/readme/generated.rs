@@ -36,8 +36,10 @@ type Part = (&'static str, fn() -> String);
 const PARTS: [Part; 3] = [("state", state_table), ("accuracy", accuracy_table), ("hard", hard_table)];
 
 /// Parts that need an emulator or real pairs: `cargo xtask firmware --all`, `growth` and `altered` make them.
-const MADE_ELSEWHERE: [&str; 10] =
-    ["firmware", "stages", "pose", "features", "bundle", "focus", "odometry", "rectify", "growth", "altered"];
+const MADE_ELSEWHERE: [&str; 11] = [
+    "firmware", "stages", "profiles", "pose", "features", "bundle", "focus", "odometry", "rectify", "growth",
+    "altered",
+];
 
 /// docs/performance.md with every part made anew; an error names what is missing or not closed.
 pub fn splice(text: &str) -> Result<String, String> {

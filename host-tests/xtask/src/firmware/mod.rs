@@ -98,8 +98,8 @@ fn run_all(readme: Readme) -> Outcome {
     Ok(())
 }
 
-/// Every core and method and a part of the sizes, programs and profiles, compared with docs/performance.md; and a frame
-/// with what the program `stereo` at that path makes of it.
+/// Every core and method and a part of the sizes, programs and profiles, compared with docs/performance.md;
+/// and a frame with what the program `stereo` at that path makes of it.
 pub fn check_sample(stereo: &Path) -> Outcome {
     run_all(Readme::Sample)?;
     profiles::run(Readme::Sample)?;

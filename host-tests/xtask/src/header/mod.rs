@@ -5,7 +5,7 @@
 //! types and constants it reads from the files of `src/ffi`. How many bytes a method takes is worked out by
 //! the crate and put in as macros.
 //!
-//! [`portable`] makes it one for C++98, and adds the functions with a prefix.
+//! [`portable()`] makes it one for C++98, and adds the functions with a prefix.
 
 mod portable;
 

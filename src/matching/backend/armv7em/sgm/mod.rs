@@ -123,7 +123,9 @@ macro_rules! in_words {
             0 => (),
             16 if MOST == 0 || MOST == 16 => words::$pass::<Words<4, true>, $($more)?>($work, $($argument),*),
             32 if MOST == 0 || MOST == 32 => words::$pass::<Words<8, true>, $($more)?>($work, $($argument),*),
-            64 if MOST == 0 || MOST == 64 => words::$pass::<Words<16, true>, $($more)?>($work, $($argument),*),
+            64 if MOST == 0 || MOST == 64 => {
+                words::$pass::<Words<16, true>, $($more)?>($work, $($argument),*)
+            }
             128 if MOST == 0 => words::$pass::<Words<32, true>, $($more)?>($work, $($argument),*),
             // Room for as few as will do: a path's costs stand on the stack, several times.
             ..64 if MOST == 0 => words::$pass::<Words<16, false>, $($more)?>($work, $($argument),*),

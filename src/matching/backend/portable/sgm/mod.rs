@@ -120,7 +120,9 @@ macro_rules! in_words {
     ($work:ident, $pass:ident, [$($more:tt)?], $($argument:expr),*) => {
         match $work.stride {
             0 => (),
-            16 if MOST == 0 || MOST == 16 => words::$pass::<Groups<Word, 4, true>, $($more)?>($work, $($argument),*),
+            16 if MOST == 0 || MOST == 16 => {
+                words::$pass::<Groups<Word, 4, true>, $($more)?>($work, $($argument),*)
+            }
             // Room for as few as will do, and one more: a path's costs stand on the stack, several times.
             ..=64 if MOST != 16 => words::$pass::<Groups<Word, 17, false>, $($more)?>($work, $($argument),*),
             ..=128 if MOST == 0 => words::$pass::<Groups<Word, 33, false>, $($more)?>($work, $($argument),*),

@@ -27,13 +27,6 @@ pub(in crate::matching) trait Isa: Copy {
         multiple_of::<STEP>(disparities).min(most) & !(STEP - 1)
     }
 
-    /// The `candidates` of a column, as a constant where a matcher with room for `MOST` disparities has no
-    /// other number of them.
-    #[inline(always)]
-    fn known<const MOST: usize>(self, candidates: usize) -> usize {
-        if MOST == 16 || MOST == 32 { MOST } else { candidates }
-    }
-
     /// Makes the census codes of a row of both images.
     #[inline(always)]
     fn census<P: WindowParameters>(self, work: CensusWork<'_>) {

@@ -202,8 +202,7 @@ fn select<S: SgmParameters, const MOST: usize>(
     lines: Option<[&Rows5<'_>; 2]>,
     row: Option<usize>,
 ) {
-    let (width, config) = (frame.width, frame.config);
-    let stride = frame.backend.known::<MOST>(frame.stride);
+    let (width, stride, config) = (frame.width, frame.stride, frame.config);
     let (costs, rest) = split_mut(frame.columns, width * stride);
     let (top, rest) = split_mut(rest, (width + COLUMNS_OFF) * stride);
     let (sums, rest) = split_mut(rest, width * stride);

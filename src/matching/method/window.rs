@@ -164,7 +164,7 @@ fn select<S: WindowParameters, const MOST: usize>(
     };
     let work = WindowWork {
         width,
-        stride: frame.backend.known::<MOST>(frame.stride),
+        stride: frame.stride,
         min_disparity: usize::from(config.min_disparity),
         enter: lines.map(|_| codes(bottom)),
         leave: leaves.map(codes),

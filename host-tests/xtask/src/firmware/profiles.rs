@@ -16,8 +16,8 @@ use stereopsis_host::run::MethodName;
 const CORES: [Board; 2] = [M4, RV32];
 /// Levels of optimisation, as cargo spells them.
 const LEVELS: [&str; 3] = ["3", "s", "z"];
-/// Those of a sample.
-const SAMPLE: [(&str, Lto); 2] = [("3", Lto::Thin), ("z", Lto::Off)];
+/// Those of a sample: two of a level, whose flash is compared.
+const SAMPLE: [(&str, Lto); 3] = [("3", Lto::Fat), ("3", Lto::Thin), ("z", Lto::Off)];
 /// Width, height and disparities.
 const SIZE: (u16, u16, u16) = (160, 120, 32);
 /// How much more flash than the least of its level a program may take.

@@ -70,11 +70,6 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
-    fn known<const MOST: usize>(self, candidates: usize) -> usize {
-        if MOST > 0 { MOST } else { candidates }
-    }
-
-    #[inline(always)]
     fn census<P: WindowParameters>(self, work: CensusWork<'_>) {
         codes_of::<P>(work.lines, work.codes);
     }

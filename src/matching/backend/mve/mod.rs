@@ -67,11 +67,6 @@ impl Isa for Backend {
         armv7em::candidates(disparities, most)
     }
 
-    #[inline(always)]
-    fn known<const MOST: usize>(self, candidates: usize) -> usize {
-        if MOST > 0 { MOST } else { candidates }
-    }
-
     #[inline]
     fn census<P: WindowParameters>(self, work: CensusWork<'_>) {
         let (left, right) = split_mut(work.codes, work.codes.len() / 2);

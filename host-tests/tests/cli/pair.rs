@@ -88,10 +88,15 @@ fn depths_and_colours_come_without_a_file() {
         assert!(stereo(args).status.success());
         image::open(bench.path("out/disparity_colour.png")).expect("a picture").into_rgb8()
     };
+    let page_has_own = || {
+        let page = std::fs::read_to_string(bench.path("out/report.html")).expect("a page");
+        page.contains("2nd to the 98th percentile")
+    };
     let given = coloured(&args);
+    assert!(!page_has_own());
     args.truncate(args.len() - 2);
-    // The search is the range where none is given, whatever the answers are.
-    assert!(given == coloured(&args));
+    // The search is the range where none is given, whatever the answers are; the page has their own.
+    assert!(given == coloured(&args) && page_has_own());
     let narrow: Vec<_> = args.iter().cloned().chain(["--colour-range".into(), "0:32".into()]).collect();
     let light = |picture: &image::RgbImage| picture.iter().map(|&c| u64::from(c)).sum::<u64>();
     assert!(light(&coloured(&narrow)) > light(&given));

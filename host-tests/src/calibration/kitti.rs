@@ -1,7 +1,10 @@
-//! KITTI's `calib.txt`: projection matrices of rectified cameras, lengths in pixels and metres.
+//! KITTI's `calib.txt`: projection matrices of rectified cameras, lengths in pixels and metres; and that of the
+//! Karlsruhe sequences, its forerunner.
 //!
 //! `P = K [I | t]`, row by row: `f 0 cx f*tx; 0 f cy ..; 0 0 1 ..`. The baseline of two cameras is
-//! `(P_right[3] - P_left[3]) / -f`.
+//! `(P_right[3] - P_left[3]) / -f`. KITTI counts its cameras from 0 (grey 0 and 1, colour 2 and 3). A Karlsruhe
+//! file counts them from 1: `K1`, `D1`, `R1` are the camera that was calibrated, `P1` the rectified one, and
+//! `P1_roi` that of the region which the images of the sequences show.
 
 use super::{Calibration, Fault, Intrinsics, numbers, rig};
 use std::path::{Path, PathBuf};
@@ -22,13 +25,35 @@ pub(super) fn is_one(text: &str) -> bool {
     labelled(text).next().is_some() || bare(text).is_some()
 }
 
-/// `P0: ...` or `P_rect_00: ...`; other labels (Tr, R_rect, ...) say nothing about a rectified pair.
+/// `P0: ...`, `P_rect_00: ...` or `P1_roi: ...`, with the camera's number; other labels (Tr, R_rect, ...) say
+/// nothing about a rectified pair. Of a file that says what the region of its images is, only those matrices.
 fn labelled(text: &str) -> impl Iterator<Item = (usize, Matrix<'_>)> {
-    text.lines().zip(1..).filter_map(|(content, line)| {
+    let region = region(text);
+    text.lines().zip(1..).filter_map(move |(content, line)| {
         let (label, numbers) = content.split_once(':')?;
         let label = label.trim();
-        let camera = label.strip_prefix("P_rect_").or_else(|| label.strip_prefix('P'))?.parse().ok()?;
+        let camera = label.strip_prefix("P_rect_").or_else(|| label.strip_prefix('P'))?;
+        let camera = camera.strip_suffix(region)?.parse().ok()?;
         Some((camera, Matrix { label, line, numbers }))
+    })
+}
+
+/// What ends the labels of the cameras that the images are of.
+fn region(text: &str) -> &'static str {
+    if has_numbers(text, "P1_roi") { "_roi" } else { "" }
+}
+
+/// Whether the cameras are called 1 and 2, as in the Karlsruhe sequences: KITTI's files never do. `K1` in YAML
+/// is followed by a list or a mapping.
+pub(super) fn counts_from_one(text: &str) -> bool {
+    has_numbers(text, "K1") || has_numbers(text, "P1_roi")
+}
+
+/// Whether a line has this label and a number after it.
+fn has_numbers(text: &str, wanted: &str) -> bool {
+    text.lines().filter_map(|line| line.split_once(':')).any(|(label, numbers)| {
+        let first = numbers.split_ascii_whitespace().next();
+        label.trim() == wanted && first.is_some_and(|word| word.parse::<f64>().is_ok())
     })
 }
 
@@ -58,7 +83,7 @@ pub(super) fn read(text: &str, left_image: &Path) -> Result<Calibration, Fault> 
     let size = size(text, left.label)?;
     Ok(Calibration {
         path: PathBuf::new(),
-        format: "KITTI",
+        format: if counts_from_one(text) { "Karlsruhe" } else { "KITTI" },
         // A focal length of 0 is refused by its name before the quotient counts.
         rig: rig(camera(left.label, &p), camera(right.label, &q), &keys, (q[3] - p[3]) / -p[0])?,
         width: size.map(|[width, _]| width),
@@ -106,19 +131,23 @@ pub(super) fn alone(text: &str) -> Option<Result<(String, [f64; 5]), Fault>> {
     Some(numbers.map(|p: [f64; 12]| (matrix.label.to_owned(), [p[0], p[1], p[2], p[5], p[6]])))
 }
 
-/// The matrices of the pair that the left image belongs to: the colour cameras 2 and 3 where the file has
-/// them, unless the path names a grey camera.
+/// The matrices of the pair that the left image belongs to: the only pair of a Karlsruhe file; KITTI's colour
+/// cameras 2 and 3 where the file has them, unless the path names a grey camera.
 fn choose<'a>(text: &'a str, left_image: &Path) -> Result<[Matrix<'a>; 2], Fault> {
     let grey =
         left_image.components().any(|part| GREY_FOLDERS.iter().any(|folder| part.as_os_str() == *folder));
     let has_colour = labelled(text).any(|(camera, _)| camera == 2 || camera == 3);
-    let (left, right) = if grey || !has_colour { (0, 1) } else { (2, 3) };
+    let (left, right) = match () {
+        () if counts_from_one(text) => (1, 2),
+        () if grey || !has_colour => (0, 1),
+        () => (2, 3),
+    };
     let find = |wanted: usize| {
         let mut found = labelled(text).filter(|(camera, _)| *camera == wanted).map(|(_, matrix)| matrix);
         match (found.next(), found.next()) {
             (_, Some(second)) => Err(Fault::Twice { key: second.label.into(), line: second.line }),
             (Some(first), None) => Ok(first),
-            (None, None) => Err(Fault::Missing(format!("P{wanted}"), FORM)),
+            (None, None) => Err(Fault::Missing(format!("P{wanted}{}", region(text)), FORM)),
         }
     };
     Ok([find(left)?, find(right)?])

@@ -84,6 +84,30 @@ fn kitti_chooses_the_pair_by_the_left_image() {
     near(open_for(bare, "left.png").expect("no labels").rig.baseline_m(), 375.0 / 700.0);
 }
 
+/// As the sequences of Karlsruhe have it: cameras 1 and 2, before and after rectification, and cropped.
+const KARLSRUHE: &str = "c_dist: 1.000000e+01\nroi: 10 1353 60 450\n\
+    K1: 9.0e+02 0 6.9e+02 0 9.0e+02 2.5e+02 0 0 1\nD1: -.36 .16 0 0 0\nR1: 1 0 0 0 1 0 0 0 1\n\
+    K2: 9.1e+02 0 6.8e+02 0 9.1e+02 2.4e+02 0 0 1\nD2: -.36 .16 0 0 0\nR2: 1 0 0 0 1 0 0 0 1\n\
+    R: 1 0 0 0 1 0 0 0 1\nT: -.57 0 0\n\
+    P1: 8.0e+02 0 6.9e+02 0 0 8.0e+02 2.6e+02 0 0 0 1 0\n\
+    P1_roi: 8.0e+02 0 6.8e+02 0 0 8.0e+02 2.0e+02 0 0 0 1 0\n\
+    P2: 8.0e+02 0 6.9e+02 -4.56e+02 0 8.0e+02 2.6e+02 0 0 0 1 0\n\
+    P2_roi: 8.0e+02 0 6.8e+02 -4.56e+02 0 8.0e+02 2.0e+02 0 0 0 1 0\n";
+
+#[test]
+fn karlsruhe_counts_from_one_and_shows_a_region() {
+    let cropped = open_for(KARLSRUHE, "I1_000000.png").expect("as published");
+    assert_eq!(cropped.format, "Karlsruhe");
+    near(cropped.rig.baseline_m(), 0.57);
+    near(cropped.rig.principal_point().0, 680.0);
+    near(cropped.rig.principal_point().1, 200.0);
+    let whole: String = KARLSRUHE.lines().filter(|l| !l.contains("_roi")).map(|l| format!("{l}\n")).collect();
+    near(open_for(whole, "I1_000000.png").expect("without a region").rig.principal_point().1, 260.0);
+    let one: String =
+        KARLSRUHE.lines().filter(|l| !l.starts_with("P2_roi")).map(|l| format!("{l}\n")).collect();
+    assert!(matches!(fault(one), Fault::Missing(key, _) if key == "P2_roi"));
+}
+
 #[test]
 fn what_is_no_calibration_is_said() {
     assert!(matches!(fault(""), Fault::Empty));

@@ -134,7 +134,7 @@ pub(super) fn likely(format: &str, key: &str, baseline_m: f64) -> Result<(), Fau
 /// The documents of files that are trees; what is of another format has none.
 fn trees(texts: &[String]) -> Result<Vec<Tree>, Fault> {
     let mut trees = Vec::new();
-    for text in texts {
+    for text in texts.iter().filter(|text| !kitti::counts_from_one(text)) {
         match tree::read(text) {
             Ok(found) => trees.extend(found),
             Err(error) if text.trim_start().starts_with(['%', '<', '{']) => return Err(Fault::Syntax(error)),
@@ -165,6 +165,9 @@ fn find(paths: &[PathBuf], texts: &[String], unit_m: Option<f64>) -> Result<Foun
     let mut trees = Vec::new();
     let mut fault = None;
     for (path, text) in paths.iter().zip(texts) {
+        if kitti::counts_from_one(text) {
+            return rectified(path);
+        }
         match tree::read(text) {
             Ok(found) => trees.extend(found),
             Err(error) => fault = Some(error),

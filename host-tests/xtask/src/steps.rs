@@ -68,6 +68,11 @@ impl Steps {
         }
     }
 
+    /// Whether only some of the steps were asked for.
+    pub fn is_part(&self) -> bool {
+        self.only.is_some()
+    }
+
     /// Prints every step with its time; fails when there was none, and says so when there were others.
     pub fn summary(&self) -> Outcome {
         let line = |seconds: f64, of_processors: f64, name: &str| {

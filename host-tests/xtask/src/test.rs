@@ -5,6 +5,7 @@ use crate::c;
 use crate::examples;
 use crate::firmware;
 use crate::growth;
+use crate::parallel;
 use crate::setup::{self, CHECKED, FROM_SOURCE, TARGETS};
 use crate::steps::{Failure, Outcome, Steps, cargo, command, root, run as run_command, target_dir};
 use std::path::PathBuf;
@@ -30,18 +31,46 @@ pub fn run(only: Option<String>) -> Outcome {
     steps.step("cross checks", cross_checks)?;
     let version = setup::rust_version()?;
     steps.step(&format!("stated rust-version {version}"), || rust_version(&version))?;
-    steps.step("firmware", || firmware::check_sample(&stereo()))?;
-    steps.step("quickstart", || examples::QUICKSTART.run())?;
-    steps.step("async", || examples::ASYNC.run())?;
-    steps.step("boards", examples::boards)?;
-    steps.step("growth", growth::sample)?;
-    steps.step("C interface", c::run)?;
+    // Much of these is one linker or one emulator at a time, and each has a folder of its own.
+    let beside: [&[NamedStep]; 2] = [
+        &[("firmware", || firmware::check_sample(&stereo())), ("growth", growth::sample)],
+        &[
+            ("quickstart", || examples::QUICKSTART.run()),
+            ("async", || examples::ASYNC.run()),
+            ("boards", examples::boards),
+            ("C interface", c::run),
+        ],
+    ];
+    side_by_side(&mut steps, beside)?;
     steps.step("README's commands", readme_commands)?;
     steps.summary()?;
     if data.is_none() {
         println!("{NOT_RUN}");
     }
     Ok(())
+}
+
+/// A step's name and what it does.
+type NamedStep = (&'static str, fn() -> Outcome);
+
+/// Runs two rows of steps beside each other, each step as a program of its own whose output is printed when it is
+/// done; or one after another those that were asked for.
+fn side_by_side(steps: &mut Steps, rows: [&[NamedStep]; 2]) -> Outcome {
+    if steps.is_part() {
+        return rows.into_iter().flatten().try_for_each(|(name, work)| steps.step(name, work));
+    }
+    let xtask = std::env::current_exe().map_err(|e| Failure::new(format!("this program's path: {e}")))?;
+    let one = |name: &str| {
+        let output = command(&xtask, &["test", "--step", name]).output();
+        let output = output.map_err(|e| Failure::new(format!("{}: {e}", xtask.display())))?;
+        let text = [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+        print!("{}", text.concat());
+        let failed = || Failure::new(text[1].lines().last().unwrap_or(name));
+        if output.status.success() { Ok(()) } else { Err(failed()) }
+    };
+    let names = rows.map(|row| row.iter().map(|(name, _)| *name).collect::<Vec<_>>());
+    let all = names.each_ref().map(|row| row.join(", ")).join(" beside ");
+    steps.step(&all, || parallel::work(names.to_vec(), |row| row.into_iter().try_for_each(one)).map(|_| ()))
 }
 
 /// The folder of real stereo pairs: has to be there in CI, and where it is named.

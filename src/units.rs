@@ -104,7 +104,7 @@ impl PixelFlags {
     pub const CEILING: Self = Self(1 << 1);
     /// The winner costs as much as both its neighbours, or too few pixels of the window have a gradient.
     pub const UNTEXTURED: Self = Self(1 << 2);
-    /// Another disparity matches nearly as well.
+    /// Another disparity matches nearly as well, or the answer was less sure than asked for.
     pub const AMBIGUOUS: Self = Self(1 << 3);
     /// The right image's pixel found a better partner elsewhere: occluded or mismatched.
     pub const MISMATCH: Self = Self(1 << 4);

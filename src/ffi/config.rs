@@ -87,6 +87,9 @@ pub struct CConfig {
     /// Fattening check: by how much an answer may be nearer than others in its row, in 1/32 px for each pixel
     /// between, where no edge of brightness lies between; 65535 disables it.
     pub fattening_slope: u16,
+    /// Least confidence of an answer, 1 to 207: one that is less sure is refused and flagged
+    /// `STEREOPSIS_FLAG_AMBIGUOUS`, and rows have confidences; 0 refuses none.
+    pub min_confidence: u8,
 }
 
 /// Returns the filter of a `STEREOPSIS_PRESET_` number.
@@ -128,6 +131,7 @@ impl From<matching::Config> for CConfig {
             checks,
             penalties,
             confidence,
+            min_confidence,
             noise,
         } = config;
         let Penalties { gradient, cost, step, jump, edges } = penalties;
@@ -154,6 +158,7 @@ impl From<matching::Config> for CConfig {
             edges,
             fill_pixels: checks.fill_pixels,
             confidence: confidence.into(),
+            min_confidence,
             fill_step: checks.fill_step.raw(),
             speckle_run: checks.speckle_run,
             fattening_slope: checks.fattening_slope.raw(),
@@ -167,7 +172,12 @@ impl CConfig {
     fn with_filter<S: Method>(self, filter: Filter, noise: Noise) -> Self {
         let search = matching::Config::for_method::<S>(self.width, self.height, self.disparities);
         let config = matching::Config { noise, ..search }.with_filter::<S>(filter);
-        Self { min_disparity: self.min_disparity, confidence: self.confidence, ..config.into() }
+        Self {
+            min_disparity: self.min_disparity,
+            confidence: self.confidence,
+            min_confidence: self.min_confidence,
+            ..config.into()
+        }
     }
 
     /// Converts to the crate's own types, which check the rest.
@@ -205,6 +215,7 @@ impl CConfig {
                 edges: self.edges,
             },
             confidence: self.confidence != 0,
+            min_confidence: self.min_confidence,
             noise: level(self.noise)?,
         })
     }

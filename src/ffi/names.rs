@@ -165,7 +165,7 @@ macro_rules! instantiate_c_api {
 
             /// Sets a configuration's `noise`, a `STEREOPSIS_NOISE_` as from `stereopsis_noise_level`, with
             /// the checks of a `STEREOPSIS_PRESET_` and the method's penalties for it. Size, search and
-            /// `confidence` are kept.
+            /// confidences are kept.
             #[unsafe(export_name = concat!($($prefix,)? "stereopsis_config_noise"))]
             pub unsafe extern "C" fn stereopsis_config_noise(
                 preset: i32,

@@ -619,6 +619,11 @@ typedef struct stereopsis_config {
    * between, where no edge of brightness lies between; 65535 disables it.
    */
   uint16_t fattening_slope;
+  /**
+   * Least confidence of an answer, 1 to 207: one that is less sure is refused and flagged
+   * `STEREOPSIS_FLAG_AMBIGUOUS`, and rows have confidences; 0 refuses none.
+   */
+  uint8_t min_confidence;
 } stereopsis_config;
 
 /**
@@ -932,7 +937,7 @@ stereopsis_status stereopsis_config_default(uint16_t width,
 /**
  * Sets a configuration's `noise`, a `STEREOPSIS_NOISE_` as from `stereopsis_noise_level`, with
  * the checks of a `STEREOPSIS_PRESET_` and the method's penalties for it. Size, search and
- * `confidence` are kept.
+ * confidences are kept.
  */
 stereopsis_status stereopsis_config_noise(int32_t preset, uint8_t noise, struct stereopsis_config *config);
 

@@ -25,6 +25,11 @@ pub struct Config {
     /// Whether rows say how sure each answer is ([`Row::confidences`](super::Row::confidences)): a search
     /// more for each pixel.
     pub confidence: bool,
+    /// The least confidence that an answer keeps: one that is less sure is refused, as
+    /// [`AMBIGUOUS`](crate::units::PixelFlags::AMBIGUOUS), and so is every answer that was filled in, from 2 on.
+    /// The rows below are as they would be with it. 0: none is refused; more
+    /// asks for `confidence`, too.
+    pub min_confidence: u8,
     /// How noisy both cameras are: what is compared is smoothed accordingly. The next frame's is what a
     /// [`NoiseMeter`](crate::imaging::NoiseMeter) says of this one. It takes work, but no memory. Checks and
     /// penalties that suit it are those of [`Config::with_filter`] after it is set. Between frames a
@@ -66,6 +71,7 @@ impl Config {
         },
         penalties: Penalties::UNSET,
         confidence: false,
+        min_confidence: 0,
         noise: Noise::None,
     };
 

@@ -132,7 +132,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     /// unless [`Self::set_kernel`] chose one.
     pub fn start(&mut self, config: &Config) -> Result<(), ConfigError> {
         config.check(W, D)?;
-        self.config = *config;
+        self.config = Config { confidence: config.confidence || config.min_confidence > 0, ..*config };
         if !self.backend_chosen {
             (self.next_backend, self.backend_chosen) = (Backend::detect(), true);
         }

@@ -4,6 +4,16 @@ use super::Answers;
 use stereopsis::matching::Config;
 use stereopsis::units::{Disparity, PixelFlags};
 
+/// Refuses the answers that are less sure than asked for.
+pub(super) fn refuse_unsure(config: &Config, map: &mut Answers) {
+    for i in 0..map.confidence.len() {
+        if map.disparity[i].is_some() && map.confidence[i] < config.min_confidence {
+            (map.disparity[i], map.sigma_px[i], map.confidence[i]) = (Disparity::NONE, None, 0);
+            map.flags[i] = map.flags[i].without(PixelFlags::FILLED).union(PixelFlags::AMBIGUOUS);
+        }
+    }
+}
+
 /// The confidence of every pixel of the `map`, of the margins of the winners, and of the answers around:
 /// those `before` median and speckle filter, in rows above those `after`. The answer itself is that after the
 /// median.

@@ -214,8 +214,9 @@ pub fn match_pair(scheme: &Method, config: &Config, left: &GrayImage, right: &Gr
     let after = map.disparity.clone();
     let mut map = filter::fill_gaps(&config.checks, map);
     map.sigma_px = filter::sigmas(scheme, config, &before, &after, &map);
-    if config.confidence {
+    if config.confidence || config.min_confidence > 0 {
         map.confidence = confidence::confidences(config, &margins, &before, [&answers, &after], &map);
     }
+    confidence::refuse_unsure(config, &mut map);
     map
 }

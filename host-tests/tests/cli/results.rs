@@ -144,6 +144,23 @@ fn noise_is_measured_or_given() {
 }
 
 #[test]
+fn unsure_answers_are_refused() {
+    let bench = Bench::new();
+    let confidences = |least: &str| {
+        bench.matched(&[("--method", "block"), ("--min-confidence", least)]);
+        picture(&bench.path("out/confidence.png")).into_luma8().into_raw()
+    };
+    let (all, sure) = (confidences("0"), confidences("100"));
+    assert!(all.iter().any(|&c| (1..100).contains(&c)) && all.iter().any(|&c| c >= 100));
+    assert!(all.iter().zip(&sure).all(|(&all, &sure)| sure == if all < 100 { 0 } else { all }));
+    for bad in ["208", "-1", "x"] {
+        let refused = stereo(bench.arguments(&[("--min-confidence", bad)]));
+        let said = text(&refused.stderr);
+        assert!(!refused.status.success() && said.contains("from 0 to 207"), "{said}");
+    }
+}
+
+#[test]
 fn exposures_are_balanced_where_they_differ() {
     let bench = Bench::new();
     let right = bench.path("bright.png").display().to_string();

@@ -77,3 +77,27 @@ fn nothing_else_changes_with_it() {
         }
     }
 }
+
+#[test]
+fn the_least_sure_answers_are_refused_and_nothing_else_changes() {
+    let scene = Scene::demo();
+    let (pair, truth) = (scene.render(), scene.truth());
+    for method in [MethodName::Block, MethodName::Sgm] {
+        let all = method.with_filter(Filter::Default, config(&scene));
+        let sure = map(method, &Config { confidence: false, min_confidence: 60, ..all }, &pair);
+        let all = map(method, &all, &pair);
+        for (i, &confidence) in all.confidence.iter().enumerate() {
+            let refused = (1..60).contains(&confidence);
+            let kept = (all.disparity[i], all.flags[i], confidence);
+            let flags = all.flags[i].without(PixelFlags::FILLED).union(PixelFlags::AMBIGUOUS);
+            let expected = if refused { (Default::default(), flags, 0) } else { kept };
+            assert_eq!((sure.disparity[i], sure.flags[i], sure.confidence[i]), expected, "{method}, {i}");
+        }
+        let wrong = [&all, &sure].map(|map| {
+            let judged = Accuracy::judged(map, &truth);
+            judged.iter().filter(|answer| answer.loss > 0.0).count()
+        });
+        println!("{method}: {wrong:?} wrong");
+        assert!(2 * wrong[1] < wrong[0], "{method}: {wrong:?}");
+    }
+}

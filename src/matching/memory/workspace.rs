@@ -5,7 +5,7 @@
 //! Costs      smoothed lines       smoothed lines        -                    what a kernel works with
 //! Winners    winners              keys of right pixels  margins              kernel, then fractions
 //! Surfaces   confidences          -                     surface lengths      sums along the row
-//! Finished   confidences          masks                 -                    -
+//! Finished   confidences, withheld answers  masks       -                    -
 //! ```
 //!
 //! A row goes through the phases in this order. In the methods along paths the first three are nothing in
@@ -162,6 +162,22 @@ impl<'a> RowWorkspace<'a> {
         self.check(Phase::Surfaces);
         let count = self.winners.len();
         part_mut(view_mut::<Winner, u8>(self.winners), ..count)
+    }
+
+    /// The confidences of the row that waited, and places for the answers that are withheld.
+    pub(in crate::matching) fn confidences_and_withheld(&mut self) -> (&mut [u8], &mut [u16]) {
+        self.check(Phase::Surfaces);
+        let count = self.winners.len();
+        let (confidences, withheld) = split_mut(view_mut::<Winner, u16>(self.winners), count.div_ceil(2));
+        (part_mut(view_mut::<u16, u8>(confidences), ..count), part_mut(withheld, ..count))
+    }
+
+    /// The answers of `width` pixels that were withheld of the row before, until anything else is written.
+    pub(in crate::matching) fn withheld_before(&mut self, width: usize) -> &mut [u16] {
+        self.check(Phase::Costs);
+        let before =
+            if self.winners.is_empty() { view_mut(self.rest) } else { view_mut::<Winner, u16>(self.winners) };
+        part_mut(before, width.div_ceil(2)..width.div_ceil(2) + width)
     }
 
     /// What stands in the workspace of a row that is out.

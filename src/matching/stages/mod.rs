@@ -4,6 +4,7 @@
 //! when row y comes in (r: rows that the method looks down; BAND = 5, LOOK_AHEAD = 4, HISTORY = 5)
 //!
 //! stage                       reads                               writes
+//! withhold::restore_unsure    withheld answers                    finished y - r - 5, as before the refusal
 //! S::enter: denoise, if asked lines y - 2 .. y + 2                smoothed lines, for S::enter alone
 //! S::enter: census            lines y - 2 .. y + 2                codes y
 //! texture::take_texture       line y                              texture of y, counts of the window
@@ -22,6 +23,7 @@
 //! vertical::filter_vertically finished y - r - 5, band y - r      finished y - r - 4
 //! fill::fill_gaps             finished y - r - 4                  finished and flags y - r - 4
 //! confidence::finish_confidences finished and flags y - r - 4     confidences y - r - 4
+//! withhold::refuse_unsure     confidences of y - r - 4            finished, flags, withheld answers
 //! mask, once the row is out   masks of both images                finished, flags, confidences y - r - 4
 //! ```
 //!
@@ -45,6 +47,8 @@ mod speckle;
 mod vertical;
 
 mod fill;
+
+mod withhold;
 
 pub(super) mod mask;
 
@@ -94,6 +98,9 @@ pub(super) fn begin(mut frame: Frame<'_>) {
 /// Takes row `y` of both images (`None` below the last one) and finishes the row that is due with it.
 #[inline(always)]
 fn step<S: Method, const MOST: usize>(mut frame: Frame<'_>, y: usize, lines: Option<[&Rows5<'_>; 2]>) {
+    if let Some(newest) = y.checked_sub(S::RADIUS_Y) {
+        withhold::restore_unsure(&mut frame, newest);
+    }
     if let Some(lines) = lines {
         S::enter(&mut frame, y, lines);
     }
@@ -131,4 +138,5 @@ fn finish_row<S: Method, const MOST: usize>(
     vertical::filter_vertically::<S>(frame, newest);
     fill::fill_gaps(frame, newest);
     confidence::finish_confidences(frame, newest);
+    withhold::refuse_unsure(frame, newest);
 }

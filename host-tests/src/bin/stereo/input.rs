@@ -65,7 +65,9 @@ pub fn config(range: &RangeArgs, options: &MethodArgs, width: u16, height: u16) 
              wide, at most {most} is possible"
         )));
     }
-    let search = Config { min_disparity, ..options.method.config(width, height, disparities) };
+    let min_confidence = options.min_confidence;
+    let search =
+        Config { min_disparity, min_confidence, ..options.method.config(width, height, disparities) };
     Ok(options.method.with_filter(options.filter, search))
 }
 

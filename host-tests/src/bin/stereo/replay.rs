@@ -124,8 +124,14 @@ fn config(args: &ReplayArgs, header: Header) -> Result<Config, Failure> {
             header.width
         )));
     }
-    let options =
-        MethodArgs { method: args.method, filter: args.filter, noise: args.noise, kernel: None, threads: 1 };
+    let options = MethodArgs {
+        method: args.method,
+        filter: args.filter,
+        noise: args.noise,
+        min_confidence: 0,
+        kernel: None,
+        threads: 1,
+    };
     input::config(&args.range, &options, header.width, header.height)
 }
 

@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use nalgebra::Matrix3;
 use std::io::{self, Write};
 use std::path::PathBuf;
-use stereopsis::matching::{Config, Filter, Kernel};
+use stereopsis::matching::{Config, Filter, Kernel, Row};
 use stereopsis_host::colour::ColourScale;
 use stereopsis_host::run::{MethodName, NoiseChoice, RunOptions, UnknownMethod, UnknownNoise};
 
@@ -43,6 +43,9 @@ pub struct MethodArgs {
     /// which measures it
     #[arg(long, value_name = "NOISE", default_value = "auto", value_parser = noise)]
     pub noise: NoiseChoice,
+    /// The least confidence that an answer keeps, 0 to 207: one that is less sure is refused as ambiguous
+    #[arg(long, value_name = "C", default_value_t = 0, value_parser = min_confidence, allow_negative_numbers = true)]
+    pub min_confidence: u8,
     /// The kernel that does the work, by default the fastest of this processor; all give the same bits
     #[arg(long, value_name = "KERNEL", env = "STEREO_KERNEL", value_parser = kernel)]
     pub kernel: Option<Kernel>,
@@ -182,6 +185,10 @@ pub fn disparities(text: &str) -> Result<u16, String> {
 
 fn threads(text: &str) -> Result<u16, String> {
     whole(text, 1, 64)
+}
+
+fn min_confidence(text: &str) -> Result<u8, String> {
+    whole(text, 0, u16::from(Row::MOST_CONFIDENCE)).map(|confidence| confidence as u8)
 }
 
 pub fn min_disparity(text: &str) -> Result<u16, String> {

@@ -130,6 +130,7 @@ fn list(rounds: usize) -> Vec<(Config, Pattern, u64)> {
             checks,
             penalties,
             confidence: i % 4 > 0,
+            min_confidence: [0, 0, 90, 0, 0, 0, 140][i % 7],
             noise: [Noise::None, Noise::Low, Noise::None, Noise::High][i / 2 % 4],
             ..Config::for_method::<Block>(width, height, DISPARITIES[i * 4 % DISPARITIES.len()])
         };

@@ -1,5 +1,5 @@
-//! KITTI's `calib.txt`: projection matrices of rectified cameras, lengths in pixels and metres; and that of the
-//! Karlsruhe sequences, its forerunner.
+//! KITTI's `calib.txt`: projection matrices of rectified cameras, lengths in pixels and metres; and that of
+//! the Karlsruhe sequences, its forerunner.
 //!
 //! `P = K [I | t]`, row by row: `f 0 cx f*tx; 0 f cy ..; 0 0 1 ..`. The baseline of two cameras is
 //! `(P_right[3] - P_left[3]) / -f`. KITTI counts its cameras from 0 (grey 0 and 1, colour 2 and 3). A Karlsruhe

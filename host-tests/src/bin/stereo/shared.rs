@@ -44,7 +44,8 @@ pub struct MethodArgs {
     #[arg(long, value_name = "NOISE", default_value = "auto", value_parser = noise)]
     pub noise: NoiseChoice,
     /// The least confidence that an answer keeps, 0 to 207: one that is less sure is refused as ambiguous
-    #[arg(long, value_name = "C", default_value_t = 0, value_parser = min_confidence, allow_negative_numbers = true)]
+    #[arg(long, value_name = "C", default_value_t = 0, value_parser = min_confidence, allow_negative_numbers =
+        true)]
     pub min_confidence: u8,
     /// The kernel that does the work, by default the fastest of this processor; all give the same bits
     #[arg(long, value_name = "KERNEL", env = "STEREO_KERNEL", value_parser = kernel)]

@@ -15,6 +15,7 @@
 //! * [`Status`]: the result of every call.
 //! * [`Rectifier`]: raw lines and a calibration record to rectified lines; C holds a [`RectifierHandle`].
 //! * [`Instance`]: rectified lines to rows, for one method and one capacity; C holds a [`Handle`].
+//! * [`two_view_fundamental`] and those beside it: matches of two views to F, pose and points.
 //! * [`instantiate_c_api`]: their names in C, from which `cargo xtask header` makes
 //!   `stereopsis.h` beside this file.
 //!
@@ -38,6 +39,7 @@ mod instance;
 mod names;
 mod names_plain;
 mod names_rectifier;
+mod names_two_view;
 mod noise;
 mod points;
 mod record;
@@ -47,6 +49,7 @@ mod rig;
 mod row;
 mod state;
 mod status;
+mod two_view;
 
 pub use config::{
     CConfig, STEREOPSIS_NOISE_HIGH, STEREOPSIS_NOISE_LOW, STEREOPSIS_NOISE_NONE, STEREOPSIS_NOT_CHECKED,
@@ -63,6 +66,8 @@ pub use names::{first_of, instantiate_c_api};
 pub use names_plain::c_api_without_state;
 #[doc(hidden)]
 pub use names_rectifier::c_api_of_rectification;
+#[doc(hidden)]
+pub use names_two_view::c_api_of_two_views;
 pub use noise::{CNoiseMeter, noise_clear, noise_level, noise_line};
 pub use points::{CPoint, metres, points};
 pub use record::{CCameras, STEREOPSIS_ALPHA_NATURAL, STEREOPSIS_RECORD_BYTES, record_read};
@@ -76,3 +81,7 @@ pub use row::{
 };
 pub use state::{Handle, STEREOPSIS_ALIGN, memory_bytes};
 pub use status::{STEREOPSIS_ABI, Status, status_text, version_text};
+pub use two_view::{
+    CAgreement, CMatch, CPinhole, CPose, two_view_eight_point, two_view_fundamental, two_view_pose,
+    two_view_triangulate,
+};

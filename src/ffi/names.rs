@@ -50,8 +50,8 @@ macro_rules! instantiate_c_api {
             use super::{StereopsisInstance, StereopsisRectifier};
             use core::ffi::{c_char, c_void};
             use $crate::ffi::{
-                CCameras, CConfig, CCounters, CNoiseMeter, CPoint, CRig, CRow, Handle, RectifierHandle,
-                Status,
+                CAgreement, CCameras, CConfig, CCounters, CMatch, CNoiseMeter, CPinhole, CPoint, CPose, CRig,
+                CRow, Handle, RectifierHandle, Status,
             };
 
             /// Returns the version of the library's interface: a program compiled with another
@@ -284,6 +284,7 @@ macro_rules! instantiate_c_api {
 
             $crate::ffi::c_api_of_rectification!([$($prefix)?]);
             $crate::ffi::c_api_without_state!([$($prefix)?]);
+            $crate::ffi::c_api_of_two_views!([$($prefix)?]);
         }
     };
 }

@@ -5,7 +5,7 @@ use crate::pipeline::PushError;
 use core::ffi::CStr;
 
 /// Version of this interface, which changes when a program compiled with another header would go wrong.
-pub const STEREOPSIS_ABI: u32 = 5;
+pub const STEREOPSIS_ABI: u32 = 6;
 
 /// Result of a call; below 0 it is an error, and nothing has changed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -115,6 +115,26 @@ pub enum Status {
     LineWaiting = -47,
     /// The row is not one of the image.
     Row = -48,
+    /// Two views: eight matches at least are needed.
+    TooFewMatches = -49,
+    /// Two views: a coordinate of a match is infinite or not a number.
+    MatchNotFinite = -50,
+    /// Two views: the threshold is not over 0.
+    MatchThreshold = -51,
+    /// Two views: no fundamental matrix has more than seven matches agree with it.
+    MatchesDisagree = -52,
+    /// Two views: the matches are on a plane, or the camera has only rotated.
+    MatchesOnPlane = -53,
+    /// Two views: the matches leave the fundamental matrix undetermined.
+    MatchesDegenerate = -54,
+    /// Two views: the matrix is not finite, or of rank one or less.
+    FundamentalRank = -55,
+    /// Two views: the numbers are those of no camera.
+    PinholeNumbers = -56,
+    /// Two views: no pose has more than half of the matches in front of both cameras.
+    PoseAmbiguous = -57,
+    /// Two views: the rotation is none, or both cameras stand in one place.
+    PoseNumbers = -58,
 }
 
 impl Status {
@@ -125,7 +145,7 @@ impl Status {
 }
 
 /// Text of every status.
-const TEXTS: [(Status, &CStr); 51] = [
+const TEXTS: [(Status, &CStr); 61] = [
     (Status::Ok, c"done"),
     (Status::NoRowYet, c"the first row comes some lines later"),
     (Status::FrameDone, c"all rows of the frame are out"),
@@ -177,6 +197,16 @@ const TEXTS: [(Status, &CStr); 51] = [
     (Status::RectifyLines, c"more raw lines are needed than the library was built for"),
     (Status::LineWaiting, c"a rectified line has to be taken first"),
     (Status::Row, c"there is no such row"),
+    (Status::TooFewMatches, c"eight matches at least are needed"),
+    (Status::MatchNotFinite, c"a coordinate of a match is not finite"),
+    (Status::MatchThreshold, c"the threshold must be greater than zero"),
+    (Status::MatchesDisagree, c"no fundamental matrix has more than seven matches agree with it"),
+    (Status::MatchesOnPlane, c"the matches are on a plane, or the camera has only rotated"),
+    (Status::MatchesDegenerate, c"the matches leave the fundamental matrix undetermined"),
+    (Status::FundamentalRank, c"the matrix must be finite and of rank two at least"),
+    (Status::PinholeNumbers, c"the numbers are those of no camera"),
+    (Status::PoseAmbiguous, c"no pose has more than half of the matches in front of both cameras"),
+    (Status::PoseNumbers, c"the rotation is none, or both cameras stand in one place"),
 ];
 
 /// Returns the text of a number that may be a status.

@@ -80,7 +80,7 @@
 /**
  * Version of this interface, which changes when a program compiled with another header would go wrong.
  */
-#define STEREOPSIS_ABI 5
+#define STEREOPSIS_ABI 6
 
 /**
  * Alignment that is enough for every matcher's memory, that of `uint64_t`.
@@ -417,7 +417,47 @@ enum stereopsis_status
   /**
    * The row is not one of the image.
    */
-  STEREOPSIS_STATUS_ROW = -48
+  STEREOPSIS_STATUS_ROW = -48,
+  /**
+   * Two views: eight matches at least are needed.
+   */
+  STEREOPSIS_STATUS_TOO_FEW_MATCHES = -49,
+  /**
+   * Two views: a coordinate of a match is infinite or not a number.
+   */
+  STEREOPSIS_STATUS_MATCH_NOT_FINITE = -50,
+  /**
+   * Two views: the threshold is not over 0.
+   */
+  STEREOPSIS_STATUS_MATCH_THRESHOLD = -51,
+  /**
+   * Two views: no fundamental matrix has more than seven matches agree with it.
+   */
+  STEREOPSIS_STATUS_MATCHES_DISAGREE = -52,
+  /**
+   * Two views: the matches are on a plane, or the camera has only rotated.
+   */
+  STEREOPSIS_STATUS_MATCHES_ON_PLANE = -53,
+  /**
+   * Two views: the matches leave the fundamental matrix undetermined.
+   */
+  STEREOPSIS_STATUS_MATCHES_DEGENERATE = -54,
+  /**
+   * Two views: the matrix is not finite, or of rank one or less.
+   */
+  STEREOPSIS_STATUS_FUNDAMENTAL_RANK = -55,
+  /**
+   * Two views: the numbers are those of no camera.
+   */
+  STEREOPSIS_STATUS_PINHOLE_NUMBERS = -56,
+  /**
+   * Two views: no pose has more than half of the matches in front of both cameras.
+   */
+  STEREOPSIS_STATUS_POSE_AMBIGUOUS = -57,
+  /**
+   * Two views: the rotation is none, or both cameras stand in one place.
+   */
+  STEREOPSIS_STATUS_POSE_NUMBERS = -58
 };
 #if defined(__cplusplus) ? __cplusplus < 201103L : __STDC_VERSION__ < 202311L
 typedef int32_t stereopsis_status;
@@ -506,6 +546,83 @@ typedef struct stereopsis_point {
    */
   float z_m;
 } stereopsis_point;
+
+/**
+ * Point of the first image and the point of the second image that matches it, undistorted, px.
+ */
+typedef struct stereopsis_match {
+  /**
+   * Column in the first image.
+   */
+  float u;
+  /**
+   * Row in the first image.
+   */
+  float v;
+  /**
+   * Column in the second image.
+   */
+  float u2;
+  /**
+   * Row in the second image.
+   */
+  float v2;
+} stereopsis_match;
+
+/**
+ * How far matches agree with a fundamental matrix.
+ */
+typedef struct stereopsis_agreement {
+  /**
+   * Number of matches within the threshold.
+   */
+  uint32_t inliers;
+  /**
+   * Root mean square of their Sampson distances, px.
+   */
+  float rms_px;
+  /**
+   * Probability that an estimate with as many inliers was missed.
+   */
+  float miss_probability;
+} stereopsis_agreement;
+
+/**
+ * Camera without lens distortion.
+ */
+typedef struct stereopsis_pinhole {
+  /**
+   * Focal length along rows, px.
+   */
+  float fx;
+  /**
+   * Focal length along columns, px.
+   */
+  float fy;
+  /**
+   * Principal point, column, px.
+   */
+  float cx;
+  /**
+   * Principal point, row, px.
+   */
+  float cy;
+} stereopsis_pinhole;
+
+/**
+ * Pose of the second camera beside the first: P = R P' + t.
+ */
+typedef struct stereopsis_pose {
+  /**
+   * R, from the second camera's frame into the first one's, row by row.
+   */
+  float rotation[9];
+  /**
+   * t, from the first camera to the second. Two views do not say how long it is: `stereopsis_pose` writes
+   * length 1, and points come out in its unit.
+   */
+  float translation[3];
+} stereopsis_pose;
 
 /**
  * Frame size, search range and checks, filled by `stereopsis_config_default` and then open to changes.
@@ -860,6 +977,56 @@ stereopsis_status stereopsis_points(const struct stereopsis_rig *rig,
                                     size_t count);
 
 /**
+ * Computes the fundamental matrix F of `count` matches, eight or more, all of them right: row by
+ * row, with p^T F p' = 0 for p in the first image and p' in the second (eight-point algorithm).
+ * Fails on fewer, on numbers that are not finite, and where the matches leave F undetermined.
+ */
+stereopsis_status stereopsis_eight_point(const struct stereopsis_match *matches,
+                                         size_t count,
+                                         float *fundamental);
+
+/**
+ * Estimates F of `count` matches, some of them wrong, and which agree with it (RANSAC, at most
+ * 10 000 samples): `inliers` gets 1 for a match within `threshold_px` of its epipolar line, and 0
+ * for another. Equal seeds give equal results. Fails on fewer than eight matches, on numbers that
+ * are not finite, on a threshold that is not over 0, where not more than seven matches agree, and
+ * where they are on a plane; `inliers` may have been written then.
+ */
+stereopsis_status stereopsis_fundamental(const struct stereopsis_match *matches,
+                                         size_t count,
+                                         float threshold_px,
+                                         uint64_t seed,
+                                         float *fundamental,
+                                         uint8_t *inliers,
+                                         struct stereopsis_agreement *agreement);
+
+/**
+ * Recovers the pose of the second camera from F, with which most of the `count` matches are in
+ * front of both cameras. `inliers` says which matches count, as from `stereopsis_fundamental`; null
+ * for all of them. Fails where F is no fundamental matrix, a camera's numbers cannot be, or no pose
+ * has more than half of the matches in front.
+ */
+stereopsis_status stereopsis_pose_of(const struct stereopsis_match *matches,
+                                     const uint8_t *inliers,
+                                     size_t count,
+                                     const float *fundamental,
+                                     const struct stereopsis_pinhole *first,
+                                     const struct stereopsis_pinhole *second,
+                                     struct stereopsis_pose *pose);
+
+/**
+ * Triangulates `count` matches with least re-projection error: points in the first camera's frame,
+ * in the unit of the pose's translation; all 0 where the rays are nearly parallel or do not meet
+ * in front of both cameras. Fails where a camera's or the pose's numbers cannot be.
+ */
+stereopsis_status stereopsis_triangulate(const struct stereopsis_match *matches,
+                                         size_t count,
+                                         const struct stereopsis_pinhole *first,
+                                         const struct stereopsis_pinhole *second,
+                                         const struct stereopsis_pose *pose,
+                                         struct stereopsis_point *points);
+
+/**
  * Returns the version of the library's interface: a program compiled with another
  * `STEREOPSIS_ABI` must not continue.
  */
@@ -1041,6 +1208,10 @@ stereopsis_status stereopsis_sigma_px(struct stereopsis *handle, float *sigma_px
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_millimetres(const struct stereopsis_rig *rig, const uint16_t *disparities, uint16_t *millimetres, size_t count); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_metres(const struct stereopsis_rig *rig, const uint16_t *disparities, const float *sigma_px, float *depth_m, float *sigma_m, size_t count); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_points(const struct stereopsis_rig *rig, uint16_t row, const uint16_t *disparities, struct stereopsis_point *points, size_t count); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_eight_point(const struct stereopsis_match *matches, size_t count, float *fundamental); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_fundamental(const struct stereopsis_match *matches, size_t count, float threshold_px, uint64_t seed, float *fundamental, uint8_t *inliers, struct stereopsis_agreement *agreement); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_pose_of(const struct stereopsis_match *matches, const uint8_t *inliers, size_t count, const float *fundamental, const struct stereopsis_pinhole *first, const struct stereopsis_pinhole *second, struct stereopsis_pose *pose); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_triangulate(const struct stereopsis_match *matches, size_t count, const struct stereopsis_pinhole *first, const struct stereopsis_pinhole *second, const struct stereopsis_pose *pose, struct stereopsis_point *points); \
   STEREOPSIS_EXTERN uint32_t prefix##stereopsis_abi(void); \
   STEREOPSIS_EXTERN const char *prefix##stereopsis_version(void); \
   STEREOPSIS_EXTERN const char *prefix##stereopsis_status_text(int32_t status); \

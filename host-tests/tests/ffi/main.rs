@@ -6,6 +6,7 @@
 mod lost;
 mod noise;
 mod raw;
+mod two_view;
 
 use std::ffi::{CStr, c_void};
 use std::mem::MaybeUninit;

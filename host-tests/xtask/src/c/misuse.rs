@@ -19,7 +19,9 @@ pub fn statuses() -> Outcome {
     remove(&build)?;
     configure("host-tests/tests/ffi", &build, &choices, SANITIZERS)?;
     run_command(command("cmake", &["--build"]).arg(&build))?;
-    for program in ["misuse", "misuse_cpp", "misuse_raw", "misuse_raw_cpp"] {
+    for program in
+        ["misuse", "misuse_cpp", "misuse_raw", "misuse_raw_cpp", "misuse_two_views", "misuse_two_views_cpp"]
+    {
         print!("{program}: {}", output_within(&mut command(build.join(program), &[]), LIMIT)?);
     }
     Ok(())

@@ -20,13 +20,14 @@ use stereopsis::matching::{Block, Fast, Method, Sgm, SgmEdge, SgmLean};
 /// The header, from the repository's root.
 const HEADER: &str = "src/ffi/stereopsis.h";
 /// The files with macros, and the macros, in the header's order.
-const MACROS: [(&str, &str); 3] = [
+const MACROS: [(&str, &str); 4] = [
     ("src/ffi/names.rs", "instantiate_c_api"),
     ("src/ffi/names_rectifier.rs", "c_api_of_rectification"),
     ("src/ffi/names_plain.rs", "c_api_without_state"),
+    ("src/ffi/names_two_view.rs", "c_api_of_two_views"),
 ];
 /// The files that cbindgen reads as they are, in the header's order.
-const FILES: [&str; 10] = [
+const FILES: [&str; 11] = [
     "src/ffi/status.rs",
     "src/ffi/state.rs",
     "src/ffi/config.rs",
@@ -37,9 +38,10 @@ const FILES: [&str; 10] = [
     "src/ffi/record.rs",
     "src/ffi/rig.rs",
     "src/ffi/points.rs",
+    "src/ffi/two_view.rs",
 ];
 /// Names that Rust spells in its own way.
-const NAMES: [(&str, &str); 10] = [
+const NAMES: [(&str, &str); 14] = [
     ("Handle", "stereopsis"),
     ("Status", "stereopsis_status"),
     ("CConfig", "stereopsis_config"),
@@ -50,6 +52,10 @@ const NAMES: [(&str, &str); 10] = [
     ("CCameras", "stereopsis_cameras"),
     ("CRig", "stereopsis_rig"),
     ("CPoint", "stereopsis_point"),
+    ("CMatch", "stereopsis_match"),
+    ("CPinhole", "stereopsis_pinhole"),
+    ("CPose", "stereopsis_pose"),
+    ("CAgreement", "stereopsis_agreement"),
 ];
 
 const TOP: &str = "/* Depth from two cameras, line by line: the functions of libstereopsis.a.

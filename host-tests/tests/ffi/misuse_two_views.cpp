@@ -1,0 +1,2 @@
+// The same program in C++.
+#include "misuse_two_views.c"

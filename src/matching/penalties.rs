@@ -7,6 +7,17 @@
 /// A path's cost at a pixel and disparity is the pixel's own cost and the least of its predecessor's costs:
 /// at the same disparity for nothing, at the next one for a `step`, at any other for a `jump` (Hirschmüller
 /// 2008).
+///
+/// A matcher starts with penalties that are in order and bounded, with the largest jump; all kernels give the
+/// same bits for every one of them:
+///
+/// * `cost >= 1`, `1 <= step[1] <= step[0] <= jump[0]`, `step[1] <= jump[1]`, `step[1] <= jump[2]`,
+///   `edges[0] <= edges[1]`;
+/// * `cost + step[0] + jump <= 127`: what a path costs, at most `cost + jump`, and the step from it take
+///   seven bits. The least cost of a path is at most `cost`, that of the average of two above at most
+///   `cost + jump / 2`; with a jump it stays below 189, and no other cost is more than 127 away from it;
+/// * `3 cost + 2 jump <= 254`: a winner's sum of three paths, of which one agrees with it, is none that was
+///   cut off at 255.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Penalties {
@@ -56,7 +67,7 @@ impl Penalties {
     /// All zero: of a matcher that was not started.
     pub(super) const UNSET: Self = Self { gradient: 0, cost: 0, step: [0; 2], jump: [0; 3], edges: [0; 2] };
 
-    /// Whether all sums stay within their bytes.
+    /// Whether all sums stay within their bytes: the bounds in the type's description.
     pub(super) const fn check(&self) -> Result<(), PenaltiesError> {
         let Self { gradient, cost, step: [step, small_step], jump: [little, more, much], edges } = *self;
         let most = if little > more { little } else { more };
@@ -71,8 +82,6 @@ impl Penalties {
         if step > little || small_step > least {
             return Err(PenaltiesError::Order);
         }
-        // A path's cost and the step from it take seven bits; and where three paths agree least, their sum is
-        // still under 255, so that a winner's cost is none that was cut off.
         let (cost, step, jump) = (cost as u16, step as u16, most as u16);
         if cost + step + jump > 127 || cost + 2 * (cost + jump) >= 255 {
             return Err(PenaltiesError::Order);

@@ -2,7 +2,7 @@
 //! every kernel.
 //!
 //! * `list`: all sizes, ranges, pictures and checks; `pictures`: every kind of picture. `any`: any
-//!   combination of them.
+//!   combination of them. `penalties`: those at the bounds.
 //! * `frames`: one frame after the other, faults and changes in between. `moved`: a matcher that changes its
 //!   place.
 
@@ -10,6 +10,7 @@ mod any;
 mod frames;
 mod list;
 mod moved;
+mod penalties;
 mod pictures;
 
 use image::GrayImage;

@@ -1,8 +1,14 @@
 //! Four bytes in a 32-bit word.
 //!
-//! The lanes have a spare bit at the top of each. It is set before a subtraction and tells then whether the
-//! lane is not smaller: differences that end at 0 are made of that, and minima of those, in six operations.
-//! (Arm's instructions on four bytes take two: see `armv7em`.)
+//! A subtraction adds 128 to each lane, whose top bit then says whether it is not smaller: differences that
+//! end at 0 are made of that, and minima of those, in six operations. (Arm's instructions on four bytes take
+//! two: see `armv7em`.) The sum may carry into the next lane: what counts is that each lane's own result,
+//! the difference and 128, fits a byte, for then the word's arithmetic is the lanes' whatever was carried on
+//! the way. So differences are good from -128 to 127, and the numbers themselves may be any bytes.
+//!
+//! Each operation says what its lanes may hold, asserts it in a checked build, and is tested with every pair
+//! of bytes that it allows. [`Penalties`](crate::matching::Penalties) says why the costs along paths keep to
+//! it.
 
 use super::group::Group;
 use crate::matching::backend::loops::keep_loop;
@@ -14,8 +20,14 @@ const TOP: u32 = 0x8080_8080;
 /// A one in each lane.
 const ONE: u32 = 0x0101_0101;
 
+/// Whether something holds for the bytes of each lane.
+#[inline(always)]
+fn lanes(a: Word, b: Word, holds: impl Fn(i16, i16) -> bool) -> bool {
+    a.0.to_le_bytes().into_iter().zip(b.0.to_le_bytes()).all(|(a, b)| holds(a.into(), b.into()))
+}
+
 /// Four bytes, the first lane lowest.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub(in crate::matching::backend) struct Word(u32);
 
@@ -61,16 +73,19 @@ impl Group for Word {
 
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
+        debug_assert!(lanes(self, other, |a, b| a + b < 256), "a sum over a byte: {self:08x?} {other:08x?}");
         Self(self.0.wrapping_add(other.0))
     }
 
     #[inline(always)]
     fn minus(self, other: Self) -> Self {
+        debug_assert!(lanes(self, other, |a, b| a >= b), "a difference below 0: {self:08x?} {other:08x?}");
         Self(self.0.wrapping_sub(other.0))
     }
 
     #[inline(always)]
     fn plus_saturating(self, other: Self) -> Self {
+        debug_assert!(lanes(self, other, |_, b| b < 128), "eight bits are added: {other:08x?}");
         let sum = (self.0 & !TOP) + other.0;
         let over = self.0 & sum & TOP;
         Self(sum | (self.0 & TOP) | ((over >> 7) * 0xff))
@@ -78,7 +93,12 @@ impl Group for Word {
 
     #[inline(always)]
     fn minus_saturating(self, other: Self) -> Self {
-        let difference = (self.0 | TOP) - other.0;
+        debug_assert!(
+            lanes(self, other, |a, b| (-128..128).contains(&(a - b))),
+            "a difference of eight bits: {self:08x?} {other:08x?}"
+        );
+        // 128 more in each lane, not the top bit set: the sum with what is over 127 counts.
+        let difference = self.0.wrapping_add(TOP).wrapping_sub(other.0);
         let not_less = difference & TOP;
         Self(difference & (not_less - (not_less >> 7)))
     }
@@ -96,17 +116,19 @@ impl Group for Word {
     #[inline(always)]
     fn apart(self, other: Self) -> Self {
         // The greater less the lesser, of which only the whole is no less than 0 in each lane.
-        let more = self.minus_saturating(other);
-        other.minus(self).plus(more).plus(more)
+        let more = self.minus_saturating(other).0;
+        Self(other.0.wrapping_sub(self.0).wrapping_add(more).wrapping_add(more))
     }
 
     #[inline(always)]
     fn average_up(self, other: Self) -> Self {
+        debug_assert!(lanes(self, other, |a, b| a + b < 255), "a sum over a byte: {self:08x?} {other:08x?}");
         Self((self.0 + other.0 + ONE) >> 1 & !TOP)
     }
 
     #[inline(always)]
     fn average_down(self, other: Self) -> Self {
+        debug_assert!(lanes(self, other, |a, b| a + b < 256), "a sum over a byte: {self:08x?} {other:08x?}");
         Self((self.0 + other.0) >> 1 & !TOP)
     }
 
@@ -130,6 +152,7 @@ impl Group for Word {
 
     #[inline(always)]
     fn four_bits_apart(self, others: Self) -> Self {
+        debug_assert!(lanes(self, others, |a, b| a < 16 && b < 16), "codes of four bits");
         let bits = self.0 ^ others.0;
         let pairs = bits - (bits >> 1 & 0x0505_0505);
         Self((pairs & 0x0303_0303) + (pairs >> 2 & 0x0303_0303))
@@ -157,12 +180,14 @@ impl Group for Word {
 
     #[inline(always)]
     fn least(self) -> Self {
+        debug_assert!(lanes(self, self, |a, _| a < 128), "eight bits: {self:08x?}");
         let two = self.min(Self(self.0 >> 16));
         Self::splat(two.min(Self(two.0 >> 8)).0 as u8)
     }
 
     #[inline(always)]
     fn last_least(cells: &[Self]) -> (u8, usize) {
+        debug_assert!(cells.len() < 128, "a place has seven bits");
         // Of equal ones the later is taken.
         let keys = {
             // Half-words with a spare bit: the cost above seven bits of the place, counted down.
@@ -203,6 +228,83 @@ impl Group for Word {
         for lane in lane.saturating_sub(BESIDE)..lane + BESIDE + 1 {
             if let Some(cell) = cells.get_mut(lane / 4) {
                 cell.0 |= 0xff << (8 * (lane % 4));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What an operation makes of every pair of bytes that it allows, in each lane beside every neighbour of
+    /// a few, is what it makes of the bytes.
+    fn check(
+        allows: impl Fn(i16, i16) -> bool,
+        of_words: impl Fn(Word, Word) -> Word,
+        of_bytes: impl Fn(i16, i16) -> i16,
+    ) {
+        let pairs = || (0..=255u8).flat_map(|a| (0..=255u8).map(move |b| (a, b)));
+        let allowed = |(a, b): &(u8, u8)| allows((*a).into(), (*b).into());
+        let corners = [0u8, 1, 15, 126, 127, 128, 129, 254, 255];
+        let beside: [_; 81] = core::array::from_fn(|i| (corners[i / 9], corners[i % 9]));
+        for ((a, b), lane) in pairs().filter(allowed).zip((0..4).cycle()) {
+            for (c, d) in beside.into_iter().filter(allowed) {
+                let (mut first, mut second) = ([c; 4], [d; 4]);
+                (first[lane], second[lane]) = (a, b);
+                let found = of_words(Word::of_bytes(first), Word::of_bytes(second)).0.to_le_bytes();
+                let expected: [u8; 4] =
+                    core::array::from_fn(|i| of_bytes(first[i].into(), second[i].into()) as u8);
+                assert_eq!(found, expected, "{first:?} {second:?}");
+            }
+        }
+    }
+
+    fn near(a: i16, b: i16) -> bool {
+        (-128..128).contains(&(a - b))
+    }
+
+    #[test]
+    fn sums_and_differences() {
+        check(|a, b| a + b < 256, Word::plus, |a, b| a + b);
+        check(|a, b| a >= b, Word::minus, |a, b| a - b);
+        check(|_, b| b < 128, Word::plus_saturating, |a, b| (a + b).min(255));
+        check(near, Word::minus_saturating, |a, b| (a - b).max(0));
+        check(near, Word::apart, |a, b| (a - b).abs());
+    }
+
+    #[test]
+    fn minima_and_maxima() {
+        check(near, Word::min, i16::min);
+        check(near, Word::max, i16::max);
+        for (a, b) in (0..128u8).flat_map(|a| (0..128).map(move |b| (a, b))) {
+            for (lane, other) in [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (1, 3)] {
+                let mut bytes = [127; 4];
+                (bytes[lane], bytes[other]) = (a, b);
+                assert_eq!(Word::of_bytes(bytes).least().0, Word::splat(a.min(b)).0, "{bytes:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn averages_and_bits() {
+        check(|a, b| a + b < 255, Word::average_up, |a, b| (a + b + 1) / 2);
+        check(|a, b| a + b < 256, Word::average_down, |a, b| (a + b) / 2);
+        check(|_, _| true, |a, _| a.quarter(), |a, _| a / 4);
+        check(|_, _| true, Word::bits_apart, |a, b| (a ^ b).count_ones() as i16);
+        check(|a, b| a < 16 && b < 16, Word::four_bits_apart, |a, b| (a ^ b).count_ones() as i16);
+    }
+
+    #[test]
+    fn the_last_of_the_least() {
+        for place in 0..508 {
+            for least in [0, 1, 127, 128, 254] {
+                let mut bytes = [255; 508];
+                (bytes[place / 2], bytes[place]) = (least, least);
+                let cells: [Word; 127] = core::array::from_fn(|i| {
+                    Word::of_bytes([bytes[4 * i], bytes[4 * i + 1], bytes[4 * i + 2], bytes[4 * i + 3]])
+                });
+                assert_eq!(Word::last_least(&cells), (least, place));
             }
         }
     }

@@ -16,6 +16,11 @@
 //! | [`rectify`] | a rig, or matches alone | [`Rectification`], [`Warp`], [`RowMeter`] |
 //! | [`known_shape`] | one picture | [`Sighting`], [`SquareMark`], [`VanishingPoint`], [`ManhattanFrame`] |
 //!
+//! What comes out is finite, whatever goes in: an `Ok` or a `Some` holds no infinity and nothing that is not
+//! a number, and keeps what its type promises (a rotation is one, a direction has length one, a depth is in
+//! front). Where a number would go beyond what `T` holds, some 1e19 where it is squared in `f32` and 1e154 in
+//! `f64`, the answer is an error, `NotFinite` where there is that name, or `None`.
+//!
 //! R and t carry a point of camera 2 into camera 1, `P = R P' + t`, and `p^T F p' = 0`; what OpenCV writes
 //! the other way round is converted by functions that say so.
 //!

@@ -5,10 +5,12 @@
 //! * `resection`, `landmarks`: a camera before known points.
 //! * `rectify`, `uncalibrated`, `row_health`: rows aligned, by cameras or by matches, and rows that no longer
 //!   are.
+//! * `extremes`: numbers over all exponents.
 
 mod cameras;
 mod chain;
 mod estimates;
+mod extremes;
 mod landmarks;
 mod lecture;
 mod matrices;

@@ -103,11 +103,9 @@ pub fn p3p<T: Real>(rays: &[Vector3<T>; 3], points: &[Point3<T>; 3]) -> Result<P
         let Some(seen) = triad(&(c1 - c2), &(c1 - c3)) else { continue };
         let rotation = frame * seen.transpose();
         let translation = (x1 + x2 + x3 - rotation * (c1 + c2 + c3)) * T::of(1.0 / 3.0);
-        if !translation.iter().all(|x| x.is_finite()) {
-            continue;
-        }
+        let Some(pose) = Pose::of_parts(rotation, translation).sound() else { continue };
         if let Some(slot) = found.poses.get_mut(found.count) {
-            *slot = Pose::of_parts(rotation, translation);
+            *slot = pose;
             found.count += 1;
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::geometry::Real;
 use crate::geometry::camera::{Camera, CameraModelError, Pose};
-use crate::geometry::linear::{Ldl, Projective, rank};
+use crate::geometry::linear::{Ldl, Projective, all_finite, rank};
 use nalgebra::{Matrix3, Matrix3x4, Point2, Point3, Vector3};
 
 /// M, with `p ~ M P` for a point P of the world and its undistorted pixel p: `M = K [R^T | -R^T t]`, where R
@@ -91,7 +91,11 @@ impl<T: Real> Projection<T> {
             return Err(ResectionError::Infinite);
         }
         let by = if determinant < T::ZERO { -c.norm() } else { c.norm() };
-        Ok(Self { matrix: scaled / by })
+        let matrix = scaled / by;
+        if !all_finite(matrix.as_slice()) {
+            return Err(ResectionError::NotFinite);
+        }
+        Ok(Self { matrix })
     }
 
     /// The matrix of six landmarks or more that are not on a plane, by the direct linear transform on
@@ -181,7 +185,8 @@ impl<T: Real> Projection<T> {
     /// Where a point of the world is seen, undistorted px; `None` when it is not in front of the camera.
     pub fn project(&self, world: &Point3<T>) -> Option<Point2<T>> {
         let h = self.matrix * world.to_homogeneous();
-        (h.z > T::ZERO).then(|| Point2::new(h.x / h.z, h.y / h.z))
+        let pixel = Point2::new(h.x / h.z, h.y / h.z);
+        (h.z > T::ZERO && all_finite(pixel.coords.as_slice())).then_some(pixel)
     }
 }
 

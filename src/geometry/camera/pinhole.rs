@@ -62,6 +62,8 @@ pub enum ProjectionError {
     Behind,
     /// Undistortion did not converge: the pixel is outside of what the lens model describes.
     NotConverged,
+    /// A coordinate is infinite or not a number, or the place of the point or the ray would be.
+    NotFinite,
 }
 
 impl core::fmt::Display for ProjectionError {
@@ -69,6 +71,7 @@ impl core::fmt::Display for ProjectionError {
         f.write_str(match self {
             Self::Behind => "the point is not in front of the camera",
             Self::NotConverged => "the lens model has no undistorted place for this pixel",
+            Self::NotFinite => "a coordinate is not finite, or its place would not be",
         })
     }
 }
@@ -161,7 +164,7 @@ impl<T: Real> Camera<T> {
             return Err(ProjectionError::Behind);
         }
         let by = T::ONE / point.z;
-        Ok(self.pixel_of(&self.lens.distort(&Vector2::new(point.x * by, point.y * by))))
+        self.pixel_of(&self.lens.distort(&Vector2::new(point.x * by, point.y * by)))
     }
 
     /// The ray of a pixel: the direction `(x, y, 1)` in the camera's frame of all that is seen there.
@@ -173,7 +176,8 @@ impl<T: Real> Camera<T> {
         let y = (pixel.y - self.cy) / self.fy;
         let x = (pixel.x - self.cx - self.skew * y) / self.fx;
         if self.lens.is_none() {
-            return Ok(Vector3::new(x, y, T::ONE));
+            let is_finite = x.is_finite() && y.is_finite();
+            return if is_finite { Ok(Vector3::new(x, y, T::ONE)) } else { Err(ProjectionError::NotFinite) };
         }
         let rounding = T::EPSILON * T::of(10.0) * (T::ONE + x.abs().max(y.abs()));
         let tolerance = rounding.max(T::EPSILON.sqrt() * T::of(3e-3) / self.fx.max(self.fy));
@@ -184,12 +188,14 @@ impl<T: Real> Camera<T> {
     /// Where the pixel would be without the lens's distortion, px.
     pub fn undistort(&self, pixel: &Point2<T>) -> Result<Point2<T>, ProjectionError> {
         let ray = self.unproject(pixel)?;
-        Ok(self.pixel_of(&ray.xy()))
+        self.pixel_of(&ray.xy())
     }
 
     /// From the plane Z = 1, after the lens, to pixels.
-    fn pixel_of(&self, plane: &Vector2<T>) -> Point2<T> {
-        Point2::new(self.fx * plane.x + self.skew * plane.y + self.cx, self.fy * plane.y + self.cy)
+    fn pixel_of(&self, plane: &Vector2<T>) -> Result<Point2<T>, ProjectionError> {
+        let u = self.fx * plane.x + self.skew * plane.y + self.cx;
+        let v = self.fy * plane.y + self.cy;
+        if u.is_finite() && v.is_finite() { Ok(Point2::new(u, v)) } else { Err(ProjectionError::NotFinite) }
     }
 }
 

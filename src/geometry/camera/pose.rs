@@ -1,7 +1,7 @@
 //! The pose of one camera beside another: a rigid motion of SE(3), and its increment.
 
 use crate::geometry::Real;
-use crate::geometry::linear::{Svd3, cayley};
+use crate::geometry::linear::{Svd3, all_finite, cayley};
 use nalgebra::{Matrix3, Point3, Vector3};
 
 /// R and t, which carry a point of camera 2 into camera 1: `P = R P' + t`. So t is the centre of camera 2 in
@@ -21,7 +21,7 @@ pub struct Pose<T: Real> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum PoseError {
-    /// A number is infinite or not a number.
+    /// A number is infinite or not a number, or the square of the translation's length is.
     NotFinite,
     /// The matrix is no rotation: a column's length or an angle between two is off by more than 1e-4, or it
     /// mirrors.
@@ -53,15 +53,30 @@ impl<T: Real> Pose<T> {
 
     /// A pose of a rotation that is given to four decimals or more; the nearest exact one is held.
     pub fn new(rotation: Matrix3<T>, translation: Vector3<T>) -> Result<Self, PoseError> {
-        if !rotation.iter().chain(&translation).all(|x| x.is_finite()) {
+        let Self { rotation, translation } = Self::of_parts(rotation, translation).checked(T::of(1e-4))?;
+        let svd = Svd3::new(&rotation);
+        Ok(Self { rotation: svd.u * svd.v.transpose(), translation })
+    }
+
+    /// This pose, if it keeps what a pose promises: the matrix is a rotation, off by `tolerance` at the most,
+    /// and the length of the translation is a number.
+    pub(crate) fn checked(self, tolerance: T) -> Result<Self, PoseError> {
+        let Self { rotation, translation } = &self;
+        if !(all_finite(rotation.as_slice()) && translation.norm_squared().is_finite()) {
             return Err(PoseError::NotFinite);
         }
         let off = (rotation.transpose() * rotation - Matrix3::identity()).amax();
-        if off > T::of(1e-4) || rotation.determinant() < T::ZERO {
+        // What overflows is not less either.
+        if !(off <= tolerance) || rotation.determinant() < T::ZERO {
             return Err(PoseError::NotARotation);
         }
-        let svd = Svd3::new(&rotation);
-        Ok(Self { rotation: svd.u * svd.v.transpose(), translation })
+        Ok(self)
+    }
+
+    /// [`Self::checked`] for what is computed: by [`Self::new`]'s tolerance, where sane numbers are off by
+    /// rounding.
+    pub(crate) fn sound(self) -> Option<Self> {
+        self.checked(T::of(1e-4)).ok()
     }
 
     /// A pose of what is known to be a rotation.

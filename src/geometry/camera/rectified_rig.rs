@@ -34,7 +34,7 @@ pub struct RectifiedRig {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum RigError {
-    /// A number is infinite or not a number.
+    /// A number is infinite or not a number, or focal length times baseline or the disparity's offset is.
     NotFinite,
     /// The focal length is zero or negative.
     FocalLength,
@@ -68,7 +68,8 @@ impl RectifiedRig {
         cy: f32,
         cx_right: f32,
     ) -> Result<Self, RigError> {
-        if ![focal_px, baseline_m, cx, cy, cx_right].iter().all(|v| v.is_finite()) {
+        let products = [focal_px * baseline_m, cx_right - cx];
+        if ![focal_px, baseline_m, cx, cy, cx_right].iter().chain(&products).all(|v| v.is_finite()) {
             return Err(RigError::NotFinite);
         }
         if focal_px <= 0.0 {
@@ -100,10 +101,12 @@ impl RectifiedRig {
         self.cx_right - self.cx
     }
 
-    /// Depth in metres of a disparity in px: `f b / (d + doffs)`, or `None` at and behind infinity.
+    /// Depth in metres of a disparity in px: `f b / (d + doffs)`, or `None` at and behind infinity, which begins where
+    /// numbers end.
     pub fn depth_m(&self, disparity_px: f32) -> Option<f32> {
         let shift = disparity_px + self.disparity_offset_px();
-        (shift > 0.0).then(|| self.focal_px * self.baseline_m / shift)
+        let depth_m = self.focal_px * self.baseline_m / shift;
+        (shift > 0.0 && depth_m.is_finite()).then_some(depth_m)
     }
 
     /// Disparity in px of a depth in metres: `f b / Z - doffs`. It is negative where the rig cannot see that
@@ -141,7 +144,8 @@ impl RectifiedRig {
     /// (px); `None` at and behind infinity.
     pub fn reproject(&self, u: f32, v: f32, d: f32) -> Option<Point3<f32>> {
         let h = self.q() * Vector4::new(u, v, d, 1.0);
-        (h.w > 0.0).then(|| Point3::new(h.x / h.w, h.y / h.w, h.z / h.w))
+        let point = Point3::new(h.x / h.w, h.y / h.w, h.z / h.w);
+        (h.w > 0.0 && point.iter().all(|x| x.is_finite())).then_some(point)
     }
 
     /// Horizontal field of view in radians of an image `width` px wide: from the left edge to the right edge.

@@ -61,6 +61,8 @@ pub enum StereoRigError {
     Pose(PoseError),
     /// Both cameras are at one place.
     NoBaseline,
+    /// The cameras are not from a micrometre to 1000 km apart.
+    Baseline,
     /// A side of an image is not from 2 to 4096 px.
     Size,
 }
@@ -70,6 +72,7 @@ impl core::fmt::Display for StereoRigError {
         f.write_str(match self {
             Self::Pose(error) => return error.fmt(f),
             Self::NoBaseline => "the baseline is zero: both cameras are at one place",
+            Self::Baseline => "the baseline must be from 0.000001 to 1000000 m",
             Self::Size => "the images' columns and rows must be from 2 to 4096",
         })
     }
@@ -85,8 +88,12 @@ impl<T: Real> StereoRig<T> {
         pose: Pose<T>,
         sizes: [ImageSize; 2],
     ) -> Result<Self, StereoRigError> {
-        if !(pose.translation().norm() > T::ZERO) {
+        if pose.translation().amax() == T::ZERO {
             return Err(StereoRigError::NoBaseline);
+        }
+        let baseline = pose.translation().norm();
+        if !(baseline >= T::of(1e-6) && baseline <= T::of(1e6)) {
+            return Err(StereoRigError::Baseline);
         }
         if !sizes.iter().all(|size| size.is_possible()) {
             return Err(StereoRigError::Size);
@@ -142,6 +149,10 @@ mod tests {
         let nan = rig(Matrix3::identity(), beside * f64::NAN, [size; 2]);
         assert_eq!(nan, Err(StereoRigError::Pose(PoseError::NotFinite)));
         assert_eq!(rig(Matrix3::identity(), Vector3::zeros(), [size; 2]), Err(StereoRigError::NoBaseline));
+        for far in [1e-200, 1e-7, 1e7, 1e150, -1e150] {
+            let found = rig(Matrix3::identity(), Vector3::new(far, 0.0, 0.0), [size; 2]);
+            assert_eq!(found, Err(StereoRigError::Baseline), "{far}");
+        }
         let thin = ImageSize { width: 640, height: 1 };
         assert_eq!(rig(Matrix3::identity(), beside, [size, thin]), Err(StereoRigError::Size));
     }

@@ -2,6 +2,7 @@
 
 use crate::geometry::Real;
 use crate::geometry::camera::{Camera, ProjectionError};
+use crate::geometry::linear::all_finite;
 use nalgebra::{Point2, Point3, Unit, Vector3};
 
 /// Where an object of known size is, from one camera.
@@ -23,7 +24,7 @@ pub struct Sighting<T: Real> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum SightingError {
-    /// A number is infinite or not a number.
+    /// A number is infinite or not a number, or one of the sighting would be.
     NotFinite,
     /// The size of the object is not positive, or the deviation of a pixel is negative.
     Size,
@@ -80,7 +81,7 @@ impl<T: Real> Sighting<T> {
         let angle = Angle::between(camera, ends, length_m, sigma_px)?;
         let distance_m = length_m * T::of(0.5) / angle.half_tangent;
         // dd/da = -d / sin a
-        Ok(angle.sighting(distance_m, distance_m / angle.radians.sin()))
+        angle.sighting(distance_m, distance_m / angle.radians.sin())
     }
 
     /// A ball of known diameter, of which two opposite points of the outline are seen: `d = D / (2 sin(a /
@@ -96,7 +97,7 @@ impl<T: Real> Sighting<T> {
         let tangent = angle.half_tangent;
         let distance_m = diameter_m * T::of(0.5) * (T::ONE + tangent * tangent).sqrt() / tangent;
         // dd/da = -d / (2 tan(a / 2))
-        Ok(angle.sighting(distance_m, distance_m / (tangent + tangent)))
+        angle.sighting(distance_m, distance_m / (tangent + tangent))
     }
 
     /// The object's middle in the camera's frame, m.
@@ -169,13 +170,13 @@ impl<T: Real> Angle<T> {
         })
     }
 
-    fn sighting(&self, distance_m: T, distance_per_rad: T) -> Sighting<T> {
-        Sighting {
-            distance_m,
-            sigma_m: self.sigma_rad * distance_per_rad,
-            bearing: self.middle,
-            angle_rad: self.radians,
+    fn sighting(&self, distance_m: T, distance_per_rad: T) -> Result<Sighting<T>, SightingError> {
+        let (sigma_m, bearing, angle_rad) = (self.sigma_rad * distance_per_rad, self.middle, self.radians);
+        let is_unit = (bearing.norm() - T::ONE).abs() < T::of(1e-4);
+        if !(is_unit && distance_m > T::ZERO && all_finite(&[distance_m, sigma_m, angle_rad])) {
+            return Err(SightingError::NotFinite);
         }
+        Ok(Sighting { distance_m, sigma_m, bearing, angle_rad })
     }
 }
 

@@ -3,8 +3,10 @@
 use super::pencil::{LineSegment, PencilError, Scaled, vanishing_point};
 use super::vanishing::extent;
 use crate::geometry::Real;
-use crate::geometry::camera::Camera;
-use crate::geometry::linear::{Ldl, LeastSquares, NormalEquations, Svd3, cayley, levenberg_marquardt};
+use crate::geometry::camera::{Camera, Pose};
+use crate::geometry::linear::{
+    Ldl, LeastSquares, NormalEquations, Svd3, all_finite, cayley, levenberg_marquardt,
+};
 use nalgebra::{Matrix3, Point2, Vector3};
 
 /// How a camera stands in a building, from lines along its three orthogonal directions.
@@ -98,7 +100,7 @@ impl<T: Real> ManhattanFrame<T> {
         let vanishing = vanishing_points(bundles, plane)?;
         let start = orthogonal(vanishing, expected)?;
         let scale = (fx * fy).sqrt();
-        Ok(refined(bundles, plane, start, T::ONE, false, scale))
+        refined(bundles, plane, start, T::ONE, false, scale).sound()
     }
 
     /// The orientation and the focal length of a camera with square pixels of which only the principal point
@@ -133,7 +135,15 @@ impl<T: Real> ManhattanFrame<T> {
         let found = frame.focal_px.is_finite()
             && frame.focal_px > T::ZERO
             && frame.focal_sigma_per_px < frame.focal_px;
-        if found { Ok(frame) } else { Err(ManhattanFrameError::Focal) }
+        if found { frame.sound() } else { Err(ManhattanFrameError::Focal) }
+    }
+
+    /// This frame, if its numbers are finite and its rotation is one.
+    fn sound(self) -> Result<Self, ManhattanFrameError> {
+        let pose = Pose::of_parts(self.rotation, Vector3::zeros()).sound();
+        let [a, b, c] = self.sigma_rad_per_px.into();
+        let numbers = [self.rms_px, self.focal_px, self.focal_sigma_per_px, a, b, c];
+        if pose.is_some() && all_finite(&numbers) { Ok(self) } else { Err(ManhattanFrameError::NotFinite) }
     }
 }
 

@@ -146,7 +146,8 @@ impl<T: Real> SquareMark<T> {
     fn refined(&self, camera: &Camera<T>, seen: &[Point2<T>; 4], start: Pose<T>) -> Option<MarkPose<T>> {
         let problem = Corners { mark: self, k: camera.matrix(), seen };
         let (pose, equations) = levenberg_marquardt(&problem, start, MOST_STEPS)?;
-        Some(MarkPose { pose, rms_px: (equations.cost * T::of(0.25)).sqrt() })
+        let rms_px = (equations.cost * T::of(0.25)).sqrt();
+        Some(MarkPose { pose: pose.sound()?, rms_px }).filter(|_| rms_px.is_finite())
     }
 }
 

@@ -19,7 +19,7 @@ pub struct VanishingPoint<T: Real> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum VanishingPointError {
-    /// A number is infinite or not a number.
+    /// A number is infinite or not a number, or one of the vanishing point would be.
     NotFinite,
     /// Fewer than two segments.
     TooFew,
@@ -67,7 +67,11 @@ impl<T: Real> VanishingPoint<T> {
         let (v, squares) = vanishing_point(segments.iter().map(|segment| segment.scaled(&centre, scale)))?;
         let v = Vector3::new(v.x * scale + centre.x * v.z, v.y * scale + centre.y * v.z, v.z);
         let rms_px = (squares / T::count(segments.len())).sqrt() * scale;
-        Ok(Self { homogeneous: v / v.norm(), rms_px })
+        let homogeneous = v / v.norm();
+        if !((homogeneous.norm() - T::ONE).abs() < T::of(1e-4) && rms_px.is_finite()) {
+            return Err(VanishingPointError::NotFinite);
+        }
+        Ok(Self { homogeneous, rms_px })
     }
 
     /// The homogeneous point (x, y, w) of length one: the point is at (x / w, y / w) px; where w = 0, in the

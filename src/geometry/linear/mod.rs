@@ -46,4 +46,4 @@ pub(crate) use matrix::{columns3, matrix3, product, rows3, times_transposed3, tr
 pub(crate) use projective::Projective;
 pub(crate) use rotation::{cayley, skew};
 pub(crate) use svd3::Svd3;
-pub(crate) use vector::{dot, unit};
+pub(crate) use vector::{all_finite, dot, unit};

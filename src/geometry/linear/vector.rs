@@ -16,6 +16,12 @@ pub(crate) fn combine<T: Real>(a: &mut [T], s: T, b: &[T], t: T) {
     }
 }
 
+/// Whether none is infinite or not a number.
+#[inline]
+pub(crate) fn all_finite<T: Real>(a: &[T]) -> bool {
+    a.iter().all(|x| x.is_finite())
+}
+
 /// Brings `x` to length one.
 pub(crate) fn unit<T: Real>(x: &mut [T]) {
     // By the largest element first: its square may be more than a number holds.

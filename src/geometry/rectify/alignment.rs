@@ -5,7 +5,7 @@ use super::rectification::Rectification;
 use super::warp::Warp;
 use crate::geometry::Real;
 use crate::geometry::camera::{Camera, ImageSize};
-use crate::geometry::linear::Ldl;
+use crate::geometry::linear::{Ldl, all_finite};
 use crate::geometry::two_view::Correspondence;
 use nalgebra::{Matrix3, Vector3};
 
@@ -68,7 +68,7 @@ impl core::fmt::Display for RowMeterError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::TooFew { needed } => write!(f, "{needed} correspondences that agree are needed"),
-            Self::NotFinite => f.write_str("a correspondence is not finite"),
+            Self::NotFinite => f.write_str("a correspondence is not finite, or the result would not be"),
             Self::Empty => f.write_str("no frame was added"),
         }
     }
@@ -161,7 +161,11 @@ impl<T: Real> RowMeter<T> {
             unit[i] = T::ONE;
             factors.solve(&unit)[i].max(T::ZERO).sqrt()
         };
-        Ok(RowAlignment { rotation_rad, sigma_rad: [column(0), column(1), column(2)] })
+        let sigma_rad = [column(0), column(1), column(2)];
+        if !(all_finite(rotation_rad.as_slice()) && all_finite(&sigma_rad)) {
+            return Err(RowMeterError::NotFinite);
+        }
+        Ok(RowAlignment { rotation_rad, sigma_rad })
     }
 }
 

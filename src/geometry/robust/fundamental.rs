@@ -151,7 +151,8 @@ pub fn robust_fundamental<T: Real>(
             sum += squared;
         }
     }
-    if count <= MINIMUM {
+    let fundamental = fundamental.sound().ok_or(RobustError::NoAgreement)?;
+    if count <= MINIMUM || !sum.is_finite() {
         return Err(RobustError::NoAgreement);
     }
     Ok(RobustFundamental {

@@ -103,7 +103,7 @@ pub fn robust_resection<T: Real>(
     let (pose, _) = search.best.ok_or(RobustResectionError::NoAgreement)?;
     let (pose, information) = problem.refined(pose, LAST);
     let (count, squares) = problem.within(&pose, config.threshold_px);
-    if count <= MINIMUM {
+    if count <= MINIMUM || pose.sound().is_none() || !squares.is_finite() {
         return Err(RobustResectionError::NoAgreement);
     }
     for (inlier, landmark) in inliers.iter_mut().zip(landmarks) {

@@ -99,7 +99,8 @@ fn solve<T: Real>(seen: Weighted<'_, T>) -> Result<Fundamental<T>, EightPointErr
             return Err(EightPointError::Undetermined);
         }
     }
-    Ok(Fundamental::of_rows(both.in_pixels(nearest_singular(&f, &cofactors))))
+    let found = Fundamental::of_rows(both.in_pixels(nearest_singular(&f, &cofactors)));
+    found.sound().ok_or(EightPointError::NotFinite)
 }
 
 /// The sum of `w r r^T` over the rows r of all correspondences. r is p times p', so that of its 81 elements

@@ -69,7 +69,10 @@ impl<T: Real> Essential<T> {
             return Err(EssentialError::Rank);
         }
         let [u0, u1, _] = columns3(&u);
-        Ok(Self { matrix: product(&Matrix3::from_columns(&[u0, u1, Vector3::zeros()]), &v.transpose()) })
+        let matrix = product(&Matrix3::from_columns(&[u0, u1, Vector3::zeros()]), &v.transpose());
+        // |E|^2 = 2 of singular values (1, 1, 0).
+        let is_sound = (matrix.norm_squared() - T::of(2.0)).abs() < T::of(1e-3);
+        if is_sound { Ok(Self { matrix }) } else { Err(EssentialError::NotFinite) }
     }
 
     /// What OpenCV writes as E, with `x2^T E x1 = 0`: the transpose.

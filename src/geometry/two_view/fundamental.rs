@@ -57,7 +57,12 @@ impl<T: Real> Fundamental<T> {
         }
         let [_, _, v] = linear::columns3(&svd.v);
         let singular = balanced.matrix - balanced.matrix * v * v.transpose();
-        Ok(Self::of_singular(&balanced.restored(&singular)))
+        Self::of_singular(&balanced.restored(&singular)).sound().ok_or(FundamentalError::NotFinite)
+    }
+
+    /// This matrix, if it is of size one.
+    pub(crate) fn sound(self) -> Option<Self> {
+        ((self.matrix.norm() - T::ONE).abs() < T::of(1e-4)).then_some(self)
     }
 
     /// The matrix at size one, of what is known to be singular and finite.

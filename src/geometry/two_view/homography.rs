@@ -71,6 +71,9 @@ impl<T: Real> Homography<T> {
             return Err(HomographyError::Singular);
         }
         let inverse = Matrix3::from_rows(&rows.map(|row| row.transpose() / determinant));
+        if !inverse.norm_squared().is_finite() {
+            return Err(HomographyError::Singular);
+        }
         Ok(Self { matrix, inverse })
     }
 
@@ -139,12 +142,12 @@ impl<T: Real> Homography<T> {
 
     /// The point p of a p', px; `None` where the homography puts it at infinity.
     pub fn to_first(&self, second: &Point2<T>) -> Option<Point2<T>> {
-        Point2::from_homogeneous(self.matrix * second.to_homogeneous())
+        finite(Point2::from_homogeneous(self.matrix * second.to_homogeneous()))
     }
 
     /// The point p' of a p, px; `None` where the homography puts it at infinity.
     pub fn to_second(&self, first: &Point2<T>) -> Option<Point2<T>> {
-        Point2::from_homogeneous(self.inverse * first.to_homogeneous())
+        finite(Point2::from_homogeneous(self.inverse * first.to_homogeneous()))
     }
 
     /// The symmetric transfer error squared, px^2: `|p - H p'|^2 + |p' - H^-1 p|^2` (Hartley & Zisserman
@@ -185,6 +188,11 @@ pub(crate) fn least_squares<T: Real>(
     }
     let ldl = Ldl::<T, 9>::new(&mut sums.normal_matrix());
     (matrix3(&rows3(ldl.null_vector())), rank(ldl.pivots(), T::EPSILON * T::of(32.0)) >= 8)
+}
+
+/// A place that numbers reach.
+fn finite<T: Real>(place: Option<Point2<T>>) -> Option<Point2<T>> {
+    place.filter(|p| p.x.is_finite() && p.y.is_finite())
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ pub struct Line<T: Real> {
 
 impl<T: Real> Line<T> {
     /// The line `a u + b v + c = 0` of any scale; `None` when a and b are zero, which is the line at
-    /// infinity, or when a number is not finite.
+    /// infinity, or when a number is not finite or would not be.
     pub fn new(coefficients: &Vector3<T>) -> Option<Self> {
         let size = coefficients.x.abs().max(coefficients.y.abs());
         if !(size > T::ZERO) || !coefficients.iter().all(|x| x.is_finite()) {
@@ -19,7 +19,9 @@ impl<T: Real> Line<T> {
         }
         // By the larger one first: the square of a small number may be nothing.
         let scaled = coefficients / size;
-        Some(Self { coefficients: scaled / scaled.xy().norm() })
+        let coefficients = scaled / scaled.xy().norm();
+        // A line may be farther away than numbers reach.
+        coefficients.z.is_finite().then_some(Self { coefficients })
     }
 
     /// The coefficients (a, b, c): no unit, no unit, px.

@@ -26,12 +26,15 @@ pub enum PlaneMotionError {
     /// The camera has rotated but not moved, to 64 roundings: the plane is not in the homography.
     /// [`Homography::rotation`] has what there is.
     NoBaseline,
+    /// A number of a motion would not be finite.
+    NotFinite,
 }
 
 impl core::fmt::Display for PlaneMotionError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
             Self::NoBaseline => "the camera has rotated but not moved",
+            Self::NotFinite => "a number of the motion would not be finite",
         })
     }
 }
@@ -125,6 +128,13 @@ impl<T: Real> Homography<T> {
             PlaneMotion { rotation, translation: translation * sign, normal: n * sign }
         };
         let (one, other) = (motion(v0 * along + v2 * across), motion(v0 * along - v2 * across));
+        let is_sound = |m: &PlaneMotion<T>| {
+            let is_unit = (m.normal.norm() - T::ONE).abs() < T::of(1e-4);
+            is_unit && Pose::of_parts(m.rotation, m.translation).sound().is_some()
+        };
+        if !(is_sound(&one) && is_sound(&other)) {
+            return Err(PlaneMotionError::NotFinite);
+        }
         let mirrored =
             |m: PlaneMotion<T>| PlaneMotion { translation: -m.translation, normal: -m.normal, ..m };
         Ok([one, other, mirrored(one), mirrored(other)])

@@ -70,7 +70,8 @@ impl<T: Real> RelativePose<T> {
         if !(baseline_m > T::ZERO && baseline_m.is_finite()) {
             return Err(ScaleError::Length);
         }
-        Ok(Pose::of_parts(self.rotation, self.direction.into_inner() * baseline_m))
+        let pose = Pose::of_parts(self.rotation, self.direction.into_inner() * baseline_m);
+        pose.sound().ok_or(ScaleError::Length)
     }
 
     /// The pose in metres, of two points that were triangulated in baselines ([`Self::in_baselines`]) and are

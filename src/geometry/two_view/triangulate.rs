@@ -4,8 +4,8 @@ use super::correspondence::Correspondence;
 use super::essential::{Essential, EssentialError};
 use super::fundamental::Fundamental;
 use crate::geometry::Real;
-use crate::geometry::camera::{Camera, Pose};
-use crate::geometry::linear::Ldl;
+use crate::geometry::camera::{Camera, Pose, ProjectionError};
+use crate::geometry::linear::{Ldl, all_finite};
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, Point2, Point3, Vector2, Vector3};
 
 /// Two cameras whose pose is known: what triangulates.
@@ -39,7 +39,7 @@ pub struct Triangulated<T: Real> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum TriangulationError {
-    /// A coordinate is infinite or not a number.
+    /// A coordinate is infinite or not a number, or a number of the result would be.
     NotFinite,
     /// Undistortion did not converge: a pixel is outside of what its lens model describes.
     NotConverged,
@@ -208,11 +208,19 @@ impl<T: Real> TwoViews<T> {
         if !seen.is_finite() {
             return Err(TriangulationError::NotFinite);
         }
-        let ray =
-            |camera: &Camera<T>, pixel| camera.unproject(pixel).map_err(|_| TriangulationError::NotConverged);
+        let ray = |camera: &Camera<T>, pixel| {
+            camera.unproject(pixel).map_err(|error| match error {
+                ProjectionError::NotFinite => TriangulationError::NotFinite,
+                _ => TriangulationError::NotConverged,
+            })
+        };
         let (first, second) = (ray(&self.first, &seen.first)?, ray(&self.second, &seen.second)?);
         let rotated = self.pose.rotation() * second;
-        let angle_rad = first.cross(&rotated).norm().atan2(first.dot(&rotated));
+        let (sine, cosine) = (first.cross(&rotated).norm(), first.dot(&rotated));
+        if !(sine.is_finite() && cosine.is_finite()) {
+            return Err(TriangulationError::NotFinite);
+        }
+        let angle_rad = sine.atan2(cosine);
         if !(angle_rad >= self.min_angle_rad && angle_rad > T::ZERO) {
             return Err(TriangulationError::SmallAngle);
         }
@@ -249,6 +257,9 @@ impl<T: Real> TwoViews<T> {
         };
         let squared =
             off(&self.first, &point, &rays.pixels.first) + off(&self.second, &other, &rays.pixels.second);
+        if !(squared.is_finite() && all_finite(point.coords.as_slice())) {
+            return Err(TriangulationError::NotFinite);
+        }
         Ok(Triangulated { point, residual_px: squared.sqrt(), angle_rad: rays.angle_rad })
     }
 }

@@ -5,7 +5,7 @@
 //! * `resection`, `landmarks`: a camera before known points.
 //! * `rectify`, `uncalibrated`, `row_health`: rows aligned, by cameras or by matches, and rows that no longer
 //!   are.
-//! * `extremes`: numbers over all exponents.
+//! * `extremes`: numbers over all exponents. `records`: rigs in flash.
 
 mod cameras;
 mod chain;
@@ -17,6 +17,7 @@ mod matrices;
 mod planes;
 mod points;
 mod poses;
+mod records;
 mod rectify;
 mod resection;
 mod robust;

@@ -44,7 +44,7 @@ pub enum RecordError {
     },
     /// The checksum is not that of the bytes: a bit has changed, or the record was written in part.
     Checksum,
-    /// A lens is of a model that this build does not know.
+    /// A lens is of a model that this build does not know, or has more coefficients than its model.
     Lens {
         /// The model's number.
         found: u16,
@@ -65,6 +65,9 @@ impl core::fmt::Display for RecordError {
             }
             Self::Checksum => {
                 f.write_str("the record's checksum is wrong: it was changed or written in part")
+            }
+            Self::Lens { found: found @ (BROWN_CONRADY | FISHEYE) } => {
+                write!(f, "the record's lens has more coefficients than its model, {found}")
             }
             Self::Lens { found } => write!(f, "the record has a lens of model {found}; 0 and 1 are read"),
             Self::Camera(which, error) => write!(f, "camera {which}: {error}"),
@@ -133,6 +136,9 @@ impl<T: Real> StereoRig<T> {
     /// The rig of a record at the beginning of `bytes`; what follows it is not looked at. A record that is
     /// not whole, of another version or of impossible numbers is refused by name: there is no rig by
     /// default.
+    ///
+    /// R is held as it is recorded, off from a rotation by 1e-6 at the most, which is what `f32` rounds: in
+    /// `f64`, [`Self::to_record`] writes again the bytes that were read.
     pub fn from_record(bytes: &[u8]) -> Result<Self, RecordError> {
         let too_short = RecordError::TooShort { needed: Self::RECORD_BYTES };
         if bytes.first_chunk().is_some_and(|magic| *magic != MAGIC) {
@@ -165,7 +171,8 @@ impl<T: Real> StereoRig<T> {
         let &[r0, r1, r2, r3, r4, r5, r6, r7, r8, t0, t1, t2] = rest else { return Err(too_short) };
         let first = camera(0, u16::from_le_bytes([m0, m1]), first)?;
         let second = camera(1, u16::from_le_bytes([n0, n1]), second)?;
-        let pose = Pose::new(Matrix3::new(r0, r1, r2, r3, r4, r5, r6, r7, r8), Vector3::new(t0, t1, t2));
+        let rotation = Matrix3::new(r0, r1, r2, r3, r4, r5, r6, r7, r8);
+        let pose = Pose::of_parts(rotation, Vector3::new(t0, t1, t2)).checked(T::of(1e-6));
         let pose = pose.map_err(|error| RecordError::Rig(StereoRigError::Pose(error)))?;
         Self::new([first, second], pose, sizes).map_err(RecordError::Rig)
     }
@@ -187,7 +194,9 @@ fn camera<T: Real>(which: u8, model: u16, numbers: &[T; 13]) -> Result<Camera<T>
     let [fx, fy, cx, cy, skew, lens @ ..] = *numbers;
     let lens = match (model, lens) {
         (BROWN_CONRADY, lens) => Lens::from(Distortion::from_opencv_rational(lens)),
-        (FISHEYE, [k1, k2, k3, k4, ..]) => Fisheye::from_opencv([k1, k2, k3, k4]).into(),
+        (FISHEYE, [k1, k2, k3, k4, rest @ ..]) if rest.iter().all(|&k| k == T::ZERO) => {
+            Fisheye::from_opencv([k1, k2, k3, k4]).into()
+        }
         (found, _) => return Err(RecordError::Lens { found }),
     };
     let camera = Camera::new(fx, fy, cx, cy).and_then(|camera| camera.with_skew(skew)?.with_distortion(lens));

@@ -53,7 +53,7 @@ impl<'a> Picture<'a> {
     /// Returns `length` pixels of a row from a column on; `None` where the image has fewer.
     #[inline]
     pub fn run(&self, column: usize, row: usize, length: usize) -> Option<&'a [u8]> {
-        if column + length > self.width || row >= self.height {
+        if column.checked_add(length)? > self.width || row >= self.height {
             return None;
         }
         let from = row * self.width + column;

@@ -9,5 +9,6 @@ mod census;
 mod exposure;
 mod gradient;
 mod noise;
+mod picture;
 mod remap;
 mod remap_pair;

@@ -289,7 +289,7 @@ impl<const W: usize, const C: usize, S: AsRef<[FocusCell]> + AsMut<[FocusCell]>>
     pub fn peak(&self, column: usize, row: usize) -> Result<FocusPeak, NoFocus> {
         let columns = self.config.columns();
         let place = (column < columns && row < self.config.rows() && !self.is_running)
-            .then_some(row * columns + column);
+            .then(|| row * columns + column);
         let cell = place.and_then(|place| self.cells.as_ref().get(place));
         cell.ok_or(NoFocus::TooFewFrames { needed: FocusCell::FEWEST_FRAMES })?.peak(self.frames)
     }

@@ -40,8 +40,9 @@ impl FocusSearch {
     /// texture: noise in a few hundred pixels makes less of twelve frames.
     const LEAST_RISE: u64 = 141;
 
-    /// A search from `least` to `most`.
+    /// A search from `least` to `most`; contradictory ends are put in order.
     pub const fn new(least: u16, most: u16) -> Self {
+        let (least, most) = if least <= most { (least, most) } else { (most, least) };
         Self { least, most, samples: [(0, 0); Self::MOST_FRAMES as usize], count: 0 }
     }
 
@@ -50,8 +51,10 @@ impl FocusSearch {
         self.count
     }
 
-    /// The sharpness at a position; behind the last frame it is forgotten.
+    /// The sharpness at the position where the motor says that it is; behind the last frame it is forgotten.
+    /// A position beyond an end of the range counts as that end.
     pub fn measured(&mut self, position: u16, sharpness: u32) {
+        let position = position.clamp(self.least, self.most);
         if let Some(place) = self.samples.get_mut(usize::from(self.count)) {
             *place = (position, sharpness);
             self.count += 1;

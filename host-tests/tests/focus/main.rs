@@ -4,5 +4,6 @@ mod autofocus;
 mod dw9714;
 mod fusion;
 mod lens;
+mod search;
 mod stacks;
 mod twins;

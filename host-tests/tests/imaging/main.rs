@@ -12,3 +12,4 @@ mod noise;
 mod picture;
 mod remap;
 mod remap_pair;
+mod remap_turned;

@@ -16,6 +16,7 @@
 
 mod error;
 mod lines;
+mod near;
 mod pair;
 mod sample;
 mod segment;

@@ -7,7 +7,7 @@ use core::slice::Iter;
 /// Fractional bits of a position.
 pub(super) const BITS: u32 = 16;
 /// Half of the step of the interpolation weights, 1/256 px.
-const HALF: i32 = 1 << (BITS - 9);
+pub(super) const HALF: i32 = 1 << (BITS - 9);
 /// Largest step of pieces that are read in one window, less than 2 px: four pixels begin within 7 columns.
 pub(super) const NARROW: i32 = (2 << BITS) - 1;
 /// Fractional bits of the weights between rows of the lattice.

@@ -1,7 +1,7 @@
 //! Remap table: a warp sampled on a coarse lattice, interpolated in integers.
 
 use super::RemapTableError;
-use super::segment::{BITS, Cell, Lattice, Part, Run, Segments};
+use super::segment::{BITS, Cell, Lattice, Part, Segments};
 use crate::geometry::{Real, camera::ImageSize, rectify::Warp};
 use nalgebra::Point2;
 
@@ -9,8 +9,8 @@ use nalgebra::Point2;
 ///
 /// Positions are interpolated by a cubic between rows and a parabola between columns, the latter in straight
 /// pieces of four pixels where these suffice; all in integers, so that every core finds the same ones. The
-/// widest lattice is taken that stays within [`Self::TOLERANCE_PX`] of the warp, checked in every fourth row
-/// and every second column. A slot takes 8 bytes; [`Self::slots`] counts them. A table of one warp in one
+/// widest lattice is taken that stays within [`Self::TOLERANCE_PX`] of the warp, checked in every second
+/// column of every fourth row, and in the others more loosely. A slot takes 8 bytes; [`Self::slots`] counts them. A table of one warp in one
 /// type, `f32` or `f64`, is equal on every core: it takes products, quotients and roots alone.
 #[derive(Clone, Debug)]
 pub struct RemapTable<const SLOTS: usize> {
@@ -27,7 +27,7 @@ pub struct RemapTable<const SLOTS: usize> {
 
 /// Widest and finest lattice, as powers of two.
 const WIDEST: u32 = 6;
-const FINEST: u32 = 3;
+pub(super) const FINEST: u32 = 3;
 /// Size of an empty image.
 const NO_PIXELS: ImageSize = ImageSize { width: 0, height: 0 };
 /// Bit of a row that is wholly inside the raw image.
@@ -38,8 +38,10 @@ const NOWHERE: u32 = 0xffff;
 const FARTHEST: (f64, f64) = (-2048.0, 6143.0);
 
 impl<const SLOTS: usize> RemapTable<SLOTS> {
-    /// Largest error of a checked position, px; then all are within 0.05 px.
+    /// Largest error of a position in every fourth row and the last one, px.
     pub const TOLERANCE_PX: f64 = 0.03;
+    /// Largest error of any position, px.
+    pub(super) const LARGEST_ERROR_PX: f64 = 0.05;
 
     /// Creates the table of an image without pixels, for [`Self::set`]. All its bytes are zero, so that a
     /// static takes no flash.
@@ -123,42 +125,6 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
             }
         }
         Ok(())
-    }
-
-    /// Whether the positions inside the raw image are those of the warp, within the tolerance.
-    fn is_near<T: Real>(&self, warp: &Warp<T>) -> bool {
-        let cell = 1 << self.shift;
-        let scale = T::of(1.0 / 65536.0);
-        let one = |run: &Run, k: usize| {
-            let place = run.places(self.piece()).nth(k).unwrap_or(0);
-            // Half a 256th was added, for the pixels' weights.
-            (T::of(f64::from(place)) - T::of(128.0)) * scale
-        };
-        let last = self.size.height.saturating_sub(1);
-        for y in (0..last).step_by(4).chain([last]) {
-            for (segment, x) in self.segments(y, false).zip((0..).step_by(cell)) {
-                let length = cell.min(usize::from(self.size.width) - x);
-                // At the ends and in the middle of each four.
-                for k in (0..length).step_by(2) {
-                    let Ok(source) = warp.source(&Point2::new(T::count(x + k), T::count(y.into()))) else {
-                        continue;
-                    };
-                    let found = Point2::new(one(&segment.column, k), one(&segment.row, k));
-                    let is_asked = source.is_described && warp.is_in_raw(&source.pixel);
-                    // A place that is not described takes its cell with it: small ones only.
-                    if is_asked && segment.part == Part::None {
-                        if self.shift() > FINEST {
-                            return false;
-                        }
-                        continue;
-                    }
-                    if is_asked && (found - source.pixel).norm() > T::of(Self::TOLERANCE_PX) {
-                        return false;
-                    }
-                }
-            }
-        }
-        true
     }
 
     /// Returns the size of the rectified image.

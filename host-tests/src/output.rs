@@ -3,10 +3,13 @@
 //! Files are written into a hidden folder inside the target and renamed when the last one is complete and on
 //! the disk. Whatever fails before that leaves the target as it was: files of an earlier run stay, folders
 //! made for this run go.
+//!
+//! A result takes the place of a regular file or of none: [`check_place`].
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use tempfile::TempDir;
 
 /// Why results could not be written: one line that names the place and what would be right.
@@ -17,6 +20,18 @@ pub enum OutputError {
     #[error("{}: is not a folder; name a folder for the results", path.display())]
     NotAFolder {
         /// The target.
+        path: PathBuf,
+    },
+    /// What stands in the place of a result is a folder's link, a pipe, a device or a socket.
+    #[error("{}: is no regular file; name one, or a new one, for the result", path.display())]
+    NotAFile {
+        /// The place.
+        path: PathBuf,
+    },
+    /// The result would take the place of what is read.
+    #[error("{}: is an input of this run; name another place for the result", path.display())]
+    Input {
+        /// The place.
         path: PathBuf,
     },
     /// The target cannot be made or written to.
@@ -38,10 +53,44 @@ pub enum OutputError {
     },
 }
 
+/// The files that a run reads, wherever links lead: no result takes the place of one.
+static INPUTS: OnceLock<Vec<PathBuf>> = OnceLock::new();
+
+/// Says which files the program reads, once: [`check_place`] refuses their places for results.
+pub fn protect(inputs: impl IntoIterator<Item = PathBuf>) {
+    let both = |path: PathBuf| [in_folder(&path), path.canonicalize().ok()];
+    // A second list would be of the same command line.
+    let _ = INPUTS.set(inputs.into_iter().flat_map(both).flatten().collect());
+}
+
+/// A place by the one name of its folder.
+fn in_folder(path: &Path) -> Option<PathBuf> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    Some(folder.canonicalize().ok()?.join(path.file_name()?))
+}
+
+/// Whether a result can take a place: of a regular file that is no input of the run, or of none. A symbolic
+/// link to a file, or to nothing, is replaced; what it points to stays. Folders are refused where they are
+/// met.
+pub fn check_place(place: &Path) -> Result<(), OutputError> {
+    if INPUTS.get().is_some_and(|inputs| in_folder(place).is_some_and(|place| inputs.contains(&place))) {
+        return Err(OutputError::Input { path: place.into() });
+    }
+    let is_link = fs::symlink_metadata(place).is_ok_and(|found| found.is_symlink());
+    match fs::metadata(place) {
+        Ok(found) if !found.is_file() && (is_link || !found.is_dir()) => {
+            Err(OutputError::NotAFile { path: place.into() })
+        }
+        _ => Ok(()),
+    }
+}
+
 /// What the name of the folder of unfinished files begins with.
 const UNFINISHED: &str = ".stereo-unfinished-";
 /// The file in it that is locked while its run lasts.
 const LOCK: &str = "lock";
+/// How many files the disk is asked for at a time.
+const SYNCING: usize = 16;
 
 /// Removes what interrupted runs left in a folder. What cannot be removed stays: it is in nobody's way.
 fn remove_abandoned(target: &Path) {
@@ -89,25 +138,41 @@ impl Staging {
         Self::new(target).map(drop)
     }
 
-    /// Writes one file and waits until the disk has it. `content` is given a buffered writer.
+    /// Writes one file. `content` is given a buffered writer.
     pub fn write(
         &mut self,
         name: &str,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), OutputError> {
+        check_place(&self.target.join(name))?;
         let failed = |source| OutputError::File { path: self.target.join(name), source };
         let mut out = BufWriter::new(File::create(self.files.path().join(name)).map_err(failed)?);
         content(&mut out).map_err(failed)?;
-        // A disk that fills up may say so as late as here.
-        let file = out.into_inner().map_err(|e| failed(e.into_error()))?;
-        file.sync_all().map_err(failed)?;
+        out.into_inner().map_err(|e| failed(e.into_error()))?;
         self.names.push(name.to_owned());
         Ok(())
     }
 
-    /// Moves all files to their places. `stale` are names that an earlier run may have written and this one
+    /// Waits until the disk has all files, several at a time.
+    fn sync(&self) -> Result<(), OutputError> {
+        let one = |name: &String| {
+            // A disk that fills up may say so as late as here.
+            let synced = File::open(self.files.path().join(name)).and_then(|file| file.sync_all());
+            synced.map_err(|source| OutputError::File { path: self.target.join(name), source })
+        };
+        let share = self.names.len().div_ceil(SYNCING).max(1);
+        std::thread::scope(|scope| {
+            let shares =
+                self.names.chunks(share).map(|names| scope.spawn(move || names.iter().try_for_each(one)));
+            let running: Vec<_> = shares.collect();
+            running.into_iter().try_for_each(|share| share.join().unwrap_or(Ok(())))
+        })
+    }
+
+    /// Moves all files to their places, once they are on the disk. `stale` are names that an earlier run may have written and this one
     /// did not: they go, so that the folder holds one run's results.
     pub fn commit(self, stale: &[&str]) -> Result<(), OutputError> {
+        self.sync()?;
         let mut moves = Moves { done: Vec::new() };
         let old = self.files.path().join("old");
         fs::create_dir(&old).map_err(|source| OutputError::Folder { path: self.target.clone(), source })?;
@@ -115,6 +180,7 @@ impl Staging {
         for name in self.names.iter().map(String::as_str).chain(gone) {
             let place = self.target.join(name);
             let failed = |source| OutputError::File { path: place.clone(), source };
+            check_place(&place)?;
             match fs::symlink_metadata(&place) {
                 Ok(found) if found.is_dir() => {
                     return Err(failed(io::Error::from(io::ErrorKind::IsADirectory)));

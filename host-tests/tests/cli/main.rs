@@ -6,6 +6,8 @@ mod calibrate;
 mod demo;
 mod features;
 mod focus;
+#[cfg(unix)]
+mod guarded;
 mod odometry;
 mod output;
 mod pair;

@@ -19,6 +19,7 @@ mod focus;
 mod fundamental;
 mod image_files;
 mod input;
+mod inputs;
 mod look;
 mod r#match;
 mod odometry;
@@ -43,6 +44,7 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
 use stereopsis_host::command_line::{one_line, usage_line};
+use stereopsis_host::output::protect;
 
 /// What is told to one who names another command.
 const COMMANDS: &str = "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, \
@@ -126,7 +128,10 @@ const USAGE: u8 = 2;
 
 fn main() -> ExitCode {
     let (outcome, status) = match parse(std::env::args_os()) {
-        Ok(command) => (run(command), ExitCode::FAILURE),
+        Ok(command) => {
+            protect(inputs::of(std::env::args_os().skip(1)));
+            (run(command), ExitCode::FAILURE)
+        }
         Err(Stop::Help(text)) => (print(&text), ExitCode::FAILURE),
         Err(Stop::Usage(failure)) => (Err(failure), ExitCode::from(USAGE)),
     };

@@ -8,7 +8,7 @@ use std::ffi::OsStr;
 use std::io::{self, Write};
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
-use stereopsis_host::output::Staging;
+use stereopsis_host::output::{Staging, check_place};
 
 /// What writes a file.
 pub type Content<'a> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a>;
@@ -35,6 +35,7 @@ impl Place {
         // One folder has one spelling, so that two options that mean one file are seen to; a new one keeps
         // its own.
         let folder = folder.canonicalize().unwrap_or(folder);
+        check_place(&folder.join(&name))?;
         Ok(Self { folder, name })
     }
 

@@ -37,6 +37,7 @@ pub mod depth_samples;
 pub mod epipolar_picture;
 pub mod fault;
 pub mod focus;
+pub mod limits;
 pub mod map;
 pub mod masked;
 pub mod matches;

@@ -1,14 +1,12 @@
 //! Correspondences from a file: lines of `x1,y1,x2,y2`.
 
+use crate::limits::{self, MATCHES};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::two_view::Correspondence;
 
 /// The columns of a correspondence: p in the first image, p' in the second, px.
 pub const COLUMNS: [&str; 4] = ["x1", "y1", "x2", "y2"];
-
-/// The most lines that are read.
-pub const MOST_MATCHES: usize = 1 << 20;
 
 /// Why a file holds no correspondences: one line that names the file, the line, and what would be right.
 #[derive(Debug, thiserror::Error)]
@@ -52,7 +50,7 @@ pub enum MatchesFault {
         found: String,
     },
     /// More lines than are read.
-    #[error("there are more than {MOST_MATCHES} matches; give fewer")]
+    #[error("there are more than {MATCHES} matches; give fewer")]
     TooMany,
 }
 
@@ -65,7 +63,8 @@ pub fn read_matches(path: &Path) -> Result<Vec<Correspondence<f64>>, MatchesErro
 fn read(path: &Path) -> Result<Vec<Correspondence<f64>>, MatchesFault> {
     let mut options = ReaderBuilder::new();
     options.has_headers(false).flexible(true).trim(Trim::All).comment(Some(b'#'));
-    let mut reader = options.from_path(path).map_err(MatchesFault::Read)?;
+    let bounded = limits::open(path, limits::TABLE_BYTES).map_err(|e| MatchesFault::Read(e.into()))?;
+    let mut reader = options.from_reader(bounded);
     let mut lines = reader.records();
     let first = lines.next().ok_or(MatchesFault::Empty)?.map_err(MatchesFault::Read)?;
     let header = first.iter().all(|word| word.parse::<f64>().is_err());
@@ -75,7 +74,7 @@ fn read(path: &Path) -> Result<Vec<Correspondence<f64>>, MatchesFault> {
         seen.push(correspondence(&first, places)?);
     }
     for line in lines {
-        if seen.len() == MOST_MATCHES {
+        if seen.len() == MATCHES {
             return Err(MatchesFault::TooMany);
         }
         seen.push(correspondence(&line.map_err(MatchesFault::Read)?, places)?);

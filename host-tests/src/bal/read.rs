@@ -1,6 +1,7 @@
 //! The file's numbers, one after the other.
 
 use super::{BalError, BalFault, BalProblem, view};
+use crate::limits;
 use nalgebra::{Point2, Point3};
 use std::path::Path;
 use stereopsis::motion::bundle::Observation;
@@ -16,7 +17,7 @@ const PACKED: [(&[u8], &str); 4] =
 /// Reads the problem in the file at `path`.
 pub fn read_problem(path: &Path) -> Result<BalProblem, BalError> {
     let fault = |fault| BalError { path: path.into(), fault };
-    let bytes = std::fs::read(path).map_err(|e| fault(BalFault::Read(e)))?;
+    let bytes = limits::read(path, limits::PROBLEM_BYTES).map_err(|e| fault(BalFault::Read(e)))?;
     if let Some((_, tool)) = PACKED.iter().find(|(magic, _)| bytes.starts_with(magic)) {
         return Err(fault(BalFault::Compressed(tool)));
     }

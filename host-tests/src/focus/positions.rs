@@ -1,5 +1,6 @@
 //! Where the lens stood: a line for each frame of a stack.
 
+use crate::limits;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use std::path::{Path, PathBuf};
 use stereopsis::focus::{LensError, ThinLens};
@@ -84,7 +85,8 @@ pub fn read_positions(path: &Path, lens: ThinLens<f64>, frames: usize) -> Result
 fn read(path: &Path, lens: ThinLens<f64>, frames: usize) -> Result<Vec<f32>, PositionsFault> {
     let mut options = ReaderBuilder::new();
     options.has_headers(false).flexible(true).trim(Trim::All).comment(Some(b'#'));
-    let mut reader = options.from_path(path).map_err(PositionsFault::Read)?;
+    let bounded = limits::open(path, limits::TABLE_BYTES).map_err(|e| PositionsFault::Read(e.into()))?;
+    let mut reader = options.from_reader(bounded);
     let records: Vec<_> = reader.records().collect::<Result<_, _>>().map_err(PositionsFault::Read)?;
     let header = records.first().filter(|first| first.iter().all(|word| word.parse::<f64>().is_err()));
     let place = |header: &StringRecord| {

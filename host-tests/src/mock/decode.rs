@@ -11,7 +11,7 @@ use std::path::Path;
 use stereopsis::camera::{LineFormat, PixelFormat};
 
 /// The longest file that is read: an uncompressed image of the largest size, RGBA with 16 bits, as ASCII PPM.
-const MOST_FILE_BYTES: u64 = MockCamera::MOST_PIXELS as u64 * MockCamera::MOST_PIXELS as u64 * 24;
+const MOST_FILE_BYTES: u64 = crate::limits::IMAGE_BYTES;
 /// What a decoder may allocate: the largest image, RGBA with 16 bits, twice.
 const MOST_DECODER_BYTES: u64 = MockCamera::MOST_PIXELS as u64 * MockCamera::MOST_PIXELS as u64 * 16;
 

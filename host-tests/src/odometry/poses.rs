@@ -1,6 +1,7 @@
 //! Trajectories as KITTI's odometry benchmark writes them: a line for each frame, the first three rows of the
 //! matrix that carries a point of that frame's camera into the first one's, row by row.
 
+use crate::limits;
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -20,7 +21,8 @@ pub enum PosesError {
         source: io::Error,
     },
     /// A line is no pose.
-    #[error("{}: line {line} is no pose; 12 numbers are needed, the rows of [R | t]", path.display())]
+    #[error("{}: line {line} is no pose; 12 numbers are needed, the rows of [R | t] with a \
+        rotation R", path.display())]
     Line {
         /// The file.
         path: PathBuf,
@@ -75,10 +77,15 @@ pub fn write_states(out: &mut dyn Write, steps: &[Step<f64>]) -> io::Result<()> 
     Ok(())
 }
 
+/// How far off a rotation's columns may be from length one and from right angles: of two decimals.
+const MOST_OFF: f64 = 0.02;
+
 /// Reads a trajectory; empty lines are passed over, and rotations may have few decimals.
 pub fn read(path: &Path) -> Result<Vec<Pose<f64>>, PosesError> {
+    let bytes = limits::read(path, limits::TABLE_BYTES);
     let text =
-        std::fs::read_to_string(path).map_err(|source| PosesError::Read { path: path.into(), source })?;
+        bytes.and_then(|bytes| String::from_utf8(bytes).map_err(|_| io::ErrorKind::InvalidData.into()));
+    let text = text.map_err(|source| PosesError::Read { path: path.into(), source })?;
     let lines = text.lines().zip(1..).filter(|(content, _)| !content.trim().is_empty());
     let pose = |(content, line): (&str, usize)| {
         let numbers: Vec<f64> =
@@ -86,6 +93,9 @@ pub fn read(path: &Path) -> Result<Vec<Pose<f64>>, PosesError> {
         let found = <[f64; 12]>::try_from(numbers).ok().filter(|n| n.iter().all(|x| x.is_finite()));
         let pose = found.and_then(|n| {
             let r = Matrix3::new(n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10]);
+            if !((r.transpose() * r - Matrix3::identity()).amax() <= MOST_OFF && r.determinant() > 0.0) {
+                return None;
+            }
             // Files of other programs have six digits or fewer.
             let nearest = Rotation3::from_matrix_eps(&r, 1e-12, 100, Rotation3::identity());
             Pose::new(*nearest.matrix(), Vector3::new(n[3], n[7], n[11])).ok()

@@ -1,6 +1,8 @@
 //! The program `stereo` as its users run it: what it writes, and what it says when it cannot.
 
 mod as_match;
+#[cfg(unix)]
+mod bounds;
 mod bundle;
 mod calibrate;
 mod demo;

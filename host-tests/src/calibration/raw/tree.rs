@@ -1,6 +1,7 @@
 //! YAML, JSON and XML as one kind of tree.
 
 use super::Fault;
+use crate::limits::DEPTH;
 use serde_json::{Map, Value};
 
 /// A document.
@@ -10,6 +11,10 @@ pub(super) type Tree = Value;
 pub(super) fn read(text: &str) -> Result<Vec<Tree>, String> {
     let text = text.trim_start_matches('\u{feff}').trim_start();
     if text.starts_with('<') {
+        // The parser calls itself for each element in another.
+        if depth(text) > DEPTH {
+            return Err(format!("elements are nested more than {DEPTH} deep"));
+        }
         let document = roxmltree::Document::parse(text).map_err(|e| e.to_string())?;
         return Ok(vec![element(document.root_element())]);
     }
@@ -24,6 +29,42 @@ pub(super) fn read(text: &str) -> Result<Vec<Tree>, String> {
         let text = e.to_string();
         text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned()
     })
+}
+
+/// How deep elements of XML are nested; at least that of what is none.
+fn depth(text: &str) -> usize {
+    let (mut depth, mut most) = (0_usize, 0);
+    let mut rest = text;
+    while let Some((_, tag)) = rest.split_once('<') {
+        let verbatim = [("!--", "-->"), ("![CDATA[", "]]>"), ("?", "?>")];
+        if let Some((_, end)) = verbatim.iter().find(|(begin, _)| tag.starts_with(begin)) {
+            rest = tag.split_once(end).map_or("", |(_, rest)| rest);
+            continue;
+        }
+        // A value may hold what ends a tag.
+        let mut quote = None;
+        let end = tag.find(|c| match quote {
+            Some(open) => {
+                if c == open {
+                    quote = None;
+                }
+                false
+            }
+            None => {
+                quote = Some(c).filter(|c| matches!(c, '"' | '\''));
+                c == '>'
+            }
+        });
+        let (tag, behind) = tag.split_at(end.unwrap_or(tag.len()));
+        rest = behind;
+        if tag.starts_with('/') {
+            depth = depth.saturating_sub(1);
+        } else if !tag.starts_with('!') && !tag.ends_with('/') {
+            depth += 1;
+            most = most.max(depth);
+        }
+    }
+    most
 }
 
 /// An element of OpenCV's XML: its elements by name, or its text as numbers.

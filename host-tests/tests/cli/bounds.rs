@@ -1,0 +1,103 @@
+//! Inputs without an end, too large or nested too deep are named, within a moment.
+
+use crate::guarded::{path, pipe, run};
+use crate::support::{Bench, text};
+use std::io::Write;
+use std::time::{Duration, Instant};
+
+/// Every command that reads a text, from a pipe that is fed for ever: named within a moment.
+#[test]
+fn a_pipe_without_an_end_is_named() {
+    let bench = Bench::new();
+    let out = path(&bench, "result");
+    for (number, (command, option, fed)) in [
+        ("bundle", "--problem", &b"1 2 3 4 5 6\n"[..]),
+        ("bundle", "--problem", b"\0\0\0\0\0\0\0\0"),
+        ("fundamental", "--matches", b"\0\0\0\0\0\0\0\0"),
+        ("fundamental", "--matches", b"1,2,3,4\n"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let fifo = pipe(&bench, &format!("endless{number}"));
+        let block = fed.repeat((1 << 16) / fed.len());
+        let (at, fed_to) = (Instant::now(), fifo.clone());
+        let writer = std::thread::spawn(move || {
+            let mut to = std::fs::File::options().write(true).open(fed_to).expect("a reader comes");
+            // Until the reader has gone.
+            while to.write_all(&block).is_ok() {}
+        });
+        let run = run(&[command, option, &fifo, "--out", &out]);
+        writer.join().expect("the writer ends");
+        let said = text(&run.stderr);
+        assert_eq!(run.status.code(), Some(1), "{command}");
+        assert!(said.contains("64 MiB") || said.contains("more than 100000 matches"), "{command}: {said}");
+        assert!(said.contains(&fifo) && said.lines().count() == 1, "{said}");
+        assert!(at.elapsed() < Duration::from_secs(5), "{command}: {:?}", at.elapsed());
+        assert!(!bench.path("result").exists());
+    }
+}
+
+#[test]
+fn too_many_matches_are_named() {
+    let bench = Bench::new();
+    let lines: String =
+        (0..100_001).map(|i| format!("{},{},{},{}\n", i % 640, i % 479, i % 637, i % 477)).collect();
+    let matches = bench.put("many.csv", lines.as_bytes()).display().to_string();
+    let run = run(&["fundamental", "--matches", &matches, "--out", &path(&bench, "f.json")]);
+    assert!(text(&run.stderr).contains("more than 100000 matches"), "{}", text(&run.stderr));
+}
+
+/// Elements in elements would take the parser's stack.
+#[test]
+fn deep_xml_is_named() {
+    let bench = Bench::new();
+    for (name, open, close, depth) in
+        [("a", "<a>", "</a>", 10_000), ("b", "<a b='>'>", "</a>", 1_000_000 / 13)]
+    {
+        let text_of = format!("<?xml version='1.0'?>\n{}{}", open.repeat(depth), close.repeat(depth));
+        let calib = bench.put(&format!("{name}.xml"), text_of.as_bytes()).display().to_string();
+        let run = run(&["calib", "check", "--calib", &calib]);
+        let said = text(&run.stderr);
+        assert_eq!(run.status.code(), Some(1), "{said}");
+        assert!(said.contains("elements are nested more than 64 deep"), "{said}");
+    }
+}
+
+/// What is no rotation is no pose, however large.
+#[test]
+fn a_truth_without_rotations_is_named() {
+    let bench = Bench::new();
+    let drive = path(&bench, "drive");
+    let walked = run(&["walk", "--frames", "3", "--width", "160", "--out", &drive]);
+    assert!(walked.status.success(), "{}", text(&walked.stderr));
+    let calib = path(&bench, "drive/calib.txt");
+    for number in ["0.1", "2", "1e10", "1e30", "1e300", "-1"] {
+        let lines = format!("{number} 0 0 0 0 1 0 0 0 0 1 0\n").repeat(3);
+        let truth = bench.put("truth.txt", lines.as_bytes()).display().to_string();
+        let at = Instant::now();
+        let out = path(&bench, "poses.txt");
+        let args = ["odometry", "--sequence", &drive, "--calib", &calib, "--truth", &truth, "--out", &out];
+        let said = text(&run(&args).stderr);
+        assert!(said.contains("truth.txt: line 1 is no pose"), "{number}: {said}");
+        assert!(at.elapsed() < Duration::from_secs(20), "{number}");
+    }
+}
+
+/// A recording of frames without lines: its files are synchronised together, not one by one.
+#[test]
+fn many_frames_without_lines_end() {
+    let bench = Bench::new();
+    let mut recording =
+        b"stereopsis recording 1\n{\"width\":64,\"height\":32,\"max_row_skew_us\":0}\n".to_vec();
+    for sequence in 0..3000_u32 {
+        recording.push(b'F');
+        recording.extend(sequence.to_le_bytes());
+        recording.extend((u64::from(sequence) * 33_333).to_le_bytes());
+        recording.extend(1000_u32.to_le_bytes());
+    }
+    let from = bench.put("headers.lines", &recording).display().to_string();
+    let at = Instant::now();
+    let run = run(&["replay", "--from", &from, "--disparities", "16", "--out", &path(&bench, "out")]);
+    assert!(at.elapsed() < Duration::from_secs(20), "{:?}: {}", at.elapsed(), text(&run.stderr));
+}

@@ -207,3 +207,24 @@ fn a_reset_pin_that_fails_is_reported() {
     bus.done();
     pin.done();
 }
+
+/// In a frame of two rows, one of them blank, no exposure keeps the frame rate: the limits are one row both.
+#[test]
+fn a_mt9v034s_exposure_limits_are_in_order() {
+    let mut bus = Mock::new(&[
+        w(0x0d, 0x0305),
+        w(0x01, 1),
+        w(0x02, 4),
+        w(0x04, 640),
+        w(0x03, 1),
+        w(0x05, 71),
+        w(0x06, 2),
+    ]);
+    let mut sensor = Mt9v034::new(bus.clone(), AT, 26_660_000);
+    let window = Mt9v034Window { left: 0, top: 0, width: 640, height: 1, binning: 2 };
+    sensor.set_window(window).expect("the bus takes it");
+    sensor.set_frame_time(54).expect("the bus takes it");
+    // 711 clocks and 4.
+    assert_eq!(sensor.exposure_limits_us(), (27, 27));
+    bus.done();
+}

@@ -16,7 +16,7 @@ pub struct ExposureCommand {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ExposureLimits {
-    /// Shortest exposure, microseconds; at least 1.
+    /// Shortest exposure, microseconds; at least 1, if the longest is.
     pub least_us: u32,
     /// Longest exposure, microseconds.
     pub most_us: u32,
@@ -55,9 +55,10 @@ impl AutoExposure {
     /// Largest share of saturated pixels, per mille.
     pub const MOST_SATURATED: u16 = 100;
 
-    /// Starts with the middle of the exposures and no gain. Contradictory limits are put in order.
+    /// Starts with the middle of the exposures and no gain. Contradictory limits are put in order. No
+    /// command leaves them: where no exposure is allowed, each is 0.
     pub const fn new(limits: ExposureLimits) -> Self {
-        let least_us = if limits.least_us == 0 { 1 } else { limits.least_us };
+        let least_us = if limits.least_us == 0 && limits.most_us > 0 { 1 } else { limits.least_us };
         let most_us = if limits.most_us < least_us { least_us } else { limits.most_us };
         let most_gain_16ths = if limits.most_gain_16ths < 16 { 16 } else { limits.most_gain_16ths };
         let current = ExposureCommand { exposure_us: least_us + (most_us - least_us) / 2, gain_16ths: 16 };

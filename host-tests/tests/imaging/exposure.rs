@@ -85,7 +85,9 @@ fn where_the_limits_are_reached_nothing_swings() {
 #[test]
 fn limits_that_contradict_themselves_are_put_in_order() {
     let auto = AutoExposure::new(ExposureLimits { least_us: 0, most_us: 0, most_gain_16ths: 0 });
-    assert_eq!(auto.current(), ExposureCommand { exposure_us: 1, gain_16ths: 16 });
+    assert_eq!(auto.current(), ExposureCommand { exposure_us: 0, gain_16ths: 16 });
+    let auto = AutoExposure::new(ExposureLimits { least_us: 9, most_us: 5, most_gain_16ths: 0 });
+    assert_eq!(auto.current(), ExposureCommand { exposure_us: 9, gain_16ths: 16 });
 }
 
 fn watched(left: &GrayImage, right: &GrayImage, most: u16) -> PairMonitor {
@@ -140,4 +142,30 @@ fn the_ratio_of_the_gains_is_measured() {
     }
     let dark = GrayImage::new(160, 96);
     assert_eq!(watched(&left, &dark, 40).gain_ratio_256ths(), 256);
+}
+
+/// No command leaves the limits, also where they contradict each other or allow no exposure.
+#[test]
+fn commands_stay_within_the_limits() {
+    let bright = [&histogram(&GrayImage::from_pixel(32, 32, image::Luma([250])), 255.0, 1.0, WITH), &dark()];
+    for (least_us, most_us, expected) in
+        [(0, 0, (0, 0)), (0, 1, (1, 1)), (0, 9, (1, 9)), (5, 5, (5, 5)), (7, 0, (7, 7)), (u32::MAX, 0, LAST)]
+    {
+        let mut exposure = AutoExposure::new(ExposureLimits { least_us, most_us, most_gain_16ths: 16 });
+        let range = expected.0..=expected.1;
+        assert!(range.contains(&exposure.current().exposure_us), "{least_us} to {most_us}");
+        for frame in 0..40 {
+            let pair = if frame < 20 { [bright[0]; 2] } else { [bright[1]; 2] };
+            if let Some(command) = exposure.frame(pair) {
+                assert!(range.contains(&command.exposure_us), "{least_us} to {most_us}: {command:?}");
+            }
+        }
+    }
+}
+
+const WITH: ExposureCommand = ExposureCommand { exposure_us: 1000, gain_16ths: 16 };
+const LAST: (u32, u32) = (u32::MAX, u32::MAX);
+
+fn dark() -> Histogram {
+    histogram(&GrayImage::from_pixel(32, 32, image::Luma([9])), 255.0, 1.0, WITH)
 }

@@ -169,8 +169,8 @@ impl Staging {
         })
     }
 
-    /// Moves all files to their places, once they are on the disk. `stale` are names that an earlier run may have written and this one
-    /// did not: they go, so that the folder holds one run's results.
+    /// Moves all files to their places, once they are on the disk. `stale` are names that an earlier run may
+    /// have written and this one did not: they go, so that the folder holds one run's results.
     pub fn commit(self, stale: &[&str]) -> Result<(), OutputError> {
         self.sync()?;
         let mut moves = Moves { done: Vec::new() };

@@ -101,8 +101,8 @@ impl RectifiedRig {
         self.cx_right - self.cx
     }
 
-    /// Depth in metres of a disparity in px: `f b / (d + doffs)`, or `None` at and behind infinity, which begins where
-    /// numbers end.
+    /// Depth in metres of a disparity in px: `f b / (d + doffs)`, or `None` at and behind infinity, which
+    /// begins where numbers end.
     pub fn depth_m(&self, disparity_px: f32) -> Option<f32> {
         let shift = disparity_px + self.disparity_offset_px();
         let depth_m = self.focal_px * self.baseline_m / shift;

@@ -115,16 +115,13 @@ impl<T: Real> ManhattanFrame<T> {
         expected: &Matrix3<T>,
     ) -> Result<Self, ManhattanFrameError> {
         finite(bundles, expected)?;
-        if !principal_point.iter().all(|x| x.is_finite()) {
+        if !all_finite(principal_point.coords.as_slice()) {
             return Err(ManhattanFrameError::NotFinite);
         }
         let (_, scale) = extent(bundles.into_iter().flatten());
         if !(scale > T::ZERO) {
-            return Err(if bundles.iter().any(|b| b.len() > 1) {
-                ManhattanFrameError::Line
-            } else {
-                ManhattanFrameError::TooFew
-            });
+            let is_line = bundles.iter().any(|b| b.len() > 1);
+            return Err(if is_line { ManhattanFrameError::Line } else { ManhattanFrameError::TooFew });
         }
         let plane = move |segment: &LineSegment<T>| segment.scaled(principal_point, scale);
         let vanishing = vanishing_points(bundles, plane)?;
@@ -132,18 +129,16 @@ impl<T: Real> ManhattanFrame<T> {
         let directions = vanishing.map(|v| v.map(|v| Vector3::new(v.x, v.y, v.z * focal)));
         let start = orthogonal(directions, expected)?;
         let frame = refined(bundles, plane, start, focal, true, scale);
-        let found = frame.focal_px.is_finite()
-            && frame.focal_px > T::ZERO
-            && frame.focal_sigma_per_px < frame.focal_px;
-        if found { frame.sound() } else { Err(ManhattanFrameError::Focal) }
+        let found = frame.focal_px > T::ZERO && frame.focal_sigma_per_px < frame.focal_px;
+        if found && frame.focal_px.is_finite() { frame.sound() } else { Err(ManhattanFrameError::Focal) }
     }
 
     /// This frame, if its numbers are finite and its rotation is one.
     fn sound(self) -> Result<Self, ManhattanFrameError> {
+        let is_finite = all_finite(&[self.rms_px, self.focal_px, self.focal_sigma_per_px])
+            && all_finite(self.sigma_rad_per_px.as_slice());
         let pose = Pose::of_parts(self.rotation, Vector3::zeros()).sound();
-        let [a, b, c] = self.sigma_rad_per_px.into();
-        let numbers = [self.rms_px, self.focal_px, self.focal_sigma_per_px, a, b, c];
-        if pose.is_some() && all_finite(&numbers) { Ok(self) } else { Err(ManhattanFrameError::NotFinite) }
+        pose.filter(|_| is_finite).map(|_| self).ok_or(ManhattanFrameError::NotFinite)
     }
 }
 

@@ -10,8 +10,9 @@ use nalgebra::Point2;
 /// Positions are interpolated by a cubic between rows and a parabola between columns, the latter in straight
 /// pieces of four pixels where these suffice; all in integers, so that every core finds the same ones. The
 /// widest lattice is taken that stays within [`Self::TOLERANCE_PX`] of the warp, checked in every second
-/// column of every fourth row, and in the others more loosely. A slot takes 8 bytes; [`Self::slots`] counts them. A table of one warp in one
-/// type, `f32` or `f64`, is equal on every core: it takes products, quotients and roots alone.
+/// column of every fourth row, and in the others more loosely. A slot takes 8 bytes; [`Self::slots`] counts
+/// them. A table of one warp in one type, `f32` or `f64`, is equal on every core: it takes products,
+/// quotients and roots alone.
 #[derive(Clone, Debug)]
 pub struct RemapTable<const SLOTS: usize> {
     /// The lattice, row by row: column and row, where the column's lowest bit means that the lens model does

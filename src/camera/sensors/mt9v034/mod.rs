@@ -197,8 +197,8 @@ macro_rules! driver {
             self.write(TEST_PATTERN, bits)$($wait)*
         }
 
-        /// Returns the shortest and the longest exposure that keep the frame rate, microseconds. In a frame of
-        /// two rows no exposure does: then both are the shortest that there is, one row.
+        /// Returns the shortest and the longest exposure that keep the frame rate, microseconds. In a frame
+        /// of two rows none does: then both are the shortest that there is, one row.
         pub fn exposure_limits_us(&self) -> (u32, u32) {
             // Two rows fewer than a frame has, blanking included.
             let most = (self.rows_read() + u32::from(self.vertical_blanking)).saturating_sub(2).max(1);

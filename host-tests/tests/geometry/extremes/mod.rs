@@ -26,7 +26,7 @@ impl Numbers {
     fn new<T: Real>(seed: u64) -> Self {
         let mut random = Random::new(seed);
         let most = if T::EPSILON.to_f64() > 1e-10 { 128 } else { 1024 };
-        let reach = if seed % 2 == 0 { most } else { 1 + random.below(most as usize) as i32 };
+        let reach = if seed.is_multiple_of(2) { most } else { 1 + random.below(most as usize) as i32 };
         Self { random, reach, is_wild: seed % 16 == 15 }
     }
 
@@ -219,8 +219,9 @@ fn rectified_rigs_have_depths_that_are_numbers() {
 fn p3p_is_sound<T: Real>(n: &mut Numbers, seed: u64) -> bool {
     let points: [Point3<T>; 3] = core::array::from_fn(|_| n.point());
     let by = n.next::<T>();
-    let points = points.map(|p| if seed % 3 == 0 { p * by } else { p });
-    let rays = if seed % 2 == 0 { points.map(|p| p.coords) } else { core::array::from_fn(|_| n.vector()) };
+    let points = points.map(|p| if seed.is_multiple_of(3) { p * by } else { p });
+    let rays =
+        if seed.is_multiple_of(2) { points.map(|p| p.coords) } else { core::array::from_fn(|_| n.vector()) };
     let Ok(found) = p3p(&rays, &points) else { return false };
     assert!(!found.as_slice().is_empty());
     assert!(found.as_slice().iter().all(is_pose), "{seed}: {rays:?} {points:?} {found:?}");

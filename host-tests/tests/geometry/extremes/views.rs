@@ -11,7 +11,7 @@ use stereopsis::geometry::two_view::{
 
 fn triangulation_is_sound<T: Real>(n: &mut Numbers, seed: u64) -> bool {
     let (first, second) = (n.camera::<T>(), n.camera::<T>());
-    let pose = if seed % 3 == 0 {
+    let pose = if seed.is_multiple_of(3) {
         Pose::new(Matrix3::identity(), Vector3::new(T::of(0.2), T::ZERO, T::ZERO)).expect("a pose")
     } else {
         n.pose()
@@ -100,7 +100,7 @@ fn known_shape_is_sound<T: Real>(n: &mut Numbers, seed: u64) -> bool {
             "{seed}: {seen:?}"
         );
     }
-    let corners = if seed % 2 == 0 {
+    let corners = if seed.is_multiple_of(2) {
         core::array::from_fn(|_| n.pixel())
     } else {
         // A square, of any size at any place.

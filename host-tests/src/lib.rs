@@ -9,6 +9,7 @@
 //! * [`fault`]: faults before any source, seeded and recorded.
 //! * [`scene`]: a ray-traced scene as a camera, with its true depth, disparity and occlusion.
 //! * [`calibration`]: rigs from and to the files of other programs.
+//! * [`plan`]: what a rig of two cameras can tell, and what it takes, before it is built.
 //! * [`calibrate`]: a rig from pictures of a chessboard.
 //! * [`mod@matches`]: correspondences from files.
 //! * [`masked`]: masks beside any source.
@@ -47,6 +48,7 @@ pub mod odometry;
 pub mod output;
 pub mod pair;
 pub mod pfm;
+pub mod plan;
 pub mod ply;
 pub mod real;
 pub mod recording;

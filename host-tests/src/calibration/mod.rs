@@ -8,6 +8,7 @@
 //! * [`RawCalibration`]: two cameras as they are mounted, also from OpenCV's, ROS's and Kalibr's files.
 //! * [`describe`], [`describe_rectified`], [`warnings`]: a calibration in words. [`write_opencv`],
 //!   [`write_rust`], [`write_c`]: as a file.
+//! * [`Reach`]: the depths that a rig tells with a search.
 //! * `source`: the files' bytes.
 //! * `middlebury`: `cam0=[f 0 cx; 0 f cy; 0 0 1]`, `cam1`, `doffs`, `baseline`, and optional sizes.
 //! * `kitti`: projection matrices of 12 numbers, labelled `P0:` to `P3:` or `P_rect_00:` to `P_rect_03:`, or
@@ -18,6 +19,7 @@ mod error;
 mod kitti;
 mod middlebury;
 mod raw;
+mod reach;
 mod source;
 mod words;
 mod write;
@@ -26,6 +28,7 @@ pub use cameras::Cameras;
 pub use error::{CalibrationError, Fault};
 pub use middlebury::write_middlebury;
 pub use raw::RawCalibration;
+pub use reach::Reach;
 pub use words::{describe, describe_rectified, warnings};
 pub use write::{write_c, write_opencv, write_rust};
 

@@ -1,6 +1,6 @@
 //! A rig in words.
 
-use super::{Calibration, RawCalibration};
+use super::{Calibration, RawCalibration, Reach};
 use crate::rectify::RemapCapacity;
 use nalgebra::{Point2, Vector2};
 use std::fmt::Write;
@@ -10,9 +10,6 @@ use stereopsis::geometry::{
 };
 use stereopsis::matching::Config;
 
-/// The standard deviation of a disparity that depths are told with, px: that of the methods, away from depth
-/// edges.
-const SIGMA_PX: f64 = 0.15;
 /// The distances at which errors are told, m.
 const DISTANCES_M: [f64; 6] = [0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
 
@@ -113,28 +110,8 @@ pub fn describe_rectified(calibration: &Calibration, disparities: u16) -> String
 
 /// The depths that a search of so many disparities can tell, where `z = fb_px_m / (d + offset_px)`.
 fn depths(fb_px_m: f64, offset_px: f64, disparities: u16, text: &mut String) {
-    let most = f64::from(disparities) - 1.0;
-    let parallax = most + offset_px;
-    if parallax <= 0.0 {
-        let _ =
-            writeln!(text, "depths       none: {most} px is at infinity or behind; search more disparities");
-        return;
-    }
-    let _ = writeln!(
-        text,
-        "depths       from {:.3} m ({most} px, of a search of {disparities}) to about {:.1} m, where an \
-         error of {SIGMA_PX} px is a tenth",
-        fb_px_m / parallax,
-        0.1 * fb_px_m / SIGMA_PX
-    );
-    for z in DISTANCES_M {
-        let disparity = fb_px_m / z - offset_px;
-        if (0.0..=most).contains(&disparity) && fb_px_m / z >= 1.0 {
-            let sigma_mm = 1000.0 * z * z / fb_px_m * SIGMA_PX;
-            let _ =
-                writeln!(text, "  at {z:5.2} m  {disparity:6.1} px, +- {sigma_mm:.1} mm for {SIGMA_PX} px");
-        }
-    }
+    let reach = Reach { fb_px_m, offset_px, min_disparity: 0, disparities, sigma_px: Reach::SIGMA_PX };
+    reach.describe(&DISTANCES_M, text);
 }
 
 /// What looks wrong with a baseline, m.

@@ -3,7 +3,8 @@
 use super::Host;
 use std::fmt;
 use std::str::FromStr;
-use stereopsis::matching::{Config, Filter, Method, state_bytes};
+use stereopsis::matching::{Config, Filter, Matcher, Method, state_bytes};
+use stereopsis::pipeline::Pipeline;
 
 /// A matching method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -63,6 +64,11 @@ impl MethodName {
         with_method!(self, S => state_bytes::<S>(width as usize, disparities as usize))
     }
 
+    /// Bytes of a pipeline: the matcher's state, at most, and the lines of both cameras that it holds.
+    pub const fn pipeline_bytes(self, width: u16, disparities: u16) -> usize {
+        self.state_bytes(width, disparities) + with_method!(self, S => lines_bytes::<S>(width as usize))
+    }
+
     /// A search from disparity 0 with the method's default checks and penalties.
     pub const fn config(self, width: u16, height: u16, disparities: u16) -> Config {
         with_method!(self, S => Config::for_method::<S>(width, height, disparities))
@@ -94,6 +100,14 @@ impl MethodName {
     pub const fn sigma_px(self) -> f32 {
         with_method!(self, S => S::SIGMA_PX)
     }
+}
+
+/// What a pipeline holds beside its matcher: so many bytes for each column, and some.
+const fn lines_bytes<S: Method>(width: usize) -> usize {
+    let narrow = size_of::<Pipeline<S, 320, 64>>() - size_of::<Matcher<S, 320, 64>>();
+    let wide = size_of::<Pipeline<S, 640, 64>>() - size_of::<Matcher<S, 640, 64>>();
+    let per_column = (wide - narrow) / 320;
+    narrow - 320 * per_column + width * per_column
 }
 
 impl fmt::Display for MethodName {

@@ -13,6 +13,7 @@ mod guarded;
 mod odometry;
 mod output;
 mod pair;
+mod plan;
 mod rectify;
 mod rectify_refused;
 mod refused;

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::place::Place;
-use crate::shared::{Unit, disparities, print};
+use crate::shared::{Unit, disparities, image_size, print};
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::camera::ImageSize;
@@ -42,7 +42,7 @@ pub struct FileArgs {
     #[arg(long, value_name = "FILE", required = true)]
     pub calib: Vec<PathBuf>,
     /// Columns and rows of the images, where the file does not say them
-    #[arg(long, value_name = "COLUMNSxROWS", value_parser = size)]
+    #[arg(long, value_name = "COLUMNSxROWS", value_parser = image_size)]
     pub size: Option<ImageSize>,
     /// The unit of lengths in OpenCV's files, which may not say it: m where none is given
     #[arg(long, value_name = "UNIT")]
@@ -82,12 +82,6 @@ pub enum Format {
     C,
     /// OpenCV's YAML
     Opencv,
-}
-
-fn size(text: &str) -> Result<ImageSize, &'static str> {
-    let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-    let size = sides.map(|(width, height)| ImageSize { width, height }).filter(|size| size.is_possible());
-    size.ok_or("columns and rows from 2 to 4096 are needed, as 640x480")
 }
 
 pub fn run(args: &CalibArgs) -> Result<(), Failure> {

@@ -24,6 +24,7 @@ mod look;
 mod r#match;
 mod odometry;
 mod place;
+mod plan;
 mod pose;
 mod progress;
 mod record;
@@ -47,7 +48,7 @@ use stereopsis_host::command_line::{one_line, usage_line};
 use stereopsis_host::output::protect;
 
 /// What is told to one who names another command.
-const COMMANDS: &str = "the commands are demo, match, bench, calibrate, calib, rectify, features, focus, \
+const COMMANDS: &str = "the commands are demo, plan, match, bench, calibrate, calib, rectify, features, focus, \
                         fundamental, pose, bundle, odometry, structure, walk, record and replay";
 
 const EXAMPLES: &str = "Examples:
@@ -75,6 +76,9 @@ struct Cli {
 enum Command {
     /// Match a built-in ray-traced scene and compare the answers with its true depth
     Demo(demo::DemoArgs),
+    /// Say what a rig of two cameras can tell, and what it takes, before it is built
+    #[command(after_help = plan::EXAMPLE)]
+    Plan(plan::PlanArgs),
     /// Match a rectified pair of images: disparity, depth, a point cloud and a report
     #[command(after_help = r#match::EXAMPLE)]
     Match(r#match::MatchArgs),
@@ -144,6 +148,7 @@ fn main() -> ExitCode {
 fn run(command: Command) -> Result<(), Failure> {
     match command {
         Command::Demo(args) => demo::run(&args),
+        Command::Plan(args) => plan::run(&args),
         Command::Match(args) => r#match::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Fundamental(args) => fundamental::run(&args),

@@ -5,6 +5,7 @@ use clap::{Args, ValueEnum};
 use nalgebra::Matrix3;
 use std::io::{self, Write};
 use std::path::PathBuf;
+use stereopsis::geometry::camera::ImageSize;
 use stereopsis::matching::{Config, Filter, Kernel, Row};
 use stereopsis_host::colour::ColourScale;
 use stereopsis_host::run::{MethodName, NoiseChoice, RunOptions, UnknownMethod, UnknownNoise};
@@ -211,6 +212,13 @@ pub fn colour_range(text: &str) -> Result<ColourScale, &'static str> {
     let scale = ends.map(|(far_px, near_px)| ColourScale { far_px, near_px });
     let is_range = |s: &ColourScale| s.far_px.is_finite() && s.near_px.is_finite() && s.far_px < s.near_px;
     scale.filter(is_range).ok_or("two disparities are needed, the smaller one first, as 0:64")
+}
+
+/// Columns and rows of an image.
+pub fn image_size(text: &str) -> Result<ImageSize, &'static str> {
+    let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    let size = sides.map(|(width, height)| ImageSize { width, height }).filter(|size| size.is_possible());
+    size.ok_or("columns and rows from 2 to 4096 are needed, as 640x480")
 }
 
 /// A whole number within limits, or what is needed.

@@ -1,0 +1,164 @@
+//! What a search takes of a microcontroller: estimates from what was measured, and memory, which is exact.
+//!
+//! The work of a frame is that of its pixels. For a pixel it grows with the disparities as the measured sizes
+//! of that core and method have it: along a straight line between them, and outside of them as the table of
+//! growth has it, of which a core without vectors takes the Cortex-M4's columns. So it is exact at the sizes
+//! that were measured.
+
+use super::measured::{Growth, Measured, firmware, growth};
+use crate::run::MethodName;
+use serde::Serialize;
+use stereopsis::geometry::camera::ImageSize;
+
+/// The cores that were measured, and the clock of a well-known microcontroller with each: nRF51, STM32F1,
+/// STM32F4, STM32H7, RP2350, Ensemble E7, RP2350. MHz.
+pub const CORES: [(&str, f64); 7] = [
+    ("m0", 16.0),
+    ("m3", 72.0),
+    ("m4", 168.0),
+    ("m7", 480.0),
+    ("m33", 150.0),
+    ("m55", 400.0),
+    ("rv32", 150.0),
+];
+
+/// What a method takes on a core. Names are those of `stereo plan --json`.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct Work {
+    /// The core's short name.
+    pub core: &'static str,
+    /// The method's name.
+    pub method: &'static str,
+    /// Estimated instructions for a frame.
+    pub instructions: f64,
+    /// The clock, MHz.
+    pub clock_mhz: f64,
+    /// Estimated frames in a second, at one instruction a clock.
+    pub frames_per_s: f64,
+    /// Bytes of RAM of the pipeline, at most: exact for this size.
+    pub ram_bytes: usize,
+    /// Bytes of stack that were in use at the measured sizes, at most.
+    pub stack_bytes: u32,
+    /// Bytes of flash of the measured programs, at most: the dense path and the program around it.
+    pub flash_bytes: u32,
+}
+
+/// The tables, read once.
+pub struct Tables {
+    firmware: Vec<Measured>,
+    growth: Vec<Growth>,
+}
+
+impl Tables {
+    /// Those of this build.
+    pub fn new() -> Self {
+        Self { firmware: firmware(), growth: growth() }
+    }
+
+    /// What a search takes; `None` where the method was not measured on the core.
+    pub fn work(
+        &self,
+        core: &'static str,
+        clock_mhz: f64,
+        method: MethodName,
+        size: ImageSize,
+        disparities: u16,
+    ) -> Option<Work> {
+        let measured: Vec<_> =
+            self.firmware.iter().filter(|m| m.core == core && m.method == method).collect();
+        let points: Vec<_> = measured.iter().map(|m| (m.disparities, m.per_pixel)).collect();
+        let per_pixel = self.per_pixel(core, method, &points, disparities)?;
+        let instructions = per_pixel * f64::from(size.width) * f64::from(size.height);
+        Some(Work {
+            core,
+            method: method.name(),
+            instructions,
+            clock_mhz,
+            frames_per_s: clock_mhz * 1e6 / instructions,
+            ram_bytes: method.pipeline_bytes(size.width, disparities),
+            stack_bytes: measured.iter().map(|m| m.stack_bytes).max()?,
+            flash_bytes: measured.iter().map(|m| m.flash_bytes).max()?,
+        })
+    }
+
+    /// Instructions for a pixel, from those at the measured numbers of disparities, which ascend.
+    fn per_pixel(
+        &self,
+        core: &str,
+        method: MethodName,
+        points: &[(u16, f64)],
+        disparities: u16,
+    ) -> Option<f64> {
+        let (&first, &last) = (points.first()?, points.last()?);
+        let (at, known) = if disparities < first.0 { first } else { last };
+        if (first.0..=last.0).contains(&disparities) {
+            return Some(between(points, disparities));
+        }
+        let core = if core == "m55" { core } else { "m4" };
+        let grows_as = if method.compares_brightness() { MethodName::Sgm } else { MethodName::Block };
+        let growth = self.growth.iter().find(|growth| growth.core == core && growth.method == grows_as)?;
+        Some(known * between(&growth.points, disparities) / between(&growth.points, at))
+    }
+}
+
+/// On the straight lines between points that ascend; outside of them as far in proportion from the nearest
+/// one.
+fn between(points: &[(u16, f64)], at: u16) -> f64 {
+    let at = f64::from(at);
+    for pair in points.windows(2) {
+        let [(x0, y0), (x1, y1)] = [pair[0], pair[1]].map(|(x, y)| (f64::from(x), y));
+        if (x0..=x1).contains(&at) {
+            return y0 + (y1 - y0) * (at - x0) / (x1 - x0);
+        }
+    }
+    let nearest = points.first().filter(|(x, _)| at < f64::from(*x)).or(points.last());
+    nearest.map_or(0.0, |&(x, y)| y * at / f64::from(x))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn instructions(core: &'static str, method: MethodName, size: (u16, u16), disparities: u16) -> f64 {
+        let size = ImageSize { width: size.0, height: size.1 };
+        Tables::new().work(core, 100.0, method, size, disparities).expect("it was measured").instructions
+    }
+
+    /// Lines of `docs/performance.md`.
+    #[test]
+    fn what_was_measured_is_said_as_it_was() {
+        let page = include_str!("../../../docs/performance.md");
+        for (core, method, size, disparities) in [
+            ("m4", MethodName::Fast, (160, 120), 32),
+            ("m4", MethodName::Sgm, (320, 240), 64),
+            ("m55", MethodName::Block, (320, 240), 64),
+            ("m0", MethodName::SgmEdge, (96, 64), 16),
+        ] {
+            let line = format!("| {core} | `{method}` | {}x{} | {disparities} | ", size.0, size.1);
+            let number = page.split(&line).nth(1).and_then(|rest| rest.split(' ').next());
+            let number: f64 = number.and_then(|n| n.parse().ok()).expect("the line is there");
+            assert!((instructions(core, method, size, disparities) - number).abs() < 1e-6 * number);
+        }
+    }
+
+    /// The other sizes of the table of growth, of 640x60 pixels: a narrow picture costs more for each pixel.
+    #[test]
+    fn what_was_measured_at_other_sizes_is_near() {
+        for Growth { core, method, points } in growth() {
+            for (disparities, per_pixel) in points {
+                let estimate = instructions(core, method, (640, 60), disparities) / f64::from(640 * 60);
+                let off = estimate / per_pixel - 1.0;
+                assert!(off.abs() < 0.2, "{core} {method} {disparities}: {off}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_core_was_measured_with_every_method() {
+        for (core, _) in CORES {
+            for method in MethodName::ALL {
+                assert!(instructions(core, method, (320, 240), 128) > 1e6, "{core} {method}");
+            }
+        }
+    }
+}

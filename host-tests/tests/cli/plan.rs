@@ -1,0 +1,116 @@
+//! `stereo plan`: figures worked by hand, the limits, and what is refused.
+
+use super::support::{Bench, stereo, text};
+use serde_json::Value;
+
+/// 420 px x 60 mm: 25.2 px m.
+const RIG: [&str; 9] =
+    ["plan", "--baseline-mm", "60", "--focal-px", "420", "--size", "320x240", "--nearest", "0.4"];
+
+fn said(more: &[&str]) -> String {
+    let run = stereo(RIG.iter().chain(more));
+    assert!(run.status.success() && run.stderr.is_empty(), "{more:?}: {}", text(&run.stderr));
+    text(&run.stdout)
+}
+
+fn json(more: &[&str]) -> Value {
+    serde_json::from_str(&said(&[more, &["--json"]].concat())).expect("one JSON object")
+}
+
+#[test]
+fn depths_are_those_of_the_formula() {
+    let plan = json(&["--farthest", "5"]);
+    // 63 px at 0.4 m and 5.04 px at 5 m, and one more on either side: 61, which is 64 in steps of 16.
+    let search = ["disparities", "min_disparity", "needed"].map(|name| plan["search"][name].as_u64());
+    assert_eq!(search, [64, 1, 64].map(Some));
+    let far = plan["depths"].as_array().and_then(|depths| depths.last()).expect("depths");
+    let number = |of: &Value| of.as_f64().expect("a number");
+    assert!((number(&far["disparity_px"]) - 5.04).abs() < 1e-9);
+    assert!((number(&far["sigma_m"]) - 25.0 / 25.2 * 0.15).abs() < 1e-9);
+    assert!((number(&far["overlap"]) - (320.0 - 5.04) / 320.0).abs() < 1e-9);
+    assert!((number(&plan["reach_m"]) - 0.05 * 25.2 / 0.15).abs() < 1e-9);
+    assert!((number(&plan["field_of_view_deg"][0]) - 41.7).abs() < 0.1);
+    assert_eq!((&plan["limits"], &plan["changes"]), (&Value::Array(vec![]), &Value::Array(vec![])));
+    assert!(said(&["--farthest", "5"]).contains("  at  2.00 m    12.6 px, +- 23.8 mm for 0.15 px\n"));
+}
+
+#[test]
+fn work_is_what_was_measured() {
+    let plan = json(&["--farthest", "5", "--core", "m4", "--method", "sgm", "--clock-mhz", "100"]);
+    let [work] = plan["work"].as_array().expect("a list").as_slice() else { panic!("one core and method") };
+    // Of 320x240 pixels and 64 disparities, which docs/performance.md has.
+    let page = include_str!("../../../docs/performance.md");
+    let line = page.split("| m4 | `sgm` | 320x240 | 64 | ").nth(1).expect("the line");
+    let instructions: f64 = line.split(' ').next().and_then(|n| n.parse().ok()).expect("a number");
+    assert!((work["instructions"].as_f64().expect("a number") - instructions).abs() < 1.0);
+    let per_second = work["frames_per_s"].as_f64().expect("a number");
+    assert!((per_second * instructions - 1e8).abs() < 1e3);
+    // What the matcher takes at most, and ten lines and some of the cameras.
+    assert_eq!(work["ram_bytes"], 75_776 + 10 * 320 + 48);
+}
+
+#[test]
+fn the_three_ways_to_say_a_focal_length_agree() {
+    let focal = |lens: &[&str]| {
+        let rig = ["plan", "--baseline-mm", "60", "--size", "320x240", "--nearest", "1", "--farthest", "5"];
+        let run = stereo(rig.iter().chain(lens).chain(&["--json"]));
+        assert!(run.status.success(), "{lens:?}: {}", text(&run.stderr));
+        let plan: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        plan["rig"]["focal_px"].as_f64().expect("a number")
+    };
+    assert_eq!(focal(&["--focal-px", "160"]), 160.0);
+    assert!((focal(&["--focal-mm", "1.44", "--sensor-width-mm", "2.88"]) - 160.0).abs() < 1e-9);
+    assert!((focal(&["--field-of-view", "90"]) - 160.0).abs() < 1e-9);
+}
+
+#[test]
+fn what_limits_is_named_with_what_would_help() {
+    // 1 % at 5 m: sigma is 2.98 %, so a baseline of 60 mm x 2.98 has it.
+    let text = said(&["--farthest", "5", "--accuracy", "1"]);
+    assert!(text.contains("limit        the accuracy: at 5 m the deviation is 2.98 %"), "{text}");
+    assert!(text.contains("change       a baseline of 179 mm would reach 5 m within 1 %"), "{text}");
+    assert!(!said(&["--farthest", "5", "--accuracy", "3"]).contains("the accuracy: "));
+    // That baseline is enough, and one a millimetre shorter is not.
+    for (mm, is_enough) in [("179", true), ("178", false)] {
+        let mut rig = RIG.to_vec();
+        rig[2] = mm;
+        let run = stereo(rig.iter().chain(&["--farthest", "5", "--accuracy", "1"]));
+        assert_eq!(!String::from_utf8_lossy(&run.stdout).contains("the accuracy: "), is_enough, "{mm} mm");
+    }
+
+    let mut near = RIG.to_vec();
+    near[8] = "0.05";
+    let run = stereo(near.iter().chain(&["--farthest", "5"]));
+    let near = String::from_utf8_lossy(&run.stdout);
+    assert!(near.contains("limit        the search: depths from 0.05 m take 512 disparities"), "{near}");
+    assert!(near.contains(" mm would begin at 0.05 m"), "{near}");
+
+    let small = said(&["--farthest", "5", "--method", "sgm", "--ram-kb", "64"]);
+    assert!(small.contains("limit        the memory: sgm takes "), "{small}");
+    assert!(small.contains("change       images "), "{small}");
+    let fast = said(&["--farthest", "5", "--core", "m4", "--method", "fast", "--frame-rate", "30"]);
+    assert!(fast.contains("limit        the work: fast on m4 at 168 MHz gives about 6.1 of 30"), "{fast}");
+    assert!(fast.contains("change       images of 160 x 120 px and 48 disparities"), "{fast}");
+}
+
+#[test]
+fn what_cannot_be_planned_is_named() {
+    let bench = Bench::new();
+    let refused = |change: &[&str], culprit: &str| {
+        bench.refused(&[&RIG, change].concat(), culprit);
+    };
+    refused(&[], "--farthest");
+    refused(&["--farthest", "0.4"], "--nearest 0.4: is not nearer");
+    refused(&["--farthest", "nan"], "--farthest");
+    refused(&["--farthest", "5", "--accuracy", "0"], "--accuracy");
+    refused(&["--farthest", "5", "--core", "m9"], "the cores are m0, m3, m4, m7, m33, m55, rv32");
+    refused(&["--farthest", "5", "--field-of-view", "60"], "--field-of-view");
+    refused(&["--farthest", "5", "--sensor-width-mm", "3"], "--sensor-width-mm");
+    let rig = ["plan", "--baseline-mm", "60", "--nearest", "1", "--farthest", "5"];
+    let with = |more: &[&'static str]| [&rig, more].concat();
+    bench.refused(&with(&["--size", "320x240"]), "--focal-px");
+    bench.refused(&with(&["--size", "320x240", "--field-of-view", "180"]), "--field-of-view");
+    bench.refused(&with(&["--size", "320x240", "--focal-mm", "2"]), "--sensor-width-mm");
+    bench.refused(&with(&["--size", "15x240", "--focal-px", "100"]), "--size 15x240");
+    bench.refused(&with(&["--size", "320", "--focal-px", "100"]), "--size");
+}

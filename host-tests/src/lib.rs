@@ -14,6 +14,7 @@
 //! * [`mod@matches`]: correspondences from files.
 //! * [`masked`]: masks beside any source.
 //! * [`real`]: real pairs with a known truth, also altered, and scores on them.
+//! * [`eval`]: results of any program beside a truth, in the measures of public benchmarks.
 //! * [`recording`]: lines as they came, in a file, and played again.
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
 //! * [`correspond`]: two pictures through the core's features and matcher. [`two_view`]: correspondences of a
@@ -36,6 +37,7 @@ pub mod command_line;
 pub mod correspond;
 pub mod depth_samples;
 pub mod epipolar_picture;
+pub mod eval;
 pub mod fault;
 pub mod focus;
 pub mod limits;

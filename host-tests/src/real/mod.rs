@@ -136,7 +136,7 @@ impl RealScene {
 }
 
 /// What `meta.json` says of the range.
-fn disparities(path: &Path) -> Result<u16, RealError> {
+pub(crate) fn disparities(path: &Path) -> Result<u16, RealError> {
     let text = fs::read_to_string(path).map_err(|source| RealError::Read { path: path.into(), source })?;
     let meta: Option<serde_json::Value> = serde_json::from_str(&text).ok();
     let stated = meta.and_then(|meta| meta.get("disparities")?.as_u64());

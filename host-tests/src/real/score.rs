@@ -1,7 +1,9 @@
 //! How right answers are.
 
+use serde::Serialize;
+
 /// Shares of the scored pixels of a scene, 0 to 1.
-#[derive(Clone, Copy, Default, PartialEq, Debug)]
+#[derive(Clone, Copy, Default, PartialEq, Debug, Serialize)]
 pub struct Score {
     /// Answers among the scored pixels.
     pub density: f64,

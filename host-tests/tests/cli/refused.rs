@@ -102,7 +102,7 @@ fn bad_options() {
     bench.refused::<&str>(&[], "subcommand");
     bench.refused(
         &["sharpen"],
-        "the commands are demo, plan, match, bench, calibrate, calib, rectify, features, focus, fundamental, \
+        "the commands are demo, plan, match, eval, bench, calibrate, calib, rectify, features, focus, fundamental, \
          pose, bundle, odometry, structure, walk, record and replay",
     );
     bench.refused(&bench.arguments(&[("--left", "two\nlines.png")]), "two\\nlines.png");

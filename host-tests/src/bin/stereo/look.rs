@@ -87,7 +87,7 @@ pub enum Disparities {
     Count(u16),
 }
 
-fn disparities(text: &str) -> Result<Disparities, String> {
+pub fn disparities(text: &str) -> Result<Disparities, String> {
     if text == "auto" {
         return Ok(Disparities::Auto);
     }

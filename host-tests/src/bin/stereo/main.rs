@@ -5,6 +5,7 @@
 //!
 //! * `shared`: the options that several have. `input`: images and search, checked against each other. `look`:
 //!   what is seen of a pair before it is matched.
+//! * `frame`: a pair through the pipeline.
 //! * `image_files`: the images that a pattern names. `progress`: how far the work is.
 //! * `rectified`, `results`, `place`: what is written. `failure`: what is said when it cannot be done.
 
@@ -13,9 +14,11 @@ mod bundle;
 mod calib;
 mod calibrate;
 mod demo;
+mod eval;
 mod failure;
 mod features;
 mod focus;
+mod frame;
 mod fundamental;
 mod image_files;
 mod input;
@@ -48,7 +51,7 @@ use stereopsis_host::command_line::{one_line, usage_line};
 use stereopsis_host::output::protect;
 
 /// What is told to one who names another command.
-const COMMANDS: &str = "the commands are demo, plan, match, bench, calibrate, calib, rectify, features, focus, \
+const COMMANDS: &str = "the commands are demo, plan, match, eval, bench, calibrate, calib, rectify, features, focus, \
                         fundamental, pose, bundle, odometry, structure, walk, record and replay";
 
 const EXAMPLES: &str = "Examples:
@@ -82,6 +85,9 @@ enum Command {
     /// Match a rectified pair of images: disparity, depth, a point cloud and a report
     #[command(after_help = r#match::EXAMPLE)]
     Match(r#match::MatchArgs),
+    /// Compare disparities of any program, or of this one, with a known truth
+    #[command(after_help = eval::EXAMPLE)]
+    Eval(eval::EvalArgs),
     /// Time the matching of a rectified pair of images
     #[command(after_help = bench::EXAMPLE)]
     Bench(bench::BenchArgs),
@@ -150,6 +156,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Demo(args) => demo::run(&args),
         Command::Plan(args) => plan::run(&args),
         Command::Match(args) => r#match::run(&args),
+        Command::Eval(args) => eval::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Fundamental(args) => fundamental::run(&args),
         Command::Pose(args) => pose::run(&args),

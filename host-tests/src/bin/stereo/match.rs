@@ -1,10 +1,10 @@
 //! `stereo match`: a pair, rectified or raw, into a folder of results.
 
 use crate::failure::Failure;
-use crate::input::{self, Pair};
+use crate::frame::{Matched, matched};
+use crate::input::Pair;
 use crate::look::{Look, MaskArgs, SearchArgs, look};
 use crate::place::{json, png};
-use crate::progress::Progress;
 use crate::rectified::{self, RectifiedCameras};
 use crate::results::{self, DepthArgs, DepthFiles, figures, place};
 use crate::shared::{BalanceArgs, MethodArgs, PairArgs, RectifyOptions, Unit, colour_range, length, print};
@@ -13,11 +13,8 @@ use image::{RgbImage, imageops};
 use std::fmt::Display;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use stereopsis::camera::StereoSource;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::{Camera, ImageSize, RectifiedRig};
-use stereopsis::imaging::{Balance, BalancedPair, NoiseMeter};
-use stereopsis::matching::Config;
 use stereopsis_host::calibration::Calibration;
 use stereopsis_host::colour::ColourScale;
 use stereopsis_host::command_line::one_line;
@@ -27,7 +24,6 @@ use stereopsis_host::pair::PairCheck;
 use stereopsis_host::rectify::{rectify, rectify_colours, with_rectified};
 use stereopsis_host::report::{Report, Summary};
 use stereopsis_host::rows::Rows;
-use stereopsis_host::run::{self, Outcome, measure_noise};
 
 /// What follows the options in the command's help.
 pub const EXAMPLE: &str = "Example:
@@ -105,14 +101,6 @@ struct Scene {
     check: Option<PairCheck>,
 }
 
-/// What came of the matching.
-struct Matched {
-    config: Config,
-    meter: Option<NoiseMeter>,
-    balance: Balance,
-    outcome: Outcome,
-}
-
 pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let mut pair = Pair::open(&args.pair)?;
     args.search.check(&args.method, pair.width, pair.height)?;
@@ -128,8 +116,10 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         let Look { config, check, rows } =
             look(&args.search, &args.method, [&left, &right], valid, camera.as_ref())?;
         let matched = match masks {
-            Some(masks) => matched(args, config, &mut MaskedPair::new(&mut pair.camera, masks))?,
-            None => matched(args, config, &mut pair.camera)?,
+            Some(masks) => {
+                matched(&args.method, &args.balance, config, &mut MaskedPair::new(&mut pair.camera, masks))?
+            }
+            None => matched(&args.method, &args.balance, config, &mut pair.camera)?,
         };
         (Scene { left: pair.left, right: pair.right, scale, rectified: None, rows, check }, matched)
     };
@@ -191,33 +181,6 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     print(&text)
 }
 
-fn matched<C: StereoSource<Error: Display>>(
-    args: &MatchArgs,
-    config: Config,
-    source: &mut C,
-) -> Result<Matched, Failure> {
-    if !args.balance.is_for(args.method.method) {
-        return matched_as_it_comes(args, config, source);
-    }
-    let mut balanced = BalancedPair::new(source);
-    // The first frame shows the exposures.
-    measure_noise(&mut balanced).map_err(|e| Failure::new(e.to_string()))?;
-    let matched = matched_as_it_comes(args, config, &mut balanced)?;
-    Ok(Matched { balance: balanced.balance(), ..matched })
-}
-
-fn matched_as_it_comes<C: StereoSource<Error: Display>>(
-    args: &MatchArgs,
-    config: Config,
-    source: &mut C,
-) -> Result<Matched, Failure> {
-    let (config, meter) = input::with_noise(&args.method, config, source)?;
-    let progress = Progress::over(&config);
-    let outcome = run::run(args.method.run_options(), &config, source, |rows| progress.rows(rows));
-    let outcome = outcome.map_err(|e| Failure::new(e.to_string()))?;
-    Ok(Matched { config, meter, balance: Balance::NONE, outcome })
-}
-
 /// Matches a raw pair: remap, census and matching in one loop over the rows.
 fn raw(args: &MatchArgs, pair: &mut Pair) -> Result<(Scene, Matched), Failure> {
     if args.calib.is_empty() {
@@ -238,7 +201,10 @@ fn raw(args: &MatchArgs, pair: &mut Pair) -> Result<(Scene, Matched), Failure> {
     let seen = look(&args.search, &args.method, grey.pictures.each_ref(), Some(valid), Some(camera))?;
     let Look { config, check, rows: aligned } = seen;
     let (rows, matched) = with_rectified(&rectification, &mut pair.camera, |source| {
-        (source.remaps().map(|remap| remap.table().rows()), matched(args, config, source))
+        (
+            source.remaps().map(|remap| remap.table().rows()),
+            matched(&args.method, &args.balance, config, source),
+        )
     })
     .map_err(|e| named(&e))?;
     let cameras = RectifiedCameras::new(calibration.format, &rectification, rows, &rectification.report());

@@ -25,7 +25,8 @@ pub struct PlanArgs {
     #[command(flatten)]
     lens: LensArgs,
     /// Width of the sensor's active area, mm
-    #[arg(long, value_name = "MM", requires = "focal_mm", value_parser = length, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", requires = "focal_mm", conflicts_with_all = ["focal_px", "field_of_view"],
+        value_parser = length, allow_negative_numbers = true)]
     sensor_width_mm: Option<f32>,
     /// Columns and rows of the images that are matched
     #[arg(long, value_name = "COLUMNSxROWS", value_parser = image_size)]

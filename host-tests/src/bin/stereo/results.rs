@@ -65,7 +65,7 @@ impl DepthFiles {
 }
 
 /// A length in metres, as a number or a fraction.
-fn depth_unit(text: &str) -> Result<f64, &'static str> {
+pub fn depth_unit(text: &str) -> Result<f64, &'static str> {
     let value = match text.split_once('/') {
         Some((above, below)) => {
             above.parse::<f64>().ok().zip(below.parse().ok()).map(|(a, b): (f64, f64)| a / b)

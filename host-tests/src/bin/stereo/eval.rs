@@ -1,0 +1,261 @@
+//! `stereo eval`: results of any program, or of this one, beside a known truth.
+
+use crate::failure::Failure;
+use crate::frame::{Matched, matched};
+use crate::input::Pair;
+use crate::look::{Disparities, Look, SearchArgs, disparities, look};
+use crate::place::Place;
+use crate::results::depth_unit;
+use crate::shared::{BalanceArgs, MethodArgs, PairArgs, min_disparity, print};
+use clap::Args;
+use image::imageops;
+use serde::Serialize;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use stereopsis_host::calibration::Calibration;
+use stereopsis_host::command_line::one_line;
+use stereopsis_host::eval::{DisparityFile, Measures, Scene, confidence, truth};
+use stereopsis_host::pfm::FloatMap;
+
+/// What follows the options in the command's help.
+pub const EXAMPLE: &str = "Examples:
+  stereo eval --found out/disparity.pfm --truth disp0.pfm --mask mask0nocc.png
+  stereo eval --found results --truth MiddEval3/trainingQ
+  stereo eval --scenes kitti/training --method sgm --disparities auto --csv kitti.csv
+
+Disparities are PFM (px) or PNG (px x 256, 0 where there is none). Folders are those of Middlebury 2014 \
+                           (SCENE/disp0.pfm), ETH3D (SCENE/disp0GT.pfm), KITTI (disp_occ_0/000000_10.png) and \
+                           this program's (SCENE/gt.png and meta.json, or what demo writes); results in them \
+                           are SCENE/disparity.pfm, SCENE/disp0.pfm, SCENE.pfm or SCENE.png.";
+
+#[derive(Debug, Args)]
+pub struct EvalArgs {
+    /// Results: a file, or a folder with one for each scene
+    #[arg(long, value_name = "PATH", requires = "truth", required_unless_present = "scenes")]
+    found: Option<PathBuf>,
+    /// The truth: a file, or a folder of scenes
+    #[arg(long, value_name = "PATH", requires = "found")]
+    truth: Option<PathBuf>,
+    /// A folder of scenes that are matched here
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["found", "truth"])]
+    scenes: Option<PathBuf>,
+    /// What is scored of a truth that is a file: where this picture is 255
+    #[arg(long, value_name = "FILE", requires = "found")]
+    mask: Option<PathBuf>,
+    /// How sure the results of a file are: a byte a pixel, more is surer
+    #[arg(long, value_name = "FILE", requires = "found")]
+    confidence: Option<PathBuf>,
+    /// Steps of a PNG of results in a pixel
+    #[arg(long, value_name = "N", default_value = "256", value_parser = scale, allow_negative_numbers = true)]
+    found_scale: f64,
+    /// Steps of a PNG of a truth that is a file in a pixel
+    #[arg(long, value_name = "N", default_value = "256", value_parser = scale, allow_negative_numbers = true)]
+    truth_scale: f64,
+    /// Results are depths, m, which this calibration makes disparities of
+    #[arg(long, value_name = "FILE", requires = "found")]
+    depths_by: Option<PathBuf>,
+    /// Length of a step of a PNG of depths, m: 0.001 where none is given
+    #[arg(long, value_name = "M", requires = "depths_by", value_parser = depth_unit, allow_negative_numbers = true)]
+    depth_unit: Option<f64>,
+    /// How many whole disparities are searched in scenes that are matched here, or auto; what the scene says
+    /// where none is given, and auto where it says nothing
+    #[arg(long, value_name = "N", requires = "scenes", value_parser = disparities, allow_negative_numbers = true)]
+    disparities: Option<Disparities>,
+    /// The smallest disparity searched, px
+    #[arg(long, value_name = "M", requires = "scenes", value_parser = min_disparity, allow_negative_numbers =
+        true)]
+    min_disparity: Option<u16>,
+    #[command(flatten)]
+    method: MethodArgs,
+    #[command(flatten)]
+    balance: BalanceArgs,
+    /// Print one JSON object in place of the table
+    #[arg(long)]
+    json: bool,
+    /// Write the table into a file, too
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+}
+
+fn scale(text: &str) -> Result<f64, &'static str> {
+    let value = text.parse().ok().filter(|value| (0.001..=65536.0).contains(value));
+    value.ok_or("a number from 0.001 to 65536 is needed")
+}
+
+/// How right a scene is. Names are those of `--json`.
+#[derive(Serialize)]
+struct Evaluated {
+    scene: String,
+    /// What was searched, and how long the matching took, where it was done here.
+    disparities: Option<u16>,
+    time_ms: Option<f64>,
+    #[serde(flatten)]
+    measures: Measures,
+}
+
+/// What is printed.
+#[derive(Serialize)]
+struct Evaluation {
+    scenes: Vec<Evaluated>,
+    mean: Measures,
+}
+
+pub fn run(args: &EvalArgs) -> Result<(), Failure> {
+    let csv = args.csv.as_deref().map(|path| Place::of("--csv", path)).transpose()?;
+    let scenes = match (&args.scenes, args.found.as_deref().zip(args.truth.as_deref())) {
+        (Some(folder), _) => {
+            Scene::all(folder)?.iter().map(|scene| by_matching(args, scene)).collect::<Result<Vec<_>, _>>()?
+        }
+        (None, Some((found, truth))) if truth.is_dir() => of_folders(args, found, truth)?,
+        (None, Some((found, truth))) => vec![of_files(args, found, truth)?],
+        (None, None) => return Err(Failure::new("--found: is missing; give it and --truth, or --scenes")),
+    };
+    let measures: Vec<_> = scenes.iter().map(|scene| scene.measures).collect();
+    let evaluation = Evaluation { mean: Measures::mean(&measures), scenes };
+    if let Some(place) = csv {
+        let bytes = evaluation.csv()?;
+        place.write(|out| out.write_all(&bytes), None)?;
+    }
+    if args.json {
+        return print(&(serde_json::to_string_pretty(&evaluation)? + "\n"));
+    }
+    print(&evaluation.table())
+}
+
+/// How results are read.
+fn found_file(args: &EvalArgs) -> Result<DisparityFile, Failure> {
+    let Some(path) = &args.depths_by else {
+        return Ok(DisparityFile { scale: args.found_scale, depths_of: None });
+    };
+    let rig = Calibration::open(path, Path::new(""))?.rig;
+    Ok(DisparityFile { scale: 1.0 / args.depth_unit.unwrap_or(0.001), depths_of: Some(rig) })
+}
+
+/// A file beside a file.
+fn of_files(args: &EvalArgs, found: &Path, truth_path: &Path) -> Result<Evaluated, Failure> {
+    let of_truth = DisparityFile { scale: args.truth_scale, depths_of: None };
+    let truth = truth(truth_path, &of_truth, args.mask.as_deref(), 0)?;
+    let name = found.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let file = found_file(args)?;
+    compared(&file, name, found, args.confidence.as_deref(), &truth)
+}
+
+/// Every scene of a folder beside its result in another one.
+fn of_folders(args: &EvalArgs, found: &Path, truth: &Path) -> Result<Vec<Evaluated>, Failure> {
+    if let Some((option, path)) = [("--mask", &args.mask), ("--confidence", &args.confidence)]
+        .iter()
+        .find_map(|(o, p)| Some((o, (*p).as_ref()?)))
+    {
+        let path = path.display();
+        return Err(Failure::new(format!(
+            "{option} {path}: is for a truth that is a file; folders have their own"
+        )));
+    }
+    let file = found_file(args)?;
+    let evaluated = |scene: &Scene| {
+        let (result, sure) = scene.found_in(found)?;
+        compared(&file, scene.name.clone(), &result, sure.as_deref(), &scene.read_truth()?)
+    };
+    Scene::all(truth)?.iter().map(evaluated).collect()
+}
+
+fn compared(
+    file: &DisparityFile,
+    scene: String,
+    found: &Path,
+    sure: Option<&Path>,
+    truth: &FloatMap,
+) -> Result<Evaluated, Failure> {
+    let answers = file.read_beside(found, truth)?;
+    let sure = sure.map(|path| confidence(path, truth)).transpose()?;
+    // A truth has scored pixels, else it is refused.
+    let measures = Measures::of(&answers.values, &truth.values, sure.as_deref()).unwrap_or_default();
+    Ok(Evaluated { scene, disparities: None, time_ms: None, measures })
+}
+
+/// A scene that is matched here, as `match` does it.
+fn by_matching(args: &EvalArgs, scene: &Scene) -> Result<Evaluated, Failure> {
+    let truth = scene.read_truth()?;
+    let [left, right] = scene.images.clone();
+    let mut pair = Pair::open(&PairArgs { left, right })?;
+    let (width, height) = (pair.width, pair.height);
+    if (truth.width, truth.height) != (usize::from(width), usize::from(height)) {
+        return Err(Failure::new(format!(
+            "{}: is {} x {} px, and the images {width} x {height} px; give the truth of these images",
+            scene.truth.display(),
+            truth.width,
+            truth.height
+        )));
+    }
+    let stated = scene.disparities.map(|n| Disparities::Count(n.min(width)));
+    let search = SearchArgs {
+        disparities: args.disparities.or(stated).unwrap_or(Disparities::Auto),
+        min_disparity: args.min_disparity,
+        force: false,
+    };
+    let named = |e: Failure| Failure::new(format!("{}: {e}", scene.name));
+    search.check(&args.method, width, height).map_err(named)?;
+    let [left, right] = [&pair.left, &pair.right].map(imageops::grayscale);
+    let Look { config, .. } = look(&search, &args.method, [&left, &right], None, None).map_err(named)?;
+    let Matched { config, outcome, .. } = matched(&args.method, &args.balance, config, &mut pair.camera)?;
+    let map = &outcome.map;
+    let measures = Measures::of(&map.pixels(), &truth.values, Some(&map.confidence)).unwrap_or_default();
+    Ok(Evaluated {
+        scene: scene.name.clone(),
+        disparities: Some(config.disparities),
+        time_ms: Some(outcome.time_ms),
+        measures,
+    })
+}
+
+/// The columns of a table: names, digits behind the point, and values; shares are in percent.
+type Column = (&'static str, usize, fn(&Measures) -> Option<f64>);
+
+const COLUMNS: [Column; 9] = [
+    ("density", 2, |m| Some(100.0 * m.score.density)),
+    ("bad0.5", 2, |m| Some(100.0 * m.bad05)),
+    ("bad1", 2, |m| Some(100.0 * m.bad1)),
+    ("bad2", 2, |m| Some(100.0 * m.score.bad2)),
+    ("bad4", 2, |m| Some(100.0 * m.bad4)),
+    ("D1", 2, |m| Some(100.0 * m.d1)),
+    ("missed", 2, |m| Some(100.0 * m.score.missed)),
+    ("EPE,px", 3, |m| Some(m.epe_px)),
+    ("unsure", 2, |m| m.confidence_from_oracle.map(|share| 100.0 * share)),
+];
+
+impl Evaluation {
+    /// The scenes and their mean by name, each with the cells of all columns.
+    fn rows(&self) -> impl Iterator<Item = (&str, Vec<String>)> {
+        let scenes = self.scenes.iter().map(|scene| (scene.scene.as_str(), &scene.measures));
+        scenes.chain([("mean", &self.mean)]).map(|(name, measures)| {
+            let cell = |&(_, digits, of): &Column| of(measures).map(|value| format!("{value:.digits$}"));
+            (name, COLUMNS.iter().map(|column| cell(column).unwrap_or_default()).collect())
+        })
+    }
+
+    fn table(&self) -> String {
+        let longest = self.rows().map(|(name, _)| one_line(name).chars().count()).max().unwrap_or(0).max(5);
+        let mut text = format!("{:<longest$}", "scene");
+        for (name, ..) in COLUMNS {
+            let _ = write!(text, "{name:>9}");
+        }
+        for (name, cells) in self.rows() {
+            let _ = write!(text, "\n{:<longest$}", one_line(name));
+            for cell in cells {
+                let _ = write!(text, "{cell:>9}");
+            }
+        }
+        text += "\nin percent: bad and D1 of the answers, missed of the scored pixels (no answer, or over 2 px off), \
+                 unsure of the\nway from the best order of the answers to a random one\n";
+        text
+    }
+
+    fn csv(&self) -> Result<Vec<u8>, Failure> {
+        let mut table = csv::Writer::from_writer(Vec::new());
+        table.write_record(["scene"].into_iter().chain(COLUMNS.map(|(name, ..)| name)))?;
+        for (name, cells) in self.rows() {
+            table.write_record([name.to_owned()].into_iter().chain(cells))?;
+        }
+        table.into_inner().map_err(|e| Failure::new(e.to_string()))
+    }
+}

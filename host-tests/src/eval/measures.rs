@@ -1,0 +1,125 @@
+//! How right answers are, in the measures of the public benchmarks.
+
+use crate::real::Score;
+use crate::sparsification::{Judged, Sparsification};
+use serde::Serialize;
+
+/// Measures of the scored pixels of a scene. Shares are 0 to 1; those of wrong answers are of the answers,
+/// `missed` is of the scored pixels. Names are those of `stereo eval --json`.
+#[derive(Clone, Copy, Default, PartialEq, Debug, Serialize)]
+pub struct Measures {
+    /// Pixels that are scored; of a mean, those of all scenes.
+    pub scored: usize,
+    /// Density, answers over 2 px off, and scored pixels with such an answer or none.
+    #[serde(flatten)]
+    pub score: Score,
+    /// Answers over half a pixel off.
+    pub bad05: f64,
+    /// Answers over 1 px off.
+    pub bad1: f64,
+    /// Answers over 4 px off.
+    pub bad4: f64,
+    /// Answers over 3 px off that are over 5 % off, too: KITTI's D1, of the answers.
+    pub d1: f64,
+    /// The mean absolute error of the answers, px: the end-point error. 0 where there is none.
+    pub epe_px: f64,
+    /// How far the confidence's order of the answers is from the best one, of the way to a random one;
+    /// absent without a confidence.
+    pub confidence_from_oracle: Option<f64>,
+}
+
+impl Measures {
+    /// KITTI's limits of a wrong answer, px and a share of the truth.
+    const D1: (f32, f32) = (3.0, 0.05);
+
+    /// Compares answers in px, infinite where there is none, with a truth that is 0 where a pixel is not
+    /// scored, both row by row. `None` when no pixel is scored.
+    pub fn of(answers: &[f32], truth: &[f32], confidence: Option<&[u8]>) -> Option<Self> {
+        let score = Score::of(answers.iter().map(|&px| Some(px)), truth)?;
+        let scored = truth.iter().filter(|px| **px > 0.0).count();
+        let both = answers.iter().zip(truth).enumerate();
+        let errors: Vec<(usize, f32, f32)> = both
+            .filter(|(_, (px, truth))| **truth > 0.0 && px.is_finite())
+            .map(|(at, (px, truth))| (at, (px - truth).abs(), *truth))
+            .collect();
+        let share = |is_bad: &dyn Fn(f32, f32) -> bool| {
+            let bad = errors.iter().filter(|(_, error, truth)| is_bad(*error, *truth)).count();
+            bad as f64 / errors.len().max(1) as f64
+        };
+        let sum: f64 = errors.iter().map(|(_, error, _)| f64::from(*error)).sum();
+        let judged = confidence.map(|confidence| {
+            let judge = |&(at, error, _): &(usize, f32, f32)| Judged {
+                confidence: confidence.get(at).copied().unwrap_or(0),
+                loss: f32::from(u8::from(error > Score::BAD_PX)),
+            };
+            errors.iter().map(judge).collect::<Vec<_>>()
+        });
+        Some(Self {
+            scored,
+            score,
+            bad05: share(&|error, _| error > 0.5),
+            bad1: share(&|error, _| error > 1.0),
+            bad4: share(&|error, _| error > 4.0),
+            d1: share(&|error, truth| error > Self::D1.0 && error > Self::D1.1 * truth),
+            epe_px: sum / errors.len().max(1) as f64,
+            confidence_from_oracle: judged
+                .and_then(|judged| Sparsification::of(&judged))
+                .map(|sparsification| sparsification.from_oracle()),
+        })
+    }
+
+    /// The mean of several scenes, which count alike; that of the confidence where every scene has one.
+    pub fn mean(of: &[Self]) -> Self {
+        let mean = |part: fn(&Self) -> f64| of.iter().map(part).sum::<f64>() / of.len().max(1) as f64;
+        let sure: Option<Vec<f64>> = of.iter().map(|m| m.confidence_from_oracle).collect();
+        Self {
+            scored: of.iter().map(|m| m.scored).sum(),
+            score: Score::mean(&of.iter().map(|m| m.score).collect::<Vec<_>>()),
+            bad05: mean(|m| m.bad05),
+            bad1: mean(|m| m.bad1),
+            bad4: mean(|m| m.bad4),
+            d1: mean(|m| m.d1),
+            epe_px: mean(|m| m.epe_px),
+            confidence_from_oracle: sure
+                .filter(|sure| !sure.is_empty())
+                .map(|sure| sure.iter().sum::<f64>() / sure.len() as f64),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NONE: f32 = f32::INFINITY;
+
+    #[test]
+    fn worked_by_hand() {
+        // Errors 0, 0.75, 1.5, 3.5 (of 100: under 5 %), 4.5 (of 50: over); one without an answer, one not
+        // scored.
+        let truth = [10.0, 10.0, 10.0, 100.0, 50.0, 10.0, 0.0];
+        let answers = [10.0, 10.75, 11.5, 103.5, 54.5, NONE, 1.0];
+        let m = Measures::of(&answers, &truth, Some(&[9, 8, 7, 2, 1, 0, 0])).expect("six are scored");
+        assert_eq!((m.scored, m.score.density), (6, 5.0 / 6.0));
+        assert_eq!([m.bad05, m.bad1, m.score.bad2, m.bad4], [0.8, 0.6, 0.4, 0.2]);
+        assert_eq!((m.d1, m.score.missed), (0.2, 0.5));
+        assert!((m.epe_px - (0.75 + 1.5 + 3.5 + 4.5) / 5.0).abs() < 1e-6);
+        assert_eq!(m.confidence_from_oracle, Some(0.0), "the wrong ones are the least sure");
+        assert_eq!(Measures::of(&answers, &[0.0; 7], None), None);
+    }
+
+    #[test]
+    fn a_map_without_answers_has_no_error_and_misses_all() {
+        let m = Measures::of(&[NONE; 2], &[1.0; 2], None).expect("two are scored");
+        assert_eq!((m.score.missed, m.epe_px, m.bad1, m.confidence_from_oracle), (1.0, 0.0, 0.0, None));
+    }
+
+    #[test]
+    fn scenes_count_alike() {
+        let one =
+            Measures { scored: 1, epe_px: 1.0, confidence_from_oracle: Some(0.5), ..Measures::default() };
+        let two = Measures { scored: 9, epe_px: 2.0, ..Measures::default() };
+        let mean = Measures::mean(&[one, two]);
+        assert_eq!((mean.scored, mean.epe_px, mean.confidence_from_oracle), (10, 1.5, None));
+    }
+}

@@ -129,7 +129,7 @@ impl Stack {
 }
 
 /// The images of a folder in the order of their names, numbers by their value: `f2` comes before `f10`.
-pub(crate) fn images(folder: &Path) -> io::Result<Vec<PathBuf>> {
+pub fn images(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder)? {
         let path = entry?.path();

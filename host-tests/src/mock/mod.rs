@@ -73,6 +73,19 @@ impl MockCamera {
         decode::lines(image).map(Self::play)
     }
 
+    /// Two cameras on the left and the right half of the picture; `None` when its columns are odd.
+    pub fn halves(&self) -> Option<(Self, Self)> {
+        let Self { format, had_alpha, .. } = *self;
+        let half = LineFormat { width: format.width / 2, ..format };
+        let line = format.line_bytes();
+        let of = |skip: usize| {
+            let lines = self.bytes.chunks_exact(line.max(1));
+            let bytes = lines.flat_map(|line| &line[skip..skip + half.line_bytes()]).copied().collect();
+            Self::play(Picture { format: half, bytes, had_alpha })
+        };
+        (format.width >= 2 && format.width.is_multiple_of(2)).then(|| (of(0), of(line / 2)))
+    }
+
     fn play(picture: Picture) -> Self {
         let Picture { format, bytes, had_alpha } = picture;
         Self { format, bytes, had_alpha, frames: 0, row: format.height }

@@ -191,5 +191,5 @@ fn what_cannot_be_compared_is_named() {
     refused(&["--scenes", &scenes, "--found", &found], "--found");
     refused(&["--found", &found, "--truth", &scenes, "--mask", &found], "--mask");
     refused(&["--found", &found, "--truth", &truth, "--found-scale", "0"], "--found-scale");
-    refused(&["--found", &found, "--truth", &truth, "--disparities", "64"], "--scenes");
+    refused(&["--found", &found, "--truth", &truth, "--disparities", "64"], "--disparities");
 }

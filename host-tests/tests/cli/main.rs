@@ -11,10 +11,12 @@ mod features;
 mod focus;
 #[cfg(unix)]
 mod guarded;
+mod many;
 mod odometry;
 mod output;
 mod pair;
 mod plan;
+mod program;
 mod rectify;
 mod rectify_refused;
 mod refused;

@@ -102,8 +102,14 @@ impl Bench {
     pub fn is_refusal(&self, run: &Output, culprit: &str, what: &str) {
         let said = text(&run.stderr);
         // What clap finds wrong is named in its words; all else is the program's.
-        let is_usage =
-            ["for '--", "see --help", "the commands are", "requires a subcommand", "cannot be used with"];
+        let is_usage = [
+            "for '--",
+            "for '<",
+            "see --help",
+            "the commands are",
+            "requires a subcommand",
+            "cannot be used with",
+        ];
         let status = if is_usage.iter().any(|words| said.contains(words)) { 2 } else { 1 };
         assert_eq!(run.status.code(), Some(status), "{what}: {said}");
         assert_eq!(said.lines().count(), 1, "{what}: {said}");

@@ -44,7 +44,7 @@ struct Times {
 }
 
 pub fn run(args: &BenchArgs) -> Result<(), Failure> {
-    let mut pair = Pair::open(&args.pair)?;
+    let mut pair = Pair::open(&args.pair.left, &args.pair.right)?;
     let config = input::config(&args.range, &args.method, pair.width, pair.height)?;
     // Files and the conversion to grey are left out of the times.
     let mut camera = MemoryPair::record(&mut pair.camera)?;

@@ -6,7 +6,7 @@ use crate::input::Pair;
 use crate::look::{Disparities, Look, SearchArgs, disparities, look};
 use crate::place::Place;
 use crate::results::depth_unit;
-use crate::shared::{BalanceArgs, MethodArgs, PairArgs, min_disparity, print};
+use crate::shared::{BalanceArgs, MethodArgs, min_disparity, print};
 use clap::Args;
 use image::imageops;
 use serde::Serialize;
@@ -59,10 +59,10 @@ pub struct EvalArgs {
     depth_unit: Option<f64>,
     /// How many whole disparities are searched in scenes that are matched here, or auto; what the scene says
     /// where none is given, and auto where it says nothing
-    #[arg(long, value_name = "N", requires = "scenes", value_parser = disparities, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", conflicts_with = "found", value_parser = disparities, allow_negative_numbers = true)]
     disparities: Option<Disparities>,
     /// The smallest disparity searched, px
-    #[arg(long, value_name = "M", requires = "scenes", value_parser = min_disparity, allow_negative_numbers =
+    #[arg(long, value_name = "M", conflicts_with = "found", value_parser = min_disparity, allow_negative_numbers =
         true)]
     min_disparity: Option<u16>,
     #[command(flatten)]
@@ -176,8 +176,8 @@ fn compared(
 /// A scene that is matched here, as `match` does it.
 fn by_matching(args: &EvalArgs, scene: &Scene) -> Result<Evaluated, Failure> {
     let truth = scene.read_truth()?;
-    let [left, right] = scene.images.clone();
-    let mut pair = Pair::open(&PairArgs { left, right })?;
+    let [left, right] = &scene.images;
+    let mut pair = Pair::open(left, right)?;
     let (width, height) = (pair.width, pair.height);
     if (truth.width, truth.height) != (usize::from(width), usize::from(height)) {
         return Err(Failure::new(format!(

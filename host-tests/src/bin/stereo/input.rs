@@ -1,10 +1,10 @@
 //! The images and the search, checked against each other before any work.
 
 use crate::failure::Failure;
-use crate::shared::{MethodArgs, PairArgs, RangeArgs};
+use crate::shared::{MethodArgs, RangeArgs};
 use image::RgbImage;
 use std::fmt::Display;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use stereopsis::camera::{CameraPair, LineSource, StereoSource};
 use stereopsis::geometry::camera::ImageSize;
 use stereopsis::imaging::{GreyLines, NoiseMeter};
@@ -26,19 +26,31 @@ pub struct Pair {
     pub height: u16,
     /// What is to be known about the files.
     pub notes: Vec<String>,
+    /// The files.
+    pub inputs: Vec<PathBuf>,
+    /// The names of both images.
+    pub names: [String; 2],
 }
 
 impl Pair {
-    pub fn open(args: &PairArgs) -> Result<Self, Failure> {
-        let (left, right) = MockCamera::open_pair(&args.left, &args.right)?;
-        let alpha = |camera: &MockCamera, path: &std::path::Path| {
+    /// Of two files.
+    pub fn open(left: &Path, right: &Path) -> Result<Self, Failure> {
+        let (a, b) = MockCamera::open_pair(left, right)?;
+        Self::new([a, b], [left, right], vec![left.to_owned(), right.to_owned()])
+    }
+
+    /// Of two cameras, and the files that each is of.
+    pub fn new(cameras: [MockCamera; 2], of: [&Path; 2], inputs: Vec<PathBuf>) -> Result<Self, Failure> {
+        let name = |path: &Path| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        let alpha = |(camera, path): (&MockCamera, &&Path)| {
             camera.had_alpha().then(|| format!("{}: the alpha channel is dropped", path.display()))
         };
-        let notes = [alpha(&left, &args.left), alpha(&right, &args.right)].into_iter().flatten().collect();
-        let (width, height) = (left.format().width, left.format().height);
-        let pictures = (left.picture(), right.picture());
-        let camera = CameraPair::new(GreyLines::new(left)?, GreyLines::new(right)?, 0)?;
-        Ok(Self { camera, left: pictures.0, right: pictures.1, width, height, notes })
+        let notes: Vec<_> = cameras.iter().zip(&of).filter_map(alpha).collect();
+        let (width, height) = (cameras[0].format().width, cameras[0].format().height);
+        let [left, right] = cameras.each_ref().map(MockCamera::picture);
+        let [a, b] = cameras;
+        let camera = CameraPair::new(GreyLines::new(a)?, GreyLines::new(b)?, 0)?;
+        Ok(Self { camera, left, right, width, height, notes, inputs, names: of.map(name) })
     }
 }
 

@@ -13,7 +13,7 @@ use stereopsis_host::mock::MockCamera;
 use stereopsis_host::pair::{self, PairCheck, PairFault, PairMatches};
 use stereopsis_host::rows::Rows;
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct SearchArgs {
     /// How many whole disparities are searched: 16 to 256, at most the images' width; or auto, as many as
     /// the images show
@@ -39,7 +39,7 @@ impl SearchArgs {
 }
 
 /// What the images show.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct MaskArgs {
     /// Mask of the left image, 0 where it shows nothing, as rectify writes it; without one, that beside
     /// rectified.json where --calib is that file, else all is valid

@@ -6,7 +6,9 @@
 //! * `shared`: the options that several have. `input`: images and search, checked against each other. `look`:
 //!   what is seen of a pair before it is matched.
 //! * `frame`: a pair through the pipeline.
-//! * `image_files`: the images that a pattern names. `progress`: how far the work is.
+//! * `image_files`: the images that a pattern names. `sources`: what `match` matches. `many`, `settings`: more
+//!   than one pair, and more than one way. `progress`: how far the work is.
+//! * `doctor`, `shell`: the program itself.
 //! * `rectified`, `results`, `place`: what is written. `failure`: what is said when it cannot be done.
 
 mod bench;
@@ -14,6 +16,7 @@ mod bundle;
 mod calib;
 mod calibrate;
 mod demo;
+mod doctor;
 mod eval;
 mod failure;
 mod features;
@@ -24,6 +27,7 @@ mod image_files;
 mod input;
 mod inputs;
 mod look;
+mod many;
 mod r#match;
 mod odometry;
 mod place;
@@ -35,13 +39,17 @@ mod rectified;
 mod rectify;
 mod replay;
 mod results;
+mod scale;
+mod settings;
 mod shared;
+mod shell;
+mod sources;
 mod structure;
 mod uncalibrated;
 mod walk;
 
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use failure::Failure;
 use shared::print;
 use std::ffi::OsString;
@@ -52,7 +60,20 @@ use stereopsis_host::output::protect;
 
 /// What is told to one who names another command.
 const COMMANDS: &str = "the commands are demo, plan, match, eval, bench, calibrate, calib, rectify, features, focus, \
-                        fundamental, pose, bundle, odometry, structure, walk, record and replay";
+                        fundamental, pose, bundle, odometry, structure, walk, record, replay, doctor, completions and \
+                        man";
+
+/// What one who gives no command is told.
+const BEGINNING: &str = "a command is missing; these are what one begins with, and --help lists all:
+  stereo demo --out demo         matches a built-in scene and compares it with its true depth
+  stereo match --left left.png --right right.png --disparities auto --out depth
+                                 matches a rectified pair: disparity, depth, a report
+  stereo calibrate --left 'left*.png' --right 'right*.png' --pattern 9x6 --square-mm 25 --out rig.yml
+                                 finds two cameras and their lenses from images of a chessboard
+  stereo plan --baseline-mm 60 --focal-px 420 --size 320x240 --nearest 0.4 --farthest 5
+                                 says what a rig will tell, and what it takes, before it is built
+  stereo eval --found depth/disparity.pfm --truth truth.pfm
+                                 compares disparities with a known truth";
 
 const EXAMPLES: &str = "Examples:
   stereo demo --out demo-out
@@ -131,6 +152,13 @@ enum Command {
     /// Drive through a built-in street: a sequence of frames with true poses, for odometry
     #[command(after_help = walk::EXAMPLE)]
     Walk(walk::WalkArgs),
+    /// Say what this program is and what it finds on this machine: kernels, processor, threads
+    Doctor(doctor::DoctorArgs),
+    /// Print the script that completes commands and options in a shell
+    #[command(after_help = shell::COMPLETIONS)]
+    Completions(shell::CompletionsArgs),
+    /// Write pages of the manual, one for each command
+    Man(shell::ManArgs),
 }
 
 /// The exit status of a wrong command line.
@@ -144,6 +172,10 @@ fn main() -> ExitCode {
         }
         Err(Stop::Help(text)) => (print(&text), ExitCode::FAILURE),
         Err(Stop::Usage(failure)) => (Err(failure), ExitCode::from(USAGE)),
+        Err(Stop::NoCommand) => {
+            let _ = writeln!(io::stderr(), "stereo: {BEGINNING}");
+            return ExitCode::from(USAGE);
+        }
     };
     let Err(failure) = outcome else { return ExitCode::SUCCESS };
     // When standard error is closed, too, there is nobody left to tell.
@@ -171,6 +203,9 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Odometry(args) => odometry::run(&args),
         Command::Structure(args) => structure::run(&args),
         Command::Walk(args) => walk::run(&args),
+        Command::Doctor(args) => doctor::run(&args),
+        Command::Completions(args) => shell::completions(&args, Cli::command()),
+        Command::Man(args) => shell::man(&args, Cli::command()),
     }
 }
 
@@ -181,10 +216,16 @@ enum Stop {
     Help(String),
     /// The command line is wrong.
     Usage(Failure),
+    /// The command line is empty.
+    NoCommand,
 }
 
 /// Reads the command line.
 fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, Stop> {
+    let args: Vec<_> = args.into_iter().collect();
+    if args.len() < 2 {
+        return Err(Stop::NoCommand);
+    }
     Cli::try_parse_from(args).map(|cli| cli.command).map_err(|error| match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => Stop::Help(error.render().to_string()),
         _ => Stop::Usage(Failure::new(usage_line(&error, COMMANDS))),

@@ -4,18 +4,21 @@ use crate::failure::Failure;
 use crate::frame::{Matched, matched};
 use crate::input::Pair;
 use crate::look::{Look, MaskArgs, SearchArgs, look};
+use crate::many;
 use crate::place::{json, png};
 use crate::rectified::{self, RectifiedCameras};
 use crate::results::{self, DepthArgs, DepthFiles, figures, place};
-use crate::shared::{BalanceArgs, MethodArgs, PairArgs, RectifyOptions, Unit, colour_range, length, print};
+use crate::scale::{camera, scale};
+use crate::settings::{self, Setting, setting};
+use crate::shared::{BalanceArgs, MethodArgs, RectifyOptions, colour_range, length, print};
+use crate::sources::{SourceArgs, Sources};
 use clap::Args;
 use image::{RgbImage, imageops};
 use std::fmt::Display;
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use stereopsis::depth::DepthScale;
-use stereopsis::geometry::camera::{Camera, ImageSize, RectifiedRig};
-use stereopsis_host::calibration::Calibration;
+use stereopsis::geometry::camera::ImageSize;
 use stereopsis_host::colour::ColourScale;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::masked::MaskedPair;
@@ -28,6 +31,9 @@ use stereopsis_host::rows::Rows;
 /// What follows the options in the command's help.
 pub const EXAMPLE: &str = "Example:
   stereo match --left left.png --right right.png --disparities 64 --calib calib.txt --out out/scene
+  stereo match --left 'left*.png' --right 'right*.png' --disparities 64 --out out/all
+  ffmpeg -i pair.mp4 -f rawvideo -pix_fmt gray - | stereo match --raw 1280x480 --side-by-side - --disparities 64 \
+                           --out out/frames
   stereo match --left raw_left.png --right raw_right.png --disparities 64 --rectify --calib stereo.yml --out \
                            out/raw
 
@@ -38,12 +44,14 @@ Written into the folder: disparity.pfm (px, infinity where there is no answer), 
                            answer), summary.json and report.html; with --calib also depth.pfm (metres), \
                            depth.png (16 bit, millimetres) and cloud.ply; with --rectify also \
                            rectified_left.png, rectified_right.png and rectified.json, the cameras of all \
-                           the others. The files appear together when all of them are complete.";
+                           the others. The files appear together when all of them are complete. Of several pairs \
+                           each has a numbered folder with these files, and frames.csv has a line for each; \
+                           what is finished is not done again.";
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct MatchArgs {
     #[command(flatten)]
-    pub pair: PairArgs,
+    pub source: SourceArgs,
     #[command(flatten)]
     pub search: SearchArgs,
     #[command(flatten)]
@@ -77,6 +85,11 @@ pub struct MatchArgs {
     /// searched where none are given
     #[arg(long, value_name = "A:B", value_parser = colour_range, allow_negative_numbers = true)]
     pub colour_range: Option<ColourScale>,
+    /// Match one pair with each of several settings, METHOD, METHOD:FILTER or METHOD:FILTER:NOISE with commas
+    /// between them: a folder for each, a table, and settings.png, which shows all side by side
+    #[arg(long, value_name = "SETTINGS", value_delimiter = ',', value_parser = setting, conflicts_with_all =
+        ["method", "filter", "noise"])]
+    pub settings: Vec<Setting>,
     /// Print summary.json in place of the figures
     #[arg(long, conflicts_with = "quiet")]
     pub json: bool,
@@ -101,8 +114,41 @@ struct Scene {
     check: Option<PairCheck>,
 }
 
+/// What a folder that is finished says of its images and settings, of which there are many.
+pub const FINISHED: &str = "finished.json";
+
 pub fn run(args: &MatchArgs) -> Result<(), Failure> {
-    let mut pair = Pair::open(&args.pair)?;
+    let mut notes = Vec::new();
+    let sources = args.source.open(&mut notes)?;
+    if !args.settings.is_empty() {
+        let Sources::One(input) = &sources else {
+            return Err(Failure::new("--settings: is for one pair; give one, or one setting to many pairs"));
+        };
+        return settings::run(args, input);
+    }
+    for note in notes {
+        let _ = writeln!(std::io::stderr(), "stereo: note: {}", one_line(&note));
+    }
+    match sources {
+        Sources::Many(inputs) => {
+            let count = inputs.len();
+            many::run(args, inputs.into_iter().map(Ok), Some(count))
+        }
+        Sources::Raw(frames) => many::run(args, frames, None),
+        Sources::One(input) => {
+            let (summary, rectified) = solve(args, input.open()?, None, "")?;
+            tell(args, &summary, rectified.as_ref())
+        }
+    }
+}
+
+/// Matches a pair and writes its results, and `mark` where there is one; warnings begin with `label`.
+pub fn solve(
+    args: &MatchArgs,
+    mut pair: Pair,
+    mark: Option<&str>,
+    label: &str,
+) -> Result<(Summary, Option<RectifiedCameras>), Failure> {
     args.search.check(&args.method, pair.width, pair.height)?;
     let (scene, matched) = if args.rectify {
         raw(args, &mut pair)?
@@ -129,13 +175,13 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let summary = Summary::new(args.method.method, args.method.filter.name(), &config, &outcome, scale, None);
     let summary = summary.with_noise(meter.as_ref()).with_balance(balance).with_rows(scene.rows);
     let masks = if args.rectify { None } else { args.masks.files(&args.calib) };
-    let inputs = [&args.pair.left, &args.pair.right].into_iter().chain(&args.calib);
+    let inputs = pair.inputs.iter().chain(&args.calib);
     let inputs = inputs.chain(masks.iter().flatten()).map(PathBuf::as_path);
     let mut summary = summary.with_pair(scene.check.clone()).with_inputs(inputs);
     let depth = scale.map(|s| DepthFiles::new(&args.depth, &outcome.map, s, &scene.left, &mut summary));
     let report = Report {
-        left_name: &name(&args.pair.left),
-        right_name: &name(&args.pair.right),
+        left_name: &pair.names[0],
+        right_name: &pair.names[1],
         left: &scene.left,
         right: &scene.right,
         map: &outcome.map,
@@ -152,7 +198,10 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         staging.write(right, |out| png(out, &scene.right))?;
         staging.write(cameras, |out| json(out, rectified))?;
     }
-    let stale: Vec<_> = results::WITH_DEPTH.into_iter().chain(RECTIFIED).collect();
+    if let Some(mark) = mark {
+        staging.write(FINISHED, |out| out.write_all(mark.as_bytes()))?;
+    }
+    let stale: Vec<_> = results::WITH_DEPTH.into_iter().chain(RECTIFIED).chain([FINISHED]).collect();
     staging.commit(&stale)?;
 
     let warnings = [
@@ -165,16 +214,21 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let warnings = warnings.into_iter().flatten().map(|warning| format!("warning: {warning}"));
     for line in notes.chain(warnings) {
         // Nobody is left to tell when standard error is closed.
-        let _ = writeln!(std::io::stderr(), "stereo: {line}");
+        let _ = writeln!(std::io::stderr(), "stereo: {label}{line}");
     }
+    Ok((summary, scene.rectified))
+}
+
+/// Prints the figures of one pair as the options ask for.
+fn tell(args: &MatchArgs, summary: &Summary, rectified: Option<&RectifiedCameras>) -> Result<(), Failure> {
     if args.quiet {
         return Ok(());
     }
     if args.json {
-        return print(&(serde_json::to_string_pretty(&summary)? + "\n"));
+        return print(&(serde_json::to_string_pretty(summary)? + "\n"));
     }
-    let mut text = figures(&summary);
-    if let Some(rectified) = &scene.rectified {
+    let mut text = figures(summary);
+    if let Some(rectified) = rectified {
         text += &rectified.figures();
     }
     text += &place(&args.out);
@@ -210,48 +264,4 @@ fn raw(args: &MatchArgs, pair: &mut Pair) -> Result<(Scene, Matched), Failure> {
     let cameras = RectifiedCameras::new(calibration.format, &rectification, rows, &rectification.report());
     let scene = Scene { left, right, scale: Some(scale), rectified: Some(cameras), rows: aligned, check };
     Ok((scene, matched?))
-}
-
-/// The camera of a rectified pair.
-fn camera(rig: &RectifiedRig) -> Option<Camera<f64>> {
-    let (f, (cx, cy)) = (f64::from(rig.focal_px()), rig.principal_point());
-    Camera::new(f, f, cx.into(), cy.into()).ok()
-}
-
-/// The scale of depths in images that are rectified already, where there is a calibration.
-fn scale(args: &MatchArgs, pair: &Pair) -> Result<Option<DepthScale>, Failure> {
-    if args.options.alpha.is_some() {
-        return Err(Failure::new("--alpha: is for raw images; give --rectify too"));
-    }
-    if let Some((focal_px, baseline_mm)) = args.focal_px.zip(args.baseline_mm) {
-        let [cx, cy] = [pair.width, pair.height].map(|side| (f32::from(side) - 1.0) / 2.0);
-        let rig = RectifiedRig::new(focal_px, baseline_mm / 1000.0, cx, cy);
-        let scale =
-            rig.map_err(|e| e.to_string()).and_then(|rig| DepthScale::new(&rig).map_err(|e| e.to_string()));
-        return scale.map(Some).map_err(|e| Failure::new(format!("--focal-px, --baseline-mm: {e}")));
-    }
-    match args.calib.len() {
-        0 if args.depth.depth_unit.is_some() || args.depth.max_depth.is_some() => {
-            return Err(Failure::new("--depth-unit, --max-depth: are of depths; give --calib too"));
-        }
-        0 if args.options.unit.is_some() => {
-            return Err(Failure::new("--unit: is that of --calib, which is missing"));
-        }
-        0 => return Ok(None),
-        1 | 2 => {}
-        _ => {
-            return Err(Failure::new(
-                "--calib: is given more than twice; a file of both cameras or one of each is needed",
-            ));
-        }
-    }
-    let calibration =
-        Calibration::open_all(&args.calib, &args.pair.left, args.options.unit.map(Unit::metres))?;
-    calibration.check_size(pair.width, pair.height)?;
-    let scale = DepthScale::new(&calibration.rig);
-    scale.map(Some).map_err(|e| Failure::new(format!("{}: {e}", calibration.path.display())))
-}
-
-fn name(path: &Path) -> String {
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }

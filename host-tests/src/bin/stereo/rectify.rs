@@ -49,7 +49,7 @@ pub struct RectifyArgs {
 }
 
 pub fn run(args: &RectifyArgs) -> Result<(), Failure> {
-    let pair = Pair::open(&args.pair)?;
+    let pair = Pair::open(&args.pair.left, &args.pair.right)?;
     if let Some(matches) = &args.matches {
         return uncalibrated::run(&pair, matches, &args.out);
     }

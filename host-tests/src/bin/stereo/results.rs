@@ -20,7 +20,7 @@ use stereopsis_host::report::{Exposure, Report, Summary};
 pub const WITH_DEPTH: [&str; 3] = ["depth.pfm", "depth.png", "cloud.ply"];
 
 /// The options of the files of depths.
-#[derive(Debug, Default, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub struct DepthArgs {
     /// Length of a step of depth.png, m: 0.001 where none is given, 1/256 as KITTI has it, 1/5000 as TUM has
     /// it

@@ -31,7 +31,7 @@ pub struct RangeArgs {
     pub min_disparity: u16,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct MethodArgs {
     /// fast (4-bit census, 9x7 window), block (8-bit census, 9x9 window), or along paths sgm-lean, sgm and
     /// sgm-edge
@@ -63,7 +63,7 @@ impl MethodArgs {
     }
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct BalanceArgs {
     /// Whether the right image is brought to the left one's exposure: auto, where they clearly differ and
     /// the method compares brightness (sgm-lean, sgm, sgm-edge), or none
@@ -86,7 +86,7 @@ enum BalanceChoice {
 }
 
 /// How rigs are rectified.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct RectifyOptions {
     /// What is shown: from 0, nothing but what both cameras see, to 1, all of both images; by default at
     /// their own scale
@@ -156,7 +156,7 @@ pub fn filter(text: &str) -> Result<Filter, &'static str> {
         .ok_or("the filters are dense, default and strict")
 }
 
-fn kernel(text: &str) -> Result<Kernel, String> {
+pub fn kernel(text: &str) -> Result<Kernel, String> {
     Kernel::available().find(|kernel| kernel.name() == text).ok_or_else(|| {
         let names: Vec<_> = Kernel::available().map(Kernel::name).collect();
         format!("this processor's are {}; STEREO_KERNEL names one too", names.join(", "))

@@ -1,0 +1,171 @@
+//! Many pairs, a numbered folder for each. What is finished is not done again, unless its images or the
+//! settings differ.
+
+use crate::failure::Failure;
+use crate::r#match::{FINISHED, MatchArgs, solve};
+use crate::shared::print;
+use crate::sources::Input;
+use serde::Serialize;
+use serde_json::Value;
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use stereopsis_host::command_line::one_line;
+use stereopsis_host::output::Staging;
+
+/// The table of all pairs.
+const TABLE: &str = "frames.csv";
+
+/// A line of the table. Names are those of the table and of `--json`.
+#[derive(Serialize)]
+pub struct Line {
+    /// The pair's number, or the name of its settings.
+    frame: String,
+    /// Its files.
+    input: String,
+    density: f64,
+    median_px: Option<f64>,
+    time_ms: f64,
+    state_bytes: u64,
+}
+
+impl Line {
+    /// What a folder's summary says.
+    pub fn of(folder: &Path, frame: String, input: String) -> Result<Self, Failure> {
+        let path = folder.join("summary.json");
+        let failed = |e: &dyn std::fmt::Display| Failure::new(format!("{}: {e}", path.display()));
+        let text = fs::read(&path).map_err(|e| failed(&e))?;
+        let summary: Value = serde_json::from_slice(&text).map_err(|e| failed(&e))?;
+        let number = |name: &str| summary[name].as_f64().unwrap_or(f64::NAN);
+        Ok(Self {
+            frame,
+            input,
+            density: number("density"),
+            median_px: summary["disparity_px"]["median"].as_f64(),
+            time_ms: number("time_ms"),
+            state_bytes: summary["state_bytes"].as_u64().unwrap_or(0),
+        })
+    }
+}
+
+/// Matches all of them.
+pub fn run(
+    args: &MatchArgs,
+    inputs: impl Iterator<Item = Result<Input, Failure>>,
+    count: Option<usize>,
+) -> Result<(), Failure> {
+    Staging::probe(&args.out)?;
+    let settings = args.settings_text();
+    let mut beside = Vec::new();
+    for path in args.files() {
+        let failed = |e| Failure::new(format!("{}: cannot be read ({e})", path.display()));
+        beside.extend(fs::read(&path).map_err(failed)?);
+    }
+    let of = count.map_or(String::new(), |count| format!(" of {count}"));
+    let mut lines = Vec::new();
+    for (number, input) in (1..).zip(inputs) {
+        let input = input?;
+        let frame = format!("{number:06}");
+        let out = args.out.join(&frame);
+        let content = fnv(input.bytes()?.iter().chain(&beside));
+        let mark = format!(
+            "{{\n  \"version\": {:?},\n  \"content\": \"{content:016x}\",\n  \"settings\": {settings:?}\n}}\n",
+            env!("CARGO_PKG_VERSION")
+        );
+        let is_done = fs::read_to_string(out.join(FINISHED)).is_ok_and(|found| found == mark);
+        let what = if is_done { "is there already" } else { "is being matched" };
+        if !args.quiet {
+            // Nobody is left to tell when standard error is closed.
+            let _ = writeln!(std::io::stderr(), "stereo: {frame}{of} {what}: {}", one_line(&input.name()));
+        }
+        if !is_done {
+            let one = MatchArgs { out: out.clone(), ..args.clone() };
+            let named = |e: Failure| Failure::new(format!("{frame}: {e}"));
+            let pair = input.open().map_err(named)?;
+            solve(&one, pair, Some(&mark), &format!("{frame}: ")).map_err(named)?;
+        }
+        lines.push(Line::of(&out, frame, input.name())?);
+    }
+    write_table(&args.out, TABLE, &lines, None)?;
+    tell(args, &lines)
+}
+
+/// Writes the table of a run, and a picture where there is one.
+pub fn write_table(
+    out: &Path,
+    name: &str,
+    lines: &[Line],
+    picture: Option<(&str, &image::RgbImage)>,
+) -> Result<(), Failure> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    for line in lines {
+        table.serialize(line)?;
+    }
+    let bytes = table.into_inner().map_err(|e| Failure::new(e.to_string()))?;
+    let mut staging = Staging::new(out)?;
+    staging.write(name, |out| out.write_all(&bytes))?;
+    if let Some((name, picture)) = picture {
+        staging.write(name, |out| crate::place::png(out, picture))?;
+    }
+    Ok(staging.commit(&[])?)
+}
+
+/// Prints the lines as the options ask for.
+pub fn tell(args: &MatchArgs, lines: &[Line]) -> Result<(), Failure> {
+    if args.quiet {
+        return Ok(());
+    }
+    if args.json {
+        return print(&(serde_json::to_string_pretty(lines)? + "\n"));
+    }
+    let longest = lines.iter().map(|line| line.frame.chars().count()).max().unwrap_or(0).max(6);
+    let mut text = format!("{:<longest$} answered, % median, px  time, ms  state, bytes  images\n", "frame");
+    for line in lines {
+        let median = line.median_px.map_or("-".to_owned(), |px| format!("{px:.2}"));
+        let _ = writeln!(
+            text,
+            "{:<longest$} {:11.1} {median:>10} {:9.1} {:13}  {}",
+            line.frame,
+            100.0 * line.density,
+            line.time_ms,
+            line.state_bytes,
+            one_line(&line.input)
+        );
+    }
+    let _ = writeln!(text, "results are in {}", one_line(&args.out.display().to_string()));
+    print(&text)
+}
+
+/// Fowler, Noll and Vo's hash, 1a, of 64 bits: the same in every version.
+fn fnv<'a>(bytes: impl Iterator<Item = &'a u8>) -> u64 {
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+impl MatchArgs {
+    /// All that results depend on but the images, as text.
+    fn settings_text(&self) -> String {
+        let Self { search, method, balance, calib, rectify, masks, options, depth, .. } = self;
+        let rig = (self.focal_px, self.baseline_mm, self.colour_range);
+        format!("{:?}", (search, method, balance, calib, rectify, masks, options, depth, rig))
+    }
+
+    /// The files that all pairs share.
+    fn files(&self) -> Vec<PathBuf> {
+        let masks = if self.rectify { None } else { self.masks.files(&self.calib) };
+        self.calib.iter().cloned().chain(masks.into_iter().flatten()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of the authors' page.
+    #[test]
+    fn hashes_are_the_published_ones() {
+        assert_eq!(fnv(b"".iter()), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(fnv(b"a".iter()), 0xaf63_dc4c_8601_ec8c);
+        assert_eq!(fnv(b"foobar".iter()), 0x8594_4171_f739_67e8);
+    }
+}

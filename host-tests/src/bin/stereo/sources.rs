@@ -26,7 +26,7 @@ pub struct SourceArgs {
     side_by_side: Option<PathBuf>,
     /// Columns and rows, of both halves together, of raw frames of 8-bit grey pixels, one after another, as
     /// ffmpeg writes them with -f rawvideo -pix_fmt gray
-    #[arg(long, value_name = "COLUMNSxROWS", requires = "side_by_side", value_parser = raw_size)]
+    #[arg(long, value_name = "COLUMNSxROWS", requires = "side_by_side", conflicts_with_all = ["left", "right"], value_parser = raw_size)]
     raw: Option<[u32; 2]>,
 }
 

@@ -161,7 +161,7 @@ impl Plan {
         let told = distances(wanted.nearest_m, wanted.farthest_m).into_iter().filter(|z| reach.tells(*z));
         let depths = told.map(|depth_m| Depth::of(&rig, &reach, depth_m)).collect();
         let size = ImageSize { width: rig.width, height: rig.height };
-        let tables = Tables::new();
+        let tables = Tables::read();
         let methods: Vec<MethodName> = wanted.methods.iter().filter_map(|name| name.parse().ok()).collect();
         let each = wanted.cores.iter().flat_map(|core| methods.iter().map(move |method| (core, *method)));
         let work = each.filter_map(|(&(core, clock_mhz), method)| {

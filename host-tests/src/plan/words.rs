@@ -56,7 +56,7 @@ impl Plan {
 
     /// What the methods take: memory, then frames in a second on each core.
     fn takes(&self, text: &mut String) {
-        let bytes: [(&str, fn(&Work) -> usize); 3] = [
+        let bytes: [(&str, Bytes); 3] = [
             ("  RAM, bytes", |work| work.ram_bytes),
             ("  stack, bytes", |work| work.stack_bytes as usize),
             ("  flash, bytes", |work| work.flash_bytes as usize),
@@ -81,6 +81,9 @@ impl Plan {
                   (docs/performance.md)\n";
     }
 }
+
+/// A number of bytes that is told.
+type Bytes = fn(&Work) -> usize;
 
 /// A line of a table.
 fn line(text: &mut String, name: &str, cells: impl Iterator<Item = String>) {

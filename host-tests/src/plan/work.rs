@@ -51,7 +51,7 @@ pub struct Tables {
 
 impl Tables {
     /// Those of this build.
-    pub fn new() -> Self {
+    pub fn read() -> Self {
         Self { firmware: firmware(), growth: growth() }
     }
 
@@ -121,7 +121,7 @@ mod tests {
 
     fn instructions(core: &'static str, method: MethodName, size: (u16, u16), disparities: u16) -> f64 {
         let size = ImageSize { width: size.0, height: size.1 };
-        Tables::new().work(core, 100.0, method, size, disparities).expect("it was measured").instructions
+        Tables::read().work(core, 100.0, method, size, disparities).expect("it was measured").instructions
     }
 
     /// Lines of `docs/performance.md`.

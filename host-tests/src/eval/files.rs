@@ -73,8 +73,8 @@ impl DisparityFile {
     }
 }
 
-/// A truth in px, 0 where a pixel is not scored: where nothing is known, where the mask is not 255, and in the
-/// first columns that are left out.
+/// A truth in px, 0 where a pixel is not scored: where nothing is known, where the mask is not 255, and in
+/// the first columns that are left out.
 pub fn truth(
     path: &Path,
     file: &DisparityFile,

@@ -4,6 +4,9 @@ use super::{Plan, Rig, STEP, Search, Tables};
 use crate::run::MethodName;
 use stereopsis::geometry::camera::ImageSize;
 
+/// A clock that microcontrollers have, at most, MHz.
+const FASTEST_MHZ: f64 = 1000.0;
+
 /// What is wanted and not had, and what would help.
 pub fn of(plan: &Plan, tables: &Tables) -> (Vec<String>, Vec<String>) {
     let (mut limits, mut changes) = (Vec::new(), Vec::new());
@@ -112,13 +115,34 @@ fn memory(plan: &Plan) -> Found {
         takes(least)
     );
     let method: MethodName = least.method.parse().ok()?;
-    let Search { disparities, .. } = plan.search;
     let stack = least.stack_bytes as usize;
-    let fits = |width: u16| method.pipeline_bytes(width, disparities) + stack <= most;
-    let width = (disparities..plan.rig.width).rev().find(|&width| fits(width));
-    let changes =
-        width.map(|width| format!("images {width} px wide would fit with {} disparities", disparities));
-    Some((limit, changes.into_iter().collect()))
+    let fits = |width: u16, disparities: u16| method.pipeline_bytes(width, disparities) + stack <= most;
+    let Search { disparities, .. } = plan.search;
+    let narrower = (disparities..plan.rig.width).rev().find(|&width| fits(width, disparities));
+    let change = match narrower {
+        Some(width) => Some(format!("images {width} px wide would fit with {disparities} disparities")),
+        None => smaller(plan).find(|(rig, search)| fits(rig.width, search.disparities)).map(
+            |(Rig { width, height, .. }, Search { disparities, .. })| {
+                format!("images of {width} x {height} px would fit with {disparities} disparities")
+            },
+        ),
+    };
+    Some((limit, change.into_iter().collect()))
+}
+
+/// The rig with images of a half of the size, a third, and so on, and its searches: an image of so many times
+/// fewer columns has so many times fewer disparities.
+fn smaller(plan: &Plan) -> impl Iterator<Item = (Rig, Search)> {
+    let (rig, wanted) = (plan.rig, &plan.wanted);
+    (2..=16u16)
+        .map(move |times| Rig {
+            focal_px: rig.focal_px / f64::from(times),
+            width: rig.width / times,
+            height: rig.height / times,
+            ..rig
+        })
+        .take_while(|rig| rig.width >= STEP && rig.height > 0)
+        .map(|rig| (rig, Search::of(&rig, wanted.nearest_m, wanted.farthest_m)))
 }
 
 /// Whether any core is fast enough.
@@ -134,14 +158,8 @@ fn speed(plan: &Plan, tables: &Tables) -> Found {
     );
     let method: MethodName = best.method.parse().ok()?;
     let mut changes = Vec::new();
-    // An image of so many times fewer columns has so many times fewer disparities.
-    let smaller = (2..=16u16).map(|times| (times, plan.rig.width / times, plan.rig.height / times));
-    for (times, width, height) in smaller {
-        let rig = Rig { focal_px: plan.rig.focal_px / f64::from(times), width, height, ..plan.rig };
-        if width < STEP || height == 0 {
-            break;
-        }
-        let search = Search::of(&rig, plan.wanted.nearest_m, plan.wanted.farthest_m);
+    for (rig, search) in smaller(plan) {
+        let (width, height) = (rig.width, rig.height);
         let size = ImageSize { width, height };
         let work = tables.work(best.core, best.clock_mhz, method, size, search.disparities)?;
         if work.frames_per_s >= wanted {
@@ -150,14 +168,16 @@ fn speed(plan: &Plan, tables: &Tables) -> Found {
                  m within {} %",
                 search.disparities,
                 work.frames_per_s,
-                plan.reach_m / f64::from(times),
+                search.reach(&rig).within_m(plan.wanted.accuracy),
                 percent(plan.wanted.accuracy)
             ));
             break;
         }
     }
     let clock = best.clock_mhz * wanted / best.frames_per_s;
-    changes.push(format!("{} would need about {clock:.0} MHz for it", best.core));
+    if clock <= FASTEST_MHZ {
+        changes.push(format!("{} would need about {clock:.0} MHz for it", best.core));
+    }
     Some((limit, changes))
 }
 

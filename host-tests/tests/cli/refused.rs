@@ -102,8 +102,8 @@ fn bad_options() {
     bench.refused(&["calib"], "subcommand");
     bench.refused(
         &["sharpen"],
-        "the commands are demo, plan, match, eval, bench, calibrate, calib, rectify, features, focus, fundamental, \
-         pose, bundle, odometry, structure, walk, record, replay, doctor, completions and man",
+        "the commands are demo, plan, match, eval, bench, calibrate, calib, rectify, features, focus, \
+         fundamental, pose, bundle, odometry, structure, walk, record, replay, doctor, completions and man",
     );
     bench.refused(&bench.arguments(&[("--left", "two\nlines.png")]), "two\\nlines.png");
 }

@@ -42,14 +42,19 @@ struct Found {
 /// The names of those that the processor has.
 macro_rules! detected {
     ($detect:ident: $($name:tt),*) => {
-        [$(($name, std::arch::$detect!($name))),*].into_iter().filter(|(_, has)| *has).map(|(name, _)| name).collect()
+        [$(($name, std::arch::$detect!($name))),*]
+            .into_iter()
+            .filter_map(|(name, has)| has.then_some(name))
+            .collect()
     };
 }
 
 #[cfg(target_arch = "x86_64")]
 fn cpu_features() -> Vec<&'static str> {
-    detected!(is_x86_feature_detected: "sse2", "ssse3", "sse4.1", "avx", "avx2", "bmi2", "avx512f", "avx512bw",
-        "avx512vl", "avx512vbmi")
+    detected!(
+        is_x86_feature_detected: "sse2", "ssse3", "sse4.1", "avx", "avx2", "bmi2", "avx512f", "avx512bw",
+        "avx512vl", "avx512vbmi"
+    )
 }
 
 #[cfg(target_arch = "aarch64")]

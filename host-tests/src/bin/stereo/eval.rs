@@ -24,9 +24,9 @@ pub const EXAMPLE: &str = "Examples:
   stereo eval --scenes kitti/training --method sgm --disparities auto --csv kitti.csv
 
 Disparities are PFM (px) or PNG (px x 256, 0 where there is none). Folders are those of Middlebury 2014 \
-                           (SCENE/disp0.pfm), ETH3D (SCENE/disp0GT.pfm), KITTI (disp_occ_0/000000_10.png) and \
-                           this program's (SCENE/gt.png and meta.json, or what demo writes); results in them \
-                           are SCENE/disparity.pfm, SCENE/disp0.pfm, SCENE.pfm or SCENE.png.";
+                           (SCENE/disp0.pfm), ETH3D (SCENE/disp0GT.pfm), KITTI (disp_occ_0/000000_10.png) \
+                           and this program's (SCENE/gt.png and meta.json, or what demo writes); results in \
+                           them are SCENE/disparity.pfm, SCENE/disp0.pfm, SCENE.pfm or SCENE.png.";
 
 #[derive(Debug, Args)]
 pub struct EvalArgs {
@@ -55,15 +55,17 @@ pub struct EvalArgs {
     #[arg(long, value_name = "FILE", requires = "found")]
     depths_by: Option<PathBuf>,
     /// Length of a step of a PNG of depths, m: 0.001 where none is given
-    #[arg(long, value_name = "M", requires = "depths_by", value_parser = depth_unit, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", requires = "depths_by", value_parser = depth_unit,
+        allow_negative_numbers = true)]
     depth_unit: Option<f64>,
     /// How many whole disparities are searched in scenes that are matched here, or auto; what the scene says
     /// where none is given, and auto where it says nothing
-    #[arg(long, value_name = "N", conflicts_with = "found", value_parser = disparities, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", conflicts_with = "found", value_parser = disparities,
+        allow_negative_numbers = true)]
     disparities: Option<Disparities>,
     /// The smallest disparity searched, px
-    #[arg(long, value_name = "M", conflicts_with = "found", value_parser = min_disparity, allow_negative_numbers =
-        true)]
+    #[arg(long, value_name = "M", conflicts_with = "found", value_parser = min_disparity,
+        allow_negative_numbers = true)]
     min_disparity: Option<u16>,
     #[command(flatten)]
     method: MethodArgs,
@@ -245,8 +247,8 @@ impl Evaluation {
                 let _ = write!(text, "{cell:>9}");
             }
         }
-        text += "\nin percent: bad and D1 of the answers, missed of the scored pixels (no answer, or over 2 px off), \
-                 unsure of the\nway from the best order of the answers to a random one\n";
+        text += "\nin percent: bad and D1 of the answers, missed of the scored pixels (no answer, or over 2 px \
+                 off), unsure of the\nway from the best order of the answers to a random one\n";
         text
     }
 

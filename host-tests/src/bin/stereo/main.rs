@@ -6,8 +6,9 @@
 //! * `shared`: the options that several have. `input`: images and search, checked against each other. `look`:
 //!   what is seen of a pair before it is matched.
 //! * `frame`: a pair through the pipeline.
-//! * `image_files`: the images that a pattern names. `sources`: what `match` matches. `many`, `settings`: more
-//!   than one pair, and more than one way. `progress`: how far the work is.
+//! * `image_files`: the images that a pattern names. `match_args`, `sources`: what `match` matches. `solve`:
+//!   a pair into a folder. `many`, `settings`: more than one pair, and more than one way.
+//! * `progress`: how far the work is.
 //! * `doctor`, `shell`: the program itself.
 //! * `rectified`, `results`, `place`: what is written. `failure`: what is said when it cannot be done.
 
@@ -29,6 +30,7 @@ mod inputs;
 mod look;
 mod many;
 mod r#match;
+mod match_args;
 mod odometry;
 mod place;
 mod plan;
@@ -43,6 +45,7 @@ mod scale;
 mod settings;
 mod shared;
 mod shell;
+mod solve;
 mod sources;
 mod structure;
 mod uncalibrated;
@@ -59,9 +62,9 @@ use stereopsis_host::command_line::{one_line, usage_line};
 use stereopsis_host::output::protect;
 
 /// What is told to one who names another command.
-const COMMANDS: &str = "the commands are demo, plan, match, eval, bench, calibrate, calib, rectify, features, focus, \
-                        fundamental, pose, bundle, odometry, structure, walk, record, replay, doctor, completions and \
-                        man";
+const COMMANDS: &str = "the commands are demo, plan, match, eval, bench, calibrate, calib, rectify, features, \
+                        focus, fundamental, pose, bundle, odometry, structure, walk, record, replay, \
+                        doctor, completions and man";
 
 /// What one who gives no command is told.
 const BEGINNING: &str = "a command is missing; these are what one begins with, and --help lists all:
@@ -105,7 +108,7 @@ enum Command {
     Plan(plan::PlanArgs),
     /// Match a rectified pair of images: disparity, depth, a point cloud and a report
     #[command(after_help = r#match::EXAMPLE)]
-    Match(r#match::MatchArgs),
+    Match(match_args::MatchArgs),
     /// Compare disparities of any program, or of this one, with a known truth
     #[command(after_help = eval::EXAMPLE)]
     Eval(eval::EvalArgs),

@@ -2,8 +2,9 @@
 //! settings differ.
 
 use crate::failure::Failure;
-use crate::r#match::{FINISHED, MatchArgs, solve};
+use crate::match_args::MatchArgs;
 use crate::shared::print;
+use crate::solve::{FINISHED, solve};
 use crate::sources::Input;
 use serde::Serialize;
 use serde_json::Value;
@@ -70,7 +71,8 @@ pub fn run(
         let out = args.out.join(&frame);
         let content = fnv(input.bytes()?.iter().chain(&beside));
         let mark = format!(
-            "{{\n  \"version\": {:?},\n  \"content\": \"{content:016x}\",\n  \"settings\": {settings:?}\n}}\n",
+            "{{\n  \"version\": {:?},\n  \"content\": \"{content:016x}\",\n  \"settings\": \
+             {settings:?}\n}}\n",
             env!("CARGO_PKG_VERSION")
         );
         let is_done = fs::read_to_string(out.join(FINISHED)).is_ok_and(|found| found == mark);

@@ -11,11 +11,11 @@ use stereopsis_host::run::MethodName;
 /// What follows the options in the command's help.
 pub const EXAMPLE: &str = "Examples:
   stereo plan --baseline-mm 60 --focal-px 420 --size 320x240 --nearest 0.4 --farthest 5
-  stereo plan --baseline-mm 60 --focal-mm 2.1 --sensor-width-mm 2.88 --size 320x240 --nearest 0.4 --farthest 5 \
-                           --core m7 --method fast --frame-rate 15
+  stereo plan --baseline-mm 60 --focal-mm 2.1 --sensor-width-mm 2.88 --size 320x240 --nearest 0.4 \
+                           --farthest 5 --core m7 --method fast --frame-rate 15
 
-Printed are the search, depths with their deviations, what both cameras see, memory, and estimates of the work \
-                           on each core; then what limits the rig and what to change.";
+Printed are the search, depths with their deviations, what both cameras see, memory, and estimates of the \
+                           work on each core; then what limits the rig and what to change.";
 
 #[derive(Debug, Args)]
 pub struct PlanArgs {
@@ -69,8 +69,8 @@ struct LensArgs {
     #[arg(long, value_name = "PX", value_parser = length, allow_negative_numbers = true)]
     focal_px: Option<f32>,
     /// Focal length of the lens, mm
-    #[arg(long, value_name = "MM", requires = "sensor_width_mm", value_parser = length, allow_negative_numbers =
-        true)]
+    #[arg(long, value_name = "MM", requires = "sensor_width_mm", value_parser = length,
+        allow_negative_numbers = true)]
     focal_mm: Option<f32>,
     /// Horizontal field of view, degrees, 1 to 170
     #[arg(long, value_name = "DEGREES", value_parser = angle, allow_negative_numbers = true)]

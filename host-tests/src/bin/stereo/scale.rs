@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::input::Pair;
-use crate::r#match::MatchArgs;
+use crate::match_args::MatchArgs;
 use crate::shared::Unit;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::{Camera, RectifiedRig};

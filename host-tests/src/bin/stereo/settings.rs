@@ -2,39 +2,18 @@
 
 use crate::failure::Failure;
 use crate::many::{Line, tell, write_table};
-use crate::r#match::{MatchArgs, solve};
-use crate::shared::{filter, method, noise};
+use crate::match_args::MatchArgs;
+use crate::solve::solve;
 use crate::sources::Input;
 use image::{RgbImage, imageops};
 use std::path::Path;
-use stereopsis::matching::Filter;
-use stereopsis_host::run::{MethodName, NoiseChoice};
+use stereopsis_host::run::NoiseChoice;
 
 /// The table and the picture.
 const TABLE: &str = "settings.csv";
 const PICTURE: &str = "settings.png";
 /// Columns between two of the pictures.
 const GAP: u32 = 4;
-
-/// A method, and where they are given its filter and its noise.
-#[derive(Clone, Copy, Debug)]
-pub struct Setting {
-    method: MethodName,
-    filter: Option<Filter>,
-    noise: Option<NoiseChoice>,
-}
-
-/// Reads METHOD, METHOD:FILTER or METHOD:FILTER:NOISE.
-pub fn setting(text: &str) -> Result<Setting, String> {
-    let mut words = text.split(':');
-    let method = method(words.next().unwrap_or_default())?;
-    let filter = words.next().map(filter).transpose()?;
-    let noise = words.next().map(noise).transpose()?;
-    match words.next() {
-        Some(_) => Err("METHOD, METHOD:FILTER or METHOD:FILTER:NOISE is needed, as sgm:strict".to_owned()),
-        None => Ok(Setting { method, filter, noise }),
-    }
-}
 
 /// Matches the pair with each.
 pub fn run(args: &MatchArgs, input: &Input) -> Result<(), Failure> {

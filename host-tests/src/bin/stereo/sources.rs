@@ -26,7 +26,8 @@ pub struct SourceArgs {
     side_by_side: Option<PathBuf>,
     /// Columns and rows, of both halves together, of raw frames of 8-bit grey pixels, one after another, as
     /// ffmpeg writes them with -f rawvideo -pix_fmt gray
-    #[arg(long, value_name = "COLUMNSxROWS", requires = "side_by_side", conflicts_with_all = ["left", "right"], value_parser = raw_size)]
+    #[arg(long, value_name = "COLUMNSxROWS", requires = "side_by_side", value_parser = raw_size,
+        conflicts_with_all = ["left", "right"])]
     raw: Option<[u32; 2]>,
 }
 
@@ -41,8 +42,8 @@ fn raw_size(text: &str) -> Result<[u32; 2], String> {
     };
     sides.filter(fits).ok_or_else(|| {
         format!(
-            "columns and rows are needed, as 1280x480: an even number of columns from {LEAST_COLUMNS} to {most}, \
-             and at most {most} rows"
+            "columns and rows are needed, as 1280x480: an even number of columns from {LEAST_COLUMNS} to \
+             {most}, and at most {most} rows"
         )
     })
 }
@@ -194,8 +195,8 @@ impl RawFrames {
             ))),
             0 => Ok(None),
             found if found < wanted => Err(Failure::new(format!(
-                "{path}: ends after {found} of {wanted} bytes of frame {}; is --raw {width}x{height} the size \
-                 of its frames, and are they 8-bit grey?",
+                "{path}: ends after {found} of {wanted} bytes of frame {}; is --raw {width}x{height} the \
+                 size of its frames, and are they 8-bit grey?",
                 self.frames
             ))),
             _ => {

@@ -1,0 +1,148 @@
+//! A pair, rectified or raw, into a folder of results.
+
+use crate::failure::Failure;
+use crate::frame::{Matched, matched};
+use crate::input::Pair;
+use crate::look::{Look, look};
+use crate::match_args::MatchArgs;
+use crate::place::{json, png};
+use crate::rectified::{self, RectifiedCameras};
+use crate::results::{self, DepthFiles};
+use crate::scale::{camera, scale};
+use image::{RgbImage, imageops};
+use std::fmt::Display;
+use std::io::Write as _;
+use std::path::PathBuf;
+use stereopsis::depth::DepthScale;
+use stereopsis::geometry::camera::ImageSize;
+use stereopsis_host::command_line::one_line;
+use stereopsis_host::masked::MaskedPair;
+use stereopsis_host::output::Staging;
+use stereopsis_host::pair::PairCheck;
+use stereopsis_host::rectify::{rectify, rectify_colours, with_rectified};
+use stereopsis_host::report::{Report, Summary};
+use stereopsis_host::rows::Rows;
+
+/// What a folder that is finished says of its images and settings, of which there are many.
+pub const FINISHED: &str = "finished.json";
+
+/// What is written only of raw images.
+const RECTIFIED: [&str; 3] = ["rectified_left.png", "rectified_right.png", "rectified.json"];
+
+/// What is matched, and what its depths are.
+struct Scene {
+    left: RgbImage,
+    right: RgbImage,
+    scale: Option<DepthScale>,
+    rectified: Option<RectifiedCameras>,
+    rows: Option<Rows>,
+    check: Option<PairCheck>,
+}
+
+/// Matches a pair and writes its results, and `mark` where there is one; warnings begin with `label`.
+pub fn solve(
+    args: &MatchArgs,
+    mut pair: Pair,
+    mark: Option<&str>,
+    label: &str,
+) -> Result<(Summary, Option<RectifiedCameras>), Failure> {
+    args.search.check(&args.method, pair.width, pair.height)?;
+    let (scene, matched) = if args.rectify {
+        raw(args, &mut pair)?
+    } else {
+        let scale = scale(args, &pair)?;
+        Staging::probe(&args.out)?;
+        let [left, right] = [&pair.left, &pair.right].map(imageops::grayscale);
+        let camera = scale.as_ref().and_then(|scale| camera(scale.rig()));
+        let masks = args.masks.read(&args.calib, left.dimensions())?;
+        let valid = masks.as_ref().map(|masks| masks.each_ref());
+        let Look { config, check, rows } =
+            look(&args.search, &args.method, [&left, &right], valid, camera.as_ref())?;
+        let matched = match masks {
+            Some(masks) => {
+                matched(&args.method, &args.balance, config, &mut MaskedPair::new(&mut pair.camera, masks))?
+            }
+            None => matched(&args.method, &args.balance, config, &mut pair.camera)?,
+        };
+        (Scene { left: pair.left, right: pair.right, scale, rectified: None, rows, check }, matched)
+    };
+
+    let Matched { config, meter, balance, outcome } = matched;
+    let scale = scene.scale.as_ref();
+    let summary = Summary::new(args.method.method, args.method.filter.name(), &config, &outcome, scale, None);
+    let summary = summary.with_noise(meter.as_ref()).with_balance(balance).with_rows(scene.rows);
+    let masks = if args.rectify { None } else { args.masks.files(&args.calib) };
+    let inputs = pair.inputs.iter().chain(&args.calib);
+    let inputs = inputs.chain(masks.iter().flatten()).map(PathBuf::as_path);
+    let mut summary = summary.with_pair(scene.check.clone()).with_inputs(inputs);
+    let depth = scale.map(|s| DepthFiles::new(&args.depth, &outcome.map, s, &scene.left, &mut summary));
+    let report = Report {
+        left_name: &pair.names[0],
+        right_name: &pair.names[1],
+        left: &scene.left,
+        right: &scene.right,
+        map: &outcome.map,
+        summary: &summary,
+        rig: scale.map(DepthScale::rig),
+        truth: None,
+        colours: args.colour_range,
+    };
+    let mut staging = Staging::new(&args.out)?;
+    results::write(&mut staging, &report, depth.as_ref())?;
+    let [left, right, cameras] = RECTIFIED;
+    if let Some(rectified) = &scene.rectified {
+        staging.write(left, |out| png(out, &scene.left))?;
+        staging.write(right, |out| png(out, &scene.right))?;
+        staging.write(cameras, |out| json(out, rectified))?;
+    }
+    if let Some(mark) = mark {
+        staging.write(FINISHED, |out| out.write_all(mark.as_bytes()))?;
+    }
+    let stale: Vec<_> = results::WITH_DEPTH.into_iter().chain(RECTIFIED).chain([FINISHED]).collect();
+    staging.commit(&stale)?;
+
+    let warnings = [
+        scene.check.as_ref().and_then(|check| check.fault).map(|fault| fault.to_string()),
+        scene.check.as_ref().and_then(|check| check.search_warning(&config)),
+        scene.rows.as_ref().and_then(Rows::warning),
+        summary.few_answers(),
+    ];
+    let notes = pair.notes.iter().map(|note| format!("note: {}", one_line(note)));
+    let warnings = warnings.into_iter().flatten().map(|warning| format!("warning: {warning}"));
+    for line in notes.chain(warnings) {
+        // Nobody is left to tell when standard error is closed.
+        let _ = writeln!(std::io::stderr(), "stereo: {label}{line}");
+    }
+    Ok((summary, scene.rectified))
+}
+
+/// Matches a raw pair: remap, census and matching in one loop over the rows.
+fn raw(args: &MatchArgs, pair: &mut Pair) -> Result<(Scene, Matched), Failure> {
+    if args.calib.is_empty() {
+        return Err(Failure::new("--rectify: --calib is missing; give the calibration of the two cameras"));
+    }
+    let size = ImageSize { width: pair.width, height: pair.height };
+    let (calibration, rectification) = rectified::open(&args.calib, &args.options, size)?;
+    let named = |e: &dyn Display| Failure::new(format!("{}: {e}", calibration.path.display()));
+    if !rectification.axis().is_horizontal() {
+        return Err(named(&"the cameras stand below each other; match takes cameras beside each other"));
+    }
+    let rig = rectification.rig().map_err(|e| named(&e))?;
+    let scale = DepthScale::new(&rig).map_err(|e| named(&e))?;
+    Staging::probe(&args.out)?;
+    let (left, right) = rectify_colours(&rectification, &pair.left, &pair.right).map_err(|e| named(&e))?;
+    let grey = rectify(&rectification, &mut pair.camera).map_err(|e| named(&e))?;
+    let (valid, camera) = (grey.valid.each_ref(), rectification.camera());
+    let seen = look(&args.search, &args.method, grey.pictures.each_ref(), Some(valid), Some(camera))?;
+    let Look { config, check, rows: aligned } = seen;
+    let (rows, matched) = with_rectified(&rectification, &mut pair.camera, |source| {
+        (
+            source.remaps().map(|remap| remap.table().rows()),
+            matched(&args.method, &args.balance, config, source),
+        )
+    })
+    .map_err(|e| named(&e))?;
+    let cameras = RectifiedCameras::new(calibration.format, &rectification, rows, &rectification.report());
+    let scene = Scene { left, right, scale: Some(scale), rectified: Some(cameras), rows: aligned, check };
+    Ok((scene, matched?))
+}

@@ -247,8 +247,8 @@ impl Evaluation {
                 let _ = write!(text, "{cell:>9}");
             }
         }
-        text += "\nin percent: bad and D1 of the answers, missed of the scored pixels (no answer, or over 2 px \
-                 off), unsure of the\nway from the best order of the answers to a random one\n";
+        text += "\nin percent: bad and D1 of the answers, missed of the scored pixels (no answer, or over 2 \
+                 px off), unsure of the\nway from the best order of the answers to a random one\n";
         text
     }
 

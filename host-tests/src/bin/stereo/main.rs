@@ -62,9 +62,9 @@ use stereopsis_host::command_line::{one_line, usage_line};
 use stereopsis_host::output::protect;
 
 /// What is told to one who names another command.
-const COMMANDS: &str = "the commands are demo, plan, match, eval, bench, calibrate, calib, rectify, features, \
-                        focus, fundamental, pose, bundle, odometry, structure, walk, record, replay, \
-                        doctor, completions and man";
+const COMMANDS: &str = "the commands are demo, plan, match, eval, bench, calibrate, calib, rectify, \
+                        features, focus, fundamental, pose, bundle, odometry, structure, walk, record, \
+                        replay, doctor, completions and man";
 
 /// What one who gives no command is told.
 const BEGINNING: &str = "a command is missing; these are what one begins with, and --help lists all:

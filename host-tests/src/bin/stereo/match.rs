@@ -30,8 +30,8 @@ Written into the folder: disparity.pfm (px, infinity where there is no answer), 
                            depth.png (16 bit, millimetres) and cloud.ply; with --rectify also \
                            rectified_left.png, rectified_right.png and rectified.json, the cameras of all \
                            the others. The files appear together when all of them are complete. Of several \
-                           pairs each has a numbered folder with these files, and frames.csv has a line for each; \
-                           what is finished is not done again.";
+                           pairs each has a numbered folder with these files, and frames.csv has a line for \
+                           each; what is finished is not done again.";
 
 pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let mut notes = Vec::new();

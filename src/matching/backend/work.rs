@@ -85,6 +85,9 @@ pub(in crate::matching) struct PathWork<'a> {
     pub costs: &'a mut [u8],
     pub top: &'a mut [u8],
     pub sums: &'a mut [u8],
+    /// What the passes that select winners work with: two bytes for each pixel, and six for each disparity
+    /// but the last eight of all.
+    pub workspace: &'a mut [u32],
 }
 
 /// What the passes that select winners look at besides the costs.

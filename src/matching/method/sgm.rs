@@ -216,6 +216,7 @@ fn select<S: SgmParameters, const MOST: usize>(
         costs,
         top,
         sums: &mut [],
+        workspace: &mut [],
     };
     let guide = |y: usize| slot(frame.codes, y % guides::<S>(), width);
     let has_noise = config.noise != Noise::None;
@@ -246,7 +247,8 @@ fn select<S: SgmParameters, const MOST: usize>(
         let flags = frame.flags.row_mut(row);
         flags.fill(PixelFlags::CLEAR);
         let guide = Guide { here: guide(row), above: row.checked_sub(1).map(guide), row };
-        let ForWinners { winners, margins, .. } = frame.workspace.for_winners(config.confidence);
+        let ForWinners { winners, margins, workspace } = frame.workspace.for_winners(config.confidence);
+        work.workspace = workspace;
         let unique = Unique::new(config.checks.uniqueness_percent, flags, margins);
         let select = Select { disparities: work.disparities, winners, unique };
         frame.backend.sgm_select::<MOST>(&mut work, guide, select);

@@ -8,7 +8,7 @@ use core::arch::asm;
 /// By how much more bits the lower four of a byte differ than the upper four, modulo 2^8.
 static LESS: [u8; 256] = table::<4>();
 /// How many bits are set.
-static BITS: [u8; 256] = table::<8>();
+pub(super) static BITS: [u8; 256] = table::<8>();
 
 /// The bits that are set among the lowest so many, less those above.
 const fn table<const LOWEST: u32>() -> [u8; 256] {

@@ -28,11 +28,12 @@
 mod census;
 mod columns;
 mod left_right;
+mod sgm;
 mod smooth;
 mod speckle;
 mod windows;
 
-use super::armv7em::{self, sgm};
+use super::armv7em;
 use super::isa::{Isa, sole_kernel};
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::portable::{self, left_right_rows};
@@ -100,7 +101,7 @@ impl Isa for Backend {
 
     #[inline(always)]
     fn sgm_select<const MOST: usize>(self, work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
-        sgm::select::<true, MOST>(work, guide, select);
+        sgm::select::<MOST>(work, guide, select);
     }
 
     #[inline(always)]

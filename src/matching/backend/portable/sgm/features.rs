@@ -9,7 +9,7 @@ use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::work::PathWork;
 use crate::matching::memory::Rows5;
-use crate::matching::memory::slices::{chunks_mut, part, part_mut};
+use crate::matching::memory::slices::{chunks, chunks_mut, part, part_mut};
 
 /// Rows of numbers, a byte a pixel.
 #[derive(Clone, Copy)]
@@ -28,6 +28,8 @@ pub(in crate::matching::backend) struct Features<'a> {
 /// What the left pixels look like.
 #[derive(Clone, Copy)]
 pub(in crate::matching::backend) struct Looks<'a> {
+    /// The first three of the others, one after the other.
+    pub rows: &'a [u8],
     pub along: &'a [u8],
     pub across: &'a [u8],
     pub census: &'a [u8],
@@ -38,7 +40,7 @@ pub(in crate::matching::backend) struct Looks<'a> {
 // In vectors they are compiled with the kernel's instructions; in words once for all numbers of disparities.
 #[cfg_attr(target_pointer_width = "64", inline(always))]
 #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
-pub(super) fn of<'a, R: FeatureRows, S: SgmParameters>(
+pub(in crate::matching::backend) fn of<'a, R: FeatureRows, S: SgmParameters>(
     work: &PathWork<'_>,
     lines: [&Rows5<'a>; 2],
     workspace: &'a mut [u8],
@@ -47,9 +49,11 @@ pub(super) fn of<'a, R: FeatureRows, S: SgmParameters>(
     let (most, shift) = (work.penalties.gradient, work.gradient_shift);
     let [left, right] = lines.map(|lines| lines.map(|line| part(line, ..width)));
     let (of_left, of_right) = workspace.split_at_mut_checked(3 * width)?;
-    let [along, across, census] = rows(of_left, width);
-    looks_of::<R>(&left, most, shift, [&mut *along, &mut *across, &mut *census]);
-    let of_left = Looks { along, across, census, brightness: left[2] };
+    looks_of::<R>(&left, most, shift, rows(of_left, width));
+    let of_left = &*of_left;
+    let mut of_each = chunks(of_left, width);
+    let [along, across, census] = core::array::from_fn(|_| of_each.next().unwrap_or_default());
+    let of_left = Looks { rows: of_left, along, across, census, brightness: left[2] };
 
     // One more than is compared, for the numbers halfway to the last.
     let count = width + work.stride;

@@ -1,0 +1,140 @@
+//! The path from above: where it comes from is the average of two columns, rounded down.
+#![allow(unsafe_code)]
+
+use super::LANES;
+use super::room::Room;
+use crate::matching::backend::work::{Guide, PathWork};
+use crate::matching::memory::layout::COLUMNS_OFF;
+use core::arch::asm;
+
+/// The ring of columns in which the paths from above are kept, two more than an image has. Each row stands
+/// two columns before the row above it: a path goes where one of the two was that it comes from.
+#[derive(Clone, Copy)]
+pub(super) struct Ring {
+    columns: usize,
+    /// Where the row's first column is.
+    first: usize,
+}
+
+impl Ring {
+    /// That of a row.
+    pub fn new(width: usize, row: usize) -> Self {
+        let columns = width + COLUMNS_OFF;
+        let past = row.wrapping_mul(COLUMNS_OFF).checked_rem(columns).unwrap_or(0);
+        Self { columns, first: (columns - past) % columns.max(1) }
+    }
+
+    /// Where the row above stands.
+    fn above(self) -> Self {
+        Self { first: self.wrapped(self.first + COLUMNS_OFF), ..self }
+    }
+
+    /// The place of a column, and how many there are from it on up to the end of the ring.
+    pub fn place(self, column: usize) -> (usize, usize) {
+        let place = self.wrapped(self.first + column);
+        (place, self.columns - place)
+    }
+
+    fn wrapped(self, place: usize) -> usize {
+        if place >= self.columns { place - self.columns } else { place }
+    }
+}
+
+/// Moves the path from above down to the row.
+#[inline(always)]
+pub(super) fn go<const STRIDE: usize>(
+    work: &mut PathWork<'_>,
+    guide: Guide<'_>,
+    changes: &[u16],
+    room: &mut Room<'_, STRIDE>,
+) {
+    let width = work.width;
+    let is_whole = work.top.len() >= (width + COLUMNS_OFF) * STRIDE && work.costs.len() >= width * STRIDE;
+    if !is_whole || changes.len() < width || width == 0 {
+        return;
+    }
+    // In the first row nothing is above.
+    if guide.above.is_none() {
+        work.top.fill(0);
+    }
+    let ring = Ring::new(width, guide.row);
+    let above = ring.above();
+    let last = width - 1;
+    let mut x = 0;
+    while x < width {
+        let (before, of_before) = above.place(x.saturating_sub(COLUMNS_OFF));
+        let (after, of_after) = above.place((x + COLUMNS_OFF).min(last));
+        let (out, of_out) = ring.place(x);
+        // At the ends the nearest column that there is stands for those outside.
+        let is_inside = x >= COLUMNS_OFF && x + COLUMNS_OFF <= last;
+        let alike = if is_inside { last + 1 - COLUMNS_OFF - x } else { 1 };
+        let count = alike.min(of_before).min(of_after).min(of_out);
+        let top = work.top.as_mut_ptr();
+        // SAFETY: `count` columns from each of the three places on are in the ring, which `work.top` has,
+        // and from `x` on in the row; the room's path is its own. `count` is not 0.
+        unsafe {
+            let column = |place: usize| top.add(place * STRIDE);
+            let from = [column(before).cast_const(), column(after).cast_const()];
+            let costs = work.costs.as_ptr().add(x * STRIDE);
+            walk::<STRIDE>(count, from, column(out), costs, changes.as_ptr().add(x), room.path());
+        }
+        x += count;
+    }
+}
+
+/// The path of `count` pixels: 15 instructions for 16 candidates, and five for a pixel.
+///
+/// # Safety
+/// So many columns of `STRIDE` bytes can be read from both `from` and from `costs` and written to `out`, in
+/// this order, which may be one of `from`; a change for each is read; and at `path` there is a path of a
+/// [`Room`].
+#[inline(always)]
+unsafe fn walk<const STRIDE: usize>(
+    count: usize,
+    [before, after]: [*const u8; 2],
+    out: *mut u8,
+    costs: *const u8,
+    changes: *const u16,
+    path: *mut u8,
+) {
+    // SAFETY: as the function's.
+    unsafe {
+        asm!(
+            "dls lr, {least}",
+            "2:",
+            "mov {least}, #255",
+            ".irp v, 0, 1, 2, 3",
+            ".if \\v < {groups}",
+            "vldrb.u8 q4, [{before}], #16",
+            "vldrb.u8 q5, [{after}], #16",
+            "vhadd.u8 q\\v, q4, q5",
+            "vstrb.8 q\\v, [{path}, #16 * \\v]",
+            "vminv.u8 {least}, q\\v",
+            ".endif",
+            ".endr",
+            "ldrh {step}, [{changes}], #2",
+            "lsr {jump}, {step}, #8",
+            "sub {least}, {jump}, {least}",
+            ".irp v, 0, 1, 2, 3",
+            ".if \\v < {groups}",
+            "vldrb.u8 q4, [{path}, #16 * \\v - 1]",
+            "vldrb.u8 q5, [{path}, #16 * \\v + 1]",
+            "vmin.u8 q4, q4, q5",
+            "vqadd.u8 q4, q4, {step}",
+            "vmin.u8 q4, q4, q\\v",
+            "vqadd.u8 q4, q4, {least}",
+            "vldrb.u8 q5, [{costs}], #16",
+            "vsub.i8 q4, q4, {jump}",
+            "vadd.i8 q4, q4, q5",
+            "vstrb.8 q4, [{out}], #16",
+            ".endif",
+            ".endr",
+            "le lr, 2b",
+            least = inout(reg) count => _, before = inout(reg) before => _, after = inout(reg) after => _,
+            out = inout(reg) out => _, costs = inout(reg) costs => _, changes = inout(reg) changes => _,
+            path = in(reg) path, step = out(reg) _, jump = out(reg) _, groups = const STRIDE / LANES,
+            out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, out("q4") _, out("q5") _,
+            options(nostack),
+        );
+    }
+}

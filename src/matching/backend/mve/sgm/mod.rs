@@ -1,0 +1,117 @@
+//! Costs along paths in Helium: the passes of `portable::sgm` for columns of 32 and of 64 candidates, which
+//! are two and four vectors. Any other number takes the code for four bytes at a time.
+//!
+//! * A path stays in memory, between bytes that no path comes from: what stands beside a disparity is the
+//!   same vector one byte off.
+//! * With m the least that it costs to come from near, a path's cost at a pixel is
+//!   `cost + min(m, least + jump) - least`. A saturating addition of `255 - jump - least` to m is the minimum
+//!   and the subtraction at once: what it has too much is `255 - jump`, the same for all lanes, which is
+//!   taken off. Everything stays within a byte: the paths through a row have a least of at most `cost`, and
+//!   the average of two of them one of at most `cost + jump / 2`, so that `least + jump` is at most 190 by
+//!   what `Penalties::check` asks for; and a step from a path's cost that is more than 255 counts as 255,
+//!   which is more than any cost that it is compared with.
+//! * Lanes beyond the search cost as much as a pixel can. So no path there ever is less than at the last
+//!   disparity that is searched, and none comes from there: minima, sums and averages keep that order.
+//!
+//! * `features`: what is compared. `cost`: its comparison. `edges`: how far costs are averaged.
+//! * `changes`: what the paths pay at each pixel. `down`, `rightward`, `leftward`: the paths, the last one
+//!   with the winners. `room`: what they work with.
+
+mod changes;
+mod cost;
+mod down;
+mod edges;
+mod leftward;
+mod rightward;
+mod room;
+
+use super::LANES;
+use crate::matching::backend::armv7em::sgm;
+use crate::matching::backend::parameters::SgmParameters;
+use crate::matching::backend::portable::sgm::features;
+use crate::matching::backend::work::{CostWork, EdgeWork, Guide, PathWork};
+use crate::matching::memory::slices::{chunks_mut, part_mut, split_mut};
+use crate::matching::memory::views::view_mut;
+use crate::matching::memory::winners::Select;
+use changes::changes;
+use leftward::Leftward;
+use room::Room;
+
+/// [`Isa::sgm_cost`](crate::matching::backend::Isa::sgm_cost) for each number of candidates.
+#[inline(always)]
+pub(super) fn cost<S: SgmParameters, const MOST: usize>(work: &mut PathWork<'_>, row: CostWork<'_>) {
+    match work.stride {
+        32 if MOST == 0 || MOST == 32 => enter::<S, 32>(work, row),
+        64 if MOST == 0 || MOST == 64 => enter::<S, 64>(work, row),
+        _ if MOST == 0 || MOST == 16 => sgm::cost::<S, MOST>(work, row),
+        _ => {}
+    }
+}
+
+/// [`Isa::sgm_within_edges`](crate::matching::backend::Isa::sgm_within_edges) for each number of candidates.
+#[inline(always)]
+pub(super) fn within_edges<const MOST: usize>(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+    match work.stride {
+        32 if MOST == 0 || MOST == 32 => within_edges_of::<32>(work, edges),
+        64 if MOST == 0 || MOST == 64 => within_edges_of::<64>(work, edges),
+        _ if MOST == 0 || MOST == 16 => sgm::within_edges::<MOST>(work, edges),
+        _ => {}
+    }
+}
+
+/// [`Isa::sgm_select`](crate::matching::backend::Isa::sgm_select) for each number of candidates.
+#[inline(always)]
+pub(super) fn select<const MOST: usize>(work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+    match work.stride {
+        32 if MOST == 0 || MOST == 32 => select_among::<32>(work, guide, select),
+        64 if MOST == 0 || MOST == 64 => select_among::<64>(work, guide, select),
+        _ if MOST == 0 || MOST == 16 => sgm::select::<true, MOST>(work, guide, select),
+        _ => {}
+    }
+}
+
+#[inline(never)]
+fn enter<S: SgmParameters, const STRIDE: usize>(work: &mut PathWork<'_>, row: CostWork<'_>) {
+    if row.is_first {
+        work.costs.fill(0);
+    }
+    let Some(features) = features::of::<sgm::DspRows, S>(work, row.lines, row.workspace) else { return };
+    cost::enter::<S, STRIDE>(work, &features);
+    let beyond = STRIDE.saturating_sub(work.disparities);
+    if beyond > 0 {
+        for column in chunks_mut(work.costs, STRIDE) {
+            part_mut(column, ..beyond).fill(work.penalties.cost);
+        }
+    }
+}
+
+#[inline(never)]
+fn within_edges_of<const STRIDE: usize>(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+    edges::within_edges::<STRIDE>(work, edges);
+}
+
+#[inline(never)]
+fn select_among<const STRIDE: usize>(work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
+    let Select { mut winners, unique, .. } = select;
+    let (width, begin) = (work.width, work.min_disparity.min(work.width));
+    let workspace = core::mem::take(&mut work.workspace);
+    let (along, rest) = split_mut(view_mut::<u32, u16>(workspace), width + 1);
+    let Some(mut room) = Room::<STRIDE>::new(view_mut::<u16, u8>(rest)) else { return };
+    // There are no winners yet where the changes down to the row are.
+    let down = part_mut(view_mut::<u8, u16>(winners.bytes()), ..width);
+    changes(guide.here, guide.above.unwrap_or(guide.here), work.penalties, down);
+    down::go::<STRIDE>(work, guide, down, &mut room);
+
+    // Into a column from the one before it, from the right into that one from it. Nothing comes into the first
+    // one nor into the last: what they pay is nothing whatever stands there.
+    let places = part_mut(along, 1..width);
+    changes(guide.here.get(1..).unwrap_or_default(), guide.here, work.penalties, places);
+    rightward::go::<STRIDE>(work, guide.row, along, &mut room);
+    if begin < width {
+        let rows = winners.bytes();
+        Leftward::<STRIDE> { work, begin, along, room, rows }.select(unique);
+        let rows = winners.rows(begin);
+        let rows = [rows.below, rows.costs, rows.above, rows.disparities];
+        super::complete(rows, select.disparities);
+    }
+}

@@ -31,7 +31,7 @@ use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::{Found, Select, Unique};
 use crate::matching::penalties::Penalties;
 use blocks::Rest;
-pub(in crate::matching::backend) use features::DspRows;
+use features::DspRows;
 use rows::Direction;
 
 /// The passes over columns of up to `WORDS` words, all of them in use if `ALL`: then the compiler knows how

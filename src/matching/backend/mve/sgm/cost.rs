@@ -10,7 +10,7 @@ use core::arch::asm;
 /// Adds a row, or within edges puts it in their place: 20 instructions for 16 candidates (18 within edges, 19
 /// where nothing is compared between pixels), and twelve for a pixel. What is compared between pixels is
 /// doubled.
-#[inline(always)]
+#[inline(never)]
 pub(super) fn enter<S: SgmParameters, const STRIDE: usize>(work: &mut PathWork<'_>, features: &Features<'_>) {
     let (width, Features { left, right, count }) = (work.width, *features);
     let rows = if S::BETWEEN_PIXELS { 6 } else { 4 };

@@ -21,6 +21,7 @@ mod changes;
 mod cost;
 mod down;
 mod edges;
+mod features;
 mod leftward;
 mod rightward;
 mod room;
@@ -28,12 +29,13 @@ mod room;
 use super::LANES;
 use crate::matching::backend::armv7em::sgm;
 use crate::matching::backend::parameters::SgmParameters;
-use crate::matching::backend::portable::sgm::features;
+use crate::matching::backend::portable::sgm::features as portable;
 use crate::matching::backend::work::{CostWork, EdgeWork, Guide, PathWork};
 use crate::matching::memory::slices::{chunks_mut, part_mut, split_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::Select;
 use changes::changes;
+use features::HeliumRows;
 use leftward::Leftward;
 use room::Room;
 
@@ -75,7 +77,7 @@ fn enter<S: SgmParameters, const STRIDE: usize>(work: &mut PathWork<'_>, row: Co
     if row.is_first {
         work.costs.fill(0);
     }
-    let Some(features) = features::of::<sgm::DspRows, S>(work, row.lines, row.workspace) else { return };
+    let Some(features) = portable::of::<HeliumRows, S>(work, row.lines, row.workspace) else { return };
     cost::enter::<S, STRIDE>(work, &features);
     let beyond = STRIDE.saturating_sub(work.disparities);
     if beyond > 0 {

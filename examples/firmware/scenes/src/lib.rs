@@ -1,6 +1,7 @@
 //! What the firmware's programs see, and their work on it. Nothing here knows hardware: the host runs the
 //! same and compares every bit.
 //!
+//! * [`any_frames`]: frames of any size, with all that can be asked of them.
 //! * [`scene`]: a scene that is computed line by line. [`pgm`]: the header of a picture.
 //! * [`raw_pair`]: raw lines, rectified, and depth from them.
 //! * [`two_pictures`]: features of two cameras' lines, and their matches.
@@ -10,6 +11,7 @@
 //! * [`sweep`]: frames of a lens that moves, and where each tile is in focus.
 #![no_std]
 
+pub mod any_frames;
 pub mod pgm;
 pub mod raw_pair;
 pub mod scene;

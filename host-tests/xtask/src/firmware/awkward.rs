@@ -1,11 +1,14 @@
 //! Lines that fill no vector, and disparities that fill no group of lanes, on the core whose rows are in
-//! assembly: equal to the host's to the bit, as all frames are.
+//! assembly: equal to the host's to the bit, as all frames are; and frames of any size with any checks and
+//! penalties, of all methods.
 
+use super::any_frames::AnyFrames;
 use super::board::M55;
 use super::frame;
-use super::program::Program;
+use super::program::{Optimised, Program};
+use super::results::Ran;
 use crate::pictures::Pictures;
-use crate::steps::Outcome;
+use crate::steps::{Failure, Outcome};
 use stereopsis_host::run::MethodName;
 
 /// Pixels in a line at most, and disparities: of 32 and of 64 lanes, and of a number that there is no
@@ -31,6 +34,18 @@ pub fn check() -> Outcome {
             );
         }
     }
+    any_frames()
+}
+
+/// What the board finds in any frames beside what the host finds.
+fn any_frames() -> Outcome {
+    let mut host = Vec::new();
+    let put = |sum: u32| host.extend_from_slice(&sum.to_le_bytes());
+    Box::new(AnyFrames::new())
+        .run(put)
+        .map_err(|e| Failure::new(format!("any frames on the host: {e:?}")))?;
+    let ran = Ran::of(M55, "any_frames", Optimised::Speed, &host)?;
+    println!("any_frames: {} frames on {} are equal to the host's", ran.figure("frames")?, ran.taken.core);
     Ok(())
 }
 

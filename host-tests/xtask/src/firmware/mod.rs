@@ -43,7 +43,7 @@ pub mod tables;
 mod two_views_all;
 
 pub use firmware_boards as board;
-pub use firmware_scenes::{raw_pair, scene, sweep, two_pictures, two_views, walk, window};
+pub use firmware_scenes::{any_frames, raw_pair, scene, sweep, two_pictures, two_views, walk, window};
 
 pub use arguments::Arguments;
 pub use program::{VECTORS, cargo};

@@ -5,7 +5,7 @@ use super::LANES;
 use super::room::Room;
 use crate::matching::backend::mve::windows::best_of_the_rest;
 use crate::matching::backend::work::{MASKS, PathWork};
-use crate::matching::memory::slices::{chunks_mut, part, part_mut};
+use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::winners::Unique;
 use core::arch::asm;
 
@@ -53,19 +53,40 @@ impl<const STRIDE: usize> Leftward<'_, '_, STRIDE> {
 
     /// Makes the sums of lanes that are not searched the most that there is, which they stay: the first
     /// pixels have fewer candidates.
+    #[inline(never)]
     fn close(&mut self) {
-        let disparities = self.work.disparities.min(STRIDE);
-        let columns = chunks_mut(part_mut(self.work.sums, self.begin * STRIDE..), STRIDE);
-        for (column, before) in columns.zip(0..) {
-            let candidates = disparities.min(before + 1);
-            if candidates == STRIDE {
-                break;
-            }
-            part_mut(column, ..STRIDE - candidates).fill(u8::MAX);
+        let (columns, disparities) = (self.work.width - self.begin, self.work.disparities.clamp(1, STRIDE));
+        let sums = part_mut(self.work.sums, self.begin * STRIDE..);
+        // The last columns have as many lanes as there are disparities, or there are none to be closed.
+        let most = if disparities < STRIDE { columns } else { columns.min(STRIDE - 1) };
+        if most == 0 || sums.len() < most * STRIDE {
+            return;
+        }
+        // SAFETY: of each of `most` columns at least one lane is written and at most all but one: the inner
+        // loop is one for so many lanes of bytes.
+        unsafe {
+            asm!(
+                "vmov.i8 q0, #255",
+                "2:",
+                "mov {lane}, {sums}",
+                "dlstp.8 lr, {closed}",
+                "3:",
+                "vstrb.8 q0, [{lane}], #16",
+                "letp lr, 3b",
+                "cmp {closed}, {least}",
+                "it hi",
+                "subhi {closed}, {closed}, #1",
+                "add {sums}, {sums}, #{stride}",
+                "subs {columns}, {columns}, #1",
+                "bne 2b",
+                sums = inout(reg) sums.as_mut_ptr() => _, columns = inout(reg) most => _,
+                closed = inout(reg) STRIDE - 1 => _, least = in(reg) (STRIDE - disparities).max(1),
+                lane = out(reg) _, stride = const STRIDE, out("lr") _, out("q0") _, options(nostack),
+            );
         }
     }
 
-    /// Selects the winners of `count` pixels from column `x` on to the left: 18 instructions for 16
+    /// Selects the winners of `count` pixels from column `x` on to the left: 17 instructions for 16
     /// candidates, two more where there are four times as many, and 19 for a pixel. `least` is the path's
     /// least cost.
     ///
@@ -84,6 +105,11 @@ impl<const STRIDE: usize> Leftward<'_, '_, STRIDE> {
                 "vldrb.u8 q\\v, [{room}, #16 * \\v + {path_at}]",
                 ".endif",
                 ".endr",
+                // Of two vectors the disparities stay in registers, and the sums do from loop to loop.
+                ".if {groups} <= 2",
+                "vldrb.u8 q2, [{room}, #{lanes_at}]",
+                "vldrb.u8 q3, [{room}, #{lanes_at} + 16]",
+                ".endif",
                 "dls lr, {best}",
                 "2:",
                 "ldrh {step}, [{changes}], #-2",
@@ -114,14 +140,17 @@ impl<const STRIDE: usize> Leftward<'_, '_, STRIDE> {
                 ".endif",
                 ".endm",
                 // The least of the disparities that have it.
-                ".macro nearest v, sum",
+                ".macro nearest v, sum, lanes",
                 ".if \\v < {groups}",
                 ".if {groups} > 2",
                 "vldrb.u8 \\sum, [{room}, #16 * \\v + {sums_at}]",
-                ".endif",
                 "vldrb.u8 q4, [{room}, #16 * \\v + {lanes_at}]",
                 "vpt.i8 eq, \\sum, {best}",
                 "vminvt.u8 {step}, q4",
+                ".else",
+                "vpt.i8 eq, \\sum, {best}",
+                "vminvt.u8 {step}, \\lanes",
+                ".endif",
                 ".endif",
                 ".endm",
                 "go_left 0, q4, q5, q6",
@@ -129,10 +158,10 @@ impl<const STRIDE: usize> Leftward<'_, '_, STRIDE> {
                 "go_left 2, q4, q5, q6",
                 "go_left 3, q5, q4, q7",
                 "mov {step}, #255",
-                "nearest 0, q6",
-                "nearest 1, q7",
-                "nearest 2, q6",
-                "nearest 3, q7",
+                "nearest 0, q6, q2",
+                "nearest 1, q7, q3",
+                "nearest 2, q6, q4",
+                "nearest 3, q7, q4",
                 ".purgem go_left",
                 ".purgem nearest",
                 "sub {costs}, {costs}, #{stride}",

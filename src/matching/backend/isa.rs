@@ -5,7 +5,8 @@
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::portable;
 use super::work::{
-    AnswerWork, CensusWork, CostWork, EdgeWork, Guide, PathWork, STEP, SmoothWork, SpeckleWork, WindowWork,
+    AnswerWork, CensusWork, CostWork, EdgeWork, FillWork, Guide, PathWork, STEP, SmoothWork, SpeckleWork,
+    WindowWork,
 };
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::slices::multiple_of;
@@ -86,6 +87,12 @@ pub(in crate::matching) trait Isa: Copy {
     #[inline(always)]
     fn speckle(self, work: SpeckleWork<'_>) {
         portable::speckle::speckle(work);
+    }
+
+    /// Closes the small gaps of a row of answers.
+    #[inline(always)]
+    fn fill(self, work: FillWork<'_>) {
+        portable::fill::fill(work);
     }
 
     /// Filters a row of answers by the row above it and one below.

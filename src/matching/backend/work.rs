@@ -156,6 +156,18 @@ pub(in crate::matching) struct SmoothWork<'a> {
     pub radius: u8,
 }
 
+/// A row of answers whose small gaps are closed.
+pub(in crate::matching) struct FillWork<'a> {
+    pub answers: &'a mut [Disparity],
+    pub flags: &'a mut [PixelFlags],
+    /// Workspace of a number for each answer.
+    pub room: &'a mut [u16],
+    /// Most pixels of a gap, at least one.
+    pub most: u8,
+    /// By how much the answers on both sides may differ.
+    pub step: Disparity,
+}
+
 /// A row of the band, the one above it, and the row that waited for it.
 pub(in crate::matching) struct SpeckleWork<'a> {
     /// The newest row of the band.

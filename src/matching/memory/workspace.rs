@@ -157,6 +157,12 @@ impl<'a> RowWorkspace<'a> {
         Lengths(self.lengths)
     }
 
+    /// A number a pixel that nobody keeps anything in.
+    pub(in crate::matching) fn spare(&mut self) -> &mut [u16] {
+        self.check(Phase::Surfaces);
+        self.right
+    }
+
     /// The confidences of the row that waited, a byte a pixel.
     pub(in crate::matching) fn confidences(&mut self) -> &mut [u8] {
         self.check(Phase::Surfaces);

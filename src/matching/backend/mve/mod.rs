@@ -7,7 +7,7 @@
 //! * [`windows`]: sums along the row, and the winner of each pixel.
 //! * [`left_right`]: the left-right check.
 //! * [`mod@smooth`]: answers averaged within their surface, and its length.
-//! * [`mod@speckle`]: support counted.
+//! * [`mod@speckle`]: support counted. [`mod@fill`]: small gaps closed.
 //!
 //! Of safe Rust over fixed lanes the compiler makes two or three instructions where one is needed: it counts
 //! bits in nine instructions, and looks for the winner in a loop of its own. Here
@@ -27,6 +27,7 @@
 
 mod census;
 mod columns;
+mod fill;
 mod left_right;
 mod sgm;
 mod smooth;
@@ -38,8 +39,8 @@ use super::isa::{Isa, sole_kernel};
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::portable::{self, left_right_rows};
 use super::work::{
-    AnswerWork, CensusWork, CostWork, EdgeWork, Guide, MASKS, PathWork, Rules, STEP, SmoothWork, SpeckleWork,
-    WindowWork,
+    AnswerWork, CensusWork, CostWork, EdgeWork, FillWork, Guide, MASKS, PathWork, Rules, STEP, SmoothWork,
+    SpeckleWork, WindowWork,
 };
 use crate::imaging::census_ring8;
 use crate::matching::kernel::Kernel;
@@ -123,6 +124,11 @@ impl Isa for Backend {
     #[inline(always)]
     fn median(self, rows: [&[Disparity]; 3], out: &mut [Disparity]) {
         median(rows, out);
+    }
+
+    #[inline(always)]
+    fn fill(self, work: FillWork<'_>) {
+        fill::fill(work);
     }
 
     #[inline(always)]

@@ -5,8 +5,8 @@
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::portable;
 use super::work::{
-    AnswerWork, CensusWork, CostWork, EdgeWork, FillWork, Guide, PathWork, STEP, SmoothWork, SpeckleWork,
-    WindowWork,
+    AnswerWork, CensusWork, CostWork, EdgeWork, FatteningWork, FillWork, Guide, PathWork, STEP, SmoothWork,
+    SpeckleWork, WindowWork,
 };
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::slices::multiple_of;
@@ -87,6 +87,12 @@ pub(in crate::matching) trait Isa: Copy {
     #[inline(always)]
     fn speckle(self, work: SpeckleWork<'_>) {
         portable::speckle::speckle(work);
+    }
+
+    /// Refuses the answers of a row that spread from a near surface.
+    #[inline(always)]
+    fn refuse_fattening(self, work: FatteningWork<'_>) {
+        portable::fattening::refuse(work);
     }
 
     /// Closes the small gaps of a row of answers.

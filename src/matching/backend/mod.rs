@@ -52,8 +52,8 @@ pub(super) use parameters::{SgmParameters, WindowParameters};
 pub(super) use portable::smooth::MARGIN as SMOOTH_MARGIN;
 pub(super) use target::{BY_CAPACITY, Backend, CODES_SHARE_A_BYTE, columns_begin};
 pub(super) use work::{
-    AnswerWork, CensusWork, CostWork, EdgeWork, FillWork, Guide, PathWork, Rules, STEP, SmoothWork,
-    SpeckleWork, WindowWork,
+    AnswerWork, CensusWork, CostWork, EdgeWork, FatteningWork, FillWork, Guide, PathWork, Rules, STEP,
+    SmoothWork, SpeckleWork, WindowWork,
 };
 
 /// Words that the tables of a target take beside the workspace of a window whose codes have up to four bits,

@@ -156,6 +156,25 @@ pub(in crate::matching) struct SmoothWork<'a> {
     pub radius: u8,
 }
 
+/// A row of answers of which those are refused that spread from a near surface.
+pub(in crate::matching) struct FatteningWork<'a> {
+    pub answers: &'a mut [Disparity],
+    pub flags: &'a mut [PixelFlags],
+    /// Of each column the rows' edges; the bit [`REFUSED`](FatteningWork::REFUSED) is free.
+    pub edges: &'a mut [u8],
+    /// The bit of the row.
+    pub row: u8,
+    /// By how much nearer than another an answer may be for each pixel between the two.
+    pub slope: Disparity,
+}
+
+impl FatteningWork<'_> {
+    /// The bit of a column that marks the row's answer.
+    pub const REFUSED: u8 = 0x80;
+    /// How much nearer than another an answer may be in any case: 2 px.
+    pub const TOLERANCE: u16 = 2 * Disparity::ONE;
+}
+
 /// A row of answers whose small gaps are closed.
 pub(in crate::matching) struct FillWork<'a> {
     pub answers: &'a mut [Disparity],

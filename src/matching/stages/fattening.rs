@@ -3,7 +3,7 @@
 //! Where depth jumps, brightness mostly does as well. Costs along paths carry the disparity of a near surface
 //! on over a wall or a sky that has little to say, up to where the wall's own disparity takes over: a jump
 //! without an edge. Along a part of a row without edges an answer is therefore refused that is nearer than
-//! another one by more than [`TOLERANCE_PX`] and
+//! another one by more than [`FatteningWork::TOLERANCE`] and
 //! [`fattening_slope`](crate::matching::Checks::fattening_slope) for each pixel between the two: so a slanted
 //! surface stays, and an answer far away refuses nothing.
 //!
@@ -11,20 +11,11 @@
 //! makes few of them. The work is the same for every picture.
 
 use crate::imaging::Noise;
-use crate::matching::backend::MethodParameters;
 use crate::matching::backend::loops::keep_scalar_loop;
+use crate::matching::backend::{FatteningWork, Isa, MethodParameters};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::part;
 use crate::matching::method::Frame;
-use crate::units::{Disparity, PixelFlags};
-use core::cell::Cell;
-
-/// How much nearer than another an answer may be in any case.
-const TOLERANCE_PX: u32 = 2;
-/// A bound that no answer is beyond.
-const NO_BOUND: u32 = 1 << 24;
-/// The bit of a column that marks the newest row's answer; those below are edges.
-const REFUSED: u8 = 0x80;
 
 /// The least Sobel gradient of an edge, eighths of a grey level per pixel: about three deviations of what
 /// noise makes.
@@ -51,7 +42,7 @@ pub(super) fn take_edges(frame: &mut Frame<'_>, lines: Option<[&Rows5<'_>; 2]>) 
             let [above, line, below] = [left[1], left[2], left[3]].map(|line| part(line, ..frame.width));
             push_edges(frame.edges, [above, line, below], least_gradient(frame.config.noise));
         }
-        None => frame.edges.iter_mut().for_each(|edges| *edges = *edges << 1 & !REFUSED),
+        None => frame.edges.iter_mut().for_each(|edges| *edges = *edges << 1 & !FatteningWork::REFUSED),
     }
 }
 
@@ -60,7 +51,8 @@ pub(super) fn refuse_fattening<S: MethodParameters>(frame: &mut Frame<'_>, newes
     let slope = frame.config.checks.fattening_slope;
     if slope.is_some() {
         let (answers, flags) = (frame.band.row_mut(newest), frame.flags.row_mut(newest));
-        refuse_row(answers, flags, frame.edges, (1 << S::RADIUS_Y, slope));
+        let edges = &mut *frame.edges;
+        frame.backend.refuse_fattening(FatteningWork { answers, flags, edges, row: 1 << S::RADIUS_Y, slope });
     }
 }
 
@@ -72,7 +64,7 @@ fn push_edges(edges: &mut [u8], lines: [&[u8]; 3], least: u16) {
     let sum = |[above, line, below]: [u8; 3]| u16::from(above) + 2 * u16::from(line) + u16::from(below);
     let at = |x: usize| sum(lines.map(|line| line.get(x).copied().unwrap_or(0)));
     let push = |edges: &mut u8, before: u16, after: u16| {
-        *edges = (*edges << 1 & !REFUSED) | u8::from(after.abs_diff(before) >= least);
+        *edges = (*edges << 1 & !FatteningWork::REFUSED) | u8::from(after.abs_diff(before) >= least);
     };
     let [above, line, below] = lines;
     let columns =
@@ -91,58 +83,18 @@ fn push_edges(edges: &mut [u8], lines: [&[u8]; 3], least: u16) {
     }
 }
 
-/// Refuses the answers of a row that spread; an edge is where `row` is set.
-#[inline(never)]
-fn refuse_row(
-    answers: &mut [Disparity],
-    flags: &mut [PixelFlags],
-    edges: &mut [u8],
-    (row, slope): (u8, Disparity),
-) {
-    mark(answers, Cell::from_mut(edges).as_slice_of_cells(), row, u32::from(slope.raw()));
-    for ((answer, flags), edges) in answers.iter_mut().zip(flags).zip(edges) {
-        keep_scalar_loop();
-        let refused = 0u16.wrapping_sub(u16::from(*edges >> REFUSED.trailing_zeros()));
-        // What has no answer is not refused.
-        *flags = flags.union(PixelFlags::UNTEXTURED.when(refused & !answer.raw() != 0));
-        *answer = Disparity::from_raw(answer.raw() | refused);
-    }
-}
-
-/// Marks the answers that are beyond the bound of those on their left or of those on their right. Both passes
-/// run side by side: each waits for its own step before, but not for the other's.
-fn mark(answers: &[Disparity], edges: &[Cell<u8>], row: u8, slope: u32) {
-    let (mut right, mut left) = (NO_BOUND, NO_BOUND);
-    let pixels = answers.iter().zip(edges);
-    for ((to_right, edge_right), (to_left, edge_left)) in pixels.clone().zip(pixels.rev()) {
-        keep_scalar_loop();
-        right |= if_edge(edge_right.get(), row);
-        mark_one(*to_right, edge_right, &mut right, slope);
-        mark_one(*to_left, edge_left, &mut left, slope);
-        left |= if_edge(edge_left.get(), row);
-    }
-}
-
-/// Marks an answer beyond the bound, and moves the bound one pixel on.
-#[inline(always)]
-fn mark_one(answer: Disparity, edges: &Cell<u8>, bound: &mut u32, slope: u32) {
-    // The number of `Disparity::NONE` is over all answers: it lowers no bound to where answers are.
-    let here = u32::from(answer.raw());
-    edges.set(edges.get() | (bound.wrapping_sub(here) >> 31 << REFUSED.trailing_zeros()) as u8);
-    *bound = (*bound + slope).min(here + TOLERANCE_PX * u32::from(Disparity::ONE));
-}
-
-/// [`NO_BOUND`] at an edge, nothing elsewhere.
-#[inline(always)]
-fn if_edge(edges: u8, row: u8) -> u32 {
-    u32::from(edges & row != 0) * NO_BOUND
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::matching::backend::Backend;
+    use crate::units::{Disparity, PixelFlags};
 
     const NONE: u16 = Disparity::NONE.raw();
+
+    fn refuse(answers: &mut [Disparity], flags: &mut [PixelFlags], edges: &mut [u8]) {
+        let slope = Disparity::from_raw(24);
+        Backend::detect().refuse_fattening(FatteningWork { answers, flags, edges, row: 1, slope });
+    }
 
     #[test]
     fn a_near_surface_ends_at_its_edge() {
@@ -151,7 +103,7 @@ mod tests {
         let mut answers = row.map(Disparity::from_raw);
         let mut flags = [PixelFlags::CLEAR; 10];
         let mut edges = [0, 0, 0, 1, 0, 0, 0, 0, 0, 0];
-        refuse_row(&mut answers, &mut flags, &mut edges, (1, Disparity::from_raw(24)));
+        refuse(&mut answers, &mut flags, &mut edges);
         let refused = [640, 640, 640, NONE, NONE, NONE, 320, 320, 320, NONE];
         assert_eq!(answers.map(Disparity::raw), refused);
         for (x, flags) in flags.into_iter().enumerate() {
@@ -163,8 +115,7 @@ mod tests {
     fn a_slope_stays() {
         let row: [u16; 8] = core::array::from_fn(|x| 320 + 24 * x as u16);
         let mut answers = row.map(Disparity::from_raw);
-        let slope = Disparity::from_raw(24);
-        refuse_row(&mut answers, &mut [PixelFlags::CLEAR; 8], &mut [0; 8], (1, slope));
+        refuse(&mut answers, &mut [PixelFlags::CLEAR; 8], &mut [0; 8]);
         assert_eq!(answers.map(Disparity::raw), row);
     }
 

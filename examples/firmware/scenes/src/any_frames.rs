@@ -15,10 +15,11 @@ pub const WIDTH: usize = 168;
 /// Most lines of a frame.
 const HEIGHT: u32 = 14;
 /// Frames of each method and capacity.
-const FRAMES: u32 = 100;
+const FRAMES: u32 = 80;
 
-/// The matchers of a method: with room for two and for four vectors of candidates, and for any number.
+/// The matchers of a method: with room for one, two and four vectors of candidates, and for any number.
 struct Matchers<S: Method> {
+    of_16: Matcher<S, WIDTH, 16>,
     of_32: Matcher<S, WIDTH, 32>,
     of_64: Matcher<S, WIDTH, 64>,
     of_any: Matcher<S, WIDTH, 112>,
@@ -26,11 +27,12 @@ struct Matchers<S: Method> {
 
 impl<S: Method> Matchers<S> {
     const fn new() -> Self {
-        Self { of_32: Matcher::new(), of_64: Matcher::new(), of_any: Matcher::new() }
+        Self { of_16: Matcher::new(), of_32: Matcher::new(), of_64: Matcher::new(), of_any: Matcher::new() }
     }
 
     fn run(&mut self, lines: &mut Lines, put: &mut impl FnMut(u32)) -> Result<(), Broken> {
         for number in 0..FRAMES {
+            put(frame(&mut self.of_16, lines, number)?);
             put(frame(&mut self.of_32, lines, number)?);
             put(frame(&mut self.of_64, lines, number)?);
             put(frame(&mut self.of_any, lines, number)?);

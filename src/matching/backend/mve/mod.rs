@@ -7,6 +7,7 @@
 //! * [`windows`]: sums along the row, and the winner of each pixel.
 //! * [`left_right`]: the left-right check.
 //! * [`mod@smooth`]: answers averaged within their surface, and its length.
+//! * [`mod@fattening`]: answers refused that spread.
 //! * [`mod@speckle`]: support counted. [`mod@fill`]: small gaps closed.
 //!
 //! Of safe Rust over fixed lanes the compiler makes two or three instructions where one is needed: it counts
@@ -27,6 +28,7 @@
 
 mod census;
 mod columns;
+mod fattening;
 mod fill;
 mod left_right;
 mod sgm;
@@ -39,8 +41,8 @@ use super::isa::{Isa, sole_kernel};
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::portable::{self, left_right_rows};
 use super::work::{
-    AnswerWork, CensusWork, CostWork, EdgeWork, FillWork, Guide, MASKS, PathWork, Rules, STEP, SmoothWork,
-    SpeckleWork, WindowWork,
+    AnswerWork, CensusWork, CostWork, EdgeWork, FatteningWork, FillWork, Guide, MASKS, PathWork, Rules, STEP,
+    SmoothWork, SpeckleWork, WindowWork,
 };
 use crate::imaging::census_ring8;
 use crate::matching::kernel::Kernel;
@@ -124,6 +126,11 @@ impl Isa for Backend {
     #[inline(always)]
     fn median(self, rows: [&[Disparity]; 3], out: &mut [Disparity]) {
         median(rows, out);
+    }
+
+    #[inline(always)]
+    fn refuse_fattening(self, work: FatteningWork<'_>) {
+        fattening::refuse(work);
     }
 
     #[inline(always)]

@@ -1,5 +1,5 @@
-//! Costs along paths in Helium: the passes of `portable::sgm` for columns of 32 and of 64 candidates, which
-//! are two and four vectors. Any other number takes the code for four bytes at a time.
+//! Costs along paths in Helium: the passes of `portable::sgm` for columns of 16, 32 and 64 candidates: one,
+//! two or four vectors. Any other number takes the code for four bytes at a time.
 //!
 //! * A path stays in memory, between bytes that no path comes from: what stands beside a disparity is the
 //!   same vector one byte off.
@@ -43,9 +43,10 @@ use room::Room;
 #[inline(always)]
 pub(super) fn cost<S: SgmParameters, const MOST: usize>(work: &mut PathWork<'_>, row: CostWork<'_>) {
     match work.stride {
+        16 if MOST == 0 || MOST == 16 => enter::<S, 16>(work, row),
         32 if MOST == 0 || MOST == 32 => enter::<S, 32>(work, row),
         64 if MOST == 0 || MOST == 64 => enter::<S, 64>(work, row),
-        _ if MOST == 0 || MOST == 16 => sgm::cost::<S, MOST>(work, row),
+        _ if MOST == 0 => sgm::cost::<S, MOST>(work, row),
         _ => {}
     }
 }
@@ -54,9 +55,10 @@ pub(super) fn cost<S: SgmParameters, const MOST: usize>(work: &mut PathWork<'_>,
 #[inline(always)]
 pub(super) fn within_edges<const MOST: usize>(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
     match work.stride {
+        16 if MOST == 0 || MOST == 16 => within_edges_of::<16>(work, edges),
         32 if MOST == 0 || MOST == 32 => within_edges_of::<32>(work, edges),
         64 if MOST == 0 || MOST == 64 => within_edges_of::<64>(work, edges),
-        _ if MOST == 0 || MOST == 16 => sgm::within_edges::<MOST>(work, edges),
+        _ if MOST == 0 => sgm::within_edges::<MOST>(work, edges),
         _ => {}
     }
 }
@@ -65,9 +67,10 @@ pub(super) fn within_edges<const MOST: usize>(work: &mut PathWork<'_>, edges: Ed
 #[inline(always)]
 pub(super) fn select<const MOST: usize>(work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
     match work.stride {
+        16 if MOST == 0 || MOST == 16 => select_among::<16>(work, guide, select),
         32 if MOST == 0 || MOST == 32 => select_among::<32>(work, guide, select),
         64 if MOST == 0 || MOST == 64 => select_among::<64>(work, guide, select),
-        _ if MOST == 0 || MOST == 16 => sgm::select::<true, MOST>(work, guide, select),
+        _ if MOST == 0 => sgm::select::<true, MOST>(work, guide, select),
         _ => {}
     }
 }

@@ -99,7 +99,7 @@ impl Isa for Backend {
 
     #[inline(always)]
     fn sgm_within_edges<const MOST: usize>(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
-        sgm::within_edges::<MOST>(work, edges);
+        sgm::within_edges(work, edges);
     }
 
     #[inline(always)]

@@ -40,6 +40,14 @@ impl Ring {
     }
 }
 
+/// The places of the two columns that the path into column `x` comes from, each with how many there are from
+/// it on. At the ends the nearest column that there is stands for those outside.
+#[inline(always)]
+pub(super) fn sources(ring: Ring, width: usize, x: usize) -> [(usize, usize); 2] {
+    let last = width.saturating_sub(1);
+    [x.saturating_sub(COLUMNS_OFF), (x + COLUMNS_OFF).min(last)].map(|column| ring.above().place(column))
+}
+
 /// Moves the path from above down to the row.
 #[inline(always)]
 pub(super) fn go<const STRIDE: usize>(
@@ -58,14 +66,11 @@ pub(super) fn go<const STRIDE: usize>(
         work.top.fill(0);
     }
     let ring = Ring::new(width, guide.row);
-    let above = ring.above();
     let last = width - 1;
     let mut x = 0;
     while x < width {
-        let (before, of_before) = above.place(x.saturating_sub(COLUMNS_OFF));
-        let (after, of_after) = above.place((x + COLUMNS_OFF).min(last));
+        let [(before, of_before), (after, of_after)] = sources(ring, width, x);
         let (out, of_out) = ring.place(x);
-        // At the ends the nearest column that there is stands for those outside.
         let is_inside = x >= COLUMNS_OFF && x + COLUMNS_OFF <= last;
         let alike = if is_inside { last + 1 - COLUMNS_OFF - x } else { 1 };
         let count = alike.min(of_before).min(of_after).min(of_out);

@@ -1,5 +1,5 @@
-//! Costs along paths in Helium: the passes of `portable::sgm` for columns of 16, 32 and 64 candidates: one,
-//! two or four vectors. Any other number takes the code for four bytes at a time.
+//! Costs along paths in Helium: the passes of `portable::sgm` for columns of 16, 32, 48 and 64 candidates, one to
+//! four vectors; for any other number they are in `any`.
 //!
 //! * A path stays in memory, between bytes that no path comes from: what stands beside a disparity is the
 //!   same vector one byte off.
@@ -17,6 +17,7 @@
 //! * `changes`: what the paths pay at each pixel. `down`, `rightward`, `leftward`: the paths, the last one
 //!   with the winners. `room`: what they work with.
 
+mod any;
 mod changes;
 mod cost;
 mod down;
@@ -27,7 +28,6 @@ mod rightward;
 mod room;
 
 use super::LANES;
-use crate::matching::backend::armv7em::sgm;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::features as portable;
 use crate::matching::backend::work::{CostWork, EdgeWork, Guide, PathWork};
@@ -46,21 +46,16 @@ pub(super) fn cost<S: SgmParameters, const MOST: usize>(work: &mut PathWork<'_>,
         16 if MOST == 0 || MOST == 16 => enter::<S, 16>(work, row),
         32 if MOST == 0 || MOST == 32 => enter::<S, 32>(work, row),
         64 if MOST == 0 || MOST == 64 => enter::<S, 64>(work, row),
-        _ if MOST == 0 => sgm::cost::<S, MOST>(work, row),
+        48 if MOST == 0 => enter::<S, 48>(work, row),
+        _ if MOST == 0 => enter::<S, 0>(work, row),
         _ => {}
     }
 }
 
-/// [`Isa::sgm_within_edges`](crate::matching::backend::Isa::sgm_within_edges) for each number of candidates.
-#[inline(always)]
-pub(super) fn within_edges<const MOST: usize>(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
-    match work.stride {
-        16 if MOST == 0 || MOST == 16 => within_edges_of::<16>(work, edges),
-        32 if MOST == 0 || MOST == 32 => within_edges_of::<32>(work, edges),
-        64 if MOST == 0 || MOST == 64 => within_edges_of::<64>(work, edges),
-        _ if MOST == 0 => sgm::within_edges::<MOST>(work, edges),
-        _ => {}
-    }
+/// [`Isa::sgm_within_edges`](crate::matching::backend::Isa::sgm_within_edges).
+#[inline(never)]
+pub(super) fn within_edges(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+    edges::within_edges(work, edges);
 }
 
 /// [`Isa::sgm_select`](crate::matching::backend::Isa::sgm_select) for each number of candidates.
@@ -70,29 +65,30 @@ pub(super) fn select<const MOST: usize>(work: &mut PathWork<'_>, guide: Guide<'_
         16 if MOST == 0 || MOST == 16 => select_among::<16>(work, guide, select),
         32 if MOST == 0 || MOST == 32 => select_among::<32>(work, guide, select),
         64 if MOST == 0 || MOST == 64 => select_among::<64>(work, guide, select),
-        _ if MOST == 0 => sgm::select::<true, MOST>(work, guide, select),
+        48 if MOST == 0 => select_among::<48>(work, guide, select),
+        _ if MOST == 0 => any::select(work, guide, select),
         _ => {}
     }
 }
 
+/// Adds a row; with code for so many candidates, or for any number if that is 0.
 #[inline(never)]
 fn enter<S: SgmParameters, const STRIDE: usize>(work: &mut PathWork<'_>, row: CostWork<'_>) {
     if row.is_first {
         work.costs.fill(0);
     }
     let Some(features) = portable::of::<HeliumRows, S>(work, row.lines, row.workspace) else { return };
-    cost::enter::<S, STRIDE>(work, &features);
-    let beyond = STRIDE.saturating_sub(work.disparities);
+    if STRIDE > 0 {
+        cost::enter::<S, STRIDE>(work, &features);
+    } else {
+        any::enter::<S>(work, &features);
+    }
+    let beyond = work.stride.saturating_sub(work.disparities);
     if beyond > 0 {
-        for column in chunks_mut(work.costs, STRIDE) {
+        for column in chunks_mut(work.costs, work.stride) {
             part_mut(column, ..beyond).fill(work.penalties.cost);
         }
     }
-}
-
-#[inline(never)]
-fn within_edges_of<const STRIDE: usize>(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
-    edges::within_edges::<STRIDE>(work, edges);
 }
 
 #[inline(never)]

@@ -11,7 +11,7 @@ use crate::matching::backend::mve::windows::best_of_the_rest;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::features::Features;
 use crate::matching::backend::work::{Guide, MASKS, PathWork};
-use crate::matching::memory::slices::{chunks_mut, copy, part, part_mut, split_mut};
+use crate::matching::memory::slices::{chunks_mut, part, part_mut, split_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::Select;
 use core::arch::asm;
@@ -131,13 +131,17 @@ impl<'a> Path<'a> {
         self.least = least as u8;
     }
 
-    /// Goes on to a pixel of these costs, and adds itself to the sums, 255 at the most.
+    /// Goes on to a pixel of these costs. Its own there, and if `ADDS` those that are in `from` already, or in
+    /// `to` where there is none, go to `to`, 255 at the most.
     #[inline(always)]
-    fn advance(&mut self, change: u16, costs: &[u8], sums: &mut [u8]) {
+    fn advance<const ADDS: bool>(&mut self, change: u16, costs: &[u8], from: Option<&[u8]>, to: &mut [u8]) {
         let groups = (self.room.len() / LANES).saturating_sub(2);
-        if groups == 0 || costs.len() < groups * LANES || sums.len() < groups * LANES {
+        let is_whole = |column: &[u8]| column.len() >= groups * LANES;
+        if groups == 0 || !is_whole(costs) || !from.is_none_or(is_whole) || !is_whole(to) {
             return;
         }
+        let to = to.as_mut_ptr();
+        let from = from.map_or(to.cast_const(), <[u8]>::as_ptr);
         let jump = u32::from(change >> 8);
         let mut least = u32::from(u8::MAX);
         // The path is written 16 bytes at a time: what is read one byte before is read first.
@@ -160,13 +164,16 @@ impl<'a> Path<'a> {
                 "vadd.i8 q0, q0, q1",
                 "vstrb.8 q0, [{path}], #16",
                 "vminv.u8 {least}, q0",
-                "vldrb.u8 q1, [{sums}]",
-                "vqadd.u8 q1, q1, q0",
-                "vstrb.8 q1, [{sums}], #16",
+                ".if {adds}",
+                "vldrb.u8 q1, [{from}], #16",
+                "vqadd.u8 q0, q1, q0",
+                ".endif",
+                "vstrb.8 q0, [{to}], #16",
                 "vmov q4, q5",
                 "le lr, 2b",
                 groups = in(reg) groups, path = inout(reg) self.room.as_mut_ptr().add(LANES) => _,
-                costs = inout(reg) costs.as_ptr() => _, sums = inout(reg) sums.as_mut_ptr() => _,
+                costs = inout(reg) costs.as_ptr() => _, from = inout(reg) from => _, to = inout(reg) to => _,
+                adds = const ADDS as u32,
                 step = in(reg) u32::from(change), jump = in(reg) jump,
                 off = in(reg) jump.wrapping_sub(self.least.into()), least = inout(reg) least,
                 out("lr") _, out("q0") _, out("q1") _, out("q4") _, out("q5") _, options(nostack),
@@ -229,16 +236,14 @@ pub(super) fn select(work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'
     for (x, &change) in down.iter().enumerate() {
         let [before, after] = sources(ring, width, x).map(|(place, _)| part(tops, at(place)));
         path.average(before, after);
-        let sums = part_mut(sums, at(x));
-        sums.fill(0);
-        path.advance(change, part(costs, at(x)), sums);
-        copy(sums, part_mut(tops, at(ring.place(x).0)));
+        path.advance::<false>(change, part(costs, at(x)), None, part_mut(tops, at(ring.place(x).0)));
     }
 
     changes(guide.here.get(1..).unwrap_or_default(), guide.here, work.penalties, part_mut(along, 1..width));
     let Some(mut path) = Path::new(room, stride) else { return };
     for (x, &change) in along.iter().enumerate().take(width) {
-        path.advance(change, part(costs, at(x)), part_mut(sums, at(x)));
+        let top = part(tops, at(ring.place(x).0));
+        path.advance::<true>(change, part(costs, at(x)), Some(top), part_mut(sums, at(x)));
     }
 
     let Some(mut path) = Path::new(room, stride) else { return };
@@ -250,7 +255,8 @@ pub(super) fn select(work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'
         if candidates < stride {
             part_mut(sums, ..stride - candidates).fill(u8::MAX);
         }
-        path.advance(along.get(x + 1).copied().unwrap_or(0), part(costs, at(x)), sums);
+        let change = along.get(x + 1).copied().unwrap_or(0);
+        path.advance::<true>(change, part(costs, at(x)), None, sums);
         let (cost, disparity) = least(sums);
         let lane = (stride - 1).wrapping_sub(disparity.into());
         let beside = [lane + 1, lane.wrapping_sub(1)].map(|lane| sums.get(lane).copied().unwrap_or(0));

@@ -1,7 +1,7 @@
 //! What the programs of this firmware share. A program stands in `src/bin`: `depth` is the pipeline, `pose`
 //! two views, `bundle` their adjustment, `features` corners and their matches, `focus` depth by a lens that
 //! moves, `interrupt` lines that an interrupt brings, `odometry` where a pair of cameras goes, `rectify` raw
-//! lines.
+//! lines, `any_frames` frames of any size with all that can be asked of them.
 //!
 //! * [`choice`]: the method, the sizes and the board, chosen when it is built; [`board`] is the list of
 //!   boards, a package of its own.

@@ -24,7 +24,7 @@ const STAGES: [(&str, &[&str]); 9] = [
     ("denoise", &["denoise", "imaging::smooth"]),
     ("census, features", &["census", "features"]),
     ("cost", &["columns", "by_bits", "tables", "reverse", "enter", "cost", "within_edges"]),
-    ("aggregation, selection", &["windows", "begin_", "walk", "select", "winners"]),
+    ("aggregation, selection", &["windows", "begin_", "walk", "select", "winners", "changes", "close"]),
     ("left-right, sub-pixel", &["answers", "partners", "left_right", "subpixel", "consistency"]),
     ("fattening", &["fattening"]),
     ("smoothing", &["surface", "smooth", "down", "vertical"]),

@@ -5,6 +5,7 @@
 //! * [`census`]: the codes of `fast`.
 //! * [`columns`]: costs of a row added to the columns under the window, and others subtracted.
 //! * [`windows`]: sums along the row, and the winner of each pixel.
+//! * [`sgm`]: costs along paths.
 //! * [`left_right`]: the left-right check.
 //! * [`mod@smooth`]: answers averaged within their surface, and its length.
 //! * [`mod@fattening`]: answers refused that spread.

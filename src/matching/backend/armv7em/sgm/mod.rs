@@ -1,5 +1,5 @@
 //! The passes on cores with Arm's instructions on four bytes (`--cfg stereopsis_dsp`: Cortex-M4, M7, and M33
-//! with its extension; M55): the same numbers as `portable::words` has, in fewer instructions.
+//! with its extension): the same numbers as `portable::words` has, in fewer instructions.
 //!
 //! * A path stays in memory, between two words that no path comes from: what stands beside a disparity is the
 //!   same word one byte off. A path's two pixels take turns in two places.

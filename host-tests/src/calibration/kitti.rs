@@ -2,9 +2,9 @@
 //! the Karlsruhe sequences, its forerunner.
 //!
 //! `P = K [I | t]`, row by row: `f 0 cx f*tx; 0 f cy ..; 0 0 1 ..`. The baseline of two cameras is
-//! `(P_right[3] - P_left[3]) / -f`. KITTI counts its cameras from 0 (grey 0 and 1, colour 2 and 3). A Karlsruhe
-//! file counts them from 1: `K1`, `D1`, `R1` are the camera that was calibrated, `P1` the rectified one, and
-//! `P1_roi` that of the region which the images of the sequences show.
+//! `(P_right[3] - P_left[3]) / -f`. KITTI counts its cameras from 0 (grey 0 and 1, colour 2 and 3). A
+//! Karlsruhe file counts them from 1: `K1`, `D1`, `R1` are the camera that was calibrated, `P1` the rectified
+//! one, and `P1_roi` that of the region which the images of the sequences show.
 
 use super::{Calibration, Fault, Intrinsics, numbers, rig};
 use std::path::{Path, PathBuf};
@@ -43,8 +43,8 @@ fn region(text: &str) -> &'static str {
     if has_numbers(text, "P1_roi") { "_roi" } else { "" }
 }
 
-/// Whether the cameras are called 1 and 2, as in the Karlsruhe sequences: KITTI's files never do. `K1` in YAML
-/// is followed by a list or a mapping.
+/// Whether the cameras are called 1 and 2, as in the Karlsruhe sequences: KITTI's files never do. `K1` in
+/// YAML is followed by a list or a mapping.
 pub(super) fn counts_from_one(text: &str) -> bool {
     has_numbers(text, "K1") || has_numbers(text, "P1_roi")
 }

@@ -1,4 +1,4 @@
-//! Answers refused that spread from a near surface, eight pixels at a time: what `portable/fattening.rs` does.
+//! Answers refused that spread from a near surface, eight pixels at a time, as `portable/fattening.rs` does.
 //!
 //! A bound is a minimum over the answers before a pixel, each raised by the slope for every pixel between, as
 //! far back as no edge is crossed. In a vector it is made in three steps, over one, two and four lanes; a
@@ -33,8 +33,8 @@ impl Room {
         Self { bounds: [[u16::MAX; LANES]; 3], edges: [[0; LANES]; 3], ramp, tolerance }
     }
 
-    /// The middle of the bounds, by a pointer to all of it: that of the edges is 48 bytes further, the ramp 80
-    /// and the tolerance 96.
+    /// The middle of the bounds, by a pointer to all of it: that of the edges is 48 bytes further, the ramp
+    /// 80 and the tolerance 96.
     fn middle(&mut self) -> *mut u16 {
         core::ptr::from_mut(self).cast::<u16>().wrapping_add(LANES)
     }

@@ -30,8 +30,8 @@ pub(super) fn enter<S: SgmParameters>(work: &mut PathWork<'_>, features: &Featur
     }
 }
 
-/// A pixel's costs. Of each row of the `right` image, `count` numbers further on each, the first is that of the
-/// column's first candidate.
+/// A pixel's costs. Of each row of the `right` image, `count` numbers further on each, the first is that of
+/// the column's first candidate.
 #[inline(always)]
 fn compare<S: SgmParameters>(pixel: [u8; 5], right: &[u8], count: usize, costs: &mut [u8]) {
     let [low, high] = if S::BETWEEN_PIXELS { [4, 5] } else { [0, 0] };
@@ -131,8 +131,8 @@ impl<'a> Path<'a> {
         self.least = least as u8;
     }
 
-    /// Goes on to a pixel of these costs. Its own there, and if `ADDS` those that are in `from` already, or in
-    /// `to` where there is none, go to `to`, 255 at the most.
+    /// Goes on to a pixel of these costs. Its own there, and if `ADDS` those that are in `from` already, or
+    /// in `to` where there is none, go to `to`, 255 at the most.
     #[inline(always)]
     fn advance<const ADDS: bool>(&mut self, change: u16, costs: &[u8], from: Option<&[u8]>, to: &mut [u8]) {
         let groups = (self.room.len() / LANES).saturating_sub(2);

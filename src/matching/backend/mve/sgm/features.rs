@@ -129,8 +129,8 @@ fn codes(rows: [&[u8]; 3], out: &mut [u8]) {
     }
 }
 
-/// The gradients along the line and across it, cut off at `most` to each side, plus `most`, likewise, from the
-/// rows above, here and below, each from a column before the first on: 29 instructions for eight pixels.
+/// The gradients along the line and across it, cut off at `most` to each side, plus `most`, likewise, from
+/// the rows above, here and below, each from a column before the first on: 29 instructions for eight pixels.
 #[inline(never)]
 fn gradients(rows: [&[u8]; 3], most: u8, [along, across]: [&mut [u8]; 2]) {
     /// More than any sum.

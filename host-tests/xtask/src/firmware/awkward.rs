@@ -41,9 +41,8 @@ pub fn check() -> Outcome {
 fn any_frames() -> Outcome {
     let mut host = Vec::new();
     let put = |sum: u32| host.extend_from_slice(&sum.to_le_bytes());
-    Box::new(AnyFrames::new())
-        .run(put)
-        .map_err(|e| Failure::new(format!("any frames on the host: {e:?}")))?;
+    let mut frames = Box::new(AnyFrames::new());
+    frames.run(put).map_err(|e| Failure::new(format!("any frames on the host: {e:?}")))?;
     let ran = Ran::of(M55, "any_frames", Optimised::Speed, &host)?;
     println!("any_frames: {} frames on {} are equal to the host's", ran.figure("frames")?, ran.taken.core);
     Ok(())

@@ -182,8 +182,8 @@ pub unsafe fn two_view_eight_point(seen: *const CMatch, count: usize, fundamenta
 ///
 /// # Safety
 ///
-/// `seen` and `inliers` are null or point to `count` elements each, `fundamental` to nine numbers, `agreement` to
-/// a structure's bytes.
+/// `seen` and `inliers` are null or point to `count` elements each, `fundamental` to nine numbers,
+/// `agreement` to a structure's bytes.
 pub unsafe fn two_view_fundamental(
     seen: *const CMatch,
     count: usize,
@@ -225,7 +225,8 @@ pub unsafe fn two_view_fundamental(
 ///
 /// # Safety
 ///
-/// `seen` is null or points to `count` matches, `inliers` to as many bytes, the others to what they are called.
+/// `seen` is null or points to `count` matches, `inliers` to as many bytes, the others to what they are
+/// called.
 pub unsafe fn two_view_pose(
     seen: *const CMatch,
     inliers: *const u8,

@@ -26,8 +26,8 @@ pub struct Config {
     /// more for each pixel.
     pub confidence: bool,
     /// The least confidence that an answer keeps: one that is less sure is refused, as
-    /// [`AMBIGUOUS`](crate::units::PixelFlags::AMBIGUOUS), and so is every answer that was filled in, from 2 on.
-    /// The rows below are as they would be with it. 0: none is refused; more
+    /// [`AMBIGUOUS`](crate::units::PixelFlags::AMBIGUOUS), and so is every answer that was filled in, from 2
+    /// on. The rows below are as they would be with it. 0: none is refused; more
     /// asks for `confidence`, too.
     pub min_confidence: u8,
     /// How noisy both cameras are: what is compared is smoothed accordingly. The next frame's is what a

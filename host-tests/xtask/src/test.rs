@@ -53,8 +53,8 @@ pub fn run(only: Option<String>) -> Outcome {
 /// A step's name and what it does.
 type NamedStep = (&'static str, fn() -> Outcome);
 
-/// Runs two rows of steps beside each other, each step as a program of its own whose output is printed when it is
-/// done; or one after another those that were asked for.
+/// Runs two rows of steps beside each other, each step as a program of its own whose output is printed when
+/// it is done; or one after another those that were asked for.
 fn side_by_side(steps: &mut Steps, rows: [&[NamedStep]; 2]) -> Outcome {
     if steps.is_part() {
         return rows.into_iter().flatten().try_for_each(|(name, work)| steps.step(name, work));

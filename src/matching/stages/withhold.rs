@@ -1,8 +1,8 @@
 //! Answers that are less sure than asked for, refused.
 //!
-//! Last of all stages: what other rows make of an answer does not depend on it. A refused answer is kept beside
-//! the confidences until the next row comes, and then goes back into the history, which has it as it was
-//! decided.
+//! Last of all stages: what other rows make of an answer does not depend on it. A refused answer is kept
+//! beside the confidences until the next row comes, and then goes back into the history, which has it as it
+//! was decided.
 
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::memory::rings::{BAND, waiting};
@@ -22,7 +22,8 @@ pub(super) fn refuse_unsure(frame: &mut Frame<'_>, newest: usize) {
     }
 }
 
-/// Gives the row that came out last the answers back that [`refuse_unsure`] took, but where it was masked since.
+/// Gives the row that came out last the answers back that [`refuse_unsure`] took, but where it was masked
+/// since.
 pub(super) fn restore_unsure(frame: &mut Frame<'_>, newest: usize) {
     if frame.config.min_confidence > 0 && newest >= BAND {
         let withheld = frame.workspace.withheld_before(frame.width);

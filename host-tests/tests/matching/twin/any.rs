@@ -40,11 +40,12 @@ prop_compose! {
     fn any_config()(
         width in 1u16..=300, height in 1u16..=60, disparities in 16u16..=256, min_disparity in 0u16..60,
         checks in any_checks(), confidence: bool,
-            min_confidence in proptest::sample::select(&[0, 0, 1, 2, 60, 130, 208][..]), noise in proptest::sample::select(&Noise::ALL[..]),
-            seed: u64,
+            min_confidence in proptest::sample::select(&[0, 0, 1, 2, 60, 130, 208][..]),
+        noise in proptest::sample::select(&Noise::ALL[..]), seed: u64,
     ) -> Config {
         let penalties = random_penalties(&mut Random::new(seed));
-        Config { width, height, disparities, min_disparity, checks, penalties, confidence, min_confidence, noise }
+        let search = Config::for_method::<Block>(width, height, disparities);
+        Config { min_disparity, checks, penalties, confidence, min_confidence, noise, ..search }
     }
 }
 

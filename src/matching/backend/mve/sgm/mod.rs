@@ -1,5 +1,5 @@
-//! Costs along paths in Helium: the passes of `portable::sgm` for columns of 16, 32, 48 and 64 candidates, one to
-//! four vectors; for any other number they are in `any`.
+//! Costs along paths in Helium: the passes of `portable::sgm` for columns of 16, 32, 48 and 64 candidates,
+//! one to four vectors; for any other number they are in `any`.
 //!
 //! * A path stays in memory, between bytes that no path comes from: what stands beside a disparity is the
 //!   same vector one byte off.
@@ -103,8 +103,8 @@ fn select_among<const STRIDE: usize>(work: &mut PathWork<'_>, guide: Guide<'_>, 
     changes(guide.here, guide.above.unwrap_or(guide.here), work.penalties, down);
     down::go::<STRIDE>(work, guide, down, &mut room);
 
-    // Into a column from the one before it, from the right into that one from it. Nothing comes into the first
-    // one nor into the last: what they pay is nothing whatever stands there.
+    // Into a column from the one before it, from the right into that one from it. Nothing comes into the
+    // first one nor into the last: what they pay is nothing whatever stands there.
     let places = part_mut(along, 1..width);
     changes(guide.here.get(1..).unwrap_or_default(), guide.here, work.penalties, places);
     rightward::go::<STRIDE>(work, guide.row, along, &mut room);

@@ -5,6 +5,7 @@
 //!
 //! ```text
 //! units math     types with units: Disparity, Millimetres, PixelFlags; the one file that names libm
+//! stored         values read back by serde, through their constructors' checks
 //! geometry       camera models, two-view geometry, pose, robust estimation, rectification; no pixels
 //! camera         traits of line sources, two cameras as a stereo source, sensor drivers, line hand-off
 //! imaging        grey lines, line windows, census, gradients, rectifying remap, exposure, noise
@@ -27,9 +28,15 @@
 //! a [`depth::DepthScale`].
 #![no_std]
 
+/// The matrices and vectors of the public interface, in the version that they come from.
+pub use nalgebra;
+
 pub mod units;
 
 mod math;
+
+#[macro_use]
+mod stored;
 
 pub mod geometry;
 

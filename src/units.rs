@@ -15,6 +15,7 @@ use core::fmt;
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(transparent)]
 pub struct Disparity(u16);
 
@@ -92,6 +93,7 @@ impl fmt::Display for Disparity {
 /// a line, and [`PixelFlags::FILLED`] beside the bits that say why it had no answer of its own.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(transparent)]
 pub struct PixelFlags(u8);
 
@@ -173,6 +175,7 @@ impl PixelFlags {
 /// "none".
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Debug, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(transparent)]
 pub struct Millimetres(pub u16);
 
@@ -196,5 +199,6 @@ impl Millimetres {
 /// A length in metres.
 #[derive(Clone, Copy, PartialEq, PartialOrd, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(transparent)]
 pub struct Metres(pub f32);

@@ -3,6 +3,7 @@
 /// Memory layout of the pixels of a line.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum PixelFormat {
     /// 8-bit grey, the format that the matchers take.
@@ -68,6 +69,7 @@ impl PixelFormat {
 /// Size and pixel layout of a frame.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LineFormat {
     /// Pixels in a line.
     pub width: u16,
@@ -88,6 +90,7 @@ impl LineFormat {
 /// Sequence number and time of a frame that begins.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FrameStart {
     /// Number of the frame, counting dropped ones too, so that a gap is a loss. Wraps around.
     pub sequence: u32,
@@ -100,6 +103,7 @@ pub struct FrameStart {
 /// Row and time of a line that a source delivered.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LineStart {
     /// The row in the frame, from 0.
     pub row: u16,

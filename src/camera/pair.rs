@@ -30,6 +30,7 @@ pub struct CameraPair<L, R> {
 /// How frames of two cameras are paired.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Pairing {
     /// Equal sequence numbers: cameras that count the pulses of one trigger.
     #[default]
@@ -42,6 +43,7 @@ pub enum Pairing {
 /// Row skew of a frame so far: how much later than the left camera the right one read out its rows.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RowSkew {
     /// Number of rows measured; with none the other fields are 0.
     pub rows: u16,

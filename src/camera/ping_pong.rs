@@ -5,6 +5,7 @@ use super::LineFault;
 /// One half of a circular DMA buffer.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Half {
     /// First half, complete at the half-transfer interrupt.
     #[default]
@@ -36,6 +37,7 @@ impl Half {
 /// [`LineSlots`](super::LineSlots). The DMA does not wait: its position after the copy shows whether it has
 /// come back into that half.
 #[derive(Clone, Copy, Default, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PingPong {
     due: Half,
     missed: u32,

@@ -30,6 +30,7 @@ const VIRIDIS: [[u8; 3]; 9] = [
 /// assert_eq!(colours.colour(Disparity::NONE), Rgb888::new(0, 0, 0));
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct DisparityColours {
     far: u16,
     near: u16,

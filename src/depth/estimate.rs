@@ -15,6 +15,7 @@ use crate::units::{Disparity, Metres};
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Depth {
     /// Depth, m; positive.
     pub depth_m: f32,

@@ -7,6 +7,7 @@ use crate::units::{Disparity, Metres};
 /// Depths that a search range covers.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DepthRange {
     /// Depth at the largest disparity that is no ceiling, `min_disparity + disparities - 2`.
     pub nearest: Metres,

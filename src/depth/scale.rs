@@ -21,6 +21,7 @@ use nalgebra::Point3;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct DepthScale {
     rig: RectifiedRig,
     /// `f b` in millimetres times steps of disparity.

@@ -5,6 +5,7 @@ use crate::units::Disparity;
 /// Origin of a filtered disparity.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
 pub enum Provenance {
     /// There is no answer, neither now nor in the last frames.
@@ -21,6 +22,7 @@ pub enum Provenance {
 /// Smoothing and holding of a [`TemporalFilter`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TemporalConfig {
     /// Largest difference of answers of one surface, steps of 1/32 px.
     pub most_step: u16,

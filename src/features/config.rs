@@ -6,6 +6,7 @@ use core::fmt;
 /// What corners are described by.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Orientation {
     /// The patch as it stands: the most distinctive, for rotations of up to about 15 degrees. For cameras
     /// that are mounted alike.
@@ -19,6 +20,7 @@ pub enum Orientation {
 /// How a picture's features are found.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FeatureConfig {
     /// Pixels in a line.
     pub width: u16,

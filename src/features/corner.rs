@@ -3,6 +3,7 @@
 /// A corner of a picture. Until its patch is whole, it lies at the centre of the strongest pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Corner {
     /// The column of the strongest pixel.
     pub column: u16,

@@ -10,6 +10,7 @@ use super::pattern::{PATCH_RADIUS, PATTERN};
 /// tolerates turns of about 15 degrees.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Descriptor(pub [u32; 8]);
 
 impl Descriptor {

@@ -51,6 +51,7 @@ impl core::error::Error for FeatureLineError {}
 /// What became of a frame's corners.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FeatureCounts {
     /// Corners that were found.
     pub corners: u32,

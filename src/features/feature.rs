@@ -5,9 +5,18 @@ use super::{Corner, Descriptor};
 /// A picture among ever smaller ones of the same scene: which one, and how its pixels lie in the full one.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Level {
     index: u8,
     scale: f32,
+}
+
+deserialize_checked! {
+    Level { index: u8, scale: f32 }
+    by |level| match level.scale {
+        scale if scale.is_finite() && scale >= 1.0 => Ok(Self { index: level.index, scale }),
+        _ => Err("the scale of a level must be finite and at least 1"),
+    }
 }
 
 impl Level {
@@ -44,6 +53,7 @@ impl Level {
 /// A corner that can be found again.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Feature {
     /// The column, px of the full picture.
     pub x_px: f32,

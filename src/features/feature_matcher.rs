@@ -6,6 +6,7 @@ use heapless::VecView;
 /// A feature of the left picture and one of the right, by their places in the lists.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Match {
     /// The left feature's place.
     pub left: u16,

@@ -7,6 +7,8 @@ use nalgebra::Point2;
 
 /// Lines on which partners lie, when it is known how the cameras stand to each other.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Epipolar {
     /// F with `p^T F p' = 0`: p in the left picture, p' in the right one.
     pub fundamental: Fundamental<f32>,
@@ -17,6 +19,8 @@ pub struct Epipolar {
 
 /// What a match has to be.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MatchConfig {
     /// A match has fewer different bits than so many percent of the second best partner (Lowe 2004, 7.1): 1
     /// to 100.

@@ -28,6 +28,8 @@ pub struct Template {
 
 /// Where a template was found.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TemplateMatch {
     /// The column of its place, px.
     pub x_px: f32,
@@ -40,6 +42,8 @@ pub struct TemplateMatch {
 
 /// Where a template fits along a row.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RowMatch {
     /// The column of its place, to whole steps from it, px.
     pub x_px: f32,

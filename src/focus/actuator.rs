@@ -9,6 +9,7 @@ pub trait ActuatorErrorType {
 /// Where an actuator can go, and how.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ActuatorLimits {
     /// The least position, in the actuator's own steps; more moves the lens away from the sensor, to nearer
     /// focus.

@@ -37,6 +37,7 @@ pub enum LensEvent {
 /// Where the lens ended.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Focused {
     /// The position of the largest sharpness.
     pub position: u16,

@@ -9,9 +9,18 @@ use super::FocusLineError;
 /// between pixels than on them, and that would be taken for focus.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Breathing {
     /// In 1/2^16.
     scale: u32,
+}
+
+deserialize_checked! {
+    Breathing { scale: u32 }
+    by |stored| match stored.scale {
+        scale @ 0x8000..=0x2_0000 => Ok(Self { scale }),
+        _ => Err(FocusLineError::Scale),
+    }
 }
 
 impl Breathing {

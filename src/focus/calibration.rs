@@ -15,12 +15,29 @@ use core::fmt;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FocusCalibration {
     lens: ThinLens<f32>,
     /// How much farther from the sensor than its focal length the lens is in position 0, m.
     zero_m: f32,
     per_step_m: f32,
     rms_m: f32,
+}
+
+deserialize_checked! {
+    FocusCalibration { lens: ThinLens<f32>, zero_m: f32, per_step_m: f32, rms_m: f32 }
+    by |stored| {
+        let finite = [stored.zero_m, stored.per_step_m, stored.rms_m].iter().all(|x| x.is_finite());
+        if !finite {
+            return Err("a number of the focus calibration is not finite");
+        }
+        if stored.per_step_m <= 0.0 || stored.rms_m < 0.0 {
+            return Err("the focus calibration's step must be above zero, its deviation not below");
+        }
+        let FocusCalibration { lens, zero_m, per_step_m, rms_m } = stored;
+        Ok(Self { lens, zero_m, per_step_m, rms_m })
+    }
 }
 
 /// Why there is no calibration.

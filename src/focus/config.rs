@@ -6,6 +6,7 @@ use core::fmt;
 /// Size and cells of a focus map.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FocusConfig {
     /// Pixels in a line.
     pub width: u16,

@@ -6,6 +6,8 @@ use crate::geometry::Real;
 
 /// The far end of the depth of field.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FarLimit<T> {
     /// At that distance.
     At(T),
@@ -16,6 +18,8 @@ pub enum FarLimit<T> {
 
 /// The distances between which the blur is no larger than what counts as sharp.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DepthOfField<T> {
     /// The nearest distance.
     pub near: T,

@@ -11,6 +11,7 @@ use embedded_hal::i2c::I2c;
 /// The slew of the current.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Slew {
     /// At once: fastest, and the lens rings.
     Direct,

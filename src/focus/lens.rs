@@ -16,9 +16,13 @@ use crate::geometry::Real;
 /// # Ok::<(), stereopsis::focus::LensError>(())
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ThinLens<T: Real> {
     focal: T,
 }
+
+deserialize_checked! { ThinLens<T> { focal: T } by |lens| Self::new(lens.focal) }
 
 /// Passes a finite number on.
 pub(super) fn finite<T: Real>(value: T) -> Result<T, LensError> {

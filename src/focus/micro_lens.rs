@@ -13,9 +13,12 @@ use super::LensError;
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct MicroLens {
     focal_um: u32,
 }
+
+deserialize_checked! { MicroLens { focal_um: u32 } by |lens| Self::new(lens.focal_um) }
 
 /// `a b / c` to the nearest whole number, halves up. `c` is not 0.
 fn scaled(a: u64, b: u32, c: u64) -> Result<u32, LensError> {

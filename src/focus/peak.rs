@@ -43,6 +43,7 @@ pub struct FocusCell {
 /// Where a cell is in focus, and how sure that is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FocusPeak {
     /// The frame, counted from 0, in 1/256.
     pub position_q8: u32,

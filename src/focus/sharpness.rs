@@ -11,6 +11,7 @@ const RING: usize = 2 * MOST_RADIUS + 1;
 /// What is summed up over a window of `n` pixels, and how large it can be with the widest, of 49.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Measure {
     /// The sum of the modified Laplacian of smoothed rows, in 1/16 grey level: 799 680. The default: least
     /// hurt by noise.

@@ -13,6 +13,7 @@ use crate::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, P
 /// nothing is balanced. Saturated pixels stay saturated.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Balance {
     /// Gain in 256ths.
     pub gain_256ths: u16,

@@ -5,6 +5,7 @@ use super::histogram::Histogram;
 /// Exposure and gain for both sensors.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ExposureCommand {
     /// Exposure, microseconds.
     pub exposure_us: u32,
@@ -15,6 +16,7 @@ pub struct ExposureCommand {
 /// Limits of exposure and gain.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ExposureLimits {
     /// Shortest exposure, microseconds; at least 1, if the longest is.
     pub least_us: u32,
@@ -38,6 +40,7 @@ pub struct ExposureLimits {
 /// The caller passes the resulting [`ExposureCommand`] to both sensors
 /// ([`ExposureControl`](crate::camera::ExposureControl)).
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct AutoExposure {
     limits: ExposureLimits,
     current: ExposureCommand,

@@ -5,6 +5,7 @@ use super::histogram::Histogram;
 /// Condition of a camera, judged by its frame.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum CameraHealth {
     /// No fault shows.

@@ -2,6 +2,7 @@
 
 /// Histogram of a frame's grey levels in 16 bins, with counts of black and saturated pixels, in 80 bytes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Histogram {
     bins: [u32; 16],
     black: u32,

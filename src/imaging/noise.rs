@@ -4,6 +4,7 @@
 /// ([`Config::noise`](crate::matching::Config::noise)).
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Noise {
     /// Little noise: pixels are compared as they are.
     #[default]

@@ -8,6 +8,7 @@ use core::fmt;
 /// Frame size, search range and checks of a matcher.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
     /// Pixels in a line: 1 up to the matcher's capacity.
     pub width: u16,
@@ -113,6 +114,7 @@ impl Config {
 /// every method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Checks {
     /// Left-right check: an answer stays when the winner that the right image's pixel keeps is at most this
     /// many px from it. `None`: not checked.

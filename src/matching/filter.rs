@@ -7,6 +7,7 @@ use crate::imaging::Noise;
 /// An operating point: how many answers, and how sure. What it is made of depends on the method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Filter {
     /// Every pixel with a candidate gets an answer.
     Dense,

@@ -6,6 +6,7 @@ use core::fmt;
 /// that the crate is compiled for and on the processor that it runs on ([`Kernel::available`]).
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Kernel {
     /// Bit planes in plain 32-bit words: on every core without another kernel, and on 64-bit processors.

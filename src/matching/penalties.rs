@@ -20,6 +20,7 @@
 ///   cut off at 255.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Penalties {
     /// A pixel's gradients are cut off at this many units to each side, 1 to [`Self::MOST_GRADIENT`]. The
     /// unit is an eighth of a grey level per pixel: a gradient is that of Sobel's operator. With

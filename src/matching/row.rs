@@ -4,6 +4,7 @@ use super::memory::notes::Note;
 use super::memory::rings::{BAND, HISTORY, row as slot};
 use super::stages::confidence::AGREEMENT;
 use crate::units::{Disparity, PixelFlags};
+use core::fmt;
 
 /// The least standard deviation of an answer that was filled in, px.
 const FILLED_SIGMA_PX: f32 = 1.0;
@@ -27,6 +28,14 @@ pub struct Row<'a> {
     pub(super) band: &'a [Disparity],
     pub(super) sigma_px: f32,
     pub(super) confidences: &'a [u8],
+}
+
+impl fmt::Debug for Row<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut row = f.debug_struct("Row");
+        row.field("index", &self.index).field("disparities", &self.disparities());
+        row.field("flags", &self.flags).field("confidences", &self.confidences).finish_non_exhaustive()
+    }
 }
 
 impl<'a> Row<'a> {

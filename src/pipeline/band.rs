@@ -58,6 +58,7 @@ use core::ops::Range;
 /// });
 /// ```
 #[derive(Clone, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Band {
     rows: Range<u16>,
     lines: Range<u16>,

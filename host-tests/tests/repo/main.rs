@@ -5,12 +5,14 @@
 //!   module.
 //! * `readme`: its commands work and its figures are current. `firmware`: the example's parts without
 //!   hardware. `pio`: a board's program for its pins.
+//! * `derives`: what firmware expects of every public type.
 //! * `lines`, `comments`, `names`: what a reader meets: line lengths, doc comments that stand alone, unique
 //!   public names.
 //! * `source`: the files, for the others. `paths`: what a file names.
 
 mod circles;
 mod comments;
+mod derives;
 mod firmware;
 mod house;
 mod layering;

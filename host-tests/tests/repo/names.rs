@@ -67,6 +67,16 @@ fn imported(path: &[TokenTree]) -> Vec<String> {
     }
 }
 
+/// The public names of the crate, each with the modules that it stands in.
+pub fn of_the_core() -> BTreeMap<String, Vec<String>> {
+    let files: BTreeMap<_, _> = source::core_files().into_iter().collect();
+    let read = |module: &str| {
+        let places = [format!("src/{module}.rs"), format!("src/{module}/mod.rs")];
+        places.iter().find_map(|place| files.get(place).cloned())
+    };
+    public_names(&read)
+}
+
 /// What stands in several modules.
 fn repeated(names: BTreeMap<String, Vec<String>>) -> Vec<String> {
     let several = names.into_iter().filter(|(_, modules)| modules.len() > 1);
@@ -75,12 +85,7 @@ fn repeated(names: BTreeMap<String, Vec<String>>) -> Vec<String> {
 
 #[test]
 fn public_names_are_unique() {
-    let files: BTreeMap<_, _> = source::core_files().into_iter().collect();
-    let read = |module: &str| {
-        let places = [format!("src/{module}.rs"), format!("src/{module}/mod.rs")];
-        places.iter().find_map(|place| files.get(place).cloned())
-    };
-    let names = public_names(&read);
+    let names = of_the_core();
     assert!(names.len() > 300, "few names were found: {}", names.len());
     let wrong = repeated(names);
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));

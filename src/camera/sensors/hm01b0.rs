@@ -43,6 +43,7 @@ const SETTINGS: [(u16, u8); 29] = [
 /// Region of the pixel array that is read out.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Hm01b0Size {
     /// Whole array: 324x324.
     Whole,
@@ -78,6 +79,7 @@ impl Hm01b0Size {
 /// Operating mode of the sensor.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Hm01b0Mode {
     /// Standby without frames.
     Standby,

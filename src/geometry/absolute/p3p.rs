@@ -9,6 +9,7 @@ use nalgebra::{Matrix3, Point3, Vector3};
 ///
 /// Each carries a point of the camera into the world, `P = R P' + t`, as everywhere.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct P3pPoses<T: Real> {
     poses: [Pose<T>; 4],
     count: usize,

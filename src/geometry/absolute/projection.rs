@@ -11,12 +11,18 @@ use nalgebra::{Matrix3, Matrix3x4, Point2, Point3, Vector3};
 /// Held with a third row whose first three elements have length one, so that the third number of `M P` is the
 /// depth.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Projection<T: Real> {
     matrix: Matrix3x4<T>,
 }
 
+deserialize_checked! { Projection<T> { matrix: Matrix3x4<T> } by |stored| Self::from_matrix(&stored.matrix) }
+
 /// A point of known position, and where it is seen.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Landmark<T: Real> {
     /// In the world, metres.
     pub world: Point3<T>,

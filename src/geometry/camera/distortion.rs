@@ -13,6 +13,8 @@ use nalgebra::{Matrix2, Vector2};
 ///
 /// The default is a lens without distortion.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Distortion<T: Real> {
     /// Radial, r^2.
     pub k1: T,

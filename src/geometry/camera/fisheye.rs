@@ -12,6 +12,8 @@ use nalgebra::{Matrix2, Vector2};
 ///
 /// Rays of 90 degrees and more have no place on the plane Z = 1, so that they are left out here.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Fisheye<T: Real> {
     /// The coefficient of theta^3.
     pub k1: T,

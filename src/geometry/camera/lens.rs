@@ -7,6 +7,8 @@ use nalgebra::{Matrix2, Vector2};
 
 /// A model of a lens, with its coefficients.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Lens<T: Real> {
     /// Radial and tangential distortion of the plane Z = 1: most lenses.

@@ -19,6 +19,8 @@ use nalgebra::{Matrix3, Point2, Point3, Vector2, Vector3};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Camera<T: Real> {
     fx: T,
     fy: T,
@@ -26,6 +28,11 @@ pub struct Camera<T: Real> {
     cy: T,
     skew: T,
     lens: Lens<T>,
+}
+
+deserialize_checked! {
+    Camera<T> { fx: T, fy: T, cx: T, cy: T, skew: T, lens: Lens<T> }
+    by |c| Self::new(c.fx, c.fy, c.cx, c.cy)?.with_skew(c.skew)?.with_distortion(c.lens)
 }
 
 /// Why numbers are no camera.

@@ -11,9 +11,16 @@ use nalgebra::{Matrix3, Point3, Vector3};
 ///
 /// OpenCV's stereo pose goes the other way, `P' = R_cv P + T_cv`: [`Pose::from_opencv`], [`Pose::to_opencv`].
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Pose<T: Real> {
     rotation: Matrix3<T>,
     translation: Vector3<T>,
+}
+
+deserialize_checked! {
+    Pose<T> { rotation: Matrix3<T>, translation: Vector3<T> }
+    by |pose| Self::new(pose.rotation, pose.translation)
 }
 
 /// Why numbers are no pose.

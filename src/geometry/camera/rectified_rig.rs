@@ -21,12 +21,19 @@ use nalgebra::{Matrix4, Point3, Vector4};
 /// # Ok::<(), stereopsis::geometry::camera::RigError>(())
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct RectifiedRig {
     focal_px: f32,
     baseline_m: f32,
     cx: f32,
     cy: f32,
     cx_right: f32,
+}
+
+deserialize_checked! {
+    RectifiedRig { focal_px: f32, baseline_m: f32, cx: f32, cy: f32, cx_right: f32 }
+    by |rig| Self::with_offset(rig.focal_px, rig.baseline_m, rig.cx, rig.cy, rig.cx_right)
 }
 
 /// Why a set of numbers is no rectified rig.

@@ -8,6 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 /// The size of an image, px.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ImageSize {
     /// Columns.
     pub width: u16,
@@ -46,10 +47,17 @@ impl ImageSize {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct StereoRig<T: Real> {
     cameras: [Camera<T>; 2],
     pose: Pose<T>,
     sizes: [ImageSize; 2],
+}
+
+deserialize_checked! {
+    StereoRig<T> { cameras: [Camera<T>; 2], pose: Pose<T>, sizes: [ImageSize; 2] }
+    by |rig| Self::new(rig.cameras, rig.pose, rig.sizes)
 }
 
 /// Why numbers are no stereo rig.

@@ -7,6 +7,8 @@ use nalgebra::{Point2, Point3, Unit, Vector3};
 
 /// Where an object of known size is, from one camera.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Sighting<T: Real> {
     /// From the optical centre to the object's middle, m.
     pub distance_m: T,
@@ -17,6 +19,17 @@ pub struct Sighting<T: Real> {
     pub bearing: Unit<Vector3<T>>,
     /// The angle under which the object is seen, radians.
     pub angle_rad: T,
+}
+
+deserialize_checked! {
+    Sighting<T> { distance_m: T, sigma_m: T, bearing: Vector3<T>, angle_rad: T }
+    by |stored| match Unit::try_new(stored.bearing, T::ZERO) {
+        Some(bearing) if bearing.iter().all(|x| x.is_finite()) => {
+            let Sighting { distance_m, sigma_m, angle_rad, .. } = stored;
+            Ok(Self { distance_m, sigma_m, bearing, angle_rad })
+        }
+        _ => Err("the bearing must be finite and not zero"),
+    }
 }
 
 /// Why there is no distance.

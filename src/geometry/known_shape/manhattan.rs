@@ -14,6 +14,8 @@ use nalgebra::{Matrix3, Point2, Vector3};
 /// Lines have no sense: of the 24 orientations that fit them as well it is the one that is nearest to what
 /// the caller expects.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ManhattanFrame<T: Real> {
     /// R carries a direction of the building into the camera's frame: its columns are the three directions.
     pub rotation: Matrix3<T>,

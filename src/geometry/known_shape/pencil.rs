@@ -7,6 +7,8 @@ use nalgebra::{Point2, Vector3};
 /// A piece of a straight line in the image: its ends, undistorted px
 /// ([`Camera::undistort`](crate::geometry::camera::Camera::undistort)).
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LineSegment<T: Real> {
     /// One end.
     pub from: Point2<T>,

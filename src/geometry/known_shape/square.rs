@@ -12,12 +12,18 @@ use nalgebra::{Matrix3, Point2, Point3, Vector2, Vector3};
 /// Its frame has the origin in its middle, X to the right and Y down for who looks at it, and Z into it: a
 /// camera right before it has the same axes.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SquareMark<T: Real> {
     side_m: T,
 }
 
+deserialize_checked! { SquareMark<T> { side_m: T } by |mark| Self::new(mark.side_m) }
+
 /// A pose that a mark may have.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MarkPose<T: Real> {
     /// R and t carry a point of the mark's frame into the camera, m.
     pub pose: Pose<T>,
@@ -30,6 +36,8 @@ pub struct MarkPose<T: Real> {
 /// A small or distant square has nearly the same picture when it is tilted the other way about its line of
 /// ray.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MarkPoses<T: Real> {
     /// The pose with the smaller re-projection error.
     pub best: MarkPose<T>,

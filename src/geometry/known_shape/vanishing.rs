@@ -9,6 +9,7 @@ use nalgebra::{Point2, Unit, Vector3};
 ///
 /// Lines parallel to the image have it at infinity, as a direction without a pixel.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct VanishingPoint<T: Real> {
     homogeneous: Vector3<T>,
     rms_px: T,

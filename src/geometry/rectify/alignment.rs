@@ -78,6 +78,8 @@ impl core::error::Error for RowMeterError {}
 
 /// How the second camera stands, as far as rows show.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RowAlignment<T: Real> {
     /// By how much it was rotated about X (pitch), Y (yaw) and Z (roll) of the rectified frame, radians:
     /// what it should see at P it sees at `P + w x P`.
@@ -89,6 +91,7 @@ pub struct RowAlignment<T: Real> {
 /// What rows that are off mean for matching.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum RowHealth {
     /// Under a quarter of a pixel: nothing that matching would show.
     Good,

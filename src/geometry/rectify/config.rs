@@ -6,6 +6,7 @@ use crate::geometry::camera::CameraModelError;
 /// Along which direction of the images the second camera stands beside the first.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Axis {
     /// To the right: rows are aligned, `d = u - u'`.
     Horizontal,
@@ -22,6 +23,8 @@ impl Axis {
 
 /// How much of the raw images the rectified ones show.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Crop<T: Real> {
     /// At the scale of the raw images: their mean focal length is kept. OpenCV's default, -1.
     Natural,

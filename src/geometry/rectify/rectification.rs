@@ -31,6 +31,7 @@ use nalgebra::Matrix4;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Rectification<T: Real> {
     warps: [Warp<T>; 2],
     axis: Axis,

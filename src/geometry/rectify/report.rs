@@ -11,6 +11,8 @@ const LATTICE: usize = 65;
 /// What a rectification costs, and what is left of the pictures. Shares and lengths are those of a lattice of
 /// 65 x 65 places.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RectificationReport<T: Real> {
     /// The share of the rectified image that the first and the second camera see, 0 to 1.
     pub seen: [T; 2],

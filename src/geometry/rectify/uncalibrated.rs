@@ -40,6 +40,8 @@ use nalgebra::{Matrix3, Point2, RowVector3, Vector3};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct UncalibratedRectification<T: Real> {
     to_raw: [Homography<T>; 2],
 }

@@ -18,6 +18,8 @@ pub struct Warp<T: Real> {
 
 /// A place in the raw image.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WarpSource<T: Real> {
     /// Raw px; it may be outside the image.
     pub pixel: Point2<T>,

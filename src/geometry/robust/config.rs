@@ -5,6 +5,7 @@ use crate::geometry::Real;
 /// How correspondences are chosen for a sample.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Sampling {
     /// All alike.
     #[default]
@@ -17,6 +18,8 @@ pub enum Sampling {
 
 /// What is asked of [`robust_fundamental`](super::robust_fundamental).
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RobustConfig<T: Real> {
     /// Sampson's distance up to which a correspondence counts as right, px, greater than zero. It has to be
     /// more than the noise of right ones, three to six deviations: what is nearer gets more weight, the

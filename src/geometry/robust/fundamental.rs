@@ -55,6 +55,8 @@ impl core::error::Error for RobustError {}
 
 /// A fundamental matrix, and how sure it is.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RobustFundamental<T: Real> {
     /// F.
     pub fundamental: Fundamental<T>,

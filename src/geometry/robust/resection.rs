@@ -50,6 +50,8 @@ impl core::error::Error for RobustResectionError {}
 
 /// Where a camera stands in the world, and how sure that is.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RobustResection<T: Real> {
     /// Carries a point of the camera into the world.
     pub pose: Pose<T>,

@@ -5,6 +5,8 @@ use nalgebra::Point2;
 
 /// Where one point of the world is in two images: p in the first, p' in the second, px.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Correspondence<T: Real> {
     /// The point p in the first (left) image: column, row.
     pub first: Point2<T>,

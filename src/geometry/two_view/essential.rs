@@ -10,9 +10,13 @@ use nalgebra::{Matrix3, Vector3};
 ///
 /// Its scale says nothing; it is held with singular values (1, 1, 0), which stands for |t| = 1.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Essential<T: Real> {
     matrix: Matrix3<T>,
 }
+
+deserialize_checked! { Essential<T> { matrix: Matrix3<T> } by |stored| Self::nearest(&stored.matrix) }
 
 /// Why there is no essential matrix.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -17,9 +17,13 @@ use nalgebra::{Matrix3, Point2, Vector3};
 /// better: F has three orders of magnitude between its elements and more, and `p^T F p'` is a difference of
 /// numbers near one.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Fundamental<T: Real> {
     matrix: Matrix3<T>,
 }
+
+deserialize_checked! { Fundamental<T> { matrix: Matrix3<T> } by |stored| Self::from_matrix(&stored.matrix) }
 
 /// Why a matrix is no fundamental matrix.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

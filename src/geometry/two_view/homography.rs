@@ -15,10 +15,15 @@ use nalgebra::{Matrix3, Point2, Vector3};
 /// For cameras `K (P = R P' + t)` and the plane `n^T P' = d` of camera 2: `H = K (R + t n^T / d) K'^-1`
 /// (Hartley & Zisserman 2004, 13.1). Held with |H| = 1.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Homography<T: Real> {
     matrix: Matrix3<T>,
+    #[cfg_attr(feature = "serde", serde(skip_serializing))]
     inverse: Matrix3<T>,
 }
+
+deserialize_checked! { Homography<T> { matrix: Matrix3<T> } by |stored| Self::from_matrix(&stored.matrix) }
 
 /// Why there is no homography.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

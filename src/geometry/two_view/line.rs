@@ -5,6 +5,7 @@ use nalgebra::{Point2, Vector3};
 
 /// A line of an image: the points (u, v) in px with `a u + b v + c = 0`, `a^2 + b^2 = 1`.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Line<T: Real> {
     coefficients: Vector3<T>,
 }
@@ -44,6 +45,7 @@ impl<T: Real> Line<T> {
 ///
 /// Cameras that look in parallel have it at infinity: a direction without a pixel.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Epipole<T: Real> {
     homogeneous: Vector3<T>,
 }

@@ -10,6 +10,8 @@ use nalgebra::Matrix2x4;
 
 /// The model of two views that explains correspondences best.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum TwoViewModel<T: Real> {
     /// A scene with depth, seen from two places.
@@ -20,6 +22,8 @@ pub enum TwoViewModel<T: Real> {
 
 /// A model, and why.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ModelChoice<T: Real> {
     /// The one with the lower criterion.
     pub model: TwoViewModel<T>,

@@ -12,6 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 ///
 /// The unit of length is the distance of the plane from camera 2, which the images do not show.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PlaneMotion<T: Real> {
     rotation: Matrix3<T>,
     translation: Vector3<T>,

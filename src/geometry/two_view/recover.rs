@@ -10,6 +10,8 @@ use nalgebra::{Matrix3, Unit, Vector3};
 
 /// The pose that most correspondences vote for, and the vote.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RecoveredPose<T: Real> {
     /// The pose of camera 2 beside camera 1, without its scale.
     pub pose: RelativePose<T>,

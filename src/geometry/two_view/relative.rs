@@ -9,9 +9,19 @@ use nalgebra::{Matrix3, Point3, Unit, Vector3};
 ///
 /// With a baseline or a length in the scene it becomes a [`Pose`] in metres.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct RelativePose<T: Real> {
     rotation: Matrix3<T>,
     direction: Unit<Vector3<T>>,
+}
+
+deserialize_checked! {
+    RelativePose<T> { rotation: Matrix3<T>, direction: Vector3<T> }
+    by |stored| match Pose::new(stored.rotation, stored.direction) {
+        Ok(pose) => Self::of(&pose).ok_or("the direction between the cameras is zero"),
+        Err(_) => Err("the rotation between the cameras is none, or a number is not finite"),
+    }
 }
 
 /// Why a length gives no scale.

@@ -15,6 +15,7 @@ use nalgebra::{Matrix2, Matrix2x3, Matrix3, Point2, Point3, Vector2, Vector3};
 /// In `f32` a point is good to about `Z^2 / (f b)` times a thousandth of a pixel; the linear method, which
 /// squares its equations, to ten times that.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TwoViews<T: Real> {
     first: Camera<T>,
     second: Camera<T>,
@@ -25,6 +26,8 @@ pub struct TwoViews<T: Real> {
 
 /// A triangulated point.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Triangulated<T: Real> {
     /// The point in camera 1, in the unit of the pose.
     pub point: Point3<T>,

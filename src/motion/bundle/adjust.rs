@@ -11,6 +11,8 @@ use core::ops::ControlFlow;
 
 /// How a problem is adjusted.
 #[derive(Clone, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BundleConfig<T> {
     /// What is held still.
     pub gauge: Gauge,
@@ -30,6 +32,7 @@ pub struct BundleConfig<T> {
 /// Why an adjustment stopped.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum StopReason {
     /// Nothing is left of the cost, or of what a step could take from it, but rounding.
@@ -47,6 +50,8 @@ pub enum StopReason {
 /// What came of an adjustment. A cost is half the sum of the losses of all observations' squared residuals,
 /// px^2.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BundleReport<T> {
     /// Before the first step.
     pub initial_cost: T,

@@ -11,6 +11,8 @@ use nalgebra::{Point2, Point3, Vector2, Vector3};
 ///
 /// A point that is not in front of it is not seen.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CameraView<T: Real> {
     /// The camera.
     pub camera: Camera<T>,
@@ -23,6 +25,8 @@ pub struct CameraView<T: Real> {
 /// Eye 0 is the first camera; every other is the second. The distance between the two gives the scene its
 /// scale.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RigView<T: Real> {
     /// Both cameras.
     pub cameras: [Camera<T>; 2],

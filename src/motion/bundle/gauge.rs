@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 /// What fixes the frame and the scale of the result.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Gauge {
     /// Nothing: the damping keeps steps short, and the scene drifts. There is no covariance.
     Free,

@@ -5,6 +5,8 @@ use crate::geometry::Real;
 /// The loss of an observation's squared residual s, px^2; the cost of a problem is half the sum of it over
 /// all observations.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Loss<T> {
     /// Least squares: s itself.
     Squares,

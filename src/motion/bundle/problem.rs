@@ -8,6 +8,8 @@ use nalgebra::{Point2, Point3};
 
 /// Where a view sees a point.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Observation<T: Real> {
     /// Which point.
     pub point: u32,
@@ -59,6 +61,7 @@ pub enum BundleError {
 /// The sizes of a [`BundleWorkspaceView`] for a problem.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WorkspaceSize {
     /// Slots: one for each view.
     pub slots: usize,

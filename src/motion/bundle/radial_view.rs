@@ -15,6 +15,8 @@ use nalgebra::{Matrix3, Point2, Point3, Vector3};
 /// second and third row of the rotation change their sign. As there, a point behind the camera is seen
 /// through its centre; none is in the plane of the centre itself.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RadialView<T: Real> {
     /// Where it stands: from the camera into the world.
     pub pose: Pose<T>,

@@ -12,6 +12,8 @@ use nalgebra::{Point2, Point3, Vector3};
 /// the disparity in px, `d = f b / Z`. What found a disparity began at the very pixel in the left picture, so
 /// that the two have errors of their own; two pixels would share one.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RectifiedView<T: Real> {
     /// The camera.
     pub camera: Camera<T>,

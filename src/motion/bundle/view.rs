@@ -37,6 +37,7 @@ pub trait View<T: Real, const N: usize>: Copy {
 
 /// The projection of a point and its Jacobian.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ProjectionJacobian<T: Real, const N: usize> {
     /// Pixel, px.
     pub pixel: Point2<T>,

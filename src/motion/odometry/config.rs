@@ -7,6 +7,7 @@ use crate::geometry::{
 
 /// One camera, or a pair whose rows are aligned.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct OdometryRig<T: Real> {
     pub(super) camera: Camera<T>,
     /// The baseline, m, and the right camera's column of the principal point, px.
@@ -61,6 +62,8 @@ impl<T: Real> OdometryRig<T> {
 
 /// Configuration of the odometry.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OdometryConfig {
     /// Radius of the search around a predicted place while the motion is not known, px.
     pub far_px: f32,

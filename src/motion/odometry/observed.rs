@@ -7,6 +7,8 @@ use nalgebra::{Point2, Vector3};
 
 /// A point that the last frame saw.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ObservedPoint<T: Real> {
     /// Place in the odometry's memory, and how often that was given to a point before: together they
     /// name it.

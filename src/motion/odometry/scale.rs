@@ -21,6 +21,8 @@ pub struct MonocularOdometry<T: Real, const N: usize>(Odometry<T, N>);
 /// What has lengths whose unit is not known: as a whole it may be any times as large. Only a length from
 /// elsewhere says.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Unscaled<V>(V);
 
 impl<V> Unscaled<V> {

@@ -30,6 +30,8 @@ pub struct Refinement<T: Real, const VIEWS: usize, const POINTS: usize, const OB
 
 /// How views are refined.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RefinementConfig<T> {
     /// Views that are adjusted together, two at least, up to the capacity.
     pub views: usize,

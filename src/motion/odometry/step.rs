@@ -6,6 +6,7 @@ use nalgebra::Matrix6;
 /// What is known of a frame's pose.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum State {
     /// The first frame: the others stand beside it.
@@ -43,6 +44,8 @@ impl State {
 
 /// The motion from the frame before to this one.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Step<T: Real> {
     /// Carries a point of this camera into the one before, `P = R P' + t`: t is where this one stands.
     pub motion: Pose<T>,

@@ -5,6 +5,8 @@ use crate::motion::bundle::BundleError;
 
 /// Configuration of structure from motion.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StructureConfig<T> {
     /// Largest residual of an inlier, px.
     pub threshold_px: T,
@@ -63,6 +65,7 @@ pub enum StructureError {
 /// What is known of a view.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum ViewState {
     /// Not yet anything.
@@ -78,6 +81,7 @@ pub enum ViewState {
 /// What is known of a point.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum PointState {
     /// Fewer than two views that stand somewhere see it.

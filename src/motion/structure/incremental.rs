@@ -20,6 +20,8 @@ const FEWEST_LANDMARKS: usize = 6;
 
 /// How a structure was found.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StructureReport<T> {
     /// The two views that it began with: the first is the frame, their distance was the unit of length.
     pub pair: (u16, u16),

@@ -3,6 +3,7 @@
 /// Trigger of the exposure.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Mt9v034Mode {
     /// Free-running: the sensor exposes one frame after the other.
     #[default]
@@ -17,6 +18,7 @@ pub enum Mt9v034Mode {
 /// Window of the pixel array that is read out, in its pixels, and its binning.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Mt9v034Window {
     /// First column, from 0.
     pub left: u16,
@@ -38,6 +40,7 @@ impl Mt9v034Window {
 /// Test pattern that the sensor sends instead of the picture.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Mt9v034Pattern {
     /// The picture, without a test pattern.
     Off,

@@ -1,4 +1,5 @@
-//! `examples/quickstart` and `examples/async`: linted, built as their reader builds them, and run in QEMU.
+//! `examples/quickstart`, `examples/async` and `examples/rtic`: linted, built as their reader builds them,
+//! and run in QEMU.
 //! `examples/boards`: built.
 
 use crate::setup;
@@ -6,27 +7,52 @@ use crate::steps::{Failure, Outcome, command, ended_within, root, run as run_com
 use std::process::Command;
 use std::time::Duration;
 
-const TARGET: &str = "thumbv7em-none-eabihf";
-
-/// An example for the emulated Cortex-M4.
+/// An example for an emulated board.
 pub struct Example {
     /// Its folder's name, which is its program's too.
     name: &'static str,
+    target: &'static str,
+    /// The board's name in QEMU.
+    machine: &'static str,
     /// What it prints.
     printed: &'static str,
 }
 
 /// The smallest firmware. It prints f b / d of the box, 140 px x 60 mm / 16 px, by its sub-pixel disparities.
-pub const QUICKSTART: Example = Example { name: "quickstart", printed: "nearest: 524 mm" };
+pub const QUICKSTART: Example = Example {
+    name: "quickstart",
+    target: "thumbv7em-none-eabihf",
+    machine: "mps2-an386",
+    printed: "nearest: 524 mm",
+};
 
 /// Rows that a task awaits. No line may be lost, and the other task may not starve.
-pub const ASYNC: Example = Example {
+const ASYNC: Example = Example {
     name: "async",
+    target: "thumbv7em-none-eabihf",
+    machine: "mps2-an386",
     printed: "\
 frame 1: nearest mm 524, lines lost 0; the other task had turns
 frame 2: nearest mm 524, lines lost 0; the other task had turns
 frame 3: nearest mm 524, lines lost 0; the other task had turns",
 };
+
+/// The same under RTIC: the depths are those of the blocking calls.
+const RTIC: Example = Example {
+    name: "rtic",
+    target: "thumbv7m-none-eabi",
+    machine: "mps2-an385",
+    printed: "\
+frame 1: nearest mm 524, lines lost 0; depths as blocking
+frame 2: nearest mm 524, lines lost 0; depths as blocking
+frame 3: nearest mm 524, lines lost 0; depths as blocking",
+};
+
+/// The test step of rows that are awaited.
+pub fn executors() -> Outcome {
+    ASYNC.run()?;
+    RTIC.run()
+}
 
 /// Boards of vendors, which QEMU has not: folder and target.
 const BOARDS: [(&str, &str); 2] =
@@ -53,17 +79,18 @@ fn cargo(folder: &str, words: &str) -> Command {
 impl Example {
     /// The test step.
     pub fn run(&self) -> Outcome {
+        let target = self.target;
         run_command(&mut cargo(self.name, "fmt --check"))?;
         run_command(&mut cargo(
             self.name,
-            &format!("clippy --locked --release --target {TARGET} -- -D warnings"),
+            &format!("clippy --locked --release --target {target} -- -D warnings"),
         ))?;
-        run_command(&mut cargo(self.name, &format!("build --locked --release --target {TARGET}")))?;
-        let mut qemu = command(setup::qemu_of(TARGET), &["-machine", "mps2-an386", "-nographic"]);
+        run_command(&mut cargo(self.name, &format!("build --locked --release --target {target}")))?;
+        let mut qemu = command(setup::qemu_of(target), &["-machine", self.machine, "-nographic"]);
         // Time is instructions: a slow host loses no line of the timer's.
         qemu.args(["-icount", "shift=0,align=off,sleep=off"]);
         qemu.args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
-        qemu.arg(target_dir().join(self.name).join(TARGET).join("release").join(self.name));
+        qemu.arg(target_dir().join(self.name).join(target).join("release").join(self.name));
         // Text without a file is what QEMU writes on standard error.
         let ended = ended_within(&mut qemu, Duration::from_secs(60))?;
         let printed = format!("{}{}", ended.stdout, ended.stderr);

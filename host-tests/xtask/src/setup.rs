@@ -11,13 +11,13 @@ pub const TARGETS: [&str; 6] = [
     "thumbv7m-none-eabi",
     "thumbv7em-none-eabihf",
     "thumbv8m.main-none-eabihf",
-    "riscv32imac-unknown-none-elf",
+    "riscv32imc-unknown-none-elf",
     "aarch64-unknown-none",
 ];
 
 /// The targets that the core is checked for, beside those.
 pub const CHECKED: [&str; 5] = [
-    "riscv32imc-unknown-none-elf",
+    "riscv32imac-unknown-none-elf",
     "riscv32i-unknown-none-elf",
     "riscv64gc-unknown-none-elf",
     "wasm32-unknown-unknown",

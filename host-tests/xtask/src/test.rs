@@ -36,7 +36,7 @@ pub fn run(only: Option<String>) -> Outcome {
         &[("firmware", || firmware::check_sample(&stereo())), ("growth", growth::sample)],
         &[
             ("quickstart", || examples::QUICKSTART.run()),
-            ("async", || examples::ASYNC.run()),
+            ("async", examples::executors),
             ("boards", examples::boards),
             ("C interface", c::run),
         ],
@@ -94,10 +94,10 @@ fn format() -> Outcome {
 }
 
 fn clippy() -> Outcome {
-    let features = format!("{REAL_DATA},stereopsis/defmt");
+    let features = format!("{REAL_DATA},stereopsis/defmt,stereopsis/serde");
     run_cargo(&format!("clippy --locked --workspace --all-targets --features {features} -- -D warnings"))?;
     // The kinds of cores have code of their own.
-    for (target, features) in [("thumbv7em-none-eabihf", "large"), ("riscv32imac-unknown-none-elf", "")] {
+    for (target, features) in [("thumbv7em-none-eabihf", "large"), ("riscv32imc-unknown-none-elf", "")] {
         let words =
             format!("clippy --locked --release --target {target} --features={features} -- -D warnings");
         run_command(&mut firmware::cargo(&words))?;
@@ -128,7 +128,7 @@ fn documentation() -> Outcome {
 }
 
 /// The library's features.
-const FEATURES: [&str; 4] = ["async", "defmt", "embedded-graphics", "ffi"];
+const FEATURES: [&str; 5] = ["async", "defmt", "embedded-graphics", "ffi", "serde"];
 
 /// The core for all targets, as generic as it was written. Machine code for them is made elsewhere: by the
 /// firmware's programs for boards and, for 64-bit Arm, by the tests of kernels.
@@ -149,11 +149,13 @@ fn cross_checks() -> Outcome {
         // The stable compiler takes the option as a nightly one does.
         run_command(check.env("RUSTC_BOOTSTRAP", "1"))?;
     }
-    // Features add code and take none away, so that one small core shows how they go together.
-    for chosen in 1..(1 << FEATURES.len()) - 1 {
-        let features = FEATURES.iter().enumerate().filter(|(i, _)| chosen >> i & 1 > 0);
-        let features: Vec<_> = features.map(|(_, feature)| *feature).collect();
-        run_command(&mut check(&features.join(","), &["--target", "riscv32imc-unknown-none-elf"]))?;
+    // Features add code and take none away, so that one small core with each and with every two of them shows
+    // how they go together.
+    for (i, first) in FEATURES.iter().enumerate() {
+        for second in &FEATURES[i..] {
+            let features = if first == second { (*first).to_owned() } else { format!("{first},{second}") };
+            run_command(&mut check(&features, &["--target", "riscv32imc-unknown-none-elf"]))?;
+        }
     }
     // Instructions that a core lacks are refused in one line that says what to do.
     for (flags, said) in [
@@ -193,7 +195,7 @@ fn rust_version(version: &str) -> Outcome {
         "-p",
         "stereopsis-host",
         "--features",
-        "stereopsis/defmt,stereopsis/ffi",
+        "stereopsis/defmt,stereopsis/ffi,stereopsis/serde",
     ]);
     // Two compilers that take turns in one folder lock each other out and tidy away each other's products.
     run_command(check.env("CARGO_TARGET_DIR", target_dir().join("rust-version")))

@@ -70,10 +70,10 @@ pub const M55: Board = Board {
     ticks_per_second: 32_000_000,
 };
 
-/// A 32-bit RISC-V core, which runs its program from RAM.
+/// A 32-bit RISC-V core without atomic instructions, which runs its program from RAM.
 pub const RV32: Board = Board {
     core: "rv32",
-    target: "riscv32imac-unknown-none-elf",
+    target: "riscv32imc-unknown-none-elf",
     machine: "virt",
     flash: (0x8000_0000, 4 * M),
     ram: (0x8040_0000, 4 * M),

@@ -26,11 +26,11 @@ fn refused<T: DeserializeOwned + Debug>(good: &Value, at: &str, bad: impl Serial
     }
 }
 
-/// A matrix by its columns, as it is stored.
-const UNIT: [[f32; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// A matrix as it is stored: its numbers, column by column.
+const UNIT: [f32; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
 
 fn pose() -> Value {
-    json!({ "rotation": UNIT, "translation": [[0.06, 0.0, 0.0]] })
+    json!({ "rotation": UNIT, "translation": [0.06, 0.0, 0.0] })
 }
 
 fn camera() -> Value {
@@ -48,11 +48,11 @@ fn cameras_and_rigs() {
     refused::<Camera<f32>>(&camera(), "/cy", 2e6, "principal point");
     refused::<Camera<f64>>(&camera(), "/skew", 2e6, "skew");
     refused::<Camera<f32>>(&camera(), "/lens/Fisheye/k1", 1e300, "finite");
-    refused::<Pose<f32>>(&pose(), "/rotation/0/0", 1.01, "the matrix is no rotation");
-    refused::<Pose<f32>>(&pose(), "/rotation/0/0", -1.0, "the matrix is no rotation");
+    refused::<Pose<f32>>(&pose(), "/rotation/0", 1.01, "the matrix is no rotation");
+    refused::<Pose<f32>>(&pose(), "/rotation/0", -1.0, "the matrix is no rotation");
     let size = json!({ "width": 640, "height": 480 });
     let rig = json!({ "cameras": [camera(), camera()], "pose": pose(), "sizes": [size, size] });
-    refused::<StereoRig<f32>>(&rig, "/pose/translation/0/0", 0.0, "the baseline is zero");
+    refused::<StereoRig<f32>>(&rig, "/pose/translation/0", 0.0, "the baseline is zero");
     refused::<StereoRig<f32>>(&rig, "/sizes/1/height", 1, "from 2 to 4096");
     refused::<StereoRig<f32>>(&rig, "/cameras/1/fx", -1.0, "focal lengths must be");
 }
@@ -72,17 +72,17 @@ fn lenses() {
 
 #[test]
 fn matrices_and_directions() {
-    let singular = json!({ "matrix": [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]] });
-    refused::<Fundamental<f32>>(&singular, "/matrix/1/2", 0.0, "rank");
-    refused::<Essential<f32>>(&singular, "/matrix/1/2", 0.0, "rank");
-    refused::<Homography<f32>>(&json!({ "matrix": UNIT }), "/matrix/2/2", 0.0, "singular");
-    let projection = json!({ "matrix": [UNIT[0], UNIT[1], UNIT[2], [0.0, 0.0, 0.0]] });
-    refused::<Projection<f32>>(&projection, "/matrix/1/1", 0.0, "infinity");
-    let relative = json!({ "rotation": UNIT, "direction": [[1.0, 0.0, 0.0]] });
-    refused::<RelativePose<f32>>(&relative, "/direction/0/0", 0.0, "direction");
-    refused::<RelativePose<f32>>(&relative, "/rotation/1/1", -1.0, "rotation");
+    let singular = json!({ "matrix": [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0] });
+    refused::<Fundamental<f32>>(&singular, "/matrix/5", 0.0, "rank");
+    refused::<Essential<f32>>(&singular, "/matrix/5", 0.0, "rank");
+    refused::<Homography<f32>>(&json!({ "matrix": UNIT }), "/matrix/8", 0.0, "singular");
+    let projection = json!({ "matrix": ([UNIT.as_slice(), &[0.0; 3]].concat()) });
+    refused::<Projection<f32>>(&projection, "/matrix/4", 0.0, "infinity");
+    let relative = json!({ "rotation": UNIT, "direction": [1.0, 0.0, 0.0] });
+    refused::<RelativePose<f32>>(&relative, "/direction/0", 0.0, "direction");
+    refused::<RelativePose<f32>>(&relative, "/rotation/4", -1.0, "rotation");
     refused::<SquareMark<f32>>(&json!({ "side_m": 0.1 }), "/side_m", 0.0, "side");
-    let bearing = json!([[0.0, 0.0, 1.0]]);
+    let bearing = json!([0.0, 0.0, 1.0]);
     let seen = json!({ "distance_m": 1.0, "sigma_m": 0.1, "bearing": bearing, "angle_rad": 0.1 });
-    refused::<Sighting<f32>>(&seen, "/bearing/0/2", 0.0, "bearing");
+    refused::<Sighting<f32>>(&seen, "/bearing/2", 0.0, "bearing");
 }

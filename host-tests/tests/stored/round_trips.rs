@@ -75,8 +75,11 @@ fn configurations() {
     let fundamental = Fundamental::from_matrix(&Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0));
     let fundamental = fundamental.expect("the matrix of a rectified pair");
     let epipolar = Some(Epipolar { fundamental, tolerance_px: 1.5 });
-    exact(MatchConfig { epipolar, ..MatchConfig::new() });
-    exact(MatchConfig::new());
+    let bounded = MatchConfig { along_px: 96.0, across_px: 8.5, ..MatchConfig::new() };
+    exact(MatchConfig { epipolar, ..bounded });
+    // A search without bounds is infinitely far, which JSON has no number for.
+    let bytes = postcard::to_allocvec(&MatchConfig::new()).expect("bytes");
+    assert_eq!(postcard::from_bytes::<MatchConfig>(&bytes), Ok(MatchConfig::new()));
     exact(FocusConfig::tiles(320, 240));
     exact(TemporalConfig::default());
     exact(RobustConfig::new(1.5_f32));

@@ -127,7 +127,9 @@ fn declared(tokens: &[TokenTree]) -> Vec<Declared> {
         i = end_of_item(tokens, i);
     }
     for (name, what) in implemented {
-        found.iter_mut().filter(|t| t.name == name).for_each(|t| drop(t.has.insert(what.to_owned())));
+        for of_name in found.iter_mut().filter(|t| t.name == name) {
+            of_name.has.insert(what.to_owned());
+        }
     }
     found
 }

@@ -48,10 +48,10 @@ pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>,
         pixel: here.wrapping_add(pixel),
         on,
         from: (line.as_ptr() as isize).wrapping_sub(here as isize),
-        paths: [between.place(), core::ptr::null_mut()],
+        path: between.place(),
+        fours: stride / 16,
         gap: gap * column_bytes,
         end: column(if is_odd { 1 } else { width }).cast_const(),
-        fours: stride / 16,
         steps: &steps,
         above: if guide.above.is_some() { above } else { [core::ptr::null_mut(); 2] },
         other: on * 2 * COLUMNS_OFF as isize * column_bytes,
@@ -74,7 +74,7 @@ pub(super) fn along<const WORDS: usize, const ALL: bool>(
         return;
     }
     let steps = Steps::new(work.penalties);
-    let mut paths = [Padded::<WORDS>::new(stride / 4, work.penalties); 2];
+    let mut path = Padded::<WORDS>::new(stride / 4, work.penalties);
     let shift = if !guide.row.is_multiple_of(2) { COLUMNS_OFF } else { 0 };
     let top = view::<u8, u32>(work.top).as_ptr().wrapping_add(shift * stride / 4);
     let (costs, sums) = (view::<u8, u32>(work.costs).as_ptr(), view_mut::<u8, u32>(work.sums).as_mut_ptr());
@@ -91,16 +91,16 @@ pub(super) fn along<const WORDS: usize, const ALL: bool>(
         pixel: guide.here.as_ptr().wrapping_add(x),
         on,
         from: 0,
-        paths: paths.each_mut().map(Padded::place),
+        path: path.place(),
+        fours: stride / 16,
         gap: gap * stride as isize,
         end: sums.wrapping_add(first).wrapping_offset(on * (columns * stride / 4) as isize).cast_const(),
-        fours: stride / 16,
         steps: &steps,
         above: [core::ptr::null_mut(); 2],
         other: 0,
     };
     // SAFETY: `columns` columns from column `x` on are in the volumes, and so many pixels in the line; and a
-    // column has `4 * fours` words, `WORDS` at the most, as the paths have room for.
+    // column has `4 * fours` words, `WORDS` at the most, as the path has room for.
     unsafe {
         go_along(
             &raw mut frame,

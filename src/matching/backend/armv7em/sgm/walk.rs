@@ -74,28 +74,28 @@ pub(super) struct Frame {
     /// 8: along the row, the brightness of the pixel that the path comes from, which the first may have any
     /// of. Down, how far it is to that pixel.
     pub from: isize,
-    /// 12, 16: a path before and after, which take turns; or the average and nothing.
-    pub paths: [*mut u32; 2],
+    /// 12: the path before, in the place of which the one after is put; or the average.
+    pub path: *mut u32,
+    /// 16: a column's words, in fours.
+    pub fours: usize,
     /// 20: bytes from a column's end to the next column's beginning.
     pub gap: isize,
     /// 24: where the sums, or the paths that are kept, are at their end.
     pub end: *const u32,
-    /// 28: a column's words, in fours.
-    pub fours: usize,
-    /// 32: the steps of the walk.
+    /// 28: the steps of the walk.
     pub steps: *const Steps,
-    /// 36, 40: the first and the last column of the row above, 44: bytes to that on the other side of the
+    /// 32, 36: the first and the last column of the row above, 40: bytes to that on the other side of the
     /// pixel.
     pub above: [*mut u32; 2],
     pub other: isize,
 }
 
-/// Four times the lines of a word, and around again until `r5` is 0.
+/// Twice the lines of two words, and around again until `$count` is 0.
 macro_rules! four_words {
-    ($label:literal, $($line:expr),*) => {
+    ($label:literal, $count:literal, $($line:expr),*) => {
         concat!(
-            $label, ":\n", $($line, "\n",)* $($line, "\n",)* $($line, "\n",)* $($line, "\n",)*
-            "subs r5, r5, #1\n", "bne ", $label, "b"
+            $label, ":\n", $($line, "\n",)* $($line, "\n",)*
+            "subs ", $count, ", ", $count, ", #1\n", "bne ", $label, "b"
         )
     };
 }
@@ -126,7 +126,7 @@ macro_rules! choose_step {
             "
          add r12, r12, r6
          str r12, [lr]
-         ldr r6, [lr, #32]
+         ldr r6, [lr, #28]
          usad8 r10, r10, r11
          ldrd r11, r12, [r6], #8
          cmp r10, r11
@@ -141,62 +141,83 @@ macro_rules! choose_step {
     };
 }
 
-/// A word of the path at `r0`, taken into the pixel whose agreements are at `r2`, in `r10`. 12 instructions.
-macro_rules! step {
-    () => {
-        "ldr r10, [r0, #-1]
-         ldr r11, [r0, #1]
-         usub8 r12, r10, r11
-         sel r10, r11, r10
-         add r10, r10, r6
-         ldr r12, [r0], #4
-         usub8 r11, r10, r12
-         sel r10, r12, r10
-         uqsub8 r10, r7, r10
-         ldr r12, [r2], #4
-         usub8 r12, r8, r12
-         sub r10, r12, r10"
+/// Two words of the path at `r0`, taken into the pixel whose agreements are at `r2`, in `r10` and `r11`. `r1`
+/// is the word a byte before them, and then that a byte before the next two. 22 instructions with `$here`,
+/// which loads the two words into `r10` and `r11`, and `$next`, which loads `r1`.
+macro_rules! step_two {
+    ($here:literal, $next:literal) => {
+        concat!(
+            "ldr r10, [r0, #1]
+         usub8 r11, r1, r10
+         sel r1, r10, r1
+         ldr r5, [r0, #3]
+         ldr r10, [r0, #5]
+         usub8 r11, r5, r10
+         sel r5, r10, r5
+         ",
+            $here,
+            "
+         add r1, r1, r6
+         add r5, r5, r6
+         usub8 r12, r1, r10
+         sel r1, r10, r1
+         usub8 r12, r5, r11
+         sel r5, r11, r5
+         uqsub8 r12, r7, r1
+         uqsub8 r5, r7, r5
+         ldrd r10, r11, [r2], #8
+         usub8 r10, r8, r10
+         usub8 r11, r8, r11
+         sub r10, r10, r12
+         sub r11, r11, r5
+         ",
+            $next
+        )
     };
 }
 
 /// Takes a path along a row with agreements `costs`: what is in `from` and the path's cost are the `sums`,
-/// 255 at the most. 18 instructions a word and 36 a pixel.
+/// 255 at the most. 31 instructions for two words and 37 a pixel.
 ///
 /// # Safety
 /// The frame's columns, `fours` times four words each, can be read from `costs` and `from` on, and written
-/// from `sums` on; a pixel for each from its place on; and the paths have a word more before and after.
+/// from `sums` on; a pixel for each from its place on; and the path has a word more before and after.
 #[inline(never)]
 pub(super) unsafe fn go_along(frame: *mut Frame, costs: *const u32, from: *const u32, sums: *mut u32) {
     // SAFETY: as the function's. `r6` and `r7`, which are the compiler's, are put back.
     unsafe {
         asm!(
-            // r0 path, r1 its next pixel, r2 costs, r3 from, r4 sums
-            "push {{r6, r7}}",
+            // r0 path, r2 costs, r3 from, r4 sums; lr is the frame, and in the loop over words their number
+            "push {{r6, r7, lr}}",
             "mov r9, #0",
             "1:",
             choose_step!("str r10, [lr, #8]"),
-            "ldrd r0, r1, [lr, #12]",
-            "strd r1, r0, [lr, #12]",
-            "ldr r5, [lr, #28]",
+            "ldrd r0, lr, [lr, #12]",
+            "ldr r1, [r0, #-1]",
             "mvn r9, #0",
             four_words!(
                 "2",
-                step!(),
-                "ldr r11, [r3], #4",
-                "str r10, [r1], #4",
-                "uqadd8 r11, r11, r10",
-                "str r11, [r4], #4",
-                "usub8 r11, r9, r10",
-                "sel r9, r10, r9"
+                "lr",
+                step_two!("ldrd r10, r11, [r0]", "ldr r1, [r0, #7]"),
+                "strd r10, r11, [r0], #8
+                 usub8 r5, r9, r10
+                 sel r9, r10, r9
+                 usub8 r5, r9, r11
+                 sel r9, r11, r9
+                 ldrd r5, r12, [r3], #8
+                 uqadd8 r10, r10, r5
+                 uqadd8 r11, r11, r12
+                 strd r10, r11, [r4], #8"
             ),
             least_of_four!(),
+            "ldr lr, [sp, #8]",
             "ldrd r10, r11, [lr, #20]",
             "add r2, r2, r10",
             "add r3, r3, r10",
             "add r4, r4, r10",
             "cmp r4, r11",
             "bne 1b",
-            "pop {{r6, r7}}",
+            "pop {{r6, r7, lr}}",
             inout("r2") costs => _, inout("r3") from => _, inout("r4") sums => _, inout("lr") frame => _,
             out("r0") _, out("r1") _, out("r5") _, out("r8") _, out("r9") _, out("r10") _, out("r11") _,
             out("r12") _,
@@ -205,8 +226,8 @@ pub(super) unsafe fn go_along(frame: *mut Frame, costs: *const u32, from: *const
 }
 
 /// Takes the path from above into a row with agreements `costs`, from the average of two columns, rounded
-/// down, or from nothing if there are none. `kept` begins with what was one of the two. 19 instructions a
-/// word and 51 a pixel.
+/// down, or from nothing if there are none. `kept` begins with what was one of the two. 32 instructions for
+/// two words and 54 a pixel.
 ///
 /// # Safety
 /// As for [`go_along`]; and the frame's columns of the row above can be read.
@@ -216,14 +237,14 @@ pub(super) unsafe fn go_down(frame: *mut Frame, costs: *const u32, kept: *mut u3
     unsafe {
         asm!(
             // r0 average, r2 costs, r3 kept
-            "push {{r6, r7}}",
+            "push {{r6, r7, lr}}",
             "1:",
             "mov r9, #0",
-            "ldrd r10, r11, [lr, #36]",
+            "ldrd r10, r11, [lr, #32]",
             "cmp r10, #0",
             "beq 3f",
             // The columns on both sides, or the nearest that there is.
-            "ldr r1, [lr, #44]",
+            "ldr r1, [lr, #40]",
             "add r1, r3, r1",
             "mov r0, r3",
             "cmp r0, r10",
@@ -238,34 +259,39 @@ pub(super) unsafe fn go_down(frame: *mut Frame, costs: *const u32, kept: *mut u3
             "cmp r1, r11",
             "it hi",
             "movhi r1, r11",
-            "ldr r12, [lr, #12]",
-            "ldr r5, [lr, #28]",
+            "ldrd r12, r5, [lr, #12]",
             "mvn r9, #0",
             four_words!(
                 "2",
-                "ldr r10, [r0], #4",
-                "ldr r11, [r1], #4",
-                "uhadd8 r10, r10, r11",
-                "str r10, [r12], #4",
-                "usub8 r11, r9, r10",
-                "sel r9, r10, r9"
+                "r5",
+                "ldrd r10, r11, [r0], #8
+                 ldrd r6, r7, [r1], #8
+                 uhadd8 r10, r10, r6
+                 uhadd8 r11, r11, r7
+                 strd r10, r11, [r12], #8
+                 usub8 r6, r9, r10
+                 sel r9, r10, r9
+                 usub8 r6, r9, r11
+                 sel r9, r11, r9"
             ),
             least_of_four!(),
             "3:",
             choose_step!("ldrb r11, [r12, r11]"),
-            "ldr r0, [lr, #12]",
-            "ldr r5, [lr, #28]",
+            "ldrd r0, lr, [lr, #12]",
+            "ldr r1, [r0, #-1]",
             four_words!(
                 "4",
-                step!(),
-                "str r10, [r3], #4"
+                "lr",
+                step_two!("ldrd r10, r11, [r0], #8", "ldr r1, [r0, #-1]"),
+                "strd r10, r11, [r3], #8"
             ),
+            "ldr lr, [sp, #8]",
             "ldrd r10, r11, [lr, #20]",
             "add r2, r2, r10",
             "add r3, r3, r10",
             "cmp r3, r11",
             "bne 1b",
-            "pop {{r6, r7}}",
+            "pop {{r6, r7, lr}}",
             inout("r2") costs => _, inout("r3") kept => _, inout("lr") frame => _,
             out("r0") _, out("r1") _, out("r5") _, out("r8") _, out("r9") _, out("r10") _, out("r11") _,
             out("r12") _,

@@ -12,6 +12,7 @@ use crate::units::{Disparity, PixelFlags};
 /// Refuses the answers of the row that waits that are under [`Config::min_confidence`].
 ///
 /// [`Config::min_confidence`]: crate::matching::Config::min_confidence
+#[inline(never)]
 pub(super) fn refuse_unsure(frame: &mut Frame<'_>, newest: usize) {
     let least = frame.config.min_confidence;
     if least > 0 {
@@ -24,6 +25,7 @@ pub(super) fn refuse_unsure(frame: &mut Frame<'_>, newest: usize) {
 
 /// Gives the row that came out last the answers back that [`refuse_unsure`] took, but where it was masked
 /// since.
+#[inline(never)]
 pub(super) fn restore_unsure(frame: &mut Frame<'_>, newest: usize) {
     if frame.config.min_confidence > 0 && newest >= BAND {
         let withheld = frame.workspace.withheld_before(frame.width);

@@ -54,10 +54,10 @@ pub struct CPinhole {
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[repr(C)]
 pub struct CPose {
-    /// R, from the second camera's frame into the first one's, row by row.
+    /// Rotation R, from the second camera's frame into the first one's, row by row.
     pub rotation: [f32; 9],
-    /// t, from the first camera to the second. Two views do not say how long it is: `stereopsis_pose` writes
-    /// length 1, and points come out in its unit.
+    /// Translation t, from the first camera to the second. Two views do not say how long it is:
+    /// `stereopsis_pose_of` writes length 1, and points come out in its unit.
     pub translation: [f32; 3],
 }
 
@@ -149,16 +149,11 @@ unsafe fn fundamental_of(matrix: *const f32) -> Result<Fundamental<f32>, Status>
     Fundamental::from_matrix(&matrix).map_err(|_| Status::FundamentalRank)
 }
 
-/// Writes a 3 x 3 matrix row by row.
-///
-/// # Safety
-///
-/// `to` points to nine numbers and is aligned.
-unsafe fn write_rows(matrix: &Matrix3<f32>, to: *mut f32) {
-    for (i, value) in matrix.transpose().iter().enumerate() {
-        // SAFETY: the caller's promise.
-        unsafe { to.add(i).write(*value) };
-    }
+/// Returns the nine numbers of a matrix, row by row.
+fn rows_of(matrix: &Matrix3<f32>) -> [f32; 9] {
+    let mut rows = [0.0; 9];
+    rows.iter_mut().zip(matrix.transpose().iter()).for_each(|(to, from)| *to = *from);
+    rows
 }
 
 /// Solves for F, as `stereopsis_eight_point`.
@@ -172,7 +167,7 @@ pub unsafe fn two_view_eight_point(seen: *const CMatch, count: usize, fundamenta
         // SAFETY: the caller's promise.
         let found = eight_point(unsafe { matches(seen, count) }?)?;
         // SAFETY: the caller's promise, and it is aligned.
-        unsafe { write_rows(found.matrix(), fundamental) };
+        unsafe { fundamental.cast::<[f32; 9]>().write(rows_of(found.matrix())) };
         Ok(Status::Ok)
     };
     either(solve())
@@ -213,7 +208,7 @@ pub unsafe fn two_view_fundamental(
             (found.inliers as u32, found.rms_px, found.miss_probability);
         // SAFETY: the caller's promise, and they are aligned.
         unsafe {
-            write_rows(found.fundamental.matrix(), fundamental);
+            fundamental.cast::<[f32; 9]>().write(rows_of(found.fundamental.matrix()));
             agreement.write(CAgreement { inliers, rms_px, miss_probability });
         }
         Ok(Status::Ok)
@@ -249,12 +244,10 @@ pub unsafe fn two_view_pose(
         let agreeing =
             seen.iter().enumerate().filter(|(i, _)| inliers.get(*i).is_none_or(|&inlier| inlier != 0));
         let found = essential.recover_pose(agreeing.map(|(_, seen)| *seen), &first, &second)?;
-        let mut written = CPose { rotation: [0.0; 9], translation: [0.0; 3] };
-        let rotation = found.pose.rotation().transpose();
-        written.rotation.iter_mut().zip(rotation.iter()).for_each(|(to, from)| *to = *from);
-        written.translation.iter_mut().zip(found.pose.direction().iter()).for_each(|(to, from)| *to = *from);
+        let (rotation, t) = (rows_of(found.pose.rotation()), found.pose.direction());
+        let found = CPose { rotation, translation: [t.x, t.y, t.z] };
         // SAFETY: the caller's promise, and it is aligned.
-        unsafe { pose.write(written) };
+        unsafe { pose.write(found) };
         Ok(Status::Ok)
     };
     either(recover())

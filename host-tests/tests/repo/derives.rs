@@ -50,7 +50,20 @@ const NO_DATA: [(&str, &[&str]); 5] = [
     ),
     (
         "C's, which C code stores as bytes",
-        &["CCameras", "CConfig", "CCounters", "CNoiseMeter", "CPoint", "CRig", "CRow", "Status"],
+        &[
+            "CAgreement",
+            "CCameras",
+            "CConfig",
+            "CCounters",
+            "CMatch",
+            "CNoiseMeter",
+            "CPinhole",
+            "CPoint",
+            "CPose",
+            "CRig",
+            "CRow",
+            "Status",
+        ],
     ),
 ];
 

@@ -276,7 +276,6 @@ fn refined<T: Real>(
 ) -> ManhattanFrame<T> {
     let start = (rotation, focal);
     let found = levenberg_marquardt(&Ends { bundles, plane, free }, start, MOST_STEPS);
-    // Every estimate has a cost.
     let ((rotation, focal), mut equations) = found.unwrap_or((start, NormalEquations::new()));
     let count: usize = bundles.iter().map(|bundle| bundle.len()).sum();
     // The steps' products are a rotation but for rounding.

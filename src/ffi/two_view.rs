@@ -113,7 +113,7 @@ impl CPinhole {
 /// # Safety
 ///
 /// `values` is null or points to `count` values that nothing writes during `'a`; every bit pattern is a `T`.
-unsafe fn slice<'a, T>(values: *const T, count: usize) -> Result<&'a [T], Status> {
+unsafe fn borrow<'a, T>(values: *const T, count: usize) -> Result<&'a [T], Status> {
     checked(values)?;
     if count > isize::MAX as usize / size_of::<T>() {
         return Err(Status::TooMany);
@@ -126,10 +126,10 @@ unsafe fn slice<'a, T>(values: *const T, count: usize) -> Result<&'a [T], Status
 ///
 /// # Safety
 ///
-/// As [`slice`] asks.
+/// As [`borrow`] asks.
 unsafe fn matches<'a>(matches: *const CMatch, count: usize) -> Result<&'a [Correspondence<f32>], Status> {
     // SAFETY: the caller's promise; the layouts are the same, and floats may have any bits.
-    unsafe { slice(matches.cast(), count) }
+    unsafe { borrow(matches.cast(), count) }
 }
 
 /// Returns the matrix of nine numbers, row by row.
@@ -235,7 +235,7 @@ pub unsafe fn two_view_pose(
         // SAFETY: the caller's promise.
         let (seen, cameras) = unsafe { (matches(seen, count)?, cameras(first, second)?) };
         // SAFETY: the caller's promise.
-        let inliers = if inliers.is_null() { &[] } else { unsafe { slice(inliers, count) }? };
+        let inliers = if inliers.is_null() { &[] } else { unsafe { borrow(inliers, count) }? };
         // SAFETY: the caller's promise.
         let fundamental = unsafe { fundamental_of(fundamental) }?;
         let [first, second] = cameras;

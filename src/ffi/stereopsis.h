@@ -614,12 +614,12 @@ typedef struct stereopsis_pinhole {
  */
 typedef struct stereopsis_pose {
   /**
-   * R, from the second camera's frame into the first one's, row by row.
+   * Rotation R, from the second camera's frame into the first one's, row by row.
    */
   float rotation[9];
   /**
-   * t, from the first camera to the second. Two views do not say how long it is: `stereopsis_pose` writes
-   * length 1, and points come out in its unit.
+   * Translation t, from the first camera to the second. Two views do not say how long it is:
+   * `stereopsis_pose_of` writes length 1, and points come out in its unit.
    */
   float translation[3];
 } stereopsis_pose;

@@ -31,14 +31,18 @@ pub fn run(only: Option<String>) -> Outcome {
     steps.step("cross checks", cross_checks)?;
     let version = setup::rust_version()?;
     steps.step(&format!("stated rust-version {version}"), || rust_version(&version))?;
-    // Much of these is one linker or one emulator at a time, and each has a folder of its own.
+    // Much of these is one linker or one emulator at a time. Steps that build in the same folders stand in
+    // the same row: the firmware's checksums and the C interface share one.
     let beside: [&[NamedStep]; 2] = [
-        &[("firmware", || firmware::check_sample(&stereo())), ("growth", growth::sample)],
+        &[
+            ("firmware", || firmware::check_sample(&stereo())),
+            ("growth", growth::sample),
+            ("C interface", c::run),
+        ],
         &[
             ("quickstart", || examples::QUICKSTART.run()),
             ("async", examples::executors),
             ("boards", examples::boards),
-            ("C interface", c::run),
         ],
     ];
     side_by_side(&mut steps, beside)?;

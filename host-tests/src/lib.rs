@@ -24,6 +24,7 @@
 //! * [`rectify`]: raw pictures through the core's remap. [`pair`], [`rows`]: what is wrong with a pair.
 //! * [`views`]: pictures of one camera from several places through the core's structure from motion.
 //! * [`bal`]: problems of bundle adjustment through the core.
+//! * [`interpolate`]: poses between two known ones.
 //! * [`twin`]: each stage again, naively, to hold the core to.
 //! * [`map`], [`depth_samples`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`],
 //!   [`output`], [`report`]: results as files. [`command_line`]: errors in one line.
@@ -40,6 +41,7 @@ pub mod epipolar_picture;
 pub mod eval;
 pub mod fault;
 pub mod focus;
+pub mod interpolate;
 pub mod limits;
 pub mod map;
 pub mod masked;

@@ -3,7 +3,7 @@
 //!
 //! | input | bound |
 //! | --- | --- |
-//! | images | [`IMAGE_BYTES`], regular files only |
+//! | images | [`IMAGE_SIDE`] columns and rows, [`IMAGE_BYTES`], regular files only |
 //! | calibrations | [`CALIBRATION_BYTES`], elements nested [`DEPTH`] deep |
 //! | tables: matches, positions, poses | [`TABLE_BYTES`]; [`MATCHES`] matches |
 //! | problems of bundle adjustment | [`PROBLEM_BYTES`] |
@@ -13,8 +13,10 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
+/// The most columns and the most rows of an image.
+pub const IMAGE_SIDE: u16 = 4096;
 /// The longest image file: four samples of 48 bits for each pixel of the largest image.
-pub const IMAGE_BYTES: u64 = 24 * (crate::mock::MockCamera::MOST_PIXELS as u64).pow(2);
+pub const IMAGE_BYTES: u64 = 24 * (IMAGE_SIDE as u64).pow(2);
 /// The longest calibration file.
 pub const CALIBRATION_BYTES: u64 = 1 << 20;
 /// How deep a calibration file's elements may be nested.

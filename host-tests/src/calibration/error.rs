@@ -23,7 +23,7 @@ pub enum Fault {
     /// Not UTF-8, longer than a calibration can be, or not a file.
     #[error(
         "is no text file (UTF-8) of at most {} bytes; give a calibration file",
-        super::source::MOST_BYTES
+        crate::limits::CALIBRATION_BYTES
     )]
     NotText,
     /// The file has no byte or only white space.

@@ -8,7 +8,7 @@ use stereopsis::focus::{
     NoFocus, median_row, plane_row,
 };
 
-const MOST: usize = crate::mock::MockCamera::MOST_PIXELS as usize;
+const MOST: usize = crate::limits::IMAGE_SIDE as usize;
 
 /// What a stack tells, a value for each cell, row by row.
 #[derive(Clone, Debug)]

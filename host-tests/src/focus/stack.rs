@@ -1,5 +1,6 @@
 //! The frames of a focus stack: the images of a folder, in the order of their names.
 
+use crate::limits::IMAGE_SIDE;
 use crate::mock::{MockCamera, MockError};
 use alphanumeric_sort::sort_path_slice;
 use image::{GrayImage, RgbImage};
@@ -10,7 +11,7 @@ use stereopsis::camera::{CameraError, LineSource};
 use stereopsis::imaging::GreyLines;
 
 /// Bytes of the longest raw line: RGB with 16 bits.
-const RAW: usize = MockCamera::MOST_PIXELS as usize * 6;
+const RAW: usize = IMAGE_SIDE as usize * 6;
 /// Endings of files that are frames.
 const ENDINGS: [&str; 10] = ["png", "jpg", "jpeg", "pgm", "ppm", "pnm", "tif", "tiff", "bmp", "webp"];
 

@@ -1,7 +1,8 @@
 //! An image file as lines in their native pixel format.
 
+use super::MockError;
 use super::integrity::{self, Integrity};
-use super::{MockCamera, MockError};
+use crate::limits::IMAGE_SIDE;
 use image::error::{ImageError, LimitErrorKind};
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
@@ -13,7 +14,7 @@ use stereopsis::camera::{LineFormat, PixelFormat};
 /// The longest file that is read: an uncompressed image of the largest size, RGBA with 16 bits, as ASCII PPM.
 const MOST_FILE_BYTES: u64 = crate::limits::IMAGE_BYTES;
 /// What a decoder may allocate: the largest image, RGBA with 16 bits, twice.
-const MOST_DECODER_BYTES: u64 = MockCamera::MOST_PIXELS as u64 * MockCamera::MOST_PIXELS as u64 * 16;
+const MOST_DECODER_BYTES: u64 = IMAGE_SIDE as u64 * IMAGE_SIDE as u64 * 16;
 
 /// A decoded file.
 pub(super) struct Picture {
@@ -63,7 +64,7 @@ pub(super) fn read(path: &Path) -> Result<Picture, MockError> {
     if width == 0 || height == 0 {
         return Err(MockError::ZeroSize { path: path.into(), width, height });
     }
-    if width > u32::from(MockCamera::MOST_PIXELS) || height > u32::from(MockCamera::MOST_PIXELS) {
+    if width > u32::from(IMAGE_SIDE) || height > u32::from(IMAGE_SIDE) {
         return Err(MockError::TooLarge { path: path.into(), width, height });
     }
     match whole {

@@ -1,6 +1,6 @@
 //! Why an image file is no camera.
 
-use super::MockCamera;
+use crate::limits::IMAGE_SIDE;
 use std::io;
 use std::path::PathBuf;
 
@@ -108,5 +108,5 @@ pub enum MockError {
     },
 }
 
-const MOST: u16 = MockCamera::MOST_PIXELS;
+const MOST: u16 = IMAGE_SIDE;
 const WANTED: &str = "a PNG, JPEG, PGM/PPM, TIFF, BMP or WebP image";

@@ -15,6 +15,7 @@ mod integrity;
 
 pub use error::MockError;
 
+use crate::limits::IMAGE_SIDE;
 use decode::Picture;
 use image::{DynamicImage, Rgb, RgbImage};
 use std::convert::Infallible;
@@ -38,9 +39,6 @@ pub struct MockCamera {
 }
 
 impl MockCamera {
-    /// The most columns and the most rows of an image.
-    pub const MOST_PIXELS: u16 = 4096;
-
     /// A camera on the image file at `path`.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, MockError> {
         Ok(Self::play(decode::read(path.as_ref())?))
@@ -64,9 +62,9 @@ impl MockCamera {
     }
 
     /// A camera on an image in memory; `None` when its samples are floating-point or a side is 0 or over
-    /// [`Self::MOST_PIXELS`].
+    /// [`IMAGE_SIDE`].
     pub fn from_image(image: DynamicImage) -> Option<Self> {
-        let sides = 1..=u32::from(Self::MOST_PIXELS);
+        let sides = 1..=u32::from(IMAGE_SIDE);
         if !sides.contains(&image.width()) || !sides.contains(&image.height()) {
             return None;
         }

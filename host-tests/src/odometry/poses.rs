@@ -2,7 +2,7 @@
 //! matrix that carries a point of that frame's camera into the first one's, row by row.
 
 use crate::limits;
-use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::camera::Pose;
@@ -103,16 +103,4 @@ pub fn read(path: &Path) -> Result<Vec<Pose<f64>>, PosesError> {
         pose.ok_or_else(|| PosesError::Line { path: path.into(), line })
     };
     lines.map(pose).collect()
-}
-
-/// A share of the way from one pose to another: along a line, and about one axis.
-pub fn between(from: &Pose<f64>, to: &Pose<f64>, share: f64) -> Pose<f64> {
-    let of = |p: &Pose<f64>| {
-        let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*p.rotation()));
-        Isometry3::from_parts(Translation3::from(*p.translation()), turn)
-    };
-    let (a, b) = (of(from), of(to));
-    let turn = a.rotation.try_slerp(&b.rotation, share, 1e-9).unwrap_or(a.rotation);
-    let place = a.translation.vector.lerp(&b.translation.vector, share);
-    Pose::new(*turn.to_rotation_matrix().matrix(), place).unwrap_or(*from)
 }

@@ -1,7 +1,7 @@
 //! A sequence through the core's odometry.
 
-use super::poses::between;
 use crate::correspond::{CorrespondError, Plan, features};
+use crate::interpolate::between;
 use image::GrayImage;
 use stereopsis::features::Orientation;
 use stereopsis::geometry::camera::{Camera, Pose, RectifiedRig};

@@ -39,7 +39,7 @@ use stereopsis::camera::{CameraError, FrameStart, LineFault, LineStart, StereoSo
 const TITLE: &str = "stereopsis recording 1";
 /// The longest line of JSON.
 const MOST_HEADER: u64 = 1000;
-const MOST_PIXELS: u16 = crate::mock::MockCamera::MOST_PIXELS;
+const MOST_PIXELS: u16 = crate::limits::IMAGE_SIDE;
 
 /// What is known about a recording before its records.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]

@@ -1,5 +1,6 @@
 //! Images as a stereo source at a frame rate.
 
+use crate::limits::IMAGE_SIDE;
 use crate::mock::{MockCamera, MockError};
 use alphanumeric_sort::sort_path_slice;
 use std::fs;
@@ -11,7 +12,7 @@ use stereopsis::camera::{
 use stereopsis::imaging::GreyLines;
 
 /// Bytes of the longest raw line: RGB with 16 bits.
-const RAW: usize = MockCamera::MOST_PIXELS as usize * 6;
+const RAW: usize = IMAGE_SIDE as usize * 6;
 type Pair = CameraPair<GreyLines<MockCamera, RAW>, GreyLines<MockCamera, RAW>>;
 
 /// Why images are no frames.

@@ -170,5 +170,5 @@ fn pose_at(path: &[Pose<f64>], index: usize, time: f64) -> Pose<f64> {
         (Some(before), None) => (before, -time),
         (None, None) => (&here, 0.0),
     };
-    crate::odometry::poses::between(&here, other, share)
+    crate::interpolate::between(&here, other, share)
 }

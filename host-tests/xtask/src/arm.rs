@@ -48,8 +48,16 @@ const ARM32: Arm = Arm {
     skipped: &[],
 };
 
+/// Adds the targets and the programs that are missing.
+pub fn set_up() -> Outcome {
+    others().try_for_each(|arm| {
+        setup::targets(&[arm.target])?;
+        packages::install(&[arm.linker, arm.emulator])
+    })
+}
+
 /// Those that the tests do not run on anyway.
-pub fn others() -> impl Iterator<Item = Arm> {
+fn others() -> impl Iterator<Item = Arm> {
     [ARM64, ARM32].into_iter().filter(|arm| !(cfg!(target_arch = "aarch64") && arm.target == ARM64.target))
 }
 
@@ -77,12 +85,6 @@ fn tests(arms: &[Arm], arguments: &[&str]) -> Command {
 }
 
 impl Arm {
-    /// Adds the target and the programs that are missing.
-    pub fn set_up(&self) -> Outcome {
-        setup::targets(&[self.target])?;
-        packages::install(&[self.linker, self.emulator])
-    }
-
     /// Runs the tests, which are built.
     fn run(&self) -> Outcome {
         let skip = self.skipped.iter().flat_map(|test| ["--skip", test]);

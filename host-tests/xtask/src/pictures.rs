@@ -1,7 +1,7 @@
 //! Pairs of grey pictures that firmware is given, and what the host's own pipeline finds in them.
 
-use crate::firmware::scene::{Scene, SceneCamera};
 use crate::steps::{Failure, Outcome};
+use firmware_scenes::scene::{Scene, SceneCamera};
 use image::GrayImage;
 use image::imageops::{FilterType, resize};
 use std::fmt;
@@ -10,12 +10,13 @@ use std::path::Path;
 use stereopsis::camera::{CameraPair, StereoSource};
 use stereopsis::imaging::{Balance, GreyLines, Noise};
 use stereopsis::matching::{Config, Filter};
+use stereopsis_host::limits::IMAGE_SIDE;
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::mock::MockCamera;
 use stereopsis_host::run::{MemoryPair, MethodName, NoiseChoice, measure_balance, run};
 
 /// Bytes of the longest raw line: RGB with 16 bits.
-const RAW: usize = MockCamera::MOST_PIXELS as usize * 6;
+const RAW: usize = IMAGE_SIDE as usize * 6;
 
 /// A pair of pictures of one size, 8-bit grey.
 #[derive(Clone)]

@@ -1,6 +1,5 @@
 //! Gets the tools that the tests need: targets and components by rustup, QEMU and what C needs by apt-get.
 
-use crate::arm;
 use crate::packages;
 use crate::steps::{Failure, Outcome, command, output_of, root, run};
 use std::fs;
@@ -35,14 +34,13 @@ pub fn qemu_of(target: &str) -> &'static str {
     if target.starts_with("riscv") { QEMU_RISCV } else { QEMU_ARM }
 }
 
-/// Adds the targets, components and toolchain that are missing, then the packages.
+/// Adds the targets, components and toolchain that are missing, then the packages of what runs on boards.
 pub fn run_all() -> Outcome {
     targets(&[TARGETS.as_slice(), &CHECKED].concat())?;
     components()?;
     toolchain(&rust_version()?)?;
     packages::install(&[QEMU_ARM, QEMU_RISCV])?;
-    c()?;
-    arm::others().try_for_each(|arm| arm.set_up())
+    c()
 }
 
 /// What the examples in C need.

@@ -22,7 +22,7 @@ pub fn run(only: Option<String>) -> Outcome {
         println!("{NOT_RUN}");
     }
     let mut steps = Steps::new(only);
-    steps.step("set up", setup::run_all)?;
+    steps.step("set up", || setup::run_all().and_then(|()| arm::set_up()))?;
     steps.step("format", format)?;
     steps.step("clippy", clippy)?;
     steps.step("tests", || tests(data.is_some()))?;

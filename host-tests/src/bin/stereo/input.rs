@@ -9,10 +9,11 @@ use stereopsis::camera::{CameraPair, LineSource, StereoSource};
 use stereopsis::geometry::camera::ImageSize;
 use stereopsis::imaging::{GreyLines, NoiseMeter};
 use stereopsis::matching::Config;
+use stereopsis_host::limits::IMAGE_SIDE;
 use stereopsis_host::mock::MockCamera;
 
 /// Bytes of the longest raw line: RGB with 16 bits.
-pub const RAW: usize = MockCamera::MOST_PIXELS as usize * 6;
+pub const RAW: usize = IMAGE_SIDE as usize * 6;
 
 /// A camera on a file, as 8-bit grey.
 type Grey = GreyLines<MockCamera, RAW>;

@@ -9,6 +9,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use stereopsis_host::focus::stack::images;
+use stereopsis_host::limits::IMAGE_SIDE;
 use stereopsis_host::mock::MockCamera;
 
 #[derive(Clone, Debug, Args)]
@@ -35,7 +36,7 @@ pub struct SourceArgs {
 const LEAST_COLUMNS: u32 = 32;
 
 fn raw_size(text: &str) -> Result<[u32; 2], String> {
-    let most = u32::from(MockCamera::MOST_PIXELS);
+    let most = u32::from(IMAGE_SIDE);
     let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
     let fits = |[w, h]: &[u32; 2]| {
         (LEAST_COLUMNS..=most).contains(w) && w.is_multiple_of(2) && (1..=most).contains(h)

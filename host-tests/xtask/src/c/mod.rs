@@ -13,10 +13,10 @@ mod raw;
 
 pub use program::{CORES, cargo, crc32s};
 
-use crate::firmware::scene::Scene;
 use crate::header;
 use crate::pictures::Pictures;
 use crate::steps::{Failure, Outcome};
+use firmware_scenes::scene::Scene;
 use stereopsis_host::run::MethodName;
 
 /// Frames that the cores have to agree on: width, height, disparities.

@@ -2,9 +2,9 @@
 //! to the same in Rust.
 
 use super::program::{CORES, crc32_of, program, raw_beside};
-use crate::firmware::scene::Scene;
 use crate::pictures::Pictures;
 use crate::steps::{Failure, Outcome, root};
+use firmware_scenes::scene::Scene;
 use std::fmt::Debug;
 use std::fs;
 use stereopsis::depth::DepthScale;

@@ -1,15 +1,16 @@
 //! `cargo xtask firmware --all`: every core, method and size, two at a time.
 
-use super::board::{self, Board, M0, M4, M7, M55};
-use super::checksums::{self, Checksum};
-use super::frame::{self, Frame, MOST_STACK};
+use super::checksums;
+use super::frame::{self, MOST_STACK};
+use super::measured::{Measured, spread};
 use super::program::{Built, Program};
-use super::scene::Scene;
 use super::{awkward, refusals, tables};
 use crate::parallel;
 use crate::pictures::Pictures;
 use crate::setup;
 use crate::steps::{Failure, Outcome, root};
+use firmware_boards::{self as board, Board, M0, M4, M7, M55};
+use firmware_scenes::scene::Scene;
 use std::collections::BTreeMap;
 use std::fs;
 use stereopsis_host::run::MethodName;
@@ -22,16 +23,6 @@ const SMALLEST: [(u16, u16, u16); 1] = [(96, 64, 16)];
 const SPREAD_WIDTH: u16 = 160;
 /// The most that they may differ, of their mean.
 const MOST_SPREAD: f64 = 0.05;
-
-/// What came of one program.
-pub struct Result {
-    /// The built-in scene.
-    pub frame: Frame,
-    /// Instructions over different pictures, by their names, the built-in scene's among them; or none.
-    pub spread: Vec<(&'static str, u64)>,
-    /// Checksums on real pictures.
-    pub checksums: Vec<Checksum>,
-}
 
 /// Runs all of it and prints it; writes the tables into docs/performance.md, or compares them.
 pub fn run(readme: tables::Readme) -> Outcome {
@@ -109,7 +100,7 @@ fn in_turn(programs: Vec<Program>) -> Vec<(usize, Program)> {
 }
 
 /// One program, on all the pictures of its size.
-fn one(program: Program, real: &[(String, Pictures)]) -> Outcome<Result> {
+fn one(program: Program, real: &[(String, Pictures)]) -> Outcome<Measured> {
     let built = program.build()?;
     let scene = Pictures::of_scene(Scene { width: program.width, height: program.height })?;
     let frame = frame::run(&built, &scene, true)?;
@@ -120,7 +111,7 @@ fn one(program: Program, real: &[(String, Pictures)]) -> Outcome<Result> {
         spread.push(("scene", frame.instructions));
     }
     let checksums = if program.board == M0 { Vec::new() } else { checksums::on_core(&built, real)? };
-    Ok(Result { frame, spread, checksums })
+    Ok(Measured { frame, spread, checksums })
 }
 
 /// Instructions of a frame of nothing, of noise, of stripes and of a real picture where there is one.
@@ -152,17 +143,9 @@ fn spread_over(built: &Built, real: &[(String, Pictures)]) -> Outcome<Vec<(&'sta
     pictures.into_iter().map(count).collect()
 }
 
-/// How far instructions lie apart, of their mean.
-pub fn spread(counts: &[(&str, u64)]) -> f64 {
-    let counts = counts.iter().map(|&(_, count)| count as f64);
-    let (least, most) = counts.clone().fold((f64::MAX, f64::MIN), |(l, m), c| (l.min(c), m.max(c)));
-    let mean = counts.clone().sum::<f64>() / counts.count().max(1) as f64;
-    (most - least) / mean
-}
-
 /// What is promised of every program.
-fn held(result: &Result) -> Outcome {
-    let Result { frame, spread: counts, .. } = result;
+fn held(result: &Measured) -> Outcome {
+    let Measured { frame, spread: counts, .. } = result;
     let failed = |what: String| Err(Failure::new(format!("{}: {what}", frame.program)));
     if !counts.is_empty() && spread(counts) > MOST_SPREAD {
         let (found, most) = (100.0 * spread(counts), 100.0 * MOST_SPREAD);
@@ -189,15 +172,4 @@ fn budget(what: &str) -> Outcome<u64> {
     let mut lines = text.lines().filter(|line| line.contains(what));
     let number = lines.find_map(|line| line.split_whitespace().find_map(|word| word.parse().ok()));
     number.ok_or_else(|| Failure::new(format!("memory.x has no number for {what}")))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn spread_is_of_the_mean() {
-        assert_eq!(spread(&[("a", 90), ("b", 100), ("c", 110)]), 0.2);
-        assert_eq!(spread(&[("a", 7)]), 0.0);
-    }
 }

@@ -1,10 +1,10 @@
 //! What `cargo xtask firmware` is asked for.
 
-use super::board::{self, Board};
 use super::program::Optimised;
-use super::scene::Scene;
 use crate::steps::{Failure, Outcome};
 use clap::Args;
+use firmware_boards::{self as board, Board};
+use firmware_scenes::scene::Scene;
 use std::path::PathBuf;
 use stereopsis::matching::Config;
 use stereopsis_host::run::{MethodName, NoiseChoice, UnknownNoise};

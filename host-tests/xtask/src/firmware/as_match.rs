@@ -2,10 +2,10 @@
 //! writes of the same pair, to the bit.
 
 use super::arguments::One;
-use super::board::M4;
-use super::run_one;
+use super::one_frame;
 use crate::pictures::Pictures;
 use crate::steps::{Failure, Outcome, command, output_of};
+use firmware_boards::M4;
 use std::fs;
 use std::path::Path;
 use stereopsis_host::run::{MethodName, NoiseChoice};
@@ -29,7 +29,7 @@ pub fn check(stereo: &Path) -> Outcome {
     output_of(&mut matching)?;
     let pair = Some((at("left.pgm"), at("right.pgm")));
     let (method, noise, out) = (MethodName::Sgm, NoiseChoice::Auto, at("firmware"));
-    run_one(&One { board: M4, pair, disparities: DISPARITIES, method, noise, out })?;
+    one_frame::run(&One { board: M4, pair, disparities: DISPARITIES, method, noise, out })?;
 
     let read = |name: &str| fs::read(at(name)).map_err(|e| Failure::new(format!("{name}: {e}")));
     let summary: serde_json::Value = serde_json::from_slice(&read("match/summary.json")?)

@@ -2,13 +2,13 @@
 //! assembly: equal to the host's to the bit, as all frames are; and frames of any size with any checks and
 //! penalties, of all methods.
 
-use super::any_frames::AnyFrames;
-use super::board::M55;
 use super::frame;
 use super::program::{Optimised, Program};
 use super::results::Ran;
 use crate::pictures::Pictures;
 use crate::steps::{Failure, Outcome};
+use firmware_boards::M55;
+use firmware_scenes::any_frames::AnyFrames;
 use stereopsis_host::run::MethodName;
 
 /// Pixels in a line at most, and disparities: of 32 and of 64 lanes, and of a number that there is no

@@ -1,12 +1,12 @@
 //! The program `bundle` on one core: two views and 128 points from a guess to the truth, measured, and held
 //! to the host's own run.
 
-use super::board::Board;
 use super::plain::Tabled;
 use super::program::Optimised;
 use super::results::{Ran, Taken};
-use super::window::{Adjusted, Outcome as Adjustment, TwoViews};
 use crate::steps::{Failure, Outcome};
+use firmware_boards::Board;
+use firmware_scenes::window::{Adjusted, Outcome as Adjustment, TwoViews};
 use serde::Serialize;
 
 /// The most state, bytes.

@@ -1,7 +1,7 @@
 //! Real pictures: the same checksum on every core, on the host, and from the example in C.
 
-use super::all::Result;
 use super::frame;
+use super::measured::{Checksum, Measured};
 use super::program::{Built, Program};
 use crate::c;
 use crate::pictures::Pictures;
@@ -15,12 +15,6 @@ const PAIRS: [&str; 3] = ["cones", "venus", "mb2014q_Motorcycle"];
 
 /// The example in C has to say what the cores say; in the order of [`c::CORES`].
 const IN_C: [&str; 3] = ["C, host", "C, m4", "C, m7"];
-
-/// One core's checksum on one pair.
-pub struct Checksum {
-    pair: String,
-    crc32: u32,
-}
 
 /// The real pairs by name; none without STEREO_DATA.
 pub fn pairs() -> Outcome<Vec<(String, Pictures)>> {
@@ -43,7 +37,7 @@ pub fn on_core(built: &Built, pairs: &[(String, Pictures)]) -> Outcome<Vec<Check
 }
 
 /// Prints the checksums, a column for each core, the host and the example in C, and fails when a row has two.
-pub fn compare(results: &[Result], pairs: &[(String, Pictures)]) -> Outcome {
+pub fn compare(results: &[Measured], pairs: &[(String, Pictures)]) -> Outcome {
     let mut rows: BTreeMap<_, Vec<(&str, u32)>> = BTreeMap::new();
     for result in results {
         let Program { board, method, width, height, disparities, .. } = result.frame.program;

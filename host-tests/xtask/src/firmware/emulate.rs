@@ -1,10 +1,10 @@
 //! QEMU, an instruction a nanosecond.
 
-use super::board::Board;
 use super::program::Built;
 use crate::elf::Function;
 use crate::setup;
 use crate::steps::{Ended, Failure, Outcome, command, ended_within};
+use firmware_boards::Board;
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
 use std::path::Path;

@@ -1,13 +1,13 @@
 //! The program `features` on one core: two pictures to features and their matches, measured, and held to the
 //! host's own run.
 
-use super::board::Board;
 use super::plain::Tabled;
 use super::program::Optimised;
 use super::results::{Ran, Taken};
-use super::scene::{Scene, SceneCamera};
-use super::two_pictures::{HEIGHT, TwoPictures, WIDTH};
 use crate::steps::{Failure, Outcome};
+use firmware_boards::Board;
+use firmware_scenes::scene::{Scene, SceneCamera};
+use firmware_scenes::two_pictures::{HEIGHT, TwoPictures, WIDTH};
 use serde::Serialize;
 use std::fmt::Debug;
 use stereopsis::camera::StereoSource;

@@ -1,12 +1,12 @@
 //! The program `focus` on one core: frames of a lens that moves to where each tile is in focus, measured, and
 //! held to the host's own run.
 
-use super::board::Board;
 use super::plain::Tabled;
 use super::program::Optimised;
 use super::results::{Ran, Taken};
-use super::sweep::{CONFIG, FRAMES, HEIGHT, Map, Sweep, WIDTH, in_focus_q8};
 use crate::steps::{Failure, Outcome};
+use firmware_boards::Board;
+use firmware_scenes::sweep::{CONFIG, FRAMES, HEIGHT, Map, Sweep, WIDTH, in_focus_q8};
 use serde::Serialize;
 
 /// The most instructions for a pixel of a frame on these cores, made for speed.

@@ -1,11 +1,11 @@
 //! One frame on one core, measured, and held to the host's own run.
 
-use super::board::Board;
 use super::program::{Built, Program};
 use super::{emulate, log};
 use crate::elf::Sizes;
 use crate::pictures::Pictures;
 use crate::steps::{Failure, Outcome};
+use firmware_boards::Board;
 use std::collections::HashMap;
 use std::fs;
 use stereopsis::units::{Disparity, PixelFlags};

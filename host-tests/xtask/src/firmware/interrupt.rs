@@ -2,11 +2,11 @@
 //! own rows; none lost at the rate that the matcher's instructions allow, and losses reported at twice that
 //! rate.
 
-use super::board::Board;
 use super::program::Optimised;
 use super::results::{Ran, Taken};
-use super::scene::{Scene, SceneCamera};
 use crate::steps::{Failure, Outcome};
+use firmware_boards::Board;
+use firmware_scenes::scene::{Scene, SceneCamera};
 use serde::Serialize;
 use stereopsis_host::run::{MethodName, run as match_frame};
 

@@ -2,9 +2,10 @@
 //!
 //! * [`arguments`]: what is asked for. [`program`]: one build of the example. [`emulate`]: QEMU. [`log`]: the
 //!   firmware's log as text.
-//! * [`frame`]: one frame on one core, held to the host. [`summary`]: the files that are written of it.
+//! * [`frame`]: one frame on one core, held to the host. [`one_frame`]: with the files that are written of
+//!   it, [`summary`].
 //! * [`all`]: every core, method and size; [`tables`] of it for docs/performance.md; [`checksums`] on real
-//!   pictures.
+//!   pictures; [`measured`]: what they are made of.
 //! * [`as_match`]: noisy cameras that are exposed unequally, beside `stereo match`.
 //! * [`awkward`]: sizes that fill no vector, where the rows are in assembly.
 //! * [`pose`]: two views on one core, held to the host; [`two_views_all`]: on every core.
@@ -29,7 +30,9 @@ mod focus;
 pub mod frame;
 mod interrupt;
 mod log;
+mod measured;
 mod odometry;
+mod one_frame;
 mod plain;
 mod pose;
 mod profiles;
@@ -42,36 +45,30 @@ mod summary;
 pub mod tables;
 mod two_views_all;
 
-pub use firmware_boards as board;
-pub use firmware_scenes::{any_frames, raw_pair, scene, sweep, two_pictures, two_views, walk, window};
-
 pub use arguments::Arguments;
 pub use program::{VECTORS, cargo};
 
-use crate::pictures::Pictures;
 use crate::setup;
 use crate::steps::{Failure, Outcome};
-use arguments::{Asked, One, Plain};
-use board::Board;
+use arguments::{Asked, Plain};
 use bundle::Bundle;
 use features::Features;
+use firmware_boards::{self as board, Board};
 use focus::Focus;
 use interrupt::Interrupt;
 use odometry::Odometry;
 use pose::Pose;
-use program::{Optimised, Program};
+use program::Optimised;
 use rectify::Rectify;
 use serde::Serialize;
 use std::path::Path;
-use stereopsis::imaging::{Balance, Noise};
 use stereopsis_host::output::Staging;
-use stereopsis_host::run::NoiseChoice;
 use tables::Readme;
 
 /// Does what the command line asks for.
 pub fn run(arguments: &Arguments) -> Outcome {
     match arguments.asked()? {
-        Asked::Depth(one) => run_one(&one),
+        Asked::Depth(one) => one_frame::run(&one),
         Asked::Pose(plain) => run_plain(&plain, pose::run, Pose::summary),
         Asked::Features(plain) => run_plain(&plain, features::run, Features::summary),
         Asked::Focus(plain) => run_plain(&plain, focus::run, Focus::summary),
@@ -118,32 +115,5 @@ fn run_plain<T: Serialize>(
     results::write(&found, out)?;
     println!("{}", told(&found));
     println!("results are in {}; what was found is what the host finds, to the bit", out.display());
-    Ok(())
-}
-
-/// One frame on one core into a folder.
-fn run_one(one: &One) -> Outcome {
-    let (mut pictures, is_scene) = match &one.pair {
-        Some((left, right)) => (Pictures::open(left, right)?, false),
-        None => (Pictures::of_scene(one.scene())?, true),
-    };
-    let mut program = Program::new(one.board, one.method, pictures.width, pictures.height, one.disparities)?;
-    if !is_scene && one.method.compares_brightness() && pictures.balance()? != Balance::NONE {
-        println!("the right camera shows its image in the left one's exposure, as `stereo match` takes it");
-    }
-    program.noise = match one.noise {
-        NoiseChoice::Auto if is_scene => Noise::None,
-        choice => pictures.noise(choice)?,
-    };
-    Staging::probe(&one.out).map_err(|e| Failure::new(format!("--out: {e}")))?;
-    setup::firmware(&[one.board.target])?;
-    let built = program.build()?;
-    let frame = frame::run(&built, &pictures, is_scene)?;
-    for line in &frame.log {
-        println!("{line}");
-    }
-    summary::write(&one.out, &frame)?;
-    println!("{}", frame.summary());
-    println!("results are in {}, equal to the host's to the bit", one.out.display());
     Ok(())
 }

@@ -1,12 +1,12 @@
 //! The program `odometry` on one core: the motion of a pair from frame to frame, measured, and held to the
 //! host's own run.
 
-use super::board::Board;
 use super::plain::Tabled;
 use super::program::Optimised;
 use super::results::{Ran, Taken};
-use super::walk::{FRAMES, Walk, is_right, turned};
 use crate::steps::{Failure, Outcome};
+use firmware_boards::Board;
+use firmware_scenes::walk::{FRAMES, Walk, is_right, turned};
 use serde::Serialize;
 use stereopsis::motion::odometry::Step;
 

@@ -1,12 +1,12 @@
 //! The tables in docs/performance.md of the programs without sizes to choose: a line for each core that one
 //! is measured on.
 
-use super::board::{self, Board};
 use super::program::Optimised;
 use super::results::Taken;
 use super::tables::{self, Part, Readme};
 use crate::parallel;
 use crate::steps::Outcome;
+use firmware_boards::{self as board, Board};
 
 /// What came of a program, as its table shows it.
 pub trait Tabled: Send {

@@ -1,11 +1,11 @@
 //! The program `pose` on one core: two views, measured, and held to the host's own run.
 
-use super::board::{self, Board};
 use super::plain::Tabled;
 use super::program::Optimised;
 use super::results::{Ran, Taken};
-use super::two_views::{Cameras, Found, MATCHES, Missing, World};
 use crate::steps::{Failure, Outcome};
+use firmware_boards::{self as board, Board};
+use firmware_scenes::two_views::{Cameras, Found, MATCHES, Missing, World};
 use nalgebra::Point3;
 use serde::Serialize;
 

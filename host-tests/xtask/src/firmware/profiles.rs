@@ -1,15 +1,15 @@
 //! `cargo xtask firmware --profiles`: a firmware by what its optimiser is asked for. Every one links, so no
 //! panic is left in it, and none links what another number of disparities would need.
 
-use super::board::{Board, M4, RV32};
 use super::frame::{self, Frame};
 use super::program::{Lto, Program};
-use super::scene::Scene;
-use super::setup;
 use super::tables::{self, Part, Readme};
 use crate::parallel;
 use crate::pictures::Pictures;
+use crate::setup;
 use crate::steps::{Failure, Outcome};
+use firmware_boards::{Board, M4, RV32};
+use firmware_scenes::scene::Scene;
 use stereopsis_host::run::MethodName;
 
 /// A core with assembly and one without.

@@ -1,7 +1,7 @@
 //! One build of the firmware example: for a board, a method, a line's length and a number of disparities.
 
-use super::board::Board;
 use crate::steps::{Failure, Outcome, command, root, target_dir};
+use firmware_boards::Board;
 use std::fs;
 use std::path::PathBuf;
 use std::process::Command;

@@ -1,13 +1,13 @@
 //! The program `rectify` on one core: raw lines rectified behind three lenses, and depth from them, measured,
 //! and held to the host's own run.
 
-use super::board::{self, Board};
 use super::plain::Tabled;
 use super::program::Optimised;
-use super::raw_pair::{Broken, Lens, Lowered, RawPair, SCENE, on_board};
 use super::results::{Ran, Taken};
-use super::scene::SceneCamera;
 use crate::steps::{Failure, Outcome};
+use firmware_boards::{self as board, Board};
+use firmware_scenes::raw_pair::{Broken, Lens, Lowered, RawPair, SCENE, on_board};
+use firmware_scenes::scene::SceneCamera;
 use serde::Serialize;
 use std::convert::Infallible;
 use stereopsis::matching::Row;

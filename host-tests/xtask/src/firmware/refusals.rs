@@ -1,10 +1,10 @@
 //! What the firmware refuses: a panic when it is linked, a bad file when it runs. The checks that every other
 //! build and run of it passes can fail.
 
-use super::board::{M4, RV32};
 use super::emulate;
 use super::program::Program;
 use crate::steps::{Failure, Outcome};
+use firmware_boards::{M4, RV32};
 use std::fs;
 use stereopsis_host::run::MethodName;
 

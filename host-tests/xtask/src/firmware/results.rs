@@ -1,12 +1,12 @@
 //! A program without sizes to choose, run on one core: what it prints, what it takes, and what it leaves: a
 //! file that has to be the host's, and `summary.json`.
 
-use super::board::Board;
 use super::frame::{calibrated, figures, instructions};
 use super::program::{Optimised, build_plain};
 use super::{emulate, log};
 use crate::elf::Sizes;
 use crate::steps::{Failure, Outcome};
+use firmware_boards::Board;
 use serde::Serialize;
 use std::collections::HashMap;
 use std::fs;

@@ -1,15 +1,16 @@
 //! `cargo xtask firmware --stages`: the instructions of a frame by stage, counted one by one in QEMU's log.
 
-use super::board::{Board, M3, M4, M55, RV32};
+use super::emulate;
 use super::frame;
 use super::program::Program;
-use super::scene::Scene;
 use super::tables::{self, Part, Readme};
-use super::{emulate, setup};
 use crate::elf;
 use crate::parallel;
 use crate::pictures::Pictures;
+use crate::setup;
 use crate::steps::{Failure, Outcome};
+use firmware_boards::{Board, M3, M4, M55, RV32};
+use firmware_scenes::scene::Scene;
 use stereopsis_host::run::MethodName;
 
 /// Those whose code differs: an M7 and an M33 run an M4's.

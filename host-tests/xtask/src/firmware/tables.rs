@@ -1,6 +1,6 @@
 //! The parts of docs/performance.md that are made of the firmware's figures.
 
-use super::all::{Result, spread};
+use super::measured::{Measured, spread};
 use crate::steps::{Failure, Outcome, command, output_of, root};
 use std::fs;
 use std::ops::Range;
@@ -44,7 +44,7 @@ const WITHIN_OF_ANOTHER_COMPILER: f64 = 0.15;
 const PICTURES: [&str; 4] = ["blank", "noise", "stripes", "scene"];
 
 /// The whole part.
-pub fn part(results: &[Result]) -> Outcome<String> {
+pub fn part(results: &[Measured]) -> Outcome<String> {
     Ok(format!("{}\n{}", with_compiler(&figures(results))?, spreads(results)))
 }
 
@@ -56,12 +56,12 @@ pub fn with_compiler(table: &str) -> Outcome<String> {
 }
 
 /// A line for each program.
-fn figures(results: &[Result]) -> String {
+fn figures(results: &[Measured]) -> String {
     let mut table = "| core | method | pixels | disparities | instructions | for an evaluation | static RAM \
                      | stack | flash | of it dense path | panic symbols |\n| --- | --- | --- | ---: | ---: \
                      | ---: | ---: | ---: | ---: | ---: | ---: |\n"
         .to_owned();
-    for Result { frame, .. } in results {
+    for Measured { frame, .. } in results {
         let (program, sizes) = (&frame.program, &frame.sizes);
         table += &format!(
             "| {} | `{}` | {}x{} | {} | {} | {:.2} | {} | {} | {} | {} | {} |\n",
@@ -83,7 +83,7 @@ fn figures(results: &[Result]) -> String {
 }
 
 /// A line for each program that saw different pictures.
-fn spreads(results: &[Result]) -> String {
+fn spreads(results: &[Measured]) -> String {
     let mut table = format!("| core | method | {} | spread, % |\n| --- | --- |", PICTURES.join(" | "));
     table += &" ---: |".repeat(PICTURES.len() + 1);
     table += "\n";

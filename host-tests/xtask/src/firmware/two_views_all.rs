@@ -1,6 +1,5 @@
 //! Two views on every core, and the eight-point algorithm alone.
 
-use super::board;
 use super::frame::{figures, instructions};
 use super::pose::{self, Pose};
 use super::program::{Optimised, build_plain};
@@ -8,6 +7,7 @@ use super::tables::Readme;
 use super::{emulate, plain};
 use crate::elf::Sizes;
 use crate::steps::{Failure, Outcome};
+use firmware_boards as board;
 
 /// The most flash that the eight-point algorithm may take made for size, bytes.
 const MOST_EIGHT_POINT: u64 = 4 * 1024;

@@ -2,15 +2,15 @@
 
 use super::sizes::{Column, Series, Size, series};
 use super::table;
-use crate::firmware::board::{Board, M4, M55};
 use crate::firmware::frame::{self, Frame};
 use crate::firmware::program::{Built, Program};
-use crate::firmware::scene::Scene;
 use crate::firmware::tables::{self, Readme};
 use crate::parallel;
 use crate::pictures::Pictures;
 use crate::setup;
 use crate::steps::Outcome;
+use firmware_boards::{Board, M4, M55};
+use firmware_scenes::scene::Scene;
 use stereopsis_host::run::MethodName;
 
 /// A core that works in words and one that works in vectors.

@@ -34,7 +34,7 @@ pub struct FeatureConfig {
     pub per_cell: u16,
     /// How they are described.
     pub orientation: Orientation,
-    /// Which of ever smaller pictures this one is.
+    /// Level of the picture in its pyramid.
     pub level: Level,
 }
 

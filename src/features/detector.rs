@@ -55,9 +55,9 @@ impl core::error::Error for FeatureLineError {}
 pub struct FeatureCounts {
     /// Corners that were found.
     pub corners: u32,
-    /// Those for which stronger ones of their cell left no slot.
+    /// Number of corners dropped because stronger ones of their grid cell took its slots.
     pub crowded_out: u32,
-    /// Those for which the caller's list had no place.
+    /// Number of corners dropped because the caller's list was full.
     pub dropped: u32,
 }
 

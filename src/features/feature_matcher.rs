@@ -30,7 +30,7 @@ impl Best {
     const NONE: Self = Self { different: NOBODY, partner: 0 };
     const ZERO: Self = Self { different: 0, partner: 0 };
 
-    /// Of equals the first that comes stays.
+    /// Keeps a partner that differs in fewer bits than the best so far; of equals the first stays.
     fn offer(&mut self, different: u16, partner: u16) {
         if different < self.different {
             *self = Self { different, partner };

@@ -120,7 +120,7 @@ macro_rules! instantiate_c_api {
                 unsafe { StereopsisInstance::init(memory, length, false, handle) }
             }
 
-            /// As `stereopsis_init`, for memory that was never written, such as that of `malloc`: it is not
+            /// Starts an instance in memory that was never written, such as that of `malloc`: it is not
             /// read, and a matcher that it still holds is overwritten. Valgrind and sanitizers have nothing
             /// to report.
             #[unsafe(export_name = concat!($($prefix,)? "stereopsis_init_fresh"))]

@@ -15,7 +15,7 @@ pub struct CNoiseMeter {
     pub words: [u32; 65],
 }
 
-/// Both types are 65 words, and every bit pattern is a valid meter.
+/// The type of C and the meter of Rust are 65 words each, and every bit pattern is a valid meter.
 const _: () = assert!(
     size_of::<CNoiseMeter>() == size_of::<imaging::NoiseMeter>()
         && align_of::<CNoiseMeter>() == align_of::<imaging::NoiseMeter>()

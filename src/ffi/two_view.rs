@@ -28,7 +28,7 @@ pub struct CMatch {
     pub v2: f32,
 }
 
-/// Both types are four floats in the same order.
+/// The type of C and the correspondence of Rust are four floats in the same order.
 const _: () = assert!(
     size_of::<CMatch>() == size_of::<Correspondence<f32>>()
         && align_of::<CMatch>() == align_of::<Correspondence<f32>>()

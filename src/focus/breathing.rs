@@ -24,7 +24,7 @@ deserialize_checked! {
 }
 
 impl Breathing {
-    /// As large as the reference.
+    /// The scale of a frame that shows its image as large as the reference frame does.
     pub const NONE: Self = Self { scale: 1 << 16 };
 
     /// Before the first frame.

@@ -49,7 +49,7 @@ pub enum FocusCalibrationError {
     TooFew,
     /// A distance is none that the lens can image.
     Distance {
-        /// Which sample, from 0.
+        /// Index of the sample, from 0.
         index: usize,
         /// Why not.
         reason: LensError,

@@ -24,7 +24,7 @@ pub struct FocusCell {
     recent: [u16; FRAMES],
     /// The largest of them, for the picture that is sharp all over.
     largest: u16,
-    /// That of the peak's frame.
+    /// Sharpness in the peak's frame.
     peak: u16,
     /// How strongly the parabola bends at the peak, per frame and frame.
     bend: u16,

@@ -34,14 +34,14 @@ pub enum FocusScaleError {
     TooFew,
     /// The lens has no answer for one of them.
     Position {
-        /// Which, from 0.
+        /// Index of the position, from 0.
         index: usize,
         /// Why not.
         reason: LensError,
     },
     /// A position does not go on in the direction of those before it.
     Order {
-        /// Which, from 0.
+        /// Index of the position, from 0.
         index: usize,
     },
 }

@@ -19,7 +19,7 @@ pub struct Config {
     /// The smallest disparity searched, px. The search covers `min_disparity .. min_disparity +
     /// disparities`.
     pub min_disparity: u16,
-    /// Which answers are refused.
+    /// The checks that refuse answers.
     pub checks: Checks,
     /// What the methods along paths take changes to be worth.
     pub penalties: Penalties,
@@ -106,7 +106,7 @@ impl Config {
     }
 }
 
-/// Which answers are refused, and how strictly.
+/// Checks that refuse answers, and how strict they are.
 ///
 /// Three operating points are ready made, those of the block methods here: [`Checks::DENSE`] answers wherever
 /// there is a candidate, [`Checks::DEFAULT`] drops what the other image or the neighbourhood contradicts,

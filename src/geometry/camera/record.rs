@@ -33,7 +33,7 @@ pub enum RecordError {
         /// Bytes that are needed.
         needed: usize,
     },
-    /// They begin with something else: erased flash, or another file.
+    /// The bytes begin with something else: erased flash, or another file.
     NotARecord,
     /// The record is of a version that this build does not know.
     Version {

@@ -67,7 +67,7 @@ deserialize_checked! {
 pub enum StereoRigError {
     /// R or t are no pose: not finite, or R is no rotation.
     Pose(PoseError),
-    /// Both cameras are at one place.
+    /// The two cameras are at one place.
     NoBaseline,
     /// The cameras are not from a micrometre to 1000 km apart.
     Baseline,

@@ -144,7 +144,7 @@ impl<T: Real> ManhattanFrame<T> {
     }
 }
 
-/// That all numbers are finite.
+/// Checks that all numbers are finite.
 fn finite<T: Real>(bundles: Bundles<'_, T>, expected: &Matrix3<T>) -> Result<(), ManhattanFrameError> {
     let finite =
         bundles.into_iter().flatten().all(LineSegment::is_finite) && expected.iter().all(|x| x.is_finite());

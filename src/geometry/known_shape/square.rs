@@ -211,7 +211,7 @@ impl<T: Real> MarkPoses<T> {
     }
 }
 
-/// That four corners are convex and go round with the clock (v is down).
+/// Checks that four corners are convex and go round with the clock (v is down).
 fn goes_round<T: Real>([a, b, c, d]: &[Point2<T>; 4]) -> Result<(), SquareMarkError> {
     let cross = |a: &Point2<T>, b: &Point2<T>, c: &Point2<T>| (b - a).perp(&(c - b));
     let crosses = [cross(a, b, c), cross(b, c, d), cross(c, d, a), cross(d, a, b)];

@@ -11,7 +11,7 @@ use crate::geometry::Real;
 pub(crate) struct Ldl<T, const N: usize> {
     rows: [[T; N]; N],
     pivots: [T; N],
-    /// Which unknown's each pivot is.
+    /// Index of the unknown that each pivot eliminates.
     places: [usize; N],
 }
 

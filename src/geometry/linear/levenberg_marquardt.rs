@@ -15,7 +15,7 @@ pub(crate) struct NormalEquations<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> NormalEquations<T, N> {
-    /// Of no residual.
+    /// Normal equations without a residual: all zeros.
     pub(crate) fn new() -> Self {
         Self { matrix: [[T::ZERO; N]; N], right: [T::ZERO; N], cost: T::ZERO }
     }

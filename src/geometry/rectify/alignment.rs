@@ -81,7 +81,7 @@ impl core::error::Error for RowMeterError {}
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RowAlignment<T: Real> {
-    /// By how much it was rotated about X (pitch), Y (yaw) and Z (roll) of the rectified frame, radians:
+    /// Rotation of the right camera about X (pitch), Y (yaw) and Z (roll) of the rectified frame, radians:
     /// what it should see at P it sees at `P + w x P`.
     pub rotation_rad: [T; 3],
     /// Standard deviations of the three angles, radians.
@@ -221,7 +221,7 @@ impl<T: Real> Normal<T> {
     }
 }
 
-/// By how many px a row moves for a rotation about X, Y and Z, for each radian.
+/// Jacobian of a pixel's row by rotations about X, Y and Z, px for each radian.
 fn row_moves<T: Real>(camera: &Camera<T>, u: T, v: T) -> [T; 3] {
     let ((fx, fy), (cx, cy)) = (camera.focal_px(), camera.principal_point());
     let (x, y) = ((u - cx) / fx, (v - cy) / fy);

@@ -20,7 +20,7 @@ pub(crate) struct Biweight<T: Real> {
 }
 
 impl<T: Real> Biweight<T> {
-    /// Of the residual up to which an observation counts as an inlier, px.
+    /// A loss whose inliers have residuals up to `threshold_px`.
     pub(crate) fn new(threshold_px: T) -> Self {
         let width = threshold_px * T::of(WIDTH);
         Self { width_squared: width * width }

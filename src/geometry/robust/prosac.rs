@@ -13,7 +13,7 @@ pub(super) struct Sampler<const K: usize> {
     all: usize,
     /// How many from the front may be drawn.
     size: usize,
-    /// Of `GROWN` samples of all observations, how many would lie in the set.
+    /// Expected number, of `GROWN` samples of all observations, that lie in the sampling pool.
     inside: f32,
     /// With how many samples drawn the set grows.
     due: u32,

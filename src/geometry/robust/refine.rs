@@ -13,7 +13,7 @@ use crate::geometry::linear::{LeastSquares, NormalEquations, levenberg_marquardt
 use crate::geometry::two_view::Correspondence;
 use nalgebra::Vector3;
 
-/// Which of the seven numbers may move.
+/// The matrix to refine, which says which of its seven parameters are free.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Matrix {
     /// All: a fundamental matrix.
@@ -28,7 +28,7 @@ struct SampsonLoss<'a, T: Real> {
     seen: &'a [Correspondence<T>],
     frames: &'a [Frame<T>; 2],
     loss: Biweight<T>,
-    /// Of the correspondences every so manyth is used.
+    /// Stride through the correspondences: every `every`th one is used.
     every: usize,
 }
 

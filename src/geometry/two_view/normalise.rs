@@ -16,8 +16,8 @@ pub(crate) struct Normalisation<T: Real> {
 }
 
 impl<T: Real> Normalisation<T> {
-    /// Of one image's points, whatever they weigh; `None` when all are one point, to the rounding of their
-    /// mean.
+    /// The normalisation of one image's points, whatever they weigh; `None` when all are one point, to the
+    /// rounding of their mean.
     #[inline(never)]
     pub(crate) fn of(seen: Weighted<'_, T>, image: Image) -> Option<Self> {
         let points = seen.iter().map(|(s, _)| image.point(s));
@@ -65,7 +65,7 @@ impl<T: Real> Normalisation<T> {
     }
 }
 
-/// Those of both images.
+/// The normalisations of both images.
 pub(crate) struct Both<T: Real> {
     pub(crate) first: Normalisation<T>,
     pub(crate) second: Normalisation<T>,

@@ -47,7 +47,7 @@ impl core::fmt::Display for ScaleError {
 impl core::error::Error for ScaleError {}
 
 impl<T: Real> RelativePose<T> {
-    /// Of a rotation and a direction of length one.
+    /// A relative pose of a rotation and a direction of length one.
     pub(crate) fn new(rotation: Matrix3<T>, direction: Unit<Vector3<T>>) -> Self {
         Self { rotation, direction }
     }

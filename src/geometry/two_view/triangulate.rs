@@ -65,7 +65,7 @@ impl core::fmt::Display for TriangulationError {
 
 impl core::error::Error for TriangulationError {}
 
-/// Both rays in camera 1, and the undistorted pixels they came from.
+/// The rays of both cameras in camera 1, and the undistorted pixels they came from.
 struct Rays<T: Real> {
     /// The rays p, and R p'.
     first: Vector3<T>,
@@ -206,7 +206,7 @@ impl<T: Real> TwoViews<T> {
         Correspondence { first: seen.first - by_first, second: seen.second - by_second }
     }
 
-    /// Both rays, if they have an angle.
+    /// The two rays of a correspondence, if they have an angle.
     fn rays(&self, seen: &Correspondence<T>) -> Result<Rays<T>, TriangulationError> {
         if !seen.is_finite() {
             return Err(TriangulationError::NotFinite);

@@ -37,7 +37,7 @@ impl<'a, T: Real> Weighted<'a, T> {
         Self { seen, weights: None }
     }
 
-    /// Those that have a weight greater than zero, or one that is not a number.
+    /// The correspondences whose weight is greater than zero, or is not a number.
     pub(crate) const fn new(seen: &'a [Correspondence<T>], weights: &'a [T]) -> Self {
         Self { seen, weights: Some(weights) }
     }

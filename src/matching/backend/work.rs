@@ -122,14 +122,14 @@ pub(in crate::matching) struct AnswerWork<'a> {
     pub workspace: &'a mut [u32],
     /// The first column that has a candidate.
     pub begin: usize,
-    /// Which winners are refused.
+    /// The checks that refuse winners.
     pub rules: &'a Rules,
     /// The answers and flags from that column on.
     pub answers: &'a mut [Disparity],
     pub flags: &'a mut [PixelFlags],
 }
 
-/// Which winners are refused.
+/// The checks that refuse winners.
 pub(in crate::matching) struct Rules {
     /// The smallest disparity searched, px.
     pub min_disparity: u16,
@@ -150,7 +150,7 @@ pub(in crate::matching) struct SmoothWork<'a> {
     pub lengths: Lengths<'a>,
     /// Workspace of a number for each answer and `SMOOTH_MARGIN` more.
     pub workspace: &'a mut [u16],
-    /// By how much two neighbours of one surface may differ.
+    /// Largest difference between two neighbours of one surface.
     pub step: Disparity,
     /// Most pairs around each answer.
     pub radius: u8,
@@ -160,11 +160,11 @@ pub(in crate::matching) struct SmoothWork<'a> {
 pub(in crate::matching) struct FatteningWork<'a> {
     pub answers: &'a mut [Disparity],
     pub flags: &'a mut [PixelFlags],
-    /// Of each column the rows' edges; the bit [`REFUSED`](FatteningWork::REFUSED) is free.
+    /// Edges of the rows in each column; the bit [`REFUSED`](FatteningWork::REFUSED) is free.
     pub edges: &'a mut [u8],
     /// The bit of the row.
     pub row: u8,
-    /// By how much nearer than another an answer may be for each pixel between the two.
+    /// Largest difference of two answers of one surface for each pixel between the two.
     pub slope: Disparity,
 }
 
@@ -183,7 +183,7 @@ pub(in crate::matching) struct FillWork<'a> {
     pub room: &'a mut [u16],
     /// Most pixels of a gap, at least one.
     pub most: u8,
-    /// By how much the answers on both sides may differ.
+    /// Largest difference of the answers on both sides of a gap.
     pub step: Disparity,
 }
 
@@ -203,7 +203,7 @@ pub(in crate::matching) struct SpeckleWork<'a> {
     pub answers: Option<&'a [Disparity]>,
     /// Where the row that waited is finished.
     pub finished: &'a mut [Disparity],
-    /// By how much two neighbours of one surface may differ.
+    /// Largest difference between two neighbours of one surface.
     pub step: Disparity,
     /// The least support of an answer that stays.
     pub pixels: u8,

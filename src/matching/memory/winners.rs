@@ -173,7 +173,7 @@ pub(in crate::matching) struct WinnerRows<'a> {
     pub disparities: &'a mut [u8],
 }
 
-/// Of each answer of a row, how many its surface has along the row, in the form that suits the target:
+/// Length of each answer's surface along the row, in the form that suits the target:
 /// half-words, or bytes at the front. What counts them and what sums them up are of one target.
 pub(in crate::matching) struct Lengths<'a>(pub(super) &'a mut [u16]);
 

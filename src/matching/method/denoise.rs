@@ -29,7 +29,7 @@ pub(super) fn denoise<'a>(
     smoothed
 }
 
-/// Those of one image.
+/// Denoised lines of one image.
 #[cfg_attr(target_pointer_width = "32", inline(never))]
 fn denoise_lines<'a>(
     smoothed: &mut Rows5<'a>,

@@ -92,13 +92,13 @@ pub struct Frame<'a> {
     pub(super) codes: &'a mut [u8],
     pub(super) columns: &'a mut [u8],
     pub(super) workspace: RowWorkspace<'a>,
-    /// Of each column, whether its pixels in the last 16 rows have texture, and how many in the window's
-    /// rows do.
+    /// Texture of each column: a bit for each of the last 16 rows, and the count of the window's
+    /// rows.
     pub(super) texture: &'a mut [u16],
     pub(super) textured: &'a mut [u8],
-    /// Of each column, whether its pixels in the last eight rows are edges, the newest row in the lowest bit.
+    /// Edges of each column: a bit for each of the last eight rows, the newest in the lowest.
     pub(super) edges: &'a mut [u8],
-    /// Of each column, the support of its answers so far.
+    /// Support of each column's answers so far.
     pub(super) support: &'a mut [u16],
     /// Answers before the speckle filter.
     pub(super) band: Ring<'a, Disparity, BAND>,

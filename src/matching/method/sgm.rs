@@ -127,7 +127,7 @@ const DEFAULT_IN_NOISE: [Checks; 2] = [
         ..DEFAULT
     },
 ];
-/// They are least sure where another disparity costs little more; texture says less than that, for paths
+/// Checks that refuse most where another disparity costs little more; texture says less than that, for paths
 /// bridge what has none.
 const STRICT: Checks = Checks {
     uniqueness_percent: Some(30),

@@ -28,7 +28,7 @@ pub struct CameraView<T: Real> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RigView<T: Real> {
-    /// Both cameras.
+    /// The two cameras of the rig.
     pub cameras: [Camera<T>; 2],
     /// The second camera beside the first: from the second into the first.
     pub second: Pose<T>,

@@ -11,8 +11,8 @@ use nalgebra::Vector3;
 pub enum Gauge {
     /// Nothing: the damping keeps steps short, and the scene drifts. There is no covariance.
     Free,
-    /// These views are held where they are. One fixes the frame, and with rigs of two cameras all; two fix
-    /// the scale as well.
+    /// Views of this range are held where they are. One fixes the frame, and with rigs of two cameras all;
+    /// two fix the scale as well.
     Views(Range<u16>),
     /// The view `held` is held, and `other` keeps its distance from it: seven numbers, as many as the images
     /// leave open.

@@ -11,11 +11,11 @@ use nalgebra::{Point2, Point3};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Observation<T: Real> {
-    /// Which point.
+    /// Index of the point.
     pub point: u32,
-    /// Which view.
+    /// Index of the view.
     pub view: u16,
-    /// Which camera of the view: 0, or 1 for the second of a rig.
+    /// Index of the camera in the view: 0, or 1 for the second of a rig.
     pub eye: u16,
     /// Pixel, px.
     pub pixel: Point2<T>,

@@ -13,7 +13,7 @@ use crate::geometry::Real;
 pub(super) struct Proposal<T> {
     /// The cost after it; infinite where a point is no longer seen.
     pub cost: T,
-    /// By how much the linear model says that the cost falls.
+    /// Decrease of the cost that the linear model predicts.
     pub predicted: T,
     /// The largest part of the step beside the size of what it moves, squared: of a view's centre and of a
     /// point.

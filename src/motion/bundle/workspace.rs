@@ -64,7 +64,7 @@ pub struct BundleWorkspace<V, T: Real, const N: usize, const VIEWS: usize, const
 pub struct BundleWorkspaceView<'a, V, T: Real, const N: usize> {
     /// One slot for each view.
     pub slots: &'a mut [ViewSlot<V, T, N>],
-    /// As many blocks as the largest number of views that see a point.
+    /// Blocks of one point's equations: as many as the largest number of views that see a point.
     pub terms: &'a mut [CrossBlock<T, N>],
     /// The points after a step.
     pub trial_points: &'a mut [Point3<T>],

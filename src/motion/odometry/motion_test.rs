@@ -17,7 +17,7 @@ pub(super) enum MotionTest<T: Real> {
     Known(Solved<T>, State),
 }
 
-/// By how much, in squared deviations, a motion of six numbers, and a step of three, has to explain the
+/// Squared deviations by which a motion of six numbers, and a step of three, has to explain the
 /// observations better than none does: with noise alone it is more once in 10 000 times.
 const SIX: f64 = 28.0;
 const THREE: f64 = 21.0;

@@ -18,7 +18,7 @@ const LEAST_CORRELATION: f32 = 0.9;
 /// The share of a step's covariance that each point's own is widened by: errors of the pose are in all of
 /// them.
 const DOUBT: f64 = 1.0;
-/// By how much the best place along a row has to be more alike than any other, of what is missing to one.
+/// Largest ratio, of the best place along a row to any other, of what a correlation lacks to 1.
 const CLEAR: f32 = 0.8;
 
 /// Up to `N` points in the frame of the camera.

@@ -44,7 +44,7 @@ pub struct RefinementConfig<T> {
 }
 
 impl<T: Real> RefinementConfig<T> {
-    /// Of so many views the oldest is held; 0.1 px, five steps.
+    /// A window of `views` views whose oldest is held; its loss is of 0.1 px, its steps five.
     pub fn new(views: usize) -> Self {
         Self { views, held: 1, width_px: T::of(0.1), most_iterations: 5 }
     }

@@ -11,7 +11,7 @@ use nalgebra::Matrix6;
 pub enum State {
     /// The first frame: the others stand beside it.
     First,
-    /// Of one camera: there is no unit of length yet, for what was seen so far shows nothing but a rotation.
+    /// One camera has no unit of length yet, for what was seen so far shows nothing but a rotation.
     /// The motion is that rotation; the next frame that is [`State::Tracked`] has the
     /// whole motion since.
     Waiting,
@@ -56,9 +56,9 @@ pub struct Step<T: Real> {
     pub state: State,
     /// Points that are followed.
     pub points: usize,
-    /// Those that were found in this frame.
+    /// Number of points that were found in this frame.
     pub found: usize,
-    /// Those that agree with the pose.
+    /// Number of points that agree with the pose.
     pub inliers: usize,
     /// The root mean square of what is left of their observations, in units of what was expected: 1 where
     /// the noise is as configured.

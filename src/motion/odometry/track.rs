@@ -34,7 +34,7 @@ pub(super) struct Track<T: Real> {
     pub lives: u16,
 }
 
-/// As it was.
+/// The warp of a patch that is neither turned nor scaled.
 pub(super) const UPRIGHT: [[f32; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 
 /// The product of two warps.

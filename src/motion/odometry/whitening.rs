@@ -29,7 +29,8 @@ pub(super) struct Whitener<T: Real> {
 }
 
 impl<T: Real> Whitener<T> {
-    /// Of an observation whose slope by a point of covariance C is J; `None` where S is not positive.
+    /// The whitening of an observation whose Jacobian by a point of covariance C is J; `None` where S is not
+    /// positive.
     pub fn of(
         slope: &Matrix3<T>,
         covariance: &Matrix3<T>,

@@ -30,7 +30,7 @@ impl<T: Real> StructureConfig<T> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum InitialPairError {
-    /// They have fewer than twelve points in common.
+    /// The two views have fewer than twelve points in common.
     TooFew,
     /// What they have in common agrees on nothing.
     NoAgreement,
@@ -72,7 +72,7 @@ pub enum ViewState {
     Unknown,
     /// Where it stands.
     Registered,
-    /// It sees fewer than six points that are known.
+    /// The view sees fewer than six points that are known.
     TooFew,
     /// What it sees agrees on no pose.
     NoAgreement,

@@ -122,7 +122,7 @@ impl Isa for Backend {
     }
 }
 
-/// As many candidates as there is assembly for, never none.
+/// Number of candidates that a block of assembly takes: as many as there is assembly for, at least one.
 #[inline(always)]
 pub(super) fn candidates(disparities: usize, most: usize) -> usize {
     if most.is_multiple_of(64) {

@@ -8,7 +8,7 @@ use core::arch::asm;
 /// How far averages reach at most, to each side.
 const MOST: usize = RECIPROCALS.len() - 1;
 
-/// By how far an average reaches: the reciprocal of how many answers that are by 2^16, and above it how many
+/// For each reach of an average: the reciprocal of its number of answers by 2^16, and above it how many
 /// less than none they are. The reciprocal of one, which nothing is multiplied by, is left out.
 static COUNTS: [u32; MOST + 1] = {
     let mut counts = [0; MOST + 1];

@@ -5,7 +5,7 @@ use super::LANES;
 use crate::matching::memory::slices::{part, part_mut, split_mut};
 use core::arch::asm;
 
-/// By how much more bits the lower four of a byte differ than the upper four, modulo 2^8.
+/// For each byte, the set bits of its lower half less those of its upper half, modulo 2^8.
 static LESS: [u8; 256] = table::<4>();
 /// How many bits are set.
 pub(super) static BITS: [u8; 256] = table::<8>();

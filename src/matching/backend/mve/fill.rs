@@ -157,7 +157,7 @@ fn to_left(numbers: &mut [u16], by: usize) {
     }
 }
 
-/// Of the answers on both sides of a gap the lesser one, or none.
+/// Smaller answer of the two at the ends of a gap, or none.
 #[inline(never)]
 fn end(answers: &mut [Disparity], flags: &mut [PixelFlags], room: &[u16], step: Disparity) {
     let count = answers.len();

@@ -4,7 +4,7 @@ use crate::matching::memory::rings::LOOK_AHEAD;
 use crate::units::Disparity;
 use core::hint::select_unpredictable;
 
-/// Of the sum of the differences so much is taken.
+/// Share of the summed differences that is taken: `SHARE` of `1 << SHIFT`.
 const SHARE: u32 = 5;
 const SHIFT: u32 = 5;
 /// The differences reach from 1 px less up to, and not to, 1 px more.

@@ -19,7 +19,8 @@ macro_rules! safely {
     };
 }
 
-/// Of two registers' lanes, each one's place before it; before the first one the last of the second register.
+/// Permutation of two registers' lanes by one place: before the first lane stands the last of the second
+/// register.
 const AFTER: &[u8; 64] = &{
     let mut lanes = [127; 64];
     let mut lane = 1;

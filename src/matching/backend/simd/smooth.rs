@@ -10,7 +10,7 @@ pub(super) const LANES: usize = 16;
 /// How far the answers around a pixel reach, to each side.
 const REACH: usize = MARGIN / 2;
 
-/// By how much the reciprocals of 3, 5, 7 and so on differ from the one before, the first from 0; modulo
+/// Differences of the reciprocals of 3, 5, 7 and so on from the one before, the first from 0; modulo
 /// 2^16.
 const CHANGES: [u16; REACH] = {
     let mut changes = [RECIPROCALS[1] as u16; REACH];

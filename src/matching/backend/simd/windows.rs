@@ -105,7 +105,7 @@ pub(super) fn row<S: WindowParameters, G: Group, const CELLS: usize, const ALL: 
 struct Sums<G, const CELLS: usize, const ALL: bool>([G; CELLS]);
 
 impl<G: Group, const CELLS: usize, const ALL: bool> Sums<G, CELLS, ALL> {
-    /// Those in use.
+    /// The cells in use.
     #[inline(always)]
     fn cells(&self, stride: usize) -> &[G] {
         if ALL { &self.0 } else { part(&self.0, ..stride / G::LANES) }

@@ -6,7 +6,7 @@ use crate::matching::backend::work::{EdgeWork, PathWork};
 use crate::matching::memory::slices::chunks_mut;
 use crate::matching::memory::views::view_mut;
 
-/// As in `groups`, with agreements for costs: their averages are rounded down.
+/// Averages agreements within edges as `groups` averages costs; these averages are rounded down.
 #[inline(always)]
 pub(super) fn within_edges(work: &mut PathWork<'_>, stride: usize, edges: EdgeWork<'_>) {
     let count = stride / 4;

@@ -60,7 +60,7 @@ fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3
     }
 }
 
-/// As many bytes of a word as there is a place for.
+/// Writes the bytes of a word for which the row has a place.
 #[inline(always)]
 fn put(row: &mut [u8], word: u32) {
     match row.first_chunk_mut() {

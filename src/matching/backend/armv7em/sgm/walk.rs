@@ -21,7 +21,7 @@ pub(super) struct Padded<const WORDS: usize> {
 }
 
 impl<const WORDS: usize> Padded<WORDS> {
-    /// As many words of no cost.
+    /// A path at its start: `words` words of no cost.
     pub fn new(words: usize, penalties: &Penalties) -> Self {
         let far = splat(far(penalties));
         let mut path = Self { before: far, words: [far; WORDS], after: far };
@@ -50,7 +50,7 @@ pub(super) struct Step {
     step: u32,
     /// Any further.
     jump: u32,
-    /// That and the most that a pixel's cost may be.
+    /// Upper bound of an aggregated cost: the largest jump and the largest cost of a pixel.
     most: u32,
 }
 

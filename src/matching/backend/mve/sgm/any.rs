@@ -95,7 +95,7 @@ struct Path<'a> {
 }
 
 impl<'a> Path<'a> {
-    /// Of no cost; none where there is too little room.
+    /// A path at its start, of no cost; `None` where there is too little room.
     fn new(room: &'a mut [u8], stride: usize) -> Option<Self> {
         let room = room.get_mut(..stride + 2 * LANES)?;
         room.fill(u8::MAX);

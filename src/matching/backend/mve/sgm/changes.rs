@@ -4,7 +4,7 @@
 use crate::matching::penalties::Penalties;
 use core::arch::asm;
 
-/// Of each pixel the step, and above it `255 - jump`, from the brightness `here` and where the path comes
+/// Step of each pixel, and above it `255 - jump`, from the brightness `here` and where the path comes
 /// from: eleven instructions for eight pixels.
 #[inline(never)]
 pub(super) fn changes(here: &[u8], from: &[u8], penalties: &Penalties, out: &mut [u16]) {

@@ -17,7 +17,7 @@ pub(super) struct Ring {
 }
 
 impl Ring {
-    /// That of a row.
+    /// The ring as it stands for row `row` of an image `width` pixels wide.
     pub fn new(width: usize, row: usize) -> Self {
         let columns = width + COLUMNS_OFF;
         let past = row.wrapping_mul(COLUMNS_OFF).checked_rem(columns).unwrap_or(0);

@@ -25,7 +25,7 @@ pub trait Plane:
     fn of_words(words: &mut [u32]) -> &mut [Self];
     /// One candidate.
     fn one(candidate: usize) -> Self;
-    /// As many of the first candidates; all if there are not so many.
+    /// Mask of the first `candidates` candidates; of all if there are not so many.
     fn first(candidates: usize) -> Self;
     /// All or none.
     fn all_if(bit: bool) -> Self;

@@ -211,7 +211,7 @@ fn slide<S: WindowParameters, P: Plane>(window: &mut Window<P>, enters: &Column<
     }
 }
 
-/// Those of the `candidates` that have the least sum.
+/// Mask of the candidates that have the least sum.
 #[inline(always)]
 fn best<P: Plane, const GROUPS: usize>(
     windows: &[Window<P>; GROUPS],

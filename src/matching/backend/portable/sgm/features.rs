@@ -14,10 +14,10 @@ use crate::matching::memory::slices::{chunks, chunks_mut, part, part_mut};
 /// Rows of numbers, a byte a pixel.
 #[derive(Clone, Copy)]
 pub(in crate::matching::backend) struct Features<'a> {
-    /// Of the left image, by column.
+    /// Features of the left image, by column.
     pub left: Looks<'a>,
-    /// Of the right image, `count` bytes for each one after the other: along the line, across it, census,
-    /// brightness halved, and the least and the greatest of a column's gradient along the line and of
+    /// Features of the right image, `count` bytes for each one after the other: along the line, across it,
+    /// census, brightness halved, and the least and the greatest of a column's gradient along the line and of
     /// those halfway to its neighbours (of no meaning where nothing is compared between pixels; doubled
     /// in `armv7em` and `mve`). Column `x` is compared with `stride` of them from `x` on. The first
     /// column is repeated

@@ -109,7 +109,7 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
         path
     }
 
-    /// Those in use.
+    /// The cells in use.
     #[inline(always)]
     fn cells(&self, count: usize) -> &[G] {
         if ALL { &self.0 } else { part(&self.0, ..count) }

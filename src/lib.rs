@@ -64,5 +64,9 @@ pub mod ffi;
 struct Readme;
 
 #[cfg(doctest)]
+#[doc = include_str!("../docs/library.md")]
+struct LibraryPage;
+
+#[cfg(doctest)]
 #[doc = include_str!("../docs/firmware.md")]
 struct FirmwarePage;

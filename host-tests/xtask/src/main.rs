@@ -6,10 +6,12 @@
 //! * `altered` measures how right the methods are on altered real images, beside OpenCV.
 //! * `readme` writes the generated parts of docs/performance.md anew, or checks them.
 //! * `c` tests the C interface alone, one step of `test`.
+//! * `publish` checks what a registry would hand out; it publishes nothing.
 //! * `header` writes the header of the C interface anew, or checks it.
 //!
 //! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`],
-//! [`growth`], [`c`], [`arm`] and [`readme`] are five of them. [`altered`] needs data that not everybody has.
+//! [`growth`], [`c`], [`arm`], [`package`] and [`readme`] are six of them. [`altered`] needs data that not
+//! everybody has.
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
@@ -24,6 +26,7 @@ mod examples;
 mod firmware;
 mod growth;
 mod header;
+mod package;
 mod packages;
 mod parallel;
 mod pictures;
@@ -63,6 +66,9 @@ enum Chore {
     },
     /// Tests the C interface alone: header, sanitizers, two boards in QEMU.
     C,
+    /// Checks the crate as it would be published, its dependencies' licences and advisories, and what its
+    /// interface breaks since the last tag. Publishes nothing.
+    Publish,
     /// Writes the header of the C interface anew.
     Header {
         /// Writes nothing; fails when the header differs from what would be written.
@@ -80,7 +86,7 @@ fn main() -> ExitCode {
                 "error: {}",
                 one_line(&usage_line(
                     &error,
-                    "the chores are test, firmware, growth, altered, c, header and readme"
+                    "the chores are test, firmware, growth, altered, c, header, publish and readme"
                 ))
             );
             return ExitCode::FAILURE;
@@ -93,6 +99,7 @@ fn main() -> ExitCode {
         Chore::Altered(arguments) => altered::run(&arguments),
         Chore::Readme { check } => readme::run(check),
         Chore::C => c::run(),
+        Chore::Publish => package::publish(),
         Chore::Header { check } => header::run(check),
     };
     match done {

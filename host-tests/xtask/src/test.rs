@@ -5,6 +5,7 @@ use crate::c;
 use crate::examples;
 use crate::firmware;
 use crate::growth;
+use crate::package;
 use crate::parallel;
 use crate::setup::{self, CHECKED, FROM_SOURCE, TARGETS};
 use crate::steps::{Failure, Outcome, Steps, cargo, command, root, run as run_command, target_dir};
@@ -28,6 +29,7 @@ pub fn run(only: Option<String>) -> Outcome {
     steps.step("tests", || tests(data.is_some()))?;
     steps.step("kernels on Arm", arm::run)?;
     steps.step("documentation", documentation)?;
+    steps.step("package", package::run)?;
     steps.step("cross checks", cross_checks)?;
     let version = setup::rust_version()?;
     steps.step(&format!("stated rust-version {version}"), || rust_version(&version))?;

@@ -1,0 +1,132 @@
+//! The crate as a registry would hand it out: its files, its dependencies, and that it builds away from the
+//! repository. `cargo xtask publish` adds what takes tools of its own. Nothing is published.
+
+use crate::setup;
+use crate::steps::{
+    Failure, Outcome, Steps, cargo, command, output_of, root, run as run_command, target_dir,
+};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// What the package holds besides `src` and `docs`; what begins with `Cargo` or a dot is cargo's own.
+const FILES: [&str; 6] =
+    ["CHANGELOG.md", "LICENSE-APACHE", "LICENSE-MIT", "README.md", "build.rs", "docs/library.md"];
+
+/// Its version 0.3 is a bridge to the first one, for crates that stand between.
+const WITH_A_BRIDGE: &str = "defmt";
+
+/// A core that the unpacked package is built for, beside this machine.
+const TARGET: &str = "thumbv7em-none-eabihf";
+
+/// The test step.
+pub fn run() -> Outcome {
+    setup::targets(&[TARGET])?;
+    files()?;
+    dependencies()?;
+    builds_unpacked()
+}
+
+/// `cargo xtask publish`: the test step, then licences and known weaknesses of all dependencies, and what the
+/// public interface breaks since the last tag.
+pub fn publish() -> Outcome {
+    let mut steps = Steps::new(None);
+    steps.step("package", run)?;
+    steps.step("licences, bans and sources", || deny(&["licenses", "bans", "sources"]))?;
+    steps.step("advisories", advisories)?;
+    steps.step("interface since the last tag", interface)?;
+    steps.summary()
+}
+
+/// The package has what its reader needs and nothing of the repository's own.
+fn files() -> Outcome {
+    let list = output_of(&mut cargo(&["package", "--list", "--allow-dirty", "-p", "stereopsis"]))?;
+    let is_own = |file: &str| file.starts_with("Cargo") || file.starts_with('.');
+    let is_due = |file: &str| {
+        FILES.contains(&file)
+            || (file.starts_with("docs/") || file.starts_with("src/")) && !file.contains("/.")
+    };
+    if let Some(stray) = list.lines().find(|file| !is_own(file) && !is_due(file)) {
+        return Err(Failure::new(format!("the package has {stray}: exclude it in Cargo.toml")));
+    }
+    match FILES.iter().find(|file| !list.lines().any(|line| line == **file)) {
+        Some(missing) => Err(Failure::new(format!("the package lacks {missing}"))),
+        None => Ok(()),
+    }
+}
+
+/// The core depends on one version of each crate, and each has a licence that lets its users choose MIT or
+/// Apache 2.0.
+fn dependencies() -> Outcome {
+    let words = "tree --locked -p stereopsis --all-features -e normal --target all --prefix none --format";
+    let tree = output_of(cargo(&words.split_whitespace().collect::<Vec<_>>()).arg("{p}|{l}"))?;
+    let mut versions = BTreeMap::new();
+    for line in tree.lines() {
+        let (package, licence) = line.split_once('|').unwrap_or((line, ""));
+        let mut words = package.split_whitespace();
+        let (name, version) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
+        let is_free = |word: &str| ["MIT", "Apache-2.0"].contains(&word.trim_matches(['(', ')']));
+        if !licence.split(['/', ' ']).any(is_free) {
+            let line = format!("{name} {version} has the licence \"{licence}\": MIT or Apache-2.0 is needed");
+            return Err(Failure::new(line));
+        }
+        let first = versions.entry(name.to_owned()).or_insert_with(|| version.to_owned());
+        if first != version && name != WITH_A_BRIDGE {
+            let line = format!("the core depends on {name} {first} and {version}: one is enough");
+            return Err(Failure::new(line));
+        }
+    }
+    println!("{} crates with all features, the core among them", versions.len());
+    Ok(())
+}
+
+/// The package, unpacked elsewhere, builds for this machine and for a core with all features.
+fn builds_unpacked() -> Outcome {
+    run_command(&mut cargo(&["package", "--locked", "--allow-dirty", "--no-verify", "-p", "stereopsis"]))?;
+    let package = format!("stereopsis-{}", env!("CARGO_PKG_VERSION"));
+    let packed = root().join(target_dir()).join("package").join(format!("{package}.crate"));
+    let folder = tempfile::tempdir().map_err(|e| Failure::new(format!("a temporary folder: {e}")))?;
+    run_command(command("tar", &["-xzf"]).arg(&packed).arg("-C").arg(folder.path()))?;
+    for target in [&[][..], &["--target", TARGET]] {
+        let mut check = cargo(&["check", "--all-features"]);
+        let check = check.args(target).env("CARGO_TARGET_DIR", root().join(target_dir()));
+        run_command(check.env("RUSTFLAGS", "-D warnings").current_dir(folder.path().join(&package)))?;
+    }
+    Ok(())
+}
+
+/// Checks of cargo-deny, by `.cargo/deny.toml`.
+fn deny(checks: &[&str]) -> Outcome {
+    let deny = tool("cargo-deny")?;
+    run_command(command(deny, &["--workspace", "--config", ".cargo/deny.toml", "check"]).args(checks))
+}
+
+/// The known weaknesses of dependencies, whose list is fetched.
+fn advisories() -> Outcome {
+    deny(&["advisories"]).inspect_err(|_| println!("the list of advisories has to be within reach"))
+}
+
+/// What a user of the last tag would have to change. Without a tag there is none.
+fn interface() -> Outcome {
+    let tags = output_of(&mut command("git", &["tag", "--list", "v*", "--sort=-v:refname"]))?;
+    let Some(last) = tags.lines().next() else {
+        println!("NOT RUN: there is no tag v... to compare with");
+        return Ok(());
+    };
+    let checks = tool("cargo-semver-checks")?;
+    run_command(
+        command(checks, &["semver-checks", "-p", "stereopsis", "--baseline-rev", last]).arg("--all-features"),
+    )
+}
+
+/// A tool of cargo's, built among this repository's products when the machine has none.
+fn tool(name: &str) -> Outcome<PathBuf> {
+    if output_of(&mut command(name, &["--version"])).is_ok() {
+        return Ok(name.into());
+    }
+    let folder = root().join(target_dir()).join("tools");
+    let tool = folder.join("bin").join(name).with_extension(std::env::consts::EXE_EXTENSION);
+    if !tool.exists() {
+        run_command(cargo(&["install", "--locked", name, "--root"]).arg(&folder))?;
+    }
+    Ok(tool)
+}

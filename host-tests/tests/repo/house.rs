@@ -122,6 +122,15 @@ fn the_core_does_not_panic_on_its_own() {
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
+/// What the check of combinations of features rests on.
+#[test]
+fn features_add_code_and_take_none_away() {
+    let takes = |text: &str| text.contains("not(feature") || text.contains("not(any(feature");
+    let files = source::core_files();
+    let wrong: Vec<_> = files.iter().filter(|(_, text)| takes(text)).map(|(name, _)| name).collect();
+    assert!(wrong.is_empty(), "code that a feature takes away: {wrong:?}");
+}
+
 #[test]
 fn the_root_is_tidy() {
     let files = source::files();

@@ -4,6 +4,7 @@
 mod commands;
 mod generated;
 
+use crate::source;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -67,6 +68,25 @@ fn the_glossary_names_files_that_are_there() {
     for row in rows {
         let file = row.rsplit('`').nth(1).expect("a file at the end of the row");
         assert!(root().join("src").join(file).is_file(), "docs/glossary.md: there is no src/{file}");
+    }
+}
+
+#[test]
+fn what_assures_is_there() {
+    let tests: Vec<_> = source::rust_files("host-tests/tests");
+    let text = read(&root().join("docs/assurance.md"));
+    let rows: Vec<_> = text.lines().filter(|line| line.starts_with("| ")).skip(2).collect();
+    assert!(rows.len() > 10, "{} promises in docs/assurance.md", rows.len());
+    for row in rows {
+        let evidence = row.split('|').nth(2).expect("a second column");
+        let names: Vec<_> = evidence.split('`').skip(1).step_by(2).collect();
+        assert!(!names.is_empty() || evidence.contains("step"), "docs/assurance.md: nothing shows {row}");
+        for name in names {
+            let is_file = root().join("host-tests/tests").join(name).is_file();
+            let is_test = tests.iter().any(|(_, text)| text.contains(&format!("fn {name}(")));
+            let is_chore = name.starts_with("firmware --");
+            assert!(is_file || is_test || is_chore, "docs/assurance.md: there is no test {name}");
+        }
     }
 }
 

@@ -1079,7 +1079,7 @@ size_t stereopsis_latency(void);
 stereopsis_status stereopsis_init(void *memory, size_t length, struct stereopsis **handle);
 
 /**
- * As `stereopsis_init`, for memory that was never written, such as that of `malloc`: it is not
+ * Starts an instance in memory that was never written, such as that of `malloc`: it is not
  * read, and a matcher that it still holds is overwritten. Valgrind and sanitizers have nothing
  * to report.
  */

@@ -48,7 +48,7 @@ pub fn run(only: Option<String>) -> Outcome {
         ],
     ];
     side_by_side(&mut steps, beside)?;
-    steps.step("README's commands", readme_commands)?;
+    steps.step("README's commands", || readme_commands(data.is_some()))?;
     steps.summary()?;
     if data.is_none() {
         println!("{NOT_RUN}");
@@ -115,8 +115,14 @@ fn clippy() -> Outcome {
 }
 
 fn tests(with_real_data: bool) -> Outcome {
+    run_cargo(&test_command(with_real_data))
+}
+
+/// Cargo's words for the tests. All steps that run some of them say the same, so that none builds the
+/// dependencies anew with other features.
+fn test_command(with_real_data: bool) -> String {
     let features = if with_real_data { format!(" --features {REAL_DATA}") } else { String::new() };
-    run_cargo(&format!("test --locked --workspace{features}"))
+    format!("test --locked --workspace{features}")
 }
 
 /// The program `stereo`, as the step of the tests has built it.
@@ -187,11 +193,9 @@ fn cross_checks() -> Outcome {
 }
 
 /// Last, because the clone's programs take the places of this tree's.
-fn readme_commands() -> Outcome {
-    run_cargo(
-        "test --locked -p stereopsis-host --test repo -- --ignored --exact \
-         readme::commands_work_in_a_fresh_clone",
-    )
+fn readme_commands(with_real_data: bool) -> Outcome {
+    let test = test_command(with_real_data);
+    run_cargo(&format!("{test} --test repo -- --ignored --exact readme::commands_work_in_a_fresh_clone"))
 }
 
 /// The oldest compiler that the packages say they build with, in earnest.

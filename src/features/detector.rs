@@ -1,27 +1,17 @@
 //! FAST corners with descriptors, spread over a grid, line by line.
 
-use super::grid::{self, Slot};
-use super::pattern::PATCH_RADIUS;
+use super::detector_state::{CIRCLE, FeatureDetectorState, MARGIN, NEIGHBOURS, SMOOTHING};
 use super::{
-    Corner, Descriptor, Feature, FeatureConfig, FeatureConfigError, Orientation, Patch, PatchOrientation,
-    binomial5_row, fast_scores, refine,
+    CornerSlot, Feature, FeatureConfig, FeatureConfigError, FeatureCounts, Patch, binomial5_row, fast_scores,
 };
-use crate::imaging::LineBand;
+use crate::imaging::RowRing;
 use core::fmt;
-use core::num::NonZero;
 use heapless::VecView;
 
-/// Lines that the smoothing of a row waits for.
-const SMOOTHING: usize = 2;
-/// Lines that a row of scores waits for.
-const CIRCLE: usize = 3;
-/// Lines that a row of corners waits for: the scores of the row below.
-const NEIGHBOURS: usize = CIRCLE + 1;
-/// Lines that a row of features waits for: the patch.
-const MARGIN: usize = FeatureConfig::MARGIN as usize;
-const _: () = assert!(MARGIN == PATCH_RADIUS as usize + SMOOTHING);
-/// Corners and the patches they wait for lie in two rows of cells at most.
-const _: () = assert!(FeatureConfig::LEAST_CELL as usize > MARGIN - NEIGHBOURS);
+/// Bytes for each pixel of a line: eight lines, the smoothed ones of a patch, three rows of scores.
+const LINE_BYTES: usize = RAW + Patch::SIDE + SCORES;
+const RAW: usize = 8;
+const SCORES: usize = 3;
 
 /// Why a line was not taken.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -47,19 +37,6 @@ impl fmt::Display for FeatureLineError {
 }
 
 impl core::error::Error for FeatureLineError {}
-
-/// What became of a frame's corners.
-#[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct FeatureCounts {
-    /// Corners that were found.
-    pub corners: u32,
-    /// Number of corners dropped because stronger ones of their grid cell took its slots.
-    pub crowded_out: u32,
-    /// Number of corners dropped because the caller's list was full.
-    pub dropped: u32,
-}
 
 /// Finds a picture's features line by line: the strongest corners of every cell, with their descriptors.
 ///
@@ -89,161 +66,123 @@ pub struct FeatureCounts {
 /// ```
 #[derive(Debug)]
 pub struct FeatureDetector<const W: usize, const C: usize> {
-    config: FeatureConfig,
-    /// Rows that came, of those of the configuration.
-    taken: u16,
-    raw: LineBand<W, 8>,
-    smooth: LineBand<W, { Patch::SIDE }>,
-    scores: LineBand<W, 3>,
+    state: FeatureDetectorState,
+    lines: [[u8; LINE_BYTES]; W],
+    slots: [[CornerSlot; 2]; C],
+}
+
+/// A borrowed [`FeatureDetector`] of any size.
+#[derive(Debug)]
+pub struct FeatureDetectorView<'a> {
+    state: &'a mut FeatureDetectorState,
+    /// Rings of lines, of smoothed lines and of scores.
+    lines: &'a mut [u8],
     /// The two rows of cells that corners are put into and wait in, the even one and the odd one.
-    cells: [[Slot; C]; 2],
-    counts: FeatureCounts,
+    slots: &'a mut [CornerSlot],
 }
 
 impl<const W: usize, const C: usize> FeatureDetector<W, C> {
     /// Bytes of a detector, but for a few words.
     pub const BYTES: usize = size_of::<Self>();
 
-    /// A detector that waits for [`Self::start`].
+    /// A detector that waits for [`Self::start`]. All zeros.
     pub const fn new() -> Self {
-        Self {
-            config: FeatureConfig::NONE,
-            taken: 0,
-            raw: LineBand::new(),
-            smooth: LineBand::new(),
-            scores: LineBand::new(),
-            cells: [[Slot::EMPTY; C]; 2],
-            counts: FeatureCounts { corners: 0, crowded_out: 0, dropped: 0 },
-        }
+        let state = FeatureDetectorState::new();
+        Self { state, lines: [[0; LINE_BYTES]; W], slots: [[CornerSlot::EMPTY; 2]; C] }
     }
 
-    /// Begins a frame; what is left of another one is forgotten.
+    /// The detector without its capacities.
+    pub fn as_mut_view(&mut self) -> FeatureDetectorView<'_> {
+        let (lines, slots) = (self.lines.as_flattened_mut(), self.slots.as_flattened_mut());
+        FeatureDetectorView { state: &mut self.state, lines, slots }
+    }
+
+    /// Begins a frame, see [`FeatureDetectorView::start`].
     pub fn start(&mut self, config: &FeatureConfig) -> Result<(), FeatureConfigError> {
-        config.check(W, C)?;
-        self.config = *config;
-        self.taken = 0;
-        let width = usize::from(config.width);
-        self.raw.begin(width);
-        self.smooth.begin(width);
-        self.scores.begin(width);
-        self.cells.as_flattened_mut().fill(Slot::EMPTY);
-        self.counts = FeatureCounts::default();
-        Ok(())
+        self.as_mut_view().start(config)
+    }
+
+    /// Takes the next line, see [`FeatureDetectorView::push`].
+    pub fn push(&mut self, line: &[u8], out: &mut VecView<Feature>) -> Result<(), FeatureLineError> {
+        self.as_mut_view().push(line, out)
     }
 
     /// What became of the corners, so far.
     pub fn counts(&self) -> FeatureCounts {
-        self.counts
+        self.state.counts()
+    }
+}
+
+impl<'a> FeatureDetectorView<'a> {
+    /// Bytes that a detector takes for every pixel of its longest line.
+    pub const LINE_BYTES: usize = LINE_BYTES;
+
+    /// A detector in the caller's memory: [`Self::LINE_BYTES`] for each pixel of the longest line, and twice
+    /// [`FeatureConfig::slots`]. It does not matter what is in them before [`Self::start`]; a view of a frame
+    /// under way needs as much, with what the last one left there.
+    pub fn new(
+        state: &'a mut FeatureDetectorState,
+        lines: &'a mut [u8],
+        slots: &'a mut [CornerSlot],
+    ) -> Result<Self, FeatureConfigError> {
+        let view = Self { state, lines, slots };
+        if view.state.config.height > 0 {
+            view.check(&view.state.config)?;
+        }
+        Ok(view)
+    }
+
+    fn check(&self, config: &FeatureConfig) -> Result<(), FeatureConfigError> {
+        config.check(self.lines.len() / LINE_BYTES, self.slots.len() / 2)
+    }
+
+    /// Begins a frame; what is left of another one is forgotten.
+    // Unrolled at every call it takes flash each time.
+    #[inline(never)]
+    pub fn start(&mut self, config: &FeatureConfig) -> Result<(), FeatureConfigError> {
+        self.check(config)?;
+        *self.state = FeatureDetectorState { config: *config, ..FeatureDetectorState::new() };
+        self.slots.fill(CornerSlot::EMPTY);
+        Ok(())
     }
 
     /// The next line of grey pixels. The features of cells that are done are added to `out`; for which it has
     /// no place are counted. With the last line of the frame, all are done.
     pub fn push(&mut self, line: &[u8], out: &mut VecView<Feature>) -> Result<(), FeatureLineError> {
-        if self.taken >= self.config.height {
+        let state = &mut *self.state;
+        let FeatureConfig { width, height, threshold, .. } = state.config;
+        if state.taken >= height {
             return Err(FeatureLineError::NoLineDue);
         }
-        let place = self.raw.next_line();
-        if line.len() != place.len() {
-            return Err(FeatureLineError::Length { needed: place.len() });
+        let width = usize::from(width);
+        let (mut raw, rest) = RowRing::<_, RAW>::split(self.lines, width);
+        let (mut smooth, rest) = RowRing::<_, { Patch::SIDE }>::split(rest, width);
+        let (mut scores, _) = RowRing::<_, SCORES>::split(rest, width);
+        if line.len() != width {
+            return Err(FeatureLineError::Length { needed: width });
         }
+        let newest = usize::from(state.taken);
+        state.taken += 1;
         // They are as long: a copy of slices would ask once more, and panic.
-        place.iter_mut().zip(line).for_each(|(place, &pixel)| *place = pixel);
-        self.raw.accept();
-        let newest = usize::from(self.taken);
-        self.taken += 1;
+        raw.row_mut(newest).iter_mut().zip(line).for_each(|(place, &pixel)| *place = pixel);
         if let Some(row) = newest.checked_sub(SMOOTHING) {
-            binomial5_row(&self.raw.around(row), self.smooth.next_line());
-            self.smooth.accept();
+            binomial5_row(&raw.around(row, newest), smooth.row_mut(row));
         }
         if let Some(row) = newest.checked_sub(CIRCLE) {
-            fast_scores(&self.raw.around(row), self.config.threshold, self.scores.next_line());
-            self.scores.accept();
+            fast_scores(&raw.around(row, newest), threshold, scores.row_mut(row));
         }
+        // Both rows of cells are as long.
+        let middle = self.slots.len() / 2;
+        let (even, odd) = self.slots.split_at_mut_checked(middle).unwrap_or_default();
+        let mut cells = [even, odd];
         if let Some(row) = newest.checked_sub(NEIGHBOURS) {
-            self.find(row);
+            state.find(row, scores.around(row, newest - CIRCLE), &mut cells);
         }
         if let Some(row) = newest.checked_sub(MARGIN) {
-            self.describe(row);
+            state.describe(row, &smooth.around(row, newest - SMOOTHING), &mut cells);
         }
-        self.emit(newest, out);
+        state.emit(newest, &mut cells, out);
         Ok(())
-    }
-
-    /// The side of a cell, px, and how many corners are kept in it. Neither is 0, and their type says so: it
-    /// leaves no panic where they divide, however little the compiler does.
-    fn cell(&self) -> (NonZero<usize>, usize) {
-        let least = |number: u16| NonZero::new(usize::from(number)).unwrap_or(NonZero::<usize>::MIN);
-        (least(self.config.cell_px), least(self.config.per_cell).get())
-    }
-
-    /// The corners of a row into their cells: pixels that score more than the neighbours that come before
-    /// them, and no less than those that come after.
-    fn find(&mut self, row: usize) {
-        let FeatureConfig { width, height, .. } = self.config;
-        let (width, height) = (usize::from(width), usize::from(height));
-        let (cell_px, per_cell) = self.cell();
-        if row < MARGIN || row + MARGIN >= height || width <= 2 * MARGIN {
-            return;
-        }
-        let cells = self.cells.get_mut(row / cell_px % 2);
-        let [above, here, below] = self.scores.around(row);
-        let Some(cells) = cells else { return };
-        let triples = above.windows(3).zip(here.windows(3)).zip(below.windows(3)).enumerate();
-        for (left, ((above, here), below)) in triples.skip(MARGIN - 1).take(width - 2 * MARGIN) {
-            let (&[a, b, c], &[d, score, e], &[f, g, h]) = (above, here, below) else { continue };
-            if score == 0 || score <= a.max(b).max(c).max(d) || score < e.max(f).max(g).max(h) {
-                continue;
-            }
-            let column = left + 1;
-            let corner = Corner { column: column as u16, row: row as u16, score, ..Corner::NONE };
-            let first = column / cell_px * per_cell;
-            self.counts.corners += 1;
-            if let Some(cell) = cells.get_mut(first..first + per_cell) {
-                self.counts.crowded_out += u32::from(grid::insert(cell, corner));
-            }
-        }
-    }
-
-    /// Where a row's corners are, to a fraction of a pixel, and what they look like.
-    fn describe(&mut self, row: usize) {
-        let (cell_px, _) = self.cell();
-        let rows = self.smooth.around(row);
-        let Some(cells) = self.cells.get_mut(row / cell_px % 2) else { return };
-        let waiting =
-            cells.iter_mut().filter(|slot| slot.corner.score > 0 && usize::from(slot.corner.row) == row);
-        for slot in waiting {
-            let Some(patch) = Patch::cut(&rows, slot.corner.column.into()) else { continue };
-            let turn = match self.config.orientation {
-                Orientation::Upright => PatchOrientation::NONE,
-                Orientation::Centroid => patch.direction(),
-            };
-            [slot.corner.right, slot.corner.down] = refine(&patch);
-            slot.descriptor = Descriptor::of(&patch, turn);
-        }
-    }
-
-    /// Gives out the rows of cells that are done with the line `newest`.
-    fn emit(&mut self, newest: usize, out: &mut VecView<Feature>) {
-        let FeatureConfig { height, level, .. } = self.config;
-        let (cell_px, per_cell) = self.cell();
-        let is_last = newest + 1 == usize::from(height);
-        // Rows of cells whose last row is described.
-        let done = (newest + 1).saturating_sub(MARGIN) / cell_px;
-        let begins = (newest + 1).saturating_sub(MARGIN).is_multiple_of(cell_px.get());
-        let one = (begins && done > 0).then(|| done - 1);
-        // The last row of cells may be cut off.
-        let rest = is_last.then_some(done);
-        for row in one.into_iter().chain(rest) {
-            let Some(cells) = self.cells.get_mut(row % 2) else { continue };
-            let mut waiting = cells.as_mut_slice();
-            while let Some((cell, others)) = waiting.split_at_mut_checked(per_cell) {
-                waiting = others;
-                while let Some(slot) = grid::take_strongest(cell) {
-                    let feature = Feature::new(&slot.corner, level, slot.descriptor);
-                    self.counts.dropped += u32::from(out.push(feature).is_err());
-                }
-            }
-        }
     }
 }
 

@@ -38,9 +38,23 @@ impl Best {
     }
 }
 
+/// What a matcher keeps for the features of one place in both lists, 10 bytes.
+#[derive(Clone, Copy, Debug)]
+pub struct MatchSlot {
+    of_left: Best,
+    of_right: Best,
+    /// Bits in which one left feature differs from the right one in this place.
+    different: u16,
+}
+
+impl MatchSlot {
+    /// Not in use. All zeros.
+    pub const EMPTY: Self = Self { of_left: Best::ZERO, of_right: Best::ZERO, different: 0 };
+}
+
 /// Matches up to `N` features of one picture with up to `N` of another, 65534 at most.
 ///
-/// It takes `10 N` bytes. Matching takes as many comparisons of 256 bits as there are pairs of features that
+/// It takes `10 N` bytes, all zeros in a `static`. Matching takes as many comparisons of 256 bits as there are pairs of features that
 /// the search admits, and one pass more over the right ones for each left one.
 ///
 /// A match is the best partner of its left feature, clearly better than any other that lies elsewhere (Lowe,
@@ -63,19 +77,48 @@ impl Best {
 /// ```
 #[derive(Debug)]
 pub struct FeatureMatcher<const N: usize> {
-    of_left: [Best; N],
-    of_right: [Best; N],
-    /// Bits in which one left feature differs from every right one.
-    different: [u16; N],
+    slots: [MatchSlot; N],
+}
+
+/// A borrowed [`FeatureMatcher`] of any size.
+#[derive(Debug)]
+pub struct FeatureMatcherView<'a> {
+    slots: &'a mut [MatchSlot],
 }
 
 impl<const N: usize> FeatureMatcher<N> {
     /// A matcher.
     pub const fn new() -> Self {
-        // Counting in 16 bits ends one beyond the last place.
-        const { assert!(N < u16::MAX as usize, "a match says its features' places in 16 bits") };
-        // Every run fills what it takes. All zeros: a matcher in a `static` takes RAM and no flash.
-        Self { of_left: [Best::ZERO; N], of_right: [Best::ZERO; N], different: [0; N] }
+        const { assert!(N <= FeatureMatcherView::MOST, "a match says its features' places in 16 bits") };
+        Self { slots: [MatchSlot::EMPTY; N] }
+    }
+
+    /// The matcher without its capacity.
+    pub fn as_mut_view(&mut self) -> FeatureMatcherView<'_> {
+        FeatureMatcherView { slots: &mut self.slots }
+    }
+
+    /// Matches two lists, see [`FeatureMatcherView::run`].
+    pub fn run(
+        &mut self,
+        left: &[Feature],
+        right: &[Feature],
+        search: &MatchConfig,
+        out: &mut VecView<Match>,
+    ) -> Result<u32, MatchConfigError> {
+        self.as_mut_view().run(left, right, search, out)
+    }
+}
+
+impl<'a> FeatureMatcherView<'a> {
+    /// The most features of a list: counting in 16 bits ends one beyond the last place.
+    pub const MOST: usize = u16::MAX as usize - 1;
+
+    /// A matcher in the caller's memory, a slot for each feature of the longer list; it does not matter what
+    /// the slots hold, and those beyond [`Self::MOST`] are left alone.
+    pub fn new(slots: &'a mut [MatchSlot]) -> Self {
+        let most = slots.len().min(Self::MOST);
+        Self { slots: slots.get_mut(..most).unwrap_or_default() }
     }
 
     /// Adds the matches to `out`, in the order of the left features. How many it had no place for.
@@ -88,19 +131,19 @@ impl<const N: usize> FeatureMatcher<N> {
     ) -> Result<u32, MatchConfigError> {
         search.check()?;
         let needed = left.len().max(right.len());
-        let scratch = self.of_left.get_mut(..left.len()).zip(self.of_right.get_mut(..right.len()));
-        let (Some((of_left, of_right)), Some(different)) = (scratch, self.different.get_mut(..right.len()))
-        else {
-            return Err(MatchConfigError::TooMany { needed });
-        };
-        of_right.fill(Best::NONE);
-        for ((here, feature), best) in (0..).zip(left).zip(of_left.iter_mut()) {
-            *best = best_partner(here, feature, right, search, of_right, different);
+        let slots = self.slots.get_mut(..needed).ok_or(MatchConfigError::TooMany { needed })?;
+        slots.iter_mut().for_each(|slot| slot.of_right = Best::NONE);
+        for (here, feature) in (0..).zip(left) {
+            let best = best_partner(here, feature, right, search, slots);
+            if let Some(slot) = slots.get_mut(usize::from(here)) {
+                slot.of_left = best;
+            }
         }
         let mut dropped = 0;
-        for (here, best) in (0..).zip(of_left.iter()) {
-            let mutual = of_right.get(usize::from(best.partner)).is_some_and(|back| back.partner == here);
-            if best.different < NOBODY && mutual {
+        for (here, slot) in (0..).zip(slots.iter()).take(left.len()) {
+            let best = slot.of_left;
+            let back = slots.get(usize::from(best.partner)).map(|slot| slot.of_right.partner);
+            if best.different < NOBODY && back == Some(here) {
                 let found = Match { left: here, right: best.partner, different: best.different };
                 dropped += u32::from(out.push(found).is_err());
             }
@@ -116,17 +159,16 @@ fn best_partner(
     feature: &Feature,
     right: &[Feature],
     search: &MatchConfig,
-    of_right: &mut [Best],
-    different: &mut [u16],
+    slots: &mut [MatchSlot],
 ) -> Best {
     let places = search.around(feature);
     let mut best = Best::NONE;
-    for (((partner, other), back), different) in (0..).zip(right).zip(of_right).zip(different.iter_mut()) {
-        *different = NOBODY;
+    for ((partner, other), slot) in (0..).zip(right).zip(slots.iter_mut()) {
+        slot.different = NOBODY;
         if search.admits(&places, other) {
-            *different = feature.descriptor.distance(&other.descriptor);
-            best.offer(*different, partner);
-            back.offer(*different, here);
+            slot.different = feature.descriptor.distance(&other.descriptor);
+            best.offer(slot.different, partner);
+            slot.of_right.offer(slot.different, here);
         }
     }
     let Some(chosen) = right.get(usize::from(best.partner)) else { return Best::NONE };
@@ -134,7 +176,8 @@ fn best_partner(
         (other.x_px - chosen.x_px).abs() >= search.apart_px
             || (other.y_px - chosen.y_px).abs() >= search.apart_px
     };
-    let others = right.iter().zip(different.iter()).filter(|(other, _)| elsewhere(other)).map(|(_, d)| *d);
+    let others =
+        right.iter().zip(slots.iter()).filter(|(other, _)| elsewhere(other)).map(|(_, slot)| slot.different);
     // With nobody else, or nobody else who is admitted, half of the bits is what a stranger would differ in.
     let second = others.min().unwrap_or(NOBODY).min(Descriptor::BITS / 2);
     let clear = 100 * u32::from(best.different) < u32::from(search.ratio_percent) * u32::from(second);

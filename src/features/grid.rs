@@ -2,14 +2,15 @@
 
 use super::{Corner, Descriptor};
 
-/// A corner with the descriptor that it gets once its patch is whole.
+/// What a detector keeps of a corner, 40 bytes: with the descriptor that it gets once its patch is whole.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Slot {
-    pub corner: Corner,
-    pub descriptor: Descriptor,
+pub struct CornerSlot {
+    pub(super) corner: Corner,
+    pub(super) descriptor: Descriptor,
 }
 
-impl Slot {
+impl CornerSlot {
+    /// Not in use. All zeros.
     pub const EMPTY: Self = Self { corner: Corner::NONE, descriptor: Descriptor::NONE };
 
     fn is_free(&self) -> bool {
@@ -19,7 +20,7 @@ impl Slot {
 
 /// Puts a corner into a cell: into a free slot or the place of the weakest corner there, of equals the last
 /// that came, if the new one is stronger. Whether a corner had to stay outside or leave.
-pub(super) fn insert(cell: &mut [Slot], corner: Corner) -> bool {
+pub(super) fn insert(cell: &mut [CornerSlot], corner: Corner) -> bool {
     // Corners come in reading order: of equals the one that is farther on is the later one.
     let weakest = cell.iter_mut().min_by_key(|slot| order(&slot.corner));
     match weakest {
@@ -33,9 +34,9 @@ pub(super) fn insert(cell: &mut [Slot], corner: Corner) -> bool {
 }
 
 /// Takes the strongest corner out of a cell, of equals the first that came.
-pub(super) fn take_strongest(cell: &mut [Slot]) -> Option<Slot> {
+pub(super) fn take_strongest(cell: &mut [CornerSlot]) -> Option<CornerSlot> {
     let strongest = cell.iter_mut().filter(|slot| !slot.is_free()).max_by_key(|slot| order(&slot.corner))?;
-    Some(core::mem::replace(strongest, Slot::EMPTY))
+    Some(core::mem::replace(strongest, CornerSlot::EMPTY))
 }
 
 /// Stronger is more, and of equals the one that comes first in reading order.

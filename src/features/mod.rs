@@ -43,6 +43,8 @@ mod duplicates;
 
 mod subpixel;
 
+mod detector_state;
+
 mod detector;
 
 mod template;
@@ -51,12 +53,14 @@ pub use binomial::binomial5_row;
 pub use config::{FeatureConfig, FeatureConfigError, Orientation};
 pub use corner::Corner;
 pub use descriptor::{Descriptor, Patch};
-pub use detector::{FeatureCounts, FeatureDetector, FeatureLineError};
+pub use detector::{FeatureDetector, FeatureDetectorView, FeatureLineError};
+pub use detector_state::{FeatureCounts, FeatureDetectorState};
 pub use downsample::Downsample;
 pub use duplicates::drop_duplicates;
 pub use fast::fast_scores;
 pub use feature::{Feature, Level};
-pub use feature_matcher::{FeatureMatcher, Match};
+pub use feature_matcher::{FeatureMatcher, FeatureMatcherView, Match, MatchSlot};
+pub use grid::CornerSlot;
 pub use match_config::{Epipolar, MatchConfig, MatchConfigError};
 pub use orientation::PatchOrientation;
 pub use pattern::{PAIRS, PATCH_RADIUS, PATTERN, PointPair};

@@ -26,6 +26,7 @@ mod histogram;
 mod noise;
 mod picture;
 mod remap;
+mod rows;
 mod smooth;
 mod window;
 
@@ -43,5 +44,6 @@ pub use remap::{
     RectifiedPair, RectifiedPairError, Remap, RemapError, RemapPair, RemapPairError, RemapTable,
     RemapTableError,
 };
+pub(crate) use rows::RowRing;
 pub use smooth::smooth;
 pub use window::{LineBand, LineWindow};

@@ -2,8 +2,9 @@
 
 use super::{config, detect, rows_aligned};
 use stereopsis::features::{
-    Epipolar, FeatureConfig, FeatureConfigError, FeatureDetector, FeatureLineError, FeatureMatcher,
-    MatchConfig, MatchConfigError,
+    CornerSlot, Epipolar, FeatureConfig, FeatureConfigError, FeatureDetector, FeatureDetectorState,
+    FeatureDetectorView, FeatureLineError, FeatureMatcher, FeatureMatcherView, MatchConfig, MatchConfigError,
+    MatchSlot,
 };
 use stereopsis_host::scene::pattern::Pattern;
 
@@ -103,4 +104,45 @@ fn a_search_that_makes_no_sense() {
     let mut matches = heapless::Vec::<_, 3>::new();
     let refused = FeatureMatcher::<4>::new().run(&all[..2], &all[..5], &every, matches.as_mut_view());
     assert_eq!(refused, Err(MatchConfigError::TooMany { needed: 5 }));
+}
+
+#[test]
+fn vectors_serve_as_memory_and_short_ones_are_named() {
+    let image = Pattern::Noise.pair(120, 90, 1).0;
+    let config = config(&image);
+    let (features, counts) = detect(&config, &image);
+    let mut state = FeatureDetectorState::new();
+    let mut lines = vec![7; 120 * FeatureDetectorView::LINE_BYTES];
+    let mut slots = vec![CornerSlot::EMPTY; 2 * config.slots()];
+    let mut list = heapless::Vec::<_, 400>::new();
+    FeatureDetectorView::new(&mut state, &mut lines, &mut slots)
+        .and_then(|mut view| view.start(&config))
+        .expect("as long as it takes");
+    for line in image.as_raw().chunks_exact(120) {
+        // A view made anew goes on where the last one was.
+        let mut view = FeatureDetectorView::new(&mut state, &mut lines, &mut slots).expect("as before");
+        view.push(line, list.as_mut_view()).expect("a line that is due");
+    }
+    assert_eq!((&list[..], state.counts()), (&features[..], counts));
+    // Both for a frame under way and for one that begins.
+    for mut state in [state, FeatureDetectorState::new()] {
+        let mut refused = |pixels: usize, slots: &mut [CornerSlot]| {
+            let lines = &mut lines[..pixels * FeatureDetectorView::LINE_BYTES];
+            FeatureDetectorView::new(&mut state, lines, slots).and_then(|mut view| view.start(&config)).err()
+        };
+        assert_eq!(refused(119, &mut slots), Some(FeatureConfigError::Width { most: 119 }));
+        let needed = config.slots();
+        let short = &mut slots[..2 * needed - 1];
+        assert_eq!(refused(120, short), Some(FeatureConfigError::Slots { needed }));
+    }
+    let search = MatchConfig::new();
+    let run = |slots: &mut [MatchSlot]| {
+        let mut matches = heapless::Vec::<_, 400>::new();
+        let dropped = FeatureMatcherView::new(slots).run(&list, &list, &search, matches.as_mut_view());
+        (dropped, matches.len())
+    };
+    let mut slots = vec![MatchSlot::EMPTY; list.len()];
+    assert_eq!(run(&mut slots), (Ok(0), list.len()));
+    let needed = list.len();
+    assert_eq!(run(&mut slots[1..]), (Err(MatchConfigError::TooMany { needed }), 0));
 }

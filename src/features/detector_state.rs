@@ -1,0 +1,148 @@
+//! How far a feature detector is with a frame, and what becomes of a row's corners: found, described, given out.
+
+use super::grid::{self, CornerSlot};
+use super::pattern::PATCH_RADIUS;
+use super::{Corner, Descriptor, Feature, FeatureConfig, Orientation, Patch, PatchOrientation, refine};
+use core::num::NonZero;
+use heapless::VecView;
+
+/// Lines that the smoothing of a row waits for.
+pub(super) const SMOOTHING: usize = 2;
+/// Lines that a row of scores waits for.
+pub(super) const CIRCLE: usize = 3;
+/// Lines that a row of corners waits for: the scores of the row below.
+pub(super) const NEIGHBOURS: usize = CIRCLE + 1;
+/// Lines that a row of features waits for: the patch.
+pub(super) const MARGIN: usize = FeatureConfig::MARGIN as usize;
+const _: () = assert!(MARGIN == PATCH_RADIUS as usize + SMOOTHING);
+/// Corners and the patches they wait for lie in two rows of cells at most.
+const _: () = assert!(FeatureConfig::LEAST_CELL as usize > MARGIN - NEIGHBOURS);
+
+/// What became of a frame's corners.
+#[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FeatureCounts {
+    /// Corners that were found.
+    pub corners: u32,
+    /// Number of corners dropped because stronger ones of their grid cell took its slots.
+    pub crowded_out: u32,
+    /// Number of corners dropped because the caller's list was full.
+    pub dropped: u32,
+}
+
+/// How far a [`FeatureDetector`](super::FeatureDetector) is with a frame.
+#[derive(Debug)]
+pub struct FeatureDetectorState {
+    pub(super) config: FeatureConfig,
+    /// Rows that came, of those of the configuration.
+    pub(super) taken: u16,
+    pub(super) counts: FeatureCounts,
+}
+
+impl FeatureDetectorState {
+    /// Of a detector that waits for [`FeatureDetectorView::start`](super::FeatureDetectorView::start). All zeros.
+    pub const fn new() -> Self {
+        let counts = FeatureCounts { corners: 0, crowded_out: 0, dropped: 0 };
+        Self { config: FeatureConfig::NONE, taken: 0, counts }
+    }
+
+    /// What became of the corners, so far.
+    pub fn counts(&self) -> FeatureCounts {
+        self.counts
+    }
+
+    /// The side of a cell, px, and how many corners are kept in it. Neither is 0, and their type says so: it
+    /// leaves no panic where they divide, however little the compiler does.
+    fn cell(&self) -> (NonZero<usize>, usize) {
+        let least = |number: u16| NonZero::new(usize::from(number)).unwrap_or(NonZero::<usize>::MIN);
+        (least(self.config.cell_px), least(self.config.per_cell).get())
+    }
+
+    /// The corners of a row into their cells: pixels that score more than the neighbours that come before
+    /// them, and no less than those that come after.
+    pub(super) fn find(
+        &mut self,
+        row: usize,
+        [above, here, below]: [&[u8]; 3],
+        cells: &mut [&mut [CornerSlot]; 2],
+    ) {
+        let FeatureConfig { width, height, .. } = self.config;
+        let (width, height) = (usize::from(width), usize::from(height));
+        let (cell_px, per_cell) = self.cell();
+        if row < MARGIN || row + MARGIN >= height || width <= 2 * MARGIN {
+            return;
+        }
+        let Some(cells) = cells.get_mut(row / cell_px % 2) else { return };
+        let triples = above.windows(3).zip(here.windows(3)).zip(below.windows(3)).enumerate();
+        for (left, ((above, here), below)) in triples.skip(MARGIN - 1).take(width - 2 * MARGIN) {
+            let (&[a, b, c], &[d, score, e], &[f, g, h]) = (above, here, below) else { continue };
+            if score == 0 || score <= a.max(b).max(c).max(d) || score < e.max(f).max(g).max(h) {
+                continue;
+            }
+            let column = left + 1;
+            let corner = Corner { column: column as u16, row: row as u16, score, ..Corner::NONE };
+            let first = column / cell_px * per_cell;
+            self.counts.corners += 1;
+            if let Some(cell) = cells.get_mut(first..first + per_cell) {
+                self.counts.crowded_out += u32::from(grid::insert(cell, corner));
+            }
+        }
+    }
+
+    /// Where a row's corners are, to a fraction of a pixel, and what they look like.
+    pub(super) fn describe(
+        &self,
+        row: usize,
+        rows: &[&[u8]; Patch::SIDE],
+        cells: &mut [&mut [CornerSlot]; 2],
+    ) {
+        let (cell_px, _) = self.cell();
+        let Some(cells) = cells.get_mut(row / cell_px % 2) else { return };
+        let waiting =
+            cells.iter_mut().filter(|slot| slot.corner.score > 0 && usize::from(slot.corner.row) == row);
+        for slot in waiting {
+            let Some(patch) = Patch::cut(rows, slot.corner.column.into()) else { continue };
+            let turn = match self.config.orientation {
+                Orientation::Upright => PatchOrientation::NONE,
+                Orientation::Centroid => patch.direction(),
+            };
+            [slot.corner.right, slot.corner.down] = refine(&patch);
+            slot.descriptor = Descriptor::of(&patch, turn);
+        }
+    }
+
+    /// Gives out the rows of cells that are done with the line `newest`.
+    pub(super) fn emit(
+        &mut self,
+        newest: usize,
+        cells: &mut [&mut [CornerSlot]; 2],
+        out: &mut VecView<Feature>,
+    ) {
+        let FeatureConfig { height, level, .. } = self.config;
+        let (cell_px, per_cell) = self.cell();
+        let is_last = newest + 1 == usize::from(height);
+        // Rows of cells whose last row is described.
+        let done = (newest + 1).saturating_sub(MARGIN) / cell_px;
+        let begins = (newest + 1).saturating_sub(MARGIN).is_multiple_of(cell_px.get());
+        let one = (begins && done > 0).then(|| done - 1);
+        // The last row of cells may be cut off.
+        let rest = is_last.then_some(done);
+        for row in one.into_iter().chain(rest) {
+            let Some(mut waiting) = cells.get_mut(row % 2).map(|cells| &mut **cells) else { continue };
+            while let Some((cell, others)) = waiting.split_at_mut_checked(per_cell) {
+                waiting = others;
+                while let Some(slot) = grid::take_strongest(cell) {
+                    let feature = Feature::new(&slot.corner, level, slot.descriptor);
+                    self.counts.dropped += u32::from(out.push(feature).is_err());
+                }
+            }
+        }
+    }
+}
+
+impl Default for FeatureDetectorState {
+    fn default() -> Self {
+        Self::new()
+    }
+}

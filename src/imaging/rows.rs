@@ -1,0 +1,31 @@
+//! Rows of a picture that are kept for a while, in rings in borrowed memory.
+
+/// The last `N` rows of a picture, `width` samples each: row `y` stands in slot `y mod N`.
+pub(crate) struct RowRing<'a, T, const N: usize> {
+    slots: &'a mut [T],
+    width: usize,
+}
+
+impl<'a, T, const N: usize> RowRing<'a, T, N> {
+    /// A ring in the first `N * width` samples of a memory, and the rest of the memory. Where it is too short
+    /// all rows are empty.
+    pub fn split(memory: &'a mut [T], width: usize) -> (Self, &'a mut [T]) {
+        let (slots, rest) = memory.split_at_mut_checked(N * width).unwrap_or_default();
+        (Self { slots, width }, rest)
+    }
+
+    /// Row `y`, to be written.
+    pub fn row_mut(&mut self, y: usize) -> &mut [T] {
+        let begin = y % N * self.width;
+        self.slots.get_mut(begin..begin + self.width).unwrap_or_default()
+    }
+
+    /// The `M` rows around `centre`, `M` odd. Rows above the picture are row 0, and rows below `newest` are
+    /// that one. The ring must still hold them.
+    pub fn around<const M: usize>(&self, centre: usize, newest: usize) -> [&[T]; M] {
+        core::array::from_fn(|i| {
+            let begin = (centre + i).saturating_sub(M / 2).min(newest) % N * self.width;
+            self.slots.get(begin..begin + self.width).unwrap_or_default()
+        })
+    }
+}

@@ -16,8 +16,8 @@
 //! A stack of five frames, of which the third is the sharpest:
 //!
 //! ```
-//! use stereopsis::focus::{Breathing, FocusCell, FocusConfig, FocusMap};
-//! let mut map = FocusMap::<16, 2, _>::new([FocusCell::EMPTY; 4]);
+//! use stereopsis::focus::{Breathing, FocusConfig, FocusMap};
+//! let mut map = FocusMap::<16, 2, 4>::new();
 //! map.start(&FocusConfig::tiles(16, 16))?;
 //! for contrast in [2, 10, 40, 10, 2] {
 //!     map.begin_frame(Breathing::NONE)?;
@@ -61,6 +61,10 @@ mod micro_lens;
 
 mod peak;
 
+mod map_state;
+
+mod map_view;
+
 mod map;
 
 mod median;
@@ -89,6 +93,8 @@ pub use error::LensError;
 pub use focus_measures::{binomial, laplacian, modified_laplacian, tenengrad};
 pub use lens::ThinLens;
 pub use map::FocusMap;
+pub use map_state::FocusMapState;
+pub use map_view::FocusMapView;
 pub use median::median_row;
 pub use micro_lens::MicroLens;
 pub use moving_least_squares::plane_row;

@@ -3,9 +3,10 @@
 //! * [`stack`]: the frames of a folder. [`positions`]: where the lens stood in each.
 //! * [`scene`]: a scene of known depth behind a simulated lens, which renders such frames.
 //! * [`run`](mod@run): frames through the core's map, with the picture that is sharp all over.
-//! * [`breathing`]: whether frames grow as the lens says.
+//! * [`memory`]: the vectors that the map works in. [`breathing`]: whether frames grow as the lens says.
 
 pub mod breathing;
+pub mod memory;
 pub mod positions;
 pub mod run;
 pub mod scene;

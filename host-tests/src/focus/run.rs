@@ -1,14 +1,13 @@
 //! A focus stack through the core's map: where each pixel is in focus, how sure that is, and a picture that
 //! is sharp all over.
 
+use super::memory::MapMemory;
 use super::stack::{Frame, StackError};
 use image::RgbImage;
 use stereopsis::focus::{
-    Breathing, FocusCell, FocusConfig, FocusConfigError, FocusLineError, FocusMap, FocusPeak, FocusScale,
-    NoFocus, median_row, plane_row,
+    Breathing, FocusConfig, FocusConfigError, FocusLineError, FocusPeak, FocusScale, NoFocus, median_row,
+    plane_row,
 };
-
-const MOST: usize = crate::limits::IMAGE_SIDE as usize;
 
 /// What a stack tells, a value for each cell, row by row.
 #[derive(Clone, Debug)]
@@ -50,7 +49,8 @@ pub fn run(
 ) -> Result<FocusResult, FocusError> {
     let (columns, rows, side) = (config.columns(), config.rows(), usize::from(config.cell_px));
     let (width, height) = (usize::from(config.width), usize::from(config.height));
-    let mut map = Box::new(FocusMap::<MOST, MOST, _>::new(vec![FocusCell::EMPTY; columns * rows]));
+    let mut memory = MapMemory::new(config);
+    let mut map = memory.view()?;
     map.start(config)?;
     let mut picture = RgbImage::new(config.width.into(), config.height.into());
     for (index, frame) in frames.into_iter().enumerate() {

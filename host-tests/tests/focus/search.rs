@@ -1,6 +1,6 @@
 //! The search for the sharpest position, with ends and motors of any kind; and cells that there are not.
 
-use stereopsis::focus::{FocusCell, FocusConfig, FocusMap, FocusSearch, FocusSearchStep, NoFocus};
+use stereopsis::focus::{FocusConfig, FocusMap, FocusSearch, FocusSearchStep, NoFocus};
 use stereopsis_host::scene::Random;
 
 #[test]
@@ -57,7 +57,7 @@ fn steps_are_in_the_range() {
 
 #[test]
 fn there_is_no_cell_outside_of_the_picture() {
-    let mut map = FocusMap::<32, 8, _>::new([FocusCell::EMPTY; 64]);
+    let mut map = FocusMap::<32, 8, 64>::new();
     let none = Err(NoFocus::TooFewFrames { needed: 3 });
     map.start(&FocusConfig::tiles(32, 32)).expect("there is room");
     for far in [8, usize::MAX / 8 + 1, usize::MAX - 1, usize::MAX] {

@@ -3,9 +3,11 @@
 use image::{GrayImage, Luma};
 use proptest::prelude::*;
 use stereopsis::focus::{
-    Breathing, FocusCell, FocusConfig, FocusConfigError, FocusLineError, FocusMap, FocusPeak, Measure,
-    NoFocus, SharpnessRows, binomial, laplacian, median_row, modified_laplacian, plane_row, tenengrad,
+    Breathing, FocusCell, FocusConfig, FocusConfigError, FocusLineError, FocusMap, FocusMapState,
+    FocusMapView, FocusPeak, Measure, NoFocus, SharpnessRows, binomial, laplacian, median_row,
+    modified_laplacian, plane_row, tenengrad,
 };
+use stereopsis_host::focus::memory::MapMemory;
 use stereopsis_host::scene::Random;
 use stereopsis_host::twin::focus as twin;
 
@@ -34,7 +36,8 @@ type Peaks = Vec<Result<FocusPeak, NoFocus>>;
 
 /// The core's peaks of a stack, and which cells each frame was told to be sharper in.
 fn map(config: &FocusConfig, frames: &[GrayImage], scales: &[f32]) -> (Peaks, Vec<Vec<bool>>) {
-    let mut map = FocusMap::<40, 40, _>::new(vec![FocusCell::EMPTY; config.cells()]);
+    let mut memory = MapMemory::new(config);
+    let mut map = memory.view().expect("of its size");
     map.start(config).expect("within the capacity");
     let mut sharper = Vec::new();
     for (frame, &scale) in frames.iter().zip(scales) {
@@ -163,8 +166,36 @@ fn the_largest_sums_do_not_overflow() {
 }
 
 #[test]
+fn memory_that_is_too_short_is_named() {
+    let config = FocusConfig::tiles(16, 16);
+    let (columns, cells) = (config.columns(), config.cells());
+    let refused = |width: usize, columns: usize, cells: usize, started: bool| {
+        let mut state = FocusMapState::new();
+        let mut whole = (vec![0; 48], vec![0; 80], vec![0; 17 * columns.max(2)], vec![false; columns.max(2)]);
+        let mut all = vec![FocusCell::EMPTY; 4];
+        let (lines, rows, sums, sharper) = (&mut whole.0, &mut whole.1, &mut whole.2, &mut whole.3);
+        if started {
+            let mut view =
+                FocusMapView::new(&mut state, lines, rows, sums, sharper, &mut all).expect("any size");
+            view.start(&config).expect("it fits");
+        }
+        let (lines, rows) = (&mut lines[..3 * width], &mut rows[..5 * width]);
+        let (sums, sharper) = (&mut sums[..17 * columns], &mut sharper[..columns]);
+        let view = FocusMapView::new(&mut state, lines, rows, sums, sharper, &mut all[..cells]);
+        view.and_then(|mut view| view.start(&config)).err()
+    };
+    assert_eq!((columns, cells), (2, 4));
+    for started in [false, true] {
+        assert_eq!(refused(16, 2, 4, started), None);
+        assert_eq!(refused(15, 2, 4, started), Some(FocusConfigError::Width { most: 15 }));
+        assert_eq!(refused(16, 1, 4, started), Some(FocusConfigError::Columns { needed: 2 }));
+        assert_eq!(refused(16, 2, 3, started), Some(FocusConfigError::Cells { needed: 4 }));
+    }
+}
+
+#[test]
 fn what_does_not_fit_is_refused() {
-    let mut map = FocusMap::<16, 4, _>::new([FocusCell::EMPTY; 8]);
+    let mut map = FocusMap::<16, 4, 8>::new();
     assert_eq!(map.begin_frame(Breathing::NONE), Err(FocusLineError::NoLineDue));
     let config = FocusConfig { width: 16, height: 16, cell_px: 4, radius: 0, exposure_varies: true };
     for (config, error) in [

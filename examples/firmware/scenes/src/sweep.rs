@@ -3,7 +3,7 @@
 //! It knows no hardware: the same runs on the host, which compares. In a product the lines are those of a
 //! camera, and a `stereopsis::focus::LensActuator` moves the lens between two frames.
 
-use stereopsis::focus::{Breathing, FocusCell, FocusConfig, FocusConfigError, FocusLineError, FocusMap};
+use stereopsis::focus::{Breathing, FocusConfig, FocusConfigError, FocusLineError, FocusMap};
 
 /// Pixels in a line.
 pub const WIDTH: usize = 160;
@@ -15,7 +15,7 @@ pub const FRAMES: u32 = 9;
 pub const CONFIG: FocusConfig = FocusConfig::tiles(WIDTH as u16, HEIGHT as u16);
 
 /// The map with room for all tiles: the state that stays from frame to frame.
-pub type Map = FocusMap<WIDTH, { CONFIG.columns() }, [FocusCell; CONFIG.cells()]>;
+pub type Map = FocusMap<WIDTH, { CONFIG.columns() }, { CONFIG.cells() }>;
 
 /// The lens moves, and the map sees what the camera sees.
 pub struct Sweep {
@@ -36,7 +36,7 @@ pub enum Broken {
 impl Sweep {
     /// The lens has not moved yet.
     pub const fn new() -> Self {
-        Self { map: Map::new([FocusCell::EMPTY; CONFIG.cells()]), line: [0; WIDTH] }
+        Self { map: Map::new(), line: [0; WIDTH] }
     }
 
     /// All frames through the map, whose ticks by the clock are counted, the camera's not; how many.

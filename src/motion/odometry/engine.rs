@@ -3,95 +3,211 @@
 use super::config::{OdometryConfig, OdometryRig};
 use super::frame::{Frame, Moment, OdometryError};
 use super::initialization::initialize;
+use super::list::List;
 use super::motion_model::MotionModel;
 use super::motion_test::{MotionTest, test_motion};
+use super::observed::{ObservedPoint, observed_points};
 use super::point_map::PointMap;
+use super::pose_estimate::PointMatch;
 use super::step::{State, Step};
+use super::track::Track;
 use super::tracking::Tracker;
 use crate::geometry::linear::covariance6;
-use crate::geometry::{Real, camera::Pose};
+use crate::geometry::{Real, absolute::Landmark, camera::Pose, two_view::Correspondence};
 use heapless::Vec;
-use nalgebra::Matrix6;
+use nalgebra::{Matrix6, Point2, Point3};
 
-/// Follows up to `N` points from frame to frame, of one camera or of a rectified pair.
-///
-/// [`StereoOdometry`](super::StereoOdometry) and [`MonocularOdometry`](super::MonocularOdometry) say in their
-/// types what the unit of length is.
+/// How far an odometry is with its frames.
 #[derive(Debug)]
-pub struct Odometry<T: Real, const N: usize> {
+pub struct OdometryState<T: Real> {
+    progress: Progress<T>,
+    /// Points that the last frame sees.
+    found: usize,
+}
+
+#[derive(Debug)]
+struct Progress<T: Real> {
     /// The rig, when there is one. An `Option` of it would not be all zeros.
     rig: Vec<OdometryRig<T>, 1>,
     config: OdometryConfig,
     size: (usize, usize),
     frames: u32,
-    pub(super) map: PointMap<T, N>,
-    pub(super) tracker: Tracker<T, N>,
     motion: MotionModel<T>,
 }
 
-impl<T: Real, const N: usize> Odometry<T, N> {
-    /// An odometry that waits for [`Self::start`].
-    pub const fn new() -> Self {
-        const { assert!(N < u16::MAX as usize && N >= 16, "points are numbered in 16 bits") };
+/// Follows points from frame to frame, of one camera or of a rectified pair, in borrowed memory: a
+/// [`StereoOdometry`](super::StereoOdometry) or [`MonocularOdometry`](super::MonocularOdometry) of any size.
+#[derive(Debug)]
+pub struct OdometryView<'a, T: Real> {
+    progress: &'a mut Progress<T>,
+    map: PointMap<'a, T>,
+    tracker: Tracker<'a, T>,
+    /// Two for each point, which one camera takes for its first two views.
+    correspondences: &'a mut [Correspondence<T>],
+}
+
+/// The memory of an odometry that follows up to `N` points.
+#[derive(Debug)]
+pub(super) struct OdometryMemory<T: Real, const N: usize> {
+    state: OdometryState<T>,
+    tracks: [Track<T>; N],
+    matches: [PointMatch<T>; N],
+    landmarks: [Landmark<T>; N],
+    inliers: [bool; N],
+    partners: [(u16, u16); N],
+}
+
+impl<T: Real, const N: usize> OdometryMemory<T, N> {
+    /// Memory that is not in use. All zeros.
+    pub const EMPTY: Self = {
+        assert!(N <= MOST && N >= FEWEST, "points are numbered in 16 bits");
+        let (world, pixel) = (Point3::new(T::ZERO, T::ZERO, T::ZERO), Point2::new(T::ZERO, T::ZERO));
         Self {
+            state: OdometryState::new(),
+            tracks: [Track::EMPTY; N],
+            matches: [PointMatch::EMPTY; N],
+            landmarks: [Landmark { world, pixel }; N],
+            inliers: [false; N],
+            partners: [(0, 0); N],
+        }
+    };
+
+    /// The odometry without its capacity.
+    pub fn view<'a>(&'a mut self, correspondences: &'a mut [Correspondence<T>]) -> OdometryView<'a, T> {
+        let Self { state, tracks, matches, landmarks, inliers, partners } = self;
+        let OdometryState { progress, found } = state;
+        let matches = List { places: matches, len: found };
+        let tracker = Tracker { matches, landmarks, inliers, partners };
+        OdometryView { progress, map: PointMap { tracks }, tracker, correspondences }
+    }
+
+    /// What the last frame saw.
+    pub fn observed_points(&self) -> impl Iterator<Item = ObservedPoint<T>> {
+        let matches = self.matches.get(..self.state.found).unwrap_or_default();
+        observed_points(self.state.progress.rig.first(), &self.tracks, matches)
+    }
+}
+
+impl<T: Real> OdometryState<T> {
+    /// Of an odometry that waits for [`OdometryView::start`].
+    pub const fn new() -> Self {
+        let progress = Progress {
             rig: Vec::new(),
             config: OdometryConfig::NONE,
             size: (0, 0),
             frames: 0,
-            map: PointMap::new(),
-            tracker: Tracker::new(),
             motion: MotionModel::new(),
+        };
+        Self { progress, found: 0 }
+    }
+}
+
+impl<T: Real> Default for OdometryState<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The fewest and the most points that can be followed.
+const FEWEST: usize = 16;
+const MOST: usize = u16::MAX as usize - 1;
+
+impl<'a, T: Real> OdometryView<'a, T> {
+    /// An odometry in the caller's memory, which follows as many points as there are tracks, 16 to 65534.
+    /// Everything else is as long, `correspondences` twice as long, or empty for a pair. It does not matter
+    /// what is in them before [`Self::start`]; a view of a run under way needs what the last one left there.
+    pub fn new(
+        state: &'a mut OdometryState<T>,
+        tracks: &'a mut [Track<T>],
+        matches: &'a mut [PointMatch<T>],
+        landmarks: &'a mut [Landmark<T>],
+        inliers: &'a mut [bool],
+        partners: &'a mut [(u16, u16)],
+        correspondences: &'a mut [Correspondence<T>],
+    ) -> Result<Self, OdometryError> {
+        let needed = tracks.len().clamp(FEWEST, MOST);
+        let lengths = [tracks.len(), matches.len(), landmarks.len(), inliers.len(), partners.len()];
+        if lengths.iter().any(|&len| len != needed) {
+            return Err(OdometryError::Memory { needed });
+        }
+        let OdometryState { progress, found } = state;
+        let matches = List { places: matches, len: found };
+        let tracker = Tracker { matches, landmarks, inliers, partners };
+        let view = Self { progress, map: PointMap { tracks }, tracker, correspondences };
+        match view.progress.rig.first() {
+            Some(rig) => view.check(rig).map(|()| view),
+            None => Ok(view),
         }
     }
 
+    /// Refuses a single camera without room for its first two views.
+    fn check(&self, rig: &OdometryRig<T>) -> Result<(), OdometryError> {
+        let needed = 2 * self.map.tracks.len();
+        let is_enough = rig.right.is_some() || self.correspondences.len() >= needed;
+        if is_enough { Ok(()) } else { Err(OdometryError::Memory { needed }) }
+    }
+
     /// Begins with a rig: what was known is forgotten.
-    pub fn start(&mut self, rig: OdometryRig<T>, config: OdometryConfig) {
-        self.rig.clear();
-        let _ = self.rig.push(rig);
-        self.config = config;
-        self.frames = 0;
+    pub fn start(&mut self, rig: OdometryRig<T>, config: OdometryConfig) -> Result<(), OdometryError> {
+        self.check(&rig)?;
+        self.begin(rig, config);
+        Ok(())
+    }
+
+    /// Begins with a rig that the memory is enough for.
+    pub(super) fn begin(&mut self, rig: OdometryRig<T>, config: OdometryConfig) {
+        self.progress.rig.clear();
+        let _ = self.progress.rig.push(rig);
+        self.progress.config = config;
+        self.progress.frames = 0;
         self.forget();
     }
 
     /// Forgets all points and the motion.
     fn forget(&mut self) {
         self.map.clear();
-        self.motion.reset(self.rig.first().is_some_and(|rig| rig.right.is_some()));
+        self.progress.motion.reset(self.progress.rig.first().is_some_and(|rig| rig.right.is_some()));
     }
 
     /// The next frame.
     ///
-    /// The work is bounded: N points times the features that are looked at, [`OdometryConfig::most_samples`]
+    /// The work is bounded: the points times the features that are looked at, [`OdometryConfig::most_samples`]
     /// samples, some twenty passes over the points, ten steps of alignment for each in each picture, and
     /// one search along the row for each new one.
     pub fn step(&mut self, frame: &Frame<'_>) -> Result<Step<T>, OdometryError> {
-        let rig = *self.rig.first().ok_or(OdometryError::NotStarted)?;
+        let rig = *self.progress.rig.first().ok_or(OdometryError::NotStarted)?;
         self.check_size(&rig, frame)?;
-        self.frames = self.frames.saturating_add(1);
-        let config = self.config;
-        let now = Moment { rig: &rig, config: &config, frame, number: self.frames };
-        if self.frames == 1 {
+        self.progress.frames = self.progress.frames.saturating_add(1);
+        let config = self.progress.config;
+        let now = Moment { rig: &rig, config: &config, frame, number: self.progress.frames };
+        if self.progress.frames == 1 {
             return Ok(self.first(&now));
         }
-        if !self.motion.has_unit {
-            return Ok(initialize(&now, &mut self.map, &mut self.tracker, &mut self.motion));
+        if !self.progress.motion.has_unit {
+            return Ok(initialize(
+                &now,
+                &mut self.map,
+                &mut self.tracker,
+                &mut self.progress.motion,
+                self.correspondences,
+            ));
         }
-        let start = self.tracker.track(&now, &mut self.map, &self.motion);
-        Ok(match test_motion(&self.tracker, &rig, &self.motion, start) {
+        let start = self.tracker.track(&now, &mut self.map, &self.progress.motion);
+        Ok(match test_motion(&self.tracker, &rig, &self.progress.motion, start) {
             MotionTest::Lost => self.lose(&now),
             MotionTest::Known(solved, state) => {
                 let (points, found) = (self.map.len(), self.tracker.matches.len());
                 let residual = solved.residual(6);
                 // The noise may be more than was configured, and is then all over.
                 let covariance = covariance6(&solved.information) * (residual * residual).max(T::ONE);
-                let motion = self.motion.report(&solved.pose, state);
+                let motion = self.progress.motion.report(&solved.pose, state);
                 if state == State::Stationary {
                     // The points stay where they are: a motion too small to be seen adds up until it is seen.
                     self.map.used_mut().for_each(|track| track.now = None);
-                    self.motion.velocity = Some(Pose::identity());
+                    self.progress.motion.velocity = Some(Pose::identity());
                 } else {
                     self.map.update(&now, &self.tracker.matches, &solved.pose, &covariance);
-                    self.motion.rebase(&solved.pose, motion);
+                    self.progress.motion.rebase(&solved.pose, motion);
                     self.map.add_new(&now);
                 }
                 Step { motion, covariance, state, points, found, inliers: solved.kept, residual }
@@ -107,10 +223,10 @@ impl<T: Real, const N: usize> Odometry<T, N> {
             Some(right) if (right.width(), right.height()) != size => return Err(OdometryError::Size),
             _ => {}
         }
-        if self.frames > 0 && self.size != size {
+        if self.progress.frames > 0 && self.progress.size != size {
             return Err(OdometryError::Size);
         }
-        self.size = size;
+        self.progress.size = size;
         Ok(())
     }
 
@@ -124,7 +240,7 @@ impl<T: Real, const N: usize> Odometry<T, N> {
     /// A frame whose pose is not known; after a few of them all begins anew.
     fn lose(&mut self, now: &Moment<'_, T>) -> Step<T> {
         let mut state = State::Lost;
-        if self.motion.lose() {
+        if self.progress.motion.lose() {
             self.forget();
             self.map.add_new(now);
             state = State::Restarted;
@@ -132,19 +248,8 @@ impl<T: Real, const N: usize> Odometry<T, N> {
         Step { points: self.map.len(), found: self.tracker.matches.len(), ..Step::none(state) }
     }
 
-    /// The rig, if there is one.
-    pub(super) fn rig(&self) -> Option<&OdometryRig<T>> {
-        self.rig.first()
-    }
-
-    /// How many points are followed.
-    pub fn points(&self) -> usize {
-        self.map.len()
-    }
-}
-
-impl<T: Real, const N: usize> Default for Odometry<T, N> {
-    fn default() -> Self {
-        Self::new()
+    /// The points that the last frame saw and that agree with its pose, then its new ones.
+    pub fn observed_points(&self) -> impl Iterator<Item = ObservedPoint<T>> {
+        observed_points(self.progress.rig.first(), self.map.tracks, &self.tracker.matches)
     }
 }

@@ -44,15 +44,21 @@ pub enum OdometryError {
     NoRight,
     /// The picture's size is not that of the frames before, or the right one's is another.
     Size,
+    /// The caller's memory is not as long in all its parts as it must be.
+    Memory {
+        /// The length that would be right.
+        needed: usize,
+    },
 }
 
 impl core::fmt::Display for OdometryError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NotStarted => "the odometry was not started",
-            Self::NoRight => "the rig is a pair and the frame has no right picture",
-            Self::Size => "the pictures differ in size",
-        })
+        match self {
+            Self::NotStarted => f.write_str("the odometry was not started"),
+            Self::NoRight => f.write_str("the rig is a pair and the frame has no right picture"),
+            Self::Size => f.write_str("the pictures differ in size"),
+            Self::Memory { needed } => write!(f, "a part of the memory must hold {needed} items"),
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use super::config::OdometryRig;
 use super::disparity::CORRELATED;
 use super::frame::Moment;
 use super::inverse_depth::InversePoint;
+use super::list::List;
 use super::motion_model::MotionModel;
 use super::point_map::PointMap;
 use super::pose_estimate::{FEWEST, Free, PointMatch, Problem, Solved};
@@ -18,7 +19,6 @@ use crate::geometry::{
     robust::{RobustConfig, RobustError, robust_fundamental},
     two_view::{Correspondence, Essential, Homography},
 };
-use heapless::Vec;
 use nalgebra::{Matrix6, Point2};
 
 /// The threshold of the fundamental matrix, px.
@@ -36,11 +36,12 @@ const USUAL: f64 = 0.1;
 
 /// Takes a frame of one camera that has no unit of length yet: what is known of its motion, and the unit when
 /// the two views give their relative pose.
-pub(super) fn initialize<T: Real, const N: usize>(
+pub(super) fn initialize<T: Real>(
     now: &Moment<'_, T>,
-    map: &mut PointMap<T, N>,
-    tracker: &mut Tracker<T, N>,
+    map: &mut PointMap<'_, T>,
+    tracker: &mut Tracker<'_, T>,
     motion: &mut MotionModel<T>,
+    correspondences: &mut [Correspondence<T>],
 ) -> Step<T> {
     let points = map.len();
     let sigma = now.sigma();
@@ -67,7 +68,7 @@ pub(super) fn initialize<T: Real, const N: usize>(
     } else {
         let wide = Problem { matches: &tracker.matches, baseline: T::ZERO };
         let (rig, seed) = (now.rig, now.config.seed);
-        if let Some(pose) = two_views::<T, N>(rig, &wide, &rotated.pose, seed, &mut tracker.inliers) {
+        if let Some(pose) = two_views(rig, &wide, &rotated.pose, seed, tracker.inliers, correspondences) {
             return set_unit(now, map, tracker, motion, &pose, shown);
         }
         shown
@@ -95,11 +96,7 @@ fn report_rotation<T: Real>(
 }
 
 /// Finds each recognised point by its pixels.
-fn align<T: Real, const N: usize>(
-    now: &Moment<'_, T>,
-    map: &mut PointMap<T, N>,
-    tracker: &mut Tracker<T, N>,
-) {
+fn align<T: Real>(now: &Moment<'_, T>, map: &mut PointMap<'_, T>, tracker: &mut Tracker<'_, T>) {
     let fine = now.sigma();
     tracker.matches.clear();
     for (owner, track) in (0_u16..).zip(map.tracks.iter_mut()) {
@@ -113,15 +110,15 @@ fn align<T: Real, const N: usize>(
         // A corner is three times as far off as what its pixels say.
         let sigma = if aligned.is_some() { fine } else { fine * T::of(3.0) };
         let observation = PointObservation { at, in_right: false, sigma };
-        let _ = tracker.matches.push(PointMatch { point: track.point, observation, owner });
+        tracker.matches.push(PointMatch { point: track.point, observation, owner });
     }
 }
 
 /// Makes the way to this frame the unit of length.
-fn set_unit<T: Real, const N: usize>(
+fn set_unit<T: Real>(
     now: &Moment<'_, T>,
-    map: &mut PointMap<T, N>,
-    tracker: &mut Tracker<T, N>,
+    map: &mut PointMap<'_, T>,
+    tracker: &mut Tracker<'_, T>,
     motion: &mut MotionModel<T>,
     pose: &Pose<T>,
     shown: Step<T>,
@@ -157,9 +154,9 @@ fn set_unit<T: Real, const N: usize>(
 }
 
 /// Makes this view the first one.
-fn restart<T: Real, const N: usize>(
+fn restart<T: Real>(
     now: &Moment<'_, T>,
-    map: &mut PointMap<T, N>,
+    map: &mut PointMap<'_, T>,
     motion: &mut MotionModel<T>,
     step: Step<T>,
 ) -> Step<T> {
@@ -170,21 +167,26 @@ fn restart<T: Real, const N: usize>(
     Step { points: map.len(), state, ..step }
 }
 
-/// The pose of the second view in units of the baseline, if it is sure.
-fn two_views<T: Real, const N: usize>(
+/// The pose of the second view in units of the baseline, if it is sure. There is room for two correspondences
+/// of each match: one list of all, one of the inliers.
+fn two_views<T: Real>(
     rig: &OdometryRig<T>,
     problem: &Problem<'_, T>,
     turn: &Pose<T>,
     seed: u64,
     inliers: &mut [bool],
+    correspondences: &mut [Correspondence<T>],
 ) -> Option<Pose<T>> {
     let focal = rig.focal();
     let pinhole = Camera::new(focal, focal, T::ZERO, T::ZERO).ok()?;
-    let mut seen: Vec<Correspondence<T>, N> = Vec::new();
+    let half = correspondences.len() / 2;
+    let (all, inlying) = correspondences.split_at_mut_checked(half)?;
+    let (mut all_len, mut inlying_len) = (0, 0);
+    let mut seen = List { places: all, len: &mut all_len };
     let mut off = T::ZERO;
     for point_match in problem.matches {
         let (a, b) = (point_match.point.at * focal, point_match.observation.at * focal);
-        let _ = seen.push(Correspondence::new(a.x, a.y, b.x, b.y));
+        seen.push(Correspondence::new(a.x, a.y, b.x, b.y));
         if let Some(moved) = point_match.point.moved(turn) {
             off += ((moved.at - point_match.observation.at).xy() * focal).norm().min(T::of(20.0));
         }
@@ -202,8 +204,8 @@ fn two_views<T: Real, const N: usize>(
     let essential = match found {
         Ok(found) => Essential::from_fundamental(&found.fundamental, &pinhole, &pinhole).ok()?,
         Err(RobustError::Plane) => {
-            let mut on_plane: Vec<Correspondence<T>, N> = Vec::new();
-            kept().for_each(|s| on_plane.push(s).unwrap_or(()));
+            let mut on_plane = List { places: inlying, len: &mut inlying_len };
+            kept().for_each(|s| on_plane.push(s));
             let homography = Homography::from_correspondences(&on_plane).ok()?;
             let motions = homography.recover_motions(kept(), &pinhole, &pinhole).ok()?;
             // Two motions may have all points in front: only one that is alone is sure.

@@ -29,6 +29,12 @@ pub(super) struct Moved<T: Real> {
 const LEAST_FORWARD: f64 = 0.125;
 
 impl<T: Real> InversePoint<T> {
+    /// All zeros.
+    pub const ZERO: Self = {
+        let o = T::ZERO;
+        Self { at: Vector3::new(o, o, o), covariance: Matrix3::new(o, o, o, o, o, o, o, o, o) }
+    };
+
     /// A point of unknown depth on this ray: its inverse depth is `usual`, and uncertain by as much.
     pub fn of_unknown_depth(ray: &Vector3<T>, usual: T, sigma: T) -> Self {
         let variance = sigma * sigma;

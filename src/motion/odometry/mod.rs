@@ -39,6 +39,8 @@ mod whitening;
 
 mod inverse_depth;
 
+mod list;
+
 mod track;
 
 mod disparity;
@@ -62,9 +64,11 @@ mod sliding_window;
 mod scale;
 
 pub use config::{OdometryConfig, OdometryRig, OdometryRigError};
-pub use engine::Odometry;
+pub use engine::{OdometryState, OdometryView};
 pub use frame::{Frame, OdometryError};
 pub use observed::ObservedPoint;
+pub use pose_estimate::PointMatch;
 pub use scale::{MonocularOdometry, StereoOdometry, Unscaled};
 pub use sliding_window::{Refinement, RefinementConfig};
 pub use step::{State, Step};
+pub use track::Track;

@@ -29,8 +29,8 @@ const UNKNOWN: f64 = 0.1;
 const OPEN: f64 = 100.0;
 
 /// Decides by tests of hypotheses what the matches of a frame show of the camera's motion.
-pub(super) fn test_motion<T: Real, const N: usize>(
-    tracker: &Tracker<T, N>,
+pub(super) fn test_motion<T: Real>(
+    tracker: &Tracker<'_, T>,
     rig: &OdometryRig<T>,
     motion: &MotionModel<T>,
     start: Option<Pose<T>>,

@@ -1,6 +1,7 @@
 //! Observations of the last frame, for who wants more of it than a pose.
 
-use super::engine::Odometry;
+use super::config::OdometryRig;
+use super::pose_estimate::PointMatch;
 use super::track::Track;
 use crate::geometry::Real;
 use nalgebra::{Point2, Vector3};
@@ -22,34 +23,26 @@ pub struct ObservedPoint<T: Real> {
     pub inverse: Vector3<T>,
 }
 
-impl<T: Real, const N: usize> Odometry<T, N> {
-    /// The points that the last frame saw and that agree with its pose, then its new ones.
-    pub fn observed_points(&self) -> impl Iterator<Item = ObservedPoint<T>> {
-        let (focal, baseline) = self.rig().map_or((T::ONE, T::ZERO), |rig| (rig.focal(), rig.baseline()));
-        let point = move |slot: u16, track: &Track<T>, disparity: Option<T>| {
-            let [x, y] = track.pixel.map(|x| T::of(x.into()));
-            let (name, pixel) = ((slot, track.lives), Point2::new(x, y));
-            ObservedPoint { name, pixel, disparity_px: disparity.map(|d| d * focal), inverse: track.point.at }
-        };
-        let is_seen = |track: &&Track<T>| track.used && track.missed == 0;
-        let followed = self.tracker.matches.iter().filter_map(move |point_match| {
-            let track = self
-                .map
-                .tracks
-                .get(usize::from(point_match.owner))
-                .filter(is_seen)
-                .filter(|track| track.seen > 1)?;
-            Some(point(
-                point_match.owner,
-                track,
-                point_match.observation.in_right.then_some(point_match.observation.at.z),
-            ))
-        });
-        let fresh =
-            (0_u16..).zip(&self.map.tracks).filter(move |(_, track)| is_seen(track) && track.seen == 1);
-        // Their depths are what the right picture says.
-        followed.chain(fresh.map(move |(slot, track)| {
-            point(slot, track, (baseline > T::ZERO).then(|| track.point.at.z * baseline))
-        }))
-    }
+/// The points that the last frame saw and that agree with its pose, then its new ones.
+pub(super) fn observed_points<'a, T: Real>(
+    rig: Option<&OdometryRig<T>>,
+    tracks: &'a [Track<T>],
+    matches: &'a [PointMatch<T>],
+) -> impl Iterator<Item = ObservedPoint<T>> + 'a {
+    let (focal, baseline) = rig.map_or((T::ONE, T::ZERO), |rig| (rig.focal(), rig.baseline()));
+    let point = move |slot: u16, track: &Track<T>, disparity: Option<T>| {
+        let [x, y] = track.pixel.map(|x| T::of(x.into()));
+        let (name, pixel) = ((slot, track.lives), Point2::new(x, y));
+        ObservedPoint { name, pixel, disparity_px: disparity.map(|d| d * focal), inverse: track.point.at }
+    };
+    let is_seen = |track: &&Track<T>| track.used && track.missed == 0;
+    let followed = matches.iter().filter_map(move |found| {
+        let track = tracks.get(usize::from(found.owner)).filter(is_seen).filter(|track| track.seen > 1)?;
+        Some(point(found.owner, track, found.observation.in_right.then_some(found.observation.at.z)))
+    });
+    let fresh = (0_u16..).zip(tracks).filter(move |(_, track)| is_seen(track) && track.seen == 1);
+    // Their depths are what the right picture says.
+    followed.chain(fresh.map(move |(slot, track)| {
+        point(slot, track, (baseline > T::ZERO).then(|| track.point.at.z * baseline))
+    }))
 }

@@ -21,17 +21,13 @@ const DOUBT: f64 = 1.0;
 /// Largest ratio, of the best place along a row to any other, of what a correlation lacks to 1.
 const CLEAR: f32 = 0.8;
 
-/// Up to `N` points in the frame of the camera.
+/// Points in the frame of the camera, as many as there are places.
 #[derive(Debug)]
-pub(super) struct PointMap<T: Real, const N: usize> {
-    pub tracks: [Track<T>; N],
+pub(super) struct PointMap<'a, T: Real> {
+    pub tracks: &'a mut [Track<T>],
 }
 
-impl<T: Real, const N: usize> PointMap<T, N> {
-    pub const fn new() -> Self {
-        Self { tracks: [Track::EMPTY; N] }
-    }
-
+impl<T: Real> PointMap<'_, T> {
     /// Forgets all points.
     pub fn clear(&mut self) {
         self.tracks.iter_mut().for_each(|track| track.used = false);

@@ -10,11 +10,16 @@ use nalgebra::{SMatrix, Vector3};
 
 /// A point and where the new camera sees it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct PointMatch<T: Real> {
-    pub point: InversePoint<T>,
-    pub observation: PointObservation<T>,
+pub struct PointMatch<T: Real> {
+    pub(super) point: InversePoint<T>,
+    pub(super) observation: PointObservation<T>,
     /// Whose point it is.
-    pub owner: u16,
+    pub(super) owner: u16,
+}
+
+impl<T: Real> PointMatch<T> {
+    /// Not in use. All zeros.
+    pub const EMPTY: Self = Self { point: InversePoint::ZERO, observation: PointObservation::ZERO, owner: 0 };
 }
 
 /// What of the pose is looked for.

@@ -1,22 +1,29 @@
 //! Odometry in metres, of a pair, and without a scale, of one camera.
 
 use super::config::{OdometryConfig, OdometryRig, OdometryRigError};
-use super::engine::Odometry;
+use super::engine::{OdometryMemory, OdometryView};
 use super::frame::{Frame, OdometryError};
 use super::observed::ObservedPoint;
 use super::step::Step;
 use crate::geometry::{
     Real,
     camera::{Camera, Pose, RectifiedRig},
+    two_view::Correspondence,
 };
+use nalgebra::Point2;
 
-/// A rectified pair's odometry: lengths are metres.
-#[derive(Debug, Default)]
-pub struct StereoOdometry<T: Real, const N: usize>(Odometry<T, N>);
+/// The odometry of a rectified pair, which follows up to `N` points: lengths are metres.
+#[derive(Debug)]
+pub struct StereoOdometry<T: Real, const N: usize> {
+    memory: OdometryMemory<T, N>,
+}
 
-/// One camera's odometry: lengths have no unit.
-#[derive(Debug, Default)]
-pub struct MonocularOdometry<T: Real, const N: usize>(Odometry<T, N>);
+/// The odometry of one camera, which follows up to `N` points: lengths have no unit.
+#[derive(Debug)]
+pub struct MonocularOdometry<T: Real, const N: usize> {
+    memory: OdometryMemory<T, N>,
+    correspondences: [[Correspondence<T>; 2]; N],
+}
 
 /// What has lengths whose unit is not known: as a whole it may be any times as large. Only a length from
 /// elsewhere says.
@@ -42,46 +49,70 @@ impl<T: Real> Unscaled<Step<T>> {
 }
 
 impl<T: Real, const N: usize> StereoOdometry<T, N> {
-    /// An odometry that waits for [`Self::start`].
+    /// An odometry that waits for [`Self::start`]. All zeros.
     pub const fn new() -> Self {
-        Self(Odometry::new())
+        Self { memory: OdometryMemory::EMPTY }
+    }
+
+    /// The odometry without its capacity.
+    pub fn as_mut_view(&mut self) -> OdometryView<'_, T> {
+        self.memory.view(&mut [])
     }
 
     /// Begins with a rig: what was known is forgotten.
     pub fn start(&mut self, rig: &RectifiedRig, config: OdometryConfig) -> Result<(), OdometryRigError> {
-        self.0.start(OdometryRig::stereo(rig)?, config);
+        self.as_mut_view().begin(OdometryRig::stereo(rig)?, config);
         Ok(())
     }
 
-    /// The next frame, as [`Odometry::step`].
+    /// The next frame, see [`OdometryView::step`].
     pub fn step(&mut self, frame: &Frame<'_>) -> Result<Step<T>, OdometryError> {
-        self.0.step(frame)
+        self.as_mut_view().step(frame)
     }
 
-    /// What the last frame saw, as [`Odometry::observed_points`]: metres.
+    /// What the last frame saw, see [`OdometryView::observed_points`]: metres.
     pub fn observed_points(&self) -> impl Iterator<Item = ObservedPoint<T>> {
-        self.0.observed_points()
+        self.memory.observed_points()
+    }
+}
+
+impl<T: Real, const N: usize> Default for StereoOdometry<T, N> {
+    fn default() -> Self {
+        Self::new()
     }
 }
 
 impl<T: Real, const N: usize> MonocularOdometry<T, N> {
-    /// An odometry that waits for [`Self::start`].
+    /// An odometry that waits for [`Self::start`]. All zeros.
     pub const fn new() -> Self {
-        Self(Odometry::new())
+        let zero = Point2::new(T::ZERO, T::ZERO);
+        let correspondences = [[Correspondence { first: zero, second: zero }; 2]; N];
+        Self { memory: OdometryMemory::EMPTY, correspondences }
+    }
+
+    /// The odometry without its capacity.
+    pub fn as_mut_view(&mut self) -> OdometryView<'_, T> {
+        self.memory.view(self.correspondences.as_flattened_mut())
     }
 
     /// Begins with a camera: what was known is forgotten.
     pub fn start(&mut self, camera: Camera<T>, config: OdometryConfig) {
-        self.0.start(OdometryRig::one(camera), config);
+        self.as_mut_view().begin(OdometryRig::one(camera), config);
     }
 
-    /// The next frame, as [`Odometry::step`].
+    /// The next frame, see [`OdometryView::step`].
     pub fn step(&mut self, frame: &Frame<'_>) -> Result<Unscaled<Step<T>>, OdometryError> {
-        self.0.step(frame).map(Unscaled)
+        self.as_mut_view().step(frame).map(Unscaled)
     }
 
-    /// What the last frame saw, as [`Odometry::observed_points`]: first baselines.
+    /// What the last frame saw, see [`OdometryView::observed_points`]: first baselines.
     pub fn observed_points(&self) -> impl Iterator<Item = ObservedPoint<T>> {
-        self.0.observed_points()
+        self.memory.observed_points()
+    }
+}
+
+impl<T: Real, const N: usize> Default for MonocularOdometry<T, N> {
+    fn default() -> Self {
+        Self::new()
     }
 }

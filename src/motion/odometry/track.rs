@@ -3,35 +3,34 @@
 use super::inverse_depth::InversePoint;
 use crate::features::{Descriptor, Template};
 use crate::geometry::Real;
-use nalgebra::{Matrix3, Vector3};
 
 /// A point with what it looks like.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Track<T: Real> {
-    pub point: InversePoint<T>,
+pub struct Track<T: Real> {
+    pub(super) point: InversePoint<T>,
     /// The pixels, as they were when the template was cut.
-    pub template: Template,
+    pub(super) template: Template,
     /// Carries ways from the place in the template's picture into ways in the last picture.
-    pub warp: [[f32; 2]; 2],
-    pub descriptor: Descriptor,
+    pub(super) warp: [[f32; 2]; 2],
+    pub(super) descriptor: Descriptor,
     /// Where it was seen last, px.
-    pub pixel: [f32; 2],
+    pub(super) pixel: [f32; 2],
     /// Where it is seen in this frame, if it is, and the correlation of the pixels; refilled with each
     /// frame.
-    pub now: Option<[f32; 2]>,
+    pub(super) now: Option<[f32; 2]>,
     /// How alike its pixels were.
-    pub correlation: f32,
+    pub(super) correlation: f32,
     /// The descriptor of the feature that it was recognised by in this frame.
-    pub fresh: Descriptor,
+    pub(super) fresh: Descriptor,
     /// Frames in which it was found.
-    pub seen: u16,
+    pub(super) seen: u16,
     /// Frames since it was found.
-    pub missed: u8,
+    pub(super) missed: u8,
     /// Frames in which it disagreed with the others.
-    pub wrong: u8,
-    pub used: bool,
+    pub(super) wrong: u8,
+    pub(super) used: bool,
     /// How many points had this place before.
-    pub lives: u16,
+    pub(super) lives: u16,
 }
 
 /// The warp of a patch that is neither turned nor scaled.
@@ -44,31 +43,25 @@ pub(super) fn product(a: &[[f32; 2]; 2], b: &[[f32; 2]; 2]) -> [[f32; 2]; 2] {
 }
 
 impl<T: Real> Track<T> {
-    /// A place for one. All zeros: an odometry in a `static` takes RAM and no flash.
-    pub const EMPTY: Self = {
-        let o = T::ZERO;
-        Self {
-            point: InversePoint {
-                at: Vector3::new(o, o, o),
-                covariance: Matrix3::new(o, o, o, o, o, o, o, o, o),
-            },
-            template: Template::NONE,
-            warp: [[0.0; 2]; 2],
-            descriptor: Descriptor::NONE,
-            pixel: [0.0; 2],
-            now: None,
-            correlation: 0.0,
-            fresh: Descriptor::NONE,
-            seen: 0,
-            missed: 0,
-            wrong: 0,
-            used: false,
-            lives: 0,
-        }
+    /// Not in use. All zeros: an odometry in a `static` takes RAM and no flash.
+    pub const EMPTY: Self = Self {
+        point: InversePoint::ZERO,
+        template: Template::NONE,
+        warp: [[0.0; 2]; 2],
+        descriptor: Descriptor::NONE,
+        pixel: [0.0; 2],
+        now: None,
+        correlation: 0.0,
+        fresh: Descriptor::NONE,
+        seen: 0,
+        missed: 0,
+        wrong: 0,
+        used: false,
+        lives: 0,
     };
 
     /// Whether the depth is known to a share of itself.
-    pub fn is_deep(&self, share: f64) -> bool {
+    pub(super) fn is_deep(&self, share: f64) -> bool {
         let r = self.point.at.z;
         let variance = self.point.covariance.m33;
         r > T::ZERO && variance < r * r * T::of(share * share)

@@ -3,6 +3,7 @@
 use super::config::OdometryRig;
 use super::disparity::{ALIGN_PX, CORRELATED, disparity};
 use super::frame::Moment;
+use super::list::List;
 use super::motion_model::MotionModel;
 use super::point_map::PointMap;
 use super::pose_estimate::{FEWEST, Free, PointMatch, Problem};
@@ -15,7 +16,6 @@ use crate::geometry::{
     camera::Pose,
     robust::{RobustConfig, robust_resection},
 };
-use heapless::Vec;
 use nalgebra::{Point2, Point3, Vector3};
 
 /// The bits that the best feature may differ in, and of the second best the percent.
@@ -30,25 +30,21 @@ const COARSE_PX: f64 = 2.0;
 
 /// Finds the points of the map in a frame.
 #[derive(Debug)]
-pub(super) struct Tracker<T: Real, const N: usize> {
+pub(super) struct Tracker<'a, T: Real> {
     /// The points that the last frame sees.
-    pub matches: Vec<PointMatch<T>, N>,
-    landmarks: Vec<Landmark<T>, N>,
-    pub inliers: [bool; N],
-    /// The track that each feature is most like, and by how many bits it differs.
-    partners: [(u16, u16); N],
+    pub matches: List<'a, PointMatch<T>>,
+    pub landmarks: &'a mut [Landmark<T>],
+    pub inliers: &'a mut [bool],
+    /// By how many bits each feature differs from the track that it is most like, and that track.
+    pub partners: &'a mut [(u16, u16)],
 }
 
-impl<T: Real, const N: usize> Tracker<T, N> {
-    pub const fn new() -> Self {
-        Self { matches: Vec::new(), landmarks: Vec::new(), inliers: [false; N], partners: [(0, 0); N] }
-    }
-
+impl<T: Real> Tracker<'_, T> {
     /// Fills the matches with the points that the frame sees; the pose near which they say it is, if any.
     pub fn track(
         &mut self,
         now: &Moment<'_, T>,
-        map: &mut PointMap<T, N>,
+        map: &mut PointMap<'_, T>,
         motion: &MotionModel<T>,
     ) -> Option<Pose<T>> {
         let (last, far) = (motion.reported_pose, now.config.far_px);
@@ -81,8 +77,14 @@ impl<T: Real, const N: usize> Tracker<T, N> {
 
     /// Looks for each point's descriptor among the features near its predicted place, as far as it is the
     /// best of both.
-    pub fn recognise(&mut self, now: &Moment<'_, T>, map: &mut PointMap<T, N>, pose: &Pose<T>, near_px: f32) {
-        let features = now.frame.features.get(..N).unwrap_or(now.frame.features);
+    pub fn recognise(
+        &mut self,
+        now: &Moment<'_, T>,
+        map: &mut PointMap<'_, T>,
+        pose: &Pose<T>,
+        near_px: f32,
+    ) {
+        let features = now.frame.features.get(..self.partners.len()).unwrap_or(now.frame.features);
         self.partners.fill((Descriptor::BITS + 1, 0));
         for (number, track) in (0_u16..).zip(map.tracks.iter_mut()) {
             track.now = None;
@@ -122,7 +124,8 @@ impl<T: Real, const N: usize> Tracker<T, N> {
         for (number, track) in (0_u16..).zip(map.tracks.iter_mut()) {
             let Some(at) = track.now else { continue };
             let same = |f: &Feature| f.x_px == at[0] && f.y_px == at[1];
-            let own = features.iter().zip(&self.partners).find(|(f, partner)| partner.1 == number && same(f));
+            let own =
+                features.iter().zip(self.partners.iter()).find(|(f, partner)| partner.1 == number && same(f));
             match own {
                 Some((feature, _)) => track.fresh = feature.descriptor,
                 None => track.now = None,
@@ -131,27 +134,28 @@ impl<T: Real, const N: usize> Tracker<T, N> {
     }
 
     /// The pose that most of what was recognised agrees with.
-    fn resect(&mut self, now: &Moment<'_, T>, map: &PointMap<T, N>) -> Option<Pose<T>> {
-        self.landmarks.clear();
+    fn resect(&mut self, now: &Moment<'_, T>, map: &PointMap<'_, T>) -> Option<Pose<T>> {
+        let mut len = 0;
+        let mut landmarks = List { places: self.landmarks, len: &mut len };
         for track in map.tracks.iter().filter(|track| track.used && track.is_deep(0.3)) {
             let Some([x, y]) = track.now else { continue };
             let (a, r) = (track.point.at, T::ONE / track.point.at.z);
             let Ok(pixel) = now.rig.camera.undistort(&Point2::new(T::of(x.into()), T::of(y.into()))) else {
                 continue;
             };
-            let _ = self.landmarks.push(Landmark { world: Point3::new(a.x * r, a.y * r, r), pixel });
+            landmarks.push(Landmark { world: Point3::new(a.x * r, a.y * r, r), pixel });
         }
         let config = RobustConfig {
             most_samples: now.config.most_samples.max(1),
             seed: now.config.seed ^ u64::from(now.number),
             ..RobustConfig::new(T::of(RESECTION_PX))
         };
-        let found = robust_resection(&self.landmarks, &now.rig.camera, &config, &mut self.inliers).ok()?;
-        (found.inliers >= 10 && 4 * found.inliers >= self.landmarks.len()).then_some(found.pose)
+        let found = robust_resection(&landmarks, &now.rig.camera, &config, self.inliers).ok()?;
+        (found.inliers >= 10 && 4 * found.inliers >= landmarks.len()).then_some(found.pose)
     }
 
     /// The rotation that most of what was recognised agrees with, as if all were far away; `None` of too few.
-    fn rotated(&mut self, now: &Moment<'_, T>, map: &PointMap<T, N>, last: Pose<T>) -> Option<Pose<T>> {
+    fn rotated(&mut self, now: &Moment<'_, T>, map: &PointMap<'_, T>, last: Pose<T>) -> Option<Pose<T>> {
         self.matches.clear();
         let sigma = T::of(COARSE_PX) / now.rig.focal();
         for (owner, track) in (0_u16..).zip(map.tracks.iter()) {
@@ -160,7 +164,7 @@ impl<T: Real, const N: usize> Tracker<T, N> {
                 continue;
             };
             let observation = PointObservation { at, in_right: false, sigma };
-            let _ = self.matches.push(PointMatch { point: track.point, observation, owner });
+            self.matches.push(PointMatch { point: track.point, observation, owner });
         }
         let found = self.problem(now.rig.baseline()).solve(last, Free::Rotation);
         (found.kept >= 2 * FEWEST && 2 * found.kept >= self.matches.len()).then_some(found.pose)
@@ -168,7 +172,7 @@ impl<T: Real, const N: usize> Tracker<T, N> {
 
     /// Finds points by their pixels around where the pose puts them, and in the right picture: those that
     /// were recognised, or the others.
-    fn align(&mut self, now: &Moment<'_, T>, map: &mut PointMap<T, N>, pose: &Pose<T>, recognised: bool) {
+    fn align(&mut self, now: &Moment<'_, T>, map: &mut PointMap<'_, T>, pose: &Pose<T>, recognised: bool) {
         let (rig, sigma) = (now.rig, now.sigma());
         for (owner, track) in (0_u16..).zip(map.tracks.iter_mut()) {
             if !track.used || track.now.is_some() != recognised {
@@ -211,7 +215,7 @@ impl<T: Real, const N: usize> Tracker<T, N> {
                 in_right: disparity.is_some(),
                 sigma,
             };
-            let _ = self.matches.push(PointMatch { point: track.point, observation, owner });
+            self.matches.push(PointMatch { point: track.point, observation, owner });
         }
     }
 }

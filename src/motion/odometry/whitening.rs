@@ -16,6 +16,10 @@ pub(super) struct PointObservation<T: Real> {
 }
 
 impl<T: Real> PointObservation<T> {
+    /// All zeros.
+    pub const ZERO: Self =
+        Self { at: Vector3::new(T::ZERO, T::ZERO, T::ZERO), in_right: false, sigma: T::ZERO };
+
     /// How many numbers count.
     pub fn rows(&self) -> usize {
         if self.in_right { 3 } else { 2 }

@@ -3,8 +3,8 @@
 
 use image::GrayImage;
 use stereopsis::features::{
-    Downsample, Feature, FeatureConfig, FeatureCounts, FeatureDetector, FeatureMatcher, Level, Match,
-    MatchConfig, Orientation, drop_duplicates,
+    DownsampleState, DownsampleView, Feature, FeatureConfig, FeatureCounts, FeatureDetector, FeatureMatcher,
+    Level, Match, MatchConfig, Orientation, drop_duplicates,
 };
 
 /// The longest line, px.
@@ -180,13 +180,15 @@ pub fn features(
 
 /// The picture made smaller by the core, `N - 1` pixels of every `N`.
 pub fn shrunk<const N: usize>(picture: &GrayImage) -> GrayImage {
-    let mut shrink = Box::new(Downsample::<WIDEST, N>::new());
-    shrink.start(picture.width() as usize);
+    let width = picture.width() as usize;
+    let (mut state, mut sums, mut out) = (DownsampleState::default(), vec![0; 2 * width], vec![0; width]);
+    let mut shrink = DownsampleView::<N>::new(&mut state, &mut sums, &mut out);
+    shrink.start(width);
     let mut pixels = Vec::new();
     for line in lines(picture) {
         pixels.extend_from_slice(shrink.push(line).unwrap_or_default());
     }
-    let (width, height) = (shrink.width(), Downsample::<WIDEST, N>::height(picture.height() as usize));
+    let (width, height) = (shrink.width(), DownsampleView::<N>::height(picture.height() as usize));
     GrayImage::from_raw(width as u32, height as u32, pixels).unwrap_or_default()
 }
 

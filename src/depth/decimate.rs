@@ -22,8 +22,14 @@ use crate::units::Disparity;
 #[derive(Debug)]
 pub struct Decimator<const W: usize, const N: usize> {
     rows: [[Disparity; W]; N],
-    width: usize,
     taken: usize,
+}
+
+/// A borrowed [`Decimator`] of any width.
+#[derive(Debug)]
+pub struct DecimatorView<'a, const N: usize> {
+    rows: &'a mut [Disparity],
+    taken: &'a mut usize,
 }
 
 /// Number of pixels of the largest block.
@@ -32,8 +38,12 @@ const MOST: usize = 64;
 impl<const W: usize, const N: usize> Decimator<W, N> {
     /// Creates a decimator that awaits a frame's first row.
     pub const fn new() -> Self {
-        const { assert!(N >= 2 && N <= 8, "blocks have 2 to 8 pixels a side") };
-        Self { rows: [[Disparity::NONE; W]; N], width: 0, taken: 0 }
+        Self { rows: [[Disparity::NONE; W]; N], taken: 0 }
+    }
+
+    /// The decimator without its capacity.
+    pub fn as_mut_view(&mut self) -> DecimatorView<'_, N> {
+        DecimatorView::new(self.rows.as_flattened_mut(), &mut self.taken)
     }
 
     /// Begins a frame.
@@ -41,28 +51,48 @@ impl<const W: usize, const N: usize> Decimator<W, N> {
         self.taken = 0;
     }
 
+    /// Takes the next row, see [`DecimatorView::push`].
+    pub fn push(&mut self, row: &[Disparity], out: &mut [Disparity]) -> Option<usize> {
+        self.as_mut_view().push(row, out)
+    }
+}
+
+impl<'a, const N: usize> DecimatorView<'a, N> {
+    /// A decimator in the caller's memory: rows of up to an `N`th of its length, and how many of the frame's were
+    /// taken. It does not matter what is in the memory before a frame begins.
+    pub fn new(rows: &'a mut [Disparity], taken: &'a mut usize) -> Self {
+        const { assert!(N >= 2 && N <= 8, "blocks have 2 to 8 pixels a side") };
+        Self { rows, taken }
+    }
+
+    /// Begins a frame.
+    pub fn begin(&mut self) {
+        *self.taken = 0;
+    }
+
     /// Takes the next row; every `N`th call writes a downsampled row and returns its index. Columns and rows
     /// that fill no block are left out.
     pub fn push(&mut self, row: &[Disparity], out: &mut [Disparity]) -> Option<usize> {
-        let slot = self.rows.get_mut(self.taken % N)?;
+        let most = self.rows.len() / N;
+        let slot = self.rows.chunks_exact_mut(most.max(1)).nth(*self.taken % N)?;
         slot.iter_mut().zip(row).for_each(|(to, &from)| *to = from);
-        self.width = row.len().min(W);
-        self.taken += 1;
+        let width = row.len().min(most);
+        *self.taken += 1;
         if !self.taken.is_multiple_of(N) {
             return None;
         }
-        for (u, out) in out.iter_mut().enumerate().take(self.width / N) {
+        for (u, out) in out.iter_mut().enumerate().take(width / N) {
             let mut block = [0; MOST];
             let mut count = 0;
-            let answers =
-                self.rows.iter().flat_map(|row| row.iter().skip(u * N).take(N)).filter(|d| d.is_some());
+            let rows = self.rows.chunks_exact(most.max(1)).take(N);
+            let answers = rows.flat_map(|row| row.iter().skip(u * N).take(N)).filter(|d| d.is_some());
             for (answer, to) in answers.zip(&mut block) {
                 *to = answer.raw();
                 count += 1;
             }
             *out = median(&mut block, count).filter(|_| 2 * count >= N * N).unwrap_or(Disparity::NONE);
         }
-        Some(self.taken / N - 1)
+        Some(*self.taken / N - 1)
     }
 }
 

@@ -26,11 +26,11 @@ mod scale;
 mod table;
 mod temporal;
 
-pub use decimate::Decimator;
+pub use decimate::{Decimator, DecimatorView};
 #[cfg(feature = "embedded-graphics")]
 pub use draw::DisparityColours;
 pub use estimate::{Depth, fuse};
 pub use range::DepthRange;
 pub use scale::{DepthError, DepthScale};
 pub use table::{DepthTable, TableError};
-pub use temporal::{Provenance, TemporalConfig, TemporalFilter};
+pub use temporal::{Provenance, TemporalConfig, TemporalFilter, TemporalFilterView, TemporalMemoryError};

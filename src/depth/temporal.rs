@@ -54,15 +54,79 @@ pub struct TemporalFilter<const W: usize, const H: usize> {
     config: TemporalConfig,
 }
 
+/// A borrowed [`TemporalFilter`] of any size.
+#[derive(Debug)]
+pub struct TemporalFilterView<'a> {
+    average: &'a mut [Disparity],
+    age: &'a mut [u8],
+    width: usize,
+    config: TemporalConfig,
+}
+
+/// The memory of a filter has parts of different lengths.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct TemporalMemoryError {
+    /// The length that both parts would have to have.
+    pub needed: usize,
+}
+
+impl core::fmt::Display for TemporalMemoryError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "both parts of the memory must hold {} pixels", self.needed)
+    }
+}
+
+impl core::error::Error for TemporalMemoryError {}
+
 impl<const W: usize, const H: usize> TemporalFilter<W, H> {
     /// Creates a filter without history.
     pub const fn new(config: TemporalConfig) -> Self {
         Self { average: [[Disparity::NONE; W]; H], age: [[0; W]; H], config }
     }
 
+    /// The filter without its capacities.
+    pub fn as_mut_view(&mut self) -> TemporalFilterView<'_> {
+        let (average, age) = (self.average.as_flattened_mut(), self.age.as_flattened_mut());
+        TemporalFilterView { average, age, width: W, config: self.config }
+    }
+
+    /// Forgets all frames, see [`TemporalFilterView::forget`].
+    pub fn forget(&mut self) {
+        self.as_mut_view().forget();
+    }
+
+    /// Filters row `y` of a frame, see [`TemporalFilterView::row`].
+    pub fn row(
+        &mut self,
+        y: usize,
+        answers: &[Disparity],
+        out: &mut [Disparity],
+        provenance: &mut [Provenance],
+    ) {
+        self.as_mut_view().row(y, answers, out, provenance);
+    }
+}
+
+impl<'a> TemporalFilterView<'a> {
+    /// A filter in the caller's memory, an average and an age for each pixel of rows `width` wide. A new
+    /// filter has averages of [`Disparity::NONE`]; one that goes on has what the last one left.
+    pub fn new(
+        config: TemporalConfig,
+        width: usize,
+        average: &'a mut [Disparity],
+        age: &'a mut [u8],
+    ) -> Result<Self, TemporalMemoryError> {
+        let needed = average.len().max(age.len()).next_multiple_of(width.max(1));
+        if average.len() != needed || age.len() != needed {
+            return Err(TemporalMemoryError { needed });
+        }
+        Ok(Self { average, age, width, config })
+    }
+
     /// Forgets all frames, after a cut or when the cameras were moved.
     pub fn forget(&mut self) {
-        self.average.as_flattened_mut().fill(Disparity::NONE);
+        self.average.fill(Disparity::NONE);
     }
 
     /// Filters row `y` of a frame, for as many columns as all slices have.
@@ -73,7 +137,9 @@ impl<const W: usize, const H: usize> TemporalFilter<W, H> {
         out: &mut [Disparity],
         provenance: &mut [Provenance],
     ) {
-        let (Some(average), Some(age)) = (self.average.get_mut(y), self.age.get_mut(y)) else { return };
+        let width = self.width.max(1);
+        let average = self.average.chunks_exact_mut(width).nth(y).unwrap_or_default();
+        let age = self.age.chunks_exact_mut(width).nth(y).unwrap_or_default();
         let state = average.iter_mut().zip(age);
         for (((average, age), &answer), (out, provenance)) in
             state.zip(answers).zip(out.iter_mut().zip(provenance))

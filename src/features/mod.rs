@@ -55,7 +55,7 @@ pub use corner::Corner;
 pub use descriptor::{Descriptor, Patch};
 pub use detector::{FeatureDetector, FeatureDetectorView, FeatureLineError};
 pub use detector_state::{FeatureCounts, FeatureDetectorState};
-pub use downsample::Downsample;
+pub use downsample::{Downsample, DownsampleState, DownsampleView};
 pub use duplicates::drop_duplicates;
 pub use fast::fast_scores;
 pub use feature::{Feature, Level};

@@ -2,7 +2,7 @@
 
 use super::config::FocusLineError;
 use super::focus_measures::{binomial, laplacian, modified_laplacian, tenengrad};
-use crate::imaging::LineBand;
+use crate::imaging::RowRing;
 
 /// Radius of the widest window.
 const MOST_RADIUS: usize = 3;
@@ -53,8 +53,9 @@ pub struct SharpnessRows<const W: usize> {
     taken: u16,
     rows_out: usize,
     points: usize,
-    raw: LineBand<W, 3>,
-    smooth: [[u16; W]; 3],
+    /// The last three lines, and the last three smoothed rows.
+    raw: [[u8; 3]; W],
+    smooth: [[u16; 3]; W],
     /// The points' values of the rows in the window, and their sums down the columns; the Laplacian has its
     /// squares beside.
     values: [[i32; W]; RING],
@@ -76,8 +77,8 @@ impl<const W: usize> SharpnessRows<W> {
             taken: 0,
             rows_out: 0,
             points: 0,
-            raw: LineBand::new(),
-            smooth: [[0; W]; 3],
+            raw: [[0; 3]; W],
+            smooth: [[0; 3]; W],
             values: [[0; W]; RING],
             sums: [0; W],
             squares: [0; W],
@@ -91,7 +92,6 @@ impl<const W: usize> SharpnessRows<W> {
         self.radius = usize::from(radius).min(MOST_RADIUS);
         self.width = usize::from(width).min(W);
         (self.height, self.taken, self.rows_out, self.points) = (height, 0, 0, 0);
-        self.raw.begin(self.width);
         self.values.as_flattened_mut().fill(0);
         self.sums.fill(0);
         self.squares.fill(0);
@@ -103,18 +103,16 @@ impl<const W: usize> SharpnessRows<W> {
         if self.taken >= self.height {
             return Err(FocusLineError::NoLineDue);
         }
-        let place = self.raw.next_line();
-        if line.len() != place.len() {
-            return Err(FocusLineError::Length { needed: place.len() });
+        if line.len() != self.width {
+            return Err(FocusLineError::Length { needed: self.width });
         }
-        place.copy_from_slice(line);
-        self.raw.accept();
         let newest = usize::from(self.taken);
+        lines(&mut self.raw, self.width).row_mut(newest).copy_from_slice(line);
         self.taken += 1;
         let is_last = self.taken == self.height;
         let is_smooth = self.measure == Measure::Robust;
         if let Some(centre) = newest.checked_sub(1) {
-            self.smooth_row(centre);
+            self.smooth_row(centre, newest);
             match (is_smooth, centre.checked_sub(1)) {
                 (false, _) => self.point_row(centre, newest, &mut row),
                 (true, Some(above)) => self.point_row(above, centre, &mut row),
@@ -122,7 +120,7 @@ impl<const W: usize> SharpnessRows<W> {
             }
         }
         if is_last {
-            self.smooth_row(newest);
+            self.smooth_row(newest, newest);
             if let (true, Some(above)) = (is_smooth, newest.checked_sub(1)) {
                 self.point_row(above, newest, &mut row);
             }
@@ -134,26 +132,22 @@ impl<const W: usize> SharpnessRows<W> {
         Ok(())
     }
 
-    fn smooth_row(&mut self, centre: usize) {
-        if self.measure != Measure::Robust {
-            return;
-        }
-        if let Some(out) = self.smooth.get_mut(centre % 3).and_then(|out| out.get_mut(..self.width)) {
-            binomial(self.raw.around(centre), out);
+    fn smooth_row(&mut self, centre: usize, newest: usize) {
+        if self.measure == Measure::Robust {
+            let raw = lines(&mut self.raw, self.width);
+            binomial(raw.around(centre, newest), lines(&mut self.smooth, self.width).row_mut(centre));
         }
     }
 
     /// The points' values of row `centre` into the ring, in place of those that leave the window, which are
     /// taken off the sums.
     fn point_row(&mut self, centre: usize, newest: usize, row: &mut impl FnMut(usize, &[u32])) {
-        let raw = self.raw.around(centre);
+        let (raw, smooth) = (lines(&mut self.raw, self.width), lines(&mut self.smooth, self.width));
+        let raw = raw.around(centre, newest);
         let (mut small, mut large, mut signed) = ([0; W], [0; W], [0; W]);
         let value: &dyn Fn(usize) -> i32 = match self.measure {
             Measure::Robust => {
-                let rows = [centre.saturating_sub(1), centre, (centre + 1).min(newest)];
-                let rows =
-                    rows.map(|y| self.smooth.get(y % 3).and_then(|row| row.get(..self.width)).unwrap_or(&[]));
-                modified_laplacian(rows, &mut small);
+                modified_laplacian(smooth.around(centre, newest), &mut small);
                 &|x| small.get(x).copied().unwrap_or(0).into()
             }
             Measure::ModifiedLaplacian => {
@@ -213,6 +207,11 @@ impl<const W: usize> SharpnessRows<W> {
         row(self.rows_out, out.get(..self.width).unwrap_or(&[]));
         self.rows_out += 1;
     }
+}
+
+/// The ring of the last three rows in a memory.
+fn lines<T>(memory: &mut [[T; 3]], width: usize) -> RowRing<'_, T, 3> {
+    RowRing::split(memory.as_flattened_mut(), width).0
 }
 
 /// A column's sums with `new` in place of what was kept.

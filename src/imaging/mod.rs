@@ -3,7 +3,7 @@
 //! In: lines from a camera. Out: census and gradient rows, rectified lines.
 //!
 //! 1. [`GreyLines`]: any pixel format as 8-bit grey; [`BayerLines`]: a Bayer mosaic as grey.
-//! 2. [`LineBand`]: the last lines, as the rows around a centre; [`LineWindow`] holds five.
+//! 2. [`LineWindow`]: the last five lines, as the rows around a centre.
 //! 3. [`census_plus4`], [`census_ring8`], [`census_wide8`]: the codes of one row. [`gradients`]: Sobel
 //!    gradients of a row.
 //! 4. [`RectifiedPair`]: rectified lines of raw ones, by a [`Remap`] for each camera with its [`RemapTable`].
@@ -46,4 +46,4 @@ pub use remap::{
 };
 pub(crate) use rows::RowRing;
 pub use smooth::smooth;
-pub use window::{LineBand, LineWindow};
+pub use window::LineWindow;

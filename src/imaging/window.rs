@@ -1,12 +1,12 @@
 //! Line buffers: the last lines of a stream as rows around a centre.
 
-/// Buffer of the last five lines.
-pub type LineWindow<const W: usize> = LineBand<W, 5>;
+/// Lines that are held.
+const N: usize = 5;
 
-/// Ring buffer of the last `N` lines.
+/// Ring buffer of the last five lines.
 ///
-/// The capacity is `W` columns; [`Self::begin`] sets the real width per frame. A band takes `N W` bytes and a
-/// few words. Every line is word-aligned, so that four pixels can be read at a time.
+/// The capacity is `W` columns; [`Self::begin`] sets the real width per frame. A window takes `5 W` bytes and
+/// a few words. Every line is word-aligned, so that four pixels can be read at a time.
 ///
 /// ```
 /// use stereopsis::imaging::LineWindow;
@@ -20,7 +20,7 @@ pub type LineWindow<const W: usize> = LineBand<W, 5>;
 /// assert_eq!(window.around(0).map(|row| row[0]), [10, 10, 10, 20, 30]);
 /// ```
 #[derive(Debug)]
-pub struct LineBand<const W: usize, const N: usize> {
+pub struct LineWindow<const W: usize> {
     lines: [Line<W>; N],
     width: usize,
     count: usize,
@@ -31,10 +31,9 @@ pub struct LineBand<const W: usize, const N: usize> {
 #[repr(C, align(4))]
 struct Line<const W: usize>([u8; W]);
 
-impl<const W: usize, const N: usize> LineBand<W, N> {
-    /// Creates an empty band.
+impl<const W: usize> LineWindow<W> {
+    /// Creates an empty window.
     pub const fn new() -> Self {
-        const { assert!(N > 0, "a band holds at least one line") };
         Self { lines: [const { Line([0; W]) }; N], width: 0, count: 0 }
     }
 
@@ -73,20 +72,20 @@ impl<const W: usize, const N: usize> LineBand<W, N> {
         self.count
     }
 
-    /// Returns the `M` rows around `centre`, `M` odd. Rows above the image repeat row 0, and rows below the
-    /// newest line repeat it. The rows must still be in the band.
+    /// Returns the five rows around `centre`. Rows above the image repeat row 0, and rows below the newest line
+    /// repeat it. The rows must still be in the window.
     // Asked for once in a row of each camera.
     #[cfg_attr(target_pointer_width = "32", inline(never))]
-    pub fn around<const M: usize>(&self, centre: usize) -> [&[u8]; M] {
+    pub fn around(&self, centre: usize) -> [&[u8]; N] {
         let newest = self.count.saturating_sub(1);
         core::array::from_fn(|i| {
-            let row = (centre + i).saturating_sub(M / 2).min(newest);
+            let row = (centre + i).saturating_sub(N / 2).min(newest);
             self.lines.get(row % N).and_then(|Line(line)| line.get(..self.width)).unwrap_or(&[])
         })
     }
 }
 
-impl<const W: usize, const N: usize> Default for LineBand<W, N> {
+impl<const W: usize> Default for LineWindow<W> {
     fn default() -> Self {
         Self::new()
     }

@@ -6,7 +6,10 @@ use embedded_graphics_core::geometry::{OriginDimensions, Point, Size};
 use embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use stereopsis::depth::{Decimator, DisparityColours, Provenance, TemporalConfig, TemporalFilter};
+use stereopsis::depth::{
+    Decimator, DecimatorView, DisparityColours, Provenance, TemporalConfig, TemporalFilter,
+    TemporalFilterView, TemporalMemoryError,
+};
 use stereopsis::units::Disparity;
 
 fn config(cases: u32) -> ProptestConfig {
@@ -109,6 +112,35 @@ fn blocks<const N: usize>(rows: &[Vec<Disparity>]) -> Result<(), TestCaseError> 
         }
     }
     Ok(())
+}
+
+#[test]
+fn vectors_serve_as_memory_and_other_lengths_are_named() {
+    let row = |y: u16| [3 + y, 7, 2, 9].map(|pixels| Disparity::from_raw(32 * pixels));
+    let config = TemporalConfig::default();
+    let mut owned = TemporalFilter::<4, 2>::new(config);
+    let (mut average, mut age) = (vec![Disparity::NONE; 8], vec![0; 8]);
+    for y in [0, 1, 0, 1, 2] {
+        let mut both = [[Disparity::ZERO; 4]; 2];
+        let mut provenance = [Provenance::Nothing; 4];
+        owned.row(y, &row(y as u16), &mut both[0], &mut provenance);
+        // A view made anew goes on where the last one was.
+        let mut view = TemporalFilterView::new(config, 4, &mut average, &mut age).expect("as long");
+        view.row(y, &row(y as u16), &mut both[1], &mut provenance);
+        assert_eq!(both[0], both[1]);
+        assert_eq!(both[0] == [Disparity::ZERO; 4], y == 2, "there is no row 2");
+    }
+    for (pixels, ages, width, needed) in [(8, 7, 4, 8), (7, 8, 4, 8), (8, 8, 3, 9)] {
+        let refused = TemporalFilterView::new(config, width, &mut average[..pixels], &mut age[..ages]);
+        assert_eq!(refused.err(), Some(TemporalMemoryError { needed }));
+    }
+    let (mut rows, mut taken) = (vec![Disparity::ZERO; 9], 0);
+    let mut smaller = [Disparity::ZERO; 2];
+    for (y, told) in [None, Some(0), None, Some(1)].into_iter().enumerate() {
+        let found = DecimatorView::<2>::new(&mut rows, &mut taken).push(&row(y as u16), &mut smaller);
+        assert_eq!(found, told);
+    }
+    assert_eq!(smaller, [7, 9].map(Disparity::from_pixels));
 }
 
 #[test]

@@ -2,10 +2,16 @@
 
 use crate::support::{frames, mono, pose, rig, room, stereo, turned_deg, wall};
 use image::GrayImage;
+use nalgebra::{Point2, Point3};
 use stereopsis::features::Feature;
-use stereopsis::geometry::camera::Pose;
+use stereopsis::geometry::absolute::Landmark;
+use stereopsis::geometry::camera::{Camera, Pose};
+use stereopsis::geometry::two_view::Correspondence;
 use stereopsis::imaging::Picture;
-use stereopsis::motion::odometry::{Frame, OdometryConfig, OdometryError, State, StereoOdometry};
+use stereopsis::motion::odometry::{
+    Frame, OdometryConfig, OdometryError, OdometryRig, OdometryState, OdometryView, PointMatch, State,
+    StereoOdometry, Track,
+};
 
 #[test]
 fn a_camera_that_stands_still_stands_still() {
@@ -132,4 +138,47 @@ fn frames_that_do_not_fit_are_refused_by_name() {
         Some(OdometryError::Size)
     );
     assert_eq!(odometry.step(&frame).map(|step| step.state), Ok(State::Lost));
+}
+
+#[test]
+fn memory_of_other_lengths_is_refused_by_name() {
+    let pinhole = Camera::new(60.0, 60.0, 32.0, 24.0).expect("a camera");
+    // Tracks, matches, landmarks, inliers, partners and correspondences, and what is said of a pair and of one camera.
+    let (ok, refused) = (None, |needed| Some(OdometryError::Memory { needed }));
+    for (lengths, pair, one) in [
+        ([16, 16, 16, 16, 16, 32], ok, ok),
+        ([16, 16, 16, 16, 16, 0], ok, refused(32)),
+        ([15, 15, 15, 15, 15, 30], refused(16), refused(16)),
+        ([20, 19, 20, 20, 20, 40], refused(20), refused(20)),
+        ([20, 20, 19, 20, 20, 40], refused(20), refused(20)),
+        ([20, 20, 20, 19, 20, 40], refused(20), refused(20)),
+        ([20, 20, 20, 20, 19, 40], refused(20), refused(20)),
+        ([70_000; 6], refused(65_534), refused(65_534)),
+    ] {
+        let mut tracks = vec![Track::EMPTY; lengths[0]];
+        let mut matches = vec![PointMatch::EMPTY; lengths[1]];
+        let landmark = Landmark { world: Point3::origin(), pixel: Point2::origin() };
+        let mut landmarks = vec![landmark; lengths[2]];
+        let (mut inliers, mut partners) = (vec![false; lengths[3]], vec![(0, 0); lengths[4]]);
+        let mut correspondences = vec![Correspondence::new(0.0, 0.0, 0.0, 0.0); lengths[5]];
+        for (rig, expected) in
+            [(OdometryRig::stereo(&rig()).expect("a rig"), pair), (OdometryRig::one(pinhole), one)]
+        {
+            let mut state = OdometryState::<f64>::new();
+            // What begins is refused at the start, what is under way at once.
+            for _ in 0..2 {
+                let view = OdometryView::new(
+                    &mut state,
+                    &mut tracks,
+                    &mut matches,
+                    &mut landmarks,
+                    &mut inliers,
+                    &mut partners,
+                    &mut correspondences,
+                );
+                let started = view.and_then(|mut view| view.start(rig, OdometryConfig::new(64)));
+                assert_eq!(started.err(), expected);
+            }
+        }
+    }
 }

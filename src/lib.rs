@@ -4,6 +4,7 @@
 //! are in the order in which data moves; each uses only what stands above it.
 //!
 //! ```text
+//! errors         what errors say
 //! units math     types with units: Disparity, Millimetres, PixelFlags; the one file that names libm
 //! stored         values read back by serde, through their constructors' checks
 //! geometry       camera models, two-view geometry, pose, robust estimation, rectification; no pixels
@@ -31,29 +32,21 @@
 /// The matrices and vectors of the public interface, in the version that they come from.
 pub use nalgebra;
 
+#[macro_use]
+mod errors;
 pub mod units;
-
 mod math;
 
 #[macro_use]
 mod stored;
-
 pub mod geometry;
-
 pub mod camera;
-
 pub mod imaging;
-
 pub mod matching;
-
 pub mod depth;
-
 pub mod focus;
-
 pub mod features;
-
 pub mod motion;
-
 pub mod pipeline;
 
 #[cfg(feature = "ffi")]

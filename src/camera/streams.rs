@@ -1,7 +1,6 @@
 //! Streams that carry two cameras, side by side or interleaved; mirrored lines.
 
 use super::{CameraError, ErrorType, FrameStart, LineFault, LineFormat, LineSource, LineStart, StereoSource};
-use core::fmt;
 
 /// Why a stream cannot be split or mirrored.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -27,18 +26,12 @@ pub enum StreamError {
     SharedBytes,
 }
 
-impl fmt::Display for StreamError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::OddWidth { width } => write!(f, "a line of {width} pixels has no two halves"),
-            Self::OddHeight { height } => write!(f, "a frame of {height} lines is no pairs of lines"),
-            Self::BufferTooShort { needed } => write!(f, "the buffer must hold {needed} bytes"),
-            Self::SharedBytes => f.write_str("pixels that share bytes cannot be mirrored"),
-        }
-    }
-}
-
-impl core::error::Error for StreamError {}
+error_text!(StreamError {
+    Self::OddWidth { width } => "a line of {width} pixels has no two halves",
+    Self::OddHeight { height } => "a frame of {height} lines is no pairs of lines",
+    Self::BufferTooShort { needed } => "the buffer must hold {needed} bytes",
+    Self::SharedBytes => "pixels that share bytes cannot be mirrored",
+});
 
 /// Two cameras side by side in one stream: the first half of each line is the left camera's.
 ///

@@ -3,7 +3,6 @@
 use crate::geometry::camera::RectifiedRig;
 use crate::math::round;
 use crate::units::{Disparity, Metres, Millimetres};
-use core::fmt;
 use nalgebra::Point3;
 
 /// Conversion of disparities to depths for one rig, `Z = f b / (d + doffs)`.
@@ -43,17 +42,11 @@ pub enum DepthError {
     Offset,
 }
 
-impl fmt::Display for DepthError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::TooLarge => "focal length times baseline must be under 134000 px m",
-            Self::TooSmall => "focal length times baseline must be over 0.0000156 px m",
-            Self::Offset => "the principal points must be under 30000 px apart",
-        })
-    }
-}
-
-impl core::error::Error for DepthError {}
+error_text!(DepthError {
+    Self::TooLarge => "focal length times baseline must be under 134000 px m",
+    Self::TooSmall => "focal length times baseline must be over 0.0000156 px m",
+    Self::Offset => "the principal points must be under 30000 px apart",
+});
 
 impl DepthScale {
     /// Creates the scale of a rig.

@@ -5,7 +5,6 @@ use super::DepthScale;
 use super::range::largest;
 use crate::matching::Config;
 use crate::units::{Disparity, Millimetres};
-use core::fmt;
 use heapless::Vec;
 
 /// Depth of every disparity of a search range, [`DepthScale::millimetres`] without a division.
@@ -35,13 +34,9 @@ pub struct TableError {
     pub needed: usize,
 }
 
-impl fmt::Display for TableError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the table must hold {} depths", self.needed)
-    }
-}
-
-impl core::error::Error for TableError {}
+error_text!(TableError {
+    Self { needed } => "the table must hold {needed} depths",
+});
 
 impl<const N: usize> DepthTable<N> {
     /// Tabulates the depths of all disparities that a search can return.

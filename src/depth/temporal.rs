@@ -71,13 +71,9 @@ pub struct TemporalMemoryError {
     pub needed: usize,
 }
 
-impl core::fmt::Display for TemporalMemoryError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        write!(f, "both parts of the memory must hold {} pixels", self.needed)
-    }
-}
-
-impl core::error::Error for TemporalMemoryError {}
+error_text!(TemporalMemoryError {
+    Self { needed } => "both parts of the memory must hold {needed} pixels",
+});
 
 impl<const W: usize, const H: usize> TemporalFilter<W, H> {
     /// Creates a filter without history.

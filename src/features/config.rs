@@ -1,7 +1,6 @@
 //! Configuration of the feature detector.
 
 use super::Level;
-use core::fmt;
 
 /// What corners are described by.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
@@ -105,16 +104,8 @@ pub enum FeatureConfigError {
     },
 }
 
-impl fmt::Display for FeatureConfigError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Width { most } => write!(f, "lines have more than {most} pixels"),
-            Self::Cells => {
-                write!(f, "cells are smaller than {} px or hold no corner", FeatureConfig::LEAST_CELL)
-            }
-            Self::Slots { needed } => write!(f, "a row of cells needs {needed} slots"),
-        }
-    }
-}
-
-impl core::error::Error for FeatureConfigError {}
+error_text!(FeatureConfigError {
+    Self::Width { most } => "lines have more than {most} pixels",
+    Self::Cells => "cells are smaller than {} px or hold no corner" (FeatureConfig::LEAST_CELL),
+    Self::Slots { needed } => "a row of cells needs {needed} slots",
+});

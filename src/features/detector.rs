@@ -5,7 +5,6 @@ use super::{
     CornerSlot, Feature, FeatureConfig, FeatureConfigError, FeatureCounts, Patch, binomial5_row, fast_scores,
 };
 use crate::imaging::RowRing;
-use core::fmt;
 use heapless::VecView;
 
 /// Bytes for each pixel of a line: eight lines, the smoothed ones of a patch, three rows of scores.
@@ -27,16 +26,10 @@ pub enum FeatureLineError {
     },
 }
 
-impl fmt::Display for FeatureLineError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoLineDue => write!(f, "no line is due: start a frame"),
-            Self::Length { needed } => write!(f, "a line of {needed} pixels is due"),
-        }
-    }
-}
-
-impl core::error::Error for FeatureLineError {}
+error_text!(FeatureLineError {
+    Self::NoLineDue => "no line is due: start a frame",
+    Self::Length { needed } => "a line of {needed} pixels is due",
+});
 
 /// Finds a picture's features line by line: the strongest corners of every cell, with their descriptors.
 ///

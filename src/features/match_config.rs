@@ -2,7 +2,6 @@
 
 use super::Feature;
 use crate::geometry::two_view::{Fundamental, Line};
-use core::fmt;
 use nalgebra::Point2;
 
 /// Lines on which partners lie, when it is known how the cameras stand to each other.
@@ -115,18 +114,12 @@ pub enum MatchConfigError {
     },
 }
 
-impl fmt::Display for MatchConfigError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Ratio => write!(f, "the ratio is not 1 to 100 percent"),
-            Self::Range => write!(f, "a distance is negative or no number"),
-            Self::Epipolar => write!(f, "the distance from the epipolar line is negative or no number"),
-            Self::TooMany { needed } => write!(f, "the matcher would have to hold {needed} features"),
-        }
-    }
-}
-
-impl core::error::Error for MatchConfigError {}
+error_text!(MatchConfigError {
+    Self::Ratio => "the ratio is not 1 to 100 percent",
+    Self::Range => "a distance is negative or no number",
+    Self::Epipolar => "the distance from the epipolar line is negative or no number",
+    Self::TooMany { needed } => "the matcher would have to hold {needed} features",
+});
 
 /// Where the partners of one feature may be.
 pub(super) struct Places {

@@ -16,37 +16,21 @@
 //! and a search along epipolar lines compares them with lines.
 
 mod binomial;
-
 mod corner;
-
 mod downsample;
-
 mod fast;
-
 mod orientation;
-
 mod pattern;
-
 mod descriptor;
-
 mod feature;
-
 mod match_config;
-
 mod config;
-
 mod grid;
-
 mod feature_matcher;
-
 mod duplicates;
-
 mod subpixel;
-
 mod detector_state;
-
 mod detector;
-
 mod template;
 
 pub use binomial::binomial5_row;

@@ -66,17 +66,11 @@ pub enum TemplateError {
     TooFar,
 }
 
-impl core::fmt::Display for TemplateError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::Edge => "the place is too near the edge of the picture",
-            Self::Untextured => "the pixels hold no corner",
-            Self::TooFar => "the alignment went too far from its start",
-        })
-    }
-}
-
-impl core::error::Error for TemplateError {}
+error_text!(TemplateError {
+    Self::Edge => "the place is too near the edge of the picture",
+    Self::Untextured => "the pixels hold no corner",
+    Self::TooFar => "the alignment went too far from its start",
+});
 
 impl Template {
     /// Pixels to either side that a template needs.

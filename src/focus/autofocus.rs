@@ -2,7 +2,6 @@
 
 use super::ActuatorLimits;
 use super::peak_search::{FocusSearch, FocusSearchStep};
-use core::fmt;
 
 /// What the caller is to do next.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -64,18 +63,12 @@ pub enum AutofocusError {
     },
 }
 
-impl fmt::Display for AutofocusError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Untextured => f.write_str("the region is equally sharp everywhere: it has no texture"),
-            Self::Hardware => f.write_str("the lens or the camera failed too often"),
-            Self::Unexpected => f.write_str("the event does not answer the command"),
-            Self::Range { needed } => write!(f, "the lens must have {needed} positions at least"),
-        }
-    }
-}
-
-impl core::error::Error for AutofocusError {}
+error_text!(AutofocusError {
+    Self::Untextured => "the region is equally sharp everywhere: it has no texture",
+    Self::Hardware => "the lens or the camera failed too often",
+    Self::Unexpected => "the event does not answer the command",
+    Self::Range { needed } => "the lens must have {needed} positions at least",
+});
 
 /// Finds the sharpest position of a lens in [`FocusSearch::MOST_FRAMES`] frames, those that [`FocusSearch`]
 /// asks for.

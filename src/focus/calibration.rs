@@ -1,7 +1,6 @@
 //! Calibration of a lens actuator: positions to distances in focus.
 
 use super::{LensError, ThinLens};
-use core::fmt;
 
 /// A lens whose distance from the sensor grows in proportion to its actuator's position: `z = z0 + k p`.
 ///
@@ -58,17 +57,11 @@ pub enum FocusCalibrationError {
     Direction,
 }
 
-impl fmt::Display for FocusCalibrationError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::TooFew => f.write_str("at least two different positions are needed"),
-            Self::Distance { index, reason } => write!(f, "sample {}: {reason}", index + 1),
-            Self::Direction => f.write_str("larger positions must be nearer focus"),
-        }
-    }
-}
-
-impl core::error::Error for FocusCalibrationError {}
+error_text!(FocusCalibrationError {
+    Self::TooFew => "at least two different positions are needed",
+    Self::Distance { index, reason } => "sample {}: {reason}" (index + 1),
+    Self::Direction => "larger positions must be nearer focus",
+});
 
 impl FocusCalibration {
     /// The line with the least squared distances from what was seen: positions, each with the distance in

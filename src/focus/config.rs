@@ -1,7 +1,6 @@
 //! Configuration of a focus map.
 
 use super::box_filter::MOST_RADIUS;
-use core::fmt;
 
 /// Size and cells of a focus map.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -109,23 +108,15 @@ pub enum FocusConfigError {
     },
 }
 
-impl fmt::Display for FocusConfigError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Empty => f.write_str("a frame has no pixel"),
-            Self::Width { most } => write!(f, "lines have more than {most} pixels"),
-            Self::Window => write!(
-                f,
-                "a cell has no side, the radius is over {MOST_RADIUS}, or a window counts over {} pixels",
-                FocusConfig::MOST_WEIGHT
-            ),
-            Self::Columns { needed } => write!(f, "room for {needed} cells in a row is needed"),
-            Self::Cells { needed } => write!(f, "room for {needed} cells is needed"),
-        }
-    }
-}
-
-impl core::error::Error for FocusConfigError {}
+error_text!(FocusConfigError {
+    Self::Empty => "a frame has no pixel",
+    Self::Width { most } => "lines have more than {most} pixels",
+    Self::Window =>
+        "a cell has no side, the radius is over {MOST_RADIUS}, or a window counts over {} pixels"
+            (FocusConfig::MOST_WEIGHT),
+    Self::Columns { needed } => "room for {needed} cells in a row is needed",
+    Self::Cells { needed } => "room for {needed} cells is needed",
+});
 
 /// Why a line or a frame was not taken.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -150,16 +141,10 @@ pub enum FocusLineError {
     TooManyFrames,
 }
 
-impl fmt::Display for FocusLineError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoLineDue => f.write_str("no line is due: begin a frame"),
-            Self::Length { needed } => write!(f, "a line of {needed} pixels is due"),
-            Self::FrameIncomplete { missing } => write!(f, "{missing} lines of the frame are missing"),
-            Self::Scale => f.write_str("a frame's scale must be from 1/2 to 2"),
-            Self::TooManyFrames => f.write_str("a stack has at most 65535 frames"),
-        }
-    }
-}
-
-impl core::error::Error for FocusLineError {}
+error_text!(FocusLineError {
+    Self::NoLineDue => "no line is due: begin a frame",
+    Self::Length { needed } => "a line of {needed} pixels is due",
+    Self::FrameIncomplete { missing } => "{missing} lines of the frame are missing",
+    Self::Scale => "a frame's scale must be from 1/2 to 2",
+    Self::TooManyFrames => "a stack has at most 65535 frames",
+});

@@ -1,7 +1,5 @@
 //! Errors of the thin lens equations.
 
-use core::fmt;
-
 /// Why the thin lens's equations have no answer.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -25,19 +23,13 @@ pub enum LensError {
     TooLarge,
 }
 
-impl fmt::Display for LensError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a number is not finite",
-            Self::FocalLength => "the focal length must be positive",
-            Self::ObjectWithinFocus => "the object must be farther than the focal length",
-            Self::ImageWithinFocus => "the sensor must be farther behind the lens than the focal length",
-            Self::Aperture => "the aperture must be positive",
-            Self::Blur => "the circle of confusion must be positive",
-            Self::Sigma => "a deviation must not be negative",
-            Self::TooLarge => "the result does not fit its integer",
-        })
-    }
-}
-
-impl core::error::Error for LensError {}
+error_text!(LensError {
+    Self::NotFinite => "a number is not finite",
+    Self::FocalLength => "the focal length must be positive",
+    Self::ObjectWithinFocus => "the object must be farther than the focal length",
+    Self::ImageWithinFocus => "the sensor must be farther behind the lens than the focal length",
+    Self::Aperture => "the aperture must be positive",
+    Self::Blur => "the circle of confusion must be positive",
+    Self::Sigma => "a deviation must not be negative",
+    Self::TooLarge => "the result does not fit its integer",
+});

@@ -34,51 +34,28 @@
 //! ```
 
 mod actuator;
-
 mod all_in_focus;
-
 mod box_filter;
-
 mod config;
-
 mod breathing;
-
 mod dw9714;
-
 mod error;
-
 mod focus_measures;
-
 mod lens;
-
 mod calibration;
-
 mod depth_of_field;
-
 mod logarithm;
-
 mod micro_lens;
-
 mod peak;
-
 mod map_state;
-
 mod map_view;
-
 mod map;
-
 mod median;
-
 mod moving_least_squares;
-
 mod peak_search;
-
 mod autofocus;
-
 mod scale;
-
 mod sharpness;
-
 mod region;
 
 pub use actuator::{ActuatorErrorType, ActuatorLimits, LensActuator};

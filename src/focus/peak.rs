@@ -1,7 +1,6 @@
 //! The focus peak of a cell: a parabola fitted to the logarithms of its sharpness.
 
 use super::logarithm::{FRACTION, OCTAVE, log2};
-use core::fmt;
 
 /// Frames that a broad peak is fitted to, and half of them; half of those of a narrow one.
 pub(super) const FRAMES: usize = 11;
@@ -85,17 +84,11 @@ pub enum NoFocus {
     Broad,
 }
 
-impl fmt::Display for NoFocus {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::TooFewFrames { needed } => write!(f, "at least {needed} frames are needed"),
-            Self::Untextured => f.write_str("the sharpness changes no more than noise does"),
-            Self::Broad => f.write_str("the peak is so broad that noise hides where it is"),
-        }
-    }
-}
-
-impl core::error::Error for NoFocus {}
+error_text!(NoFocus {
+    Self::TooFewFrames { needed } => "at least {needed} frames are needed",
+    Self::Untextured => "the sharpness changes no more than noise does",
+    Self::Broad => "the peak is so broad that noise hides where it is",
+});
 
 impl FocusCell {
     /// Before the first frame.

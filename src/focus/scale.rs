@@ -3,7 +3,6 @@
 use super::lens::finite;
 use super::{Breathing, FocusLineError, FocusPeak, LensError, ThinLens};
 use crate::depth::Depth;
-use core::fmt;
 
 /// The depth of every frame of a stack: the image distance `z` between lens and sensor in each, and the lens,
 /// whose equation gives `Z` with `sigma_Z = f^2 / (z - f)^2 sigma_z`. Between two frames `z` is a straight
@@ -46,19 +45,11 @@ pub enum FocusScaleError {
     },
 }
 
-impl fmt::Display for FocusScaleError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::TooFew => f.write_str("at least two positions are needed"),
-            Self::Position { index, reason } => write!(f, "position {}: {reason}", index + 1),
-            Self::Order { index } => {
-                write!(f, "position {}: positions must rise or fall all the way", index + 1)
-            }
-        }
-    }
-}
-
-impl core::error::Error for FocusScaleError {}
+error_text!(FocusScaleError {
+    Self::TooFew => "at least two positions are needed",
+    Self::Position { index, reason } => "position {}: {reason}" (index + 1),
+    Self::Order { index } => "position {}: positions must rise or fall all the way" (index + 1),
+});
 
 impl<'a> FocusScale<'a> {
     /// The scale of frames that were taken with the sensor `images_m` behind the lens, one distance a frame,

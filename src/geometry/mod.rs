@@ -98,19 +98,12 @@
 )]
 
 mod real;
-
 pub(crate) mod linear;
-
 pub mod camera;
-
 pub mod two_view;
-
 pub mod absolute;
-
 pub mod robust;
-
 pub mod rectify;
-
 pub mod known_shape;
 
 pub use real::Real;

@@ -20,15 +20,9 @@ pub enum PictureError {
     },
 }
 
-impl core::fmt::Display for PictureError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Pixels { needed } => write!(f, "a picture of this size has {needed} pixels"),
-        }
-    }
-}
-
-impl core::error::Error for PictureError {}
+error_text!(PictureError {
+    Self::Pixels { needed } => "a picture of this size has {needed} pixels",
+});
 
 impl<'a> Picture<'a> {
     /// Wraps the pixels of an image.

@@ -3,7 +3,6 @@
 use super::penalties::{Penalties, PenaltiesError};
 use crate::imaging::Noise;
 use crate::units::Disparity;
-use core::fmt;
 
 /// Frame size, search range and checks of a matcher.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -261,25 +260,16 @@ pub enum ConfigError {
     Penalties,
 }
 
-impl fmt::Display for ConfigError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Width { given, most } => write!(f, "width {given}: 1 to {most} pixels"),
-            Self::Height => f.write_str("height 0: at least 1 line"),
-            Self::Disparities { given, most } => {
-                write!(f, "disparities {given}: {} to {most}", Config::FEWEST_DISPARITIES)
-            }
-            Self::MinDisparity { most } => write!(f, "min_disparity: at most {most} with these disparities"),
-            Self::Uniqueness => f.write_str("uniqueness: 0 to 99 percent"),
-            Self::SurfaceStep => f.write_str("surface step: at most 1 px"),
-            Self::Gradient => write!(f, "gradient: 1 to {}", Penalties::MOST_GRADIENT),
-            Self::Penalties => f.write_str(
-                "penalties: cost >= 1, steps falling, jumps above them, edges rising, \
-                 cost + step + jump < 128, 3 cost + 2 jump < 255",
-            ),
-            Self::Smoothing => write!(f, "smoothing radius: at most {}", Checks::MOST_SMOOTHING),
-        }
-    }
-}
-
-impl core::error::Error for ConfigError {}
+error_text!(ConfigError {
+    Self::Width { given, most } => "width {given}: 1 to {most} pixels",
+    Self::Height => "height 0: at least 1 line",
+    Self::Disparities { given, most } => "disparities {given}: {} to {most}" (Config::FEWEST_DISPARITIES),
+    Self::MinDisparity { most } => "min_disparity: at most {most} with these disparities",
+    Self::Uniqueness => "uniqueness: 0 to 99 percent",
+    Self::SurfaceStep => "surface step: at most 1 px",
+    Self::Gradient => "gradient: 1 to {}" (Penalties::MOST_GRADIENT),
+    Self::Penalties =>
+        "penalties: cost >= 1, steps falling, jumps above them, edges rising, \
+         cost + step + jump < 128, 3 cost + 2 jump < 255",
+    Self::Smoothing => "smoothing radius: at most {}" (Checks::MOST_SMOOTHING),
+});

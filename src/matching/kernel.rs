@@ -1,7 +1,5 @@
 //! The kernels by name: which instructions the dense path runs on.
 
-use core::fmt;
-
 /// An implementation of the dense path. All give the same bits; which of them there are depends on the target
 /// that the crate is compiled for and on the processor that it runs on ([`Kernel::available`]).
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -49,14 +47,6 @@ pub enum KernelError {
     Unavailable(Kernel),
 }
 
-impl fmt::Display for KernelError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unavailable(kernel) => {
-                write!(f, "kernel {}: this processor does not run it", kernel.name())
-            }
-        }
-    }
-}
-
-impl core::error::Error for KernelError {}
+error_text!(KernelError {
+    Self::Unavailable(kernel) => "kernel {}: this processor does not run it" (kernel.name()),
+});

@@ -12,7 +12,6 @@ use super::row::Row;
 use super::stages::{self, mask};
 use crate::matching::memory::slices::part_mut;
 use crate::units::{Disparity, PixelFlags};
-use core::fmt;
 
 /// Bytes of matcher state beside the arrays: counters, the configuration, padding.
 const FIXED_BYTES: usize = 64;
@@ -76,17 +75,11 @@ pub enum MatchError {
     },
 }
 
-impl fmt::Display for MatchError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotStarted => f.write_str("the matcher was not started"),
-            Self::FrameDone => f.write_str("the frame has no more lines"),
-            Self::LineTooShort { needed } => write!(f, "a line must have {needed} pixels"),
-        }
-    }
-}
-
-impl core::error::Error for MatchError {}
+error_text!(MatchError {
+    Self::NotStarted => "the matcher was not started",
+    Self::FrameDone => "the frame has no more lines",
+    Self::LineTooShort { needed } => "a line must have {needed} pixels",
+});
 
 impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     /// How many lines after the one at its centre a row comes out: the window's lower half and the speckle

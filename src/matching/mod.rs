@@ -30,25 +30,15 @@
 //! * [`Row`]: what comes out, with the uncertainty of each answer.
 
 mod kernel;
-
 mod penalties;
-
 mod capacity;
-
 mod config;
-
 mod memory;
-
 mod backend;
-
 mod method;
-
 mod filter;
-
 mod stages;
-
 mod row;
-
 mod matcher;
 
 pub use backend::MethodParameters;

@@ -105,19 +105,13 @@ pub enum PushError {
     Matcher(MatchError),
 }
 
-impl fmt::Display for PushError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotBegun => f.write_str("no frame was begun"),
-            Self::LineLength { needed } => write!(f, "a line must have {needed} bytes"),
-            Self::NoLineLeft => f.write_str("all lines of this frame are in"),
-            Self::LinesMissing { missing } => write!(f, "{missing} lines of this frame are missing"),
-            Self::Matcher(e) => write!(f, "{e}"),
-        }
-    }
-}
-
-impl core::error::Error for PushError {}
+error_text!(PushError {
+    Self::NotBegun => "no frame was begun",
+    Self::LineLength { needed } => "a line must have {needed} bytes",
+    Self::NoLineLeft => "all lines of this frame are in",
+    Self::LinesMissing { missing } => "{missing} lines of this frame are missing",
+    Self::Matcher(e) => "{e}",
+});
 
 impl From<MatchError> for PushError {
     fn from(e: MatchError) -> Self {

@@ -7,9 +7,7 @@
 //! Of many landmarks of which some are wrong: [`robust_resection`](super::robust::robust_resection) (PnP).
 
 mod plane_pair;
-
 mod p3p;
-
 mod projection;
 
 pub use p3p::{P3pError, P3pPoses, p3p};

@@ -37,18 +37,12 @@ pub enum P3pError {
     NoPose,
 }
 
-impl core::fmt::Display for P3pError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a coordinate is not finite",
-            Self::Line => "the three points are on a line",
-            Self::SameRay => "two of the three rays are one",
-            Self::NoPose => "no camera sees these points in these directions",
-        })
-    }
-}
-
-impl core::error::Error for P3pError {}
+error_text!(P3pError {
+    Self::NotFinite => "a coordinate is not finite",
+    Self::Line => "the three points are on a line",
+    Self::SameRay => "two of the three rays are one",
+    Self::NoPose => "no camera sees these points in these directions",
+});
 
 /// The sine of the angle between edges, and between rays, that counts as none.
 const NO_ANGLE: f64 = 1e-5;

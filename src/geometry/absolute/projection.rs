@@ -52,21 +52,15 @@ pub enum ResectionError {
     Camera(CameraModelError),
 }
 
-impl core::fmt::Display for ResectionError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a number is not finite",
-            Self::TooFew => "a projection matrix needs six different landmarks",
-            Self::Plane => "the landmarks are on a plane",
-            Self::Undetermined => "more than one projection matrix fits the landmarks",
-            Self::Behind => "landmarks are behind the camera that fits them",
-            Self::Infinite => "the matrix is that of a camera at infinity",
-            Self::Camera(error) => return error.fmt(f),
-        })
-    }
-}
-
-impl core::error::Error for ResectionError {}
+error_text!(ResectionError {
+    Self::NotFinite => "a number is not finite",
+    Self::TooFew => "a projection matrix needs six different landmarks",
+    Self::Plane => "the landmarks are on a plane",
+    Self::Undetermined => "more than one projection matrix fits the landmarks",
+    Self::Behind => "landmarks are behind the camera that fits them",
+    Self::Infinite => "the matrix is that of a camera at infinity",
+    Self::Camera(error) => "{error}",
+});
 
 impl<T: Real> Projection<T> {
     /// A camera at a place in the world: `pose` carries a point of the camera into the world. Its lens is

@@ -7,19 +7,12 @@
 //!   the rig in flash.
 
 mod distortion;
-
 mod fisheye;
-
 mod lens;
-
 mod pinhole;
-
 mod pose;
-
 mod rectified_rig;
-
 mod stereo_rig;
-
 mod record;
 
 pub use distortion::Distortion;

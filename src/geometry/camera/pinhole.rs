@@ -48,17 +48,11 @@ pub enum CameraModelError {
     OutOfRange,
 }
 
-impl core::fmt::Display for CameraModelError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a number of the camera is not finite",
-            Self::FocalLength => "the focal lengths must be from 0.001 to 1000000 px",
-            Self::OutOfRange => "the principal point and the skew must be within 1000000 px",
-        })
-    }
-}
-
-impl core::error::Error for CameraModelError {}
+error_text!(CameraModelError {
+    Self::NotFinite => "a number of the camera is not finite",
+    Self::FocalLength => "the focal lengths must be from 0.001 to 1000000 px",
+    Self::OutOfRange => "the principal point and the skew must be within 1000000 px",
+});
 
 /// Why a point is not seen, or a pixel has no ray.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -73,17 +67,11 @@ pub enum ProjectionError {
     NotFinite,
 }
 
-impl core::fmt::Display for ProjectionError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::Behind => "the point is not in front of the camera",
-            Self::NotConverged => "the lens model has no undistorted place for this pixel",
-            Self::NotFinite => "a coordinate is not finite, or its place would not be",
-        })
-    }
-}
-
-impl core::error::Error for ProjectionError {}
+error_text!(ProjectionError {
+    Self::Behind => "the point is not in front of the camera",
+    Self::NotConverged => "the lens model has no undistorted place for this pixel",
+    Self::NotFinite => "a coordinate is not finite, or its place would not be",
+});
 
 impl<T: Real> Camera<T> {
     /// What fills a slot that is not in use: zeros, which are no camera.

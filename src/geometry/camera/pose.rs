@@ -35,16 +35,10 @@ pub enum PoseError {
     NotARotation,
 }
 
-impl core::fmt::Display for PoseError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a number of the pose is not finite",
-            Self::NotARotation => "the matrix is no rotation",
-        })
-    }
-}
-
-impl core::error::Error for PoseError {}
+error_text!(PoseError {
+    Self::NotFinite => "a number of the pose is not finite",
+    Self::NotARotation => "the matrix is no rotation",
+});
 
 impl<T: Real> Pose<T> {
     /// Camera 2 where camera 1 is.

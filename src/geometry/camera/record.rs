@@ -55,28 +55,17 @@ pub enum RecordError {
     Rig(StereoRigError),
 }
 
-impl core::fmt::Display for RecordError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::TooShort { needed } => write!(f, "a record of a rig has {needed} bytes; these are fewer"),
-            Self::NotARecord => f.write_str("the bytes are no record of a rig, which begins with STRG"),
-            Self::Version { found, known } => {
-                write!(f, "the record is of version {found}; version {known} is read")
-            }
-            Self::Checksum => {
-                f.write_str("the record's checksum is wrong: it was changed or written in part")
-            }
-            Self::Lens { found: found @ (BROWN_CONRADY | FISHEYE) } => {
-                write!(f, "the record's lens has more coefficients than its model, {found}")
-            }
-            Self::Lens { found } => write!(f, "the record has a lens of model {found}; 0 and 1 are read"),
-            Self::Camera(which, error) => write!(f, "camera {which}: {error}"),
-            Self::Rig(error) => error.fmt(f),
-        }
-    }
-}
-
-impl core::error::Error for RecordError {}
+error_text!(RecordError {
+    Self::TooShort { needed } => "a record of a rig has {needed} bytes; these are fewer",
+    Self::NotARecord => "the bytes are no record of a rig, which begins with STRG",
+    Self::Version { found, known } => "the record is of version {found}; version {known} is read",
+    Self::Checksum => "the record's checksum is wrong: it was changed or written in part",
+    Self::Lens { found: found @ (BROWN_CONRADY | FISHEYE) } =>
+        "the record's lens has more coefficients than its model, {found}",
+    Self::Lens { found } => "the record has a lens of model {found}; 0 and 1 are read",
+    Self::Camera(which, error) => "camera {which}: {error}",
+    Self::Rig(error) => "{error}",
+});
 
 impl<T: Real> StereoRig<T> {
     /// Bytes of a record.

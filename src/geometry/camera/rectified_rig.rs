@@ -49,17 +49,11 @@ pub enum RigError {
     Baseline,
 }
 
-impl core::fmt::Display for RigError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a number of the calibration is not finite",
-            Self::FocalLength => "the focal length must be greater than zero",
-            Self::Baseline => "the baseline must be greater than zero",
-        })
-    }
-}
-
-impl core::error::Error for RigError {}
+error_text!(RigError {
+    Self::NotFinite => "a number of the calibration is not finite",
+    Self::FocalLength => "the focal length must be greater than zero",
+    Self::Baseline => "the baseline must be greater than zero",
+});
 
 impl RectifiedRig {
     /// A rig whose two cameras share one principal point `(cx, cy)`, px.

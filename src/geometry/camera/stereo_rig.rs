@@ -75,18 +75,12 @@ pub enum StereoRigError {
     Size,
 }
 
-impl core::fmt::Display for StereoRigError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::Pose(error) => return error.fmt(f),
-            Self::NoBaseline => "the baseline is zero: both cameras are at one place",
-            Self::Baseline => "the baseline must be from 0.000001 to 1000000 m",
-            Self::Size => "the images' columns and rows must be from 2 to 4096",
-        })
-    }
-}
-
-impl core::error::Error for StereoRigError {}
+error_text!(StereoRigError {
+    Self::Pose(error) => "{error}",
+    Self::NoBaseline => "the baseline is zero: both cameras are at one place",
+    Self::Baseline => "the baseline must be from 0.000001 to 1000000 m",
+    Self::Size => "the images' columns and rows must be from 2 to 4096",
+});
 
 impl<T: Real> StereoRig<T> {
     /// A rig of the first (left) and the second camera, the pose of the second in the first (metres), and

@@ -47,22 +47,12 @@ pub enum SightingError {
     Pixel(ProjectionError),
 }
 
-impl core::fmt::Display for SightingError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::NotFinite => f.write_str("a number is not finite"),
-            Self::Size => {
-                f.write_str("the object's size must be positive, the pixels' deviation not negative")
-            }
-            Self::TooSmall => {
-                f.write_str("the object's ends are seen at one place, as far as the noise tells")
-            }
-            Self::Pixel(error) => error.fmt(f),
-        }
-    }
-}
-
-impl core::error::Error for SightingError {}
+error_text!(SightingError {
+    Self::NotFinite => "a number is not finite",
+    Self::Size => "the object's size must be positive, the pixels' deviation not negative",
+    Self::TooSmall => "the object's ends are seen at one place, as far as the noise tells",
+    Self::Pixel(error) => "{error}",
+});
 
 impl<T: Real> Sighting<T> {
     /// An object of known length across the line of sight, a pole or the height of a door, whose two ends are

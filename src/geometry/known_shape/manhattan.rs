@@ -50,19 +50,13 @@ pub enum ManhattanFrameError {
     Focal,
 }
 
-impl core::fmt::Display for ManhattanFrameError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a number is not finite",
-            Self::TooFew => "two bundles of two segments or more are needed",
-            Self::Line => "all segments of a bundle are on one line",
-            Self::NotOrthogonal => "the bundles' directions are not orthogonal",
-            Self::Focal => "the vanishing points leave the focal length open",
-        })
-    }
-}
-
-impl core::error::Error for ManhattanFrameError {}
+error_text!(ManhattanFrameError {
+    Self::NotFinite => "a number is not finite",
+    Self::TooFew => "two bundles of two segments or more are needed",
+    Self::Line => "all segments of a bundle are on one line",
+    Self::NotOrthogonal => "the bundles' directions are not orthogonal",
+    Self::Focal => "the vanishing points leave the focal length open",
+});
 
 impl From<PencilError> for ManhattanFrameError {
     fn from(error: PencilError) -> Self {

@@ -9,15 +9,10 @@
 //!   that is not known.
 
 mod known_size;
-
 mod tilts;
-
 mod square;
-
 mod pencil;
-
 mod vanishing;
-
 mod manhattan;
 
 pub use known_size::{Sighting, SightingError};

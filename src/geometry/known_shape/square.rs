@@ -67,21 +67,15 @@ pub enum SquareMarkError {
     Pixel(ProjectionError),
 }
 
-impl core::fmt::Display for SquareMarkError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a number is not finite",
-            Self::Side => "the side must be positive",
-            Self::Line => "three corners are on a line",
-            Self::NotConvex => "the corners are no convex quadrilateral",
-            Self::Mirrored => "the corners go round against the clock",
-            Self::Behind => "no pose is before the camera",
-            Self::Pixel(error) => return error.fmt(f),
-        })
-    }
-}
-
-impl core::error::Error for SquareMarkError {}
+error_text!(SquareMarkError {
+    Self::NotFinite => "a number is not finite",
+    Self::Side => "the side must be positive",
+    Self::Line => "three corners are on a line",
+    Self::NotConvex => "the corners are no convex quadrilateral",
+    Self::Mirrored => "the corners go round against the clock",
+    Self::Behind => "no pose is before the camera",
+    Self::Pixel(error) => "{error}",
+});
 
 /// Steps of the refinement at most; three or four are enough for any corners that were tried.
 const MOST_STEPS: usize = 12;

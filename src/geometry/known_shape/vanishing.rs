@@ -28,17 +28,11 @@ pub enum VanishingPointError {
     Line,
 }
 
-impl core::fmt::Display for VanishingPointError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a number is not finite",
-            Self::TooFew => "a vanishing point needs two segments",
-            Self::Line => "all segments are on one line",
-        })
-    }
-}
-
-impl core::error::Error for VanishingPointError {}
+error_text!(VanishingPointError {
+    Self::NotFinite => "a number is not finite",
+    Self::TooFew => "a vanishing point needs two segments",
+    Self::Line => "all segments are on one line",
+});
 
 impl From<PencilError> for VanishingPointError {
     fn from(error: PencilError) -> Self {

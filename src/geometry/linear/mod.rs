@@ -18,23 +18,14 @@
 )]
 
 mod vector;
-
 mod matrix;
-
 mod rotation;
-
 mod cubic;
-
 mod elimination;
-
 mod ldl;
-
 mod levenberg_marquardt;
-
 mod covariance;
-
 mod projective;
-
 mod svd3;
 
 pub(crate) use covariance::covariance6;

@@ -64,17 +64,11 @@ pub enum RowMeterError {
     Empty,
 }
 
-impl core::fmt::Display for RowMeterError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::TooFew { needed } => write!(f, "{needed} correspondences that agree are needed"),
-            Self::NotFinite => f.write_str("a correspondence is not finite, or the result would not be"),
-            Self::Empty => f.write_str("no frame was added"),
-        }
-    }
-}
-
-impl core::error::Error for RowMeterError {}
+error_text!(RowMeterError {
+    Self::TooFew { needed } => "{needed} correspondences that agree are needed",
+    Self::NotFinite => "a correspondence is not finite, or the result would not be",
+    Self::Empty => "no frame was added",
+});
 
 /// How the second camera stands, as far as rows show.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -54,23 +54,13 @@ pub enum RectifyError {
     Camera(CameraModelError),
 }
 
-impl core::fmt::Display for RectifyError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::Swapped(Axis::Horizontal) => {
-                "the second camera stands left of the first: the cameras are swapped"
-            }
-            Self::Swapped(Axis::Vertical) => {
-                "the second camera stands above the first: the cameras are swapped"
-            }
-            Self::Forward => "one camera stands before the other, not beside it",
-            Self::Apart => "the cameras are turned away from each other",
-            Self::NothingShared => "the rectified images would show nothing of one of the cameras",
-            Self::Alpha => "alpha must be from 0 to 1",
-            Self::Size => "the rectified images' columns and rows must be from 2 to 4096",
-            Self::Camera(error) => return error.fmt(f),
-        })
-    }
-}
-
-impl core::error::Error for RectifyError {}
+error_text!(RectifyError {
+    Self::Swapped(Axis::Horizontal) => "the second camera stands left of the first: the cameras are swapped",
+    Self::Swapped(Axis::Vertical) => "the second camera stands above the first: the cameras are swapped",
+    Self::Forward => "one camera stands before the other, not beside it",
+    Self::Apart => "the cameras are turned away from each other",
+    Self::NothingShared => "the rectified images would show nothing of one of the cameras",
+    Self::Alpha => "alpha must be from 0 to 1",
+    Self::Size => "the rectified images' columns and rows must be from 2 to 4096",
+    Self::Camera(error) => "{error}",
+});

@@ -12,19 +12,12 @@
 //! [`UncalibratedRectification`]: the same from matches alone, without metric depth.
 
 mod warp;
-
 mod config;
-
 mod align;
-
 mod crop;
-
 mod rectification;
-
 mod report;
-
 mod alignment;
-
 mod uncalibrated;
 
 pub use alignment::{RowAlignment, RowHealth, RowMeter, RowMeterError};

@@ -64,19 +64,13 @@ pub enum UncalibratedError {
     Homography(HomographyError),
 }
 
-impl core::fmt::Display for UncalibratedError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::TooFew => "three matches at least are needed",
-            Self::NotFinite => "a match is not finite",
-            Self::EpipoleInside => "an epipole is in or near its image: one camera stands before the other",
-            Self::Line => "all matches are on a line",
-            Self::Homography(error) => return error.fmt(f),
-        })
-    }
-}
-
-impl core::error::Error for UncalibratedError {}
+error_text!(UncalibratedError {
+    Self::TooFew => "three matches at least are needed",
+    Self::NotFinite => "a match is not finite",
+    Self::EpipoleInside => "an epipole is in or near its image: one camera stands before the other",
+    Self::Line => "all matches are on a line",
+    Self::Homography(error) => "{error}",
+});
 
 impl<T: Real> UncalibratedRectification<T> {
     /// Rectifies images of `size` px by their fundamental matrix and matches that agree with it.

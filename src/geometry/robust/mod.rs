@@ -15,35 +15,20 @@
 //! bytes.
 
 mod config;
-
 mod random;
-
 mod prosac;
-
 mod ransac;
-
 mod loss;
-
 mod sprt;
-
 mod frame;
-
 mod plane;
-
 mod factored;
-
 mod refine;
-
 mod search;
-
 mod parallax;
-
 mod fundamental;
-
 mod essential;
-
 mod reprojection;
-
 mod resection;
 
 pub use config::{RobustConfig, Sampling};

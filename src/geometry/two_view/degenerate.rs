@@ -23,22 +23,14 @@ pub enum EightPointError {
     Undetermined,
 }
 
-impl core::fmt::Display for EightPointError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::TooFew => "a fundamental matrix needs eight correspondences",
-            Self::NotFinite => "a coordinate is not finite",
-            Self::Repeated => "a fundamental matrix needs eight correspondences that are not the same",
-            Self::Line => "the points of an image are on a line",
-            Self::Plane => {
-                "the points are on a plane, or the camera has only rotated: a homography is the answer"
-            }
-            Self::Undetermined => "more than one fundamental matrix fits the points",
-        })
-    }
-}
-
-impl core::error::Error for EightPointError {}
+error_text!(EightPointError {
+    Self::TooFew => "a fundamental matrix needs eight correspondences",
+    Self::NotFinite => "a coordinate is not finite",
+    Self::Repeated => "a fundamental matrix needs eight correspondences that are not the same",
+    Self::Line => "the points of an image are on a line",
+    Self::Plane => "the points are on a plane, or the camera has only rotated: a homography is the answer",
+    Self::Undetermined => "more than one fundamental matrix fits the points",
+});
 
 /// How far points may be off a line or a plane, normalised, and still count as on it: 0.0007 px in an image
 /// of 640 x 480 (in `f32` more, for the rounding).

@@ -31,17 +31,11 @@ pub enum EssentialError {
     Rank,
 }
 
-impl core::fmt::Display for EssentialError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a number of the matrix is not finite",
-            Self::NoBaseline => "the two cameras stand in one place",
-            Self::Rank => "the matrix has rank one or less",
-        })
-    }
-}
-
-impl core::error::Error for EssentialError {}
+error_text!(EssentialError {
+    Self::NotFinite => "a number of the matrix is not finite",
+    Self::NoBaseline => "the two cameras stand in one place",
+    Self::Rank => "the matrix has rank one or less",
+});
 
 impl<T: Real> Essential<T> {
     /// `E = [t]x R`.

@@ -36,16 +36,10 @@ pub enum FundamentalError {
     Rank,
 }
 
-impl core::fmt::Display for FundamentalError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a number of the matrix is not finite",
-            Self::Rank => "the matrix has rank one or less",
-        })
-    }
-}
-
-impl core::error::Error for FundamentalError {}
+error_text!(FundamentalError {
+    Self::NotFinite => "a number of the matrix is not finite",
+    Self::Rank => "the matrix has rank one or less",
+});
 
 impl<T: Real> Fundamental<T> {
     /// The singular matrix that is nearest to `matrix`, after rows and columns were brought to one size:

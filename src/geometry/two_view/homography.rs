@@ -42,19 +42,13 @@ pub enum HomographyError {
     Singular,
 }
 
-impl core::fmt::Display for HomographyError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a number is not finite",
-            Self::TooFew => "a homography needs four correspondences",
-            Self::Repeated => "a homography needs four correspondences that are not the same",
-            Self::Line => "all correspondences but one are on a line",
-            Self::Singular => "the matrix is singular",
-        })
-    }
-}
-
-impl core::error::Error for HomographyError {}
+error_text!(HomographyError {
+    Self::NotFinite => "a number is not finite",
+    Self::TooFew => "a homography needs four correspondences",
+    Self::Repeated => "a homography needs four correspondences that are not the same",
+    Self::Line => "all correspondences but one are on a line",
+    Self::Singular => "the matrix is singular",
+});
 
 impl<T: Real> Homography<T> {
     /// The homography of a matrix, of any scale but zero.

@@ -10,35 +10,20 @@
 //! * [`TwoViews`]: points from two rays, with their residual, angle and covariance.
 
 mod correspondence;
-
 mod weighted;
-
 mod normalise;
-
 mod line;
-
 mod essential;
-
 mod fundamental;
-
 mod distance;
-
 mod degenerate;
-
 mod eight_point;
-
 mod seven_point;
-
 mod homography;
-
 mod model_choice;
-
 mod relative;
-
 mod recover;
-
 mod plane_motion;
-
 mod triangulate;
 
 pub use correspondence::Correspondence;

@@ -31,16 +31,10 @@ pub enum PlaneMotionError {
     NotFinite,
 }
 
-impl core::fmt::Display for PlaneMotionError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NoBaseline => "the camera has rotated but not moved",
-            Self::NotFinite => "a number of the motion would not be finite",
-        })
-    }
-}
-
-impl core::error::Error for PlaneMotionError {}
+error_text!(PlaneMotionError {
+    Self::NoBaseline => "the camera has rotated but not moved",
+    Self::NotFinite => "a number of the motion would not be finite",
+});
 
 impl<T: Real> PlaneMotion<T> {
     /// R, from camera 2 into camera 1.

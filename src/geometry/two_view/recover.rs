@@ -35,17 +35,11 @@ pub enum RecoverError {
     Cheirality,
 }
 
-impl core::fmt::Display for RecoverError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NoCorrespondence => "no correspondence to tell the four poses apart",
-            Self::SmallAngle => "the rays are parallel: too far away to tell the four poses apart",
-            Self::Cheirality => "with none of the four poses most points are in front of both cameras",
-        })
-    }
-}
-
-impl core::error::Error for RecoverError {}
+error_text!(RecoverError {
+    Self::NoCorrespondence => "no correspondence to tell the four poses apart",
+    Self::SmallAngle => "the rays are parallel: too far away to tell the four poses apart",
+    Self::Cheirality => "with none of the four poses most points are in front of both cameras",
+});
 
 impl<T: Real> Essential<T> {
     /// The four poses that have this essential matrix: `E = U diag(1, 1, 0) V^T`, `R = U W V^T` or `U W^T

@@ -35,16 +35,10 @@ pub enum ScaleError {
     SamePoint,
 }
 
-impl core::fmt::Display for ScaleError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::Length => "the known length must be greater than zero and finite",
-            Self::SamePoint => "the two points of the known length must be different and finite",
-        })
-    }
-}
-
-impl core::error::Error for ScaleError {}
+error_text!(ScaleError {
+    Self::Length => "the known length must be greater than zero and finite",
+    Self::SamePoint => "the two points of the known length must be different and finite",
+});
 
 impl<T: Real> RelativePose<T> {
     /// A relative pose of a rotation and a direction of length one.

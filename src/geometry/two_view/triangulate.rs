@@ -52,18 +52,12 @@ pub enum TriangulationError {
     Behind,
 }
 
-impl core::fmt::Display for TriangulationError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => "a coordinate is not finite",
-            Self::NotConverged => "the lens model has no undistorted place for a pixel",
-            Self::SmallAngle => "the angle between the rays is too small",
-            Self::Behind => "the rays meet behind a camera",
-        })
-    }
-}
-
-impl core::error::Error for TriangulationError {}
+error_text!(TriangulationError {
+    Self::NotFinite => "a coordinate is not finite",
+    Self::NotConverged => "the lens model has no undistorted place for a pixel",
+    Self::SmallAngle => "the angle between the rays is too small",
+    Self::Behind => "the rays meet behind a camera",
+});
 
 /// The rays of both cameras in camera 1, and the undistorted pixels they came from.
 struct Rays<T: Real> {

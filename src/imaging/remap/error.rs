@@ -1,7 +1,5 @@
 //! Errors of the rectifying remap.
 
-use core::fmt;
-
 /// Why a warp cannot be tabulated.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -16,16 +14,10 @@ pub enum RemapTableError {
     TooBent,
 }
 
-impl fmt::Display for RemapTableError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Slots { needed } => write!(f, "the remap table must have {needed} slots"),
-            Self::TooBent => f.write_str("the warp bends too much between 8 pixels"),
-        }
-    }
-}
-
-impl core::error::Error for RemapTableError {}
+error_text!(RemapTableError {
+    Self::Slots { needed } => "the remap table must have {needed} slots",
+    Self::TooBent => "the warp bends too much between 8 pixels",
+});
 
 /// Why lines are not rectified.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -63,20 +55,12 @@ pub enum RemapError {
     Table(RemapTableError),
 }
 
-impl fmt::Display for RemapError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Lines { needed } => write!(f, "the remap must hold {needed} raw lines at once"),
-            Self::Width { needed } => write!(f, "the remap must have room for lines of {needed} px"),
-            Self::BufferTooShort { needed } => {
-                write!(f, "the line's and the mask's buffers must hold {needed} bytes")
-            }
-            Self::Early { needed } => write!(f, "the next rectified line needs {needed} raw lines"),
-            Self::Late { row } => write!(f, "a raw line that rectified row {row} needs is no longer held"),
-            Self::Table(error) => error.fmt(f),
-            Self::NoLineLeft => f.write_str("no rectified line is left in this frame"),
-        }
-    }
-}
-
-impl core::error::Error for RemapError {}
+error_text!(RemapError {
+    Self::Lines { needed } => "the remap must hold {needed} raw lines at once",
+    Self::Width { needed } => "the remap must have room for lines of {needed} px",
+    Self::BufferTooShort { needed } => "the line's and the mask's buffers must hold {needed} bytes",
+    Self::Early { needed } => "the next rectified line needs {needed} raw lines",
+    Self::Late { row } => "a raw line that rectified row {row} needs is no longer held",
+    Self::Table(error) => "{error}",
+    Self::NoLineLeft => "no rectified line is left in this frame",
+});

@@ -31,25 +31,15 @@
 //! [`workspace`](super::memory::workspace).
 
 mod texture;
-
 mod median;
-
 mod left_right;
-
 mod fattening;
-
 mod smooth;
-
 pub(super) mod confidence;
-
 mod speckle;
-
 mod vertical;
-
 mod fill;
-
 mod withhold;
-
 pub(super) mod mask;
 
 use super::backend::BY_CAPACITY;

@@ -39,19 +39,11 @@ pub enum CovarianceError {
     Point(usize),
 }
 
-impl core::fmt::Display for CovarianceError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Problem(error) => error.fmt(f),
-            Self::Undetermined => {
-                f.write_str("the views are not determined: hold a view and a distance, or add observations")
-            }
-            Self::Point(at) => write!(f, "point {at} is not determined by its observations"),
-        }
-    }
-}
-
-impl core::error::Error for CovarianceError {}
+error_text!(CovarianceError {
+    Self::Problem(error) => "{error}",
+    Self::Undetermined => "the views are not determined: hold a view and a distance, or add observations",
+    Self::Point(at) => "point {at} is not determined by its observations",
+});
 
 impl<'a, V: View<T, N>, T: Real, const N: usize> Covariances<'a, V, T, N> {
     /// Factors the equations of the problem as it is, without damping. `sigma_px` is the standard deviation

@@ -31,31 +31,18 @@
 )]
 
 mod gauge;
-
 mod loss;
-
 mod view;
-
 mod camera_view;
-
 mod radial_view;
-
 mod rectified_view;
-
 mod workspace;
-
 mod envelope;
-
 mod problem;
-
 mod point_equations;
-
 mod schur;
-
 mod adjust;
-
 mod covariance;
-
 mod window;
 
 pub use adjust::{Adjustment, BundleConfig, BundleReport, StopReason, adjust};

@@ -73,29 +73,19 @@ pub struct WorkspaceSize {
     pub blocks: usize,
 }
 
-impl core::fmt::Display for BundleError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Empty => f.write_str("there is no observation"),
-            Self::View(at) => write!(f, "observation {at} names a camera that there is not"),
-            Self::Point(at) => write!(f, "observation {at} names a point that there is not"),
-            Self::Unsorted(at) => write!(f, "observation {at} stands behind one of a later point"),
-            Self::NotFinite(at) => write!(f, "a coordinate of observation {at} is not finite"),
-            Self::NotSeen(at) => {
-                write!(f, "the point of observation {at} is not before its camera, or not finite")
-            }
-            Self::Gauge => f.write_str("the gauge must name views that there are"),
-            Self::Config => f.write_str("tolerances, damping and the loss's width must be greater than zero"),
-            Self::Workspace(need) => write!(
-                f,
-                "the workspace needs {} slots, {} terms, {} points and {} blocks",
-                need.slots, need.terms, need.points, need.blocks
-            ),
-        }
-    }
-}
-
-impl core::error::Error for BundleError {}
+error_text!(BundleError {
+    Self::Empty => "there is no observation",
+    Self::View(at) => "observation {at} names a camera that there is not",
+    Self::Point(at) => "observation {at} names a point that there is not",
+    Self::Unsorted(at) => "observation {at} stands behind one of a later point",
+    Self::NotFinite(at) => "a coordinate of observation {at} is not finite",
+    Self::NotSeen(at) => "the point of observation {at} is not before its camera, or not finite",
+    Self::Gauge => "the gauge must name views that there are",
+    Self::Config => "tolerances, damping and the loss's width must be greater than zero",
+    Self::Workspace(need) =>
+        "the workspace needs {} slots, {} terms, {} points and {} blocks"
+            (need.slots, need.terms, need.points, need.blocks),
+});
 
 impl<T: Real> Observation<T> {
     /// Not in use.

@@ -79,19 +79,13 @@ pub enum WindowError {
     NoPoint,
 }
 
-impl core::fmt::Display for WindowError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Views(needed) => write!(f, "the window needs room for {needed} views"),
-            Self::Points(needed) => write!(f, "the window needs room for {needed} points"),
-            Self::Observations(needed) => write!(f, "the window needs room for {needed} observations"),
-            Self::NoView => f.write_str("the observation's view has not been added"),
-            Self::NoPoint => f.write_str("a point must be added before its observations"),
-        }
-    }
-}
-
-impl core::error::Error for WindowError {}
+error_text!(WindowError {
+    Self::Views(needed) => "the window needs room for {needed} views",
+    Self::Points(needed) => "the window needs room for {needed} points",
+    Self::Observations(needed) => "the window needs room for {needed} observations",
+    Self::NoView => "the observation's view has not been added",
+    Self::NoPoint => "a point must be added before its observations",
+});
 
 impl<V, T, const N: usize, const VIEWS: usize, const POINTS: usize, const OBSERVATIONS: usize>
     Window<V, T, N, VIEWS, POINTS, OBSERVATIONS>

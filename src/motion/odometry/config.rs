@@ -23,13 +23,9 @@ pub enum OdometryRigError {
     Camera,
 }
 
-impl core::fmt::Display for OdometryRigError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("the rig's numbers are no camera")
-    }
-}
-
-impl core::error::Error for OdometryRigError {}
+error_text!(OdometryRigError {
+    _ => "the rig's numbers are no camera",
+});
 
 impl<T: Real> OdometryRig<T> {
     /// One camera, whose lens may distort.

@@ -51,15 +51,9 @@ pub enum OdometryError {
     },
 }
 
-impl core::fmt::Display for OdometryError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::NotStarted => f.write_str("the odometry was not started"),
-            Self::NoRight => f.write_str("the rig is a pair and the frame has no right picture"),
-            Self::Size => f.write_str("the pictures differ in size"),
-            Self::Memory { needed } => write!(f, "a part of the memory must hold {needed} items"),
-        }
-    }
-}
-
-impl core::error::Error for OdometryError {}
+error_text!(OdometryError {
+    Self::NotStarted => "the odometry was not started",
+    Self::NoRight => "the rig is a pair and the frame has no right picture",
+    Self::Size => "the pictures differ in size",
+    Self::Memory { needed } => "a part of the memory must hold {needed} items",
+});

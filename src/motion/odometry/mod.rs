@@ -28,39 +28,22 @@
 //! of first baselines.
 
 mod config;
-
 mod frame;
-
 mod step;
-
 mod motion_model;
-
 mod whitening;
-
 mod inverse_depth;
-
 mod list;
-
 mod track;
-
 mod disparity;
-
 mod pose_estimate;
-
 mod point_map;
-
 mod tracking;
-
 mod initialization;
-
 mod motion_test;
-
 mod engine;
-
 mod observed;
-
 mod sliding_window;
-
 mod scale;
 
 pub use config::{OdometryConfig, OdometryRig, OdometryRigError};

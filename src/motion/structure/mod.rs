@@ -18,15 +18,10 @@
 //!   [`StructureWorkspace`]: that in one `static`.
 
 mod config;
-
 mod metric;
-
 mod triangulation;
-
 mod initial_pair;
-
 mod workspace;
-
 mod incremental;
 
 pub use config::{InitialPairError, PointState, StructureConfig, StructureError, ViewState};

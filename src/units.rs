@@ -164,11 +164,6 @@ impl PixelFlags {
     pub const fn when(self, condition: bool) -> Self {
         Self(self.0 * condition as u8)
     }
-
-    /// Returns whether no bit is set.
-    pub const fn is_clear(self) -> bool {
-        self.0 == 0
-    }
 }
 
 /// Depth along the optical axis in whole millimetres, for cores without a floating-point unit; 0 means

@@ -97,11 +97,6 @@ impl FocusCalibration {
         self.rms_m
     }
 
-    /// The distance between lens and sensor at a position, m.
-    pub fn image_distance_m(&self, position: u16) -> f32 {
-        self.lens.focal() + self.extension_m(position)
-    }
-
     fn extension_m(&self, position: u16) -> f32 {
         self.zero_m + self.per_step_m * f32::from(position)
     }

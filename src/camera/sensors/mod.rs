@@ -12,6 +12,50 @@
 //! Other sensors' drivers need no adapter, as they only configure: for example the crates `ov7670` and
 //! `hm01b0`, of which the second neither windows nor bins.
 
+/// A sensor's two drivers and its exposure control. `$driver!` makes one driver, of a bus that blocks or of one
+/// that is awaited.
+macro_rules! drivers {
+    ($driver:ident, $blocking:ident, $awaited:ident, $chip:literal, $most_gain_16ths:literal) => {
+        $driver!(
+            $blocking,
+            concat!("Driver of the ", $chip, " on an I2C bus."),
+            embedded_hal::i2c::I2c,
+            embedded_hal::delay::DelayNs,
+            [],
+            []
+        );
+        #[cfg(feature = "async")]
+        $driver!(
+            $awaited,
+            concat!(
+                "Driver of the ", $chip, " on an asynchronous I2C bus, with the calls of [`",
+                stringify!($blocking), "`].\n\n",
+                "A call whose future is dropped leaves the sensor as a failed one does."
+            ),
+            embedded_hal_async::i2c::I2c,
+            embedded_hal_async::delay::DelayNs,
+            [async],
+            [.await]
+        );
+
+        impl<I: embedded_hal::i2c::I2c> ExposureControl for $blocking<I> {
+            type Error = SensorError<I::Error>;
+
+            fn exposure_limits_us(&self) -> (u32, u32) {
+                self.exposure_limits_us()
+            }
+
+            fn most_gain_16ths(&self) -> u16 {
+                $most_gain_16ths
+            }
+
+            fn set_exposure(&mut self, exposure_us: u32, gain_16ths: u16) -> Result<(), Self::Error> {
+                self.set_exposure(exposure_us, gain_16ths)
+            }
+        }
+    };
+}
+
 mod hm01b0;
 mod mt9v034;
 

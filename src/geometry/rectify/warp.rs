@@ -48,11 +48,6 @@ impl<T: Real> Warp<T> {
         &self.camera
     }
 
-    /// The camera that the rectified image is of; it has no lens.
-    pub fn rectified_camera(&self) -> &Camera<T> {
-        &self.new
-    }
-
     /// From the camera's frame into that of the rectified camera.
     pub fn rotation(&self) -> &Matrix3<T> {
         &self.rotation

@@ -44,7 +44,7 @@ const LEAST_ROW_CLOCKS: u16 = 704;
 
 /// The driver over a blocking or an asynchronous bus: with `async` and `.await`, or nothing in their places.
 macro_rules! driver {
-    ($driver:ident, $about:literal, $i2c:path, $delay:path, [$($async:ident)?], [$($wait:tt)*]) => {
+    ($driver:ident, $about:expr, $i2c:path, $delay:path, [$($async:ident)?], [$($wait:tt)*]) => {
     #[doc = $about]
     #[derive(Debug)]
     pub struct $driver<I> {
@@ -248,37 +248,4 @@ macro_rules! driver {
     };
 }
 
-driver!(
-    Mt9v034,
-    "Driver of the MT9V034 on an I2C bus.",
-    embedded_hal::i2c::I2c,
-    embedded_hal::delay::DelayNs,
-    [],
-    []
-);
-#[cfg(feature = "async")]
-driver!(
-    AsyncMt9v034,
-    "Driver of the MT9V034 on an asynchronous I2C bus, with the calls of [`Mt9v034`].\n\n\
-     A call whose future is dropped leaves the sensor as a failed one does.",
-    embedded_hal_async::i2c::I2c,
-    embedded_hal_async::delay::DelayNs,
-    [async],
-    [.await]
-);
-
-impl<I: embedded_hal::i2c::I2c> ExposureControl for Mt9v034<I> {
-    type Error = SensorError<I::Error>;
-
-    fn exposure_limits_us(&self) -> (u32, u32) {
-        self.exposure_limits_us()
-    }
-
-    fn most_gain_16ths(&self) -> u16 {
-        64
-    }
-
-    fn set_exposure(&mut self, exposure_us: u32, gain_16ths: u16) -> Result<(), Self::Error> {
-        self.set_exposure(exposure_us, gain_16ths)
-    }
-}
+drivers!(driver, Mt9v034, AsyncMt9v034, "MT9V034", 64);

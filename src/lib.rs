@@ -20,8 +20,8 @@
 //!
 //! camera -lines-> imaging -line windows-> matching -disparity row-> depth
 //!        '------------------------ pipeline -----------------------' -> ffi
-//! camera -lines-> imaging -line bands-> features -matches-> motion, geometry -> poses, points
-//!                         '-------------> focus -> depth from one lens
+//! camera -lines-> imaging -lines-> features -matches-> motion, geometry -> poses, points
+//!                         '-------> focus -> depth from one lens
 //! ```
 //!
 //! Start here: firmware implements [`camera::StereoSource`], or pushes lines itself, keeps a

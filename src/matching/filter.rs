@@ -30,7 +30,7 @@ impl Filter {
         }
     }
 
-    /// What it is for a method, with cameras that have so much noise.
+    /// The checks of this operating point for the method `S`, with cameras that have so much noise.
     pub const fn checks<S: Method>(self, noise: Noise) -> Checks {
         match (self, noise) {
             (Self::Dense, _) => Checks::DENSE,

@@ -18,7 +18,8 @@ const FIXED_BYTES: usize = 64;
 
 /// Disparities for lines up to `W` pixels and `D` disparities, in memory of its own and of fixed size.
 ///
-/// Lines go in by fives, rows come out [`Matcher::DELAY`] lines after the one at their centre.
+/// Each line goes in with the two above it and the two below, and its row comes out [`Matcher::DELAY`] lines
+/// later.
 /// [`Pipeline`](crate::pipeline::Pipeline) feeds it from a camera.
 ///
 /// `D` is a multiple of 16, at most 256, and `W` at least `D`; another choice does not compile.
@@ -82,8 +83,8 @@ error_text!(MatchError {
 });
 
 impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
-    /// How many lines after the one at its centre a row comes out: the window's lower half and the speckle
-    /// filter's look-ahead.
+    /// How many lines after its own a row comes out: the rows that the method looks down, and those that the
+    /// speckle filter waits for.
     pub const DELAY: usize = S::RADIUS_Y + LOOK_AHEAD;
 
     const CHECKED: () = {

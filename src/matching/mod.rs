@@ -12,21 +12,23 @@
 //! * `method`: what a method is made of. [`Fast`] and [`Block`] compare census codes over a window, [`Sgm`],
 //!   [`SgmLean`] and [`SgmEdge`] aggregate costs along paths.
 //! * [`Filter`]: operating points of the methods.
-//! * `stages`: the stages of a row, in running order:
-//!     1. denoise, if asked for: lines smoothed against noise (in `method`);
-//!     2. census of the row that comes in (`method`, `backend`);
-//!     3. texture of its pixels, if asked for;
-//!     4. what was filled in the row that came out last is taken out of the history;
-//!     5. median of 3 x 3 answers, if asked for;
-//!     6. costs, their aggregation and winner-take-all (`method`, `backend`);
-//!     7. left-right check and sub-pixel fit;
-//!     8. fattening: answers refused that carry a near surface on over a place without texture;
-//!     9. smoothing along the row, within surfaces;
-//!     10. confidence, if asked for;
-//!     11. speckle filter, in a band of five rows;
-//!     12. vertical filter, with the methods along paths;
-//!     13. fill of small gaps, if asked for;
-//!     14. mask: answers taken away where a camera did not see.
+//! * `stages`: the stages of a row, in running order, with a table of the rows that each one touches:
+//!     1. the row that came out last gets back the answers that were refused as unsure (`withhold`);
+//!     2. denoise, if asked for: the lines that come in are smoothed against noise (in `method`);
+//!     3. census of the row that comes in (`method`, `backend`);
+//!     4. texture and edges of its pixels, if asked for;
+//!     5. what was filled in the row that came out last is taken out of it: no later row looks at a guess;
+//!     6. median of 3 x 3 answers, if asked for;
+//!     7. costs, their aggregation and winner-take-all (`method`, `backend`);
+//!     8. left-right check and sub-pixel fit;
+//!     9. fattening: answers refused that carry a near surface on over a place without texture;
+//!     10. smoothing along the row, within surfaces;
+//!     11. confidence, if asked for;
+//!     12. speckle filter, in a band of five rows;
+//!     13. vertical filter, with the methods along paths;
+//!     14. fill of small gaps, if asked for;
+//!     15. answers refused whose confidence is too low, if asked for (`withhold`);
+//!     16. mask: answers taken away where a camera did not see.
 //! * [`Row`]: what comes out, with the uncertainty of each answer.
 
 mod kernel;

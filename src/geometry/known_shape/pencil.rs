@@ -10,9 +10,9 @@ use nalgebra::{Point2, Vector3};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LineSegment<T: Real> {
-    /// One end.
+    /// One end of the segment.
     pub from: Point2<T>,
-    /// The other.
+    /// The other end of the segment.
     pub to: Point2<T>,
 }
 

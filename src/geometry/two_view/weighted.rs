@@ -12,7 +12,7 @@ pub(crate) enum Image {
 }
 
 impl Image {
-    /// Where it shows a correspondence.
+    /// Where this image shows a correspondence.
     #[inline(always)]
     pub(crate) fn point<T: Real>(self, seen: &Correspondence<T>) -> Point2<T> {
         match self {

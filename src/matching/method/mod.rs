@@ -57,13 +57,13 @@ pub trait Method: MethodParameters + Costs + Steps + Sized + 'static {
 pub trait Costs: Sized {
     /// What the method keeps from row to row, and its workspace.
     type Memory<const W: usize, const D: usize>: Memory;
-    /// How many bytes that is.
+    /// Bytes of [`Self::Memory`].
     const BYTES: Bytes;
     /// Takes row `y` of both images, before [`Self::select`].
     fn enter(frame: &mut Frame<'_>, y: usize, lines: [&Rows5<'_>; 2]);
     /// Adds row `bottom` to the costs, while there are `lines`, and selects the winners of `row`, where there
-    /// is one. Called for every row: after it, the workspace is divided. `MOST` is as for
-    /// [`Isa::window`](super::backend::Isa::window).
+    /// is one. It is called for every row, because it divides the workspace for the stages behind it. `MOST` is
+    /// as for [`Isa::window`](super::backend::Isa::window).
     fn select<const MOST: usize>(
         frame: &mut Frame<'_>,
         bottom: usize,
@@ -104,6 +104,6 @@ pub struct Frame<'a> {
     pub(super) band: Ring<'a, Disparity, BAND>,
     /// Flags of the band's rows, or [notes](super::memory::notes).
     pub(super) flags: Ring<'a, PixelFlags, BAND>,
-    /// Answers after it.
+    /// Answers after the speckle filter.
     pub(super) finished: Ring<'a, Disparity, HISTORY>,
 }

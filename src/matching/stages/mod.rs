@@ -1,5 +1,12 @@
 //! The stages of a row, in running order.
 //!
+//! Each line that comes in makes the answers of one row, `newest`, and finishes another, the row that waits
+//! [`LOOK_AHEAD`](super::memory::rings::LOOK_AHEAD) rows above it until its support is known. What lasts from
+//! line to line is in a [`Frame`]: `band`, the answers of the rows from the one that waits to the newest;
+//! `flags` beside them; `finished`, the answers of the last rows as they came out, the row that waits among
+//! them. Of a row that came out, what was filled or refused as unsure is undone before the next one is
+//! finished: later rows look at what was measured.
+//!
 //! ```text
 //! when row y comes in (r: rows that the method looks down; BAND = 5, LOOK_AHEAD = 4, HISTORY = 5)
 //!
@@ -27,8 +34,8 @@
 //! mask, once the row is out   masks of both images                finished, flags, confidences y - r - 4
 //! ```
 //!
-//! The row that comes out is `y - r - LOOK_AHEAD`. What a workspace holds at each stage says
-//! [`workspace`](super::memory::workspace).
+//! The row that comes out is `y - r - LOOK_AHEAD`. [`workspace`](super::memory::workspace) says what the
+//! workspace holds at each stage.
 
 mod texture;
 mod median;
@@ -99,8 +106,8 @@ fn step<S: Method, const MOST: usize>(mut frame: Frame<'_>, y: usize, lines: Opt
     finish_row::<S, MOST>(&mut frame, y, lines);
 }
 
-/// Adds row `bottom`, makes the answers of the row that has its costs with it, and finishes the one that
-/// waited for those.
+/// Adds row `bottom` to the costs, makes the answers of the row that has all of its costs with it, `newest`,
+/// and finishes the row that waits for those.
 fn finish_row<S: Method, const MOST: usize>(
     frame: &mut Frame<'_>,
     bottom: usize,

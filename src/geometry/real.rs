@@ -35,54 +35,35 @@ mod sealed {
     impl Sealed for f64 {}
 }
 
-impl Real for f32 {
-    const ZERO: Self = 0.0;
-    const ONE: Self = 1.0;
-    const EPSILON: Self = Self::EPSILON;
+macro_rules! real {
+    ($float:ident, $arc_tangent:ident) => {
+        impl Real for $float {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const EPSILON: Self = Self::EPSILON;
 
-    #[inline(always)]
-    fn of(value: f64) -> Self {
-        value as Self
-    }
+            #[inline(always)]
+            fn of(value: f64) -> Self {
+                value as Self
+            }
 
-    #[inline(always)]
-    fn count(n: usize) -> Self {
-        n as Self
-    }
+            #[inline(always)]
+            fn count(n: usize) -> Self {
+                n as Self
+            }
 
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        f64::from(self)
-    }
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                self.into()
+            }
 
-    #[inline(always)]
-    fn arc_tangent(self) -> Self {
-        atan(self)
-    }
+            #[inline(always)]
+            fn arc_tangent(self) -> Self {
+                $arc_tangent(self)
+            }
+        }
+    };
 }
 
-impl Real for f64 {
-    const ZERO: Self = 0.0;
-    const ONE: Self = 1.0;
-    const EPSILON: Self = Self::EPSILON;
-
-    #[inline(always)]
-    fn of(value: f64) -> Self {
-        value
-    }
-
-    #[inline(always)]
-    fn count(n: usize) -> Self {
-        n as Self
-    }
-
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        self
-    }
-
-    #[inline(always)]
-    fn arc_tangent(self) -> Self {
-        atan_f64(self)
-    }
-}
+real!(f32, atan);
+real!(f64, atan_f64);

@@ -34,24 +34,16 @@ pub enum RobustError {
     Plane,
 }
 
-impl core::fmt::Display for RobustError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::TooFew => "a fundamental matrix needs eight correspondences",
-            Self::NotFinite => "a coordinate is not finite",
-            Self::Threshold => "the threshold must be greater than zero",
-            Self::MissProbability => "the probability of a miss must be between zero and one",
-            Self::NoSamples => "one sample at least is needed",
-            Self::Inliers(needed) => return write!(f, "the inliers need a slice of {needed}"),
-            Self::NoAgreement => "no fundamental matrix has more than seven correspondences agree with it",
-            Self::Plane => {
-                "what agrees is on a plane, or the camera has only rotated: a homography is the answer"
-            }
-        })
-    }
-}
-
-impl core::error::Error for RobustError {}
+error_text!(RobustError {
+    Self::TooFew => "a fundamental matrix needs eight correspondences",
+    Self::NotFinite => "a coordinate is not finite",
+    Self::Threshold => "the threshold must be greater than zero",
+    Self::MissProbability => "the probability of a miss must be between zero and one",
+    Self::NoSamples => "one sample at least is needed",
+    Self::Inliers(needed) => "the inliers need a slice of {needed}",
+    Self::NoAgreement => "no fundamental matrix has more than seven correspondences agree with it",
+    Self::Plane => "what agrees is on a plane, or the camera has only rotated: a homography is the answer",
+});
 
 /// A fundamental matrix, and how sure it is.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -32,21 +32,15 @@ pub enum RobustResectionError {
     NoAgreement,
 }
 
-impl core::fmt::Display for RobustResectionError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::TooFew => "a pose needs four landmarks",
-            Self::NotFinite => "a coordinate is not finite",
-            Self::Threshold => "the threshold must be greater than zero",
-            Self::MissProbability => "the probability of a miss must be between zero and one",
-            Self::NoSamples => "one sample at least is needed",
-            Self::Inliers(needed) => return write!(f, "the inliers need a slice of {needed}"),
-            Self::NoAgreement => "no pose has more than three landmarks agree with it",
-        })
-    }
-}
-
-impl core::error::Error for RobustResectionError {}
+error_text!(RobustResectionError {
+    Self::TooFew => "a pose needs four landmarks",
+    Self::NotFinite => "a coordinate is not finite",
+    Self::Threshold => "the threshold must be greater than zero",
+    Self::MissProbability => "the probability of a miss must be between zero and one",
+    Self::NoSamples => "one sample at least is needed",
+    Self::Inliers(needed) => "the inliers need a slice of {needed}",
+    Self::NoAgreement => "no pose has more than three landmarks agree with it",
+});
 
 /// Where a camera stands in the world, and how sure that is.
 #[derive(Clone, Copy, PartialEq, Debug)]

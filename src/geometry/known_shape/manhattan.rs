@@ -1,6 +1,6 @@
 //! The Manhattan frame: a camera's orientation in a building by vanishing points (Coughlan & Yuille 1999).
 
-use super::pencil::{LineSegment, PencilError, Scaled, vanishing_point};
+use super::pencil::{LineSegment, Scaled, VanishingPointError, vanishing_point};
 use super::vanishing::extent;
 use crate::geometry::Real;
 use crate::geometry::camera::{Camera, Pose};
@@ -58,12 +58,12 @@ error_text!(ManhattanFrameError {
     Self::Focal => "the vanishing points leave the focal length open",
 });
 
-impl From<PencilError> for ManhattanFrameError {
-    fn from(error: PencilError) -> Self {
+impl From<VanishingPointError> for ManhattanFrameError {
+    fn from(error: VanishingPointError) -> Self {
         match error {
-            PencilError::NotFinite => Self::NotFinite,
-            PencilError::TooFew => Self::TooFew,
-            PencilError::Line => Self::Line,
+            VanishingPointError::NotFinite => Self::NotFinite,
+            VanishingPointError::TooFew => Self::TooFew,
+            VanishingPointError::Line => Self::Line,
         }
     }
 }

@@ -17,6 +17,6 @@ mod manhattan;
 
 pub use known_size::{Sighting, SightingError};
 pub use manhattan::{ManhattanFrame, ManhattanFrameError};
-pub use pencil::LineSegment;
+pub use pencil::{LineSegment, VanishingPointError};
 pub use square::{MarkPose, MarkPoses, SquareMark, SquareMarkError};
-pub use vanishing::{VanishingPoint, VanishingPointError};
+pub use vanishing::VanishingPoint;

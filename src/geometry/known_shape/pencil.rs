@@ -23,12 +23,24 @@ pub(super) struct Scaled<T: Real> {
     half: Vector3<T>,
 }
 
-/// Why segments are of no pencil.
-pub(super) enum PencilError {
+/// Why lines have no vanishing point.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum VanishingPointError {
+    /// A number is infinite or not a number, or one of the vanishing point would be.
     NotFinite,
+    /// Fewer than two segments.
     TooFew,
+    /// All segments are on one line, or of no length.
     Line,
 }
+
+error_text!(VanishingPointError {
+    Self::NotFinite => "a number is not finite",
+    Self::TooFew => "a vanishing point needs two segments",
+    Self::Line => "all segments are on one line",
+});
 
 /// How often a vanishing point's weights are found anew.
 const ROUNDS: usize = 6;
@@ -67,15 +79,15 @@ impl<T: Real> Scaled<T> {
 /// Least squares with weights that are found anew from each point, six times.
 pub(super) fn vanishing_point<T: Real>(
     segments: impl Iterator<Item = Scaled<T>> + Clone,
-) -> Result<(Vector3<T>, T), PencilError> {
+) -> Result<(Vector3<T>, T), VanishingPointError> {
     let (count, finite) = segments.clone().fold((0, true), |(count, finite), segment| {
         (count + 1, finite && segment.middle.iter().chain(&segment.half).all(|x| x.is_finite()))
     });
     if !finite {
-        return Err(PencilError::NotFinite);
+        return Err(VanishingPointError::NotFinite);
     }
     if count < 2 {
-        return Err(PencilError::TooFew);
+        return Err(VanishingPointError::TooFew);
     }
     let mut point = None;
     for _ in 0..ROUNDS {
@@ -94,7 +106,7 @@ pub(super) fn vanishing_point<T: Real>(
         let ldl = Ldl::new(&mut matrix);
         let [largest, second, _] = *ldl.pivots();
         if !(second > largest * T::EPSILON * T::of(64.0)) {
-            return Err(PencilError::Line);
+            return Err(VanishingPointError::Line);
         }
         point = Some(Vector3::from(ldl.null_vector()));
     }

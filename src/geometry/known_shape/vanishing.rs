@@ -1,6 +1,6 @@
 //! Vanishing points of parallel lines (Hartley & Zisserman 2004, 8.6).
 
-use super::pencil::{LineSegment, PencilError, vanishing_point};
+use super::pencil::{LineSegment, VanishingPointError, vanishing_point};
 use crate::geometry::Real;
 use crate::geometry::camera::Camera;
 use nalgebra::{Point2, Unit, Vector3};
@@ -13,35 +13,6 @@ use nalgebra::{Point2, Unit, Vector3};
 pub struct VanishingPoint<T: Real> {
     homogeneous: Vector3<T>,
     rms_px: T,
-}
-
-/// Why lines have no vanishing point.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum VanishingPointError {
-    /// A number is infinite or not a number, or one of the vanishing point would be.
-    NotFinite,
-    /// Fewer than two segments.
-    TooFew,
-    /// All segments are on one line, or of no length.
-    Line,
-}
-
-error_text!(VanishingPointError {
-    Self::NotFinite => "a number is not finite",
-    Self::TooFew => "a vanishing point needs two segments",
-    Self::Line => "all segments are on one line",
-});
-
-impl From<PencilError> for VanishingPointError {
-    fn from(error: PencilError) -> Self {
-        match error {
-            PencilError::NotFinite => Self::NotFinite,
-            PencilError::TooFew => Self::TooFew,
-            PencilError::Line => Self::Line,
-        }
-    }
 }
 
 impl<T: Real> VanishingPoint<T> {

@@ -58,8 +58,8 @@ impl<const W: usize, const N: usize> Decimator<W, N> {
 }
 
 impl<'a, const N: usize> DecimatorView<'a, N> {
-    /// A decimator in the caller's memory: rows of up to an `N`th of its length, and how many of the frame's were
-    /// taken. It does not matter what is in the memory before a frame begins.
+    /// A decimator in the caller's memory: rows of up to an `N`th of its length, and how many of the frame's
+    /// were taken. It does not matter what is in the memory before a frame begins.
     pub fn new(rows: &'a mut [Disparity], taken: &'a mut usize) -> Self {
         const { assert!(N >= 2 && N <= 8, "blocks have 2 to 8 pixels a side") };
         Self { rows, taken }

@@ -1,4 +1,4 @@
-//! How far a feature detector is with a frame, and what becomes of a row's corners: found, described, given out.
+//! What becomes of a row's corners in a feature detector: found, described, given out.
 
 use super::grid::{self, CornerSlot};
 use super::pattern::PATCH_RADIUS;
@@ -41,7 +41,7 @@ pub struct FeatureDetectorState {
 }
 
 impl FeatureDetectorState {
-    /// Of a detector that waits for [`FeatureDetectorView::start`](super::FeatureDetectorView::start). All zeros.
+    /// The state of a detector that waits for a start. All zeros.
     pub const fn new() -> Self {
         let counts = FeatureCounts { corners: 0, crowded_out: 0, dropped: 0 };
         Self { config: FeatureConfig::NONE, taken: 0, counts }

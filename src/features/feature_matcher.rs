@@ -54,8 +54,8 @@ impl MatchSlot {
 
 /// Matches up to `N` features of one picture with up to `N` of another, 65534 at most.
 ///
-/// It takes `10 N` bytes, all zeros in a `static`. Matching takes as many comparisons of 256 bits as there are pairs of features that
-/// the search admits, and one pass more over the right ones for each left one.
+/// It takes `10 N` bytes, all zeros in a `static`. Matching takes as many comparisons of 256 bits as there
+/// are pairs of features that the search admits, and one pass more over the right ones for each left one.
 ///
 /// A match is the best partner of its left feature, clearly better than any other that lies elsewhere (Lowe,
 /// "Distinctive image features from scale-invariant keypoints", IJCV 2004, 7.1), and its left feature is the

@@ -28,7 +28,7 @@ pub struct FocusMapState {
 }
 
 impl FocusMapState {
-    /// Of a map that waits for [`FocusMapView::start`](super::FocusMapView::start). All zeros.
+    /// The state of a map that waits for a start. All zeros.
     pub const fn new() -> Self {
         Self {
             config: FocusConfig::NONE,

@@ -37,9 +37,9 @@ impl<'a> FocusMapView<'a> {
     /// Numbers of `sums` for every cell of a row.
     pub const SUMS: usize = SUMS;
 
-    /// A map in the caller's memory: `lines`, `rows` and `sums` are as long as the constants say, `sharper` has
-    /// a flag for every cell of a row, `cells` holds all cells of a frame. It does not matter what is in them
-    /// before [`Self::start`]; a view of a stack under way needs as much, with what the last one left there.
+    /// A map in the caller's memory: `lines`, `rows` and `sums` are as long as the constants say, `sharper`
+    /// has a flag for every cell of a row, `cells` holds all cells of a frame. It does not matter what is in
+    /// them before [`Self::start`]; a view of a stack under way needs as much, with what the last one left.
     pub fn new(
         state: &'a mut FocusMapState,
         lines: &'a mut [u8],
@@ -131,7 +131,7 @@ impl<'a> FocusMapView<'a> {
         Ok(())
     }
 
-    /// Smooths row `centre`, of which lines down to `newest` have come; then the row above it can be measured.
+    /// Smooths row `centre`, where lines have come down to `newest`; then the row above it can be measured.
     fn smooth(&mut self, centre: usize, newest: usize, row: &mut impl FnMut(AllInFocusRow<'_>)) {
         let width = usize::from(self.state.config.width);
         let (lines, _) = RowRing::<_, LINES>::split(self.lines, width);

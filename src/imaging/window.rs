@@ -72,8 +72,8 @@ impl<const W: usize> LineWindow<W> {
         self.count
     }
 
-    /// Returns the five rows around `centre`. Rows above the image repeat row 0, and rows below the newest line
-    /// repeat it. The rows must still be in the window.
+    /// Returns the five rows around `centre`. Rows above the image repeat row 0, and rows below the newest
+    /// line repeat it. The rows must still be in the window.
     // Asked for once in a row of each camera.
     #[cfg_attr(target_pointer_width = "32", inline(never))]
     pub fn around(&self, centre: usize) -> [&[u8]; N] {

@@ -143,7 +143,8 @@ fn frames_that_do_not_fit_are_refused_by_name() {
 #[test]
 fn memory_of_other_lengths_is_refused_by_name() {
     let pinhole = Camera::new(60.0, 60.0, 32.0, 24.0).expect("a camera");
-    // Tracks, matches, landmarks, inliers, partners and correspondences, and what is said of a pair and of one camera.
+    // How many tracks, matches, landmarks, inliers, partners and correspondences, and what is said of a pair
+    // and of one camera.
     let (ok, refused) = (None, |needed| Some(OdometryError::Memory { needed }));
     for (lengths, pair, one) in [
         ([16, 16, 16, 16, 16, 32], ok, ok),

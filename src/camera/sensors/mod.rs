@@ -12,8 +12,8 @@
 //! Other sensors' drivers need no adapter, as they only configure: for example the crates `ov7670` and
 //! `hm01b0`, of which the second neither windows nor bins.
 
-/// A sensor's two drivers and its exposure control. `$driver!` makes one driver, of a bus that blocks or of one
-/// that is awaited.
+/// A sensor's two drivers and its exposure control. `$driver!` makes one driver, of a bus that blocks or of
+/// one that is awaited.
 macro_rules! drivers {
     ($driver:ident, $blocking:ident, $awaited:ident, $chip:literal, $most_gain_16ths:literal) => {
         $driver!(

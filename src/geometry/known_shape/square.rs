@@ -41,8 +41,8 @@ pub struct MarkPose<T: Real> {
 pub struct MarkPoses<T: Real> {
     /// The pose with the smaller re-projection error.
     pub best: MarkPose<T>,
-    /// The pose with the larger error; `None` where the two are the same to a milliradian, or it is not before
-    /// the camera.
+    /// The pose with the larger error; `None` where the two are the same to a milliradian, or it is not
+    /// before the camera.
     pub other: Option<MarkPose<T>>,
 }
 

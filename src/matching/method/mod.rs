@@ -62,8 +62,8 @@ pub trait Costs: Sized {
     /// Takes row `y` of both images, before [`Self::select`].
     fn enter(frame: &mut Frame<'_>, y: usize, lines: [&Rows5<'_>; 2]);
     /// Adds row `bottom` to the costs, while there are `lines`, and selects the winners of `row`, where there
-    /// is one. It is called for every row, because it divides the workspace for the stages behind it. `MOST` is
-    /// as for [`Isa::window`](super::backend::Isa::window).
+    /// is one. It is called for every row, because it divides the workspace for the stages behind it. `MOST`
+    /// is as for [`Isa::window`](super::backend::Isa::window).
     fn select<const MOST: usize>(
         frame: &mut Frame<'_>,
         bottom: usize,

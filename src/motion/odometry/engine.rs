@@ -89,7 +89,7 @@ impl<T: Real, const N: usize> OdometryMemory<T, N> {
 }
 
 impl<T: Real> OdometryState<T> {
-    /// Of an odometry that waits for [`OdometryView::start`].
+    /// The state of an odometry that waits for a start. All zeros.
     pub const fn new() -> Self {
         let progress = Progress {
             rig: Vec::new(),
@@ -171,7 +171,7 @@ impl<'a, T: Real> OdometryView<'a, T> {
 
     /// The next frame.
     ///
-    /// The work is bounded: the points times the features that are looked at, [`OdometryConfig::most_samples`]
+    /// The work is bounded: the points times the features looked at, [`OdometryConfig::most_samples`]
     /// samples, some twenty passes over the points, ten steps of alignment for each in each picture, and
     /// one search along the row for each new one.
     pub fn step(&mut self, frame: &Frame<'_>) -> Result<Step<T>, OdometryError> {

@@ -41,8 +41,8 @@ mod point_map;
 mod tracking;
 mod initialization;
 mod motion_test;
-mod engine;
 mod observed;
+mod engine;
 mod sliding_window;
 mod scale;
 

@@ -13,8 +13,9 @@ use super::{
 /// each cell, and beside them 13 for every pixel of a line and 69 for every cell of a row. The work for a
 /// line is bounded by its length, and that for a stack grows with the number of frames.
 ///
-/// In running order: lines are smoothed ([`binomial`]); [`modified_laplacian`]; summed up in cells, then
-/// twice over windows; their logarithms pass through the cells, which keep the last eleven frames and the
+/// In running order: lines are smoothed ([`binomial`](super::binomial)) and measured
+/// ([`modified_laplacian`](super::modified_laplacian)); the measure is summed up in cells, then twice over
+/// windows; their logarithms pass through the cells, which keep the last eleven frames and the
 /// peak so far: a parabola through seven logarithms, or through eleven where it is broad and noise would move
 /// its top. A peak is found the better, the more frames it spans; three are enough.
 ///

@@ -172,7 +172,7 @@ impl<'a> FeatureDetectorView<'a> {
             state.find(row, scores.around(row, newest - CIRCLE), &mut cells);
         }
         if let Some(row) = newest.checked_sub(MARGIN) {
-            state.describe(row, &smooth.around(row, newest - SMOOTHING), &mut cells);
+            state.describe(row, &smooth, &mut cells);
         }
         state.emit(newest, &mut cells, out);
         Ok(())

@@ -3,6 +3,7 @@
 use super::grid::{self, CornerSlot};
 use super::pattern::PATCH_RADIUS;
 use super::{Corner, Descriptor, Feature, FeatureConfig, Orientation, Patch, PatchOrientation, refine};
+use crate::imaging::RowRing;
 use core::num::NonZero;
 use heapless::VecView;
 
@@ -91,18 +92,21 @@ impl FeatureDetectorState {
     }
 
     /// Where a row's corners are, to a fraction of a pixel, and what they look like.
+    // Alone, so that the rows of a patch are on the stack while they are needed.
+    #[inline(never)]
     pub(super) fn describe(
         &self,
         row: usize,
-        rows: &[&[u8]; Patch::SIDE],
+        smooth: &RowRing<'_, u8, { Patch::SIDE }>,
         cells: &mut [&mut [CornerSlot]; 2],
     ) {
         let (cell_px, _) = self.cell();
+        let rows = smooth.around(row, row + PATCH_RADIUS as usize);
         let Some(cells) = cells.get_mut(row / cell_px % 2) else { return };
         let waiting =
             cells.iter_mut().filter(|slot| slot.corner.score > 0 && usize::from(slot.corner.row) == row);
         for slot in waiting {
-            let Some(patch) = Patch::cut(rows, slot.corner.column.into()) else { continue };
+            let Some(patch) = Patch::cut(&rows, slot.corner.column.into()) else { continue };
             let turn = match self.config.orientation {
                 Orientation::Upright => PatchOrientation::NONE,
                 Orientation::Centroid => patch.direction(),

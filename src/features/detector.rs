@@ -34,7 +34,7 @@ error_text!(FeatureLineError {
 /// Finds a picture's features line by line: the strongest corners of every cell, with their descriptors.
 ///
 /// `W` is the longest line, px; `C` is how many corners a row of cells keeps: [`FeatureConfig::slots`]. The
-/// detector takes [`Self::BYTES`]: 42 bytes for every pixel of a line, and 80 for every corner that is kept.
+/// detector takes 42 bytes for every pixel of a line, and 80 for every corner that is kept.
 /// The work for a line is bounded by its length, but for its corners: a descriptor for each slot at most.
 ///
 /// In running order, with what each waits for: a row is smoothed (2 lines), scored (3), its local maxima
@@ -75,9 +75,6 @@ pub struct FeatureDetectorView<'a> {
 }
 
 impl<const W: usize, const C: usize> FeatureDetector<W, C> {
-    /// Bytes of a detector, but for a few words.
-    pub const BYTES: usize = size_of::<Self>();
-
     /// A detector that waits for [`Self::start`]. All zeros.
     pub const fn new() -> Self {
         let state = FeatureDetectorState::new();

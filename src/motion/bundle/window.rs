@@ -107,11 +107,6 @@ where
         }
     }
 
-    /// Bytes that it takes.
-    pub const fn bytes() -> usize {
-        size_of::<Self>()
-    }
-
     /// Takes everything out.
     pub fn clear(&mut self) {
         self.counts = [0; 3];

@@ -102,11 +102,6 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const OBSERVATIONS: usize
         }
     }
 
-    /// Bytes that it takes.
-    pub const fn bytes() -> usize {
-        size_of::<Self>()
-    }
-
     /// Begins with a rig, without a view.
     pub fn start(&mut self, rig: &OdometryRig<T>, config: RefinementConfig<T>) {
         self.view.clear();

@@ -16,7 +16,7 @@ use nalgebra::{Point2, Point3};
 /// use stereopsis::motion::structure::StructureWorkspace;
 ///
 /// static WORKSPACE: StructureWorkspace<f32, 4, 64, 256> = StructureWorkspace::new();
-/// assert!(StructureWorkspace::<f32, 4, 64, 256>::bytes() < 24 * 1024);
+/// assert!(size_of::<StructureWorkspace<f32, 4, 64, 256>>() < 24 * 1024);
 /// ```
 #[derive(Debug)]
 pub struct StructureWorkspace<T: Real, const VIEWS: usize, const POINTS: usize, const OBSERVATIONS: usize> {
@@ -76,11 +76,6 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const OBSERVATIONS: usize
             inliers: [false; POINTS],
             bundle: BundleWorkspace::EMPTY,
         }
-    }
-
-    /// The size of the workspace in bytes.
-    pub const fn bytes() -> usize {
-        size_of::<Self>()
     }
 
     /// The view of the workspace for these cameras and the points 0 to `points`, which

@@ -8,12 +8,59 @@ use core::cell::UnsafeCell;
 use core::fmt;
 use core::sync::atomic::{AtomicUsize, Ordering};
 
-/// Ring of `N` places, which takes `N - 1` items: with one place free, equal indices mean an empty ring.
-pub(super) struct Queue<T, const N: usize> {
+/// Places of a ring that are written and read next, for whoever keeps items in them: of `places` places one
+/// stays free, so that equal positions mean an empty ring. All zeros: empty.
+///
+/// One side alone calls [`Self::free`] and [`Self::fill`], the other one alone [`Self::waiting`] and
+/// [`Self::clear`].
+pub(crate) struct Positions {
     /// The place that is read next: the receiver alone moves it.
     read: AtomicUsize,
     /// The place that is written next: the sender alone moves it.
     written: AtomicUsize,
+}
+
+impl Positions {
+    /// Creates the positions of an empty ring.
+    pub const fn new() -> Self {
+        Self { read: AtomicUsize::new(0), written: AtomicUsize::new(0) }
+    }
+
+    /// Returns the place that the sender may write, unless the ring is full.
+    pub fn free(&self, places: usize) -> Option<usize> {
+        let here = self.written.load(Ordering::Relaxed);
+        // Acquire: the receiver has taken the item out of the place before it gives the place up.
+        (behind(here, places) != self.read.load(Ordering::Acquire)).then_some(here)
+    }
+
+    /// Hands the place of [`Self::free`], which was written, to the receiver.
+    pub fn fill(&self, place: usize, places: usize) {
+        // Release: the item is in its place before the receiver learns of it.
+        self.written.store(behind(place, places), Ordering::Release);
+    }
+
+    /// Returns the place that the receiver may read, unless the ring is empty.
+    pub fn waiting(&self) -> Option<usize> {
+        let here = self.read.load(Ordering::Relaxed);
+        // Acquire: what the sender has put into the place is seen.
+        (here != self.written.load(Ordering::Acquire)).then_some(here)
+    }
+
+    /// Gives the place of [`Self::waiting`], which was read, back to the sender.
+    pub fn clear(&self, place: usize, places: usize) {
+        // Release: the item is out of its place before the sender learns that it is free.
+        self.read.store(behind(place, places), Ordering::Release);
+    }
+}
+
+/// Returns the place behind another, the first one behind the last.
+fn behind(place: usize, places: usize) -> usize {
+    if place + 1 < places { place + 1 } else { 0 }
+}
+
+/// Ring of `N` places, which takes `N - 1` items.
+pub(super) struct Queue<T, const N: usize> {
+    positions: Positions,
     places: [Place<T>; N],
 }
 
@@ -30,7 +77,7 @@ impl<T, const N: usize> Queue<T, N> {
     pub const fn new() -> Self {
         const { assert!(N > 1, "a queue of N places takes N - 1 items") };
         let places = [const { Place(UnsafeCell::new(None)) }; N];
-        Self { read: AtomicUsize::new(0), written: AtomicUsize::new(0), places }
+        Self { positions: Positions::new(), places }
     }
 
     /// Drops what is in the ring.
@@ -43,30 +90,22 @@ impl<T, const N: usize> Queue<T, N> {
 
     /// Splits the ring into its two ends.
     pub fn split(&mut self) -> (Sender<'_, T>, Receiver<'_, T>) {
-        let ends = || Ends { read: &self.read, written: &self.written, places: &self.places };
+        let ends = || Ends { positions: &self.positions, places: &self.places };
         (Sender(ends()), Receiver(ends()))
     }
 }
 
 impl<T, const N: usize> fmt::Debug for Queue<T, N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut fields = f.debug_struct("Queue");
-        fields.field("read", &self.read).field("written", &self.written).finish_non_exhaustive()
+        let Positions { read, written } = &self.positions;
+        f.debug_struct("Queue").field("read", read).field("written", written).finish_non_exhaustive()
     }
 }
 
 /// What both ends of a ring see of it.
 struct Ends<'a, T> {
-    read: &'a AtomicUsize,
-    written: &'a AtomicUsize,
+    positions: &'a Positions,
     places: &'a [Place<T>],
-}
-
-impl<T> Ends<'_, T> {
-    /// The place behind another, the first one behind the last.
-    fn behind(&self, place: usize) -> usize {
-        if place + 1 < self.places.len() { place + 1 } else { 0 }
-    }
 }
 
 /// The end that puts items into a ring.
@@ -75,18 +114,13 @@ pub(super) struct Sender<'a, T>(Ends<'a, T>);
 impl<T> Sender<'_, T> {
     /// Puts an item into the ring; gives it back where the ring is full.
     pub fn send(&mut self, item: T) -> Result<(), T> {
-        let here = self.0.written.load(Ordering::Relaxed);
-        let next = self.0.behind(here);
-        // Acquire: the receiver has taken the item out of the place before it gives the place up.
-        if next == self.0.read.load(Ordering::Acquire) {
-            return Err(item);
-        }
-        let Some(place) = self.0.places.get(here) else { return Err(item) };
+        let Ends { positions, places } = &self.0;
+        let Some(here) = positions.free(places.len()) else { return Err(item) };
+        let Some(place) = places.get(here) else { return Err(item) };
         // SAFETY: the place is not between `read` and `written`, so it is this end's; `&mut self` is the only
         // sender.
         unsafe { *place.0.get() = Some(item) };
-        // Release: the item is in its place before the receiver learns of it.
-        self.0.written.store(next, Ordering::Release);
+        positions.fill(here, places.len());
         Ok(())
     }
 }
@@ -97,17 +131,13 @@ pub(super) struct Receiver<'a, T>(Ends<'a, T>);
 impl<T> Receiver<'_, T> {
     /// Takes the oldest item.
     pub fn receive(&mut self) -> Option<T> {
-        let here = self.0.read.load(Ordering::Relaxed);
-        // Acquire: what the sender has put into the place is seen.
-        if here == self.0.written.load(Ordering::Acquire) {
-            return None;
-        }
-        let place = self.0.places.get(here)?;
+        let Ends { positions, places } = &self.0;
+        let here = positions.waiting()?;
+        let place = places.get(here)?;
         // SAFETY: the place is between `read` and `written`, so it is this end's; `&mut self` is the only
         // receiver.
         let item = unsafe { (*place.0.get()).take() };
-        // Release: the item is out of its place before the sender learns that it is free.
-        self.0.read.store(self.0.behind(here), Ordering::Release);
+        positions.clear(here, places.len());
         item
     }
 }

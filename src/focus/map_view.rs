@@ -115,7 +115,8 @@ impl<'a> FocusMapView<'a> {
             return Err(FocusLineError::Length { needed: width });
         }
         let (mut lines, _) = RowRing::<_, LINES>::split(self.lines, width);
-        lines.row_mut(newest).copy_from_slice(line);
+        // They are as long: a copy of slices would ask once more, and panic.
+        lines.row_mut(newest).iter_mut().zip(line).for_each(|(place, &pixel)| *place = pixel);
         state.brightness += u64::from(line.iter().map(|&pixel| u32::from(pixel)).sum::<u32>());
         state.taken += 1;
         let is_last = state.taken == height;

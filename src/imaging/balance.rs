@@ -57,7 +57,9 @@ impl Balance {
         let has_contrast = spreads.iter().all(|spread| *spread >= 3 * GREY * count * count);
         let gain = (256 * spreads[0] + spreads[1] / 2).checked_div(spreads[1]).filter(|_| has_contrast);
         let gain = gain.map_or(256, |gain| gain.clamp(128, 512));
-        let offset = (256 * sums[0] as i32 - gain as i32 * sums[1] as i32).div_euclid((GREY * count) as i32);
+        let difference = 256 * sums[0] as i32 - gain as i32 * sums[1] as i32;
+        // Not 0; said so because a division by what might be 0 brings a panic.
+        let offset = difference.checked_div_euclid((GREY * count) as i32).unwrap_or(0);
         Self { gain_256ths: gain as u16, offset_256ths: offset }
     }
 

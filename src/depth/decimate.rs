@@ -1,6 +1,7 @@
 //! Decimation: disparity rows downsampled by the median of blocks.
 
 use crate::units::Disparity;
+use core::num::NonZero;
 
 /// Downsamples `N x N` pixels to one, `N` from 2 to 8, row by row: the median of the block's answers, the
 /// nearer of two middle ones, where at least half of its pixels have one.
@@ -81,17 +82,8 @@ impl<'a, const N: usize> DecimatorView<'a, N> {
         if !self.taken.is_multiple_of(N) {
             return None;
         }
-        for (u, out) in out.iter_mut().enumerate().take(width / N) {
-            let mut block = [0; MOST];
-            let mut count = 0;
-            let rows = self.rows.chunks_exact(most.max(1)).take(N);
-            let answers = rows.flat_map(|row| row.iter().skip(u * N).take(N)).filter(|d| d.is_some());
-            for (answer, to) in answers.zip(&mut block) {
-                *to = answer.raw();
-                count += 1;
-            }
-            *out = median(&mut block, count).filter(|_| 2 * count >= N * N).unwrap_or(Disparity::NONE);
-        }
+        let block = const { if let Some(block) = NonZero::new(N) { block } else { NonZero::<usize>::MIN } };
+        shrink(self.rows, most, width, block, out);
         Some(*self.taken / N - 1)
     }
 }
@@ -99,6 +91,28 @@ impl<'a, const N: usize> DecimatorView<'a, N> {
 impl<const W: usize, const N: usize> Default for Decimator<W, N> {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+/// Writes the medians of blocks of `block` x `block` pixels, from `block` rows that begin `stride` words
+/// apart and have `width` columns.
+pub(crate) fn shrink(
+    rows: &[Disparity],
+    stride: usize,
+    width: usize,
+    block: NonZero<usize>,
+    out: &mut [Disparity],
+) {
+    let side = block.get();
+    for (u, out) in out.iter_mut().enumerate().take(width / block) {
+        let mut values = [0; MOST];
+        let mut count = 0;
+        let lines = (0..side).filter_map(|y| rows.get(y * stride + u * side..y * stride + (u + 1) * side));
+        for (answer, to) in lines.flatten().filter(|d| d.is_some()).zip(&mut values) {
+            *to = answer.raw();
+            count += 1;
+        }
+        *out = median(&mut values, count).filter(|_| 2 * count >= side * side).unwrap_or(Disparity::NONE);
     }
 }
 

@@ -11,6 +11,7 @@ use super::pattern::{PATCH_RADIUS, PATTERN};
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[repr(transparent)]
 pub struct Descriptor(pub [u32; 8]);
 
 impl Descriptor {

@@ -139,6 +139,15 @@ impl<'a> FeatureDetectorView<'a> {
     /// The next line of grey pixels. The features of cells that are done are added to `out`; for which it has
     /// no place are counted. With the last line of the frame, all are done.
     pub fn push(&mut self, line: &[u8], out: &mut VecView<Feature>) -> Result<(), FeatureLineError> {
+        self.push_into(line, &mut |feature| out.push(feature).is_ok())
+    }
+
+    /// Takes the next line as [`Self::push`] does, with features to what says whether it has room for one.
+    pub(crate) fn push_into(
+        &mut self,
+        line: &[u8],
+        out: &mut impl FnMut(Feature) -> bool,
+    ) -> Result<(), FeatureLineError> {
         let state = &mut *self.state;
         let FeatureConfig { width, height, threshold, .. } = state.config;
         if state.taken >= height {

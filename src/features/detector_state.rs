@@ -5,7 +5,6 @@ use super::pattern::PATCH_RADIUS;
 use super::{Corner, Descriptor, Feature, FeatureConfig, Orientation, Patch, PatchOrientation, refine};
 use crate::imaging::RowRing;
 use core::num::NonZero;
-use heapless::VecView;
 
 /// Lines that the smoothing of a row waits for.
 pub(super) const SMOOTHING: usize = 2;
@@ -116,12 +115,12 @@ impl FeatureDetectorState {
         }
     }
 
-    /// Gives out the rows of cells that are done with the line `newest`.
+    /// Gives out the rows of cells that are done with the line `newest`, to what says whether it has room.
     pub(super) fn emit(
         &mut self,
         newest: usize,
         cells: &mut [&mut [CornerSlot]; 2],
-        out: &mut VecView<Feature>,
+        out: &mut impl FnMut(Feature) -> bool,
     ) {
         let FeatureConfig { height, level, .. } = self.config;
         let (cell_px, per_cell) = self.cell();
@@ -138,7 +137,7 @@ impl FeatureDetectorState {
                 waiting = others;
                 while let Some(slot) = grid::take_strongest(cell) {
                     let feature = Feature::new(&slot.corner, level, slot.descriptor);
-                    self.counts.dropped += u32::from(out.push(feature).is_err());
+                    self.counts.dropped += u32::from(!out(feature));
                 }
             }
         }

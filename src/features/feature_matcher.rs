@@ -129,6 +129,17 @@ impl<'a> FeatureMatcherView<'a> {
         search: &MatchConfig,
         out: &mut VecView<Match>,
     ) -> Result<u32, MatchConfigError> {
+        self.run_into(left, right, search, |found| out.push(found).is_ok())
+    }
+
+    /// Matches two lists as [`Self::run`] does, with matches to what says whether it has room for one.
+    pub(crate) fn run_into(
+        &mut self,
+        left: &[Feature],
+        right: &[Feature],
+        search: &MatchConfig,
+        mut out: impl FnMut(Match) -> bool,
+    ) -> Result<u32, MatchConfigError> {
         search.check()?;
         let needed = left.len().max(right.len());
         let slots = self.slots.get_mut(..needed).ok_or(MatchConfigError::TooMany { needed })?;
@@ -145,7 +156,7 @@ impl<'a> FeatureMatcherView<'a> {
             let back = slots.get(usize::from(best.partner)).map(|slot| slot.of_right.partner);
             if best.different < NOBODY && back == Some(here) {
                 let found = Match { left: here, right: best.partner, different: best.different };
-                dropped += u32::from(out.push(found).is_err());
+                dropped += u32::from(!out(found));
             }
         }
         Ok(dropped)

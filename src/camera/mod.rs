@@ -66,6 +66,8 @@ pub use handoff::{EmptyLine, FilledLine, HandedLines, LineConsumer, LineProducer
 pub use pair::{CameraPair, PairError, Pairing, RowSkew};
 pub use ping_pong::{Half, PingPong};
 pub use polled::PolledLines;
+#[cfg(feature = "ffi")]
+pub(crate) use queue::Positions;
 #[cfg(feature = "async")]
 pub use sensors::{AsyncHm01b0, AsyncMt9v034};
 pub use sensors::{

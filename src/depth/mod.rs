@@ -26,6 +26,8 @@ mod scale;
 mod table;
 mod temporal;
 
+#[cfg(feature = "ffi")]
+pub(crate) use decimate::shrink;
 pub use decimate::{Decimator, DecimatorView};
 #[cfg(feature = "embedded-graphics")]
 pub use draw::DisparityColours;

@@ -15,7 +15,15 @@
 //! * [`Status`]: the result of every call.
 //! * [`Rectifier`]: raw lines and a calibration record to rectified lines; C holds a [`RectifierHandle`].
 //! * [`Instance`]: rectified lines to rows, for one method and one capacity; C holds a [`Handle`].
+//! * [`line_queue_init`] and those beside it: lines from an interrupt to the program; C holds a
+//!   [`LineQueueHandle`].
+//! * [`balance_between`], [`decimate`], [`temporal_row`] and those beside them: what is done with lines
+//!   before the matcher and with rows after it.
+//! * [`detector_push`], [`match_features`] and those beside them: lines to features, and to matches of two
+//!   views; C holds a [`DetectorHandle`].
 //! * [`two_view_fundamental`] and those beside it: matches of two views to F, pose and points.
+//! * [`odometry_step`]: the motion of a pair; C holds an [`OdometryHandle`].
+//! * [`focus_push`]: depth from focus; C holds a [`FocusHandle`].
 //! * [`instantiate_c_api`]: their names in C, from which `cargo xtask header` makes
 //!   `stereopsis.h` beside this file.
 //!
@@ -29,18 +37,33 @@
 //! * Numbers that choose something come as integers and are checked: no number is taken for an enum.
 //! * A call does not panic. On a bare-metal target the program that links the library proves it: see the
 //!   example's panic handler.
-//! * One call at a time for one handle. Handles share nothing: two of them may be used by two threads.
+//! * One call at a time for one handle, or for each side of a line queue's. Handles share nothing: two of
+//!   them may be used by two threads.
 //! * What cannot be checked is up to the caller: a pointer that is neither null nor misaligned points to as
 //!   many bytes as its function says.
 
+mod after;
+mod balance;
 mod config;
+mod detection;
 mod faults;
+mod feature_matches;
+mod features;
+mod focus;
+mod focus_types;
 mod instance;
+mod line_queue;
 mod names;
+mod names_after;
+mod names_features;
+mod names_focus;
+mod names_line_queue;
 mod names_plain;
 mod names_rectifier;
 mod names_two_view;
 mod noise;
+mod odometry;
+mod odometry_types;
 mod points;
 mod record;
 mod rectifier;
@@ -49,19 +72,51 @@ mod rig;
 mod row;
 mod state;
 mod status;
+mod status_texts;
 mod two_view;
 
+pub use after::{
+    CTemporal, STEREOPSIS_ORIGIN_AVERAGED, STEREOPSIS_ORIGIN_HELD, STEREOPSIS_ORIGIN_NEW,
+    STEREOPSIS_ORIGIN_NOTHING, decimate, temporal_default, temporal_forget, temporal_row,
+};
+pub use balance::{CBalance, CHistogram, balance_between, balance_line, histogram_clear, histogram_line};
 pub use config::{
     CConfig, STEREOPSIS_NOISE_HIGH, STEREOPSIS_NOISE_LOW, STEREOPSIS_NOISE_NONE, STEREOPSIS_NOT_CHECKED,
     STEREOPSIS_PRESET_DEFAULT, STEREOPSIS_PRESET_DENSE, STEREOPSIS_PRESET_STRICT, config_default,
     config_noise,
 };
+pub use detection::{CDetection, CDetectionCounts, detection_default};
 pub use faults::{
     CCounters, STEREOPSIS_LOST_DROPPED, STEREOPSIS_LOST_LATE, STEREOPSIS_LOST_STALE, STEREOPSIS_LOST_TORN,
 };
+pub use feature_matches::{CSearch, match_features, search_default};
+pub use features::{
+    CFeature, DetectorHandle, detector_bytes, detector_counts, detector_deinit, detector_init, detector_push,
+    detector_start,
+};
+pub use focus::{
+    FocusHandle, focus_begin_frame, focus_bytes, focus_deinit, focus_finish, focus_init, focus_push,
+    focus_row, focus_start,
+};
+pub use focus_types::{
+    CFocusConfig, CFocusPeak, STEREOPSIS_FOCUS_BROAD, STEREOPSIS_FOCUS_FEW, STEREOPSIS_FOCUS_FOUND,
+    STEREOPSIS_FOCUS_UNTEXTURED, focus_default,
+};
 pub use instance::Instance;
+pub use line_queue::{
+    CLine, LineQueueHandle, line_queue_begin, line_queue_bytes, line_queue_deinit, line_queue_done,
+    line_queue_finish, line_queue_init, line_queue_next, line_queue_overruns,
+};
 #[doc(hidden)]
 pub use names::{first_of, instantiate_c_api};
+#[doc(hidden)]
+pub use names_after::c_api_before_and_after;
+#[doc(hidden)]
+pub use names_features::c_api_of_features;
+#[doc(hidden)]
+pub use names_focus::c_api_of_focus_and_motion;
+#[doc(hidden)]
+pub use names_line_queue::c_api_of_line_queues;
 #[doc(hidden)]
 pub use names_plain::c_api_without_state;
 #[doc(hidden)]
@@ -69,6 +124,15 @@ pub use names_rectifier::c_api_of_rectification;
 #[doc(hidden)]
 pub use names_two_view::c_api_of_two_views;
 pub use noise::{CNoiseMeter, noise_clear, noise_level, noise_line};
+pub use odometry::{
+    OdometryHandle, odometry_bytes, odometry_deinit, odometry_init, odometry_start, odometry_step,
+};
+pub use odometry_types::{
+    COdometryConfig, CPicture, CStep, STEREOPSIS_MOTION_FIRST, STEREOPSIS_MOTION_FOUND,
+    STEREOPSIS_MOTION_LOST, STEREOPSIS_MOTION_RESTARTED, STEREOPSIS_MOTION_ROTATION_ONLY,
+    STEREOPSIS_MOTION_STATIONARY, STEREOPSIS_MOTION_STEP_UNKNOWN, STEREOPSIS_MOTION_TRACKED,
+    odometry_default,
+};
 pub use points::{CPoint, metres, points};
 pub use record::{CCameras, STEREOPSIS_ALPHA_NATURAL, STEREOPSIS_RECORD_BYTES, record_read};
 pub use rectifier::Rectifier;
@@ -80,7 +144,8 @@ pub use row::{
     STEREOPSIS_FLAG_UNTEXTURED, STEREOPSIS_NONE, STEREOPSIS_STEPS_PER_PX,
 };
 pub use state::{Handle, STEREOPSIS_ALIGN, memory_bytes};
-pub use status::{STEREOPSIS_ABI, Status, status_text, version_text};
+pub use status::{STEREOPSIS_ABI, Status};
+pub use status_texts::{status_text, version_text};
 pub use two_view::{
     CAgreement, CMatch, CPinhole, CPose, two_view_eight_point, two_view_fundamental, two_view_pose,
     two_view_triangulate,

@@ -33,8 +33,7 @@ macro_rules! instantiate_c_api {
      $(, height = $height:expr)? $(, lines = $lines:expr)? $(, prefix = $prefix:literal)? $(,)?) => {
         #[doc(hidden)]
         type StereopsisRectifier = $crate::ffi::Rectifier<
-            { $crate::ffi::rectifier_width($width) },
-            { $crate::ffi::first_of([$($lines,)? 33]) },
+            { $crate::ffi::rectifier_width($width) }, { $crate::ffi::first_of([$($lines,)? 33]) },
             { $crate::ffi::rectifier_slots($width, $crate::ffi::first_of([$($height,)? $width])) },
         >;
         $crate::ffi::instantiate_c_api!(@functions $method, $width, $disparities, [$($prefix)?]);
@@ -120,9 +119,8 @@ macro_rules! instantiate_c_api {
                 unsafe { StereopsisInstance::init(memory, length, false, handle) }
             }
 
-            /// Starts an instance in memory that was never written, such as that of `malloc`: it is not
-            /// read, and a matcher that it still holds is overwritten. Valgrind and sanitizers have nothing
-            /// to report.
+            /// Creates a matcher in memory that was never written, such as that of `malloc`: it is not read,
+            /// and a matcher that it still holds is overwritten.
             #[unsafe(export_name = concat!($($prefix,)? "stereopsis_init_fresh"))]
             pub unsafe extern "C" fn stereopsis_init_fresh(
                 memory: *mut c_void,
@@ -176,8 +174,8 @@ macro_rules! instantiate_c_api {
                 unsafe { $crate::ffi::config_noise::<$crate::matching::$method>(preset, noise, config) }
             }
 
-            /// Checks a configuration, which is copied, and prepares for the first frame. Another call
-            /// changes the configuration, drops a frame that is under way, and clears the counters.
+            /// Checks a configuration, which is copied, and prepares for the first frame. Another call drops
+            /// a frame that is under way, and clears the counters.
             #[unsafe(export_name = concat!($($prefix,)? "stereopsis_start"))]
             pub unsafe extern "C" fn stereopsis_start(handle: *mut Handle, config: *const CConfig) -> Status {
                 // SAFETY: as above.
@@ -282,9 +280,13 @@ macro_rules! instantiate_c_api {
                 unsafe { StereopsisInstance::sigma_px(handle, sigma_px, count) }
             }
 
+            $crate::ffi::c_api_of_line_queues!([$($prefix)?]);
             $crate::ffi::c_api_of_rectification!([$($prefix)?]);
             $crate::ffi::c_api_without_state!([$($prefix)?]);
+            $crate::ffi::c_api_before_and_after!([$($prefix)?]);
             $crate::ffi::c_api_of_two_views!([$($prefix)?]);
+            $crate::ffi::c_api_of_features!([$($prefix)?]);
+            $crate::ffi::c_api_of_focus_and_motion!([$($prefix)?]);
         }
     };
 }

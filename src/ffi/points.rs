@@ -20,7 +20,7 @@ pub struct CPoint {
 }
 
 /// Returns whether `count` values at `a` share bytes with `count` values at `b`.
-fn overlap<A, B>(a: *const A, b: *const B, count: usize) -> bool {
+pub(super) fn overlap<A, B>(a: *const A, b: *const B, count: usize) -> bool {
     let bytes = |size: usize| count.saturating_mul(size);
     share_bytes(a.cast(), bytes(size_of::<A>()), b.cast(), bytes(size_of::<B>()))
 }

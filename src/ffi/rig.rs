@@ -25,10 +25,8 @@ pub struct CRig {
 }
 
 impl CRig {
-    /// Creates the depth scale of the rig.
-    fn scale(&self) -> Result<DepthScale, Status> {
-        let rig = RectifiedRig::with_offset(self.focal_px, self.baseline_m, self.cx, self.cy, self.cx_right)?;
-        Ok(DepthScale::new(&rig)?)
+    fn checked(&self) -> Result<RectifiedRig, Status> {
+        Ok(RectifiedRig::with_offset(self.focal_px, self.baseline_m, self.cx, self.cy, self.cx_right)?)
     }
 }
 
@@ -89,7 +87,17 @@ pub unsafe fn millimetres(
 ///
 /// `rig` is null or points to a rig.
 pub(super) unsafe fn scale_of(rig: *const CRig) -> Result<DepthScale, Status> {
+    // SAFETY: the caller's promise.
+    Ok(DepthScale::new(&unsafe { rig_at(rig) }?)?)
+}
+
+/// Returns the rig at a pointer.
+///
+/// # Safety
+///
+/// `rig` is null or points to a rig.
+pub(super) unsafe fn rig_at(rig: *const CRig) -> Result<RectifiedRig, Status> {
     checked(rig)?;
     // SAFETY: the caller's promise, it is aligned, and every bit pattern is a rig.
-    unsafe { rig.read() }.scale()
+    unsafe { rig.read() }.checked()
 }

@@ -147,12 +147,49 @@ impl<C: Content> State<C> {
         made.map_or_else(|status| status, |_| Status::Ok)
     }
 
-    /// Returns the state behind a handle.
+    /// Creates a content that has as many bytes of the caller's memory behind it as it says, all of them 0,
+    /// and writes the handle, null on an error unless `handle` itself is invalid. The memory is not read.
     ///
     /// # Safety
     ///
-    /// `handle` is null or points to as many bytes as a state has, and for `'a` nothing else uses them.
-    pub(super) unsafe fn open<'a>(handle: *mut C::Handle) -> Result<&'a mut Self, Status> {
+    /// As [`Self::init_handle`] asks.
+    pub(super) unsafe fn init_with_tail(
+        memory: *mut c_void,
+        length: usize,
+        content: Result<(C, usize), Status>,
+        handle: *mut *mut C::Handle,
+    ) -> Status {
+        let (content, tail) = match content {
+            Ok((_, tail)) if tail > length.saturating_sub(size_of::<Self>()) => {
+                (Err(Status::MemoryTooShort), 0)
+            }
+            Ok((content, tail)) => (Ok(content), tail),
+            Err(status) => (Err(status), 0),
+        };
+        let stated = if content.is_ok() { length } else { 0 };
+        // SAFETY: the caller's promise; a content that is refused has no memory, which is refused as well.
+        let made = unsafe { Self::init_handle(memory, stated, false, handle) };
+        match (made, content) {
+            (Status::Ok, Ok(content)) => {
+                let state = memory.cast::<Self>();
+                // SAFETY: the state was just made there, and the tail behind it is inside of the memory.
+                unsafe {
+                    (&raw mut (*state).content).write(content);
+                    state.add(1).cast::<u8>().write_bytes(0, tail);
+                }
+                Status::Ok
+            }
+            (Status::MemoryTooShort, Err(status)) | (status, _) => status,
+        }
+    }
+
+    /// Returns the state behind a handle that several calls may use at the same time.
+    ///
+    /// # Safety
+    ///
+    /// `handle` is null or points to as many bytes as a state has, and for `'a` nothing changes them but what
+    /// a shared content allows.
+    pub(super) unsafe fn shared<'a>(handle: *mut C::Handle) -> Result<&'a Self, Status> {
         let state = handle.cast::<Self>();
         checked(state)?;
         // SAFETY: the state is aligned and its bytes are there; every bit pattern is an integer.
@@ -160,8 +197,20 @@ impl<C: Content> State<C> {
         if mark != Self::mark_of(state) {
             return Err(Status::NotInitialised);
         }
+        // SAFETY: the mark says that `init` has made a state at this very address.
+        Ok(unsafe { &*state })
+    }
+
+    /// Returns the state behind a handle.
+    ///
+    /// # Safety
+    ///
+    /// `handle` is null or points to as many bytes as a state has, and for `'a` nothing else uses them.
+    pub(super) unsafe fn open<'a>(handle: *mut C::Handle) -> Result<&'a mut Self, Status> {
+        // SAFETY: the caller's promise; the reference is not kept.
+        let _ = unsafe { Self::shared(handle) }?;
         // SAFETY: the mark says that `init` has made a state at this very address, and nothing else uses it.
-        Ok(unsafe { &mut *state })
+        Ok(unsafe { &mut *handle.cast::<Self>() })
     }
 
     /// Gives the memory behind a handle up.
@@ -205,4 +254,12 @@ pub(super) fn checked<T>(pointer: *const T) -> Result<(), Status> {
 pub(super) fn share_bytes(a: *const c_void, a_length: usize, b: *const c_void, b_length: usize) -> bool {
     let (a, b) = (a.addr(), b.addr());
     a < b.saturating_add(b_length) && b < a.saturating_add(a_length)
+}
+
+/// Returns whether a run of bytes that is written overlaps another one, or one that is read.
+pub(super) fn any_shared(written: &[(*const c_void, usize)], read: &[(*const c_void, usize)]) -> bool {
+    written.iter().enumerate().any(|(i, &(one, length))| {
+        let others = written.iter().skip(i + 1).chain(read);
+        others.into_iter().any(|&(other, bytes)| share_bytes(one, length, other, bytes))
+    })
 }

@@ -1,8 +1,7 @@
-//! Status codes of the C interface, and their texts.
+//! Status codes of the C interface.
 
 use crate::matching::MatchError;
 use crate::pipeline::PushError;
-use core::ffi::CStr;
 
 /// Version of this interface, which changes when a program compiled with another header would go wrong.
 pub const STEREOPSIS_ABI: u32 = 6;
@@ -18,6 +17,12 @@ pub enum Status {
     NoRowYet = 1,
     /// All rows of the frame are out.
     FrameDone = 2,
+    /// Line queue: no line waits.
+    NoLineYet = 3,
+    /// Line queue: all slots hold lines that wait, so that this one is lost, and counted.
+    NoSlot = 4,
+    /// Features: the list has no room for all matches.
+    Dropped = 5,
     /// A pointer is null.
     Null = -1,
     /// A pointer is not aligned as what it points to has to be.
@@ -135,92 +140,40 @@ pub enum Status {
     PoseAmbiguous = -57,
     /// Two views: the rotation is none, or both cameras stand in one place.
     PoseNumbers = -58,
-}
-
-impl Status {
-    /// Returns the text of a status, one line without an end.
-    pub fn text(self) -> &'static CStr {
-        status_text(self as i32)
-    }
-}
-
-/// Text of every status.
-const TEXTS: [(Status, &CStr); 61] = [
-    (Status::Ok, c"done"),
-    (Status::NoRowYet, c"the first row comes some lines later"),
-    (Status::FrameDone, c"all rows of the frame are out"),
-    (Status::Null, c"a pointer is null"),
-    (Status::Misaligned, c"a pointer is misaligned"),
-    (Status::MemoryTooShort, c"the memory is too short"),
-    (Status::AlreadyInitialised, c"the memory holds a matcher already"),
-    (Status::NotInitialised, c"the memory holds no such matcher or rectifier of this library"),
-    (Status::Overlap, c"an argument points into the matcher's memory, or two results overlap"),
-    (Status::TooMany, c"there are too many elements"),
-    (Status::NotStarted, c"the matcher or rectifier was not started"),
-    (Status::NotBegun, c"no frame was begun"),
-    (Status::LineLength, c"a line must have the width that the matcher or rectifier was started for"),
-    (Status::NoLineLeft, c"all lines of the frame are in"),
-    (Status::LinesMissing, c"lines of the frame are missing"),
-    (Status::Preset, c"there is no such preset"),
-    (Status::Width, c"the width must be 1 to stereopsis_max_width()"),
-    (Status::Height, c"the height must be at least 1"),
-    (Status::Disparities, c"the disparities must be 16 to stereopsis_max_disparities()"),
-    (Status::MinDisparity, c"the search must end at 2046 px"),
-    (Status::LeftRight, c"the left-right check must be 0 to 255 px, or -1"),
-    (Status::Uniqueness, c"the uniqueness must be 0 to 99 percent, or -1"),
-    (Status::Smoothing, c"the smoothing radius must be at most 8"),
-    (Status::SurfaceStep, c"the step of a surface must be at most 32"),
-    (Status::RigNotFinite, c"a number of the rig is not finite"),
-    (Status::RigFocalLength, c"the focal length must be greater than zero"),
-    (Status::RigBaseline, c"the baseline must be greater than zero"),
-    (Status::RigTooLarge, c"focal length times baseline must be under 134000 px m"),
-    (Status::RigTooSmall, c"focal length times baseline must be over 0.0000156 px m"),
-    (Status::RigOffset, c"the principal points must be under 30000 px apart"),
-    (Status::Gradient, c"the range of gradients must be 1 to 14"),
-    (Status::Penalties, c"the penalties must be in order, and their sums within bytes"),
-    (Status::Noise, c"there is no such level of noise"),
-    (Status::Fault, c"there is no such fault of a line"),
-    (Status::RecordTooShort, c"a record has 328 bytes; these are fewer"),
-    (Status::NotARecord, c"the bytes are no record of a rig, which begins with STRG"),
-    (Status::RecordVersion, c"the record is of another version"),
-    (Status::RecordChecksum, c"the record's checksum is wrong"),
-    (Status::RecordLens, c"the record has a lens of another model"),
-    (Status::RecordNumbers, c"the record's numbers are no stereo rig"),
-    (Status::RawSizes, c"the cameras' raw images differ in size"),
-    (Status::RectifySwapped, c"the cameras are swapped"),
-    (Status::RectifyVertical, c"the cameras stand one above the other"),
-    (Status::RectifyPose, c"the cameras do not stand side by side"),
-    (Status::RectifyNothing, c"the rectified images would show nothing of one of the cameras"),
-    (Status::RectifyAlpha, c"alpha must be from 0 to 1, or -1"),
-    (Status::RectifySize, c"the images are larger than the library was built for, or under 2 px"),
-    (Status::RectifyBent, c"a lens bends too much between 16 pixels"),
-    (Status::RectifyLines, c"more raw lines are needed than the library was built for"),
-    (Status::LineWaiting, c"a rectified line has to be taken first"),
-    (Status::Row, c"there is no such row"),
-    (Status::TooFewMatches, c"eight matches at least are needed"),
-    (Status::MatchNotFinite, c"a coordinate of a match is not finite"),
-    (Status::MatchThreshold, c"the threshold must be greater than zero"),
-    (Status::MatchesDisagree, c"no fundamental matrix has more than seven matches agree with it"),
-    (Status::MatchesOnPlane, c"the matches are on a plane, or the camera has only rotated"),
-    (Status::MatchesDegenerate, c"the matches leave the fundamental matrix undetermined"),
-    (Status::FundamentalRank, c"the matrix must be finite and of rank two at least"),
-    (Status::PinholeNumbers, c"the numbers are those of no camera"),
-    (Status::PoseAmbiguous, c"no pose has more than half of the matches in front of both cameras"),
-    (Status::PoseNumbers, c"the rotation is none, or both cameras stand in one place"),
-];
-
-/// Returns the text of a number that may be a status.
-pub fn status_text(code: i32) -> &'static CStr {
-    let found = TEXTS.iter().find(|(status, _)| *status as i32 == code);
-    found.map_or(c"no status of this library", |(_, text)| text)
-}
-
-/// Returns the version of the library.
-pub const fn version_text() -> &'static CStr {
-    match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
-        Ok(text) => text,
-        Err(_) => c"",
-    }
+    /// Line queue: `stereopsis_line_queue_begin` has to come first, and to give a slot.
+    LineNotBegun = -59,
+    /// Line queue: `stereopsis_line_queue_next` has to come first, and to give a line.
+    LineNotTaken = -60,
+    /// Line queue: a line has 1 to 65535 bytes.
+    LineBytes = -61,
+    /// Decimation: a block has 2 to 8 pixels a side.
+    Block = -62,
+    /// Temporal filter: the shift is over 4.
+    Shift = -63,
+    /// Features: the lines are longer than those that the detector was created for.
+    DetectorWidth = -64,
+    /// Features: a cell has under 16 px a side, or no corner is kept in it.
+    DetectorCells = -65,
+    /// Features: more corners are kept in a row of cells than the detector has slots for.
+    DetectorSlots = -66,
+    /// Features: the ratio is not 1 to 100 percent, or a distance is negative or not a number.
+    Search = -67,
+    /// Focus: a frame has no pixel, or the map was created for fewer pixels, columns or cells.
+    FocusSize = -68,
+    /// Focus: a cell has no side, the radius is too large, or a window counts over 16384 pixels.
+    FocusWindow = -69,
+    /// Focus: a stack has at most 65535 frames.
+    FocusFrames = -70,
+    /// Focus: the scale of a frame is not 1/2 to 2.
+    FocusScale = -71,
+    /// Focus: `stereopsis_focus_finish` has to come first.
+    FocusNotFinished = -72,
+    /// Odometry: it follows 16 to 65534 points.
+    OdometryPoints = -73,
+    /// Odometry: a length of the configuration is negative or not a number.
+    OdometryConfig = -74,
+    /// Odometry: the pictures differ in size, or from those of the frames before.
+    PictureSize = -75,
 }
 
 impl From<PushError> for Status {

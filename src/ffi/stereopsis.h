@@ -76,6 +76,32 @@
    (size_t)16 * ((((size_t)(width) + 15) / 16 + 3) * (((size_t)(height) + 15) / 16 + 3) + \
                  ((size_t)(height) + 1) / 2))
 
+/**
+ * Bytes that are enough for a queue of `slots` lines of `line_bytes` bytes, on any target.
+ */
+#define STEREOPSIS_LINE_QUEUE_BYTES(line_bytes, slots) \
+  ((size_t)48 + (size_t)(slots) * (((size_t)(line_bytes) + 7) / 8 * 8 + 32))
+
+/**
+ * Bytes that are enough for a detector of features, on any target, for lines of up to `width`
+ * pixels and `slots` corners of a row of cells.
+ */
+#define STEREOPSIS_DETECTOR_BYTES(width, slots) \
+  ((size_t)64 + (size_t)42 * (width) + (size_t)80 * (slots))
+
+/**
+ * Bytes that are enough for a focus map, on any target, for lines of up to `width` pixels, rows of
+ * up to `columns` cells, and frames of up to `cells` cells.
+ */
+#define STEREOPSIS_FOCUS_BYTES(width, columns, cells) \
+  ((size_t)104 + (size_t)13 * (width) + \
+   (size_t)69 * (columns) + (size_t)48 * (cells))
+
+/**
+ * Bytes that are enough for an odometry that follows up to `points` points, on any target.
+ */
+#define STEREOPSIS_ODOMETRY_BYTES(points) ((size_t)264 + (size_t)437 * (points))
+
 
 /**
  * Version of this interface, which changes when a program compiled with another header would go wrong.
@@ -203,6 +229,87 @@
 #define STEREOPSIS_ALPHA_NATURAL -1.0
 
 /**
+ * Origin: there is no answer, neither now nor in the last frames.
+ */
+#define STEREOPSIS_ORIGIN_NOTHING 0
+
+/**
+ * Origin: the answer is this frame's alone, the first here or far from the average.
+ */
+#define STEREOPSIS_ORIGIN_NEW 1
+
+/**
+ * Origin: the answer is the average of this frame's and earlier ones.
+ */
+#define STEREOPSIS_ORIGIN_AVERAGED 2
+
+/**
+ * Origin: the answer is of an earlier frame, as this one has none.
+ */
+#define STEREOPSIS_ORIGIN_HELD 3
+
+/**
+ * Focus of a cell: the peak is known.
+ */
+#define STEREOPSIS_FOCUS_FOUND 0
+
+/**
+ * Focus of a cell: too few frames came, three are enough.
+ */
+#define STEREOPSIS_FOCUS_FEW 1
+
+/**
+ * Focus of a cell: the sharpness changes no more than noise does.
+ */
+#define STEREOPSIS_FOCUS_UNTEXTURED 2
+
+/**
+ * Focus of a cell: the peak is so broad that noise hides where it is.
+ */
+#define STEREOPSIS_FOCUS_BROAD 3
+
+/**
+ * Motion: this is the first frame.
+ */
+#define STEREOPSIS_MOTION_FIRST 0
+
+/**
+ * Motion: rotation and step are measured.
+ */
+#define STEREOPSIS_MOTION_TRACKED 1
+
+/**
+ * Motion: the pictures are the same to their noise, and the motion is none.
+ */
+#define STEREOPSIS_MOTION_STATIONARY 2
+
+/**
+ * Motion: the rotation is measured, a step is too small to be measured.
+ */
+#define STEREOPSIS_MOTION_ROTATION_ONLY 3
+
+/**
+ * Motion: the rotation is measured, the step is not known.
+ */
+#define STEREOPSIS_MOTION_STEP_UNKNOWN 4
+
+/**
+ * Motion: too little was found again, and nothing is known; the next frame that is found has the whole
+ * motion.
+ */
+#define STEREOPSIS_MOTION_LOST 5
+
+/**
+ * Motion: found again, by points that were known before.
+ */
+#define STEREOPSIS_MOTION_FOUND 6
+
+/**
+ * Motion: begun anew; the motion since the last known pose is not known.
+ */
+#define STEREOPSIS_MOTION_RESTARTED 7
+
+/**
  * Result of a call; below 0 it is an error, and nothing has changed.
  */
 #if defined(__cplusplus) ? __cplusplus >= 201103L : __STDC_VERSION__ >= 202311L
@@ -225,6 +332,18 @@ enum stereopsis_status
    * All rows of the frame are out.
    */
   STEREOPSIS_STATUS_FRAME_DONE = 2,
+  /**
+   * Line queue: no line waits.
+   */
+  STEREOPSIS_STATUS_NO_LINE_YET = 3,
+  /**
+   * Line queue: all slots hold lines that wait, so that this one is lost, and counted.
+   */
+  STEREOPSIS_STATUS_NO_SLOT = 4,
+  /**
+   * Features: the list has no room for all matches.
+   */
+  STEREOPSIS_STATUS_DROPPED = 5,
   /**
    * A pointer is null.
    */
@@ -457,7 +576,75 @@ enum stereopsis_status
   /**
    * Two views: the rotation is none, or both cameras stand in one place.
    */
-  STEREOPSIS_STATUS_POSE_NUMBERS = -58
+  STEREOPSIS_STATUS_POSE_NUMBERS = -58,
+  /**
+   * Line queue: `stereopsis_line_queue_begin` has to come first, and to give a slot.
+   */
+  STEREOPSIS_STATUS_LINE_NOT_BEGUN = -59,
+  /**
+   * Line queue: `stereopsis_line_queue_next` has to come first, and to give a line.
+   */
+  STEREOPSIS_STATUS_LINE_NOT_TAKEN = -60,
+  /**
+   * Line queue: a line has 1 to 65535 bytes.
+   */
+  STEREOPSIS_STATUS_LINE_BYTES = -61,
+  /**
+   * Decimation: a block has 2 to 8 pixels a side.
+   */
+  STEREOPSIS_STATUS_BLOCK = -62,
+  /**
+   * Temporal filter: the shift is over 4.
+   */
+  STEREOPSIS_STATUS_SHIFT = -63,
+  /**
+   * Features: the lines are longer than those that the detector was created for.
+   */
+  STEREOPSIS_STATUS_DETECTOR_WIDTH = -64,
+  /**
+   * Features: a cell has under 16 px a side, or no corner is kept in it.
+   */
+  STEREOPSIS_STATUS_DETECTOR_CELLS = -65,
+  /**
+   * Features: more corners are kept in a row of cells than the detector has slots for.
+   */
+  STEREOPSIS_STATUS_DETECTOR_SLOTS = -66,
+  /**
+   * Features: the ratio is not 1 to 100 percent, or a distance is negative or not a number.
+   */
+  STEREOPSIS_STATUS_SEARCH = -67,
+  /**
+   * Focus: a frame has no pixel, or the map was created for fewer pixels, columns or cells.
+   */
+  STEREOPSIS_STATUS_FOCUS_SIZE = -68,
+  /**
+   * Focus: a cell has no side, the radius is too large, or a window counts over 16384 pixels.
+   */
+  STEREOPSIS_STATUS_FOCUS_WINDOW = -69,
+  /**
+   * Focus: a stack has at most 65535 frames.
+   */
+  STEREOPSIS_STATUS_FOCUS_FRAMES = -70,
+  /**
+   * Focus: the scale of a frame is not 1/2 to 2.
+   */
+  STEREOPSIS_STATUS_FOCUS_SCALE = -71,
+  /**
+   * Focus: `stereopsis_focus_finish` has to come first.
+   */
+  STEREOPSIS_STATUS_FOCUS_NOT_FINISHED = -72,
+  /**
+   * Odometry: it follows 16 to 65534 points.
+   */
+  STEREOPSIS_STATUS_ODOMETRY_POINTS = -73,
+  /**
+   * Odometry: a length of the configuration is negative or not a number.
+   */
+  STEREOPSIS_STATUS_ODOMETRY_CONFIG = -74,
+  /**
+   * Odometry: the pictures differ in size, or from those of the frames before.
+   */
+  STEREOPSIS_STATUS_PICTURE_SIZE = -75
 };
 #if defined(__cplusplus) ? __cplusplus < 201103L : __STDC_VERSION__ < 202311L
 typedef int32_t stereopsis_status;
@@ -466,14 +653,60 @@ typedef enum stereopsis_status stereopsis_status;
 #endif
 
 /**
+ * Detector of features in the caller's memory.
+ */
+typedef struct stereopsis_detector stereopsis_detector;
+
+/**
+ * Focus map in the caller's memory.
+ */
+typedef struct stereopsis_focus stereopsis_focus;
+
+/**
  * Matcher in the caller's memory.
  */
 typedef struct stereopsis stereopsis;
 
 /**
+ * Queue of lines in the caller's memory, from an interrupt to the program that takes them.
+ */
+typedef struct stereopsis_line_queue stereopsis_line_queue;
+
+/**
+ * Odometry in the caller's memory.
+ */
+typedef struct stereopsis_odometry stereopsis_odometry;
+
+/**
  * Rectifier of raw lines in the caller's memory.
  */
 typedef struct stereopsis_rectifier stereopsis_rectifier;
+
+/**
+ * Line that waits in a queue.
+ */
+typedef struct stereopsis_line {
+  /**
+   * The line's bytes, in the queue's memory: they hold until `stereopsis_line_queue_done`.
+   */
+  const uint8_t *bytes;
+  /**
+   * Time of the line, as the interrupt gave it, microseconds.
+   */
+  uint64_t timestamp_us;
+  /**
+   * Number of the frame that the line belongs to.
+   */
+  uint32_t frame;
+  /**
+   * Number of lines that had found no slot when this one was finished.
+   */
+  uint32_t overruns;
+  /**
+   * Row in the frame: it jumps where lines were lost.
+   */
+  uint16_t row;
+} stereopsis_line;
 
 /**
  * What a calibration record says about the raw images.
@@ -546,6 +779,160 @@ typedef struct stereopsis_point {
    */
   float z_m;
 } stereopsis_point;
+
+/**
+ * Histogram of a frame's grey levels in the caller's memory, for the `stereopsis_histogram_` functions; its
+ * contents are private.
+ */
+typedef struct stereopsis_histogram {
+  /**
+   * Counters.
+   */
+  uint64_t words[10];
+} stereopsis_histogram;
+
+/**
+ * Map from the right camera's grey levels to the left one's: `grey <- (gain grey + offset) / 256`, rounded
+ * and clamped to 0 to 255.
+ */
+typedef struct stereopsis_balance {
+  /**
+   * Offset in 256ths of a grey level.
+   */
+  int32_t offset_256ths;
+  /**
+   * Gain in 256ths, 128 to 512 as estimated; 256 with an offset of 0 changes nothing.
+   */
+  uint16_t gain_256ths;
+} stereopsis_balance;
+
+/**
+ * Smoothing and holding of the filter over frames, filled by `stereopsis_temporal_default`.
+ */
+typedef struct stereopsis_temporal {
+  /**
+   * Largest difference of answers of one surface, in 1/32 px.
+   */
+  uint16_t most_step;
+  /**
+   * Weight `1 / 2^shift` of a new answer in the average: 0 does not smooth, at most 4.
+   */
+  uint8_t shift;
+  /**
+   * Number of frames for which an answer is held where there is none.
+   */
+  uint8_t most_held;
+} stereopsis_temporal;
+
+/**
+ * How the features of a picture are found, filled by `stereopsis_detection_default` and then open to
+ * changes.
+ */
+typedef struct stereopsis_detection {
+  /**
+   * Pixels in a line.
+   */
+  uint16_t width;
+  /**
+   * Lines in a frame.
+   */
+  uint16_t height;
+  /**
+   * Side of the square cells over which corners are spread, px: 16 at least.
+   */
+  uint16_t cell_px;
+  /**
+   * How many corners are kept in a cell, the strongest first: 1 at least. A detector needs as many slots
+   * as are kept in a row of cells.
+   */
+  uint16_t per_cell;
+  /**
+   * A corner differs from its circle by more than so many grey levels.
+   */
+  uint8_t threshold;
+  /**
+   * Whether descriptors turn with the picture, for any turn of the camera, with fewer matches; 0 means no.
+   */
+  uint8_t turned;
+} stereopsis_detection;
+
+/**
+ * A corner that can be found again.
+ */
+typedef struct stereopsis_feature {
+  /**
+   * What it looks like: 256 bits, in as many of which as possible other corners differ.
+   */
+  uint32_t descriptor[8];
+  /**
+   * Column, px.
+   */
+  float x_px;
+  /**
+   * Row, px.
+   */
+  float y_px;
+  /**
+   * How strong the corner is.
+   */
+  uint8_t score;
+  /**
+   * Level of the picture in a pyramid: 0 is the full picture.
+   */
+  uint8_t level;
+} stereopsis_feature;
+
+/**
+ * What became of a picture's corners.
+ */
+typedef struct stereopsis_detection_counts {
+  /**
+   * Corners that were found.
+   */
+  uint32_t corners;
+  /**
+   * Corners dropped because stronger ones of their cell took its slots.
+   */
+  uint32_t crowded_out;
+  /**
+   * Features dropped because the caller's list was full.
+   */
+  uint32_t dropped;
+} stereopsis_detection_counts;
+
+/**
+ * What a match of two features has to be, filled by `stereopsis_search_default` and then open to changes.
+ */
+typedef struct stereopsis_search {
+  /**
+   * How far partners may lie apart along the row, px.
+   */
+  float along_px;
+  /**
+   * How far partners may lie apart across the rows, px.
+   */
+  float across_px;
+  /**
+   * The second best partner is one that lies at least so far from the best, px.
+   */
+  float apart_px;
+  /**
+   * How far from its epipolar line a partner may lie, px, where a fundamental matrix is given.
+   */
+  float epipolar_px;
+  /**
+   * Most bits in which the descriptors of partners differ.
+   */
+  uint16_t most_different;
+  /**
+   * A match has fewer different bits than so many percent of the second best partner: 1 to 100.
+   */
+  uint8_t ratio_percent;
+  /**
+   * Largest difference of pyramid level between partners.
+   */
+  uint8_t levels_apart;
+} stereopsis_search;
 
 /**
  * Point of the first image and the point of the second image that matches it, undistorted, px.
@@ -623,6 +1010,143 @@ typedef struct stereopsis_pose {
    */
   float translation[3];
 } stereopsis_pose;
+
+/**
+ * Size and cells of a focus map, filled by `stereopsis_focus_default` and then open to changes.
+ */
+typedef struct stereopsis_focus_config {
+  /**
+   * Pixels in a line.
+   */
+  uint16_t width;
+  /**
+   * Lines in a frame.
+   */
+  uint16_t height;
+  /**
+   * Side of a cell, px: 1 for an answer a pixel.
+   */
+  uint16_t cell_px;
+  /**
+   * A cell's sharpness is that of the window of `4 r + 1` by `4 r + 1` cells around it, nearer ones
+   * counting more.
+   */
+  uint8_t radius;
+  /**
+   * Whether frames differ in exposure: each one's sharpness counts in proportion to its brightness; 0
+   * means no.
+   */
+  uint8_t exposure_varies;
+} stereopsis_focus_config;
+
+/**
+ * Where a cell is in focus, and how sure that is.
+ */
+typedef struct stereopsis_focus_peak {
+  /**
+   * The frame, counted from 0, in 1/256; 0 where there is none.
+   */
+  uint32_t position_q8;
+  /**
+   * Standard deviation of a right peak, in 1/256 frame.
+   */
+  uint32_t sigma_q8;
+  /**
+   * How far the peak stands out, in 1/255.
+   */
+  uint8_t confidence;
+  /**
+   * Whether there is a peak: a `STEREOPSIS_FOCUS_` number.
+   */
+  uint8_t found;
+} stereopsis_focus_peak;
+
+/**
+ * Configuration of an odometry, filled by `stereopsis_odometry_default` and then open to changes.
+ */
+typedef struct stereopsis_odometry_config {
+  /**
+   * Seed of the random samples: equal seeds give equal motions.
+   */
+  uint64_t seed;
+  /**
+   * Radius of the search around a predicted place while the motion is not known, px.
+   */
+  float far_px;
+  /**
+   * Radius of the search while the motion is known, px.
+   */
+  float near_px;
+  /**
+   * Standard deviation of a place found by template alignment, px.
+   */
+  float sigma_px;
+  /**
+   * Smallest distance of a new point from all others, px.
+   */
+  float spacing_px;
+  /**
+   * Largest number of RANSAC samples for a frame, which bounds its time.
+   */
+  uint32_t most_samples;
+  /**
+   * Largest disparity of a new point, px.
+   */
+  uint16_t most_disparity_px;
+} stereopsis_odometry_config;
+
+/**
+ * Whole picture in memory, 8-bit grey, row by row.
+ */
+typedef struct stereopsis_picture {
+  /**
+   * `width * height` bytes.
+   */
+  const uint8_t *pixels;
+  /**
+   * Number of columns.
+   */
+  uint16_t width;
+  /**
+   * Number of rows.
+   */
+  uint16_t height;
+} stereopsis_picture;
+
+/**
+ * Motion from the frame before to this one.
+ */
+typedef struct stereopsis_step {
+  /**
+   * Carries a point of this camera into the one before, P = R P' + t: t is where this one stands, m.
+   */
+  struct stereopsis_pose motion;
+  /**
+   * Covariance of the motion, row by row: a rotation vector, radians, and a step, m, both along this
+   * camera's axes. Very large where nothing is known.
+   */
+  float covariance[36];
+  /**
+   * Root mean square of what is left of the observations, in units of what was expected.
+   */
+  float residual;
+  /**
+   * Points that are followed.
+   */
+  uint32_t points;
+  /**
+   * Points that were found in this frame.
+   */
+  uint32_t found;
+  /**
+   * Points that agree with the pose.
+   */
+  uint32_t inliers;
+  /**
+   * What is known of the motion: a `STEREOPSIS_MOTION_` number.
+   */
+  uint8_t state;
+} stereopsis_step;
 
 /**
  * Frame size, search range and checks, filled by `stereopsis_config_default` and then open to changes.
@@ -825,6 +1349,63 @@ extern "C" {
 #endif // __cplusplus
 
 /**
+ * Creates a queue of lines of `line_bytes` bytes, 1 to 65535, in the caller's memory of `length`
+ * bytes, aligned to `STEREOPSIS_ALIGN`: as many slots as have room, at least two. Writes the handle;
+ * a null handle on an error, unless `handle` itself is invalid. Fails with
+ * `STEREOPSIS_STATUS_LINE_BYTES` for other lengths, with `STEREOPSIS_STATUS_MEMORY_TOO_SHORT` for
+ * fewer slots.
+ *
+ * A queue takes lines from one interrupt, which calls `stereopsis_line_queue_begin` and `_finish`,
+ * to one program, which calls `stereopsis_line_queue_next` and `_done`. Either side may interrupt
+ * the other, on one core or on two; there is no lock. The memory is not read, and belongs to the
+ * queue until `stereopsis_line_queue_deinit`.
+ */
+stereopsis_status stereopsis_line_queue_init(void *memory,
+                                             size_t length,
+                                             size_t line_bytes,
+                                             struct stereopsis_line_queue **handle);
+
+/**
+ * Ends a queue, whose memory returns to the caller: when neither side uses it any more.
+ */
+stereopsis_status stereopsis_line_queue_deinit(struct stereopsis_line_queue *handle);
+
+/**
+ * In the interrupt: writes where the next line goes, `line_bytes` bytes aligned to 8, for a DMA or a
+ * loop to fill. Without a free slot the result is `STEREOPSIS_STATUS_NO_SLOT`, `bytes` is left as it
+ * was, and the line counts as lost. A slot that was not finished is given once more.
+ */
+stereopsis_status stereopsis_line_queue_begin(struct stereopsis_line_queue *handle, uint8_t **bytes);
+
+/**
+ * In the interrupt: hands the line of `stereopsis_line_queue_begin` over, with the number of its
+ * frame, its row and its time. Fails with `STEREOPSIS_STATUS_LINE_NOT_BEGUN` without one.
+ */
+stereopsis_status stereopsis_line_queue_finish(struct stereopsis_line_queue *handle,
+                                               uint32_t frame,
+                                               uint16_t row,
+                                               uint64_t timestamp_us);
+
+/**
+ * In the program: writes the line that has waited longest, or answers
+ * `STEREOPSIS_STATUS_NO_LINE_YET` and writes nothing. It is the same line until
+ * `stereopsis_line_queue_done`.
+ */
+stereopsis_status stereopsis_line_queue_next(struct stereopsis_line_queue *handle,
+                                             struct stereopsis_line *line);
+
+/**
+ * In the program: gives the slot of the line of `stereopsis_line_queue_next` back to the interrupt.
+ * Fails with `STEREOPSIS_STATUS_LINE_NOT_TAKEN` without one.
+ */
+stereopsis_status stereopsis_line_queue_done(struct stereopsis_line_queue *handle);
+
+/**
+ * Writes how many lines have found no slot; either side may ask.
+ */
+stereopsis_status stereopsis_line_queue_overruns(struct stereopsis_line_queue *handle, uint32_t *overruns);
+
+/**
  * Checks a calibration record, what `stereo calib convert --to c` writes, in the first
  * `STEREOPSIS_RECORD_BYTES` of `length` bytes, which need no alignment, and writes what it says
  * about the raw images.
@@ -977,6 +1558,159 @@ stereopsis_status stereopsis_points(const struct stereopsis_rig *rig,
                                     size_t count);
 
 /**
+ * Clears a histogram, one for each camera, before a frame.
+ */
+stereopsis_status stereopsis_histogram_clear(struct stereopsis_histogram *histogram);
+
+/**
+ * Counts every eighth pixel of row `row`, 8-bit grey, 65535 bytes at most.
+ */
+stereopsis_status stereopsis_histogram_line(struct stereopsis_histogram *histogram,
+                                            uint16_t row,
+                                            const uint8_t *line,
+                                            size_t length);
+
+/**
+ * Estimates from the histograms of a frame, of the lines as the cameras gave them, by which gain and
+ * offset the right camera's next frame becomes as bright as the left one's. Cameras that differ by
+ * less than 16 grey levels in the mean, and frames without contrast, are left as they are: a gain of
+ * 256 and an offset of 0.
+ */
+stereopsis_status stereopsis_balance_between(const struct stereopsis_histogram *left,
+                                             const struct stereopsis_histogram *right,
+                                             struct stereopsis_balance *balance);
+
+/**
+ * Balances a line of the right camera in place, 8-bit grey, `length` bytes, before the matcher takes
+ * it.
+ */
+stereopsis_status stereopsis_balance_line(const struct stereopsis_balance *balance,
+                                          uint8_t *line,
+                                          size_t length);
+
+/**
+ * Takes the `count` disparities of row `row`, at most 65535, into blocks of `block` x `block`
+ * pixels, 2 to 8 a side. With the last row of blocks it writes `count / block` disparities to
+ * `smaller`, which are row `row / block` of the smaller image, and returns `STEREOPSIS_STATUS_OK`;
+ * else it returns `STEREOPSIS_STATUS_NO_ROW_YET`. Each is the median of its block's answers, the
+ * nearer of two middle ones, where at least half of the pixels have one; disparities stay in pixels
+ * of the full image. `rows` holds `block * count` words from call to call and needs no content: a
+ * frame's rows come from 0 on, without gaps. The arrays do not overlap.
+ */
+stereopsis_status stereopsis_decimate(uint16_t *rows,
+                                      uint16_t block,
+                                      uint16_t row,
+                                      const uint16_t *disparities,
+                                      size_t count,
+                                      uint16_t *smaller);
+
+/**
+ * Fills a configuration of the filter over frames: it averages within one pixel with weight 1/4, and
+ * holds answers for two frames.
+ */
+stereopsis_status stereopsis_temporal_default(struct stereopsis_temporal *config);
+
+/**
+ * Prepares the filter's memory, a word and a byte for each of `count` pixels, all rows together or
+ * one by one: before the first frame, after a cut, or when the cameras were moved.
+ */
+stereopsis_status stereopsis_temporal_forget(uint16_t *averages, uint8_t *ages, size_t count);
+
+/**
+ * Filters a row of `count` disparities over its part of the filter's memory: writes the running
+ * averages, which hold answers over short gaps, to `filtered`, and a `STEREOPSIS_ORIGIN_` number for
+ * each to `origins`. The arrays do not overlap. Fails on a shift over 4.
+ */
+stereopsis_status stereopsis_temporal_row(const struct stereopsis_temporal *config,
+                                          uint16_t *averages,
+                                          uint8_t *ages,
+                                          const uint16_t *disparities,
+                                          uint16_t *filtered,
+                                          uint8_t *origins,
+                                          size_t count);
+
+/**
+ * Fills a configuration for pictures of `width` x `height` pixels: the five strongest corners of
+ * every 32 x 32 pixels, over 12 grey levels, for cameras that do not turn about their axes.
+ */
+stereopsis_status stereopsis_detection_default(uint16_t width,
+                                               uint16_t height,
+                                               struct stereopsis_detection *config);
+
+/**
+ * Creates a detector of features in the caller's memory of `length` bytes, aligned to
+ * `STEREOPSIS_ALIGN`: for lines of up to `width` pixels, and `slots` corners that are kept in a row
+ * of cells, `per_cell` for each of them. Writes the handle; a null handle on an error, unless
+ * `handle` itself is invalid. The memory is not read, and belongs to the detector until
+ * `stereopsis_detector_deinit`.
+ */
+stereopsis_status stereopsis_detector_init(void *memory,
+                                           size_t length,
+                                           uint16_t width,
+                                           uint16_t slots,
+                                           struct stereopsis_detector **handle);
+
+/**
+ * Ends a detector, whose memory returns to the caller.
+ */
+stereopsis_status stereopsis_detector_deinit(struct stereopsis_detector *handle);
+
+/**
+ * Checks a configuration, which is copied, and begins a picture. Fails with
+ * `STEREOPSIS_STATUS_DETECTOR_WIDTH`, `_DETECTOR_CELLS` or `_DETECTOR_SLOTS`, and leaves the
+ * detector as it was.
+ */
+stereopsis_status stereopsis_detector_start(struct stereopsis_detector *handle,
+                                            const struct stereopsis_detection *config);
+
+/**
+ * Takes the next line of a picture, 8-bit grey, `length` bytes, which is the configuration's width.
+ * Features that are ready are added to `features`, which has room for `capacity`, behind the `count`
+ * that are there, and `count` grows: 0 before the first line. With the last line all are ready.
+ * What finds no room is counted as dropped. Fails where `count` is over `capacity`, with
+ * `STEREOPSIS_STATUS_NO_LINE_LEFT` after the last line, and with `_LINE_LENGTH`.
+ */
+stereopsis_status stereopsis_detector_push(struct stereopsis_detector *handle,
+                                           const uint8_t *line,
+                                           size_t length,
+                                           struct stereopsis_feature *features,
+                                           size_t capacity,
+                                           size_t *count);
+
+/**
+ * Writes what became of the picture's corners.
+ */
+stereopsis_status stereopsis_detector_counts(struct stereopsis_detector *handle,
+                                             struct stereopsis_detection_counts *counts);
+
+/**
+ * Fills a search: partners lie anywhere in the other picture, differ in at most 64 bits, and in less
+ * than 80 percent of those of the second best, which lies 4 px or more from the best.
+ */
+stereopsis_status stereopsis_search_default(struct stereopsis_search *search);
+
+/**
+ * Matches the features of two pictures, each with its best partner in both directions, for
+ * `stereopsis_fundamental` and the functions beside it. `fundamental` says on which lines partners
+ * lie, or is null. `slots` has five words for each feature of the longer list and needs no content.
+ * Writes up to `capacity` matches and their number.
+ *
+ * Returns `STEREOPSIS_STATUS_DROPPED` where `matches` had no room for all of them. Fails with
+ * `STEREOPSIS_STATUS_SEARCH` on numbers that make no search, with `_FUNDAMENTAL_RANK`, and with
+ * `_TOO_MANY` on over 65534 features. What is written overlaps nothing else.
+ */
+stereopsis_status stereopsis_match_features(const struct stereopsis_search *search,
+                                            const float *fundamental,
+                                            const struct stereopsis_feature *left,
+                                            size_t left_count,
+                                            const struct stereopsis_feature *right,
+                                            size_t right_count,
+                                            uint16_t *slots,
+                                            struct stereopsis_match *matches,
+                                            size_t capacity,
+                                            size_t *count);
+
+/**
  * Computes the fundamental matrix F of `count` matches, eight or more, all of them right: row by
  * row, with p^T F p' = 0 for p in the first image and p' in the second (eight-point algorithm).
  * Fails on fewer, on numbers that are not finite, and where the matches leave F undetermined.
@@ -1025,6 +1759,113 @@ stereopsis_status stereopsis_triangulate(const struct stereopsis_match *matches,
                                          const struct stereopsis_pinhole *second,
                                          const struct stereopsis_pose *pose,
                                          struct stereopsis_point *points);
+
+/**
+ * Fills a configuration for frames of `width` x `height` pixels: an answer a pixel, from windows of
+ * radius 3. Cells of 8 px and radius 0 are an answer a tile.
+ */
+stereopsis_status stereopsis_focus_default(uint16_t width,
+                                           uint16_t height,
+                                           struct stereopsis_focus_config *config);
+
+/**
+ * Creates a focus map in the caller's memory of `length` bytes, aligned to `STEREOPSIS_ALIGN`: for
+ * lines of up to `width` pixels, rows of up to `columns` cells, and frames of up to `cells` cells.
+ * Writes the handle; a null handle on an error, unless `handle` itself is invalid. The memory is not
+ * read, and belongs to the map until `stereopsis_focus_deinit`.
+ */
+stereopsis_status stereopsis_focus_init(void *memory,
+                                        size_t length,
+                                        uint16_t width,
+                                        uint16_t columns,
+                                        uint32_t cells,
+                                        struct stereopsis_focus **handle);
+
+/**
+ * Ends a focus map, whose memory returns to the caller.
+ */
+stereopsis_status stereopsis_focus_deinit(struct stereopsis_focus *handle);
+
+/**
+ * Checks a configuration, which is copied, and begins a stack of frames; what is left of another one
+ * is forgotten. Fails with `STEREOPSIS_STATUS_FOCUS_SIZE` or `_FOCUS_WINDOW`, and leaves the map as
+ * it was.
+ */
+stereopsis_status stereopsis_focus_start(struct stereopsis_focus *handle,
+                                         const struct stereopsis_focus_config *config);
+
+/**
+ * Begins the next frame of the stack, in which everything is `scale` times as large as in the first
+ * one, 1/2 to 2: 1 where the lens does not breathe. Fails with `STEREOPSIS_STATUS_LINES_MISSING`
+ * before the last line of the frame before, with `_FOCUS_SCALE`, and with `_FOCUS_FRAMES` after
+ * 65535 frames.
+ */
+stereopsis_status stereopsis_focus_begin_frame(struct stereopsis_focus *handle, float scale);
+
+/**
+ * Takes the next line of a frame, 8-bit grey, `length` bytes, which is the configuration's width.
+ * Fails with `STEREOPSIS_STATUS_NO_LINE_LEFT` where none is due, and with `_LINE_LENGTH`.
+ */
+stereopsis_status stereopsis_focus_push(struct stereopsis_focus *handle, const uint8_t *line, size_t length);
+
+/**
+ * Ends the stack: then all peaks are known. Fails with `STEREOPSIS_STATUS_LINES_MISSING` before the
+ * last line of a frame, and with `_NO_LINE_LEFT` where it has ended.
+ */
+stereopsis_status stereopsis_focus_finish(struct stereopsis_focus *handle);
+
+/**
+ * Writes the peaks of the first `count` cells of row `row` of cells, at most 65535. Cells that are
+ * not in the frame are as those of too few frames. Fails with
+ * `STEREOPSIS_STATUS_FOCUS_NOT_FINISHED` before the end of the stack.
+ */
+stereopsis_status stereopsis_focus_row(struct stereopsis_focus *handle,
+                                       uint16_t row,
+                                       struct stereopsis_focus_peak *peaks,
+                                       size_t count);
+
+/**
+ * Fills a configuration for pictures of `width` columns.
+ */
+stereopsis_status stereopsis_odometry_default(uint16_t width, struct stereopsis_odometry_config *config);
+
+/**
+ * Creates an odometry of a rectified pair in the caller's memory of `length` bytes, aligned to
+ * `STEREOPSIS_ALIGN`, which follows up to `points` points, 16 to 65534. Writes the handle; a null
+ * handle on an error, unless `handle` itself is invalid. The memory is not read, and belongs to the
+ * odometry until `stereopsis_odometry_deinit`.
+ */
+stereopsis_status stereopsis_odometry_init(void *memory,
+                                           size_t length,
+                                           uint16_t points,
+                                           struct stereopsis_odometry **handle);
+
+/**
+ * Ends an odometry, whose memory returns to the caller.
+ */
+stereopsis_status stereopsis_odometry_deinit(struct stereopsis_odometry *handle);
+
+/**
+ * Begins with a rectified rig, as from `stereopsis_rectifier_start`; what was known is forgotten.
+ * Fails where the rig's numbers are none, and with `STEREOPSIS_STATUS_ODOMETRY_CONFIG` on lengths
+ * that are negative or not numbers.
+ */
+stereopsis_status stereopsis_odometry_start(struct stereopsis_odometry *handle,
+                                            const struct stereopsis_rig *rig,
+                                            const struct stereopsis_odometry_config *config);
+
+/**
+ * Takes the next frame: both rectified pictures, and the `count` features of the left one, as from
+ * `stereopsis_detector_push`. Writes the motion since the frame before. Fails with
+ * `STEREOPSIS_STATUS_PICTURE_SIZE` where pictures differ in size, or from those before, and with
+ * `_NOT_STARTED`; what is not known of a motion is no failure, and stands in `state`.
+ */
+stereopsis_status stereopsis_odometry_step(struct stereopsis_odometry *handle,
+                                           const struct stereopsis_picture *left,
+                                           const struct stereopsis_picture *right,
+                                           const struct stereopsis_feature *features,
+                                           size_t count,
+                                           struct stereopsis_step *step);
 
 /**
  * Returns the version of the library's interface: a program compiled with another
@@ -1079,9 +1920,8 @@ size_t stereopsis_latency(void);
 stereopsis_status stereopsis_init(void *memory, size_t length, struct stereopsis **handle);
 
 /**
- * Starts an instance in memory that was never written, such as that of `malloc`: it is not
- * read, and a matcher that it still holds is overwritten. Valgrind and sanitizers have nothing
- * to report.
+ * Creates a matcher in memory that was never written, such as that of `malloc`: it is not read,
+ * and a matcher that it still holds is overwritten.
  */
 stereopsis_status stereopsis_init_fresh(void *memory, size_t length, struct stereopsis **handle);
 
@@ -1109,8 +1949,8 @@ stereopsis_status stereopsis_config_default(uint16_t width,
 stereopsis_status stereopsis_config_noise(int32_t preset, uint8_t noise, struct stereopsis_config *config);
 
 /**
- * Checks a configuration, which is copied, and prepares for the first frame. Another call
- * changes the configuration, drops a frame that is under way, and clears the counters.
+ * Checks a configuration, which is copied, and prepares for the first frame. Another call drops
+ * a frame that is under way, and clears the counters.
  */
 stereopsis_status stereopsis_start(struct stereopsis *handle, const struct stereopsis_config *config);
 
@@ -1192,6 +2032,13 @@ stereopsis_status stereopsis_sigma_px(struct stereopsis *handle, float *sigma_px
 #define STEREOPSIS_EXTERN extern
 #endif
 #define STEREOPSIS_FUNCTIONS(prefix) \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_line_queue_init(void *memory, size_t length, size_t line_bytes, struct stereopsis_line_queue **handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_line_queue_deinit(struct stereopsis_line_queue *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_line_queue_begin(struct stereopsis_line_queue *handle, uint8_t **bytes); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_line_queue_finish(struct stereopsis_line_queue *handle, uint32_t frame, uint16_t row, uint64_t timestamp_us); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_line_queue_next(struct stereopsis_line_queue *handle, struct stereopsis_line *line); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_line_queue_done(struct stereopsis_line_queue *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_line_queue_overruns(struct stereopsis_line_queue *handle, uint32_t *overruns); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_record_read(const uint8_t *record, size_t length, struct stereopsis_cameras *cameras); \
   STEREOPSIS_EXTERN size_t prefix##stereopsis_rectifier_size(void); \
   STEREOPSIS_EXTERN size_t prefix##stereopsis_rectifier_lines(void); \
@@ -1208,10 +2055,39 @@ stereopsis_status stereopsis_sigma_px(struct stereopsis *handle, float *sigma_px
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_millimetres(const struct stereopsis_rig *rig, const uint16_t *disparities, uint16_t *millimetres, size_t count); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_metres(const struct stereopsis_rig *rig, const uint16_t *disparities, const float *sigma_px, float *depth_m, float *sigma_m, size_t count); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_points(const struct stereopsis_rig *rig, uint16_t row, const uint16_t *disparities, struct stereopsis_point *points, size_t count); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_histogram_clear(struct stereopsis_histogram *histogram); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_histogram_line(struct stereopsis_histogram *histogram, uint16_t row, const uint8_t *line, size_t length); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_balance_between(const struct stereopsis_histogram *left, const struct stereopsis_histogram *right, struct stereopsis_balance *balance); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_balance_line(const struct stereopsis_balance *balance, uint8_t *line, size_t length); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_decimate(uint16_t *rows, uint16_t block, uint16_t row, const uint16_t *disparities, size_t count, uint16_t *smaller); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_temporal_default(struct stereopsis_temporal *config); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_temporal_forget(uint16_t *averages, uint8_t *ages, size_t count); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_temporal_row(const struct stereopsis_temporal *config, uint16_t *averages, uint8_t *ages, const uint16_t *disparities, uint16_t *filtered, uint8_t *origins, size_t count); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_detection_default(uint16_t width, uint16_t height, struct stereopsis_detection *config); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_detector_init(void *memory, size_t length, uint16_t width, uint16_t slots, struct stereopsis_detector **handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_detector_deinit(struct stereopsis_detector *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_detector_start(struct stereopsis_detector *handle, const struct stereopsis_detection *config); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_detector_push(struct stereopsis_detector *handle, const uint8_t *line, size_t length, struct stereopsis_feature *features, size_t capacity, size_t *count); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_detector_counts(struct stereopsis_detector *handle, struct stereopsis_detection_counts *counts); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_search_default(struct stereopsis_search *search); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_match_features(const struct stereopsis_search *search, const float *fundamental, const struct stereopsis_feature *left, size_t left_count, const struct stereopsis_feature *right, size_t right_count, uint16_t *slots, struct stereopsis_match *matches, size_t capacity, size_t *count); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_eight_point(const struct stereopsis_match *matches, size_t count, float *fundamental); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_fundamental(const struct stereopsis_match *matches, size_t count, float threshold_px, uint64_t seed, float *fundamental, uint8_t *inliers, struct stereopsis_agreement *agreement); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_pose_of(const struct stereopsis_match *matches, const uint8_t *inliers, size_t count, const float *fundamental, const struct stereopsis_pinhole *first, const struct stereopsis_pinhole *second, struct stereopsis_pose *pose); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_triangulate(const struct stereopsis_match *matches, size_t count, const struct stereopsis_pinhole *first, const struct stereopsis_pinhole *second, const struct stereopsis_pose *pose, struct stereopsis_point *points); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_focus_default(uint16_t width, uint16_t height, struct stereopsis_focus_config *config); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_focus_init(void *memory, size_t length, uint16_t width, uint16_t columns, uint32_t cells, struct stereopsis_focus **handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_focus_deinit(struct stereopsis_focus *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_focus_start(struct stereopsis_focus *handle, const struct stereopsis_focus_config *config); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_focus_begin_frame(struct stereopsis_focus *handle, float scale); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_focus_push(struct stereopsis_focus *handle, const uint8_t *line, size_t length); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_focus_finish(struct stereopsis_focus *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_focus_row(struct stereopsis_focus *handle, uint16_t row, struct stereopsis_focus_peak *peaks, size_t count); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_odometry_default(uint16_t width, struct stereopsis_odometry_config *config); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_odometry_init(void *memory, size_t length, uint16_t points, struct stereopsis_odometry **handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_odometry_deinit(struct stereopsis_odometry *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_odometry_start(struct stereopsis_odometry *handle, const struct stereopsis_rig *rig, const struct stereopsis_odometry_config *config); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_odometry_step(struct stereopsis_odometry *handle, const struct stereopsis_picture *left, const struct stereopsis_picture *right, const struct stereopsis_feature *features, size_t count, struct stereopsis_step *step); \
   STEREOPSIS_EXTERN uint32_t prefix##stereopsis_abi(void); \
   STEREOPSIS_EXTERN const char *prefix##stereopsis_version(void); \
   STEREOPSIS_EXTERN const char *prefix##stereopsis_status_text(int32_t status); \

@@ -142,7 +142,7 @@ fn matrix_of([a, b, c, d, e, f, g, h, i]: [f32; 9]) -> Matrix3<f32> {
 /// # Safety
 ///
 /// `matrix` is null or points to nine numbers.
-unsafe fn fundamental_of(matrix: *const f32) -> Result<Fundamental<f32>, Status> {
+pub(super) unsafe fn fundamental_of(matrix: *const f32) -> Result<Fundamental<f32>, Status> {
     checked(matrix)?;
     // SAFETY: the caller's promise, and it is aligned.
     let matrix = matrix_of(unsafe { matrix.cast::<[f32; 9]>().read() });
@@ -150,7 +150,7 @@ unsafe fn fundamental_of(matrix: *const f32) -> Result<Fundamental<f32>, Status>
 }
 
 /// Returns the nine numbers of a matrix, row by row.
-fn rows_of(matrix: &Matrix3<f32>) -> [f32; 9] {
+pub(super) fn rows_of(matrix: &Matrix3<f32>) -> [f32; 9] {
     let mut rows = [0.0; 9];
     rows.iter_mut().zip(matrix.transpose().iter()).for_each(|(to, from)| *to = *from);
     rows

@@ -3,6 +3,10 @@
 //! `ffi/misuse.c` goes through every status from C, under sanitizers (`cargo xtask c`).
 #![allow(unsafe_code, reason = "functions with a C ABI are called as C calls them")]
 
+mod after;
+mod features;
+mod focus;
+mod line_queue;
 mod lost;
 mod noise;
 mod raw;
@@ -230,7 +234,13 @@ fn every_status_of_the_header_has_a_text() {
     // SAFETY: the texts are constants that end in a zero.
     let text = |code| unsafe { CStr::from_ptr(stereopsis_status_text(code)) };
     let unknown = text(i32::MAX);
-    assert_eq!(text(i32::MIN), unknown);
+    let named = |status: Status| status.text();
+    assert_eq!((named(Status::Ok), named(Status::Null)), (c"done", c"a pointer is null"));
+    assert_eq!(named(Status::Block), c"a block has 2 to 8 pixels a side");
+    let (first, last) = (codes.iter().min().expect("codes"), codes.iter().max().expect("codes"));
+    for beyond in [i32::MIN, i32::MIN + 1, first - 1, last + 1] {
+        assert_eq!(text(beyond), unknown);
+    }
     for &code in &codes {
         assert_ne!(text(code), unknown, "{code}");
         assert!(

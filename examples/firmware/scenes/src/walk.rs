@@ -113,6 +113,16 @@ impl Walk {
         Ok(())
     }
 
+    /// The left and the right picture that were taken last, row by row.
+    pub fn pictures(&self) -> [&[u8]; 2] {
+        [&self.left, &self.right]
+    }
+
+    /// The features of the left one.
+    pub fn features(&self) -> &[Feature] {
+        &self.features
+    }
+
     /// The motion since the frame before.
     pub fn step(&mut self) -> Result<Step<f32>, Broken> {
         let picture = |pixels| Picture::new(pixels, WIDTH as u16, HEIGHT as u16).map_err(Broken::Picture);

@@ -2,11 +2,12 @@
 //!
 //! cbindgen reads Rust files and expands no macros, and the functions stand in macros: `instantiate_c_api`
 //! and those beside it. So it is given the macros' own text as a file, with plain paths instead of `$crate`;
-//! types and constants it reads from the files of `src/ffi`. How many bytes a method takes is worked out by
-//! the crate and put in as macros.
+//! types and constants it reads from the files of `src/ffi`. [`bytes`] makes macros of how much memory
+//! everything takes.
 //!
 //! [`portable()`] makes it one for C++98, and adds the functions with a prefix.
 
+mod bytes;
 mod portable;
 
 use crate::steps::{Failure, Outcome, root};
@@ -14,40 +15,69 @@ use cbindgen::{Builder, Config, DocumentationLength, DocumentationStyle, Languag
 use portable::portable;
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use std::fs;
-use stereopsis::ffi::{memory_bytes, rectifier_bytes};
-use stereopsis::matching::{Block, Fast, Method, Sgm, SgmEdge, SgmLean};
 
 /// The header, from the repository's root.
 const HEADER: &str = "src/ffi/stereopsis.h";
 /// The files with macros, and the macros, in the header's order.
-const MACROS: [(&str, &str); 4] = [
+const MACROS: [(&str, &str); 8] = [
     ("src/ffi/names.rs", "instantiate_c_api"),
+    ("src/ffi/names_line_queue.rs", "c_api_of_line_queues"),
     ("src/ffi/names_rectifier.rs", "c_api_of_rectification"),
     ("src/ffi/names_plain.rs", "c_api_without_state"),
+    ("src/ffi/names_after.rs", "c_api_before_and_after"),
+    ("src/ffi/names_features.rs", "c_api_of_features"),
     ("src/ffi/names_two_view.rs", "c_api_of_two_views"),
+    ("src/ffi/names_focus.rs", "c_api_of_focus_and_motion"),
 ];
 /// The files that cbindgen reads as they are, in the header's order.
-const FILES: [&str; 11] = [
+const FILES: [&str; 21] = [
     "src/ffi/status.rs",
     "src/ffi/state.rs",
     "src/ffi/config.rs",
     "src/ffi/row.rs",
     "src/ffi/faults.rs",
     "src/ffi/noise.rs",
+    "src/ffi/line_queue.rs",
+    "src/ffi/balance.rs",
     "src/ffi/rectifying.rs",
     "src/ffi/record.rs",
     "src/ffi/rig.rs",
     "src/ffi/points.rs",
+    "src/ffi/after.rs",
+    "src/ffi/detection.rs",
+    "src/ffi/features.rs",
+    "src/ffi/feature_matches.rs",
     "src/ffi/two_view.rs",
+    "src/ffi/focus_types.rs",
+    "src/ffi/focus.rs",
+    "src/ffi/odometry_types.rs",
+    "src/ffi/odometry.rs",
 ];
 /// Names that Rust spells in its own way.
-const NAMES: [(&str, &str); 14] = [
+const NAMES: [(&str, &str); 31] = [
     ("Handle", "stereopsis"),
     ("Status", "stereopsis_status"),
     ("CConfig", "stereopsis_config"),
     ("CRow", "stereopsis_row"),
     ("CCounters", "stereopsis_counts"),
     ("CNoiseMeter", "stereopsis_noise_meter"),
+    ("LineQueueHandle", "stereopsis_line_queue"),
+    ("CLine", "stereopsis_line"),
+    ("CHistogram", "stereopsis_histogram"),
+    ("CBalance", "stereopsis_balance"),
+    ("CTemporal", "stereopsis_temporal"),
+    ("DetectorHandle", "stereopsis_detector"),
+    ("CDetection", "stereopsis_detection"),
+    ("CDetectionCounts", "stereopsis_detection_counts"),
+    ("CFeature", "stereopsis_feature"),
+    ("CSearch", "stereopsis_search"),
+    ("FocusHandle", "stereopsis_focus"),
+    ("CFocusConfig", "stereopsis_focus_config"),
+    ("CFocusPeak", "stereopsis_focus_peak"),
+    ("OdometryHandle", "stereopsis_odometry"),
+    ("COdometryConfig", "stereopsis_odometry_config"),
+    ("CPicture", "stereopsis_picture"),
+    ("CStep", "stereopsis_step"),
     ("RectifierHandle", "stereopsis_rectifier"),
     ("CCameras", "stereopsis_cameras"),
     ("CRig", "stereopsis_rig"),
@@ -125,15 +155,7 @@ fn config() -> Outcome<Config> {
         autogen_warning: Some("/* Made by `cargo xtask header`. */".to_owned()),
         no_includes: true,
         sys_includes: vec!["stddef.h".to_owned(), "stdint.h".to_owned()],
-        after_includes: Some(format!(
-            "\n{}\n{}\n{}\n{}\n{}\n{}",
-            bytes_macro::<Fast>()?,
-            bytes_macro::<Block>()?,
-            bytes_macro::<SgmLean>()?,
-            bytes_macro::<Sgm>()?,
-            bytes_macro::<SgmEdge>()?,
-            rectifier_macro()?,
-        )),
+        after_includes: Some(format!("\n{}", bytes::macros()?)),
         usize_is_size_t: true,
         style: Style::Both,
         documentation_style: DocumentationStyle::Doxy,
@@ -144,58 +166,6 @@ fn config() -> Outcome<Config> {
     config.enumeration.rename_variants = RenameRule::QualifiedScreamingSnakeCase;
     config.export.rename = NAMES.map(|(rust, c)| (rust.to_owned(), c.to_owned())).into();
     Ok(config)
-}
-
-/// How many bytes a method takes, as a macro: `a + b width + c disparities + d width disparities`, by trying.
-fn bytes_macro<S: Method>() -> Outcome<String> {
-    let bytes = |width: usize, disparities: usize| memory_bytes::<S>(width, disparities) as i64;
-    let [w, d, step_w, step_d] = [256, 16, 256, 16];
-    let (by_w, by_d) = (bytes(512, 16) - bytes(256, 16), bytes(256, 32) - bytes(256, 16));
-    let both = (bytes(512, 32) - bytes(256, 16) - by_w - by_d) / (step_w * step_d);
-    let (by_w, by_d) = (by_w / step_w - both * d, by_d / step_d - both * w);
-    let fixed = bytes(256, 16) - by_w * w - by_d * d - both * w * d;
-    for (width, disparities) in [(16, 16), (160, 32), (320, 64), (333, 240), (640, 128), (4096, 256)] {
-        let (w, d) = (width as i64, disparities as i64);
-        if fixed + by_w * w + by_d * d + both * w * d != bytes(width, disparities) {
-            return Err(Failure::new(format!(
-                "{}: memory_bytes is no sum of products at {width}x{disparities}",
-                S::NAME
-            )));
-        }
-    }
-    let method = S::NAME.to_uppercase().replace('-', "_");
-    Ok(format!(
-        "/**\n * Bytes that are enough for a matcher of method {}, on any target. `disparities` is a \
-         multiple of 16, and\n * `width` at least as large, as the library was built with.\n */\n#define \
-         STEREOPSIS_{method}_BYTES(width, disparities) \\\n  ((size_t){fixed} + (size_t){by_w} * (width) + \
-         (size_t){by_d} * (disparities) + \\\n   (size_t){both} * (width) * (disparities))\n",
-        S::NAME
-    ))
-}
-
-/// The macro of a rectifier's bytes.
-const RECTIFIER_BYTES: &str = "/**
- * Bytes that are enough for a rectifier, on any target, with the library's longest line, the rows of its
- * largest rectified image, and the raw lines of each camera that it holds.
- */
-#define STEREOPSIS_RECTIFIER_BYTES(width, height, lines) \\
-  ((size_t)80 + (size_t)2 * (width) * ((size_t)(lines) + 1) + \\
-   (size_t)16 * ((((size_t)(width) + 15) / 16 + 3) * (((size_t)(height) + 15) / 16 + 3) + \\
-                 ((size_t)(height) + 1) / 2))
-";
-
-/// How many bytes a rectifier takes, as a macro.
-fn rectifier_macro() -> Outcome<String> {
-    let expected = |width: usize, height: usize, lines: usize| {
-        let lattice = (width.div_ceil(16) + 3) * (height.div_ceil(16) + 3);
-        80 + 16 * (lattice + height.div_ceil(2)) + 2 * width * (lines + 1)
-    };
-    for (width, height, lines) in [(16, 2, 3), (160, 120, 33), (333, 241, 40), (4096, 4096, 4097)] {
-        if expected(width, height, lines) != rectifier_bytes(width, height, lines) {
-            return Err(Failure::new("rectifier_bytes is not what STEREOPSIS_RECTIFIER_BYTES says"));
-        }
-    }
-    Ok(RECTIFIER_BYTES.to_owned())
 }
 
 /// The macros' bodies as plain Rust.

@@ -42,6 +42,22 @@ int open_pgm(const char *name, uint16_t *width, uint16_t *height) {
     return file;
 }
 
+int is_there(const char *name) {
+    int file = open(name, O_RDONLY);
+    if (file >= 0) close(file);
+    return file >= 0;
+}
+
+void say_number(int file, int32_t number) {
+    char text[13];
+    char *first = text + sizeof text - 1;
+    uint32_t rest = number < 0 ? 0u - (uint32_t)number : (uint32_t)number;
+    for (*first = 0; rest != 0 || *first == 0; rest /= 10) *--first = (char)('0' + rest % 10);
+    if (number < 0) *--first = '-';
+    *--first = ' ';
+    say(file, first);
+}
+
 /* CRC-32 as in Ethernet and PNG, bit by bit. */
 uint32_t crc32(uint32_t crc, uint8_t byte) {
     crc ^= byte;

@@ -12,6 +12,10 @@ void fail(const char *what, const char *why);
 void take(const char *name, int file, void *bytes, size_t length);
 /* Opens an 8-bit PGM picture and reads its head, or fails. */
 int open_pgm(const char *name, uint16_t *width, uint16_t *height);
+/* Whether a file can be opened. */
+int is_there(const char *name);
+/* Writes a whole number with a blank before it. */
+void say_number(int file, int32_t number);
 /* CRC-32 as in Ethernet and PNG, bit by bit: begins with UINT32_MAX, and say_crc prints it. */
 uint32_t crc32(uint32_t crc, uint8_t byte);
 void say_crc(uint32_t crc);

@@ -2,12 +2,16 @@
 
 use crate::steps::{Failure, Outcome, command, output_of, run};
 
+/// The cross compiler whose library comes with a file of options that names it.
+const RISCV_GCC: &str = "riscv64-unknown-elf-gcc";
+
 /// The packages that have a program: one or the other, as the distribution's version goes.
 fn packages_with(program: &str) -> Vec<&str> {
     match program {
         "qemu-system-riscv32" => vec!["qemu-system-misc", "qemu-system-riscv"],
         "qemu-aarch64" | "qemu-arm" => vec!["qemu-user"],
         "arm-none-eabi-gcc" => vec!["gcc-arm-none-eabi"],
+        RISCV_GCC => vec!["gcc-riscv64-unknown-elf"],
         "aarch64-linux-gnu-gcc" => vec!["gcc-aarch64-linux-gnu"],
         "arm-linux-gnueabihf-gcc" => vec!["gcc-arm-linux-gnueabihf"],
         same => vec![same],
@@ -18,6 +22,7 @@ fn packages_with(program: &str) -> Vec<&str> {
 fn library_of(program: &str) -> Option<&'static str> {
     match program {
         "arm-none-eabi-gcc" => Some("libnewlib-arm-none-eabi"),
+        RISCV_GCC => Some("picolibc-riscv64-unknown-elf"),
         "aarch64-linux-gnu-gcc" => Some("libc6-dev-arm64-cross"),
         "arm-linux-gnueabihf-gcc" => Some("libc6-dev-armhf-cross"),
         _ => None,
@@ -66,7 +71,8 @@ fn runs(program: &str) -> bool {
 fn is_there(program: &str) -> bool {
     // The compiler says the path of a file that it has, and the mere name of one that it has not.
     let has_library = || {
-        let path = output_of(&mut command(program, &["-print-file-name=libc.a"]));
+        let file = if program == RISCV_GCC { "picolibc.specs" } else { "libc.a" };
+        let path = output_of(&mut command(program, &[&format!("-print-file-name={file}")]));
         path.is_ok_and(|path| path.contains('/'))
     };
     runs(program) && (library_of(program).is_none() || has_library())

@@ -27,7 +27,7 @@ pub const FROM_SOURCE: [&str; 2] = ["thumbv8m.base-none-eabi", "armv7r-none-eabi
 
 /// The emulators of the boards.
 pub const QEMU_ARM: &str = "qemu-system-arm";
-const QEMU_RISCV: &str = "qemu-system-riscv32";
+pub const QEMU_RISCV: &str = "qemu-system-riscv32";
 
 /// The emulator of a target's boards.
 pub fn qemu_of(target: &str) -> &'static str {
@@ -43,9 +43,11 @@ pub fn run_all() -> Outcome {
     c()
 }
 
-/// What the examples in C need.
+/// What the examples in C need, and the watch over memory that was never written.
 pub fn c() -> Outcome {
-    packages::install(&["arm-none-eabi-gcc", "cmake", "make", "gcc", "g++"])
+    targets(&["thumbv7em-none-eabihf", "riscv32imc-unknown-none-elf", "riscv32imac-unknown-none-elf"])?;
+    packages::install(&["arm-none-eabi-gcc", "riscv64-unknown-elf-gcc", "cmake", "make", "gcc", "g++"])?;
+    packages::install(&[QEMU_ARM, QEMU_RISCV, "valgrind"])
 }
 
 /// What firmware for these targets needs.

@@ -1,22 +1,26 @@
 //! The C interface: the header, every misuse under sanitizers, and `examples/c-firmware` with the host's bits
-//! on a desktop and on two boards in QEMU.
+//! on a desktop and on four boards in QEMU.
 //!
 //! Everything is built by CMake, as a user's project is. The desktop's programs run under the address and
 //! undefined-behaviour sanitizers, with a library that checks its own arithmetic and pointers.
 //!
 //! [`program`] builds and runs the example, [`raw`] holds the one for raw pictures to the host's pipeline,
-//! [`misuse`] is what must be refused.
+//! [`mod@odometry`] the one for motion, [`every`] links all functions, [`misuse`] is what must be refused.
 
+mod every;
 mod misuse;
+mod odometry;
 mod program;
 mod raw;
 
-pub use program::{CORES, cargo, crc32s};
+pub use program::{cargo, crc32s};
 
 use crate::header;
 use crate::pictures::Pictures;
+use crate::setup;
 use crate::steps::{Failure, Outcome};
 use firmware_scenes::scene::Scene;
+use program::{CORES, beside, crc32_of, program};
 use stereopsis_host::run::MethodName;
 
 /// Frames that the cores have to agree on: width, height, disparities.
@@ -27,8 +31,10 @@ const IN_THE_LARGER: [MethodName; 2] = [MethodName::Block, MethodName::Sgm];
 
 /// The test step.
 pub fn run() -> Outcome {
+    setup::c()?;
     header::run(true)?;
     misuse::statuses()?;
+    misuse::fresh_memory()?;
     misuse::panicking_library()?;
     let frames = FRAMES
         .map(|(width, height, disparities)| Ok((Pictures::of_scene(Scene { width, height })?, disparities)));
@@ -40,7 +46,7 @@ pub fn run() -> Outcome {
         .collect();
     for (&(pictures, method, disparities), found) in runs.iter().zip(crc32s(&runs)?) {
         let expected = pictures.crc32(method, disparities)?;
-        for (core, found) in CORES.iter().zip(found) {
+        for (core, found) in found {
             let what = format!(
                 "{method}, {}x{}, {disparities} disparities, {core}",
                 pictures.width, pictures.height
@@ -52,6 +58,26 @@ pub fn run() -> Outcome {
             println!("{what}: crc32 {found:08x}");
         }
     }
+    interrupt()?;
     raw::run()?;
+    odometry::run()?;
     misuse::refused()
+}
+
+/// Lines that an interrupt hands over give the rows of lines from files, on each core.
+fn interrupt() -> Outcome {
+    let (width, height, disparities) = FRAMES[0];
+    let pictures = Pictures::of_scene(Scene { width, height })?;
+    let expected = pictures.crc32(MethodName::Block, disparities)?;
+    for core in CORES {
+        let program = program(core, MethodName::Block, width, disparities)?;
+        let found = crc32_of(core, &beside(&program, "interrupt"), &pictures)?;
+        if found != expected {
+            let line =
+                format!("interrupt, {core}: crc32 {found:08x}, the host's pipeline has {expected:08x}");
+            return Err(Failure::new(line));
+        }
+        println!("interrupt, {core}: crc32 {found:08x}");
+    }
+    Ok(())
 }

@@ -1,9 +1,10 @@
 //! `examples/c-firmware`, built for a core, a method and a capacity, and run.
 
+use super::{FRAMES, IN_THE_LARGER, every};
 use crate::elf::Sizes;
 use crate::parallel;
 use crate::pictures::Pictures;
-use crate::setup::QEMU_ARM;
+use crate::setup::{QEMU_ARM, QEMU_RISCV};
 use crate::steps::{Failure, Outcome, command, output_within, root, run as run_command, target_dir};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,13 +22,20 @@ pub enum Core {
     M4,
     /// Cortex-M7: mps2-an500.
     M7,
+    /// RISC-V without atomic instructions: virt.
+    Rv32imc,
+    /// RISC-V with atomic instructions: virt.
+    Rv32imac,
 }
 
-/// All of them, in the order of [`crc32s`].
-pub const CORES: [Core; 3] = [Core::Host, Core::M4, Core::M7];
+/// All of them.
+pub const CORES: [Core; 5] = [Core::Host, Core::M4, Core::M7, Core::Rv32imc, Core::Rv32imac];
 
 /// How long a frame may take: under a second is usual, a program that hangs never ends.
 pub const LIMIT: Duration = Duration::from_secs(120);
+
+/// The examples that need little memory, beside the one for rectified pictures.
+const BESIDE: [&str; 3] = ["raw", "interrupt", "odometry"];
 
 /// What the desktop's programs are compiled with.
 pub const SANITIZERS: &str = "-Werror -g -fsanitize=address,undefined -fno-sanitize-recover=all";
@@ -38,16 +46,49 @@ impl Core {
             Self::Host => "host",
             Self::M4 => "m4",
             Self::M7 => "m7",
+            Self::Rv32imc => "rv32imc",
+            Self::Rv32imac => "rv32imac",
         }
     }
 
-    /// QEMU's board, if it is one.
-    fn machine(self) -> Option<&'static str> {
+    /// Whether a method is tried on it: one over windows on all cores, one along paths on all but the last,
+    /// which differs from the one before by instructions that no method uses.
+    fn has(self, method: MethodName, width: u16) -> bool {
+        let is_small = width == FRAMES[0].0;
         match self {
-            Self::Host => None,
-            Self::M4 => Some("mps2-an386"),
-            Self::M7 => Some("mps2-an500"),
+            Self::Host | Self::M4 | Self::M7 => true,
+            Self::Rv32imc => is_small && IN_THE_LARGER.contains(&method),
+            Self::Rv32imac => is_small && method == MethodName::Block,
         }
+    }
+
+    /// The compiler and its options for one core of each kind, on which all functions are linked.
+    fn compiler(self) -> Option<(&'static str, &'static str)> {
+        match self {
+            Self::M4 => {
+                Some(("arm-none-eabi-gcc", "-mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mthumb -mfloat-abi=hard"))
+            }
+            Self::Rv32imc => Some((
+                "riscv64-unknown-elf-gcc",
+                "-march=rv32imc -mabi=ilp32 -mcmodel=medany --specs=picolibc.specs",
+            )),
+            _ => None,
+        }
+    }
+
+    /// QEMU and its board, if it is one.
+    fn qemu(self) -> Option<Command> {
+        let (program, machine) = match self {
+            Self::Host => return None,
+            Self::M4 => (QEMU_ARM, ["-machine", "mps2-an386"].as_slice()),
+            Self::M7 => (QEMU_ARM, ["-machine", "mps2-an500"].as_slice()),
+            Self::Rv32imc => {
+                (QEMU_RISCV, ["-machine", "virt", "-bios", "none", "-cpu", "rv32,a=off"].as_slice())
+            }
+            Self::Rv32imac => (QEMU_RISCV, ["-machine", "virt", "-bios", "none"].as_slice()),
+        };
+        let rest = ["-nographic", "-semihosting-config", "enable=on,target=native", "-kernel"];
+        Some(command(program, &[machine, &rest].concat()))
     }
 }
 
@@ -67,20 +108,20 @@ pub fn cargo(words: &str) -> Command {
 }
 
 /// The CRC-32 of all disparities and flags that the example in C finds in pairs of pictures, on each of
-/// [`CORES`].
+/// [`CORES`] on which the method is tried.
 ///
 /// A board's program is looked through for panics and allocations as well.
-pub fn crc32s(runs: &[(&Pictures, MethodName, u16)]) -> Outcome<Vec<[u32; 3]>> {
+pub fn crc32s(runs: &[(&Pictures, MethodName, u16)]) -> Outcome<Vec<Vec<(Core, u32)>>> {
     let all = |cores: &[Core]| {
-        let one = |&(pictures, method, disparities): &_| {
-            cores.iter().map(|&core| crc32(core, pictures, method, disparities)).collect::<Outcome<Vec<_>>>()
+        let one = |&(pictures, method, disparities): &(&Pictures, MethodName, u16)| {
+            let tried = cores.iter().filter(|core| core.has(method, pictures.width));
+            tried.map(|&core| Ok((core, crc32(core, pictures, method, disparities)?))).collect()
         };
-        runs.iter().map(one).collect::<Outcome<Vec<_>>>()
+        runs.iter().map(one).collect::<Outcome<Vec<Vec<_>>>>()
     };
-    // The boards share a library: theirs is one thread's work, the desktop's another's.
-    let found = parallel::work(vec![&CORES[..1], &CORES[1..]], all)?;
-    let rows = found[0].iter().zip(&found[1]).map(|(host, boards)| [host[0], boards[0], boards[1]]);
-    Ok(rows.collect())
+    // Boards of a kind share a library: theirs is one thread's work, the desktop's another's.
+    let found = parallel::work(vec![&CORES[..1], &CORES[1..3], &CORES[3..]], all)?;
+    Ok((0..runs.len()).map(|run| found.iter().flat_map(|rows| rows[run].clone()).collect()).collect())
 }
 
 fn crc32(core: Core, pictures: &Pictures, method: MethodName, disparities: u16) -> Outcome<u32> {
@@ -90,18 +131,22 @@ fn crc32(core: Core, pictures: &Pictures, method: MethodName, disparities: u16) 
 
 /// The checksum that a program prints for pictures.
 pub fn crc32_of(core: Core, program: &Path, pictures: &Pictures) -> Outcome<u32> {
-    let mut run = command(program, &[]);
-    if let Some(machine) = core.machine() {
-        run = command(
-            QEMU_ARM,
-            &["-machine", machine, "-nographic", "-semihosting-config", "enable=on,target=native"],
-        );
-        run.arg("-kernel").arg(program);
-    }
     // It reads the current folder's left.pgm and right.pgm.
     let folder = temporary_folder()?;
     pictures.write(folder.path())?;
-    let printed = output_within(run.current_dir(folder.path()), LIMIT)?;
+    crc32_in(core, program, folder.path())
+}
+
+/// The checksum that a program prints for the files of a folder.
+pub fn crc32_in(core: Core, program: &Path, folder: &Path) -> Outcome<u32> {
+    let mut run = core.qemu().map_or_else(
+        || command(program, &[]),
+        |mut qemu| {
+            qemu.arg(program);
+            qemu
+        },
+    );
+    let printed = output_within(run.current_dir(folder), LIMIT)?;
     let crc = printed.trim().strip_prefix("crc32 ").and_then(|digits| u32::from_str_radix(digits, 16).ok());
     crc.ok_or_else(|| Failure::new(format!("{}: no crc32 in \"{}\"", program.display(), printed.trim())))
 }
@@ -136,14 +181,14 @@ pub fn program(core: Core, method: MethodName, width: u16, disparities: u16) -> 
         remove(&build)?;
     }
     configure("examples/c-firmware", &build, &choices, flags)?;
-    run_command(command("cmake", &["--build"]).arg(&build).args(["--target", "depth"]))?;
-    let mut programs_of = vec![("depth", program.clone())];
+    let mut names = vec!["rectified"];
     // Both cameras' remaps find room beside a small method.
-    if method == MethodName::Block {
-        run_command(command("cmake", &["--build"]).arg(&build).args(["--target", "raw"]))?;
-        programs_of.push(("raw", raw_beside(&program)));
+    if method == MethodName::Block && width == FRAMES[0].0 {
+        names.extend(BESIDE);
     }
-    for (name, kept) in &programs_of {
+    for name in names {
+        run_command(command("cmake", &["--build"]).arg(&build).args(["--target", name]))?;
+        let kept = &if name == "rectified" { program.clone() } else { beside(&program, name) };
         let keep = || fs::create_dir_all(&programs).and_then(|()| fs::copy(build.join(name), kept));
         keep().map_err(|e| Failure::new(format!("{}: {e}", kept.display())))?;
         if core != Core::Host {
@@ -151,13 +196,19 @@ pub fn program(core: Core, method: MethodName, width: u16, disparities: u16) -> 
             checked.map_err(|e| Failure::new(format!("{}: {e}", kept.display())))?;
         }
     }
+    if let Some((compiler, flags)) = core.compiler()
+        && method == MethodName::Block
+        && width == FRAMES[0].0
+    {
+        every::link(compiler, flags, &build)?;
+    }
     built().push(program.clone());
     Ok(program)
 }
 
-/// The example for raw pictures that was built with a [`program`].
-pub fn raw_beside(program: &Path) -> PathBuf {
-    program.with_extension("raw")
+/// An example that was built with a [`program`] of [`MethodName::Block`] for the smaller frames.
+pub fn beside(program: &Path, name: &str) -> PathBuf {
+    program.with_extension(name)
 }
 
 /// Configures a project.
@@ -187,5 +238,9 @@ pub fn folder() -> PathBuf {
 
 /// Cargo's products for a core: the crates below the library are compiled once for each target.
 pub fn cargo_folder(core: Core) -> PathBuf {
-    folder().join(if core == Core::Host { "cargo" } else { "cargo-boards" })
+    folder().join(match core {
+        Core::Host => "cargo",
+        Core::M4 | Core::M7 => "cargo-boards",
+        Core::Rv32imc | Core::Rv32imac => "cargo-riscv",
+    })
 }

@@ -1,7 +1,7 @@
 //! `examples/c-firmware/raw.c`: raw pictures, the record in `rig.h`, rectified lines, depths and points, held
 //! to the same in Rust.
 
-use super::program::{CORES, crc32_of, program, raw_beside};
+use super::program::{CORES, beside, crc32_of, program};
 use crate::pictures::Pictures;
 use crate::steps::{Failure, Outcome, root};
 use firmware_scenes::scene::Scene;
@@ -32,7 +32,7 @@ pub fn run() -> Outcome {
     let expected = expected(&pictures)?;
     for core in CORES {
         let program = program(core, MethodName::Block, SIZE.width, DISPARITIES)?;
-        let found = crc32_of(core, &raw_beside(&program), &pictures)?;
+        let found = crc32_of(core, &beside(&program, "raw"), &pictures)?;
         if found != expected {
             let line = format!("raw, {core}: crc32 {found:08x}, the host's pipeline has {expected:08x}");
             return Err(Failure::new(line));

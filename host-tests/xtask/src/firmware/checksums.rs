@@ -13,9 +13,6 @@ use stereopsis_host::run::MethodName;
 /// Pairs of the folder of real pictures.
 const PAIRS: [&str; 3] = ["cones", "venus", "mb2014q_Motorcycle"];
 
-/// The example in C has to say what the cores say; in the order of [`c::CORES`].
-const IN_C: [&str; 3] = ["C, host", "C, m4", "C, m7"];
-
 /// The real pairs by name; none without STEREO_DATA.
 pub fn pairs() -> Outcome<Vec<(String, Pictures)>> {
     let Some(data) = std::env::var_os("STEREO_DATA").map(PathBuf::from) else { return Ok(Vec::new()) };
@@ -38,12 +35,12 @@ pub fn on_core(built: &Built, pairs: &[(String, Pictures)]) -> Outcome<Vec<Check
 
 /// Prints the checksums, a column for each core, the host and the example in C, and fails when a row has two.
 pub fn compare(results: &[Measured], pairs: &[(String, Pictures)]) -> Outcome {
-    let mut rows: BTreeMap<_, Vec<(&str, u32)>> = BTreeMap::new();
+    let mut rows: BTreeMap<_, Vec<(String, u32)>> = BTreeMap::new();
     for result in results {
         let Program { board, method, width, height, disparities, .. } = result.frame.program;
         for Checksum { pair, crc32 } in &result.checksums {
             let row = rows.entry((pair, method.name(), width, height, disparities)).or_default();
-            row.push((board.core, *crc32));
+            row.push((board.core.to_owned(), *crc32));
         }
     }
     let scaled = |&(pair, method, width, height, disparities): &(&String, &str, u16, u16, u16)| {
@@ -58,12 +55,13 @@ pub fn compare(results: &[Measured], pairs: &[(String, Pictures)]) -> Outcome {
         frames.iter().map(|(pictures, method, disparities)| (pictures, *method, *disparities)).collect();
     for ((row, &(pictures, method, disparities)), in_c) in rows.values_mut().zip(&runs).zip(c::crc32s(&runs)?)
     {
-        row.push(("host", pictures.crc32(method, disparities)?));
-        row.extend(IN_C.into_iter().zip(in_c));
+        row.push(("host".to_owned(), pictures.crc32(method, disparities)?));
+        // The example in C has to say what the cores say.
+        row.extend(in_c.into_iter().map(|(core, crc32)| (format!("C, {core}"), crc32)));
     }
     // Not every size is on every core.
     let longest = rows.values().max_by_key(|row| row.len());
-    let columns: Vec<&str> = longest.into_iter().flatten().map(|(name, _)| *name).collect();
+    let columns: Vec<&str> = longest.into_iter().flatten().map(|(name, _)| name.as_str()).collect();
     println!("CRC-32 of disparities and flags:\n");
     println!("| pair | method | pixels | disparities | {} |", columns.join(" | "));
     println!("| --- | --- | --- | ---: |{}", " --- |".repeat(columns.len()));
@@ -74,7 +72,7 @@ pub fn compare(results: &[Measured], pairs: &[(String, Pictures)]) -> Outcome {
         println!("| {pair} | `{method}` | {width}x{height} | {disparities} |{cells}");
     }
     println!();
-    let differs = |row: &[(&str, u32)]| row.windows(2).any(|two| two[0].1 != two[1].1);
+    let differs = |row: &[(String, u32)]| row.windows(2).any(|two| two[0].1 != two[1].1);
     match rows.iter().find(|(_, row)| differs(row)) {
         Some(((pair, method, ..), row)) => {
             Err(Failure::new(format!("{pair}, {method}: the checksums differ: {row:x?}")))

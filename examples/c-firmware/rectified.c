@@ -1,6 +1,6 @@
-/* Depth rows from a pair of 8-bit PGM pictures, line by line, without malloc: for a board and for a desktop.
+/* Rows of disparities from a rectified pair of 8-bit PGM pictures, line by line, without malloc: for a board and for a desktop.
 
-   Usage: depth [LEFT.pgm RIGHT.pgm]; without arguments, as on a board, left.pgm and right.pgm in the current folder.
+   Usage: rectified [LEFT.pgm RIGHT.pgm]; without arguments, as on a board, left.pgm and right.pgm in the current folder.
    Prints the CRC-32 of all disparities and flags. In a product the lines come from the cameras' DMA instead. */
 #include "files.h"
 #include "stereopsis.h"
@@ -16,7 +16,7 @@ static uint64_t memory[STEREOPSIS_BYTES(STEREOPSIS_WIDTH, STEREOPSIS_DISPARITIES
 static uint8_t left[STEREOPSIS_WIDTH], right[STEREOPSIS_WIDTH];
 
 int main(int count, char **names) {
-    if (count == 2 || count > 3) fail("usage", "depth [LEFT.pgm RIGHT.pgm]");
+    if (count == 2 || count > 3) fail("usage", "rectified [LEFT.pgm RIGHT.pgm]");
     const char *left_name = count == 3 ? names[1] : "left.pgm", *right_name = count == 3 ? names[2] : "right.pgm";
     uint16_t width, height, right_width, right_height;
     int left_file = open_pgm(left_name, &width, &height), right_file = open_pgm(right_name, &right_width, &right_height);

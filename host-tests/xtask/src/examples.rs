@@ -1,6 +1,5 @@
 //! `examples/quickstart`, `examples/async` and `examples/rtic`: linted, built as their reader builds them,
 //! and run in QEMU.
-//! `examples/boards`: built.
 
 use crate::setup;
 use crate::steps::{Failure, Outcome, command, ended_within, root, run as run_command, target_dir};
@@ -52,20 +51,6 @@ frame 3: nearest mm 524, lines lost 0; depths as blocking",
 pub fn executors() -> Outcome {
     ASYNC.run()?;
     RTIC.run()
-}
-
-/// Boards of vendors, which QEMU has not: folder and target.
-const BOARDS: [(&str, &str); 2] =
-    [("rp2350", "thumbv8m.main-none-eabihf"), ("stm32h743", "thumbv7em-none-eabihf")];
-
-/// The test step of the boards. Each has a folder of products, since they share few of them.
-pub fn boards() -> Outcome {
-    for (name, target) in BOARDS {
-        for words in ["fmt --check".to_owned(), format!("build --locked --release --target {target}")] {
-            run_command(&mut cargo(&format!("boards/{name}"), &words))?;
-        }
-    }
-    Ok(())
 }
 
 /// Cargo in a folder of the examples, where its own configuration has the flags.

@@ -20,6 +20,7 @@ use stereopsis_host::command_line::{one_line, usage_line};
 
 mod altered;
 mod arm;
+mod boards;
 mod c;
 mod elf;
 mod examples;

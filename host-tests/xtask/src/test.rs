@@ -1,6 +1,7 @@
 //! `cargo xtask test`: every check of the repository, one step after another.
 
 use crate::arm;
+use crate::boards;
 use crate::c;
 use crate::examples;
 use crate::firmware;
@@ -44,7 +45,7 @@ pub fn run(only: Option<String>) -> Outcome {
         &[
             ("quickstart", || examples::QUICKSTART.run()),
             ("async", examples::executors),
-            ("boards", examples::boards),
+            ("boards", boards::run),
         ],
     ];
     side_by_side(&mut steps, beside)?;

@@ -1,6 +1,6 @@
 //! Lines of both cameras by PIO and DMA, to the cores whose bands take them.
 
-use crate::matching::{Destination, HEIGHT, WIDTH};
+use crate::band::{Destination, HEIGHT, WIDTH};
 use embassy_futures::join::join;
 use embassy_rp::dma::Channel;
 use embassy_rp::gpio::Output;

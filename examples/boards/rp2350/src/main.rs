@@ -3,11 +3,12 @@
 //! * [`sensors`]: both sensors set up alike, over an I2C bus each, on one master clock.
 //! * [`capture`]: on core 0, above all else: a trigger for every frame, a line of both cameras by PIO and
 //!   DMA, handed to the cores whose bands take it.
-//! * [`matching`]: on both cores, a band of rows each.
+//! * [`band`], [`matching`]: on both cores, a band of rows each.
 //! * The nearest distance of every frame goes out by the UART.
 #![no_std]
 #![no_main]
 
+mod band;
 mod capture;
 mod matching;
 mod sensors;
@@ -36,8 +37,8 @@ static CORE_0: StaticCell<Executor> = StaticCell::new();
 static CORE_1: StaticCell<Executor> = StaticCell::new();
 /// The matcher takes 2 KB, the executor and the interrupts the rest.
 static STACK_1: ConstStaticCell<Stack<8192>> = ConstStaticCell::new(Stack::new());
-static MEMORIES: [ConstStaticCell<matching::Memory>; 2] =
-    [const { ConstStaticCell::new(matching::Memory::new()) }; 2];
+static MEMORIES: [ConstStaticCell<band::Memory>; 2] =
+    [const { ConstStaticCell::new(band::Memory::new()) }; 2];
 
 /// Runs the capture above whatever core 0 does.
 #[embassy_rp::interrupt]
@@ -84,8 +85,7 @@ fn main() -> ! {
     let right = Camera::new(sm1, &program, &pins, Channel::new(p.DMA_CH1, Irqs));
 
     // A band of the frame for each core, with memory of its own.
-    let mut bands =
-        matching::bands().zip(&MEMORIES).map(|(band, memory)| matching::start(band, memory.take()));
+    let mut bands = band::bands().zip(&MEMORIES).map(|(band, memory)| band::start(band, memory.take()));
     let (first, to_first) = bands.next().expect("a frame has rows");
     let (second, to_second) = bands.next().expect("there are rows for two cores");
 

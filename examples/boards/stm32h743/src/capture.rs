@@ -1,6 +1,7 @@
 //! Lines by DCMI: a circular DMA over two lines, each copied into a slot of the queue while the other fills.
 
-use crate::{HEIGHT, Irqs, LINE};
+use crate::Irqs;
+use crate::rows::{Destination, HEIGHT, LINE};
 use core::cell::UnsafeCell;
 use embassy_stm32::Peri;
 use embassy_stm32::dcmi::{
@@ -11,7 +12,7 @@ use embassy_stm32::gpio::{AfType, Flex, Pull};
 use embassy_stm32::pac;
 use embassy_stm32::peripherals::{DCMI, DMA1_CH0, PA4, PA6, PB7, PB8, PB9, PC6, PC7, PC8, PC9, PC11, PD3};
 use embassy_time::{Duration, Instant, with_timeout};
-use stereopsis::camera::{FrameStart, LineNotifier, LineProducer, LineStart};
+use stereopsis::camera::{FrameStart, LineStart};
 
 /// Words of a line, four pixels each.
 const WORDS: usize = LINE / 4;
@@ -90,8 +91,7 @@ impl Pins {
 pub struct Port {
     channel: Channel<'static>,
     request: Request,
-    producer: LineProducer<'static, 'static, LINE>,
-    notifier: LineNotifier<'static>,
+    to: Destination,
 }
 
 impl Port {
@@ -101,8 +101,7 @@ impl Port {
         dma: Peri<'static, DMA1_CH0>,
         interrupts: Irqs,
         pins: Pins,
-        producer: LineProducer<'static, 'static, LINE>,
-        notifier: LineNotifier<'static>,
+        to: Destination,
     ) -> Self {
         pins.connect();
         embassy_stm32::rcc::enable_and_reset::<DCMI>();
@@ -116,7 +115,7 @@ impl Port {
             cr.set_hspol(false); // nor while HSYNC is low.
         });
         let request = FrameDma::<DCMI>::request(&*dma);
-        Self { channel: Channel::new(dma, interrupts), request, producer, notifier }
+        Self { channel: Channel::new(dma, interrupts), request, to }
     }
 }
 
@@ -124,7 +123,7 @@ impl Port {
 #[embassy_executor::task]
 #[allow(unsafe_code)]
 pub async fn run(port: Port) -> ! {
-    let Port { mut channel, request, mut producer, mut notifier } = port;
+    let Port { mut channel, request, mut to } = port;
     let two_lines = TWO_LINES.0.get();
     // SAFETY: the task runs once, and nobody else takes this reference. The words are written before they are
     // read.
@@ -146,7 +145,7 @@ pub async fn run(port: Port) -> ! {
         ring.start();
         capture(true);
         let mut is_first = true;
-        while frame(&mut ring, sequence, is_first, &mut producer, &mut notifier).await {
+        while frame(&mut ring, sequence, is_first, &mut to).await {
             (sequence, is_first) = (sequence.wrapping_add(1), false);
         }
         sequence = sequence.wrapping_add(1);
@@ -175,8 +174,7 @@ async fn frame(
     ring: &mut ReadableRingBuffer<'_, u32>,
     sequence: u32,
     is_first: bool,
-    producer: &mut LineProducer<'static, 'static, LINE>,
-    notifier: &mut LineNotifier<'static>,
+    to: &mut Destination,
 ) -> bool {
     let mut start = FrameStart { sequence, timestamp_us: 0, exposure_us: 0 };
     for row in 0..HEIGHT {
@@ -198,12 +196,12 @@ async fn frame(
         } else if flags.frame_ris() && row + 2 < HEIGHT {
             return false;
         }
-        let Some(mut line) = producer.begin() else { continue };
-        for (to, word) in line.bytes().chunks_exact_mut(4).zip(words) {
-            to.copy_from_slice(&word.to_le_bytes());
+        let Some(mut line) = to.producer.begin() else { continue };
+        for (bytes, word) in line.bytes().chunks_exact_mut(4).zip(words) {
+            bytes.copy_from_slice(&word.to_le_bytes());
         }
-        producer.finish(line, start, LineStart { row, timestamp_us });
-        notifier.notify();
+        to.producer.finish(line, start, LineStart { row, timestamp_us });
+        to.notifier.notify();
     }
     true
 }

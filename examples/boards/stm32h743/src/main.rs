@@ -2,11 +2,13 @@
 //! has the wiring.
 //!
 //! * [`capture`]: above all else, lines by DCMI and DMA into the queue.
+//! * [`rows`]: the memory of the queue and of the pipeline.
 //! * The task here matches them, and says the nearest distance of every frame on the UART.
 #![no_std]
 #![no_main]
 
 mod capture;
+mod rows;
 
 use core::panic::PanicInfo;
 use embassy_executor::{Executor, InterruptExecutor};
@@ -18,31 +20,11 @@ use embassy_stm32::rcc;
 use embassy_stm32::usart::{Config as UartConfig, UartTx};
 use embassy_stm32::{Config as ChipConfig, bind_interrupts};
 use embassy_time::{Duration, with_timeout};
+use rows::{Matching, Memory};
 use static_cell::{ConstStaticCell, StaticCell};
-use stereopsis::camera::{
-    LineFormat, LineListener, LineSignal, LineSlots, PixelFormat, PolledLines, SideBySide,
-};
-use stereopsis::depth::DepthScale;
-use stereopsis::geometry::camera::RectifiedRig;
-use stereopsis::matching::{Block, Config};
-use stereopsis::pipeline::Guarded;
 
-/// Columns of an image, px.
-const WIDTH: u16 = 160;
-/// Rows of a frame, px.
-const HEIGHT: u16 = 120;
-const DISPARITIES: u16 = 32;
-/// A line of both cameras.
-const LINE: usize = 2 * WIDTH as usize;
-/// Slots: the last rows of a frame come out together, and take as long as so many lines.
-const SLOTS: usize = 16;
-/// Focal length px, baseline m, principal point px: those of your calibration.
-const RIG: (f32, f32, f32, f32) = (170.0, 0.05, 79.5, 59.5);
 /// A frame that takes longer has stopped.
 const NO_FRAME: Duration = Duration::from_millis(500);
-
-type Rows = Guarded<Block, { WIDTH as usize }, { DISPARITIES as usize }>;
-type Cameras = SideBySide<PolledLines<'static, 'static, LINE>, LINE>;
 
 bind_interrupts!(struct Irqs {
     DMA1_STREAM0 => InterruptHandler<DMA1_CH0>;
@@ -50,11 +32,7 @@ bind_interrupts!(struct Irqs {
 
 static ABOVE: InterruptExecutor = InterruptExecutor::new();
 static BELOW: StaticCell<Executor> = StaticCell::new();
-static SLOT_BYTES: ConstStaticCell<[[u8; LINE]; SLOTS]> = ConstStaticCell::new([[0; LINE]; SLOTS]);
-static QUEUES: ConstStaticCell<LineSlots<'static, LINE, { SLOTS + 1 }>> =
-    ConstStaticCell::new(LineSlots::new());
-static SIGNAL: ConstStaticCell<LineSignal> = ConstStaticCell::new(LineSignal::new());
-static ROWS: ConstStaticCell<Rows> = ConstStaticCell::new(Guarded::new());
+static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory::new());
 
 /// Runs the capture above the matcher. No peripheral of this program has this interrupt.
 #[embassy_stm32::interrupt]
@@ -102,34 +80,21 @@ fn main() -> ! {
         hsync: p.PA4,
         clock: p.PA6,
     };
-    let (producer, consumer) = QUEUES.take().split(SLOT_BYTES.take());
-    let (notifier, lines) = SIGNAL.take().split();
-    let port = capture::Port::new(p.DCMI, p.DMA1_CH0, Irqs, pins, producer, notifier);
+    let (matching, destination) = rows::start(MEMORY.take());
+    let port = capture::Port::new(p.DCMI, p.DMA1_CH0, Irqs, pins, destination);
     interrupt::UART5.set_priority(Priority::P6);
     ABOVE.start(interrupt::UART5).spawn(capture::run(port).expect("one capture"));
 
-    let format = LineFormat { width: LINE as u16, height: HEIGHT, pixel: PixelFormat::Grey8 };
-    let both = PolledLines::new(consumer, format).expect("a slot holds a line");
-    let cameras = SideBySide::new(both).expect("a line has two halves");
-    let rows = ROWS.take();
-    rows.start(&Config::for_method::<Block>(WIDTH, HEIGHT, DISPARITIES)).expect("within its capacity");
     let uart = UartTx::new_blocking(p.USART3, p.PD8, UartConfig::default()).expect("a baud rate that it has");
     BELOW.init(Executor::new()).run(|spawner| {
-        spawner.spawn(depth(rows, cameras, lines, uart).expect("one task"));
+        spawner.spawn(depth(matching, uart).expect("one task"));
     })
 }
 
 /// Says the nearest distance of every frame, in millimetres, and the lines that were lost: `12 524 0`.
 #[embassy_executor::task]
-async fn depth(
-    rows: &'static mut Rows,
-    mut cameras: Cameras,
-    mut lines: LineListener<'static>,
-    mut uart: UartTx<'static, Blocking>,
-) -> ! {
-    let (focal_px, baseline_m, u, v) = RIG;
-    let rig = RectifiedRig::new(focal_px, baseline_m, u, v).expect("a rig");
-    let scale = DepthScale::new(&rig).expect("depths");
+async fn depth(matching: Matching, mut uart: UartTx<'static, Blocking>) -> ! {
+    let Matching { rows, mut cameras, mut lines, scale } = matching;
     loop {
         let begun = with_timeout(NO_FRAME, rows.begin_frame_async(&mut cameras, &mut lines)).await;
         let Ok(Ok(frame)) = begun else { continue };

@@ -2,7 +2,7 @@
 
 /// Why a file's beginning is no header of such a picture.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[cfg_attr(target_os = "none", derive(defmt::Format))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum HeaderError {
     /// It does not begin with `P5` and a blank.

@@ -50,7 +50,7 @@ pub struct Walk {
 
 /// Why there is no motion.
 #[derive(Clone, Copy, PartialEq, Debug)]
-#[cfg_attr(target_os = "none", derive(defmt::Format))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Broken {
     /// The camera gave no lines.
     Camera(CameraError<Infallible>),

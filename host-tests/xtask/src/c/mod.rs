@@ -5,8 +5,10 @@
 //! undefined-behaviour sanitizers, with a library that checks its own arithmetic and pointers.
 //!
 //! [`program`] builds and runs the example, [`raw`] holds the one for raw pictures to the host's pipeline,
-//! [`mod@odometry`] the one for motion, [`every`] links all functions, [`misuse`] is what must be refused.
+//! [`mod@odometry`] the one for motion, [`every`] links all functions, [`components`] is the same library in
+//! others' build systems, [`misuse`] what must be refused.
 
+mod components;
 mod every;
 mod misuse;
 mod odometry;
@@ -61,6 +63,7 @@ pub fn run() -> Outcome {
     interrupt()?;
     raw::run()?;
     odometry::run()?;
+    components::run()?;
     misuse::refused()
 }
 

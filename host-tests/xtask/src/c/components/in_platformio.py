@@ -1,0 +1,34 @@
+"""Runs a library's extraScript as PlatformIO does, for a board with a Cortex-M4F, and prints what it adds."""
+
+import os
+import sys
+
+script, build_folder = sys.argv[1:]
+
+
+class Environment(dict):
+    """A construction environment, as far as the script asks for it."""
+
+    def Append(self, **what):
+        for name, values in what.items():
+            self.setdefault(name, []).extend(values)
+
+    def GetProjectOption(self, name, default=None):
+        return {"custom_stereopsis_height": "240"}.get(name, default)
+
+    def BoardConfig(self):
+        return {"build.mcu": "stm32f407vgt6", "build.cpu": "cortex-m4"}
+
+    def subst(self, text):
+        return text.replace("$BUILD_DIR", build_folder)
+
+
+shared, env = Environment(), Environment(CCFLAGS=["-mcpu=cortex-m4", "-mfloat-abi=hard"])
+os.chdir(os.path.dirname(script))
+scope = {"env": env, "Import": lambda name: None, "DefaultEnvironment": lambda: shared}
+with open(script, encoding="utf-8") as text:
+    exec(compile(text.read(), script, "exec"), {"__name__": "SCons.Script", **scope})
+for path in env["CPPPATH"] + env["LIBPATH"]:
+    print(path)
+print(" ".join(env["LIBS"] + env["LINKFLAGS"]))
+print(" ".join(f"{name}={value}" for name, value in shared["CPPDEFINES"]))

@@ -29,6 +29,8 @@
 //! a [`depth::DepthScale`].
 #![no_std]
 
+/// The lists that features and matches are put into, in the version that they come from.
+pub use heapless;
 /// The matrices and vectors of the public interface, in the version that they come from.
 pub use nalgebra;
 
@@ -63,3 +65,7 @@ struct LibraryPage;
 #[cfg(doctest)]
 #[doc = include_str!("../docs/firmware.md")]
 struct FirmwarePage;
+
+#[cfg(doctest)]
+#[doc = include_str!("../docs/calibration.md")]
+struct CalibrationPage;

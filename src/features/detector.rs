@@ -45,7 +45,7 @@ error_text!(FeatureLineError {
 /// ```
 /// use stereopsis::features::{FeatureConfig, FeatureDetector};
 /// let mut detector = FeatureDetector::<64, 10>::new();
-/// let mut features = heapless::Vec::<_, 16>::new();
+/// let mut features = stereopsis::heapless::Vec::<_, 16>::new();
 /// detector.start(&FeatureConfig::new(64, 64))?;
 /// for y in 0..64 {
 ///     let mut line = [20; 64];

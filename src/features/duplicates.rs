@@ -17,7 +17,7 @@ use heapless::VecView;
 /// let left = [feature(20.0, 0), feature(40.0, 0), feature(20.5, 1)];
 /// let right = [feature(35.0, 0), feature(14.2, 1), feature(15.0, 0)];
 /// let of = |left, right| Match { left, right, different: 3 };
-/// let mut matches = heapless::Vec::<_, 4>::from([of(0, 2), of(1, 0), of(2, 1)]);
+/// let mut matches = stereopsis::heapless::Vec::<_, 4>::from([of(0, 2), of(1, 0), of(2, 1)]);
 /// assert_eq!(drop_duplicates(&left, &right, matches.as_mut_view(), 1.5), 1);
 /// assert_eq!(matches, [of(0, 2), of(1, 0)]);
 /// ```

@@ -68,7 +68,7 @@ impl MatchSlot {
 /// };
 /// let left = [feature(20.0, 0x00ff), feature(40.0, 0xff00)];
 /// let right = [feature(35.0, 0xff01), feature(16.0, 0x00ff)];
-/// let mut matches = heapless::Vec::<_, 4>::new();
+/// let mut matches = stereopsis::heapless::Vec::<_, 4>::new();
 /// let dropped = FeatureMatcher::<8>::new().run(&left, &right, &MatchConfig::new(), matches.as_mut_view())?;
 /// assert_eq!(dropped, 0);
 /// let found: Vec<_> = matches.iter().map(|m| (m.left, m.right, m.different)).collect();

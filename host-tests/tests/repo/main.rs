@@ -4,15 +4,17 @@
 //! * `layering`: data moves down the list of modules. `circles`: no circle and no upward arrow inside a
 //!   module.
 //! * `readme`: its commands work and its figures are current. `firmware`: the example's parts without
-//!   hardware. `pio`: a board's program for its pins.
-//! * `derives`: what firmware expects of every public type.
+//!   hardware. `pio`: a board's program for its pins. `components`: what others' build systems read.
+//! * `derives`: what firmware expects of every public type. `features`: how conditions name them.
 //! * `lines`, `comments`, `names`: what a reader meets: line lengths, doc comments that stand alone, unique
 //!   public names.
 //! * `source`: the files, for the others. `paths`: what a file names.
 
 mod circles;
 mod comments;
+mod components;
 mod derives;
+mod features;
 mod firmware;
 mod house;
 mod layering;

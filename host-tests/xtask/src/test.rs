@@ -163,8 +163,8 @@ fn cross_checks() -> Outcome {
         // The stable compiler takes the option as a nightly one does.
         run_command(check.env("RUSTC_BOOTSTRAP", "1"))?;
     }
-    // Features add code and take none away, so that one small core without, with each and with every two of
-    // them shows how they go together.
+    // Features add code and take none away, and no condition names two of them (a test holds that), so that
+    // one small core without, with each and with every two of them shows every combination.
     run_command(&mut check("", &["--target", SMALL]))?;
     for (i, first) in FEATURES.iter().enumerate() {
         for second in &FEATURES[i..] {

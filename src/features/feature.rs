@@ -50,11 +50,14 @@ impl Level {
     }
 }
 
-/// A corner that can be found again.
+/// A corner that can be found again. C reads the same fields in this order.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[repr(C)]
 pub struct Feature {
+    /// What it looks like.
+    pub descriptor: Descriptor,
     /// The column, px of the full picture.
     pub x_px: f32,
     /// The row, px of the full picture.
@@ -63,8 +66,6 @@ pub struct Feature {
     pub score: u8,
     /// The level on which it was found: 0 is the full picture.
     pub level: u8,
-    /// What it looks like.
-    pub descriptor: Descriptor,
 }
 
 impl Feature {

@@ -3,7 +3,7 @@
 //!
 //! * [`mega`]: the camera, an Arducam Mega, which keeps its picture until it is read.
 //! * [`frames`]: a frame of both, line by line through the pipeline.
-//! * [`simulated`]: a camera without hardware, as the other end of the bus.
+//! * `simulated`, with the feature of that name: a camera without hardware, as the other end of the bus.
 #![no_std]
 
 pub mod frames;

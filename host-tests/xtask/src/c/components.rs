@@ -20,6 +20,9 @@ const DISPARITIES: u16 = 32;
 const CHOICES: [(&str, &str); 5] =
     [("METHOD", "block"), ("WIDTH", "160"), ("DISPARITIES", "32"), ("HEIGHT", "240"), ("LINES", "33")];
 const M4: &str = "-mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard -mthumb";
+/// Where the linker's script puts flash, RAM and stack on that core.
+const MEMORY: &str = "-Wl,--defsym=flash_start=0,--defsym=flash_bytes=64K,--defsym=ram_start=0x20000000,\
+                      --defsym=stack_bytes=4K";
 
 /// Builds all of them.
 pub fn run() -> Outcome {
@@ -98,9 +101,10 @@ fn arduino() -> Outcome<PathBuf> {
     let firmware = root().join("examples/c-firmware");
     let program = library.join("depth");
     let mut gcc = command("arm-none-eabi-gcc", &M4.split(' ').collect::<Vec<_>>());
-    gcc.args(["-std=c99", "-O2", "-ffunction-sections", "-nostartfiles", "-Wl,--defsym=flash_bytes=64K"]);
-    gcc.args(["main.c", "files.c", "board/startup.c", "board/semihosting.c"].map(|file| firmware.join(file)));
-    gcc.arg("-I").arg(library.join("src")).arg("-T").arg(firmware.join("board/mps2.ld"));
+    let sources = ["rectified.c", "files.c", "board/startup_arm.c", "board/semihosting.c"];
+    gcc.args(["-std=c99", "-O2", "-ffunction-sections", "-nostartfiles", MEMORY]);
+    gcc.args(sources.map(|file| firmware.join(file)));
+    gcc.arg("-I").arg(library.join("src")).arg("-T").arg(firmware.join("board/board.ld"));
     gcc.args(["-Wl,--gc-sections", "-Wl,-z,noexecstack"]).arg("-L").arg(&compiled);
     run_command(gcc.arg("-lstereopsis").arg("-o").arg(&program))?;
     Ok(program)

@@ -5,7 +5,10 @@ use crate::setup;
 use crate::steps::{
     Failure, Outcome, Steps, cargo, command, output_of, root, run as run_command, target_dir,
 };
+use serde::Deserialize;
+use spdx::{Expression, ParseMode};
 use std::collections::BTreeMap;
+use std::fs;
 use std::path::PathBuf;
 
 /// What the package holds besides `src` and `docs`; what begins with `Cargo` or a dot is cargo's own.
@@ -23,6 +26,7 @@ pub fn run() -> Outcome {
     setup::targets(&[TARGET])?;
     files()?;
     dependencies()?;
+    licences()?;
     builds_unpacked()
 }
 
@@ -79,6 +83,73 @@ fn dependencies() -> Outcome {
     Ok(())
 }
 
+/// Where cargo-deny reads which licences are accepted, and this step as well.
+const DENY: &str = ".cargo/deny.toml";
+
+/// What [`DENY`] says of licences.
+#[derive(Deserialize)]
+struct Deny {
+    licenses: Accepted,
+}
+
+#[derive(Deserialize)]
+struct Accepted {
+    allow: Vec<String>,
+    exceptions: Vec<Exception>,
+}
+
+#[derive(Deserialize)]
+struct Exception {
+    #[serde(rename = "crate")]
+    name: String,
+    allow: Vec<String>,
+}
+
+/// What cargo says of the packages that the workspace is built of.
+#[derive(Deserialize)]
+struct Metadata {
+    packages: Vec<Package>,
+}
+
+#[derive(Deserialize)]
+struct Package {
+    name: String,
+    license: Option<String>,
+}
+
+/// Every package of the workspace, the tests' own tools among them, has a licence that is accepted.
+fn licences() -> Outcome {
+    let failed = |e: &dyn std::fmt::Display| Failure::new(format!("{DENY}: {e}"));
+    let text = fs::read_to_string(root().join(DENY)).map_err(|e| failed(&e))?;
+    let Deny { licenses } = toml::from_str(&text).map_err(|e| failed(&e.message()))?;
+    let metadata =
+        output_of(&mut cargo(&["metadata", "--locked", "--all-features", "--format-version", "1"]))?;
+    let metadata: Metadata =
+        serde_json::from_str(&metadata).map_err(|e| Failure::new(format!("cargo metadata: {e}")))?;
+    for Package { name, license } in &metadata.packages {
+        let licence = license.as_deref().unwrap_or_default();
+        if !licenses.accepts(name, licence) {
+            return Err(Failure::new(format!("{name} has the licence \"{licence}\": {DENY} accepts none")));
+        }
+    }
+    println!("{} packages of the workspace have accepted licences", metadata.packages.len());
+    Ok(())
+}
+
+impl Accepted {
+    /// Whether a package may have a licence, or one of several.
+    fn accepts(&self, package: &str, licence: &str) -> bool {
+        let exceptions = self.exceptions.iter().filter(|exception| exception.name == package);
+        let allowed: Vec<_> = exceptions.flat_map(|exception| &exception.allow).chain(&self.allow).collect();
+        Expression::parse_mode(licence, ParseMode::LAX).is_ok_and(|expression| {
+            expression.evaluate(|wanted| {
+                wanted.addition.is_none()
+                    && wanted.license.id().is_some_and(|id| allowed.iter().any(|name| *name == id.name))
+            })
+        })
+    }
+}
+
 /// The package, unpacked elsewhere, builds for this machine and for a core with all features.
 fn builds_unpacked() -> Outcome {
     run_command(&mut cargo(&["package", "--locked", "--allow-dirty", "--no-verify", "-p", "stereopsis"]))?;
@@ -129,4 +200,22 @@ fn tool(name: &str) -> Outcome<PathBuf> {
         run_command(cargo(&["install", "--locked", name, "--root"]).arg(&folder))?;
     }
     Ok(tool)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_of_several_licences_is_enough_and_all_of_a_sum_are_needed() {
+        let one = Exception { name: "tool".to_owned(), allow: vec!["MPL-2.0".to_owned()] };
+        let accepted = Accepted { allow: vec!["MIT".to_owned(), "Zlib".to_owned()], exceptions: vec![one] };
+        for licence in ["MIT", "MIT/Apache-2.0", "GPL-3.0-only OR MIT", "(Apache-2.0 OR MIT) AND Zlib"] {
+            assert!(accepted.accepts("library", licence), "{licence}");
+        }
+        for licence in ["", "GPL-3.0-only", "MIT AND GPL-3.0-only", "MPL-2.0", "no licence"] {
+            assert!(!accepted.accepts("library", licence), "{licence}");
+        }
+        assert!(accepted.accepts("tool", "MPL-2.0"));
+    }
 }

@@ -4,9 +4,9 @@
 //! Everything is built by CMake, as a user's project is. The desktop's programs run under the address and
 //! undefined-behaviour sanitizers, with a library that checks its own arithmetic and pointers.
 //!
-//! [`mod@program`] builds and runs the example, [`raw`] holds the one for raw pictures to the host's pipeline,
-//! [`mod@odometry`] the one for motion, [`every`] links all functions, [`components`] is the same library in
-//! others' build systems, [`misuse`] what must be refused.
+//! [`mod@program`] builds and runs the example, [`raw`] holds the one for raw pictures to the host's
+//! pipeline, [`mod@odometry`] the one for motion, [`every`] links all functions, [`components`] is the same
+//! library in others' build systems, [`misuse`] what must be refused.
 
 mod components;
 mod every;

@@ -9,7 +9,7 @@ use super::{
 /// Depth from focus: the frame in which each cell is sharpest, with a fraction, from frames that come one at
 /// a time.
 ///
-/// `W` is the longest line, px, `C` the most cells in a row and `CELLS` in a frame. It takes 44 bytes for
+/// `W` is the longest line, px, `C` the most cells in a row and `CELLS` in a frame. It takes 48 bytes for
 /// each cell, and beside them 13 for every pixel of a line and 69 for every cell of a row. The work for a
 /// line is bounded by its length, and that for a stack grows with the number of frames.
 ///

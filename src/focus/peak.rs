@@ -16,7 +16,7 @@ const CHOICE: [(isize, u32); 5] = [(-2, 1), (-1, 2), (0, 3), (1, 2), (2, 1)];
 /// other.
 const BROAD: [[u32; 2]; 2] = [[40, 80], [15, 30]];
 
-/// The state of a cell, 44 bytes: its last sharpnesses and its peak so far.
+/// The state of a cell, 48 bytes: its last sharpnesses and its peak so far.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct FocusCell {
     /// Logarithms of the sharpness of the last frames, that of frame n in place n mod 11.
@@ -38,6 +38,8 @@ pub struct FocusCell {
     /// Sum of the sizes of their second differences.
     rough: u32,
 }
+
+const _: () = assert!(size_of::<FocusCell>() == 48, "what the documentation says");
 
 /// Where a cell is in focus, and how sure that is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

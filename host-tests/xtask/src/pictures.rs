@@ -18,6 +18,24 @@ use stereopsis_host::run::{MemoryPair, MethodName, NoiseChoice, measure_balance,
 /// Bytes of the longest raw line: RGB with 16 bits.
 const RAW: usize = IMAGE_SIDE as usize * 6;
 
+/// The rows that the host's pipeline makes of a source's frame by `block`, as firmware writes them: of every
+/// pixel the disparity's steps, the low byte first, and the flags.
+pub fn block_rows<C: StereoSource<Error: fmt::Display>>(
+    camera: &mut C,
+    disparities: u16,
+) -> Outcome<Vec<u8>> {
+    let format = camera.format();
+    let config = MethodName::Block.config(format.width, format.height, disparities);
+    let outcome = run(MethodName::Block, &config, camera, |_| ());
+    let map = outcome.map_err(|e| Failure::new(format!("the host finds no rows: {e}")))?.map;
+    let pixels = map.disparity.iter().zip(&map.flags);
+    let bytes = pixels.flat_map(|(disparity, flags)| {
+        let [low, high] = disparity.raw().to_le_bytes();
+        [low, high, flags.bits()]
+    });
+    Ok(bytes.collect())
+}
+
 /// A pair of pictures of one size, 8-bit grey.
 #[derive(Clone)]
 pub struct Pictures {

@@ -2,13 +2,13 @@
 //! the chips' sizes, held to the host's rows.
 
 use super::{cargo, products};
+use crate::pictures::block_rows;
 use crate::setup;
 use crate::steps::{Failure, Outcome, command, output_within, run as run_command};
 use firmware_scenes::scene::{Scene, SceneCamera};
 use std::convert::Infallible;
 use std::time::Duration;
 use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, StereoSource};
-use stereopsis_host::run::{MethodName, run as match_frame};
 
 /// A program of the package, on an emulated machine with the chip's core.
 struct Emulated {
@@ -91,29 +91,14 @@ impl Emulated {
         qemu.args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
         qemu.arg(products().join(target).join("release").join(program));
         let printed = output_within(&mut qemu, Duration::from_secs(60))?;
-        let crc32 = crc32fast::hash(&self.of_host()?);
+        let mut camera = Camera { scene: SceneCamera::new(self.scene), pixels: self.camera };
+        let crc32 = crc32fast::hash(&block_rows(&mut camera, DISPARITIES)?);
         let expected = format!("{} rows, crc32 {crc32:08x}, {}", self.scene.height, self.kernel);
         println!("{}: {}", self.of, printed.trim());
         if printed.trim() == expected {
             return Ok(());
         }
         Err(Failure::new(format!("{}: the host has \"{expected}\"", self.of)))
-    }
-
-    /// The bytes of the host's rows: of every pixel the disparity's steps, the low byte first, and the flags.
-    fn of_host(&self) -> Outcome<Vec<u8>> {
-        let config = MethodName::Block.config(self.scene.width, self.scene.height, DISPARITIES);
-        let mut camera = Camera { scene: SceneCamera::new(self.scene), pixels: self.camera };
-        let map = match_frame(MethodName::Block, &config, &mut camera, |_| ())
-            .map_err(|e| Failure::new(format!("the host finds no rows: {e}")))?
-            .map;
-        let pixels = map.disparity.iter().zip(&map.flags);
-        Ok(pixels
-            .flat_map(|(disparity, flags)| {
-                let [low, high] = disparity.raw().to_le_bytes();
-                [low, high, flags.bits()]
-            })
-            .collect())
     }
 }
 

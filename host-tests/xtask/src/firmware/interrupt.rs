@@ -4,11 +4,11 @@
 
 use super::program::Optimised;
 use super::results::{Ran, Taken};
-use crate::steps::{Failure, Outcome};
+use crate::pictures::block_rows;
+use crate::steps::Outcome;
 use firmware_boards::Board;
 use firmware_scenes::scene::{Scene, SceneCamera};
 use serde::Serialize;
-use stereopsis_host::run::{MethodName, run as match_frame};
 
 const SCENE: Scene = Scene { width: 160, height: 120 };
 const DISPARITIES: u16 = 32;
@@ -77,19 +77,9 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Interrupt> {
     })
 }
 
-/// The bytes of `interrupt.bin`: of every pixel the disparity's steps, the low byte first, and the flags.
+/// The bytes of `interrupt.bin`.
 fn of_host() -> Outcome<Vec<u8>> {
-    let config = MethodName::Block.config(SCENE.width, SCENE.height, DISPARITIES);
-    let map = match_frame(MethodName::Block, &config, &mut SceneCamera::new(SCENE), |_| ())
-        .map_err(|e| Failure::new(format!("the host finds no rows: {e}")))?
-        .map;
-    let pixels = map.disparity.iter().zip(&map.flags);
-    Ok(pixels
-        .flat_map(|(disparity, flags)| {
-            let [low, high] = disparity.raw().to_le_bytes();
-            [low, high, flags.bits()]
-        })
-        .collect())
+    block_rows(&mut SceneCamera::new(SCENE), DISPARITIES)
 }
 
 impl Interrupt {

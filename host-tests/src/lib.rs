@@ -1,7 +1,9 @@
 //! The host harness of `stereopsis`: the same `no_std` core behind mock cameras.
 //!
 //! The harness, the program `stereo` and the tests are one package: cargo hands a program's path to the tests
-//! of its own package only, and the tests of the commands run the program. `xtask` is a package beside it.
+//! of its own package only, and the tests of the commands run the program. Below it stands
+//! `stereopsis_model`, the twins and scenes, which is built for the emulated processors too; `xtask` is a
+//! package beside it.
 //!
 //! In running order:
 //!
@@ -41,7 +43,6 @@ pub mod epipolar_picture;
 pub mod eval;
 pub mod fault;
 pub mod focus;
-pub mod interpolate;
 pub mod limits;
 pub mod map;
 pub mod masked;
@@ -60,8 +61,8 @@ pub mod rectify;
 pub mod report;
 pub mod rows;
 pub mod run;
-pub mod scene;
 pub mod sparsification;
-pub mod twin;
 pub mod two_view;
 pub mod views;
+
+pub use stereopsis_model::{interpolate, scene, twin};

@@ -1,6 +1,7 @@
 //! Lines to rows of disparity.
 //!
-//! * `twin`: every method and kernel against the naive twin, to the bit.
+//! That every method and kernel equals the naive twin to the bit is in `model/tests/kernels`.
+//!
 //! * `accuracy`, `confidence`: the answers against the true values of rendered scenes.
 //! * `threads`: a frame in bands.
 
@@ -8,4 +9,3 @@ mod accuracy;
 mod confidence;
 mod surfaces;
 mod threads;
-mod twin;

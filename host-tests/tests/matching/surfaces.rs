@@ -13,7 +13,7 @@ fn shares(hard: &HardScene, method: MethodName, filter: Filter, parts: &[Part]) 
     let config = method.with_filter(filter, method.config(width, height, hard.scene.disparities()));
     let map = run(method, &config, &mut camera, |_| ()).expect("a frame").map;
     let truth = hard.scene.truth();
-    let of = |&part: &Part| Shares::of(hard, &truth, &map, part).expect("the scene shows the part");
+    let of = |&part: &Part| Shares::of(hard, &truth, &map.disparity, part).expect("the scene shows the part");
     let shares: Vec<_> = parts.iter().map(of).collect();
     println!("{} {method} {}: {parts:?} {shares:?}", hard.name, filter.name());
     shares

@@ -4,7 +4,7 @@
 use crate::packages;
 use crate::parallel;
 use crate::setup;
-use crate::steps::{Outcome, cargo, run as run_command};
+use crate::steps::{Outcome, cargo, run as run_command, target_dir};
 use std::process::Command;
 use std::time::Instant;
 
@@ -70,7 +70,7 @@ pub fn run() -> Outcome {
 
 /// Cargo with the tests that hold every kernel to the twins.
 fn tests(arms: &[Arm], arguments: &[&str]) -> Command {
-    let mut tests = cargo(&["test", "--locked", "-p", "stereopsis-host", "--test", "matching"]);
+    let mut tests = cargo(&["test", "--locked", "-p", "stereopsis-model", "--test", "kernels"]);
     tests.args(arms.iter().flat_map(|arm| ["--target", arm.target])).args(arguments);
     for arm in arms {
         let variable =
@@ -81,6 +81,8 @@ fn tests(arms: &[Arm], arguments: &[&str]) -> Command {
     }
     // The long lists take their share: the host has run all of them.
     tests.env("STEREOPSIS_EMULATED", "1");
+    // Other steps build at the same time.
+    tests.env("CARGO_TARGET_DIR", target_dir().join("arm"));
     tests
 }
 
@@ -89,7 +91,7 @@ impl Arm {
     fn run(&self) -> Outcome {
         let skip = self.skipped.iter().flat_map(|test| ["--skip", test]);
         // Each has a processor.
-        let arguments: Vec<_> = ["--", "twin::", "--test-threads", "1"].into_iter().chain(skip).collect();
+        let arguments: Vec<_> = ["--", "--test-threads", "1"].into_iter().chain(skip).collect();
         let started = Instant::now();
         run_command(&mut tests(&[*self], &arguments))?;
         println!("{} took {:.1} s", self.name, started.elapsed().as_secs_f64());

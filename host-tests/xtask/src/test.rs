@@ -26,30 +26,35 @@ pub fn run(only: Option<String>) -> Outcome {
     let mut steps = Steps::new(only);
     steps.step("set up", || setup::run_all().and_then(|()| arm::set_up()))?;
     steps.step("format", format)?;
-    steps.step("clippy", clippy)?;
-    steps.step("tests", || tests(data.is_some()))?;
-    steps.step("kernels on Arm", arm::run)?;
-    steps.step("documentation", documentation)?;
-    steps.step("package", package::run)?;
-    steps.step("cross checks", cross_checks)?;
-    let version = setup::rust_version()?;
-    steps.step(&format!("stated rust-version {version}"), || rust_version(&version))?;
-    // Much of these is one linker or one emulator at a time. Steps that build in the same folders stand in
-    // the same row: the firmware's checksums and the C interface share one.
-    let beside: [&[NamedStep]; 2] = [
-        &[
-            ("firmware", || firmware::check_sample(&stereo())),
-            ("growth", growth::sample),
-            ("C interface", c::run),
+    // Much of a step is one compiler, one linker or one emulator at a time, so two rows of steps run beside
+    // each other. Those that build in the same folder stand in the same row.
+    side_by_side(
+        &mut steps,
+        [
+            &[("clippy", clippy), ("tests", tests), ("documentation", documentation)],
+            &[
+                ("kernels on Arm", arm::run),
+                ("cross checks", cross_checks),
+                ("stated rust-version", rust_version),
+                ("package", package::run),
+            ],
         ],
-        &[
-            ("quickstart", || examples::QUICKSTART.run()),
-            ("async", examples::executors),
-            ("boards", boards::run),
+    )?;
+    // The firmware is held to the program that the tests have built; its checksums and the C interface share
+    // a folder.
+    side_by_side(
+        &mut steps,
+        [
+            &[("README's commands", readme_commands), ("quickstart", || examples::QUICKSTART.run())],
+            &[
+                ("firmware", || firmware::check_sample(&stereo())),
+                ("growth", growth::sample),
+                ("C interface", c::run),
+                ("async", examples::executors),
+                ("boards", boards::run),
+            ],
         ],
-    ];
-    side_by_side(&mut steps, beside)?;
-    steps.step("README's commands", || readme_commands(data.is_some()))?;
+    )?;
     steps.summary()?;
     if data.is_none() {
         println!("{NOT_RUN}");
@@ -115,15 +120,15 @@ fn clippy() -> Outcome {
     run_command(&mut c::cargo("clippy --locked --release --target thumbv7em-none-eabihf -- -D warnings"))
 }
 
-fn tests(with_real_data: bool) -> Outcome {
-    run_cargo(&test_command(with_real_data))
+fn tests() -> Outcome {
+    run_cargo(&test_command()?)
 }
 
 /// Cargo's words for the tests. All steps that run some of them say the same, so that none builds the
 /// dependencies anew with other features.
-fn test_command(with_real_data: bool) -> String {
-    let features = if with_real_data { format!(" --features {REAL_DATA}") } else { String::new() };
-    format!("test --locked --workspace{features}")
+fn test_command() -> Outcome<String> {
+    let features = real_data()?.map_or(String::new(), |_| format!(" --features {REAL_DATA}"));
+    Ok(format!("test --locked --workspace{features}"))
 }
 
 /// The program `stereo`, as the step of the tests has built it.
@@ -152,6 +157,7 @@ fn cross_checks() -> Outcome {
     let check = |features: &str, more: &[&str]| {
         let mut check = cargo(&["check", "--locked", "-p", "stereopsis", "--features", features]);
         check.args(more).env("RUSTFLAGS", "-D warnings");
+        check.env("CARGO_TARGET_DIR", target_dir().join("cross"));
         check
     };
     let all = FEATURES.join(",");
@@ -163,14 +169,11 @@ fn cross_checks() -> Outcome {
         // The stable compiler takes the option as a nightly one does.
         run_command(check.env("RUSTC_BOOTSTRAP", "1"))?;
     }
-    // Features add code and take none away, and no condition names two of them (a test holds that), so that
-    // one small core without, with each and with every two of them shows every combination.
-    run_command(&mut check("", &["--target", SMALL]))?;
-    for (i, first) in FEATURES.iter().enumerate() {
-        for second in &FEATURES[i..] {
-            let features = if first == second { (*first).to_owned() } else { format!("{first},{second}") };
-            run_command(&mut check(&features, &["--target", SMALL]))?;
-        }
+    // Features add code and take none away, and no condition names two of them (a test holds that): what
+    // stands behind one builds with every other if it builds with that one alone, as it does here on one small
+    // core, and if all together are no two things of one name, as above.
+    for features in [""].iter().chain(&FEATURES) {
+        run_command(&mut check(features, &["--target", SMALL]))?;
     }
     // Instructions that a core lacks are refused in one line that says what to do.
     for (flags, said) in [
@@ -193,15 +196,16 @@ fn cross_checks() -> Outcome {
     Ok(())
 }
 
-/// Last, because the clone's programs take the places of this tree's.
-fn readme_commands(with_real_data: bool) -> Outcome {
-    let test = test_command(with_real_data);
+/// After the tests, which have built this one.
+fn readme_commands() -> Outcome {
+    let test = test_command()?;
     run_cargo(&format!("{test} --test repo -- --ignored --exact readme::commands_work_in_a_fresh_clone"))
 }
 
 /// The oldest compiler that the packages say they build with, in earnest.
-fn rust_version(version: &str) -> Outcome {
-    let mut check = command("rustup", &["run", version, "cargo", "check", "--locked"]);
+fn rust_version() -> Outcome {
+    let version = setup::rust_version()?;
+    let mut check = command("rustup", &["run", &version, "cargo", "check", "--locked"]);
     check.args([
         "-p",
         "stereopsis",

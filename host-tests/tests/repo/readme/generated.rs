@@ -161,7 +161,7 @@ fn hard_table() -> String {
                 let of_scenes: Vec<_> = scenes
                     .iter()
                     .zip(&maps)
-                    .filter_map(|((hard, _, truth), map)| Shares::of(hard, truth, map, part))
+                    .filter_map(|((hard, _, truth), map)| Shares::of(hard, truth, &map.disparity, part))
                     .collect();
                 format!("{:.1}", 100.0 * of_scenes.iter().map(of).sum::<f64>() / of_scenes.len() as f64)
             };

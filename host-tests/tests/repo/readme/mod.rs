@@ -73,7 +73,8 @@ fn the_glossary_names_files_that_are_there() {
 
 #[test]
 fn what_assures_is_there() {
-    let tests: Vec<_> = source::rust_files("host-tests/tests");
+    const FOLDERS: [&str; 2] = ["host-tests/tests", "host-tests/model/tests"];
+    let tests: Vec<_> = FOLDERS.iter().flat_map(|folder| source::rust_files(folder)).collect();
     let text = read(&root().join("docs/assurance.md"));
     let rows: Vec<_> = text.lines().filter(|line| line.starts_with("| ")).skip(2).collect();
     assert!(rows.len() > 10, "{} promises in docs/assurance.md", rows.len());
@@ -82,7 +83,7 @@ fn what_assures_is_there() {
         let names: Vec<_> = evidence.split('`').skip(1).step_by(2).collect();
         assert!(!names.is_empty() || evidence.contains("step"), "docs/assurance.md: nothing shows {row}");
         for name in names {
-            let is_file = root().join("host-tests/tests").join(name).is_file();
+            let is_file = FOLDERS.iter().any(|folder| root().join(folder).join(name).is_file());
             let is_test = tests.iter().any(|(_, text)| text.contains(&format!("fn {name}(")));
             let is_chore = name.starts_with("firmware --");
             assert!(is_file || is_test || is_chore, "docs/assurance.md: there is no test {name}");
@@ -144,8 +145,9 @@ fn commands_work_in_a_fresh_clone() {
         assert!(is_installed(program), "README.md or docs/ run {program}, which {missing}");
     }
     assert!(read(&clone.join(".cargo/config.toml")).contains("run --locked --quiet --release "), "see run()");
+    let target = target_of_clone(folder.path());
     for block in &blocks {
-        run(block, &clone);
+        run(block, &clone, &target);
     }
     let all = blocks.concat();
     assert!(
@@ -170,12 +172,19 @@ fn is_installed(program: &str) -> bool {
     found.status.success()
 }
 
+/// A target folder for the clone. Its release profile is that of this test's own target folder, so that the
+/// dependencies are built once; no test is of that profile, and the firmware is built apart.
+fn target_of_clone(folder: &Path) -> PathBuf {
+    let own = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("the target folder");
+    let target = folder.join("target");
+    fs::create_dir(&target).expect("the clone's target folder");
+    let link = Command::new("ln").arg("-s").arg(own.join("release")).arg(&target).status().expect("ln");
+    assert!(link.success(), "ln: {link}");
+    target
+}
+
 /// Runs a block's lines in one shell, which ends at the first that fails.
-fn run(block: &str, clone: &Path) {
-    // The build products go where this test's own are: the dependencies are built once. The clone's packages
-    // take the places of this tree's, so its commands are all of the release profile, of which no test
-    // is.
-    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("the target folder");
+fn run(block: &str, clone: &Path, target: &Path) {
     let mut shell = Command::new("sh");
     shell.args(["-e", "-x", "-c", block]).current_dir(clone).env("CARGO_TARGET_DIR", target);
     let output = shell.output().expect("sh");

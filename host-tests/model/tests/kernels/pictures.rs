@@ -5,9 +5,9 @@ use super::{Any, Twin, W, compare, long, pipeline};
 use image::GrayImage;
 use stereopsis::matching::{Block, Checks, Config, Fast, Sgm, SgmEdge, SgmLean};
 use stereopsis::units::{Disparity, PixelFlags};
-use stereopsis_host::scene::Scene;
-use stereopsis_host::scene::pattern::Pattern;
-use stereopsis_host::twin::match_pair;
+use stereopsis_model::scene::Scene;
+use stereopsis_model::scene::pattern::Pattern;
+use stereopsis_model::twin::match_pair;
 
 /// Checks of which every stage does something.
 const ALL_STAGES: Checks =

@@ -20,7 +20,7 @@ pub mod pattern;
 mod camera;
 mod hard;
 mod moving;
-pub(crate) mod random;
+pub mod random;
 mod ready;
 mod render;
 mod road;

@@ -18,11 +18,11 @@ use stereopsis::camera::StereoSource;
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{Block, Config, Fast, Kernel, Method, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::{Pipeline, PipelineError};
-use stereopsis_host::scene::SceneCamera;
-use stereopsis_host::scene::pattern::Pattern;
-use stereopsis_host::twin::cost::{costs, window_sums, window_sums_plain};
-use stereopsis_host::twin::smooth::Seen;
-use stereopsis_host::twin::{self, Answers, Picture, match_pair};
+use stereopsis_model::scene::SceneCamera;
+use stereopsis_model::scene::pattern::Pattern;
+use stereopsis_model::twin::cost::{costs, window_sums, window_sums_plain};
+use stereopsis_model::twin::smooth::Seen;
+use stereopsis_model::twin::{self, Answers, Picture, match_pair};
 
 /// The capacity of the pipelines here.
 const W: usize = 704;

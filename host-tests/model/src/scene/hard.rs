@@ -2,9 +2,9 @@
 //! poles.
 
 use super::{Object, Scene, Shape, Texture, Truth};
-use crate::map::DisparityMap;
 use nalgebra::{Point3, Rotation3, Vector3};
 use stereopsis::geometry::camera::RectifiedRig;
+use stereopsis::units::Disparity;
 
 /// What of a hard scene a pixel shows.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -203,12 +203,13 @@ pub struct Shares {
 }
 
 impl Shares {
-    /// What `map` says of all pixels of a `part` that both cameras see; `None` where there is no such pixel.
-    pub fn of(hard: &HardScene, truth: &Truth, map: &DisparityMap, part: Part) -> Option<Self> {
+    /// What the disparities `found`, one a pixel, say of all pixels of a `part` that both cameras see; `None`
+    /// where there is no such pixel.
+    pub fn of(hard: &HardScene, truth: &Truth, found: &[Disparity], part: Part) -> Option<Self> {
         let seen =
             (0..truth.disparity.len()).filter(|&i| !truth.occluded[i] && hard.part(truth.objects[i]) == part);
         let errors: Vec<_> =
-            seen.map(|i| map.disparity[i].to_f32().map(|answer| answer - truth.disparity[i])).collect();
+            seen.map(|i| found[i].to_f32().map(|answer| answer - truth.disparity[i])).collect();
         let share = |counts: fn(f32) -> bool| {
             errors.iter().flatten().filter(|&&error| counts(error)).count() as f64 / errors.len() as f64
         };

@@ -6,8 +6,8 @@ use stereopsis::imaging::Noise;
 use stereopsis::matching::{Block, Checks, Config, Fast, Penalties, Row, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::Pipeline;
 use stereopsis::units::{Disparity, PixelFlags};
-use stereopsis_host::scene::Random;
-use stereopsis_host::scene::pattern::Pattern;
+use stereopsis_model::scene::Random;
+use stereopsis_model::scene::pattern::Pattern;
 
 /// The values of the deterministic list: every one of each is used.
 fn widths() -> Vec<u16> {

@@ -4,7 +4,7 @@ use super::{Twin, W, compare, long, pipeline};
 use image::{GrayImage, Luma};
 use stereopsis::matching::{Checks, Config, Penalties, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::Pipeline;
-use stereopsis_host::scene::Random;
+use stereopsis_model::scene::Random;
 
 /// Vertical stripes of random widths and brightness on two depths that meet at a column, or at a column that
 /// depends on the row.

@@ -7,8 +7,8 @@ use proptest::test_runner::RngSeed;
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{Block, Checks, Config, Fast, Sgm, SgmEdge, SgmLean};
 use stereopsis::units::Disparity;
-use stereopsis_host::scene::Random;
-use stereopsis_host::scene::pattern::Pattern;
+use stereopsis_model::scene::Random;
+use stereopsis_model::scene::pattern::Pattern;
 
 prop_compose! {
     fn any_checks()(

@@ -4,9 +4,9 @@ use super::{Any, Twin, difference, pipeline, rows};
 use stereopsis::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, StereoSource};
 use stereopsis::matching::{Block, Checks, Config, Fast, Kernel, MatchError, Sgm, SgmEdge};
 use stereopsis::pipeline::PipelineError;
-use stereopsis_host::scene::SceneCamera;
-use stereopsis_host::scene::pattern::Pattern;
-use stereopsis_host::twin::match_pair;
+use stereopsis_model::scene::SceneCamera;
+use stereopsis_model::scene::pattern::Pattern;
+use stereopsis_model::twin::match_pair;
 
 pub const LIVE: Pattern = Pattern::Shifted { most: 12, noise_grey: 4.0 };
 

@@ -169,9 +169,9 @@ fn cross_checks() -> Outcome {
         // The stable compiler takes the option as a nightly one does.
         run_command(check.env("RUSTC_BOOTSTRAP", "1"))?;
     }
-    // Features add code and take none away, and no condition names two of them (a test holds that): what
-    // stands behind one builds with every other if it builds with that one alone, as it does here on one small
-    // core, and if all together are no two things of one name, as above.
+    // Features add code and take none away, and no condition names two of them (a test holds that). What
+    // stands behind one builds with every other if it builds with that one alone, as here on one small
+    // core, and if all build together, as above.
     for features in [""].iter().chain(&FEATURES) {
         run_command(&mut check(features, &["--target", SMALL]))?;
     }

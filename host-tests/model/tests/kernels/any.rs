@@ -58,7 +58,7 @@ fn any_pattern() -> impl Strategy<Value = Pattern> {
 
 proptest! {
     #![proptest_config(ProptestConfig {
-        cases: if emulated() { 6 } else { 60 },
+        cases: if emulated() { 2 } else { 60 },
         rng_seed: RngSeed::Fixed(4),
         failure_persistence: None,
         ..ProptestConfig::default()

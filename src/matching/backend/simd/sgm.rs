@@ -14,49 +14,57 @@ use crate::matching::memory::winners::Select;
 /// must be room.
 const MOST: usize = 256 / Vector::LANES + if Vector::LANES == size_of::<u32>() { 1 } else { 0 };
 
+/// Calls a pass on columns of some groups in a function of its own: the compiler's passes take far longer
+/// over one function of all numbers of groups.
+macro_rules! pass {
+    ([$($run:tt)+] $pass:ident [$($more:tt)?] $arguments:tt, $vector:ty, $groups:expr, $all:literal) => {
+        $($run)+(#[inline(always)] || sgm::$pass::<Groups<$vector, { $groups }, $all>, $($more)?> $arguments)
+    };
+}
+
 /// Calls a pass in vectors of the compilation's own target.
 macro_rules! in_vectors {
-    ($work:ident, $pass:ident, [$($more:tt)?], $($argument:expr),*) => {
-        match $work.stride {
-            32 => sgm::$pass::<Groups<Vector, { 32 / Vector::LANES }, true>, $($more)?>($work,
-            $($argument),*),
-            64 => sgm::$pass::<Groups<Vector, { 64 / Vector::LANES }, true>, $($more)?>($work,
-            $($argument),*),
-            128 => sgm::$pass::<Groups<Vector, { 128 / Vector::LANES }, true>, $($more)?>($work,
-            $($argument),*),
-            _ => sgm::$pass::<Groups<Vector, MOST, false>, $($more)?>($work, $($argument),*),
+    ($stride:expr, $pass:ident $more:tt $arguments:tt) => {
+        match $stride {
+            32 => pass!([apart] $pass $more $arguments, Vector, 32 / Vector::LANES, true),
+            64 => pass!([apart] $pass $more $arguments, Vector, 64 / Vector::LANES, true),
+            128 => pass!([apart] $pass $more $arguments, Vector, 128 / Vector::LANES, true),
+            _ => pass!([apart] $pass $more $arguments, Vector, MOST, false),
         }
     };
 }
 
 /// Calls a pass in registers of AVX2.
 macro_rules! in_wide {
-    ($work:ident, $pass:ident, [$($more:tt)?], $($argument:expr),*) => {
-        match $work.stride {
-            32 => sgm::$pass::<Groups<Wide, 1, true>, $($more)?>($work, $($argument),*),
-            64 => sgm::$pass::<Groups<Wide, 2, true>, $($more)?>($work, $($argument),*),
-            128 => sgm::$pass::<Groups<Wide, 4, true>, $($more)?>($work, $($argument),*),
-            stride if stride % 32 == 0 => sgm::$pass::<Groups<Wide, 8, false>, $($more)?>($work,
-            $($argument),*),
-            _ => sgm::$pass::<Groups<Vector, MOST, false>, $($more)?>($work, $($argument),*),
+    ($avx2:ident, $stride:expr, $pass:ident $more:tt $arguments:tt) => {
+        match $stride {
+            32 => pass!([$avx2.run] $pass $more $arguments, Wide, 1, true),
+            64 => pass!([$avx2.run] $pass $more $arguments, Wide, 2, true),
+            128 => pass!([$avx2.run] $pass $more $arguments, Wide, 4, true),
+            stride if stride % 32 == 0 => pass!([$avx2.run] $pass $more $arguments, Wide, 8, false),
+            _ => pass!([$avx2.run] $pass $more $arguments, Vector, MOST, false),
         }
     };
 }
 
 /// Calls a pass in registers of AVX-512, where they are full.
 macro_rules! in_widest {
-    ($work:ident, $pass:ident, [$($more:tt)?], $($argument:expr),*) => {
-        match $work.stride {
-            64 => sgm::$pass::<Groups<Widest, 1, true>, $($more)?>($work, $($argument),*),
-            128 => sgm::$pass::<Groups<Widest, 2, true>, $($more)?>($work, $($argument),*),
-            stride if stride % 64 == 0 => sgm::$pass::<Groups<Widest, 4, false>, $($more)?>($work,
-            $($argument),*),
-            32 => sgm::$pass::<Groups<Wide, 1, true>, $($more)?>($work, $($argument),*),
-            stride if stride % 32 == 0 => sgm::$pass::<Groups<Wide, 8, false>, $($more)?>($work,
-            $($argument),*),
-            _ => sgm::$pass::<Groups<Vector, MOST, false>, $($more)?>($work, $($argument),*),
+    ($avx512:ident, $stride:expr, $pass:ident $more:tt $arguments:tt) => {
+        match $stride {
+            64 => pass!([$avx512.run] $pass $more $arguments, Widest, 1, true),
+            128 => pass!([$avx512.run] $pass $more $arguments, Widest, 2, true),
+            stride if stride % 64 == 0 => pass!([$avx512.run] $pass $more $arguments, Widest, 4, false),
+            32 => pass!([$avx512.run] $pass $more $arguments, Wide, 1, true),
+            stride if stride % 32 == 0 => pass!([$avx512.run] $pass $more $arguments, Wide, 8, false),
+            _ => pass!([$avx512.run] $pass $more $arguments, Vector, MOST, false),
         }
     };
+}
+
+/// Does something in a function of its own.
+#[inline(never)]
+fn apart(work: impl FnOnce()) {
+    work();
 }
 
 /// [`Isa::sgm_cost`](crate::matching::backend::Isa::sgm_cost) on each of the kernels.
@@ -64,15 +72,9 @@ macro_rules! in_widest {
 pub(super) fn cost<S: SgmParameters>(backend: Backend, work: &mut PathWork<'_>, row: CostWork<'_>) {
     match backend {
         Backend::Planes => sgm::cost_in_words::<S, 0>(work, row),
-        Backend::Lanes => in_vectors!(work, enter, [S], row),
-        Backend::Avx2(avx2) => avx2.run(
-            #[inline(always)]
-            || in_wide!(work, enter, [S], row),
-        ),
-        Backend::Avx512(avx512) => avx512.run(
-            #[inline(always)]
-            || in_widest!(work, enter, [S], row),
-        ),
+        Backend::Lanes => in_vectors!(work.stride, enter[S](work, row)),
+        Backend::Avx2(avx2) => in_wide!(avx2, work.stride, enter[S](work, row)),
+        Backend::Avx512(avx512) => in_widest!(avx512, work.stride, enter[S](work, row)),
     }
 }
 
@@ -81,15 +83,9 @@ pub(super) fn cost<S: SgmParameters>(backend: Backend, work: &mut PathWork<'_>, 
 pub(super) fn within_edges(backend: Backend, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
     match backend {
         Backend::Planes => sgm::within_edges_in_words::<0>(work, edges),
-        Backend::Lanes => in_vectors!(work, within_edges, [], edges),
-        Backend::Avx2(avx2) => avx2.run(
-            #[inline(always)]
-            || in_wide!(work, within_edges, [], edges),
-        ),
-        Backend::Avx512(avx512) => avx512.run(
-            #[inline(always)]
-            || in_widest!(work, within_edges, [], edges),
-        ),
+        Backend::Lanes => in_vectors!(work.stride, within_edges [] (work, edges)),
+        Backend::Avx2(avx2) => in_wide!(avx2, work.stride, within_edges [] (work, edges)),
+        Backend::Avx512(avx512) => in_widest!(avx512, work.stride, within_edges [] (work, edges)),
     }
 }
 
@@ -98,14 +94,8 @@ pub(super) fn within_edges(backend: Backend, work: &mut PathWork<'_>, edges: Edg
 pub(super) fn select(backend: Backend, work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
     match backend {
         Backend::Planes => sgm::select_in_words::<0>(work, guide, select),
-        Backend::Lanes => in_vectors!(work, select, [true], guide, select),
-        Backend::Avx2(avx2) => avx2.run(
-            #[inline(always)]
-            || in_wide!(work, select, [true], guide, select),
-        ),
-        Backend::Avx512(avx512) => avx512.run(
-            #[inline(always)]
-            || in_widest!(work, select, [true], guide, select),
-        ),
+        Backend::Lanes => in_vectors!(work.stride, select[true](work, guide, select)),
+        Backend::Avx2(avx2) => in_wide!(avx2, work.stride, select[true](work, guide, select)),
+        Backend::Avx512(avx512) => in_widest!(avx512, work.stride, select[true](work, guide, select)),
     }
 }

@@ -27,7 +27,7 @@
 //! * [`views`]: pictures of one camera from several places through the core's structure from motion.
 //! * [`bal`]: problems of bundle adjustment through the core.
 //! * [`interpolate`]: poses between two known ones.
-//! * [`twin`]: each stage again, naively, to hold the core to.
+//! * [`twin`]: each stage again, naively, to hold the core to. [`dump`]: its rows as files.
 //! * [`map`], [`depth_samples`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`],
 //!   [`output`], [`report`]: results as files. [`command_line`]: errors in one line.
 
@@ -39,6 +39,7 @@ pub mod colour;
 pub mod command_line;
 pub mod correspond;
 pub mod depth_samples;
+pub mod dump;
 pub mod epipolar_picture;
 pub mod eval;
 pub mod fault;

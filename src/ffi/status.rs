@@ -193,7 +193,10 @@ impl From<MatchError> for Status {
         match e {
             MatchError::NotStarted => Self::NotStarted,
             MatchError::FrameDone => Self::NoLineLeft,
-            MatchError::LineTooShort { .. } => Self::LineLength,
+            // The two of winners come from no matcher of this interface.
+            MatchError::LineTooShort { .. }
+            | MatchError::Winners { .. }
+            | MatchError::WinnerRefused { .. } => Self::LineLength,
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::backend::{Backend, Isa, SMOOTH_MARGIN, STEP, columns_begin};
 use super::capacity::{Capacity, Supported};
 use super::config::{Config, ConfigError};
+use super::error::MatchError;
 use super::kernel::{Kernel, KernelError};
 use super::memory::rings::{BAND, HISTORY, LOOK_AHEAD, Ring, row, row_mut};
 use super::memory::workspace::Finished;
@@ -24,7 +25,7 @@ const FIXED_BYTES: usize = 64;
 ///
 /// `D` is a multiple of 16, at most 256, and `W` at least `D`; another choice does not compile.
 pub struct Matcher<S: Method, const W: usize, const D: usize> {
-    memory: S::Memory<W, D>,
+    pub(super) memory: S::Memory<W, D>,
     texture: [u16; W],
     textured: [u8; W],
     edges: [u8; W],
@@ -41,7 +42,7 @@ pub struct Matcher<S: Method, const W: usize, const D: usize> {
     /// to.
     columns_begin: u8,
     /// Lines taken, counting on below the image.
-    taken: usize,
+    pub(super) taken: usize,
 }
 
 /// Bytes of a [`Matcher`] for lines of `width` and `disparities`, rounded up to what it can be made for.
@@ -59,28 +60,6 @@ pub const fn state_bytes<S: Method>(width: usize, disparities: usize) -> usize {
     let per_column = per_pixel + per_candidate * lanes + 2 + 1 + 1 + 2 + (2 + 1) * BAND + 2 * HISTORY;
     width * per_column + per_disparity * lanes + fixed + FIXED_BYTES
 }
-
-/// Why a matcher took no line.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum MatchError {
-    /// The matcher was not configured.
-    NotStarted,
-    /// All lines of the frame, and the flush after them, were taken.
-    FrameDone,
-    /// A line is shorter than the width configured.
-    LineTooShort {
-        /// Pixels that would have been enough.
-        needed: usize,
-    },
-}
-
-error_text!(MatchError {
-    Self::NotStarted => "the matcher was not started",
-    Self::FrameDone => "the frame has no more lines",
-    Self::LineTooShort { needed } => "a line must have {needed} pixels",
-});
 
 impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     /// How many lines after its own a row comes out: the rows that the method looks down, and those that the
@@ -234,6 +213,9 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             return Err(MatchError::NotStarted);
         }
         let y = self.taken;
+        if S::EXTERNAL_WINNERS {
+            return Err(MatchError::Winners { needed: usize::from(self.config.width) });
+        }
         if y >= height + Self::DELAY || lines.is_some() != (y < height) {
             return Err(MatchError::FrameDone);
         }
@@ -253,7 +235,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     }
 
     /// The memory as slices of the frame's real size: what follows is compiled once for each method.
-    fn frame(&mut self) -> Frame<'_> {
+    pub(super) fn frame(&mut self) -> Frame<'_> {
         let (width, stride) = self.size();
         let Parts { codes, columns, workspace } = self.memory.parts(width);
         let columns = part_mut(columns, usize::from(self.columns_begin)..);

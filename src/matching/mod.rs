@@ -29,6 +29,8 @@
 //!     14. fill of small gaps, if asked for;
 //!     15. answers refused whose confidence is too low, if asked for (`withhold`);
 //!     16. mask: answers taken away where a camera did not see.
+//! * `external`: rows of winners that something else computed ([`External`], [`WinnerRecord`]), in place of
+//!   stages 2, 3 and 7.
 //! * [`Row`]: what comes out, with the uncertainty of each answer.
 
 mod kernel;
@@ -41,14 +43,18 @@ mod method;
 mod filter;
 mod stages;
 mod row;
+mod error;
 mod matcher;
+mod external;
 
 pub use backend::MethodParameters;
 pub use capacity::{Capacity, Supported};
 pub use config::{Checks, Config, ConfigError};
+pub use error::MatchError;
 pub use filter::Filter;
 pub use kernel::{Kernel, KernelError};
-pub use matcher::{MatchError, Matcher, state_bytes};
-pub use method::{Block, Fast, Method, Sgm, SgmEdge, SgmLean};
+pub use matcher::{Matcher, state_bytes};
+pub use memory::record::WinnerRecord;
+pub use method::{Block, External, Fast, Method, Sgm, SgmEdge, SgmLean};
 pub use penalties::Penalties;
 pub use row::Row;

@@ -1,5 +1,6 @@
 //! Pictures in memory as a camera.
 
+use image::GrayImage;
 use std::ops::Range;
 use stereopsis::camera::{
     CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource,
@@ -45,6 +46,13 @@ impl MemoryPair {
         let whole = left.len() == rows * usize::from(width) && right.len() == left.len();
         let format = LineFormat { width, height, pixel: PixelFormat::Grey8 };
         whole.then_some(Self { format, left, right, masks: None, frames: 0, row: height })
+    }
+
+    /// Both pictures.
+    pub fn pictures(&self) -> [GrayImage; 2] {
+        let (width, height) = (u32::from(self.format.width), u32::from(self.format.height));
+        let picture = |pixels: &[u8]| GrayImage::from_raw(width, height, pixels.to_vec()).unwrap_or_default();
+        [picture(&self.left), picture(&self.right)]
     }
 
     /// Some rows of both pictures.

@@ -1,6 +1,7 @@
 //! The methods of this build, by name.
 
 use super::Host;
+use crate::twin;
 use std::fmt;
 use std::str::FromStr;
 use stereopsis::matching::{Config, Filter, Matcher, Method, state_bytes};
@@ -57,6 +58,17 @@ impl MethodName {
     /// The name on the command line and in files.
     pub const fn name(self) -> &'static str {
         with_method!(self, S => S::NAME)
+    }
+
+    /// The naive twin of the method.
+    pub const fn twin(self) -> twin::Method {
+        match self {
+            Self::Fast => twin::Method::FAST,
+            Self::Block => twin::Method::BLOCK,
+            Self::SgmLean => twin::Method::SGM_LEAN,
+            Self::Sgm => twin::Method::SGM,
+            Self::SgmEdge => twin::Method::SGM_EDGE,
+        }
     }
 
     /// Bytes of state that firmware holds for lines of `width` and that many disparities.

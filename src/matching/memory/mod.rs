@@ -3,6 +3,7 @@
 //! * `slices`: parts of slices, whose sizes are asserted here and nowhere else.
 //! * `views`: one memory looked at as numbers of another width.
 //! * `rings`: rows that are kept for a while.
+//! * `record`: the winner of a pixel as another device hands it over.
 //! * `winner`, `winners`: what the winner-take-all stage gives for each pixel.
 //! * `notes`: flags and margins in one byte, while a row waits for its confidences.
 //! * `workspace`: what a row's stages share, and its phases.
@@ -10,6 +11,7 @@
 
 pub(in crate::matching) mod layout;
 pub(in crate::matching) mod notes;
+pub(in crate::matching) mod record;
 pub(in crate::matching) mod rings;
 pub(in crate::matching) mod slices;
 pub(in crate::matching) mod views;

@@ -5,6 +5,7 @@
 #![allow(unsafe_code)]
 
 use super::notes::Note;
+use super::record::WinnerRecord;
 use super::winner::Winner;
 use crate::units::PixelFlags;
 use core::slice;
@@ -28,6 +29,8 @@ unsafe impl Plain for Winner {}
 unsafe impl Plain for PixelFlags {}
 // SAFETY: a `u8` (`repr(transparent)`).
 unsafe impl Plain for Note {}
+// SAFETY: eight `u8` (`repr(transparent)`).
+unsafe impl Plain for WinnerRecord {}
 
 /// The bytes before the first place where a `To` may stand, and how many whole ones there are from it on.
 ///

@@ -3,11 +3,14 @@
 //! * `window`: [`Fast`] and [`Block`], census codes compared over a window.
 //! * `sgm`: [`Sgm`], [`SgmLean`] and [`SgmEdge`], gradients, brightness and a census aggregated along paths
 //!   by [`Penalties`].
+//! * `external`: [`External`], the winners of any of these from outside.
 
 mod denoise;
+mod external;
 mod sgm;
 mod window;
 
+pub use external::External;
 pub use sgm::{Sgm, SgmEdge, SgmLean};
 pub use window::{Block, Fast};
 

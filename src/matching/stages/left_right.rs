@@ -6,8 +6,9 @@
 //! a second time, and on real pairs the check refuses fewer right answers than one against the right image's
 //! own winners. The work is the same for every row.
 
-use crate::matching::backend::{AnswerWork, Isa, Rules};
-use crate::matching::memory::slices::split_mut;
+use crate::matching::backend::{AnswerWork, Isa, Rules, answer_records};
+use crate::matching::memory::slices::{part, split_mut};
+use crate::matching::memory::views::view;
 use crate::matching::memory::workspace::ForAnswers;
 use crate::matching::method::{Frame, Method};
 use crate::units::{Disparity, PixelFlags};
@@ -36,7 +37,10 @@ pub(super) fn make_answers<S: Method>(frame: &mut Frame<'_>, newest: usize) {
     outside.fill(Disparity::NONE);
     let (outside, flags) = split_mut(flags, begin);
     outside.fill(PixelFlags::OUTSIDE);
-    let ForAnswers { winners, right, workspace } = frame.workspace.for_answers();
     let rules = &rules;
+    if S::EXTERNAL_WINNERS {
+        return answer_records::<S>(part(view(frame.codes), begin..), rules, answers, flags);
+    }
+    let ForAnswers { winners, right, workspace } = frame.workspace.for_answers();
     frame.backend.left_right::<S>(AnswerWork { winners, right, workspace, begin, rules, answers, flags });
 }

@@ -51,7 +51,7 @@ pub(super) mod mask;
 
 use super::backend::BY_CAPACITY;
 use super::memory::Rows5;
-use super::method::{Block, Fast, Frame, Method, Sgm, SgmEdge, SgmLean, Step, Steps};
+use super::method::{Block, External, Fast, Frame, Method, Sgm, SgmEdge, SgmLean, Step, Steps};
 
 /// The stages of a method, compiled with this crate, once for each capacity that has code of its own: a
 /// program is linked without the code for numbers of candidates that its matchers have no room for, however
@@ -82,6 +82,20 @@ macro_rules! steps {
 }
 
 steps!(Fast, Block, SgmLean, Sgm, SgmEdge);
+
+/// The stages behind winners from outside, which do not depend on how many candidates there are.
+macro_rules! external_steps {
+    ($($method:ty),*) => {$(
+        impl Steps for External<$method> {
+            fn step_for(_: usize) -> Step {
+                steps!(of_any, External<$method>, 0);
+                of_any
+            }
+        }
+    )*};
+}
+
+external_steps!(Fast, Block, SgmLean, Sgm, SgmEdge);
 
 /// Forgets the frame before.
 #[inline(never)]

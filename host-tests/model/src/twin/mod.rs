@@ -10,6 +10,7 @@
 //! * `filter`: smoothing along the row, the median, the speckle filter, smoothing down the columns, filling,
 //!   the deviation.
 //! * `confidence`: how sure an answer is.
+//! * [`Stages`]: what each of them gives, for those who build one of them elsewhere.
 //!
 //! Apart from them: [`mod@balance`], one exposure for both pictures; [`bundle`], the step of a bundle
 //! adjustment; [`features`], corners, descriptors and matches; [`focus`], sharpness and its peaks;
@@ -26,6 +27,7 @@ pub mod focus;
 pub mod paths;
 pub mod remap;
 pub mod smooth;
+pub mod stages;
 
 mod confidence;
 mod fattening;
@@ -33,7 +35,7 @@ mod filter;
 mod select;
 
 use image::GrayImage;
-use smooth::Seen;
+use stages::Stages;
 use stereopsis::matching::Config;
 use stereopsis::units::{Disparity, PixelFlags};
 
@@ -160,63 +162,5 @@ pub struct Answers {
 ///
 /// When the pictures are not of the configuration's size.
 pub fn match_pair(scheme: &Method, config: &Config, left: &GrayImage, right: &GrayImage) -> Answers {
-    let size = (u32::from(config.width), u32::from(config.height));
-    assert_eq!(
-        (left.dimensions(), right.dimensions()),
-        (size, size),
-        "the pictures have the configuration's size"
-    );
-    let (left, right) = (Picture::new(left), Picture::new(right));
-    let seen = [&left, &right].map(|picture| Seen::new(*picture, config.noise));
-    let sums = match scheme.cost {
-        Cost::Window { neighbours, unit } => {
-            cost::window_sums(scheme, unit, &cost::costs(neighbours, config, &seen[0], &seen[1]))
-        }
-        Cost::Paths { between_pixels, within_edges } => {
-            let costs = paths::costs(between_pixels, config, &seen[0], &seen[1]);
-            let guide = seen[0].rows();
-            let guide = Picture::new(&guide);
-            let costs = if within_edges {
-                paths::averaged_within_edges(config, &costs, &guide)
-            } else {
-                paths::averaged_down(&costs)
-            };
-            paths::path_sums(config, &costs, &guide)
-        }
-    };
-    let mut map = Answers {
-        width: left.width,
-        height: left.height,
-        disparity: Vec::new(),
-        flags: Vec::new(),
-        sigma_px: Vec::new(),
-        confidence: Vec::new(),
-    };
-    let (mut lengths, mut margins) = (Vec::new(), Vec::new());
-    for y in 0..left.height {
-        let (answers, flags, row_margins) = select::select_row(scheme, config, &left, &sums, y);
-        let (answers, flags) = fattening::refuse(config, &left, y, answers, flags);
-        let (smooth, row_lengths) = filter::smooth_row(&config.checks, &answers);
-        map.disparity.extend(smooth);
-        lengths.extend(row_lengths);
-        map.flags.extend(flags);
-        margins.extend(row_margins);
-    }
-    let before = map.disparity.clone();
-    if config.checks.median {
-        map.disparity = filter::medians(map.width, &before);
-    }
-    let answers = map.disparity.clone();
-    let mut map = filter::drop_speckles(&config.checks, &before, &lengths, map);
-    if scheme.smooth_down && config.checks.smoothing_radius > 0 {
-        filter::smooth_down(&before, &mut map);
-    }
-    let after = map.disparity.clone();
-    let mut map = filter::fill_gaps(&config.checks, map);
-    map.sigma_px = filter::sigmas(scheme, config, &before, &after, &map);
-    if config.confidence || config.min_confidence > 0 {
-        map.confidence = confidence::confidences(config, &margins, &before, [&answers, &after], &map);
-    }
-    confidence::refuse_unsure(config, &mut map);
-    map
+    Stages::of(scheme, config, left, right).answers
 }

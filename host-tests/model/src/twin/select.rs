@@ -2,7 +2,7 @@
 
 use super::cost::Volume;
 use super::{Method, Picture};
-use stereopsis::matching::{Checks, Config};
+use stereopsis::matching::{Checks, Config, WinnerRecord};
 use stereopsis::units::{Disparity, PixelFlags};
 
 /// The best candidate of a pixel.
@@ -67,6 +67,29 @@ pub(super) fn select_row(
         }
     }
     (disparities, flags, margins)
+}
+
+/// The winners of row `y` as records, with what their partners keep; zero where there is no candidate.
+pub(super) fn records(config: &Config, sums: &Volume, y: usize) -> Vec<WinnerRecord> {
+    let smallest = usize::from(config.min_disparity);
+    let candidates = |x: usize| {
+        let most = if x >= smallest { (x - smallest + 1).min(sums.disparities) } else { 0 };
+        &sums.at(x, y)[..most]
+    };
+    let winners: Vec<Option<Winner>> = (0..sums.width).map(|x| winner(candidates(x))).collect();
+    let held = held_by_right_columns(&winners, smallest);
+    let record = |(x, winner): (usize, &Option<Winner>)| {
+        let Some(best) = winner else { return WinnerRecord::ZERO.sealed(y as u16) };
+        let costs = candidates(x);
+        let [below, above] = [best.d.checked_sub(1), Some(best.d + 1)].map(|d| Some(*costs.get(d?)?));
+        let beside = [below.or(above), above.or(below)].map(|cost| cost.unwrap_or(best.cost) as u8);
+        let others = costs.iter().enumerate().filter(|&(d, _)| d.abs_diff(best.d) > 2);
+        let second = others.map(|(_, &cost)| cost).min().unwrap_or(255);
+        let kept = held[x - smallest - best.d].expect("this pixel has offered itself");
+        let record = WinnerRecord::new(best.d as u8, best.cost as u8, beside);
+        record.with_kept(kept.d as u8).with_second(second as u8).sealed(y as u16)
+    };
+    winners.iter().enumerate().map(record).collect()
 }
 
 /// The cheapest candidate; the smallest disparity among equals.

@@ -37,7 +37,7 @@ prop_compose! {
 }
 
 prop_compose! {
-    fn any_config()(
+    pub(super) fn any_config()(
         width in 1u16..=300, height in 1u16..=60, disparities in 16u16..=256, min_disparity in 0u16..60,
         checks in any_checks(), confidence: bool,
             min_confidence in proptest::sample::select(&[0, 0, 1, 2, 60, 130, 208][..]),
@@ -49,7 +49,7 @@ prop_compose! {
     }
 }
 
-fn any_pattern() -> impl Strategy<Value = Pattern> {
+pub(super) fn any_pattern() -> impl Strategy<Value = Pattern> {
     prop_oneof![
         2 => (0usize..80, 0.0..12.0).prop_map(|(most, noise_grey)| Pattern::Shifted { most, noise_grey }),
         1 => proptest::sample::select(&PATTERNS[..]),

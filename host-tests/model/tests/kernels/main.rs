@@ -4,9 +4,10 @@
 //! * `list`: all sizes, ranges, pictures and checks; `pictures`: every kind of picture. `any`: any
 //!   combination of them. `penalties`: those at the bounds.
 //! * `frames`: one frame after the other, faults and changes in between. `moved`: a matcher that changes its
-//!   place.
+//!   place. `external`: rows of winners from outside.
 
 mod any;
+mod external;
 mod frames;
 mod list;
 mod moved;

@@ -18,6 +18,7 @@ mod calib;
 mod calibrate;
 mod demo;
 mod doctor;
+mod dump;
 mod eval;
 mod failure;
 mod features;
@@ -64,7 +65,7 @@ use stereopsis_host::output::protect;
 /// What is told to one who names another command.
 const COMMANDS: &str = "the commands are demo, plan, match, eval, bench, calibrate, calib, rectify, \
                         features, focus, fundamental, pose, bundle, odometry, structure, walk, record, \
-                        replay, doctor, completions and man";
+                        replay, dump, doctor, completions and man";
 
 /// What one who gives no command is told.
 const BEGINNING: &str = "a command is missing; these are what one begins with, and --help lists all:
@@ -155,6 +156,9 @@ enum Command {
     /// Drive through a built-in street: a sequence of frames with true poses, for odometry
     #[command(after_help = walk::EXAMPLE)]
     Walk(walk::WalkArgs),
+    /// Write the rows of a stage of the matcher, for those who build it in hardware
+    #[command(after_help = dump::EXAMPLE)]
+    Dump(dump::DumpArgs),
     /// Say what this program is and what it finds on this machine: kernels, processor, threads
     Doctor(doctor::DoctorArgs),
     /// Print the script that completes commands and options in a shell
@@ -206,6 +210,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Odometry(args) => odometry::run(&args),
         Command::Structure(args) => structure::run(&args),
         Command::Walk(args) => walk::run(&args),
+        Command::Dump(args) => dump::run(&args),
         Command::Doctor(args) => doctor::run(&args),
         Command::Completions(args) => shell::completions(&args, Cli::command()),
         Command::Man(args) => shell::man(&args, Cli::command()),

@@ -1,8 +1,10 @@
 //! The left-right check and the sub-pixel fit, pixel by pixel.
 
 use super::{consistency, subpixel};
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::MethodParameters;
 use crate::matching::backend::work::{AnswerWork, Rules};
+use crate::matching::memory::record::WinnerRecord;
 use crate::matching::memory::slices::part;
 use crate::matching::memory::winners::Winner;
 use crate::units::{Disparity, PixelFlags};
@@ -31,17 +33,40 @@ pub(in crate::matching::backend) fn answer<S: MethodParameters>(
     answers: &mut [Disparity],
     flags: &mut [PixelFlags],
 ) {
-    let min_disparity = u32::from(rules.min_disparity);
     for (x, ((answer, flags), &winner)) in answers.iter_mut().zip(flags).zip(winners).enumerate() {
-        let disparity = winner.disparity() as u8;
-        let said = flags
-            .union(consistency::mismatch(disparity, consistency::kept(x, disparity, right), rules.tolerance))
-            .union(rules.flat.when(winner.rises() == (0, 0)))
-            .union(PixelFlags::CEILING.when(disparity == rules.ceiling));
-        let none = 0u16.wrapping_sub(u16::from(said.intersects(rules.refused)));
-        *answer = Disparity::from_raw(
-            subpixel::refine(winner, min_disparity, u32::from(S::SLANT_COST)).raw() | none,
-        );
-        *flags = said;
+        let kept = consistency::kept(x, winner.disparity() as u8, right);
+        (*answer, *flags) = answer_of::<S>(winner, kept, *flags, rules);
     }
+}
+
+/// The answers and flags of winners that were computed elsewhere, each with what its partner keeps.
+#[inline(never)]
+pub(in crate::matching) fn answer_records<S: MethodParameters>(
+    records: &[WinnerRecord],
+    rules: &Rules,
+    answers: &mut [Disparity],
+    flags: &mut [PixelFlags],
+) {
+    for ((answer, flags), &record) in answers.iter_mut().zip(flags).zip(records) {
+        keep_loop();
+        (*answer, *flags) = answer_of::<S>(record.winner(), record.kept(), *flags, rules);
+    }
+}
+
+/// The answer of a winner whose partner keeps `kept`, and its flags beside those that it has.
+#[inline(always)]
+fn answer_of<S: MethodParameters>(
+    winner: Winner,
+    kept: u8,
+    flags: PixelFlags,
+    rules: &Rules,
+) -> (Disparity, PixelFlags) {
+    let disparity = winner.disparity() as u8;
+    let said = flags
+        .union(consistency::mismatch(disparity, kept, rules.tolerance))
+        .union(rules.flat.when(winner.rises() == (0, 0)))
+        .union(PixelFlags::CEILING.when(disparity == rules.ceiling));
+    let none = 0u16.wrapping_sub(u16::from(said.intersects(rules.refused)));
+    let answer = subpixel::refine(winner, u32::from(rules.min_disparity), u32::from(S::SLANT_COST));
+    (Disparity::from_raw(answer.raw() | none), said)
 }

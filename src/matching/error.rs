@@ -1,0 +1,37 @@
+//! Why a matcher took no line.
+
+/// Why a matcher took no line.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum MatchError {
+    /// The matcher was not configured.
+    NotStarted,
+    /// All lines of the frame, and the flush after them, were taken.
+    FrameDone,
+    /// A line is shorter than the width configured.
+    LineTooShort {
+        /// Pixels that would have been enough.
+        needed: usize,
+    },
+    /// The winners of a row are missing, or fewer than the width configured: the method takes them from
+    /// outside ([`External`](super::External)).
+    Winners {
+        /// Records that would have been enough.
+        needed: usize,
+    },
+    /// No search can have this winner: its disparity is none of the candidates, or another cost is below its
+    /// own.
+    WinnerRefused {
+        /// The winner's column.
+        column: u16,
+    },
+}
+
+error_text!(MatchError {
+    Self::NotStarted => "the matcher was not started",
+    Self::FrameDone => "the frame has no more lines",
+    Self::LineTooShort { needed } => "a line must have {needed} pixels",
+    Self::Winners { needed } => "a row must have {needed} winners",
+    Self::WinnerRefused { column } => "the winner in column {column} is none that a search can have",
+});

@@ -1,0 +1,177 @@
+//! The winner of a pixel as another device hands it over: eight bytes, as they stand in memory.
+//!
+//! ```text
+//! byte  holds
+//! 0     cost of the disparity one below the winner (that above, where the winner is the smallest candidate)
+//! 1     cost of the winner
+//! 2     cost of the disparity one above (that below, where the winner is the largest candidate)
+//! 3     the winner over the smallest disparity searched, px
+//! 4     the disparity that the winner's partner in the right image keeps, likewise
+//! 5     least cost of the candidates over two px from the winner; 255 where there is none or none was sought
+//! 6     the row's number, its lowest eight bits
+//! 7     check byte: exclusive or of bytes 0 to 6, all bits inverted
+//! ```
+//!
+//! Beside a single candidate its own cost stands in bytes 0 and 2. In columns left of the smallest disparity,
+//! which have no candidate, only bytes 6 and 7 mean anything.
+
+use super::layout::{Aligned, WindowWorkspace};
+use super::slices::{part, part_mut};
+use super::views::{view, view_mut};
+use super::winner::Winner;
+use super::workspace::RowWorkspace;
+use super::{Bytes, Memory, Parts};
+
+/// The winner of one pixel, computed by another device: eight bytes in the order that it is sent in.
+///
+/// ```
+/// use stereopsis::matching::WinnerRecord;
+/// let record = WinnerRecord::new(12, 30, [34, 41]).with_kept(12).with_second(90).sealed(7);
+/// assert_eq!(record.bytes(), [34, 30, 41, 12, 12, 90, 7, !(34 ^ 30 ^ 41 ^ 12 ^ 12 ^ 90 ^ 7)]);
+/// assert!(record.is_intact(7) && !record.is_intact(8));
+/// ```
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(transparent)]
+pub struct WinnerRecord([u8; 8]);
+
+impl WinnerRecord {
+    /// Bytes of a record.
+    pub const BYTES: usize = 8;
+
+    /// All bytes zero.
+    pub const ZERO: Self = Self([0; 8]);
+
+    /// A winner over the smallest disparity, its cost and the costs one below and one above; its partner
+    /// keeps it, and no second best was sought.
+    pub const fn new(disparity: u8, cost: u8, [below, above]: [u8; 2]) -> Self {
+        Self([below, cost, above, disparity, disparity, u8::MAX, 0, 0])
+    }
+
+    /// A record of its bytes.
+    pub const fn from_bytes(bytes: [u8; Self::BYTES]) -> Self {
+        Self(bytes)
+    }
+
+    /// The bytes.
+    pub const fn bytes(self) -> [u8; Self::BYTES] {
+        self.0
+    }
+
+    /// The record with another disparity that the winner's partner keeps.
+    pub const fn with_kept(self, kept: u8) -> Self {
+        let [below, cost, above, disparity, _, second, row, check] = self.0;
+        Self([below, cost, above, disparity, kept, second, row, check])
+    }
+
+    /// The record with the least cost of the candidates over two px from the winner.
+    pub const fn with_second(self, second: u8) -> Self {
+        let [below, cost, above, disparity, kept, _, row, check] = self.0;
+        Self([below, cost, above, disparity, kept, second, row, check])
+    }
+
+    /// The record with its row's number and the check byte.
+    pub const fn sealed(self, row: u16) -> Self {
+        let [below, cost, above, disparity, kept, second, ..] = self.0;
+        let row = row as u8;
+        let check = !(below ^ cost ^ above ^ disparity ^ kept ^ second ^ row);
+        Self([below, cost, above, disparity, kept, second, row, check])
+    }
+
+    /// Whether the record is of that row and its check byte fits.
+    pub const fn is_intact(self, row: u16) -> bool {
+        let [.., own, check] = self.0;
+        let [.., fits] = self.sealed(own as u16).0;
+        own == row as u8 && check == fits
+    }
+
+    /// The winner over the smallest disparity searched, px.
+    pub const fn disparity(self) -> u8 {
+        self.0[3]
+    }
+
+    /// The winner's cost.
+    pub const fn cost(self) -> u8 {
+        self.0[1]
+    }
+
+    /// The costs one below and one above.
+    pub const fn beside(self) -> [u8; 2] {
+        [self.0[0], self.0[2]]
+    }
+
+    /// The disparity that the winner's partner in the right image keeps, over the smallest one searched, px:
+    /// that of the cheapest winner that chose it, of the leftmost among equals.
+    pub const fn kept(self) -> u8 {
+        self.0[4]
+    }
+
+    /// Least cost of the candidates over two px from the winner, 255 where there is none.
+    pub const fn second(self) -> u8 {
+        self.0[5]
+    }
+
+    /// The winner alone.
+    #[inline(always)]
+    pub(in crate::matching) fn winner(self) -> Winner {
+        let [below, above] = self.beside();
+        Winner::new(self.cost(), self.disparity(), (below, above))
+    }
+
+    /// Whether a search over so many `candidates` can have this winner.
+    #[inline(always)]
+    pub(in crate::matching) fn is_possible(self, candidates: usize) -> bool {
+        let [below, above] = self.beside();
+        usize::from(self.disparity()) < candidates && self.cost() <= below.min(above).min(self.second())
+    }
+}
+
+/// The memory of a method whose winners come from outside: a row of them, and its workspace.
+pub struct RecordMemory<const W: usize, const D: usize> {
+    records: Aligned<[WinnerRecord; W]>,
+    workspace: WindowWorkspace<0, W, D>,
+    winners: [Winner; W],
+    right: [u16; W],
+    lengths: [u16; W],
+}
+
+impl RecordMemory<0, 0> {
+    /// The record; the workspace's numbers, what a finished row has, masks or gaps, and the length.
+    pub const BYTES: Bytes = Bytes {
+        fixed: 0,
+        per_pixel: WinnerRecord::BYTES + 2 + 4 + 2 + 2,
+        per_candidate: 0,
+        per_disparity: 3,
+    };
+}
+
+impl<const W: usize, const D: usize> Memory for RecordMemory<W, D> {
+    const EMPTY: Self = Self {
+        records: Aligned([WinnerRecord::ZERO; W]),
+        workspace: WindowWorkspace::ZERO,
+        winners: [Winner::NONE; W],
+        right: [0; W],
+        lengths: [0; W],
+    };
+
+    fn parts(&mut self, width: usize) -> Parts<'_> {
+        Parts {
+            codes: part_mut(view_mut::<WinnerRecord, u8>(&mut self.records.0), ..WinnerRecord::BYTES * width),
+            columns: &mut [],
+            workspace: RowWorkspace::of_rows(
+                part_mut(&mut self.winners, ..width),
+                part_mut(&mut self.right, ..width),
+                part_mut(&mut self.lengths, ..width),
+                self.workspace.words(),
+            ),
+        }
+    }
+
+    fn column_bytes(_: usize, _: usize) -> usize {
+        0
+    }
+
+    fn confidences(&self, width: usize) -> &[u8] {
+        part(view::<Winner, u8>(&self.winners), ..width)
+    }
+}

@@ -1,0 +1,218 @@
+// Winners of a stereo pair as its pixels come in, bit for bit those of the library's methods `fast` and
+// `block`.
+//
+// In: one pixel of each camera in a clock, on a stream with back-pressure. Out: a record of eight bytes for
+// each pixel, in order, on another. The stages, each a file:
+//
+//   stereo_walk        the frame's way through lines and columns, and what is wrong with its stream
+//   stereo_census      five rows around each column, and the codes of both cameras
+//   stereo_window      Hamming distances, summed down the columns and along the row
+//   stereo_winner      the cheapest candidate, with the costs beside it
+//   stereo_left_right  what the winner's partner keeps
+//   stereo_fifo        records on their way out
+//   stereo_registers   size, search and status
+//
+// METHOD 0 is `fast` (4-bit census, 9 x 7 pixels), 1 is `block` (8-bit census, 9 x 9 pixels, in quarters).
+// PARALLEL divides DISPARITIES: with PARALLEL = DISPARITIES a column takes one clock, with an eighth of them
+// eight.
+`default_nettype none
+
+module stereo_block #(
+    parameter WIDTH = 640,
+    parameter DISPARITIES = 64,
+    parameter PARALLEL = 64,
+    parameter METHOD = 1
+) (
+    input wire clk,
+    input wire reset,
+    // Pixels: the left one in bits 7..0, the right one in bits 15..8; `tuser` with the first of a frame,
+    // `tlast` with the last of a line.
+    input wire [15:0] s_axis_tdata,
+    input wire s_axis_tvalid,
+    output wire s_axis_tready,
+    input wire s_axis_tuser,
+    input wire s_axis_tlast,
+    // Records: `tuser` with the first of a frame, `tlast` with the last of a row.
+    output wire [63:0] m_axis_tdata,
+    output wire m_axis_tvalid,
+    input wire m_axis_tready,
+    output wire m_axis_tuser,
+    output wire m_axis_tlast,
+    // Registers.
+    input wire wb_cyc_i,
+    input wire wb_stb_i,
+    input wire wb_we_i,
+    input wire [5:2] wb_adr_i,
+    input wire [31:0] wb_dat_i,
+    output wire [31:0] wb_dat_o,
+    output wire wb_ack_o
+);
+    localparam BITS = METHOD == 0 ? 4 : 8;
+    localparam RADIUS_Y = METHOD == 0 ? 3 : 4;
+    localparam SUM_BITS = METHOD == 0 ? 5 : 7;
+    localparam SHIFT = METHOD == 0 ? 0 : 2;
+    localparam GROUPS = DISPARITIES / PARALLEL;
+    localparam GROUP_BITS = GROUPS == 1 ? 1 : $clog2(GROUPS);
+    localparam COLUMN_BITS = WIDTH < 500 ? 9 : $clog2(WIDTH + 8);
+    localparam ADDRESS_BITS = $clog2(WIDTH);
+    localparam CODE_BITS = $clog2((2 * RADIUS_Y + 1) * WIDTH);
+    localparam LEVELS = $clog2(PARALLEL);
+    // Clocks from the walk's token to the winner.
+    localparam WINNER = LEVELS + 9;
+
+    wire go;
+    wire enable, running, begins, aborts, too_short, too_long, cut_off;
+    wire [COLUMN_BITS-1:0] set_width, width, column;
+    wire [ADDRESS_BITS-1:0] next_column;
+    wire [15:0] set_height, pixels, row;
+    wire [7:0] set_disparities, disparities;
+    wire valid, first_group, last_group, inside_width, inside_height, first_line;
+    wire first_code, enters, leaves, has_winners, drains;
+    wire [GROUP_BITS-1:0] group;
+    wire [CODE_BITS-1:0] code_row;
+    wire forgets = reset || aborts;
+
+    stereo_walk #(
+        .WIDTH(WIDTH),
+        .DISPARITIES(DISPARITIES),
+        .GROUPS(GROUPS),
+        .RADIUS_Y(RADIUS_Y),
+        .COLUMN_BITS(COLUMN_BITS),
+        .GROUP_BITS(GROUP_BITS),
+        .ADDRESS_BITS(ADDRESS_BITS),
+        .CODE_BITS(CODE_BITS)
+    ) walk (
+        .clk(clk), .reset(reset), .go(go),
+        .enable(enable), .set_width(set_width), .set_height(set_height), .set_disparities(set_disparities),
+        .pixel_data(s_axis_tdata), .pixel_valid(s_axis_tvalid), .pixel_user(s_axis_tuser),
+        .pixel_last(s_axis_tlast), .pixel_ready(s_axis_tready),
+        .width(width), .disparities(disparities), .running(running),
+        .begins(begins), .aborts(aborts), .too_short(too_short), .too_long(too_long), .cut_off(cut_off),
+        .next_column(next_column), .valid(valid), .pixels(pixels), .column(column), .group(group),
+        .first_group(first_group), .last_group(last_group), .inside_width(inside_width),
+        .inside_height(inside_height), .first_line(first_line), .first_code(first_code), .enters(enters),
+        .leaves(leaves), .code_row(code_row), .has_winners(has_winners), .row(row), .drains(drains)
+    );
+
+    wire [BITS-1:0] left_code;
+    wire [BITS-1:0] right_code;
+
+    stereo_census #(
+        .WIDTH(WIDTH), .COLUMN_BITS(COLUMN_BITS), .ADDRESS_BITS(ADDRESS_BITS), .BITS(BITS)
+    ) census (
+        .clk(clk), .go(go), .next_column(next_column), .valid(valid), .pixels(pixels), .column(column),
+        .first_group(first_group), .inside_width(inside_width), .inside_height(inside_height),
+        .first_line(first_line), .left_code(left_code), .right_code(right_code)
+    );
+
+    // The token beside the codes, which are those of the column two before.
+    localparam TOKEN = 6 + COLUMN_BITS + GROUP_BITS + CODE_BITS;
+    localparam [COLUMN_BITS-1:0] TWO = 2;
+    localparam [COLUMN_BITS-1:0] FOUR = 4;
+    localparam [COLUMN_BITS-1:0] FIVE = 5;
+    wire [COLUMN_BITS-1:0] code_column = column - TWO;
+    wire code_inside = column >= 2 && code_column < width;
+    wire [CODE_BITS-1:0] code_address = code_row + {{(CODE_BITS-COLUMN_BITS){1'b0}}, code_column};
+    reg [TOKEN-1:0] token_2;
+    reg [TOKEN-1:0] token_3;
+    reg [5:0] valids;
+    always @(posedge clk) begin
+        if (go) begin
+            token_2 <= {
+                last_group, first_group, code_inside, first_code, enters, leaves,
+                code_column, group, code_address
+            };
+            token_3 <= token_2;
+        end
+        if (forgets) valids <= 0;
+        else if (go) valids <= {valids[4:0], valid && column >= 2 && !drains};
+    end
+
+    wire [COLUMN_BITS-1:0] column_3 = token_3[CODE_BITS + GROUP_BITS +: COLUMN_BITS];
+    wire [GROUP_BITS-1:0] group_3 = token_3[CODE_BITS +: GROUP_BITS];
+    wire last_group_3, first_group_3, inside_3, first_code_3, enters_3, leaves_3;
+    assign {last_group_3, first_group_3, inside_3, first_code_3, enters_3, leaves_3} = token_3[TOKEN-1 -: 6];
+    wire [8*PARALLEL-1:0] sums;
+
+    stereo_window #(
+        .WIDTH(WIDTH),
+        .DISPARITIES(DISPARITIES),
+        .PARALLEL(PARALLEL),
+        .GROUPS(GROUPS),
+        .RADIUS_Y(RADIUS_Y),
+        .BITS(BITS),
+        .SUM_BITS(SUM_BITS),
+        .SHIFT(SHIFT),
+        .COLUMN_BITS(COLUMN_BITS),
+        .GROUP_BITS(GROUP_BITS),
+        .CODE_BITS(CODE_BITS)
+    ) window (
+        .clk(clk), .reset(forgets), .go(go), .read_code(token_2[CODE_BITS-1:0]),
+        .valid(valids[1]), .column(column_3), .group(group_3), .first_group(first_group_3),
+        .in_image(inside_3), .first_code(first_code_3), .enters(enters_3), .leaves(leaves_3),
+        .code_address(token_3[CODE_BITS-1:0]), .left_code(left_code), .right_code(right_code), .sums(sums)
+    );
+
+    // The token beside the sums, which are those of the column four before.
+    localparam LATE = 2 + COLUMN_BITS + GROUP_BITS;
+    reg [4*LATE-1:0] lates;
+    always @(posedge clk) begin
+        if (go) lates <= {lates[3*LATE-1:0], last_group_3, first_group_3, column_3, group_3};
+    end
+    wire [LATE-1:0] late = lates[4*LATE-1 -: LATE];
+    wire [COLUMN_BITS-1:0] winner_column = late[GROUP_BITS +: COLUMN_BITS] - FOUR;
+    wire [7:0] best, cost, below, above;
+
+    stereo_winner #(
+        .PARALLEL(PARALLEL), .COLUMN_BITS(COLUMN_BITS), .GROUP_BITS(GROUP_BITS), .LEVELS(LEVELS)
+    ) winner (
+        .clk(clk), .reset(forgets), .go(go), .disparities(disparities), .sums(sums), .valid(valids[5]),
+        .column(winner_column), .group(late[GROUP_BITS-1:0]), .first_group(late[LATE-2]),
+        .last_group(late[LATE-1]), .best(best), .cost(cost), .below(below), .above(above)
+    );
+
+    // What is to be said of the winner, beside it.
+    wire is_pixel = has_winners && column >= 6;
+    wire is_first = row == 0 && column == 6;
+    wire is_last = column == width + FIVE;
+    reg [WINNER-1:0] steps;
+    reg [11*WINNER-1:0] said;
+    always @(posedge clk) begin
+        if (forgets) steps <= 0;
+        else if (go) steps <= {steps[WINNER-2:0], valid && last_group && (is_pixel || drains)};
+        if (go) said <= {said[11*(WINNER-1)-1:0], is_pixel, is_first, is_last, row[7:0]};
+    end
+
+    wire record_valid;
+    wire [65:0] record;
+    wire [10:0] of_winner = said[11*WINNER-1 -: 11];
+
+    stereo_left_right #(.DISPARITIES(DISPARITIES)) left_right (
+        .clk(clk), .reset(forgets), .go(go), .valid(steps[WINNER-1]), .is_pixel(of_winner[10]),
+        .is_first(of_winner[9]), .is_last(of_winner[8]), .row(of_winner[7:0]),
+        .best(best), .cost(cost), .below(below), .above(above), .record_valid(record_valid), .record(record)
+    );
+
+    stereo_fifo #(.BITS(66)) fifo (
+        .clk(clk), .reset(forgets), .put(go && record_valid), .put_data(record),
+        .take_valid(m_axis_tvalid), .take_data({m_axis_tuser, m_axis_tlast, m_axis_tdata}),
+        .take_ready(m_axis_tready), .has_room(go)
+    );
+
+    stereo_registers #(
+        .WIDTH(WIDTH),
+        .DISPARITIES(DISPARITIES),
+        .PARALLEL(PARALLEL),
+        .METHOD(METHOD),
+        .RADIUS_Y(RADIUS_Y),
+        .COLUMN_BITS(COLUMN_BITS)
+    ) registers (
+        .clk(clk), .reset(reset), .bus_cycle(wb_cyc_i), .bus_strobe(wb_stb_i), .bus_write(wb_we_i),
+        .bus_address(wb_adr_i), .bus_data(wb_dat_i), .bus_answer(wb_dat_o), .bus_ack(wb_ack_o),
+        .enable(enable), .set_width(set_width), .set_height(set_height), .set_disparities(set_disparities),
+        .running(running), .begins(begins), .too_short(too_short), .too_long(too_long), .cut_off(cut_off),
+        .aborts(aborts), .row_taken(m_axis_tvalid && m_axis_tready && m_axis_tlast)
+    );
+endmodule
+
+`default_nettype wire

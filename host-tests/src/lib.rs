@@ -28,6 +28,7 @@
 //! * [`bal`]: problems of bundle adjustment through the core.
 //! * [`interpolate`]: poses between two known ones.
 //! * [`twin`]: each stage again, naively, to hold the core to. [`dump`]: its rows as files.
+//! * [`winners`]: a model of the block of gates, with faults.
 //! * [`map`], [`depth_samples`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`],
 //!   [`output`], [`report`]: results as files. [`command_line`]: errors in one line.
 
@@ -65,5 +66,6 @@ pub mod run;
 pub mod sparsification;
 pub mod two_view;
 pub mod views;
+pub mod winners;
 
 pub use stereopsis_model::{interpolate, scene, twin};

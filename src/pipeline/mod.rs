@@ -6,6 +6,7 @@
 //! * [`Pipeline`]: line windows and matcher in one block of memory.
 //! * [`Guarded`]: a pipeline that tolerates camera faults, with [`FaultCounters`].
 //! * [`Band`]: a frame in bands of rows, for pipelines on several cores.
+//! * [`winners`]: rows of winners that a device computes, in place of the matcher's own.
 //! * [`PipelineError`], [`PushError`]: why there is no row, when lines are pulled and when they are pushed.
 //!
 //! ```text
@@ -93,6 +94,7 @@ mod guarded;
 mod lines;
 mod live;
 mod waited;
+pub mod winners;
 
 pub use band::{Band, Bands};
 pub use counters::FaultCounters;

@@ -58,7 +58,7 @@ module stereo_block #(
     localparam CODE_BITS = $clog2((2 * RADIUS_Y + 1) * WIDTH);
     localparam LEVELS = $clog2(PARALLEL);
     // Clocks from the walk's token to the winner.
-    localparam WINNER = LEVELS + 9;
+    localparam WINNER = LEVELS + 10;
 
     wire go;
     wire enable, running, begins, aborts, too_short, too_long, cut_off;
@@ -66,11 +66,14 @@ module stereo_block #(
     wire [ADDRESS_BITS-1:0] next_column;
     wire [15:0] set_height, pixels, row;
     wire [7:0] set_disparities, disparities;
+    wire set_smooth, smooth;
     wire valid, first_group, last_group, inside_width, inside_height, first_line;
     wire first_code, enters, leaves, has_winners, drains;
     wire [GROUP_BITS-1:0] group;
     wire [CODE_BITS-1:0] code_row;
-    wire forgets = reset || aborts;
+    wire forget;
+    wire restarts = reset || forget;
+    wire forgets = restarts || aborts;
 
     stereo_walk #(
         .WIDTH(WIDTH),
@@ -82,11 +85,11 @@ module stereo_block #(
         .ADDRESS_BITS(ADDRESS_BITS),
         .CODE_BITS(CODE_BITS)
     ) walk (
-        .clk(clk), .reset(reset), .go(go),
+        .clk(clk), .reset(restarts), .go(go),
         .enable(enable), .set_width(set_width), .set_height(set_height), .set_disparities(set_disparities),
-        .pixel_data(s_axis_tdata), .pixel_valid(s_axis_tvalid), .pixel_user(s_axis_tuser),
-        .pixel_last(s_axis_tlast), .pixel_ready(s_axis_tready),
-        .width(width), .disparities(disparities), .running(running),
+        .set_smooth(set_smooth), .pixel_data(s_axis_tdata), .pixel_valid(s_axis_tvalid),
+        .pixel_user(s_axis_tuser), .pixel_last(s_axis_tlast), .pixel_ready(s_axis_tready),
+        .width(width), .disparities(disparities), .smooth(smooth), .running(running),
         .begins(begins), .aborts(aborts), .too_short(too_short), .too_long(too_long), .cut_off(cut_off),
         .next_column(next_column), .valid(valid), .pixels(pixels), .column(column), .group(group),
         .first_group(first_group), .last_group(last_group), .inside_width(inside_width),
@@ -100,22 +103,24 @@ module stereo_block #(
     stereo_census #(
         .WIDTH(WIDTH), .COLUMN_BITS(COLUMN_BITS), .ADDRESS_BITS(ADDRESS_BITS), .BITS(BITS)
     ) census (
-        .clk(clk), .go(go), .next_column(next_column), .valid(valid), .pixels(pixels), .column(column),
+        .clk(clk), .go(go), .smooth(smooth), .width(width), .next_column(next_column), .valid(valid),
+        .pixels(pixels), .column(column),
         .first_group(first_group), .inside_width(inside_width), .inside_height(inside_height),
         .first_line(first_line), .left_code(left_code), .right_code(right_code)
     );
 
-    // The token beside the codes, which are those of the column two before.
+    // The token beside the codes, which are those of the column three before.
     localparam TOKEN = 6 + COLUMN_BITS + GROUP_BITS + CODE_BITS;
-    localparam [COLUMN_BITS-1:0] TWO = 2;
+    localparam [COLUMN_BITS-1:0] THREE = 3;
     localparam [COLUMN_BITS-1:0] FOUR = 4;
-    localparam [COLUMN_BITS-1:0] FIVE = 5;
-    wire [COLUMN_BITS-1:0] code_column = column - TWO;
-    wire code_inside = column >= 2 && code_column < width;
+    localparam [COLUMN_BITS-1:0] SIX = 6;
+    wire [COLUMN_BITS-1:0] code_column = column - THREE;
+    wire code_inside = column >= 3 && code_column < width;
     wire [CODE_BITS-1:0] code_address = code_row + {{(CODE_BITS-COLUMN_BITS){1'b0}}, code_column};
     reg [TOKEN-1:0] token_2;
     reg [TOKEN-1:0] token_3;
-    reg [5:0] valids;
+    reg [TOKEN-1:0] token_4;
+    reg [6:0] valids;
     always @(posedge clk) begin
         if (go) begin
             token_2 <= {
@@ -123,15 +128,16 @@ module stereo_block #(
                 code_column, group, code_address
             };
             token_3 <= token_2;
+            token_4 <= token_3;
         end
         if (forgets) valids <= 0;
-        else if (go) valids <= {valids[4:0], valid && column >= 2 && !drains};
+        else if (go) valids <= {valids[5:0], valid && column >= 3 && !drains};
     end
 
-    wire [COLUMN_BITS-1:0] column_3 = token_3[CODE_BITS + GROUP_BITS +: COLUMN_BITS];
-    wire [GROUP_BITS-1:0] group_3 = token_3[CODE_BITS +: GROUP_BITS];
-    wire last_group_3, first_group_3, inside_3, first_code_3, enters_3, leaves_3;
-    assign {last_group_3, first_group_3, inside_3, first_code_3, enters_3, leaves_3} = token_3[TOKEN-1 -: 6];
+    wire [COLUMN_BITS-1:0] column_4 = token_4[CODE_BITS + GROUP_BITS +: COLUMN_BITS];
+    wire [GROUP_BITS-1:0] group_4 = token_4[CODE_BITS +: GROUP_BITS];
+    wire last_group_4, first_group_4, inside_4, first_code_4, enters_4, leaves_4;
+    assign {last_group_4, first_group_4, inside_4, first_code_4, enters_4, leaves_4} = token_4[TOKEN-1 -: 6];
     wire [8*PARALLEL-1:0] sums;
 
     stereo_window #(
@@ -147,17 +153,17 @@ module stereo_block #(
         .GROUP_BITS(GROUP_BITS),
         .CODE_BITS(CODE_BITS)
     ) window (
-        .clk(clk), .reset(forgets), .go(go), .read_code(token_2[CODE_BITS-1:0]),
-        .valid(valids[1]), .column(column_3), .group(group_3), .first_group(first_group_3),
-        .in_image(inside_3), .first_code(first_code_3), .enters(enters_3), .leaves(leaves_3),
-        .code_address(token_3[CODE_BITS-1:0]), .left_code(left_code), .right_code(right_code), .sums(sums)
+        .clk(clk), .reset(forgets), .go(go), .read_code(token_3[CODE_BITS-1:0]),
+        .valid(valids[2]), .column(column_4), .group(group_4), .first_group(first_group_4),
+        .in_image(inside_4), .first_code(first_code_4), .enters(enters_4), .leaves(leaves_4),
+        .code_address(token_4[CODE_BITS-1:0]), .left_code(left_code), .right_code(right_code), .sums(sums)
     );
 
     // The token beside the sums, which are those of the column four before.
     localparam LATE = 2 + COLUMN_BITS + GROUP_BITS;
     reg [4*LATE-1:0] lates;
     always @(posedge clk) begin
-        if (go) lates <= {lates[3*LATE-1:0], last_group_3, first_group_3, column_3, group_3};
+        if (go) lates <= {lates[3*LATE-1:0], last_group_4, first_group_4, column_4, group_4};
     end
     wire [LATE-1:0] late = lates[4*LATE-1 -: LATE];
     wire [COLUMN_BITS-1:0] winner_column = late[GROUP_BITS +: COLUMN_BITS] - FOUR;
@@ -166,15 +172,15 @@ module stereo_block #(
     stereo_winner #(
         .PARALLEL(PARALLEL), .COLUMN_BITS(COLUMN_BITS), .GROUP_BITS(GROUP_BITS), .LEVELS(LEVELS)
     ) winner (
-        .clk(clk), .reset(forgets), .go(go), .disparities(disparities), .sums(sums), .valid(valids[5]),
+        .clk(clk), .reset(forgets), .go(go), .disparities(disparities), .sums(sums), .valid(valids[6]),
         .column(winner_column), .group(late[GROUP_BITS-1:0]), .first_group(late[LATE-2]),
         .last_group(late[LATE-1]), .best(best), .cost(cost), .below(below), .above(above)
     );
 
     // What is to be said of the winner, beside it.
-    wire is_pixel = has_winners && column >= 6;
-    wire is_first = row == 0 && column == 6;
-    wire is_last = column == width + FIVE;
+    wire is_pixel = has_winners && column >= 7;
+    wire is_first = row == 0 && column == 7;
+    wire is_last = column == width + SIX;
     reg [WINNER-1:0] steps;
     reg [11*WINNER-1:0] said;
     always @(posedge clk) begin
@@ -209,8 +215,9 @@ module stereo_block #(
     ) registers (
         .clk(clk), .reset(reset), .bus_cycle(wb_cyc_i), .bus_strobe(wb_stb_i), .bus_write(wb_we_i),
         .bus_address(wb_adr_i), .bus_data(wb_dat_i), .bus_answer(wb_dat_o), .bus_ack(wb_ack_o),
-        .enable(enable), .set_width(set_width), .set_height(set_height), .set_disparities(set_disparities),
-        .running(running), .begins(begins), .too_short(too_short), .too_long(too_long), .cut_off(cut_off),
+        .enable(enable), .forget(forget), .set_width(set_width), .set_height(set_height),
+        .set_disparities(set_disparities), .set_smooth(set_smooth), .running(running), .begins(begins),
+        .too_short(too_short), .too_long(too_long), .cut_off(cut_off),
         .aborts(aborts), .row_taken(m_axis_tvalid && m_axis_tready && m_axis_tlast)
     );
 endmodule

@@ -1,11 +1,13 @@
 // Registers on a Wishbone bus (classic cycles, 32 bits, one wait state). Offsets in bytes:
 //
 //   00 ID        r    0x53420001: "SB", version 1 of this map
-//   04 CONTROL   rw   bit 0: enable; the next frame that begins is taken. Set with bad values, it stays 0.
+//   04 CONTROL   rw   bit 0: enable, the next frame that begins is taken; set with bad values, it stays 0;
+//                     bit 1: written as 1, what is under way is forgotten (reads 0)
 //   08 STATUS    rw1c bit 0: a frame is under way (r); 1: a frame is done; 2: a line was too short; 3: a line
 //                     was too long; 4: a frame was cut off by the next one; 5: a bad register value
 //   0c SIZE      rw   15..0: pixels in a line, 16 to CAPACITY's; 31..16: lines, at least 1
-//   10 SEARCH    rw   7..0: disparities, 16 to CAPACITY's and at most the pixels in a line
+//   10 SEARCH    rw   7..0: disparities, 16 to CAPACITY's and at most the pixels in a line;
+//                     8: whether lines are smoothed against noise
 //   14 CAPACITY  r    15..0: pixels in a line; 23..16: disparities; 31..24: disparities in a clock
 //   18 METHOD    r    7..0: 0 for fast, 1 for block; 15..8: rows that the window looks up and down
 //   1c CLOCKS    r    clocks of the frame that is under way, or of the last one
@@ -32,9 +34,12 @@ module stereo_registers #(
     output reg [31:0] bus_answer,
     output reg bus_ack,
     output reg enable,
+    // One clock: what is under way is to be forgotten.
+    output reg forget,
     output wire [COLUMN_BITS-1:0] set_width,
     output wire [15:0] set_height,
     output wire [7:0] set_disparities,
+    output wire set_smooth,
     input wire running,
     input wire begins,
     input wire too_short,
@@ -50,7 +55,7 @@ module stereo_registers #(
     localparam [7:0] RADIUS = RADIUS_Y[7:0];
 
     reg [31:0] size;
-    reg [7:0] search;
+    reg [8:0] search;
     reg [4:0] events;
     reg [31:0] clocks;
     reg [15:0] rows;
@@ -58,10 +63,11 @@ module stereo_registers #(
 
     assign set_width = size[COLUMN_BITS-1:0];
     assign set_height = size[31:16];
-    assign set_disparities = search;
+    assign set_disparities = search[7:0];
+    assign set_smooth = search[8];
 
     wire is_good = size[15:0] >= 16 && size[15:0] <= MOST_WIDTH && size[31:16] != 0
-        && search >= 16 && search <= MOST_DISPARITIES && {8'd0, search} <= size[15:0];
+        && search[7:0] >= 16 && search[7:0] <= MOST_DISPARITIES && {8'd0, search[7:0]} <= size[15:0];
     wire writes = bus_cycle && bus_strobe && bus_write && !bus_ack;
     wire [3:0] place = bus_address;
     wire sets_control = writes && place == 1;
@@ -74,6 +80,7 @@ module stereo_registers #(
         bus_ack <= !reset && bus_cycle && bus_strobe && !bus_ack;
         if (reset) begin
             enable <= 1'b0;
+            forget <= 1'b0;
             size <= 0;
             search <= 0;
             events <= 0;
@@ -82,11 +89,12 @@ module stereo_registers #(
             ran <= 1'b0;
         end else begin
             if (sets_control) enable <= bus_data[0] && is_good;
+            forget <= sets_control && bus_data[1];
             if (writes && place == 3 && !enable) size <= bus_data;
-            // What is over a byte is no number of disparities that there is room for.
-            if (writes && place == 4 && !enable) search <= bus_data[31:8] == 0 ? bus_data[7:0] : 8'd0;
+            // With other bits there is no such search.
+            if (writes && place == 4 && !enable) search <= bus_data[31:9] == 0 ? bus_data[8:0] : 9'd0;
             events <= (events & ~cleared) | {is_bad, cut_off, too_long, too_short, done};
-            ran <= running && !aborts;
+            ran <= running && !aborts && !forget;
             if (begins) clocks <= 0;
             else if (running) clocks <= clocks + 1;
             if (begins) rows <= 0;
@@ -97,7 +105,7 @@ module stereo_registers #(
             4'd1: bus_answer <= {31'd0, enable};
             4'd2: bus_answer <= {26'd0, events, running};
             4'd3: bus_answer <= size;
-            4'd4: bus_answer <= {24'd0, search};
+            4'd4: bus_answer <= {23'd0, search};
             4'd5: bus_answer <= {IN_A_CLOCK, MOST_DISPARITIES, MOST_WIDTH};
             4'd6: bus_answer <= {16'd0, RADIUS, IS_METHOD};
             4'd7: bus_answer <= clocks;

@@ -1,8 +1,8 @@
 // The walk of a frame: which column of which line is worked on in each clock, and the stream of pixels.
 //
 // A frame takes height + 2 + RADIUS_Y line steps: in step t line t comes in, the census of row t - 2 is
-// made, and row t - 2 - RADIUS_Y gets its winners. A step takes width + 6 columns: in column c the census of
-// column c - 2 and the winner of column c - 6. A column takes GROUPS clocks, each for PARALLEL disparities.
+// made, and row t - 2 - RADIUS_Y gets its winners. A step takes width + 7 columns: in column c the census of
+// column c - 3 and the winner of column c - 7. A column takes GROUPS clocks, each for PARALLEL disparities.
 // After the last step as many columns follow as there are disparities, which carry nothing: they bring the
 // last winners out of the left-right check.
 //
@@ -27,6 +27,7 @@ module stereo_walk #(
     input wire [COLUMN_BITS-1:0] set_width,
     input wire [15:0] set_height,
     input wire [7:0] set_disparities,
+    input wire set_smooth,
     // Pixels: left in the low byte, right in the high one; `user` begins a frame, `last` ends a line.
     input wire [15:0] pixel_data,
     input wire pixel_valid,
@@ -36,6 +37,7 @@ module stereo_walk #(
     // What the frame that is under way was begun with.
     output reg [COLUMN_BITS-1:0] width,
     output reg [7:0] disparities,
+    output reg smooth,
     output reg running,
     // One clock each: a frame begins, all that is under way is to be forgotten, and why.
     output wire begins,
@@ -71,7 +73,7 @@ module stereo_walk #(
 
     // Columns behind a frame, and behind a line.
     localparam [COLUMN_BITS-1:0] DRAIN = DISPARITIES[COLUMN_BITS-1:0];
-    localparam [COLUMN_BITS-1:0] MORE = 5;
+    localparam [COLUMN_BITS-1:0] MORE = 6;
 
     reg [15:0] height;
     // The step, the column and the group that are due; the place of the step's codes.
@@ -118,6 +120,7 @@ module stereo_walk #(
             width <= set_width;
             height <= set_height;
             disparities <= set_disparities;
+            smooth <= set_smooth;
             step <= 0;
             at <= 0;
             at_group <= 0;

@@ -33,7 +33,7 @@ module stereo_winner #(
     // A node: no candidate, cost, disparity, the cost below and the one above.
     localparam NODE = 33;
 
-    // A clock later the next group of the pixel stands in `sums`; its first candidate is above this one's last.
+    // A clock later `sums` are the next group, whose first candidate is above the last one here.
     reg [8*PARALLEL-1:0] here;
     reg [7:0] before_first;
     reg [COLUMN_BITS-1:0] column_0;

@@ -10,3 +10,4 @@ mod changing;
 mod faults;
 mod push;
 mod waited;
+mod winners;

@@ -1,0 +1,18 @@
+//! Rows from a device that computes winners: a block of gates, or another core.
+//!
+//! In: a [`WinnerSource`], and the left camera's lines where a check looks at them. Out: the rows that a
+//! [`Pipeline`](super::Pipeline) of the same method gives, to the bit.
+//!
+//! * [`WinnerSource`]: the trait of such a device, with [`WinnerSearch`], what it is asked for, and
+//!   [`WinnerError`].
+//! * [`WinnerRegisters`]: the device of `examples/fpga` behind its registers and a ring of records, on any
+//!   [`RegisterBus`].
+//! * [`WinnerPipeline`]: rows of winners into rows of disparities.
+
+mod pipeline;
+mod registers;
+mod source;
+
+pub use pipeline::{WinnerPipeline, WinnerPipelineError};
+pub use registers::{Register, RegisterBus, WinnerRegisters, status};
+pub use source::{WinnerError, WinnerSearch, WinnerSource};

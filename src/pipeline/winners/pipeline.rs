@@ -1,0 +1,307 @@
+//! Rows of winners into rows of disparities.
+
+use super::source::{WinnerError, WinnerSearch, WinnerSource};
+use crate::imaging::LineWindow;
+use crate::matching::{
+    Capacity, Config, ConfigError, External, MatchError, Matcher, Method, Row, Supported, WinnerRecord,
+};
+use crate::pipeline::PushError;
+use core::fmt;
+
+/// Rows the method `S` gives, of winners that a [`WinnerSource`] computes, in memory that grows with the width
+/// alone.
+///
+/// Lines are pushed, [`Self::push`], and rows come out a line later than from a
+/// [`Pipeline`](crate::pipeline::Pipeline): the device has a line in hand while it computes.
+///
+/// Up to [`Self::set_most_lost`] rows of a frame may be late, short or damaged; by default the first ends it.
+/// Such a row has no answers, and [`DAMAGED`](crate::units::PixelFlags::DAMAGED) on every pixel. Rows that it
+/// can affect through checks keep their answers and have the flag: [`Matcher`] looks four rows down, and up as
+/// many as the speckle filter counts; along paths the rest of the frame. Every other row is bit-equal.
+pub struct WinnerPipeline<S: Method, const W: usize, const D: usize>
+where
+    External<S>: Method,
+{
+    left: LineWindow<W>,
+    matcher: Matcher<External<S>, W, D>,
+    winners: [WinnerRecord; W],
+    /// Rows that the matcher took, and lines that came.
+    taken: usize,
+    lines: usize,
+    height: usize,
+    most_lost: u16,
+    lost: u16,
+    /// Of the last rows of winners, the newest in the lowest bit, whether they were lost; and the last one.
+    lost_rows: u8,
+    last_lost: Option<usize>,
+}
+
+/// Why a pipeline of winners gave no row.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum WinnerPipelineError<E> {
+    /// The device gave no winners; its own error is inside. The frame is over.
+    Source(WinnerError<E>),
+    /// The line or the call does not fit; nothing has changed.
+    Push(PushError),
+    /// The configuration is none that the matcher takes.
+    Config(ConfigError),
+}
+
+impl<E: fmt::Display> fmt::Display for WinnerPipelineError<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Source(e) => write!(f, "{e}"),
+            Self::Push(e) => write!(f, "{e}"),
+            Self::Config(e) => write!(f, "{e}"),
+        }
+    }
+}
+
+impl<E: fmt::Display + fmt::Debug> core::error::Error for WinnerPipelineError<E> {}
+
+impl<E> From<WinnerError<E>> for WinnerPipelineError<E> {
+    fn from(e: WinnerError<E>) -> Self {
+        Self::Source(e)
+    }
+}
+
+impl<E> From<PushError> for WinnerPipelineError<E> {
+    fn from(e: PushError) -> Self {
+        Self::Push(e)
+    }
+}
+
+impl<E> From<MatchError> for WinnerPipelineError<E> {
+    fn from(e: MatchError) -> Self {
+        Self::Push(e.into())
+    }
+}
+
+/// Rows below a row that its answers rest on.
+const LOOK_AHEAD: usize = 4;
+
+impl<S: Method, const W: usize, const D: usize> WinnerPipeline<S, W, D>
+where
+    External<S>: Method,
+{
+    /// Delay in lines: row y comes out when line y + `LATENCY` is in.
+    pub const LATENCY: usize = 3 + Matcher::<External<S>, W, D>::DELAY;
+
+    /// Creates a pipeline that awaits [`Self::start`]. All its bytes are zero, so that a static takes no
+    /// flash.
+    pub const fn new() -> Self
+    where
+        Capacity<D>: Supported,
+    {
+        Self {
+            left: LineWindow::new(),
+            matcher: Matcher::new(),
+            winners: [WinnerRecord::ZERO; W],
+            taken: 0,
+            lines: 0,
+            height: 0,
+            most_lost: 0,
+            lost: 0,
+            lost_rows: 0,
+            last_lost: None,
+        }
+    }
+
+    /// Checks the configuration and starts the device.
+    pub fn start<R: WinnerSource>(
+        &mut self,
+        config: &Config,
+        source: &mut R,
+    ) -> Result<(), WinnerPipelineError<R::Error>> {
+        self.height = 0;
+        self.matcher.start(config).map_err(WinnerPipelineError::Config)?;
+        source.start(&WinnerSearch {
+            method: S::NAME,
+            width: config.width,
+            height: config.height,
+            disparities: config.disparities,
+            min_disparity: config.min_disparity,
+            noise: config.noise,
+            second_best: self.matcher.needs_second_best(),
+        })?;
+        self.height = usize::from(config.height);
+        self.taken = usize::MAX;
+        Ok(())
+    }
+
+    /// Sets how many rows of a frame may be lost before it ends with an error.
+    pub fn set_most_lost(&mut self, rows: u16) {
+        self.most_lost = rows;
+    }
+
+    /// Returns the number of rows of this frame whose winners were lost.
+    pub fn lost(&self) -> u16 {
+        self.lost
+    }
+
+    /// Returns the configuration; all zero before [`Self::start`].
+    pub fn config(&self) -> &Config {
+        self.matcher.config()
+    }
+
+    /// Begins a frame, and drops the one before.
+    pub fn begin_frame<R: WinnerSource>(
+        &mut self,
+        source: &mut R,
+    ) -> Result<(), WinnerPipelineError<R::Error>> {
+        self.taken = usize::MAX;
+        if self.height == 0 {
+            return Err(MatchError::NotStarted.into());
+        }
+        source.begin_frame()?;
+        self.left.begin(usize::from(self.matcher.config().width));
+        self.matcher.begin_frame();
+        (self.taken, self.lines, self.lost, self.lost_rows, self.last_lost) = (0, 0, 0, 0, None);
+        Ok(())
+    }
+
+    /// Hands the next line of both cameras on, and returns the row that it completes: `None` for the first
+    /// [`Self::LATENCY`] lines. After the last line, [`Self::flush`] returns the other rows.
+    ///
+    /// A line has exactly the width that the pipeline was started for.
+    pub fn push<R: WinnerSource>(
+        &mut self,
+        left: &[u8],
+        right: &[u8],
+        source: &mut R,
+    ) -> Result<Option<Row<'_>>, WinnerPipelineError<R::Error>> {
+        self.begun()?;
+        if self.lines >= self.height {
+            return Err(PushError::NoLineLeft.into());
+        }
+        let needed = usize::from(self.matcher.config().width);
+        if left.len() != needed || right.len() != needed {
+            return Err(PushError::LineLength { needed }.into());
+        }
+        source.push_lines(left, right)?;
+        // A step behind: the row's last winners come when the device has this line, which the window does not
+        // need to have.
+        let is_due = self.lines >= self.taken.saturating_add(3);
+        if is_due {
+            self.step(source)?;
+        }
+        for (to, &from) in self.left.next_line().iter_mut().zip(left) {
+            *to = from;
+        }
+        self.left.accept();
+        self.lines += 1;
+        Ok(if is_due { self.matcher.row() } else { None })
+    }
+
+    /// Returns the next row after the last line was pushed; `None` after the frame's last row.
+    pub fn flush<R: WinnerSource>(
+        &mut self,
+        source: &mut R,
+    ) -> Result<Option<Row<'_>>, WinnerPipelineError<R::Error>> {
+        self.begun()?;
+        let missing = self.height.saturating_sub(self.lines);
+        if missing > 0 {
+            return Err(PushError::LinesMissing { missing }.into());
+        }
+        let delay = Matcher::<External<S>, W, D>::DELAY;
+        // Every step takes one row, and the first row is out after `DELAY` of them.
+        for _ in 0..=delay {
+            if self.taken >= self.height + delay {
+                return Ok(None);
+            }
+            self.step(source)?;
+            if self.taken > delay {
+                break;
+            }
+        }
+        Ok(self.matcher.row())
+    }
+
+    /// Passes the next row to the matcher, with the winners that are due with it.
+    fn step<R: WinnerSource>(&mut self, source: &mut R) -> Result<(), WinnerPipelineError<R::Error>> {
+        let width = usize::from(self.matcher.config().width);
+        let due = self.matcher.winners_due();
+        let given = match due {
+            Some(row) => source.next_row(row, self.winners.get_mut(..width).unwrap_or_default()),
+            None => Ok(()),
+        };
+        let outcome = match given {
+            Ok(()) => self.pass(),
+            Err(e) => Err(e.into()),
+        };
+        if let Err(e) = outcome {
+            let is_of_one_row = match &e {
+                WinnerPipelineError::Source(e) => e.is_of_one_row(),
+                WinnerPipelineError::Push(PushError::Matcher(MatchError::WinnerRefused { .. })) => true,
+                _ => false,
+            };
+            if !is_of_one_row || self.lost >= self.most_lost {
+                self.taken = usize::MAX;
+                return Err(e);
+            }
+            self.lost += 1;
+            self.last_lost = due.map(usize::from);
+            // What stands in for the row: its answers go.
+            self.winners.fill(WinnerRecord::ZERO);
+            self.pass()?;
+            self.lost_rows = self.lost_rows << 1 | 1;
+        } else if due.is_some() {
+            self.lost_rows <<= 1;
+        }
+        self.taken += 1;
+        self.mark();
+        Ok(())
+    }
+
+    /// Passes the lines around the next row, and the winners, to the matcher.
+    fn pass<E>(&mut self) -> Result<(), WinnerPipelineError<E>> {
+        if self.taken < self.height {
+            let lines = self.left.around(self.taken);
+            self.matcher.push_winners(Some(&lines), &self.winners)?;
+        } else {
+            self.matcher.flush_winners(&self.winners)?;
+        }
+        Ok(())
+    }
+
+    /// Flags the row that came out if it rests on one that was lost.
+    fn mark(&mut self) {
+        let (Some(row), Some(last)) = (self.matcher.row(), self.last_lost) else { return };
+        let row = usize::from(row.index());
+        let checks = &self.matcher.config().checks;
+        let reach = if S::VERTICAL_FILTER {
+            usize::MAX
+        } else {
+            usize::from(checks.median) + usize::from(checks.speckle_pixels)
+        };
+        // The rows of winners between this one and the newest, which there are fewer of below the image.
+        let newest = (self.taken - 1).saturating_sub(S::RADIUS_Y).min(self.height - 1);
+        let is_lost = self.lost_rows >> (newest - row).min(7) & 1 != 0;
+        if last.saturating_add(reach) >= row && last <= row + LOOK_AHEAD {
+            self.matcher.mark_damaged(!is_lost);
+        }
+    }
+
+    /// Checks that a frame is under way.
+    fn begun(&self) -> Result<(), PushError> {
+        if self.height == 0 {
+            Err(MatchError::NotStarted.into())
+        } else if self.taken == usize::MAX {
+            Err(PushError::NotBegun)
+        } else {
+            Ok(())
+        }
+    }
+}
+
+impl<S: Method, const W: usize, const D: usize> Default for WinnerPipeline<S, W, D>
+where
+    External<S>: Method,
+    Capacity<D>: Supported,
+{
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -112,8 +112,9 @@ impl RegisterBus for MockBlock {
     fn write(&mut self, register: Register, value: u32) -> Result<(), Infallible> {
         let most = self.capacity.map(|most| most as usize);
         let [width, height] = self.size;
-        let is_good =
-            (16..=most[0]).contains(&width) && height > 0 && (16..=most[1].min(width)).contains(&self.search);
+        let is_good = (16..=most[0]).contains(&width)
+            && height > 0
+            && (16..=most[1].min(width)).contains(&(self.search & !0x100));
         match register {
             Register::Control => {
                 if value & 2 != 0 {

@@ -10,8 +10,8 @@
 //   'L' u8 marks, u32 count, pixels      queues a line, two bytes a pixel, left and right; marks: 1 begins a
 //                                        frame, 2 ends the line
 //   'T' u32 count, u32 clocks            runs until so many records are taken, or nothing has happened for so
-//                                        many clocks: u32 count, then for each eight bytes and a byte of marks,
-//                                        1 begins a frame, 2 ends the row
+//                                        many clocks: u32 count, then of each eight bytes and a byte of
+//                                        marks, 1 begins a frame, 2 ends the row
 //   'C'                                  five u64: clocks in all; those of the frame's first pixel, its last
 //                                        one, its first record and its last one
 //   'Q'                                  ends

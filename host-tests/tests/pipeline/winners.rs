@@ -90,6 +90,7 @@ where
 fn the_rows_are_the_methods_own() {
     whole::<Fast>(&twin::Method::FAST, &config::<Fast>());
     whole::<Block>(&twin::Method::BLOCK, &config::<Block>());
+    whole::<Fast>(&twin::Method::FAST, &Config { noise: Noise::High, ..config::<Fast>() });
     // Checks that look at the left camera's lines, and at three rows.
     let checks = Checks {
         texture_gradient: 4,
@@ -184,7 +185,6 @@ fn what_the_block_cannot_do_is_refused() {
     let mut pipeline = Box::new(WinnerPipeline::<Fast, W, D>::new());
     for config in [
         Config { min_disparity: 1, ..fast },
-        Config { noise: Noise::Low, ..fast },
         Config { confidence: true, ..fast },
         Config { width: 31, ..fast },
         fast.with_filter::<Fast>(Filter::Strict),

@@ -57,6 +57,7 @@ module stereo_block #(
     localparam ADDRESS_BITS = $clog2(WIDTH);
     localparam CODE_BITS = $clog2((2 * RADIUS_Y + 1) * WIDTH);
     localparam LEVELS = $clog2(PARALLEL);
+    localparam SLOT_BITS = $clog2(2 * DISPARITIES);
     // Clocks from the walk's token to the winner.
     localparam WINNER = LEVELS + 10;
 
@@ -77,7 +78,6 @@ module stereo_block #(
 
     stereo_walk #(
         .WIDTH(WIDTH),
-        .DISPARITIES(DISPARITIES),
         .GROUPS(GROUPS),
         .RADIUS_Y(RADIUS_Y),
         .COLUMN_BITS(COLUMN_BITS),
@@ -194,7 +194,8 @@ module stereo_block #(
     wire [10:0] of_winner = said[11*WINNER-1 -: 11];
 
     stereo_left_right #(.DISPARITIES(DISPARITIES)) left_right (
-        .clk(clk), .reset(forgets), .go(go), .valid(steps[WINNER-1]), .is_pixel(of_winner[10]),
+        .clk(clk), .reset(forgets), .go(go), .disparities(disparities[SLOT_BITS-1:0]), .valid(steps[WINNER-1]),
+        .is_pixel(of_winner[10]),
         .is_first(of_winner[9]), .is_last(of_winner[8]), .row(of_winner[7:0]),
         .best(best), .cost(cost), .below(below), .above(above), .record_valid(record_valid), .record(record)
     );

@@ -1,8 +1,9 @@
 // Left-right check: what each column of the right image keeps, and records of the winners with it.
 //
 // A right column keeps the cheapest of the left pixels that chose it, the first among equals. What column
-// x - d keeps is settled once pixel x - d + DISPARITIES - 1 has chosen; so a pixel waits for DISPARITIES more
-// pixels, in a ring, and is then put together with what its partner keeps. The ring goes on from row to row.
+// x - d keeps is settled once the last pixel that may choose it has, as many columns further as there are
+// disparities, less one. So a pixel waits for that many more pixels, in a ring, and is then put together with
+// what its partner keeps. The ring goes on from row to row.
 `default_nettype none
 
 module stereo_left_right #(
@@ -11,6 +12,7 @@ module stereo_left_right #(
     input wire clk,
     input wire reset,
     input wire go,
+    input wire [$clog2(2*DISPARITIES)-1:0] disparities,
     // A pixel, or one that only moves the ring on.
     input wire valid,
     input wire is_pixel,
@@ -27,7 +29,6 @@ module stereo_left_right #(
 );
     localparam BITS = $clog2(2 * DISPARITIES);
     localparam SLOTS = 1 << BITS;
-    localparam [BITS-1:0] WAIT = DISPARITIES[BITS-1:0];
 
     reg [BITS-1:0] slot;
     reg [SLOTS-1:0] taken;
@@ -59,7 +60,9 @@ module stereo_left_right #(
 
     // The pixels that wait.
     wire [41:0] waited;
-    wire [BITS-1:0] due = slot - WAIT;
+    wire [BITS-1:0] due = slot - disparities;
+    wire [BITS-2:0] last_waiting = disparities[BITS-2:0] - 1'b1;
+    wire is_due = pixels[last_waiting];
     stereo_ram #(.BITS(42), .DEPTH(SLOTS)) waiting (
         .clk(clk),
         .read(go && valid),
@@ -84,7 +87,7 @@ module stereo_left_right #(
             told <= 1'b0;
             record_valid <= 1'b0;
         end else if (go) begin
-            told <= valid && pixels[DISPARITIES-1];
+            told <= valid && is_due;
             record_valid <= told;
         end
         if (go) begin

@@ -11,7 +11,6 @@
 
 module stereo_walk #(
     parameter [31:0] WIDTH = 640,
-    parameter DISPARITIES = 64,
     parameter GROUPS = 1,
     parameter RADIUS_Y = 4,
     parameter COLUMN_BITS = 11,
@@ -71,8 +70,7 @@ module stereo_walk #(
     localparam [CODE_BITS-1:0] LAST_CODE_ROW = LAST_ROW[CODE_BITS-1:0];
     localparam [CODE_BITS-1:0] CODE_ROW = WIDTH[CODE_BITS-1:0];
 
-    // Columns behind a frame, and behind a line.
-    localparam [COLUMN_BITS-1:0] DRAIN = DISPARITIES[COLUMN_BITS-1:0];
+    // Columns behind a line's last one.
     localparam [COLUMN_BITS-1:0] MORE = 6;
 
     reg [15:0] height;
@@ -91,7 +89,7 @@ module stereo_walk #(
     wire at_start = step == 0 && at == 0;
     wire [COLUMN_BITS-1:0] last_inside = width - 1'b1;
     wire [COLUMN_BITS-1:0] last_column = width + MORE;
-    wire is_last_column = draining ? at == DRAIN : at == last_column;
+    wire is_last_column = draining ? at == {{(COLUMN_BITS-8){1'b0}}, disparities} : at == last_column;
 
     wire is_last_row = at_code_row == LAST_CODE_ROW;
 

@@ -5,7 +5,7 @@ use stereopsis::camera::StereoSource;
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{Block, Checks, Config, External, Fast, Filter, Method, Sgm, WinnerRecord};
 use stereopsis::pipeline::winners::{
-    WinnerError, WinnerPipeline, WinnerPipelineError, WinnerRegisters, WinnerSource,
+    Register, WinnerError, WinnerPipeline, WinnerPipelineError, WinnerRegisters, WinnerSource,
 };
 use stereopsis::pipeline::{Pipeline, PushError};
 use stereopsis::units::{Disparity, PixelFlags};
@@ -196,6 +196,28 @@ fn what_the_block_cannot_do_is_refused() {
     assert_eq!(block.start(&fast, &mut device), refused);
     let mut paths = Box::new(WinnerPipeline::<Sgm, W, D>::new());
     assert_eq!(paths.start(&Config::for_method::<Sgm>(90, 60, 32), &mut device), refused);
+}
+
+/// Offsets and bits stand in two languages: above the gates' own file, and here.
+#[test]
+fn the_registers_are_those_of_the_gates() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/fpga/rtl/stereo_registers.v");
+    let gates = std::fs::read_to_string(path).expect("the file of the gates' registers");
+    let lines: Vec<_> = gates.lines().filter_map(|line| line.strip_prefix("//   ")).collect();
+    for (register, name) in [
+        (Register::Id, "ID"),
+        (Register::Control, "CONTROL"),
+        (Register::Status, "STATUS"),
+        (Register::Size, "SIZE"),
+        (Register::Search, "SEARCH"),
+        (Register::Capacity, "CAPACITY"),
+        (Register::Method, "METHOD"),
+        (Register::Clocks, "CLOCKS"),
+        (Register::Rows, "ROWS"),
+    ] {
+        let begins = format!("{:02x} {name} ", register as u8);
+        assert!(lines.iter().any(|line| line.starts_with(&begins)), "{begins}");
+    }
 }
 
 #[test]

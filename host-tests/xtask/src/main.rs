@@ -3,6 +3,7 @@
 //! * `test` sets up what it needs and runs everything: the one test command.
 //! * `firmware` runs the firmware example in QEMU, on one core or on all.
 //! * `growth` measures how the cost grows with the work.
+//! * `rtl` simulates the block of `examples/fpga` before the library's second half.
 //! * `altered` measures how right the methods are on altered real images, beside OpenCV.
 //! * `readme` writes the generated parts of docs/performance.md anew, or checks them.
 //! * `c` tests the C interface alone, one step of `test`.
@@ -10,7 +11,7 @@
 //! * `header` writes the header of the C interface anew, or checks it.
 //!
 //! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`],
-//! [`growth`], [`c`], [`arm`], [`package`] and [`readme`] are six of them. [`altered`] needs data that not
+//! [`growth`], [`c`], [`arm`], [`mod@rtl`], [`package`] and [`readme`] are seven of them. [`altered`] needs data that not
 //! everybody has.
 
 use clap::error::ErrorKind;
@@ -32,6 +33,7 @@ mod packages;
 mod parallel;
 mod pictures;
 mod readme;
+mod rtl;
 mod setup;
 mod steps;
 mod test;
@@ -57,6 +59,8 @@ enum Chore {
     /// Measures what an evaluation costs while the work grows: instructions on two cores, or times on this
     /// machine.
     Growth(growth::Arguments),
+    /// Simulates the gates of examples/fpga and holds them to the host, bit for bit.
+    Rtl(rtl::Arguments),
     /// Measures how right the methods are on real pairs with noise and unequal cameras, beside OpenCV.
     Altered(altered::Arguments),
     /// Writes the generated parts of docs/performance.md anew.
@@ -87,7 +91,7 @@ fn main() -> ExitCode {
                 "error: {}",
                 one_line(&usage_line(
                     &error,
-                    "the chores are test, firmware, growth, altered, c, header, publish and readme"
+                    "the chores are test, firmware, growth, rtl, altered, c, header, publish and readme"
                 ))
             );
             return ExitCode::FAILURE;
@@ -97,6 +101,7 @@ fn main() -> ExitCode {
         Chore::Test { step } => test::run(step),
         Chore::Firmware(arguments) => firmware::run(&arguments),
         Chore::Growth(arguments) => growth::run(&arguments),
+        Chore::Rtl(arguments) => rtl::run(&arguments),
         Chore::Altered(arguments) => altered::run(&arguments),
         Chore::Readme { check } => readme::run(check),
         Chore::C => c::run(),

@@ -8,6 +8,7 @@ use crate::firmware;
 use crate::growth;
 use crate::package;
 use crate::parallel;
+use crate::rtl;
 use crate::setup::{self, CHECKED, FROM_SOURCE, TARGETS};
 use crate::steps::{Failure, Outcome, Steps, cargo, command, root, run as run_command, target_dir};
 use std::fs;
@@ -46,7 +47,11 @@ pub fn run(only: Option<String>) -> Outcome {
     side_by_side(
         &mut steps,
         [
-            &[("README's commands", readme_commands), ("quickstart", || examples::QUICKSTART.run())],
+            &[
+                ("README's commands", readme_commands),
+                ("quickstart", || examples::QUICKSTART.run()),
+                ("gates", rtl::sample),
+            ],
             &[
                 ("firmware", || firmware::check_sample(&stereo())),
                 ("growth", growth::sample),

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 
 /// Public types without `Debug`, each with the reason.
 const NO_DEBUG: [(&str, &[&str]); 3] = [
-    ("tens of kilobytes of working memory", &["Matcher", "Pipeline", "Guarded"]),
+    ("tens of kilobytes of working memory", &["Matcher", "Pipeline", "Guarded", "WinnerPipeline"]),
     (
         "an end of a queue: looking at it needs what the other end may be changing",
         &[
@@ -41,7 +41,10 @@ const NO_DEBUG: [(&str, &[&str]); 3] = [
 
 /// Types that can be cloned and are no data: neither `Format` nor serde's pair.
 const NO_DATA: [(&str, &[&str]); 5] = [
-    ("a word in a type, which has no value", &["Block", "Capacity", "Fast", "Sgm", "SgmEdge", "SgmLean"]),
+    (
+        "a word in a type, which has no value",
+        &["Block", "Capacity", "External", "Fast", "Sgm", "SgmEdge", "SgmLean"],
+    ),
     ("lines and pixels in work", &["Patch", "Remap", "RemapPair", "Template"]),
     ("made again from a rig or a scale, which is stored", &["DepthTable", "RemapTable", "Warp"]),
     (
@@ -97,7 +100,8 @@ const NO_DATA: [(&str, &[&str]); 5] = [
 ];
 
 /// Data that is logged and not stored: `Format` alone.
-const NOT_STORED: [(&str, &[&str]); 6] = [
+const NOT_STORED: [(&str, &[&str]); 7] = [
+    ("between a core and a device, as bytes and offsets", &["Register", "WinnerRecord"]),
     ("made again from a rig, which is stored", &["DepthScale", "OdometryRig", "Rectification", "TwoViews"]),
     (
         "made again from a matrix or segments, which are stored",
@@ -105,7 +109,10 @@ const NOT_STORED: [(&str, &[&str]); 6] = [
     ),
     ("candidates within a computation", &["P3pPoses", "PatchOrientation", "ProjectionJacobian"]),
     ("gathered anew in every frame", &["AutoExposure", "Band", "Histogram", "PingPong"]),
-    ("said by one part of a program to another", &["FocusSearchStep", "LensCommand", "LensEvent"]),
+    (
+        "said by one part of a program to another",
+        &["FocusSearchStep", "LensCommand", "LensEvent", "WinnerSearch"],
+    ),
     ("why there is no answer, or a choice of colours", &["DisparityColours", "LineFault", "NoFocus"]),
 ];
 

@@ -11,8 +11,8 @@
 //! * `header` writes the header of the C interface anew, or checks it.
 //!
 //! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`],
-//! [`growth`], [`c`], [`arm`], [`mod@rtl`], [`package`] and [`readme`] are seven of them. [`altered`] needs data that not
-//! everybody has.
+//! [`growth`], [`c`], [`arm`], [`mod@rtl`], [`package`] and [`readme`] are seven of them. [`altered`] needs
+//! data that not everybody has.
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};

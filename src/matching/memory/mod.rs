@@ -22,8 +22,9 @@ pub(in crate::matching) mod workspace;
 pub use rings::Rows5;
 
 use layout::{Aligned, Columns, OUTSIDE, WindowWorkspace};
+use record::WinnerRecord;
 use slices::{part, part_mut};
-use views::view;
+use views::{view, view_mut};
 use winners::Winner;
 use workspace::RowWorkspace;
 
@@ -115,6 +116,56 @@ impl<const CODES: usize, const ROWS: usize, const TABLES: usize, const W: usize,
 
     fn column_bytes(width: usize, stride: usize) -> usize {
         (width + 2 * OUTSIDE) * stride
+    }
+
+    fn confidences(&self, width: usize) -> &[u8] {
+        part(view::<Winner, u8>(&self.winners), ..width)
+    }
+}
+
+/// The memory of a method whose winners come from outside: a row of them, and its workspace.
+pub struct RecordMemory<const W: usize, const D: usize> {
+    records: Aligned<[WinnerRecord; W]>,
+    workspace: WindowWorkspace<0, W, D>,
+    winners: [Winner; W],
+    right: [u16; W],
+    lengths: [u16; W],
+}
+
+impl RecordMemory<0, 0> {
+    /// The record; the workspace's numbers, what a finished row has, masks or gaps, and the length.
+    pub const BYTES: Bytes = Bytes {
+        fixed: 0,
+        per_pixel: WinnerRecord::BYTES + 2 + 4 + 2 + 2,
+        per_candidate: 0,
+        per_disparity: 3,
+    };
+}
+
+impl<const W: usize, const D: usize> Memory for RecordMemory<W, D> {
+    const EMPTY: Self = Self {
+        records: Aligned([WinnerRecord::ZERO; W]),
+        workspace: WindowWorkspace::ZERO,
+        winners: [Winner::NONE; W],
+        right: [0; W],
+        lengths: [0; W],
+    };
+
+    fn parts(&mut self, width: usize) -> Parts<'_> {
+        Parts {
+            codes: part_mut(view_mut::<WinnerRecord, u8>(&mut self.records.0), ..WinnerRecord::BYTES * width),
+            columns: &mut [],
+            workspace: RowWorkspace::of_rows(
+                part_mut(&mut self.winners, ..width),
+                part_mut(&mut self.right, ..width),
+                part_mut(&mut self.lengths, ..width),
+                self.workspace.words(),
+            ),
+        }
+    }
+
+    fn column_bytes(_: usize, _: usize) -> usize {
+        0
     }
 
     fn confidences(&self, width: usize) -> &[u8] {

@@ -15,12 +15,7 @@
 //! Beside a single candidate its own cost stands in bytes 0 and 2. In columns left of the smallest disparity,
 //! which have no candidate, only bytes 6 and 7 mean anything.
 
-use super::layout::{Aligned, WindowWorkspace};
-use super::slices::{part, part_mut};
-use super::views::{view, view_mut};
 use super::winner::Winner;
-use super::workspace::RowWorkspace;
-use super::{Bytes, Memory, Parts};
 
 /// The winner of one pixel, computed by another device: eight bytes in the order that it is sent in.
 ///
@@ -123,55 +118,5 @@ impl WinnerRecord {
     pub(in crate::matching) fn is_possible(self, candidates: usize) -> bool {
         let [below, above] = self.beside();
         usize::from(self.disparity()) < candidates && self.cost() <= below.min(above).min(self.second())
-    }
-}
-
-/// The memory of a method whose winners come from outside: a row of them, and its workspace.
-pub struct RecordMemory<const W: usize, const D: usize> {
-    records: Aligned<[WinnerRecord; W]>,
-    workspace: WindowWorkspace<0, W, D>,
-    winners: [Winner; W],
-    right: [u16; W],
-    lengths: [u16; W],
-}
-
-impl RecordMemory<0, 0> {
-    /// The record; the workspace's numbers, what a finished row has, masks or gaps, and the length.
-    pub const BYTES: Bytes = Bytes {
-        fixed: 0,
-        per_pixel: WinnerRecord::BYTES + 2 + 4 + 2 + 2,
-        per_candidate: 0,
-        per_disparity: 3,
-    };
-}
-
-impl<const W: usize, const D: usize> Memory for RecordMemory<W, D> {
-    const EMPTY: Self = Self {
-        records: Aligned([WinnerRecord::ZERO; W]),
-        workspace: WindowWorkspace::ZERO,
-        winners: [Winner::NONE; W],
-        right: [0; W],
-        lengths: [0; W],
-    };
-
-    fn parts(&mut self, width: usize) -> Parts<'_> {
-        Parts {
-            codes: part_mut(view_mut::<WinnerRecord, u8>(&mut self.records.0), ..WinnerRecord::BYTES * width),
-            columns: &mut [],
-            workspace: RowWorkspace::of_rows(
-                part_mut(&mut self.winners, ..width),
-                part_mut(&mut self.right, ..width),
-                part_mut(&mut self.lengths, ..width),
-                self.workspace.words(),
-            ),
-        }
-    }
-
-    fn column_bytes(_: usize, _: usize) -> usize {
-        0
-    }
-
-    fn confidences(&self, width: usize) -> &[u8] {
-        part(view::<Winner, u8>(&self.winners), ..width)
     }
 }

@@ -5,11 +5,11 @@
 use super::{Costs, Frame, Method};
 use crate::matching::backend::MethodParameters;
 use crate::matching::config::Checks;
-use crate::matching::memory::record::{RecordMemory, WinnerRecord};
+use crate::matching::memory::record::WinnerRecord;
 use crate::matching::memory::views::view;
 use crate::matching::memory::winners::Unique;
 use crate::matching::memory::workspace::ForWinners;
-use crate::matching::memory::{Bytes, Rows5};
+use crate::matching::memory::{Bytes, RecordMemory, Rows5};
 use crate::matching::penalties::Penalties;
 use crate::units::PixelFlags;
 use core::marker::PhantomData;
@@ -24,6 +24,7 @@ use core::marker::PhantomData;
 /// assert_eq!(state_bytes::<Block>(320, 64), 42_496);
 /// assert_eq!(state_bytes::<External<Block>>(320, 64), 16_576);
 /// ```
+#[derive(Clone, Copy, Debug)]
 pub struct External<S>(PhantomData<S>);
 
 impl<S: MethodParameters> MethodParameters for External<S> {

@@ -7,12 +7,14 @@
 //!   [`WinnerError`].
 //! * [`WinnerRegisters`]: the device of `examples/fpga` behind its registers and a ring of records, on any
 //!   [`RegisterBus`].
-//! * [`WinnerPipeline`]: rows of winners into rows of disparities.
+//! * [`WinnerPipeline`]: rows of winners into rows of disparities, or a [`WinnerPipelineError`].
 
-mod pipeline;
-mod registers;
 mod source;
+mod error;
+mod registers;
+mod pipeline;
 
-pub use pipeline::{WinnerPipeline, WinnerPipelineError};
+pub use error::WinnerPipelineError;
+pub use pipeline::WinnerPipeline;
 pub use registers::{Register, RegisterBus, WinnerRegisters, status};
 pub use source::{WinnerError, WinnerSearch, WinnerSource};

@@ -1,23 +1,23 @@
 //! Rows of winners into rows of disparities.
 
-use super::source::{WinnerError, WinnerSearch, WinnerSource};
+use super::error::WinnerPipelineError;
+use super::source::{WinnerSearch, WinnerSource};
 use crate::imaging::LineWindow;
 use crate::matching::{
-    Capacity, Config, ConfigError, External, MatchError, Matcher, Method, Row, Supported, WinnerRecord,
+    Capacity, Config, External, MatchError, Matcher, Method, Row, Supported, WinnerRecord,
 };
 use crate::pipeline::PushError;
-use core::fmt;
 
-/// Rows the method `S` gives, of winners that a [`WinnerSource`] computes, in memory that grows with the width
-/// alone.
+/// The rows of the method `S`, of winners that a [`WinnerSource`] computes, in memory that grows with the
+/// width alone.
 ///
 /// Lines are pushed, [`Self::push`], and rows come out a line later than from a
 /// [`Pipeline`](crate::pipeline::Pipeline): the device has a line in hand while it computes.
 ///
 /// Up to [`Self::set_most_lost`] rows of a frame may be late, short or damaged; by default the first ends it.
 /// Such a row has no answers, and [`DAMAGED`](crate::units::PixelFlags::DAMAGED) on every pixel. Rows that it
-/// can affect through checks keep their answers and have the flag: [`Matcher`] looks four rows down, and up as
-/// many as the speckle filter counts; along paths the rest of the frame. Every other row is bit-equal.
+/// can affect through checks keep their answers and have the flag: four above it, and as many below as the
+/// speckle filter counts; along paths the rest of the frame. Every other row is bit-equal.
 pub struct WinnerPipeline<S: Method, const W: usize, const D: usize>
 where
     External<S>: Method,
@@ -34,49 +34,6 @@ where
     /// Of the last rows of winners, the newest in the lowest bit, whether they were lost; and the last one.
     lost_rows: u8,
     last_lost: Option<usize>,
-}
-
-/// Why a pipeline of winners gave no row.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum WinnerPipelineError<E> {
-    /// The device gave no winners; its own error is inside. The frame is over.
-    Source(WinnerError<E>),
-    /// The line or the call does not fit; nothing has changed.
-    Push(PushError),
-    /// The configuration is none that the matcher takes.
-    Config(ConfigError),
-}
-
-impl<E: fmt::Display> fmt::Display for WinnerPipelineError<E> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Source(e) => write!(f, "{e}"),
-            Self::Push(e) => write!(f, "{e}"),
-            Self::Config(e) => write!(f, "{e}"),
-        }
-    }
-}
-
-impl<E: fmt::Display + fmt::Debug> core::error::Error for WinnerPipelineError<E> {}
-
-impl<E> From<WinnerError<E>> for WinnerPipelineError<E> {
-    fn from(e: WinnerError<E>) -> Self {
-        Self::Source(e)
-    }
-}
-
-impl<E> From<PushError> for WinnerPipelineError<E> {
-    fn from(e: PushError) -> Self {
-        Self::Push(e)
-    }
-}
-
-impl<E> From<MatchError> for WinnerPipelineError<E> {
-    fn from(e: MatchError) -> Self {
-        Self::Push(e.into())
-    }
 }
 
 /// Rows below a row that its answers rest on.

@@ -96,6 +96,7 @@ pub trait RegisterBus {
 }
 
 /// The block of `examples/fpga` as a [`WinnerSource`].
+#[derive(Debug)]
 pub struct WinnerRegisters<B> {
     bus: B,
     lines: u16,

@@ -51,8 +51,8 @@ pub trait WinnerSource {
     /// Gives the winners of row `row`, the next one, of all pixels of a line; waits for them no longer than
     /// the device's own limit.
     ///
-    /// After [`WinnerError::Late`], [`WinnerError::Count`] and [`WinnerError::Damaged`] the frame goes on with
-    /// the next row; any other error ends it.
+    /// After [`WinnerError::Late`], [`WinnerError::Count`] and [`WinnerError::Damaged`] the frame goes on
+    /// with the next row; any other error ends it.
     fn next_row(&mut self, row: u16, winners: &mut [WinnerRecord]) -> Result<(), WinnerError<Self::Error>>;
 }
 

@@ -1,4 +1,5 @@
-//! Gets the tools that the tests need: targets and components by rustup, QEMU and what C needs by apt-get.
+//! Gets the tools that the tests need: targets and components by rustup, QEMU, Verilator and what C
+//! needs by apt-get.
 
 use crate::packages;
 use crate::steps::{Failure, Outcome, command, output_of, root, run};
@@ -40,7 +41,13 @@ pub fn run_all() -> Outcome {
     components()?;
     toolchain(&rust_version()?)?;
     packages::install(&[QEMU_ARM, QEMU_RISCV])?;
+    gates()?;
     c()
+}
+
+/// What simulates the gates of `examples/fpga`.
+pub fn gates() -> Outcome {
+    packages::install(&["verilator", "make", "g++"])
 }
 
 /// What the examples in C need, and the watch over memory that was never written.

@@ -21,8 +21,8 @@ use core::marker::PhantomData;
 ///
 /// ```
 /// use stereopsis::matching::{Block, External, state_bytes};
-/// assert_eq!(state_bytes::<Block>(320, 64), 42_496);
-/// assert_eq!(state_bytes::<External<Block>>(320, 64), 16_576);
+/// assert_eq!(state_bytes::<Block>(320, 64), 40_896);
+/// assert_eq!(state_bytes::<External<Block>>(320, 64), 15_936);
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct External<S>(PhantomData<S>);

@@ -15,6 +15,7 @@ mod simulation;
 mod synthesis;
 
 use crate::packages;
+use crate::setup;
 use crate::steps::{Failure, Outcome};
 use clap::Args;
 use std::path::PathBuf;
@@ -57,7 +58,7 @@ pub struct Arguments {
 /// Does what the command line asks for.
 pub fn run(arguments: &Arguments) -> Outcome {
     if arguments.all {
-        set_up()?;
+        setup::gates()?;
         return check::all();
     }
     if arguments.synthesis {
@@ -81,13 +82,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
 
 /// The step of the tests: few frames of every kind, in a minute.
 pub fn sample() -> Outcome {
-    set_up()?;
+    setup::gates()?;
     check::sample()
-}
-
-/// Installs what builds a simulation.
-fn set_up() -> Outcome {
-    packages::install(&["verilator", "make", "g++"])
 }
 
 fn disparities(text: &str) -> Result<u16, String> {

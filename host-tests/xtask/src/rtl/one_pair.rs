@@ -3,6 +3,7 @@
 use super::block::{Block, LEAST_ROOM, LEAST_WIDTH, MOST_WIDTH};
 use super::frame::Halves;
 use crate::pictures::Pictures;
+use crate::setup;
 use crate::steps::{Failure, Outcome};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -73,7 +74,7 @@ impl OnePair<'_> {
             return Err(Failure::new(format!("--parallel {parallel}: a divisor of {room} is needed")));
         }
         Staging::probe(self.out).map_err(|e| Failure::new(format!("--out: {e}")))?;
-        super::set_up()?;
+        setup::gates()?;
         let noise = pictures.noise(self.noise)?;
         let expected = pictures.matched(self.method, disparities, noise)?;
         let search = Config { noise, ..self.method.config(width, height, disparities) };

@@ -8,20 +8,23 @@
 //   stereo_census      five rows around each column, and the codes of both cameras
 //   stereo_window      Hamming distances, summed down the columns and along the row
 //   stereo_winner      the cheapest candidate, with the costs beside it
+//   stereo_second      the cheapest candidate that is not beside it, if it is sought
 //   stereo_left_right  what the winner's partner keeps
 //   stereo_fifo        records on their way out
 //   stereo_registers   size, search and status
 //
 // METHOD 0 is `fast` (4-bit census, 9 x 7 pixels), 1 is `block` (8-bit census, 9 x 9 pixels, in quarters).
 // PARALLEL divides DISPARITIES: with PARALLEL = DISPARITIES a column takes one clock, with an eighth of them
-// eight.
+// eight. With SECOND_BEST = 1 records have the least cost of what is not beside the winner, which the
+// uniqueness check and confidences look at; else 255.
 `default_nettype none
 
 module stereo_block #(
     parameter WIDTH = 640,
     parameter DISPARITIES = 64,
     parameter PARALLEL = 64,
-    parameter METHOD = 1
+    parameter METHOD = 1,
+    parameter SECOND_BEST = 0
 ) (
     input wire clk,
     input wire reset,
@@ -60,6 +63,8 @@ module stereo_block #(
     localparam SLOT_BITS = $clog2(2 * DISPARITIES);
     // Clocks from the walk's token to the winner.
     localparam WINNER = LEVELS + 10;
+    // Clocks from there to the second best.
+    localparam LATER = SECOND_BEST == 0 ? 0 : GROUPS + LEVELS + 1;
 
     wire go;
     wire enable, running, begins, aborts, too_short, too_long, cut_off;
@@ -78,6 +83,7 @@ module stereo_block #(
 
     stereo_walk #(
         .WIDTH(WIDTH),
+        .DEPTH(WINNER + LATER + 8),
         .GROUPS(GROUPS),
         .RADIUS_Y(RADIUS_Y),
         .COLUMN_BITS(COLUMN_BITS),
@@ -189,15 +195,45 @@ module stereo_block #(
         if (go) said <= {said[11*(WINNER-1)-1:0], is_pixel, is_first, is_last, row[7:0]};
     end
 
+    wire [42:0] found = {said[11*WINNER-1 -: 11], best, cost, below, above};
+    wire told;
+    wire [42:0] teller;
+    wire [7:0] second;
+    generate
+        if (SECOND_BEST == 0) begin : only_best
+            assign told = steps[WINNER-1];
+            assign teller = found;
+            assign second = 8'hff;
+        end else begin : second_best
+            reg [LATER-1:0] finds;
+            assign told = finds[LATER-1];
+            always @(posedge clk) begin
+                if (forgets) finds <= 0;
+                else if (go) finds <= {finds[LATER-2:0], steps[WINNER-1]};
+            end
+            stereo_delay #(.BITS(43), .CLOCKS(LATER)) later (
+                .clk(clk), .reset(reset), .go(go), .data(found), .delayed(teller)
+            );
+            stereo_second #(
+                .PARALLEL(PARALLEL), .COLUMN_BITS(COLUMN_BITS), .GROUP_BITS(GROUP_BITS), .LEVELS(LEVELS),
+                .WAIT(LATER + 1)
+            ) others (
+                .clk(clk), .reset(reset), .go(go), .disparities(disparities), .sums(sums),
+                .column(winner_column), .group(late[GROUP_BITS-1:0]),
+                .first_group(valids[6] && late[LATE-2]), .last_group(valids[6] && late[LATE-1]),
+                .best(best), .second(second)
+            );
+        end
+    endgenerate
+
     wire record_valid;
     wire [65:0] record;
-    wire [10:0] of_winner = said[11*WINNER-1 -: 11];
 
     stereo_left_right #(.DISPARITIES(DISPARITIES)) left_right (
-        .clk(clk), .reset(forgets), .go(go), .disparities(disparities[SLOT_BITS-1:0]), .valid(steps[WINNER-1]),
-        .is_pixel(of_winner[10]),
-        .is_first(of_winner[9]), .is_last(of_winner[8]), .row(of_winner[7:0]),
-        .best(best), .cost(cost), .below(below), .above(above), .record_valid(record_valid), .record(record)
+        .clk(clk), .reset(forgets), .go(go), .begins(begins), .disparities(disparities[SLOT_BITS-1:0]),
+        .valid(told), .is_pixel(teller[42]), .is_first(teller[41]), .is_last(teller[40]), .row(teller[39:32]),
+        .best(teller[31:24]), .cost(teller[23:16]), .below(teller[15:8]), .above(teller[7:0]),
+        .second(second), .record_valid(record_valid), .record(record)
     );
 
     stereo_fifo #(.BITS(66)) fifo (
@@ -211,6 +247,7 @@ module stereo_block #(
         .DISPARITIES(DISPARITIES),
         .PARALLEL(PARALLEL),
         .METHOD(METHOD),
+        .SECOND_BEST(SECOND_BEST),
         .RADIUS_Y(RADIUS_Y),
         .COLUMN_BITS(COLUMN_BITS)
     ) registers (

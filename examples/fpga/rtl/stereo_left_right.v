@@ -12,6 +12,8 @@ module stereo_left_right #(
     input wire clk,
     input wire reset,
     input wire go,
+    // A frame begins; all pixels of the one before are out.
+    input wire begins,
     input wire [$clog2(2*DISPARITIES)-1:0] disparities,
     // A pixel, or one that only moves the ring on.
     input wire valid,
@@ -23,6 +25,7 @@ module stereo_left_right #(
     input wire [7:0] cost,
     input wire [7:0] below,
     input wire [7:0] above,
+    input wire [7:0] second,
     // A record: first and last of a frame and of a row, and its eight bytes.
     output reg record_valid,
     output reg [65:0] record
@@ -47,7 +50,7 @@ module stereo_left_right #(
             kept_costs[chosen] <= cost;
             kept_disparities[chosen] <= best;
         end
-        if (reset) begin
+        if (reset || begins) begin
             slot <= 0;
             pixels <= 0;
         end else if (go && valid) begin
@@ -59,26 +62,25 @@ module stereo_left_right #(
     end
 
     // The pixels that wait.
-    wire [41:0] waited;
+    wire [49:0] waited;
     wire [BITS-1:0] due = slot - disparities;
     wire [BITS-2:0] last_waiting = disparities[BITS-2:0] - 1'b1;
     wire is_due = pixels[last_waiting];
-    stereo_ram #(.BITS(42), .DEPTH(SLOTS)) waiting (
+    stereo_ram #(.BITS(50), .DEPTH(SLOTS)) waiting (
         .clk(clk),
         .read(go && valid),
         .read_address(due),
         .read_data(waited),
         .write(go && valid),
         .write_address(slot),
-        .write_data({is_first, is_last, row, best, above, cost, below})
+        .write_data({is_first, is_last, row, second, best, above, cost, below})
     );
 
     reg told;
     reg [BITS-1:0] told_slot;
     wire [BITS-1:0] partner = told_slot - waited[24 +: BITS];
     wire [7:0] kept = kept_disparities[partner];
-    // No second best is sought.
-    wire [55:0] bytes = {waited[39:32], 8'hff, kept, waited[31:0]};
+    wire [55:0] bytes = {waited[47:40], waited[39:32], kept, waited[31:0]};
     wire [7:0] check = ~(bytes[55:48] ^ bytes[47:40] ^ bytes[39:32] ^ bytes[31:24]
         ^ bytes[23:16] ^ bytes[15:8] ^ bytes[7:0]);
 
@@ -92,7 +94,7 @@ module stereo_left_right #(
         end
         if (go) begin
             told_slot <= due;
-            record <= {waited[41:40], check, bytes};
+            record <= {waited[49:48], check, bytes};
         end
     end
 endmodule

@@ -9,7 +9,8 @@
 //   10 SEARCH    rw   7..0: disparities, 16 to CAPACITY's and at most the pixels in a line;
 //                     8: whether lines are smoothed against noise
 //   14 CAPACITY  r    15..0: pixels in a line; 23..16: disparities; 31..24: disparities in a clock
-//   18 METHOD    r    7..0: 0 for fast, 1 for block; 15..8: rows that the window looks up and down
+//   18 METHOD    r    7..0: 0 for fast, 1 for block; 15..8: rows that the window looks up and down;
+//                     16: whether the second best is sought
 //   1c CLOCKS    r    clocks of the frame that is under way, or of the last one
 //   20 ROWS      r    rows of this frame whose last record was taken
 //
@@ -21,6 +22,7 @@ module stereo_registers #(
     parameter [31:0] DISPARITIES = 64,
     parameter [31:0] PARALLEL = 64,
     parameter [31:0] METHOD = 1,
+    parameter [31:0] SECOND_BEST = 0,
     parameter [31:0] RADIUS_Y = 4,
     parameter COLUMN_BITS = 11
 ) (
@@ -103,11 +105,11 @@ module stereo_registers #(
         case (place)
             4'd0: bus_answer <= 32'h53420001;
             4'd1: bus_answer <= {31'd0, enable};
-            4'd2: bus_answer <= {26'd0, events, running};
+            4'd2: bus_answer <= {26'd0, events, running || ran};
             4'd3: bus_answer <= size;
             4'd4: bus_answer <= {23'd0, search};
             4'd5: bus_answer <= {IN_A_CLOCK, MOST_DISPARITIES, MOST_WIDTH};
-            4'd6: bus_answer <= {16'd0, RADIUS, IS_METHOD};
+            4'd6: bus_answer <= {15'd0, SECOND_BEST != 0, RADIUS, IS_METHOD};
             4'd7: bus_answer <= clocks;
             4'd8: bus_answer <= {16'd0, rows};
             default: bus_answer <= 0;

@@ -3,14 +3,15 @@
 // A frame takes height + 2 + RADIUS_Y line steps: in step t line t comes in, the census of row t - 2 is
 // made, and row t - 2 - RADIUS_Y gets its winners. A step takes width + 7 columns: in column c the census of
 // column c - 3 and the winner of column c - 7. A column takes GROUPS clocks, each for PARALLEL disparities.
-// After the last step as many columns follow as there are disparities, which carry nothing: they bring the
-// last winners out of the left-right check.
+// After the last step as many columns follow as there are disparities, which carry nothing and bring the last
+// winners out of the left-right check, and DEPTH more, until all stages are done with the frame.
 //
 // The token goes with the column through all stages. A clock in which `go` is low changes nothing anywhere.
 `default_nettype none
 
 module stereo_walk #(
     parameter [31:0] WIDTH = 640,
+    parameter [31:0] DEPTH = 40,
     parameter GROUPS = 1,
     parameter RADIUS_Y = 4,
     parameter COLUMN_BITS = 11,
@@ -70,7 +71,8 @@ module stereo_walk #(
     localparam [CODE_BITS-1:0] LAST_CODE_ROW = LAST_ROW[CODE_BITS-1:0];
     localparam [CODE_BITS-1:0] CODE_ROW = WIDTH[CODE_BITS-1:0];
 
-    // Columns behind a line's last one.
+    // Columns behind a frame's last winner, and behind a line's last column.
+    localparam [COLUMN_BITS-1:0] DRAIN = DEPTH[COLUMN_BITS-1:0];
     localparam [COLUMN_BITS-1:0] MORE = 6;
 
     reg [15:0] height;
@@ -89,7 +91,8 @@ module stereo_walk #(
     wire at_start = step == 0 && at == 0;
     wire [COLUMN_BITS-1:0] last_inside = width - 1'b1;
     wire [COLUMN_BITS-1:0] last_column = width + MORE;
-    wire is_last_column = draining ? at == {{(COLUMN_BITS-8){1'b0}}, disparities} : at == last_column;
+    wire [COLUMN_BITS-1:0] last_drained = {{(COLUMN_BITS-8){1'b0}}, disparities} + DRAIN;
+    wire is_last_column = draining ? at == last_drained : at == last_column;
 
     wire is_last_row = at_code_row == LAST_CODE_ROW;
 

@@ -14,7 +14,7 @@ use crate::matching::{Block, Fast, Method, WinnerRecord};
 /// | 0c | SIZE | rw | 15..0: pixels in a line; 31..16: lines |
 /// | 10 | SEARCH | rw | 7..0: disparities; 8: lines are smoothed against noise |
 /// | 14 | CAPACITY | r | 15..0: pixels in a line; 23..16: disparities; 31..24: disparities in a clock |
-/// | 18 | METHOD | r | 7..0: 0 for `fast`, 1 for `block`; 15..8: rows that the window looks up and down |
+/// | 18 | METHOD | r | 7..0: 0 for `fast`, 1 for `block`; 15..8: rows up and down; 16: second best |
 /// | 1c | CLOCKS | r | clocks of the frame that is under way, or of the last one |
 /// | 20 | ROWS | r | rows of this frame whose last record was taken |
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -66,6 +66,8 @@ const ENABLE: u32 = 1;
 const FORGET: u32 = 1 << 1;
 /// The bit of [`Register::Search`] beside the number of disparities.
 const SMOOTH: u32 = 1 << 8;
+/// The bit of [`Register::Method`] of a block that seeks the second best.
+const SECOND_BEST: u32 = 1 << 16;
 
 /// How this core reaches the block: its registers, the ring that its records are written to, and the stream
 /// that it reads pixels from, where they come by this core.
@@ -100,12 +102,15 @@ pub trait RegisterBus {
 pub struct WinnerRegisters<B> {
     bus: B,
     lines: u16,
+    height: u16,
+    /// Whether nothing is under way: a frame that was taken whole leaves nothing behind.
+    is_clean: bool,
 }
 
 impl<B: RegisterBus> WinnerRegisters<B> {
     /// The block on a bus.
     pub const fn new(bus: B) -> Self {
-        Self { bus, lines: 0 }
+        Self { bus, lines: 0, height: 0, is_clean: false }
     }
 
     /// The bus.
@@ -137,9 +142,11 @@ impl<B: RegisterBus> WinnerRegisters<B> {
             name if name == Block::NAME => 1,
             _ => return Ok(false),
         };
-        let plain = search.min_disparity == 0 && !search.second_best;
-        let is_block = self.bus.read(Register::Id)? == ID;
-        Ok(is_block && plain && self.bus.read(Register::Method)? & 0xff == method)
+        if search.min_disparity != 0 || self.bus.read(Register::Id)? != ID {
+            return Ok(false);
+        }
+        let has = self.bus.read(Register::Method)?;
+        Ok(has & 0xff == method && (has & SECOND_BEST != 0 || !search.second_best))
     }
 }
 
@@ -160,11 +167,22 @@ impl<B: RegisterBus> WinnerSource for WinnerRegisters<B> {
         write(Register::Control, ENABLE)?;
         // With values that the block has no room for it does not come to be enabled.
         let enabled = self.bus.read(Register::Control).map_err(WinnerError::Device)? & ENABLE != 0;
-        if enabled { self.begin_frame() } else { Err(WinnerError::Search) }
+        (self.height, self.is_clean) = (search.height, false);
+        if !enabled {
+            return Err(WinnerError::Search);
+        }
+        self.bus.forget_records().map_err(WinnerError::Device)?;
+        self.is_clean = true;
+        Ok(())
     }
 
     fn begin_frame(&mut self) -> Result<(), WinnerError<B::Error>> {
         self.lines = 0;
+        if self.is_clean {
+            // Cameras that feed the block themselves may be in the next frame already.
+            self.is_clean = false;
+            return Ok(());
+        }
         let mut write = |register, value| self.bus.write(register, value).map_err(WinnerError::Device);
         write(Register::Control, FORGET | ENABLE)?;
         write(Register::Status, status::ALL)?;
@@ -185,6 +203,7 @@ impl<B: RegisterBus> WinnerSource for WinnerRegisters<B> {
         }
         let damaged = winners.iter().take(given).position(|winner| !winner.is_intact(row));
         if given == winners.len() && damaged.is_none() {
+            self.is_clean = row.checked_add(1) == Some(self.height);
             return Ok(());
         }
         Err(match self.take_fault().map_err(WinnerError::Device)? {

@@ -26,23 +26,27 @@ pub struct Block {
     pub parallel: u16,
     /// The method, one of [`METHODS`].
     pub method: MethodName,
+    /// Whether the second best is sought.
+    pub second_best: bool,
 }
 
 impl Block {
     /// The name of its folder.
     pub fn name(&self) -> String {
-        let Self { width, disparities, parallel, method } = self;
-        format!("{method}-{width}-{disparities}-{parallel}")
+        let Self { width, disparities, parallel, method, second_best } = self;
+        let second = if *second_best { "-second" } else { "" };
+        format!("{method}-{width}-{disparities}-{parallel}{second}")
     }
 
     /// The parameters, as Verilog has them.
-    pub fn parameters(&self) -> [(&'static str, u16); 4] {
+    pub fn parameters(&self) -> [(&'static str, u16); 5] {
         let number = METHODS.iter().position(|&method| method == self.method).unwrap_or(0);
         [
             ("WIDTH", self.width),
             ("DISPARITIES", self.disparities),
             ("PARALLEL", self.parallel),
             ("METHOD", number as u16),
+            ("SECOND_BEST", self.second_best.into()),
         ]
     }
 

@@ -5,7 +5,7 @@ use super::frame::Halves;
 use super::simulation::Spoiled;
 use crate::steps::{Failure, Outcome};
 use stereopsis::imaging::Noise;
-use stereopsis::matching::Config;
+use stereopsis::matching::{Config, Filter};
 use stereopsis::pipeline::winners::{Register, RegisterBus, status};
 use stereopsis_host::run::MethodName;
 use stereopsis_host::scene::Random;
@@ -28,8 +28,8 @@ const PATTERNS: [Pattern; 8] = [
 /// Every kind of picture once, and every fault, through one block of each method.
 pub fn sample() -> Outcome {
     for block in [
-        Block { width: 72, disparities: 32, parallel: 32, method: MethodName::Fast },
-        Block { width: 72, disparities: 32, parallel: 8, method: MethodName::Block },
+        Block { width: 72, disparities: 32, parallel: 32, method: MethodName::Fast, second_best: false },
+        Block { width: 72, disparities: 32, parallel: 8, method: MethodName::Block, second_best: true },
     ] {
         check(&block, 8)?;
     }
@@ -39,10 +39,15 @@ pub fn sample() -> Outcome {
 /// At least 1000 rows of every kind of picture through each of many blocks.
 pub fn all() -> Outcome {
     for method in super::block::METHODS {
-        for (width, disparities, parallel) in [(64, 16, 16), (80, 48, 16), (100, 48, 48), (140, 128, 64)] {
-            check(&Block { width, disparities, parallel, method }, 1000)?;
+        for (width, disparities, parallel, second_best) in [
+            (64, 16, 16, false),
+            (80, 48, 16, true),
+            (100, 48, 48, true),
+            (140, 128, 64, false),
+            (64, 16, 1, true),
+        ] {
+            check(&Block { width, disparities, parallel, method, second_best }, 1000)?;
         }
-        check(&Block { width: 64, disparities: 16, parallel: 1, method }, 1000)?;
     }
     lint()
 }
@@ -52,7 +57,9 @@ fn lint() -> Outcome {
     for method in super::block::METHODS {
         for (width, disparities, parallel) in [(1280, 128, 128), (1280, 128, 16), (640, 64, 64), (64, 16, 1)]
         {
-            Block { width, disparities, parallel, method }.lint()?;
+            for second_best in [false, true] {
+                Block { width, disparities, parallel, method, second_best }.lint()?;
+            }
         }
     }
     Ok(())
@@ -92,6 +99,9 @@ fn frame(block: &Block, halves: &mut Halves, pattern: Pattern, height: u16, rand
     let width = any(random, disparities.max(LEAST_WIDTH), block.width);
     let noise = *pick(random, &[Noise::None, Noise::None, Noise::Low, Noise::High]);
     let search = Config { noise, ..block.method.config(width, height, disparities) };
+    let filter = if block.second_best { *pick(random, &Filter::ALL) } else { Filter::Default };
+    let confidence = block.second_best && random.below(2) == 1;
+    let search = Config { confidence, ..block.method.with_filter(filter, search) };
     let [gaps, stalls] = [(); 2].map(|()| *pick(random, &[0, 25, 60]));
     let failed = |what: &str| {
         Failure::new(format!("{} with {pattern:?}, {search:?}, pauses {gaps} {stalls}: {what}", block.name()))
@@ -99,9 +109,12 @@ fn frame(block: &Block, halves: &mut Halves, pattern: Pattern, height: u16, rand
     let seed = random.below(1 << 30) as u32;
     halves.simulation().pause(seed, gaps, stalls).map_err(|e| failed(&e.to_string()))?;
     let (left, right) = pattern.pair(width.into(), height.into(), seed.into());
-    let map = halves.frame(&search, [&left, &right]).map_err(|e| failed(&e.to_string()))?;
+    // A frame alone, or one right behind another.
+    let frames = *pick(random, &[1, 2]);
+    let map = halves.frames(frames, &search, [&left, &right]).map_err(|e| failed(&e.to_string()))?;
     let stages = Stages::of(&block.method.twin(), &search, &left, &right);
-    let winners = without_second_best(stages.winners);
+    let winners =
+        if block.second_best { stages.winners } else { without_second_best(stages.winners) }.repeat(frames);
     let taken = &halves.simulation().taken;
     if *taken != winners {
         let at = taken.iter().zip(&winners).position(|(taken, winner)| taken != winner);
@@ -109,6 +122,9 @@ fn frame(block: &Block, halves: &mut Halves, pattern: Pattern, height: u16, rand
     }
     if map.disparity != stages.answers.disparity || map.flags != stages.answers.flags {
         return Err(failed("the rows differ"));
+    }
+    if confidence && map.confidence != stages.answers.confidence {
+        return Err(failed("the confidences differ"));
     }
     Ok(())
 }
@@ -126,7 +142,7 @@ fn faults(block: &Block, halves: &mut Halves, random: &mut Random) -> Outcome {
     ] {
         let failed = |what: String| Failure::new(format!("{} with {spoiled:?}: {what}", block.name()));
         halves.simulation().spoiled = Some(spoiled);
-        match halves.frame(&config, [&left, &right]) {
+        match halves.frames(1, &config, [&left, &right]) {
             Err(e) if e.to_string().contains(said) => {}
             Err(e) => return Err(failed(e.to_string())),
             Ok(_) => return Err(failed("nothing is told".into())),

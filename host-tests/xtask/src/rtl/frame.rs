@@ -31,11 +31,17 @@ impl Halves {
         self.device.bus()
     }
 
-    /// A frame through both halves.
-    pub fn frame(&mut self, config: &Config, pictures: [&GrayImage; 2]) -> Outcome<DisparityMap> {
+    /// Some frames of one pair of pictures through both halves, one right behind the other; the last one's
+    /// rows.
+    pub fn frames(
+        &mut self,
+        count: usize,
+        config: &Config,
+        pictures: [&GrayImage; 2],
+    ) -> Outcome<DisparityMap> {
         match self.method {
-            MethodName::Fast => frame::<matching::Fast>(&mut self.device, config, pictures),
-            _ => frame::<matching::Block>(&mut self.device, config, pictures),
+            MethodName::Fast => frames::<matching::Fast>(&mut self.device, count, config, pictures),
+            _ => frames::<matching::Block>(&mut self.device, count, config, pictures),
         }
     }
 }
@@ -44,8 +50,9 @@ fn failed(what: impl fmt::Display) -> Failure {
     Failure::new(format!("the block: {what}"))
 }
 
-fn frame<S: Method>(
+fn frames<S: Method>(
     device: &mut WinnerRegisters<Simulation>,
+    count: usize,
     config: &Config,
     [left, right]: [&GrayImage; 2],
 ) -> Outcome<DisparityMap>
@@ -56,13 +63,15 @@ where
     let mut map = DisparityMap::new(width, config.height.into());
     let mut pipeline = Box::new(Half::<S>::new());
     pipeline.start(config, device).map_err(failed)?;
-    pipeline.begin_frame(device).map_err(failed)?;
     let mut take = |row: Row<'_>| map.put(row.index().into(), row);
-    for (left, right) in left.as_raw().chunks_exact(width).zip(right.as_raw().chunks_exact(width)) {
-        pipeline.push(left, right, device).map_err(failed)?.map(&mut take);
-    }
-    while let Some(row) = pipeline.flush(device).map_err(failed)? {
-        take(row);
+    for _ in 0..count {
+        pipeline.begin_frame(device).map_err(failed)?;
+        for (left, right) in left.as_raw().chunks_exact(width).zip(right.as_raw().chunks_exact(width)) {
+            pipeline.push(left, right, device).map_err(failed)?.map(&mut take);
+        }
+        while let Some(row) = pipeline.flush(device).map_err(failed)? {
+            take(row);
+        }
     }
     Ok(map)
 }

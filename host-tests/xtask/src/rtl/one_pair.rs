@@ -80,7 +80,13 @@ impl OnePair<'_> {
         let search = Config { noise, ..self.method.config(width, height, disparities) };
         let config = self.method.with_filter(Filter::Default, search);
 
-        let block = Block { width: width.max(LEAST_ROOM), disparities: room, parallel, method: self.method };
+        let block = Block {
+            width: width.max(LEAST_ROOM),
+            disparities: room,
+            parallel,
+            method: self.method,
+            second_best: false,
+        };
         println!("building the simulation of {}", block.name());
         let mut halves = Halves::new(&block)?;
         let [left, right] = pictures.camera()?.pictures();
@@ -89,7 +95,7 @@ impl OnePair<'_> {
         for (clocks, [gaps, stalls]) in clocks.iter_mut().zip([[0, 0], PAUSES]) {
             let failed = |e| Failure::new(format!("the simulation: {e}"));
             halves.simulation().pause(1, gaps, stalls).map_err(failed)?;
-            let map = halves.frame(&config, [&left, &right])?;
+            let map = halves.frames(1, &config, [&left, &right])?;
             if let Some(at) = difference(&map, &expected) {
                 return Err(Failure::new(format!("the block differs from the host: {at}")));
             }

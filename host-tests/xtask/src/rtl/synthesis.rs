@@ -60,7 +60,7 @@ const fn made(
     disparities: u16,
     parallel: u16,
 ) -> Made {
-    let block = Block { width, disparities, parallel, method };
+    let block = Block { width, disparities, parallel, method, second_best: false };
     Made { family, block, is_placed: false }
 }
 

@@ -47,7 +47,8 @@ pub struct CConfig {
     pub texture_gradient: u8,
     /// Texture check: least number of textured pixels in the window of an answer; 0 disables it.
     pub texture_pixels: u8,
-    /// Whether a winner at the largest disparity searched is refused; 0 means no.
+    /// Whether a winner at the largest disparity searched, or one whose partner is the first column of the
+    /// right image, is refused; 0 means no.
     pub refuse_ceiling: u8,
     /// Whether a winner that costs as much as both its neighbours is refused; 0 means no.
     pub refuse_flat: u8,

@@ -10,7 +10,8 @@ pub const STEREOPSIS_STEPS_PER_PX: u16 = 32;
 
 /// Flag: no candidate lies inside the right image, or a camera did not see the pixel.
 pub const STEREOPSIS_FLAG_OUTSIDE: u8 = 1;
-/// Flag: the winner is the largest disparity searched; the surface may be nearer.
+/// Flag: the winner is the largest disparity searched, or its partner is the first column of the right image;
+/// the surface may be nearer, or the right camera may not see it.
 pub const STEREOPSIS_FLAG_CEILING: u8 = 2;
 /// Flag: the winner costs as much as both its neighbours, or too few pixels of the window have a gradient.
 pub const STEREOPSIS_FLAG_UNTEXTURED: u8 = 4;

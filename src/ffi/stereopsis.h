@@ -164,7 +164,8 @@
 #define STEREOPSIS_FLAG_OUTSIDE 1
 
 /**
- * Flag: the winner is the largest disparity searched; the surface may be nearer.
+ * Flag: the winner is the largest disparity searched, or its partner is the first column of the right image;
+ * the surface may be nearer, or the right camera may not see it.
  */
 #define STEREOPSIS_FLAG_CEILING 2
 
@@ -1187,7 +1188,8 @@ typedef struct stereopsis_config {
    */
   uint8_t texture_pixels;
   /**
-   * Whether a winner at the largest disparity searched is refused; 0 means no.
+   * Whether a winner at the largest disparity searched, or one whose partner is the first column of the
+   * right image, is refused; 0 means no.
    */
   uint8_t refuse_ceiling;
   /**

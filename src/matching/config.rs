@@ -121,7 +121,8 @@ pub struct Checks {
     /// Texture: an answer stays when its window holds this many textured pixels. 0: not checked, and the
     /// pass is saved.
     pub texture_pixels: u8,
-    /// Whether a winner at the largest disparity searched is refused: the surface may be nearer.
+    /// Whether a winner at the largest disparity searched is refused, for the surface may be nearer, and one
+    /// whose partner is the first column of the right image, for that camera may not see it.
     pub refuse_ceiling: bool,
     /// Two neighbours are of one surface when they differ by at most this; up to 1 px.
     pub surface_step: Disparity,

@@ -52,7 +52,7 @@ pub const ERROR_LIMIT_PX: f32 = 3.0;
 /// What each flag says, in the order of [`PixelFlags::NAMES`].
 const MEANINGS: [&str; 8] = [
     "no candidate lies inside the right image",
-    "the largest disparity searched won: the surface may be nearer",
+    "the largest disparity searched won, or the edge of the right picture: the surface may be nearer",
     "its neighbours cost the same, or too little texture in the window",
     "another disparity matches nearly as well",
     "the right image disagrees: occluded or mismatched",

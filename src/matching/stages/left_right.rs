@@ -7,6 +7,7 @@
 //! own winners. The work is the same for every row.
 
 use crate::matching::backend::{AnswerWork, Isa, Rules, answer_records};
+use crate::matching::config::Config;
 use crate::matching::memory::slices::{part, split_mut};
 use crate::matching::memory::views::view;
 use crate::matching::memory::workspace::ForAnswers;
@@ -39,8 +40,25 @@ pub(super) fn make_answers<S: Method>(frame: &mut Frame<'_>, newest: usize) {
     outside.fill(PixelFlags::OUTSIDE);
     let rules = &rules;
     if S::EXTERNAL_WINNERS {
-        return answer_records::<S>(part(view(frame.codes), begin..), rules, answers, flags);
+        answer_records::<S>(part(view(frame.codes), begin..), rules, answers, flags);
+    } else {
+        let ForAnswers { winners, right, workspace } = frame.workspace.for_answers();
+        let (answers, flags) = (&mut *answers, &mut *flags);
+        let work = AnswerWork { winners, right, workspace, begin, rules, answers, flags };
+        frame.backend.left_right::<S>(work);
     }
-    let ForAnswers { winners, right, workspace } = frame.workspace.for_answers();
-    frame.backend.left_right::<S>(AnswerWork { winners, right, workspace, begin, rules, answers, flags });
+    flag_first_column(config, answers, flags);
+}
+
+/// Flags the answers whose partner is the first column of the right image: of the candidates inside that image
+/// theirs is the last. Most of them stand for what the right camera does not see.
+fn flag_first_column(config: &Config, answers: &mut [Disparity], flags: &mut [PixelFlags]) {
+    let refused = u16::from(config.checks.refuse_ceiling);
+    // Farther right the last candidate lies inside the image. At an end there is no fraction of a pixel.
+    let ends = (config.min_disparity..).take(usize::from(config.disparities - 1)).map(Disparity::from_pixels);
+    for ((answer, flags), end) in answers.iter_mut().zip(flags).zip(ends) {
+        let is_end = *answer == end;
+        *flags = flags.union(PixelFlags::CEILING.when(is_end));
+        *answer = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(is_end) & refused));
+    }
 }

@@ -61,6 +61,11 @@ pub(super) fn select_row(
                 say(PixelFlags::MISMATCH, true);
             }
         }
+        // An end of the candidates, too, because the right picture ends there.
+        if !refused && x - smallest == best.d {
+            flags[x] = flags[x].union(PixelFlags::CEILING);
+            refused |= checks.refuse_ceiling;
+        }
         if !refused {
             let steps = (smallest + best.d) as i32 * 32 + fraction(scheme, candidates(x), best);
             disparities[x] = Disparity::from_raw(steps as u16);

@@ -11,7 +11,6 @@
 //! makes few of them. The work is the same for every picture.
 
 use crate::imaging::Noise;
-use crate::matching::backend::loops::keep_scalar_loop;
 use crate::matching::backend::{FatteningWork, Isa, MethodParameters};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::part;
@@ -40,7 +39,8 @@ pub(super) fn take_edges(frame: &mut Frame<'_>, lines: Option<[&Rows5<'_>; 2]>) 
     match lines {
         Some([left, _]) => {
             let [above, line, below] = [left[1], left[2], left[3]].map(|line| part(line, ..frame.width));
-            push_edges(frame.edges, [above, line, below], least_gradient(frame.config.noise));
+            let least = least_gradient(frame.config.noise);
+            frame.backend.push_edges(frame.edges, [above, line, below], least);
         }
         None => frame.edges.iter_mut().for_each(|edges| *edges = *edges << 1 & !FatteningWork::REFUSED),
     }
@@ -53,33 +53,6 @@ pub(super) fn refuse_fattening<S: MethodParameters>(frame: &mut Frame<'_>, newes
         let (answers, flags) = (frame.band.row_mut(newest), frame.flags.row_mut(newest));
         let edges = &mut *frame.edges;
         frame.backend.refuse_fattening(FatteningWork { answers, flags, edges, row: 1 << S::RADIUS_Y, slope });
-    }
-}
-
-/// Moves the columns' bits one row on and puts in those of the middle one of three lines. Beside a line its
-/// last pixel stands.
-#[inline(never)]
-fn push_edges(edges: &mut [u8], lines: [&[u8]; 3], least: u16) {
-    let last = edges.len().saturating_sub(1);
-    let sum = |[above, line, below]: [u8; 3]| u16::from(above) + 2 * u16::from(line) + u16::from(below);
-    let at = |x: usize| sum(lines.map(|line| line.get(x).copied().unwrap_or(0)));
-    let push = |edges: &mut u8, before: u16, after: u16| {
-        *edges = (*edges << 1 & !FatteningWork::REFUSED) | u8::from(after.abs_diff(before) >= least);
-    };
-    let [above, line, below] = lines;
-    let columns =
-        above.iter().zip(line).zip(below).map(|((&above, &line), &below)| sum([above, line, below]));
-    let inner = edges.iter_mut().skip(1).take(last.saturating_sub(1));
-    for (edges, (before, after)) in inner.zip(columns.clone().zip(columns.skip(2))) {
-        keep_scalar_loop();
-        push(edges, before, after);
-    }
-    if let Some(edges) = edges.first_mut() {
-        push(edges, at(0), at(1.min(last)));
-    }
-    // A line of one pixel has one end.
-    if let Some(edges) = edges.get_mut(1..).and_then(<[u8]>::last_mut) {
-        push(edges, at(last - 1), at(last));
     }
 }
 
@@ -123,9 +96,9 @@ mod tests {
     fn a_step_of_brightness_is_an_edge_on_both_sides() {
         let line = [100, 100, 100, 104, 104, 104];
         let mut edges = [0b1; 6];
-        push_edges(&mut edges, [&line; 3], least_gradient(Noise::None));
+        Backend::detect().push_edges(&mut edges, [&line; 3], least_gradient(Noise::None));
         assert_eq!(edges, [0b10, 0b10, 0b11, 0b11, 0b10, 0b10]);
-        push_edges(&mut edges, [&line; 3], least_gradient(Noise::Low));
+        Backend::detect().push_edges(&mut edges, [&line; 3], least_gradient(Noise::Low));
         assert_eq!(edges, [0b100, 0b100, 0b110, 0b110, 0b100, 0b100]);
     }
 }

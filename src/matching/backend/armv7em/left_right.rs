@@ -1,7 +1,7 @@
-//! Winners become answers: what `portable::left_right` does, of methods whose costs rise for nothing but the
-//! disparity ([`SLANT_COST`](crate::matching::backend::parameters::MethodParameters::SLANT_COST) is 0).
+//! Winners become answers: what `portable::left_right` does.
 #![allow(unsafe_code)]
 
+use crate::matching::backend::parameters::MethodParameters;
 use crate::matching::backend::work::Rules;
 use crate::matching::memory::winners::Winner;
 use crate::units::{Disparity, PixelFlags};
@@ -72,14 +72,14 @@ pub(super) fn offer(winners: &[Winner], right: &mut [u16]) {
     }
 }
 
-/// One winner of [`answer`]: 36 instructions. `r7` is 0.
+/// One winner of [`answer`], whose fraction `$fraction` finds: 24 instructions and those. `r7` is 0.
 ///
 /// ```text
 /// r4, r5    the column, and how many there are     r8 to r11   winners, right columns, answers, flags
 /// r12, lr   `flags_and_ceiling`, `least_and_too_far`
 /// ```
 macro_rules! answer_one {
-    () => {
+    ($fraction:expr) => {
         concat!(
             "ldr r0, [r8, r4, lsl #2]\n",
             "lsr r1, r0, #24\n",
@@ -95,24 +95,12 @@ macro_rules! answer_one {
             "cmp r1, r12, lsr #24\n",
             "adc r2, r7, r2, lsl #3\n",
             "orr r6, r6, r2, lsl #1\n",
-            // The rises to the disparities below and above, of which the winner costs least; 16 times their
-            // difference, and half of the steeper one more.
+            // The rises to the disparities below and above, of which the winner costs least.
             "uxtb r3, r0, ror #8\n",
             "orr r3, r3, r3, lsl #16\n",
             "sub r0, r0, r3\n",
             "uxtb16 r0, r0\n",
-            "uxth r2, r0\n",
-            "subs r3, r2, r0, lsr #16\n",
-            "lsl r3, r3, #4\n",
-            "itte lo\n",
-            "lsrlo r2, r0, #16\n",
-            "sublo r3, r3, r2, lsr #1\n",
-            "addhs r3, r3, r2, lsr #1\n",
-            "cmp r2, #0\n",
-            "itt eq\n",
-            "orreq r6, r6, r12, lsr #8\n",
-            "moveq r2, #1\n",
-            "sdiv r3, r3, r2\n",
+            $fraction,
             "add r3, r3, r1, lsl #5\n",
             "add r3, r3, lr\n",
             "tst r6, r12\n",
@@ -125,9 +113,58 @@ macro_rules! answer_one {
     };
 }
 
-/// The answers and flags of winners that were offered to the `right`. 37 instructions a pixel.
+/// The fraction in `r3` by the rises in both halves of `r0`, of costs that rise for nothing but the
+/// disparity: 16 times their difference, and half of the steeper one more, over that one. 12 instructions.
+macro_rules! upright_fraction {
+    () => {
+        "uxth r2, r0
+         subs r3, r2, r0, lsr #16
+         lsl r3, r3, #4
+         itte lo
+         lsrlo r2, r0, #16
+         sublo r3, r3, r2, lsr #1
+         addhs r3, r3, r2, lsr #1
+         cmp r2, #0
+         itt eq
+         orreq r6, r6, r12, lsr #8
+         moveq r2, #1
+         sdiv r3, r3, r2
+         "
+    };
+}
+
+/// Likewise, where `{slant}` of the steeper rise is not counted, as far as it is more than the difference.
+/// Both are one more than 0 at least, to divide by. 20 instructions.
+macro_rules! slanted_fraction {
+    () => {
+        "uxth r2, r0
+         lsr r0, r0, #16
+         usad8 r3, r2, r0
+         subs r0, r2, r0
+         it lo
+         addlo r2, r2, r3
+         cmp r2, #0
+         it eq
+         orreq r6, r6, r12, lsr #8
+         sub r2, r2, #{slant} + 1
+         usat r2, #8, r2
+         add r2, r2, #1
+         cmp r2, r3
+         it lo
+         movlo r2, r3
+         lsls r0, r0, #4
+         ite mi
+         submi r0, r0, r2, lsr #1
+         addpl r0, r0, r2, lsr #1
+         sdiv r3, r0, r2
+         "
+    };
+}
+
+/// The answers and flags of winners that were offered to the `right`. 37 instructions a pixel, 45 where a part
+/// of the steeper rise is not counted.
 #[inline(never)]
-pub(super) fn answer(
+pub(super) fn answer<P: MethodParameters>(
     winners: &[Winner],
     right: &[u16],
     refused: &Rules,
@@ -146,32 +183,42 @@ pub(super) fn answer(
         | u32::from(refused.ceiling) << 24;
     let least_and_too_far =
         u32::from(refused.min_disparity) << 5 & 0xffff | (u32::from(refused.tolerance) + 1) << 16;
+    macro_rules! answers {
+        ($fraction:expr $(, $slant:ident = const $value:expr)?) => {
+            asm!(
+                "push {{r6, r7}}",
+                "mov r7, #0",
+                "tst r5, #1",
+                "bne 3f",
+                "2:",
+                answer_one!($fraction),
+                "3:",
+                answer_one!($fraction),
+                "cmp r4, r5",
+                "bne 2b",
+                "pop {{r6, r7}}",
+                inout("r4") 0 => _,
+                in("r5") count,
+                in("r8") winners.as_ptr(),
+                in("r9") right.as_ptr(),
+                in("r10") answers.as_mut_ptr(),
+                in("r11") flags.as_mut_ptr(),
+                in("r12") flags_and_ceiling,
+                in("lr") least_and_too_far,
+                $($slant = const $value,)?
+                out("r0") _, out("r1") _, out("r2") _, out("r3") _,
+            )
+        };
+    }
     // SAFETY: the loop counts `x` up to `count`, which all four slices have, as above: it reads winner `x`,
     // what the right column `x - disparity` keeps, or the first one if that is less than 0, and changes
     // flag and answer `x`. The divisor is not 0. The stack and the two registers that no operand may be
     // are left as they were.
     unsafe {
-        asm!(
-            "push {{r6, r7}}",
-            "mov r7, #0",
-            "tst r5, #1",
-            "bne 3f",
-            "2:",
-            answer_one!(),
-            "3:",
-            answer_one!(),
-            "cmp r4, r5",
-            "bne 2b",
-            "pop {{r6, r7}}",
-            inout("r4") 0 => _,
-            in("r5") count,
-            in("r8") winners.as_ptr(),
-            in("r9") right.as_ptr(),
-            in("r10") answers.as_mut_ptr(),
-            in("r11") flags.as_mut_ptr(),
-            in("r12") flags_and_ceiling,
-            in("lr") least_and_too_far,
-            out("r0") _, out("r1") _, out("r2") _, out("r3") _,
-        );
+        if P::SLANT_COST == 0 {
+            answers!(upright_fraction!());
+        } else {
+            answers!(slanted_fraction!(), slant = const P::SLANT_COST);
+        }
     }
 }

@@ -37,7 +37,6 @@ mod word;
 use super::TABLE_WORDS;
 use super::isa::{Isa, sole_kernel};
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
-use super::portable;
 use super::work::{
     AnswerWork, CensusWork, CostWork, EdgeWork, Guide, PathWork, STEP, SmoothWork, SpeckleWork, WindowWork,
 };
@@ -103,11 +102,7 @@ impl Isa for Backend {
         let AnswerWork { winners, right, begin, rules, answers, flags, .. } = work;
         let winners = part(winners.words(), begin..);
         left_right::offer(winners, right);
-        if P::SLANT_COST == 0 {
-            left_right::answer(winners, right, rules, answers, flags);
-        } else {
-            portable::left_right::answer::<P>(winners, right, rules, answers, flags);
-        }
+        left_right::answer::<P>(winners, right, rules, answers, flags);
     }
 
     #[inline(always)]

@@ -8,7 +8,7 @@
 //! * [`sgm`]: costs along paths.
 //! * [`left_right`]: the left-right check.
 //! * [`mod@smooth`]: answers averaged within their surface, and its length.
-//! * [`mod@fattening`]: answers refused that spread.
+//! * [`mod@edges`], [`mod@fattening`]: answers refused that spread.
 //! * [`mod@speckle`]: support counted. [`mod@fill`]: small gaps closed.
 //!
 //! Of safe Rust over fixed lanes the compiler makes two or three instructions where one is needed: it counts
@@ -29,6 +29,7 @@
 
 mod census;
 mod columns;
+mod edges;
 mod fattening;
 mod fill;
 mod left_right;
@@ -127,6 +128,11 @@ impl Isa for Backend {
     #[inline(always)]
     fn median(self, rows: [&[Disparity]; 3], out: &mut [Disparity]) {
         median(rows, out);
+    }
+
+    #[inline(always)]
+    fn push_edges(self, edges: &mut [u8], lines: [&[u8]; 3], least: u16) {
+        edges::push(edges, lines, least);
     }
 
     #[inline(always)]

@@ -5,11 +5,12 @@
 //!   `words`: four bytes in a word.
 //! * `sgm`: costs along paths.
 //! * `left_right`, `consistency`, `subpixel`: winners into answers; `left_right_rows`: pixels side by side.
-//! * `smooth`, `median`, `speckle`, `vertical`: the filters of answers; `fattening`: those refused that
+//! * `smooth`, `median`, `speckle`, `vertical`: the filters of answers; `edges`, `fattening`: those refused that
 //!   spread; `fill`: small gaps closed.
 
 pub(super) mod census;
 mod consistency;
+pub(super) mod edges;
 pub(super) mod fattening;
 pub(super) mod fill;
 pub(super) mod group;

@@ -3,9 +3,32 @@
 
 use super::blocks;
 use crate::matching::backend::work::PathWork;
-use crate::matching::memory::slices::part_mut;
+use crate::matching::memory::slices::{chunks_mut, part_mut};
+use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::BESIDE;
 use crate::matching::memory::winners::{Found, Unique};
+use core::arch::asm;
+
+/// The least of each byte of two words at a time, which `$load` puts in `r5` and `r6`, in `r2`, with the words
+/// that are left after it in `r3`, of equal ones the fewest. `$sub` counts them in `r4`.
+macro_rules! winners {
+    ($load:literal $sub:literal) => {
+        concat!(
+            $load,
+            "
+         usub8 r7, r2, r5
+         sel r2, r5, r2
+         sel r3, r4, r3
+         sub r4, r4, #0x01010101
+         usub8 r7, r2, r6
+         sel r2, r6, r2
+         sel r3, r4, r3
+         ",
+            $sub,
+            " r4, r4, #0x01010101"
+        )
+    };
+}
 
 /// Selects the winner of every pixel that has a candidate. A column has `stride` bytes, a multiple of 16 and
 /// 256 at the most.
@@ -16,6 +39,9 @@ pub(super) fn select(
     mut unique: Unique<'_>,
     mut put: impl FnMut(usize, Found),
 ) {
+    if !unique.is_asked() {
+        return select_all(work, stride, put);
+    }
     let (begin, fours) = (work.min_disparity.min(work.width), stride / 16);
     let mut columns = part_mut(work.sums, begin * stride..);
     for x in begin..work.width {
@@ -47,6 +73,110 @@ pub(super) fn select(
                 part_mut(sums, beside).fill(u8::MAX);
                 least(sums).0
             },
+        );
+    }
+}
+
+/// [`select`] where nothing is asked of the second best: the loop over pixels is in assembly.
+#[inline(always)]
+fn select_all(work: &mut PathWork<'_>, stride: usize, mut put: impl FnMut(usize, Found)) {
+    let begin = work.min_disparity.min(work.width);
+    let (count, most) = (work.width - begin, work.disparities.min(stride));
+    let sums = view_mut::<u8, u32>(part_mut(work.sums, begin * stride..));
+    if count == 0 || most == 0 || sums.len() < count * stride / 4 {
+        return;
+    }
+    // The first pixels have fewer candidates than there are lanes.
+    for (x, column) in chunks_mut(sums, stride / 4).enumerate().take(count) {
+        let beyond = stride - (x + 1).min(most);
+        if beyond == 0 {
+            break;
+        }
+        part_mut(column, ..beyond / 4).fill(u32::MAX);
+        if let Some(word) = column.get_mut(beyond / 4) {
+            *word |= !(u32::MAX << (beyond % 4 * 8));
+        }
+    }
+    // SAFETY: so many columns of `stride` bytes, a multiple of 16, are the sums.
+    unsafe { winners(sums.as_mut_ptr(), count, stride as u32 / 4, most as u32 - 1) };
+    for (x, winner) in sums.iter().enumerate().take(count) {
+        let [below, cost, above, disparity] = winner.to_le_bytes();
+        put(begin + x, Found { disparity, cost, beside: (below, above) });
+    }
+}
+
+/// Puts the winners of columns of sums in place of the first of them, a word each: the sum below, the least,
+/// the one above, and the disparity. 40 instructions for a pixel and 9 for eight candidates. The first
+/// column has one candidate, the next one more, up to `last` and one.
+///
+/// The least byte of each of a word's four is found with the word where it is; then of two and two that of
+/// the least half-word, a sum over its disparity.
+///
+/// # Safety
+/// `count` columns of `words` words, a multiple of four, can be read from `sums` on and written; neither
+/// number is 0.
+#[inline(never)]
+unsafe fn winners(sums: *mut u32, count: usize, words: u32, last: u32) {
+    // SAFETY: a winner's word is in no column that is yet to be read. The bytes beside the least sum are read
+    // where they are candidates of its column. `r6` and `r7`, which are the compiler's, are put back.
+    unsafe {
+        asm!(
+            // r0 sums, r10 winners, r9 their end; r11 the last candidate, r12 that of a whole column
+            "push {{r6, r7}}",
+            "1:",
+            "mvn r2, #0",
+            "mov r4, r8",
+            "2:",
+            winners!("ldrd r5, r6, [r0], #8" "sub"),
+            winners!("ldrd r5, r6, [r0], #8" "subs"),
+            "bhs 2b",
+            // Disparities of the four.
+            "add r3, lr, r3, lsl #2",
+            "uxtb16 r5, r2",
+            "uxtb16 r6, r3",
+            "orr r5, r6, r5, lsl #8",
+            "uxtb16 r2, r2, ror #8",
+            "uxtb16 r3, r3, ror #8",
+            "orr r3, r3, r2, lsl #8",
+            "usub16 r7, r5, r3",
+            "sel r5, r3, r5",
+            "ror r3, r5, #16",
+            "usub16 r7, r5, r3",
+            "sel r5, r3, r5",
+            "uxtb r6, r5",
+            "ubfx r2, r5, #8, #8",
+            // Beside the winner, on both sides what there is on one; beside an only candidate, itself.
+            "sub r7, r0, r6",
+            "cmp r6, r11",
+            "ite lo",
+            "ldrblo r3, [r7, #-2]",
+            "movhs r3, r2",
+            "cmp r6, #0",
+            "ite ne",
+            "ldrbne r1, [r7]",
+            "moveq r1, r3",
+            "cmp r6, r11",
+            "it hs",
+            "movhs r3, r1",
+            "orr r1, r1, r2, lsl #8",
+            "orr r1, r1, r3, lsl #16",
+            "orr r1, r1, r6, lsl #24",
+            "str r1, [r10], #4",
+            "add r11, r11, #1",
+            "cmp r11, r12",
+            "it hi",
+            "movhi r11, r12",
+            "cmp r10, r9",
+            "bne 1b",
+            "pop {{r6, r7}}",
+            inout("r0") sums => _,
+            in("r8") (words - 1) * 0x0101_0101,
+            in("r9") sums.add(count),
+            inout("r10") sums => _,
+            inout("r11") 0 => _,
+            in("r12") last,
+            in("lr") 0x0001_0203,
+            out("r1") _, out("r2") _, out("r3") _, out("r4") _, out("r5") _,
         );
     }
 }

@@ -73,119 +73,214 @@ pub(super) unsafe fn least(sums: *const u32, fours: usize) -> (u8, usize) {
     (least as u8, (place & 0xff) as usize)
 }
 
-/// A pixel of the left image, but for its gradient along the line, four times in a word each; and the most
-/// that its cost may be.
-pub(super) struct Rest {
-    pub across: u32,
-    pub census: u32,
-    pub brightness: u32,
-    pub most: u32,
+/// What [`enter`] goes by, at these places of the frame in `lr`.
+#[repr(C)]
+struct Frame {
+    /// 0 to 12: the next pixel of the left row: its gradients along the line and across it, its code, its
+    /// brightness.
+    left: [*const u8; 4],
+    /// 16: pixels that are left.
+    count: usize,
+    /// 20: bytes from the end of a pixel's candidates back to the next one's first.
+    back: usize,
+    /// 24: a column's words, in fours.
+    fours: usize,
 }
 
-/// A cost's loop, in which the lines at the beginning put the share of the gradient along the line in `a`.
+/// What two words of candidates agree, in `$a`, `r9` or `r12`: `$along` puts the share of the gradient along
+/// the line there. 27 instructions with the five of that.
 ///
-/// The rest are 22 instructions, and two that average: how far apart two numbers are is the greater of their
-/// two differences, the other of which is 0; the bits of a byte are counted by twos, fours and eights; masks
-/// are such as an instruction holds.
-macro_rules! cost {
-    ($costs:ident, $rows:ident, $count:ident, $along:ident, $rest:ident, [$($line:literal)*],
-    [$($average:literal)*]) => {
-        asm!(
-            four_words!(
-                $($line)*
-                "ldr {b}, [{rows}, {count}, lsl #1]"
-                "uqsub8 {t}, {b}, {brightness}"
-                "uqsub8 {b}, {brightness}, {b}"
-                "orr {b}, {b}, {t}"
-                "and {b}, {b}, #0xfcfcfcfc"
-                "add {a}, {a}, {b}, lsr #2"
-                "ldr {b}, [{rows}, {count}]"
-                "eor {b}, {b}, {census}"
-                "and {t}, {b}, #0xaaaaaaaa"
-                "sub {b}, {b}, {t}, lsr #1"
-                "and {t}, {b}, #0xcccccccc"
-                "and {b}, {b}, #0x33333333"
-                "add {b}, {b}, {t}, lsr #2"
-                "add {b}, {b}, {b}, lsr #4"
-                "and {b}, {b}, #0x0f0f0f0f"
-                "add {a}, {a}, {b}"
-                "ldr {b}, [{rows}], #4"
-                "uqsub8 {t}, {b}, {across}"
-                "uqsub8 {b}, {across}, {b}"
-                "add {a}, {a}, {t}"
-                "add {a}, {a}, {b}"
-                "uqsub8 {a}, {most}, {a}"
-                $($average)*
-                "str {a}, [{costs}], #4"
-            ),
-            costs = inout(reg) $costs.as_mut_ptr() => _,
-            rows = inout(reg) $rows.as_ptr().wrapping_add($count) => _,
-            n = inout(reg) $costs.len() / 4 => _,
-            count = in(reg) $count,
-            along = in(reg) $along,
-            across = in(reg) $rest.across,
-            census = in(reg) $rest.census,
-            brightness = in(reg) $rest.brightness,
-            most = in(reg) $rest.most,
-            a = out(reg) _, b = out(reg) _, t = out(reg) _,
-            options(nostack),
+/// How far apart two numbers are is the greater of their two differences, the other of which is 0; the bits of
+/// a byte are counted by twos, fours and eights; masks are such as an instruction holds.
+macro_rules! agreement {
+    ($a:literal, $along:expr) => {
+        concat!(
+            $along,
+            "
+         ldr r10, [r1, r3, lsl #1]
+         uqsub8 r11, r10, r7
+         uqsub8 r10, r7, r10
+         orr r10, r10, r11
+         and r10, r10, #0xfcfcfcfc
+         add ",
+            $a,
+            ", ",
+            $a,
+            ", r10, lsr #2
+         ldr r10, [r1, r3]
+         eor r10, r10, r6
+         and r11, r10, #0xaaaaaaaa
+         sub r10, r10, r11, lsr #1
+         and r11, r10, #0xcccccccc
+         and r10, r10, #0x33333333
+         add r10, r10, r11, lsr #2
+         add r10, r10, r10, lsr #4
+         and r10, r10, #0x0f0f0f0f
+         add ",
+            $a,
+            ", ",
+            $a,
+            ", r10
+         ldr r10, [r1], #4
+         uqsub8 r11, r10, r5
+         uqsub8 r10, r5, r10
+         add ",
+            $a,
+            ", ",
+            $a,
+            ", r11
+         add ",
+            $a,
+            ", ",
+            $a,
+            ", r10
+         uqsub8 ",
+            $a,
+            ", r8, ",
+            $a,
+            "
+         "
         )
     };
 }
 
-/// Averages a pixel's agreements into `costs`, or puts them there within edges. Its gradient `along` the line
-/// is compared with all between the right ones and halfway to their neighbours: how far it is from `least` to
-/// `greatest`. `rows` begins with the first candidate in the features' rows, so many bytes to a row. Those
-/// numbers are doubled.
-#[inline(always)]
-pub(super) fn between_pixels<S: SgmParameters>(
-    costs: &mut [u32],
-    rows: &[u8],
-    count: usize,
-    along: u32,
-    rest: &Rest,
-) {
-    if costs.len() < 4 || rows.len() < 5 * count + 4 * costs.len() {
-        return;
-    }
-    macro_rules! between_pixels {
-        ($average:tt) => {
-            cost!(costs, rows, count, along, rest, [
-                "add {t}, {rows}, {count}"
-                "ldr {a}, [{t}, {count}, lsl #1]"
-                "ldr {b}, [{rows}, {count}, lsl #2]"
-                "uqsub8 {a}, {a}, {along}"
-                "uqsub8 {b}, {along}, {b}"
-                "orr {a}, {a}, {b}"
-            ], $average)
-        };
-    }
-    // SAFETY: `costs.len() / 4` times four words are read from six rows, the last of which begins after five
-    // of them, and read from `costs` and written to it.
-    unsafe {
-        if S::WITHIN_EDGES {
-            between_pixels!([])
-        } else {
-            between_pixels!(["ldr {b}, [{costs}]" "uhadd8 {a}, {a}, {b}"])
-        }
-    }
+/// The gradient along the line, doubled, between the right ones and halfway to their neighbours: how far it is
+/// from the least to the greatest, which stand doubled at `r2` and a row further.
+macro_rules! between_pixels {
+    ($a:literal) => {
+        concat!(
+            "ldr r10, [r2, r3]
+         ldr ",
+            $a,
+            ", [r2], #4
+         uqsub8 r10, r4, r10
+         uqsub8 ",
+            $a,
+            ", ",
+            $a,
+            ", r4
+         orr ",
+            $a,
+            ", ",
+            $a,
+            ", r10"
+        )
+    };
 }
 
-/// Costs at pixels against the right ones themselves, which are not doubled; always averaged.
-#[inline(always)]
-pub(super) fn at_pixels(costs: &mut [u32], rows: &[u8], count: usize, along: u32, rest: &Rest) {
-    if costs.len() < 4 || rows.len() < 5 * count + 4 * costs.len() {
+/// Likewise against the right ones themselves, which stand at `r2` and are not doubled.
+macro_rules! at_pixels {
+    ($a:literal) => {
+        concat!(
+            "ldr r10, [r2], #4
+         uqsub8 ",
+            $a,
+            ", r10, r4
+         uqsub8 r10, r4, r10
+         orr ",
+            $a,
+            ", ",
+            $a,
+            ", r10
+         lsl ",
+            $a,
+            ", ",
+            $a,
+            ", #1"
+        )
+    };
+}
+
+/// Averages a row's agreements into `costs`, or puts them there within edges: columns of `stride` bytes. `left`
+/// are its gradients along the line and across it, its codes, its brightness; `right` begins with the first
+/// candidate of the first pixel in the right features' rows, `count` bytes each. 22 instructions for a pixel and
+/// 30 for four candidates.
+#[inline(never)]
+pub(super) fn enter<S: SgmParameters>(
+    costs: &mut [u32],
+    stride: usize,
+    left: [&[u8]; 4],
+    right: &[u8],
+    count: usize,
+    most: u32,
+) {
+    let pixels = left.iter().fold(4 * costs.len() / stride.max(1), |least, row| least.min(row.len()));
+    if pixels == 0 || !stride.is_multiple_of(16) || right.len() < 5 * count + pixels - 1 + stride {
         return;
     }
-    // SAFETY: as for `between_pixels`.
+    let mut frame =
+        Frame { left: left.map(<[u8]>::as_ptr), count: pixels, back: stride - 1, fours: stride / 16 };
+    let along = right.as_ptr().wrapping_add(if S::BETWEEN_PIXELS { 4 * count } else { 0 });
+    macro_rules! enter {
+        ($doubled:literal, $along:ident, $average:literal) => {
+            asm!(
+                // r0 costs, r1 right features across, r2 those along, r3 their rows' bytes
+                "push {{r6, r7, lr}}",
+                "1:",
+                // The pixel's numbers four times each, along, across, the code and the brightness in r4 to r7
+                "ldm lr, {{r4, r5, r6, r7}}",
+                "ldrb r9, [r4], #1",
+                "ldrb r10, [r5], #1",
+                "ldrb r11, [r6], #1",
+                "ldrb r12, [r7], #1",
+                "stm lr, {{r4, r5, r6, r7}}",
+                "ldr lr, [lr, #24]",
+                "mov r4, #0x01010101",
+                "lsr r12, r12, #1",
+                $doubled,
+                "mul r5, r10, r4",
+                "mul r6, r11, r4",
+                "mul r7, r12, r4",
+                "mul r4, r9, r4",
+                "2:",
+                agreement!("r9", $along!("r9")),
+                agreement!("r12", $along!("r12")),
+                $average,
+                "strd r9, r12, [r0], #8",
+                agreement!("r9", $along!("r9")),
+                agreement!("r12", $along!("r12")),
+                $average,
+                "strd r9, r12, [r0], #8",
+                "subs lr, lr, #1",
+                "bne 2b",
+                "ldr lr, [sp, #8]",
+                "ldrd r9, r10, [lr, #16]",
+                "sub r1, r1, r10",
+                "sub r2, r2, r10",
+                "subs r9, r9, #1",
+                "str r9, [lr, #16]",
+                "bne 1b",
+                "pop {{r6, r7, lr}}",
+                inout("r0") costs.as_mut_ptr() => _,
+                inout("r1") right.as_ptr().wrapping_add(count) => _,
+                inout("r2") along => _,
+                in("r3") count,
+                in("r8") most,
+                inout("lr") &raw mut frame => _,
+                out("r4") _, out("r5") _, out("r9") _, out("r10") _, out("r11") _, out("r12") _,
+            )
+        };
+    }
+    // SAFETY: `pixels` bytes are read from each of the left rows; so many columns of `stride` bytes, a multiple of
+    // 16, are read from six right rows, one byte further on with each, and read from `costs` and written to it.
+    // `r6` and `r7`, which are the compiler's, are put back.
     unsafe {
-        cost!(costs, rows, count, along, rest, [
-            "sub {t}, {rows}, {count}"
-            "ldr {b}, [{t}]"
-            "uqsub8 {a}, {b}, {along}"
-            "uqsub8 {b}, {along}, {b}"
-            "orr {a}, {a}, {b}"
-            "lsl {a}, {a}, #1"
-        ], ["ldr {b}, [{costs}]" "uhadd8 {a}, {a}, {b}"]);
+        match (S::BETWEEN_PIXELS, S::WITHIN_EDGES) {
+            (true, true) => enter!("lsl r9, r9, #1", between_pixels, ""),
+            (true, false) => enter!(
+                "lsl r9, r9, #1",
+                between_pixels,
+                "ldrd r10, r11, [r0]
+                 uhadd8 r9, r9, r10
+                 uhadd8 r12, r12, r11"
+            ),
+            (false, _) => enter!(
+                "",
+                at_pixels,
+                "ldrd r10, r11, [r0]
+                 uhadd8 r9, r9, r10
+                 uhadd8 r12, r12, r11"
+            ),
+        }
     }
 }

@@ -26,11 +26,10 @@ use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::features::Features;
 use crate::matching::backend::portable::sgm::{Passes, words};
 use crate::matching::backend::work::{CostWork, EdgeWork, Guide, PathWork, STEP};
-use crate::matching::memory::slices::{chunks_mut, part, part_mut};
+use crate::matching::memory::slices::{chunks_mut, part_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::{Found, Select, Unique};
 use crate::matching::penalties::Penalties;
-use blocks::Rest;
 use features::DspRows;
 use rows::Direction;
 
@@ -51,25 +50,9 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
         let Features { left, right, count } = *features;
         let stride = stride::<WORDS, ALL>(work);
         let beyond = stride.saturating_sub(work.disparities);
-        let most = splat(work.penalties.cost);
-        let pixels = left.brightness.iter().zip(left.across.iter().zip(left.census));
-        let pixels = left.along.iter().zip(pixels).enumerate();
-        for (column, (x, (&along, (&brightness, (&across, &census))))) in
-            chunks_mut(view_mut::<u8, u32>(work.costs), stride / 4).zip(pixels)
-        {
-            let rest = Rest {
-                across: splat(across),
-                census: splat(census),
-                brightness: splat(brightness >> 1),
-                most,
-            };
-            let candidates = part(right, x..);
-            if S::BETWEEN_PIXELS {
-                blocks::between_pixels::<S>(column, candidates, count, splat(2 * along), &rest);
-            } else {
-                blocks::at_pixels(column, candidates, count, splat(along), &rest);
-            }
-        }
+        let left = [left.along, left.across, left.census, left.brightness];
+        let costs = view_mut::<u8, u32>(work.costs);
+        blocks::enter::<S>(costs, stride, left, right, count, splat(work.penalties.cost));
         if beyond > 0 {
             let least = beyond_search(work.penalties);
             for column in chunks_mut(work.costs, stride) {

@@ -3,7 +3,7 @@
 
 #![allow(unsafe_code)]
 
-use super::instructions::{bits_where_less, max8, min8, uhadd8, uqsub16};
+use super::instructions::{max8, min8, uhadd8, uqsub16, with_bit_where_less};
 use super::splat;
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::portable::sgm::features::FeatureRows;
@@ -36,7 +36,11 @@ fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3
     let behind = count.min(width).saturating_sub(after).div_ceil(COLUMNS);
     for x in core::iter::once(0).chain((0..behind).map(|group| after + group * COLUMNS)) {
         let near = lines.map(|line| {
+            let ends = [line.first(), line.get(width.wrapping_sub(1))].map(|end| end.copied().unwrap_or(0));
             [0, 1, 2].map(|word| {
+                if x + word * COLUMNS + COLUMNS <= REACH || x + word * COLUMNS >= width + REACH {
+                    return [ends[usize::from(x > 0)]; COLUMNS];
+                }
                 let inside = (x + word * COLUMNS)
                     .checked_sub(REACH)
                     .and_then(|x| line.get(x..width)?.first_chunk::<COLUMNS>());
@@ -83,19 +87,12 @@ unsafe fn codes([above, middle, below]: [*const u8; 3], out: *mut u32, groups: u
         };
         let here = word(middle, REACH);
         let mut codes = 0;
-        let neighbours = [
-            (above, 0),
-            (above, 4),
-            (above, 8),
-            (middle, 2),
-            (middle, 6),
-            (below, 0),
-            (below, 4),
-            (below, 8),
-        ];
-        for (bit, (row, column)) in neighbours.into_iter().enumerate() {
-            codes |= bits_where_less(word(row, column), here, splat(1 << bit));
+        macro_rules! look {
+            ($($bit:literal: $row:ident $column:literal),*) => {
+                $(codes = with_bit_where_less::<$bit>(codes, word($row, $column), here);)*
+            };
         }
+        look!(0: above 0, 1: above 4, 2: above 8, 3: middle 2, 4: middle 6, 5: below 0, 6: below 4, 7: below 8);
         // SAFETY: as the function's.
         unsafe { out.add(group).write_unaligned(codes) };
     }
@@ -112,21 +109,44 @@ unsafe fn gradients(
     [along, across]: [*mut u32; 2],
     groups: usize,
 ) {
-    // Sobel's sums: the middle one twice.
-    let sum = |a: u32, b: u32, c: u32| [even(a) + 2 * even(b) + even(c), odd(a) + 2 * odd(b) + odd(c)];
+    let cut = Cut::new(most);
+    // The columns beside a group's pixels and between them: of four the even and the odd ones. Their Sobel sums
+    // along the line, the middle row twice, and how much more there is below than above.
+    let columns = |group: usize| {
+        // SAFETY: the last columns that are read are those from 7 on.
+        let [above, middle, below] = [above, middle, below]
+            .map(|row| unsafe { row.add(COLUMNS * group + REACH - 1).cast::<u32>().read_unaligned() });
+        let sums = [even, odd].map(|half| half(above) + 2 * half(middle) + half(below));
+        (sums, [even, odd].map(|half| half(below) + halves(BIAS / 4) - half(above)))
+    };
+    if groups == 0 {
+        return;
+    }
+    let mut last = columns(0);
     for group in 0..groups {
-        // SAFETY: the last columns that are read are those from 5 on.
-        let word = |row: *const u8, column: usize| unsafe {
-            row.add(COLUMNS * group + column).cast::<u32>().read_unaligned()
-        };
-        let sides = |column: usize| sum(word(above, column), word(middle, column), word(below, column));
-        let ends = |row: *const u8| sum(word(row, REACH - 1), word(row, REACH), word(row, REACH + 1));
+        let next = columns(group + 1);
+        // From each half on: those two columns further.
+        let on =
+            |last: [u32; 2], next: [u32; 2]| [last[0] >> 16 | next[0] << 16, last[1] >> 16 | next[1] << 16];
+        let ((sums, fall), sums_on, fall_on) = (last, on(last.0, next.0), on(last.1, next.1));
+        let sides = [0, 1].map(|i| sums_on[i] + halves(BIAS) - sums[i]);
+        let ends = [fall[0] + 2 * fall[1] + fall_on[0], fall[1] + 2 * fall_on[0] + fall_on[1]];
+        last = next;
         // SAFETY: as the function's.
         unsafe {
-            along.add(group).write_unaligned(cut(sides(REACH + 1), sides(REACH - 1), most));
-            across.add(group).write_unaligned(cut(ends(below), ends(above), most));
+            along.add(group).write_unaligned(cut.of(sides));
+            across.add(group).write_unaligned(cut.of(ends));
         }
     }
+}
+
+/// More than any sum of Sobel's.
+const BIAS: u32 = 1 << 10;
+
+/// A number in both halves of a word.
+#[inline(always)]
+const fn halves(number: u32) -> u32 {
+    number * 0x0001_0001
 }
 
 #[inline(always)]
@@ -139,20 +159,26 @@ fn odd(word: u32) -> u32 {
     word >> 8 & 0x00ff_00ff
 }
 
-/// The differences of even and odd half-words, cut off at `most` to each side, plus `most`.
-#[inline(always)]
-fn cut(a: [u32; 2], b: [u32; 2], most: u8) -> u32 {
-    /// More than any sum.
-    const BIAS: u32 = 1 << 10;
-    let halves = |number: u32| number * 0x0001_0001;
-    let most = u32::from(most);
-    // What the difference lacks of the greatest, 0 to 2 most: one saturating subtraction for each end.
-    let lacks = |a: u32, b: u32| {
-        let from_least = uqsub16(a + halves(BIAS + most) - b, halves(BIAS));
-        uqsub16(halves(2 * most), from_least)
-    };
-    let [even, odd] = [lacks(a[0], b[0]), lacks(a[1], b[1])];
-    splat(2 * most as u8) - (even | odd << 8)
+/// Cuts differences off at a number to each side.
+struct Cut {
+    /// [`BIAS`] less the number, and twice the number, in half-words.
+    least: u32,
+    range: u32,
+}
+
+impl Cut {
+    #[inline(always)]
+    fn new(most: u8) -> Self {
+        Self { least: halves(BIAS - u32::from(most)), range: halves(2 * u32::from(most)) }
+    }
+
+    /// The differences in even and odd half-words, [`BIAS`] more, cut off, and what they are cut off at more.
+    #[inline(always)]
+    fn of(&self, differences: [u32; 2]) -> u32 {
+        // What the difference lacks of the greatest, 0 to the range: one saturating subtraction for each end.
+        let [even, odd] = differences.map(|it| uqsub16(self.range, uqsub16(it, self.least)));
+        (self.range | self.range << 8) - (even | odd << 8)
+    }
 }
 
 /// Half of each number.
@@ -187,20 +213,17 @@ fn ranges([before, here, next]: [u32; 3]) -> (u32, u32) {
 /// The ranges of all numbers but the two at the ends.
 fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
     let count = numbers.len().saturating_sub(2);
-    let word =
-        |x: usize| numbers.get(x..).and_then(|n| n.first_chunk()).map(|&four| u32::from_le_bytes(four));
-    for group in 0..count.div_ceil(COLUMNS) {
-        let x = group * COLUMNS;
-        let near = if let (Some(before), Some(here), Some(next)) = (word(x), word(x + 1), word(x + 2)) {
-            [before, here, next]
-        } else {
-            [x, x + 1, x + 2].map(|x| {
-                u32::from_le_bytes(core::array::from_fn(|i| numbers.get(x + i).copied().unwrap_or(0)))
-            })
-        };
-        let (low, high) = ranges(near);
-        put(part_mut(least, x + 1..=count), low);
-        put(part_mut(greatest, x + 1..=count), high);
+    let [before, here, next] = [0, 1, 2].map(|from| part(numbers, from..from + count).as_chunks::<COLUMNS>());
+    let [(low, low_rest), (high, high_rest)] =
+        [least, greatest].map(|row| part_mut(row, 1..=count).as_chunks_mut::<COLUMNS>());
+    let fours = before.0.iter().zip(here.0).zip(next.0);
+    for ((low, high), ((before, here), next)) in low.iter_mut().zip(high).zip(fours) {
+        let (least, greatest) = ranges([before, here, next].map(|four| u32::from_le_bytes(*four)));
+        (*low, *high) = (least.to_le_bytes(), greatest.to_le_bytes());
+    }
+    let ones = before.1.iter().zip(here.1).zip(next.1);
+    for ((low, high), ((&before, &here), &next)) in low_rest.iter_mut().zip(high_rest).zip(ones) {
+        (*low, *high) = between(before, here, next);
     }
 }
 

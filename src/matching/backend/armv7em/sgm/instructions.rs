@@ -25,6 +25,10 @@ two_operands!(
     uhadd8
 );
 two_operands!(
+    /// The differences of bytes, 0 where they would be less.
+    uqsub8
+);
+two_operands!(
     /// The differences of half-words, 0 where they would be less.
     uqsub16
 );
@@ -66,6 +70,19 @@ pub(super) fn bits_where_less(a: u32, b: u32, bits: u32) -> u32 {
         asm!("usub8 {out}, {a}, {b}", "sel {out}, {none}, {bits}", out = out(reg) out, a = in(reg) a,
         b = in(reg) b,
             none = in(reg) 0, bits = in(reg) bits, options(pure, nomem, nostack));
+    }
+    out
+}
+
+/// `codes`, with bit `BIT` set in the bytes in which `a` is less than `b`.
+#[inline(always)]
+pub(super) fn with_bit_where_less<const BIT: u32>(codes: u32, a: u32, b: u32) -> u32 {
+    let out;
+    // SAFETY: as for `min8`.
+    unsafe {
+        asm!("usub8 {out}, {a}, {b}", "orr {out}, {codes}, #0x01010101 << {bit}", "sel {out}, {codes}, {out}",
+            out = out(reg) out, a = in(reg) a, b = in(reg) b, codes = in(reg) codes, bit = const BIT,
+            options(pure, nomem, nostack));
     }
     out
 }

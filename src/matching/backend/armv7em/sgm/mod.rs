@@ -7,7 +7,7 @@
 //!   it off, and the halving addition, which rounds down, rounds the cost up.
 //! * Lanes beyond the search agree so little that no path from there is the least.
 //!
-//! * `rows`: the paths through a row; `walk`: their loops, in assembler.
+//! * `rows`: the paths through a row; `changes`: what they pay; `walk`: their loops, in assembler.
 //! * `blocks`: the other loops over a pixel's words, in assembler.
 //! * `winners`: the least of the paths' sums.
 //! * `features`: what is compared, four pixels at a time.
@@ -15,6 +15,7 @@
 //! * `instructions`: the instructions that the compiler has no names for.
 
 mod blocks;
+mod changes;
 mod edges;
 mod features;
 mod instructions;
@@ -28,7 +29,7 @@ use crate::matching::backend::portable::sgm::{Passes, words};
 use crate::matching::backend::work::{CostWork, EdgeWork, Guide, PathWork, STEP};
 use crate::matching::memory::slices::{chunks_mut, part_mut};
 use crate::matching::memory::views::view_mut;
-use crate::matching::memory::winners::{Found, Select, Unique};
+use crate::matching::memory::winners::{Found, Select, Unique, Winner};
 use crate::matching::penalties::Penalties;
 use features::DspRows;
 use rows::Direction;
@@ -68,11 +69,24 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
 
     #[inline(always)]
     fn select(work: &mut PathWork<'_>, guide: Guide<'_>, unique: Unique<'_>, put: impl FnMut(usize, Found)) {
-        rows::down::<WORDS, ALL>(work, guide);
-        rows::along::<WORDS, ALL>(work, guide, Direction::Right);
-        rows::along::<WORDS, ALL>(work, guide, Direction::Left);
+        paths::<WORDS, ALL>(work, guide);
         winners::select(work, stride::<WORDS, ALL>(work), unique, put);
     }
+
+    #[inline(always)]
+    fn select_words(work: &mut PathWork<'_>, guide: Guide<'_>, winners: &mut [Winner]) -> bool {
+        paths::<WORDS, ALL>(work, guide);
+        winners::select_words(work, stride::<WORDS, ALL>(work), winners);
+        true
+    }
+}
+
+/// Takes the paths through a row, and adds them up.
+#[inline(never)]
+fn paths<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>, guide: Guide<'_>) {
+    rows::down::<WORDS, ALL>(work, guide);
+    rows::along::<WORDS, ALL>(work, guide, Direction::Right);
+    rows::along::<WORDS, ALL>(work, guide, Direction::Left);
 }
 
 /// Bytes of a column.

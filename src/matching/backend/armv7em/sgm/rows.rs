@@ -1,10 +1,12 @@
 //! The paths through a row.
 #![allow(unsafe_code)]
 
+use super::changes::changes;
 use super::stride;
-use super::walk::{Frame, Padded, Steps, go_along, go_down};
+use super::walk::{Frame, Padded, Step, go_along, go_down};
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::layout::COLUMNS_OFF;
+use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::views::{view, view_mut};
 
 /// The direction of a path along the row.
@@ -32,32 +34,38 @@ pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>,
     if !is_whole(work, stride) || width == 0 || guide.here.len() < width || line.len() < width {
         return;
     }
-    let steps = Steps::new(work.penalties);
+    let steps = Step::kinds(work.penalties);
+    let places = part_mut(view_mut::<u32, u8>(work.workspace), ..width);
+    if places.len() < width {
+        return;
+    }
+    changes(guide.here, line, work.penalties.edges, places);
+    let change = places.as_ptr();
     let mut between = Padded::<WORDS>::new(stride / 4, work.penalties);
     let top = view_mut::<u8, u32>(work.top).as_mut_ptr();
     let costs = view::<u8, u32>(work.costs).as_ptr();
     let is_odd = !guide.row.is_multiple_of(2);
     let last = width - 1;
     let column = |x: usize| top.wrapping_add(x * stride / 4);
-    let (pixel, on, gap) = if is_odd { (last, -1, -2) } else { (0, 1, 0) };
+    let (x, on, gap) = if is_odd { (last, -1, -2) } else { (0, 1, 0) };
     let (costs, kept) =
         if is_odd { (costs.wrapping_add(last * stride / 4), column(width + 1)) } else { (costs, top) };
     let above = if is_odd { [top, column(last)] } else { [column(COLUMNS_OFF), column(width + 1)] };
-    let (here, column_bytes) = (guide.here.as_ptr(), stride as isize);
+    let column_bytes = stride as isize;
+    let off = on * 2 * COLUMNS_OFF as isize * column_bytes;
     let mut frame = Frame {
-        pixel: here.wrapping_add(pixel),
+        change: change.wrapping_add(x),
         on,
-        from: (line.as_ptr() as isize).wrapping_sub(here as isize),
+        steps: &steps,
         path: between.place(),
         fours: stride / 16,
         gap: gap * column_bytes,
         end: column(if is_odd { 1 } else { width }).cast_const(),
-        steps: &steps,
         above: if guide.above.is_some() { above } else { [core::ptr::null_mut(); 2] },
-        other: on * 2 * COLUMNS_OFF as isize * column_bytes,
+        beside: if is_odd { [off, 0] } else { [0, off] },
     };
     // SAFETY: `width` columns are in the volume of the costs and two more in that of the paths; so many
-    // pixels are in both lines; and a column has `4 * fours` words, `WORDS` at the most, as the average
+    // places are there; and a column has `4 * fours` words, `WORDS` at the most, as the average
     // has room for.
     unsafe { go_down(&raw mut frame, costs, kept) };
 }
@@ -73,7 +81,18 @@ pub(super) fn along<const WORDS: usize, const ALL: bool>(
     if !is_whole(work, stride) || width <= work.min_disparity || guide.here.len() < width {
         return;
     }
-    let steps = Steps::new(work.penalties);
+    let steps = Step::kinds(work.penalties);
+    // Either end of the row begins a path, where any step will do.
+    let places = part_mut(view_mut::<u32, u8>(work.workspace), ..width + 1);
+    if places.len() <= width {
+        return;
+    }
+    // They are the same for the path back.
+    if let (Direction::Right, [first, inner @ .., last]) = (&direction, &mut *places) {
+        (*first, *last) = (0, 0);
+        changes(part(guide.here, 1..width), guide.here, work.penalties.edges, inner);
+    }
+    let change = places.as_ptr();
     let mut path = Padded::<WORDS>::new(stride / 4, work.penalties);
     let shift = if !guide.row.is_multiple_of(2) { COLUMNS_OFF } else { 0 };
     let top = view::<u8, u32>(work.top).as_ptr().wrapping_add(shift * stride / 4);
@@ -88,18 +107,17 @@ pub(super) fn along<const WORDS: usize, const ALL: bool>(
     };
     let first = x * stride / 4;
     let mut frame = Frame {
-        pixel: guide.here.as_ptr().wrapping_add(x),
+        change: change.wrapping_add(if on > 0 { 0 } else { width }),
         on,
-        from: 0,
+        steps: &steps,
         path: path.place(),
         fours: stride / 16,
         gap: gap * stride as isize,
         end: sums.wrapping_add(first).wrapping_offset(on * (columns * stride / 4) as isize).cast_const(),
-        steps: &steps,
         above: [core::ptr::null_mut(); 2],
-        other: 0,
+        beside: [0; 2],
     };
-    // SAFETY: `columns` columns from column `x` on are in the volumes, and so many pixels in the line; and a
+    // SAFETY: `columns` columns from column `x` on are in the volumes, and a place more is there; and a
     // column has `4 * fours` words, `WORDS` at the most, as the path has room for.
     unsafe {
         go_along(

@@ -35,14 +35,6 @@ impl<const WORDS: usize> Padded<WORDS> {
     }
 }
 
-/// What a path pays between two pixels, by the change of the left image's brightness.
-#[repr(C)]
-pub(super) struct Steps {
-    /// From which changes on the second step is taken, and the third.
-    edges: [u32; 2],
-    steps: [Step; 3],
-}
-
 /// What a path pays on its way into a pixel, four times in a word.
 #[repr(C)]
 pub(super) struct Step {
@@ -54,26 +46,25 @@ pub(super) struct Step {
     most: u32,
 }
 
-impl Steps {
-    pub fn new(penalties: &Penalties) -> Self {
-        let steps = penalties.changes().map(|change| Step {
+impl Step {
+    /// The three kinds of step, by the change of the left image's brightness.
+    pub fn kinds(penalties: &Penalties) -> [Self; 3] {
+        penalties.changes().map(|change| Self {
             step: splat(change.step),
             jump: splat(change.jump),
             most: splat(penalties.cost.wrapping_add(change.jump)),
-        });
-        Self { edges: penalties.edges.map(u32::from), steps }
+        })
     }
 }
 
 /// What both functions go by, at these places of the frame in `lr`.
 #[repr(C)]
 pub(super) struct Frame {
-    /// 0: the pixel's place in the line, and 4: how far it is to the next.
-    pub pixel: *const u8,
+    /// 0: the place of the pixel's kind of step, see `changes`, and 4: how far it is to the next.
+    pub change: *const u8,
     pub on: isize,
-    /// 8: along the row, the brightness of the pixel that the path comes from, which the first may have any
-    /// of. Down, how far it is to that pixel.
-    pub from: isize,
+    /// 8: the kinds of step.
+    pub steps: *const [Step; 3],
     /// 12: the path before, in the place of which the one after is put; or the average.
     pub path: *mut u32,
     /// 16: a column's words, in fours.
@@ -82,12 +73,10 @@ pub(super) struct Frame {
     pub gap: isize,
     /// 24: where the sums, or the paths that are kept, are at their end.
     pub end: *const u32,
-    /// 28: the steps of the walk.
-    pub steps: *const Steps,
-    /// 32, 36: the first and the last column of the row above, 40: bytes to that on the other side of the
-    /// pixel.
+    /// 28, 32: the first and the last column of the row above.
     pub above: [*mut u32; 2],
-    pub other: isize,
+    /// 36, 40: bytes from where a path is kept to the columns left and right of the pixel that it comes from.
+    pub beside: [isize; 2],
 }
 
 /// Twice the lines of two words, and around again until `$count` is 0.
@@ -113,31 +102,16 @@ macro_rules! least_of_four {
 }
 
 /// Goes on to the next pixel, and puts what it costs to come into this one in `r6` to `r8`: step, jump from
-/// the least cost, most. `$from`: along the row, keeps this pixel's brightness in `r10` for the next; down,
-/// looks up where `r11` says. 17 instructions.
+/// the least cost, most. 7 instructions.
 macro_rules! choose_step {
-    ($from:literal) => {
-        concat!(
-            "ldrd r12, r6, [lr]
-         ldr r11, [lr, #8]
-         ldrb r10, [r12]
-         ",
-            $from,
-            "
-         add r12, r12, r6
-         str r12, [lr]
-         ldr r6, [lr, #28]
-         usad8 r10, r10, r11
-         ldrd r11, r12, [r6], #8
-         cmp r10, r11
-         it hs
-         addhs r6, r6, #12
-         cmp r10, r12
-         it hs
-         addhs r6, r6, #12
-         ldm r6, {{r6, r7, r8}}
+    () => {
+        "ldm lr, {{r6, r7, r8}}
+         ldrb r10, [r6]
+         add r6, r6, r7
+         str r6, [lr]
+         add r8, r8, r10
+         ldm r8, {{r6, r7, r8}}
          add r7, r7, r9"
-        )
     };
 }
 
@@ -177,11 +151,11 @@ macro_rules! step_two {
 }
 
 /// Takes a path along a row with agreements `costs`: what is in `from` and the path's cost are the `sums`,
-/// 255 at the most. 31 instructions for two words and 37 a pixel.
+/// 255 at the most. 31 instructions for two words and 26 a pixel.
 ///
 /// # Safety
 /// The frame's columns, `fours` times four words each, can be read from `costs` and `from` on, and written
-/// from `sums` on; a pixel for each from its place on; and the path has a word more before and after.
+/// from `sums` on; a place of a step for each from the first on; and the path has a word more before and after.
 #[inline(never)]
 pub(super) unsafe fn go_along(frame: *mut Frame, costs: *const u32, from: *const u32, sums: *mut u32) {
     // SAFETY: as the function's. `r6` and `r7`, which are the compiler's, are put back.
@@ -191,7 +165,7 @@ pub(super) unsafe fn go_along(frame: *mut Frame, costs: *const u32, from: *const
             "push {{r6, r7, lr}}",
             "mov r9, #0",
             "1:",
-            choose_step!("str r10, [lr, #8]"),
+            choose_step!(),
             "ldrd r0, lr, [lr, #12]",
             "ldr r1, [r0, #-1]",
             "mvn r9, #0",
@@ -227,7 +201,7 @@ pub(super) unsafe fn go_along(frame: *mut Frame, costs: *const u32, from: *const
 
 /// Takes the path from above into a row with agreements `costs`, from the average of two columns, rounded
 /// down, or from nothing if there are none. `kept` begins with what was one of the two. 32 instructions for
-/// two words and 54 a pixel.
+/// two words and 38 a pixel.
 ///
 /// # Safety
 /// As for [`go_along`]; and the frame's columns of the row above can be read.
@@ -240,22 +214,16 @@ pub(super) unsafe fn go_down(frame: *mut Frame, costs: *const u32, kept: *mut u3
             "push {{r6, r7, lr}}",
             "1:",
             "mov r9, #0",
-            "ldrd r10, r11, [lr, #32]",
+            "ldrd r10, r11, [lr, #28]",
             "cmp r10, #0",
             "beq 3f",
             // The columns on both sides, or the nearest that there is.
-            "ldr r1, [lr, #40]",
+            "ldrd r0, r1, [lr, #36]",
+            "add r0, r3, r0",
             "add r1, r3, r1",
-            "mov r0, r3",
             "cmp r0, r10",
             "it lo",
             "movlo r0, r10",
-            "cmp r0, r11",
-            "it hi",
-            "movhi r0, r11",
-            "cmp r1, r10",
-            "it lo",
-            "movlo r1, r10",
             "cmp r1, r11",
             "it hi",
             "movhi r1, r11",
@@ -276,7 +244,7 @@ pub(super) unsafe fn go_down(frame: *mut Frame, costs: *const u32, kept: *mut u3
             ),
             least_of_four!(),
             "3:",
-            choose_step!("ldrb r11, [r12, r11]"),
+            choose_step!(),
             "ldrd r0, lr, [lr, #12]",
             "ldr r1, [r0, #-1]",
             four_words!(

@@ -2,11 +2,12 @@
 #![allow(unsafe_code)]
 
 use super::blocks;
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::work::PathWork;
 use crate::matching::memory::slices::{chunks_mut, part_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::BESIDE;
-use crate::matching::memory::winners::{Found, Unique};
+use crate::matching::memory::winners::{Found, Unique, Winner};
 use core::arch::asm;
 
 /// The least of each byte of two words at a time, which `$load` puts in `r5` and `r6`, in `r2`, with the words
@@ -39,9 +40,6 @@ pub(super) fn select(
     mut unique: Unique<'_>,
     mut put: impl FnMut(usize, Found),
 ) {
-    if !unique.is_asked() {
-        return select_all(work, stride, put);
-    }
     let (begin, fours) = (work.min_disparity.min(work.width), stride / 16);
     let mut columns = part_mut(work.sums, begin * stride..);
     for x in begin..work.width {
@@ -79,9 +77,10 @@ pub(super) fn select(
 
 /// [`select`] where nothing is asked of the second best: the loop over pixels is in assembly.
 #[inline(always)]
-fn select_all(work: &mut PathWork<'_>, stride: usize, mut put: impl FnMut(usize, Found)) {
+pub(super) fn select_words(work: &mut PathWork<'_>, stride: usize, winners: &mut [Winner]) {
     let begin = work.min_disparity.min(work.width);
-    let (count, most) = (work.width - begin, work.disparities.min(stride));
+    let winners = part_mut(winners, begin..work.width);
+    let (count, most) = (winners.len(), work.disparities.min(stride));
     let sums = view_mut::<u8, u32>(part_mut(work.sums, begin * stride..));
     if count == 0 || most == 0 || sums.len() < count * stride / 4 {
         return;
@@ -92,32 +91,31 @@ fn select_all(work: &mut PathWork<'_>, stride: usize, mut put: impl FnMut(usize,
         if beyond == 0 {
             break;
         }
-        part_mut(column, ..beyond / 4).fill(u32::MAX);
+        for word in part_mut(column, ..beyond / 4) {
+            keep_loop();
+            *word = u32::MAX;
+        }
         if let Some(word) = column.get_mut(beyond / 4) {
             *word |= !(u32::MAX << (beyond % 4 * 8));
         }
     }
     // SAFETY: so many columns of `stride` bytes, a multiple of 16, are the sums.
-    unsafe { winners(sums.as_mut_ptr(), count, stride as u32 / 4, most as u32 - 1) };
-    for (x, winner) in sums.iter().enumerate().take(count) {
-        let [below, cost, above, disparity] = winner.to_le_bytes();
-        put(begin + x, Found { disparity, cost, beside: (below, above) });
-    }
+    unsafe { least_of_columns(sums.as_ptr(), winners, stride as u32 / 4, most as u32 - 1) };
 }
 
-/// Puts the winners of columns of sums in place of the first of them, a word each: the sum below, the least,
-/// the one above, and the disparity. 40 instructions for a pixel and 9 for eight candidates. The first
+/// The winners of columns of sums. 40 instructions for a pixel and 9 for eight candidates. The first
 /// column has one candidate, the next one more, up to `last` and one.
 ///
 /// The least byte of each of a word's four is found with the word where it is; then of two and two that of
 /// the least half-word, a sum over its disparity.
 ///
 /// # Safety
-/// `count` columns of `words` words, a multiple of four, can be read from `sums` on and written; neither
-/// number is 0.
+/// For each winner a column of `words` words, a multiple of four, can be read from `sums` on; neither number is
+/// 0.
 #[inline(never)]
-unsafe fn winners(sums: *mut u32, count: usize, words: u32, last: u32) {
-    // SAFETY: a winner's word is in no column that is yet to be read. The bytes beside the least sum are read
+unsafe fn least_of_columns(sums: *const u32, winners: &mut [Winner], words: u32, last: u32) {
+    let ends = winners.as_mut_ptr_range();
+    // SAFETY: the columns are read, and a winner written for each. The bytes beside the least sum are read
     // where they are candidates of its column. `r6` and `r7`, which are the compiler's, are put back.
     unsafe {
         asm!(
@@ -171,8 +169,8 @@ unsafe fn winners(sums: *mut u32, count: usize, words: u32, last: u32) {
             "pop {{r6, r7}}",
             inout("r0") sums => _,
             in("r8") (words - 1) * 0x0101_0101,
-            in("r9") sums.add(count),
-            inout("r10") sums => _,
+            in("r9") ends.end,
+            inout("r10") ends.start => _,
             inout("r11") 0 => _,
             in("r12") last,
             in("lr") 0x0001_0203,

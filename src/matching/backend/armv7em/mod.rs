@@ -9,8 +9,9 @@
 //! * `windows`: columns into windows, windows into winners.
 //! * `rows`: the right codes from right to left, and the loops of both over the pixels of a row, in assembly
 //!   for the usual numbers of candidates.
-//! * `left_right`: winners into answers; `smooth`: these averaged; `speckle`: their support counted, which
-//!   all methods share.
+//! * `left_right`: winners into answers; `fattening`: those refused that spread; `smooth`: these averaged;
+//!   `speckle`: their support counted, which all methods share; `fill`: small gaps
+//!   closed.
 //! * `sgm`: costs along paths.
 //! * `word`: what is done to four bytes.
 //!
@@ -25,6 +26,8 @@
 
 mod census;
 mod columns;
+mod fattening;
+mod fill;
 mod left_right;
 mod rows;
 pub(super) mod sgm;
@@ -38,7 +41,8 @@ use super::TABLE_WORDS;
 use super::isa::{Isa, sole_kernel};
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::work::{
-    AnswerWork, CensusWork, CostWork, EdgeWork, Guide, PathWork, STEP, SmoothWork, SpeckleWork, WindowWork,
+    AnswerWork, CensusWork, CostWork, EdgeWork, FatteningWork, FillWork, Guide, PathWork, STEP, SmoothWork,
+    SpeckleWork, WindowWork,
 };
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::Rows5;
@@ -114,6 +118,16 @@ impl Isa for Backend {
     #[inline(always)]
     fn speckle(self, work: SpeckleWork<'_>) {
         speckle::speckle(work);
+    }
+
+    #[inline(always)]
+    fn refuse_fattening(self, work: FatteningWork<'_>) {
+        fattening::refuse(work);
+    }
+
+    #[inline(always)]
+    fn fill(self, work: FillWork<'_>) {
+        fill::fill(work);
     }
 }
 

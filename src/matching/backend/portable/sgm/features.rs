@@ -64,10 +64,16 @@ pub(in crate::matching::backend) fn of<'a, R: FeatureRows, S: SgmParameters>(
     let inside = [&mut *along, &mut *across, &mut *census].map(|row| part_mut(row, outside..));
     looks_of::<R>(&right, most, shift, inside);
     R::halve(right[2], part_mut(brightness, outside..));
-    // The first column on its own, with the next one: the row may begin behind it.
+    // The first column and the next one.
     let mut first = [[0; 2]; 3];
-    let places = first.each_mut().map(|first| part_mut(first, ..width.min(2)));
-    looks_of::<R>(&right, most, shift, places);
+    let inside = [&*along, &*across, &*census].map(|row| part(row, outside..).first_chunk());
+    if let ([Some(along), Some(across), Some(census)], true) = (inside, width > 1) {
+        first = [*along, *across, *census];
+    } else {
+        // The row begins behind them.
+        let places = first.each_mut().map(|first| part_mut(first, ..width.min(2)));
+        looks_of::<R>(&right, most, shift, places);
+    }
     let [first_along, first_across, first_census] = first;
     let first_brightness = [0, 1].map(|x| right[2].get(x).map_or(0, |pixel| pixel >> 1));
     for (row, [first, _]) in [

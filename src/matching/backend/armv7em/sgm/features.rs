@@ -35,22 +35,7 @@ fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3
     let after = REACH + groups * COLUMNS;
     let behind = count.min(width).saturating_sub(after).div_ceil(COLUMNS);
     for x in core::iter::once(0).chain((0..behind).map(|group| after + group * COLUMNS)) {
-        let near = lines.map(|line| {
-            let ends = [line.first(), line.get(width.wrapping_sub(1))].map(|end| end.copied().unwrap_or(0));
-            [0, 1, 2].map(|word| {
-                if x + word * COLUMNS + COLUMNS <= REACH || x + word * COLUMNS >= width + REACH {
-                    return [ends[usize::from(x > 0)]; COLUMNS];
-                }
-                let inside = (x + word * COLUMNS)
-                    .checked_sub(REACH)
-                    .and_then(|x| line.get(x..width)?.first_chunk::<COLUMNS>());
-                // Columns outside the line are the nearest inside.
-                let column =
-                    |i: usize| (x + word * COLUMNS + i).saturating_sub(REACH).min(width.saturating_sub(1));
-                let outside = || core::array::from_fn(|i| line.get(column(i)).copied().unwrap_or(0));
-                inside.copied().unwrap_or_else(outside)
-            })
-        });
+        let near = lines.map(|line| [0, 1, 2].map(|word| columns(part(line, ..width), x + word * COLUMNS)));
         let [above2, above, here, below, below2] = near.each_ref().map(|near| near.as_flattened().as_ptr());
         let [mut code, mut one, mut other] = [0; 3];
         // SAFETY: a group sees `NEAR` columns.
@@ -62,6 +47,24 @@ fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3
             put(part_mut(row, x..), word);
         }
     }
+}
+
+/// The columns of a line from [`REACH`] before `place` on; those outside the line are the nearest inside.
+#[inline(never)]
+fn columns(line: &[u8], place: usize) -> [u8; COLUMNS] {
+    let end = |column: Option<&u8>| [column.copied().unwrap_or(0); COLUMNS];
+    if place + COLUMNS <= REACH {
+        return end(line.first());
+    }
+    if place >= line.len() + REACH {
+        return end(line.last());
+    }
+    let inside = place.checked_sub(REACH).and_then(|x| line.get(x..)?.first_chunk());
+    let outside = || {
+        let column = |i: usize| (place + i).saturating_sub(REACH).min(line.len().saturating_sub(1));
+        core::array::from_fn(|i| line.get(column(i)).copied().unwrap_or(0))
+    };
+    inside.copied().unwrap_or_else(outside)
 }
 
 /// Writes the bytes of a word for which the row has a place.

@@ -73,11 +73,12 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
         winners::select(work, stride::<WORDS, ALL>(work), unique, put);
     }
 
+    const SELECTS_WORDS: bool = true;
+
     #[inline(always)]
-    fn select_words(work: &mut PathWork<'_>, guide: Guide<'_>, winners: &mut [Winner]) -> bool {
+    fn select_words(work: &mut PathWork<'_>, guide: Guide<'_>, winners: &mut [Winner]) {
         paths::<WORDS, ALL>(work, guide);
         winners::select_words(work, stride::<WORDS, ALL>(work), winners);
-        true
     }
 }
 

@@ -50,12 +50,11 @@ pub(in crate::matching::backend) trait Passes {
     /// Moves the path from above down to the row, and those from the left and from the right through it, adds
     /// the three up, and selects the winner of every pixel that has a candidate.
     fn select(work: &mut PathWork<'_>, guide: Guide<'_>, unique: Unique<'_>, put: impl FnMut(usize, Found));
-    /// [`Self::select`] with words for winners, where nothing is asked of the second best. Says whether there is
-    /// code for it; the winners are selected then.
+    /// Whether there is code for [`Self::select_words`].
+    const SELECTS_WORDS: bool = false;
+    /// [`Self::select`] with words for winners, where nothing is asked of the second best.
     #[inline(always)]
-    fn select_words(_work: &mut PathWork<'_>, _guide: Guide<'_>, _winners: &mut [Winner]) -> bool {
-        false
-    }
+    fn select_words(_work: &mut PathWork<'_>, _guide: Guide<'_>, _winners: &mut [Winner]) {}
 }
 
 /// Adds a row of both images to the costs; the first row of a frame to none.
@@ -106,8 +105,8 @@ pub(in crate::matching::backend) fn select<P: Passes, const ROWS: bool>(
         );
     } else {
         let winners = winners.words();
-        if !unique.is_asked() && P::select_words(work, guide, winners) {
-            return;
+        if P::SELECTS_WORDS && !unique.is_asked() {
+            return P::select_words(work, guide, winners);
         }
         P::select(
             work,

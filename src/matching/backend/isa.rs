@@ -89,8 +89,8 @@ pub(in crate::matching) trait Isa: Copy {
         portable::speckle::speckle(work);
     }
 
-    /// Moves each column's bits one row on and puts in whether the middle one of three lines has an edge there:
-    /// Sobel's gradient along it of `least` eighths of a grey level per pixel.
+    /// Moves each column's bits one row on and puts in whether the middle one of three lines has an edge
+    /// there: Sobel's gradient along it of `least` eighths of a grey level per pixel.
     #[inline(always)]
     fn push_edges(self, edges: &mut [u8], lines: [&[u8]; 3], least: u16) {
         portable::edges::push(edges, lines, least);

@@ -35,9 +35,18 @@ pub(super) fn fill_gaps(frame: &mut Frame<'_>, newest: usize) {
 /// Takes out what was filled: no answer again. The flags stay as they are.
 #[inline(never)]
 fn undo(answers: &mut [Disparity], flags: &[PixelFlags]) {
-    for (answer, flags) in answers.iter_mut().zip(flags) {
+    let undo = |answer: &mut Disparity, flags: PixelFlags| {
+        *answer = Disparity::from_raw(answer.raw() | if_filled(flags) as u16);
+    };
+    let (answers, rest) = answers.as_chunks_mut::<4>();
+    let (flags, flags_rest) = flags.as_chunks::<4>();
+    for (answers, flags) in answers.iter_mut().zip(flags) {
         keep_scalar_loop();
-        *answer = Disparity::from_raw(answer.raw() | if_filled(*flags) as u16);
+        answers.iter_mut().zip(flags).for_each(|(answer, &flags)| undo(answer, flags));
+    }
+    for (answer, &flags) in rest.iter_mut().zip(flags_rest) {
+        keep_scalar_loop();
+        undo(answer, flags);
     }
 }
 

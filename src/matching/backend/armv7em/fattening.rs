@@ -1,5 +1,5 @@
-//! Answers refused that spread, as `portable/fattening.rs` does: both directions in the halves of a word, then
-//! four pixels at a time.
+//! Answers refused that spread, as `portable/fattening.rs` does: both directions in the halves of a word,
+//! then four pixels at a time.
 //!
 //! Half-words hold bounds up to the number of no answer, and that bounds nothing.
 #![allow(unsafe_code)]
@@ -42,8 +42,8 @@ fn mark(answers: &[Disparity], edges: &mut [u8], row: u8, slope: Disparity) {
     }
     let halves = |number: u16| u32::from(number) * 0x0001_0001;
     let (answers, edges) = (answers.as_ptr_range(), part_mut(edges, ..count).as_mut_ptr_range());
-    // SAFETY: `count` answers are read from the first on and from the last back, and as many edges read and written
-    // both ways. `r6` and `r7`, which are the compiler's, are put back.
+    // SAFETY: `count` answers are read from the first on and from the last back, and as many edges read and
+    // written both ways. `r6` and `r7`, which are the compiler's, are put back.
     unsafe {
         asm!(
             // r0, r2 answers and edges to the right, r1, r3 to the left; r4 both bounds
@@ -91,8 +91,8 @@ fn refuse_groups(answers: &mut [Disparity], flags: &mut [PixelFlags], edges: &[u
     if groups == 0 || answers.len() < count || flags.len() < count || edges.len() < count {
         return;
     }
-    // SAFETY: as many groups of edges are read, and of answers and flags read and written; a load or a store of a
-    // word may be anywhere. `r6` and `r7`, which are the compiler's, are put back.
+    // SAFETY: as many groups of edges are read, and of answers and flags read and written; a load or a
+    // store of a word may be anywhere. `r6` and `r7`, which are the compiler's, are put back.
     unsafe {
         asm!(
             // r0 answers, r1 flags, r2 edges

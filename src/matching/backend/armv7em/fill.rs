@@ -1,5 +1,5 @@
-//! Small gaps closed, as `portable/fill.rs` does: the first pass puts what is on a gap's left beside the answers,
-//! the second one takes what is less of that and of what is on the right.
+//! Small gaps closed, as `portable/fill.rs` does: the first pass puts what is on a gap's left beside the
+//! answers, the second one takes what is less of that and of what is on the right.
 #![allow(unsafe_code)]
 
 use crate::matching::backend::work::FillWork;
@@ -38,14 +38,16 @@ pub(super) fn fill(work: FillWork<'_>) {
             options(nostack),
         );
     }
-    // SAFETY: from the last on, `count` answers and flags are read and written, and as many places of `room` read.
+    // SAFETY: from the last on, `count` answers and flags are read and written, and as many places of
+    // `room` read.
     unsafe {
         asm!(
             "2:",
             "ldrh {here}, [{answers}, #-2]!",
             "ldrh {left}, [{room}, #-2]!",
             "ldrb {flag}, [{flags}, #-1]!",
-            // In a gap that is too long or between sides that differ nothing is filled, from there to its left end.
+            // In a gap that is too long or between sides that differ nothing is filled, from there to its
+            // left end.
             "subs {apart}, {left}, {right}",
             "it lo",
             "rsblo {apart}, {apart}, #0",

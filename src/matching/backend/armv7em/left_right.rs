@@ -161,8 +161,8 @@ macro_rules! slanted_fraction {
     };
 }
 
-/// The answers and flags of winners that were offered to the `right`. 37 instructions a pixel, 45 where a part
-/// of the steeper rise is not counted.
+/// The answers and flags of winners that were offered to the `right`. 37 instructions a pixel, 45 where a
+/// part of the steeper rise is not counted.
 #[inline(never)]
 pub(super) fn answer<P: MethodParameters>(
     winners: &[Winner],

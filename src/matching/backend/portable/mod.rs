@@ -5,8 +5,8 @@
 //!   `words`: four bytes in a word.
 //! * `sgm`: costs along paths.
 //! * `left_right`, `consistency`, `subpixel`: winners into answers; `left_right_rows`: pixels side by side.
-//! * `smooth`, `median`, `speckle`, `vertical`: the filters of answers; `edges`, `fattening`: those refused that
-//!   spread; `fill`: small gaps closed.
+//! * `smooth`, `median`, `speckle`, `vertical`: the filters of answers; `edges`, `fattening`: those refused
+//!   that spread; `fill`: small gaps closed.
 
 pub(super) mod census;
 mod consistency;

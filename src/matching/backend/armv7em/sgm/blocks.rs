@@ -90,8 +90,8 @@ struct Frame {
 /// What two words of candidates agree, in `$a`, `r9` or `r12`: `$along` puts the share of the gradient along
 /// the line there. 27 instructions with the five of that.
 ///
-/// How far apart two numbers are is the greater of their two differences, the other of which is 0; the bits of
-/// a byte are counted by twos, fours and eights; masks are such as an instruction holds.
+/// How far apart two numbers are is the greater of their two differences, the other of which is 0; the bits
+/// of a byte are counted by twos, fours and eights; masks are such as an instruction holds.
 macro_rules! agreement {
     ($a:literal, $along:expr) => {
         concat!(
@@ -144,8 +144,8 @@ macro_rules! agreement {
     };
 }
 
-/// The gradient along the line, doubled, between the right ones and halfway to their neighbours: how far it is
-/// from the least to the greatest, which stand doubled at `r2` and a row further.
+/// The gradient along the line, doubled, between the right ones and halfway to their neighbours: how far it
+/// is from the least to the greatest, which stand doubled at `r2` and a row further.
 macro_rules! between_pixels {
     ($a:literal) => {
         concat!(
@@ -191,10 +191,10 @@ macro_rules! at_pixels {
     };
 }
 
-/// Averages a row's agreements into `costs`, or puts them there within edges: columns of `stride` bytes. `left`
-/// are its gradients along the line and across it, its codes, its brightness; `right` begins with the first
-/// candidate of the first pixel in the right features' rows, `count` bytes each. 22 instructions for a pixel and
-/// 30 for four candidates.
+/// Averages a row's agreements into `costs`, or puts them there within edges: columns of `stride` bytes.
+/// `left` are its gradients along the line and across it, its codes, its brightness; `right` begins with
+/// the first candidate of the first pixel in the right features' rows, `count` bytes each. 22 instructions
+/// for a pixel and 30 for four candidates.
 #[inline(never)]
 pub(super) fn enter<S: SgmParameters>(
     costs: &mut [u32],
@@ -261,9 +261,9 @@ pub(super) fn enter<S: SgmParameters>(
             )
         };
     }
-    // SAFETY: `pixels` bytes are read from each of the left rows; so many columns of `stride` bytes, a multiple of
-    // 16, are read from six right rows, one byte further on with each, and read from `costs` and written to it.
-    // `r6` and `r7`, which are the compiler's, are put back.
+    // SAFETY: `pixels` bytes are read from each of the left rows; so many columns of `stride` bytes, a
+    // multiple of 16, are read from six right rows, one byte further on with each, and read from `costs`
+    // and written to it. `r6` and `r7`, which are the compiler's, are put back.
     unsafe {
         match (S::BETWEEN_PIXELS, S::WITHIN_EDGES) {
             (true, true) => enter!("lsl r9, r9, #1", between_pixels, ""),

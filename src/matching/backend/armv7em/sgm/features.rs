@@ -95,7 +95,8 @@ unsafe fn codes([above, middle, below]: [*const u8; 3], out: *mut u32, groups: u
                 $(codes = with_bit_where_less::<$bit>(codes, word($row, $column), here);)*
             };
         }
-        look!(0: above 0, 1: above 4, 2: above 8, 3: middle 2, 4: middle 6, 5: below 0, 6: below 4, 7: below 8);
+        look!(0: above 0, 1: above 4, 2: above 8, 3: middle 2);
+        look!(4: middle 6, 5: below 0, 6: below 4, 7: below 8);
         // SAFETY: as the function's.
         unsafe { out.add(group).write_unaligned(codes) };
     }
@@ -113,8 +114,8 @@ unsafe fn gradients(
     groups: usize,
 ) {
     let cut = Cut::new(most);
-    // The columns beside a group's pixels and between them: of four the even and the odd ones. Their Sobel sums
-    // along the line, the middle row twice, and how much more there is below than above.
+    // The columns beside a group's pixels and between them: of four the even and the odd ones. Their Sobel
+    // sums along the line, the middle row twice, and how much more there is below than above.
     let columns = |group: usize| {
         // SAFETY: the last columns that are read are those from 7 on.
         let [above, middle, below] = [above, middle, below]

@@ -155,7 +155,8 @@ macro_rules! step_two {
 ///
 /// # Safety
 /// The frame's columns, `fours` times four words each, can be read from `costs` and `from` on, and written
-/// from `sums` on; a place of a step for each from the first on; and the path has a word more before and after.
+/// from `sums` on; a place of a step for each from the first on; and the path has a word more before and
+/// after.
 #[inline(never)]
 pub(super) unsafe fn go_along(frame: *mut Frame, costs: *const u32, from: *const u32, sums: *mut u32) {
     // SAFETY: as the function's. `r6` and `r7`, which are the compiler's, are put back.

@@ -9,8 +9,8 @@ use crate::matching::memory::winners::BESIDE;
 use crate::matching::memory::winners::{Found, Unique, Winner};
 use core::arch::asm;
 
-/// The least of each byte of two words at a time, which `$load` puts in `r5` and `r6`, in `r2`, with the words
-/// that are left after it in `r3`, of equal ones the fewest. `$sub` counts them in `r4`.
+/// The least of each byte of two words at a time, which `$load` puts in `r5` and `r6`, in `r2`, with the
+/// words that are left after it in `r3`, of equal ones the fewest. `$sub` counts them in `r4`.
 macro_rules! winners {
     ($load:literal $sub:literal) => {
         concat!(
@@ -90,13 +90,13 @@ pub(super) fn select_words(work: &mut PathWork<'_>, stride: usize, winners: &mut
     unsafe { least_of_columns(sums.as_ptr(), winners, stride as u32 / 4, most as u32 - 1) };
 }
 
-/// Makes the sums 255 that are of no candidate: the first pixels have fewer than there are lanes, one in the first
-/// column and one more in the next, and all have none in the first `beyond` lanes. 18 instructions for a
-/// column that has such lanes, and 3 for four of them.
+/// Makes the sums 255 that are of no candidate: the first pixels have fewer than there are lanes, one in
+/// the first column and one more in the next, and all have none in the first `beyond` lanes. 18
+/// instructions for a column that has such lanes, and 3 for four of them.
 ///
 /// # Safety
-/// `count` columns of `stride` bytes, whole words and more than `beyond`, can be read from `sums` on and written;
-/// neither is 0.
+/// `count` columns of `stride` bytes, whole words and more than `beyond`, can be read from `sums` on and
+/// written; neither is 0.
 #[inline(never)]
 unsafe fn close(sums: *mut u32, count: usize, stride: usize, beyond: usize) {
     // SAFETY: of a column fewer than `stride` bytes are put, and the word behind them written back.
@@ -141,8 +141,8 @@ unsafe fn close(sums: *mut u32, count: usize, stride: usize, beyond: usize) {
 /// the least half-word, a sum over its disparity.
 ///
 /// # Safety
-/// For each winner a column of `words` words, a multiple of four, can be read from `sums` on; neither number is
-/// 0.
+/// For each winner a column of `words` words, a multiple of four, can be read from `sums` on; neither
+/// number is 0.
 #[inline(never)]
 unsafe fn least_of_columns(sums: *const u32, winners: &mut [Winner], words: u32, last: u32) {
     let ends = winners.as_mut_ptr_range();

@@ -33,7 +33,7 @@ macro_rules! least_of_four {
 ///
 /// # Safety
 /// `fours` times four words, 64 at the most and one at least, can be read from `sums`.
-#[inline(always)]
+#[inline(never)]
 pub(super) unsafe fn least(sums: *const u32, fours: usize) -> (u8, usize) {
     let (least, place): (u32, u32);
     // SAFETY: as the function's.

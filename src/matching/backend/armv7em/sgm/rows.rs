@@ -71,7 +71,7 @@ pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>,
 }
 
 /// Takes a path along the row, and adds it to the path from above, or the second one to both.
-#[inline(always)]
+#[inline(never)]
 pub(super) fn along<const WORDS: usize, const ALL: bool>(
     work: &mut PathWork<'_>,
     guide: Guide<'_>,

@@ -87,7 +87,7 @@ pub(super) fn select_words(work: &mut PathWork<'_>, stride: usize, winners: &mut
     // SAFETY: so many columns of `stride` bytes, a multiple of 16, are the sums.
     unsafe { close(sums.as_mut_ptr(), count, stride, stride - most) };
     // SAFETY: as above.
-    unsafe { least_of_columns(sums.as_ptr(), winners, stride as u32 / 4, most as u32 - 1) };
+    unsafe { least_sums(sums.as_ptr(), winners, stride as u32 / 4, most as u32 - 1) };
 }
 
 /// Makes the sums 255 that are of no candidate: the first pixels have fewer than there are lanes, one in
@@ -144,7 +144,7 @@ unsafe fn close(sums: *mut u32, count: usize, stride: usize, beyond: usize) {
 /// For each winner a column of `words` words, a multiple of four, can be read from `sums` on; neither
 /// number is 0.
 #[inline(never)]
-unsafe fn least_of_columns(sums: *const u32, winners: &mut [Winner], words: u32, last: u32) {
+unsafe fn least_sums(sums: *const u32, winners: &mut [Winner], words: u32, last: u32) {
     let ends = winners.as_mut_ptr_range();
     // SAFETY: the columns are read, and a winner written for each. The bytes beside the least sum are read
     // where they are candidates of its column. `r6` and `r7`, which are the compiler's, are put back.

@@ -64,17 +64,13 @@ pub(in crate::matching::backend) fn of<'a, R: FeatureRows, S: SgmParameters>(
     let inside = [&mut *along, &mut *across, &mut *census].map(|row| part_mut(row, outside..));
     looks_of::<R>(&right, most, shift, inside);
     R::halve(right[2], part_mut(brightness, outside..));
-    // The first column and the next one.
-    let mut first = [[0; 2]; 3];
-    let inside = [&*along, &*across, &*census].map(|row| part(row, outside..).first_chunk());
-    if let ([Some(along), Some(across), Some(census)], true) = (inside, width > 1) {
-        first = [*along, *across, *census];
+    // The first column and the next one: the row may begin behind them.
+    let pair = |row: &[u8]| part(row, outside..).first_chunk().copied().unwrap_or([0; 2]);
+    let [first_along, first_across, first_census] = if width > 1 && outside + 2 <= count {
+        [pair(along), pair(across), pair(census)]
     } else {
-        // The row begins behind them.
-        let places = first.each_mut().map(|first| part_mut(first, ..width.min(2)));
-        looks_of::<R>(&right, most, shift, places);
-    }
-    let [first_along, first_across, first_census] = first;
+        first_columns::<R>(&right, most, shift)
+    };
     let first_brightness = [0, 1].map(|x| right[2].get(x).map_or(0, |pixel| pixel >> 1));
     for (row, [first, _]) in [
         (&mut *along, first_along),
@@ -92,6 +88,16 @@ pub(in crate::matching::backend) fn of<'a, R: FeatureRows, S: SgmParameters>(
         repeat(greatest, range.1, outside);
     }
     Some(Features { left: of_left, right: of_right, count })
+}
+
+/// The features of the first two columns.
+#[cfg_attr(target_pointer_width = "64", inline(always))]
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
+fn first_columns<R: FeatureRows>(lines: &Rows5<'_>, gradient: u8, shift: u32) -> [[u8; 2]; 3] {
+    let width = lines[2].len().min(2);
+    let mut first = [[0; 2]; 3];
+    looks_of::<R>(lines, gradient, shift, first.each_mut().map(|first| part_mut(first, ..width)));
+    first
 }
 
 /// Rows of so many bytes; what there is no room for is empty.

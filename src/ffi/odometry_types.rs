@@ -101,7 +101,16 @@ impl From<COdometryConfig> for OdometryConfig {
     fn from(config: COdometryConfig) -> Self {
         let COdometryConfig { seed, far_px, near_px, sigma_px, spacing_px, most_samples, most_disparity_px } =
             config;
-        Self { seed, far_px, near_px, sigma_px, spacing_px, most_samples, most_disparity_px }
+        Self {
+            seed,
+            far_px,
+            near_px,
+            sigma_px,
+            spacing_px,
+            most_samples,
+            most_disparity_px,
+            corrects_rig: false,
+        }
     }
 }
 
@@ -140,8 +149,16 @@ impl From<Step<f32>> for CStep {
 /// `config` is null or points to a configuration's bytes.
 pub unsafe fn odometry_default(width: u16, config: *mut COdometryConfig) -> Status {
     either(checked(config).map(|()| {
-        let OdometryConfig { far_px, near_px, most_disparity_px, sigma_px, spacing_px, most_samples, seed } =
-            OdometryConfig::new(width);
+        let OdometryConfig {
+            far_px,
+            near_px,
+            most_disparity_px,
+            sigma_px,
+            spacing_px,
+            most_samples,
+            seed,
+            ..
+        } = OdometryConfig::new(width);
         let filled =
             COdometryConfig { seed, far_px, near_px, sigma_px, spacing_px, most_samples, most_disparity_px };
         // SAFETY: the caller's promise, and it is aligned.

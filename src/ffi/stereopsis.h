@@ -100,7 +100,7 @@
 /**
  * Bytes that are enough for an odometry that follows up to `points` points, on any target.
  */
-#define STEREOPSIS_ODOMETRY_BYTES(points) ((size_t)264 + (size_t)437 * (points))
+#define STEREOPSIS_ODOMETRY_BYTES(points) ((size_t)376 + (size_t)453 * (points))
 
 
 /**

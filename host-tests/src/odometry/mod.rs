@@ -1,7 +1,7 @@
 //! Sequences of pictures through the core's odometry.
 //!
 //! * [`sequence`]: the frames of a folder, of one camera or of two.
-//! * [`run`]: frames in, a trajectory out, with what is known of every pose.
+//! * [`run`]: frames in, a [`trajectory`] out, with what is known of every pose.
 //! * [`poses`]: trajectories as KITTI's files have them. [`error`]: how far they are off. [`picture`]: drawn.
 
 pub mod error;
@@ -9,3 +9,4 @@ pub mod picture;
 pub mod poses;
 pub mod run;
 pub mod sequence;
+pub mod trajectory;

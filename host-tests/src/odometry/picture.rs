@@ -1,6 +1,6 @@
 //! A trajectory drawn as lines and text: from above, and from the side.
 
-use super::run::Trajectory;
+use super::trajectory::Trajectory;
 use nalgebra::Vector3;
 use std::fmt::Write;
 use stereopsis::geometry::camera::Pose;

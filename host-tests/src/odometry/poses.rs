@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::camera::Pose;
-use stereopsis::motion::odometry::{State, Step};
+use stereopsis::motion::odometry::{RigEstimate, State, Step};
 
 /// Why a file is no trajectory.
 #[derive(Debug, thiserror::Error)]
@@ -62,8 +62,8 @@ pub const fn name(state: State) -> &'static str {
 /// Writes a line for each frame: its number from 0, its state, the points that are followed, found and agree,
 /// and the largest standard deviations of the turn (degrees) and of the step (the unit of the poses); nothing
 /// where nothing is known.
-pub fn write_states(out: &mut dyn Write, steps: &[Step<f64>]) -> io::Result<()> {
-    writeln!(out, "frame,state,points,found,agree,sigma_turn_deg,sigma_step")?;
+pub fn write_states(out: &mut dyn Write, steps: &[Step<f64>], rigs: &[RigEstimate<f64>]) -> io::Result<()> {
+    writeln!(out, "frame,state,points,found,agree,sigma_turn_deg,sigma_step,rig_px,sigma_rig_px")?;
     for (frame, step) in steps.iter().enumerate() {
         let sigma = |from: usize, by: f64| {
             let variance = (from..from + 3).map(|i| step.covariance[(i, i)]).fold(0.0, f64::max);
@@ -72,7 +72,10 @@ pub fn write_states(out: &mut dyn Write, steps: &[Step<f64>]) -> io::Result<()> 
         };
         let Step { points, found, inliers, .. } = step;
         let (turn, shift) = (sigma(0, 1_f64.to_degrees()), sigma(3, 1.0));
-        writeln!(out, "{frame},{},{points},{found},{inliers},{turn},{shift}", name(step.state))?;
+        // Nothing is known of the pair before two views were compared.
+        let rig = rigs.get(frame).filter(|rig| rig.pairs > 0);
+        let rig = rig.map_or(",".to_owned(), |rig| format!("{:.3},{:.3}", rig.disparity_px, rig.sigma_px));
+        writeln!(out, "{frame},{},{points},{found},{inliers},{turn},{shift},{rig}", name(step.state))?;
     }
     Ok(())
 }

@@ -1,14 +1,14 @@
 //! A sequence through the core's odometry.
 
+use super::trajectory::Trajectory;
 use crate::correspond::{CorrespondError, Plan, features};
-use crate::interpolate::between;
 use image::GrayImage;
 use stereopsis::features::Orientation;
 use stereopsis::geometry::camera::{Camera, Pose, RectifiedRig};
 use stereopsis::imaging::{Picture, PictureError};
 use stereopsis::motion::odometry::{
     Frame, MonocularOdometry, OdometryConfig, OdometryError, OdometryRig, OdometryRigError, Refinement,
-    RefinementConfig, State, Step, StereoOdometry,
+    RefinementConfig, RigEstimate, State, Step, StereoOdometry,
 };
 
 /// Points that are followed at most.
@@ -23,16 +23,6 @@ pub enum Rig {
     Stereo(RectifiedRig),
     /// One camera.
     Mono(Camera<f64>),
-}
-
-/// A trajectory, with what is known of each pose.
-#[derive(Clone, Debug, Default)]
-pub struct Trajectory {
-    /// Carries a point of each frame's camera into the first one's. What is not known is laid between what
-    /// is.
-    pub poses: Vec<Pose<f64>>,
-    /// What the core says of each frame.
-    pub steps: Vec<Step<f64>>,
 }
 
 /// Why there is no trajectory.
@@ -64,13 +54,29 @@ pub fn plan() -> Plan {
     Plan { corners: 1500, threshold: 8, levels: 1, ..Plan::default() }
 }
 
-/// Takes frames, left and right, until there is none, and says where the camera stood in each. The last
-/// `views` are adjusted together, [`MOST_VIEWS`] at most; with fewer than two every pose stays as it was
-/// told. `told` hears of every frame.
+/// How frames are gone through.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct RunConfig {
+    /// The last views that are adjusted together, [`MOST_VIEWS`] at most; with fewer than two every pose stays
+    /// as it was told.
+    pub views: usize,
+    /// Whether a pair is corrected by what its points' motion shows, once that is sure. Frames up to the 64th
+    /// that came before are then gone through again.
+    pub corrects_rig: bool,
+}
+
+impl Default for RunConfig {
+    fn default() -> Self {
+        Self { views: VIEWS, corrects_rig: true }
+    }
+}
+
+/// Takes frames, left and right, until there is none, and says where the camera stood in each. `told` hears of
+/// every frame.
 pub fn run<E, I>(
     rig: &Rig,
     frames: I,
-    views: usize,
+    config: RunConfig,
     told: impl Fn(&Step<f64>) + Send,
 ) -> Result<Trajectory, RunError<E>>
 where
@@ -80,7 +86,7 @@ where
     std::thread::scope(|scope| {
         let builder = std::thread::Builder::new().stack_size(STACK);
         let work =
-            builder.spawn_scoped(scope, || follow(rig, frames, views, told)).map_err(RunError::Thread)?;
+            builder.spawn_scoped(scope, || follow(rig, frames, config, told)).map_err(RunError::Thread)?;
         work.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })
 }
@@ -110,6 +116,14 @@ impl Either {
                 odometry.start(*camera, config);
                 Ok(Self::Mono(odometry))
             }
+        }
+    }
+
+    /// How a pair differs from its calibration.
+    fn rig(&mut self) -> Option<RigEstimate<f64>> {
+        match self {
+            Self::Stereo(odometry) => odometry.rig_estimate(),
+            Self::Mono(_) => None,
         }
     }
 
@@ -181,97 +195,105 @@ impl Smoother {
 fn follow<E, I>(
     rig: &Rig,
     frames: I,
-    views: usize,
+    config: RunConfig,
     told: impl Fn(&Step<f64>),
 ) -> Result<Trajectory, RunError<E>>
 where
     E: std::error::Error,
     I: Iterator<Item = Result<(GrayImage, Option<GrayImage>), E>>,
 {
-    let mut trajectory = Trajectory::default();
-    let mut begun = None;
+    let mut begun: Option<Run> = None;
+    let mut first = Vec::new();
     for frame in frames {
-        let (left, right) = frame.map_err(RunError::Source)?;
-        // Pictures have at most 4096 columns and rows.
-        let (width, height) = (left.width() as u16, left.height() as u16);
-        let (odometry, smoother) = match &mut begun {
-            Some(begun) => begun,
-            begun @ None => {
-                let odometry = Either::start(rig, OdometryConfig::new(width))?;
-                begun.insert((odometry, Smoother::start(rig, views)?))
-            }
+        let frame = frame.map_err(RunError::Source)?;
+        let run = match &mut begun {
+            Some(run) => run,
+            begun @ None => begun.insert(Run::start(rig, config, &frame.0)?),
         };
-        let corners = features(&plan(), Orientation::Upright, &left)?;
+        let step = run.take(&frame)?;
+        told(&step);
+        if run.has_corrected {
+            continue;
+        }
+        first.push(frame);
+        if first.len() >= ENOUGH && run.is_corrected() || first.len() >= MOST_AGAIN {
+            run.again(rig, config, first.drain(..))?;
+        }
+    }
+    let Some(mut run) = begun else { return Ok(Trajectory::default()) };
+    if !run.has_corrected {
+        run.again(rig, config, first.drain(..))?;
+    }
+    Ok(run.trajectory)
+}
+
+/// Frames from which on a correction is exact enough for those before it, which are then gone through again.
+const ENOUGH: usize = 32;
+/// Frames that are gone through again at most.
+const MOST_AGAIN: usize = 64;
+
+/// A run under way.
+struct Run {
+    odometry: Either,
+    smoother: Option<Smoother>,
+    trajectory: Trajectory,
+    /// Whether the first frames have been gone through again, or need not be.
+    has_corrected: bool,
+}
+
+impl Run {
+    fn start(rig: &Rig, run: RunConfig, left: &GrayImage) -> Result<Self, OdometryRigError> {
+        // Pictures have at most 4096 columns and rows.
+        let RunConfig { views, corrects_rig } = run;
+        let config = OdometryConfig { corrects_rig, ..OdometryConfig::new(left.width() as u16) };
+        Ok(Self {
+            odometry: Either::start(rig, config)?,
+            smoother: Smoother::start(rig, views)?,
+            trajectory: Trajectory::default(),
+            has_corrected: false,
+        })
+    }
+
+    fn is_corrected(&self) -> bool {
+        self.trajectory.rigs.last().is_some_and(|rig| rig.is_applied)
+    }
+
+    /// Goes through the first frames again if the pair is corrected.
+    fn again<E: std::error::Error>(
+        &mut self,
+        rig: &Rig,
+        config: RunConfig,
+        frames: impl Iterator<Item = (GrayImage, Option<GrayImage>)>,
+    ) -> Result<(), RunError<E>> {
+        self.has_corrected = true;
+        if !self.is_corrected() {
+            return Ok(());
+        }
+        if let Either::Stereo(odometry) = &mut self.odometry {
+            odometry.begin_again();
+        }
+        self.smoother = Smoother::start(rig, config.views)?;
+        self.trajectory = Trajectory::default();
+        for frame in frames {
+            self.take(&frame)?;
+        }
+        Ok(())
+    }
+
+    fn take<E: std::error::Error>(
+        &mut self,
+        (left, right): &(GrayImage, Option<GrayImage>),
+    ) -> Result<Step<f64>, RunError<E>> {
+        let (width, height) = (left.width() as u16, left.height() as u16);
+        let corners = features(&plan(), Orientation::Upright, left)?;
         let right = right.as_ref().map(|right| Picture::new(right.as_raw(), width, height)).transpose()?;
         let frame = Frame { left: Picture::new(left.as_raw(), width, height)?, right, features: &corners };
-        let step = odometry.step(&frame)?;
-        told(&step);
-        trajectory.push(step);
-        if let Some(smoother) = smoother {
-            smoother.take(odometry, &mut trajectory);
+        let step = self.odometry.step(&frame)?;
+        self.trajectory.push(step);
+        self.trajectory.rigs.extend(self.odometry.rig());
+        if let Some(smoother) = &mut self.smoother {
+            smoother.take(&self.odometry, &mut self.trajectory);
         }
+        Ok(step)
     }
-    Ok(trajectory)
-}
-
-impl Trajectory {
-    fn push(&mut self, step: Step<f64>) {
-        let last = self.poses.last().copied().unwrap_or_else(Pose::identity);
-        let mut pose = last.then(&step.motion);
-        let gap = self.steps.iter().rev().take_while(|step| is_gap(step.state)).count();
-        if gap > 0 && matches!(step.state, State::Found | State::Tracked) {
-            // The motion since the last known pose: the frames in between lie on the way.
-            let from = self.poses.len() - gap - 1;
-            let start = self.poses[from];
-            for (i, pose_between) in self.poses[from + 1..].iter_mut().enumerate() {
-                *pose_between = between(&start, &pose, (i + 1) as f64 / (gap + 1) as f64);
-            }
-        }
-        if step.state == State::Restarted {
-            // Nothing joins what was before and what comes: as fast as before is the best guess.
-            let known = self.poses.len() - gap.min(self.poses.len());
-            if known >= 2 {
-                let (before, at) = (self.poses[known - 2], self.poses[known - 1]);
-                let motion = before.inverse().then(&at);
-                let mut guess = at;
-                for pose in &mut self.poses[known..] {
-                    guess = guess.then(&motion);
-                    *pose = guess;
-                }
-                pose = guess.then(&motion);
-            }
-        }
-        self.poses.push(pose);
-        self.steps.push(step);
-    }
-
-    /// Puts frame `b` at `pose`, and those since the known frame `a` where they are beside that, or in
-    /// between.
-    fn refine(&mut self, a: usize, b: usize, pose: Pose<f64>) {
-        let start = self.poses[a];
-        for i in a + 1..b {
-            self.poses[i] = if is_gap(self.steps[i].state) {
-                between(&start, &pose, (i - a) as f64 / (b - a) as f64)
-            } else {
-                // Nothing moved.
-                self.poses[i - 1]
-            };
-        }
-        self.poses[b] = pose;
-    }
-
-    /// How many frames are in a state.
-    pub fn count(&self, state: State) -> usize {
-        self.steps.iter().filter(|step| step.state == state).count()
-    }
-
-    /// The length of the way.
-    pub fn length(&self) -> f64 {
-        self.poses.windows(2).map(|pair| (pair[1].translation() - pair[0].translation()).norm()).sum()
-    }
-}
-
-/// Whether a frame's motion is told by a later one.
-fn is_gap(state: State) -> bool {
-    matches!(state, State::Lost | State::Waiting)
 }

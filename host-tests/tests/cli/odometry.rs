@@ -124,12 +124,15 @@ fn states(bench: &Bench, scene: &str, one_camera: bool) -> Vec<String> {
     assert!(run.status.success(), "{}", text(&run.stderr));
     let list = fs::read_to_string(list).expect("states");
     let mut lines = list.lines();
-    assert_eq!(lines.next(), Some("frame,state,points,found,agree,sigma_turn_deg,sigma_step"));
+    assert_eq!(
+        lines.next(),
+        Some("frame,state,points,found,agree,sigma_turn_deg,sigma_step,rig_px,sigma_rig_px")
+    );
     // What is not known of a step has no deviation; nor has one camera that stands still a unit for it.
     let unknown = ["turned", "step_unknown", "waiting", "lost", "restarted"];
     let state = |line: &str| {
         let words: Vec<_> = line.split(',').collect();
-        assert_eq!(words.len(), 7, "{line}");
+        assert_eq!(words.len(), 9, "{line}");
         let no_unit = one_camera && words[1] == "still";
         let known = !(no_unit || unknown.contains(&words[1]));
         assert_eq!(words[6].is_empty(), !known, "{line}");

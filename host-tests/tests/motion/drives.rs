@@ -4,7 +4,7 @@ use crate::support::{mono, stereo};
 use image::GrayImage;
 use stereopsis::motion::odometry::State;
 use stereopsis_host::odometry::error::{Alignment, align, ate, drift, rpe};
-use stereopsis_host::odometry::run::Trajectory;
+use stereopsis_host::odometry::trajectory::Trajectory;
 use stereopsis_host::scene::MovingScene;
 
 fn drive(frames: usize, size: (u16, u16), shutter: f64) -> (MovingScene, Vec<(GrayImage, GrayImage)>) {

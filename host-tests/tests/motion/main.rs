@@ -8,6 +8,7 @@ mod bundle;
 mod degenerate;
 mod drives;
 mod refine;
+mod self_calibration;
 mod support;
 mod templates;
 mod trajectories;

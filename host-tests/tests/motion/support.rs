@@ -4,7 +4,8 @@ use image::GrayImage;
 use nalgebra::{Rotation3, Vector3};
 use std::convert::Infallible;
 use stereopsis::geometry::camera::{Camera, Pose, RectifiedRig};
-use stereopsis_host::odometry::run::{Rig, Trajectory, VIEWS, run};
+use stereopsis_host::odometry::run::{Rig, RunConfig, run};
+use stereopsis_host::odometry::trajectory::Trajectory;
 use stereopsis_host::scene::{MovingScene, Scene};
 
 /// A small picture: what is rendered counts.
@@ -41,12 +42,12 @@ pub fn frames(scene: Scene, path: Vec<Pose<f64>>) -> Vec<(GrayImage, GrayImage)>
 
 pub fn stereo(rig: RectifiedRig, frames: &[(GrayImage, GrayImage)]) -> Trajectory {
     let frames = frames.iter().map(|(left, right)| Ok::<_, Infallible>((left.clone(), Some(right.clone()))));
-    run(&Rig::Stereo(rig), frames, VIEWS, |_| ()).expect("a trajectory")
+    run(&Rig::Stereo(rig), frames, RunConfig::default(), |_| ()).expect("a trajectory")
 }
 
 pub fn mono(rig: RectifiedRig, frames: &[(GrayImage, GrayImage)]) -> Trajectory {
     let frames = frames.iter().map(|(left, _)| Ok::<_, Infallible>((left.clone(), None)));
-    run(&Rig::Mono(camera(&rig)), frames, VIEWS, |_| ()).expect("a trajectory")
+    run(&Rig::Mono(camera(&rig)), frames, RunConfig::default(), |_| ()).expect("a trajectory")
 }
 
 /// The angle between two poses' turns, degrees.

@@ -7,7 +7,7 @@ use stereopsis::motion::odometry::State;
 use stereopsis_host::calibration::Cameras;
 use stereopsis_host::odometry::error::{Alignment, align, ate, drift, rpe};
 use stereopsis_host::odometry::poses;
-use stereopsis_host::odometry::run::{Rig, VIEWS, run};
+use stereopsis_host::odometry::run::{Rig, RunConfig, run};
 use stereopsis_host::odometry::sequence::Sequence;
 
 #[test]
@@ -18,7 +18,7 @@ fn a_street_of_kitti_with_one_camera() {
     let truth = poses::read(&folder.join("poses.txt")).expect("poses");
     let camera = Cameras::open_first(&[folder.join("calib.txt")]).expect("a camera");
     let frames = (0..sequence.len()).map(|i| sequence.frame(i));
-    let found = run(&Rig::Mono(camera), frames, VIEWS, |_| ()).expect("a trajectory");
+    let found = run(&Rig::Mono(camera), frames, RunConfig::default(), |_| ()).expect("a trajectory");
     assert!(found.steps.iter().skip(1).all(|step| step.state == State::Tracked));
 
     let scale = align(&found.poses, &truth, Alignment::Similar).expect("places").scale;

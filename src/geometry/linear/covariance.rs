@@ -2,14 +2,19 @@
 
 use super::ldl::Ldl;
 use crate::geometry::Real;
-use nalgebra::Matrix6;
+use nalgebra::{ArrayStorage, Matrix6};
 
 /// The covariance of six numbers of this information, its inverse; a direction in which nothing is known is
 /// as wide as [`Real::EPSILON`] of what is known along the axes makes it.
 pub(crate) fn covariance6<T: Real>(information: &[[T; 6]; 6]) -> Matrix6<T> {
+    Matrix6::from_array_storage(ArrayStorage(inverse_information(information)))
+}
+
+/// The inverse of the information matrix of N numbers, symmetric, as [`covariance6`].
+pub(crate) fn inverse_information<T: Real, const N: usize>(information: &[[T; N]; N]) -> [[T; N]; N] {
     // At size one along every axis: rotations and steps have units of their own.
     let mut m = *information;
-    let mut scale = [T::ONE; 6];
+    let mut scale = [T::ONE; N];
     for (i, (scale, row)) in scale.iter_mut().zip(information).enumerate() {
         let d = row.get(i).copied().unwrap_or(T::ZERO);
         *scale = T::ONE / d.max(T::of(1e-12)).sqrt();
@@ -17,10 +22,10 @@ pub(crate) fn covariance6<T: Real>(information: &[[T; 6]; 6]) -> Matrix6<T> {
     for (row, &a) in m.iter_mut().zip(&scale) {
         row.iter_mut().zip(&scale).for_each(|(x, &b)| *x *= a * b);
     }
-    let ldl = Ldl::<T, 6>::new(&mut m);
-    let mut out = Matrix6::<T>::zeros();
-    for (i, (column, &a)) in out.data.0.iter_mut().zip(&scale).enumerate() {
-        let mut unit = [T::ZERO; 6];
+    let ldl = Ldl::<T, N>::new(&mut m);
+    let mut out = [[T::ZERO; N]; N];
+    for (i, (column, &a)) in out.iter_mut().zip(&scale).enumerate() {
+        let mut unit = [T::ZERO; N];
         if let Some(one) = unit.get_mut(i) {
             *one = T::ONE;
         }
@@ -28,7 +33,13 @@ pub(crate) fn covariance6<T: Real>(information: &[[T; 6]; 6]) -> Matrix6<T> {
             *to = x * a * b;
         }
     }
-    (out + out.transpose()) * T::of(0.5)
+    let other = out;
+    for (i, row) in out.iter_mut().enumerate() {
+        for (x, column) in row.iter_mut().zip(&other) {
+            *x = (*x + column.get(i).copied().unwrap_or(T::ZERO)) * T::of(0.5);
+        }
+    }
+    out
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 //! * [`null_of_rows`]: the one vector that N - 1 rows leave free, by elimination; [`pencil_of_rows`]: the two
 //!   that N - 2 do. [`rank`]: how many pivots count.
 //! * [`mod@levenberg_marquardt`]: the loop of damped least squares, over any [`LeastSquares`] problem.
-//! * [`covariance6`]: the inverse of an information of six numbers.
+//! * [`covariance6`], [`inverse_information`]: the covariance of numbers as the inverse of their information.
 //! * [`cubic_roots`]: the real roots of a cubic.
 //! * [`Projective`]: the normal equations of `p ~ M q`.
 //! * [`Svd3`]: singular values of a 3x3 matrix, by Jacobi rotations of its columns.
@@ -28,7 +28,7 @@ mod covariance;
 mod projective;
 mod svd3;
 
-pub(crate) use covariance::covariance6;
+pub(crate) use covariance::{covariance6, inverse_information};
 pub(crate) use cubic::cubic_roots;
 pub(crate) use elimination::{null_of_rows, pencil_of_rows, rank};
 pub(crate) use ldl::Ldl;

@@ -1,5 +1,6 @@
 //! Configuration of the odometry and its cameras.
 
+use super::right_columns::RightColumns;
 use crate::geometry::{
     Real,
     camera::{Camera, RectifiedRig},
@@ -12,6 +13,8 @@ pub struct OdometryRig<T: Real> {
     pub(super) camera: Camera<T>,
     /// The baseline, m, and the right camera's column of the principal point, px.
     pub(super) right: Option<(T, T)>,
+    /// What the right camera's columns are off by.
+    pub(super) columns: RightColumns<T>,
 }
 
 /// Why numbers are no rig of an odometry.
@@ -30,7 +33,7 @@ error_text!(OdometryRigError {
 impl<T: Real> OdometryRig<T> {
     /// One camera, whose lens may distort.
     pub const fn one(camera: Camera<T>) -> Self {
-        Self { camera, right: None }
+        Self { camera, right: None, columns: RightColumns::NONE }
     }
 
     /// Two cameras with aligned rows.
@@ -41,7 +44,14 @@ impl<T: Real> OdometryRig<T> {
         let camera = camera.map_err(|_| OdometryRigError::Camera)?;
         // u' = f (X - b) / Z + cx', and doffs = cx' - cx.
         let right_cx = of(cx) + of(rig.disparity_offset_px());
-        Ok(Self { camera, right: Some((of(rig.baseline_m()), right_cx)) })
+        Ok(Self { camera, right: Some((of(rig.baseline_m()), right_cx)), columns: RightColumns::NONE })
+    }
+
+    /// What has to be added to a disparity whose right place is in that column, px.
+    pub(super) fn correction_px(&self, right_x_px: f32) -> f32 {
+        let Some((_, right_cx)) = self.right else { return 0.0 };
+        let x = (T::of(right_x_px.into()) - right_cx) / self.focal();
+        (self.columns.correction(x) * self.focal()).to_f64() as f32
     }
 
     /// The baseline, m; zero of one camera.
@@ -75,6 +85,8 @@ pub struct OdometryConfig {
     pub most_samples: u32,
     /// Seed of the random samples.
     pub seed: u64,
+    /// Whether the right camera is corrected by [`RigEstimate`](super::RigEstimate) once that is sure.
+    pub corrects_rig: bool,
 }
 
 impl OdometryConfig {
@@ -87,11 +99,12 @@ impl OdometryConfig {
         spacing_px: 0.0,
         most_samples: 0,
         seed: 0,
+        corrects_rig: false,
     };
 
     /// For pictures of so many columns: a sixth of them as far as motion goes that is not known, a twentieth
     /// where it is, a quarter as the largest disparity, 0.3 px of noise, 7 px from point to point, 300
-    /// samples.
+    /// samples, and a right camera as calibrated.
     pub const fn new(width: u16) -> Self {
         let wide = width as f32;
         Self {
@@ -102,6 +115,7 @@ impl OdometryConfig {
             spacing_px: 7.0,
             most_samples: 300,
             seed: 0,
+            corrects_rig: false,
         }
     }
 }

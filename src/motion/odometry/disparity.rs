@@ -18,7 +18,9 @@ pub(super) fn disparity<T: Real>(now: &Moment<'_, T>, [x, y]: [f32; 2], expected
     // Columns of both pictures differ by the principal points, too.
     let offset = (right_cx - now.rig.camera.principal_point().0).to_f64() as f32;
     let template = Template::cut(&now.frame.left, x, y).ok()?;
-    let found = template.align(&right, &UPRIGHT, [x - expected + offset, y], ALIGN_PX).ok()?;
+    let start = x - expected + offset;
+    let start = start + now.rig.correction_px(start);
+    let found = template.align(&right, &UPRIGHT, [start, y], ALIGN_PX).ok()?;
     let good = found.correlation > CORRELATED && (found.y_px - y).abs() < ROWS_PX;
-    good.then_some(x - found.x_px + offset)
+    good.then(|| x - found.x_px + offset + now.rig.correction_px(found.x_px))
 }

@@ -9,6 +9,7 @@ use super::motion_test::{MotionTest, test_motion};
 use super::observed::{ObservedPoint, observed_points};
 use super::point_map::PointMap;
 use super::pose_estimate::PointMatch;
+use super::self_calibration::{RigEstimate, SelfCalibration};
 use super::step::{State, Step};
 use super::track::Track;
 use super::tracking::Tracker;
@@ -33,6 +34,7 @@ struct Progress<T: Real> {
     size: (usize, usize),
     frames: u32,
     motion: MotionModel<T>,
+    calibration: SelfCalibration<T>,
 }
 
 /// Follows points from frame to frame, of one camera or of a rectified pair, in borrowed memory: a
@@ -97,6 +99,7 @@ impl<T: Real> OdometryState<T> {
             size: (0, 0),
             frames: 0,
             motion: MotionModel::new(),
+            calibration: SelfCalibration::EMPTY,
         };
         Self { progress, found: 0 }
     }
@@ -160,6 +163,15 @@ impl<'a, T: Real> OdometryView<'a, T> {
         let _ = self.progress.rig.push(rig);
         self.progress.config = config;
         self.progress.frames = 0;
+        self.progress.calibration.reset();
+        self.forget();
+    }
+
+    /// Begins once more with the rig as it is corrected by now: points and motion are forgotten. So may frames
+    /// that came before the correction be gone through again.
+    pub fn begin_again(&mut self) {
+        self.progress.frames = 0;
+        self.progress.calibration.begin_again();
         self.forget();
     }
 
@@ -209,6 +221,7 @@ impl<'a, T: Real> OdometryView<'a, T> {
                     self.map.update(&now, &self.tracker.matches, &solved.pose, &covariance);
                     self.progress.motion.rebase(&solved.pose, motion);
                     self.map.add_new(&now);
+                    self.calibrate(&now, &motion);
                 }
                 Step { motion, covariance, state, points, found, inliers: solved.kept, residual }
             }
@@ -234,6 +247,7 @@ impl<'a, T: Real> OdometryView<'a, T> {
     fn first(&mut self, now: &Moment<'_, T>) -> Step<T> {
         self.forget();
         self.map.add_new(now);
+        self.anchor();
         Step { covariance: Matrix6::zeros(), points: self.map.len(), ..Step::none(State::First) }
     }
 
@@ -243,9 +257,28 @@ impl<'a, T: Real> OdometryView<'a, T> {
         if self.progress.motion.lose() {
             self.forget();
             self.map.add_new(now);
+            self.anchor();
             state = State::Restarted;
         }
         Step { points: self.map.len(), found: self.tracker.matches.len(), ..Step::none(state) }
+    }
+
+    /// Compares this view with the one that its points are anchored in.
+    fn calibrate(&mut self, now: &Moment<'_, T>, motion: &Pose<T>) {
+        let Some(rig) = self.progress.rig.first_mut() else { return };
+        self.progress.calibration.step(now, rig, self.map.tracks, &self.tracker.matches, motion);
+    }
+
+    /// All points are new.
+    fn anchor(&mut self) {
+        let Some(rig) = self.progress.rig.first().filter(|rig| rig.right.is_some()) else { return };
+        self.progress.calibration.anchor(rig, &rig.columns, self.map.tracks, &[]);
+    }
+
+    /// How the pair differs from its calibration; `None` of one camera.
+    pub fn rig_estimate(&self) -> Option<RigEstimate<T>> {
+        let rig = self.progress.rig.first().filter(|rig| rig.right.is_some())?;
+        Some(self.progress.calibration.estimate(rig))
     }
 
     /// The points that the last frame saw and that agree with its pose, then its new ones.

@@ -19,14 +19,17 @@
 //! 5. `inverse_depth`: what was seen makes the points surer; they move into the new camera's frame.
 //! 6. `point_map`: new points where there are none, by the right picture at once, of one camera with a depth
 //!    that is not known yet.
-//! 7. `initialization`: of one camera, the first two views: their essential matrix, and with it the unit of
+//! 7. `self_calibration`: what the right camera's columns are off by, from `two_views` of the same points at a
+//!    time; the rig is corrected by it when [`OdometryConfig::corrects_rig`] says so.
+//! 8. `initialization`: of one camera, the first two views: their essential matrix, and with it the unit of
 //!    length.
-//! 8. `sliding_window`: who holds a [`Refinement`] beside it has the last views adjusted together with each
+//! 9. `sliding_window`: who holds a [`Refinement`] beside it has the last views adjusted together with each
 //!    new one, by what `observed` says.
 //!
 //! [`StereoOdometry`] gives metres; [`MonocularOdometry`] lengths without a unit, each an [`Unscaled`] number
 //! of first baselines.
 
+mod right_columns;
 mod config;
 mod frame;
 mod step;
@@ -39,6 +42,8 @@ mod disparity;
 mod pose_estimate;
 mod point_map;
 mod tracking;
+mod two_views;
+mod self_calibration;
 mod initialization;
 mod motion_test;
 mod observed;
@@ -52,6 +57,7 @@ pub use frame::{Frame, OdometryError};
 pub use observed::ObservedPoint;
 pub use pose_estimate::PointMatch;
 pub use scale::{MonocularOdometry, StereoOdometry, Unscaled};
+pub use self_calibration::RigEstimate;
 pub use sliding_window::{Refinement, RefinementConfig};
 pub use step::{State, Step};
 pub use track::Track;

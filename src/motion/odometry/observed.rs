@@ -35,7 +35,7 @@ pub(super) fn observed_points<'a, T: Real>(
         let (name, pixel) = ((slot, track.lives), Point2::new(x, y));
         ObservedPoint { name, pixel, disparity_px: disparity.map(|d| d * focal), inverse: track.point.at }
     };
-    let is_seen = |track: &&Track<T>| track.used && track.missed == 0;
+    let is_seen = |track: &&Track<T>| track.is_followed();
     let followed = matches.iter().filter_map(move |found| {
         let track = tracks.get(usize::from(found.owner)).filter(is_seen).filter(|track| track.seen > 1)?;
         Some(point(found.owner, track, found.observation.in_right.then_some(found.observation.at.z)))

@@ -188,7 +188,8 @@ fn new_track<T: Real>(now: &Moment<'_, T>, feature: &Feature, usual: T) -> Optio
             if along.correlation < CORRELATED || !clear {
                 return None;
             }
-            let disparity = disparity(now, pixel, here - along.x_px)?;
+            let expected = here - along.x_px + rig.correction_px(along.x_px);
+            let disparity = disparity(now, pixel, expected)?;
             let r = T::of(disparity.into()) / (rig.focal() * baseline);
             let variance = sigma * sigma;
             let of_depth = variance / (baseline * baseline);

@@ -4,6 +4,7 @@ use super::config::{OdometryConfig, OdometryRig, OdometryRigError};
 use super::engine::{OdometryMemory, OdometryView};
 use super::frame::{Frame, OdometryError};
 use super::observed::ObservedPoint;
+use super::self_calibration::RigEstimate;
 use super::step::Step;
 use crate::geometry::{
     Real,
@@ -68,6 +69,16 @@ impl<T: Real, const N: usize> StereoOdometry<T, N> {
     /// The next frame, see [`OdometryView::step`].
     pub fn step(&mut self, frame: &Frame<'_>) -> Result<Step<T>, OdometryError> {
         self.as_mut_view().step(frame)
+    }
+
+    /// Begins once more with the rig as it is corrected by now, see [`OdometryView::begin_again`].
+    pub fn begin_again(&mut self) {
+        self.as_mut_view().begin_again();
+    }
+
+    /// How the pair differs from its calibration, see [`OdometryView::rig_estimate`].
+    pub fn rig_estimate(&mut self) -> Option<RigEstimate<T>> {
+        self.as_mut_view().rig_estimate()
     }
 
     /// What the last frame saw, see [`OdometryView::observed_points`]: metres.

@@ -3,6 +3,7 @@
 use super::inverse_depth::InversePoint;
 use crate::features::{Descriptor, Template};
 use crate::geometry::Real;
+use nalgebra::Vector3;
 
 /// A point with what it looks like.
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +32,8 @@ pub struct Track<T: Real> {
     pub(super) used: bool,
     /// How many points had this place before.
     pub(super) lives: u16,
+    /// What both cameras saw of it in the view that self-calibration compares with.
+    pub(super) anchor: Option<Vector3<T>>,
 }
 
 /// The warp of a patch that is neither turned nor scaled.
@@ -58,7 +61,13 @@ impl<T: Real> Track<T> {
         wrong: 0,
         used: false,
         lives: 0,
+        anchor: None,
     };
+
+    /// Whether the last frame sees it where it is expected.
+    pub(super) fn is_followed(&self) -> bool {
+        self.used && self.missed == 0
+    }
 
     /// Whether the depth is known to a share of itself.
     pub(super) fn is_deep(&self, share: f64) -> bool {

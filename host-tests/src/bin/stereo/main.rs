@@ -42,6 +42,7 @@ mod rectified;
 mod rectify;
 mod replay;
 mod results;
+mod rig;
 mod scale;
 mod settings;
 mod shared;

@@ -5,6 +5,7 @@ use crate::input::fits;
 use crate::look::refuse_swapped;
 use crate::place::{Content, Place};
 use crate::progress::Progress;
+use crate::rig::{rig_line, warn_of};
 use crate::shared::{Unit, print, whole};
 use clap::Args;
 use image::GrayImage;
@@ -21,8 +22,9 @@ use stereopsis_host::command_line::one_line;
 use stereopsis_host::odometry::error::{Alignment, align, ate, drift, rpe};
 use stereopsis_host::odometry::picture::svg;
 use stereopsis_host::odometry::poses;
-use stereopsis_host::odometry::run::{MOST_VIEWS, Rig, Trajectory, VIEWS, run as follow};
+use stereopsis_host::odometry::run::{MOST_VIEWS, Rig, RunConfig, VIEWS, run as follow};
 use stereopsis_host::odometry::sequence::{Sequence, SequenceError};
+use stereopsis_host::odometry::trajectory::Trajectory;
 use stereopsis_host::rectify::{RectifyPicturesError, rectify};
 use stereopsis_host::scene::SceneCamera;
 
@@ -57,6 +59,9 @@ pub struct OdometryArgs {
     #[arg(long, value_name = "N", default_value_t = VIEWS as u16, value_parser = window,
         allow_negative_numbers = true)]
     pub window: u16,
+    /// Leave a pair as calibrated also where its points' motion shows that it is off
+    #[arg(long)]
+    pub keep_rig: bool,
     /// File for the poses
     #[arg(long, value_name = "poses.txt")]
     pub out: PathBuf,
@@ -116,7 +121,8 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
     }
     let progress = Progress::over_frames(sequence.len());
     let frames = (0..sequence.len()).map(|i| frame(&sequence, cameras.rectification.as_ref(), i));
-    let trajectory = follow(&cameras.rig, frames, args.window.into(), |_| progress.one_more())?;
+    let config = RunConfig { views: args.window.into(), corrects_rig: !args.keep_rig };
+    let trajectory = follow(&cameras.rig, frames, config, |_| progress.one_more())?;
     drop(progress);
 
     let unit = if sequence.is_stereo() { "m" } else { "first baselines" };
@@ -126,9 +132,10 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
     };
     let mut others: Vec<(&Place, Content<'_>)> = Vec::new();
     others.extend(picture.as_ref().map(|place| (place, Box::new(draw) as Content<'_>)));
-    let list = |out: &mut dyn io::Write| poses::write_states(out, &trajectory.steps);
+    let list = |out: &mut dyn io::Write| poses::write_states(out, &trajectory.steps, &trajectory.rigs);
     others.extend(states.as_ref().map(|place| (place, Box::new(list) as Content<'_>)));
     place.write_all(|out| poses::write(out, &trajectory.poses), others)?;
+    warn_of(trajectory.rigs.last(), args.calib.first().map_or(Path::new(""), PathBuf::as_path));
     print(&summary(args, &sequence, &cameras, &trajectory, truth.as_deref()))
 }
 
@@ -239,6 +246,9 @@ fn summary(
         .map(|(count, name)| format!("{count} {name}"))
         .collect();
     let _ = writeln!(text, "frames       {}", counted.join(", "));
+    if let Some(rig) = trajectory.rigs.last() {
+        let _ = writeln!(text, "{}", rig_line(rig));
+    }
     let unit = if sequence.is_stereo() { "m" } else { "first baselines (the unit of length is not known)" };
     let _ = writeln!(text, "way          {:.3} {unit}", trajectory.length());
     if let Some(truth) = truth {

@@ -11,6 +11,7 @@ mod cameras;
 mod chain;
 mod estimates;
 mod extremes;
+mod known_cameras;
 mod landmarks;
 mod lecture;
 mod matrices;

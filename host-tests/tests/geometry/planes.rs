@@ -1,10 +1,11 @@
 //! Homographies: estimated, taken apart into poses, and chosen where they are the answer.
 
-use crate::views::{Views, anywhere, nearby, noisy, seeded};
+use crate::views::{Views, anywhere, mixed, nearby, noisy, seeded};
 use nalgebra::{Point2, Point3, Rotation3, Vector3};
 use proptest::prelude::*;
 use stereopsis::geometry::{
     camera::Pose,
+    robust::{RobustConfig, RobustError, robust_fundamental},
     two_view::{EightPointError, Homography, HomographyError, TwoViewModel, choose},
 };
 use stereopsis_host::scene::Random;
@@ -107,4 +108,40 @@ fn what_has_no_model_is_refused() {
     assert_eq!(Homography::from_correspondences(&line.seen[..4]), Err(HomographyError::Line));
     let repeated: Vec<_> = views.seen[..3].iter().cycle().take(12).copied().collect();
     assert_eq!(Homography::from_correspondences(&repeated), Err(HomographyError::Repeated));
+}
+
+#[test]
+fn a_dominant_plane_gives_f_by_what_is_off_it_or_is_named() {
+    // The mean distance of exact points, on the plane and off it, to the lines of F; a plane is a right answer
+    // where next to nothing is off it.
+    for share in [0.05, 0.1, 0.2] {
+        let (mut off, mut named) = (Vec::new(), 0);
+        for seed in 0..20 {
+            let mut random = Random::new(seed);
+            let pose = nearby(&mut random);
+            let all = Views::of(&mut random, 200, pose, |random: &mut Random| {
+                let mut number = |size: f64| size * (2.0 * random.unit() - 1.0);
+                let (x, y) = (number(3.0), number(2.0));
+                let plane = 7.0 + 0.3 * x;
+                let depth = if (number(0.5) + 0.5) < share { plane + number(2.5) } else { plane };
+                Point3::new(x, y, depth)
+            });
+            let (seen, _): (Vec<_>, Vec<_>) = mixed(&all.seen, 0.3, 0.2, seed).into_iter().unzip();
+            let config = RobustConfig { seed, ..RobustConfig::new(1.0) };
+            match robust_fundamental(&seen, &config, &mut vec![false; seen.len()]) {
+                Ok(found) => {
+                    let lines = all.seen.iter().map(|s| found.fundamental.symmetric_px(s));
+                    off.push(lines.sum::<f64>() / all.seen.len() as f64);
+                }
+                Err(error) => {
+                    assert_eq!(error, RobustError::Plane, "{seed}");
+                    named += 1;
+                }
+            }
+        }
+        off.sort_by(f64::total_cmp);
+        println!("{share}: {named} named, the others {off:.2?} px off");
+        assert!(off.last().is_none_or(|&worst| worst < 3.0), "{share}: {named} named, {off:.2?}");
+        assert!(share < 0.2 || named <= 2, "{share}: {named} named");
+    }
 }

@@ -26,17 +26,26 @@ pub(crate) fn pencil_of_rows<T: Real, const M: usize, const N: usize>(
     rows: &mut [[T; N]; M],
 ) -> ([[T; N]; 2], [T; M]) {
     const { assert!(M + 2 == N, "two rows less than unknowns") };
+    basis_of_rows(rows)
+}
+
+/// K vectors of length one that span what M = N - K rows leave free, and the pivots.
+#[inline]
+pub(crate) fn basis_of_rows<T: Real, const M: usize, const N: usize, const K: usize>(
+    rows: &mut [[T; N]; M],
+) -> ([[T; N]; K], [T; M]) {
+    const { assert!(M + K == N, "K rows less than unknowns") };
     let (mut pivots, mut places) = ([T::ZERO; M], [0; M]);
     eliminate(rows, &mut pivots, &mut places);
-    let mut both = [[T::ZERO; N]; 2];
+    let mut all = [[T::ZERO; N]; K];
     let mut free = (0..N).filter(|place| !places.contains(place));
-    for x in &mut both {
+    for x in &mut all {
         if let Some(slot) = free.next().and_then(|place| x.get_mut(place)) {
             *slot = T::ONE;
         }
         solve(rows, &pivots, &places, x);
     }
-    (both, pivots)
+    (all, pivots)
 }
 
 /// Makes every row's largest element its pivot and zero in all rows below. Nothing is swapped: whole rows are

@@ -1,15 +1,109 @@
-//! The essential matrix by the least robust loss of Sampson's distances.
+//! The essential matrix of known cameras from correspondences with outliers, by samples of five.
 
+use super::config::RobustConfig;
 use super::factored::Factored;
 use super::frame::Frame;
+use super::fundamental::{RobustError, check};
 use super::loss::Biweight;
+use super::ransac::{Estimator, ransac};
 use super::refine::{Matrix, refine};
+use super::search::Search;
 use crate::geometry::Real;
 use crate::geometry::camera::Camera;
-use crate::geometry::two_view::{Correspondence, Essential, EssentialError};
+use crate::geometry::two_view::{Correspondence, Essential, EssentialError, Fundamental, five_point};
+use nalgebra::Matrix3;
 
 /// Steps of the refinement at most.
 const STEPS: usize = 20;
+
+/// Correspondences of a sample.
+const SAMPLE: usize = 5;
+
+/// An essential matrix, and how sure it is.
+#[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct RobustEssential<T: Real> {
+    /// E.
+    pub essential: Essential<T>,
+    /// How many correspondences are within the threshold.
+    pub inliers: usize,
+    /// Root mean square of their Sampson distances, px.
+    pub rms_px: T,
+    /// Samples of five that were drawn.
+    pub samples: u32,
+    /// The probability that an estimate with as many inliers was missed: `(1 - w^5)^k` for the share w of
+    /// inliers and k samples.
+    pub miss_probability: T,
+}
+
+/// The essential matrix of correspondences in undistorted px ([`Camera::undistort`]) of two known cameras, some
+/// of them wrong; `inliers` says which agree with it.
+///
+/// As [`robust_fundamental`](crate::geometry::robust::robust_fundamental), with samples of five (Nister 2004)
+/// in place of seven: fewer are needed, a plane leaves nothing open but a second camera that sees it as well,
+/// and no F is ruled out because it is no E. Each best estimate is refined over its five numbers on the way.
+/// Bounded by [`RobustConfig::most_samples`], of some 70 000 operations each and ten candidates at most. The
+/// samples are solved in `f64`, also for `f32`.
+///
+/// Like the errors of F, those of E ask for eight correspondences, so that more than a sample agrees.
+pub fn robust_essential<T: Real>(
+    seen: &[Correspondence<T>],
+    first: &Camera<T>,
+    second: &Camera<T>,
+    config: &RobustConfig<T>,
+    inliers: &mut [bool],
+) -> Result<RobustEssential<T>, RobustError> {
+    let inliers = check(seen, config, inliers)?;
+    let frames = [Frame::of_camera(first), Frame::of_camera(second)];
+    let mut search = Search::<T, SAMPLE>::new(Matrix::Essential, seen, frames, config);
+    let samples = ransac(&mut search, config.most_samples);
+    let best = search.best.ok_or(RobustError::NoAgreement)?;
+    let loss = Biweight::new(config.threshold_px);
+    let best = refine(best, Matrix::Essential, seen, &frames, loss, (1, STEPS));
+    let essential = Essential::nearest(&best.matrix()).map_err(|_| RobustError::NoAgreement)?;
+    let fundamental = Fundamental::from_essential(&essential, first, second);
+    let most = config.threshold_px * config.threshold_px;
+    let (mut count, mut sum) = (0, T::ZERO);
+    for (inlier, s) in inliers.iter_mut().zip(seen) {
+        let squared = fundamental.sampson_squared_px2(s);
+        *inlier = squared <= most;
+        if *inlier {
+            count += 1;
+            sum += squared;
+        }
+    }
+    if count <= SAMPLE || !sum.is_finite() {
+        return Err(RobustError::NoAgreement);
+    }
+    let rms_px = (sum / T::count(count)).sqrt();
+    Ok(RobustEssential { essential, inliers: count, rms_px, samples, miss_probability: search.missed })
+}
+
+impl<'a, T: Real> Estimator<SAMPLE> for Search<'a, T, SAMPLE> {
+    type Model = Matrix3<T>;
+
+    fn draw(&mut self, drawn: u32) -> [usize; SAMPLE] {
+        self.sampler.next(drawn)
+    }
+
+    fn models(&self, sample: &[usize; SAMPLE]) -> impl Iterator<Item = Matrix3<T>> + use<'a, T> {
+        let [first, second] = self.frames;
+        let sample = self.at(sample).map(|seen| seen.map(|s| (first.apply(s.first), second.apply(s.second))));
+        // By their places: the iterator of the vector itself can panic, as far as the compiler sees.
+        let candidates = sample.map(|rays| five_point(&rays)).unwrap_or_default();
+        (0..candidates.len()).map_while(move |i| candidates.get(i).copied())
+    }
+
+    fn consider(&mut self, model: &Matrix3<T>, _sample: &[usize; SAMPLE]) {
+        let f = self.in_pixels(model);
+        self.compare(&f);
+    }
+
+    fn is_enough(&mut self, drawn: u32) -> bool {
+        self.has_enough(drawn)
+    }
+}
 
 impl<T: Real> Essential<T> {
     /// The essential matrix near this one that makes Sampson's distances least, px, over the five numbers

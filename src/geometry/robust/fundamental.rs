@@ -105,25 +105,9 @@ pub fn robust_fundamental<T: Real>(
     config: &RobustConfig<T>,
     inliers: &mut [bool],
 ) -> Result<RobustFundamental<T>, RobustError> {
-    let n = seen.len();
-    if n < 8 {
-        return Err(RobustError::TooFew);
-    }
-    if !(config.threshold_px > T::ZERO && config.threshold_px.is_finite()) {
-        return Err(RobustError::Threshold);
-    }
-    if !(config.miss_probability > T::ZERO && config.miss_probability < T::ONE) {
-        return Err(RobustError::MissProbability);
-    }
-    if config.most_samples == 0 {
-        return Err(RobustError::NoSamples);
-    }
-    let inliers = inliers.get_mut(..n).ok_or(RobustError::Inliers(n))?;
-    if !seen.iter().all(Correspondence::is_finite) {
-        return Err(RobustError::NotFinite);
-    }
+    let inliers = check(seen, config, inliers)?;
     let frames = Frame::of_points(seen).ok_or(RobustError::NoAgreement)?;
-    let mut search = Search::new(seen, frames, config);
+    let mut search = Search::new(Matrix::Fundamental, seen, frames, config);
     let samples = ransac(&mut search, config.most_samples);
     if let Some(plane) = search.only_plane() {
         for (inlier, s) in inliers.iter_mut().zip(seen) {
@@ -156,4 +140,30 @@ pub fn robust_fundamental<T: Real>(
         samples,
         miss_probability: search.missed,
     })
+}
+
+/// Refuses what no search can be made of, and cuts the inliers to as many as there are correspondences.
+pub(super) fn check<'a, T: Real>(
+    seen: &[Correspondence<T>],
+    config: &RobustConfig<T>,
+    inliers: &'a mut [bool],
+) -> Result<&'a mut [bool], RobustError> {
+    let n = seen.len();
+    if n < 8 {
+        return Err(RobustError::TooFew);
+    }
+    if !(config.threshold_px > T::ZERO && config.threshold_px.is_finite()) {
+        return Err(RobustError::Threshold);
+    }
+    if !(config.miss_probability > T::ZERO && config.miss_probability < T::ONE) {
+        return Err(RobustError::MissProbability);
+    }
+    if config.most_samples == 0 {
+        return Err(RobustError::NoSamples);
+    }
+    let inliers = inliers.get_mut(..n).ok_or(RobustError::Inliers(n))?;
+    if !seen.iter().all(Correspondence::is_finite) {
+        return Err(RobustError::NotFinite);
+    }
+    Ok(inliers)
 }

@@ -8,7 +8,7 @@
 //! * `loss`: the weight and the gain of a residual (Tukey's biweight).
 //! * `frame`, `factored`, `refine`: F or E with the least robust loss, by Levenberg-Marquardt.
 //! * `plane`, `search`, `parallax`: the search for F in scenes with a dominant plane (DEGENSAC).
-//! * `fundamental`, `essential`: F, and E of known cameras.
+//! * `fundamental`, `essential`: F by samples of seven, and E of known cameras by samples of five.
 //! * `reprojection`, `resection`: the pose from landmarks (PnP).
 //!
 //! Every loop is bounded, nothing is allocated; what is held besides the caller's slices is a few hundred
@@ -32,6 +32,7 @@ mod reprojection;
 mod resection;
 
 pub use config::{RobustConfig, Sampling};
+pub use essential::{RobustEssential, robust_essential};
 pub use fundamental::{RobustError, RobustFundamental, robust_fundamental};
 pub(crate) use loss::weight_and_gain;
 pub use resection::{RobustResection, RobustResectionError, robust_resection};

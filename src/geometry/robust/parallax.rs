@@ -14,7 +14,7 @@ const TRIPLETS: u32 = 12;
 /// What is as near to a plane as so many thresholds is on it.
 const ON_PLANE: f64 = 2.0;
 
-impl<T: Real> Search<'_, T> {
+impl<T: Real> Search<'_, T, MINIMUM> {
     /// How near to a plane is on it, px squared.
     pub(super) fn on_plane_px2(&self) -> T {
         self.loss.width_squared * T::of(ON_PLANE * ON_PLANE)

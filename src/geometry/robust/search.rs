@@ -25,12 +25,13 @@ pub(super) const ENOUGH: usize = 150;
 /// Samples that are drawn at least.
 const FEWEST: u32 = 16;
 
-/// The best estimate so far and how it was come by.
-pub(super) struct Search<'a, T: Real> {
+/// The best estimate so far and how it was come by, from samples of K.
+pub(super) struct Search<'a, T: Real, const K: usize> {
+    kind: Matrix,
     pub(super) seen: &'a [Correspondence<T>],
     pub(super) frames: [Frame<T>; 2],
     pub(super) loss: Biweight<T>,
-    pub(super) sampler: Sampler<MINIMUM>,
+    pub(super) sampler: Sampler<K>,
     sprt: Sprt<T>,
     stride: usize,
     miss_probability: T,
@@ -42,14 +43,16 @@ pub(super) struct Search<'a, T: Real> {
     pub(super) missed: T,
 }
 
-impl<'a, T: Real> Search<'a, T> {
-    /// Eight correspondences at least.
+impl<'a, T: Real, const K: usize> Search<'a, T, K> {
+    /// More correspondences than a sample has.
     pub(super) fn new(
+        kind: Matrix,
         seen: &'a [Correspondence<T>],
         frames: [Frame<T>; 2],
         config: &RobustConfig<T>,
     ) -> Self {
         Self {
+            kind,
             seen,
             frames,
             loss: Biweight::new(config.threshold_px),
@@ -64,12 +67,12 @@ impl<'a, T: Real> Search<'a, T> {
         }
     }
 
-    /// `(1 - w^7)^k`: the probability that none of k samples held correspondences of the best estimate alone,
+    /// `(1 - w^K)^k`: the probability that none of k samples held correspondences of the best estimate alone,
     /// w being their share.
     fn miss(&self, drawn: u32) -> T {
         let (mut kept, mut all, mut all_good) =
             (T::count(self.score.inliers), T::count(self.seen.len()), T::ONE);
-        for _ in 0..MINIMUM {
+        for _ in 0..K {
             all_good *= kept.max(T::ZERO) / all;
             (kept, all) = (kept - T::ONE, all - T::ONE);
         }
@@ -85,9 +88,15 @@ impl<'a, T: Real> Search<'a, T> {
         missed
     }
 
+    /// Whether a better estimate is as unlikely after `drawn` samples as was asked.
+    pub(super) fn has_enough(&mut self, drawn: u32) -> bool {
+        self.missed = self.miss(drawn);
+        drawn >= FEWEST && !(self.missed > self.miss_probability)
+    }
+
     /// The correspondences at those places.
-    fn at(&self, places: &[usize; MINIMUM]) -> Option<[Correspondence<T>; MINIMUM]> {
-        let mut sample = [*self.seen.first()?; MINIMUM];
+    pub(super) fn at(&self, places: &[usize; K]) -> Option<[Correspondence<T>; K]> {
+        let mut sample = [*self.seen.first()?; K];
         for (slot, &place) in sample.iter_mut().zip(places) {
             *slot = *self.seen.get(place)?;
         }
@@ -107,7 +116,7 @@ impl<'a, T: Real> Search<'a, T> {
 
     /// Makes an estimate (px) the best one, after it was refined, when it is better than that before; whether
     /// it is.
-    fn compare(&mut self, f: &Matrix3<T>) -> bool {
+    pub(super) fn compare(&mut self, f: &Matrix3<T>) -> bool {
         let order = self.order();
         let Some(score) = self.sprt.score(f, self.seen, self.loss, self.raw_gain * T::of(NEARLY), order)
         else {
@@ -123,12 +132,15 @@ impl<'a, T: Real> Search<'a, T> {
         let in_frames =
             product(&product(&self.frames[0].inverse().transpose(), f), &self.frames[1].inverse());
         let Some(mut refined) = Factored::new(&in_frames) else { return false };
+        if self.kind == Matrix::Essential {
+            refined = refined.essential();
+        }
         // From far to near: what a sample of seven makes of its noise is a few thresholds off elsewhere. Some
         // of the correspondences are enough for that: the last estimate is refined by all.
         let every = self.seen.len() / ENOUGH;
         for (wider, steps) in [(T::of(2.5), 3), (T::ONE, 3)] {
             let loss = self.loss.widened(wider);
-            refined = refine(refined, Matrix::Fundamental, self.seen, &self.frames, loss, (every, steps));
+            refined = refine(refined, self.kind, self.seen, &self.frames, loss, (every, steps));
         }
         let (f, order) = (self.in_pixels(&refined.matrix()), self.order());
         // Without a best one nothing is dropped.
@@ -140,7 +152,7 @@ impl<'a, T: Real> Search<'a, T> {
     }
 }
 
-impl<'a, T: Real> Estimator<MINIMUM> for Search<'a, T> {
+impl<'a, T: Real> Estimator<MINIMUM> for Search<'a, T, MINIMUM> {
     type Model = Matrix3<T>;
 
     fn draw(&mut self, drawn: u32) -> [usize; MINIMUM] {
@@ -167,8 +179,7 @@ impl<'a, T: Real> Estimator<MINIMUM> for Search<'a, T> {
     }
 
     fn is_enough(&mut self, drawn: u32) -> bool {
-        self.missed = self.miss(drawn);
-        drawn >= FEWEST && !(self.missed > self.miss_probability)
+        self.has_enough(drawn)
     }
 }
 

@@ -9,10 +9,10 @@ use serde::Serialize;
 use std::path::PathBuf;
 use stereopsis::geometry::{
     camera::Camera,
-    robust::{RobustConfig, RobustError, robust_fundamental},
+    robust::{RobustConfig, RobustError, robust_essential, robust_fundamental},
     two_view::{
-        Correspondence, EightPointError, Essential, Fundamental, Homography, PlaneMotionError, TwoViewModel,
-        TwoViews, choose, eight_point,
+        Correspondence, EightPointError, Essential, Fundamental, Homography, PlaneMotionError, RelativePose,
+        TwoViewModel, TwoViews, choose, eight_point,
     },
 };
 use stereopsis_host::calibration::Cameras;
@@ -25,8 +25,8 @@ pub const EXAMPLE: &str = "Example:
 Written is one JSON object: essential (3x3 in rows), rotation and translation (a point P' of the second \
                            camera is R P' + t in the first; t has length one, for the scale is not in the \
                            matches), points (in the first camera, the baseline is one; null where a match \
-                           is wrong or its sights are parallel), inliers, and model: fundamental, or \
-                           homography when what was seen is on a plane.";
+                           is wrong or its sights are parallel), inliers, and model: essential (samples of \
+                           five), fundamental, or homography when what was seen is on a plane.";
 
 #[derive(Debug, Args)]
 pub struct PoseArgs {
@@ -57,10 +57,7 @@ struct Answer {
 }
 
 /// A start for the refinement, and which model it comes from.
-struct Start {
-    essential: Vec<Essential<f64>>,
-    model: &'static str,
-}
+type Start = (Essential<f64>, &'static str);
 
 pub fn run(args: &PoseArgs) -> Result<(), Failure> {
     let seen = read_matches(&args.matches)?;
@@ -79,6 +76,16 @@ pub fn run(args: &PoseArgs) -> Result<(), Failure> {
     ))
 }
 
+/// A pose with what it leaves.
+struct Found {
+    in_front: usize,
+    rms: f64,
+    essential: Essential<f64>,
+    pose: RelativePose<f64>,
+    inliers: Vec<bool>,
+    model: &'static str,
+}
+
 fn solve(
     seen: &[Correspondence<f64>],
     cameras: &Cameras,
@@ -86,10 +93,15 @@ fn solve(
 ) -> Result<(Answer, f64), String> {
     let (first, second) = (pinhole(&cameras.first)?, pinhole(&cameras.second)?);
     let seen = undistorted(seen, cameras)?;
-    let Start { essential, model } = start(&seen, &first, &second, args)?;
-    let mut best: Option<(usize, f64, _, _, Vec<bool>)> = None;
+    let mut starts = start(&seen, &first, &second, args)?;
+    if args.method == TwoViewMethod::Ransac {
+        let config = RobustConfig { seed: args.seed, ..RobustConfig::new(args.threshold) };
+        let found = robust_essential(&seen, &first, &second, &config, &mut vec![false; seen.len()]);
+        starts.extend(found.map(|found| (found.essential, "essential")));
+    }
+    let mut best: Option<Found> = None;
     let mut why = "no pose".to_owned();
-    for essential in essential {
+    for (essential, model) in starts {
         let refined = match args.method {
             // Every match counts alike, however far off it is.
             TwoViewMethod::EightPoint => Ok(essential),
@@ -103,14 +115,15 @@ fn solve(
         let rms = (squares / kept().count().max(1) as f64).sqrt();
         match refined.recover_pose(kept(), &first, &second) {
             Ok(found) => {
-                if best.as_ref().is_none_or(|(in_front, ..)| found.in_front > *in_front) {
-                    best = Some((found.in_front, rms, refined, found.pose, inliers));
+                if best.as_ref().is_none_or(|best| found.in_front > best.in_front) {
+                    let (in_front, pose) = (found.in_front, found.pose);
+                    best = Some(Found { in_front, rms, essential: refined, pose, inliers, model });
                 }
             }
             Err(e) => why = e.to_string(),
         }
     }
-    let (_, rms, essential, pose, inliers) = best.ok_or(why)?;
+    let Found { rms, essential, pose, inliers, model, .. } = best.ok_or(why)?;
     let in_baselines = pose.in_baselines();
     let views = TwoViews::new(first, second, in_baselines).map_err(|e| e.to_string())?;
     let point = |(s, &inlier): (&Correspondence<f64>, &bool)| {
@@ -134,7 +147,7 @@ fn start(
     first: &Camera<f64>,
     second: &Camera<f64>,
     args: &RobustArgs,
-) -> Result<Start, String> {
+) -> Result<Vec<Start>, String> {
     let mut inliers = vec![true; seen.len()];
     let found = match args.method {
         TwoViewMethod::EightPoint => match eight_point(seen) {
@@ -168,7 +181,7 @@ fn start(
     match (homography, found) {
         (None, Some(f)) => {
             let essential = Essential::from_fundamental(&f, first, second).map_err(|e| e.to_string())?;
-            Ok(Start { essential: vec![essential], model: "fundamental" })
+            Ok(vec![(essential, "fundamental")])
         }
         (None, None) => Err("no model fits".to_owned()),
         (Some(h), _) => {
@@ -179,9 +192,8 @@ fn start(
                 e => e.to_string(),
             })?;
             let poses = motions.iter().filter_map(|(motion, _)| motion.relative_pose());
-            let essential =
-                poses.filter_map(|pose| Essential::from_pose(&pose.in_baselines()).ok()).collect();
-            Ok(Start { essential, model: "homography" })
+            let essential = poses.filter_map(|pose| Essential::from_pose(&pose.in_baselines()).ok());
+            Ok(essential.map(|essential| (essential, "homography")).collect())
         }
     }
 }

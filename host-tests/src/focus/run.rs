@@ -93,6 +93,19 @@ impl FocusResult {
         self.peaks.iter().map(|peak| peak.map_or(f32::INFINITY, |peak| peak.position() + 1.0)).collect()
     }
 
+    /// The same where frames were left out: `numbers` has for each frame of the map its number in the stack.
+    /// Between two of them lies what lies between their numbers.
+    pub fn index_in(&self, numbers: &[usize]) -> Vec<f32> {
+        let number = |peak: &Result<FocusPeak, NoFocus>| {
+            let position = peak.as_ref().ok()?.position();
+            let before = (position as usize).min(numbers.len().checked_sub(1)?);
+            let after = (before + 1).min(numbers.len() - 1);
+            let (a, b) = (numbers[before] as f32, numbers[after] as f32);
+            Some(a + (b - a) * (position - before as f32))
+        };
+        self.peaks.iter().map(|peak| number(peak).unwrap_or(f32::INFINITY)).collect()
+    }
+
     /// How sure that is, 0 to 1; 0 where there is no answer.
     pub fn confidence(&self) -> Vec<f32> {
         self.peaks.iter().map(|peak| peak.map_or(0.0, |peak| f32::from(peak.confidence) / 255.0)).collect()

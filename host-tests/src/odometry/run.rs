@@ -216,7 +216,7 @@ where
             continue;
         }
         first.push(frame);
-        if first.len() >= ENOUGH && run.is_corrected() || first.len() >= MOST_AGAIN {
+        if first.len() >= MOST_AGAIN {
             run.again(rig, config, first.drain(..))?;
         }
     }
@@ -227,9 +227,8 @@ where
     Ok(run.trajectory)
 }
 
-/// Frames from which on a correction is exact enough for those before it, which are then gone through again.
-const ENOUGH: usize = 32;
-/// Frames that are gone through again at most.
+/// Frames that are gone through again at most: by all of them a correction is more exact than by those that it
+/// took to be sure.
 const MOST_AGAIN: usize = 64;
 
 /// A run under way.

@@ -1,9 +1,11 @@
 //! Depth from focus: the lens, sharpness, peaks, lens motors.
 
+mod accuracy;
 mod autofocus;
 mod dw9714;
 mod fusion;
 mod lens;
+mod order;
 mod search;
 mod stacks;
 mod twins;

@@ -169,29 +169,59 @@ pub fn peak(sharpness: &[i64], shifts: &[i64]) -> Option<Peak> {
     let choice = |i: i64| at(i - 2) + 2 * at(i - 1) + 3 * at(i) + 2 * at(i + 1) + at(i + 2);
     // The first of the largest.
     let candidate = (0..=last).rev().max_by_key(|&i| choice(i))?;
-    let (narrow, narrow_bend, _) = parabola(&at, candidate, (last / 2).min(3), last)?;
-    let (wide, wide_bend, is_inside) = parabola(&at, candidate, (last / 2).min(5), last)?;
-    let (few, many) = if is_inside { (40, 80) } else { (15, 30) };
-    let share = ((many - wide_bend) * 256 / (many - few)).clamp(0, 256);
-    let mix = |wide: i64, narrow: i64| (wide * share + narrow * (256 - share) + 128) / 256;
-    let (place, bend) = (mix(wide.max(0), narrow.max(0)), mix(wide_bend, narrow_bend).max(1));
-    let rough: i64 = logs.windows(3).map(|w| (w[0] + w[2] - 2 * w[1]).abs()).sum::<i64>() / (last - 1);
-    let height = (at(candidate) - logs.iter().sum::<i64>() / (last + 1)).max(0);
-    if height < 116 || height < 2048 && 4 * height < 7 * rough {
+    // A candidate is fitted as soon as it has seen five frames after it, and eleven in all.
+    let seen = (last + 1).min((candidate + 6).max(11));
+    let fitted_noise = noise_of_logs(&logs[..seen as usize]);
+    let sharpest =
+        (candidate - 1..=candidate + 1).filter(|i| (0..=last).contains(i)).max_by_key(|&i| at(i))?;
+    let mut chosen: Option<(i64, i64, i64, i64)> = None;
+    for (half, gain, enough) in [(1, 181, 8), (2, 85, 26), (3, 53, 26), (5, 28, 0)] {
+        let half = ((seen - 1) / 2).min(half);
+        let (place, bend) = parabola(&at, if half == 1 { sharpest } else { candidate }, half, seen - 1)?;
+        let place = place.max(0);
+        if chosen.is_some_and(|(before, _, _, noise)| (place - before).abs() > 4 * noise) {
+            break;
+        }
+        let noise = fitted_noise * gain / bend.max(1);
+        chosen = Some((place, bend.max(1), gain, noise));
+        if noise < enough {
+            break;
+        }
+    }
+    let (place, bend, gain, _) = chosen?;
+    let mean = logs.iter().sum::<i64>() / (last + 1);
+    let height = (at(candidate) - mean).max(0);
+    let noise_of_logs = noise_of_logs(&logs);
+    let smooth = (choice(candidate) / 9 - mean).max(0);
+    if height < 116 || height < 2048 && 5 * smooth < 7 * noise_of_logs {
         return None;
     }
-    let noise = rough * (27 * (256 - share) + 14 * share) / (bend * 256);
-    if noise > ((last + 1) * 12).max(256) {
+    let noise = noise_of_logs * gain / bend;
+    if noise > ((last + 1) * 48).max(1024) {
         return None;
     }
     let most = (last + 1) * 256;
     let sigma = (noise + ((2048 << 16) / bend).isqrt() / 12).clamp(16, most);
+    // A candidate's fit ends with the frames that it has seen.
+    let place = place.min((seen - 1) * 256);
     Some([place, sigma, noise.min(most), height * 255 / (height + 2048)])
 }
 
-/// The top of the parabola through the logarithms around a candidate, its bend, and whether the candidate is
-/// in the middle of them.
-fn parabola(at: &dyn Fn(i64) -> i64, candidate: i64, half: i64, last: i64) -> Option<(i64, i64, bool)> {
+/// The deviation of logarithms by noise, in 1/2^11, from the geometric mean of their third differences.
+fn noise_of_logs(logs: &[i64]) -> i64 {
+    let sizes = logs.windows(4).map(|w| (w[3] - 3 * w[2] + 3 * w[1] - w[0]).abs());
+    let sizes: Vec<i64> = sizes.map(|size| if size == 0 { 0 } else { log2(size) }).collect();
+    if sizes.is_empty() {
+        return 512;
+    }
+    let mean = (sizes.iter().sum::<i64>() / sizes.len() as i64 - 2550).max(0);
+    // On the line between the powers of two around it.
+    let (low, part) = (1_i64 << (mean / 2048), mean % 2048);
+    low + low * part / 2048
+}
+
+/// The top of the parabola through the logarithms around a candidate, and its bend.
+fn parabola(at: &dyn Fn(i64) -> i64, candidate: i64, half: i64, last: i64) -> Option<(i64, i64)> {
     let centre = candidate.clamp(half, last - half);
     let weights: &[i64] = match half {
         5 => &[4, 4, 4, 3, 2, 1],
@@ -219,7 +249,7 @@ fn parabola(at: &dyn Fn(i64) -> i64, candidate: i64, half: i64, last: i64) -> Op
     } else {
         slope_top.signum() * most
     };
-    Some((centre * 256 + off, (bend_top / bend_under).clamp(0, 65535), centre == candidate))
+    Some((centre * 256 + off, (bend_top / bend_under).clamp(0, 65535)))
 }
 
 /// What each frame's brightness adds to its logarithms.
@@ -293,6 +323,17 @@ pub fn planes(columns: usize, peaks: &[Option<Peak>], medians: &[Option<Peak>]) 
         }
         let ridge = 1e-3 * squares[(0, 0)];
         squares += Matrix3::from_diagonal(&Vector3::new(0.0, ridge, ridge));
+        let around =
+            |v: i64, size: i64| (-3..=3).map(move |d| v + 2 * d).filter(move |v| (0..size).contains(v));
+        let places: Vec<_> =
+            around(y, rows).flat_map(|v| around(x, columns as i64).map(move |u| (u, v))).collect();
+        let alike = places
+            .iter()
+            .filter_map(|&(u, v)| at(u, v))
+            .filter(|near| (near[0] as f64 - place).abs() <= 90.0 + 3.0 * noise.hypot(near[2] as f64));
+        if 3 * alike.count() < places.len() {
+            return None;
+        }
         let plane = squares.lu().solve(&values).unwrap_or_default();
         Some((place + plane[0]).max(0.0))
     };

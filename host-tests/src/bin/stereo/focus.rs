@@ -4,14 +4,16 @@ use crate::failure::Failure;
 use crate::place::png;
 use crate::shared::print;
 use clap::Args;
-use std::fmt::Write;
+use std::fmt::Write as _;
+use std::io::Write as _;
 use std::path::PathBuf;
 use stereopsis::focus::{Breathing, FocusConfig, FocusScale, ThinLens};
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::focus::breathing::Agreement;
+use stereopsis_host::focus::order::{Look, Order, order};
 use stereopsis_host::focus::positions::read_positions;
 use stereopsis_host::focus::run::run as map;
-use stereopsis_host::focus::stack::Stack;
+use stereopsis_host::focus::stack::{Stack, StackError};
 use stereopsis_host::output::Staging;
 use stereopsis_host::pfm;
 
@@ -27,7 +29,10 @@ The positions are lines, one a frame in the order of the frames' names, under th
                            (from lens to sensor) or focus_distance_mm (from lens to what is in focus); \
                            without one of these, the last number of a line counts, in mm, as the distance \
                            to the sensor if no line has more than two focal lengths. Frames that grow with \
-                           the sensor's distance are brought to one size.";
+                           the sensor's distance are brought to one size.
+
+A frame that is out of order or spoiled is named and left out; the others keep their numbers. What is no focus \
+                           stack, such as the frames of a drive, is refused.";
 
 #[derive(Debug, Args)]
 pub struct FocusArgs {
@@ -41,6 +46,9 @@ pub struct FocusArgs {
     /// Where the lens stood in each frame; with --focal-length-mm it gives depths
     #[arg(long, value_name = "FILE.csv", requires = "focal_length_mm")]
     pub positions: Option<PathBuf>,
+    /// Take all frames in the order of their names, whatever they show
+    #[arg(long)]
+    pub force: bool,
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -57,6 +65,8 @@ const WITH_DEPTH: [&str; 1] = ["depth.pfm"];
 pub fn run(args: &FocusArgs) -> Result<(), Failure> {
     let stack = Stack::open(&args.frames)?;
     let positions = positions(args, stack.len())?;
+    let kept = kept(args, &stack)?;
+    let positions = positions.map(|(lens, all)| (lens, kept.iter().map(|&i| all[i]).collect::<Vec<_>>()));
     let scale = match (&positions, &args.positions) {
         (Some((lens, images)), Some(path)) => {
             let named = |error| Failure::new(format!("{}: {error}", path.display()));
@@ -69,17 +79,18 @@ pub fn run(args: &FocusArgs) -> Result<(), Failure> {
     // Images have at most 4096 columns and rows.
     let config = FocusConfig::pixels(width as u16, height as u16);
     let is_breathing = match &scale {
-        Some(scale) => breathes(&stack, scale)?,
+        Some(scale) => breathes(&stack, &kept, scale)?,
         None => false,
     };
     let breathing = |frame| match &scale {
         Some(scale) if is_breathing => scale.breathing(frame),
         _ => Ok(Breathing::NONE),
     };
-    let result = map(&config, (0..stack.len()).map(|index| stack.frame(index)), breathing)?;
+    let result = map(&config, kept.iter().map(|&index| stack.frame(index)), breathing)?;
+    let numbers: Vec<usize> = kept.iter().map(|index| index + 1).collect();
 
     let mut staging = Staging::new(&args.out)?;
-    staging.write("index.pfm", |out| pfm::write(out, result.width, &result.index()))?;
+    staging.write("index.pfm", |out| pfm::write(out, result.width, &result.index_in(&numbers)))?;
     staging.write("confidence.pfm", |out| pfm::write(out, result.width, &result.confidence()))?;
     staging.write("all_in_focus.png", |out| png(out, &result.picture))?;
     if let Some(scale) = &scale {
@@ -88,10 +99,8 @@ pub fn run(args: &FocusArgs) -> Result<(), Failure> {
     staging.commit(&WITH_DEPTH)?;
 
     let share = 100.0 * result.answers() as f64 / result.peaks.len().max(1) as f64;
-    let mut text = format!(
-        "{} frames of {width} x {height} pixels, {share:.1} % in focus in one of them\n",
-        stack.len()
-    );
+    let mut text =
+        format!("{} frames of {width} x {height} pixels, {share:.1} % in focus in one of them\n", kept.len());
     if scale.is_some() {
         let grow = if is_breathing {
             "grow as the lens says: corrected"
@@ -116,16 +125,43 @@ fn positions(args: &FocusArgs, frames: usize) -> Result<Option<Positions>, Failu
     Ok(Some((single, read_positions(path, lens, frames)?)))
 }
 
+/// The frames that are a stack, counted from 0; the others are named.
+fn kept(args: &FocusArgs, stack: &Stack) -> Result<Vec<usize>, Failure> {
+    let all = 0..stack.len();
+    if args.force {
+        return Ok(all.collect());
+    }
+    let looks = all.clone().map(|index| Ok(Look::new(&stack.frame(index)?.grey)));
+    let looks = looks.collect::<Result<Vec<_>, StackError>>()?;
+    let Order::Stack(out) = order(&looks) else {
+        return Err(Failure::new(format!(
+            "{}: is no focus stack: sharpness rises and falls over and over again, as when a camera moves; give \
+             frames of one scene in the order of the lens's positions, or --force",
+            args.frames.display()
+        )));
+    };
+    for &index in &out {
+        // Nobody is left to tell when standard error is closed.
+        let _ = writeln!(
+            std::io::stderr(),
+            "stereo: warning: {}: is out of order or spoiled: its neighbours are like each other and not like it; \
+             left out",
+            one_line(&stack.file(index).display().to_string())
+        );
+    }
+    Ok(all.filter(|index| !out.contains(index)).collect())
+}
+
 /// Whether frames agree better with each other at the sizes that the lens gives them.
-fn breathes(stack: &Stack, scale: &FocusScale<'_>) -> Result<bool, Failure> {
+fn breathes(stack: &Stack, kept: &[usize], scale: &FocusScale<'_>) -> Result<bool, Failure> {
     let mut agreement = Agreement::default();
-    let mut before = stack.frame(0)?;
+    let mut before = stack.frame(kept[0])?;
     let mut ratio = 1.0;
-    for index in 1..stack.len() {
+    for index in 1..kept.len() {
         ratio *= scale.growth(index).unwrap_or(1.0);
         // The next frame by itself may hardly differ.
         if Agreement::is_telling(stack.size(), ratio) {
-            let after = stack.frame(index)?;
+            let after = stack.frame(kept[index])?;
             agreement.add(&before.grey, &after.grey, ratio);
             (before, ratio) = (after, 1.0);
         }

@@ -48,8 +48,8 @@ pub(super) fn log2(value: u32) -> u16 {
     log.min(u16::MAX.into()) as u16
 }
 
-/// The number of a logarithm in 1/2^11, at most one octave below `u32::MAX`: linear within an octave, and so up
-/// to 6 % too large.
+/// The number of a logarithm in 1/2^11, at most one octave below `u32::MAX`: linear within an octave, and so
+/// up to 6 % too large.
 pub(super) fn exp2(log: u32) -> u32 {
     let (whole, part) = ((log >> FRACTION).min(19), log % u32::from(OCTAVE));
     ((u32::from(OCTAVE) + part) << whole) >> FRACTION

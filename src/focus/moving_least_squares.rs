@@ -24,9 +24,9 @@ const RIDGE: f32 = 1e-3;
 /// An answer that noise moves by less than a tenth of a frame stays as it is; others see 7 by 7 answers
 /// around them, one, two or four cells apart, the more noise the farther. For a window's sharpness is shared
 /// by its neighbours, and only what lies farther away adds anything new. One that fewer than a third of the
-/// places two cells apart agree with is [`NoFocus::Alone`]: noise is alike nowhere. A plane and no mean, as weights are
-/// not the same on both sides of a slope. A cell without an answer stays so, and one keeps its own deviation
-/// and confidence.
+/// places two cells apart agree with is [`NoFocus::Alone`]: noise is alike nowhere. A plane and no mean, as
+/// weights are not the same on both sides of a slope. A cell without an answer stays so, and one keeps its
+/// own deviation and confidence.
 pub fn plane_row(
     peaks: &[Result<FocusPeak, NoFocus>],
     columns: usize,

@@ -1,4 +1,4 @@
-//! The focus peak of a cell: a parabola through logarithms of its sharpness, as wide as noise asks (Lepski 1991).
+//! The focus peak of a cell: a parabola through its logarithms, as wide as noise asks (Lepski 1991).
 
 use super::logarithm::{FRACTION, OCTAVE, exp2, log2};
 

@@ -1,9 +1,9 @@
 //! Whether the frames of a folder are a focus stack, and which of them are out of order or spoiled.
 //!
 //! From frame to frame the sharpness of every part of the picture changes little, and over the stack it rises
-//! to one peak and falls again. A frame that is far from both of its neighbours, which are near to each other,
-//! stands in the wrong place or shows something else; where sharpness rises and falls over and over again,
-//! the camera moved and not its lens.
+//! to one peak and falls again. A frame that is far from both of its neighbours, which are near to each
+//! other, stands in the wrong place or shows something else; where sharpness rises and falls over and over
+//! again, the camera moved and not its lens.
 
 use image::GrayImage;
 
@@ -14,8 +14,8 @@ pub struct Look(Vec<f64>);
 /// Parts across the shorter side of a frame, and the least side of one, px.
 const PARTS: u32 = 10;
 const LEAST_SIDE: u32 = 8;
-/// A frame is left out if its neighbours are nearer to each other than it is to them, by so many times, and if
-/// it is so many usual steps from them.
+/// A frame is left out if its neighbours are nearer to each other than it is to them, by so many times, and
+/// if it is so many usual steps from them.
 const FARTHER: f64 = 2.7;
 const STEPS: f64 = 4.0;
 /// How many times as far the sharpness of a part goes up and down as one rise and one fall would: those of
@@ -65,8 +65,8 @@ impl Look {
     }
 }
 
-/// How often the sharpness of most parts rises and falls, in one rise and one fall; `None` of parts that hardly
-/// change.
+/// How often the sharpness of most parts rises and falls, in one rise and one fall; `None` of parts that
+/// hardly change.
 pub fn restlessness(looks: &[Look]) -> Option<f64> {
     median((0..looks.first()?.0.len()).filter_map(|part| unrest(looks.iter(), part)).collect())
 }
@@ -93,8 +93,8 @@ pub fn order(looks: &[Look]) -> Order {
     Order::Stack(out)
 }
 
-/// How far the sharpness of a part goes up and down, in one rise to its most and one fall from it; `None` where
-/// it hardly changes. Means of three frames, against noise.
+/// How far the sharpness of a part goes up and down, in one rise to its most and one fall from it; `None`
+/// where it hardly changes. Means of three frames, against noise.
 fn unrest<'a>(looks: impl Iterator<Item = &'a Look>, part: usize) -> Option<f64> {
     let values: Vec<f64> = looks.map(|look| look.0[part]).collect();
     let smooth: Vec<f64> = values.windows(3).map(|three| three.iter().sum::<f64>() / 3.0).collect();

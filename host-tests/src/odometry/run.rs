@@ -57,8 +57,8 @@ pub fn plan() -> Plan {
 /// How frames are gone through.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct RunConfig {
-    /// The last views that are adjusted together, [`MOST_VIEWS`] at most; with fewer than two every pose stays
-    /// as it was told.
+    /// The last views that are adjusted together, [`MOST_VIEWS`] at most; with fewer than two every pose
+    /// stays as it was told.
     pub views: usize,
     /// Whether a pair is corrected by what its points' motion shows, once that is sure. Frames up to the 64th
     /// that came before are then gone through again.
@@ -71,8 +71,8 @@ impl Default for RunConfig {
     }
 }
 
-/// Takes frames, left and right, until there is none, and says where the camera stood in each. `told` hears of
-/// every frame.
+/// Takes frames, left and right, until there is none, and says where the camera stood in each. `told` hears
+/// of every frame.
 pub fn run<E, I>(
     rig: &Rig,
     frames: I,
@@ -227,8 +227,8 @@ where
     Ok(run.trajectory)
 }
 
-/// Frames that are gone through again at most: by all of them a correction is more exact than by those that it
-/// took to be sure.
+/// Frames that are gone through again at most: by all of them a correction is more exact than by those that
+/// it took to be sure.
 const MOST_AGAIN: usize = 64;
 
 /// A run under way.

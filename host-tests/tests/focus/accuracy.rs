@@ -11,8 +11,8 @@ use stereopsis_host::twin::focus::{modified_laplacian, numbers};
 const WIDTH: usize = 160;
 const HEIGHT: usize = 120;
 
-/// A stack: what it is called, how many frames, by how many px discs of blur grow from frame to frame, and the
-/// frame in which each pixel is sharp, of one surface or two.
+/// A stack: what it is called, how many frames, by how many px discs of blur grow from frame to frame, and
+/// the frame in which each pixel is sharp, of one surface or two.
 struct Case {
     name: &'static str,
     frames: usize,
@@ -94,8 +94,8 @@ impl Case {
     }
 }
 
-/// The frame of every pixel, from 1, by the modified Laplacian in windows of 7 by 7 and a parabola through the
-/// logarithms of the largest and its neighbours.
+/// The frame of every pixel, from 1, by the modified Laplacian in windows of 7 by 7 and a parabola through
+/// the logarithms of the largest and its neighbours.
 fn plain(frames: &[GrayImage]) -> Vec<f32> {
     let sums: Vec<Vec<f64>> = frames
         .iter()
@@ -166,12 +166,11 @@ fn the_table_of_rendered_stacks() {
             assert!(index.iter().all(|&i| !i.is_finite() || (1.0..=last).contains(&i)), "{}", case.name);
             let ([median, within, answered], [of_plain, within_plain, _]) =
                 (errors(&index, &truth), errors(&plain(&frames), &truth));
-            let row = format!(
-                "| {} | {noise} | {median:.3} | {within:.3} | {answered:.3} | {of_plain:.3} | {within_plain:.3} |\n",
-                case.name
-            );
-            table += &row;
-            numbers.push([median, within, answered, of_plain, within_plain]);
+            let found = [median, within, answered, of_plain, within_plain];
+            let cells: Vec<String> = found.iter().map(|x| format!("{x:.3}")).collect();
+            let row = format!("| {} | {noise} | {} |", case.name, cells.join(" | "));
+            table += &format!("{row}\n");
+            numbers.push(found);
             let (most, least) = if noise < 10.0 { (0.115, 0.9) } else { (0.4, 0.85) };
             assert!(median <= most && answered >= least, "{row}");
         }

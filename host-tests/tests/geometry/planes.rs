@@ -112,8 +112,8 @@ fn what_has_no_model_is_refused() {
 
 #[test]
 fn a_dominant_plane_gives_f_by_what_is_off_it_or_is_named() {
-    // The mean distance of exact points, on the plane and off it, to the lines of F; a plane is a right answer
-    // where next to nothing is off it.
+    // The mean distance of exact points, on the plane and off it, to the lines of F; a plane is a right
+    // answer where next to nothing is off it.
     for share in [0.05, 0.1, 0.2] {
         let (mut off, mut named) = (Vec::new(), 0);
         for seed in 0..20 {

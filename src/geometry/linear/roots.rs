@@ -1,12 +1,12 @@
-//! Real roots of a polynomial, bracketed by those of its derivatives (Gauss-Lucas in one dimension: Rolle 1691).
+//! Real roots of a polynomial, bracketed by those of its derivatives (Rolle's theorem).
 
 /// The highest degree.
 const DEGREE: usize = 10;
 /// Steps for each root: half of them would halve an interval to rounding.
 const STEPS: usize = 60;
 
-/// The real roots of `c[0] + c[1] x + ... + c[10] x^10`, and how many there are; a root that two lie at counts
-/// once or not at all. Every loop is bounded: between two roots of the derivative there is at most one.
+/// The real roots of `c[0] + c[1] x + ... + c[10] x^10`, and how many there are; a double root counts once or
+/// not at all. Every loop is bounded: between two roots of the derivative there is at most one.
 ///
 /// Those beyond -1 and 1 are one over the roots of the polynomial with its coefficients the other way round,
 /// so that no power overflows.

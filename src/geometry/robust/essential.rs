@@ -37,8 +37,8 @@ pub struct RobustEssential<T: Real> {
     pub miss_probability: T,
 }
 
-/// The essential matrix of correspondences in undistorted px ([`Camera::undistort`]) of two known cameras, some
-/// of them wrong; `inliers` says which agree with it.
+/// The essential matrix of correspondences in undistorted px ([`Camera::undistort`]) of two known cameras,
+/// some of them wrong; `inliers` says which agree with it.
 ///
 /// As [`robust_fundamental`](crate::geometry::robust::robust_fundamental), with samples of five (Nister 2004)
 /// in place of seven: fewer are needed, a plane leaves nothing open but a second camera that sees it as well,

@@ -40,8 +40,8 @@ const THIRD: [[usize; 4]; 10] = [
 /// cameras, up to ten (Nister 2004).
 ///
 /// What five equations leave free is `x X + y Y + z Z + W`; that its determinant is zero and its two singular
-/// values are alike are ten cubics of x, y and z, of which elimination leaves a polynomial of z of degree ten.
-/// Its real roots are bracketed by those of its derivatives, so that the work is bounded: about 70 000
+/// values are alike are ten cubics of x, y and z, of which elimination leaves a polynomial of z of degree
+/// ten. Its real roots are bracketed by those of its derivatives, so that the work is bounded: about 70 000
 /// operations. None for a degenerate sample.
 ///
 /// In `f64` also for `f32`: the elimination of cubics loses half of the digits, and the polynomial a third.
@@ -205,7 +205,7 @@ fn determinant([r, s, t]: &[Row; 3]) -> [f64; 11] {
     out
 }
 
-/// x and y that the rows leave for z.
+/// The x and y that the rows leave for z.
 fn others(rows: &[Row; 3], z: f64) -> Option<(f64, f64)> {
     let at = |coefficients: &[f64]| coefficients.iter().rev().fold(0.0, |sum, c| sum * z + c);
     let [r, s, t] = rows.each_ref().map(|(a, b, c)| Vector3::new(at(a), at(b), at(c)));
@@ -249,7 +249,8 @@ mod tests {
         }
         let narrow = seen.map(|(p, q)| (p.cast::<f32>(), q.cast::<f32>()));
         let truth = truth.cast::<f32>();
-        let off = five_point(&narrow).iter().map(|c| (c - truth).amax().min((c + truth).amax()));
+        let candidates = five_point(&narrow);
+        let off = candidates.iter().map(|c| (c - truth).amax().min((c + truth).amax()));
         assert!(off.fold(f32::MAX, f32::min) < 1e-4);
     }
 

@@ -167,8 +167,8 @@ impl<'a, T: Real> OdometryView<'a, T> {
         self.forget();
     }
 
-    /// Begins once more with the rig as it is corrected by now: points and motion are forgotten. So may frames
-    /// that came before the correction be gone through again.
+    /// Begins once more with the rig as it is corrected by now: points and motion are forgotten. So may
+    /// frames that came before the correction be gone through again.
     pub fn begin_again(&mut self) {
         self.progress.frames = 0;
         self.progress.calibration.begin_again();

@@ -173,8 +173,8 @@ impl<T: Real> SelfCalibration<T> {
         self.anchor(rig, &before, tracks, matches);
     }
 
-    /// Points that this view sees in both pictures are followed from here. The disparities of the matches were
-    /// corrected by `before`.
+    /// Points that this view sees in both pictures are followed from here. The disparities of the matches
+    /// were corrected by `before`.
     pub fn anchor(
         &mut self,
         rig: &OdometryRig<T>,

@@ -31,8 +31,8 @@ The positions are lines, one a frame in the order of the frames' names, under th
                            to the sensor if no line has more than two focal lengths. Frames that grow with \
                            the sensor's distance are brought to one size.
 
-A frame that is out of order or spoiled is named and left out; the others keep their numbers. What is no focus \
-                           stack, such as the frames of a drive, is refused.";
+A frame that is out of order or spoiled is named and left out; the others keep their numbers. What is no \
+                           focus stack, such as the frames of a drive, is refused.";
 
 #[derive(Debug, Args)]
 pub struct FocusArgs {
@@ -135,8 +135,8 @@ fn kept(args: &FocusArgs, stack: &Stack) -> Result<Vec<usize>, Failure> {
     let looks = looks.collect::<Result<Vec<_>, StackError>>()?;
     let Order::Stack(out) = order(&looks) else {
         return Err(Failure::new(format!(
-            "{}: is no focus stack: sharpness rises and falls over and over again, as when a camera moves; give \
-             frames of one scene in the order of the lens's positions, or --force",
+            "{}: is no focus stack: sharpness rises and falls over and over again, as when a camera moves; \
+             give frames of one scene in the order of the lens's positions, or --force",
             args.frames.display()
         )));
     };
@@ -144,8 +144,7 @@ fn kept(args: &FocusArgs, stack: &Stack) -> Result<Vec<usize>, Failure> {
         // Nobody is left to tell when standard error is closed.
         let _ = writeln!(
             std::io::stderr(),
-            "stereo: warning: {}: is out of order or spoiled: its neighbours are like each other and not like it; \
-             left out",
+            "stereo: warning: {}: is out of order or spoiled, for its neighbours are alike; left out",
             one_line(&stack.file(index).display().to_string())
         );
     }

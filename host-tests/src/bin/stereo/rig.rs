@@ -42,8 +42,8 @@ pub fn warn_of(rig: Option<&RigEstimate<f64>>, calib: &Path) {
     // Nobody is left to tell when standard error is closed.
     let _ = writeln!(
         std::io::stderr(),
-        "stereo: warning: {}: disparities lack {:+.2} px (deviation {:.2}): the right camera is turned, or its \
-         principal point is another; {done}; calibrate the pair again",
+        "stereo: warning: {}: disparities lack {:+.2} px (deviation {:.2}): the right camera is turned, or \
+         its principal point is another; {done}; calibrate the pair again",
         one_line(&calib.display().to_string()),
         rig.disparity_px,
         rig.sigma_px

@@ -154,13 +154,14 @@ fn kept(args: &FocusArgs, stack: &Stack) -> Result<Vec<usize>, Failure> {
 /// Whether frames agree better with each other at the sizes that the lens gives them.
 fn breathes(stack: &Stack, kept: &[usize], scale: &FocusScale<'_>) -> Result<bool, Failure> {
     let mut agreement = Agreement::default();
-    let mut before = stack.frame(kept[0])?;
+    let Some((&first, others)) = kept.split_first() else { return Ok(false) };
+    let mut before = stack.frame(first)?;
     let mut ratio = 1.0;
-    for index in 1..kept.len() {
+    for (index, &number) in (1..).zip(others) {
         ratio *= scale.growth(index).unwrap_or(1.0);
         // The next frame by itself may hardly differ.
         if Agreement::is_telling(stack.size(), ratio) {
-            let after = stack.frame(kept[index])?;
+            let after = stack.frame(number)?;
             agreement.add(&before.grey, &after.grey, ratio);
             (before, ratio) = (after, 1.0);
         }

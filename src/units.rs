@@ -102,8 +102,8 @@ impl PixelFlags {
     pub const CLEAR: Self = Self(0);
     /// No candidate lies inside the right image, or the pixel is outside the valid area.
     pub const OUTSIDE: Self = Self(1);
-    /// The winner is the largest disparity searched, or its partner is the first column of the right image: the
-    /// surface may be nearer, or the right camera may not see it.
+    /// The winner is the largest disparity searched, or its partner is the first column of the right image:
+    /// the surface may be nearer, or the right camera may not see it.
     pub const CEILING: Self = Self(1 << 1);
     /// The winner costs as much as both its neighbours, or too few pixels of the window have a gradient.
     pub const UNTEXTURED: Self = Self(1 << 2);

@@ -50,8 +50,8 @@ pub(super) fn make_answers<S: Method>(frame: &mut Frame<'_>, newest: usize) {
     flag_first_column(config, answers, flags);
 }
 
-/// Flags the answers whose partner is the first column of the right image: of the candidates inside that image
-/// theirs is the last. Most of them stand for what the right camera does not see.
+/// Flags the answers whose partner is the first column of the right image: of the candidates inside that
+/// image theirs is the last. Most of them stand for what the right camera does not see.
 fn flag_first_column(config: &Config, answers: &mut [Disparity], flags: &mut [PixelFlags]) {
     let refused = u16::from(config.checks.refuse_ceiling);
     // Farther right the last candidate lies inside the image. At an end there is no fraction of a pixel.

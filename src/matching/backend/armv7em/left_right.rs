@@ -133,8 +133,9 @@ macro_rules! upright_fraction {
     };
 }
 
-/// Likewise, where `{slant}` of the steeper rise is not counted, as far as it is more than the difference.
-/// Both are one more than 0 at least, to divide by. 20 instructions.
+/// The fraction in `r3` by the rises in both halves of `r0`, of costs that rise by up to `{slant}` on a
+/// slanted surface: that much of the steeper rise is not counted, as far as it is more than the difference,
+/// and both are at least 1, to divide by. 20 instructions.
 macro_rules! slanted_fraction {
     () => {
         "uxth r2, r0

@@ -168,7 +168,8 @@ macro_rules! between_pixels {
     };
 }
 
-/// Likewise against the right ones themselves, which stand at `r2` and are not doubled.
+/// The gradient along the line against the right ones themselves, which stand at `r2` and are not doubled:
+/// how far it is from them, doubled.
 macro_rules! at_pixels {
     ($a:literal) => {
         concat!(

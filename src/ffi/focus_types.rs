@@ -100,8 +100,7 @@ impl From<Result<FocusPeak, NoFocus>> for CFocusPeak {
             }
             Err(NoFocus::TooFewFrames { .. }) => none(STEREOPSIS_FOCUS_FEW),
             Err(NoFocus::Untextured) => none(STEREOPSIS_FOCUS_UNTEXTURED),
-            // Only planes through neighbours find an answer alone, and C has none.
-            Err(NoFocus::Broad | NoFocus::Alone) => none(STEREOPSIS_FOCUS_BROAD),
+            Err(NoFocus::Broad) => none(STEREOPSIS_FOCUS_BROAD),
         }
     }
 }

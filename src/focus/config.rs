@@ -29,9 +29,9 @@ impl FocusConfig {
     /// No frames.
     pub(super) const NONE: Self = Self { width: 0, height: 0, cell_px: 0, radius: 0, exposure_varies: false };
 
-    /// An answer a pixel, from windows of radius 2.
+    /// An answer a pixel, from windows of radius 3.
     pub const fn pixels(width: u16, height: u16) -> Self {
-        Self { width, height, cell_px: 1, radius: 2, exposure_varies: true }
+        Self { width, height, cell_px: 1, radius: 3, exposure_varies: true }
     }
 
     /// An answer a tile of 8 by 8 pixels, from that tile alone.

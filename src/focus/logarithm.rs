@@ -48,22 +48,9 @@ pub(super) fn log2(value: u32) -> u16 {
     log.min(u16::MAX.into()) as u16
 }
 
-/// The number of a logarithm in 1/2^11, at most one octave below `u32::MAX`: linear within an octave, and so
-/// up to 6 % too large.
-pub(super) fn exp2(log: u32) -> u32 {
-    let (whole, part) = ((log >> FRACTION).min(19), log % u32::from(OCTAVE));
-    ((u32::from(OCTAVE) + part) << whole) >> FRACTION
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn worked_powers() {
-        // 2^1.5 = 2.83 is 3 on the line from 2 to 4.
-        assert_eq!([0, 2048, 3072, 10 * 2048, 10 * 2048 + 1024].map(exp2), [1, 2, 3, 1024, 1536]);
-    }
 
     #[test]
     fn worked_logarithms() {

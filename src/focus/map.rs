@@ -16,15 +16,14 @@ use super::{
 /// In running order: lines are smoothed ([`binomial`](super::binomial)) and measured
 /// ([`modified_laplacian`](super::modified_laplacian)); the measure is summed up in cells, then twice over
 /// windows; their logarithms pass through the cells, which keep the last eleven frames and the
-/// peak so far: a parabola through three logarithms where noise moves its top by less than a 32nd of a frame,
-/// or through five, seven or eleven, as far as these agree with the narrower ones (Lepski 1991). A peak is
-/// found the better, the more frames it spans; three are enough.
+/// peak so far: a parabola through seven logarithms, or through eleven where it is broad and noise would move
+/// its top. A peak is found the better, the more frames it spans; three are enough.
 ///
 /// The measure is the default against noise and changes of brightness: smoothing keeps 3/8 of the noise,
 /// absolute values grow in proportion to the contrast where squares would let the strongest edge of a window
 /// decide, and a frame's mean brightness is divided out. On rendered stacks (fine, coarse and photographed
-/// texture; slopes, steps, cones and waves; noise of 0 to 10 grey levels) a window of two sums of 5 by 5
-/// follows the depth most closely; wider ones average more noise.
+/// texture; slopes, steps, cones and waves; noise of 1 and 4 grey levels) a window of two sums of 7 by 7 has
+/// the least error; narrower ones follow the depth more closely, wider ones average more noise.
 #[derive(Debug)]
 pub struct FocusMap<const W: usize, const C: usize, const CELLS: usize> {
     state: FocusMapState,

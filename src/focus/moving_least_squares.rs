@@ -9,9 +9,6 @@ const STEPS: [(u32, i32); 3] = [(102, 4), (51, 2), (26, 1)];
 /// What answers of one surface differ by without noise, and what none is surer than, 1/256 frame.
 const NEAR: f32 = 90.0;
 const SUREST: f32 = 38.0;
-/// Cells between the places that are asked whether they agree, and of how many one has to.
-const APART: i32 = 2;
-const SUPPORT: i32 = 3;
 /// What a slope is held back by, of the weight of all.
 const RIDGE: f32 = 1e-3;
 
@@ -23,10 +20,9 @@ const RIDGE: f32 = 1e-3;
 ///
 /// An answer that noise moves by less than a tenth of a frame stays as it is; others see 7 by 7 answers
 /// around them, one, two or four cells apart, the more noise the farther. For a window's sharpness is shared
-/// by its neighbours, and only what lies farther away adds anything new. One that fewer than a third of the
-/// places two cells apart agree with is [`NoFocus::Alone`]: noise is alike nowhere. A plane and no mean, as
-/// weights are not the same on both sides of a slope. A cell without an answer stays so, and one keeps its
-/// own deviation and confidence.
+/// by its neighbours, and only what lies farther away adds anything new. A plane and no mean, as weights are
+/// not the same on both sides of a slope. A cell without an answer stays so, and one keeps its own deviation
+/// and confidence.
 pub fn plane_row(
     peaks: &[Result<FocusPeak, NoFocus>],
     columns: usize,
@@ -40,39 +36,20 @@ pub fn plane_row(
         }
         peaks.get(y.checked_mul(columns)?.checked_add(x)?)?.ok()
     };
-    // How far an answer there is from this one, and its variance, if the two are of one surface.
-    let like = |x: i32, y: i32, own: &FocusPeak| {
-        let near = at(x, y)?;
-        let off = near.position_q8 as f32 - own.position_q8 as f32;
-        let (own, variance) = (square(own.noise_q8 as f32), square(near.noise_q8 as f32));
-        (square((off.abs() - NEAR).max(0.0)) <= 9.0 * (own + variance)).then_some((off, variance))
-    };
-    let rows = peaks.len().checked_div(columns).unwrap_or(0) as i32;
-    for (x, answer) in (0..columns as i32).zip(out) {
-        let Ok(own) = answer else { continue };
+    for (x, own) in (0..columns as i32).zip(out) {
+        let Ok(own) = own else { continue };
         let Some(&(_, step)) = STEPS.iter().find(|(least, _)| own.noise_q8 >= *least) else { continue };
         let mut sums = Sums::default();
+        let own_variance = square(own.noise_q8 as f32);
         for dy in -REACH..=REACH {
             for dx in -REACH..=REACH {
-                let Some((off, variance)) = like(x + step * dx, row as i32 + step * dy, own) else {
-                    continue;
-                };
-                sums.add([dx as f32, dy as f32], off, SUREST * SUREST / (variance + SUREST * SUREST));
+                let Some(near) = at(x + step * dx, row as i32 + step * dy) else { continue };
+                let off = near.position_q8 as f32 - own.position_q8 as f32;
+                let variance = square(near.noise_q8 as f32);
+                if square((off.abs() - NEAR).max(0.0)) <= 9.0 * (own_variance + variance) {
+                    sums.add([dx as f32, dy as f32], off, SUREST * SUREST / (variance + SUREST * SUREST));
+                }
             }
-        }
-        let around = |v: i32, size: i32| {
-            (-REACH..=REACH).map(move |d| v + APART * d).filter(move |v| (0..size).contains(v))
-        };
-        let (mut places, mut alike) = (0, 0);
-        for v in around(row as i32, rows) {
-            for u in around(x, columns as i32) {
-                places += 1;
-                alike += i32::from(like(u, v, own).is_some());
-            }
-        }
-        if SUPPORT * alike < places {
-            *answer = Err(NoFocus::Alone);
-            continue;
         }
         let moved = own.position_q8 as f32 + sums.value();
         // Rounded; a cast of what is out of range is the nearest end.

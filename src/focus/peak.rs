@@ -1,19 +1,20 @@
-//! The focus peak of a cell: a parabola through its logarithms, as wide as noise asks (Lepski 1991).
+//! The focus peak of a cell: a parabola fitted to the logarithms of its sharpness.
 
-use super::logarithm::{FRACTION, OCTAVE, exp2, log2};
+use super::logarithm::{FRACTION, OCTAVE, log2};
 
-/// Frames that the widest fit takes, and half of them.
+/// Frames that a broad peak is fitted to, and half of them; half of those of a narrow one.
 pub(super) const FRAMES: usize = 11;
 const WIDE: u32 = 5;
-/// The fits, the narrowest first: half of their frames; how far noise of deviation s moves the top of one of
-/// bend b, `s / b` times so many 256ths of a frame; and what it moves a top by, 1/256 frame, below which no
-/// wider one is asked.
-const FITS: [(u32, u32, u32); 4] = [(1, 181, 8), (2, 85, 26), (3, 53, 26), (WIDE, 28, 0)];
+const NARROW: u32 = 3;
 /// What a frame's brightness may shift a logarithm by, either way.
 pub(super) const BIAS: u16 = 4 * OCTAVE;
-/// Weights of the frames around a peak, for the choice of it, and their sum.
+/// Weights of the frames around a peak, for the choice of it.
 const CHOICE: [(isize, u32); 5] = [(-2, 1), (-1, 2), (0, 3), (1, 2), (2, 1)];
-const CHOICE_WEIGHT: u32 = 9;
+
+/// Bends of the wide fit, below the first of which it counts alone and from the second on not at all: where
+/// its frames lie around the peak, and where the stack ends within them and they see one flank more than the
+/// other.
+const BROAD: [[u32; 2]; 2] = [[40, 80], [15, 30]];
 
 /// The state of a cell, 48 bytes: its last sharpnesses and its peak so far.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -26,15 +27,15 @@ pub struct FocusCell {
     peak: u16,
     /// How strongly the parabola bends at the peak, per frame and frame.
     bend: u16,
-    /// What noise moves a top by in the fit that was taken, as [`FITS`] have it.
-    gain: u16,
+    /// What share of the peak is that of the wide fit, in 1/256.
+    wide: u16,
     /// The weighted sum by which the peak was chosen.
     choice: u32,
     /// Where the peak is, in 1/256 frame from 0.
     position: u32,
     /// Sum of all logarithms.
     sum: u32,
-    /// Sum of the logarithms of the sizes of their third differences.
+    /// Sum of the sizes of their second differences.
     rough: u32,
 }
 
@@ -81,17 +82,14 @@ pub enum NoFocus {
     },
     /// The sharpness changes no more than noise does.
     Untextured,
-    /// The peak is so broad that noise moves it by more than four frames and more than a fifth of all frames.
+    /// The peak is so broad that noise moves it by more than a frame and more than a 21st of all frames.
     Broad,
-    /// Fewer than a third of the cells around it have an answer like it ([`plane_row`](super::plane_row)).
-    Alone,
 }
 
 error_text!(NoFocus {
     Self::TooFewFrames { needed } => "at least {needed} frames are needed",
     Self::Untextured => "the sharpness changes no more than noise does",
     Self::Broad => "the peak is so broad that noise hides where it is",
-    Self::Alone => "the cells around it do not agree",
 });
 
 impl FocusCell {
@@ -101,7 +99,7 @@ impl FocusCell {
         largest: 0,
         peak: 0,
         bend: 0,
-        gain: 0,
+        wide: 0,
         choice: 0,
         position: 0,
         sum: 0,
@@ -140,10 +138,9 @@ impl FocusCell {
             None => return,
         };
         self.sum = self.sum.saturating_add(log);
-        if last >= 3 {
-            let [a, b, c] = [3, 2, 1].map(|before| self.at(last - before));
-            let size = (log + 3 * b).abs_diff(3 * c + a);
-            self.rough = self.rough.saturating_add(log2(size).into());
+        if last >= 2 {
+            let bend = (log + self.at(last - 2)).abs_diff(2 * self.at(last - 1));
+            self.rough = self.rough.saturating_add(bend);
         }
         match last {
             0..10 => {}
@@ -173,35 +170,24 @@ impl FocusCell {
         }
         self.choice = choice;
         self.peak = self.at(candidate) as u16;
-        let noise_of_logs = self.noise_of_logs(frames);
-        let mut before: Option<(u32, u32)> = None;
-        for (most, gain, enough) in FITS {
+        let fit = |most: u32| {
             let half = (last / 2).min(most);
-            // Three frames have to stand around the sharpest one; more of them say by their choice where.
-            let near = candidate.saturating_sub(1)..=(candidate + 1).min(last);
-            let sharpest = near.max_by_key(|&frame| self.at(frame)).unwrap_or(candidate);
-            let middle = if half == 1 { sharpest } else { candidate };
-            let (position, bend) = self.fit(middle.min(last - half).max(half), half);
-            // What a narrow fit rules out is another surface, or a flank that is none of a parabola.
-            if before.is_some_and(|(narrow, noise)| narrow.abs_diff(position) > 4 * noise) {
-                break;
-            }
-            let noise = noise_of_logs * gain / u32::from(bend).max(1);
-            (self.position, self.bend, self.gain) = (position.min(last << 8), bend, gain as u16);
-            if noise < enough {
-                break;
-            }
-            before = Some((position, noise));
-        }
-    }
-
-    /// The deviation of a logarithm by noise, from third differences, whose deviation is 4.47 times that. A
-    /// geometric mean: the few that a sharp peak or a second surface make large hardly count. It is less than
-    /// the deviation by a factor of 1.89.
-    fn noise_of_logs(&self, frames: u32) -> u32 {
-        let factor = 2550; // log2(4.47 / 1.89)
-        let mean = self.rough.checked_div(frames.saturating_sub(3));
-        mean.map_or(Self::UNKNOWN, |mean| exp2(mean.saturating_sub(factor)))
+            let centre = candidate.min(last - half).max(half);
+            (self.fit(centre, half), centre == candidate)
+        };
+        let ((narrow, narrow_bend), _) = fit(NARROW);
+        let ((wide, wide_bend), is_inside) = fit(WIDE);
+        let [few, many] = BROAD[usize::from(!is_inside)];
+        let share =
+            (many.saturating_sub(wide_bend.into()) * 256).checked_div(many - few).unwrap_or(0).min(256);
+        let mix = |wide: u32, narrow: u32| {
+            // A position has 24 bits, and both are within a window of each other.
+            let apart = (wide as i32).wrapping_sub(narrow as i32);
+            narrow.saturating_add_signed(apart.wrapping_mul(share as i32).wrapping_add(128) >> 8)
+        };
+        self.position = mix(wide, narrow);
+        self.bend = mix(wide_bend.into(), narrow_bend.into()) as u16;
+        self.wide = share as u16;
     }
 
     /// The top of the parabola through the logarithms of the frames around `centre`, by weighted least
@@ -248,18 +234,18 @@ impl FocusCell {
             return Err(NoFocus::TooFewFrames { needed: Self::FEWEST_FRAMES });
         }
         let height = u32::from(self.peak).saturating_sub(self.sum / frames);
-        // Of nothing but noise the largest of many sums of five is 1.1 of its deviations over the mean.
-        let smooth = (self.choice / CHOICE_WEIGHT).saturating_sub(self.sum / frames);
-        let noise_of_logs = self.noise_of_logs(frames);
-        if height < Self::SURE && 5 * smooth < 7 * noise_of_logs || height < Self::LEAST {
+        if height < Self::SURE && 4 * height < 7 * self.rough_mean(frames) || height < Self::LEAST {
             return Err(NoFocus::Untextured);
         }
         let confidence = (height * 255 / (height + u32::from(OCTAVE))) as u8;
-        // What else is in a window, nearer and farther, moves a peak by the more, the wider it is: by a
-        // twelfth of the distance at which it has fallen by half an octave, on rendered slopes and waves.
-        let bend = u32::from(self.bend).max(1);
-        let noise = noise_of_logs * u32::from(self.gain) / bend;
-        if noise > (frames * 48).max(1024) {
+        // Noise of deviation s changes the slope at the top by 0.21 s, with the wide fit by 0.11 s, and
+        // second differences by 1.95 s in the mean of their sizes. What else is in a window, nearer
+        // and farther, moves a peak by the more, the wider it is: by a twelfth of the distance at
+        // which it has fallen by half an octave, on rendered slopes and waves.
+        let (bend, wide) = (u32::from(self.bend).max(1), u32::from(self.wide));
+        let noise =
+            (self.rough_mean(frames) * (27 * (256 - wide) + 14 * wide)).checked_div(bend << 8).unwrap_or(0);
+        if noise > (frames * 12).max(256) {
             return Err(NoFocus::Broad);
         }
         let width = ((u32::from(OCTAVE) << 16) / bend).isqrt();
@@ -272,8 +258,11 @@ impl FocusCell {
         })
     }
 
-    /// The deviation of a logarithm that is taken where too few frames say it: a quarter of an octave.
-    const UNKNOWN: u32 = OCTAVE as u32 / 4;
+    /// The mean size of second differences.
+    fn rough_mean(&self, frames: u32) -> u32 {
+        self.rough.checked_div(frames.saturating_sub(2)).unwrap_or(0)
+    }
+
     /// A peak so high is no noise: twice the mean.
     const SURE: u32 = 1 << FRACTION;
     /// A peak so low is rounding: 4 percent over the mean.

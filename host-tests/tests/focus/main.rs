@@ -1,6 +1,5 @@
 //! Depth from focus: the lens, sharpness, peaks, lens motors.
 
-mod accuracy;
 mod autofocus;
 mod dw9714;
 mod fusion;

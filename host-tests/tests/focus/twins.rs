@@ -10,7 +10,6 @@ use stereopsis::focus::{
 use stereopsis_host::focus::memory::MapMemory;
 use stereopsis_host::scene::Random;
 use stereopsis_host::twin::focus as twin;
-use stereopsis_host::twin::focus_peak;
 
 fn noise(width: u32, height: u32, seed: u64, contrast: u8) -> GrayImage {
     let mut random = Random::new(seed);
@@ -59,7 +58,7 @@ fn map(config: &FocusConfig, frames: &[GrayImage], scales: &[f32]) -> (Peaks, Ve
     (peaks.collect(), sharper)
 }
 
-fn plain(peak: &Result<FocusPeak, NoFocus>) -> Option<focus_peak::Peak> {
+fn plain(peak: &Result<FocusPeak, NoFocus>) -> Option<twin::Peak> {
     peak.ok().map(|p| [p.position_q8.into(), p.sigma_q8.into(), p.noise_q8.into(), p.confidence.into()])
 }
 

@@ -1,6 +1,5 @@
 //! Depth from focus, naively: whole pictures, whole stacks.
 
-use super::focus_peak::{Peak, log2, peak};
 use image::GrayImage;
 use stereopsis::focus::{FocusConfig, Measure};
 
@@ -133,6 +132,96 @@ pub fn cells(config: &FocusConfig, picture: &GrayImage, scale: f32) -> Numbers {
     once.map(|x, y| once.window(x, y, radius, |v| v).0 + floor)
 }
 
+/// `2^15 log2(1 + step / 64)`, cut off, bit by bit.
+fn table(step: u128) -> i64 {
+    let mut x = (64 + step) << 25;
+    let mut log = (x >> 32) as i64;
+    for _ in 0..15 {
+        if x >= 1 << 32 {
+            x >>= 1;
+        }
+        x = (x * x) >> 31;
+        log = 2 * log + (x >> 32) as i64;
+    }
+    log
+}
+
+/// The logarithm to base 2 of a positive number, in 1/2^11, interpolated between 64 steps an octave.
+pub fn log2(value: i64) -> i64 {
+    let octave = 63 - value.leading_zeros() as i64;
+    // The place in the octave, in 2^22.
+    let place = (((value as i128) << 31 >> octave) - (1 << 31)) as i64 / 512;
+    let (step, rest) = (place >> 16, place & 0xffff);
+    let (low, high) = (table(step as u128), table(step as u128 + 1));
+    (octave * 2048 + ((low * 65536 + (high - low) * rest + (1 << 19)) >> 20)).min(65535)
+}
+
+/// A peak: its place in 1/256 frame from 0, deviation, what noise has in it, and confidence.
+pub type Peak = [i64; 4];
+
+/// The peak of a cell whose sharpness is given for every frame, with what each frame's brightness adds to
+/// logarithms.
+pub fn peak(sharpness: &[i64], shifts: &[i64]) -> Option<Peak> {
+    let logs: Vec<i64> =
+        sharpness.iter().zip(shifts).map(|(&s, shift)| (log2(s) + shift).min(65535)).collect();
+    let last = logs.len() as i64 - 1;
+    let at = |i: i64| logs[i.clamp(0, last) as usize];
+    let choice = |i: i64| at(i - 2) + 2 * at(i - 1) + 3 * at(i) + 2 * at(i + 1) + at(i + 2);
+    // The first of the largest.
+    let candidate = (0..=last).rev().max_by_key(|&i| choice(i))?;
+    let (narrow, narrow_bend, _) = parabola(&at, candidate, (last / 2).min(3), last)?;
+    let (wide, wide_bend, is_inside) = parabola(&at, candidate, (last / 2).min(5), last)?;
+    let (few, many) = if is_inside { (40, 80) } else { (15, 30) };
+    let share = ((many - wide_bend) * 256 / (many - few)).clamp(0, 256);
+    let mix = |wide: i64, narrow: i64| (wide * share + narrow * (256 - share) + 128) / 256;
+    let (place, bend) = (mix(wide.max(0), narrow.max(0)), mix(wide_bend, narrow_bend).max(1));
+    let rough: i64 = logs.windows(3).map(|w| (w[0] + w[2] - 2 * w[1]).abs()).sum::<i64>() / (last - 1);
+    let height = (at(candidate) - logs.iter().sum::<i64>() / (last + 1)).max(0);
+    if height < 116 || height < 2048 && 4 * height < 7 * rough {
+        return None;
+    }
+    let noise = rough * (27 * (256 - share) + 14 * share) / (bend * 256);
+    if noise > ((last + 1) * 12).max(256) {
+        return None;
+    }
+    let most = (last + 1) * 256;
+    let sigma = (noise + ((2048 << 16) / bend).isqrt() / 12).clamp(16, most);
+    Some([place, sigma, noise.min(most), height * 255 / (height + 2048)])
+}
+
+/// The top of the parabola through the logarithms around a candidate, its bend, and whether the candidate is
+/// in the middle of them.
+fn parabola(at: &dyn Fn(i64) -> i64, candidate: i64, half: i64, last: i64) -> Option<(i64, i64, bool)> {
+    let centre = candidate.clamp(half, last - half);
+    let weights: &[i64] = match half {
+        5 => &[4, 4, 4, 3, 2, 1],
+        4 => &[4, 4, 3, 2, 1],
+        3 => &[3, 3, 2, 1],
+        2 => &[2, 2, 1],
+        1 => &[1, 1],
+        _ => return None,
+    };
+    let weighted = |power: u32, value: &dyn Fn(i64) -> i64| -> i64 {
+        (-half..=half).map(|d| weights[d.unsigned_abs() as usize] * d.pow(power) * value(d)).sum()
+    };
+    let moment = |power: u32| weighted(power, &|d| at(centre + d));
+    // Sums of weights by even powers of the distance, and the parabola m + l d + q d^2 of the normal
+    // equations.
+    let weight = |power: u32| weighted(power, &|_| 1);
+    let (s0, s2, s4) = (weight(0), weight(2), weight(4));
+    // -2 q and l as fractions with their denominators.
+    let (bend_top, bend_under) = (-2 * (s0 * moment(2) - s2 * moment(0)), s0 * s4 - s2 * s2);
+    let (slope_top, slope_under) = (moment(1), s2);
+    let most = half * 256;
+    let off = if bend_top > 0 {
+        let (top, under) = (256 * slope_top * bend_under, slope_under * bend_top);
+        (2 * top + under).div_euclid(2 * under).clamp(-most, most)
+    } else {
+        slope_top.signum() * most
+    };
+    Some((centre * 256 + off, (bend_top / bend_under).clamp(0, 65535), centre == candidate))
+}
+
 /// What each frame's brightness adds to its logarithms.
 pub fn shifts(frames: &[GrayImage], exposure_varies: bool) -> Vec<i64> {
     let mean = |frame: &GrayImage| {
@@ -204,17 +293,6 @@ pub fn planes(columns: usize, peaks: &[Option<Peak>], medians: &[Option<Peak>]) 
         }
         let ridge = 1e-3 * squares[(0, 0)];
         squares += Matrix3::from_diagonal(&Vector3::new(0.0, ridge, ridge));
-        let around =
-            |v: i64, size: i64| (-3..=3).map(move |d| v + 2 * d).filter(move |v| (0..size).contains(v));
-        let places: Vec<_> =
-            around(y, rows).flat_map(|v| around(x, columns as i64).map(move |u| (u, v))).collect();
-        let alike = places
-            .iter()
-            .filter_map(|&(u, v)| at(u, v))
-            .filter(|near| (near[0] as f64 - place).abs() <= 90.0 + 3.0 * noise.hypot(near[2] as f64));
-        if 3 * alike.count() < places.len() {
-            return None;
-        }
         let plane = squares.lu().solve(&values).unwrap_or_default();
         Some((place + plane[0]).max(0.0))
     };

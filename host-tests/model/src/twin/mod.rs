@@ -24,7 +24,6 @@ pub mod census;
 pub mod cost;
 pub mod features;
 pub mod focus;
-pub mod focus_peak;
 pub mod paths;
 pub mod remap;
 pub mod smooth;

@@ -55,10 +55,12 @@ pub(super) fn make_answers<S: Method>(frame: &mut Frame<'_>, newest: usize) {
 fn flag_first_column(config: &Config, answers: &mut [Disparity], flags: &mut [PixelFlags]) {
     let refused = u16::from(config.checks.refuse_ceiling);
     // Farther right the last candidate lies inside the image. At an end there is no fraction of a pixel.
-    let ends = (config.min_disparity..).take(usize::from(config.disparities - 1)).map(Disparity::from_pixels);
-    for ((answer, flags), end) in answers.iter_mut().zip(flags).zip(ends) {
-        let is_end = *answer == end;
+    let columns = usize::from(config.disparities).saturating_sub(1);
+    let mut end = Disparity::from_pixels(config.min_disparity).raw();
+    for (answer, flags) in answers.iter_mut().zip(flags).take(columns) {
+        let is_end = answer.raw() == end;
         *flags = flags.union(PixelFlags::CEILING.when(is_end));
         *answer = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(is_end) & refused));
+        end = end.wrapping_add(Disparity::ONE);
     }
 }

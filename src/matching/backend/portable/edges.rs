@@ -59,12 +59,14 @@ fn are_edges(sums: [u32; 2], next: [u32; 2], least: u16) -> u32 {
     /// Stands above all sums in both halves.
     const BIT: u32 = 0x4000_4000;
     let least = u32::from(least) * 0x0001_0001;
-    let [second, third] = [0, 1].map(|odd| {
+    let apart = |sums: u32, next: u32| {
         // The columns after the pixels, less those before, moved up so that what is no edge is from `BIT` on,
         // and as far from the other end.
-        let apart = (sums[odd] >> 16 | next[odd] << 16) + (BIT + least - 0x0001_0001) - sums[odd];
+        let apart = (sums >> 16 | next << 16) + (BIT + least - 0x0001_0001) - sums;
         apart & (2 * BIT - 0x0002_0002 + 2 * least).wrapping_sub(apart)
-    });
+    };
+    let ([even, odd], [next_even, next_odd]) = (sums, next);
+    let (second, third) = (apart(even, next_even), apart(odd, next_odd));
     // The pixels between even columns are first and third, those between odd ones second and fourth.
     !second >> 14 & 0x0001_0001 | !third >> 6 & 0x0100_0100
 }

@@ -6,6 +6,7 @@ mod bounds;
 mod bundle;
 mod calibrate;
 mod demo;
+mod dump;
 mod eval;
 mod features;
 mod focus;

@@ -3,7 +3,7 @@
 use super::config::RobustConfig;
 use super::factored::Factored;
 use super::frame::Frame;
-use super::fundamental::{RobustError, check};
+use super::fundamental::{RobustError, check, mark_inliers};
 use super::loss::Biweight;
 use super::ransac::{Estimator, ransac};
 use super::refine::{Matrix, refine};
@@ -63,16 +63,7 @@ pub fn robust_essential<T: Real>(
     let best = refine(best, Matrix::Essential, seen, &frames, loss, (1, STEPS));
     let essential = Essential::nearest(&best.matrix()).map_err(|_| RobustError::NoAgreement)?;
     let fundamental = Fundamental::from_essential(&essential, first, second);
-    let most = config.threshold_px * config.threshold_px;
-    let (mut count, mut sum) = (0, T::ZERO);
-    for (inlier, s) in inliers.iter_mut().zip(seen) {
-        let squared = fundamental.sampson_squared_px2(s);
-        *inlier = squared <= most;
-        if *inlier {
-            count += 1;
-            sum += squared;
-        }
-    }
+    let (count, sum) = mark_inliers(&fundamental, seen, config, inliers);
     if count <= SAMPLE || !sum.is_finite() {
         return Err(RobustError::NoAgreement);
     }

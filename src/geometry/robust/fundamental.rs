@@ -119,16 +119,7 @@ pub fn robust_fundamental<T: Real>(
     let loss = Biweight::new(config.threshold_px);
     let best = refine(best, Matrix::Fundamental, seen, &frames, loss, (1, 20));
     let fundamental = Fundamental::of_singular(&search.in_pixels(&best.matrix()));
-    let most = config.threshold_px * config.threshold_px;
-    let (mut count, mut sum) = (0, T::ZERO);
-    for (inlier, s) in inliers.iter_mut().zip(seen) {
-        let squared = fundamental.sampson_squared_px2(s);
-        *inlier = squared <= most;
-        if *inlier {
-            count += 1;
-            sum += squared;
-        }
-    }
+    let (count, sum) = mark_inliers(&fundamental, seen, config, inliers);
     let fundamental = fundamental.sound().ok_or(RobustError::NoAgreement)?;
     if count <= MINIMUM || !sum.is_finite() {
         return Err(RobustError::NoAgreement);
@@ -140,6 +131,27 @@ pub fn robust_fundamental<T: Real>(
         samples,
         miss_probability: search.missed,
     })
+}
+
+/// Says which correspondences are within the threshold; how many, and the sum of their squared Sampson
+/// distances, px^2.
+pub(super) fn mark_inliers<T: Real>(
+    fundamental: &Fundamental<T>,
+    seen: &[Correspondence<T>],
+    config: &RobustConfig<T>,
+    inliers: &mut [bool],
+) -> (usize, T) {
+    let most = config.threshold_px * config.threshold_px;
+    let (mut count, mut sum) = (0, T::ZERO);
+    for (inlier, s) in inliers.iter_mut().zip(seen) {
+        let squared = fundamental.sampson_squared_px2(s);
+        *inlier = squared <= most;
+        if *inlier {
+            count += 1;
+            sum += squared;
+        }
+    }
+    (count, sum)
 }
 
 /// Refuses what no search can be made of, and cuts the inliers to as many as there are correspondences.

@@ -94,8 +94,8 @@ impl FocusResult {
     }
 
     /// The frames in which the cells are in focus, as numbers of a stack of which frames were left out;
-    /// `f32::INFINITY` where there is no answer. `numbers` has the number of each frame of the map. Between two
-    /// frames lies what lies between their numbers, and nothing lies beyond the last.
+    /// `f32::INFINITY` where there is no answer. `numbers` has the number of each frame of the map. Between
+    /// two frames lies what lies between their numbers, and nothing lies beyond the last.
     pub fn index_in(&self, numbers: &[usize]) -> Vec<f32> {
         let number = |peak: &Result<FocusPeak, NoFocus>| {
             let position = peak.as_ref().ok()?.position();

@@ -80,7 +80,7 @@ fn filtered<S: Twin>() {
         let plain = match_pair(&S::TWIN, &config(gaps), &pair.0, &pair.1);
         let mut stages = [(true, 2), (false, 1), (true, u8::MAX), (false, 5), (true, 0)];
         stages.rotate_left((width + height) as usize % 5);
-        for (median, fill_pixels) in long(stages, 3) {
+        for (median, fill_pixels) in long(stages, 2) {
             let fill_step = if fill_pixels > 1 { Disparity::NONE } else { Disparity::ONE_PIXEL };
             let checks = Checks { median, fill_pixels, fill_step, ..gaps };
             let map = compare(&mut pipeline, &config(checks), &pair).unwrap_or_else(|e| panic!("{e}"));

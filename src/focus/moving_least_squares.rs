@@ -7,7 +7,7 @@ const REACH: i32 = 3;
 /// Noise from which on that step is taken, 1/256 frame: a tenth of a frame, two and four.
 const STEPS: [(u32, i32); 3] = [(102, 4), (51, 2), (26, 1)];
 /// What answers of one surface differ by without noise, and what none is surer than, 1/256 frame.
-const NEAR: f32 = 90.0;
+const NEAR: u32 = 90;
 const SUREST: f32 = 38.0;
 /// What a slope is held back by, of the weight of all.
 const RIDGE: f32 = 1e-3;
@@ -40,13 +40,12 @@ pub fn plane_row(
         let Ok(own) = own else { continue };
         let Some(&(_, step)) = STEPS.iter().find(|(least, _)| own.noise_q8 >= *least) else { continue };
         let mut sums = Sums::default();
-        let own_variance = square(own.noise_q8 as f32);
         for dy in -REACH..=REACH {
             for dx in -REACH..=REACH {
                 let Some(near) = at(x + step * dx, row as i32 + step * dy) else { continue };
-                let off = near.position_q8 as f32 - own.position_q8 as f32;
-                let variance = square(near.noise_q8 as f32);
-                if square((off.abs() - NEAR).max(0.0)) <= 9.0 * (own_variance + variance) {
+                if is_same_surface(own, &near) {
+                    let off = near.position_q8 as f32 - own.position_q8 as f32;
+                    let variance = near.noise_q8 as f32 * near.noise_q8 as f32;
                     sums.add([dx as f32, dy as f32], off, SUREST * SUREST / (variance + SUREST * SUREST));
                 }
             }
@@ -57,8 +56,12 @@ pub fn plane_row(
     }
 }
 
-fn square(x: f32) -> f32 {
-    x * x
+/// Whether two answers differ by no more than [`NEAR`] and three deviations of their difference. In integers,
+/// for an answer at the very bound belongs to a surface or does not on every machine alike.
+fn is_same_surface(a: &FocusPeak, b: &FocusPeak) -> bool {
+    let square = |value: u32| u64::from(value).saturating_mul(value.into());
+    let variance = square(a.noise_q8).saturating_add(square(b.noise_q8));
+    square(a.position_q8.abs_diff(b.position_q8).saturating_sub(NEAR)) <= variance.saturating_mul(9)
 }
 
 /// The normal equations of a plane `z + a x + b y` through weighted answers.
@@ -90,15 +93,27 @@ impl Sums {
         *vy += weight * y * value;
     }
 
-    /// The plane in the middle, by Cramer's rule; 0 where there is nothing.
+    /// Value of the plane at the place itself; 0 where there is nothing. The slopes come from sums about the
+    /// weighted mean, of which the ridge bounds the condition: in those about the place itself a lone answer
+    /// at the side leaves the determinant nothing but rounding.
     fn value(&self) -> f32 {
+        if self.weight <= 0.0 {
+            return 0.0;
+        }
+        let [mean_x, mean_y] = self.places.map(|sum| sum / self.weight);
+        let mean = self.value / self.weight;
         let [px, py] = self.places;
-        let [sx, sy] = self.squares.map(|square| square + RIDGE * self.weight);
+        let [sx, sy] = self.squares;
         let [vx, vy] = self.values;
-        let (w, p, v) = (self.weight, self.product, self.value);
-        let minor = sx * sy - p * p;
-        let all = w * minor - px * (px * sy - p * py) + py * (px * p - sx * py);
-        let top = v * minor - px * (vx * sy - p * vy) + py * (vx * p - sx * vy);
-        if all > 0.0 { top / all } else { 0.0 }
+        let ridge = RIDGE * self.weight;
+        let (sx, sy) = (sx - px * mean_x + ridge, sy - py * mean_y + ridge);
+        let product = self.product - px * mean_y;
+        let (vx, vy) = (vx - px * mean, vy - py * mean);
+        let determinant = sx * sy - product * product;
+        if determinant <= 0.0 {
+            return mean;
+        }
+        let (a, b) = ((vx * sy - vy * product) / determinant, (vy * sx - vx * product) / determinant);
+        mean - a * mean_x - b * mean_y
     }
 }

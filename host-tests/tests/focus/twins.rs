@@ -63,7 +63,7 @@ fn plain(peak: &Result<FocusPeak, NoFocus>) -> Option<twin::Peak> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
     fn rows_are_their_twins(width in 1..20_u32, height in 1..9_u32, seed: u64) {

@@ -284,7 +284,9 @@ pub fn planes(columns: usize, peaks: &[Option<Peak>], medians: &[Option<Peak>]) 
             else {
                 continue;
             };
-            if (near - place).abs() <= 90.0 + 3.0 * noise.hypot(near_noise) {
+            // Whole numbers, of which f64 has the squares exactly: the bound itself is within.
+            let beyond = ((near - place).abs() - 90.0).max(0.0);
+            if beyond * beyond <= 9.0 * (noise * noise + near_noise * near_noise) {
                 let unknowns = Vector3::new(1.0, dx as f64, dy as f64);
                 let weight = 38.0 * 38.0 / (near_noise * near_noise + 38.0 * 38.0);
                 squares += weight * unknowns * unknowns.transpose();

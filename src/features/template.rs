@@ -100,7 +100,7 @@ impl Template {
     ///
     /// The inverse compositional algorithm (Baker & Matthews 2004): Gauss-Newton with the template's
     /// gradients, at most ten steps. Refused where the pixels hold no corner, at the picture's edge, and
-    /// farther than `farthest_px` from the start.
+    /// farther than `farthest_px` from the start, of which less than 0 is 0.
     pub fn align(
         &self,
         picture: &Picture<'_>,
@@ -147,7 +147,7 @@ impl Template {
             x -= warp[0][0] * right + warp[0][1] * down;
             y -= warp[1][0] * right + warp[1][1] * down;
             let (dx, dy) = (x - start[0], y - start[1]);
-            if !(dx * dx + dy * dy <= farthest_px * farthest_px) {
+            if !(dx * dx + dy * dy <= farthest_px.max(0.0) * farthest_px.max(0.0)) {
                 return Err(TemplateError::TooFar);
             }
             if right.abs().max(down.abs()) < LITTLE {

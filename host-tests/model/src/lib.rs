@@ -5,8 +5,10 @@
 //!
 //! * [`twin`]: each stage of the core, written for clarity.
 //! * [`scene`]: a ray-traced scene as a camera, with its true depth, disparity and occlusion.
+//! * [`held`]: the pipeline beside its twin.
 //! * [`interpolate`]: poses between two known ones.
 
+pub mod held;
 pub mod interpolate;
 pub mod scene;
 pub mod twin;

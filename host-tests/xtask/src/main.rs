@@ -4,6 +4,7 @@
 //! * `firmware` runs the firmware example in QEMU, on one core or on all.
 //! * `growth` measures how the cost grows with the work.
 //! * `rtl` simulates the block of `examples/fpga` before the library's second half.
+//! * `fuzz` looks for inputs that break a promise.
 //! * `altered` measures how right the methods are on altered real images, beside OpenCV.
 //! * `readme` writes the generated parts of docs/performance.md anew, or checks them.
 //! * `c` tests the C interface alone, one step of `test`.
@@ -12,7 +13,7 @@
 //!
 //! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`],
 //! [`growth`], [`c`], [`arm`], [`mod@rtl`], [`package`] and [`readme`] are seven of them. [`altered`] needs
-//! data that not everybody has.
+//! data that not everybody has, [`fuzz`] time.
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
@@ -26,6 +27,7 @@ mod c;
 mod elf;
 mod examples;
 mod firmware;
+mod fuzz;
 mod growth;
 mod header;
 mod package;
@@ -61,6 +63,8 @@ enum Chore {
     Growth(growth::Arguments),
     /// Simulates the gates of examples/fpga and holds them to the host, bit for bit.
     Rtl(rtl::Arguments),
+    /// Looks for inputs that break a promise of the library, led by coverage.
+    Fuzz(fuzz::Arguments),
     /// Measures how right the methods are on real pairs with noise and unequal cameras, beside OpenCV.
     Altered(altered::Arguments),
     /// Writes the generated parts of docs/performance.md anew.
@@ -91,7 +95,7 @@ fn main() -> ExitCode {
                 "error: {}",
                 one_line(&usage_line(
                     &error,
-                    "the chores are test, firmware, growth, rtl, altered, c, header, publish and readme"
+                    "the chores are test, firmware, growth, rtl, fuzz, altered, c, header, publish and readme"
                 ))
             );
             return ExitCode::FAILURE;
@@ -102,6 +106,7 @@ fn main() -> ExitCode {
         Chore::Firmware(arguments) => firmware::run(&arguments),
         Chore::Growth(arguments) => growth::run(&arguments),
         Chore::Rtl(arguments) => rtl::run(&arguments),
+        Chore::Fuzz(arguments) => fuzz::run(&arguments),
         Chore::Altered(arguments) => altered::run(&arguments),
         Chore::Readme { check } => readme::run(check),
         Chore::C => c::run(),

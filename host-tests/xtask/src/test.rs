@@ -5,6 +5,7 @@ use crate::boards;
 use crate::c;
 use crate::examples;
 use crate::firmware;
+use crate::fuzz::CAMPAIGN;
 use crate::growth;
 use crate::package;
 use crate::parallel;
@@ -112,12 +113,17 @@ fn real_data() -> Outcome<Option<PathBuf>> {
 fn format() -> Outcome {
     run_cargo("fmt --all --check")?;
     run_command(&mut firmware::cargo("fmt --check"))?;
+    run_cargo(&format!("fmt --check --manifest-path {CAMPAIGN}"))?;
     run_command(&mut c::cargo("fmt --check"))
 }
 
 fn clippy() -> Outcome {
     let features = format!("{REAL_DATA},stereopsis/defmt,stereopsis/serde");
     run_cargo(&format!("clippy --locked --workspace --all-targets --features {features} -- -D warnings"))?;
+    run_cargo(&format!(
+        "clippy --locked --no-default-features --manifest-path {CAMPAIGN} --target-dir {}/campaign -- -D warnings",
+        target_dir().display()
+    ))?;
     // The kinds of cores have code of their own.
     for (target, features) in [("thumbv7em-none-eabihf", "large"), ("riscv32imc-unknown-none-elf", "")] {
         let words =

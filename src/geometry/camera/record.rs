@@ -183,7 +183,8 @@ fn camera<T: Real>(which: u8, model: u16, numbers: &[T; 13]) -> Result<Camera<T>
     let [fx, fy, cx, cy, skew, lens @ ..] = *numbers;
     let lens = match (model, lens) {
         (BROWN_CONRADY, lens) => Lens::from(Distortion::from_opencv_rational(lens)),
-        (FISHEYE, [k1, k2, k3, k4, rest @ ..]) if rest.iter().all(|&k| k == T::ZERO) => {
+        // Zeros as they are written, not -0: what is read is written again.
+        (FISHEYE, [k1, k2, k3, k4, rest @ ..]) if rest.iter().all(|k| k.to_f64().to_bits() == 0) => {
             Fisheye::from_opencv([k1, k2, k3, k4]).into()
         }
         (found, _) => return Err(RecordError::Lens { found }),

@@ -68,11 +68,11 @@ proptest! {
     fn any_combination_equals_the_twin(config in any_config(), pattern in any_pattern(), seed: u64) {
         let pair = pattern.pair(u32::from(config.width), u32::from(config.height), seed);
         for compared in [
-            compare::<Fast, _>(&mut pipeline(), &config, &pair),
-            compare::<Block, _>(&mut pipeline(), &config, &pair),
-            compare::<SgmLean, _>(&mut pipeline(), &config, &pair),
-            compare::<Sgm, _>(&mut pipeline(), &config, &pair),
-            compare::<SgmEdge, _>(&mut pipeline(), &config, &pair),
+            compare::<Fast, _, _>(&mut pipeline(), &config, &pair),
+            compare::<Block, _, _>(&mut pipeline(), &config, &pair),
+            compare::<SgmLean, _, _>(&mut pipeline(), &config, &pair),
+            compare::<Sgm, _, _>(&mut pipeline(), &config, &pair),
+            compare::<SgmEdge, _, _>(&mut pipeline(), &config, &pair),
         ] {
             if let Err(e) = compared {
                 prop_assert!(false, "{pattern:?}: {e}");

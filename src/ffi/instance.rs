@@ -20,11 +20,31 @@ pub struct Instance<S: Method, const W: usize, const D: usize>(PhantomData<S>);
 /// # Safety
 ///
 /// `to` points to a row's bytes and is aligned.
-unsafe fn give(to: *mut CRow, row: Option<matching::Row<'_>>, without: Status) -> Status {
+pub(super) unsafe fn give(to: *mut CRow, row: Option<matching::Row<'_>>, without: Status) -> Status {
     let status = if row.is_some() { Status::Ok } else { without };
     // SAFETY: the caller's promise.
     unsafe { to.write(row.map_or(CRow::NONE, CRow::from)) };
     status
+}
+
+/// Writes the standard deviations of a row, px.
+///
+/// # Safety
+///
+/// `to` points to `count` floats apart from the row, and is aligned.
+pub(super) unsafe fn write_sigma_px(
+    row: &matching::Row<'_>,
+    to: *mut f32,
+    count: usize,
+) -> Result<Status, Status> {
+    if count != row.disparities().len() {
+        return Err(Status::LineLength);
+    }
+    for x in 0..count {
+        // SAFETY: the caller's promise.
+        unsafe { to.add(x).write(row.sigma_px(x).unwrap_or(f32::INFINITY)) };
+    }
+    Ok(Status::Ok)
 }
 
 impl<S: Method, const W: usize, const D: usize> Instance<S, W, D>
@@ -264,14 +284,8 @@ where
                 return Err(Status::NotStarted);
             }
             let row = state.content.row().ok_or(Status::NoRowYet)?;
-            if count != row.disparities().len() {
-                return Err(Status::LineLength);
-            }
-            for x in 0..count {
-                // SAFETY: the caller's promise, and the floats are apart from the state.
-                unsafe { sigma_px.add(x).write(row.sigma_px(x).unwrap_or(f32::INFINITY)) };
-            }
-            Ok(Status::Ok)
+            // SAFETY: the caller's promise, and the floats are apart from the state.
+            unsafe { write_sigma_px(&row, sigma_px, count) }
         };
         either(write())
     }

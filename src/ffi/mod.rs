@@ -15,6 +15,8 @@
 //! * [`Status`]: the result of every call.
 //! * [`Rectifier`]: raw lines and a calibration record to rectified lines; C holds a [`RectifierHandle`].
 //! * [`Instance`]: rectified lines to rows, for one method and one capacity; C holds a [`Handle`].
+//! * [`CWinner`]: rows of winners that something else computed, by the functions of [`Instance`] that begin
+//!   with `winners`; C holds a [`WinnersHandle`].
 //! * [`line_queue_init`] and those beside it: lines from an interrupt to the program; C holds a
 //!   [`LineQueueHandle`].
 //! * [`balance_between`], [`decimate`], [`temporal_row`] and those beside them: what is done with lines
@@ -61,6 +63,7 @@ mod names_line_queue;
 mod names_plain;
 mod names_rectifier;
 mod names_two_view;
+mod names_winners;
 mod noise;
 mod odometry;
 mod odometry_types;
@@ -74,6 +77,8 @@ mod state;
 mod status;
 mod status_texts;
 mod two_view;
+mod winner;
+mod winners;
 
 pub use after::{
     CTemporal, STEREOPSIS_ORIGIN_AVERAGED, STEREOPSIS_ORIGIN_HELD, STEREOPSIS_ORIGIN_NEW,
@@ -123,6 +128,8 @@ pub use names_plain::c_api_without_state;
 pub use names_rectifier::c_api_of_rectification;
 #[doc(hidden)]
 pub use names_two_view::c_api_of_two_views;
+#[doc(hidden)]
+pub use names_winners::c_api_of_winners;
 pub use noise::{CNoiseMeter, noise_clear, noise_level, noise_line};
 pub use odometry::{
     OdometryHandle, odometry_bytes, odometry_deinit, odometry_init, odometry_start, odometry_step,
@@ -150,3 +157,5 @@ pub use two_view::{
     CAgreement, CMatch, CPinhole, CPose, two_view_eight_point, two_view_fundamental, two_view_pose,
     two_view_triangulate,
 };
+pub use winner::{CWinner, winners_seal};
+pub use winners::{WinnersHandle, winners_bytes};

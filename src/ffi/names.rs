@@ -9,8 +9,7 @@
 /// ```
 ///
 /// Rust callers find them in the module `stereopsis_c`. `disparities` is a multiple of 16, at most 256, and
-/// `width` at least as large; another choice does not compile. `cargo xtask header` makes the header from
-/// this macro's text.
+/// `width` at least as large; another does not compile. `cargo xtask header` makes the header from this text.
 ///
 /// In this order, each may be left out: `height`, the rows of the largest rectified image (else `width`);
 /// `lines`, the raw lines of each camera that a rectifier holds, one of which is a copy (else 33); and
@@ -280,6 +279,7 @@ macro_rules! instantiate_c_api {
                 unsafe { StereopsisInstance::sigma_px(handle, sigma_px, count) }
             }
 
+            $crate::ffi::c_api_of_winners!([$($prefix)?]);
             $crate::ffi::c_api_of_line_queues!([$($prefix)?]);
             $crate::ffi::c_api_of_rectification!([$($prefix)?]);
             $crate::ffi::c_api_without_state!([$($prefix)?]);

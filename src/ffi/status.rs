@@ -174,6 +174,12 @@ pub enum Status {
     OdometryConfig = -74,
     /// Odometry: the pictures differ in size, or from those of the frames before.
     PictureSize = -75,
+    /// Winners: the row has another length than a line, or none is due.
+    Winners = -76,
+    /// Winners: a record's check byte does not fit, or it is of another row.
+    WinnerDamaged = -77,
+    /// Winners: a record is none that the search can have.
+    WinnerRefused = -78,
 }
 
 impl From<PushError> for Status {
@@ -193,10 +199,9 @@ impl From<MatchError> for Status {
         match e {
             MatchError::NotStarted => Self::NotStarted,
             MatchError::FrameDone => Self::NoLineLeft,
-            // The two of winners come from no matcher of this interface.
-            MatchError::LineTooShort { .. }
-            | MatchError::Winners { .. }
-            | MatchError::WinnerRefused { .. } => Self::LineLength,
+            MatchError::LineTooShort { .. } => Self::LineLength,
+            MatchError::Winners { .. } => Self::Winners,
+            MatchError::WinnerRefused { .. } => Self::WinnerRefused,
         }
     }
 }

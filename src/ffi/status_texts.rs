@@ -5,7 +5,7 @@ use super::Status;
 use core::ffi::CStr;
 
 /// Text of every status, of which a program holds no more than [`PACKED`].
-const TEXTS: [(Status, &CStr); 81] = [
+const TEXTS: [(Status, &CStr); 84] = [
     (Status::Ok, c"done"),
     (Status::NoRowYet, c"the first row comes some lines later"),
     (Status::FrameDone, c"all rows of the frame are out"),
@@ -87,6 +87,9 @@ const TEXTS: [(Status, &CStr); 81] = [
     (Status::OdometryPoints, c"16 to 65534 points are followed"),
     (Status::OdometryConfig, c"a length is negative or no number"),
     (Status::PictureSize, c"the pictures differ in size"),
+    (Status::Winners, c"a row of winners is as long as a line, and given where one is due"),
+    (Status::WinnerDamaged, c"a winner's check byte does not fit, or it is of another row"),
+    (Status::WinnerRefused, c"a winner is none that the search can have"),
 ];
 
 /// Largest status.

@@ -68,6 +68,14 @@
    (size_t)5 * (width) * (disparities))
 
 /**
+ * Bytes that are enough for the second half of a matcher, on any target. `disparities` is a multiple of 16, and
+ * `width` at least as large, as the library was built with.
+ */
+#define STEREOPSIS_WINNERS_BYTES(width, disparities) \
+  ((size_t)192 + (size_t)62 * (width) + (size_t)3 * (disparities) + \
+   (size_t)0 * (width) * (disparities))
+
+/**
  * Bytes that are enough for a rectifier, on any target, with the library's longest line, the rows of its
  * largest rectified image, and the raw lines of each camera that it holds.
  */
@@ -645,7 +653,19 @@ enum stereopsis_status
   /**
    * Odometry: the pictures differ in size, or from those of the frames before.
    */
-  STEREOPSIS_STATUS_PICTURE_SIZE = -75
+  STEREOPSIS_STATUS_PICTURE_SIZE = -75,
+  /**
+   * Winners: the row has another length than a line, or none is due.
+   */
+  STEREOPSIS_STATUS_WINNERS = -76,
+  /**
+   * Winners: a record's check byte does not fit, or it is of another row.
+   */
+  STEREOPSIS_STATUS_WINNER_DAMAGED = -77,
+  /**
+   * Winners: a record is none that the search can have.
+   */
+  STEREOPSIS_STATUS_WINNER_REFUSED = -78
 };
 #if defined(__cplusplus) ? __cplusplus < 201103L : __STDC_VERSION__ < 202311L
 typedef int32_t stereopsis_status;
@@ -682,6 +702,200 @@ typedef struct stereopsis_odometry stereopsis_odometry;
  * Rectifier of raw lines in the caller's memory.
  */
 typedef struct stereopsis_rectifier stereopsis_rectifier;
+
+/**
+ * Second half of a matcher in the caller's memory, which takes rows of winners.
+ */
+typedef struct stereopsis_winners stereopsis_winners;
+
+/**
+ * Frame size, search range and checks, filled by `stereopsis_config_default` and then open to changes.
+ */
+typedef struct stereopsis_config {
+  /**
+   * Pixels in a line: 1 to `stereopsis_max_width()`.
+   */
+  uint16_t width;
+  /**
+   * Lines in a frame, at least 1.
+   */
+  uint16_t height;
+  /**
+   * Number of whole disparities searched: 16 to `stereopsis_max_disparities()`.
+   */
+  uint16_t disparities;
+  /**
+   * Smallest disparity searched, px.
+   */
+  uint16_t min_disparity;
+  /**
+   * Left-right check: largest difference of the two answers, 0 to 255 px, or
+   * `STEREOPSIS_NOT_CHECKED`.
+   */
+  int16_t left_right_px;
+  /**
+   * Uniqueness check: least extra cost of the second best, 0 to 99 percent, or
+   * `STEREOPSIS_NOT_CHECKED`.
+   */
+  int16_t uniqueness_percent;
+  /**
+   * Texture check: least difference of a textured pixel's left and right neighbours, grey levels.
+   */
+  uint8_t texture_gradient;
+  /**
+   * Texture check: least number of textured pixels in the window of an answer; 0 disables it.
+   */
+  uint8_t texture_pixels;
+  /**
+   * Whether a winner at the largest disparity searched, or one whose partner is the first column of the
+   * right image, is refused; 0 means no.
+   */
+  uint8_t refuse_ceiling;
+  /**
+   * Whether a winner that costs as much as both its neighbours is refused; 0 means no.
+   */
+  uint8_t refuse_flat;
+  /**
+   * Smoothing: pairs of neighbours along the line that are averaged within a surface, 0 to 8.
+   */
+  uint8_t smoothing_radius;
+  /**
+   * Whether a median filter of 3 x 3 pixels is applied; 0 means no.
+   */
+  uint8_t median;
+  /**
+   * Largest difference of neighbours of one surface, in 1/32 px, 0 to 32.
+   */
+  uint16_t surface_step;
+  /**
+   * Speckle filter: least number of answers of one surface on a cross around an answer; 0 disables it.
+   */
+  uint8_t speckle_pixels;
+  /**
+   * Semi-global matching: truncation of gradients, eighths of a grey level per pixel, 1 to 14.
+   */
+  uint8_t gradient;
+  /**
+   * Semi-global matching: truncation of a pixel's cost, at least 1.
+   */
+  uint8_t cost;
+  /**
+   * Semi-global matching: penalty P1 of a disparity change by one px, at small and larger changes of
+   * brightness; at least 1, and the second at most the first.
+   */
+  uint8_t step[2];
+  /**
+   * Semi-global matching: penalty P2 of larger disparity changes, at small, larger and large changes of
+   * brightness; the first at least the first step, the others at least the second. `cost + step + jump` is
+   * at most 127, `3 cost + 2 jump` at most 254.
+   */
+  uint8_t jump[3];
+  /**
+   * Semi-global matching: least larger and least large change of brightness, grey levels.
+   */
+  uint8_t edges[2];
+  /**
+   * Gap filling: longest gap in a row, pixels, that is filled with the farther of the answers at its ends
+   * and flagged `STEREOPSIS_FLAG_FILLED`; 0 disables it.
+   */
+  uint8_t fill_pixels;
+  /**
+   * Whether rows have confidences; 0 means no, and saves the search for each pixel's second best.
+   */
+  uint8_t confidence;
+  /**
+   * Gap filling: largest difference of the two answers, in 1/32 px; 65535 for no limit.
+   */
+  uint16_t fill_step;
+  /**
+   * Noise level of both cameras, a `STEREOPSIS_NOISE_`, which selects the smoothing of compared pixels;
+   * `stereopsis_config_noise` sets it with matching checks and penalties.
+   */
+  uint8_t noise;
+  /**
+   * Speckle filter: most answers of one row of a surface that count; 0 for no limit.
+   */
+  uint8_t speckle_run;
+  /**
+   * Fattening check: by how much an answer may be nearer than others in its row, in 1/32 px for each pixel
+   * between, where no edge of brightness lies between; 65535 disables it.
+   */
+  uint16_t fattening_slope;
+  /**
+   * Least confidence of an answer, 1 to 207: one that is less sure is refused and flagged
+   * `STEREOPSIS_FLAG_AMBIGUOUS`, and rows have confidences; 0 refuses none.
+   */
+  uint8_t min_confidence;
+} stereopsis_config;
+
+/**
+ * Winner of one pixel, computed by another device: eight bytes in the order that they are sent in.
+ *
+ * In columns left of the smallest disparity, which have no candidate, only `row` and `check` mean anything.
+ */
+typedef struct stereopsis_winner {
+  /**
+   * Cost of the disparity one below the winner; of that above, where the winner is the smallest candidate;
+   * the winner's own, where it is the only one.
+   */
+  uint8_t below;
+  /**
+   * Cost of the winner.
+   */
+  uint8_t cost;
+  /**
+   * Cost of the disparity one above the winner; of that below, where the winner is the largest candidate.
+   */
+  uint8_t above;
+  /**
+   * Winner over the smallest disparity searched, px.
+   */
+  uint8_t disparity;
+  /**
+   * Disparity that the winner's partner in the right image keeps, likewise: that of the cheapest winner
+   * that chose it, of the leftmost among equals.
+   */
+  uint8_t kept;
+  /**
+   * Least cost of the candidates over two px from the winner; 255 where there is none or none was sought.
+   */
+  uint8_t second;
+  /**
+   * Number of the row, its lowest eight bits.
+   */
+  uint8_t row;
+  /**
+   * Exclusive or of the seven bytes before, all bits inverted: `stereopsis_winners_seal` writes it.
+   */
+  uint8_t check;
+} stereopsis_winner;
+
+/**
+ * Row of results, with arrays in the matcher's memory that hold until the next call with its handle.
+ */
+typedef struct stereopsis_row {
+  /**
+   * Row in the image, from 0.
+   */
+  uint16_t index;
+  /**
+   * Number of pixels, the length of the arrays.
+   */
+  uint16_t width;
+  /**
+   * Disparities of the columns in 1/32 px, `STEREOPSIS_NONE` for no answer.
+   */
+  const uint16_t *disparities;
+  /**
+   * `STEREOPSIS_FLAG_` bits of the columns.
+   */
+  const uint8_t *flags;
+  /**
+   * Confidences of the columns, 1 to 207, 0 for no answer; null unless the configuration's `confidence` is
+   * set. They rank answers, likely wrong ones first, and are no probabilities.
+   */
+  const uint8_t *confidences;
+} stereopsis_row;
 
 /**
  * Line that waits in a queue.
@@ -1150,153 +1364,6 @@ typedef struct stereopsis_step {
 } stereopsis_step;
 
 /**
- * Frame size, search range and checks, filled by `stereopsis_config_default` and then open to changes.
- */
-typedef struct stereopsis_config {
-  /**
-   * Pixels in a line: 1 to `stereopsis_max_width()`.
-   */
-  uint16_t width;
-  /**
-   * Lines in a frame, at least 1.
-   */
-  uint16_t height;
-  /**
-   * Number of whole disparities searched: 16 to `stereopsis_max_disparities()`.
-   */
-  uint16_t disparities;
-  /**
-   * Smallest disparity searched, px.
-   */
-  uint16_t min_disparity;
-  /**
-   * Left-right check: largest difference of the two answers, 0 to 255 px, or
-   * `STEREOPSIS_NOT_CHECKED`.
-   */
-  int16_t left_right_px;
-  /**
-   * Uniqueness check: least extra cost of the second best, 0 to 99 percent, or
-   * `STEREOPSIS_NOT_CHECKED`.
-   */
-  int16_t uniqueness_percent;
-  /**
-   * Texture check: least difference of a textured pixel's left and right neighbours, grey levels.
-   */
-  uint8_t texture_gradient;
-  /**
-   * Texture check: least number of textured pixels in the window of an answer; 0 disables it.
-   */
-  uint8_t texture_pixels;
-  /**
-   * Whether a winner at the largest disparity searched, or one whose partner is the first column of the
-   * right image, is refused; 0 means no.
-   */
-  uint8_t refuse_ceiling;
-  /**
-   * Whether a winner that costs as much as both its neighbours is refused; 0 means no.
-   */
-  uint8_t refuse_flat;
-  /**
-   * Smoothing: pairs of neighbours along the line that are averaged within a surface, 0 to 8.
-   */
-  uint8_t smoothing_radius;
-  /**
-   * Whether a median filter of 3 x 3 pixels is applied; 0 means no.
-   */
-  uint8_t median;
-  /**
-   * Largest difference of neighbours of one surface, in 1/32 px, 0 to 32.
-   */
-  uint16_t surface_step;
-  /**
-   * Speckle filter: least number of answers of one surface on a cross around an answer; 0 disables it.
-   */
-  uint8_t speckle_pixels;
-  /**
-   * Semi-global matching: truncation of gradients, eighths of a grey level per pixel, 1 to 14.
-   */
-  uint8_t gradient;
-  /**
-   * Semi-global matching: truncation of a pixel's cost, at least 1.
-   */
-  uint8_t cost;
-  /**
-   * Semi-global matching: penalty P1 of a disparity change by one px, at small and larger changes of
-   * brightness; at least 1, and the second at most the first.
-   */
-  uint8_t step[2];
-  /**
-   * Semi-global matching: penalty P2 of larger disparity changes, at small, larger and large changes of
-   * brightness; the first at least the first step, the others at least the second. `cost + step + jump` is
-   * at most 127, `3 cost + 2 jump` at most 254.
-   */
-  uint8_t jump[3];
-  /**
-   * Semi-global matching: least larger and least large change of brightness, grey levels.
-   */
-  uint8_t edges[2];
-  /**
-   * Gap filling: longest gap in a row, pixels, that is filled with the farther of the answers at its ends
-   * and flagged `STEREOPSIS_FLAG_FILLED`; 0 disables it.
-   */
-  uint8_t fill_pixels;
-  /**
-   * Whether rows have confidences; 0 means no, and saves the search for each pixel's second best.
-   */
-  uint8_t confidence;
-  /**
-   * Gap filling: largest difference of the two answers, in 1/32 px; 65535 for no limit.
-   */
-  uint16_t fill_step;
-  /**
-   * Noise level of both cameras, a `STEREOPSIS_NOISE_`, which selects the smoothing of compared pixels;
-   * `stereopsis_config_noise` sets it with matching checks and penalties.
-   */
-  uint8_t noise;
-  /**
-   * Speckle filter: most answers of one row of a surface that count; 0 for no limit.
-   */
-  uint8_t speckle_run;
-  /**
-   * Fattening check: by how much an answer may be nearer than others in its row, in 1/32 px for each pixel
-   * between, where no edge of brightness lies between; 65535 disables it.
-   */
-  uint16_t fattening_slope;
-  /**
-   * Least confidence of an answer, 1 to 207: one that is less sure is refused and flagged
-   * `STEREOPSIS_FLAG_AMBIGUOUS`, and rows have confidences; 0 refuses none.
-   */
-  uint8_t min_confidence;
-} stereopsis_config;
-
-/**
- * Row of results, with arrays in the matcher's memory that hold until the next call with its handle.
- */
-typedef struct stereopsis_row {
-  /**
-   * Row in the image, from 0.
-   */
-  uint16_t index;
-  /**
-   * Number of pixels, the length of the arrays.
-   */
-  uint16_t width;
-  /**
-   * Disparities of the columns in 1/32 px, `STEREOPSIS_NONE` for no answer.
-   */
-  const uint16_t *disparities;
-  /**
-   * `STEREOPSIS_FLAG_` bits of the columns.
-   */
-  const uint8_t *flags;
-  /**
-   * Confidences of the columns, 1 to 207, 0 for no answer; null unless the configuration's `confidence` is
-   * set. They rank answers, likely wrong ones first, and are no probabilities.
-   */
-  const uint8_t *confidences;
-} stereopsis_row;
-
-/**
  * Saturating counts since `stereopsis_start`.
  */
 typedef struct stereopsis_counts {
@@ -1349,6 +1416,92 @@ typedef struct stereopsis_counts {
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
+
+/**
+ * Returns the bytes of memory that the second half of a matcher takes.
+ */
+size_t stereopsis_winners_size(void);
+
+/**
+ * Returns the delay in lines of the second half: row y comes out when line y +
+ * `stereopsis_winners_latency()` goes in; the last rows come by `stereopsis_winners_flush`.
+ */
+size_t stereopsis_winners_latency(void);
+
+/**
+ * Creates the second half of a matcher in the caller's memory of `length` bytes, aligned to
+ * `STEREOPSIS_ALIGN`: it takes rows of winners that something else computed, such as gates or
+ * another core, and gives the rows that a matcher of this library gives. Writes the handle; a null
+ * handle on an error, unless `handle` itself is invalid. The memory is not read, and belongs to it
+ * until `stereopsis_winners_deinit`.
+ */
+stereopsis_status stereopsis_winners_init(void *memory, size_t length, struct stereopsis_winners **handle);
+
+/**
+ * Ends a second half, whose memory returns to the caller.
+ */
+stereopsis_status stereopsis_winners_deinit(struct stereopsis_winners *handle);
+
+/**
+ * Checks a configuration, which is copied, and prepares for the first frame. Writes 1 or 0: whether
+ * a check looks at the left camera's lines, and whether one looks at the winners' `second`.
+ */
+stereopsis_status stereopsis_winners_start(struct stereopsis_winners *handle,
+                                           const struct stereopsis_config *config,
+                                           uint8_t *needs_lines,
+                                           uint8_t *needs_second);
+
+/**
+ * Begins a frame, and drops the one before.
+ */
+stereopsis_status stereopsis_winners_begin_frame(struct stereopsis_winners *handle);
+
+/**
+ * Writes the row whose winners the next call of `stereopsis_winners_push` takes, or of
+ * `stereopsis_winners_flush` after the last line; with `STEREOPSIS_STATUS_NO_ROW_YET` that call
+ * takes none, and nothing is written.
+ */
+stereopsis_status stereopsis_winners_due(struct stereopsis_winners *handle, uint16_t *row);
+
+/**
+ * Takes the next line of the left camera, `length` bytes, which is the configuration's width, and
+ * the `count` winners of the row of `stereopsis_winners_due`, as many as a line has pixels. The line
+ * may be null where no check looks at it. Null winners mean none where none are due, and a lost row
+ * where some are: it has no answers and `STEREOPSIS_FLAG_DAMAGED` on every pixel, and rows that it
+ * affects through checks have the flag.
+ *
+ * Returns `STEREOPSIS_STATUS_OK` with a row, or `STEREOPSIS_STATUS_NO_ROW_YET` with an empty one for
+ * the first lines of a frame. After an error, such as `STEREOPSIS_STATUS_WINNER_DAMAGED`, the same
+ * row may be given again.
+ */
+stereopsis_status stereopsis_winners_push(struct stereopsis_winners *handle,
+                                          const uint8_t *left,
+                                          size_t length,
+                                          const struct stereopsis_winner *winners,
+                                          size_t count,
+                                          struct stereopsis_row *row);
+
+/**
+ * Takes the winners that are due after the last line, as `stereopsis_winners_push` does: returns
+ * `STEREOPSIS_STATUS_OK` with a row, `STEREOPSIS_STATUS_NO_ROW_YET` with an empty one in frames of
+ * few lines, or `STEREOPSIS_STATUS_FRAME_DONE` with an empty one after the last row.
+ */
+stereopsis_status stereopsis_winners_flush(struct stereopsis_winners *handle,
+                                           const struct stereopsis_winner *winners,
+                                           size_t count,
+                                           struct stereopsis_row *row);
+
+/**
+ * Writes the standard deviations of the last row of a second half, as `stereopsis_sigma_px` does.
+ */
+stereopsis_status stereopsis_winners_sigma_px(struct stereopsis_winners *handle,
+                                              float *sigma_px,
+                                              size_t count);
+
+/**
+ * Writes `row` and `check` of `count` winners of a row.
+ */
+stereopsis_status stereopsis_winners_seal(struct stereopsis_winner *winners, size_t count, uint16_t row);
 
 /**
  * Creates a queue of lines of `line_bytes` bytes, 1 to 65535, in the caller's memory of `length`
@@ -2034,6 +2187,17 @@ stereopsis_status stereopsis_sigma_px(struct stereopsis *handle, float *sigma_px
 #define STEREOPSIS_EXTERN extern
 #endif
 #define STEREOPSIS_FUNCTIONS(prefix) \
+  STEREOPSIS_EXTERN size_t prefix##stereopsis_winners_size(void); \
+  STEREOPSIS_EXTERN size_t prefix##stereopsis_winners_latency(void); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_winners_init(void *memory, size_t length, struct stereopsis_winners **handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_winners_deinit(struct stereopsis_winners *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_winners_start(struct stereopsis_winners *handle, const struct stereopsis_config *config, uint8_t *needs_lines, uint8_t *needs_second); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_winners_begin_frame(struct stereopsis_winners *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_winners_due(struct stereopsis_winners *handle, uint16_t *row); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_winners_push(struct stereopsis_winners *handle, const uint8_t *left, size_t length, const struct stereopsis_winner *winners, size_t count, struct stereopsis_row *row); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_winners_flush(struct stereopsis_winners *handle, const struct stereopsis_winner *winners, size_t count, struct stereopsis_row *row); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_winners_sigma_px(struct stereopsis_winners *handle, float *sigma_px, size_t count); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_winners_seal(struct stereopsis_winner *winners, size_t count, uint16_t row); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_line_queue_init(void *memory, size_t length, size_t line_bytes, struct stereopsis_line_queue **handle); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_line_queue_deinit(struct stereopsis_line_queue *handle); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_line_queue_begin(struct stereopsis_line_queue *handle, uint8_t **bytes); \

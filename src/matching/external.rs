@@ -52,6 +52,20 @@ where
         self.step_winners(left, true, winners)
     }
 
+    /// Checks that a row of winners is as long as a line and that the search can have each of them.
+    pub(crate) fn check_winners(&self, winners: &[WinnerRecord]) -> Result<(), MatchError> {
+        let config = self.config();
+        let (width, least) = (usize::from(config.width), usize::from(config.min_disparity));
+        let given = winners.get(..width).ok_or(MatchError::Winners { needed: width })?;
+        let disparities = usize::from(config.disparities);
+        for (x, winner) in given.iter().enumerate().skip(least) {
+            if !winner.is_possible((x - least + 1).min(disparities)) {
+                return Err(MatchError::WinnerRefused { column: x as u16 });
+            }
+        }
+        Ok(())
+    }
+
     /// Goes on below the image's last row, until the last results are out.
     pub fn flush_winners(&mut self, winners: &[WinnerRecord]) -> Result<(), MatchError> {
         self.step_winners(None, false, winners)
@@ -73,14 +87,8 @@ where
             return Err(MatchError::FrameDone);
         }
         if self.winners_due().is_some() {
+            self.check_winners(winners)?;
             let given = winners.get(..width).ok_or(MatchError::Winners { needed: width })?;
-            let disparities = usize::from(config.disparities);
-            for (x, winner) in given.iter().enumerate().skip(usize::from(config.min_disparity)) {
-                let candidates = (x - usize::from(config.min_disparity) + 1).min(disparities);
-                if !winner.is_possible(candidates) {
-                    return Err(MatchError::WinnerRefused { column: x as u16 });
-                }
-            }
             let records = view_mut::<u8, WinnerRecord>(self.memory.parts(width).codes);
             for (to, from) in records.iter_mut().zip(given) {
                 *to = *from;

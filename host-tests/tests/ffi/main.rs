@@ -11,6 +11,7 @@ mod lost;
 mod noise;
 mod raw;
 mod two_view;
+mod winners;
 
 use std::ffi::{CStr, c_void};
 use std::mem::MaybeUninit;

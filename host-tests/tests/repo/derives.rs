@@ -35,6 +35,7 @@ const NO_DEBUG: [(&str, &[&str]); 3] = [
             "OdometryHandle",
             "Rectifier",
             "RectifierHandle",
+            "WinnersHandle",
         ],
     ),
 ];
@@ -94,6 +95,7 @@ const NO_DATA: [(&str, &[&str]); 5] = [
             "CSearch",
             "CStep",
             "CTemporal",
+            "CWinner",
             "Status",
         ],
     ),

@@ -138,6 +138,19 @@ where
             return Err(PushError::LineLength { needed }.into());
         }
         source.push_lines(left, right)?;
+        Ok(if self.take_line(left, source)? { self.matcher.row() } else { None })
+    }
+
+    /// Takes a line of the left camera, empty where no check looks at it and the winners due.
+    pub(crate) fn take_line<R: WinnerSource>(
+        &mut self,
+        left: &[u8],
+        source: &mut R,
+    ) -> Result<bool, WinnerPipelineError<R::Error>> {
+        self.begun()?;
+        if self.lines >= self.height {
+            return Err(PushError::NoLineLeft.into());
+        }
         // A step behind: the row's last winners come when the device has this line, which the window does not
         // need to have.
         let is_due = self.lines >= self.taken.saturating_add(3);
@@ -149,7 +162,7 @@ where
         }
         self.left.accept();
         self.lines += 1;
-        Ok(if is_due { self.matcher.row() } else { None })
+        Ok(is_due)
     }
 
     /// Returns the next row after the last line was pushed; `None` after the frame's last row.
@@ -157,23 +170,46 @@ where
         &mut self,
         source: &mut R,
     ) -> Result<Option<Row<'_>>, WinnerPipelineError<R::Error>> {
+        // Every step takes one row, and the first row is out after `DELAY` of them.
+        for _ in 0..=Matcher::<External<S>, W, D>::DELAY {
+            if !self.advance(source)? {
+                return Ok(None);
+            }
+            if self.taken > Matcher::<External<S>, W, D>::DELAY {
+                break;
+            }
+        }
+        Ok(self.matcher.row())
+    }
+
+    /// Goes on by a row below the last line, and says whether there was one.
+    pub(crate) fn advance<R: WinnerSource>(
+        &mut self,
+        source: &mut R,
+    ) -> Result<bool, WinnerPipelineError<R::Error>> {
         self.begun()?;
         let missing = self.height.saturating_sub(self.lines);
         if missing > 0 {
             return Err(PushError::LinesMissing { missing }.into());
         }
-        let delay = Matcher::<External<S>, W, D>::DELAY;
-        // Every step takes one row, and the first row is out after `DELAY` of them.
-        for _ in 0..=delay {
-            if self.taken >= self.height + delay {
-                return Ok(None);
-            }
+        let goes_on = self.taken < self.height + Matcher::<External<S>, W, D>::DELAY;
+        if goes_on {
             self.step(source)?;
-            if self.taken > delay {
-                break;
-            }
         }
-        Ok(self.matcher.row())
+        Ok(goes_on)
+    }
+
+    /// Returns the row whose winners the next line takes, or a step after the last; `None` where it
+    /// takes none.
+    pub fn winners_due(&self) -> Result<Option<u16>, PushError> {
+        self.begun()?;
+        let is_behind = self.lines < self.height && self.lines < self.taken.saturating_add(3);
+        Ok(if is_behind { None } else { self.matcher.winners_due() })
+    }
+
+    /// Returns the matcher behind the winners.
+    pub fn matcher(&self) -> &Matcher<External<S>, W, D> {
+        &self.matcher
     }
 
     /// Passes the next row to the matcher, with the winners that are due with it.

@@ -19,9 +19,15 @@ pub fn statuses() -> Outcome {
     remove(&build)?;
     configure("host-tests/tests/ffi", &build, &choices, SANITIZERS)?;
     run_command(command("cmake", &["--build"]).arg(&build))?;
-    for program in
-        ["misuse", "misuse_raw", "misuse_queue", "misuse_two_views", "misuse_features", "misuse_motion"]
-    {
+    for program in [
+        "misuse",
+        "misuse_raw",
+        "misuse_queue",
+        "misuse_two_views",
+        "misuse_features",
+        "misuse_motion",
+        "misuse_winners",
+    ] {
         for program in [program.to_owned(), format!("{program}_cpp")] {
             print!("{program}: {}", output_within(&mut command(build.join(&program), &[]), LIMIT)?);
         }

@@ -3,6 +3,7 @@
 use crate::steps::{Failure, Outcome};
 use stereopsis::ffi::{
     detector_bytes, focus_bytes, line_queue_bytes, memory_bytes, odometry_bytes, rectifier_bytes,
+    winners_bytes,
 };
 use stereopsis::matching::{Block, Fast, Method, Sgm, SgmEdge, SgmLean};
 
@@ -14,6 +15,7 @@ pub fn macros() -> Outcome<String> {
         bytes_macro::<SgmLean>()?,
         bytes_macro::<Sgm>()?,
         bytes_macro::<SgmEdge>()?,
+        winners_macro()?,
         rectifier_macro()?,
         line_queue_macro()?,
         detector_macro(),
@@ -23,9 +25,20 @@ pub fn macros() -> Outcome<String> {
     Ok(all.join("\n"))
 }
 
-/// How many bytes a method takes, as a macro: `a + b width + c disparities + d width disparities`, by trying.
+/// How many bytes a method takes, as a macro.
 fn bytes_macro<S: Method>() -> Outcome<String> {
-    let bytes = |width: usize, disparities: usize| memory_bytes::<S>(width, disparities) as i64;
+    let name = S::NAME.to_uppercase().replace('-', "_");
+    product_macro(&name, &format!("a matcher of method {}", S::NAME), memory_bytes::<S>)
+}
+
+/// How many bytes the second half of a matcher takes, as a macro.
+fn winners_macro() -> Outcome<String> {
+    product_macro("WINNERS", "the second half of a matcher", winners_bytes)
+}
+
+/// A number of bytes as a macro: `a + b width + c disparities + d width disparities`, by trying.
+fn product_macro(name: &str, what: &str, most: fn(usize, usize) -> usize) -> Outcome<String> {
+    let bytes = |width: usize, disparities: usize| most(width, disparities) as i64;
     let [w, d, step_w, step_d] = [256, 16, 256, 16];
     let (by_w, by_d) = (bytes(512, 16) - bytes(256, 16), bytes(256, 32) - bytes(256, 16));
     let both = (bytes(512, 32) - bytes(256, 16) - by_w - by_d) / (step_w * step_d);
@@ -34,19 +47,14 @@ fn bytes_macro<S: Method>() -> Outcome<String> {
     for (width, disparities) in [(16, 16), (160, 32), (320, 64), (333, 240), (640, 128), (4096, 256)] {
         let (w, d) = (width as i64, disparities as i64);
         if fixed + by_w * w + by_d * d + both * w * d != bytes(width, disparities) {
-            return Err(Failure::new(format!(
-                "{}: memory_bytes is no sum of products at {width}x{disparities}",
-                S::NAME
-            )));
+            return Err(Failure::new(format!("{what}: no sum of products at {width}x{disparities}")));
         }
     }
-    let method = S::NAME.to_uppercase().replace('-', "_");
     Ok(format!(
-        "/**\n * Bytes that are enough for a matcher of method {}, on any target. `disparities` is a \
+        "/**\n * Bytes that are enough for {what}, on any target. `disparities` is a \
          multiple of 16, and\n * `width` at least as large, as the library was built with.\n */\n#define \
-         STEREOPSIS_{method}_BYTES(width, disparities) \\\n  ((size_t){fixed} + (size_t){by_w} * (width) + \
-         (size_t){by_d} * (disparities) + \\\n   (size_t){both} * (width) * (disparities))\n",
-        S::NAME
+         STEREOPSIS_{name}_BYTES(width, disparities) \\\n  ((size_t){fixed} + (size_t){by_w} * (width) + \
+         (size_t){by_d} * (disparities) + \\\n   (size_t){both} * (width) * (disparities))\n"
     ))
 }
 

@@ -19,8 +19,9 @@ use std::fs;
 /// The header, from the repository's root.
 const HEADER: &str = "src/ffi/stereopsis.h";
 /// The files with macros, and the macros, in the header's order.
-const MACROS: [(&str, &str); 8] = [
+const MACROS: [(&str, &str); 9] = [
     ("src/ffi/names.rs", "instantiate_c_api"),
+    ("src/ffi/names_winners.rs", "c_api_of_winners"),
     ("src/ffi/names_line_queue.rs", "c_api_of_line_queues"),
     ("src/ffi/names_rectifier.rs", "c_api_of_rectification"),
     ("src/ffi/names_plain.rs", "c_api_without_state"),
@@ -30,13 +31,15 @@ const MACROS: [(&str, &str); 8] = [
     ("src/ffi/names_focus.rs", "c_api_of_focus_and_motion"),
 ];
 /// The files that cbindgen reads as they are, in the header's order.
-const FILES: [&str; 21] = [
+const FILES: [&str; 23] = [
     "src/ffi/status.rs",
     "src/ffi/state.rs",
     "src/ffi/config.rs",
     "src/ffi/row.rs",
     "src/ffi/faults.rs",
     "src/ffi/noise.rs",
+    "src/ffi/winner.rs",
+    "src/ffi/winners.rs",
     "src/ffi/line_queue.rs",
     "src/ffi/balance.rs",
     "src/ffi/rectifying.rs",
@@ -54,13 +57,15 @@ const FILES: [&str; 21] = [
     "src/ffi/odometry.rs",
 ];
 /// Names that Rust spells in its own way.
-const NAMES: [(&str, &str); 31] = [
+const NAMES: [(&str, &str); 33] = [
     ("Handle", "stereopsis"),
     ("Status", "stereopsis_status"),
     ("CConfig", "stereopsis_config"),
     ("CRow", "stereopsis_row"),
     ("CCounters", "stereopsis_counts"),
     ("CNoiseMeter", "stereopsis_noise_meter"),
+    ("WinnersHandle", "stereopsis_winners"),
+    ("CWinner", "stereopsis_winner"),
     ("LineQueueHandle", "stereopsis_line_queue"),
     ("CLine", "stereopsis_line"),
     ("CHistogram", "stereopsis_histogram"),

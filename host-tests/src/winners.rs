@@ -58,9 +58,10 @@ impl MockBlock {
     ///
     /// When the method is none of the block's.
     pub fn new(method: &twin::Method, config: &Config, left: &GrayImage, right: &GrayImage) -> Self {
-        let number = [twin::Method::FAST, twin::Method::BLOCK].iter().position(|m| m == method);
+        let number =
+            [twin::Method::FAST, twin::Method::BLOCK, twin::Method::SGM].iter().position(|m| m == method);
         Self {
-            number: number.expect("fast or block") as u32,
+            number: number.expect("a method of the block") as u32,
             radius_y: method.radius_y,
             capacity: [1280, 128],
             winners: without_second_best(Stages::of(method, config, left, right).winners),
@@ -114,7 +115,7 @@ impl RegisterBus for MockBlock {
         let [width, height] = self.size;
         let is_good = (16..=most[0]).contains(&width)
             && height > 0
-            && (16..=most[1].min(width)).contains(&(self.search & !0x100));
+            && (16..=most[1].min(width)).contains(&(self.search & 0xff));
         match register {
             Register::Control => {
                 if value & 2 != 0 {

@@ -7,10 +7,8 @@
 //   stereo_walk        the frame's way through lines and columns, and what is wrong with its stream
 //   stereo_census      five rows around each column, and the codes of both cameras
 //   stereo_window      Hamming distances, summed down the columns and along the row
-//   stereo_winner      the cheapest candidate, with the costs beside it
-//   stereo_second      the cheapest candidate that is not beside it, if it is sought
-//   stereo_left_right  what the winner's partner keeps
-//   stereo_fifo        records on their way out
+//   stereo_search      winners, with the costs beside them, the second best if it is sought, and what the
+//                      winner's partner keeps: records on their way out
 //   stereo_registers   size, search and status
 //
 // METHOD 0 is `fast` (4-bit census, 9 x 7 pixels), 1 is `block` (8-bit census, 9 x 9 pixels, in quarters).
@@ -60,10 +58,9 @@ module stereo_block #(
     localparam ADDRESS_BITS = $clog2(WIDTH);
     localparam CODE_BITS = $clog2((2 * RADIUS_Y + 1) * WIDTH);
     localparam LEVELS = $clog2(PARALLEL);
-    localparam SLOT_BITS = $clog2(2 * DISPARITIES);
-    // Clocks from the walk's token to the winner.
-    localparam WINNER = LEVELS + 10;
-    // Clocks from there to the second best.
+    // Clocks from the walk's token to the sums.
+    localparam AHEAD = 7;
+    // Clocks from the winner to the second best.
     localparam LATER = SECOND_BEST == 0 ? 0 : GROUPS + LEVELS + 1;
 
     wire go;
@@ -72,7 +69,9 @@ module stereo_block #(
     wire [ADDRESS_BITS-1:0] next_column;
     wire [15:0] set_height, pixels, row;
     wire [7:0] set_disparities, disparities;
-    wire set_smooth, smooth;
+    wire [1:0] set_noise, noise;
+    wire smooth = noise != 0;
+    wire [7:0] set_least, least;
     wire valid, first_group, last_group, inside_width, inside_height, first_line;
     wire first_code, enters, leaves, has_winners, drains;
     wire [GROUP_BITS-1:0] group;
@@ -83,7 +82,7 @@ module stereo_block #(
 
     stereo_walk #(
         .WIDTH(WIDTH),
-        .DEPTH(WINNER + LATER + 8),
+        .DEPTH(AHEAD + LEVELS + LATER + 11),
         .GROUPS(GROUPS),
         .RADIUS_Y(RADIUS_Y),
         .COLUMN_BITS(COLUMN_BITS),
@@ -93,9 +92,9 @@ module stereo_block #(
     ) walk (
         .clk(clk), .reset(restarts), .go(go),
         .enable(enable), .set_width(set_width), .set_height(set_height), .set_disparities(set_disparities),
-        .set_smooth(set_smooth), .pixel_data(s_axis_tdata), .pixel_valid(s_axis_tvalid),
+        .set_noise(set_noise), .set_least(set_least), .pixel_data(s_axis_tdata), .pixel_valid(s_axis_tvalid),
         .pixel_user(s_axis_tuser), .pixel_last(s_axis_tlast), .pixel_ready(s_axis_tready),
-        .width(width), .disparities(disparities), .smooth(smooth), .running(running),
+        .width(width), .disparities(disparities), .noise(noise), .least(least), .running(running),
         .begins(begins), .aborts(aborts), .too_short(too_short), .too_long(too_long), .cut_off(cut_off),
         .next_column(next_column), .valid(valid), .pixels(pixels), .column(column), .group(group),
         .first_group(first_group), .last_group(last_group), .inside_width(inside_width),
@@ -159,7 +158,8 @@ module stereo_block #(
         .GROUP_BITS(GROUP_BITS),
         .CODE_BITS(CODE_BITS)
     ) window (
-        .clk(clk), .reset(forgets), .go(go), .read_code(token_3[CODE_BITS-1:0]),
+        .clk(clk), .reset(forgets), .go(go), .least(least), .read_code(token_3[CODE_BITS-1:0]),
+        .read_column(token_3[CODE_BITS + GROUP_BITS +: COLUMN_BITS]),
         .valid(valids[2]), .column(column_4), .group(group_4), .first_group(first_group_4),
         .in_image(inside_4), .first_code(first_code_4), .enters(enters_4), .leaves(leaves_4),
         .code_address(token_4[CODE_BITS-1:0]), .left_code(left_code), .right_code(right_code), .sums(sums)
@@ -173,73 +173,19 @@ module stereo_block #(
     end
     wire [LATE-1:0] late = lates[4*LATE-1 -: LATE];
     wire [COLUMN_BITS-1:0] winner_column = late[GROUP_BITS +: COLUMN_BITS] - FOUR;
-    wire [7:0] best, cost, below, above;
-
-    stereo_winner #(
-        .PARALLEL(PARALLEL), .COLUMN_BITS(COLUMN_BITS), .GROUP_BITS(GROUP_BITS), .LEVELS(LEVELS)
-    ) winner (
-        .clk(clk), .reset(forgets), .go(go), .disparities(disparities), .sums(sums), .valid(valids[6]),
-        .column(winner_column), .group(late[GROUP_BITS-1:0]), .first_group(late[LATE-2]),
-        .last_group(late[LATE-1]), .best(best), .cost(cost), .below(below), .above(above)
-    );
-
-    // What is to be said of the winner, beside it.
     wire is_pixel = has_winners && column >= 7;
-    wire is_first = row == 0 && column == 7;
-    wire is_last = column == width + SIX;
-    reg [WINNER-1:0] steps;
-    reg [11*WINNER-1:0] said;
-    always @(posedge clk) begin
-        if (forgets) steps <= 0;
-        else if (go) steps <= {steps[WINNER-2:0], valid && last_group && (is_pixel || drains)};
-        if (go) said <= {said[11*(WINNER-1)-1:0], is_pixel, is_first, is_last, row[7:0]};
-    end
 
-    wire [42:0] found = {said[11*WINNER-1 -: 11], best, cost, below, above};
-    wire told;
-    wire [42:0] teller;
-    wire [7:0] second;
-    generate
-        if (SECOND_BEST == 0) begin : only_best
-            assign told = steps[WINNER-1];
-            assign teller = found;
-            assign second = 8'hff;
-        end else begin : second_best
-            reg [LATER-1:0] finds;
-            assign told = finds[LATER-1];
-            always @(posedge clk) begin
-                if (forgets) finds <= 0;
-                else if (go) finds <= {finds[LATER-2:0], steps[WINNER-1]};
-            end
-            stereo_delay #(.BITS(43), .CLOCKS(LATER)) later (
-                .clk(clk), .reset(reset), .go(go), .data(found), .delayed(teller)
-            );
-            stereo_second #(
-                .PARALLEL(PARALLEL), .COLUMN_BITS(COLUMN_BITS), .GROUP_BITS(GROUP_BITS), .LEVELS(LEVELS),
-                .WAIT(LATER + 1)
-            ) others (
-                .clk(clk), .reset(reset), .go(go), .disparities(disparities), .sums(sums),
-                .column(winner_column), .group(late[GROUP_BITS-1:0]),
-                .first_group(valids[6] && late[LATE-2]), .last_group(valids[6] && late[LATE-1]),
-                .best(best), .second(second)
-            );
-        end
-    endgenerate
-
-    wire record_valid;
-    wire [65:0] record;
-
-    stereo_left_right #(.DISPARITIES(DISPARITIES)) left_right (
-        .clk(clk), .reset(forgets), .go(go), .begins(begins), .disparities(disparities[SLOT_BITS-1:0]),
-        .valid(told), .is_pixel(teller[42]), .is_first(teller[41]), .is_last(teller[40]), .row(teller[39:32]),
-        .best(teller[31:24]), .cost(teller[23:16]), .below(teller[15:8]), .above(teller[7:0]),
-        .second(second), .record_valid(record_valid), .record(record)
-    );
-
-    stereo_fifo #(.BITS(66)) fifo (
-        .clk(clk), .reset(forgets), .put(go && record_valid), .put_data(record),
-        .take_valid(m_axis_tvalid), .take_data({m_axis_tuser, m_axis_tlast, m_axis_tdata}),
-        .take_ready(m_axis_tready), .has_room(go)
+    stereo_search #(
+        .DISPARITIES(DISPARITIES), .PARALLEL(PARALLEL), .SECOND_BEST(SECOND_BEST), .COLUMN_BITS(COLUMN_BITS),
+        .GROUP_BITS(GROUP_BITS), .LEVELS(LEVELS), .AHEAD(AHEAD), .LATER(LATER)
+    ) search (
+        .clk(clk), .forgets(forgets), .begins(begins), .disparities(disparities),
+        .least(least), .sums(sums), .valid(valids[6]), .column(winner_column), .group(late[GROUP_BITS-1:0]),
+        .first_group(late[LATE-2]), .last_group(late[LATE-1]),
+        .moves(valid && last_group && (is_pixel || drains)), .is_pixel(is_pixel),
+        .is_first(row == 0 && column == 7), .is_last(column == width + SIX), .row(row[7:0]),
+        .record_valid(m_axis_tvalid), .record_ready(m_axis_tready), .record(m_axis_tdata),
+        .record_first(m_axis_tuser), .record_last(m_axis_tlast), .go(go)
     );
 
     stereo_registers #(
@@ -254,7 +200,7 @@ module stereo_block #(
         .clk(clk), .reset(reset), .bus_cycle(wb_cyc_i), .bus_strobe(wb_stb_i), .bus_write(wb_we_i),
         .bus_address(wb_adr_i), .bus_data(wb_dat_i), .bus_answer(wb_dat_o), .bus_ack(wb_ack_o),
         .enable(enable), .forget(forget), .set_width(set_width), .set_height(set_height),
-        .set_disparities(set_disparities), .set_smooth(set_smooth), .running(running), .begins(begins),
+        .set_disparities(set_disparities), .set_noise(set_noise), .set_least(set_least), .running(running), .begins(begins),
         .too_short(too_short), .too_long(too_long), .cut_off(cut_off),
         .aborts(aborts), .row_taken(m_axis_tvalid && m_axis_tready && m_axis_tlast)
     );

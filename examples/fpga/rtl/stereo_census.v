@@ -1,11 +1,7 @@
-// Line memory and census: columns of five rows of both cameras, and their codes three columns later.
+// Census: columns of five rows of both cameras, and their codes three columns later.
 //
-// Smoothed, if asked for, each of the three rows that a code looks at is averaged with the rows beside it,
-// in weights of 1, 2 and 1 quarters, rounded, and then in the same way along the row. Of the five rows around
-// the pixel the outermost stand for those beyond.
-//
-// Rows outside of the image repeat the nearest one inside, and so do columns. Bit i of a code is set where
-// the i-th neighbour is darker than the pixel; the order is that of the library's codes:
+// Rows and columns outside of the image repeat the nearest ones inside. Bit i of a code is set where the i-th
+// neighbour is darker than the pixel; the order is that of the library's codes:
 //
 //   4 bits   . . 0 . .    8 bits   0 . 1 . 2
 //            1 . x . 2             3 . x . 4
@@ -35,69 +31,20 @@ module stereo_census #(
     output reg [BITS-1:0] left_code,
     output reg [BITS-1:0] right_code
 );
-    // The four rows above, the nearest in the lowest bits.
-    wire [63:0] above;
-    wire [15:0] row_0 = inside_height ? pixels : above[15:0];
-    wire [15:0] row_1 = first_line ? pixels : above[15:0];
-    wire [15:0] row_2 = first_line ? pixels : above[31:16];
-    wire [15:0] row_3 = first_line ? pixels : above[47:32];
-    wire [15:0] row_4 = first_line ? pixels : above[63:48];
-    wire moves = go && valid && first_group;
-
-    stereo_ram #(.BITS(64), .DEPTH(WIDTH)) lines (
-        .clk(clk),
-        .read(go),
-        .read_address(next_column),
-        .read_data(above),
-        .write(moves && inside_width),
-        .write_address(column[ADDRESS_BITS-1:0]),
-        .write_data({row_3, row_2, row_1, row_0})
+    // verilator lint_off UNUSEDSIGNAL
+    // Two of the five rows are none that a code looks at.
+    wire [79:0] rows;
+    // verilator lint_on UNUSEDSIGNAL
+    wire moved, moved_first, moved_inside;
+    stereo_lines #(.WIDTH(WIDTH), .COLUMN_BITS(COLUMN_BITS), .ADDRESS_BITS(ADDRESS_BITS)) lines (
+        .clk(clk), .go(go), .smooth(smooth), .width(width), .next_column(next_column), .valid(valid),
+        .pixels(pixels), .column(column), .first_group(first_group), .inside_width(inside_width),
+        .inside_height(inside_height), .first_line(first_line), .rows(rows), .moved(moved),
+        .moved_first(moved_first), .moved_inside(moved_inside)
     );
-
-    // One quarter, two and one of both cameras' pixels, rounded.
-    function [7:0] average;
-        input [7:0] a;
-        input [7:0] b;
-        input [7:0] c;
-        // verilator lint_off UNUSEDSIGNAL
-        // The fraction is dropped.
-        reg [9:0] sum;
-        // verilator lint_on UNUSEDSIGNAL
-        begin
-            sum = {2'b0, a} + {1'b0, b, 1'b0} + {2'b0, c} + 10'd2;
-            average = sum[9:2];
-        end
-    endfunction
-
-    function [15:0] averages;
-        input [15:0] a;
-        input [15:0] b;
-        input [15:0] c;
-        averages = {average(a[15:8], b[15:8], c[15:8]), average(a[7:0], b[7:0], c[7:0])};
-    endfunction
-
-    // Averages down the column, for the rows above, in the middle and below; then those of the last columns.
-    wire [47:0] down = smooth ? {
-        averages(row_4, row_4, row_3), averages(row_3, row_2, row_1), averages(row_1, row_0, row_0)
-    } : {row_4, row_2, row_0};
-    reg [47:0] down_0, down_1, down_2;
-    // Beside `down_0`.
-    reg moved, moved_inside, moved_first;
-
-    always @(posedge clk) begin
-        if (go) moved <= valid && first_group;
-        if (moves) begin
-            moved_first <= column == 1;
-            moved_inside <= column <= width;
-            if (inside_width) down_0 <= down;
-            down_1 <= column == 0 ? down : down_0;
-            down_2 <= column == 0 ? down : down_1;
-        end
-    end
-
-    wire [15:0] top = smooth ? averages(down_2[47:32], down_1[47:32], down_0[47:32]) : down_1[47:32];
-    wire [15:0] middle = smooth ? averages(down_2[31:16], down_1[31:16], down_0[31:16]) : down_1[31:16];
-    wire [15:0] bottom = smooth ? averages(down_2[15:0], down_1[15:0], down_0[15:0]) : down_1[15:0];
+    wire [15:0] top = rows[79:64];
+    wire [15:0] middle = rows[47:32];
+    wire [15:0] bottom = rows[15:0];
 
     // The last five columns of three rows, the newest in the lowest bits.
     reg [79:0] middles;

@@ -18,6 +18,8 @@ module stereo_left_right #(
     // A pixel, or one that only moves the ring on.
     input wire valid,
     input wire is_pixel,
+    // Whether the pixel has a candidate, and so a partner.
+    input wire has_winner,
     input wire is_first,
     input wire is_last,
     input wire [7:0] row,
@@ -43,7 +45,8 @@ module stereo_left_right #(
     wire [BITS-1:0] chosen = slot - best[BITS-1:0];
     // The pixel's own slot is a new column, which nobody has chosen yet.
     wire is_free = best == 0 || !taken[chosen];
-    wire keeps = valid && is_pixel && (is_free || cost < kept_costs[chosen]);
+    wire chooses = is_pixel && has_winner;
+    wire keeps = valid && chooses && (is_free || cost < kept_costs[chosen]);
 
     always @(posedge clk) begin
         if (go && keeps) begin
@@ -57,7 +60,7 @@ module stereo_left_right #(
             slot <= slot + 1'b1;
             pixels <= {pixels[DISPARITIES-2:0], is_pixel};
             taken[slot] <= 1'b0;
-            if (is_pixel) taken[chosen] <= 1'b1;
+            if (chooses) taken[chosen] <= 1'b1;
         end
     end
 

@@ -7,9 +7,10 @@
 //                     was too long; 4: a frame was cut off by the next one; 5: a bad register value
 //   0c SIZE      rw   15..0: pixels in a line, 16 to CAPACITY's; 31..16: lines, at least 1
 //   10 SEARCH    rw   7..0: disparities, 16 to CAPACITY's and at most the pixels in a line;
-//                     8: whether lines are smoothed against noise
+//                     9..8: the noise that lines are smoothed against, 0 none, 1 low, 2 high;
+//                     23..16: the smallest disparity
 //   14 CAPACITY  r    15..0: pixels in a line; 23..16: disparities; 31..24: disparities in a clock
-//   18 METHOD    r    7..0: 0 for fast, 1 for block; 15..8: rows that the window looks up and down;
+//   18 METHOD    r    7..0: 0 for fast, 1 for block, 2 for sgm; 15..8: rows that the window looks up and down;
 //                     16: whether the second best is sought
 //   1c CLOCKS    r    clocks of the frame that is under way, or of the last one
 //   20 ROWS      r    rows of this frame whose last record was taken
@@ -41,7 +42,8 @@ module stereo_registers #(
     output wire [COLUMN_BITS-1:0] set_width,
     output wire [15:0] set_height,
     output wire [7:0] set_disparities,
-    output wire set_smooth,
+    output wire [1:0] set_noise,
+    output wire [7:0] set_least,
     input wire running,
     input wire begins,
     input wire too_short,
@@ -57,7 +59,7 @@ module stereo_registers #(
     localparam [7:0] RADIUS = RADIUS_Y[7:0];
 
     reg [31:0] size;
-    reg [8:0] search;
+    reg [23:0] search;
     reg [4:0] events;
     reg [31:0] clocks;
     reg [15:0] rows;
@@ -66,7 +68,8 @@ module stereo_registers #(
     assign set_width = size[COLUMN_BITS-1:0];
     assign set_height = size[31:16];
     assign set_disparities = search[7:0];
-    assign set_smooth = search[8];
+    assign set_noise = search[9:8];
+    assign set_least = search[23:16];
 
     wire is_good = size[15:0] >= 16 && size[15:0] <= MOST_WIDTH && size[31:16] != 0
         && search[7:0] >= 16 && search[7:0] <= MOST_DISPARITIES && {8'd0, search[7:0]} <= size[15:0];
@@ -74,6 +77,7 @@ module stereo_registers #(
     wire [3:0] place = bus_address;
     wire sets_control = writes && place == 1;
     wire sets_search = writes && (place == 3 || place == 4);
+    wire is_search = bus_data[31:24] == 0 && bus_data[15:10] == 0 && bus_data[9:8] != 3;
     wire is_bad = (sets_control && bus_data[0] && !is_good) || (sets_search && enable);
     wire [4:0] cleared = writes && place == 2 ? bus_data[5:1] : 5'd0;
     wire done = ran && !running;
@@ -94,7 +98,7 @@ module stereo_registers #(
             forget <= sets_control && bus_data[1];
             if (writes && place == 3 && !enable) size <= bus_data;
             // With other bits there is no such search.
-            if (writes && place == 4 && !enable) search <= bus_data[31:9] == 0 ? bus_data[8:0] : 9'd0;
+            if (writes && place == 4 && !enable) search <= is_search ? bus_data[23:0] : 24'd0;
             events <= (events & ~cleared) | {is_bad, cut_off, too_long, too_short, done};
             ran <= running && !aborts && !forget;
             if (begins) clocks <= 0;
@@ -107,7 +111,7 @@ module stereo_registers #(
             4'd1: bus_answer <= {31'd0, enable};
             4'd2: bus_answer <= {26'd0, events, running || ran};
             4'd3: bus_answer <= size;
-            4'd4: bus_answer <= {23'd0, search};
+            4'd4: bus_answer <= {8'd0, search};
             4'd5: bus_answer <= {IN_A_CLOCK, MOST_DISPARITIES, MOST_WIDTH};
             4'd6: bus_answer <= {15'd0, SECOND_BEST != 0, RADIUS, IS_METHOD};
             4'd7: bus_answer <= clocks;

@@ -14,6 +14,9 @@ module stereo_walk #(
     parameter [31:0] DEPTH = 40,
     parameter GROUPS = 1,
     parameter RADIUS_Y = 4,
+    // A step takes SWEEPS * width + BEHIND + 1 columns.
+    parameter SWEEPS = 1,
+    parameter [31:0] BEHIND = 6,
     parameter COLUMN_BITS = 11,
     parameter GROUP_BITS = 1,
     parameter ADDRESS_BITS = 10,
@@ -27,7 +30,8 @@ module stereo_walk #(
     input wire [COLUMN_BITS-1:0] set_width,
     input wire [15:0] set_height,
     input wire [7:0] set_disparities,
-    input wire set_smooth,
+    input wire [1:0] set_noise,
+    input wire [7:0] set_least,
     // Pixels: left in the low byte, right in the high one; `user` begins a frame, `last` ends a line.
     input wire [15:0] pixel_data,
     input wire pixel_valid,
@@ -37,7 +41,8 @@ module stereo_walk #(
     // What the frame that is under way was begun with.
     output reg [COLUMN_BITS-1:0] width,
     output reg [7:0] disparities,
-    output reg smooth,
+    output reg [1:0] noise,
+    output reg [7:0] least,
     output reg running,
     // One clock each: a frame begins, all that is under way is to be forgotten, and why.
     output wire begins,
@@ -73,7 +78,7 @@ module stereo_walk #(
 
     // Columns behind a frame's last winner, and behind a line's last column.
     localparam [COLUMN_BITS-1:0] DRAIN = DEPTH[COLUMN_BITS-1:0];
-    localparam [COLUMN_BITS-1:0] MORE = 6;
+    localparam [COLUMN_BITS-1:0] MORE = BEHIND[COLUMN_BITS-1:0];
 
     reg [15:0] height;
     // The step, the column and the group that are due; the place of the step's codes.
@@ -90,7 +95,7 @@ module stereo_walk #(
     wire takes = running && !draining && in_width && in_height && is_first_group;
     wire at_start = step == 0 && at == 0;
     wire [COLUMN_BITS-1:0] last_inside = width - 1'b1;
-    wire [COLUMN_BITS-1:0] last_column = width + MORE;
+    wire [COLUMN_BITS-1:0] last_column = (SWEEPS == 1 ? width : width << 1) + MORE;
     wire [COLUMN_BITS-1:0] last_drained = {{(COLUMN_BITS-8){1'b0}}, disparities} + DRAIN;
     wire is_last_column = draining ? at == last_drained : at == last_column;
 
@@ -121,7 +126,8 @@ module stereo_walk #(
             width <= set_width;
             height <= set_height;
             disparities <= set_disparities;
-            smooth <= set_smooth;
+            noise <= set_noise;
+            least <= set_least;
             step <= 0;
             at <= 0;
             at_group <= 0;

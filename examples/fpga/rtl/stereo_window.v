@@ -4,8 +4,7 @@
 // distances and the one that leaves it above takes its own away. A column counts in units of 2^SHIFT bits,
 // the rest is left out; the window adds nine columns, those outside of the image nothing.
 //
-// Candidate d of column x is the right image's column x - d; where that lies left of the image, its first
-// column stands in. Token in: beside the codes, in the clock after that of `read_*`. Sums out: four clocks
+// Token in: beside the codes, in the clock after that of `read_*`. Sums out: four clocks
 // later, of the window around column x - 4.
 `default_nettype none
 
@@ -25,8 +24,11 @@ module stereo_window #(
     input wire clk,
     input wire reset,
     input wire go,
+    // The smallest disparity.
+    input wire [7:0] least,
     // The token of the clock before, whose codes come next.
     input wire [CODE_BITS-1:0] read_code,
+    input wire [COLUMN_BITS-1:0] read_column,
     // The token and its codes.
     input wire valid,
     input wire [COLUMN_BITS-1:0] column,
@@ -69,26 +71,21 @@ module stereo_window #(
         .write_data({right_code, left_code})
     );
 
-    // The left codes of the column, and the last right ones of both rows, the newest in the lowest bits.
+    // The codes of both rows: the column's left ones, and those of its partners.
+    wire takes = valid && first_group && in_image;
     reg [BITS-1:0] left_in;
     reg [BITS-1:0] left_out;
-    reg [BITS*DISPARITIES-1:0] right_in;
-    reg [BITS*DISPARITIES-1:0] right_out;
-    wire [BITS-1:0] old_right = old_codes[2*BITS-1:BITS];
-
-    always @(posedge clk) begin
-        if (go && valid && first_group && in_image) begin
-            left_in <= left_code;
-            left_out <= old_codes[BITS-1:0];
-            if (column == 0) begin
-                right_in <= {DISPARITIES{right_code}};
-                right_out <= {DISPARITIES{old_right}};
-            end else begin
-                right_in <= {right_in[BITS*(DISPARITIES-1)-1:0], right_code};
-                right_out <= {right_out[BITS*(DISPARITIES-1)-1:0], old_right};
-            end
-        end
-    end
+    wire [BITS*DISPARITIES-1:0] right_in;
+    wire [BITS*DISPARITIES-1:0] right_out;
+    always @(posedge clk) if (go && takes) {left_in, left_out} <= {left_code, old_codes[BITS-1:0]};
+    stereo_partners #(.BITS(BITS), .DISPARITIES(DISPARITIES), .COLUMN_BITS(COLUMN_BITS)) partners_in (
+        .clk(clk), .go(go), .least(least), .read_column(read_column), .take(takes), .column(column),
+        .value(right_code), .partners(right_in)
+    );
+    stereo_partners #(.BITS(BITS), .DISPARITIES(DISPARITIES), .COLUMN_BITS(COLUMN_BITS)) partners_out (
+        .clk(clk), .go(go), .least(least), .read_column(read_column), .take(takes), .column(column),
+        .value(old_codes[2*BITS-1:BITS]), .partners(right_out)
+    );
 
     // The token beside the codes (1), beside the distances and the old sums (2), beside the columns (3).
     reg valid_1, valid_2, valid_3;

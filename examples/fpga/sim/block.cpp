@@ -16,7 +16,7 @@
 //                                        one, its first record and its last one
 //   'Q'                                  ends
 
-#include "Vstereo_block.h"
+#include "Vstereo.h"
 #include "verilated.h"
 
 #include <cstdint>
@@ -40,7 +40,7 @@ struct Record {
 
 class Simulation {
 public:
-    Simulation() : block(new Vstereo_block) {
+    Simulation() : block(new Vstereo) {
         block->reset = 1;
         for (int i = 0; i < 4; i++) clock();
         block->reset = 0;
@@ -98,7 +98,7 @@ public:
         return answer;
     }
 
-    std::unique_ptr<Vstereo_block> block;
+    std::unique_ptr<Vstereo> block;
     std::deque<Pixel> pixels;
     std::vector<Record> records;
     uint64_t clocks = 0, first_pixel = 0, last_pixel = 0, first_record = 0, last_record = 0;

@@ -3,7 +3,9 @@
 use image::GrayImage;
 use stereopsis::camera::StereoSource;
 use stereopsis::imaging::Noise;
-use stereopsis::matching::{Block, Checks, Config, External, Fast, Filter, Method, Sgm, WinnerRecord};
+use stereopsis::matching::{
+    Block, Checks, Config, External, Fast, Filter, Method, Penalties, Sgm, WinnerRecord,
+};
 use stereopsis::pipeline::winners::{
     Register, WinnerError, WinnerPipeline, WinnerPipelineError, WinnerRegisters, WinnerSource,
 };
@@ -91,6 +93,8 @@ fn the_rows_are_the_methods_own() {
     whole::<Fast>(&twin::Method::FAST, &config::<Fast>());
     whole::<Block>(&twin::Method::BLOCK, &config::<Block>());
     whole::<Fast>(&twin::Method::FAST, &Config { noise: Noise::High, ..config::<Fast>() });
+    whole::<Sgm>(&twin::Method::SGM, &config::<Sgm>());
+    whole::<Block>(&twin::Method::BLOCK, &Config { min_disparity: 9, ..config::<Block>() });
     // Checks that look at the left camera's lines, and at three rows.
     let checks = Checks {
         texture_gradient: 4,
@@ -184,7 +188,7 @@ fn what_the_block_cannot_do_is_refused() {
     let refused: Result<(), Failed> = Err(WinnerError::Search.into());
     let mut pipeline = Box::new(WinnerPipeline::<Fast, W, D>::new());
     for config in [
-        Config { min_disparity: 1, ..fast },
+        Config { min_disparity: 256, ..fast },
         Config { confidence: true, ..fast },
         Config { width: 31, ..fast },
         fast.with_filter::<Fast>(Filter::Strict),
@@ -195,7 +199,13 @@ fn what_the_block_cannot_do_is_refused() {
     let mut block = Box::new(WinnerPipeline::<Block, W, D>::new());
     assert_eq!(block.start(&fast, &mut device), refused);
     let mut paths = Box::new(WinnerPipeline::<Sgm, W, D>::new());
-    assert_eq!(paths.start(&Config::for_method::<Sgm>(90, 60, 32), &mut device), refused);
+    let sgm = config::<Sgm>();
+    assert_eq!(paths.start(&sgm, &mut device), refused);
+    // Penalties are built in.
+    let mut device = WinnerRegisters::new(MockBlock::new(&twin::Method::SGM, &sgm, &pictures.0, &pictures.1));
+    paths.start(&sgm, &mut device).expect("a search that the block does");
+    let penalties = Penalties { step: [17, 9], ..sgm.penalties };
+    assert_eq!(paths.start(&Config { penalties, ..sgm }, &mut device), refused);
 }
 
 /// Offsets and bits stand in two languages: above the gates' own file, and here.

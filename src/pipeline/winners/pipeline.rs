@@ -81,6 +81,7 @@ where
             disparities: config.disparities,
             min_disparity: config.min_disparity,
             noise: config.noise,
+            penalties: config.penalties,
             second_best: self.matcher.needs_second_best(),
         })?;
         self.height = usize::from(config.height);

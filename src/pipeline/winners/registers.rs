@@ -2,7 +2,7 @@
 
 use super::source::{WinnerError, WinnerSearch, WinnerSource};
 use crate::imaging::Noise;
-use crate::matching::{Block, Fast, Method, WinnerRecord};
+use crate::matching::{Block, Fast, Method, Sgm, WinnerRecord};
 
 /// A register of the block, by its offset in bytes; each has 32 bits.
 ///
@@ -12,9 +12,9 @@ use crate::matching::{Block, Fast, Method, WinnerRecord};
 /// | 04 | CONTROL | rw | 0: enable, the next frame that begins is taken; 1: forget what is under way |
 /// | 08 | STATUS | rw1c | 0: running (r); 1: done; 2: too short; 3: too long; 4: cut off; 5: bad value |
 /// | 0c | SIZE | rw | 15..0: pixels in a line; 31..16: lines |
-/// | 10 | SEARCH | rw | 7..0: disparities; 8: lines are smoothed against noise |
+/// | 10 | SEARCH | rw | 7..0: disparities; 9..8: noise, 0 none, 1 low, 2 high; 23..16: smallest disparity |
 /// | 14 | CAPACITY | r | 15..0: pixels in a line; 23..16: disparities; 31..24: disparities in a clock |
-/// | 18 | METHOD | r | 7..0: 0 for `fast`, 1 for `block`; 15..8: rows up and down; 16: second best |
+/// | 18 | METHOD | r | 7..0: 0 for `fast`, 1 for `block`, 2 for `sgm`; 15..8: rows up and down; 16: second best |
 /// | 1c | CLOCKS | r | clocks of the frame that is under way, or of the last one |
 /// | 20 | ROWS | r | rows of this frame whose last record was taken |
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -64,8 +64,10 @@ const ID: u32 = 0x5342_0001;
 /// The bits of [`Register::Control`].
 const ENABLE: u32 = 1;
 const FORGET: u32 = 1 << 1;
-/// The bit of [`Register::Search`] beside the number of disparities.
-const SMOOTH: u32 = 1 << 8;
+/// Where noise and smallest disparity begin in [`Register::Search`], and the largest of these that it holds.
+const NOISE: u32 = 8;
+const LEAST: u32 = 16;
+const MOST_LEAST: u16 = 255;
 /// The bit of [`Register::Method`] of a block that seeks the second best.
 const SECOND_BEST: u32 = 1 << 16;
 
@@ -140,9 +142,15 @@ impl<B: RegisterBus> WinnerRegisters<B> {
         let method = match search.method {
             name if name == Fast::NAME => 0,
             name if name == Block::NAME => 1,
+            name if name == Sgm::NAME => 2,
             _ => return Ok(false),
         };
-        if search.min_disparity != 0 || self.bus.read(Register::Id)? != ID {
+        // The penalties of its paths are built in.
+        let penalties = if search.noise == Noise::None { Sgm::PENALTIES } else { Sgm::PENALTIES_IN_NOISE };
+        if method == 2 && search.penalties != penalties {
+            return Ok(false);
+        }
+        if search.min_disparity > MOST_LEAST || self.bus.read(Register::Id)? != ID {
             return Ok(false);
         }
         let has = self.bus.read(Register::Method)?;
@@ -161,8 +169,13 @@ impl<B: RegisterBus> WinnerSource for WinnerRegisters<B> {
         let mut write = |register, value| self.bus.write(register, value).map_err(WinnerError::Device);
         write(Register::Control, FORGET)?;
         write(Register::Size, size)?;
-        let smooth = if search.noise == Noise::None { 0 } else { SMOOTH };
-        write(Register::Search, u32::from(search.disparities) | smooth)?;
+        let noise: u32 = match search.noise {
+            Noise::None => 0,
+            Noise::Low => 1,
+            Noise::High => 2,
+        };
+        let least = u32::from(search.min_disparity) << LEAST;
+        write(Register::Search, u32::from(search.disparities) | noise << NOISE | least)?;
         write(Register::Status, status::ALL)?;
         write(Register::Control, ENABLE)?;
         // With values that the block has no room for it does not come to be enabled.

@@ -1,7 +1,7 @@
 //! A device that computes winners.
 
 use crate::imaging::Noise;
-use crate::matching::WinnerRecord;
+use crate::matching::{Penalties, WinnerRecord};
 use core::fmt;
 
 /// What a device is asked for, before its first frame.
@@ -20,6 +20,8 @@ pub struct WinnerSearch {
     pub min_disparity: u16,
     /// How lines are smoothed before they are compared.
     pub noise: Noise,
+    /// What a change of the disparity costs along a path; the methods over windows do not look at it.
+    pub penalties: Penalties,
     /// Whether a check looks at the [second best](WinnerRecord::second).
     pub second_best: bool,
 }

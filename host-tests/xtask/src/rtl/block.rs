@@ -7,7 +7,7 @@ use std::process::Command;
 use stereopsis_host::run::MethodName;
 
 /// The methods that the block has, each at its number.
-pub const METHODS: [MethodName; 2] = [MethodName::Fast, MethodName::Block];
+pub const METHODS: [MethodName; 3] = [MethodName::Fast, MethodName::Block, MethodName::Sgm];
 /// The longest line and the most disparities of a block.
 pub const MOST_WIDTH: u16 = 1280;
 pub const MOST_DISPARITIES: u16 = 128;
@@ -38,16 +38,31 @@ impl Block {
         format!("{method}-{width}-{disparities}-{parallel}{second}")
     }
 
+    /// The module on top.
+    pub fn top(&self) -> &'static str {
+        if self.method == MethodName::Sgm { "stereo_sgm" } else { "stereo_block" }
+    }
+
+    /// Sweeps over a line, and the columns that they take beyond its pixels.
+    pub fn sweeps(&self) -> (u64, u64) {
+        if self.method == MethodName::Sgm { (2, 8) } else { (1, 7) }
+    }
+
     /// The parameters, as Verilog has them.
-    pub fn parameters(&self) -> [(&'static str, u16); 5] {
-        let number = METHODS.iter().position(|&method| method == self.method).unwrap_or(0);
-        [
+    pub fn parameters(&self) -> Vec<(&'static str, u16)> {
+        let mut parameters = vec![
             ("WIDTH", self.width),
             ("DISPARITIES", self.disparities),
             ("PARALLEL", self.parallel),
-            ("METHOD", number as u16),
             ("SECOND_BEST", self.second_best.into()),
-        ]
+        ];
+        // The methods over windows share a module.
+        match self.method {
+            MethodName::Fast => parameters.push(("METHOD", 0)),
+            MethodName::Block => parameters.push(("METHOD", 1)),
+            _ => {}
+        }
+        parameters
     }
 
     /// The path of the program that simulates it, built anew.
@@ -55,17 +70,18 @@ impl Block {
         let folder = root().join(target_dir()).join("rtl").join(self.name());
         fs::create_dir_all(&folder).map_err(|e| Failure::new(format!("{}: {e}", folder.display())))?;
         let mut verilator = command("verilator", &["--cc", "--exe", "--build", "-Wall", "-O3", "-j", "1"]);
-        verilator.args(["--x-assign", "fast", "-CFLAGS", "-O2 -std=c++14", "--top-module", "stereo_block"]);
-        verilator.args(self.parameters().map(|(name, value)| format!("-G{name}={value}")));
+        verilator.args(["--x-assign", "fast", "-CFLAGS", "-O2 -std=c++14", "--prefix", "Vstereo"]);
+        verilator.args(["--top-module", self.top()]);
+        verilator.args(self.parameters().iter().map(|(name, value)| format!("-G{name}={value}")));
         verilator.arg("--Mdir").arg(&folder).args(sources()?).arg(fpga().join("sim/block.cpp"));
         done(&mut verilator)?;
-        Ok(folder.join("Vstereo_block"))
+        Ok(folder.join("Vstereo"))
     }
 
     /// Complains of what Verilator finds wrong in the source.
     pub fn lint(&self) -> Outcome {
-        let mut verilator = command("verilator", &["--lint-only", "-Wall", "--top-module", "stereo_block"]);
-        verilator.args(self.parameters().map(|(name, value)| format!("-G{name}={value}")));
+        let mut verilator = command("verilator", &["--lint-only", "-Wall", "--top-module", self.top()]);
+        verilator.args(self.parameters().iter().map(|(name, value)| format!("-G{name}={value}")));
         done(verilator.args(sources()?))
     }
 }

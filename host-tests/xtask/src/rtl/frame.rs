@@ -41,6 +41,7 @@ impl Halves {
     ) -> Outcome<DisparityMap> {
         match self.method {
             MethodName::Fast => frames::<matching::Fast>(&mut self.device, count, config, pictures),
+            MethodName::Sgm => frames::<matching::Sgm>(&mut self.device, count, config, pictures),
             _ => frames::<matching::Block>(&mut self.device, count, config, pictures),
         }
     }

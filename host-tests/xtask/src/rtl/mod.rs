@@ -35,7 +35,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = disparities, allow_negative_numbers = true,
         required_unless_present_any = ["all", "synthesis"])]
     disparities: Option<u16>,
-    /// The matching method: fast or block
+    /// The matching method: fast, block or sgm
     #[arg(long, default_value = "block", value_parser = method)]
     method: MethodName,
     /// How many disparities are worked on in a clock: all where none is given
@@ -94,7 +94,7 @@ fn disparities(text: &str) -> Result<u16, String> {
 
 fn method(text: &str) -> Result<MethodName, &'static str> {
     let method = text.parse().ok().filter(|method| block::METHODS.contains(method));
-    method.ok_or("the methods of the block are fast and block")
+    method.ok_or("the methods of the block are fast, block and sgm")
 }
 
 fn noise(text: &str) -> Result<NoiseChoice, String> {

@@ -15,8 +15,6 @@ use stereopsis_host::run::{MethodName, NoiseChoice};
 
 /// Percent of clocks without a pixel, and of those in which no record is taken, in the second frame.
 const PAUSES: [u8; 2] = [20, 20];
-/// Columns that the block's walk goes on behind a line.
-const BEHIND_LINE: u64 = 7;
 
 /// What is asked for.
 pub struct OnePair<'a> {
@@ -106,7 +104,8 @@ impl OnePair<'_> {
             }
         }
         let pixels = f64::from(width) * f64::from(height);
-        let line = (u64::from(width) + BEHIND_LINE) * u64::from(room / parallel);
+        let (sweeps, beyond) = block.sweeps();
+        let line = (u64::from(width) * sweeps + beyond) * u64::from(room / parallel);
         let summary = Summary {
             method: self.method.name(),
             width,

@@ -65,12 +65,14 @@ const fn made(
 }
 
 /// The lines of the table.
-const ALL: [Made; 6] = [
+const ALL: [Made; 8] = [
     made(&ECP5, MethodName::Block, 640, 64, 64),
     made(&ECP5, MethodName::Block, 640, 64, 8),
     made(&ECP5, MethodName::Fast, 640, 64, 64),
     made(&ECP5, MethodName::Fast, 640, 64, 8),
     made(&ECP5, MethodName::Block, 1280, 128, 16),
+    made(&ECP5, MethodName::Sgm, 640, 64, 64),
+    made(&ECP5, MethodName::Sgm, 640, 64, 8),
     Made { is_placed: true, ..made(&ICE40, MethodName::Fast, 160, 32, 8) },
 ];
 
@@ -122,8 +124,9 @@ impl Made {
         let files: Vec<_> = sources()?.iter().map(|path| path.display().to_string()).collect();
         let set: Vec<_> =
             block.parameters().iter().map(|(name, value)| format!("-set {name} {value}")).collect();
+        let top = block.top();
         let script = format!(
-            "read_verilog {}; chparam {} stereo_block; {} -top stereo_block -json {}; stat",
+            "read_verilog {}; chparam {} {top}; {} -top {top} -json {}; stat",
             files.join(" "),
             set.join(" "),
             family.pass,

@@ -110,6 +110,7 @@ fn choice(board: &Board) -> Result<String, Box<dyn Error>> {
         other => return Err(format!("STEREO_NOISE={other}: none, low or high").into()),
     };
     let lanes = disparities.next_multiple_of(16);
+    let room = width.max(lanes);
     Ok(format!(
         "/// The matching method.\npub type Method = {scheme};\n/// The matching method's name.\npub const \
          METHOD: &str = {method:?};\n/// Columns of the built-in scene, px.\npub const WIDTH: u16 = \
@@ -117,8 +118,10 @@ fn choice(board: &Board) -> Result<String, Box<dyn Error>> {
          that are searched, px.\npub const DISPARITIES: u16 = {disparities};\n/// How noisy the cameras \
          are.\npub const NOISE: stereopsis::imaging::Noise = stereopsis::imaging::Noise::{noise};\n/// The \
          pipeline that has room for them.\npub type BoardPipeline = stereopsis::pipeline::Pipeline<Method, \
-         {}, {lanes}>;\n/// The board.\npub const BOARD: crate::board::Board = crate::board::{};\n",
-        width.max(lanes),
+         {room}, {lanes}>;\n/// The pipeline behind winners from elsewhere that has \
+         room for them.\npub type BoardWinners = \
+         stereopsis::pipeline::winners::WinnerPipeline<Method, {room}, {lanes}>;\n/// The \
+         board.\npub const BOARD: crate::board::Board = crate::board::{};\n",
         board.core.to_uppercase(),
     ))
 }

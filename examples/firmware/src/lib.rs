@@ -1,13 +1,14 @@
 //! What the programs of this firmware share. A program stands in `src/bin`: `depth` is the pipeline, `pose`
 //! two views, `bundle` their adjustment, `features` corners and their matches, `focus` depth by a lens that
-//! moves, `interrupt` lines that an interrupt brings, `odometry` where a pair of cameras goes, `rectify` raw
-//! lines, `any_frames` frames of any size with all that can be asked of them.
+//! moves, `gates` the pipeline behind a block of gates, `interrupt` lines that an interrupt brings,
+//! `odometry` where a pair of cameras goes, `rectify` raw lines, `any_frames` frames of any size with all
+//! that can be asked of them.
 //!
 //! * [`choice`]: the method, the sizes and the board, chosen when it is built; [`board`] is the list of
 //!   boards, a package of its own.
 //! * [`camera`]: where lines come from: the built-in scene, or two files on the host.
 //! * [`rows`]: rows of disparity to a file on the host, with their checksum. [`console`]: figures as text.
-//! * [`host`]: files on the host.
+//! * [`host`]: files on the host. [`block`]: a simulated block of gates behind two of them.
 //! * [`clock`]: instructions counted; [`ticker`]: the same timer, for interrupts. [`stack`]: the stack
 //!   measured.
 //! * [`firmware_scenes`], a package of its own: what the programs see, and their work on it.
@@ -18,6 +19,7 @@
 //! rows.
 #![no_std]
 
+pub mod block;
 pub mod camera;
 pub mod clock;
 pub mod console;

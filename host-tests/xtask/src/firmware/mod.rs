@@ -24,7 +24,7 @@ mod as_match;
 mod awkward;
 mod bundle;
 mod checksums;
-mod emulate;
+pub mod emulate;
 mod features;
 mod focus;
 pub mod frame;

@@ -210,6 +210,14 @@ impl Program {
         Ok(Built { program: *self, elf: keep(self.board, "release/depth", &name)? })
     }
 
+    /// Builds the program that stands behind a block of gates; the linked file.
+    pub fn build_behind_gates(&self) -> Outcome<PathBuf> {
+        let _turn = FOLDERS[self.folder()].lock().unwrap_or_else(PoisonError::into_inner);
+        let name = format!("{self}-gates");
+        build(self.cargo("build --locked --release --quiet --bin gates"), &name)?;
+        keep(self.board, "release/gates", &name)
+    }
+
     /// Builds it at another level of optimisation.
     pub fn build_as(&self, level: &str, lto: Lto) -> Outcome<Built> {
         let _turn = FOLDERS[self.folder()].lock().unwrap_or_else(PoisonError::into_inner);

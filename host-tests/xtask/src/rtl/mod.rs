@@ -5,6 +5,7 @@
 //! * [`frame`]: pictures through both halves, held to the host.
 //! * [`one_pair`]: one pair of pictures, with its results in a folder.
 //! * [`check`]: random frames and faults; a part of them is a step of the tests.
+//! * [`system`]: firmware on emulated cores with the simulated block before it.
 //! * [`synthesis`]: what the block takes in an FPGA, by Yosys.
 
 mod block;
@@ -13,6 +14,7 @@ mod frame;
 mod one_pair;
 mod simulation;
 mod synthesis;
+mod system;
 
 use crate::packages;
 use crate::setup;
@@ -26,14 +28,14 @@ use stereopsis_host::run::{MethodName, NoiseChoice, UnknownNoise};
 #[derive(Args)]
 pub struct Arguments {
     /// The left image, PNG, JPEG, PGM/PPM, TIFF, BMP or WebP
-    #[arg(long, value_name = "FILE", required_unless_present_any = ["all", "synthesis"])]
+    #[arg(long, value_name = "FILE", required_unless_present_any = ["all", "system", "synthesis"])]
     left: Option<PathBuf>,
     /// The right image, of the same size
-    #[arg(long, value_name = "FILE", required_unless_present_any = ["all", "synthesis"])]
+    #[arg(long, value_name = "FILE", required_unless_present_any = ["all", "system", "synthesis"])]
     right: Option<PathBuf>,
     /// How many whole disparities are searched: 16 to 128
     #[arg(long, value_name = "N", value_parser = disparities, allow_negative_numbers = true,
-        required_unless_present_any = ["all", "synthesis"])]
+        required_unless_present_any = ["all", "system", "synthesis"])]
     disparities: Option<u16>,
     /// The matching method: fast, block or sgm
     #[arg(long, default_value = "block", value_parser = method)]
@@ -45,11 +47,14 @@ pub struct Arguments {
     #[arg(long, default_value = "auto", value_parser = noise)]
     noise: NoiseChoice,
     /// Folder for the results; made when it is missing
-    #[arg(long, value_name = "DIR", required_unless_present_any = ["all", "synthesis"])]
+    #[arg(long, value_name = "DIR", required_unless_present_any = ["all", "system", "synthesis"])]
     out: Option<PathBuf>,
     /// At least 1000 rows of every kind of picture through blocks of many sizes, and every fault
     #[arg(long, conflicts_with_all = ["left", "right", "disparities", "parallel", "out", "synthesis"])]
     all: bool,
+    /// Firmware on emulated cores with the simulated block before it: rows with the host's checksum
+    #[arg(long, conflicts_with_all = ["left", "right", "disparities", "parallel", "out", "synthesis", "all"])]
+    system: bool,
     /// What the block takes in an FPGA: writes the table of docs/performance.md
     #[arg(long, conflicts_with_all = ["left", "right", "disparities", "parallel", "out"])]
     synthesis: bool,
@@ -59,7 +64,11 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Outcome {
     if arguments.all {
         setup::gates()?;
-        return check::all();
+        check::all()?;
+        return system::run();
+    }
+    if arguments.system {
+        return system::run();
     }
     if arguments.synthesis {
         packages::install(&["yosys", "nextpnr-ice40"])?;

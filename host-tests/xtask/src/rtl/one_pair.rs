@@ -83,7 +83,7 @@ impl OnePair<'_> {
             disparities: room,
             parallel,
             method: self.method,
-            second_best: false,
+            second_best: config.checks.uniqueness_percent.is_some(),
         };
         println!("building the simulation of {}", block.name());
         let mut halves = Halves::new(&block)?;

@@ -200,7 +200,8 @@ module stereo_block #(
         .clk(clk), .reset(reset), .bus_cycle(wb_cyc_i), .bus_strobe(wb_stb_i), .bus_write(wb_we_i),
         .bus_address(wb_adr_i), .bus_data(wb_dat_i), .bus_answer(wb_dat_o), .bus_ack(wb_ack_o),
         .enable(enable), .forget(forget), .set_width(set_width), .set_height(set_height),
-        .set_disparities(set_disparities), .set_noise(set_noise), .set_least(set_least), .running(running), .begins(begins),
+        .set_disparities(set_disparities), .set_noise(set_noise), .set_least(set_least), .running(running),
+        .begins(begins),
         .too_short(too_short), .too_long(too_long), .cut_off(cut_off),
         .aborts(aborts), .row_taken(m_axis_tvalid && m_axis_tready && m_axis_tlast)
     );

@@ -1,8 +1,8 @@
 // Line memory: columns of the five rows around each pixel, of both cameras, smoothed if asked for.
 //
-// Smoothed, each row is averaged with the rows beside it, in weights of 1, 2 and 1 quarters, rounded, and then
-// in the same way along the row. Of the five rows the outermost stand for those beyond. Rows outside of the
-// image repeat the nearest one inside, and so do columns.
+// Smoothed, each row is averaged with the rows beside it, in weights of 1, 2 and 1 quarters, rounded, and
+// then in the same way along the row. Of the five rows the outermost stand for those beyond. Rows outside
+// of the image repeat the nearest one inside, and so do columns.
 `default_nettype none
 
 module stereo_lines #(

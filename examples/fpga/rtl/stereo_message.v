@@ -1,7 +1,8 @@
-// The message of a path: what each disparity costs at the pixel that it goes to, over the cheapest way there.
+// The message of a path: what each disparity costs at the pixel that it goes to, over the cheapest way
+// there.
 //
-// In: the path's costs at one pixel, PARALLEL in a clock, a group after the other. Out: while the next pixel's
-// groups pass, the message to it of each group,
+// In: the path's costs at one pixel, PARALLEL in a clock, a group after the other. Out: while the next
+// pixel's groups pass, the message to it of each group,
 //
 //   min(q(d), q(d - 1) + step, q(d + 1) + step, least q + jump) - least q
 //

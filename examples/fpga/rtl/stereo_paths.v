@@ -1,15 +1,15 @@
 // Sums along three paths, for one row in two sweeps.
 //
-// The first sweep runs to the right while the features of a row come in. It brings the average of the costs
-// down the columns to that row, and finishes the row above it: to what the path to the left had there, it adds
-// the path to the right and the one down. The second sweep runs to the left over the averages, with the same
-// gates as the path to the right, and leaves that path's costs. In memory, for each column and disparity: the
-// average of costs in 5 bits, the path to the left and the path down in 7; for each column three rows of the
-// left image.
+// The first sweep runs to the right while the features of a row come in. It brings the average of the
+// costs down the columns to that row, and finishes the row above it: to what the path to the left had
+// there, it adds the path to the right and the one down. The second sweep runs to the left over the
+// averages, with the same gates as the path to the right, and leaves that path's costs. In memory, for
+// each column and disparity: the average of costs in 5 bits, the path to the left and the path down in 7;
+// for each column three rows of the left image.
 //
-// A token has the column's features; a clock later its costs are made, two clocks later they are there and so
-// are the messages to it, three clocks later its paths, four its sums. Messages down are made of costs two
-// columns to both sides in the row above: those are read three columns ahead.
+// A token has the column's features; a clock later its costs are made, two clocks later they are there and
+// so are the messages to it, three clocks later its paths, four its sums. Messages down are made of costs
+// two columns to both sides in the row above: those are read three columns ahead.
 `default_nettype none
 
 module stereo_paths #(
@@ -222,7 +222,8 @@ module stereo_paths #(
                 is_none ? NOT_SEARCHED : own + (first_2 ? 7'd0 : along_message[7*i +: 7]);
             assign down[7*i +: 7] =
                 is_none ? NOT_SEARCHED : own + (begins_paths_2 ? 7'd0 : down_message[7*i +: 7]);
-            wire [8:0] sum = {2'b0, along_3[7*i +: 7]} + {2'b0, down_3[7*i +: 7]} + {2'b0, leftward[7*i +: 7]};
+            wire [8:0] sum = {2'b0, along_3[7*i +: 7]} + {2'b0, down_3[7*i +: 7]}
+                + {2'b0, leftward[7*i +: 7]};
             always @(posedge clk) if (go) sums[8*i +: 8] <= sum[8] ? 8'd255 : sum[7:0];
         end
     endgenerate

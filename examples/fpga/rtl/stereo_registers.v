@@ -10,8 +10,8 @@
 //                     9..8: the noise that lines are smoothed against, 0 none, 1 low, 2 high;
 //                     23..16: the smallest disparity
 //   14 CAPACITY  r    15..0: pixels in a line; 23..16: disparities; 31..24: disparities in a clock
-//   18 METHOD    r    7..0: 0 for fast, 1 for block, 2 for sgm; 15..8: rows that the window looks up and down;
-//                     16: whether the second best is sought
+//   18 METHOD    r    7..0: 0 for fast, 1 for block, 2 for sgm; 15..8: rows that the window looks up and
+//                     down; 16: whether the second best is sought
 //   1c CLOCKS    r    clocks of the frame that is under way, or of the last one
 //   20 ROWS      r    rows of this frame whose last record was taken
 //

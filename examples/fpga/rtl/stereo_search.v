@@ -1,5 +1,5 @@
-// From sums to records: each pixel's winner with the costs beside it, the second best if it is sought, what the
-// winner's partner keeps, and the queue of records on their way out.
+// From sums to records: each pixel's winner with the costs beside it, the second best if it is sought,
+// what the winner's partner keeps, and the queue of records on their way out.
 //
 //   stereo_winner      the cheapest candidate, with the costs beside it
 //   stereo_second      the cheapest candidate that is not beside it

@@ -1,8 +1,8 @@
 // Winners of a stereo pair as its pixels come in, bit for bit those of the library's method `sgm`.
 //
-// Streams, records and registers are those of `stereo_block`. Each row is swept twice, so that a pixel takes two
-// clocks with PARALLEL = DISPARITIES, and no pixel is taken in the second sweep: what feeds the stream holds a
-// line. The stages, each a file beside those of `stereo_block`:
+// Streams, records and registers are those of `stereo_block`. Each row is swept twice, so that a pixel
+// takes two clocks with PARALLEL = DISPARITIES, and no pixel is taken in the second sweep: what feeds the
+// stream holds a line. The stages, each a file beside those of `stereo_block`:
 //
 //   stereo_walk      the frame's way through lines and columns, and what is wrong with its stream
 //   stereo_features  five rows around each column: gradients, brightness and census of both cameras
@@ -10,9 +10,9 @@
 //   stereo_search    winners and what their partners keep: records on their way out
 //   stereo_registers size, search and status
 //
-// In step t line t comes in, row t - 2 has its costs, row t - 3 its path to the left, and row t - 4 its winners.
-// A step takes 2 width + 8 columns. In column c of the first sweep features are those of column c - 5; the second
-// sweep begins at column width + 8 of the step. Penalties are the library's own.
+// In step t line t comes in, row t - 2 has its costs, row t - 3 its path to the left, and row t - 4 its
+// winners. A step takes 2 width + 8 columns. In column c of the first sweep features are those of column c
+// - 5; the second sweep begins at column width + 8 of the step. Penalties are the library's own.
 `default_nettype none
 
 module stereo_sgm #(
@@ -139,8 +139,8 @@ module stereo_sgm #(
     wire [2:0] behind_4;
     wire first_group_4, last_group_4, inside_4, back_4, first_4, first_code_4, enters_4, first_row_4;
     assign {
-        at_4, ahead_4, group_4, behind_4, first_group_4, last_group_4, inside_4, back_4, first_4, first_code_4,
-        enters_4, first_row_4
+        at_4, ahead_4, group_4, behind_4, first_group_4, last_group_4, inside_4, back_4, first_4,
+        first_code_4, enters_4, first_row_4
     } = tokens[4*TOKEN-1 -: TOKEN];
 
     wire [8*PARALLEL-1:0] sums;

@@ -46,8 +46,7 @@ where
     /// Delay in lines: row y comes out when line y + `LATENCY` is in.
     pub const LATENCY: usize = 3 + Matcher::<External<S>, W, D>::DELAY;
 
-    /// Creates a pipeline that awaits [`Self::start`]. All its bytes are zero, so that a static takes no
-    /// flash.
+    /// Creates a pipeline that awaits [`Self::start`]. All its bytes are zero: a static takes no flash.
     pub const fn new() -> Self
     where
         Capacity<D>: Supported,

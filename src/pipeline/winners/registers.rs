@@ -12,9 +12,9 @@ use crate::matching::{Block, Fast, Method, Sgm, WinnerRecord};
 /// | 04 | CONTROL | rw | 0: enable, the next frame that begins is taken; 1: forget what is under way |
 /// | 08 | STATUS | rw1c | 0: running (r); 1: done; 2: too short; 3: too long; 4: cut off; 5: bad value |
 /// | 0c | SIZE | rw | 15..0: pixels in a line; 31..16: lines |
-/// | 10 | SEARCH | rw | 7..0: disparities; 9..8: noise, 0 none, 1 low, 2 high; 23..16: smallest disparity |
+/// | 10 | SEARCH | rw | 7..0: disparities; 9..8: noise, none, low or high; 23..16: smallest disparity |
 /// | 14 | CAPACITY | r | 15..0: pixels in a line; 23..16: disparities; 31..24: disparities in a clock |
-/// | 18 | METHOD | r | 7..0: 0 for `fast`, 1 for `block`, 2 for `sgm`; 15..8: rows up and down; 16: second best |
+/// | 18 | METHOD | r | 7..0: 0 for `fast`, 1 for `block`, 2 `sgm`; 15..8: rows up and down; 16: second best |
 /// | 1c | CLOCKS | r | clocks of the frame that is under way, or of the last one |
 /// | 20 | ROWS | r | rows of this frame whose last record was taken |
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

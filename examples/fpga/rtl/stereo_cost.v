@@ -37,12 +37,20 @@ module stereo_cost #(
         .value(right), .partners(partners)
     );
 
-    wire [30*PARALLEL-1:0] there;
+    // A group's partners, in 32 bits each: groups that begin at powers of two are chosen by few gates.
+    // verilator lint_off UNUSEDSIGNAL
+    wire [32*DISPARITIES-1:0] words;
+    wire [32*PARALLEL-1:0] there;
+    // verilator lint_on UNUSEDSIGNAL
+    genvar i;
     generate
+        for (i = 0; i < DISPARITIES; i = i + 1) begin : word
+            assign words[32*i +: 32] = {2'd0, partners[30*i +: 30]};
+        end
         if (GROUPS == 1) begin : one_group
-            assign there = partners;
+            assign there = words;
         end else begin : groups
-            assign there = partners[group * 30 * PARALLEL +: 30 * PARALLEL];
+            assign there = words[group * 32 * PARALLEL +: 32 * PARALLEL];
         end
     endgenerate
 
@@ -52,13 +60,12 @@ module stereo_cost #(
             + {3'b0, bits[4]} + {3'b0, bits[5]} + {3'b0, bits[6]} + {3'b0, bits[7]};
     endfunction
 
-    genvar i;
     generate
         for (i = 0; i < PARALLEL; i = i + 1) begin : lane
-            wire [4:0] least_x = there[30*i +: 5];
-            wire [4:0] greatest_x = there[30*i+5 +: 5];
-            wire [4:0] y = there[30*i+10 +: 5];
-            wire [6:0] bright = there[30*i+15 +: 7];
+            wire [4:0] least_x = there[32*i +: 5];
+            wire [4:0] greatest_x = there[32*i+5 +: 5];
+            wire [4:0] y = there[32*i+10 +: 5];
+            wire [6:0] bright = there[32*i+15 +: 7];
             wire [4:0] along = here[4:0] > greatest_x ? here[4:0] - greatest_x
                 : here[4:0] < least_x ? least_x - here[4:0] : 5'd0;
             wire [4:0] across = here[9:5] > y ? here[9:5] - y : y - here[9:5];
@@ -67,7 +74,7 @@ module stereo_cost #(
             wire [6:0] apart = here[16:10] > bright ? here[16:10] - bright : bright - here[16:10];
             // verilator lint_on UNUSEDSIGNAL
             wire [6:0] apart_in_all = {1'b0, along, 1'b0} + {2'b0, across} + {2'b0, apart[6:2]}
-                + {3'b0, ones(here[24:17] ^ there[30*i+22 +: 8])};
+                + {3'b0, ones(here[24:17] ^ there[32*i+22 +: 8])};
             always @(posedge clk) if (go) costs[5*i +: 5] <= apart_in_all > 16 ? 5'd16 : apart_in_all[4:0];
         end
     endgenerate

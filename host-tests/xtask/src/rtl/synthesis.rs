@@ -65,13 +65,12 @@ const fn made(
 }
 
 /// The lines of the table.
-const ALL: [Made; 8] = [
+const ALL: [Made; 7] = [
     made(&ECP5, MethodName::Block, 640, 64, 64),
     made(&ECP5, MethodName::Block, 640, 64, 8),
     made(&ECP5, MethodName::Fast, 640, 64, 64),
     made(&ECP5, MethodName::Fast, 640, 64, 8),
     made(&ECP5, MethodName::Block, 1280, 128, 16),
-    made(&ECP5, MethodName::Sgm, 640, 64, 64),
     made(&ECP5, MethodName::Sgm, 640, 64, 8),
     Made { is_placed: true, ..made(&ICE40, MethodName::Fast, 160, 32, 8) },
 ];

@@ -1,5 +1,6 @@
-//! Tells the crate which instructions a 32-bit Arm core has beyond those that every Cortex-M has: rustc does
-//! not say it to a crate. The target's name and `-C target-cpu` say it here.
+//! Tells the crate which instructions it is built for. Those that a 32-bit Arm core has beyond those of every
+//! Cortex-M rustc does not say to a crate: the target's name and `-C target-cpu` say it here. Processors with
+//! vectors for the dense path, 64-bit ones and WebAssembly with SIMD128, get one name.
 
 use std::env;
 
@@ -11,7 +12,7 @@ const WITH_DSP: [&str; 4] = ["cortex-m4", "cortex-m7", "cortex-m33", "cortex-m35
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=CARGO_ENCODED_RUSTFLAGS");
-    for name in ["dsp", "vectors", "portable"] {
+    for name in ["dsp", "vectors", "portable", "simd"] {
         println!("cargo::rustc-check-cfg=cfg(stereopsis_{name})");
     }
     let target = env::var("TARGET").unwrap_or_default();
@@ -21,6 +22,16 @@ fn main() {
         Ok(None) => {}
         Err(line) => println!("cargo::error={line}"),
     }
+    if has_simd() {
+        println!("cargo::rustc-cfg=stereopsis_simd");
+    }
+}
+
+/// Whether the dense path runs in the vectors of `matching/backend/simd`.
+fn has_simd() -> bool {
+    let is = |key: &str, value: &str| env::var(key).is_ok_and(|list| list.split(',').any(|one| one == value));
+    is("CARGO_CFG_TARGET_POINTER_WIDTH", "64")
+        || is("CARGO_CFG_TARGET_ARCH", "wasm32") && is("CARGO_CFG_TARGET_FEATURE", "simd128")
 }
 
 /// The kernel to choose for a target and the compiler's flags, or what is wrong with what the flags choose.

@@ -40,13 +40,13 @@ pub fn census_ring8(rows: &[&[u8]; 5], out: &mut [u8]) {
 /// Computes census codes of 8 bits from six border pixels of 9x5 and two along the line at distance 2, as
 /// [`census_plus4`] does.
 // Where there are vectors it is compiled with the kernel's instructions.
-#[cfg_attr(target_pointer_width = "64", inline(always))]
+#[cfg_attr(stereopsis_simd, inline(always))]
 pub fn census_wide8(rows: &[&[u8]; 5], out: &mut [u8]) {
     census::<8, WIDE>(rows, &WIDE8, out);
 }
 
 /// Number of columns computed at a time, as vector lanes or in an unrolled loop.
-const LANES: usize = if cfg!(any(target_pointer_width = "64", stereopsis_vectors)) { 16 } else { 4 };
+const LANES: usize = if cfg!(any(stereopsis_simd, stereopsis_vectors)) { 16 } else { 4 };
 /// Number of columns that a group of codes reads.
 const NARROW: usize = LANES + 2 * 2;
 const WIDE: usize = LANES + 2 * 4;

@@ -6,7 +6,7 @@
 /// `rows` are the row above, the row itself and the row below. Gradients are written for every column that
 /// all slices have; columns outside the line repeat the nearest one inside.
 // Where there are vectors it is compiled with the kernel's instructions.
-#[cfg_attr(target_pointer_width = "64", inline(always))]
+#[cfg_attr(stereopsis_simd, inline(always))]
 pub fn gradients(rows: &[&[u8]; 3], most: u8, along: &mut [u8], across: &mut [u8]) {
     let most = i16::from(most.min(127));
     let width = rows.iter().fold(usize::MAX, |w, row| w.min(row.len()));
@@ -42,7 +42,7 @@ pub fn gradients(rows: &[&[u8]; 3], most: u8, along: &mut [u8], across: &mut [u8
 }
 
 /// Number of columns computed at a time, as vector lanes or in an unrolled loop.
-const LANES: usize = if cfg!(any(target_pointer_width = "64", stereopsis_vectors)) { 16 } else { 4 };
+const LANES: usize = if cfg!(any(stereopsis_simd, stereopsis_vectors)) { 16 } else { 4 };
 /// Number of columns that a group of gradients reads.
 const AROUND: usize = LANES + 2;
 

@@ -18,7 +18,7 @@ use core::ops::Range;
 /// assert_eq!(line, [0, 10, 20, 10, 0]);
 /// ```
 // In flash once.
-#[cfg_attr(target_pointer_width = "32", inline(never))]
+#[cfg_attr(not(stereopsis_simd), inline(never))]
 pub fn smooth(rows: &[&[u8]; 5], row: usize, out: &mut [u8]) {
     let near =
         [row.saturating_sub(1), row, (row + 1).min(4)].map(|row| rows.get(row).copied().unwrap_or(&[]));
@@ -41,7 +41,7 @@ pub fn smooth(rows: &[&[u8]; 5], row: usize, out: &mut [u8]) {
 }
 
 /// Whether four columns at a time are packed in a word; else the compiler vectorises.
-const WORDS: bool = cfg!(all(target_pointer_width = "32", not(stereopsis_vectors)));
+const WORDS: bool = cfg!(not(any(stereopsis_simd, stereopsis_vectors)));
 
 /// Smooths the columns with neighbours on both sides, and returns their range.
 fn by_columns(near: [&[u8]; 3], out: &mut [u8]) -> Range<usize> {

@@ -75,7 +75,7 @@ impl<const W: usize> LineWindow<W> {
     /// Returns the five rows around `centre`. Rows above the image repeat row 0, and rows below the newest
     /// line repeat it. The rows must still be in the window.
     // Asked for once in a row of each camera.
-    #[cfg_attr(target_pointer_width = "32", inline(never))]
+    #[cfg_attr(not(stereopsis_simd), inline(never))]
     pub fn around(&self, centre: usize) -> [&[u8]; N] {
         let newest = self.count.saturating_sub(1);
         core::array::from_fn(|i| {

@@ -7,13 +7,14 @@
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Kernel {
-    /// Bit planes in plain 32-bit words: on every core without another kernel, and on 64-bit processors.
+    /// Bit planes in plain 32-bit words: on every core without another kernel, and wherever [`Lanes`](Self::Lanes) are.
     Planes,
     /// Arm's instructions on four bytes in a word (Cortex-M4 and M7; M33 with `-C target-cpu`).
     Dsp,
     /// The vectors of a Cortex-M55 (with `-C target-cpu`).
     Helium,
-    /// The vectors that every processor of a 64-bit target has: SSE2 or NEON.
+    /// The vectors that every processor of a target has: SSE2, NEON, or SIMD128 of WebAssembly (with
+    /// `-C target-feature=+simd128`).
     Lanes,
     /// 256-bit vectors of x86-64.
     Avx2,

@@ -7,7 +7,7 @@
 /// variable.
 #[inline(always)]
 pub(in crate::matching) fn keep_loop() {
-    #[cfg(target_pointer_width = "32")]
+    #[cfg(not(stereopsis_simd))]
     core::hint::black_box(());
 }
 

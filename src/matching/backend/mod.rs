@@ -3,7 +3,7 @@
 //! * `isa`: what the stages ask of a target. `parameters`, `work`: what they hand to it.
 //! * `portable`: all of it in plain Rust; bit planes and words for cores without vectors. `plain`: the target
 //!   that has no more than that.
-//! * `simd`: vectors of 64-bit processors.
+//! * `simd`: vectors of 64-bit processors, and of WebAssembly with SIMD128.
 //! * `armv7em`: Arm's instructions on four bytes in a word (Cortex-M4, M7, M33), where build.rs finds them.
 //! * `mve`: the vectors of a Cortex-M55, likewise.
 //!
@@ -24,7 +24,7 @@ mod work;
 mod armv7em;
 #[cfg(stereopsis_vectors)]
 mod mve;
-#[cfg(target_pointer_width = "64")]
+#[cfg(stereopsis_simd)]
 mod simd;
 
 #[cfg(target_endian = "big")]
@@ -40,9 +40,9 @@ compile_error!("stereopsis_dsp and stereopsis_vectors are for Arm's 32-bit cores
 use armv7em as target;
 #[cfg(stereopsis_vectors)]
 use mve as target;
-#[cfg(not(any(stereopsis_dsp, stereopsis_vectors, target_pointer_width = "64")))]
+#[cfg(not(any(stereopsis_dsp, stereopsis_vectors, stereopsis_simd)))]
 use plain as target;
-#[cfg(target_pointer_width = "64")]
+#[cfg(stereopsis_simd)]
 use simd as target;
 
 use super::kernel::Kernel;

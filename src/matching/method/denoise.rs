@@ -30,7 +30,7 @@ pub(super) fn denoise<'a>(
 }
 
 /// Denoised lines of one image.
-#[cfg_attr(target_pointer_width = "32", inline(never))]
+#[cfg_attr(not(stereopsis_simd), inline(never))]
 fn denoise_lines<'a>(
     smoothed: &mut Rows5<'a>,
     rows: &[usize],

@@ -12,7 +12,7 @@ pub(in crate::matching::backend) fn fill(work: FillWork<'_>) {
     let FillWork { answers, flags, most, step, .. } = work;
     // On small cores the work is the same for every picture. Larger processors see at one look that a group
     // has no gap.
-    if cfg!(target_pointer_width = "64") {
+    if cfg!(stereopsis_simd) {
         gaps(answers, flags, most, step);
     } else {
         let mut right = ToRight { left: u32::from(Disparity::NONE.raw()), length: 0, most: u32::from(most) };

@@ -32,7 +32,7 @@ pub(in crate::matching) const MARGIN: usize = 2 * Checks::MOST_SMOOTHING as usiz
 /// Whether two answers are of one surface; `NONE`s are, and are far from every answer (Config::check).
 #[inline(always)]
 pub(in crate::matching::backend) fn of_one(a: u16, b: u16, step: Disparity) -> bool {
-    if cfg!(target_pointer_width = "64") {
+    if cfg!(stereopsis_simd) {
         // Half-words stay half-words.
         a.abs_diff(b) <= step.raw()
     } else {

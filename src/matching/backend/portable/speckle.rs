@@ -10,9 +10,9 @@ use crate::units::{Disparity, PixelFlags};
 pub(in crate::matching::backend) const ROWS: usize = LOOK_AHEAD;
 
 /// What the numbers are worked on in: where there are vectors, half-words, of which they hold more.
-#[cfg(target_pointer_width = "64")]
+#[cfg(stereopsis_simd)]
 type Word = u16;
-#[cfg(not(target_pointer_width = "64"))]
+#[cfg(not(stereopsis_simd))]
 type Word = u32;
 
 /// Counts the support of the newest row, and drops the answers of the row that waited which have less than

@@ -1,6 +1,6 @@
-//! The dense path in the vectors of 64-bit processors.
+//! The dense path in the vectors of 64-bit processors and of WebAssembly.
 //!
-//! * `sse2`, `avx2`, `avx512`, `neon`: registers, with what they have alike from `registers`.
+//! * `sse2`, `avx2`, `avx512`, `neon`, `simd128`: registers, with what they have alike from `registers`.
 //! * `windows`, `columns`: sums over windows; `sgm`: costs along paths; `smooth`: answers averaged.
 //! * `x86`: code compiled for AVX2 and for AVX-512, chosen when the processor has it.
 
@@ -16,8 +16,10 @@ mod avx2;
 mod avx512;
 #[cfg(target_arch = "aarch64")]
 mod neon;
-#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32"))]
 mod registers;
+#[cfg(target_arch = "wasm32")]
+mod simd128;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
 #[cfg(target_arch = "x86_64")]
@@ -26,10 +28,12 @@ mod x86;
 #[path = "no_x86.rs"]
 mod x86;
 
-#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32")))]
 use super::portable::words::Word as Vector;
 #[cfg(target_arch = "aarch64")]
 use neon::Vector;
+#[cfg(target_arch = "wasm32")]
+use simd128::Vector;
 #[cfg(target_arch = "x86_64")]
 use sse2::Vector;
 use x86::{Avx2, Avx512, Wide, Widest};
@@ -48,7 +52,7 @@ use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::Select;
 use crate::units::Disparity;
 
-/// The kernels of a 64-bit processor.
+/// The kernels of a 64-bit processor, or of WebAssembly.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(in crate::matching) enum Backend {
     /// The portable code.

@@ -1,4 +1,4 @@
-//! What stands for the vectors of x86-64 on other 64-bit processors: kernels that no processor has.
+//! What stands for the vectors of x86-64 on other processors: kernels that no processor has.
 
 pub(super) use super::{Vector as Wide, Vector as Widest};
 use crate::matching::backend::parameters::WindowParameters;

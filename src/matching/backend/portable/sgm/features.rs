@@ -39,8 +39,8 @@ pub(in crate::matching::backend) struct Looks<'a> {
 
 /// The features of a row, in the workspace.
 // In vectors they are compiled with the kernel's instructions; in words once for all numbers of disparities.
-#[cfg_attr(target_pointer_width = "64", inline(always))]
-#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
+#[cfg_attr(stereopsis_simd, inline(always))]
+#[cfg_attr(not(stereopsis_simd), inline(never))]
 pub(in crate::matching::backend) fn of<'a, R: FeatureRows, S: SgmParameters>(
     work: &PathWork<'_>,
     lines: [&Rows5<'a>; 2],
@@ -91,8 +91,8 @@ pub(in crate::matching::backend) fn of<'a, R: FeatureRows, S: SgmParameters>(
 }
 
 /// The features of the first two columns.
-#[cfg_attr(target_pointer_width = "64", inline(always))]
-#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
+#[cfg_attr(stereopsis_simd, inline(always))]
+#[cfg_attr(not(stereopsis_simd), inline(never))]
 fn first_columns<R: FeatureRows>(lines: &Rows5<'_>, gradient: u8, shift: u32) -> [[u8; 2]; 3] {
     let width = lines[2].len().min(2);
     let mut first = [[0; 2]; 3];
@@ -109,8 +109,8 @@ fn rows<const N: usize>(room: &mut [u8], length: usize) -> [&mut [u8]; N] {
 
 /// The features of as many columns as there is a place for. Gradients are cut off before they are shifted,
 /// which is the same as after.
-#[cfg_attr(target_pointer_width = "32", inline(never))]
-#[cfg_attr(not(target_pointer_width = "32"), inline(always))]
+#[cfg_attr(not(stereopsis_simd), inline(never))]
+#[cfg_attr(stereopsis_simd, inline(always))]
 fn looks_of<R: FeatureRows>(
     lines: &Rows5<'_>,
     gradient: u8,
@@ -125,7 +125,7 @@ fn looks_of<R: FeatureRows>(
 }
 
 /// Numbers, shifted to the right.
-#[cfg_attr(target_pointer_width = "32", inline(never))]
+#[cfg_attr(not(stereopsis_simd), inline(never))]
 fn shift_down(numbers: &mut [u8], shift: u32) {
     for number in numbers {
         keep_loop();
@@ -134,8 +134,8 @@ fn shift_down(numbers: &mut [u8], shift: u32) {
 }
 
 /// Repeats the first column before the image, and behind it what stands in its last one, before `end`.
-#[cfg_attr(target_pointer_width = "64", inline(always))]
-#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
+#[cfg_attr(stereopsis_simd, inline(always))]
+#[cfg_attr(not(stereopsis_simd), inline(never))]
 fn go_on(row: &mut [u8], first: u8, outside: usize, end: usize) {
     repeat(row, first, outside);
     let last = row.get(end.wrapping_sub(1)).copied().unwrap_or(0);

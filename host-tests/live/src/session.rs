@@ -1,0 +1,250 @@
+//! A pipeline for each method, as firmware has one, and what is done with them.
+
+use crate::pair::Pair;
+use crate::settings::{self, Settings};
+use core::fmt::Write;
+use stereopsis::camera::{CameraError, StereoSource};
+use stereopsis::depth::DepthScale;
+use stereopsis::geometry::camera::RectifiedRig;
+use stereopsis::heapless::String;
+use stereopsis::imaging::{BalancedPair, Noise, NoiseMeter};
+use stereopsis::matching::{Block, Config, Fast, Kernel, Method, Row, Sgm, SgmEdge, SgmLean};
+use stereopsis::pipeline::Pipeline;
+use stereopsis::units::Disparity;
+
+/// Pixels in a row that there is room for.
+pub const MOST_WIDTH: usize = 4096;
+/// Disparities that there is room for.
+const MOST_DISPARITIES: usize = 256;
+
+type Held<S> = Pipeline<S, MOST_WIDTH, MOST_DISPARITIES>;
+
+/// What is wrong, in one line.
+pub type Message = String<200>;
+
+/// What is seen and what is told of a pair: rows of `width` pixels, `height` of them.
+pub struct Planes<'a> {
+    /// Pixels in a row.
+    pub width: u16,
+    /// Rows.
+    pub height: u16,
+    /// The grey values of both pictures.
+    pub pictures: [&'a [u8]; 2],
+    /// The bits of [`PixelFlags`](stereopsis::units::PixelFlags).
+    pub flags: &'a mut [u8],
+    /// As [`Row::confidences`].
+    pub confidences: &'a mut [u8],
+    /// In steps of 1/32 px; [`Disparity::NONE`] for no answer.
+    pub disparities: &'a mut [u16],
+    /// In millimetres, 0 for none.
+    pub depths: &'a mut [u16],
+    /// As [`Row::sigma_px`], px; 0 where there is no answer.
+    pub sigmas: &'a mut [f32],
+}
+
+impl<'a> Planes<'a> {
+    fn pair(&self) -> Pair<'a> {
+        Pair::new(self.width, self.height, self.pictures)
+    }
+
+    fn put(&mut self, row: &Row<'_>) {
+        let width = usize::from(self.width);
+        let first = usize::from(row.index()) * width;
+        let here = first..first + width;
+        let planes = (self.disparities.get_mut(here.clone()), self.flags.get_mut(here.clone()));
+        let more = (self.confidences.get_mut(here.clone()), self.sigmas.get_mut(here));
+        let ((Some(disparities), Some(flags)), (Some(confidences), Some(sigmas))) = (planes, more) else {
+            return;
+        };
+        for (to, from) in disparities.iter_mut().zip(row.disparities()) {
+            *to = from.raw();
+        }
+        for (to, from) in flags.iter_mut().zip(row.flags()) {
+            *to = from.bits();
+        }
+        confidences.copy_from_slice(row.confidences());
+        for (x, to) in sigmas.iter_mut().enumerate() {
+            *to = row.sigma_px(x).unwrap_or(0.0);
+        }
+    }
+}
+
+/// The pipelines and the settings: all zero at first.
+pub struct Session {
+    /// What is asked for.
+    pub settings: Settings,
+    /// What was wrong last.
+    pub message: Message,
+    fast: Held<Fast>,
+    block: Held<Block>,
+    lean: Held<SgmLean>,
+    sgm: Held<Sgm>,
+    edge: Held<SgmEdge>,
+}
+
+/// Does something with the pipeline of the method that the settings name.
+macro_rules! with_pipeline {
+    ($session:ident, $pipeline:ident => $work:expr) => {
+        match settings::method(&$session.settings) {
+            0 => {
+                let $pipeline = &mut $session.fast;
+                $work
+            }
+            1 => {
+                let $pipeline = &mut $session.block;
+                $work
+            }
+            2 => {
+                let $pipeline = &mut $session.lean;
+                $work
+            }
+            4 => {
+                let $pipeline = &mut $session.edge;
+                $work
+            }
+            _ => {
+                let $pipeline = &mut $session.sgm;
+                $work
+            }
+        }
+    };
+}
+
+impl Session {
+    /// Pipelines that were not started.
+    pub const fn new() -> Self {
+        Self {
+            settings: [0; settings::COUNT],
+            message: Message::new(),
+            fast: Pipeline::new(),
+            block: Pipeline::new(),
+            lean: Pipeline::new(),
+            sgm: Pipeline::new(),
+            edge: Pipeline::new(),
+        }
+    }
+
+    /// Sets checks and penalties to those that the settings name.
+    pub fn preset(&mut self) {
+        fn of<S: Method>(_: &Held<S>, settings: &mut Settings) {
+            settings::preset::<S>(settings);
+        }
+        let mut all = self.settings;
+        with_pipeline!(self, pipeline => of(pipeline, &mut all));
+        self.settings = all;
+    }
+
+    /// Measures how noisy the pictures are, balanced if the settings say so, and notes it in the settings.
+    pub fn measure(&mut self, planes: &Planes<'_>) -> Noise {
+        let mut pair = planes.pair();
+        let measured = if settings::balances(&self.settings) {
+            let mut balanced = BalancedPair::new(pair);
+            // The first frame shows the exposures.
+            meter(&mut balanced).and_then(|_| meter(&mut balanced))
+        } else {
+            meter(&mut pair)
+        };
+        let noise = measured.map_or(Noise::None, |meter| meter.level());
+        settings::set_noise(&mut self.settings, noise);
+        noise
+    }
+
+    /// Matches the pictures into the other planes; the milliseconds of the pipeline alone, by a clock of
+    /// milliseconds. What is wrong is said by the message.
+    pub fn run(&mut self, planes: &mut Planes<'_>, now: fn() -> f64) -> Option<f64> {
+        self.message.clear();
+        let config = settings::config(&self.settings, planes.width, planes.height);
+        let last = u32::from(config.min_disparity) + u32::from(config.disparities);
+        if last > u32::from(planes.width) {
+            let width = planes.width;
+            let _ = write!(self.message, "the search ends at {last} px: the pictures are {width} px wide");
+            return None;
+        }
+        let mut pair = planes.pair();
+        let done = if settings::balances(&self.settings) {
+            let mut balanced = BalancedPair::new(pair);
+            let _ = meter(&mut balanced);
+            with_pipeline!(self, pipeline => frame(pipeline, &config, &mut balanced, planes, now))
+        } else {
+            with_pipeline!(self, pipeline => frame(pipeline, &config, &mut pair, planes, now))
+        };
+        done.map_err(|message| self.message = message).ok()
+    }
+
+    /// The depths of the disparities, for cameras of a focal length, a baseline, and a distance between their
+    /// principal points. What is wrong is said by the message.
+    pub fn depth(&mut self, planes: &mut Planes<'_>, focal_px: f32, baseline_m: f32, offset_px: f32) -> bool {
+        self.message.clear();
+        let rig = RectifiedRig::with_offset(focal_px, baseline_m, 0.0, 0.0, offset_px);
+        let scale = match rig.map(|rig| DepthScale::new(&rig)) {
+            Ok(Ok(scale)) => scale,
+            Ok(Err(error)) => {
+                let _ = write!(self.message, "{error}");
+                return false;
+            }
+            Err(error) => {
+                let _ = write!(self.message, "{error}");
+                return false;
+            }
+        };
+        for (depth, &steps) in planes.depths.iter_mut().zip(planes.disparities.iter()) {
+            *depth = scale.millimetres(Disparity::from_raw(steps)).0;
+        }
+        true
+    }
+
+    /// The kernel's name.
+    pub fn kernel() -> &'static str {
+        Kernel::detect().name()
+    }
+}
+
+impl Default for Session {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The noise of the source's next frame.
+fn meter<C: StereoSource>(source: &mut C) -> Result<NoiseMeter, CameraError<C::Error>> {
+    let format = source.format();
+    let mut lines = [[0; MOST_WIDTH]; 2];
+    let [left, right] = &mut lines;
+    let mut meter = NoiseMeter::new();
+    let width = usize::from(format.width).min(MOST_WIDTH);
+    source.start_frame()?;
+    for _ in 0..format.height {
+        source.next_lines(left, right)?;
+        meter.line(left.get(..width).unwrap_or_default());
+        meter.line(right.get(..width).unwrap_or_default());
+    }
+    Ok(meter)
+}
+
+/// One frame: the milliseconds of the pipeline, or what is wrong.
+fn frame<S: Method, C: StereoSource>(
+    pipeline: &mut Held<S>,
+    config: &Config,
+    source: &mut C,
+    planes: &mut Planes<'_>,
+    now: fn() -> f64,
+) -> Result<f64, Message>
+where
+    C::Error: core::fmt::Display,
+{
+    let said = |error: &dyn core::fmt::Display| {
+        let mut message = Message::new();
+        let _ = write!(message, "{error}");
+        message
+    };
+    pipeline.start(config).map_err(|e| said(&e))?;
+    pipeline.begin_frame(source).map_err(|e| said(&e))?;
+    let mut time_ms = 0.0;
+    loop {
+        let start = now();
+        let row = pipeline.next_row(source).map_err(|e| said(&e))?;
+        time_ms += now() - start;
+        let Some(row) = row else { return Ok(time_ms) };
+        planes.put(&row);
+    }
+}

@@ -30,7 +30,7 @@
 //! * [`twin`]: each stage again, naively, to hold the core to. [`dump`]: its rows as files.
 //! * [`winners`]: a model of the block of gates, with faults.
 //! * [`map`], [`depth_samples`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`],
-//!   [`output`], [`report`]: results as files. [`command_line`]: errors in one line.
+//!   [`output`], [`report`]: results as files. [`live`]: the live page. [`command_line`]: errors in one line.
 
 pub mod bal;
 pub mod calibrate;
@@ -46,6 +46,7 @@ pub mod eval;
 pub mod fault;
 pub mod focus;
 pub mod limits;
+pub mod live;
 pub mod map;
 pub mod masked;
 pub mod matches;

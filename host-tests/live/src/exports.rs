@@ -37,8 +37,7 @@ struct Held(UnsafeCell<Whole>);
 // SAFETY: the page has one thread.
 unsafe impl Sync for Held {}
 
-static WHOLE: Held =
-    Held(UnsafeCell::new(Whole { session: Session::new(), planes: 0, width: 0, height: 0 }));
+static WHOLE: Held = Held(UnsafeCell::new(Whole { session: Session::new(), planes: 0, width: 0, height: 0 }));
 
 fn whole() -> &'static mut Whole {
     // SAFETY: each export takes it once, and nothing that it calls comes back to an export: the page's clock
@@ -76,8 +75,8 @@ impl Whole {
 }
 
 /// Makes room for pictures of a size, and says where: the left picture, the right one, flags and confidences,
-/// a byte for each pixel, each plane on a multiple of four bytes; then disparities and depths of two bytes, and
-/// deviations of four. 0: there is no such room.
+/// a byte for each pixel, each plane on a multiple of four bytes; then disparities and depths of two bytes,
+/// and deviations of four. 0: there is no such room.
 #[unsafe(no_mangle)]
 extern "C" fn begin(width: u32, height: u32) -> usize {
     let whole = whole();

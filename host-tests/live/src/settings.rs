@@ -7,8 +7,8 @@ use stereopsis::units::Disparity;
 /// The number of settings.
 pub const COUNT: usize = 30;
 
-/// Settings as the page has them, in the order of its list of controls: whole numbers; a switch is 0 or 1, and
-/// [`OFF`] stands for what is not asked for.
+/// Settings as the page has them, in the order of its list of controls: whole numbers; a switch is 0 or 1,
+/// and [`OFF`] stands for what is not asked for.
 ///
 /// Method, filter, noise, disparities, least disparity, least confidence, balance; then the fields of
 /// [`Checks`]; then those of [`Penalties`].

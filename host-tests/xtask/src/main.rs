@@ -5,6 +5,7 @@
 //! * `growth` measures how the cost grows with the work.
 //! * `rtl` simulates the block of `examples/fpga` before the library's second half.
 //! * `fuzz` looks for inputs that break a promise.
+//! * `view` builds the live page's module and shows the page.
 //! * `altered` measures how right the methods are on altered real images, beside OpenCV.
 //! * `readme` writes the generated parts of docs/performance.md anew, or checks them.
 //! * `c` tests the C interface alone, one step of `test`.
@@ -12,8 +13,8 @@
 //! * `header` writes the header of the C interface anew, or checks it.
 //!
 //! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`],
-//! [`growth`], [`c`], [`arm`], [`mod@rtl`], [`package`] and [`readme`] are seven of them. [`altered`] needs
-//! data that not everybody has, [`fuzz`] time.
+//! [`growth`], [`c`], [`arm`], [`mod@rtl`], [`view`], [`package`] and [`readme`] are eight of them.
+//! [`altered`] needs data that not everybody has, [`fuzz`] time.
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
@@ -39,6 +40,7 @@ mod rtl;
 mod setup;
 mod steps;
 mod test;
+mod view;
 
 /// The chores of the repository.
 #[derive(Parser)]
@@ -65,6 +67,8 @@ enum Chore {
     Rtl(rtl::Arguments),
     /// Looks for inputs that break a promise of the library, led by coverage.
     Fuzz(fuzz::Arguments),
+    /// Builds the core for browsers and runs `stereo view` with it.
+    View(view::Arguments),
     /// Measures how right the methods are on real pairs with noise and unequal cameras, beside OpenCV.
     Altered(altered::Arguments),
     /// Writes the generated parts of docs/performance.md anew.
@@ -95,7 +99,7 @@ fn main() -> ExitCode {
                 "error: {}",
                 one_line(&usage_line(
                     &error,
-                    "the chores are test, firmware, growth, rtl, fuzz, altered, c, header, publish and readme"
+                    "the chores are test, firmware, growth, rtl, fuzz, view, altered, c, header, publish and readme"
                 ))
             );
             return ExitCode::FAILURE;
@@ -107,6 +111,7 @@ fn main() -> ExitCode {
         Chore::Growth(arguments) => growth::run(&arguments),
         Chore::Rtl(arguments) => rtl::run(&arguments),
         Chore::Fuzz(arguments) => fuzz::run(&arguments),
+        Chore::View(arguments) => view::run(&arguments),
         Chore::Altered(arguments) => altered::run(&arguments),
         Chore::Readme { check } => readme::run(check),
         Chore::C => c::run(),

@@ -12,6 +12,7 @@ use crate::parallel;
 use crate::rtl;
 use crate::setup::{self, CHECKED, FROM_SOURCE, TARGETS};
 use crate::steps::{Failure, Outcome, Steps, cargo, command, root, run as run_command, target_dir};
+use crate::view;
 use std::fs;
 use std::path::PathBuf;
 
@@ -27,7 +28,7 @@ pub fn run(only: Option<String>) -> Outcome {
         println!("{NOT_RUN}");
     }
     let mut steps = Steps::new(only);
-    steps.step("set up", || setup::run_all().and_then(|()| arm::set_up()))?;
+    steps.step("set up", || setup::run_all().and_then(|()| arm::set_up()).and_then(|()| view::set_up()))?;
     steps.step("format", format)?;
     // Much of a step is one compiler, one linker or one emulator at a time, so two rows of steps run beside
     // each other. Those that build in the same folder stand in the same row.
@@ -37,6 +38,7 @@ pub fn run(only: Option<String>) -> Outcome {
             &[("clippy", clippy), ("tests", tests), ("documentation", documentation)],
             &[
                 ("kernels on Arm", arm::run),
+                ("kernels on WebAssembly", view::kernels),
                 ("cross checks", cross_checks),
                 ("stated rust-version", rust_version),
                 ("package", package::run),
@@ -52,6 +54,7 @@ pub fn run(only: Option<String>) -> Outcome {
                 ("README's commands", readme_commands),
                 ("quickstart", || examples::QUICKSTART.run()),
                 ("gates", rtl::sample),
+                ("live page", || view::sample(&stereo())),
             ],
             &[
                 ("firmware", || firmware::check_sample(&stereo())),
@@ -133,7 +136,8 @@ fn clippy() -> Outcome {
     let mut vectors =
         firmware::cargo("clippy --locked --release --target thumbv8m.main-none-eabihf -- -D warnings");
     run_command(vectors.env("RUSTFLAGS", firmware::VECTORS))?;
-    run_command(&mut c::cargo("clippy --locked --release --target thumbv7em-none-eabihf -- -D warnings"))
+    run_command(&mut c::cargo("clippy --locked --release --target thumbv7em-none-eabihf -- -D warnings"))?;
+    view::clippy()
 }
 
 fn tests() -> Outcome {

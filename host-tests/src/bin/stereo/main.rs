@@ -9,6 +9,7 @@
 //! * `image_files`: the images that a pattern names. `match_args`, `sources`: what `match` matches. `solve`:
 //!   a pair into a folder. `many`, `settings`: more than one pair, and more than one way.
 //! * `progress`: how far the work is.
+//! * `view`, `serve`: the live page.
 //! * `doctor`, `shell`: the program itself.
 //! * `rectified`, `results`, `place`: what is written. `failure`: what is said when it cannot be done.
 
@@ -44,6 +45,7 @@ mod replay;
 mod results;
 mod rig;
 mod scale;
+mod serve;
 mod settings;
 mod shared;
 mod shell;
@@ -51,6 +53,7 @@ mod solve;
 mod sources;
 mod structure;
 mod uncalibrated;
+mod view;
 mod walk;
 
 use clap::error::ErrorKind;
@@ -66,7 +69,7 @@ use stereopsis_host::output::protect;
 /// What is told to one who names another command.
 const COMMANDS: &str = "the commands are demo, plan, match, eval, bench, calibrate, calib, rectify, \
                         features, focus, fundamental, pose, bundle, odometry, structure, walk, record, \
-                        replay, dump, doctor, completions and man";
+                        replay, dump, view, doctor, completions and man";
 
 /// What one who gives no command is told.
 const BEGINNING: &str = "a command is missing; these are what one begins with, and --help lists all:
@@ -160,6 +163,9 @@ enum Command {
     /// Write the rows of a stage of the matcher, for those who build it in hardware
     #[command(after_help = dump::EXAMPLE)]
     Dump(dump::DumpArgs),
+    /// Show the matcher in a browser, with sliders, on your own pictures: a page that needs no network
+    #[command(after_help = view::EXAMPLE)]
+    View(view::ViewArgs),
     /// Say what this program is and what it finds on this machine: kernels, processor, threads
     Doctor(doctor::DoctorArgs),
     /// Print the script that completes commands and options in a shell
@@ -212,6 +218,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Structure(args) => structure::run(&args),
         Command::Walk(args) => walk::run(&args),
         Command::Dump(args) => dump::run(&args),
+        Command::View(args) => view::run(&args),
         Command::Doctor(args) => doctor::run(&args),
         Command::Completions(args) => shell::completions(&args, Cli::command()),
         Command::Man(args) => shell::man(&args, Cli::command()),

@@ -1,0 +1,183 @@
+// The page: what is opened is matched with what the controls say, and shown.
+
+const state = { core: null, pair: null, planes: null, settings: null, preset: null, noise: "none",
+  rig: {}, hasDepth: false, timeMs: 0 };
+const cloud = new Cloud();
+const canvas = byId("picture");
+const context = canvas.getContext("2d");
+const cursor = { x: 0, y: 0 };
+let image = null;
+let measured = 0;
+let isTurning = false;
+let isDue = false;
+
+const view = () => document.querySelector("input[name=view]:checked").value;
+
+// Says what is wrong, in a line; nothing when all is well.
+function complain(error) {
+  byId("message").textContent = error ? error.message : "";
+}
+
+// The settings of the controls into the module. `auto` noise is what was measured; exposures count for
+// methods that compare brightness.
+function writeSettings() {
+  const { core } = state;
+  CONTROLS.forEach((control, i) => {
+    core.settings[i] = valueOf(control);
+  });
+  const chosen = valueOf(CONTROLS[at("noise")]);
+  core.settings[at("noise")] = chosen === 0 ? measured : chosen - 1;
+  core.settings[at("balance")] = Number(!isOff("balance") && core.settings[at("method")] >= 2);
+  state.noise = chosen === 0 ? "auto" : NOISES[chosen - 1];
+}
+
+// Measures the noise of the pair as the method sees it.
+function measure() {
+  writeSettings();
+  state.core.exports.measure();
+  measured = state.core.settings[at("noise")];
+  writeSettings();
+}
+
+// Moves the checks and the penalties to those of method, filter and noise.
+function takePreset() {
+  if (state.planes) measure();
+  writeSettings();
+  state.core.exports.preset();
+  state.preset = Int32Array.from(state.core.settings);
+  CONTROLS.forEach((control, i) => i >= CHECKS && setValue(control, state.preset[i]));
+}
+
+// Matches with what the controls say, and shows it.
+function run() {
+  isDue = false;
+  if (!state.planes) return;
+  try {
+    writeSettings();
+    state.settings = Int32Array.from(state.core.settings);
+    markOthers();
+    state.timeMs = state.core.run();
+    complain(null);
+    tellDepth();
+  } catch (error) {
+    complain(error);
+    return;
+  }
+  const { disparity } = state.planes;
+  const answers = disparity.reduce((sum, raw) => sum + (raw === NO_ANSWER ? 0 : 1), 0);
+  const share = ((100 * answers) / disparity.length).toFixed(1);
+  const noise = state.noise === "auto" ? `, noise ${NOISES[measured]} as measured` : "";
+  const rate = `${(1000 / state.timeMs).toFixed(0)} a second, kernel ${state.core.kernel}`;
+  byId("figures").textContent = `${state.timeMs.toFixed(1)} ms a frame on one thread of this machine `
+    + `(${rate}); ${share} % answered${noise}.`;
+  showWork(state);
+  show();
+}
+
+// Marks the checks and penalties that are not the filter's.
+function markOthers() {
+  const other = others(state.settings, state.preset);
+  CONTROLS.forEach((control, i) => control.row.classList.toggle("other", other.includes(i)));
+  byId("restore").disabled = other.length === 0;
+}
+
+function tellDepth() {
+  for (const { name, input } of RIG) state.rig[name] = Number(input.value);
+  const { focal_px: focal, baseline_mm: baseline, offset_px: offset } = state.rig;
+  state.hasDepth = focal > 0 && baseline > 0;
+  if (state.hasDepth) state.core.depth(focal, baseline / 1000, offset);
+  cloud.take(state);
+}
+
+// Paints the view that is chosen.
+function show() {
+  if (!image) return;
+  const words = new Uint32Array(image.data.buffer);
+  const isCloud = view() === "points";
+  canvas.classList.toggle("points", isCloud);
+  let legend;
+  if (isCloud) {
+    const count = cloud.draw(words, image.width, image.height);
+    legend = [count > 0 ? `${count} points; drag to turn, turn the wheel to come nearer.`
+      : "No points: give focal length and baseline under Cameras."];
+  } else {
+    legend = PAINT[view()](words, state);
+  }
+  byId("legend").replaceChildren(...legend);
+  canvas.setAttribute("aria-label", `${view()} of ${state.pair.left.name}`);
+  context.putImageData(image, 0, 0);
+}
+
+// Runs once for all that happens before the next picture.
+function later() {
+  if (isDue) return;
+  isDue = true;
+  requestAnimationFrame(run);
+}
+
+function changed(control) {
+  if (!state.core) return;
+  if (["method", "filter", "noise", "balance"].includes(control.name)) takePreset();
+  if (RIG.includes(control)) {
+    try {
+      complain(null);
+      tellDepth();
+      show();
+    } catch (error) {
+      state.hasDepth = false;
+      complain(error);
+    }
+    return;
+  }
+  later();
+}
+
+// Takes a pair, which is a promise of one; what is wrong with it is said.
+async function take(promised, rig = null) {
+  try {
+    const pair = await promised;
+    const { width, height } = pair.left;
+    state.planes = state.core.begin(width, height);
+    state.pair = pair;
+    toGrey(pair.left, state.planes.left);
+    toGrey(pair.right, state.planes.right);
+    [canvas.width, canvas.height] = [width, height];
+    image = context.createImageData(width, height);
+    [cursor.x, cursor.y] = [width >> 1, height >> 1];
+    cloud.reset();
+    if (rig) RIG.forEach(({ name, input }) => (input.value = rig[name] ?? ""));
+    const names = pair.isOne ? `${pair.left.name}, side by side` : `${pair.left.name}, ${pair.right.name}`;
+    byId("pair-names").textContent = `${names}: ${width} x ${height}`;
+    takePreset();
+    run();
+  } catch (error) {
+    complain(error);
+  }
+}
+
+async function takeGiven({ left, right, rig, disparities }) {
+  setValue(CONTROLS[at("disparities")], disparities);
+  const pictures = Promise.all([left, right].map(decodeUrl));
+  await take(pictures.then(([a, b]) => ({ left: a, right: b, isOne: false })), rig);
+}
+
+async function begin() {
+  addControls(changed);
+  VIEWS.forEach((name) => {
+    const label = make("label");
+    const radio = make("input", { type: "radio", name: "view", value: name, id: `view-${name}` });
+    radio.checked = name === "disparity";
+    radio.addEventListener("change", show);
+    label.append(radio, ` ${name}`);
+    byId("views").append(label);
+  });
+  listen();
+  try {
+    state.core = await Core.load(MODULE);
+    await takeGiven(DATA.given ?? DATA.scene);
+  } catch (error) {
+    complain(error);
+  }
+}
+
+begin();

@@ -1,0 +1,129 @@
+// The views of a result, painted pixel by pixel, and what their colours mean.
+
+const NO_ANSWER = 0xffff;
+const VIEWS = ["left", "right", "disparity", "depth", "flags", "confidence", "points"];
+
+// A colour in the order of a canvas's bytes, read as one little-endian word.
+const packed = ([red, green, blue]) => ((255 << 24) | (blue << 16) | (green << 8) | red) >>> 0;
+const css = (rgb) => `rgb(${rgb.join(" ")})`;
+const greyWord = (value) => packed([value, value, value]);
+const BLACK = packed([0, 0, 0]);
+
+// 256 colours between those of the data: far is dark, near is bright.
+const RAMP = Array.from({ length: 256 }, (_, step) => {
+  const { ramp } = DATA;
+  const at = (step / 255) * (ramp.length - 1);
+  const low = Math.min(Math.floor(at), ramp.length - 2);
+  return [0, 1, 2].map((c) => Math.round(ramp[low][c] + (at - low) * (ramp[low + 1][c] - ramp[low][c])));
+});
+const RAMP_WORDS = Uint32Array.from(RAMP, packed);
+
+// The numbers between which the colours run: the 2nd to the 98th of a hundred of those that are some.
+function ends(numbers, none) {
+  const counts = new Uint32Array(65536);
+  let all = 0;
+  for (const number of numbers) {
+    if (number !== none) {
+      counts[number] += 1;
+      all += 1;
+    }
+  }
+  if (all === 0) return null;
+  const quantile = (share) => {
+    let left = Math.round(share * (all - 1));
+    return counts.findIndex((count) => (left -= count) < 0);
+  };
+  return [quantile(0.02), quantile(0.98)];
+}
+
+// Paints numbers in the colours of the ramp; `isNear` says whether large ones are near.
+function paintNumbers(words, numbers, none, isNear) {
+  const found = ends(numbers, none);
+  if (!found) {
+    words.fill(BLACK);
+    return null;
+  }
+  const [low, high] = found;
+  const scale = 255 / Math.max(high - low, 1);
+  for (let i = 0; i < words.length; i += 1) {
+    const step = Math.min(Math.max(Math.round((numbers[i] - low) * scale), 0), 255);
+    words[i] = numbers[i] === none ? BLACK : RAMP_WORDS[isNear ? step : 255 - step];
+  }
+  return found;
+}
+
+// The first reason without an answer, or that it was filled in, as a place in the flags' list; -1 for a pixel
+// with an answer of its own.
+function reason(planes, pixel) {
+  const answered = planes.disparity[pixel] !== NO_ANSWER;
+  const flags = planes.flags[pixel];
+  return DATA.flags.findIndex(({ bit, name }) => (flags & bit) !== 0 && (!answered || name === "filled"));
+}
+
+// Paints a picture as it was opened.
+function paintPicture(words, { pixels }) {
+  words.set(new Uint32Array(pixels.buffer, pixels.byteOffset, words.length));
+}
+
+// Paints one of the views into words, one for each pixel; elements that say what the colours mean.
+const PAINT = {
+  left: (words, { pair }) => (paintPicture(words, pair.left), ["The left picture: answers belong to it."]),
+  right: (words, { pair }) => (paintPicture(words, pair.right), ["The right picture."]),
+  disparity: (words, { planes }) => {
+    const found = paintNumbers(words, planes.disparity, NO_ANSWER, true);
+    if (!found) return ["No pixel has an answer."];
+    return rampLegend(found.map((raw) => `${(raw / 32).toFixed(1)} px`));
+  },
+  depth: (words, { planes, hasDepth }) => {
+    if (!hasDepth) {
+      words.fill(BLACK);
+      return ["No depth: give focal length and baseline under Cameras."];
+    }
+    const found = paintNumbers(words, planes.depth, 0, false);
+    const metres = (mm) => `${(mm / 1000).toFixed(2)} m`;
+    return found ? rampLegend(found.reverse().map(metres)) : ["No pixel has a depth up to 65 m."];
+  },
+  flags: (words, { planes }) => {
+    const colours = DATA.flags.map(({ colour }) => packed(colour));
+    for (let i = 0; i < words.length; i += 1) {
+      const place = reason(planes, i);
+      words[i] = place < 0 ? greyWord(160 + (planes.left[i] >> 2)) : colours[place];
+    }
+    return ["Pale: an answer. ", ...DATA.flags.flatMap(({ name, colour }) => [swatch(colour), name])];
+  },
+  confidence: (words, { planes }) => {
+    for (let i = 0; i < words.length; i += 1) {
+      const step = Math.round((255 * planes.confidence[i]) / DATA.most_confidence);
+      words[i] = planes.confidence[i] === 0 ? BLACK : RAMP_WORDS[Math.min(step, 255)];
+    }
+    return rampLegend(["1", String(DATA.most_confidence)]);
+  },
+};
+
+function rampLegend([dark, bright]) {
+  const stops = RAMP.filter((_, step) => step % 51 === 0).map(css).join(", ");
+  const ramp = make("span", { class: "ramp", style: `background: linear-gradient(to right, ${stops})` });
+  return [dark, ramp, `${bright}; black: no answer`];
+}
+
+function swatch(colour) {
+  return make("span", { class: "swatch", style: `background: ${css(colour)}` });
+}
+
+// What is known of a pixel, in one line.
+function describePixel({ planes, hasDepth, rig }, x, y) {
+  const pixel = y * planes.width + x;
+  const raw = planes.disparity[pixel];
+  const flags = DATA.flags.filter(({ bit }) => (planes.flags[pixel] & bit) !== 0).map(({ name }) => name);
+  const why = flags.length > 0 ? flags.join(", ") : "none";
+  const place = `column ${x}, row ${y}: `;
+  if (raw === NO_ANSWER) return `${place}no answer; flags: ${why}`;
+  const sigmaPx = planes.sigma[pixel];
+  let text = `${place}disparity ${(raw / 32).toFixed(3)} px, sigma ${sigmaPx.toFixed(2)} px`;
+  if (hasDepth && planes.depth[pixel] > 0) {
+    const mm = planes.depth[pixel];
+    const sigmaMm = ((mm * mm) / (rig.focal_px * rig.baseline_mm)) * sigmaPx;
+    text += `; depth ${mm} mm, sigma ${sigmaMm.toFixed(sigmaMm < 10 ? 1 : 0)} mm`;
+  }
+  return `${text}; confidence ${planes.confidence[pixel]} of ${DATA.most_confidence}; flags: ${why}`;
+}

@@ -1,0 +1,173 @@
+//! What the page's scripts look at: colours, names, the figures of `stereo plan`, and pictures.
+
+use crate::colour::{FLAG_COLOURS, viridis};
+use crate::plan::{CORES, Tables};
+use crate::run::MethodName;
+use crate::scene::Scene;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use image::{DynamicImage, ImageFormat, RgbImage};
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+use std::io::{self, Cursor};
+use stereopsis::geometry::camera::{ImageSize, RectifiedRig};
+use stereopsis::matching::{Config, Row};
+use stereopsis::units::PixelFlags;
+
+/// The columns of the ramp of colours.
+const RAMP: u16 = 9;
+/// Disparities are searched in multiples of this.
+const STEP: u16 = 16;
+
+/// A pair that the page begins with.
+pub struct Given<'a> {
+    /// The names of both pictures.
+    pub names: [&'a str; 2],
+    /// The pictures.
+    pub pictures: [&'a RgbImage; 2],
+    /// The cameras, where they are known.
+    pub rig: Option<RectifiedRig>,
+    /// How many whole disparities are searched at first.
+    pub disparities: u16,
+}
+
+#[derive(Serialize)]
+struct Picture<'a> {
+    name: &'a str,
+    url: String,
+}
+
+/// All of it as JSON that can stand in a script.
+pub(super) fn json(given: Option<&Given<'_>>) -> io::Result<String> {
+    let scene = Scene::demo();
+    let (left, right) = scene.render();
+    let pictures = [left, right].map(|grey| DynamicImage::from(grey).into_rgb8());
+    let scene = Given {
+        names: ["left.png", "right.png"],
+        pictures: pictures.each_ref(),
+        rig: Some(scene.rig()),
+        disparities: scene.disparities(),
+    };
+    let flags = PixelFlags::NAMES.iter().zip(FLAG_COLOURS);
+    let flags: Vec<_> = flags
+        .map(|((flag, name), colour)| json!({ "name": name, "bit": flag.bits(), "colour": colour.0 }))
+        .collect();
+    let ramp = (0..RAMP).map(|step| viridis(f32::from(step) / f32::from(RAMP - 1)).0);
+    let data = json!({
+        "ramp": ramp.collect::<Vec<_>>(),
+        "flags": flags,
+        "most_confidence": Row::MOST_CONFIDENCE,
+        "cores": CORES,
+        "ram": of_methods(|method| json!(ram(method))),
+        "work": work(),
+        "scene": scene.json()?,
+        "given": given.map(Given::json).transpose()?,
+    });
+    // No text of it ends the script that it stands in.
+    Ok(data.to_string().replace('<', "\\u003c"))
+}
+
+impl Given<'_> {
+    fn json(&self) -> io::Result<Value> {
+        let picture = |side: usize| {
+            let mut png = Cursor::new(Vec::new());
+            let colours = DynamicImage::from(self.pictures[side].clone());
+            let is_grey = self.pictures[side].pixels().all(|p| p[0] == p[1] && p[1] == p[2]);
+            // A grey picture takes a third as one.
+            let picture = if is_grey { DynamicImage::from(colours.into_luma8()) } else { colours };
+            picture.write_to(&mut png, ImageFormat::Png).map_err(io::Error::other)?;
+            let url = format!("data:image/png;base64,{}", STANDARD.encode(png.into_inner()));
+            Ok::<_, io::Error>(Picture { name: self.names[side], url })
+        };
+        let rig = self.rig.map(|rig| {
+            let baseline_mm = rounded(f64::from(rig.baseline_m()) * 1000.0);
+            json!({
+                "focal_px": rig.focal_px(),
+                "baseline_mm": baseline_mm,
+                "offset_px": rig.disparity_offset_px(),
+            })
+        });
+        Ok(json!({
+            "left": picture(0)?,
+            "right": picture(1)?,
+            "rig": rig.unwrap_or(json!({})),
+            "disparities": self.disparities,
+        }))
+    }
+}
+
+/// Seven digits, which is what an `f32` has.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.6e}").parse().unwrap_or(value)
+}
+
+fn of_methods(value: impl Fn(MethodName) -> Value) -> Value {
+    Value::Object(
+        MethodName::ALL.into_iter().map(|method| (method.name().to_owned(), value(method))).collect(),
+    )
+}
+
+/// What a pipeline's bytes are made of: for each pixel of a row and candidate, each pixel of a row, each
+/// candidate, and all.
+fn ram(method: MethodName) -> [i64; 4] {
+    const COLUMNS: [u16; 2] = [256, 512];
+    const LANES: [u16; 2] = [16, 32];
+    let bytes = |width, lanes| method.pipeline_bytes(width, lanes) as i64;
+    let [[a, b], [c, d]] = COLUMNS.map(|width| LANES.map(|lanes| bytes(width, lanes)));
+    let (columns, lanes) = (i64::from(COLUMNS[1] - COLUMNS[0]), i64::from(LANES[1] - LANES[0]));
+    let product = (d - c - b + a) / (columns * lanes);
+    let per_column = (c - a) / columns - product * i64::from(LANES[0]);
+    let per_lane = (b - a) / lanes - product * i64::from(COLUMNS[0]);
+    let fixed = a
+        - product * i64::from(COLUMNS[0]) * i64::from(LANES[0])
+        - per_column * i64::from(COLUMNS[0])
+        - per_lane * i64::from(LANES[0]);
+    [product, per_column, per_lane, fixed]
+}
+
+/// Instructions for a pixel, by core and method, at 16 disparities, 32 and so on.
+fn work() -> Value {
+    let tables = Tables::read();
+    // The work of a frame is that of its pixels.
+    let one = ImageSize { width: 100, height: 100 };
+    let each = |core: &'static str| {
+        of_methods(|method| {
+            let counts = (1..=Config::MOST_DISPARITIES / STEP).map(|steps| {
+                let work = tables.work(core, 1.0, method, one, steps * STEP);
+                work.map(|work| rounded(work.instructions / 1e4))
+            });
+            json!(counts.collect::<Vec<_>>())
+        })
+    };
+    Value::Object(CORES.into_iter().map(|(core, _)| (core.to_owned(), each(core))).collect::<Map<_, _>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_of_any_size_are_the_pipelines() {
+        for method in MethodName::ALL {
+            let [product, per_column, per_lane, fixed] = ram(method);
+            for (width, disparities) in [(160, 32), (320, 64), (640, 64), (641, 128), (1280, 256), (4096, 16)]
+            {
+                let (columns, lanes) = (i64::from(width), i64::from(disparities));
+                let bytes = product * columns * lanes + per_column * columns + per_lane * lanes + fixed;
+                assert_eq!(bytes, method.pipeline_bytes(width, disparities) as i64, "{method} {width}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_name_does_not_end_the_script() {
+        let picture = RgbImage::new(2, 2);
+        let names = ["</script>.png", "b.png"];
+        let given = Given { names, pictures: [&picture, &picture], rig: None, disparities: 16 };
+        let text = json(Some(&given)).expect("it is written");
+        assert!(!text.contains('<') && text.contains("\\u003c/script>.png"));
+        let read: Value = serde_json::from_str(&text).expect("JSON");
+        assert_eq!(read["given"]["left"]["name"], names[0]);
+        assert_eq!(read["cores"][2][0], "m4");
+    }
+}

@@ -7,7 +7,8 @@
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Kernel {
-    /// Bit planes in plain 32-bit words: on every core without another kernel, and wherever [`Lanes`](Self::Lanes) are.
+    /// Bit planes in plain 32-bit words: on every core without another kernel, and wherever
+    /// [`Lanes`](Self::Lanes) are.
     Planes,
     /// Arm's instructions on four bytes in a word (Cortex-M4 and M7; M33 with `-C target-cpu`).
     Dsp,

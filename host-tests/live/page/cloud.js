@@ -4,7 +4,7 @@ const MOST_POINTS = 400000;
 
 class Cloud {
   constructor() {
-    this.points = null;
+    this.forget();
     this.reset();
   }
 
@@ -12,10 +12,16 @@ class Cloud {
     [this.yaw, this.pitch, this.zoom] = [0.25, 0.2, 1];
   }
 
-  // Takes the points of a result: where each pixel with a depth lies, m, and its colour. The nearest and the
-  // farthest ones do not move the centre.
+  // The points are no longer those of the result.
+  forget() {
+    [this.points, this.isTaken] = [null, false];
+  }
+
+  // Takes the points of a result, once: where each pixel with a depth lies, m, and its colour. The nearest
+  // and the farthest ones do not move the centre.
   take({ planes, pair, rig, hasDepth }) {
-    this.points = null;
+    if (this.isTaken) return;
+    this.isTaken = true;
     if (!hasDepth) return;
     const { width, height, depth } = planes;
     const step = Math.max(1, Math.ceil(Math.sqrt((width * height) / MOST_POINTS)));
@@ -34,7 +40,9 @@ class Cloud {
     found.forEach((pixel, i) => {
       const z = depth[pixel] / 1000;
       const [x, y] = [pixel % width, Math.floor(pixel / width)];
-      places.set([((x - cx) * z) / rig.focal_px, ((y - cy) * z) / rig.focal_px, z], 3 * i);
+      places[3 * i] = ((x - cx) * z) / rig.focal_px;
+      places[3 * i + 1] = ((y - cy) * z) / rig.focal_px;
+      places[3 * i + 2] = z;
     });
     this.points = { places, colours: Uint32Array.from(found, (pixel) => colours[pixel]) };
     // It is turned about the middle of what is seen, and looked at from where the camera stood.

@@ -64,7 +64,8 @@ function run() {
     return;
   }
   const { disparity } = state.planes;
-  const answers = disparity.reduce((sum, raw) => sum + (raw === NO_ANSWER ? 0 : 1), 0);
+  let answers = 0;
+  for (let i = 0; i < disparity.length; i += 1) answers += disparity[i] === NO_ANSWER ? 0 : 1;
   const share = ((100 * answers) / disparity.length).toFixed(1);
   const noise = state.noise === "auto" ? `, noise ${NOISES[measured]} as measured` : "";
   const rate = `${(1000 / state.timeMs).toFixed(0)} a second, kernel ${state.core.kernel}`;
@@ -85,8 +86,8 @@ function tellDepth() {
   for (const { name, input } of RIG) state.rig[name] = Number(input.value);
   const { focal_px: focal, baseline_mm: baseline, offset_px: offset } = state.rig;
   state.hasDepth = focal > 0 && baseline > 0;
+  cloud.forget();
   if (state.hasDepth) state.core.depth(focal, baseline / 1000, offset);
-  cloud.take(state);
 }
 
 // Paints the view that is chosen.
@@ -97,6 +98,7 @@ function show() {
   canvas.classList.toggle("points", isCloud);
   let legend;
   if (isCloud) {
+    cloud.take(state);
     const count = cloud.draw(words, image.width, image.height);
     legend = [count > 0 ? `${count} points; drag to turn, turn the wheel to come nearer.`
       : "No points: give focal length and baseline under Cameras."];

@@ -4,7 +4,7 @@
 use crate::source::{self, end_of_item, is_sign, is_test_attribute, line, tokens, word};
 use proc_macro2::TokenTree;
 
-/// Lines of a Rust file without its tests, at most.
+/// Lines of a Rust file without its tests, or of a script, at most.
 const MOST_LINES: usize = 300;
 
 /// Lines of README.md, at most: what is more belongs in docs/.
@@ -99,7 +99,8 @@ fn files_are_short() {
         (lines > MOST_LINES).then(|| format!("{name}: {lines} lines without its tests, {MOST_LINES} at most"))
     };
     let files = source::files();
-    let wrong: Vec<_> = files.iter().filter(|name| name.ends_with(".rs")).filter_map(long).collect();
+    let is_code = |name: &&String| [".rs", ".js", ".mjs"].iter().any(|ending| name.ends_with(ending));
+    let wrong: Vec<_> = files.iter().filter(is_code).filter_map(long).collect();
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 

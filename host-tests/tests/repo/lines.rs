@@ -1,9 +1,12 @@
-//! Lines of Rust files have at most 110 columns: code, comments, strings and tables alike.
+//! Lines of Rust files and of the live page's have at most 110 columns: code, comments, strings and tables
+//! alike.
 
 use crate::source;
 
 /// Columns of a line, at most.
 const MOST_COLUMNS: usize = 110;
+/// What the files end with that are looked at.
+const CODE: [&str; 4] = [".rs", ".js", ".mjs", ".html"];
 
 /// Lines of `text` that are too long.
 fn long_lines(name: &str, text: &str) -> Vec<String> {
@@ -17,9 +20,9 @@ fn long_lines(name: &str, text: &str) -> Vec<String> {
 #[test]
 fn lines_have_at_most_110_columns() {
     let files = source::files();
-    let is_rust = |name: &&String| name.ends_with(".rs");
+    let is_code = |name: &&String| CODE.iter().any(|ending| name.ends_with(ending));
     let wrong: Vec<_> =
-        files.iter().filter(is_rust).flat_map(|name| long_lines(name, &source::text(name))).collect();
+        files.iter().filter(is_code).flat_map(|name| long_lines(name, &source::text(name))).collect();
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 

@@ -1,8 +1,9 @@
 //! `cargo xtask view`: the core for browsers, and the live page with it.
 //!
-//! * [`run`]: builds the module and runs `stereo view`. [`kernels`]: the kernel of WebAssembly beside its twin.
-//! * [`browser`]: a browser without a window. [`page`]: the live page in it. [`check`]: what the page has to do,
-//!   a step of the tests.
+//! * [`run`]: builds the module and runs `stereo view`. [`kernels`]: the kernel of WebAssembly beside its
+//!   twin.
+//! * [`browser`]: a browser without a window. [`page`]: the live page in it. [`check`]: what the page has to
+//!   do, a step of the tests.
 
 mod browser;
 mod check;

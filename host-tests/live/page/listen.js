@@ -1,7 +1,10 @@
 // What hands do: files, the cursor, turning, copying.
 
 function openFiles(files) {
-  if (state.core && files.length > 0) take(openPair([...files]));
+  if (!state.core || files.length === 0) return;
+  const isVideo = files.length === 1 && files[0].type.startsWith("video/");
+  if (isVideo) move(moving.play(files[0]));
+  else take(openPair([...files]));
 }
 
 // The pixel under the pointer.
@@ -14,6 +17,7 @@ function moveTo(event) {
 }
 
 function tellPixel() {
+  isPointed = true;
   if (state.settings) byId("pixel").textContent = describePixel(state, cursor.x, cursor.y);
 }
 
@@ -64,12 +68,14 @@ async function copy(words) {
 }
 
 function listen() {
-  for (const id of ["pick-one", "pick-two"]) {
+  for (const id of ["pick-one", "pick-two", "pick-video"]) {
     byId(id).addEventListener("change", ({ target }) => {
       openFiles(target.files);
       target.value = "";
     });
   }
+  byId("camera").addEventListener("click", () => state.core && move(moving.look()));
+  byId("stop").addEventListener("click", stopMoving);
   byId("scene").addEventListener("click", () => state.core && takeGiven(DATA.scene));
   byId("restore").addEventListener("click", () => {
     takePreset();

@@ -9,6 +9,7 @@ const cursor = { x: 0, y: 0 };
 let image = null;
 let measured = 0;
 let isTurning = false;
+let isPointed = false;
 let isDue = false;
 
 const view = () => document.querySelector("input[name=view]:checked").value;
@@ -73,6 +74,7 @@ function run() {
     + `(${rate}); ${share} % answered${noise}.`;
   showWork(state);
   show();
+  if (isPointed) tellPixel();
 }
 
 // Marks the checks and penalties that are not the filter's.
@@ -134,25 +136,77 @@ function changed(control) {
   later();
 }
 
-// Takes a pair, which is a promise of one; what is wrong with it is said.
-async function take(promised, rig = null) {
-  try {
-    const pair = await promised;
-    const { width, height } = pair.left;
+// Takes a pair: its pictures into the module's planes, of another size if need be.
+function put(pair) {
+  const { width, height } = pair.left;
+  if (state.planes?.width !== width || state.planes?.height !== height) {
     state.planes = state.core.begin(width, height);
-    state.pair = pair;
-    toGrey(pair.left, state.planes.left);
-    toGrey(pair.right, state.planes.right);
     [canvas.width, canvas.height] = [width, height];
     image = context.createImageData(width, height);
     [cursor.x, cursor.y] = [width >> 1, height >> 1];
+  }
+  state.pair = pair;
+  toGrey(pair.left, state.planes.left);
+  toGrey(pair.right, state.planes.right);
+}
+
+// Says what is matched.
+function namePair() {
+  const { left, right, isOne } = state.pair;
+  const names = isOne ? `${left.name}, side by side` : `${left.name}, ${right.name}`;
+  byId("pair-names").textContent = `${names}: ${left.width} x ${left.height}`;
+}
+
+// Takes a pair, which is a promise of one; what is wrong with it is said.
+async function take(promised, rig = null) {
+  stopMoving();
+  try {
+    put(await promised);
     cloud.reset();
     if (rig) RIG.forEach(({ name, input }) => (input.value = rig[name] ?? ""));
-    const names = pair.isOne ? `${pair.left.name}, side by side` : `${pair.left.name}, ${pair.right.name}`;
-    byId("pair-names").textContent = `${names}: ${width} x ${height}`;
+    namePair();
     takePreset();
     run();
   } catch (error) {
+    complain(error);
+  }
+}
+
+// Takes a frame of what moves. The first one of a size tells the noise.
+function takeFrame(pair) {
+  const isFirst = !state.pair?.isMoving || state.pair.left.name !== pair.left.name;
+  put(pair);
+  if (isFirst) {
+    namePair();
+    takePreset();
+  }
+  run();
+}
+
+const moving = new Moving(takeFrame, (error) => {
+  stopMoving();
+  complain(error);
+});
+
+function stopMoving() {
+  moving.stop();
+  sayMoving(false);
+}
+
+// What changes with every frame is not read out.
+function sayMoving(isMoving) {
+  byId("stop").hidden = !isMoving;
+  for (const id of ["pixel", "figures"]) byId(id).setAttribute("aria-live", isMoving ? "off" : "polite");
+}
+
+// Begins what moves, which is a promise.
+async function move(begun) {
+  try {
+    complain(null);
+    await begun;
+    sayMoving(true);
+  } catch (error) {
+    stopMoving();
     complain(error);
   }
 }

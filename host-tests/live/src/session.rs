@@ -161,14 +161,15 @@ impl Session {
             return None;
         }
         let mut pair = planes.pair();
-        let done = if settings::balances(&self.settings) {
+        let wrong = &mut self.message;
+        if settings::balances(&self.settings) {
             let mut balanced = BalancedPair::new(pair);
+            // Planes have all their lines.
             let _ = meter(&mut balanced);
-            with_pipeline!(self, pipeline => frame(pipeline, &config, &mut balanced, planes, now))
+            with_pipeline!(self, pipeline => frame(pipeline, &config, &mut balanced, planes, now, wrong))
         } else {
-            with_pipeline!(self, pipeline => frame(pipeline, &config, &mut pair, planes, now))
-        };
-        done.map_err(|message| self.message = message).ok()
+            with_pipeline!(self, pipeline => frame(pipeline, &config, &mut pair, planes, now, wrong))
+        }
     }
 
     /// The depths of the disparities, for cameras of a focal length, a baseline, and a distance between their
@@ -221,30 +222,29 @@ fn meter<C: StereoSource>(source: &mut C) -> Result<NoiseMeter, CameraError<C::E
     Ok(meter)
 }
 
-/// One frame: the milliseconds of the pipeline, or what is wrong.
+/// One frame: the milliseconds of the pipeline; none where something is wrong.
 fn frame<S: Method, C: StereoSource>(
     pipeline: &mut Held<S>,
     config: &Config,
     source: &mut C,
     planes: &mut Planes<'_>,
     now: fn() -> f64,
-) -> Result<f64, Message>
+    wrong: &mut Message,
+) -> Option<f64>
 where
     C::Error: core::fmt::Display,
 {
-    let said = |error: &dyn core::fmt::Display| {
-        let mut message = Message::new();
-        let _ = write!(message, "{error}");
-        message
+    let mut say = |error: &dyn core::fmt::Display| {
+        let _ = write!(wrong, "{error}");
     };
-    pipeline.start(config).map_err(|e| said(&e))?;
-    pipeline.begin_frame(source).map_err(|e| said(&e))?;
+    pipeline.start(config).map_err(|e| say(&e)).ok()?;
+    pipeline.begin_frame(source).map_err(|e| say(&e)).ok()?;
     let mut time_ms = 0.0;
     loop {
         let start = now();
-        let row = pipeline.next_row(source).map_err(|e| said(&e))?;
+        let row = pipeline.next_row(source).map_err(|e| say(&e)).ok()?;
         time_ms += now() - start;
-        let Some(row) = row else { return Ok(time_ms) };
+        let Some(row) = row else { return Some(time_ms) };
         planes.put(&row);
     }
 }

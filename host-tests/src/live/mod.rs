@@ -20,10 +20,11 @@ pub const MODULE_FILE: &str = "stereopsis_live.wasm";
 const INDEX: &str = include_str!("../../live/page/index.html");
 const STYLE: &str = include_str!("../../live/page/style.css");
 /// The scripts, each of which uses those before it.
-const SCRIPTS: [&str; 9] = [
+const SCRIPTS: [&str; 10] = [
     include_str!("../../live/page/controls.js"),
     include_str!("../../live/page/core.js"),
     include_str!("../../live/page/pictures.js"),
+    include_str!("../../live/page/moving.js"),
     include_str!("../../live/page/paint.js"),
     include_str!("../../live/page/cloud.js"),
     include_str!("../../live/page/work.js"),

@@ -38,6 +38,8 @@ impl Browser {
         command.args(["-c", PIPES, CHROMIUM, "--headless=new", "--remote-debugging-pipe", "--disable-gpu"]);
         // It runs the repository's own page alone, often where it has no sandbox: in a container, as root.
         command.args(["--no-sandbox", "--no-first-run", "--disable-background-networking"]);
+        // Its camera is a test pattern that may be looked at.
+        command.args(["--use-fake-device-for-media-stream", "--use-fake-ui-for-media-stream"]);
         command.arg(format!("--user-data-dir={}", profile.path().display()));
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
         let mut child = command.spawn().map_err(failed)?;

@@ -76,6 +76,7 @@ pub fn sample(stereo: &Path) -> Outcome {
     every_view_shows_something(&mut page)?;
     keys_and_names_reach_everything(&mut page)?;
     what_is_wrong_is_said(&mut page, folder, &scene)?;
+    a_camera_is_matched_frame_by_frame(&mut page)?;
     let requests = page.requests();
     hold(requests == [served.url.as_str()], || format!("the page asks for {requests:?}"))?;
     let thrown = page.thrown();
@@ -248,7 +249,10 @@ fn what_is_wrong_is_said(page: &mut LivePage, folder: &Path, scene: &Path) -> Ou
     ] {
         picture.save(path).map_err(|e| failed(path, &e))?;
     }
-    let expected: [(&str, &[&PathBuf], &str); 4] = [
+    let video = folder.join("c.webm");
+    fs::write(&video, "no video").map_err(|e| failed(&video, &e))?;
+    let expected: [(&str, &[&PathBuf], &str); 5] = [
+        ("pick-video", &[&video], "c.webm: is no picture or video that this browser reads."),
         ("pick-two", &[&text, &left], "a.png: is no picture that this browser reads."),
         ("pick-two", &[&small, &left], "b.png is 320 x 240, left.png is 640 x 480: both must have one size."),
         (
@@ -273,6 +277,20 @@ fn what_is_wrong_is_said(page: &mut LivePage, folder: &Path, scene: &Path) -> Ou
     page.give("pick-one", &[both])?;
     let said = page.text("message")?;
     hold(said.is_empty() && one == page.plane("disparity")?, || format!("side by side: {said}"))
+}
+
+/// The browser's camera, a test pattern, gives one result after the other until it is stopped.
+fn a_camera_is_matched_frame_by_frame(page: &mut LivePage) -> Outcome {
+    page.press("camera")?;
+    let frames = "new Promise((done) => { const { show } = moving; let count = 0; moving.show = (pair) => { \
+                  show(pair); count += 1; if (count === 3) done(pair.left.name); }; })";
+    let name = page.browser.value(frames)?;
+    hold(name == "camera", || format!("{name} is matched, not the camera"))?;
+    let (said, pair) = (page.text("message")?, page.text("pair-names")?);
+    hold(said.is_empty() && pair.starts_with("camera, side by side: "), || format!("{pair} {said}"))?;
+    page.press("stop")?;
+    let is_on = page.browser.value("moving.isOn || !byId('stop').hidden")?;
+    hold(is_on == false, || "the camera is not stopped".to_owned())
 }
 
 /// A browser without the instructions says that it has none.

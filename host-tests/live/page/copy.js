@@ -16,7 +16,7 @@ function others(settings, preset) {
 
 function asCommand({ settings, preset, noise, pair, rig, hasDepth }) {
   const value = (name) => settings[at(name)];
-  const files = pair.isOne ? `--side-by-side ${quoted(pair.left.name)}`
+  const files = pair.isOne ? `--side-by-side ${pair.isMoving ? "frame.png" : quoted(pair.left.name)}`
     : `--left ${quoted(pair.left.name)} --right ${quoted(pair.right.name)}`;
   const cameras = hasDepth && rig.offset_px === 0
     ? ` --focal-px ${rig.focal_px} --baseline-mm ${rig.baseline_mm}` : "";
@@ -27,7 +27,7 @@ function asCommand({ settings, preset, noise, pair, rig, hasDepth }) {
     `--min-confidence ${value("min_confidence")} --balance ${isOff("balance") ? "none" : "auto"}`,
     `${cameras.trim()}${cameras ? " " : ""}--out depth`,
   ];
-  const notes = [];
+  const notes = pair.isMoving ? ["# frame.png is a frame of it"] : [];
   const other = others(settings, preset).map((i) => CONTROLS[i].name);
   if (other.length > 0) notes.push(`# ${other.join(", ")}: no options of match; copy as Rust or C`);
   if (hasDepth && rig.offset_px !== 0) notes.push("# principal points apart: give --calib FILE for depths");

@@ -1,7 +1,7 @@
 // The page: what is opened is matched with what the controls say, and shown.
 
 const state = { core: null, pair: null, planes: null, settings: null, preset: null, noise: "none",
-  rig: {}, hasDepth: false, timeMs: 0 };
+  rig: {}, isRigGiven: false, hasDepth: false, timeMs: 0 };
 const cloud = new Cloud();
 const canvas = byId("picture");
 const context = canvas.getContext("2d");
@@ -123,6 +123,7 @@ function changed(control) {
   if (!state.core) return;
   if (["method", "filter", "noise", "balance"].includes(control.name)) takePreset();
   if (RIG.includes(control)) {
+    state.isRigGiven = false;
     try {
       complain(null);
       tellDepth();
@@ -157,13 +158,20 @@ function namePair() {
   byId("pair-names").textContent = `${names}: ${left.width} x ${left.height}`;
 }
 
+// The cameras of the page's own pairs; without any, those that were typed stay, and theirs go: another pair's
+// depths would be wrong.
+function setRig(rig) {
+  if (rig || state.isRigGiven) RIG.forEach(({ name, input }) => (input.value = rig?.[name] ?? ""));
+  state.isRigGiven = rig !== null;
+}
+
 // Takes a pair, which is a promise of one; what is wrong with it is said.
 async function take(promised, rig = null) {
   stopMoving();
   try {
     put(await promised);
     cloud.reset();
-    if (rig) RIG.forEach(({ name, input }) => (input.value = rig[name] ?? ""));
+    setRig(rig);
     namePair();
     takePreset();
     run();
@@ -177,6 +185,7 @@ function takeFrame(pair) {
   const isFirst = !state.pair?.isMoving || state.pair.left.name !== pair.left.name;
   put(pair);
   if (isFirst) {
+    setRig(null);
     namePair();
     takePreset();
   }

@@ -25,3 +25,4 @@ mod replay;
 mod results;
 mod support;
 mod two_view;
+mod view;

@@ -11,10 +11,14 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// Bytes of a request that are read.
 const MOST_BYTES: u64 = 1 << 14;
 
+/// Takes a port; 0 is any that is free.
+pub fn bind(port: u16) -> Result<TcpListener, Failure> {
+    TcpListener::bind((Ipv4Addr::LOCALHOST, port))
+        .map_err(|e| Failure::new(format!("--port {port}: {e}; give another one, or 0 for any")))
+}
+
 /// Serves the page until the program is ended.
-pub fn forever(port: u16, page: &str) -> Result<(), Failure> {
-    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))
-        .map_err(|e| Failure::new(format!("--port {port}: {e}; give another one, or 0 for any")))?;
+pub fn forever(listener: &TcpListener, page: &str) -> Result<(), Failure> {
     let port = listener.local_addr()?.port();
     print(&format!("http://127.0.0.1:{port}/ shows it as long as this program runs; end it by Ctrl-C\n"))?;
     for stream in listener.incoming() {

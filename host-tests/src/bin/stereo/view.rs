@@ -78,13 +78,14 @@ pub fn run(args: &ViewArgs) -> Result<(), Failure> {
         rig,
         disparities: args.disparities.min(pair.width) / 16 * 16,
     });
+    let listener = (!args.write_only).then(|| serve::bind(args.port)).transpose()?;
     let page = page(&module, given.as_ref())?;
     let mut staging = Staging::new(&args.out)?;
     staging.write(INDEX, |out| out.write_all(page.as_bytes()))?;
     staging.commit(&[])?;
     let place = one_line(&args.out.join(INDEX).display().to_string());
     print(&format!("the page is {place}, {} KB; it opens in a browser by itself\n", page.len() / 1024))?;
-    if args.write_only { Ok(()) } else { serve::forever(args.port, &page) }
+    listener.map_or(Ok(()), |listener| serve::forever(&listener, &page))
 }
 
 /// The module's bytes, from the file that is named or the one beside this program.

@@ -1,4 +1,5 @@
-//! `stereo view`: the page as a file, and what is refused. The step "live page" of `cargo xtask test` opens it.
+//! `stereo view`: the page as a file, and what is refused. The step "live page" of `cargo xtask test` opens
+//! it.
 
 use super::support::{Bench, HEIGHT, WIDTH, stereo, text};
 use serde_json::Value;

@@ -1,12 +1,13 @@
 //! The test step of the live page, in a browser.
 
 use super::browser::Browser;
+use super::faults::{what_is_wrong_is_said, without_simd_it_says_so};
 use super::page::{LivePage, url_of};
 use crate::steps::{Failure, Outcome, output_of};
 use serde_json::{Value, json};
 use std::fs;
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use stereopsis_host::pfm;
 
@@ -24,11 +25,12 @@ const MATCHED: [[i64; 6]; 7] = [
 const SEARCH: [&str; 6] = ["method", "filter", "noise", "disparities", "min_disparity", "min_confidence"];
 
 /// Fails with a line unless it holds.
-fn hold(holds: bool, line: impl FnOnce() -> String) -> Outcome {
+pub fn hold(holds: bool, line: impl FnOnce() -> String) -> Outcome {
     if holds { Ok(()) } else { Err(Failure::new(line())) }
 }
 
-fn failed(path: &Path, e: &dyn std::fmt::Display) -> Failure {
+/// What is wrong with a file.
+pub fn failed(path: &Path, e: &dyn std::fmt::Display) -> Failure {
     Failure::new(format!("{}: {e}", path.display()))
 }
 
@@ -229,56 +231,6 @@ fn keys_and_names_reach_everything(page: &mut LivePage) -> Outcome {
     hold(unnamed == json!([]), || format!("without a name or the focus: {unnamed}"))
 }
 
-/// Files that are no pair: a line each, and the page goes on with the next.
-fn what_is_wrong_is_said(page: &mut LivePage, folder: &Path, scene: &Path) -> Outcome {
-    let (text, small, odd, both) =
-        (folder.join("a.png"), folder.join("b.png"), folder.join("odd.png"), folder.join("both.png"));
-    fs::write(&text, "no picture").map_err(|e| failed(&text, &e))?;
-    let left = scene.join("left.png");
-    let pictures = ["left.png", "right.png"].map(|name| image::open(scene.join(name)));
-    let [Ok(first), Ok(second)] = pictures.map(|picture| picture.map(|picture| picture.into_luma8())) else {
-        return Err(failed(scene, &"has no pictures"));
-    };
-    let mut side_by_side = image::GrayImage::new(2 * first.width(), first.height());
-    image::imageops::replace(&mut side_by_side, &first, 0, 0);
-    image::imageops::replace(&mut side_by_side, &second, i64::from(first.width()), 0);
-    for (path, picture) in [
-        (&small, &image::imageops::crop_imm(&first, 0, 0, 320, 240).to_image()),
-        (&odd, &image::imageops::crop_imm(&first, 0, 0, 321, 240).to_image()),
-        (&both, &side_by_side),
-    ] {
-        picture.save(path).map_err(|e| failed(path, &e))?;
-    }
-    let video = folder.join("c.webm");
-    fs::write(&video, "no video").map_err(|e| failed(&video, &e))?;
-    let expected: [(&str, &[&PathBuf], &str); 5] = [
-        ("pick-video", &[&video], "c.webm: is no picture or video that this browser reads."),
-        ("pick-two", &[&text, &left], "a.png: is no picture that this browser reads."),
-        ("pick-two", &[&small, &left], "b.png is 320 x 240, left.png is 640 x 480: both must have one size."),
-        (
-            "pick-one",
-            &[&odd],
-            "odd.png: 321 columns are no two halves; open two pictures, or one side by side.",
-        ),
-        (
-            "pick-two",
-            &[&small, &left, &odd],
-            "3 files: two pictures are a pair, or one with both side by side.",
-        ),
-    ];
-    for (opener, files, line) in expected {
-        page.give(opener, &files.iter().map(|path| path.to_path_buf()).collect::<Vec<_>>())?;
-        let said = page.text("message")?;
-        hold(said == line, || format!("'{said}' is said, not '{line}'"))?;
-    }
-    page.press("scene")?;
-    page.give("pick-two", &[scene.join("right.png"), left])?;
-    let one = page.plane("disparity")?;
-    page.give("pick-one", &[both])?;
-    let said = page.text("message")?;
-    hold(said.is_empty() && one == page.plane("disparity")?, || format!("side by side: {said}"))
-}
-
 /// The browser's camera, a test pattern, gives one result after the other until it is stopped.
 fn a_camera_is_matched_frame_by_frame(page: &mut LivePage) -> Outcome {
     page.press("camera")?;
@@ -291,13 +243,4 @@ fn a_camera_is_matched_frame_by_frame(page: &mut LivePage) -> Outcome {
     page.press("stop")?;
     let is_on = page.browser.value("moving.isOn || !byId('stop').hidden")?;
     hold(is_on == false, || "the camera is not stopped".to_owned())
-}
-
-/// A browser without the instructions says that it has none.
-fn without_simd_it_says_so(url: &str) -> Outcome {
-    let mut browser = Browser::start()?;
-    let script = json!({ "source": "WebAssembly.validate = () => false;" });
-    browser.call("Page.addScriptToEvaluateOnNewDocument", script)?;
-    let said = LivePage::open(browser, url)?.text("message")?;
-    hold(said.contains("no WebAssembly with SIMD"), || format!("without SIMD '{said}' is said"))
 }

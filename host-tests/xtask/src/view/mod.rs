@@ -3,10 +3,11 @@
 //! * [`run`]: builds the module and runs `stereo view`. [`kernels`]: the kernel of WebAssembly beside its
 //!   twin.
 //! * [`browser`]: a browser without a window. [`page`]: the live page in it. [`check`]: what the page has to
-//!   do, a step of the tests.
+//!   do, a step of the tests; [`faults`]: what it has to refuse.
 
 mod browser;
 mod check;
+mod faults;
 mod page;
 
 pub use check::sample;

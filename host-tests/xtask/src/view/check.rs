@@ -2,7 +2,7 @@
 
 use super::browser::Browser;
 use super::faults::{what_is_wrong_is_said, without_simd_it_says_so};
-use super::page::{LivePage, url_of};
+use super::page::{LivePage, failed, hold, url_of};
 use crate::steps::{Failure, Outcome, output_of};
 use serde_json::{Value, json};
 use std::fs;
@@ -23,16 +23,6 @@ const MATCHED: [[i64; 6]; 7] = [
     [1, 0, 1, 16, 20, 0],
 ];
 const SEARCH: [&str; 6] = ["method", "filter", "noise", "disparities", "min_disparity", "min_confidence"];
-
-/// Fails with a line unless it holds.
-pub fn hold(holds: bool, line: impl FnOnce() -> String) -> Outcome {
-    if holds { Ok(()) } else { Err(Failure::new(line())) }
-}
-
-/// What is wrong with a file.
-pub fn failed(path: &Path, e: &dyn std::fmt::Display) -> Failure {
-    Failure::new(format!("{}: {e}", path.display()))
-}
 
 /// The program that serves the page, until this is dropped.
 struct Served {

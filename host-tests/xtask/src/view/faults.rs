@@ -1,8 +1,7 @@
 //! What the live page says of what it cannot match.
 
 use super::browser::Browser;
-use super::check::{failed, hold};
-use super::page::LivePage;
+use super::page::{LivePage, failed, hold};
 use crate::steps::Outcome;
 use serde_json::json;
 use std::fs;

@@ -115,3 +115,13 @@ impl LivePage {
 pub fn url_of(path: &Path) -> String {
     format!("file://{}", path.display())
 }
+
+/// Fails with a line unless it holds.
+pub fn hold(holds: bool, line: impl FnOnce() -> String) -> Outcome {
+    if holds { Ok(()) } else { Err(Failure::new(line())) }
+}
+
+/// What is wrong with a file.
+pub fn failed(path: &Path, e: &dyn std::fmt::Display) -> Failure {
+    Failure::new(format!("{}: {e}", path.display()))
+}

@@ -15,6 +15,7 @@
 //! focus          thin lens, sharpness, depth from focus, lens motors
 //! features       corners, descriptors, feature matches
 //! motion         odometry, structure from motion, bundle adjustment, self-calibration
+//! obstacles      disparity rows -> ground, stixels, nearest per sector, free space, a decision
 //! pipeline       the live path, row by row: camera -> imaging -> matching
 //! ffi            the pipeline for C, with the feature `ffi`
 //!
@@ -49,6 +50,7 @@ pub mod depth;
 pub mod focus;
 pub mod features;
 pub mod motion;
+pub mod obstacles;
 pub mod pipeline;
 
 #[cfg(feature = "ffi")]

@@ -22,6 +22,7 @@
 //! * [`correspond`]: two pictures through the core's features and matcher. [`two_view`]: correspondences of a
 //!   known scene, with noise and wrong ones. [`chance`]: whether matches agree by chance.
 //! * [`focus`]: focus stacks, a simulated lens, and stacks through the core's map.
+//! * [`obstacles`]: ground, stixels and sectors of a whole map, as a record and a picture.
 //! * [`odometry`]: sequences of pictures through the core's odometry, trajectories and their errors.
 //! * [`rectify`]: raw pictures through the core's remap. [`pair`], [`rows`]: what is wrong with a pair.
 //! * [`views`]: pictures of one camera from several places through the core's structure from motion.
@@ -52,6 +53,7 @@ pub mod masked;
 pub mod matches;
 pub mod matches_picture;
 pub mod mock;
+pub mod obstacles;
 pub mod odometry;
 pub mod output;
 pub mod pair;

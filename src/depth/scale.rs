@@ -72,6 +72,16 @@ impl DepthScale {
         &self.rig
     }
 
+    /// `f b` in millimetres times steps of disparity.
+    pub(crate) fn millimetre_steps(&self) -> u32 {
+        self.millimetre_steps
+    }
+
+    /// Offset between the principal points, `doffs`, in steps of disparity.
+    pub(crate) fn offset_steps(&self) -> i32 {
+        self.offset_steps
+    }
+
     /// Returns the depth to the nearest millimetre, by one integer division; [`Millimetres::NONE`] for no
     /// answer, at or behind infinity, nearer than half a millimetre or beyond 65.535 m.
     ///

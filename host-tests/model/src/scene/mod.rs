@@ -10,6 +10,7 @@
 //! * [`HardScene`], [`Shares`]: scenes with a sky, a white wall, a glossy box and thin poles, and what a
 //!   matcher says of them.
 //! * [`MovingScene`]: a scene that the rig moves through.
+//! * [`RobotScene`]: what a small robot drives towards, on a ground of known pose.
 //! * [`Truth`]: the true values, by ray casting at the pixel centres.
 //! * [`SceneCamera`]: pictures as a stereo source.
 //! * [`pattern`]: pictures that are hard on a matcher and show nothing.
@@ -24,6 +25,7 @@ pub mod random;
 mod ready;
 mod render;
 mod road;
+mod robot;
 mod shape;
 mod simple;
 mod texture;
@@ -32,6 +34,7 @@ pub use camera::SceneCamera;
 pub use hard::{HardScene, Part, Shares};
 pub use moving::MovingScene;
 pub use random::Random;
+pub use robot::RobotScene;
 pub use shape::{Object, Shape};
 pub use texture::{Points, SAMPLES, Texture};
 

@@ -14,7 +14,7 @@
 //!
 //! Apart from them: [`mod@balance`], one exposure for both pictures; [`bundle`], the step of a bundle
 //! adjustment; [`features`], corners, descriptors and matches; [`focus`], sharpness and its peaks;
-//! [`remap`](mod@remap), raw pictures as rectified ones.
+//! [`obstacles`], ground and stixels; [`remap`](mod@remap), raw pictures as rectified ones.
 //!
 //! Nothing here is shared with the core but its words: [`Config`], [`Disparity`], [`PixelFlags`].
 
@@ -24,6 +24,7 @@ pub mod census;
 pub mod cost;
 pub mod features;
 pub mod focus;
+pub mod obstacles;
 pub mod paths;
 pub mod remap;
 pub mod smooth;

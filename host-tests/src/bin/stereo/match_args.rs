@@ -47,6 +47,9 @@ pub struct MatchArgs {
     /// searched where none are given
     #[arg(long, value_name = "A:B", value_parser = colour_range, allow_negative_numbers = true)]
     pub colour_range: Option<ColourScale>,
+    /// Find the ground and what stands on it, of depths: obstacles.json and obstacles.png
+    #[arg(long, conflicts_with = "settings")]
+    pub obstacles: bool,
     /// Match one pair with each of several settings, METHOD, METHOD:FILTER or METHOD:FILTER:NOISE with commas
     /// between them: a folder for each, a table, and settings.png, which shows all side by side
     #[arg(long, value_name = "SETTINGS", value_delimiter = ',', value_parser = setting, conflicts_with_all =

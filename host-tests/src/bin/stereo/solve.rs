@@ -16,7 +16,9 @@ use std::path::PathBuf;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::ImageSize;
 use stereopsis_host::command_line::one_line;
+use stereopsis_host::map::DisparityMap;
 use stereopsis_host::masked::MaskedPair;
+use stereopsis_host::obstacles::{ObstacleRecord, config_for, find, picture};
 use stereopsis_host::output::Staging;
 use stereopsis_host::pair::PairCheck;
 use stereopsis_host::rectify::{rectify, rectify_colours, with_rectified};
@@ -28,6 +30,9 @@ pub const FINISHED: &str = "finished.json";
 
 /// What is written only of raw images.
 const RECTIFIED: [&str; 3] = ["rectified_left.png", "rectified_right.png", "rectified.json"];
+
+/// What is written only where obstacles are asked for.
+const OBSTACLES: [&str; 2] = ["obstacles.json", "obstacles.png"];
 
 /// What is matched, and what its depths are.
 struct Scene {
@@ -47,6 +52,11 @@ pub fn solve(
     label: &str,
 ) -> Result<(Summary, Option<RectifiedCameras>), Failure> {
     args.search.check(&args.method, pair.width, pair.height)?;
+    if args.obstacles && args.calib.is_empty() && args.focal_px.is_none() {
+        return Err(Failure::new(
+            "--obstacles: distances need a calibration; give --calib, or --focal-px and --baseline-mm",
+        ));
+    }
     let (scene, matched) = if args.rectify {
         raw(args, &mut pair)?
     } else {
@@ -67,6 +77,10 @@ pub fn solve(
         (Scene { left: pair.left, right: pair.right, scale, rectified: None, rows, check }, matched)
     };
 
+    let found = match (&scene.scale, args.obstacles) {
+        (Some(scale), true) => Some(obstacles(scale, &matched.outcome.map, &scene.left)?),
+        _ => None,
+    };
     let Matched { config, meter, balance, outcome } = matched;
     let scale = scene.scale.as_ref();
     let summary = Summary::new(args.method.method, args.method.filter.name(), &config, &outcome, scale, None);
@@ -95,10 +109,15 @@ pub fn solve(
         staging.write(right, |out| png(out, &scene.right))?;
         staging.write(cameras, |out| json(out, rectified))?;
     }
+    if let Some((record, picture)) = &found {
+        staging.write(OBSTACLES[0], |out| json(out, record))?;
+        staging.write(OBSTACLES[1], |out| png(out, picture))?;
+    }
     if let Some(mark) = mark {
         staging.write(FINISHED, |out| out.write_all(mark.as_bytes()))?;
     }
-    let stale: Vec<_> = results::WITH_DEPTH.into_iter().chain(RECTIFIED).chain([FINISHED]).collect();
+    let stale = results::WITH_DEPTH.into_iter().chain(RECTIFIED).chain(OBSTACLES).chain([FINISHED]);
+    let stale: Vec<_> = stale.collect();
     staging.commit(&stale)?;
 
     let warnings = [
@@ -114,6 +133,17 @@ pub fn solve(
         let _ = writeln!(std::io::stderr(), "stereo: {label}{line}");
     }
     Ok((summary, scene.rectified))
+}
+
+/// The obstacles of a map, as a record and as a picture.
+fn obstacles(
+    scale: &DepthScale,
+    map: &DisparityMap,
+    left: &RgbImage,
+) -> Result<(ObstacleRecord, RgbImage), Failure> {
+    let config = config_for(map.width, map.height);
+    find(&config, scale, map, |frame| (ObstacleRecord::new(&config, frame), picture(&config, frame, left)))
+        .map_err(|e| Failure::new(format!("--obstacles: {e}")))
 }
 
 /// Matches a raw pair: remap, census and matching in one loop over the rows.

@@ -14,11 +14,22 @@ use items::{calls, definitions, without_tests};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The core's modules without a circle, with all folders in them.
-const NO_CIRCLE: [&str; 10] =
-    ["geometry", "camera", "imaging", "matching", "depth", "focus", "features", "motion", "pipeline", "ffi"];
+const NO_CIRCLE: [&str; 11] = [
+    "geometry",
+    "camera",
+    "imaging",
+    "matching",
+    "depth",
+    "focus",
+    "features",
+    "motion",
+    "obstacles",
+    "pipeline",
+    "ffi",
+];
 
 /// Folders whose `mod.rs` lists the modules in running order.
-const IN_ORDER: [&str; 15] = [
+const IN_ORDER: [&str; 16] = [
     "matching",
     "geometry",
     "geometry/absolute",
@@ -34,6 +45,7 @@ const IN_ORDER: [&str; 15] = [
     "motion/bundle",
     "motion/odometry",
     "motion/structure",
+    "obstacles",
 ];
 
 /// The program `stereo`, the harness below it, and the repository's chores.

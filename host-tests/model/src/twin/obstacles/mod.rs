@@ -1,0 +1,125 @@
+//! Obstacles from whole maps of disparity: cells, the ground's line, stixels and sectors, each in its plainest
+//! form.
+//!
+//! * [`Scene`]: a map, its rig and its limits. [`find`]: what is in it.
+//! * `ground`: the line of the ground by counting cells and by least squares. `stixels`: the cheapest labels
+//!   of a column by trying all predecessors, and surfaces by flooding.
+
+mod ground;
+mod stixels;
+
+pub use ground::Line;
+pub use stixels::{Kind, Standing};
+
+use stereopsis::obstacles::{GroundSource, ObstacleConfig};
+use stereopsis::units::{Disparity, PixelFlags};
+
+/// A map of disparities with what is needed to find obstacles in it.
+#[derive(Clone, Debug)]
+pub struct Scene<'a> {
+    /// Limits.
+    pub config: ObstacleConfig,
+    /// Focal length, sixteenths of a px.
+    pub focal_16ths: i128,
+    /// Row of the principal point, halves of a px.
+    pub cy_halves: i128,
+    /// Baseline, sixteenths of a mm.
+    pub baseline_16ths: i128,
+    /// Offset of the principal points, steps.
+    pub offset: i128,
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows of pixels.
+    pub height: usize,
+    /// Largest disparity, steps.
+    pub largest: u16,
+    /// Disparities, row by row.
+    pub disparities: &'a [Disparity],
+    /// Flags.
+    pub flags: &'a [PixelFlags],
+    /// Confidences, or none.
+    pub confidences: &'a [u8],
+}
+
+/// What is in a map.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Found {
+    /// The disparity of each cell, row by row.
+    pub cells: Vec<Option<i128>>,
+    /// The ground, with those of earlier frames averaged in.
+    pub ground: Option<Line>,
+    /// What stands in each column.
+    pub columns: Vec<Standing>,
+}
+
+impl Scene<'_> {
+    /// Columns and rows of cells.
+    pub fn size(&self) -> [usize; 2] {
+        let (w, h) = (usize::from(self.config.cell_width), usize::from(self.config.cell_height));
+        [self.width / w, self.height / h]
+    }
+
+    /// Half-row of the middle of a row of cells.
+    pub fn halves(&self, row: usize) -> i128 {
+        let height = i128::from(self.config.cell_height);
+        (2 * row as i128 + 1) * height - 1
+    }
+
+    /// Least parallax of what counts.
+    pub fn farthest(&self) -> i128 {
+        i128::from(ObstacleConfig::FARTHEST_SIGMAS) * i128::from(self.config.sigma_steps)
+    }
+
+    /// The answers of a cell in the order in which they come.
+    fn answers(&self, column: usize, row: usize) -> Vec<i128> {
+        let (w, h) = (usize::from(self.config.cell_width), usize::from(self.config.cell_height));
+        let pixels = (0..h).flat_map(|y| (0..w).map(move |x| (x, y)));
+        let pixels = pixels.map(|(x, y)| (row * h + y) * self.width + column * w + x);
+        let counts = |&i: &usize| {
+            let doubtful = PixelFlags::FILLED.union(PixelFlags::DAMAGED);
+            let sure = self.confidences.is_empty() || self.confidences[i] >= self.config.min_confidence;
+            self.disparities[i].is_some() && !self.flags[i].intersects(doubtful) && sure
+        };
+        pixels.filter(counts).map(|i| i128::from(self.disparities[i].raw())).collect()
+    }
+
+    /// The nearer of the two groups of a cell, of those with a quarter of its pixels.
+    fn cell(&self, column: usize, row: usize) -> Option<i128> {
+        let mut groups: [Vec<i128>; 2] = [Vec::new(), Vec::new()];
+        for d in self.answers(column, row) {
+            let joins = |group: &Vec<i128>| group.last().is_none_or(|last| (d - last).abs() <= 32);
+            if let Some(group) = groups.iter_mut().find(|group| joins(group)) {
+                group.push(d);
+            } else if groups[1].len() == 1 {
+                groups[1] = vec![d];
+            }
+        }
+        let area = usize::from(self.config.cell_width) * usize::from(self.config.cell_height);
+        let large = groups.iter().filter(|group| !group.is_empty() && 4 * group.len() >= area);
+        let mean = |group: &Vec<i128>| {
+            let n = group.len() as i128;
+            // To the nearest step, halves up.
+            (2 * group.iter().sum::<i128>() + n) / (2 * n)
+        };
+        large.map(mean).max()
+    }
+}
+
+/// What is in a map, with the ground that earlier frames gave, and the frames since one was last measured.
+pub fn find(scene: &Scene<'_>, carried: &mut (Option<Line>, u32)) -> Found {
+    let [columns, rows] = scene.size();
+    let cells: Vec<_> = (0..rows)
+        .flat_map(|row| (0..columns).map(move |column| (column, row)))
+        .map(|(column, row)| scene.cell(column, row))
+        .collect();
+    let ground = match scene.config.ground {
+        GroundSource::Absent => None,
+        _ => {
+            let measured = ground::fit(scene, &cells, carried.0);
+            ground::carry(scene, carried, measured);
+            carried.0
+        }
+    };
+    let columns = stixels::stixels(scene, &cells, ground);
+    Found { cells, ground, columns }
+}

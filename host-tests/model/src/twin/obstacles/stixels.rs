@@ -1,0 +1,242 @@
+//! The cheapest labels of a column by trying all predecessors, and surfaces by flooding.
+
+use super::{Line, Scene};
+use stereopsis::obstacles::GroundSource;
+
+/// What a cell is.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Kind {
+    /// A surface above the ground.
+    Obstacle,
+    /// A surface below the ground.
+    Drop,
+    /// The ground.
+    Ground,
+    /// Anything too far to tell.
+    Beyond,
+}
+
+const KINDS: [Kind; 4] = [Kind::Obstacle, Kind::Drop, Kind::Ground, Kind::Beyond];
+
+/// What stands in a column.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Standing {
+    /// The kind, first and last row of cells, parallax and deviation of the nearest obstacle or drop.
+    pub found: Option<Segment>,
+    /// Uppermost row of cells to which the ground is seen.
+    pub seen: usize,
+    /// Cells of the surface that it is a part of.
+    pub surface: usize,
+}
+
+/// A segment of a column.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Segment {
+    /// What it is.
+    pub kind: Kind,
+    /// First row of cells.
+    pub top: usize,
+    /// Last row of cells.
+    pub base: usize,
+    /// Parallax, steps.
+    pub parallax: i128,
+    /// Deviation, steps.
+    pub sigma: i128,
+    /// Cells with an answer.
+    pub cells: usize,
+}
+
+struct Column<'a> {
+    scene: &'a Scene<'a>,
+    ground: Option<Line>,
+    /// Parallaxes from the uppermost row down.
+    parallaxes: Vec<Option<i128>>,
+}
+
+impl Column<'_> {
+    fn tolerance(&self) -> i128 {
+        let sigma = i128::from(self.scene.config.sigma_steps);
+        3 * (sigma * sigma + self.ground.map_or(0, |line| line.variance)).isqrt()
+    }
+
+    fn same_surface(&self) -> i128 {
+        (self.tolerance() * 3 / 2).max(32)
+    }
+
+    /// What a kind costs at a row.
+    fn cost(&self, kind: Kind, row: usize) -> i128 {
+        let Some(parallax) = self.parallaxes[row] else { return if kind == Kind::Beyond { 0 } else { 8 } };
+        let (config, tolerance) = (&self.scene.config, self.tolerance().max(1));
+        let rises = |by: i128| match by.min(tolerance) {
+            ..=0 => 0,
+            by => (1 + by * (16 * 65_536 / tolerance) / 65_536).min(16),
+        };
+        let far = self.scene.farthest();
+        let Some(line) = self.ground else {
+            return match kind {
+                Kind::Obstacle => rises(far - parallax),
+                Kind::Beyond => rises(parallax - (far - 1)),
+                _ => 16,
+            };
+        };
+        let ground = line.at(self.scene.halves(row));
+        let at = ground.max(0);
+        let (height, up) = (line.height_mm, i128::from(config.obstacle_mm));
+        let rise = if height > up { (at * up / (height - up)).max(tolerance) } else { 1 << 21 };
+        let highest = (ground + rise).max(far - 1);
+        let down = i128::from(config.drop_mm);
+        let lowest = ground - (at * down / (height + down)).max(tolerance);
+        let headroom = i128::from(config.headroom_mm);
+        let overhead = headroom < 65_535 && height * (parallax - ground) > headroom * parallax;
+        match kind {
+            Kind::Obstacle if overhead => 16,
+            Kind::Obstacle => rises(highest + 1 - parallax),
+            Kind::Beyond if overhead => 0,
+            Kind::Beyond if ground < far => rises(parallax - highest),
+            Kind::Beyond => 16,
+            _ if ground < far => 16,
+            Kind::Drop => rises(parallax - lowest + 1),
+            Kind::Ground => rises(lowest - parallax).max(rises(parallax - highest)),
+        }
+    }
+
+    /// Whether the disparity of a row is that of another surface than that of the nearest answer below.
+    fn breaks(&self, row: usize) -> bool {
+        let below = self.parallaxes[row + 1..].iter().flatten().next();
+        self.parallaxes[row].zip(below).is_some_and(|(p, below)| (p - below).abs() > self.same_surface())
+    }
+
+    /// The cheapest kinds from the lowest row up; of equals the one that stays, then the first.
+    fn labels(&self) -> Vec<Kind> {
+        let rows = self.parallaxes.len();
+        // The cheapest way to each kind at the row below, with the kinds on it from the lowest row on.
+        let mut ways: Vec<(i128, Vec<Kind>)> = vec![(0, Vec::new()); 4];
+        for row in (0..rows).rev() {
+            let next = KINDS.map(|kind| {
+                let from = |(place, before): (usize, &Kind)| {
+                    let stays = *before == kind;
+                    let pays = !stays || kind == Kind::Obstacle && self.breaks(row);
+                    (ways[place].0 + if pays { 16 } else { 0 }, !stays, place)
+                };
+                let (cost, _, place) = KINDS.iter().enumerate().map(from).min().expect("four kinds");
+                let mut way = ways[place].1.clone();
+                way.push(kind);
+                (cost + self.cost(kind, row), way)
+            });
+            ways = next.to_vec();
+        }
+        let best = ways.into_iter().enumerate().min_by_key(|(place, way)| (way.0, *place));
+        best.expect("four kinds").1.1.into_iter().rev().collect()
+    }
+
+    /// Rows from one end of a segment to the other.
+    fn segments(&self, labels: &[Kind]) -> Vec<Segment> {
+        let rows = labels.len();
+        let mut found = Vec::new();
+        let mut top = 0;
+        for base in 0..rows {
+            let goes_on = base + 1 < rows
+                && labels[base + 1] == labels[base]
+                && !(labels[base] == Kind::Obstacle && self.breaks(base));
+            if goes_on {
+                continue;
+            }
+            let answers: Vec<_> = self.parallaxes[top..=base].iter().flatten().collect();
+            let (kind, n) = (labels[base], answers.len() as i128);
+            let sigma = i128::from(self.scene.config.sigma_steps);
+            let segment =
+                |parallax, sigma| Segment { kind, top, base, parallax, sigma, cells: answers.len() };
+            if n >= 2 && kind == Kind::Obstacle {
+                let parallax = (answers.iter().copied().sum::<i128>() + n / 2) / n;
+                let squares: i128 = answers.iter().map(|p| (*p - parallax).pow(2)).sum();
+                found.push(segment(parallax, (squares / n + sigma * sigma).isqrt().min(255)));
+            } else if n >= 2 && kind == Kind::Drop {
+                let line = self.ground.expect("no drop without a ground");
+                found.push(segment(line.at(self.scene.halves(base)), sigma));
+            }
+            top = base + 1;
+        }
+        found
+    }
+
+    fn seen(&self, labels: &[Kind]) -> usize {
+        let rows = labels.len();
+        if self.ground.is_none() {
+            let answered = self.parallaxes.iter().flatten().count();
+            let enough = 100 * answered >= usize::from(self.scene.config.least_answered) * rows;
+            return if self.scene.config.ground == GroundSource::Absent && enough { 0 } else { rows };
+        }
+        let shows = |row: usize| labels[row] == Kind::Ground && self.parallaxes[row].is_some();
+        let ends = |row: usize| labels[row] != Kind::Ground && self.parallaxes[row].is_some();
+        let mut seen = rows;
+        for row in (0..rows).rev() {
+            // Rows between this one and the last that shows ground.
+            if ends(row) || !shows(row) && seen - row > 2 {
+                break;
+            }
+            if shows(row) {
+                seen = row;
+            }
+        }
+        seen
+    }
+}
+
+/// What stands in each column: the nearest segment that belongs to a surface of enough pixels, where a speck
+/// makes room for the next segment behind it twice.
+pub fn stixels(scene: &Scene<'_>, cells: &[Option<i128>], ground: Option<Line>) -> Vec<Standing> {
+    let [columns, rows] = scene.size();
+    let all: Vec<_> = (0..columns)
+        .map(|x| {
+            let parallaxes = (0..rows).map(|y| cells[y * columns + x].map(|d| d + scene.offset)).collect();
+            let column = Column { scene, ground, parallaxes };
+            let labels = column.labels();
+            let mut segments = column.segments(&labels);
+            segments.retain(|segment| segment.parallax > 0);
+            // Of equals the upper one.
+            segments.sort_by_key(|segment| (-segment.parallax, segment.top));
+            (segments, column.seen(&labels), column.same_surface())
+        })
+        .collect();
+    let mut chosen: Vec<Option<Segment>> = all.iter().map(|(found, ..)| found.first().cloned()).collect();
+    let area = usize::from(scene.config.cell_width) * usize::from(scene.config.cell_height);
+    let mut surfaces = vec![0; columns];
+    for tried in 1..=3 {
+        surfaces = (0..columns).map(|x| flooded(&chosen, x, all[x].2)).collect();
+        let specks: Vec<_> = (0..columns)
+            .filter(|&x| chosen[x].is_some() && surfaces[x] * area < usize::from(scene.config.min_pixels))
+            .collect();
+        for x in specks {
+            let behind = chosen[x].as_ref().map_or(0, |segment| segment.parallax);
+            let next = all[x].0.iter().find(|segment| segment.parallax < behind);
+            chosen[x] = next.filter(|_| tried < 3).cloned();
+        }
+    }
+    (0..columns)
+        .map(|x| {
+            let surface = if chosen[x].is_some() { surfaces[x] } else { 0 };
+            Standing { found: chosen[x].clone(), seen: all[x].1, surface }
+        })
+        .collect()
+}
+
+/// Cells of the surface that column `x` belongs to, by going left and right as long as columns are connected.
+fn flooded(chosen: &[Option<Segment>], x: usize, same_surface: i128) -> usize {
+    let connected = |a: &Option<Segment>, b: &Option<Segment>| match (a, b) {
+        (Some(a), Some(b)) => {
+            a.kind == b.kind
+                && (a.parallax - b.parallax).abs() <= same_surface
+                && a.top <= b.base + 1
+                && b.top <= a.base + 1
+        }
+        _ => false,
+    };
+    let (mut first, mut last) = (x, x);
+    while first > 0 && connected(&chosen[first - 1], &chosen[first]) {
+        first -= 1;
+    }
+    while last + 1 < chosen.len() && connected(&chosen[last], &chosen[last + 1]) {
+        last += 1;
+    }
+    chosen[first..=last].iter().flatten().map(|segment| segment.cells).sum()
+}

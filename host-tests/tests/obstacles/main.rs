@@ -1,0 +1,7 @@
+//! Obstacles, ground and free space: the core beside its naive twin (`twins`), worked geometry (`geometry`),
+//! rendered scenes (`scenes`) and faulty frames (`faults`).
+
+mod explore;
+mod geometry;
+mod support;
+mod twins;

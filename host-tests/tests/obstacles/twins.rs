@@ -1,0 +1,202 @@
+//! The core beside its naive twin, to the bit: cells, ground over frames, stixels.
+
+use super::support::{Finder, Map, floor};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use stereopsis::geometry::camera::RectifiedRig;
+use stereopsis::obstacles::{GroundSource, ObstacleConfig, StixelKind};
+use stereopsis::units::{Disparity, PixelFlags};
+use stereopsis_host::scene::Random;
+use stereopsis_host::twin::obstacles::{Found, Kind, Scene, find};
+
+/// A floor with walls, holes, drops, specks and noise.
+fn map(random: &mut Random, rig: RectifiedRig, size: [u16; 2]) -> Map {
+    let height_m = 0.15 + random.unit();
+    let pitch = 0.4 * random.unit() - 0.05;
+    let (f, b) = (f64::from(rig.focal_px()), f64::from(rig.baseline_m()));
+    let [noise_px, holes, specks] =
+        [*random.pick(&[0.0, 0.1, 0.5]), 0.5 * random.unit(), *random.pick(&[0.0, 0.01, 0.1])];
+    let body = |random: &mut Random| {
+        let side = |random: &mut Random, most: u16| {
+            let ends = [(); 2].map(|()| f64::from(most) * random.unit());
+            [ends[0].min(ends[1]), ends[0].max(ends[1])]
+        };
+        (side(random, size[0]), side(random, size[1]), f * b / (0.4 + 5.0 * random.unit()))
+    };
+    let bodies: Vec<_> = (0..random.below(6)).map(|_| body(random)).collect();
+    let drop_from = f64::from(size[0]) * 2.0 * random.unit();
+    let mut noise = random.clone();
+    random.bits();
+    let mut map = Map::of(rig, size, |u, v| {
+        let lower = if u > drop_from { 1.5 } else { 1.0 };
+        let standing =
+            bodies.iter().filter(|(x, y, _)| (x[0]..x[1]).contains(&u) && (y[0]..y[1]).contains(&v));
+        let nearest = standing.map(|(.., parallax)| *parallax).fold(0.0, f64::max);
+        let seen = floor(&rig, height_m * lower, pitch, v).unwrap_or(0.0).max(nearest);
+        Some(seen)
+    });
+    let width = usize::from(size[0]);
+    let damaged: Vec<_> = (0..size[1]).map(|_| noise.unit() < 0.03).collect();
+    for (i, (d, flags)) in map.disparities.iter_mut().zip(&mut map.flags).enumerate() {
+        let moved = f64::from(d.raw()) + 32.0 * noise_px * noise.gauss();
+        *d = Disparity::from_raw(moved.round().clamp(0.0, 2000.0) as u16);
+        if noise.unit() < specks {
+            *d = Disparity::from_raw(noise.below(2000) as u16);
+        }
+        if noise.unit() < holes {
+            *d = Disparity::NONE;
+        }
+        *flags = PixelFlags::from_bits(if noise.unit() < 0.05 { noise.byte() } else { 0 });
+        if !damaged[i / width] {
+            *flags = flags.without(PixelFlags::DAMAGED);
+        }
+    }
+    map
+}
+
+/// What the twin finds in a frame of a map.
+fn twin(
+    map: &Map,
+    config: ObstacleConfig,
+    carried: &mut (Option<stereopsis_host::twin::obstacles::Line>, u32),
+) -> Found {
+    let rig = &map.rig;
+    let whole = |x: f32| x.round() as i128;
+    let scene = Scene {
+        config,
+        focal_16ths: whole(16.0 * rig.focal_px()),
+        cy_halves: whole(2.0 * rig.principal_point().1),
+        baseline_16ths: whole(16_000.0 * rig.baseline_m()),
+        offset: whole(32.0 * rig.disparity_offset_px()),
+        width: map.size[0].into(),
+        height: map.size[1].into(),
+        largest: map.largest.raw(),
+        disparities: &map.disparities,
+        flags: &map.flags,
+        confidences: &map.confidences,
+    };
+    find(&scene, carried)
+}
+
+/// Compares all that core and twin say of a frame; returns how many stixels there are.
+fn compare(
+    map: &Map,
+    finder: &mut Finder,
+    found: &Found,
+    config: &ObstacleConfig,
+) -> Result<usize, TestCaseError> {
+    map.rows(finder, |_| true);
+    let _ = finder.finish();
+    let view = finder.as_mut_view();
+    let columns = view.columns();
+    prop_assert_eq!(columns, found.columns.len());
+    for (place, cell) in found.cells.iter().enumerate() {
+        let core = view.cell(place % columns, place / columns);
+        prop_assert_eq!(core.is_some().then(|| i128::from(core.raw())), *cell, "cell {}", place);
+    }
+    let line = view
+        .ground()
+        .map(|g| (i128::from(g.level), i128::from(g.slope), i128::from(g.variance), i128::from(g.height_mm)));
+    prop_assert_eq!(line, found.ground.map(|g| (g.level, g.slope, g.variance, g.height_mm)));
+    let (cell, offset) = (usize::from(config.cell_height), map.rig.disparity_offset_px() * 32.0);
+    for (x, standing) in found.columns.iter().enumerate() {
+        let stixel = view.stixel(x);
+        prop_assert_eq!(usize::from(stixel.seen_row), standing.seen * cell, "column {}", x);
+        let Some(segment) = &standing.found else {
+            prop_assert_eq!(stixel.kind, StixelKind::Nothing, "column {}", x);
+            continue;
+        };
+        let kind = if segment.kind == Kind::Drop { StixelKind::Drop } else { StixelKind::Obstacle };
+        let steps = (segment.parallax - offset.round() as i128).clamp(0, 65_534);
+        let core = (
+            stixel.kind,
+            usize::from(stixel.top_row),
+            usize::from(stixel.base_row),
+            i128::from(stixel.disparity.raw()),
+            i128::from(stixel.sigma_steps),
+        );
+        prop_assert_eq!(
+            core,
+            (kind, segment.top * cell, segment.base * cell + cell - 1, steps, segment.sigma),
+            "column {}",
+            x
+        );
+    }
+    Ok(found.columns.iter().filter(|standing| standing.found.is_some()).count())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 250,
+        rng_seed: RngSeed::Fixed(27),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn frames_are_those_of_the_twin_to_the_bit(
+        seed in any::<u64>(),
+        width in 20u16..170,
+        height in 30u16..130,
+        cell in (1u8..9, 1u8..9),
+        offset in prop_oneof![Just(0.0f32), -3.0f32..3.0],
+        sigma_steps in 1u16..12,
+        limits in (10u16..200, 10u16..200, 1u16..400),
+        min_confidence in 0u8..200,
+        absent in prop::bool::weighted(0.2),
+        headroom_mm in prop_oneof![Just(u16::MAX), 100u16..2000],
+    ) {
+        let mut random = Random::new(seed);
+        let (cx, cy) = (f32::from(width) / 2.0 - 0.5, f32::from(height) / 2.0 - 0.5);
+        let rig = RectifiedRig::with_offset(0.8 * f32::from(width), 0.1, cx, cy, cx + offset).expect("a rig");
+        let default = ObstacleConfig::default();
+        let config = ObstacleConfig {
+            cell_width: cell.0,
+            cell_height: cell.1,
+            sigma_steps,
+            min_confidence,
+            ground: if absent { GroundSource::Absent } else { default.ground },
+            obstacle_mm: limits.0,
+            drop_mm: limits.1,
+            min_pixels: limits.2,
+            headroom_mm,
+            ..default
+        };
+        let (mut carried, mut finder) = ((None, 0), None);
+        for _ in 0..3 {
+            let mut map = map(&mut random, rig, [width, height]);
+            if random.byte() & 1 == 1 {
+                map.confidences = map.disparities.iter().map(|_| random.byte()).collect();
+            }
+            let finder = finder.get_or_insert_with(|| map.finder(&config));
+            let found = twin(&map, config, &mut carried);
+            // What the watchdog does not trust is no measurement of the ground; that is tested apart.
+            let cells = found.cells.len();
+            let answered = found.cells.iter().flatten().count();
+            prop_assume!(100 * answered >= usize::from(config.least_answered) * cells);
+            let damaged = map.flags.chunks(width.into()).filter(|row| row.iter().any(|f| f.contains(PixelFlags::DAMAGED))).count();
+            prop_assume!(100 * damaged <= usize::from(config.most_lost) * usize::from(height));
+            compare(&map, finder, &found, &config)?;
+        }
+    }
+}
+
+/// What the property is tried on does show obstacles, drops and grounds.
+#[test]
+fn the_maps_show_what_is_to_be_found() {
+    let rig = super::support::rig();
+    let mut random = Random::new(5);
+    let (mut grounds, mut standing, mut drops) = (0, 0, 0);
+    for _ in 0..40 {
+        let map = map(&mut random, rig, [160, 120]);
+        let found = twin(&map, ObstacleConfig::default(), &mut (None, 0));
+        grounds += usize::from(found.ground.is_some());
+        standing += found.columns.iter().filter(|c| c.found.is_some()).count();
+        drops +=
+            found.columns.iter().filter_map(|c| c.found.as_ref()).filter(|s| s.kind == Kind::Drop).count();
+    }
+    assert!(
+        grounds > 20 && standing > 400 && drops > 40,
+        "{grounds} grounds, {standing} stixels, {drops} drops"
+    );
+}

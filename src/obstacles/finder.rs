@@ -1,0 +1,298 @@
+//! Rows of a frame in, its ground, stixels and sectors out.
+
+use super::config::{GroundSource, ObstacleConfig, ObstacleError};
+use super::grid::{Filling, fill};
+use super::ground::{CarriedGround, Ground, RigNumbers};
+use super::stixel::{Column, Labelling};
+use super::surfaces::stixels;
+use super::v_disparity::{BINS, Cells, bin_shift, count, fit};
+use super::watchdog::{BlindReason, Watchdog};
+use crate::depth::DepthScale;
+use crate::imaging::PairMonitor;
+use crate::math::{atan, round};
+use crate::units::{Disparity, PixelFlags};
+
+/// Obstacles of frames of up to `C` columns and `R` rows of cells, in fixed memory: about `2 C R + 31 C + 33
+/// R` bytes.
+///
+/// Rows go in as they leave the matcher; after the last one, [`Self::finish`] makes the frame's ground,
+/// stixels and sectors. All of it is integer arithmetic, the same on every core.
+#[derive(Debug)]
+pub struct Obstacles<const C: usize, const R: usize> {
+    cells: [[Disparity; C]; R],
+    filling: [Filling; C],
+    bins: [[u8; BINS]; R],
+    columns: [Column; C],
+    labels: [u8; R],
+    bearings: [i16; C],
+    state: ObstaclesState,
+}
+
+/// What an [`Obstacles`] keeps beside its cells.
+#[derive(Debug)]
+pub(super) struct ObstaclesState {
+    pub(super) setup: Option<Setup>,
+    pub(super) carried: CarriedGround,
+    watchdog: Watchdog,
+    /// The next row of pixels.
+    next: usize,
+    /// What the last finished frame was judged.
+    pub(super) blind: Option<BlindReason>,
+}
+
+/// What a start settles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Setup {
+    pub(super) config: ObstacleConfig,
+    pub(super) scale: DepthScale,
+    pub(super) rig: RigNumbers,
+    pub(super) columns: usize,
+    pub(super) rows: usize,
+    height: usize,
+    shift: u32,
+    /// Bearings of the first and the last column of pixels, thousandths of a radian.
+    pub(super) ends_mrad: [i16; 2],
+}
+
+/// A borrowed [`Obstacles`] of any size.
+#[derive(Debug)]
+pub struct ObstaclesView<'a> {
+    cells: &'a mut [Disparity],
+    filling: &'a mut [Filling],
+    bins: &'a mut [u8],
+    pub(super) columns: &'a mut [Column],
+    labels: &'a mut [u8],
+    pub(super) bearings: &'a mut [i16],
+    pub(super) state: &'a mut ObstaclesState,
+}
+
+impl<const C: usize, const R: usize> Obstacles<C, R> {
+    /// Creates a finder that has to be started.
+    pub const fn new() -> Self {
+        const { assert!(C > 0 && R > 0 && R < 256, "1 to 255 rows of cells, and a column") };
+        Self {
+            cells: [[Disparity::NONE; C]; R],
+            filling: [Filling::EMPTY; C],
+            bins: [[0; BINS]; R],
+            columns: [Column::EMPTY; C],
+            labels: [0; R],
+            bearings: [0; C],
+            state: ObstaclesState {
+                setup: None,
+                carried: CarriedGround::NONE,
+                watchdog: Watchdog::NEW,
+                next: 0,
+                blind: Some(BlindReason::NoFrame),
+            },
+        }
+    }
+
+    /// The finder without its capacities.
+    pub fn as_mut_view(&mut self) -> ObstaclesView<'_> {
+        ObstaclesView {
+            cells: self.cells.as_flattened_mut(),
+            filling: &mut self.filling,
+            bins: self.bins.as_flattened_mut(),
+            columns: &mut self.columns,
+            labels: &mut self.labels,
+            bearings: &mut self.bearings,
+            state: &mut self.state,
+        }
+    }
+
+    /// Starts on frames of a size, see [`ObstaclesView::start`].
+    pub fn start(
+        &mut self,
+        config: &ObstacleConfig,
+        scale: &DepthScale,
+        size: [u16; 2],
+        largest: Disparity,
+    ) -> Result<(), ObstacleError> {
+        self.as_mut_view().start(config, scale, size, largest)
+    }
+
+    /// Begins a frame, see [`ObstaclesView::begin`].
+    pub fn begin(&mut self) {
+        self.as_mut_view().begin();
+    }
+
+    /// Takes a row, see [`ObstaclesView::push`].
+    pub fn push(&mut self, y: usize, disparities: &[Disparity], flags: &[PixelFlags], confidences: &[u8]) {
+        self.as_mut_view().push(y, disparities, flags, confidences);
+    }
+
+    /// Ends a frame, see [`ObstaclesView::finish`].
+    pub fn finish(&mut self) -> Result<(), BlindReason> {
+        self.as_mut_view().finish()
+    }
+}
+
+impl<const C: usize, const R: usize> Default for Obstacles<C, R> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl ObstaclesView<'_> {
+    /// Starts on frames of `size` (width and height, px) from a rig, with disparities of up to `largest`; what
+    /// was carried is forgotten. Columns and rows of pixels that fill no cell are left out.
+    pub fn start(
+        &mut self,
+        config: &ObstacleConfig,
+        scale: &DepthScale,
+        size: [u16; 2],
+        largest: Disparity,
+    ) -> Result<(), ObstacleError> {
+        self.state.setup = None;
+        self.state.blind = Some(BlindReason::NoFrame);
+        config.check()?;
+        let [width, height] = size.map(usize::from);
+        let part = |side: usize, cell: u8| side.checked_div(usize::from(cell)).unwrap_or(0);
+        let (columns, rows) = (part(width, config.cell_width), part(height, config.cell_height));
+        let fewest = self.columns.len().min(self.filling.len()).min(self.bearings.len());
+        if columns == 0 || columns > fewest {
+            return Err(ObstacleError::Columns { needed: columns.max(1) });
+        }
+        let most = self.labels.len().min(self.bins.len() / BINS).min(self.cells.len() / columns.max(1));
+        if rows == 0 || rows > most.min(255) {
+            return Err(ObstacleError::Rows { needed: rows.max(1) });
+        }
+        let rig = RigNumbers::new(scale);
+        let bearing = |u: f32| {
+            let tangent = (u - rig.cx_16ths as f32 / 16.0) * 16.0 / rig.focal_16ths as f32;
+            round(1000.0 * atan(tangent)) as i16
+        };
+        let half = f32::from(config.cell_width - 1) / 2.0;
+        for (x, to) in self.bearings.iter_mut().enumerate() {
+            *to = bearing((x * usize::from(config.cell_width)) as f32 + half);
+        }
+        let ends_mrad = [bearing(0.0), bearing((columns * usize::from(config.cell_width) - 1) as f32)];
+        let shift = bin_shift(largest);
+        self.state.carried = CarriedGround::NONE;
+        self.state.setup =
+            Some(Setup { config: *config, scale: *scale, rig, columns, rows, height, shift, ends_mrad });
+        self.begin();
+        Ok(())
+    }
+
+    /// Begins a frame. A frame that was not finished is forgotten.
+    pub fn begin(&mut self) {
+        self.state.watchdog = Watchdog::NEW;
+        self.state.next = 0;
+        self.filling.fill(Filling::EMPTY);
+        self.cells.fill(Disparity::NONE);
+        self.bins.fill(0);
+    }
+
+    /// Takes what the monitor of the cameras says of this frame, before it is finished.
+    pub fn cameras(&mut self, monitor: &PairMonitor) {
+        self.state.watchdog.cameras(monitor);
+    }
+
+    /// Sets the pose of the camera from this frame on, as [`GroundSource::Given`] has it.
+    pub fn set_pose(&mut self, pitch_mrad: i16, height_mm: u16) -> Result<(), ObstacleError> {
+        let Some(setup) = &mut self.state.setup else { return Ok(()) };
+        let config = ObstacleConfig { ground: GroundSource::Given { pitch_mrad, height_mm }, ..setup.config };
+        config.check()?;
+        setup.config = config;
+        Ok(())
+    }
+
+    /// Takes row `y` of pixels, with its confidences or none. A row that has been, and one that is too short,
+    /// is ignored; rows that are left out count as lost.
+    pub fn push(&mut self, y: usize, disparities: &[Disparity], flags: &[PixelFlags], confidences: &[u8]) {
+        let Some(setup) = self.state.setup else { return };
+        let pixels = setup.columns * usize::from(setup.config.cell_width);
+        if y < self.state.next || y >= setup.height || disparities.len().min(flags.len()) < pixels {
+            return;
+        }
+        self.pass(&setup, y);
+        self.state.watchdog.row(flags);
+        let cells = self.filling.get_mut(..setup.columns).unwrap_or_default();
+        let width = usize::from(setup.config.cell_width);
+        fill(cells, width, disparities, flags, confidences, setup.config.min_confidence);
+        self.state.next = y + 1;
+        if self.state.next.is_multiple_of(usize::from(setup.config.cell_height.max(1))) {
+            self.close(&setup, y);
+        }
+    }
+
+    /// Counts the rows before `y` that did not come, and closes the rows of cells that end above it.
+    fn pass(&mut self, setup: &Setup, y: usize) {
+        let missing = y.saturating_sub(self.state.next);
+        self.state.watchdog.lost += missing as u32;
+        let height = usize::from(setup.config.cell_height.max(1));
+        let crossed = y.checked_div(height) != self.state.next.checked_div(height);
+        if missing > 0 && crossed {
+            self.close(setup, self.state.next);
+        }
+        self.state.next = y;
+    }
+
+    /// Ends the row of cells that row `y` of pixels is in.
+    fn close(&mut self, setup: &Setup, y: usize) {
+        let config = &setup.config;
+        let row = y.checked_div(usize::from(config.cell_height)).unwrap_or(usize::MAX);
+        let area = config.cell_width.wrapping_mul(config.cell_height);
+        let cells = self.cells.chunks_exact_mut(setup.columns.max(1)).nth(row).unwrap_or_default();
+        if row >= setup.rows {
+            return;
+        }
+        for (cell, filling) in cells.iter_mut().zip(self.filling.iter_mut()) {
+            *cell = filling.answer(area);
+            self.state.watchdog.answered += u32::from(cell.is_some());
+            *filling = Filling::EMPTY;
+        }
+        count(self.bins.chunks_exact_mut(BINS).nth(row).unwrap_or_default(), cells, setup.shift);
+    }
+
+    /// Ends a frame: finds its ground, stixels and surfaces, and says if the frame is to be trusted.
+    ///
+    /// The ground is carried over frames that are not.
+    pub fn finish(&mut self) -> Result<(), BlindReason> {
+        let Some(setup) = self.state.setup else { return Err(BlindReason::NoFrame) };
+        self.pass(&setup, setup.height);
+        let (config, rig) = (&setup.config, &setup.rig);
+        let all = (setup.columns * setup.rows) as u32;
+        self.state.blind = self.state.watchdog.judge(config, setup.height as u32, all);
+        let sound = self.state.blind.is_none();
+        let cells = cells(&setup, self.cells);
+        let at = [cells.halves(setup.rows / 2), cells.halves(setup.rows.saturating_sub(1))];
+        let carried = self.state.carried.ground;
+        let measured = match config.ground {
+            GroundSource::Absent => None,
+            GroundSource::Given { pitch_mrad, height_mm } => {
+                self.state.carried = CarriedGround::NONE;
+                Ground::given(pitch_mrad, height_mm, rig)
+            }
+            GroundSource::Searched { .. } if sound => {
+                fit(&cells, self.bins, setup.shift, carried, &config.ground, rig)
+            }
+            GroundSource::Searched { .. } => None,
+        };
+        self.state.carried.update(measured, at, rig);
+        let labelling = Labelling::new(cells, self.state.carried.ground, *config, self.bins);
+        let columns = self.columns.get_mut(..setup.columns).unwrap_or_default();
+        stixels(&labelling, columns, self.labels.get_mut(..setup.rows).unwrap_or_default());
+        self.state.blind.map_or(Ok(()), Err)
+    }
+
+    /// The disparity of a cell of the last frame.
+    pub fn cell(&self, column: usize, row: usize) -> Disparity {
+        let Some(setup) = &self.state.setup else { return Disparity::NONE };
+        let cell = self.cells.get(row * setup.columns + column).filter(|_| column < setup.columns);
+        cell.copied().unwrap_or(Disparity::NONE)
+    }
+}
+
+/// The cells of a frame, with the numbers that their geometry needs.
+pub(super) fn cells<'a>(setup: &Setup, cells: &'a [Disparity]) -> Cells<'a> {
+    Cells {
+        cells,
+        columns: setup.columns,
+        rows: setup.rows,
+        cell_height: setup.config.cell_height.into(),
+        offset: setup.scale.offset_steps(),
+        farthest: i32::from(ObstacleConfig::FARTHEST_SIGMAS * setup.config.sigma_steps),
+    }
+}

@@ -1,0 +1,158 @@
+//! The ground plane as a line of the v-disparity (Labayrade, Aubert & Tarel 2002).
+
+use super::config::GroundSource;
+use crate::depth::DepthScale;
+use crate::math::{atan, round};
+use crate::units::Disparity;
+
+/// Most of what a slope or an inclination may be, steps of disparity per row in 65536ths.
+const STEEPEST: i64 = 1 << 30;
+
+/// Numbers of a rig, rounded to integers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RigNumbers {
+    /// Focal length, sixteenths of a px.
+    pub(super) focal_16ths: i32,
+    /// Column of the principal point, sixteenths of a px.
+    pub(super) cx_16ths: i32,
+    /// Row of the principal point, halves of a px.
+    pub(super) cy_halves: i32,
+    /// Baseline, sixteenths of a mm.
+    baseline_16ths: i32,
+}
+
+impl RigNumbers {
+    pub(super) fn new(scale: &DepthScale) -> Self {
+        let rig = scale.rig();
+        let whole = |x: f32| round(x.clamp(-1e9, 1e9)) as i32;
+        Self {
+            focal_16ths: whole(16.0 * rig.focal_px()).max(1),
+            cx_16ths: whole(16.0 * rig.principal_point().0),
+            cy_halves: whole(2.0 * rig.principal_point().1),
+            baseline_16ths: whole(16_000.0 * rig.baseline_m()).max(1),
+        }
+    }
+}
+
+/// A ground plane without roll: its parallax `d + doffs` grows by a constant from row to row.
+///
+/// With the camera at height `H`, pitched down by `theta`, and row `v`:
+///
+/// `d + doffs = b / H (cos theta (v - cy) + f sin theta)`
+///
+/// so the slope gives the height and the parallax at row `cy` gives the pitch.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Ground {
+    /// Parallax at row 0, steps of disparity in 65536ths.
+    pub level: i64,
+    /// Growth of the parallax from a row to the next, steps of disparity in 65536ths.
+    pub slope: i64,
+    /// Variance of the parallax, squares of steps of disparity.
+    pub variance: u32,
+    /// Height of the camera above the ground, mm.
+    pub height_mm: u16,
+    /// Tangent of the downward pitch of the camera in 65536ths.
+    pub pitch_tangent: i32,
+}
+
+impl Ground {
+    /// Parallax of the ground at half-row `halves` (row `halves / 2`), whole steps of disparity.
+    pub(super) fn parallax(&self, halves: i64) -> i32 {
+        let exact = self.level.saturating_add(self.slope.saturating_mul(halves) / 2) >> 16;
+        exact.clamp(-(1 << 20), 1 << 20) as i32
+    }
+
+    /// Downward pitch of the camera, radians.
+    pub fn pitch_rad(&self) -> f32 {
+        atan(self.pitch_tangent as f32 / 65_536.0)
+    }
+
+    /// A plane with this line; `None` where no camera in front of a plane sees such a one.
+    pub(super) fn from_line(level: i64, slope: i64, variance: u32, rig: &RigNumbers) -> Option<Self> {
+        let at_centre = level.saturating_add(slope.saturating_mul(rig.cy_halves.into()) / 2);
+        let inclination = at_centre.saturating_mul(16).checked_div(rig.focal_16ths.into())?;
+        if !(1..STEEPEST).contains(&slope) || inclination.abs() >= STEEPEST {
+            return None;
+        }
+        let norm = ((slope * slope + inclination * inclination) as u64).isqrt();
+        let scaled = i64::from(rig.baseline_16ths).saturating_mul(131_072) as u64;
+        let height_mm = u16::try_from(scaled.checked_div(norm)?).ok()?;
+        let pitch_tangent = i32::try_from((inclination * 65_536).checked_div(slope)?).ok()?;
+        Some(Self { level, slope, variance, height_mm, pitch_tangent })
+    }
+
+    /// The plane below a camera of known pose, with no uncertainty but that of 1 step.
+    pub(super) fn given(pitch_mrad: i16, height_mm: u16, rig: &RigNumbers) -> Option<Self> {
+        let angle = f32::from(pitch_mrad) / 1000.0;
+        let square = angle * angle;
+        // The series of the tangent: 0.00005 off at half a radian.
+        let tangent = angle * (1.0 + square * (1.0 / 3.0 + square * (2.0 / 15.0 + square * (17.0 / 315.0))));
+        let cosine = 1.0 / nalgebra::ComplexField::sqrt(1.0 + tangent * tangent);
+        let per_row = rig.baseline_16ths as f32 / 16.0 / f32::from(height_mm.max(1)) * cosine;
+        let slope = round(per_row * f32::from(Disparity::ONE) * 65_536.0);
+        let above_centre = tangent * rig.focal_16ths as f32 / 16.0 - rig.cy_halves as f32 / 2.0;
+        if slope.abs() >= STEEPEST as f32 {
+            return None;
+        }
+        let ground = Self::from_line(round(slope * above_centre) as i64, slope as i64, 1, rig)?;
+        Some(Self { height_mm, ..ground })
+    }
+
+    /// Whether the plane is within what a search allows.
+    pub(super) fn is_within(&self, source: &GroundSource) -> bool {
+        match *source {
+            GroundSource::Searched { least_height_mm, most_height_mm, most_pitch } => {
+                (least_height_mm..=most_height_mm).contains(&self.height_mm)
+                    && i64::from(self.pitch_tangent).abs() * 1000 <= i64::from(most_pitch) * 65_536
+            }
+            _ => true,
+        }
+    }
+
+    /// Height above the ground of what has this parallax where the ground has `ground`, mm.
+    pub(super) fn height_above(&self, parallax: i32, ground: i32) -> i16 {
+        let above = i64::from(self.height_mm) * i64::from(parallax - ground);
+        let height = above.checked_div(i64::from(parallax)).unwrap_or(0);
+        height.clamp(i16::MIN.into(), i16::MAX.into()) as i16
+    }
+}
+
+/// The ground over frames: a Kalman filter of the line with one variance.
+#[derive(Clone, Copy, Default, Debug)]
+pub(super) struct CarriedGround {
+    pub(super) ground: Option<Ground>,
+    /// Frames since a ground was last measured.
+    age: u8,
+}
+
+impl CarriedGround {
+    pub(super) const NONE: Self = Self { ground: None, age: 0 };
+    /// Variance that a frame adds: a quarter of a px by which a moving camera nods.
+    const PER_FRAME: u32 = 64;
+    /// Frames for which a ground is carried without being measured.
+    const MOST_HELD: u8 = 8;
+
+    /// Takes what a frame measured. A measurement within three deviations at both half-rows of `at` is
+    /// averaged with what was carried, by their variances; any other one replaces it.
+    pub(super) fn update(&mut self, measured: Option<Ground>, at: [i64; 2], rig: &RigNumbers) {
+        let carried = self.ground.map(|g| Ground { variance: g.variance + Self::PER_FRAME, ..g });
+        let (Some(old), Some(new)) = (carried, measured) else {
+            self.age = if measured.is_some() { 0 } else { self.age.saturating_add(1) };
+            self.ground = measured.or(carried.filter(|_| self.age <= Self::MOST_HELD));
+            return;
+        };
+        self.age = 0;
+        let both = i64::from(old.variance) + i64::from(new.variance);
+        let agree = at.iter().all(|&halves| {
+            let apart = i64::from(new.parallax(halves) - old.parallax(halves));
+            apart * apart <= 9 * both
+        });
+        let gain = (256 * i64::from(old.variance)).checked_div(both).unwrap_or(256);
+        let mix = |old: i64, new: i64| old + (((new - old) * gain) >> 8);
+        let variance = (i64::from(old.variance) * (256 - gain) / 256).max(1) as u32;
+        let mixed = Ground::from_line(mix(old.level, new.level), mix(old.slope, new.slope), variance, rig);
+        self.ground = if agree { mixed.or(measured) } else { measured };
+    }
+}

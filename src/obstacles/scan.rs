@@ -1,0 +1,53 @@
+//! Sectors as a planar laser scan, in the meaning of ROS's `sensor_msgs/LaserScan` and of REP 117.
+
+use super::finder::ObstaclesView;
+use super::sector::SectorState;
+
+/// Angles and limits of a scan: radians to the left, as ROS has them, and metres.
+#[derive(Clone, Copy, PartialEq, Default, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LaserScan {
+    /// Angle of the first range, rad: the middle of the rightmost sector.
+    pub angle_min: f32,
+    /// Angle of the last range, rad: the middle of the leftmost sector.
+    pub angle_max: f32,
+    /// Angle between two ranges, rad.
+    pub angle_increment: f32,
+    /// Smallest range that can be measured, m: that of the largest parallax that a disparity has.
+    pub range_min: f32,
+    /// Largest range that is told, m.
+    pub range_max: f32,
+    /// Number of ranges that were written.
+    pub count: usize,
+}
+
+impl ObstaclesView<'_> {
+    /// Writes the ranges of the last frame's sectors from right to left, m, as many as `ranges` holds.
+    ///
+    /// Obstacles and drops have their distance, a free sector has infinity ("no return"), and a blind one is
+    /// not a number ("invalid").
+    pub fn laser_scan(&self, ranges: &mut [f32]) -> LaserScan {
+        let Some(setup) = &self.state.setup else { return LaserScan::default() };
+        let sectors = self.sectors();
+        for (place, range) in ranges.iter_mut().enumerate().take(sectors) {
+            let sector = self.sector(sectors - 1 - place);
+            *range = match sector.state {
+                SectorState::Obstacle | SectorState::Drop => f32::from(sector.range_mm) / 1000.0,
+                SectorState::Free => f32::INFINITY,
+                SectorState::Blind => f32::NAN,
+            };
+        }
+        let [first, last] = setup.ends_mrad.map(|end| f32::from(end) / 1000.0);
+        let increment = (last - first) / sectors.max(1) as f32;
+        let largest = i32::from(u16::MAX - 1) + setup.scale.offset_steps();
+        LaserScan {
+            angle_min: -(last - increment / 2.0),
+            angle_max: -(first + increment / 2.0),
+            angle_increment: increment,
+            range_min: f32::from(setup.depth_mm(largest)) / 1000.0,
+            range_max: f32::from(self.farthest_mm()) / 1000.0,
+            count: ranges.len().min(sectors),
+        }
+    }
+}

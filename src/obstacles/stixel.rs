@@ -1,0 +1,306 @@
+//! Stixels: a column of cells as ground, obstacle or drop, and beyond (Badino, Franke & Pfeiffer 2009), by the
+//! Viterbi algorithm in integers.
+
+use super::config::{GroundSource, ObstacleConfig};
+use super::ground::Ground;
+use super::v_disparity::{BINS, Cells};
+use crate::units::Disparity;
+
+/// What stands in a column.
+#[derive(Clone, Copy, PartialEq, Eq, Default, Debug, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[repr(u8)]
+pub enum StixelKind {
+    /// Nothing that enough cells show; that is not to say that the column is free.
+    #[default]
+    Nothing,
+    /// A surface that rises above the ground.
+    Obstacle,
+    /// The edge of a surface that is deeper than the ground.
+    Drop,
+}
+
+/// The nearest obstacle or drop of a column of cells.
+#[derive(Clone, Copy, Default, Debug)]
+pub(super) struct Column {
+    pub(super) kind: StixelKind,
+    pub(super) top: u8,
+    pub(super) base: u8,
+    /// Cells of the segment that have an answer.
+    pub(super) cells: u8,
+    /// Uppermost row to which the ground is seen without a gap from the lowest row on; the number of rows
+    /// where it is not.
+    pub(super) seen: u8,
+    /// Deviation, steps, at most 255.
+    pub(super) sigma: u8,
+    /// Parallax, steps; of a drop that of the ground at its edge.
+    pub(super) parallax: i32,
+    /// Cells of the connected surface that it belongs to; 0 where that is too small.
+    pub(super) surface: u16,
+}
+
+impl Column {
+    pub(super) const EMPTY: Self = Self {
+        kind: StixelKind::Nothing,
+        top: 0,
+        base: 0,
+        cells: 0,
+        seen: 0,
+        sigma: 0,
+        parallax: 0,
+        surface: 0,
+    };
+
+    /// Whether it belongs to a surface of enough cells.
+    pub(super) fn is_supported(&self) -> bool {
+        self.surface > 0
+    }
+}
+
+/// What contradicting a label costs at most, at three standard deviations.
+const MOST: i32 = 16;
+/// What a change of the label costs: as much as one cell that contradicts.
+const CHANGE: u16 = 16;
+/// What a cell without an answer costs as anything but beyond.
+const UNANSWERED: [u16; 4] = [8, 8, 8, 0];
+/// Rows without ground that do not end what is seen of it.
+const MOST_GAP: u8 = 2;
+/// Fewest cells of a segment.
+const FEWEST_CELLS: u8 = 2;
+
+/// Labels, in the order in which ties are broken.
+const OBSTACLE: usize = 0;
+const DROP: usize = 1;
+const GROUND: usize = 2;
+const BEYOND: usize = 3;
+/// Bit of a step whose disparity is another surface's.
+const BREAK: u8 = 1 << 6;
+
+/// Parallaxes between which a row shows ground.
+#[derive(Clone, Copy, Debug)]
+struct Interval {
+    /// Below this is a drop; `i32::MIN` where no ground can be seen within the range that counts.
+    low: i32,
+    high: i32,
+    expected: i32,
+}
+
+impl Interval {
+    /// Writes the numbers over a row of the v-disparity, which has been read by then.
+    fn store(&self, bins: &mut [u8; BINS]) {
+        let [low, high, expected, ..] = bins.as_chunks_mut::<4>().0 else { return };
+        (*low, *high) = (self.low.to_le_bytes(), self.high.to_le_bytes());
+        *expected = self.expected.to_le_bytes();
+    }
+
+    fn load(bins: &[u8; BINS]) -> Self {
+        let number =
+            |place: usize| bins.as_chunks::<4>().0.get(place).map_or(0, |bytes| i32::from_le_bytes(*bytes));
+        Self { low: number(0), high: number(1), expected: number(2) }
+    }
+}
+
+/// What is needed to label a column.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Labelling<'a> {
+    cells: Cells<'a>,
+    ground: Option<Ground>,
+    pub(super) config: ObstacleConfig,
+    /// Three standard deviations of an answer beside the ground, steps.
+    tolerance: i32,
+    /// Largest step of parallax between cells of one surface: three deviations of a difference, or one px.
+    pub(super) same_surface: i32,
+    /// An [`Interval`] for each row.
+    intervals: &'a [u8],
+}
+
+impl<'a> Labelling<'a> {
+    /// Settles what a frame's rows show, in the memory of its v-disparity.
+    pub(super) fn new(
+        cells: Cells<'a>,
+        ground: Option<Ground>,
+        config: ObstacleConfig,
+        bins: &'a mut [u8],
+    ) -> Self {
+        let sigma = u32::from(config.sigma_steps);
+        let tolerance = 3 * (sigma * sigma + ground.map_or(0, |g| g.variance)).isqrt() as i32;
+        let same_surface = (tolerance * 3 / 2).max(Disparity::ONE.into());
+        for (row, bins) in bins.as_chunks_mut().0.iter_mut().enumerate().take(cells.rows) {
+            let expected = ground.map(|ground| (ground, ground.parallax(cells.halves(row))));
+            interval(expected, &config, tolerance, cells.farthest).store(bins);
+        }
+        Self { cells, ground, config, tolerance, same_surface, intervals: bins }
+    }
+
+    /// Whether a surface stands above the headroom.
+    fn is_overhead(&self, parallax: i32, expected: i32) -> bool {
+        let Some(ground) = self.ground.filter(|_| self.config.headroom_mm < u16::MAX) else { return false };
+        i64::from(ground.height_mm) * i64::from(parallax - expected)
+            > i64::from(self.config.headroom_mm) * i64::from(parallax)
+    }
+
+    /// Costs of the four labels at a cell: 0 where the answer agrees, rising to 16 at three deviations beyond
+    /// the label's interval.
+    fn costs(&self, row: &Interval, parallax: Option<i32>, per_step: i32, most: i32) -> [u16; 4] {
+        let Some(parallax) = parallax else { return UNANSWERED };
+        let beyond = |by: i32| {
+            let by = by.clamp(0, most);
+            let rising = 1 + ((by * per_step) >> 16);
+            if by == 0 { 0 } else { rising.min(MOST) as u16 }
+        };
+        let overhead = self.is_overhead(parallax, row.expected);
+        let obstacle = if overhead { MOST as u16 } else { beyond((row.high + 1).saturating_sub(parallax)) };
+        if row.low == i32::MIN {
+            let far = if overhead { 0 } else { beyond(parallax - row.high) };
+            return [obstacle, MOST as u16, MOST as u16, far];
+        }
+        let drop = beyond(parallax - (row.low - 1));
+        let ground = beyond((row.low - parallax).max(parallax - row.high));
+        [obstacle, drop, ground, if overhead { 0 } else { MOST as u16 }]
+    }
+
+    /// Labels a column, and returns its nearest obstacle or drop of a parallax below `bound`.
+    ///
+    /// The labels are those of the least sum of [`Self::costs`], plus 16 for each change of the label and for
+    /// each step inside an obstacle to a disparity of another surface. `labels` has a byte for each row
+    /// of cells.
+    pub(super) fn column(&self, column: usize, bound: i32, labels: &mut [u8]) -> Column {
+        let rows = self.cells.rows.min(labels.len());
+        let most = self.tolerance.max(1);
+        let per_step = (MOST << 16) / most;
+        let intervals = self.intervals.as_chunks().0;
+        let mut sums = [0_u16; 4];
+        let mut below = None;
+        let (mut answered, mut last) = (0, BEYOND);
+        for ((row, step), bins) in labels.iter_mut().enumerate().take(rows).zip(intervals).rev() {
+            let parallax = self.cells.parallax(column, row);
+            let breaks =
+                parallax.zip(below).is_some_and(|(p, b): (i32, i32)| (p - b).abs() > self.same_surface);
+            below = parallax.or(below);
+            answered += usize::from(parallax.is_some());
+            let costs = self.costs(&Interval::load(bins), parallax, per_step, most);
+            // `cheapest` finds the first of equals.
+            let from = cheapest(&sums);
+            let change = sums.get(from).map_or(0, |sum| sum + CHANGE);
+            *step = from as u8 | if breaks { BREAK } else { 0 };
+            for (label, (sum, cost)) in sums.iter_mut().zip(costs).enumerate() {
+                let stay = *sum + if breaks && label == OBSTACLE { CHANGE } else { 0 };
+                if stay <= change {
+                    *step |= 4 << label;
+                }
+                *sum = stay.min(change) + cost;
+            }
+            last = cheapest(&sums);
+        }
+        let found = self.segments(column, bound, labels, last);
+        let seen = match self.ground {
+            Some(_) => self.seen(column, labels),
+            // Without a ground a column is seen where enough of it has answers.
+            None if self.config.ground == GroundSource::Absent
+                && 100 * answered >= usize::from(self.config.least_answered) * rows =>
+            {
+                0
+            }
+            None => rows as u8,
+        };
+        Column { seen, ..found }
+    }
+
+    /// Follows the steps from the uppermost row down, writes each row's label in their place, and returns the
+    /// nearest segment.
+    fn segments(&self, column: usize, bound: i32, steps: &mut [u8], last: usize) -> Column {
+        let mut best = Column::EMPTY;
+        let (mut label, mut top) = (last, 0);
+        let (mut count, mut sum) = (0_u8, 0_i32);
+        for row in 0..self.cells.rows {
+            let Some(step) = steps.get_mut(row) else { break };
+            let stays = *step & 4 << label != 0;
+            let breaks = *step & BREAK != 0 && label == OBSTACLE && stays;
+            let next = if stays { label } else { usize::from(*step & 3) };
+            *step = label as u8;
+            if let Some(parallax) = self.cells.parallax(column, row) {
+                (count, sum) = (count + 1, sum + parallax);
+            }
+            if row + 1 < self.cells.rows && next == label && !breaks {
+                continue;
+            }
+            let segment = Column { top, base: row as u8, cells: count, ..Column::EMPTY };
+            let found = self.measured(column, segment, label, sum);
+            if let Some(found) = found.filter(|f| f.parallax < bound && f.parallax > best.parallax) {
+                best = found;
+            }
+            (label, top, count, sum) = (next, row as u8 + 1, 0, 0);
+        }
+        best
+    }
+
+    /// Parallax and deviation of a segment: the mean of its cells, and the root of the answers' variance plus
+    /// the cells'. A drop has those of the ground at its edge.
+    fn measured(&self, column: usize, segment: Column, label: usize, sum: i32) -> Option<Column> {
+        if segment.cells < FEWEST_CELLS || !matches!(label, OBSTACLE | DROP) {
+            return None;
+        }
+        let sigma = self.config.sigma_steps.min(255) as u8;
+        if label == DROP {
+            let edge = self.ground?.parallax(self.cells.halves(segment.base.into()));
+            return Some(Column { kind: StixelKind::Drop, parallax: edge, sigma, ..segment });
+        }
+        let count = i32::from(segment.cells);
+        let parallax = (sum + count / 2).checked_div(count)?;
+        let rows = usize::from(segment.top)..=usize::from(segment.base);
+        let squares = rows.filter_map(|row| self.cells.parallax(column, row)).map(|p| {
+            let off = i64::from(p - parallax);
+            (off * off) as u64
+        });
+        let variance = squares.sum::<u64>().checked_div(count as u64)?;
+        let own = u64::from(self.config.sigma_steps);
+        let sigma = (variance + own * own).isqrt().min(255) as u8;
+        Some(Column { kind: StixelKind::Obstacle, parallax, sigma, ..segment })
+    }
+
+    /// Uppermost row of ground that is seen from the lowest row on, with gaps of at most two rows.
+    fn seen(&self, column: usize, labels: &[u8]) -> u8 {
+        let (mut seen, mut gap) = (self.cells.rows as u8, 0);
+        for (row, &label) in labels.iter().enumerate().take(self.cells.rows).rev() {
+            let shown = self.cells.parallax(column, row).is_some();
+            if usize::from(label) == GROUND && shown {
+                (seen, gap) = (row as u8, 0);
+                continue;
+            }
+            gap += 1;
+            if gap > MOST_GAP || shown && usize::from(label) != GROUND {
+                break;
+            }
+        }
+        seen
+    }
+}
+
+/// What a row shows, of a ground with what it has there, if there is one.
+fn interval(ground: Option<(Ground, i32)>, config: &ObstacleConfig, tolerance: i32, far: i32) -> Interval {
+    let Some((ground, expected)) = ground else {
+        return Interval { low: i32::MIN, high: far - 1, expected: 0 };
+    };
+    let (height, at) = (i64::from(ground.height_mm), i64::from(expected.max(0)));
+    // H (p - p_ground) / p = h at p - p_ground = p_ground h / (H - h), and -h at p_ground h / (H + h).
+    let limit = |h: i64, left: i64| match left {
+        1.. => ((at * h).checked_div(left).unwrap_or(0) as i32).max(tolerance),
+        _ => 1 << 21,
+    };
+    let (up, down) = (i64::from(config.obstacle_mm), i64::from(config.drop_mm));
+    let high = (expected + limit(up, height - up)).max(far - 1);
+    let low = if expected < far { i32::MIN } else { expected - limit(down, height + down) };
+    Interval { low, high, expected }
+}
+
+/// Index of the first of the least sums.
+fn cheapest(sums: &[u16; 4]) -> usize {
+    let mut best = (u16::MAX, 0);
+    for (label, &sum) in sums.iter().enumerate() {
+        if sum < best.0 {
+            best = (sum, label);
+        }
+    }
+    best.1
+}

@@ -1,0 +1,67 @@
+//! Connected surfaces: stixels side by side that have enough cells together.
+
+use super::stixel::{Column, Labelling, StixelKind};
+
+/// How often a column whose nearest segment belongs to no surface looks for one behind it.
+const TRIES: usize = 3;
+
+/// Whether two columns side by side show one surface: of one kind, within the step of a surface, in rows that
+/// overlap or touch.
+fn connected(a: &Column, b: &Column, same_surface: i32) -> bool {
+    a.kind != StixelKind::Nothing
+        && a.kind == b.kind
+        && (a.parallax - b.parallax).abs() <= same_surface
+        && a.top <= b.base.saturating_add(1)
+        && b.top <= a.base.saturating_add(1)
+}
+
+/// Finds the nearest stixel of each column that belongs to a surface of at least
+/// [`min_pixels`](super::ObstacleConfig::min_pixels).
+///
+/// A column whose nearest segment does not, a speck, looks for the next one behind it, twice at most; what is
+/// a speck then is left out.
+pub(super) fn stixels(labelling: &Labelling<'_>, columns: &mut [Column], labels: &mut [u8]) {
+    let same_surface = labelling.same_surface;
+    for (x, column) in columns.iter_mut().enumerate() {
+        *column = labelling.column(x, i32::MAX, labels);
+    }
+    for tried in 1..=TRIES {
+        support(columns, labelling, same_surface);
+        if tried == TRIES {
+            break;
+        }
+        for (x, column) in columns.iter_mut().enumerate() {
+            if column.kind != StixelKind::Nothing && !column.is_supported() {
+                *column = labelling.column(x, column.parallax, labels);
+            }
+        }
+    }
+    for column in columns.iter_mut().filter(|column| !column.is_supported()) {
+        *column = Column { seen: column.seen, ..Column::EMPTY };
+    }
+}
+
+/// Sums up the cells of each run of connected columns.
+fn support(columns: &mut [Column], labelling: &Labelling<'_>, same_surface: i32) {
+    let config = &labelling.config;
+    let area = u32::from(config.cell_width) * u32::from(config.cell_height);
+    let mut rest = columns;
+    while let Some(first) = rest.first() {
+        let (mut last, mut length, mut cells) = (*first, 1, u32::from(first.cells));
+        for next in rest.iter().skip(1) {
+            if !connected(&last, next, same_surface) {
+                break;
+            }
+            (last, length, cells) = (*next, length + 1, cells + u32::from(next.cells));
+        }
+        let (run, after) = rest.split_at_mut_checked(length).unwrap_or_default();
+        if run.is_empty() {
+            return;
+        }
+        for column in run {
+            let enough = column.kind != StixelKind::Nothing && cells * area >= u32::from(config.min_pixels);
+            column.surface = if enough { cells.min(u16::MAX.into()) as u16 } else { 0 };
+        }
+        rest = after;
+    }
+}

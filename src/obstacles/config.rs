@@ -67,6 +67,22 @@ impl ObstacleConfig {
     /// deviation of the distance is a tenth of it.
     pub const FARTHEST_SIGMAS: u16 = 10;
 
+    /// The limits before a start, which find nothing.
+    pub(super) const ZERO: Self = Self {
+        cell_width: 0,
+        cell_height: 0,
+        sigma_steps: 0,
+        min_confidence: 0,
+        ground: GroundSource::Absent,
+        obstacle_mm: 0,
+        drop_mm: 0,
+        headroom_mm: 0,
+        min_pixels: 0,
+        sectors: 0,
+        least_answered: 0,
+        most_lost: 0,
+    };
+
     pub(super) fn check(&self) -> Result<(), ObstacleError> {
         let side = 1..=16;
         let area = u16::from(self.cell_width) * u16::from(self.cell_height);
@@ -102,8 +118,8 @@ impl Default for ObstacleConfig {
     /// Cells of 4 x 5 px, a deviation of 0.15 px as all methods have it, a ground 0.1 m to 3 m below a camera
     /// that is pitched by at most 27 degrees, obstacles and drops of 5 cm, and 16 sectors.
     ///
-    /// The least area is twice a matching window of 9 x 9 px: one wrong answer spreads over one window. A
-    /// tenth of the cells has to have answers, and at most a tenth of the rows may be lost.
+    /// The least area is three matching windows of 9 x 9 px: a wrong answer spreads over one window, and the
+    /// next one agrees with it within one px by chance in one case of sixteen, with 32 disparities. A tenth of the cells has to have answers, and at most a tenth of the rows may be lost.
     fn default() -> Self {
         Self {
             cell_width: 4,
@@ -114,7 +130,7 @@ impl Default for ObstacleConfig {
             obstacle_mm: 50,
             drop_mm: 50,
             headroom_mm: u16::MAX,
-            min_pixels: 162,
+            min_pixels: 243,
             sectors: 16,
             least_answered: 10,
             most_lost: 10,

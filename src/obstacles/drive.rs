@@ -109,7 +109,7 @@ impl DriveRule {
         let corridor = Corridor::new(frame, self.config.corridor_mm, needed);
         let verdict =
             |decision, contact_ms| Verdict { decision, nearest: corridor.kind, contact_ms, stopping_mm };
-        if let Some(reason) = frame.state.blind {
+        if let Some(reason) = frame.blind() {
             return verdict(Decision::Blind(reason), None);
         }
         let nearest = self.held.update(corridor.nearest, self.config.hysteresis);
@@ -117,7 +117,7 @@ impl DriveRule {
         if let Some(mm) = nearest.filter(|&mm| mm <= stopping_mm) {
             return verdict(Decision::Stop(mm), contact_ms);
         }
-        let searched = frame.state.setup.is_some_and(|s| s.config.ground != GroundSource::Absent);
+        let searched = frame.setup().is_some_and(|s| s.config.ground != GroundSource::Absent);
         if searched && frame.state.carried.ground.is_none() {
             return verdict(Decision::Blind(BlindReason::NoGround), contact_ms);
         }
@@ -151,7 +151,7 @@ struct Corridor {
 impl Corridor {
     fn new(frame: &ObstaclesView<'_>, width_mm: u16, needed_mm: u16) -> Self {
         let mut found = Self { kind: StixelKind::Nothing, nearest: None, columns: 0, unseen: 0 };
-        let Some(setup) = &frame.state.setup else { return found };
+        let Some(setup) = frame.setup() else { return found };
         let ground = frame.state.carried.ground;
         let half = i32::from(width_mm) / 2;
         let middle = (0..setup.columns).min_by_key(|&x| setup.across_mm(x, u16::MAX).abs());

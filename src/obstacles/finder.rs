@@ -31,20 +31,24 @@ pub struct Obstacles<const C: usize, const R: usize> {
 /// What an [`Obstacles`] keeps beside its cells.
 #[derive(Debug)]
 pub(super) struct ObstaclesState {
-    pub(super) setup: Option<Setup>,
+    setup: Setup,
     pub(super) carried: CarriedGround,
     watchdog: Watchdog,
     /// The next row of pixels.
     next: usize,
+    is_finished: bool,
     /// What the last finished frame was judged.
-    pub(super) blind: Option<BlindReason>,
+    blind: Option<BlindReason>,
 }
 
-/// What a start settles.
+/// What a start settles. Before it, all is zero, as is all of a new finder.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setup {
     pub(super) config: ObstacleConfig,
-    pub(super) scale: DepthScale,
+    /// `f b`, millimetres times steps of disparity.
+    pub(super) millimetre_steps: u32,
+    /// `doffs`, steps of disparity.
+    pub(super) offset_steps: i32,
     pub(super) rig: RigNumbers,
     pub(super) columns: usize,
     pub(super) rows: usize,
@@ -52,6 +56,20 @@ pub(super) struct Setup {
     shift: u32,
     /// Bearings of the first and the last column of pixels, thousandths of a radian.
     pub(super) ends_mrad: [i16; 2],
+}
+
+impl Setup {
+    const NOT_STARTED: Self = Self {
+        config: ObstacleConfig::ZERO,
+        millimetre_steps: 0,
+        offset_steps: 0,
+        rig: RigNumbers::ZERO,
+        columns: 0,
+        rows: 0,
+        height: 0,
+        shift: 0,
+        ends_mrad: [0; 2],
+    };
 }
 
 /// A borrowed [`Obstacles`] of any size.
@@ -71,18 +89,19 @@ impl<const C: usize, const R: usize> Obstacles<C, R> {
     pub const fn new() -> Self {
         const { assert!(C > 0 && R > 0 && R < 256, "1 to 255 rows of cells, and a column") };
         Self {
-            cells: [[Disparity::NONE; C]; R],
+            cells: [[Disparity::ZERO; C]; R],
             filling: [Filling::EMPTY; C],
             bins: [[0; BINS]; R],
             columns: [Column::EMPTY; C],
             labels: [0; R],
             bearings: [0; C],
             state: ObstaclesState {
-                setup: None,
+                setup: Setup::NOT_STARTED,
                 carried: CarriedGround::NONE,
                 watchdog: Watchdog::NEW,
                 next: 0,
-                blind: Some(BlindReason::NoFrame),
+                is_finished: false,
+                blind: None,
             },
         }
     }
@@ -143,8 +162,8 @@ impl ObstaclesView<'_> {
         size: [u16; 2],
         largest: Disparity,
     ) -> Result<(), ObstacleError> {
-        self.state.setup = None;
-        self.state.blind = Some(BlindReason::NoFrame);
+        self.state.setup = Setup::NOT_STARTED;
+        self.state.is_finished = false;
         config.check()?;
         let [width, height] = size.map(usize::from);
         let part = |side: usize, cell: u8| side.checked_div(usize::from(cell)).unwrap_or(0);
@@ -169,8 +188,17 @@ impl ObstaclesView<'_> {
         let ends_mrad = [bearing(0.0), bearing((columns * usize::from(config.cell_width) - 1) as f32)];
         let shift = bin_shift(largest);
         self.state.carried = CarriedGround::NONE;
-        self.state.setup =
-            Some(Setup { config: *config, scale: *scale, rig, columns, rows, height, shift, ends_mrad });
+        self.state.setup = Setup {
+            config: *config,
+            millimetre_steps: scale.millimetre_steps(),
+            offset_steps: scale.offset_steps(),
+            rig,
+            columns,
+            rows,
+            height,
+            shift,
+            ends_mrad,
+        };
         self.begin();
         Ok(())
     }
@@ -191,17 +219,17 @@ impl ObstaclesView<'_> {
 
     /// Sets the pose of the camera from this frame on, as [`GroundSource::Given`] has it.
     pub fn set_pose(&mut self, pitch_mrad: i16, height_mm: u16) -> Result<(), ObstacleError> {
-        let Some(setup) = &mut self.state.setup else { return Ok(()) };
+        let Some(setup) = self.setup() else { return Ok(()) };
         let config = ObstacleConfig { ground: GroundSource::Given { pitch_mrad, height_mm }, ..setup.config };
         config.check()?;
-        setup.config = config;
+        self.state.setup.config = config;
         Ok(())
     }
 
     /// Takes row `y` of pixels, with its confidences or none. A row that has been, and one that is too short,
     /// is ignored; rows that are left out count as lost.
     pub fn push(&mut self, y: usize, disparities: &[Disparity], flags: &[PixelFlags], confidences: &[u8]) {
-        let Some(setup) = self.state.setup else { return };
+        let Some(setup) = self.setup() else { return };
         let pixels = setup.columns * usize::from(setup.config.cell_width);
         if y < self.state.next || y >= setup.height || disparities.len().min(flags.len()) < pixels {
             return;
@@ -250,7 +278,7 @@ impl ObstaclesView<'_> {
     ///
     /// The ground is carried over frames that are not.
     pub fn finish(&mut self) -> Result<(), BlindReason> {
-        let Some(setup) = self.state.setup else { return Err(BlindReason::NoFrame) };
+        let Some(setup) = self.setup() else { return Err(BlindReason::NoFrame) };
         self.pass(&setup, setup.height);
         let (config, rig) = (&setup.config, &setup.rig);
         let all = (setup.columns * setup.rows) as u32;
@@ -274,12 +302,23 @@ impl ObstaclesView<'_> {
         let labelling = Labelling::new(cells, self.state.carried.ground, *config, self.bins);
         let columns = self.columns.get_mut(..setup.columns).unwrap_or_default();
         stixels(&labelling, columns, self.labels.get_mut(..setup.rows).unwrap_or_default());
+        self.state.is_finished = true;
         self.state.blind.map_or(Ok(()), Err)
+    }
+
+    /// What the start settled, if there was one.
+    pub(super) fn setup(&self) -> Option<Setup> {
+        Some(self.state.setup).filter(|setup| setup.columns > 0)
+    }
+
+    /// Why the last frame is not to be trusted, if it is not.
+    pub fn blind(&self) -> Option<BlindReason> {
+        if self.state.is_finished { self.state.blind } else { Some(BlindReason::NoFrame) }
     }
 
     /// The disparity of a cell of the last frame.
     pub fn cell(&self, column: usize, row: usize) -> Disparity {
-        let Some(setup) = &self.state.setup else { return Disparity::NONE };
+        let Some(setup) = self.setup() else { return Disparity::NONE };
         let cell = self.cells.get(row * setup.columns + column).filter(|_| column < setup.columns);
         cell.copied().unwrap_or(Disparity::NONE)
     }
@@ -292,7 +331,7 @@ pub(super) fn cells<'a>(setup: &Setup, cells: &'a [Disparity]) -> Cells<'a> {
         columns: setup.columns,
         rows: setup.rows,
         cell_height: setup.config.cell_height.into(),
-        offset: setup.scale.offset_steps(),
+        offset: setup.offset_steps,
         farthest: i32::from(ObstacleConfig::FARTHEST_SIGMAS * setup.config.sigma_steps),
     }
 }

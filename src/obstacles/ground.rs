@@ -22,6 +22,8 @@ pub(super) struct RigNumbers {
 }
 
 impl RigNumbers {
+    pub(super) const ZERO: Self = Self { focal_16ths: 0, cx_16ths: 0, cy_halves: 0, baseline_16ths: 0 };
+
     pub(super) fn new(scale: &DepthScale) -> Self {
         let rig = scale.rig();
         let whole = |x: f32| round(x.clamp(-1e9, 1e9)) as i32;

@@ -28,7 +28,7 @@ impl ObstaclesView<'_> {
     /// Obstacles and drops have their distance, a free sector has infinity ("no return"), and a blind one is
     /// not a number ("invalid").
     pub fn laser_scan(&self, ranges: &mut [f32]) -> LaserScan {
-        let Some(setup) = &self.state.setup else { return LaserScan::default() };
+        let Some(setup) = self.setup() else { return LaserScan::default() };
         let sectors = self.sectors();
         for (place, range) in ranges.iter_mut().enumerate().take(sectors) {
             let sector = self.sector(sectors - 1 - place);
@@ -40,7 +40,7 @@ impl ObstaclesView<'_> {
         }
         let [first, last] = setup.ends_mrad.map(|end| f32::from(end) / 1000.0);
         let increment = (last - first) / sectors.max(1) as f32;
-        let largest = i32::from(u16::MAX - 1) + setup.scale.offset_steps();
+        let largest = i32::from(u16::MAX - 1) + setup.offset_steps;
         LaserScan {
             angle_min: -(last - increment / 2.0),
             angle_max: -(first + increment / 2.0),

@@ -4,7 +4,6 @@ use super::config::ObstacleConfig;
 use super::finder::{ObstaclesView, Setup};
 use super::ground::Ground;
 use super::stixel::{Column, StixelKind};
-use super::watchdog::BlindReason;
 use crate::units::Disparity;
 
 /// What a sector shows.
@@ -73,7 +72,7 @@ impl Setup {
     /// Depth of a parallax, mm: 65535 beyond, and at or behind infinity.
     pub(super) fn depth_mm(&self, parallax: i32) -> u16 {
         let Ok(parallax @ 1..) = u32::try_from(parallax) else { return u16::MAX };
-        let rounded = u64::from(self.scale.millimetre_steps()) + u64::from(parallax / 2);
+        let rounded = u64::from(self.millimetre_steps) + u64::from(parallax / 2);
         let depth = u32::try_from(rounded).unwrap_or(u32::MAX).checked_div(parallax);
         depth.unwrap_or(u32::MAX).min(u16::MAX.into()) as u16
     }
@@ -105,7 +104,7 @@ impl Setup {
         let [first, last] = self.ends_mrad.map(i32::from);
         let place = (i32::from(bearing_mrad) - first) * i32::from(self.config.sectors);
         let sector = place.checked_div((last - first).max(1)).unwrap_or(0);
-        sector.clamp(0, i32::from(self.config.sectors) - 1) as usize
+        sector.min(i32::from(self.config.sectors) - 1).max(0) as usize
     }
 
     /// Bearing of a sector's middle, thousandths of a radian.
@@ -119,7 +118,7 @@ impl Setup {
 impl ObstaclesView<'_> {
     /// Number of columns of cells in a frame.
     pub fn columns(&self) -> usize {
-        self.state.setup.map_or(0, |setup| setup.columns)
+        self.setup().map_or(0, |setup| setup.columns)
     }
 
     /// The ground of the last frame, if one is known.
@@ -127,19 +126,14 @@ impl ObstaclesView<'_> {
         self.state.carried.ground
     }
 
-    /// Why the last frame is not to be trusted, if it is not.
-    pub fn blind(&self) -> Option<BlindReason> {
-        self.state.blind
-    }
-
     /// The stixel of a column of cells in the last frame; nothing for a column that is not there.
     pub fn stixel(&self, column: usize) -> Stixel {
-        let setup = self.state.setup.filter(|setup| column < setup.columns);
+        let setup = self.setup().filter(|setup| column < setup.columns);
         let Some((setup, found)) = setup.zip(self.columns.get(column)) else { return Stixel::default() };
         let cell = u16::from(setup.config.cell_height);
         let rows = (u16::from(found.top) * cell, u16::from(found.base) * cell + cell - 1);
         let none = found.kind == StixelKind::Nothing;
-        let steps = found.parallax - setup.scale.offset_steps();
+        let steps = found.parallax - setup.offset_steps;
         Stixel {
             kind: found.kind,
             top_row: if none { 0 } else { rows.0 },
@@ -156,7 +150,7 @@ impl ObstaclesView<'_> {
 
     /// Number of sectors.
     pub fn sectors(&self) -> usize {
-        self.state.setup.map_or(0, |setup| setup.config.sectors.into())
+        self.setup().map_or(0, |setup| setup.config.sectors.into())
     }
 
     /// Sector `index` of the last frame, counted from the left; blind for one that is not there.
@@ -164,9 +158,9 @@ impl ObstaclesView<'_> {
     /// It is blind in a frame that is not to be trusted, and where no surface is found and at most half of
     /// its columns see the ground.
     pub fn sector(&self, index: usize) -> Sector {
-        let Some(setup) = &self.state.setup else { return Sector::default() };
+        let Some(setup) = self.setup() else { return Sector::default() };
         let mut sector = Sector { bearing_mrad: setup.middle_mrad(index), ..Sector::default() };
-        if self.state.blind.is_some() || index >= setup.config.sectors.into() {
+        if self.blind().is_some() || index >= setup.config.sectors.into() {
             return sector;
         }
         let ground = self.state.carried.ground;
@@ -216,6 +210,6 @@ impl ObstaclesView<'_> {
         let parallax = |setup: Setup| {
             setup.depth_mm(i32::from(ObstacleConfig::FARTHEST_SIGMAS * setup.config.sigma_steps))
         };
-        self.state.setup.map_or(0, parallax)
+        self.setup().map_or(0, parallax)
     }
 }

@@ -145,7 +145,7 @@ impl<'a> Labelling<'a> {
     fn costs(&self, row: &Interval, parallax: Option<i32>, per_step: i32, most: i32) -> [u16; 4] {
         let Some(parallax) = parallax else { return UNANSWERED };
         let beyond = |by: i32| {
-            let by = by.clamp(0, most);
+            let by = by.max(0).min(most);
             let rising = 1 + ((by * per_step) >> 16);
             if by == 0 { 0 } else { rising.min(MOST) as u16 }
         };
@@ -173,7 +173,8 @@ impl<'a> Labelling<'a> {
         let mut sums = [0_u16; 4];
         let mut below = None;
         let (mut answered, mut last) = (0, BEYOND);
-        for ((row, step), bins) in labels.iter_mut().enumerate().take(rows).zip(intervals).rev() {
+        for row in (0..rows).rev() {
+            let (Some(step), Some(bins)) = (labels.get_mut(row), intervals.get(row)) else { break };
             let parallax = self.cells.parallax(column, row);
             let breaks =
                 parallax.zip(below).is_some_and(|(p, b): (i32, i32)| (p - b).abs() > self.same_surface);
@@ -236,14 +237,18 @@ impl<'a> Labelling<'a> {
     }
 
     /// Parallax and deviation of a segment: the mean of its cells, and the root of the answers' variance plus
-    /// the cells'. A drop has those of the ground at its edge.
+    /// the cells'. A drop has the ground's parallax at its edge, whose place is known to a cell.
     fn measured(&self, column: usize, segment: Column, label: usize, sum: i32) -> Option<Column> {
         if segment.cells < FEWEST_CELLS || !matches!(label, OBSTACLE | DROP) {
             return None;
         }
-        let sigma = self.config.sigma_steps.min(255) as u8;
+        let own = u64::from(self.config.sigma_steps);
         if label == DROP {
-            let edge = self.ground?.parallax(self.cells.halves(segment.base.into()));
+            let ground = self.ground?;
+            let edge = ground.parallax(self.cells.halves(segment.base.into()));
+            // The edge is anywhere in its row of cells: a uniform distribution.
+            let cell = ((ground.slope * self.cells.cell_height) >> 16) as u64;
+            let sigma = (own * own + cell * cell / 12).isqrt().min(255) as u8;
             return Some(Column { kind: StixelKind::Drop, parallax: edge, sigma, ..segment });
         }
         let count = i32::from(segment.cells);
@@ -254,7 +259,6 @@ impl<'a> Labelling<'a> {
             (off * off) as u64
         });
         let variance = squares.sum::<u64>().checked_div(count as u64)?;
-        let own = u64::from(self.config.sigma_steps);
         let sigma = (variance + own * own).isqrt().min(255) as u8;
         Some(Column { kind: StixelKind::Obstacle, parallax, sigma, ..segment })
     }

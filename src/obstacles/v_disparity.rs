@@ -116,22 +116,26 @@ struct Sums {
     last_row: usize,
 }
 
-/// Adds the cells within `band` of a line; `a` is the half-row less `origin[0]`, `b` the parallax less
-/// `origin[1]`.
+/// Adds the cells within `band` of a line whose neighbours above and below are, too: at the edge of the
+/// ground and of the picture a matching window sees more of the one side. `a` is the half-row less
+/// `origin[0]`, `b` the parallax less `origin[1]`.
 fn sums(cells: &Cells<'_>, line: &Ground, band: i32, origin: [i64; 2]) -> Sums {
     let mut sums = Sums::default();
-    for row in 0..cells.rows {
-        let expected = line.parallax(cells.halves(row));
+    for row in 1..cells.rows.saturating_sub(1) {
+        let [above, expected, below] = [row - 1, row, row + 1].map(|row| line.parallax(cells.halves(row)));
         if expected < cells.farthest {
             continue;
         }
         let a = cells.halves(row) - origin[0];
         for column in 0..cells.columns {
-            let Some(parallax) = cells.parallax(column, row) else { continue };
-            let off = parallax - expected;
-            if off.abs() > band {
+            let off = |row: usize, expected: i32| {
+                cells.parallax(column, row).map(|p| p - expected).filter(|off| off.abs() <= band)
+            };
+            let Some(off_here) = off(row, expected) else { continue };
+            if off(row - 1, above).is_none() || off(row + 1, below).is_none() {
                 continue;
             }
+            let (off, parallax) = (off_here, expected + off_here);
             let b = i64::from(parallax) - origin[1];
             sums.n += 1;
             sums.a += a;
@@ -162,7 +166,8 @@ fn refined(cells: &Cells<'_>, line: &Ground, band: i32, rig: &RigNumbers) -> Opt
 /// The ground of a frame: the line of most cells of [`DRAWS`] that are drawn and the carried one, fitted
 /// twice by least squares.
 ///
-/// It is refused if fewer than 8 cells or a sixteenth of those with an answer are within half a px of it, or
+/// It is refused if fewer than 8 cells or a sixteenth of those with an answer are within half a px of it,
+/// with their neighbours above and below, or
 /// if these reach over less than an eighth of the rows. Its variance is four times that of the mean: cells
 /// side by side share windows.
 pub(super) fn fit(

@@ -9,9 +9,11 @@ use crate::units::PixelFlags;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
+#[repr(u8)]
 pub enum BlindReason {
     /// No frame has been finished since the start.
-    NoFrame,
+    // From 1 on, so that no reason is a zero byte: a new finder is all zeros.
+    NoFrame = 1,
     /// Too many rows were lost or are damaged.
     RowsLost,
     /// Too few cells have an answer: darkness, a covered lens, a white wall.

@@ -31,7 +31,7 @@ pub mod stack;
 pub mod ticker;
 
 pub use firmware_boards as board;
-pub use firmware_scenes::{any_frames, raw_pair, scene, sweep, two_pictures, two_views, walk, window};
+pub use firmware_scenes::{any_frames, drive, raw_pair, scene, sweep, two_pictures, two_views, walk, window};
 
 /// The method, the sizes and the board: `build.rs` writes this from the environment.
 pub mod choice {

@@ -13,6 +13,7 @@ mod focus;
 #[cfg(unix)]
 mod guarded;
 mod many;
+mod obstacles;
 mod odometry;
 mod output;
 mod pair;

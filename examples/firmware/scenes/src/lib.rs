@@ -2,6 +2,7 @@
 //! same and compares every bit.
 //!
 //! * [`any_frames`]: frames of any size, with all that can be asked of them.
+//! * [`drive`]: a robot that drives towards a board, and what its motors are given.
 //! * [`scene`]: a scene that is computed line by line. [`pgm`]: the header of a picture.
 //! * [`raw_pair`]: raw lines, rectified, and depth from them.
 //! * [`two_pictures`]: features of two cameras' lines, and their matches.
@@ -12,6 +13,7 @@
 #![no_std]
 
 pub mod any_frames;
+pub mod drive;
 pub mod pgm;
 pub mod raw_pair;
 pub mod scene;

@@ -137,7 +137,7 @@ const FLOOR: u32 = 0x5EED_0001;
 const BOARD: u32 = 0x5EED_0002;
 
 /// The brightness of a surface at a column in 1/16 px: between two columns the straight line.
-fn texture(u: i32, v: i32, seed: u32) -> u8 {
+pub(crate) fn texture(u: i32, v: i32, seed: u32) -> u8 {
     let column = u >> FRACTION_BITS;
     let part = (u & ((1 << FRACTION_BITS) - 1)) as u32;
     let (a, b) = (grain(column, v, seed), grain(column + 1, v, seed));
@@ -159,7 +159,7 @@ fn noisy(pixel: u8, u: i32, v: i32, camera: u32) -> u8 {
 }
 
 /// A well-mixed word for each pair of coordinates (a multiply-xorshift hash).
-fn hash(u: i32, v: i32, seed: u32) -> u32 {
+pub(crate) fn hash(u: i32, v: i32, seed: u32) -> u32 {
     let mut h = seed ^ (u as u32).wrapping_mul(0x9E37_79B1) ^ (v as u32).wrapping_mul(0x85EB_CA77);
     h = (h ^ (h >> 15)).wrapping_mul(0x2C1B_3C6D);
     h = (h ^ (h >> 12)).wrapping_mul(0x297A_2D39);

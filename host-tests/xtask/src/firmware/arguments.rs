@@ -13,10 +13,10 @@ use stereopsis_host::run::{MethodName, NoiseChoice, UnknownNoise};
 #[derive(Args)]
 pub struct Arguments {
     /// The program: depth, rows of disparity; pose, two views; bundle, their adjustment; features, corners
-    /// of two pictures and their matches; focus, a lens that moves; odometry, where a pair goes;
-    /// rectify, raw lines; or interrupt, lines that a timer brings
+    /// of two pictures and their matches; focus, a lens that moves; drive, a robot among obstacles;
+    /// odometry, where a pair goes; rectify, raw lines; or interrupt, lines that a timer brings
     #[arg(long, default_value = "depth", value_parser =
-        ["depth", "pose", "bundle", "features", "focus", "odometry", "rectify", "interrupt"])]
+        ["depth", "pose", "bundle", "features", "focus", "drive", "odometry", "rectify", "interrupt"])]
     program: String,
     /// With a program other than depth: made for size, not for speed
     #[arg(long)]
@@ -103,6 +103,8 @@ pub enum Asked {
     Features(Plain),
     /// A lens that moves, on one core.
     Focus(Plain),
+    /// A robot among obstacles, on one core.
+    Drive(Plain),
     /// Where a pair goes, on one core.
     Odometry(Plain),
     /// Raw lines rectified, on one core.
@@ -146,10 +148,10 @@ impl Arguments {
             if board == board::RV32 && name == "interrupt" {
                 return Err(Failure::new("--core rv32: interrupt needs the timer of a Cortex-M"));
             }
-            if self.small && name == "rectify" {
-                return Err(Failure::new(
-                    "--small: rectify has the dense path in it, which is made for speed",
-                ));
+            if self.small && (name == "rectify" || name == "drive") {
+                return Err(Failure::new(format!(
+                    "--small: {name} has the dense path in it, which is made for speed"
+                )));
             }
             if pair.is_some() || self.disparities.is_some() {
                 return Err(Failure::new(format!(
@@ -161,6 +163,7 @@ impl Arguments {
             return Ok(match name.as_str() {
                 "pose" => Asked::Pose(plain),
                 "bundle" => Asked::Bundle(plain),
+                "drive" => Asked::Drive(plain),
                 "features" => Asked::Features(plain),
                 "odometry" => Asked::Odometry(plain),
                 "rectify" => Asked::Rectify(plain),

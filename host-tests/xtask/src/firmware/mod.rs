@@ -13,6 +13,7 @@
 //! * [`features`]: features of two pictures and their matches, on one core and on those of the table.
 //! * [`focus`]: a lens that moves, likewise. [`odometry`]: where a pair of cameras goes. [`interrupt`]: lines
 //!   that an interrupt brings.
+//! * [`drive`]: a robot that drives by its obstacles, likewise.
 //! * [`rectify`]: raw lines, and depth from them, likewise.
 //! * [`results`]: the run of such a program, and what it leaves; [`plain`]: the table of it.
 //! * [`stages`]: a frame's instructions by stage. [`profiles`]: a program by levels of optimisation.
@@ -24,6 +25,7 @@ mod as_match;
 mod awkward;
 mod bundle;
 mod checksums;
+mod drive;
 pub mod emulate;
 mod features;
 mod focus;
@@ -52,6 +54,7 @@ use crate::setup;
 use crate::steps::{Failure, Outcome};
 use arguments::{Asked, Plain};
 use bundle::Bundle;
+use drive::Drive;
 use features::Features;
 use firmware_boards::{self as board, Board};
 use focus::Focus;
@@ -71,6 +74,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Asked::Depth(one) => one_frame::run(&one),
         Asked::Pose(plain) => run_plain(&plain, pose::run, Pose::summary),
         Asked::Features(plain) => run_plain(&plain, features::run, Features::summary),
+        Asked::Drive(plain) => run_plain(&plain, drive::run, Drive::summary),
         Asked::Focus(plain) => run_plain(&plain, focus::run, Focus::summary),
         Asked::Bundle(plain) => run_plain(&plain, bundle::run, Bundle::summary),
         Asked::Odometry(plain) => run_plain(&plain, odometry::run, Odometry::summary),
@@ -89,6 +93,7 @@ fn run_all(readme: Readme) -> Outcome {
     plain::run_all(readme, bundle::run, Bundle::summary)?;
     plain::run_all(readme, features::run, Features::summary)?;
     plain::run_all(readme, focus::run, Focus::summary)?;
+    plain::run_all(readme, drive::run, Drive::summary)?;
     plain::run_all(readme, odometry::run, Odometry::summary)?;
     plain::run_all(readme, rectify::run, Rectify::summary)?;
     println!("{}", interrupt::run(board::M4, Optimised::Speed)?.summary());

@@ -71,16 +71,19 @@ fn score(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line) -> usize {
     score
 }
 
-/// Cells within `band` of a line, as half-rows and parallaxes.
+/// Cells within `band` of a line, as are those above and below, as half-rows and parallaxes.
 fn near(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line, band: i128) -> Vec<(i128, i128)> {
     let [columns, rows] = scene.size();
     let mut found = Vec::new();
-    for row in 0..rows {
+    let parallax = |row: usize, column: usize| cells[row * columns + column].map(|d| d + scene.offset);
+    let fits = |row: usize, column: usize| {
         let expected = line.at(scene.halves(row));
-        for d in cells[row * columns..(row + 1) * columns].iter().flatten() {
-            let parallax = d + scene.offset;
-            if expected >= scene.farthest() && (parallax - expected).abs() <= band {
-                found.push((scene.halves(row), parallax));
+        parallax(row, column).is_some_and(|parallax| (parallax - expected).abs() <= band)
+    };
+    for row in (1..rows.max(1) - 1).filter(|&row| line.at(scene.halves(row)) >= scene.farthest()) {
+        for column in 0..columns {
+            if (row - 1..=row + 1).all(|row| fits(row, column)) {
+                found.extend(parallax(row, column).map(|p| (scene.halves(row), p)));
             }
         }
     }

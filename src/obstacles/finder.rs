@@ -2,14 +2,14 @@
 
 use super::config::{GroundSource, ObstacleConfig, ObstacleError};
 use super::grid::{Filling, fill};
-use super::ground::{CarriedGround, Ground, RigNumbers};
+use super::ground::{CarriedGround, Ground};
+use super::setup::Setup;
 use super::stixel::{Column, Labelling};
 use super::surfaces::stixels;
-use super::v_disparity::{BINS, Cells, bin_shift, count, fit};
+use super::v_disparity::{BINS, count, fit};
 use super::watchdog::{BlindReason, Watchdog};
 use crate::depth::DepthScale;
 use crate::imaging::PairMonitor;
-use crate::math::{atan, round};
 use crate::units::{Disparity, PixelFlags};
 
 /// Obstacles of frames of up to `C` columns and `R` rows of cells, in fixed memory: about `2 C R + 31 C + 33
@@ -39,37 +39,6 @@ pub(super) struct ObstaclesState {
     is_finished: bool,
     /// What the last finished frame was judged.
     blind: Option<BlindReason>,
-}
-
-/// What a start settles. Before it, all is zero, as is all of a new finder.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Setup {
-    pub(super) config: ObstacleConfig,
-    /// `f b`, millimetres times steps of disparity.
-    pub(super) millimetre_steps: u32,
-    /// `doffs`, steps of disparity.
-    pub(super) offset_steps: i32,
-    pub(super) rig: RigNumbers,
-    pub(super) columns: usize,
-    pub(super) rows: usize,
-    height: usize,
-    shift: u32,
-    /// Bearings of the first and the last column of pixels, thousandths of a radian.
-    pub(super) ends_mrad: [i16; 2],
-}
-
-impl Setup {
-    const NOT_STARTED: Self = Self {
-        config: ObstacleConfig::ZERO,
-        millimetre_steps: 0,
-        offset_steps: 0,
-        rig: RigNumbers::ZERO,
-        columns: 0,
-        rows: 0,
-        height: 0,
-        shift: 0,
-        ends_mrad: [0; 2],
-    };
 }
 
 /// A borrowed [`Obstacles`] of any size.
@@ -164,41 +133,21 @@ impl ObstaclesView<'_> {
     ) -> Result<(), ObstacleError> {
         self.state.setup = Setup::NOT_STARTED;
         self.state.is_finished = false;
-        config.check()?;
-        let [width, height] = size.map(usize::from);
-        let part = |side: usize, cell: u8| side.checked_div(usize::from(cell)).unwrap_or(0);
-        let (columns, rows) = (part(width, config.cell_width), part(height, config.cell_height));
-        let fewest = self.columns.len().min(self.filling.len()).min(self.bearings.len());
-        if columns == 0 || columns > fewest {
-            return Err(ObstacleError::Columns { needed: columns.max(1) });
+        let most_columns = self.columns.len().min(self.filling.len()).min(self.bearings.len());
+        let most_rows = self.labels.len().min(self.bins.len() / BINS).min(255);
+        let setup = Setup::new(config, scale, size, largest)?;
+        if setup.columns > most_columns {
+            return Err(ObstacleError::Columns { needed: setup.columns });
         }
-        let most = self.labels.len().min(self.bins.len() / BINS).min(self.cells.len() / columns.max(1));
-        if rows == 0 || rows > most.min(255) {
-            return Err(ObstacleError::Rows { needed: rows.max(1) });
+        if setup.rows > most_rows || setup.rows * setup.columns > self.cells.len() {
+            return Err(ObstacleError::Rows { needed: setup.rows });
         }
-        let rig = RigNumbers::new(scale);
-        let bearing = |u: f32| {
-            let tangent = (u - rig.cx_16ths as f32 / 16.0) * 16.0 / rig.focal_16ths as f32;
-            round(1000.0 * atan(tangent)) as i16
-        };
         let half = f32::from(config.cell_width - 1) / 2.0;
         for (x, to) in self.bearings.iter_mut().enumerate() {
-            *to = bearing((x * usize::from(config.cell_width)) as f32 + half);
+            *to = setup.rig.bearing_mrad((x * usize::from(config.cell_width)) as f32 + half);
         }
-        let ends_mrad = [bearing(0.0), bearing((columns * usize::from(config.cell_width) - 1) as f32)];
-        let shift = bin_shift(largest);
         self.state.carried = CarriedGround::NONE;
-        self.state.setup = Setup {
-            config: *config,
-            millimetre_steps: scale.millimetre_steps(),
-            offset_steps: scale.offset_steps(),
-            rig,
-            columns,
-            rows,
-            height,
-            shift,
-            ends_mrad,
-        };
+        self.state.setup = setup;
         self.begin();
         Ok(())
     }
@@ -235,10 +184,10 @@ impl ObstaclesView<'_> {
             return;
         }
         self.pass(&setup, y);
-        self.state.watchdog.row(flags);
         let cells = self.filling.get_mut(..setup.columns).unwrap_or_default();
         let width = usize::from(setup.config.cell_width);
-        fill(cells, width, disparities, flags, confidences, setup.config.min_confidence);
+        let all = fill(cells, width, disparities, flags, confidences, setup.config.min_confidence);
+        self.state.watchdog.row(all);
         self.state.next = y + 1;
         if self.state.next.is_multiple_of(usize::from(setup.config.cell_height.max(1))) {
             self.close(&setup, y);
@@ -284,7 +233,7 @@ impl ObstaclesView<'_> {
         let all = (setup.columns * setup.rows) as u32;
         self.state.blind = self.state.watchdog.judge(config, setup.height as u32, all);
         let sound = self.state.blind.is_none();
-        let cells = cells(&setup, self.cells);
+        let cells = setup.cells(self.cells);
         let at = [cells.halves(setup.rows / 2), cells.halves(setup.rows.saturating_sub(1))];
         let carried = self.state.carried.ground;
         let measured = match config.ground {
@@ -321,17 +270,5 @@ impl ObstaclesView<'_> {
         let Some(setup) = self.setup() else { return Disparity::NONE };
         let cell = self.cells.get(row * setup.columns + column).filter(|_| column < setup.columns);
         cell.copied().unwrap_or(Disparity::NONE)
-    }
-}
-
-/// The cells of a frame, with the numbers that their geometry needs.
-pub(super) fn cells<'a>(setup: &Setup, cells: &'a [Disparity]) -> Cells<'a> {
-    Cells {
-        cells,
-        columns: setup.columns,
-        rows: setup.rows,
-        cell_height: setup.config.cell_height.into(),
-        offset: setup.offset_steps,
-        farthest: i32::from(ObstacleConfig::FARTHEST_SIGMAS * setup.config.sigma_steps),
     }
 }

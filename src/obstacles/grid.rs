@@ -5,30 +5,37 @@ use crate::units::{Disparity, PixelFlags};
 /// A group of a cell's answers, each within one px of the one before it: a slanted surface is one group.
 #[derive(Clone, Copy, Default, Debug)]
 pub(super) struct Cluster {
-    sum: u32,
+    /// Number of answers in the upper 8 bits, their sum in the others: 255 of them are below 2^24.
+    total: u32,
     last: u16,
-    count: u8,
 }
 
 impl Cluster {
-    pub(super) const EMPTY: Self = Self { sum: 0, last: 0, count: 0 };
+    const EMPTY: Self = Self { total: 0, last: 0 };
+
+    fn is_empty(self) -> bool {
+        self.total == 0
+    }
+
+    fn count(self) -> u32 {
+        self.total >> 24
+    }
 
     /// Adds an answer that belongs to the group, or begins one; returns whether it did.
-    #[inline]
+    #[inline(always)]
     fn take(&mut self, d: u16) -> bool {
-        if self.count != 0 && d.abs_diff(self.last) > Disparity::ONE {
+        if d.abs_diff(self.last) > Disparity::ONE && !self.is_empty() {
             return false;
         }
-        // At most 255 pixels.
-        *self = Self { sum: self.sum.wrapping_add(u32::from(d)), last: d, count: self.count.wrapping_add(1) };
+        *self = Self { total: self.total.wrapping_add(1 << 24 | u32::from(d)), last: d };
         true
     }
 
     /// The mean answer, rounded, of a group of at least `least` pixels.
-    fn mean(&self, least: u8) -> Option<u16> {
-        let count = u32::from(self.count);
-        let mean = (self.sum + count / 2).checked_div(count)?;
-        (self.count >= least).then_some(mean as u16)
+    fn mean(self, least: u32) -> Option<u16> {
+        let (count, sum) = (self.count(), self.total & 0xff_ffff);
+        let mean = (sum + count / 2).checked_div(count)?;
+        (count >= least).then_some(mean as u16)
     }
 }
 
@@ -42,30 +49,57 @@ pub(super) struct Filling([Cluster; 2]);
 impl Filling {
     pub(super) const EMPTY: Self = Self([Cluster::EMPTY; 2]);
 
-    #[inline]
-    fn take(&mut self, d: u16) {
-        let [first, second] = &mut self.0;
-        if first.take(d) || second.take(d) {
-            return;
-        }
-        if second.count == 1 {
+    /// Adds an answer that did not join the first group.
+    // Seldom, so that the loop over pixels stays small.
+    #[inline(never)]
+    fn take_second(&mut self, d: u16) {
+        let [_, second] = &mut self.0;
+        if !second.take(d) && second.count() == 1 {
             *second = Cluster::EMPTY;
             second.take(d);
         }
     }
 
+    /// Adds a row's pixels of the cell, as far as they count, and returns the bits of all flags.
+    #[inline(always)]
+    fn take(&mut self, disparities: &[Disparity], flags: &[PixelFlags]) -> u8 {
+        let [mut first, _] = self.0;
+        let mut all = 0;
+        for (d, flags) in disparities.iter().zip(flags) {
+            all |= flags.bits();
+            if d.is_some() && !flags.intersects(LEFT_OUT) && !first.take(d.raw()) {
+                self.take_second(d.raw());
+            }
+        }
+        self.0[0] = first;
+        all
+    }
+
+    /// Adds four pixels of which none has a flag that leaves it out.
+    #[inline(always)]
+    fn take_four(&mut self, disparities: &[Disparity; 4]) {
+        let [mut first, _] = self.0;
+        for d in disparities {
+            if d.is_some() && !first.take(d.raw()) {
+                self.take_second(d.raw());
+            }
+        }
+        self.0[0] = first;
+    }
+
     /// The nearer of the groups that hold a quarter of the cell's `area`.
     pub(super) fn answer(&self, area: u8) -> Disparity {
-        let least = area.div_ceil(4);
+        let least = u32::from(area.div_ceil(4));
         let nearest = self.0.iter().filter_map(|group| group.mean(least)).max();
         nearest.map_or(Disparity::NONE, Disparity::from_raw)
     }
 }
 
-/// Whether an answer with these flags counts: what was filled in is a guess, what is damaged may be wrong.
+/// What an answer must not have, to count: what was filled in is a guess, what is damaged may be wrong.
 const LEFT_OUT: PixelFlags = PixelFlags::FILLED.union(PixelFlags::DAMAGED);
 
-/// Adds a row of pixels to cells `cell_width` px wide. Confidences may be empty.
+/// Adds a row of pixels to cells `cell_width` px wide, and returns all flags that a pixel of it has.
+/// Confidences may be empty.
 pub(super) fn fill(
     cells: &mut [Filling],
     cell_width: usize,
@@ -73,27 +107,41 @@ pub(super) fn fill(
     flags: &[PixelFlags],
     confidences: &[u8],
     min_confidence: u8,
-) {
+) -> PixelFlags {
     let width = cell_width.max(1);
-    let pixels = disparities.chunks_exact(width).zip(flags.chunks_exact(width));
-    if confidences.is_empty() || min_confidence == 0 {
+    let mut all = 0;
+    if !confidences.is_empty() && min_confidence > 0 {
+        let pixels = disparities.chunks_exact(width).zip(flags.chunks_exact(width));
+        for (cell, ((disparities, flags), sure)) in
+            cells.iter_mut().zip(pixels.zip(confidences.chunks_exact(width)))
+        {
+            for ((d, flags), &confidence) in disparities.iter().zip(flags).zip(sure) {
+                let d = if confidence < min_confidence { Disparity::NONE } else { *d };
+                all |= cell.take(&[d], &[*flags]);
+            }
+        }
+    } else if let 4 = width {
+        // The default width, unrolled, with four flags in a word.
+        const LEFT_OUT_4: u32 = 0x0101_0101 * LEFT_OUT.bits() as u32;
+        let pixels = disparities.as_chunks::<4>().0.iter().zip(flags.as_chunks::<4>().0);
+        let mut all_4 = 0;
         for (cell, (disparities, flags)) in cells.iter_mut().zip(pixels) {
-            for (d, flags) in disparities.iter().zip(flags) {
-                if d.is_some() && !flags.intersects(LEFT_OUT) {
-                    cell.take(d.raw());
-                }
+            let word = u32::from_le_bytes(flags.map(PixelFlags::bits));
+            all_4 |= word;
+            if word & LEFT_OUT_4 == 0 {
+                cell.take_four(disparities);
+            } else {
+                cell.take(disparities, flags);
             }
         }
-        return;
-    }
-    let pixels = pixels.zip(confidences.chunks_exact(width));
-    for (cell, ((disparities, flags), confidences)) in cells.iter_mut().zip(pixels) {
-        for ((d, flags), &confidence) in disparities.iter().zip(flags).zip(confidences) {
-            if d.is_some() && !flags.intersects(LEFT_OUT) && confidence >= min_confidence {
-                cell.take(d.raw());
-            }
+        all = all_4.to_le_bytes().into_iter().fold(0, |all, bits| all | bits);
+    } else {
+        let pixels = disparities.chunks_exact(width).zip(flags.chunks_exact(width));
+        for (cell, (disparities, flags)) in cells.iter_mut().zip(pixels) {
+            all |= cell.take(disparities, flags);
         }
     }
+    PixelFlags::from_bits(all)
 }
 
 #[cfg(test)]
@@ -103,7 +151,7 @@ mod tests {
     #[test]
     fn a_cell_answers_with_its_nearer_large_group() {
         let mut cell = Filling::EMPTY;
-        [320, 330, 640, 641, 900, 322].into_iter().for_each(|d| cell.take(d));
+        cell.take(&[320, 330, 640, 641, 900, 322].map(Disparity::from_raw), &[PixelFlags::CLEAR; 6]);
         // Quarters of 8 pixels: (320 + 330 + 322) / 3 and (640 + 641) / 2 rounded up.
         assert_eq!(cell.answer(8), Disparity::from_raw(641));
         assert_eq!(cell.answer(12), Disparity::from_raw(324));

@@ -34,6 +34,12 @@ impl RigNumbers {
             baseline_16ths: whole(16_000.0 * rig.baseline_m()).max(1),
         }
     }
+
+    /// Bearing of a column of pixels, thousandths of a radian to the right.
+    pub(super) fn bearing_mrad(&self, u: f32) -> i16 {
+        let tangent = (u - self.cx_16ths as f32 / 16.0) * 16.0 / self.focal_16ths as f32;
+        round(1000.0 * atan(tangent)) as i16
+    }
 }
 
 /// A ground plane without roll: its parallax `d + doffs` grows by a constant from row to row.
@@ -62,7 +68,8 @@ pub struct Ground {
 impl Ground {
     /// Parallax of the ground at half-row `halves` (row `halves / 2`), whole steps of disparity.
     pub(super) fn parallax(&self, halves: i64) -> i32 {
-        let exact = self.level.saturating_add(self.slope.saturating_mul(halves) / 2) >> 16;
+        // The slope is below 2^30 and rows are below 2^16: no wrap.
+        let exact = self.level.wrapping_add(self.slope.wrapping_mul(halves) / 2) >> 16;
         exact.clamp(-(1 << 20), 1 << 20) as i32
     }
 
@@ -73,13 +80,13 @@ impl Ground {
 
     /// A plane with this line; `None` where no camera in front of a plane sees such a one.
     pub(super) fn from_line(level: i64, slope: i64, variance: u32, rig: &RigNumbers) -> Option<Self> {
-        let at_centre = level.saturating_add(slope.saturating_mul(rig.cy_halves.into()) / 2);
-        let inclination = at_centre.saturating_mul(16).checked_div(rig.focal_16ths.into())?;
+        let at_centre = level.wrapping_add(slope.wrapping_mul(rig.cy_halves.into()) / 2);
+        let inclination = at_centre.wrapping_mul(16).checked_div(rig.focal_16ths.into())?;
         if !(1..STEEPEST).contains(&slope) || inclination.abs() >= STEEPEST {
             return None;
         }
         let norm = ((slope * slope + inclination * inclination) as u64).isqrt();
-        let scaled = i64::from(rig.baseline_16ths).saturating_mul(131_072) as u64;
+        let scaled = (i64::from(rig.baseline_16ths) * 131_072) as u64;
         let height_mm = u16::try_from(scaled.checked_div(norm)?).ok()?;
         let pitch_tangent = i32::try_from((inclination * 65_536).checked_div(slope)?).ok()?;
         Some(Self { level, slope, variance, height_mm, pitch_tangent })

@@ -52,6 +52,8 @@ mod config;
 mod grid;
 mod ground;
 mod v_disparity;
+mod setup;
+mod interval;
 mod stixel;
 mod surfaces;
 mod watchdog;

@@ -1,8 +1,9 @@
 //! Nearest obstacle per sector of the field of view, and stixels in pixels and millimetres.
 
 use super::config::ObstacleConfig;
-use super::finder::{ObstaclesView, Setup};
+use super::finder::ObstaclesView;
 use super::ground::Ground;
+use super::setup::Setup;
 use super::stixel::{Column, StixelKind};
 use crate::units::Disparity;
 

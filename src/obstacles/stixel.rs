@@ -3,7 +3,8 @@
 
 use super::config::{GroundSource, ObstacleConfig};
 use super::ground::Ground;
-use super::v_disparity::{BINS, Cells};
+use super::interval::Interval;
+use super::v_disparity::Cells;
 use crate::units::Disparity;
 
 /// What stands in a column.
@@ -61,45 +62,20 @@ impl Column {
 /// What contradicting a label costs at most, at three standard deviations.
 const MOST: i32 = 16;
 /// What a change of the label costs: as much as one cell that contradicts.
-const CHANGE: u16 = 16;
+const CHANGE: u32 = 16;
 /// What a cell without an answer costs as anything but beyond.
-const UNANSWERED: [u16; 4] = [8, 8, 8, 0];
+const UNANSWERED: [u32; 4] = [8, 8, 8, 0];
 /// Rows without ground that do not end what is seen of it.
 const MOST_GAP: u8 = 2;
 /// Fewest cells of a segment.
 const FEWEST_CELLS: u8 = 2;
 
-/// Labels, in the order in which ties are broken.
+/// Labels but for beyond, the last, in the order in which ties are broken.
 const OBSTACLE: usize = 0;
 const DROP: usize = 1;
 const GROUND: usize = 2;
-const BEYOND: usize = 3;
 /// Bit of a step whose disparity is another surface's.
 const BREAK: u8 = 1 << 6;
-
-/// Parallaxes between which a row shows ground.
-#[derive(Clone, Copy, Debug)]
-struct Interval {
-    /// Below this is a drop; `i32::MIN` where no ground can be seen within the range that counts.
-    low: i32,
-    high: i32,
-    expected: i32,
-}
-
-impl Interval {
-    /// Writes the numbers over a row of the v-disparity, which has been read by then.
-    fn store(&self, bins: &mut [u8; BINS]) {
-        let [low, high, expected, ..] = bins.as_chunks_mut::<4>().0 else { return };
-        (*low, *high) = (self.low.to_le_bytes(), self.high.to_le_bytes());
-        *expected = self.expected.to_le_bytes();
-    }
-
-    fn load(bins: &[u8; BINS]) -> Self {
-        let number =
-            |place: usize| bins.as_chunks::<4>().0.get(place).map_or(0, |bytes| i32::from_le_bytes(*bytes));
-        Self { low: number(0), high: number(1), expected: number(2) }
-    }
-}
 
 /// What is needed to label a column.
 #[derive(Clone, Copy, Debug)]
@@ -128,7 +104,7 @@ impl<'a> Labelling<'a> {
         let same_surface = (tolerance * 3 / 2).max(Disparity::ONE.into());
         for (row, bins) in bins.as_chunks_mut().0.iter_mut().enumerate().take(cells.rows) {
             let expected = ground.map(|ground| (ground, ground.parallax(cells.halves(row))));
-            interval(expected, &config, tolerance, cells.farthest).store(bins);
+            Interval::new(expected, &config, tolerance, cells.farthest).store(bins);
         }
         Self { cells, ground, config, tolerance, same_surface, intervals: bins }
     }
@@ -142,22 +118,22 @@ impl<'a> Labelling<'a> {
 
     /// Costs of the four labels at a cell: 0 where the answer agrees, rising to 16 at three deviations beyond
     /// the label's interval.
-    fn costs(&self, row: &Interval, parallax: Option<i32>, per_step: i32, most: i32) -> [u16; 4] {
+    fn costs(&self, row: &Interval, parallax: Option<i32>, per_step: i32, most: i32) -> [u32; 4] {
         let Some(parallax) = parallax else { return UNANSWERED };
         let beyond = |by: i32| {
             let by = by.max(0).min(most);
             let rising = 1 + ((by * per_step) >> 16);
-            if by == 0 { 0 } else { rising.min(MOST) as u16 }
+            if by == 0 { 0 } else { rising.min(MOST) as u32 }
         };
         let overhead = self.is_overhead(parallax, row.expected);
-        let obstacle = if overhead { MOST as u16 } else { beyond((row.high + 1).saturating_sub(parallax)) };
+        let obstacle = if overhead { MOST as u32 } else { beyond((row.high + 1).saturating_sub(parallax)) };
         if row.low == i32::MIN {
             let far = if overhead { 0 } else { beyond(parallax - row.high) };
-            return [obstacle, MOST as u16, MOST as u16, far];
+            return [obstacle, MOST as u32, MOST as u32, far];
         }
         let drop = beyond(parallax - (row.low - 1));
         let ground = beyond((row.low - parallax).max(parallax - row.high));
-        [obstacle, drop, ground, if overhead { 0 } else { MOST as u16 }]
+        [obstacle, drop, ground, if overhead { 0 } else { MOST as u32 }]
     }
 
     /// Labels a column, and returns its nearest obstacle or drop of a parallax below `bound`.
@@ -170,9 +146,9 @@ impl<'a> Labelling<'a> {
         let most = self.tolerance.max(1);
         let per_step = (MOST << 16) / most;
         let intervals = self.intervals.as_chunks().0;
-        let mut sums = [0_u16; 4];
+        let mut sums = [0_u32; 4];
         let mut below = None;
-        let (mut answered, mut last) = (0, BEYOND);
+        let (mut answered, mut from) = (0, OBSTACLE);
         for row in (0..rows).rev() {
             let (Some(step), Some(bins)) = (labels.get_mut(row), intervals.get(row)) else { break };
             let parallax = self.cells.parallax(column, row);
@@ -181,8 +157,6 @@ impl<'a> Labelling<'a> {
             below = parallax.or(below);
             answered += usize::from(parallax.is_some());
             let costs = self.costs(&Interval::load(bins), parallax, per_step, most);
-            // `cheapest` finds the first of equals.
-            let from = cheapest(&sums);
             let change = sums.get(from).map_or(0, |sum| sum + CHANGE);
             *step = from as u8 | if breaks { BREAK } else { 0 };
             for (label, (sum, cost)) in sums.iter_mut().zip(costs).enumerate() {
@@ -192,9 +166,10 @@ impl<'a> Labelling<'a> {
                 }
                 *sum = stay.min(change) + cost;
             }
-            last = cheapest(&sums);
+            // The first of equals, as all are below the lowest row.
+            from = cheapest(&sums);
         }
-        let found = self.segments(column, bound, labels, last);
+        let found = self.segments(column, bound, labels, from);
         let seen = match self.ground {
             Some(_) => self.seen(column, labels),
             // Without a ground a column is seen where enough of it has answers.
@@ -281,26 +256,9 @@ impl<'a> Labelling<'a> {
     }
 }
 
-/// What a row shows, of a ground with what it has there, if there is one.
-fn interval(ground: Option<(Ground, i32)>, config: &ObstacleConfig, tolerance: i32, far: i32) -> Interval {
-    let Some((ground, expected)) = ground else {
-        return Interval { low: i32::MIN, high: far - 1, expected: 0 };
-    };
-    let (height, at) = (i64::from(ground.height_mm), i64::from(expected.max(0)));
-    // H (p - p_ground) / p = h at p - p_ground = p_ground h / (H - h), and -h at p_ground h / (H + h).
-    let limit = |h: i64, left: i64| match left {
-        1.. => ((at * h).checked_div(left).unwrap_or(0) as i32).max(tolerance),
-        _ => 1 << 21,
-    };
-    let (up, down) = (i64::from(config.obstacle_mm), i64::from(config.drop_mm));
-    let high = (expected + limit(up, height - up)).max(far - 1);
-    let low = if expected < far { i32::MIN } else { expected - limit(down, height + down) };
-    Interval { low, high, expected }
-}
-
 /// Index of the first of the least sums.
-fn cheapest(sums: &[u16; 4]) -> usize {
-    let mut best = (u16::MAX, 0);
+fn cheapest(sums: &[u32; 4]) -> usize {
+    let mut best = (u32::MAX, 0);
     for (label, &sum) in sums.iter().enumerate() {
         if sum < best.0 {
             best = (sum, label);

@@ -7,8 +7,9 @@ use crate::units::Disparity;
 
 /// Bins of disparity in a row of the v-disparity.
 pub(super) const BINS: usize = 32;
-/// Pairs of cells that the search draws.
-const DRAWS: usize = 128;
+/// Pairs of cells that the search draws: with three tenths of the cells on the ground, at least one pair of
+/// those is among them in 99 frames of 100.
+const DRAWS: usize = 64;
 /// Half the width of the band of the first fit, and of the second and last, steps of disparity.
 const BANDS: [i32; 2] = [32, 16];
 
@@ -60,16 +61,29 @@ pub(super) fn count(bins: &mut [u8], cells: &[Disparity], shift: u32) {
     }
 }
 
+/// A line of the v-disparity that nothing is known of: parallax at row 0 and growth from row to row, steps in
+/// 65536ths.
+#[derive(Clone, Copy)]
+struct Drawn {
+    level: i64,
+    slope: i64,
+}
+
 /// How many cells are near a line, from the v-disparity.
-fn score(cells: &Cells<'_>, bins: &[u8], shift: u32, line: &Ground) -> u32 {
+fn score(cells: &Cells<'_>, bins: &[u8], shift: u32, line: Drawn) -> u32 {
     let mut score = 0;
-    for (row, bins) in bins.chunks_exact(BINS).enumerate() {
-        let parallax = line.parallax(cells.halves(row));
-        let steps = parallax - cells.offset;
+    // Rows are an even number of half-rows apart, so that steps add up to what each row would have.
+    let mut exact = line.level.wrapping_add(line.slope.wrapping_mul(cells.halves(0)) / 2);
+    let step = line.slope.wrapping_mul(cells.cell_height);
+    for bins in bins.as_chunks::<BINS>().0 {
+        let parallax = (exact >> 16) as i32;
+        exact = exact.wrapping_add(step);
+        let steps = parallax.wrapping_sub(cells.offset);
         if parallax < cells.farthest || steps < 0 {
             continue;
         }
-        let [low, high] = [steps - BANDS[1], steps + BANDS[1]].map(|d| (d.max(0) as usize) >> shift);
+        let low = (steps - BANDS[1]).max(0) as usize >> shift;
+        let high = (steps as usize + BANDS[1] as usize) >> shift;
         score += bins.get(low).map_or(0, |&n| u32::from(n));
         if high != low {
             score += bins.get(high).map_or(0, |&n| u32::from(n));
@@ -87,7 +101,7 @@ fn random(state: &mut u32) -> u32 {
 }
 
 /// The line through two cells, the lower one nearer.
-fn through(cells: &Cells<'_>, drawn: [usize; 2], rig: &RigNumbers) -> Option<Ground> {
+fn through(cells: &Cells<'_>, drawn: [usize; 2]) -> Option<Drawn> {
     let [a, b] = drawn.map(|place| (place.checked_div(cells.columns), place.checked_rem(cells.columns)));
     let (a, b) = (a.0.zip(a.1)?, b.0.zip(b.1)?);
     let (upper, lower) = if a.0 < b.0 { (a, b) } else { (b, a) };
@@ -96,10 +110,17 @@ fn through(cells: &Cells<'_>, drawn: [usize; 2], rig: &RigNumbers) -> Option<Gro
     }
     let [far, near] = [upper, lower].map(|(row, column)| cells.parallax(column, row).map(i64::from));
     let (far, near) = (far?, near?);
+    // Before all divisions.
+    if near <= far {
+        return None;
+    }
     let apart = cells.cell_height * (lower.0 - upper.0) as i64;
-    let slope = ((near - far) << 16).checked_div(apart)?;
+    let slope = match (u16::try_from(near - far), u32::try_from(apart)) {
+        (Ok(rise), Ok(apart)) => i64::from((u32::from(rise) << 16).checked_div(apart)?),
+        _ => ((near - far) << 16).checked_div(apart)?,
+    };
     let level = (far << 16) - slope * cells.halves(upper.0) / 2;
-    Ground::from_line(level, slope, 1, rig)
+    Some(Drawn { level, slope })
 }
 
 /// Sums of a least-squares line over the cells of a band around another line.
@@ -122,30 +143,41 @@ struct Sums {
 fn sums(cells: &Cells<'_>, line: &Ground, band: i32, origin: [i64; 2]) -> Sums {
     let mut sums = Sums::default();
     for row in 1..cells.rows.saturating_sub(1) {
-        let [above, expected, below] = [row - 1, row, row + 1].map(|row| line.parallax(cells.halves(row)));
-        if expected < cells.farthest {
+        let around = [row - 1, row, row + 1];
+        let [above, here, below] = around.map(|row| {
+            let disparities = cells.cells.get(row * cells.columns..(row + 1) * cells.columns);
+            (disparities.unwrap_or_default(), line.parallax(cells.halves(row)))
+        });
+        if here.1 < cells.farthest {
             continue;
         }
         let a = cells.halves(row) - origin[0];
-        for column in 0..cells.columns {
-            let off = |row: usize, expected: i32| {
-                cells.parallax(column, row).map(|p| p - expected).filter(|off| off.abs() <= band)
-            };
-            let Some(off_here) = off(row, expected) else { continue };
-            if off(row - 1, above).is_none() || off(row + 1, below).is_none() {
+        let off = |d: Disparity, expected: i32| {
+            let off = i32::from(d.raw()) + cells.offset - expected;
+            (d.is_some() && off.abs() <= band).then_some(off)
+        };
+        let (mut n, mut sum, mut squares) = (0_i32, 0_i32, 0_i32);
+        for ((&d, &d_above), &d_below) in here.0.iter().zip(above.0).zip(below.0) {
+            let Some(off_here) = off(d, here.1) else { continue };
+            if off(d_above, above.1).is_none() || off(d_below, below.1).is_none() {
                 continue;
             }
-            let (off, parallax) = (off_here, expected + off_here);
-            let b = i64::from(parallax) - origin[1];
-            sums.n += 1;
-            sums.a += a;
-            sums.b += b;
-            sums.aa += a * a;
-            sums.ab += a * b;
-            sums.squares += i64::from(off * off);
-            sums.first_row.get_or_insert(row);
-            sums.last_row = row;
+            (n, sum, squares) = (n + 1, sum + off_here, squares + off_here * off_here);
         }
+        if n == 0 {
+            continue;
+        }
+        // All of a row have the same `a`.
+        let n = i64::from(n);
+        let b = i64::from(sum) + n * (i64::from(here.1) - origin[1]);
+        sums.n += n;
+        sums.a += a * n;
+        sums.b += b;
+        sums.aa += a * a * n;
+        sums.ab += a * b;
+        sums.squares += i64::from(squares);
+        sums.first_row.get_or_insert(row);
+        sums.last_row = row;
     }
     sums
 }
@@ -159,7 +191,7 @@ fn refined(cells: &Cells<'_>, line: &Ground, band: i32, rig: &RigNumbers) -> Opt
     let spread = s.aa - (s.a * s.a).checked_div(s.n)?;
     let slope = (along << 17).checked_div(spread)?;
     let level = (origin[1] << 16) + (s.b << 16).checked_div(s.n)?
-        - slope.checked_mul(middle * s.n + s.a)?.checked_div(2 * s.n)?;
+        - slope.wrapping_mul(middle * s.n + s.a).checked_div(2 * s.n)?;
     Ground::from_line(level, slope, 1, rig)
 }
 
@@ -180,15 +212,17 @@ pub(super) fn fit(
 ) -> Option<Ground> {
     let all = cells.columns * cells.rows;
     let bins = bins.get(..cells.rows * BINS)?;
-    let mut best = carried.map(|line| (score(cells, bins, shift, &line), line));
+    let drawn = |line: Ground| Drawn { level: line.level, slope: line.slope };
+    let mut best = carried.map(|line| (score(cells, bins, shift, drawn(line)), line));
     let mut state = 0x9e37_79b9;
     for _ in 0..DRAWS {
-        let drawn = [(); 2].map(|()| ((u64::from(random(&mut state)) * all as u64) >> 32) as usize);
-        let line = through(cells, drawn, rig).filter(|line| line.is_within(source));
-        let Some(line) = line else { continue };
-        let score = score(cells, bins, shift, &line);
+        let pair = [(); 2].map(|()| ((u64::from(random(&mut state)) * all as u64) >> 32) as usize);
+        let Some(line) = through(cells, pair) else { continue };
+        let score = score(cells, bins, shift, line);
         if best.is_none_or(|(most, _)| score > most) {
-            best = Some((score, line));
+            // The plane behind a line takes divisions: of the few that are better alone.
+            let plane = Ground::from_line(line.level, line.slope, 1, rig);
+            best = plane.filter(|plane| plane.is_within(source)).map(|plane| (score, plane)).or(best);
         }
     }
     let (_, mut line) = best?;

@@ -51,10 +51,9 @@ impl Watchdog {
         };
     }
 
-    /// Takes the flags of a row that came: a row is damaged if any of its pixels is.
-    pub(super) fn row(&mut self, flags: &[PixelFlags]) {
-        let damaged = flags.iter().any(|flags| flags.contains(PixelFlags::DAMAGED));
-        self.lost += u32::from(damaged);
+    /// Takes all flags that a pixel of a row has: a row is damaged if any of its pixels is.
+    pub(super) fn row(&mut self, flags: PixelFlags) {
+        self.lost += u32::from(flags.contains(PixelFlags::DAMAGED));
     }
 
     /// The judgement of a frame of so many rows of pixels and so many cells.

@@ -68,8 +68,10 @@ pub struct Step {
 pub struct Ticks {
     /// Lines to rows of disparity.
     pub matching: u64,
-    /// Rows of disparity to a decision.
-    pub obstacles: u64,
+    /// Rows of disparity to cells.
+    pub rows: u64,
+    /// Cells to a decision.
+    pub decisions: u64,
 }
 
 /// The robot without its cameras: all the memory that it takes, zeros before it is started.
@@ -140,7 +142,7 @@ impl Robot {
         ticks.matching += clock() - start;
         let start = clock();
         finder.begin();
-        ticks.obstacles += clock() - start;
+        ticks.rows += clock() - start;
         for line in 0..HEIGHT + Matcher::LATENCY {
             let is_seen = line < HEIGHT;
             if is_seen {
@@ -153,12 +155,12 @@ impl Robot {
             ticks.matching += middle - start;
             if let Some(row) = row {
                 take(finder, &row);
-                ticks.obstacles += clock() - middle;
+                ticks.rows += clock() - middle;
             }
         }
         let start = clock();
         let step = decide(finder, rule);
-        ticks.obstacles += clock() - start;
+        ticks.decisions += clock() - start;
         Ok(step)
     }
 }

@@ -59,7 +59,8 @@ fn run(robot: &mut Robot) -> Result<(), Failure> {
     let mut console = Console::open();
     console.figure("calibration_ticks", calibration);
     console.figure("frames", AHEAD.len() as u64);
-    console.figure("ticks", ticks.obstacles);
+    console.figure("row_ticks", ticks.rows);
+    console.figure("decision_ticks", ticks.decisions);
     console.figure("matching_ticks", ticks.matching);
     console.figure("state_bytes", size_of::<Finder>() as u64);
     console.figure("matcher_bytes", size_of::<Matcher>() as u64);

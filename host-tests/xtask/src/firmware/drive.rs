@@ -61,7 +61,8 @@ pub fn run(board: Board, optimised: Optimised) -> Outcome<Drive> {
         ("bytes of stack", ran.taken.stack_bytes, MOST_STACK),
     ])?;
     let frames = ran.figure("frames")?.max(1);
-    let instructions_per_frame = ran.instructions("ticks")? / frames;
+    let [row, decision] = ["row_ticks", "decision_ticks"].map(|name| ran.instructions(name));
+    let instructions_per_frame = (row? + decision?) / frames;
     let matching_instructions_per_frame = ran.instructions("matching_ticks")? / frames;
     let percent = 100.0 * instructions_per_frame as f64 / matching_instructions_per_frame as f64;
     if optimised == Optimised::Speed && percent > MOST_PERCENT {

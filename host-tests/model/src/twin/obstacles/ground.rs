@@ -138,7 +138,7 @@ pub fn fit(scene: &Scene<'_>, cells: &[Option<i128>], carried: Option<Line>) -> 
         state ^= state.wrapping_shl(5);
         (u64::from(state) * (columns * rows) as u64 / (1 << 32)) as usize
     };
-    for _ in 0..128 {
+    for _ in 0..64 {
         let drawn = [draw(), draw()];
         let Some(line) = through(scene, cells, drawn).filter(|line| line.is_allowed(scene)) else { continue };
         let score = score(scene, cells, &line);

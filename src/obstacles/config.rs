@@ -119,7 +119,8 @@ impl Default for ObstacleConfig {
     /// that is pitched by at most 27 degrees, obstacles and drops of 5 cm, and 16 sectors.
     ///
     /// The least area is three matching windows of 9 x 9 px: a wrong answer spreads over one window, and the
-    /// next one agrees with it within one px by chance in one case of sixteen, with 32 disparities. A tenth of the cells has to have answers, and at most a tenth of the rows may be lost.
+    /// next one agrees with it within one px by chance in one case of sixteen, with 32 disparities. A tenth
+    /// of the cells has to have answers, and at most a tenth of the rows may be lost.
     fn default() -> Self {
         Self {
             cell_width: 4,

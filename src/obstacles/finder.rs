@@ -122,8 +122,8 @@ impl<const C: usize, const R: usize> Default for Obstacles<C, R> {
 }
 
 impl ObstaclesView<'_> {
-    /// Starts on frames of `size` (width and height, px) from a rig, with disparities of up to `largest`; what
-    /// was carried is forgotten. Columns and rows of pixels that fill no cell are left out.
+    /// Starts on frames of `size` (width and height, px) from a rig, with disparities of up to `largest`;
+    /// what was carried is forgotten. Columns and rows of pixels that fill no cell are left out.
     pub fn start(
         &mut self,
         config: &ObstacleConfig,

@@ -1,5 +1,5 @@
-//! Stixels: a column of cells as ground, obstacle or drop, and beyond (Badino, Franke & Pfeiffer 2009), by the
-//! Viterbi algorithm in integers.
+//! Stixels: a column of cells as ground, obstacle or drop, and beyond (Badino, Franke & Pfeiffer 2009), by
+//! the Viterbi algorithm in integers.
 
 use super::config::{GroundSource, ObstacleConfig};
 use super::ground::Ground;

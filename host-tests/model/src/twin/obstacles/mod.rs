@@ -1,5 +1,4 @@
-//! Obstacles from whole maps of disparity: cells, the ground's line, stixels and sectors, each in its plainest
-//! form.
+//! Obstacles from whole maps of disparity: cells, the ground's line and stixels, each in its plainest form.
 //!
 //! * [`Scene`]: a map, its rig and its limits. [`find`]: what is in it.
 //! * `ground`: the line of the ground by counting cells and by least squares. `stixels`: the cheapest labels

@@ -30,8 +30,9 @@ Written into the folder: disparity.pfm (px, infinity where there is no answer), 
                            depth.png (16 bit, millimetres) and cloud.ply; with --rectify also \
                            rectified_left.png, rectified_right.png and rectified.json, the cameras of all \
                            the others; with --obstacles also obstacles.json and obstacles.png. The files \
-                           appear together when all of them are complete. Of several pairs each has a numbered folder with these files, and frames.csv has a line for \
-                           each; what is finished is not done again.";
+                           appear together when all of them are complete. Of several pairs each has a \
+                           numbered folder with these files, and frames.csv has a line for each; what is \
+                           finished is not done again.";
 
 pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let mut notes = Vec::new();

@@ -45,6 +45,7 @@ const MADE_ELSEWHERE: [&str; 12] = [
     "features",
     "bundle",
     "focus",
+    "drive",
     "odometry",
     "rectify",
     "growth",

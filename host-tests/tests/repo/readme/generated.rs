@@ -37,7 +37,7 @@ const PARTS: [Part; 3] = [("state", state_table), ("accuracy", accuracy_table), 
 
 /// Parts that need an emulator or real pairs: `cargo xtask firmware --all`, `growth`, `altered` and
 /// `rtl --synthesis` make them.
-const MADE_ELSEWHERE: [&str; 12] = [
+const MADE_ELSEWHERE: [&str; 13] = [
     "firmware",
     "stages",
     "profiles",

@@ -1,5 +1,5 @@
-//! The pipeline held to its naive twin: every disparity, flag, deviation and confidence, to the bit, for every
-//! kernel.
+//! The pipeline held to its naive twin: every disparity, flag, deviation and confidence, to the bit, for
+//! every kernel.
 
 use crate::scene::SceneCamera;
 use crate::twin::{self, Answers, match_pair};

@@ -2,6 +2,7 @@
 
 use image::{GrayImage, Luma};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use stereopsis::camera::StereoSource;
 use stereopsis::imaging::{Balance, BalancedPair, Histogram};
 use stereopsis_host::run::MemoryPair;
@@ -47,7 +48,12 @@ fn any_picture() -> impl Strategy<Value = GrayImage> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig {
+        cases: 200,
+        rng_seed: RngSeed::Fixed(5),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn the_twin_says_the_same(left in any_picture(), right in any_picture()) {

@@ -4,6 +4,7 @@
 use image::GrayImage;
 use nalgebra::{Point2, Rotation3, Vector3};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use stereopsis::geometry::{
     camera::{Camera, Distortion, ImageSize, Pose, StereoRig},
     rectify::{Crop, Rectification, Warp},
@@ -162,7 +163,12 @@ fn a_strong_lens_stays_within_a_twentieth_of_a_pixel() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 24,
+        rng_seed: RngSeed::Fixed(5),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     /// Any rig, any awkward size: the twin to the bit, near the warp, in as many rows as the table says and
     /// no fewer.

@@ -99,7 +99,8 @@ fn main() -> ExitCode {
                 "error: {}",
                 one_line(&usage_line(
                     &error,
-                    "the chores are test, firmware, growth, rtl, fuzz, view, altered, c, header, publish and readme"
+                    "the chores are test, firmware, growth, rtl, fuzz, view, altered, c, header, \
+                        publish and readme"
                 ))
             );
             return ExitCode::FAILURE;

@@ -124,8 +124,8 @@ fn clippy() -> Outcome {
     let features = format!("{REAL_DATA},stereopsis/defmt,stereopsis/serde");
     run_cargo(&format!("clippy --locked --workspace --all-targets --features {features} -- -D warnings"))?;
     run_cargo(&format!(
-        "clippy --locked --no-default-features --manifest-path {CAMPAIGN} --target-dir {}/campaign -- -D warnings",
-        target_dir().display()
+        "clippy --locked --no-default-features --manifest-path {CAMPAIGN} --target-dir {} -- -D warnings",
+        target_dir().join("campaign").display()
     ))?;
     // The kinds of cores have code of their own.
     for (target, features) in [("thumbv7em-none-eabihf", "large"), ("riscv32imc-unknown-none-elf", "")] {

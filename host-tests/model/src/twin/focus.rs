@@ -279,11 +279,8 @@ pub fn planes(columns: usize, peaks: &[Option<Peak>], medians: &[Option<Peak>]) 
         let (x, y) = ((i % columns) as i64, (i / columns) as i64);
         let (mut squares, mut values) = (Matrix3::<f64>::zeros(), Vector3::<f64>::zeros());
         for (dy, dx) in (-3..=3).flat_map(|dy| (-3..=3).map(move |dx| (dy, dx))) {
-            let Some([near, _, near_noise, _]) =
-                at(x + step * dx, y + step * dy).map(|p| p.map(|v| v as f64))
-            else {
-                continue;
-            };
+            let Some(beside) = at(x + step * dx, y + step * dy) else { continue };
+            let [near, _, near_noise, _] = beside.map(|v| v as f64);
             // Whole numbers, of which f64 has the squares exactly: the bound itself is within.
             let beyond = ((near - place).abs() - 90.0).max(0.0);
             if beyond * beyond <= 9.0 * (noise * noise + near_noise * near_noise) {

@@ -73,7 +73,7 @@ fn the_glossary_names_files_that_are_there() {
 
 #[test]
 fn what_assures_is_there() {
-    const FOLDERS: [&str; 2] = ["host-tests/tests", "host-tests/model/tests"];
+    const FOLDERS: [&str; 3] = ["host-tests/tests", "host-tests/model/tests", "host-tests/fuzz/tests"];
     let tests: Vec<_> = FOLDERS.iter().flat_map(|folder| source::rust_files(folder)).collect();
     let text = read(&root().join("docs/assurance.md"));
     let rows: Vec<_> = text.lines().filter(|line| line.starts_with("| ")).skip(2).collect();
@@ -85,7 +85,7 @@ fn what_assures_is_there() {
         for name in names {
             let is_file = FOLDERS.iter().any(|folder| root().join(folder).join(name).is_file());
             let is_test = tests.iter().any(|(_, text)| text.contains(&format!("fn {name}(")));
-            let is_chore = ["firmware --", "rtl --"].iter().any(|chore| name.starts_with(chore));
+            let is_chore = ["firmware --", "rtl --", "fuzz"].iter().any(|chore| name.starts_with(chore));
             assert!(is_file || is_test || is_chore, "docs/assurance.md: there is no test {name}");
         }
     }

@@ -32,7 +32,7 @@ pub type Matcher = Pipeline<Block, WIDTH, DISPARITIES>;
 /// Focal length, px, and baseline, m.
 const RIG: (f32, f32) = (130.0, 0.1);
 /// Speed of the robot, mm/s.
-const SPEED_MM_S: u16 = 500;
+const SPEED_MM_S: u16 = 800;
 /// How the robot drives: 0.3 m wide, and all else as a small robot by default.
 const DRIVE: DriveConfig = DriveConfig {
     corridor_mm: 300,

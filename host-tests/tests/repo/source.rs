@@ -40,7 +40,7 @@ pub fn rust_files(folder: &str) -> Vec<(String, String)> {
     let is_below = |name: &String| name.starts_with(&format!("{folder}/")) && name.ends_with(".rs");
     let files: Vec<_> =
         files().into_iter().filter(is_below).map(|name| (name.clone(), text(&name))).collect();
-    assert!(files.len() > 5, "the files of {folder} were not found");
+    assert!(!files.is_empty(), "the files of {folder} were not found");
     files
 }
 

@@ -103,8 +103,8 @@ fn bad_options() {
     bench.refused(
         &["sharpen"],
         "the commands are demo, plan, match, eval, bench, calibrate, calib, rectify, features, focus, \
-         fundamental, pose, bundle, odometry, structure, walk, record, replay, dump, view, doctor, completions \
-         and man",
+         fundamental, pose, bundle, odometry, structure, walk, record, replay, dump, view, doctor, \
+         completions and man",
     );
     bench.refused(&bench.arguments(&[("--left", "two\nlines.png")]), "two\\nlines.png");
 }

@@ -81,6 +81,28 @@ struct Found {
     confidences: Option<Vec<u8>>,
 }
 
+impl Found {
+    /// Copies a row of the functions for C.
+    ///
+    /// # Safety
+    ///
+    /// The row came from the last call, so that its pointers hold its width.
+    unsafe fn of(row: &CRow, sigma_px: Vec<f32>) -> Self {
+        let width = usize::from(row.width);
+        // SAFETY: as the caller promises.
+        unsafe {
+            Self {
+                index: row.index,
+                disparities: slice::from_raw_parts(row.disparities, width).to_vec(),
+                flags: slice::from_raw_parts(row.flags, width).to_vec(),
+                sigma_px,
+                confidences: (!row.confidences.is_null())
+                    .then(|| slice::from_raw_parts(row.confidences, width).to_vec()),
+            }
+        }
+    }
+}
+
 /// The rows of a pipeline in Rust.
 fn rows<S: Method>(config: &matching::Config, [left, right]: &Lines) -> Vec<Found> {
     let mut pipeline = Box::new(Pipeline::<S, WIDTH, DISPARITIES>::new());
@@ -140,14 +162,7 @@ fn c_rows<S: Method>(config: &CConfig, [left, right]: &Lines) -> Vec<Found> {
             let width = usize::from(row.width);
             let mut sigma_px = vec![0.0; width];
             assert_eq!(C::<S>::sigma_px(handle, sigma_px.as_mut_ptr(), width), Status::Ok);
-            found.push(Found {
-                index: row.index,
-                disparities: slice::from_raw_parts(row.disparities, width).to_vec(),
-                flags: slice::from_raw_parts(row.flags, width).to_vec(),
-                sigma_px,
-                confidences: (!row.confidences.is_null())
-                    .then(|| slice::from_raw_parts(row.confidences, width).to_vec()),
-            });
+            found.push(Found::of(&row, sigma_px));
         }
         assert_eq!(C::<S>::deinit(handle), Status::Ok);
     }

@@ -69,14 +69,7 @@ where
             }
             let mut sigma_px = vec![0.0; width];
             assert_eq!(C::<S>::winners_sigma_px(handle, sigma_px.as_mut_ptr(), width), Status::Ok);
-            found.push(Found {
-                index: row.index,
-                disparities: slice::from_raw_parts(row.disparities, width).to_vec(),
-                flags: slice::from_raw_parts(row.flags, width).to_vec(),
-                sigma_px,
-                confidences: (!row.confidences.is_null())
-                    .then(|| slice::from_raw_parts(row.confidences, width).to_vec()),
-            });
+            found.push(Found::of(&row, sigma_px));
         }
         assert_eq!(C::<S>::winners_deinit(handle), Status::Ok);
     }

@@ -5,7 +5,7 @@ use crate::source::{self, is_sign, line, tokens, word};
 use proc_macro2::TokenTree;
 
 /// The modules of the finished crate, in running order.
-const HOUSE: [&str; 15] = [
+pub const HOUSE: [&str; 15] = [
     "errors",
     "units",
     "math",

@@ -91,6 +91,12 @@ pub struct CConfig {
     /// Least confidence of an answer, 1 to 207: one that is less sure is refused and flagged
     /// `STEREOPSIS_FLAG_AMBIGUOUS`, and rows have confidences; 0 refuses none.
     pub min_confidence: u8,
+    /// Open check: in and beside a place without edges that reaches up to the first row, as a sky does, most
+    /// answers of one row of a surface that count for its speckle; 0 for as many as anywhere.
+    pub open_run: u8,
+    /// Open check: how much more than an answer's its second best has to cost there, up to 127; 0 disables
+    /// it.
+    pub open_margin: u8,
 }
 
 /// Returns the filter of a `STEREOPSIS_PRESET_` number.
@@ -163,6 +169,8 @@ impl From<matching::Config> for CConfig {
             fill_step: checks.fill_step.raw(),
             speckle_run: checks.speckle_run,
             fattening_slope: checks.fattening_slope.raw(),
+            open_run: checks.open_run,
+            open_margin: checks.open_margin,
             noise: noise_number(noise),
         }
     }
@@ -207,6 +215,8 @@ impl CConfig {
                 fill_step: Disparity::from_raw(self.fill_step),
                 speckle_run: self.speckle_run,
                 fattening_slope: Disparity::from_raw(self.fattening_slope),
+                open_run: self.open_run,
+                open_margin: self.open_margin,
             },
             penalties: Penalties {
                 gradient: self.gradient,

@@ -159,6 +159,10 @@ impl<C: Content> State<C> {
         content: Result<(C, usize), Status>,
         handle: *mut *mut C::Handle,
     ) -> Status {
+        // Whatever is wrong beside, the handle's place is apart from the memory: null is written there.
+        if !memory.is_null() && share_bytes(memory, length, handle.cast(), size_of::<*mut C::Handle>()) {
+            return checked(handle).map_or_else(|status| status, |()| Status::Overlap);
+        }
         let (content, tail) = match content {
             Ok((_, tail)) if tail > length.saturating_sub(size_of::<Self>()) => {
                 (Err(Status::MemoryTooShort), 0)

@@ -32,7 +32,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_FAST_BYTES(width, disparities) \
-  ((size_t)3504 + (size_t)67 * (width) + (size_t)13 * (disparities) + \
+  ((size_t)3504 + (size_t)68 * (width) + (size_t)13 * (disparities) + \
    (size_t)1 * (width) * (disparities))
 
 /**
@@ -40,7 +40,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_BLOCK_BYTES(width, disparities) \
-  ((size_t)416 + (size_t)71 * (width) + (size_t)13 * (disparities) + \
+  ((size_t)416 + (size_t)72 * (width) + (size_t)13 * (disparities) + \
    (size_t)1 * (width) * (disparities))
 
 /**
@@ -48,7 +48,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_SGM_LEAN_BYTES(width, disparities) \
-  ((size_t)416 + (size_t)53 * (width) + (size_t)8 * (disparities) + \
+  ((size_t)416 + (size_t)54 * (width) + (size_t)8 * (disparities) + \
    (size_t)3 * (width) * (disparities))
 
 /**
@@ -56,7 +56,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_SGM_BYTES(width, disparities) \
-  ((size_t)416 + (size_t)53 * (width) + (size_t)8 * (disparities) + \
+  ((size_t)416 + (size_t)54 * (width) + (size_t)8 * (disparities) + \
    (size_t)3 * (width) * (disparities))
 
 /**
@@ -64,7 +64,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_SGM_EDGE_BYTES(width, disparities) \
-  ((size_t)416 + (size_t)54 * (width) + (size_t)8 * (disparities) + \
+  ((size_t)416 + (size_t)55 * (width) + (size_t)8 * (disparities) + \
    (size_t)5 * (width) * (disparities))
 
 /**
@@ -72,7 +72,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_WINNERS_BYTES(width, disparities) \
-  ((size_t)192 + (size_t)62 * (width) + (size_t)3 * (disparities) + \
+  ((size_t)192 + (size_t)63 * (width) + (size_t)3 * (disparities) + \
    (size_t)0 * (width) * (disparities))
 
 /**
@@ -108,7 +108,7 @@
 /**
  * Bytes that are enough for an odometry that follows up to `points` points, on any target.
  */
-#define STEREOPSIS_ODOMETRY_BYTES(points) ((size_t)376 + (size_t)453 * (points))
+#define STEREOPSIS_ODOMETRY_BYTES(points) ((size_t)432 + (size_t)453 * (points))
 
 
 /**
@@ -317,6 +317,17 @@
  * Motion: begun anew; the motion since the last known pose is not known.
  */
 #define STEREOPSIS_MOTION_RESTARTED 7
+
+/**
+ * Motion: an estimate that is not sure; its covariance says how little, or few points say that it differs
+ * much from the one before.
+ */
+#define STEREOPSIS_MOTION_UNCERTAIN 8
+
+/**
+ * Motion: measured by the left camera alone, for what the right one sees disagrees with all that was known.
+ */
+#define STEREOPSIS_MOTION_LEFT_ONLY 9
 
 /**
  * Result of a call; below 0 it is an error, and nothing has changed.
@@ -826,6 +837,16 @@ typedef struct stereopsis_config {
    * `STEREOPSIS_FLAG_AMBIGUOUS`, and rows have confidences; 0 refuses none.
    */
   uint8_t min_confidence;
+  /**
+   * Open check: in and beside a place without edges that reaches up to the first row, as a sky does, most
+   * answers of one row of a surface that count for its speckle; 0 for as many as anywhere.
+   */
+  uint8_t open_run;
+  /**
+   * Open check: how much more than an answer's its second best has to cost there, up to 127; 0 disables
+   * it.
+   */
+  uint8_t open_margin;
 } stereopsis_config;
 
 /**

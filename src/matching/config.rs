@@ -66,6 +66,11 @@ impl Config {
         noise: Noise::None,
     };
 
+    /// Whether the kernel has to find how much more the second best costs.
+    pub(crate) const fn needs_margins(&self) -> bool {
+        self.confidence || self.checks.open_margin > 0
+    }
+
     /// Whether a matcher for lines up to `width` and ranges up to `disparities` can do this.
     pub(crate) fn check(&self, width: usize, disparities: usize) -> Result<(), ConfigError> {
         if self.width == 0 || usize::from(self.width) > width {
@@ -147,9 +152,25 @@ pub struct Checks {
     /// Fattening: along a part of a row without edges an answer may be nearer than the others by 2 px, and by
     /// this much for each pixel between. [`Disparity::NONE`]: not checked, and the pass is saved.
     pub fattening_slope: Disparity,
+    /// Open: in and beside a place without edges that reaches up to the image's first row, as a sky does, a
+    /// row of a surface counts as at most this many answers for its speckle. 0: as anywhere.
+    pub open_run: u8,
+    /// Open: there an answer stays when every other disparity, but for those up to two px beside it, costs
+    /// more by at least this, up to 127. 0: not checked, and the kernel saves the pass.
+    pub open_margin: u8,
 }
 
 impl Checks {
+    /// Whether open places are looked for.
+    pub(crate) const fn look_for_open(&self) -> bool {
+        self.open_run > 0 || self.open_margin > 0
+    }
+
+    /// Whether edges of the left image are looked for.
+    pub(crate) const fn look_for_edges(&self) -> bool {
+        self.fattening_slope.is_some() || self.look_for_open()
+    }
+
     /// The widest smoothing along the line.
     pub const MOST_SMOOTHING: u8 = 8;
 
@@ -169,6 +190,8 @@ impl Checks {
         fill_step: Disparity::ONE_PIXEL,
         speckle_run: 0,
         fattening_slope: Disparity::NONE,
+        open_run: 0,
+        open_margin: 0,
     };
 
     /// Most answers, few of them wrong.
@@ -187,6 +210,8 @@ impl Checks {
         fill_step: Disparity::ONE_PIXEL,
         speckle_run: 0,
         fattening_slope: Disparity::NONE,
+        open_run: 0,
+        open_margin: 0,
     };
 
     /// Sure answers: fewer, and wrong only rarely.
@@ -205,6 +230,8 @@ impl Checks {
         fill_step: Disparity::ONE_PIXEL,
         speckle_run: 0,
         fattening_slope: Disparity::NONE,
+        open_run: 0,
+        open_margin: 0,
     };
 }
 

@@ -17,12 +17,12 @@ where
     /// Whether the checks that were configured look at the left image: for texture or for edges.
     pub fn needs_lines(&self) -> bool {
         let checks = &self.config().checks;
-        checks.texture_pixels > 0 || checks.fattening_slope.is_some()
+        checks.texture_pixels > 0 || checks.look_for_edges()
     }
 
     /// Whether the checks that were configured look at the [second best](WinnerRecord::second).
     pub fn needs_second_best(&self) -> bool {
-        self.config().confidence || self.config().checks.uniqueness_percent.is_some()
+        self.config().needs_margins() || self.config().checks.uniqueness_percent.is_some()
     }
 
     /// The row whose winners the next call of [`Self::push_winners`] or [`Self::flush_winners`] takes, if it

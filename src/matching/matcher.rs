@@ -11,6 +11,8 @@ use super::memory::{Bytes, Memory, Parts, Rows5};
 use super::method::{Frame, Method};
 use super::row::Row;
 use super::stages::{self, mask};
+#[cfg(feature = "trace")]
+use super::trace::StageTrace;
 use crate::matching::memory::slices::part_mut;
 use crate::units::{Disparity, PixelFlags};
 
@@ -29,6 +31,7 @@ pub struct Matcher<S: Method, const W: usize, const D: usize> {
     texture: [u16; W],
     textured: [u8; W],
     edges: [u8; W],
+    open: [u8; W],
     band: [[Disparity; W]; BAND],
     band_flags: [[PixelFlags; W]; BAND],
     support: [u16; W],
@@ -50,14 +53,14 @@ pub struct Matcher<S: Method, const W: usize, const D: usize> {
 /// ```
 /// use stereopsis::matching::{Block, Fast, Matcher, state_bytes};
 /// assert!(size_of::<Matcher<Block, 320, 64>>() <= state_bytes::<Block>(320, 64));
-/// assert!(state_bytes::<Block>(320, 64) <= 43_000);
-/// assert!(state_bytes::<Fast>(320, 64) <= 43_000);
+/// assert!(state_bytes::<Block>(320, 64) <= 43 * 1024);
+/// assert!(state_bytes::<Fast>(320, 64) <= 43 * 1024);
 /// ```
 pub const fn state_bytes<S: Method>(width: usize, disparities: usize) -> usize {
     let lanes = disparities.next_multiple_of(STEP);
     let width = if width < lanes { lanes } else { width };
     let Bytes { fixed, per_pixel, per_candidate, per_disparity } = S::BYTES;
-    let per_column = per_pixel + per_candidate * lanes + 2 + 1 + 1 + 2 + (2 + 1) * BAND + 2 * HISTORY;
+    let per_column = per_pixel + per_candidate * lanes + 2 + 1 + 1 + 1 + 2 + (2 + 1) * BAND + 2 * HISTORY;
     width * per_column + per_disparity * lanes + fixed + FIXED_BYTES
 }
 
@@ -88,6 +91,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             texture: [0; W],
             textured: [0; W],
             edges: [0; W],
+            open: [0; W],
             band: [[Disparity::ZERO; W]; BAND],
             band_flags: [[PixelFlags::CLEAR; W]; BAND],
             support: [0; W],
@@ -208,6 +212,27 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     }
 
     fn step(&mut self, lines: Option<[&Rows5<'_>; 2]>) -> Result<(), MatchError> {
+        let y = self.take(lines)?;
+        S::step_for(D)(self.frame(), y, lines);
+        Ok(())
+    }
+
+    /// Takes the next row as [`Self::push`] does, or what comes below the last one as [`Self::flush`] does,
+    /// and shows `trace` the rows that stages make of it.
+    #[cfg(feature = "trace")]
+    pub fn step_traced(
+        &mut self,
+        lines: Option<[&[&[u8]; 5]; 2]>,
+        trace: &mut dyn StageTrace,
+    ) -> Result<(), MatchError> {
+        let y = self.take(lines)?;
+        S::step_for(D)(Frame { trace: Some(trace), ..self.frame() }, y, lines);
+        Ok(())
+    }
+
+    /// Counts the next row, if it is due and its lines are long enough, and gives its number.
+    #[inline(always)]
+    fn take(&mut self, lines: Option<[&Rows5<'_>; 2]>) -> Result<usize, MatchError> {
         let height = usize::from(self.config.height);
         if height == 0 {
             return Err(MatchError::NotStarted);
@@ -224,8 +249,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             return Err(MatchError::LineTooShort { needed });
         }
         self.taken += 1;
-        S::step_for(D)(self.frame(), y, lines);
-        Ok(())
+        Ok(y)
     }
 
     /// The width of a frame, and how many candidates of a column the kernel works on.
@@ -251,10 +275,13 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             texture: part_mut(&mut self.texture, ..width),
             textured: part_mut(&mut self.textured, ..width),
             edges: part_mut(&mut self.edges, ..width),
+            open: &mut self.open,
             support: part_mut(&mut self.support, ..width),
             band: Ring::new(self.band.as_flattened_mut(), width),
             flags: Ring::new(self.band_flags.as_flattened_mut(), width),
             finished: Ring::new(self.finished.as_flattened_mut(), width),
+            #[cfg(feature = "trace")]
+            trace: None,
         }
     }
 }

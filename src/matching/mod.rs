@@ -31,13 +31,16 @@
 //!     16. mask: answers taken away where a camera did not see.
 //! * `external`: rows of winners that something else computed ([`External`], [`WinnerRecord`]), in place of
 //!   stages 2, 3 and 7.
-//! * [`Row`]: what comes out, with the uncertainty of each answer.
+//! * [`Row`]: what comes out, with the uncertainty of each answer. With the feature `trace` a matcher shows
+//!   rows of its stages as well (`StageTrace`).
 
 mod kernel;
 mod penalties;
 mod capacity;
 mod config;
 mod memory;
+#[cfg(feature = "trace")]
+mod trace;
 mod backend;
 mod method;
 mod filter;
@@ -58,3 +61,5 @@ pub use memory::record::WinnerRecord;
 pub use method::{Block, External, Fast, Method, Sgm, SgmEdge, SgmLean};
 pub use penalties::Penalties;
 pub use row::Row;
+#[cfg(feature = "trace")]
+pub use trace::{StageTrace, TracedStage};

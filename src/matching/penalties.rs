@@ -123,3 +123,29 @@ impl Default for Penalties {
         Self::DEFAULT
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What the type's description derives of the bounds, for every cost, step and jump that a byte can be.
+    #[test]
+    fn no_sum_overflows_its_byte() {
+        let mut accepted = 0;
+        for (cost, jump) in (0..=255).flat_map(|cost| (0..=255).map(move |jump| (cost, jump))) {
+            for step in 0..=255 {
+                let penalties = Penalties { cost, step: [step, 1], jump: [jump, 1, 1], ..Penalties::DEFAULT };
+                if penalties.check().is_err() {
+                    continue;
+                }
+                accepted += 1;
+                let [cost, step, jump] = [cost, step, jump].map(u16::from);
+                // A path's cost and a step from it; a winner's sum of three paths, of which one agrees.
+                assert!(cost + jump + step <= 127 && cost + 2 * (cost + jump) < 255, "{penalties:?}");
+                // The least of a path, and of the average of two, with a jump.
+                assert!(cost + jump <= 127 && cost + jump / 2 + jump < 189, "{penalties:?}");
+            }
+        }
+        assert_eq!(accepted, 140_569);
+    }
+}

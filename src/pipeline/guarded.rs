@@ -180,8 +180,9 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
 
     /// Begins a frame whose lines are pushed, and drops the one before.
     pub fn begin(&mut self) -> Result<(), MatchError> {
-        self.give_up();
+        // It drops the frame before; a pipeline that was not started has none.
         self.pipeline.begin()?;
+        self.count_broken();
         count(&mut self.lines.counters.frames, 1);
         self.lines.begin(&FrameStart::default());
         self.is_running = true;
@@ -256,10 +257,14 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
 
     /// Ends an incomplete frame.
     fn give_up(&mut self) {
+        self.count_broken();
+        self.pipeline.stop();
+    }
+
+    fn count_broken(&mut self) {
         if core::mem::take(&mut self.is_running) {
             count(&mut self.lines.counters.frames_broken, 1);
         }
-        self.pipeline.stop();
     }
 }
 

@@ -113,10 +113,10 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
 
     /// Begins a frame whose lines are pushed, and drops the one before.
     pub fn begin(&mut self) -> Result<(), MatchError> {
-        self.stop();
         if self.height == 0 {
             return Err(MatchError::NotStarted);
         }
+        self.stop();
         let width = usize::from(self.matcher.config().width);
         self.left.begin(width);
         self.right.begin(width);

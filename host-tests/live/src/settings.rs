@@ -5,7 +5,7 @@ use stereopsis::matching::{Checks, Config, Filter, Method, Penalties};
 use stereopsis::units::Disparity;
 
 /// The number of settings.
-pub const COUNT: usize = 30;
+pub const COUNT: usize = 32;
 
 /// Settings as the page has them, in the order of its list of controls: whole numbers; a switch is 0 or 1,
 /// and [`OFF`] stands for what is not asked for.
@@ -25,7 +25,7 @@ const MIN_DISPARITY: usize = 4;
 const MIN_CONFIDENCE: usize = 5;
 const BALANCE: usize = 6;
 const CHECKS: usize = 7;
-const PENALTIES: usize = 21;
+const PENALTIES: usize = 23;
 
 /// The method's place in the page's list: `fast`, `block`, `sgm-lean`, `sgm`, `sgm-edge`.
 pub fn method(settings: &Settings) -> usize {
@@ -64,6 +64,8 @@ pub fn preset<S: Method>(settings: &mut Settings) {
         checks.fill_pixels.into(),
         steps(checks.fill_step),
         steps(checks.fattening_slope),
+        checks.open_run.into(),
+        checks.open_margin.into(),
         gradient.into(),
         cost.into(),
         step[0].into(),
@@ -107,6 +109,8 @@ pub fn config(settings: &Settings, width: u16, height: u16) -> Config {
             fill_pixels: check(11),
             fill_step: disparity(settings[CHECKS + 12]),
             fattening_slope: disparity(settings[CHECKS + 13]),
+            open_run: check(14),
+            open_margin: check(15),
         },
         penalties: Penalties {
             gradient: penalty(0),

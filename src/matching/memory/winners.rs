@@ -5,6 +5,7 @@ use super::slices::{part_mut, split_mut};
 use super::views::view_mut;
 pub(in crate::matching) use super::winner::Winner;
 use crate::units::PixelFlags;
+use core::ops::Range;
 
 /// How near a disparity may be to the winner and still be of it: what costs little there does not make it
 /// ambiguous.
@@ -182,6 +183,19 @@ impl<'a> Lengths<'a> {
     #[inline(always)]
     pub fn half_words(self) -> &'a mut [u16] {
         self.0
+    }
+
+    /// Lets no half-word of some pixels be over `most`.
+    #[inline(always)]
+    pub fn limit_half_words(&mut self, places: Range<usize>, most: u16) {
+        part_mut(self.0, places).iter_mut().for_each(|length| *length = most.min(*length));
+    }
+
+    /// Lets no byte of some pixels be over `most`.
+    #[inline(always)]
+    pub fn limit_bytes(&mut self, places: Range<usize>, most: u8) {
+        let bytes = view_mut::<u16, u8>(self.0);
+        part_mut(bytes, places).iter_mut().for_each(|length| *length = most.min(*length));
     }
 
     /// A byte for each pixel, the length as far as it holds it.

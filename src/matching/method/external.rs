@@ -21,8 +21,8 @@ use core::marker::PhantomData;
 ///
 /// ```
 /// use stereopsis::matching::{Block, External, state_bytes};
-/// assert_eq!(state_bytes::<Block>(320, 64), 40_896);
-/// assert_eq!(state_bytes::<External<Block>>(320, 64), 15_936);
+/// assert_eq!(state_bytes::<Block>(320, 64), 41_216);
+/// assert_eq!(state_bytes::<External<Block>>(320, 64), 16_256);
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct External<S>(PhantomData<S>);
@@ -74,7 +74,7 @@ fn check_second_best(frame: &mut Frame<'_>, row: usize) {
     let config = frame.config;
     let flags = frame.flags.row_mut(row);
     flags.fill(PixelFlags::CLEAR);
-    let ForWinners { margins, .. } = frame.workspace.for_winners(config.confidence);
+    let ForWinners { margins, .. } = frame.workspace.for_winners(config.needs_margins());
     let mut unique = Unique::new(config.checks.uniqueness_percent, flags, margins);
     let records = view::<u8, WinnerRecord>(frame.codes).iter().enumerate();
     for (x, record) in records.skip(usize::from(config.min_disparity)) {

@@ -20,6 +20,8 @@ use super::memory::rings::{BAND, HISTORY, Ring};
 use super::memory::workspace::RowWorkspace;
 use super::memory::{Bytes, Memory, Rows5};
 use super::penalties::Penalties;
+#[cfg(feature = "trace")]
+use super::trace::StageTrace;
 #[cfg(doc)]
 use crate::imaging::Noise;
 use crate::units::{Disparity, PixelFlags};
@@ -101,6 +103,8 @@ pub struct Frame<'a> {
     pub(super) textured: &'a mut [u8],
     /// Edges of each column: a bit for each of the last eight rows, the newest in the lowest.
     pub(super) edges: &'a mut [u8],
+    /// Open blocks of the last row that was looked at: a bit for each four columns, in words of 32.
+    pub(super) open: &'a mut [u8],
     /// Support of each column's answers so far.
     pub(super) support: &'a mut [u16],
     /// Answers before the speckle filter.
@@ -109,4 +113,7 @@ pub struct Frame<'a> {
     pub(super) flags: Ring<'a, PixelFlags, BAND>,
     /// Answers after the speckle filter.
     pub(super) finished: Ring<'a, Disparity, HISTORY>,
+    /// What takes the rows of stages, if anything does.
+    #[cfg(feature = "trace")]
+    pub(super) trace: Option<&'a mut (dyn StageTrace + 'a)>,
 }

@@ -10,6 +10,7 @@
 use super::denoise::{denoise, gradient_shift};
 use super::{Costs, Frame, Method};
 use crate::imaging::{Noise, smooth};
+use crate::matching::backend::loops::fill_row;
 use crate::matching::backend::{CostWork, EdgeWork, Guide, Isa, MethodParameters, PathWork, SgmParameters};
 use crate::matching::config::Checks;
 use crate::matching::memory::layout::{COLUMNS_OFF, PathWorkspace, Volumes};
@@ -110,27 +111,26 @@ const SLANT_COST: u8 = 12;
 const DEFAULT: Checks = Checks {
     left_right_px: Some(2),
     smoothing_radius: 8,
-    speckle_pixels: 20,
+    speckle_pixels: 16,
     speckle_run: 15,
-    fattening_slope: Disparity::from_raw(24),
-    fill_pixels: 32,
+    fattening_slope: Disparity::ONE_PIXEL,
+    open_run: 5,
+    fill_pixels: 48,
     fill_step: Disparity::from_raw(4 * Disparity::ONE),
     ..Checks::DEFAULT
 };
-/// Noise makes wrong answers whose cost others come near to, and that few others agree with.
+/// Noise makes wrong answers whose cost others come near to, and that few others agree with. It also hides
+/// faint texture: more than a sky is open then, and open places are not asked for more.
+const IN_NOISE: Checks = Checks { open_run: 0, fill_pixels: 32, ..DEFAULT };
 const DEFAULT_IN_NOISE: [Checks; 2] = [
-    Checks { uniqueness_percent: Some(5), fattening_slope: Disparity::ONE_PIXEL, ..DEFAULT },
-    Checks {
-        uniqueness_percent: Some(12),
-        speckle_pixels: 30,
-        fattening_slope: Disparity::ONE_PIXEL,
-        ..DEFAULT
-    },
+    Checks { uniqueness_percent: Some(5), speckle_pixels: 20, ..IN_NOISE },
+    Checks { uniqueness_percent: Some(12), speckle_pixels: 30, ..IN_NOISE },
 ];
 /// Checks that refuse most where another disparity costs little more; texture says less than that, for paths
-/// bridge what has none.
+/// bridge what has none. Where the image is open it takes more than that.
 const STRICT: Checks = Checks {
-    uniqueness_percent: Some(30),
+    uniqueness_percent: Some(16),
+    open_margin: 52,
     speckle_pixels: 36,
     speckle_run: 15,
     fattening_slope: Disparity::from_raw(16),
@@ -245,9 +245,9 @@ fn select<S: SgmParameters, const MOST: usize>(
     frame.workspace.divide(width);
     if let Some(row) = row {
         let flags = frame.flags.row_mut(row);
-        flags.fill(PixelFlags::CLEAR);
+        fill_row(flags, PixelFlags::CLEAR);
         let guide = Guide { here: guide(row), above: row.checked_sub(1).map(guide), row };
-        let ForWinners { winners, margins, workspace } = frame.workspace.for_winners(config.confidence);
+        let ForWinners { winners, margins, workspace } = frame.workspace.for_winners(config.needs_margins());
         work.workspace = workspace;
         let unique = Unique::new(config.checks.uniqueness_percent, flags, margins);
         let select = Select { disparities: work.disparities, winners, unique };

@@ -3,6 +3,7 @@
 use super::denoise::denoise;
 use super::{Costs, Frame, Method};
 use crate::imaging::Noise;
+use crate::matching::backend::loops::fill_row;
 use crate::matching::backend::{
     CODES_SHARE_A_BYTE, CensusWork, Isa, MethodParameters, TABLE_WORDS, WindowParameters, WindowWork,
 };
@@ -155,8 +156,9 @@ fn select<S: WindowParameters, const MOST: usize>(
     let (workspace, select) = match row {
         Some(row) => {
             let flags = frame.flags.row_mut(row);
-            flags.fill(PixelFlags::CLEAR);
-            let ForWinners { winners, margins, workspace } = frame.workspace.for_winners(config.confidence);
+            fill_row(flags, PixelFlags::CLEAR);
+            let ForWinners { winners, margins, workspace } =
+                frame.workspace.for_winners(config.needs_margins());
             let unique = Unique::new(config.checks.uniqueness_percent, flags, margins);
             (workspace, Some(Select { disparities: usize::from(config.disparities), winners, unique }))
         }

@@ -69,15 +69,20 @@ pub(super) fn finish_confidences(frame: &mut Frame<'_>, newest: usize) {
     }
 }
 
+/// Whether column `x` has a margin: those before may have no candidate over two px from the winner, and so
+/// nothing to be sure by.
+#[inline(always)]
+pub(super) fn has_margin(config: &Config, x: usize) -> bool {
+    x > usize::from(config.min_disparity) + 2 * BESIDE
+}
+
 /// Notes the margins of a row's answers.
 #[inline(never)]
 fn take_margins(config: &Config, margins: &[u8], answers: &[Disparity], notes: &mut [Note]) {
-    // The columns before may have no candidate over two px from the winner, and so nothing to be sure by.
-    let enough = usize::from(config.min_disparity) + 2 * BESIDE + 1;
     for (x, note) in notes.iter_mut().enumerate() {
         keep_loop();
         let (Some(&margin), Some(&answer)) = (margins.get(x), answers.get(x)) else { return };
-        note.take(if x < enough { 0 } else { margin }, answer);
+        note.take(if has_margin(config, x) { margin } else { 0 }, answer);
     }
 }
 

@@ -18,7 +18,7 @@ use crate::matching::method::Frame;
 
 /// The least Sobel gradient of an edge, eighths of a grey level per pixel: about three deviations of what
 /// noise makes.
-const fn least_gradient(noise: Noise) -> u16 {
+pub(super) const fn least_gradient(noise: Noise) -> u16 {
     match noise {
         Noise::None => 16,
         Noise::Low => 24,
@@ -33,7 +33,7 @@ pub(super) fn begin(frame: &mut Frame<'_>) {
 
 /// Takes the edges of the row that comes in; below the image there are none.
 pub(super) fn take_edges(frame: &mut Frame<'_>, lines: Option<[&Rows5<'_>; 2]>) {
-    if frame.config.checks.fattening_slope.is_none() {
+    if !frame.config.checks.look_for_edges() {
         return;
     }
     match lines {

@@ -16,15 +16,18 @@
 //! S::enter: census            lines y - 2 .. y + 2                codes y
 //! texture::take_texture       line y                              texture of y, counts of the window
 //! fattening::take_edges       lines y - 1 .. y + 1                edges of y
+//! open::take_open             lines y - 1, y + 1, edges of y      open blocks of every other y
 //! fill::undo_fill             flags y - r - 5                     finished y - r - 5, as before the fill
 //! median::take_medians        band y - r - 5 .. y - r - 3         finished y - r - 4
 //! S::select: costs, paths     codes to y, or lines around y       costs of y - r
 //! S::select: winner-take-all  costs                               winners, margins and flags y - r
 //! texture::flag_untextured    counts                              flags y - r
 //! left_right::make_answers    winners y - r                       band and flags y - r
+//! open::refuse_unsure         open blocks, margins y - r          band and flags y - r
 //! fattening::refuse_fattening band and edges y - r                band and flags y - r
 //! confidence::note_margins    margins y - r                       notes y - r, in place of the flags
 //! smooth::smooth_along_row    band y - r                          band y - r, surface lengths y - r
+//! open::limit_lengths         open blocks                         surface lengths y - r
 //! confidence::make_confidences notes y - r - 4, band, finished    confidences and flags y - r - 4
 //! speckle::drop_speckle       band y - r, y - r - 1, y - r - 4    support; finished and flags y - r - 4
 //! vertical::filter_vertically finished y - r - 5, band y - r      finished y - r - 4
@@ -41,6 +44,7 @@ mod texture;
 mod median;
 mod left_right;
 mod fattening;
+mod open;
 mod smooth;
 pub(super) mod confidence;
 mod speckle;
@@ -48,6 +52,8 @@ mod vertical;
 mod fill;
 mod withhold;
 pub(super) mod mask;
+#[cfg(feature = "trace")]
+mod traced;
 
 use super::backend::BY_CAPACITY;
 use super::memory::Rows5;
@@ -103,6 +109,7 @@ pub(super) fn begin(mut frame: Frame<'_>) {
     frame.columns.fill(0);
     texture::begin(&mut frame);
     fattening::begin(&mut frame);
+    open::begin(&mut frame);
     speckle::begin(&mut frame);
 }
 
@@ -117,6 +124,7 @@ fn step<S: Method, const MOST: usize>(mut frame: Frame<'_>, y: usize, lines: Opt
     }
     texture::take_texture::<S>(&mut frame, lines);
     fattening::take_edges(&mut frame, lines);
+    open::take_open(&mut frame, y, lines);
     finish_row::<S, MOST>(&mut frame, y, lines);
 }
 
@@ -137,16 +145,26 @@ fn finish_row<S: Method, const MOST: usize>(
     let Some(newest) = newest else { return };
     if newest < height {
         texture::flag_untextured::<S>(frame, newest);
+        #[cfg(feature = "trace")]
+        traced::winners::<S>(frame, newest);
         left_right::make_answers::<S>(frame, newest);
+        #[cfg(feature = "trace")]
+        traced::subpixel(frame, newest);
+        open::refuse_unsure(frame, newest);
         fattening::refuse_fattening::<S>(frame, newest);
         confidence::note_margins(frame, newest);
         smooth::smooth_along_row(frame, newest);
+        open::limit_lengths(frame);
+        #[cfg(feature = "trace")]
+        traced::smoothed(frame, newest);
     } else {
         speckle::end_surfaces(frame, newest);
     }
     confidence::make_confidences(frame, newest);
     speckle::drop_speckle(frame, newest);
     vertical::filter_vertically::<S>(frame, newest);
+    #[cfg(feature = "trace")]
+    traced::checked(frame, newest);
     fill::fill_gaps(frame, newest);
     confidence::finish_confidences(frame, newest);
     withhold::refuse_unsure(frame, newest);

@@ -108,10 +108,10 @@ where
         &mut self,
         source: &mut R,
     ) -> Result<(), WinnerPipelineError<R::Error>> {
-        self.taken = usize::MAX;
         if self.height == 0 {
             return Err(MatchError::NotStarted.into());
         }
+        self.taken = usize::MAX;
         source.begin_frame()?;
         self.left.begin(usize::from(self.matcher.config().width));
         self.matcher.begin_frame();

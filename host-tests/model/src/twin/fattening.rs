@@ -6,16 +6,20 @@ use stereopsis::matching::Config;
 use stereopsis::units::{Disparity, PixelFlags};
 
 /// Whether a pixel is an edge: by Sobel's gradient along the row, in eighths of a grey level per pixel.
-fn is_edge(config: &Config, left: &Picture<'_>, x: usize, y: usize) -> bool {
+pub(super) fn is_edge(config: &Config, left: &Picture<'_>, x: usize, y: usize) -> bool {
     let (x, y) = (x as isize, y as isize);
     let difference = |y: isize| i32::from(left.at(x + 1, y)) - i32::from(left.at(x - 1, y));
     let gradient = difference(y - 1) + 2 * difference(y) + difference(y + 1);
-    let least = match config.noise {
+    gradient.abs() >= least_gradient(config)
+}
+
+/// The least gradient of an edge, in eighths of a grey level per pixel.
+pub(super) fn least_gradient(config: &Config) -> i32 {
+    match config.noise {
         Noise::None => 16,
         Noise::Low => 24,
         Noise::High => 48,
-    };
-    gradient.abs() >= least
+    }
 }
 
 /// One pass along the row: its answers in the order of the pass, each with whether an edge is crossed on the

@@ -1,6 +1,7 @@
 //! What happens to answers after they are chosen: smoothing along the row, the median, the speckle filter,
 //! smoothing down the columns, filling, the deviation.
 
+use super::open::Open;
 use super::{Answers, Method};
 use std::ops::Range;
 use stereopsis::matching::{Checks, Config};
@@ -65,11 +66,12 @@ pub(super) fn medians(width: usize, before: &[Disparity]) -> Vec<Disparity> {
 /// The rows after the speckle filter, which judges by the answers `before` the median. `lengths` is that of
 /// each answer's surface along its row. An answer needs support: the lengths in its column, as far up as the
 /// surface goes, and as far down but for at most four rows; of a row no more than
-/// [`Checks::speckle_run`] count.
+/// [`Checks::speckle_run`] count, and where it is open of [`Checks::open_run`].
 pub(super) fn drop_speckles(
     checks: &Checks,
     before: &[Disparity],
     lengths: &[usize],
+    open: &Open,
     mut map: Answers,
 ) -> Answers {
     let goes_on = |above: usize| {
@@ -77,9 +79,12 @@ pub(super) fn drop_speckles(
         below < before.len() && of_one_surface(checks, before[above], before[below])
     };
     for i in (0..before.len()).filter(|&i| before[i].is_some()) {
-        let counted = |i: usize| match checks.speckle_run {
-            0 => lengths[i],
-            most => lengths[i].min(usize::from(most)),
+        let counted = |i: usize| {
+            let limits = [checks.speckle_run, if open.is_near(i) { checks.open_run } else { 0 }];
+            limits
+                .into_iter()
+                .filter(|&most| most > 0)
+                .fold(lengths[i], |length, most| length.min(most.into()))
         };
         let mut support = counted(i);
         let mut up = i;

@@ -7,6 +7,7 @@
 //! * [`cost`]: bits that differ, per disparity, and their sum over the window. [`paths`]: differences of
 //!   pixels, and their sum along paths.
 //! * `select`: the cheapest disparity, its fraction, the checks. `fattening`: what spreads where no edge is.
+//!   `open`: where no edge is up to the first row.
 //! * `filter`: smoothing along the row, the median, the speckle filter, smoothing down the columns, filling,
 //!   the deviation.
 //! * `confidence`: how sure an answer is.
@@ -33,6 +34,7 @@ pub mod stages;
 mod confidence;
 mod fattening;
 mod filter;
+mod open;
 mod select;
 
 use image::GrayImage;

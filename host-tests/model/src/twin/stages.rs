@@ -1,6 +1,7 @@
 //! What each stage of the dense path gives, in running order: the vectors that a block of gates is held to.
 
 use super::cost::{self, Volume};
+use super::open::Open;
 use super::smooth::Seen;
 use super::{Answers, Cost, Method, Picture, census, confidence, fattening, filter, paths, select};
 use image::GrayImage;
@@ -51,11 +52,13 @@ impl Stages {
         let mut map = Answers { width, height, disparity, flags, sigma_px, confidence };
         let (mut winners, mut lengths, mut margins) = (Vec::new(), Vec::new(), Vec::new());
         let (mut flags, mut subpixel) = (Vec::new(), Vec::new());
+        let open = Open::of(config, &left, scheme.radius_y);
         for y in 0..height {
             winners.extend(select::records(config, &aggregated, y));
             let (answers, row_flags, row_margins) = select::select_row(scheme, config, &left, &aggregated, y);
             flags.extend_from_slice(&row_flags);
             subpixel.extend_from_slice(&answers);
+            let (answers, row_flags) = open.refuse(config, y, &row_margins, answers, row_flags);
             let (answers, row_flags) = fattening::refuse(config, &left, y, answers, row_flags);
             let (smooth, row_lengths) = filter::smooth_row(&config.checks, &answers);
             map.disparity.extend(smooth);
@@ -68,7 +71,7 @@ impl Stages {
             map.disparity = filter::medians(map.width, &smoothed);
         }
         let answers = map.disparity.clone();
-        let mut map = filter::drop_speckles(&config.checks, &smoothed, &lengths, map);
+        let mut map = filter::drop_speckles(&config.checks, &smoothed, &lengths, &open, map);
         if scheme.smooth_down && config.checks.smoothing_radius > 0 {
             filter::smooth_down(&smoothed, &mut map);
         }

@@ -25,8 +25,6 @@ struct Found {
     os: &'static str,
     /// Whether the program is built with its optimiser's checks, which are slow.
     debug_assertions: bool,
-    /// The package's features that it is built with.
-    features: Vec<&'static str>,
     /// The kernels that this processor runs, the fastest last.
     kernels: Vec<&'static str>,
     /// The one that is chosen.
@@ -76,10 +74,6 @@ pub fn run(args: &DoctorArgs) -> Result<(), Failure> {
         arch: consts::ARCH,
         os: consts::OS,
         debug_assertions: cfg!(debug_assertions),
-        features: [("real-data", cfg!(feature = "real-data"))]
-            .into_iter()
-            .filter_map(|(name, is_on)| is_on.then_some(name))
-            .collect(),
         kernels: Kernel::available().map(Kernel::name).collect(),
         kernel: chosen.unwrap_or_else(Kernel::detect).name(),
         stereo_kernel: asked,
@@ -100,7 +94,6 @@ impl Found {
         let why = if self.stereo_kernel.is_some() { "STEREO_KERNEL names it" } else { "the fastest" };
         let threads = self.threads.map_or("unknown".to_owned(), |threads| threads.to_string());
         let mut text = format!("stereo       {} for {} on {}, {built}\n", self.version, self.arch, self.os);
-        let _ = writeln!(text, "features     {}", list(&self.features));
         let _ = writeln!(text, "kernels      {}", list(&self.kernels));
         let _ = writeln!(text, "chosen       {}: {why}", self.kernel);
         let _ = writeln!(text, "processor    {}", list(&self.cpu_features));

@@ -1,0 +1,183 @@
+//! Answers asked for more where the image is open: a place without edges that reaches up to its first row.
+//!
+//! That is what a sky looks like, and a wall that goes on above the image. What costs along paths bring there
+//! from the surfaces beside it has nothing against it. So in and beside an open place a row of a surface
+//! counts as fewer answers for its [support](super::speckle)
+//! ([`open_run`](crate::matching::Checks::open_run)), and an answer stays only where the second best costs
+//! much more ([`open_margin`](crate::matching::Checks::open_margin)).
+//!
+//! Each four columns of a row are a block. It is smooth when none of its pixels is an edge along the row, by
+//! the edges of [`fattening`](super::fattening), and its pixels' sums in the rows above and below differ by
+//! as little: that is eight times the gradient down the columns. A smooth block is open when the block
+//! above it was, or another one that smooth blocks of its row join it to. Only every other row is looked at:
+//! that is half of the work, and half of the edges that noise makes.
+//!
+//! A block has a bit. With the smooth blocks of 32 as `f` and the open ones among them as `s`, the carries of
+//! `f + s` run from each open block to the end of its smooth ones.
+
+use super::confidence::has_margin;
+use super::fattening::least_gradient;
+use crate::matching::backend::Isa;
+use crate::matching::backend::loops::keep_loop;
+use crate::matching::memory::Rows5;
+use crate::matching::memory::notes::Note;
+use crate::matching::memory::slices::part;
+use crate::matching::method::Frame;
+use crate::units::{Disparity, PixelFlags};
+use core::ops::Range;
+
+/// Columns of a block.
+const BLOCK: usize = 4;
+/// Blocks whose bits are in a word.
+const BLOCKS: usize = u32::BITS as usize;
+
+/// Forgets the frame before: above the first row all is open.
+pub(super) fn begin(frame: &mut Frame<'_>) {
+    frame.open.fill(u8::MAX);
+}
+
+/// Takes row `y` of the left image, whose edges are in; below the image all stays as it is.
+// A function of its own, so that its registers do not stand on the stack of all stages.
+#[inline(never)]
+pub(super) fn take_open(frame: &mut Frame<'_>, y: usize, lines: Option<[&Rows5<'_>; 2]>) {
+    if let Some([left, _]) = lines
+        && frame.config.checks.look_for_open()
+        && y.is_multiple_of(2)
+    {
+        let [above, below] = [left[1], left[3]].map(|line| part(line, ..frame.width).as_chunks().0);
+        let row = Smooth { above, below, edges: frame.edges.as_chunks().0 };
+        let (words, rest) = frame.open.as_chunks_mut();
+        let least = i32::from(least_gradient(frame.config.noise));
+        push(words.get_mut(..frame.width.div_ceil(BLOCK * BLOCKS)).unwrap_or_default(), &row, least);
+        debug_assert!(rest.len() < size_of::<u32>(), "a word for each 128 columns");
+    }
+}
+
+/// What a row's smooth blocks are found by: the rows above and below it, and its edges.
+struct Smooth<'a> {
+    above: &'a [[u8; BLOCK]],
+    below: &'a [[u8; BLOCK]],
+    edges: &'a [[u8; BLOCK]],
+}
+
+impl Smooth<'_> {
+    /// Which of the blocks of a word are smooth. The last columns, fewer than a block, are none.
+    fn word(&self, word: usize, least: i32) -> u32 {
+        let first = word * BLOCKS;
+        let rows = self.above.iter().zip(self.below).zip(self.edges).skip(first).take(BLOCKS);
+        let (mut bits, mut bit) = (0, 1u32);
+        for ((above, below), edges) in rows {
+            keep_loop();
+            let apart = (sums(below).wrapping_sub(sums(above)).wrapping_mul(0x1_0001) as i32) >> 16;
+            let is_even = (apart + least - 1) as u32 <= 2 * (least - 1) as u32;
+            let has_edge = u32::from_le_bytes(*edges) & 0x0101_0101 != 0;
+            bits |= bit & 0u32.wrapping_sub(u32::from(is_even & !has_edge));
+            bit <<= 1;
+        }
+        bits
+    }
+}
+
+/// The sums of the even and of the odd pixels of a block, in a half-word each.
+#[inline(always)]
+fn sums(block: &[u8; BLOCK]) -> u32 {
+    let pixels = u32::from_le_bytes(*block);
+    (pixels & 0x00ff_00ff) + (pixels >> 8 & 0x00ff_00ff)
+}
+
+/// Moves the open blocks one row on.
+#[inline(never)]
+fn push(open: &mut [[u8; 4]], row: &Smooth<'_>, least: i32) {
+    let mut is_joined = 0;
+    for (number, open) in open.iter_mut().enumerate() {
+        keep_loop();
+        let smooth = row.word(number, least);
+        let to_right = filled(smooth, smooth & (u32::from_le_bytes(*open) | is_joined));
+        // The bits turn round: what comes from the right is found when all from the left is.
+        let all = filled(smooth.reverse_bits(), to_right.reverse_bits()).reverse_bits();
+        *open = all.to_le_bytes();
+        is_joined = all >> (BLOCKS - 1);
+    }
+    // A word that a later one opens from its first block on.
+    let mut is_joined = 0;
+    for (number, open) in open.iter_mut().enumerate().rev() {
+        keep_loop();
+        let before = u32::from_le_bytes(*open);
+        let smooth = if is_joined != 0 { row.word(number, least).reverse_bits() } else { 0 };
+        let all = before | filled(smooth, smooth & is_joined).reverse_bits();
+        *open = all.to_le_bytes();
+        is_joined = all & 1;
+    }
+}
+
+/// The bits of `smooth` from each of the `seeds` among them up to the last one that is joined to it.
+#[inline(always)]
+fn filled(smooth: u32, seeds: u32) -> u32 {
+    smooth & !smooth.wrapping_add(seeds) | seeds
+}
+
+/// The blocks that are open or beside one that is, of a row of blocks.
+fn near(open: &[u8]) -> impl Iterator<Item = (usize, u32)> {
+    let words = open.as_chunks().0;
+    let word = |number: usize| words.get(number).map_or(0, |&word| u32::from_le_bytes(word));
+    (0..words.len()).map(move |number| {
+        let [before, here, after] = [number.wrapping_sub(1), number, number + 1].map(word);
+        let beside = here << 1 | here >> 1 | before >> (BLOCKS - 1) | after << (BLOCKS - 1);
+        (number * BLOCKS, here | beside)
+    })
+}
+
+/// The columns of the blocks that are open, or beside one that is: those of a word that follow one another at
+/// once, so that a blank image takes hardly more than another one.
+fn columns(open: &[u8], width: usize) -> impl Iterator<Item = Range<usize>> {
+    let words = part(open, ..width.div_ceil(BLOCK * BLOCKS) * size_of::<u32>());
+    near(words).flat_map(move |(first, mut bits)| {
+        core::iter::from_fn(move || {
+            let begin = bits.trailing_zeros();
+            let blocks = bits.checked_shr(begin)?.trailing_ones();
+            // The lowest of them carries through all that follow it.
+            bits &= bits.wrapping_add(1 << begin);
+            let column = |block: u32| ((first + block as usize) * BLOCK).min(width);
+            Some(column(begin)..column(begin + blocks))
+        })
+    })
+}
+
+/// Lets a row of a surface count as no more than [`open_run`](crate::matching::Checks::open_run) answers.
+#[inline(never)]
+pub(super) fn limit_lengths(frame: &mut Frame<'_>) {
+    let most = frame.config.checks.open_run;
+    if most > 0 {
+        let mut lengths = frame.workspace.lengths();
+        for places in columns(frame.open, frame.width) {
+            keep_loop();
+            frame.backend.limit_lengths(&mut lengths, places, most);
+        }
+    }
+}
+
+/// Refuses the answers of `newest` whose second best costs little more, as
+/// [`open_margin`](crate::matching::Checks::open_margin) says.
+#[inline(never)]
+pub(super) fn refuse_unsure(frame: &mut Frame<'_>, newest: usize) {
+    let least = frame.config.checks.open_margin;
+    if least == 0 {
+        return;
+    }
+    let margins = frame.workspace.margins();
+    let (answers, flags) = (frame.band.row_mut(newest), frame.flags.row_mut(newest));
+    for places in columns(frame.open, frame.width) {
+        let (Some(answers), Some(flags)) = (answers.get_mut(places.clone()), flags.get_mut(places.clone()))
+        else {
+            return;
+        };
+        let margins = part(margins, places.clone());
+        for (((answer, flags), &margin), x) in answers.iter_mut().zip(flags).zip(margins).zip(places) {
+            keep_loop();
+            let margin = if has_margin(frame.config, x) { margin.min(Note::MOST_MARGIN) } else { 0 };
+            let refused = answer.is_some() & (margin < least);
+            *flags = flags.union(PixelFlags::AMBIGUOUS.when(refused));
+            *answer = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(refused)));
+        }
+    }
+}

@@ -10,13 +10,20 @@ use super::work::{
 };
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::slices::multiple_of;
-use crate::matching::memory::winners::Select;
+use crate::matching::memory::winners::{Lengths, Select};
 use crate::units::Disparity;
+use core::ops::Range;
 
 /// The code of a target for the stages that it may have instructions for.
 pub(in crate::matching) trait Isa: Copy {
     /// The kernel's name.
     fn kernel(self) -> Kernel;
+
+    /// Whether winners stand in words, one for each pixel, and not in a row of bytes for each part.
+    #[cfg(feature = "trace")]
+    fn has_winners_in_words(self) -> bool {
+        matches!(self.kernel(), Kernel::Planes | Kernel::Dsp)
+    }
 
     /// How many candidates of a column the kernel works on for so many `disparities`, of which there is room
     /// for `most`, in whole [`STEP`]s.
@@ -75,6 +82,12 @@ pub(in crate::matching) trait Isa: Copy {
     #[inline(always)]
     fn smooth(self, work: SmoothWork<'_>) {
         portable::smooth::smooth(work);
+    }
+
+    /// Lets each answer in some columns count as at most `most`, 1 or more, of its surface along the row.
+    #[inline(always)]
+    fn limit_lengths(self, lengths: &mut Lengths<'_>, columns: Range<usize>, most: u8) {
+        lengths.limit_half_words(columns, most.into());
     }
 
     /// Makes `out` the medians of 3 x 3 answers, those of the second of three rows in the middle.

@@ -17,3 +17,18 @@ pub(in crate::matching) fn keep_scalar_loop() {
     #[cfg(not(stereopsis_vectors))]
     keep_loop();
 }
+
+/// Fills a row, 16 numbers at a time: on 32-bit cores in a fraction of the instructions of the compiler's own
+/// routine.
+#[inline(always)]
+pub(in crate::matching) fn fill_row<T: Copy>(row: &mut [T], number: T) {
+    let (groups, rest) = row.as_chunks_mut::<16>();
+    for group in groups {
+        keep_loop();
+        *group = [number; 16];
+    }
+    for one in rest {
+        keep_loop();
+        *one = number;
+    }
+}

@@ -26,12 +26,14 @@ prop_compose! {
         fill_step in any::<u16>().prop_map(Disparity::from_raw),
         speckle_run: u8,
         fattening_slope in prop_oneof![0u16..200, Just(u16::MAX)].prop_map(Disparity::from_raw),
+        open_run in prop_oneof![Just(0u8), 1u8..20, any::<u8>()],
+        open_margin in prop_oneof![Just(0u8), 1u8..130],
     ) -> Checks {
         Checks {
             left_right_px, uniqueness_percent, refuse_flat, texture_gradient, texture_pixels, refuse_ceiling,
                 smoothing_radius,
             speckle_pixels, surface_step, median, fill_pixels, fill_step,
-            speckle_run, fattening_slope,
+            speckle_run, fattening_slope, open_run, open_margin,
         }
     }
 }

@@ -85,6 +85,8 @@ fn random_checks(random: &mut Random, of_surfaces: &mut Random) -> Checks {
             u16::MAX,
             u16::MAX,
         ])),
+        open_run: *of_surfaces.pick(&[0, 1, 5, u8::MAX]),
+        open_margin: *of_surfaces.pick(&[0, 0, 1, 40, 127, 128]),
     }
 }
 

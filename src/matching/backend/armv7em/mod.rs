@@ -48,7 +48,8 @@ use crate::matching::kernel::Kernel;
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::{multiple_of, part, split_mut};
 use crate::matching::memory::views::view_mut;
-use crate::matching::memory::winners::Select;
+use crate::matching::memory::winners::{Lengths, Select};
+use core::ops::Range;
 
 #[allow(unused_imports, reason = "on a Cortex-M55 vectors do the most of it")]
 pub(in crate::matching) use super::plain::{BY_CAPACITY, columns_begin};
@@ -113,6 +114,12 @@ impl Isa for Backend {
     fn smooth(self, work: SmoothWork<'_>) {
         let SmoothWork { answers, lengths, workspace, step, radius } = work;
         smooth::smooth(answers, lengths.bytes(), workspace, step, radius);
+    }
+
+    #[inline(always)]
+    fn limit_lengths(self, lengths: &mut Lengths<'_>, columns: Range<usize>, most: u8) {
+        // Lengths are less by the answer itself.
+        lengths.limit_bytes(columns, most.wrapping_sub(1));
     }
 
     #[inline(always)]

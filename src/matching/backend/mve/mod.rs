@@ -2,10 +2,11 @@
 //! run over the disparities of one pixel, the largest first: so a pixel's candidates stand in memory as they
 //! do in the right image.
 //!
-//! * [`census`]: the codes of `fast`.
+//! * [`census`]: the codes of `fast` and of `block`.
 //! * [`columns`]: costs of a row added to the columns under the window, and others subtracted.
 //! * [`windows`]: sums along the row, and the winner of each pixel.
 //! * [`sgm`]: costs along paths.
+//! * [`mod@sides`]: what is beside winners. [`mod@fractions`]: where between whole pixels they are.
 //! * [`left_right`]: the left-right check.
 //! * [`mod@smooth`]: answers averaged within their surface, and its length.
 //! * [`mod@edges`], [`mod@fattening`]: answers refused that spread.
@@ -32,8 +33,10 @@ mod columns;
 mod edges;
 mod fattening;
 mod fill;
+mod fractions;
 mod left_right;
 mod sgm;
+mod sides;
 mod smooth;
 mod speckle;
 mod windows;
@@ -46,14 +49,15 @@ use super::work::{
     AnswerWork, CensusWork, CostWork, EdgeWork, FatteningWork, FillWork, Guide, MASKS, PathWork, Rules, STEP,
     SmoothWork, SpeckleWork, WindowWork,
 };
-use crate::imaging::census_ring8;
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::layout::OUTSIDE;
-use crate::matching::memory::slices::{part, part_mut, split_mut};
+use crate::matching::memory::slices::{part, split_mut};
 use crate::matching::memory::views::view_mut;
-use crate::matching::memory::winners::{Select, WinnerRows};
+use crate::matching::memory::winners::{Lengths, Select, WinnerRows};
 use crate::units::{Disparity, PixelFlags};
-use windows::{Windows, best_of_the_rest, complete};
+use core::ops::Range;
+use sides::{complete, spread};
+use windows::{BESIDE_SUMS, Windows, best_of_the_rest};
 
 pub(in crate::matching) use super::plain::{BY_CAPACITY, CODES_SHARE_A_BYTE, columns_begin};
 
@@ -80,7 +84,7 @@ impl Isa for Backend {
             if P::BITS <= 4 {
                 census::census_plus4(lines, view_mut::<u32, u8>(work.workspace), codes);
             } else {
-                census_ring8(lines, codes);
+                census::census_ring8(lines, codes);
             }
         }
     }
@@ -146,6 +150,11 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
+    fn limit_lengths(self, lengths: &mut Lengths<'_>, columns: Range<usize>, most: u8) {
+        lengths.limit_bytes(columns, most);
+    }
+
+    #[inline(always)]
     fn speckle(self, work: SpeckleWork<'_>) {
         speckle::speckle(work);
     }
@@ -160,7 +169,8 @@ fn answer<P: MethodParameters>(
     answers: &mut [Disparity],
     flags: &mut [PixelFlags],
 ) {
-    left_right_rows::answer::<P>(winners, kept, rules, fractions, answers, flags);
+    fractions::fractions::<P>(winners.below, winners.costs, winners.above, fractions);
+    left_right_rows::flag_and_answer(winners, kept, rules, fractions, answers, flags);
 }
 
 #[inline(never)]
@@ -197,30 +207,31 @@ fn row_of<S: WindowParameters, const STRIDE: usize>(work: WindowWork<'_>, select
             columns::of_eight_bits::<STRIDE>([enter, leave], min_disparity, stride, room, inside);
         }
     }
-    if let (Some(select), Some(sums)) = (select, room.get_mut(..stride + 2)) {
+    if let Some(select) = select.filter(|_| room.len() > stride + BESIDE_SUMS) {
         let begin = min_disparity.min(width);
-        winners::<S, STRIDE>(columns, stride, begin, width, sums, select);
+        winners::<S, STRIDE>(columns, stride, begin, width, room, select);
     }
 }
 
-/// The winners from column `begin` on. `sums` has room for a byte beside them on both sides.
+/// The winners from column `begin` on. The `room` is for the window's sums and for records of winners.
 #[inline(never)]
 fn winners<S: WindowParameters, const STRIDE: usize>(
     columns: &[u8],
     stride: usize,
     begin: usize,
     width: usize,
-    sums: &mut [u8],
+    room: &mut [u8],
     select: Select<'_>,
 ) {
     let stride = if STRIDE > 0 { STRIDE } else { stride };
-    let Select { disparities, mut winners, unique } = select;
-    let rows = part_mut(winners.bytes(), begin..);
+    let Select { disparities, winners, unique } = select;
+    let WinnerRows { mut below, mut costs, mut above, disparities: mut found } = winners.rows(begin);
     // The column that leaves at the first pixel is among them.
     let from = |column: usize| part(columns, (column * stride).min(columns.len())..);
     let (leaves, enters) = (from(OUTSIDE + begin - S::RADIUS_X - 1), from(OUTSIDE + begin + S::RADIUS_X));
     let columns = leaves.chunks_exact(stride).take(2 * S::RADIUS_X + 1);
-    let inside = part_mut(sums, 1..=stride);
+    let mut windows = Windows::<STRIDE>::new(stride, leaves, enters, room);
+    let inside = windows.sums();
     match inside.first_chunk_mut::<STRIDE>() {
         Some(sums) if STRIDE > 0 => {
             let mut first = [0u8; STRIDE];
@@ -242,13 +253,12 @@ fn winners<S: WindowParameters, const STRIDE: usize>(
     }
     let is_checked = unique.is_asked();
     let mut check = unique.checks_from(begin);
-    let mut windows = Windows::<STRIDE> { stride, leaves, enters, sums, rows, width };
     // The first pixels have fewer candidates than the others.
     let few = (disparities - 1).min(width - begin);
     let mut done = 0;
     while done < width - begin {
         let alike = if done < few { few - done } else { width - begin - done };
-        let count = if is_checked { 1 } else { alike };
+        let count = if is_checked { 1 } else { alike.min(windows.at_once) };
         let candidates = (done + 1).min(disparities);
         let mask = part(MASKS, 256 - (stride - candidates)..);
         if STRIDE == 0 || candidates < stride {
@@ -256,15 +266,16 @@ fn winners<S: WindowParameters, const STRIDE: usize>(
         } else {
             windows.select::<S, false>(count, mask, 0);
         }
-        done += count;
         if is_checked {
-            let (cost, disparity) = windows.last();
-            check(cost, &mut || {
-                let (mask, sums) = (part(mask, ..stride), part_mut(windows.sums, 1..=stride));
-                best_of_the_rest(usize::from(disparity), mask, sums)
-            });
+            let (cost, disparity) = windows.only();
+            check(cost, &mut || best_of_the_rest(disparity.into(), part(mask, ..stride), windows.sums()));
         }
+        let rows = [&mut below, &mut costs, &mut above, &mut found].map(|rest| {
+            let (these, others) = split_mut(core::mem::take(rest), count);
+            *rest = others;
+            these
+        });
+        spread(windows.room, rows, done, disparities);
+        done += count;
     }
-    let WinnerRows { below, costs, above, disparities: found } = winners.rows(begin);
-    complete([below, costs, above, found], disparities);
 }

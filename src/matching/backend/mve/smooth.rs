@@ -37,11 +37,29 @@ pub(super) fn smooth(
     let (inside, after) = split_mut(more, width);
     before.fill(Disparity::NONE.raw());
     after.fill(Disparity::NONE.raw());
-    for (inside, answer) in inside.iter_mut().zip(answers.iter()) {
-        *inside = answer.raw();
-    }
+    copy(answers, inside);
     pairs(answers, room, step, usize::from(radius).min(REACH));
     count(room, lengths, width);
+}
+
+/// Copies the answers, as many as there is place for: two instructions and the loop's own for eight.
+fn copy(answers: &[Disparity], to: &mut [u16]) {
+    let count = answers.len().min(to.len());
+    if count == 0 {
+        return;
+    }
+    // SAFETY: `count` half-words are read and written; the loop is one for so many lanes of them.
+    unsafe {
+        asm!(
+            "dlstp.16 lr, {count}",
+            "2:",
+            "vldrh.u16 q0, [{answers}], #16",
+            "vstrh.16 q0, [{to}], #16",
+            "letp lr, 2b",
+            count = in(reg) count, answers = inout(reg) answers.as_ptr() => _,
+            to = inout(reg) to.as_mut_ptr() => _, out("lr") _, out("q0") _, options(nostack),
+        );
+    }
 }
 
 /// Averages the answers, which `room` holds with [`REACH`] before and after; leaves in the `room`, from its

@@ -2,6 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::LANES;
+use super::sides::RECORD;
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::winners::BESIDE;
@@ -26,20 +27,34 @@ pub(super) struct Windows<'a, const STRIDE: usize> {
     pub leaves: &'a [u8],
     /// From the column on that enters there.
     pub enters: &'a [u8],
-    /// The sums, with a byte before them and one after.
-    pub sums: &'a mut [u8],
-    /// From the next pixel on: the cost below it. `width` bytes after it stands its own cost, then the cost
-    /// above it, then the disparity.
-    pub rows: &'a mut [u8],
-    /// Pixels in a row.
-    pub width: usize,
+    /// The records of the pixels selected last, [`Self::at_once`] of them at most, then the sums, with a byte
+    /// before them and three after.
+    pub room: &'a mut [u8],
+    /// Pixels that records have places for.
+    pub at_once: usize,
 }
 
-impl<const STRIDE: usize> Windows<'_, STRIDE> {
-    /// The cost and the disparity of the pixel before the next one.
-    pub fn last(&self) -> (u8, u8) {
-        let at = |place: usize| self.rows.get(place).copied().unwrap_or(0);
-        (at(self.width - 1), at(3 * self.width - 1))
+/// Bytes beside the sums: one before them, and the rest of a word after them.
+pub(super) const BESIDE_SUMS: usize = 4;
+
+impl<'a, const STRIDE: usize> Windows<'a, STRIDE> {
+    /// Windows over `stride` candidates, with what is left of the `room` for records: whole vectors of them,
+    /// if there is place for one.
+    pub fn new(stride: usize, leaves: &'a [u8], enters: &'a [u8], room: &'a mut [u8]) -> Self {
+        let places = room.len().saturating_sub(stride + BESIDE_SUMS) / RECORD;
+        let at_once = if places < LANES { places } else { places - places % LANES };
+        Self { stride, leaves, enters, room, at_once }
+    }
+
+    /// The sums.
+    pub fn sums(&mut self) -> &mut [u8] {
+        let begin = RECORD * self.at_once + 1;
+        part_mut(self.room, begin..begin + self.stride)
+    }
+
+    /// The cost and the disparity of the only pixel that was selected last.
+    pub fn only(&self) -> (u8, u8) {
+        self.room.first_chunk::<RECORD>().map_or((0, 0), |&[_, cost, _, disparity]| (cost, disparity))
     }
 
     /// Selects the winners of the next `count` pixels. Lanes with ones in the `mask` are not selected; for
@@ -56,8 +71,8 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
         let columns = count * stride;
         let is_there = self.leaves.len() >= columns
             && self.enters.len() >= columns
-            && self.sums.len() == stride + 2
-            && self.rows.len() >= 3 * self.width + count
+            && self.at_once >= count
+            && self.room.len() >= RECORD * self.at_once + stride + BESIDE_SUMS
             && (!MASKED || mask.len() >= stride + count * step);
         if count == 0 || stride < LANES || !is_there {
             return;
@@ -71,7 +86,7 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
     }
 
     /// [`Self::select`] among `STRIDE` candidates: eight instructions for 16 of them, two more where there is
-    /// a mask, and ten for a pixel.
+    /// a mask, and seven for a pixel.
     #[inline(always)]
     fn select_among<S: WindowParameters, const MASKED: bool>(
         &mut self,
@@ -82,7 +97,7 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
         const { assert!(STRIDE.is_multiple_of(LANES) && STRIDE != LANES && STRIDE <= DISPARITIES.len()) };
         let Some(lanes) = DISPARITIES.last_chunk::<STRIDE>() else { return };
         // SAFETY: [`Self::select`] asked for the lengths of what is read and written; `count` is not 0. The
-        // winner is one of the lanes, and the bytes beside a lane are of `self.sums`.
+        // winner is one of the lanes, and the word from the byte before a lane is of the room.
         unsafe {
             asm!(
                 "dls lr, {count}",
@@ -132,23 +147,20 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
                 "vminvt.u8 {nearest}, q7",
                 ".endif",
                 ".endr",
-                "strb {least}, [{row}, {width}]",
-                "strb {nearest}, [{row}, {widths}]",
-                "sub {nearest}, {sums}, {nearest}",
-                "ldrb {least}, [{nearest}, #{stride} - 2]",
-                "strb {least}, [{row}, {width}, lsl #1]",
-                "ldrb {least}, [{nearest}, #{stride}]",
-                "strb {least}, [{row}], #1",
+                "sub {least}, {sums}, {nearest}",
+                "ldr {least}, [{least}, #{stride} - 2]",
+                "bfi {least}, {nearest}, #24, #8",
+                "str {least}, [{record}], #4",
                 ".if {masked}",
                 "add {mask}, {mask}, {step}",
                 ".endif",
                 "le lr, 2b",
                 count = in(reg) count, enters = inout(reg) self.enters.as_ptr() => _,
-                leaves = inout(reg) self.leaves.as_ptr() => _, sums = in(reg) self.sums.as_mut_ptr().add(1),
+                leaves = inout(reg) self.leaves.as_ptr() => _,
+                sums = in(reg) self.room.as_mut_ptr().add(RECORD * self.at_once + 1),
                 mask = inout(reg) mask.as_ptr() => _, step = in(reg) step,
                 disparities = in(reg) lanes.as_ptr(),
-                row = inout(reg) self.rows.as_mut_ptr() => _, width = in(reg) self.width,
-                widths = in(reg) 3 * self.width,
+                record = inout(reg) self.room.as_mut_ptr() => _,
                 least = out(reg) _, nearest = out(reg) _,
                 stride = const STRIDE, groups = const STRIDE / LANES, shift = const S::COLUMN_SHIFT,
                 masked = const MASKED as u32,
@@ -160,7 +172,7 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
     }
 
     /// [`Self::select`] among any number of candidates, with a mask: 17 instructions for 16 of them, two more
-    /// where only some digits of the columns count, and 21 for a pixel.
+    /// where only some digits of the columns count, and 17 for a pixel.
     #[inline(always)]
     fn select_among_any<S: WindowParameters>(&mut self, count: usize, mask: &[u8], step: usize) {
         // SAFETY: as for `select_among`.
@@ -198,22 +210,18 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
                 "vpt.i8 eq, q0, {least}",
                 "vminvt.u8 {nearest}, q1",
                 "le lr, 3b",
-                "add r4, {width}, {width}, lsl #1",
-                "strb {least}, [{row}, {width}]",
-                "strb {nearest}, [{row}, r4]",
                 "sub r4, {sums}, {nearest}",
                 "sub {sums}, {sums}, {stride}",
-                "ldrb {least}, [r4, #-2]",
-                "strb {least}, [{row}, {width}, lsl #1]",
-                "ldrb {least}, [r4]",
-                "strb {least}, [{row}], #1",
+                "ldr r4, [r4, #-2]",
+                "bfi r4, {nearest}, #24, #8",
+                "str r4, [{record}], #4",
                 "subs {count}, {count}, #1",
                 "bne 2b",
                 count = inout(reg) count => _, enters = inout(reg) self.enters.as_ptr() => _,
                 leaves = inout(reg) self.leaves.as_ptr() => _,
-                sums = inout(reg) self.sums.as_mut_ptr().add(1) => _,
+                sums = inout(reg) self.room.as_mut_ptr().add(RECORD * self.at_once + 1) => _,
                 mask = inout(reg) mask.as_ptr() => _, step = in(reg) step, stride = in(reg) self.stride,
-                row = inout(reg) self.rows.as_mut_ptr() => _, width = in(reg) self.width,
+                record = inout(reg) self.room.as_mut_ptr() => _,
                 least = out(reg) _, nearest = out(reg) _, shift = const S::COLUMN_SHIFT,
                 out("r4") _, out("lr") _, out("q0") _, out("q1") _, out("q2") _, options(nostack),
             );
@@ -225,50 +233,6 @@ impl<const STRIDE: usize> Windows<'_, STRIDE> {
     fn move_on(&mut self, count: usize) {
         self.leaves = part(self.leaves, count * self.stride..);
         self.enters = part(self.enters, count * self.stride..);
-        let rows = core::mem::take(&mut self.rows);
-        self.rows = part_mut(rows, count..);
-    }
-}
-
-/// The other side for the side that a winner lacks which is the smallest or the last of the pixel's
-/// candidates: of these the first pixel has one, the next one two, and so on up to `disparities`. Twelve
-/// instructions for 16 pixels.
-#[inline(never)]
-pub(super) fn complete(rows: [&mut [u8]; 4], disparities: usize) {
-    let [below, costs, above, winners] = rows;
-    let count = winners.len();
-    if count == 0 || below.len() < count || above.len() < count {
-        return;
-    }
-    // SAFETY: `count` bytes are read and written of each row; the loop is one for so many lanes of bytes.
-    unsafe {
-        asm!(
-            "vidup.u8 q4, r4, #1",
-            "vdup.8 q5, {last}",
-            "dlstp.8 lr, {count}",
-            "2:",
-            "vldrb.u8 q0, [{winners}], #16",
-            "vldrb.u8 q1, [{below}]",
-            "vldrb.u8 q2, [{above}]",
-            "vpt.i8 eq, q0, zr",
-            "vmovt q1, q2",
-            "vmin.u8 q3, q4, q5",
-            "vpt.i8 eq, q0, q3",
-            "vmovt q2, q1",
-            "vqadd.u8 q4, q4, {lanes}",
-            "vstrb.8 q1, [{below}], #16",
-            "vstrb.8 q2, [{above}], #16",
-            "letp lr, 2b",
-            count = in(reg) count, last = in(reg) disparities - 1, lanes = in(reg) LANES,
-            winners = inout(reg) winners.as_ptr() => _, below = inout(reg) below.as_mut_ptr() => _,
-            above = inout(reg) above.as_mut_ptr() => _,
-            inout("r4") 0 => _, out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, out("q4") _,
-            out("q5") _, options(nostack),
-        );
-    }
-    // The only candidate has none beside it.
-    if let (Some(below), Some(above), Some(&cost)) = (below.first_mut(), above.first_mut(), costs.first()) {
-        (*below, *above) = (cost, cost);
     }
 }
 

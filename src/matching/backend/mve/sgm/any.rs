@@ -6,7 +6,7 @@ use super::LANES;
 use super::changes::changes;
 use super::down::{Ring, sources};
 use crate::matching::backend::mve::columns::BITS;
-use crate::matching::backend::mve::complete;
+use crate::matching::backend::mve::sides::complete;
 use crate::matching::backend::mve::windows::best_of_the_rest;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::features::Features;

@@ -20,7 +20,7 @@
 //!
 //! * `features`: what a pixel's cost compares, of a row of both images.
 //! * `edges`: how far a row's costs are averaged with others.
-//! * `passes`: the passes, for vectors and for plain words.
+//! * `passes`: the passes, for vectors; `quarters`: for cores without.
 //!
 //! The work is the same for every picture, but for some instructions where a winner is at an end of the
 //! search.
@@ -28,13 +28,13 @@
 pub(in crate::matching::backend) mod edges;
 pub(in crate::matching::backend) mod features;
 pub(in crate::matching::backend) mod passes;
+mod quarters;
 
-use super::words::Word;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::work::{CostWork, EdgeWork, Guide, PathWork};
 use crate::matching::memory::winners::{Found, Select, Unique, Winner, WinnerRows};
 use features::{FeatureRows, Features};
-use passes::Groups;
+use quarters::Quarters;
 
 /// The passes of a row. What they keep from row to row they keep in a form of their own.
 pub(in crate::matching::backend) trait Passes {
@@ -129,12 +129,15 @@ macro_rules! in_words {
         match $work.stride {
             0 => (),
             16 if MOST == 0 || MOST == 16 => {
-                words::$pass::<Groups<Word, 4, true>, $($more)?>($work, $($argument),*)
+                words::$pass::<Quarters<4, true, 16>, $($more)?>($work, $($argument),*)
             }
-            // Room for as few as will do, and one more: a path's costs stand on the stack, several times.
-            ..=64 if MOST != 16 => words::$pass::<Groups<Word, 17, false>, $($more)?>($work, $($argument),*),
-            ..=128 if MOST == 0 => words::$pass::<Groups<Word, 33, false>, $($more)?>($work, $($argument),*),
-            _ if MOST == 0 => words::$pass::<Groups<Word, 65, false>, $($more)?>($work, $($argument),*),
+            ..=32 if MOST == 32 => words::$pass::<Quarters<8, true, 20>, $($more)?>($work, $($argument),*),
+            // Room for as few as will do: it stands on the stack.
+            ..=64 if MOST != 16 && MOST != 32 => {
+                words::$pass::<Quarters<16, false, 24>, $($more)?>($work, $($argument),*)
+            }
+            ..=128 if MOST == 0 => words::$pass::<Quarters<32, false, 44>, $($more)?>($work, $($argument),*),
+            _ if MOST == 0 => words::$pass::<Quarters<64, false, 76>, $($more)?>($work, $($argument),*),
             _ => (),
         }
     };

@@ -10,6 +10,7 @@ mod edges;
 mod gather;
 mod select;
 mod selection;
+mod two_ends;
 
 use super::Passes;
 use super::features::{Features, PlainRows};
@@ -52,6 +53,8 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Passes for Groups<G, CELLS, 
     fn select(work: &mut PathWork<'_>, guide: Guide<'_>, unique: Unique<'_>, put: impl FnMut(usize, Found)) {
         if is_word::<G>() && !ALL {
             alternate::select::<G, CELLS>(work, guide, unique, put);
+        } else if !is_word::<G>() && ALL {
+            two_ends::select::<G, CELLS>(work, guide, unique, put);
         } else {
             select::select::<G, CELLS, ALL>(work, guide, unique, put);
         }
@@ -209,6 +212,21 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Steps<G, CELLS, ALL> {
         // The first edge is no greater than the second.
         let grade = usize::from(change >= self.edges[0]) + usize::from(change >= self.edges[1]);
         &self.changes[grade & 3]
+    }
+
+    /// What stands for the change of brightness between the numbers of each pair, for [`Self::change`].
+    #[inline(always)]
+    fn grade(&self, a: &[u8], b: &[u8], grades: &mut [u8]) {
+        for (grade, (&a, &b)) in grades.iter_mut().zip(a.iter().zip(b)) {
+            let change = a.abs_diff(b);
+            *grade = u8::from(change >= self.edges[0]) + u8::from(change >= self.edges[1]);
+        }
+    }
+
+    /// What a step and a jump cost where this is the change.
+    #[inline(always)]
+    fn change(&self, grade: u8) -> &[G::Cell; 2] {
+        &self.changes[usize::from(grade & 3)]
     }
 
     /// Closes a path's lanes that are beyond the search.

@@ -1,0 +1,110 @@
+//! Four bytes in a word that are compared by subtraction.
+//!
+//! The numbers have seven bits. A number is marked where its top bit is set, which is 128 more: a marked one
+//! less one that is not is 128 and their difference, whose top bit says whether it is not negative. Nothing
+//! is carried from lane to lane.
+
+/// The top bit of each lane.
+pub(super) const TOP: u32 = 0x8080_8080;
+/// A one in each lane.
+pub(super) const ONE: u32 = 0x0101_0101;
+
+/// A byte four times.
+#[inline(always)]
+pub(super) const fn splat(number: u32) -> u32 {
+    number.wrapping_mul(ONE)
+}
+
+/// What each lane is over 128, or 0.
+#[inline(always)]
+pub(super) fn over(difference: u32) -> u32 {
+    let top = difference & TOP;
+    difference & (top - (top >> 7))
+}
+
+/// Each lane, or 128 where it is more.
+#[inline(always)]
+pub(super) fn up_to_top(difference: u32) -> u32 {
+    let top = difference & TOP;
+    difference & !(top - (top >> 7))
+}
+
+/// The lesser of two numbers, the first of which is marked, as the lesser is.
+#[inline(always)]
+pub(super) fn lesser(marked: u32, other: u32) -> u32 {
+    marked - over(marked.wrapping_sub(other))
+}
+
+/// The averages, rounded down, of numbers whose sum fits a byte.
+#[inline(always)]
+pub(super) fn average(a: u32, b: u32) -> u32 {
+    a.wrapping_add(b) >> 1 & !TOP
+}
+
+/// The least of four marked numbers.
+#[inline(always)]
+pub(super) fn least_of_four(marked: u32) -> u32 {
+    let two = lesser(marked, marked >> 16 & !TOP);
+    lesser(two, two >> 8 & !TOP) & 0x7f
+}
+
+/// The lanes of word `word` of `words` whose candidates are before the one at `place`, where the candidates
+/// of a lane stand one after the other, those of the next lane after them.
+#[inline(always)]
+pub(super) fn before(place: usize, word: usize, words: usize) -> u32 {
+    let (mut lanes, mut rest) = (0u32, place);
+    while rest > word && lanes != u32::MAX {
+        lanes = lanes << 8 | 0xff;
+        rest = rest.saturating_sub(words);
+    }
+    lanes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two numbers of seven bits, in each lane beside others.
+    fn pairs() -> impl Iterator<Item = ([u8; 4], [u8; 4])> {
+        let corners = [(0, 127), (127, 0), (0, 0), (127, 127), (63, 64)];
+        (0..128u8).flat_map(|a| (0..128u8).map(move |b| (a, b))).zip((0..4).cycle()).flat_map(
+            move |((a, b), lane)| {
+                corners.into_iter().map(move |(c, d)| {
+                    let (mut first, mut second) = ([c; 4], [d; 4]);
+                    (first[lane], second[lane]) = (a, b);
+                    (first, second)
+                })
+            },
+        )
+    }
+
+    fn each(of: impl Fn(usize) -> u8) -> u32 {
+        u32::from_le_bytes(core::array::from_fn(of))
+    }
+
+    #[test]
+    fn comparisons_are_those_of_bytes() {
+        for (a, b) in pairs() {
+            let [first, second] = [a, b].map(u32::from_le_bytes);
+            let difference = (first | TOP) - second;
+            assert_eq!(over(difference), each(|i| a[i].saturating_sub(b[i])), "{a:?} {b:?}");
+            assert_eq!(up_to_top(difference), each(|i| 128 - b[i].saturating_sub(a[i])), "{a:?} {b:?}");
+            assert_eq!(lesser(first | TOP, second), each(|i| a[i].min(b[i]) | 0x80), "{a:?} {b:?}");
+            assert_eq!(average(first, second), each(|i| (a[i] + b[i]) / 2), "{a:?} {b:?}");
+            let least = a.into_iter().fold(u8::MAX, u8::min);
+            assert_eq!(least_of_four(first | TOP), least.into(), "{a:?}");
+        }
+    }
+
+    #[test]
+    fn lanes_before_a_place() {
+        for words in [4, 8, 12, 64] {
+            for place in 0..=4 * words {
+                for word in 0..words {
+                    let lanes = each(|lane| if lane * words + word < place { 0xff } else { 0 });
+                    assert_eq!(before(place, word, words), lanes, "{place} {word} {words}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! The passes on cores without instructions on bytes, four candidates in a word.
+//!
+//! * Each lane of a column's words holds a quarter of the candidates, one after the other from word to word:
+//!   what is beside the candidates of a word are whole words. Only at the ends is it the next lane's.
+//! * Numbers have seven bits, so that a subtraction compares four of them (`lanes`).
+//! * Of a cost there is the agreement (`cost`), so that it cuts itself off.
+//! * A path along the row is moved by the same number for all candidates, by as much as saves an addition.
+//!   What it was moved by is taken off the winner.
+//!
+//! * `others`: what is compared with, in the order of the words; `cost`: the costs. `edges`: averaged within
+//!   edges.
+//! * `steps`: from pixel to pixel; `down` and `along`: the paths; `winners`: the last path and the least
+//!   sums; `columns`: where they stand.
+
+mod along;
+mod columns;
+mod cost;
+mod down;
+mod edges;
+mod lanes;
+mod others;
+mod steps;
+mod winners;
+
+use super::Passes;
+use super::features::{Features, PlainRows};
+use crate::matching::backend::parameters::SgmParameters;
+use crate::matching::backend::work::{EdgeWork, Guide, PathWork};
+use crate::matching::memory::winners::{Found, Unique};
+
+/// The passes over columns of up to `WORDS` words, all of them in use if `ALL`: then the compiler knows how
+/// many. Costs are made with room for so many groups of right pixels, more than a column has words.
+pub(super) struct Quarters<const WORDS: usize, const ALL: bool, const GROUPS: usize>;
+
+impl<const WORDS: usize, const ALL: bool, const GROUPS: usize> Passes for Quarters<WORDS, ALL, GROUPS> {
+    type Rows = PlainRows;
+
+    #[inline(always)]
+    fn clear(work: &mut PathWork<'_>) {
+        work.costs.fill(steps::most(work.penalties));
+    }
+
+    #[inline(always)]
+    fn enter<S: SgmParameters>(work: &mut PathWork<'_>, features: &Features<'_>) {
+        cost::enter::<S, WORDS, ALL, GROUPS>(work, features);
+    }
+
+    #[inline(always)]
+    fn within_edges(work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
+        edges::within_edges(work, edges, columns::words::<WORDS, ALL>(work));
+    }
+
+    #[inline(always)]
+    fn select(
+        work: &mut PathWork<'_>,
+        guide: Guide<'_>,
+        mut unique: Unique<'_>,
+        mut put: impl FnMut(usize, Found),
+    ) {
+        along::right::<WORDS, ALL>(work, guide);
+        down::down::<WORDS, ALL>(work, guide);
+        winners::left::<WORDS, ALL, _>(work, guide, &mut unique, &mut put);
+    }
+}

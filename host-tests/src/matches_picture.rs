@@ -1,4 +1,5 @@
-//! Matches over the two images, side by side: a line from a point to its partner, a small square at both.
+//! Matches over the two images, side by side: a dot at both points, and for a sample of them a line and
+//! squares.
 
 use crate::colour::viridis;
 use image::{Rgb, RgbImage};
@@ -8,6 +9,10 @@ const GAP: u32 = 4;
 /// Half the side of a square at a point, px.
 const SQUARE: i64 = 2;
 
+/// Cells of the left image, across and down: the first match of each has a line, for hundreds of lines hide
+/// the images and each other.
+const CELLS: [usize; 2] = [10, 6];
+
 /// The picture: the images half as bright, and each match (column and row in the left image, column and row
 /// in the right one, px) in a colour that goes by its column on the left.
 pub fn matches_picture(
@@ -16,15 +21,30 @@ pub fn matches_picture(
     matches: impl Iterator<Item = [f32; 4]>,
 ) -> RgbImage {
     let (mut picture, beside) = side_by_side(left, right);
+    let mut taken = [false; CELLS[0] * CELLS[1]];
     for [x1, y1, x2, y2] in matches {
         let colour = viridis(0.2 + 0.8 * x1 / left.width() as f32);
         let (from, to) = ([x1, y1], [x2 + beside as f32, y2]);
-        line(&mut picture, from, to, colour);
-        for end in [from, to] {
-            square(&mut picture, end, colour);
+        for [x, y] in [from, to] {
+            if let Some(pixel) = picture.get_pixel_mut_checked(x.round() as u32, y.round() as u32) {
+                *pixel = colour;
+            }
+        }
+        if taken.get_mut(cell(left, from)).is_some_and(|taken| !std::mem::replace(taken, true)) {
+            line(&mut picture, from, to, colour);
+            for end in [from, to] {
+                square(&mut picture, end, colour);
+            }
         }
     }
     picture
+}
+
+/// The cell of the left image that a point is in.
+fn cell(left: &RgbImage, [x, y]: [f32; 2]) -> usize {
+    let place =
+        |at: f32, side: u32, cells: usize| ((at / side as f32 * cells as f32) as usize).min(cells - 1);
+    place(y, left.height(), CELLS[1]) * CELLS[0] + place(x, left.width(), CELLS[0])
 }
 
 /// The two images half as bright, and the column at which the right one begins.

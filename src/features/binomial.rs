@@ -6,6 +6,10 @@
 /// for the two columns at either end, which are left as they are: no patch reaches them.
 pub fn binomial5_row(rows: &[&[u8]; 5], out: &mut [u8]) {
     let width = rows.iter().fold(out.len(), |least, row| least.min(row.len()));
+    #[cfg(stereopsis_dsp)]
+    if width >= 8 {
+        return in_fours(rows, width, out);
+    }
     let [a, b, c, d, e] = rows.map(|row| row.get(..width).unwrap_or(&[]).iter());
     let mut columns =
         a.zip(b).zip(c).zip(d).zip(e).map(|((((a, b), c), d), e)| sum([a, b, c, d, e].map(|&p| p.into())));
@@ -17,6 +21,33 @@ pub fn binomial5_row(rows: &[&[u8]; 5], out: &mut [u8]) {
         let [_, b, c, d, e] = last;
         last = [b, c, d, e, column];
         *out = ((sum(last) + 128) >> 8) as u8;
+    }
+}
+
+/// [`binomial5_row`] of the first `width` pixels four at a time, the last four moved back to end with the
+/// row.
+#[cfg(stereopsis_dsp)]
+fn in_fours(rows: &[&[u8]; 5], width: usize, out: &mut [u8]) {
+    use super::armv7em::{PIXELS, column_sums, smooth_four};
+    let sums = |begin: usize| {
+        let [Some(a), Some(b), Some(c), Some(d), Some(e)] =
+            rows.map(|row| row.get(begin..).and_then(|row| row.first_chunk::<PIXELS>()))
+        else {
+            return [0; 2];
+        };
+        column_sums([a, b, c, d, e])
+    };
+    let (mut begin, mut left) = (0, sums(0));
+    while begin + 2 * PIXELS <= width {
+        let right = sums(begin + PIXELS);
+        if let Some(four) = out.get_mut(begin + 2..).and_then(|out| out.first_chunk_mut()) {
+            *four = smooth_four([left, right]);
+        }
+        (begin, left) = (begin + PIXELS, right);
+    }
+    let begin = width.saturating_sub(2 * PIXELS);
+    if let Some(four) = out.get_mut(begin + 2..).and_then(|out| out.first_chunk_mut()) {
+        *four = smooth_four([sums(begin), sums(begin + PIXELS)]);
     }
 }
 

@@ -30,11 +30,22 @@ impl Descriptor {
 
     /// The descriptor of a patch whose points are taken from a picture turned by `turn`.
     pub fn of(patch: &Patch, turn: PatchOrientation) -> Self {
+        if turn == PatchOrientation::NONE {
+            Self::of_points(|[x, y]| patch.at((x.into(), y.into())))
+        } else {
+            Self::of_points(|[x, y]| patch.at(turn.of(x.into(), y.into())))
+        }
+    }
+
+    /// The descriptor of pixels, given by the points of the pattern.
+    #[inline(always)]
+    fn of_points(pixel: impl Fn([i8; 2]) -> u8) -> Self {
         let mut words = [0; 8];
         for (word, pairs) in words.iter_mut().zip(PATTERN.as_chunks::<32>().0) {
-            for (bit, pair) in pairs.iter().enumerate() {
-                let [first, second] = pair.map(|[x, y]| patch.at(turn.of(x.into(), y.into())));
-                *word |= u32::from(first < second) << bit;
+            for &[first, second] in pairs {
+                // The sign says which is darker; the first pair's ends up in the lowest bit.
+                let difference = u32::from(pixel(first)).wrapping_sub(pixel(second).into());
+                *word = *word >> 1 | difference & 1 << 31;
             }
         }
         Self(words)
@@ -60,7 +71,14 @@ impl Patch {
         let mut patch = Self([0; Self::STRIDE * Self::STRIDE]);
         for (place, row) in patch.0.as_chunks_mut::<{ Self::STRIDE }>().0.iter_mut().zip(rows) {
             let pixels: &[u8; SIDE] = row.get(from..)?.first_chunk()?;
-            place[..SIDE].copy_from_slice(pixels);
+            // In two parts that overlap by a pixel: for one of this length the compiler calls a routine.
+            if let (Some(from), Some(to)) = (pixels.first_chunk::<16>(), place.first_chunk_mut::<16>()) {
+                *to = *from;
+            }
+            if let (Some(from), Some(to)) = (pixels.last_chunk::<16>(), place[..SIDE].last_chunk_mut::<16>())
+            {
+                *to = *from;
+            }
         }
         Some(patch)
     }

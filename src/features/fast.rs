@@ -4,25 +4,7 @@
 //! tree is not theirs: four comparisons refuse most pixels, and the score of the others is worked out the
 //! same way for all of them.
 
-/// The circle of radius 3 as (row, column) of a square of seven, clockwise from above the centre.
-const CIRCLE: [(usize, usize); 16] = [
-    (0, 3),
-    (0, 4),
-    (1, 5),
-    (2, 6),
-    (3, 6),
-    (4, 6),
-    (5, 5),
-    (6, 4),
-    (6, 3),
-    (6, 2),
-    (5, 1),
-    (4, 0),
-    (3, 0),
-    (2, 0),
-    (1, 1),
-    (0, 2),
-];
+use super::circle::CIRCLE;
 
 /// Scores of one row from the three rows above it, the row and the three below: by how many grey levels the
 /// weakest of nine neighbours in a row differs from the pixel, all to one side, for the best such nine; 0
@@ -33,10 +15,33 @@ pub fn fast_scores(rows: &[&[u8]; 7], threshold: u8, scores: &mut [u8]) {
     let width = rows.iter().fold(scores.len(), |least, row| least.min(row.len()));
     let Some(scores) = scores.get_mut(..width) else { return };
     scores.fill(0);
+    #[cfg(stereopsis_dsp)]
+    if width >= super::armv7em::COLUMNS {
+        return scores_in_fours(rows, threshold, scores);
+    }
     let [a, b, c, d, e, f, g] = rows.map(|row| row.get(..width).unwrap_or(&[]).windows(7));
     let squares = a.zip(b).zip(c).zip(d).zip(e).zip(f).zip(g);
     for (score, ((((((a, b), c), d), e), f), g)) in scores.iter_mut().skip(3).zip(squares) {
         *score = score_of(&[a, b, c, d, e, f, g].map(|row| row.first_chunk().unwrap_or(&[0; 7])), threshold);
+    }
+}
+
+/// [`fast_scores`] of rows of one length four pixels at a time, the last four moved back to end with the row.
+#[cfg(stereopsis_dsp)]
+fn scores_in_fours(rows: &[&[u8]; 7], threshold: u8, scores: &mut [u8]) {
+    use super::armv7em::{COLUMNS, PIXELS, scores_of_four};
+    let last = scores.len().saturating_sub(COLUMNS);
+    let mut begin = 0;
+    loop {
+        let parts = rows.map(|row| row.get(begin..).and_then(|row| row.first_chunk()));
+        let [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f), Some(g)] = parts else { return };
+        if let Some(four) = scores.get_mut(begin + 3..).and_then(|scores| scores.first_chunk_mut()) {
+            *four = scores_of_four(&[a, b, c, d, e, f, g], threshold);
+        }
+        if begin >= last {
+            return;
+        }
+        begin = last.min(begin + PIXELS);
     }
 }
 

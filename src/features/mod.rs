@@ -15,6 +15,9 @@
 //! Pixels to matches is integer arithmetic but for positions: [`Feature`] has them in px of the full picture,
 //! and a search along epipolar lines compares them with lines.
 
+mod circle;
+#[cfg(stereopsis_dsp)]
+mod armv7em;
 mod binomial;
 mod corner;
 mod downsample;

@@ -10,6 +10,7 @@ use stereopsis::geometry::{
     two_view::{Correspondence, Essential, Fundamental},
 };
 use stereopsis_host::correspond::{Plan, correspond};
+use stereopsis_host::correspond_refine::refine;
 use stereopsis_host::scene::Scene;
 use stereopsis_host::scene::pattern::Pattern;
 use stereopsis_host::two_view::off_degrees;
@@ -204,4 +205,48 @@ fn strangers_differ_in_about_half_of_the_bits() {
     let mean = sum as f32 / count as f32;
     let half = f32::from(Descriptor::BITS) / 2.0;
     assert!(count > 1000 && (mean - half).abs() < 6.0, "{mean} bits of {count} pairs");
+}
+
+#[test]
+fn aligned_matches_are_right_to_a_twentieth_of_a_pixel() {
+    // A surface seen from two places: the second picture is an affine map of the first, both sampled from one
+    // four times as fine.
+    let fine =
+        imageops::blur(&imageops::resize(&texture(360), 1440, 1440, imageops::FilterType::CatmullRom), 2.0);
+    let sampled = |map: &dyn Fn(f64, f64) -> [f64; 2]| {
+        GrayImage::from_fn(300, 300, |x, y| {
+            // The mean of 4 x 4 samples within a pixel.
+            let samples = (0..16).map(|i| {
+                let [u, v] = map(
+                    f64::from(x) + f64::from(i % 4) / 4.0 - 0.375,
+                    f64::from(y) + f64::from(i / 4) / 4.0 - 0.375,
+                );
+                let sample =
+                    imageops::interpolate_bilinear(&fine, 4.0 * u as f32 + 1.5, 4.0 * v as f32 + 1.5);
+                f64::from(sample.map_or(0, |pixel| pixel.0[0]))
+            });
+            Luma([(samples.sum::<f64>() / 16.0).round() as u8])
+        })
+    };
+    let (a, b, c, d) = (0.93, 0.12, -0.05, 1.04);
+    let left = sampled(&|x, y| [x + 30.0, y + 30.0]);
+    // A point x of the second picture lies at A x + t of the first.
+    let right = sampled(&|x, y| [a * x + b * y + 30.0 + 3.3, c * x + d * y + 30.0 - 2.6]);
+    let determinant = a * d - b * c;
+    let motion = |x: f32, y: f32| {
+        let (x, y) = (f64::from(x) - 3.3, f64::from(y) + 2.6);
+        [((d * x - b * y) / determinant) as f32, ((a * y - c * x) / determinant) as f32]
+    };
+    let mut found = correspond(&Plan::default(), &left, &right).expect("features");
+    let before = median_off([&found.left, &found.right], &found.matches, motion);
+    let moved = refine(&left, &right, &mut found);
+    let after = median_off([&found.left, &found.right], &found.matches, motion);
+    println!("{moved} of {} moved: {before:.3} px off, then {after:.3}", found.matches.len());
+    assert!(found.matches.len() > 100 && 10 * moved >= 9 * found.matches.len(), "{moved}");
+    assert!(after <= 0.05 && 2.0 * after < before, "{before} {after}");
+    // A picture of nothing moves nothing.
+    let even = GrayImage::from_pixel(300, 300, Luma([90]));
+    let places: Vec<_> = found.points().collect();
+    assert_eq!(refine(&left, &even, &mut found), 0);
+    assert_eq!(found.points().collect::<Vec<_>>(), places);
 }

@@ -13,6 +13,7 @@ use stereopsis::features::{MatchConfig, Orientation};
 use stereopsis::imaging::GreyLines;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::correspond::{Correspondences, Plan, correspond};
+use stereopsis_host::correspond_refine::refine;
 use stereopsis_host::matches_picture::matches_picture;
 use stereopsis_host::mock::MockCamera;
 
@@ -58,6 +59,10 @@ pub struct FeaturesArgs {
     /// turned when few corners match upright
     #[arg(long, value_name = "WAY", default_value = "auto")]
     pub orientation: OrientationChoice,
+    /// Leaves matches where the corners were found; by default the right one is moved to where the pixels
+    /// around the left one fit best
+    #[arg(long)]
+    pub as_found: bool,
 }
 
 /// How corners are described.
@@ -100,7 +105,10 @@ pub fn run(args: &FeaturesArgs) -> Result<(), Failure> {
     let right = open(&args.pair.right)?;
     let (out, picture) = Place::with_picture(&args.out, args.picture.as_deref())?;
 
-    let found = correspond(&plan(args), &left.grey, &right.grey)?;
+    let mut found = correspond(&plan(args), &left.grey, &right.grey)?;
+    if !args.as_found {
+        refine(&left.grey, &right.grey, &mut found);
+    }
     let drawn = |place| (place, matches_picture(&left.colours, &right.colours, found.points()));
     out.write(|out| out.write_all(lines(&found).as_bytes()), picture.as_ref().map(drawn))?;
 

@@ -118,7 +118,10 @@ fn choice(board: &Board) -> Result<String, Box<dyn Error>> {
          that are searched, px.\npub const DISPARITIES: u16 = {disparities};\n/// How noisy the cameras \
          are.\npub const NOISE: stereopsis::imaging::Noise = stereopsis::imaging::Noise::{noise};\n/// The \
          pipeline that has room for them.\npub type BoardPipeline = stereopsis::pipeline::Pipeline<Method, \
-         {room}, {lanes}>;\n/// The pipeline behind winners from elsewhere that has \
+         {room}, {lanes}>;\n/// Columns that it has room for.\npub const ROOM: usize = {room};\n/// The \
+         matcher in \
+         it.\npub type BoardMatcher = stereopsis::matching::Matcher<Method, {room}, {lanes}>;\n/// The \
+         pipeline behind winners from elsewhere that has \
          room for them.\npub type BoardWinners = \
          stereopsis::pipeline::winners::WinnerPipeline<Method, {room}, {lanes}>;\n/// The \
          board.\npub const BOARD: crate::board::Board = crate::board::{};\n",

@@ -2,12 +2,13 @@
 //! two views, `bundle` their adjustment, `features` corners and their matches, `focus` depth by a lens that
 //! moves, `gates` the pipeline behind a block of gates, `interrupt` lines that an interrupt brings,
 //! `odometry` where a pair of cameras goes, `rectify` raw lines, `any_frames` frames of any size with all
-//! that can be asked of them.
+//! that can be asked of them, `dump` the rows of the matcher's stages.
 //!
 //! * [`choice`]: the method, the sizes and the board, chosen when it is built; [`board`] is the list of
 //!   boards, a package of its own.
 //! * [`camera`]: where lines come from: the built-in scene, or two files on the host.
-//! * [`rows`]: rows of disparity to a file on the host, with their checksum. [`console`]: figures as text.
+//! * [`rows`]: rows of disparity to a file on the host, with their checksum; `stage_files`: rows of the
+//!   matcher's stages. [`console`]: figures as text.
 //! * [`host`]: files on the host. [`block`]: a simulated block of gates behind two of them.
 //! * [`clock`]: instructions counted; [`ticker`]: the same timer, for interrupts. [`stack`]: the stack
 //!   measured.
@@ -28,6 +29,8 @@ pub mod log;
 pub mod rows;
 pub mod runtime;
 pub mod stack;
+#[cfg(feature = "trace")]
+pub mod stage_files;
 pub mod ticker;
 
 pub use firmware_boards as board;

@@ -41,6 +41,9 @@ pub struct Arguments {
     /// have none
     #[arg(long, default_value = "auto", value_parser = noise)]
     noise: NoiseChoice,
+    /// The rows of stages that the core makes of a frame, in the files of `stereo dump`, in place of figures
+    #[arg(long)]
+    dump: bool,
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR", required_unless_present_any = ["all", "stages", "profiles"])]
     out: Option<PathBuf>,
@@ -95,6 +98,8 @@ pub struct Plain {
 pub enum Asked {
     /// One frame on one core.
     Depth(One),
+    /// The rows of stages of one frame on one core.
+    StageRows(One),
     /// Two views on one core.
     Pose(Plain),
     /// Two views and their points adjusted, on one core.
@@ -153,9 +158,9 @@ impl Arguments {
                     "--small: {name} has the dense path in it, which is made for speed"
                 )));
             }
-            if pair.is_some() || self.disparities.is_some() {
+            if pair.is_some() || self.disparities.is_some() || self.dump {
                 return Err(Failure::new(format!(
-                    "--program {name} takes no images: --left, --right and --disparities are for depth"
+                    "--program {name} takes no images: --left, --right, --disparities, --dump are for depth"
                 )));
             }
             let optimised = if self.small { Optimised::Size } else { Optimised::Speed };
@@ -179,7 +184,8 @@ impl Arguments {
         let disparities = self
             .disparities
             .ok_or_else(|| Failure::new("--disparities is needed: how many whole ones are searched"))?;
-        Ok(Asked::Depth(One { board, pair, disparities, method: self.method, noise: self.noise, out }))
+        let one = One { board, pair, disparities, method: self.method, noise: self.noise, out };
+        Ok(if self.dump { Asked::StageRows(one) } else { Asked::Depth(one) })
     }
 }
 

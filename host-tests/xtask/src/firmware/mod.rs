@@ -6,6 +6,7 @@
 //!   it, [`summary`].
 //! * [`all`]: every core, method and size; [`tables`] of it for docs/performance.md; [`checksums`] on real
 //!   pictures; [`measured`]: what they are made of.
+//! * [`stage_rows`]: the rows of a frame's stages, held to the twins.
 //! * [`as_match`]: noisy cameras that are exposed unequally, beside `stereo match`.
 //! * [`awkward`]: sizes that fill no vector, where the rows are in assembly.
 //! * [`pose`]: two views on one core, held to the host; [`two_views_all`]: on every core.
@@ -42,6 +43,7 @@ pub mod program;
 mod rectify;
 mod refusals;
 mod results;
+mod stage_rows;
 mod stages;
 mod summary;
 pub mod tables;
@@ -72,6 +74,7 @@ use tables::Readme;
 pub fn run(arguments: &Arguments) -> Outcome {
     match arguments.asked()? {
         Asked::Depth(one) => one_frame::run(&one),
+        Asked::StageRows(one) => stage_rows::run(&one),
         Asked::Pose(plain) => run_plain(&plain, pose::run, Pose::summary),
         Asked::Features(plain) => run_plain(&plain, features::run, Features::summary),
         Asked::Drive(plain) => run_plain(&plain, drive::run, Drive::summary),
@@ -101,10 +104,12 @@ fn run_all(readme: Readme) -> Outcome {
 }
 
 /// Every core and method and a part of the sizes, programs and profiles, compared with docs/performance.md;
-/// and a frame with what the program `stereo` at that path makes of it.
+/// and a frame with what the program `stereo` at that path makes of it. Where instructions have changed by
+/// over a hundredth, it names the stages.
 pub fn check_sample(stereo: &Path) -> Outcome {
-    run_all(Readme::Sample)?;
+    run_all(Readme::Sample).map_err(stages::named)?;
     profiles::run(Readme::Sample)?;
+    stage_rows::check()?;
     as_match::check(stereo)
 }
 

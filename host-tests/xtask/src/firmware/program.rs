@@ -79,7 +79,7 @@ fn cargo_for(board: Board, words: &str) -> Command {
 }
 
 /// Runs cargo, which builds what an error names so.
-fn build(mut cargo: Command, name: &str) -> Outcome {
+fn build(cargo: &mut Command, name: &str) -> Outcome {
     let output = cargo.output().map_err(|e| Failure::new(format!("cargo: {e}")))?;
     if output.status.success() {
         return Ok(());
@@ -158,7 +158,7 @@ pub fn build_plain(board: Board, bin: &str, optimised: Optimised, features: &str
     // Without floating-point instructions geometry is more flash than the budget.
     cargo.env("STEREO_MEMORY", "board");
     cargo.args(["--profile", profile, "--bin", bin, "--features", "large", "--features", features]);
-    build(cargo, &name)?;
+    build(&mut cargo, &name)?;
     keep(board, &format!("{profile}/{bin}"), &name)
 }
 
@@ -206,16 +206,17 @@ impl Program {
     pub fn build(&self) -> Outcome<Built> {
         let _turn = FOLDERS[self.folder()].lock().unwrap_or_else(PoisonError::into_inner);
         let name = self.to_string();
-        build(self.cargo("build --locked --release --quiet --bin depth"), &name)?;
+        build(&mut self.cargo("build --locked --release --quiet --bin depth"), &name)?;
         Ok(Built { program: *self, elf: keep(self.board, "release/depth", &name)? })
     }
 
-    /// Builds the program that stands behind a block of gates; the linked file.
-    pub fn build_behind_gates(&self) -> Outcome<PathBuf> {
+    /// Builds another program of the same sizes, with the features named; the linked file.
+    pub fn build_other(&self, bin: &str, features: &str) -> Outcome<PathBuf> {
         let _turn = FOLDERS[self.folder()].lock().unwrap_or_else(PoisonError::into_inner);
-        let name = format!("{self}-gates");
-        build(self.cargo("build --locked --release --quiet --bin gates"), &name)?;
-        keep(self.board, "release/gates", &name)
+        let name = format!("{self}-{bin}");
+        let mut cargo = self.cargo("build --locked --release --quiet");
+        build(cargo.args(["--bin", bin, "--features", features]), &name)?;
+        keep(self.board, &format!("release/{bin}"), &name)
     }
 
     /// Builds it at another level of optimisation.
@@ -224,7 +225,7 @@ impl Program {
         let name = format!("{self}-{level}-{}", lto.name());
         let mut cargo = self.cargo("build --locked --release --quiet --bin depth");
         cargo.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", level).env("CARGO_PROFILE_RELEASE_LTO", lto.name());
-        build(cargo, &name)?;
+        build(&mut cargo, &name)?;
         Ok(Built { program: *self, elf: keep(self.board, "release/depth", &name)? })
     }
 

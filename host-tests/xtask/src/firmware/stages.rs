@@ -27,7 +27,18 @@ const STAGES: [(&str, &[&str]); 9] = [
     ("cost", &["columns", "by_bits", "tables", "reverse", "enter", "cost", "within_edges"]),
     (
         "aggregation, selection",
-        &["windows", "begin_", "walk", "paths", "sgm::rows", "select", "winners", "changes", "close"],
+        &[
+            "windows",
+            "begin_",
+            "walk",
+            "paths",
+            "sgm::rows",
+            "select",
+            "winners",
+            "changes",
+            "close",
+            "quarters",
+        ],
     ),
     ("left-right, sub-pixel", &["answers", "partners", "left_right", "subpixel", "consistency"]),
     ("fattening", &["fattening", "edges::push"]),
@@ -59,6 +70,48 @@ pub fn run(readme: Readme) -> Outcome {
     let table = tables::with_compiler(&table(&counted))?;
     println!("{table}");
     tables::into_readme(&PART, &table, readme)
+}
+
+/// The failure of a line of the frames' table, with the stages whose instructions have changed since the
+/// table of stages: by over a hundredth of the frame. A line of a program that is not in that table stays as
+/// it is.
+pub fn named(failure: Failure) -> Failure {
+    let text = failure.to_string();
+    let is_named = |(board, method): &(Board, MethodName)| text.contains(&row_begins(board, *method));
+    let programs = CORES.into_iter().flat_map(|board| METHODS.map(|method| (board, method)));
+    let Some((board, method)) = programs.into_iter().find(is_named) else { return failure };
+    match changed(board, method) {
+        Ok(stages) if !stages.is_empty() => Failure::new(format!("{text}; changed: {}", stages.join(", "))),
+        _ => failure,
+    }
+}
+
+/// What a program's row of either table begins with.
+fn row_begins(board: &Board, method: MethodName) -> String {
+    format!("| {} | `{method}` |", board.core)
+}
+
+/// The stages that have changed, each with its instructions before and after.
+fn changed(board: Board, method: MethodName) -> Outcome<Vec<String>> {
+    let (width, height, disparities) = SIZE;
+    let now = count(Program::new(board, method, width, height, disparities)?)?;
+    let table = PART.text()?;
+    let Some(row) = table.lines().find(|line| line.starts_with(&row_begins(&board, method))) else {
+        return Ok(Vec::new());
+    };
+    Ok(since(row, &now.stages))
+}
+
+/// The stages that have changed since a row of the table.
+fn since(row: &str, now: &[u64]) -> Vec<String> {
+    let numbers: Vec<f64> = row.split('|').filter_map(|cell| cell.trim().parse().ok()).collect();
+    let Some((all, shares)) = numbers.split_first() else { return Vec::new() };
+    let stages = STAGES.iter().zip(shares.iter().zip(now));
+    let changed = stages.filter_map(|((name, _), (share, &now))| {
+        let (before, now) = (all * share / 100.0, now as f64);
+        ((now - before).abs() > all / 100.0).then(|| format!("{name} from {before:.0} to {now:.0}"))
+    });
+    changed.collect()
 }
 
 /// One frame of the built-in scene.
@@ -105,6 +158,15 @@ fn table(counted: &[Counted]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn stages_that_changed_are_named() {
+        let row = "| m4 | `sgm` | 1000 | 0.0 | 50.0 | 0.0 | 30.0 | 0.0 | 0.0 | 0.0 | 20.0 | 0.0 | 0.0 |";
+        let mut now = [0, 505, 0, 300, 0, 0, 0, 200, 0];
+        assert_eq!(since(row, &now), [""; 0]);
+        now[7] = 215;
+        assert_eq!(since(row, &now), ["speckle from 200 to 215"]);
+    }
 
     #[test]
     fn functions_have_a_stage() {

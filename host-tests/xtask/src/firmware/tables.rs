@@ -126,6 +126,12 @@ fn readme_path() -> PathBuf {
 }
 
 impl Part {
+    /// The text of the part as it stands.
+    pub fn text(&self) -> Outcome<String> {
+        let (whole, place) = self.find()?;
+        Ok(whole[place].to_owned())
+    }
+
     /// docs/performance.md, and where the part stands in it.
     fn find(&self) -> Outcome<(String, Range<usize>)> {
         let failed = |what: String| Failure::new(format!("docs/performance.md: {what}"));

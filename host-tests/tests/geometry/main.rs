@@ -9,6 +9,7 @@
 
 mod cameras;
 mod chain;
+mod dominant_plane;
 mod estimates;
 mod extremes;
 mod known_cameras;

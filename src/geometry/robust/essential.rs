@@ -98,12 +98,14 @@ impl<'a, T: Real> Estimator<SAMPLE> for Search<'a, T, SAMPLE> {
 
 impl<T: Real> Essential<T> {
     /// The essential matrix near this one that makes Sampson's distances least, px, over the five numbers
-    /// that it has; at most twenty steps of Levenberg's and Marquardt's method.
+    /// that it has; at most thirty steps of Levenberg's and Marquardt's method.
     ///
     /// `seen` are undistorted px ([`Camera::undistort`]), outliers among them: weights fall with the
     /// distance, to zero at one and a half times the threshold, as in
-    /// [`robust_fundamental`](crate::geometry::robust::robust_fundamental). A correspondence that is not
-    /// finite has no weight. The error is that of a matrix that is no estimate at all.
+    /// [`robust_fundamental`](crate::geometry::robust::robust_fundamental), and in the last ten steps at as
+    /// many times three deviations of the noise, by the median distance of what is within the threshold. A
+    /// correspondence that is not finite has no weight. The error is that of a matrix that is no estimate at
+    /// all.
     pub fn refined(
         &self,
         seen: &[Correspondence<T>],
@@ -117,6 +119,37 @@ impl<T: Real> Essential<T> {
         // From far to near: the start may come from a matrix that knew nothing of the cameras.
         let wide = refine(start, Matrix::Essential, seen, &frames, loss.widened(T::of(2.5)), (1, STEPS / 2));
         let near = refine(wide, Matrix::Essential, seen, &frames, loss, (1, STEPS / 2));
+        // What is as near as the noise of most leaves it says the most.
+        let found = Fundamental::from_essential(&Self::nearest(&near.matrix())?, first, second);
+        let loss = Biweight::new(three_deviations_px(&found, seen, threshold_px));
+        let near = refine(near, Matrix::Essential, seen, &frames, loss, (1, STEPS / 2));
         Self::nearest(&near.matrix())
     }
+}
+
+/// Steps in which the median distance is counted, to the threshold.
+const BINS: usize = 64;
+
+/// Three standard deviations of the noise of Sampson's distances, px: 1.4826 times their median is one, of
+/// what is within the threshold, to a sixty-fourth of that; the threshold at most, a tenth of it at least.
+fn three_deviations_px<T: Real>(f: &Fundamental<T>, seen: &[Correspondence<T>], threshold_px: T) -> T {
+    let (mut counts, mut all) = ([0_usize; BINS], 0);
+    let per_px = T::count(BINS) / threshold_px;
+    for s in seen {
+        let steps = f.sampson_px(s).abs() * per_px;
+        let bin = (0..BINS).find(|&bin| steps < T::count(bin + 1));
+        if let Some(count) = bin.and_then(|bin| counts.get_mut(bin)) {
+            *count += 1;
+            all += 1;
+        }
+    }
+    let (mut below, mut median) = (0, BINS);
+    for (bin, count) in counts.iter().enumerate() {
+        below += count;
+        if 2 * below >= all {
+            median = bin + 1;
+            break;
+        }
+    }
+    (T::count(median) / per_px * T::of(3.0 * 1.4826)).min(threshold_px).max(threshold_px * T::of(0.1))
 }

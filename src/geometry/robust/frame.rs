@@ -47,11 +47,6 @@ impl<T: Real> Frame<T> {
         Some([first, second].map(|mean| Self { a: scale, b: T::ZERO, d: scale, cx: mean.x, cy: mean.y }))
     }
 
-    /// Units to a pixel, along v.
-    pub(super) fn scale(&self) -> T {
-        self.d
-    }
-
     /// The coordinates (x, y) of a pixel.
     #[inline(always)]
     pub(super) fn apply(&self, pixel: Point2<T>) -> Point2<T> {

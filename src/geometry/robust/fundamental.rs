@@ -29,8 +29,8 @@ pub enum RobustError {
     /// No sample of seven gave an estimate that more than seven correspondences agree with: all are wrong, or
     /// the same, or the ones of an image are on a line.
     NoAgreement,
-    /// What agrees is on a plane, or the camera has only rotated: a homography is the answer. The inliers say
-    /// which those are.
+    /// What agrees is on a plane, or the camera has only rotated: a homography is the answer. Off the plane
+    /// no more agree than by chance. The inliers say which are on it.
     Plane,
 }
 
@@ -70,15 +70,17 @@ pub struct RobustFundamental<T: Real> {
 /// best one so far is refined, and the last is the one that makes the sum of a loss of Sampson's distances
 /// least: the weight of a correspondence falls as `(1 - d^2 / w^2)^2` to zero at one and a half thresholds w,
 /// so that neither the noise nor a sharp limit has to be known (Barath et al. 2020 arrive at nearly the same
-/// weights). Where most of what agrees is on one plane, F is looked for by what is off it.
+/// weights). Where most of what agrees is on one plane, F is completed by what is off it, and the plane is
+/// the answer where so many agree off it by chance, for noise moves them in any direction (Moisan & Stival
+/// 2004).
 ///
 /// Bounded by [`RobustConfig::most_samples`], and stopped before that by [`RobustConfig::miss_probability`].
 /// A sample has three candidates at most. Each costs n distances at most, of which a bad one needs a few; one
 /// that is nearly as good as the best is refined, by eight passes over 300 correspondences at most and n
-/// distances; one that is on a plane too tries a hundred others, of n + 200 distances each. So a sample costs
-/// no more than 330 n + 80 000 distances, usually some dozens, and the end of the search once more as much;
-/// the number of samples is what counts. With the share w of right matches it is about `7 / w^7` for a miss
-/// of 0.1 %: 85 for w = 0.7, 4 300 for 0.4, where 10 000 are drawn below 0.35.
+/// distances; one that is on a plane too tries pairs of what is off it, 800 at most, of 128 distances each.
+/// So a sample costs no more than 40 n + 310 000 distances, usually some dozens, and the end of the search
+/// once more as much; the number of samples is what counts. With the share w of right matches it is about
+/// `7 / w^7` for a miss of 0.1 %: 85 for w = 0.7, 4 300 for 0.4, where 10 000 are drawn below 0.35.
 ///
 /// Equal inputs and seeds give equal bits. Stack only, besides the slices. `f32` errs as `f64` does from
 /// 0.1 px of noise on.

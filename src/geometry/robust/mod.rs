@@ -7,7 +7,7 @@
 //! * `ransac`: the loop over samples, for any estimator. `sprt`: the test that drops a bad estimate early.
 //! * `loss`: the weight and the gain of a residual (Tukey's biweight).
 //! * `frame`, `factored`, `refine`: F or E with the least robust loss, by Levenberg-Marquardt.
-//! * `plane`, `search`, `parallax`: the search for F in scenes with a dominant plane (DEGENSAC).
+//! * `plane`, `off_plane`, `search`, `parallax`: the search for F in scenes with a dominant plane (DEGENSAC).
 //! * `fundamental`, `essential`: F by samples of seven, and E of known cameras by samples of five.
 //! * `reprojection`, `resection`: the pose from landmarks (PnP).
 //!
@@ -24,6 +24,7 @@ mod frame;
 mod plane;
 mod factored;
 mod refine;
+mod off_plane;
 mod search;
 mod parallax;
 mod fundamental;

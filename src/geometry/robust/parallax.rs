@@ -1,14 +1,20 @@
 //! Plane and parallax: from a dominant plane to the rest of the scene (Chum, Werner & Matas 2005).
 
+use super::off_plane::{Octaves, OffPlanes, agreeing_with};
 use super::plane::Plane;
 use super::search::{ENOUGH, MINIMUM, Search};
-use super::sprt::{Sprt, sampson};
+use super::sprt::sampson;
 use crate::geometry::Real;
+use crate::geometry::linear::{product, skew};
 use crate::geometry::two_view::Correspondence;
 use nalgebra::Matrix3;
 
-/// Pairs off a plane that are tried every time that an estimate lies on one.
-const PAIRS: u32 = 100;
+/// Pairs off a plane that are tried at most every time that an estimate lies on one.
+const PAIRS: u32 = 800;
+/// How often a correspondence that agrees is looked for, of those that chance chooses.
+const TRIES: u32 = 100;
+/// The logarithm of the probability with which a better pair may be missed.
+const MISSED: f64 = -4.6;
 /// Triplets that are tried for a plane that the best estimate hides.
 const TRIPLETS: u32 = 12;
 /// What is as near to a plane as so many thresholds is on it.
@@ -23,38 +29,49 @@ impl<T: Real> Search<'_, T, MINIMUM> {
     /// The best of the estimates that a plane gives with two correspondences off it, if it is better than the
     /// best so far.
     pub(super) fn leave(&mut self, plane: &Plane<T>) {
-        let px2 = self.on_plane_px2();
-        let (plane, _) = plane.fitted(self.seen, &self.frames, px2);
-        let (plane, _) = plane.fitted(self.seen, &self.frames, px2);
-        let (mut best, mut gain) = (None, T::ZERO);
-        for _ in 0..PAIRS {
-            let (Some(one), Some(two)) = (self.off(&plane, px2), self.off(&plane, px2)) else { return };
-            if one == two {
-                continue;
-            }
-            let f = plane.with_parallax(&one, &two);
-            let order = self.order();
-            // The plane is in all of them: what distinguishes them is off it, which a wide loss sees better.
-            let loss = self.loss.widened(T::of(ON_PLANE));
-            if let Some(score) = Sprt::new().score(&f, self.seen, loss, gain, order) {
-                (best, gain) = (Some(f), score.gain);
-            }
-        }
-        if let Some(f) = best {
+        let plane = self.fitted(plane);
+        if let Some(f) = self.with_parallax(&plane) {
             self.improve(&f);
         }
     }
 
-    /// A correspondence that is not on the plane, of the first few that chance finds.
-    fn off(&mut self, plane: &Plane<T>, px2: T) -> Option<Correspondence<T>> {
-        (0..PAIRS).find_map(|_| {
-            let s = *self.seen.get(self.sampler.below(self.seen.len()))?;
-            (plane.distance_squared_px2(&s) > px2).then_some(s)
-        })
+    /// The plane by all that is on it.
+    fn fitted(&self, plane: &Plane<T>) -> Plane<T> {
+        let px2 = self.on_plane_px2();
+        let (plane, _) = plane.fitted(self.seen, &self.frames, px2);
+        let (plane, _) = plane.fitted(self.seen, &self.frames, px2);
+        plane
     }
 
-    /// Tries whether most inliers of the best estimate are on one plane, and if so, leaves it; the plane,
-    /// when there is nothing off it that the best estimate after that explains and chance does not.
+    /// `F = [e]x H` (px) with the epipole e that what is off the plane H says is the most probable, of those
+    /// of pairs: as many as it takes for a pair that agrees, [`PAIRS`] at most.
+    fn with_parallax(&mut self, plane: &Plane<T>) -> Option<Matrix3<T>> {
+        let px2 = self.on_plane_px2();
+        // An epipole of two leaves the others wider off than one that is fitted to all.
+        let off = OffPlanes::of(plane, self.seen, px2, px2 * T::of(2.0));
+        if off.len() < 2 {
+            return None;
+        }
+        let (mut best, mut evidence, mut enough) = (None, T::ZERO, T::count(PAIRS as usize));
+        let mut tried = T::ZERO;
+        while tried < enough {
+            tried += T::ONE;
+            let (one, two) = (self.sampler.below(off.len()), self.sampler.below(off.len()));
+            let Some(epipole) = (one != two).then(|| off.epipole(one, two)).flatten() else { continue };
+            let found = off.agreeing_with(&epipole);
+            let of_this = found.evidence();
+            if of_this > evidence {
+                (best, evidence) = (Some(epipole), of_this);
+                let share = T::count(found.agree()) / T::count(off.len());
+                enough = enough.min(T::of(MISSED) / (T::ONE - share * share).max(T::EPSILON).ln());
+            }
+        }
+        let f = product(&skew(&best?), &plane.matrix);
+        Some(f / f.norm())
+    }
+
+    /// Tries whether most inliers of the best estimate are on one plane, and if so, completes it by what is
+    /// off it; the plane, when what agrees off it may well do so by chance.
     pub(super) fn only_plane(&mut self) -> Option<Plane<T>> {
         let px2 = self.on_plane_px2();
         let f = self.in_pixels(&self.best?.matrix());
@@ -71,20 +88,32 @@ impl<T: Real> Search<'_, T, MINIMUM> {
         if 2 * most < self.score.inliers {
             return None;
         }
-        self.leave(&plane);
+        let plane = self.fitted(&plane);
+        let before = self.beside(&plane, &f);
+        let (best, score) = (self.best, self.score);
+        // What fits the noise of the plane best may have the larger gain: what is off the plane decides.
+        self.score.gain = T::ZERO;
+        let improved = self.with_parallax(&plane).is_some_and(|f| self.improve(&f));
         let f = self.in_pixels(&self.best?.matrix());
-        let off = self.seen.iter().filter(|s| plane.distance_squared_px2(s) > px2);
-        let all = off.clone().count();
-        let kept = off.filter(|s| self.agrees(&f, s)).count();
-        // Any two fit some F of the plane's family, and so do those that happen to lie on the lines of two:
-        // bands as wide as the loss across a picture of about four units, times two.
-        let by_chance = T::count(all) * self.loss.width_squared.sqrt() * self.frames[0].scale();
-        (T::count(kept) <= T::count(MINIMUM) + by_chance).then_some(plane)
+        let after = self.beside(&plane, &f);
+        if improved && after.evidence() > before.evidence() {
+            return (!after.is_sure()).then_some(plane);
+        }
+        (self.best, self.score) = (best, score);
+        (!before.is_sure()).then_some(plane)
+    }
+
+    /// What is off a plane beside an estimate (px), within the width of the loss or within half of it, as the
+    /// noise is: what says more.
+    fn beside(&self, plane: &Plane<T>, f: &Matrix3<T>) -> Octaves<T> {
+        let within = |width_px2: T| agreeing_with(f, plane, self.seen, self.on_plane_px2(), width_px2);
+        let (wide, narrow) = (within(self.loss.width_squared), within(self.loss.width_squared * T::of(0.25)));
+        if narrow.evidence() > wide.evidence() { narrow } else { wide }
     }
 
     /// An inlier of an estimate, of the first few that chance finds.
     fn agreeing(&mut self, f: &Matrix3<T>) -> Option<Correspondence<T>> {
-        (0..PAIRS).find_map(|_| {
+        (0..TRIES).find_map(|_| {
             let s = *self.seen.get(self.sampler.below(self.seen.len()))?;
             self.agrees(f, &s).then_some(s)
         })

@@ -85,16 +85,6 @@ impl<T: Real> Plane<T> {
         let second = (back.xy() / back.z - s.second.coords).norm_squared();
         first.max(second)
     }
-
-    /// `F = [e]x H`, where the lines of two correspondences off the plane meet in e.
-    pub(super) fn with_parallax(&self, one: &Correspondence<T>, two: &Correspondence<T>) -> Matrix3<T> {
-        let line = |s: &Correspondence<T>| {
-            s.first.to_homogeneous().cross(&(self.matrix * s.second.to_homogeneous())).normalize()
-        };
-        let epipole = line(one).cross(&line(two));
-        let f = product(&skew(&epipole), &self.matrix);
-        f / f.norm()
-    }
 }
 
 /// The epipole e with `F^T e = 0`, at length one: the largest of the cross products of F's columns.

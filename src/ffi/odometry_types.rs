@@ -26,6 +26,11 @@ pub const STEREOPSIS_MOTION_LOST: u8 = 5;
 pub const STEREOPSIS_MOTION_FOUND: u8 = 6;
 /// Motion: begun anew; the motion since the last known pose is not known.
 pub const STEREOPSIS_MOTION_RESTARTED: u8 = 7;
+/// Motion: an estimate that is not sure; its covariance says how little, or few points say that it differs
+/// much from the one before.
+pub const STEREOPSIS_MOTION_UNCERTAIN: u8 = 8;
+/// Motion: measured by the left camera alone, for what the right one sees disagrees with all that was known.
+pub const STEREOPSIS_MOTION_LEFT_ONLY: u8 = 9;
 
 /// Configuration of an odometry, filled by `stereopsis_odometry_default` and then open to changes.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -137,6 +142,8 @@ impl From<Step<f32>> for CStep {
                 State::Lost | State::Waiting => STEREOPSIS_MOTION_LOST,
                 State::Found => STEREOPSIS_MOTION_FOUND,
                 State::Restarted => STEREOPSIS_MOTION_RESTARTED,
+                State::Uncertain => STEREOPSIS_MOTION_UNCERTAIN,
+                State::LeftOnly => STEREOPSIS_MOTION_LEFT_ONLY,
             },
         }
     }

@@ -49,6 +49,8 @@ pub const fn name(state: State) -> &'static str {
         State::First => "first",
         State::Waiting => "waiting",
         State::Tracked => "tracked",
+        State::Uncertain => "uncertain",
+        State::LeftOnly => "left_only",
         State::Stationary => "still",
         State::RotationOnly => "turned",
         State::TranslationUnknown => "step_unknown",

@@ -163,7 +163,7 @@ impl Smoother {
             return;
         };
         match step.state {
-            State::Tracked | State::Found => {}
+            State::Tracked | State::Found | State::Uncertain | State::LeftOnly => {}
             // Nothing joins what was before and what comes.
             State::First | State::Restarted => self.refinement.clear(),
             // Where there may have been a step that is not known there is none to adjust.

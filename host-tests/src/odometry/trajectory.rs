@@ -21,7 +21,8 @@ impl Trajectory {
         let last = self.poses.last().copied().unwrap_or_else(Pose::identity);
         let mut pose = last.then(&step.motion);
         let gap = self.steps.iter().rev().take_while(|step| is_gap(step.state)).count();
-        if gap > 0 && matches!(step.state, State::Found | State::Tracked) {
+        if gap > 0 && matches!(step.state, State::Found | State::Tracked | State::Uncertain | State::LeftOnly)
+        {
             // The motion since the last known pose: the frames in between lie on the way.
             let from = self.poses.len() - gap - 1;
             let start = self.poses[from];

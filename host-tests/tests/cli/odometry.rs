@@ -1,6 +1,8 @@
 //! `stereo odometry` and `stereo walk`: their files, and what they say when they cannot.
 
 use super::support::{Bench, names, stereo, text};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
@@ -182,7 +184,17 @@ fn views_of_a_street_stand_where_they_stood() {
     let run = stereo(&arguments);
     assert!(run.status.success(), "{}", text(&run.stderr));
     assert!(text(&run.stdout).starts_with("4 of 4 views stand somewhere"), "{}", text(&run.stdout));
-    assert_eq!(names(&bench.path("seen")), ["cloud.ply", "poses.txt", "structure.json", "views.svg"]);
+    let written = [
+        "cameras.txt",
+        "cloud.ply",
+        "images.txt",
+        "points3D.txt",
+        "poses.txt",
+        "structure.json",
+        "views.svg",
+    ];
+    assert_eq!(names(&bench.path("seen")), written);
+    colmap_model_agrees(&bench.path("seen"));
     let (found, truth) = (poses(&bench.path("seen/poses.txt")), poses(&bench.path("street/poses.txt")));
     for (found, truth) in found.iter().zip(&truth) {
         let off = [3, 7, 11].iter().map(|&i| (found[i] - truth[i]).powi(2)).sum::<f64>().sqrt();
@@ -208,6 +220,39 @@ fn views_of_a_street_stand_where_they_stood() {
         "has not moved",
     );
     assert!(!bench.path("other").exists());
+}
+
+/// Holds a model in COLMAP's text form to itself: every point of an image is one that exists, lies where the
+/// camera sees it, and names the place back.
+fn colmap_model_agrees(folder: &Path) {
+    let lines = |name: &str| -> Vec<String> {
+        let text = fs::read_to_string(folder.join(name)).expect(name);
+        text.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect()
+    };
+    let numbers = |text: &str| -> Vec<f64> { text.split(' ').filter_map(|x| x.parse().ok()).collect() };
+    let camera = lines("cameras.txt");
+    assert!(camera.len() == 1 && camera[0].starts_with("1 PINHOLE "), "{camera:?}");
+    let [.., fx, fy, cx, cy] = numbers(&camera[0])[..] else { panic!("{camera:?}") };
+    let points: HashMap<u64, Vec<f64>> =
+        lines("points3D.txt").iter().map(|line| numbers(line)).map(|p| (p[0] as u64, p)).collect();
+    let (images, mut observations) = (lines("images.txt"), 0);
+    for pair in images.chunks_exact(2) {
+        let [image, w, x, y, z, tx, ty, tz, ..] = numbers(&pair[0])[..] else { panic!("{}", pair[0]) };
+        let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
+        for (at, seen) in numbers(&pair[1]).chunks_exact(3).enumerate() {
+            let point = &points[&(seen[2] as u64)];
+            let place = turn * Vector3::new(point[1], point[2], point[3]) + Vector3::new(tx, ty, tz);
+            let off = (fx * place.x / place.z + cx - seen[0]).hypot(fy * place.y / place.z + cy - seen[1]);
+            assert!(off <= 1.51, "{off} px");
+            assert!(point[8..].chunks_exact(2).any(|t| t == [image, at as f64]), "{point:?}");
+            observations += 1;
+        }
+    }
+    let tracks: usize = points.values().map(|point| (point.len() - 8) / 2).sum();
+    assert_eq!(observations, tracks);
+    // Points are looked for in all four views.
+    println!("{observations} observations of {} points", points.len());
+    assert!(images.len() == 8 && observations >= 3 * points.len(), "{observations} {}", points.len());
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::motion_model::MotionModel;
 use super::motion_test::{MotionTest, test_motion};
 use super::observed::{ObservedPoint, observed_points};
 use super::point_map::PointMap;
-use super::pose_estimate::PointMatch;
+use super::pose_estimate::{FEWEST as LEAST_INLIERS, PointMatch};
 use super::self_calibration::{RigEstimate, SelfCalibration};
 use super::step::{State, Step};
 use super::track::Track;
@@ -205,7 +205,7 @@ impl<'a, T: Real> OdometryView<'a, T> {
             ));
         }
         let start = self.tracker.track(&now, &mut self.map, &self.progress.motion);
-        Ok(match test_motion(&self.tracker, &rig, &self.progress.motion, start) {
+        Ok(match test_motion(&mut self.tracker, &mut self.map, &rig, &self.progress.motion, start) {
             MotionTest::Lost => self.lose(&now),
             MotionTest::Known(solved, state) => {
                 let (points, found) = (self.map.len(), self.tracker.matches.len());
@@ -219,9 +219,16 @@ impl<'a, T: Real> OdometryView<'a, T> {
                     self.progress.motion.velocity = Some(Pose::identity());
                 } else {
                     self.map.update(&now, &self.tracker.matches, &solved.pose, &covariance);
-                    self.progress.motion.rebase(&solved.pose, motion);
-                    self.map.add_new(&now);
-                    self.calibrate(&now, &motion);
+                    let is_sure = !matches!(state, State::Uncertain | State::TranslationUnknown);
+                    let velocity = self.progress.motion.velocity_after(motion, is_sure);
+                    self.progress.motion.rebase(&solved.pose, velocity);
+                    // A right camera that disagrees with all that is known gives no depth.
+                    if state != State::LeftOnly {
+                        self.map.add_new(&now);
+                    }
+                    if !matches!(state, State::Uncertain | State::LeftOnly) {
+                        self.calibrate(&now, &motion);
+                    }
                 }
                 Step { motion, covariance, state, points, found, inliers: solved.kept, residual }
             }
@@ -254,7 +261,8 @@ impl<'a, T: Real> OdometryView<'a, T> {
     /// A frame whose pose is not known; after a few of them all begins anew.
     fn lose(&mut self, now: &Moment<'_, T>) -> Step<T> {
         let mut state = State::Lost;
-        if self.progress.motion.lose() {
+        let sees_enough = now.rig.right.is_some() && now.frame.features.len() >= 2 * LEAST_INLIERS;
+        if self.progress.motion.lose(sees_enough) {
             self.forget();
             self.map.add_new(now);
             self.anchor();

@@ -66,7 +66,7 @@ pub(super) fn initialize<T: Real>(
         let state = if no_turn && scale < T::of(2.0) { State::Stationary } else { State::RotationOnly };
         report_rotation(motion, &rotated, state, shown)
     } else {
-        let wide = Problem { matches: &tracker.matches, baseline: T::ZERO };
+        let wide = Problem { matches: &tracker.matches, baseline: T::ZERO, doubt: T::ZERO };
         let (rig, seed) = (now.rig, now.config.seed);
         if let Some(pose) = two_views(rig, &wide, &rotated.pose, seed, tracker.inliers, correspondences) {
             return set_unit(now, map, tracker, motion, &pose, shown);
@@ -144,7 +144,8 @@ fn set_unit<T: Real>(
             point_match.point = point;
         }
     }
-    let solved = Problem { matches: &*matches, baseline: T::ZERO }.solve(*pose, Free::Nothing);
+    let solved =
+        Problem { matches: &*matches, baseline: T::ZERO, doubt: T::ZERO }.solve(*pose, Free::Nothing);
     motion.has_unit = true;
     motion.reported_pose = Pose::identity();
     motion.velocity = Some(*pose);

@@ -3,8 +3,12 @@
 use super::step::State;
 use crate::geometry::{Real, camera::Pose};
 
-/// Frames for which points are kept that are not found again.
+/// Frames for which points are kept that are not found again. A pair knows the depths of new points at once:
+/// where it sees enough of them it waits for fewer frames.
 const PATIENCE: u8 = 5;
+const PAIR_PATIENCE: u8 = 2;
+/// Frames after which a motion that was not sure is taken for the motion.
+const UNSURE: u8 = 8;
 
 /// The motion so far, in the frame of the map.
 #[derive(Debug)]
@@ -13,6 +17,9 @@ pub(super) struct MotionModel<T: Real> {
     pub velocity: Option<Pose<T>>,
     /// The last pose that was reported.
     pub reported_pose: Pose<T>,
+    /// The motion of the last frame that was sure of it, and the frames since then that were not.
+    pub sure: Option<Pose<T>>,
+    unsure: u8,
     /// Frames since something was known.
     lost: u8,
     /// Whether there is a unit of length.
@@ -22,12 +29,12 @@ pub(super) struct MotionModel<T: Real> {
 impl<T: Real> MotionModel<T> {
     pub const fn new() -> Self {
         // The first frame sets the pose.
-        Self { velocity: None, reported_pose: Pose::NOTHING, lost: 0, has_unit: false }
+        Self { velocity: None, reported_pose: Pose::NOTHING, sure: None, unsure: 0, lost: 0, has_unit: false }
     }
 
     /// Forgets the motion; a pair has a unit of length at once.
     pub fn reset(&mut self, is_pair: bool) {
-        *self = Self { velocity: None, reported_pose: Pose::identity(), lost: 0, has_unit: is_pair };
+        *self = Self { reported_pose: Pose::identity(), has_unit: is_pair, ..Self::new() };
     }
 
     /// The pose that the last velocity predicts.
@@ -40,11 +47,26 @@ impl<T: Real> MotionModel<T> {
         self.lost > 0
     }
 
-    /// Counts a frame whose pose is not known; whether there have been so many that all begins anew.
-    pub fn lose(&mut self) -> bool {
+    /// Counts a frame whose pose is not known; whether there have been so many that all begins anew. A pair
+    /// that `sees_enough` waits for fewer.
+    pub fn lose(&mut self, sees_enough: bool) -> bool {
         self.lost = self.lost.saturating_add(1);
         self.velocity = None;
-        self.lost > PATIENCE
+        self.lost > if sees_enough { PAIR_PATIENCE } else { PATIENCE }
+    }
+
+    /// Takes a motion and whether it is sure; the velocity that predicts the next frame: that of the last
+    /// motion that was sure, for as long as that is not long ago.
+    pub fn velocity_after(&mut self, motion: Pose<T>, is_sure: bool) -> Pose<T> {
+        self.unsure = if is_sure { 0 } else { self.unsure.saturating_add(1) };
+        match self.sure {
+            Some(sure) if !is_sure && self.unsure <= UNSURE => sure,
+            _ => {
+                self.sure = Some(motion);
+                self.unsure = 0;
+                motion
+            }
+        }
     }
 
     /// The motion to a pose as far as the state says that it is known, which becomes the reported pose.

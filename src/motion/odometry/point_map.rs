@@ -58,7 +58,7 @@ impl<T: Real> PointMap<'_, T> {
         let (rig, baseline) = (now.rig, now.rig.baseline());
         for point_match in matches {
             let Some(track) = self.tracks.get_mut(usize::from(point_match.owner)) else { continue };
-            let squared = Problem { matches: &[], baseline }.squared(pose, point_match);
+            let squared = Problem { matches: &[], baseline, doubt: T::ZERO }.squared(pose, point_match);
             match squared
                 .filter(|&d| d < most)
                 .and_then(|_| track.point.updated(pose, &point_match.observation, baseline))

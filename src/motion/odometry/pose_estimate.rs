@@ -20,6 +20,18 @@ pub struct PointMatch<T: Real> {
 impl<T: Real> PointMatch<T> {
     /// Not in use. All zeros.
     pub const EMPTY: Self = Self { point: InversePoint::ZERO, observation: PointObservation::ZERO, owner: 0 };
+
+    /// The match as it is where the right camera is not believed: without its observation, and with so much
+    /// more variance of the inverse depth. With none it stays as it is.
+    #[inline]
+    pub(super) fn doubted(&self, doubt: T) -> Self {
+        let mut doubted = *self;
+        if doubt > T::ZERO {
+            doubted.observation.in_right = false;
+            doubted.point.covariance.m33 += doubt;
+        }
+        doubted
+    }
 }
 
 /// What of the pose is looked for.
@@ -68,6 +80,9 @@ impl<T: Real> Solved<T> {
 pub(super) struct Problem<'a, T: Real> {
     pub matches: &'a [PointMatch<T>],
     pub baseline: T,
+    /// The variance that inverse depths have beside their own where the right camera is not believed: none of
+    /// its observations counts then. Zero where it is.
+    pub doubt: T,
 }
 
 impl<T: Real> Problem<'_, T> {
@@ -106,7 +121,7 @@ impl<T: Real> Problem<'_, T> {
             let (weight, gain) = weight_and_gain(share);
             sum.cost += most * (T::ONE - gain);
             sum.kept += 1;
-            sum.numbers += point_match.observation.rows();
+            sum.numbers += if self.doubt > T::ZERO { 2 } else { point_match.observation.rows() };
             sum.squares += squared;
             let columns = &by_pose.data.0;
             let rows = [
@@ -132,11 +147,11 @@ impl<T: Real> Problem<'_, T> {
         pose: &Pose<T>,
         point_match: &PointMatch<T>,
     ) -> Option<(Vector3<T>, SMatrix<T, 3, 6>)> {
-        let moved = point_match.point.moved(pose)?;
+        let PointMatch { point, observation, .. } = &point_match.doubted(self.doubt);
+        let moved = point.moved(pose)?;
         let seen = seen(self.baseline);
-        let whitener =
-            Whitener::of(&(seen * moved.by_point), &point_match.point.covariance, &point_match.observation)?;
-        let off = point_match.observation.at - seen * moved.at;
+        let whitener = Whitener::of(&(seen * moved.by_point), &point.covariance, observation)?;
+        let off = observation.at - seen * moved.at;
         Some((whitener.apply(&off), whitener.apply(&(seen * moved.by_pose))))
     }
 
@@ -222,7 +237,7 @@ mod tests {
         let truth = Pose::identity().moved(&[0.01, -0.02, 0.005, 0.1, -0.05, 0.3]);
         for wrong in [0, 2] {
             let matches = seen(&truth, wrong);
-            let problem = Problem { matches: &matches, baseline: 0.5 };
+            let problem = Problem { matches: &matches, baseline: 0.5, doubt: 0.0 };
             let near = truth.moved(&[0.002, 0.001, 0.0, 0.005, 0.0, -0.01]);
             let solved = problem.solve(near, Free::All);
             let off = truth.inverse().then(&solved.pose);
@@ -238,7 +253,7 @@ mod tests {
         // Within the widest reach, twelve deviations.
         let truth = Pose::identity().moved(&[0.004, -0.003, 0.002, 0.0, 0.0, 0.0]);
         let matches = seen(&truth, 0);
-        let problem = Problem { matches: &matches, baseline: 0.5 };
+        let problem = Problem { matches: &matches, baseline: 0.5, doubt: 0.0 };
         let solved = problem.solve(Pose::identity(), Free::Rotation);
         assert!(truth.inverse().then(&solved.pose).angle_rad() < 1e-7);
         assert_eq!(solved.pose.translation().norm(), 0.0);

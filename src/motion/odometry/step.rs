@@ -17,6 +17,12 @@ pub enum State {
     Waiting,
     /// The pose is measured.
     Tracked,
+    /// The pose is an estimate that is not sure: its covariance is large beside the motion, or the motion
+    /// differs from the one before by more than a half and few points say so.
+    Uncertain,
+    /// The pose is measured by the left camera alone, with depths that the pair is no longer trusted for:
+    /// what the right camera sees disagrees with all that was known.
+    LeftOnly,
     /// The pictures are the same to their noise: the motion is none.
     Stationary,
     /// The rotation is measured. A step is too small to be measured: of one camera it has no direction. The
@@ -38,7 +44,7 @@ pub enum State {
 impl State {
     /// Whether turn and step are known.
     pub const fn is_known(self) -> bool {
-        matches!(self, Self::First | Self::Tracked | Self::Stationary | Self::Found)
+        matches!(self, Self::First | Self::Tracked | Self::LeftOnly | Self::Stationary | Self::Found)
     }
 }
 

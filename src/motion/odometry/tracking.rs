@@ -72,7 +72,7 @@ impl<T: Real> Tracker<'_, T> {
 
     /// The matches as a problem of the pose.
     pub fn problem(&self, baseline: T) -> Problem<'_, T> {
-        Problem { matches: &self.matches, baseline }
+        Problem { matches: &self.matches, baseline, doubt: T::ZERO }
     }
 
     /// Looks for each point's descriptor among the features near its predicted place, as far as it is the

@@ -231,6 +231,8 @@ fn summary(
     );
     let states = [
         (State::Tracked, "tracked"),
+        (State::Uncertain, "not sure"),
+        (State::LeftOnly, "by the left camera alone, for the right one disagrees"),
         (State::Stationary, "still"),
         (State::RotationOnly, "turned, step not told from none"),
         (State::TranslationUnknown, "turned, step not known"),

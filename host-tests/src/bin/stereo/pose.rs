@@ -78,12 +78,22 @@ pub fn run(args: &PoseArgs) -> Result<(), Failure> {
 
 /// A pose with what it leaves.
 struct Found {
+    /// The gain of a soft loss: how much agrees how well.
+    gain: f64,
     in_front: usize,
     rms: f64,
     essential: Essential<f64>,
     pose: RelativePose<f64>,
     inliers: Vec<bool>,
     model: &'static str,
+}
+
+impl Found {
+    /// Whether clearly more agrees than with another, or as much and more of it before both cameras: what is
+    /// before the cameras tells apart the two motions that a plane leaves, not estimates of one motion.
+    fn is_better(&self, other: &Self) -> bool {
+        self.gain > 1.02 * other.gain || self.gain >= 0.98 * other.gain && self.in_front > other.in_front
+    }
 }
 
 fn solve(
@@ -112,12 +122,16 @@ fn solve(
         let inliers: Vec<bool> = seen.iter().map(|s| f.sampson_px(s).abs() <= args.threshold).collect();
         let kept = || seen.iter().zip(&inliers).filter(|&(_, &inlier)| inlier).map(|(s, _)| *s);
         let squares: f64 = kept().map(|s| f.sampson_squared_px2(&s)).sum();
+        // As the estimates have it: one and a half thresholds wide.
+        let share = |s: &Correspondence<f64>| f.sampson_squared_px2(s) / (1.5 * args.threshold).powi(2);
+        let gain = seen.iter().map(|s| (1.0 - share(s)).max(0.0).powi(3)).sum();
         let rms = (squares / kept().count().max(1) as f64).sqrt();
         match refined.recover_pose(kept(), &first, &second) {
             Ok(found) => {
-                if best.as_ref().is_none_or(|best| found.in_front > best.in_front) {
-                    let (in_front, pose) = (found.in_front, found.pose);
-                    best = Some(Found { in_front, rms, essential: refined, pose, inliers, model });
+                let (in_front, pose) = (found.in_front, found.pose);
+                let found = Found { gain, in_front, rms, essential: refined, pose, inliers, model };
+                if best.as_ref().is_none_or(|best| found.is_better(best)) {
+                    best = Some(found);
                 }
             }
             Err(e) => why = e.to_string(),

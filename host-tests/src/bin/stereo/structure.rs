@@ -20,7 +20,8 @@ use stereopsis_host::odometry::picture::svg_of;
 use stereopsis_host::odometry::poses;
 use stereopsis_host::output::Staging;
 use stereopsis_host::ply::{self, ColouredPoint};
-use stereopsis_host::views::{Found, Length, Links, link, solve};
+use stereopsis_host::views::colmap::Model;
+use stereopsis_host::views::{Found, Length, Links, link, look_again, solve};
 
 /// What follows the options in the command's help.
 pub const EXAMPLE: &str = "Example:
@@ -104,8 +105,9 @@ pub fn run(args: &StructureArgs) -> Result<(), Failure> {
     let links = link(&plan, &images.grey, || progress.one_more())?;
     drop(progress);
     let length = args.baseline.map(|metres| Length { views: (0, 1), metres });
-    let found = solve(&camera, count, &links, args.threshold, length)
-        .map_err(|why| Failure::new(format!("--images {}: {why}", args.images.join(" "))))?;
+    let failed = |why| Failure::new(format!("--images {}: {why}", args.images.join(" ")));
+    let first = solve(&camera, count, &links, args.threshold, length).map_err(failed)?;
+    let (links, found) = again(&camera, &images, links, first, (args.threshold, length));
     let beside = found.beside_first();
     let unit = match (args.baseline, found.report.pair) {
         (Some(_), _) => "m".to_owned(),
@@ -118,7 +120,12 @@ pub fn run(args: &StructureArgs) -> Result<(), Failure> {
     let standing: Vec<_> = beside.iter().flatten().copied().collect();
     staging.write("structure.json", |out| json(out, &answer))?;
     staging.write("poses.txt", |out| poses::write(out, &standing))?;
-    staging.write("cloud.ply", |out| ply::write_in(out, &cloud(&found, &images, &links), &unit))?;
+    let colours = colours(&images, &links);
+    staging.write("cloud.ply", |out| ply::write_in(out, &cloud(&found, &colours), &unit))?;
+    let model = Model::new((&camera, size(&images)), &images.names, &links, &found, args.threshold);
+    staging.write("cameras.txt", |out| model.cameras(out))?;
+    staging.write("images.txt", |out| model.images(out))?;
+    staging.write("points3D.txt", |out| model.points(out, |number| colours(number).unwrap_or_default()))?;
     let places: Vec<_> = found.known().iter().map(|(_, point)| point.coords).collect();
     staging.write("views.svg", |out| out.write_all(svg_of(&standing, &places, &unit).as_bytes()))?;
     staging.commit(&[])?;
@@ -140,12 +147,25 @@ pub fn run(args: &StructureArgs) -> Result<(), Failure> {
     print(&format!("{text}results are in {}\n", one_line(&args.out.display().to_string())))
 }
 
+/// The structure of what its points look like in all views, where that places as many views as the first.
+fn again(
+    camera: &Camera<f64>,
+    images: &Images,
+    links: Links,
+    first: Found,
+    (threshold_px, length): (f64, Option<Length>),
+) -> (Links, Found) {
+    let looked = look_again(camera, &images.grey, &links, &first);
+    match solve(camera, images.grey.len(), &looked, threshold_px, length) {
+        Ok(found) if found.report.views >= first.report.views => (looked, found),
+        _ => (links, first),
+    }
+}
+
 /// The camera of the images, which the calibration must be of.
 fn camera(args: &StructureArgs, images: &Images) -> Result<Camera<f64>, Failure> {
     let camera = Cameras::open_first(&args.calib)?;
-    // Images have at most 4096 columns and rows.
-    let size = images.grey.first().map_or((0, 0), GrayImage::dimensions);
-    let size = ImageSize { width: size.0 as u16, height: size.1 as u16 };
+    let size = size(images);
     if let Ok(rectified) = Calibration::open_all(&args.calib, Path::new(""), None) {
         rectified.check_size(size.width, size.height)?;
     }
@@ -217,15 +237,28 @@ fn answer(found: &Found, images: &Images, unit: &str) -> Answer {
     }
 }
 
-/// The points with the colour of the first picture that shows them.
-fn cloud(found: &Found, images: &Images, links: &Links) -> Vec<ColouredPoint> {
-    let coloured = found.known().into_iter().filter_map(|(number, point)| {
+/// The size of the images, which have at most 4096 columns and rows.
+fn size(images: &Images) -> ImageSize {
+    let (width, height) = images.grey.first().map_or((0, 0), GrayImage::dimensions);
+    ImageSize { width: width as u16, height: height as u16 }
+}
+
+/// The colours of points, by their numbers, in the first image that shows them.
+fn colours<'a>(images: &'a Images, links: &'a Links) -> impl Fn(u32) -> Option<[u8; 3]> + 'a {
+    |number| {
         let at = links.observations.partition_point(|observation| observation.point < number);
         let observation = links.observations.get(at)?;
         let colours = &images.colours[usize::from(observation.view)];
-        let colour = colours
-            .get_pixel_checked(observation.pixel.x.round() as u32, observation.pixel.y.round() as u32)?;
-        Some(ColouredPoint { position_m: [point.x, point.y, point.z].map(|x| x as f32), colour: colour.0 })
+        let pixel = observation.pixel.map(|x| x.round() as u32);
+        Some(colours.get_pixel_checked(pixel.x, pixel.y)?.0)
+    }
+}
+
+/// The points with their colours.
+fn cloud(found: &Found, colour: impl Fn(u32) -> Option<[u8; 3]>) -> Vec<ColouredPoint> {
+    let coloured = found.known().into_iter().filter_map(|(number, point)| {
+        let position_m = [point.x, point.y, point.z].map(|x| x as f32);
+        Some(ColouredPoint { position_m, colour: colour(number)? })
     });
     coloured.collect()
 }

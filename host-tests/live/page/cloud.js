@@ -19,7 +19,7 @@ class Cloud {
 
   // Takes the points of a result, once: where each pixel with a depth lies, m, and its colour. The nearest
   // and the farthest ones do not move the centre.
-  take({ planes, pair, rig, hasDepth }) {
+  take({ planes, pair, rig, hasDepth, ratio }) {
     if (this.isTaken) return;
     this.isTaken = true;
     if (!hasDepth) return;
@@ -36,18 +36,19 @@ class Cloud {
     const sorted = Uint16Array.from(found, (pixel) => depth[pixel]).sort();
     const [near, far] = [0.02, 0.98].map((share) => sorted[Math.floor(share * (sorted.length - 1))] / 1000);
     const places = new Float32Array(3 * found.length);
+    const focal = rig.focal_px / ratio;
     const [cx, cy] = [(width - 1) / 2, (height - 1) / 2];
     found.forEach((pixel, i) => {
       const z = depth[pixel] / 1000;
       const [x, y] = [pixel % width, Math.floor(pixel / width)];
-      places[3 * i] = ((x - cx) * z) / rig.focal_px;
-      places[3 * i + 1] = ((y - cy) * z) / rig.focal_px;
+      places[3 * i] = ((x - cx) * z) / focal;
+      places[3 * i + 1] = ((y - cy) * z) / focal;
       places[3 * i + 2] = z;
     });
     this.points = { places, colours: Uint32Array.from(found, (pixel) => colours[pixel]) };
     // It is turned about the middle of what is seen, and looked at from where the camera stood.
     this.centre = (near + far) / 2;
-    this.focal = rig.focal_px;
+    this.focal = focal;
     this.size = Math.max(2, step + 1);
   }
 

@@ -5,7 +5,7 @@ const METHODS = ["fast", "block", "sgm-lean", "sgm", "sgm-edge"];
 const FILTERS = ["dense", "default", "strict"];
 const NOISES = ["none", "low", "high"];
 const CHECKS = 7;
-const PENALTIES = 21;
+const PENALTIES = 23;
 
 const px = (value) => `${value} px`;
 const steps = (value) => `${value / 32} px`;
@@ -38,6 +38,8 @@ const CONTROLS = [
   { name: "fill_pixels", label: "Fill gaps up to", min: 0, max: 255, say: noneOr(pixels) },
   { name: "fill_step", label: "Fill: sides differ by up to", min: OFF, max: 320, say: anyOr(steps) },
   { name: "fattening_slope", label: "Fattening: slope", min: OFF, max: 512, say: offOr(steps) },
+  { name: "open_run", label: "Open: most of one row", min: 0, max: 255, say: noneOr(pixels) },
+  { name: "open_margin", label: "Open: margin", min: 0, max: 128, say: noneOr(String) },
   { name: "gradient", label: "Gradients cut off at", min: 1, max: 14, say: String },
   { name: "cost", label: "Cost cut off at", min: 1, max: 84, say: String },
   { name: "step[0]", label: "Step of 1 px", min: 1, max: 96, say: String },
@@ -56,66 +58,11 @@ const RIG = [
   { name: "offset_px", label: "Offset of principal points, px", step: "any" },
 ];
 
-const byId = (id) => document.getElementById(id);
-
-// An element with attributes.
-function make(tag, attributes = {}, text = "") {
-  const element = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  element.textContent = text;
-  return element;
-}
-
 // Whether a list of the page stands at its first word.
 const isOff = (name) => byId(name).value === "0";
 
 // The index of a control among the settings.
 const at = (name) => CONTROLS.findIndex((control) => control.name === name);
-
-// A control of the page, which calls `changed` when it is moved.
-function addControl(parent, control, changed) {
-  const row = make("div", { class: "control" });
-  const label = make("label", { for: control.name }, control.label);
-  let input;
-  if (control.words) {
-    input = make("select", { id: control.name });
-    control.words.forEach((word, place) => input.append(make("option", { value: place }, word)));
-  } else if (control.say) {
-    const { min, max, step = 1 } = control;
-    input = make("input", { type: "range", id: control.name, min, max, step });
-    control.output = make("output", { for: control.name, id: `${control.name}-says` });
-  } else if (control.step) {
-    input = make("input", { type: "number", id: control.name, step: control.step });
-  } else {
-    input = make("input", { type: "checkbox", id: control.name });
-  }
-  row.append(label, ...(control.output ? [control.output, input] : [input]));
-  parent.append(row);
-  control.input = input;
-  control.row = row;
-  input.addEventListener("input", () => {
-    say(control);
-    changed(control);
-  });
-}
-
-// Writes what a control stands at beside it, and for screen readers in place of the bare number.
-function say(control) {
-  if (!control.output) return;
-  const text = control.say(valueOf(control));
-  control.output.textContent = text;
-  control.input.setAttribute("aria-valuetext", text);
-}
-
-function valueOf({ input }) {
-  return input.type === "checkbox" ? Number(input.checked) : Number(input.value);
-}
-
-function setValue(control, value) {
-  if (control.input.type === "checkbox") control.input.checked = value !== 0;
-  else control.input.value = value;
-  say(control);
-}
 
 function addControls(changed) {
   const places = (index) => (index < CHECKS ? "search" : index < PENALTIES ? "checks" : "penalties");

@@ -1,18 +1,9 @@
 // The page: what is opened is matched with what the controls say, and shown.
 
-const state = { core: null, pair: null, planes: null, settings: null, preset: null, noise: "none",
-  rig: {}, isRigGiven: false, hasDepth: false, timeMs: 0 };
-const cloud = new Cloud();
-const canvas = byId("picture");
-const context = canvas.getContext("2d");
-const cursor = { x: 0, y: 0 };
-let image = null;
+Object.assign(state,
+  { core: null, settings: null, preset: null, noise: "none", isRigGiven: false, timeMs: 0 });
 let measured = 0;
-let isTurning = false;
-let isPointed = false;
 let isDue = false;
-
-const view = () => document.querySelector("input[name=view]:checked").value;
 
 // Says what is wrong, in a line; nothing when all is well.
 function complain(error) {
@@ -92,26 +83,6 @@ function tellDepth() {
   if (state.hasDepth) state.core.depth(focal, baseline / 1000, offset);
 }
 
-// Paints the view that is chosen.
-function show() {
-  if (!image) return;
-  const words = new Uint32Array(image.data.buffer);
-  const isCloud = view() === "points";
-  canvas.classList.toggle("points", isCloud);
-  let legend;
-  if (isCloud) {
-    cloud.take(state);
-    const count = cloud.draw(words, image.width, image.height);
-    legend = [count > 0 ? `${count} points; drag to turn, turn the wheel to come nearer.`
-      : "No points: give focal length and baseline under Cameras."];
-  } else {
-    legend = PAINT[view()](words, state);
-  }
-  byId("legend").replaceChildren(...legend);
-  canvas.setAttribute("aria-label", `${view()} of ${state.pair.left.name}`);
-  context.putImageData(image, 0, 0);
-}
-
 // Runs once for all that happens before the next picture.
 function later() {
   if (isDue) return;
@@ -142,9 +113,7 @@ function put(pair) {
   const { width, height } = pair.left;
   if (state.planes?.width !== width || state.planes?.height !== height) {
     state.planes = state.core.begin(width, height);
-    [canvas.width, canvas.height] = [width, height];
-    image = context.createImageData(width, height);
-    [cursor.x, cursor.y] = [width >> 1, height >> 1];
+    fitPicture(width, height);
   }
   state.pair = pair;
   toGrey(pair.left, state.planes.left);
@@ -228,14 +197,7 @@ async function takeGiven({ left, right, rig, disparities }) {
 
 async function begin() {
   addControls(changed);
-  VIEWS.forEach((name) => {
-    const label = make("label");
-    const radio = make("input", { type: "radio", name: "view", value: name, id: `view-${name}` });
-    radio.checked = name === "disparity";
-    radio.addEventListener("change", show);
-    label.append(radio, ` ${name}`);
-    byId("views").append(label);
-  });
+  addViews(VIEWS);
   listen();
   try {
     state.core = await Core.load(MODULE);

@@ -87,7 +87,8 @@ const PAINT = {
     const colours = DATA.flags.map(({ colour }) => packed(colour));
     for (let i = 0; i < words.length; i += 1) {
       const place = reason(planes, i);
-      words[i] = place < 0 ? greyWord(160 + (planes.left[i] >> 2)) : colours[place];
+      const pale = planes.disparity[i] === NO_ANSWER ? BLACK : greyWord(160 + (planes.left[i] >> 2));
+      words[i] = place < 0 ? pale : colours[place];
     }
     return ["Pale: an answer. ", ...DATA.flags.flatMap(({ name, colour }) => [swatch(colour), name])];
   },
@@ -111,12 +112,13 @@ function swatch(colour) {
 }
 
 // What is known of a pixel, in one line.
-function describePixel({ planes, hasDepth, rig }, x, y) {
+function describePixel({ planes, hasDepth, rig, ratio }, x, y) {
   const pixel = y * planes.width + x;
   const raw = planes.disparity[pixel];
   const flags = DATA.flags.filter(({ bit }) => (planes.flags[pixel] & bit) !== 0).map(({ name }) => name);
   const why = flags.length > 0 ? flags.join(", ") : "none";
-  const place = `column ${x}, row ${y}: `;
+  const [column, row] = [x, y].map((at) => Math.floor((at + 0.5) * ratio));
+  const place = `column ${column}, row ${row}: `;
   if (raw === NO_ANSWER) return `${place}no answer; flags: ${why}`;
   const sigmaPx = planes.sigma[pixel];
   let text = `${place}disparity ${(raw / 32).toFixed(3)} px, sigma ${sigmaPx.toFixed(2)} px`;

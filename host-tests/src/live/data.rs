@@ -1,6 +1,6 @@
 //! What the page's scripts look at: colours, names, the figures of `stereo plan`, and pictures.
 
-use crate::colour::{FLAG_COLOURS, viridis};
+use crate::colour::{FLAG_COLOURS, diverging, viridis};
 use crate::plan::{CORES, Tables};
 use crate::run::MethodName;
 use crate::scene::Scene;
@@ -48,23 +48,37 @@ pub(super) fn json(given: Option<&Given<'_>>) -> io::Result<String> {
         rig: Some(scene.rig()),
         disparities: scene.disparities(),
     };
-    let flags = PixelFlags::NAMES.iter().zip(FLAG_COLOURS);
-    let flags: Vec<_> = flags
-        .map(|((flag, name), colour)| json!({ "name": name, "bit": flag.bits(), "colour": colour.0 }))
-        .collect();
-    let ramp = (0..RAMP).map(|step| viridis(f32::from(step) / f32::from(RAMP - 1)).0);
-    let data = json!({
-        "ramp": ramp.collect::<Vec<_>>(),
-        "flags": flags,
-        "most_confidence": Row::MOST_CONFIDENCE,
+    let mut data = looks();
+    let more = json!({
         "cores": CORES,
         "ram": of_methods(|method| json!(ram(method))),
         "work": work(),
         "scene": scene.json()?,
         "given": given.map(Given::json).transpose()?,
     });
-    // No text of it ends the script that it stands in.
-    Ok(data.to_string().replace('<', "\\u003c"))
+    data.extend(more.as_object().cloned().unwrap_or_default());
+    Ok(in_script(data))
+}
+
+/// Data as JSON that can stand in a script: no text of it ends that.
+pub fn in_script(data: Map<String, Value>) -> String {
+    Value::Object(data).to_string().replace('<', "\\u003c")
+}
+
+/// The colours and names that every page's views have.
+pub fn looks() -> Map<String, Value> {
+    let flags = PixelFlags::NAMES.iter().zip(FLAG_COLOURS);
+    let flags: Vec<_> = flags
+        .map(|((flag, name), colour)| json!({ "name": name, "bit": flag.bits(), "colour": colour.0 }))
+        .collect();
+    let ramp = (0..RAMP).map(|step| viridis(f32::from(step) / f32::from(RAMP - 1)).0);
+    let errors = [-1.0, 0.0, 1.0].map(|t| diverging(t).0);
+    Map::from_iter([
+        ("ramp".into(), json!(ramp.collect::<Vec<_>>())),
+        ("flags".into(), json!(flags)),
+        ("most_confidence".into(), json!(Row::MOST_CONFIDENCE)),
+        ("errors".into(), json!(errors)),
+    ])
 }
 
 impl Given<'_> {

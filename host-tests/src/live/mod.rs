@@ -4,11 +4,12 @@
 //! there is one. Out: one file that opens without a network: scripts, styles, pictures and the module are in
 //! it.
 //!
-//! * [`page`]: the file. `data`: the figures and pictures that its scripts look at.
+//! * [`page`]: the file. `data`: the figures and pictures that its scripts look at. [`SHARED`], [`STYLE`],
+//!   [`looks`]: what the report's page has of it.
 
 mod data;
 
-pub use data::Given;
+pub use data::{Given, in_script, looks};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -18,15 +19,21 @@ use std::io;
 pub const MODULE_FILE: &str = "stereopsis_live.wasm";
 
 const INDEX: &str = include_str!("../../live/page/index.html");
-const STYLE: &str = include_str!("../../live/page/style.css");
-/// The scripts, each of which uses those before it.
-const SCRIPTS: [&str; 10] = [
-    include_str!("../../live/page/controls.js"),
-    include_str!("../../live/page/core.js"),
+/// The style of every page.
+pub const STYLE: &str = include_str!("../../live/page/style.css");
+/// The scripts that the report has too, each of which uses those before it: pictures, views and the cursor.
+pub const SHARED: [&str; 5] = [
+    include_str!("../../live/page/elements.js"),
     include_str!("../../live/page/pictures.js"),
-    include_str!("../../live/page/moving.js"),
     include_str!("../../live/page/paint.js"),
     include_str!("../../live/page/cloud.js"),
+    include_str!("../../live/page/viewer.js"),
+];
+/// The page's own scripts, which use these and those before them.
+const SCRIPTS: [&str; 7] = [
+    include_str!("../../live/page/controls.js"),
+    include_str!("../../live/page/core.js"),
+    include_str!("../../live/page/moving.js"),
     include_str!("../../live/page/work.js"),
     include_str!("../../live/page/copy.js"),
     include_str!("../../live/page/listen.js"),
@@ -38,7 +45,8 @@ pub fn page(module: &[u8], given: Option<&Given<'_>>) -> io::Result<String> {
     let data = data::json(given)?;
     let module = STANDARD.encode(module);
     let script = format!(
-        "\"use strict\";\nconst MODULE = \"{module}\";\nconst DATA = {data};\n{}",
+        "\"use strict\";\nconst MODULE = \"{module}\";\nconst DATA = {data};\n{}\n{}",
+        SHARED.join("\n"),
         SCRIPTS.join("\n")
     );
     let lost = || io::Error::other("index.html has no place for styles and scripts");

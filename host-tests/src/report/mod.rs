@@ -1,19 +1,25 @@
 //! One run on one page: `report.html` holds its pictures and asks for nothing from anywhere.
 //!
 //! In: the pictures, the map and the [`Summary`] of a run, for a rendered scene its truth and the
-//! [`Accuracy`]. Out: HTML that reads on a phone and on paper, in light and dark.
+//! [`Accuracy`]. Out: HTML that reads on a phone and on paper, in light and dark, in the style of the live
+//! page and with its views, cursor and points.
 
 mod accuracy;
+mod explore;
+mod figures;
+mod focus;
 mod page;
 mod summary;
 mod svg;
 
 pub use accuracy::Accuracy;
+pub use focus::FocusReport;
 pub use summary::{Depth, Exposure, Spread, Summary};
 
 use crate::colour::{
     ColourScale, FLAG_COLOURS, NO_ANSWER, confidence_picture, error_picture, first_reason, flags_picture,
 };
+use crate::live::STYLE;
 use crate::map::DisparityMap;
 use crate::scene::Truth;
 use image::RgbImage;
@@ -49,6 +55,10 @@ pub struct Report<'a> {
 /// Errors are shown from minus to plus this, px.
 pub const ERROR_LIMIT_PX: f32 = 3.0;
 
+/// What the page's scripts may do: nothing but look at the page.
+const POLICY: &str = "default-src 'none'; img-src data: blob:; script-src 'unsafe-inline'; style-src \
+                      'unsafe-inline'";
+
 /// What each flag says, in the order of [`PixelFlags::NAMES`].
 const MEANINGS: [&str; 8] = [
     "no candidate lies inside the right image",
@@ -69,8 +79,9 @@ impl Report<'_> {
         writeln!(
             out,
             "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" \
-             content=\"width=device-width, initial-scale=1\"><title>Stereo: \
-             {0}</title><style>\n{1}</style></head><body>\n<h1>Stereo: {0}</h1>\n<p class=\"quiet\">{2} \
+             content=\"width=device-width, initial-scale=1\"><meta http-equiv=\"Content-Security-Policy\" \
+             content=\"{POLICY}\"><title>Stereo: {0}</title><style>\n{STYLE}{1}</style></head><body>\n\
+             <h1>Stereo: {0}</h1>\n<p class=\"quiet\">{2} \
              &#215; {3} px, disparities {4} to {5}, method {6}, filter {7}, kernel {8}</p>",
             escape(&title),
             include_str!("style.css"),
@@ -83,7 +94,10 @@ impl Report<'_> {
             s.kernel,
         )?;
         writeln!(out, "<ul class=\"headline\">{}</ul>", self.headline())?;
-        writeln!(out, "<div class=\"figures\">")?;
+        for warning in self.warnings() {
+            writeln!(out, "<p class=\"warning\">{}</p>", escape(&warning))?;
+        }
+        writeln!(out, "{}<div class=\"figures\">", explore::body())?;
         self.pictures(out)?;
         writeln!(out, "</div>\n<h2>Disparities</h2><figure>")?;
         out.write_all(svg::histogram(self.map, s.min_disparity, s.disparities).as_bytes())?;
@@ -95,7 +109,7 @@ impl Report<'_> {
             writeln!(out, "<h2>Confidence</h2><figure>{curves}{}</figure>", caption(note))?;
         }
         writeln!(out, "<h2>Figures</h2><figure>{}</figure>", table(&self.figures()))?;
-        writeln!(out, "</body></html>")
+        writeln!(out, "{}</body></html>", explore::script(self)?)
     }
 
     /// The few figures that come first; HTML.
@@ -182,67 +196,6 @@ impl Report<'_> {
             "<table>{rows}</table>{}",
             caption("A pixel with several reasons has the colour of the first.")
         )
-    }
-
-    /// All figures, with names.
-    fn figures(&self) -> Vec<(String, String)> {
-        let s = self.summary;
-        let mut rows: Vec<(String, String)> = Vec::new();
-        let mut add = |name: &str, value: String| rows.push((name.into(), value));
-        let metres =
-            |value: Option<f32>| value.map_or("-".to_owned(), |z| format!("{} m", svg::three_digits(z)));
-        add("Answers", format!("{} of {} ({})", s.answers, self.map.disparity.len(), percent(s.density)));
-        if let Some(c) = s.confidence {
-            add("Confidence, least / median / largest", format!("{} / {} / {}", c.min, c.median, c.max));
-        }
-        if let Some(d) = s.disparity_px {
-            add(
-                "Disparity, least / median / largest",
-                format!("{:.2} / {:.2} / {:.2} px", d.min, d.median, d.max),
-            );
-        }
-        for (flag, name) in PixelFlags::NAMES {
-            add(&format!("Pixels with the flag '{name}'"), self.map.flagged(flag).to_string());
-        }
-        if let Some(rows) = &s.rows {
-            add("Rows of the images", rows.summary());
-        }
-        if let Some(fault) = s.pair.as_ref().and_then(|pair| pair.fault) {
-            add("The pair", fault.to_string());
-        }
-        if let Some([first, last]) = s.pair.as_ref().and_then(|pair| pair.disparity_px) {
-            add("Disparities of matched features", format!("{first:.0} to {last:.0} px"));
-        }
-        add("Matcher state", format!("{} bytes", s.state_bytes));
-        add("Delay", format!("{} lines", s.latency_lines));
-        add("Time", format!("{:.2} ms", s.time_ms));
-        if let Some(d) = &s.depth {
-            add("Focal length", format!("{:.2} px", d.focal_px));
-            add("Baseline", format!("{:.1} mm", d.baseline_m * 1000.0));
-            add("Offset of the principal points", format!("{:.2} px", d.doffs_px));
-            add("Nearest depth that the range can tell", metres(d.nearest_m));
-            add("Its standard deviation", metres(d.sigma_nearest_m));
-            add("Farthest depth that the range can tell", metres(d.farthest_m));
-            add("Its standard deviation", metres(d.sigma_farthest_m));
-            if let Some(found) = d.found_m {
-                let [least, middle, most] = [found.min, found.median, found.max].map(|z| metres(Some(z)));
-                add("Depth found, least / median / largest", format!("{least} / {middle} / {most}"));
-            }
-        }
-        if let Some(a) = s.accuracy {
-            add("Pixels that both cameras see", a.seen_by_both.to_string());
-            add("Of these answered", percent(a.density));
-            add("Of these answers over 2 px off", percent(a.bad2));
-            add("RMS error of the others", format!("{:.3} px", a.rms_good_px));
-            add("True depth within 3 sigma", percent(a.within_3_sigma));
-            if let Some(s) = a.sparsification {
-                add("Confidence, from the best order (0 %) to none (100 %)", percent(s.from_oracle()));
-            }
-            let (m, share) = (a.median_depth_error_m * 1000.0, percent(a.median_depth_error_relative));
-            add("Median depth error", format!("{m:.1} mm ({share})"));
-            add("Answers at pixels that only the left camera sees", a.answers_where_occluded.to_string());
-        }
-        rows
     }
 }
 

@@ -4,6 +4,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::imageops::{FilterType, resize};
 use image::{ImageFormat, RgbImage};
+use std::borrow::Cow;
 use std::io::{self, Cursor};
 
 /// Pictures in the page have at most this many columns: a page of large images would take minutes to open.
@@ -34,25 +35,31 @@ pub(super) fn escape(text: &str) -> String {
     out
 }
 
-/// A picture inside the page, with a heading; `below` is HTML.
-pub(super) fn figure(title: &str, kind: Kind, picture: &RgbImage, below: &str) -> io::Result<String> {
-    let small;
-    let picture = if picture.width() > MOST_COLUMNS {
-        let rows = (u64::from(picture.height()) * u64::from(MOST_COLUMNS) / u64::from(picture.width())).max(1)
-            as u32;
-        let filter = if kind == Kind::Photograph { FilterType::Triangle } else { FilterType::Nearest };
-        small = resize(picture, MOST_COLUMNS, rows, filter);
-        &small
-    } else {
-        picture
-    };
+/// A picture as large as one in the page may be.
+pub(super) fn fitted(kind: Kind, picture: &RgbImage) -> Cow<'_, RgbImage> {
+    if picture.width() <= MOST_COLUMNS {
+        return Cow::Borrowed(picture);
+    }
+    let rows = u64::from(picture.height()) * u64::from(MOST_COLUMNS) / u64::from(picture.width());
+    let filter = if kind == Kind::Photograph { FilterType::Triangle } else { FilterType::Nearest };
+    Cow::Owned(resize(picture, MOST_COLUMNS, rows.max(1) as u32, filter))
+}
+
+/// A picture as an address that holds it.
+pub(super) fn png_url(picture: &RgbImage) -> io::Result<String> {
     let mut png = Cursor::new(Vec::new());
     picture.write_to(&mut png, ImageFormat::Png).map_err(io::Error::other)?;
-    let (title, data) = (escape(title), STANDARD.encode(png.into_inner()));
-    let (width, height) = picture.dimensions();
+    Ok(format!("data:image/png;base64,{}", STANDARD.encode(png.into_inner())))
+}
+
+/// A picture inside the page, with a heading; `below` is HTML.
+pub(super) fn figure(title: &str, kind: Kind, picture: &RgbImage, below: &str) -> io::Result<String> {
+    let picture = fitted(kind, picture);
+    let (url, id) = (png_url(&picture)?, escape(&title.to_lowercase().replace(' ', "-")));
+    let (title, (width, height)) = (escape(title), picture.dimensions());
     Ok(format!(
-        "<figure><h3>{title}</h3><img width=\"{width}\" height=\"{height}\" alt=\"{title}\" \
-         src=\"data:image/png;base64,{data}\">{below}</figure>\n"
+        "<figure><h3>{title}</h3><img id=\"{id}\" width=\"{width}\" height=\"{height}\" \
+         alt=\"{title}\" src=\"{url}\">{below}</figure>\n"
     ))
 }
 

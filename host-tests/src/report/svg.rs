@@ -7,6 +7,9 @@ use image::Rgb;
 use std::fmt::Write;
 use stereopsis::geometry::camera::RectifiedRig;
 
+/// Width and height of a chart, which is stretched to the page.
+const CHART: [f32; 2] = [1000.0, 150.0];
+
 /// The colours of disparities with numbers: px above, metres below where there is a rig. `id` names the
 /// drawing in the page.
 pub(super) fn disparity_bar(id: &str, scale: &ColourScale, rig: Option<&RectifiedRig>) -> String {
@@ -23,7 +26,8 @@ pub(super) fn error_bar(id: &str, limit: f32) -> String {
     bar(id, |t| diverging(2.0 * t - 1.0), above, None::<fn(f32) -> String>)
 }
 
-fn bar(
+/// Colours with numbers above and below them.
+pub(super) fn bar(
     id: &str,
     colour: impl Fn(f32) -> Rgb<u8>,
     above: impl Fn(f32) -> String,
@@ -67,30 +71,35 @@ pub(super) fn histogram(map: &DisparityMap, min_disparity: u16, disparities: u16
         counts[at.min(bins - 1)] += 1;
     }
     let highest = counts.iter().copied().max().unwrap_or(0).max(1);
-    let mut svg = "<svg class=\"wide\" viewBox=\"0 0 640 200\" role=\"img\" aria-label=\"Histogram of the \
-                   disparities\">"
-        .to_owned();
-    let step = 580.0 / bins as f32;
+    let step = CHART[0] / bins as f32;
+    let mut columns = String::new();
     for (i, &count) in counts.iter().enumerate() {
-        let height = 150.0 * count as f32 / highest as f32;
+        let height = CHART[1] * count as f32 / highest as f32;
         let _ = write!(
-            svg,
+            columns,
             "<rect class=\"column\" x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" \
              height=\"{height:.1}\"><title>{:.1} px: {count} pixels</title></rect>",
-            30.0 + step * i as f32,
-            170.0 - height,
+            step * i as f32,
+            CHART[1] - height,
             step * 0.9,
             first + range * (i as f32 + 0.5) / bins as f32,
         );
     }
-    svg.push_str("<line class=\"axis\" x1=\"30\" y1=\"170.5\" x2=\"610\" y2=\"170.5\"/>");
-    for tick in 0..=4 {
-        let t = tick as f32 / 4.0;
-        text(&mut svg, 30.0 + 580.0 * t, 190.0, &format!("{:.0} px", first + t * range));
-    }
     let share = 100.0 * highest as f64 / map.answers().max(1) as f64;
-    let _ = write!(svg, "<text x=\"30\" y=\"12\">highest column: {share:.1} % of the answers</text></svg>");
-    svg
+    let note = format!("highest column: {share:.1} % of the answers");
+    chart("Histogram of the disparities", &note, &columns, |t| format!("{:.0} px", first + t * range))
+}
+
+/// A drawing as wide as the page, of [`CHART`] units, with a note above and five numbers below it that keep
+/// their size.
+fn chart(label: &str, note: &str, drawing: &str, below: impl Fn(f32) -> String) -> String {
+    let numbers: String = (0..=4).map(|tick| format!("<span>{}</span>", below(tick as f32 / 4.0))).collect();
+    let [width, height] = CHART;
+    format!(
+        "<figcaption>{note}</figcaption><svg class=\"chart\" viewBox=\"0 0 {width} {height}\" \
+         preserveAspectRatio=\"none\" role=\"img\" aria-label=\"{label}\">{drawing}</svg><p \
+         class=\"numbers\">{numbers}</p>"
+    )
 }
 
 /// The share of bad answers among those that are left, over the share that was taken away: in the order of
@@ -103,26 +112,19 @@ pub(super) fn sparsification(answers: &[Judged]) -> String {
         let point = |(step, &share): (usize, &f64)| {
             format!(
                 "{:.1},{:.1} ",
-                30.0 + 580.0 * step as f64 / STEPS as f64,
-                170.0 - 150.0 * share / highest
+                CHART[0] * step as f32 / STEPS as f32,
+                CHART[1] * (1.0 - share / highest) as f32
             )
         };
         curve.iter().enumerate().map(point).collect()
     };
-    let mut svg = "<svg class=\"wide\" viewBox=\"0 0 640 200\" role=\"img\" aria-label=\"Bad answers that \
-                   are left\">"
-        .to_owned();
+    let mut lines = String::new();
     for (curve, style) in [(&found, ""), (&oracle, " stroke-dasharray=\"4 3\"")] {
         let points = points(curve);
-        let _ = write!(svg, "<polyline class=\"curve\"{style} points=\"{}\"/>", points.trim_end());
+        let _ = write!(lines, "<polyline class=\"curve\"{style} points=\"{}\"/>", points.trim_end());
     }
-    svg.push_str("<line class=\"axis\" x1=\"30\" y1=\"170.5\" x2=\"610\" y2=\"170.5\"/>");
-    for tick in 0..=4 {
-        let t = tick as f32 / 4.0;
-        text(&mut svg, 30.0 + 580.0 * t, 190.0, &format!("{:.0} %", 100.0 * t));
-    }
-    let _ = write!(svg, "<text x=\"30\" y=\"12\">at most {:.2} %</text></svg>", 100.0 * highest);
-    svg
+    let note = format!("at most {:.2} %", 100.0 * highest);
+    chart("Bad answers that are left", &note, &lines, |t| format!("{:.0} %", 100.0 * t))
 }
 
 fn text(svg: &mut String, x: f32, y: f32, content: &str) {

@@ -47,7 +47,7 @@ fn frames_count_from_one_and_depth_needs_a_lens() {
     assert!(text(&run.stdout).starts_with("7 frames of 60 x 40 pixels, "), "{}", text(&run.stdout));
     assert_eq!(
         names(&bench.path("new/out")),
-        ["all_in_focus.png", "confidence.pfm", "depth.pfm", "index.pfm"]
+        ["all_in_focus.png", "confidence.pfm", "depth.pfm", "index.pfm", "index_colour.png", "report.html"]
     );
     let index = map(&bench, "new/out/index.pfm");
     let confidence = map(&bench, "new/out/confidence.pfm");
@@ -82,7 +82,10 @@ fn frames_count_from_one_and_depth_needs_a_lens() {
 
     // Without a lens there is no depth, and none is left of before.
     assert!(stereo(plain).status.success());
-    assert_eq!(names(&bench.path("new/out")), ["all_in_focus.png", "confidence.pfm", "index.pfm"]);
+    assert_eq!(
+        names(&bench.path("new/out")),
+        ["all_in_focus.png", "confidence.pfm", "index.pfm", "index_colour.png", "report.html"]
+    );
 }
 
 #[test]

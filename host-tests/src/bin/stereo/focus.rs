@@ -2,8 +2,9 @@
 
 use crate::failure::Failure;
 use crate::place::png;
-use crate::shared::print;
+use crate::shared::{length, print};
 use clap::Args;
+use image::RgbImage;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -16,6 +17,8 @@ use stereopsis_host::focus::run::run as map;
 use stereopsis_host::focus::stack::{Stack, StackError};
 use stereopsis_host::output::Staging;
 use stereopsis_host::pfm;
+use stereopsis_host::ply::{self, ColouredPoint};
+use stereopsis_host::report::FocusReport;
 
 /// What follows the options in the command's help.
 pub const EXAMPLE: &str = "Example:
@@ -23,7 +26,8 @@ pub const EXAMPLE: &str = "Example:
 
 Written into the folder: index.pfm (the frame in which each pixel is sharpest, from 1, with its fraction; \
                            infinity where there is no answer), confidence.pfm (0 to 1), all_in_focus.png \
-                           (each pixel as in that frame); with the lens's data also depth.pfm (metres).
+                           (each pixel as in that frame), index_colour.png, report.html; with the lens's \
+                           data also depth.pfm (metres), with --focal-px cloud.ply.
 
 The positions are lines, one a frame in the order of the frames' names, under the header image_distance_mm \
                            (from lens to sensor) or focus_distance_mm (from lens to what is in focus); \
@@ -46,6 +50,11 @@ pub struct FocusArgs {
     /// Where the lens stood in each frame; with --focal-length-mm it gives depths
     #[arg(long, value_name = "FILE.csv", requires = "focal_length_mm")]
     pub positions: Option<PathBuf>,
+    /// Focal length of the camera in pixels, from a calibration or focal length / pixel pitch; with depths it
+    /// gives cloud.ply
+    #[arg(long, value_name = "PX", requires = "positions", value_parser = length, allow_negative_numbers =
+        true)]
+    pub focal_px: Option<f32>,
     /// Take all frames in the order of their names, whatever they show
     #[arg(long)]
     pub force: bool,
@@ -59,8 +68,8 @@ fn focal_length(text: &str) -> Result<f64, &'static str> {
     value.ok_or("a number of millimetres from 0.1 to 10000 is needed")
 }
 
-/// What is written only with lens data. A run without them takes the file of an earlier run away.
-const WITH_DEPTH: [&str; 1] = ["depth.pfm"];
+/// What is written only with lens data. A run without them takes the files of an earlier run away.
+const WITH_DEPTH: [&str; 2] = ["depth.pfm", "cloud.ply"];
 
 pub fn run(args: &FocusArgs) -> Result<(), Failure> {
     let stack = Stack::open(&args.frames)?;
@@ -93,8 +102,25 @@ pub fn run(args: &FocusArgs) -> Result<(), Failure> {
     staging.write("index.pfm", |out| pfm::write(out, result.width, &result.index_in(&numbers)))?;
     staging.write("confidence.pfm", |out| pfm::write(out, result.width, &result.confidence()))?;
     staging.write("all_in_focus.png", |out| png(out, &result.picture))?;
-    if let Some(scale) = &scale {
-        staging.write(WITH_DEPTH[0], |out| pfm::write(out, result.width, &result.depth_m(scale)))?;
+    let (index, confidence) = (result.index_in(&numbers), result.confidence());
+    let depth_m = scale.as_ref().map(|scale| result.depth_m(scale));
+    let name = args.frames.display().to_string();
+    let report = FocusReport {
+        name: &name,
+        frames: stack.len(),
+        picture: &result.picture,
+        index: &index,
+        confidence: &confidence,
+        depth_m: depth_m.as_deref(),
+    };
+    staging.write("index_colour.png", |out| png(out, &report.index_colour()))?;
+    staging.write("report.html", |out| report.write(out))?;
+    if let Some(depth_m) = &depth_m {
+        staging.write(WITH_DEPTH[0], |out| pfm::write(out, result.width, depth_m))?;
+    }
+    if let Some((depth_m, focal_px)) = depth_m.as_ref().zip(args.focal_px) {
+        let points = points(depth_m, &result.picture, focal_px);
+        staging.write(WITH_DEPTH[1], |out| ply::write(out, &points))?;
     }
     staging.commit(&WITH_DEPTH)?;
 
@@ -111,6 +137,18 @@ pub fn run(args: &FocusArgs) -> Result<(), Failure> {
     }
     let _ = writeln!(text, "results are in {}", one_line(&args.out.display().to_string()));
     print(&text)
+}
+
+/// The pixels with a depth in space, with the picture's colours: the centre of the view is the picture's.
+fn points(depth_m: &[f32], picture: &RgbImage, focal_px: f32) -> Vec<ColouredPoint> {
+    let (width, height) = picture.dimensions();
+    let [cx, cy] = [width, height].map(|side| (side - 1) as f32 / 2.0);
+    let seen = depth_m.iter().zip(picture.enumerate_pixels()).filter(|(z, _)| z.is_finite());
+    let point = |(&z, (u, v, colour)): (&f32, (u32, u32, &image::Rgb<u8>))| ColouredPoint {
+        position_m: [(u as f32 - cx) * z / focal_px, (v as f32 - cy) * z / focal_px, z],
+        colour: colour.0,
+    };
+    seen.map(point).collect()
 }
 
 /// A lens, and for each frame its distance from the sensor, m.

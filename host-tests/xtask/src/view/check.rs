@@ -133,7 +133,7 @@ fn every_control_says_what_it_stands_at(page: &mut LivePage) -> Outcome {
     let Value::Array(controls) = page.browser.value(list)? else {
         return Err(Failure::new("the page has no controls"));
     };
-    hold(controls.len() == 30, || format!("{} controls", controls.len()))?;
+    hold(controls.len() == 32, || format!("{} controls", controls.len()))?;
     for (place, control) in controls.iter().enumerate() {
         let name = control["name"].as_str().unwrap_or_default();
         if control["list"].is_u64() {

@@ -1,0 +1,120 @@
+// The picture of a page: one of the views of a result, its cursor, and the hands and keys that move them.
+
+// What is shown. A pixel of it stands for `ratio` pixels of a row of the pair.
+const state = { pair: null, planes: null, rig: {}, hasDepth: false, ratio: 1 };
+const cloud = new Cloud();
+const canvas = byId("picture");
+const context = canvas.getContext("2d");
+const cursor = { x: 0, y: 0 };
+let image = null;
+let isTurning = false;
+let isPointed = false;
+
+const view = () => document.querySelector("input[name=view]:checked").value;
+
+// A button for each view.
+function addViews(names) {
+  names.forEach((name) => {
+    const label = make("label");
+    const radio = make("input", { type: "radio", name: "view", value: name, id: `view-${name}` });
+    radio.checked = name === "disparity";
+    radio.addEventListener("change", show);
+    label.append(radio, ` ${name}`);
+    byId("views").append(label);
+  });
+}
+
+// Makes room for pictures of a size.
+function fitPicture(width, height) {
+  [canvas.width, canvas.height] = [width, height];
+  image = context.createImageData(width, height);
+  [cursor.x, cursor.y] = [width >> 1, height >> 1];
+}
+
+// Paints the view that is chosen.
+function show() {
+  if (!image) return;
+  const words = new Uint32Array(image.data.buffer);
+  const isCloud = view() === "points";
+  canvas.classList.toggle("points", isCloud);
+  let legend;
+  if (isCloud) {
+    cloud.take(state);
+    const count = cloud.draw(words, image.width, image.height);
+    legend = [count > 0 ? `${count} points; drag to turn, turn the wheel to come nearer.`
+      : "No points: give focal length and baseline under Cameras."];
+  } else {
+    legend = PAINT[view()](words, state);
+  }
+  byId("legend").replaceChildren(...legend);
+  canvas.setAttribute("aria-label", `${view()} of ${state.pair.left.name}`);
+  context.putImageData(image, 0, 0);
+}
+
+// The pixel under the pointer.
+function moveTo(event) {
+  const box = canvas.getBoundingClientRect();
+  const inside = (value, most) => Math.min(Math.max(Math.floor(value), 0), most - 1);
+  cursor.x = inside(((event.clientX - box.left) / box.width) * canvas.width, canvas.width);
+  cursor.y = inside(((event.clientY - box.top) / box.height) * canvas.height, canvas.height);
+  tellPixel();
+}
+
+function tellPixel() {
+  isPointed = true;
+  if (state.planes) byId("pixel").textContent = describePixel(state, cursor.x, cursor.y);
+}
+
+// Turns on and on, until it is stopped.
+function keepTurning() {
+  if (!isTurning || view() !== "points") return;
+  cloud.turn(0.02, 0);
+  show();
+  requestAnimationFrame(keepTurning);
+}
+
+function keyInCloud(key) {
+  const turns = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1] };
+  const factors = { "+": 1.2, "=": 1.2, "-": 1 / 1.2 };
+  if (key === " ") {
+    isTurning = !isTurning;
+    keepTurning();
+    return true;
+  }
+  if (turns[key]) cloud.turn(...turns[key]);
+  else if (factors[key]) cloud.comeNearer(factors[key]);
+  else return false;
+  show();
+  return true;
+}
+
+function keyInPicture(key, isFar) {
+  const moves = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+  if (!moves[key]) return false;
+  const [x, y] = moves[key].map((step) => (isFar ? 10 : 1) * step);
+  cursor.x = Math.min(Math.max(cursor.x + x, 0), canvas.width - 1);
+  cursor.y = Math.min(Math.max(cursor.y + y, 0), canvas.height - 1);
+  tellPixel();
+  return true;
+}
+
+function listenToPicture() {
+  canvas.addEventListener("pointermove", (event) => {
+    if (view() !== "points") moveTo(event);
+    else if (event.buttons !== 0) {
+      cloud.turn(event.movementX / 150, event.movementY / 150);
+      show();
+    }
+  });
+  canvas.addEventListener("wheel", (event) => {
+    if (view() !== "points") return;
+    event.preventDefault();
+    cloud.comeNearer(Math.exp(-event.deltaY / 500));
+    show();
+  }, { passive: false });
+  canvas.addEventListener("keydown", (event) => {
+    if (!state.planes || event.ctrlKey || event.altKey || event.metaKey) return;
+    const isCloud = view() === "points";
+    if (isCloud ? keyInCloud(event.key) : keyInPicture(event.key, event.shiftKey)) event.preventDefault();
+  });
+}

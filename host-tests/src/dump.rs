@@ -169,6 +169,11 @@ impl Dump {
         Self { stage, first: rows.start, rows: rows.map(|y| stage.row(stages, y)).collect() }
     }
 
+    /// All rows of a stage, of so many bytes each, as something else made them.
+    pub fn of_rows(stage: Stage, bytes: &[u8], row_bytes: usize) -> Self {
+        Self { stage, first: 0, rows: bytes.chunks(row_bytes.max(1)).map(<[u8]>::to_vec).collect() }
+    }
+
     /// Writes the bytes.
     pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
         self.rows.iter().try_for_each(|row| out.write_all(row))

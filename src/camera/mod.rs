@@ -59,6 +59,7 @@ mod sensors;
 mod signal;
 mod source;
 mod streams;
+mod sync;
 mod trigger;
 
 pub use format::{FrameStart, LineFormat, LineStart, PixelFormat};

@@ -29,6 +29,8 @@ pub fn checks(u: &mut Unstructured<'_>) -> Result<Checks> {
         fill_step: Disparity::from_raw(u.arbitrary()?),
         speckle_run: u.arbitrary()?,
         fattening_slope: Disparity::from_raw(u.arbitrary()?),
+        open_run: u.arbitrary()?,
+        open_margin: u.arbitrary()?,
     })
 }
 

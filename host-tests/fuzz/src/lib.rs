@@ -5,6 +5,7 @@
 //!   the test of this package runs each target on its seeds and on bytes by chance.
 //! * [`case`] makes configurations and pictures of bytes.
 
+mod calls;
 pub mod case;
 mod control;
 mod features;
@@ -12,6 +13,7 @@ mod files;
 mod focus;
 mod geometry;
 mod guarded;
+mod lines;
 mod matching;
 mod odometry;
 mod records;
@@ -47,6 +49,8 @@ pub const TARGETS: &[Target] = &[
     Target { name: "tables", run: files::tables },
     Target { name: "problems", run: files::problem },
     Target { name: "recordings", run: files::recording },
+    Target { name: "lines", run: lines::come_once_or_are_counted },
+    Target { name: "calls", run: calls::keep_to_their_memory },
 ];
 
 /// The target of that name.

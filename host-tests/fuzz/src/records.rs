@@ -9,9 +9,7 @@ pub fn come_back(u: &mut Unstructured<'_>) -> Result<()> {
     let mut bytes = vec![0; StereoRig::<f64>::RECORD_BYTES];
     u.fill_buffer(&mut bytes)?;
     if u.arbitrary()? {
-        let body = bytes.len() - 4;
-        let crc = checksum(&bytes[..body]).to_le_bytes();
-        bytes[body..].copy_from_slice(&crc);
+        seal(&mut bytes);
     }
     let length = if u.ratio(1, 8)? { u.int_in_range(0..=bytes.len())? } else { bytes.len() };
     let Ok(rig) = StereoRig::<f64>::from_record(&bytes[..length]) else { return Ok(()) };
@@ -22,6 +20,13 @@ pub fn come_back(u: &mut Unstructured<'_>) -> Result<()> {
     assert!(pose.translation().iter().all(|v| v.is_finite()) && rig.baseline_m().is_finite(), "{rig:?}");
     assert!(*pose.translation() != Vector3::zeros(), "{rig:?}");
     Ok(())
+}
+
+/// Makes the last four bytes the checksum of those before.
+pub fn seal(bytes: &mut [u8]) {
+    let body = bytes.len() - 4;
+    let crc = checksum(&bytes[..body]).to_le_bytes();
+    bytes[body..].copy_from_slice(&crc);
 }
 
 /// CRC-32/ISO-HDLC, bit by bit.

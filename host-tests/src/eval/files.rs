@@ -1,9 +1,9 @@
 //! The files that are compared.
 
 use super::EvalError;
+use crate::limits;
 use crate::pfm::{self, FloatMap};
 use image::DynamicImage;
-use std::fs;
 use std::io::Cursor;
 use std::path::Path;
 use stereopsis::geometry::camera::RectifiedRig;
@@ -25,7 +25,8 @@ impl DisparityFile {
     /// Disparities in px, infinite where there is none.
     pub fn read(&self, path: &Path) -> Result<FloatMap, EvalError> {
         let failed = |what: String| EvalError::new(path, what);
-        let bytes = fs::read(path).map_err(|e| failed(format!("cannot be read ({e})")))?;
+        let bytes =
+            limits::read(path, limits::IMAGE_BYTES).map_err(|e| failed(format!("cannot be read ({e})")))?;
         let mut map =
             if bytes.starts_with(b"P") && bytes.get(1).is_some_and(|b| b.eq_ignore_ascii_case(&b'f')) {
                 pfm::read(&mut bytes.as_slice()).map_err(|e| failed(e.to_string()))?
@@ -125,6 +126,7 @@ fn same_size(path: &Path, given: (usize, usize), wanted: (usize, usize)) -> Resu
 mod tests {
     use super::*;
     use image::{ImageBuffer, Luma};
+    use std::fs;
 
     fn read(file: DisparityFile, name: &str, bytes: &[u8]) -> Result<FloatMap, EvalError> {
         let folder = tempfile::tempdir().expect("a temporary folder");

@@ -90,8 +90,13 @@ pub(super) fn read(path: &Path) -> Result<Picture, MockError> {
 /// The file's bytes; a device or an endless pipe is not followed.
 fn load(path: &Path) -> Result<Vec<u8>, MockError> {
     let read = |source| MockError::Read { path: path.into(), source };
-    if !std::fs::metadata(path).map_err(read)?.is_file() {
+    let found = std::fs::metadata(path).map_err(read)?;
+    if !found.is_file() {
         return Err(MockError::NotAFile { path: path.into() });
+    }
+    // Nothing is read of what is too long; a file may grow while it is read.
+    if found.len() > MOST_FILE_BYTES {
+        return Err(MockError::FileTooLong { path: path.into(), most: MOST_FILE_BYTES });
     }
     let mut bytes = Vec::new();
     File::open(path).map_err(read)?.take(MOST_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(read)?;

@@ -10,6 +10,7 @@ mod formats;
 mod handoff;
 mod hm01b0;
 mod on_spi;
+mod orderings;
 mod scripted;
 mod sensors;
 mod signal;

@@ -38,6 +38,24 @@ fn a_pipe_without_an_end_is_named() {
     }
 }
 
+/// A file that is too long for an image is not read first: a sparse one of 3 GiB is named at once.
+#[test]
+fn a_huge_image_is_named() {
+    let bench = Bench::new();
+    let huge = path(&bench, "huge.pgm");
+    std::fs::File::create(&huge).and_then(|file| file.set_len(3 << 30)).expect("a sparse file");
+    let (right, out) = (path(&bench, "right.png"), path(&bench, "out"));
+    for line in [
+        ["features", "--left", &huge, "--right", &right, "--out", &out].as_slice(),
+        &["match", "--left", &huge, "--right", &right, "--disparities", "16", "--out", &out],
+    ] {
+        let at = Instant::now();
+        let said = text(&run(line).stderr);
+        assert!(said.contains("huge.pgm: the file has more than 402653184 bytes"), "{said}");
+        assert!(at.elapsed() < Duration::from_secs(5), "{line:?}: {:?}", at.elapsed());
+    }
+}
+
 #[test]
 fn too_many_matches_are_named() {
     let bench = Bench::new();

@@ -1,5 +1,6 @@
 //! The program `stereo` as its users run it: what it writes, and what it says when it cannot.
 
+mod any;
 mod as_match;
 #[cfg(unix)]
 mod bounds;

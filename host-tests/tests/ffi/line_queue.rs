@@ -52,6 +52,21 @@ fn take(handle: *mut LineQueueHandle, bytes: usize) -> Option<(CLine, Vec<u8>)> 
     }
 }
 
+/// Null is written to the place of a handle: never into the memory that is refused.
+#[test]
+fn a_place_inside_of_memory_that_will_not_do_is_an_overlap() {
+    let mut memory = vec![0xA5A5_A5A5_A5A5_A5A5_u64; 16];
+    let before = memory.clone();
+    let start = memory.as_mut_ptr();
+    for (length, line_bytes) in [(16, 7), (128, 0), (128, 65_536), (128, 60_000)] {
+        // SAFETY: the memory has these bytes, and the place is in it.
+        let status =
+            unsafe { stereopsis_line_queue_init(start.cast(), length, line_bytes, start.add(1).cast()) };
+        assert_eq!(status, Status::Overlap, "{length} {line_bytes}");
+    }
+    assert!(memory == before);
+}
+
 #[test]
 fn lines_are_those_of_the_slots_in_rust() {
     let mut random = Random::new(11);

@@ -237,6 +237,17 @@ fn memory_holds_one_matcher_until_it_is_given_up() {
 }
 
 #[test]
+fn a_frame_before_the_start_changes_nothing() {
+    let mut memory = memory();
+    let (status, handle) = init(&mut memory, 0, stereopsis_size());
+    assert_eq!(status, Status::Ok);
+    let before = memory.clone();
+    // SAFETY: the handle is from `init`.
+    assert_eq!(unsafe { stereopsis_begin_frame(handle) }, Status::NotStarted);
+    assert!(memory == before);
+}
+
+#[test]
 fn every_status_of_the_header_has_a_text() {
     let header = include_str!("../../../src/ffi/stereopsis.h");
     let codes: Vec<i32> = header

@@ -19,6 +19,29 @@ fn there_is_nothing_outside() {
     assert_eq!(picture.run(0, 3, 10), Some(&[7; 10][..]));
 }
 
+/// Every run of every small picture is that of its rows.
+#[test]
+fn runs_are_those_of_the_rows() {
+    let pixels: Vec<u8> = (0..36).collect();
+    for (width, height) in (0..=6).flat_map(|width| (0..=6).map(move |height| (width, height))) {
+        let of_picture = &pixels[..width * height];
+        let picture = Picture::new(of_picture, width as u16, height as u16).expect("as many pixels");
+        let places = || (0..=8).chain([usize::MAX / 2, usize::MAX - 1, usize::MAX]);
+        for (column, row) in places().flat_map(|column| places().map(move |row| (column, row))) {
+            for length in places() {
+                let line = of_picture.chunks(width.max(1)).nth(row).filter(|_| row < height);
+                let line = if width == 0 && row < height { Some(&[][..]) } else { line };
+                let expected = line.and_then(|line| line.get(column..column.checked_add(length)?));
+                assert_eq!(
+                    picture.run(column, row, length),
+                    expected,
+                    "{width}x{height}: {column} {row} {length}"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn samples_are_numbers_inside_only() {
     let picture = Picture::new(&[7; 40], 10, 4).expect("forty pixels");

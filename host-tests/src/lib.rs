@@ -19,7 +19,8 @@
 //! * [`eval`]: results of any program beside a truth, in the measures of public benchmarks.
 //! * [`recording`]: lines as they came, in a file, and played again.
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
-//! * [`correspond`]: two pictures through the core's features and matcher. [`two_view`]: correspondences of a
+//! * [`correspond`]: two pictures through the core's features and matcher. [`correspond_refine`]: to a small
+//!   part of a pixel. [`two_view`]: correspondences of a
 //!   known scene, with noise and wrong ones. [`chance`]: whether matches agree by chance.
 //! * [`focus`]: focus stacks, a simulated lens, and stacks through the core's map.
 //! * [`obstacles`]: ground, stixels and sectors of a whole map, as a record and a picture.
@@ -40,6 +41,7 @@ pub mod chance;
 pub mod colour;
 pub mod command_line;
 pub mod correspond;
+pub mod correspond_refine;
 pub mod depth_samples;
 pub mod dump;
 pub mod epipolar_picture;

@@ -1,4 +1,4 @@
-//! Real pictures of the folder in `STEREO_DATA`, one file a kind; built with the feature `real-data`.
+//! Real pictures of the folder in `STEREO_DATA`, one file a kind.
 
 mod bundle;
 mod calibration;

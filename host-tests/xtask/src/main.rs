@@ -5,16 +5,19 @@
 //! * `growth` measures how the cost grows with the work.
 //! * `rtl` simulates the block of `examples/fpga` before the library's second half.
 //! * `fuzz` looks for inputs that break a promise.
+//! * `miri` runs what is `unsafe` and no assembly under an interpreter that sees undefined behaviour.
+//! * `soak` runs thousands of frames of a camera with every fault.
 //! * `view` builds the live page's module and shows the page.
 //! * `altered` measures how right the methods are on altered real images, beside OpenCV.
 //! * `readme` writes the generated parts of docs/performance.md anew, or checks them.
 //! * `c` tests the C interface alone, one step of `test`.
+//! * `cross` checks the core for all targets and with every feature.
 //! * `publish` checks what a registry would hand out; it publishes nothing.
 //! * `header` writes the header of the C interface anew, or checks it.
 //!
 //! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`],
-//! [`growth`], [`c`], [`arm`], [`mod@rtl`], [`view`], [`package`] and [`readme`] are eight of them.
-//! [`altered`] needs data that not everybody has, [`fuzz`] time.
+//! [`growth`], [`c`], [`arm`], [`cross`], [`mod@rtl`], [`view`], [`package`] and [`readme`] are nine of them.
+//! [`altered`] needs data that not everybody has, [`fuzz`], [`miri`] and [`soak`] time.
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
@@ -25,12 +28,14 @@ mod altered;
 mod arm;
 mod boards;
 mod c;
+mod cross;
 mod elf;
 mod examples;
 mod firmware;
 mod fuzz;
 mod growth;
 mod header;
+mod miri;
 mod package;
 mod packages;
 mod parallel;
@@ -38,6 +43,7 @@ mod pictures;
 mod readme;
 mod rtl;
 mod setup;
+mod soak;
 mod steps;
 mod test;
 mod view;
@@ -67,6 +73,10 @@ enum Chore {
     Rtl(rtl::Arguments),
     /// Looks for inputs that break a promise of the library, led by coverage.
     Fuzz(fuzz::Arguments),
+    /// Runs what is unsafe and no assembly under Miri, for a 64-bit and a 32-bit processor.
+    Miri,
+    /// Runs thousands of frames of a camera with every fault, and holds each row to the frame without one.
+    Soak(soak::Arguments),
     /// Builds the core for browsers and runs `stereo view` with it.
     View(view::Arguments),
     /// Measures how right the methods are on real pairs with noise and unequal cameras, beside OpenCV.
@@ -79,6 +89,8 @@ enum Chore {
     },
     /// Tests the C interface alone: header, sanitizers, two boards in QEMU.
     C,
+    /// Checks the core for all targets and with every feature.
+    Cross,
     /// Checks the crate as it would be published, its dependencies' licences and advisories, and what its
     /// interface breaks since the last tag. Publishes nothing.
     Publish,
@@ -99,8 +111,8 @@ fn main() -> ExitCode {
                 "error: {}",
                 one_line(&usage_line(
                     &error,
-                    "the chores are test, firmware, growth, rtl, fuzz, view, altered, c, header, \
-                        publish and readme"
+                    "the chores are test, firmware, growth, rtl, fuzz, miri, soak, view, altered, c, \
+                        cross, header, publish and readme"
                 ))
             );
             return ExitCode::FAILURE;
@@ -112,10 +124,13 @@ fn main() -> ExitCode {
         Chore::Growth(arguments) => growth::run(&arguments),
         Chore::Rtl(arguments) => rtl::run(&arguments),
         Chore::Fuzz(arguments) => fuzz::run(&arguments),
+        Chore::Miri => miri::run(),
+        Chore::Soak(arguments) => soak::run(&arguments),
         Chore::View(arguments) => view::run(&arguments),
         Chore::Altered(arguments) => altered::run(&arguments),
         Chore::Readme { check } => readme::run(check),
         Chore::C => c::run(),
+        Chore::Cross => cross::run(),
         Chore::Publish => package::publish(),
         Chore::Header { check } => header::run(check),
     };

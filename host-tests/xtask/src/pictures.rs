@@ -125,12 +125,20 @@ impl Pictures {
         level.map(|(noise, _)| noise).map_err(|e| Failure::new(format!("camera: {e}")))
     }
 
-    /// What the host's pipeline finds in them.
+    /// What a search with the checks of [`Filter::Default`] finds in them on the host.
     pub fn matched(&self, method: MethodName, disparities: u16, noise: Noise) -> Outcome<DisparityMap> {
-        let mut camera = self.camera()?;
+        self.matched_by(method, &self.search(method, disparities, noise))
+    }
+
+    /// A search of these pictures with the checks of [`Filter::Default`].
+    pub fn search(&self, method: MethodName, disparities: u16, noise: Noise) -> Config {
         let search = Config { noise, ..method.config(self.width, self.height, disparities) };
-        let config = method.with_filter(Filter::Default, search);
-        let outcome = run(method, &config, &mut camera, |_| ());
+        method.with_filter(Filter::Default, search)
+    }
+
+    /// What a search finds in them on the host.
+    pub fn matched_by(&self, method: MethodName, search: &Config) -> Outcome<DisparityMap> {
+        let outcome = run(method, search, &mut self.camera()?, |_| ());
         outcome.map(|outcome| outcome.map).map_err(|e| Failure::new(format!("{method} on the host: {e}")))
     }
 

@@ -82,7 +82,7 @@ pub fn targets(needed: &[&str]) -> Outcome {
 }
 
 /// Adds rustfmt, clippy and the source of `core`.
-fn components() -> Outcome {
+pub fn components() -> Outcome {
     let components = installed("component")?;
     for component in ["rustfmt", "clippy", "rust-src"] {
         if !components.lines().any(|line| line.starts_with(component)) {

@@ -3,6 +3,7 @@
 use crate::arm;
 use crate::boards;
 use crate::c;
+use crate::cross;
 use crate::examples;
 use crate::firmware;
 use crate::fuzz::CAMPAIGN;
@@ -10,14 +11,12 @@ use crate::growth;
 use crate::package;
 use crate::parallel;
 use crate::rtl;
-use crate::setup::{self, CHECKED, FROM_SOURCE, TARGETS};
+use crate::setup;
 use crate::steps::{Failure, Outcome, Steps, cargo, command, root, run as run_command, target_dir};
 use crate::view;
 use std::fs;
 use std::path::PathBuf;
 
-/// The feature that builds the tests on real stereo pairs.
-const REAL_DATA: &str = "stereopsis-host/real-data";
 /// What is printed when they are not run, so that nobody takes them for passed.
 const NOT_RUN: &str = "real data: NOT RUN, set STEREO_DATA to the folder that holds stereo/";
 
@@ -39,7 +38,7 @@ pub fn run(only: Option<String>) -> Outcome {
             &[
                 ("kernels on Arm", arm::run),
                 ("kernels on WebAssembly", view::kernels),
-                ("cross checks", cross_checks),
+                ("cross checks", cross::sample),
                 ("stated rust-version", rust_version),
                 ("package", package::run),
             ],
@@ -121,8 +120,7 @@ fn format() -> Outcome {
 }
 
 fn clippy() -> Outcome {
-    let features = format!("{REAL_DATA},stereopsis/defmt,stereopsis/serde");
-    run_cargo(&format!("clippy --locked --workspace --all-targets --features {features} -- -D warnings"))?;
+    run_cargo("clippy --locked --workspace --all-targets --features stereopsis/defmt -- -D warnings")?;
     run_cargo(&format!(
         "clippy --locked --no-default-features --manifest-path {CAMPAIGN} --target-dir {} -- -D warnings",
         target_dir().join("campaign").display()
@@ -140,15 +138,15 @@ fn clippy() -> Outcome {
     view::clippy()
 }
 
-fn tests() -> Outcome {
-    run_cargo(&test_command()?)
-}
+/// Cargo's words for tests. All steps that run some say the same, so that none builds the dependencies anew
+/// with other features.
+const TEST: &str = "test --locked --workspace";
 
-/// Cargo's words for the tests. All steps that run some of them say the same, so that none builds the
-/// dependencies anew with other features.
-fn test_command() -> Outcome<String> {
-    let features = real_data()?.map_or(String::new(), |_| format!(" --features {REAL_DATA}"));
-    Ok(format!("test --locked --workspace{features}"))
+/// All tests, then those that read real stereo pairs, but for the one that needs pairs that are not here.
+fn tests() -> Outcome {
+    run_cargo(TEST)?;
+    let real = || run_cargo(&format!("{TEST} --test real -- --ignored --skip held_back_pairs"));
+    real_data()?.map_or(Ok(()), |_| real())
 }
 
 /// The program `stereo`, as the step of the tests has built it.
@@ -165,61 +163,9 @@ fn documentation() -> Outcome {
     run_command(firmware::cargo("doc --locked --no-deps").env("RUSTDOCFLAGS", "-D warnings"))
 }
 
-/// The library's features.
-const FEATURES: [&str; 5] = ["async", "defmt", "embedded-graphics", "ffi", "serde"];
-
-/// The core on which combinations of features are checked.
-const SMALL: &str = "riscv32imc-unknown-none-elf";
-
-/// The core for all targets, as generic as it was written. Machine code for them is made elsewhere: by the
-/// firmware's programs for boards and, for 64-bit Arm, by the tests of kernels.
-fn cross_checks() -> Outcome {
-    let check = |features: &str, more: &[&str]| {
-        let mut check = cargo(&["check", "--locked", "-p", "stereopsis", "--features", features]);
-        check.args(more).env("RUSTFLAGS", "-D warnings");
-        check.env("CARGO_TARGET_DIR", target_dir().join("cross"));
-        check
-    };
-    let all = FEATURES.join(",");
-    let targets = [TARGETS.as_slice(), &CHECKED].concat();
-    let targets: Vec<_> = targets.into_iter().flat_map(|target| ["--target", target]).collect();
-    run_command(&mut check(&all, &targets))?;
-    for target in FROM_SOURCE {
-        let mut check = check(&all, &["-Z", "build-std=core", "--target", target]);
-        // The stable compiler takes the option as a nightly one does.
-        run_command(check.env("RUSTC_BOOTSTRAP", "1"))?;
-    }
-    // Features add code and take none away, and no condition names two of them (a test holds that). What
-    // stands behind one builds with every other if it builds with that one alone, as here on one small
-    // core, and if all build together, as above.
-    for features in [""].iter().chain(&FEATURES) {
-        run_command(&mut check(features, &["--target", SMALL]))?;
-    }
-    // Instructions that a core lacks are refused in one line that says what to do.
-    for (flags, said) in [
-        (
-            "--cfg stereopsis_dsp",
-            "stereopsis_dsp: thumbv7m-none-eabi with these flags has no DSP instructions",
-        ),
-        (
-            "--cfg stereopsis_vectors",
-            "stereopsis_vectors: thumbv7m-none-eabi with these flags has no vectors",
-        ),
-    ] {
-        let mut check = check("", &["--target", "thumbv7m-none-eabi"]);
-        let output = check.env("RUSTFLAGS", flags).output();
-        let output = output.map_err(|e| Failure::new(format!("cargo: {e}")))?;
-        if output.status.success() || !String::from_utf8_lossy(&output.stderr).contains(said) {
-            return Err(Failure::new(format!("{flags} for thumbv7m-none-eabi is not refused as \"{said}\"")));
-        }
-    }
-    Ok(())
-}
-
 /// After the tests, which have built this one.
 fn readme_commands() -> Outcome {
-    let test = test_command()?;
-    run_cargo(&format!("{test} --test repo -- --ignored --exact readme::commands_work_in_a_fresh_clone"))
+    run_cargo(&format!("{TEST} --test repo -- --ignored --exact readme::commands_work_in_a_fresh_clone"))
 }
 
 /// The oldest compiler that the packages say they build with, in earnest.

@@ -14,7 +14,7 @@ mod sizes;
 mod table;
 
 use crate::firmware::tables::Readme;
-use crate::steps::Outcome;
+use crate::steps::{Failure, Outcome};
 use clap::Args;
 
 /// The options of `growth`.
@@ -30,7 +30,15 @@ pub struct Arguments {
 
 /// Does what the command line asks for.
 pub fn run(arguments: &Arguments) -> Outcome {
-    if arguments.host { host::run() } else { cores::run(Readme::of_check(arguments.check)) }
+    if !arguments.host {
+        return cores::run(Readme::of_check(arguments.check));
+    }
+    if cfg!(debug_assertions) {
+        return Err(Failure::new(
+            "growth --host times a release build: cargo run --release -p xtask -- growth --host",
+        ));
+    }
+    host::run()
 }
 
 /// A few instructions on one core, held to the limits.

@@ -37,6 +37,9 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = disparities, allow_negative_numbers = true,
         required_unless_present_any = ["all", "system", "synthesis"])]
     disparities: Option<u16>,
+    /// The smallest disparity searched, px: 0 to 255
+    #[arg(long, value_name = "M", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=255))]
+    min_disparity: u16,
     /// The matching method: fast, block or sgm
     #[arg(long, default_value = "block", value_parser = method)]
     method: MethodName,
@@ -81,6 +84,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let pair = one_pair::OnePair {
         pair: [left, right],
         disparities: *disparities,
+        min_disparity: arguments.min_disparity,
         method: arguments.method,
         parallel: arguments.parallel,
         noise: arguments.noise,

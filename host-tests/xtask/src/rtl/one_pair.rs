@@ -7,7 +7,7 @@ use crate::setup;
 use crate::steps::{Failure, Outcome};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use stereopsis::matching::{Config, Filter};
+use stereopsis::matching::Config;
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::output::{OutputError, Staging};
 use stereopsis_host::pfm;
@@ -22,6 +22,8 @@ pub struct OnePair<'a> {
     pub pair: [&'a PathBuf; 2],
     /// Disparities that are searched.
     pub disparities: u16,
+    /// The smallest of them, px.
+    pub min_disparity: u16,
     /// The method.
     pub method: MethodName,
     /// Disparities in a clock; all where none is given.
@@ -39,6 +41,7 @@ struct Summary {
     width: u16,
     height: u16,
     disparities: u16,
+    min_disparity: u16,
     noise: &'static str,
     /// Disparities in a clock.
     parallel: u16,
@@ -62,9 +65,10 @@ impl OnePair<'_> {
                 "--left: the images are {width} pixels wide; the block takes {LEAST_WIDTH} to {MOST_WIDTH}"
             )));
         }
-        if disparities > width {
-            let line = format!("--disparities {disparities}: the images are {width} pixels wide");
-            return Err(Failure::new(line));
+        let least = self.min_disparity;
+        if disparities + least > width {
+            let asked = format!("--min-disparity {least} and --disparities {disparities}");
+            return Err(Failure::new(format!("{asked}: the images are {width} pixels wide")));
         }
         let room = disparities.next_multiple_of(16);
         let parallel = self.parallel.unwrap_or(room);
@@ -74,9 +78,9 @@ impl OnePair<'_> {
         Staging::probe(self.out).map_err(|e| Failure::new(format!("--out: {e}")))?;
         setup::gates()?;
         let noise = pictures.noise(self.noise)?;
-        let expected = pictures.matched(self.method, disparities, noise)?;
-        let search = Config { noise, ..self.method.config(width, height, disparities) };
-        let config = self.method.with_filter(Filter::Default, search);
+        let search = pictures.search(self.method, disparities, noise);
+        let config = Config { min_disparity: self.min_disparity, ..search };
+        let expected = pictures.matched_by(self.method, &config)?;
 
         let block = Block {
             width: width.max(LEAST_ROOM),
@@ -111,6 +115,7 @@ impl OnePair<'_> {
             width,
             height,
             disparities,
+            min_disparity: self.min_disparity,
             noise: noise.name(),
             parallel,
             clocks: clocks[0],

@@ -49,7 +49,7 @@ impl Drop for Waiting {
 /// One frame; its checksum is that of the host's rows.
 fn one(board: Board, method: MethodName, simulation: &Path, pictures: &Pictures) -> Outcome {
     let program = Program::new(board, method, WIDTH, HEIGHT, DISPARITIES)?;
-    let elf = program.build_behind_gates()?;
+    let elf = program.build_other("gates", "")?;
     let name = format!("{method} in gates, the rest on {}", board.core);
     let failed = |what: String| Failure::new(format!("{name}: {what}"));
     let folder = tempfile::tempdir().map_err(|e| failed(e.to_string()))?;

@@ -13,18 +13,23 @@ pub(super) const MOST: usize = 128;
 const OCTAVES: usize = 8;
 
 /// A correspondence off a plane.
-struct OffPlane<T: Real> {
-    /// Where the first image shows it.
-    first: Point2<T>,
-    /// Where the plane would show it there.
+struct OffPlane<'a, T: Real> {
+    seen: &'a Correspondence<T>,
+    /// Where the plane would show it in the first image.
     on_plane: Point2<T>,
-    /// The octave of its parallax.
-    octave: u8,
+}
+
+impl<T: Real> OffPlane<'_, T> {
+    fn parallax_px2(&self) -> T {
+        (self.seen.first - self.on_plane).norm_squared()
+    }
 }
 
 /// Correspondences off one plane.
-pub(super) struct OffPlanes<T: Real> {
-    points: heapless::Vec<OffPlane<T>, MOST>,
+pub(super) struct OffPlanes<'a, T: Real> {
+    points: heapless::Vec<OffPlane<'a, T>, MOST>,
+    /// The squared distance from the plane from which on a correspondence is off it, px^2.
+    least_px2: T,
     /// Twice the squared distance from its epipolar line at which a correspondence still agrees, px^2: half
     /// of an offset in one image is Sampson's distance.
     agreeing_px2: T,
@@ -109,22 +114,20 @@ impl<T: Real> Octaves<T> {
 /// What evidence has to be over the logarithm of how many estimates were tried.
 const SURE: f64 = 7.0;
 
-impl<T: Real> OffPlanes<T> {
+impl<'a, T: Real> OffPlanes<'a, T> {
     /// What is farther from the plane than `least_px2` px squared; up to `agreeing_px2` from a line agrees.
     #[inline(never)]
-    pub(super) fn of(plane: &Plane<T>, seen: &[Correspondence<T>], least_px2: T, agreeing_px2: T) -> Self {
-        let mut list = Self { points: heapless::Vec::new(), agreeing_px2, all: Octaves::NONE };
+    pub(super) fn of(plane: &Plane<T>, seen: &'a [Correspondence<T>], least_px2: T, agreeing_px2: T) -> Self {
+        let mut list = Self { points: heapless::Vec::new(), least_px2, agreeing_px2, all: Octaves::NONE };
         let off = |s: &&Correspondence<T>| plane.distance_squared_px2(s) > least_px2;
         let every = seen.iter().filter(off).count().div_ceil(MOST).max(1);
         for s in seen.iter().filter(off).step_by(every) {
             let there = plane.matrix * s.second.to_homogeneous();
             let on_plane = Point2::new(there.x / there.z, there.y / there.z);
-            let parallax_px2 = (s.first - on_plane).norm_squared();
-            let octave = Octaves::of(parallax_px2, least_px2);
-            if parallax_px2.is_finite()
-                && list.points.push(OffPlane { first: s.first, on_plane, octave: octave as u8 }).is_ok()
-            {
-                list.all.count(octave, parallax_px2, agreeing_px2);
+            let point = OffPlane { seen: s, on_plane };
+            let parallax_px2 = point.parallax_px2();
+            if parallax_px2.is_finite() && list.points.push(point).is_ok() {
+                list.all.count(Octaves::of(parallax_px2, least_px2), parallax_px2, agreeing_px2);
             }
         }
         list
@@ -139,7 +142,7 @@ impl<T: Real> OffPlanes<T> {
     pub(super) fn epipole(&self, one: usize, two: usize) -> Option<Vector3<T>> {
         let line = |at: usize| {
             let point = self.points.get(at)?;
-            Some(point.first.to_homogeneous().cross(&point.on_plane.to_homogeneous()).normalize())
+            Some(point.seen.first.to_homogeneous().cross(&point.on_plane.to_homogeneous()).normalize())
         };
         let epipole = line(one)?.cross(&line(two)?);
         let size = epipole.norm();
@@ -151,12 +154,12 @@ impl<T: Real> OffPlanes<T> {
     pub(super) fn agreeing_with(&self, epipole: &Vector3<T>) -> Octaves<T> {
         let mut octaves = self.all;
         for point in &self.points {
-            let (on, seen) = (point.on_plane, point.first);
+            let (on, seen) = (point.on_plane, point.seen.first);
             // The line from the epipole through the place on the plane.
             let (a, b) = (epipole.y - epipole.z * on.y, epipole.z * on.x - epipole.x);
             let off = a * (seen.x - on.x) + b * (seen.y - on.y);
             if off * off < (a * a + b * b) * self.agreeing_px2 {
-                octaves.agrees(point.octave.into());
+                octaves.agrees(Octaves::of(point.parallax_px2(), self.least_px2));
             }
         }
         octaves

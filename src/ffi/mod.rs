@@ -26,6 +26,9 @@
 //! * [`two_view_fundamental`] and those beside it: matches of two views to F, pose and points.
 //! * [`odometry_step`]: the motion of a pair; C holds an [`OdometryHandle`].
 //! * [`focus_push`]: depth from focus; C holds a [`FocusHandle`].
+//! * [`obstacles_push`], [`drive_decide`] and those beside them: rows to obstacles, ground, free space and
+//!   decisions; C holds an [`ObstaclesHandle`], a [`DriveHandle`], a [`FreeSpaceHandle`] and, for the
+//!   cameras' health, a [`PairMonitorHandle`].
 //! * [`instantiate_c_api`]: their names in C, from which `cargo xtask header` makes
 //!   `stereopsis.h` beside this file.
 //!
@@ -48,6 +51,8 @@ mod after;
 mod balance;
 mod config;
 mod detection;
+mod drive;
+mod drive_types;
 mod faults;
 mod feature_matches;
 mod features;
@@ -57,16 +62,24 @@ mod instance;
 mod line_queue;
 mod names;
 mod names_after;
+mod names_drive;
 mod names_features;
 mod names_focus;
 mod names_line_queue;
+mod names_obstacles;
 mod names_plain;
 mod names_rectifier;
 mod names_two_view;
 mod names_winners;
 mod noise;
+mod obstacles;
+mod obstacles_config;
+mod obstacles_found;
+mod obstacles_rows;
+mod obstacles_types;
 mod odometry;
 mod odometry_types;
+mod pair_monitor;
 mod points;
 mod record;
 mod rectifier;
@@ -91,6 +104,15 @@ pub use config::{
     config_noise,
 };
 pub use detection::{CDetection, CDetectionCounts, detection_default};
+pub use drive::{
+    DriveHandle, FreeSpaceHandle, STEREOPSIS_DRIVE_BYTES, STEREOPSIS_FREE_SPACE_BYTES, drive_decide,
+    drive_deinit, drive_init, drive_start, drive_stopping_mm, free_space_deinit, free_space_init,
+    free_space_sectors, free_space_update,
+};
+pub use drive_types::{
+    CDriveConfig, CVerdict, STEREOPSIS_DECISION_BLIND, STEREOPSIS_DECISION_CLEAR, STEREOPSIS_DECISION_SLOW,
+    STEREOPSIS_DECISION_STOP, STEREOPSIS_NO_CONTACT, drive_default, drive_speed_mm_s,
+};
 pub use faults::{
     CCounters, STEREOPSIS_LOST_DROPPED, STEREOPSIS_LOST_LATE, STEREOPSIS_LOST_STALE, STEREOPSIS_LOST_TORN,
 };
@@ -117,11 +139,15 @@ pub use names::{first_of, instantiate_c_api};
 #[doc(hidden)]
 pub use names_after::c_api_before_and_after;
 #[doc(hidden)]
+pub use names_drive::c_api_of_driving;
+#[doc(hidden)]
 pub use names_features::c_api_of_features;
 #[doc(hidden)]
 pub use names_focus::c_api_of_focus_and_motion;
 #[doc(hidden)]
 pub use names_line_queue::c_api_of_line_queues;
+#[doc(hidden)]
+pub use names_obstacles::c_api_of_obstacles;
 #[doc(hidden)]
 pub use names_plain::c_api_without_state;
 #[doc(hidden)]
@@ -131,6 +157,24 @@ pub use names_two_view::c_api_of_two_views;
 #[doc(hidden)]
 pub use names_winners::c_api_of_winners;
 pub use noise::{CNoiseMeter, noise_clear, noise_level, noise_line};
+pub use obstacles::{ObstaclesHandle, obstacles_bytes, obstacles_deinit, obstacles_init, obstacles_start};
+pub use obstacles_config::{
+    CObstacleConfig, STEREOPSIS_GROUND_ABSENT, STEREOPSIS_GROUND_GIVEN, STEREOPSIS_GROUND_SEARCHED,
+    obstacles_default,
+};
+pub use obstacles_found::{
+    obstacles_cells, obstacles_ground, obstacles_scan, obstacles_sectors, obstacles_stixels,
+};
+pub use obstacles_rows::{
+    obstacles_begin_frame, obstacles_cameras, obstacles_finish, obstacles_push, obstacles_set_pose,
+};
+pub use obstacles_types::{
+    CGround, CScan, CSector, CStixel, STEREOPSIS_BLIND_CAMERA, STEREOPSIS_BLIND_FEW_ANSWERS,
+    STEREOPSIS_BLIND_NO_FRAME, STEREOPSIS_BLIND_NO_GROUND, STEREOPSIS_BLIND_NOT, STEREOPSIS_BLIND_ROWS_LOST,
+    STEREOPSIS_BLIND_SWAPPED, STEREOPSIS_BLIND_UNSEEN, STEREOPSIS_SECTOR_BLIND, STEREOPSIS_SECTOR_DROP,
+    STEREOPSIS_SECTOR_FREE, STEREOPSIS_SECTOR_OBSTACLE, STEREOPSIS_STIXEL_DROP, STEREOPSIS_STIXEL_NOTHING,
+    STEREOPSIS_STIXEL_OBSTACLE,
+};
 pub use odometry::{
     OdometryHandle, odometry_bytes, odometry_deinit, odometry_init, odometry_start, odometry_step,
 };
@@ -139,6 +183,11 @@ pub use odometry_types::{
     STEREOPSIS_MOTION_LEFT_ONLY, STEREOPSIS_MOTION_LOST, STEREOPSIS_MOTION_RESTARTED,
     STEREOPSIS_MOTION_ROTATION_ONLY, STEREOPSIS_MOTION_STATIONARY, STEREOPSIS_MOTION_STEP_UNKNOWN,
     STEREOPSIS_MOTION_TRACKED, STEREOPSIS_MOTION_UNCERTAIN, odometry_default,
+};
+pub use pair_monitor::{
+    PairMonitorHandle, STEREOPSIS_CAMERA_BLACK, STEREOPSIS_CAMERA_FLAT, STEREOPSIS_CAMERA_GOOD,
+    STEREOPSIS_CAMERA_REPEATING, STEREOPSIS_CAMERA_SATURATED, STEREOPSIS_PAIR_MONITOR_BYTES,
+    pair_monitor_begin_frame, pair_monitor_deinit, pair_monitor_health, pair_monitor_init, pair_monitor_push,
 };
 pub use points::{CPoint, metres, points};
 pub use record::{CCameras, STEREOPSIS_ALPHA_NATURAL, STEREOPSIS_RECORD_BYTES, record_read};

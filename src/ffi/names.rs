@@ -48,8 +48,8 @@ macro_rules! instantiate_c_api {
             use super::{StereopsisInstance, StereopsisRectifier};
             use core::ffi::{c_char, c_void};
             use $crate::ffi::{
-                CAgreement, CCameras, CConfig, CCounters, CMatch, CNoiseMeter, CPinhole, CPoint, CPose, CRig,
-                CRow, Handle, RectifierHandle, Status,
+                CCameras, CConfig, CCounters, CNoiseMeter, CPoint, CRig, CRow, Handle, RectifierHandle,
+                Status,
             };
 
             /// Returns the version of the library's interface: a program compiled with another
@@ -287,6 +287,7 @@ macro_rules! instantiate_c_api {
             $crate::ffi::c_api_of_two_views!([$($prefix)?]);
             $crate::ffi::c_api_of_features!([$($prefix)?]);
             $crate::ffi::c_api_of_focus_and_motion!([$($prefix)?]);
+            $crate::ffi::c_api_of_obstacles!([$($prefix)?]);
         }
     };
 }
@@ -296,5 +297,4 @@ pub const fn first_of<const N: usize>(values: [usize; N]) -> usize {
     assert!(N > 0, "there is a default");
     values[0]
 }
-
 pub use instantiate_c_api;

@@ -5,6 +5,8 @@
 #[macro_export]
 macro_rules! c_api_of_two_views {
     ([$($prefix:literal)?]) => {
+        use $crate::ffi::{CAgreement, CMatch, CPinhole, CPose};
+
         /// Computes the fundamental matrix F of `count` matches, eight or more, all of them right: row by
         /// row, with p^T F p' = 0 for p in the first image and p' in the second (eight-point algorithm).
         /// Fails on fewer, on numbers that are not finite, and where the matches leave F undetermined.

@@ -180,6 +180,18 @@ pub enum Status {
     WinnerDamaged = -77,
     /// Winners: a record is none that the search can have.
     WinnerRefused = -78,
+    /// Obstacles: a cell has sides of 1 to 16 px, and at most 255 px.
+    ObstacleCells = -79,
+    /// Obstacles: there are 1 to 32 sectors.
+    ObstacleSectors = -80,
+    /// Obstacles: a height is 0, the pitch is over 500 mrad, or the heights searched are in no order.
+    ObstaclePose = -81,
+    /// Obstacles: the deviation is not 1 to 320 steps, or an obstacle's height or a drop's depth is 0.
+    ObstacleLimits = -82,
+    /// Obstacles: no cell, over 255 rows of cells, or more columns or rows than the finder was created for.
+    ObstacleSize = -83,
+    /// Obstacles: the ground is none of the `STEREOPSIS_GROUND_` numbers.
+    ObstacleGround = -84,
 }
 
 impl From<PushError> for Status {

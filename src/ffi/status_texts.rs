@@ -5,7 +5,7 @@ use super::Status;
 use core::ffi::CStr;
 
 /// Text of every status, of which a program holds no more than [`PACKED`].
-const TEXTS: [(Status, &CStr); 84] = [
+const TEXTS: [(Status, &CStr); 90] = [
     (Status::Ok, c"done"),
     (Status::NoRowYet, c"the first row comes some lines later"),
     (Status::FrameDone, c"all rows of the frame are out"),
@@ -90,6 +90,12 @@ const TEXTS: [(Status, &CStr); 84] = [
     (Status::Winners, c"a row of winners is as long as a line, and given where one is due"),
     (Status::WinnerDamaged, c"a winner's check byte does not fit, or it is of another row"),
     (Status::WinnerRefused, c"a winner is none that the search can have"),
+    (Status::ObstacleCells, c"a cell has sides of 1 to 16 px and at most 255 px"),
+    (Status::ObstacleSectors, c"there are 1 to 32 sectors"),
+    (Status::ObstaclePose, c"no height, too much pitch, or heights in no order"),
+    (Status::ObstacleLimits, c"no deviation, or obstacles or drops of 0 mm"),
+    (Status::ObstacleSize, c"no cells, or more than the finder takes"),
+    (Status::ObstacleGround, c"there is no such source of the ground"),
 ];
 
 /// Largest status.

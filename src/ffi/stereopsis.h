@@ -110,6 +110,14 @@
  */
 #define STEREOPSIS_ODOMETRY_BYTES(points) ((size_t)432 + (size_t)453 * (points))
 
+/**
+ * Bytes that are enough for a finder of obstacles, on any target, in frames of up to `columns`
+ * columns and `rows` rows of cells.
+ */
+#define STEREOPSIS_OBSTACLES_BYTES(columns, rows) \
+  ((size_t)272 + (size_t)30 * (columns) + (size_t)33 * (rows) + \
+   (size_t)2 * (columns) * (rows))
+
 
 /**
  * Version of this interface, which changes when a program compiled with another header would go wrong.
@@ -328,6 +336,161 @@
  * Motion: measured by the left camera alone, for what the right one sees disagrees with all that was known.
  */
 #define STEREOPSIS_MOTION_LEFT_ONLY 9
+
+/**
+ * Camera: no fault shows.
+ */
+#define STEREOPSIS_CAMERA_GOOD 0
+
+/**
+ * Camera: at least 99 % of the pixels are black: dark, covered or dead.
+ */
+#define STEREOPSIS_CAMERA_BLACK 1
+
+/**
+ * Camera: at least half of the pixels are saturated.
+ */
+#define STEREOPSIS_CAMERA_SATURATED 2
+
+/**
+ * Camera: all pixels are within 16 levels, as from a stuck port.
+ */
+#define STEREOPSIS_CAMERA_FLAT 3
+
+/**
+ * Camera: at least half of the lines equal the one above bit for bit: a hanging line or a test pattern.
+ */
+#define STEREOPSIS_CAMERA_REPEATING 4
+
+/**
+ * Bytes that are enough for a monitor of two cameras, on any target.
+ */
+#define STEREOPSIS_PAIR_MONITOR_BYTES 240
+
+/**
+ * Ground: there is none, as for a camera that flies; every surface in range is an obstacle.
+ */
+#define STEREOPSIS_GROUND_ABSENT 0
+
+/**
+ * Ground: the camera's `pitch_mrad` and `height_mm` are known, as from an inertial sensor.
+ */
+#define STEREOPSIS_GROUND_GIVEN 1
+
+/**
+ * Ground: it is searched in each frame, within the heights and the pitch of the configuration.
+ */
+#define STEREOPSIS_GROUND_SEARCHED 2
+
+/**
+ * Stixel: nothing that enough cells show; that is not to say that the column is free.
+ */
+#define STEREOPSIS_STIXEL_NOTHING 0
+
+/**
+ * Stixel: a surface that rises above the ground.
+ */
+#define STEREOPSIS_STIXEL_OBSTACLE 1
+
+/**
+ * Stixel: the edge of a surface that is deeper than the ground.
+ */
+#define STEREOPSIS_STIXEL_DROP 2
+
+/**
+ * Sector: too little is seen to say anything; never take it for free.
+ */
+#define STEREOPSIS_SECTOR_BLIND 0
+
+/**
+ * Sector: there is no obstacle up to `seen_mm`.
+ */
+#define STEREOPSIS_SECTOR_FREE 1
+
+/**
+ * Sector: there is an obstacle.
+ */
+#define STEREOPSIS_SECTOR_OBSTACLE 2
+
+/**
+ * Sector: the ground ends.
+ */
+#define STEREOPSIS_SECTOR_DROP 3
+
+/**
+ * Blind: it is not, the frame is to be trusted.
+ */
+#define STEREOPSIS_BLIND_NOT 0
+
+/**
+ * Blind: no frame has been finished since the start.
+ */
+#define STEREOPSIS_BLIND_NO_FRAME 1
+
+/**
+ * Blind: too many rows were lost or are damaged.
+ */
+#define STEREOPSIS_BLIND_ROWS_LOST 2
+
+/**
+ * Blind: too few cells have an answer, as in the dark, behind a covered lens, before a white wall.
+ */
+#define STEREOPSIS_BLIND_FEW_ANSWERS 3
+
+/**
+ * Blind: a camera's picture is black, saturated, flat or repeating.
+ */
+#define STEREOPSIS_BLIND_CAMERA 4
+
+/**
+ * Blind: the left and the right camera are swapped.
+ */
+#define STEREOPSIS_BLIND_SWAPPED 5
+
+/**
+ * Blind: a ground was to be searched and is not found.
+ */
+#define STEREOPSIS_BLIND_NO_GROUND 6
+
+/**
+ * Blind: too little of the ground that is driven on next is seen.
+ */
+#define STEREOPSIS_BLIND_UNSEEN 7
+
+/**
+ * Decision: nothing is known, and `blind` says why: stop.
+ */
+#define STEREOPSIS_DECISION_BLIND 0
+
+/**
+ * Decision: something is in the corridor at `distance_mm`: stop.
+ */
+#define STEREOPSIS_DECISION_STOP 1
+
+/**
+ * Decision: something is in the corridor at `distance_mm`: slow down.
+ */
+#define STEREOPSIS_DECISION_SLOW 2
+
+/**
+ * Decision: the corridor is seen to be free for twice the stopping distance.
+ */
+#define STEREOPSIS_DECISION_CLEAR 3
+
+/**
+ * Time to contact where nothing is there, or the vehicle stands.
+ */
+#define STEREOPSIS_NO_CONTACT 4294967295
+
+/**
+ * Bytes that are enough for a drive rule, on any target.
+ */
+#define STEREOPSIS_DRIVE_BYTES 40
+
+/**
+ * Bytes that are enough for the free space over frames, on any target.
+ */
+#define STEREOPSIS_FREE_SPACE_BYTES 1024
 
 /**
  * Result of a call; below 0 it is an error, and nothing has changed.
@@ -676,7 +839,31 @@ enum stereopsis_status
   /**
    * Winners: a record is none that the search can have.
    */
-  STEREOPSIS_STATUS_WINNER_REFUSED = -78
+  STEREOPSIS_STATUS_WINNER_REFUSED = -78,
+  /**
+   * Obstacles: a cell has sides of 1 to 16 px, and at most 255 px.
+   */
+  STEREOPSIS_STATUS_OBSTACLE_CELLS = -79,
+  /**
+   * Obstacles: there are 1 to 32 sectors.
+   */
+  STEREOPSIS_STATUS_OBSTACLE_SECTORS = -80,
+  /**
+   * Obstacles: a height is 0, the pitch is over 500 mrad, or the heights searched are in no order.
+   */
+  STEREOPSIS_STATUS_OBSTACLE_POSE = -81,
+  /**
+   * Obstacles: the deviation is not 1 to 320 steps, or an obstacle's height or a drop's depth is 0.
+   */
+  STEREOPSIS_STATUS_OBSTACLE_LIMITS = -82,
+  /**
+   * Obstacles: no cell, over 255 rows of cells, or more columns or rows than the finder was created for.
+   */
+  STEREOPSIS_STATUS_OBSTACLE_SIZE = -83,
+  /**
+   * Obstacles: the ground is none of the `STEREOPSIS_GROUND_` numbers.
+   */
+  STEREOPSIS_STATUS_OBSTACLE_GROUND = -84
 };
 #if defined(__cplusplus) ? __cplusplus < 201103L : __STDC_VERSION__ < 202311L
 typedef int32_t stereopsis_status;
@@ -690,9 +877,19 @@ typedef enum stereopsis_status stereopsis_status;
 typedef struct stereopsis_detector stereopsis_detector;
 
 /**
+ * Drive rule in the caller's memory.
+ */
+typedef struct stereopsis_drive stereopsis_drive;
+
+/**
  * Focus map in the caller's memory.
  */
 typedef struct stereopsis_focus stereopsis_focus;
+
+/**
+ * Free space over frames in the caller's memory.
+ */
+typedef struct stereopsis_free_space stereopsis_free_space;
 
 /**
  * Matcher in the caller's memory.
@@ -705,9 +902,19 @@ typedef struct stereopsis stereopsis;
 typedef struct stereopsis_line_queue stereopsis_line_queue;
 
 /**
+ * Finder of obstacles in the caller's memory.
+ */
+typedef struct stereopsis_obstacles stereopsis_obstacles;
+
+/**
  * Odometry in the caller's memory.
  */
 typedef struct stereopsis_odometry stereopsis_odometry;
+
+/**
+ * Monitor of two cameras in the caller's memory.
+ */
+typedef struct stereopsis_pair_monitor stereopsis_pair_monitor;
 
 /**
  * Rectifier of raw lines in the caller's memory.
@@ -1385,6 +1592,281 @@ typedef struct stereopsis_step {
 } stereopsis_step;
 
 /**
+ * Limits by which rows of disparity become ground, obstacles and drops, filled by
+ * `stereopsis_obstacles_default` and then open to changes.
+ */
+typedef struct stereopsis_obstacles_config {
+  /**
+   * Standard deviation of a right answer, in 1/32 px, 1 to 320.
+   */
+  uint16_t sigma_steps;
+  /**
+   * Least height of an obstacle above the ground, mm.
+   */
+  uint16_t obstacle_mm;
+  /**
+   * Least depth of a drop below the ground, mm.
+   */
+  uint16_t drop_mm;
+  /**
+   * Height above which a surface is passed under, mm; 65535 where nothing is.
+   */
+  uint16_t headroom_mm;
+  /**
+   * Least area of the connected surface of an obstacle or a drop, px.
+   */
+  uint16_t min_pixels;
+  /**
+   * Smallest height of the camera above a ground that is searched, mm.
+   */
+  uint16_t least_height_mm;
+  /**
+   * Largest height of the camera above a ground that is searched, mm.
+   */
+  uint16_t most_height_mm;
+  /**
+   * Largest tangent of the camera's pitch above a ground that is searched, up or down, in thousandths.
+   */
+  uint16_t most_pitch;
+  /**
+   * Height of the camera above a ground that is given, mm.
+   */
+  uint16_t height_mm;
+  /**
+   * Downward pitch of the camera above a ground that is given, thousandths of a radian, -500 to 500.
+   */
+  int16_t pitch_mrad;
+  /**
+   * Where the ground comes from: a `STEREOPSIS_GROUND_` number.
+   */
+  uint8_t ground;
+  /**
+   * Columns of pixels in a cell, 1 to 16.
+   */
+  uint8_t cell_width;
+  /**
+   * Rows of pixels in a cell, 1 to 16; a cell has at most 255 pixels.
+   */
+  uint8_t cell_height;
+  /**
+   * Least confidence of an answer that counts, where rows have confidences.
+   */
+  uint8_t min_confidence;
+  /**
+   * Number of sectors that the field of view is cut into, 1 to 32.
+   */
+  uint8_t sectors;
+  /**
+   * Least share of cells with an answer in a frame, percent; fewer make it blind.
+   */
+  uint8_t least_answered;
+  /**
+   * Largest share of rows that were lost or are damaged, percent; more make a frame blind.
+   */
+  uint8_t most_lost;
+} stereopsis_obstacles_config;
+
+/**
+ * Ground plane without roll, as a line: its parallax grows by `slope` from row to row.
+ */
+typedef struct stereopsis_ground {
+  /**
+   * Parallax at row 0, in 1/32 px, in 65536ths.
+   */
+  int64_t level;
+  /**
+   * Growth of the parallax from a row to the next, in 1/32 px, in 65536ths.
+   */
+  int64_t slope;
+  /**
+   * Downward pitch of the camera, radians.
+   */
+  float pitch_rad;
+  /**
+   * Variance of the parallax, squares of 1/32 px.
+   */
+  uint32_t variance;
+  /**
+   * Height of the camera above the ground, mm.
+   */
+  uint16_t height_mm;
+  /**
+   * Whether a ground is known; all else is 0 where it is not.
+   */
+  uint8_t is_known;
+} stereopsis_ground;
+
+/**
+ * Nearest obstacle or drop of a column of cells.
+ */
+typedef struct stereopsis_stixel {
+  /**
+   * First row of pixels.
+   */
+  uint16_t top_row;
+  /**
+   * Last row of pixels.
+   */
+  uint16_t base_row;
+  /**
+   * Disparity in 1/32 px, `STEREOPSIS_NONE` for nothing; of a drop that of the ground at its edge.
+   */
+  uint16_t disparity;
+  /**
+   * Standard deviation of the disparity, in 1/32 px, at most 255.
+   */
+  uint16_t sigma_steps;
+  /**
+   * Depth along the optical axis, mm; 0 for nothing.
+   */
+  uint16_t depth_mm;
+  /**
+   * Uppermost row of pixels to which the ground is seen from the lowest one on; the picture's height where
+   * it is not.
+   */
+  uint16_t seen_row;
+  /**
+   * What it is: a `STEREOPSIS_STIXEL_` number.
+   */
+  uint8_t kind;
+} stereopsis_stixel;
+
+/**
+ * Nearest surface in a sector of the field of view.
+ */
+typedef struct stereopsis_sector {
+  /**
+   * Area of the connected surface, px, in whole cells.
+   */
+  uint32_t pixels;
+  /**
+   * Bearing of the surface, or of the sector's middle where there is none, thousandths of a radian, to the
+   * right.
+   */
+  int16_t bearing_mrad;
+  /**
+   * Depth of the surface along the optical axis, mm; 0 where there is none.
+   */
+  uint16_t depth_mm;
+  /**
+   * Standard deviation of the depth, mm.
+   */
+  uint16_t sigma_mm;
+  /**
+   * Distance of the surface in the plane of the optical axis and the rows, mm.
+   */
+  uint16_t range_mm;
+  /**
+   * Height of the surface's upper end above the ground, mm; 0 where no ground is known.
+   */
+  int16_t height_mm;
+  /**
+   * Depth up to which the ground is seen in all columns that show it, mm; without a ground, 65535.
+   */
+  uint16_t seen_mm;
+  /**
+   * What the sector shows: a `STEREOPSIS_SECTOR_` number.
+   */
+  uint8_t state;
+} stereopsis_sector;
+
+/**
+ * Angles and limits of a laser scan: radians to the left, as ROS has them, and metres.
+ */
+typedef struct stereopsis_scan {
+  /**
+   * Angle of the first range, rad: the middle of the rightmost sector.
+   */
+  float angle_min;
+  /**
+   * Angle of the last range, rad: the middle of the leftmost sector.
+   */
+  float angle_max;
+  /**
+   * Angle between two ranges, rad.
+   */
+  float angle_increment;
+  /**
+   * Smallest range that can be measured, m.
+   */
+  float range_min;
+  /**
+   * Largest range that is told, m.
+   */
+  float range_max;
+  /**
+   * Number of ranges that were written.
+   */
+  uint32_t count;
+} stereopsis_scan;
+
+/**
+ * How a vehicle drives and brakes, filled by `stereopsis_drive_default` and then open to changes.
+ */
+typedef struct stereopsis_drive_config {
+  /**
+   * Width of the corridor that the vehicle drives through, mm, half of it on each side of the optical
+   * axis.
+   */
+  uint16_t corridor_mm;
+  /**
+   * Distance from the camera at which the vehicle has to stand, mm.
+   */
+  uint16_t margin_mm;
+  /**
+   * Time from a picture to the brakes, ms.
+   */
+  uint16_t reaction_ms;
+  /**
+   * Deceleration of the brakes, mm/s^2; 0 is taken as 1.
+   */
+  uint16_t brake_mm_s2;
+  /**
+   * Time to contact below which to slow down, ms.
+   */
+  uint16_t slow_ms;
+  /**
+   * Frames in a row that have to show an obstacle before it counts; 1 is at once.
+   */
+  uint8_t confirm;
+  /**
+   * Frames in a row without an obstacle for which it still counts.
+   */
+  uint8_t release;
+} stereopsis_drive_config;
+
+/**
+ * What to do, and what that rests on.
+ */
+typedef struct stereopsis_verdict {
+  /**
+   * Time until the vehicle reaches what is nearest at its speed, ms, or `STEREOPSIS_NO_CONTACT`.
+   */
+  uint32_t contact_ms;
+  /**
+   * Distance of what stops the vehicle or slows it down, less two standard deviations, mm; 0 of others.
+   */
+  uint16_t distance_mm;
+  /**
+   * Way that the vehicle needs to stand, mm, margin included.
+   */
+  uint16_t stopping_mm;
+  /**
+   * What to do: a `STEREOPSIS_DECISION_` number.
+   */
+  uint8_t decision;
+  /**
+   * Why nothing is known: a `STEREOPSIS_BLIND_` number, 0 of other decisions.
+   */
+  uint8_t blind;
+  /**
+   * What is nearest in this frame's corridor, a `STEREOPSIS_STIXEL_` number; nothing where the decision is
+   * held from an earlier frame.
+   */
+  uint8_t nearest;
+} stereopsis_verdict;
+
+/**
  * Saturating counts since `stereopsis_start`.
  */
 typedef struct stereopsis_counts {
@@ -2044,6 +2526,237 @@ stereopsis_status stereopsis_odometry_step(struct stereopsis_odometry *handle,
                                            struct stereopsis_step *step);
 
 /**
+ * Fills a configuration: cells of 4 x 5 px, a deviation of 0.15 px, a ground that is searched 0.1 m
+ * to 3 m below the camera, obstacles and drops of 5 cm, and 16 sectors.
+ */
+stereopsis_status stereopsis_obstacles_default(struct stereopsis_obstacles_config *config);
+
+/**
+ * Creates a finder of obstacles in the caller's memory of `length` bytes, aligned to
+ * `STEREOPSIS_ALIGN`: for frames of up to `columns` columns and `rows` rows of cells, 1 to 255.
+ * Writes the handle; a null handle on an error, unless `handle` itself is invalid. The memory is not
+ * read, and belongs to the finder until `stereopsis_obstacles_deinit`.
+ */
+stereopsis_status stereopsis_obstacles_init(void *memory,
+                                            size_t length,
+                                            uint16_t columns,
+                                            uint16_t rows,
+                                            struct stereopsis_obstacles **handle);
+
+/**
+ * Ends a finder, whose memory returns to the caller.
+ */
+stereopsis_status stereopsis_obstacles_deinit(struct stereopsis_obstacles *handle);
+
+/**
+ * Starts on frames of `width` x `height` pixels from a rectified rig, with disparities of up to
+ * `largest_px`; what was carried from frame to frame is forgotten. Columns and rows of pixels that
+ * fill no cell are left out. Fails with `STEREOPSIS_STATUS_OBSTACLE_CELLS`, `_OBSTACLE_SECTORS`,
+ * `_OBSTACLE_POSE`, `_OBSTACLE_LIMITS`, `_OBSTACLE_GROUND` or `_OBSTACLE_SIZE`, or where the rig's
+ * numbers are none, and leaves the finder as it was.
+ */
+stereopsis_status stereopsis_obstacles_start(struct stereopsis_obstacles *handle,
+                                             const struct stereopsis_obstacles_config *config,
+                                             const struct stereopsis_rig *rig,
+                                             uint16_t width,
+                                             uint16_t height,
+                                             uint16_t largest_px);
+
+/**
+ * Begins a frame. One that was not finished is forgotten.
+ */
+stereopsis_status stereopsis_obstacles_begin_frame(struct stereopsis_obstacles *handle);
+
+/**
+ * Takes what a monitor says of both cameras in this frame, before it is finished: a camera without a
+ * picture and swapped cameras make it blind.
+ */
+stereopsis_status stereopsis_obstacles_cameras(struct stereopsis_obstacles *handle,
+                                               struct stereopsis_pair_monitor *monitor);
+
+/**
+ * Sets the pose of the camera from this frame on, as from an inertial sensor: its downward pitch,
+ * -500 to 500 thousandths of a radian, and its height above the ground, mm. Fails with
+ * `STEREOPSIS_STATUS_OBSTACLE_POSE`.
+ */
+stereopsis_status stereopsis_obstacles_set_pose(struct stereopsis_obstacles *handle,
+                                                int16_t pitch_mrad,
+                                                uint16_t height_mm);
+
+/**
+ * Takes a row as it leaves the matcher; rows that are left out count as lost. Fails with
+ * `STEREOPSIS_STATUS_ROW` for one that is not in the frame, or not below all that came, and with
+ * `_LINE_LENGTH` for one that is too short.
+ */
+stereopsis_status stereopsis_obstacles_push(struct stereopsis_obstacles *handle,
+                                            const struct stereopsis_row *row);
+
+/**
+ * Ends a frame: finds its ground, stixels and surfaces, and writes a `STEREOPSIS_BLIND_` number: why
+ * the frame is not to be trusted, or 0. A frame that is blind is no failure.
+ */
+stereopsis_status stereopsis_obstacles_finish(struct stereopsis_obstacles *handle, uint8_t *blind);
+
+/**
+ * Writes the ground of the last finished frame.
+ */
+stereopsis_status stereopsis_obstacles_ground(struct stereopsis_obstacles *handle,
+                                              struct stereopsis_ground *ground);
+
+/**
+ * Writes the stixels of the first `count` columns of cells from the left, at most 65535. Columns
+ * that are not in the frame show nothing.
+ */
+stereopsis_status stereopsis_obstacles_stixels(struct stereopsis_obstacles *handle,
+                                               struct stereopsis_stixel *stixels,
+                                               size_t count);
+
+/**
+ * Writes the first `count` sectors from the left, at most 65535. Sectors that there are not are
+ * blind, as all are in a frame that is not to be trusted.
+ */
+stereopsis_status stereopsis_obstacles_sectors(struct stereopsis_obstacles *handle,
+                                               struct stereopsis_sector *sectors,
+                                               size_t count);
+
+/**
+ * Writes the disparities of the first `count` cells of row `row` of cells, at most 65535, in 1/32
+ * px; `STEREOPSIS_NONE` for no answer, and for a cell that is not in the frame.
+ */
+stereopsis_status stereopsis_obstacles_cells(struct stereopsis_obstacles *handle,
+                                             uint16_t row,
+                                             uint16_t *disparities,
+                                             size_t count);
+
+/**
+ * Writes the ranges of the sectors from right to left, m, at most `count`, and the angles of the
+ * scan, as ROS's LaserScan has them: a free sector is infinite, a blind one is not a number. Floats
+ * beyond the last sector are 0.
+ */
+stereopsis_status stereopsis_obstacles_scan(struct stereopsis_obstacles *handle,
+                                            float *ranges,
+                                            size_t count,
+                                            struct stereopsis_scan *scan);
+
+/**
+ * Fills a configuration for a small robot: 0.4 m wide, stands 0.2 m before an obstacle, 100 ms from
+ * picture to brakes, 1 m/s^2.
+ */
+stereopsis_status stereopsis_drive_default(struct stereopsis_drive_config *config);
+
+/**
+ * Creates a drive rule in the caller's memory of `length` bytes, aligned to `STEREOPSIS_ALIGN`.
+ * Writes the handle; a null handle on an error, unless `handle` itself is invalid. The memory is not
+ * read, and belongs to the rule until `stereopsis_drive_deinit`.
+ */
+stereopsis_status stereopsis_drive_init(void *memory, size_t length, struct stereopsis_drive **handle);
+
+/**
+ * Ends a rule, whose memory returns to the caller.
+ */
+stereopsis_status stereopsis_drive_deinit(struct stereopsis_drive *handle);
+
+/**
+ * Sets how the vehicle drives, and forgets the frames before.
+ */
+stereopsis_status stereopsis_drive_start(struct stereopsis_drive *handle,
+                                         const struct stereopsis_drive_config *config);
+
+/**
+ * Writes the way that the vehicle needs to stand: margin + v t + v^2 / (2 a), mm.
+ */
+stereopsis_status stereopsis_drive_stopping_mm(struct stereopsis_drive *handle,
+                                               uint16_t speed_mm_s,
+                                               uint16_t *stopping_mm);
+
+/**
+ * Decides on the last finished frame of a finder, at a speed. In this order: blind where the frame
+ * is not to be trusted; stop for what is within the stopping distance; blind where the ground is not
+ * found, or too little of it is seen; slow down for what is within twice the stopping distance or
+ * the time to contact; clear. No hardware is called.
+ */
+stereopsis_status stereopsis_drive_decide(struct stereopsis_drive *handle,
+                                          struct stereopsis_obstacles *obstacles,
+                                          uint16_t speed_mm_s,
+                                          struct stereopsis_verdict *verdict);
+
+/**
+ * Returns the speed of a vehicle of which odometry gave the last step, mm/s; 65535 at most, 0 for a
+ * period of 0.
+ */
+uint16_t stereopsis_speed_mm_s(uint16_t step_mm, uint32_t period_us);
+
+/**
+ * Creates a free space over frames in the caller's memory of `length` bytes, aligned to
+ * `STEREOPSIS_ALIGN`: `confirm` frames in a row have to show an obstacle before it counts, and for
+ * `release` frames without it it still does. All sectors are blind. Writes the handle; a null handle
+ * on an error, unless `handle` itself is invalid. The memory is not read, and belongs to the free
+ * space until `stereopsis_free_space_deinit`.
+ */
+stereopsis_status stereopsis_free_space_init(void *memory,
+                                             size_t length,
+                                             uint8_t confirm,
+                                             uint8_t release,
+                                             struct stereopsis_free_space **handle);
+
+/**
+ * Ends a free space, whose memory returns to the caller.
+ */
+stereopsis_status stereopsis_free_space_deinit(struct stereopsis_free_space *handle);
+
+/**
+ * Takes the last finished frame of a finder. A sector that turns blind is blind at once, whatever it
+ * was before.
+ */
+stereopsis_status stereopsis_free_space_update(struct stereopsis_free_space *handle,
+                                               struct stereopsis_obstacles *obstacles);
+
+/**
+ * Writes the first `count` sectors from the left, at most 65535; blind ones where there are none.
+ */
+stereopsis_status stereopsis_free_space_sectors(struct stereopsis_free_space *handle,
+                                                struct stereopsis_sector *sectors,
+                                                size_t count);
+
+/**
+ * Creates a monitor of two cameras in the caller's memory of `length` bytes, aligned to
+ * `STEREOPSIS_ALIGN`. To find swapped cameras it tries disparities up to `most_disparity` on every
+ * eighth line. Writes the handle; a null handle on an error, unless `handle` itself is invalid. The
+ * memory is not read, and belongs to the monitor until `stereopsis_pair_monitor_deinit`.
+ */
+stereopsis_status stereopsis_pair_monitor_init(void *memory,
+                                               size_t length,
+                                               uint16_t most_disparity,
+                                               struct stereopsis_pair_monitor **handle);
+
+/**
+ * Ends a monitor, whose memory returns to the caller.
+ */
+stereopsis_status stereopsis_pair_monitor_deinit(struct stereopsis_pair_monitor *handle);
+
+/**
+ * Begins a frame.
+ */
+stereopsis_status stereopsis_pair_monitor_begin_frame(struct stereopsis_pair_monitor *handle);
+
+/**
+ * Takes the next rectified line of both cameras, 8-bit grey, `length` bytes each, at most 65535.
+ */
+stereopsis_status stereopsis_pair_monitor_push(struct stereopsis_pair_monitor *handle,
+                                               const uint8_t *left,
+                                               const uint8_t *right,
+                                               size_t length);
+
+/**
+ * Writes the condition of the left and of the right camera, `STEREOPSIS_CAMERA_` numbers, and
+ * whether the two are swapped.
+ */
+stereopsis_status stereopsis_pair_monitor_health(struct stereopsis_pair_monitor *handle,
+                                                 uint8_t *left,
+                                                 uint8_t *right,
+                                                 uint8_t *swapped);
+
+/**
  * Returns the version of the library's interface: a program compiled with another
  * `STEREOPSIS_ABI` must not continue.
  */
@@ -2275,6 +2988,36 @@ stereopsis_status stereopsis_sigma_px(struct stereopsis *handle, float *sigma_px
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_odometry_deinit(struct stereopsis_odometry *handle); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_odometry_start(struct stereopsis_odometry *handle, const struct stereopsis_rig *rig, const struct stereopsis_odometry_config *config); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_odometry_step(struct stereopsis_odometry *handle, const struct stereopsis_picture *left, const struct stereopsis_picture *right, const struct stereopsis_feature *features, size_t count, struct stereopsis_step *step); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_default(struct stereopsis_obstacles_config *config); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_init(void *memory, size_t length, uint16_t columns, uint16_t rows, struct stereopsis_obstacles **handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_deinit(struct stereopsis_obstacles *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_start(struct stereopsis_obstacles *handle, const struct stereopsis_obstacles_config *config, const struct stereopsis_rig *rig, uint16_t width, uint16_t height, uint16_t largest_px); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_begin_frame(struct stereopsis_obstacles *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_cameras(struct stereopsis_obstacles *handle, struct stereopsis_pair_monitor *monitor); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_set_pose(struct stereopsis_obstacles *handle, int16_t pitch_mrad, uint16_t height_mm); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_push(struct stereopsis_obstacles *handle, const struct stereopsis_row *row); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_finish(struct stereopsis_obstacles *handle, uint8_t *blind); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_ground(struct stereopsis_obstacles *handle, struct stereopsis_ground *ground); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_stixels(struct stereopsis_obstacles *handle, struct stereopsis_stixel *stixels, size_t count); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_sectors(struct stereopsis_obstacles *handle, struct stereopsis_sector *sectors, size_t count); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_cells(struct stereopsis_obstacles *handle, uint16_t row, uint16_t *disparities, size_t count); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_scan(struct stereopsis_obstacles *handle, float *ranges, size_t count, struct stereopsis_scan *scan); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_drive_default(struct stereopsis_drive_config *config); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_drive_init(void *memory, size_t length, struct stereopsis_drive **handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_drive_deinit(struct stereopsis_drive *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_drive_start(struct stereopsis_drive *handle, const struct stereopsis_drive_config *config); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_drive_stopping_mm(struct stereopsis_drive *handle, uint16_t speed_mm_s, uint16_t *stopping_mm); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_drive_decide(struct stereopsis_drive *handle, struct stereopsis_obstacles *obstacles, uint16_t speed_mm_s, struct stereopsis_verdict *verdict); \
+  STEREOPSIS_EXTERN uint16_t prefix##stereopsis_speed_mm_s(uint16_t step_mm, uint32_t period_us); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_free_space_init(void *memory, size_t length, uint8_t confirm, uint8_t release, struct stereopsis_free_space **handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_free_space_deinit(struct stereopsis_free_space *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_free_space_update(struct stereopsis_free_space *handle, struct stereopsis_obstacles *obstacles); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_free_space_sectors(struct stereopsis_free_space *handle, struct stereopsis_sector *sectors, size_t count); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_pair_monitor_init(void *memory, size_t length, uint16_t most_disparity, struct stereopsis_pair_monitor **handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_pair_monitor_deinit(struct stereopsis_pair_monitor *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_pair_monitor_begin_frame(struct stereopsis_pair_monitor *handle); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_pair_monitor_push(struct stereopsis_pair_monitor *handle, const uint8_t *left, const uint8_t *right, size_t length); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_pair_monitor_health(struct stereopsis_pair_monitor *handle, uint8_t *left, uint8_t *right, uint8_t *swapped); \
   STEREOPSIS_EXTERN uint32_t prefix##stereopsis_abi(void); \
   STEREOPSIS_EXTERN const char *prefix##stereopsis_version(void); \
   STEREOPSIS_EXTERN const char *prefix##stereopsis_status_text(int32_t status); \

@@ -4,6 +4,7 @@ use super::config::{GroundSource, ObstacleConfig, ObstacleError};
 use super::grid::{Filling, fill};
 use super::ground::{CarriedGround, Ground};
 use super::setup::Setup;
+use super::state::ObstaclesState;
 use super::stixel::{Column, Labelling};
 use super::surfaces::stixels;
 use super::v_disparity::{BINS, count, fit};
@@ -26,19 +27,6 @@ pub struct Obstacles<const C: usize, const R: usize> {
     labels: [u8; R],
     bearings: [i16; C],
     state: ObstaclesState,
-}
-
-/// What an [`Obstacles`] keeps beside its cells.
-#[derive(Debug)]
-pub(super) struct ObstaclesState {
-    setup: Setup,
-    pub(super) carried: CarriedGround,
-    watchdog: Watchdog,
-    /// The next row of pixels.
-    next: usize,
-    is_finished: bool,
-    /// What the last finished frame was judged.
-    blind: Option<BlindReason>,
 }
 
 /// A borrowed [`Obstacles`] of any size.
@@ -64,14 +52,7 @@ impl<const C: usize, const R: usize> Obstacles<C, R> {
             columns: [Column::EMPTY; C],
             labels: [0; R],
             bearings: [0; C],
-            state: ObstaclesState {
-                setup: Setup::NOT_STARTED,
-                carried: CarriedGround::NONE,
-                watchdog: Watchdog::NEW,
-                next: 0,
-                is_finished: false,
-                blind: None,
-            },
+            state: ObstaclesState::new(),
         }
     }
 
@@ -121,6 +102,27 @@ impl<const C: usize, const R: usize> Default for Obstacles<C, R> {
     }
 }
 
+impl<'a> ObstaclesView<'a> {
+    /// Counts of a row of cells, bytes.
+    pub const BINS: usize = BINS;
+
+    /// A finder in the caller's memory: `filling`, `columns` and `bearings` have one of each for every
+    /// column of cells, `labels` has one and `bins` has [`Self::BINS`] for every row of cells, `cells` holds
+    /// all cells of a frame. It does not matter what is in them before [`Self::start`], which names what is
+    /// too short; later views need what the last one left.
+    pub fn new(
+        state: &'a mut ObstaclesState,
+        cells: &'a mut [Disparity],
+        filling: &'a mut [Filling],
+        bins: &'a mut [u8],
+        columns: &'a mut [Column],
+        labels: &'a mut [u8],
+        bearings: &'a mut [i16],
+    ) -> Self {
+        Self { cells, filling, bins, columns, labels, bearings, state }
+    }
+}
+
 impl ObstaclesView<'_> {
     /// Starts on frames of `size` (width and height, px) from a rig, with disparities of up to `largest`;
     /// what was carried is forgotten. Columns and rows of pixels that fill no cell are left out.
@@ -133,6 +135,37 @@ impl ObstaclesView<'_> {
     ) -> Result<(), ObstacleError> {
         self.state.setup = Setup::NOT_STARTED;
         self.state.is_finished = false;
+        let setup = self.settled(config, scale, size, largest)?;
+        let half = f32::from(config.cell_width - 1) / 2.0;
+        for (x, to) in self.bearings.iter_mut().enumerate() {
+            *to = setup.rig.bearing_mrad((x * usize::from(config.cell_width)) as f32 + half);
+        }
+        self.columns.fill(Column::EMPTY);
+        self.state.carried = CarriedGround::NONE;
+        self.state.setup = setup;
+        self.begin();
+        Ok(())
+    }
+
+    /// Says why [`Self::start`] would be refused, and changes nothing.
+    pub fn check(
+        &self,
+        config: &ObstacleConfig,
+        scale: &DepthScale,
+        size: [u16; 2],
+        largest: Disparity,
+    ) -> Result<(), ObstacleError> {
+        self.settled(config, scale, size, largest).map(|_| ())
+    }
+
+    /// What a start settles, if this memory is enough for it.
+    fn settled(
+        &self,
+        config: &ObstacleConfig,
+        scale: &DepthScale,
+        size: [u16; 2],
+        largest: Disparity,
+    ) -> Result<Setup, ObstacleError> {
         let most_columns = self.columns.len().min(self.filling.len()).min(self.bearings.len());
         let most_rows = self.labels.len().min(self.bins.len() / BINS).min(255);
         let setup = Setup::new(config, scale, size, largest)?;
@@ -142,14 +175,7 @@ impl ObstaclesView<'_> {
         if setup.rows > most_rows || setup.rows * setup.columns > self.cells.len() {
             return Err(ObstacleError::Rows { needed: setup.rows });
         }
-        let half = f32::from(config.cell_width - 1) / 2.0;
-        for (x, to) in self.bearings.iter_mut().enumerate() {
-            *to = setup.rig.bearing_mrad((x * usize::from(config.cell_width)) as f32 + half);
-        }
-        self.state.carried = CarriedGround::NONE;
-        self.state.setup = setup;
-        self.begin();
-        Ok(())
+        Ok(setup)
     }
 
     /// Begins a frame. A frame that was not finished is forgotten.

@@ -44,7 +44,7 @@ impl Cluster {
 /// An answer joins the first group whose last answer is within one px. One that joins neither begins the
 /// second group, if that is empty or has one answer, and is ignored else.
 #[derive(Clone, Copy, Default, Debug)]
-pub(super) struct Filling([Cluster; 2]);
+pub struct Filling([Cluster; 2]);
 
 impl Filling {
     pub(super) const EMPTY: Self = Self([Cluster::EMPTY; 2]);

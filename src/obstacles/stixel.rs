@@ -22,9 +22,9 @@ pub enum StixelKind {
     Drop,
 }
 
-/// The nearest obstacle or drop of a column of cells.
+/// The nearest obstacle or drop of a column of cells, in cells.
 #[derive(Clone, Copy, Default, Debug)]
-pub(super) struct Column {
+pub struct Column {
     pub(super) kind: StixelKind,
     pub(super) top: u8,
     pub(super) base: u8,

@@ -3,6 +3,7 @@
 #include "stereopsis.h"
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { WIDTH = STEREOPSIS_WIDTH, HEIGHT = 24, DISPARITIES = 32 };
 
@@ -142,6 +143,67 @@ static uint32_t motion(void) {
     return sum;
 }
 
+/* Obstacles on a floor, the health of both cameras, and decisions. */
+static uint32_t obstacles(void) {
+    enum { ROWS = 60, CELLS = WIDTH / 4, CELL_ROWS = ROWS / 5, SECTORS = 16 };
+    size_t sizes[4] = {STEREOPSIS_OBSTACLES_BYTES(CELLS, CELL_ROWS), STEREOPSIS_DRIVE_BYTES, STEREOPSIS_FREE_SPACE_BYTES,
+                       STEREOPSIS_PAIR_MONITOR_BYTES};
+    void *memory[4] = {fresh(sizes[0]), fresh(sizes[1]), fresh(sizes[2]), fresh(sizes[3])};
+    stereopsis_obstacles *finder;
+    stereopsis_drive *drive;
+    stereopsis_free_space *space;
+    stereopsis_pair_monitor *monitor;
+    stereopsis_obstacles_config config;
+    stereopsis_drive_config driving;
+    stereopsis_rig rig = {90.0f, 0.1f, 47.5f, 29.5f, 47.5f};
+    stereopsis_ground ground;
+    stereopsis_stixel stixels[CELLS];
+    stereopsis_sector sectors[SECTORS];
+    stereopsis_scan scan;
+    stereopsis_verdict verdict;
+    float ranges[SECTORS];
+    uint16_t disparities[WIDTH], cells[CELLS];
+    uint8_t flags[WIDTH], blind, health[3];
+    uint32_t sum = 0;
+    good(stereopsis_obstacles_init(memory[0], sizes[0], CELLS, CELL_ROWS, &finder));
+    good(stereopsis_drive_init(memory[1], sizes[1], &drive));
+    good(stereopsis_free_space_init(memory[2], sizes[2], 1, 2, &space));
+    good(stereopsis_pair_monitor_init(memory[3], sizes[3], 20, &monitor));
+    good(stereopsis_obstacles_default(&config)), good(stereopsis_drive_default(&driving));
+    good(stereopsis_obstacles_start(finder, &config, &rig, WIDTH, ROWS, 32)), good(stereopsis_drive_start(drive, &driving));
+    for (int number = 0; number < 3; number++) {
+        good(stereopsis_obstacles_begin_frame(finder)), good(stereopsis_pair_monitor_begin_frame(monitor));
+        for (uint16_t y = 0; y < ROWS; y++) {
+            stereopsis_row row = {y, WIDTH, disparities, flags, NULL};
+            for (int x = 0; x < WIDTH; x++) {
+                int floor = y > 20 ? 32 * (y - 20) / 3 : 0, wall = x > 40 && x < 70 ? 128 + 32 * number : 0;
+                disparities[x] = x % 11 == y % 7 ? STEREOPSIS_NONE : (uint16_t)(floor > wall ? floor : wall);
+                flags[x] = (uint8_t)((x * 37 + y * 11) ^ (x * y));
+            }
+            good(stereopsis_pair_monitor_push(monitor, flags, flags, WIDTH));
+            memset(flags, 0, sizeof flags);
+            good(stereopsis_obstacles_push(finder, &row));
+        }
+        good(stereopsis_pair_monitor_health(monitor, &health[0], &health[1], &health[2]));
+        good(stereopsis_obstacles_cameras(finder, monitor));
+        good(stereopsis_obstacles_finish(finder, &blind)), good(stereopsis_obstacles_ground(finder, &ground));
+        good(stereopsis_obstacles_stixels(finder, stixels, CELLS)), good(stereopsis_free_space_update(space, finder));
+        good(stereopsis_free_space_sectors(space, sectors, SECTORS));
+        good(stereopsis_obstacles_scan(finder, ranges, SECTORS, &scan));
+        good(stereopsis_drive_decide(drive, finder, 500, &verdict));
+        sum = sum * 31 + blind + health[0] + health[1] + health[2] + ground.height_mm + verdict.decision + verdict.contact_ms;
+        for (int i = 0; i < SECTORS; i++) sum = sum * 31 + sectors[i].state + sectors[i].range_mm + (ranges[i] < 3.0f ? 1u : 0u);
+        for (uint16_t row = 0; row < CELL_ROWS; row++) {
+            good(stereopsis_obstacles_cells(finder, row, cells, CELLS));
+            for (int x = 0; x < CELLS; x++) sum = sum * 31 + cells[x] + stixels[x].kind + stixels[x].depth_mm + stixels[x].seen_row;
+        }
+    }
+    good(stereopsis_obstacles_deinit(finder)), good(stereopsis_drive_deinit(drive));
+    good(stereopsis_free_space_deinit(space)), good(stereopsis_pair_monitor_deinit(monitor));
+    for (int i = 0; i < 4; i++) free(memory[i]);
+    return sum;
+}
+
 int main(int count, char **arguments) {
     void *memory = fresh(stereopsis_size());
     stereopsis *matcher;
@@ -150,7 +212,7 @@ int main(int count, char **arguments) {
                    : stereopsis_init_fresh(memory, stereopsis_size(), &matcher));
     /* Printing decides by every bit of the sums. */
     printf("%u %u %u ", (unsigned)frame(matcher), (unsigned)queue(), (unsigned)temporal());
-    printf("%u\n", (unsigned)motion());
+    printf("%u %u\n", (unsigned)motion(), (unsigned)obstacles());
     good(stereopsis_deinit(matcher));
     free(memory);
     return failures > 0;

@@ -9,6 +9,7 @@ mod focus;
 mod line_queue;
 mod lost;
 mod noise;
+mod obstacles;
 mod raw;
 mod two_view;
 mod winners;

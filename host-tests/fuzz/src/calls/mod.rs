@@ -2,6 +2,7 @@
 #![allow(unsafe_code, reason = "functions with a C ABI are called as C calls them")]
 
 mod arena;
+mod driving;
 mod lines;
 mod motion;
 mod rows;
@@ -30,7 +31,7 @@ stereopsis::instantiate_c_api!(
 /// Calls of a family of functions.
 type Family = fn(&mut Unstructured<'_>, &mut Arena) -> Result<Status>;
 
-const FAMILIES: [Family; 9] = [
+const FAMILIES: [Family; 11] = [
     rows::matcher,
     rows::winners,
     rows::rectifier,
@@ -38,6 +39,8 @@ const FAMILIES: [Family; 9] = [
     lines::detector,
     motion::focus,
     motion::odometry,
+    driving::obstacles,
+    driving::drive,
     values::plain,
     views::two_views,
 ];

@@ -26,6 +26,7 @@ pub fn statuses() -> Outcome {
         "misuse_two_views",
         "misuse_features",
         "misuse_motion",
+        "misuse_obstacles",
         "misuse_winners",
     ] {
         for program in [program.to_owned(), format!("{program}_cpp")] {

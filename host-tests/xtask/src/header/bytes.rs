@@ -2,8 +2,8 @@
 
 use crate::steps::{Failure, Outcome};
 use stereopsis::ffi::{
-    detector_bytes, focus_bytes, line_queue_bytes, memory_bytes, odometry_bytes, rectifier_bytes,
-    winners_bytes,
+    detector_bytes, focus_bytes, line_queue_bytes, memory_bytes, obstacles_bytes, odometry_bytes,
+    rectifier_bytes, winners_bytes,
 };
 use stereopsis::matching::{Block, Fast, Method, Sgm, SgmEdge, SgmLean};
 
@@ -21,6 +21,7 @@ pub fn macros() -> Outcome<String> {
         detector_macro(),
         focus_macro(),
         odometry_macro(),
+        obstacles_macro(),
     ];
     Ok(all.join("\n"))
 }
@@ -145,6 +146,24 @@ fn odometry_macro() -> String {
         " * Bytes that are enough for an odometry that follows up to `points` points, on any target.",
         " */",
         &format!("#define STEREOPSIS_ODOMETRY_BYTES(points) ((size_t){fixed} + (size_t){point} * (points))"),
+        "",
+    ]
+    .join("\n")
+}
+
+/// How many bytes a finder of obstacles takes, as a macro.
+fn obstacles_macro() -> String {
+    let fixed = obstacles_bytes(0, 0);
+    let [column, row] = [[1, 0], [0, 1]].map(|[columns, rows]| obstacles_bytes(columns, rows) - fixed);
+    let cell = obstacles_bytes(1, 1) - fixed - column - row;
+    [
+        "/**",
+        " * Bytes that are enough for a finder of obstacles, on any target, in frames of up to `columns`",
+        " * columns and `rows` rows of cells.",
+        " */",
+        "#define STEREOPSIS_OBSTACLES_BYTES(columns, rows) \\",
+        &format!("  ((size_t){fixed} + (size_t){column} * (columns) + (size_t){row} * (rows) + \\"),
+        &format!("   (size_t){cell} * (columns) * (rows))"),
         "",
     ]
     .join("\n")

@@ -19,7 +19,7 @@ use std::fs;
 /// The header, from the repository's root.
 const HEADER: &str = "src/ffi/stereopsis.h";
 /// The files with macros, and the macros, in the header's order.
-const MACROS: [(&str, &str); 9] = [
+const MACROS: [(&str, &str); 11] = [
     ("src/ffi/names.rs", "instantiate_c_api"),
     ("src/ffi/names_winners.rs", "c_api_of_winners"),
     ("src/ffi/names_line_queue.rs", "c_api_of_line_queues"),
@@ -29,9 +29,11 @@ const MACROS: [(&str, &str); 9] = [
     ("src/ffi/names_features.rs", "c_api_of_features"),
     ("src/ffi/names_two_view.rs", "c_api_of_two_views"),
     ("src/ffi/names_focus.rs", "c_api_of_focus_and_motion"),
+    ("src/ffi/names_obstacles.rs", "c_api_of_obstacles"),
+    ("src/ffi/names_drive.rs", "c_api_of_driving"),
 ];
 /// The files that cbindgen reads as they are, in the header's order.
-const FILES: [&str; 23] = [
+const FILES: [&str; 29] = [
     "src/ffi/status.rs",
     "src/ffi/state.rs",
     "src/ffi/config.rs",
@@ -55,9 +57,15 @@ const FILES: [&str; 23] = [
     "src/ffi/focus.rs",
     "src/ffi/odometry_types.rs",
     "src/ffi/odometry.rs",
+    "src/ffi/pair_monitor.rs",
+    "src/ffi/obstacles_config.rs",
+    "src/ffi/obstacles_types.rs",
+    "src/ffi/obstacles.rs",
+    "src/ffi/drive_types.rs",
+    "src/ffi/drive.rs",
 ];
 /// Names that Rust spells in its own way.
-const NAMES: [(&str, &str); 33] = [
+const NAMES: [(&str, &str); 44] = [
     ("Handle", "stereopsis"),
     ("Status", "stereopsis_status"),
     ("CConfig", "stereopsis_config"),
@@ -83,6 +91,17 @@ const NAMES: [(&str, &str); 33] = [
     ("COdometryConfig", "stereopsis_odometry_config"),
     ("CPicture", "stereopsis_picture"),
     ("CStep", "stereopsis_step"),
+    ("PairMonitorHandle", "stereopsis_pair_monitor"),
+    ("ObstaclesHandle", "stereopsis_obstacles"),
+    ("CObstacleConfig", "stereopsis_obstacles_config"),
+    ("CGround", "stereopsis_ground"),
+    ("CStixel", "stereopsis_stixel"),
+    ("CSector", "stereopsis_sector"),
+    ("CScan", "stereopsis_scan"),
+    ("DriveHandle", "stereopsis_drive"),
+    ("CDriveConfig", "stereopsis_drive_config"),
+    ("CVerdict", "stereopsis_verdict"),
+    ("FreeSpaceHandle", "stereopsis_free_space"),
     ("RectifierHandle", "stereopsis_rectifier"),
     ("CCameras", "stereopsis_cameras"),
     ("CRig", "stereopsis_rig"),

@@ -1,0 +1,320 @@
+/* Every misuse of finders of obstacles, drive rules, free spaces and monitors has its status, and leaves everything else as
+   it was. Ends with the number of failures; built as misuse.c is. */
+#include "check.h"
+
+enum { WIDTH = 160, HEIGHT = 120, COLUMNS = 40, ROWS = 24, SECTORS = 16 };
+
+static const stereopsis_rig RIG = {130.0f, 0.1f, 79.5f, 59.5f, 79.5f};
+static uint16_t disparities[WIDTH + 1];
+static uint8_t flags[WIDTH], confidences[WIDTH];
+
+/* A row of a floor 0.3 m below the camera that ends in a wall 2.6 m ahead. */
+static stereopsis_row row_of(uint16_t y) {
+    stereopsis_row row;
+    int steps = y > 59 ? 32 * (y - 59) / 3 : 0;
+    for (int x = 0; x < WIDTH; x++) disparities[x] = (uint16_t)(steps > 160 ? steps : 160), flags[x] = 0, confidences[x] = 200;
+    row.index = y, row.width = WIDTH;
+    row.disparities = disparities, row.flags = flags, row.confidences = confidences;
+    return row;
+}
+
+static uint8_t frame(stereopsis_obstacles *h, int rows) {
+    uint8_t blind = 99;
+    EXPECT(stereopsis_obstacles_begin_frame(h), OK);
+    for (int y = 0; y < rows; y++) {
+        stereopsis_row row = row_of((uint16_t)y);
+        EXPECT(stereopsis_obstacles_push(h, &row), OK);
+    }
+    EXPECT(stereopsis_obstacles_finish(h, &blind), OK);
+    return blind;
+}
+
+static void starts(stereopsis_obstacles *h) {
+    stereopsis_obstacles_config config, wrong;
+    stereopsis_rig none = RIG;
+    volatile float zero = 0.0f;
+    EXPECT(stereopsis_obstacles_default(NULL), NULL);
+    EXPECT(stereopsis_obstacles_default((stereopsis_obstacles_config *)MISALIGN(&config)), MISALIGNED);
+    EXPECT(stereopsis_obstacles_default(&config), OK);
+    EXPECT(stereopsis_obstacles_start(NULL, &config, &RIG, WIDTH, HEIGHT, 32), NULL);
+    EXPECT(stereopsis_obstacles_start(h, NULL, &RIG, WIDTH, HEIGHT, 32), NULL);
+    EXPECT(stereopsis_obstacles_start(h, &config, NULL, WIDTH, HEIGHT, 32), NULL);
+    EXPECT(stereopsis_obstacles_start(h, (stereopsis_obstacles_config *)MISALIGN(&config), &RIG, WIDTH, HEIGHT, 32), MISALIGNED);
+    EXPECT(stereopsis_obstacles_start(h, &config, (const stereopsis_rig *)MISALIGN(&none), WIDTH, HEIGHT, 32), MISALIGNED);
+    none.baseline_m = 0.0f;
+    EXPECT(stereopsis_obstacles_start(h, &config, &none, WIDTH, HEIGHT, 32), RIG_BASELINE);
+    none = RIG, none.focal_px = zero / zero;
+    EXPECT(stereopsis_obstacles_start(h, &config, &none, WIDTH, HEIGHT, 32), RIG_NOT_FINITE);
+    wrong = config, wrong.cell_width = 17;
+    EXPECT(stereopsis_obstacles_start(h, &wrong, &RIG, WIDTH, HEIGHT, 32), OBSTACLE_CELLS);
+    wrong = config, wrong.cell_width = wrong.cell_height = 16;
+    EXPECT(stereopsis_obstacles_start(h, &wrong, &RIG, WIDTH, HEIGHT, 32), OBSTACLE_CELLS);
+    wrong = config, wrong.sectors = 33;
+    EXPECT(stereopsis_obstacles_start(h, &wrong, &RIG, WIDTH, HEIGHT, 32), OBSTACLE_SECTORS);
+    wrong = config, wrong.ground = STEREOPSIS_GROUND_GIVEN;
+    EXPECT(stereopsis_obstacles_start(h, &wrong, &RIG, WIDTH, HEIGHT, 32), OBSTACLE_POSE);
+    wrong.height_mm = 300, wrong.pitch_mrad = -32767 - 1;
+    EXPECT(stereopsis_obstacles_start(h, &wrong, &RIG, WIDTH, HEIGHT, 32), OBSTACLE_POSE);
+    wrong = config, wrong.most_height_mm = 50;
+    EXPECT(stereopsis_obstacles_start(h, &wrong, &RIG, WIDTH, HEIGHT, 32), OBSTACLE_POSE);
+    wrong = config, wrong.sigma_steps = 0;
+    EXPECT(stereopsis_obstacles_start(h, &wrong, &RIG, WIDTH, HEIGHT, 32), OBSTACLE_LIMITS);
+    wrong = config, wrong.drop_mm = 0;
+    EXPECT(stereopsis_obstacles_start(h, &wrong, &RIG, WIDTH, HEIGHT, 32), OBSTACLE_LIMITS);
+    wrong = config, wrong.ground = 3;
+    EXPECT(stereopsis_obstacles_start(h, &wrong, &RIG, WIDTH, HEIGHT, 32), OBSTACLE_GROUND);
+    EXPECT(stereopsis_obstacles_start(h, &config, &RIG, WIDTH + 4, HEIGHT, 32), OBSTACLE_SIZE);
+    EXPECT(stereopsis_obstacles_start(h, &config, &RIG, WIDTH, HEIGHT + 5, 32), OBSTACLE_SIZE);
+    EXPECT(stereopsis_obstacles_start(h, &config, &RIG, 3, HEIGHT, 32), OBSTACLE_SIZE);
+    EXPECT(stereopsis_obstacles_start(h, &config, &RIG, WIDTH, 0, 32), OBSTACLE_SIZE);
+}
+
+static void finders(void) {
+    guarded g = guard(STEREOPSIS_OBSTACLES_BYTES(COLUMNS, ROWS));
+    stereopsis_obstacles *h = NULL;
+    stereopsis_obstacles_config config;
+    stereopsis_ground ground;
+    stereopsis_stixel stixels[COLUMNS + 1];
+    stereopsis_sector sectors[SECTORS + 1];
+    stereopsis_scan scan;
+    stereopsis_row row = row_of(0), wrong;
+    float ranges[SECTORS + 1];
+    uint16_t cells[COLUMNS + 1];
+    uint8_t blind = 99;
+    EXPECT(stereopsis_obstacles_init(g.memory, g.size, COLUMNS, ROWS, NULL), NULL);
+    EXPECT(stereopsis_obstacles_init(g.memory, g.size, COLUMNS, ROWS, (stereopsis_obstacles **)MISALIGN(&h)), MISALIGNED);
+    EXPECT(stereopsis_obstacles_init(NULL, g.size, COLUMNS, ROWS, &h), NULL);
+    EXPECT(stereopsis_obstacles_init(g.memory + 1, g.size, COLUMNS, ROWS, &h), MISALIGNED);
+    EXPECT(stereopsis_obstacles_init(g.memory, g.size / 2, COLUMNS, ROWS, &h), MEMORY_TOO_SHORT);
+    EXPECT(stereopsis_obstacles_init(g.memory, g.size, 65535, 255, &h), MEMORY_TOO_SHORT);
+    EXPECT(stereopsis_obstacles_init(g.memory, g.size, COLUMNS, 256, &h), OBSTACLE_SIZE);
+    EXPECT(stereopsis_obstacles_init(g.memory, g.size, COLUMNS, 0, &h), OBSTACLE_SIZE);
+    EXPECT(stereopsis_obstacles_init(g.memory, g.size, 0, ROWS, &h), OBSTACLE_SIZE);
+    EXPECT(stereopsis_obstacles_init(g.memory, g.size, COLUMNS, ROWS, (stereopsis_obstacles **)(void *)g.memory), OVERLAP);
+    CHECK(h == NULL);
+    for (size_t i = 0; i < g.size; i++) CHECK(g.memory[i] == 0xA5);
+    EXPECT(stereopsis_obstacles_begin_frame((stereopsis_obstacles *)(void *)g.memory), NOT_INITIALISED);
+    EXPECT(stereopsis_obstacles_init(g.memory, g.size, COLUMNS, ROWS, &h), OK);
+    EXPECT(stereopsis_obstacles_begin_frame(h), NOT_STARTED);
+    EXPECT(stereopsis_obstacles_push(h, &row), NOT_STARTED);
+    EXPECT(stereopsis_obstacles_finish(h, &blind), NOT_STARTED);
+    EXPECT(stereopsis_obstacles_set_pose(h, 0, 300), NOT_STARTED);
+    EXPECT(stereopsis_obstacles_ground(h, &ground), NOT_STARTED);
+    EXPECT(stereopsis_obstacles_scan(h, ranges, SECTORS, &scan), NOT_STARTED);
+    starts(h);
+    EXPECT(stereopsis_obstacles_ground(h, &ground), NOT_STARTED);
+    EXPECT(stereopsis_obstacles_default(&config), OK);
+    EXPECT(stereopsis_obstacles_start(h, &config, &RIG, WIDTH, HEIGHT, 32), OK);
+    EXPECT(stereopsis_obstacles_push(h, &row), NOT_BEGUN);
+    EXPECT(stereopsis_obstacles_finish(h, &blind), NOT_BEGUN);
+    EXPECT(stereopsis_obstacles_sectors(h, sectors, SECTORS), OK);
+    for (int i = 0; i < SECTORS; i++) CHECK(sectors[i].state == STEREOPSIS_SECTOR_BLIND);
+    /* A refused start leaves the finder as it was. */
+    starts(h);
+    EXPECT(stereopsis_obstacles_begin_frame(NULL), NULL);
+    EXPECT(stereopsis_obstacles_begin_frame(h), OK);
+    EXPECT(stereopsis_obstacles_push(NULL, &row), NULL);
+    EXPECT(stereopsis_obstacles_push(h, NULL), NULL);
+    EXPECT(stereopsis_obstacles_push(h, (stereopsis_row *)MISALIGN(&row)), MISALIGNED);
+    wrong = row, wrong.disparities = NULL;
+    EXPECT(stereopsis_obstacles_push(h, &wrong), NULL);
+    wrong = row, wrong.disparities = (const uint16_t *)MISALIGN(disparities);
+    EXPECT(stereopsis_obstacles_push(h, &wrong), MISALIGNED);
+    wrong = row, wrong.flags = NULL;
+    EXPECT(stereopsis_obstacles_push(h, &wrong), NULL);
+    wrong = row, wrong.flags = g.memory + g.size - WIDTH;
+    EXPECT(stereopsis_obstacles_push(h, &wrong), OVERLAP);
+    wrong = row, wrong.confidences = g.memory;
+    EXPECT(stereopsis_obstacles_push(h, &wrong), OVERLAP);
+    wrong = row, wrong.width = WIDTH - 1;
+    EXPECT(stereopsis_obstacles_push(h, &wrong), LINE_LENGTH);
+    wrong = row, wrong.index = HEIGHT;
+    EXPECT(stereopsis_obstacles_push(h, &wrong), ROW);
+    wrong = row, wrong.confidences = NULL;
+    EXPECT(stereopsis_obstacles_push(h, &wrong), OK);
+    EXPECT(stereopsis_obstacles_push(h, &wrong), ROW);
+    EXPECT(stereopsis_obstacles_finish(NULL, &blind), NULL);
+    EXPECT(stereopsis_obstacles_finish(h, NULL), NULL);
+    EXPECT(stereopsis_obstacles_finish(h, g.memory + 64), OVERLAP);
+    CHECK(blind == 99);
+    /* All rows but one are lost, then none is, then a fifth. */
+    EXPECT(stereopsis_obstacles_finish(h, &blind), OK);
+    CHECK(blind == STEREOPSIS_BLIND_ROWS_LOST);
+    EXPECT(stereopsis_obstacles_finish(h, &blind), NOT_BEGUN);
+    CHECK(frame(h, HEIGHT) == STEREOPSIS_BLIND_NOT);
+    EXPECT(stereopsis_obstacles_ground(h, &ground), OK);
+    CHECK(ground.is_known == 1 && ground.height_mm > 290 && ground.height_mm < 310 && ground.pitch_rad < 0.01f);
+    EXPECT(stereopsis_obstacles_ground(NULL, &ground), NULL);
+    EXPECT(stereopsis_obstacles_ground(h, NULL), NULL);
+    EXPECT(stereopsis_obstacles_ground(h, (stereopsis_ground *)MISALIGN(&ground)), MISALIGNED);
+    EXPECT(stereopsis_obstacles_ground(h, (stereopsis_ground *)(void *)g.memory), OVERLAP);
+    EXPECT(stereopsis_obstacles_stixels(h, NULL, COLUMNS), NULL);
+    EXPECT(stereopsis_obstacles_stixels(h, stixels, SIZE_MAX), TOO_MANY);
+    EXPECT(stereopsis_obstacles_stixels(h, (stereopsis_stixel *)MISALIGN(stixels), COLUMNS), MISALIGNED);
+    EXPECT(stereopsis_obstacles_stixels(h, (stereopsis_stixel *)(void *)g.memory, 1), OVERLAP);
+    EXPECT(stereopsis_obstacles_stixels(h, stixels, COLUMNS + 1), OK);
+    for (int x = 0; x < COLUMNS; x++) CHECK(stixels[x].kind == STEREOPSIS_STIXEL_OBSTACLE && stixels[x].disparity == 160);
+    CHECK(stixels[COLUMNS].kind == STEREOPSIS_STIXEL_NOTHING && stixels[COLUMNS].disparity == STEREOPSIS_NONE);
+    EXPECT(stereopsis_obstacles_sectors(h, NULL, SECTORS), NULL);
+    EXPECT(stereopsis_obstacles_sectors(h, sectors, SIZE_MAX), TOO_MANY);
+    EXPECT(stereopsis_obstacles_sectors(h, (stereopsis_sector *)(void *)g.memory, 1), OVERLAP);
+    EXPECT(stereopsis_obstacles_sectors(h, sectors, SECTORS + 1), OK);
+    for (int i = 0; i < SECTORS; i++) CHECK(sectors[i].state == STEREOPSIS_SECTOR_OBSTACLE && sectors[i].depth_mm == 2600);
+    CHECK(sectors[SECTORS].state == STEREOPSIS_SECTOR_BLIND);
+    EXPECT(stereopsis_obstacles_cells(h, 0, NULL, COLUMNS), NULL);
+    EXPECT(stereopsis_obstacles_cells(h, 0, (uint16_t *)(void *)g.memory, COLUMNS), OVERLAP);
+    EXPECT(stereopsis_obstacles_cells(h, 0, cells, COLUMNS + 1), OK);
+    CHECK(cells[0] == 160 && cells[COLUMNS] == STEREOPSIS_NONE);
+    EXPECT(stereopsis_obstacles_cells(h, 65535, cells, 1), OK);
+    CHECK(cells[0] == STEREOPSIS_NONE);
+    EXPECT(stereopsis_obstacles_scan(h, NULL, SECTORS, &scan), NULL);
+    EXPECT(stereopsis_obstacles_scan(h, ranges, SECTORS, NULL), NULL);
+    EXPECT(stereopsis_obstacles_scan(h, (float *)MISALIGN(ranges), SECTORS, &scan), MISALIGNED);
+    EXPECT(stereopsis_obstacles_scan(h, ranges, SIZE_MAX, &scan), TOO_MANY);
+    EXPECT(stereopsis_obstacles_scan(h, (float *)(void *)g.memory, SECTORS, &scan), OVERLAP);
+    EXPECT(stereopsis_obstacles_scan(h, ranges, SECTORS, (stereopsis_scan *)(void *)(g.memory + 64)), OVERLAP);
+    EXPECT(stereopsis_obstacles_scan(h, &scan.angle_max, 2, &scan), OVERLAP);
+    EXPECT(stereopsis_obstacles_scan(h, ranges, SECTORS + 1, &scan), OK);
+    CHECK(scan.count == SECTORS && ranges[8] > 2.59f && ranges[8] < 2.62f && ranges[SECTORS] < 1e-9f);
+    CHECK(frame(h, HEIGHT - 24) == STEREOPSIS_BLIND_ROWS_LOST);
+    EXPECT(stereopsis_obstacles_sectors(h, sectors, SECTORS), OK);
+    for (int i = 0; i < SECTORS; i++) CHECK(sectors[i].state == STEREOPSIS_SECTOR_BLIND);
+    EXPECT(stereopsis_obstacles_set_pose(NULL, 0, 300), NULL);
+    EXPECT(stereopsis_obstacles_set_pose(h, 501, 300), OBSTACLE_POSE);
+    EXPECT(stereopsis_obstacles_set_pose(h, 0, 0), OBSTACLE_POSE);
+    EXPECT(stereopsis_obstacles_set_pose(h, 0, 300), OK);
+    CHECK(frame(h, HEIGHT) == STEREOPSIS_BLIND_NOT);
+    EXPECT(stereopsis_obstacles_ground(h, &ground), OK);
+    CHECK(ground.is_known == 1 && ground.height_mm == 300);
+    EXPECT(stereopsis_obstacles_deinit(NULL), NULL);
+    EXPECT(stereopsis_obstacles_deinit(h), OK);
+    EXPECT(stereopsis_obstacles_deinit(h), NOT_INITIALISED);
+    release(g);
+}
+
+static void drives(void) {
+    guarded g = guard(STEREOPSIS_OBSTACLES_BYTES(COLUMNS, ROWS)), d = guard(STEREOPSIS_DRIVE_BYTES);
+    guarded f = guard(STEREOPSIS_FREE_SPACE_BYTES), p = guard(STEREOPSIS_PAIR_MONITOR_BYTES);
+    stereopsis_obstacles *h = NULL;
+    stereopsis_drive *drive = NULL;
+    stereopsis_free_space *space = NULL;
+    stereopsis_pair_monitor *monitor = NULL;
+    stereopsis_obstacles_config config;
+    stereopsis_drive_config driving;
+    stereopsis_verdict verdict, untouched;
+    stereopsis_sector sectors[SECTORS];
+    uint16_t stopping = 0;
+    uint8_t health[3] = {9, 9, 9}, line[WIDTH];
+    memset(&verdict, 0x5A, sizeof verdict), memcpy(&untouched, &verdict, sizeof verdict);
+    EXPECT(stereopsis_drive_init(d.memory, d.size, NULL), NULL);
+    EXPECT(stereopsis_drive_init(NULL, d.size, &drive), NULL);
+    EXPECT(stereopsis_drive_init(d.memory + 1, d.size, &drive), MISALIGNED);
+    EXPECT(stereopsis_drive_init(d.memory, 8, &drive), MEMORY_TOO_SHORT);
+    EXPECT(stereopsis_free_space_init(f.memory, 8, 1, 2, &space), MEMORY_TOO_SHORT);
+    EXPECT(stereopsis_free_space_init(f.memory + 1, f.size, 1, 2, &space), MISALIGNED);
+    EXPECT(stereopsis_pair_monitor_init(p.memory, 8, 32, &monitor), MEMORY_TOO_SHORT);
+    EXPECT(stereopsis_pair_monitor_init(p.memory, p.size, 32, (stereopsis_pair_monitor **)(void *)p.memory), OVERLAP);
+    CHECK(drive == NULL && space == NULL && monitor == NULL);
+    for (size_t i = 0; i < d.size; i++) CHECK(d.memory[i] == 0xA5);
+    for (size_t i = 0; i < f.size; i++) CHECK(f.memory[i] == 0xA5);
+    for (size_t i = 0; i < p.size; i++) CHECK(p.memory[i] == 0xA5);
+    EXPECT(stereopsis_drive_stopping_mm((stereopsis_drive *)(void *)d.memory, 0, &stopping), NOT_INITIALISED);
+    EXPECT(stereopsis_obstacles_init(g.memory, g.size, COLUMNS, ROWS, &h), OK);
+    EXPECT(stereopsis_drive_init(d.memory, d.size, &drive), OK);
+    EXPECT(stereopsis_free_space_init(f.memory, f.size, 1, 2, &space), OK);
+    EXPECT(stereopsis_pair_monitor_init(p.memory, p.size, 32, &monitor), OK);
+    EXPECT(stereopsis_drive_default(NULL), NULL);
+    EXPECT(stereopsis_drive_default((stereopsis_drive_config *)MISALIGN(&driving)), MISALIGNED);
+    EXPECT(stereopsis_drive_default(&driving), OK);
+    EXPECT(stereopsis_drive_decide(drive, h, 500, &verdict), NOT_STARTED);
+    EXPECT(stereopsis_free_space_update(space, h), NOT_STARTED);
+    EXPECT(stereopsis_obstacles_cameras(h, monitor), NOT_STARTED);
+    EXPECT(stereopsis_obstacles_default(&config), OK);
+    EXPECT(stereopsis_obstacles_start(h, &config, &RIG, WIDTH, HEIGHT, 32), OK);
+    EXPECT(stereopsis_drive_decide(drive, h, 500, &verdict), NOT_STARTED);
+    EXPECT(stereopsis_drive_stopping_mm(drive, 500, &stopping), NOT_STARTED);
+    EXPECT(stereopsis_drive_start(NULL, &driving), NULL);
+    EXPECT(stereopsis_drive_start(drive, NULL), NULL);
+    EXPECT(stereopsis_drive_start((stereopsis_drive *)(void *)space, &driving), NOT_INITIALISED);
+    EXPECT(stereopsis_drive_start(drive, &driving), OK);
+    EXPECT(stereopsis_drive_stopping_mm(drive, 500, NULL), NULL);
+    EXPECT(stereopsis_drive_stopping_mm(drive, 500, (uint16_t *)(void *)d.memory), OVERLAP);
+    EXPECT(stereopsis_drive_stopping_mm(drive, 1000, &stopping), OK);
+    CHECK(stopping == 800);
+    EXPECT(stereopsis_drive_decide(NULL, h, 500, &verdict), NULL);
+    EXPECT(stereopsis_drive_decide(drive, NULL, 500, &verdict), NULL);
+    EXPECT(stereopsis_drive_decide(drive, h, 500, NULL), NULL);
+    EXPECT(stereopsis_drive_decide(drive, h, 500, (stereopsis_verdict *)MISALIGN(&verdict)), MISALIGNED);
+    EXPECT(stereopsis_drive_decide(drive, h, 500, (stereopsis_verdict *)(void *)d.memory), OVERLAP);
+    EXPECT(stereopsis_drive_decide(drive, h, 500, (stereopsis_verdict *)(void *)(g.memory + 64)), OVERLAP);
+    EXPECT(stereopsis_drive_decide(drive, (stereopsis_obstacles *)(void *)monitor, 500, &verdict), NOT_INITIALISED);
+    CHECK(memcmp(&verdict, &untouched, sizeof verdict) == 0);
+    /* Nothing is clear before a frame, nor in a frame without rows. */
+    EXPECT(stereopsis_drive_decide(drive, h, 0, &verdict), OK);
+    CHECK(verdict.decision == STEREOPSIS_DECISION_BLIND && verdict.blind == STEREOPSIS_BLIND_NO_FRAME);
+    CHECK(frame(h, 0) == STEREOPSIS_BLIND_ROWS_LOST);
+    EXPECT(stereopsis_drive_decide(drive, h, 500, &verdict), OK);
+    CHECK(verdict.decision == STEREOPSIS_DECISION_BLIND && verdict.blind == STEREOPSIS_BLIND_ROWS_LOST);
+    /* The wall: far away, then near for a faster vehicle. */
+    CHECK(frame(h, HEIGHT) == STEREOPSIS_BLIND_NOT);
+    EXPECT(stereopsis_drive_decide(drive, h, 300, &verdict), OK);
+    CHECK(verdict.decision == STEREOPSIS_DECISION_CLEAR && verdict.blind == 0 && verdict.distance_mm == 0);
+    CHECK(verdict.nearest == STEREOPSIS_STIXEL_OBSTACLE && verdict.contact_ms > 8000 && verdict.contact_ms < 9000);
+    EXPECT(stereopsis_drive_decide(drive, h, 1300, &verdict), OK);
+    CHECK(verdict.decision == STEREOPSIS_DECISION_SLOW && verdict.distance_mm > 2400 && verdict.distance_mm < 2600);
+    EXPECT(stereopsis_drive_decide(drive, h, 2300, &verdict), OK);
+    CHECK(verdict.decision == STEREOPSIS_DECISION_STOP && verdict.stopping_mm > 2600);
+    EXPECT(stereopsis_drive_decide(drive, h, 0, &verdict), OK);
+    CHECK(verdict.contact_ms == STEREOPSIS_NO_CONTACT);
+    CHECK(stereopsis_speed_mm_s(20, 40000) == 500 && stereopsis_speed_mm_s(20, 0) == 0);
+    EXPECT(stereopsis_free_space_update(NULL, h), NULL);
+    EXPECT(stereopsis_free_space_update(space, NULL), NULL);
+    EXPECT(stereopsis_free_space_sectors(space, NULL, SECTORS), NULL);
+    EXPECT(stereopsis_free_space_sectors(space, sectors, SIZE_MAX), TOO_MANY);
+    EXPECT(stereopsis_free_space_sectors(space, (stereopsis_sector *)(void *)f.memory, 1), OVERLAP);
+    EXPECT(stereopsis_free_space_sectors(space, sectors, SECTORS), OK);
+    CHECK(sectors[0].state == STEREOPSIS_SECTOR_BLIND);
+    EXPECT(stereopsis_free_space_update(space, h), OK);
+    EXPECT(stereopsis_free_space_sectors(space, sectors, SECTORS), OK);
+    CHECK(sectors[0].state == STEREOPSIS_SECTOR_OBSTACLE && sectors[0].depth_mm == 2600);
+    /* Cameras that see nothing, and then the monitor's own misuse. */
+    memset(line, 0, sizeof line);
+    EXPECT(stereopsis_pair_monitor_begin_frame(NULL), NULL);
+    EXPECT(stereopsis_pair_monitor_begin_frame(monitor), OK);
+    EXPECT(stereopsis_pair_monitor_push(NULL, line, line, WIDTH), NULL);
+    EXPECT(stereopsis_pair_monitor_push(monitor, NULL, line, WIDTH), NULL);
+    EXPECT(stereopsis_pair_monitor_push(monitor, line, NULL, WIDTH), NULL);
+    EXPECT(stereopsis_pair_monitor_push(monitor, line, line, SIZE_MAX), TOO_MANY);
+    EXPECT(stereopsis_pair_monitor_push(monitor, line, p.memory, WIDTH), OVERLAP);
+    for (int y = 0; y < HEIGHT; y++) EXPECT(stereopsis_pair_monitor_push(monitor, line, line, WIDTH), OK);
+    EXPECT(stereopsis_pair_monitor_health(monitor, NULL, &health[1], &health[2]), NULL);
+    EXPECT(stereopsis_pair_monitor_health(monitor, &health[0], &health[0], &health[2]), OVERLAP);
+    EXPECT(stereopsis_pair_monitor_health(monitor, &health[0], &health[1], p.memory), OVERLAP);
+    CHECK(health[0] == 9 && health[1] == 9 && health[2] == 9);
+    EXPECT(stereopsis_pair_monitor_health(monitor, &health[0], &health[1], &health[2]), OK);
+    CHECK(health[0] == STEREOPSIS_CAMERA_BLACK && health[1] == STEREOPSIS_CAMERA_BLACK && health[2] == 0);
+    EXPECT(stereopsis_obstacles_cameras(h, monitor), NOT_BEGUN);
+    EXPECT(stereopsis_obstacles_begin_frame(h), OK);
+    EXPECT(stereopsis_obstacles_cameras(NULL, monitor), NULL);
+    EXPECT(stereopsis_obstacles_cameras(h, NULL), NULL);
+    EXPECT(stereopsis_obstacles_cameras(h, monitor), OK);
+    EXPECT(stereopsis_obstacles_finish(h, &health[0]), OK);
+    CHECK(health[0] == STEREOPSIS_BLIND_CAMERA);
+    EXPECT(stereopsis_obstacles_deinit(h), OK);
+    EXPECT(stereopsis_drive_decide(drive, h, 500, &verdict), NOT_INITIALISED);
+    EXPECT(stereopsis_drive_deinit(drive), OK);
+    EXPECT(stereopsis_drive_deinit(drive), NOT_INITIALISED);
+    EXPECT(stereopsis_free_space_deinit(NULL), NULL);
+    EXPECT(stereopsis_free_space_deinit(space), OK);
+    EXPECT(stereopsis_free_space_deinit(space), NOT_INITIALISED);
+    EXPECT(stereopsis_pair_monitor_deinit(monitor), OK);
+    EXPECT(stereopsis_pair_monitor_deinit(monitor), NOT_INITIALISED);
+    release(g), release(d), release(f), release(p);
+}
+
+int main(void) {
+    finders();
+    drives();
+    printf("%d failures\n", failures);
+    return failures > 0;
+}

@@ -4,19 +4,24 @@
 //! | input | bound |
 //! | --- | --- |
 //! | images | [`IMAGE_SIDE`] columns and rows, [`IMAGE_BYTES`], regular files only |
+//! | truths, results and masks beside them | the same, also through a pipe; float maps of 2^28 pixels |
 //! | calibrations | [`CALIBRATION_BYTES`], elements nested [`DEPTH`] deep |
 //! | tables: matches, positions, poses | [`TABLE_BYTES`]; [`MATCHES`] matches |
 //! | problems of bundle adjustment | [`PROBLEM_BYTES`] |
+//! | the live page's module | [`MODULE_BYTES`] |
 //! | anything that comes through a pipe | [`PIPE_BYTES`] too |
 
+use image::{DynamicImage, ImageReader, ImageResult, Limits};
 use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io::{self, Cursor, Read};
 use std::path::Path;
 
 /// The most columns and the most rows of an image.
 pub const IMAGE_SIDE: u16 = 4096;
 /// The longest image file: four samples of 48 bits for each pixel of the largest image.
 pub const IMAGE_BYTES: u64 = 24 * (IMAGE_SIDE as u64).pow(2);
+/// The most that a decoder of images may allocate: the largest image, RGBA with 16 bits, twice.
+pub const DECODER_BYTES: u64 = 16 * (IMAGE_SIDE as u64).pow(2);
 /// The longest calibration file.
 pub const CALIBRATION_BYTES: u64 = 1 << 20;
 /// How deep a calibration file's elements may be nested.
@@ -27,6 +32,8 @@ pub const TABLE_BYTES: u64 = 64 << 20;
 pub const MATCHES: usize = 100_000;
 /// The longest problem of bundle adjustment: twice the largest of "Bundle Adjustment in the Large".
 pub const PROBLEM_BYTES: u64 = 2 << 30;
+/// The longest module of WebAssembly.
+pub const MODULE_BYTES: u64 = 64 << 20;
 /// The most that comes through a pipe, whose end is not known before.
 pub const PIPE_BYTES: u64 = 64 << 20;
 
@@ -50,6 +57,17 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open(path, most)?.read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+/// A picture of these bytes, told by its content, of at most [`IMAGE_SIDE`] columns and rows: the header says
+/// how large it is, before anything is decoded.
+pub fn picture(bytes: &[u8]) -> ImageResult<DynamicImage> {
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
+    let mut limits = Limits::no_limits();
+    (limits.max_image_width, limits.max_image_height) = (Some(IMAGE_SIDE.into()), Some(IMAGE_SIDE.into()));
+    limits.max_alloc = Some(DECODER_BYTES);
+    reader.limits(limits);
+    reader.decode()
 }
 
 fn too_long(most: u64) -> io::Error {
@@ -86,5 +104,13 @@ mod tests {
         assert_eq!(error.to_string(), "it is longer than 999 bytes, the most that is read");
         let error = read(Path::new("/"), 9).expect_err("a folder");
         assert_eq!(error.kind(), io::ErrorKind::IsADirectory);
+    }
+
+    #[test]
+    fn a_picture_larger_than_any_is_refused_by_its_header() {
+        let of =
+            |side: u32| picture(format!("P5\n{side} 1\n255\n").as_bytes()).expect_err("no pixel").to_string();
+        assert!(of(4097).contains("dimension"), "{}", of(4097));
+        assert!(!of(4096).contains("dimension"), "{}", of(4096));
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! A value of positive infinity says that there is no answer, as in the Middlebury stereo pages' files.
 
-use std::io::{self, BufRead, Write};
+use std::io::{self, BufRead, Read, Write};
 
 /// One float for each pixel, rows from top to bottom.
 #[derive(Clone, PartialEq, Debug)]
@@ -63,7 +63,7 @@ pub fn read(from: &mut dyn BufRead) -> Result<FloatMap, PfmError> {
     let mut header = |line| -> Result<String, PfmError> {
         let mut text = Vec::new();
         // A file of another kind may have no line end for long.
-        io::Read::take(&mut *from, 100).read_until(b'\n', &mut text)?;
+        (&mut *from).take(100).read_until(b'\n', &mut text)?;
         String::from_utf8(text)
             .map(|text| text.trim_end().to_owned())
             .map_err(|_| PfmError::Header { line, found: "binary".into() })
@@ -84,8 +84,12 @@ pub fn read(from: &mut dyn BufRead) -> Result<FloatMap, PfmError> {
     };
     let pixels = width.checked_mul(height).filter(|&pixels| pixels <= 1 << 28);
     let Some(pixels) = pixels else { return Err(PfmError::TooLarge { width, height }) };
-    let mut bytes = vec![0; pixels * 4];
-    from.read_exact(&mut bytes)?;
+    // It grows with what is there: a header may promise more than the file has.
+    let mut bytes = Vec::new();
+    (&mut *from).take(pixels as u64 * 4).read_to_end(&mut bytes)?;
+    if bytes.len() < pixels * 4 {
+        return Err(PfmError::Read(io::ErrorKind::UnexpectedEof.into()));
+    }
     let to_float = if little_endian { f32::from_le_bytes } else { f32::from_be_bytes };
     let upwards: Vec<f32> = bytes.as_chunks::<4>().0.iter().map(|&b| to_float(b)).collect();
     let values = upwards.chunks_exact(width.max(1)).rev().flatten().copied().collect();

@@ -2,7 +2,8 @@
 //! two views, `bundle` their adjustment, `features` corners and their matches, `focus` depth by a lens that
 //! moves, `gates` the pipeline behind a block of gates, `interrupt` lines that an interrupt brings,
 //! `odometry` where a pair of cameras goes, `rectify` raw lines, `any_frames` frames of any size with all
-//! that can be asked of them, `dump` the rows of the matcher's stages.
+//! that can be asked of them, `soak` frames of a camera with every fault, `dump` the rows of the matcher's
+//! stages.
 //!
 //! * [`choice`]: the method, the sizes and the board, chosen when it is built; [`board`] is the list of
 //!   boards, a package of its own.
@@ -34,7 +35,9 @@ pub mod stage_files;
 pub mod ticker;
 
 pub use firmware_boards as board;
-pub use firmware_scenes::{any_frames, drive, raw_pair, scene, sweep, two_pictures, two_views, walk, window};
+pub use firmware_scenes::{
+    any_frames, drive, raw_pair, scene, soak, sweep, two_pictures, two_views, walk, window,
+};
 
 /// The method, the sizes and the board: `build.rs` writes this from the environment.
 pub mod choice {

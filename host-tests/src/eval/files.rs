@@ -4,7 +4,6 @@ use super::EvalError;
 use crate::limits;
 use crate::pfm::{self, FloatMap};
 use image::DynamicImage;
-use std::io::Cursor;
 use std::path::Path;
 use stereopsis::geometry::camera::RectifiedRig;
 
@@ -25,8 +24,7 @@ impl DisparityFile {
     /// Disparities in px, infinite where there is none.
     pub fn read(&self, path: &Path) -> Result<FloatMap, EvalError> {
         let failed = |what: String| EvalError::new(path, what);
-        let bytes =
-            limits::read(path, limits::IMAGE_BYTES).map_err(|e| failed(format!("cannot be read ({e})")))?;
+        let bytes = bytes(path)?;
         let mut map =
             if bytes.starts_with(b"P") && bytes.get(1).is_some_and(|b| b.eq_ignore_ascii_case(&b'f')) {
                 pfm::read(&mut bytes.as_slice()).map_err(|e| failed(e.to_string()))?
@@ -54,8 +52,7 @@ impl DisparityFile {
 
     /// A picture's samples.
     fn steps(&self, bytes: &[u8]) -> Result<FloatMap, String> {
-        let reader = image::ImageReader::new(Cursor::new(bytes)).with_guessed_format();
-        let image = reader.map_err(|e| e.to_string())?.decode();
+        let image = limits::picture(bytes);
         let image = image.map_err(|e| format!("is neither PFM nor a picture of disparities ({e})"))?;
         let samples: Vec<u16> = match &image {
             DynamicImage::ImageLuma16(samples) => samples.to_vec(),
@@ -97,9 +94,16 @@ pub fn truth(
     Ok(map)
 }
 
+/// A file's bytes, of which there may be as many as of the largest image.
+fn bytes(path: &Path) -> Result<Vec<u8>, EvalError> {
+    let cannot = |e| EvalError::new(path, format!("cannot be read ({e})"));
+    limits::read(path, limits::IMAGE_BYTES).map_err(cannot)
+}
+
 /// The bytes of a mask beside a map: 255 where a pixel is scored.
 pub fn mask(path: &Path, beside: &FloatMap) -> Result<Vec<u8>, EvalError> {
-    let image = image::open(path).map_err(|e| EvalError::new(path, format!("is no picture ({e})")))?;
+    let image = limits::picture(&bytes(path)?);
+    let image = image.map_err(|e| EvalError::new(path, format!("is no picture ({e})")))?;
     let (given, wanted) = ((image.width() as usize, image.height() as usize), (beside.width, beside.height));
     same_size(path, given, wanted)?;
     Ok(image.into_luma8().into_raw())
@@ -127,6 +131,7 @@ mod tests {
     use super::*;
     use image::{ImageBuffer, Luma};
     use std::fs;
+    use std::io::Cursor;
 
     fn read(file: DisparityFile, name: &str, bytes: &[u8]) -> Result<FloatMap, EvalError> {
         let folder = tempfile::tempdir().expect("a temporary folder");

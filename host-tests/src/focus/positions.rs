@@ -22,11 +22,19 @@ pub enum PositionsFault {
     /// The operating system refused to open or read the file, or it is no text.
     #[error("cannot be read ({0}); give a text file with a line for each frame")]
     Read(csv::Error),
-    /// There are not as many lines as frames.
+    /// There are fewer lines than frames.
     #[error("has {found} positions for {frames} frames; give one a frame, in the order of their names")]
     Count {
         /// Positions in the file.
         found: usize,
+        /// Frames of the stack.
+        frames: usize,
+    },
+    /// There are more lines than frames.
+    #[error(
+        "has more than {frames} positions for {frames} frames; give one a frame, in the order of their names"
+    )]
+    TooMany {
         /// Frames of the stack.
         frames: usize,
     },
@@ -87,7 +95,9 @@ fn read(path: &Path, lens: ThinLens<f64>, frames: usize) -> Result<Vec<f32>, Pos
     options.has_headers(false).flexible(true).trim(Trim::All).comment(Some(b'#'));
     let bounded = limits::open(path, limits::TABLE_BYTES).map_err(|e| PositionsFault::Read(e.into()))?;
     let mut reader = options.from_reader(bounded);
-    let records: Vec<_> = reader.records().collect::<Result<_, _>>().map_err(PositionsFault::Read)?;
+    // The header, and one more than there may be: a file may have no end.
+    let records = reader.records().take(frames.saturating_add(2));
+    let records: Vec<_> = records.collect::<Result<_, _>>().map_err(PositionsFault::Read)?;
     let header = records.first().filter(|first| first.iter().all(|word| word.parse::<f64>().is_err()));
     let place = |header: &StringRecord| {
         let known = header.iter().enumerate().find_map(|(place, word)| {
@@ -111,7 +121,10 @@ fn read(path: &Path, lens: ThinLens<f64>, frames: usize) -> Result<Vec<f32>, Pos
             number.ok_or_else(|| PositionsFault::NotANumber { line, found: word.to_owned() })? * unit,
         ));
     }
-    if values.len() != frames {
+    if values.len() > frames {
+        return Err(PositionsFault::TooMany { frames });
+    }
+    if values.len() < frames {
         return Err(PositionsFault::Count { found: values.len(), frames });
     }
     let are_near = values.iter().all(|&(_, mm)| mm / 1000.0 <= 2.0 * lens.focal());

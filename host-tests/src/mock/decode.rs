@@ -2,7 +2,7 @@
 
 use super::MockError;
 use super::integrity::{self, Integrity};
-use crate::limits::IMAGE_SIDE;
+use crate::limits::{DECODER_BYTES, IMAGE_SIDE};
 use image::error::{ImageError, LimitErrorKind};
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
@@ -13,8 +13,6 @@ use stereopsis::camera::{LineFormat, PixelFormat};
 
 /// The longest file that is read: an uncompressed image of the largest size, RGBA with 16 bits, as ASCII PPM.
 const MOST_FILE_BYTES: u64 = crate::limits::IMAGE_BYTES;
-/// What a decoder may allocate: the largest image, RGBA with 16 bits, twice.
-const MOST_DECODER_BYTES: u64 = IMAGE_SIDE as u64 * IMAGE_SIDE as u64 * 16;
 
 /// A decoded file.
 pub(super) struct Picture {
@@ -50,7 +48,7 @@ pub(super) fn read(path: &Path) -> Result<Picture, MockError> {
 
     let mut reader = ImageReader::with_format(Cursor::new(&file), format);
     let mut limits = Limits::no_limits();
-    limits.max_alloc = Some(MOST_DECODER_BYTES);
+    limits.max_alloc = Some(DECODER_BYTES);
     reader.limits(limits);
     let mut decoder = match reader.into_decoder() {
         Ok(decoder) => decoder,

@@ -14,6 +14,7 @@ mod score;
 pub use altered::Alteration;
 pub use score::Score;
 
+use crate::limits;
 use crate::mock::{MockCamera, MockError};
 use crate::run::MOST_WIDTH;
 use image::GrayImage;
@@ -137,8 +138,9 @@ impl RealScene {
 
 /// What `meta.json` says of the range.
 pub(crate) fn disparities(path: &Path) -> Result<u16, RealError> {
-    let text = fs::read_to_string(path).map_err(|source| RealError::Read { path: path.into(), source })?;
-    let meta: Option<serde_json::Value> = serde_json::from_str(&text).ok();
+    let text = limits::read(path, limits::CALIBRATION_BYTES);
+    let text = text.map_err(|source| RealError::Read { path: path.into(), source })?;
+    let meta: Option<serde_json::Value> = serde_json::from_slice(&text).ok();
     let stated = meta.and_then(|meta| meta.get("disparities")?.as_u64());
     let range = stated.and_then(|n| u16::try_from(n).ok()).filter(|n| (16..=256).contains(n));
     range.ok_or_else(|| RealError::Disparities { path: path.into() })

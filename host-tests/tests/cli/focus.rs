@@ -120,6 +120,7 @@ fn what_cannot_be_done_is_named() {
         (format!("{lines}x\n"), "line 7"),
         (format!("{lines}4.0\n"), "line 7"),
         (format!("{lines}4.01\n"), "position 7"),
+        (format!("{lines}4.11\n4.12\n"), "more than 7 positions"),
         (String::new(), "0 positions"),
     ] {
         let bad = bench.put("bad.csv", text.as_bytes()).display().to_string();

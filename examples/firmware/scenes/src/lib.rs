@@ -5,6 +5,7 @@
 //! * [`drive`]: a robot that drives towards a board, and what its motors are given.
 //! * [`scene`]: a scene that is computed line by line. [`pgm`]: the header of a picture.
 //! * [`raw_pair`]: raw lines, rectified, and depth from them.
+//! * [`soak`]: frames of a camera with faults, and what became of each row.
 //! * [`two_pictures`]: features of two cameras' lines, and their matches.
 //! * [`two_views`]: matches of a known world, and the pose and points that they give. [`window`]: two views
 //!   and their points, adjusted.
@@ -17,6 +18,7 @@ pub mod drive;
 pub mod pgm;
 pub mod raw_pair;
 pub mod scene;
+pub mod soak;
 pub mod sweep;
 pub mod two_pictures;
 pub mod two_views;

@@ -1,11 +1,12 @@
 //! Where lines come from: a scene that is computed, or two files on the host.
 //!
 //! * [`scene`]: the built-in scene. [`pgm`]: the header of a picture. [`files`]: two pictures, read line by
-//!   line. [`memory`]: a picture in memory.
+//!   line. [`memory`]: a picture in memory. [`recorded`]: a recording, with its faults.
 //! * [`Camera`]: one of the two, as a program takes it. [`timed`]: any camera, its own time measured.
 
 pub mod files;
 pub mod memory;
+pub mod recorded;
 pub use firmware_scenes::{pgm, scene};
 pub mod timed;
 

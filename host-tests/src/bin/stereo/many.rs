@@ -13,6 +13,7 @@ use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use stereopsis_host::command_line::one_line;
+use stereopsis_host::limits;
 use stereopsis_host::output::Staging;
 
 /// The table of all pairs.
@@ -61,7 +62,7 @@ pub fn run(
     let mut beside = Vec::new();
     for path in args.files() {
         let failed = |e| Failure::new(format!("{}: cannot be read ({e})", path.display()));
-        beside.extend(fs::read(&path).map_err(failed)?);
+        beside.extend(limits::read(&path, limits::IMAGE_BYTES).map_err(failed)?);
     }
     let of = count.map_or(String::new(), |count| format!(" of {count}"));
     let mut lines = Vec::new();

@@ -9,7 +9,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use stereopsis_host::focus::stack::images;
-use stereopsis_host::limits::IMAGE_SIDE;
+use stereopsis_host::limits::{self, IMAGE_SIDE};
 use stereopsis_host::mock::MockCamera;
 
 #[derive(Clone, Debug, Args)]
@@ -153,7 +153,8 @@ impl Input {
     /// The bytes that it is made of: of files their content.
     pub fn bytes(&self) -> Result<Vec<u8>, Failure> {
         let read = |path: &PathBuf| {
-            std::fs::read(path).map_err(|e| Failure::new(format!("{}: cannot be read ({e})", path.display())))
+            limits::read(path, limits::IMAGE_BYTES)
+                .map_err(|e| Failure::new(format!("{}: cannot be read ({e})", path.display())))
         };
         match self {
             Self::Files([left, right]) => Ok([read(left)?, read(right)?].concat()),

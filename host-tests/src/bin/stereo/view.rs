@@ -5,11 +5,11 @@ use crate::input::Pair;
 use crate::serve;
 use crate::shared::{disparities, print};
 use clap::Args;
-use std::fs;
 use std::path::{Path, PathBuf};
 use stereopsis::matching::Config;
 use stereopsis_host::calibration::Calibration;
 use stereopsis_host::command_line::one_line;
+use stereopsis_host::limits;
 use stereopsis_host::live::{Given, MODULE_FILE, is_module, page};
 use stereopsis_host::output::Staging;
 
@@ -92,7 +92,7 @@ pub fn run(args: &ViewArgs) -> Result<(), Failure> {
 fn module(named: Option<&Path>) -> Result<Vec<u8>, Failure> {
     let beside = || std::env::current_exe().map(|own| own.with_file_name(MODULE_FILE));
     let path = named.map_or_else(beside, |path| Ok(path.to_owned()))?;
-    let bytes = fs::read(&path).map_err(|e| match named {
+    let bytes = limits::read(&path, limits::MODULE_BYTES).map_err(|e| match named {
         Some(path) => Failure::new(format!("--module {}: {e}", path.display())),
         None => Failure::new(format!(
             "the page's module {MODULE_FILE} is not beside this program: run `cargo xtask view` in the \

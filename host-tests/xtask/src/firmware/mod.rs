@@ -50,7 +50,8 @@ pub mod tables;
 mod two_views_all;
 
 pub use arguments::Arguments;
-pub use program::{VECTORS, cargo};
+pub use program::{Optimised, VECTORS, cargo};
+pub use results::Ran;
 
 use crate::setup;
 use crate::steps::{Failure, Outcome};
@@ -63,7 +64,6 @@ use focus::Focus;
 use interrupt::Interrupt;
 use odometry::Odometry;
 use pose::Pose;
-use program::Optimised;
 use rectify::Rectify;
 use serde::Serialize;
 use std::path::Path;

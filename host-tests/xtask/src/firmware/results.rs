@@ -55,10 +55,25 @@ impl Ran {
     /// Builds the program of this name and runs it; fails when the file `NAME.bin` is not, to the bit, what
     /// the host has for it, when its clock is another, and when it can panic.
     pub fn of(board: Board, program: &str, optimised: Optimised, host: &[u8]) -> Outcome<Self> {
+        Self::with(board, program, optimised, &[], host)
+    }
+
+    /// The same of a program that reads files, by their names and bytes.
+    pub fn with(
+        board: Board,
+        program: &str,
+        optimised: Optimised,
+        files: &[(&str, &[u8])],
+        host: &[u8],
+    ) -> Outcome<Self> {
         let name = format!("{}-{program}-{}", board.core, optimised.profile());
         let failed = |what: String| Failure::new(format!("{name}: {what}"));
         let elf = build_plain(board, program, optimised, "")?;
         let folder = tempfile::tempdir().map_err(|e| failed(e.to_string()))?;
+        for (file, bytes) in files {
+            let written = fs::write(folder.path().join(file), bytes);
+            written.map_err(|e| failed(format!("{file}: {e}")))?;
+        }
         let printed = emulate::run_elf(board, &elf, &name, folder.path())?;
         for line in log::read(&elf, &name, folder.path())? {
             println!("{name}: {line}");

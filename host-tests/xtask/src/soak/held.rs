@@ -1,0 +1,117 @@
+//! The rows of a frame with faults beside those of the frame without, and beside what was done to it.
+
+use super::source::ByTurns;
+use super::{Sums, config};
+use crate::steps::{Failure, Outcome};
+use stereopsis::camera::StereoSource;
+use stereopsis::matching::{Method, Row};
+use stereopsis::pipeline::{Guarded, Pipeline};
+use stereopsis::units::{Disparity, PixelFlags};
+use stereopsis_host::fault::{Fault, Record};
+use stereopsis_host::map::DisparityMap;
+
+/// A row's disparities, flags and confidences.
+#[derive(PartialEq)]
+pub struct Kept(Vec<Disparity>, Vec<PixelFlags>, Vec<u8>);
+
+impl From<Row<'_>> for Kept {
+    fn from(row: Row<'_>) -> Self {
+        Self(row.disparities().to_vec(), row.flags().to_vec(), row.confidences().to_vec())
+    }
+}
+
+impl Kept {
+    /// Row `y` of a map.
+    pub fn of(map: &DisparityMap, y: usize) -> Self {
+        let at = y * map.width..(y + 1) * map.width;
+        let row = (&map.disparity[at.clone()], &map.flags[at.clone()], &map.confidence[at]);
+        Self(row.0.to_vec(), row.1.to_vec(), row.2.to_vec())
+    }
+
+    /// The row beside the one without a fault.
+    pub fn beside(&self, right: &Self) -> Came {
+        let is_flagged = self.1.iter().all(|flags| flags.contains(PixelFlags::DAMAGED));
+        Came { is_flagged, is_right: self == right }
+    }
+}
+
+/// What became of a row.
+#[derive(Clone, Copy, Debug)]
+pub struct Came {
+    /// Each of its pixels is flagged as damaged.
+    pub is_flagged: bool,
+    /// It is the row of the frame without a fault, to the bit.
+    pub is_right: bool,
+}
+
+/// How many rows above and below a lost line are flagged.
+#[derive(Clone, Copy)]
+pub struct Reach {
+    up: usize,
+    down: usize,
+}
+
+impl Reach {
+    /// That of a method.
+    pub fn of<S: Method, const W: usize, const D: usize>(guarded: &Guarded<S, W, D>) -> Self {
+        Self { up: Pipeline::<S, W, D>::LATENCY, down: guarded.reach_down() }
+    }
+
+    fn holds(self, y: usize, line: u16) -> bool {
+        let line = usize::from(line);
+        y + self.up >= line && y <= line.saturating_add(self.down)
+    }
+}
+
+impl Sums {
+    /// Adds a frame; an error names the first row that is wrong without a flag, flagged without a fault, or
+    /// not flagged in spite of one.
+    pub fn add(&mut self, rows: &[Came], lines: u16, reach: Reach, record: &Record) -> Result<(), String> {
+        let mut flagged = 0;
+        for (y, row) in rows.iter().enumerate() {
+            let has_cause = record.lost.iter().any(|&(line, _): &(u16, Fault)| reach.holds(y, line));
+            if !row.is_flagged && !row.is_right {
+                return Err(format!("row {y} is wrong and not flagged: {record:?}"));
+            }
+            if row.is_flagged && !has_cause {
+                return Err(format!("row {y} is flagged without a fault: {record:?}"));
+            }
+            if !row.is_flagged && has_cause {
+                return Err(format!("row {y} is not flagged in spite of a fault: {record:?}"));
+            }
+            flagged += u64::from(row.is_flagged);
+        }
+        // A frame that nothing was done to gives all of its rows.
+        let is_untouched = record.frame.is_none() && record.lost.is_empty() && record.ended.is_none();
+        if is_untouched && rows.len() != usize::from(lines) {
+            return Err(format!("{} rows of a frame without a fault", rows.len()));
+        }
+        self.frames += 1;
+        self.rows += rows.len() as u64;
+        self.flagged += flagged;
+        self.damaged_frames += u64::from(flagged > 0 || rows.len() != usize::from(lines));
+        Ok(())
+    }
+}
+
+/// The rows of the two pairs without a fault, by their turn.
+pub fn reference<S: Method>() -> Outcome<[Vec<Kept>; 2]> {
+    let mut source = ByTurns::new()?;
+    let mut pipeline = Box::new(Pipeline::<S, 320, 32>::new());
+    let failed = |e: &dyn std::fmt::Display| Failure::new(format!("{}: {e}", S::NAME));
+    pipeline.start(&config::<S>()).map_err(|e| failed(&e))?;
+    let mut frame = || {
+        pipeline.begin_frame(&mut source).map_err(|e| failed(&e))?;
+        let mut rows = Vec::new();
+        while let Some(row) = pipeline.next_row(&mut source).map_err(|e| failed(&e))? {
+            rows.push(Kept::from(row));
+        }
+        if rows.len() != usize::from(source.format().height) {
+            return Err(failed(&"a frame without a fault lacks rows"));
+        }
+        Outcome::Ok(rows)
+    };
+    // The first turn is 1.
+    let (odd, even) = (frame()?, frame()?);
+    Ok([even, odd])
+}

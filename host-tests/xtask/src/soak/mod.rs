@@ -1,0 +1,95 @@
+//! `cargo xtask soak`: many frames of a camera with every fault, each row held to the frame without one.
+//!
+//! * [`direct`]: the camera before the pipeline. [`replayed`]: a recording of it, through what `stereo replay`
+//!   plays recordings with. [`board`]: such a recording on an emulated Cortex-M4.
+//! * [`source`]: what the camera sees, and what was done to each of its frames. [`held`]: a frame's rows
+//!   beside that.
+
+mod board;
+mod direct;
+mod held;
+mod replayed;
+mod source;
+
+use crate::steps::{Failure, Outcome};
+use clap::Args;
+use std::fs;
+use stereopsis::matching::{Block, Config, Fast, Method, Sgm};
+
+const WIDTH: u16 = 320;
+const HEIGHT: u16 = 240;
+const DISPARITIES: u16 = 32;
+/// The probability of a fault in a line, and in a frame.
+const RATES: [f64; 5] = [1e-4, 1e-3, 1e-2, 1e-1, 0.5];
+/// What the program's memory may grow by, KB: the largest record of a frame's faults.
+const MOST_GROWTH_KB: u64 = 1024;
+
+/// What is run.
+#[derive(Args)]
+pub struct Arguments {
+    /// Frames in all, shared by five rates of faults and three methods: as many from the camera, and as many
+    /// from recordings.
+    #[arg(long, value_name = "N", default_value_t = 10_000)]
+    frames: u32,
+    /// Frames on an emulated Cortex-M4, shared by the rates; 0 leaves it out.
+    #[arg(long, value_name = "N", default_value_t = 200)]
+    emulated: u32,
+}
+
+/// Runs the frames, and names the first row that is wrong without a flag, or flagged without a fault.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let rates = RATES.len() as u32;
+    let each = arguments.frames.div_ceil(3 * rates).max(1);
+    println!("from      method  rate     frames  rows      flagged   damaged frames  KB      s");
+    direct::soak::<Fast>(each)?;
+    direct::soak::<Block>(each)?;
+    direct::soak::<Sgm>(each)?;
+    replayed::soak::<Fast>(each)?;
+    replayed::soak::<Block>(each)?;
+    replayed::soak::<Sgm>(each)?;
+    match arguments.emulated {
+        0 => Ok(()),
+        emulated => board::soak(emulated.div_ceil(rates)),
+    }
+}
+
+fn config<S: Method>() -> Config {
+    Config { confidence: true, ..Config::for_method::<S>(WIDTH, HEIGHT, DISPARITIES) }
+}
+
+/// What came of the frames at one rate.
+#[derive(Default)]
+struct Sums {
+    frames: u32,
+    rows: u64,
+    flagged: u64,
+    /// Frames with a flagged row, or without the last rows.
+    damaged_frames: u64,
+}
+
+impl Sums {
+    /// A line of the table; fails when the memory that the program has grew.
+    fn tell(&self, from: &str, method: &str, rate: f64, seconds: f64, first_kb: &mut Option<u64>) -> Outcome {
+        let Self { frames, rows, flagged, damaged_frames } = self;
+        let used_kb = resident_kb()?;
+        println!(
+            "{from:8}  {method:6}  {rate:<7}  {frames:6}  {rows:8}  {flagged:8}  {damaged_frames:14}  \
+             {used_kb:6}  {seconds:.0}"
+        );
+        let first_kb = *first_kb.get_or_insert(used_kb);
+        if used_kb > first_kb + MOST_GROWTH_KB {
+            return Err(Failure::new(format!(
+                "{from}, {method}: memory grew from {first_kb} to {used_kb} KB"
+            )));
+        }
+        Ok(())
+    }
+}
+
+/// The memory that the program has, KB; 0 where the system does not say so.
+fn resident_kb() -> Outcome<u64> {
+    let Ok(status) = fs::read_to_string("/proc/self/status") else { return Ok(0) };
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    let number = line.and_then(|line| line.split_whitespace().next()?.parse().ok());
+    number.ok_or_else(|| Failure::new("/proc/self/status has no VmRSS"))
+}

@@ -19,6 +19,17 @@ pub fn usage_line(error: &Error, commands: &str) -> String {
     line.strip_prefix("error: ").map_or(line.clone(), str::to_owned)
 }
 
+/// The longest word of a file that is said again, characters.
+const MOST_SAID: usize = 60;
+
+/// A word of a file as an error says it again: its beginning, where it is long.
+pub fn word(found: &str) -> String {
+    match found.char_indices().nth(MOST_SAID) {
+        Some((end, _)) => format!("{}...", &found[..end]),
+        None => found.to_owned(),
+    }
+}
+
 /// The text with line ends and other control characters, which a file's name may hold, written out.
 pub fn one_line(text: &str) -> String {
     text.chars().flat_map(|c| if c.is_control() { c.escape_default().collect() } else { vec![c] }).collect()

@@ -1,5 +1,6 @@
 //! Correspondences from a file: lines of `x1,y1,x2,y2`.
 
+use crate::command_line;
 use crate::limits::{self, MATCHES};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use std::path::{Path, PathBuf};
@@ -99,7 +100,11 @@ fn correspondence(record: &StringRecord, places: [usize; 4]) -> Result<Correspon
         let word = word.ok_or(MatchesFault::Missing { line, column })?;
         // What is beyond a millionth of a number of f32 is no place in an image either.
         let parsed = word.parse().ok().filter(|number: &f64| number.is_finite() && number.abs() < 1e30);
-        *number = parsed.ok_or_else(|| MatchesFault::NotANumber { line, column, found: word.to_owned() })?;
+        *number = parsed.ok_or_else(|| MatchesFault::NotANumber {
+            line,
+            column,
+            found: command_line::word(word),
+        })?;
     }
     let [u, v, u2, v2] = numbers;
     Ok(Correspondence::new(u, v, u2, v2))

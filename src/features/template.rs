@@ -100,7 +100,8 @@ impl Template {
     ///
     /// The inverse compositional algorithm (Baker & Matthews 2004): Gauss-Newton with the template's
     /// gradients, at most ten steps. Refused where the pixels hold no corner, at the picture's edge, and
-    /// farther than `farthest_px` from the start, of which less than 0 is 0.
+    /// farther than `farthest_px` from the start, of which less than 0, and what is no
+    /// number, is 0.
     pub fn align(
         &self,
         picture: &Picture<'_>,

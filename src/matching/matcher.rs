@@ -201,12 +201,13 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     fn last_row(&mut self) -> Option<(mask::Masked<'_>, [&mut [u8]; 2])> {
         let width = usize::from(self.config.width).min(W);
         let index = self.taken.checked_sub(Self::DELAY + 1)?;
-        let Finished { confidences, masks } = self.memory.finished(width).finished();
+        let Finished { confidences, withheld, masks } = self.memory.finished(width).finished();
         let row = mask::Masked {
             index: index as u16,
             answers: row_mut(self.finished.as_flattened_mut(), index % HISTORY, width),
             flags: row_mut(self.band_flags.as_flattened_mut(), index % BAND, width),
             confidences: if self.config.confidence { confidences } else { &mut [] },
+            withheld,
         };
         Some((row, masks))
     }

@@ -1,7 +1,7 @@
 //! The file's numbers, one after the other.
 
 use super::{BalError, BalFault, BalProblem, view};
-use crate::limits;
+use crate::{command_line, limits};
 use nalgebra::{Point2, Point3};
 use std::path::Path;
 use stereopsis::motion::bundle::Observation;
@@ -50,13 +50,19 @@ impl<'a, I: Iterator<Item = (usize, &'a str)>> Words<'a, I> {
     fn whole(&mut self, what: impl Fn() -> String, least: usize, most: usize) -> Result<usize, BalFault> {
         let (line, word) = self.next(&what)?;
         let value = word.parse().ok().filter(|value| (least..=most).contains(value));
-        value.ok_or_else(|| BalFault::Whole { line, what: what(), found: word.into(), least, most })
+        value.ok_or_else(|| BalFault::Whole {
+            line,
+            what: what(),
+            found: command_line::word(word),
+            least,
+            most,
+        })
     }
 
     fn number(&mut self, what: impl Fn() -> String) -> Result<f64, BalFault> {
         let (line, word) = self.next(&what)?;
         let value = word.parse().ok().filter(|value: &f64| value.is_finite());
-        value.ok_or_else(|| BalFault::NotANumber { line, what: what(), found: word.into() })
+        value.ok_or_else(|| BalFault::NotANumber { line, what: what(), found: command_line::word(word) })
     }
 
     fn numbers<const N: usize>(&mut self, what: impl Fn() -> String) -> Result<[f64; N], BalFault> {
@@ -92,7 +98,13 @@ fn parse(text: &str) -> Result<BalProblem, BalFault> {
     let places = (0..points).map(|n| words.numbers::<3>(|| format!("point {n}")).map(Point3::from));
     let places = places.collect::<Result<_, _>>()?;
     if let Some((line, found)) = words.words.next() {
-        return Err(BalFault::TooMany { line, found: found.into(), cameras, points, observations });
+        return Err(BalFault::TooMany {
+            line,
+            found: command_line::word(found),
+            cameras,
+            points,
+            observations,
+        });
     }
     Ok(BalProblem::new(views, places, &read))
 }

@@ -1,6 +1,6 @@
 //! Where the lens stood: a line for each frame of a stack.
 
-use crate::limits;
+use crate::{command_line, limits};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use std::path::{Path, PathBuf};
 use stereopsis::focus::{LensError, ThinLens};
@@ -118,7 +118,8 @@ fn read(path: &Path, lens: ThinLens<f64>, frames: usize) -> Result<Vec<f32>, Pos
         let number = word.parse().ok().filter(|number: &f64| number.is_finite());
         values.push((
             line,
-            number.ok_or_else(|| PositionsFault::NotANumber { line, found: word.to_owned() })? * unit,
+            number.ok_or_else(|| PositionsFault::NotANumber { line, found: command_line::word(word) })?
+                * unit,
         ));
     }
     if values.len() > frames {

@@ -100,9 +100,17 @@ pub fn config<S: Method>() -> Config {
 
 /// The rows of both pictures without a fault: of odd frames, of even frames.
 pub fn reference<S: Method>() -> [Vec<Kept>; 2] {
+    let both = reference_of::<S>(&config::<S>());
+    let [_, odd] = &both;
+    assert!(odd.iter().flat_map(|row| &row.disparities).filter(|d| d.is_some()).count() > 200);
+    both
+}
+
+/// The same by another configuration.
+pub fn reference_of<S: Method>(config: &Config) -> [Vec<Kept>; 2] {
     let mut source = Changing::new();
     let mut pipeline = Box::new(Pipeline::<S, 32, 16>::new());
-    pipeline.start(&config::<S>()).expect("the configuration fits");
+    pipeline.start(config).expect("the configuration fits");
     let mut frame = || {
         pipeline.begin_frame(&mut source).expect("no fault");
         let mut rows = Vec::new();
@@ -113,6 +121,5 @@ pub fn reference<S: Method>() -> [Vec<Kept>; 2] {
     };
     let (odd, even) = (frame(), frame());
     assert!(odd != even && odd.len() == usize::from(HEIGHT));
-    assert!(odd.iter().flat_map(|row: &Kept| &row.disparities).filter(|d| d.is_some()).count() > 200);
     [even, odd]
 }

@@ -58,6 +58,8 @@ pub(in crate::matching) struct ForAnswers<'a> {
 /// What a finished row has, a byte a pixel.
 pub(in crate::matching) struct Finished<'a> {
     pub confidences: &'a mut [u8],
+    /// The answers that are withheld of it.
+    pub withheld: &'a mut [u16],
     /// Places for the masks of the left and of the right image.
     pub masks: [&'a mut [u8]; 2],
 }
@@ -191,8 +193,10 @@ impl<'a> RowWorkspace<'a> {
         self.enter(Phase::Finished);
         let width = self.winners.len();
         let (left, right) = split_mut(part_mut(view_mut::<u16, u8>(self.right), ..2 * width), width);
+        let (confidences, withheld) = split_mut(view_mut::<Winner, u16>(self.winners), width.div_ceil(2));
         Finished {
-            confidences: part_mut(view_mut::<Winner, u8>(self.winners), ..width),
+            confidences: part_mut(view_mut::<u16, u8>(confidences), ..width),
+            withheld: part_mut(withheld, ..width),
             masks: [left, right],
         }
     }

@@ -9,6 +9,8 @@ pub(in crate::matching) struct Masked<'a> {
     pub answers: &'a mut [Disparity],
     pub flags: &'a mut [PixelFlags],
     pub confidences: &'a mut [u8],
+    /// The answers that were [withheld](super::withhold), which the rows below look at.
+    pub withheld: &'a mut [u16],
 }
 
 impl Masked<'_> {
@@ -21,6 +23,7 @@ impl Masked<'_> {
         if !keeps_answers {
             self.answers.fill(Disparity::NONE);
             self.confidences.fill(0);
+            self.withheld.fill(Disparity::NONE.raw());
         }
     }
 
@@ -64,14 +67,25 @@ mod tests {
             PixelFlags::CLEAR,
         ];
         let mut confidences = [0, 9, 9, 9, 9];
-        let row =
-            Masked { index: 0, answers: &mut answers, flags: &mut flags, confidences: &mut confidences };
+        let row = Masked {
+            index: 0,
+            answers: &mut answers,
+            flags: &mut flags,
+            confidences: &mut confidences,
+            withheld: &mut [],
+        };
         row.take_away(&[1, 1, 1, 1, 1], &[1, 0, 1, 1, 1]);
         let outside = PixelFlags::OUTSIDE;
         assert_eq!(answers, [NONE, NONE, d(48), d(47), NONE]);
         assert_eq!(flags, [PixelFlags::SPECKLE, outside, PixelFlags::FILLED, PixelFlags::CEILING, outside]);
         assert_eq!(confidences, [0, 0, 9, 9, 0]);
-        let row = Masked { index: 0, answers: &mut answers, flags: &mut flags, confidences: &mut [] };
+        let row = Masked {
+            index: 0,
+            answers: &mut answers,
+            flags: &mut flags,
+            confidences: &mut [],
+            withheld: &mut [],
+        };
         row.take_away(&[0, 1, 1, 0, 1], &[1; 5]);
         assert_eq!(answers, [NONE, NONE, d(48), NONE, NONE]);
         assert_eq!(flags, [outside, outside, PixelFlags::FILLED, outside, outside]);

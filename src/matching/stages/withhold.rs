@@ -24,7 +24,8 @@ pub(super) fn refuse_unsure(frame: &mut Frame<'_>, newest: usize) {
 }
 
 /// Gives the row that came out last the answers back that [`refuse_unsure`] took, but where it was masked
-/// since.
+/// since. A row that a lost line took the answers of has none to give back; one that is flagged for such a
+/// line and keeps its answers is looked at by rows that have no flag.
 #[inline(never)]
 pub(super) fn restore_unsure(frame: &mut Frame<'_>, newest: usize) {
     if frame.config.min_confidence > 0 && newest >= BAND {
@@ -62,10 +63,9 @@ impl Row<'_> {
 
     #[inline(never)]
     fn restore(self) {
-        const MASKED: PixelFlags = PixelFlags::OUTSIDE.union(PixelFlags::DAMAGED);
         for ((answer, flags), withheld) in self.answers.iter_mut().zip(self.flags).zip(self.withheld) {
             keep_loop();
-            if answer.is_none() && flags.without(MASKED) == *flags {
+            if answer.is_none() && flags.without(PixelFlags::OUTSIDE) == *flags {
                 *answer = Disparity::from_raw(*withheld);
             }
         }

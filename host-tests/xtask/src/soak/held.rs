@@ -1,7 +1,7 @@
 //! The rows of a frame with faults beside those of the frame without, and beside what was done to it.
 
 use super::source::ByTurns;
-use super::{Sums, config};
+use super::{Sums, config, resident_kb};
 use crate::steps::{Failure, Outcome};
 use stereopsis::camera::StereoSource;
 use stereopsis::matching::{Method, Row};
@@ -87,6 +87,9 @@ impl Sums {
             return Err(format!("{} rows of a frame without a fault", rows.len()));
         }
         self.frames += 1;
+        if self.frames == self.due.div_ceil(4) {
+            self.settled_kb = resident_kb();
+        }
         self.rows += rows.len() as u64;
         self.flagged += flagged;
         self.damaged_frames += u64::from(flagged > 0 || rows.len() != usize::from(lines));

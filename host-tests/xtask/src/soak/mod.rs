@@ -1,7 +1,7 @@
 //! `cargo xtask soak`: many frames of a camera with every fault, each row held to the frame without one.
 //!
-//! * [`direct`]: the camera before the pipeline. [`replayed`]: a recording of it, through what `stereo replay`
-//!   plays recordings with. [`board`]: such a recording on an emulated Cortex-M4.
+//! * [`direct`]: the camera before the pipeline. [`replayed`]: a recording of it, through what plays
+//!   recordings in `stereo replay`. [`board`]: such a recording on an emulated Cortex-M4.
 //! * [`source`]: what the camera sees, and what was done to each of its frames. [`held`]: a frame's rows
 //!   beside that.
 

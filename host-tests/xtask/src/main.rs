@@ -6,7 +6,6 @@
 //! * `rtl` simulates the block of `examples/fpga` before the library's second half.
 //! * `fuzz` looks for inputs that break a promise.
 //! * `miri` runs what is `unsafe` and no assembly under an interpreter that sees undefined behaviour.
-//! * `threads` runs the hand-off between two threads under ThreadSanitizer.
 //! * `soak` runs thousands of frames of a camera with every fault.
 //! * `view` builds the live page's module and shows the page.
 //! * `altered` measures how right the methods are on altered real images, beside OpenCV.
@@ -18,7 +17,7 @@
 //!
 //! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`],
 //! [`growth`], [`c`], [`arm`], [`cross`], [`mod@rtl`], [`view`], [`package`] and [`readme`] are nine of them.
-//! [`altered`] needs data that not everybody has, [`fuzz`], [`miri`], [`threads`] and [`soak`] time.
+//! [`altered`] needs data that not everybody has, [`fuzz`], [`miri`] and [`soak`] time.
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
@@ -47,7 +46,6 @@ mod setup;
 mod soak;
 mod steps;
 mod test;
-mod threads;
 mod view;
 
 /// The chores of the repository.
@@ -77,8 +75,6 @@ enum Chore {
     Fuzz(fuzz::Arguments),
     /// Runs what is unsafe and no assembly under Miri, for a 64-bit and a 32-bit processor.
     Miri,
-    /// Runs the hand-off between two threads under ThreadSanitizer.
-    Threads,
     /// Runs thousands of frames of a camera with every fault, and holds each row to the frame without one.
     Soak(soak::Arguments),
     /// Builds the core for browsers and runs `stereo view` with it.
@@ -115,8 +111,8 @@ fn main() -> ExitCode {
                 "error: {}",
                 one_line(&usage_line(
                     &error,
-                    "the chores are test, firmware, growth, rtl, fuzz, miri, threads, soak, view, \
-                        altered, c, cross, header, publish and readme"
+                    "the chores are test, firmware, growth, rtl, fuzz, miri, soak, view, altered, c, \
+                        cross, header, publish and readme"
                 ))
             );
             return ExitCode::FAILURE;
@@ -129,7 +125,6 @@ fn main() -> ExitCode {
         Chore::Rtl(arguments) => rtl::run(&arguments),
         Chore::Fuzz(arguments) => fuzz::run(&arguments),
         Chore::Miri => miri::run(),
-        Chore::Threads => threads::run(),
         Chore::Soak(arguments) => soak::run(&arguments),
         Chore::View(arguments) => view::run(&arguments),
         Chore::Altered(arguments) => altered::run(&arguments),

@@ -10,8 +10,8 @@ use crate::steps::{Outcome, command, output_of, root, run as run_command, target
 /// Processors that the tests are interpreted for.
 const TARGETS: [&str; 3] =
     ["x86_64-unknown-linux-gnu", "riscv64gc-unknown-linux-gnu", "i686-unknown-linux-gnu"];
-/// The crate's own tests: the queue of two threads, rows in their memory. Tests of sums over all bytes take an
-/// interpreter hours, and have nothing `unsafe` in them.
+/// The crate's own tests: the queue of two threads, rows in their memory. Tests of sums over all bytes take
+/// an interpreter hours, and have nothing `unsafe` in them.
 const OF_THE_CRATE: [&str; 2] = ["camera::queue", "matching::stages"];
 /// Short forms of campaigns: sessions in C, lines through slots, frames beside their twin, with faults.
 const OF_CAMPAIGNS: [&str; 5] = ["calls", "lines", "matching", "guarded", "remap"];

@@ -8,10 +8,15 @@ use stereopsis::geometry::camera::Pose;
 /// Sides of a view and its margin, px of the drawing.
 const SIDE: f64 = 480.0;
 const MARGIN: f64 = 50.0;
+/// Colours of the way, of the true one, of frames whose pose is not fully known, and of points.
+const FOUND: &str = "#06c";
+const TRUTH: &str = "#bbb";
+const UNKNOWN: &str = "#c30";
+const POINT: &str = "#999";
 
 /// The trajectory as SVG: X to the right and Z up, as from above, and Y down over Z, as from the side; with a
-/// truth drawn behind it. A dot is a frame of which the pose is not fully known. `unit` names the unit of
-/// length.
+/// truth drawn behind it, a grid of round lengths, and what is what below. A dot is a frame of which the pose
+/// is not fully known. `unit` names the unit of length.
 pub fn svg(trajectory: &Trajectory, truth: Option<&[Pose<f64>]>, unit: &str) -> String {
     let steps = trajectory.steps.iter().enumerate();
     let unknown: Vec<_> = steps.filter(|(_, step)| !step.state.is_known()).map(|(frame, _)| frame).collect();
@@ -34,8 +39,31 @@ fn page(drawn: &Drawn<'_>, unit: &str) -> String {
     let unit = if unit.len() > 20 { "no known unit" } else { unit };
     view(&mut svg, drawn, above, MARGIN, &format!("from above: X right, Z up, {unit}"));
     view(&mut svg, drawn, beside, SIDE + 2.0 * MARGIN, &format!("from the side: Z right, Y down, {unit}"));
+    legend(&mut svg, drawn, SIDE + MARGIN + 28.0);
     svg.push_str("</svg>\n");
     svg
+}
+
+/// What each line and dot is, one beside the other at height `y`.
+fn legend(svg: &mut String, drawn: &Drawn<'_>, y: f64) {
+    let line = |x: f64, colour: &str, thick: f64| {
+        format!("<path d=\"M{x} {y}h24\" stroke=\"{colour}\" stroke-width=\"{thick}\"/>")
+    };
+    let dot = |x: f64, colour: &str, radius: f64| {
+        format!("<circle cx=\"{}\" cy=\"{y}\" r=\"{radius}\" fill=\"{colour}\"/>", x + 12.0)
+    };
+    type Sign<'a> = Box<dyn Fn(f64) -> String + 'a>;
+    let all: [(bool, &str, Sign<'_>); 4] = [
+        (true, "found", Box::new(|x| line(x, FOUND, 1.5))),
+        (!drawn.truth.is_empty(), "truth", Box::new(|x| line(x, TRUTH, 4.0))),
+        (!drawn.unknown.is_empty(), "lost, or not fully known", Box::new(|x| dot(x, UNKNOWN, 3.0))),
+        (!drawn.points.is_empty(), "points", Box::new(|x| dot(x, POINT, 2.0))),
+    ];
+    let mut x = MARGIN;
+    for (_, text, sign) in all.iter().filter(|(is_there, ..)| *is_there) {
+        let _ = writeln!(svg, "{}<text x=\"{}\" y=\"{}\">{text}</text>", sign(x), x + 32.0, y + 4.0);
+        x += 60.0 + 7.0 * text.len() as f64;
+    }
 }
 
 /// Views drawn the same way, with the points that they saw.
@@ -82,9 +110,27 @@ fn view(svg: &mut String, drawn: &Drawn<'_>, of: impl Fn(&Vector3<f64>) -> [f64;
          height=\"{SIDE}\" fill=\"none\" stroke=\"#ccc\"/>",
         MARGIN - 12.0
     );
+    // Lines of a round length apart, about a quarter of the view.
+    let quarter = extent / 4.0;
+    let power = 10.0_f64.powf(quarter.log10().floor());
+    let step = [5.0, 2.0, 1.0].into_iter().find(|n| n * power <= quarter).unwrap_or(1.0) * power;
+    let shown = extent / 0.95 / 2.0;
+    let mut grid = String::new();
+    for (axis, corner) in [left, MARGIN].into_iter().enumerate() {
+        let first = ((middle[axis] - shown) / step).ceil();
+        for k in 0..((middle[axis] + shown) / step - first + 1.0).max(0.0) as usize {
+            let off = (first + k as f64) * step - middle[axis];
+            let place = corner + SIDE * (0.5 + 0.95 * off / extent);
+            let _ = match axis {
+                0 => write!(grid, "M{place:.2} {MARGIN}v{SIDE}"),
+                _ => write!(grid, "M{left} {place:.2}h{SIDE}"),
+            };
+        }
+    }
+    let _ = writeln!(svg, "<path d=\"{grid}\" stroke=\"#eee\"/>");
     for place in &near {
         let (x, y) = at(place);
-        let _ = writeln!(svg, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"1\" fill=\"#999\"/>");
+        let _ = writeln!(svg, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"1\" fill=\"{POINT}\"/>");
     }
     let mut line = |places: &[Vector3<f64>], colour: &str, thick: f64| {
         let points: Vec<String> = places.iter().map(at).map(|(x, y)| format!("{x:.2},{y:.2}")).collect();
@@ -94,28 +140,25 @@ fn view(svg: &mut String, drawn: &Drawn<'_>, of: impl Fn(&Vector3<f64>) -> [f64;
             points.join(" ")
         );
     };
-    line(&truth, "#bbb", 4.0);
-    line(&poses, "#06c", 1.5);
+    line(&truth, TRUTH, 4.0);
+    line(&poses, FOUND, 1.5);
     if !drawn.points.is_empty() {
         for place in &poses {
             let (x, y) = at(place);
-            let _ = writeln!(svg, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"4\" fill=\"#06c\"/>");
+            let _ = writeln!(svg, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"4\" fill=\"{FOUND}\"/>");
         }
     }
     for &frame in drawn.unknown {
         let (x, y) = at(&poses[frame]);
-        let _ = writeln!(svg, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"3\" fill=\"#c30\"/>");
+        let _ = writeln!(svg, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"3\" fill=\"{UNKNOWN}\"/>");
     }
-    // A bar of a round length, about a quarter of the view.
-    let quarter = extent / 4.0;
-    let power = 10.0_f64.powf(quarter.log10().floor());
-    let bar = [5.0, 2.0, 1.0].into_iter().find(|n| n * power <= quarter).unwrap_or(1.0) * power;
+    // A bar as long as the lines are apart.
     let (x, y) = (left + 10.0, MARGIN + SIDE - 12.0);
     let _ = writeln!(
         svg,
         "<path d=\"M{x} {y}h{:.2}\" stroke=\"black\" stroke-width=\"2\"/><text x=\"{x}\" \
-         y=\"{}\">{bar}</text>",
-        SIDE * 0.95 * bar / extent,
+         y=\"{}\">{step}</text>",
+        SIDE * 0.95 * step / extent,
         y - 6.0
     );
 }

@@ -1,8 +1,9 @@
-//! Trajectories as KITTI's odometry benchmark writes them: a line for each frame, the first three rows of the
-//! matrix that carries a point of that frame's camera into the first one's, row by row.
+//! Trajectories as files, a line for each frame, of the motion that carries a point of that frame's camera
+//! into the first one's: KITTI's odometry benchmark writes the first three rows of its matrix, row by row, the
+//! TUM RGB-D benchmark (Sturm et al. 2012) a time, a place and a quaternion, `t x y z qx qy qz qw`.
 
 use crate::limits;
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::camera::Pose;
@@ -22,16 +23,35 @@ pub enum PosesError {
     },
     /// A line is no pose.
     #[error("{}: line {line} is no pose; 12 numbers are needed, the rows of [R | t] with a \
-        rotation R", path.display())]
+        rotation R, or 8, t x y z qx qy qz qw", path.display())]
     Line {
         /// The file.
         path: PathBuf,
         /// The line, from 1.
         line: usize,
     },
+    /// A line is no time, or not after the one before.
+    #[error("{}: line {line} is no time after the one before; a number of seconds is \
+        needed", path.display())]
+    Time {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+    },
+    /// There are more or fewer times than frames.
+    #[error("{}: has {found} times; {needed} are needed, one a frame", path.display())]
+    Times {
+        /// The file.
+        path: PathBuf,
+        /// How many there are.
+        found: usize,
+        /// How many frames there are.
+        needed: usize,
+    },
 }
 
-/// Writes a trajectory. The first line of one that begins in the first camera is the identity, exactly.
+/// Writes a trajectory as KITTI does. The first line of one that begins in the first camera is the identity, exactly.
 pub fn write(out: &mut dyn Write, poses: &[Pose<f64>]) -> io::Result<()> {
     for pose in poses {
         let (r, t) = (pose.rotation(), pose.translation());
@@ -41,6 +61,37 @@ pub fn write(out: &mut dyn Write, poses: &[Pose<f64>]) -> io::Result<()> {
         writeln!(out, "{}", numbers.join(" "))?;
     }
     Ok(())
+}
+
+/// Writes a trajectory as the TUM RGB-D benchmark does: `times_s` has the time of each frame, seconds. The
+/// quaternion has a real part that is not negative.
+pub fn write_tum(out: &mut dyn Write, poses: &[Pose<f64>], times_s: &[f64]) -> io::Result<()> {
+    for (pose, time) in poses.iter().zip(times_s) {
+        let t = pose.translation();
+        let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*pose.rotation()));
+        let turn = if turn.w < 0.0 { -turn.into_inner() } else { turn.into_inner() };
+        // A zero's sign says nothing.
+        let numbers = [t.x, t.y, t.z, turn.i, turn.j, turn.k, turn.w]
+            .map(|x| format!("{:.9}", (x * 1e9).round() / 1e9 + 0.0));
+        writeln!(out, "{time:.6} {}", numbers.join(" "))?;
+    }
+    Ok(())
+}
+
+/// Reads the times of `frames` frames, seconds, a line each, as in KITTI's times.txt; they go on.
+pub fn read_times(path: &Path, frames: usize) -> Result<Vec<f64>, PosesError> {
+    let text = read_text(path)?;
+    let lines = text.lines().zip(1..).filter(|(content, _)| !content.trim().is_empty());
+    let mut times: Vec<f64> = Vec::new();
+    for (content, line) in lines {
+        let time = content.trim().parse().ok().filter(|time: &f64| time.is_finite());
+        let time = time.filter(|time| times.last().is_none_or(|last| time > last));
+        times.push(time.ok_or_else(|| PosesError::Time { path: path.into(), line })?);
+    }
+    match times.len() {
+        found if found == frames => Ok(times),
+        found => Err(PosesError::Times { path: path.into(), found, needed: frames }),
+    }
 }
 
 /// What a frame's state is called in files.
@@ -85,27 +136,50 @@ pub fn write_states(out: &mut dyn Write, steps: &[Step<f64>], rigs: &[RigEstimat
 /// How far off a rotation's columns may be from length one and from right angles: of two decimals.
 const MOST_OFF: f64 = 0.02;
 
-/// Reads a trajectory; empty lines are passed over, and rotations may have few decimals.
+/// Reads a trajectory of either form; empty lines and comments are passed over, and rotations may have few
+/// decimals.
 pub fn read(path: &Path) -> Result<Vec<Pose<f64>>, PosesError> {
-    let bytes = limits::read(path, limits::TABLE_BYTES);
-    let text =
-        bytes.and_then(|bytes| String::from_utf8(bytes).map_err(|_| io::ErrorKind::InvalidData.into()));
-    let text = text.map_err(|source| PosesError::Read { path: path.into(), source })?;
-    let lines = text.lines().zip(1..).filter(|(content, _)| !content.trim().is_empty());
+    let text = read_text(path)?;
+    let is_pose = |content: &str| !content.trim().is_empty() && !content.trim_start().starts_with('#');
+    let lines = text.lines().zip(1..).filter(|(content, _)| is_pose(content));
     let pose = |(content, line): (&str, usize)| {
-        let numbers: Vec<f64> =
-            content.split_ascii_whitespace().filter_map(|word| word.parse().ok()).collect();
-        let found = <[f64; 12]>::try_from(numbers).ok().filter(|n| n.iter().all(|x| x.is_finite()));
-        let pose = found.and_then(|n| {
-            let r = Matrix3::new(n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10]);
-            if !((r.transpose() * r - Matrix3::identity()).amax() <= MOST_OFF && r.determinant() > 0.0) {
-                return None;
-            }
-            // Files of other programs have six digits or fewer.
-            let nearest = Rotation3::from_matrix_eps(&r, 1e-12, 100, Rotation3::identity());
-            Pose::new(*nearest.matrix(), Vector3::new(n[3], n[7], n[11])).ok()
+        let words = content.split_ascii_whitespace().map(|word| word.parse().ok());
+        let numbers = words.collect::<Option<Vec<f64>>>().filter(|n| n.iter().all(|x| x.is_finite()));
+        let pose = numbers.and_then(|numbers| match numbers.len() {
+            8 => tum_pose(&numbers),
+            _ => kitti_pose(&numbers),
         });
         pose.ok_or_else(|| PosesError::Line { path: path.into(), line })
     };
     lines.map(pose).collect()
+}
+
+/// The pose of twelve numbers, the rows of [R | t].
+fn kitti_pose(numbers: &[f64]) -> Option<Pose<f64>> {
+    let n = <[f64; 12]>::try_from(numbers).ok()?;
+    let r = Matrix3::new(n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10]);
+    if !((r.transpose() * r - Matrix3::identity()).amax() <= MOST_OFF && r.determinant() > 0.0) {
+        return None;
+    }
+    // Files of other programs have six digits or fewer.
+    let nearest = Rotation3::from_matrix_eps(&r, 1e-12, 100, Rotation3::identity());
+    Pose::new(*nearest.matrix(), Vector3::new(n[3], n[7], n[11])).ok()
+}
+
+/// The pose of a time, a place and a quaternion.
+fn tum_pose(numbers: &[f64]) -> Option<Pose<f64>> {
+    let [_, x, y, z, i, j, k, w] = <[f64; 8]>::try_from(numbers).ok()?;
+    let turn = Quaternion::new(w, i, j, k);
+    if !((turn.norm() - 1.0).abs() <= MOST_OFF) {
+        return None;
+    }
+    let turn = UnitQuaternion::from_quaternion(turn).to_rotation_matrix();
+    Pose::new(*turn.matrix(), Vector3::new(x, y, z)).ok()
+}
+
+fn read_text(path: &Path) -> Result<String, PosesError> {
+    let bytes = limits::read(path, limits::TABLE_BYTES);
+    let text =
+        bytes.and_then(|bytes| String::from_utf8(bytes).map_err(|_| io::ErrorKind::InvalidData.into()));
+    text.map_err(|source| PosesError::Read { path: path.into(), source })
 }

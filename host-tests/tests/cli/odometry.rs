@@ -31,7 +31,7 @@ fn a_line_for_every_frame() {
     let arguments = ["odometry", "--sequence", &street, "--calib", &calib, "--out"];
     let mut with_all = arguments.map(str::to_owned).to_vec();
     with_all.extend([out.display().to_string(), "--picture".into(), way.display().to_string()]);
-    with_all.extend(["--truth".into(), truth]);
+    with_all.extend(["--truth".into(), truth.clone()]);
     let run = stereo(&with_all);
     assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
     let said = text(&run.stdout);
@@ -46,7 +46,29 @@ fn a_line_for_every_frame() {
     let true_poses = poses(&bench.path("street/poses.txt"));
     let off = (0..3).map(|i| (found[3][4 * i + 3] - true_poses[3][4 * i + 3]).powi(2)).sum::<f64>().sqrt();
     assert!(off < 0.05, "{off} m of 1.5 m");
-    assert!(fs::read_to_string(way).expect("a drawing").starts_with("<svg "));
+    let drawn = fs::read_to_string(way).expect("a drawing");
+    assert!(drawn.starts_with("<svg ") && drawn.contains(">found<") && drawn.contains(">truth<"), "{drawn}");
+    assert!(!drawn.contains(">lost, or"), "{drawn}");
+
+    // The same in the other form, which is taken as a truth too.
+    let (tum, times) = (bench.path("new/tum.txt").display().to_string(), "10\n10.1\n10.2\n10.35\n");
+    let times = bench.put("times.txt", times.as_bytes()).display().to_string();
+    let mut in_time = arguments.map(str::to_owned).to_vec();
+    in_time.extend([tum.clone(), "--times".into(), times.clone()]);
+    bench.refused(&in_time, "--times");
+    in_time.extend(["--format".into(), "tum".into(), "--truth".into(), truth]);
+    let run = stereo(&in_time);
+    assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
+    let lines = poses(Path::new(&tum));
+    assert!(lines.len() == 4 && lines.iter().all(|line| line.len() == 8), "{lines:?}");
+    assert!(lines.iter().zip([10.0, 10.1, 10.2, 10.35]).all(|(line, time)| line[0] == time), "{lines:?}");
+    for (found, line) in found.iter().zip(&lines) {
+        assert!((0..3).all(|i| (found[4 * i + 3] - line[i + 1]).abs() < 1e-8), "{found:?} {line:?}");
+    }
+    let mut beside = arguments.map(str::to_owned).to_vec();
+    beside.extend([out.display().to_string(), "--truth".into(), tum]);
+    let run = stereo(&beside);
+    assert!(text(&run.stdout).contains("ATE          0.0000 m"), "{}", text(&run.stdout));
 
     // One camera: the same frames without the right ones.
     fs::remove_dir_all(bench.path("street/right")).expect("the folder");

@@ -30,8 +30,46 @@ fn files_come_back_as_they_were() {
     }
     std::fs::write(file.path(), "1 0 0 0 0 1 0 0 0 0 1 0\n1 2 3\n").expect("room");
     let error = poses::read(file.path()).expect_err("no pose").to_string();
-    let expected = "line 2 is no pose; 12 numbers are needed, the rows of [R | t] with a rotation R";
+    let expected = "line 2 is no pose; 12 numbers are needed, the rows of [R | t] with a rotation R, or 8, \
+                    t x y z qx qy qz qw";
     assert!(error.ends_with(expected), "{error}");
+}
+
+#[test]
+fn times_places_and_quaternions_come_back_as_they_were() {
+    let times: Vec<f64> = (0..12).map(|i| 1.5e9 + 0.1 * f64::from(i)).collect();
+    let mut bytes = b"# timestamp tx ty tz qx qy qz qw\n".to_vec();
+    poses::write_tum(&mut bytes, &way(), &times).expect("room");
+    // A turn by 0.1 about Y and 0.02 about Z has the quaternion 0, 0.05, 0.01, 1, nearly.
+    let text = String::from_utf8(bytes.clone()).expect("text");
+    let second: Vec<f64> =
+        text.lines().nth(2).expect("a line").split(' ').map(|w| w.parse().expect("a number")).collect();
+    let expected = [1.5e9 + 0.1, 0.05, 0.1, 1.0, 0.0, 0.04998, 0.009996, 0.9987];
+    assert!(second.len() == 8 && second.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-5), "{text}");
+    let file = tempfile::NamedTempFile::new().expect("a file");
+    std::fs::write(file.path(), &bytes).expect("room");
+    let read = poses::read(file.path()).expect("poses");
+    assert_eq!(read.len(), 12);
+    for (a, b) in read.iter().zip(way()) {
+        assert!(
+            (a.translation() - b.translation()).norm() < 1e-8 && (a.rotation() - b.rotation()).amax() < 1e-8
+        );
+    }
+    std::fs::write(file.path(), "0 1 2 3 0 0 0 0.5\n").expect("room");
+    assert!(poses::read(file.path()).is_err(), "a quaternion has the length 1");
+    for (text, expected) in [
+        ("0\n0.1\n0.3\n", None),
+        ("0\n0.1\n", Some("has 2 times; 3 are needed, one a frame")),
+        ("0\n0.1\n0.1\n", Some("line 3 is no time after the one before; a number of seconds is needed")),
+        ("0\nx\n", Some("line 2 is no time after the one before; a number of seconds is needed")),
+    ] {
+        std::fs::write(file.path(), text).expect("room");
+        match (poses::read_times(file.path(), 3), expected) {
+            (Ok(times), None) => assert_eq!(times, [0.0, 0.1, 0.3]),
+            (Err(error), Some(expected)) => assert!(error.to_string().ends_with(expected), "{error}"),
+            (found, _) => panic!("{text}: {found:?}"),
+        }
+    }
 }
 
 #[test]

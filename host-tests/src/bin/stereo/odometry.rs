@@ -7,7 +7,7 @@ use crate::place::{Content, Place};
 use crate::progress::Progress;
 use crate::rig::{rig_line, warn_of};
 use crate::shared::{Unit, print, whole};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use image::GrayImage;
 use std::fmt::Write;
 use std::io;
@@ -35,12 +35,22 @@ pub const EXAMPLE: &str = "Example:
 The frames are the images in street/left and street/right, in the order of their names; without street/right \
                            it is one camera. Written is a line for each frame, as KITTI does: 12 numbers, \
                            the rows of [R | t], which carries a point of that frame's camera into the first \
-                           one's; metres for a pair, of one camera units of its first baseline. What is not \
-                           known of a frame is laid between those that are, and counted in what is printed. \
+                           one's; metres for a pair, of one camera units of its first baseline. With --format \
+                           tum it is a time, that camera's place and its quaternion: t x y z qx qy qz qw. What \
+                           is not known of a frame is laid between those that are, and counted in what is printed. \
                            Places that come back are not recognised: errors add up along the way.
 
 A pair that is not rectified (OpenCV's, Kalibr's and ROS's calibrations) is rectified first; its poses are \
                            those of the rectified left camera.";
+
+/// How poses are written.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub enum PoseFormat {
+    /// 12 numbers, the rows of [R | t]
+    Kitti,
+    /// A time, a place and a quaternion: t x y z qx qy qz qw
+    Tum,
+}
 
 #[derive(Debug, Args)]
 pub struct OdometryArgs {
@@ -65,6 +75,12 @@ pub struct OdometryArgs {
     /// File for the poses
     #[arg(long, value_name = "poses.txt")]
     pub out: PathBuf,
+    /// How poses are written
+    #[arg(long, value_name = "FORM", default_value = "kitti")]
+    pub format: PoseFormat,
+    /// Times of the frames, seconds, a line each, for --format tum; without them the frames' numbers from 0
+    #[arg(long, value_name = "FILE")]
+    pub times: Option<PathBuf>,
     /// Follow a pair even if its cameras seem to be swapped
     #[arg(long)]
     pub force: bool,
@@ -75,7 +91,7 @@ pub struct OdometryArgs {
     /// CSV
     #[arg(long, value_name = "FILE.csv")]
     pub states: Option<PathBuf>,
-    /// True poses in the same form: errors are printed, and they are drawn
+    /// True poses in either form, a line for each frame: errors are printed, and they are drawn
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
 }
@@ -104,6 +120,7 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
     let sequence = Sequence::open(&args.sequence)?;
     let cameras = cameras(args, &sequence)?;
     let truth = args.truth.as_deref().map(poses::read).transpose()?;
+    let times = times(args, sequence.len())?;
     let (place, picture) = Place::with_picture(&args.out, args.picture.as_deref())?;
     let states = args.states.as_deref().map(|path| Place::of("--states", path)).transpose()?;
     if states
@@ -134,9 +151,24 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
     others.extend(picture.as_ref().map(|place| (place, Box::new(draw) as Content<'_>)));
     let list = |out: &mut dyn io::Write| poses::write_states(out, &trajectory.steps, &trajectory.rigs);
     others.extend(states.as_ref().map(|place| (place, Box::new(list) as Content<'_>)));
-    place.write_all(|out| poses::write(out, &trajectory.poses), others)?;
+    let found = |out: &mut dyn io::Write| match args.format {
+        PoseFormat::Kitti => poses::write(out, &trajectory.poses),
+        PoseFormat::Tum => poses::write_tum(out, &trajectory.poses, &times),
+    };
+    place.write_all(found, others)?;
     warn_of(trajectory.rigs.last(), args.calib.first().map_or(Path::new(""), PathBuf::as_path));
     print(&summary(args, &sequence, &cameras, &trajectory, truth.as_deref()))
+}
+
+/// The time of each frame, or its number.
+fn times(args: &OdometryArgs, frames: usize) -> Result<Vec<f64>, Failure> {
+    match &args.times {
+        Some(_) if args.format != PoseFormat::Tum => {
+            Err(Failure::new("--times: only --format tum has times; give both or neither"))
+        }
+        Some(path) => Ok(poses::read_times(path, frames)?),
+        None => Ok((0..frames).map(|frame| frame as f64).collect()),
+    }
 }
 
 fn cameras(args: &OdometryArgs, sequence: &Sequence) -> Result<Cams, Failure> {

@@ -1,7 +1,7 @@
 //! Frames from moving cameras.
 //!
 //! * `bundle`: bundle adjustment and structure of many views.
-//! * `drives`, `degenerate`, `refine`, `templates`, `trajectories`: visual odometry, on scenes that are
+//! * `drives`, `states`, `degenerate`, `refine`, `templates`, `trajectories`: visual odometry, on scenes that are
 //!   driven through, where nothing moves or nothing can be told, and what its errors are.
 
 mod bundle;
@@ -9,6 +9,7 @@ mod degenerate;
 mod drives;
 mod refine;
 mod self_calibration;
+mod states;
 mod support;
 mod templates;
 mod trajectories;

@@ -1,7 +1,9 @@
 //! The least sum of squares of re-projection errors.
 
 use super::lens::{INNER, LensModel};
-use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3, Point2, Point3, Rotation3, Vector2, Vector3};
+use nalgebra::{
+    DMatrix, DVector, Matrix2x3, Matrix3, Matrix6, Point2, Point3, Rotation3, Vector2, Vector3, Vector6,
+};
 
 /// Of a pose: a small turn and a way.
 const OUTER: usize = 6;
@@ -53,11 +55,80 @@ pub(super) struct Bundle<'a> {
     pub free: [bool; INNER],
 }
 
-/// J^T J and J^T r.
+/// J^T J and J^T r: a view has to do with the cameras and not with another view.
 struct Normal {
-    matrix: DMatrix<f64>,
-    vector: DVector<f64>,
+    /// Of the cameras and the pose between them.
+    shared: DMatrix<f64>,
+    of_shared: DVector<f64>,
+    /// Of each view, and between it and the cameras.
+    own: Vec<Matrix6<f64>>,
+    of_own: Vec<Vector6<f64>>,
+    between: Vec<DMatrix<f64>>,
     cost: f64,
+}
+
+impl Normal {
+    fn new(shared: usize, views: usize) -> Self {
+        Self {
+            shared: DMatrix::zeros(shared, shared),
+            of_shared: DVector::zeros(shared),
+            own: vec![Matrix6::zeros(); views],
+            of_own: vec![Vector6::zeros(); views],
+            between: vec![DMatrix::zeros(OUTER, shared); views],
+            cost: 0.0,
+        }
+    }
+
+    /// The equations of the shared parameters alone, by the Schur complement of the views, whose diagonals are
+    /// raised by a share; and each view's factors.
+    fn reduced(&self, damping: f64) -> Option<(DMatrix<f64>, DVector<f64>, Vec<Factors>)> {
+        let (mut shared, mut vector) = (self.shared.clone(), self.of_shared.clone());
+        (0..shared.nrows()).for_each(|i| shared[(i, i)] *= 1.0 + damping);
+        let mut all = Vec::with_capacity(self.own.len());
+        for ((own, of_own), between) in self.own.iter().zip(&self.of_own).zip(&self.between) {
+            let mut own = *own;
+            (0..OUTER).for_each(|i| own[(i, i)] *= 1.0 + damping);
+            let factors = own.cholesky()?;
+            let across = between.transpose();
+            shared -= &across * factors.solve(between);
+            vector -= &across * factors.solve(of_own);
+            all.push(factors);
+        }
+        Some((shared, vector, all))
+    }
+
+    /// The step of all parameters, the shared ones first.
+    fn step(&self, damping: f64) -> Option<DVector<f64>> {
+        let (shared, vector, all) = self.reduced(damping)?;
+        let first = shared.cholesky()?.solve(&vector);
+        let mut step: Vec<f64> = first.iter().copied().collect();
+        for ((factors, of_own), between) in all.iter().zip(&self.of_own).zip(&self.between) {
+            step.extend(factors.solve(&(of_own - between * &first)).iter());
+        }
+        Some(DVector::from_vec(step))
+    }
+}
+
+type Factors = nalgebra::Cholesky<f64, nalgebra::U6>;
+
+/// The most columns of a residual: of a camera, of the pose beside and of the view.
+const MOST: usize = INNER + 2 * OUTER;
+
+/// Sums over the corners of one picture.
+struct Sums {
+    matrix: [[f64; MOST]; MOST],
+    vector: [f64; MOST],
+    cost: f64,
+}
+
+impl Sums {
+    fn add(&mut self, columns: &[Vector2<f64>], residual: &Vector2<f64>) {
+        self.cost += residual.norm_squared();
+        for (a, (row, sum)) in columns.iter().zip(self.matrix.iter_mut().zip(&mut self.vector)) {
+            *sum += a.dot(residual);
+            row.iter_mut().zip(columns).for_each(|(place, b)| *place += a.x * b.x + a.y * b.y);
+        }
+    }
 }
 
 /// A place in the picture, and its derivatives by the camera's parameters and by the point in the camera's
@@ -144,62 +215,72 @@ impl Bundle<'_> {
     }
 
     fn normal(&self) -> Option<Normal> {
-        let n = self.parameters();
-        let mut normal = Normal { matrix: DMatrix::zeros(n, n), vector: DVector::zeros(n), cost: 0.0 };
-        let mut columns: Vec<(usize, Vector2<f64>)> = Vec::with_capacity(INNER + 2 * OUTER);
+        let shared = self.view_at(0);
+        let mut normal = Normal::new(shared, self.views.len());
         for (camera, inner) in self.inner.iter().enumerate() {
-            for (view, pose) in self.views.iter().enumerate() {
-                for (board, seen) in self.board.iter().zip(self.seen[camera][view]) {
-                    let turned = pose.r * board.coords;
-                    let first = turned + pose.t;
-                    columns.clear();
-                    let projected = if camera == 0 {
-                        let projected = project(self.model, inner, &first)?;
-                        let of_view = by_outer(&projected.by_point, &turned);
-                        columns.extend(
-                            of_view.into_iter().enumerate().map(|(i, c)| (self.view_at(view) + i, c)),
-                        );
-                        projected
-                    } else {
-                        let again = self.beside.r * first;
-                        let projected = project(self.model, inner, &(again + self.beside.t))?;
-                        let of_beside = by_outer(&projected.by_point, &again);
-                        columns.extend(
-                            of_beside.into_iter().enumerate().map(|(i, c)| (self.beside_at() + i, c)),
-                        );
-                        let of_view = by_outer(&(projected.by_point * self.beside.r), &turned);
-                        columns.extend(
-                            of_view.into_iter().enumerate().map(|(i, c)| (self.view_at(view) + i, c)),
-                        );
-                        projected
-                    };
-                    let of_inner = projected.by_inner.into_iter().enumerate().filter(|(i, _)| self.free[*i]);
-                    columns.extend(of_inner.map(|(i, c)| (camera * INNER + i, c)));
-                    let residual = seen.coords - projected.place;
-                    normal.cost += residual.norm_squared();
-                    for (a, column) in &columns {
-                        normal.vector[*a] += column.dot(&residual);
-                        for (b, other) in &columns {
-                            normal.matrix[(*a, *b)] += column.dot(other);
-                        }
+            // The shared parameters that this camera's residuals have to do with.
+            let mut places: Vec<usize> =
+                (0..INNER).filter(|&i| self.free[i]).map(|i| camera * INNER + i).collect();
+            if camera > 0 {
+                places.extend(self.beside_at()..self.beside_at() + OUTER);
+            }
+            for view in 0..self.views.len() {
+                let sums = self.sums(camera, inner, view)?;
+                normal.cost += sums.cost;
+                let own = places.len();
+                for (a, &i) in places.iter().enumerate() {
+                    normal.of_shared[i] += sums.vector[a];
+                    for (b, &j) in places.iter().enumerate() {
+                        normal.shared[(i, j)] += sums.matrix[a][b];
                     }
+                    (0..OUTER).for_each(|b| normal.between[view][(b, i)] += sums.matrix[own + b][a]);
+                }
+                for a in 0..OUTER {
+                    normal.of_own[view][a] += sums.vector[own + a];
+                    (0..OUTER).for_each(|b| normal.own[view][(a, b)] += sums.matrix[own + a][own + b]);
                 }
             }
         }
         normal.cost += self.bounds();
         for (camera, inner) in self.inner.iter().enumerate() {
             for (i, x) in inner.iter().enumerate().filter(|(i, _)| self.free[*i]) {
-                normal.matrix[(camera * INNER + i, camera * INNER + i)] += self.model.weight(i);
-                normal.vector[camera * INNER + i] -= self.model.weight(i) * x;
+                normal.shared[(camera * INNER + i, camera * INNER + i)] += self.model.weight(i);
+                normal.of_shared[camera * INNER + i] -= self.model.weight(i) * x;
             }
         }
         // What is not free stays.
-        for i in 0..n {
-            if normal.matrix[(i, i)] == 0.0 {
-                normal.matrix[(i, i)] = 1.0;
+        for i in 0..shared {
+            if normal.shared[(i, i)] == 0.0 {
+                normal.shared[(i, i)] = 1.0;
             }
         }
         normal.cost.is_finite().then_some(normal)
+    }
+
+    /// The sums over one picture, in columns: the camera's free parameters, the pose beside if it is the second
+    /// camera, the view.
+    fn sums(&self, camera: usize, inner: &Inner, view: usize) -> Option<Sums> {
+        let pose = &self.views[view];
+        let mut sums = Sums { matrix: [[0.0; MOST]; MOST], vector: [0.0; MOST], cost: 0.0 };
+        let mut columns: Vec<Vector2<f64>> = Vec::with_capacity(MOST);
+        for (board, seen) in self.board.iter().zip(self.seen[camera][view]) {
+            let turned = pose.r * board.coords;
+            let first = turned + pose.t;
+            let again = if camera == 0 { first } else { self.beside.r * first };
+            let point = if camera == 0 { first } else { again + self.beside.t };
+            let projected = project(self.model, inner, &point)?;
+            columns.clear();
+            columns
+                .extend(projected.by_inner.iter().zip(self.free).filter(|(_, free)| *free).map(|(c, _)| *c));
+            let mut by_first = projected.by_point;
+            if camera > 0 {
+                columns.extend(by_outer(&projected.by_point, &again));
+                by_first *= self.beside.r;
+            }
+            columns.extend(by_outer(&by_first, &turned));
+            sums.add(&columns, &(seen.coords - projected.place));
+        }
+        Some(sums)
     }
 
     fn moved(&self, step: &DVector<f64>) -> Self {
@@ -223,10 +304,7 @@ impl Bundle<'_> {
         let mut damping = 1e-3;
         let Some(mut normal) = self.normal() else { return f64::INFINITY };
         for _ in 0..most {
-            let mut matrix = normal.matrix.clone();
-            (0..matrix.nrows()).for_each(|i| matrix[(i, i)] *= 1.0 + damping);
-            let step = matrix.cholesky().map(|factors| factors.solve(&normal.vector));
-            let next = step.map(|step| self.moved(&step));
+            let next = normal.step(damping).map(|step| self.moved(&step));
             let is_camera = |bundle: &Self| bundle.inner.iter().all(|inner| inner[0] > 1.0 && inner[1] > 1.0);
             let better = next
                 .filter(is_camera)
@@ -253,13 +331,14 @@ impl Bundle<'_> {
         normal.cost
     }
 
-    /// Standard deviations of the cameras' parameters, and of the pose between them, from the residuals.
-    pub fn deviations(&self) -> Option<Vec<f64>> {
+    /// The covariance of the cameras' parameters, and of the pose between them, from the residuals.
+    pub fn covariance(&self) -> Option<DMatrix<f64>> {
         let normal = self.normal()?;
         let seen = 2 * self.seen.iter().flatten().map(|corners| corners.len()).sum::<usize>();
         let free = self.parameters() - self.cameras() * self.free.iter().filter(|free| !**free).count();
         let variance = normal.cost / (seen.checked_sub(free)?.max(1)) as f64;
-        let inverse = normal.matrix.cholesky()?.inverse();
-        Some((0..self.view_at(0)).map(|i| (inverse[(i, i)] * variance).sqrt()).collect())
+        // The Schur complement's inverse is that part of the whole inverse.
+        let (shared, ..) = normal.reduced(0.0)?;
+        Some(shared.cholesky()?.inverse() * variance)
     }
 }

@@ -1,5 +1,6 @@
 //! The residuals of a calibration, drawn.
 
+use super::coverage::{CELLS, Coverage};
 use super::{Calibrated, View, ViewFigures};
 use crate::matches_picture::{line, side_by_side, square};
 use image::{Rgb, RgbImage};
@@ -26,8 +27,36 @@ pub fn picture(left: &RgbImage, right: &RgbImage, view: &View, figures: &ViewFig
     picture
 }
 
-/// One page over all views: `names` are the left and the right picture's, `files` those of the drawings.
-pub fn page(found: &Calibrated, names: &[[String; 2]], files: &[String]) -> String {
+/// The cells of a picture as a drawing, the darker the more corners they hold; white without any.
+fn map(coverage: &Coverage) -> String {
+    let (across, down) = (CELLS[0] * 30, CELLS[1] * 30);
+    let mut svg = format!("<svg viewBox=\"0 0 {across} {down}\" width=\"{across}\" role=\"img\">");
+    for (y, row) in coverage.corners.iter().enumerate() {
+        for (x, &count) in row.iter().enumerate() {
+            // Twenty corners are many.
+            let share = f64::from(count.min(20)) / 20.0;
+            let fill = if count == 0 { 0.0 } else { 0.25 + 0.75 * share };
+            let _ = write!(
+                svg,
+                "<rect x=\"{}\" y=\"{}\" width=\"30\" height=\"30\" fill=\"#06c\" \
+                 fill-opacity=\"{fill:.2}\" stroke=\"#999\"><title>{count} corners</title></rect>",
+                30 * x,
+                30 * y
+            );
+        }
+    }
+    svg + "</svg>"
+}
+
+/// One page over all views: `reached` is where boards were, `advice` what would make it better, `names` are
+/// the left and the right picture's, `files` those of the drawings.
+pub fn page(
+    found: &Calibrated,
+    reached: &[Coverage; 2],
+    advice: &[String],
+    names: &[[String; 2]],
+    files: &[String],
+) -> String {
     let escape = |text: &str| {
         text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
     };
@@ -42,6 +71,26 @@ pub fn page(found: &Calibrated, names: &[[String; 2]], files: &[String]) -> Stri
         found.rms_px,
         found.alone_px[0],
         found.alone_px[1],
+    );
+    let _ = writeln!(text, "<h2>Parameters</h2>\n<pre>{}</pre>", escape(&found.words()));
+    if !advice.is_empty() {
+        let items: String = advice.iter().map(|advice| format!("<li>{}</li>\n", escape(advice))).collect();
+        let _ = writeln!(text, "<h2>What would make it better</h2>\n<ul>\n{items}</ul>");
+    }
+    text += "<h2>Where boards were</h2>\n";
+    for (name, coverage) in ["left", "right"].iter().zip(reached) {
+        let _ = writeln!(
+            text,
+            "<figure>{}<figcaption>The {name} picture: corners in {:.0} % of its parts.</figcaption></figure>",
+            map(coverage),
+            100.0 * coverage.share()
+        );
+    }
+    let [across, up] = found.tilts_deg();
+    let _ = writeln!(
+        text,
+        "<p>Boards are tilted by {across:.0} degrees to the left and right, and by {up:.0} up and down (root mean \
+         square).</p>\n<h2>Views</h2>"
     );
     text += "<table><tr><th>left</th><th>right</th><th>left, px</th><th>right, px</th><th>distance, \
              m</th><th></th></tr>\n";

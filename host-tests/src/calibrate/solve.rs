@@ -5,7 +5,8 @@ use super::bundle::{Bundle, Inner, Outer};
 use super::lens::INNER;
 use super::lens::LensModel;
 use super::start;
-use nalgebra::{Matrix3, Point2, Point3, Rotation3, Vector2, Vector3};
+use nalgebra::{DMatrix, Matrix3, Point2, Point3, Rotation3, Vector2, Vector3};
+use std::fmt::Write;
 use stereopsis::geometry::camera::{Camera, ImageSize, StereoRig, StereoRigError};
 
 /// The corners of one board in both pictures of a moment, in the order of [`Pattern::places`], px.
@@ -24,6 +25,9 @@ pub struct ViewFigures {
     pub rms_px: [f64; 2],
     /// How far away the middle of the board was, m.
     pub distance_m: f64,
+    /// How far the board was turned about the left picture's upright axis and about its level one, degrees: 0
+    /// of a board that faces the camera.
+    pub tilt_deg: [f64; 2],
 }
 
 /// A rig from views of a board.
@@ -42,6 +46,12 @@ pub struct Calibrated {
     pub focal_sigma_px: [f64; 2],
     /// Standard deviation of the baseline, m.
     pub baseline_sigma_m: f64,
+    /// How far the right camera is turned along the baseline against the left one (yaw, of cameras side by
+    /// side), and its standard deviation, radians.
+    pub yaw_rad: [f64; 2],
+    /// Standard deviation of what is added to all disparities by an error of that turn and of both principal
+    /// points together, px: what of it is in the one is taken from the other.
+    pub disparity_sigma_px: f64,
 }
 
 /// Why there is no rig.
@@ -71,6 +81,48 @@ pub enum SolveError {
 impl Calibrated {
     /// The fewest views.
     pub const LEAST_VIEWS: usize = 3;
+    /// Boards that are tilted less, root mean square, hardly tell a focal length from a distance.
+    pub const LEAST_TILT_DEG: f64 = 8.0;
+    /// Deviation of all disparities above which what is far is not where it is said to be.
+    pub const MOST_DISPARITY_SIGMA_PX: f64 = 0.2;
+
+    /// The root mean square over the views of how far boards are tilted about the upright and about the level
+    /// axis, degrees.
+    pub fn tilts_deg(&self) -> [f64; 2] {
+        [0, 1].map(|axis| {
+            let sum = self.views.iter().map(|view| view.tilt_deg[axis].powi(2)).sum::<f64>();
+            (sum / self.views.len().max(1) as f64).sqrt()
+        })
+    }
+
+    /// What was found, a line for each part.
+    pub fn words(&self) -> String {
+        let [left, right] = self.alone_px;
+        let mut text = format!(
+            "re-projection {:.3} px (by themselves: left {left:.3}, right {right:.3})\n",
+            self.rms_px
+        );
+        for ((name, camera), sigma) in
+            ["left", "right"].iter().zip(self.rig.cameras()).zip(self.focal_sigma_px)
+        {
+            let ((fx, fy), (cx, cy)) = (camera.focal_px(), camera.principal_point());
+            let _ =
+                writeln!(text, "{name:<13} f {fx:.2} x {fy:.2} px (+- {sigma:.2}), centre {cx:.2}, {cy:.2}");
+        }
+        let (b, sigma) = (1000.0 * self.rig.baseline_m(), 1000.0 * self.baseline_sigma_m);
+        let angle = self.rig.pose().angle_rad().to_degrees();
+        let _ = writeln!(
+            text,
+            "baseline      {b:.2} mm (+- {sigma:.2}), cameras turned against each other by {angle:.2} degrees"
+        );
+        let [yaw, sigma] = self.yaw_rad.map(f64::to_degrees);
+        let _ = writeln!(
+            text,
+            "yaw           {yaw:.3} degrees (+- {sigma:.3}); disparities are uncertain by {:.2} px",
+            self.disparity_sigma_px
+        );
+        text
+    }
 
     /// Views that fit much worse than most: over two and a half times the middle one, and by more than a
     /// tenth of a pixel.
@@ -160,14 +212,32 @@ fn result(
         let residuals = [0, 1].map(|camera| both.residuals(camera, view).unwrap_or_default());
         let pose = &both.views[view];
         let distance_m = (pose.r * middle + pose.t).norm() * square_m;
-        ViewFigures { rms_px: residuals.each_ref().map(|r| root(r)), residuals, distance_m }
+        // The board's normal, towards the camera.
+        let normal = pose.r.column(2) * pose.r[(2, 2)].signum();
+        let tilt_deg = [0, 1].map(|axis| normal[axis].atan2(normal.z).to_degrees());
+        ViewFigures { rms_px: residuals.each_ref().map(|r| root(r)), residuals, distance_m, tilt_deg }
     });
     let views: Vec<_> = views.collect();
     let all: Vec<_> = views.iter().flat_map(|view| view.residuals.iter().flatten().copied()).collect();
-    let sigma = both.deviations().unwrap_or_else(|| vec![f64::INFINITY; 2 * INNER + 6]);
-    let focal = |camera: usize| sigma[camera * INNER].max(sigma[camera * INNER + 1]);
+    let count = 2 * INNER + 6;
+    let endless = || DMatrix::from_diagonal_element(count, count, f64::INFINITY);
+    let covariance = both.covariance().unwrap_or_else(endless);
+    let sigma = |i: usize| covariance[(i, i)].sqrt();
+    let focal = |camera: usize| sigma(camera * INNER).max(sigma(camera * INNER + 1));
     let along = both.beside.t.normalize();
-    let way = Vector3::new(sigma[2 * INNER + 3], sigma[2 * INNER + 4], sigma[2 * INNER + 5]);
+    let way = Vector3::new(sigma(2 * INNER + 3), sigma(2 * INNER + 4), sigma(2 * INNER + 5));
+    // What is far is seen where the turn puts it: `x' = cx' + f w_y` of cameras side by side, and `y' = cy' -
+    // f w_x` of one above the other.
+    let is_level = along.x.abs() >= along.y.abs();
+    let (centre, axis, sign) = if is_level { (2, 1, 1.0) } else { (3, 0, -1.0) };
+    let turn = 2 * INNER + axis;
+    let slopes = [(centre, -1.0), (INNER + centre, 1.0), (turn, sign * both.inner[1][centre - 2])];
+    let variance: f64 = slopes
+        .iter()
+        .flat_map(|&(i, a)| slopes.iter().map(move |&(j, b)| (i, j, a * b)))
+        .map(|(i, j, by)| by * covariance[(i, j)])
+        .sum();
+    let turned = Rotation3::from_matrix_unchecked(both.beside.r).scaled_axis();
     Ok(Calibrated {
         rig,
         rms_px: root(&all),
@@ -175,8 +245,15 @@ fn result(
         views,
         focal_sigma_px: [focal(0), focal(1)],
         baseline_sigma_m: way.component_mul(&along).norm() * square_m,
+        yaw_rad: [turned[axis], sigma(turn)],
+        disparity_sigma_px: variance.max(0.0).sqrt(),
     })
 }
+
+/// Steps from every beginning, how many of these are gone on with, and steps of those.
+const FIRST_STEPS: usize = 4;
+const BEST: usize = 3;
+const NEXT_STEPS: usize = 8;
 
 /// One camera by itself.
 fn alone<'a>(
@@ -208,10 +285,14 @@ fn alone<'a>(
         let (beside, seen) = (Outer::new(Matrix3::identity(), Vector3::zeros()), vec![seen.to_vec()]);
         let mut bundle =
             Bundle { board, model, seen, inner: vec![inner], beside, views, free: free(steps[0]) };
-        let cost = bundle.minimise(12);
+        let cost = bundle.minimise(FIRST_STEPS);
         cost.is_finite().then_some((cost, bundle))
     });
-    let (_, mut best) = begins.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let mut begins: Vec<_> = begins.collect();
+    begins.sort_by(|a, b| a.0.total_cmp(&b.0));
+    begins.truncate(BEST);
+    begins.iter_mut().for_each(|(cost, bundle)| *cost = bundle.minimise(NEXT_STEPS));
+    let (_, mut best) = begins.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
     for (i, parameters) in steps.iter().enumerate() {
         best.free = free(parameters);
         best.minimise(if i + 1 == steps.len() { 200 } else { 40 });

@@ -66,6 +66,15 @@ fn arguments(bench: &Bench, change: &[(&str, &str)]) -> Vec<String> {
 }
 
 #[test]
+fn another_pattern_is_named() {
+    let bench = Bench::new();
+    pictures(&bench);
+    for given in ["5x5", "6x4", "7x5", "7x6"] {
+        bench.refused(&arguments(&bench, &[("--pattern", given)]), "6 x 5 inner corners; give --pattern 6x5");
+    }
+}
+
+#[test]
 fn a_rig_is_calibrated_checked_and_converted() {
     let bench = Bench::new();
     pictures(&bench);
@@ -94,6 +103,14 @@ fn a_rig_is_calibrated_checked_and_converted() {
     assert!((baseline - 60.0).abs() < 0.6, "{said}");
     let drawn = ["index.html", "view001.png", "view002.png", "view003.png", "view004.png", "view005.png"];
     assert_eq!(names(&bench.path("report")), drawn);
+    let page = std::fs::read_to_string(bench.path("report/index.html")).expect("a page");
+    assert!(page.contains("Where boards were") && page.matches("<svg ").count() == 2, "{page}");
+    assert!(page.contains("baseline ") && page.contains("What would make it better"), "{page}");
+    // Boards in the middle tell the turn along the baseline and the principal points not apart well.
+    let yaw = said.lines().find(|line| line.starts_with("yaw ")).unwrap_or_else(|| panic!("{said}"));
+    let [.., sigma, _] = yaw.split(' ').collect::<Vec<_>>()[..] else { panic!("{yaw}") };
+    let is_weak = sigma.parse::<f64>().expect("a number") > 0.2;
+    assert_eq!(said.contains("(yaw) is weakly determined"), is_weak, "{said}");
 
     // It is read by all that read calibrations.
     let check = |name: &str| {

@@ -14,7 +14,7 @@ use stereopsis::geometry::{
     rectify::{Crop, Rectification},
 };
 use stereopsis_host::calibrate::board::{self, Board, BoardError, Pattern};
-use stereopsis_host::calibrate::coverage::{self, coverage};
+use stereopsis_host::calibrate::coverage::{self, Coverage, coverage};
 use stereopsis_host::calibrate::{Calibrated, LensModel, View, report, solve};
 use stereopsis_host::calibration::{warnings, write_opencv};
 use stereopsis_host::command_line::one_line;
@@ -139,8 +139,10 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
             result.middle_rms_px()
         ));
     }
-    let covered = coverage(&views, size).map(|share| 100.0 * share);
-    notes.extend(doubts(&result, covered));
+    let reached = coverage(&views, size);
+    let covered = reached.map(|coverage| 100.0 * coverage.share());
+    let advice = advice(&result, &reached);
+    notes.extend(advice.iter().cloned());
     notes.extend(wrong);
     let told = [
         format!(
@@ -153,7 +155,7 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
     ];
     let file = write_opencv(&result.rig, &told);
     if let Some(folder) = &args.report {
-        draw(folder, &found, &result)?;
+        draw(folder, &found, &result, &reached, &advice)?;
     }
     place.write(|out| out.write_all(file.as_bytes()), None)?;
 
@@ -162,25 +164,7 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
         let _ = writeln!(text, "note: {}", one_line(note));
     }
     let _ = writeln!(text, "{} of {count} views, {} x {} px", views.len(), size.width, size.height);
-    let [left, right] = result.alone_px;
-    let _ = writeln!(
-        text,
-        "re-projection {:.3} px (by themselves: left {left:.3}, right {right:.3})",
-        result.rms_px
-    );
-    for (name, camera, sigma) in
-        [("left", 0, result.focal_sigma_px[0]), ("right", 1, result.focal_sigma_px[1])]
-            .map(|(n, i, s)| (n, &result.rig.cameras()[i], s))
-    {
-        let ((fx, fy), (cx, cy)) = (camera.focal_px(), camera.principal_point());
-        let _ = writeln!(text, "{name:<13} f {fx:.2} x {fy:.2} px (+- {sigma:.2}), centre {cx:.2}, {cy:.2}");
-    }
-    let (b, sigma) = (1000.0 * result.rig.baseline_m(), 1000.0 * result.baseline_sigma_m);
-    let angle = result.rig.pose().angle_rad().to_degrees();
-    let _ = writeln!(
-        text,
-        "baseline      {b:.2} mm (+- {sigma:.2}), cameras turned against each other by {angle:.2} degrees"
-    );
+    text += &result.words();
     let ([columns, rows], [left, right]) = (coverage::CELLS, covered);
     let _ = writeln!(
         text,
@@ -196,34 +180,56 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
     print(&text)
 }
 
-/// What is to be known of a result that may be worth little.
-fn doubts(result: &Calibrated, covered_percent: [f64; 2]) -> Vec<String> {
-    let mut doubts = Vec::new();
-    let least = covered_percent[0].min(covered_percent[1]);
+/// What is to be known of a result that may be worth little, and what to do about it.
+fn advice(result: &Calibrated, reached: &[Coverage; 2]) -> Vec<String> {
+    let mut advice = Vec::new();
+    let least = 100.0 * reached[0].share().min(reached[1].share());
     if least < 60.0 {
-        doubts.push(format!(
+        advice.push(format!(
             "the boards reach only {least:.0} % of a picture: elsewhere the lens is a guess; bring the board \
              to all borders and corners"
         ));
     }
+    for (name, coverage) in ["left", "right"].iter().zip(reached) {
+        let missing = coverage.missing();
+        if least >= 60.0 && !missing.is_empty() {
+            advice.push(format!("fill the {} of the {name} picture", missing.join(" and the ")));
+        }
+    }
     for (name, camera) in [("left", 0), ("right", 1)] {
         let share = result.focal_sigma_px[camera] / result.rig.cameras()[camera].focal_px().0;
         if share.is_nan() || share > 0.01 {
-            doubts.push(format!(
+            advice.push(format!(
                 "the {name} focal length is uncertain by {:.1} %: tilt the board more, about two axes",
                 100.0 * share
             ));
         }
     }
+    for (how, tilt) in ["to the left and right", "up and down"].iter().zip(result.tilts_deg()) {
+        if tilt < Calibrated::LEAST_TILT_DEG {
+            advice.push(format!(
+                "the boards are hardly tilted {how}, by {tilt:.0} degrees (root mean square): tilt them more, \
+                 by 20 to 45 degrees, in several views"
+            ));
+        }
+    }
+    if !(result.disparity_sigma_px <= Calibrated::MOST_DISPARITY_SIGMA_PX) {
+        advice.push(format!(
+            "the turn along the baseline (yaw) is weakly determined: with it all disparities are uncertain by \
+             {:.2} px; take more views, with boards near and far that are tilted and reach the left and right \
+             borders",
+            result.disparity_sigma_px
+        ));
+    }
     let alone = result.alone_px[0].max(result.alone_px[1]);
     if result.rms_px > 1.5 * alone && result.rms_px > alone + 0.1 {
-        doubts.push(
+        advice.push(
             "each camera by itself fits much better than both together: are the images of a pair of one \
              moment?"
                 .into(),
         );
     }
-    doubts
+    advice
 }
 
 /// The pairs with a board in both images, and the images' size.
@@ -249,6 +255,7 @@ fn boards(
     }
     let size = counts.iter().max_by_key(|(count, _)| *count).map(|(_, size)| *size);
     let size = size.ok_or_else(|| Failure::new("--left and --right: no image has a partner"))?;
+    refuse_other(pattern, all.iter().flat_map(|(_, left, right)| [&left.board, &right.board]))?;
     let mut found = Vec::new();
     for (paths, left, right) in all {
         if let Some((path, seen)) = paths.iter().zip([&left, &right]).find(|(_, seen)| seen.size != size) {
@@ -273,6 +280,37 @@ fn boards(
     Ok((size, found))
 }
 
+/// Refuses a pattern where more images show a board of one other size.
+fn refuse_other<'a>(
+    pattern: Pattern,
+    boards: impl Iterator<Item = &'a Result<Board, BoardError>>,
+) -> Result<(), Failure> {
+    let (mut images, mut fitting) = (0, 0);
+    let mut others: Vec<(usize, (usize, usize))> = Vec::new();
+    for board in boards {
+        images += 1;
+        match board.as_ref().map_err(BoardError::other_board) {
+            Ok(_) => fitting += 1,
+            Err(Some(size)) => match others.iter_mut().find(|(_, other)| *other == size) {
+                Some((count, _)) => *count += 1,
+                None => others.push((1, size)),
+            },
+            Err(None) => {}
+        }
+    }
+    match others.into_iter().max_by_key(|(count, _)| *count) {
+        Some((count, (columns, rows))) if 3 * count > images && count > fitting => {
+            Err(Failure::new(format!(
+                "--pattern: {} x {} is given, and {count} of {images} images show a board with {columns} x {rows} \
+             inner corners; give --pattern {columns}x{rows}",
+                pattern.columns(),
+                pattern.rows()
+            )))
+        }
+        _ => Ok(()),
+    }
+}
+
 fn look(path: &Path, pattern: Pattern, like: Option<&Board>) -> Result<Seen, Failure> {
     let camera = MockCamera::open(path)?;
     let (width, height) = (camera.format().width, camera.format().height);
@@ -280,7 +318,13 @@ fn look(path: &Path, pattern: Pattern, like: Option<&Board>) -> Result<Seen, Fai
     Ok(Seen { size: ImageSize { width, height }, board: board::find(&grey, pattern, like) })
 }
 
-fn draw(folder: &Path, found: &[Found], result: &Calibrated) -> Result<(), Failure> {
+fn draw(
+    folder: &Path,
+    found: &[Found],
+    result: &Calibrated,
+    reached: &[Coverage; 2],
+    advice: &[String],
+) -> Result<(), Failure> {
     let mut staging = Staging::new(folder)?;
     let (mut files, mut names) = (Vec::new(), Vec::new());
     for (i, (found, figures)) in found.iter().zip(&result.views).enumerate() {
@@ -293,7 +337,7 @@ fn draw(folder: &Path, found: &[Found], result: &Calibrated) -> Result<(), Failu
         let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         names.push([name(left), name(right)]);
     }
-    let page = report::page(result, &names, &files);
+    let page = report::page(result, reached, advice, &names, &files);
     staging.write("index.html", |out| out.write_all(page.as_bytes()))?;
     Ok(staging.commit(&[])?)
 }

@@ -29,11 +29,9 @@ const MOST: usize = 6000;
 pub(super) fn find(level: &Level) -> Vec<Corner> {
     let (width, height) = (level.width as isize, level.height as isize);
     let mut strength = vec![0.0_f32; level.width * level.height];
-    for y in 1..height - 1 {
-        for x in 1..width - 1 {
-            let [xx, xy, yy] = level.bends(x, y);
-            strength[(y * width + x) as usize] = xy * xy - xx * yy;
-        }
+    for y in 1..level.height.max(1) - 1 {
+        let places = &mut strength[y * level.width + 1..];
+        places.iter_mut().zip(level.saddles(y)).for_each(|(place, saddle)| *place = saddle);
     }
     let at = |x: isize, y: isize| strength[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize];
     let mut saddles = Vec::new();

@@ -167,13 +167,23 @@ impl Grid {
                 let is_bright = self.nodes[&(*x, *y)].is_bright;
                 Ok(Block { columns: *columns as usize, rows: *rows as usize, places, is_bright })
             }
-            _ => {
-                let range = |of: fn(&(i32, i32)) -> i32| {
-                    let all = || self.nodes.keys().map(of);
-                    (all().max().unwrap_or(0) - all().min().unwrap_or(0) + 1) as usize
-                };
-                Err(Some((range(|at| at.0), range(|at| at.1))))
-            }
+            _ => Err(Some(self.size())),
         }
+    }
+
+    /// Corners along the grid and down it.
+    fn size(&self) -> (usize, usize) {
+        let range = |of: fn(&(i32, i32)) -> i32| {
+            let all = || self.nodes.keys().map(of);
+            (all().max().unwrap_or(0) - all().min().unwrap_or(0) + 1) as usize
+        };
+        (range(|at| at.0), range(|at| at.1))
+    }
+
+    /// Its size if no corner of it is missing, and if it is a board's.
+    pub fn whole(&self) -> Option<(usize, usize)> {
+        let (columns, rows) = self.size();
+        (columns.min(rows) >= 3 && self.len() >= 12 && columns * rows == self.len())
+            .then_some((columns, rows))
     }
 }

@@ -55,19 +55,34 @@ impl Level {
     fn smoothed(self) -> Self {
         // Of a Gaussian with deviation 1.
         const WEIGHTS: [f32; 4] = [0.3991, 0.2420, 0.0540, 0.0045];
-        let along = |level: &Self, dx: isize, dy: isize| -> Vec<f32> {
-            let at = |i: usize| {
-                let (x, y) = ((i % level.width) as isize, (i / level.width) as isize);
-                let sides = (1_isize..4).map(|k| {
-                    let both = level.at(x + k * dx, y + k * dy) + level.at(x - k * dx, y - k * dy);
-                    both * WEIGHTS[k as usize]
-                });
-                level.at(x, y) * WEIGHTS[0] + sides.sum::<f32>()
-            };
-            (0..level.pixels.len()).map(at).collect()
+        let (width, height) = (self.width, self.height);
+        let smooth = |seven: [f32; 7]| {
+            let [a, b, c, d, e, f, g] = seven;
+            d * WEIGHTS[0] + ((c + e) * WEIGHTS[1] + (b + f) * WEIGHTS[2] + (a + g) * WEIGHTS[3])
         };
-        let rows = Self { pixels: along(&self, 1, 0), ..self };
-        Self { pixels: along(&rows, 0, 1), ..rows }
+        let mut rows = vec![0.0; self.pixels.len()];
+        for (y, out) in rows.chunks_exact_mut(width.max(1)).enumerate() {
+            let row = &self.pixels[y * width..][..width];
+            for (x, out) in out.iter_mut().enumerate() {
+                let near = |k: usize| row[(x + k).saturating_sub(3).min(width - 1)];
+                let inside = x.checked_sub(3).and_then(|first| row.get(first..first + 7)?.first_chunk::<7>());
+                *out = smooth(inside.copied().unwrap_or_else(|| std::array::from_fn(near)));
+            }
+        }
+        let mut pixels = vec![0.0; self.pixels.len()];
+        for (y, out) in pixels.chunks_exact_mut(width.max(1)).enumerate() {
+            let seven: [&[f32]; 7] =
+                std::array::from_fn(|k| &rows[(y + k).saturating_sub(3).min(height - 1) * width..][..width]);
+            for (x, out) in out.iter_mut().enumerate() {
+                *out = smooth(seven.map(|row| row[x]));
+            }
+        }
+        Self { pixels, ..self }
+    }
+
+    /// Whether it has the picture's own size.
+    pub fn is_full(&self) -> bool {
+        self.scale == 1.0
     }
 
     /// A pixel, or the nearest one inside.
@@ -96,14 +111,16 @@ impl Level {
             && p.y <= (self.height - 1) as f64 - margin
     }
 
-    /// Second derivatives xx, xy, yy at a pixel.
-    pub fn bends(&self, x: isize, y: isize) -> [f32; 3] {
-        let twice = 2.0 * self.at(x, y);
-        let xy =
-            self.at(x + 1, y + 1) + self.at(x - 1, y - 1) - self.at(x + 1, y - 1) - self.at(x - 1, y + 1);
-        let xx = self.at(x + 1, y) + self.at(x - 1, y) - twice;
-        let yy = self.at(x, y + 1) + self.at(x, y - 1) - twice;
-        [xx, xy / 4.0, yy]
+    /// How much of a saddle brightness is at each pixel of row `y`, without the border: `xy^2 - xx yy` of the
+    /// second derivatives.
+    pub fn saddles(&self, y: usize) -> impl Iterator<Item = f32> {
+        let row = |y: usize| self.pixels[y * self.width..][..self.width].windows(3);
+        row(y - 1).zip(row(y)).zip(row(y + 1)).map(|((above, here), below)| {
+            let twice = 2.0 * here[1];
+            let xy = (below[2] + above[0] - above[2] - below[0]) / 4.0;
+            let (xx, yy) = (here[2] + here[0] - twice, below[1] + above[1] - twice);
+            xy * xy - xx * yy
+        })
     }
 
     /// The saddle near a place, by Newton's method, at most `most` px away.

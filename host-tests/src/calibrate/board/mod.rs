@@ -81,6 +81,8 @@ pub enum BoardError {
         pattern: Pattern,
         /// The largest grid's corners.
         most: usize,
+        /// Its columns and rows where it is a whole board, of another size.
+        whole: Option<(usize, usize)>,
     },
     /// A grid that holds the pattern in more than one place.
     #[error(
@@ -95,6 +97,18 @@ pub enum BoardError {
     },
 }
 
+impl BoardError {
+    /// The inner corners along the longer and the shorter side of the board that is seen in place of the
+    /// pattern.
+    pub fn other_board(&self) -> Option<(usize, usize)> {
+        let (columns, rows) = match *self {
+            Self::NotFound { whole, .. } => whole?,
+            Self::Larger { columns, rows } => (columns, rows),
+        };
+        Some((columns.max(rows), columns.min(rows)))
+    }
+}
+
 /// The largest side of a picture that is searched at once, px: more makes the search slow and no surer.
 const LARGEST: u32 = 1100;
 
@@ -106,7 +120,7 @@ pub fn find(picture: &GrayImage, pattern: Pattern, like: Option<&Board>) -> Resu
     while f64::from(side) * base > f64::from(LARGEST) {
         base /= 2.0;
     }
-    let (mut most, mut larger) = (0, None);
+    let (mut most, mut whole, mut larger) = (0, None, None);
     for scale in [1.0, 0.5, 2.0, 0.25, 0.125] {
         let scale = scale * base;
         if scale > 2.0 || f64::from(side) * scale < 60.0 || f64::from(side) * scale > 2.0 * f64::from(LARGEST)
@@ -125,19 +139,28 @@ pub fn find(picture: &GrayImage, pattern: Pattern, like: Option<&Board>) -> Resu
                 }
                 found => found,
             };
-            most = most.max(grid.len());
+            if grid.len() > most {
+                (most, whole) = (grid.len(), grid.whole());
+            }
             match found {
                 Ok(block) => {
                     let found = order::order(&block, pattern, like);
                     let places = found.into_iter().map(|p| level.to_picture(&p)).collect();
-                    if let Some(corners) = refine::refine(picture, pattern, places) {
+                    let refined = match level.is_full() {
+                        true => refine::refine(&level, pattern, places),
+                        false => refine::refine(&level::Level::new(picture, 1.0), pattern, places),
+                    };
+                    if let Some(corners) = refined {
                         return Ok(Board { corners });
                     }
                 }
-                Err(Some((columns, rows))) => larger = Some(BoardError::Larger { columns, rows }),
+                Err(Some((columns, rows))) => {
+                    // The largest grid of the first size that shows one.
+                    larger.get_or_insert(BoardError::Larger { columns, rows });
+                }
                 Err(None) => {}
             }
         }
     }
-    Err(larger.unwrap_or(BoardError::NotFound { pattern, most }))
+    Err(larger.unwrap_or(BoardError::NotFound { pattern, most, whole }))
 }

@@ -2,7 +2,6 @@
 
 use super::Pattern;
 use super::level::Level;
-use image::GrayImage;
 use nalgebra::{Matrix2, Point2, Vector2};
 
 /// The window's half side, as a share of the way to the nearest corner, the largest that will do; and its
@@ -15,13 +14,8 @@ const STEPS: usize = 40;
 
 /// Moves each corner to where all gradients around it point across the line to it (Förstner & Gülch 1987):
 /// the least `sum w (g . (p - q))^2` over pixels q with gradients g, in a window that reaches to no other
-/// corner. `None` when one goes astray.
-pub(super) fn refine(
-    picture: &GrayImage,
-    pattern: Pattern,
-    corners: Vec<Point2<f64>>,
-) -> Option<Vec<Point2<f64>>> {
-    let level = Level::new(picture, 1.0);
+/// corner. `None` when one goes astray. `level` has the picture's own size.
+pub(super) fn refine(level: &Level, pattern: Pattern, corners: Vec<Point2<f64>>) -> Option<Vec<Point2<f64>>> {
     let columns = pattern.columns();
     let refined = corners.iter().enumerate().map(|(i, corner)| {
         let (x, y) = (i % columns, i / columns);
@@ -38,7 +32,7 @@ pub(super) fn refine(
             .iter()
             .find_map(|share| {
                 let half = (share * spacing).clamp(BOUNDS.0, BOUNDS.1);
-                one(&level, corner, half).filter(|found| (found - corner).norm() < 0.06 * spacing + 0.5)
+                one(level, corner, half).filter(|found| (found - corner).norm() < 0.06 * spacing + 0.5)
             })
             // Small squares that are blurred run into each other: then the saddle is as good as it gets.
             .or((spacing < SMALL).then_some(*corner))
@@ -48,20 +42,27 @@ pub(super) fn refine(
 
 fn one(level: &Level, from: &Point2<f64>, half: f64) -> Option<Point2<f64>> {
     let reach = half.round() as i32;
+    let patch = Patch::around(level, from, reach + half as i32 + 3);
+    let side = 2 * reach + 1;
+    let weights: Vec<f64> = (0..side * side)
+        .map(|k| {
+            let off = Vector2::new(f64::from(k % side - reach), f64::from(k / side - reach));
+            (-off.norm_squared() / (half * half)).exp()
+        })
+        .collect();
     let mut place = *from;
     for _ in 0..STEPS {
         let (mut a, mut b) = (Matrix2::zeros(), Vector2::zeros());
-        for (i, j) in (-reach..=reach).flat_map(|j| (-reach..=reach).map(move |i| (i, j))) {
+        let at = patch.weights(&place);
+        for (k, weight) in (0..).zip(&weights) {
+            let (i, j) = (k % side - reach, k / side - reach);
             let off = Vector2::new(f64::from(i), f64::from(j));
-            let q = place + off;
             // A window that the border cuts off counts on the other side alone.
-            if !level.is_inside(&q, 1.0) {
+            if !level.is_inside(&(place + off), 1.0) {
                 continue;
             }
-            let v = |dx: f64, dy: f64| f64::from(level.value(&Point2::new(q.x + dx, q.y + dy)));
-            let g = Vector2::new(v(1.0, 0.0) - v(-1.0, 0.0), v(0.0, 1.0) - v(0.0, -1.0)) / 2.0;
-            let weight = (-off.norm_squared() / (half * half)).exp();
-            let gg = g * g.transpose() * weight;
+            let g = patch.gradient(&at, i, j);
+            let gg = g * g.transpose() * *weight;
             a += gg;
             b += gg * off;
         }
@@ -80,4 +81,48 @@ fn one(level: &Level, from: &Point2<f64>, half: f64) -> Option<Point2<f64>> {
         }
     }
     Some(place)
+}
+
+/// The gradients at the pixels around a place.
+struct Patch {
+    left: i32,
+    top: i32,
+    side: i32,
+    gradients: Vec<Vector2<f64>>,
+}
+
+/// A place between four pixels: the first of them in the patch, and the parts of all.
+struct Between {
+    first: i32,
+    parts: [f64; 4],
+}
+
+impl Patch {
+    fn around(level: &Level, place: &Point2<f64>, reach: i32) -> Self {
+        let (left, top) = (place.x.floor() as i32 - reach, place.y.floor() as i32 - reach);
+        let side = 2 * reach + 2;
+        let at = |x: i32, y: i32| f64::from(level.at(x as isize, y as isize));
+        let gradients = (0..side * side).map(|k| {
+            let (x, y) = (left + k % side, top + k / side);
+            Vector2::new(at(x + 1, y) - at(x - 1, y), at(x, y + 1) - at(x, y - 1)) / 2.0
+        });
+        Self { left, top, side, gradients: gradients.collect() }
+    }
+
+    fn weights(&self, place: &Point2<f64>) -> Between {
+        let (x, y) = (place.x.floor(), place.y.floor());
+        let (fx, fy) = (place.x - x, place.y - y);
+        let first = (y as i32 - self.top) * self.side + x as i32 - self.left;
+        Between { first, parts: [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy] }
+    }
+
+    /// The gradient so many pixels from that place: the difference of brightness between pixels is the
+    /// brightness' difference between pixels.
+    fn gradient(&self, at: &Between, i: i32, j: i32) -> Vector2<f64> {
+        let k = (at.first + j * self.side + i) as usize;
+        let below = k + self.side as usize;
+        let [a, b, c, d] = at.parts;
+        let g = &self.gradients;
+        g[k] * a + g[k + 1] * b + g[below] * c + g[below + 1] * d
+    }
 }

@@ -1,12 +1,8 @@
 //! The least sum of squares of re-projection errors.
 
 use super::lens::{INNER, LensModel};
-use nalgebra::{
-    DMatrix, DVector, Matrix2x3, Matrix3, Matrix6, Point2, Point3, Rotation3, Vector2, Vector3, Vector6,
-};
-
-/// Of a pose: a small turn and a way.
-const OUTER: usize = 6;
+use super::normal::{Normal, OUTER};
+use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3, Point2, Point3, Rotation3, Vector2, Vector3};
 
 /// What a camera is made of, in the order of its parameters.
 pub(super) type Inner = [f64; INNER];
@@ -54,62 +50,6 @@ pub(super) struct Bundle<'a> {
     /// Which parameters of a camera are to be found; the others stay.
     pub free: [bool; INNER],
 }
-
-/// J^T J and J^T r: a view has to do with the cameras and not with another view.
-struct Normal {
-    /// Of the cameras and the pose between them.
-    shared: DMatrix<f64>,
-    of_shared: DVector<f64>,
-    /// Of each view, and between it and the cameras.
-    own: Vec<Matrix6<f64>>,
-    of_own: Vec<Vector6<f64>>,
-    between: Vec<DMatrix<f64>>,
-    cost: f64,
-}
-
-impl Normal {
-    fn new(shared: usize, views: usize) -> Self {
-        Self {
-            shared: DMatrix::zeros(shared, shared),
-            of_shared: DVector::zeros(shared),
-            own: vec![Matrix6::zeros(); views],
-            of_own: vec![Vector6::zeros(); views],
-            between: vec![DMatrix::zeros(OUTER, shared); views],
-            cost: 0.0,
-        }
-    }
-
-    /// The equations of the shared parameters alone, by the Schur complement of the views, whose diagonals are
-    /// raised by a share; and each view's factors.
-    fn reduced(&self, damping: f64) -> Option<(DMatrix<f64>, DVector<f64>, Vec<Factors>)> {
-        let (mut shared, mut vector) = (self.shared.clone(), self.of_shared.clone());
-        (0..shared.nrows()).for_each(|i| shared[(i, i)] *= 1.0 + damping);
-        let mut all = Vec::with_capacity(self.own.len());
-        for ((own, of_own), between) in self.own.iter().zip(&self.of_own).zip(&self.between) {
-            let mut own = *own;
-            (0..OUTER).for_each(|i| own[(i, i)] *= 1.0 + damping);
-            let factors = own.cholesky()?;
-            let across = between.transpose();
-            shared -= &across * factors.solve(between);
-            vector -= &across * factors.solve(of_own);
-            all.push(factors);
-        }
-        Some((shared, vector, all))
-    }
-
-    /// The step of all parameters, the shared ones first.
-    fn step(&self, damping: f64) -> Option<DVector<f64>> {
-        let (shared, vector, all) = self.reduced(damping)?;
-        let first = shared.cholesky()?.solve(&vector);
-        let mut step: Vec<f64> = first.iter().copied().collect();
-        for ((factors, of_own), between) in all.iter().zip(&self.of_own).zip(&self.between) {
-            step.extend(factors.solve(&(of_own - between * &first)).iter());
-        }
-        Some(DVector::from_vec(step))
-    }
-}
-
-type Factors = nalgebra::Cholesky<f64, nalgebra::U6>;
 
 /// The most columns of a residual: of a camera, of the pose beside and of the view.
 const MOST: usize = INNER + 2 * OUTER;
@@ -257,8 +197,8 @@ impl Bundle<'_> {
         normal.cost.is_finite().then_some(normal)
     }
 
-    /// The sums over one picture, in columns: the camera's free parameters, the pose beside if it is the second
-    /// camera, the view.
+    /// The sums over one picture, in columns: the camera's free parameters, the pose beside if it is the
+    /// second camera, the view.
     fn sums(&self, camera: usize, inner: &Inner, view: usize) -> Option<Sums> {
         let pose = &self.views[view];
         let mut sums = Sums { matrix: [[0.0; MOST]; MOST], vector: [0.0; MOST], cost: 0.0 };

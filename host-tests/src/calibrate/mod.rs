@@ -7,19 +7,23 @@
 //! * `start`: focal lengths and poses from each view's homography (Zhang 2000).
 //! * `bundle`: the least sum of squares of all residuals, by Levenberg and Marquardt's method; first of each
 //!   camera by itself, lens coefficient by lens coefficient, then of both with one pose between them.
-//! * `lens`: the models of lenses. `solve`: these in order, and what their result is worth.
+//!   `normal`: its equations.
+//! * `lens`: the models of lenses. `solve`: these in order. `calibrated`: what they find, and its worth.
 //! * [`coverage`]: how much of the pictures the boards reached. [`report`](mod@report): the residuals, drawn.
 //!
 //! [`scene`] makes pictures of boards for tests.
 
 pub mod board;
 mod bundle;
+mod calibrated;
 pub mod coverage;
 mod lens;
+mod normal;
 pub mod report;
 pub mod scene;
 mod solve;
 mod start;
 
+pub use calibrated::{Calibrated, SolveError, View, ViewFigures};
 pub use lens::LensModel;
-pub use solve::{Calibrated, SolveError, View, ViewFigures, solve};
+pub use solve::solve;

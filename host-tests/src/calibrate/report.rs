@@ -81,7 +81,8 @@ pub fn page(
     for (name, coverage) in ["left", "right"].iter().zip(reached) {
         let _ = writeln!(
             text,
-            "<figure>{}<figcaption>The {name} picture: corners in {:.0} % of its parts.</figcaption></figure>",
+            "<figure>{}<figcaption>The {name} picture: corners in {:.0} % of its parts.</figcaption>\
+             </figure>",
             map(coverage),
             100.0 * coverage.share()
         );
@@ -89,8 +90,8 @@ pub fn page(
     let [across, up] = found.tilts_deg();
     let _ = writeln!(
         text,
-        "<p>Boards are tilted by {across:.0} degrees to the left and right, and by {up:.0} up and down (root mean \
-         square).</p>\n<h2>Views</h2>"
+        "<p>Boards are tilted by {across:.0} degrees to the left and right, and by {up:.0} up and down \
+         (root mean square).</p>\n<h2>Views</h2>"
     );
     text += "<table><tr><th>left</th><th>right</th><th>left, px</th><th>right, px</th><th>distance, \
              m</th><th></th></tr>\n";

@@ -1,6 +1,6 @@
 //! Trajectories as files, a line for each frame, of the motion that carries a point of that frame's camera
-//! into the first one's: KITTI's odometry benchmark writes the first three rows of its matrix, row by row, the
-//! TUM RGB-D benchmark (Sturm et al. 2012) a time, a place and a quaternion, `t x y z qx qy qz qw`.
+//! into the first one's: KITTI's odometry benchmark writes the first three rows of its matrix, row by row,
+//! the TUM RGB-D benchmark (Sturm et al. 2012) a time, a place and a quaternion, `t x y z qx qy qz qw`.
 
 use crate::limits;
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
@@ -51,7 +51,8 @@ pub enum PosesError {
     },
 }
 
-/// Writes a trajectory as KITTI does. The first line of one that begins in the first camera is the identity, exactly.
+/// Writes a trajectory as KITTI does. The first line of one that begins in the first camera is the identity,
+/// exactly.
 pub fn write(out: &mut dyn Write, poses: &[Pose<f64>]) -> io::Result<()> {
     for pose in poses {
         let (r, t) = (pose.rotation(), pose.translation());
@@ -158,7 +159,8 @@ pub fn read(path: &Path) -> Result<Vec<Pose<f64>>, PosesError> {
 fn kitti_pose(numbers: &[f64]) -> Option<Pose<f64>> {
     let n = <[f64; 12]>::try_from(numbers).ok()?;
     let r = Matrix3::new(n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10]);
-    if !((r.transpose() * r - Matrix3::identity()).amax() <= MOST_OFF && r.determinant() > 0.0) {
+    let is_rotation = (r.transpose() * r - Matrix3::identity()).amax() <= MOST_OFF && r.determinant() > 0.0;
+    if !is_rotation {
         return None;
     }
     // Files of other programs have six digits or fewer.
@@ -170,7 +172,8 @@ fn kitti_pose(numbers: &[f64]) -> Option<Pose<f64>> {
 fn tum_pose(numbers: &[f64]) -> Option<Pose<f64>> {
     let [_, x, y, z, i, j, k, w] = <[f64; 8]>::try_from(numbers).ok()?;
     let turn = Quaternion::new(w, i, j, k);
-    if !((turn.norm() - 1.0).abs() <= MOST_OFF) {
+    let is_unit = (turn.norm() - 1.0).abs() <= MOST_OFF;
+    if !is_unit {
         return None;
     }
     let turn = UnitQuaternion::from_quaternion(turn).to_rotation_matrix();

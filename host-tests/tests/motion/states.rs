@@ -1,5 +1,5 @@
-//! Drives that are hard: what is not sure says so, a right camera that disagrees is left out, and a drive is as
-//! well known backwards and in larger steps.
+//! Drives that are hard: what is not sure says so, a right camera that disagrees is left out, and a drive is
+//! as well known backwards and in larger steps.
 
 use crate::support::stereo;
 use image::{GrayImage, Luma};

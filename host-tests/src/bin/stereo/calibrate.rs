@@ -1,19 +1,18 @@
 //! `stereo calibrate`: pictures of a chessboard into a calibration file.
 
+mod boards;
+
 use crate::failure::Failure;
 use crate::image_files::pairs;
 use crate::place::{Place, png};
 use crate::shared::print;
+use boards::{Found, boards};
 use clap::{Args, ValueEnum};
-use image::{DynamicImage, GrayImage, RgbImage};
+use image::RgbImage;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use stereopsis::camera::LineSource;
-use stereopsis::geometry::{
-    camera::ImageSize,
-    rectify::{Crop, Rectification},
-};
-use stereopsis_host::calibrate::board::{self, Board, BoardError, Pattern};
+use stereopsis::geometry::rectify::{Crop, Rectification};
+use stereopsis_host::calibrate::board::Pattern;
 use stereopsis_host::calibrate::coverage::{self, Coverage, coverage};
 use stereopsis_host::calibrate::{Calibrated, LensModel, View, report, solve};
 use stereopsis_host::calibration::{warnings, write_opencv};
@@ -95,18 +94,6 @@ fn square(text: &str) -> Result<f64, &'static str> {
         }
         _ => Err("a length from 1 to 1000 millimetres is needed"),
     }
-}
-
-/// A pair in which the board was found in both images.
-struct Found {
-    paths: [PathBuf; 2],
-    view: View,
-}
-
-/// An image with its board.
-struct Seen {
-    size: ImageSize,
-    board: Result<Board, BoardError>,
 }
 
 pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
@@ -208,16 +195,17 @@ fn advice(result: &Calibrated, reached: &[Coverage; 2]) -> Vec<String> {
     for (how, tilt) in ["to the left and right", "up and down"].iter().zip(result.tilts_deg()) {
         if tilt < Calibrated::LEAST_TILT_DEG {
             advice.push(format!(
-                "the boards are hardly tilted {how}, by {tilt:.0} degrees (root mean square): tilt them more, \
-                 by 20 to 45 degrees, in several views"
+                "the boards are hardly tilted {how}, by {tilt:.0} degrees (root mean square): tilt them \
+                 more, by 20 to 45 degrees, in several views"
             ));
         }
     }
-    if !(result.disparity_sigma_px <= Calibrated::MOST_DISPARITY_SIGMA_PX) {
+    let is_certain = result.disparity_sigma_px <= Calibrated::MOST_DISPARITY_SIGMA_PX;
+    if !is_certain {
         advice.push(format!(
-            "the turn along the baseline (yaw) is weakly determined: with it all disparities are uncertain by \
-             {:.2} px; take more views, with boards near and far that are tilted and reach the left and right \
-             borders",
+            "the turn along the baseline (yaw) is weakly determined: with it all disparities are uncertain \
+             by {:.2} px; take more views, with boards near and far that are tilted and reach the left and \
+             right borders",
             result.disparity_sigma_px
         ));
     }
@@ -230,92 +218,6 @@ fn advice(result: &Calibrated, reached: &[Coverage; 2]) -> Vec<String> {
         );
     }
     advice
-}
-
-/// The pairs with a board in both images, and the images' size.
-fn boards(
-    pattern: Pattern,
-    pairs: Vec<[PathBuf; 2]>,
-    notes: &mut Vec<String>,
-) -> Result<(ImageSize, Vec<Found>), Failure> {
-    let mut all = Vec::new();
-    for paths in pairs {
-        let left = look(&paths[0], pattern, None)?;
-        let right = look(&paths[1], pattern, left.board.as_ref().ok())?;
-        all.push((paths, left, right));
-    }
-    // The size that most images have.
-    let sizes = all.iter().flat_map(|(_, left, right)| [left.size, right.size]);
-    let mut counts: Vec<(usize, ImageSize)> = Vec::new();
-    for size in sizes {
-        match counts.iter_mut().find(|(_, other)| *other == size) {
-            Some((count, _)) => *count += 1,
-            None => counts.push((1, size)),
-        }
-    }
-    let size = counts.iter().max_by_key(|(count, _)| *count).map(|(_, size)| *size);
-    let size = size.ok_or_else(|| Failure::new("--left and --right: no image has a partner"))?;
-    refuse_other(pattern, all.iter().flat_map(|(_, left, right)| [&left.board, &right.board]))?;
-    let mut found = Vec::new();
-    for (paths, left, right) in all {
-        if let Some((path, seen)) = paths.iter().zip([&left, &right]).find(|(_, seen)| seen.size != size) {
-            notes.push(format!(
-                "{}: {} x {} px, most images have {} x {}; the pair is left out",
-                path.display(),
-                seen.size.width,
-                seen.size.height,
-                size.width,
-                size.height
-            ));
-            continue;
-        }
-        match (left.board, right.board) {
-            (Ok(left), Ok(right)) => {
-                found.push(Found { paths, view: View { corners: [left.corners, right.corners] } })
-            }
-            (Err(e), _) => notes.push(format!("{}: {e}; the pair is left out", paths[0].display())),
-            (_, Err(e)) => notes.push(format!("{}: {e}; the pair is left out", paths[1].display())),
-        }
-    }
-    Ok((size, found))
-}
-
-/// Refuses a pattern where more images show a board of one other size.
-fn refuse_other<'a>(
-    pattern: Pattern,
-    boards: impl Iterator<Item = &'a Result<Board, BoardError>>,
-) -> Result<(), Failure> {
-    let (mut images, mut fitting) = (0, 0);
-    let mut others: Vec<(usize, (usize, usize))> = Vec::new();
-    for board in boards {
-        images += 1;
-        match board.as_ref().map_err(BoardError::other_board) {
-            Ok(_) => fitting += 1,
-            Err(Some(size)) => match others.iter_mut().find(|(_, other)| *other == size) {
-                Some((count, _)) => *count += 1,
-                None => others.push((1, size)),
-            },
-            Err(None) => {}
-        }
-    }
-    match others.into_iter().max_by_key(|(count, _)| *count) {
-        Some((count, (columns, rows))) if 3 * count > images && count > fitting => {
-            Err(Failure::new(format!(
-                "--pattern: {} x {} is given, and {count} of {images} images show a board with {columns} x {rows} \
-             inner corners; give --pattern {columns}x{rows}",
-                pattern.columns(),
-                pattern.rows()
-            )))
-        }
-        _ => Ok(()),
-    }
-}
-
-fn look(path: &Path, pattern: Pattern, like: Option<&Board>) -> Result<Seen, Failure> {
-    let camera = MockCamera::open(path)?;
-    let (width, height) = (camera.format().width, camera.format().height);
-    let grey: GrayImage = DynamicImage::from(camera.picture()).into_luma8();
-    Ok(Seen { size: ImageSize { width, height }, board: board::find(&grey, pattern, like) })
 }
 
 fn draw(

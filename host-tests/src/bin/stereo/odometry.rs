@@ -1,44 +1,43 @@
 //! `stereo odometry`: where a camera, or a pair, went, from what it saw.
 
+mod summary;
+
 use crate::failure::Failure;
 use crate::input::fits;
 use crate::look::refuse_swapped;
 use crate::place::{Content, Place};
 use crate::progress::Progress;
-use crate::rig::{rig_line, warn_of};
+use crate::rig::warn_of;
 use crate::shared::{Unit, print, whole};
 use clap::{Args, ValueEnum};
 use image::GrayImage;
-use std::fmt::Write;
 use std::io;
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::{
-    camera::{ImageSize, Pose},
+    camera::ImageSize,
     rectify::{Crop, Rectification},
 };
-use stereopsis::motion::odometry::State;
 use stereopsis_host::calibration::{Calibration, Cameras, Fault, RawCalibration};
-use stereopsis_host::command_line::one_line;
-use stereopsis_host::odometry::error::{Alignment, align, ate, drift, rpe};
 use stereopsis_host::odometry::picture::svg;
 use stereopsis_host::odometry::poses;
 use stereopsis_host::odometry::run::{MOST_VIEWS, Rig, RunConfig, VIEWS, run as follow};
 use stereopsis_host::odometry::sequence::{Sequence, SequenceError};
-use stereopsis_host::odometry::trajectory::Trajectory;
 use stereopsis_host::rectify::{RectifyPicturesError, rectify};
 use stereopsis_host::scene::SceneCamera;
+use summary::{beside, summary};
 
 /// What follows the options in the command's help.
 pub const EXAMPLE: &str = "Example:
   stereo odometry --sequence street --calib street/calib.txt --out poses.txt --picture way.svg
 
-The frames are the images in street/left and street/right, in the order of their names; without street/right \
-                           it is one camera. Written is a line for each frame, as KITTI does: 12 numbers, \
-                           the rows of [R | t], which carries a point of that frame's camera into the first \
-                           one's; metres for a pair, of one camera units of its first baseline. With --format \
-                           tum it is a time, that camera's place and its quaternion: t x y z qx qy qz qw. What \
-                           is not known of a frame is laid between those that are, and counted in what is printed. \
-                           Places that come back are not recognised: errors add up along the way.
+The frames are the images in street/left and street/right, in the order of their names; without \
+                           street/right it is one camera. Written is a line for each frame, as KITTI does: \
+                           12 numbers, the rows of [R | t], which carries a point of that frame's camera \
+                           into the first one's; metres for a pair, of one camera units of its first \
+                           baseline. With --format tum it is a time, that camera's place and its \
+                           quaternion: t x y z qx qy qz qw. What is not known of a frame is laid between \
+                           those that are, and counted in what is printed. Places that come back are not \
+                           recognised: errors add up along the way.
 
 A pair that is not rectified (OpenCV's, Kalibr's and ROS's calibrations) is rectified first; its poses are \
                            those of the rectified left camera.";
@@ -230,100 +229,5 @@ fn frame(
             Ok((left, Some(right)))
         }
         (_, right) => Ok((left, right)),
-    }
-}
-
-/// The truth as the trajectory would have it: turned, moved, and of one camera scaled onto it.
-fn beside(trajectory: &Trajectory, truth: &[Pose<f64>], is_stereo: bool) -> Vec<Pose<f64>> {
-    let Some(s) = align(truth, &trajectory.poses, alignment(is_stereo)) else { return Vec::new() };
-    let moved = |p: &Pose<f64>| {
-        Pose::new(s.rotation * p.rotation(), s.rotation * p.translation() * s.scale + s.translation)
-            .unwrap_or(*p)
-    };
-    truth.iter().map(moved).collect()
-}
-
-fn alignment(is_stereo: bool) -> Alignment {
-    if is_stereo { Alignment::Rigid } else { Alignment::Similar }
-}
-
-fn summary(
-    args: &OdometryArgs,
-    sequence: &Sequence,
-    cameras: &Cams,
-    trajectory: &Trajectory,
-    truth: Option<&[Pose<f64>]>,
-) -> String {
-    let (width, height) = sequence.size();
-    let kind = if sequence.is_stereo() { "a pair" } else { "one camera" };
-    let mut text = format!(
-        "{} frames of {width} x {height} px, {kind}, {} calibration\n",
-        sequence.len(),
-        cameras.format
-    );
-    let states = [
-        (State::Tracked, "tracked"),
-        (State::Uncertain, "not sure"),
-        (State::LeftOnly, "by the left camera alone, for the right one disagrees"),
-        (State::Stationary, "still"),
-        (State::RotationOnly, "turned, step not told from none"),
-        (State::TranslationUnknown, "turned, step not known"),
-        (State::Waiting, "waiting for a baseline, laid between others"),
-        (State::Lost, "lost, laid between others"),
-        (State::Found, "found again"),
-        (State::Restarted, "begun anew, motion not known"),
-    ];
-    let counted: Vec<String> = states
-        .iter()
-        .map(|&(state, name)| (trajectory.count(state), name))
-        .filter(|&(count, _)| count > 0)
-        .map(|(count, name)| format!("{count} {name}"))
-        .collect();
-    let _ = writeln!(text, "frames       {}", counted.join(", "));
-    if let Some(rig) = trajectory.rigs.last() {
-        let _ = writeln!(text, "{}", rig_line(rig));
-    }
-    let unit = if sequence.is_stereo() { "m" } else { "first baselines (the unit of length is not known)" };
-    let _ = writeln!(text, "way          {:.3} {unit}", trajectory.length());
-    if let Some(truth) = truth {
-        errors(&mut text, trajectory, truth, sequence.is_stereo());
-    }
-    let _ = writeln!(text, "results are in {}", one_line(&args.out.display().to_string()));
-    text
-}
-
-fn errors(text: &mut String, trajectory: &Trajectory, truth: &[Pose<f64>], is_stereo: bool) {
-    if truth.len() != trajectory.poses.len() {
-        let _ =
-            writeln!(text, "note: the truth has {} poses; as many as both have are compared", truth.len());
-    }
-    let alignment = alignment(is_stereo);
-    let Some(found) = align(&trajectory.poses, truth, alignment) else { return };
-    let scale = found.scale;
-    if let Some(ate) = ate(&trajectory.poses, truth, alignment) {
-        let _ = writeln!(text, "ATE          {ate:.4} m RMS after alignment, scale {scale:.5}");
-    }
-    if let Some(rpe) = rpe(&trajectory.poses, truth, 1, scale) {
-        let _ = writeln!(
-            text,
-            "RPE          {:.4} m, {:.4} deg RMS from frame to frame; direction {:.3} deg mean, {:.3} deg \
-             worst",
-            rpe.translation,
-            rpe.rotation_rad.to_degrees(),
-            rpe.direction_rad.to_degrees(),
-            rpe.worst_direction_rad.to_degrees()
-        );
-    }
-    for length in [5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 400.0, 800.0] {
-        let Some(off) = drift(&trajectory.poses, truth, length, scale) else {
-            break;
-        };
-        let _ = writeln!(
-            text,
-            "drift        over {length} m: {:.3} %, {:.5} deg/m ({} ways)",
-            100.0 * off.translation,
-            off.rotation_rad.to_degrees(),
-            off.ways
-        );
     }
 }

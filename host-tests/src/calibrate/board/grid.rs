@@ -180,10 +180,19 @@ impl Grid {
         (range(|at| at.0), range(|at| at.1))
     }
 
-    /// Its size if no corner of it is missing, and if it is a board's.
-    pub fn whole(&self) -> Option<(usize, usize)> {
-        let (columns, rows) = self.size();
-        (columns.min(rows) >= 3 && self.len() >= 12 && columns * rows == self.len())
-            .then_some((columns, rows))
+    /// The columns and rows of the board, of whatever size that is: those of the largest block without a gap,
+    /// if at most a quarter of the corners stands beside it, such as those of the board's edge.
+    pub fn board_size(&self) -> Option<(usize, usize)> {
+        let heights = |x: i32, y: i32| (0..).take_while(|j| self.nodes.contains_key(&(x, y + j))).count();
+        let blocks = self.nodes.keys().flat_map(|&(x, y)| {
+            let mut rows = usize::MAX;
+            (1..).map_while(move |columns| {
+                rows = rows.min(heights(x + columns - 1, y));
+                (rows > 0).then_some((columns as usize, rows))
+            })
+        });
+        let (columns, rows) = blocks.max_by_key(|(columns, rows)| columns * rows)?;
+        let is_board = columns.min(rows) >= 3 && columns * rows >= 12;
+        (is_board && 4 * columns * rows >= 3 * self.len()).then_some((columns, rows))
     }
 }

@@ -81,8 +81,8 @@ pub enum BoardError {
         pattern: Pattern,
         /// The largest grid's corners.
         most: usize,
-        /// Its columns and rows where it is a whole board, of another size.
-        whole: Option<(usize, usize)>,
+        /// Its columns and rows where it is a board, of another size.
+        other: Option<(usize, usize)>,
     },
     /// A grid that holds the pattern in more than one place.
     #[error(
@@ -102,7 +102,7 @@ impl BoardError {
     /// pattern.
     pub fn other_board(&self) -> Option<(usize, usize)> {
         let (columns, rows) = match *self {
-            Self::NotFound { whole, .. } => whole?,
+            Self::NotFound { other, .. } => other?,
             Self::Larger { columns, rows } => (columns, rows),
         };
         Some((columns.max(rows), columns.min(rows)))
@@ -120,7 +120,7 @@ pub fn find(picture: &GrayImage, pattern: Pattern, like: Option<&Board>) -> Resu
     while f64::from(side) * base > f64::from(LARGEST) {
         base /= 2.0;
     }
-    let (mut most, mut whole, mut larger) = (0, None, None);
+    let (mut most, mut linked, mut other, mut larger) = (0, 0, None, None);
     for scale in [1.0, 0.5, 2.0, 0.25, 0.125] {
         let scale = scale * base;
         if scale > 2.0 || f64::from(side) * scale < 60.0 || f64::from(side) * scale > 2.0 * f64::from(LARGEST)
@@ -131,6 +131,10 @@ pub fn find(picture: &GrayImage, pattern: Pattern, like: Option<&Board>) -> Resu
         let corners = corners::find(&level);
         let links = links::links(&level, &corners);
         for mut grid in grid::grids(&corners, &links) {
+            // Of the corners that links join: what is put in later may lie beyond the board.
+            if grid.len() > linked {
+                (linked, other) = (grid.len(), grid.board_size());
+            }
             // Corners that links missed are looked for where they are needed.
             let found = match grid.block(pattern) {
                 Err(None) => {
@@ -139,9 +143,7 @@ pub fn find(picture: &GrayImage, pattern: Pattern, like: Option<&Board>) -> Resu
                 }
                 found => found,
             };
-            if grid.len() > most {
-                (most, whole) = (grid.len(), grid.whole());
-            }
+            most = most.max(grid.len());
             match found {
                 Ok(block) => {
                     let found = order::order(&block, pattern, like);
@@ -162,5 +164,5 @@ pub fn find(picture: &GrayImage, pattern: Pattern, like: Option<&Board>) -> Resu
             }
         }
     }
-    Err(larger.unwrap_or(BoardError::NotFound { pattern, most, whole }))
+    Err(larger.unwrap_or(BoardError::NotFound { pattern, most, other }))
 }

@@ -1,0 +1,107 @@
+//! What `stereo odometry` prints of a way, and how the truth is laid beside it.
+
+use super::{Cams, OdometryArgs};
+use crate::rig::rig_line;
+use std::fmt::Write;
+use stereopsis::geometry::camera::Pose;
+use stereopsis::motion::odometry::State;
+use stereopsis_host::command_line::one_line;
+use stereopsis_host::odometry::error::{Alignment, align, ate, drift, rpe};
+use stereopsis_host::odometry::sequence::Sequence;
+use stereopsis_host::odometry::trajectory::Trajectory;
+
+/// The truth as the trajectory would have it: turned, moved, and of one camera scaled onto it.
+pub fn beside(trajectory: &Trajectory, truth: &[Pose<f64>], is_stereo: bool) -> Vec<Pose<f64>> {
+    let Some(s) = align(truth, &trajectory.poses, alignment(is_stereo)) else { return Vec::new() };
+    let moved = |p: &Pose<f64>| {
+        Pose::new(s.rotation * p.rotation(), s.rotation * p.translation() * s.scale + s.translation)
+            .unwrap_or(*p)
+    };
+    truth.iter().map(moved).collect()
+}
+
+fn alignment(is_stereo: bool) -> Alignment {
+    if is_stereo { Alignment::Rigid } else { Alignment::Similar }
+}
+
+/// What is printed at the end.
+pub fn summary(
+    args: &OdometryArgs,
+    sequence: &Sequence,
+    cameras: &Cams,
+    trajectory: &Trajectory,
+    truth: Option<&[Pose<f64>]>,
+) -> String {
+    let (width, height) = sequence.size();
+    let kind = if sequence.is_stereo() { "a pair" } else { "one camera" };
+    let mut text = format!(
+        "{} frames of {width} x {height} px, {kind}, {} calibration\n",
+        sequence.len(),
+        cameras.format
+    );
+    let states = [
+        (State::Tracked, "tracked"),
+        (State::Uncertain, "not sure"),
+        (State::LeftOnly, "by the left camera alone, for the right one disagrees"),
+        (State::Stationary, "still"),
+        (State::RotationOnly, "turned, step not told from none"),
+        (State::TranslationUnknown, "turned, step not known"),
+        (State::Waiting, "waiting for a baseline, laid between others"),
+        (State::Lost, "lost, laid between others"),
+        (State::Found, "found again"),
+        (State::Restarted, "begun anew, motion not known"),
+    ];
+    let counted: Vec<String> = states
+        .iter()
+        .map(|&(state, name)| (trajectory.count(state), name))
+        .filter(|&(count, _)| count > 0)
+        .map(|(count, name)| format!("{count} {name}"))
+        .collect();
+    let _ = writeln!(text, "frames       {}", counted.join(", "));
+    if let Some(rig) = trajectory.rigs.last() {
+        let _ = writeln!(text, "{}", rig_line(rig));
+    }
+    let unit = if sequence.is_stereo() { "m" } else { "first baselines (the unit of length is not known)" };
+    let _ = writeln!(text, "way          {:.3} {unit}", trajectory.length());
+    if let Some(truth) = truth {
+        errors(&mut text, trajectory, truth, sequence.is_stereo());
+    }
+    let _ = writeln!(text, "results are in {}", one_line(&args.out.display().to_string()));
+    text
+}
+
+fn errors(text: &mut String, trajectory: &Trajectory, truth: &[Pose<f64>], is_stereo: bool) {
+    if truth.len() != trajectory.poses.len() {
+        let _ =
+            writeln!(text, "note: the truth has {} poses; as many as both have are compared", truth.len());
+    }
+    let alignment = alignment(is_stereo);
+    let Some(found) = align(&trajectory.poses, truth, alignment) else { return };
+    let scale = found.scale;
+    if let Some(ate) = ate(&trajectory.poses, truth, alignment) {
+        let _ = writeln!(text, "ATE          {ate:.4} m RMS after alignment, scale {scale:.5}");
+    }
+    if let Some(rpe) = rpe(&trajectory.poses, truth, 1, scale) {
+        let _ = writeln!(
+            text,
+            "RPE          {:.4} m, {:.4} deg RMS from frame to frame; direction {:.3} deg mean, {:.3} deg \
+             worst",
+            rpe.translation,
+            rpe.rotation_rad.to_degrees(),
+            rpe.direction_rad.to_degrees(),
+            rpe.worst_direction_rad.to_degrees()
+        );
+    }
+    for length in [5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 400.0, 800.0] {
+        let Some(off) = drift(&trajectory.poses, truth, length, scale) else {
+            break;
+        };
+        let _ = writeln!(
+            text,
+            "drift        over {length} m: {:.3} %, {:.5} deg/m ({} ways)",
+            100.0 * off.translation,
+            off.rotation_rad.to_degrees(),
+            off.ways
+        );
+    }
+}

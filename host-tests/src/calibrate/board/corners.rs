@@ -22,6 +22,8 @@ const AROUND: usize = 40;
 const RADII: [f64; 4] = [5.0, 4.0, 3.0, 2.2];
 /// The least contrast, grey levels.
 const LEAST_CONTRAST: f32 = 4.0;
+/// The least saddle, squares of grey levels a square pixel.
+const LEAST_SADDLE: f32 = 0.3;
 /// The most saddles that are looked at, the strongest first.
 const MOST: usize = 6000;
 
@@ -35,11 +37,10 @@ pub(super) fn find(level: &Level) -> Vec<Corner> {
     }
     let at = |x: isize, y: isize| strength[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize];
     let mut saddles = Vec::new();
-    for y in 1..height - 1 {
-        for x in 1..width - 1 {
-            let here = at(x, y);
-            let around = (-2..=2).flat_map(|j| (-2..=2).map(move |i| (i, j)));
-            if here > 0.3 && around.into_iter().all(|(i, j)| at(x + i, y + j) <= here) {
+    for (y, row) in (0..height).zip(strength.chunks_exact(level.width.max(1))) {
+        for (x, &here) in (0..).zip(row).filter(|(_, here)| **here > LEAST_SADDLE) {
+            let mut around = (-2..=2).flat_map(|j| (-2..=2).map(move |i| (i, j)));
+            if around.all(|(i, j)| at(x + i, y + j) <= here) {
                 saddles.push((here, Point2::new(x as f64, y as f64)));
             }
         }

@@ -98,8 +98,17 @@ impl Level {
         let (x, y) = (p.x.floor(), p.y.floor());
         let (fx, fy) = ((p.x - x) as f32, (p.y - y) as f32);
         let (x, y) = (x as isize, y as isize);
-        let top = self.at(x, y) * (1.0 - fx) + self.at(x + 1, y) * fx;
-        let bottom = self.at(x, y + 1) * (1.0 - fx) + self.at(x + 1, y + 1) * fx;
+        let inside = |x: isize, y: isize| {
+            let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
+            let here = (x + 1 < self.width).then_some(y * self.width + x)?;
+            let above = self.pixels.get(here..here + 2)?;
+            Some(
+                [above, self.pixels.get(here + self.width..here + self.width + 2)?]
+                    .map(|two| [two[0], two[1]]),
+            )
+        };
+        let border = || [0, 1].map(|dy| [0, 1].map(|dx| self.at(x + dx, y + dy)));
+        let [top, bottom] = inside(x, y).unwrap_or_else(border).map(|[a, b]| a * (1.0 - fx) + b * fx);
         top * (1.0 - fy) + bottom * fy
     }
 

@@ -15,8 +15,10 @@ const TRIED: usize = 6;
 
 /// Joins corners that each find the other first.
 pub(super) fn links(level: &Level, corners: &[Corner]) -> Links {
-    let nearest: Links =
-        (0..corners.len()).map(|i| std::array::from_fn(|edge| other_end(level, corners, i, edge))).collect();
+    let order = [0, 1].map(|axis| Order::new(corners, axis));
+    let nearest: Links = (0..corners.len())
+        .map(|i| std::array::from_fn(|edge| other_end(level, corners, &order, i, edge)))
+        .collect();
     let is_mutual = |i: usize, edge: usize| {
         let (j, back) = nearest[i][edge]?;
         (nearest[j][back] == Some((i, edge))).then_some((j, back))
@@ -24,27 +26,73 @@ pub(super) fn links(level: &Level, corners: &[Corner]) -> Links {
     (0..corners.len()).map(|i| std::array::from_fn(|edge| is_mutual(i, edge))).collect()
 }
 
+/// Corners in the order of their columns, or of their rows.
+struct Order {
+    corners: Vec<usize>,
+    /// Where each corner is in it.
+    places: Vec<usize>,
+}
+
+impl Order {
+    fn new(corners: &[Corner], axis: usize) -> Self {
+        let mut order: Vec<usize> = (0..corners.len()).collect();
+        order.sort_by(|&a, &b| corners[a].place[axis].total_cmp(&corners[b].place[axis]));
+        let mut places = vec![0; order.len()];
+        order.iter().zip(0..).for_each(|(&corner, place)| places[corner] = place);
+        Self { corners: order, places }
+    }
+
+    /// The corners after one, or those before it, from there on.
+    fn from(&self, corner: usize, is_after: bool) -> impl Iterator<Item = usize> {
+        let place = self.places[corner];
+        let (after, before) = match is_after {
+            true => (&self.corners[place + 1..], &[][..]),
+            false => (&[][..], &self.corners[..place]),
+        };
+        after.iter().chain(before.iter().rev()).copied()
+    }
+}
+
+/// A corner in an edge's direction.
+struct Ahead {
+    square: f64,
+    corner: usize,
+    back: usize,
+}
+
 /// The nearest corner along an edge.
-fn other_end(level: &Level, corners: &[Corner], i: usize, edge: usize) -> Option<(usize, usize)> {
+fn other_end(
+    level: &Level,
+    corners: &[Corner],
+    order: &[Order; 2],
+    i: usize,
+    edge: usize,
+) -> Option<(usize, usize)> {
     let from = &corners[i];
     let direction = from.edges[edge];
-    let mut ahead: Vec<(f64, usize, usize)> = Vec::new();
-    for (j, to) in corners.iter().enumerate() {
+    let axis = usize::from(direction.x.abs() < direction.y.abs());
+    let mut ahead: Vec<Ahead> = Vec::with_capacity(TRIED + 1);
+    for j in order[axis].from(i, direction[axis] > 0.0) {
+        let to = &corners[j];
         let way = to.place - from.place;
-        let length = way.norm();
-        if j == i || length < 3.0 || way.dot(&direction) < TOWARDS * length {
+        if ahead.get(TRIED - 1).is_some_and(|last| way[axis] * way[axis] > last.square) {
+            break;
+        }
+        let (square, along) = (way.norm_squared(), way.dot(&direction));
+        if along < 0.0 || along * along < TOWARDS * TOWARDS * square || square < 9.0 {
             continue;
         }
         // The edge that leads back has dark and bright on the other sides, as seen from there.
-        let back =
-            (0..4).find(|back| to.edges[*back].dot(&way) < -TOWARDS * length && (back + edge) % 2 == 1);
+        let least = TOWARDS * square.sqrt();
+        let back = (0..4).find(|back| to.edges[*back].dot(&way) < -least && (back + edge) % 2 == 1);
         if let Some(back) = back {
-            ahead.push((length, j, back));
+            let place = ahead.partition_point(|other| (other.square, other.corner) < (square, j));
+            ahead.insert(place, Ahead { square, corner: j, back });
+            ahead.truncate(TRIED);
         }
     }
-    ahead.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let found = ahead.into_iter().take(TRIED).find(|(_, j, _)| is_edge(level, from, &corners[*j], edge));
-    found.map(|(_, j, back)| (j, back))
+    let found = ahead.iter().find(|ahead| is_edge(level, from, &corners[ahead.corner], edge));
+    found.map(|ahead| (ahead.corner, ahead.back))
 }
 
 /// Whether it is bright on one side and dark on the other all along.

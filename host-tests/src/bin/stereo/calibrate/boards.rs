@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use image::{DynamicImage, GrayImage};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use stereopsis::camera::LineSource;
 use stereopsis::geometry::camera::ImageSize;
 use stereopsis_host::calibrate::View;
@@ -27,12 +28,7 @@ pub fn boards(
     pairs: Vec<[PathBuf; 2]>,
     notes: &mut Vec<String>,
 ) -> Result<(ImageSize, Vec<Found>), Failure> {
-    let mut all = Vec::new();
-    for paths in pairs {
-        let left = look(&paths[0], pattern, None)?;
-        let right = look(&paths[1], pattern, left.board.as_ref().ok())?;
-        all.push((paths, left, right));
-    }
+    let all = look_at_all(pattern, pairs)?;
     // The size that most images have.
     let sizes = all.iter().flat_map(|(_, left, right)| [left.size, right.size]);
     let mut counts: Vec<(usize, ImageSize)> = Vec::new();
@@ -67,6 +63,37 @@ pub fn boards(
         }
     }
     Ok((size, found))
+}
+
+/// The boards of all pairs, in their order, by as many threads as there are processors.
+fn look_at_all(
+    pattern: Pattern,
+    pairs: Vec<[PathBuf; 2]>,
+) -> Result<Vec<([PathBuf; 2], Seen, Seen)>, Failure> {
+    let look_at = |paths: [PathBuf; 2]| {
+        let left = look(&paths[0], pattern, None)?;
+        let right = look(&paths[1], pattern, left.board.as_ref().ok())?;
+        Ok((paths, left, right))
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let waiting = Mutex::new(pairs.into_iter().enumerate());
+    let work = || {
+        let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
+        std::iter::from_fn(next).map(|(i, paths)| (i, look_at(paths))).collect::<Vec<_>>()
+    };
+    let mut all = std::thread::scope(|scope| {
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
+        let mut all = work();
+        for other in others {
+            match other.join() {
+                Ok(more) => all.extend(more),
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        }
+        all
+    });
+    all.sort_by_key(|(i, _)| *i);
+    all.into_iter().map(|(_, seen)| seen).collect()
 }
 
 /// Refuses a pattern where more images show a board of one other size.

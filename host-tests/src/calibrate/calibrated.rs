@@ -4,7 +4,8 @@ use nalgebra::{Point2, Vector2};
 use std::fmt::Write;
 use stereopsis::geometry::camera::{StereoRig, StereoRigError};
 
-/// The corners of one board in both pictures of a moment, in the order of [`Pattern::places`], px.
+/// The corners of one board in both pictures of a moment, px, in the order of
+/// [`Pattern::places`](super::board::Pattern::places).
 #[derive(Clone, PartialEq, Debug)]
 pub struct View {
     /// In the left and in the right picture.

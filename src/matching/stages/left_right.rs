@@ -55,7 +55,7 @@ pub(super) fn make_answers<S: Method>(frame: &mut Frame<'_>, newest: usize) {
 fn flag_first_column(config: &Config, answers: &mut [Disparity], flags: &mut [PixelFlags]) {
     let refused = u16::from(config.checks.refuse_ceiling);
     // Farther right the last candidate lies inside the image. At an end there is no fraction of a pixel.
-    let columns = usize::from(config.disparities).saturating_sub(1);
+    let columns = usize::from(config.disparities);
     let mut end = Disparity::from_pixels(config.min_disparity).raw();
     for (answer, flags) in answers.iter_mut().zip(flags).take(columns) {
         let is_end = answer.raw() == end;

@@ -72,7 +72,7 @@ pub(super) fn offer(winners: &[Winner], right: &mut [u16]) {
     }
 }
 
-/// One winner of [`answer`], whose fraction `$fraction` finds: 24 instructions and those. `r7` is 0.
+/// One winner of [`answer`], whose fraction `$fraction` finds: 20 instructions and those. `r7` is 0.
 ///
 /// ```text
 /// r4, r5    the column, and how many there are     r8 to r11   winners, right columns, answers, flags
@@ -95,11 +95,6 @@ macro_rules! answer_one {
             "cmp r1, r12, lsr #24\n",
             "adc r2, r7, r2, lsl #3\n",
             "orr r6, r6, r2, lsl #1\n",
-            // The rises to the disparities below and above, of which the winner costs least.
-            "uxtb r3, r0, ror #8\n",
-            "orr r3, r3, r3, lsl #16\n",
-            "sub r0, r0, r3\n",
-            "uxtb16 r0, r0\n",
             $fraction,
             "add r3, r3, r1, lsl #5\n",
             "add r3, r3, lr\n",
@@ -113,56 +108,62 @@ macro_rules! answer_one {
     };
 }
 
-/// The fraction in `r3` by the rises in both halves of `r0`, of costs that rise for nothing but the
-/// disparity: 16 times their difference, and half of the steeper one more, over that one. 12 instructions.
+/// The fraction in `r3` by the costs in the lower three bytes of `r0`, below, at and above the disparity, of
+/// which that at it is the least. They rise for nothing but the disparity: 16 times the difference of both
+/// rises, and half of the steeper one more, over that one. 15 instructions.
 macro_rules! upright_fraction {
     () => {
-        "uxth r2, r0
-         subs r3, r2, r0, lsr #16
-         lsl r3, r3, #4
-         itte lo
-         lsrlo r2, r0, #16
-         sublo r3, r3, r2, lsr #1
-         addhs r3, r3, r2, lsr #1
-         cmp r2, #0
+        "uxtb r2, r0
+         uxtb r3, r0, ror #16
+         uxtb r0, r0, ror #8
+         subs r3, r2, r3
+         it lo
+         sublo r2, r2, r3
+         subs r2, r2, r0
          itt eq
          orreq r6, r6, r12, lsr #8
          moveq r2, #1
+         lsls r3, r3, #4
+         ite mi
+         submi r3, r3, r2, lsr #1
+         addpl r3, r3, r2, lsr #1
          sdiv r3, r3, r2
          "
     };
 }
 
-/// The fraction in `r3` by the rises in both halves of `r0`, of costs that rise by up to `{slant}` on a
-/// slanted surface: that much of the steeper rise is not counted, as far as it is more than the difference,
-/// and both are at least 1, to divide by. 20 instructions.
+/// The fraction in `r3` as [`upright_fraction`] finds it, of costs that rise by up to `{slant}` on a slanted
+/// surface: that much of the steeper rise is not counted, as far as it is more than the difference, and both
+/// are at least 1, to divide by. 22 instructions.
 macro_rules! slanted_fraction {
     () => {
-        "uxth r2, r0
-         lsr r0, r0, #16
-         usad8 r3, r2, r0
-         subs r0, r2, r0
+        "uxtb r2, r0
+         uxtb r3, r0, ror #16
+         uxtb r0, r0, ror #8
+         subs r3, r2, r3
          it lo
-         addlo r2, r2, r3
-         cmp r2, #0
+         sublo r2, r2, r3
+         subs r2, r2, r0
          it eq
          orreq r6, r6, r12, lsr #8
+         eor r0, r3, r3, asr #31
+         sub r0, r0, r3, asr #31
          sub r2, r2, #{slant} + 1
          usat r2, #8, r2
          add r2, r2, #1
-         cmp r2, r3
+         cmp r2, r0
          it lo
-         movlo r2, r3
-         lsls r0, r0, #4
+         movlo r2, r0
+         lsls r3, r3, #4
          ite mi
-         submi r0, r0, r2, lsr #1
-         addpl r0, r0, r2, lsr #1
-         sdiv r3, r0, r2
+         submi r3, r3, r2, lsr #1
+         addpl r3, r3, r2, lsr #1
+         sdiv r3, r3, r2
          "
     };
 }
 
-/// The answers and flags of winners that were offered to the `right`. 37 instructions a pixel, 45 where a
+/// The answers and flags of winners that were offered to the `right`. 36 instructions a pixel, 43 where a
 /// part of the steeper rise is not counted.
 #[inline(never)]
 pub(super) fn answer<P: MethodParameters>(

@@ -10,8 +10,8 @@
 //! * `rows`: the right codes from right to left, and the loops of both over the pixels of a row, in assembly
 //!   for the usual numbers of candidates.
 //! * `left_right`: winners into answers; `fattening`: those refused that spread; `smooth`: these averaged;
-//!   `speckle`: their support counted, which all methods share; `fill`: small gaps
-//!   closed.
+//!   `speckle`: their support counted, which all methods share; `vertical`: answers averaged down the
+//!   columns; `fill`: small gaps closed.
 //! * `sgm`: costs along paths.
 //! * `word`: what is done to four bytes.
 //!
@@ -34,6 +34,7 @@ pub(super) mod sgm;
 mod smooth;
 mod speckle;
 mod tables;
+mod vertical;
 mod windows;
 mod word;
 
@@ -49,6 +50,7 @@ use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::{multiple_of, part, split_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::{Lengths, Select};
+use crate::units::Disparity;
 use core::ops::Range;
 
 #[allow(unused_imports, reason = "on a Cortex-M55 vectors do the most of it")]
@@ -135,6 +137,11 @@ impl Isa for Backend {
     #[inline(always)]
     fn fill(self, work: FillWork<'_>) {
         fill::fill(work);
+    }
+
+    #[inline(always)]
+    fn vertical(self, here: &mut [Disparity], above: &[Disparity], below: &[Disparity]) {
+        vertical::vertical(here, above, below);
     }
 }
 

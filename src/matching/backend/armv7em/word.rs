@@ -1,4 +1,4 @@
-//! Four bytes in a 32-bit word, in Arm's instructions for them.
+//! Four bytes or two half-words in a 32-bit word, in Arm's instructions for them.
 #![allow(unsafe_code)]
 
 use core::arch::asm;
@@ -35,6 +35,26 @@ two_operands!(
     /// The lesser half-words, likewise.
     min_halves: "usub16 {out}, {a}, {b}", "sel {out}, {b}, {a}"
 );
+two_operands!(
+    /// The sums of half-words, modulo 65536.
+    add_halves: "uadd16 {out}, {a}, {b}"
+);
+two_operands!(
+    /// The differences of half-words, modulo 65536.
+    subtract_halves: "usub16 {out}, {a}, {b}"
+);
+
+/// The half-words of `yes` where those of `a` are not less than those of `b`, and those of `no` elsewhere.
+#[inline(always)]
+pub(super) fn half_or(a: u32, b: u32, yes: u32, no: u32) -> u32 {
+    let out;
+    // SAFETY: as above.
+    unsafe {
+        asm!("usub16 {out}, {a}, {b}", "sel {out}, {yes}, {no}", out = out(reg) out, a = in(reg) a,
+        b = in(reg) b, yes = in(reg) yes, no = in(reg) no, options(pure, nomem, nostack));
+    }
+    out
+}
 
 /// The highest bit of every byte in which `a` is not less than `b`, and no other.
 #[inline(always)]

@@ -5,12 +5,13 @@ use crate::units::Disparity;
 use core::hint::select_unpredictable;
 
 /// Share of the summed differences that is taken: `SHARE` of `1 << SHIFT`.
-const SHARE: u32 = 5;
-const SHIFT: u32 = 5;
+pub(in crate::matching::backend) const SHARE: u32 = 5;
+pub(in crate::matching::backend) const SHIFT: u32 = 5;
 /// The differences reach from 1 px less up to, and not to, 1 px more.
-const REACH: u32 = Disparity::ONE as u32;
+pub(in crate::matching::backend) const REACH: u32 = Disparity::ONE as u32;
 /// Half a step, and what the differences are too much by, less what they are counted from is too little by.
-const ROUNDED: u32 = (1 << (SHIFT - 1)) + (REACH << SHIFT) - SHARE * (LOOK_AHEAD as u32 + 1) * REACH;
+pub(in crate::matching::backend) const ROUNDED: u32 =
+    (1 << (SHIFT - 1)) + (REACH << SHIFT) - SHARE * (LOOK_AHEAD as u32 + 1) * REACH;
 
 /// Filters the answers `here` by those above, which have come out, and those [`LOOK_AHEAD`] rows below.
 #[inline(always)]

@@ -21,7 +21,7 @@ use crate::matching::backend::Isa;
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::memory::Rows5;
 use crate::matching::memory::notes::Note;
-use crate::matching::memory::slices::part;
+use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::method::Frame;
 use crate::units::{Disparity, PixelFlags};
 use core::ops::Range;
@@ -62,6 +62,8 @@ struct Smooth<'a> {
 
 impl Smooth<'_> {
     /// Which of the blocks of a word are smooth. The last columns, fewer than a block, are none.
+    // Once, for both ways along the row.
+    #[inline(never)]
     fn word(&self, word: usize, least: i32) -> u32 {
         let first = word * BLOCKS;
         let rows = self.above.iter().zip(self.below).zip(self.edges).skip(first).take(BLOCKS);
@@ -116,31 +118,28 @@ fn filled(smooth: u32, seeds: u32) -> u32 {
     smooth & !smooth.wrapping_add(seeds) | seeds
 }
 
-/// The blocks that are open or beside one that is, of a row of blocks.
-fn near(open: &[u8]) -> impl Iterator<Item = (usize, u32)> {
-    let words = open.as_chunks().0;
-    let word = |number: usize| words.get(number).map_or(0, |&word| u32::from_le_bytes(word));
-    (0..words.len()).map(move |number| {
-        let [before, here, after] = [number.wrapping_sub(1), number, number + 1].map(word);
-        let beside = here << 1 | here >> 1 | before >> (BLOCKS - 1) | after << (BLOCKS - 1);
-        (number * BLOCKS, here | beside)
-    })
-}
-
-/// The columns of the blocks that are open, or beside one that is: those of a word that follow one another at
-/// once, so that a blank image takes hardly more than another one.
-fn columns(open: &[u8], width: usize) -> impl Iterator<Item = Range<usize>> {
-    let words = part(open, ..width.div_ceil(BLOCK * BLOCKS) * size_of::<u32>());
-    near(words).flat_map(move |(first, mut bits)| {
-        core::iter::from_fn(move || {
+/// Does something with the columns of the blocks that are open, or beside one that is: with those of a word
+/// that follow one another at once, so that a blank image takes hardly more than another one.
+// A function behind a pointer, so that this is there once.
+#[inline(never)]
+fn for_columns(open: &[u8], width: usize, act: &mut dyn FnMut(Range<usize>)) {
+    let words = part(open, ..width.div_ceil(BLOCK * BLOCKS) * size_of::<u32>()).as_chunks().0;
+    let (mut before, mut first) = (0, 0);
+    for (number, word) in words.iter().enumerate() {
+        let here = u32::from_le_bytes(*word);
+        let after = words.get(number + 1).map_or(0, |&word| u32::from_le_bytes(word));
+        let mut bits = here | here << 1 | here >> 1 | before >> (BLOCKS - 1) | after << (BLOCKS - 1);
+        while bits != 0 {
+            keep_loop();
             let begin = bits.trailing_zeros();
-            let blocks = bits.checked_shr(begin)?.trailing_ones();
+            let blocks = (bits >> begin).trailing_ones();
             // The lowest of them carries through all that follow it.
             bits &= bits.wrapping_add(1 << begin);
             let column = |block: u32| ((first + block as usize) * BLOCK).min(width);
-            Some(column(begin)..column(begin + blocks))
-        })
-    })
+            act(column(begin)..column(begin + blocks));
+        }
+        (before, first) = (here, first + BLOCKS);
+    }
 }
 
 /// Lets a row of a surface count as no more than [`open_run`](crate::matching::Checks::open_run) answers.
@@ -148,11 +147,8 @@ fn columns(open: &[u8], width: usize) -> impl Iterator<Item = Range<usize>> {
 pub(super) fn limit_lengths(frame: &mut Frame<'_>) {
     let most = frame.config.checks.open_run;
     if most > 0 {
-        let mut lengths = frame.workspace.lengths();
-        for places in columns(frame.open, frame.width) {
-            keep_loop();
-            frame.backend.limit_lengths(&mut lengths, places, most);
-        }
+        let (mut lengths, backend) = (frame.workspace.lengths(), frame.backend);
+        for_columns(frame.open, frame.width, &mut |places| backend.limit_lengths(&mut lengths, places, most));
     }
 }
 
@@ -166,11 +162,8 @@ pub(super) fn refuse_unsure(frame: &mut Frame<'_>, newest: usize) {
     }
     let margins = frame.workspace.margins();
     let (answers, flags) = (frame.band.row_mut(newest), frame.flags.row_mut(newest));
-    for places in columns(frame.open, frame.width) {
-        let (Some(answers), Some(flags)) = (answers.get_mut(places.clone()), flags.get_mut(places.clone()))
-        else {
-            return;
-        };
+    for_columns(frame.open, frame.width, &mut |places| {
+        let (answers, flags) = (part_mut(answers, places.clone()), part_mut(flags, places.clone()));
         let margins = part(margins, places.clone());
         for (((answer, flags), &margin), x) in answers.iter_mut().zip(flags).zip(margins).zip(places) {
             keep_loop();
@@ -179,5 +172,5 @@ pub(super) fn refuse_unsure(frame: &mut Frame<'_>, newest: usize) {
             *flags = flags.union(PixelFlags::AMBIGUOUS.when(refused));
             *answer = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(refused)));
         }
-    }
+    });
 }

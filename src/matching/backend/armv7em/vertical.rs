@@ -1,6 +1,6 @@
 //! Answers smoothed down the columns, two at a time: what `portable::vertical` does.
 
-use super::word::{add_halves, half_or, subtract_halves};
+use super::word::{add_halves, half_or, halved_difference, subtract_halves};
 use crate::matching::backend::portable;
 use crate::matching::backend::portable::vertical::{REACH, ROUNDED, SHARE, SHIFT};
 use crate::matching::memory::rings::LOOK_AHEAD;
@@ -10,7 +10,7 @@ use crate::units::Disparity;
 const ONES: u32 = 0x0001_0001;
 /// The bits of a difference within reach, and of what an answer is moved by.
 const WITHIN: u32 = (2 * REACH - 1) * ONES;
-const _: () = assert!(REACH.is_power_of_two());
+const _: () = assert!(REACH.is_power_of_two() && REACH > 1);
 const _: () = assert!((2 * REACH - 1) * (LOOK_AHEAD as u32 + 1) * SHARE + ROUNDED < 2 * REACH << SHIFT);
 
 /// Filters the answers `here` by those above, which have come out, and those [`LOOK_AHEAD`] rows below. 10
@@ -21,11 +21,16 @@ pub(super) fn vertical(here: &mut [Disparity], above: &[Disparity], below: &[Dis
     for (here, (above, below)) in twos.iter_mut().zip(above.iter().zip(below)) {
         let x = word(here);
         let least = subtract_halves(x, REACH * ONES);
-        let [up, down] = [above, below].map(|other| subtract_halves(word(other), least));
+        let [above, below] = [above, below].map(word);
+        let [up, down] = [above, below].map(|other| subtract_halves(other, least));
+        // No answer is not near to the smallest ones, from which a half wraps round to it: half of a
+        // difference has its sign, and is below 0 where the difference is.
+        let from_least = |other| add_halves(halved_difference(other, x), REACH / 2 * ONES);
+        let is_beyond = from_least(above) | from_least(below);
         // What is beyond reach carries into the other answer, if it is not cut off.
         let differences = (up & WITHIN) * LOOK_AHEAD as u32 + (down & WITHIN);
         let moved = add_halves(least, (differences * SHARE + ROUNDED * ONES) >> SHIFT & WITHIN);
-        let out = half_or(up | down, 2 * REACH * ONES, x, moved);
+        let out = half_or(is_beyond, REACH * ONES, x, moved);
         *here = [out, out >> 16].map(|half| Disparity::from_raw(half as u16));
     }
     portable::vertical::vertical(rest, above_rest, below_rest);

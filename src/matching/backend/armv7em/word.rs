@@ -43,6 +43,10 @@ two_operands!(
     /// The differences of half-words, modulo 65536.
     subtract_halves: "usub16 {out}, {a}, {b}"
 );
+two_operands!(
+    /// Half of the differences of half-words, rounded down, with their signs.
+    halved_difference: "uhsub16 {out}, {a}, {b}"
+);
 
 /// The half-words of `yes` where those of `a` are not less than those of `b`, and those of `no` elsewhere.
 #[inline(always)]

@@ -60,13 +60,10 @@ pub(in crate::matching) fn chunks_mut<T>(slice: &mut [T], count: usize) -> impl 
 }
 
 /// Copies numbers, as many as both have.
-// A function of its own, so that its registers do not stand on the stack of all stages.
-#[inline(never)]
+#[inline(always)]
 pub(in crate::matching) fn copy<T: Copy>(from: &[T], to: &mut [T]) {
     debug_assert_eq!(from.len(), to.len(), "copied to a place of another size");
-    let ((eights, rest), (from_eights, from_rest)) = (to.as_chunks_mut::<8>(), from.as_chunks());
-    eights.iter_mut().zip(from_eights).for_each(|(to, from)| *to = *from);
-    rest.iter_mut().zip(from_rest).for_each(|(to, from)| *to = *from);
+    to.iter_mut().zip(from).for_each(|(to, from)| *to = *from);
 }
 
 /// The least multiple of `TO` that is not less.

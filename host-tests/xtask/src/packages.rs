@@ -1,6 +1,8 @@
-//! Programs from the distribution's packages, by apt-get where that is possible.
+//! Programs from the distribution's packages, by apt-get where that is possible, and from Python's.
 
-use crate::steps::{Failure, Outcome, command, output_of, run};
+use crate::steps::{Failure, Outcome, command, output_of, root, run, target_dir};
+use std::ffi::OsStr;
+use std::path::PathBuf;
 
 /// The cross compiler whose library comes with a file of options that names it.
 const RISCV_GCC: &str = "riscv64-unknown-elf-gcc";
@@ -63,7 +65,25 @@ fn apt(arguments: &[&str]) -> Outcome {
     run(&mut command(words[0], &words[1..]))
 }
 
-fn runs(program: &str) -> bool {
+/// The path of a program that a Python package of that name and version has, installed by pip in an
+/// environment of its own below the folder of build products.
+pub fn from_python(package: &str, version: &str) -> Outcome<PathBuf> {
+    let environment = root().join(target_dir()).join("python").join(format!("{package}-{version}"));
+    let program = environment.join("bin").join(package);
+    if runs(&program) {
+        return Ok(program);
+    }
+    let make = || {
+        run(command("python3", &["-m", "venv", "--clear"]).arg(&environment))?;
+        let wanted = format!("{package}=={version}");
+        run(&mut command(environment.join("bin/python"), &["-m", "pip", "install", "--quiet", &wanted]))
+    };
+    let advice = |e| Failure::new(format!("{e}; {package} needs Python 3 with venv and pip (python3-venv)"));
+    make().map_err(advice)?;
+    if runs(&program) { Ok(program) } else { Err(Failure::new(format!("{package} {version} does not run"))) }
+}
+
+fn runs(program: impl AsRef<OsStr>) -> bool {
     output_of(&mut command(program, &["--version"])).is_ok()
 }
 

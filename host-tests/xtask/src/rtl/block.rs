@@ -43,9 +43,10 @@ impl Block {
         if self.method == MethodName::Sgm { "stereo_sgm" } else { "stereo_block" }
     }
 
-    /// Sweeps over a line, and the columns that they take beyond its pixels.
-    pub fn sweeps(&self) -> (u64, u64) {
-        if self.method == MethodName::Sgm { (2, 8) } else { (1, 7) }
+    /// The clocks of a line of so many pixels.
+    pub fn clocks_of_line(&self, width: u16) -> u64 {
+        let (sweeps, beyond) = if self.method == MethodName::Sgm { (2, 8) } else { (1, 7) };
+        (u64::from(width) * sweeps + beyond) * u64::from(self.disparities / self.parallel)
     }
 
     /// The parameters, as Verilog has them.

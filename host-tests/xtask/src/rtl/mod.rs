@@ -6,7 +6,7 @@
 //! * [`one_pair`]: one pair of pictures, with its results in a folder.
 //! * [`check`]: random frames and faults; a part of them is a step of the tests.
 //! * [`system`]: firmware on emulated cores with the simulated block before it.
-//! * [`synthesis`]: what the block takes in an FPGA, by Yosys.
+//! * [`synthesis`]: what the block takes in an FPGA, by Yosys and nextpnr.
 
 mod block;
 mod check;
@@ -16,7 +16,6 @@ mod simulation;
 mod synthesis;
 mod system;
 
-use crate::packages;
 use crate::setup;
 use crate::steps::{Failure, Outcome};
 use clap::Args;
@@ -74,7 +73,6 @@ pub fn run(arguments: &Arguments) -> Outcome {
         return system::run();
     }
     if arguments.synthesis {
-        packages::install(&["yosys", "nextpnr-ice40"])?;
         return synthesis::run();
     }
     let Arguments { left, right, disparities, out, .. } = arguments;

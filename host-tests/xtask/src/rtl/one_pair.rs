@@ -108,8 +108,6 @@ impl OnePair<'_> {
             }
         }
         let pixels = f64::from(width) * f64::from(height);
-        let (sweeps, beyond) = block.sweeps();
-        let line = (u64::from(width) * sweeps + beyond) * u64::from(room / parallel);
         let summary = Summary {
             method: self.method.name(),
             width,
@@ -120,7 +118,7 @@ impl OnePair<'_> {
             parallel,
             clocks: clocks[0],
             clocks_per_pixel: clocks[0] as f64 / pixels,
-            latency_lines: latency as f64 / line as f64,
+            latency_lines: latency as f64 / block.clocks_of_line(width) as f64,
             clocks_with_pauses: clocks[1],
             density: expected.density(),
         };

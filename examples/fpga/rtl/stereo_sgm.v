@@ -73,7 +73,7 @@ module stereo_sgm #(
     // Winners come two steps after their row's costs.
     stereo_walk #(
         .WIDTH(WIDTH),
-        .DEPTH(AHEAD + LEVELS + LATER + 11),
+        .DEPTH(AHEAD + LEVELS + LATER + 13),
         .GROUPS(GROUPS),
         .RADIUS_Y(2),
         .SWEEPS(2),

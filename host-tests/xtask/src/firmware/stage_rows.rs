@@ -4,6 +4,7 @@
 use super::arguments::One;
 use super::emulate;
 use super::program::Program;
+use crate::parallel;
 use crate::pictures::Pictures;
 use crate::setup;
 use crate::steps::{Failure, Outcome};
@@ -20,12 +21,18 @@ use stereopsis_host::twin::stages::Stages;
 /// The stages that have rows on every core.
 const STAGES: [Stage; 6] =
     [Stage::Winner, Stage::LeftRight, Stage::Subpixel, Stage::Smoothed, Stage::Checked, Stage::Final];
-/// What the test runs: a core of each kind, and methods of both kinds.
-const SAMPLE: [(Board, MethodName); 4] = [
+/// What the test runs: every core, and on kinds of them methods of both kinds. The smallest has room for
+/// windows.
+const SAMPLE: [(Board, MethodName); 9] = [
+    (board::M0, MethodName::Block),
     (board::M3, MethodName::Block),
     (board::M4, MethodName::Sgm),
+    (board::M7, MethodName::Fast),
+    (board::M33, MethodName::Sgm),
     (board::M55, MethodName::Sgm),
+    (board::M55, MethodName::Block),
     (board::RV32, MethodName::Fast),
+    (board::RV32, MethodName::Sgm),
 ];
 
 /// One frame on one core; its rows into a folder.
@@ -64,13 +71,13 @@ pub fn run(one: &One) -> Outcome {
     Ok(())
 }
 
-/// A core of each kind on a small scene.
+/// Every core on a small scene.
 pub fn check() -> Outcome {
     let pictures = Pictures::of_scene(Scene { width: 96, height: 64 })?;
-    for (board, method) in SAMPLE {
-        rows(Program::new(board, method, pictures.width, pictures.height, 32)?, &pictures)?;
-    }
-    Ok(())
+    let one = |(board, method)| {
+        rows(Program::new(board, method, pictures.width, pictures.height, 32)?, &pictures).map(|_| ())
+    };
+    parallel::work(SAMPLE.to_vec(), one).map(|_| ())
 }
 
 /// The rows of all stages in their order, as the core made them; and what was searched for.

@@ -174,6 +174,11 @@ impl Dump {
         Self { stage, first: 0, rows: bytes.chunks(row_bytes.max(1)).map(<[u8]>::to_vec).collect() }
     }
 
+    /// The stage.
+    pub fn stage(&self) -> Stage {
+        self.stage
+    }
+
     /// Writes the bytes.
     pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
         self.rows.iter().try_for_each(|row| out.write_all(row))

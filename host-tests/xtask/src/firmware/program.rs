@@ -166,6 +166,18 @@ impl Program {
     /// A program for frames of that size from cameras with little noise; the failure names the option that
     /// asks for too much.
     pub fn new(board: Board, method: MethodName, width: u16, height: u16, disparities: u16) -> Outcome<Self> {
+        Self::with_more(board, method, width, height, disparities, 0)
+    }
+
+    /// A program that has so many bytes of its own beside the pipeline.
+    pub fn with_more(
+        board: Board,
+        method: MethodName,
+        width: u16,
+        height: u16,
+        disparities: u16,
+        more: usize,
+    ) -> Outcome<Self> {
         let least = Config::FEWEST_DISPARITIES;
         if width < least {
             return Err(Failure::new(format!(
@@ -177,7 +189,7 @@ impl Program {
             return Err(Failure::new(format!("{asked}; give {least} to {width}")));
         }
         // The two cameras' five lines, and some counters.
-        let pipeline = method.state_bytes(width, disparities) + 10 * usize::from(width) + 64;
+        let pipeline = method.state_bytes(width, disparities) + 10 * usize::from(width) + 64 + more;
         let (needed, there) = (pipeline + BESIDE, board.ram.1 as usize);
         if needed > there {
             return Err(Failure::new(format!(

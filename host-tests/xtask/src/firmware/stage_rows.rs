@@ -18,9 +18,6 @@ use stereopsis_host::output::Staging;
 use stereopsis_host::run::{MethodName, NoiseChoice};
 use stereopsis_host::twin::stages::Stages;
 
-/// The stages that have rows on every core.
-const STAGES: [Stage; 6] =
-    [Stage::Winner, Stage::LeftRight, Stage::Subpixel, Stage::Smoothed, Stage::Checked, Stage::Final];
 /// What the test runs: every core, and on kinds of them methods of both kinds. The smallest has room for
 /// windows.
 const SAMPLE: [(Board, MethodName); 9] = [
@@ -41,7 +38,8 @@ pub fn run(one: &One) -> Outcome {
         Some((left, right)) => Pictures::open(left, right)?,
         None => Pictures::of_scene(one.scene())?,
     };
-    let mut program = Program::new(one.board, one.method, pictures.width, pictures.height, one.disparities)?;
+    let size = [pictures.width, pictures.height];
+    let mut program = program(one.board, one.method, size, one.disparities)?;
     if one.pair.is_some() && one.method.compares_brightness() {
         pictures.balance()?;
     }
@@ -54,8 +52,8 @@ pub fn run(one: &One) -> Outcome {
     let (config, dumps) = rows(program, &pictures)?;
     let write = || {
         let mut staging = Staging::new(&one.out)?;
-        for (stage, dump) in STAGES.iter().zip(&dumps) {
-            let name = stage.name();
+        for dump in &dumps {
+            let name = dump.stage().name();
             staging.write(&format!("{name}.bin"), |file| dump.write(file))?;
             staging.write(&format!("{name}.mem"), |file| dump.write_mem(file))?;
             let manifest = dump.manifest(&config, one.method.name());
@@ -71,13 +69,27 @@ pub fn run(one: &One) -> Outcome {
     Ok(())
 }
 
-/// Every core on a small scene.
+/// Every core on a small scene, the smallest on a smaller one.
 pub fn check() -> Outcome {
-    let pictures = Pictures::of_scene(Scene { width: 96, height: 64 })?;
     let one = |(board, method)| {
-        rows(Program::new(board, method, pictures.width, pictures.height, 32)?, &pictures).map(|_| ())
+        let (width, height, disparities) = if board == board::M0 { (64, 48, 16) } else { (96, 64, 32) };
+        let program = program(board, method, [width, height], disparities)?;
+        rows(program, &Pictures::of_scene(Scene { width, height })?).map(|_| ())
     };
     parallel::work(SAMPLE.to_vec(), one).map(|_| ())
+}
+
+/// The program for frames of that size, with room for the sums that are worked out beside the matcher.
+fn program(
+    board: Board,
+    method: MethodName,
+    [width, height]: [u16; 2],
+    disparities: u16,
+) -> Outcome<Program> {
+    let (pixels, candidates) = (usize::from(width), usize::from(width) * usize::from(disparities));
+    let paths = usize::from(method.compares_brightness());
+    let more = 25 * pixels + (1 + 2 * paths) * candidates;
+    Program::with_more(board, method, width, height, disparities, more)
 }
 
 /// The rows of all stages in their order, as the core made them; and what was searched for.
@@ -94,7 +106,7 @@ fn rows(program: Program, pictures: &Pictures) -> Outcome<(Config, Vec<Dump>)> {
     let [left, right] = pictures.camera()?.pictures();
     let stages = Stages::of(&method.twin(), &config, &left, &right);
     let mut dumps = Vec::new();
-    for stage in STAGES {
+    for stage in stages_of(method) {
         let file = format!("{}.bin", stage.name());
         let found = fs::read(folder.path().join(&file)).map_err(|e| failed(format!("{file}: {e}")))?;
         let expected: Vec<_> = (0..usize::from(height)).flat_map(|y| expected(stage, &stages, y)).collect();
@@ -106,8 +118,13 @@ fn rows(program: Program, pictures: &Pictures) -> Outcome<(Config, Vec<Dump>)> {
         }
         dumps.push(Dump::of_rows(stage, &found, found.len() / usize::from(height)));
     }
-    println!("{name}: {height} rows of {} stages, those of the twins", STAGES.len());
+    println!("{name}: {height} rows of {} stages, those of the twins", dumps.len());
     Ok((config, dumps))
+}
+
+/// The stages that a core makes rows of: all but the sums of the method that looks two rows ahead.
+fn stages_of(method: MethodName) -> impl Iterator<Item = Stage> {
+    Stage::ALL.into_iter().filter(move |&stage| method != MethodName::SgmEdge || stage != Stage::Aggregated)
 }
 
 /// A row as a core has it: it does not tell the second best of a winner.

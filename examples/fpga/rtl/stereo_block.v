@@ -59,7 +59,7 @@ module stereo_block #(
     localparam CODE_BITS = $clog2((2 * RADIUS_Y + 1) * WIDTH);
     localparam LEVELS = $clog2(PARALLEL);
     // Clocks from the walk's token to the sums.
-    localparam AHEAD = 7;
+    localparam AHEAD = 8;
     // Clocks from the winner to the second best.
     localparam LATER = SECOND_BEST == 0 ? 0 : GROUPS + LEVELS + 1;
 
@@ -125,7 +125,8 @@ module stereo_block #(
     reg [TOKEN-1:0] token_2;
     reg [TOKEN-1:0] token_3;
     reg [TOKEN-1:0] token_4;
-    reg [6:0] valids;
+    reg [TOKEN-1:0] token_5;
+    reg [7:0] valids;
     always @(posedge clk) begin
         if (go) begin
             token_2 <= {
@@ -134,15 +135,16 @@ module stereo_block #(
             };
             token_3 <= token_2;
             token_4 <= token_3;
+            token_5 <= token_4;
         end
         if (forgets) valids <= 0;
-        else if (go) valids <= {valids[5:0], valid && column >= 3 && !drains};
+        else if (go) valids <= {valids[6:0], valid && column >= 3 && !drains};
     end
 
-    wire [COLUMN_BITS-1:0] column_4 = token_4[CODE_BITS + GROUP_BITS +: COLUMN_BITS];
-    wire [GROUP_BITS-1:0] group_4 = token_4[CODE_BITS +: GROUP_BITS];
-    wire last_group_4, first_group_4, inside_4, first_code_4, enters_4, leaves_4;
-    assign {last_group_4, first_group_4, inside_4, first_code_4, enters_4, leaves_4} = token_4[TOKEN-1 -: 6];
+    wire [COLUMN_BITS-1:0] column_5 = token_5[CODE_BITS + GROUP_BITS +: COLUMN_BITS];
+    wire [GROUP_BITS-1:0] group_5 = token_5[CODE_BITS +: GROUP_BITS];
+    wire last_group_5, first_group_5, inside_5, first_code_5, enters_5, leaves_5;
+    assign {last_group_5, first_group_5, inside_5, first_code_5, enters_5, leaves_5} = token_5[TOKEN-1 -: 6];
     wire [8*PARALLEL-1:0] sums;
 
     stereo_window #(
@@ -158,18 +160,18 @@ module stereo_block #(
         .GROUP_BITS(GROUP_BITS),
         .CODE_BITS(CODE_BITS)
     ) window (
-        .clk(clk), .reset(forgets), .go(go), .least(least), .read_code(token_3[CODE_BITS-1:0]),
-        .read_column(token_3[CODE_BITS + GROUP_BITS +: COLUMN_BITS]),
-        .valid(valids[2]), .column(column_4), .group(group_4), .first_group(first_group_4),
-        .in_image(inside_4), .first_code(first_code_4), .enters(enters_4), .leaves(leaves_4),
-        .code_address(token_4[CODE_BITS-1:0]), .left_code(left_code), .right_code(right_code), .sums(sums)
+        .clk(clk), .reset(forgets), .go(go), .least(least), .read_code(token_4[CODE_BITS-1:0]),
+        .read_column(token_4[CODE_BITS + GROUP_BITS +: COLUMN_BITS]),
+        .valid(valids[3]), .column(column_5), .group(group_5), .first_group(first_group_5),
+        .in_image(inside_5), .first_code(first_code_5), .enters(enters_5), .leaves(leaves_5),
+        .code_address(token_5[CODE_BITS-1:0]), .left_code(left_code), .right_code(right_code), .sums(sums)
     );
 
     // The token beside the sums, which are those of the column four before.
     localparam LATE = 2 + COLUMN_BITS + GROUP_BITS;
     reg [4*LATE-1:0] lates;
     always @(posedge clk) begin
-        if (go) lates <= {lates[3*LATE-1:0], last_group_4, first_group_4, column_4, group_4};
+        if (go) lates <= {lates[3*LATE-1:0], last_group_5, first_group_5, column_5, group_5};
     end
     wire [LATE-1:0] late = lates[4*LATE-1 -: LATE];
     wire [COLUMN_BITS-1:0] winner_column = late[GROUP_BITS +: COLUMN_BITS] - FOUR;
@@ -180,7 +182,7 @@ module stereo_block #(
         .GROUP_BITS(GROUP_BITS), .LEVELS(LEVELS), .AHEAD(AHEAD), .LATER(LATER)
     ) search (
         .clk(clk), .forgets(forgets), .begins(begins), .disparities(disparities),
-        .least(least), .sums(sums), .valid(valids[6]), .column(winner_column), .group(late[GROUP_BITS-1:0]),
+        .least(least), .sums(sums), .valid(valids[7]), .column(winner_column), .group(late[GROUP_BITS-1:0]),
         .first_group(late[LATE-2]), .last_group(late[LATE-1]),
         .moves(valid && last_group && (is_pixel || drains)), .is_pixel(is_pixel),
         .is_first(row == 0 && column == 7), .is_last(column == width + SIX), .row(row[7:0]),

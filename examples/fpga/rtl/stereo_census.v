@@ -27,7 +27,7 @@ module stereo_census #(
     input wire inside_width,
     input wire inside_height,
     input wire first_line,
-    // Codes of column - 3, for the token three clocks later.
+    // Codes of column - 3, for the token four clocks later.
     output reg [BITS-1:0] left_code,
     output reg [BITS-1:0] right_code
 );

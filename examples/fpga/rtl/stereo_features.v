@@ -30,7 +30,7 @@ module stereo_features #(
     input wire inside_width,
     input wire inside_height,
     input wire first_line,
-    // Of column - 5, for the token four clocks later. Left: census, brightness, Y, X, from the highest bits.
+    // Of column - 5, for the token five clocks later. Left: census, brightness, Y, X, from the highest bits.
     output reg [24:0] left,
     // Right: census, brightness, Y, the greatest X, the least one.
     output reg [29:0] right,
@@ -76,14 +76,15 @@ module stereo_features #(
         };
     endfunction
 
-    // Whether a column came, and which, one and two clocks after the token's.
+    // Whether a column came, and which, two and three clocks after the token's.
     reg moved_2, first_2, inside_2;
-    reg first_1, inside_1;
+    reg first_0, inside_0, first_1, inside_1;
     always @(posedge clk) begin
         if (go && valid && first_group) begin
-            first_1 <= column == 2;
-            inside_1 <= column <= width + 1'b1;
+            first_0 <= column == 2;
+            inside_0 <= column <= width + 1'b1;
         end
+        if (go) {first_1, inside_1} <= {first_0, inside_0};
         if (go) {moved_2, first_2, inside_2} <= {moved, first_1, inside_1};
     end
 

@@ -23,29 +23,44 @@ module stereo_lines #(
     input wire inside_width,
     input wire inside_height,
     input wire first_line,
-    // A clock after the token: the column before its own, 16 bits a row, the lowest row in the lowest bits;
+    // Two clocks after the token: the column before its own, 16 bits a row, the lowest row in the lowest bits;
     // whether there is one, whether it is the image's first, and whether it lies inside of the image.
     output wire [79:0] rows,
     output reg moved,
     output reg moved_first,
     output reg moved_inside
 );
-    // The four rows above, the nearest in the lowest bits.
-    wire [63:0] above;
-    wire [15:0] row_0 = inside_height ? pixels : above[15:0];
-    wire [15:0] row_1 = first_line ? pixels : above[15:0];
-    wire [15:0] row_2 = first_line ? pixels : above[31:16];
-    wire [15:0] row_3 = first_line ? pixels : above[47:32];
-    wire [15:0] row_4 = first_line ? pixels : above[63:48];
-    wire moves = go && valid && first_group;
+    // The token a clock later, beside the four rows above, the nearest in the lowest bits: block RAM is slow to
+    // answer.
+    wire [63:0] read_rows;
+    reg [63:0] above;
+    reg valid_1, inside_width_1, inside_height_1, first_line_1;
+    reg [15:0] pixels_1;
+    reg [COLUMN_BITS-1:0] column_1;
+    always @(posedge clk) begin
+        if (go) begin
+            above <= read_rows;
+            valid_1 <= valid && first_group;
+            {inside_width_1, inside_height_1, first_line_1} <= {inside_width, inside_height, first_line};
+            pixels_1 <= pixels;
+            column_1 <= column;
+        end
+    end
+
+    wire [15:0] row_0 = inside_height_1 ? pixels_1 : above[15:0];
+    wire [15:0] row_1 = first_line_1 ? pixels_1 : above[15:0];
+    wire [15:0] row_2 = first_line_1 ? pixels_1 : above[31:16];
+    wire [15:0] row_3 = first_line_1 ? pixels_1 : above[47:32];
+    wire [15:0] row_4 = first_line_1 ? pixels_1 : above[63:48];
+    wire moves = go && valid_1;
 
     stereo_ram #(.BITS(64), .DEPTH(WIDTH)) lines (
         .clk(clk),
         .read(go),
         .read_address(next_column),
-        .read_data(above),
-        .write(moves && inside_width),
-        .write_address(column[ADDRESS_BITS-1:0]),
+        .read_data(read_rows),
+        .write(moves && inside_width_1),
+        .write_address(column_1[ADDRESS_BITS-1:0]),
         .write_data({row_3, row_2, row_1, row_0})
     );
 
@@ -79,13 +94,13 @@ module stereo_lines #(
     reg [79:0] down_0, down_1, down_2;
 
     always @(posedge clk) begin
-        if (go) moved <= valid && first_group;
+        if (go) moved <= valid_1;
         if (moves) begin
-            moved_first <= column == 1;
-            moved_inside <= column <= width;
-            if (inside_width) down_0 <= down;
-            down_1 <= column == 0 ? down : down_0;
-            down_2 <= column == 0 ? down : down_1;
+            moved_first <= column_1 == 1;
+            moved_inside <= column_1 <= width;
+            if (inside_width_1) down_0 <= down;
+            down_1 <= column_1 == 0 ? down : down_0;
+            down_2 <= column_1 == 0 ? down : down_1;
         end
     end
 

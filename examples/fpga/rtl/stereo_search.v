@@ -17,7 +17,7 @@ module stereo_search #(
     parameter GROUP_BITS = 1,
     parameter LEVELS = 6,
     // Clocks that what is said of a pixel comes before its sums.
-    parameter AHEAD = 7,
+    parameter AHEAD = 8,
     // Clocks from a winner to its second best; 0 where none is sought.
     parameter LATER = 0
 ) (

@@ -47,7 +47,7 @@ module stereo_sgm #(
     localparam ADDRESS_BITS = $clog2(WIDTH);
     localparam LEVELS = $clog2(PARALLEL);
     // Clocks from the walk's token to the sums, and from the winner to the second best.
-    localparam AHEAD = 8;
+    localparam AHEAD = 9;
     localparam LATER = SECOND_BEST == 0 ? 0 : GROUPS + LEVELS + 1;
     // Nothing is kept by the row that leaves a window.
     localparam CODE_BITS = $clog2(5 * WIDTH);
@@ -122,26 +122,26 @@ module stereo_sgm #(
 
     // The token beside the features.
     localparam TOKEN = 2 * COLUMN_BITS + GROUP_BITS + 11;
-    reg [4*TOKEN-1:0] tokens;
-    reg [7:0] valids;
+    reg [5*TOKEN-1:0] tokens;
+    reg [8:0] valids;
     always @(posedge clk) begin
         if (go) begin
             tokens <= {
-                tokens[3*TOKEN-1:0], at, ahead, group, behind, first_group, last_group, is_back || is_forth,
+                tokens[4*TOKEN-1:0], at, ahead, group, behind, first_group, last_group, is_back || is_forth,
                 is_back, is_first, first_code, enters, row == 0
             };
         end
         if (forgets) valids <= 0;
-        else if (go) valids <= {valids[6:0], valid && !drains};
+        else if (go) valids <= {valids[7:0], valid && !drains};
     end
-    wire [COLUMN_BITS-1:0] at_4, ahead_4;
-    wire [GROUP_BITS-1:0] group_4;
-    wire [2:0] behind_4;
-    wire first_group_4, last_group_4, inside_4, back_4, first_4, first_code_4, enters_4, first_row_4;
+    wire [COLUMN_BITS-1:0] at_5, ahead_5;
+    wire [GROUP_BITS-1:0] group_5;
+    wire [2:0] behind_5;
+    wire first_group_5, last_group_5, inside_5, back_5, first_5, first_code_5, enters_5, first_row_5;
     assign {
-        at_4, ahead_4, group_4, behind_4, first_group_4, last_group_4, inside_4, back_4, first_4,
-        first_code_4, enters_4, first_row_4
-    } = tokens[4*TOKEN-1 -: TOKEN];
+        at_5, ahead_5, group_5, behind_5, first_group_5, last_group_5, inside_5, back_5, first_5,
+        first_code_5, enters_5, first_row_5
+    } = tokens[5*TOKEN-1 -: TOKEN];
 
     wire [8*PARALLEL-1:0] sums;
     stereo_paths #(
@@ -149,10 +149,10 @@ module stereo_sgm #(
         .COLUMN_BITS(COLUMN_BITS), .GROUP_BITS(GROUP_BITS)
     ) paths (
         .clk(clk), .reset(forgets), .go(go), .disparities(disparities), .least(least),
-        .read_column(tokens[3*TOKEN-1 -: COLUMN_BITS]), .valid(valids[3]), .column(at_4), .group(group_4),
-        .first_group(first_group_4), .last_group(last_group_4), .is_inside(inside_4), .is_back(back_4),
-        .is_first(first_4), .ahead(ahead_4), .behind(behind_4), .begins_average(first_code_4),
-        .enters(enters_4), .begins_paths(first_row_4), .left(left), .right(right), .guide(guide), .sums(sums)
+        .read_column(tokens[4*TOKEN-1 -: COLUMN_BITS]), .valid(valids[4]), .column(at_5), .group(group_5),
+        .first_group(first_group_5), .last_group(last_group_5), .is_inside(inside_5), .is_back(back_5),
+        .is_first(first_5), .ahead(ahead_5), .behind(behind_5), .begins_average(first_code_5),
+        .enters(enters_5), .begins_paths(first_row_5), .left(left), .right(right), .guide(guide), .sums(sums)
     );
 
     // The token beside the sums.
@@ -161,7 +161,7 @@ module stereo_sgm #(
     always @(posedge clk) begin
         if (go) begin
             lates <= {
-                lates[3*LATE-1:0], inside_4 && !back_4, last_group_4, first_group_4, at_4, group_4
+                lates[3*LATE-1:0], inside_5 && !back_5, last_group_5, first_group_5, at_5, group_5
             };
         end
     end
@@ -172,7 +172,7 @@ module stereo_sgm #(
         .GROUP_BITS(GROUP_BITS), .LEVELS(LEVELS), .AHEAD(AHEAD), .LATER(LATER)
     ) search (
         .clk(clk), .forgets(forgets), .begins(begins), .disparities(disparities), .least(least),
-        .sums(sums), .valid(valids[7] && late[LATE-1]), .column(late[GROUP_BITS +: COLUMN_BITS]),
+        .sums(sums), .valid(valids[8] && late[LATE-1]), .column(late[GROUP_BITS +: COLUMN_BITS]),
         .group(late[GROUP_BITS-1:0]), .first_group(late[LATE-3]), .last_group(late[LATE-2]),
         // The second sweep brings the row's last winners out of the left-right check.
         .moves(valid && last_group), .is_pixel(has_winners && is_forth),

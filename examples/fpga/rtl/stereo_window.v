@@ -114,7 +114,7 @@ module stereo_window #(
     end
 
     // What a group has of its own: the places of its sums, its codes, and its last sums over the window.
-    wire [ADDRESS_BITS-1:0] address_1;
+    wire [ADDRESS_BITS-1:0] address;
     wire [ADDRESS_BITS-1:0] address_2;
     wire [BITS*PARALLEL-1:0] group_in;
     wire [BITS*PARALLEL-1:0] group_out;
@@ -122,7 +122,7 @@ module stereo_window #(
     wire [8*PARALLEL-1:0] next_sums;
     generate
         if (GROUPS == 1) begin : one_group
-            assign address_1 = column_1[PLACE_BITS-1:0];
+            assign address = column[PLACE_BITS-1:0];
             assign address_2 = column_2[PLACE_BITS-1:0];
             assign group_in = right_in;
             assign group_out = right_out;
@@ -130,7 +130,7 @@ module stereo_window #(
         end else begin : groups
             reg [GROUP_BITS-1:0] group_1, group_2, group_3;
             reg [8*PARALLEL-1:0] kept [0:GROUPS-1];
-            assign address_1 = {column_1[PLACE_BITS-1:0], group_1};
+            assign address = {column[PLACE_BITS-1:0], group};
             assign address_2 = {column_2[PLACE_BITS-1:0], group_2};
             assign group_in = right_in[group_1 * BITS * PARALLEL +: BITS * PARALLEL];
             assign group_out = right_out[group_1 * BITS * PARALLEL +: BITS * PARALLEL];
@@ -142,13 +142,16 @@ module stereo_window #(
         end
     endgenerate
 
-    wire [SUM_BITS*PARALLEL-1:0] old_sums;
+    // Read a clock ahead, for block RAM is slow to answer.
+    wire [SUM_BITS*PARALLEL-1:0] read_sums;
+    reg [SUM_BITS*PARALLEL-1:0] old_sums;
+    always @(posedge clk) if (go) old_sums <= read_sums;
     wire [SUM_BITS*PARALLEL-1:0] new_sums;
     stereo_ram #(.BITS(SUM_BITS * PARALLEL), .DEPTH(PLACES)) columns (
         .clk(clk),
         .read(go),
-        .read_address(address_1),
-        .read_data(old_sums),
+        .read_address(address),
+        .read_data(read_sums),
         .write(go && valid_2 && inside_2),
         .write_address(address_2),
         .write_data(new_sums)
@@ -156,14 +159,15 @@ module stereo_window #(
 
     // The columns' units of the last nine columns, and the sums over them of each group.
     reg [DELAY_BITS-1:0] turn;
-    reg [DELAY_BITS-1:0] turn_3;
-    wire [UNIT_BITS*PARALLEL-1:0] oldest;
+    reg [DELAY_BITS-1:0] turn_2, turn_3;
+    wire [UNIT_BITS*PARALLEL-1:0] read_units;
+    reg [UNIT_BITS*PARALLEL-1:0] oldest;
     reg [UNIT_BITS*PARALLEL-1:0] units;
     stereo_ram #(.BITS(UNIT_BITS * PARALLEL), .DEPTH(DELAY)) delay (
         .clk(clk),
         .read(go),
         .read_address(turn),
-        .read_data(oldest),
+        .read_data(read_units),
         .write(go && valid_3),
         .write_address(turn_3),
         .write_data(units)
@@ -172,10 +176,14 @@ module stereo_window #(
     always @(posedge clk) begin
         if (reset) begin
             turn <= 0;
-        end else if (go && valid_2) begin
+        end else if (go && valid_1) begin
             turn <= turn == LAST_DELAY ? {DELAY_BITS{1'b0}} : turn + ONE_DELAY;
         end
-        if (go) turn_3 <= turn;
+        if (go) begin
+            turn_2 <= turn;
+            turn_3 <= turn_2;
+            oldest <= read_units;
+        end
     end
 
     always @(posedge clk) if (go && valid_3) sums <= next_sums;

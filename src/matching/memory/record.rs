@@ -95,6 +95,11 @@ impl WinnerRecord {
         [self.0[0], self.0[2]]
     }
 
+    /// The lowest eight bits of the row's number.
+    pub const fn row(self) -> u8 {
+        self.0[6]
+    }
+
     /// The disparity that the winner's partner in the right image keeps, over the smallest one searched, px:
     /// that of the cheapest winner that chose it, of the leftmost among equals.
     pub const fn kept(self) -> u8 {

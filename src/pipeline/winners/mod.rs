@@ -6,15 +6,18 @@
 //! * [`WinnerSource`]: the trait of such a device, with [`WinnerSearch`], what it is asked for, and
 //!   [`WinnerError`].
 //! * [`WinnerRegisters`]: the device of `examples/fpga` behind its registers and a ring of records, on any
-//!   [`RegisterBus`].
+//!   [`RegisterBus`]; [`MappedBlock`] is that bus where both stand in the address space, with the
+//!   [`BlockDma`] channels that fill the ring.
 //! * [`WinnerPipeline`]: rows of winners into rows of disparities, or a [`WinnerPipelineError`].
 
 mod source;
 mod error;
 mod registers;
+mod mapped;
 mod pipeline;
 
 pub use error::WinnerPipelineError;
+pub use mapped::{BlockDma, MappedBlock};
 pub use pipeline::WinnerPipeline;
 pub use registers::{Register, RegisterBus, WinnerRegisters, status};
 pub use source::{WinnerError, WinnerSearch, WinnerSource};

@@ -102,7 +102,8 @@ impl<D: BlockDma> RegisterBus for MappedBlock<'_, D> {
         self.dma.send_line(is_first, left, right)
     }
 
-    // A row ends with its last pixel, or where a record of another row stands.
+    // A row ends with its last pixel, or where a record of another row stands; of a damaged one the row is not
+    // known.
     fn receive(&mut self, winners: &mut [WinnerRecord]) -> Result<usize, D::Error> {
         let (mut count, mut row) = (0, None);
         for _ in 0..self.most_looks.max(1) {
@@ -113,10 +114,12 @@ impl<D: BlockDma> RegisterBus for MappedBlock<'_, D> {
                 let (Some(record), Some(to)) = (self.record(self.next), winners.get_mut(count)) else {
                     break;
                 };
-                if row.is_some_and(|row| row != record.row()) {
-                    return Ok(count);
+                if record.is_intact(record.row().into()) {
+                    if row.is_some_and(|row| row != record.row()) {
+                        return Ok(count);
+                    }
+                    row = Some(record.row());
                 }
-                row = Some(record.row());
                 *to = record;
                 count += 1;
                 self.next = if self.next + 1 < self.ring.len() { self.next + 1 } else { 0 };

@@ -31,7 +31,7 @@ pub struct DumpArgs {
     #[arg(long, value_name = "STAGE")]
     pub stage: Stage,
     /// The row, from 0, or all
-    #[arg(long, value_name = "Y", default_value = "all")]
+    #[arg(long, value_name = "Y", default_value = "all", allow_negative_numbers = true)]
     pub row: String,
     /// The folder for the files
     #[arg(long, value_name = "DIR")]

@@ -78,15 +78,13 @@ const fn made(
     Made { family, block }
 }
 
-/// The lines of the table.
-const ALL: [Made; 8] = [
-    made(&ECP5, MethodName::Block, 640, 64, 64),
-    made(&ECP5, MethodName::Block, 640, 64, 8),
-    made(&ECP5, MethodName::Fast, 640, 64, 64),
-    made(&ECP5, MethodName::Fast, 640, 64, 8),
-    made(&ECP5, MethodName::Block, 1280, 128, 16),
+/// The lines of the table; what takes longest comes first.
+const ALL: [Made; 6] = [
     made(&ECP5, MethodName::Sgm, 640, 64, 64),
     made(&ECP5, MethodName::Sgm, 640, 64, 8),
+    made(&ECP5, MethodName::Block, 640, 64, 64),
+    made(&ECP5, MethodName::Block, 640, 64, 8),
+    made(&ECP5, MethodName::Fast, 640, 64, 8),
     made(&ICE40, MethodName::Fast, 160, 32, 8),
 ];
 

@@ -5,7 +5,7 @@
 //! engineer compares a block with. Of `sgm-edge`, which looks two rows ahead, there are no sums.
 
 use crate::candidates::{
-    ALONG_PATHS, Column, LANES, Lines, Looks, NAME, NO_LOOKS, WALKED, at, costs, feature, message, pixel, sum,
+    ALONG_PATHS, Column, LANES, Lines, Looks, NAME, NO_LOOKS, WALKED, at, costs, feature, message, sum,
 };
 use crate::choice::{NOISE, ROOM};
 use crate::host::{HostError, HostFile};

@@ -9,7 +9,8 @@
 //!   boards, a package of its own.
 //! * [`camera`]: where lines come from: the built-in scene, or two files on the host.
 //! * [`rows`]: rows of disparity to a file on the host, with their checksum; `stage_files`: rows of the
-//!   matcher's stages, `first_half` and `candidates`: those of the stages that it keeps none of. [`console`]: figures as text.
+//!   matcher's stages, `first_half` and `candidates`: those of the stages that it keeps none of.
+//!   [`console`]: figures as text.
 //! * [`host`]: files on the host. [`block`]: a simulated block of gates behind two of them.
 //! * [`clock`]: instructions counted; [`ticker`]: the same timer, for interrupts. [`stack`]: the stack
 //!   measured.

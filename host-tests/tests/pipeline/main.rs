@@ -4,7 +4,8 @@
 //! * `push`: lines that the caller pushes; `waited`: rows that a task awaits.
 //! * `faults`: the pipeline before a source with every fault, held against the injector's record; `changing`:
 //!   that source; `unsure`: faults where answers are refused as unsure.
-//! * `winners`: rows from a model of the block of gates; `mapped`: the same behind registers in memory and a ring.
+//! * `winners`: rows from a model of the block of gates; `mapped`: the same behind registers in memory and
+//!   a ring.
 
 mod bands;
 mod changing;

@@ -1,5 +1,5 @@
-//! The block behind registers in memory and a ring that channels fill: the rows are the method's own, and a row
-//! that is lost or spoiled costs no other.
+//! The block behind registers in memory and a ring that channels fill: the rows are the method's own, and a
+//! row that is lost or spoiled costs no other.
 
 use super::winners::{D, Failed, HEIGHT, Rows, W, WIDTH, config, frame, own, pictures};
 use std::convert::Infallible;

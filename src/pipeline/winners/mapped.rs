@@ -102,8 +102,8 @@ impl<D: BlockDma> RegisterBus for MappedBlock<'_, D> {
         self.dma.send_line(is_first, left, right)
     }
 
-    // A row ends with its last pixel, or where a record of another row stands; of a damaged one the row is not
-    // known.
+    // A row ends with its last pixel, or where a record of another row stands; the row of a damaged one is
+    // not known.
     fn receive(&mut self, winners: &mut [WinnerRecord]) -> Result<usize, D::Error> {
         let (mut count, mut row) = (0, None);
         for _ in 0..self.most_looks.max(1) {

@@ -100,9 +100,9 @@ impl DriveRule {
     /// Decides on a finished frame, at a speed.
     ///
     /// In this order: blind by the watchdog; stop for what is within the stopping distance; blind where the
-    /// ground is not found, or more than a quarter of the corridor's columns do not see it for twice the
-    /// stopping distance or up to an obstacle; slow for what is within twice the stopping distance or the
-    /// time to contact; clear.
+    /// ground is not found, or more than an eighth of the corridor's columns do not see it for twice the
+    /// stopping distance or up to an obstacle within that; slow for what is within twice the stopping
+    /// distance or the time to contact; clear.
     pub fn decide(&mut self, frame: &ObstaclesView<'_>, speed_mm_s: u16) -> Verdict {
         let stopping_mm = self.stopping_mm(speed_mm_s);
         let needed = stopping_mm.saturating_mul(2);
@@ -121,7 +121,7 @@ impl DriveRule {
         if searched && frame.state.carried.ground.is_none() {
             return verdict(Decision::Blind(BlindReason::NoGround), contact_ms);
         }
-        if 4 * corridor.unseen > corridor.columns || corridor.columns == 0 {
+        if 8 * corridor.unseen > corridor.columns || corridor.columns == 0 {
             return verdict(Decision::Blind(BlindReason::Unseen), contact_ms);
         }
         let soon = contact_ms.is_some_and(|ms| ms <= self.config.slow_ms.into());
@@ -144,7 +144,7 @@ struct Corridor {
     nearest: Option<u16>,
     /// Columns that the corridor reaches over at the needed depth, at least one where there is any.
     columns: usize,
-    /// Those of them that see the ground neither for the needed depth nor up to an obstacle.
+    /// Those of them that see the ground neither for the needed depth nor up to an obstacle within it.
     unseen: usize,
 }
 
@@ -165,7 +165,8 @@ impl Corridor {
             if inside(needed_mm) {
                 found.columns += 1;
                 let seen = setup.seen_mm(column, ground.as_ref()).is_some_and(|mm| mm >= needed_mm);
-                found.unseen += usize::from(!seen && !column.is_supported());
+                let ends_there = column.is_supported() && depth <= needed_mm;
+                found.unseen += usize::from(!seen && !ends_there);
             }
         }
         found

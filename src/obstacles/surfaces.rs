@@ -5,12 +5,14 @@ use super::stixel::{Column, Labelling, StixelKind};
 /// How often a column whose nearest segment belongs to no surface looks for one behind it.
 const TRIES: usize = 3;
 
-/// Whether two columns side by side show one surface: of one kind, within the step of a surface, in rows that
-/// overlap or touch.
+/// Whether two columns side by side show one surface: of one kind, in rows that overlap or touch, and within
+/// the step of a surface, or of drops with their edges at most a row apart: the ground's parallax there may
+/// grow by more than that step from a row to the next.
 fn connected(a: &Column, b: &Column, same_surface: i32) -> bool {
+    let is_one_edge = a.kind == StixelKind::Drop && a.base.abs_diff(b.base) <= 1;
     a.kind != StixelKind::Nothing
         && a.kind == b.kind
-        && (a.parallax - b.parallax).abs() <= same_surface
+        && (is_one_edge || (a.parallax - b.parallax).abs() <= same_surface)
         && a.top <= b.base.saturating_add(1)
         && b.top <= a.base.saturating_add(1)
 }

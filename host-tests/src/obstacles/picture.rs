@@ -5,14 +5,14 @@ use image::{Rgb, RgbImage};
 use stereopsis::obstacles::{ObstacleConfig, ObstaclesView, SectorState, StixelKind};
 
 /// Okabe and Ito's bluish green, vermillion, reddish purple, and a grey.
-const FREE: Rgb<u8> = Rgb([0x00, 0x9e, 0x73]);
-const OBSTACLE: Rgb<u8> = Rgb([0xd5, 0x5e, 0x00]);
-const DROP: Rgb<u8> = Rgb([0xcc, 0x79, 0xa7]);
-const BLIND: Rgb<u8> = Rgb([0x60, 0x60, 0x60]);
+pub(super) const FREE: Rgb<u8> = Rgb([0x00, 0x9e, 0x73]);
+pub(super) const OBSTACLE: Rgb<u8> = Rgb([0xd5, 0x5e, 0x00]);
+pub(super) const DROP: Rgb<u8> = Rgb([0xcc, 0x79, 0xa7]);
+pub(super) const BLIND: Rgb<u8> = Rgb([0x60, 0x60, 0x60]);
 
 /// The left image with the ground that is seen in green, obstacles in the colours of their disparity (near is
 /// bright), drops in purple; below it a strip of sectors: free green, obstacles orange, drops purple, blind
-/// grey. An obstacle's bar is the higher the nearer it is.
+/// grey. The bright part of an obstacle's bar is the higher the nearer it is.
 pub fn picture(config: &ObstacleConfig, frame: &ObstaclesView<'_>, left: &RgbImage) -> RgbImage {
     let (width, height) = left.dimensions();
     let strip = (height / 10).max(8);
@@ -51,11 +51,16 @@ pub fn picture(config: &ObstacleConfig, frame: &ObstaclesView<'_>, left: &RgbIma
             SectorState::Drop => (DROP, f32::from(least_mm) / f32::from(sector.depth_mm.max(1))),
         };
         let rows = (part * strip as f32).ceil() as u32;
-        for v in 1..=rows.min(strip - 1) {
-            picture.put_pixel(u, height + strip - v, colour);
+        for v in 1..strip {
+            picture.put_pixel(u, height + strip - v, if v <= rows { colour } else { dark(colour) });
         }
     }
     picture
+}
+
+/// The colour at a third of its brightness.
+fn dark(colour: Rgb<u8>) -> Rgb<u8> {
+    Rgb(colour.0.map(|value| value / 3))
 }
 
 /// Mixes so many eighths of a colour into a pixel.

@@ -1,17 +1,18 @@
 //! What is found in a frame, for `obstacles.json`.
 
+use super::Vehicle;
 use serde::Serialize;
+use std::fmt::Write as _;
 use stereopsis::obstacles::{
-    Decision, DriveConfig, DriveRule, ObstacleConfig, ObstaclesView, Sector, SectorState, Stixel, StixelKind,
+    Decision, FreeSpace, ObstacleConfig, ObstaclesView, Sector, SectorState, Stixel, StixelKind, Verdict,
 };
 use stereopsis::units::Disparity;
-
-/// Speed at which the decision is taken, mm/s.
-const SPEED_MM_S: u16 = 500;
 
 /// What is found in a frame. Angles are in degrees, to the right; lengths in metres.
 #[derive(Clone, Debug, Serialize)]
 pub struct ObstacleRecord {
+    /// Number of the frame since the sequence began, or began anew: 1 is the first.
+    pub frame: usize,
     /// Why the frame is not to be trusted, if it is not.
     pub blind: Option<String>,
     /// Columns and rows of pixels in a cell.
@@ -20,11 +21,13 @@ pub struct ObstacleRecord {
     pub ground: Option<GroundRecord>,
     /// What is nearest by bearing, from the left.
     pub sectors: Vec<SectorRecord>,
+    /// The sectors with hysteresis over the frames: an obstacle is let go of with the third frame without it.
+    pub free_space: Vec<SectorRecord>,
     /// The sectors in the meaning of ROS's LaserScan.
     pub scan: ScanRecord,
     /// What stands in each column of cells that something stands in.
     pub stixels: Vec<StixelRecord>,
-    /// What a small robot would do.
+    /// What the vehicle has to do.
     pub decision: DecisionRecord,
 }
 
@@ -42,10 +45,14 @@ pub struct GroundRecord {
 /// A sector; see [`Sector`].
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct SectorRecord {
-    state: &'static str,
-    bearing_deg: f32,
-    depth_m: Option<f32>,
-    sigma_m: Option<f32>,
+    /// Blind, free, obstacle or drop.
+    pub state: &'static str,
+    /// Bearing of what is there, or of the middle.
+    pub bearing_deg: f32,
+    /// Depth of what is there.
+    pub depth_m: Option<f32>,
+    /// Deviation of the depth.
+    pub sigma_m: Option<f32>,
     range_m: Option<f32>,
     pixels: u32,
     height_m: Option<f32>,
@@ -89,7 +96,7 @@ pub struct StixelRecord {
     depth_m: f32,
 }
 
-/// What a small robot would do, which is [`DriveConfig::default`] at half a metre a second.
+/// What the vehicle has to do at its speed.
 #[derive(Clone, Debug, Serialize)]
 pub struct DecisionRecord {
     /// Clear, slow, stop or blind.
@@ -101,7 +108,8 @@ pub struct DecisionRecord {
     speed_m_s: f32,
     corridor_m: f32,
     stopping_m: f32,
-    contact_s: Option<f32>,
+    /// Time until it reaches what is in the way.
+    pub contact_s: Option<f32>,
 }
 
 fn metres(mm: impl Into<f32>) -> f32 {
@@ -114,7 +122,13 @@ fn pixels(steps: u16) -> f32 {
 
 impl ObstacleRecord {
     /// What a frame shows.
-    pub fn new(config: &ObstacleConfig, frame: &ObstaclesView<'_>) -> Self {
+    pub(super) fn new(
+        config: &ObstacleConfig,
+        frame: &ObstaclesView<'_>,
+        space: &FreeSpace,
+        verdict: &Verdict,
+        vehicle: &Vehicle,
+    ) -> Self {
         let ground = frame.ground().map(|ground| GroundRecord {
             height_m: metres(ground.height_mm),
             pitch_deg: ground.pitch_rad().to_degrees(),
@@ -125,14 +139,46 @@ impl ObstacleRecord {
             (stixel.kind != StixelKind::Nothing).then(|| StixelRecord::new(config, x, &stixel))
         });
         Self {
+            frame: 1,
             blind: frame.blind().map(|reason| format!("{reason:?}")),
             cell: [config.cell_width, config.cell_height],
             ground,
             sectors: (0..frame.sectors()).map(|i| SectorRecord::new(&frame.sector(i))).collect(),
+            free_space: (0..frame.sectors()).map(|i| SectorRecord::new(&space.sector(i))).collect(),
             scan: ScanRecord::new(frame),
             stixels: stixels.collect(),
-            decision: DecisionRecord::new(frame),
+            decision: DecisionRecord::new(verdict, vehicle),
         }
+    }
+
+    /// The record as that of frame `number` of its sequence.
+    pub(super) fn numbered(self, number: usize) -> Self {
+        Self { frame: number, ..self }
+    }
+
+    /// Index in [`Self::sectors`] of the nearest surface.
+    pub fn nearest(&self) -> Option<usize> {
+        let depths = self.sectors.iter().enumerate().filter_map(|(i, sector)| Some((i, sector.depth_m?)));
+        depths.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)
+    }
+
+    /// The decision and the ground in a line.
+    pub fn line(&self) -> String {
+        let DecisionRecord { decision, distance_m, reason, .. } = &self.decision;
+        let mut line = (*decision).to_owned();
+        if let Some(distance_m) = distance_m {
+            let _ = write!(line, ", {distance_m:.2} m ahead");
+        }
+        if let Some(reason) = reason {
+            let _ = write!(line, " ({reason})");
+        }
+        match &self.ground {
+            Some(GroundRecord { height_m, pitch_deg, .. }) => {
+                let _ = write!(line, "; ground {height_m:.2} m below, pitch {pitch_deg:.1} degrees down");
+            }
+            None => line += "; no ground",
+        }
+        line
     }
 }
 
@@ -193,9 +239,7 @@ impl StixelRecord {
 }
 
 impl DecisionRecord {
-    fn new(frame: &ObstaclesView<'_>) -> Self {
-        let drive = DriveConfig::default();
-        let verdict = DriveRule::new(drive).decide(frame, SPEED_MM_S);
+    fn new(verdict: &Verdict, vehicle: &Vehicle) -> Self {
         let (decision, distance_mm, reason) = match verdict.decision {
             Decision::Clear => ("clear", None, None),
             Decision::Slow(mm) => ("slow", Some(mm), None),
@@ -206,8 +250,8 @@ impl DecisionRecord {
             decision,
             distance_m: distance_mm.map(metres),
             reason,
-            speed_m_s: metres(SPEED_MM_S),
-            corridor_m: metres(drive.corridor_mm),
+            speed_m_s: metres(vehicle.speed_mm_s),
+            corridor_m: metres(vehicle.drive.corridor_mm),
             stopping_m: metres(verdict.stopping_mm),
             contact_s: verdict.contact_ms.map(|ms| ms as f32 / 1000.0),
         }

@@ -1,6 +1,6 @@
 //! The pictures of a recording's first frame, taken before it is played.
 
-use super::{Entry, Recording, RecordingError, most_rows};
+use super::{Entry, Header, Recording, RecordingError, most_rows};
 use image::GrayImage;
 use std::iter::Chain;
 use std::vec::IntoIter;
@@ -13,8 +13,7 @@ pub type FromStart = Chain<IntoIter<Result<Entry, RecordingError>>, Recording>;
 /// A row that did not come is the row above it. There are no pictures where no row came.
 pub fn first_pair(mut recording: Recording) -> (Option<[GrayImage; 2]>, FromStart) {
     let header = recording.header();
-    let (width, height) = (usize::from(header.width), usize::from(header.height));
-    let mut rows = vec![None; height];
+    let mut rows = vec![None; usize::from(header.height)];
     let mut records = Vec::new();
     let mut frames = 0;
     // A file may hold any number of records of one frame.
@@ -33,6 +32,13 @@ pub fn first_pair(mut recording: Recording) -> (Option<[GrayImage; 2]>, FromStar
         }
         records.push(record);
     }
+    (pictures(header, rows), records.into_iter().chain(recording))
+}
+
+/// The left and the right picture of rows, of which one that did not come is the row above it; none where no
+/// row came.
+pub(super) fn pictures(header: Header, rows: Vec<Option<[Vec<u8>; 2]>>) -> Option<[GrayImage; 2]> {
+    let (width, height) = (usize::from(header.width), usize::from(header.height));
     let mut above = rows.iter().flatten().next().cloned();
     let mut bytes = [(); 2].map(|()| Vec::with_capacity(width * height));
     for row in rows {
@@ -43,5 +49,5 @@ pub fn first_pair(mut recording: Recording) -> (Option<[GrayImage; 2]>, FromStar
     }
     let size = (header.width.into(), header.height.into());
     let [left, right] = bytes.map(|bytes| GrayImage::from_raw(size.0, size.1, bytes));
-    (left.zip(right).map(|(left, right)| [left, right]), records.into_iter().chain(recording))
+    left.zip(right).map(|(left, right)| [left, right])
 }

@@ -3,6 +3,7 @@
 
 use super::support::{Cameras, noisy};
 use image::{GrayImage, Luma};
+use stereopsis::matching::Block;
 use stereopsis::obstacles::{BlindReason, Decision, DriveConfig, DriveRule};
 use stereopsis_host::scene::{Random, RobotScene};
 
@@ -35,7 +36,8 @@ fn try_frames(count: usize) -> Vec<(Option<BlindReason>, usize)> {
     for scene in scenes {
         let scene_of = scene.scene(4);
         let (left, right) = scene_of.render();
-        let (mut cameras, mut rule) = (Cameras::new(&scene_of), DriveRule::new(DriveConfig::default()));
+        let (mut cameras, mut rule) =
+            (Cameras::<Block>::new(&scene_of), DriveRule::new(DriveConfig::default()));
         for n in 0..count / scenes.len() {
             let noise = 3.0 * random.unit();
             let [l, r] = [&left, &right]

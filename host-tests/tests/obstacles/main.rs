@@ -5,4 +5,5 @@ mod faults;
 mod geometry;
 mod scenes;
 mod support;
+mod truth;
 mod twins;

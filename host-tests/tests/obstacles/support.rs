@@ -4,7 +4,7 @@ use image::GrayImage;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::RectifiedRig;
 use stereopsis::imaging::PairMonitor;
-use stereopsis::matching::{Block, Config};
+use stereopsis::matching::{Block, Config, Method};
 use stereopsis::obstacles::{ObstacleConfig, Obstacles};
 use stereopsis::pipeline::Pipeline;
 use stereopsis::units::{Disparity, PixelFlags};
@@ -73,19 +73,19 @@ pub fn floor(rig: &RectifiedRig, height_m: f64, pitch_rad: f64, v: f64) -> Optio
     (parallax > 0.0).then_some(parallax)
 }
 
-/// A pipeline of `block` before a finder.
-pub struct Cameras {
-    pipeline: Box<Pipeline<Block, 160, 32>>,
+/// A pipeline before a finder; that of `block` where no method is named.
+pub struct Cameras<M: Method = Block> {
+    pipeline: Box<Pipeline<M, 160, 32>>,
     pub finder: Box<Finder>,
     monitor: PairMonitor,
 }
 
-impl Cameras {
+impl<M: Method> Cameras<M> {
     /// Cameras that see a scene of at most 160 px and 32 disparities, and default limits.
     pub fn new(scene: &Scene) -> Self {
         let (width, height, disparities) = (scene.width(), scene.height(), scene.disparities());
         let mut pipeline = Box::new(Pipeline::new());
-        pipeline.start(&Config::for_method::<Block>(width, height, disparities)).expect("room for it");
+        pipeline.start(&Config::for_method::<M>(width, height, disparities)).expect("room for it");
         let mut finder = Box::new(Finder::new());
         let scale = DepthScale::new(&scene.rig()).expect("a scale");
         let largest = Disparity::from_pixels(disparities);
@@ -135,4 +135,14 @@ pub fn noisy(picture: &GrayImage, noise_grey: f64, gain: f64, seed: u64) -> Gray
         *pixel = (f64::from(*pixel) * gain + noise).round().clamp(0.0, 255.0) as u8;
     }
     noisy
+}
+
+/// Exposures of the frames, one after the other.
+const GAINS: [f64; 4] = [1.0, 0.7, 1.0, 1.3];
+
+/// Frame `n` of a pair of pictures, with noise and steps of exposure.
+pub fn frame(pictures: &(GrayImage, GrayImage), noise_grey: f64, n: usize) -> (GrayImage, GrayImage) {
+    let gain = GAINS[n % GAINS.len()];
+    let seed = 2 * n as u64;
+    (noisy(&pictures.0, noise_grey, gain, seed), noisy(&pictures.1, noise_grey, gain, seed + 1))
 }

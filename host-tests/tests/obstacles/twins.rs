@@ -1,13 +1,13 @@
-//! The core beside its naive twin, to the bit: cells, ground over frames, stixels.
+//! The core beside its naive twin, to the bit: cells, ground over frames, stixels, sectors and their scan.
 
 use super::support::{Finder, Map, floor};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use stereopsis::geometry::camera::RectifiedRig;
-use stereopsis::obstacles::{GroundSource, ObstacleConfig, StixelKind};
+use stereopsis::obstacles::{GroundSource, ObstacleConfig, ObstaclesView, SectorState, StixelKind};
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::scene::Random;
-use stereopsis_host::twin::obstacles::{Found, Kind, Scene, find};
+use stereopsis_host::twin::obstacles::{Found, Kind, Line, Scene, Sector, find, sectors};
 
 /// A floor with walls, holes, drops, specks and noise.
 fn map(random: &mut Random, rig: RectifiedRig, size: [u16; 2]) -> Map {
@@ -54,19 +54,17 @@ fn map(random: &mut Random, rig: RectifiedRig, size: [u16; 2]) -> Map {
     map
 }
 
-/// What the twin finds in a frame of a map.
-fn twin(
-    map: &Map,
-    config: ObstacleConfig,
-    carried: &mut (Option<stereopsis_host::twin::obstacles::Line>, u32),
-) -> Found {
+/// A map as the twin sees it.
+fn scene(map: &Map, config: ObstacleConfig) -> Scene<'_> {
     let rig = &map.rig;
     let whole = |x: f32| x.round() as i128;
-    let scene = Scene {
+    Scene {
         config,
         focal_16ths: whole(16.0 * rig.focal_px()),
+        cx_16ths: whole(16.0 * rig.principal_point().0),
         cy_halves: whole(2.0 * rig.principal_point().1),
         baseline_16ths: whole(16_000.0 * rig.baseline_m()),
+        millimetre_steps: whole(rig.focal_px() * rig.baseline_m() * 1000.0 * 32.0),
         offset: whole(32.0 * rig.disparity_offset_px()),
         width: map.size[0].into(),
         height: map.size[1].into(),
@@ -74,8 +72,49 @@ fn twin(
         disparities: &map.disparities,
         flags: &map.flags,
         confidences: &map.confidences,
-    };
-    find(&scene, carried)
+    }
+}
+
+/// What the twin finds in a frame of a map.
+fn twin(map: &Map, config: ObstacleConfig, carried: &mut (Option<Line>, u32)) -> Found {
+    find(&scene(map, config), carried)
+}
+
+/// Compares the sectors and the ranges of a scan; bearings are rounded by other arithmetic, so that a rig with
+/// one within a thousandth of a half is left out.
+fn compare_sectors(scene: &Scene<'_>, view: &ObstaclesView<'_>, found: &Found) -> Result<(), TestCaseError> {
+    let is_tie = |bearing: f64| (bearing.rem_euclid(1.0) - 0.5).abs() < 1e-3;
+    let last = view.columns() * usize::from(scene.config.cell_width) - 1;
+    let ends = [0.0, last as f64].map(|pixel| scene.bearing(pixel));
+    let all = (0..view.columns()).map(|x| scene.column_bearing(x));
+    if ends.into_iter().chain(all).any(is_tie) {
+        return Ok(());
+    }
+    let expected = sectors(scene, found);
+    prop_assert_eq!(view.sectors(), expected.len());
+    let mut ranges = [0.0; ObstacleConfig::MOST_SECTORS];
+    prop_assert_eq!(view.laser_scan(&mut ranges).count, expected.len());
+    for (i, expected) in expected.iter().enumerate() {
+        let core = view.sector(i);
+        let sector = Sector {
+            state: core.state,
+            bearing_mrad: core.bearing_mrad.into(),
+            depth_mm: core.depth_mm.into(),
+            sigma_mm: core.sigma_mm.into(),
+            range_mm: core.range_mm.into(),
+            pixels: core.pixels.into(),
+            height_mm: core.height_mm.into(),
+            seen_mm: core.seen_mm.into(),
+        };
+        prop_assert_eq!(&sector, expected, "sector {}", i);
+        let range = ranges[view.sectors() - 1 - i];
+        match expected.state {
+            SectorState::Blind => prop_assert!(range.is_nan()),
+            SectorState::Free => prop_assert!(range == f32::INFINITY),
+            _ => prop_assert_eq!(range, expected.range_mm as f32 / 1000.0),
+        }
+    }
+    Ok(())
 }
 
 /// Compares all that core and twin say of a frame; returns how many stixels there are.
@@ -122,6 +161,7 @@ fn compare(
             x
         );
     }
+    compare_sectors(&scene(map, *config), &view, found)?;
     Ok(found.columns.iter().filter(|standing| standing.found.is_some()).count())
 }
 
@@ -145,6 +185,7 @@ proptest! {
         min_confidence in 0u8..200,
         absent in prop::bool::weighted(0.2),
         headroom_mm in prop_oneof![Just(u16::MAX), 100u16..2000],
+        sectors in 1u8..33,
     ) {
         let mut random = Random::new(seed);
         let (cx, cy) = (f32::from(width) / 2.0 - 0.5, f32::from(height) / 2.0 - 0.5);
@@ -160,6 +201,7 @@ proptest! {
             drop_mm: limits.1,
             min_pixels: limits.2,
             headroom_mm,
+            sectors,
             ..default
         };
         let (mut carried, mut finder) = ((None, 0), None);

@@ -43,6 +43,7 @@ mod rectified;
 mod rectify;
 mod replay;
 mod results;
+mod resume;
 mod rig;
 mod scale;
 mod serve;
@@ -55,6 +56,7 @@ mod structure;
 mod uncalibrated;
 mod view;
 mod walk;
+mod watch;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};

@@ -3,9 +3,11 @@
 
 use crate::failure::Failure;
 use crate::match_args::MatchArgs;
+use crate::resume;
 use crate::shared::print;
-use crate::solve::{FINISHED, solve};
+use crate::solve::{FINISHED, check_obstacles, solve};
 use crate::sources::Input;
+use crate::watch::{OVER_TIME, Watch};
 use serde::Serialize;
 use serde_json::Value;
 use std::fmt::Write as _;
@@ -64,6 +66,8 @@ pub fn run(
         let failed = |e| Failure::new(format!("{}: cannot be read ({e})", path.display()));
         beside.extend(limits::read(&path, limits::IMAGE_BYTES).map_err(failed)?);
     }
+    check_obstacles(args)?;
+    let mut watch = args.watch.watch();
     let of = count.map_or(String::new(), |count| format!(" of {count}"));
     let mut lines = Vec::new();
     for (number, input) in (1..).zip(inputs) {
@@ -82,24 +86,29 @@ pub fn run(
             // Nobody is left to tell when standard error is closed.
             let _ = writeln!(std::io::stderr(), "stereo: {frame}{of} {what}: {}", one_line(&input.name()));
         }
+        let one = MatchArgs { out: out.clone(), ..args.clone() };
+        let named = |e: Failure| Failure::new(format!("{frame}: {e}"));
         if !is_done {
-            let one = MatchArgs { out: out.clone(), ..args.clone() };
-            let named = |e: Failure| Failure::new(format!("{frame}: {e}"));
             let pair = input.open().map_err(named)?;
-            solve(&one, pair, Some(&mark), &format!("{frame}: ")).map_err(named)?;
+            solve(&one, pair, Some(&mark), &format!("{frame}: "), watch.as_mut()).map_err(named)?;
+        } else if let Some(watch) = &mut watch {
+            resume::look_again(&one, &input, &frame, watch).map_err(named)?;
+        } else {
+            resume::forget(&out)?;
         }
         lines.push(Line::of(&out, frame, input.name())?);
     }
-    write_table(&args.out, TABLE, &lines, None)?;
-    tell(args, &lines)
+    write_table(&args.out, TABLE, &lines, None, watch.as_ref())?;
+    tell(args, &lines, watch.as_ref())
 }
 
-/// Writes the table of a run, and a picture where there is one.
+/// Writes the table of a run, a picture where there is one, and what a watch saw.
 pub fn write_table(
     out: &Path,
     name: &str,
     lines: &[Line],
     picture: Option<(&str, &image::RgbImage)>,
+    watch: Option<&Watch>,
 ) -> Result<(), Failure> {
     let mut table = csv::Writer::from_writer(Vec::new());
     for line in lines {
@@ -111,11 +120,14 @@ pub fn write_table(
     if let Some((name, picture)) = picture {
         staging.write(name, |out| crate::place::png(out, picture))?;
     }
-    Ok(staging.commit(&[])?)
+    if let Some(watch) = watch {
+        watch.write(&mut staging)?;
+    }
+    Ok(staging.commit(&OVER_TIME)?)
 }
 
 /// Prints the lines as the options ask for.
-pub fn tell(args: &MatchArgs, lines: &[Line]) -> Result<(), Failure> {
+pub fn tell(args: &MatchArgs, lines: &[Line], watch: Option<&Watch>) -> Result<(), Failure> {
     if args.quiet {
         return Ok(());
     }
@@ -135,6 +147,9 @@ pub fn tell(args: &MatchArgs, lines: &[Line]) -> Result<(), Failure> {
             line.state_bytes,
             one_line(&line.input)
         );
+    }
+    if let Some(watch) = watch {
+        let _ = writeln!(text, "obstacles: {}", watch.timeline.line());
     }
     let _ = writeln!(text, "results are in {}", one_line(&args.out.display().to_string()));
     print(&text)

@@ -9,6 +9,8 @@ use crate::settings;
 use crate::shared::print;
 use crate::solve::solve;
 use crate::sources::Sources;
+use crate::watch::Watch;
+use std::fmt::Write as _;
 use std::io::Write as _;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::report::Summary;
@@ -31,8 +33,9 @@ Written into the folder: disparity.pfm (px, infinity where there is no answer), 
                            rectified_left.png, rectified_right.png and rectified.json, the cameras of all \
                            the others; with --obstacles also obstacles.json and obstacles.png. The files \
                            appear together when all of them are complete. Of several pairs each has a \
-                           numbered folder with these files, and frames.csv has a line for each; what is \
-                           finished is not done again.";
+                           numbered folder with these files, and frames.csv has a line for each, with \
+                           --obstacles obstacles.csv too, and obstacles.png shows them over time; what is \
+                           finished is not matched again.";
 
 pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let mut notes = Vec::new();
@@ -53,14 +56,20 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         }
         Sources::Raw(frames) => many::run(args, frames, None),
         Sources::One(input) => {
-            let (summary, rectified) = solve(args, input.open()?, None, "")?;
-            tell(args, &summary, rectified.as_ref())
+            let mut watch = args.watch.watch();
+            let (summary, rectified) = solve(args, input.open()?, None, "", watch.as_mut())?;
+            tell(args, &summary, rectified.as_ref(), watch.as_ref())
         }
     }
 }
 
 /// Prints the figures of one pair as the options ask for.
-fn tell(args: &MatchArgs, summary: &Summary, rectified: Option<&RectifiedCameras>) -> Result<(), Failure> {
+fn tell(
+    args: &MatchArgs,
+    summary: &Summary,
+    rectified: Option<&RectifiedCameras>,
+    watch: Option<&Watch>,
+) -> Result<(), Failure> {
     if args.quiet {
         return Ok(());
     }
@@ -70,6 +79,9 @@ fn tell(args: &MatchArgs, summary: &Summary, rectified: Option<&RectifiedCameras
     let mut text = figures(summary);
     if let Some(rectified) = rectified {
         text += &rectified.figures();
+    }
+    if let Some(record) = watch.and_then(|watch| watch.timeline.last()) {
+        let _ = writeln!(text, "obstacles    {}", record.line());
     }
     text += &place(&args.out);
     print(&text)

@@ -4,6 +4,7 @@ use crate::look::{MaskArgs, SearchArgs};
 use crate::results::DepthArgs;
 use crate::shared::{BalanceArgs, MethodArgs, RectifyOptions, colour_range, filter, length, method, noise};
 use crate::sources::SourceArgs;
+use crate::watch::ObstacleArgs;
 use clap::Args;
 use std::path::PathBuf;
 use stereopsis::matching::Filter;
@@ -47,13 +48,12 @@ pub struct MatchArgs {
     /// searched where none are given
     #[arg(long, value_name = "A:B", value_parser = colour_range, allow_negative_numbers = true)]
     pub colour_range: Option<ColourScale>,
-    /// Find the ground and what stands on it, of depths: obstacles.json and obstacles.png
-    #[arg(long, conflicts_with = "settings")]
-    pub obstacles: bool,
+    #[command(flatten)]
+    pub watch: ObstacleArgs,
     /// Match one pair with each of several settings, METHOD, METHOD:FILTER or METHOD:FILTER:NOISE with commas
     /// between them: a folder for each, a table, and settings.png, which shows all side by side
     #[arg(long, value_name = "SETTINGS", value_delimiter = ',', value_parser = setting, conflicts_with_all =
-        ["method", "filter", "noise"])]
+        ["method", "filter", "noise", "obstacles"])]
     pub settings: Vec<Setting>,
     /// Print summary.json in place of the figures
     #[arg(long, conflicts_with = "quiet")]

@@ -7,12 +7,17 @@ use crate::input;
 use crate::look::refuse_swapped;
 use crate::place::{json, png};
 use crate::progress::Progress;
-use crate::shared::{BalanceArgs, MethodArgs, RangeArgs, filter, method, noise, print, rate};
+use crate::scale::{of_files, of_numbers};
+use crate::shared::{BalanceArgs, MethodArgs, RangeArgs, Unit, filter, length, method, noise, print, rate};
+use crate::watch::{self, OVER_TIME, ObstacleArgs, Watch};
 use clap::{Args, ValueEnum};
+use image::{DynamicImage, GrayImage, RgbImage};
 use std::fmt::Display;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use stereopsis::depth::DepthScale;
+use stereopsis::geometry::camera::ImageSize;
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{Config, Filter};
 use stereopsis_host::colour::flags_raw;
@@ -31,7 +36,9 @@ Written into the folder: for each frame 000001-disparity.pfm (px, infinity where
                            000001-flags.png (the bits of `stereo match`, and 128 where a lost line was \
                            rested on); frames.csv, a line for each frame; summary.json with every fault \
                            counted by name. A folder to play has the folders left and right in it, with \
-                           images that belong together in the order of their names.";
+                           images that belong together in the order of their names. With --obstacles: for \
+                           each frame 000001-obstacles.json and 000001-obstacles.png; obstacles.csv, a line \
+                           for each, and obstacles.png, which shows the sectors over time.";
 
 #[derive(Debug, Args)]
 pub struct ReplayArgs {
@@ -67,6 +74,23 @@ pub struct ReplayArgs {
     /// Play the frames even if the cameras seem to be swapped
     #[arg(long)]
     pub force: bool,
+    #[command(flatten)]
+    pub watch: ObstacleArgs,
+    /// Calibration of the cameras, for --obstacles, as for the command match
+    #[arg(long, value_name = "FILE", requires = "obstacles")]
+    pub calib: Vec<PathBuf>,
+    /// The unit of lengths in OpenCV's files, which do not say it: m where none is given
+    #[arg(long, value_name = "UNIT", requires = "calib")]
+    pub unit: Option<Unit>,
+    /// Focal length of the cameras, px, for --obstacles, where there is no file: their centre is taken to be
+    /// that of the lines
+    #[arg(long, value_name = "PX", conflicts_with = "calib", requires_all = ["baseline_mm", "obstacles"],
+        value_parser = length, allow_negative_numbers = true)]
+    pub focal_px: Option<f32>,
+    /// Distance of the two cameras, mm
+    #[arg(long, value_name = "MM", requires = "focal_px", value_parser = length, allow_negative_numbers =
+        true)]
+    pub baseline_mm: Option<f32>,
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -82,14 +106,37 @@ pub enum Timing {
 
 pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
     let recording = if args.from.is_dir() { of_folder(args)? } else { Recording::open(&args.from)? };
-    let (header, seen) = (recording.header(), Seen::default());
+    let header = recording.header();
+    let seen = if args.watch.obstacles { Seen::with_pictures() } else { Seen::default() };
     let config = config(args, header)?;
+    let watch = watch(args, header)?;
     let (pair, records) = first_pair(recording);
     if let Some([left, right]) = pair.filter(|_| !args.force) {
         refuse_swapped([&left, &right])?;
     }
     let ahead = Ahead::new(records, header, args.balance.is_for(args.method), &seen);
-    play(args, config, &mut Playback::new(ahead, header, args.timing == Timing::Recorded), &seen)
+    play(args, config, &mut Playback::new(ahead, header, args.timing == Timing::Recorded), &seen, watch)
+}
+
+/// A watch and its scale, where obstacles are asked for.
+fn watch(args: &ReplayArgs, header: Header) -> Result<Option<(Watch, DepthScale)>, Failure> {
+    let Some(watch) = args.watch.watch() else { return Ok(None) };
+    let size = ImageSize { width: header.width, height: header.height };
+    let scale = match (args.focal_px.zip(args.baseline_mm), args.calib.len()) {
+        (Some(rig), _) => of_numbers(rig, size)?,
+        (None, 0) => {
+            return Err(Failure::new(
+                "--obstacles: distances need a calibration; give --calib, or --focal-px and --baseline-mm",
+            ));
+        }
+        (None, 1 | 2) => of_files(&args.calib, args.unit, &args.from, size)?,
+        _ => {
+            return Err(Failure::new(
+                "--calib: is given more than twice; a file of both cameras or one of each is needed",
+            ));
+        }
+    };
+    Ok(Some((watch, scale)))
 }
 
 /// A folder's pictures, with those of each side in a folder.
@@ -140,9 +187,10 @@ fn play(
     config: Config,
     source: &mut Playback<Ahead<'_, FromStart>>,
     seen: &Seen,
+    mut watch: Option<(Watch, DepthScale)>,
 ) -> Result<(), Failure> {
     let mut staging = Staging::new(&args.out)?;
-    let (mut written, mut table, mut names) = (Ok(()), TABLE.to_owned(), Vec::new());
+    let (mut written, mut table, mut names) = (Ok::<(), Failure>(()), TABLE.to_owned(), Vec::new());
     let mut left = args.frames.unwrap_or(u32::MAX);
     let mut noisy_frames = 0;
     let next = |source: &mut Playback<_>| {
@@ -159,11 +207,19 @@ fn play(
         progress.one_more();
         let number = names.len() + 1;
         table += &line(number, &frame);
-        let [disparity, flags] = KINDS.map(|kind| format!("{number:06}{kind}"));
+        let [disparity, flags, obstacles @ ..] = KINDS.map(|kind| format!("{number:06}{kind}"));
         if written.is_ok() && frame.rows > 0 {
             written = staging
                 .write(&disparity, |out| pfm::write(out, frame.map.width, &frame.map.pixels()))
-                .and_then(|()| staging.write(&flags, |out| png(out, &flags_raw(&frame.map))));
+                .and_then(|()| staging.write(&flags, |out| png(out, &flags_raw(&frame.map))))
+                .map_err(Failure::from);
+        }
+        if let Some((watch, scale)) = watch.as_mut().filter(|_| written.is_ok()) {
+            let pictures = frame.start.and_then(|start| seen.take_pictures(start));
+            written = look(watch, scale, &config, (number, &frame), pictures).and_then(|found| {
+                let names = obstacles.each_ref().map(String::as_str);
+                Ok(watch::write(&mut staging, names, &found)?)
+            });
         }
         names.push(());
     };
@@ -191,15 +247,39 @@ fn play(
         time_went_back_at: source.went_back(),
         counters: counters.into(),
     };
+    if let Some((watch, _)) = &watch {
+        watch.write(&mut staging)?;
+    }
     staging.write("frames.csv", |out| out.write_all(table.as_bytes()))?;
     staging.write("summary.json", |out| json(out, &summary))?;
     let stale = earlier_results(&args.out)?;
-    staging.commit(&stale.iter().map(String::as_str).collect::<Vec<_>>())?;
-    print(&summary.figures(&args.out))
+    staging.commit(&stale.iter().map(String::as_str).chain(OVER_TIME).collect::<Vec<_>>())?;
+    let decisions = watch.map(|(watch, _)| format!("obstacles: {}\n", watch.timeline.line()));
+    print(&(decisions.unwrap_or_default() + &summary.figures(&args.out)))
+}
+
+/// What a watch sees in a frame that was played; a black image where it did not begin.
+fn look(
+    watch: &mut Watch,
+    scale: &DepthScale,
+    config: &Config,
+    (number, frame): (usize, &GuardedFrame),
+    pictures: Option<[GrayImage; 2]>,
+) -> Result<watch::Seen, Failure> {
+    let (label, size) = (format!("{number:06}"), [config.width, config.height].map(u32::from));
+    let came = (&frame.map, usize::from(frame.rows));
+    let pictures = pictures.map(|both| both.map(|picture| DynamicImage::ImageLuma8(picture).into_rgb8()));
+    match &pictures {
+        Some([left, right]) => watch.look(&label, scale, came, watch::largest(config), left, Some(right)),
+        None => {
+            let black = RgbImage::new(size[0], size[1]);
+            watch.look(&label, scale, came, watch::largest(config), &black, None)
+        }
+    }
 }
 
 /// The endings of a frame's files.
-const KINDS: [&str; 2] = ["-disparity.pfm", "-flags.png"];
+const KINDS: [&str; 4] = ["-disparity.pfm", "-flags.png", "-obstacles.json", "-obstacles.png"];
 const TABLE: &str = "frame,sequence,timestamp_us,rows,damaged_rows,lost_lines,answers,error\n";
 
 fn line(number: usize, frame: &GuardedFrame) -> String {

@@ -4,8 +4,9 @@ use crate::failure::Failure;
 use crate::input::Pair;
 use crate::match_args::MatchArgs;
 use crate::shared::Unit;
+use std::path::{Path, PathBuf};
 use stereopsis::depth::DepthScale;
-use stereopsis::geometry::camera::{Camera, RectifiedRig};
+use stereopsis::geometry::camera::{Camera, ImageSize, RectifiedRig};
 use stereopsis_host::calibration::Calibration;
 
 /// The camera of a rectified pair.
@@ -19,12 +20,9 @@ pub fn scale(args: &MatchArgs, pair: &Pair) -> Result<Option<DepthScale>, Failur
     if args.options.alpha.is_some() {
         return Err(Failure::new("--alpha: is for raw images; give --rectify too"));
     }
-    if let Some((focal_px, baseline_mm)) = args.focal_px.zip(args.baseline_mm) {
-        let [cx, cy] = [pair.width, pair.height].map(|side| (f32::from(side) - 1.0) / 2.0);
-        let rig = RectifiedRig::new(focal_px, baseline_mm / 1000.0, cx, cy);
-        let scale =
-            rig.map_err(|e| e.to_string()).and_then(|rig| DepthScale::new(&rig).map_err(|e| e.to_string()));
-        return scale.map(Some).map_err(|e| Failure::new(format!("--focal-px, --baseline-mm: {e}")));
+    let size = ImageSize { width: pair.width, height: pair.height };
+    if let Some(rig) = args.focal_px.zip(args.baseline_mm) {
+        return of_numbers(rig, size).map(Some);
     }
     match args.calib.len() {
         0 if args.depth.depth_unit.is_some() || args.depth.max_depth.is_some() => {
@@ -41,9 +39,27 @@ pub fn scale(args: &MatchArgs, pair: &Pair) -> Result<Option<DepthScale>, Failur
             ));
         }
     }
-    let calibration =
-        Calibration::open_all(&args.calib, &pair.inputs[0], args.options.unit.map(Unit::metres))?;
-    calibration.check_size(pair.width, pair.height)?;
+    of_files(&args.calib, args.options.unit, &pair.inputs[0], size).map(Some)
+}
+
+/// The scale of a focal length, px, and a baseline, mm, with the principal point in the middle of the images.
+pub fn of_numbers((focal_px, baseline_mm): (f32, f32), size: ImageSize) -> Result<DepthScale, Failure> {
+    let [cx, cy] = [size.width, size.height].map(|side| (f32::from(side) - 1.0) / 2.0);
+    let rig = RectifiedRig::new(focal_px, baseline_mm / 1000.0, cx, cy);
+    let scale =
+        rig.map_err(|e| e.to_string()).and_then(|rig| DepthScale::new(&rig).map_err(|e| e.to_string()));
+    scale.map_err(|e| Failure::new(format!("--focal-px, --baseline-mm: {e}")))
+}
+
+/// The scale of calibration files, for images of a size.
+pub fn of_files(
+    calib: &[PathBuf],
+    unit: Option<Unit>,
+    left: &Path,
+    size: ImageSize,
+) -> Result<DepthScale, Failure> {
+    let calibration = Calibration::open_all(calib, left, unit.map(Unit::metres))?;
+    calibration.check_size(size.width, size.height)?;
     let scale = DepthScale::new(&calibration.rig);
-    scale.map(Some).map_err(|e| Failure::new(format!("{}: {e}", calibration.path.display())))
+    scale.map_err(|e| Failure::new(format!("{}: {e}", calibration.path.display())))
 }

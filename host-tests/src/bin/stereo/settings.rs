@@ -42,7 +42,7 @@ pub fn run(args: &MatchArgs, input: &Input) -> Result<(), Failure> {
         if pictures.is_empty() && !args.rectify {
             pictures.push(pair.left.clone());
         }
-        solve(&one, pair, None, &format!("{name}: "))?;
+        solve(&one, pair, None, &format!("{name}: "), None)?;
         if pictures.is_empty() {
             pictures.push(read(&one.out.join("rectified_left.png"))?);
         }
@@ -50,8 +50,8 @@ pub fn run(args: &MatchArgs, input: &Input) -> Result<(), Failure> {
         lines.push(Line::of(&one.out, name.clone(), input.name())?);
         names.push(name);
     }
-    write_table(&args.out, TABLE, &lines, Some((PICTURE, &side_by_side(&pictures))))?;
-    tell(args, &lines)
+    write_table(&args.out, TABLE, &lines, Some((PICTURE, &side_by_side(&pictures))), None)?;
+    tell(args, &lines, None)
 }
 
 fn read(path: &Path) -> Result<RgbImage, Failure> {

@@ -9,6 +9,7 @@ use crate::place::{json, png};
 use crate::rectified::{self, RectifiedCameras};
 use crate::results::{self, DepthFiles};
 use crate::scale::{camera, scale};
+use crate::watch::{self, OBSTACLES, Watch};
 use image::{RgbImage, imageops};
 use std::fmt::Display;
 use std::io::Write as _;
@@ -16,9 +17,7 @@ use std::path::PathBuf;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::ImageSize;
 use stereopsis_host::command_line::one_line;
-use stereopsis_host::map::DisparityMap;
 use stereopsis_host::masked::MaskedPair;
-use stereopsis_host::obstacles::{ObstacleRecord, config_for, find, picture};
 use stereopsis_host::output::Staging;
 use stereopsis_host::pair::PairCheck;
 use stereopsis_host::rectify::{rectify, rectify_colours, with_rectified};
@@ -29,10 +28,7 @@ use stereopsis_host::rows::Rows;
 pub const FINISHED: &str = "finished.json";
 
 /// What is written only of raw images.
-const RECTIFIED: [&str; 3] = ["rectified_left.png", "rectified_right.png", "rectified.json"];
-
-/// What is written only where obstacles are asked for.
-const OBSTACLES: [&str; 2] = ["obstacles.json", "obstacles.png"];
+pub const RECTIFIED: [&str; 3] = ["rectified_left.png", "rectified_right.png", "rectified.json"];
 
 /// What is matched, and what its depths are.
 struct Scene {
@@ -44,19 +40,17 @@ struct Scene {
     check: Option<PairCheck>,
 }
 
-/// Matches a pair and writes its results, and `mark` where there is one; warnings begin with `label`.
+/// Matches a pair and writes its results, `mark` where there is one, and what `watch` sees in it; warnings
+/// begin with `label`.
 pub fn solve(
     args: &MatchArgs,
     mut pair: Pair,
     mark: Option<&str>,
     label: &str,
+    watch: Option<&mut Watch>,
 ) -> Result<(Summary, Option<RectifiedCameras>), Failure> {
     args.search.check(&args.method, pair.width, pair.height)?;
-    if args.obstacles && args.calib.is_empty() && args.focal_px.is_none() {
-        return Err(Failure::new(
-            "--obstacles: distances need a calibration; give --calib, or --focal-px and --baseline-mm",
-        ));
-    }
+    check_obstacles(args)?;
     let (scene, matched) = if args.rectify {
         raw(args, &mut pair)?
     } else {
@@ -77,9 +71,13 @@ pub fn solve(
         (Scene { left: pair.left, right: pair.right, scale, rectified: None, rows, check }, matched)
     };
 
-    let found = match (&scene.scale, args.obstacles) {
-        (Some(scale), true) => Some(obstacles(scale, &matched.outcome.map, &scene.left)?),
-        _ => None,
+    let found = match scene.scale.as_ref().zip(watch) {
+        Some((scale, watch)) => {
+            let map = &matched.outcome.map;
+            let (label, largest) = (label.trim_end_matches(": "), watch::largest(&matched.config));
+            Some(watch.look(label, scale, (map, map.height), largest, &scene.left, Some(&scene.right))?)
+        }
+        None => None,
     };
     let Matched { config, meter, balance, outcome } = matched;
     let scale = scene.scale.as_ref();
@@ -109,9 +107,8 @@ pub fn solve(
         staging.write(right, |out| png(out, &scene.right))?;
         staging.write(cameras, |out| json(out, rectified))?;
     }
-    if let Some((record, picture)) = &found {
-        staging.write(OBSTACLES[0], |out| json(out, record))?;
-        staging.write(OBSTACLES[1], |out| png(out, picture))?;
+    if let Some(found) = &found {
+        watch::write(&mut staging, OBSTACLES, found)?;
     }
     if let Some(mark) = mark {
         staging.write(FINISHED, |out| out.write_all(mark.as_bytes()))?;
@@ -135,15 +132,14 @@ pub fn solve(
     Ok((summary, scene.rectified))
 }
 
-/// The obstacles of a map, as a record and as a picture.
-fn obstacles(
-    scale: &DepthScale,
-    map: &DisparityMap,
-    left: &RgbImage,
-) -> Result<(ObstacleRecord, RgbImage), Failure> {
-    let config = config_for(map.width, map.height);
-    find(&config, scale, map, |frame| (ObstacleRecord::new(&config, frame), picture(&config, frame, left)))
-        .map_err(|e| Failure::new(format!("--obstacles: {e}")))
+/// Whether obstacles, if they are asked for, can be found.
+pub fn check_obstacles(args: &MatchArgs) -> Result<(), Failure> {
+    if args.watch.obstacles && args.calib.is_empty() && args.focal_px.is_none() {
+        return Err(Failure::new(
+            "--obstacles: distances need a calibration; give --calib, or --focal-px and --baseline-mm",
+        ));
+    }
+    Ok(())
 }
 
 /// Matches a raw pair: remap, census and matching in one loop over the rows.

@@ -1,13 +1,17 @@
-//! Obstacles from whole maps of disparity: cells, the ground's line and stixels, each in its plainest form.
+//! Obstacles from whole maps of disparity: cells, the line of the ground, stixels and sectors, each in its
+//! plainest form.
 //!
 //! * [`Scene`]: a map, its rig and its limits. [`find`]: what is in it.
 //! * `ground`: the line of the ground by counting cells and by least squares. `stixels`: the cheapest labels
-//!   of a column by trying all predecessors, and surfaces by flooding.
+//!   of a column by trying all predecessors, and surfaces by flooding. `sectors`: the nearest of each by
+//!   looking at all columns.
 
 mod ground;
+mod sectors;
 mod stixels;
 
 pub use ground::Line;
+pub use sectors::{Sector, sectors};
 pub use stixels::{Kind, Standing};
 
 use stereopsis::obstacles::{GroundSource, ObstacleConfig};
@@ -20,10 +24,14 @@ pub struct Scene<'a> {
     pub config: ObstacleConfig,
     /// Focal length, sixteenths of a px.
     pub focal_16ths: i128,
+    /// Column of the principal point, sixteenths of a px.
+    pub cx_16ths: i128,
     /// Row of the principal point, halves of a px.
     pub cy_halves: i128,
     /// Baseline, sixteenths of a mm.
     pub baseline_16ths: i128,
+    /// Focal length times baseline, mm times steps.
+    pub millimetre_steps: i128,
     /// Offset of the principal points, steps.
     pub offset: i128,
     /// Pixels in a row.

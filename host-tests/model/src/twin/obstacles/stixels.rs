@@ -226,8 +226,10 @@ pub fn stixels(scene: &Scene<'_>, cells: &[Option<i128>], ground: Option<Line>) 
 fn flooded(chosen: &[Option<Segment>], x: usize, same_surface: i128) -> usize {
     let connected = |a: &Option<Segment>, b: &Option<Segment>| match (a, b) {
         (Some(a), Some(b)) => {
+            let edges_apart = a.base.abs_diff(b.base);
             a.kind == b.kind
-                && (a.parallax - b.parallax).abs() <= same_surface
+                && ((a.parallax - b.parallax).abs() <= same_surface
+                    || a.kind == Kind::Drop && edges_apart <= 1)
                 && a.top <= b.base + 1
                 && b.top <= a.base + 1
         }

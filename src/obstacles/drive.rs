@@ -101,7 +101,7 @@ impl DriveRule {
     ///
     /// In this order: blind by the watchdog; stop for what is within the stopping distance; blind where the
     /// ground is not found, or more than an eighth of the corridor's columns do not see it for twice the
-    /// stopping distance or up to an obstacle within that; slow for what is within twice the stopping
+    /// stopping distance or up to an obstacle; slow for what is within twice the stopping
     /// distance or the time to contact; clear.
     pub fn decide(&mut self, frame: &ObstaclesView<'_>, speed_mm_s: u16) -> Verdict {
         let stopping_mm = self.stopping_mm(speed_mm_s);
@@ -144,7 +144,7 @@ struct Corridor {
     nearest: Option<u16>,
     /// Columns that the corridor reaches over at the needed depth, at least one where there is any.
     columns: usize,
-    /// Those of them that see the ground neither for the needed depth nor up to an obstacle within it.
+    /// Those of them that see the ground neither for the needed depth nor up to an obstacle.
     unseen: usize,
 }
 
@@ -165,7 +165,7 @@ impl Corridor {
             if inside(needed_mm) {
                 found.columns += 1;
                 let seen = setup.seen_mm(column, ground.as_ref()).is_some_and(|mm| mm >= needed_mm);
-                let ends_there = column.is_supported() && depth <= needed_mm;
+                let ends_there = column.is_supported() && (depth <= needed_mm || column.is_seen_up_to());
                 found.unseen += usize::from(!seen && !ends_there);
             }
         }

@@ -57,6 +57,11 @@ impl Column {
     pub(super) fn is_supported(&self) -> bool {
         self.surface > 0
     }
+
+    /// Whether the ground is seen up to its lower edge.
+    pub(super) fn is_seen_up_to(&self) -> bool {
+        u16::from(self.seen) <= u16::from(self.base) + 1 + u16::from(MOST_GAP)
+    }
 }
 
 /// What contradicting a label costs at most, at three standard deviations.

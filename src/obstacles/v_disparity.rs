@@ -10,8 +10,21 @@ pub(super) const BINS: usize = 32;
 /// Pairs of cells that the search draws: with three tenths of the cells on the ground, at least one pair of
 /// those is among them in 99 frames of 100.
 const DRAWS: usize = 64;
-/// Half the width of the band of the first fit, and of the second and last, steps of disparity.
-const BANDS: [i32; 2] = [32, 16];
+/// Half the width of the band of the last fit, steps of disparity.
+const BAND: i32 = 1 << FINEST;
+/// Exponent of it.
+const FINEST: u32 = 4;
+/// Half the width of the widest band in which a ground may be found, steps of disparity: 2 px.
+const WIDEST: i32 = 4 * BAND;
+/// Most that bins may be shifted to be narrow: to 2 px.
+const NARROW: u32 = 6;
+
+/// Half the widths of the bands of a fit, steps of disparity, each half of the one before: the score tells a
+/// line to a bin, and to a px where bins are narrow.
+fn bands(shift: u32) -> impl Iterator<Item = i32> {
+    let first = if shift > NARROW { shift.min(9) } else { 5 };
+    (FINEST..=first).rev().map(|exponent| 1 << exponent)
+}
 
 /// Cells of a frame with what a fit needs to know of them.
 #[derive(Clone, Copy, Debug)]
@@ -82,8 +95,8 @@ fn score(cells: &Cells<'_>, bins: &[u8], shift: u32, line: Drawn) -> u32 {
         if parallax < cells.farthest || steps < 0 {
             continue;
         }
-        let low = (steps - BANDS[1]).max(0) as usize >> shift;
-        let high = (steps as usize + BANDS[1] as usize) >> shift;
+        let low = (steps - BAND).max(0) as usize >> shift;
+        let high = (steps as usize + BAND as usize) >> shift;
         score += bins.get(low).map_or(0, |&n| u32::from(n));
         if high != low {
             score += bins.get(high).map_or(0, |&n| u32::from(n));
@@ -182,11 +195,14 @@ fn sums(cells: &Cells<'_>, line: &Ground, band: i32, origin: [i64; 2]) -> Sums {
     sums
 }
 
-/// Least squares over the cells within `band` of a line.
-fn refined(cells: &Cells<'_>, line: &Ground, band: i32, rig: &RigNumbers) -> Option<Ground> {
+/// Least squares over the cells within `band` of a line, of which there have to be `fewest`.
+fn refined(cells: &Cells<'_>, line: &Ground, band: i32, fewest: i64, rig: &RigNumbers) -> Option<Ground> {
     let middle = cells.halves(cells.rows / 2);
     let origin = [middle, i64::from(line.parallax(middle))];
     let s = sums(cells, line, band, origin);
+    if s.n < fewest {
+        return None;
+    }
     let along = s.ab - (s.a * s.b).checked_div(s.n)?;
     let spread = s.aa - (s.a * s.a).checked_div(s.n)?;
     let slope = (along << 17).checked_div(spread)?;
@@ -195,12 +211,12 @@ fn refined(cells: &Cells<'_>, line: &Ground, band: i32, rig: &RigNumbers) -> Opt
     Ground::from_line(level, slope, 1, rig)
 }
 
-/// The ground of a frame: the line of most cells of [`DRAWS`] that are drawn and the carried one, fitted
-/// twice by least squares.
+/// The ground of a frame: the line of most cells of [`DRAWS`] that are drawn and the carried one, fitted by
+/// least squares in bands that get narrower, down to half a px to each side, as long as at least 8 cells and
+/// a sixteenth of those with an answer are within, with their neighbours above and below.
 ///
-/// It is refused if fewer than 8 cells or a sixteenth of those with an answer are within half a px of it,
-/// with their neighbours above and below, or
-/// if these reach over less than an eighth of the rows. Its variance is four times that of the mean: cells
+/// It is refused if 2 px are too narrow for that, or if these cells reach over less than an eighth of the
+/// rows. Its variance is four times that of the mean: cells
 /// side by side share windows.
 pub(super) fn fit(
     cells: &Cells<'_>,
@@ -226,13 +242,16 @@ pub(super) fn fit(
         }
     }
     let (_, mut line) = best?;
-    for band in BANDS {
-        line = refined(cells, &line, band, rig)?;
-    }
-    let s = sums(cells, &line, BANDS[1], [0; 2]);
     let answered = cells.cells.iter().take(all).filter(|d| d.is_some()).count() as i64;
+    let fewest = (answered / 16).max(8);
+    let mut within = None;
+    for band in bands(shift) {
+        let Some(fitted) = refined(cells, &line, band, fewest, rig) else { break };
+        (line, within) = (fitted, Some(band));
+    }
+    let s = sums(cells, &line, within.filter(|&band| band <= WIDEST)?, [0; 2]);
     let reach = s.last_row - s.first_row?;
-    if s.n < (answered / 16).max(8) || reach < cells.span() || !line.is_within(source) {
+    if s.n < fewest || reach < cells.span() || !line.is_within(source) {
         return None;
     }
     let variance = 1 + (4 * s.squares).checked_div(s.n * s.n)?;

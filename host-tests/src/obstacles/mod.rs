@@ -47,6 +47,8 @@ pub struct Vehicle {
     pub drive: DriveConfig,
     /// Its speed, mm/s.
     pub speed_mm_s: u16,
+    /// Least height of an obstacle and least depth of a drop, mm.
+    pub least_mm: u16,
     /// Where its ground comes from.
     pub ground: GroundSource,
 }
@@ -54,8 +56,8 @@ pub struct Vehicle {
 impl Default for Vehicle {
     /// A small robot at half a metre a second.
     fn default() -> Self {
-        let ground = ObstacleConfig::default().ground;
-        Self { drive: DriveConfig::default(), speed_mm_s: 500, ground }
+        let ObstacleConfig { ground, obstacle_mm, .. } = ObstacleConfig::default();
+        Self { drive: DriveConfig::default(), speed_mm_s: 500, least_mm: obstacle_mm, ground }
     }
 }
 
@@ -145,7 +147,12 @@ impl ObstacleWatch {
     /// Starts the finder on frames like this one, unless it is; returns its limits.
     fn start_where_needed(&mut self, frame: &WatchedFrame<'_>) -> Result<ObstacleConfig, ObstacleError> {
         let map = frame.map;
-        let config = ObstacleConfig { ground: self.vehicle.ground, ..config_for(map.width, map.height) };
+        let config = ObstacleConfig {
+            ground: self.vehicle.ground,
+            obstacle_mm: self.vehicle.least_mm,
+            drop_mm: self.vehicle.least_mm,
+            ..config_for(map.width, map.height)
+        };
         let size = [map.width, map.height.min(MOST.1 * usize::from(config.cell_height))];
         let wanted = Started { scale: *frame.scale, size, largest: frame.largest, config };
         let serves = |now: &Started| {

@@ -33,9 +33,9 @@ pub struct Timeline(Vec<Moment>);
 
 impl Timeline {
     /// Header of the table.
-    const HEADER: &str = "frame,since_start,reason,ground_height_m,ground_pitch_deg,ground_sigma_px,nearest_m,\
-                          nearest_sigma_m,nearest_bearing_deg,decision,distance_m,contact_s,free_sectors,\
-                          blind_sectors\n";
+    const HEADER: &str = "frame,since_start,reason,ground_height_m,ground_pitch_deg,ground_sigma_px,\
+                          nearest_m,nearest_sigma_m,nearest_bearing_deg,decision,distance_m,contact_s,\
+                          free_sectors,blind_sectors\n";
 
     /// Adds a frame.
     pub fn push(&mut self, label: String, record: ObstacleRecord) {

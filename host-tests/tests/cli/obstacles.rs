@@ -1,5 +1,5 @@
-//! `--obstacles` of `match` and `replay`: what is found before a small robot, as a record and as a picture, in a
-//! frame and over time.
+//! `--obstacles` of `match` and `replay`: what is found before a small robot, as a record and as a picture,
+//! in a frame and over time.
 
 use super::results::json;
 use super::support::{Bench, encode, names, stereo, text};
@@ -222,6 +222,9 @@ fn bad_cameras_are_blind() {
     assert_eq!((&covered["decision"], &covered["reason"]), (&"blind".into(), &"Camera".into()));
     let swapped = decided(&right, &left, &["--force"]);
     assert_eq!((&swapped["decision"], &swapped["reason"]), (&"blind".into(), &"Swapped".into()));
+    // What is lower than what counts is ground.
+    let low = decided(&left, &right, &["--least-height", "0.25"]);
+    assert_eq!(low["decision"], "clear", "{low}");
     // The pose in place of a search.
     let given =
         decided(&left, &right, &["--camera-height", "0.3", "--camera-pitch", "8.6", "--speed", "1.3"]);
@@ -237,6 +240,7 @@ fn options_of_obstacles_that_do_not_fit_are_named() {
     bench.refused(&with(&["--speed", "1"]), "--obstacles");
     bench.refused(&with(&["--obstacles", "--speed", "66"]), "a speed from 0 to 65 is needed");
     bench.refused(&with(&["--obstacles", "--corridor", "-1"]), "a length from 0.01 to 65 is needed");
+    bench.refused(&with(&["--obstacles", "--least-height", "0"]), "a length from 0.01 to 65 is needed");
     bench.refused(&with(&["--obstacles", "--camera-height", "0.3"]), "--camera-pitch");
     bench.refused(&with(&["--obstacles", "--camera-pitch", "29", "--camera-height", "1"]), "from -28 to 28");
     bench.refused(&with(&["--obstacles", "--settings", "fast,block"]), "cannot be used with");

@@ -80,8 +80,8 @@ fn twin(map: &Map, config: ObstacleConfig, carried: &mut (Option<Line>, u32)) ->
     find(&scene(map, config), carried)
 }
 
-/// Compares the sectors and the ranges of a scan; bearings are rounded by other arithmetic, so that a rig with
-/// one within a thousandth of a half is left out.
+/// Compares the sectors and the ranges of a scan; bearings are rounded by other arithmetic, so that a rig
+/// with one within a thousandth of a half is left out.
 fn compare_sectors(scene: &Scene<'_>, view: &ObstaclesView<'_>, found: &Found) -> Result<(), TestCaseError> {
     let is_tie = |bearing: f64| (bearing.rem_euclid(1.0) - 0.5).abs() < 1e-3;
     let last = view.columns() * usize::from(scene.config.cell_width) - 1;
@@ -186,6 +186,7 @@ proptest! {
         absent in prop::bool::weighted(0.2),
         headroom_mm in prop_oneof![Just(u16::MAX), 100u16..2000],
         sectors in 1u8..33,
+        searched in prop_oneof![Just(32u16), Just(64), Just(160)],
     ) {
         let mut random = Random::new(seed);
         let (cx, cy) = (f32::from(width) / 2.0 - 0.5, f32::from(height) / 2.0 - 0.5);
@@ -207,6 +208,7 @@ proptest! {
         let (mut carried, mut finder) = ((None, 0), None);
         for _ in 0..3 {
             let mut map = map(&mut random, rig, [width, height]);
+            map.largest = Disparity::from_pixels(searched);
             if random.byte() & 1 == 1 {
                 map.confidences = map.disparities.iter().map(|_| random.byte()).collect();
             }

@@ -5,5 +5,6 @@ mod calibration;
 mod dense;
 mod features;
 mod focus;
+mod obstacles;
 mod odometry;
 mod two_view;

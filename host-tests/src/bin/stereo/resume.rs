@@ -1,5 +1,5 @@
-//! What obstacles need of a pair that is matched already: its map from its files, so that what is carried from
-//! frame to frame is what it would be had all been matched in one run.
+//! What obstacles need of a pair that is matched already: its map from its files, so that what is carried
+//! from frame to frame is what it would be had all been matched in one run.
 
 use crate::failure::Failure;
 use crate::match_args::MatchArgs;

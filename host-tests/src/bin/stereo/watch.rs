@@ -24,11 +24,15 @@ pub struct ObstacleArgs {
     #[arg(long)]
     pub obstacles: bool,
     /// Speed of the vehicle, m/s, for the decision and the time to contact: 0.5 where none is given
-    #[arg(long, value_name = "M/S", requires = "obstacles", value_parser = speed, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M/S", requires = "obstacles", value_parser = speed,
+        allow_negative_numbers = true)]
     pub speed: Option<u16>,
     /// Width of the corridor that it drives through, m: 0.4 where none is given
     #[arg(long, value_name = "M", requires = "obstacles", value_parser = long, allow_negative_numbers = true)]
     pub corridor: Option<u16>,
+    /// Least height of an obstacle and least depth of a drop, m: 0.05 where none is given
+    #[arg(long, value_name = "M", requires = "obstacles", value_parser = long, allow_negative_numbers = true)]
+    pub least_height: Option<u16>,
     /// Height of the cameras above the ground, m, as an inertial sensor and a ruler tell; searched where none
     /// is given
     #[arg(long, value_name = "M", requires_all = ["obstacles", "camera_pitch"], value_parser = long,
@@ -79,6 +83,7 @@ impl ObstacleArgs {
         let vehicle = Vehicle {
             drive,
             speed_mm_s: self.speed.unwrap_or(default.speed_mm_s),
+            least_mm: self.least_height.unwrap_or(default.least_mm),
             ground: ground.unwrap_or(default.ground),
         };
         let watch = || Watch { watch: ObstacleWatch::new(vehicle), timeline: Timeline::default() };
@@ -87,8 +92,8 @@ impl ObstacleArgs {
 }
 
 impl Watch {
-    /// Finds what is in the next frame, of which so many rows came. Where there is no right image, the cameras
-    /// are not judged.
+    /// Finds what is in the next frame, of which so many rows came. Where there is no right image, the
+    /// cameras are not judged.
     pub fn look(
         &mut self,
         label: &str,

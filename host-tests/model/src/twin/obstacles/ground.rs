@@ -45,14 +45,20 @@ impl Line {
     }
 }
 
-/// How many cells of each row have disparities in the bins of half a px above and below the line, at most
-/// 255 of a bin.
-fn score(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line) -> usize {
-    let [columns, rows] = scene.size();
+/// Width of a bin of the v-disparity, steps.
+fn bin(scene: &Scene<'_>) -> i128 {
     let mut width = 1;
     while i128::from(scene.largest) / width >= 32 {
         width *= 2;
     }
+    width
+}
+
+/// How many cells of each row have disparities in the bins of half a px above and below the line, at most
+/// 255 of a bin.
+fn score(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line) -> usize {
+    let [columns, rows] = scene.size();
+    let width = bin(scene);
     let mut score = 0;
     for row in 0..rows {
         let parallax = line.at(scene.halves(row));
@@ -91,13 +97,13 @@ fn near(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line, band: i128) -> V
 }
 
 /// Least squares, about the middle row and the line's parallax there.
-fn refined(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line, band: i128) -> Option<Line> {
+fn refined(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line, band: i128, fewest: i128) -> Option<Line> {
     let middle = scene.halves(scene.size()[1] / 2);
     let there = line.at(middle);
     let near = near(scene, cells, line, band);
     let points: Vec<_> = near.iter().map(|(halves, p)| (halves - middle, p - there)).collect();
     let n = points.len() as i128;
-    if n == 0 {
+    if n < fewest {
         return None;
     }
     let sum = |of: fn(&(i128, i128)) -> i128| points.iter().map(of).sum::<i128>();
@@ -147,14 +153,21 @@ pub fn fit(scene: &Scene<'_>, cells: &[Option<i128>], carried: Option<Line>) -> 
         }
     }
     let line = best?.1;
-    let line = refined(scene, cells, &line, 32)?;
-    let line = refined(scene, cells, &line, 16)?;
-    let inliers = near(scene, cells, &line, 16);
+    // From a bin that is wider than 2 px, or from one px, halved down to half a px.
+    let mut band = if bin(scene) > 64 { bin(scene).min(512) } else { 32 };
+    let (mut line, mut within) = (line, None);
+    let answered = cells.iter().flatten().count() as i128;
+    let fewest = (answered / 16).max(8);
+    while band >= 16 {
+        let Some(fitted) = refined(scene, cells, &line, band, fewest) else { break };
+        (line, within) = (fitted, Some(band));
+        band /= 2;
+    }
+    let inliers = near(scene, cells, &line, within.filter(|band| *band <= 64)?);
     let (top, bottom) = (inliers.first()?.0, inliers.last()?.0);
     let reach = (bottom - top) / (2 * i128::from(scene.config.cell_height));
-    let answered = cells.iter().flatten().count();
     let n = inliers.len() as i128;
-    let enough = n >= (answered as i128 / 16).max(8) && reach >= (rows as i128 / 8).max(2);
+    let enough = n >= fewest && reach >= (rows as i128 / 8).max(2);
     let squares: i128 = inliers.iter().map(|(halves, p)| (p - line.at(*halves)).pow(2)).sum();
     let variance = (1 + 4 * squares / (n * n)).min(1 << 20);
     (enough && line.is_allowed(scene)).then_some(Line { variance, ..line })

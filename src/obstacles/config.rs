@@ -118,7 +118,7 @@ impl Default for ObstacleConfig {
     /// Cells of 4 x 5 px, a deviation of 0.15 px as all methods have it, a ground 0.1 m to 3 m below a camera
     /// that is pitched by at most 27 degrees, obstacles and drops of 5 cm, and 16 sectors.
     ///
-    /// The least area is three matching windows of 9 x 9 px: a wrong answer spreads over one window, and the
+    /// The least area is four matching windows of 9 x 9 px: a wrong answer spreads over one window, and the
     /// next one agrees with it within one px by chance in one case of sixteen, with 32 disparities. A tenth
     /// of the cells has to have answers, and at most a tenth of the rows may be lost.
     fn default() -> Self {
@@ -131,7 +131,7 @@ impl Default for ObstacleConfig {
             obstacle_mm: 50,
             drop_mm: 50,
             headroom_mm: u16::MAX,
-            min_pixels: 243,
+            min_pixels: 324,
             sectors: 16,
             least_answered: 10,
             most_lost: 10,

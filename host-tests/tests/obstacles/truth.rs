@@ -133,7 +133,8 @@ fn scenes<M: Method>(frames: usize) -> String {
             let [clear, slow, stop, blind] = tally.decisions;
             let _ = writeln!(
                 lines,
-                "| `{}` | {scene:?} | {noise} | {} | {} | {:.1} % | {:.2} | {clear} | {slow} | {stop} | {blind} |",
+                "| `{}` | {scene:?} | {noise} | {} | {} | {:.1} % | {:.2} | {clear} | {slow} | {stop} | \
+                 {blind} |",
                 M::NAME,
                 tally.frames,
                 tally.alarms,
@@ -155,6 +156,9 @@ fn scenes<M: Method>(frames: usize) -> String {
             );
             assert!(!is_empty || clear == tally.frames, "{} {scene:?}: {:?}", M::NAME, tally.decisions);
             assert_eq!(tally.tilts.len(), tally.frames, "{} {scene:?}: no ground", M::NAME);
+            // Of the table and before the wall, the ground is seen over 35 rows only.
+            let is_short = matches!(scene, RobotScene::Table | RobotScene::WhiteWall);
+            assert!(is_short || tally.within() == tally.frames, "{} {scene:?}: a ground is off", M::NAME);
         }
     }
     lines
@@ -172,9 +176,13 @@ fn boxes(mm: u16, noise_grey: f64, frames: usize) -> [usize; 4] {
         for n in 0..frames {
             let (left, right) = frame(&pictures, noise_grey, n);
             let view = cameras.frame(&left, &right).finder.as_mut_view();
-            let is_box = |depth: u16| (f64::from(depth) / depth_mm - 1.0).abs() < 0.2;
-            let boxed = (0..view.sectors()).map(|i| view.sector(i));
-            let boxed = boxed.filter(|s| s.state == SectorState::Obstacle && is_box(s.depth_mm));
+            // Within a window of its bearing, and a fifth of its distance.
+            let most_mrad = 1000.0 * (100.0 / depth_mm + REACH as f64 / 130.0);
+            let boxed = (0..view.sectors()).map(|i| view.sector(i)).filter(|s| {
+                s.state == SectorState::Obstacle
+                    && f64::from(s.bearing_mrad.abs()) <= most_mrad
+                    && (f64::from(s.depth_mm) / depth_mm - 1.0).abs() < 0.2
+            });
             let off = boxed.map(|s| ((f64::from(s.depth_mm) - depth_mm) / f64::from(s.sigma_mm)).abs());
             let off: Vec<_> = off.collect();
             all += 1;
@@ -186,8 +194,8 @@ fn boxes(mm: u16, noise_grey: f64, frames: usize) -> [usize; 4] {
     [all, found, told, within]
 }
 
-/// Distances of boxes, mm.
-const DISTANCES: [u16; 12] = [400, 600, 800, 1000, 1200, 1300, 1400, 1500, 1600, 1800, 2000, 2400];
+/// Distances of boxes, mm: the search ends at 0.42 m.
+const DISTANCES: [u16; 12] = [500, 600, 700, 800, 900, 1000, 1100, 1200, 1300, 1500, 1800, 2400];
 /// The distance at which the deviation is a tenth of the box's side: `Z^2 / (f b) sigma = 0.02 m`, mm.
 const TENTH_MM: u16 = 1310;
 
@@ -208,16 +216,16 @@ fn distances(frames: usize) -> String {
                 percent(within, told),
             );
             println!("{mm} {noise}: {all} {found} {told} {within}");
-            assert!(
-                mm > TENTH_MM || found == all && 100 * within >= 95 * told,
-                "{mm} mm: {found} {within} of {told}"
-            );
+            // With noise two of a hundred may be missed at the last distance.
+            let fewest = if noise > 0.0 { all - all / 50 } else { all };
+            let is_good = found >= fewest && 100 * within >= 95 * told;
+            assert!(mm > TENTH_MM || is_good, "{mm} mm: {found}, {within} of {told}");
         }
     }
     lines
 }
 
-/// A camera that leans to the side, without noise.
+/// A camera that leans to the side, with noise and without.
 fn rolls() -> String {
     let mut lines = String::new();
     for roll_deg in [0.0_f64, 0.5, 1.0, 2.0, 3.0, 5.0] {
@@ -248,14 +256,26 @@ fn rolls() -> String {
 #[test]
 #[ignore = "takes minutes"]
 fn tables_are_current() {
-    let of_scenes = "| method | scene | noise | frames | false alarms | ground within 0.5 degrees | at most off | clear \
-                     | slow | stop | blind |\n| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | \
-                     ---: |\n";
-    let of_boxes = "| distance, m | noise | deviation, mm | frames | found | within 2 deviations |\n| ---: | ---: | ---: \
-                    | ---: | ---: | ---: |\n";
-    let of_rolls = "| roll, degrees | corridor: ground off | false alarms | clear | street: ground off | false alarms | \
-                    clear | sky: ground off | false alarms | clear |\n| ---: | ---: | ---: | ---: | ---: | ---: | ---: \
-                    | ---: | ---: | ---: |\n";
+    let head = |names: &[&str]| {
+        let rule = " ---: |".repeat(names.len());
+        format!("| {} |\n|{rule}\n", names.join(" | "))
+    };
+    let of_boxes = head(&["distance, m", "noise", "deviation, mm", "frames", "found", "within 2 deviations"]);
+    let ground = ["false alarms", "ground within 0.5 degrees", "at most off, degrees"];
+    let decisions = ["clear", "slow", "stop", "blind"];
+    let of_scenes = head(&[&["method", "scene", "noise", "frames"][..], &ground, &decisions].concat());
+    let of_rolls = head(&[
+        "roll, degrees",
+        "corridor: ground off",
+        "false alarms",
+        "clear",
+        "street: ground off",
+        "false alarms",
+        "clear",
+        "sky: ground off",
+        "false alarms",
+        "clear",
+    ]);
     let made = format!(
         "\n{of_boxes}{}\n{of_scenes}{}{}{}\n{of_rolls}{}\n",
         distances(10),

@@ -1,23 +1,21 @@
 //! `stereo replay`: recorded lines through the code that runs on the device.
 
 mod summary;
+mod watching;
 
 use crate::failure::Failure;
 use crate::input;
 use crate::look::refuse_swapped;
 use crate::place::{json, png};
 use crate::progress::Progress;
-use crate::scale::{of_files, of_numbers};
 use crate::shared::{BalanceArgs, MethodArgs, RangeArgs, Unit, filter, length, method, noise, print, rate};
 use crate::watch::{self, OVER_TIME, ObstacleArgs, Watch};
 use clap::{Args, ValueEnum};
-use image::{DynamicImage, GrayImage, RgbImage};
 use std::fmt::Display;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use stereopsis::depth::DepthScale;
-use stereopsis::geometry::camera::ImageSize;
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{Config, Filter};
 use stereopsis_host::colour::flags_raw;
@@ -109,34 +107,13 @@ pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
     let header = recording.header();
     let seen = if args.watch.obstacles { Seen::with_pictures() } else { Seen::default() };
     let config = config(args, header)?;
-    let watch = watch(args, header)?;
+    let watch = watching::watch(args, header)?;
     let (pair, records) = first_pair(recording);
     if let Some([left, right]) = pair.filter(|_| !args.force) {
         refuse_swapped([&left, &right])?;
     }
     let ahead = Ahead::new(records, header, args.balance.is_for(args.method), &seen);
     play(args, config, &mut Playback::new(ahead, header, args.timing == Timing::Recorded), &seen, watch)
-}
-
-/// A watch and its scale, where obstacles are asked for.
-fn watch(args: &ReplayArgs, header: Header) -> Result<Option<(Watch, DepthScale)>, Failure> {
-    let Some(watch) = args.watch.watch() else { return Ok(None) };
-    let size = ImageSize { width: header.width, height: header.height };
-    let scale = match (args.focal_px.zip(args.baseline_mm), args.calib.len()) {
-        (Some(rig), _) => of_numbers(rig, size)?,
-        (None, 0) => {
-            return Err(Failure::new(
-                "--obstacles: distances need a calibration; give --calib, or --focal-px and --baseline-mm",
-            ));
-        }
-        (None, 1 | 2) => of_files(&args.calib, args.unit, &args.from, size)?,
-        _ => {
-            return Err(Failure::new(
-                "--calib: is given more than twice; a file of both cameras or one of each is needed",
-            ));
-        }
-    };
-    Ok(Some((watch, scale)))
 }
 
 /// A folder's pictures, with those of each side in a folder.
@@ -216,7 +193,7 @@ fn play(
         }
         if let Some((watch, scale)) = watch.as_mut().filter(|_| written.is_ok()) {
             let pictures = frame.start.and_then(|start| seen.take_pictures(start));
-            written = look(watch, scale, &config, (number, &frame), pictures).and_then(|found| {
+            written = watching::look(watch, scale, &config, (number, &frame), pictures).and_then(|found| {
                 let names = obstacles.each_ref().map(String::as_str);
                 Ok(watch::write(&mut staging, names, &found)?)
             });
@@ -256,26 +233,6 @@ fn play(
     staging.commit(&stale.iter().map(String::as_str).chain(OVER_TIME).collect::<Vec<_>>())?;
     let decisions = watch.map(|(watch, _)| format!("obstacles: {}\n", watch.timeline.line()));
     print(&(decisions.unwrap_or_default() + &summary.figures(&args.out)))
-}
-
-/// What a watch sees in a frame that was played; a black image where it did not begin.
-fn look(
-    watch: &mut Watch,
-    scale: &DepthScale,
-    config: &Config,
-    (number, frame): (usize, &GuardedFrame),
-    pictures: Option<[GrayImage; 2]>,
-) -> Result<watch::Seen, Failure> {
-    let (label, size) = (format!("{number:06}"), [config.width, config.height].map(u32::from));
-    let came = (&frame.map, usize::from(frame.rows));
-    let pictures = pictures.map(|both| both.map(|picture| DynamicImage::ImageLuma8(picture).into_rgb8()));
-    match &pictures {
-        Some([left, right]) => watch.look(&label, scale, came, watch::largest(config), left, Some(right)),
-        None => {
-            let black = RgbImage::new(size[0], size[1]);
-            watch.look(&label, scale, came, watch::largest(config), &black, None)
-        }
-    }
 }
 
 /// The endings of a frame's files.

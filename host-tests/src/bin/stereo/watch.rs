@@ -103,7 +103,7 @@ impl Watch {
         left: &RgbImage,
         right: Option<&RgbImage>,
     ) -> Result<Seen, Failure> {
-        let grey = right.map(|right| [left, right].map(|picture| imageops::grayscale(picture)));
+        let grey = right.map(|right| [left, right].map(imageops::grayscale));
         let pictures = grey.as_ref().map(|grey| grey.each_ref());
         let frame = WatchedFrame { scale, map, rows, largest, pictures };
         let (record, picture) =

@@ -141,13 +141,6 @@ fn scenes<M: Method>(frames: usize) -> String {
                 100.0 * tally.within() as f64 / tally.frames as f64,
                 tally.most_tilt(),
             );
-            println!(
-                "{scene:?} {noise}: {} {} {:?} {}",
-                tally.alarms,
-                tally.within(),
-                tally.decisions,
-                tally.most_tilt()
-            );
             // The bounds are those of `block`; what other methods do is told.
             if M::NAME != Block::NAME {
                 continue;
@@ -219,7 +212,6 @@ fn distances(frames: usize) -> String {
                 percent(found, all),
                 percent(within, told),
             );
-            println!("{mm} {noise}: {all} {found} {told} {within}");
             // With noise two of a hundred may be missed at the last distance.
             let fewest = if noise > 0.0 { all - all / 50 } else { all };
             let is_good = found >= fewest && 100 * within >= 95 * told;

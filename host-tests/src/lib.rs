@@ -2,8 +2,8 @@
 //!
 //! The harness, the program `stereo` and the tests are one package: cargo hands a program's path to the tests
 //! of its own package only, and the tests of the commands run the program. Below it stands
-//! `stereopsis_model`, the twins and scenes, which is built for the emulated processors too; `xtask` is a
-//! package beside it.
+//! `stereopsis_model`, the twins and scenes, which is built for the emulated processors too, and
+//! `stereopsis_rig`, calibrations and plans, which is in the live page too; `xtask` is a package beside it.
 //!
 //! In running order:
 //!
@@ -60,7 +60,6 @@ pub mod odometry;
 pub mod output;
 pub mod pair;
 pub mod pfm;
-pub mod plan;
 pub mod ply;
 pub mod real;
 pub mod recording;
@@ -74,3 +73,4 @@ pub mod views;
 pub mod winners;
 
 pub use stereopsis_model::{interpolate, scene, twin};
+pub use stereopsis_rig::plan;

@@ -11,6 +11,8 @@
 //! | the live page's module | [`MODULE_BYTES`] |
 //! | anything that comes through a pipe | [`PIPE_BYTES`] too |
 
+pub use stereopsis_rig::limits::{CALIBRATION_BYTES, DEPTH};
+
 use image::{DynamicImage, ImageReader, ImageResult, Limits};
 use std::fs::{self, File};
 use std::io::{self, Cursor, Read};
@@ -22,10 +24,6 @@ pub const IMAGE_SIDE: u16 = 4096;
 pub const IMAGE_BYTES: u64 = 24 * (IMAGE_SIDE as u64).pow(2);
 /// The most that a decoder of images may allocate: the largest image, RGBA with 16 bits, twice.
 pub const DECODER_BYTES: u64 = 16 * (IMAGE_SIDE as u64).pow(2);
-/// The longest calibration file.
-pub const CALIBRATION_BYTES: u64 = 1 << 20;
-/// How deep a calibration file's elements may be nested.
-pub const DEPTH: usize = 64;
 /// The longest table.
 pub const TABLE_BYTES: u64 = 64 << 20;
 /// The most matches of two images.

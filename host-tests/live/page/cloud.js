@@ -1,20 +1,47 @@
-// The points of a result, turned and drawn on the plain canvas: no graphics processor is needed.
+// The points of a result, drawn and turned by the library OGL.
 
 const MOST_POINTS = 400000;
+// A point is as large as a pixel of the picture is where it lies, and no smaller than one on the screen.
+const POINT_VERTEX = `
+attribute vec3 position;
+attribute vec4 colour;
+uniform mat4 modelViewMatrix;
+uniform mat4 projectionMatrix;
+uniform float size;
+varying vec3 tint;
+void main() {
+  tint = colour.rgb;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  gl_PointSize = clamp(size * -position.z / gl_Position.w, 1.0, 12.0);
+}`;
+const POINT_FRAGMENT = `
+precision mediump float;
+varying vec3 tint;
+void main() {
+  gl_FragColor = vec4(tint, 1.0);
+}`;
 
 class Cloud {
-  constructor() {
+  // Turns as hands on an element ask it to.
+  constructor(element) {
+    this.element = element;
     this.forget();
     this.reset();
   }
 
+  // It is seen again from where the camera stood, a little from the side.
   reset() {
-    [this.yaw, this.pitch, this.zoom] = [0.25, 0.2, 1];
+    this.isPlaced = false;
   }
 
   // The points are no longer those of the result.
   forget() {
     [this.points, this.isTaken] = [null, false];
+  }
+
+  // Whether hands turn it.
+  set isOn(isOn) {
+    if (this.orbit) this.orbit.enabled = isOn;
   }
 
   // Takes the points of a result, once: where each pixel with a depth lies, m, and its colour. The nearest
@@ -37,59 +64,86 @@ class Cloud {
     const [near, far] = [0.02, 0.98].map((share) => sorted[Math.floor(share * (sorted.length - 1))] / 1000);
     const places = new Float32Array(3 * found.length);
     const focal = rig.focal_px / ratio;
-    const [cx, cy] = [(width - 1) / 2, (height - 1) / 2];
+    // Where nothing says where the axis is, it is in the middle.
+    const [cx, cy] = rig.centre_px?.map((at) => at / ratio) ?? [(width - 1) / 2, (height - 1) / 2];
     found.forEach((pixel, i) => {
       const z = depth[pixel] / 1000;
       const [x, y] = [pixel % width, Math.floor(pixel / width)];
-      places[3 * i] = ((x - cx) * z) / focal;
-      places[3 * i + 1] = ((y - cy) * z) / focal;
-      places[3 * i + 2] = z;
+      // The library looks along -Z, and its Y is up.
+      places.set([((x - cx) * z) / focal, ((cy - y) * z) / focal, -z], 3 * i);
     });
-    this.points = { places, colours: Uint32Array.from(found, (pixel) => colours[pixel]) };
-    // It is turned about the middle of what is seen, and looked at from where the camera stood.
+    this.points = { places, colours: Uint32Array.from(found, (pixel) => colours[pixel]), focal, step };
     this.centre = (near + far) / 2;
-    this.focal = focal;
-    this.size = Math.max(2, step + 1);
   }
 
-  // Draws all points, the nearer ones before the others; how many.
-  draw(words, width, height) {
-    words.fill(BLACK);
+  // The library's objects, made when they are needed first; nothing where the browser has no WebGL.
+  begin() {
+    if (this.renderer) return true;
+    const canvas = document.createElement("canvas");
+    if (!(canvas.getContext("webgl2") ?? canvas.getContext("webgl"))) return false;
+    canvas.addEventListener("webglcontextlost", () => (this.renderer = null));
+    this.orbit?.remove();
+    this.renderer = new OGL.Renderer({ canvas });
+    const { gl } = this.renderer;
+    gl.clearColor(0, 0, 0, 1);
+    this.camera = new OGL.Camera(gl);
+    this.orbit = new OGL.Orbit(this.camera, { element: this.element, target: new OGL.Vec3(), ease: 1,
+      inertia: 0, rotateSpeed: 0.5, panSpeed: 1 });
+    const uniforms = { size: { value: 1 } };
+    const program = new OGL.Program(gl, { vertex: POINT_VERTEX, fragment: POINT_FRAGMENT, uniforms });
+    this.mesh = new OGL.Mesh(gl, { mode: gl.POINTS, geometry: new OGL.Geometry(gl), program,
+      frustumCulled: false });
+    [this.drawn, this.isPlaced] = [null, false];
+    return true;
+  }
+
+  // Draws all points into a context of the element; how many, or nothing without WebGL.
+  draw(context) {
+    const { width, height } = context.canvas;
+    context.fillStyle = "black";
+    context.fillRect(0, 0, width, height);
     if (!this.points) return 0;
-    const depths = new Float32Array(words.length).fill(Infinity);
-    const { places, colours } = this.points;
-    const { centre, focal, size } = this;
-    const [sinYaw, cosYaw] = [Math.sin(this.yaw), Math.cos(this.yaw)];
-    const [sinPitch, cosPitch] = [Math.sin(this.pitch), Math.cos(this.pitch)];
-    const away = centre / this.zoom;
-    for (let i = 0, p = 0; i < colours.length; i += 1, p += 3) {
-      const z0 = places[p + 2] - centre;
-      const x = places[p] * cosYaw + z0 * sinYaw;
-      const z1 = z0 * cosYaw - places[p] * sinYaw;
-      const y = places[p + 1] * cosPitch - z1 * sinPitch;
-      const z = z1 * cosPitch + places[p + 1] * sinPitch + away;
-      if (z <= 0.01) continue;
-      const left = Math.round((focal * x) / z + width / 2);
-      const top = Math.round((focal * y) / z + height / 2);
-      for (let v = Math.max(top, 0); v < Math.min(top + size, height); v += 1) {
-        for (let u = Math.max(left, 0); u < Math.min(left + size, width); u += 1) {
-          const at = v * width + u;
-          if (z < depths[at]) {
-            depths[at] = z;
-            words[at] = colours[i];
-          }
-        }
-      }
+    if (!this.begin()) return null;
+    const { places, colours, focal, step } = this.points;
+    const { renderer, camera, mesh } = this;
+    const { gl } = renderer;
+    if (this.drawn !== this.points) {
+      mesh.geometry.remove();
+      const bytes = new Uint8Array(colours.buffer);
+      mesh.geometry = new OGL.Geometry(gl, { position: { size: 3, data: places },
+        colour: { size: 4, data: bytes, type: gl.UNSIGNED_BYTE, normalized: true } });
+      mesh.program.uniforms.size.value = 1.5 * step;
+      this.drawn = this.points;
     }
+    if (!this.isPlaced) this.place();
+    if (gl.canvas.width !== width || gl.canvas.height !== height) renderer.setSize(width, height);
+    const fov = (360 / Math.PI) * Math.atan(height / 2 / focal);
+    camera.perspective({ fov, aspect: width / height, near: 0.01, far: 200 });
+    this.orbit.update();
+    renderer.render({ scene: mesh, camera });
+    context.drawImage(gl.canvas, 0, 0);
     return colours.length;
   }
 
-  turn(yaw, pitch) {
-    this.yaw += yaw;
-    this.pitch = Math.min(Math.max(this.pitch + pitch, -1.5), 1.5);
+  // Looks at the middle of what is seen, from where the camera stood and a little from the side.
+  place() {
+    this.isPlaced = true;
+    this.orbit.target.set(0, 0, -this.centre);
+    this.camera.position.set(0, 0, 0);
+    this.move([-0.25, 0.2], 1);
   }
 
-  comeNearer(factor) {
-    this.zoom = Math.min(Math.max(this.zoom * factor, 0.1), 20);
+  // Turns by angles, rad, and comes so many times nearer.
+  move([yaw, pitch], nearer) {
+    if (!this.renderer) return;
+    const { camera, orbit } = this;
+    const from = camera.position.clone().sub(orbit.target);
+    const distance = from.len();
+    const across = Math.atan2(from.x, from.z) + yaw;
+    const up = Math.min(Math.max(Math.asin(from.y / distance) + pitch, -1.5), 1.5);
+    const away = Math.min(Math.max(distance / nearer, 0.02), 150);
+    from.set(Math.sin(across) * Math.cos(up), Math.sin(up), Math.cos(across) * Math.cos(up));
+    camera.position.copy(orbit.target).add(from.scale(away));
+    orbit.forcePosition();
   }
 }

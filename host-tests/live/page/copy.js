@@ -17,9 +17,11 @@ function others(settings, preset) {
 function asCommand({ settings, preset, noise, pair, rig, hasDepth }) {
   const value = (name) => settings[at(name)];
   const files = pair.isOne ? `--side-by-side ${pair.isMoving ? "frame.png" : quoted(pair.left.name)}`
-    : `--left ${quoted(pair.left.name)} --right ${quoted(pair.right.name)}`;
-  const cameras = hasDepth && rig.offset_px === 0
+    : pair.isMoving ? "--left left.png --right right.png"
+      : `--left ${quoted(pair.left.name)} --right ${quoted(pair.right.name)}`;
+  const typed = hasDepth && rig.offset_px === 0
     ? ` --focal-px ${rig.focal_px} --baseline-mm ${rig.baseline_mm}` : "";
+  const cameras = calibrationWords() ?? typed;
   const words = [
     `stereo match ${files}`,
     `--disparities ${value("disparities")} --min-disparity ${value("min_disparity")}`,
@@ -27,10 +29,13 @@ function asCommand({ settings, preset, noise, pair, rig, hasDepth }) {
     `--min-confidence ${value("min_confidence")} --balance ${isOff("balance") ? "none" : "auto"}`,
     `${cameras.trim()}${cameras ? " " : ""}--out depth`,
   ];
-  const notes = pair.isMoving ? ["# frame.png is a frame of it"] : [];
+  const frames = pair.isOne ? "# frame.png is a frame of it" : "# left.png, right.png are frames of them";
+  const notes = pair.isMoving ? [frames] : [];
   const other = others(settings, preset).map((i) => CONTROLS[i].name);
   if (other.length > 0) notes.push(`# ${other.join(", ")}: no options of match; copy as Rust or C`);
-  if (hasDepth && rig.offset_px !== 0) notes.push("# principal points apart: give --calib FILE for depths");
+  if (hasDepth && rig.offset_px !== 0 && !calibrationWords()) {
+    notes.push("# principal points apart: give --calib FILE for depths");
+  }
   return [words.join(" \\\n  "), ...notes].join("\n");
 }
 

@@ -41,14 +41,26 @@ class Core {
 
   // Makes room for pictures of a size, and lends views of it. Throws a line where there is none.
   begin(width, height) {
-    const first = this.exports.begin(width, height);
-    if (first === 0) throw new Error(`${width} x ${height}: there is no memory for pictures of this size.`);
-    const pixels = width * height;
+    this.first = this.exports.begin(width, height);
+    this.planes = { width, height };
+    this.buffer = null;
+    if (this.first === 0) {
+      this.planes = null;
+      throw new Error(`${width} x ${height}: there is no memory for pictures of this size.`);
+    }
+    this.renew();
+    return this.planes;
+  }
+
+  // Lends the views anew where the memory has grown, which takes the earlier ones away.
+  renew() {
+    const { buffer } = this.exports.memory;
+    if (!this.planes || this.buffer === buffer) return;
+    this.buffer = buffer;
+    const pixels = this.planes.width * this.planes.height;
     const plane = 4 * Math.ceil(pixels / 4);
-    const view = (Type, place) => new Type(this.exports.memory.buffer, first + place * plane, pixels);
-    this.planes = {
-      width,
-      height,
+    const view = (Type, place) => new Type(buffer, this.first + place * plane, pixels);
+    Object.assign(this.planes, {
       left: view(Uint8Array, 0),
       right: view(Uint8Array, 1),
       flags: view(Uint8Array, 2),
@@ -56,19 +68,68 @@ class Core {
       disparity: view(Uint16Array, 4),
       depth: view(Uint16Array, 6),
       sigma: view(Float32Array, 8),
-    };
-    return this.planes;
+      leftRaw: view(Uint8Array, 12),
+      rightRaw: view(Uint8Array, 13),
+    });
+  }
+
+  // Calls the module, whose memory may grow. Throws its line where the answer is that something is wrong.
+  call(name, ...words) {
+    const answer = this.exports[name](...words);
+    this.renew();
+    if (answer <= 0) throw new Error(this.message);
+    return answer;
+  }
+
+  // Gives bytes with a name, which may be empty.
+  give(name, bytes) {
+    const letters = new TextEncoder().encode(name);
+    const place = this.exports.give(letters.length, bytes.length);
+    this.renew();
+    const room = new Uint8Array(this.exports.memory.buffer, place, letters.length + bytes.length);
+    room.set(letters);
+    room.set(bytes, letters.length);
+  }
+
+  get answer() {
+    return JSON.parse(this.text(this.exports.answer(), this.exports.answer_bytes()));
+  }
+
+  // Takes a calibration file.
+  addFile(name, bytes) {
+    this.give(name, bytes);
+    this.exports.add_file();
+    this.renew();
+  }
+
+  // The cameras of the calibration files. Throws the reader's line.
+  cameras(unit, rectify) {
+    this.call("cameras", unit, rectify);
+    return this.answer;
+  }
+
+  // Makes the pictures of the raw ones. Throws the core's line.
+  rectify() {
+    this.call("rectify");
+  }
+
+  // What `stereo plan` says. Throws its line.
+  plan(asked) {
+    this.give("", new TextEncoder().encode(JSON.stringify(asked)));
+    this.call("plan");
+    return this.answer;
   }
 
   // Matches; the milliseconds. Throws the core's line.
   run() {
     const time = this.exports.run();
+    this.renew();
     if (time < 0) throw new Error(this.message);
     return time;
   }
 
   // Tells depth. Throws the core's line.
   depth(focalPx, baselineM, offsetPx) {
-    if (this.exports.depth(focalPx, baselineM, offsetPx) === 0) throw new Error(this.message);
+    this.call("depth", focalPx, baselineM, offsetPx);
   }
 }

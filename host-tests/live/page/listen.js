@@ -1,10 +1,13 @@
 // What hands do: files, the cursor, turning, copying.
 
-function openFiles(files) {
+async function openFiles(files) {
   if (!state.core || files.length === 0) return;
-  const isVideo = files.length === 1 && files[0].type.startsWith("video/");
-  if (isVideo) move(moving.play(files[0]));
-  else take(openPair([...files]));
+  const calibrations = [...files].filter(isCalibration);
+  const others = [...files].filter((file) => !isCalibration(file));
+  if (calibrations.length > 0 && others.length > 0) await takeCalibration(calibrations);
+  if (others.length === 0) await calibrate(calibrations);
+  else if (others.length === 1 && others[0].type.startsWith("video/")) await move(moving.play(others[0]));
+  else await take(openPair(others));
 }
 
 // Shows a text to be copied, and copies it where the browser lets the page.
@@ -21,13 +24,17 @@ async function copy(words) {
 }
 
 function listen() {
-  for (const id of ["pick-one", "pick-two", "pick-video"]) {
+  for (const id of ["pick-one", "pick-two", "pick-video", "pick-calibration"]) {
     byId(id).addEventListener("change", ({ target }) => {
       openFiles(target.files);
       target.value = "";
     });
   }
   byId("camera").addEventListener("click", () => state.core && move(moving.look()));
+  byId("cameras").addEventListener("click", () => state.core && move(lookThroughTwo()));
+  for (const id of ["camera-left", "camera-right"]) {
+    byId(id).addEventListener("change", () => state.core && move(lookThroughTwo()));
+  }
   byId("stop").addEventListener("click", stopMoving);
   byId("scene").addEventListener("click", () => state.core && takeGiven(DATA.scene));
   byId("restore").addEventListener("click", () => {

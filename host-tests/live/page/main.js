@@ -1,7 +1,7 @@
 // The page: what is opened is matched with what the controls say, and shown.
 
 Object.assign(state,
-  { core: null, settings: null, preset: null, noise: "none", isRigGiven: false, timeMs: 0 });
+  { core: null, settings: null, preset: null, noise: "none", isRigGiven: false, timeMs: 0, fault: null });
 let measured = 0;
 let isDue = false;
 
@@ -49,7 +49,7 @@ function run() {
     state.settings = Int32Array.from(state.core.settings);
     markOthers();
     state.timeMs = state.core.run();
-    complain(null);
+    complain(state.fault);
     tellDepth();
   } catch (error) {
     complain(error);
@@ -93,8 +93,13 @@ function later() {
 function changed(control) {
   if (!state.core) return;
   if (["method", "filter", "noise", "balance"].includes(control.name)) takePreset();
+  if (control === UNIT || control === RECTIFY) {
+    readAgain(control === RECTIFY ? valueOf(RECTIFY) : BY_FILES);
+    return;
+  }
   if (RIG.includes(control)) {
     state.isRigGiven = false;
+    calibration.isTyped = true;
     try {
       complain(null);
       tellDepth();
@@ -108,16 +113,48 @@ function changed(control) {
   later();
 }
 
-// Takes a pair: its pictures into the module's planes, of another size if need be.
-function put(pair) {
+// Takes a pair: its pictures into the module's planes, of another size if need be, rectified if a calibration
+// says so. What is wrong with that is a fault of the pair, which is matched without it.
+function put(pair, rectify = BY_FILES) {
   const { width, height } = pair.left;
   if (state.planes?.width !== width || state.planes?.height !== height) {
     state.planes = state.core.begin(width, height);
     fitPicture(width, height);
+    calibration.isDue = calibration.names.length > 0;
   }
-  state.pair = pair;
+  state.raw = pair;
+  try {
+    if (calibration.isDue) readCalibration(rectify);
+    state.pair = calibration.told?.is_rectified ? rectified(pair) : pair;
+  } catch (error) {
+    leaveCalibration();
+    setRig(null);
+    [state.fault, state.pair] = [error, pair];
+  }
+  if (calibration.told?.is_rectified) return;
   toGrey(pair.left, state.planes.left);
   toGrey(pair.right, state.planes.right);
+}
+
+// Reads the calibration's files anew for the pair that is there, which is matched.
+function readAgain(rectify = BY_FILES) {
+  if (!state.raw) return;
+  state.fault = null;
+  calibration.isDue = calibration.names.length > 0;
+  put(state.raw, rectify);
+  cloud.reset();
+  takePreset();
+  run();
+}
+
+// Takes calibration files, for the pair that is there and those that follow.
+async function calibrate(files) {
+  try {
+    await takeCalibration(files);
+    readAgain();
+  } catch (error) {
+    complain(error);
+  }
 }
 
 // Says what is matched.
@@ -138,9 +175,12 @@ function setRig(rig) {
 async function take(promised, rig = null) {
   stopMoving();
   try {
-    put(await promised);
+    const pair = await promised;
+    state.fault = null;
+    if (rig) forgetCalibration();
+    put(pair);
     cloud.reset();
-    setRig(rig);
+    if (!calibration.told) setRig(rig);
     namePair();
     takePreset();
     run();
@@ -152,9 +192,10 @@ async function take(promised, rig = null) {
 // Takes a frame of what moves. The first one of a size tells the noise.
 function takeFrame(pair) {
   const isFirst = !state.pair?.isMoving || state.pair.left.name !== pair.left.name;
+  if (isFirst) state.fault = null;
   put(pair);
   if (isFirst) {
-    setRig(null);
+    if (!calibration.told) setRig(null);
     namePair();
     takePreset();
   }
@@ -189,6 +230,23 @@ async function move(begun) {
   }
 }
 
+// Looks through two cameras, those that are chosen, or the first two.
+async function lookThroughTwo() {
+  const cameras = await moving.cameras();
+  const lists = ["camera-left", "camera-right"].map(byId);
+  lists.forEach((list, i) => {
+    const chosen = cameras.findIndex(({ id }) => id === list.value);
+    const options = cameras.map(({ id, name }) => make("option", { value: id }, name));
+    list.replaceChildren(...options);
+    list.selectedIndex = chosen < 0 ? Math.min(i, cameras.length - 1) : chosen;
+  });
+  if (cameras.length < 2) {
+    throw new Error("There is one camera: two are needed, or one that has both pictures side by side.");
+  }
+  byId("camera-lists").hidden = false;
+  await moving.lookThroughTwo(lists.map((list) => cameras[list.selectedIndex]));
+}
+
 async function takeGiven({ left, right, rig, disparities }) {
   setValue(CONTROLS[at("disparities")], disparities);
   const pictures = Promise.all([left, right].map(decodeUrl));
@@ -197,10 +255,13 @@ async function takeGiven({ left, right, rig, disparities }) {
 
 async function begin() {
   addControls(changed);
+  addCalibrationControls(changed);
+  addPlan();
   addViews(VIEWS);
   listen();
   try {
     state.core = await Core.load(MODULE);
+    tellPlan();
     await takeGiven(DATA.given ?? DATA.scene);
   } catch (error) {
     complain(error);

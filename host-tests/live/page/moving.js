@@ -1,51 +1,105 @@
-// Pictures that move: a video file or a camera that has both pictures side by side, frame by frame.
+// Pictures that move: a video file or a camera that has both pictures side by side, or two cameras, frame by
+// frame.
+
+// One video and the canvas that its frames are read from.
+class Eye {
+  constructor() {
+    this.video = document.createElement("video");
+    Object.assign(this.video, { muted: true, loop: true, playsInline: true });
+    this.canvas = new OffscreenCanvas(2, 2);
+  }
+
+  // A frame's pixels; where it is halved, an odd last column is of neither picture.
+  frame(name, isHalved) {
+    const { videoWidth, videoHeight: height } = this.video;
+    const width = isHalved ? videoWidth - (videoWidth % 2) : videoWidth;
+    if (this.canvas.width !== width || this.canvas.height !== height || !this.context) {
+      [this.canvas.width, this.canvas.height] = [width, height];
+      this.context = this.canvas.getContext("2d", { willReadFrequently: true });
+    }
+    this.context.drawImage(this.video, 0, 0);
+    return { name, width, height, pixels: this.context.getImageData(0, 0, width, height).data };
+  }
+
+  stop() {
+    this.video.pause();
+    for (const track of this.video.srcObject?.getTracks() ?? []) track.stop();
+    this.video.srcObject = null;
+    this.video.removeAttribute("src");
+  }
+}
 
 class Moving {
   // `show` is given every pair; `end` is called with what went wrong, or nothing.
   constructor(show, end) {
-    this.video = document.createElement("video");
-    Object.assign(this.video, { muted: true, loop: true, playsInline: true });
-    this.canvas = new OffscreenCanvas(2, 2);
-    [this.show, this.end, this.isOn] = [show, end, false];
+    this.eyes = [new Eye(), new Eye()];
+    [this.show, this.end, this.isOn, this.isTwo] = [show, end, false, false];
   }
 
   // Plays a file.
   async play(file) {
     this.stop();
     this.url = URL.createObjectURL(file);
-    this.video.src = this.url;
-    await this.begin(file.name, `${file.name}: is no picture or video that this browser reads.`);
+    this.eyes[0].video.src = this.url;
+    await this.begin([file.name], `${file.name}: is no picture or video that this browser reads.`);
   }
 
-  // Takes what the machine's camera sees.
+  // Takes what a camera sees that has both pictures side by side.
   async look() {
     this.stop();
-    try {
-      this.video.srcObject = await navigator.mediaDevices.getUserMedia({ video: { width: { ideal: 1280 } } });
-    } catch {
-      throw new Error("There is no camera that this page may look through.");
-    }
-    await this.begin("camera", "The camera shows nothing.");
+    await this.open(this.eyes[0], { width: { ideal: 1280 } });
+    await this.begin(["camera"], "The camera shows nothing.");
   }
 
-  async begin(name, fault) {
+  // The cameras of this machine that the page may look through, once it was asked.
+  async cameras() {
+    this.stop();
+    await this.open(this.eyes[0], true);
+    const devices = await navigator.mediaDevices.enumerateDevices();
+    this.stop();
+    const cameras = devices.filter(({ kind }) => kind === "videoinput");
+    return cameras.map(({ deviceId, label }, i) => ({ id: deviceId, name: label || `camera ${i + 1}` }));
+  }
+
+  // Takes what two cameras see, left and right.
+  async lookThroughTwo(cameras) {
+    this.stop();
+    if (cameras[0].id === cameras[1].id) throw new Error("Left and right are one camera: choose two.");
+    for (const [i, { id }] of cameras.entries()) {
+      const size = { width: { ideal: 640 }, height: { ideal: 480 } };
+      await this.open(this.eyes[i], { deviceId: { exact: id }, ...size });
+    }
+    this.isTwo = true;
+    await this.begin(cameras.map(({ name }) => name), "A camera shows nothing.");
+  }
+
+  async open(eye, video) {
     try {
-      await this.video.play();
+      eye.video.srcObject = await navigator.mediaDevices.getUserMedia({ video });
+    } catch {
+      this.stop();
+      throw new Error("There is no camera that this page may look through.");
+    }
+  }
+
+  async begin(names, fault) {
+    try {
+      await Promise.all(names.map((_, i) => this.eyes[i].video.play()));
     } catch {
       this.stop();
       throw new Error(fault);
     }
     this.isOn = true;
-    this.next(name);
+    this.next(names);
   }
 
   // Shows a frame when there is one, and then the next.
-  next(name) {
-    this.video.requestVideoFrameCallback(() => {
+  next(names) {
+    this.eyes[0].video.requestVideoFrameCallback(() => {
       if (!this.isOn) return;
       try {
-        this.show(this.frame(name));
-        this.next(name);
+        this.show(this.pair(names));
+        this.next(names);
       } catch (error) {
         this.stop();
         this.end(error);
@@ -53,27 +107,21 @@ class Moving {
     });
   }
 
-  // The pair of a frame: an odd last column is of neither picture.
-  frame(name) {
-    const { videoWidth, videoHeight: height } = this.video;
-    const width = videoWidth - (videoWidth % 2);
-    if (this.canvas.width !== width || this.canvas.height !== height) {
-      [this.canvas.width, this.canvas.height] = [width, height];
-      this.context = this.canvas.getContext("2d", { willReadFrequently: true });
+  // The pair that is seen now.
+  pair(names) {
+    if (!this.isTwo) {
+      const [left, right] = halves(this.eyes[0].frame(names[0], true));
+      return { left, right, isOne: true, isMoving: true };
     }
-    this.context.drawImage(this.video, 0, 0);
-    const { data } = this.context.getImageData(0, 0, width, height);
-    const [left, right] = halves({ name, width, height, pixels: data });
-    return { left, right, isOne: true, isMoving: true };
+    const [left, right] = this.eyes.map((eye, i) => eye.frame(names[i], false));
+    checkSizes(left, right);
+    return { left, right, isOne: false, isMoving: true };
   }
 
   stop() {
-    if (!this.video) return;
-    this.isOn = false;
-    this.video.pause();
-    for (const track of this.video.srcObject?.getTracks() ?? []) track.stop();
-    this.video.srcObject = null;
-    this.video.removeAttribute("src");
+    if (!this.eyes) return;
+    [this.isOn, this.isTwo] = [false, false];
+    this.eyes.forEach((eye) => eye.stop());
     if (this.url) URL.revokeObjectURL(this.url);
     this.url = null;
   }

@@ -90,7 +90,7 @@ const PAINT = {
       const pale = planes.disparity[i] === NO_ANSWER ? BLACK : greyWord(160 + (planes.left[i] >> 2));
       words[i] = place < 0 ? pale : colours[place];
     }
-    return ["Pale: an answer. ", ...DATA.flags.flatMap(({ name, colour }) => [swatch(colour), name])];
+    return ["Pale: an answer. ", ...DATA.flags.map(({ name, colour }) => swatch(colour, name))];
   },
   confidence: (words, { planes }) => {
     for (let i = 0; i < words.length; i += 1) {
@@ -107,8 +107,11 @@ function rampLegend([dark, bright]) {
   return [dark, ramp, `${bright}; black: no answer`];
 }
 
-function swatch(colour) {
-  return make("span", { class: "swatch", style: `background: ${css(colour)}` });
+// A colour and what it means.
+function swatch(colour, name) {
+  const key = make("span", { class: "key" });
+  key.append(make("span", { class: "swatch", style: `background: ${css(colour)}` }), name);
+  return key;
 }
 
 // What is known of a pixel, in one line.

@@ -41,6 +41,13 @@ function halves(picture) {
   return [columns(picture, 0, width / 2, name), columns(picture, width / 2, width / 2, name)];
 }
 
+// Throws a line where two pictures are no pair.
+function checkSizes(left, right) {
+  if (left.width === right.width && left.height === right.height) return;
+  const size = ({ name, width, height }) => `${name} is ${width} x ${height}`;
+  throw new Error(`${size(left)}, ${size(right)}: both must have one size.`);
+}
+
 // A pair of one picture or of two, which are left and right in the order of their names.
 async function openPair(files) {
   if (files.length === 0 || files.length > 2) {
@@ -50,10 +57,7 @@ async function openPair(files) {
   const pictures = await Promise.all(sorted.map((file) => decode(file, file.name)));
   const pair = pictures.length === 2 ? pictures : halves(pictures[0]);
   const [left, right] = pair;
-  if (left.width !== right.width || left.height !== right.height) {
-    const size = ({ name, width, height }) => `${name} is ${width} x ${height}`;
-    throw new Error(`${size(left)}, ${size(right)}: both must have one size.`);
-  }
+  checkSizes(left, right);
   return { left, right, isOne: pictures.length === 1 };
 }
 

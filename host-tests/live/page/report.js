@@ -87,8 +87,8 @@ PAINT.error = (words, { planes }) => {
     const isKnown = d !== NO_ANSWER && whole.truth[i] !== NO_ANSWER;
     words[i] = isKnown ? packed(mix(right, t < 0 ? far : near, Math.min(Math.abs(t), 1))) : BLACK;
   });
-  return [swatch(far), `${MOST_ERROR_PX} px too far`, swatch(right), "right", swatch(near),
-    `${MOST_ERROR_PX} px too near; black: no answer, or hidden from the right camera`];
+  return [swatch(far, `${MOST_ERROR_PX} px too far`), swatch(right, "right"),
+    swatch(near, `${MOST_ERROR_PX} px too near`), "black: no answer, or hidden from the right camera"];
 };
 
 // The numbers that the sliders run over, and where they begin: all is shown.

@@ -2,13 +2,14 @@
 
 // What is shown. A pixel of it stands for `ratio` pixels of a row of the pair.
 const state = { pair: null, planes: null, rig: {}, hasDepth: false, ratio: 1 };
-const cloud = new Cloud();
 const canvas = byId("picture");
+const cloud = new Cloud(canvas);
 const context = canvas.getContext("2d");
 const cursor = { x: 0, y: 0 };
 let image = null;
 let isTurning = false;
 let isPointed = false;
+let isDrawing = false;
 
 const view = () => document.querySelector("input[name=view]:checked").value;
 
@@ -34,21 +35,26 @@ function fitPicture(width, height) {
 // Paints the view that is chosen.
 function show() {
   if (!image) return;
-  const words = new Uint32Array(image.data.buffer);
   const isCloud = view() === "points";
   canvas.classList.toggle("points", isCloud);
   let legend;
   if (isCloud) {
     cloud.take(state);
-    const count = cloud.draw(words, image.width, image.height);
-    legend = [count > 0 ? `${count} points; drag to turn, turn the wheel to come nearer.`
-      : "No points: give focal length and baseline under Cameras."];
+    legend = [cloudWords(cloud.draw(context))];
   } else {
-    legend = PAINT[view()](words, state);
+    legend = PAINT[view()](new Uint32Array(image.data.buffer), state);
+    context.putImageData(image, 0, 0);
   }
+  cloud.isOn = isCloud;
   byId("legend").replaceChildren(...legend);
   canvas.setAttribute("aria-label", `${view()} of ${state.pair.left.name}`);
-  context.putImageData(image, 0, 0);
+}
+
+// What is said below so many points.
+function cloudWords(count) {
+  if (count === null) return "This browser has no WebGL, which the view of points takes.";
+  if (count === 0) return "No points: give focal length and baseline under Cameras.";
+  return `${count} points; drag to turn, with the right button to move, turn the wheel to come nearer.`;
 }
 
 // The pixel under the pointer.
@@ -68,22 +74,21 @@ function tellPixel() {
 // Turns on and on, until it is stopped.
 function keepTurning() {
   if (!isTurning || view() !== "points") return;
-  cloud.turn(0.02, 0);
+  cloud.move([-0.02, 0], 1);
   show();
   requestAnimationFrame(keepTurning);
 }
 
 function keyInCloud(key) {
-  const turns = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1] };
+  const turns = { ArrowLeft: [0.1, 0], ArrowRight: [-0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1] };
   const factors = { "+": 1.2, "=": 1.2, "-": 1 / 1.2 };
   if (key === " ") {
     isTurning = !isTurning;
     keepTurning();
     return true;
   }
-  if (turns[key]) cloud.turn(...turns[key]);
-  else if (factors[key]) cloud.comeNearer(factors[key]);
-  else return false;
+  if (!turns[key] && !factors[key]) return false;
+  cloud.move(turns[key] ?? [0, 0], factors[key] ?? 1);
   show();
   return true;
 }
@@ -99,19 +104,19 @@ function keyInPicture(key, isFar) {
 }
 
 function listenToPicture() {
-  canvas.addEventListener("pointermove", (event) => {
-    if (view() !== "points") moveTo(event);
-    else if (event.buttons !== 0) {
-      cloud.turn(event.movementX / 150, event.movementY / 150);
+  canvas.addEventListener("pointermove", (event) => view() !== "points" && moveTo(event));
+  // The library turns the points; it is drawn once for all that happens before the next picture.
+  const seen = ({ type, buttons }) => {
+    if (view() !== "points" || isDrawing || (type === "mousemove" && buttons === 0)) return;
+    isDrawing = true;
+    requestAnimationFrame(() => {
+      isDrawing = false;
       show();
-    }
-  });
-  canvas.addEventListener("wheel", (event) => {
-    if (view() !== "points") return;
-    event.preventDefault();
-    cloud.comeNearer(Math.exp(-event.deltaY / 500));
-    show();
-  }, { passive: false });
+    });
+  };
+  for (const kind of ["mousemove", "wheel", "touchmove"]) {
+    (kind === "mousemove" ? window : canvas).addEventListener(kind, seen, { passive: true });
+  }
   canvas.addEventListener("keydown", (event) => {
     if (!state.planes || event.ctrlKey || event.altKey || event.metaKey) return;
     const isCloud = view() === "points";

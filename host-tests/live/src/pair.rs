@@ -1,6 +1,7 @@
 //! Two pictures in memory as a camera.
 
 use core::convert::Infallible;
+use core::ops::Range;
 use stereopsis::camera::{
     CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource,
 };
@@ -9,13 +10,28 @@ use stereopsis::camera::{
 pub struct Pair<'a> {
     format: LineFormat,
     pictures: [&'a [u8]; 2],
+    /// 1 where the pictures show something, else 0; none where all of them does.
+    masks: Option<[&'a [u8]; 2]>,
     row: u16,
 }
 
 impl<'a> Pair<'a> {
     /// Pictures of so many pixels, `width` in a row.
     pub fn new(width: u16, height: u16, pictures: [&'a [u8]; 2]) -> Self {
-        Self { format: LineFormat { width, height, pixel: PixelFormat::Grey8 }, pictures, row: height }
+        let format = LineFormat { width, height, pixel: PixelFormat::Grey8 };
+        Self { format, pictures, masks: None, row: height }
+    }
+
+    /// The same with masks of both pictures, as a remap leaves them.
+    pub fn with_masks(self, masks: [&'a [u8]; 2]) -> Self {
+        Self { masks: Some(masks), ..self }
+    }
+
+    /// The pixels of a row.
+    fn pixels(&self, row: u16) -> Range<usize> {
+        let width = usize::from(self.format.width);
+        let first = usize::from(row) * width;
+        first..first + width
     }
 }
 
@@ -47,13 +63,24 @@ impl StereoSource for Pair<'_> {
             return Err(CameraError::NoLineLeft);
         }
         let width = usize::from(self.format.width);
-        let first = usize::from(row) * width;
+        let here = self.pixels(row);
         for (line, picture) in [left, right].into_iter().zip(self.pictures) {
             let too_short = CameraError::BufferTooShort { needed: width };
             let line = line.get_mut(..width).ok_or(too_short)?;
-            line.copy_from_slice(picture.get(first..first + width).ok_or(CameraError::NoLineLeft)?);
+            line.copy_from_slice(picture.get(here.clone()).ok_or(CameraError::NoLineLeft)?);
         }
         self.row = row + 1;
         Ok(LineStart { row, timestamp_us: 0 })
+    }
+
+    fn mask(&self, row: u16, out: [&mut [u8]; 2]) -> bool {
+        let Some(masks) = self.masks else { return false };
+        let here = self.pixels(row);
+        for (out, mask) in out.into_iter().zip(masks) {
+            for (to, from) in out.iter_mut().zip(mask.get(here.clone()).unwrap_or_default()) {
+                *to = *from;
+            }
+        }
+        true
     }
 }

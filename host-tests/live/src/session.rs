@@ -1,13 +1,14 @@
 //! A pipeline for each method, as firmware has one, and what is done with them.
 
+use crate::message::Message;
 use crate::pair::Pair;
 use crate::settings::{self, Settings};
-use core::fmt::Write;
+use std::fmt::Display;
 use stereopsis::camera::{CameraError, StereoSource};
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::RectifiedRig;
-use stereopsis::heapless::String;
-use stereopsis::imaging::{BalancedPair, Noise, NoiseMeter};
+use stereopsis::geometry::rectify::Rectification;
+use stereopsis::imaging::{BalancedPair, Noise, NoiseMeter, RectifiedPair, RemapPair};
 use stereopsis::matching::{Block, Config, Fast, Kernel, Method, Row, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::Pipeline;
 use stereopsis::units::Disparity;
@@ -16,11 +17,11 @@ use stereopsis::units::Disparity;
 pub const MOST_WIDTH: usize = 4096;
 /// Disparities that there is room for.
 const MOST_DISPARITIES: usize = 256;
+/// Raw lines that the remaps hold at once, and slots of their tables: as many as `stereo rectify` has.
+const REMAP_LINES: usize = 1025;
+const REMAP_SLOTS: usize = 300_000;
 
 type Held<S> = Pipeline<S, MOST_WIDTH, MOST_DISPARITIES>;
-
-/// What is wrong, in one line.
-pub type Message = String<200>;
 
 /// What is seen and what is told of a pair: rows of `width` pixels, `height` of them.
 pub struct Planes<'a> {
@@ -30,6 +31,8 @@ pub struct Planes<'a> {
     pub height: u16,
     /// The grey values of both pictures.
     pub pictures: [&'a [u8]; 2],
+    /// 1 where rectified pictures show something, else 0; none of others.
+    pub masks: Option<[&'a [u8]; 2]>,
     /// The bits of [`PixelFlags`](stereopsis::units::PixelFlags).
     pub flags: &'a mut [u8],
     /// As [`Row::confidences`].
@@ -44,7 +47,11 @@ pub struct Planes<'a> {
 
 impl<'a> Planes<'a> {
     fn pair(&self) -> Pair<'a> {
-        Pair::new(self.width, self.height, self.pictures)
+        let pair = Pair::new(self.width, self.height, self.pictures);
+        match self.masks {
+            Some(masks) => pair.with_masks(masks),
+            None => pair,
+        }
     }
 
     fn put(&mut self, row: &Row<'_>) {
@@ -69,12 +76,13 @@ impl<'a> Planes<'a> {
     }
 }
 
-/// The pipelines and the settings: all zero at first.
+/// The pipelines, the remaps and the settings: all zero at first, so that the module's file has none of it.
 pub struct Session {
     /// What is asked for.
     pub settings: Settings,
-    /// What was wrong last.
+    /// What was wrong last, in one line.
     pub message: Message,
+    remaps: RemapPair<MOST_WIDTH, REMAP_LINES, REMAP_SLOTS>,
     fast: Held<Fast>,
     block: Held<Block>,
     lean: Held<SgmLean>,
@@ -116,6 +124,7 @@ impl Session {
         Self {
             settings: [0; settings::COUNT],
             message: Message::new(),
+            remaps: RemapPair::empty(),
             fast: Pipeline::new(),
             block: Pipeline::new(),
             lean: Pipeline::new(),
@@ -132,6 +141,38 @@ impl Session {
         let mut all = self.settings;
         with_pipeline!(self, pipeline => of(pipeline, &mut all));
         self.settings = all;
+    }
+
+    /// Takes the warps of a rectification, for [`Self::rectify`]. What is wrong is said by the message.
+    pub fn set_warps(&mut self, rectification: &Rectification<f64>) -> bool {
+        self.message.clear();
+        let set = self.remaps.set(rectification);
+        set.map_err(|error| self.message.set(&format_args!("the pictures cannot be rectified: {error}")))
+            .is_ok()
+    }
+
+    /// Rectifies raw pictures with the warps that were set, line by line, with masks of what they show. What
+    /// is wrong is said by the message.
+    pub fn rectify(&mut self, raw: Pair<'_>, pictures: [&mut [u8]; 2], masks: [&mut [u8]; 2]) -> bool {
+        self.message.clear();
+        let width = usize::from(raw.format().width).max(1);
+        let ([left, right], [left_mask, right_mask]) = (pictures, masks);
+        let lines = left.chunks_exact_mut(width).zip(right.chunks_exact_mut(width));
+        let masks = left_mask.chunks_exact_mut(width).zip(right_mask.chunks_exact_mut(width));
+        let work = || -> Result<(), String> {
+            let mut pair = RectifiedPair::new(raw, &mut self.remaps).map_err(|e| e.to_string())?;
+            let say = |error: CameraError<_>| error.to_string();
+            pair.start_frame().map_err(say)?;
+            for ((left, right), (left_mask, right_mask)) in lines.zip(masks) {
+                pair.next_lines(left, right).map_err(say)?;
+                for (to, from) in [left_mask, right_mask].into_iter().zip(pair.valid()) {
+                    to.iter_mut().zip(from).for_each(|(to, from)| *to = *from);
+                }
+            }
+            Ok(())
+        };
+        let done = work();
+        done.map_err(|error| self.message.set(&error)).is_ok()
     }
 
     /// Measures how noisy the pictures are, balanced if the settings say so, and notes it in the settings.
@@ -157,7 +198,7 @@ impl Session {
         let last = u32::from(config.min_disparity) + u32::from(config.disparities);
         if last > u32::from(planes.width) {
             let width = planes.width;
-            let _ = write!(self.message, "the search ends at {last} px: the pictures are {width} px wide");
+            self.message.set(&format_args!("the search ends at {last} px: the pictures are {width} px wide"));
             return None;
         }
         let mut pair = planes.pair();
@@ -180,11 +221,11 @@ impl Session {
         let scale = match rig.map(|rig| DepthScale::new(&rig)) {
             Ok(Ok(scale)) => scale,
             Ok(Err(error)) => {
-                let _ = write!(self.message, "{error}");
+                self.message.set(&error);
                 return false;
             }
             Err(error) => {
-                let _ = write!(self.message, "{error}");
+                self.message.set(&error);
                 return false;
             }
         };
@@ -232,11 +273,9 @@ fn frame<S: Method, C: StereoSource>(
     wrong: &mut Message,
 ) -> Option<f64>
 where
-    C::Error: core::fmt::Display,
+    C::Error: Display,
 {
-    let mut say = |error: &dyn core::fmt::Display| {
-        let _ = write!(wrong, "{error}");
-    };
+    let mut say = |error: &dyn Display| wrong.set(error);
     pipeline.start(config).map_err(|e| say(&e)).ok()?;
     pipeline.begin_frame(source).map_err(|e| say(&e)).ok()?;
     let mut time_ms = 0.0;

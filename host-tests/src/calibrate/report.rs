@@ -2,6 +2,7 @@
 
 use super::coverage::{CELLS, Coverage};
 use super::{Calibrated, View, ViewFigures};
+use crate::live::STYLE;
 use crate::matches_picture::{line, side_by_side, square};
 use image::{Rgb, RgbImage};
 use std::fmt::Write;
@@ -38,8 +39,8 @@ fn map(coverage: &Coverage) -> String {
             let fill = if count == 0 { 0.0 } else { 0.25 + 0.75 * share };
             let _ = write!(
                 svg,
-                "<rect x=\"{}\" y=\"{}\" width=\"30\" height=\"30\" fill=\"#06c\" \
-                 fill-opacity=\"{fill:.2}\" stroke=\"#999\"><title>{count} corners</title></rect>",
+                "<rect x=\"{}\" y=\"{}\" width=\"30\" height=\"30\" class=\"column\" \
+                 fill-opacity=\"{fill:.2}\" stroke=\"var(--line)\"><title>{count} corners</title></rect>",
                 30 * x,
                 30 * y
             );
@@ -61,11 +62,12 @@ pub fn page(
         text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
     };
     let mut text = format!(
-        "<!doctype html>\n<html lang=\"en\"><head><meta \
-         charset=\"utf-8\"><title>Calibration</title><style>\n{}</style></head><body>\n<h1>Calibration from \
-         {} views</h1>\n<p>Re-projection error {:.3} px (root mean square of all corners); the left camera \
-         by itself {:.3} px, the right one {:.3} px. Residuals are drawn {LONGER} times as long as they \
-         are.</p>\n",
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" \
+         content=\"width=device-width, initial-scale=1\"><title>Calibration</title><style>\n{STYLE}{}</style>\
+         </head><body>\n<h1>Calibration from {} views</h1>\n<p class=\"quiet\">Residuals are drawn {LONGER} \
+         times as long as they are.</p>\n<ul class=\"headline\"><li><b>{:.3} px</b>re-projection error of \
+         all corners (root mean square)</li><li><b>{:.3} px</b>of the left camera by itself</li>\
+         <li><b>{:.3} px</b>of the right one</li></ul>\n",
         include_str!("../report/style.css"),
         found.views.len(),
         found.rms_px,
@@ -77,7 +79,7 @@ pub fn page(
         let items: String = advice.iter().map(|advice| format!("<li>{}</li>\n", escape(advice))).collect();
         let _ = writeln!(text, "<h2>What would make it better</h2>\n<ul>\n{items}</ul>");
     }
-    text += "<h2>Where boards were</h2>\n";
+    text += "<h2>Where boards were</h2>\n<div class=\"figures\">";
     for (name, coverage) in ["left", "right"].iter().zip(reached) {
         let _ = writeln!(
             text,
@@ -90,11 +92,12 @@ pub fn page(
     let [across, up] = found.tilts_deg();
     let _ = writeln!(
         text,
-        "<p>Boards are tilted by {across:.0} degrees to the left and right, and by {up:.0} up and down \
+        "</div><p>Boards are tilted by {across:.0} degrees to the left and right, and by {up:.0} up and down \
          (root mean square).</p>\n<h2>Views</h2>"
     );
-    text += "<table><tr><th>left</th><th>right</th><th>left, px</th><th>right, px</th><th>distance, \
-             m</th><th></th></tr>\n";
+    text += "<figure class=\"scroll views\" tabindex=\"0\" role=\"region\" aria-label=\"The views\"><table>\
+             <tr><th scope=\"col\">left</th><th scope=\"col\">right</th><th scope=\"col\">left, px</th><th \
+             scope=\"col\">right, px</th><th scope=\"col\">distance, m</th><th></th></tr>\n";
     let outliers = found.outliers();
     for (i, (view, [left, right])) in found.views.iter().zip(names).enumerate() {
         let remark = if outliers.contains(&i) { "fits badly" } else { "" };
@@ -108,7 +111,7 @@ pub fn page(
             view.distance_m
         );
     }
-    text += "</table>\n";
+    text += "</table></figure>\n<div class=\"figures\">\n";
     for (file, [left, right]) in files.iter().zip(names) {
         let (file, left, right) = (escape(file), escape(left), escape(right));
         let _ = writeln!(
@@ -117,5 +120,5 @@ pub fn page(
              {right}</figcaption></figure>"
         );
     }
-    text + "</body></html>\n"
+    text + "</div></body></html>\n"
 }

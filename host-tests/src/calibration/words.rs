@@ -9,20 +9,38 @@ use stereopsis::geometry::{
     rectify::{Crop, Rectification, RectifyError},
 };
 use stereopsis::matching::Config;
+use stereopsis_rig::plan::{Plan, Rig, Wanted, describe_search};
 
 /// The distances at which errors are told, m.
 const DISTANCES_M: [f64; 6] = [0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
 
-/// What a calibration says, what the rig can tell with a search of so many disparities, and what looks wrong:
-/// lines of text, the last ones warnings. A rig that cannot be rectified is refused.
-pub fn describe(calibration: &RawCalibration, disparities: u16) -> Result<String, RectifyError> {
-    let (text, warnings) = described(&calibration.rig, calibration.format, disparities)?;
+/// What a rig is asked.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Asked {
+    /// How many whole disparities are searched where no range is given.
+    pub disparities: u16,
+    /// The nearest and the farthest depth that are wanted, m.
+    pub range_m: Option<[f64; 2]>,
+    /// The deviation of a depth that is wanted, at most, as a share of it.
+    pub accuracy: f64,
+}
+
+impl Asked {
+    /// Nothing of its own: the least search, and what `stereo plan` asks.
+    const LITTLE: Self = Self { disparities: Config::FEWEST_DISPARITIES, range_m: None, accuracy: 0.05 };
+}
+
+/// What a calibration says, what the rig can tell with the search that is asked, what limits it and what
+/// would help, and what looks wrong: lines of text, the last ones warnings. A rig that cannot be rectified is
+/// refused.
+pub fn describe(calibration: &RawCalibration, asked: &Asked) -> Result<String, RectifyError> {
+    let (text, warnings) = described(&calibration.rig, calibration.format, asked)?;
     Ok(with_warnings(text, warnings))
 }
 
 /// What looks wrong with a rig, as [`describe`] says it. A rig that cannot be rectified is refused.
 pub fn warnings(rig: &StereoRig<f64>) -> Result<Vec<String>, RectifyError> {
-    Ok(described(rig, "", Config::FEWEST_DISPARITIES)?.1)
+    Ok(described(rig, "", &Asked::LITTLE)?.1)
 }
 
 /// What the firmware's remaps take, which has the rig in either type; `None` where a remap cannot be.
@@ -36,7 +54,7 @@ fn remap_capacity(rig: &StereoRig<f64>, rectified: &Rectification<f64>) -> Optio
 fn described(
     rig: &StereoRig<f64>,
     format: &str,
-    disparities: u16,
+    asked: &Asked,
 ) -> Result<(String, Vec<String>), RectifyError> {
     let size = rig.sizes()[0];
     let rectified = Rectification::new(rig, Crop::Natural, size)?;
@@ -71,7 +89,8 @@ fn described(
         let kilobytes = capacity.bytes().div_ceil(1024);
         let _ = writeln!(text, "firmware     {capacity} for Crop::Natural at this size, {kilobytes} KB");
     }
-    depths(f * b, 0.0, disparities, &mut text);
+    let told = Rig { baseline_m: b, focal_px: f, offset_px: 0.0, width: size.width, height: size.height };
+    depths(told, asked, &mut text);
     warnings.extend(baseline_warning(b));
     if angle > 10.0 {
         warnings.push(format!(
@@ -88,30 +107,40 @@ fn described(
     Ok((text, warnings))
 }
 
-/// What a calibration of rectified images says, and what they can tell with a search of so many disparities:
-/// lines of text, the last ones warnings.
-pub fn describe_rectified(calibration: &Calibration, disparities: u16) -> String {
+/// What a calibration of rectified images says, and what they can tell with the search that is asked: lines
+/// of text, the last ones warnings. A range of depths takes a size.
+pub fn describe_rectified(calibration: &Calibration, size: Option<ImageSize>, asked: &Asked) -> String {
     let rig = &calibration.rig;
     let (f, b) = (f64::from(rig.focal_px()), f64::from(rig.baseline_m()));
     let (cx, cy) = rig.principal_point();
-    let offset = rig.disparity_offset_px();
+    let offset_px = f64::from(rig.disparity_offset_px());
     let mut text = format!("{} calibration of rectified images", calibration.format);
-    if let (Some(width), Some(height)) = (calibration.width, calibration.height) {
+    if let Some(ImageSize { width, height }) = size {
         let _ = write!(text, " of {width} x {height} px");
     }
     let _ = writeln!(text, "\nbaseline     {:.2} mm", 1000.0 * b);
     let _ = writeln!(
         text,
-        "rectified    f {f:.1} px, centre {cx:.1}, {cy:.1}; depth is f b / (d {offset:+.2} px)"
+        "rectified    f {f:.1} px, centre {cx:.1}, {cy:.1}; depth is f b / (d {offset_px:+.2} px)"
     );
-    depths(f * b, offset.into(), disparities, &mut text);
+    let ImageSize { width, height } = size.unwrap_or(ImageSize { width: 0, height: 0 });
+    depths(Rig { baseline_m: b, focal_px: f, offset_px, width, height }, asked, &mut text);
     with_warnings(text, baseline_warning(b).into_iter().collect())
 }
 
-/// The depths that a search of so many disparities can tell, where `z = fb_px_m / (d + offset_px)`.
-fn depths(fb_px_m: f64, offset_px: f64, disparities: u16, text: &mut String) {
+/// The depths that a rig tells, what limits it and what would help, in the words of a plan.
+fn depths(rig: Rig, asked: &Asked, text: &mut String) {
+    let Asked { disparities, range_m, accuracy } = *asked;
+    if let Some([nearest_m, farthest_m]) = range_m {
+        let plan = Plan::new(rig, Wanted { nearest_m, farthest_m, accuracy, ..Wanted::default() });
+        plan.describe_depths(text);
+        plan.describe_limits(text);
+        return;
+    }
+    let (fb_px_m, offset_px) = (rig.focal_px * rig.baseline_m, rig.offset_px);
     let reach = Reach { fb_px_m, offset_px, min_disparity: 0, disparities, sigma_px: Reach::SIGMA_PX };
     reach.describe(&DISTANCES_M, text);
+    describe_search(&reach, rig.baseline_m, accuracy, text);
 }
 
 /// What looks wrong with a baseline, m.

@@ -5,7 +5,7 @@
 //! it.
 //!
 //! * [`page`]: the file. `data`: the figures and pictures that its scripts look at. [`SHARED`], [`STYLE`],
-//!   [`looks`]: what the report's page has of it.
+//!   [`looks`]: what the report's page has of it. [`LOOK`], [`COLOURS`]: what every page has.
 
 mod data;
 
@@ -19,10 +19,21 @@ use std::io;
 pub const MODULE_FILE: &str = "stereopsis_live.wasm";
 
 const INDEX: &str = include_str!("../../live/page/index.html");
-/// The style of every page.
-pub const STYLE: &str = include_str!("../../live/page/style.css");
-/// The scripts that the report has too, each of which uses those before it: pictures, views and the cursor.
-pub const SHARED: [&str; 5] = [
+/// The colours of every page and drawing, by day and by night.
+pub const COLOURS: &str = include_str!("../../live/page/colours.css");
+/// The colours and the text of every page, the book's too.
+pub const LOOK: &str =
+    concat!(include_str!("../../live/page/colours.css"), include_str!("../../live/page/look.css"));
+/// The style of the pages with views.
+pub const STYLE: &str = concat!(
+    include_str!("../../live/page/colours.css"),
+    include_str!("../../live/page/look.css"),
+    include_str!("../../live/page/style.css")
+);
+/// The scripts that the report has too, each of which uses those before it: the library that draws points,
+/// pictures, views and the cursor.
+pub const SHARED: [&str; 6] = [
+    include_str!("../../live/vendor/ogl.bundle"),
     include_str!("../../live/page/elements.js"),
     include_str!("../../live/page/pictures.js"),
     include_str!("../../live/page/paint.js"),
@@ -30,12 +41,14 @@ pub const SHARED: [&str; 5] = [
     include_str!("../../live/page/viewer.js"),
 ];
 /// The page's own scripts, which use these and those before them.
-const SCRIPTS: [&str; 7] = [
+const SCRIPTS: [&str; 9] = [
     include_str!("../../live/page/controls.js"),
     include_str!("../../live/page/core.js"),
     include_str!("../../live/page/moving.js"),
     include_str!("../../live/page/work.js"),
     include_str!("../../live/page/copy.js"),
+    include_str!("../../live/page/rig.js"),
+    include_str!("../../live/page/plan.js"),
     include_str!("../../live/page/listen.js"),
     include_str!("../../live/page/main.js"),
 ];

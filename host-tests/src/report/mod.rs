@@ -153,18 +153,17 @@ impl Report<'_> {
                 &picture,
                 &(bar + &caption("The same colours as the answers.")),
             )?;
-        }
-        show("Why pixels have no answer", Kind::Map, &flags_picture(self.map, self.left), &self.legend())?;
-        let note = "Sure is bright: the second best candidate costs much more, and the answers around \
-                    agree; black: no answer.";
-        show("Confidence", Kind::Map, &confidence_picture(self.map), &caption(note))?;
-        if let Some(truth) = self.truth {
             let errors = Accuracy::errors_px(self.map, truth);
             let picture = error_picture(truth.width, &errors, ERROR_LIMIT_PX);
             let note =
                 "Answer minus truth: blue is too far, orange too near, white is right; black: no answer.";
             show("Error", Kind::Map, &picture, &(svg::error_bar("error", ERROR_LIMIT_PX) + &caption(note)))?;
         }
+        let note = "Sure is bright: the second best candidate costs much more, and the answers around \
+                    agree; black: no answer.";
+        show("Confidence", Kind::Map, &confidence_picture(self.map), &caption(note))?;
+        // The tallest one last: what stands beside another one is as tall as that.
+        show("Why pixels have no answer", Kind::Map, &flags_picture(self.map, self.left), &self.legend())?;
         Ok(())
     }
 

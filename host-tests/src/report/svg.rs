@@ -36,7 +36,7 @@ pub(super) fn bar(
     let height = if below.is_some() { 66 } else { 46 };
     let mut svg = format!(
         "<svg viewBox=\"0 0 460 {height}\" role=\"img\" aria-label=\"Colours and their \
-         values\"><defs><linearGradient id=\"{id}\">"
+         values\"><defs><linearGradient id=\"colours-{id}\">"
     );
     for step in 0..=16 {
         let t = step as f32 / 16.0;
@@ -45,8 +45,8 @@ pub(super) fn bar(
     }
     let _ = write!(
         svg,
-        "</linearGradient></defs><rect x=\"30\" y=\"20\" width=\"400\" height=\"20\" fill=\"url(#{id})\" \
-         rx=\"2\"/>"
+        "</linearGradient></defs><rect x=\"30\" y=\"20\" width=\"400\" height=\"20\" \
+         fill=\"url(#colours-{id})\" rx=\"2\"/>"
     );
     for step in 0..=4 {
         let t = step as f32 / 4.0;

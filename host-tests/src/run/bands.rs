@@ -6,7 +6,6 @@
 //! what a path from above has gathered farther up: `tests/matching/threads.rs` measures how many answers that
 //! changes.
 
-use super::method::with_method;
 use super::{Host, MemoryPair, Outcome, RunError, RunOptions, frame};
 use crate::map::DisparityMap;
 use std::sync::Barrier;
@@ -14,6 +13,7 @@ use std::thread::{Builder, scope};
 use std::time::Instant;
 use stereopsis::matching::{Config, ConfigError, Kernel, Method, Row};
 use stereopsis::pipeline::Band;
+use stereopsis_rig::with_method;
 
 /// A thread's stack: it holds a pipeline.
 const STACK: usize = 16 << 20;

@@ -1,12 +1,12 @@
 //! Frames of a source that may fail, through the core's guarded pipeline.
 
-use super::method::with_method;
 use super::{MOST_DISPARITIES, MOST_WIDTH, MethodName};
 use crate::map::DisparityMap;
 use std::fmt::Display;
 use stereopsis::camera::{FrameStart, StereoSource};
 use stereopsis::matching::{Config, ConfigError, Method};
 use stereopsis::pipeline::{FaultCounters, Guarded};
+use stereopsis_rig::with_method;
 
 /// A thread's stack: it holds a pipeline.
 const STACK: usize = 64 << 20;

@@ -14,17 +14,15 @@ mod balance;
 mod bands;
 mod guarded;
 mod memory;
-mod method;
 mod noise;
 
 pub use balance::measure_balance;
 pub use guarded::{GuardedFrame, run_guarded};
 pub use memory::MemoryPair;
-pub use method::{MethodName, UnknownMethod};
 pub use noise::{NoiseChoice, UnknownNoise, measure_noise};
+pub use stereopsis_rig::method::{MethodName, UnknownMethod};
 
 use self::bands::Bands;
-use self::method::with_method;
 use crate::map::DisparityMap;
 use std::fmt;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -32,6 +30,7 @@ use std::time::{Duration, Instant};
 use stereopsis::camera::StereoSource;
 use stereopsis::matching::{Block, Config, ConfigError, Fast, Kernel, Method, Row, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::{Pipeline, PipelineError};
+use stereopsis_rig::with_method;
 
 /// Pixels in a line that the pipelines here have room for.
 pub const MOST_WIDTH: usize = 4096;

@@ -71,6 +71,31 @@ fn a_calibration_of_rectified_images_is_checked_as_match_takes_it() {
     let said = text(&run.stdout);
     // 999.421 px x 0.193001 m / (63 px + 32.778 px)
     assert!(run.status.success() && said.contains("from 2.014 m (63 px"), "{said}");
+    // 192.889 px m x 5 % / .15 px, and a parallax of 127 px + 32.778 px.
+    for line in [
+        "accuracy     within 5 % up to 64.30 m: one standard deviation\n",
+        "limit        the search: depths are told from 2.014 m on\n",
+        "change       --disparities 128 would begin at 1.207 m\n",
+        "limit        the accuracy: beyond 64.30 m the deviation is over 5 %\n",
+        "change       a baseline of 386 mm would reach 128.59 m within 5 %\n",
+    ] {
+        assert!(said.contains(line), "{line}{said}");
+    }
+    // A range is planned for as by `plan`: 63.67 px at 2 m and 5.8 px at 5 m.
+    let range = ["calib", "check", "--calib", &file, "--nearest", "2", "--farthest", "5", "--accuracy", "1"];
+    let said = text(&stereo(range).stdout);
+    for line in [
+        "search       --disparities 64 --min-disparity 2\n",
+        "limit        none: all that is wanted is had\n",
+        "both see     at  2.00 m  91 % of the columns, 1.36 m across\n",
+    ] {
+        assert!(said.contains(line), "{line}{said}");
+    }
+    let both =
+        ["calib", "check", "--calib", &file, "--nearest", "2", "--farthest", "5", "--disparities", "64"];
+    assert_eq!(stereo(both).status.code(), Some(2));
+    let turned = stereo(["calib", "check", "--calib", &file, "--nearest", "5", "--farthest", "2"]);
+    assert!(text(&turned.stderr).contains("--nearest 5: is not nearer than --farthest 2"));
 }
 
 #[test]

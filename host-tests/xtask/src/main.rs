@@ -8,6 +8,7 @@
 //! * `miri` runs what is `unsafe` and no assembly under an interpreter that sees undefined behaviour.
 //! * `soak` runs thousands of frames of a camera with every fault.
 //! * `view` builds the live page's module and shows the page.
+//! * `book` writes the pages of docs/ as a book.
 //! * `altered` measures how right the methods are on altered real images, beside OpenCV.
 //! * `readme` writes the generated parts of docs/performance.md anew, or checks them.
 //! * `c` tests the C interface alone, one step of `test`.
@@ -16,7 +17,8 @@
 //! * `header` writes the header of the C interface anew, or checks it.
 //!
 //! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`],
-//! [`growth`], [`c`], [`arm`], [`cross`], [`mod@rtl`], [`view`], [`package`] and [`readme`] are nine of them.
+//! [`growth`], [`c`], [`arm`], [`cross`], [`mod@rtl`], [`view`], [`book`], [`package`] and [`readme`] are ten
+//! of them.
 //! [`altered`] needs data that not everybody has, [`fuzz`], [`miri`] and [`soak`] time.
 
 use clap::error::ErrorKind;
@@ -27,6 +29,7 @@ use stereopsis_host::command_line::{one_line, usage_line};
 mod altered;
 mod arm;
 mod boards;
+mod book;
 mod c;
 mod cross;
 mod elf;
@@ -79,6 +82,8 @@ enum Chore {
     Soak(soak::Arguments),
     /// Builds the core for browsers and runs `stereo view` with it.
     View(view::Arguments),
+    /// Writes the pages of docs/ as a book of HTML, with the pictures that their commands draw.
+    Book(book::Arguments),
     /// Measures how right the methods are on real pairs with noise and unequal cameras, beside OpenCV.
     Altered(altered::Arguments),
     /// Writes the generated parts of docs/performance.md anew.
@@ -111,8 +116,8 @@ fn main() -> ExitCode {
                 "error: {}",
                 one_line(&usage_line(
                     &error,
-                    "the chores are test, firmware, growth, rtl, fuzz, miri, soak, view, altered, c, \
-                        cross, header, publish and readme"
+                    "the chores are test, firmware, growth, rtl, fuzz, miri, soak, view, book, altered, \
+                        c, cross, header, publish and readme"
                 ))
             );
             return ExitCode::FAILURE;
@@ -127,6 +132,7 @@ fn main() -> ExitCode {
         Chore::Miri => miri::run(),
         Chore::Soak(arguments) => soak::run(&arguments),
         Chore::View(arguments) => view::run(&arguments),
+        Chore::Book(arguments) => book::run(&arguments),
         Chore::Altered(arguments) => altered::run(&arguments),
         Chore::Readme { check } => readme::run(check),
         Chore::C => c::run(),

@@ -2,6 +2,7 @@
 
 use crate::arm;
 use crate::boards;
+use crate::book;
 use crate::c;
 use crate::cross;
 use crate::examples;
@@ -54,6 +55,7 @@ pub fn run(only: Option<String>) -> Outcome {
                 ("quickstart", || examples::QUICKSTART.run()),
                 ("gates", rtl::sample),
                 ("live page", || view::sample(&stereo())),
+                ("book", || book::sample(&stereo())),
             ],
             &[
                 ("firmware", || firmware::check_sample(&stereo())),

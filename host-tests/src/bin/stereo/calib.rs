@@ -2,18 +2,20 @@
 
 use crate::failure::Failure;
 use crate::place::Place;
-use crate::shared::{Unit, disparities, image_size, print};
+use crate::plan::{percent, range};
+use crate::shared::{Unit, disparities, image_size, length, print};
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::camera::ImageSize;
 use stereopsis_host::calibration::{
-    Calibration, RawCalibration, describe, describe_rectified, write_c, write_opencv, write_rust,
+    Asked, Calibration, RawCalibration, describe, describe_rectified, write_c, write_opencv, write_rust,
 };
 use stereopsis_host::command_line::one_line;
 
 /// What follows the options in the command's help.
 pub const EXAMPLE: &str = "Examples:
   stereo calib check --calib stereo.yml
+  stereo calib check --calib stereo.yml --nearest 0.4 --farthest 5
   stereo calib convert --calib camchain.yaml --to opencv --out stereo.yml
   stereo calib convert --calib left.yaml --calib right.yaml --to rust --out rig.rs
 
@@ -57,6 +59,25 @@ pub struct CheckArgs {
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = disparities, allow_negative_numbers =
         true)]
     pub disparities: u16,
+    /// The nearest depth that is wanted, m: the search is planned for it, as by stereo plan
+    #[arg(long, value_name = "M", requires = "farthest", conflicts_with = "disparities",
+        value_parser = length, allow_negative_numbers = true)]
+    pub nearest: Option<f32>,
+    /// The farthest, m
+    #[arg(long, value_name = "M", requires = "nearest", value_parser = length, allow_negative_numbers = true)]
+    pub farthest: Option<f32>,
+    /// The standard deviation of a far depth that is wanted, percent of it
+    #[arg(long, value_name = "PERCENT", default_value = "5", value_parser = percent, allow_negative_numbers =
+        true)]
+    pub accuracy: f64,
+}
+
+impl CheckArgs {
+    /// What the rig is asked.
+    fn asked(&self) -> Result<Asked, Failure> {
+        let range_m = self.nearest.zip(self.farthest).map(|(near, far)| range(near, far)).transpose()?;
+        Ok(Asked { disparities: self.disparities, range_m, accuracy: self.accuracy / 100.0 })
+    }
 }
 
 #[derive(Debug, Args)]
@@ -101,17 +122,21 @@ fn open(args: &FileArgs) -> Result<RawCalibration, Failure> {
 }
 
 fn check(args: &CheckArgs) -> Result<(), Failure> {
-    let file = &args.file;
+    let (file, asked) = (&args.file, args.asked()?);
     // What says of rectified images how they are is said of them: a shift of the columns is no mounting.
     let rectified = Calibration::open_all(&file.calib, Path::new(""), file.unit.map(Unit::metres));
     let raw = open(file);
     if let Ok(rectified) = rectified
         && (raw.is_err() || rectified.rig.disparity_offset_px() != 0.0)
     {
-        return print(&describe_rectified(&rectified, args.disparities));
+        let size = file.size.or(rectified.size());
+        if let (None, Some(_)) = (size, asked.range_m) {
+            return Err(Failure::new("--size: is missing; the search for a range of depths takes it"));
+        }
+        return print(&describe_rectified(&rectified, size, &asked));
     }
     let calibration = raw?;
-    let text = describe(&calibration, args.disparities);
+    let text = describe(&calibration, &asked);
     print(&text.map_err(|e| Failure::new(format!("{}: {e}", calibration.path.display())))?)
 }
 

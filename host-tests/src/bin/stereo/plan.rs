@@ -77,7 +77,7 @@ struct LensArgs {
     field_of_view: Option<f64>,
 }
 
-fn percent(text: &str) -> Result<f64, &'static str> {
+pub fn percent(text: &str) -> Result<f64, &'static str> {
     let value = text.parse().ok().filter(|value| (0.01..=100.0).contains(value));
     value.ok_or("a number from 0.01 to 100 is needed")
 }
@@ -106,13 +106,9 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
         let least = Config::FEWEST_DISPARITIES;
         return Err(Failure::new(format!("--size {width}x{height}: at least {least} columns are needed")));
     }
-    let [nearest_m, farthest_m] = [args.nearest, args.farthest].map(exact);
-    if nearest_m >= farthest_m {
-        return Err(Failure::new(format!(
-            "--nearest {nearest_m}: is not nearer than --farthest {farthest_m}; give the smaller depth first"
-        )));
-    }
-    let rig = Rig { baseline_m: exact(args.baseline_mm) / 1000.0, focal_px: focal_px(args)?, width, height };
+    let [nearest_m, farthest_m] = range(args.nearest, args.farthest)?;
+    let (baseline_m, focal_px) = (exact(args.baseline_mm) / 1000.0, focal_px(args)?);
+    let rig = Rig { baseline_m, focal_px, offset_px: 0.0, width, height };
     let clock = |(core, mhz)| (core, args.clock_mhz.map_or(mhz, exact));
     let cores = CORES.into_iter().filter(|(core, _)| args.core.is_none_or(|only| only == *core));
     let methods = MethodName::ALL.into_iter().filter(|method| args.method.is_none_or(|only| only == *method));
@@ -130,6 +126,17 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
         return print(&(serde_json::to_string_pretty(&plan)? + "\n"));
     }
     print(&plan.describe())
+}
+
+/// Depths of which the first one is nearer, m.
+pub fn range(nearest: f32, farthest: f32) -> Result<[f64; 2], Failure> {
+    let [nearest_m, farthest_m] = [nearest, farthest].map(exact);
+    if nearest_m >= farthest_m {
+        return Err(Failure::new(format!(
+            "--nearest {nearest_m}: is not nearer than --farthest {farthest_m}; give the smaller depth first"
+        )));
+    }
+    Ok([nearest_m, farthest_m])
 }
 
 /// The focal length by whichever option says it, px.

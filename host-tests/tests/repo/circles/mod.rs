@@ -35,8 +35,13 @@ const IN_ORDER: [&str; 16] = [
 ];
 
 /// The program `stereo`, the harness below it, and the repository's chores.
-const PACKAGES: [&str; 4] =
-    ["host-tests/src/bin/stereo", "host-tests/src", "host-tests/model/src", "host-tests/xtask/src"];
+const PACKAGES: [&str; 5] = [
+    "host-tests/src/bin/stereo",
+    "host-tests/src",
+    "host-tests/model/src",
+    "host-tests/rig/src",
+    "host-tests/xtask/src",
+];
 
 /// Folders whose `mod.rs` has what its parts share and runs them, too: among the parts there is no circle.
 const SHARED_BY_ITS_PARTS: [&str; 8] = [

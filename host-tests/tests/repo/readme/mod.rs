@@ -3,6 +3,7 @@
 
 mod commands;
 mod generated;
+mod lecture;
 
 use crate::source;
 use std::fs;
@@ -68,6 +69,20 @@ fn the_glossary_names_files_that_are_there() {
     for row in rows {
         let file = row.rsplit('`').nth(1).expect("a file at the end of the row");
         assert!(root().join("src").join(file).is_file(), "docs/glossary.md: there is no src/{file}");
+    }
+}
+
+#[test]
+fn the_lectures_equations_are_functions_that_are_there() {
+    let items = lecture::items(&read(&root().join("docs/lecture.md")));
+    assert!(items.len() > 25, "{} equations in docs/lecture.md", items.len());
+    for item in &items {
+        let links = lecture::links(item);
+        assert!(item.contains('$') && !links.is_empty(), "docs/lecture.md: no function is {item}");
+        for (name, file) in links {
+            let text = read(&root().join("docs").join(file));
+            assert!(lecture::has(file, &text, name), "docs/lecture.md: {file} has no public {name}");
+        }
     }
 }
 

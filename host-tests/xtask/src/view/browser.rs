@@ -38,8 +38,8 @@ impl Browser {
         command.args(["-c", PIPES, CHROMIUM, "--headless=new", "--remote-debugging-pipe", "--disable-gpu"]);
         // It runs the repository's own page alone, often where it has no sandbox: in a container, as root.
         command.args(["--no-sandbox", "--no-first-run", "--disable-background-networking"]);
-        // Its camera is a test pattern that may be looked at.
-        command.args(["--use-fake-device-for-media-stream", "--use-fake-ui-for-media-stream"]);
+        // Its two cameras are test patterns that may be looked at.
+        command.args(["--use-fake-device-for-media-stream=device-count=2", "--use-fake-ui-for-media-stream"]);
         command.arg(format!("--user-data-dir={}", profile.path().display()));
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
         let mut child = command.spawn().map_err(failed)?;
@@ -89,6 +89,24 @@ impl Browser {
                 return Err(failed(&message["error"]));
             }
         }
+    }
+
+    /// Opens a place and waits until it is loaded.
+    pub fn open(&mut self, url: &str) -> Outcome {
+        self.events("Page.loadEventFired");
+        let answer = self.call("Page.navigate", json!({ "url": url }))?;
+        if let Some(error) = answer["errorText"].as_str() {
+            return Err(Failure::new(format!("{url}: {error}")));
+        }
+        for _ in 0..PATIENCE.as_millis() / 10 {
+            // What was told meanwhile comes with the next answer.
+            self.value("document.readyState")?;
+            if !self.events("Page.loadEventFired").is_empty() {
+                return Ok(());
+            }
+            thread::sleep(Duration::from_millis(10));
+        }
+        Err(Failure::new(format!("{url}: does not load")))
     }
 
     /// The value of an expression in the page, which may be a promise; what it throws is a failure.

@@ -2,14 +2,14 @@
 
 use super::browser::Browser;
 use super::faults::{what_is_wrong_is_said, without_simd_it_says_so};
-use super::page::{LivePage, failed, hold, url_of};
+use super::page::{COLOURS, LivePage, failed, hold, url_of};
+use super::program::as_the_program;
+use super::{cameras, plan, report};
 use crate::steps::{Failure, Outcome, output_of};
-use serde_json::{Value, json};
-use std::fs;
+use serde_json::Value;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use stereopsis_host::pfm;
 
 /// Settings that are matched by the page and by the command that the page says: places in the lists of
 /// methods, filters and noise, then disparities, least disparity and least confidence.
@@ -22,7 +22,14 @@ const MATCHED: [[i64; 6]; 7] = [
     [3, 2, 3, 128, 0, 60],
     [1, 0, 1, 16, 20, 0],
 ];
+/// What can be used: 32 settings, 3 numbers and 2 choices of the cameras, 14 fields of the plan, 7 views, 4
+/// openers, 9 buttons, 2 lists of cameras, 2 that unfold, the picture and the text to copy.
+const CONTROLS: usize = 32 + 5 + 14 + 7 + 4 + 9 + 2 + 2 + 2;
 const SEARCH: [&str; 6] = ["method", "filter", "noise", "disparities", "min_disparity", "min_confidence"];
+
+/// A number for what the picture shows.
+const SHOWN: &str = "context.getImageData(0, 0, canvas.width, canvas.height).data.reduce((sum, byte, i) => \
+                     (sum * 31 + byte + i) % 1e9, 0)";
 
 /// The program that serves the page, until this is dropped.
 struct Served {
@@ -68,7 +75,11 @@ pub fn sample(stereo: &Path) -> Outcome {
     every_view_shows_something(&mut page)?;
     keys_and_names_reach_everything(&mut page)?;
     what_is_wrong_is_said(&mut page, folder, &scene)?;
-    a_camera_is_matched_frame_by_frame(&mut page)?;
+    cameras::a_calibration_gives_metres_and_rectifies(&mut page, stereo, &scene)?;
+    cameras::a_calibration_that_is_none_is_named(&mut page, &scene)?;
+    plan::it_is_that_of_the_program(&mut page, stereo)?;
+    cameras::a_camera_is_matched_frame_by_frame(&mut page)?;
+    cameras::two_cameras_are_matched_frame_by_frame(&mut page)?;
     let requests = page.requests();
     hold(requests == [served.url.as_str()], || format!("the page asks for {requests:?}"))?;
     let thrown = page.thrown();
@@ -82,7 +93,8 @@ pub fn sample(stereo: &Path) -> Outcome {
     let requests = page.requests();
     hold(requests == [url.as_str()], || format!("as a file the page asks for {requests:?}"))?;
     println!("{figures}");
-    without_simd_it_says_so(&url)
+    without_simd_it_says_so(&url)?;
+    report::it_answers_as_the_files_do(&scene)
 }
 
 /// Disparities, flags and confidences are those of the command line that the page says, to the bit.
@@ -91,35 +103,7 @@ fn every_setting_matches_as_the_program(page: &mut LivePage, stereo: &Path, scen
         for (name, value) in SEARCH.into_iter().zip(settings) {
             page.set(name, value)?;
         }
-        page.press("copy-command")?;
-        let command = page.browser.value("byId('copied').value")?;
-        let command = command.as_str().unwrap_or_default();
-        let words = command.replacen("stereo ", "\"$0\" ", 1);
-        let mut run = Command::new("sh");
-        run.args(["-c", &words]).arg(stereo).current_dir(scene);
-        output_of(&mut run)?;
-        let out = scene.join("depth");
-        let differs = |what: &str| Failure::new(format!("{what} of the page differ from those of {command}"));
-
-        let path = out.join("disparity.pfm");
-        let bytes = fs::read(&path).map_err(|e| failed(&path, &e))?;
-        let map = pfm::read(&mut bytes.as_slice()).map_err(|e| failed(&path, &e))?;
-        let found = page.plane("disparity")?;
-        let found = found.as_chunks().0.iter().map(|raw| match u16::from_le_bytes(*raw) {
-            u16::MAX => f32::INFINITY,
-            raw => f32::from(raw) / 32.0,
-        });
-        if !found.eq(map.values.iter().copied()) {
-            return Err(differs("disparities"));
-        }
-        for (plane, file) in [("flags", "flags.png"), ("confidence", "confidence.png")] {
-            let path = out.join(file);
-            let image = image::open(&path).map_err(|e| failed(&path, &e))?.into_luma8();
-            if page.plane(plane)? != image.into_raw() {
-                return Err(differs(plane));
-            }
-        }
-        println!("as {}", command.replace(" \\\n ", ""));
+        as_the_program(page, stereo, scene)?;
     }
     Ok(())
 }
@@ -192,16 +176,16 @@ fn the_work_is_that_of_plan(page: &mut LivePage, stereo: &Path) -> Outcome {
 fn every_view_shows_something(page: &mut LivePage) -> Outcome {
     for view in ["left", "right", "disparity", "depth", "flags", "confidence", "points"] {
         page.press(&format!("view-{view}"))?;
-        let colours = page.browser.value("new Set(new Uint32Array(image.data.buffer)).size")?;
+        let colours = page.browser.value(COLOURS)?;
         let legend = page.text("legend")?;
         hold(colours.as_i64() > Some(2) && !legend.is_empty(), || {
             format!("the view {view} has {colours} colours and says '{legend}'")
         })?;
     }
-    let before = page.browser.value("image.data.reduce((sum, byte, i) => (sum * 31 + byte + i) % 1e9, 0)")?;
+    let before = page.browser.value(SHOWN)?;
     page.browser.value("canvas.focus()")?;
     page.key("ArrowLeft")?;
-    let after = page.browser.value("image.data.reduce((sum, byte, i) => (sum * 31 + byte + i) % 1e9, 0)")?;
+    let after = page.browser.value(SHOWN)?;
     hold(before != after, || "the points do not turn".to_owned())?;
     page.press("view-disparity")
 }
@@ -213,24 +197,5 @@ fn keys_and_names_reach_everything(page: &mut LivePage) -> Outcome {
     let said = page.text("pixel")?;
     let parts = ["column 401, row 300", " px, sigma ", " mm, sigma ", "confidence ", "flags: "];
     hold(parts.iter().all(|part| said.contains(part)), || format!("the pixel says '{said}'"))?;
-    let unnamed = page.browser.value(
-        "[...document.querySelectorAll('input, select, button, textarea, canvas, summary')].filter((e) => \
-         e.tabIndex < 0 || !(e.labels?.length || e.getAttribute('aria-label') || e.textContent.trim()))\
-         .map((e) => e.outerHTML)",
-    )?;
-    hold(unnamed == json!([]), || format!("without a name or the focus: {unnamed}"))
-}
-
-/// The browser's camera, a test pattern, gives one result after the other until it is stopped.
-fn a_camera_is_matched_frame_by_frame(page: &mut LivePage) -> Outcome {
-    page.press("camera")?;
-    let frames = "new Promise((done) => { const { show } = moving; let count = 0; moving.show = (pair) => { \
-                  show(pair); count += 1; if (count === 3) done(pair.left.name); }; })";
-    let name = page.browser.value(frames)?;
-    hold(name == "camera", || format!("{name} is matched, not the camera"))?;
-    let (said, pair) = (page.text("message")?, page.text("pair-names")?);
-    hold(said.is_empty() && pair.starts_with("camera, side by side: "), || format!("{pair} {said}"))?;
-    page.press("stop")?;
-    let is_on = page.browser.value("moving.isOn || !byId('stop').hidden")?;
-    hold(is_on == false, || "the camera is not stopped".to_owned())
+    page.everything_has_a_name(CONTROLS)
 }

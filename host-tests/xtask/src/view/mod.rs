@@ -3,12 +3,17 @@
 //! * [`run`]: builds the module and runs `stereo view`. [`kernels`]: the kernel of WebAssembly beside its
 //!   twin.
 //! * [`browser`]: a browser without a window. [`page`]: the live page in it. [`check`]: what the page has to
-//!   do, a step of the tests; [`faults`]: what it has to refuse.
+//!   do, a step of the tests; [`faults`]: what it has to refuse. [`program`]: what the program says to the
+//!   page's command line; [`plan`], [`cameras`]: parts of the page; [`report`]: the report of a run.
 
-mod browser;
+pub mod browser;
+mod cameras;
 mod check;
 mod faults;
 mod page;
+mod plan;
+mod program;
+mod report;
 
 pub use check::sample;
 

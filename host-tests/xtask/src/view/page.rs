@@ -13,12 +13,21 @@ const SETTLED: &str = "new Promise((done) => requestAnimationFrame(() => request
 const READY: &str = "new Promise((done) => { const look = () => state.settings !== null \
                      || byId('message').textContent !== '' ? done(true) : setTimeout(look, 20); look(); })";
 
+/// How many colours the picture has.
+pub const COLOURS: &str =
+    "new Set(new Uint32Array(context.getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size";
+
 /// The page.
 pub struct LivePage {
     pub browser: Browser,
 }
 
 impl LivePage {
+    /// A page that is open.
+    pub fn of(browser: Browser) -> Self {
+        Self { browser }
+    }
+
     /// Opens a place in a browser and waits for the first result.
     pub fn open(mut browser: Browser, url: &str) -> Outcome<Self> {
         browser.call("Page.navigate", json!({ "url": url }))?;
@@ -43,6 +52,16 @@ impl LivePage {
         self.browser.value(&format!(
             "{{ const input = byId({name}); if (input.type === 'checkbox') input.checked = {value} !== 0; \
              else input.value = {value}; input.dispatchEvent(new Event('input')); }}"
+        ))?;
+        self.settle()
+    }
+
+    /// Writes a number that may have a fraction into a field.
+    pub fn set_number(&mut self, name: &str, value: f64) -> Outcome {
+        let name = json!(name);
+        self.browser.value(&format!(
+            "{{ const input = byId({name}); input.value = {value}; \
+             input.dispatchEvent(new Event('input')); }}"
         ))?;
         self.settle()
     }
@@ -95,6 +114,19 @@ impl LivePage {
             self.browser.call("Input.dispatchKeyEvent", json!({ "type": kind, "key": key, "code": key }))?;
         }
         self.settle()
+    }
+
+    /// Everything that can be used, so many elements, has a name and can have the focus, if it is not hidden
+    /// or at rest.
+    pub fn everything_has_a_name(&mut self, count: usize) -> Outcome {
+        let found = self.browser.value(
+            "(() => { const all = [...document.querySelectorAll('input, select, button, textarea, canvas, \
+             summary')]; return { count: all.length, unnamed: all.filter((e) => e.tabIndex < 0 || \
+             !(e.labels?.length || e.getAttribute('aria-label') || e.textContent.trim()))\
+             .map((e) => e.outerHTML) }; })()",
+        )?;
+        hold(found["unnamed"] == json!([]), || format!("without a name or the focus: {}", found["unnamed"]))?;
+        hold(found["count"] == count, || format!("{} controls, {count} are looked at", found["count"]))
     }
 
     /// The addresses that the page asked for since it was last asked, but data of its own.

@@ -1,7 +1,7 @@
 //! What limits a plan, and what would help: whole sentences, each with its figures.
 
 use super::{Plan, Rig, STEP, Search, Tables};
-use crate::run::MethodName;
+use crate::method::MethodName;
 use stereopsis::geometry::camera::ImageSize;
 
 /// A clock that microcontrollers have, at most, MHz.

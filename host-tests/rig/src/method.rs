@@ -1,11 +1,10 @@
 //! The methods of this build, by name.
 
-use super::Host;
-use crate::twin;
 use std::fmt;
 use std::str::FromStr;
 use stereopsis::matching::{Config, Filter, Matcher, Method, state_bytes};
 use stereopsis::pipeline::Pipeline;
+use stereopsis_model::twin;
 
 /// A matching method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -23,33 +22,33 @@ pub enum MethodName {
 }
 
 /// Does something with the core's type of a method, by the name it is given.
+#[macro_export]
 macro_rules! with_method {
     ($method:expr, $type:ident => $work:expr) => {
         match $method {
-            $crate::run::MethodName::Fast => {
+            $crate::method::MethodName::Fast => {
                 type $type = stereopsis::matching::Fast;
                 $work
             }
-            $crate::run::MethodName::Block => {
+            $crate::method::MethodName::Block => {
                 type $type = stereopsis::matching::Block;
                 $work
             }
-            $crate::run::MethodName::SgmLean => {
+            $crate::method::MethodName::SgmLean => {
                 type $type = stereopsis::matching::SgmLean;
                 $work
             }
-            $crate::run::MethodName::Sgm => {
+            $crate::method::MethodName::Sgm => {
                 type $type = stereopsis::matching::Sgm;
                 $work
             }
-            $crate::run::MethodName::SgmEdge => {
+            $crate::method::MethodName::SgmEdge => {
                 type $type = stereopsis::matching::SgmEdge;
                 $work
             }
         }
     };
 }
-pub(super) use with_method;
 
 impl MethodName {
     /// The methods of this build.
@@ -105,7 +104,7 @@ impl MethodName {
 
     /// How many lines after its own a row of disparities comes out.
     pub const fn latency_lines(self) -> usize {
-        with_method!(self, S => Host::<S>::LATENCY)
+        with_method!(self, S => Pipeline::<S, 320, 64>::LATENCY)
     }
 
     /// Standard deviation of an answer away from depth edges, px.
@@ -114,12 +113,16 @@ impl MethodName {
     }
 }
 
-/// What a pipeline holds beside its matcher: so many bytes for each column, and some.
+/// Bytes of a pointer that are reckoned with, on a machine with shorter ones too: the figure is the same
+/// everywhere.
+const POINTER_BYTES: usize = 8;
+
+/// What a pipeline holds beside its matcher: so many bytes for each column, and some words.
 const fn lines_bytes<S: Method>(width: usize) -> usize {
     let narrow = size_of::<Pipeline<S, 320, 64>>() - size_of::<Matcher<S, 320, 64>>();
     let wide = size_of::<Pipeline<S, 640, 64>>() - size_of::<Matcher<S, 640, 64>>();
     let per_column = (wide - narrow) / 320;
-    narrow - 320 * per_column + width * per_column
+    (narrow - 320 * per_column) / size_of::<usize>() * POINTER_BYTES + width * per_column
 }
 
 impl fmt::Display for MethodName {

@@ -2,13 +2,15 @@
 
 use super::advice::percent;
 use super::{Plan, Work};
+use crate::calibration::Reach;
 use std::fmt::Write;
+use stereopsis::matching::Config;
 
 impl Plan {
     /// Lines of text: the rig, the search, depths, the common field, memory, speed, limits and what would
     /// help.
     pub fn describe(&self) -> String {
-        let (rig, search) = (&self.rig, &self.search);
+        let rig = &self.rig;
         let [across, down] = self.field_of_view_deg;
         let mut text = format!(
             "rig          baseline {:.2} mm, f {:.1} px, images of {} x {} px: {across:.1} x {down:.1} \
@@ -18,22 +20,26 @@ impl Plan {
             rig.width,
             rig.height
         );
+        self.describe_depths(&mut text);
+        self.takes(&mut text);
+        self.describe_limits(&mut text);
+        text
+    }
+
+    /// Lines of text: the search, and the depths that it tells.
+    pub fn describe_depths(&self, text: &mut String) {
+        let (rig, search) = (&self.rig, &self.search);
         let _ = writeln!(
             text,
             "search       --disparities {} --min-disparity {}",
             search.disparities, search.min_disparity
         );
         let distances: Vec<_> = self.depths.iter().map(|depth| depth.depth_m).collect();
-        search.reach(rig).describe(&distances, &mut text);
+        search.reach(rig).describe(&distances, text);
         if let Some(end_m) = self.end_m {
             let _ = writeln!(text, "             what is beyond {end_m:.2} m is not told");
         }
-        let _ = writeln!(
-            text,
-            "accuracy     within {} % up to {:.2} m: one standard deviation",
-            percent(self.wanted.accuracy),
-            self.reach_m
-        );
+        accuracy(self.wanted.accuracy, self.reach_m, text);
         for depth in
             self.depths.first().into_iter().chain(self.depths.last().filter(|_| self.depths.len() > 1))
         {
@@ -41,9 +47,12 @@ impl Plan {
             let _ =
                 writeln!(text, "both see     at {z:5.2} m  {share:.0} % of the columns, {wide:.2} m across");
         }
-        self.takes(&mut text);
+    }
+
+    /// Lines of text: what limits the rig, and what would help.
+    pub fn describe_limits(&self, text: &mut String) {
         if self.limits.is_empty() {
-            text += "limit        none: all that is wanted is had\n";
+            *text += "limit        none: all that is wanted is had\n";
         }
         for limit in &self.limits {
             let _ = writeln!(text, "limit        {limit}");
@@ -51,7 +60,6 @@ impl Plan {
         for change in &self.changes {
             let _ = writeln!(text, "change       {change}");
         }
-        text
     }
 
     /// What the methods take: memory, then frames in a second on each core.
@@ -80,6 +88,38 @@ impl Plan {
                   exact, the rest is scaled\n             from what was measured in an emulator \
                   (docs/performance.md)\n";
     }
+}
+
+/// Lines of text of a rig whose search is given: how well its depths are told, what limits it at either end,
+/// and what would help.
+pub fn describe_search(reach: &Reach, baseline_m: f64, share: f64, text: &mut String) {
+    let (within_m, aim, mm) = (reach.within_m(share), percent(share), 1000.0 * baseline_m);
+    let more = reach.disparities.saturating_mul(2).min(Config::MOST_DISPARITIES);
+    let wider = Reach { disparities: more, ..*reach };
+    let begins = |reach: &Reach| reach.nearest_m().map(|near| format!("would begin at {near:.3} m"));
+    if let Some(nearest_m) = reach.nearest_m() {
+        accuracy(share, within_m, text);
+        let _ = writeln!(text, "limit        the search: depths are told from {nearest_m:.3} m on");
+    }
+    let shorter = Reach { fb_px_m: reach.fb_px_m / 2.0, ..*reach };
+    let help = if more > reach.disparities {
+        begins(&wider).map(|begins| format!("--disparities {more} {begins}"))
+    } else {
+        begins(&shorter).map(|begins| format!("a baseline of {:.0} mm {begins}", mm / 2.0))
+    };
+    if let Some(help) = help {
+        let _ = writeln!(text, "change       {help}");
+    }
+    let _ = writeln!(text, "limit        the accuracy: beyond {within_m:.2} m the deviation is over {aim} %");
+    let (longer, farther) = (2.0 * mm, 2.0 * within_m);
+    let _ =
+        writeln!(text, "change       a baseline of {longer:.0} mm would reach {farther:.2} m within {aim} %");
+}
+
+/// How far depths are told how well.
+fn accuracy(share: f64, within_m: f64, text: &mut String) {
+    let aim = percent(share);
+    let _ = writeln!(text, "accuracy     within {aim} % up to {within_m:.2} m: one standard deviation");
 }
 
 /// A number of bytes that is told.

@@ -6,7 +6,7 @@
 //! that were measured.
 
 use super::measured::{Growth, Measured, firmware, growth};
-use crate::run::MethodName;
+use crate::method::MethodName;
 use serde::Serialize;
 use stereopsis::geometry::camera::ImageSize;
 
@@ -127,7 +127,7 @@ mod tests {
     /// Lines of `docs/performance.md`.
     #[test]
     fn what_was_measured_is_said_as_it_was() {
-        let page = include_str!("../../../docs/performance.md");
+        let page = include_str!("../../../../docs/performance.md");
         for (core, method, size, disparities) in [
             ("m4", MethodName::Fast, (160, 120), 32),
             ("m4", MethodName::Sgm, (320, 240), 64),

@@ -5,17 +5,19 @@
 //! to change.
 //!
 //! * `measured`: the figures of firmware. `work`: the estimate from them.
-//! * `advice`: what limits, and what would help. `words`: the plan as text.
+//! * `advice`: what limits, and what would help. `words`: the plan as text. [`describe_search`]: the same
+//!   words of a rig that is there, whose search is given.
 
 mod advice;
 mod measured;
 mod words;
 mod work;
 
+pub use words::describe_search;
 pub use work::{CORES, Tables, Work};
 
 use crate::calibration::Reach;
-use crate::run::MethodName;
+use crate::method::MethodName;
 use serde::Serialize;
 use stereopsis::geometry::camera::ImageSize;
 use stereopsis::matching::Config;
@@ -27,14 +29,16 @@ pub struct Rig {
     pub baseline_m: f64,
     /// Their focal length, px.
     pub focal_px: f64,
+    /// What is added to a disparity before it divides, px: 0 where the principal points agree.
+    pub offset_px: f64,
     /// Columns of their images.
     pub width: u16,
     /// Rows.
     pub height: u16,
 }
 
-/// What is wanted of a rig.
-#[derive(Clone, PartialEq, Debug, Serialize)]
+/// What is wanted of a rig; by default nothing.
+#[derive(Clone, PartialEq, Debug, Default, Serialize)]
 pub struct Wanted {
     /// The nearest depth, m.
     pub nearest_m: f64,
@@ -115,6 +119,11 @@ impl Rig {
         self.focal_px * self.baseline_m
     }
 
+    /// The disparity of a depth, px.
+    fn disparity_px(&self, depth_m: f64) -> f64 {
+        self.fb_px_m() / depth_m - self.offset_px
+    }
+
     /// The angle that so many pixels about the centre span, degrees.
     fn angle_deg(&self, pixels: u16) -> f64 {
         2.0 * (f64::from(pixels) / 2.0 / self.focal_px).atan().to_degrees()
@@ -135,8 +144,8 @@ const MARGIN_PX: f64 = 1.0;
 impl Search {
     /// The search for a range of depths. What rounding adds is spent on the far side, down to infinity.
     pub fn of(rig: &Rig, nearest_m: f64, farthest_m: f64) -> Self {
-        let first = ((rig.fb_px_m() / farthest_m).floor() - MARGIN_PX).max(0.0);
-        let last = (rig.fb_px_m() / nearest_m).ceil() + MARGIN_PX;
+        let first = (rig.disparity_px(farthest_m).floor() - MARGIN_PX).max(0.0);
+        let last = rig.disparity_px(nearest_m).ceil() + MARGIN_PX;
         let steps = ((last - first + 1.0) / f64::from(STEP)).ceil().clamp(1.0, 1e6);
         let needed = steps as u32 * u32::from(STEP);
         let disparities = u16::try_from(needed).unwrap_or(u16::MAX).min(rig.most_disparities());
@@ -145,11 +154,17 @@ impl Search {
         Self { disparities, min_disparity: min.clamp(0.0, f64::from(most)) as u16, needed }
     }
 
+    /// The depth beyond which nothing is told, m; `None` where that is beyond all.
+    fn end_m(&self, rig: &Rig) -> Option<f64> {
+        let parallax = f64::from(self.min_disparity) + rig.offset_px;
+        (self.min_disparity > 0 && parallax > 0.0).then(|| rig.fb_px_m() / parallax)
+    }
+
     /// The depths that it tells.
     fn reach(&self, rig: &Rig) -> Reach {
         let Self { disparities, min_disparity, .. } = *self;
         let (fb_px_m, sigma_px) = (rig.fb_px_m(), Reach::SIGMA_PX);
-        Reach { fb_px_m, offset_px: 0.0, min_disparity, disparities, sigma_px }
+        Reach { fb_px_m, offset_px: rig.offset_px, min_disparity, disparities, sigma_px }
     }
 }
 
@@ -173,7 +188,7 @@ impl Plan {
             sigma_px: reach.sigma_px,
             nearest_m: reach.nearest_m().unwrap_or(f64::INFINITY),
             reach_m: reach.within_m(wanted.accuracy),
-            end_m: (search.min_disparity > 0).then(|| rig.fb_px_m() / f64::from(search.min_disparity)),
+            end_m: search.end_m(&rig),
             depths,
             work: work.collect(),
             limits: Vec::new(),
@@ -213,7 +228,7 @@ mod tests {
     use super::*;
 
     /// 500 px x 0.1 m = 50 px m.
-    const RIG: Rig = Rig { baseline_m: 0.1, focal_px: 500.0, width: 640, height: 480 };
+    const RIG: Rig = Rig { baseline_m: 0.1, focal_px: 500.0, offset_px: 0.0, width: 640, height: 480 };
 
     #[test]
     fn a_search_covers_the_range() {
@@ -226,6 +241,9 @@ mod tests {
         // 500 px at 0.1 m.
         let most = Search { disparities: 256, min_disparity: 0, needed: 512 };
         assert_eq!(Search::of(&RIG, 0.1, 50.0), most);
+        // 50 px of parallax at 1 m are 40 px of disparity with an offset of 10.
+        let offset = Search::of(&Rig { offset_px: 10.0, ..RIG }, 1.0, 2.5);
+        assert_eq!(offset, Search { disparities: 48, min_disparity: 0, needed: 48 });
         // No more than the image is wide.
         assert_eq!(Search::of(&Rig { width: 40, ..RIG }, 0.5, 50.0).disparities, 32);
     }

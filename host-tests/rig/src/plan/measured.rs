@@ -4,10 +4,10 @@
 //! The tables of `docs/performance.md` are the data themselves: what the page says and what is estimated from
 //! it cannot differ. Columns are found by their headings.
 
-use crate::run::MethodName;
+use crate::method::MethodName;
 
 /// The page with the tables.
-const PAGE: &str = include_str!("../../../docs/performance.md");
+const PAGE: &str = include_str!("../../../../docs/performance.md");
 /// The headings of the columns that are read.
 const FIRMWARE: [&str; 7] = ["core", "method", "pixels", "disparities", "instructions", "stack", "flash"];
 const GROWTH: [&str; 2] = ["what grows", "pixels, disparities"];

@@ -83,7 +83,7 @@ impl Reach {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::MethodName;
+    use crate::method::MethodName;
 
     #[test]
     fn the_deviation_is_that_of_all_methods() {

@@ -1,0 +1,123 @@
+//! The report of a run in a browser: what it says is what the files of the run say.
+
+use super::browser::Browser;
+use super::page::{COLOURS, LivePage, failed, hold, url_of};
+use crate::steps::{Failure, Outcome};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::Path;
+use stereopsis::units::PixelFlags;
+use stereopsis_host::pfm;
+
+/// What can be used: ten views, of which two need a truth, two of which need depths; three sliders; the
+/// picture.
+const CONTROLS: usize = 9 + 3 + 1;
+/// Pixels that are read out, spread over the picture.
+const PIXELS: usize = 300;
+
+/// Opens the report of `demo` and holds it to the files beside it.
+pub fn it_answers_as_the_files_do(run: &Path) -> Outcome {
+    let url = url_of(&run.join("report.html"));
+    let mut browser = Browser::start()?;
+    browser.open(&url)?;
+    let mut page = LivePage::of(browser);
+    page.browser.value(
+        "new Promise((done) => { const look = () => state.planes ? done(true) : setTimeout(look, 20); \
+         look(); })",
+    )?;
+    pixels_are_those_of_the_files(&mut page, run)?;
+    sliders_change_what_is_said(&mut page, run)?;
+    let views =
+        page.browser.value("[...document.querySelectorAll('input[name=view]')].map((v) => v.value)")?;
+    for view in views.as_array().into_iter().flatten().filter_map(Value::as_str) {
+        page.press(&format!("view-{view}"))?;
+        let colours = page.browser.value(COLOURS)?;
+        let legend = page.text("legend")?;
+        hold(colours.as_i64() > Some(2) && !legend.is_empty(), || {
+            format!("the report's view {view} is empty")
+        })?;
+    }
+    page.press("view-disparity")?;
+    page.browser.value("cursor.x = 300; cursor.y = 200; canvas.focus()")?;
+    page.key("ArrowDown")?;
+    let said = page.text("pixel")?;
+    hold(said.starts_with("column 300, row 201: "), || format!("the keys lead to '{said}'"))?;
+    page.everything_has_a_name(CONTROLS)?;
+    let requests = page.requests();
+    hold(requests == [url.as_str()], || format!("the report asks for {requests:?}"))?;
+    let thrown = page.thrown();
+    hold(thrown.is_empty(), || format!("not caught in the report: {thrown:?}"))?;
+    println!("the report says of {PIXELS} pixels what the files say");
+    Ok(())
+}
+
+/// The disparity, the depth, the confidence and the flags of pixels all over the picture.
+fn pixels_are_those_of_the_files(page: &mut LivePage, run: &Path) -> Outcome {
+    let path = run.join("disparity.pfm");
+    let bytes = fs::read(&path).map_err(|e| failed(&path, &e))?;
+    let map = pfm::read(&mut bytes.as_slice()).map_err(|e| failed(&path, &e))?;
+    let open = |name: &str| {
+        let path = run.join(name);
+        image::open(&path).map_err(|e| failed(&path, &e))
+    };
+    let depth = open("depth.png")?.into_luma16().into_raw();
+    let (flags, confidence) = (open("flags.png")?.into_luma8(), open("confidence.png")?.into_luma8());
+    let (flags, confidence) = (flags.into_raw(), confidence.into_raw());
+    let width = map.width;
+    let places: Vec<_> =
+        (0..PIXELS).map(|i| (i * map.values.len() / PIXELS + 37 * i) % map.values.len()).collect();
+    let asked: Vec<_> = places.iter().map(|at| [at % width, at / width]).collect();
+    let said =
+        page.browser.value(&format!("{}.map(([x, y]) => describePixel(state, x, y))", json!(asked)))?;
+    let mut without = 0;
+    for (&at, said) in places.iter().zip(said.as_array().into_iter().flatten()) {
+        let said = said.as_str().unwrap_or_default();
+        let names = PixelFlags::NAMES.iter().filter(|(flag, _)| flags[at] & flag.bits() != 0);
+        let names: Vec<_> = names.map(|(_, name)| *name).collect();
+        let why = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        let begin = format!("column {}, row {}: ", at % width, at / width);
+        let mut parts = vec![begin, format!("flags: {why}")];
+        if map.values[at].is_finite() {
+            // Half a digit is rounded up.
+            parts.push(format!("disparity {:.3} px, sigma ", map.values[at] + 1e-5));
+            parts.push(format!("; confidence {} of ", confidence[at]));
+            parts.push(format!("; depth {} mm, sigma ", depth[at]));
+        } else {
+            parts.push("no answer".into());
+            without += 1;
+        }
+        hold(parts.iter().all(|part| said.contains(part.as_str())), || {
+            format!("the report says '{said}', the files {parts:?}")
+        })?;
+    }
+    hold(without > 0 && without < PIXELS, || format!("{without} of {PIXELS} pixels have no answer"))
+}
+
+/// At first the share of the answers is that of summary.json; each slider takes answers away and gives them
+/// back.
+fn sliders_change_what_is_said(page: &mut LivePage, run: &Path) -> Outcome {
+    let path = run.join("summary.json");
+    let text = fs::read_to_string(&path).map_err(|e| failed(&path, &e))?;
+    let summary: Value = serde_json::from_str(&text).map_err(|e| failed(&path, &e))?;
+    let all = page.text("figures")?;
+    let density = 100.0 * summary["density"].as_f64().unwrap_or(f64::NAN);
+    let begin = format!("{density:.2} % of the pixels have an answer");
+    hold(all.starts_with(&begin), || format!("'{all}' is said, not '{begin}'"))?;
+    for name in ["least", "near", "far"] {
+        let ends = page
+            .browser
+            .value(&format!("(({{ min, max, value }}) => [min, max, value].map(Number))(byId('{name}'))"))?;
+        let [low, high, start] = [0, 1, 2].map(|i| ends[i].as_i64().unwrap_or(-1));
+        let label = page.text(&format!("{name}-says"))?;
+        page.set(name, (low + high) / 2)?;
+        let (fewer, other) = (page.text("figures")?, page.text(&format!("{name}-says"))?);
+        let share = |text: &str| text.split(' ').next().and_then(|n| n.parse::<f64>().ok());
+        hold(share(&fewer) < share(&all) && other != label, || {
+            format!("the slider {name}: '{fewer}' of '{all}', and it says '{other}'")
+        })?;
+        page.set(name, start)?;
+        let again = page.text("figures")?;
+        hold(again == all, || Failure::new(format!("{name}: '{again}'")).to_string())?;
+    }
+    Ok(())
+}

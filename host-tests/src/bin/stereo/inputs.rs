@@ -11,6 +11,11 @@ const SIDES: [&str; 2] = ["left", "right"];
 /// The endings of images.
 const IMAGES: [&str; 11] = ["png", "jpg", "jpeg", "pgm", "ppm", "pnm", "pbm", "tif", "tiff", "bmp", "webp"];
 
+/// What stands after the command's name, which may be that of a folder too.
+pub fn after_command(args: impl Iterator<Item = OsString>) -> impl Iterator<Item = OsString> {
+    args.skip_while(|arg| arg.to_string_lossy().starts_with('-')).skip(1)
+}
+
 /// The files that the arguments name: themselves, by a pattern, or as the images of a folder.
 pub fn of(args: impl Iterator<Item = OsString>) -> Vec<PathBuf> {
     let (mut found, mut is_result) = (Vec::new(), false);
@@ -55,6 +60,15 @@ fn images(folder: &Path) -> impl Iterator<Item = PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_command_is_no_input() {
+        let words = |list: &[&str]| list.iter().map(OsString::from).collect::<Vec<_>>();
+        for all in [&["demo", "--out", "demo"][..], &["--quiet", "demo", "--out", "demo"]] {
+            let left: Vec<_> = after_command(words(all).into_iter()).collect();
+            assert_eq!(left, words(&["--out", "demo"]));
+        }
+    }
 
     #[test]
     fn results_are_no_inputs() {

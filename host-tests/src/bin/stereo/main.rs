@@ -183,7 +183,7 @@ const USAGE: u8 = 2;
 fn main() -> ExitCode {
     let (outcome, status) = match parse(std::env::args_os()) {
         Ok(command) => {
-            protect(inputs::of(std::env::args_os().skip(1)));
+            protect(inputs::of(inputs::after_command(std::env::args_os().skip(1))));
             (run(command), ExitCode::FAILURE)
         }
         Err(Stop::Help(text)) => (print(&text), ExitCode::FAILURE),

@@ -101,8 +101,8 @@ impl DriveRule {
     ///
     /// In this order: blind by the watchdog; stop for what is within the stopping distance; blind where the
     /// ground is not found, or more than an eighth of the corridor's columns do not see it for twice the
-    /// stopping distance or up to an obstacle; slow for what is within twice the stopping
-    /// distance or the time to contact; clear.
+    /// stopping distance or up to an obstacle; slow for what is within twice the stopping distance or the
+    /// time to contact; clear.
     pub fn decide(&mut self, frame: &ObstaclesView<'_>, speed_mm_s: u16) -> Verdict {
         let stopping_mm = self.stopping_mm(speed_mm_s);
         let needed = stopping_mm.saturating_mul(2);

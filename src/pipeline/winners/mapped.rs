@@ -56,8 +56,8 @@ pub struct MappedBlock<'a, D> {
 }
 
 impl<'a, D: BlockDma> MappedBlock<'a, D> {
-    /// The block whose registers and ring these are. A row is late when none of its records came in
-    /// `most_looks` looks at the channel's position.
+    /// The block whose registers and ring these are. A row is late that is not whole after `most_looks` looks
+    /// at the channel's position.
     pub const fn new(
         registers: &'a [AtomicU32; 9],
         ring: &'a [[AtomicU32; 2]],

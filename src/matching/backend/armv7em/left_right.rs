@@ -108,10 +108,10 @@ macro_rules! answer_one {
     };
 }
 
-/// The fraction in `r3` by the costs in the lower three bytes of `r0`, below, at and above the disparity, of
-/// which that at it is the least. They rise for nothing but the disparity: 16 times the difference of both
-/// rises, and half of the steeper one more, over that one. 15 instructions.
-macro_rules! upright_fraction {
+/// The costs in the lower three bytes of `r0`, below, at and above the disparity, of which that at it is the
+/// least: the difference of those beside it in `r3`, the steeper rise in `r2`, and whether that is nothing as
+/// a condition. 7 instructions.
+macro_rules! rises {
     () => {
         "uxtb r2, r0
          uxtb r3, r0, ror #16
@@ -120,10 +120,14 @@ macro_rules! upright_fraction {
          it lo
          sublo r2, r2, r3
          subs r2, r2, r0
-         itt eq
-         orreq r6, r6, r12, lsr #8
-         moveq r2, #1
-         lsls r3, r3, #4
+         "
+    };
+}
+
+/// 16 times the difference in `r3`, and half of `r2` more, over `r2`: the fraction in `r3`. 5 instructions.
+macro_rules! quotient {
+    () => {
+        "lsls r3, r3, #4
          ite mi
          submi r3, r3, r2, lsr #1
          addpl r3, r3, r2, lsr #1
@@ -132,34 +136,41 @@ macro_rules! upright_fraction {
     };
 }
 
+/// The fraction in `r3` by the costs in `r0`, which rise for nothing but the disparity: the difference of both
+/// rises over the steeper one. 15 instructions.
+macro_rules! upright_fraction {
+    () => {
+        concat!(
+            rises!(),
+            "itt eq
+             orreq r6, r6, r12, lsr #8
+             moveq r2, #1
+             ",
+            quotient!(),
+        )
+    };
+}
+
 /// The fraction in `r3` as [`upright_fraction`] finds it, of costs that rise by up to `{slant}` on a slanted
 /// surface: that much of the steeper rise is not counted, as far as it is more than the difference, and both
-/// are at least 1, to divide by. 22 instructions.
+/// are at least 1, to divide by. 23 instructions.
 macro_rules! slanted_fraction {
     () => {
-        "uxtb r2, r0
-         uxtb r3, r0, ror #16
-         uxtb r0, r0, ror #8
-         subs r3, r2, r3
-         it lo
-         sublo r2, r2, r3
-         subs r2, r2, r0
-         it eq
-         orreq r6, r6, r12, lsr #8
-         eor r0, r3, r3, asr #31
-         sub r0, r0, r3, asr #31
-         sub r2, r2, #{slant} + 1
-         usat r2, #8, r2
-         add r2, r2, #1
-         cmp r2, r0
-         it lo
-         movlo r2, r0
-         lsls r3, r3, #4
-         ite mi
-         submi r3, r3, r2, lsr #1
-         addpl r3, r3, r2, lsr #1
-         sdiv r3, r3, r2
-         "
+        concat!(
+            rises!(),
+            "it eq
+             orreq r6, r6, r12, lsr #8
+             eor r0, r3, r3, asr #31
+             sub r0, r0, r3, asr #31
+             sub r2, r2, #{slant} + 1
+             usat r2, #8, r2
+             add r2, r2, #1
+             cmp r2, r0
+             it lo
+             movlo r2, r0
+             ",
+            quotient!(),
+        )
     };
 }
 

@@ -136,8 +136,8 @@ macro_rules! quotient {
     };
 }
 
-/// The fraction in `r3` by the costs in `r0`, which rise for nothing but the disparity: the difference of both
-/// rises over the steeper one. 15 instructions.
+/// The fraction in `r3` by the costs in `r0`, which rise for nothing but the disparity: the difference of
+/// both rises over the steeper one. 15 instructions.
 macro_rules! upright_fraction {
     () => {
         concat!(
